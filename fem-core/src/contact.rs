@@ -1,0 +1,41 @@
+//! The contract of a contact law.
+
+use dyn_clone::DynClone;
+use std::fmt::Debug;
+
+/// What a contact law remembers between accepted steps: plain numbers, all zero before the first contact.
+pub type ContactHistory = [f64; 8];
+
+/// Contact force and its derivative at one indentation.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ContactForce {
+    /// Force, N; never negative.
+    pub force: f64,
+    /// dF/dα, N/m.
+    pub tangent: f64,
+}
+
+/// Work done on a contact since it began.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ContactEnergy {
+    /// Recoverable part, J.
+    pub stored: f64,
+    /// Lost part, J.
+    pub dissipated: f64,
+}
+
+/// A contact law F(α): α is the indentation, positive when the bodies overlap.
+///
+/// The force is a pure function of the committed history and the present indentation, so that an integrator may try
+/// any number of states within a step; only [`ContactLaw::commit`], called once per accepted step, changes the history.
+pub trait ContactLaw: DynClone + Debug + Send + Sync {
+    /// Force and tangent at indentation `alpha` (m).
+    fn force(&self, history: &ContactHistory, alpha: f64) -> ContactForce;
+
+    /// Takes `alpha` into the history.
+    fn commit(&self, history: &mut ContactHistory, alpha: f64);
+
+    /// Work done on the contact up to `alpha`.
+    fn energy(&self, history: &ContactHistory, alpha: f64) -> ContactEnergy;
+}
+dyn_clone::clone_trait_object!(ContactLaw);

@@ -1,0 +1,17 @@
+//! The words of the framework and the contracts of its plug-ins.
+//!
+//! Everything here speaks SI units, `f64` and slices. A plug-in crate depends on this crate alone, without its default
+//! feature `assembly`, which brings the sparse solver.
+
+pub mod contact;
+pub mod counters;
+pub mod dof;
+pub mod element;
+pub mod failure;
+pub mod material;
+pub mod mesh;
+pub mod plugin;
+pub mod quadrature;
+pub mod reduction;
+pub mod tensor;
+pub mod time;

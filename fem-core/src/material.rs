@@ -1,0 +1,275 @@
+//! Materials: orthotropic elasticity with its validity checks, density, strengths.
+
+use crate::tensor::Matrix6;
+use std::fmt;
+
+/// Elastic constants of an orthotropic solid in its own axes; Pa and dimensionless.
+///
+/// `nu_ij` is the strain along j per strain along i under stress along i, so `nu12/e1 = nu21/e2`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)]
+pub struct Elastic {
+    pub e1: f64,
+    pub e2: f64,
+    pub e3: f64,
+    pub nu12: f64,
+    pub nu13: f64,
+    pub nu23: f64,
+    pub g12: f64,
+    pub g13: f64,
+    pub g23: f64,
+}
+
+/// Why a set of constants is refused.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaterialError {
+    /// Name of the material.
+    pub material: String,
+    /// The inequality or constant that offends, with its numbers.
+    pub why: String,
+}
+
+impl fmt::Display for MaterialError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "material `{}`: {}", self.material, self.why)
+    }
+}
+impl std::error::Error for MaterialError {}
+
+impl Elastic {
+    /// Fibres along 1, isotropic in the 2-3 plane: G23 = E2 / (2 (1 + ν23)), E3 = E2, ν13 = ν12, G13 = G12.
+    pub fn transversely_isotropic(e1: f64, e2: f64, nu12: f64, nu23: f64, g12: f64) -> Self {
+        let g23 = e2 / (2.0 * (1.0 + nu23));
+        Self { e1, e2, e3: e2, nu12, nu13: nu12, nu23, g12, g13: g12, g23 }
+    }
+
+    /// Isotropic: G = E / (2 (1 + ν)).
+    pub fn isotropic(e: f64, nu: f64) -> Self {
+        Self::transversely_isotropic(e, e, nu, nu, e / (2.0 * (1.0 + nu)))
+    }
+
+    /// Compliance S in the material's axes, ε = S σ.
+    pub fn compliance(&self) -> Matrix6 {
+        let mut s = [[0.0; 6]; 6];
+        let e = [self.e1, self.e2, self.e3];
+        for i in 0..3 {
+            s[i][i] = 1.0 / e[i];
+        }
+        for (i, j, nu) in [(0, 1, self.nu12), (0, 2, self.nu13), (1, 2, self.nu23)] {
+            s[i][j] = -nu / e[i];
+            s[j][i] = s[i][j];
+        }
+        s[3][3] = 1.0 / self.g12;
+        s[4][4] = 1.0 / self.g23;
+        s[5][5] = 1.0 / self.g13;
+        s
+    }
+
+    /// Stiffness C = S⁻¹ in the material's axes.
+    ///
+    /// Meaningful only for constants that pass [`Elastic::check`].
+    pub fn stiffness(&self) -> Matrix6 {
+        let s = self.compliance();
+        let normal = nalgebra::Matrix3::from_fn(|i, j| s[i][j]);
+        let inverse = normal.try_inverse().unwrap_or_else(|| nalgebra::Matrix3::repeat(f64::NAN));
+        let mut c = [[0.0; 6]; 6];
+        for i in 0..3 {
+            for j in 0..3 {
+                c[i][j] = 0.5 * (inverse[(i, j)] + inverse[(j, i)]);
+            }
+        }
+        c[3][3] = self.g12;
+        c[4][4] = self.g23;
+        c[5][5] = self.g13;
+        c
+    }
+
+    /// Positive definiteness of the stiffness, one named inequality at a time.
+    ///
+    /// # Errors
+    /// The first inequality that fails, with its numbers.
+    pub fn check(&self) -> Result<(), String> {
+        for (name, v) in
+            [("E1", self.e1), ("E2", self.e2), ("E3", self.e3), ("G12", self.g12), ("G13", self.g13), ("G23", self.g23)]
+        {
+            if !(v > 0.0 && v.is_finite()) {
+                return Err(format!("{name} must be positive and finite, got {v}"));
+            }
+        }
+        for (name, nu, ei, ej, i, j) in [
+            ("nu12", self.nu12, self.e1, self.e2, 1, 2),
+            ("nu13", self.nu13, self.e1, self.e3, 1, 3),
+            ("nu23", self.nu23, self.e2, self.e3, 2, 3),
+        ] {
+            let bound = (ei / ej).sqrt();
+            if !(nu.abs() < bound) {
+                return Err(format!(
+                    "|{name}| < sqrt(E{i}/E{j}) = {bound:.6} is required for a positive definite stiffness, got {name} = {nu}"
+                ));
+            }
+        }
+        let (nu21, nu31, nu32) =
+            (self.nu12 * self.e2 / self.e1, self.nu13 * self.e3 / self.e1, self.nu23 * self.e3 / self.e2);
+        let determinant = 1.0 - self.nu12 * nu21 - self.nu23 * nu32 - self.nu13 * nu31 - 2.0 * nu21 * nu32 * self.nu13;
+        if !(determinant > 0.0) {
+            return Err(format!(
+                "1 - nu12 nu21 - nu23 nu32 - nu31 nu13 - 2 nu21 nu32 nu13 > 0 is required for a positive definite \
+                 stiffness, got {determinant:.6}"
+            ));
+        }
+        Ok(())
+    }
+}
+
+macro_rules! strengths {
+    ($($(#[$doc:meta])* $variant:ident $get:ident $name:literal),+ $(,)?) => {
+        /// A constant that a criterion may require of a material.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Strength { $($(#[$doc])* $variant),+ }
+
+        impl Strength {
+            /// All constants, in the order of their declaration.
+            pub const ALL: &'static [Strength] = &[$(Strength::$variant),+];
+            /// The key that scenes and tables use.
+            pub const fn name(self) -> &'static str {
+                match self { $(Strength::$variant => $name),+ }
+            }
+        }
+
+        impl Strengths {
+            $($(#[$doc])* #[inline] pub const fn $get(&self) -> f64 { self.0[Strength::$variant as usize] })+
+        }
+    };
+}
+
+strengths! {
+    /// Tension along the fibres, s1T.
+    Xt xt "Xt",
+    /// Compression along the fibres (positive number), s1C.
+    Xc xc "Xc",
+    /// Tension across the fibres, s2T.
+    Yt yt "Yt",
+    /// Compression across the fibres (positive number), s2C.
+    Yc yc "Yc",
+    /// Shear along the fibres, s12 = s13.
+    S12 s12 "S12",
+    /// Shear across the fibres, s23.
+    S23 s23 "S23",
+}
+
+const STRENGTHS: usize = Strength::ALL.len();
+
+/// Strengths of a material in Pa; a constant that nobody gave is NaN and never enters a computation, because
+/// criteria declare what they need and are refused without it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strengths([f64; STRENGTHS]);
+
+impl Default for Strengths {
+    fn default() -> Self {
+        Self([f64::NAN; STRENGTHS])
+    }
+}
+
+impl Strengths {
+    /// The same strengths with one constant given.
+    #[must_use]
+    pub fn with(mut self, which: Strength, pascals: f64) -> Self {
+        self.0[which as usize] = pascals;
+        self
+    }
+
+    /// The constant, if it was given.
+    pub fn get(&self, which: Strength) -> Option<f64> {
+        Some(self.0[which as usize]).filter(|v| !v.is_nan())
+    }
+}
+
+/// A material: elasticity, density, strengths. SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Name by which layups and errors refer to it.
+    pub name: String,
+    /// Elastic constants in the material's axes.
+    pub elastic: Elastic,
+    /// Density, kg/m³.
+    pub density: f64,
+    /// Strengths, Pa.
+    pub strengths: Strengths,
+}
+
+impl Material {
+    /// Refuses constants that no solid can have.
+    ///
+    /// # Errors
+    /// Names the constant or the inequality with its numbers.
+    pub fn check(&self) -> Result<(), MaterialError> {
+        let refuse = |why: String| Err(MaterialError { material: self.name.clone(), why });
+        if let Err(why) = self.elastic.check() {
+            return refuse(why);
+        }
+        if !(self.density > 0.0 && self.density.is_finite()) {
+            return refuse(format!("density must be positive and finite, got {} kg/m3", self.density));
+        }
+        for &s in Strength::ALL {
+            if let Some(v) = self.strengths.get(s).filter(|v| !(*v > 0.0 && v.is_finite())) {
+                return refuse(format!("strength {} must be positive and finite, got {v} Pa", s.name()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses a material that lacks a constant which `user` requires.
+    ///
+    /// # Errors
+    /// Names the user and every missing constant.
+    pub fn require(&self, needed: &[Strength], user: &str) -> Result<(), MaterialError> {
+        let missing: Vec<_> = needed.iter().filter(|s| self.strengths.get(**s).is_none()).map(|s| s.name()).collect();
+        if missing.is_empty() {
+            return Ok(());
+        }
+        Err(MaterialError {
+            material: self.name.clone(),
+            why: format!("{user} needs the strength {}, which the material does not give", missing.join(", ")),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stiffness_inverts_compliance() {
+        let e = Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9);
+        assert!(e.check().is_ok());
+        let (c, s) = (e.stiffness(), e.compliance());
+        for i in 0..6 {
+            for j in 0..6 {
+                let p: f64 = (0..6).map(|k| c[i][k] * s[k][j]).sum();
+                assert!((p - f64::from(i == j)).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn the_offending_inequality_is_named() {
+        let mut e = Elastic::transversely_isotropic(10e9, 10e9, 0.3, 0.3, 4e9);
+        e.nu12 = 1.2;
+        assert!(e.check().unwrap_err().contains("|nu12| < sqrt(E1/E2)"));
+        e.nu12 = 0.9;
+        e.nu13 = 0.9;
+        e.nu23 = -0.9;
+        assert!(e.check().unwrap_err().contains("> 0 is required"));
+        e.e2 = f64::NAN;
+        assert!(e.check().unwrap_err().contains("E2"));
+        let m = Material {
+            name: "m".into(),
+            elastic: Elastic::isotropic(3.79e9, 0.36),
+            density: 1260.0,
+            strengths: Strengths::default().with(Strength::Xt, 38e6),
+        };
+        assert!(m.check().is_ok());
+        let error = m.require(&[Strength::Xt, Strength::S12], "criterion `x`").unwrap_err().to_string();
+        assert!(error.contains("S12") && !error.contains("Xt"), "{error}");
+    }
+}

@@ -1,0 +1,86 @@
+//! Plane meshes of quadrilaterals with named groups.
+
+use std::collections::BTreeMap;
+
+/// A named group of a mesh.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Group {
+    /// 0 nodes, 1 edges, 2 cells.
+    pub dim: u8,
+    /// Nodes of the group, ascending, each once.
+    pub nodes: Vec<u32>,
+    /// Edges of a group of dimension 1.
+    pub edges: Vec<[u32; 2]>,
+    /// Cells of a group of dimension 2.
+    pub quads: Vec<u32>,
+}
+
+/// A flat mesh of quadrilaterals in the x-y plane, metres. Node and cell numbers are indices; `*_tags` keep the
+/// numbers of the file for messages.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct QuadMesh {
+    /// Node positions.
+    pub points: Vec<[f64; 2]>,
+    /// Corner nodes of each cell, anticlockwise.
+    pub quads: Vec<[u32; 4]>,
+    /// Groups by physical name.
+    pub groups: BTreeMap<String, Group>,
+    /// Number of each node in the file.
+    pub node_tags: Vec<u64>,
+    /// Number of each cell in the file.
+    pub quad_tags: Vec<u64>,
+}
+
+/// Shape measures of a quadrilateral.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct QuadQuality {
+    /// Area, m².
+    pub area: f64,
+    /// Largest inner angle, radians.
+    pub largest_angle: f64,
+    /// Longest over shortest edge.
+    pub aspect: f64,
+}
+
+impl QuadMesh {
+    /// Corner positions of a cell.
+    pub fn corners(&self, quad: usize) -> [[f64; 2]; 4] {
+        self.quads[quad].map(|n| self.points[n as usize])
+    }
+
+    /// Quality of a cell.
+    pub fn quality(&self, quad: usize) -> QuadQuality {
+        let p = self.corners(quad);
+        let mut largest_angle = 0.0_f64;
+        let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
+        for i in 0..4 {
+            let [a, b, c] = [p[(i + 3) % 4], p[i], p[(i + 1) % 4]];
+            let (u, v) = ([c[0] - b[0], c[1] - b[1]], [a[0] - b[0], a[1] - b[1]]);
+            let angle = (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]);
+            largest_angle = largest_angle.max(angle.rem_euclid(std::f64::consts::TAU));
+            let edge = u[0].hypot(u[1]);
+            shortest = shortest.min(edge);
+            longest = longest.max(edge);
+        }
+        let area = 0.5 * ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1]));
+        QuadQuality { area, largest_angle, aspect: longest / shortest }
+    }
+
+    /// Lower and upper corner of the bounding box.
+    pub fn bounds(&self) -> ([f64; 2], [f64; 2]) {
+        let mut low = [f64::INFINITY; 2];
+        let mut high = [f64::NEG_INFINITY; 2];
+        for p in &self.points {
+            for d in 0..2 {
+                low[d] = low[d].min(p[d]);
+                high[d] = high[d].max(p[d]);
+            }
+        }
+        (low, high)
+    }
+
+    /// Sum of the cell areas, m².
+    pub fn area(&self) -> f64 {
+        (0..self.quads.len()).map(|q| self.quality(q).area).sum()
+    }
+}

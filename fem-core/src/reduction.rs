@@ -1,0 +1,68 @@
+//! The contract of a reduction.
+
+use dyn_clone::DynClone;
+use std::fmt::Debug;
+
+/// A linear functional of the displacements, `d = Σ wᵢ uᵢ`: one dof, or the weighted mean over a contact patch.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Functional(pub Vec<(usize, f64)>);
+
+impl Functional {
+    /// A single dof.
+    pub fn dof(i: usize) -> Self {
+        Self(vec![(i, 1.0)])
+    }
+
+    /// The functional's value at `u`.
+    pub fn of(&self, u: &[f64]) -> f64 {
+        self.0.iter().map(|&(i, w)| w * u[i]).sum()
+    }
+
+    /// `y ← y + scale · w`.
+    pub fn add_to(&self, scale: f64, y: &mut [f64]) {
+        for &(i, w) in &self.0 {
+            y[i] += scale * w;
+        }
+    }
+}
+
+/// What a reduction may ask of a structure with stiffness K (positive definite) and mass M (semi-definite).
+pub trait Structure {
+    /// Number of unknowns.
+    fn ndof(&self) -> usize;
+    /// `y ← K x`.
+    fn stiffness(&self, x: &[f64], y: &mut [f64]);
+    /// `y ← M x`.
+    fn mass(&self, x: &[f64], y: &mut [f64]);
+    /// `X ← K⁻¹ X`, X of `ndof × columns`, column-major.
+    fn solve(&mut self, x: &mut [f64], columns: usize);
+}
+
+/// Why a basis could not be made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReductionError(pub String);
+
+impl std::fmt::Display for ReductionError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+impl std::error::Error for ReductionError {}
+
+/// A reduction u ≈ T q: it chooses the columns of T; projection and expansion are common to all.
+pub trait Reduction: DynClone + Debug + Send + Sync {
+    /// The basis T, `ndof × m` column-major, columns linearly independent.
+    ///
+    /// * `keep`: functionals that must stay exact under static loads (the contacts)
+    /// * `candidates`: dofs that may serve as governors, best first
+    ///
+    /// # Errors
+    /// Too few candidates, or an eigenproblem without convergence.
+    fn basis(
+        &self,
+        structure: &mut dyn Structure,
+        keep: &[Functional],
+        candidates: &[usize],
+    ) -> Result<Vec<f64>, ReductionError>;
+}
+dyn_clone::clone_trait_object!(Reduction);

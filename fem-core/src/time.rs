@@ -1,0 +1,137 @@
+//! The contract of a time integrator and of the second-order systems it marches.
+
+use crate::contact::ContactHistory;
+use dyn_clone::DynClone;
+use std::fmt::{self, Debug};
+
+/// State of a second-order system; a checkpoint of a march is this struct.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct State {
+    /// Time, s.
+    pub t: f64,
+    /// Displacements.
+    pub u: Vec<f64>,
+    /// Velocities.
+    pub v: Vec<f64>,
+    /// Accelerations.
+    pub a: Vec<f64>,
+    /// One history per contact.
+    pub contacts: Vec<ContactHistory>,
+}
+
+impl State {
+    /// At rest at t = 0.
+    pub fn at_rest(ndof: usize, contacts: usize) -> Self {
+        Self { t: 0.0, u: vec![0.0; ndof], v: vec![0.0; ndof], a: vec![0.0; ndof], contacts: vec![[0.0; 8]; contacts] }
+    }
+}
+
+/// Why a step was not made.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum StepError {
+    /// The mass matrix is singular and the integrator needs its inverse.
+    SingularMass(String),
+    /// The equations of an implicit step found no solution.
+    NoConvergence {
+        /// Time at the end of the step, s.
+        t: f64,
+        /// What did not converge.
+        what: String,
+    },
+    /// A number of the state is NaN or infinite.
+    NotFinite {
+        /// Time at which it was noticed, s.
+        t: f64,
+    },
+    /// A factorisation failed.
+    Factorisation(String),
+}
+
+impl fmt::Display for StepError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::SingularMass(why) => write!(f, "the mass matrix is singular: {why}"),
+            Self::NoConvergence { t, what } => write!(f, "no convergence at t = {t:.6e} s: {what}"),
+            Self::NotFinite { t } => write!(f, "the state is not finite at t = {t:.6e} s"),
+            Self::Factorisation(why) => write!(f, "factorisation failed: {why}"),
+        }
+    }
+}
+impl std::error::Error for StepError {}
+
+/// The system M a = p(t) − C v − K u + contact(u; h): what an integrator may ask of it.
+///
+/// `h` is the committed history of each contact. An implementation solves its own implicit equation, because it alone
+/// knows its structure: a linear plate under one contact force needs one back-substitution and a scalar equation, a
+/// geometrically nonlinear one a Newton iteration.
+pub trait SecondOrderSystem {
+    /// Number of unknowns.
+    fn ndof(&self) -> usize;
+
+    /// `f ← p(t) − C v − K u + contact(u; h)`.
+    fn force(&mut self, t: f64, u: &[f64], v: &[f64], h: &[ContactHistory], f: &mut [f64]);
+
+    /// `y ← y + scale · M x`.
+    fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]);
+
+    /// `y ← y + scale · C x`; without damping this adds nothing.
+    fn add_damping(&self, scale: f64, x: &[f64], y: &mut [f64]);
+
+    /// `x ← M⁻¹ x`.
+    ///
+    /// # Errors
+    /// [`StepError::SingularMass`] when M has no inverse.
+    fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), StepError>;
+
+    /// Solves `(cm M + cc C + K) u = r + p(t) + contact(u; h)` for the displacement u.
+    ///
+    /// `u` holds r on entry and the solution on return; the factorisation for (`cm`, `cc`) is kept between calls.
+    ///
+    /// # Errors
+    /// No convergence, or a matrix that cannot be factorised.
+    fn solve_implicit(
+        &mut self,
+        cm: f64,
+        cc: f64,
+        t: f64,
+        h: &[ContactHistory],
+        u: &mut [f64],
+    ) -> Result<(), StepError>;
+
+    /// Commits the contact indentations of the accepted state into its histories.
+    fn commit(&self, state: &mut State);
+}
+
+/// How an integrator limits its step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StepLimit {
+    /// Stable for every step.
+    None,
+    /// ω Δt must not exceed this, ω the highest frequency of plate and contact.
+    OmegaDt(f64),
+}
+
+/// A one-step time integrator.
+///
+/// It keeps only work arrays: all that a restart needs is in [`State`].
+pub trait Integrator: DynClone + Debug + Send {
+    /// The limit that the caller enforces before the march.
+    fn limit(&self) -> StepLimit;
+
+    /// Sizes work arrays and finds the acceleration of a fresh state.
+    ///
+    /// # Errors
+    /// As [`SecondOrderSystem::solve_mass`].
+    fn start(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError>;
+
+    /// Sizes work arrays for a state that another march left.
+    fn resume(&mut self, sys: &mut dyn SecondOrderSystem);
+
+    /// Advances `s` by `dt` and commits the contacts.
+    ///
+    /// # Errors
+    /// Those of the system; `s` is then not to be used.
+    fn step(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State, dt: f64) -> Result<(), StepError>;
+}
+dyn_clone::clone_trait_object!(Integrator);
