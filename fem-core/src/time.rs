@@ -78,11 +78,11 @@ pub trait SecondOrderSystem {
     /// `y ← y + scale · C x`; without damping this adds nothing.
     fn add_damping(&self, scale: f64, x: &[f64], y: &mut [f64]);
 
-    /// `x ← M⁻¹ x`.
+    /// `x ← (M + cc C)⁻¹ x`; explicit schemes ask for `cc` = 0 or for one value per step length.
     ///
     /// # Errors
     /// [`StepError::SingularMass`] when M has no inverse.
-    fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), StepError>;
+    fn solve_mass(&mut self, cc: f64, x: &mut [f64]) -> Result<(), StepError>;
 
     /// Solves `(cm M + cc C + K) u = r + p(t) + contact(u; h)` for the displacement u.
     ///
