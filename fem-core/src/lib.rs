@@ -8,6 +8,7 @@ pub mod counters;
 pub mod dof;
 pub mod element;
 pub mod failure;
+pub mod layup;
 pub mod material;
 pub mod mesh;
 pub mod plugin;
