@@ -1,0 +1,160 @@
+//! Hashin's criterion as AFWAL-TR-87-4117 uses it.
+
+use fem_core::failure::{CriterionInfo, FailureCriterion, Site};
+use fem_core::material::{Material, Strength};
+use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::tensor::{Ply, Stress6};
+
+/// Sign of σ22 σ33 in the tensile matrix mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Product {
+    /// σ23² − σ22 σ33, Hashin's: unchanged by a rotation about the fibre.
+    #[default]
+    Minus,
+    /// σ23² + σ22 σ33, as eq. (40) is printed.
+    Plus,
+}
+
+/// AFWAL-TR-87-4117, eqs. (38)-(41).
+///
+/// ```text
+/// fibre tension       σ11 ≥ 0        (σ11/Xt)² + (σ12² + σ31²)/S12²
+/// fibre compression   σ11 < 0        (σ11/Xc)²
+/// matrix tension      σ22 + σ33 ≥ 0  ((σ22 + σ33)/Yt)² + (σ23² − σ22 σ33)/S23² + (σ12² + σ31²)/S12²
+/// matrix compression  σ22 + σ33 < 0  [((σ22 − σ33)/2)² + σ23²]/S23² + (σ12² + σ31²)/S12²
+/// ```
+///
+/// The report calls the last mode shear failure. It has no linear term and no Yc, so that a uniaxial compression across
+/// the fibres fails at 2 S23; Hashin's own form (`hashin-1980`) is the same only for a material with Yc = 2 S23. The
+/// report prints a plus before σ22 σ33, which is neither Hashin's nor invariant about the fibre: [`Product`] chooses.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct HashinReport {
+    /// Sign of σ22 σ33 in the tensile matrix mode.
+    pub product: Product,
+}
+
+impl HashinReport {
+    const fn describe(invariant_about_fibre: bool) -> CriterionInfo {
+        CriterionInfo {
+            site: Site::Ply,
+            modes: &["fibre tension", "fibre compression", "matrix tension", "matrix compression"],
+            strengths: &[Strength::Xt, Strength::Xc, Strength::Yt, Strength::S12, Strength::S23],
+            invariant_about_fibre,
+        }
+    }
+}
+
+impl FailureCriterion for HashinReport {
+    fn info(&self) -> &CriterionInfo {
+        const MINUS: CriterionInfo = HashinReport::describe(true);
+        const PLUS: CriterionInfo = HashinReport::describe(false);
+        match self.product {
+            Product::Minus => &MINUS,
+            Product::Plus => &PLUS,
+        }
+    }
+
+    #[inline]
+    fn indices(&self, s: &Stress6<Ply>, m: &Material, out: &mut [f64]) {
+        let r = &m.strengths;
+        let product = match self.product {
+            Product::Minus => -s.s22() * s.s33(),
+            Product::Plus => s.s22() * s.s33(),
+        };
+        let along = (s.s12() * s.s12() + s.s31() * s.s31()) / (r.s12() * r.s12());
+        let across = s.s23() * s.s23();
+        let (sum, half) = (s.s22() + s.s33(), 0.5 * (s.s22() - s.s33()));
+        let fibre = s.s11() >= 0.0;
+        let opening = sum >= 0.0;
+        out[0] = if fibre { (s.s11() / r.xt()).powi(2) + along } else { 0.0 };
+        out[1] = if fibre { 0.0 } else { (s.s11() / r.xc()).powi(2) };
+        let s23 = r.s23() * r.s23();
+        out[2] = if opening { (sum / r.yt()).powi(2) + (across + product) / s23 + along } else { 0.0 };
+        out[3] = if opening { 0.0 } else { (half * half + across) / s23 + along };
+    }
+}
+
+impl Plugin for HashinReport {
+    const INFO: PluginInfo = PluginInfo {
+        kind: Kind::Criterion,
+        name: "hashin-report",
+        summary: "fibre and matrix, tension and compression, without the transverse compressive strength",
+        source: "AFWAL-TR-87-4117, eqs. (38)-(41); after Hashin, J. Appl. Mech. 47 (1980) 329",
+        params: &[ParamInfo {
+            name: "product",
+            doc: "sign of s22 s33 in the tensile matrix mode: \"minus\" (Hashin's, default) or \"plus\" (as printed)",
+        }],
+    };
+
+    fn build(params: &Params) -> Result<Built, ParamError> {
+        let product = match params.choice("product", &["minus", "plus"])? {
+            "plus" => Product::Plus,
+            _ => Product::Minus,
+        };
+        Ok(Built::Criterion(Box::new(Self { product })))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fem_core::material::{Elastic, Strengths};
+    use fem_core::plugin::Value;
+
+    fn as4_3502() -> Material {
+        let strengths = [
+            (Strength::Xt, 1793e6),
+            (Strength::Xc, 1724e6),
+            (Strength::Yt, 64e6),
+            (Strength::S12, 109e6),
+            (Strength::S23, 69e6),
+        ];
+        Material {
+            name: "AS4/3502".into(),
+            elastic: Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9),
+            density: 1575.0,
+            strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
+        }
+    }
+
+    fn indices(product: Product, s: [f64; 6]) -> [f64; 4] {
+        let mut out = [f64::NAN; 4];
+        HashinReport { product }.indices(&Stress6::new(s.map(|c| c * 1e6)), &as4_3502(), &mut out);
+        out
+    }
+
+    fn near(got: [f64; 4], want: [f64; 4]) {
+        assert!(got.iter().zip(want).all(|(g, w)| (g - w).abs() < 1e-14), "{got:?} is not {want:?}");
+    }
+
+    #[test]
+    fn hand_values() {
+        near(indices(Product::Minus, [1793.0, 0.0, 0.0, 0.0, 0.0, 0.0]), [1.0, 0.0, 0.0, 0.0]);
+        near(indices(Product::Minus, [-1724.0, 0.0, 0.0, 0.0, 0.0, 0.0]), [0.0, 1.0, 0.0, 0.0]);
+        near(indices(Product::Minus, [0.0, 64.0, 0.0, 0.0, 0.0, 0.0]), [0.0, 0.0, 1.0, 0.0]);
+        near(indices(Product::Minus, [0.0, -138.0, 0.0, 0.0, 0.0, 0.0]), [0.0, 0.0, 0.0, 1.0]);
+        near(indices(Product::Minus, [0.0, 0.0, 0.0, 0.0, 69.0, 0.0]), [0.0, 0.0, 1.0, 0.0]);
+        // Shear along the fibre enters both tensile modes; 109² = 65.4² + 87.2².
+        near(indices(Product::Minus, [0.0, 0.0, 0.0, 65.4, 0.0, 87.2]), [1.0, 0.0, 1.0, 0.0]);
+    }
+
+    #[test]
+    fn the_sign_of_the_product_is_a_choice() {
+        let s = [0.0, 32.0, 16.0, 0.0, 0.0, 0.0];
+        let (square, product) = ((48.0_f64 / 64.0).powi(2), 512.0 / (69.0 * 69.0));
+        near(indices(Product::Minus, s), [0.0, 0.0, square - product, 0.0]);
+        near(indices(Product::Plus, s), [0.0, 0.0, square + product, 0.0]);
+        let built = |value: &str| HashinReport::build(&Params::default().with("product", Value::Text(value.into())));
+        assert!(matches!(built("plus"), Ok(Built::Criterion(c)) if !c.info().invariant_about_fibre));
+        assert!(built("sideways").unwrap_err().why.contains("minus, plus"));
+    }
+
+    #[test]
+    fn zero_of_either_sign_is_tension() {
+        for zero in [0.0, -0.0] {
+            let out = indices(Product::Minus, [zero, zero, zero, 109.0, 0.0, 0.0]);
+            near(out, [1.0, 0.0, 1.0, 0.0]);
+        }
+        near(indices(Product::Minus, [-1e-300, -1e-300, 0.0, 109.0, 0.0, 0.0]), [0.0, 0.0, 0.0, 1.0]);
+    }
+}

@@ -1,0 +1,681 @@
+//! First damage: which criterion reaches 1 where and when.
+
+use fem_core::failure::{FailureCriterion, Site};
+use fem_core::material::{Material, MaterialError};
+use fem_core::tensor::{Ply, Stress6};
+use std::fmt;
+use std::ops::Range;
+
+/// A ply or the resin between two plies, counted from 0 at the bottom.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Place {
+    /// Ply `k`.
+    Ply(u16),
+    /// Between ply `k` and the ply above it.
+    Interface(u16),
+}
+
+impl Place {
+    /// What kind of criterion looks here.
+    pub fn site(self) -> Site {
+        match self {
+            Place::Ply(_) => Site::Ply,
+            Place::Interface(_) => Site::Interface,
+        }
+    }
+}
+
+/// For people, who count plies from 1.
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Place::Ply(k) => write!(f, "ply {} from the bottom", u32::from(k) + 1),
+            Place::Interface(k) => {
+                write!(f, "the interface of plies {} and {} from the bottom", u32::from(k) + 1, u32::from(k) + 2)
+            }
+        }
+    }
+}
+
+/// Where a stress is watched.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScanSite {
+    /// Cell of the mesh.
+    pub cell: u32,
+    /// Ply or interface.
+    pub place: Place,
+    /// Centre, m, in the plate's frame.
+    pub position: [f64; 3],
+    /// Angle of the axes in which the stress is given, radians from x towards y.
+    pub angle: f64,
+    /// Index into the scan's materials.
+    pub material: u16,
+}
+
+/// The first time at which a mode reached index 1 at a place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FailureEvent {
+    /// Time of the crossing, s, by linear interpolation of the index between the two samples around it.
+    pub time: f64,
+    /// Name under which the criterion was given.
+    pub criterion: String,
+    /// Its mode.
+    pub mode: &'static str,
+    /// Cell of the mesh.
+    pub cell: u32,
+    /// Ply or interface.
+    pub place: Place,
+    /// Angle of the ply, radians.
+    pub angle: f64,
+    /// Centre of the site, m.
+    pub position: [f64; 3],
+    /// Index at the sample that ended the crossing; at least 1.
+    pub index: f64,
+}
+
+/// The largest index that a mode reached anywhere.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Peak {
+    /// Name under which the criterion was given.
+    pub criterion: String,
+    /// Its mode.
+    pub mode: &'static str,
+    /// The index.
+    pub index: f64,
+    /// Sample at which it was reached, s.
+    pub time: f64,
+    /// Where.
+    pub site: ScanSite,
+}
+
+/// Why a scan cannot start or go on.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScanError {
+    /// A site's material lacks what a criterion requires.
+    #[error("criterion `{criterion}` cannot judge {place} of cell {cell}")]
+    Material {
+        /// Name of the criterion.
+        criterion: String,
+        /// First cell with that material.
+        cell: u32,
+        /// Its place.
+        place: Place,
+        /// What is missing.
+        source: MaterialError,
+    },
+    /// A site names a material that was not given.
+    #[error("{place} of cell {cell} is of material {material}, but only {given} materials are given")]
+    NoSuchMaterial {
+        /// Cell.
+        cell: u32,
+        /// Place.
+        place: Place,
+        /// The index it names.
+        material: u16,
+        /// How many there are.
+        given: usize,
+    },
+    /// Not one stress per site.
+    #[error("{got} stresses are given for {want} sites")]
+    Length {
+        /// Stresses given.
+        got: usize,
+        /// Sites.
+        want: usize,
+    },
+    /// A time that is no number or does not follow the last one.
+    #[error("a sample at {time} s cannot follow one at {last:?} s: times must be finite and grow")]
+    Time {
+        /// The time.
+        time: f64,
+        /// The sample before, if there is one.
+        last: Option<f64>,
+    },
+    /// A stress that is infinite or not a number.
+    #[error("the stress in {place} of cell {cell} is not finite at {time} s: {stress:?}")]
+    Stress {
+        /// Time, s.
+        time: f64,
+        /// Cell.
+        cell: u32,
+        /// Place.
+        place: Place,
+        /// The components.
+        stress: Stress6<Ply>,
+    },
+    /// An index that is neither a number nor +∞.
+    #[error(
+        "criterion `{criterion}`, mode `{mode}` gives {index} in {place} of cell {cell} at {time} s for {stress:?}"
+    )]
+    Index {
+        /// Time, s.
+        time: f64,
+        /// Name of the criterion.
+        criterion: String,
+        /// Its mode.
+        mode: &'static str,
+        /// Cell.
+        cell: u32,
+        /// Place.
+        place: Place,
+        /// What came out.
+        index: f64,
+        /// Of this stress.
+        stress: Stress6<Ply>,
+    },
+}
+
+/// Follows criteria through time and keeps what failed first.
+///
+/// For every criterion, mode and place (a ply or an interface over all cells) it keeps the first crossing of index 1;
+/// among the sites that cross between the same two samples the one that the interpolation puts first, then the one of
+/// larger index, then the one given first. A site that is at 1 in the first sample gets that sample's time. Results
+/// depend on nothing but the order of the sites.
+///
+/// [`Scan::sample`] allocates nothing.
+#[derive(Debug, Clone)]
+pub struct Scan {
+    sites: Vec<ScanSite>,
+    materials: Vec<Material>,
+    watches: Vec<Watch>,
+    /// Site numbers, sorted so that a criterion meets each material in one run.
+    order: Vec<u32>,
+    /// Stresses in that order.
+    stress: Vec<Stress6<Ply>>,
+    /// Number of each site's place, in that order.
+    slots: Vec<u32>,
+    time: Option<f64>,
+    evaluations: u64,
+}
+
+/// One criterion and what it saw. Tables have a row of one number per mode for each site of `span`.
+#[derive(Debug, Clone)]
+struct Watch {
+    name: String,
+    criterion: Box<dyn FailureCriterion>,
+    modes: &'static [&'static str],
+    /// The part of `Scan::order` that it looks at.
+    span: Range<usize>,
+    /// Parts of `span` of one material each, from its start.
+    runs: Vec<(u16, Range<usize>)>,
+    now: Vec<f64>,
+    before: Vec<f64>,
+    maxima: Vec<f64>,
+    peaks: Vec<Option<Reading>>,
+    /// Row per place.
+    first: Vec<Option<Reading>>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Reading {
+    time: f64,
+    index: f64,
+    site: u32,
+}
+
+impl Reading {
+    /// Earlier, else larger, else of the lower site number.
+    fn precedes(&self, other: &Reading) -> bool {
+        let order = self.time.total_cmp(&other.time).then(other.index.total_cmp(&self.index));
+        order.then(self.site.cmp(&other.site)).is_lt()
+    }
+}
+
+impl Scan {
+    /// A scan of `sites` by named criteria; `materials` are what [`ScanSite::material`] counts.
+    ///
+    /// # Errors
+    /// A site whose material was not given or lacks a constant that a criterion looking there requires.
+    pub fn new(
+        criteria: Vec<(String, Box<dyn FailureCriterion>)>,
+        sites: Vec<ScanSite>,
+        materials: Vec<Material>,
+    ) -> Result<Self, ScanError> {
+        for s in &sites {
+            if usize::from(s.material) >= materials.len() {
+                return Err(ScanError::NoSuchMaterial {
+                    cell: s.cell,
+                    place: s.place,
+                    material: s.material,
+                    given: materials.len(),
+                });
+            }
+        }
+        let mut places: Vec<Place> = sites.iter().map(|s| s.place).collect();
+        places.sort_unstable();
+        places.dedup();
+
+        let is_interface = |i: u32| sites[i as usize].place.site() == Site::Interface;
+        let mut order: Vec<u32> = (0u32..).take(sites.len()).collect();
+        order.sort_by_key(|&i| (is_interface(i), sites[i as usize].material));
+        let plies = order.partition_point(|&i| !is_interface(i));
+        let slots = order
+            .iter()
+            .map(|&i| places.partition_point(|p| *p < sites[i as usize].place))
+            .map(|slot| slot as u32)
+            .collect();
+
+        let mut watches = Vec::with_capacity(criteria.len());
+        for (name, criterion) in criteria {
+            let span = match criterion.info().site {
+                Site::Ply => 0..plies,
+                Site::Interface => plies..order.len(),
+            };
+            let mut runs = Vec::new();
+            let mut start = 0;
+            for run in order[span.clone()].chunk_by(|&a, &b| sites[a as usize].material == sites[b as usize].material) {
+                let first = &sites[run[0] as usize];
+                materials[usize::from(first.material)]
+                    .require(criterion.info().strengths, &format!("criterion `{name}`"))
+                    .map_err(|source| ScanError::Material {
+                        criterion: name.clone(),
+                        cell: first.cell,
+                        place: first.place,
+                        source,
+                    })?;
+                runs.push((first.material, start..start + run.len()));
+                start += run.len();
+            }
+            let modes = criterion.info().modes;
+            let size = span.len() * modes.len();
+            watches.push(Watch {
+                now: vec![0.0; size],
+                before: vec![0.0; size],
+                maxima: vec![0.0; size],
+                peaks: vec![None; modes.len()],
+                first: vec![None; places.len() * modes.len()],
+                name,
+                criterion,
+                modes,
+                span,
+                runs,
+            });
+        }
+        let stress = vec![Stress6::new([0.0; 6]); sites.len()];
+        Ok(Self { sites, materials, watches, order, stress, slots, time: None, evaluations: 0 })
+    }
+
+    /// The sites, as given.
+    pub fn sites(&self) -> &[ScanSite] {
+        &self.sites
+    }
+
+    /// Takes the stresses of all sites at time `t` (s), each in its ply's axes, in the order of [`Scan::sites`].
+    ///
+    /// # Errors
+    /// A time that does not grow, a stress that is not finite, an index that is not a number; the scan then is as
+    /// before the call.
+    pub fn sample(&mut self, t: f64, stress: &[Stress6<Ply>]) -> Result<(), ScanError> {
+        if stress.len() != self.sites.len() {
+            return Err(ScanError::Length { got: stress.len(), want: self.sites.len() });
+        }
+        if !t.is_finite() || self.time.is_some_and(|last| t <= last) {
+            return Err(ScanError::Time { time: t, last: self.time });
+        }
+        for (s, site) in stress.iter().zip(&self.sites) {
+            if !s.is_finite() {
+                return Err(ScanError::Stress { time: t, cell: site.cell, place: site.place, stress: *s });
+            }
+        }
+        for (s, &i) in self.stress.iter_mut().zip(&self.order) {
+            *s = stress[i as usize];
+        }
+        for watch in &mut self.watches {
+            if let Err((row, mode)) = watch.evaluate(&self.stress, &self.materials) {
+                let k = watch.span.start + row;
+                let site = &self.sites[self.order[k] as usize];
+                return Err(ScanError::Index {
+                    time: t,
+                    criterion: watch.name.clone(),
+                    mode: watch.modes[mode],
+                    cell: site.cell,
+                    place: site.place,
+                    index: watch.now[row * watch.modes.len() + mode],
+                    stress: self.stress[k],
+                });
+            }
+        }
+        for watch in &mut self.watches {
+            watch.keep(self.time, t, &self.order, &self.slots);
+            self.evaluations += watch.span.len() as u64;
+        }
+        self.time = Some(t);
+        Ok(())
+    }
+
+    /// First crossing of every criterion, mode and place that failed, by time.
+    pub fn events(&self) -> Vec<FailureEvent> {
+        let mut found: Vec<(Reading, usize, usize)> = Vec::new();
+        for (w, watch) in self.watches.iter().enumerate() {
+            for (k, reading) in watch.first.iter().enumerate() {
+                found.extend(reading.map(|r| (r, w, k % watch.modes.len())));
+            }
+        }
+        found.sort_by(|(a, aw, am), (b, bw, bm)| {
+            let mode = (aw, am).cmp(&(bw, bm));
+            a.time.total_cmp(&b.time).then(mode).then(b.index.total_cmp(&a.index)).then(a.site.cmp(&b.site))
+        });
+        let event = |(r, w, mode): (Reading, usize, usize)| {
+            let (site, watch) = (&self.sites[r.site as usize], &self.watches[w]);
+            FailureEvent {
+                time: r.time,
+                criterion: watch.name.clone(),
+                mode: watch.modes[mode],
+                cell: site.cell,
+                place: site.place,
+                angle: site.angle,
+                position: site.position,
+                index: r.index,
+            }
+        };
+        found.into_iter().map(event).collect()
+    }
+
+    /// First crossing of every criterion and mode that failed anywhere, by time.
+    pub fn first_per_mode(&self) -> Vec<FailureEvent> {
+        let mut firsts: Vec<FailureEvent> = Vec::new();
+        for e in self.events() {
+            if !firsts.iter().any(|f| f.criterion == e.criterion && f.mode == e.mode) {
+                firsts.push(e);
+            }
+        }
+        firsts
+    }
+
+    /// Largest index of every criterion and mode over all samples and sites, failed or not, in the order of the
+    /// criteria; a criterion that had nowhere to look has none.
+    pub fn peaks(&self) -> Vec<Peak> {
+        let mut peaks = Vec::new();
+        for watch in &self.watches {
+            for (mode, reading) in watch.modes.iter().zip(&watch.peaks) {
+                peaks.extend(reading.map(|r| Peak {
+                    criterion: watch.name.clone(),
+                    mode,
+                    index: r.index,
+                    time: r.time,
+                    site: self.sites[r.site as usize],
+                }));
+            }
+        }
+        peaks
+    }
+
+    /// For maps: every site that criterion number `criterion` looks at, with its largest index over all samples per
+    /// mode. A mode that never applied has 0.
+    ///
+    /// # Panics
+    /// There is no criterion of that number.
+    pub fn maxima(&self, criterion: usize) -> impl Iterator<Item = (&ScanSite, &[f64])> {
+        let watch = &self.watches[criterion];
+        let sites = self.order[watch.span.clone()].iter().map(|&i| &self.sites[i as usize]);
+        sites.zip(watch.maxima.chunks_exact(watch.modes.len()))
+    }
+
+    /// Criteria evaluated so far, counted once per site and sample.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+}
+
+impl Watch {
+    /// Fills `now`; an unusable index is an error with its row and mode.
+    fn evaluate(&mut self, stress: &[Stress6<Ply>], materials: &[Material]) -> Result<(), (usize, usize)> {
+        let stress = &stress[self.span.clone()];
+        let modes = self.modes.len();
+        // A mode that a criterion forgets to write must not pass for safe.
+        self.now.fill(f64::NAN);
+        for (material, run) in &self.runs {
+            let out = &mut self.now[run.start * modes..run.end * modes];
+            self.criterion.indices_many(&stress[run.clone()], &materials[usize::from(*material)], out);
+        }
+        match self.now.iter().position(|v| v.is_nan() || *v == f64::NEG_INFINITY) {
+            Some(k) => Err((k / modes, k % modes)),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes `now`, the indices at time `t`, into the records; `last` is the time of `before`.
+    fn keep(&mut self, last: Option<f64>, t: f64, order: &[u32], slots: &[u32]) {
+        let modes = self.modes.len();
+        let (order, slots) = (&order[self.span.clone()], &slots[self.span.clone()]);
+        for (maximum, now) in self.maxima.iter_mut().zip(&self.now) {
+            *maximum = maximum.max(*now);
+        }
+        for (row, indices) in self.now.chunks_exact(modes).enumerate() {
+            for (mode, &index) in indices.iter().enumerate() {
+                let peak = &mut self.peaks[mode];
+                let here = Reading { time: t, index, site: order[row] };
+                if peak.is_none_or(|p| index > p.index || (index == p.index && here.precedes(&p))) {
+                    *peak = Some(here);
+                }
+                let before = self.before[row * modes + mode];
+                // A site that has crossed already left its record then.
+                if index >= 1.0 && (last.is_none() || before < 1.0) {
+                    let first = &mut self.first[slots[row] as usize * modes + mode];
+                    let here = Reading { time: last.map_or(t, |last| crossing(last, before, t, index)), ..here };
+                    if first.is_none_or(|f| here.precedes(&f)) {
+                        *first = Some(here);
+                    }
+                }
+            }
+        }
+        std::mem::swap(&mut self.now, &mut self.before);
+    }
+}
+
+/// Time at which the line through (t0, f0) and (t1, f1) reaches 1, for f0 < 1 ≤ f1; `t0` if f1 is infinite.
+fn crossing(t0: f64, f0: f64, t1: f64, f1: f64) -> f64 {
+    (t0 + (t1 - t0) * ((1.0 - f0) / (f1 - f0))).min(t1)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::{HashinReport, Octahedral};
+    use fem_core::failure::CriterionInfo;
+    use fem_core::material::{Elastic, Strength, Strengths};
+
+    fn material(name: &str, strengths: &[(Strength, f64)]) -> Material {
+        Material {
+            name: name.into(),
+            elastic: Elastic::isotropic(1.0, 0.3),
+            density: 1.0,
+            strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
+        }
+    }
+
+    fn ply() -> Material {
+        use Strength::{S12, S23, Xc, Xt, Yt};
+        material("ply", &[(Xt, 100.0), (Xc, 80.0), (Yt, 10.0), (S12, 10.0), (S23, 10.0)])
+    }
+
+    fn resin(shear: f64) -> Material {
+        material("resin", &[(Strength::S12, shear)])
+    }
+
+    fn site(cell: u32, place: Place, material: u16) -> ScanSite {
+        ScanSite { cell, place, position: [f64::from(cell), 0.0, 0.0], angle: 0.1, material }
+    }
+
+    fn octahedral(sites: Vec<ScanSite>, materials: Vec<Material>) -> Scan {
+        Scan::new(vec![("octahedral".into(), Box::new(Octahedral))], sites, materials).unwrap()
+    }
+
+    fn shear(s23: f64) -> Stress6<Ply> {
+        Stress6::new([0.0, 0.0, 0.0, 0.0, s23, 0.0])
+    }
+
+    /// Index equal to σ11.
+    #[derive(Debug, Clone)]
+    struct Plain;
+    impl FailureCriterion for Plain {
+        fn info(&self) -> &CriterionInfo {
+            const INFO: CriterionInfo =
+                CriterionInfo { site: Site::Ply, modes: &["m"], strengths: &[], invariant_about_fibre: true };
+            &INFO
+        }
+        fn indices(&self, s: &Stress6<Ply>, _: &Material, out: &mut [f64]) {
+            out[0] = s.s11();
+        }
+    }
+
+    fn plain(cells: u32) -> Scan {
+        let sites = (0..cells).map(|c| site(c, Place::Ply(0), 0)).collect();
+        Scan::new(vec![("plain".into(), Box::new(Plain))], sites, vec![ply()]).unwrap()
+    }
+
+    fn along(v: f64) -> Stress6<Ply> {
+        Stress6::new([v, 0.0, 0.0, 0.0, 0.0, 0.0])
+    }
+
+    #[test]
+    fn the_crossing_is_interpolated_at_its_own_site() {
+        let mut scan = plain(2);
+        scan.sample(0.0, &[along(0.0), along(0.9)]).unwrap();
+        // Site 0 crosses at 2 · 1/4 = 0.5, site 1 at 2 · 0.1/1.1 = 0.18.
+        scan.sample(2.0, &[along(4.0), along(2.0)]).unwrap();
+        scan.sample(3.0, &[along(9.0), along(0.0)]).unwrap();
+        let events = scan.events();
+        assert_eq!(events.len(), 1);
+        assert_eq!((events[0].cell, events[0].index), (1, 2.0));
+        assert!((events[0].time - 2.0 * (0.1 / 1.1)).abs() < 1e-15);
+        assert_eq!((events[0].position, events[0].angle), ([1.0, 0.0, 0.0], 0.1));
+        let peak = &scan.peaks()[0];
+        assert_eq!((peak.index, peak.time, peak.site.cell), (9.0, 3.0, 0));
+        assert_eq!(scan.evaluations(), 6);
+        assert_eq!(scan.maxima(0).map(|(s, m)| (s.cell, m[0])).collect::<Vec<_>>(), [(0, 9.0), (1, 2.0)]);
+    }
+
+    #[test]
+    fn a_site_that_starts_broken_fails_at_the_first_sample() {
+        let mut scan = plain(1);
+        scan.sample(0.25, &[along(1.0)]).unwrap();
+        scan.sample(0.5, &[along(1.5)]).unwrap();
+        assert_eq!(scan.events()[0].time, 0.25);
+        let mut scan = plain(1);
+        scan.sample(0.25, &[along(1.0 - f64::EPSILON)]).unwrap();
+        assert!(scan.events().is_empty());
+        assert!((scan.peaks()[0].index - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn ties_go_to_the_larger_index_then_to_the_first_site() {
+        let mut scan = plain(4);
+        scan.sample(0.0, &[along(0.5), along(0.0), along(0.5), along(0.0)]).unwrap();
+        // All cross half way; sites 1 and 3 end higher.
+        scan.sample(1.0, &[along(1.5), along(2.0), along(1.5), along(2.0)]).unwrap();
+        let events = scan.events();
+        assert_eq!((events.len(), events[0].cell, events[0].time), (1, 1, 0.5));
+        assert_eq!(scan.peaks()[0].site.cell, 1);
+    }
+
+    #[test]
+    fn each_place_and_mode_has_its_own_event() {
+        let sites = vec![
+            site(0, Place::Interface(0), 1),
+            site(0, Place::Ply(1), 0),
+            site(1, Place::Ply(0), 0),
+            site(1, Place::Interface(0), 2),
+        ];
+        let criteria: Vec<(String, Box<dyn FailureCriterion>)> =
+            vec![("h".into(), Box::new(HashinReport::default())), ("o".into(), Box::new(Octahedral))];
+        let mut scan = Scan::new(criteria, sites, vec![ply(), resin(20.0), resin(10.0)]).unwrap();
+        let zero = Stress6::new([0.0; 6]);
+        scan.sample(0.0, &[zero; 4]).unwrap();
+        let tension = Stress6::new([0.0, 20.0, 0.0, 0.0, 0.0, 0.0]);
+        let compression = Stress6::new([-160.0, -40.0, 0.0, 0.0, 0.0, 0.0]);
+        scan.sample(1.0, &[shear(25.0), tension, compression, shear(25.0)]).unwrap();
+        let got: Vec<_> = scan.events().into_iter().map(|e| (e.time, e.criterion, e.mode, e.cell, e.place)).collect();
+        // Indices 4, 4, 4 and 6.25 (site 3; site 0 has 1.5625) grow from 0 in one second.
+        let want = [
+            (0.16, "o", "interface shear", 1, Place::Interface(0)),
+            (0.25, "h", "fibre compression", 1, Place::Ply(0)),
+            (0.25, "h", "matrix tension", 0, Place::Ply(1)),
+            (0.25, "h", "matrix compression", 1, Place::Ply(0)),
+        ];
+        assert_eq!(got, want.map(|(t, c, m, cell, p)| (t, c.to_owned(), m, cell, p)));
+        assert_eq!(scan.first_per_mode().len(), 4);
+        // Modes that did not fail have their peak too.
+        assert!(scan.peaks().iter().any(|p| p.mode == "fibre tension" && p.index < 1.0));
+        assert_eq!(scan.evaluations(), 8);
+    }
+
+    #[test]
+    fn sites_of_mixed_materials_keep_their_own_strength() {
+        let n = 50;
+        let sites: Vec<_> = (0..n).map(|c| site(c, Place::Interface(0), (c % 2) as u16)).collect();
+        let mut scan = octahedral(sites, vec![resin(1.0), resin(2.0)]);
+        let stress: Vec<_> = (0..n).map(|c| shear(f64::from(c))).collect();
+        scan.sample(0.0, &stress).unwrap();
+        for (site, maxima) in scan.maxima(0) {
+            let strength = if site.cell % 2 == 0 { 1.0 } else { 2.0 };
+            assert_eq!(maxima[0], (f64::from(site.cell) / strength).powi(2));
+        }
+        assert_eq!(scan.maxima(0).count(), n as usize);
+    }
+
+    #[test]
+    fn bad_samples_are_refused_and_leave_the_scan_as_it_was() {
+        let mut scan = plain(2);
+        scan.sample(0.0, &[along(0.0), along(0.5)]).unwrap();
+        let before = format!("{:?}", (scan.events(), scan.peaks(), scan.evaluations()));
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let error = scan.sample(1.0, &[along(2.0), Stress6::new([0.0, 0.0, 0.0, 0.0, bad, 0.0])]).unwrap_err();
+            let text = error.to_string();
+            assert!(matches!(error, ScanError::Stress { time: 1.0, cell: 1, place: Place::Ply(0), .. }), "{text}");
+            assert!(text.contains("ply 1 from the bottom of cell 1") && text.contains("at 1 s"), "{text}");
+            assert!(scan.sample(bad, &[along(2.0), along(2.0)]).is_err());
+        }
+        assert!(matches!(scan.sample(0.0, &[along(2.0); 2]), Err(ScanError::Time { .. })));
+        assert!(matches!(scan.sample(1.0, &[along(2.0)]), Err(ScanError::Length { got: 1, want: 2 })));
+        assert_eq!(format!("{:?}", (scan.events(), scan.peaks(), scan.evaluations())), before);
+        scan.sample(1.0, &[along(0.0), along(1.5)]).unwrap();
+        assert_eq!(scan.events()[0].time, 0.5);
+    }
+
+    #[test]
+    fn an_index_that_is_no_number_is_an_error() {
+        #[derive(Debug, Clone)]
+        struct Forgetful;
+        impl FailureCriterion for Forgetful {
+            fn info(&self) -> &CriterionInfo {
+                const INFO: CriterionInfo =
+                    CriterionInfo { site: Site::Ply, modes: &["a", "b"], strengths: &[], invariant_about_fibre: true };
+                &INFO
+            }
+            fn indices(&self, s: &Stress6<Ply>, _: &Material, out: &mut [f64]) {
+                out[0] = 0.0;
+                if s.s11() < 1.0 {
+                    out[1] = 0.0;
+                }
+            }
+        }
+        let sites = vec![site(0, Place::Ply(0), 0), site(7, Place::Ply(3), 0)];
+        let mut scan = Scan::new(vec![("f".into(), Box::new(Forgetful))], sites, vec![ply()]).unwrap();
+        scan.sample(0.0, &[along(0.0), along(0.5)]).unwrap();
+        let error = scan.sample(1.0, &[along(0.0), along(1.5)]).unwrap_err();
+        assert!(matches!(error, ScanError::Index { mode: "b", cell: 7, place: Place::Ply(3), .. }), "{error}");
+        // An overflow of the stress itself is caught as well: ∞ − ∞.
+        let mut scan = octahedral(vec![site(0, Place::Interface(2), 0)], vec![resin(1.0)]);
+        assert!(scan.sample(0.0, &[Stress6::new([1e308, -1e308, 0.0, 0.0, 0.0, 0.0])]).is_ok());
+        assert_eq!(scan.peaks()[0].index, f64::INFINITY);
+    }
+
+    #[test]
+    fn missing_constants_are_named_before_the_march() {
+        let sites = vec![site(3, Place::Ply(0), 0), site(4, Place::Interface(1), 1)];
+        let criteria = || -> Vec<(String, Box<dyn FailureCriterion>)> { vec![("oct".into(), Box::new(Octahedral))] };
+        // The ply has no business with the interface's criterion.
+        assert!(Scan::new(criteria(), sites.clone(), vec![material("bare", &[]), resin(1.0)]).is_ok());
+        let error = Scan::new(criteria(), sites.clone(), vec![ply(), material("bare", &[])]).unwrap_err();
+        assert!(matches!(error, ScanError::Material { cell: 4, place: Place::Interface(1), .. }));
+        let source = std::error::Error::source(&error).unwrap().to_string();
+        assert!(source.contains("`bare`") && source.contains("`oct`") && source.contains("S12"), "{source}");
+        assert!(matches!(
+            Scan::new(criteria(), sites, vec![ply()]),
+            Err(ScanError::NoSuchMaterial { material: 1, given: 1, .. })
+        ));
+    }
+}
