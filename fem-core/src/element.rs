@@ -193,9 +193,9 @@ pub trait Element: DynClone + Debug + Send + Sync {
         let mut volume = 0.0;
         let plane = gauss_legendre(info.in_plane_order);
         let (middle, half) = (0.5 * (q[0] + q[1]), 0.5 * (q[1] - q[0]));
-        for (t, wt) in gauss_legendre(if half > 0.0 { info.ply_order } else { 1 }) {
-            for &(r, wr) in &plane {
-                for &(s, ws) in &plane {
+        for &(t, wt) in gauss_legendre(if half > 0.0 { info.ply_order } else { 1 }) {
+            for &(r, wr) in plane {
+                for &(s, ws) in plane {
                     let dv = positive(self.strain_operator(cell.x, [r, s, middle + half * t], point))? * wr * ws * wt;
                     volume += dv;
                     for (b, p) in b.iter_mut().zip(point.iter()) {
@@ -222,9 +222,9 @@ fn integrate(
     let through = gauss_legendre(info.ply_order);
     for slice in &stack.slices {
         let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
-        for &(t, wt) in &through {
-            for &(r, wr) in &plane {
-                for &(s, ws) in &plane {
+        for &(t, wt) in through {
+            for &(r, wr) in plane {
+                for &(s, ws) in plane {
                     at(slice, [r, s, middle + half * t], wr * ws * wt * half)?;
                 }
             }

@@ -1,19 +1,26 @@
 //! Gauss-Legendre quadrature.
 
+use std::sync::LazyLock;
+
+/// Largest rule that [`gauss_legendre`] holds.
+pub const MAX_POINTS: usize = 32;
+
 /// Points and weights of the `n`-point Gauss-Legendre rule on [-1, 1], exact to degree 2n − 1.
 ///
+/// `n` beyond [`MAX_POINTS`] gives the rule of `MAX_POINTS` points.
+pub fn gauss_legendre(n: usize) -> &'static [(f64, f64)] {
+    static RULES: LazyLock<Vec<Vec<(f64, f64)>>> = LazyLock::new(|| (0..=MAX_POINTS).map(rule).collect());
+    &RULES[n.min(MAX_POINTS)]
+}
+
 /// Roots of Pₙ by Newton's method from Tricomi's estimate; the rule is symmetric to the last bit.
-pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
+fn rule(n: usize) -> Vec<(f64, f64)> {
     let mut rule = vec![(0.0, 0.0); n];
     for i in 0..n.div_ceil(2) {
         let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
         let mut slope = 0.0;
         for _ in 0..64 {
-            let (mut p0, mut p1) = (1.0, x);
-            for k in 2..=n {
-                let k = k as f64;
-                (p0, p1) = (p1, ((2.0 * k - 1.0) * x * p1 - (k - 1.0) * p0) / k);
-            }
+            let (p1, p0) = legendre(n, x);
             slope = n as f64 * (x * p1 - p0) / (x * x - 1.0);
             let dx = p1 / slope;
             x -= dx;
@@ -23,20 +30,23 @@ pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
         }
         if 2 * i + 1 == n {
             x = 0.0;
-            // P'ₙ(0) by the recurrence at exactly zero.
-            let (mut p0, mut p1) = (1.0, 0.0);
-            for k in 2..=n {
-                let k = k as f64;
-                (p0, p1) = (p1, -(k - 1.0) * p0 / k);
-            }
-            slope = n as f64 * p0;
-            let _ = p1;
+            slope = n as f64 * legendre(n - 1, 0.0).0;
         }
         let w = 2.0 / ((1.0 - x * x) * slope * slope);
         rule[i] = (-x, w);
         rule[n - 1 - i] = (x, w);
     }
     rule
+}
+
+/// (Pₙ(x), Pₙ₋₁(x)).
+fn legendre(n: usize, x: f64) -> (f64, f64) {
+    let (mut p0, mut p1) = (0.0, 1.0);
+    for k in 1..=n {
+        let k = k as f64;
+        (p0, p1) = (p1, ((2.0 * k - 1.0) * x * p1 - (k - 1.0) * p0) / k);
+    }
+    (p1, p0)
 }
 
 #[cfg(test)]

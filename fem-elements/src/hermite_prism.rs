@@ -1,0 +1,375 @@
+//! The report's solid element: a quadrilateral prism with twelve unknowns a node (eqs 16-23).
+
+use crate::hermite::{self, CORNERS, NodeFunctions, Quartet};
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+use fem_core::dof::Dof;
+use fem_core::element::{Cell, Element, ElementError, ElementInfo, Scratch, positive};
+use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::quadrature::{MAX_POINTS, gauss_legendre};
+
+/// Functions of a cell per displacement component: 8 nodes × (value, ∂x, ∂y, ∂z).
+const F: usize = 32;
+/// Unknowns of a cell.
+const N: usize = 96;
+/// Derivative direction times power of q.
+const DK: usize = 12;
+
+/// Row of the strain vector (11 22 33 12 23 31) to which ∂u\[component\]/∂\[direction\] belongs.
+const STRAIN_ROW: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
+
+/// Blocks (component, component) of the symmetric stiffness.
+const BLOCKS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+
+/// Which shape functions carry the inertia.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mass {
+    /// The element's own functions: frequencies converge as fast as deflections.
+    Cubic,
+    /// Trilinear functions of the translations (the report): derivative unknowns have no inertia, M is singular.
+    Linear,
+}
+
+/// Quadrilateral prism with plane, parallel faces and upright edges.
+///
+/// Unknowns count `12·node + 4·component + m` with m = 0 (value), 1, 2, 3 (derivative along x, y, z); nodes as in
+/// [`CORNERS`]. Reproduces complete cubics on parallelograms; on general quadrilaterals {1, x, y} × {1, z, z², z³}.
+///
+/// With polynomials in q the integral through any number of plies is one Hankel matrix of the thickness moments, so the
+/// stiffness costs the same for one ply as for a hundred: for components n, n′
+///
+/// K(n,n′) = Σ over in-plane points of w |J| G H(n,n′) Gᵀ, G: 32 × 12 (direction d, power k),
+/// H(n,n′)\[(d,k),(d′,k′)\] = M\[k+k′\]\[row(n,d)\]\[row(n′,d′)\].
+#[derive(Debug, Clone)]
+pub struct HermitePrism {
+    info: ElementInfo,
+    mass: Mass,
+}
+
+impl HermitePrism {
+    /// In-plane order 4 is exact on parallelograms.
+    pub const IN_PLANE_ORDER: usize = 4;
+
+    /// # Errors
+    /// In-plane orders below 3, which leave zero-energy modes, and above [`MAX_POINTS`].
+    pub fn new(mass: Mass, in_plane_order: usize) -> Result<Self, ElementError> {
+        if !(3..=MAX_POINTS).contains(&in_plane_order) {
+            return Err(ElementError(format!(
+                "in-plane order {in_plane_order}: at least 3 Gauss points a direction are needed (2 leave 25 zero-energy \
+                 modes), at most {MAX_POINTS} are offered"
+            )));
+        }
+        Ok(Self { info: ElementInfo { nodes: &CORNERS, dofs: &Dof::SOLID, in_plane_order, ply_order: 4 }, mass })
+    }
+}
+
+/// In-plane geometry at a point: Jacobian determinant of the quadrilateral and its inverse.
+struct Plane {
+    det: f64,
+    /// [[r,x  r,y], [s,x  s,y]]
+    inverse: [[f64; 2]; 2],
+}
+
+/// [[x,r  y,r], [x,s  y,s]] of the bilinear quadrilateral.
+fn jacobian(x: &[[f64; 3]], r: f64, s: f64) -> [[f64; 2]; 2] {
+    let mut j = [[0.0; 2]; 2];
+    for (c, p) in CORNERS[..4].iter().zip(x) {
+        let (by_r, by_s) = (0.25 * c[0] * (1.0 + s * c[1]), 0.25 * c[1] * (1.0 + r * c[0]));
+        for d in 0..2 {
+            j[0][d] += by_r * p[d];
+            j[1][d] += by_s * p[d];
+        }
+    }
+    j
+}
+
+fn plane(x: &[[f64; 3]], r: f64, s: f64) -> Plane {
+    let j = jacobian(x, r, s);
+    let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+    Plane { det, inverse: [[j[1][1] / det, -j[1][0] / det], [-j[0][1] / det, j[0][0] / det]] }
+}
+
+fn half_thickness(x: &[[f64; 3]]) -> f64 {
+    0.5 * (x[4][2] - x[0][2])
+}
+
+/// Turns the natural-derivative functions of `node` into those of its global derivatives: f,r = x,r f,x + y,r f,y at the
+/// node (eq. 20).
+fn to_global(x: &[[f64; 3]], node: usize, f: &[Quartet; 4], out: &mut [Quartet; 4]) {
+    let j = jacobian(x, CORNERS[node][0], CORNERS[node][1]);
+    let h = half_thickness(x);
+    out[0] = f[0];
+    for k in 0..4 {
+        out[1][k] = f[1][k] * j[0][0] + f[2][k] * j[1][0];
+        out[2][k] = f[1][k] * j[0][1] + f[2][k] * j[1][1];
+        out[3][k] = f[3][k] * h;
+    }
+}
+
+/// Calls `each(function, [∂x, ∂y, ∂z])` for the 32 functions at an in-plane point, derivatives as polynomials in q.
+fn gradients(x: &[[f64; 3]], r: f64, s: f64, plane: &Plane, mut each: impl FnMut(usize, [Quartet; 3])) {
+    let h = half_thickness(x);
+    for (node, corner) in CORNERS.iter().enumerate() {
+        let natural: NodeFunctions = hermite::node_functions(*corner, r, s);
+        let mut n = [[0.0; 4]; 4];
+        let mut n_r = n;
+        let mut n_s = n;
+        to_global(x, node, &natural.n, &mut n);
+        to_global(x, node, &natural.n_r, &mut n_r);
+        to_global(x, node, &natural.n_s, &mut n_s);
+        for m in 0..4 {
+            let by = |d: usize| -> Quartet {
+                std::array::from_fn(|k| plane.inverse[0][d] * n_r[m][k] + plane.inverse[1][d] * n_s[m][k])
+            };
+            each(4 * node + m, [by(0), by(1), hermite::derivative(&n[m]).map(|c| c / h)]);
+        }
+    }
+}
+
+/// Column of a function of a component in the cell's unknowns.
+const fn column(component: usize, function: usize) -> usize {
+    12 * (function / 4) + 4 * component + function % 4
+}
+
+fn check_shape(x: &[[f64; 3]]) -> Result<(), ElementError> {
+    let h = half_thickness(x);
+    let size = (0..3).map(|d| (x[2][d] - x[0][d]).abs()).fold(h.abs(), f64::max);
+    let upright = (0..4).all(|i| {
+        (0..2).all(|d| (x[i + 4][d] - x[i][d]).abs() <= 1e-9 * size)
+            && (x[i][2] - x[0][2]).abs() <= 1e-9 * size
+            && (x[i + 4][2] - x[4][2]).abs() <= 1e-9 * size
+    });
+    if upright && h > 0.0 {
+        Ok(())
+    } else {
+        Err(ElementError("the prism needs plane, parallel faces and upright edges of positive height".into()))
+    }
+}
+
+impl Element for HermitePrism {
+    fn info(&self) -> &ElementInfo {
+        &self.info
+    }
+
+    fn strain_operator(&self, x: &[[f64; 3]], [r, s, q]: [f64; 3], b: &mut [f64]) -> f64 {
+        let plane = plane(x, r, s);
+        b.fill(0.0);
+        gradients(x, r, s, &plane, |f, g| {
+            for (d, g) in g.iter().enumerate() {
+                let value = hermite::at(g, q);
+                for (component, rows) in STRAIN_ROW.iter().enumerate() {
+                    b[6 * column(component, f) + rows[d]] = value;
+                }
+            }
+        });
+        plane.det * half_thickness(x)
+    }
+
+    fn shape(&self, x: &[[f64; 3]], [r, s, q]: [f64; 3], n: &mut [f64]) -> f64 {
+        n.fill(0.0);
+        for (node, corner) in CORNERS.iter().enumerate() {
+            let mut functions = [[0.0; 4]; 4];
+            to_global(x, node, &hermite::node_functions(*corner, r, s).n, &mut functions);
+            for (m, f) in functions.iter().enumerate() {
+                for component in 0..3 {
+                    n[3 * column(component, 4 * node + m) + component] = hermite::at(f, q);
+                }
+            }
+        }
+        plane(x, r, s).det * half_thickness(x)
+    }
+
+    fn inertia_shape(&self, x: &[[f64; 3]], xi: [f64; 3], n: &mut [f64]) -> f64 {
+        if self.mass == Mass::Cubic {
+            return self.shape(x, xi, n);
+        }
+        n.fill(0.0);
+        for (node, corner) in CORNERS.iter().enumerate() {
+            let f = hermite::at(&hermite::trilinear(*corner, xi[0], xi[1]), xi[2]);
+            for component in 0..3 {
+                n[3 * column(component, 4 * node) + component] = f;
+            }
+        }
+        plane(x, xi[0], xi[1]).det * half_thickness(x)
+    }
+
+    fn stiffness(&self, cell: &Cell<'_>, scratch: &mut Scratch, ke: &mut [f64]) -> Result<(), ElementError> {
+        check_shape(cell.x)?;
+        let rule = gauss_legendre(self.info.in_plane_order);
+        let points = rule.len() * rule.len();
+        let terms = points * DK;
+        let [g, weighted, hankel, p, block] =
+            scratch.arrays([F * terms, F * terms, DK * 6 * DK, F * 6 * terms, F * F]);
+        // G: 32 × (12 · points), the point running fastest among the columns.
+        for_each_point(rule, |point, r, s, w| {
+            let plane = plane(cell.x, r, s);
+            let dv = positive(plane.det)? * w * half_thickness(cell.x);
+            gradients(cell.x, r, s, &plane, |f, gradient| {
+                for (d, polynomial) in gradient.iter().enumerate() {
+                    for (k, value) in polynomial.iter().enumerate() {
+                        let at = ((4 * d + k) * points + point) * F + f;
+                        g[at] = *value;
+                        weighted[at] = dv * value;
+                    }
+                }
+            });
+            Ok(())
+        })?;
+        // [H(1,1) | H(1,2) | ...]: 12 × 72.
+        for (b, (n, n2)) in BLOCKS.iter().enumerate() {
+            for (dk2, column) in hankel[b * DK * DK..(b + 1) * DK * DK].chunks_exact_mut(DK).enumerate() {
+                for (dk, h) in column.iter_mut().enumerate() {
+                    let moment = &cell.stack.stiffness_moments[dk % 4 + dk2 % 4];
+                    *h = moment[STRAIN_ROW[*n][dk / 4]][STRAIN_ROW[*n2][dk2 / 4]];
+                }
+            }
+        }
+        // P = G H with (function, point) as rows; read again, each block of P is 32 × (12 · points).
+        multiply(p, weighted, hankel, F * points, DK, 6 * DK);
+        let g = MatRef::from_column_major_slice(g, F, terms);
+        for (b, (n, n2)) in BLOCKS.iter().enumerate() {
+            let p = MatRef::from_column_major_slice(&p[b * F * terms..(b + 1) * F * terms], F, terms);
+            let out = MatMut::from_column_major_slice_mut(block, F, F);
+            matmul(out, Accum::Replace, p, g.transpose(), 1.0, Par::Seq);
+            for (f2, block) in block.chunks_exact(F).enumerate() {
+                for (f, value) in block.iter().enumerate() {
+                    ke[column(*n, f) + N * column(*n2, f2)] = *value;
+                    ke[column(*n2, f2) + N * column(*n, f)] = *value;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn mass(&self, cell: &Cell<'_>, scratch: &mut Scratch, me: &mut [f64]) -> Result<(), ElementError> {
+        check_shape(cell.x)?;
+        let rule = gauss_legendre(self.info.in_plane_order);
+        let points = rule.len() * rule.len();
+        let [n, weighted, hankel, p, block] =
+            scratch.arrays([F * 4 * points, F * 4 * points, 16, F * 4 * points, F * F]);
+        for_each_point(rule, |point, r, s, w| {
+            let dv = positive(plane(cell.x, r, s).det)? * w * half_thickness(cell.x);
+            for (node, corner) in CORNERS.iter().enumerate() {
+                let mut functions = [[0.0; 4]; 4];
+                match self.mass {
+                    Mass::Cubic => {
+                        to_global(cell.x, node, &hermite::node_functions(*corner, r, s).n, &mut functions);
+                    }
+                    Mass::Linear => functions[0] = hermite::trilinear(*corner, r, s),
+                }
+                for (m, f) in functions.iter().enumerate() {
+                    for (k, value) in f.iter().enumerate() {
+                        let at = (k * points + point) * F + 4 * node + m;
+                        n[at] = *value;
+                        weighted[at] = dv * value;
+                    }
+                }
+            }
+            Ok(())
+        })?;
+        for (i, h) in hankel.iter_mut().enumerate() {
+            *h = cell.stack.density_moments[i % 4 + i / 4];
+        }
+        multiply(p, weighted, hankel, F * points, 4, 4);
+        let p = MatRef::from_column_major_slice(p, F, 4 * points);
+        let n = MatRef::from_column_major_slice(n, F, 4 * points);
+        matmul(MatMut::from_column_major_slice_mut(block, F, F), Accum::Replace, p, n.transpose(), 1.0, Par::Seq);
+        me.fill(0.0);
+        for component in 0..3 {
+            for f2 in 0..F {
+                for f in 0..F {
+                    // The sum of both triangles: symmetric to the last bit.
+                    me[column(component, f) + N * column(component, f2)] = 0.5 * (block[f + F * f2] + block[f2 + F * f]);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn mean_strain(
+        &self,
+        cell: &Cell<'_>,
+        q: [f64; 2],
+        _: &mut Scratch,
+        b: &mut [f64],
+    ) -> Result<(), ElementError> {
+        check_shape(cell.x)?;
+        // Mean of q⁰ … q³ over the slice.
+        let mean: Quartet = std::array::from_fn(|k| {
+            let p = k as i32 + 1;
+            if q[1] > q[0] {
+                (q[1].powi(p) - q[0].powi(p)) / (f64::from(p) * (q[1] - q[0]))
+            } else {
+                q[0].powi(k as i32)
+            }
+        });
+        b.fill(0.0);
+        let mut area = 0.0;
+        for_each_point(gauss_legendre(self.info.in_plane_order), |_, r, s, w| {
+            let plane = plane(cell.x, r, s);
+            let da = positive(plane.det)? * w;
+            area += da;
+            gradients(cell.x, r, s, &plane, |f, gradient| {
+                for (d, polynomial) in gradient.iter().enumerate() {
+                    let value = da * polynomial.iter().zip(mean).map(|(a, b)| a * b).sum::<f64>();
+                    for (component, rows) in STRAIN_ROW.iter().enumerate() {
+                        b[6 * column(component, f) + rows[d]] += value;
+                    }
+                }
+            });
+            Ok(())
+        })?;
+        for b in b {
+            *b /= area;
+        }
+        Ok(())
+    }
+}
+
+fn for_each_point(
+    rule: &[(f64, f64)],
+    mut at: impl FnMut(usize, f64, f64, f64) -> Result<(), ElementError>,
+) -> Result<(), ElementError> {
+    for (i, &(r, wr)) in rule.iter().enumerate() {
+        for (j, &(s, ws)) in rule.iter().enumerate() {
+            at(i * rule.len() + j, r, s, wr * ws)?;
+        }
+    }
+    Ok(())
+}
+
+/// `out ← a b`, column-major: a is m × k, b is k × n.
+fn multiply(out: &mut [f64], a: &[f64], b: &[f64], m: usize, k: usize, n: usize) {
+    matmul(
+        MatMut::from_column_major_slice_mut(out, m, n),
+        Accum::Replace,
+        MatRef::from_column_major_slice(a, m, k),
+        MatRef::from_column_major_slice(b, k, n),
+        1.0,
+        Par::Seq,
+    );
+}
+
+impl Plugin for HermitePrism {
+    const INFO: PluginInfo = PluginInfo {
+        kind: Kind::Element,
+        name: "hermite-prism",
+        summary: "quadrilateral prism, 12 unknowns a node, any number of plies through one cell",
+        source: "AFWAL-TR-87-4117, eqs 16-23",
+        params: &[
+            ParamInfo { name: "mass", doc: "`cubic` (default): consistent; `linear`: the report's, translations only" },
+            ParamInfo { name: "in_plane_order", doc: "Gauss points per in-plane direction, at least 3; default 4" },
+        ],
+    };
+
+    fn build(params: &Params) -> Result<Built, ParamError> {
+        let mass = match params.choice("mass", &["cubic", "linear"])? {
+            "linear" => Mass::Linear,
+            _ => Mass::Cubic,
+        };
+        let order = params.count("in_plane_order", 3, Some(Self::IN_PLANE_ORDER))?;
+        Self::new(mass, order)
+            .map(|e| Built::Element(Box::new(e)))
+            .map_err(|e| ParamError::new("in_plane_order", e.to_string()))
+    }
+}
