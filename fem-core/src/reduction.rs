@@ -1,5 +1,6 @@
 //! The contract of a reduction.
 
+use crate::structure::Structure;
 use dyn_clone::DynClone;
 use std::fmt::Debug;
 
@@ -24,18 +25,6 @@ impl Functional {
             y[i] += scale * w;
         }
     }
-}
-
-/// What a reduction may ask of a structure with stiffness K (positive definite) and mass M (semi-definite).
-pub trait Structure {
-    /// Number of unknowns.
-    fn ndof(&self) -> usize;
-    /// `y ← K x`.
-    fn stiffness(&self, x: &[f64], y: &mut [f64]);
-    /// `y ← M x`.
-    fn mass(&self, x: &[f64], y: &mut [f64]);
-    /// `X ← K⁻¹ X`, X of `ndof × columns`, column-major.
-    fn solve(&mut self, x: &mut [f64], columns: usize);
 }
 
 /// Why a basis could not be made.

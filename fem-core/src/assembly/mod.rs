@@ -1,0 +1,112 @@
+//! Sparse matrices of a plate: pattern once, values many times, Cholesky with its storage reused (feature `assembly`).
+
+mod factor;
+mod ordering;
+mod pattern;
+mod sparse;
+
+pub use factor::{Cholesky, FactorError, Symbolic};
+pub use ordering::nested_dissection;
+pub use pattern::{AssemblyError, Pattern, pattern};
+pub use sparse::SparseStructure;
+
+use crate::constraint::Constraints;
+use crate::counters::Counters;
+use crate::element::{Cell, Element, ElementError, Scratch};
+use crate::plate::Plate;
+use pattern::CellMap;
+use std::num::NonZeroUsize;
+
+/// Which matrix to assemble.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Matrix {
+    Stiffness,
+    Mass,
+}
+
+/// Cells integrated side by side before their matrices are added.
+const BATCH: usize = 64;
+
+/// Order in which the unknowns of `plate` are best eliminated: columns by nested dissection, levels within.
+pub fn elimination_order(plate: &Plate) -> Vec<usize> {
+    let mut order = Vec::with_capacity(plate.ndof());
+    for column in nested_dissection(&plate.plane) {
+        order.extend(plate.dofs_of_column(column as usize));
+    }
+    order
+}
+
+/// Values of K or M on `pattern`.
+///
+/// Threads share the integration only; matrices are added in cell order, so the result is the same bit for bit for any
+/// number of threads.
+///
+/// # Errors
+/// A cell that the element refuses.
+pub fn assemble(
+    plate: &Plate,
+    element: &dyn Element,
+    constraints: &Constraints,
+    pattern: &Pattern,
+    matrix: Matrix,
+    threads: NonZeroUsize,
+    counters: &mut Counters,
+) -> Result<Vec<f64>, AssemblyError> {
+    let size = element.info().ndof().pow(2);
+    let mut values = vec![0.0; pattern.rows.len()];
+    let (mut map, mut work) = (CellMap::default(), Vec::new());
+    let mut batch = vec![0.0; size * BATCH.min(plate.cells())];
+    let mut scratches: Vec<Scratch> = (0..threads.get()).map(|_| Scratch::default()).collect();
+    let integrate = |cell: usize, scratch: &mut Scratch, out: &mut [f64]| -> Result<(), AssemblyError> {
+        let x = plate.points(cell);
+        let (quad, layer) = plate.place(cell);
+        let view = Cell { x: &x, stack: &plate.stacks[layer] };
+        let done = match matrix {
+            Matrix::Stiffness => element.stiffness(&view, scratch, out),
+            Matrix::Mass => element.mass(&view, scratch, out),
+        };
+        let finite = || if out[0].is_finite() { Ok(()) } else { Err(ElementError("the matrix is not finite".into())) };
+        done.and_then(|()| finite()).map_err(|error| AssemblyError {
+            quad_tag: plate.plane.quad_tags[quad],
+            layer,
+            error,
+        })
+    };
+    for first in (0..plate.cells()).step_by(BATCH) {
+        let count = BATCH.min(plate.cells() - first);
+        let batch = &mut batch[..count * size];
+        let share = count.div_ceil(threads.get());
+        if threads.get() == 1 {
+            for (i, out) in batch.chunks_exact_mut(size).enumerate() {
+                integrate(first + i, &mut scratches[0], out)?;
+            }
+        } else {
+            std::thread::scope(|scope| {
+                let integrate = &integrate;
+                let workers: Vec<_> = batch
+                    .chunks_mut(share * size)
+                    .zip(&mut scratches)
+                    .enumerate()
+                    .map(|(w, (part, scratch))| {
+                        scope.spawn(move || {
+                            part.chunks_exact_mut(size)
+                                .enumerate()
+                                .try_for_each(|(i, out)| integrate(first + w * share + i, scratch, out))
+                        })
+                    })
+                    .collect();
+                workers.into_iter().try_for_each(|w| match w.join() {
+                    Ok(result) => result,
+                    Err(panic) => std::panic::resume_unwind(panic),
+                })
+            })?;
+        }
+        counters.elements += count as u64;
+        for (i, a) in batch.chunks_exact(size).enumerate() {
+            map.set(plate, constraints, first + i);
+            map.scatter(pattern, a, &mut work, &mut values);
+        }
+    }
+    Ok(values)
+}

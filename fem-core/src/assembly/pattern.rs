@@ -1,0 +1,186 @@
+//! The sparsity pattern of a plate, built once, and its values, filled as often as needed.
+
+use crate::constraint::Constraints;
+use crate::element::ElementError;
+use crate::plate::Plate;
+use std::fmt;
+
+/// Lower triangle of a symmetric matrix, compressed columns, rows ascending.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pattern {
+    /// Start of each column, and the number of entries at the end.
+    pub starts: Vec<usize>,
+    /// Row of each entry.
+    pub rows: Vec<usize>,
+}
+
+impl Pattern {
+    /// Number of columns.
+    pub fn ndof(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// `y ← y + scale · A x` for the symmetric matrix with this pattern and `values`.
+    pub fn add_product(&self, values: &[f64], scale: f64, x: &[f64], y: &mut [f64]) {
+        for j in 0..self.ndof() {
+            let range = self.starts[j]..self.starts[j + 1];
+            let (rows, values) = (&self.rows[range.clone()], &values[range]);
+            let Some((diagonal, below)) = values.split_first() else { continue };
+            let xj = scale * x[j];
+            let mut yj = diagonal * xj;
+            for (i, a) in rows[1..].iter().zip(below) {
+                y[*i] += a * xj;
+                yj += a * x[*i] * scale;
+            }
+            y[j] += yj;
+        }
+    }
+}
+
+/// An element matrix that could not be made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AssemblyError {
+    /// Number of the quad in the file.
+    pub quad_tag: u64,
+    /// Layer of cells from the bottom.
+    pub layer: usize,
+    /// What the element said.
+    pub error: ElementError,
+}
+
+impl fmt::Display for AssemblyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "cell {} of the mesh, layer {}: {}", self.quad_tag, self.layer + 1, self.error)
+    }
+}
+impl std::error::Error for AssemblyError {}
+
+/// The independent unknowns of a cell, and how its own depend on them.
+#[derive(Debug, Default)]
+pub(crate) struct CellMap {
+    dofs: Vec<usize>,
+    /// Independent unknowns, ascending.
+    pub(crate) reduced: Vec<usize>,
+    /// (unknown of the cell, position in `reduced`, factor)
+    terms: Vec<(usize, usize, f64)>,
+    /// Every unknown of the cell is one independent unknown or none.
+    plain: bool,
+}
+
+impl CellMap {
+    pub(crate) fn set(&mut self, plate: &Plate, constraints: &Constraints, cell: usize) {
+        plate.cell_dofs(cell, &mut self.dofs);
+        self.reduced.clear();
+        self.terms.clear();
+        self.plain = true;
+        for (local, dof) in self.dofs.iter().enumerate() {
+            let (terms, _) = constraints.row(*dof);
+            self.plain &= terms.len() < 2 && terms.iter().all(|t| t.1 == 1.0);
+            for (i, c) in terms {
+                self.reduced.push(*i);
+                self.terms.push((local, *i, *c));
+            }
+        }
+        self.reduced.sort_unstable();
+        let before = self.reduced.len();
+        self.reduced.dedup();
+        self.plain &= before == self.reduced.len();
+        for term in &mut self.terms {
+            term.1 = self.reduced.partition_point(|i| *i < term.1);
+        }
+    }
+
+    /// Tᵀ A T of a cell matrix, lower triangle of the ascending independent unknowns, `n × n` column-major.
+    fn transform(&self, a: &[f64], out: &mut Vec<f64>) {
+        let (m, n) = (self.dofs.len(), self.reduced.len());
+        out.clear();
+        out.resize(n * n, 0.0);
+        for (j, jr, cj) in &self.terms {
+            let column = &a[j * m..(j + 1) * m];
+            let out = &mut out[jr * n..(jr + 1) * n];
+            if self.plain {
+                for (i, ir, _) in &self.terms {
+                    out[*ir] = column[*i];
+                }
+            } else {
+                for (i, ir, ci) in &self.terms {
+                    out[*ir] += ci * cj * column[*i];
+                }
+            }
+        }
+    }
+
+    /// Adds the lower triangle of a cell matrix into `values`.
+    ///
+    /// Runs of consecutive unknowns are consecutive in every column that holds them: one search per run.
+    pub(crate) fn scatter(&self, pattern: &Pattern, a: &[f64], work: &mut Vec<f64>, values: &mut [f64]) {
+        self.transform(a, work);
+        let n = self.reduced.len();
+        for (j, column) in self.reduced.iter().enumerate() {
+            let start = pattern.starts[*column];
+            let rows = &pattern.rows[start..pattern.starts[column + 1]];
+            let from = &work[j * n..(j + 1) * n];
+            let (mut i, mut at) = (j, 0);
+            while i < n {
+                let first = self.reduced[i];
+                at += rows[at..].partition_point(|r| *r < first);
+                let mut length = 1;
+                while i + length < n && self.reduced[i + length] == first + length {
+                    length += 1;
+                }
+                for (v, a) in values[start + at..start + at + length].iter_mut().zip(&from[i..i + length]) {
+                    *v += a;
+                }
+                i += length;
+            }
+        }
+    }
+}
+
+/// The pattern of K and M of a plate under constraints.
+pub fn pattern(plate: &Plate, constraints: &Constraints) -> Pattern {
+    let n = constraints.ndof();
+    let mut map = CellMap::default();
+    let (mut starts, mut members) = (vec![0_u32; n + 1], Vec::new());
+    // Cells of every column, then rows of every column through its cells.
+    for cell in 0..plate.cells() {
+        map.set(plate, constraints, cell);
+        for i in &map.reduced {
+            starts[i + 1] += 1;
+        }
+        members.extend(map.reduced.iter().map(|i| *i as u32));
+        members.push(u32::MAX);
+    }
+    for i in 0..n {
+        starts[i + 1] += starts[i];
+    }
+    let mut fill = starts.clone();
+    let mut cells = vec![0_u32; starts[n] as usize];
+    let mut cell_starts = vec![0_u32];
+    for (at, i) in members.iter().enumerate() {
+        if *i == u32::MAX {
+            cell_starts.push(at as u32 + 1);
+        } else {
+            cells[fill[*i as usize] as usize] = cell_starts.len() as u32 - 1;
+            fill[*i as usize] += 1;
+        }
+    }
+    let mut out = Pattern { starts: Vec::with_capacity(n + 1), rows: Vec::new() };
+    out.starts.push(0);
+    let mut seen = vec![u32::MAX; n];
+    for j in 0..n {
+        let begin = out.rows.len();
+        for cell in &cells[starts[j] as usize..starts[j + 1] as usize] {
+            let range = cell_starts[*cell as usize] as usize..cell_starts[*cell as usize + 1] as usize - 1;
+            for i in &members[range] {
+                if *i as usize >= j && seen[*i as usize] != j as u32 {
+                    seen[*i as usize] = j as u32;
+                    out.rows.push(*i as usize);
+                }
+            }
+        }
+        out.rows[begin..].sort_unstable();
+        out.starts.push(out.rows.len());
+    }
+    out
+}

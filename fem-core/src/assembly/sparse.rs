@@ -1,0 +1,127 @@
+//! A plate's K and M as a [`Structure`].
+
+use super::{Cholesky, FactorError, Pattern, Symbolic};
+use crate::structure::{SolveError, Structure};
+use std::fmt;
+use std::sync::Arc;
+
+/// What the factor at hand belongs to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Factored {
+    Nothing,
+    Shifted(f64),
+    Mass,
+}
+
+/// Sparse stiffness and mass on one pattern, with one factorisation kept.
+pub struct SparseStructure {
+    pattern: Arc<Pattern>,
+    k: Vec<f64>,
+    m: Vec<f64>,
+    factor: Cholesky,
+    factored: Factored,
+    combined: Vec<f64>,
+    name: Box<dyn Fn(usize) -> String + Send>,
+    factorisations: u64,
+    solves: u64,
+}
+
+impl fmt::Debug for SparseStructure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SparseStructure").field("ndof", &self.pattern.ndof()).field("entries", &self.k.len()).finish()
+    }
+}
+
+impl SparseStructure {
+    /// `k` and `m` on the pattern of `symbolic`; `name(column)` describes an unknown in messages.
+    pub fn new(symbolic: Symbolic, k: Vec<f64>, m: Vec<f64>, name: impl Fn(usize) -> String + Send + 'static) -> Self {
+        let pattern = symbolic.pattern().clone();
+        Self {
+            name: Box::new(name),
+            combined: vec![0.0; k.len()],
+            factor: Cholesky::new(symbolic),
+            factored: Factored::Nothing,
+            pattern,
+            k,
+            m,
+            factorisations: 0,
+            solves: 0,
+        }
+    }
+
+    /// Factorisations and solved right-hand sides so far.
+    pub fn work(&self) -> (u64, u64) {
+        (self.factorisations, self.solves)
+    }
+
+    /// Entries of one triangle of K.
+    pub fn entries(&self) -> usize {
+        self.k.len()
+    }
+
+    /// The pattern with the values of K and M.
+    pub fn matrices(&self) -> (&Pattern, &[f64], &[f64]) {
+        (&self.pattern, &self.k, &self.m)
+    }
+
+    fn factorise(&mut self, what: Factored) -> Result<(), SolveError> {
+        if self.factored == what {
+            return Ok(());
+        }
+        let values = match what {
+            Factored::Mass => &self.m,
+            Factored::Shifted(0.0) | Factored::Nothing => &self.k,
+            Factored::Shifted(shift) => {
+                for ((c, k), m) in self.combined.iter_mut().zip(&self.k).zip(&self.m) {
+                    *c = k + shift * m;
+                }
+                &self.combined
+            }
+        };
+        self.factored = Factored::Nothing;
+        self.factorisations += 1;
+        self.factor.factorise(values).map_err(|e| match e {
+            FactorError::NotPositive { column } if what == Factored::Mass => {
+                SolveError(format!("{} has no inertia", (self.name)(column)))
+            }
+            FactorError::NotPositive { column } => SolveError(format!(
+                "the structure is not held: the pivot of {} is not positive; add the missing support",
+                (self.name)(column)
+            )),
+            FactorError::NotFinite { column } => {
+                SolveError(format!("the matrix is not finite at {}", (self.name)(column)))
+            }
+            other => SolveError(other.to_string()),
+        })?;
+        self.factored = what;
+        Ok(())
+    }
+}
+
+impl Structure for SparseStructure {
+    fn ndof(&self) -> usize {
+        self.pattern.ndof()
+    }
+
+    fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        self.pattern.add_product(&self.k, scale, x, y);
+    }
+
+    fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        self.pattern.add_product(&self.m, scale, x, y);
+    }
+
+    fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
+        self.factorise(Factored::Shifted(shift))?;
+        self.factor.solve(x, columns);
+        self.solves += columns as u64;
+        Ok(())
+    }
+
+    fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
+        self.factorise(Factored::Mass)?;
+        self.factor.solve(x, 1);
+        self.solves += 1;
+        Ok(())
+    }
+}

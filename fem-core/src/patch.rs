@@ -1,0 +1,98 @@
+//! Where a contact acts: one node, or the Hertz pressure on a circle of the top face.
+
+use crate::dof::Dof;
+use crate::element::Element;
+use crate::plate::Plate;
+use crate::quadrature::gauss_legendre;
+use crate::reduction::Functional;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+/// Rings and points per ring of the integration over the circle.
+const RINGS: usize = 24;
+const SPOKES: usize = 96;
+
+/// Deflection away from an impactor above the plate, −U30 of the top node of `column`.
+pub fn node(plate: &Plate, column: usize) -> Option<Functional> {
+    let dof = plate.dofs_at(column, plate.levels.len() - 1, Dof::new(3, 0)?).next()?;
+    Some(Functional(vec![(dof, -1.0)]))
+}
+
+/// Mean deflection under the Hertz pressure p(ρ) = 3/(2πa²) √(1 − ρ²/a²) on the circle of radius `a` around `centre`:
+/// w = ∫ −u₃ p dA. As a load vector it is the consistent load of a unit force, as a displacement its conjugate.
+///
+/// In rings c = √(1 − ρ²/a²) the pressure is the polynomial weight 3c² dc, which Gauss points integrate exactly.
+///
+/// # Errors
+/// A circle that leaves the plate.
+pub fn hertz(plate: &Plate, element: &dyn Element, centre: [f64; 2], a: f64) -> Result<Functional, String> {
+    let top = plate.layers() - 1;
+    let n = element.info().ndof();
+    let mut shape = vec![0.0; 3 * n];
+    let mut dofs = Vec::new();
+    let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
+    let near: Vec<usize> = (0..plate.plane.quads.len())
+        .filter(|q| {
+            let p = plate.plane.corners(*q);
+            (0..2).all(|d| {
+                let (low, high) =
+                    p.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[d]), h.max(p[d])));
+                low - a <= centre[d] && centre[d] <= high + a
+            })
+        })
+        .collect();
+    for &(g, w) in gauss_legendre(RINGS) {
+        let c = 0.5 * (1.0 + g);
+        let rho = a * (1.0 - c * c).sqrt();
+        for spoke in 0..SPOKES {
+            let (sin, cos) = (TAU * (spoke as f64 + 0.5) / SPOKES as f64).sin_cos();
+            let p = [centre[0] + rho * cos, centre[1] + rho * sin];
+            let weight = 3.0 * c * c * 0.5 * w / SPOKES as f64;
+            let found = near.iter().find_map(|q| locate(&plate.plane.corners(*q), p).map(|at| (*q, at)));
+            let Some((quad, [r, s])) = found else {
+                return Err(format!(
+                    "the contact patch of radius {:.4} mm around ({:.4}, {:.4}) mm leaves the plate: choose a smaller radius",
+                    a * 1e3,
+                    centre[0] * 1e3,
+                    centre[1] * 1e3
+                ));
+            };
+            let cell = quad * plate.layers() + top;
+            element.shape(&plate.points(cell), [r, s, 1.0], &mut shape);
+            plate.cell_dofs(cell, &mut dofs);
+            for (dof, n) in dofs.iter().zip(shape.chunks_exact(3)) {
+                if n[2] != 0.0 {
+                    *sum.entry(*dof).or_insert(0.0) -= weight * n[2];
+                }
+            }
+        }
+    }
+    Ok(Functional(sum.into_iter().collect()))
+}
+
+/// Natural coordinates of `p` in a convex quadrilateral, if it lies inside (to 1e-9 of its size).
+pub fn locate(corners: &[[f64; 2]; 4], p: [f64; 2]) -> Option<[f64; 2]> {
+    const SIGN: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let (mut r, mut s) = (0.0, 0.0);
+    for _ in 0..50 {
+        let (mut f, mut j) = ([-p[0], -p[1]], [[0.0; 2]; 2]);
+        for (c, x) in SIGN.iter().zip(corners) {
+            let (a, b) = (1.0 + r * c[0], 1.0 + s * c[1]);
+            for d in 0..2 {
+                f[d] += 0.25 * a * b * x[d];
+                j[d][0] += 0.25 * c[0] * b * x[d];
+                j[d][1] += 0.25 * c[1] * a * x[d];
+            }
+        }
+        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+        let (dr, ds) = ((j[1][1] * f[0] - j[0][1] * f[1]) / det, (j[0][0] * f[1] - j[1][0] * f[0]) / det);
+        // Far outside, the bilinear map need not be invertible: stay near the cell.
+        r = (r - dr).clamp(-3.0, 3.0);
+        s = (s - ds).clamp(-3.0, 3.0);
+        if dr.abs().max(ds.abs()) < 1e-14 {
+            break;
+        }
+    }
+    let inside = r.abs() <= 1.0 + 1e-9 && s.abs() <= 1.0 + 1e-9;
+    inside.then(|| [r.clamp(-1.0, 1.0), s.clamp(-1.0, 1.0)])
+}

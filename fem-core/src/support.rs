@@ -1,0 +1,241 @@
+//! Supports as equations, and the rigid motions that they leave.
+
+use crate::constraint::Equation;
+use crate::dof::Dof;
+use crate::plate::Plate;
+use nalgebra::{Matrix6, SymmetricEigen, Vector6};
+
+/// Levels of a plate that a support acts on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Levels {
+    Bottom,
+    MidPlane,
+    Top,
+    All,
+}
+
+impl Levels {
+    /// The level numbers.
+    ///
+    /// # Errors
+    /// No level at the mid-plane.
+    pub fn of(self, plate: &Plate) -> Result<Vec<usize>, String> {
+        let top = plate.levels.len() - 1;
+        match self {
+            Self::Bottom => Ok(vec![0]),
+            Self::Top => Ok(vec![top]),
+            Self::All => Ok((0..=top).collect()),
+            Self::MidPlane => plate.mid_level().map(|l| vec![l]).ok_or_else(|| {
+                "no face between layers lies at the mid-plane: choose `layers` that meet there, or another `at`".into()
+            }),
+        }
+    }
+}
+
+/// `dofs` are zero at the nodes of `columns` × `levels`, in axes turned by `angle` (radians) about z.
+///
+/// In turned axes U′ₙ₀ = Σ Rₙᵢ Uᵢ₀ and U′ₙₘ = Σ Rₙᵢ Rₘⱼ Uᵢⱼ.
+pub fn fix(
+    plate: &Plate,
+    columns: &[u32],
+    levels: &[usize],
+    dofs: &[Dof],
+    angle: f64,
+    origin: &str,
+) -> Vec<Equation> {
+    let (s, c) = angle.sin_cos();
+    let r = [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]];
+    let mut equations = Vec::new();
+    for &column in columns {
+        for &level in levels {
+            for dof in dofs {
+                let name = || format!("{origin}: {dof} at node {}", plate.plane.node_tags[column as usize]);
+                if angle == 0.0 {
+                    let each = plate.dofs_at(column as usize, level, *dof);
+                    equations.extend(each.map(|i| Equation::fix(i, name())));
+                    continue;
+                }
+                // Where layers have z-derivatives of their own, the turned ones are zero in both.
+                let mut last = Vec::new();
+                for side in 0..2 {
+                    let mut terms = Vec::new();
+                    for i in 0..3 {
+                        for j in if dof.m() == 0 { 0..1 } else { 1..4 } {
+                            let factor = r[dof.n() - 1][i] * if dof.m() == 0 { 1.0 } else { r[dof.m() - 1][j - 1] };
+                            let Some(name) = Dof::new(i as u8 + 1, j as u8).filter(|_| factor != 0.0) else { continue };
+                            let mut both = plate.dofs_at(column as usize, level, name);
+                            let first = both.next();
+                            let chosen = if side == 1 { both.next().or(first) } else { first };
+                            terms.extend(chosen.map(|d| (d, factor)));
+                        }
+                    }
+                    if !terms.is_empty() && terms != last {
+                        equations.push(Equation { terms: terms.clone(), value: 0.0, origin: name() });
+                    }
+                    last = terms;
+                }
+            }
+        }
+    }
+    equations
+}
+
+/// `dofs` have one common value over the nodes of `columns` × `levels`.
+pub fn couple(plate: &Plate, columns: &[u32], levels: &[usize], dofs: &[Dof], origin: &str) -> Vec<Equation> {
+    let mut equations = Vec::new();
+    for dof in dofs {
+        let all: Vec<usize> = columns
+            .iter()
+            .flat_map(|c| levels.iter().flat_map(move |l| plate.dofs_at(*c as usize, *l, *dof)))
+            .collect();
+        if let Some((first, rest)) = all.split_first() {
+            equations.extend(rest.iter().map(|d| Equation {
+                terms: vec![(*d, 1.0), (*first, -1.0)],
+                value: 0.0,
+                origin: format!("{origin}: {dof}"),
+            }));
+        }
+    }
+    equations
+}
+
+/// Rigid motions that `equations` leave free.
+#[derive(Debug, Clone)]
+pub struct FreeMotions {
+    centre: [f64; 3],
+    length: f64,
+    /// Motions (translation x, y, z, rotation x, y, z), in reduced row echelon form.
+    basis: Vec<Vector6<f64>>,
+}
+
+/// Singular values of the supports below this fraction of the largest count as zero.
+const RANK: f64 = 1e-7;
+
+impl FreeMotions {
+    /// Finds them.
+    pub fn of(plate: &Plate, equations: &[Equation]) -> Self {
+        let (low, high) = plate.plane.bounds();
+        let centre = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.0];
+        let length = 0.5 * (high[0] - low[0]).hypot(high[1] - low[1]);
+        let mut free = Self { centre, length, basis: Vec::new() };
+        let mut gram = Matrix6::zeros();
+        for equation in equations {
+            let row = free.row(plate, equation);
+            gram += row * row.transpose();
+        }
+        free.basis = null_space(gram);
+        free
+    }
+
+    /// True when the supports hold the plate.
+    pub fn is_empty(&self) -> bool {
+        self.basis.is_empty()
+    }
+
+    /// How the equation sees the six motions, scaled to at most about one.
+    fn row(&self, plate: &Plate, equation: &Equation) -> Vector6<f64> {
+        let (mut row, mut norm) = (Vector6::zeros(), 0.0);
+        for (dof, factor) in &equation.terms {
+            let unit = if plate.locate(*dof).2.m() == 0 { 1.0 } else { 1.0 / self.length };
+            row += Vector6::from(plate.rigid_motions(*dof, self.centre, self.length)) * *factor;
+            norm += (factor * unit).powi(2);
+        }
+        row / norm.sqrt().max(f64::MIN_POSITIVE)
+    }
+
+    /// Their names: "translation along x, rotation about z".
+    pub fn names(&self) -> String {
+        const NAMES: [&str; 6] = [
+            "translation along x",
+            "translation along y",
+            "translation along z",
+            "rotation about x",
+            "rotation about y",
+            "rotation about z",
+        ];
+        let each: Vec<String> = self
+            .basis
+            .iter()
+            .map(|motion| {
+                let parts: Vec<String> = (0..6)
+                    .filter(|i| motion[*i].abs() > 1e-6)
+                    .map(|i| {
+                        let share = motion[i];
+                        if (share - 1.0).abs() < 1e-6 {
+                            NAMES[i].to_owned()
+                        } else {
+                            format!("{share:.3} x {}", NAMES[i])
+                        }
+                    })
+                    .collect();
+                parts.join(" with ")
+            })
+            .collect();
+        each.join(", ")
+    }
+
+    /// Statically determinate equations that stop these motions and nothing else, at the node nearest to the centre:
+    /// its translations and the antisymmetric part of its derivatives. Under loads that balance the stopped motions they
+    /// carry no force.
+    ///
+    /// # Errors
+    /// An element without derivative unknowns cannot stop a rotation at one node.
+    pub fn restrain(&self, plate: &Plate) -> Result<Vec<Equation>, String> {
+        let distance =
+            |c: &usize| (0..2).map(|d| (plate.plane.points[*c][d] - self.centre[d]).powi(2)).sum::<f64>();
+        let column = (0..plate.plane.points.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
+        let Some(column) = column else { return Ok(Vec::new()) };
+        let level = plate.mid_level().unwrap_or(0);
+        let unknown = |n: u8, m: u8| Dof::new(n, m).and_then(|d| plate.dofs_at(column, level, d).next());
+        let mut chosen: Vec<Equation> = Vec::new();
+        let mut left = self.basis.clone();
+        for (n, m, n2, m2) in [(1, 0, 0, 0), (2, 0, 0, 0), (3, 0, 0, 0), (3, 2, 2, 3), (1, 3, 3, 1), (2, 1, 1, 2)] {
+            let Some(first) = unknown(n, m) else { continue };
+            let mut terms = vec![(first, 1.0)];
+            terms.extend(unknown(n2, m2).filter(|_| n2 > 0).map(|d| (d, -1.0)));
+            let equation = Equation { terms, value: 0.0, origin: "restraint of rigid motions".into() };
+            let row = self.row(plate, &equation);
+            // Keep the equation if some motion still free is seen by it; that motion is then spent.
+            let seen = |b: &Vector6<f64>| b.dot(&row);
+            let best = (0..left.len()).max_by(|a, b| seen(&left[*a]).abs().total_cmp(&seen(&left[*b]).abs()));
+            let Some(best) = best.filter(|i| seen(&left[*i]).abs() > 1e-6) else { continue };
+            let spent = left.swap_remove(best);
+            for other in &mut left {
+                *other -= spent * (seen(other) / seen(&spent));
+            }
+            chosen.push(equation);
+        }
+        if left.is_empty() {
+            Ok(chosen)
+        } else {
+            Err(format!("this element cannot restrain {} at one node: fix unknowns at two nodes", self.names()))
+        }
+    }
+}
+
+/// Null space of a Gram matrix, in reduced row echelon form so that plain motions come out plain.
+fn null_space(gram: Matrix6<f64>) -> Vec<Vector6<f64>> {
+    let eigen = SymmetricEigen::new(gram);
+    let largest = eigen.eigenvalues.max();
+    let threshold = RANK * RANK * largest.max(f64::MIN_POSITIVE);
+    let mut basis: Vec<Vector6<f64>> = (0..6)
+        .filter(|i| eigen.eigenvalues[*i] <= threshold)
+        .map(|i| eigen.eigenvectors.column(i).into_owned())
+        .collect();
+    let mut done = 0;
+    for axis in 0..6 {
+        let best = (done..basis.len()).max_by(|a, b| basis[*a][axis].abs().total_cmp(&basis[*b][axis].abs()));
+        let Some(best) = best.filter(|b| basis[*b][axis].abs() > 1e-6) else { continue };
+        basis.swap(done, best);
+        let pivot = basis[done] / basis[done][axis];
+        basis[done] = pivot;
+        for (i, row) in basis.iter_mut().enumerate() {
+            if i != done {
+                *row -= pivot * row[axis];
+            }
+        }
+        done += 1;
+    }
+    basis
+}
