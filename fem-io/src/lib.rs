@@ -1,1 +1,4 @@
 //! x
+pub mod units;
+
+pub mod gmsh;
