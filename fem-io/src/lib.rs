@@ -2,3 +2,5 @@
 pub mod units;
 
 pub mod gmsh;
+pub mod files;
+pub mod tables;
