@@ -15,4 +15,6 @@ pub mod plugin;
 pub mod quadrature;
 pub mod reduction;
 pub mod tensor;
+#[cfg(feature = "testkit")]
+pub mod testkit;
 pub mod time;
