@@ -23,4 +23,6 @@ pub mod reduction;
 pub mod structure;
 pub mod support;
 pub mod tensor;
+#[cfg(feature = "testkit")]
+pub mod testkit;
 pub mod time;

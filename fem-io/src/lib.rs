@@ -1,1 +1,6 @@
 //! x
+pub mod units;
+
+pub mod gmsh;
+pub mod files;
+pub mod tables;

@@ -1,0 +1,112 @@
+//! The contract of a contact law.
+
+use crate::contact::{ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+
+/// Checks `law` on a path of loading, unloading, reloading and separation up to the indentation `largest` (m).
+///
+/// Demanded along the path: a force that is finite and never negative, none for α ≤ 0; a tangent that agrees with
+/// differences on one side at least; a commit that changes neither the force nor the energy at the indentation it takes,
+/// however often it is called; stored and dissipated energy not negative, dissipation that never falls; the sum of the
+/// two equal to ∫ F dα. NaN must come back as NaN.
+///
+/// # Errors
+/// The first violation, with the place on the path.
+pub fn check_contact_law(law: &dyn ContactLaw, largest: f64) -> Result<(), String> {
+    let turns = [0.1, -0.1, 0.5, 0.3, 0.4, 0.05, 0.7, -0.2, 0.3, 0.1, 0.75, 0.6, 1.0, -0.1, 0.9, -0.1, 0.2, 1.0, 0.0];
+    let mut h = ContactHistory::default();
+    if law.energy(&h, 0.0) != ContactEnergy::default() {
+        return Err("energy before the first contact is not zero".into());
+    }
+    if !law.force(&h, f64::NAN).force.is_nan() {
+        return Err("an indentation of NaN gives a force".into());
+    }
+    let mut walk = Walk { law, from: 0.0, work: 0.0, dissipated: 0.0 };
+    for to in turns {
+        let start = walk.from;
+        for k in 1..=STEPS {
+            let alpha = start + (largest * to - start) * f64::from(k) / f64::from(STEPS);
+            walk.step(&mut h, alpha, largest).map_err(|why| {
+                format!(
+                    "{why}; at indentation {alpha:e} of the branch from {start:e} to {:e}, history {h:?}",
+                    to * largest
+                )
+            })?;
+        }
+    }
+    Ok(())
+}
+
+/// Steps of a branch.
+const STEPS: u32 = 400;
+
+struct Walk<'a> {
+    law: &'a dyn ContactLaw,
+    from: f64,
+    work: f64,
+    dissipated: f64,
+}
+
+impl Walk<'_> {
+    fn step(&mut self, h: &mut ContactHistory, alpha: f64, largest: f64) -> Result<(), String> {
+        let law = self.law;
+        let here = law.force(h, alpha);
+        let before = law.energy(h, alpha);
+        check_force(law, h, alpha, here, largest)?;
+
+        self.work += integral(|a| law.force(h, a).force, self.from, alpha);
+        self.from = alpha;
+        let scale = largest * law.force(&ContactHistory::default(), largest).force;
+        let total = before.stored + before.dissipated;
+        // The quadrature meets kinks of the force where a branch ends inside a step.
+        if (total - self.work).abs() > 1e-6 * scale {
+            return Err(format!("stored + dissipated = {total:e}, but the work is {:e}", self.work));
+        }
+        for again in ["the", "a second"] {
+            law.commit(h, alpha);
+            let (force, energy) = (law.force(h, alpha), law.energy(h, alpha));
+            if (force.force - here.force).abs() > 1e-9 * here.force {
+                return Err(format!("{again} commit changes the force from {:e} to {:e}", here.force, force.force));
+            }
+            if (energy.stored + energy.dissipated - total).abs() > 1e-9 * scale {
+                return Err(format!("{again} commit changes the energy from {before:?} to {energy:?}"));
+            }
+            if energy.stored < 0.0 || energy.dissipated < self.dissipated - 1e-12 * scale {
+                return Err(format!("stored energy is negative or dissipated energy has fallen: {energy:?}"));
+            }
+            self.dissipated = energy.dissipated;
+        }
+        Ok(())
+    }
+}
+
+fn check_force(
+    law: &dyn ContactLaw,
+    h: &ContactHistory,
+    alpha: f64,
+    here: ContactForce,
+    largest: f64,
+) -> Result<(), String> {
+    if !(here.force >= 0.0 && here.force.is_finite() && here.tangent.is_finite()) {
+        return Err(format!("{here:?} is negative or not finite"));
+    }
+    if alpha <= 0.0 && here.force != 0.0 {
+        return Err(format!("a force of {:e} without indentation", here.force));
+    }
+    let d = 1e-6 * largest;
+    let [below, above] = [alpha - d, alpha + d].map(|a| law.force(h, a));
+    let slopes = [(here.force - below.force) / d, (above.force - here.force) / d];
+    // A power law's slope changes over d by at most about its second derivative.
+    let curvature = (above.tangent - here.tangent).abs() + (here.tangent - below.tangent).abs();
+    let noise = 1e-9 * here.force / d + 1e-4 * here.tangent.abs();
+    if slopes.iter().all(|s| (s - here.tangent).abs() > curvature + noise) {
+        return Err(format!("tangent {:e}, but differences give {slopes:?}", here.tangent));
+    }
+    Ok(())
+}
+
+/// Three-point Gauss rule.
+fn integral(f: impl Fn(f64) -> f64, a: f64, b: f64) -> f64 {
+    let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
+    let x = 0.6_f64.sqrt() * half;
+    half / 9.0 * (5.0 * f(middle - x) + 8.0 * f(middle) + 5.0 * f(middle + x))
+}

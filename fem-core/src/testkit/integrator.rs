@@ -1,0 +1,290 @@
+//! The contract of a time integrator, and a system with known solutions.
+
+use crate::contact::{ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use crate::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit};
+use std::error::Error;
+
+/// One oscillator `m a + c v + k u = p(t)`.
+#[derive(Debug, Clone, Copy)]
+pub struct Mode {
+    /// Mass, kg.
+    pub m: f64,
+    /// Damping, N s/m.
+    pub c: f64,
+    /// Stiffness, N/m; zero for a free body.
+    pub k: f64,
+}
+
+impl Mode {
+    /// Of mass 1, circular frequency `omega` and damping ratio `zeta`.
+    pub fn new(omega: f64, zeta: f64) -> Self {
+        Self { m: 1.0, c: 2.0 * zeta * omega, k: omega * omega }
+    }
+}
+
+/// Uncoupled oscillators; the first may push a contact whose indentation is its displacement.
+#[derive(Debug, Clone)]
+pub struct Modes {
+    /// One per unknown.
+    pub modes: Vec<Mode>,
+    /// Load p of oscillator i at time t.
+    pub load: fn(usize, f64) -> f64,
+    /// The law that resists the first oscillator.
+    pub contact: Option<Box<dyn ContactLaw>>,
+}
+
+impl Modes {
+    /// Without load and contact.
+    pub fn free(modes: impl Into<Vec<Mode>>) -> Self {
+        Self { modes: modes.into(), load: |_, _| 0.0, contact: None }
+    }
+
+    /// A free mass that meets `law` at u = 0.
+    pub fn sphere(m: f64, law: Box<dyn ContactLaw>) -> Self {
+        Self { contact: Some(law), ..Self::free([Mode { m, c: 0.0, k: 0.0 }]) }
+    }
+
+    /// At rest, with a history for the contact.
+    pub fn state(&self) -> State {
+        State::at_rest(self.modes.len(), usize::from(self.contact.is_some()))
+    }
+
+    fn contact(&self, h: &[ContactHistory], i: usize, u: f64) -> ContactForce {
+        match &self.contact {
+            Some(law) if i == 0 => law.force(&h[0], u),
+            _ => ContactForce::default(),
+        }
+    }
+}
+
+impl SecondOrderSystem for Modes {
+    fn ndof(&self) -> usize {
+        self.modes.len()
+    }
+
+    fn force(&mut self, t: f64, u: &[f64], v: &[f64], h: &[ContactHistory], f: &mut [f64]) {
+        for (i, mode) in self.modes.iter().enumerate() {
+            f[i] = (self.load)(i, t) - mode.c * v[i] - mode.k * u[i] - self.contact(h, i, u[i]).force;
+        }
+    }
+
+    fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        for (i, mode) in self.modes.iter().enumerate() {
+            y[i] += scale * mode.m * x[i];
+        }
+    }
+
+    fn add_damping(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        for (i, mode) in self.modes.iter().enumerate() {
+            y[i] += scale * mode.c * x[i];
+        }
+    }
+
+    fn solve_mass(&mut self, cc: f64, x: &mut [f64]) -> Result<(), StepError> {
+        for (mode, x) in self.modes.iter().zip(x) {
+            if mode.m == 0.0 {
+                return Err(StepError::SingularMass("an oscillator without mass".into()));
+            }
+            *x /= mode.m + cc * mode.c;
+        }
+        Ok(())
+    }
+
+    fn solve_implicit(
+        &mut self,
+        cm: f64,
+        cc: f64,
+        t: f64,
+        h: &[ContactHistory],
+        u: &mut [f64],
+    ) -> Result<(), StepError> {
+        for (i, mode) in self.modes.iter().enumerate() {
+            let d = cm * mode.m + cc * mode.c + mode.k;
+            let r = u[i] + (self.load)(i, t);
+            // The force never falls with u and is zero for u <= 0: the root lies between 0 and r/d, or is r/d.
+            let (mut low, mut high) = (0.0, r / d);
+            u[i] = high;
+            for _ in 0..200 {
+                let contact = self.contact(h, i, u[i]);
+                let residual = d * u[i] + contact.force - r;
+                *(if residual > 0.0 { &mut high } else { &mut low }) = u[i];
+                let newton = u[i] - residual / (d + contact.tangent);
+                if (newton - u[i]).abs() <= 1e-14 * u[i].abs() {
+                    break;
+                }
+                u[i] = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            }
+        }
+        Ok(())
+    }
+
+    fn commit(&self, s: &mut State) {
+        if let Some(law) = &self.contact {
+            law.commit(&mut s.contacts[0], s.u[0]);
+        }
+    }
+}
+
+/// Checks `integrator`, which claims the order `order`.
+///
+/// Demanded: that order, less 0.2, in u and v of damped oscillators under load; time that advances by the step; after a
+/// restart the same state, bit for bit; no growth at the limit it claims, or at ω Δt = 100 where it claims none; a
+/// commit of the accepted state at the end of each step; an elastic contact that gives a mass its speed back, the
+/// better the shorter the step; [`StepError::NotFinite`] for a state with NaN.
+///
+/// A scheme that divides its steps must take the short steps of the order's check, ω Δt = 0.2 and 0.1, whole.
+///
+/// # Errors
+/// The first violation.
+pub fn check_integrator(integrator: &dyn Integrator, order: i32) -> Result<(), String> {
+    check_order(integrator, order)
+        .and_then(|()| check_restart(integrator))
+        .and_then(|()| check_limit(integrator))
+        .and_then(|()| check_contact(integrator))
+        .and_then(|()| check_nan(integrator))
+        .map_err(|e| e.to_string())
+}
+
+type Checked<T> = Result<T, Box<dyn Error>>;
+
+struct March<'a> {
+    integrator: Box<dyn Integrator + 'a>,
+    sys: Modes,
+    s: State,
+}
+
+impl<'a> March<'a> {
+    fn start(like: &'a dyn Integrator, mut sys: Modes, mut s: State) -> Result<Self, StepError> {
+        let mut integrator = dyn_clone::clone_box(like);
+        integrator.start(&mut sys, &mut s)?;
+        Ok(Self { integrator, sys, s })
+    }
+
+    fn run(&mut self, dt: f64, steps: u32) -> Result<(), StepError> {
+        (0..steps).try_for_each(|_| self.integrator.step(&mut self.sys, &mut self.s, dt))
+    }
+}
+
+const DRIVEN: [Mode; 2] = [Mode { m: 1.0, c: 0.4, k: 4.0 }, Mode { m: 2.0, c: 0.1, k: 1.0 }];
+
+/// The load under which oscillator i of [`DRIVEN`] follows sin(t + i).
+fn driving(i: usize, t: f64) -> f64 {
+    let (sin, cos) = (t + i as f64).sin_cos();
+    DRIVEN[i].c * cos + (DRIVEN[i].k - DRIVEN[i].m) * sin
+}
+
+fn check_order(integrator: &dyn Integrator, order: i32) -> Checked<()> {
+    let error = |steps: u32| -> Checked<f64> {
+        let s = State { u: vec![0.0, 1.0_f64.sin()], v: vec![1.0, 1.0_f64.cos()], ..State::at_rest(2, 0) };
+        let mut march = March::start(integrator, Modes { modes: DRIVEN.to_vec(), load: driving, contact: None }, s)?;
+        march.run(2.0 / f64::from(steps), steps)?;
+        let State { t, u, v, .. } = march.s;
+        if (t - 2.0).abs() > 1e-12 {
+            return Err(format!("{steps} steps that make 2 s end at t = {t} s").into());
+        }
+        let errors = (0..2).map(|i| {
+            let (sin, cos) = (t + i as f64).sin_cos();
+            (u[i] - sin).abs().max((v[i] - cos).abs())
+        });
+        Ok(errors.fold(0.0, f64::max))
+    };
+    let (coarse, fine) = (error(20)?, error(40)?);
+    let observed = (coarse / fine).log2();
+    if observed >= f64::from(order) - 0.2 {
+        Ok(())
+    } else {
+        Err(format!("order {observed:.2} where {order} is claimed: errors {coarse:e}, with half the step {fine:e}")
+            .into())
+    }
+}
+
+/// `F = u²`; remembers how often it was committed, and the last indentation.
+#[derive(Debug, Clone)]
+struct Stop;
+
+impl ContactLaw for Stop {
+    fn force(&self, _: &ContactHistory, alpha: f64) -> ContactForce {
+        if alpha <= 0.0 {
+            return ContactForce::default();
+        }
+        ContactForce { force: alpha * alpha, tangent: 2.0 * alpha }
+    }
+
+    fn commit(&self, h: &mut ContactHistory, alpha: f64) {
+        *h = [h[0] + 1.0, alpha, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    }
+
+    fn energy(&self, _: &ContactHistory, alpha: f64) -> ContactEnergy {
+        ContactEnergy { stored: alpha.max(0.0).powi(3) / 3.0, dissipated: 0.0 }
+    }
+}
+
+/// A mass that meets [`Stop`] at unit speed, and a damped oscillator beside it.
+fn bounce(integrator: &dyn Integrator) -> Result<March<'_>, StepError> {
+    let mut sys = Modes::sphere(1.0, Box::new(Stop));
+    sys.modes.push(Mode::new(2.0, 0.05));
+    let mut s = sys.state();
+    s.v = vec![1.0, 1.0];
+    March::start(integrator, sys, s)
+}
+
+fn check_restart(integrator: &dyn Integrator) -> Checked<()> {
+    let mut straight = bounce(integrator)?;
+    straight.run(0.05, 20)?;
+    let mut restarted =
+        March { integrator: dyn_clone::clone_box(integrator), sys: straight.sys.clone(), s: straight.s.clone() };
+    restarted.integrator.resume(&mut restarted.sys);
+    for march in [&mut straight, &mut restarted] {
+        march.run(0.05, 20)?;
+    }
+    if straight.s == restarted.s {
+        Ok(())
+    } else {
+        Err(format!("a restarted march ends in {:?}, a straight one in {:?}", restarted.s, straight.s).into())
+    }
+}
+
+fn check_limit(integrator: &dyn Integrator) -> Checked<()> {
+    let dt = match integrator.limit() {
+        StepLimit::OmegaDt(limit) => limit,
+        StepLimit::None => 100.0,
+    };
+    let sys = Modes::free([Mode::new(1.0, 0.0)]);
+    let mut march = March::start(integrator, sys, State { u: vec![1.0], ..State::at_rest(1, 0) })?;
+    for step in 1..=1000 {
+        march.run(dt, 1)?;
+        if march.s.u[0].abs() > 1.5 {
+            return Err(format!("unit amplitude grows to {} in {step} steps of omega dt = {dt}", march.s.u[0]).into());
+        }
+    }
+    Ok(())
+}
+
+fn check_contact(integrator: &dyn Integrator) -> Checked<()> {
+    let error = |steps: u32| -> Checked<f64> {
+        let mut march = bounce(integrator)?;
+        for step in 1..=steps {
+            march.run(8.0 / f64::from(steps), 1)?;
+            let [commits, last, ..] = march.s.contacts[0];
+            if commits < f64::from(step) || last != march.s.u[0] {
+                return Err(format!("step {step} does not end with a commit of its state").into());
+            }
+        }
+        Ok((march.s.v[0] + 1.0).abs())
+    };
+    let (coarse, fine) = (error(200)?, error(800)?);
+    if fine < 1e-6 || fine < 0.6 * coarse {
+        Ok(())
+    } else {
+        Err(format!("an elastic stop changes the speed by {coarse:e}, with a fourth of the step by {fine:e}").into())
+    }
+}
+
+fn check_nan(integrator: &dyn Integrator) -> Checked<()> {
+    let sys = Modes::free([Mode::new(1.0, 0.0)]);
+    let s = State { u: vec![f64::NAN], ..sys.state() };
+    match March::start(integrator, sys, s).and_then(|mut march| march.run(0.1, 1)) {
+        Err(StepError::NotFinite { .. }) => Ok(()),
+        other => Err(format!("a displacement of NaN gives {other:?}").into()),
+    }
+}

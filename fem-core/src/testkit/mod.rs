@@ -1,0 +1,7 @@
+//! Checks of the plug-in contracts: each returns the first violation in words. For the tests of plug-in crates.
+
+mod contact;
+mod integrator;
+
+pub use contact::check_contact_law;
+pub use integrator::{Mode, Modes, check_integrator};

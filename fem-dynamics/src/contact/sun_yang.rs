@@ -1,0 +1,122 @@
+//! The indentation law of Sun and Yang.
+
+use super::Hertz;
+use fem_core::contact::{ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+
+/// Loading along a power law, unloading along a steeper one to a permanent dent (report eqs 24-26).
+///
+/// ```text
+/// loading beyond α_max          F = k αⁿ
+/// below α_max                   F = F_max ((α − α₀)/(α_max − α₀))^p     F_max = k α_maxⁿ, p = m; no force for α ≤ α₀
+/// dent, when α_max > α_cr       α₀ = α_max (1 − (α_cr/α_max)^β)         otherwise 0; continuous at α_cr
+/// ```
+///
+/// α_max is the largest indentation so far. The curve below it is followed in both directions. The report prints no
+/// law for a second contact: `reloading = "unloading-curve"` keeps p = m, `"loading-exponent"` takes p = n once the
+/// bodies have been apart (α ≤ α₀), until α_max is exceeded again.
+///
+/// Stored is what the bodies would give back by separating along the present curve; the rest of the work is
+/// dissipated. m ≥ n makes it grow with α_max and never fall.
+///
+/// History: 0 α_max, m; 1 is 1 while the curve with exponent n is followed; 2 energy dissipated, J.
+#[derive(Debug, Clone, Copy)]
+pub struct SunYang {
+    loading: Hertz,
+    m: f64,
+    critical: f64,
+    beta: f64,
+    reload_by_n: bool,
+}
+
+/// What lies below the largest indentation: F = peak (x/depth)^p, x from the dent.
+struct Curve {
+    dent: f64,
+    depth: f64,
+    peak: f64,
+    p: f64,
+}
+
+impl Curve {
+    fn at(&self, alpha: f64) -> ContactForce {
+        if alpha <= self.dent {
+            return ContactForce::default();
+        }
+        let x = (alpha - self.dent) / self.depth;
+        let slope = self.peak * x.powf(self.p - 1.0);
+        ContactForce { force: slope * x, tangent: self.p * slope / self.depth }
+    }
+
+    /// Work from the dent to `alpha`.
+    fn work(&self, alpha: f64) -> f64 {
+        self.at(alpha).force * (alpha - self.dent) / (self.p + 1.0)
+    }
+}
+
+impl SunYang {
+    fn curve(&self, alpha_max: f64, p: f64) -> Curve {
+        let depth = alpha_max * (self.critical / alpha_max).min(1.0).powf(self.beta);
+        Curve { dent: alpha_max - depth, depth, peak: self.loading.at(alpha_max).force, p }
+    }
+
+    fn present(&self, history: &ContactHistory) -> Curve {
+        self.curve(history[0], if history[1] == 0.0 { self.m } else { self.loading.n() })
+    }
+}
+
+impl ContactLaw for SunYang {
+    fn force(&self, history: &ContactHistory, alpha: f64) -> ContactForce {
+        if alpha <= history[0] { self.present(history).at(alpha) } else { self.loading.at(alpha) }
+    }
+
+    fn commit(&self, history: &mut ContactHistory, alpha: f64) {
+        if alpha > history[0] {
+            *history = [alpha, 0.0, self.energy(history, alpha).dissipated, 0.0, 0.0, 0.0, 0.0, 0.0];
+        } else if self.reload_by_n && history[0] > 0.0 && alpha <= self.present(history).dent {
+            history[1] = 1.0;
+        }
+    }
+
+    fn energy(&self, history: &ContactHistory, alpha: f64) -> ContactEnergy {
+        let [alpha_max, _, dissipated, ..] = *history;
+        let before = self.present(history);
+        if alpha <= alpha_max {
+            return ContactEnergy { stored: before.work(alpha), dissipated };
+        }
+        let work = before.work(alpha_max) + self.loading.work(alpha) - self.loading.work(alpha_max);
+        let stored = self.curve(alpha, self.m).work(alpha);
+        ContactEnergy { stored, dissipated: dissipated + work - stored }
+    }
+}
+
+impl Plugin for SunYang {
+    const INFO: PluginInfo = PluginInfo {
+        kind: Kind::Contact,
+        name: "sun-yang",
+        summary: "power law with steeper unloading and a permanent dent",
+        source: "Yang and Sun 1982; AFWAL-TR-87-4117 eqs 24-26",
+        params: &[
+            Hertz::K,
+            Hertz::N,
+            ParamInfo { name: "m", doc: "exponent of unloading, n to 10, default 2.5" },
+            ParamInfo { name: "critical", doc: "indentation from which on a dent remains, m" },
+            ParamInfo { name: "beta", doc: "exponent of the dent, 0 to 1, default 0.4" },
+            ParamInfo { name: "reloading", doc: "unloading-curve (default) or loading-exponent" },
+        ],
+    };
+
+    fn build(params: &Params) -> Result<Built, ParamError> {
+        let loading = Hertz::power(params)?;
+        let m = params.number("m", Some(2.5))?;
+        if !(loading.n()..=10.0).contains(&m) {
+            return Err(ParamError::new("m", format!("must lie between n = {} and 10, got {m}", loading.n())));
+        }
+        let beta = params.number("beta", Some(0.4))?;
+        if !(beta > 0.0 && beta <= 1.0) {
+            return Err(ParamError::new("beta", format!("must lie above 0 and not above 1, got {beta}")));
+        }
+        let critical = params.positive("critical", Dimension::LENGTH, None)?;
+        let reload_by_n = params.choice("reloading", &["unloading-curve", "loading-exponent"])? == "loading-exponent";
+        Ok(Built::Contact(Box::new(Self { loading, m, critical, beta, reload_by_n })))
+    }
+}

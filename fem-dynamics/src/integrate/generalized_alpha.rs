@@ -1,0 +1,114 @@
+//! The generalized-α method, of which Newmark's and the HHT-α method are special cases.
+
+use super::{MARGIN, accelerate, accept};
+use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit};
+
+/// Equilibrium between the ends of the step, Newmark's interpolation inside it.
+///
+/// ```text
+/// M [(1 − α_m) a₁ + α_m a₀] = (1 − α_f) f₁ + α_f f₀        f = p − C v − K u + contact(u; h), h as committed at t₀
+/// u₁ = ũ + β Δt² a₁        ũ = u₀ + Δt v₀ + (1/2 − β) Δt² a₀
+/// v₁ = ṽ + γ Δt a₁         ṽ = v₀ + (1 − γ) Δt a₀
+/// ```
+///
+/// Loads and contact forces are weighted like the internal ones. Division by 1 − α_f leaves one implicit equation in
+/// u₁ with contact at full weight, `(cm M + cc C + K) u₁ = r + p₁ + contact(u₁; h)`:
+///
+/// ```text
+/// cm = (1 − α_m)/((1 − α_f) β Δt²)        cc = γ/(β Δt)
+/// r  = cm M ũ − α_m/(1 − α_f) M a₀ + C (cc ũ − ṽ) + α_f/(1 − α_f) f₀
+/// ```
+///
+/// With ρ∞, the spectral radius for ω Δt → ∞, from 0 to 1: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1),
+/// γ = 1/2 − α_m + α_f, β = (1 − α_m + α_f)²/4: second order, stable for every step.
+#[derive(Debug, Clone)]
+pub struct GeneralizedAlpha {
+    alpha_m: f64,
+    alpha_f: f64,
+    beta: f64,
+    gamma: f64,
+    /// ũ.
+    predicted: Vec<f64>,
+    /// r, then u₁.
+    u: Vec<f64>,
+    /// What M, then what C is applied to.
+    x: Vec<f64>,
+}
+
+impl GeneralizedAlpha {
+    pub(super) fn new(alpha_m: f64, alpha_f: f64, beta: f64, gamma: f64) -> Self {
+        Self { alpha_m, alpha_f, beta, gamma, predicted: Vec::new(), u: Vec::new(), x: Vec::new() }
+    }
+}
+
+impl Integrator for GeneralizedAlpha {
+    fn limit(&self) -> StepLimit {
+        let shortfall = 0.5 * self.gamma - self.beta;
+        if shortfall > 0.0 { StepLimit::OmegaDt(MARGIN / shortfall.sqrt()) } else { StepLimit::None }
+    }
+
+    fn start(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError> {
+        self.resume(sys);
+        accelerate(sys, s)
+    }
+
+    fn resume(&mut self, sys: &mut dyn SecondOrderSystem) {
+        for work in [&mut self.predicted, &mut self.u, &mut self.x] {
+            work.resize(sys.ndof(), 0.0);
+        }
+    }
+
+    fn step(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State, dt: f64) -> Result<(), StepError> {
+        self.resume(sys);
+        let Self { alpha_m, alpha_f, beta, gamma, predicted, u, x } = self;
+        let weight = 1.0 / (1.0 - *alpha_f);
+        let (cm, cc) = ((1.0 - *alpha_m) * weight / (*beta * dt * dt), *gamma / (*beta * dt));
+        let ndof = u.len();
+
+        u.fill(0.0);
+        if *alpha_f != 0.0 {
+            sys.force(s.t, &s.u, &s.v, &s.contacts, u);
+            u.iter_mut().for_each(|f| *f *= *alpha_f * weight);
+        }
+        for i in 0..ndof {
+            predicted[i] = s.u[i] + dt * s.v[i] + (0.5 - *beta) * dt * dt * s.a[i];
+            x[i] = cm * predicted[i] - *alpha_m * weight * s.a[i];
+        }
+        sys.add_mass(1.0, x, u);
+        for i in 0..ndof {
+            s.v[i] += (1.0 - *gamma) * dt * s.a[i];
+            x[i] = cc * predicted[i] - s.v[i];
+        }
+        sys.add_damping(1.0, x, u);
+        s.t += dt;
+        sys.solve_implicit(cm, cc, s.t, &s.contacts, u)?;
+        for i in 0..ndof {
+            s.a[i] = (u[i] - predicted[i]) / (*beta * dt * dt);
+            s.v[i] += *gamma * dt * s.a[i];
+        }
+        s.u.copy_from_slice(u);
+        accept(sys, s)
+    }
+}
+
+impl Plugin for GeneralizedAlpha {
+    const INFO: PluginInfo = PluginInfo {
+        kind: Kind::Integrator,
+        name: "generalized-alpha",
+        summary: "implicit, second order; damps high modes as chosen, low ones least",
+        source: "Chung and Hulbert 1993",
+        params: &[ParamInfo { name: "rho", doc: "spectral radius for long steps, 0 (damps all) to 1, default 0.9" }],
+    };
+
+    fn build(params: &Params) -> Result<Built, ParamError> {
+        let rho = params.number("rho", Some(0.9))?;
+        if !(0.0..=1.0).contains(&rho) {
+            return Err(ParamError::new("rho", format!("must lie between 0 and 1, got {rho}")));
+        }
+        let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
+        let shift = alpha_f - alpha_m;
+        let scheme = Self::new(alpha_m, alpha_f, 0.25 * (1.0 + shift) * (1.0 + shift), 0.5 + shift);
+        Ok(Built::Integrator(Box::new(scheme)))
+    }
+}

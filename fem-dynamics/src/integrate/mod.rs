@@ -1,0 +1,47 @@
+//! Time integrators.
+//!
+//! | name | order | kind | step limit ω Δt |
+//! | --- | --- | --- | --- |
+//! | `rk1` `rk2` `rk3` `rk4` | 1 to 4 | explicit Runge-Kutta (report INTALG 1 to 4) | 0.0014, 0.053, 1.5, 1.5 |
+//! | `dormand-prince` | 5 | explicit Runge-Kutta with error control | none: it divides its steps |
+//! | `central-difference` | 2 | explicit | 1.8 |
+//! | `newmark` | 2 | implicit | none for 2β ≥ γ |
+//! | `hht-alpha`, `generalized-alpha` | 2 | implicit, damps high modes | none |
+//!
+//! The histories of the contacts stay as committed during a step; a step ends with one commit. `a` in the state is the
+//! acceleration that the next step starts from, so that a state holds all that a restart needs.
+
+mod central_difference;
+mod dormand_prince;
+mod generalized_alpha;
+mod hht_alpha;
+mod newmark;
+mod runge_kutta;
+mod stages;
+
+pub use central_difference::CentralDifference;
+pub use dormand_prince::DormandPrince;
+pub use generalized_alpha::GeneralizedAlpha;
+pub use hht_alpha::HhtAlpha;
+pub use newmark::Newmark;
+pub use runge_kutta::{Rk1, Rk2, Rk3, Rk4, RungeKutta};
+
+use fem_core::time::{SecondOrderSystem, State, StepError};
+
+/// Part of the linear limit that a conditionally stable scheme may use: a contact stiffens within the step.
+const MARGIN: f64 = 0.9;
+
+/// Acceleration of equilibrium. No force asks nothing of M, so that a structure at rest may have massless dofs.
+fn accelerate(sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError> {
+    sys.force(s.t, &s.u, &s.v, &s.contacts, &mut s.a);
+    if s.a.iter().any(|a| *a != 0.0) { sys.solve_mass(0.0, &mut s.a) } else { Ok(()) }
+}
+
+/// Ends a step: the contacts take the new state, unless it is not finite.
+fn accept(sys: &dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError> {
+    if !s.t.is_finite() || [&s.u, &s.v, &s.a].into_iter().flatten().any(|x| !x.is_finite()) {
+        return Err(StepError::NotFinite { t: s.t });
+    }
+    sys.commit(s);
+    Ok(())
+}

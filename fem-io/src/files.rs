@@ -1,0 +1,246 @@
+//! The folder of a run's results.
+
+use std::fs::{self, File, TryLockError};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Why results cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FileError {
+    /// The operating system refused.
+    #[error("cannot {action} `{}`: {cause}{}", path.display(), remedy(cause))]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// On which file or folder.
+        path: PathBuf,
+        /// What the system says.
+        cause: io::Error,
+    },
+    /// Another run writes into the folder.
+    #[error("another run is writing into `{}`: wait for it to end or choose another folder", path.display())]
+    Locked {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A name that leads out of the folder or clashes with its bookkeeping.
+    #[error("`{name}` is no name for a result file: use a plain file name that does not begin with a dot")]
+    Name {
+        /// The name.
+        name: String,
+    },
+    /// NaN or infinity in a table.
+    #[error("{file}, row {row}, column {column}: {value} is not a finite number")]
+    NonFinite {
+        /// Name of the table.
+        file: &'static str,
+        /// Row, counted from 1 without the header.
+        row: usize,
+        /// Column.
+        column: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// NaN, infinity or an absent value in a JSON file.
+    #[error(
+        "{file}, `{key}`: not a finite number; a value that is absent on purpose must be left out, not written as null"
+    )]
+    Null {
+        /// Name of the file.
+        file: String,
+        /// Path to the value, keys and indices separated by dots.
+        key: String,
+    },
+    /// A type that JSON cannot hold.
+    #[error("{file}: {cause}")]
+    Json {
+        /// Name of the file.
+        file: String,
+        /// What serde_json says.
+        cause: serde_json::Error,
+    },
+}
+
+fn remedy(cause: &io::Error) -> &'static str {
+    match cause.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => ": free some space or choose another folder",
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => ": choose a folder that you may write",
+        io::ErrorKind::NotADirectory => ": choose a folder, not a file",
+        _ => "",
+    }
+}
+
+const LOCK: &str = ".lock";
+const PARTIAL: &str = ".partial";
+
+/// A folder that one run at a time writes into; every file in it appears whole or not at all.
+///
+/// The folder is locked until the value is dropped or the process ends, however it ends. The empty file `.lock`
+/// that carries the lock stays behind: removing it could free the folder for two later runs at once.
+#[derive(Debug)]
+pub struct OutputDir {
+    path: PathBuf,
+    _lock: File,
+}
+
+impl OutputDir {
+    /// Makes the folder with its parents, locks it and removes partial files that a killed run left there.
+    ///
+    /// # Errors
+    /// A path that is a file, a folder that may not be made or written, another run in the folder.
+    pub fn create(path: impl Into<PathBuf>) -> Result<Self, FileError> {
+        let path = path.into();
+        let made = if path.exists() && !path.is_dir() {
+            Err(io::ErrorKind::NotADirectory.into())
+        } else {
+            fs::create_dir_all(&path)
+        };
+        made.map_err(failed("create the folder", &path))?;
+
+        let lock_path = path.join(LOCK);
+        let lock = File::options()
+            .create(true)
+            .truncate(false)
+            .write(true)
+            .open(&lock_path)
+            .map_err(failed("create", &lock_path))?;
+        lock.try_lock().map_err(|e| match e {
+            TryLockError::WouldBlock => FileError::Locked { path: path.clone() },
+            TryLockError::Error(cause) => failed("lock", &lock_path)(cause),
+        })?;
+
+        for entry in fs::read_dir(&path).map_err(failed("read the folder", &path))? {
+            let entry = entry.map_err(failed("read the folder", &path))?;
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            if name.starts_with('.') && name.ends_with(PARTIAL) {
+                fs::remove_file(entry.path()).map_err(failed("remove", &entry.path()))?;
+            }
+        }
+        Ok(Self { path, _lock: lock })
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes the file `name` by `fill`, replacing an older one.
+    ///
+    /// The content goes to a partial file beside it, which takes the name only once it is complete and on disk.
+    ///
+    /// # Errors
+    /// A name with a folder in it or a leading dot; whatever `fill` or the system reports, e.g. a full disk. The
+    /// partial file is removed and an older file of that name is untouched.
+    pub fn write(&self, name: &str, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+        let plain = Path::new(name).file_name().is_some_and(|n| n == name);
+        if !plain || name.starts_with('.') {
+            return Err(FileError::Name { name: name.to_owned() });
+        }
+        let whole = self.path.join(name);
+        let partial = self.path.join(format!(".{name}{PARTIAL}"));
+        let file = File::create_new(&partial).map_err(failed("write", &whole))?;
+        fill_and_sync(file, fill).and_then(|()| fs::rename(&partial, &whole)).map_err(|cause| {
+            // The first error is the one to report; a partial file that cannot be removed goes at the next run.
+            let _ = fs::remove_file(&partial);
+            failed("write", &whole)(cause)
+        })
+    }
+}
+
+fn failed(action: &'static str, path: &Path) -> impl Fn(io::Error) -> FileError {
+    move |cause| FileError::Io { action, path: path.to_owned(), cause }
+}
+
+fn fill_and_sync(file: File, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut out = BufWriter::new(file);
+    fill(&mut out)?;
+    out.into_inner()?.sync_all()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<_> =
+            fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_file_appears_whole_and_replaces_the_old_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutputDir::create(folder.path().join("a/b")).unwrap();
+        let partial = out.path().join(".x.csv.partial");
+        for text in ["first", "second"] {
+            out.write("x.csv", |w| {
+                assert!(partial.exists());
+                w.write_all(text.as_bytes())
+            })
+            .unwrap();
+            assert_eq!(fs::read_to_string(out.path().join("x.csv")).unwrap(), text);
+        }
+        assert_eq!(names(out.path()), [".lock", "x.csv"]);
+    }
+
+    #[test]
+    fn a_failed_write_keeps_the_old_file_and_leaves_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutputDir::create(folder.path()).unwrap();
+        out.write("x.csv", |w| w.write_all(b"old")).unwrap();
+        let error = out
+            .write("x.csv", |w| {
+                w.write_all(b"half")?;
+                Err(io::ErrorKind::StorageFull.into())
+            })
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("x.csv") && error.contains("free some space"), "{error}");
+        assert_eq!(fs::read_to_string(folder.path().join("x.csv")).unwrap(), "old");
+        assert_eq!(names(folder.path()), [".lock", "x.csv"]);
+    }
+
+    #[test]
+    fn one_run_at_a_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = OutputDir::create(folder.path()).unwrap();
+        assert!(matches!(OutputDir::create(folder.path()), Err(FileError::Locked { .. })));
+        drop(first);
+        OutputDir::create(folder.path()).unwrap();
+    }
+
+    #[test]
+    fn partial_files_of_a_killed_run_go_and_other_files_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in [".history.csv.partial", "mine.partial", "history.csv"] {
+            fs::write(folder.path().join(name), "x").unwrap();
+        }
+        let _out = OutputDir::create(folder.path()).unwrap();
+        assert_eq!(names(folder.path()), [".lock", "history.csv", "mine.partial"]);
+    }
+
+    #[test]
+    fn a_file_in_the_way_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("taken");
+        fs::write(&file, "").unwrap();
+        for path in [file.clone(), file.join("below")] {
+            let error = OutputDir::create(&path).unwrap_err().to_string();
+            assert!(error.contains(&*path.to_string_lossy()) && error.contains("choose a folder"), "{error}");
+        }
+    }
+
+    #[test]
+    fn names_stay_inside_the_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutputDir::create(folder.path()).unwrap();
+        for name in ["", ".", "..", "../x", "a/b", "/x", "x/", ".lock"] {
+            assert!(matches!(out.write(name, |_| Ok(())), Err(FileError::Name { .. })), "{name}");
+        }
+        assert_eq!(names(folder.path()), [".lock"]);
+    }
+}

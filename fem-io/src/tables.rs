@@ -1,0 +1,286 @@
+//! Result tables: histories and events as CSV, summaries as JSON.
+//!
+//! SI units throughout. Numbers are written with the fewest digits that read back as the same `f64`.
+
+use crate::files::{FileError, OutputDir};
+use serde::Serialize;
+use serde_json::Value;
+
+/// One instant of an impact: a row of `history.csv`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct HistoryRow {
+    /// Time since first contact, s.
+    pub time_s: f64,
+    /// Contact force, N.
+    pub contact_force_n: f64,
+    /// Displacement of the impactor along the plate's normal, m.
+    pub impactor_displacement_m: f64,
+    /// Velocity of the impactor, m/s.
+    pub impactor_velocity_m_s: f64,
+    /// Displacement of the plate at the contact, m.
+    pub plate_displacement_m: f64,
+    /// Kinetic energy of the impactor, J.
+    pub impactor_kinetic_j: f64,
+    /// Kinetic energy of the plate, J.
+    pub plate_kinetic_j: f64,
+    /// Strain energy of the plate, J.
+    pub plate_strain_j: f64,
+    /// Recoverable energy of the contact, J.
+    pub contact_stored_j: f64,
+    /// Energy lost in the contact, J.
+    pub contact_dissipated_j: f64,
+    /// Sum of the energies less the initial kinetic energy, J; zero but for the integrator's error.
+    pub energy_balance_j: f64,
+}
+
+/// First damage by one criterion and mode: a row of `events.csv`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct EventRow {
+    /// Time, s.
+    pub time_s: f64,
+    /// Id of the criterion.
+    pub criterion: String,
+    /// Failure mode.
+    pub mode: String,
+    /// Cell, by its number in the mesh file.
+    pub cell: u64,
+    /// Ply counted from the bottom, such as `3`, or the two plies of an interface, `3|4`.
+    pub ply: String,
+    /// Fibre angle of the ply, degrees.
+    pub angle_deg: f64,
+    /// Place, m.
+    pub x_m: f64,
+    /// Place, m.
+    pub y_m: f64,
+    /// Place, m.
+    pub z_m: f64,
+    /// Failure index, 1 at failure.
+    pub index: f64,
+}
+
+/// Writes `history.csv`.
+///
+/// # Errors
+/// A value that is not finite, and as [`OutputDir::write`].
+pub fn write_history(dir: &OutputDir, rows: &[HistoryRow]) -> Result<(), FileError> {
+    write_table(dir, "history.csv", rows)
+}
+
+/// Writes `events.csv`; without events it holds the header alone.
+///
+/// # Errors
+/// A value that is not finite, and as [`OutputDir::write`].
+pub fn write_events(dir: &OutputDir, rows: &[EventRow]) -> Result<(), FileError> {
+    write_table(dir, "events.csv", rows)
+}
+
+/// Writes `value` as indented JSON to the file `name`.
+///
+/// JSON has no NaN and no infinity, and serde_json writes null for them: null is refused altogether, so optional
+/// values need `#[serde(skip_serializing_if = "Option::is_none")]`.
+///
+/// # Errors
+/// A value that is not finite, and as [`OutputDir::write`].
+pub fn write_json<T: Serialize>(dir: &OutputDir, name: &str, value: &T) -> Result<(), FileError> {
+    let json_error = |cause| FileError::Json { file: name.to_owned(), cause };
+    let value = serde_json::to_value(value).map_err(json_error)?;
+    if let Some(key) = null_in(&value) {
+        return Err(FileError::Null { file: name.to_owned(), key: key.join(".") });
+    }
+    let mut text = serde_json::to_string_pretty(&value).map_err(json_error)?;
+    text.push('\n');
+    dir.write(name, |out| out.write_all(text.as_bytes()))
+}
+
+/// Keys and indices that lead to the first null, if there is one.
+fn null_in(value: &Value) -> Option<Vec<String>> {
+    let within = |key: String, value| {
+        let mut path = null_in(value)?;
+        path.insert(0, key);
+        Some(path)
+    };
+    match value {
+        Value::Null => Some(Vec::new()),
+        Value::Array(items) => items.iter().enumerate().find_map(|(i, v)| within(i.to_string(), v)),
+        Value::Object(items) => items.iter().find_map(|(k, v)| within(k.clone(), v)),
+        _ => None,
+    }
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Field<'a> {
+    Number(f64),
+    Count(u64),
+    Text(&'a str),
+}
+
+/// A row of a table: its columns with their values, in order.
+trait Row: Default {
+    fn fields(&self) -> Vec<(&'static str, Field<'_>)>;
+}
+
+impl Row for HistoryRow {
+    fn fields(&self) -> Vec<(&'static str, Field<'_>)> {
+        vec![
+            ("time_s", Field::Number(self.time_s)),
+            ("contact_force_N", Field::Number(self.contact_force_n)),
+            ("impactor_displacement_m", Field::Number(self.impactor_displacement_m)),
+            ("impactor_velocity_m_s", Field::Number(self.impactor_velocity_m_s)),
+            ("plate_displacement_m", Field::Number(self.plate_displacement_m)),
+            ("impactor_kinetic_J", Field::Number(self.impactor_kinetic_j)),
+            ("plate_kinetic_J", Field::Number(self.plate_kinetic_j)),
+            ("plate_strain_J", Field::Number(self.plate_strain_j)),
+            ("contact_stored_J", Field::Number(self.contact_stored_j)),
+            ("contact_dissipated_J", Field::Number(self.contact_dissipated_j)),
+            ("energy_balance_J", Field::Number(self.energy_balance_j)),
+        ]
+    }
+}
+
+impl Row for EventRow {
+    fn fields(&self) -> Vec<(&'static str, Field<'_>)> {
+        vec![
+            ("time_s", Field::Number(self.time_s)),
+            ("criterion", Field::Text(&self.criterion)),
+            ("mode", Field::Text(&self.mode)),
+            ("cell", Field::Count(self.cell)),
+            ("ply", Field::Text(&self.ply)),
+            ("angle_deg", Field::Number(self.angle_deg)),
+            ("x_m", Field::Number(self.x_m)),
+            ("y_m", Field::Number(self.y_m)),
+            ("z_m", Field::Number(self.z_m)),
+            ("index", Field::Number(self.index)),
+        ]
+    }
+}
+
+fn write_table<R: Row>(dir: &OutputDir, file: &'static str, rows: &[R]) -> Result<(), FileError> {
+    for (row, values) in rows.iter().enumerate() {
+        for (column, value) in values.fields() {
+            if let Field::Number(value) = value
+                && !value.is_finite()
+            {
+                return Err(FileError::NonFinite { file, row: row + 1, column, value });
+            }
+        }
+    }
+    dir.write(file, |out| {
+        let mut table = csv::Writer::from_writer(out);
+        table.write_record(R::default().fields().iter().map(|(column, _)| column))?;
+        for row in rows {
+            table.serialize(row.fields().iter().map(|(_, value)| value).collect::<Vec<_>>())?;
+        }
+        table.flush()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
+    use proptest::prelude::*;
+    use std::fs;
+
+    fn read(dir: &OutputDir, name: &str) -> String {
+        fs::read_to_string(dir.path().join(name)).unwrap()
+    }
+
+    fn numbers(v: [f64; 11]) -> HistoryRow {
+        HistoryRow {
+            time_s: v[0],
+            contact_force_n: v[1],
+            impactor_displacement_m: v[2],
+            impactor_velocity_m_s: v[3],
+            plate_displacement_m: v[4],
+            impactor_kinetic_j: v[5],
+            plate_kinetic_j: v[6],
+            plate_strain_j: v[7],
+            contact_stored_j: v[8],
+            contact_dissipated_j: v[9],
+            energy_balance_j: v[10],
+        }
+    }
+
+    #[test]
+    fn history_has_its_columns_in_order() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = OutputDir::create(folder.path()).unwrap();
+        write_history(&dir, &[numbers([5e-7, 1.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, -1e-17])]).unwrap();
+        assert_eq!(
+            read(&dir, "history.csv"),
+            "time_s,contact_force_N,impactor_displacement_m,impactor_velocity_m_s,plate_displacement_m,\
+             impactor_kinetic_J,plate_kinetic_J,plate_strain_J,contact_stored_J,contact_dissipated_J,energy_balance_J\n\
+             5e-7,1.5,3.0,4.0,5.0,6.0,7.0,8.0,9.0,10.0,-1e-17\n"
+        );
+    }
+
+    #[test]
+    fn events_quote_what_needs_it_and_keep_the_header_without_rows() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = OutputDir::create(folder.path()).unwrap();
+        let header = "time_s,criterion,mode,cell,ply,angle_deg,x_m,y_m,z_m,index\n";
+        write_events(&dir, &[]).unwrap();
+        assert_eq!(read(&dir, "events.csv"), header);
+        let event = EventRow {
+            time_s: 2.2e-4,
+            criterion: "octahedral".into(),
+            mode: "tension, \"resin\"".into(),
+            cell: u64::MAX,
+            ply: "3|4".into(),
+            angle_deg: -45.0,
+            x_m: 1e-3,
+            y_m: -0.0,
+            z_m: 2.0,
+            index: 1.02,
+        };
+        write_events(&dir, &[event]).unwrap();
+        let row = "0.00022,octahedral,\"tension, \"\"resin\"\"\",18446744073709551615,3|4,-45.0,0.001,-0.0,2.0,1.02\n";
+        assert_eq!(read(&dir, "events.csv"), format!("{header}{row}"));
+    }
+
+    proptest! {
+        #[test]
+        fn numbers_read_back_exactly(v in proptest::array::uniform11(POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO)) {
+            let folder = tempfile::tempdir().unwrap();
+            let dir = OutputDir::create(folder.path()).unwrap();
+            write_history(&dir, &[numbers(v)]).unwrap();
+            let text = read(&dir, "history.csv");
+            let back = text.lines().nth(1).unwrap().split(',').map(|x| x.parse::<f64>().unwrap().to_bits());
+            prop_assert_eq!(back.collect::<Vec<_>>(), v.map(f64::to_bits));
+        }
+    }
+
+    #[test]
+    fn a_number_that_is_none_is_named_and_nothing_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = OutputDir::create(folder.path()).unwrap();
+        let rows = [HistoryRow::default(), HistoryRow { plate_strain_j: f64::NAN, ..Default::default() }];
+        let error = write_history(&dir, &rows).unwrap_err().to_string();
+        assert_eq!(error, "history.csv, row 2, column plate_strain_J: NaN is not a finite number");
+        assert!(!folder.path().join("history.csv").exists());
+    }
+
+    #[test]
+    fn json_is_indented_ordered_and_finite() {
+        #[derive(Serialize)]
+        struct Summary {
+            peak: f64,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            first: Option<f64>,
+            ledger: Vec<(&'static str, f64)>,
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let dir = OutputDir::create(folder.path()).unwrap();
+        let mut summary = Summary { peak: 0.1, first: None, ledger: vec![("strain", 2.5)] };
+        write_json(&dir, "summary.json", &summary).unwrap();
+        assert_eq!(
+            read(&dir, "summary.json"),
+            "{\n  \"peak\": 0.1,\n  \"ledger\": [\n    [\n      \"strain\",\n      2.5\n    ]\n  ]\n}\n"
+        );
+        summary.ledger.push(("balance", f64::INFINITY));
+        let error = write_json(&dir, "summary.json", &summary).unwrap_err().to_string();
+        assert!(error.starts_with("summary.json, `ledger.1.1`: not a finite number"), "{error}");
+    }
+}
