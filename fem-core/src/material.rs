@@ -258,7 +258,7 @@ mod tests {
         assert!(e.check().unwrap_err().contains("|nu12| < sqrt(E1/E2)"));
         e.nu12 = 0.9;
         e.nu13 = 0.9;
-        e.nu23 = 0.9;
+        e.nu23 = -0.9;
         assert!(e.check().unwrap_err().contains("> 0 is required"));
         e.e2 = f64::NAN;
         assert!(e.check().unwrap_err().contains("E2"));
