@@ -19,6 +19,7 @@ pub mod plate;
 pub mod plugin;
 pub mod patch;
 pub mod quadrature;
+pub mod recovery;
 pub mod reduction;
 pub mod structure;
 pub mod support;
@@ -26,3 +27,4 @@ pub mod tensor;
 #[cfg(feature = "testkit")]
 pub mod testkit;
 pub mod time;
+pub mod window;

@@ -1,0 +1,178 @@
+//! Stresses of plies and interfaces from displacements.
+
+use crate::element::{Cell, Element, Scratch};
+use crate::laminate::Laminate;
+use crate::material::Material;
+use crate::plate::Plate;
+use crate::tensor::{Matrix6, strain_rotation};
+
+/// Where in the thickness a stress is taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Station {
+    /// Layer of cells.
+    pub layer: usize,
+    /// Ply (or, for an interface, the ply below it), counted from the bottom.
+    pub ply: usize,
+    /// True for the resin between `ply` and the one above.
+    pub interface: bool,
+    /// Height, m: middle of the ply, or the interface.
+    pub z: f64,
+    /// Angle of the axes of the stress, radians.
+    pub angle: f64,
+    /// Material.
+    pub material: usize,
+    q: [f64; 2],
+    /// Strain in the plate's frame to stress in the station's.
+    to_stress: Matrix6,
+}
+
+/// Mean stresses of every ply (report eqs 12, 13) and at every interface (eq. 14), for a set of cells.
+///
+/// Sites are ordered quad by quad, each with all stations from the bottom up. Interfaces between layers of cells are taken
+/// from both sides, because derivatives may jump there.
+#[derive(Debug, Clone)]
+pub struct Recovery {
+    /// Stations through the thickness, the same for every quad.
+    pub stations: Vec<Station>,
+    /// The quads watched.
+    pub quads: Vec<usize>,
+    /// Mean over the quads (positions in `sources`) that make up the window of each watched quad.
+    windows: Vec<Vec<(usize, f64)>>,
+    /// Quads whose strains are needed.
+    sources: Vec<usize>,
+}
+
+impl Recovery {
+    /// Watches `quads`; `windows[q]` are the quads whose strains are averaged at quad q. Interfaces are watched when the
+    /// resin between plies is given.
+    pub fn new(
+        plate: &Plate,
+        laminate: &Laminate,
+        materials: &[Material],
+        resin: Option<usize>,
+        quads: Vec<usize>,
+        windows: &[Vec<(usize, f64)>],
+    ) -> Self {
+        let mut sources: Vec<usize> = quads.iter().flat_map(|q| windows[*q].iter().map(|w| w.0)).collect();
+        sources.sort_unstable();
+        sources.dedup();
+        let position = |q: usize| sources.partition_point(|s| *s < q);
+        let windows = quads.iter().map(|q| windows[*q].iter().map(|(q, w)| (position(*q), *w)).collect()).collect();
+        Self { stations: stations(plate, laminate, materials, resin), quads, windows, sources }
+    }
+
+    /// Number of sites.
+    pub fn sites(&self) -> usize {
+        self.quads.len() * self.stations.len()
+    }
+
+    /// Stresses for several displacement fields at once: `u` is `ndof × fields` (before elimination of constraints), `out`
+    /// is `6·sites × fields`; six components per site in the site's axes.
+    ///
+    /// # Errors
+    /// A cell that the element refuses.
+    pub fn stresses(
+        &self,
+        plate: &Plate,
+        element: &dyn Element,
+        u: &[f64],
+        fields: usize,
+        out: &mut [f64],
+    ) -> Result<(), crate::element::ElementError> {
+        let n = element.info().ndof();
+        let per_quad = 6 * self.stations.len();
+        let mut strains = vec![0.0; self.sources.len() * per_quad * fields];
+        let (mut operator, mut scratch, mut dofs) = (vec![0.0; 6 * n], Scratch::default(), Vec::new());
+        let mut local = vec![0.0; n * fields];
+        for (quad, strains) in self.sources.iter().zip(strains.chunks_exact_mut(per_quad * fields)) {
+            let mut layer = usize::MAX;
+            let mut x = [[0.0; 3]; 8];
+            for (station, strains) in self.stations.iter().zip(strains.chunks_exact_mut(6 * fields)) {
+                if station.layer != layer {
+                    layer = station.layer;
+                    let cell = quad * plate.layers() + layer;
+                    x = plate.points(cell);
+                    plate.cell_dofs(cell, &mut dofs);
+                    for (field, local) in local.chunks_exact_mut(n).enumerate() {
+                        let u = &u[field * plate.ndof()..];
+                        for (local, dof) in local.iter_mut().zip(&dofs) {
+                            *local = u[*dof];
+                        }
+                    }
+                }
+                let cell = Cell { x: &x, stack: &plate.stacks[layer] };
+                element.mean_strain(&cell, station.q, &mut scratch, &mut operator)?;
+                for (local, strain) in local.chunks_exact(n).zip(strains.chunks_exact_mut(6)) {
+                    for (u, column) in local.iter().zip(operator.chunks_exact(6)) {
+                        for (e, b) in strain.iter_mut().zip(column) {
+                            *e += b * u;
+                        }
+                    }
+                }
+            }
+        }
+        for (i, window) in self.windows.iter().enumerate() {
+            for (s, station) in self.stations.iter().enumerate() {
+                for field in 0..fields {
+                    let mut mean = [0.0; 6];
+                    for (source, share) in window {
+                        let at = (source * self.stations.len() + s) * 6 * fields + 6 * field;
+                        for (m, e) in mean.iter_mut().zip(&strains[at..at + 6]) {
+                            *m += share * e;
+                        }
+                    }
+                    let at = field * 6 * self.sites() + i * per_quad + 6 * s;
+                    out[at..at + 6].copy_from_slice(&crate::tensor::apply(&station.to_stress, &mean));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn stations(plate: &Plate, laminate: &Laminate, materials: &[Material], resin: Option<usize>) -> Vec<Station> {
+    let z = laminate.boundaries();
+    let product = |c: &Matrix6, angle: f64| -> Matrix6 {
+        let r = strain_rotation(angle);
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| c[i][k] * r[k][j]).sum()))
+    };
+    let mut all = Vec::new();
+    for layer in 0..plate.layers() {
+        let range = laminate.plies_of(layer);
+        let (first, end) = (range.start, range.end);
+        let slices = &plate.stacks[layer].slices;
+        let interface = |below: usize, q: f64| {
+            resin.map(|material| Station {
+                layer,
+                ply: below,
+                interface: true,
+                z: z[below + 1],
+                angle: 0.0,
+                material,
+                q: [q, q],
+                to_stress: materials[material].elastic.stiffness(),
+            })
+        };
+        if first > 0 {
+            all.extend(interface(first - 1, -1.0));
+        }
+        for k in range {
+            let ply = &laminate.plies[k];
+            let slice = &slices[k - first];
+            all.push(Station {
+                layer,
+                ply: k,
+                interface: false,
+                z: 0.5 * (z[k] + z[k + 1]),
+                angle: ply.angle,
+                material: ply.material,
+                q: slice.q,
+                to_stress: product(&materials[ply.material].elastic.stiffness(), ply.angle),
+            });
+            if k + 1 < end || end < laminate.plies.len() {
+                all.extend(interface(k, slice.q[1]));
+            }
+        }
+    }
+    all
+}

@@ -1,0 +1,157 @@
+//! Averaging windows: what a cell's stress is the mean of.
+//!
+//! A mean over the cell itself falls with the cell, and with it every onset time; over a window of fixed size it does
+//! not.
+
+use crate::mesh::QuadMesh;
+
+/// The cells that a square window of side `side`, centred on each cell and parallel to the axes, overlaps, with their
+/// shares of the overlapped area. At an edge the window is cut off with the plate.
+///
+/// A cell larger than the window is its own mean.
+pub fn square(mesh: &QuadMesh, side: f64) -> Vec<Vec<(usize, f64)>> {
+    let n = mesh.quads.len();
+    let centres: Vec<[f64; 2]> = (0..n).map(|q| centroid(&mesh.corners(q))).collect();
+    let (low, _) = mesh.bounds();
+    let bin = |p: [f64; 2]| -> [i64; 2] { std::array::from_fn(|d| ((p[d] - low[d]) / side).floor() as i64) };
+    // Cells by the bins that their bounding boxes touch.
+    let mut bins: Vec<([i64; 2], usize)> = Vec::new();
+    for q in 0..n {
+        let p = mesh.corners(q);
+        let corner = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 2] {
+            std::array::from_fn(|d| p.iter().fold(start, |m, p| pick(m, p[d])))
+        };
+        let (from, to) = (bin(corner(f64::min, f64::INFINITY)), bin(corner(f64::max, f64::NEG_INFINITY)));
+        for i in from[0]..=to[0] {
+            for j in from[1]..=to[1] {
+                bins.push(([i, j], q));
+            }
+        }
+    }
+    bins.sort_unstable();
+    let mut near = Vec::new();
+    (0..n)
+        .map(|q| {
+            if mesh.quality(q).area >= side * side {
+                return vec![(q, 1.0)];
+            }
+            let c = centres[q];
+            let half = 0.5 * side;
+            let (from, to) = (bin([c[0] - half, c[1] - half]), bin([c[0] + half, c[1] + half]));
+            near.clear();
+            for i in from[0]..=to[0] {
+                for j in from[1]..=to[1] {
+                    let first = bins.partition_point(|b| b.0 < [i, j]);
+                    near.extend(bins[first..].iter().take_while(|b| b.0 == [i, j]).map(|b| b.1));
+                }
+            }
+            near.sort_unstable();
+            near.dedup();
+            let mut shares: Vec<(usize, f64)> = near
+                .iter()
+                .map(|o| (*o, overlap(&mesh.corners(*o), c, half)))
+                .filter(|s| s.1 > 1e-12 * side * side)
+                .collect();
+            let total: f64 = shares.iter().map(|s| s.1).sum();
+            shares.iter_mut().for_each(|s| s.1 /= total);
+            shares
+        })
+        .collect()
+}
+
+/// Each cell is its own mean.
+pub fn own(mesh: &QuadMesh) -> Vec<Vec<(usize, f64)>> {
+    (0..mesh.quads.len()).map(|q| vec![(q, 1.0)]).collect()
+}
+
+/// Centroid of a quadrilateral.
+pub fn centroid(p: &[[f64; 2]; 4]) -> [f64; 2] {
+    // Relative to a corner, so that a plate far from the origin loses nothing.
+    let (mut area, mut sum) = (0.0, [0.0; 2]);
+    for i in 1..3 {
+        let (a, b) = ([p[i][0] - p[0][0], p[i][1] - p[0][1]], [p[i + 1][0] - p[0][0], p[i + 1][1] - p[0][1]]);
+        let cross = a[0] * b[1] - a[1] * b[0];
+        area += cross;
+        for d in 0..2 {
+            sum[d] += cross * (a[d] + b[d]) / 3.0;
+        }
+    }
+    std::array::from_fn(|d| p[0][d] + sum[d] / area)
+}
+
+/// Area of a convex quadrilateral within the square |x − c| ≤ half (Sutherland, Hodgman 1974).
+fn overlap(p: &[[f64; 2]; 4], c: [f64; 2], half: f64) -> f64 {
+    // Four cuts add at most four corners.
+    let mut polygon = [[0.0; 2]; 9];
+    let mut n = 4;
+    for (to, from) in polygon.iter_mut().zip(p) {
+        *to = [from[0] - c[0], from[1] - c[1]];
+    }
+    for (d, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
+        let inside = |p: &[f64; 2]| half - sign * p[d];
+        let mut cut = [[0.0; 2]; 9];
+        let mut m = 0;
+        for i in 0..n {
+            let (a, b) = (polygon[i], polygon[(i + 1) % n]);
+            let (da, db) = (inside(&a), inside(&b));
+            if da >= 0.0 {
+                cut[m] = a;
+                m += 1;
+            }
+            if (da >= 0.0) != (db >= 0.0) && m < 9 {
+                let t = da / (da - db);
+                cut[m] = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
+                m += 1;
+            }
+        }
+        polygon = cut;
+        n = m;
+        if n < 3 {
+            return 0.0;
+        }
+    }
+    0.5 * (0..n)
+        .map(|i| {
+            let (a, b) = (polygon[i], polygon[(i + 1) % n]);
+            a[0] * b[1] - a[1] * b[0]
+        })
+        .sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(n: usize, h: f64) -> QuadMesh {
+        let mut mesh = QuadMesh::default();
+        for j in 0..=n {
+            for i in 0..=n {
+                mesh.points.push([i as f64 * h, j as f64 * h]);
+            }
+        }
+        for j in 0..n {
+            for i in 0..n {
+                let a = (j * (n + 1) + i) as u32;
+                mesh.quads.push([a, a + 1, a + n as u32 + 2, a + n as u32 + 1]);
+            }
+        }
+        mesh
+    }
+
+    #[test]
+    fn shares_are_areas() {
+        let windows = square(&grid(9, 1.0), 2.0);
+        // Centre cell whole, four sides half, four corners a quarter, of four.
+        let middle = &windows[4 * 9 + 4];
+        assert_eq!(middle.len(), 9);
+        for (q, share) in middle {
+            let (i, j) = ((q % 9) as i64 - 4, (q / 9) as i64 - 4);
+            let want = [1.0, 0.5, 0.25][(i.abs() + j.abs()) as usize] / 4.0;
+            assert!((share - want).abs() < 1e-14);
+        }
+        // A corner cell: the window is cut off with the plate.
+        assert_eq!(windows[0].len(), 4);
+        assert!((windows[0].iter().map(|s| s.1).sum::<f64>() - 1.0).abs() < 1e-14);
+        assert_eq!(square(&grid(3, 1.0), 0.5)[4], vec![(4, 1.0)]);
+    }
+}

@@ -1,0 +1,316 @@
+//! A linear structure under the impact of lumped masses: the system that integrators march.
+
+use fem_core::contact::{ContactEnergy, ContactHistory, ContactLaw};
+use fem_core::structure::Structure;
+use fem_core::time::{SecondOrderSystem, State, StepError};
+
+/// Relative change of the contact forces at which several contacts count as solved.
+const TOLERANCE: f64 = 1e-13;
+
+/// A mass that meets the structure through a contact law.
+#[derive(Debug, Clone)]
+pub struct Impactor {
+    /// Mass, kg.
+    pub mass: f64,
+    /// Velocity towards the structure at t = 0, m/s.
+    pub velocity: f64,
+    /// p: deflection under the impactor w = pᵀu, away from it; p is also the load of a unit contact force.
+    pub load: Vec<(usize, f64)>,
+    /// Contact law F(α), α = z − w.
+    pub law: Box<dyn ContactLaw>,
+}
+
+/// `M ü + K u = Σ F p`, `m z̈ = −F` (report eqs 33-35), unknowns: those of the structure, then one z per impactor,
+/// positive towards the structure.
+///
+/// The structure is linear, so an implicit step needs the response to each contact load once per step length and then
+/// one back-substitution and a scalar equation per step.
+#[derive(Debug)]
+pub struct ImpactSystem {
+    structure: Box<dyn Structure>,
+    impactors: Vec<Impactor>,
+    influence: Influence,
+    contact_calls: u64,
+}
+
+/// Responses X = (K + cm M)⁻¹ p to the contact loads, for one cm.
+#[derive(Debug, Default)]
+struct Influence {
+    cm: f64,
+    x: Vec<f64>,
+    forces: Vec<f64>,
+}
+
+/// Energies of an impact, J.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Energies {
+    /// Kinetic energy of the impactors.
+    pub impactor: f64,
+    /// Kinetic energy of the plate.
+    pub kinetic: f64,
+    /// Strain energy of the plate.
+    pub strain: f64,
+    /// Recoverable work in the contacts.
+    pub stored: f64,
+    /// Work lost in the contacts.
+    pub dissipated: f64,
+}
+
+impl Energies {
+    /// Sum; constant in an exact solution.
+    pub fn total(&self) -> f64 {
+        self.impactor + self.kinetic + self.strain + self.stored + self.dissipated
+    }
+}
+
+impl ImpactSystem {
+    /// Couples `impactors` to `structure`.
+    pub fn new(structure: Box<dyn Structure>, impactors: Vec<Impactor>) -> Self {
+        Self { structure, impactors, influence: Influence::default(), contact_calls: 0 }
+    }
+
+    /// The state at first touch.
+    pub fn initial(&self) -> State {
+        let n = self.structure.ndof();
+        let mut state = State::at_rest(self.ndof(), self.impactors.len());
+        for (v, impactor) in state.v[n..].iter_mut().zip(&self.impactors) {
+            *v = impactor.velocity;
+        }
+        state
+    }
+
+    /// The structure.
+    pub fn structure(&self) -> &dyn Structure {
+        &*self.structure
+    }
+
+    /// The impactors.
+    pub fn impactors(&self) -> &[Impactor] {
+        &self.impactors
+    }
+
+    /// Evaluations of contact laws so far.
+    pub fn contact_calls(&self) -> u64 {
+        self.contact_calls
+    }
+
+    /// Deflection under impactor `i`.
+    pub fn deflection(&self, i: usize, u: &[f64]) -> f64 {
+        value(&self.impactors[i].load, u)
+    }
+
+    /// Displacement of impactor `i` since first touch.
+    pub fn position(&self, i: usize, u: &[f64]) -> f64 {
+        u[self.structure.ndof() + i]
+    }
+
+    /// Contact force of impactor `i` in an accepted state.
+    pub fn contact_force(&self, i: usize, state: &State) -> f64 {
+        let alpha = self.position(i, &state.u) - self.deflection(i, &state.u);
+        self.impactors[i].law.force(&state.contacts[i], alpha).force
+    }
+
+    /// The energy ledger of an accepted state.
+    pub fn energies(&self, state: &State, work: &mut Vec<f64>) -> Energies {
+        let n = self.structure.ndof();
+        let mut product = |x: &[f64], add: &dyn Fn(&[f64], &mut [f64])| {
+            work.clear();
+            work.resize(n, 0.0);
+            add(x, work);
+            0.5 * x.iter().zip(work.iter()).map(|(a, b)| a * b).sum::<f64>()
+        };
+        let mut energies = Energies {
+            kinetic: product(&state.v[..n], &|x, y| self.structure.add_mass(1.0, x, y)),
+            strain: product(&state.u[..n], &|x, y| self.structure.add_stiffness(1.0, x, y)),
+            ..Energies::default()
+        };
+        for (i, impactor) in self.impactors.iter().enumerate() {
+            energies.impactor += 0.5 * impactor.mass * state.v[n + i].powi(2);
+            let alpha = self.position(i, &state.u) - self.deflection(i, &state.u);
+            let ContactEnergy { stored, dissipated } = impactor.law.energy(&state.contacts[i], alpha);
+            energies.stored += stored;
+            energies.dissipated += dissipated;
+        }
+        energies
+    }
+
+    /// Upper bound of the highest frequency (rad/s) of structure, impactors and contacts together: ω² ≤ ω_s² + Σ k_c
+    /// (pᵀM⁻¹p + 1/m), with `omega` = ω_s of the structure and k_c the steepest tangent of a contact that took all of the
+    /// impactor's energy.
+    ///
+    /// # Errors
+    /// A singular mass: the bound does not exist.
+    pub fn frequency_bound(&mut self, omega: f64) -> Result<f64, StepError> {
+        let mut square = omega * omega;
+        let mut x = vec![0.0; self.structure.ndof()];
+        for impactor in &self.impactors {
+            x.fill(0.0);
+            add(&impactor.load, 1.0, &mut x);
+            self.structure.solve_mass(&mut x).map_err(|e| StepError::SingularMass(e.0))?;
+            let mobility = value(&impactor.load, &x) + 1.0 / impactor.mass;
+            square += mobility * steepest(impactor);
+        }
+        Ok(square.sqrt())
+    }
+
+    fn prepare(&mut self, cm: f64) -> Result<(), StepError> {
+        if self.influence.cm == cm && !self.influence.x.is_empty() {
+            return Ok(());
+        }
+        let n = self.structure.ndof();
+        let count = self.impactors.len();
+        let mut x = vec![0.0; n * count];
+        for (impactor, column) in self.impactors.iter().zip(x.chunks_exact_mut(n)) {
+            add(&impactor.load, 1.0, column);
+        }
+        self.structure.solve_shifted(cm, &mut x, count).map_err(|e| StepError::Factorisation(e.0))?;
+        self.influence = Influence { cm, x, forces: vec![0.0; count] };
+        Ok(())
+    }
+}
+
+/// Steepest tangent on loading and unloading up to the indentation that takes all of the impactor's kinetic energy.
+fn steepest(impactor: &Impactor) -> f64 {
+    let energy = 0.5 * impactor.mass * impactor.velocity.powi(2);
+    let fresh = ContactHistory::default();
+    let work = |alpha: f64| impactor.law.energy(&fresh, alpha).stored;
+    let mut high = 1e-9;
+    while work(high) < energy && high < 1.0 {
+        high *= 2.0;
+    }
+    let mut low = 0.0;
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if work(middle) < energy { low = middle } else { high = middle }
+    }
+    let mut pressed = fresh;
+    impactor.law.commit(&mut pressed, high);
+    let below = high * (1.0 - 1e-9);
+    impactor.law.force(&fresh, high).tangent.max(impactor.law.force(&pressed, below).tangent)
+}
+
+fn value(w: &[(usize, f64)], u: &[f64]) -> f64 {
+    w.iter().map(|(i, w)| w * u[*i]).sum()
+}
+
+fn add(w: &[(usize, f64)], scale: f64, u: &mut [f64]) {
+    for (i, w) in w {
+        u[*i] += scale * w;
+    }
+}
+
+impl SecondOrderSystem for ImpactSystem {
+    fn ndof(&self) -> usize {
+        self.structure.ndof() + self.impactors.len()
+    }
+
+    fn force(&mut self, _: f64, u: &[f64], _: &[f64], h: &[ContactHistory], f: &mut [f64]) {
+        let n = self.structure.ndof();
+        f.fill(0.0);
+        self.structure.add_stiffness(-1.0, &u[..n], &mut f[..n]);
+        for (i, impactor) in self.impactors.iter().enumerate() {
+            let alpha = u[n + i] - value(&impactor.load, u);
+            let force = impactor.law.force(&h[i], alpha).force;
+            self.contact_calls += 1;
+            add(&impactor.load, force, f);
+            f[n + i] = -force;
+        }
+    }
+
+    fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        let n = self.structure.ndof();
+        self.structure.add_mass(scale, &x[..n], &mut y[..n]);
+        for (i, impactor) in self.impactors.iter().enumerate() {
+            y[n + i] += scale * impactor.mass * x[n + i];
+        }
+    }
+
+    fn add_damping(&self, _: f64, _: &[f64], _: &mut [f64]) {}
+
+    fn solve_mass(&mut self, _: f64, x: &mut [f64]) -> Result<(), StepError> {
+        let n = self.structure.ndof();
+        self.structure.solve_mass(&mut x[..n]).map_err(|e| StepError::SingularMass(e.0))?;
+        for (x, impactor) in x[n..].iter_mut().zip(&self.impactors) {
+            *x /= impactor.mass;
+        }
+        Ok(())
+    }
+
+    fn solve_implicit(
+        &mut self,
+        cm: f64,
+        _: f64,
+        t: f64,
+        h: &[ContactHistory],
+        u: &mut [f64],
+    ) -> Result<(), StepError> {
+        self.prepare(cm)?;
+        let n = self.structure.ndof();
+        let Self { structure, impactors, influence, contact_calls } = self;
+        structure.solve_shifted(cm, &mut u[..n], 1).map_err(|e| StepError::Factorisation(e.0))?;
+        for (u, impactor) in u[n..].iter_mut().zip(impactors.iter()) {
+            *u /= cm * impactor.mass;
+        }
+        // u is the response without contact; each contact adds F (X, −1/(cm m)).
+        influence.forces.fill(0.0);
+        for _ in 0..200 {
+            let mut change = 0.0_f64;
+            for (i, impactor) in impactors.iter().enumerate() {
+                let x = &influence.x[i * n..(i + 1) * n];
+                let soft = value(&impactor.load, x) + 1.0 / (cm * impactor.mass);
+                let old = influence.forces[i];
+                let free = u[n + i] - value(&impactor.load, u) + soft * old;
+                let (force, calls) = contact(&*impactor.law, &h[i], free, soft);
+                *contact_calls += calls;
+                if !force.is_finite() {
+                    return Err(StepError::NotFinite { t });
+                }
+                let more = force - old;
+                if more != 0.0 {
+                    for (u, x) in u.iter_mut().zip(x) {
+                        *u += more * x;
+                    }
+                    u[n + i] -= more / (cm * impactor.mass);
+                }
+                influence.forces[i] = force;
+                change = change.max(more.abs() / force.abs().max(f64::MIN_POSITIVE));
+            }
+            if impactors.len() < 2 || change <= TOLERANCE {
+                return Ok(());
+            }
+        }
+        Err(StepError::NoConvergence { t, what: "the contact forces of several impactors".into() })
+    }
+
+    fn commit(&self, state: &mut State) {
+        for (i, impactor) in self.impactors.iter().enumerate() {
+            let alpha = self.position(i, &state.u) - self.deflection(i, &state.u);
+            impactor.law.commit(&mut state.contacts[i], alpha);
+        }
+    }
+}
+
+/// Solves α + `soft` F(α) = `free` for the force: Newton's method kept inside a bracket, because F never falls.
+/// Returns the force and the number of evaluations.
+fn contact(law: &dyn ContactLaw, h: &ContactHistory, free: f64, soft: f64) -> (f64, u64) {
+    let at_free = law.force(h, free);
+    if at_free.force == 0.0 {
+        return (0.0, 1);
+    }
+    let (mut low, mut high) = (free - soft * at_free.force, free);
+    let mut alpha = free - soft * at_free.force / (1.0 + soft * at_free.tangent);
+    for calls in 2..100 {
+        let c = law.force(h, alpha);
+        let residual = alpha + soft * c.force - free;
+        if residual > 0.0 { high = alpha } else { low = alpha }
+        let mut next = alpha - residual / (1.0 + soft * c.tangent);
+        if !(next > low && next < high) {
+            next = 0.5 * (low + high);
+        }
+        if (next - alpha).abs() <= 1e-15 * (free.abs() + alpha.abs()) || !residual.is_finite() {
+            return ((free - next) / soft, calls);
+        }
+        alpha = next;
+    }
+    ((free - alpha) / soft, 100)
+}
