@@ -1,1 +1,36 @@
-//! x
+//! Low-velocity impact on laminated composites: a gmsh plate and a scene go in; force history, ply and interface stresses
+//! and the time, place and mode of first damage come out.
+//!
+//! This crate is the facade: [`Registry`] gathers the plug-ins, [`Model`] makes a scene concrete, [`run`] does the main job,
+//! [`cli`] is the command line as a function, so that a crate with plug-ins of its own needs a main of five lines:
+//!
+//! ```no_run
+//! # struct Mine;
+//! # impl fem::core::plugin::Plugin for Mine {
+//! #     const INFO: fem::core::plugin::PluginInfo = fem::core::plugin::PluginInfo {
+//! #         kind: fem::core::plugin::Kind::Criterion, name: "mine", summary: "", source: "", params: &[] };
+//! #     fn build(_: &fem::core::plugin::Params) -> Result<fem::core::plugin::Built, fem::core::plugin::ParamError> {
+//! #         Err(fem::core::plugin::ParamError::new("", "")) }
+//! # }
+//! fn main() -> std::process::ExitCode {
+//!     fem::cli::main(fem::Registry::standard().with::<Mine>())
+//! }
+//! ```
+
+pub mod cli;
+pub mod cost;
+mod error;
+mod model;
+mod registry;
+pub mod run;
+mod stress;
+pub mod summary;
+
+pub use error::Error;
+pub use fem_core as core;
+pub use fem_dynamics as dynamics;
+pub use fem_elements as elements;
+pub use fem_failure as failure;
+pub use fem_io as io;
+pub use model::Model;
+pub use registry::{Registry, RegistryError};

@@ -35,4 +35,42 @@ pub trait Structure: fmt::Debug + Send {
     /// # Errors
     /// A singular mass.
     fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), SolveError>;
+
+    /// Highest circular frequency, rad/s, never below the true one by more than a few per cent.
+    ///
+    /// By power iteration on M⁻¹K with the Rayleigh quotient, which approaches from below; raised by 2 %.
+    ///
+    /// # Errors
+    /// A singular mass.
+    fn highest_frequency(&mut self) -> Result<f64, SolveError> {
+        let n = self.ndof();
+        // A start that no symmetry makes orthogonal to the answer, the same on every machine.
+        let mut x: Vec<f64> = (0..n).map(|i| (i * 7919 % 1009) as f64 / 1009.0 - 0.47).collect();
+        let (mut stiff, mut inert) = (vec![0.0; n], vec![0.0; n]);
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let mut square = 0.0;
+        for _ in 0..300 {
+            stiff.fill(0.0);
+            inert.fill(0.0);
+            self.add_stiffness(1.0, &x, &mut stiff);
+            self.add_mass(1.0, &x, &mut inert);
+            let quotient = dot(&x, &stiff) / dot(&x, &inert);
+            self.solve_mass(&mut stiff)?;
+            let size = stiff.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            for (x, y) in x.iter_mut().zip(&stiff) {
+                *x = y / size;
+            }
+            let settled = (quotient - square).abs() <= 1e-5 * quotient;
+            square = quotient;
+            if settled {
+                break;
+            }
+        }
+        Ok(1.02 * square.sqrt())
+    }
+
+    /// Factorisations and solved right-hand sides so far, where they cost anything.
+    fn work(&self) -> (u64, u64) {
+        (0, 0)
+    }
 }

@@ -134,6 +134,14 @@ impl ImpactSystem {
         energies
     }
 
+    /// Highest circular frequency of the structure alone, rad/s.
+    ///
+    /// # Errors
+    /// A singular mass.
+    pub fn highest_frequency(&mut self) -> Result<f64, StepError> {
+        self.structure.highest_frequency().map_err(|e| StepError::SingularMass(e.0))
+    }
+
     /// Upper bound of the highest frequency (rad/s) of structure, impactors and contacts together: ω² ≤ ω_s² + Σ k_c
     /// (pᵀM⁻¹p + 1/m), with `omega` = ω_s of the structure and k_c the steepest tangent of a contact that took all of the
     /// impactor's energy.

@@ -49,11 +49,6 @@ impl SparseStructure {
         }
     }
 
-    /// Factorisations and solved right-hand sides so far.
-    pub fn work(&self) -> (u64, u64) {
-        (self.factorisations, self.solves)
-    }
-
     /// Entries of one triangle of K.
     pub fn entries(&self) -> usize {
         self.k.len()
@@ -123,5 +118,9 @@ impl Structure for SparseStructure {
         self.factor.solve(x, 1);
         self.solves += 1;
         Ok(())
+    }
+
+    fn work(&self) -> (u64, u64) {
+        (self.factorisations, self.solves)
     }
 }

@@ -66,6 +66,10 @@ impl Structure for Modal {
         }
         Ok(())
     }
+
+    fn highest_frequency(&mut self) -> Result<f64, SolveError> {
+        Ok(self.frequencies().fold(0.0, f64::max))
+    }
 }
 
 /// A reduced structure and the way back, u = Φ q.
@@ -75,6 +79,7 @@ pub struct Reduced {
     pub modal: Modal,
     /// Φ, `ndof × modes`, column-major, modes by frequency.
     pub basis: Vec<f64>,
+    ndof: usize,
 }
 
 impl Reduced {
@@ -131,12 +136,12 @@ impl Reduced {
         }
         let back = l.transpose().solve_upper_triangular(&vectors).ok_or_else(singular)?;
         let basis = (t * back).as_slice().to_vec();
-        Ok(Self { modal, basis })
+        Ok(Self { modal, basis, ndof: n })
     }
 
     /// A functional of u in modal coordinates: Φᵀ w.
     pub fn restrict(&self, w: &Functional) -> Vec<f64> {
-        self.basis.chunks_exact((self.basis.len() / self.modal.ndof().max(1)).max(1)).map(|c| w.of(c)).collect()
+        self.basis.chunks_exact(self.ndof).map(|mode| w.of(mode)).collect()
     }
 
     /// `u = Φ q`.

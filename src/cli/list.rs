@@ -1,0 +1,51 @@
+//! `fem list`.
+
+use super::print;
+use crate::registry::Registry;
+use clap::{Args, ValueEnum};
+use fem_core::plugin::{Kind, PluginInfo};
+use fem_io::materials;
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// What to list.
+    what: What,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum What {
+    Elements,
+    Criteria,
+    ContactLaws,
+    Integrators,
+    Reductions,
+    Materials,
+}
+
+pub(super) fn list(registry: &Registry, arguments: &Arguments) -> miette::Result<ExitCode> {
+    let kind = match arguments.what {
+        What::Elements => Kind::Element,
+        What::Criteria => Kind::Criterion,
+        What::ContactLaws => Kind::Contact,
+        What::Integrators => Kind::Integrator,
+        What::Reductions => Kind::Reduction,
+        What::Materials => {
+            materials::names().for_each(|name| print(&format!("{name}\n")));
+            return Ok(ExitCode::SUCCESS);
+        }
+    };
+    registry.list(kind).for_each(|info| print(&entry(info)));
+    if kind == Kind::Reduction {
+        print("none                 the full model\n");
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn entry(info: &PluginInfo) -> String {
+    let mut text = format!("{:<20} {} [{}]\n", info.name, info.summary, info.source);
+    for p in info.params {
+        text.push_str(&format!("{:<20}   {}: {}\n", "", p.name, p.doc));
+    }
+    text
+}

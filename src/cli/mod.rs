@@ -1,0 +1,75 @@
+//! The command line, as a function of the registry.
+
+mod check;
+mod list;
+mod run;
+
+use crate::registry::Registry;
+use clap::{Parser, Subcommand};
+use miette::{GraphicalReportHandler, GraphicalTheme, Report};
+use std::ffi::OsString;
+use std::io::{IsTerminal, Write};
+use std::process::ExitCode;
+
+/// Low-velocity impact on laminated composites.
+#[derive(Debug, Parser)]
+#[command(name = "fem", version, about, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Computes a scene: force history, stresses, first damage.
+    Run(run::Arguments),
+    /// Validates a scene and prints sizes, stable step and cost; marches nothing.
+    Check(check::Arguments),
+    /// Lists what a scene can name.
+    List(list::Arguments),
+}
+
+/// Runs the command line of this process with the plug-ins of `registry`.
+pub fn main(registry: Registry) -> ExitCode {
+    run_with(registry, std::env::args_os())
+}
+
+/// Runs the command line `arguments` (the first is the program's name).
+///
+/// Results go to standard output, everything else to standard error; the exit status is 0 only when what was asked was
+/// done, 1 when it was not, 2 for a command line that makes no sense.
+pub fn run_with(registry: Registry, arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    let done = match arguments.command {
+        Command::Run(a) => run::run(&registry, &a),
+        Command::Check(a) => check::check(&registry, &a),
+        Command::List(a) => list::list(&registry, &a),
+    };
+    match done {
+        Ok(code) => code,
+        Err(report) => {
+            complain(&report);
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Shows an error with its causes, the place in the scene, and what to do.
+fn complain(report: &Report) {
+    let theme = if std::io::stderr().is_terminal() { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
+    let mut text = String::new();
+    let shown = GraphicalReportHandler::new_themed(theme).with_width(110).render_report(&mut text, report.as_ref());
+    let text = if shown.is_ok() { text } else { format!("{report:?}") };
+    let _ = write!(std::io::stderr(), "Error:{text}");
+}
+
+/// Prints to standard output; a closed pipe ends quietly.
+fn print(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}

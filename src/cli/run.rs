@@ -1,0 +1,62 @@
+//! `fem run`.
+
+use super::print;
+use crate::error::Error;
+use crate::model::Model;
+use crate::registry::Registry;
+use crate::run;
+use crate::summary::{self, Summary};
+use clap::Args;
+use fem_io::files::OutputDir;
+use fem_io::{scene, tables};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The scene file.
+    scene: PathBuf,
+    /// Folder of the results [default: results/<folder of the scene>]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Threads for the integration of element matrices; results do not depend on it.
+    #[arg(long, default_value = "1")]
+    threads: NonZeroUsize,
+}
+
+pub(super) fn run(registry: &Registry, arguments: &Arguments) -> miette::Result<ExitCode> {
+    Ok(compute(registry, arguments)?)
+}
+
+fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error> {
+    let model = Model::new(scene::read(&arguments.scene)?, registry)?;
+    let dir = OutputDir::create(arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene)))?;
+    let prepared = run::prepare(&model, arguments.threads)?;
+    let sizes = prepared.sizes;
+    let bar = progress();
+    let outcome = run::march(prepared, |share| bar.set_position((share * 1000.0) as u64));
+    bar.finish_and_clear();
+    let outcome = outcome?;
+    summary::write(&dir, &model, &outcome)?;
+    let summary = Summary::new(&model, &sizes, &outcome);
+    tables::write_json(&dir, "summary.json", &summary)?;
+    print(&summary.text());
+    print(&format!("  results   {}\n", dir.path().display()));
+    Ok(if summary.completed { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// `results/<folder of the scene>`; for a scene in the working folder the name of that folder.
+fn default_folder(scene: &Path) -> PathBuf {
+    let folder = scene.parent().filter(|p| p.file_name().is_some()).map(Path::to_owned);
+    let folder = folder.or_else(|| std::path::absolute(scene).ok()?.parent().map(Path::to_owned));
+    let name = folder.as_deref().and_then(Path::file_name).map(PathBuf::from);
+    Path::new("results").join(name.unwrap_or_else(|| PathBuf::from("scene")))
+}
+
+/// A bar on a terminal, nothing elsewhere.
+fn progress() -> ProgressBar {
+    let style = ProgressStyle::with_template("march {bar:40} {percent:>3} %  {eta} left");
+    ProgressBar::new(1000).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}

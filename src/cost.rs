@@ -1,0 +1,58 @@
+//! What a run costs: time per phase, processor time, memory.
+
+use cpu_time::ProcessTime;
+use serde::Serialize;
+use std::time::Instant;
+
+/// Cost of one phase of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Phase {
+    /// Its name.
+    pub name: &'static str,
+    /// Wall-clock time, s.
+    pub wall_s: f64,
+    /// Processor time of all threads, s.
+    pub cpu_s: f64,
+}
+
+/// A stopwatch that divides a run into phases.
+#[derive(Debug)]
+pub struct Stopwatch {
+    wall: Instant,
+    cpu: ProcessTime,
+    phases: Vec<Phase>,
+}
+
+impl Default for Stopwatch {
+    fn default() -> Self {
+        Self { wall: Instant::now(), cpu: ProcessTime::now(), phases: Vec::new() }
+    }
+}
+
+impl Stopwatch {
+    /// Ends the present phase; time goes to it if it has been there before.
+    pub fn lap(&mut self, name: &'static str) {
+        let (wall_s, cpu_s) = (self.wall.elapsed().as_secs_f64(), self.cpu.elapsed().as_secs_f64());
+        (self.wall, self.cpu) = (Instant::now(), ProcessTime::now());
+        match self.phases.iter_mut().find(|p| p.name == name) {
+            Some(phase) => {
+                phase.wall_s += wall_s;
+                phase.cpu_s += cpu_s;
+            }
+            None => self.phases.push(Phase { name, wall_s, cpu_s }),
+        }
+    }
+
+    /// The phases so far.
+    pub fn phases(&self) -> &[Phase] {
+        &self.phases
+    }
+}
+
+/// Largest memory that the process has held, bytes; `None` where the system does not tell.
+pub fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    let kib: u64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
+    Some(kib * 1024)
+}

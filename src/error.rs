@@ -1,0 +1,52 @@
+//! What can go wrong between a scene and its results.
+
+use fem_core::assembly::AssemblyError;
+use fem_core::constraint::ConstraintError;
+use fem_core::element::ElementError;
+use fem_core::reduction::ReductionError;
+use fem_core::time::StepError;
+use fem_dynamics::limit::TooLong;
+use fem_failure::ScanError;
+use fem_io::files::FileError;
+use fem_io::gmsh::MeshError;
+use fem_io::plot::PlotError;
+use fem_io::scene::SceneError;
+use miette::Diagnostic;
+
+/// An error of the framework; those about the scene show its line.
+#[derive(Debug, thiserror::Error, Diagnostic)]
+#[non_exhaustive]
+#[allow(missing_docs)]
+pub enum Error {
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    #[error("the constraints do not fit together")]
+    Constraint(#[from] ConstraintError),
+    #[error("the supports leave the plate free: {0}")]
+    #[diagnostic(help("support the plate against it, or add `{{ restrain = \"rigid-motions\" }}` to `support`"))]
+    Loose(String),
+    #[error("the matrices cannot be assembled")]
+    Assembly(#[from] AssemblyError),
+    #[error("the stresses cannot be recovered")]
+    Element(#[from] ElementError),
+    #[error("the model cannot be solved")]
+    Solve(#[from] fem_core::structure::SolveError),
+    #[error("the matrices cannot be analysed")]
+    Factor(#[from] fem_core::assembly::FactorError),
+    #[error("the reduction failed")]
+    Reduction(#[from] ReductionError),
+    #[error("the march failed")]
+    Step(#[from] StepError),
+    #[error(transparent)]
+    #[diagnostic(help("give `march.step` a smaller value or choose another integrator or reduction"))]
+    TooLong(#[from] TooLong),
+    #[error("the failure scan failed")]
+    Scan(#[from] ScanError),
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error("the plot failed")]
+    Plot(#[from] PlotError),
+}

@@ -1,0 +1,357 @@
+//! From a scene to a model: everything that is decided before the first matrix.
+
+use crate::error::Error;
+use crate::registry::{Registry, RegistryError};
+use fem_core::assembly::elimination_order;
+use fem_core::constraint::{Constraints, Equation};
+use fem_core::contact::ContactLaw;
+use fem_core::dof::Dof;
+use fem_core::element::Element;
+use fem_core::failure::FailureCriterion;
+use fem_core::laminate::Laminate;
+use fem_core::material::Material;
+use fem_core::mesh::QuadMesh;
+use fem_core::patch;
+use fem_core::plate::Plate;
+use fem_core::plugin::{Built, Kind, unknown_key};
+use fem_core::reduction::{Functional, Reduction};
+use fem_core::support::{self, FreeMotions, Levels};
+use fem_core::time::Integrator;
+use fem_io::gmsh;
+use fem_io::scene::{Damage, ImpactPoint, Load, Located, NodeSet, PluginSpec, Scene, SceneError, Support};
+
+/// A scene made concrete: mesh extruded, plug-ins built, supports turned into constraints, the contact placed.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// The scene it was made from.
+    pub scene: Scene,
+    /// Materials; layups and stations refer to them by index.
+    pub materials: Vec<Material>,
+    /// The laminate.
+    pub laminate: Laminate,
+    /// Cells and unknowns.
+    pub plate: Plate,
+    /// The element of all cells.
+    pub element: Box<dyn Element>,
+    /// Supports and other equations, eliminated.
+    pub constraints: Constraints,
+    /// The contact: weights of the deflection under the impactor over the independent unknowns.
+    pub contact: Functional,
+    /// Where the impactor strikes, m.
+    pub centre: [f64; 2],
+    /// The contact law.
+    pub law: Box<dyn ContactLaw>,
+    /// The reduction, if any.
+    pub reduction: Option<Box<dyn Reduction>>,
+    /// The integrator.
+    pub integrator: Box<dyn Integrator>,
+    /// Criteria by name; none when damage is off.
+    pub criteria: Vec<(String, Box<dyn FailureCriterion>)>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Thickness over size of the plate outside of which the mesh's unit is probably wrong.
+const PLAUSIBLE_THICKNESS: std::ops::Range<f64> = 1e-4..0.5;
+
+/// Inner angle of a cell (degrees) beyond which its strains are poor.
+const POOR_ANGLE: f64 = 150.0;
+
+impl Model {
+    /// Builds the model of `scene` with the plug-ins of `registry`.
+    ///
+    /// # Errors
+    /// Whatever the scene names and the mesh or the registry does not have, and supports that do not fit together or
+    /// leave a rigid motion.
+    pub fn new(scene: Scene, registry: &Registry) -> Result<Self, Error> {
+        let read = gmsh::read(&scene.mesh.file.value, scene.mesh.metres_per_unit)?;
+        let mut warnings = read.warnings;
+        let mesh = read.mesh;
+        let materials: Vec<Material> = scene.materials.iter().map(|m| m.value.clone()).collect();
+        let laminate = scene.laminate.laminate.clone();
+        warnings.extend(implausible(&mesh, &laminate));
+
+        let builder = Builder { scene: &scene, registry };
+        let element = builder.element()?;
+        let law = builder.contact()?;
+        let reduction = builder.reduction()?;
+        let integrator = builder.integrator()?;
+        let criteria = match scene.damage {
+            Damage::Off => Vec::new(),
+            Damage::Onset => builder.criteria()?,
+        };
+
+        let levels = laminate.levels();
+        let stacks = laminate.stacks(&materials);
+        let plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
+            .map_err(|why| builder.error(&scene.element.name, why, "choose a solid element"))?;
+        let constraints = builder.constraints(&plate)?;
+        let (centre, contact) = builder.contact_place(&plate, &*element)?;
+        let contact = Functional(constraints.restrict(&contact.0));
+        if contact.0.is_empty() {
+            return Err(builder
+                .error(
+                    &scene.impactor.at,
+                    "the supports hold the plate exactly where the impactor strikes",
+                    "move the impact or the support",
+                )
+                .into());
+        }
+        Ok(Self {
+            materials,
+            laminate,
+            plate,
+            element,
+            constraints,
+            contact,
+            centre,
+            law,
+            reduction,
+            integrator,
+            criteria,
+            warnings,
+            scene,
+        })
+    }
+
+    /// Governors that a reduction may choose from, best first: deflections (U30 at the mid-plane or the lowest level),
+    /// each as far as possible from the contact and from those before it, so that any first few cover the plate evenly.
+    pub fn governors(&self, count: usize) -> Vec<usize> {
+        let level = self.plate.mid_level().unwrap_or(0);
+        let Some(deflection) = Dof::new(3, 0) else { return Vec::new() };
+        let candidates: Vec<(usize, [f64; 2])> = (0..self.plate.plane.points.len())
+            .filter_map(|column| {
+                let dof = self.plate.dofs_at(column, level, deflection).next()?;
+                Some((self.constraints.position(dof)?, self.plate.plane.points[column]))
+            })
+            .collect();
+        let square = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
+        let mut distance: Vec<f64> = candidates.iter().map(|c| square(c.1, self.centre)).collect();
+        let mut chosen = Vec::new();
+        for _ in 0..count.min(candidates.len()) {
+            // On a symmetric mesh many are equally far: take the first of them, whatever the last bit says.
+            let farthest = distance.iter().fold(0.0_f64, |m, d| m.max(*d));
+            let Some(next) = distance.iter().position(|d| *d > 0.0 && *d >= farthest * (1.0 - 1e-9)) else { break };
+            chosen.push(candidates[next].0);
+            for (d, c) in distance.iter_mut().zip(&candidates) {
+                *d = d.min(square(c.1, candidates[next].1));
+            }
+        }
+        chosen
+    }
+}
+
+fn implausible(mesh: &QuadMesh, laminate: &Laminate) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let (low, high) = mesh.bounds();
+    let size = (high[0] - low[0]).max(high[1] - low[1]);
+    let ratio = laminate.thickness() / size;
+    if !PLAUSIBLE_THICKNESS.contains(&ratio) {
+        warnings.push(format!(
+            "the plate is {:.4e} m wide and {:.4e} m thick: is `mesh.unit` the unit of the mesh file?",
+            size,
+            laminate.thickness()
+        ));
+    }
+    let poor: Vec<u64> = (0..mesh.quads.len())
+        .filter(|q| mesh.quality(*q).largest_angle.to_degrees() > POOR_ANGLE)
+        .map(|q| mesh.quad_tags[q])
+        .collect();
+    if let Some(first) = poor.first() {
+        warnings.push(format!(
+            "{} cells have an inner angle above {POOR_ANGLE} degrees (first: cell {first}): their strains are poor",
+            poor.len()
+        ));
+    }
+    warnings
+}
+
+/// Looks things up for a scene and turns what is missing into errors that show the scene.
+struct Builder<'a> {
+    scene: &'a Scene,
+    registry: &'a Registry,
+}
+
+macro_rules! build {
+    ($self:ident, $spec:expr, $kind:ident) => {{
+        let spec: &PluginSpec = $spec;
+        match $self.registry.build(Kind::$kind, &spec.name.value, &spec.params) {
+            Ok(Built::$kind(built)) => Ok(built),
+            Ok(_) => Err($self.error(
+                &spec.name,
+                format!("the plug-in registered as {} `{}` builds something else", Kind::$kind, spec.name.value),
+                "mend the plug-in",
+            )),
+            Err(RegistryError::Param(e)) => {
+                let place = spec.place_of(&e.key);
+                Err($self.scene.source.error_at(place, format!("{} `{}`: {e}", Kind::$kind, spec.name.value), ""))
+            }
+            Err(error) => {
+                let hint = match &error {
+                    RegistryError::Unknown { hint, .. } => hint.clone(),
+                    _ => String::new(),
+                };
+                Err($self.error(&spec.name, error.to_string(), hint))
+            }
+        }
+    }};
+}
+
+impl Builder<'_> {
+    fn error<T>(&self, at: &Located<T>, message: impl Into<String>, help: impl Into<String>) -> SceneError {
+        self.scene.source.error_at(&at.place, message, help)
+    }
+
+    fn element(&self) -> Result<Box<dyn Element>, SceneError> {
+        build!(self, &self.scene.element, Element)
+    }
+
+    fn contact(&self) -> Result<Box<dyn ContactLaw>, SceneError> {
+        build!(self, &self.scene.contact, Contact)
+    }
+
+    fn integrator(&self) -> Result<Box<dyn Integrator>, SceneError> {
+        build!(self, &self.scene.march.integrator, Integrator)
+    }
+
+    fn reduction(&self) -> Result<Option<Box<dyn Reduction>>, SceneError> {
+        let spec = &self.scene.reduction;
+        if spec.name.value == "none" {
+            return match spec.params.keys().next() {
+                None => Ok(None),
+                Some(key) => Err(self.scene.source.error_at(
+                    spec.place_of(key),
+                    format!("`{key}` means nothing without a reduction"),
+                    "remove it or choose a method",
+                )),
+            };
+        }
+        build!(self, spec, Reduction).map(Some)
+    }
+
+    fn criteria(&self) -> Result<Vec<(String, Box<dyn FailureCriterion>)>, SceneError> {
+        let each = |spec: &PluginSpec| Ok((spec.name.value.clone(), build!(self, spec, Criterion)?));
+        self.scene.failure.criteria.iter().map(each).collect()
+    }
+
+    /// Columns of a group.
+    fn columns<'p>(&self, plate: &'p Plate, group: &Located<String>) -> Result<&'p [u32], SceneError> {
+        match plate.plane.groups.get(&group.value) {
+            Some(found) => Ok(&found.nodes),
+            None => Err(self.error(
+                group,
+                format!("the mesh has no group `{}`", group.value),
+                format!("`{}` {}", group.value, unknown_key(&group.value, plate.plane.groups.keys().map(String::as_str))),
+            )),
+        }
+    }
+
+    fn nodes<'p>(&self, plate: &'p Plate, set: &NodeSet) -> Result<(&'p [u32], Vec<usize>), SceneError> {
+        let levels = set.level.of(plate).map_err(|why| self.error(&set.group, why, ""))?;
+        Ok((self.columns(plate, &set.group)?, levels))
+    }
+
+    fn constraints(&self, plate: &Plate) -> Result<Constraints, Error> {
+        let mut equations = Vec::new();
+        let mut restrain = false;
+        for entry in &self.scene.supports {
+            match entry {
+                Support::Fix { nodes, dofs, axes, place } => {
+                    let (columns, levels) = self.nodes(plate, nodes)?;
+                    let origin = format!("support of `{}`", nodes.group.value);
+                    let before = equations.len();
+                    equations.extend(support::fix(plate, columns, &levels, dofs, *axes, &origin));
+                    if equations.len() == before {
+                        let message = format!("the support of `{}` fixes nothing", nodes.group.value);
+                        return Err(self
+                            .scene
+                            .source
+                            .error_at(place, message, "the element has none of the unknowns of `fix`")
+                            .into());
+                    }
+                }
+                Support::RestrainRigidMotions { .. } => restrain = true,
+            }
+        }
+        for couple in &self.scene.couples {
+            let (columns, levels) = self.nodes(plate, &couple.nodes)?;
+            let origin = format!("couple of `{}`", couple.nodes.group.value);
+            equations.extend(support::couple(plate, columns, &levels, &couple.dofs, &origin));
+        }
+        for (number, equation) in self.scene.equations.iter().enumerate() {
+            equations.push(self.equation(plate, equation, number)?);
+        }
+        let free = FreeMotions::of(plate, &equations);
+        if !free.is_empty() {
+            if !restrain {
+                return Err(Error::Loose(free.names()));
+            }
+            equations.extend(free.restrain(plate).map_err(Error::Loose)?);
+        }
+        Ok(Constraints::eliminate(&elimination_order(plate), &equations)?)
+    }
+
+    fn equation(
+        &self,
+        plate: &Plate,
+        equation: &fem_io::scene::Equation,
+        number: usize,
+    ) -> Result<Equation, SceneError> {
+        let mut terms = Vec::new();
+        for term in &equation.terms {
+            let (columns, levels) = self.nodes(plate, &term.node)?;
+            let ([column], [level]) = (columns, &levels[..]) else {
+                return Err(self.error(
+                    &term.node.group,
+                    format!("a term of an equation stands at one node, but `{}` has more", term.node.group.value),
+                    "name a group of one node and one level",
+                ));
+            };
+            let dof = plate.dofs_at(*column as usize, *level, term.dof).next().ok_or_else(|| {
+                self.error(&term.node.group, format!("the element has no {}", term.dof), "choose another unknown")
+            })?;
+            terms.push((dof, term.factor));
+        }
+        Ok(Equation { terms, value: 0.0, origin: format!("equation {}", number + 1) })
+    }
+
+    /// Where the impactor strikes, and the deflection there as weights of the unknowns.
+    fn contact_place(&self, plate: &Plate, element: &dyn Element) -> Result<([f64; 2], Functional), SceneError> {
+        let at = &self.scene.impactor.at;
+        let (centre, column) = match &at.value {
+            ImpactPoint::Group(name) => {
+                let group = Located { value: name.clone(), place: at.place.clone() };
+                let columns = self.columns(plate, &group)?;
+                let [column] = columns else {
+                    let dim = plate.plane.groups.get(name).map_or(0, |g| g.dim);
+                    return Err(self.error(
+                        at,
+                        format!("the group `{name}` (dimension {dim}) has {} nodes, an impact has one", columns.len()),
+                        "make a physical point of the impact point in gmsh, or give `at = { x = ..., y = ... }`",
+                    ));
+                };
+                (plate.plane.points[*column as usize], Some(*column as usize))
+            }
+            ImpactPoint::Point(p) => {
+                let (low, high) = plate.plane.bounds();
+                let reach = 1e-9 * (high[0] - low[0]).hypot(high[1] - low[1]);
+                let near = |q: &[f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]) <= reach;
+                (*p, plate.plane.points.iter().position(near))
+            }
+        };
+        let contact = match (self.scene.impactor.load.value, column) {
+            (Load::Patch { radius }, _) => patch::hertz(plate, element, centre, radius)
+                .map_err(|why| self.error(&self.scene.impactor.load, why, ""))?,
+            (Load::Node, Some(column)) => patch::node(plate, column)
+                .ok_or_else(|| self.error(at, "the element has no U30 to strike", "choose another element"))?,
+            (Load::Node, None) => {
+                return Err(self.error(
+                    at,
+                    "no node of the mesh lies at the impact point",
+                    "put a node there, name a group, or use a patch (`patch_radius`)",
+                ));
+            }
+        };
+        Ok((centre, contact))
+    }
+}

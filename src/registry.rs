@@ -1,0 +1,118 @@
+//! The registry of plug-ins: one table that scenes, lists and documentation read.
+
+use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo, unknown_key};
+use std::fmt;
+
+/// Plug-ins by kind and name, in the order of registration.
+///
+/// ```
+/// use fem::Registry;
+/// use fem::core::plugin::Kind;
+///
+/// let registry = Registry::standard();
+/// assert!(registry.list(Kind::Contact).any(|info| info.name == "sun-yang"));
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct Registry {
+    entries: Vec<Entry>,
+    clashes: Vec<(Kind, &'static str)>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    info: PluginInfo,
+    build: fn(&Params) -> Result<Built, ParamError>,
+}
+
+/// Why a plug-in was not built.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum RegistryError {
+    /// No plug-in of that name.
+    Unknown {
+        /// What was asked for.
+        kind: Kind,
+        /// Its name.
+        name: String,
+        /// Nearest match and what there is.
+        hint: String,
+    },
+    /// It does not take these parameters.
+    Param(ParamError),
+    /// Two plug-ins of one kind share the name.
+    Clash {
+        /// The kind.
+        kind: Kind,
+        /// The name.
+        name: String,
+    },
+}
+
+impl fmt::Display for RegistryError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown { kind, name, .. } => write!(f, "there is no {kind} `{name}`"),
+            Self::Param(e) => e.fmt(f),
+            Self::Clash { kind, name } => write!(f, "two plug-ins are registered as the {kind} `{name}`"),
+        }
+    }
+}
+impl std::error::Error for RegistryError {}
+
+impl Registry {
+    /// A registry without plug-ins.
+    pub fn empty() -> Self {
+        Self::default()
+    }
+
+    /// All plug-ins of the framework.
+    pub fn standard() -> Self {
+        use fem_dynamics::{contact, integrate, reduce};
+        Self::empty()
+            .with::<fem_elements::HermitePrism>()
+            .with::<contact::SunYang>()
+            .with::<contact::Hertz>()
+            .with::<contact::LinearSpring>()
+            .with::<integrate::Newmark>()
+            .with::<reduce::Guyan>()
+            .with::<reduce::CraigBampton>()
+            .with::<fem_failure::HashinReport>()
+            .with::<fem_failure::Octahedral>()
+    }
+
+    /// The registry with one plug-in more.
+    #[must_use]
+    pub fn with<P: Plugin>(mut self) -> Self {
+        if self.find(P::INFO.kind, P::INFO.name).is_some() {
+            self.clashes.push((P::INFO.kind, P::INFO.name));
+        }
+        self.entries.push(Entry { info: P::INFO, build: P::build });
+        self
+    }
+
+    /// Plug-ins of a kind.
+    pub fn list(&self, kind: Kind) -> impl Iterator<Item = &PluginInfo> {
+        self.entries.iter().map(|e| &e.info).filter(move |i| i.kind == kind)
+    }
+
+    fn find(&self, kind: Kind, name: &str) -> Option<&Entry> {
+        self.entries.iter().find(|e| e.info.kind == kind && e.info.name == name)
+    }
+
+    /// Builds the plug-in `name` of `kind`.
+    ///
+    /// # Errors
+    /// An unknown name, two plug-ins of that name, an unknown or bad parameter.
+    pub fn build(&self, kind: Kind, name: &str, params: &Params) -> Result<Built, RegistryError> {
+        if self.clashes.contains(&(kind, name)) {
+            return Err(RegistryError::Clash { kind, name: name.to_owned() });
+        }
+        let entry = self.find(kind, name).ok_or_else(|| RegistryError::Unknown {
+            kind,
+            name: name.to_owned(),
+            hint: format!("`{name}` {}", unknown_key(name, self.list(kind).map(|i| i.name))),
+        })?;
+        params.only(entry.info.params).map_err(RegistryError::Param)?;
+        (entry.build)(params).map_err(RegistryError::Param)
+    }
+}

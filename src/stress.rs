@@ -1,0 +1,170 @@
+//! Stresses along a march: sampled, recovered in batches, handed to the scan.
+
+use crate::error::Error;
+use crate::model::Model;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+use fem_core::recovery::{Recovery, Station};
+use fem_core::tensor::{Ply, Stress6};
+use fem_core::window;
+use fem_dynamics::reduce::Reduced;
+use fem_failure::{Place, Scan, ScanSite};
+use fem_io::scene::Window;
+
+/// Samples recovered together.
+const BATCH: usize = 16;
+
+/// Largest stress operator that is kept, bytes; beyond it stresses are recovered from expanded displacements.
+const OPERATOR_LIMIT: usize = 256 << 20;
+
+/// Watches the stresses of a march with the criteria of a model.
+pub struct Watch<'a> {
+    model: &'a Model,
+    reduced: Option<&'a Reduced>,
+    recovery: Recovery,
+    /// 6·sites × modes: stresses per unit of each modal coordinate.
+    operator: Option<Vec<f64>>,
+    scan: Scan,
+    times: Vec<f64>,
+    /// Coordinates of the samples waiting.
+    waiting: Vec<f64>,
+    stresses: Vec<f64>,
+    states: Vec<Stress6<Ply>>,
+}
+
+impl<'a> Watch<'a> {
+    /// Prepares the scan of `model`; with `reduced`, the march runs in its coordinates.
+    ///
+    /// # Errors
+    /// A criterion whose material lacks a constant, or a cell that the element refuses.
+    pub fn new(model: &'a Model, reduced: Option<&'a Reduced>) -> Result<Self, Error> {
+        let recovery = recovery(model);
+        let scan = Scan::new(model.criteria.clone(), sites(model, &recovery), model.materials.clone())?;
+        let mut watch = Self {
+            model,
+            reduced,
+            operator: None,
+            scan,
+            times: Vec::new(),
+            waiting: Vec::new(),
+            stresses: vec![0.0; 6 * recovery.sites() * BATCH],
+            states: vec![Stress6::new([0.0; 6]); recovery.sites()],
+            recovery,
+        };
+        if let Some(reduced) = reduced {
+            let (n, modes) = (model.constraints.ndof(), reduced.modal.ndof());
+            if 6 * watch.recovery.sites() * modes * size_of::<f64>() <= OPERATOR_LIMIT {
+                let mut operator = vec![0.0; 6 * watch.recovery.sites() * modes];
+                watch.recover(&reduced.basis, n, modes, &mut operator)?;
+                watch.operator = Some(operator);
+            }
+        }
+        Ok(watch)
+    }
+
+    /// Takes a sample: coordinates of the march at time `t`.
+    ///
+    /// # Errors
+    /// A stress or an index that is not finite.
+    pub fn sample(&mut self, t: f64, coordinates: &[f64]) -> Result<(), Error> {
+        self.times.push(t);
+        self.waiting.extend_from_slice(coordinates);
+        if self.times.len() == BATCH { self.flush() } else { Ok(()) }
+    }
+
+    /// Scans the samples still waiting.
+    ///
+    /// # Errors
+    /// As [`Watch::sample`].
+    pub fn flush(&mut self) -> Result<(), Error> {
+        let count = self.times.len();
+        if count == 0 {
+            return Ok(());
+        }
+        let rows = 6 * self.recovery.sites();
+        let width = self.waiting.len() / count;
+        let mut stresses = std::mem::take(&mut self.stresses);
+        let waiting = std::mem::take(&mut self.waiting);
+        let out = &mut stresses[..rows * count];
+        match (&self.operator, self.reduced) {
+            (Some(operator), _) => matmul(
+                MatMut::from_column_major_slice_mut(out, rows, count),
+                Accum::Replace,
+                MatRef::from_column_major_slice(operator, rows, width),
+                MatRef::from_column_major_slice(&waiting, width, count),
+                1.0,
+                Par::Seq,
+            ),
+            (None, Some(reduced)) => {
+                let n = self.model.constraints.ndof();
+                let mut u = vec![0.0; n * count];
+                for (q, u) in waiting.chunks_exact(width).zip(u.chunks_exact_mut(n)) {
+                    reduced.expand(q, u);
+                }
+                self.recover(&u, n, count, out)?;
+            }
+            (None, None) => self.recover(&waiting, width, count, out)?,
+        }
+        for (t, stresses) in self.times.iter().zip(stresses.chunks_exact(rows)) {
+            for (state, s) in self.states.iter_mut().zip(stresses.chunks_exact(6)) {
+                *state = Stress6::new([s[0], s[1], s[2], s[3], s[4], s[5]]);
+            }
+            self.scan.sample(*t, &self.states)?;
+        }
+        self.times.clear();
+        (self.stresses, self.waiting) = (stresses, waiting);
+        self.waiting.clear();
+        Ok(())
+    }
+
+    /// Stresses of displacement fields given in independent unknowns, `n × fields`.
+    fn recover(&self, fields: &[f64], n: usize, count: usize, out: &mut [f64]) -> Result<(), Error> {
+        let model = self.model;
+        let mut u = vec![0.0; model.plate.ndof() * count];
+        for (field, u) in fields.chunks_exact(n).zip(u.chunks_exact_mut(model.plate.ndof())) {
+            model.constraints.expand(field, u);
+        }
+        Ok(self.recovery.stresses(&model.plate, &*model.element, &u, count, out)?)
+    }
+
+    /// What the scan found.
+    pub fn scan(&self) -> &Scan {
+        &self.scan
+    }
+
+    /// Number of sites watched.
+    pub fn sites(&self) -> usize {
+        self.recovery.sites()
+    }
+}
+
+fn recovery(model: &Model) -> Recovery {
+    let mesh = &model.plate.plane;
+    let failure = &model.scene.failure;
+    let near = |q: &usize| {
+        let c = window::centroid(&mesh.corners(*q));
+        failure.radius.is_none_or(|r| (c[0] - model.centre[0]).hypot(c[1] - model.centre[1]) <= r)
+    };
+    let quads = (0..mesh.quads.len()).filter(near).collect();
+    let windows = match failure.window {
+        Window::Element => window::own(mesh),
+        Window::Square(side) => window::square(mesh, side),
+    };
+    let resin = model.scene.laminate.interface.as_ref().map(|i| i.value);
+    Recovery::new(&model.plate, &model.laminate, &model.materials, resin, quads, &windows)
+}
+
+fn sites(model: &Model, recovery: &Recovery) -> Vec<ScanSite> {
+    let mesh = &model.plate.plane;
+    let site = |q: usize, s: &Station| {
+        let [x, y] = window::centroid(&mesh.corners(q));
+        ScanSite {
+            cell: q as u32,
+            place: if s.interface { Place::Interface(s.ply as u16) } else { Place::Ply(s.ply as u16) },
+            position: [x, y, s.z],
+            angle: s.angle,
+            material: s.material as u16,
+        }
+    };
+    recovery.quads.iter().flat_map(|q| recovery.stations.iter().map(move |s| site(*q, s))).collect()
+}

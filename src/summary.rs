@@ -1,0 +1,365 @@
+//! The summary of a run: for machines (`summary.json`) and for people.
+
+use crate::cost::{Phase, peak_memory};
+use crate::error::Error;
+use crate::model::Model;
+use crate::run::{Outcome, Sizes};
+use fem_core::counters::Counters;
+use fem_failure::{FailureEvent, Place};
+use fem_io::files::OutputDir;
+use fem_io::plot;
+use fem_io::tables::{self, EventRow, HistoryRow};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::io::Write as _;
+
+/// All that is said of a run; units are in the key names.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Summary {
+    pub title: String,
+    pub version: &'static str,
+    pub fidelity: &'static str,
+    pub completed: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stopped: Option<String>,
+    pub model: ModelSize,
+    pub impact: Impact,
+    pub first_damage: Vec<Damage>,
+    pub not_reached: Vec<Margin>,
+    pub accuracy: Accuracy,
+    pub work: Work,
+    pub phases: Vec<Phase>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peak_memory_MB: Option<f64>,
+    pub warnings: Vec<String>,
+}
+
+/// Sizes.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct ModelSize {
+    pub quads: usize,
+    pub layers: usize,
+    pub cells: usize,
+    pub nodes: usize,
+    pub plies: usize,
+    pub thickness_mm: f64,
+    pub plate_mass_g: f64,
+    pub unknowns: usize,
+    pub unknowns_marched: usize,
+    pub stiffness_entries: usize,
+    pub factor_entries: usize,
+    pub stress_sites: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lowest_frequency_Hz: Option<f64>,
+}
+
+/// The response.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Impact {
+    pub mass_kg: f64,
+    pub velocity_m_s: f64,
+    pub energy_J: f64,
+    pub end_time_s: f64,
+    pub peak_force_N: f64,
+    pub peak_force_time_s: f64,
+    pub peak_plate_displacement_m: f64,
+    pub peak_plate_displacement_over_thickness: f64,
+    pub impulse_N_s: f64,
+    pub final_impactor_velocity_m_s: f64,
+    pub contacts: u32,
+}
+
+/// First event of a criterion's mode.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Damage {
+    pub criterion: String,
+    pub mode: String,
+    pub time_s: f64,
+    pub cell: u64,
+    pub ply: String,
+    pub angle_deg: f64,
+    pub x_m: f64,
+    pub y_m: f64,
+    pub z_m: f64,
+    pub contact_force_N: f64,
+}
+
+/// Largest index of a mode that did not reach 1.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs)]
+pub struct Margin {
+    pub criterion: String,
+    pub mode: String,
+    pub largest_index: f64,
+    pub time_s: f64,
+    pub ply: String,
+}
+
+/// What is known of the error.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Accuracy {
+    pub energy_error_relative: f64,
+    pub step_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stable_step_s: Option<f64>,
+}
+
+/// Work counters.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[allow(missing_docs)]
+pub struct Work {
+    pub elements: u64,
+    pub factorisations: u64,
+    pub solves: u64,
+    pub steps: u64,
+    pub contact_calls: u64,
+    pub criterion_calls: u64,
+}
+
+impl From<Counters> for Work {
+    fn from(c: Counters) -> Self {
+        Self {
+            elements: c.elements,
+            factorisations: c.factorisations,
+            solves: c.solves,
+            steps: c.steps,
+            contact_calls: c.contact_calls,
+            criterion_calls: c.criterion_calls,
+        }
+    }
+}
+
+/// "3" for a ply, "3|4" for an interface, counted from 1 at the bottom.
+fn ply_name(place: Place) -> String {
+    match place {
+        Place::Ply(k) => format!("{}", k + 1),
+        Place::Interface(k) => format!("{}|{}", k + 1, k + 2),
+    }
+}
+
+fn force_at(history: &[HistoryRow], t: f64) -> f64 {
+    let after = history.partition_point(|r| r.time_s < t).clamp(1, history.len().max(2) - 1);
+    let (a, b) = (&history[after - 1], &history[after.min(history.len() - 1)]);
+    let share = if b.time_s > a.time_s { (t - a.time_s) / (b.time_s - a.time_s) } else { 0.0 };
+    a.contact_force_n + share * (b.contact_force_n - a.contact_force_n)
+}
+
+impl Summary {
+    /// Sums up a run.
+    pub fn new(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Self {
+        let h = &outcome.history;
+        let peak = |value: fn(&HistoryRow) -> f64| {
+            h.iter().fold((0.0_f64, 0.0), |m, r| if value(r) > m.0 { (value(r), r.time_s) } else { m })
+        };
+        let (peak_force_N, peak_force_time_s) = peak(|r| r.contact_force_n);
+        let (deflection, _) = peak(|r| r.plate_displacement_m);
+        let impactor = &model.scene.impactor;
+        let last = h.last();
+        let thickness = model.laminate.thickness();
+        let mut first: Vec<&FailureEvent> = Vec::new();
+        for event in &outcome.events {
+            if !first.iter().any(|e| e.criterion == event.criterion && e.mode == event.mode) {
+                first.push(event);
+            }
+        }
+        let damage = |e: &&FailureEvent| Damage {
+            criterion: e.criterion.clone(),
+            mode: e.mode.to_owned(),
+            time_s: e.time,
+            cell: model.plate.plane.quad_tags[e.cell as usize],
+            ply: ply_name(e.place),
+            angle_deg: angle_deg(model, e),
+            x_m: e.position[0],
+            y_m: e.position[1],
+            z_m: e.position[2],
+            contact_force_N: force_at(h, e.time),
+        };
+        let margins = outcome.peaks.iter().filter(|p| p.index < 1.0).map(|p| Margin {
+            criterion: p.criterion.clone(),
+            mode: p.mode.to_owned(),
+            largest_index: p.index,
+            time_s: p.time,
+            ply: ply_name(p.site.place),
+        });
+        Self {
+            title: model.scene.title.clone(),
+            version: env!("CARGO_PKG_VERSION"),
+            fidelity: model.scene.fidelity.name(),
+            completed: outcome.stopped.is_none(),
+            stopped: outcome.stopped.clone(),
+            model: ModelSize {
+                quads: model.plate.plane.quads.len(),
+                layers: model.plate.layers(),
+                cells: model.plate.cells(),
+                nodes: model.plate.nodes(),
+                plies: model.laminate.plies.len(),
+                thickness_mm: thickness * 1e3,
+                plate_mass_g: model.laminate.areal_mass(&model.materials) * model.plate.plane.area() * 1e3,
+                unknowns: sizes.unknowns,
+                unknowns_marched: sizes.marched,
+                stiffness_entries: sizes.stiffness_entries,
+                factor_entries: sizes.factor_entries,
+                stress_sites: outcome.sites,
+                lowest_frequency_Hz: sizes.lowest_frequency,
+            },
+            impact: Impact {
+                mass_kg: impactor.mass,
+                velocity_m_s: impactor.velocity,
+                energy_J: 0.5 * impactor.mass * impactor.velocity.powi(2),
+                end_time_s: last.map_or(0.0, |r| r.time_s),
+                peak_force_N,
+                peak_force_time_s,
+                peak_plate_displacement_m: deflection,
+                peak_plate_displacement_over_thickness: deflection / thickness,
+                impulse_N_s: impactor.mass * (impactor.velocity - last.map_or(0.0, |r| r.impactor_velocity_m_s)),
+                final_impactor_velocity_m_s: last.map_or(0.0, |r| r.impactor_velocity_m_s),
+                contacts: outcome.contacts,
+            },
+            first_damage: first.iter().map(damage).collect(),
+            not_reached: margins.collect(),
+            accuracy: Accuracy {
+                energy_error_relative: outcome.energy_error,
+                step_s: sizes.step,
+                stable_step_s: Some(sizes.longest_step).filter(|s| s.is_finite()),
+            },
+            work: outcome.counters.into(),
+            phases: outcome.phases.clone(),
+            peak_memory_MB: peak_memory().map(|b| b as f64 / 1e6),
+            warnings: model.warnings.clone(),
+        }
+    }
+
+    /// The summary as people read it.
+    pub fn text(&self) -> String {
+        let mut t = String::new();
+        let mut line = |text: std::fmt::Arguments<'_>| {
+            let _ = t.write_fmt(text);
+            t.push('\n');
+        };
+        let (m, i) = (&self.model, &self.impact);
+        line(format_args!("{}", self.title));
+        line(format_args!(
+            "  model     {} quads x {} layers, {} plies, {:.4} mm; {} unknowns, {} marched ({})",
+            m.quads, m.layers, m.plies, m.thickness_mm, m.unknowns, m.unknowns_marched, self.fidelity
+        ));
+        line(format_args!(
+            "  impact    {:.4} kg at {:.4} m/s = {:.4} J on a plate of {:.4} g",
+            i.mass_kg, i.velocity_m_s, i.energy_J, m.plate_mass_g
+        ));
+        line(format_args!(
+            "  force     peak {:.1} N at {:.4} ms; deflection {:.4} mm = {:.2} thicknesses; {} contact{}",
+            i.peak_force_N,
+            i.peak_force_time_s * 1e3,
+            i.peak_plate_displacement_m * 1e3,
+            i.peak_plate_displacement_over_thickness,
+            i.contacts,
+            if i.contacts == 1 { "" } else { "s" }
+        ));
+        if self.first_damage.is_empty() {
+            line(format_args!("  damage    none until {:.4} ms", i.end_time_s * 1e3));
+        } else {
+            line(format_args!("  damage    first reaching of each mode (plies count from the bottom)"));
+            line(format_args!(
+                "            {:>9}  {:<15} {:<19} {:>7} {:>7}  {:>17}  {:>8}",
+                "time", "criterion", "mode", "ply", "angle", "x, y", "force"
+            ));
+            for d in &self.first_damage {
+                line(format_args!(
+                    "            {:>6.4} ms  {:<15} {:<19} {:>7} {:>5.0}°  {:>7.3}, {:>7.3} mm {:>7.1} N",
+                    d.time_s * 1e3,
+                    d.criterion,
+                    d.mode,
+                    d.ply,
+                    d.angle_deg,
+                    d.x_m * 1e3,
+                    d.y_m * 1e3,
+                    d.contact_force_N
+                ));
+            }
+        }
+        for n in &self.not_reached {
+            line(format_args!(
+                "            not reached: {} {}, largest index {:.3} at {:.4} ms, ply {}",
+                n.criterion,
+                n.mode,
+                n.largest_index,
+                n.time_s * 1e3,
+                n.ply
+            ));
+        }
+        line(format_args!(
+            "  accuracy  energy error {:.1e} of the impact energy; step {:.4} us{}",
+            self.accuracy.energy_error_relative,
+            self.accuracy.step_s * 1e6,
+            match self.accuracy.stable_step_s {
+                Some(s) => format!(" (stable up to {:.4} us)", s * 1e6),
+                None => " (no stability limit)".to_owned(),
+            }
+        ));
+        let w = &self.work;
+        line(format_args!(
+            "  work      {} element matrices, {} factorisations, {} solves, {} steps, {} contact calls, {} criterion calls",
+            w.elements, w.factorisations, w.solves, w.steps, w.contact_calls, w.criterion_calls
+        ));
+        let phases: Vec<String> = self.phases.iter().map(|p| format!("{} {:.3} s", p.name, p.wall_s)).collect();
+        let wall: f64 = self.phases.iter().map(|p| p.wall_s).sum();
+        let cpu: f64 = self.phases.iter().map(|p| p.cpu_s).sum();
+        let memory = self.peak_memory_MB.map_or(String::new(), |m| format!("; peak memory {m:.0} MB"));
+        line(format_args!("  time      {wall:.3} s wall, {cpu:.3} s processor: {}{memory}", phases.join(", ")));
+        for warning in &self.warnings {
+            line(format_args!("  warning   {warning}"));
+        }
+        if let Some(why) = &self.stopped {
+            line(format_args!("  STOPPED   {why}"));
+        }
+        t
+    }
+}
+
+fn angle_deg(model: &Model, event: &FailureEvent) -> f64 {
+    match event.place {
+        Place::Ply(k) => model.laminate.plies[usize::from(k)].angle_deg,
+        Place::Interface(_) => 0.0,
+    }
+}
+
+/// Writes tables and plots of a run; each file appears whole or not at all.
+///
+/// # Errors
+/// A folder that cannot be written, a number that is not finite.
+pub fn write(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
+    tables::write_history(dir, &outcome.history)?;
+    let row = |e: &FailureEvent| EventRow {
+        time_s: e.time,
+        criterion: e.criterion.clone(),
+        mode: e.mode.to_owned(),
+        cell: model.plate.plane.quad_tags[e.cell as usize],
+        ply: ply_name(e.place),
+        angle_deg: angle_deg(model, e),
+        x_m: e.position[0],
+        y_m: e.position[1],
+        z_m: e.position[2],
+        index: e.index,
+    };
+    tables::write_events(dir, &outcome.events.iter().map(row).collect::<Vec<_>>())?;
+    if model.scene.output.plots {
+        let (times, forces): (Vec<f64>, Vec<f64>) =
+            outcome.history.iter().map(|r| (r.time_s, r.contact_force_n)).unzip();
+        let mut marks: Vec<(f64, String)> = Vec::new();
+        for e in &outcome.events {
+            let label = e.mode.to_owned();
+            if !marks.iter().any(|m| m.1 == label) {
+                marks.push((e.time, label));
+            }
+        }
+        let picture = plot::line_plot(&plot::force_history(&times, &forces, &marks)?)?;
+        dir.write("contact_force.svg", |w| w.write_all(picture.svg.as_bytes()))?;
+        dir.write("contact_force.png", |w| w.write_all(&picture.png))?;
+    }
+    Ok(())
+}
