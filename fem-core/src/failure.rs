@@ -1,9 +1,9 @@
 //! The contract of a failure criterion.
 
-use crate::material::{Material, Strength};
+use crate::material::{Material, MaterialError, Strength};
 use crate::tensor::{Ply, Stress6};
 use dyn_clone::DynClone;
-use std::fmt::Debug;
+use std::fmt::{self, Debug};
 
 /// Where a criterion looks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,6 +25,22 @@ pub struct CriterionInfo {
     pub strengths: &'static [Strength],
     /// True when a rotation of the stress about the fibre leaves it unchanged.
     pub invariant_about_fibre: bool,
+}
+
+/// The factor by which a stress may grow before a criterion meets failure; 1/factor is the exposure.
+///
+/// Unlike an index it means the same for every criterion, whatever the degree of its formula.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reserve {
+    /// Smallest R > 0 at which some index of R σ reaches 1; +∞ where there is none, NaN for a refused stress.
+    pub factor: f64,
+    /// The mode that governs: the one that reaches 1 there.
+    pub mode: Option<usize>,
+}
+
+impl Reserve {
+    /// No load factor brings failure.
+    pub const UNBOUNDED: Self = Self { factor: f64::INFINITY, mode: None };
 }
 
 /// A failure criterion: a pure function of the stress in a ply's (or the resin's) own axes.
@@ -56,9 +72,10 @@ pub trait FailureCriterion: DynClone + Debug + Send + Sync {
     /// Modes, site and required constants.
     fn info(&self) -> &CriterionInfo;
 
-    /// One index per mode into `out`: the published left-hand side, 1 at failure, 0 where the mode does not apply.
+    /// One index per mode into `out`: the published left-hand side, 1 at failure, 0 where the mode does not apply, NaN
+    /// for a stress outside the criterion's theory ([`FailureCriterion::scope`]).
     ///
-    /// `s` is finite and `m` has every strength of [`CriterionInfo::strengths`]: callers see to both.
+    /// `s` is finite and `m` passes [`check_material`]: callers see to both, or call [`assess`].
     fn indices(&self, s: &Stress6<Ply>, m: &Material, out: &mut [f64]);
 
     /// [`FailureCriterion::indices`] of many states, `modes` numbers each.
@@ -67,5 +84,258 @@ pub trait FailureCriterion: DynClone + Debug + Send + Sync {
             self.indices(s, m, out);
         }
     }
+
+    /// The smallest factor that brings `s` to failure, and the mode.
+    ///
+    /// Provided as [`search_reserve`]; a criterion with a closed form overrides it.
+    fn reserve_factor(&self, s: &Stress6<Ply>, m: &Material) -> Reserve {
+        search_reserve(|s, out| self.indices(s, m, out), self.info().modes.len(), s, m)
+    }
+
+    /// Refuses a material whose constants the criterion cannot use, such as strengths that leave a failure surface
+    /// open. That the required strengths are there is [`check_material`]'s business.
+    ///
+    /// # Errors
+    /// The condition, with its numbers.
+    fn check(&self, m: &Material) -> Result<(), String> {
+        let _ = m;
+        Ok(())
+    }
+
+    /// Which finite stresses the criterion refuses by the index NaN, and what to do about it.
+    fn scope(&self) -> &'static str {
+        "every finite stress"
+    }
 }
 dyn_clone::clone_trait_object!(FailureCriterion);
+
+/// Whether `criterion`, called `name`, can judge a ply or an interface of material `m`.
+///
+/// # Errors
+/// A required strength is missing, or [`FailureCriterion::check`] refuses the material.
+pub fn check_material(criterion: &dyn FailureCriterion, name: &str, m: &Material) -> Result<(), MaterialError> {
+    let user = format!("criterion `{name}`");
+    m.require(criterion.info().strengths, &user)?;
+    criterion
+        .check(m)
+        .map_err(|why| MaterialError { material: m.name.clone(), why: format!("{user} cannot judge it: {why}") })
+}
+
+/// What a criterion says of one stress.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assessment {
+    /// One index per mode.
+    pub indices: Vec<f64>,
+    /// How far failure is, and by which mode.
+    pub reserve: Reserve,
+}
+
+/// Why a stress is not assessed.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum AssessError {
+    /// The stress is infinite or not a number.
+    NotFinite(Stress6<Ply>),
+    /// The material does not suit the criterion.
+    Material(MaterialError),
+    /// The stress is outside the criterion's theory.
+    Scope(Stress6<Ply>, &'static str),
+}
+
+impl fmt::Display for AssessError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            AssessError::NotFinite(s) => write!(f, "the stress is not finite: {s:?}"),
+            AssessError::Material(e) => write!(f, "{e}"),
+            AssessError::Scope(s, scope) => write!(f, "{s:?} cannot be judged; the criterion takes {scope}"),
+        }
+    }
+}
+impl std::error::Error for AssessError {}
+
+/// Indices and reserve factor of one stress, with every check that the methods of the trait leave to their caller.
+///
+/// # Errors
+/// Anything for which the criterion has no trustworthy answer.
+pub fn assess(
+    criterion: &dyn FailureCriterion,
+    name: &str,
+    s: &Stress6<Ply>,
+    m: &Material,
+) -> Result<Assessment, AssessError> {
+    check_material(criterion, name, m).map_err(AssessError::Material)?;
+    if !s.is_finite() {
+        return Err(AssessError::NotFinite(*s));
+    }
+    let mut indices = vec![f64::NAN; criterion.info().modes.len()];
+    criterion.indices(s, m, &mut indices);
+    let reserve = criterion.reserve_factor(s, m);
+    if reserve.factor.is_nan() {
+        return Err(AssessError::Scope(*s, criterion.scope()));
+    }
+    Ok(Assessment { indices, reserve })
+}
+
+/// `(s', k)` with s = k s' and k a power of two: 1 while the largest component lies between 2⁻²⁰⁰ and 2²⁰⁰, otherwise
+/// such that powers of the components of s' neither overflow nor underflow.
+///
+/// The division is exact, so that a branch chosen by the sign of a component or of a sum is the one of the stress as
+/// given; a component too small to survive it keeps its sign.
+pub fn moderate(s: &Stress6<Ply>) -> (Stress6<Ply>, f64) {
+    const LIMIT: f64 = f64::from_bits((1023 + 200) << 52);
+    let largest = s.0.iter().fold(0.0_f64, |k, c| k.max(c.abs()));
+    if largest == 0.0 || (1.0 / LIMIT..=LIMIT).contains(&largest) {
+        return (*s, 1.0);
+    }
+    let k = largest.log2().floor().clamp(-1074.0, 1023.0).exp2();
+    let divided = s.0.map(|c| match c / k {
+        0.0 if c != 0.0 => f64::MIN_POSITIVE.copysign(c),
+        quotient => quotient,
+    });
+    (Stress6::new(divided), k)
+}
+
+/// The reserve factor of any `indices` (a function of the stress that fills `modes` numbers), by search.
+///
+/// Follows the ray R σ from 10⁻³ of the smallest to 10³ of the largest strength of `m` in steps of 1 % and bisects to
+/// the last bit where an index first is 1 or more. Right for indices that jump or fall again; an excursion above 1
+/// that is shorter than a step can be missed.
+pub fn search_reserve(
+    indices: impl Fn(&Stress6<Ply>, &mut [f64]),
+    modes: usize,
+    s: &Stress6<Ply>,
+    m: &Material,
+) -> Reserve {
+    const STEP: f64 = 1.01;
+    let (unit, k) = moderate(s);
+    let largest = unit.0.iter().fold(0.0_f64, |k, c| k.max(c.abs()));
+    let strengths = || Strength::ALL.iter().filter_map(|which| m.strengths.get(*which));
+    let (weakest, strongest) = (strengths().fold(f64::INFINITY, f64::min), strengths().fold(0.0, f64::max));
+    if largest == 0.0 || strongest == 0.0 {
+        return Reserve::UNBOUNDED;
+    }
+    let mut out = vec![f64::NAN; modes];
+    // The mode of the largest index at R, if that is 1 or more or any is not a number (of whichever sign).
+    let mut failed = |r: f64| {
+        indices(&unit.scaled(r), &mut out);
+        let rank = |mode: &usize| if out[*mode].is_nan() { f64::INFINITY } else { out[*mode] };
+        let worst = (0..modes).max_by(|a, b| rank(a).total_cmp(&rank(b)))?;
+        (rank(&worst) >= 1.0).then_some((worst, out[worst]))
+    };
+    let (mut safe, end) = (0.0, 1e3 * strongest / largest);
+    let mut r = 1e-3 * weakest / largest;
+    let (mut mode, mut index) = loop {
+        if let Some(found) = failed(r) {
+            break found;
+        }
+        if r > end {
+            return Reserve::UNBOUNDED;
+        }
+        safe = r;
+        r *= STEP;
+    };
+    loop {
+        let middle = safe + 0.5 * (r - safe);
+        if index.is_nan() {
+            return Reserve { factor: f64::NAN, mode: None };
+        }
+        if middle <= safe || middle >= r {
+            break;
+        }
+        match failed(middle) {
+            Some(found) => (r, (mode, index)) = (middle, found),
+            None => safe = middle,
+        }
+    }
+    let factor = r / k;
+    Reserve { factor, mode: factor.is_finite().then_some(mode) }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::material::{Elastic, Strengths};
+
+    fn material() -> Material {
+        Material {
+            name: "m".into(),
+            elastic: Elastic::isotropic(1e9, 0.3),
+            density: 1.0,
+            strengths: Strengths::default().with(Strength::Xt, 100.0).with(Strength::Yt, 10.0),
+        }
+    }
+
+    /// Quadratic along the fibre, jumps to 5 at a tenth of Yt across it, refuses shear.
+    #[derive(Debug, Clone)]
+    struct Odd;
+    impl FailureCriterion for Odd {
+        fn info(&self) -> &CriterionInfo {
+            const INFO: CriterionInfo = CriterionInfo {
+                site: Site::Ply,
+                modes: &["smooth", "jump"],
+                strengths: &[Strength::Xt, Strength::Yt],
+                invariant_about_fibre: false,
+            };
+            &INFO
+        }
+        fn indices(&self, s: &Stress6<Ply>, m: &Material, out: &mut [f64]) {
+            let refused = if s.s12() == 0.0 { 0.0 } else { -f64::NAN };
+            out[0] = refused + (s.s11() / m.strengths.xt()).powi(2);
+            out[1] = if s.s22() >= 0.1 * m.strengths.yt() { 5.0 } else { 0.0 };
+        }
+        fn check(&self, m: &Material) -> Result<(), String> {
+            if m.strengths.yt() < 1.0 { Err("Yt is below 1".into()) } else { Ok(()) }
+        }
+        fn scope(&self) -> &'static str {
+            "stresses without shear"
+        }
+    }
+
+    #[test]
+    fn the_search_finds_roots_and_jumps() {
+        let reserve = |s| Odd.reserve_factor(&Stress6::new(s), &material());
+        let smooth = reserve([-25.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        assert!((smooth.factor - 4.0).abs() < 4e-15 && smooth.mode == Some(0), "{smooth:?}");
+        let jump = reserve([1.0, 4.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(jump, Reserve { factor: 0.25, mode: Some(1) });
+        assert_eq!(reserve([0.0; 6]), Reserve::UNBOUNDED);
+        assert_eq!(reserve([0.0, -1.0, 0.0, 0.0, 0.0, 0.0]), Reserve::UNBOUNDED);
+        assert!(reserve([0.0, 0.0, 0.0, 1.0, 0.0, 0.0]).factor.is_nan());
+        for scale in [1e-300, 1e300] {
+            let r = reserve([scale, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            assert!((r.factor * scale / 100.0 - 1.0).abs() < 1e-14, "{r:?}");
+        }
+    }
+
+    #[test]
+    fn moderation_is_exact_and_keeps_signs() {
+        for s in [[3e200, -7e199, 0.0, -0.0, 1e180, 5.0], [-5e-324, 1e-310, 0.0, 0.0, 5e-324, 0.0]] {
+            let (unit, k) = moderate(&Stress6::new(s));
+            assert!(unit.0.iter().all(|c| c.abs() < 2.0) && unit.0.iter().any(|c| c.abs() >= 0.5), "{unit:?} {k}");
+            assert_eq!(unit.0.map(|c| c * k), s);
+        }
+        let (unit, _) = moderate(&Stress6::new([1e300, -5e-324, -0.0, 0.0, 0.0, 0.0]));
+        assert!(unit.s22() < 0.0 && unit.s33() == 0.0);
+        let (unit, k) = moderate(&Stress6::new([f64::MAX; 6]));
+        assert!(unit.s11() * k == f64::MAX);
+    }
+
+    #[test]
+    fn assessment_refuses_what_cannot_be_judged() {
+        let assess = |s, m: &Material| assess(&Odd, "odd", &Stress6::new(s), m);
+        let good = assess([50.0, 0.0, 0.0, 0.0, 0.0, 0.0], &material()).unwrap();
+        assert_eq!(good.indices, [0.25, 0.0]);
+        assert_eq!(good.reserve.mode, Some(0));
+        let nan = assess([f64::NAN, 0.0, 0.0, 0.0, 0.0, 0.0], &material()).unwrap_err();
+        assert!(matches!(nan, AssessError::NotFinite(_)));
+        let shear = assess([0.0, 0.0, 0.0, 1.0, 0.0, 0.0], &material()).unwrap_err();
+        assert!(shear.to_string().contains("stresses without shear"));
+        let mut weak = material();
+        weak.strengths = weak.strengths.with(Strength::Yt, 0.5);
+        let error = assess([0.0; 6], &weak).unwrap_err().to_string();
+        assert!(error.contains("`odd`") && error.contains("Yt is below 1"), "{error}");
+        weak.strengths = Strengths::default();
+        assert!(assess([0.0; 6], &weak).unwrap_err().to_string().contains("Xt, Yt"));
+    }
+}

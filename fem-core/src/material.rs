@@ -155,6 +155,12 @@ strengths! {
     S12 s12 "S12",
     /// Shear across the fibres, s23.
     S23 s23 "S23",
+    /// Tension through the thickness, of an interface.
+    Zt zt "Zt",
+    /// Compression through the thickness (positive number), of an interface.
+    Zc zc "Zc",
+    /// Interlaminar shear in the 3-1 plane, of an interface; its 2-3 plane has S23.
+    S13 s13 "S13",
 }
 
 const STRENGTHS: usize = Strength::ALL.len();
@@ -258,7 +264,7 @@ mod tests {
         assert!(e.check().unwrap_err().contains("|nu12| < sqrt(E1/E2)"));
         e.nu12 = 0.9;
         e.nu13 = 0.9;
-        e.nu23 = -0.9;
+        e.nu23 = 0.9;
         assert!(e.check().unwrap_err().contains("> 0 is required"));
         e.e2 = f64::NAN;
         assert!(e.check().unwrap_err().contains("E2"));

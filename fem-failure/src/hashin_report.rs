@@ -1,9 +1,7 @@
 //! Hashin's criterion as AFWAL-TR-87-4117 uses it.
 
-use fem_core::failure::{CriterionInfo, FailureCriterion, Site};
-use fem_core::material::{Material, Strength};
-use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
-use fem_core::tensor::{Ply, Stress6};
+use crate::hashin_1980::transverse_tension_is_bounded;
+use crate::prelude::*;
 
 /// Sign of σ22 σ33 in the tensile matrix mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -42,6 +40,25 @@ impl HashinReport {
             invariant_about_fibre,
         }
     }
+
+    #[inline]
+    fn terms(&self, s: &Stress6<Ply>, m: &Material) -> [Terms; 4] {
+        let r = &m.strengths;
+        let product = match self.product {
+            Product::Minus => -s.s22() * s.s33(),
+            Product::Plus => s.s22() * s.s33(),
+        };
+        let along = (s.s12() * s.s12() + s.s31() * s.s31()) / (r.s12() * r.s12());
+        let (across, s23) = (s.s23() * s.s23(), r.s23() * r.s23());
+        let (sum, half) = (s.s22() + s.s33(), 0.5 * (s.s22() - s.s33()));
+        let (fibre, opening) = (s.s11() >= 0.0, sum >= 0.0);
+        [
+            Terms::quadratic((s.s11() / r.xt()).powi(2) + along).when(fibre),
+            Terms::quadratic((s.s11() / r.xc()).powi(2)).when(!fibre),
+            Terms::quadratic((sum / r.yt()).powi(2) + (across + product) / s23 + along).when(opening),
+            Terms::quadratic((half * half + across) / s23 + along).when(!opening),
+        ]
+    }
 }
 
 impl FailureCriterion for HashinReport {
@@ -54,23 +71,13 @@ impl FailureCriterion for HashinReport {
         }
     }
 
-    #[inline]
-    fn indices(&self, s: &Stress6<Ply>, m: &Material, out: &mut [f64]) {
-        let r = &m.strengths;
-        let product = match self.product {
-            Product::Minus => -s.s22() * s.s33(),
-            Product::Plus => s.s22() * s.s33(),
-        };
-        let along = (s.s12() * s.s12() + s.s31() * s.s31()) / (r.s12() * r.s12());
-        let across = s.s23() * s.s23();
-        let (sum, half) = (s.s22() + s.s33(), 0.5 * (s.s22() - s.s33()));
-        let fibre = s.s11() >= 0.0;
-        let opening = sum >= 0.0;
-        out[0] = if fibre { (s.s11() / r.xt()).powi(2) + along } else { 0.0 };
-        out[1] = if fibre { 0.0 } else { (s.s11() / r.xc()).powi(2) };
-        let s23 = r.s23() * r.s23();
-        out[2] = if opening { (sum / r.yt()).powi(2) + (across + product) / s23 + along } else { 0.0 };
-        out[3] = if opening { 0.0 } else { (half * half + across) / s23 + along };
+    from_terms!();
+
+    fn check(&self, m: &Material) -> Result<(), String> {
+        match self.product {
+            Product::Minus => transverse_tension_is_bounded(m),
+            Product::Plus => Ok(()),
+        }
     }
 }
 

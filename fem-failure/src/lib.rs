@@ -1,13 +1,51 @@
 //! Failure criteria of laminated composites and the scan for first damage.
 //!
 //! One file per criterion; each is a pure function of the stress in a ply's own axes, returns one index per failure
-//! mode (1 at failure, 0 where the mode does not apply) and introduces itself through
+//! mode (1 at failure, 0 where the mode does not apply) and a reserve factor, and introduces itself through
 //! [`Plugin::INFO`](fem_core::plugin::Plugin::INFO). [`scan::Scan`] follows any number of them through a run.
+//!
+//! Indices are of different degrees in the stress (1 for limits, 2 for quadratic forms, both for some) and must not be
+//! compared between criteria; reserve factors may.
 
 pub mod scan;
 
+mod action_plane;
+mod chang_chang;
+mod chang_lessard;
+mod choi_chang;
+mod christensen;
+mod cuntze;
+mod hashin_1980;
 mod hashin_report;
+mod hashin_rotem;
+mod hoffman;
+mod interface;
+mod max_strain;
+mod max_stress;
 mod octahedral;
+mod plane_stress;
+mod prelude;
+mod puck;
+mod puck_2d;
+mod terms;
+mod tsai_hill;
+mod tsai_wu;
 
+pub use chang_chang::ChangChang;
+pub use chang_lessard::ChangLessard;
+pub use choi_chang::ChoiChang;
+pub use christensen::Christensen;
+pub use cuntze::{Cuntze, Cuntze2d};
+pub use hashin_1980::Hashin1980;
 pub use hashin_report::{HashinReport, Product};
+pub use hashin_rotem::HashinRotem;
+pub use hoffman::Hoffman;
+pub use interface::{BrewerLagace, MaxStressInterface, QuadraticStress};
+pub use max_strain::MaxStrain;
+pub use max_stress::MaxStress;
 pub use octahedral::Octahedral;
+pub use plane_stress::OutOfPlane;
+pub use puck::{FibreFailure, Puck};
+pub use puck_2d::Puck2d;
+pub use tsai_hill::{Interaction, TsaiHill};
+pub use tsai_wu::{Transverse, TsaiWu};

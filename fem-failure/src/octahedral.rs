@@ -1,9 +1,6 @@
 //! Octahedral shear in the resin between two plies.
 
-use fem_core::failure::{CriterionInfo, FailureCriterion, Site};
-use fem_core::material::{Material, Strength};
-use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
-use fem_core::tensor::{Ply, Stress6};
+use crate::prelude::*;
 
 /// AFWAL-TR-87-4117, eq. (42), made dimensionally consistent.
 ///
@@ -17,6 +14,16 @@ use fem_core::tensor::{Ply, Stress6};
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Octahedral;
 
+impl Octahedral {
+    #[inline]
+    fn terms(&self, s: &Stress6<Ply>, m: &Material) -> [Terms; 1] {
+        let (a, b, c) = (s.s11() - s.s22(), s.s22() - s.s33(), s.s33() - s.s11());
+        let shear = s.s12() * s.s12() + s.s23() * s.s23() + s.s31() * s.s31();
+        let tau = m.strengths.s12();
+        [Terms::quadratic(((a * a + b * b + c * c) / 6.0 + shear) / (tau * tau))]
+    }
+}
+
 impl FailureCriterion for Octahedral {
     fn info(&self) -> &CriterionInfo {
         const INFO: CriterionInfo = CriterionInfo {
@@ -28,13 +35,7 @@ impl FailureCriterion for Octahedral {
         &INFO
     }
 
-    #[inline]
-    fn indices(&self, s: &Stress6<Ply>, m: &Material, out: &mut [f64]) {
-        let (a, b, c) = (s.s11() - s.s22(), s.s22() - s.s33(), s.s33() - s.s11());
-        let shear = s.s12() * s.s12() + s.s23() * s.s23() + s.s31() * s.s31();
-        let tau = m.strengths.s12();
-        out[0] = ((a * a + b * b + c * c) / 6.0 + shear) / (tau * tau);
-    }
+    from_terms!();
 }
 
 impl Plugin for Octahedral {

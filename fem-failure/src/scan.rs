@@ -1,6 +1,6 @@
 //! First damage: which criterion reaches 1 where and when.
 
-use fem_core::failure::{FailureCriterion, Site};
+use fem_core::failure::{FailureCriterion, Site, check_material};
 use fem_core::material::{Material, MaterialError};
 use fem_core::tensor::{Ply, Stress6};
 use std::fmt;
@@ -92,7 +92,7 @@ pub struct Peak {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScanError {
-    /// A site's material lacks what a criterion requires.
+    /// A site's material does not suit a criterion.
     #[error("criterion `{criterion}` cannot judge {place} of cell {cell}")]
     Material {
         /// Name of the criterion.
@@ -101,7 +101,7 @@ pub enum ScanError {
         cell: u32,
         /// Its place.
         place: Place,
-        /// What is missing.
+        /// What is missing or wrong.
         source: MaterialError,
     },
     /// A site names a material that was not given.
@@ -146,7 +146,8 @@ pub enum ScanError {
     },
     /// An index that is neither a number nor +∞.
     #[error(
-        "criterion `{criterion}`, mode `{mode}` gives {index} in {place} of cell {cell} at {time} s for {stress:?}"
+        "criterion `{criterion}`, mode `{mode}` gives {index} in {place} of cell {cell} at {time} s for {stress:?}; \
+         it takes {scope}"
     )]
     Index {
         /// Time, s.
@@ -163,6 +164,8 @@ pub enum ScanError {
         index: f64,
         /// Of this stress.
         stress: Stress6<Ply>,
+        /// [`FailureCriterion::scope`].
+        scope: &'static str,
     },
 }
 
@@ -226,7 +229,7 @@ impl Scan {
     /// A scan of `sites` by named criteria; `materials` are what [`ScanSite::material`] counts.
     ///
     /// # Errors
-    /// A site whose material was not given or lacks a constant that a criterion looking there requires.
+    /// A site whose material was not given, or is refused by a criterion looking there.
     pub fn new(
         criteria: Vec<(String, Box<dyn FailureCriterion>)>,
         sites: Vec<ScanSite>,
@@ -266,14 +269,9 @@ impl Scan {
             let mut start = 0;
             for run in order[span.clone()].chunk_by(|&a, &b| sites[a as usize].material == sites[b as usize].material) {
                 let first = &sites[run[0] as usize];
-                materials[usize::from(first.material)]
-                    .require(criterion.info().strengths, &format!("criterion `{name}`"))
-                    .map_err(|source| ScanError::Material {
-                        criterion: name.clone(),
-                        cell: first.cell,
-                        place: first.place,
-                        source,
-                    })?;
+                check_material(&*criterion, &name, &materials[usize::from(first.material)]).map_err(|source| {
+                    ScanError::Material { criterion: name.clone(), cell: first.cell, place: first.place, source }
+                })?;
                 runs.push((first.material, start..start + run.len()));
                 start += run.len();
             }
@@ -333,6 +331,7 @@ impl Scan {
                     place: site.place,
                     index: watch.now[row * watch.modes.len() + mode],
                     stress: self.stress[k],
+                    scope: watch.criterion.scope(),
                 });
             }
         }

@@ -1,4 +1,6 @@
 //! x
+pub mod materials;
+pub mod scene;
 pub mod units;
 
 pub mod gmsh;

@@ -146,12 +146,24 @@ pub fn parse_quantity(text: &str) -> Result<(f64, Dimension), UnitError> {
     if parser.peek().is_some() {
         return Err(parser.syntax("`)` without `(`"));
     }
-    let value = number * scale.factor;
+    let value = scaled(number, scale.factor);
     // An underflow is as wrong as an overflow: it would turn a small number into none.
     if !value.is_finite() || !scale.factor.is_normal() || (value == 0.0) != (number == 0.0) {
         return Err(UnitError::OutOfRange(text.to_owned()));
     }
     Ok((value, Dimension(scale.exponents)))
+}
+
+/// `number · factor`; rounded once where the factor is a power of ten, so that 5 us is 5e-6 s to the last bit.
+fn scaled(number: f64, factor: f64) -> f64 {
+    let power = factor.log10().round();
+    if (factor / 10_f64.powf(power) - 1.0).abs() < 1e-14
+        && let Some((mantissa, exponent)) = format!("{number:e}").split_once('e')
+        && let Ok(exponent) = exponent.parse::<i32>()
+    {
+        return format!("{mantissa}e{}", exponent + power as i32).parse().unwrap_or(f64::NAN);
+    }
+    number * factor
 }
 
 /// Reads a quantity of dimension `wanted`: its value in SI.
@@ -409,6 +421,20 @@ mod tests {
         assert_reads("1 Msi", 6894.757e6, Dimension::PRESSURE);
         assert_reads("1 slug", 14.593_90, Dimension::MASS);
         assert_reads("2 millimeters", 2e-3, Dimension::LENGTH);
+    }
+
+    #[test]
+    fn decimal_units_are_exact() {
+        for (text, value) in [
+            ("130.3 GPa", 130.3e9),
+            ("5 us", 5e-6),
+            ("0.13208 mm", 0.13208e-3),
+            ("1.575 g/cm^3", 1575.0),
+            ("-1.2e-3 N/mm^2", -1200.0),
+            ("0 mm", 0.0),
+        ] {
+            assert_eq!(parse_quantity(text).map(|q| q.0), Ok(value), "{text}");
+        }
     }
 
     #[test]

@@ -55,8 +55,8 @@ impl Curve {
 
 impl SunYang {
     fn curve(&self, alpha_max: f64, p: f64) -> Curve {
-        let depth = alpha_max * (self.critical / alpha_max).min(1.0).powf(self.beta);
-        Curve { dent: alpha_max - depth, depth, peak: self.loading.at(alpha_max).force, p }
+        let dent = alpha_max - alpha_max * (self.critical / alpha_max).min(1.0).powf(self.beta);
+        Curve { dent, depth: alpha_max - dent, peak: self.loading.at(alpha_max).force, p }
     }
 
     fn present(&self, history: &ContactHistory) -> Curve {

@@ -1,0 +1,98 @@
+//! Contact laws.
+
+use crate::{hertz, law, length, stiffness, sun_yang, table};
+use fem_core::contact::{ContactEnergy, ContactHistory, ContactLaw};
+use fem_core::plugin::{Dimension, Params, Value};
+use fem_core::testkit::check_contact_law;
+use fem_dynamics::contact::{Hertz, Linear, SunYang};
+
+const RULES: [&str; 2] = ["unloading-curve", "loading-exponent"];
+
+#[test]
+fn contracts_hold() {
+    check_contact_law(&*law::<Linear>(&stiffness(3e7, 1.0).with("n", Value::Number(1.0))), 1e-4).unwrap();
+    check_contact_law(&*hertz(3.38e9, 1.5), 1e-4).unwrap();
+    check_contact_law(&*hertz(2.0, 1.0), 3.0).unwrap();
+    for rule in RULES {
+        // Without a dent, with one from the middle on, with one from the beginning.
+        for critical in [2e-4, 8e-5, 1e-7] {
+            check_contact_law(&*sun_yang(3.38e9, critical, rule), 1.6e-4)
+                .unwrap_or_else(|why| panic!("{rule} {critical}: {why}"));
+        }
+        let other = stiffness(5.0, 1.2).with("m", Value::Number(1.2)).with("beta", Value::Number(1.0));
+        check_contact_law(
+            &*law::<SunYang>(&other.with("critical", length(0.1)).with("reloading", Value::Text(rule.into()))),
+            1.0,
+        )
+        .unwrap();
+    }
+}
+
+#[test]
+fn hertz_stiffness_of_a_steel_ball_on_a_laminate() {
+    let params = Params::default()
+        .with("radius", length(6.35e-3))
+        .with("e_tip", Value::Quantity(210e9, Dimension::PRESSURE))
+        .with("nu_tip", Value::Number(0.3))
+        .with("e_plate", Value::Quantity(7.9e9, Dimension::PRESSURE));
+    let k = law::<Hertz>(&params).force(&ContactHistory::default(), 1.0).force;
+    assert!((k / 811585276.4303534 - 1.0).abs() < 1e-14, "{k}");
+}
+
+/// Takes `path` into a fresh history.
+fn committed(law: &dyn ContactLaw, path: &[f64]) -> ContactHistory {
+    let mut h = ContactHistory::default();
+    path.iter().for_each(|&alpha| law.commit(&mut h, alpha));
+    h
+}
+
+#[test]
+fn second_contacts_agree_with_the_reference() {
+    for rule in RULES {
+        let law = sun_yang(811585276.4303534, 8.03e-5, rule);
+        let mut h = ContactHistory::default();
+        let rows: Vec<_> =
+            table("sun_yang_reloading").into_iter().filter(|row| row.text("reloading") == rule).collect();
+        assert!(rows.len() > 100);
+        for row in rows {
+            let alpha = 1e-3 * row.number("d");
+            let (force, expected) = (law.force(&h, alpha).force, row.number("F"));
+            // Highest force and indentation of the reference agree to 1.6e-6.
+            assert!((force - expected).abs() < 2e-6 * 289.0, "{rule} {}: {force}, {expected}", row.text("t"));
+            law.commit(&mut h, alpha);
+        }
+    }
+}
+
+#[test]
+fn a_cycle_dissipates_what_the_formulas_say() {
+    let (k, critical, beta, alpha) = (2.0, 0.5_f64, 0.4, 0.8_f64);
+    let force = k * alpha.powf(1.5);
+    let depth = alpha * (critical / alpha).powf(beta);
+    let first = force * alpha / 2.5 - force * depth / 3.5;
+    let again = force * depth / 2.5 - force * depth / 3.5;
+    for (rule, second) in RULES.into_iter().zip([first, first + again]) {
+        let law = sun_yang(k, critical, rule);
+        let apart = |path: &[f64]| law.energy(&committed(&*law, path), -1.0);
+        let close = |energy: ContactEnergy, dissipated: f64| {
+            assert_eq!(energy.stored, 0.0, "{rule}");
+            assert!((energy.dissipated - dissipated).abs() < 1e-14, "{rule}: {energy:?} {dissipated}");
+        };
+        close(apart(&[0.3, 0.5, alpha, 0.0]), first);
+        // Below the largest indentation a second contact is elastic; exceeding it takes the unloading curve again.
+        close(apart(&[alpha, 0.0, 0.7, 0.0]), first);
+        close(apart(&[alpha, 0.0, alpha * (1.0 + 1e-15), 0.0]), second);
+    }
+}
+
+#[test]
+fn no_force_within_the_dent() {
+    for rule in RULES {
+        let law = sun_yang(2.0, 0.1, rule);
+        let dent = 1.0 - 0.1_f64.powf(0.4);
+        let h = committed(&*law, &[1.0]);
+        assert_eq!(law.force(&h, dent - 1e-12).force, 0.0);
+        assert!(law.force(&h, dent + 1e-6).force > 0.0);
+        assert_eq!(law.force(&h, 1.0).force, 2.0);
+    }
+}

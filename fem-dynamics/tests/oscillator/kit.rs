@@ -1,0 +1,112 @@
+//! The kit notices broken plug-ins.
+
+use crate::{hertz, scheme};
+use fem_core::contact::{ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use fem_core::testkit::{check_contact_law, check_integrator};
+use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit};
+
+/// A sound law whose answers pass through functions.
+#[derive(Debug, Clone)]
+struct Spoiled {
+    sound: Box<dyn ContactLaw>,
+    force: Force,
+    commit: Commit,
+    energy: Energy,
+}
+
+type Force = fn(ContactForce, &ContactHistory, f64) -> ContactForce;
+type Commit = fn(&mut ContactHistory, f64);
+type Energy = fn(ContactEnergy, &ContactHistory) -> ContactEnergy;
+
+impl ContactLaw for Spoiled {
+    fn force(&self, h: &ContactHistory, alpha: f64) -> ContactForce {
+        (self.force)(self.sound.force(h, alpha), h, alpha)
+    }
+
+    fn commit(&self, h: &mut ContactHistory, alpha: f64) {
+        (self.commit)(h, alpha);
+    }
+
+    fn energy(&self, h: &ContactHistory, alpha: f64) -> ContactEnergy {
+        (self.energy)(self.sound.energy(h, alpha), h)
+    }
+}
+
+#[test]
+fn of_contact_laws() {
+    let sound = Spoiled { sound: hertz(2.0, 1.5), force: |f, _, _| f, commit: |_, _| (), energy: |e, _| e };
+    check_contact_law(&sound, 1.0).unwrap();
+
+    let force = |force: Force| Spoiled { force, ..sound.clone() };
+    let energy = |commit: Commit, energy: Energy| Spoiled { commit, energy, ..sound.clone() };
+    let stiffer: Force = |f, h, _| ContactForce { force: f.force * (1.0 + h[0]), tangent: f.tangent * (1.0 + h[0]) };
+    let largest: Commit = |h, alpha| h[0] = alpha.max(0.0);
+    let lost: Energy = |e, h| ContactEnergy { dissipated: h[0], ..e };
+    let lent: Energy = |e, h| ContactEnergy { stored: e.stored - 1e-3 * h[0], dissipated: 1e-3 * h[0] };
+    for (says, law) in [
+        ("without indentation", force(|f, _, a| ContactForce { force: if a < 0.0 { 1.0 } else { f.force }, ..f })),
+        ("negative", force(|f, _, _| ContactForce { force: -f.force, ..f })),
+        ("tangent", force(|f, _, _| ContactForce { tangent: 1.01 * f.tangent, ..f })),
+        ("NaN", force(|f, _, a| if a.is_nan() { ContactForce::default() } else { f })),
+        ("commit changes the force", Spoiled { commit: largest, ..force(stiffer) }),
+        ("but the work is", energy(|_, _| (), |e, _| ContactEnergy { stored: 1.001 * e.stored, ..e })),
+        ("commit changes the energy", energy(|h, _| h[0] += 1e-8, lost)),
+        ("fallen", energy(largest, lent)),
+    ] {
+        let why = check_contact_law(&law, 1.0).unwrap_err();
+        assert!(why.contains(says), "{says}: {why}");
+    }
+}
+
+/// A sound scheme that something befalls after each step.
+#[derive(Debug, Clone)]
+struct Careless {
+    sound: Box<dyn Integrator>,
+    limit: StepLimit,
+    deaf: bool,
+    steps: f64,
+    after: fn(f64, &mut State),
+}
+
+impl Integrator for Careless {
+    fn limit(&self) -> StepLimit {
+        self.limit
+    }
+
+    fn start(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError> {
+        self.sound.start(sys, s)
+    }
+
+    fn resume(&mut self, sys: &mut dyn SecondOrderSystem) {
+        self.sound.resume(sys);
+    }
+
+    fn step(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State, dt: f64) -> Result<(), StepError> {
+        self.steps += 1.0;
+        let end = self.sound.step(sys, s, dt);
+        (self.after)(self.steps, s);
+        if self.deaf { Ok(()) } else { end }
+    }
+}
+
+#[test]
+fn of_integrators() {
+    let sound = scheme("central-difference");
+    let sound = Careless { limit: sound.limit(), sound, deaf: false, steps: 0.0, after: |_, _| () };
+    check_integrator(&sound, 2).unwrap();
+    let why = check_integrator(&sound, 3).unwrap_err();
+    assert!(why.contains("where 3 is claimed"), "{why}");
+
+    let after = |after: fn(f64, &mut State)| Careless { after, ..sound.clone() };
+    for (says, scheme) in [
+        ("unit amplitude grows", Careless { limit: StepLimit::None, ..sound.clone() }),
+        ("end at t", after(|_, s| s.t += 1e-6)),
+        ("restarted", after(|step, s| s.v[0] += 1e-9 * step)),
+        ("commit", after(|_, s| s.contacts.iter_mut().for_each(|h| h[1] = 0.0))),
+        ("elastic stop", after(|_, s| s.v[0] *= 1.0 - 1e-4 * s.contacts.len() as f64)),
+        ("NaN gives Ok", Careless { deaf: true, ..sound.clone() }),
+    ] {
+        let why = check_integrator(&scheme, 2).unwrap_err();
+        assert!(why.contains(says), "{says}: {why}");
+    }
+}

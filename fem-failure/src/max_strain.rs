@@ -1,0 +1,83 @@
+//! Maximum strain.
+
+use crate::max_stress::{LIMIT_MODES, limits};
+use crate::prelude::*;
+
+/// Every component of ε = S σ over an allowable strain.
+///
+/// The allowables are parameters, one set for all plies, and never derived from strengths: X/E1, Y/E2 are not what a
+/// coupon strains at, and with them the Poisson strain of a fibre compression exceeds the transverse allowable long before
+/// Xc. The thickness has the transverse allowables and 31 that of 12. Not invariant about the fibre.
+#[derive(Debug, Clone, Copy)]
+pub struct MaxStrain {
+    /// Along the fibres, tension.
+    pub e1t: f64,
+    /// Along the fibres, compression (positive).
+    pub e1c: f64,
+    /// Across the fibres, tension.
+    pub e2t: f64,
+    /// Across the fibres, compression (positive).
+    pub e2c: f64,
+    /// Engineering shear 12 and 31.
+    pub g12: f64,
+    /// Engineering shear 23.
+    pub g23: f64,
+}
+
+impl MaxStrain {
+    fn terms(&self, s: &Stress6<Ply>, m: &Material) -> [Terms; 9] {
+        let e = &m.elastic;
+        let (n1, n2, n3) = (s.s11() / e.e1, s.s22() / e.e2, s.s33() / e.e3);
+        let strain = [
+            n1 - (e.nu12 * s.s22() + e.nu13 * s.s33()) / e.e1,
+            n2 - e.nu12 * s.s11() / e.e1 - e.nu23 * s.s33() / e.e2,
+            n3 - e.nu13 * s.s11() / e.e1 - e.nu23 * s.s22() / e.e2,
+            s.s12() / e.g12,
+            s.s23() / e.g23,
+            s.s31() / e.g13,
+        ];
+        limits(&strain, [self.e1t, self.e2t, self.e2t], [self.e1c, self.e2c, self.e2c], [self.g12, self.g23, self.g12])
+    }
+}
+
+impl FailureCriterion for MaxStrain {
+    fn info(&self) -> &CriterionInfo {
+        const INFO: CriterionInfo =
+            CriterionInfo { site: Site::Ply, modes: LIMIT_MODES, strengths: &[], invariant_about_fibre: false };
+        &INFO
+    }
+
+    from_terms!();
+}
+
+impl Plugin for MaxStrain {
+    const INFO: PluginInfo = PluginInfo {
+        kind: Kind::Criterion,
+        name: "max-strain",
+        summary: "each strain component against its allowable, no interaction",
+        source: "common practice",
+        params: &[
+            ParamInfo { name: "e1t", doc: "allowable tensile strain along the fibres; required" },
+            ParamInfo { name: "e1c", doc: "allowable compressive strain along the fibres, positive; required" },
+            ParamInfo { name: "e2t", doc: "allowable tensile strain across the fibres; required" },
+            ParamInfo { name: "e2c", doc: "allowable compressive strain across the fibres, positive; required" },
+            ParamInfo { name: "g12", doc: "allowable engineering shear strain 12 and 31; required" },
+            ParamInfo { name: "g23", doc: "allowable engineering shear strain 23; required" },
+        ],
+    };
+
+    fn build(params: &Params) -> Result<Built, ParamError> {
+        let allowable = |key: &str| match params.number(key, None)? {
+            v if v > 0.0 => Ok(v),
+            v => Err(ParamError::new(key, format!("must be positive, got {v}"))),
+        };
+        Ok(Built::Criterion(Box::new(Self {
+            e1t: allowable("e1t")?,
+            e1c: allowable("e1c")?,
+            e2t: allowable("e2t")?,
+            e2c: allowable("e2c")?,
+            g12: allowable("g12")?,
+            g23: allowable("g23")?,
+        })))
+    }
+}

@@ -1,0 +1,44 @@
+//! What a criterion for plane stress does with the stresses that it does not know.
+
+use crate::prelude::*;
+
+/// Treatment of σ33, σ23 and σ31 by a criterion for plane stress.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum OutOfPlane {
+    /// Refuse a stress of which one of them exceeds 1 % of the largest of σ11, σ22, σ12.
+    #[default]
+    Refuse,
+    /// Judge σ11, σ22 and σ12, whatever the others are.
+    Ignore,
+}
+
+impl OutOfPlane {
+    pub(crate) const PARAM: ParamInfo = ParamInfo {
+        name: "out_of_plane",
+        doc: "stresses 33, 23, 31 above 1 % of the largest of 11, 22, 12: \"refuse\" (default) or \"ignore\" them",
+    };
+
+    pub(crate) fn from_params(params: &Params) -> Result<Self, ParamError> {
+        Ok(match params.choice("out_of_plane", &["refuse", "ignore"])? {
+            "ignore" => Self::Ignore,
+            _ => Self::Refuse,
+        })
+    }
+
+    pub(crate) fn scope(self) -> &'static str {
+        match self {
+            Self::Refuse => {
+                "plane stress: 33, 23 and 31 within 1 % of the largest of 11, 22 and 12; choose a three-dimensional \
+                 criterion, or set out_of_plane = \"ignore\""
+            }
+            Self::Ignore => "every finite stress, of which it sees 11, 22 and 12",
+        }
+    }
+
+    #[inline]
+    pub(crate) fn admits(self, s: &Stress6<Ply>) -> bool {
+        let seen = s.s11().abs().max(s.s22().abs()).max(s.s12().abs());
+        let unseen = s.s33().abs().max(s.s23().abs()).max(s.s31().abs());
+        self == Self::Ignore || unseen <= 0.01 * seen
+    }
+}

@@ -1,0 +1,21 @@
+//! What every criterion's file needs.
+
+pub(crate) use crate::terms::{Terms, from_terms};
+pub(crate) use fem_core::failure::{CriterionInfo, FailureCriterion, Site};
+pub(crate) use fem_core::material::{Material, Strength};
+pub(crate) use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+pub(crate) use fem_core::tensor::{Ply, Stress6};
+
+/// A number within `range`, which `default` must not leave.
+pub(crate) fn number_in(
+    params: &Params,
+    key: &str,
+    range: std::ops::RangeInclusive<f64>,
+    default: f64,
+) -> Result<f64, ParamError> {
+    let v = params.number(key, Some(default))?;
+    if range.contains(&v) {
+        return Ok(v);
+    }
+    Err(ParamError::new(key, format!("must lie between {} and {}, got {v}", range.start(), range.end())))
+}

@@ -1,0 +1,157 @@
+//! The laminate: plies from the bottom up and the element layers that hold them.
+
+use super::material;
+use super::reader::{Field, Keys, Reader};
+use super::source::{Located, Place, SceneError};
+use super::tree::Node;
+use fem_core::layup::{self, LayupPly};
+use fem_core::material::Material;
+use fem_core::plugin::{Dimension, unknown_key};
+
+/// One ply. Its material counts in [`super::Scene::materials`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ply {
+    /// Fibre direction as written, degrees from x towards y.
+    pub angle_deg: f64,
+    /// The same in radians.
+    pub angle: f64,
+    /// Its material.
+    pub material: usize,
+    /// Thickness, m.
+    pub thickness: f64,
+}
+
+/// A laminate, from the bottom up.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Laminate {
+    /// Plies.
+    pub plies: Vec<Ply>,
+    /// Plies in each layer of elements; their sum is the number of plies.
+    pub layers: Vec<usize>,
+    /// Material of the resin between plies, for criteria that look there.
+    pub interface: Option<Located<usize>>,
+    /// Where it stands.
+    pub place: Place,
+}
+
+const KEYS: Keys = &[
+    ("plies", r#""[0/45/-45/90]2s""#),
+    ("material", r#""as4-3502""#),
+    ("ply_thickness", r#""0.13208 mm""#),
+    ("layers", "[8, 8]"),
+    ("ply", r#"{ core = { thickness = "5 mm" } }"#),
+    ("interface", r#""resin""#),
+];
+const PLY_KEYS: Keys = &[("material", r#""foam""#), ("thickness", r#""5 mm""#)];
+
+/// Material and thickness of a ply type.
+#[derive(Clone, Copy)]
+struct PlyType {
+    material: usize,
+    thickness: f64,
+}
+
+pub(super) fn read(field: &Field<'_>, materials: &[Located<Material>]) -> Result<Laminate, SceneError> {
+    let table = field.table(KEYS)?;
+    let common = PlyType {
+        material: material::find(&table.required("material")?, materials)?,
+        thickness: table.required("ply_thickness")?.positive(Dimension::LENGTH)?,
+    };
+    let types = ply_types(&table, common, materials)?;
+    let layup_field = table.required("plies")?;
+    let layup = read_layup(&layup_field)?;
+    let plies: Vec<Ply> =
+        layup.iter().map(|ply| read_ply(ply, common, &types, &layup_field)).collect::<Result<_, _>>()?;
+    let layers = match table.optional("layers") {
+        Some(field) => read_layers(&field, plies.len())?,
+        None => as_equal_as_possible(plies.len(), plies.len().min(2)),
+    };
+    let interface = match table.optional("interface") {
+        Some(field) => Some(field.at(material::find(&field, materials)?)),
+        None => None,
+    };
+    Ok(Laminate { plies, layers, interface, place: table.place().clone() })
+}
+
+fn read_layup(field: &Field<'_>) -> Result<Vec<LayupPly>, SceneError> {
+    let text = field.text()?;
+    layup::parse(text)
+        .map_err(|e| field.error_within(text, e.at, &e.why, "plies run from the bottom up: [0/45/-45/90]2s"))
+}
+
+fn ply_types(
+    table: &Reader<'_>,
+    common: PlyType,
+    materials: &[Located<Material>],
+) -> Result<Vec<(String, PlyType)>, SceneError> {
+    let Some(field) = table.optional("ply") else { return Ok(Vec::new()) };
+    let read = |(label, field): &(&str, Field<'_>)| {
+        let table = field.table(PLY_KEYS)?;
+        let mut ply = common;
+        if let Some(field) = table.optional("material") {
+            ply.material = material::find(&field, materials)?;
+        }
+        if let Some(field) = table.optional("thickness") {
+            ply.thickness = field.positive(Dimension::LENGTH)?;
+        }
+        Ok(((*label).to_owned(), ply))
+    };
+    field.entries()?.iter().map(read).collect()
+}
+
+fn read_ply(
+    ply: &LayupPly,
+    common: PlyType,
+    types: &[(String, PlyType)],
+    field: &Field<'_>,
+) -> Result<Ply, SceneError> {
+    let PlyType { material, thickness } = match &ply.label {
+        None => common,
+        Some(label) => types.iter().find(|(name, _)| name == label).map(|(_, ply)| *ply).ok_or_else(|| {
+            let known = unknown_key(label, types.iter().map(|(name, _)| name.as_str()));
+            field.error(
+                format!("there is no ply type `{label}`"),
+                format!(
+                    "`{label}` {known}; define it: laminate.ply.{label} = {{ material = \"...\", thickness = \"...\" }}"
+                ),
+            )
+        })?,
+    };
+    Ok(Ply { angle_deg: ply.angle_deg, angle: ply.angle_deg.to_radians(), material, thickness })
+}
+
+fn read_layers(field: &Field<'_>, plies: usize) -> Result<Vec<usize>, SceneError> {
+    if let Node::Number(_) = field.node() {
+        let layers = field.count()?;
+        if layers > plies {
+            return Err(field.error(
+                format!("{layers} layers for {plies} plies"),
+                "a layer of elements holds whole plies, at least one each",
+            ));
+        }
+        return Ok(as_equal_as_possible(plies, layers));
+    }
+    let layers = field
+        .list()?
+        .iter()
+        .map(|layer| match layer.node() {
+            Node::Number(n) if n.fract() != 0.0 => Err(layer.error(
+                format!("{n} plies would put a ply interface inside a layer of elements"),
+                "layers hold whole plies: give whole numbers, from the bottom up",
+            )),
+            _ => layer.count(),
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    let sum: usize = layers.iter().sum();
+    if sum == plies {
+        return Ok(layers);
+    }
+    Err(field.error(
+        format!("the layers hold {sum} plies, the laminate has {plies}"),
+        format!("give plies per layer of elements from the bottom up, {plies} in all"),
+    ))
+}
+
+fn as_equal_as_possible(plies: usize, layers: usize) -> Vec<usize> {
+    (0..layers).map(|i| (i + 1) * plies / layers - i * plies / layers).collect()
+}

@@ -1,0 +1,75 @@
+//! A plug-in as a scene names it, with its parameters.
+
+use super::reader::Field;
+use super::source::{Located, Place, SceneError};
+use super::tree::Node;
+use crate::units;
+use fem_core::plugin::{Params, Value};
+use std::collections::BTreeMap;
+
+/// A plug-in and its parameters; whoever knows the plug-ins checks both.
+#[derive(Debug, Clone)]
+pub struct PluginSpec {
+    /// Its name and where it stands.
+    pub name: Located<String>,
+    /// Its parameters, SI units.
+    pub params: Params,
+    places: BTreeMap<String, Place>,
+}
+
+impl PluginSpec {
+    /// Where parameter `key` stands; the plug-in's name for a key that was not given, or for none (`""`).
+    pub fn place_of(&self, key: &str) -> &Place {
+        self.places.get(key).unwrap_or(&self.name.place)
+    }
+
+    /// Reads a bare name, or a table with the key `name`.
+    pub(super) fn read_or_name(field: &Field<'_>) -> Result<Self, SceneError> {
+        match field.node() {
+            Node::Text(_) => {
+                let name = field.at(field.text()?.to_owned());
+                Ok(Self { name, params: Params::default(), places: BTreeMap::new() })
+            }
+            _ => Self::read(field, "name", &[]),
+        }
+    }
+
+    /// Reads a table with the name under `name_key`; keys of `others` belong to somebody else.
+    pub(super) fn read(field: &Field<'_>, name_key: &str, others: &[&str]) -> Result<Self, SceneError> {
+        let mut name = None;
+        let mut params = Params::default();
+        let mut places = BTreeMap::new();
+        for (key, value) in field.entries()? {
+            if key == name_key {
+                name = Some(value.at(value.text()?.to_owned()));
+            } else if !others.contains(&key) {
+                params.insert(key, read_value(&value)?);
+                places.insert(key.to_owned(), value.entry_place());
+            }
+        }
+        let name = name.ok_or_else(|| {
+            field.error(format!("the key `{name_key}` is missing"), "it names the plug-in that the other keys are for")
+        })?;
+        Ok(Self { name, params, places })
+    }
+}
+
+fn read_value(field: &Field<'_>) -> Result<Value, SceneError> {
+    Ok(match field.node() {
+        Node::Text(text) if units::begins_with_number(text) => {
+            let (value, dimension) = field.any_quantity(text)?;
+            Value::Quantity(value, dimension)
+        }
+        Node::Text(text) => Value::Text(text.clone()),
+        Node::Number(_) => Value::Number(field.number()?),
+        Node::Flag(flag) => Value::Flag(*flag),
+        Node::List(items) if items.is_empty() => Value::List(Vec::new()),
+        Node::List(_) => Value::List(field.list()?.iter().map(read_value).collect::<Result<_, _>>()?),
+        Node::Table(_) | Node::Date => {
+            return Err(field.error(
+                format!("a parameter cannot be {}", field.node().in_words()),
+                "write a number, a quantity in quotes, a word, true, false or a list of these",
+            ));
+        }
+    })
+}

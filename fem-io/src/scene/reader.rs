@@ -1,0 +1,253 @@
+//! Typed reading of a table: every wrong value becomes an error at its place.
+
+use super::source::{Located, Origin, Place, SceneError, SceneSource};
+use super::tree::{Item, Node, Table};
+use crate::units::{self, UnitError};
+use fem_core::plugin::{Dimension, unknown_key};
+use std::sync::Arc;
+
+/// The keys of a table, each with an example of its value in TOML.
+pub(crate) type Keys = &'static [(&'static str, &'static str)];
+
+/// A table whose keys are all known.
+pub(crate) struct Reader<'a> {
+    table: &'a Table,
+    path: String,
+    place: Place,
+    keys: Keys,
+    source: &'a Arc<SceneSource>,
+}
+
+impl<'a> Reader<'a> {
+    /// The outermost table of a document.
+    pub(crate) fn root(table: &'a Table, keys: Keys, source: &'a Arc<SceneSource>) -> Result<Self, SceneError> {
+        Self { table, path: String::new(), place: Place::TOP, keys, source }.checked()
+    }
+
+    /// Refuses unknown keys first of all: a misspelt key explains a missing one.
+    fn checked(self) -> Result<Self, SceneError> {
+        match self.table.0.iter().find(|e| self.keys.iter().all(|(name, _)| *name != e.key)) {
+            None => Ok(self),
+            Some(stray) => {
+                let path = self.path_of(&stray.key);
+                let help = format!("`{}` {}", stray.key, unknown_key(&stray.key, self.keys.iter().map(|k| k.0)));
+                Err(self.source.error_at(&stray.place, format!("unknown key `{path}`"), help))
+            }
+        }
+    }
+
+    fn path_of(&self, key: &str) -> String {
+        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+    }
+
+    fn example(&self, key: &str) -> &'static str {
+        self.keys.iter().find(|(name, _)| *name == key).map_or("", |(_, example)| example)
+    }
+
+    pub(crate) fn optional(&self, key: &str) -> Option<Field<'a>> {
+        let entry = self.table.get(key)?;
+        let (path, example) = (self.path_of(key), self.example(key));
+        Some(Field { item: &entry.item, key_place: &entry.place, path, example, source: self.source })
+    }
+
+    pub(crate) fn required(&self, key: &str) -> Result<Field<'a>, SceneError> {
+        let example = || format!("write, for example: {} = {}", self.path_of(key), self.example(key));
+        self.optional(key).ok_or_else(|| self.missing(key, example()))
+    }
+
+    pub(crate) fn missing(&self, key: &str, help: impl Into<String>) -> SceneError {
+        self.error(format!("`{}` is missing", self.path_of(key)), help)
+    }
+
+    /// Another table in the place of this one.
+    pub(crate) fn of<'b>(&'b self, table: &'b Table, keys: Keys) -> Result<Reader<'b>, SceneError> {
+        Reader { table, path: self.path.clone(), place: self.place.clone(), keys, source: self.source }.checked()
+    }
+
+    /// Two keys that exclude each other: at most one of them remains, the scene's where the other is the preset's.
+    pub(crate) fn either(&self, keys: [&str; 2]) -> Result<[Option<Field<'a>>; 2], SceneError> {
+        match keys.map(|key| self.optional(key)) {
+            [Some(a), Some(b)] if a.place().origin == b.place().origin => {
+                Err(b.error(format!("excludes `{}`", keys[0]), "leave one of the two out"))
+            }
+            [Some(a), Some(_)] if a.place().origin == Origin::Scene => Ok([Some(a), None]),
+            [Some(_), Some(b)] => Ok([None, Some(b)]),
+            one => Ok(one),
+        }
+    }
+
+    pub(crate) fn place(&self) -> &Place {
+        &self.place
+    }
+
+    /// An error about the table as a whole.
+    pub(crate) fn error(&self, message: impl Into<String>, help: impl Into<String>) -> SceneError {
+        // A table that stands in the preset alone is no place to send anyone to.
+        let place = if self.place.origin == Origin::Preset { &Place::TOP } else { &self.place };
+        self.source.error_at(place, message, help)
+    }
+}
+
+/// A value being read, with its path for messages and an example of what would be right.
+pub(crate) struct Field<'a> {
+    item: &'a Item,
+    key_place: &'a Place,
+    path: String,
+    example: &'static str,
+    source: &'a Arc<SceneSource>,
+}
+
+impl<'a> Field<'a> {
+    pub(crate) fn item(&self) -> &'a Item {
+        self.item
+    }
+
+    pub(crate) fn place(&self) -> &'a Place {
+        &self.item.place
+    }
+
+    /// Key and value together.
+    pub(crate) fn entry_place(&self) -> Place {
+        Place { span: self.key_place.span.start..self.place().span.end, ..self.key_place.clone() }
+    }
+
+    pub(crate) fn node(&self) -> &'a Node {
+        &self.item.node
+    }
+
+    pub(crate) fn at<T>(&self, value: T) -> Located<T> {
+        Located { value, place: self.item.place.clone() }
+    }
+
+    /// An error about this value; `message` follows the path of its key.
+    pub(crate) fn error(&self, message: impl AsRef<str>, help: impl Into<String>) -> SceneError {
+        self.source.error_at(self.place(), format!("`{}`: {}", self.path, message.as_ref()), help)
+    }
+
+    /// An error about the text of this value from byte `at` on.
+    pub(crate) fn error_within(&self, text: &str, at: usize, message: &str, help: &str) -> SceneError {
+        let place = self.source.within(self.place(), text, at);
+        self.source.error_at(&place, format!("`{}`: {message}", self.path), help)
+    }
+
+    fn wrong(&self, wanted: &str) -> SceneError {
+        self.error(format!("must be {wanted}, got {}", self.node().in_words()), self.by_example())
+    }
+
+    fn by_example(&self) -> String {
+        format!("write, for example: {} = {}", self.path, self.example)
+    }
+
+    fn unit_error(&self, error: &UnitError, wanted: Option<Dimension>) -> SceneError {
+        self.error(error.to_string(), error.remedy(wanted))
+    }
+
+    pub(crate) fn quantity(&self, wanted: Dimension) -> Result<f64, SceneError> {
+        match self.node() {
+            Node::Text(text) => units::parse_as(text, wanted).map_err(|e| self.unit_error(&e, Some(wanted))),
+            Node::Number(value) => Err(self.unit_error(&UnitError::BareNumber(value.to_string()), Some(wanted))),
+            _ => Err(self.wrong("a text with a number and its unit")),
+        }
+    }
+
+    /// A quantity above zero.
+    pub(crate) fn positive(&self, wanted: Dimension) -> Result<f64, SceneError> {
+        let value = self.quantity(wanted)?;
+        if value > 0.0 { Ok(value) } else { Err(self.wrong("positive")) }
+    }
+
+    /// A quantity of any dimension.
+    pub(crate) fn any_quantity(&self, text: &str) -> Result<(f64, Dimension), SceneError> {
+        units::parse_quantity(text).map_err(|e| self.unit_error(&e, None))
+    }
+
+    /// A whole number of at least 1.
+    pub(crate) fn count(&self) -> Result<usize, SceneError> {
+        match self.node() {
+            Node::Number(n) if n.fract() == 0.0 && (1.0..=1e9).contains(n) => Ok(*n as usize),
+            _ => Err(self.wrong("a whole number of at least 1")),
+        }
+    }
+
+    /// A finite pure number.
+    pub(crate) fn number(&self) -> Result<f64, SceneError> {
+        match self.node() {
+            Node::Number(value) if value.is_finite() => Ok(*value),
+            _ => Err(self.wrong("a finite number without unit")),
+        }
+    }
+
+    pub(crate) fn text(&self) -> Result<&'a str, SceneError> {
+        match self.node() {
+            Node::Text(text) if text.trim().is_empty() => Err(self.wrong("a text")),
+            Node::Text(text) => Ok(text),
+            _ => Err(self.wrong("a text")),
+        }
+    }
+
+    pub(crate) fn flag(&self) -> Result<bool, SceneError> {
+        match self.node() {
+            Node::Flag(flag) => Ok(*flag),
+            _ => Err(self.wrong("true or false")),
+        }
+    }
+
+    /// One word out of `choices`.
+    pub(crate) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T, SceneError> {
+        self.word(choices.iter().map(|c| c.0)).map(|i| choices[i].1)
+    }
+
+    /// Position of this text among `known` words.
+    pub(crate) fn word<'b>(&self, known: impl Iterator<Item = &'b str> + Clone) -> Result<usize, SceneError> {
+        let text = self.text()?;
+        known.clone().position(|k| k == text).ok_or_else(|| {
+            self.error(
+                format!("`{text}` is none of the words known here"),
+                format!("`{text}` {}", unknown_key(text, known)),
+            )
+        })
+    }
+
+    /// The elements of a list that is not empty.
+    pub(crate) fn list(&self) -> Result<Vec<Field<'a>>, SceneError> {
+        match self.node() {
+            Node::List(items) if !items.is_empty() => Ok(items
+                .iter()
+                .enumerate()
+                .map(|(i, item)| Field {
+                    item,
+                    key_place: self.key_place,
+                    path: format!("{}[{i}]", self.path),
+                    example: self.example,
+                    source: self.source,
+                })
+                .collect()),
+            Node::List(_) => Err(self.error("the list is empty", self.by_example())),
+            _ => Err(self.wrong("a list")),
+        }
+    }
+
+    /// A table with known keys.
+    pub(crate) fn table(&self, keys: Keys) -> Result<Reader<'a>, SceneError> {
+        let table = self.any_table()?;
+        Reader { table, path: self.path.clone(), place: self.place().clone(), keys, source: self.source }.checked()
+    }
+
+    /// A table whose keys are the scene's own names.
+    pub(crate) fn entries(&self) -> Result<Vec<(&'a str, Field<'a>)>, SceneError> {
+        let field = |entry: &'a super::tree::Entry| {
+            let path = format!("{}.{}", self.path, entry.key);
+            let field =
+                Field { item: &entry.item, key_place: &entry.place, path, example: self.example, source: self.source };
+            (entry.key.as_str(), field)
+        };
+        Ok(self.any_table()?.0.iter().map(field).collect())
+    }
+
+    pub(crate) fn any_table(&self) -> Result<&'a Table, SceneError> {
+        match self.node() {
+            Node::Table(table) => Ok(table),
+            _ => Err(self.wrong("a table")),
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Texts that a scene is made of, places in them, and errors that show the place.
+
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use std::fmt;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The text that a value comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Origin {
+    Scene,
+    Preset,
+    Library,
+}
+
+/// Where a value stands: in the scene, in its preset, or in the materials library.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Place {
+    pub(crate) origin: Origin,
+    pub(crate) span: Range<usize>,
+}
+
+impl Place {
+    /// The beginning of the scene.
+    pub(crate) const TOP: Self = Self { origin: Origin::Scene, span: 0..0 };
+}
+
+/// A value with its place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Located<T> {
+    /// The value.
+    pub value: T,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// The texts that a scene is made of; makes errors that show a place in them.
+#[derive(Debug, Clone)]
+pub struct SceneSource {
+    /// In the order of [`Origin`].
+    documents: [NamedSource<String>; 3],
+}
+
+impl Default for SceneSource {
+    fn default() -> Self {
+        Self { documents: [(); 3].map(|()| NamedSource::new("", String::new())) }
+    }
+}
+
+impl SceneSource {
+    pub(crate) fn new(path: &Path, text: &str) -> Self {
+        let library = crate::materials::LIBRARY;
+        Self::default().with(Origin::Scene, path.display(), text).with(Origin::Library, "materials library", library)
+    }
+
+    /// The same with another text.
+    pub(crate) fn with(mut self, origin: Origin, name: impl fmt::Display, text: &str) -> Self {
+        self.documents[origin as usize] = NamedSource::new(name.to_string(), text.to_owned());
+        self
+    }
+
+    /// An error that shows `place`, says `message` and advises `help`.
+    ///
+    /// For whoever turns a scene into a model: a plug-in refused a parameter, a mesh lacks a group.
+    pub fn error_at(
+        self: &Arc<Self>,
+        place: &Place,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> SceneError {
+        SceneError { message: message.into(), help: help.into(), place: Some(place.clone()), source: Arc::clone(self) }
+    }
+
+    /// An error about the file as a whole.
+    pub(crate) fn error(self: &Arc<Self>, message: impl Into<String>, help: impl Into<String>) -> SceneError {
+        SceneError { message: message.into(), help: help.into(), place: None, source: Arc::clone(self) }
+    }
+
+    fn document(&self, place: &Place) -> &NamedSource<String> {
+        &self.documents[place.origin as usize]
+    }
+
+    /// The part of `place` that holds `text` from byte `at` on, where the text stands there as it is read: a caret
+    /// inside a string. The whole place where escapes make the two differ.
+    pub(crate) fn within(&self, place: &Place, text: &str, at: usize) -> Place {
+        let written = self.document(place).inner().get(place.span.clone()).unwrap_or_default();
+        match written.find(text) {
+            Some(offset) => {
+                let from = place.span.start + offset + at;
+                let length = text[at..].chars().next().map_or(0, char::len_utf8);
+                Place { span: from..from + length, ..place.clone() }
+            }
+            None => place.clone(),
+        }
+    }
+}
+
+/// A scene that cannot be used: what is wrong, where, and what to do.
+///
+/// `Display` gives the message alone; a `miette` report handler shows file, line, caret and remedy.
+#[derive(Debug, Clone)]
+pub struct SceneError {
+    message: String,
+    help: String,
+    place: Option<Place>,
+    source: Arc<SceneSource>,
+}
+
+impl SceneError {
+    /// Name of the text and line (from 1) of the trouble; `None` if it is about no line.
+    pub fn location(&self) -> Option<(&str, usize)> {
+        let place = self.place.as_ref()?;
+        let document = self.source.document(place);
+        let before = document.inner().get(..place.span.start)?;
+        Some((document.name(), 1 + before.matches('\n').count()))
+    }
+
+    /// What to do about it.
+    pub fn remedy(&self) -> &str {
+        &self.help
+    }
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+impl std::error::Error for SceneError {}
+
+impl Diagnostic for SceneError {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        (!self.help.is_empty()).then(|| Box::new(&self.help) as Box<dyn fmt::Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.place.as_ref().map(|place| self.source.document(place) as &dyn SourceCode)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let place = self.place.as_ref()?;
+        Some(Box::new(std::iter::once(LabeledSpan::underline(place.span.clone()))))
+    }
+}

@@ -1,0 +1,174 @@
+//! What holds the plate: fixed unknowns, linear equations between unknowns, coupled sets.
+
+use super::reader::{Field, Keys, Reader};
+use super::source::{Located, Place, SceneError};
+use super::tree::Node;
+use fem_core::dof::Dof;
+use fem_core::plugin::Dimension;
+
+/// Which nodes above a node of the flat mesh are meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// The bottom face.
+    Bottom,
+    /// The mid-plane; there must be a layer boundary.
+    MidPlane,
+    /// The top face.
+    Top,
+    /// Every layer boundary.
+    All,
+}
+
+/// Nodes of a group of the mesh, at a level of the plate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NodeSet {
+    /// Physical name of the group.
+    pub group: Located<String>,
+    /// The level.
+    pub level: Level,
+}
+
+/// A support.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Support {
+    /// Unknowns that stay zero.
+    Fix {
+        /// Of which nodes.
+        nodes: NodeSet,
+        /// Which unknowns.
+        dofs: Vec<Dof>,
+        /// Turn of the nodes' own axes about z that the unknowns refer to, radians.
+        axes: f64,
+        /// Where it stands.
+        place: Place,
+    },
+    /// A statically determinate hold on whatever rigid motions all other supports leave free.
+    RestrainRigidMotions {
+        /// Where it stands.
+        place: Place,
+    },
+}
+
+/// Σ factor · unknown = 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Equation {
+    /// Its terms, each at a single node.
+    pub terms: Vec<Term>,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// A term of an equation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Term {
+    /// The node: the group has one node and the level one height.
+    pub node: NodeSet,
+    /// The unknown.
+    pub dof: Dof,
+    /// Its factor in SI units; all products factor · unknown of an equation have one dimension.
+    pub factor: f64,
+}
+
+/// Nodes that share the value of each of some unknowns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Couple {
+    /// The nodes.
+    pub nodes: NodeSet,
+    /// The unknowns.
+    pub dofs: Vec<Dof>,
+    /// Where it stands.
+    pub place: Place,
+}
+
+const FIX: Keys = &[
+    ("group", r#""support""#),
+    ("at", r#""mid-plane""#),
+    ("fix", r#"["U30"]"#),
+    ("axes", r#""30 deg""#),
+    ("restrain", r#""rigid-motions""#),
+];
+const RESTRAIN: Keys = &[("restrain", r#""rigid-motions""#)];
+const EQUATION: Keys = &[("terms", r#"[{ group = "a", at = "top", dof = "U10", factor = 1.0 }]"#)];
+const TERM: Keys = &[("group", r#""a""#), ("at", r#""top""#), ("dof", r#""U10""#), ("factor", "1.0")];
+const COUPLE: Keys = &[("group", r#""edge""#), ("at", r#""all""#), ("dofs", r#"["U30"]"#)];
+
+pub(super) fn read_all(field: &Field<'_>) -> Result<Vec<Support>, SceneError> {
+    field.list()?.iter().map(read).collect()
+}
+
+fn read(field: &Field<'_>) -> Result<Support, SceneError> {
+    let table = field.table(FIX)?;
+    let place = table.place().clone();
+    if table.optional("restrain").is_some() {
+        field.table(RESTRAIN)?.required("restrain")?.choice(&[("rigid-motions", ())])?;
+        return Ok(Support::RestrainRigidMotions { place });
+    }
+    let axes = table.optional("axes").map_or(Ok(0.0), |field| field.quantity(Dimension::NONE))?;
+    Ok(Support::Fix { nodes: nodes(&table)?, dofs: dofs(&table.required("fix")?)?, axes, place })
+}
+
+pub(super) fn read_equations(field: &Field<'_>) -> Result<Vec<Equation>, SceneError> {
+    let read = |field: &Field<'_>| {
+        let table = field.table(EQUATION)?;
+        Ok(Equation { terms: terms(&table.required("terms")?)?, place: table.place().clone() })
+    };
+    field.list()?.iter().map(read).collect()
+}
+
+pub(super) fn read_couples(field: &Field<'_>) -> Result<Vec<Couple>, SceneError> {
+    let read = |field: &Field<'_>| {
+        let table = field.table(COUPLE)?;
+        Ok(Couple { nodes: nodes(&table)?, dofs: dofs(&table.required("dofs")?)?, place: table.place().clone() })
+    };
+    field.list()?.iter().map(read).collect()
+}
+
+fn nodes(table: &Reader<'_>) -> Result<NodeSet, SceneError> {
+    const LEVELS: [(&str, Level); 4] =
+        [("mid-plane", Level::MidPlane), ("bottom", Level::Bottom), ("top", Level::Top), ("all", Level::All)];
+    let group = table.required("group")?;
+    Ok(NodeSet { group: group.at(group.text()?.to_owned()), level: table.required("at")?.choice(&LEVELS)? })
+}
+
+fn dofs(field: &Field<'_>) -> Result<Vec<Dof>, SceneError> {
+    field.list()?.iter().map(dof).collect()
+}
+
+fn dof(field: &Field<'_>) -> Result<Dof, SceneError> {
+    field
+        .text()?
+        .parse()
+        .map_err(|why: String| field.error(why, "U30 is the deflection along z, U31 its slope along x"))
+}
+
+fn terms(field: &Field<'_>) -> Result<Vec<Term>, SceneError> {
+    let mut product = None;
+    let mut read = |field: &Field<'_>| {
+        let table = field.table(TERM)?;
+        let dof = dof(&table.required("dof")?)?;
+        let factor_field = table.required("factor")?;
+        let (factor, Dimension(mut exponents)) = factor(&factor_field)?;
+        // U₁₀ is a length, its derivatives are pure numbers.
+        exponents[0] += f64::from(dof.m() == 0);
+        if !product.get_or_insert(Dimension(exponents)).matches(&Dimension(exponents)) {
+            return Err(factor_field.error(
+                "the terms of an equation have different dimensions",
+                "a displacement Un0 is a length and a derivative a pure number: give one of them a factor with unit, \"1 mm\"",
+            ));
+        }
+        Ok(Term { node: nodes(&table)?, dof, factor })
+    };
+    field.list()?.iter().map(&mut read).collect()
+}
+
+/// A factor and its dimension: a bare number is a pure one.
+fn factor(field: &Field<'_>) -> Result<(f64, Dimension), SceneError> {
+    let (value, dimension) = match field.node() {
+        Node::Text(text) => field.any_quantity(text)?,
+        _ => (field.number()?, Dimension::NONE),
+    };
+    if value == 0.0 {
+        return Err(field.error("a factor of zero takes the term out of the equation", "leave the term out"));
+    }
+    Ok((value, dimension))
+}

@@ -1,0 +1,296 @@
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use super::*;
+use crate::scene::run::{Damage, ImpactPoint, Load, Window};
+use fem_core::material::Strength;
+use fem_core::plugin::Value;
+use miette::{GraphicalReportHandler, GraphicalTheme};
+use proptest::prelude::*;
+
+/// The scene that the refusals below spoil one line at a time.
+const GOOD: &str = r#"title = "16 plies, 50 mm circular support, 2.49 kg at 1.56 m/s"
+mesh = { file = "plate.msh", unit = "mm" }
+materials.as4-3502 = { library = "AS4/3502" }
+materials.resin = { library = "3502 resin", S12 = "55 MPa" }
+materials.foam = { e = "70 MPa", nu = 0.3, density = "52 kg/m^3" }
+
+support = [
+  { group = "support", at = "mid-plane", fix = ["U30"] },
+  { group = "edge", at = "all", fix = ["U10", "U31"], axes = "30 deg" },
+  { restrain = "rigid-motions" },
+]
+impactor = { mass = "2.49 kg", velocity = "1.56 m/s", at = { group = "impact" } }
+contact = { law = "sun-yang", k = "1.07e5 N/mm^1.5", n = 1.5, m = 2.5, critical = "0.08 mm", beta = 0.4, knots = [1, "2 mm"] }
+march = { integrator = { name = "newmark", beta = 0.3 }, end = "1 ms" }
+failure = { criteria = ["hashin-report", { name = "octahedral", strict = true }], radius = "10 mm" }
+output = { history_every = "2 us", plots = false }
+
+[laminate]
+plies = "[0/45/-45/90{core}]2s"
+material = "as4-3502"
+ply_thickness = "0.13208 mm"
+layers = [8, 8]
+ply.core = { material = "foam", thickness = "1 mm" }
+interface = "resin"
+
+[[equation]]
+terms = [
+  { group = "a", at = "top", dof = "U30", factor = 1 },
+  { group = "b", at = "bottom", dof = "U31", factor = "-2 mm" },
+]
+
+[[couple]]
+group = "edge"
+at = "all"
+dofs = ["U30"]
+"#;
+
+fn read_good(text: &str) -> Scene {
+    parse(text, Path::new("cases/plate/scene.toml")).unwrap_or_else(|e| panic!("{}", rendered(&e)))
+}
+
+fn rendered(error: &SceneError) -> String {
+    let mut out = String::new();
+    GraphicalReportHandler::new_themed(GraphicalTheme::unicode_nocolor())
+        .with_width(120)
+        .render_report(&mut out, error)
+        .unwrap();
+    out
+}
+
+/// The good scene with `from` replaced.
+fn spoilt(from: &str, to: &str) -> String {
+    assert!(GOOD.contains(from), "{from}");
+    GOOD.replacen(from, to, 1)
+}
+
+#[test]
+fn a_scene_in_full() {
+    let scene = read_good(GOOD);
+    assert_eq!(scene.title, "16 plies, 50 mm circular support, 2.49 kg at 1.56 m/s");
+    assert_eq!(scene.fidelity, Fidelity::Engineering);
+    assert_eq!(scene.mesh.file.value, Path::new("cases/plate/plate.msh"));
+    assert_eq!(scene.mesh.metres_per_unit, 1e-3);
+
+    let names: Vec<_> = scene.materials.iter().map(|m| m.value.name.as_str()).collect();
+    assert_eq!(names, ["as4-3502", "resin", "foam"]);
+    let [fibre, resin, foam] = [0, 1, 2].map(|i| &scene.materials[i].value);
+    assert_eq!(fibre.elastic.e1, 130.3e9);
+    assert_eq!(fibre.strengths.get(Strength::Yt), Some(64e6));
+    assert_eq!(resin.strengths.get(Strength::S12), Some(55e6), "the scene lies over the library");
+    assert_eq!(resin.strengths.get(Strength::Xt), Some(38e6));
+    assert_eq!(foam.strengths.get(Strength::Xt), None);
+
+    let laminate = &scene.laminate;
+    assert_eq!((laminate.plies.len(), &laminate.layers[..]), (16, &[8, 8][..]));
+    assert_eq!(laminate.interface.as_ref().map(|i| i.value), Some(1));
+    assert_eq!(laminate.plies[0], Ply { angle_deg: 0.0, angle: 0.0, material: 0, thickness: 0.13208e-3 });
+    assert_eq!((laminate.plies[3].material, laminate.plies[3].thickness), (2, 1e-3));
+    assert_eq!(laminate.plies[3].angle, std::f64::consts::FRAC_PI_2);
+
+    let [
+        Support::Fix { nodes, dofs, axes, .. },
+        Support::Fix { axes: turned, .. },
+        Support::RestrainRigidMotions { .. },
+    ] = &scene.supports[..]
+    else {
+        panic!("{:?}", scene.supports)
+    };
+    assert_eq!((nodes.group.value.as_str(), nodes.level), ("support", Level::MidPlane));
+    assert_eq!((dofs[0].to_string().as_str(), *axes), ("U30", 0.0));
+    assert!((turned - std::f64::consts::FRAC_PI_6).abs() < 1e-15);
+    assert_eq!(scene.equations[0].terms[1].factor, -2e-3);
+    assert_eq!((scene.couples[0].nodes.level, scene.couples[0].dofs.len()), (Level::All, 1));
+
+    assert_eq!((scene.impactor.mass, scene.impactor.velocity), (2.49, 1.56));
+    assert_eq!(scene.impactor.at.value, ImpactPoint::Group("impact".into()));
+    assert_eq!(scene.impactor.load.value, Load::Patch { radius: 3e-3 });
+    assert_eq!(scene.contact.name.value, "sun-yang");
+    let k = scene.contact.params.quantity("k", Dimension::contact_stiffness(1.5), None).unwrap();
+    assert!((k / (1.07e5 * 1e-3_f64.powf(-1.5)) - 1.0).abs() < 1e-14);
+    assert_eq!(
+        scene.contact.params.get("knots"),
+        Some(&Value::List(vec![Value::Number(1.0), Value::Quantity(2e-3, Dimension::LENGTH)]))
+    );
+    assert_eq!(scene.contact.params.keys().find(|k| *k == "law"), None);
+
+    assert_eq!(scene.march.integrator.name.value, "newmark");
+    assert_eq!(scene.march.integrator.params.number("beta", None), Ok(0.3));
+    assert_eq!((scene.march.step.value, scene.march.end.value), (0.5e-6, 1e-3));
+    assert_eq!(scene.failure.criteria[1].params.get("strict"), Some(&Value::Flag(true)));
+    assert_eq!((scene.failure.every, scene.failure.radius), (5e-6, Some(10e-3)));
+    assert_eq!(scene.failure.window, Window::Square(2.54e-3));
+    assert_eq!(scene.damage, Damage::Onset);
+    assert_eq!((scene.output.history_every, scene.output.plots), (Some(2e-6), false));
+    assert_eq!(
+        (scene.element.name.value.as_str(), scene.z_derivatives.value),
+        ("hermite-prism", ZDerivatives::LayerWise)
+    );
+    assert_eq!(scene.element.params.choice("mass", &["linear", "cubic"]), Ok("cubic"));
+    assert_eq!(scene.element.params.get("z_derivatives"), None);
+    assert_eq!(scene.reduction.params.count("modes", 1, None), Ok(40));
+}
+
+#[test]
+fn presets_lie_beneath_the_scene() {
+    let fidelity = |name: &str| format!("fidelity = \"{name}\"\n{GOOD}");
+    let report = read_good(&fidelity("report"));
+    assert_eq!(report.impactor.load.value, Load::Node);
+    assert_eq!((report.failure.window, report.z_derivatives.value), (Window::Element, ZDerivatives::Shared));
+    assert_eq!(report.element.params.choice("mass", &["cubic", "linear"]), Ok("linear"));
+    assert_eq!(report.reduction.params.count("governors", 1, None), Ok(38));
+    assert_eq!(report.march.step.value, 50e-9);
+    let reference = read_good(&fidelity("reference"));
+    assert_eq!(reference.reduction.name.value, "none");
+    assert_eq!((reference.march.step.value, reference.failure.every), (0.25e-6, 1e-6));
+
+    let over = |text: &str| read_good(&format!("{text}\n{}", fidelity("report")));
+    assert_eq!(over("reduction.governors = 20").reduction.params.count("governors", 1, None), Ok(20));
+    assert_eq!(
+        over("element.z_derivatives = \"layer-wise\"").element.params.choice("mass", &["cubic", "linear"]),
+        Ok("linear")
+    );
+    let other = over("reduction = { method = \"modal\", modes = 5 }").reduction;
+    assert_eq!(
+        other.params.keys().collect::<Vec<_>>(),
+        ["modes"],
+        "another plug-in takes no parameters of the preset's"
+    );
+    let patch = spoilt("at = { group = \"impact\" }", "at = { x = \"1 mm\", y = \"0 mm\" }, patch_radius = \"2 mm\"");
+    let patch = read_good(&format!("fidelity = \"report\"\n{patch}"));
+    assert_eq!(patch.impactor.load.value, Load::Patch { radius: 2e-3 });
+    assert_eq!(patch.impactor.at.value, ImpactPoint::Point([1e-3, 0.0]));
+}
+
+#[test]
+fn layers_share_the_plies() {
+    let layers = |value: &str| read_good(&spoilt("layers = [8, 8]", value)).laminate.layers;
+    assert_eq!(layers(""), [8, 8]);
+    assert_eq!(layers("layers = 1"), [16]);
+    assert_eq!(layers("layers = 3"), [5, 5, 6]);
+    assert_eq!(layers("layers = [1, 10, 5]"), [1, 10, 5]);
+}
+
+#[test]
+fn the_root_crate_can_point_at_any_value() {
+    let scene = read_good(&spoilt("n = 1.5", "n = 15"));
+    let line =
+        |place: &Place| scene.source.error_at(place, "m", "").location().map(|(file, line)| (file.to_owned(), line));
+    let at = |n| Some(("cases/plate/scene.toml".to_owned(), n));
+    assert_eq!(line(&scene.contact.name.place), at(13));
+    assert_eq!(line(scene.reduction.place_of("modes")), Some(("preset `engineering`".to_owned(), 5)));
+    let error = scene.source.error_at(scene.contact.place_of("n"), "`n`: must be 1 to 4, got 15", "Hertz: n = 1.5");
+    insta::assert_snapshot!(rendered(&error));
+    assert_eq!(scene.contact.place_of("absent"), &scene.contact.name.place);
+}
+
+/// Every refusal: line, key and remedy, as people see it.
+#[test]
+fn refusals() {
+    let mut report = String::new();
+    for (what, text) in [
+        ("a bare number where a unit belongs", spoilt("mass = \"2.49 kg\"", "mass = 2.49")),
+        ("a text without unit", spoilt("\"2.49 kg\"", "\"2.49\"")),
+        ("an unknown unit", spoilt("1.56 m/s\", at", "1.56 m/sec\", at")),
+        ("a quantity of another dimension", spoilt("2.49 kg\", v", "2.49 N\", v")),
+        ("a unit that is no unit", spoilt("\"2.49 kg\"", "\"2.49 kg^\"")),
+        ("zero where positive is needed", spoilt("\"2.49 kg\"", "\"0 kg\"")),
+        ("a negative time", spoilt("end = \"1 ms\"", "end = \"-1 ms\"")),
+        ("a number out of range", spoilt("\"2.49 kg\"", "\"1e999 kg\"")),
+        ("not a number", spoilt("nu = 0.3", "nu = nan")),
+        ("a quantity in quotes where a pure number belongs", spoilt("nu = 0.3", "nu = \"0.3\"")),
+        ("an unknown key at the top", spoilt("output =", "outputs =")),
+        ("an unknown key in a table", spoilt("radius = \"10 mm\"", "raduis = \"10 mm\"")),
+        ("an unknown key in a list", spoilt("dofs = [\"U30\"]", "dof = [\"U30\"]")),
+        ("a missing key", spoilt("mass = \"2.49 kg\", ", "")),
+        ("a missing table", spoilt("contact = {", "output.x = {").replace("output = {", "# {")),
+        ("a table that only the preset has", spoilt("failure = {", "# {")),
+        ("a duplicate key", spoilt("n = 1.5", "n = 1.5, n = 2")),
+        ("no TOML", spoilt("title =", "title")),
+        ("a wrong type", spoilt("plots = false", "plots = \"no\"")),
+        ("a table where a text belongs", spoilt("\"2.49 kg\"", "{ value = 2.49 }")),
+        ("a table where a list belongs", spoilt("fix = [\"U30\"]", "fix = \"U30\"")),
+        ("an empty list", spoilt("fix = [\"U30\"]", "fix = []")),
+        ("an unknown preset", format!("fidelity = \"high\"\n{GOOD}")),
+        ("an unknown library material", spoilt("AS4/3502", "AS4/3501")),
+        ("an unknown material", spoilt("material = \"as4-3502\"", "material = \"as4\"")),
+        ("a material that no solid has", spoilt("nu = 0.3", "nu = 0.5")),
+        ("a negative strength", spoilt("55 MPa", "-55 MPa")),
+        ("too few constants", spoilt("e = \"70 MPa\", nu", "e1 = \"70 MPa\", nu12")),
+        ("constants of two kinds", spoilt("nu = 0.3", "nu = 0.3, e2 = \"1 MPa\"")),
+        ("a half-given orthotropy over the library", spoilt("\"AS4/3502\"", "\"AS4/3502\", e3 = \"9 GPa\"")),
+        ("a layup that is none", spoilt("90{core}]", "90{core}")),
+        ("an unknown ply type", spoilt("{core}", "{cure}")),
+        ("layers that do not sum up", spoilt("[8, 8]", "[8, 7]")),
+        ("a ply interface inside a layer", spoilt("[8, 8]", "[7.5, 8.5]")),
+        ("more layers than plies", spoilt("[8, 8]", "17")),
+        ("no layer", spoilt("[8, 8]", "0")),
+        ("a wrong unknown", spoilt("\"U31\"], axes", "\"U34\"], axes")),
+        ("a wrong level", spoilt("mid-plane", "middle")),
+        ("a bare angle", spoilt("\"30 deg\"", "30")),
+        ("a support of two kinds", spoilt("{ restrain", "{ group = \"support\", restrain")),
+        ("an equation of mixed dimensions", spoilt("\"-2 mm\"", "-2")),
+        ("a factor of zero", spoilt("factor = 1 ", "factor = 0 ")),
+        ("two places of impact", spoilt("{ group = \"impact\" }", "{ group = \"impact\", x = \"0 mm\" }")),
+        ("half a place of impact", spoilt("{ group = \"impact\" }", "{ x = \"0 mm\" }")),
+        ("two loads", spoilt("mass = \"2.49 kg\"", "mass = \"2.49 kg\", load = \"node\", patch_radius = \"3 mm\"")),
+        ("a plug-in without name", spoilt("law = \"sun-yang\", ", "")),
+        ("a parameter without a known unit", spoilt("N/mm^1.5", "N/mn^1.5")),
+        ("a parameter that is a table", spoilt("n = 1.5", "n = { a = 1 }")),
+        ("an endless march", spoilt("end = \"1 ms\"", "end = \"1 ms\", step = \"1e-20 s\"")),
+        ("a march shorter than its step", spoilt("end = \"1 ms\"", "end = \"1 ns\"")),
+        ("a window that is none", spoilt("radius =", "window = \"cell\", radius =")),
+        ("an effect that does not exist yet", format!("effects = {{ membrane = \"auto\" }}\n{GOOD}")),
+        ("a unit of length that is none", spoilt("unit = \"mm\"", "unit = \"kg\"")),
+    ] {
+        let error = parse(&text, Path::new("scene.toml")).expect_err(what);
+        assert!(error.location().is_some(), "{what}: {error}");
+        report += &format!("== {what}\n{}\n", rendered(&error));
+    }
+    insta::assert_snapshot!(report);
+}
+
+#[test]
+fn errors_in_a_preset_point_to_the_preset() {
+    let text = "reduction = { modes = 4 }";
+    let source = Arc::new(SceneSource::default().with(Origin::Preset, "preset `report`", text));
+    let preset = Table::parse(text, Origin::Preset, &source).unwrap();
+    let root = Reader::root(&preset, KEYS, &source).unwrap();
+    let error = PluginSpec::read(&root.required("reduction").unwrap(), "method", &[]).unwrap_err();
+    assert_eq!(error.location(), Some(("preset `report`", 1)));
+}
+
+#[test]
+fn files_that_cannot_be_read() {
+    let error = read(Path::new("no/such/scene.toml")).unwrap_err();
+    assert!(error.to_string().contains("no/such/scene.toml") && error.location().is_none(), "{error}");
+    assert!(rendered(&error).contains("cannot read the scene"));
+    for text in ["", "\u{feff}", "# nothing"] {
+        let error = parse(text, Path::new("scene.toml")).unwrap_err();
+        assert!(rendered(&error).contains("`materials` is missing"), "{text:?}: {}", rendered(&error));
+    }
+}
+
+proptest! {
+    /// Bytes of a scene that is nearly good: cut, doubled, replaced.
+    #[test]
+    fn no_mutation_panics(edits in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..4_u8), 1..4)) {
+        let mut text: Vec<char> = GOOD.chars().collect();
+        for (a, b, how) in edits {
+            let (i, j) = (a.index(text.len()), b.index(text.len()));
+            match how {
+                0 => text[i] = text[j],
+                1 => text.insert(i, text[j]),
+                2 => { text.remove(i); }
+                _ => { let end = (i + 20).min(text.len()); text.drain(i..end); }
+            }
+        }
+        let text: String = text.into_iter().collect();
+        if let Err(error) = parse(&text, Path::new("scene.toml")) { rendered(&error); }
+    }
+
+    #[test]
+    fn no_text_panics(text in "\\PC*") {
+        if let Err(error) = parse(&text, Path::new("scene.toml")) { rendered(&error); }
+    }
+}

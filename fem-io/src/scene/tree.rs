@@ -1,0 +1,115 @@
+//! A TOML document with the place of every key and value, and the laying of one over another.
+
+use super::source::{Origin, Place, SceneError, SceneSource};
+use std::sync::Arc;
+use toml::de::{DeTable, DeValue};
+
+/// A value and its place.
+#[derive(Debug, Clone)]
+pub(crate) struct Item {
+    pub(crate) node: Node,
+    pub(crate) place: Place,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) enum Node {
+    Text(String),
+    /// Integer or not; a number beyond the range of `f64` is infinite.
+    Number(f64),
+    Flag(bool),
+    List(Vec<Item>),
+    Table(Table),
+    Date,
+}
+
+impl Node {
+    /// What it is, in words.
+    pub(crate) fn in_words(&self) -> String {
+        match self {
+            Self::Text(text) => format!("the text \"{text}\""),
+            Self::Number(value) => format!("the number {value}"),
+            Self::Flag(flag) => flag.to_string(),
+            Self::List(_) => "a list".to_owned(),
+            Self::Table(_) => "a table".to_owned(),
+            Self::Date => "a date".to_owned(),
+        }
+    }
+}
+
+/// Entries in the order of the text.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Table(pub(crate) Vec<Entry>);
+
+#[derive(Debug, Clone)]
+pub(crate) struct Entry {
+    pub(crate) key: String,
+    pub(crate) place: Place,
+    pub(crate) item: Item,
+}
+
+impl Table {
+    pub(crate) fn parse(text: &str, origin: Origin, source: &Arc<SceneSource>) -> Result<Self, SceneError> {
+        let document = DeTable::parse(text).map_err(|e| {
+            let place = Place { origin, span: e.span().unwrap_or(0..0) };
+            let help = "write key = value, texts in double quotes, each key once";
+            source.error_at(&place, format!("this is no TOML: {}", e.message()), help)
+        })?;
+        Ok(table(document.into_inner(), origin))
+    }
+
+    pub(crate) fn get(&self, key: &str) -> Option<&Entry> {
+        self.0.iter().find(|e| e.key == key)
+    }
+
+    /// Lays `self` over `under`: tables merge key by key, any other value replaces what lies beneath. A table that names
+    /// another plug-in than the one beneath replaces it, because its parameters mean nothing to the new one.
+    pub(crate) fn over(mut self, under: Table) -> Table {
+        for below in under.0 {
+            let Some(above) = self.0.iter_mut().find(|e| e.key == below.key) else {
+                self.0.push(below);
+                continue;
+            };
+            if let (Node::Table(over), Node::Table(under)) = (&mut above.item.node, below.item.node)
+                && !over.names_another_plugin(&under)
+            {
+                *over = std::mem::take(over).over(under);
+            }
+        }
+        self
+    }
+
+    fn names_another_plugin(&self, other: &Table) -> bool {
+        ["kind", "law", "method", "name"].iter().any(|key| match (self.get(key), other.get(key)) {
+            (Some(a), Some(b)) => matches!((&a.item.node, &b.item.node), (Node::Text(a), Node::Text(b)) if a != b),
+            _ => false,
+        })
+    }
+}
+
+fn table(entries: DeTable<'_>, origin: Origin) -> Table {
+    let entry = |(key, value): (toml::Spanned<_>, toml::Spanned<_>)| {
+        let place = Place { origin, span: key.span() };
+        let item = Item { place: Place { origin, span: value.span() }, node: node(value.into_inner(), origin) };
+        Entry { key: std::borrow::Cow::into_owned(key.into_inner()), place, item }
+    };
+    Table(entries.into_iter().map(entry).collect())
+}
+
+fn node(value: DeValue<'_>, origin: Origin) -> Node {
+    match value {
+        DeValue::String(text) => Node::Text(text.into_owned()),
+        DeValue::Integer(i) => {
+            Node::Number(i128::from_str_radix(i.as_str(), i.radix()).map_or(f64::INFINITY, |i| i as f64))
+        }
+        DeValue::Float(f) => Node::Number(f.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::Boolean(flag) => Node::Flag(flag),
+        DeValue::Datetime(_) => Node::Date,
+        DeValue::Array(items) => Node::List(
+            items
+                .into_iter()
+                .map(|v| Item { place: Place { origin, span: v.span() }, node: node(v.into_inner(), origin) })
+                .collect(),
+        ),
+        DeValue::Table(entries) => Node::Table(table(entries, origin)),
+    }
+}
