@@ -6,7 +6,7 @@ use fem_core::element::ElementError;
 use fem_core::reduction::ReductionError;
 use fem_core::time::StepError;
 use fem_dynamics::limit::TooLong;
-use fem_failure::ScanError;
+use fem_failure::scan::ScanError;
 use fem_io::files::FileError;
 use fem_io::gmsh::MeshError;
 use fem_io::plot::PlotError;

@@ -15,7 +15,7 @@ use fem_core::patch;
 use fem_core::plate::Plate;
 use fem_core::plugin::{Built, Kind, unknown_key};
 use fem_core::reduction::{Functional, Reduction};
-use fem_core::support::{self, FreeMotions, Levels};
+use fem_core::support::{self, FreeMotions};
 use fem_core::time::Integrator;
 use fem_io::gmsh;
 use fem_io::scene::{Damage, ImpactPoint, Load, Located, NodeSet, PluginSpec, Scene, SceneError, Support};
@@ -68,7 +68,7 @@ impl Model {
         let mut warnings = read.warnings;
         let mesh = read.mesh;
         let materials: Vec<Material> = scene.materials.iter().map(|m| m.value.clone()).collect();
-        let laminate = scene.laminate.laminate.clone();
+        let laminate = scene.laminate.clone();
         warnings.extend(implausible(&mesh, &laminate));
 
         let builder = Builder { scene: &scene, registry };
@@ -247,7 +247,7 @@ impl Builder<'_> {
     }
 
     fn nodes<'p>(&self, plate: &'p Plate, set: &NodeSet) -> Result<(&'p [u32], Vec<usize>), SceneError> {
-        let levels = set.level.of(plate).map_err(|why| self.error(&set.group, why, ""))?;
+        let levels = set.levels.of(plate).map_err(|why| self.error(&set.group, why, ""))?;
         Ok((self.columns(plate, &set.group)?, levels))
     }
 

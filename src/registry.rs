@@ -72,7 +72,7 @@ impl Registry {
             .with::<fem_elements::HermitePrism>()
             .with::<contact::SunYang>()
             .with::<contact::Hertz>()
-            .with::<contact::LinearSpring>()
+            .with::<contact::Linear>()
             .with::<integrate::Newmark>()
             .with::<reduce::Guyan>()
             .with::<reduce::CraigBampton>()

@@ -11,7 +11,7 @@ use fem_core::time::{State, StepLimit};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
 use fem_dynamics::limit::{self, TooLong};
 use fem_dynamics::reduce::Reduced;
-use fem_failure::{FailureEvent, Peak};
+use fem_failure::scan::{FailureEvent, Peak};
 use fem_io::tables::HistoryRow;
 use std::num::NonZeroUsize;
 use std::sync::Arc;

@@ -8,7 +8,8 @@ use fem_core::recovery::{Recovery, Station};
 use fem_core::tensor::{Ply, Stress6};
 use fem_core::window;
 use fem_dynamics::reduce::Reduced;
-use fem_failure::{Place, Scan, ScanSite};
+use fem_core::structure::Structure;
+use fem_failure::scan::{Place, Scan, ScanSite};
 use fem_io::scene::Window;
 
 /// Samples recovered together.
@@ -18,7 +19,7 @@ const BATCH: usize = 16;
 const OPERATOR_LIMIT: usize = 256 << 20;
 
 /// Watches the stresses of a march with the criteria of a model.
-pub struct Watch<'a> {
+pub(crate) struct Watch<'a> {
     model: &'a Model,
     reduced: Option<&'a Reduced>,
     recovery: Recovery,
@@ -37,7 +38,7 @@ impl<'a> Watch<'a> {
     ///
     /// # Errors
     /// A criterion whose material lacks a constant, or a cell that the element refuses.
-    pub fn new(model: &'a Model, reduced: Option<&'a Reduced>) -> Result<Self, Error> {
+    pub(crate) fn new(model: &'a Model, reduced: Option<&'a Reduced>) -> Result<Self, Error> {
         let recovery = recovery(model);
         let scan = Scan::new(model.criteria.clone(), sites(model, &recovery), model.materials.clone())?;
         let mut watch = Self {
@@ -66,7 +67,7 @@ impl<'a> Watch<'a> {
     ///
     /// # Errors
     /// A stress or an index that is not finite.
-    pub fn sample(&mut self, t: f64, coordinates: &[f64]) -> Result<(), Error> {
+    pub(crate) fn sample(&mut self, t: f64, coordinates: &[f64]) -> Result<(), Error> {
         self.times.push(t);
         self.waiting.extend_from_slice(coordinates);
         if self.times.len() == BATCH { self.flush() } else { Ok(()) }
@@ -76,7 +77,7 @@ impl<'a> Watch<'a> {
     ///
     /// # Errors
     /// As [`Watch::sample`].
-    pub fn flush(&mut self) -> Result<(), Error> {
+    pub(crate) fn flush(&mut self) -> Result<(), Error> {
         let count = self.times.len();
         if count == 0 {
             return Ok(());
@@ -128,12 +129,12 @@ impl<'a> Watch<'a> {
     }
 
     /// What the scan found.
-    pub fn scan(&self) -> &Scan {
+    pub(crate) fn scan(&self) -> &Scan {
         &self.scan
     }
 
     /// Number of sites watched.
-    pub fn sites(&self) -> usize {
+    pub(crate) fn sites(&self) -> usize {
         self.recovery.sites()
     }
 }
@@ -150,7 +151,7 @@ fn recovery(model: &Model) -> Recovery {
         Window::Element => window::own(mesh),
         Window::Square(side) => window::square(mesh, side),
     };
-    let resin = model.scene.laminate.interface.as_ref().map(|i| i.value);
+    let resin = model.laminate.interface;
     Recovery::new(&model.plate, &model.laminate, &model.materials, resin, quads, &windows)
 }
 

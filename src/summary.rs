@@ -5,13 +5,12 @@ use crate::error::Error;
 use crate::model::Model;
 use crate::run::{Outcome, Sizes};
 use fem_core::counters::Counters;
-use fem_failure::{FailureEvent, Place};
+use fem_failure::scan::{FailureEvent, Place};
 use fem_io::files::OutputDir;
 use fem_io::plot;
 use fem_io::tables::{self, EventRow, HistoryRow};
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::io::Write as _;
 
 /// All that is said of a run; units are in the key names.
 #[derive(Debug, Clone, Serialize)]
@@ -156,7 +155,7 @@ impl Summary {
         let peak = |value: fn(&HistoryRow) -> f64| {
             h.iter().fold((0.0_f64, 0.0), |m, r| if value(r) > m.0 { (value(r), r.time_s) } else { m })
         };
-        let (peak_force_N, peak_force_time_s) = peak(|r| r.contact_force_n);
+        let (peak_force, peak_force_time_s) = peak(|r| r.contact_force_n);
         let (deflection, _) = peak(|r| r.plate_displacement_m);
         let impactor = &model.scene.impactor;
         let last = h.last();
@@ -212,7 +211,7 @@ impl Summary {
                 velocity_m_s: impactor.velocity,
                 energy_J: 0.5 * impactor.mass * impactor.velocity.powi(2),
                 end_time_s: last.map_or(0.0, |r| r.time_s),
-                peak_force_N,
+                peak_force_N: peak_force,
                 peak_force_time_s,
                 peak_plate_displacement_m: deflection,
                 peak_plate_displacement_over_thickness: deflection / thickness,
