@@ -271,6 +271,32 @@ fn files_that_cannot_be_read() {
     }
 }
 
+/// The cases of the report: thickness of table 5, energies of tables 4 and 6, groups of the meshes.
+#[test]
+fn the_examples_are_the_cases_of_the_report() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
+    for (case, plies, millimetres, joules) in [
+        ("as4-3502-16ply-50mm", 16, 2.1133, 3.03),
+        ("as4-3502-16ply-75mm", 16, 2.1133, 6.13),
+        ("as4-3502-8ply-25mm", 8, 1.0566, 3.03),
+        ("as4-3502-8ply-50mm", 8, 1.0566, 3.03),
+        ("as4-3502-8ply-75mm", 8, 1.0566, 3.03),
+        ("im6-934-32ply-drop-weight", 32, 4.1453, 1.92),
+        ("im6-934-32ply-large-mass", 32, 4.1453, 3.86),
+        ("im6-934-32ply-small-mass", 32, 4.1453, 3.79),
+    ] {
+        let scene = read(&examples.join(case).join("scene.toml")).unwrap_or_else(|e| panic!("{}", rendered(&e)));
+        let laminate = &scene.laminate;
+        let thickness: f64 = laminate.plies.iter().map(|p| p.thickness).sum();
+        let energy = 0.5 * scene.impactor.mass * scene.impactor.velocity.powi(2);
+        assert_eq!((laminate.plies.len(), laminate.layers.len()), (plies, 2), "{case}");
+        assert!(laminate.plies.iter().eq(laminate.plies.iter().rev()), "{case} is symmetric");
+        assert!((thickness * 1e3 - millimetres).abs() < 1e-4, "{case}: {thickness} m");
+        assert!((energy - joules).abs() < 0.005, "{case}: {energy} J");
+        assert!(scene.mesh.file.value.is_file(), "{case}");
+    }
+}
+
 proptest! {
     /// Bytes of a scene that is nearly good: cut, doubled, replaced.
     #[test]
