@@ -68,7 +68,7 @@ impl Model {
         let mut warnings = read.warnings;
         let mesh = read.mesh;
         let materials: Vec<Material> = scene.materials.iter().map(|m| m.value.clone()).collect();
-        let laminate = scene.laminate.clone();
+        let laminate = scene.laminate.value.clone();
         warnings.extend(implausible(&mesh, &laminate));
 
         let builder = Builder { scene: &scene, registry };

@@ -151,7 +151,7 @@ fn recovery(model: &Model) -> Recovery {
         Window::Element => window::own(mesh),
         Window::Square(side) => window::square(mesh, side),
     };
-    let resin = model.laminate.interface;
+    let resin = model.scene.interface.as_ref().map(|i| i.value);
     Recovery::new(&model.plate, &model.laminate, &model.materials, resin, quads, &windows)
 }
 

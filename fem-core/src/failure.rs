@@ -197,58 +197,58 @@ pub fn moderate(s: &Stress6<Ply>) -> (Stress6<Ply>, f64) {
 
 /// The reserve factor of any `indices` (a function of the stress that fills `modes` numbers), by search.
 ///
-/// Follows the ray R σ from 10⁻³ of the smallest to 10³ of the largest strength of `m` in steps of 1 % and bisects to
-/// the last bit where an index first is 1 or more. Right for indices that jump or fall again; an excursion above 1
-/// that is shorter than a step can be missed.
+/// Follows the ray R σ from 10⁻² of the smallest to 10³ of the largest strength of `m` (10⁻⁸ to 10³ of E1 without any) and
+/// bisects to the last bit where an index first is 1 or more. Right for indices that jump or fall again; its steps are
+/// of 1 % near index 1 and of 10 % far below, so that a shorter excursion above 1 can be missed.
 pub fn search_reserve(
     indices: impl Fn(&Stress6<Ply>, &mut [f64]),
     modes: usize,
     s: &Stress6<Ply>,
     m: &Material,
 ) -> Reserve {
-    const STEP: f64 = 1.01;
     let (unit, k) = moderate(s);
     let largest = unit.0.iter().fold(0.0_f64, |k, c| k.max(c.abs()));
-    let strengths = || Strength::ALL.iter().filter_map(|which| m.strengths.get(*which));
-    let (weakest, strongest) = (strengths().fold(f64::INFINITY, f64::min), strengths().fold(0.0, f64::max));
-    if largest == 0.0 || strongest == 0.0 {
+    if largest == 0.0 {
         return Reserve::UNBOUNDED;
     }
+    let given = || Strength::ALL.iter().filter_map(|which| m.strengths.get(*which));
+    let weakest = given().min_by(f64::total_cmp).unwrap_or(1e-6 * m.elastic.e1);
+    let strongest = given().max_by(f64::total_cmp).unwrap_or(m.elastic.e1);
+
     let mut out = vec![f64::NAN; modes];
-    // The mode of the largest index at R, if that is 1 or more or any is not a number (of whichever sign).
-    let mut failed = |r: f64| {
+    // The largest index at R and its mode; one that is not a number comes before all.
+    let mut worst = |r: f64| {
         indices(&unit.scaled(r), &mut out);
-        let rank = |mode: &usize| if out[*mode].is_nan() { f64::INFINITY } else { out[*mode] };
-        let worst = (0..modes).max_by(|a, b| rank(a).total_cmp(&rank(b)))?;
-        (rank(&worst) >= 1.0).then_some((worst, out[worst]))
+        let rank = |v: f64| if v.is_nan() { f64::INFINITY } else { v };
+        let first = (0.0, 0);
+        out.iter().enumerate().fold(first, |a, (k, &v)| if rank(v) > rank(a.0) || v.is_nan() { (v, k) } else { a })
     };
-    let (mut safe, end) = (0.0, 1e3 * strongest / largest);
-    let mut r = 1e-3 * weakest / largest;
-    let (mut mode, mut index) = loop {
-        if let Some(found) = failed(r) {
-            break found;
-        }
-        if r > end {
+    let (mut safe, mut failed) = (0.0, 1e-2 * weakest / largest);
+    let mut found = worst(failed);
+    while found.0 < 1.0 {
+        if failed > 1e3 * strongest / largest {
             return Reserve::UNBOUNDED;
         }
-        safe = r;
-        r *= STEP;
-    };
+        safe = failed;
+        // As if no index grew faster than R⁴.
+        failed *= found.0.powf(-0.25).clamp(1.01, 1.1);
+        found = worst(failed);
+    }
     loop {
-        let middle = safe + 0.5 * (r - safe);
-        if index.is_nan() {
+        if found.0.is_nan() {
             return Reserve { factor: f64::NAN, mode: None };
         }
-        if middle <= safe || middle >= r {
+        let middle = safe + 0.5 * (failed - safe);
+        if middle <= safe || middle >= failed {
             break;
         }
-        match failed(middle) {
-            Some(found) => (r, (mode, index)) = (middle, found),
-            None => safe = middle,
+        match worst(middle) {
+            (index, _) if index < 1.0 => safe = middle,
+            (index, mode) => (failed, found) = (middle, (index, mode)),
         }
     }
-    let factor = r / k;
-    Reserve { factor, mode: factor.is_finite().then_some(mode) }
+    let factor = failed / k;
+    Reserve { factor, mode: factor.is_finite().then_some(found.1) }
 }
 
 #[cfg(test)]
@@ -302,6 +302,9 @@ mod tests {
         assert_eq!(reserve([0.0; 6]), Reserve::UNBOUNDED);
         assert_eq!(reserve([0.0, -1.0, 0.0, 0.0, 0.0, 0.0]), Reserve::UNBOUNDED);
         assert!(reserve([0.0, 0.0, 0.0, 1.0, 0.0, 0.0]).factor.is_nan());
+        let bare = Material { strengths: Strengths::default(), ..material() };
+        let steep = search_reserve(|s, out| out[0] = (s.s11() / 3e7).powi(5), 1, &Stress6::new([1e3; 6]), &bare);
+        assert!((steep.factor - 3e4).abs() < 1e-10, "{steep:?}");
         for scale in [1e-300, 1e300] {
             let r = reserve([scale, 0.0, 0.0, 0.0, 0.0, 0.0]);
             assert!((r.factor * scale / 100.0 - 1.0).abs() < 1e-14, "{r:?}");

@@ -1,36 +1,56 @@
-//! The plane, among all that contain an axis, on which a function of the angle is largest.
+//! The plane, among those that contain an axis, on which a function of the angle is largest.
 
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
-/// Largest value of `f` over the angles `from + k step`, k < `count`, and between neighbours, with its angle.
+/// Sine and cosine of 0°, 1°, … 180°.
+static DEGREES: LazyLock<[(f64, f64); 181]> =
+    LazyLock::new(|| std::array::from_fn(|k| (k as f64).to_radians().sin_cos()));
+
+/// Where to look.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Angles {
+    /// 0 to π of a function of period π.
+    HalfTurn,
+    /// 0 to this angle, at most π, and both ends.
+    UpTo(f64),
+}
+
+/// Largest value of `f(sin, cos)` and its angle.
 ///
-/// The step must be short beside the distance of the maxima of `f`. Every sample that is no lower than its neighbours and
-/// within a tenth of the best one is refined by golden section until the value settles to rounding: the best sample need
-/// not stand by the best maximum. A NaN anywhere is returned. With `periodic` the ends are neighbours.
-pub(crate) fn maximise<const N: usize>(from: f64, step: f64, periodic: bool, f: impl Fn(f64) -> f64) -> (f64, f64) {
-    let sample: [f64; N] = std::array::from_fn(|k| f(from + step * k as f64));
-    let mut best = (from, sample[0]);
-    for (k, &v) in sample.iter().enumerate() {
-        if v.is_nan() {
-            return (from + step * k as f64, v);
-        }
-        if v > best.1 {
-            best = (from + step * k as f64, v);
-        }
+/// Samples every degree and refines each sample that is no lower than its neighbours and within a tenth of the best: the
+/// best sample need not stand by the best maximum. A NaN is returned where it is met.
+#[inline]
+pub(crate) fn maximise(angles: Angles, f: impl Fn(f64, f64) -> f64) -> (f64, f64) {
+    let (last, end) = match angles {
+        Angles::HalfTurn => (180, PI),
+        Angles::UpTo(end) => ((end.to_degrees().ceil() as usize).min(180), end),
+    };
+    let mut sample = [0.0; 181];
+    for (v, (sin, cos)) in sample.iter_mut().zip(&DEGREES[..last]) {
+        *v = f(*sin, *cos);
     }
-    let threshold = best.1 - 0.1 * best.1.abs();
-    for k in 0..N {
-        let (left, right) = if periodic {
-            (sample[(k + N - 1) % N], sample[(k + 1) % N])
-        } else {
-            (sample[k.saturating_sub(1)], sample[(k + 1).min(N - 1)])
+    sample[last] = match angles {
+        Angles::HalfTurn => sample[0],
+        Angles::UpTo(end) => f(end.sin(), end.cos()),
+    };
+    let angle = |k: usize| (k as f64).to_radians().min(end);
+    let sample = &sample[..=last];
+    if let Some(k) = sample.iter().position(|v| v.is_nan()) {
+        return (angle(k), sample[k]);
+    }
+    let highest = (0..=last).fold(0, |best, k| if sample[k] > sample[best] { k } else { best });
+    let threshold = sample[highest] - 0.1 * sample[highest].abs();
+    let mut best = (angle(highest), sample[highest]);
+    for k in 0..=last {
+        let (before, after) = match angles {
+            Angles::HalfTurn if k == 0 => (last - 1, 1),
+            Angles::HalfTurn if k == last => break,
+            _ => (k.saturating_sub(1), (k + 1).min(last)),
         };
-        if sample[k] >= threshold && sample[k] >= left && sample[k] >= right {
-            let (mut a, mut b) = (from + step * (k as f64 - 1.0), from + step * (k as f64 + 1.0));
-            if !periodic {
-                (a, b) = (a.max(from), b.min(from + step * (N - 1) as f64));
-            }
-            let refined = golden_section(a, b, &f);
+        if sample[k] >= threshold && sample[k] >= sample[before] && sample[k] >= sample[after] {
+            let start = if k == 0 && before != 0 { -angle(1) } else { angle(before) };
+            let refined = brent(start, angle(k), angle(after), sample[k], |x| f(x.sin(), x.cos()));
             if refined.1 > best.1 {
                 best = refined;
             }
@@ -39,21 +59,97 @@ pub(crate) fn maximise<const N: usize>(from: f64, step: f64, periodic: bool, f: 
     best
 }
 
-/// Maximum of a function with one maximum in [a, b].
-fn golden_section(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> (f64, f64) {
-    const RATIO: f64 = 0.618_033_988_749_894_9;
-    let (mut x, mut y) = (b - RATIO * (b - a), a + RATIO * (b - a));
-    let (mut fx, mut fy) = (f(x), f(y));
-    while b - a > 1e-12 * PI {
-        if fx > fy {
-            (b, y, fy) = (y, x, fx);
-            x = b - RATIO * (b - a);
-            fx = f(x);
+/// Maximum of a function in [a, b] from `x` inside, where it is `fx`: parabolas through the three best points, golden
+/// section where they do not converge (Brent, Algorithms for Minimization without Derivatives, 1973, chapter 5).
+#[inline]
+fn brent(mut a: f64, mut x: f64, mut b: f64, mut fx: f64, f: impl Fn(f64) -> f64) -> (f64, f64) {
+    const GOLDEN: f64 = 0.381_966_011_250_105_2;
+    const TOLERANCE: f64 = 1e-10;
+    let (mut w, mut v, mut fw, mut fv) = (x, x, fx, fx);
+    let (mut step, mut before_last) = (0.0_f64, 0.0_f64);
+    loop {
+        let middle = 0.5 * (a + b);
+        if (x - middle).abs() + 0.5 * (b - a) <= 2.0 * TOLERANCE {
+            return (x, fx);
+        }
+        let r = (x - w) * (fx - fv);
+        let q = (x - v) * (fx - fw);
+        let (p, q) = ((x - v) * q - (x - w) * r, 2.0 * (q - r));
+        let parabola = -p / q;
+        let inside = parabola > a - x && parabola < b - x;
+        if inside && parabola.abs() < 0.5 * before_last.abs() {
+            before_last = step;
+            step = parabola;
+            let u = x + step;
+            if u - a < 2.0 * TOLERANCE || b - u < 2.0 * TOLERANCE {
+                step = TOLERANCE.copysign(middle - x);
+            }
         } else {
-            (a, x, fx) = (x, y, fy);
-            y = a + RATIO * (b - a);
-            fy = f(y);
+            before_last = if x < middle { b - x } else { a - x };
+            step = GOLDEN * before_last;
+        }
+        let u = x + if step.abs() >= TOLERANCE { step } else { TOLERANCE.copysign(step) };
+        let fu = f(u);
+        if fu >= fx {
+            if u >= x {
+                a = x
+            } else {
+                b = x
+            }
+            (v, w, x) = (w, x, u);
+            (fv, fw, fx) = (fw, fx, fu);
+        } else {
+            if u < x {
+                a = u
+            } else {
+                b = u
+            }
+            if fu >= fw || w == x {
+                (v, w) = (w, u);
+                (fv, fw) = (fw, fu);
+            } else if fu >= fv || v == x || v == w {
+                (v, fv) = (u, fu);
+            }
         }
     }
-    if fx > fy { (x, fx) } else { (y, fy) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn close(got: (f64, f64), angle: f64, value: f64, tolerance: f64) {
+        assert!((got.0 - angle).abs() < tolerance && (got.1 - value).abs() < 1e-14, "{got:?}, not {angle} {value}");
+    }
+
+    #[test]
+    fn maxima_between_samples_at_the_seam_and_at_the_ends() {
+        let wave = |at: f64| maximise(Angles::HalfTurn, move |s, c| (2.0 * (s.atan2(c) - at)).cos());
+        close(wave(0.3333), 0.3333, 1.0, 1e-7);
+        close(wave(0.005), 0.005, 1.0, 1e-7);
+        close(wave(-0.005), -0.005, 1.0, 1e-7);
+        close(maximise(Angles::UpTo(0.9), |s, _| s), 0.9, 0.9_f64.sin(), 1e-15);
+        close(maximise(Angles::UpTo(0.9), |_, c| c), 0.0, 1.0, 1e-15);
+        close(maximise(Angles::UpTo(PI), |s, _| s), 0.5 * PI, 1.0, 1e-7);
+    }
+
+    #[test]
+    fn the_lower_sample_may_have_the_higher_maximum() {
+        // A sharp peak of 1.01 between samples beside a blunt one of 1 on a sample.
+        let f = |s: f64, c: f64| {
+            let x = s.atan2(c).to_degrees();
+            let peak = |at: f64, height: f64, width: f64| height * (-((x - at) / width).powi(2)).exp();
+            peak(40.0, 1.0, 8.0) + peak(120.5, 1.01, 2.0)
+        };
+        assert!((maximise(Angles::HalfTurn, f).1 - 1.01).abs() < 1e-12);
+    }
+
+    #[test]
+    fn kinks_constants_and_what_is_no_number() {
+        let kink = maximise(Angles::HalfTurn, |s, c| 1.0 - (s.atan2(c) - 1.2345).abs());
+        assert!((kink.1 - 1.0).abs() < 1e-9, "{kink:?}");
+        assert_eq!(maximise(Angles::HalfTurn, |_, _| 0.0).1, 0.0);
+        assert_eq!(maximise(Angles::HalfTurn, |s, _| if s > 0.5 { f64::INFINITY } else { s }).1, f64::INFINITY);
+        assert!(maximise(Angles::HalfTurn, |s, _| if s > 0.9 { f64::NAN } else { s }).1.is_nan());
+    }
 }

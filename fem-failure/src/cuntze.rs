@@ -113,7 +113,8 @@ impl Plugin for Cuntze {
 /// σ11/Xt, −σ11/Xc, σ22/Yt, −σ22/Yc, (|σ12| + μ σ22)/S12 and their interaction, as in `cuntze`
 /// ```
 ///
-/// The friction stands in the numerator: σ12/(S12 − μ σ22) would not be proportional to the load.
+/// The friction stands in the numerator: σ12/(S12 − μ σ22) would not be proportional to the load. Without σ12 there is no
+/// shear to help or hinder, and the effort of that mode is 0.
 #[derive(Debug, Clone, Copy)]
 pub struct Cuntze2d {
     /// Interaction exponent.
@@ -136,7 +137,7 @@ impl Cuntze2d {
             return [Terms::REFUSED; 6];
         }
         let r = &m.strengths;
-        let shear = (s.s12().abs() + self.mu * s.s22()) / r.s12();
+        let shear = if s.s12() == 0.0 { 0.0 } else { (s.s12().abs() + self.mu * s.s22()) / r.s12() };
         let (along, across) = (s.s11(), s.s22());
         interact([along / r.xt(), -along / r.xc(), across / r.yt(), -across / r.yc(), shear], self.m)
     }

@@ -23,16 +23,18 @@ impl Hashin1980 {
     fn terms(&self, s: &Stress6<Ply>, m: &Material) -> [Terms; 4] {
         let r = &m.strengths;
         let along = (s.s12() * s.s12() + s.s31() * s.s31()) / (r.s12() * r.s12());
-        let sum = s.s22() + s.s33();
-        let shear = (s.s23() * s.s23() - s.s22() * s.s33()) / (r.s23() * r.s23()) + along;
+        let (across, s23) = (s.s23() * s.s23(), r.s23() * r.s23());
+        let (sum, half) = (s.s22() + s.s33(), 0.5 * (s.s22() - s.s33()));
         let (fibre, opening) = (s.s11() >= 0.0, sum >= 0.0);
-        let twice = 2.0 * r.s23();
-        let closing =
-            Terms { linear: ((r.yc() / twice).powi(2) - 1.0) * sum / r.yc(), quadratic: (sum / twice).powi(2) + shear };
+        let closing = Terms {
+            linear: (r.yc() * r.yc() / (4.0 * s23) - 1.0) * sum / r.yc(),
+            // (σ22 + σ33)²/4 − σ22 σ33 without its cancellation.
+            quadratic: (half * half + across) / s23 + along,
+        };
         [
             Terms::quadratic((s.s11() / r.xt()).powi(2) + along).when(fibre),
             Terms::quadratic((s.s11() / r.xc()).powi(2)).when(!fibre),
-            Terms::quadratic((sum / r.yt()).powi(2) + shear).when(opening),
+            Terms::quadratic((sum / r.yt()).powi(2) + (across - s.s22() * s.s33()) / s23 + along).when(opening),
             closing.when(!opening),
         ]
     }

@@ -1,8 +1,9 @@
 //! Puck's action-plane criterion, three-dimensional, and what its plane form shares with it.
 
-use crate::action_plane::maximise;
+use crate::action_plane::{Angles, maximise};
 use crate::prelude::*;
 use fem_core::plugin::Dimension;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Fibre failure in Puck's criteria.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -108,7 +109,7 @@ impl Default for Puck {
 
 /// Stresses on a plane that contains the fibre, at the angle with sine `s` and cosine `c`: σn, τnt, τn1.
 #[inline]
-pub(crate) fn tractions(t: &Stress6<Ply>, (s, c): (f64, f64)) -> (f64, f64, f64) {
+pub(crate) fn tractions(t: &Stress6<Ply>, s: f64, c: f64) -> (f64, f64, f64) {
     (
         t.s22() * c * c + t.s33() * s * s + 2.0 * t.s23() * s * c,
         (t.s33() - t.s22()) * s * c + t.s23() * (c * c - s * s),
@@ -118,20 +119,21 @@ pub(crate) fn tractions(t: &Stress6<Ply>, (s, c): (f64, f64)) -> (f64, f64, f64)
 
 impl Puck {
     /// The plane of largest inter-fibre exposure: its angle θ from the ply's plane about the fibre, radians, and the
-    /// exposure, without weakening. Of equal planes any.
+    /// exposure, without weakening; −90° < θ ≤ 90°. Of equal planes any.
     pub fn action_plane(&self, s: &Stress6<Ply>, m: &Material) -> (f64, f64) {
         let r = &m.strengths;
         let (yt, s12, ra) = (1.0 / r.yt(), 1.0 / r.s12(), 2.0 * (1.0 + self.p23c) / r.yc());
         let square = |v: f64| v * v;
-        maximise::<180>(-89f64.to_radians(), 1f64.to_radians(), true, |angle| {
-            let (n, t, l) = tractions(s, angle.sin_cos());
+        let (angle, exposure) = maximise(Angles::HalfTurn, |sin, cos| {
+            let (n, t, l) = tractions(s, sin, cos);
             let (t, l) = (t * t, l * l);
             let (p23, p12) = if n >= 0.0 { (self.p23t, self.p12t) } else { (self.p23c, self.p12c) };
             let shear = t + l;
             let p = if shear > 0.0 { (p23 * ra * t + p12 * s12 * l) / shear } else { 0.0 };
             let normal = if n >= 0.0 { (yt - p) * n } else { p * n };
             (square(normal) + t * square(ra) + l * square(s12)).sqrt() + p * n
-        })
+        });
+        (if angle > FRAC_PI_2 { angle - PI } else { angle }, exposure)
     }
 
     fn terms(&self, s: &Stress6<Ply>, m: &Material) -> [Terms; 4] {
@@ -140,7 +142,7 @@ impl Puck {
         if self.weakening {
             inter *= weakening(inter, tension.max(compression));
         }
-        let opens = tractions(s, angle.sin_cos()).0 >= 0.0;
+        let opens = tractions(s, angle.sin(), angle.cos()).0 >= 0.0;
         [
             Terms::linear(tension),
             Terms::linear(compression),

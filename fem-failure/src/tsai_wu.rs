@@ -20,8 +20,8 @@ pub enum Transverse {
 /// F1 = 1/Xt − 1/Xc, F11 = 1/(Xt Xc), F2, F22 alike, F44 = 1/S23², F66 = 1/S12², F12 = f12 √(F11 F22)
 /// ```
 ///
-/// f12 = −1/2 by default, in analogy with von Mises; a biaxial test gives better. A choice that leaves the surface
-/// open, so that some stress never fails, is refused for the material at hand.
+/// f12 = −1/2 by default, in analogy with von Mises; a biaxial test gives better. A choice that makes the quadratic part
+/// indefinite for the material at hand, an open surface, is refused.
 #[derive(Debug, Clone, Copy)]
 pub struct TsaiWu {
     /// Normalised interaction of σ11 with σ22 and σ33, between −1 and 1.
@@ -109,14 +109,16 @@ impl FailureCriterion for TsaiWu {
         let closed = |holds: bool, condition: &str| match holds {
             true => Ok(()),
             false => Err(format!(
-                "its failure surface is open, some stress never fails: {condition} is required, \
+                "its failure surface is open: {condition} is required, \
                  F11 = {:.6e}, F22 = {:.6e}, F12 = {:.6e}, F23 = {:.6e} (1/Pa^2)",
                 f.f11, f.f22, f.f12, f.f23
             )),
         };
-        closed(f.f11 * f.f22 > f.f12 * f.f12, "F11 F22 > F12^2")?;
-        closed(f.f23.abs() < f.f22, "|F23| < F22")?;
-        closed(f.f22 + f.f23 > 2.0 * f.f12 * f.f12 / f.f11, "F22 + F23 > 2 F12^2/F11")
+        // The default choice meets the last condition with equality: a paraboloid.
+        let rounding = 1.0 - 1e-12;
+        closed(f.f11 * f.f22 >= rounding * f.f12 * f.f12, "F11 F22 >= F12^2")?;
+        closed(f.f22 >= rounding * f.f23.abs(), "|F23| <= F22")?;
+        closed(f.f22 + f.f23 >= rounding * 2.0 * f.f12 * f.f12 / f.f11, "F22 + F23 >= 2 F12^2/F11")
     }
 }
 

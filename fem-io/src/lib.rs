@@ -5,4 +5,5 @@ pub mod units;
 
 pub mod gmsh;
 pub mod files;
+pub mod plot;
 pub mod tables;

@@ -5,6 +5,7 @@
 use crate::files::{FileError, OutputDir};
 use serde::Serialize;
 use serde_json::Value;
+use std::io;
 
 /// One instant of an impact: a row of `history.csv`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -167,12 +168,21 @@ fn write_table<R: Row>(dir: &OutputDir, file: &'static str, rows: &[R]) -> Resul
     }
     dir.write(file, |out| {
         let mut table = csv::Writer::from_writer(out);
-        table.write_record(R::default().fields().iter().map(|(column, _)| column))?;
+        table.write_record(R::default().fields().iter().map(|(column, _)| column)).map_err(cause)?;
         for row in rows {
-            table.serialize(row.fields().iter().map(|(_, value)| value).collect::<Vec<_>>())?;
+            table.serialize(row.fields().iter().map(|(_, value)| value).collect::<Vec<_>>()).map_err(cause)?;
         }
         table.flush()
     })
+}
+
+/// The system's error behind a CSV error; the conversion of csv itself drops its kind, by which a full disk is known.
+fn cause(error: csv::Error) -> io::Error {
+    let text = error.to_string();
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        _ => io::Error::other(text),
+    }
 }
 
 #[cfg(test)]
@@ -260,6 +270,11 @@ mod tests {
         let error = write_history(&dir, &rows).unwrap_err().to_string();
         assert_eq!(error, "history.csv, row 2, column plate_strain_J: NaN is not a finite number");
         assert!(!folder.path().join("history.csv").exists());
+    }
+
+    #[test]
+    fn a_full_disk_is_still_known_as_one() {
+        assert_eq!(cause(io::Error::from(io::ErrorKind::StorageFull).into()).kind(), io::ErrorKind::StorageFull);
     }
 
     #[test]

@@ -2,37 +2,12 @@
 
 use super::material;
 use super::reader::{Field, Keys, Reader};
-use super::source::{Located, Place, SceneError};
+use super::source::{Located, SceneError};
 use super::tree::Node;
+use fem_core::laminate::{LaminaPly, Laminate};
 use fem_core::layup::{self, LayupPly};
 use fem_core::material::Material;
 use fem_core::plugin::{Dimension, unknown_key};
-
-/// One ply. Its material counts in [`super::Scene::materials`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct Ply {
-    /// Fibre direction as written, degrees from x towards y.
-    pub angle_deg: f64,
-    /// The same in radians.
-    pub angle: f64,
-    /// Its material.
-    pub material: usize,
-    /// Thickness, m.
-    pub thickness: f64,
-}
-
-/// A laminate, from the bottom up.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Laminate {
-    /// Plies.
-    pub plies: Vec<Ply>,
-    /// Plies in each layer of elements; their sum is the number of plies.
-    pub layers: Vec<usize>,
-    /// Material of the resin between plies, for criteria that look there.
-    pub interface: Option<Located<usize>>,
-    /// Where it stands.
-    pub place: Place,
-}
 
 const KEYS: Keys = &[
     ("plies", r#""[0/45/-45/90]2s""#),
@@ -51,7 +26,11 @@ struct PlyType {
     thickness: f64,
 }
 
-pub(super) fn read(field: &Field<'_>, materials: &[Located<Material>]) -> Result<Laminate, SceneError> {
+/// The laminate, and the material of the resin between its plies if one is named.
+pub(super) fn read(
+    field: &Field<'_>,
+    materials: &[Located<Material>],
+) -> Result<(Located<Laminate>, Option<Located<usize>>), SceneError> {
     let table = field.table(KEYS)?;
     let common = PlyType {
         material: material::find(&table.required("material")?, materials)?,
@@ -60,7 +39,7 @@ pub(super) fn read(field: &Field<'_>, materials: &[Located<Material>]) -> Result
     let types = ply_types(&table, common, materials)?;
     let layup_field = table.required("plies")?;
     let layup = read_layup(&layup_field)?;
-    let plies: Vec<Ply> =
+    let plies: Vec<LaminaPly> =
         layup.iter().map(|ply| read_ply(ply, common, &types, &layup_field)).collect::<Result<_, _>>()?;
     let layers = match table.optional("layers") {
         Some(field) => read_layers(&field, plies.len())?,
@@ -70,7 +49,7 @@ pub(super) fn read(field: &Field<'_>, materials: &[Located<Material>]) -> Result
         Some(field) => Some(field.at(material::find(&field, materials)?)),
         None => None,
     };
-    Ok(Laminate { plies, layers, interface, place: table.place().clone() })
+    Ok((field.at(Laminate { plies, layers }), interface))
 }
 
 fn read_layup(field: &Field<'_>) -> Result<Vec<LayupPly>, SceneError> {
@@ -104,7 +83,7 @@ fn read_ply(
     common: PlyType,
     types: &[(String, PlyType)],
     field: &Field<'_>,
-) -> Result<Ply, SceneError> {
+) -> Result<LaminaPly, SceneError> {
     let PlyType { material, thickness } = match &ply.label {
         None => common,
         Some(label) => types.iter().find(|(name, _)| name == label).map(|(_, ply)| *ply).ok_or_else(|| {
@@ -117,7 +96,7 @@ fn read_ply(
             )
         })?,
     };
-    Ok(Ply { angle_deg: ply.angle_deg, angle: ply.angle_deg.to_radians(), material, thickness })
+    Ok(LaminaPly { angle_deg: ply.angle_deg, angle: ply.angle_deg.to_radians(), material, thickness })
 }
 
 fn read_layers(field: &Field<'_>, plies: usize) -> Result<Vec<usize>, SceneError> {

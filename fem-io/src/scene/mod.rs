@@ -15,14 +15,15 @@ mod support;
 mod tests;
 pub(crate) mod tree;
 
-pub use laminate::{Laminate, Ply};
 pub use plugin::PluginSpec;
 pub use run::{Damage, Failure, ImpactPoint, Impactor, Load, March, Output, Window};
 pub use source::{Located, Place, SceneError, SceneSource};
-pub use support::{Couple, Equation, Level, NodeSet, Support, Term};
+pub use support::{Couple, Equation, NodeSet, Support, Term};
 
 use crate::units;
+use fem_core::laminate::Laminate;
 use fem_core::material::Material;
+use fem_core::plate::ZDerivatives;
 use fem_core::plugin::Dimension;
 use reader::{Field, Keys, Reader};
 use source::Origin;
@@ -42,11 +43,13 @@ pub struct Scene {
     pub mesh: MeshFile,
     /// Its materials.
     pub materials: Vec<Located<Material>>,
-    /// The laminate.
-    pub laminate: Laminate,
+    /// The laminate; its materials count in `materials`.
+    pub laminate: Located<Laminate>,
+    /// Material of the resin between plies, for criteria that look there; counts in `materials`.
+    pub interface: Option<Located<usize>>,
     /// The element.
     pub element: PluginSpec,
-    /// How z-derivatives meet at a boundary between layers of elements.
+    /// How layers of elements share the derivatives along z.
     pub z_derivatives: Located<ZDerivatives>,
     /// Supports.
     pub supports: Vec<Support>,
@@ -115,15 +118,6 @@ pub struct MeshFile {
     pub metres_per_unit: f64,
 }
 
-/// How z-derivatives meet at a boundary between layers of elements.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ZDerivatives {
-    /// One set for both layers: strains through the thickness are continuous at nodes, even where stiffness jumps.
-    Shared,
-    /// Each layer has its own: only displacements are continuous.
-    LayerWise,
-}
-
 const KEYS: Keys = &[
     ("title", r#""16 plies, 2.49 kg at 1.56 m/s""#),
     ("fidelity", r#""engineering""#),
@@ -183,14 +177,16 @@ pub fn parse(text: &str, path: &Path) -> Result<Scene, SceneError> {
     let root = Reader::root(&merged, KEYS, &source)?;
 
     let materials = material::read_all(&root.required("materials")?)?;
+    let (laminate, interface) = laminate::read(&root.required("laminate")?, &materials)?;
     let element = root.required("element")?;
     let damage = root.optional("effects").map_or(Ok(Damage::Onset), |field| run::read_effects(&field))?;
     Ok(Scene {
         title: root.required("title")?.text()?.to_owned(),
         fidelity,
         mesh: read_mesh(&root.required("mesh")?, path)?,
-        laminate: laminate::read(&root.required("laminate")?, &materials)?,
         materials,
+        laminate,
+        interface,
         z_derivatives: read_z_derivatives(&element)?,
         element: PluginSpec::read(&element, "kind", &["z_derivatives"])?,
         supports: support::read_all(&root.required("support")?)?,

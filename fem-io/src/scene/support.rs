@@ -5,27 +5,15 @@ use super::source::{Located, Place, SceneError};
 use super::tree::Node;
 use fem_core::dof::Dof;
 use fem_core::plugin::Dimension;
+use fem_core::support::Levels;
 
-/// Which nodes above a node of the flat mesh are meant.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Level {
-    /// The bottom face.
-    Bottom,
-    /// The mid-plane; there must be a layer boundary.
-    MidPlane,
-    /// The top face.
-    Top,
-    /// Every layer boundary.
-    All,
-}
-
-/// Nodes of a group of the mesh, at a level of the plate.
+/// Nodes of a group of the mesh, at some levels of the plate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NodeSet {
     /// Physical name of the group.
     pub group: Located<String>,
-    /// The level.
-    pub level: Level,
+    /// Which of the nodes above each other.
+    pub levels: Levels,
 }
 
 /// A support.
@@ -61,7 +49,7 @@ pub struct Equation {
 /// A term of an equation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Term {
-    /// The node: the group has one node and the level one height.
+    /// The node: the group has one node and the levels are one.
     pub node: NodeSet,
     /// The unknown.
     pub dof: Dof,
@@ -124,10 +112,10 @@ pub(super) fn read_couples(field: &Field<'_>) -> Result<Vec<Couple>, SceneError>
 }
 
 fn nodes(table: &Reader<'_>) -> Result<NodeSet, SceneError> {
-    const LEVELS: [(&str, Level); 4] =
-        [("mid-plane", Level::MidPlane), ("bottom", Level::Bottom), ("top", Level::Top), ("all", Level::All)];
+    const LEVELS: [(&str, Levels); 4] =
+        [("mid-plane", Levels::MidPlane), ("bottom", Levels::Bottom), ("top", Levels::Top), ("all", Levels::All)];
     let group = table.required("group")?;
-    Ok(NodeSet { group: group.at(group.text()?.to_owned()), level: table.required("at")?.choice(&LEVELS)? })
+    Ok(NodeSet { group: group.at(group.text()?.to_owned()), levels: table.required("at")?.choice(&LEVELS)? })
 }
 
 fn dofs(field: &Field<'_>) -> Result<Vec<Dof>, SceneError> {

@@ -1,9 +1,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::*;
-use crate::scene::run::{Damage, ImpactPoint, Load, Window};
+use fem_core::laminate::LaminaPly;
 use fem_core::material::Strength;
 use fem_core::plugin::Value;
+use fem_core::support::Levels;
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use proptest::prelude::*;
 
@@ -81,10 +82,10 @@ fn a_scene_in_full() {
     assert_eq!(resin.strengths.get(Strength::Xt), Some(38e6));
     assert_eq!(foam.strengths.get(Strength::Xt), None);
 
-    let laminate = &scene.laminate;
+    let laminate = &scene.laminate.value;
     assert_eq!((laminate.plies.len(), &laminate.layers[..]), (16, &[8, 8][..]));
-    assert_eq!(laminate.interface.as_ref().map(|i| i.value), Some(1));
-    assert_eq!(laminate.plies[0], Ply { angle_deg: 0.0, angle: 0.0, material: 0, thickness: 0.13208e-3 });
+    assert_eq!(scene.interface.as_ref().map(|i| i.value), Some(1));
+    assert_eq!(laminate.plies[0], LaminaPly { angle_deg: 0.0, angle: 0.0, material: 0, thickness: 0.13208e-3 });
     assert_eq!((laminate.plies[3].material, laminate.plies[3].thickness), (2, 1e-3));
     assert_eq!(laminate.plies[3].angle, std::f64::consts::FRAC_PI_2);
 
@@ -96,11 +97,11 @@ fn a_scene_in_full() {
     else {
         panic!("{:?}", scene.supports)
     };
-    assert_eq!((nodes.group.value.as_str(), nodes.level), ("support", Level::MidPlane));
+    assert_eq!((nodes.group.value.as_str(), nodes.levels), ("support", Levels::MidPlane));
     assert_eq!((dofs[0].to_string().as_str(), *axes), ("U30", 0.0));
     assert!((turned - std::f64::consts::FRAC_PI_6).abs() < 1e-15);
     assert_eq!(scene.equations[0].terms[1].factor, -2e-3);
-    assert_eq!((scene.couples[0].nodes.level, scene.couples[0].dofs.len()), (Level::All, 1));
+    assert_eq!((scene.couples[0].nodes.levels, scene.couples[0].dofs.len()), (Levels::All, 1));
 
     assert_eq!((scene.impactor.mass, scene.impactor.velocity), (2.49, 1.56));
     assert_eq!(scene.impactor.at.value, ImpactPoint::Group("impact".into()));
@@ -164,7 +165,7 @@ fn presets_lie_beneath_the_scene() {
 
 #[test]
 fn layers_share_the_plies() {
-    let layers = |value: &str| read_good(&spoilt("layers = [8, 8]", value)).laminate.layers;
+    let layers = |value: &str| read_good(&spoilt("layers = [8, 8]", value)).laminate.value.layers;
     assert_eq!(layers(""), [8, 8]);
     assert_eq!(layers("layers = 1"), [16]);
     assert_eq!(layers("layers = 3"), [5, 5, 6]);
@@ -268,6 +269,32 @@ fn files_that_cannot_be_read() {
     for text in ["", "\u{feff}", "# nothing"] {
         let error = parse(text, Path::new("scene.toml")).unwrap_err();
         assert!(rendered(&error).contains("`materials` is missing"), "{text:?}: {}", rendered(&error));
+    }
+}
+
+/// The cases of the report: thickness of table 5, energies of tables 4 and 6, groups of the meshes.
+#[test]
+fn the_examples_are_the_cases_of_the_report() {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
+    for (case, plies, millimetres, joules) in [
+        ("as4-3502-16ply-50mm", 16, 2.1133, 3.03),
+        ("as4-3502-16ply-75mm", 16, 2.1133, 6.13),
+        ("as4-3502-8ply-25mm", 8, 1.0566, 3.03),
+        ("as4-3502-8ply-50mm", 8, 1.0566, 3.03),
+        ("as4-3502-8ply-75mm", 8, 1.0566, 3.03),
+        ("im6-934-32ply-drop-weight", 32, 4.1453, 1.92),
+        ("im6-934-32ply-large-mass", 32, 4.1453, 3.86),
+        ("im6-934-32ply-small-mass", 32, 4.1453, 3.79),
+    ] {
+        let scene = read(&examples.join(case).join("scene.toml")).unwrap_or_else(|e| panic!("{}", rendered(&e)));
+        let laminate = &scene.laminate.value;
+        let thickness = laminate.thickness();
+        let energy = 0.5 * scene.impactor.mass * scene.impactor.velocity.powi(2);
+        assert_eq!((laminate.plies.len(), laminate.layers.len()), (plies, 2), "{case}");
+        assert!(laminate.plies.iter().eq(laminate.plies.iter().rev()), "{case} is symmetric");
+        assert!((thickness * 1e3 - millimetres).abs() < 1e-4, "{case}: {thickness} m");
+        assert!((energy - joules).abs() < 0.005, "{case}: {energy} J");
+        assert!(scene.mesh.file.value.is_file(), "{case}");
     }
 }
 

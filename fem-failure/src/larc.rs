@@ -1,0 +1,66 @@
+//! What the LaRC criteria share: friction on the fracture plane and the rotation of misaligned fibres.
+
+use crate::prelude::*;
+
+/// Constants of a ply that follow from its strengths and the fracture angle α0 under transverse compression.
+///
+/// ```text
+/// ST = Yc cos α0 (sin α0 + cos α0/tan 2α0),  ηT = −1/tan 2α0,  ηL = −S12 cos 2α0/(Yc cos² α0)
+/// φc = atan{[1 − √(1 − 4 (q + ηL) q)]/(2 (q + ηL))},  q = S12/Xc
+/// ```
+pub(crate) struct Friction {
+    /// Shear strength across the fibre on the fracture plane, Pa.
+    pub(crate) st: f64,
+    pub(crate) eta_t: f64,
+    pub(crate) eta_l: f64,
+    /// Misalignment at failure under pure compression, radians.
+    pub(crate) phi_c: f64,
+}
+
+pub(crate) const ALPHA0: ParamInfo =
+    ParamInfo { name: "alpha0", doc: "fracture angle under transverse compression, degrees, 46 to 60; 53 by default" };
+
+pub(crate) fn alpha0_from(params: &Params) -> Result<f64, ParamError> {
+    Ok(number_in(params, ALPHA0.name, 46.0..=60.0, 53.0)?.to_radians())
+}
+
+impl Friction {
+    #[inline]
+    pub(crate) fn new(alpha0: f64, m: &Material) -> Self {
+        let r = &m.strengths;
+        let cos = alpha0.cos();
+        let cot = 1.0 / (2.0 * alpha0).tan();
+        let eta_l = -r.s12() * (2.0 * alpha0).cos() / (r.yc() * cos * cos);
+        let q = r.s12() / r.xc();
+        Self {
+            st: r.yc() * cos * (alpha0.sin() + cos * cot),
+            eta_t: -cot,
+            eta_l,
+            // The quadratic's smaller root, in the form that does not cancel.
+            phi_c: (2.0 * q / (1.0 + (1.0 - 4.0 * (q + eta_l) * q).sqrt())).atan(),
+        }
+    }
+
+    /// Without a root for φc fibres kink under no compression at all.
+    pub(crate) fn check(&self, m: &Material) -> Result<(), String> {
+        if self.phi_c.is_finite() {
+            return Ok(());
+        }
+        let (s12, xc) = (m.strengths.s12(), m.strengths.xc());
+        Err(format!("4 (q + etaL) q <= 1 with q = S12/Xc is required for a kink angle; S12 = {s12} Pa, Xc = {xc} Pa"))
+    }
+
+    /// Sine and cosine of the angle by which fibres under σ11, σ22 and |σ12| have turned; none when they are unstable.
+    #[inline]
+    pub(crate) fn misalignment(&self, s11: f64, s22: f64, shear: f64, m: &Material) -> Option<(f64, f64)> {
+        let stiffness = m.elastic.g12 + s11 - s22;
+        let phi = (shear + (m.elastic.g12 - m.strengths.xc()) * self.phi_c) / stiffness;
+        (stiffness > 0.0).then(|| phi.sin_cos())
+    }
+}
+
+/// σ22 and σ12 ≥ 0 in the frame turned by an angle with this sine and cosine.
+#[inline]
+pub(crate) fn turned(s11: f64, s22: f64, s12: f64, (s, c): (f64, f64)) -> (f64, f64) {
+    (s11 * s * s + s22 * c * c - 2.0 * s12 * s * c, (s22 - s11) * s * c + s12 * (c * c - s * s))
+}

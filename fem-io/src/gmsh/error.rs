@@ -1,0 +1,238 @@
+//! What is wrong with a mesh file, where, and the way out.
+
+use std::fmt;
+
+/// Why a mesh file was refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{file}{place}: {fault}")]
+#[non_exhaustive]
+pub struct MeshError {
+    /// Name of the file.
+    pub file: String,
+    /// Where in the file.
+    pub place: Place,
+    /// What is wrong there.
+    pub fault: MeshFault,
+}
+
+/// A place in a mesh file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// The file as a whole, or no place that can be told.
+    File,
+    /// A line of an ASCII file, counted from 1.
+    Line(usize),
+    /// An offset in a binary file, counted from 0.
+    Byte(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File => Ok(()),
+            Self::Line(line) => write!(f, ":{line}"),
+            Self::Byte(byte) => write!(f, ", byte {byte}"),
+        }
+    }
+}
+
+/// What can be wrong with a mesh file. Nodes, elements and entities are called by their numbers in the file.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshFault {
+    /// The operating system refused.
+    #[error("cannot read the file: {0}")]
+    Unreadable(String),
+    /// The caller's unit makes no sense.
+    #[error("the length unit of the file is given as {0} m; it must be positive and finite, 0.001 for mm")]
+    Unit(f64),
+    /// Not a mesh of gmsh at all.
+    #[error(
+        "not a gmsh mesh: it does not begin with a line $MeshFormat; write it with `gmsh FILE.geo -2 -format msh41`"
+    )]
+    NotMsh,
+    /// Another version of the format.
+    #[error("MSH version {0}; only 4.1 is read: set Mesh.MshFileVersion = 4.1 and save again")]
+    Version(String),
+    /// A header line that is no header of MSH 4.1.
+    #[error("unusable header {0:?}: expected `4.1 0 8` (ASCII) or `4.1 1 8` with little-endian numbers (binary)")]
+    Header(String),
+    /// Not readable as MSH 4.1.
+    #[error("not valid MSH 4.1: {0}; the file is damaged or cut short, save it again from gmsh")]
+    Syntax(String),
+    /// A section that must be there is not, or holds nothing.
+    #[error("the section ${0} is missing or empty: mesh the surfaces before saving (gmsh option -2)")]
+    Missing(&'static str),
+    /// A section occurs more than once.
+    #[error("a second section ${0}: files cannot be joined by appending, merge them in gmsh and save once")]
+    Repeated(&'static str),
+    /// A section holds another number of things than it announces.
+    #[error("the section ${section} announces {announced} entries and holds {found}; save the file again from gmsh")]
+    Count {
+        /// Name of the section.
+        section: &'static str,
+        /// Number in the section's header.
+        announced: u64,
+        /// Number found.
+        found: usize,
+    },
+    /// A mesh cut into partitions.
+    #[error("the mesh is partitioned: save it unpartitioned (no option -part, or gmsh.model.mesh.unpartition())")]
+    Partitioned,
+    /// Nodes with parametric coordinates.
+    #[error("nodes carry parametric coordinates: set Mesh.SaveParametric = 0 and save again")]
+    Parametric,
+    /// More nodes than the numbering can hold.
+    #[error("{0} nodes are more than can be numbered: coarsen the mesh")]
+    TooManyNodes(usize),
+    /// A coordinate that is no number.
+    #[error("node {node} has the coordinate {value}: coordinates must be finite; save the file again from gmsh")]
+    Coordinate {
+        /// Node.
+        node: u64,
+        /// The coordinate.
+        value: f64,
+    },
+    /// A number given twice.
+    #[error("{0} twice: save the file again from gmsh, after gmsh.model.mesh.renumberNodes() or renumberElements()")]
+    RepeatedTag(String),
+    /// An element with a node that is not in the file.
+    #[error("element {element} refers to node {node}, which is not in $Nodes; save the file again from gmsh")]
+    UnknownNode {
+        /// Element.
+        element: u64,
+        /// Node.
+        node: u64,
+    },
+    /// Elements of a geometric entity that is not in the file.
+    #[error(
+        "element {element} lies on entity {entity} of dimension {dim}, which is not in $Entities; \
+         save the file again from gmsh"
+    )]
+    UnknownEntity {
+        /// First element of the block.
+        element: u64,
+        /// Dimension of the entity.
+        dim: i32,
+        /// Number of the entity.
+        entity: i32,
+    },
+    /// One name for groups of different dimension.
+    #[error(
+        "the physical group {name:?} occurs with dimension {} and {}: give each group its own name, \
+         as in Physical Curve(\"support\") = {{...}};", dims[0], dims[1]
+    )]
+    GroupDimensions {
+        /// Name of the group.
+        name: String,
+        /// The dimensions.
+        dims: [i32; 2],
+    },
+    /// No cells in any group.
+    #[error(
+        "no physical group holds a cell: name the surface of the plate, as in Physical Surface(\"plate\") = {{1}};, \
+         and mesh it before saving"
+    )]
+    NoCells,
+    /// A triangle among the cells.
+    #[error(
+        "element {element} of group {group:?} is a triangle; cells must be quadrilaterals: use Recombine Surface or \
+         Mesh.RecombineAll = 1, and Mesh.SubdivisionAlgorithm = 1 where triangles are left"
+    )]
+    Triangle {
+        /// Element.
+        element: u64,
+        /// Group.
+        group: String,
+    },
+    /// An element that has no place in a flat mesh of quadrilaterals.
+    #[error(
+        "element {element} of group {group:?} has the type {kind}; only flat meshes of quadrilaterals up to second \
+         order are read: set Mesh.ElementOrder = 1, and save no volumes"
+    )]
+    Kind {
+        /// Element.
+        element: u64,
+        /// Group.
+        group: String,
+        /// Shape and number of nodes.
+        kind: String,
+    },
+    /// A node off the plane of the others.
+    #[error(
+        "node {node} lies at z = {z}, node {other} at z = {other_z} (file units): the mesh must be flat in x and y"
+    )]
+    NotFlat {
+        /// Node.
+        node: u64,
+        /// Its z.
+        z: f64,
+        /// Node to compare with.
+        other: u64,
+        /// Its z.
+        other_z: f64,
+    },
+    /// A cell that is not convex.
+    #[error(
+        "cell {cell} is folded, flattened or has an inner angle of 180 degrees or more at node {node}: \
+         mesh with transfinite surfaces or Mesh.Smoothing = 10, or refine there"
+    )]
+    Folded {
+        /// Cell.
+        cell: u64,
+        /// Node at its worst corner.
+        node: u64,
+    },
+    /// Two cells over the same place.
+    #[error(
+        "cells {} and {} lie on the same side of the edge between nodes {} and {}: they overlap; \
+         remove doubled surfaces (Coherence;) and mesh again", cells[0], cells[1], nodes[0], nodes[1]
+    )]
+    Overlap {
+        /// The cells.
+        cells: [u64; 2],
+        /// Nodes of their common edge.
+        nodes: [u64; 2],
+    },
+    /// Two nodes at the same place.
+    #[error(
+        "nodes {} and {} lie at the same point, so that the cells there are not joined: let the surfaces share their \
+         curves (Coherence; or BooleanFragments) or call gmsh.model.mesh.removeDuplicateNodes()", nodes[0], nodes[1]
+    )]
+    NotJoined {
+        /// The nodes.
+        nodes: [u64; 2],
+    },
+    /// Two elements of a group on the same two nodes.
+    #[error("elements {} and {} of group {group:?} are the same edge; remove doubled curves (Coherence;)", elements[0], elements[1])]
+    RepeatedEdge {
+        /// The elements.
+        elements: [u64; 2],
+        /// Group.
+        group: String,
+    },
+    /// A group of edges with something that is no edge of a cell.
+    #[error(
+        "element {element} of group {group:?}, from node {} to node {}, is no edge of a cell: \
+         mesh curve and surface together and put the surface into a physical group", nodes[0], nodes[1]
+    )]
+    NotAnEdge {
+        /// Element.
+        element: u64,
+        /// Group.
+        group: String,
+        /// Its nodes.
+        nodes: [u64; 2],
+    },
+    /// A group of nodes with a node that no cell has.
+    #[error(
+        "node {node} of group {group:?} is no corner of a cell: embed the point (Point {{1}} In Surface {{1}};) \
+         or make it a corner of the surfaces"
+    )]
+    NotACorner {
+        /// Node.
+        node: u64,
+        /// Group.
+        group: String,
+    },
+}

@@ -1,0 +1,108 @@
+//! Physical groups: names, and the entities that belong to them.
+
+use std::collections::BTreeMap;
+
+use mshio::Entities;
+
+use super::error::{MeshError, MeshFault, Place};
+use super::source::Source;
+
+/// Physical groups of a file.
+#[derive(Debug)]
+pub(super) struct Groups {
+    /// Dimension of each named group.
+    dims: BTreeMap<String, i32>,
+    /// Names of the groups that each entity, by dimension and number, belongs to.
+    entities: BTreeMap<(i32, i32), Vec<String>>,
+}
+
+impl Groups {
+    /// A group without a name is called by its number.
+    pub(super) fn new(source: &Source<'_>, entities: Entities<i32, f64>) -> Result<Self, MeshError> {
+        let names = physical_names(source)?;
+        let mut groups = Self { dims: BTreeMap::new(), entities: BTreeMap::new() };
+        for ((dim, _), (place, name)) in &names {
+            groups.declare(name, *dim).map_err(|fault| source.error(*place, fault))?;
+        }
+        let points = entities.points.into_iter().map(|e| ((0, e.tag), e.physical_tags));
+        let curves = entities.curves.into_iter().map(|e| ((1, e.tag), e.physical_tags));
+        let surfaces = entities.surfaces.into_iter().map(|e| ((2, e.tag), e.physical_tags));
+        let volumes = entities.volumes.into_iter().map(|e| ((3, e.tag), e.physical_tags));
+        for ((dim, entity), tags) in points.chain(curves).chain(surfaces).chain(volumes) {
+            let mut of_entity = Vec::with_capacity(tags.len());
+            for tag in tags {
+                // A negative number means reversed orientation, which the mesh itself already shows.
+                let tag = tag.unsigned_abs();
+                let name = names.get(&(dim, tag)).map_or_else(|| tag.to_string(), |(_, name)| name.clone());
+                groups.declare(&name, dim).map_err(|fault| source.error(Place::File, fault))?;
+                of_entity.push(name);
+            }
+            of_entity.sort_unstable();
+            of_entity.dedup();
+            if groups.entities.insert((dim, entity), of_entity).is_some() {
+                let what = format!("$Entities holds the entity {entity} of dimension {dim}");
+                return Err(source.error(Place::File, MeshFault::RepeatedTag(what)));
+            }
+        }
+        Ok(groups)
+    }
+
+    /// Groups of an entity, none if the file does not know the entity.
+    pub(super) fn of(&self, dim: i32, entity: i32) -> Option<&[String]> {
+        self.entities.get(&(dim, entity)).map(Vec::as_slice)
+    }
+
+    /// All names, of groups without elements, too.
+    pub(super) fn names(&self) -> impl Iterator<Item = &String> {
+        self.dims.keys()
+    }
+
+    fn declare(&mut self, name: &str, dim: i32) -> Result<(), MeshFault> {
+        let known = *self.dims.entry(name.to_owned()).or_insert(dim);
+        if known == dim {
+            return Ok(());
+        }
+        Err(MeshFault::GroupDimensions { name: name.to_owned(), dims: [known, dim] })
+    }
+}
+
+type Names = BTreeMap<(i32, u32), (Place, String)>;
+
+/// `$PhysicalNames`, which mshio skips: text in binary files, too.
+fn physical_names(source: &Source<'_>) -> Result<Names, MeshError> {
+    let mut names = Names::new();
+    let Some(start) = source.section("PhysicalNames") else {
+        return Ok(names);
+    };
+    let syntax = |line, why: &str| source.error(Place::Line(line), MeshFault::Syntax(why.to_owned()));
+    let mut lines = source.lines(start);
+    let (first, text) = lines.next().unwrap_or_default();
+    let count: u64 = std::str::from_utf8(text)
+        .ok()
+        .and_then(|t| t.parse().ok())
+        .ok_or_else(|| syntax(first, "the number of physical names should stand here"))?;
+    for _ in 0..count {
+        let (line, text) = lines.next().ok_or_else(|| syntax(first, "fewer physical names than announced"))?;
+        let (key, name) = physical_name(text)
+            .ok_or_else(|| syntax(line, "a physical name, dimension number \"name\" in UTF-8, should stand here"))?;
+        if name.is_empty() {
+            continue;
+        }
+        if names.insert(key, (Place::Line(line), name)).is_some() {
+            let what = format!("the physical group {} of dimension {} is named", key.1, key.0);
+            return Err(source.error(Place::Line(line), MeshFault::RepeatedTag(what)));
+        }
+    }
+    match lines.next() {
+        Some((_, b"$EndPhysicalNames")) => Ok(names),
+        _ => Err(syntax(first, "more physical names than announced")),
+    }
+}
+
+fn physical_name(line: &[u8]) -> Option<((i32, u32), String)> {
+    let text = std::str::from_utf8(line).ok()?;
+    let (dim, rest) = text.split_once(' ')?;
+    let (tag, quoted) = rest.split_once(' ')?;
+    let name = quoted.strip_prefix('"')?.strip_suffix('"')?;
+    Some(((dim.parse().ok()?, tag.parse().ok()?), name.to_owned()))
+}

@@ -1,0 +1,134 @@
+//! Reads plate meshes that gmsh wrote (format MSH 4.1, ASCII or binary).
+//!
+//! Cells are the quadrilaterals of all physical surfaces; physical curves become groups of edges, physical points groups
+//! of nodes. Node and cell numbers of the result follow the numbers in the file, not the order in it. Everything that
+//! would make the mesh another one than it seems (triangles, cells that overlap or are not joined, edges that belong to
+//! no cell, numbers given twice) is refused with place and remedy.
+//!
+//! ```
+//! let square = "$MeshFormat\n4.1 0 8\n$EndMeshFormat
+//! $PhysicalNames\n1\n2 1 \"plate\"\n$EndPhysicalNames
+//! $Entities\n0 0 1 0\n1 0 0 0 10 10 0 1 1 0\n$EndEntities
+//! $Nodes\n1 4 1 4\n2 1 0 4\n1\n2\n3\n4\n0 0 0\n10 0 0\n10 10 0\n0 10 0\n$EndNodes
+//! $Elements\n1 1 1 1\n2 1 3 1\n1 1 2 3 4\n$EndElements\n";
+//! let plate = fem_io::gmsh::parse(square.as_bytes(), "square.msh", 1e-3)?;
+//! assert_eq!(plate.mesh.groups["plate"].quads, [0]);
+//! assert!((plate.mesh.area() - 1e-4).abs() < 1e-12);
+//! # Ok::<(), fem_io::gmsh::MeshError>(())
+//! ```
+
+mod assemble;
+mod checks;
+mod elements;
+mod error;
+mod groups;
+mod source;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+use fem_core::mesh::QuadMesh;
+use mshio::MshData;
+use mshio::error::MshParserErrorKind;
+
+pub use error::{MeshError, MeshFault, Place};
+
+use elements::{Grouped, NodeTable};
+use groups::Groups;
+use source::Source;
+
+/// A mesh and what its reader thinks the user should know.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GmshMesh {
+    /// The mesh, metres.
+    pub mesh: QuadMesh,
+    /// One sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a mesh file; `unit_metres` is the length of the file's unit (0.001 for mm).
+///
+/// Second-order quadrilaterals are read by their corners, with a warning.
+///
+/// # Errors
+/// When the file cannot be read, is not MSH 4.1 or is no sound flat mesh of convex quadrilaterals.
+pub fn read(path: &Path, unit_metres: f64) -> Result<GmshMesh, MeshError> {
+    let name = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|e| MeshError {
+        file: name.clone(),
+        place: Place::File,
+        fault: MeshFault::Unreadable(e.to_string()),
+    })?;
+    parse(&bytes, &name, unit_metres)
+}
+
+/// Reads a mesh from the bytes of a file; `name` stands for the file in messages.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(bytes: &[u8], name: &str, unit_metres: f64) -> Result<GmshMesh, MeshError> {
+    let source = Source::open(name, bytes)?;
+    if !(unit_metres > 0.0 && unit_metres.is_finite()) {
+        return Err(source.error(Place::File, MeshFault::Unit(unit_metres)));
+    }
+    let data = sections(&source)?;
+    let missing = |section| source.error(Place::File, MeshFault::Missing(section));
+    let groups = Groups::new(&source, data.entities.ok_or_else(|| missing("Entities"))?)?;
+    let nodes = NodeTable::new(&source, data.nodes.ok_or_else(|| missing("Nodes"))?)?;
+    let elements = data.elements.ok_or_else(|| missing("Elements"))?;
+    let mut grouped = Grouped::new(&source, &nodes, &groups, &elements)?;
+    if grouped.cells.is_empty() {
+        return Err(source.error(Place::File, MeshFault::NoCells));
+    }
+    let turned = checks::orient(&source, &nodes, &mut grouped.cells)?;
+    let mesh = assemble::mesh(&source, &nodes, &grouped, unit_metres)?;
+    let warnings = warnings(&mesh, &groups, &grouped, &turned);
+    Ok(GmshMesh { mesh, warnings })
+}
+
+/// What mshio makes of the file.
+fn sections(source: &Source<'_>) -> Result<MshData<u64, i32, f64>, MeshError> {
+    mshio::parse_msh_bytes(&source.bytes).map(|file| file.data).map_err(|error| {
+        let rest = error.backtrace.first().map_or(0, |(rest, _)| rest.len());
+        let context: Vec<_> = error
+            .filter_msh_errors()
+            .map(|(_, kind)| match kind {
+                MshParserErrorKind::Context(what) => what.to_string(),
+                kind => kind.to_string(),
+            })
+            .collect();
+        if context.iter().any(|what| what.contains("parametric nodes")) {
+            return source.error(Place::File, MeshFault::Parametric);
+        }
+        source.error(source.place(source.bytes.len() - rest), MeshFault::Syntax(context.join(", in ")))
+    })
+}
+
+/// What the user should know of a mesh that was accepted.
+fn warnings(mesh: &QuadMesh, groups: &Groups, grouped: &Grouped<'_>, turned: &[u64]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let cells = mesh.quads.len();
+    if let Some(first) = turned.first() {
+        let (n, verb) = (turned.len(), if turned.len() == 1 { "was" } else { "were" });
+        warnings.push(format!("{n} of {cells} cells {verb} clockwise (the first is {first}) and turned round"));
+    }
+    let (second_order, bulge) = grouped.second_order;
+    if second_order > 0 {
+        warnings.push(format!(
+            "{second_order} of {cells} cells are of second order and read by their corners; their mid-side nodes, up to \
+             {:.2} % of an edge off its middle, are dropped: curved edges become straight. Set Mesh.ElementOrder = 1",
+            100.0 * bulge
+        ));
+    }
+    if grouped.left_out > 0 {
+        warnings.push(format!(
+            "{} surface elements belong to no physical group and are left out; unset Mesh.SaveAll or name their surface",
+            grouped.left_out
+        ));
+    }
+    for name in groups.names().filter(|name| !mesh.groups.contains_key(*name)) {
+        warnings.push(format!("the physical group {name:?} holds no elements and is left out"));
+    }
+    warnings
+}

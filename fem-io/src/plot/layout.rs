@@ -1,0 +1,256 @@
+//! Where everything of a plot goes.
+
+use super::flags::{Flag, GAP, flags};
+use super::scale::Range;
+use super::shapes::{Anchor, Color, Drawing, Shape, Text};
+use super::words::{clean, room};
+use super::{Axis, LinePlot, Mark, PlotError, Series, Style};
+
+pub(super) const WIDTH: f64 = 1600.0;
+/// Height of the area of the curves.
+const AREA: f64 = 760.0;
+const EDGE: f64 = 40.0;
+const TITLE: f64 = 36.0;
+const LABEL: f64 = 32.0;
+pub(super) const SMALL: f64 = 27.0;
+/// Height of a row of the legend or of the marks' labels.
+pub(super) const ROW: f64 = 40.0;
+
+const WHITE: Color = [0xff; 3];
+const INK: Color = [0x22, 0x22, 0x22];
+const FAINT: Color = [0x66, 0x66, 0x66];
+const GRID: Color = [0xe3, 0xe3, 0xe3];
+/// Okabe and Ito (2008), without the yellow, which is lost on white, and the vermilion, which is for marks.
+const PALETTE: [Color; 6] = [
+    [0x00, 0x72, 0xb2],
+    [0xe6, 0x9f, 0x00],
+    [0x00, 0x9e, 0x73],
+    [0xcc, 0x79, 0xa7],
+    [0x56, 0xb4, 0xe9],
+    [0x00, 0x00, 0x00],
+];
+const MARK: Color = [0xd5, 0x5e, 0x00];
+
+/// The shapes of `plot`, which has points and is finite.
+pub(super) fn lay_out(plot: &LinePlot) -> Result<Drawing, PlotError> {
+    let values = || {
+        let points = plot.series.iter().flat_map(|s| s.points.iter().copied());
+        points.chain(plot.marks.iter().map(|m| (m.x, m.y)))
+    };
+    let range =
+        |axis: &Axis, largest| PlotError::Range { title: plot.title.clone(), axis: axis.label.clone(), largest };
+    let x = Range::of(values().map(|p| p.0)).map_err(|largest| range(&plot.x, largest))?;
+    let y = Range::of(values().map(|p| p.1)).map_err(|largest| range(&plot.y, largest))?.with_air();
+
+    let y_ticks = y.ticks(9);
+    let widest = |ticks: &[(f64, String)]| ticks.iter().map(|t| room(&t.1, SMALL)).fold(0.0, f64::max);
+    let left = EDGE + LABEL + 30.0 + widest(&y_ticks);
+    let right = WIDTH - EDGE - 20.0;
+    let fits = |ticks: &[(f64, String)]| widest(ticks) * 1.3 * ticks.len() as f64 <= right - left;
+    let x_ticks = (3..=10).rev().map(|most| x.ticks(most)).find(|ticks| fits(ticks)).unwrap_or_else(|| x.ticks(2));
+
+    let legend = if plot.series.len() > 1 { legend(&plot.series, left, right) } else { Vec::new() };
+    let flags = flags(&plot.marks, |m| left + x.fraction(m.x) * (right - left), left, right);
+    let rows = |rows: Option<usize>| rows.map_or(0.0, |last| (last + 1) as f64 * ROW);
+    let legend_top = EDGE + 1.4 * TITLE;
+    let flags_top = legend_top + rows(legend.iter().map(|e| e.row).max());
+    let top = flags_top + rows(flags.iter().map(|f| f.row).max()) + 14.0;
+
+    let area = Area { x, y, left, right, top, bottom: top + AREA };
+    let mut canvas = Canvas(Vec::new());
+    canvas.text([left, EDGE + 0.8 * TITLE], &clean(&plot.title, TITLE, right - left), TITLE, INK, Anchor::Start);
+    canvas.axes(&area, &x_ticks, &y_ticks, plot);
+    for flag in &flags {
+        canvas.line(vec![[flag.x, flag.baseline(top) - 0.75 * SMALL], [flag.x, area.bottom]], 2.0, FAINT, true);
+    }
+    let colors = || PALETTE.into_iter().cycle();
+    for (series, color) in plot.series.iter().zip(colors()) {
+        canvas.curve(&area, series, color);
+    }
+    for (flag, mark) in flags.iter().zip(&plot.marks) {
+        canvas.flag(&area, flag, mark, top);
+    }
+    for ((entry, series), color) in legend.iter().zip(&plot.series).zip(colors()) {
+        canvas.legend(entry, series.style, color, legend_top);
+    }
+    let height = (area.bottom + 2.0 * LABEL + EDGE + 30.0).ceil();
+    Ok(Drawing { title: clean(&plot.title, TITLE, WIDTH), width: WIDTH, height, shapes: canvas.0 })
+}
+
+/// First, lowest, highest and last of every run of points within one pixel column.
+fn thin(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut kept = Vec::new();
+    for run in points.chunk_by(|a, b| a[0].floor() == b[0].floor()) {
+        let (mut lowest, mut highest) = (0, 0);
+        for (i, point) in run.iter().enumerate() {
+            if point[1] < run[lowest][1] {
+                lowest = i;
+            }
+            if point[1] > run[highest][1] {
+                highest = i;
+            }
+        }
+        kept.extend([0, lowest.min(highest), lowest.max(highest), run.len() - 1].map(|i| run[i]));
+    }
+    kept.dedup();
+    kept
+}
+
+/// An entry of the legend.
+struct Entry {
+    row: usize,
+    left: f64,
+    text: String,
+}
+
+/// Length of the line beside a name in the legend.
+const SAMPLE: f64 = 56.0;
+
+/// Entries side by side, in as many rows as they need.
+fn legend(series: &[Series], left: f64, right: f64) -> Vec<Entry> {
+    let (mut row, mut x) = (0, left);
+    series
+        .iter()
+        .map(|s| {
+            let text = clean(&s.label, SMALL, 0.5 * (right - left));
+            let width = SAMPLE + 14.0 + room(&text, SMALL);
+            if x + width > right && x > left {
+                (row, x) = (row + 1, left);
+            }
+            let entry = Entry { row, left: x, text };
+            x += width + 40.0;
+            entry
+        })
+        .collect()
+}
+
+/// The area of the curves.
+struct Area {
+    x: Range,
+    y: Range,
+    left: f64,
+    right: f64,
+    top: f64,
+    bottom: f64,
+}
+
+impl Area {
+    fn place(&self, x: f64, y: f64) -> [f64; 2] {
+        [
+            self.left + self.x.fraction(x) * (self.right - self.left),
+            self.bottom - self.y.fraction(y) * (self.bottom - self.top),
+        ]
+    }
+}
+
+struct Canvas(Vec<Shape>);
+
+impl Canvas {
+    fn line(&mut self, points: Vec<[f64; 2]>, width: f64, color: Color, dashed: bool) {
+        self.0.push(Shape::Line { points, color, width, dashed });
+    }
+
+    fn text(&mut self, at: [f64; 2], text: &str, size: f64, color: Color, anchor: Anchor) {
+        self.0.push(Shape::Text(Text { at, text: text.to_owned(), size, color, anchor, upwards: false }));
+    }
+
+    fn axes(&mut self, area: &Area, x_ticks: &[(f64, String)], y_ticks: &[(f64, String)], plot: &LinePlot) {
+        let &Area { left, right, top, bottom, .. } = area;
+        for (value, label) in x_ticks {
+            let [x, _] = area.place(*value, area.y.lo);
+            self.line(vec![[x, bottom], [x, top]], 1.5, GRID, false);
+            self.line(vec![[x, bottom], [x, bottom + 8.0]], 2.0, INK, false);
+            self.text([x, bottom + 14.0 + SMALL], label, SMALL, INK, Anchor::Middle);
+        }
+        for (value, label) in y_ticks {
+            let [_, y] = area.place(area.x.lo, *value);
+            self.line(vec![[left, y], [right, y]], 1.5, GRID, false);
+            self.line(vec![[left - 8.0, y], [left, y]], 2.0, INK, false);
+            self.text([left - 16.0, y + 0.35 * SMALL], label, SMALL, INK, Anchor::End);
+        }
+        if area.y.lo < 0.0 && area.y.hi > 0.0 {
+            let [_, zero] = area.place(area.x.lo, 0.0);
+            self.line(vec![[left, zero], [right, zero]], 1.5, FAINT, false);
+        }
+        self.line(vec![[left, top], [left, bottom], [right, bottom]], 2.0, INK, false);
+        let name = |axis: &Axis, most| {
+            let unit = if axis.unit.is_empty() { String::new() } else { format!(" ({})", axis.unit) };
+            clean(&format!("{}{unit}", axis.label), LABEL, most)
+        };
+        let middle = 0.5 * (left + right);
+        self.text([middle, bottom + 30.0 + 2.0 * LABEL], &name(&plot.x, right - left), LABEL, INK, Anchor::Middle);
+        self.0.push(Shape::Text(Text {
+            at: [EDGE + 0.6 * LABEL, 0.5 * (top + bottom)],
+            text: name(&plot.y, AREA),
+            size: LABEL,
+            color: INK,
+            anchor: Anchor::Middle,
+            upwards: true,
+        }));
+    }
+
+    fn curve(&mut self, area: &Area, series: &Series, color: Color) {
+        let points: Vec<_> = series.points.iter().map(|&(x, y)| area.place(x, y)).collect();
+        let points = thin(&points);
+        if series.style == Style::Dots || points.len() == 1 {
+            self.0.extend(points.into_iter().map(|centre| Shape::Dot { centre, radius: 6.0, color }));
+        } else {
+            self.line(points, 3.5, color, series.style == Style::Dashed);
+        }
+    }
+
+    fn flag(&mut self, area: &Area, flag: &Flag, mark: &Mark, top: f64) {
+        self.0.push(Shape::Dot { centre: area.place(mark.x, mark.y), radius: 11.0, color: WHITE });
+        self.0.push(Shape::Dot { centre: area.place(mark.x, mark.y), radius: 8.0, color: MARK });
+        let baseline = flag.baseline(top);
+        let ([from, to], middle) = (flag.span(), baseline - 0.35 * SMALL);
+        self.line(vec![[from + GAP, middle], [to - GAP, middle]], SMALL, WHITE, false);
+        let (x, anchor) = if flag.to_left { (flag.x - GAP, Anchor::End) } else { (flag.x + GAP, Anchor::Start) };
+        self.text([x, baseline], &flag.text, SMALL, INK, anchor);
+    }
+
+    fn legend(&mut self, entry: &Entry, style: Style, color: Color, top: f64) {
+        let baseline = top + (entry.row as f64 + 0.6) * ROW;
+        let middle = baseline - 0.35 * SMALL;
+        if style == Style::Dots {
+            self.0.push(Shape::Dot { centre: [entry.left + 0.5 * SAMPLE, middle], radius: 6.0, color });
+        } else {
+            self.line(vec![[entry.left, middle], [entry.left + SAMPLE, middle]], 3.5, color, style == Style::Dashed);
+        }
+        self.text([entry.left + SAMPLE + 14.0, baseline], &entry.text, SMALL, INK, Anchor::Start);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn thinning_keeps_the_ends_and_the_extremes_of_every_column(
+            heights in proptest::collection::vec(-1e3..1e3, 1..500), columns in 1..40usize
+        ) {
+            let n = heights.len();
+            let points: Vec<_> =
+                heights.iter().enumerate().map(|(i, &y)| [(i * columns) as f64 / n as f64, y]).collect();
+            let kept = thin(&points);
+            prop_assert!(kept.len() <= 4 * columns);
+            prop_assert_eq!(kept.first(), points.first());
+            prop_assert_eq!(kept.last(), points.last());
+            for column in 0..columns {
+                let bounds = |points: &[[f64; 2]]| {
+                    let inside = points.iter().filter(|p| p[0].floor() == column as f64).map(|p| p[1]);
+                    inside.fold((f64::MAX, f64::MIN), |(lo, hi), y| (lo.min(y), hi.max(y)))
+                };
+                prop_assert_eq!(bounds(&kept), bounds(&points));
+            }
+        }
+    }
+
+    #[test]
+    fn a_loop_keeps_its_way_back() {
+        let points = [[0.0, 0.0], [1.0, 5.0], [0.0, 9.0], [0.5, 8.0]];
+        assert_eq!(thin(&points), points);
+    }
+}

@@ -1,0 +1,365 @@
+//! Line plots as SVG and PNG.
+//!
+//! A plot is laid out once, as a list of shapes in pixels, and drawn twice, so that both pictures look alike. The PNG
+//! carries its own font; the SVG keeps its words as text. Neither needs a font or a library of the system, and equal
+//! plots give equal bytes.
+
+mod flags;
+mod layout;
+mod png;
+mod scale;
+mod shapes;
+mod svg;
+mod words;
+
+/// Curves over a common axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinePlot {
+    /// Heading.
+    pub title: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// Curves, at least one; a legend appears from two on.
+    pub series: Vec<Series>,
+    /// Marked points.
+    pub marks: Vec<Mark>,
+}
+
+/// What an axis shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// Quantity, e.g. `Contact force`.
+    pub label: String,
+    /// Unit that the values are in, e.g. `kN`; empty for a pure number.
+    pub unit: String,
+}
+
+/// One curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Name in the legend.
+    pub label: String,
+    /// Points (x, y) in the units of the axes.
+    pub points: Vec<(f64, f64)>,
+    /// How the points are drawn.
+    pub style: Style,
+}
+
+/// How the points of a curve are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Style {
+    /// Joined by a line.
+    Solid,
+    /// Joined by a dashed line.
+    Dashed,
+    /// Each as a dot.
+    Dots,
+}
+
+/// A named point, with a dashed line from the axis through the point to its label above the curves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mark {
+    /// Place, in the unit of the axis.
+    pub x: f64,
+    /// Place, in the unit of the axis.
+    pub y: f64,
+    /// Its name.
+    pub label: String,
+}
+
+/// A plot, drawn.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Picture {
+    /// SVG document.
+    pub svg: String,
+    /// PNG file, 1600 pixels wide.
+    pub png: Vec<u8>,
+}
+
+/// Why a plot cannot be drawn.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlotError {
+    /// Nothing to show.
+    #[error("plot `{title}`: no points to draw in {what}")]
+    Empty {
+        /// Title of the plot.
+        title: String,
+        /// The empty part.
+        what: String,
+    },
+    /// NaN or infinity.
+    #[error("plot `{title}`: ({x}, {y}) in {what} is not finite")]
+    NonFinite {
+        /// Title of the plot.
+        title: String,
+        /// The curve and point, or the mark.
+        what: String,
+        /// Its coordinate.
+        x: f64,
+        /// Its coordinate.
+        y: f64,
+    },
+    /// Values beyond 10²⁵⁰.
+    #[error("plot `{title}`: values up to {largest:e} on the axis `{axis}` are too large to draw")]
+    Range {
+        /// Title of the plot.
+        title: String,
+        /// Label of the axis.
+        axis: String,
+        /// Largest magnitude.
+        largest: f64,
+    },
+    /// More labels than a picture holds.
+    #[error("plot `{title}`: {count} {what} are too many for one picture, which holds {most}")]
+    TooMany {
+        /// Title of the plot.
+        title: String,
+        /// Curves or marks.
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        most: usize,
+    },
+    /// Columns that do not belong together.
+    #[error("{times} times but {forces} forces")]
+    Lengths {
+        /// Number of times.
+        times: usize,
+        /// Number of forces.
+        forces: usize,
+    },
+    /// The PNG could not be made.
+    #[error("plot `{title}`: no PNG: {why}")]
+    Png {
+        /// Title of the plot.
+        title: String,
+        /// The cause.
+        why: String,
+    },
+}
+
+/// Draws `plot`.
+///
+/// A curve of any length is thinned to the first, lowest, highest and last point of every pixel column, which keeps
+/// all its peaks. Colours are those of Okabe and Ito (2008), which the colour-blind can tell apart.
+///
+/// # Errors
+/// No points; points or marks that are not finite or are beyond 10²⁵⁰; more than 40 curves or marks.
+pub fn line_plot(plot: &LinePlot) -> Result<Picture, PlotError> {
+    check(plot)?;
+    let drawing = layout::lay_out(plot)?;
+    let png = png::render(&drawing).map_err(|why| PlotError::Png { title: plot.title.clone(), why })?;
+    Ok(Picture { svg: svg::render(&drawing), png })
+}
+
+/// Most curves, and most marks, of a picture.
+const MOST: usize = 40;
+
+fn check(plot: &LinePlot) -> Result<(), PlotError> {
+    let title = || plot.title.clone();
+    for (what, count) in [("curves", plot.series.len()), ("marks", plot.marks.len())] {
+        if count > MOST {
+            return Err(PlotError::TooMany { title: title(), what, count, most: MOST });
+        }
+    }
+    if plot.series.is_empty() {
+        return Err(PlotError::Empty { title: title(), what: "the whole plot".into() });
+    }
+    let finite = |x: f64, y: f64, what: &dyn Fn() -> String| {
+        if x.is_finite() && y.is_finite() {
+            Ok(())
+        } else {
+            Err(PlotError::NonFinite { title: title(), what: what(), x, y })
+        }
+    };
+    for series in &plot.series {
+        if series.points.is_empty() {
+            return Err(PlotError::Empty { title: title(), what: format!("curve `{}`", series.label) });
+        }
+        for (i, &(x, y)) in series.points.iter().enumerate() {
+            finite(x, y, &|| format!("curve `{}`, point {}", series.label, i + 1))?;
+        }
+    }
+    plot.marks.iter().try_for_each(|m| finite(m.x, m.y, &|| format!("mark `{}`", m.label)))
+}
+
+/// Events that [`force_history`] names; a last mark counts those after them.
+const NAMED_EVENTS: usize = 12;
+
+/// The contact force over time, with `events` (time in s, name) marked on it.
+///
+/// Times in s are shown in µs up to one millisecond, else in ms; forces in N are shown in kN from one kilonewton on.
+///
+/// # Errors
+/// Unequal numbers of times and forces.
+pub fn force_history(times_s: &[f64], forces_n: &[f64], events: &[(f64, String)]) -> Result<LinePlot, PlotError> {
+    if times_s.len() != forces_n.len() {
+        return Err(PlotError::Lengths { times: times_s.len(), forces: forces_n.len() });
+    }
+    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let (time_unit, per_s) = if largest(times_s) <= 1.000_001e-3 { ("µs", 1e6) } else { ("ms", 1e3) };
+    let (force_unit, per_n) = if largest(forces_n) < 1e3 { ("N", 1.0) } else { ("kN", 1e-3) };
+    let points: Vec<_> = times_s.iter().zip(forces_n).map(|(t, f)| (t * per_s, f * per_n)).collect();
+
+    let mut events: Vec<_> = events.iter().map(|(t, name)| (t * per_s, name)).collect();
+    events.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mark = |x: f64, name: &str| Mark { x, y: height_at(&points, x), label: name.to_owned() };
+    let mut marks: Vec<_> = events
+        .iter()
+        .take(NAMED_EVENTS)
+        .map(|(x, name)| mark(*x, &format!("{name}, {} {time_unit}", three_digits(*x))))
+        .collect();
+    if let Some((x, _)) = events.get(NAMED_EVENTS) {
+        marks.push(mark(*x, &format!("{} later events", events.len() - NAMED_EVENTS)));
+    }
+    Ok(LinePlot {
+        title: "Contact force history".into(),
+        x: Axis { label: "Time".into(), unit: time_unit.into() },
+        y: Axis { label: "Contact force".into(), unit: force_unit.into() },
+        series: vec![Series { label: "Contact force".into(), points, style: Style::Solid }],
+        marks,
+    })
+}
+
+/// Height of the curve at `x`, between its points by a straight line; the end's height beyond an end.
+fn height_at(points: &[(f64, f64)], x: f64) -> f64 {
+    let next = points.partition_point(|p| p.0 < x);
+    match (next.checked_sub(1).map(|i| points[i]), points.get(next).copied()) {
+        (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0),
+        (Some(end), None) | (None, Some(end)) => end.1,
+        (None, None) => 0.0,
+    }
+}
+
+/// `x` to three significant digits, never fewer than its whole ones.
+fn three_digits(x: f64) -> String {
+    let whole = if x == 0.0 { 1.0 } else { x.abs().log10().floor() + 1.0 };
+    format!("{x:.*}", (3.0 - whole).clamp(0.0, 12.0) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use tiny_skia::Pixmap;
+
+    fn plot(points: &[(f64, f64)]) -> LinePlot {
+        LinePlot {
+            title: "Test".into(),
+            x: Axis { label: "Time".into(), unit: "ms".into() },
+            y: Axis { label: "Ratio".into(), unit: String::new() },
+            series: vec![Series { label: "curve".into(), points: points.to_vec(), style: Style::Solid }],
+            marks: Vec::new(),
+        }
+    }
+
+    fn colored(picture: &Picture, [r, g, b]: [u8; 3]) -> usize {
+        let pixels = Pixmap::decode_png(&picture.png).unwrap();
+        pixels.pixels().iter().filter(|p| [p.red(), p.green(), p.blue()] == [r, g, b]).count()
+    }
+
+    #[test]
+    fn equal_plots_give_equal_bytes_1600_pixels_wide() {
+        let history = |n: usize| -> Vec<_> { (0..n).map(|i| (i as f64, (i as f64 * 0.1).sin())).collect() };
+        let picture = line_plot(&plot(&history(500))).unwrap();
+        assert_eq!(picture, line_plot(&plot(&history(500))).unwrap());
+        let pixels = Pixmap::decode_png(&picture.png).unwrap();
+        assert_eq!(pixels.width(), 1600);
+        assert!(picture.svg.starts_with("<svg xmlns") && picture.svg.contains("viewBox=\"0 0 1600 "));
+    }
+
+    #[test]
+    fn a_long_history_gives_a_small_svg_with_its_peak() {
+        let mut points: Vec<_> = (0..200_000).map(|i| (f64::from(i), (f64::from(i) * 1.7).sin())).collect();
+        points[77_777].1 = 3.0;
+        let picture = line_plot(&plot(&points)).unwrap();
+        assert!(picture.svg.len() < 100_000, "{}", picture.svg.len());
+        // The range is −1.2 to 3.2 over 760 pixels, so the peak is 0.2/4.4 · 760 below the upper edge at 104.4.
+        assert!(picture.svg.contains(",138.9 "), "no peak");
+    }
+
+    #[test]
+    fn curve_and_marks_are_in_both_pictures() {
+        let mut plot = plot(&[(0.0, 0.0), (1.0, 1.0)]);
+        plot.marks.push(Mark { x: 0.5, y: 0.5, label: "a < b & c".into() });
+        let picture = line_plot(&plot).unwrap();
+        assert!(picture.svg.contains("stroke=\"#0072b2\"") && picture.svg.contains(">a &lt; b &amp; c</text>"));
+        assert!(picture.svg.contains(">Time (ms)</text>") && picture.svg.contains(">Ratio</text>"));
+        // A line of 1560 pixels, 3.5 wide, and a dot of radius 8.
+        assert!((2000..6000).contains(&colored(&picture, [0x00, 0x72, 0xb2])));
+        assert!((120..220).contains(&colored(&picture, [0xd5, 0x5e, 0x00])));
+    }
+
+    #[test]
+    fn styles_differ_and_two_curves_have_a_legend() {
+        let mut plot = plot(&[(0.0, 0.0), (1.0, 1.0)]);
+        plot.series.push(Series { label: "other".into(), style: Style::Dashed, ..plot.series[0].clone() });
+        plot.series.push(Series { label: "third".into(), style: Style::Dots, ..plot.series[0].clone() });
+        let svg = line_plot(&plot).unwrap().svg;
+        assert_eq!(svg.matches("stroke-dasharray").count(), 2);
+        assert_eq!(svg.matches("<circle").count(), 3);
+        assert!(["curve", "other", "third"].iter().all(|name| svg.contains(&format!(">{name}</text>"))));
+    }
+
+    #[test]
+    fn poor_curves_are_still_drawn() {
+        for points in
+            [&[(0.0, 0.0)][..], &[(3.0, 5.0)], &[(0.0, 0.0), (1e-3, 0.0)], &[(1.0, 2.0); 9], &[(1e200, -1e-200)]]
+        {
+            let picture = line_plot(&plot(points)).unwrap();
+            assert!(!picture.svg.contains("NaN") && !picture.svg.contains("inf"), "{points:?}");
+            assert!(colored(&picture, [0x00, 0x72, 0xb2]) > 50, "{points:?}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_refused_by_name() {
+        let refusal = |plot: &LinePlot| line_plot(plot).unwrap_err().to_string();
+        assert_eq!(refusal(&plot(&[])), "plot `Test`: no points to draw in curve `curve`");
+        let nan = plot(&[(0.0, 0.0), (1.0, f64::NAN)]);
+        assert_eq!(refusal(&nan), "plot `Test`: (1, NaN) in curve `curve`, point 2 is not finite");
+        assert!(refusal(&plot(&[(0.0, 1e300)])).contains("on the axis `Ratio` are too large"));
+        let mut bare = plot(&[(0.0, 0.0)]);
+        bare.marks = vec![Mark { x: f64::INFINITY, y: 0.0, label: "m".into() }];
+        assert!(refusal(&bare).contains("mark `m` is not finite"));
+        bare.marks = vec![Mark { x: 0.0, y: 0.0, label: String::new() }; 41];
+        assert!(refusal(&bare).contains("41 marks are too many"));
+        bare.series.clear();
+        bare.marks.clear();
+        assert!(refusal(&bare).contains("no points to draw in the whole plot"));
+    }
+
+    #[test]
+    fn a_force_history_chooses_its_units_and_puts_events_on_the_curve() {
+        let small = force_history(&[0.0, 1e-3], &[0.0, 900.0], &[(2.5e-4, "shear".into())]).unwrap();
+        assert_eq!((small.x.unit.as_str(), small.y.unit.as_str()), ("µs", "N"));
+        assert_eq!(small.marks, [Mark { x: 250.0, y: 225.0, label: "shear, 250 µs".into() }]);
+
+        let large = force_history(&[0.0, 2e-3], &[0.0, 4000.0], &[(1.5e-3, "b".into()), (5e-5, "a".into())]).unwrap();
+        assert_eq!((large.x.unit.as_str(), large.y.unit.as_str()), ("ms", "kN"));
+        let labels: Vec<_> = large.marks.iter().map(|m| m.label.as_str()).collect();
+        assert_eq!(labels, ["a, 0.0500 ms", "b, 1.50 ms"]);
+        assert!((large.marks[1].y - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn events_beyond_the_first_dozen_are_counted() {
+        let events: Vec<_> = (0..30).map(|i| (f64::from(i) * 1e-5, "x".to_owned())).collect();
+        let marks = force_history(&[0.0, 1e-3], &[0.0, 1.0], &events).unwrap().marks;
+        assert_eq!((marks.len(), marks[12].label.as_str()), (13, "18 later events"));
+        assert!(line_plot(&force_history(&[0.0, 1e-3], &[0.0, 1.0], &events).unwrap()).is_ok());
+    }
+
+    #[test]
+    fn a_force_history_refuses_what_does_not_fit() {
+        assert_eq!(force_history(&[0.0], &[], &[]), Err(PlotError::Lengths { times: 1, forces: 0 }));
+        for (t, f, event) in [(f64::NAN, 1.0, 0.0), (1.0, f64::INFINITY, 0.0), (1.0, 1.0, f64::NAN)] {
+            let plot = force_history(&[0.0, t], &[0.0, f], &[(event, "x".into())]).unwrap();
+            assert!(matches!(line_plot(&plot), Err(PlotError::NonFinite { .. })));
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! A drawing as a PNG file.
+
+use super::shapes::{Anchor, Color, DASH, Drawing, Shape, Text};
+use tiny_skia::{FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, StrokeDash, Transform};
+use ttf_parser::{Face, OutlineBuilder};
+
+/// The file; the error is the reason.
+pub(super) fn render(drawing: &Drawing) -> Result<Vec<u8>, String> {
+    let face = face()?;
+    let mut pixels = Pixmap::new(drawing.width.ceil() as u32, drawing.height.ceil() as u32)
+        .ok_or_else(|| format!("{} x {} pixels is no size", drawing.width, drawing.height))?;
+    pixels.fill(tiny_skia::Color::WHITE);
+    for shape in &drawing.shapes {
+        match shape {
+            Shape::Line { points, color, width, dashed } => {
+                if let Some(path) = polyline(points) {
+                    let stroke = Stroke {
+                        width: *width as f32,
+                        line_cap: LineCap::Butt,
+                        line_join: LineJoin::Round,
+                        dash: if *dashed { StrokeDash::new(DASH.map(|d| d as f32).to_vec(), 0.0) } else { None },
+                        ..Stroke::default()
+                    };
+                    pixels.stroke_path(&path, &paint(*color), &stroke, Transform::identity(), None);
+                }
+            }
+            Shape::Dot { centre: [x, y], radius, color } => {
+                if let Some(path) = PathBuilder::from_circle(*x as f32, *y as f32, *radius as f32) {
+                    fill(&mut pixels, &path, *color, Transform::identity());
+                }
+            }
+            Shape::Text(text) => draw_text(&mut pixels, &face, text),
+        }
+    }
+    pixels.encode_png().map_err(|e| e.to_string())
+}
+
+/// Width of `text` in the embedded font, pixels.
+pub(super) fn text_width(text: &str, size: f64) -> f64 {
+    face().map_or(0.0, |face| text.chars().map(|c| f64::from(advance(&face, c))).sum::<f64>() * size / em(&face))
+}
+
+fn face() -> Result<Face<'static>, String> {
+    Face::parse(epaint_default_fonts::UBUNTU_LIGHT, 0).map_err(|e| e.to_string())
+}
+
+fn em(face: &Face<'_>) -> f64 {
+    f64::from(face.units_per_em())
+}
+
+fn advance(face: &Face<'_>, c: char) -> u16 {
+    face.glyph_hor_advance(face.glyph_index(c).unwrap_or_default()).unwrap_or_default()
+}
+
+fn draw_text(pixels: &mut Pixmap, face: &Face<'_>, text: &Text) {
+    let mut outline = Outline { path: PathBuilder::new(), x: 0.0 };
+    for c in text.text.chars() {
+        face.outline_glyph(face.glyph_index(c).unwrap_or_default(), &mut outline);
+        outline.x += f32::from(advance(face, c));
+    }
+    let width = outline.x;
+    let Some(path) = outline.path.finish() else { return };
+    let start = match text.anchor {
+        Anchor::Start => 0.0,
+        Anchor::Middle => -0.5 * width,
+        Anchor::End => -width,
+    };
+    let scale = (text.size / em(face)) as f32;
+    let place = Transform::from_translate(start, 0.0)
+        .post_scale(scale, -scale)
+        .post_rotate(if text.upwards { -90.0 } else { 0.0 })
+        .post_translate(text.at[0] as f32, text.at[1] as f32);
+    fill(pixels, &path, text.color, place);
+}
+
+fn fill(pixels: &mut Pixmap, path: &Path, color: Color, place: Transform) {
+    pixels.fill_path(path, &paint(color), FillRule::Winding, place, None);
+}
+
+fn paint([r, g, b]: Color) -> Paint<'static> {
+    let mut paint = Paint { anti_alias: true, ..Paint::default() };
+    paint.set_color_rgba8(r, g, b, 255);
+    paint
+}
+
+fn polyline(points: &[[f64; 2]]) -> Option<Path> {
+    let mut path = PathBuilder::new();
+    for (i, &[x, y]) in points.iter().enumerate() {
+        if i == 0 {
+            path.move_to(x as f32, y as f32);
+        } else {
+            path.line_to(x as f32, y as f32);
+        }
+    }
+    path.finish()
+}
+
+/// Collects glyphs, each shifted by `x` font units.
+struct Outline {
+    path: PathBuilder,
+    x: f32,
+}
+
+impl OutlineBuilder for Outline {
+    fn move_to(&mut self, x: f32, y: f32) {
+        self.path.move_to(self.x + x, y);
+    }
+    fn line_to(&mut self, x: f32, y: f32) {
+        self.path.line_to(self.x + x, y);
+    }
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        self.path.quad_to(self.x + x1, y1, self.x + x, y);
+    }
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        self.path.cubic_to(self.x + x1, y1, self.x + x2, y2, self.x + x, y);
+    }
+    fn close(&mut self) {
+        self.path.close();
+    }
+}
