@@ -2,9 +2,11 @@
 
 use super::Pattern;
 use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::perm::PermRef;
 use faer::linalg::cholesky::llt::factor::LltError;
+use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
-    LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
@@ -53,10 +55,17 @@ impl Symbolic {
     /// # Errors
     /// [`FactorError::TooLarge`].
     pub fn new(pattern: Arc<Pattern>) -> Result<Self, FactorError> {
-        let view = view(&pattern);
-        let symbolic =
-            factorize_symbolic_cholesky(view, Side::Lower, SymmetricOrdering::Identity, Default::default())
-                .map_err(|e| FactorError::TooLarge(format!("{e:?}")))?;
+        // faer 0.24 fails an assertion with `SymmetricOrdering::Identity` on a lower triangle; the same order, spelt out,
+        // goes through its permuting path.
+        let identity: Vec<usize> = (0..pattern.ndof()).collect();
+        let order = SymmetricOrdering::Custom(PermRef::new_checked(&identity, &identity, pattern.ndof()));
+        // Twelve unknowns a node make dense blocks: faer's estimate may still fall for the entry-by-entry method.
+        let params = CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..Default::default()
+        };
+        let symbolic = factorize_symbolic_cholesky(view(&pattern), Side::Lower, order, params)
+            .map_err(|e| FactorError::TooLarge(format!("{e:?}")))?;
         Ok(Self { symbolic: Arc::new(symbolic), pattern })
     }
 

@@ -1,6 +1,7 @@
 //! Craig-Bampton reduction.
 
-use super::{StaticShapes, krylov};
+use super::krylov::Krylov;
+use super::{StaticShapes, solve};
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::reduction::{Functional, Reduction, ReductionError};
 use fem_core::structure::Structure;
@@ -25,23 +26,34 @@ impl Reduction for CraigBampton {
     ) -> Result<Vec<f64>, ReductionError> {
         let shapes = StaticShapes::new(structure, keep)?;
         let mut basis = shapes.shapes();
-        // A x = K⁻¹ M x with the contacts held.
+        if self.modes == 0 {
+            return Ok(basis);
+        }
         let n = structure.ndof();
-        let mut image = vec![0.0; n];
+        // The inverse stiffness with the contacts held.
         let held = |structure: &mut dyn Structure, x: &mut [f64]| -> Result<(), ReductionError> {
-            let columns = x.len() / n;
-            for x in x.chunks_exact_mut(n) {
-                image.fill(0.0);
-                structure.add_mass(1.0, x, &mut image);
-                x.copy_from_slice(&image);
-            }
-            structure.solve_shifted(0.0, x, columns).map_err(|e| ReductionError(e.0))?;
+            solve(structure, x)?;
             x.chunks_exact_mut(n).for_each(|x| shapes.hold(keep, x));
             Ok(())
         };
-        basis.extend(krylov::lowest_modes(structure, held, &shapes.shapes(), self.modes)?);
+        let start = excited(structure, held, &basis)?;
+        basis.extend(Krylov::new(structure, held, start)?.lowest_modes(self.modes)?);
         Ok(basis)
     }
+}
+
+/// S M applied to the sum of `shapes`: the start of the Krylov space of what they excite.
+fn excited(
+    structure: &mut dyn Structure,
+    inverse: impl Fn(&mut dyn Structure, &mut [f64]) -> Result<(), ReductionError>,
+    shapes: &[f64],
+) -> Result<Vec<f64>, ReductionError> {
+    let mut x = vec![0.0; structure.ndof()];
+    for shape in shapes.chunks_exact(structure.ndof()) {
+        structure.add_mass(1.0, shape, &mut x);
+    }
+    inverse(structure, &mut x)?;
+    Ok(x)
 }
 
 impl Plugin for CraigBampton {

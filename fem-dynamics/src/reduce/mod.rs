@@ -3,9 +3,11 @@
 mod craig_bampton;
 mod guyan;
 mod krylov;
+mod ritz;
 
 pub use craig_bampton::CraigBampton;
 pub use guyan::Guyan;
+pub use ritz::Ritz;
 
 use fem_core::reduction::{Functional, ReductionError};
 use fem_core::structure::{SolveError, Structure};
@@ -155,6 +157,12 @@ impl Reduced {
     }
 }
 
+/// `X ← K⁻¹ X`.
+fn solve(structure: &mut dyn Structure, x: &mut [f64]) -> Result<(), ReductionError> {
+    let columns = x.len() / structure.ndof().max(1);
+    structure.solve_shifted(0.0, x, columns).map_err(|e| ReductionError(e.0))
+}
+
 fn definite(a: DMatrix<f64>, what: &str) -> Result<Cholesky<f64, Dyn>, ReductionError> {
     Cholesky::new(a).ok_or_else(|| {
         ReductionError(format!("{what} is not positive definite: some of the governors depend on each other"))
@@ -179,7 +187,7 @@ impl StaticShapes {
         for (w, column) in functionals.iter().zip(x.chunks_exact_mut(n)) {
             w.add_to(1.0, column);
         }
-        structure.solve_shifted(0.0, &mut x, functionals.len()).map_err(|e| ReductionError(e.0))?;
+        solve(structure, &mut x)?;
         let s = DMatrix::from_fn(functionals.len(), functionals.len(), |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
         let factor = definite((&s + s.transpose()) * 0.5, "the flexibility at the governors")?;
         Ok(Self { flexibility: x, factor })
