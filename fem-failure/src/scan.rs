@@ -144,9 +144,9 @@ pub enum ScanError {
         /// The components.
         stress: Stress6<Ply>,
     },
-    /// An index that is neither a number nor +∞.
+    /// An index that is not a number or −∞.
     #[error(
-        "criterion `{criterion}`, mode `{mode}` gives {index} in {place} of cell {cell} at {time} s for {stress:?}; \
+        "criterion `{criterion}`, mode `{mode}` has no index in {place} of cell {cell} at {time} s for {stress:?}; \
          it takes {scope}"
     )]
     Index {
@@ -160,8 +160,6 @@ pub enum ScanError {
         cell: u32,
         /// Place.
         place: Place,
-        /// What came out.
-        index: f64,
         /// Of this stress.
         stress: Stress6<Ply>,
         /// [`FailureCriterion::scope`].
@@ -329,7 +327,6 @@ impl Scan {
                     mode: watch.modes[mode],
                     cell: site.cell,
                     place: site.place,
-                    index: watch.now[row * watch.modes.len() + mode],
                     stress: self.stress[k],
                     scope: watch.criterion.scope(),
                 });
