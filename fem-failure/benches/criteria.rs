@@ -76,13 +76,48 @@ fn criteria() -> Vec<(&'static str, Box<dyn FailureCriterion>)> {
     ]
 }
 
-#[divan::bench(args = 0..criteria().len())]
-fn indices_many(bencher: Bencher<'_, '_>, which: usize) {
-    let (name, criterion) = criteria().swap_remove(which);
-    let _ = name;
-    let (material, states) = (as4_3502(), states());
+fn names() -> impl Iterator<Item = &'static str> {
+    criteria().into_iter().map(|(name, _)| name)
+}
+
+fn criterion(name: &str) -> Box<dyn FailureCriterion> {
+    criteria().into_iter().find(|(n, _)| *n == name).map(|(_, c)| c).unwrap()
+}
+
+#[divan::bench(args = names())]
+fn indices_many(bencher: Bencher<'_, '_>, name: &str) {
+    let (criterion, material, states) = (criterion(name), as4_3502(), states());
     let mut out = vec![0.0; STATES * criterion.info().modes.len()];
     bencher.counter(ItemsCount::new(STATES)).bench_local(|| {
         criterion.indices_many(divan::black_box(&states), &material, divan::black_box(&mut out));
+    });
+}
+
+#[divan::bench(args = names())]
+fn reserve_factor(bencher: Bencher<'_, '_>, name: &str) {
+    let (criterion, material) = (criterion(name), as4_3502());
+    let states = &states()[..16];
+    bencher.counter(ItemsCount::new(states.len())).bench_local(|| {
+        states.iter().map(|s| criterion.reserve_factor(divan::black_box(s), &material).factor).fold(0.0, f64::max)
+    });
+}
+
+/// A sample of the first-damage scan: gathering, Hashin's indices, maxima and crossings.
+#[divan::bench]
+fn scan_sample(bencher: Bencher<'_, '_>) {
+    let site = |cell| scan::ScanSite {
+        cell,
+        place: scan::Place::Ply((cell % 16) as u16),
+        position: [0.0; 3],
+        angle: 0.0,
+        material: 0,
+    };
+    let states = states();
+    let sites = (0..STATES as u32).map(site).collect();
+    let mut scan = scan::Scan::new(vec![("h".into(), criterion("hashin-report"))], sites, vec![as4_3502()]).unwrap();
+    let mut time = 0.0;
+    bencher.counter(ItemsCount::new(STATES)).bench_local(|| {
+        time += 1.0;
+        scan.sample(time, divan::black_box(&states)).unwrap();
     });
 }

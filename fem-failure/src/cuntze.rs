@@ -9,7 +9,7 @@ const MODES: &[&str] =
 
 /// Negative efforts count as none; the last mode is (Σ effortᵐ)^(1/m).
 fn interact(efforts: [f64; 5], exponent: f64) -> [Terms; 6] {
-    let e = efforts.map(|e| if e < 0.0 { 0.0 } else { e });
+    let e = efforts.map(macaulay);
     // Relative to the largest, so that no power overflows or underflows; NaN comes through.
     let largest = e.iter().fold(0.0_f64, |a, &b| if b <= a { a } else { b });
     let total = if largest > 0.0 {

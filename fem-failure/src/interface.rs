@@ -37,7 +37,7 @@ fn shear(s: &Stress6<Ply>, m: &Material) -> f64 {
 impl QuadraticStress {
     #[inline]
     fn terms(&self, s: &Stress6<Ply>, m: &Material) -> [Terms; 1] {
-        let opening = if s.s33() >= 0.0 { s.s33() / m.strengths.zt() } else { 0.0 };
+        let opening = macaulay(s.s33() / m.strengths.zt());
         [Terms::quadratic(opening * opening + shear(s, m))]
     }
 }
@@ -47,7 +47,7 @@ impl MaxStressInterface {
     fn terms(&self, s: &Stress6<Ply>, m: &Material) -> [Terms; 3] {
         let r = &m.strengths;
         [
-            Terms::linear(s.s33() / r.zt()).when(s.s33() >= 0.0),
+            Terms::linear(macaulay(s.s33() / r.zt())),
             Terms::linear(s.s31().abs() / r.s13()),
             Terms::linear(s.s23().abs() / r.s23()),
         ]

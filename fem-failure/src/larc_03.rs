@@ -54,8 +54,8 @@ impl Larc03 {
 
     fn matrix_compression(&self, s22: f64, s12: f64, f: &Friction, m: &Material) -> f64 {
         let index = |sin: f64, cos: f64| {
-            let across = (-s22 * cos * (sin - f.eta_t * cos) / f.st).max(0.0);
-            let along = (cos * (s12.abs() + f.eta_l * s22 * cos) / m.strengths.s12()).max(0.0);
+            let across = macaulay(-s22 * cos * (sin - f.eta_t * cos) / f.st);
+            let along = macaulay(cos * (s12.abs() + f.eta_l * s22 * cos) / m.strengths.s12());
             across * across + along * along
         };
         maximise(Angles::UpTo(self.alpha0), index).1
@@ -86,7 +86,7 @@ impl FailureCriterion for Larc03 {
         } else {
             out[1] = match misaligned {
                 None => f64::INFINITY,
-                Some((n, t)) if n < 0.0 => ((t.abs() + f.eta_l * n) / m.strengths.s12()).max(0.0),
+                Some((n, t)) if n < 0.0 => macaulay((t.abs() + f.eta_l * n) / m.strengths.s12()),
                 Some((n, t)) => self.matrix_tension(n, t, m),
             };
         }

@@ -17,9 +17,10 @@ use std::f64::consts::PI;
 /// ```
 ///
 /// σn, τT, τL act on the plane at α about the fibre. m marks the frame of fibres turned within the plane at ψ by
-/// φ = [|τ12| + (G12 − Xc) φc]/(G12 + σ11 − σ22), signed as τ12; without a positive denominator the index is +∞. ST, ηT,
-/// ηL and φc follow from α0, Yc, S12 and Xc. Yt and S12 are taken as the in-situ strengths of the ply. Where ST is
-/// low, uniaxial tension Yt gives a little more than 1. φ depends on the load: no closed form of the reserve factor.
+/// φ = [|τ12| + (G12 − Xc) φc]/(G12 + σ11 − σ22), signed as τ12; without a positive denominator, or with shear on a
+/// plane where tension leaves no strength against it, the index is +∞. ST, ηT, ηL and φc follow from α0, Yc, S12 and
+/// Xc. Yt and S12 are taken as the in-situ strengths of the ply. Where ST is low, uniaxial tension Yt gives a little
+/// more than 1. φ depends on the load: no closed form of the reserve factor.
 #[derive(Debug, Clone, Copy)]
 pub struct Larc05 {
     /// Fracture angle under transverse compression, radians.
@@ -34,8 +35,14 @@ impl Default for Larc05 {
 
 #[inline]
 fn index(n: f64, t: f64, l: f64, f: &Friction, m: &Material) -> f64 {
-    let (across, along) = (t / (f.st - f.eta_t * n), l / (m.strengths.s12() - f.eta_l * n));
-    let opening = (n / m.strengths.yt()).max(0.0);
+    // Tension beyond strength/friction leaves nothing against any shear: the formula itself would fall again.
+    let slip = |shear: f64, strength: f64| match shear {
+        0.0 => 0.0,
+        _ if strength <= 0.0 => f64::INFINITY,
+        _ => shear / strength,
+    };
+    let (across, along) = (slip(t, f.st - f.eta_t * n), slip(l, m.strengths.s12() - f.eta_l * n));
+    let opening = macaulay(n / m.strengths.yt());
     across * across + along * along + opening * opening
 }
 

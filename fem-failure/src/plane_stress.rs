@@ -38,7 +38,6 @@ impl OutOfPlane {
     #[inline]
     pub(crate) fn admits(self, s: &Stress6<Ply>) -> bool {
         let seen = s.s11().abs().max(s.s22().abs()).max(s.s12().abs());
-        let unseen = s.s33().abs().max(s.s23().abs()).max(s.s31().abs());
-        self == Self::Ignore || unseen <= 0.01 * seen
+        self == Self::Ignore || [s.s33(), s.s23(), s.s31()].iter().all(|c| c.abs() <= 0.01 * seen)
     }
 }

@@ -6,6 +6,12 @@ pub(crate) use fem_core::material::{Material, Strength};
 pub(crate) use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 pub(crate) use fem_core::tensor::{Ply, Stress6};
 
+/// ⟨v⟩: v if positive, else 0. NaN stays NaN, which `f64::max` would drop.
+#[inline]
+pub(crate) fn macaulay(v: f64) -> f64 {
+    if v < 0.0 { 0.0 } else { v }
+}
+
 /// A number within `range`, which `default` must not leave.
 pub(crate) fn number_in(
     params: &Params,

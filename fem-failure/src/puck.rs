@@ -24,7 +24,7 @@ pub enum FibreFailure {
 }
 
 impl FibreFailure {
-    const PARAMS: [ParamInfo; 4] = [
+    pub(crate) const PARAMS: [ParamInfo; 4] = [
         ParamInfo { name: "fibre", doc: "fibre failure by s11 alone, \"simple\" (default), or \"extended\"" },
         ParamInfo { name: "e1f", doc: "Young's modulus of the fibres, pressure; required by \"extended\"" },
         ParamInfo { name: "nu12f", doc: "Poisson's ratio of the fibres; required by \"extended\"" },
@@ -187,8 +187,6 @@ pub(crate) fn common_params(params: &Params) -> Result<(FibreFailure, bool), Par
     Ok((FibreFailure::from_params(params)?, params.choice("weakening", &["off", "on"])? == "on"))
 }
 
-pub(crate) const FIBRE: [ParamInfo; 4] = FibreFailure::PARAMS;
-
 impl Plugin for Puck {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Criterion,
@@ -200,10 +198,10 @@ impl Plugin for Puck {
             ParamInfo { name: "p12c", doc: "inclination, compression, shear 12; 0.30 by default" },
             ParamInfo { name: "p23t", doc: "inclination, tension, shear 23; 0.25 by default" },
             ParamInfo { name: "p23c", doc: "inclination, compression, shear 23; 0.25 by default" },
-            FIBRE[0],
-            FIBRE[1],
-            FIBRE[2],
-            FIBRE[3],
+            FibreFailure::PARAMS[0],
+            FibreFailure::PARAMS[1],
+            FibreFailure::PARAMS[2],
+            FibreFailure::PARAMS[3],
             WEAKENING,
         ],
     };

@@ -2,7 +2,7 @@
 
 use crate::plane_stress::OutOfPlane;
 use crate::prelude::*;
-use crate::puck::{FIBRE, FibreFailure, WEAKENING, common_params, weakening};
+use crate::puck::{FibreFailure, WEAKENING, common_params, weakening};
 
 /// Puck's closed form for plane stress, with the plane's own inclination p23 = p12c RA/S12.
 ///
@@ -118,10 +118,10 @@ impl Plugin for Puck2d {
         params: &[
             ParamInfo { name: "p12t", doc: "inclination towards tension; 0.35 (carbon, recommended) by default" },
             ParamInfo { name: "p12c", doc: "inclination towards compression; 0.30 by default" },
-            FIBRE[0],
-            FIBRE[1],
-            FIBRE[2],
-            FIBRE[3],
+            FibreFailure::PARAMS[0],
+            FibreFailure::PARAMS[1],
+            FibreFailure::PARAMS[2],
+            FibreFailure::PARAMS[3],
             WEAKENING,
             OutOfPlane::PARAM,
         ],

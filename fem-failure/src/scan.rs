@@ -144,9 +144,9 @@ pub enum ScanError {
         /// The components.
         stress: Stress6<Ply>,
     },
-    /// An index that is neither a number nor +∞.
+    /// An index that is not a number or −∞.
     #[error(
-        "criterion `{criterion}`, mode `{mode}` gives {index} in {place} of cell {cell} at {time} s for {stress:?}; \
+        "criterion `{criterion}`, mode `{mode}` has no index in {place} of cell {cell} at {time} s for {stress:?}; \
          it takes {scope}"
     )]
     Index {
@@ -160,8 +160,6 @@ pub enum ScanError {
         cell: u32,
         /// Place.
         place: Place,
-        /// What came out.
-        index: f64,
         /// Of this stress.
         stress: Stress6<Ply>,
         /// [`FailureCriterion::scope`].
@@ -329,7 +327,6 @@ impl Scan {
                     mode: watch.modes[mode],
                     cell: site.cell,
                     place: site.place,
-                    index: watch.now[row * watch.modes.len() + mode],
                     stress: self.stress[k],
                     scope: watch.criterion.scope(),
                 });
@@ -469,212 +466,4 @@ fn crossing(t0: f64, f0: f64, t1: f64, f1: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::*;
-    use crate::{HashinReport, Octahedral};
-    use fem_core::failure::CriterionInfo;
-    use fem_core::material::{Elastic, Strength, Strengths};
-
-    fn material(name: &str, strengths: &[(Strength, f64)]) -> Material {
-        Material {
-            name: name.into(),
-            elastic: Elastic::isotropic(1.0, 0.3),
-            density: 1.0,
-            strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
-        }
-    }
-
-    fn ply() -> Material {
-        use Strength::{S12, S23, Xc, Xt, Yt};
-        material("ply", &[(Xt, 100.0), (Xc, 80.0), (Yt, 10.0), (S12, 10.0), (S23, 10.0)])
-    }
-
-    fn resin(shear: f64) -> Material {
-        material("resin", &[(Strength::S12, shear)])
-    }
-
-    fn site(cell: u32, place: Place, material: u16) -> ScanSite {
-        ScanSite { cell, place, position: [f64::from(cell), 0.0, 0.0], angle: 0.1, material }
-    }
-
-    fn octahedral(sites: Vec<ScanSite>, materials: Vec<Material>) -> Scan {
-        Scan::new(vec![("octahedral".into(), Box::new(Octahedral))], sites, materials).unwrap()
-    }
-
-    fn shear(s23: f64) -> Stress6<Ply> {
-        Stress6::new([0.0, 0.0, 0.0, 0.0, s23, 0.0])
-    }
-
-    /// Index equal to σ11.
-    #[derive(Debug, Clone)]
-    struct Plain;
-    impl FailureCriterion for Plain {
-        fn info(&self) -> &CriterionInfo {
-            const INFO: CriterionInfo =
-                CriterionInfo { site: Site::Ply, modes: &["m"], strengths: &[], invariant_about_fibre: true };
-            &INFO
-        }
-        fn indices(&self, s: &Stress6<Ply>, _: &Material, out: &mut [f64]) {
-            out[0] = s.s11();
-        }
-    }
-
-    fn plain(cells: u32) -> Scan {
-        let sites = (0..cells).map(|c| site(c, Place::Ply(0), 0)).collect();
-        Scan::new(vec![("plain".into(), Box::new(Plain))], sites, vec![ply()]).unwrap()
-    }
-
-    fn along(v: f64) -> Stress6<Ply> {
-        Stress6::new([v, 0.0, 0.0, 0.0, 0.0, 0.0])
-    }
-
-    #[test]
-    fn the_crossing_is_interpolated_at_its_own_site() {
-        let mut scan = plain(2);
-        scan.sample(0.0, &[along(0.0), along(0.9)]).unwrap();
-        // Site 0 crosses at 2 · 1/4 = 0.5, site 1 at 2 · 0.1/1.1 = 0.18.
-        scan.sample(2.0, &[along(4.0), along(2.0)]).unwrap();
-        scan.sample(3.0, &[along(9.0), along(0.0)]).unwrap();
-        let events = scan.events();
-        assert_eq!(events.len(), 1);
-        assert_eq!((events[0].cell, events[0].index), (1, 2.0));
-        assert!((events[0].time - 2.0 * (0.1 / 1.1)).abs() < 1e-15);
-        assert_eq!((events[0].position, events[0].angle), ([1.0, 0.0, 0.0], 0.1));
-        let peak = &scan.peaks()[0];
-        assert_eq!((peak.index, peak.time, peak.site.cell), (9.0, 3.0, 0));
-        assert_eq!(scan.evaluations(), 6);
-        assert_eq!(scan.maxima(0).map(|(s, m)| (s.cell, m[0])).collect::<Vec<_>>(), [(0, 9.0), (1, 2.0)]);
-    }
-
-    #[test]
-    fn a_site_that_starts_broken_fails_at_the_first_sample() {
-        let mut scan = plain(1);
-        scan.sample(0.25, &[along(1.0)]).unwrap();
-        scan.sample(0.5, &[along(1.5)]).unwrap();
-        assert_eq!(scan.events()[0].time, 0.25);
-        let mut scan = plain(1);
-        scan.sample(0.25, &[along(1.0 - f64::EPSILON)]).unwrap();
-        assert!(scan.events().is_empty());
-        assert!((scan.peaks()[0].index - 1.0).abs() < 1e-15);
-    }
-
-    #[test]
-    fn ties_go_to_the_larger_index_then_to_the_first_site() {
-        let mut scan = plain(4);
-        scan.sample(0.0, &[along(0.5), along(0.0), along(0.5), along(0.0)]).unwrap();
-        // All cross half way; sites 1 and 3 end higher.
-        scan.sample(1.0, &[along(1.5), along(2.0), along(1.5), along(2.0)]).unwrap();
-        let events = scan.events();
-        assert_eq!((events.len(), events[0].cell, events[0].time), (1, 1, 0.5));
-        assert_eq!(scan.peaks()[0].site.cell, 1);
-    }
-
-    #[test]
-    fn each_place_and_mode_has_its_own_event() {
-        let sites = vec![
-            site(0, Place::Interface(0), 1),
-            site(0, Place::Ply(1), 0),
-            site(1, Place::Ply(0), 0),
-            site(1, Place::Interface(0), 2),
-        ];
-        let criteria: Vec<(String, Box<dyn FailureCriterion>)> =
-            vec![("h".into(), Box::new(HashinReport::default())), ("o".into(), Box::new(Octahedral))];
-        let mut scan = Scan::new(criteria, sites, vec![ply(), resin(20.0), resin(10.0)]).unwrap();
-        let zero = Stress6::new([0.0; 6]);
-        scan.sample(0.0, &[zero; 4]).unwrap();
-        let tension = Stress6::new([0.0, 20.0, 0.0, 0.0, 0.0, 0.0]);
-        let compression = Stress6::new([-160.0, -40.0, 0.0, 0.0, 0.0, 0.0]);
-        scan.sample(1.0, &[shear(25.0), tension, compression, shear(25.0)]).unwrap();
-        let got: Vec<_> = scan.events().into_iter().map(|e| (e.time, e.criterion, e.mode, e.cell, e.place)).collect();
-        // Indices 4, 4, 4 and 6.25 (site 3; site 0 has 1.5625) grow from 0 in one second.
-        let want = [
-            (0.16, "o", "interface shear", 1, Place::Interface(0)),
-            (0.25, "h", "fibre compression", 1, Place::Ply(0)),
-            (0.25, "h", "matrix tension", 0, Place::Ply(1)),
-            (0.25, "h", "matrix compression", 1, Place::Ply(0)),
-        ];
-        assert_eq!(got, want.map(|(t, c, m, cell, p)| (t, c.to_owned(), m, cell, p)));
-        assert_eq!(scan.first_per_mode().len(), 4);
-        // Modes that did not fail have their peak too.
-        assert!(scan.peaks().iter().any(|p| p.mode == "fibre tension" && p.index < 1.0));
-        assert_eq!(scan.evaluations(), 8);
-    }
-
-    #[test]
-    fn sites_of_mixed_materials_keep_their_own_strength() {
-        let n = 50;
-        let sites: Vec<_> = (0..n).map(|c| site(c, Place::Interface(0), (c % 2) as u16)).collect();
-        let mut scan = octahedral(sites, vec![resin(1.0), resin(2.0)]);
-        let stress: Vec<_> = (0..n).map(|c| shear(f64::from(c))).collect();
-        scan.sample(0.0, &stress).unwrap();
-        for (site, maxima) in scan.maxima(0) {
-            let strength = if site.cell % 2 == 0 { 1.0 } else { 2.0 };
-            assert_eq!(maxima[0], (f64::from(site.cell) / strength).powi(2));
-        }
-        assert_eq!(scan.maxima(0).count(), n as usize);
-    }
-
-    #[test]
-    fn bad_samples_are_refused_and_leave_the_scan_as_it_was() {
-        let mut scan = plain(2);
-        scan.sample(0.0, &[along(0.0), along(0.5)]).unwrap();
-        let before = format!("{:?}", (scan.events(), scan.peaks(), scan.evaluations()));
-        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            let error = scan.sample(1.0, &[along(2.0), Stress6::new([0.0, 0.0, 0.0, 0.0, bad, 0.0])]).unwrap_err();
-            let text = error.to_string();
-            assert!(matches!(error, ScanError::Stress { time: 1.0, cell: 1, place: Place::Ply(0), .. }), "{text}");
-            assert!(text.contains("ply 1 from the bottom of cell 1") && text.contains("at 1 s"), "{text}");
-            assert!(scan.sample(bad, &[along(2.0), along(2.0)]).is_err());
-        }
-        assert!(matches!(scan.sample(0.0, &[along(2.0); 2]), Err(ScanError::Time { .. })));
-        assert!(matches!(scan.sample(1.0, &[along(2.0)]), Err(ScanError::Length { got: 1, want: 2 })));
-        assert_eq!(format!("{:?}", (scan.events(), scan.peaks(), scan.evaluations())), before);
-        scan.sample(1.0, &[along(0.0), along(1.5)]).unwrap();
-        assert_eq!(scan.events()[0].time, 0.5);
-    }
-
-    #[test]
-    fn an_index_that_is_no_number_is_an_error() {
-        #[derive(Debug, Clone)]
-        struct Forgetful;
-        impl FailureCriterion for Forgetful {
-            fn info(&self) -> &CriterionInfo {
-                const INFO: CriterionInfo =
-                    CriterionInfo { site: Site::Ply, modes: &["a", "b"], strengths: &[], invariant_about_fibre: true };
-                &INFO
-            }
-            fn indices(&self, s: &Stress6<Ply>, _: &Material, out: &mut [f64]) {
-                out[0] = 0.0;
-                if s.s11() < 1.0 {
-                    out[1] = 0.0;
-                }
-            }
-        }
-        let sites = vec![site(0, Place::Ply(0), 0), site(7, Place::Ply(3), 0)];
-        let mut scan = Scan::new(vec![("f".into(), Box::new(Forgetful))], sites, vec![ply()]).unwrap();
-        scan.sample(0.0, &[along(0.0), along(0.5)]).unwrap();
-        let error = scan.sample(1.0, &[along(0.0), along(1.5)]).unwrap_err();
-        assert!(matches!(error, ScanError::Index { mode: "b", cell: 7, place: Place::Ply(3), .. }), "{error}");
-        // An overflow of the stress itself is caught as well: ∞ − ∞.
-        let mut scan = octahedral(vec![site(0, Place::Interface(2), 0)], vec![resin(1.0)]);
-        assert!(scan.sample(0.0, &[Stress6::new([1e308, -1e308, 0.0, 0.0, 0.0, 0.0])]).is_ok());
-        assert_eq!(scan.peaks()[0].index, f64::INFINITY);
-    }
-
-    #[test]
-    fn missing_constants_are_named_before_the_march() {
-        let sites = vec![site(3, Place::Ply(0), 0), site(4, Place::Interface(1), 1)];
-        let criteria = || -> Vec<(String, Box<dyn FailureCriterion>)> { vec![("oct".into(), Box::new(Octahedral))] };
-        // The ply has no business with the interface's criterion.
-        assert!(Scan::new(criteria(), sites.clone(), vec![material("bare", &[]), resin(1.0)]).is_ok());
-        let error = Scan::new(criteria(), sites.clone(), vec![ply(), material("bare", &[])]).unwrap_err();
-        assert!(matches!(error, ScanError::Material { cell: 4, place: Place::Interface(1), .. }));
-        let source = std::error::Error::source(&error).unwrap().to_string();
-        assert!(source.contains("`bare`") && source.contains("`oct`") && source.contains("S12"), "{source}");
-        assert!(matches!(
-            Scan::new(criteria(), sites, vec![ply()]),
-            Err(ScanError::NoSuchMaterial { material: 1, given: 1, .. })
-        ));
-    }
-}
+mod tests;
