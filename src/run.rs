@@ -36,6 +36,8 @@ pub struct Sizes {
     pub stiffness_entries: usize,
     /// Entries of its Cholesky factor.
     pub factor_entries: usize,
+    /// Contact force per deflection under it, N/m, of the plate as marched.
+    pub static_stiffness: f64,
     /// Highest frequency of the plate as marched, Hz; `None` where no integrator limit asked for it.
     pub highest_frequency: Option<f64>,
     /// Lowest frequency of the reduced plate that the impact excites, Hz.
@@ -140,6 +142,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         marched: system.structure().ndof(),
         stiffness_entries,
         factor_entries,
+        static_stiffness: 1.0 / system.static_flexibility(0)?,
         highest_frequency: highest.map(hertz),
         lowest_frequency: reduced
             .as_ref()

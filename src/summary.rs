@@ -50,6 +50,7 @@ pub struct ModelSize {
     pub stiffness_entries: usize,
     pub factor_entries: usize,
     pub stress_sites: usize,
+    pub static_stiffness_N_m: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lowest_frequency_Hz: Option<f64>,
 }
@@ -204,6 +205,7 @@ impl Summary {
                 stiffness_entries: sizes.stiffness_entries,
                 factor_entries: sizes.factor_entries,
                 stress_sites: outcome.sites,
+                static_stiffness_N_m: sizes.static_stiffness,
                 lowest_frequency_Hz: sizes.lowest_frequency,
             },
             impact: Impact {

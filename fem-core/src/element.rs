@@ -175,37 +175,41 @@ pub trait Element: DynClone + Debug + Send + Sync {
         })
     }
 
-    /// Mean-strain operator `b` (6 × ndof) over q₀ ≤ q ≤ q₁ of the cell: (1/V) ∫ B dV for q₀ < q₁ (report eq. 12), the
-    /// area mean of the face q₀ for q₀ = q₁ (eq. 14).
+    /// Mean-strain operators `b` (6 × ndof each, one after the other) over parts q₀ ≤ q ≤ q₁ of the cell: (1/V) ∫ B dV for
+    /// q₀ < q₁ (report eq. 12), the area mean of the face q₀ for q₀ = q₁ (eq. 14).
     ///
     /// # Errors
     /// A Jacobian that is not positive at a Gauss point.
-    fn mean_strain(
+    fn mean_strains(
         &self,
         cell: &Cell<'_>,
-        q: [f64; 2],
+        parts: &[[f64; 2]],
         scratch: &mut Scratch,
         b: &mut [f64],
     ) -> Result<(), ElementError> {
         let info = self.info();
-        let [point] = scratch.arrays([6 * info.ndof()]);
-        b.fill(0.0);
-        let mut volume = 0.0;
+        let n = 6 * info.ndof();
+        let [point] = scratch.arrays([n]);
         let plane = gauss_legendre(info.in_plane_order);
-        let (middle, half) = (0.5 * (q[0] + q[1]), 0.5 * (q[1] - q[0]));
-        for &(t, wt) in gauss_legendre(if half > 0.0 { info.ply_order } else { 1 }) {
-            for &(r, wr) in plane {
-                for &(s, ws) in plane {
-                    let dv = positive(self.strain_operator(cell.x, [r, s, middle + half * t], point))? * wr * ws * wt;
-                    volume += dv;
-                    for (b, p) in b.iter_mut().zip(point.iter()) {
-                        *b += dv * p;
+        for ([low, high], b) in parts.iter().zip(b.chunks_exact_mut(n)) {
+            b.fill(0.0);
+            let mut volume = 0.0;
+            let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+            for &(t, wt) in gauss_legendre(if half > 0.0 { info.ply_order } else { 1 }) {
+                for &(r, wr) in plane {
+                    for &(s, ws) in plane {
+                        let xi = [r, s, middle + half * t];
+                        let dv = positive(self.strain_operator(cell.x, xi, point))? * wr * ws * wt;
+                        volume += dv;
+                        for (b, p) in b.iter_mut().zip(point.iter()) {
+                            *b += dv * p;
+                        }
                     }
                 }
             }
-        }
-        for b in b {
-            *b /= volume;
+            for b in b {
+                *b /= volume;
+            }
         }
         Ok(())
     }

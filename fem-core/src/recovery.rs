@@ -1,6 +1,6 @@
 //! Stresses of plies and interfaces from displacements.
 
-use crate::element::{Cell, Element, Scratch};
+use crate::element::{Cell, Element, ElementError, Scratch};
 use crate::laminate::Laminate;
 use crate::material::Material;
 use crate::plate::Plate;
@@ -78,34 +78,38 @@ impl Recovery {
         u: &[f64],
         fields: usize,
         out: &mut [f64],
-    ) -> Result<(), crate::element::ElementError> {
+    ) -> Result<(), ElementError> {
         let n = element.info().ndof();
         let per_quad = 6 * self.stations.len();
         let mut strains = vec![0.0; self.sources.len() * per_quad * fields];
-        let (mut operator, mut scratch, mut dofs) = (vec![0.0; 6 * n], Scratch::default(), Vec::new());
+        let (mut operators, mut scratch, mut dofs) = (Vec::new(), Scratch::default(), Vec::new());
         let mut local = vec![0.0; n * fields];
-        for (quad, strains) in self.sources.iter().zip(strains.chunks_exact_mut(per_quad * fields)) {
-            let mut layer = usize::MAX;
-            let mut x = [[0.0; 3]; 8];
-            for (station, strains) in self.stations.iter().zip(strains.chunks_exact_mut(6 * fields)) {
-                if station.layer != layer {
-                    layer = station.layer;
-                    let cell = quad * plate.layers() + layer;
-                    x = plate.points(cell);
-                    plate.cell_dofs(cell, &mut dofs);
-                    for (field, local) in local.chunks_exact_mut(n).enumerate() {
-                        let u = &u[field * plate.ndof()..];
-                        for (local, dof) in local.iter_mut().zip(&dofs) {
-                            *local = u[*dof];
-                        }
+        let parts: Vec<[f64; 2]> = self.stations.iter().map(|s| s.q).collect();
+        for (quad, mut strains) in self.sources.iter().zip(strains.chunks_exact_mut(per_quad * fields)) {
+            let mut first = 0;
+            for stations in self.stations.chunk_by(|a, b| a.layer == b.layer) {
+                let layer = stations[0].layer;
+                let number = quad * plate.layers() + layer;
+                let cell = Cell { x: &plate.points(number), stack: &plate.stacks[layer] };
+                operators.resize(6 * n * stations.len(), 0.0);
+                let parts = &parts[first..first + stations.len()];
+                element.mean_strains(&cell, parts, &mut scratch, &mut operators)?;
+                first += stations.len();
+                plate.cell_dofs(number, &mut dofs);
+                for (field, local) in local.chunks_exact_mut(n).enumerate() {
+                    let u = &u[field * plate.ndof()..];
+                    for (local, dof) in local.iter_mut().zip(&dofs) {
+                        *local = u[*dof];
                     }
                 }
-                let cell = Cell { x: &x, stack: &plate.stacks[layer] };
-                element.mean_strain(&cell, station.q, &mut scratch, &mut operator)?;
-                for (local, strain) in local.chunks_exact(n).zip(strains.chunks_exact_mut(6)) {
-                    for (u, column) in local.iter().zip(operator.chunks_exact(6)) {
-                        for (e, b) in strain.iter_mut().zip(column) {
-                            *e += b * u;
+                let (here, rest) = strains.split_at_mut(6 * fields * stations.len());
+                strains = rest;
+                for (operator, here) in operators.chunks_exact(6 * n).zip(here.chunks_exact_mut(6 * fields)) {
+                    for (local, strain) in local.chunks_exact(n).zip(here.chunks_exact_mut(6)) {
+                        for (u, column) in local.iter().zip(operator.chunks_exact(6)) {
+                            for (e, b) in strain.iter_mut().zip(column) {
+                                *e += b * u;
+                            }
                         }
                     }
                 }

@@ -142,6 +142,18 @@ impl ImpactSystem {
         self.structure.highest_frequency().map_err(|e| StepError::SingularMass(e.0))
     }
 
+    /// Static deflection per force of impactor `i`, m/N: pᵀ K⁻¹ p.
+    ///
+    /// # Errors
+    /// A structure that is not held.
+    pub fn static_flexibility(&mut self, i: usize) -> Result<f64, StepError> {
+        let load = &self.impactors[i].load;
+        let mut x = vec![0.0; self.structure.ndof()];
+        add(load, 1.0, &mut x);
+        self.structure.solve_shifted(0.0, &mut x, 1).map_err(|e| StepError::Factorisation(e.0))?;
+        Ok(value(load, &x))
+    }
+
     /// Upper bound of the highest frequency (rad/s) of structure, impactors and contacts together: ω² ≤ ω_s² + Σ k_c
     /// (pᵀM⁻¹p + 1/m), with `omega` = ω_s of the structure and k_c the steepest tangent of a contact that took all of the
     /// impactor's energy.

@@ -286,24 +286,16 @@ impl Element for HermitePrism {
         Ok(())
     }
 
-    fn mean_strain(
+    fn mean_strains(
         &self,
         cell: &Cell<'_>,
-        q: [f64; 2],
-        _: &mut Scratch,
+        parts: &[[f64; 2]],
+        scratch: &mut Scratch,
         b: &mut [f64],
     ) -> Result<(), ElementError> {
         check_shape(cell.x)?;
-        // Mean of q⁰ … q³ over the slice.
-        let mean: Quartet = std::array::from_fn(|k| {
-            let p = k as i32 + 1;
-            if q[1] > q[0] {
-                (q[1].powi(p) - q[0].powi(p)) / (f64::from(p) * (q[1] - q[0]))
-            } else {
-                q[0].powi(k as i32)
-            }
-        });
-        b.fill(0.0);
+        // Area means of the gradients: direction × function × power of q.
+        let [means] = scratch.arrays([3 * F * 4]);
         let mut area = 0.0;
         for_each_point(gauss_legendre(self.info.in_plane_order), |_, r, s, w| {
             let plane = plane(cell.x, r, s);
@@ -311,16 +303,33 @@ impl Element for HermitePrism {
             area += da;
             gradients(cell.x, r, s, &plane, |f, gradient| {
                 for (d, polynomial) in gradient.iter().enumerate() {
-                    let value = da * polynomial.iter().zip(mean).map(|(a, b)| a * b).sum::<f64>();
-                    for (component, rows) in STRAIN_ROW.iter().enumerate() {
-                        b[6 * column(component, f) + rows[d]] += value;
+                    let at = 4 * (F * d + f);
+                    for (mean, value) in means[at..at + 4].iter_mut().zip(polynomial) {
+                        *mean += da * value;
                     }
                 }
             });
             Ok(())
         })?;
-        for b in b {
-            *b /= area;
+        b.fill(0.0);
+        for ([low, high], b) in parts.iter().zip(b.chunks_exact_mut(6 * N)) {
+            // Mean of q⁰ … q³ over the part, per area.
+            let powers: Quartet = std::array::from_fn(|k| {
+                let p = k as i32 + 1;
+                let mean = if high > low {
+                    (high.powi(p) - low.powi(p)) / (f64::from(p) * (high - low))
+                } else {
+                    low.powi(k as i32)
+                };
+                mean / area
+            });
+            for (at, polynomial) in means.chunks_exact(4).enumerate() {
+                let (d, f) = (at / F, at % F);
+                let value: f64 = polynomial.iter().zip(powers).map(|(a, b)| a * b).sum();
+                for (component, rows) in STRAIN_ROW.iter().enumerate() {
+                    b[6 * column(component, f) + rows[d]] = value;
+                }
+            }
         }
         Ok(())
     }

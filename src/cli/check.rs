@@ -35,7 +35,7 @@ fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
     let mut text = format!(
         "{}\n  mesh      {} quads, {} nodes, groups {}\n  plate     {} plies, {:.4} mm, {} layers of cells\n  \
          unknowns  {} of {} after constraints{}; {} marched\n  memory    stiffness {:.1} MB, factor {:.1} MB\n  \
-         frequency lowest excited {}, highest {}\n  march     {} steps of {:.4} us to {:.4} ms with {} ({stable})\n  \
+         contact   static stiffness {:.2} N/mm\n  frequency lowest excited {}, highest {}\n  march     {} steps of {:.4} us to {:.4} ms with {} ({stable})\n  \
          damage    {}\n",
         scene.title,
         model.plate.plane.quads.len(),
@@ -53,6 +53,7 @@ fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
         sizes.marched,
         2.0 * megabytes(sizes.stiffness_entries),
         megabytes(sizes.factor_entries),
+        sizes.static_stiffness * 1e-3,
         frequency(sizes.lowest_frequency),
         frequency(sizes.highest_frequency),
         sizes.steps,
