@@ -1,9 +1,11 @@
 //! Checks of the plug-in contracts: each returns the first violation in words. For the tests of plug-in crates.
 
+mod card;
 mod contact;
 mod criterion;
 mod integrator;
 
+pub use card::card;
 pub use contact::check_contact_law;
 pub use criterion::check_criterion;
 pub use integrator::{Mode, Modes, check_integrator};
