@@ -1,7 +1,39 @@
 //! The words of the framework and the contracts of its plug-ins.
 //!
-//! Everything here speaks SI units, `f64` and slices. A plug-in crate depends on this crate alone, without its default
-//! feature `assembly`, which brings the sparse solver.
+//! Everything here speaks SI units, `f64` and slices, opens no file and knows no concrete plug-in.
+//!
+//! | what | where |
+//! | --- | --- |
+//! | contracts | [`element`], [`failure`], [`contact`], [`time`], [`reduction`]; [`plugin`] introduces an implementation |
+//! | materials and laminates | [`tensor`], [`material`], [`layup`], [`laminate`] |
+//! | the plate and its unknowns | [`mesh`], [`dof`], [`plate`], [`support`], [`constraint`], [`patch`] |
+//! | matrices and stresses | [`quadrature`], [`structure`], [`recovery`], [`window`], [`counters`] |
+#![cfg_attr(feature = "assembly", doc = "| sparse matrices (feature `assembly`) | [`assembly`] |")]
+#![cfg_attr(feature = "testkit", doc = "| checks of the contracts (feature `testkit`) | [`testkit`] |")]
+//!
+//! A plug-in crate depends on this crate alone, without its default feature `assembly`, which brings the sparse solver.
+//!
+//! ```
+//! use fem_core::laminate::{LaminaPly, Laminate};
+//! use fem_core::layup;
+//! use fem_core::material::{Elastic, Material, Strengths};
+//!
+//! let tape = Material {
+//!     name: "AS4/3502".into(),
+//!     elastic: Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9),
+//!     density: 1575.0,
+//!     strengths: Strengths::default(),
+//! };
+//! tape.check()?;
+//! let ply = |angle_deg: f64| LaminaPly { angle_deg, angle: angle_deg.to_radians(), thickness: 1.3208e-4, material: 0 };
+//! let plies = layup::parse("[0/45/-45/90]2s")?.iter().map(|p| ply(p.angle_deg)).collect();
+//!
+//! // Two layers of cells, eight plies each, meet at the mid-plane.
+//! let laminate = Laminate { plies, layers: vec![8, 8] };
+//! assert_eq!(laminate.levels()[1], 0.0);
+//! assert!((laminate.areal_mass(&[tape]) - 3.328416).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 #[cfg(feature = "assembly")]
 pub mod assembly;
@@ -15,9 +47,9 @@ pub mod laminate;
 pub mod layup;
 pub mod material;
 pub mod mesh;
+pub mod patch;
 pub mod plate;
 pub mod plugin;
-pub mod patch;
 pub mod quadrature;
 pub mod recovery;
 pub mod reduction;
