@@ -176,7 +176,7 @@ fn tension_stays_near_the_report_across_defensible_settings() {
 }
 
 /// One of the pinned cases, unreduced, with the report's choices.
-fn pinned(case: u8, end: &str, reduction: &str) -> Computed {
+fn pinned(case: u8, step: &str, end: &str, reduction: &str) -> Computed {
     let folder = root().join("tests/data/report-cases");
     let (mass, plies) = match case {
         1 => ("2.49 kg", "[0/45/-45/90]2s"),
@@ -194,7 +194,7 @@ support = [{{ group = "support", at = "mid-plane", fix = ["U30"] }}, {{ restrain
 impactor = {{ mass = "{mass}", velocity = "1.56 m/s", at = {{ group = "impact" }} }}
 contact = {{ law = "sun-yang", k = "1.07e5 N/mm^1.5", n = 1.5, m = 2.5, critical = "0.08 mm", beta = 0.4 }}
 reduction = {reduction}
-march = {{ integrator = "newmark", step = "0.5 us", end = "{end}" }}
+march = {{ integrator = "newmark", step = "{step}", end = "{end}" }}
 failure = {{ criteria = ["hashin-report"], radius = "6 mm" }}
 output = {{ history_every = "2 us" }}
 "#
@@ -218,8 +218,8 @@ fn independent(case: u8, end: f64) -> Vec<(f64, f64)> {
     rows.iter().map(|r| (r["t_us"] * 1e-6, r["contact_force_N"])).filter(|r| r.0 <= end + 1e-9).collect()
 }
 
-fn agrees_with_the_independent_model(case: u8, end: &str, end_s: f64, modes: &[(&str, &str)]) {
-    let c = pinned(case, end, NONE);
+fn agrees_with_the_independent_model(case: u8, step: &str, end: &str, end_s: f64, modes: &[(&str, &str)]) {
+    let c = pinned(case, step, end, NONE);
     let reference = independent(case, end_s);
     let force = |t: f64| {
         let h = &c.outcome.history;
@@ -243,24 +243,25 @@ fn agrees_with_the_independent_model(case: u8, end: &str, end_s: f64, modes: &[(
 #[test]
 fn case_3_unreduced_agrees_with_the_independent_model() {
     let modes = [("mt", TENSION), ("mc", SHEAR), ("ft", "fibre tension"), ("fc", "fibre compression")];
-    agrees_with_the_independent_model(3, "1 ms", 1e-3, &modes);
+    agrees_with_the_independent_model(3, "0.5 us", "1 ms", 1e-3, &modes);
 }
 
 #[test]
 #[ignore = "long: the unreduced model to the end of the independent histories"]
 fn all_cases_unreduced_agree_with_the_independent_model() {
     let modes = [("mt", TENSION), ("mc", SHEAR)];
-    agrees_with_the_independent_model(1, "2 ms", 2e-3, &modes);
-    agrees_with_the_independent_model(3, "2 ms", 2e-3, &modes);
-    agrees_with_the_independent_model(2, "2 ms", 2e-3, &modes);
-    agrees_with_the_independent_model(4, "2 ms", 2e-3, &modes);
-    agrees_with_the_independent_model(5, "3.4 ms", 3.4e-3, &modes);
+    // Newmark's period error: at 0.5 us it alone is 1.0 % and 1.5 % of the force in the thin plates of cases 4 and 5.
+    agrees_with_the_independent_model(1, "0.5 us", "2 ms", 2e-3, &modes);
+    agrees_with_the_independent_model(2, "0.5 us", "2 ms", 2e-3, &modes);
+    agrees_with_the_independent_model(3, "0.5 us", "2 ms", 2e-3, &modes);
+    agrees_with_the_independent_model(4, "0.25 us", "2 ms", 2e-3, &modes);
+    agrees_with_the_independent_model(5, "0.25 us", "3.4 ms", 3.4e-3, &modes);
 }
 
 #[test]
 #[ignore = "long: the unreduced model"]
 fn reductions_agree_with_the_full_model_of_case_1() {
-    let full = pinned(1, "2 ms", NONE);
+    let full = pinned(1, "0.5 us", "2 ms", NONE);
     let forces = |c: &Computed| -> Vec<f64> { c.outcome.history.iter().map(|r| r.contact_force_n).collect() };
     let want = forces(&full);
     // (reduction, force L2, onset of first shear)
@@ -270,7 +271,7 @@ fn reductions_agree_with_the_full_model_of_case_1() {
         (r#"{ method = "ritz", vectors = 39 }"#, 1e-3, 0.01),
         (r#"{ method = "ritz", vectors = 80 }"#, 3e-4, 0.01),
     ] {
-        let c = pinned(1, "2 ms", reduction);
+        let c = pinned(1, "0.5 us", "2 ms", reduction);
         let error = l2(&forces(&c), &want);
         assert!(error <= bound, "{reduction}: {error}");
         within(c.onset(TENSION, None).unwrap(), full.onset(TENSION, None).unwrap(), 0.01, reduction);

@@ -1,6 +1,0 @@
-//! Tests of the whole: the command, what it refuses, what it finds.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
-mod report;
-mod snapshots;
-mod support;
