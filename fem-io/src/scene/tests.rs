@@ -133,6 +133,14 @@ fn a_scene_in_full() {
 }
 
 #[test]
+fn a_formula_may_begin_with_a_number() {
+    let scene = read_good(&spoilt("strict = true", r#"expression = ["2*s1"], limit = "2 MPa""#));
+    let params = &scene.failure.criteria[1].params;
+    assert_eq!(params.get("expression"), Some(&Value::List(vec![Value::Text("2*s1".into())])));
+    assert_eq!(params.quantity("limit", Dimension::PRESSURE, None), Ok(2e6));
+}
+
+#[test]
 fn presets_lie_beneath_the_scene() {
     let fidelity = |name: &str| format!("fidelity = \"{name}\"\n{GOOD}");
     let report = read_good(&fidelity("report"));
