@@ -248,7 +248,6 @@ fn three_digits(x: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use tiny_skia::Pixmap;
 

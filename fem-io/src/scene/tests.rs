@@ -1,5 +1,3 @@
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use super::*;
 use fem_core::laminate::LaminaPly;
 use fem_core::material::Strength;
