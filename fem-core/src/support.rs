@@ -71,7 +71,7 @@ pub fn fix(
                         }
                     }
                     if !terms.is_empty() && terms != last {
-                        equations.push(Equation { terms: terms.clone(), value: 0.0, origin: name() });
+                        equations.push(Equation { terms: terms.clone(), value: 0.0, origin: name(), holds: true });
                     }
                     last = terms;
                 }
@@ -94,6 +94,7 @@ pub fn couple(plate: &Plate, columns: &[u32], levels: &[usize], dofs: &[Dof], or
                 terms: vec![(*d, 1.0), (*first, -1.0)],
                 value: 0.0,
                 origin: format!("{origin}: {dof}"),
+                holds: false,
             }));
         }
     }
@@ -194,7 +195,7 @@ impl FreeMotions {
             let Some(first) = unknown(n, m) else { continue };
             let mut terms = vec![(first, 1.0)];
             terms.extend(unknown(n2, m2).filter(|_| n2 > 0).map(|d| (d, -1.0)));
-            let equation = Equation { terms, value: 0.0, origin: "restraint of rigid motions".into() };
+            let equation = Equation { terms, value: 0.0, origin: "restraint of rigid motions".into(), holds: true };
             let row = self.row(plate, &equation);
             // Keep the equation if some motion still free is seen by it; that motion is then spent.
             let seen = |b: &Vector6<f64>| b.dot(&row);
