@@ -1,11 +1,8 @@
 //! What can go wrong between a scene and its results.
 
 use fem_core::assembly::AssemblyError;
-use fem_core::constraint::ConstraintError;
 use fem_core::element::ElementError;
-use fem_core::reduction::ReductionError;
 use fem_core::time::StepError;
-use fem_dynamics::limit::TooLong;
 use fem_failure::scan::ScanError;
 use fem_io::files::FileError;
 use fem_io::gmsh::MeshError;
@@ -23,11 +20,6 @@ pub enum Error {
     Scene(#[from] SceneError),
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    #[error("the constraints do not fit together")]
-    Constraint(#[from] ConstraintError),
-    #[error("the supports leave the plate free: {0}")]
-    #[diagnostic(help("support the plate against it, or add `{{ restrain = \"rigid-motions\" }}` to `support`"))]
-    Loose(String),
     #[error("the matrices cannot be assembled")]
     Assembly(#[from] AssemblyError),
     #[error("the stresses cannot be recovered")]
@@ -36,13 +28,8 @@ pub enum Error {
     Solve(#[from] fem_core::structure::SolveError),
     #[error("the matrices cannot be analysed")]
     Factor(#[from] fem_core::assembly::FactorError),
-    #[error("the reduction failed")]
-    Reduction(#[from] ReductionError),
     #[error("the march failed")]
     Step(#[from] StepError),
-    #[error(transparent)]
-    #[diagnostic(help("give `march.step` a smaller value or choose another integrator or reduction"))]
-    TooLong(#[from] TooLong),
     #[error("the failure scan failed")]
     Scan(#[from] ScanError),
     #[error(transparent)]

@@ -1,13 +1,13 @@
 //! From a scene to a model: everything that is decided before the first matrix.
 
 use crate::error::Error;
-use crate::registry::{Registry, RegistryError};
+use crate::registry::{NO_REDUCTION, Registry, RegistryError};
 use fem_core::assembly::elimination_order;
 use fem_core::constraint::{Constraints, Equation};
 use fem_core::contact::ContactLaw;
 use fem_core::dof::Dof;
 use fem_core::element::Element;
-use fem_core::failure::FailureCriterion;
+use fem_core::failure::{FailureCriterion, Site, check_material};
 use fem_core::laminate::Laminate;
 use fem_core::material::Material;
 use fem_core::mesh::QuadMesh;
@@ -17,8 +17,10 @@ use fem_core::plugin::{Built, Kind, unknown_key};
 use fem_core::reduction::{Functional, Reduction};
 use fem_core::support::{self, FreeMotions};
 use fem_core::time::Integrator;
-use fem_io::gmsh;
-use fem_io::scene::{Damage, ImpactPoint, Load, Located, NodeSet, PluginSpec, Scene, SceneError, Support};
+use fem_core::window;
+use fem_io::gmsh::{self, GmshMesh, MeshFault};
+use fem_io::scene::{Damage, ImpactPoint, Load, Located, NodeSet, Place, PluginSpec, Scene, SceneError, Support};
+use std::collections::BTreeSet;
 
 /// A scene made concrete: mesh extruded, plug-ins built, supports turned into constraints, the contact placed.
 #[derive(Debug, Clone)]
@@ -46,10 +48,15 @@ pub struct Model {
     /// The integrator.
     pub integrator: Box<dyn Integrator>,
     /// Criteria by name; none when damage is off.
-    pub criteria: Vec<(String, Box<dyn FailureCriterion>)>,
+    pub criteria: Vec<NamedCriterion>,
+    /// Quads whose stresses the criteria judge.
+    pub watched: Vec<usize>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
+
+/// A criterion under the name by which the scene calls it.
+pub type NamedCriterion = (String, Box<dyn FailureCriterion>);
 
 /// Thickness over size of the plate outside of which the mesh's unit is probably wrong.
 const PLAUSIBLE_THICKNESS: std::ops::Range<f64> = 1e-4..0.5;
@@ -64,14 +71,14 @@ impl Model {
     /// Whatever the scene names and the mesh or the registry does not have, and supports that do not fit together or
     /// leave a rigid motion.
     pub fn new(scene: Scene, registry: &Registry) -> Result<Self, Error> {
-        let read = gmsh::read(&scene.mesh.file.value, scene.mesh.metres_per_unit)?;
+        let builder = Builder { scene: &scene, registry };
+        let read = builder.mesh()?;
         let mut warnings = read.warnings;
         let mesh = read.mesh;
         let materials: Vec<Material> = scene.materials.iter().map(|m| m.value.clone()).collect();
         let laminate = scene.laminate.value.clone();
         warnings.extend(implausible(&mesh, &laminate));
 
-        let builder = Builder { scene: &scene, registry };
         let element = builder.element()?;
         let law = builder.contact()?;
         let reduction = builder.reduction()?;
@@ -87,6 +94,7 @@ impl Model {
             .map_err(|why| builder.error(&scene.element.name, why, "choose a solid element"))?;
         let constraints = builder.constraints(&plate)?;
         let (centre, contact) = builder.contact_place(&plate, &*element)?;
+        let watched = builder.watched(&plate.plane, centre)?;
         let contact = Functional(constraints.restrict(&contact.0));
         if contact.0.is_empty() {
             return Err(builder
@@ -109,6 +117,7 @@ impl Model {
             reduction,
             integrator,
             criteria,
+            watched,
             warnings,
             scene,
         })
@@ -148,9 +157,9 @@ fn implausible(mesh: &QuadMesh, laminate: &Laminate) -> Vec<String> {
     let ratio = laminate.thickness() / size;
     if !PLAUSIBLE_THICKNESS.contains(&ratio) {
         warnings.push(format!(
-            "the plate is {:.4e} m wide and {:.4e} m thick: is `mesh.unit` the unit of the mesh file?",
-            size,
-            laminate.thickness()
+            "the plate is {:.4} mm wide and {:.4} mm thick: is `mesh.unit` the unit of the mesh file?",
+            size * 1e3,
+            laminate.thickness() * 1e3
         ));
     }
     let poor: Vec<u64> = (0..mesh.quads.len())
@@ -183,8 +192,10 @@ macro_rules! build {
                 "mend the plug-in",
             )),
             Err(RegistryError::Param(e)) => {
-                let place = spec.place_of(&e.key);
-                Err($self.scene.source.error_at(place, format!("{} `{}`: {e}", Kind::$kind, spec.name.value), ""))
+                let known = $self.registry.param(Kind::$kind, &spec.name.value, &e.key);
+                let help = known.map_or(String::new(), |p| format!("`{}`: {}", p.name, p.doc));
+                let message = format!("{} `{}`: {e}", Kind::$kind, spec.name.value);
+                Err($self.scene.source.error_at(spec.place_of(&e.key), message, help))
             }
             Err(error) => {
                 let hint = match &error {
@@ -216,7 +227,7 @@ impl Builder<'_> {
 
     fn reduction(&self) -> Result<Option<Box<dyn Reduction>>, SceneError> {
         let spec = &self.scene.reduction;
-        if spec.name.value == "none" {
+        if spec.name.value == NO_REDUCTION {
             return match spec.params.keys().next() {
                 None => Ok(None),
                 Some(key) => Err(self.scene.source.error_at(
@@ -229,9 +240,63 @@ impl Builder<'_> {
         build!(self, spec, Reduction).map(Some)
     }
 
-    fn criteria(&self) -> Result<Vec<(String, Box<dyn FailureCriterion>)>, SceneError> {
-        let each = |spec: &PluginSpec| Ok((spec.name.value.clone(), build!(self, spec, Criterion)?));
+    fn criteria(&self) -> Result<Vec<NamedCriterion>, SceneError> {
+        let each = |spec: &PluginSpec| {
+            let criterion = build!(self, spec, Criterion)?;
+            self.check_criterion(spec, &*criterion)?;
+            Ok((spec.name.value.clone(), criterion))
+        };
         self.scene.failure.criteria.iter().map(each).collect()
+    }
+
+    /// Refuses a criterion that has nothing to judge, or that a material does not suit.
+    fn check_criterion(&self, spec: &PluginSpec, criterion: &dyn FailureCriterion) -> Result<(), SceneError> {
+        let name = &spec.name.value;
+        let judged: BTreeSet<usize> = match (criterion.info().site, &self.scene.interface) {
+            (Site::Ply, _) => self.scene.laminate.value.plies.iter().map(|ply| ply.material).collect(),
+            (Site::Interface, Some(resin)) => BTreeSet::from([resin.value]),
+            (Site::Interface, None) => {
+                return Err(self.error(
+                    &spec.name,
+                    format!("criterion `{name}` judges the resin between plies, and the laminate names none"),
+                    "give `laminate.interface` the name of a material",
+                ));
+            }
+        };
+        for material in judged.into_iter().map(|m| &self.scene.materials[m]) {
+            if let Err(why) = check_material(criterion, name, &material.value) {
+                return Err(self.error(
+                    material,
+                    why.to_string(),
+                    "complete or correct the material, or remove the criterion",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn watched(&self, mesh: &QuadMesh, centre: [f64; 2]) -> Result<Vec<usize>, SceneError> {
+        let failure = &self.scene.failure;
+        let near = |q: &usize| {
+            let c = window::centroid(&mesh.corners(*q));
+            failure.radius.is_none_or(|r| (c[0] - centre[0]).hypot(c[1] - centre[1]) <= r)
+        };
+        let watched: Vec<usize> = (0..mesh.quads.len()).filter(near).collect();
+        if watched.is_empty() {
+            let message = "no cell has its centre within `failure.radius` of the impact";
+            return Err(self.scene.source.error_at(&failure.place, message, "enlarge the radius or leave it out"));
+        }
+        Ok(watched)
+    }
+
+    fn mesh(&self) -> Result<GmshMesh, Error> {
+        let file = &self.scene.mesh.file;
+        gmsh::read(&file.value, self.scene.mesh.metres_per_unit).map_err(|error| match error.fault {
+            MeshFault::Unreadable(_) => {
+                self.error(file, error.to_string(), "`mesh.file` counts from the folder of the scene").into()
+            }
+            _ => error.into(),
+        })
     }
 
     /// Columns of a group.
@@ -241,7 +306,11 @@ impl Builder<'_> {
             None => Err(self.error(
                 group,
                 format!("the mesh has no group `{}`", group.value),
-                format!("`{}` {}", group.value, unknown_key(&group.value, plate.plane.groups.keys().map(String::as_str))),
+                format!(
+                    "`{}` {}",
+                    group.value,
+                    unknown_key(&group.value, plate.plane.groups.keys().map(String::as_str))
+                ),
             )),
         }
     }
@@ -251,44 +320,57 @@ impl Builder<'_> {
         Ok((self.columns(plate, &set.group)?, levels))
     }
 
-    fn constraints(&self, plate: &Plate) -> Result<Constraints, Error> {
+    fn constraints(&self, plate: &Plate) -> Result<Constraints, SceneError> {
+        let source = &self.scene.source;
         let mut equations = Vec::new();
-        let mut restrain = false;
+        // Of each equation, where it stands in the scene.
+        let mut places = Vec::new();
+        let mut restraint = None;
         for entry in &self.scene.supports {
             match entry {
                 Support::Fix { nodes, dofs, axes, place } => {
                     let (columns, levels) = self.nodes(plate, nodes)?;
                     let origin = format!("support of `{}`", nodes.group.value);
-                    let before = equations.len();
-                    equations.extend(support::fix(plate, columns, &levels, dofs, *axes, &origin));
-                    if equations.len() == before {
+                    let fixed = support::fix(plate, columns, &levels, dofs, *axes, &origin);
+                    if fixed.is_empty() {
                         let message = format!("the support of `{}` fixes nothing", nodes.group.value);
-                        return Err(self
-                            .scene
-                            .source
-                            .error_at(place, message, "the element has none of the unknowns of `fix`")
-                            .into());
+                        return Err(source.error_at(place, message, "the element has none of the unknowns of `fix`"));
                     }
+                    equations.extend(fixed);
+                    places.resize(equations.len(), place);
                 }
-                Support::RestrainRigidMotions { .. } => restrain = true,
+                Support::RestrainRigidMotions { place } => restraint = Some(place),
             }
         }
         for couple in &self.scene.couples {
             let (columns, levels) = self.nodes(plate, &couple.nodes)?;
             let origin = format!("couple of `{}`", couple.nodes.group.value);
             equations.extend(support::couple(plate, columns, &levels, &couple.dofs, &origin));
+            places.resize(equations.len(), &couple.place);
         }
         for (number, equation) in self.scene.equations.iter().enumerate() {
             equations.push(self.equation(plate, equation, number)?);
+            places.push(&equation.place);
         }
         let free = FreeMotions::of(plate, &equations);
-        if !free.is_empty() {
-            if !restrain {
-                return Err(Error::Loose(free.names()));
+        match restraint {
+            _ if free.is_empty() => {}
+            Some(place) => {
+                equations.extend(free.restrain(plate).map_err(|why| source.error_at(place, why, ""))?);
+                places.resize(equations.len(), place);
             }
-            equations.extend(free.restrain(plate).map_err(Error::Loose)?);
+            None => {
+                return Err(source.error_at(
+                    self.scene.supports.first().map_or(&Place::TOP, Support::place),
+                    format!("the supports leave the plate free: {}", free.names()),
+                    "support the plate against it, or add `{ restrain = \"rigid-motions\" }` to `support`",
+                ));
+            }
         }
-        Ok(Constraints::eliminate(&elimination_order(plate), &equations)?)
+        Constraints::eliminate(&elimination_order(plate), &equations).map_err(|why| {
+            let at = equations.iter().position(|e| e.origin == why.origin()).and_then(|i| places.get(i));
+            source.error_at(at.copied().unwrap_or(&Place::TOP), why.to_string(), "")
+        })
     }
 
     fn equation(
@@ -312,7 +394,7 @@ impl Builder<'_> {
             })?;
             terms.push((dof, term.factor));
         }
-        Ok(Equation { terms, value: 0.0, origin: format!("equation {}", number + 1) })
+        Ok(Equation { terms, value: 0.0, origin: format!("equation {}", number + 1), holds: false })
     }
 
     /// Where the impactor strikes, and the deflection there as weights of the unknowns.
@@ -340,8 +422,12 @@ impl Builder<'_> {
             }
         };
         let contact = match (self.scene.impactor.load.value, column) {
-            (Load::Patch { radius }, _) => patch::hertz(plate, element, centre, radius)
-                .map_err(|why| self.error(&self.scene.impactor.load, why, ""))?,
+            (Load::Patch { radius }, _) => patch::hertz(plate, element, centre, radius).map_err(|why| {
+                let (low, high) = plate.plane.bounds();
+                let [width, depth] = [0, 1].map(|d| (high[d] - low[d]) * 1e3);
+                let size = format!("the plate is {width:.4} mm by {depth:.4} mm, if `mesh.unit` is right");
+                self.error(&self.scene.impactor.load, why, format!("choose a smaller `impactor.patch_radius`; {size}"))
+            })?,
             (Load::Node, Some(column)) => patch::node(plate, column)
                 .ok_or_else(|| self.error(at, "the element has no U30 to strike", "choose another element"))?,
             (Load::Node, None) => {

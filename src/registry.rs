@@ -1,7 +1,10 @@
 //! The registry of plug-ins: one table that scenes, lists and documentation read.
 
-use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo, unknown_key};
+use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, unknown_key};
 use std::fmt;
+
+/// The name of no reduction: the full model is marched.
+pub const NO_REDUCTION: &str = "none";
 
 /// Plug-ins by kind and name, in the order of registration.
 ///
@@ -107,6 +110,7 @@ impl Registry {
             .with::<failure::QuadraticStress>()
             .with::<failure::MaxStressInterface>()
             .with::<failure::BrewerLagace>()
+            .with::<failure::Expression>()
     }
 
     /// The registry with one plug-in more.
@@ -124,6 +128,16 @@ impl Registry {
         self.entries.iter().map(|e| &e.info).filter(move |i| i.kind == kind)
     }
 
+    /// What the plug-in `name` of `kind` says of its parameter `key`.
+    pub fn param(&self, kind: Kind, name: &str, key: &str) -> Option<&ParamInfo> {
+        self.find(kind, name)?.info.params.iter().find(|p| p.name == key)
+    }
+
+    /// What a scene can name: the plug-ins of a kind and, instead of a reduction, [`NO_REDUCTION`].
+    fn names(&self, kind: Kind) -> impl Iterator<Item = &str> {
+        self.list(kind).map(|i| i.name).chain((kind == Kind::Reduction).then_some(NO_REDUCTION))
+    }
+
     fn find(&self, kind: Kind, name: &str) -> Option<&Entry> {
         self.entries.iter().find(|e| e.info.kind == kind && e.info.name == name)
     }
@@ -139,7 +153,7 @@ impl Registry {
         let entry = self.find(kind, name).ok_or_else(|| RegistryError::Unknown {
             kind,
             name: name.to_owned(),
-            hint: format!("`{name}` {}", unknown_key(name, self.list(kind).map(|i| i.name))),
+            hint: format!("`{name}` {}", unknown_key(name, self.names(kind))),
         })?;
         params.only(entry.info.params).map_err(RegistryError::Param)?;
         (entry.build)(params).map_err(RegistryError::Param)

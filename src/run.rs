@@ -7,7 +7,7 @@ use crate::stress::Watch;
 use fem_core::assembly::{Matrix, SparseStructure, Symbolic, assemble, pattern};
 use fem_core::counters::Counters;
 use fem_core::structure::Structure;
-use fem_core::time::{State, StepLimit};
+use fem_core::time::{State, StepError, StepLimit};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
 use fem_dynamics::limit::{self, TooLong};
 use fem_dynamics::reduce::Reduced;
@@ -94,9 +94,8 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
     let pattern = Arc::new(pattern(&model.plate, &model.constraints));
-    let mut matrix = |which| {
-        assemble(&model.plate, &*model.element, &model.constraints, &pattern, which, threads, &mut counters)
-    };
+    let mut matrix =
+        |which| assemble(&model.plate, &*model.element, &model.constraints, &pattern, which, threads, &mut counters);
     let (k, m) = (matrix(Matrix::Stiffness)?, matrix(Matrix::Mass)?);
     stopwatch.lap("assemble");
     let symbolic = Symbolic::new(pattern.clone())?;
@@ -109,8 +108,12 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         None => None,
         Some(reduction) => {
             let governors = model.governors(GOVERNORS);
-            let basis = reduction.basis(&mut structure, std::slice::from_ref(&model.contact), &governors)?;
-            Some(Reduced::project(&structure, &basis)?)
+            let contact = std::slice::from_ref(&model.contact);
+            let basis = reduction.basis(&mut structure, contact, &governors);
+            Some(basis.and_then(|basis| Reduced::project(&structure, &basis)).map_err(|why| {
+                let name = &model.scene.reduction.name;
+                model.scene.source.error_at(&name.place, format!("reduction `{}`: {why}", name.value), "")
+            })?)
         }
     };
     (counters.factorisations, counters.solves) = structure.work();
@@ -127,14 +130,16 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     );
     let march = &model.scene.march;
     let limited = model.integrator.limit();
-    let (longest_step, highest) = limit::longest_step(&mut system, limited)?;
+    let (longest_step, highest) = limit::longest_step(&mut system, limited).map_err(|e| unmarchable(model, e))?;
     let hertz = |omega: f64| omega / std::f64::consts::TAU;
-    if let (StepLimit::OmegaDt(omega_dt), Some(omega)) = (limited, highest) {
-        if march.step.value > longest_step {
-            let frequency = hertz(omega_dt / longest_step);
-            let (step, limit, plate) = (march.step.value, longest_step, hertz(omega));
-            return Err(TooLong { step, limit, omega_dt, frequency, plate }.into());
-        }
+    if let (StepLimit::OmegaDt(omega_dt), Some(omega)) = (limited, highest)
+        && march.step.value > longest_step
+    {
+        let frequency = hertz(omega_dt / longest_step);
+        let (step, limit, plate) = (march.step.value, longest_step, hertz(omega));
+        let why = TooLong { step, limit, omega_dt, frequency, plate }.to_string();
+        let help = "shorten `march.step`, reduce the model, or choose an implicit integrator such as `newmark`";
+        return Err(model.scene.source.error_at(&march.step.place, why, help).into());
     }
     let steps = (march.end.value / march.step.value * (1.0 - 1e-12)).ceil().max(1.0) as u64;
     let sizes = Sizes {
@@ -144,15 +149,22 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         factor_entries,
         static_stiffness: 1.0 / system.static_flexibility(0)?,
         highest_frequency: highest.map(hertz),
-        lowest_frequency: reduced
-            .as_ref()
-            .and_then(|r| r.modal.frequencies().next())
-            .map(hertz),
+        lowest_frequency: reduced.as_ref().and_then(|r| r.modal.frequencies().next()).map(hertz),
         longest_step,
         steps,
         step: march.end.value / steps as f64,
     };
     Ok(Prepared { model, system, reduced, sizes, counters, stopwatch })
+}
+
+/// The error of an integrator that cannot march `model`; one that needs M⁻¹ where M has none is shown in the scene.
+fn unmarchable(model: &Model, error: StepError) -> Error {
+    let StepError::SingularMass(why) = error else { return error.into() };
+    let name = &model.scene.march.integrator.name;
+    let message = format!("`{}` needs the inverse of the mass matrix, which is singular: {why}", name.value);
+    let help = "choose an implicit integrator such as `newmark`, a mass that is regular (`element.mass = \"cubic\"`), or \
+                another reduction";
+    model.scene.source.error_at(&name.place, message, help).into()
 }
 
 /// Marches a prepared model to its end; `progress` hears the share of the steps done.
@@ -175,7 +187,7 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
     let row_every = scene.output.history_every.map_or(sizes.steps.div_ceil(HISTORY_ROWS), every);
     let mut integrator = model.integrator.clone();
     let mut state = system.initial();
-    integrator.start(&mut system, &mut state)?;
+    integrator.start(&mut system, &mut state).map_err(|e| unmarchable(model, e))?;
 
     let mut ledger = Ledger::new(&system, &state);
     let n = sizes.marched;

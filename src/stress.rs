@@ -5,10 +5,10 @@ use crate::model::Model;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::recovery::{Recovery, Station};
+use fem_core::structure::Structure;
 use fem_core::tensor::{Ply, Stress6};
 use fem_core::window;
 use fem_dynamics::reduce::Reduced;
-use fem_core::structure::Structure;
 use fem_failure::scan::{Place, Scan, ScanSite};
 use fem_io::scene::Window;
 
@@ -141,18 +141,12 @@ impl<'a> Watch<'a> {
 
 fn recovery(model: &Model) -> Recovery {
     let mesh = &model.plate.plane;
-    let failure = &model.scene.failure;
-    let near = |q: &usize| {
-        let c = window::centroid(&mesh.corners(*q));
-        failure.radius.is_none_or(|r| (c[0] - model.centre[0]).hypot(c[1] - model.centre[1]) <= r)
-    };
-    let quads = (0..mesh.quads.len()).filter(near).collect();
-    let windows = match failure.window {
+    let windows = match model.scene.failure.window {
         Window::Element => window::own(mesh),
         Window::Square(side) => window::square(mesh, side),
     };
     let resin = model.scene.interface.as_ref().map(|i| i.value);
-    Recovery::new(&model.plate, &model.laminate, &model.materials, resin, quads, &windows)
+    Recovery::new(&model.plate, &model.laminate, &model.materials, resin, model.watched.clone(), &windows)
 }
 
 fn sites(model: &Model, recovery: &Recovery) -> Vec<ScanSite> {

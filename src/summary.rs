@@ -358,7 +358,7 @@ pub fn write(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Er
                 marks.push((e.time, label));
             }
         }
-        let picture = plot::line_plot(&plot::force_history(&times, &forces, &marks)?)?;
+        let picture = plot::line_plot(&plot::force_history(&model.scene.title, &times, &forces, &marks)?)?;
         dir.write("contact_force.svg", |w| w.write_all(picture.svg.as_bytes()))?;
         dir.write("contact_force.png", |w| w.write_all(&picture.png))?;
     }

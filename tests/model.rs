@@ -103,7 +103,10 @@ fn turned_axes_and_ties_mean_what_they_say() {
 #[test]
 fn every_reduction_keeps_the_static_flexibility() {
     let reduction = |text: &str| {
-        stiffness_at_contact(&[("[march]", &format!("[reduction]\n{text}\n\n[march]")), ("end = \"1 ms\"", "end = \"1 us\"")])
+        stiffness_at_contact(&[
+            ("[march]", &format!("[reduction]\n{text}\n\n[march]")),
+            ("end = \"1 ms\"", "end = \"1 us\""),
+        ])
     };
     let full = reduction("method = \"none\"");
     for text in [

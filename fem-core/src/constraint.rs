@@ -12,12 +12,14 @@ pub struct Equation {
     pub value: f64,
     /// Where it comes from, for messages.
     pub origin: String,
+    /// A support, which may well hold an unknown at zero; of ties between unknowns that is an error.
+    pub holds: bool,
 }
 
 impl Equation {
     /// `u = 0`.
     pub fn fix(dof: usize, origin: impl Into<String>) -> Self {
-        Self { terms: vec![(dof, 1.0)], value: 0.0, origin: origin.into() }
+        Self { terms: vec![(dof, 1.0)], value: 0.0, origin: origin.into(), holds: true }
     }
 }
 
@@ -46,6 +48,15 @@ pub enum ConstraintError {
         /// The equation.
         origin: String,
     },
+}
+
+impl ConstraintError {
+    /// [`Equation::origin`] of the equation at which it showed.
+    pub fn origin(&self) -> &str {
+        match self {
+            Self::Conflict { origin, .. } | Self::Cycle { origin, .. } | Self::Malformed { origin } => origin,
+        }
+    }
 }
 
 impl fmt::Display for ConstraintError {
@@ -84,7 +95,7 @@ struct Row {
     terms: BTreeMap<usize, f64>,
     value: f64,
     equation: usize,
-    multi: bool,
+    ties: bool,
 }
 
 impl Constraints {
@@ -106,11 +117,11 @@ impl Constraints {
             if !(finite && scale > 0.0) {
                 return Err(ConstraintError::Malformed { origin: equation.origin.clone() });
             }
-            let mut row = Row { terms: BTreeMap::new(), value: equation.value, equation: number, multi: false };
+            let mut row =
+                Row { terms: BTreeMap::new(), value: equation.value, equation: number, ties: !equation.holds };
             for (dof, c) in &equation.terms {
                 *row.terms.entry(*dof).or_insert(0.0) += c;
             }
-            row.multi = row.terms.len() > 1;
             let used = substitute(&mut row, &rows, &row_of);
             row.terms.retain(|_, c| c.abs() > 1e-12 * scale);
             let origins = || -> Vec<String> {
@@ -130,8 +141,8 @@ impl Constraints {
                 redundant.push(equation.origin.clone());
                 continue;
             }
-            let closes_cycle = row.multi && row.terms.len() == 1 && row.value == 0.0 && !used.is_empty();
-            if closes_cycle && used.iter().all(|r| rows[*r].multi) {
+            let closes_cycle = row.ties && row.terms.len() == 1 && row.value == 0.0 && !used.is_empty();
+            if closes_cycle && used.iter().all(|r| rows[*r].ties) {
                 return Err(ConstraintError::Cycle { origin: equation.origin.clone(), others: origins() });
             }
             let largest = row.terms.values().fold(0.0_f64, |m, c| m.max(c.abs()));
@@ -155,7 +166,7 @@ impl Constraints {
                 terms: std::mem::take(&mut rows[r].terms),
                 value: 0.0,
                 equation: rows[r].equation,
-                multi: rows[r].multi,
+                ties: rows[r].ties,
             };
             substitute(&mut row, &rows, &row_of);
             rows[r].terms = row.terms;
@@ -252,7 +263,7 @@ mod tests {
     use super::*;
 
     fn equation(terms: &[(usize, f64)], value: f64) -> Equation {
-        Equation { terms: terms.to_vec(), value, origin: format!("{terms:?}") }
+        Equation { terms: terms.to_vec(), value, origin: format!("{terms:?}"), holds: false }
     }
 
     fn solve(n: usize, equations: &[Equation]) -> Result<Constraints, ConstraintError> {

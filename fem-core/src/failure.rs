@@ -253,7 +253,6 @@ pub fn search_reserve(
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::material::{Elastic, Strengths};
 

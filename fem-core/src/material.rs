@@ -249,9 +249,9 @@ mod tests {
         let e = Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9);
         assert!(e.check().is_ok());
         let (c, s) = (e.stiffness(), e.compliance());
-        for i in 0..6 {
+        for (i, row) in c.iter().enumerate() {
             for j in 0..6 {
-                let p: f64 = (0..6).map(|k| c[i][k] * s[k][j]).sum();
+                let p: f64 = row.iter().zip(&s).map(|(c, s)| c * s[j]).sum();
                 assert!((p - f64::from(i == j)).abs() < 1e-12);
             }
         }

@@ -51,7 +51,7 @@ pub fn hertz(plate: &Plate, element: &dyn Element, centre: [f64; 2], a: f64) -> 
             let found = near.iter().find_map(|q| locate(&plate.plane.corners(*q), p).map(|at| (*q, at)));
             let Some((quad, [r, s])) = found else {
                 return Err(format!(
-                    "the contact patch of radius {:.4} mm around ({:.4}, {:.4}) mm leaves the plate: choose a smaller radius",
+                    "the contact patch of radius {:.4} mm around ({:.4}, {:.4}) mm leaves the plate",
                     a * 1e3,
                     centre[0] * 1e3,
                     centre[1] * 1e3

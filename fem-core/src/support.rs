@@ -36,14 +36,7 @@ impl Levels {
 /// `dofs` are zero at the nodes of `columns` × `levels`, in axes turned by `angle` (radians) about z.
 ///
 /// In turned axes U′ₙ₀ = Σ Rₙᵢ Uᵢ₀ and U′ₙₘ = Σ Rₙᵢ Rₘⱼ Uᵢⱼ.
-pub fn fix(
-    plate: &Plate,
-    columns: &[u32],
-    levels: &[usize],
-    dofs: &[Dof],
-    angle: f64,
-    origin: &str,
-) -> Vec<Equation> {
+pub fn fix(plate: &Plate, columns: &[u32], levels: &[usize], dofs: &[Dof], angle: f64, origin: &str) -> Vec<Equation> {
     let (s, c) = angle.sin_cos();
     let r = [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]];
     let mut equations = Vec::new();
@@ -71,7 +64,7 @@ pub fn fix(
                         }
                     }
                     if !terms.is_empty() && terms != last {
-                        equations.push(Equation { terms: terms.clone(), value: 0.0, origin: name() });
+                        equations.push(Equation { terms: terms.clone(), value: 0.0, origin: name(), holds: true });
                     }
                     last = terms;
                 }
@@ -94,6 +87,7 @@ pub fn couple(plate: &Plate, columns: &[u32], levels: &[usize], dofs: &[Dof], or
                 terms: vec![(*d, 1.0), (*first, -1.0)],
                 value: 0.0,
                 origin: format!("{origin}: {dof}"),
+                holds: false,
             }));
         }
     }
@@ -182,8 +176,7 @@ impl FreeMotions {
     /// # Errors
     /// An element without derivative unknowns cannot stop a rotation at one node.
     pub fn restrain(&self, plate: &Plate) -> Result<Vec<Equation>, String> {
-        let distance =
-            |c: &usize| (0..2).map(|d| (plate.plane.points[*c][d] - self.centre[d]).powi(2)).sum::<f64>();
+        let distance = |c: &usize| (0..2).map(|d| (plate.plane.points[*c][d] - self.centre[d]).powi(2)).sum::<f64>();
         let column = (0..plate.plane.points.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
         let Some(column) = column else { return Ok(Vec::new()) };
         let level = plate.mid_level().unwrap_or(0);
@@ -194,7 +187,7 @@ impl FreeMotions {
             let Some(first) = unknown(n, m) else { continue };
             let mut terms = vec![(first, 1.0)];
             terms.extend(unknown(n2, m2).filter(|_| n2 > 0).map(|d| (d, -1.0)));
-            let equation = Equation { terms, value: 0.0, origin: "restraint of rigid motions".into() };
+            let equation = Equation { terms, value: 0.0, origin: "restraint of rigid motions".into(), holds: true };
             let row = self.row(plate, &equation);
             // Keep the equation if some motion still free is seen by it; that motion is then spent.
             let seen = |b: &Vector6<f64>| b.dot(&row);

@@ -322,7 +322,11 @@ fn contact(law: &dyn ContactLaw, h: &ContactHistory, free: f64, soft: f64) -> (f
     for calls in 2..100 {
         let c = law.force(h, alpha);
         let residual = alpha + soft * c.force - free;
-        if residual > 0.0 { high = alpha } else { low = alpha }
+        if residual > 0.0 {
+            high = alpha
+        } else {
+            low = alpha
+        }
         let mut next = alpha - residual / (1.0 + soft * c.tangent);
         if !(next > low && next < high) {
             next = 0.5 * (low + high);

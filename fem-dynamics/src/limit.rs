@@ -23,10 +23,13 @@ impl fmt::Display for TooLong {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "the step of {:.4e} s is beyond the stability limit of {:.4e} s: the integrator needs omega*dt <= {} and the \
-             highest frequency of plate and contact is {:.4e} Hz (plate alone {:.4e} Hz); shorten the step, reduce the \
-             model, or use an implicit integrator such as `newmark`",
-            self.step, self.limit, self.omega_dt, self.frequency, self.plate
+            "the step of {:.4} us is beyond the stability limit of {:.4} us: the integrator needs omega*dt <= {} and the \
+             highest frequency of plate and contact is {:.4e} Hz (plate alone {:.4e} Hz)",
+            self.step * 1e6,
+            self.limit * 1e6,
+            self.omega_dt,
+            self.frequency,
+            self.plate
         )
     }
 }

@@ -198,8 +198,7 @@ impl Element for HermitePrism {
         let rule = gauss_legendre(self.info.in_plane_order);
         let points = rule.len() * rule.len();
         let terms = points * DK;
-        let [g, weighted, hankel, p, block] =
-            scratch.arrays([F * terms, F * terms, DK * 6 * DK, F * 6 * terms, F * F]);
+        let [g, weighted, hankel, p, block] = scratch.arrays([F * terms, F * terms, DK * 6 * DK, F * 6 * terms, F * F]);
         // G: 32 × (12 · points), the point running fastest among the columns.
         for_each_point(rule, |point, r, s, w| {
             let plane = plane(cell.x, r, s);
@@ -279,7 +278,8 @@ impl Element for HermitePrism {
             for f2 in 0..F {
                 for f in 0..F {
                     // The sum of both triangles: symmetric to the last bit.
-                    me[column(component, f) + N * column(component, f2)] = 0.5 * (block[f + F * f2] + block[f2 + F * f]);
+                    me[column(component, f) + N * column(component, f2)] =
+                        0.5 * (block[f + F * f2] + block[f2 + F * f]);
                 }
             }
         }

@@ -145,11 +145,7 @@ fn stiffness_mass_and_averages_agree_with_the_independent_implementation() {
                 prism.mass(&cell, &mut Scratch::default(), &mut me).unwrap();
                 let dof = |f: usize, c: usize| 12 * (f / 4) + 4 * c + f % 4;
                 for c in 0..3 {
-                    let error = scaled_error(
-                        32,
-                        |i, j| me[dof(i, c) + 96 * dof(j, c)],
-                        |i, j| want[32 * i + j],
-                    );
+                    let error = scaled_error(32, |i, j| me[dof(i, c) + 96 * dof(j, c)], |i, j| want[32 * i + j]);
                     assert!(error < TOLERANCE, "{}: {key} {error:e}", case.name);
                 }
                 let other = me[dof(0, 0) + 96 * dof(0, 1)];
@@ -176,9 +172,8 @@ fn bad_cells_and_orders_are_refused() {
     let case = &cases()[0];
     let element = HermitePrism::new(Mass::Cubic, 4).unwrap();
     let mut ke = vec![0.0; 96 * 96];
-    let mut refused = |x: &[[f64; 3]]| {
-        element.stiffness(&Cell { x, stack: &case.stack }, &mut Scratch::default(), &mut ke).is_err()
-    };
+    let mut refused =
+        |x: &[[f64; 3]]| element.stiffness(&Cell { x, stack: &case.stack }, &mut Scratch::default(), &mut ke).is_err();
     let mut folded = case.x.clone();
     folded.swap(1, 2);
     folded.swap(5, 6);

@@ -6,7 +6,7 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use fem_core::failure::FailureCriterion;
+use fem_core::failure::{FailureCriterion, Site};
 use fem_core::material::{Elastic, Material, Strength, Strengths};
 use fem_core::tensor::{Ply, Stress6};
 use fem_failure::*;
@@ -48,6 +48,17 @@ fn states() -> Vec<Stress6<Ply>> {
     (1..=STATES).map(|k| Stress6::new(std::array::from_fn(|i| component(k, i, scales[i])))).collect()
 }
 
+/// [`HashinReport`] as a scene would write it.
+fn hashin_report_in_words() -> Expression {
+    let modes = [
+        ("fibre tension", "(s1 >= 0)*((s1/Xt)^2 + (s12^2 + s13^2)/S12^2)"),
+        ("fibre compression", "(s1 < 0)*(s1/Xc)^2"),
+        ("matrix tension", "(s2 + s3 >= 0)*(((s2 + s3)/Yt)^2 + (s23^2 - s2*s3)/S23^2 + (s12^2 + s13^2)/S12^2)"),
+        ("matrix compression", "(s2 + s3 < 0)*((((s2 - s3)/2)^2 + s23^2)/S23^2 + (s12^2 + s13^2)/S12^2)"),
+    ];
+    Expression::new(Site::Ply, &modes).unwrap()
+}
+
 fn criteria() -> Vec<(&'static str, Box<dyn FailureCriterion>)> {
     let ignore = OutOfPlane::Ignore;
     vec![
@@ -69,6 +80,7 @@ fn criteria() -> Vec<(&'static str, Box<dyn FailureCriterion>)> {
         ("larc05", Box::new(Larc05::default())),
         ("cuntze", Box::new(Cuntze::default())),
         ("cuntze-2d", Box::new(Cuntze2d { out_of_plane: ignore, ..Cuntze2d::default() })),
+        ("expression", Box::new(hashin_report_in_words())),
         ("octahedral", Box::new(Octahedral)),
         ("quadratic-stress", Box::new(QuadraticStress)),
         ("max-stress-interface", Box::new(MaxStressInterface)),

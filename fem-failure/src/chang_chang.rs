@@ -113,7 +113,6 @@ impl Plugin for ChangChang {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use fem_core::material::{Elastic, Strengths};
 

@@ -104,7 +104,6 @@ impl Plugin for HashinReport {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use fem_core::material::{Elastic, Strengths};
     use fem_core::plugin::Value;

@@ -6,6 +6,30 @@
 //!
 //! Indices are of different degrees in the stress (1 for limits, 2 for quadratic forms, both for some) and must not be
 //! compared between criteria; reserve factors may.
+//!
+//! ```
+//! use fem_core::failure::assess;
+//! use fem_core::material::{Elastic, Material, Strength, Strengths};
+//! use fem_core::tensor::Stress6;
+//! use fem_failure::HashinReport;
+//!
+//! let tape = Material {
+//!     name: "AS4/3502".into(),
+//!     elastic: Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9),
+//!     density: 1575.0,
+//!     strengths: Strengths::default()
+//!         .with(Strength::Xt, 1793e6)
+//!         .with(Strength::Xc, 1724e6)
+//!         .with(Strength::Yt, 64e6)
+//!         .with(Strength::S12, 109e6)
+//!         .with(Strength::S23, 69e6),
+//! };
+//! // 32 MPa across the fibres, half of what the matrix bears; components are 11 22 33 12 23 31 in ply axes.
+//! let found = assess(&HashinReport::default(), "hashin-report", &Stress6::new([0.0, 32e6, 0.0, 0.0, 0.0, 0.0]), &tape)?;
+//! assert_eq!(found.indices, [0.0, 0.0, 0.25, 0.0]); // fibre tension, compression; matrix tension, compression
+//! assert_eq!(found.reserve.factor, 2.0);
+//! # Ok::<(), fem_core::failure::AssessError>(())
+//! ```
 
 pub mod scan;
 
@@ -15,6 +39,7 @@ mod chang_lessard;
 mod choi_chang;
 mod christensen;
 mod cuntze;
+mod expression;
 mod hashin_1980;
 mod hashin_report;
 mod hashin_rotem;
@@ -39,6 +64,7 @@ pub use chang_lessard::ChangLessard;
 pub use choi_chang::ChoiChang;
 pub use christensen::Christensen;
 pub use cuntze::{Cuntze, Cuntze2d};
+pub use expression::Expression;
 pub use hashin_1980::Hashin1980;
 pub use hashin_report::{HashinReport, Product};
 pub use hashin_rotem::HashinRotem;

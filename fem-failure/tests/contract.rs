@@ -43,6 +43,19 @@ fn build<P: Plugin>(params: &[(&str, Value)]) -> (PluginInfo, Result<Box<dyn Fai
     (P::INFO, built)
 }
 
+/// [`HashinRotem`] as a scene would write it.
+fn hashin_rotem_in_words() -> Value {
+    let formulas = [
+        "fibre tension: (s1 >= 0)*s1/Xt",
+        "fibre compression: pos(-s1)/Xc",
+        "matrix tension: (s2 >= 0)*((s2/Yt)^2 + (s12/S12)^2)",
+        "matrix compression: (s2 < 0)*((s2/Yc)^2 + (s12/S12)^2)",
+        "delamination tension: (s3 >= 0)*((s3/Yt)^2 + (s13/S12)^2 + (s23/S23)^2)",
+        "delamination compression: (s3 < 0)*((s3/Yc)^2 + (s13/S12)^2 + (s23/S23)^2)",
+    ];
+    Value::List(formulas.map(text).into())
+}
+
 /// All criteria with the parameters that they require, and their variants.
 fn all() -> Vec<(PluginInfo, Box<dyn FailureCriterion>)> {
     let strains = ["e1t", "e1c", "e2t", "e2c", "g12", "g23"].map(|key| (key, Value::Number(0.01)));
@@ -80,6 +93,7 @@ fn all() -> Vec<(PluginInfo, Box<dyn FailureCriterion>)> {
         build::<Larc05>(&[]),
         build::<Cuntze>(&[]),
         build::<Cuntze2d>(&[]),
+        build::<Expression>(&[("expression", hashin_rotem_in_words())]),
         build::<Octahedral>(&[]),
         build::<QuadraticStress>(&[]),
         build::<MaxStressInterface>(&[]),
@@ -160,7 +174,8 @@ fn plane_criteria_refuse_spatial_stress_unless_told_to_ignore_it() {
     let m = &materials()[0];
     let mut refusing = 0;
     for (info, criterion) in all() {
-        if criterion.scope() == "every finite stress" || criterion.scope().contains("sees 11, 22 and 12") {
+        let takes_any = ["every finite stress", "sees 11, 22 and 12", "its formulas give a number"];
+        if takes_any.iter().any(|words| criterion.scope().contains(words)) {
             assert!(assess(&*criterion, info.name, &spatial, m).is_ok(), "{}", info.name);
             continue;
         }
@@ -215,6 +230,21 @@ proptest! {
             prop_assert!(at.iter().all(|v| *v < 1.0 + 1e-11), "{}: {at:?} at {:?}", info.name, a.reserve);
             criterion.indices(&s.scaled(0.999 * a.reserve.factor), &m, &mut at);
             prop_assert!(at.iter().all(|v| *v < 1.0), "{}: {at:?} at 0.999 of {:?}", info.name, a.reserve);
+        }
+    }
+
+    /// A formula in the scene gives what the same formula in Rust gives.
+    #[test]
+    fn an_expression_is_as_good_as_rust(m in any_material(), s in any_stress()) {
+        let (_, words) = build::<Expression>(&[("expression", hashin_rotem_in_words())]);
+        let words = words.unwrap();
+        prop_assert_eq!(words.info().modes, HashinRotem.info().modes);
+        prop_assert_eq!(words.info().strengths, HashinRotem.info().strengths);
+        let (a, b) = (assess(&*words, "a", &s, &m).unwrap(), assess(&HashinRotem, "b", &s, &m).unwrap());
+        prop_assert_eq!(a.reserve.mode, b.reserve.mode);
+        prop_assert!((a.reserve.factor / b.reserve.factor - 1.0).abs() < 1e-13, "{a:?} {b:?}");
+        for (x, y) in a.indices.iter().zip(&b.indices) {
+            prop_assert!((x - y).abs() <= 1e-14 * y.abs(), "{:?} {:?}", a, b);
         }
     }
 

@@ -161,7 +161,6 @@ fn fill_and_sync(file: File, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn names(folder: &Path) -> Vec<String> {

@@ -109,8 +109,6 @@ fn read(name: &str, field: &Field<'_>) -> Result<LibraryMaterial, SceneError> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::panic)]
-
     use super::*;
     use fem_core::material::Strength;
 

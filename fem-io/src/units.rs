@@ -383,8 +383,6 @@ fn from_uom(symbol: &str) -> Option<Scale> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::panic)]
-
     use super::*;
     use proptest::prelude::*;
 

@@ -1,7 +1,7 @@
 //! `fem list`.
 
 use super::print;
-use crate::registry::Registry;
+use crate::registry::{NO_REDUCTION, Registry};
 use clap::{Args, ValueEnum};
 use fem_core::plugin::{Kind, PluginInfo};
 use fem_io::materials;
@@ -37,7 +37,7 @@ pub(super) fn list(registry: &Registry, arguments: &Arguments) -> miette::Result
     };
     registry.list(kind).for_each(|info| print(&entry(info)));
     if kind == Kind::Reduction {
-        print("none                 the full model\n");
+        print(&format!("{NO_REDUCTION:<20} the full model\n"));
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -10,6 +10,7 @@ use miette::{GraphicalReportHandler, GraphicalTheme, Report};
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
+use textwrap::WordSplitter;
 
 /// Low-velocity impact on laminated composites.
 #[derive(Debug, Parser)]
@@ -62,9 +63,13 @@ pub fn run_with(registry: Registry, arguments: impl IntoIterator<Item = impl Int
 
 /// Shows an error with its causes, the place in the scene, and what to do.
 fn complain(report: &Report) {
-    let theme = if std::io::stderr().is_terminal() { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
+    let theme =
+        if std::io::stderr().is_terminal() { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
     let mut text = String::new();
-    let shown = GraphicalReportHandler::new_themed(theme).with_width(110).render_report(&mut text, report.as_ref());
+    // Names with hyphens stay whole, to be copied.
+    let handler =
+        GraphicalReportHandler::new_themed(theme).with_width(110).with_word_splitter(WordSplitter::NoHyphenation);
+    let shown = handler.render_report(&mut text, report.as_ref());
     let text = if shown.is_ok() { text } else { format!("{report:?}") };
     let _ = write!(std::io::stderr(), "Error:{text}");
 }

@@ -32,8 +32,9 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments) -> miette::Result<
 
 fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error> {
     let model = Model::new(scene::read(&arguments.scene)?, registry)?;
-    let dir = OutputDir::create(arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene)))?;
     let prepared = run::prepare(&model, arguments.threads)?;
+    // After all that can be refused, so that a refusal leaves no folder; before the march, so that none is in vain.
+    let dir = OutputDir::create(arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene)))?;
     let sizes = prepared.sizes;
     let bar = progress();
     let outcome = run::march(prepared, |share| bar.set_position((share * 1000.0) as u64));

@@ -23,7 +23,8 @@ pub fn card(matrix: &[f64], dofs: &[Dof], h: f64) -> String {
     let largest = a.amax();
     a /= largest;
     let defect = (&a - a.transpose()).amax();
-    let mut eigenvalues: Vec<f64> = SymmetricEigen::new((&a + a.transpose()) * 0.5).eigenvalues.iter().copied().collect();
+    let mut eigenvalues: Vec<f64> =
+        SymmetricEigen::new((&a + a.transpose()) * 0.5).eigenvalues.iter().copied().collect();
     eigenvalues.sort_by(f64::total_cmp);
     let top = eigenvalues.last().copied().unwrap_or(0.0);
     let zero = eigenvalues.iter().filter(|e| e.abs() <= ZERO * top).count();

@@ -201,7 +201,6 @@ impl Kit<'_> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::failure::{CriterionInfo, Site};
     use crate::material::{Elastic, Strengths};

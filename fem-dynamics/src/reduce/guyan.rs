@@ -23,7 +23,8 @@ impl Reduction for Guyan {
     ) -> Result<Vec<f64>, ReductionError> {
         let kept = |dof: &usize| keep.iter().any(|w| matches!(w.0[..], [(d, _)] if d == *dof));
         let free = candidates.iter().filter(|d| !kept(d));
-        let governors: Vec<_> = keep.iter().cloned().chain(free.take(self.governors).map(|d| Functional::dof(*d))).collect();
+        let governors: Vec<_> =
+            keep.iter().cloned().chain(free.take(self.governors).map(|d| Functional::dof(*d))).collect();
         if governors.len() < keep.len() + self.governors {
             return Err(ReductionError(format!(
                 "{} governors are asked for, but the model offers only {}",

@@ -42,8 +42,7 @@ where
     pub(super) fn new(structure: &'a mut dyn Structure, inverse: S, x: Vec<f64>) -> Result<Self, ReductionError> {
         let image = vec![0.0; x.len()];
         let (v, mv, alpha, beta) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let mut krylov =
-            Self { structure, inverse, v, mv, alpha, beta, next: x, image, length: 0.0, exhausted: false };
+        let mut krylov = Self { structure, inverse, v, mv, alpha, beta, next: x, image, length: 0.0, exhausted: false };
         krylov.orthogonalise()?;
         Ok(krylov)
     }

@@ -188,7 +188,8 @@ impl StaticShapes {
             w.add_to(1.0, column);
         }
         solve(structure, &mut x)?;
-        let s = DMatrix::from_fn(functionals.len(), functionals.len(), |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
+        let s =
+            DMatrix::from_fn(functionals.len(), functionals.len(), |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
         let factor = definite((&s + s.transpose()) * 0.5, "the flexibility at the governors")?;
         Ok(Self { flexibility: x, factor })
     }
@@ -203,10 +204,9 @@ impl StaticShapes {
     /// `x ← x − X S⁻¹ Eᵀ x`: what remains of a displacement when the functionals are held at zero under forces at them.
     fn hold(&self, functionals: &[Functional], x: &mut [f64]) {
         let n = x.len();
-        let reactions = self.factor.solve(&nalgebra::DVector::from_iterator(
-            functionals.len(),
-            functionals.iter().map(|w| w.of(x)),
-        ));
+        let reactions = self
+            .factor
+            .solve(&nalgebra::DVector::from_iterator(functionals.len(), functionals.iter().map(|w| w.of(x))));
         for (r, column) in reactions.iter().zip(self.flexibility.chunks_exact(n)) {
             for (x, c) in x.iter_mut().zip(column) {
                 *x -= r * c;

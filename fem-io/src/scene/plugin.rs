@@ -43,7 +43,7 @@ impl PluginSpec {
             if key == name_key {
                 name = Some(value.at(value.text()?.to_owned()));
             } else if !others.contains(&key) {
-                params.insert(key, read_value(&value)?);
+                params.insert(key, read_value(key, &value)?);
                 places.insert(key.to_owned(), value.entry_place());
             }
         }
@@ -54,9 +54,12 @@ impl PluginSpec {
     }
 }
 
-fn read_value(field: &Field<'_>) -> Result<Value, SceneError> {
+/// Parameter whose text is a formula, no quantity, although it may begin with a number.
+const FORMULA: &str = "expression";
+
+fn read_value(key: &str, field: &Field<'_>) -> Result<Value, SceneError> {
     Ok(match field.node() {
-        Node::Text(text) if units::begins_with_number(text) => {
+        Node::Text(text) if key != FORMULA && units::begins_with_number(text) => {
             let (value, dimension) = field.any_quantity(text)?;
             Value::Quantity(value, dimension)
         }
@@ -64,7 +67,7 @@ fn read_value(field: &Field<'_>) -> Result<Value, SceneError> {
         Node::Number(_) => Value::Number(field.number()?),
         Node::Flag(flag) => Value::Flag(*flag),
         Node::List(items) if items.is_empty() => Value::List(Vec::new()),
-        Node::List(_) => Value::List(field.list()?.iter().map(read_value).collect::<Result<_, _>>()?),
+        Node::List(_) => Value::List(field.list()?.iter().map(|item| read_value(key, item)).collect::<Result<_, _>>()?),
         Node::Table(_) | Node::Date => {
             return Err(field.error(
                 format!("a parameter cannot be {}", field.node().in_words()),

@@ -23,7 +23,7 @@ pub struct Place {
 
 impl Place {
     /// The beginning of the scene.
-    pub(crate) const TOP: Self = Self { origin: Origin::Scene, span: 0..0 };
+    pub const TOP: Self = Self { origin: Origin::Scene, span: 0..0 };
 }
 
 /// A value with its place.

@@ -37,6 +37,15 @@ pub enum Support {
     },
 }
 
+impl Support {
+    /// Where it stands.
+    pub fn place(&self) -> &Place {
+        match self {
+            Self::Fix { place, .. } | Self::RestrainRigidMotions { place } => place,
+        }
+    }
+}
+
 /// Σ factor · unknown = 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equation {

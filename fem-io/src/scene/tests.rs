@@ -1,5 +1,3 @@
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use super::*;
 use fem_core::laminate::LaminaPly;
 use fem_core::material::Strength;
@@ -130,6 +128,14 @@ fn a_scene_in_full() {
     assert_eq!(scene.element.params.choice("mass", &["linear", "cubic"]), Ok("cubic"));
     assert_eq!(scene.element.params.get("z_derivatives"), None);
     assert_eq!(scene.reduction.params.count("modes", 1, None), Ok(40));
+}
+
+#[test]
+fn a_formula_may_begin_with_a_number() {
+    let scene = read_good(&spoilt("strict = true", r#"expression = ["2*s1"], limit = "2 MPa""#));
+    let params = &scene.failure.criteria[1].params;
+    assert_eq!(params.get("expression"), Some(&Value::List(vec![Value::Text("2*s1".into())])));
+    assert_eq!(params.quantity("limit", Dimension::PRESSURE, None), Ok(2e6));
 }
 
 #[test]

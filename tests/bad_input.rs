@@ -1,0 +1,559 @@
+//! What is wrong with a scene, a mesh or a command line is said with file, line, entity and remedy; exit status 1 or 2,
+//! nothing on standard output, no result left behind.
+
+use crate::support::{Case, Done, fem, plate, root, strip};
+use fem::io::files::OutputDir;
+use std::fs;
+
+/// Where a refusal points to.
+enum At<'a> {
+    /// To the line of the scene that begins with this text.
+    Scene(&'a str),
+    /// To the line of the mesh that begins with this text.
+    Mesh(&'a str),
+    /// To the mesh as a whole.
+    MeshFile,
+    /// To the preset `engineering`.
+    Preset,
+}
+
+/// The refusal of `case`, which must point to `at` and hold `words`.
+#[track_caller]
+fn refusal(case: &Case, at: At<'_>, words: &[&str]) -> String {
+    let complaint = complaint(case, case.fem("run", &[]));
+    let flat = flat(&complaint);
+    let place = match at {
+        At::Scene(start) => format!("[plate/scene.toml:{}:", line(&case.read("plate/scene.toml"), start)),
+        At::Mesh(start) => format!("plate/plate.msh:{}: ", line(&case.read("plate/plate.msh"), start)),
+        At::MeshFile => "plate/plate.msh: ".to_owned(),
+        At::Preset => "[preset `engineering`:".to_owned(),
+    };
+    for words in words.iter().chain([&place.as_str()]) {
+        assert!(flat.contains(words), "{words:?} is not in {complaint}");
+    }
+    complaint
+}
+
+/// What a refused command said; it must have left everything as it was.
+#[track_caller]
+fn complaint(case: &Case, done: Done) -> String {
+    assert_eq!((done.status, done.stdout.as_str()), (1, ""), "{done:#?}");
+    assert_eq!(
+        (case.names("."), case.names("plate")),
+        (vec!["plate".into()], vec!["plate.msh".into(), "scene.toml".into()])
+    );
+    done.stderr
+}
+
+/// A text without its line breaks and the bars that go with them.
+fn flat(text: &str) -> String {
+    text.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
+}
+
+/// Number of the one line that begins with `start`.
+#[track_caller]
+fn line(text: &str, start: &str) -> usize {
+    let found: Vec<_> = text.lines().enumerate().filter(|(_, line)| line.starts_with(start)).collect();
+    assert_eq!(found.len(), 1, "{start:?} begins one line of {text}");
+    found[0].0 + 1
+}
+
+/// Keys ahead of the first table of a scene.
+fn with_keys(case: Case, keys: &str) -> Case {
+    case.scene("mesh = {", &format!("{keys}\nmesh = {{"))
+}
+
+mod scene {
+    use super::*;
+
+    #[test]
+    fn number_without_unit() {
+        let case = plate().scene("\"2.49 kg\"", "2.49");
+        insta::assert_snapshot!(refusal(&case, At::Scene("mass ="), &["`2.49` is a bare number", "\"2.49 kg\""]));
+    }
+
+    #[test]
+    fn wrong_unit() {
+        let case = plate().scene("\"2.49 kg\"", "\"2.49 N\"");
+        refusal(&case, At::Scene("mass ="), &["`2.49 N` is a force, not a mass", "accepted: kg"]);
+    }
+
+    #[test]
+    fn contact_stiffness_of_another_power() {
+        let case = plate().scene("N/mm^1.5", "N/mm^2");
+        insta::assert_snapshot!(refusal(&case, At::Scene("k ="), &["contact law `sun-yang`: `k`", "N/m^n"]));
+    }
+
+    #[test]
+    fn unknown_key() {
+        let case = plate().scene("ply_thickness", "ply_thicknes");
+        let words = ["unknown key `laminate.ply_thicknes`", "did you mean `ply_thickness`?"];
+        insta::assert_snapshot!(refusal(&case, At::Scene("ply_thicknes ="), &words));
+    }
+
+    #[test]
+    fn layers_that_do_not_sum_to_the_plies() {
+        let case = plate().scene("[8, 8]", "[8, 7]");
+        refusal(&case, At::Scene("layers ="), &["the layers hold 15 plies, the laminate has 16"]);
+    }
+
+    #[test]
+    fn ply_interface_inside_a_layer() {
+        let case = plate().scene("[8, 8]", "[7.5, 8.5]");
+        refusal(&case, At::Scene("layers ="), &["7.5 plies would put a ply interface inside a layer", "whole numbers"]);
+    }
+
+    #[test]
+    fn layers_that_do_not_meet_at_the_mid_plane() {
+        let case = plate().scene("[8, 8]", "[4, 12]");
+        refusal(&case, At::Scene("group = \"support\""), &["no face between layers lies at the mid-plane", "`layers`"]);
+    }
+
+    #[test]
+    fn material_that_no_solid_has() {
+        let case = plate().scene("library = \"AS4/3502\"", "library = \"AS4/3502\", nu12 = 3.7");
+        let words = ["material `as4-3502`", "|nu12| < sqrt(E1/E2) = 3.67", "got nu12 = 3.7"];
+        insta::assert_snapshot!(refusal(&case, At::Scene("materials.as4-3502"), &words));
+    }
+
+    #[test]
+    fn absent_file() {
+        let case = plate();
+        case.write();
+        let done = fem(case.folder(), &["run", "plate/scene.tml"]);
+        assert!(complaint(&case, done).contains("cannot read the scene `plate/scene.tml`"));
+    }
+
+    #[test]
+    fn folder_instead_of_a_file() {
+        let case = plate();
+        case.write();
+        assert!(complaint(&case, fem(case.folder(), &["check", "plate"])).contains("cannot read the scene `plate`"));
+    }
+
+    #[test]
+    fn bytes_that_are_no_text() {
+        let case = plate();
+        let scene = case.write();
+        fs::write(case.folder().join(scene), b"title = \"\xff\xfe\"").unwrap();
+        let done = fem(case.folder(), &["run", scene]);
+        assert!(complaint(&case, done).contains("UTF-8"));
+    }
+}
+
+mod groups {
+    use super::*;
+
+    #[test]
+    fn missing() {
+        let case = plate().scene("group = \"support\"", "group = \"suport\"");
+        let words = ["the mesh has no group `suport`", "did you mean `support`?", "(known: impact, plate, support)"];
+        insta::assert_snapshot!(refusal(&case, At::Scene("group ="), &words));
+    }
+
+    #[test]
+    fn impact_on_a_curve() {
+        let case = plate().scene("{ group = \"impact\" }", "{ group = \"support\" }");
+        let words = ["the group `support` (dimension 1) has 48 nodes, an impact has one", "physical point"];
+        insta::assert_snapshot!(refusal(&case, At::Scene("at = { group"), &words));
+    }
+
+    #[test]
+    fn impact_on_several_points() {
+        let case = strip()
+            .scene("{ x = \"15 mm\", y = \"5 mm\" }", "{ group = \"tip\" }")
+            .mesh("4 0 10 2 0 ", "4 0 10 2 1 3 ")
+            .mesh("3 11 1 11\n", "4 12 1 12\n0 4 15 1\n12 4\n");
+        refusal(&case, At::Scene("at = { group"), &["(dimension 0) has 2 nodes"]);
+    }
+
+    #[test]
+    fn impact_on_no_point() {
+        let case = plate().scene("{ group = \"impact\" }", "{ group = \"centre\" }");
+        refusal(&case, At::Scene("at = { group"), &["the mesh has no group `centre`"]);
+    }
+
+    #[test]
+    fn impact_beside_the_plate() {
+        let case = strip().scene("x = \"15 mm\"", "x = \"15 in\"");
+        refusal(&case, At::Preset, &["around (381.0000, 5.0000) mm leaves the plate"]);
+    }
+
+    #[test]
+    fn impact_on_a_place_without_node() {
+        let case = strip().scene("x = \"15 mm\"", "x = \"14 mm\"").scene("velocity", "load = \"node\"\nvelocity");
+        refusal(&case, At::Scene("at = { x"), &["no node of the mesh lies at the impact point", "patch_radius"]);
+    }
+
+    #[test]
+    fn impact_on_a_support() {
+        let case = strip().scene("x = \"15 mm\"", "x = \"0 mm\"").scene("velocity", "load = \"node\"\nvelocity");
+        refusal(&case, At::Scene("at = { x"), &["the supports hold the plate exactly where the impactor strikes"]);
+    }
+}
+
+mod mesh {
+    use super::*;
+
+    #[test]
+    fn absent() {
+        let case = plate().scene("plate.msh", "plte.msh");
+        refusal(&case, At::Scene("mesh ="), &["plate/plte.msh: cannot read the file", "folder of the scene"]);
+    }
+
+    #[test]
+    fn empty() {
+        refusal(&strip().mesh_bytes(""), At::MeshFile, &["not a gmsh mesh", "gmsh FILE.geo -2 -format msh41"]);
+    }
+
+    #[test]
+    fn garbage() {
+        let garbage: Vec<u8> = (0..4096_u32).map(|i| (i * i * 31 / 7) as u8).collect();
+        refusal(&strip().mesh_bytes(garbage), At::MeshFile, &["not a gmsh mesh"]);
+    }
+
+    #[test]
+    fn truncated() {
+        let case = strip();
+        let whole = fs::read(root().join("tests/data/mesh/ascii.msh")).unwrap();
+        let case = case.mesh_bytes(&whole[..800]);
+        let complaint = complaint(&case, case.fem("run", &[]));
+        assert!(flat(&complaint).contains("the file is damaged or cut short, save it again from gmsh"), "{complaint}");
+    }
+
+    #[test]
+    fn version_2_2() {
+        let words = ["MSH version 2.2; only 4.1 is read", "Mesh.MshFileVersion = 4.1"];
+        insta::assert_snapshot!(refusal(&strip().mesh_file("msh22.msh"), At::Mesh("2.2 0 8"), &words));
+    }
+
+    #[test]
+    fn version_4_0() {
+        refusal(&strip().mesh_file("msh40.msh"), At::Mesh("4 0 8"), &["MSH version 4;", "Mesh.MshFileVersion = 4.1"]);
+    }
+
+    #[test]
+    fn triangles() {
+        let words = ["element 4 of group \"plate\" is a triangle", "Recombine Surface"];
+        insta::assert_snapshot!(refusal(&strip().mesh_file("triangles.msh"), At::Mesh("4 1 5 12 "), &words));
+    }
+
+    #[test]
+    fn no_physical_groups() {
+        let words = ["no physical group holds a cell", "Physical Surface(\"plate\")"];
+        refusal(&strip().mesh_file("no-groups.msh"), At::MeshFile, &words);
+    }
+
+    #[test]
+    fn groups_without_names() {
+        let words = ["the mesh has no group `clamped`", "(known: 1, 2, 3)"];
+        refusal(&strip().mesh_file("unnamed.msh"), At::Scene("group ="), &words);
+    }
+
+    #[test]
+    fn coordinate_that_is_no_number() {
+        let case = strip().mesh("30 0 2\n0 3", "nan 0 2\n0 3");
+        refusal(&case, At::Mesh("nan 0 2"), &["node 2 has the coordinate NaN"]);
+    }
+
+    #[test]
+    fn count_beyond_all_memory() {
+        let case = strip().mesh("9 15 1 15", "9 1000000000000 1 15");
+        refusal(&case, At::MeshFile, &["$Nodes announces 1000000000000 entries and holds 15"]);
+        let case = strip().mesh("1 1 0 3\n", "1 1 0 1000000000000\n");
+        let complaint = complaint(&case, case.fem("run", &[]));
+        assert!(flat(&complaint).contains("plate/plate.msh:40: not valid MSH 4.1"), "{complaint}");
+    }
+
+    #[test]
+    fn element_with_a_node_that_is_not_there() {
+        let case = strip().mesh("4 1 5 13 12 ", "4 1 5 13 16 ");
+        refusal(&case, At::Mesh("4 1 5 13 16"), &["element 4 refers to node 16, which is not in $Nodes"]);
+    }
+
+    #[test]
+    fn cells_that_are_not_joined() {
+        let case = strip().mesh_file("not-joined.msh");
+        let complaint = complaint(&case, case.fem("run", &[]));
+        assert!(flat(&complaint).contains("nodes 2 and 5 lie at the same point"), "{complaint}");
+    }
+
+    /// Such files differ from `ascii.msh` in the order of what they hold, or in what no cell uses.
+    #[test]
+    fn files_that_look_odd_give_the_same_result() {
+        let peak = |case: &Case| {
+            case.fem("run", &["--out", "out"]).good();
+            case.summary("out")["impact"]["peak_force_N"].as_f64().unwrap()
+        };
+        let expected = peak(&strip());
+        let unused = strip()
+            .mesh("9 15 1 15", "9 17 1 17")
+            .mesh("2 1 0 3\n13\n14\n15\n", "2 1 0 5\n13\n14\n15\n16\n17\n")
+            .mesh("4.999999999994296 2\n", "4.999999999994296 2\n1e3 0 0\n5 5 7\n");
+        let mixed = strip().mesh("4 1 5 13 12 ", "4 12 13 5 1 ");
+        let named = ["binary.msh", "clockwise.msh", "crlf.msh", "rcm.msh", "sparse.msh"];
+        let named = named.map(|name| (name, strip().mesh_file(name)));
+        for (name, case) in named.into_iter().chain([("unused nodes", unused), ("mixed orientation", mixed)]) {
+            let peak = peak(&case);
+            assert!((peak - expected).abs() < 1e-9 * expected, "{name}: {peak} N, not {expected} N");
+        }
+    }
+
+    #[test]
+    fn warnings() {
+        let disk = |file: &str| {
+            plate()
+                .mesh_file(file)
+                .scene("group = \"support\"", "group = \"rim\"")
+                .scene("{ group = \"impact\" }", "{ x = \"0 mm\", y = \"0 mm\" }")
+        };
+        for (case, words) in [
+            (disk("second-order.msh"), "12 of 12 cells are of second order and read by their corners"),
+            (disk("serendipity.msh"), "12 of 12 cells are of second order and read by their corners"),
+            (strip().mesh_file("clockwise.msh"), "8 of 8 cells were clockwise (the first is 4) and turned round"),
+            (strip().mesh("4 1 5 13 12 ", "4 12 13 5 1 "), "1 of 8 cells was clockwise (the first is 4)"),
+            (
+                plate().scene("unit = \"mm\"", "unit = \"m\""),
+                "the plate is 50000.0000 mm wide and 2.1133 mm thick: is `mesh.unit` the unit of the mesh file?",
+            ),
+        ] {
+            let done = case.fem("check", &[]).good();
+            assert!(
+                flat(&done.stdout).contains(&format!("warning {words}")) || flat(&done.stdout).contains(words),
+                "{done:#?}"
+            );
+        }
+    }
+}
+
+mod supports {
+    use super::*;
+
+    #[test]
+    fn rigid_motions_left_free() {
+        let case = plate().scene("[[support]]\nrestrain = \"rigid-motions\"\n", "");
+        let words = [
+            "the supports leave the plate free: translation along x, translation along y, rotation about z",
+            "{ restrain = \"rigid-motions\" }",
+        ];
+        insta::assert_snapshot!(refusal(&case, At::Scene("[[support]]"), &words));
+    }
+
+    #[test]
+    fn equations_in_a_cycle() {
+        let equation = |factor: &str| {
+            format!(
+                "[[equation]]\nterms = [\n  {{ group = \"tip\", at = \"top\", dof = \"U30\", factor = 1 }},\n  \
+                 {{ group = \"tip\", at = \"bottom\", dof = \"U30\", factor = {factor} }},\n]\n"
+            )
+        };
+        let case = strip().append(&equation("-1")).append(&equation("-2"));
+        let complaint = complaint(&case, case.fem("run", &[]));
+        for words in ["equation 2 and equation 1 form a cycle that only zero satisfies", "plate/scene.toml:"] {
+            assert!(flat(&complaint).contains(words), "{complaint}");
+        }
+        insta::assert_snapshot!(complaint);
+    }
+
+    #[test]
+    fn equation_at_several_nodes() {
+        let terms = "terms = [{ group = \"clamped\", at = \"top\", dof = \"U30\", factor = 1 }]\n";
+        let case = strip().append("[[equation]]\n").append(terms);
+        refusal(&case, At::Scene("terms ="), &["a term of an equation stands at one node, but `clamped` has more"]);
+    }
+}
+
+mod marches {
+    use super::*;
+
+    #[test]
+    fn step_beyond_the_stability_limit() {
+        let case = strip().scene("[march]", "[march]\nintegrator = \"rk4\"\nstep = \"10 us\"");
+        let words = [
+            "the step of 10.0000 us is beyond the stability limit of",
+            "the integrator needs omega*dt <= 1.5",
+            "highest frequency of plate and contact",
+            "`newmark`",
+        ];
+        // The frequencies of a reduced model depend on rounding in their last digits.
+        insta::assert_snapshot!(refusal(&case, At::Scene("step ="), &words).replace(|c: char| c.is_ascii_digit(), "#"));
+    }
+
+    #[test]
+    fn singular_mass() {
+        let case = with_keys(strip(), "element.mass = \"linear\"\nreduction.method = \"none\"")
+            .scene("[march]", "[march]\nintegrator = \"rk4\"\nstep = \"0.01 us\"");
+        let words =
+            ["`rk4` needs the inverse of the mass matrix, which is singular: U1", "has no inertia", "`newmark`"];
+        insta::assert_snapshot!(refusal(&case, At::Scene("integrator ="), &words));
+    }
+
+    #[test]
+    fn more_governors_than_unknowns() {
+        let case = with_keys(strip(), "reduction = { method = \"guyan\", governors = 1000 }");
+        refusal(&case, At::Scene("reduction ="), &["1000 governors are asked for, but the model offers only"]);
+    }
+}
+
+mod failure {
+    use super::*;
+
+    #[test]
+    fn strength_that_is_not_given() {
+        let case = plate().scene("\"octahedral\"]", "\"max-stress-interface\"]");
+        let words = ["material `resin`", "criterion `max-stress-interface` needs the strength"];
+        insta::assert_snapshot!(refusal(&case, At::Scene("materials.resin"), &words));
+    }
+
+    #[test]
+    fn interface_without_resin() {
+        let case = plate().scene("interface = \"resin\"\n", "");
+        let words = ["criterion `octahedral` judges the resin between plies", "`laminate.interface`"];
+        refusal(&case, At::Scene("criteria ="), &words);
+    }
+
+    #[test]
+    fn radius_without_cells() {
+        let case = plate().append("radius = \"1 um\"\n");
+        refusal(&case, At::Scene("[failure]"), &["no cell has its centre within `failure.radius` of the impact"]);
+    }
+}
+
+mod plugins {
+    use super::*;
+
+    #[test]
+    fn unknown_element() {
+        let case = with_keys(plate(), "element.kind = \"hermite-brick\"");
+        let words = ["there is no element `hermite-brick`", "did you mean `hermite-prism`?"];
+        refusal(&case, At::Scene("element."), &words);
+    }
+
+    #[test]
+    fn unknown_contact_law() {
+        let case = plate().scene("\"sun-yang\"", "\"sun-tan\"");
+        let words = ["there is no contact law `sun-tan`", "did you mean `sun-yang`?"];
+        insta::assert_snapshot!(refusal(&case, At::Scene("law ="), &words));
+    }
+
+    #[test]
+    fn unknown_integrator() {
+        let case = plate().scene("[march]", "[march]\nintegrator = \"newmark-beta\"");
+        refusal(
+            &case,
+            At::Scene("integrator ="),
+            &["there is no integrator `newmark-beta`", "did you mean `newmark`?"],
+        );
+    }
+
+    #[test]
+    fn unknown_reduction() {
+        let case = with_keys(plate(), "reduction.method = \"guyon\"");
+        refusal(&case, At::Scene("reduction."), &["there is no reduction `guyon`", "did you mean `guyan`?", "none"]);
+    }
+
+    #[test]
+    fn unknown_criterion() {
+        let case = plate().scene("\"hashin-report\"", "\"hashin-1981\"");
+        let words = ["there is no criterion `hashin-1981`", "did you mean `hashin-1980`?"];
+        refusal(&case, At::Scene("criteria ="), &words);
+    }
+
+    #[test]
+    fn unknown_parameter() {
+        let case = plate().scene("beta = 0.4", "betta = 0.4");
+        let words = ["contact law `sun-yang`: `betta`: is not known; did you mean `beta`?"];
+        refusal(&case, At::Scene("betta ="), &words);
+    }
+
+    #[test]
+    fn parameter_of_no_reduction() {
+        let case = with_keys(plate(), "reduction = { method = \"none\", modes = 3 }");
+        refusal(&case, At::Scene("reduction ="), &["`modes` means nothing without a reduction"]);
+    }
+}
+
+mod contact {
+    use super::*;
+
+    #[test]
+    fn patch_that_leaves_the_plate() {
+        let case = strip().scene("velocity", "patch_radius = \"6 mm\"\nvelocity");
+        let words = [
+            "the contact patch of radius 6.0000 mm around (15.0000, 5.0000) mm leaves the plate",
+            "choose a smaller `impactor.patch_radius`",
+            "the plate is 30.0000 mm by 10.0000 mm",
+        ];
+        insta::assert_snapshot!(refusal(&case, At::Scene("patch_radius ="), &words));
+    }
+
+    #[test]
+    fn mesh_in_metres_read_as_millimetres() {
+        let case = strip().scene("unit = \"mm\"", "unit = \"um\"");
+        refusal(&case, At::Preset, &["leaves the plate", "if `mesh.unit` is right"]);
+    }
+}
+
+mod results {
+    use super::*;
+
+    #[test]
+    fn file_where_the_folder_should_be() {
+        let case = strip();
+        let complaint = complaint(&case, case.fem("run", &["--out", "plate/plate.msh/results"]));
+        for words in ["plate/plate.msh/results", "choose a folder, not a file"] {
+            assert!(flat(&complaint).contains(words), "{complaint}");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn folder_that_may_not_be_written() {
+        use std::os::unix::fs::PermissionsExt;
+        let case = strip();
+        let locked = case.folder().join("locked");
+        fs::create_dir(&locked).unwrap();
+        fs::set_permissions(&locked, fs::Permissions::from_mode(0o555)).unwrap();
+        if fs::write(locked.join("probe"), "").is_ok() {
+            return; // The superuser may write everywhere.
+        }
+        let done = case.fem("run", &["--out", "locked/results"]);
+        assert_eq!((done.status, done.stdout.as_str()), (1, ""), "{done:#?}");
+        assert!(flat(&done.stderr).contains("choose a folder that you may write"), "{done:#?}");
+    }
+
+    #[test]
+    fn folder_in_use() {
+        let case = strip();
+        let held = OutputDir::create(case.folder().join("out")).unwrap();
+        let done = case.fem("run", &["--out", "out"]);
+        assert_eq!((done.status, done.stdout.as_str()), (1, ""), "{done:#?}");
+        assert!(flat(&done.stderr).contains("another run is writing into `out`: wait for it to end"), "{done:#?}");
+        assert_eq!(case.names("out"), [".lock"]);
+        drop(held);
+        case.fem("run", &["--out", "out"]).good();
+    }
+}
+
+mod arguments {
+    use super::*;
+
+    #[test]
+    fn command_lines_that_make_no_sense() {
+        let case = strip();
+        let scene = case.write();
+        for (arguments, words) in [
+            (&[][..], "Usage: fem <COMMAND>"),
+            (&["rnu", scene], "unrecognized subcommand 'rnu'"),
+            (&["run"], "<SCENE>"),
+            (&["run", scene, "--thread", "2"], "'--threads'"),
+            (&["run", scene, "--threads", "0"], "invalid value '0' for '--threads <THREADS>'"),
+            (&["check", scene, scene], "unexpected argument"),
+            (&["list", "criterions"], "criteria"),
+        ] {
+            let done = fem(case.folder(), arguments);
+            assert_eq!((done.status, done.stdout.as_str()), (2, ""), "{arguments:?} {done:#?}");
+            assert!(done.stderr.contains(words), "{arguments:?} {done:#?}");
+        }
+    }
+}

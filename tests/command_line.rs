@@ -1,0 +1,259 @@
+//! What the command prints and writes when all is well.
+
+use crate::support::{Case, fem, root, strip};
+use fem::Registry;
+use fem::core::failure::{CriterionInfo, FailureCriterion, Site};
+use fem::core::material::Material;
+use fem::core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem::core::tensor::{Ply, Stress6};
+use serde_json::Value;
+use std::process::ExitCode;
+
+/// A case that takes little time and meets damage.
+fn quick() -> Case {
+    Case::example("as4-3502-8ply-25mm").scene("end = \"1 ms\"", "end = \"0.4 ms\"")
+}
+
+#[test]
+fn help_and_version() {
+    let folder = root();
+    for (arguments, words) in [
+        (&["--help"][..], "Usage: fem <COMMAND>"),
+        (&["run", "--help"], "[default: results/<folder of the scene>]"),
+        (&["check", "--help"], "<SCENE>"),
+        (&["list", "--help"], "contact-laws"),
+        (&["--version"], env!("CARGO_PKG_VERSION")),
+    ] {
+        let done = fem(&folder, arguments).good();
+        assert!(done.stdout.contains(words) && done.stderr.is_empty(), "{arguments:?} {done:#?}");
+    }
+}
+
+#[test]
+fn list_shows_the_registry() {
+    let registry = Registry::standard();
+    for (what, kind) in [
+        ("elements", Kind::Element),
+        ("criteria", Kind::Criterion),
+        ("contact-laws", Kind::Contact),
+        ("integrators", Kind::Integrator),
+        ("reductions", Kind::Reduction),
+    ] {
+        let listed = fem(&root(), &["list", what]).good().stdout;
+        let mut lines = listed.lines();
+        for info in registry.list(kind) {
+            let line = lines.next().unwrap();
+            for words in [info.name, info.summary, info.source] {
+                assert!(line.contains(words), "{words:?} is not in {line:?}");
+            }
+            assert!(line.starts_with(&format!("{} ", info.name)), "{line}");
+            for parameter in info.params {
+                assert_eq!(lines.next().unwrap().trim(), format!("{}: {}", parameter.name, parameter.doc));
+            }
+        }
+        if kind == Kind::Reduction {
+            assert!(lines.next().unwrap().starts_with("none "));
+        }
+        assert_eq!(lines.next(), None);
+    }
+}
+
+#[test]
+fn list_shows_the_materials() {
+    let listed = fem(&root(), &["list", "materials"]).good().stdout;
+    assert!(listed.lines().eq(fem::io::materials::names()), "{listed}");
+}
+
+#[test]
+fn check_of_every_example() {
+    let folders = root().join("examples").read_dir().unwrap().map(|entry| entry.unwrap().path());
+    let mut scenes: Vec<_> = folders.map(|folder| folder.join("scene.toml")).filter(|scene| scene.exists()).collect();
+    scenes.sort();
+    assert!(scenes.len() >= 8, "{scenes:?}");
+    for scene in scenes {
+        let done = fem(&root(), &["check", scene.to_str().unwrap()]).good();
+        for words in ["quads", "plies", "unknowns", "stability limit", "the scene is valid"] {
+            assert!(done.stdout.contains(words), "{words:?} is not in {done:#?}");
+        }
+        assert!(!done.stdout.contains("warning"), "{done:#?}");
+    }
+}
+
+#[test]
+fn check_prints_sizes_and_the_stable_step() {
+    let case = strip().scene("[march]", "[march]\nintegrator = \"rk4\"\nstep = \"0.01 us\"");
+    // The frequencies of a reduced model depend on rounding in their last digits.
+    let shown = case.fem("check", &[]).good().stdout.replace(|c: char| c.is_ascii_digit(), "#");
+    insta::assert_snapshot!(shown);
+    assert_eq!(case.names("."), ["plate"], "a check writes nothing");
+}
+
+/// Everything about the folder of the results of one run.
+#[test]
+fn run_writes_its_results_to_a_folder_named_like_that_of_the_scene() {
+    let case = quick();
+    let done = case.fem("run", &[]).good();
+    assert!(done.stdout.ends_with("  results   results/plate\n"), "{done:#?}");
+    assert_eq!(done.stderr, "");
+    assert_eq!(case.names("."), ["plate", "results"]);
+    assert_eq!(case.names("results"), ["plate"]);
+    let files = [".lock", "contact_force.png", "contact_force.svg", "events.csv", "history.csv", "summary.json"];
+    assert_eq!(case.names("results/plate"), files);
+
+    let (header, rows) = case.table("results/plate/history.csv");
+    assert_eq!(header[..2], ["time_s", "contact_force_N"]);
+    assert_eq!(rows.len(), 801);
+    let numbers: Vec<Vec<f64>> = rows.iter().map(|r| r.iter().map(|v| v.parse().unwrap()).collect()).collect();
+    assert!(numbers.iter().flatten().all(|v| v.is_finite()));
+    assert!(numbers.windows(2).all(|pair| pair[0][0] < pair[1][0]), "times grow");
+    assert!((numbers[800][0] - 0.4e-3).abs() < 1e-12, "the last row is the end");
+
+    let (header, rows) = case.table("results/plate/events.csv");
+    assert_eq!(header[..5], ["time_s", "criterion", "mode", "cell", "ply"]);
+    assert!(!rows.is_empty());
+    let times: Vec<f64> = rows.iter().map(|r| r[0].parse().unwrap()).collect();
+    assert!(times.is_sorted(), "{times:?}");
+
+    let svg = case.read("results/plate/contact_force.svg");
+    assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"), "{svg}");
+    let png = std::fs::read(case.folder().join("results/plate/contact_force.png")).unwrap();
+    assert!(png.starts_with(b"\x89PNG\r\n\x1a\n"));
+
+    let summary = case.summary("results/plate");
+    let peak = numbers.iter().fold(0.0_f64, |m, r| m.max(r[1]));
+    assert_eq!(summary["impact"]["peak_force_N"].as_f64(), Some(peak));
+    assert_eq!(summary["completed"], true);
+    assert_eq!(summary["work"]["steps"], 800);
+    check_summary(&summary);
+}
+
+/// Numbers of the summary that have no unit.
+const PURE: &[&str] = &[
+    "quads",
+    "layers",
+    "cells",
+    "nodes",
+    "plies",
+    "unknowns",
+    "unknowns_marched",
+    "stiffness_entries",
+    "factor_entries",
+    "stress_sites",
+    "contacts",
+    "cell",
+    "elements",
+    "factorisations",
+    "solves",
+    "steps",
+    "contact_calls",
+    "criterion_calls",
+];
+
+/// Ends of the names of quantities: their units, or what makes them pure.
+const UNITS: &[&str] = &[
+    "_mm",
+    "_g",
+    "_Hz",
+    "_kg",
+    "_m_s",
+    "_J",
+    "_s",
+    "_N",
+    "_m",
+    "_over_thickness",
+    "_N_s",
+    "_deg",
+    "_MB",
+    "_relative",
+    "_index",
+];
+
+/// Every number has its unit in its name, and what is absent is left out.
+fn check_summary(summary: &Value) {
+    fn check(key: &str, value: &Value) {
+        match value {
+            Value::Null => panic!("{key} is null"),
+            Value::Number(_) => {
+                assert!(PURE.contains(&key) || UNITS.iter().any(|unit| key.ends_with(unit)), "{key} has no unit");
+            }
+            Value::Object(entries) => entries.iter().for_each(|(key, value)| check(key, value)),
+            Value::Array(items) => items.iter().for_each(|value| check(key, value)),
+            Value::String(_) | Value::Bool(_) => {}
+        }
+    }
+    assert!(summary.as_object().is_some_and(|s| s.len() > 10), "{summary}");
+    check("summary", summary);
+}
+
+#[test]
+fn without_plots_there_are_tables_alone() {
+    let case = strip().append("[output]\nplots = false\n");
+    case.fem("run", &["--out", "out"]).good();
+    assert_eq!(case.names("out"), [".lock", "events.csv", "history.csv", "summary.json"]);
+}
+
+#[test]
+fn results_do_not_depend_on_the_number_of_threads() {
+    let case = quick();
+    for threads in ["1", "2"] {
+        case.fem("run", &["--threads", threads, "--out", threads]).good();
+    }
+    for file in ["history.csv", "events.csv"] {
+        let one = case.read(&format!("1/{file}"));
+        assert!(one.lines().count() > 1, "{file}");
+        assert!(case.read(&format!("2/{file}")) == one, "{file} with two threads");
+    }
+}
+
+/// A criterion of somebody else's: stress along the fibres against a limit of its own.
+#[derive(Debug, Clone)]
+struct FibreLimit {
+    limit: f64,
+}
+
+impl FailureCriterion for FibreLimit {
+    fn info(&self) -> &CriterionInfo {
+        const INFO: CriterionInfo = CriterionInfo {
+            site: Site::Ply,
+            modes: &["along the fibres"],
+            strengths: &[],
+            invariant_about_fibre: true,
+        };
+        &INFO
+    }
+
+    fn indices(&self, s: &Stress6<Ply>, _: &Material, out: &mut [f64]) {
+        out[0] = s.s11().abs() / self.limit;
+    }
+}
+
+impl Plugin for FibreLimit {
+    const INFO: PluginInfo = PluginInfo {
+        kind: Kind::Criterion,
+        name: "fibre-limit",
+        summary: "stress along the fibres",
+        source: "a test",
+        params: &[ParamInfo { name: "limit", doc: "stress at failure" }],
+    };
+
+    fn build(params: &Params) -> Result<Built, ParamError> {
+        Ok(Built::Criterion(Box::new(Self { limit: params.positive("limit", Dimension::PRESSURE, None)? })))
+    }
+}
+
+#[test]
+fn a_plug_in_from_outside() {
+    let criteria = "criteria = [{ name = \"fibre-limit\", limit = \"10 MPa\" }]";
+    let case = strip().scene("criteria = [\"hashin-report\", \"octahedral\"]", criteria);
+    case.write();
+    let scene = case.folder().join("plate/scene.toml");
+    let out = case.folder().join("out");
+    let arguments = ["fem", "run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    let registry = Registry::standard().with::<FibreLimit>();
+    assert_eq!(fem::cli::run_with(registry, arguments), ExitCode::SUCCESS);
+    let (_, events) = case.table("out/events.csv");
+    assert!(events.iter().any(|e| e[1..3] == ["fibre-limit", "along the fibres"]), "{events:?}");
+
+    let done = case.fem("run", &[]);
+    assert!(done.status == 1 && done.stderr.contains("there is no criterion `fibre-limit`"), "{done:#?}");
+}

@@ -1,0 +1,9 @@
+//! Tests of the whole: the command, what it refuses, what it finds.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod bad_input;
+mod command_line;
+mod model;
+mod report;
+mod snapshots;
+mod support;

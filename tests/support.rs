@@ -1,0 +1,162 @@
+//! Runs the command on variations of the examples.
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use tempfile::TempDir;
+
+/// A scene and its mesh in `plate/` of a folder of their own, which is the working folder of the command.
+pub(crate) struct Case {
+    folder: TempDir,
+    scene: String,
+    mesh: Vec<u8>,
+}
+
+impl Case {
+    /// An example as it is.
+    pub(crate) fn example(name: &str) -> Self {
+        let example = root().join("examples").join(name);
+        Self {
+            folder: tempfile::tempdir().unwrap(),
+            scene: fs::read_to_string(example.join("scene.toml")).unwrap(),
+            mesh: fs::read(example.join("plate.msh")).unwrap(),
+        }
+    }
+
+    /// The same with another text in the scene.
+    pub(crate) fn scene(mut self, from: &str, to: &str) -> Self {
+        self.scene = replaced(&self.scene, from, to);
+        self
+    }
+
+    /// The same with more lines at the end of the scene.
+    pub(crate) fn append(mut self, lines: &str) -> Self {
+        self.scene.push_str(lines);
+        self
+    }
+
+    /// The same with another text in the mesh.
+    pub(crate) fn mesh(mut self, from: &str, to: &str) -> Self {
+        self.mesh = replaced(std::str::from_utf8(&self.mesh).unwrap(), from, to).into_bytes();
+        self
+    }
+
+    /// The same with another mesh.
+    pub(crate) fn mesh_bytes(mut self, mesh: impl Into<Vec<u8>>) -> Self {
+        self.mesh = mesh.into();
+        self
+    }
+
+    /// The same with a mesh of `tests/data/mesh`.
+    pub(crate) fn mesh_file(self, name: &str) -> Self {
+        let mesh = fs::read(root().join("tests/data/mesh").join(name)).unwrap();
+        self.mesh_bytes(mesh)
+    }
+
+    /// The working folder.
+    pub(crate) fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Path of the scene from the working folder, for commands run without [`Case::fem`].
+    pub(crate) fn write(&self) -> &'static str {
+        let plate = self.folder().join("plate");
+        fs::create_dir_all(&plate).unwrap();
+        fs::write(plate.join("plate.msh"), &self.mesh).unwrap();
+        fs::write(plate.join("scene.toml"), &self.scene).unwrap();
+        "plate/scene.toml"
+    }
+
+    /// Runs `fem COMMAND plate/scene.toml OPTIONS`.
+    pub(crate) fn fem(&self, command: &str, options: &[&str]) -> Done {
+        let scene = self.write();
+        fem(self.folder(), &[&[command, scene], options].concat())
+    }
+
+    /// Names in a folder below the working folder, sorted; none where it does not exist.
+    pub(crate) fn names(&self, folder: &str) -> Vec<String> {
+        let Ok(entries) = fs::read_dir(self.folder().join(folder)) else { return Vec::new() };
+        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    /// A text file below the working folder.
+    pub(crate) fn read(&self, file: &str) -> String {
+        fs::read_to_string(self.folder().join(file)).unwrap_or_else(|e| panic!("{file}: {e}"))
+    }
+
+    /// `summary.json` of a folder of results.
+    pub(crate) fn summary(&self, results: &str) -> Value {
+        serde_json::from_str(&self.read(&format!("{results}/summary.json"))).unwrap()
+    }
+
+    /// A table of a folder of results: its header and its rows.
+    pub(crate) fn table(&self, file: &str) -> (Vec<String>, Vec<Vec<String>>) {
+        let text = self.read(file);
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let row = |record: &csv::StringRecord| record.iter().map(str::to_owned).collect();
+        let header = row(reader.headers().unwrap());
+        (header, reader.records().map(|r| row(&r.unwrap())).collect())
+    }
+}
+
+/// A circular plate on a ring.
+pub(crate) fn plate() -> Case {
+    Case::example("as4-3502-16ply-50mm")
+}
+
+/// A cantilever of 4 x 2 cells, struck in its middle: a run takes no time.
+pub(crate) fn strip() -> Case {
+    plate()
+        .mesh_file("ascii.msh")
+        .scene("group = \"support\"", "group = \"clamped\"")
+        .scene("at = \"mid-plane\"", "at = \"all\"")
+        .scene("fix = [\"U30\"]", "fix = [\"U10\", \"U20\", \"U30\"]")
+        .scene("at = { group = \"impact\" }", "at = { x = \"15 mm\", y = \"5 mm\" }")
+        .scene("end = \"1 ms\"", "end = \"20 us\"")
+}
+
+/// What a command left.
+#[derive(Debug)]
+pub(crate) struct Done {
+    pub(crate) status: i32,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+impl Done {
+    /// The same, which must have succeeded.
+    #[track_caller]
+    pub(crate) fn good(self) -> Self {
+        assert_eq!(self.status, 0, "{self:#?}");
+        self
+    }
+}
+
+/// Runs `fem` with `arguments` in `folder`.
+pub(crate) fn fem(folder: &Path, arguments: &[&str]) -> Done {
+    let output = Command::new(env!("CARGO_BIN_EXE_fem"))
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    Done {
+        status: output.status.code().expect("ended by a signal"),
+        stdout: String::from_utf8(output.stdout).unwrap(),
+        stderr: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+/// The repository.
+pub(crate) fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// `text` with `to` for `from`, which it must hold once.
+fn replaced(text: &str, from: &str, to: &str) -> String {
+    assert_eq!(text.matches(from).count(), 1, "{from:?} stands once in {text}");
+    text.replace(from, to)
+}
