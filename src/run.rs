@@ -189,7 +189,7 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
     let mut state = system.initial();
     integrator.start(&mut system, &mut state).map_err(|e| unmarchable(model, e))?;
 
-    let mut ledger = Ledger::new(&system, &state);
+    let mut ledger = Ledger::new(&system, &state)?;
     let n = sizes.marched;
     if let Some(watch) = &mut watch {
         watch.sample(0.0, &state.u[..n])?;
@@ -203,7 +203,7 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
             counters.steps += 1;
             ledger.contact(system.contact_force(0, &state) > 0.0);
             if step.is_multiple_of(row_every) || step == sizes.steps {
-                ledger.row(&system, &state);
+                ledger.row(&system, &state)?;
             }
             if let Some(watch) = watch.as_mut().filter(|_| step.is_multiple_of(scan_every) || step == sizes.steps) {
                 stopwatch.lap("march");
@@ -280,12 +280,12 @@ struct Ledger {
 }
 
 impl Ledger {
-    fn new(system: &ImpactSystem, state: &State) -> Self {
+    fn new(system: &ImpactSystem, state: &State) -> Result<Self, StepError> {
         let mut work = Vec::new();
         let initial = system.energies(state, &mut work).total();
         let mut ledger = Self { rows: Vec::new(), initial, error: 0.0, contacts: 0, touching: false, work };
-        ledger.row(system, state);
-        ledger
+        ledger.row(system, state)?;
+        Ok(ledger)
     }
 
     fn contact(&mut self, touching: bool) {
@@ -293,14 +293,13 @@ impl Ledger {
         self.touching = touching;
     }
 
-    fn row(&mut self, system: &ImpactSystem, state: &State) {
+    /// Writes a row of numbers that are all finite.
+    fn row(&mut self, system: &ImpactSystem, state: &State) -> Result<(), StepError> {
         let e = system.energies(state, &mut self.work);
+        let n = system.structure().ndof();
         let balance = e.total() - self.initial;
         let error = (balance / self.initial).abs();
-        // `max` would drop a NaN.
-        self.error = if error > self.error || error.is_nan() { error } else { self.error };
-        let n = system.structure().ndof();
-        self.rows.push(HistoryRow {
+        let row = HistoryRow {
             time_s: state.t,
             contact_force_n: system.contact_force(0, state),
             impactor_displacement_m: system.position(0, &state.u),
@@ -312,6 +311,14 @@ impl Ledger {
             contact_stored_j: e.stored,
             contact_dissipated_j: e.dissipated,
             energy_balance_j: balance,
-        });
+        };
+        // None of the energies is negative, so that a finite sum is one of finite terms.
+        let numbers = [error, row.contact_force_n, row.impactor_displacement_m, row.plate_displacement_m];
+        if !numbers.iter().all(|v| v.is_finite()) {
+            return Err(StepError::NotFinite { t: state.t });
+        }
+        self.error = self.error.max(error);
+        self.rows.push(row);
+        Ok(())
     }
 }

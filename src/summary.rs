@@ -329,11 +329,11 @@ fn angle_deg(model: &Model, event: &FailureEvent) -> f64 {
     }
 }
 
-/// Writes tables and plots of a run; each file appears whole or not at all.
+/// Writes the tables of a run; each file appears whole or not at all.
 ///
 /// # Errors
 /// A folder that cannot be written, a number that is not finite.
-pub fn write(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
+pub fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
     tables::write_history(dir, &outcome.history)?;
     let row = |e: &FailureEvent| EventRow {
         time_s: e.time,
@@ -348,19 +348,24 @@ pub fn write(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Er
         index: e.index,
     };
     tables::write_events(dir, &outcome.events.iter().map(row).collect::<Vec<_>>())?;
-    if model.scene.output.plots {
-        let (times, forces): (Vec<f64>, Vec<f64>) =
-            outcome.history.iter().map(|r| (r.time_s, r.contact_force_n)).unzip();
-        let mut marks: Vec<(f64, String)> = Vec::new();
-        for e in &outcome.events {
-            let label = e.mode.to_owned();
-            if !marks.iter().any(|m| m.1 == label) {
-                marks.push((e.time, label));
-            }
+    Ok(())
+}
+
+/// Draws the contact force over time with the first event of each mode.
+///
+/// # Errors
+/// As [`write_tables`], and numbers that no plot can show.
+pub fn write_plots(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
+    let (times, forces): (Vec<f64>, Vec<f64>) = outcome.history.iter().map(|r| (r.time_s, r.contact_force_n)).unzip();
+    let mut marks: Vec<(f64, String)> = Vec::new();
+    for e in &outcome.events {
+        let label = e.mode.to_owned();
+        if !marks.iter().any(|m| m.1 == label) {
+            marks.push((e.time, label));
         }
-        let picture = plot::line_plot(&plot::force_history(&model.scene.title, &times, &forces, &marks)?)?;
-        dir.write("contact_force.svg", |w| w.write_all(picture.svg.as_bytes()))?;
-        dir.write("contact_force.png", |w| w.write_all(&picture.png))?;
     }
+    let picture = plot::line_plot(&plot::force_history(&model.scene.title, &times, &forces, &marks)?)?;
+    dir.write("contact_force.svg", |w| w.write_all(picture.svg.as_bytes()))?;
+    dir.write("contact_force.png", |w| w.write_all(&picture.png))?;
     Ok(())
 }

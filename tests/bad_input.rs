@@ -389,6 +389,22 @@ mod marches {
     }
 
     #[test]
+    fn run_that_loses_its_energy_stops_and_keeps_what_it_had() {
+        let case = strip().scene("end = \"20 us\"", "step = \"50 us\"\nend = \"10 ms\"");
+        let done = case.fem("run", &["--out", "out"]);
+        assert_eq!((done.status, done.stderr.as_str()), (1, ""), "{done:#?}");
+        let summary = case.summary("out");
+        let stopped = summary["stopped"].as_str().unwrap();
+        assert!(stopped.contains("energy error") && stopped.contains("shorten `march.step`"), "{stopped}");
+        assert!(done.stdout.contains(&format!("STOPPED   {stopped}")), "{done:#?}");
+        assert_eq!(summary["completed"], false);
+        let (_, rows) = case.table("out/history.csv");
+        let end: f64 = rows.last().unwrap()[0].parse().unwrap();
+        assert_eq!(summary["impact"]["end_time_s"].as_f64(), Some(end));
+        assert!((1..200).contains(&rows.len()), "{} rows", rows.len());
+    }
+
+    #[test]
     fn more_governors_than_unknowns() {
         let case = with_keys(strip(), "reduction = { method = \"guyan\", governors = 1000 }");
         refusal(&case, At::Scene("reduction ="), &["1000 governors are asked for, but the model offers only"]);
@@ -547,7 +563,7 @@ mod arguments {
             (&["rnu", scene], "unrecognized subcommand 'rnu'"),
             (&["run"], "<SCENE>"),
             (&["run", scene, "--thread", "2"], "'--threads'"),
-            (&["run", scene, "--threads", "0"], "invalid value '0' for '--threads <THREADS>'"),
+            (&["run", scene, "--threads", "0"], "invalid value '0' for '--threads"),
             (&["check", scene, scene], "unexpected argument"),
             (&["list", "criterions"], "criteria"),
         ] {

@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod command_line;
+mod envelope;
 mod model;
 mod report;
 mod snapshots;

@@ -13,7 +13,9 @@ pub fn square(mesh: &QuadMesh, side: f64) -> Vec<Vec<(usize, f64)>> {
     let n = mesh.quads.len();
     let centres: Vec<[f64; 2]> = (0..n).map(|q| centroid(&mesh.corners(q))).collect();
     let (low, _) = mesh.bounds();
-    let bin = |p: [f64; 2]| -> [i64; 2] { std::array::from_fn(|d| ((p[d] - low[d]) / side).floor() as i64) };
+    // Bins about as large as window or cell, whichever is larger, so that either touches few of them.
+    let pitch = side.max((mesh.area() / n as f64).sqrt());
+    let bin = |p: [f64; 2]| -> [i64; 2] { std::array::from_fn(|d| ((p[d] - low[d]) / pitch).floor() as i64) };
     // Cells by the bins that their bounding boxes touch.
     let mut bins: Vec<([i64; 2], usize)> = Vec::new();
     for q in 0..n {
@@ -47,12 +49,10 @@ pub fn square(mesh: &QuadMesh, side: f64) -> Vec<Vec<(usize, f64)>> {
             }
             near.sort_unstable();
             near.dedup();
-            let mut shares: Vec<(usize, f64)> = near
-                .iter()
-                .map(|o| (*o, overlap(&mesh.corners(*o), c, half)))
-                .filter(|s| s.1 > 1e-12 * side * side)
-                .collect();
+            let mut shares: Vec<(usize, f64)> =
+                near.iter().map(|o| (*o, overlap(&mesh.corners(*o), c, half))).collect();
             let total: f64 = shares.iter().map(|s| s.1).sum();
+            shares.retain(|s| s.1 > 1e-12 * total);
             shares.iter_mut().for_each(|s| s.1 /= total);
             shares
         })
@@ -153,5 +153,20 @@ mod tests {
         assert_eq!(windows[0].len(), 4);
         assert!((windows[0].iter().map(|s| s.1).sum::<f64>() - 1.0).abs() < 1e-14);
         assert_eq!(square(&grid(3, 1.0), 0.5)[4], vec![(4, 1.0)]);
+    }
+
+    #[test]
+    fn windows_of_any_size() {
+        let mesh = grid(9, 1.0);
+        for side in [1e-300, 1e-9, 0.01] {
+            assert_eq!(square(&mesh, side), own(&mesh), "{side}");
+        }
+        for side in [20.0, 1e7, 1e300] {
+            let windows = square(&mesh, side);
+            for window in windows {
+                assert_eq!(window.len(), 81, "{side}");
+                assert!(window.iter().all(|(_, share)| (share - 1.0 / 81.0).abs() < 1e-12), "{side}: {window:?}");
+            }
+        }
     }
 }

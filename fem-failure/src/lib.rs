@@ -31,6 +31,7 @@
 //! # Ok::<(), fem_core::failure::AssessError>(())
 //! ```
 
+pub mod envelope;
 pub mod scan;
 
 mod action_plane;

@@ -59,6 +59,21 @@ pub struct EventRow {
     pub index: f64,
 }
 
+/// A stress that brings a material to failure: a row of `envelope.csv`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct EnvelopeRow {
+    /// Id of the criterion.
+    pub criterion: String,
+    /// Failure mode that governs.
+    pub mode: String,
+    /// Angle of the direction, degrees, once each stress is divided by its scale.
+    pub angle_deg: f64,
+    /// The two stresses: `s1`, `s2`, `s3`, `s12`, `s23` or `s13`.
+    pub components: [&'static str; 2],
+    /// Their values at failure, MPa.
+    pub stresses_mpa: [f64; 2],
+}
+
 /// Writes `history.csv`.
 ///
 /// # Errors
@@ -73,6 +88,14 @@ pub fn write_history(dir: &OutputDir, rows: &[HistoryRow]) -> Result<(), FileErr
 /// A value that is not finite, and as [`OutputDir::write`].
 pub fn write_events(dir: &OutputDir, rows: &[EventRow]) -> Result<(), FileError> {
     write_table(dir, "events.csv", rows)
+}
+
+/// Writes `envelope.csv`, all rows of the plane of the first; its stresses alone are in MPa.
+///
+/// # Errors
+/// A value that is not finite, and as [`OutputDir::write`].
+pub fn write_envelopes(dir: &OutputDir, rows: &[EnvelopeRow]) -> Result<(), FileError> {
+    write_table(dir, "envelope.csv", rows)
 }
 
 /// Writes `value` as indented JSON to the file `name`.
@@ -156,6 +179,26 @@ impl Row for EventRow {
     }
 }
 
+impl Row for EnvelopeRow {
+    fn fields(&self) -> Vec<(&'static str, Field<'_>)> {
+        let column = |name| match name {
+            "s1" => "s1_MPa",
+            "s2" => "s2_MPa",
+            "s3" => "s3_MPa",
+            "s12" => "s12_MPa",
+            "s23" => "s23_MPa",
+            _ => "s13_MPa",
+        };
+        vec![
+            ("criterion", Field::Text(&self.criterion)),
+            ("mode", Field::Text(&self.mode)),
+            ("angle_deg", Field::Number(self.angle_deg)),
+            (column(self.components[0]), Field::Number(self.stresses_mpa[0])),
+            (column(self.components[1]), Field::Number(self.stresses_mpa[1])),
+        ]
+    }
+}
+
 fn write_table<R: Row>(dir: &OutputDir, file: &'static str, rows: &[R]) -> Result<(), FileError> {
     for (row, values) in rows.iter().enumerate() {
         for (column, value) in values.fields() {
@@ -168,7 +211,9 @@ fn write_table<R: Row>(dir: &OutputDir, file: &'static str, rows: &[R]) -> Resul
     }
     dir.write(file, |out| {
         let mut table = csv::Writer::from_writer(out);
-        table.write_record(R::default().fields().iter().map(|(column, _)| column)).map_err(cause)?;
+        let none = R::default();
+        let header = rows.first().unwrap_or(&none).fields();
+        table.write_record(header.iter().map(|(column, _)| column)).map_err(cause)?;
         for row in rows {
             table.serialize(row.fields().iter().map(|(_, value)| value).collect::<Vec<_>>()).map_err(cause)?;
         }

@@ -1,6 +1,7 @@
 //! The command line, as a function of the registry.
 
 mod check;
+mod envelope;
 mod list;
 mod run;
 
@@ -14,7 +15,12 @@ use textwrap::WordSplitter;
 
 /// Low-velocity impact on laminated composites.
 #[derive(Debug, Parser)]
-#[command(name = "fem", version, about, arg_required_else_help = true)]
+#[command(
+    name = "fem",
+    version,
+    arg_required_else_help = true,
+    after_help = "To begin with: fem run examples/as4-3502-16ply-50mm/scene.toml"
+)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -23,10 +29,15 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Computes a scene: force history, stresses, first damage.
+    ///
+    /// Prints a summary and writes summary.json, history.csv, events.csv and the contact force as SVG and PNG. Fails, and
+    /// keeps what it had, when the march meets a number that is not finite or loses its energy balance.
     Run(run::Arguments),
-    /// Validates a scene and prints sizes, stable step and cost; marches nothing.
+    /// Validates a scene with its mesh and prints sizes and the stable step; marches nothing.
     Check(check::Arguments),
-    /// Lists what a scene can name.
+    /// Draws and tabulates failure envelopes of a material.
+    Envelope(envelope::Arguments),
+    /// Lists what a scene can name, with parameters and sources.
     List(list::Arguments),
 }
 
@@ -50,6 +61,7 @@ pub fn run_with(registry: Registry, arguments: impl IntoIterator<Item = impl Int
     let done = match arguments.command {
         Command::Run(a) => run::run(&registry, &a),
         Command::Check(a) => check::check(&registry, &a),
+        Command::Envelope(a) => envelope::envelope(&registry, &a),
         Command::List(a) => list::list(&registry, &a),
     };
     match done {

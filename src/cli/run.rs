@@ -40,10 +40,13 @@ fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error
     let outcome = run::march(prepared, |share| bar.set_position((share * 1000.0) as u64));
     bar.finish_and_clear();
     let outcome = outcome?;
-    summary::write(&dir, &model, &outcome)?;
     let summary = Summary::new(&model, &sizes, &outcome);
+    summary::write_tables(&dir, &model, &outcome)?;
     tables::write_json(&dir, "summary.json", &summary)?;
     print(&summary.text());
+    if model.scene.output.plots {
+        summary::write_plots(&dir, &model, &outcome)?;
+    }
     print(&format!("  results   {}\n", dir.path().display()));
     Ok(if summary.completed { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -40,6 +40,8 @@ pub(super) fn lay_out(plot: &LinePlot) -> Result<Drawing, PlotError> {
     let range =
         |axis: &Axis, largest| PlotError::Range { title: plot.title.clone(), axis: axis.label.clone(), largest };
     let x = Range::of(values().map(|p| p.0)).map_err(|largest| range(&plot.x, largest))?;
+    // Curves over time fill the width; one around zero is a figure of its own and stands free.
+    let x = if x.lo < 0.0 && x.hi > 0.0 { x.with_air() } else { x };
     let y = Range::of(values().map(|p| p.1)).map_err(|largest| range(&plot.y, largest))?.with_air();
 
     let y_ticks = y.ticks(9);
@@ -49,7 +51,14 @@ pub(super) fn lay_out(plot: &LinePlot) -> Result<Drawing, PlotError> {
     let fits = |ticks: &[(f64, String)]| widest(ticks) * 1.3 * ticks.len() as f64 <= right - left;
     let x_ticks = (3..=10).rev().map(|most| x.ticks(most)).find(|ticks| fits(ticks)).unwrap_or_else(|| x.ticks(2));
 
-    let legend = if plot.series.len() > 1 { legend(&plot.series, left, right) } else { Vec::new() };
+    let mut names: Vec<&Series> = Vec::new();
+    for series in &plot.series {
+        if names.iter().all(|n| n.label != series.label) {
+            names.push(series);
+        }
+    }
+    let color = |s: &Series| PALETTE[names.iter().position(|n| n.label == s.label).unwrap_or(0) % PALETTE.len()];
+    let legend = if names.len() > 1 { legend(&names, left, right) } else { Vec::new() };
     let flags = flags(&plot.marks, |m| left + x.fraction(m.x) * (right - left), left, right);
     let rows = |rows: Option<usize>| rows.map_or(0.0, |last| (last + 1) as f64 * ROW);
     let legend_top = EDGE + 1.4 * TITLE;
@@ -63,15 +72,14 @@ pub(super) fn lay_out(plot: &LinePlot) -> Result<Drawing, PlotError> {
     for flag in &flags {
         canvas.line(vec![[flag.x, flag.baseline(top) - 0.75 * SMALL], [flag.x, area.bottom]], 2.0, FAINT, true);
     }
-    let colors = || PALETTE.into_iter().cycle();
-    for (series, color) in plot.series.iter().zip(colors()) {
-        canvas.curve(&area, series, color);
+    for series in &plot.series {
+        canvas.curve(&area, series, color(series));
     }
     for (flag, mark) in flags.iter().zip(&plot.marks) {
         canvas.flag(&area, flag, mark, top);
     }
-    for ((entry, series), color) in legend.iter().zip(&plot.series).zip(colors()) {
-        canvas.legend(entry, series.style, color, legend_top);
+    for (entry, series) in legend.iter().zip(&names) {
+        canvas.legend(entry, series.style, color(series), legend_top);
     }
     let height = (area.bottom + 2.0 * LABEL + EDGE + 30.0).ceil();
     Ok(Drawing { title: clean(&plot.title, TITLE, WIDTH), width: WIDTH, height, shapes: canvas.0 })
@@ -107,7 +115,7 @@ struct Entry {
 const SAMPLE: f64 = 56.0;
 
 /// Entries side by side, in as many rows as they need.
-fn legend(series: &[Series], left: f64, right: f64) -> Vec<Entry> {
+fn legend(series: &[&Series], left: f64, right: f64) -> Vec<Entry> {
     let (mut row, mut x) = (0, left);
     series
         .iter()
@@ -168,9 +176,12 @@ impl Canvas {
             self.line(vec![[left - 8.0, y], [left, y]], 2.0, INK, false);
             self.text([left - 16.0, y + 0.35 * SMALL], label, SMALL, INK, Anchor::End);
         }
+        let [zero_x, zero_y] = area.place(0.0, 0.0);
         if area.y.lo < 0.0 && area.y.hi > 0.0 {
-            let [_, zero] = area.place(area.x.lo, 0.0);
-            self.line(vec![[left, zero], [right, zero]], 1.5, FAINT, false);
+            self.line(vec![[left, zero_y], [right, zero_y]], 1.5, FAINT, false);
+        }
+        if area.x.lo < 0.0 && area.x.hi > 0.0 {
+            self.line(vec![[zero_x, bottom], [zero_x, top]], 1.5, FAINT, false);
         }
         self.line(vec![[left, top], [left, bottom], [right, bottom]], 2.0, INK, false);
         let name = |axis: &Axis, most| {

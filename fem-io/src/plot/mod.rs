@@ -21,7 +21,7 @@ pub struct LinePlot {
     pub x: Axis,
     /// Vertical axis.
     pub y: Axis,
-    /// Curves, at least one; a legend appears from two on.
+    /// Curves, at least one. Those of one name share colour and entry in the legend, which appears from two names on.
     pub series: Vec<Series>,
     /// Marked points.
     pub marks: Vec<Mark>,
@@ -307,6 +307,17 @@ mod tests {
         assert_eq!(svg.matches("stroke-dasharray").count(), 2);
         assert_eq!(svg.matches("<circle").count(), 3);
         assert!(["curve", "other", "third"].iter().all(|name| svg.contains(&format!(">{name}</text>"))));
+    }
+
+    #[test]
+    fn a_curve_in_pieces_has_one_colour_and_one_name() {
+        let mut plot = plot(&[(-1.0, 0.0), (1.0, 1.0)]);
+        plot.series.push(Series { label: "other".into(), ..plot.series[0].clone() });
+        plot.series.push(plot.series[0].clone());
+        let svg = line_plot(&plot).unwrap().svg;
+        assert_eq!(svg.matches(">curve</text>").count(), 1);
+        // Two pieces and the sample in the legend; the other curve and its sample.
+        assert_eq!((svg.matches("#0072b2").count(), svg.matches("#e69f00").count()), (3, 2));
     }
 
     #[test]

@@ -123,12 +123,15 @@ const MAX_STEPS: f64 = 1e9;
 
 pub(super) fn read_impactor(field: &Field<'_>) -> Result<Impactor, SceneError> {
     let table = field.table(IMPACTOR)?;
-    Ok(Impactor {
-        mass: table.required("mass")?.positive(Dimension::MASS)?,
-        velocity: table.required("velocity")?.positive(Dimension::VELOCITY)?,
-        at: read_point(&table.required("at")?)?,
-        load: read_load(&table)?,
-    })
+    let velocity_field = table.required("velocity")?;
+    let (mass, velocity) =
+        (table.required("mass")?.positive(Dimension::MASS)?, velocity_field.positive(Dimension::VELOCITY)?);
+    // Energies are compared with it.
+    if !(0.5 * mass * velocity * velocity).is_normal() {
+        return Err(velocity_field
+            .error("the energy of the impact is out of the range of numbers", "look for a slip in mass or velocity"));
+    }
+    Ok(Impactor { mass, velocity, at: read_point(&table.required("at")?)?, load: read_load(&table)? })
 }
 
 fn read_point(field: &Field<'_>) -> Result<Located<ImpactPoint>, SceneError> {

@@ -238,6 +238,8 @@ fn refusals() {
         ("a support of two kinds", spoilt("{ restrain", "{ group = \"support\", restrain")),
         ("an equation of mixed dimensions", spoilt("\"-2 mm\"", "-2")),
         ("a factor of zero", spoilt("factor = 1 ", "factor = 0 ")),
+        ("an impact beyond all energies", spoilt("\"1.56 m/s\", at", "\"1e200 m/s\", at")),
+        ("an impact without energy", spoilt("\"1.56 m/s\", at", "\"1e-200 m/s\", at")),
         ("two places of impact", spoilt("{ group = \"impact\" }", "{ group = \"impact\", x = \"0 mm\" }")),
         ("half a place of impact", spoilt("{ group = \"impact\" }", "{ x = \"0 mm\" }")),
         ("two loads", spoilt("mass = \"2.49 kg\"", "mass = \"2.49 kg\", load = \"node\", patch_radius = \"3 mm\"")),
