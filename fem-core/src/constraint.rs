@@ -258,7 +258,6 @@ fn substitute(row: &mut Row, rows: &[Row], row_of: &[u32]) -> BTreeSet<usize> {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
