@@ -61,7 +61,17 @@ fn list_shows_the_registry() {
 #[test]
 fn list_shows_the_materials() {
     let listed = fem(&root(), &["list", "materials"]).good().stdout;
-    assert!(listed.lines().eq(fem::io::materials::names()), "{listed}");
+    let mut lines = listed.lines();
+    for name in fem::io::materials::names() {
+        let material = fem::io::materials::library(name).unwrap();
+        let line = lines.next().unwrap();
+        assert!(line.starts_with(&format!("{name} ")) && line.ends_with(&material.summary), "{line}");
+        for c in &material.constants {
+            let constant = format!("{}: {}, {} [{}]", c.key, c.value, c.status, c.source);
+            assert_eq!(lines.next().unwrap().trim(), constant);
+        }
+    }
+    assert_eq!(lines.next(), None);
 }
 
 #[test]

@@ -6,6 +6,7 @@ use crate::scene::reader::{Field, Keys, Reader};
 use crate::scene::source::{Origin, SceneSource};
 use crate::scene::tree::{Entry, Node, Table};
 use fem_core::material::Material;
+use std::fmt;
 use std::sync::{Arc, LazyLock};
 
 pub(crate) const LIBRARY: &str = include_str!("materials/library.toml");
@@ -45,6 +46,16 @@ pub enum Status {
     Typical,
     /// Chosen for want of data.
     Assumed,
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Measured => "measured",
+            Self::Typical => "typical",
+            Self::Assumed => "assumed",
+        })
+    }
 }
 
 /// The material `name` of the library.

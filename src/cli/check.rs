@@ -13,7 +13,7 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The scene file.
+    /// Scene file (TOML); its mesh is looked for beside it.
     scene: PathBuf,
 }
 
@@ -25,49 +25,65 @@ pub(super) fn check(registry: &Registry, arguments: &Arguments) -> miette::Resul
 fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
     let model = Model::new(scene::read(&arguments.scene)?, registry)?;
     let sizes = run::prepare(&model, NonZeroUsize::MIN)?.sizes;
+    let (plate, scene) = (&model.plate, &model.scene);
     let megabytes = |entries: usize| entries as f64 * 8e-6;
-    let frequency = |f: Option<f64>| f.map_or("not computed".to_owned(), |f| format!("{f:.1} Hz"));
+    let known = [("lowest excited", sizes.lowest_frequency), ("highest", sizes.highest_frequency)];
+    let frequencies: Vec<_> = known.iter().filter_map(|(name, f)| Some(format!("{name} {:.1} Hz", (*f)?))).collect();
+    let redundant = match model.constraints.redundant.len() {
+        0 => String::new(),
+        n => format!(" ({n} redundant equations)"),
+    };
     let stable = match sizes.longest_step {
         s if s.is_finite() => format!("stable up to {:.4} us", s * 1e6),
         _ => "no stability limit".to_owned(),
     };
-    let scene = &model.scene;
-    let mut text = format!(
-        "{}\n  mesh      {} quads, {} nodes, groups {}\n  plate     {} plies, {:.4} mm, {} layers of cells\n  \
-         unknowns  {} of {} after constraints{}; {} marched\n  memory    stiffness {:.1} MB, factor {:.1} MB\n  \
-         contact   static stiffness {:.2} N/mm\n  frequency lowest excited {}, highest {}\n  march     {} steps of {:.4} us to {:.4} ms with {} ({stable})\n  \
-         damage    {}\n",
-        scene.title,
-        model.plate.plane.quads.len(),
-        model.plate.plane.points.len(),
-        model.plate.plane.groups.keys().map(String::as_str).collect::<Vec<_>>().join(", "),
-        model.laminate.plies.len(),
-        model.laminate.thickness() * 1e3,
-        model.plate.layers(),
-        sizes.unknowns,
-        model.plate.ndof(),
-        match model.constraints.redundant.len() {
-            0 => String::new(),
-            n => format!(" ({n} redundant equations)"),
-        },
-        sizes.marched,
-        2.0 * megabytes(sizes.stiffness_entries),
-        megabytes(sizes.factor_entries),
-        sizes.static_stiffness * 1e-3,
-        frequency(sizes.lowest_frequency),
-        frequency(sizes.highest_frequency),
-        sizes.steps,
-        sizes.step * 1e6,
-        scene.march.end.value * 1e3,
-        scene.march.integrator.name.value,
-        match model.criteria.len() {
-            0 => "off".to_owned(),
-            _ => model.criteria.iter().map(|c| c.0.as_str()).collect::<Vec<_>>().join(", "),
-        },
-    );
-    for warning in &model.warnings {
-        text.push_str(&format!("  warning   {warning}\n"));
-    }
-    text.push_str("  the scene is valid\n");
-    Ok(text)
+    let criteria: Vec<_> = model.criteria.iter().map(|c| c.0.as_str()).collect();
+    let mut lines = vec![
+        (
+            "mesh",
+            format!(
+                "{} quads, {} nodes, groups {}",
+                plate.plane.quads.len(),
+                plate.plane.points.len(),
+                plate.plane.groups.keys().map(String::as_str).collect::<Vec<_>>().join(", ")
+            ),
+        ),
+        (
+            "plate",
+            format!(
+                "{} plies, {:.4} mm, {} layers of cells",
+                model.laminate.plies.len(),
+                model.laminate.thickness() * 1e3,
+                plate.layers()
+            ),
+        ),
+        (
+            "unknowns",
+            format!("{} of {} after constraints{redundant}; {} marched", sizes.unknowns, plate.ndof(), sizes.marched),
+        ),
+        (
+            "memory",
+            format!(
+                "stiffness {:.1} MB, factor {:.1} MB",
+                2.0 * megabytes(sizes.stiffness_entries),
+                megabytes(sizes.factor_entries)
+            ),
+        ),
+        ("contact", format!("static stiffness of the plate {:.2} N/mm", sizes.static_stiffness * 1e-3)),
+        ("frequency", if frequencies.is_empty() { "the march needs none".into() } else { frequencies.join(", ") }),
+        (
+            "march",
+            format!(
+                "{} steps of {:.4} us to {:.4} ms with {} ({stable})",
+                sizes.steps,
+                sizes.step * 1e6,
+                scene.march.end.value * 1e3,
+                scene.march.integrator.name.value
+            ),
+        ),
+        ("damage", if criteria.is_empty() { "off".into() } else { criteria.join(", ") }),
+    ];
+    lines.extend(model.warnings.iter().map(|warning| ("warning", warning.clone())));
+    let lines: String = lines.iter().map(|(what, text)| format!("  {what:<9} {text}\n")).collect();
+    Ok(format!("{}\n{lines}  the scene is valid\n", scene.title))
 }

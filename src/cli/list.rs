@@ -4,7 +4,7 @@ use super::print;
 use crate::registry::{NO_REDUCTION, Registry};
 use clap::{Args, ValueEnum};
 use fem_core::plugin::{Kind, PluginInfo};
-use fem_io::materials;
+use fem_io::materials::{self, LibraryMaterial};
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
@@ -15,11 +15,17 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum What {
+    /// For `element.kind`.
     Elements,
+    /// For `failure.criteria`.
     Criteria,
+    /// For `contact.law`.
     ContactLaws,
+    /// For `march.integrator`.
     Integrators,
+    /// For `reduction.method`.
     Reductions,
+    /// For `library` of a material.
     Materials,
 }
 
@@ -31,7 +37,7 @@ pub(super) fn list(registry: &Registry, arguments: &Arguments) -> miette::Result
         What::Integrators => Kind::Integrator,
         What::Reductions => Kind::Reduction,
         What::Materials => {
-            materials::names().for_each(|name| print(&format!("{name}\n")));
+            materials::names().filter_map(materials::library).for_each(|m| print(&material(m)));
             return Ok(ExitCode::SUCCESS);
         }
     };
@@ -46,6 +52,14 @@ fn entry(info: &PluginInfo) -> String {
     let mut text = format!("{:<20} {} [{}]\n", info.name, info.summary, info.source);
     for p in info.params {
         text.push_str(&format!("{:<20}   {}: {}\n", "", p.name, p.doc));
+    }
+    text
+}
+
+fn material(material: &LibraryMaterial) -> String {
+    let mut text = format!("{:<20} {}\n", material.material.name, material.summary);
+    for c in &material.constants {
+        text.push_str(&format!("{:<20}   {}: {}, {} [{}]\n", "", c.key, c.value, c.status, c.source));
     }
     text
 }

@@ -16,13 +16,13 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The scene file.
+    /// Scene file (TOML); its mesh is looked for beside it.
     scene: PathBuf,
     /// Folder of the results [default: results/<folder of the scene>]
-    #[arg(long)]
+    #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Threads for the integration of element matrices; results do not depend on it.
-    #[arg(long, default_value = "1")]
+    #[arg(long, value_name = "N", default_value = "1")]
     threads: NonZeroUsize,
 }
 
