@@ -547,7 +547,7 @@ mod arguments {
             (&["rnu", scene], "unrecognized subcommand 'rnu'"),
             (&["run"], "<SCENE>"),
             (&["run", scene, "--thread", "2"], "'--threads'"),
-            (&["run", scene, "--threads", "0"], "invalid value '0' for '--threads <THREADS>'"),
+            (&["run", scene, "--threads", "0"], "invalid value '0' for '--threads <N>'"),
             (&["check", scene, scene], "unexpected argument"),
             (&["list", "criterions"], "criteria"),
         ] {
