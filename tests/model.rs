@@ -30,7 +30,7 @@ fn free_matrices(model: &Model, threads: usize) -> (Pattern, Vec<f64>, Vec<f64>)
     let free = Constraints::eliminate(&order, &[]).unwrap();
     let pattern = pattern(&model.plate, &free);
     let threads = NonZeroUsize::new(threads).unwrap();
-    let mut make = |which| {
+    let make = |which| {
         assemble(&model.plate, &*model.element, &free, &pattern, which, threads, &mut Counters::default()).unwrap()
     };
     let (k, m) = (make(Matrix::Stiffness), make(Matrix::Mass));

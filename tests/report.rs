@@ -118,6 +118,7 @@ fn the_force_of_case_1_ripples_at_ten_kilohertz() {
 }
 
 /// Residual of the least-squares parabola.
+#[allow(clippy::needless_range_loop)] // elimination reads best by index
 fn beside_parabola(t: &[f64], f: &[f64]) -> Vec<f64> {
     let end = t[t.len() - 1];
     let row = |t: f64| [1.0, t / end, (t / end).powi(2)];
