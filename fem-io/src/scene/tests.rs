@@ -127,7 +127,7 @@ fn a_scene_in_full() {
     );
     assert_eq!(scene.element.params.choice("mass", &["linear", "cubic"]), Ok("cubic"));
     assert_eq!(scene.element.params.get("z_derivatives"), None);
-    assert_eq!(scene.reduction.params.count("modes", 1, None), Ok(40));
+    assert_eq!(scene.reduction.params.count("vectors", 1, None), Ok(40));
 }
 
 #[test]
@@ -185,7 +185,7 @@ fn the_root_crate_can_point_at_any_value() {
         |place: &Place| scene.source.error_at(place, "m", "").location().map(|(file, line)| (file.to_owned(), line));
     let at = |n| Some(("cases/plate/scene.toml".to_owned(), n));
     assert_eq!(line(&scene.contact.name.place), at(13));
-    assert_eq!(line(scene.reduction.place_of("modes")), Some(("preset `engineering`".to_owned(), 5)));
+    assert_eq!(line(scene.reduction.place_of("vectors")), Some(("preset `engineering`".to_owned(), 5)));
     let error = scene.source.error_at(scene.contact.place_of("n"), "`n`: must be 1 to 4, got 15", "Hertz: n = 1.5");
     insta::assert_snapshot!(rendered(&error));
     assert_eq!(scene.contact.place_of("absent"), &scene.contact.name.place);
