@@ -390,7 +390,7 @@ mod marches {
 
     #[test]
     fn run_that_loses_its_energy_stops_and_keeps_what_it_had() {
-        let case = strip().scene("end = \"20 us\"", "step = \"50 us\"\nend = \"10 ms\"");
+        let case = strip().scene("end = \"20 us\"", "step = \"1 ms\"\nend = \"10 ms\"");
         let done = case.fem("run", &["--out", "out"]);
         assert_eq!((done.status, done.stderr.as_str()), (1, ""), "{done:#?}");
         let summary = case.summary("out");
