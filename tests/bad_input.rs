@@ -313,6 +313,13 @@ mod mesh {
             (strip().mesh_file("clockwise.msh"), "8 of 8 cells were clockwise (the first is 4) and turned round"),
             (strip().mesh("4 1 5 13 12 ", "4 12 13 5 1 "), "1 of 8 cells was clockwise (the first is 4)"),
             (
+                strip()
+                    .scene("unit = \"mm\"", "unit = \"um\"")
+                    .scene("x = \"15 mm\", y = \"5 mm\"", "x = \"15 um\", y = \"5 um\"")
+                    .scene("velocity", "load = \"node\"\nvelocity"),
+                "the plate is 0.0300 mm wide and 2.1133 mm thick: is `mesh.unit` the unit of the mesh file?",
+            ),
+            (
                 plate().scene("unit = \"mm\"", "unit = \"m\""),
                 "the plate is 50000.0000 mm wide and 2.1133 mm thick: is `mesh.unit` the unit of the mesh file?",
             ),
@@ -377,6 +384,14 @@ mod marches {
         ];
         // The frequencies of a reduced model depend on rounding in their last digits.
         insta::assert_snapshot!(refusal(&case, At::Scene("step ="), &words).replace(|c: char| c.is_ascii_digit(), "#"));
+    }
+
+    #[test]
+    fn warnings_come_with_a_refusal_that_they_may_explain() {
+        let case = with_keys(strip(), "reduction = { method = \"guyan\", governors = 1000 }");
+        let case = case.scene("unit = \"mm\"", "unit = \"m\"");
+        let words = ["Warning: the plate is 30000.0000 mm wide and 2.1133 mm thick", "1000 governors are asked for"];
+        refusal(&case, At::Scene("reduction ="), &words);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! `fem check`.
 
-use super::print;
+use super::{print, warn};
 use crate::error::Error;
 use crate::model::Model;
 use crate::registry::Registry;
@@ -24,7 +24,7 @@ pub(super) fn check(registry: &Registry, arguments: &Arguments) -> miette::Resul
 
 fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
     let model = Model::new(scene::read(&arguments.scene)?, registry)?;
-    let sizes = run::prepare(&model, NonZeroUsize::MIN)?.sizes;
+    let sizes = run::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model))?.sizes;
     let (plate, scene) = (&model.plate, &model.scene);
     let megabytes = |entries: usize| entries as f64 * 8e-6;
     let known = [("lowest excited", sizes.lowest_frequency), ("highest", sizes.highest_frequency)];

@@ -5,6 +5,7 @@ mod envelope;
 mod list;
 mod run;
 
+use crate::model::Model;
 use crate::registry::Registry;
 use clap::{Parser, Subcommand};
 use miette::{GraphicalReportHandler, GraphicalTheme, Report};
@@ -84,6 +85,13 @@ fn complain(report: &Report) {
     let shown = handler.render_report(&mut text, report.as_ref());
     let text = if shown.is_ok() { text } else { format!("{report:?}") };
     let _ = write!(std::io::stderr(), "Error:{text}");
+}
+
+/// Says on standard error what may explain why `model` cannot be computed.
+fn warn(model: &Model) {
+    for warning in &model.warnings {
+        let _ = writeln!(std::io::stderr(), "Warning: {warning}");
+    }
 }
 
 /// Prints to standard output; a closed pipe ends quietly.

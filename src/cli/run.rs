@@ -1,6 +1,6 @@
 //! `fem run`.
 
-use super::print;
+use super::{print, warn};
 use crate::error::Error;
 use crate::model::Model;
 use crate::registry::Registry;
@@ -32,7 +32,7 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments) -> miette::Result<
 
 fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error> {
     let model = Model::new(scene::read(&arguments.scene)?, registry)?;
-    let prepared = run::prepare(&model, arguments.threads)?;
+    let prepared = run::prepare(&model, arguments.threads).inspect_err(|_| warn(&model))?;
     // After all that can be refused, so that a refusal leaves no folder; before the march, so that none is in vain.
     let dir = OutputDir::create(arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene)))?;
     let sizes = prepared.sizes;

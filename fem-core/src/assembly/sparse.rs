@@ -80,7 +80,8 @@ impl SparseStructure {
                 SolveError(format!("{} has no inertia", (self.name)(column)))
             }
             FactorError::NotPositive { column } => SolveError(format!(
-                "the structure is not held: the pivot of {} is not positive; add the missing support",
+                "the stiffness is not positive definite, seen at {}: the structure is not held there, or its sizes or \
+                 moduli lie too far apart for the arithmetic",
                 (self.name)(column)
             )),
             FactorError::NotFinite { column } => {
