@@ -21,7 +21,7 @@ pub(super) struct Arguments {
     /// The material: a name of the library or, with --scene, of the scene.
     material: String,
     /// Criteria by name, parameters after colons, for example: puck,tsai-wu:f12=-0.3 [default: those of the scene]
-    #[arg(long, value_delimiter = ',', required_unless_present = "scene")]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', required_unless_present = "scene")]
     criteria: Vec<String>,
     /// Two of s1, s2, s3, s12, s23, s13; the other stresses are zero.
     #[arg(long, default_value = "s2-s12")]
@@ -30,7 +30,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     scene: Option<PathBuf>,
     /// Folder of the results [default: results/envelope-<material>-<plane>]
-    #[arg(long)]
+    #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
