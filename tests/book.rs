@@ -1,0 +1,100 @@
+//! The book says what the program does.
+
+use crate::support::{Case, root};
+use fem::Registry;
+use fem::core::failure::{FailureCriterion, Site};
+use fem::core::plugin::{Built, Kind, Params, PluginInfo, Value};
+use std::fmt::Write;
+use std::fs;
+
+/// Parameters of a criterion that cannot be built without.
+fn parameters(name: &str) -> Params {
+    let required: &[(&str, Value)] = match name {
+        "max-strain" => &["e1t", "e1c", "e2t", "e2c", "g12", "g23"].map(|key| (key, Value::Number(0.01))),
+        "expression" => &[("expression", Value::Text("s1/E1".into()))],
+        _ => &[],
+    };
+    required.iter().fold(Params::default(), |params, (key, value)| params.with(key, value.clone()))
+}
+
+fn criteria() -> Vec<(PluginInfo, Box<dyn FailureCriterion>)> {
+    let registry = Registry::standard();
+    let build = |info: &PluginInfo| match registry.build(Kind::Criterion, info.name, &parameters(info.name)) {
+        Ok(Built::Criterion(criterion)) => (*info, criterion),
+        other => panic!("{}: {other:?}", info.name),
+    };
+    registry.list(Kind::Criterion).map(build).collect()
+}
+
+/// Every criterion of the registry, in Markdown.
+fn table() -> String {
+    let mut text = "<!-- Written by `UPDATE_BOOK=1 cargo test --test all book`. -->\n\n".to_owned();
+    text.push_str("| criterion | judges | modes | strengths | axes |\n| --- | --- | --- | --- | --- |\n");
+    let all = criteria();
+    for (info, criterion) in &all {
+        let about = criterion.info();
+        let judges = match (info.name, about.site) {
+            ("expression", _) => "ply or interface",
+            (_, Site::Ply) => "ply",
+            (_, Site::Interface) => "interface",
+        };
+        let strengths: Vec<_> = about.strengths.iter().map(|s| s.name()).collect();
+        let (modes, strengths) = match info.name {
+            "expression" => ("one per formula".to_owned(), "those it names".to_owned()),
+            _ => (about.modes.join(", "), if strengths.is_empty() { "none".into() } else { strengths.join(" ") }),
+        };
+        let axes = if about.invariant_about_fibre { "any" } else { "the ply's" };
+        writeln!(text, "| [`{0}`](#{0}) | {judges} | {modes} | {strengths} | {axes} |", info.name).unwrap();
+    }
+    for (info, criterion) in &all {
+        let [name, summary, source] = [info.name, info.summary, info.source];
+        let scope = criterion.scope();
+        write!(text, "\n## {name}\n\n{summary}\n\nSource: {source}. It takes {scope}.\n").unwrap();
+        for (k, p) in info.params.iter().enumerate() {
+            writeln!(text, "{}* `{}`: {}", if k == 0 { "\n" } else { "" }, p.name, p.doc).unwrap();
+        }
+    }
+    text
+}
+
+#[test]
+fn the_table_of_criteria_is_that_of_the_registry() {
+    let file = root().join("docs/book/src/criteria-table.md");
+    if std::env::var_os("UPDATE_BOOK").is_some() {
+        fs::write(&file, table()).unwrap();
+    }
+    let written = fs::read_to_string(&file).unwrap().replace("\r\n", "\n");
+    assert_eq!(written, table(), "write the table anew: UPDATE_BOOK=1 cargo test --test all book");
+}
+
+#[test]
+fn the_criterion_of_the_book_runs() {
+    let formulas = fs::read_to_string(root().join("docs/book/src/criterion.toml")).unwrap().replace("\r\n", "\n");
+    let case = Case::example("as4-3502-8ply-25mm")
+        .scene("criteria = [\"hashin-report\", \"octahedral\"]\n", "")
+        .scene("end = \"1 ms\"", "end = \"0.05 ms\"")
+        .append(&format!("\n{formulas}"));
+    case.fem("run", &["--out", "results"]).good();
+    let summary = case.summary("results");
+    let entries = |key: &str| summary[key].as_array().unwrap().clone();
+    let modes = [entries("first_damage"), entries("not_reached")].concat();
+    let mut names: Vec<_> = modes.iter().map(|m| m["mode"].as_str().unwrap()).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["fibre", "matrix compression", "matrix tension"]);
+}
+
+#[test]
+fn what_the_book_includes_is_there() {
+    let book = root().join("docs/book/src");
+    let mut included = 0;
+    for chapter in ["failure-criteria.md", "criteria.md", "SUMMARY.md"] {
+        let text = fs::read_to_string(book.join(chapter)).unwrap();
+        for path in text.split("{{#include ").skip(1).map(|rest| rest.split("}}").next().unwrap()) {
+            let (file, anchor) = path.split_once(':').unwrap_or((path, ""));
+            let content = fs::read_to_string(book.join(file)).unwrap_or_else(|e| panic!("{chapter}: {file}: {e}"));
+            assert!(anchor.is_empty() || content.contains(&format!("ANCHOR: {anchor}")), "{chapter}: {path}");
+            included += 1;
+        }
+    }
+    assert!(included >= 6, "{included}");
+}
