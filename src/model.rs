@@ -91,7 +91,7 @@ impl Model {
         let levels = laminate.levels();
         let stacks = laminate.stacks(&materials);
         let plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
-            .map_err(|why| builder.error(&scene.element.name, why, "choose a solid element"))?;
+            .map_err(|why| builder.error(&scene.element.name, why, ""))?;
         let constraints = builder.constraints(&plate)?;
         let (centre, contact) = builder.contact_place(&plate, &*element)?;
         let watched = builder.watched(&plate.plane, centre)?;
@@ -128,10 +128,10 @@ impl Model {
     pub fn governors(&self, count: usize) -> Vec<usize> {
         let level = self.plate.mid_level().unwrap_or(0);
         let Some(deflection) = Dof::new(3, 0) else { return Vec::new() };
-        let candidates: Vec<(usize, [f64; 2])> = (0..self.plate.plane.points.len())
+        let candidates: Vec<(usize, [f64; 2])> = (0..self.plate.columns.len())
             .filter_map(|column| {
                 let dof = self.plate.dofs_at(column, level, deflection).next()?;
-                Some((self.constraints.position(dof)?, self.plate.plane.points[column]))
+                Some((self.constraints.position(dof)?, self.plate.columns[column]))
             })
             .collect();
         let square = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
@@ -300,9 +300,9 @@ impl Builder<'_> {
     }
 
     /// Columns of a group.
-    fn columns<'p>(&self, plate: &'p Plate, group: &Located<String>) -> Result<&'p [u32], SceneError> {
+    fn columns(&self, plate: &Plate, group: &Located<String>) -> Result<Vec<u32>, SceneError> {
         match plate.plane.groups.get(&group.value) {
-            Some(found) => Ok(&found.nodes),
+            Some(found) => Ok(plate.columns_of_group(found)),
             None => Err(self.error(
                 group,
                 format!("the mesh has no group `{}`", group.value),
@@ -315,7 +315,7 @@ impl Builder<'_> {
         }
     }
 
-    fn nodes<'p>(&self, plate: &'p Plate, set: &NodeSet) -> Result<(&'p [u32], Vec<usize>), SceneError> {
+    fn nodes(&self, plate: &Plate, set: &NodeSet) -> Result<(Vec<u32>, Vec<usize>), SceneError> {
         let levels = set.levels.of(plate).map_err(|why| self.error(&set.group, why, ""))?;
         Ok((self.columns(plate, &set.group)?, levels))
     }
@@ -331,7 +331,7 @@ impl Builder<'_> {
                 Support::Fix { nodes, dofs, axes, place } => {
                     let (columns, levels) = self.nodes(plate, nodes)?;
                     let origin = format!("support of `{}`", nodes.group.value);
-                    let fixed = support::fix(plate, columns, &levels, dofs, *axes, &origin);
+                    let fixed = support::fix(plate, &columns, &levels, dofs, *axes, &origin);
                     if fixed.is_empty() {
                         let message = format!("the support of `{}` fixes nothing", nodes.group.value);
                         return Err(source.error_at(place, message, "the element has none of the unknowns of `fix`"));
@@ -345,7 +345,7 @@ impl Builder<'_> {
         for couple in &self.scene.couples {
             let (columns, levels) = self.nodes(plate, &couple.nodes)?;
             let origin = format!("couple of `{}`", couple.nodes.group.value);
-            equations.extend(support::couple(plate, columns, &levels, &couple.dofs, &origin));
+            equations.extend(support::couple(plate, &columns, &levels, &couple.dofs, &origin));
             places.resize(equations.len(), &couple.place);
         }
         for (number, equation) in self.scene.equations.iter().enumerate() {
@@ -382,7 +382,7 @@ impl Builder<'_> {
         let mut terms = Vec::new();
         for term in &equation.terms {
             let (columns, levels) = self.nodes(plate, &term.node)?;
-            let ([column], [level]) = (columns, &levels[..]) else {
+            let ([column], [level]) = (&columns[..], &levels[..]) else {
                 return Err(self.error(
                     &term.node.group,
                     format!("a term of an equation stands at one node, but `{}` has more", term.node.group.value),
@@ -404,7 +404,7 @@ impl Builder<'_> {
             ImpactPoint::Group(name) => {
                 let group = Located { value: name.clone(), place: at.place.clone() };
                 let columns = self.columns(plate, &group)?;
-                let [column] = columns else {
+                let [column] = columns[..] else {
                     let dim = plate.plane.groups.get(name).map_or(0, |g| g.dim);
                     return Err(self.error(
                         at,
@@ -412,13 +412,13 @@ impl Builder<'_> {
                         "make a physical point of the impact point in gmsh, or give `at = { x = ..., y = ... }`",
                     ));
                 };
-                (plate.plane.points[*column as usize], Some(*column as usize))
+                (plate.columns[column as usize], Some(column as usize))
             }
             ImpactPoint::Point(p) => {
                 let (low, high) = plate.plane.bounds();
                 let reach = 1e-9 * (high[0] - low[0]).hypot(high[1] - low[1]);
                 let near = |q: &[f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]) <= reach;
-                (*p, plate.plane.points.iter().position(near))
+                (*p, plate.columns.iter().position(near))
             }
         };
         let contact = match (self.scene.impactor.load.value, column) {

@@ -9,7 +9,11 @@ use std::fmt::{self, Debug};
 /// What an element says of itself.
 #[derive(Debug, Clone, Copy)]
 pub struct ElementInfo {
-    /// Natural coordinates (r, s, q) of the nodes; q runs through the thickness.
+    /// Natural coordinates (r, s, q) of the nodes, each −1, 0 or 1; q runs through the thickness.
+    ///
+    /// Nodes at the same place of neighbouring cells are one node, so that the table alone says how cells connect: corners
+    /// at (±1, ±1), middles of edges at (0, ±1) and (±1, 0). An element all of whose nodes have s = 0 is the section of a
+    /// strip that runs along x, one cell across; its width is that of the strip.
     pub nodes: &'static [[f64; 3]],
     /// Unknowns of every node, in element order.
     pub dofs: &'static [Dof],
@@ -23,6 +27,23 @@ impl ElementInfo {
     /// Number of unknowns of a cell.
     pub const fn ndof(&self) -> usize {
         self.nodes.len() * self.dofs.len()
+    }
+
+    /// True for the section of a strip: nothing varies along s.
+    pub fn is_section(&self) -> bool {
+        self.nodes.iter().all(|n| n[1] == 0.0)
+    }
+
+    /// True for a plate theory: all nodes at q = 0, so that one cell holds the whole laminate.
+    pub fn is_shell(&self) -> bool {
+        self.nodes.iter().all(|n| n[2] == 0.0)
+    }
+
+    /// In-plane Gauss points (r, s, weight).
+    pub fn plane_points(&self) -> impl Iterator<Item = (f64, f64, f64)> + use<> {
+        let along = gauss_legendre(self.in_plane_order);
+        let across = if self.is_section() { gauss_legendre(1) } else { along };
+        along.iter().flat_map(move |&(r, wr)| across.iter().map(move |&(s, ws)| (r, s, wr * ws)))
     }
 }
 
@@ -69,13 +90,68 @@ impl Stack {
     }
 }
 
-/// A cell as an element sees it.
+/// A cell: an upright prism over a quadrilateral, and its plies.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell<'a> {
-    /// Node positions, m, in the order of [`ElementInfo::nodes`].
-    pub x: &'a [[f64; 3]],
+    /// Corners of the quadrilateral, m, anticlockwise from (r, s) = (−1, −1).
+    pub corners: [[f64; 2]; 4],
+    /// Heights of the lower and upper face, m.
+    pub z: [f64; 2],
     /// Its plies.
     pub stack: &'a Stack,
+}
+
+/// Natural coordinates of the corners of a quadrilateral.
+const QUAD: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+
+/// The map from (r, s) to (x, y) at a point of a quadrilateral.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlaneMap {
+    /// `[[x,r  y,r], [x,s  y,s]]`
+    pub jacobian: [[f64; 2]; 2],
+    /// Its determinant.
+    pub det: f64,
+    /// `[[r,x  r,y], [s,x  s,y]]`
+    pub inverse: [[f64; 2]; 2],
+}
+
+impl Cell<'_> {
+    /// The bilinear map of the quadrilateral at (r, s).
+    pub fn plane(&self, r: f64, s: f64) -> PlaneMap {
+        let mut j = [[0.0; 2]; 2];
+        for ([ri, si], p) in QUAD.iter().zip(&self.corners) {
+            let (by_r, by_s) = (0.25 * ri * (1.0 + s * si), 0.25 * si * (1.0 + r * ri));
+            for d in 0..2 {
+                j[0][d] += by_r * p[d];
+                j[1][d] += by_s * p[d];
+            }
+        }
+        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+        PlaneMap { jacobian: j, det, inverse: [[j[1][1] / det, -j[1][0] / det], [-j[0][1] / det, j[0][0] / det]] }
+    }
+
+    /// Half the height, ∂z/∂q, m.
+    pub fn half_height(&self) -> f64 {
+        0.5 * (self.z[1] - self.z[0])
+    }
+
+    /// Position of a natural point, m.
+    pub fn position(&self, [r, s, q]: [f64; 3]) -> [f64; 3] {
+        let plane = |d: usize| -> f64 {
+            let each = QUAD.iter().zip(&self.corners);
+            each.map(|([ri, si], p)| 0.25 * (1.0 + r * ri) * (1.0 + s * si) * p[d]).sum()
+        };
+        [plane(0), plane(1), 0.5 * (self.z[0] + self.z[1]) + q * self.half_height()]
+    }
+}
+
+/// A part of a cell: q₀ ≤ q ≤ q₁ within one of its plies, or the face q₀ = q₁ of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Part {
+    /// Which slice of the stack.
+    pub slice: usize,
+    /// Its natural bounds.
+    pub q: [f64; 2],
 }
 
 /// Work arrays of one thread: handed out by size, kept between cells.
@@ -124,17 +200,20 @@ pub trait Element: DynClone + Debug + Send + Sync {
     /// Nodes, unknowns, integration orders.
     fn info(&self) -> &ElementInfo;
 
-    /// Strain operator at natural point `xi`: `b` (6 × ndof) with ε = b u, engineering shears, plate frame.
+    /// Strain operator in the ply `slice` at natural point `xi`: `b` (6 × ndof) with ε = b u, engineering shears, plate frame.
+    ///
+    /// The ply matters to theories that give up a strain for a known stress: with σ₃₃ = 0 the strain ε₃₃ follows from
+    /// the others and the ply's stiffness, and bᵀ C b is then the reduced stiffness.
     ///
     /// Returns the Jacobian determinant |∂x/∂ξ|.
-    fn strain_operator(&self, x: &[[f64; 3]], xi: [f64; 3], b: &mut [f64]) -> f64;
+    fn strain_operator(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], b: &mut [f64]) -> f64;
 
     /// Shape functions at `xi`: `n` (3 × ndof) with displacement = n u. Returns |∂x/∂ξ|.
-    fn shape(&self, x: &[[f64; 3]], xi: [f64; 3], n: &mut [f64]) -> f64;
+    fn shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64;
 
     /// Shape functions that carry the inertia; an element with a simplified mass overrides them.
-    fn inertia_shape(&self, x: &[[f64; 3]], xi: [f64; 3], n: &mut [f64]) -> f64 {
-        self.shape(x, xi, n)
+    fn inertia_shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
+        self.shape(cell, xi, n)
     }
 
     /// Stiffness `ke` (ndof × ndof) = Σ over plies ∫ bᵀ C b dV (report eqs 9, 23).
@@ -146,9 +225,9 @@ pub trait Element: DynClone + Debug + Send + Sync {
         let [b, cb] = scratch.arrays([6 * n, 6 * n]);
         ke.fill(0.0);
         integrate(self.info(), cell.stack, |slice, xi, w| {
-            let dv = positive(self.strain_operator(cell.x, xi, b))? * w;
+            let dv = positive(self.strain_operator(cell, slice, xi, b))? * w;
             for (cb, b) in cb.chunks_exact_mut(6).zip(b.chunks_exact(6)) {
-                for (cb, row) in cb.iter_mut().zip(&slice.c) {
+                for (cb, row) in cb.iter_mut().zip(&cell.stack.slices[slice].c) {
                     *cb = dv * row.iter().zip(b).map(|(c, b)| c * b).sum::<f64>();
                 }
             }
@@ -166,7 +245,7 @@ pub trait Element: DynClone + Debug + Send + Sync {
         let [shape, weighted] = scratch.arrays([3 * n, 3 * n]);
         me.fill(0.0);
         integrate(self.info(), cell.stack, |slice, xi, w| {
-            let dm = positive(self.inertia_shape(cell.x, xi, shape))? * w * slice.density;
+            let dm = positive(self.inertia_shape(cell, xi, shape))? * w * cell.stack.slices[slice].density;
             for (a, b) in weighted.iter_mut().zip(shape.iter()) {
                 *a = dm * b;
             }
@@ -175,35 +254,32 @@ pub trait Element: DynClone + Debug + Send + Sync {
         })
     }
 
-    /// Mean-strain operators `b` (6 × ndof each, one after the other) over parts q₀ ≤ q ≤ q₁ of the cell: (1/V) ∫ B dV for
-    /// q₀ < q₁ (report eq. 12), the area mean of the face q₀ for q₀ = q₁ (eq. 14).
+    /// Mean-strain operators `b` (6 × ndof each, one after the other) of parts of the cell: (1/V) ∫ B dV (report eq. 12),
+    /// or the area mean of a face (eq. 14).
     ///
     /// # Errors
     /// A Jacobian that is not positive at a Gauss point.
     fn mean_strains(
         &self,
         cell: &Cell<'_>,
-        parts: &[[f64; 2]],
+        parts: &[Part],
         scratch: &mut Scratch,
         b: &mut [f64],
     ) -> Result<(), ElementError> {
         let info = self.info();
         let n = 6 * info.ndof();
         let [point] = scratch.arrays([n]);
-        let plane = gauss_legendre(info.in_plane_order);
-        for ([low, high], b) in parts.iter().zip(b.chunks_exact_mut(n)) {
+        for (Part { slice, q: [low, high] }, b) in parts.iter().zip(b.chunks_exact_mut(n)) {
             b.fill(0.0);
             let mut volume = 0.0;
             let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
             for &(t, wt) in gauss_legendre(if half > 0.0 { info.ply_order } else { 1 }) {
-                for &(r, wr) in plane {
-                    for &(s, ws) in plane {
-                        let xi = [r, s, middle + half * t];
-                        let dv = positive(self.strain_operator(cell.x, xi, point))? * wr * ws * wt;
-                        volume += dv;
-                        for (b, p) in b.iter_mut().zip(point.iter()) {
-                            *b += dv * p;
-                        }
+                for (r, s, w) in info.plane_points() {
+                    let xi = [r, s, middle + half * t];
+                    let dv = positive(self.strain_operator(cell, *slice, xi, point))? * w * wt;
+                    volume += dv;
+                    for (b, p) in b.iter_mut().zip(point.iter()) {
+                        *b += dv * p;
                     }
                 }
             }
@@ -216,21 +292,17 @@ pub trait Element: DynClone + Debug + Send + Sync {
 }
 dyn_clone::clone_trait_object!(Element);
 
-/// Ply-wise Gauss points of a cell with their weights (without the Jacobian).
+/// Ply-wise Gauss points of a cell, each with its slice and its weight (without the Jacobian).
 fn integrate(
     info: &ElementInfo,
     stack: &Stack,
-    mut at: impl FnMut(&Slice, [f64; 3], f64) -> Result<(), ElementError>,
+    mut at: impl FnMut(usize, [f64; 3], f64) -> Result<(), ElementError>,
 ) -> Result<(), ElementError> {
-    let plane = gauss_legendre(info.in_plane_order);
-    let through = gauss_legendre(info.ply_order);
-    for slice in &stack.slices {
+    for (number, slice) in stack.slices.iter().enumerate() {
         let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
-        for &(t, wt) in through {
-            for &(r, wr) in plane {
-                for &(s, ws) in plane {
-                    at(slice, [r, s, middle + half * t], wr * ws * wt * half)?;
-                }
+        for &(t, wt) in gauss_legendre(info.ply_order) {
+            for (r, s, w) in info.plane_points() {
+                at(number, [r, s, middle + half * t], w * wt * half)?;
             }
         }
     }

@@ -14,7 +14,7 @@ const SPOKES: usize = 96;
 
 /// Deflection away from an impactor above the plate, −U30 of the top node of `column`.
 pub fn node(plate: &Plate, column: usize) -> Option<Functional> {
-    let dof = plate.dofs_at(column, plate.levels.len() - 1, Dof::new(3, 0)?).next()?;
+    let dof = plate.dofs_at(column, plate.outer_levels()[1], Dof::new(3, 0)?).next()?;
     Some(Functional(vec![(dof, -1.0)]))
 }
 
@@ -58,7 +58,7 @@ pub fn hertz(plate: &Plate, element: &dyn Element, centre: [f64; 2], a: f64) -> 
                 ));
             };
             let cell = quad * plate.layers() + top;
-            element.shape(&plate.points(cell), [r, s, 1.0], &mut shape);
+            element.shape(&plate.cell(cell), [r, s, 1.0], &mut shape);
             plate.cell_dofs(cell, &mut dofs);
             for (dof, n) in dofs.iter().zip(shape.chunks_exact(3)) {
                 if n[2] != 0.0 {

@@ -1,8 +1,9 @@
-//! A plate of solid cells: a plane mesh extruded through the layers of a laminate, and the numbers of its unknowns.
+//! A plate of cells: a plane mesh extruded through the layers of a laminate, and the numbers of its unknowns.
 
 use crate::dof::Dof;
-use crate::element::{ElementInfo, Stack};
-use crate::mesh::QuadMesh;
+use crate::element::{Cell, ElementInfo, Stack};
+use crate::mesh::{Group, QuadMesh};
+use std::collections::HashMap;
 use std::fmt::Write;
 
 /// How the layers of cells share the derivatives along z at the faces between them.
@@ -16,54 +17,119 @@ pub enum ZDerivatives {
 
 /// Cells `quad × layer`, nodes `column × level`, unknowns node by node.
 ///
-/// * node number: `column · levels + level`, levels from the bottom
+/// * columns: the vertices of the plane mesh, then, where the element has nodes there, the middles of its edges and of
+///   its quads
+/// * levels: the faces of the layers from the bottom, and their middles where the element has nodes there
+/// * node number: `column · levels + level`; the element's table says which of them exist, the others have no unknowns
 /// * cell number: `quad · layers + layer`
-/// * unknowns of a node: those of the element in its order; with layer-wise z-derivatives an inner node has a second
-///   set of its `Un3`, which belongs to the cells above it
+/// * unknowns of a node: those of the element in its order; with layer-wise z-derivatives a node between layers has a
+///   second set of its `Un3`, which belongs to the cells above it
 #[derive(Debug, Clone)]
 pub struct Plate {
     /// The plane mesh.
     pub plane: QuadMesh,
+    /// Positions of the columns, m.
+    pub columns: Vec<[f64; 2]>,
     /// z of the levels, m.
     pub levels: Vec<f64>,
     /// Plies of each layer.
     pub stacks: Vec<Stack>,
     info: ElementInfo,
     z_derivatives: ZDerivatives,
+    /// Columns of each quad, `places.len()` a quad.
+    quad_columns: Vec<u32>,
+    /// Of each node of the element: which of the quad's columns, and how many levels above the cell's lower face.
+    slots: Vec<(usize, usize)>,
+    /// In-plane natural coordinates of a quad's columns.
+    places: Vec<[f64; 2]>,
+    /// The two vertices that an edge column stands between, from column `points` on.
+    edges: Vec<[u32; 2]>,
+    /// Levels per layer of cells: 1, or 2 with nodes at mid-height.
+    pitch: usize,
     /// First unknown of each node, and the total at the end.
     offsets: Vec<usize>,
 }
 
 impl Plate {
-    /// Extrudes `plane` through `levels`, one stack of plies between two levels.
+    /// Extrudes `plane` through the faces at heights `faces`, one stack of plies between two of them.
     ///
     /// # Errors
-    /// An element whose nodes are not the eight corners of a prism.
+    /// A mesh or layers that the element does not go with.
     pub fn new(
-        plane: QuadMesh,
-        levels: Vec<f64>,
+        mut plane: QuadMesh,
+        faces: Vec<f64>,
         stacks: Vec<Stack>,
         info: ElementInfo,
         z_derivatives: ZDerivatives,
     ) -> Result<Self, String> {
-        let corners = info.nodes.len() == 8 && info.nodes.iter().all(|n| n.iter().all(|c| c.abs() == 1.0));
-        if !corners {
-            return Err("a plate of solid cells needs an element with the eight corners of a prism as nodes".into());
+        if !info.nodes.iter().flatten().all(|c| [-1.0, 0.0, 1.0].contains(c)) {
+            return Err("the natural coordinates of an element's nodes are -1, 0 or 1".into());
         }
-        let inner = match z_derivatives {
-            ZDerivatives::Shared => 0,
-            ZDerivatives::LayerWise => info.dofs.iter().filter(|d| d.m() == 3).count(),
+        if info.is_shell() && stacks.len() != 1 {
+            return Err("a shell holds the whole laminate in one layer of cells: give `layers = 1`".into());
+        }
+        if info.is_section() {
+            along_x(&mut plane)?;
+        }
+        let mut places: Vec<[f64; 2]> = Vec::new();
+        let pitch = if info.nodes.iter().any(|n| n[2] == 0.0) { 2 } else { 1 };
+        let slots = info.nodes.iter().map(|&[r, s, q]| {
+            let place = places.iter().position(|p| *p == [r, s]).unwrap_or_else(|| {
+                places.push([r, s]);
+                places.len() - 1
+            });
+            (place, ((q + 1.0) * 0.5 * pitch as f64) as usize)
+        });
+        let slots: Vec<_> = slots.collect();
+        let (columns, quad_columns, edges) = columns(&plane, &places);
+        let levels = match pitch {
+            1 => faces,
+            _ => {
+                let middle = |pair: &[f64]| [pair[0], 0.5 * (pair[0] + pair[1])];
+                faces.windows(2).flat_map(middle).chain(faces.last().copied()).collect()
+            }
         };
-        let mut offsets = Vec::with_capacity(plane.points.len() * levels.len() + 1);
-        let mut next = 0;
-        offsets.push(0);
-        for _ in &plane.points {
-            for level in 0..levels.len() {
-                next += info.dofs.len() + if level > 0 && level + 1 < levels.len() { inner } else { 0 };
-                offsets.push(next);
+        let mut plate = Self {
+            plane,
+            columns,
+            levels,
+            stacks,
+            info,
+            z_derivatives,
+            quad_columns,
+            slots,
+            places,
+            edges,
+            pitch,
+            offsets: Vec::new(),
+        };
+        plate.number();
+        Ok(plate)
+    }
+
+    fn number(&mut self) {
+        let inner = match self.z_derivatives {
+            ZDerivatives::Shared => 0,
+            ZDerivatives::LayerWise => self.info.dofs.iter().filter(|d| d.m() == 3).count(),
+        };
+        // How often a node is in a cell's lower half and upper half: both, where it lies between layers.
+        let mut below = vec![false; self.columns.len() * self.levels.len()];
+        let mut above = below.clone();
+        for cell in 0..self.cells() {
+            for i in 0..self.slots.len() {
+                let node = self.cell_node(cell, i);
+                let at = if self.slots[i].1 == 0 { &mut above } else { &mut below };
+                at[node] = true;
             }
         }
-        Ok(Self { plane, levels, stacks, info, z_derivatives, offsets })
+        let mut next = 0;
+        self.offsets = Vec::with_capacity(below.len() + 1);
+        self.offsets.push(0);
+        for (below, above) in below.into_iter().zip(above) {
+            next += if below || above { self.info.dofs.len() } else { 0 };
+            next += if below && above { inner } else { 0 };
+            self.offsets.push(next);
+        }
     }
 
     /// Number of unknowns before constraints.
@@ -83,7 +149,7 @@ impl Plate {
 
     /// Number of nodes.
     pub fn nodes(&self) -> usize {
-        self.offsets.len() - 1
+        self.offsets.windows(2).filter(|o| o[1] > o[0]).count()
     }
 
     /// The element's table.
@@ -96,34 +162,55 @@ impl Plate {
         (cell / self.layers(), cell % self.layers())
     }
 
+    /// Columns of a quad.
+    pub fn columns_of_quad(&self, quad: usize) -> &[u32] {
+        let n = self.places.len();
+        &self.quad_columns[quad * n..(quad + 1) * n]
+    }
+
+    /// Columns with nodes of a group: its vertices, and the middles of its edges and quads.
+    pub fn columns_of_group(&self, group: &Group) -> Vec<u32> {
+        let vertices = self.plane.points.len() as u32;
+        let mut found: Vec<u32> = group.nodes.iter().copied().filter(|c| self.exists(*c as usize)).collect();
+        let own: std::collections::HashSet<[u32; 2]> = group.edges.iter().map(|e| ordered(*e)).collect();
+        found.extend((0..self.edges.len()).filter(|e| own.contains(&self.edges[*e])).map(|e| vertices + e as u32));
+        let inner = group.quads.iter().flat_map(|q| self.columns_of_quad(*q as usize));
+        found.extend(inner.filter(|c| **c >= vertices));
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    fn exists(&self, column: usize) -> bool {
+        !self.dofs_of_column(column).is_empty()
+    }
+
     fn node(&self, column: usize, level: usize) -> usize {
         column * self.levels.len() + level
     }
 
-    /// Column and level of the `i`-th node of a cell.
-    fn corner(&self, cell: usize, i: usize) -> (usize, usize) {
+    fn cell_node(&self, cell: usize, i: usize) -> usize {
         let (quad, layer) = self.place(cell);
-        (self.plane.quads[quad][i % 4] as usize, layer + i / 4)
+        let (place, up) = self.slots[i];
+        self.node(self.columns_of_quad(quad)[place] as usize, layer * self.pitch + up)
     }
 
-    /// Node positions of a cell, in element order.
-    pub fn points(&self, cell: usize) -> [[f64; 3]; 8] {
-        std::array::from_fn(|i| {
-            let (column, level) = self.corner(cell, i);
-            let [x, y] = self.plane.points[column];
-            [x, y, self.levels[level]]
-        })
+    /// A cell as an element sees it.
+    pub fn cell(&self, cell: usize) -> Cell<'_> {
+        let (quad, layer) = self.place(cell);
+        let z = [layer, layer + 1].map(|face| self.levels[face * self.pitch]);
+        Cell { corners: self.plane.corners(quad), z, stack: &self.stacks[layer] }
     }
 
     /// Unknowns of a cell, in element order.
     pub fn cell_dofs(&self, cell: usize, out: &mut Vec<usize>) {
         out.clear();
         let nd = self.info.dofs.len();
-        for i in 0..8 {
-            let (column, level) = self.corner(cell, i);
-            let first = self.offsets[self.node(column, level)];
-            // The second set at an inner node serves the cells for which the node is at the bottom.
-            let upper = i < 4 && self.offsets[self.node(column, level) + 1] - first > nd;
+        for i in 0..self.slots.len() {
+            let node = self.cell_node(cell, i);
+            let first = self.offsets[node];
+            // The second set of a node between layers serves the cells above it.
+            let upper = self.slots[i].1 == 0 && self.offsets[node + 1] - first > nd;
             let mut extra = first + nd;
             for (k, dof) in self.info.dofs.iter().enumerate() {
                 if upper && dof.m() == 3 {
@@ -136,26 +223,25 @@ impl Plate {
         }
     }
 
-    /// All unknowns called `dof` at a node: none if the element lacks it, two where layers have their own.
+    /// All unknowns called `dof` at a node: none if there is no node or the element lacks it, two where layers have their
+    /// own.
     pub fn dofs_at(&self, column: usize, level: usize, dof: Dof) -> impl Iterator<Item = usize> + use<> {
         let node = self.node(column, level);
         let (first, end) = (self.offsets[node], self.offsets[node + 1]);
         let nd = self.info.dofs.len();
         let own = self.info.dofs.iter().position(|d| *d == dof).map(|k| first + k);
-        let second = self
-            .info
-            .dofs
-            .iter()
-            .filter(|d| d.m() == 3)
-            .position(|d| *d == dof)
-            .map(|k| first + nd + k)
-            .filter(|i| *i < end);
-        own.into_iter().chain(second)
+        let second = self.info.dofs.iter().filter(|d| d.m() == 3).position(|d| *d == dof).map(|k| first + nd + k);
+        own.into_iter().chain(second).filter(move |i| *i < end)
     }
 
     /// Unknowns of the nodes of a column, from the bottom.
     pub fn dofs_of_column(&self, column: usize) -> std::ops::Range<usize> {
         self.offsets[self.node(column, 0)]..self.offsets[self.node(column + 1, 0)]
+    }
+
+    /// Lowest and highest level with nodes: the faces of the plate, or the reference surface of a shell.
+    pub fn outer_levels(&self) -> [usize; 2] {
+        if self.info.is_shell() { [1, 1] } else { [0, self.levels.len() - 1] }
     }
 
     /// Level whose z is the mid-plane of the laminate, if there is one.
@@ -175,11 +261,24 @@ impl Plate {
         (node / self.levels.len(), node % self.levels.len(), name)
     }
 
-    /// "U30 at node 17 of the mesh (x, y, z in mm)".
+    /// "node 17", "the middle of nodes 17 and 18", "the middle of cell 5": numbers of the mesh file.
+    pub fn describe_column(&self, column: usize) -> String {
+        let vertices = self.plane.points.len();
+        let tag = |v: u32| self.plane.node_tags[v as usize];
+        if column < vertices {
+            return format!("node {}", self.plane.node_tags[column]);
+        }
+        match self.edges.get(column - vertices) {
+            Some([a, b]) => format!("the middle of nodes {} and {}", tag(*a), tag(*b)),
+            None => format!("the middle of cell {}", self.plane.quad_tags[column - vertices - self.edges.len()]),
+        }
+    }
+
+    /// "U30 at node 17 (x, y, z in mm)".
     pub fn describe(&self, dof: usize) -> String {
         let (column, level, name) = self.locate(dof);
-        let [x, y] = self.plane.points[column];
-        let mut text = format!("{name} at node {}", self.plane.node_tags[column]);
+        let [x, y] = self.columns[column];
+        let mut text = format!("{name} at {}", self.describe_column(column));
         let _ = write!(text, " ({:.6}, {:.6}, {:.6}) mm", x * 1e3, y * 1e3, self.levels[level] * 1e3);
         text
     }
@@ -193,7 +292,7 @@ impl Plate {
     /// through `centre` by the angle 1/`length`, which moves a point at the distance `length` by 1.
     pub fn rigid_motions(&self, dof: usize, centre: [f64; 3], length: f64) -> [f64; 6] {
         let (column, level, name) = self.locate(dof);
-        let [x, y] = self.plane.points[column];
+        let [x, y] = self.columns[column];
         let p = [x - centre[0], y - centre[1], self.levels[level] - centre[2]];
         let n = name.n() - 1;
         let mut values = [0.0; 6];
@@ -213,4 +312,87 @@ impl Plate {
         }
         values
     }
+}
+
+/// Columns over the places (r, s) of each quad: their positions, those of each quad, and the vertex pairs of edge columns.
+fn columns(plane: &QuadMesh, places: &[[f64; 2]]) -> (Vec<[f64; 2]>, Vec<u32>, Vec<[u32; 2]>) {
+    let mut positions = plane.points.clone();
+    let mut edges: Vec<[u32; 2]> = Vec::new();
+    let mut numbers = HashMap::new();
+    let middle = |of: &[u32]| -> [f64; 2] {
+        std::array::from_fn(|d| of.iter().map(|v| plane.points[*v as usize][d]).sum::<f64>() / of.len() as f64)
+    };
+    // The ends of the edge that a place is the middle of.
+    let ends = |quad: &[u32; 4], [r, s]: [f64; 2]| match (r, s) {
+        (0.0, 0.0) => None,
+        (0.0, s) => Some(if s < 0.0 { [quad[0], quad[1]] } else { [quad[2], quad[3]] }),
+        (r, 0.0) => Some(if r < 0.0 { [quad[3], quad[0]] } else { [quad[1], quad[2]] }),
+        _ => None,
+    };
+    for quad in &plane.quads {
+        for ends in places.iter().filter_map(|p| ends(quad, *p)) {
+            numbers.entry(ordered(ends)).or_insert_with(|| {
+                edges.push(ordered(ends));
+                positions.push(middle(&ends));
+                positions.len() as u32 - 1
+            });
+        }
+    }
+    let first_centre = positions.len() as u32;
+    if places.contains(&[0.0, 0.0]) {
+        positions.extend(plane.quads.iter().map(|quad| middle(quad)));
+    }
+    let mut of_quads = Vec::with_capacity(plane.quads.len() * places.len());
+    for (q, quad) in plane.quads.iter().enumerate() {
+        of_quads.extend(places.iter().map(|&place| match (ends(quad, place), place) {
+            (Some(ends), _) => numbers[&ordered(ends)],
+            (None, [0.0, 0.0]) => first_centre + q as u32,
+            (None, [r, s]) => {
+                quad[match (r < 0.0, s < 0.0) {
+                    (true, true) => 0,
+                    (false, true) => 1,
+                    (false, false) => 2,
+                    (true, false) => 3,
+                }]
+            }
+        }));
+    }
+    (positions, of_quads, edges)
+}
+
+fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// Turns the quads of a strip so that their r runs along x.
+///
+/// # Errors
+/// A mesh that is no strip of rectangles along x, one cell across.
+fn along_x(plane: &mut QuadMesh) -> Result<(), String> {
+    let (low, high) = plane.bounds();
+    let width = high[1] - low[1];
+    for q in 0..plane.quads.len() {
+        let p = plane.corners(q);
+        let turn = (0..4).find(|i| {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|k| p[(i + k) % 4]);
+            let near = |u: f64, v: f64| (u - v).abs() <= 1e-9 * width;
+            near(a[1], low[1])
+                && near(b[1], low[1])
+                && near(c[1], high[1])
+                && near(d[1], high[1])
+                && near(a[0], d[0])
+                && near(b[0], c[0])
+                && b[0] > a[0]
+        });
+        match turn {
+            Some(turn) => plane.quads[q].rotate_left(turn),
+            None => {
+                return Err(format!(
+                    "a section needs a strip of rectangles along x, one cell across: cell {} is not part of one",
+                    plane.quad_tags[q]
+                ));
+            }
+        }
+    }
+    Ok(())
 }

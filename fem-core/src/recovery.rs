@@ -1,6 +1,6 @@
 //! Stresses of plies and interfaces from displacements.
 
-use crate::element::{Cell, Element, ElementError, Scratch};
+use crate::element::{Element, ElementError, Part, Scratch};
 use crate::laminate::Laminate;
 use crate::material::Material;
 use crate::plate::Plate;
@@ -21,7 +21,7 @@ pub struct Station {
     pub angle: f64,
     /// Material.
     pub material: usize,
-    q: [f64; 2],
+    part: Part,
     /// Strain in the plate's frame to stress in the station's.
     to_stress: Matrix6,
 }
@@ -84,13 +84,13 @@ impl Recovery {
         let mut strains = vec![0.0; self.sources.len() * per_quad * fields];
         let (mut operators, mut scratch, mut dofs) = (Vec::new(), Scratch::default(), Vec::new());
         let mut local = vec![0.0; n * fields];
-        let parts: Vec<[f64; 2]> = self.stations.iter().map(|s| s.q).collect();
+        let parts: Vec<Part> = self.stations.iter().map(|s| s.part).collect();
         for (quad, mut strains) in self.sources.iter().zip(strains.chunks_exact_mut(per_quad * fields)) {
             let mut first = 0;
             for stations in self.stations.chunk_by(|a, b| a.layer == b.layer) {
                 let layer = stations[0].layer;
                 let number = quad * plate.layers() + layer;
-                let cell = Cell { x: &plate.points(number), stack: &plate.stacks[layer] };
+                let cell = plate.cell(number);
                 operators.resize(6 * n * stations.len(), 0.0);
                 let parts = &parts[first..first + stations.len()];
                 element.mean_strains(&cell, parts, &mut scratch, &mut operators)?;
@@ -145,7 +145,7 @@ fn stations(plate: &Plate, laminate: &Laminate, materials: &[Material], resin: O
         let range = laminate.plies_of(layer);
         let (first, end) = (range.start, range.end);
         let slices = &plate.stacks[layer].slices;
-        let interface = |below: usize, q: f64| {
+        let interface = |below: usize, slice: usize, q: f64| {
             resin.map(|material| Station {
                 layer,
                 ply: below,
@@ -153,12 +153,12 @@ fn stations(plate: &Plate, laminate: &Laminate, materials: &[Material], resin: O
                 z: z[below + 1],
                 angle: 0.0,
                 material,
-                q: [q, q],
+                part: Part { slice, q: [q, q] },
                 to_stress: materials[material].elastic.stiffness(),
             })
         };
         if first > 0 {
-            all.extend(interface(first - 1, -1.0));
+            all.extend(interface(first - 1, 0, -1.0));
         }
         for k in range {
             let ply = &laminate.plies[k];
@@ -170,11 +170,11 @@ fn stations(plate: &Plate, laminate: &Laminate, materials: &[Material], resin: O
                 z: 0.5 * (z[k] + z[k + 1]),
                 angle: ply.angle,
                 material: ply.material,
-                q: slice.q,
+                part: Part { slice: k - first, q: slice.q },
                 to_stress: product(&materials[ply.material].elastic.stiffness(), ply.angle),
             });
             if k + 1 < end || end < laminate.plies.len() {
-                all.extend(interface(k, slice.q[1]));
+                all.extend(interface(k, k - first, slice.q[1]));
             }
         }
     }

@@ -21,11 +21,11 @@ impl Levels {
     /// # Errors
     /// No level at the mid-plane.
     pub fn of(self, plate: &Plate) -> Result<Vec<usize>, String> {
-        let top = plate.levels.len() - 1;
+        let [bottom, top] = plate.outer_levels();
         match self {
-            Self::Bottom => Ok(vec![0]),
+            Self::Bottom => Ok(vec![bottom]),
             Self::Top => Ok(vec![top]),
-            Self::All => Ok((0..=top).collect()),
+            Self::All => Ok((bottom..=top).collect()),
             Self::MidPlane => plate.mid_level().map(|l| vec![l]).ok_or_else(|| {
                 "no face between layers lies at the mid-plane: choose `layers` that meet there, or another `at`".into()
             }),
@@ -43,7 +43,7 @@ pub fn fix(plate: &Plate, columns: &[u32], levels: &[usize], dofs: &[Dof], angle
     for &column in columns {
         for &level in levels {
             for dof in dofs {
-                let name = || format!("{origin}: {dof} at node {}", plate.plane.node_tags[column as usize]);
+                let name = || format!("{origin}: {dof} at {}", plate.describe_column(column as usize));
                 if angle == 0.0 {
                     let each = plate.dofs_at(column as usize, level, *dof);
                     equations.extend(each.map(|i| Equation::fix(i, name())));
@@ -113,7 +113,12 @@ impl FreeMotions {
         let centre = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.0];
         let length = 0.5 * (high[0] - low[0]).hypot(high[1] - low[1]);
         let mut free = Self { centre, length, basis: Vec::new() };
-        let mut gram = Matrix6::zeros();
+        // What moves no unknown is no motion: a section knows nothing of y.
+        let mut moves = Vector6::<f64>::zeros();
+        for dof in 0..plate.ndof() {
+            moves += Vector6::from(plate.rigid_motions(dof, centre, length)).abs();
+        }
+        let mut gram = Matrix6::from_diagonal(&moves.map(|m| f64::from(u8::from(m <= RANK))));
         for equation in equations {
             let row = free.row(plate, equation);
             gram += row * row.transpose();
@@ -176,8 +181,10 @@ impl FreeMotions {
     /// # Errors
     /// An element without derivative unknowns cannot stop a rotation at one node.
     pub fn restrain(&self, plate: &Plate) -> Result<Vec<Equation>, String> {
-        let distance = |c: &usize| (0..2).map(|d| (plate.plane.points[*c][d] - self.centre[d]).powi(2)).sum::<f64>();
-        let column = (0..plate.plane.points.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
+        let distance = |c: &usize| (0..2).map(|d| (plate.columns[*c][d] - self.centre[d]).powi(2)).sum::<f64>();
+        let column = (0..plate.columns.len())
+            .filter(|c| !plate.dofs_of_column(*c).is_empty())
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
         let Some(column) = column else { return Ok(Vec::new()) };
         let level = plate.mid_level().unwrap_or(0);
         let unknown = |n: u8, m: u8| Dof::new(n, m).and_then(|d| plate.dofs_at(column, level, d).next());

@@ -4,7 +4,7 @@ use crate::hermite::{self, CORNERS, NodeFunctions, Quartet};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::dof::Dof;
-use fem_core::element::{Cell, Element, ElementError, ElementInfo, Scratch, positive};
+use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::quadrature::{MAX_POINTS, gauss_legendre};
 
@@ -63,41 +63,11 @@ impl HermitePrism {
     }
 }
 
-/// In-plane geometry at a point: Jacobian determinant of the quadrilateral and its inverse.
-struct Plane {
-    det: f64,
-    /// [[r,x  r,y], [s,x  s,y]]
-    inverse: [[f64; 2]; 2],
-}
-
-/// [[x,r  y,r], [x,s  y,s]] of the bilinear quadrilateral.
-fn jacobian(x: &[[f64; 3]], r: f64, s: f64) -> [[f64; 2]; 2] {
-    let mut j = [[0.0; 2]; 2];
-    for (c, p) in CORNERS[..4].iter().zip(x) {
-        let (by_r, by_s) = (0.25 * c[0] * (1.0 + s * c[1]), 0.25 * c[1] * (1.0 + r * c[0]));
-        for d in 0..2 {
-            j[0][d] += by_r * p[d];
-            j[1][d] += by_s * p[d];
-        }
-    }
-    j
-}
-
-fn plane(x: &[[f64; 3]], r: f64, s: f64) -> Plane {
-    let j = jacobian(x, r, s);
-    let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-    Plane { det, inverse: [[j[1][1] / det, -j[1][0] / det], [-j[0][1] / det, j[0][0] / det]] }
-}
-
-fn half_thickness(x: &[[f64; 3]]) -> f64 {
-    0.5 * (x[4][2] - x[0][2])
-}
-
 /// Turns the natural-derivative functions of `node` into those of its global derivatives: f,r = x,r f,x + y,r f,y at the
 /// node (eq. 20).
-fn to_global(x: &[[f64; 3]], node: usize, f: &[Quartet; 4], out: &mut [Quartet; 4]) {
-    let j = jacobian(x, CORNERS[node][0], CORNERS[node][1]);
-    let h = half_thickness(x);
+fn to_global(cell: &Cell<'_>, node: usize, f: &[Quartet; 4], out: &mut [Quartet; 4]) {
+    let j = cell.plane(CORNERS[node][0], CORNERS[node][1]).jacobian;
+    let h = cell.half_height();
     out[0] = f[0];
     for k in 0..4 {
         out[1][k] = f[1][k] * j[0][0] + f[2][k] * j[1][0];
@@ -107,16 +77,16 @@ fn to_global(x: &[[f64; 3]], node: usize, f: &[Quartet; 4], out: &mut [Quartet; 
 }
 
 /// Calls `each(function, [∂x, ∂y, ∂z])` for the 32 functions at an in-plane point, derivatives as polynomials in q.
-fn gradients(x: &[[f64; 3]], r: f64, s: f64, plane: &Plane, mut each: impl FnMut(usize, [Quartet; 3])) {
-    let h = half_thickness(x);
+fn gradients(cell: &Cell<'_>, r: f64, s: f64, plane: &PlaneMap, mut each: impl FnMut(usize, [Quartet; 3])) {
+    let h = cell.half_height();
     for (node, corner) in CORNERS.iter().enumerate() {
         let natural: NodeFunctions = hermite::node_functions(*corner, r, s);
         let mut n = [[0.0; 4]; 4];
         let mut n_r = n;
         let mut n_s = n;
-        to_global(x, node, &natural.n, &mut n);
-        to_global(x, node, &natural.n_r, &mut n_r);
-        to_global(x, node, &natural.n_s, &mut n_s);
+        to_global(cell, node, &natural.n, &mut n);
+        to_global(cell, node, &natural.n_r, &mut n_r);
+        to_global(cell, node, &natural.n_s, &mut n_s);
         for m in 0..4 {
             let by = |d: usize| -> Quartet {
                 std::array::from_fn(|k| plane.inverse[0][d] * n_r[m][k] + plane.inverse[1][d] * n_s[m][k])
@@ -131,30 +101,15 @@ const fn column(component: usize, function: usize) -> usize {
     12 * (function / 4) + 4 * component + function % 4
 }
 
-fn check_shape(x: &[[f64; 3]]) -> Result<(), ElementError> {
-    let h = half_thickness(x);
-    let size = (0..3).map(|d| (x[2][d] - x[0][d]).abs()).fold(h.abs(), f64::max);
-    let upright = (0..4).all(|i| {
-        (0..2).all(|d| (x[i + 4][d] - x[i][d]).abs() <= 1e-9 * size)
-            && (x[i][2] - x[0][2]).abs() <= 1e-9 * size
-            && (x[i + 4][2] - x[4][2]).abs() <= 1e-9 * size
-    });
-    if upright && h > 0.0 {
-        Ok(())
-    } else {
-        Err(ElementError("the prism needs plane, parallel faces and upright edges of positive height".into()))
-    }
-}
-
 impl Element for HermitePrism {
     fn info(&self) -> &ElementInfo {
         &self.info
     }
 
-    fn strain_operator(&self, x: &[[f64; 3]], [r, s, q]: [f64; 3], b: &mut [f64]) -> f64 {
-        let plane = plane(x, r, s);
+    fn strain_operator(&self, cell: &Cell<'_>, _slice: usize, [r, s, q]: [f64; 3], b: &mut [f64]) -> f64 {
+        let plane = cell.plane(r, s);
         b.fill(0.0);
-        gradients(x, r, s, &plane, |f, g| {
+        gradients(cell, r, s, &plane, |f, g| {
             for (d, g) in g.iter().enumerate() {
                 let value = hermite::at(g, q);
                 for (component, rows) in STRAIN_ROW.iter().enumerate() {
@@ -162,26 +117,26 @@ impl Element for HermitePrism {
                 }
             }
         });
-        plane.det * half_thickness(x)
+        plane.det * cell.half_height()
     }
 
-    fn shape(&self, x: &[[f64; 3]], [r, s, q]: [f64; 3], n: &mut [f64]) -> f64 {
+    fn shape(&self, cell: &Cell<'_>, [r, s, q]: [f64; 3], n: &mut [f64]) -> f64 {
         n.fill(0.0);
         for (node, corner) in CORNERS.iter().enumerate() {
             let mut functions = [[0.0; 4]; 4];
-            to_global(x, node, &hermite::node_functions(*corner, r, s).n, &mut functions);
+            to_global(cell, node, &hermite::node_functions(*corner, r, s).n, &mut functions);
             for (m, f) in functions.iter().enumerate() {
                 for component in 0..3 {
                     n[3 * column(component, 4 * node + m) + component] = hermite::at(f, q);
                 }
             }
         }
-        plane(x, r, s).det * half_thickness(x)
+        cell.plane(r, s).det * cell.half_height()
     }
 
-    fn inertia_shape(&self, x: &[[f64; 3]], xi: [f64; 3], n: &mut [f64]) -> f64 {
+    fn inertia_shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
         if self.mass == Mass::Cubic {
-            return self.shape(x, xi, n);
+            return self.shape(cell, xi, n);
         }
         n.fill(0.0);
         for (node, corner) in CORNERS.iter().enumerate() {
@@ -190,20 +145,19 @@ impl Element for HermitePrism {
                 n[3 * column(component, 4 * node) + component] = f;
             }
         }
-        plane(x, xi[0], xi[1]).det * half_thickness(x)
+        cell.plane(xi[0], xi[1]).det * cell.half_height()
     }
 
     fn stiffness(&self, cell: &Cell<'_>, scratch: &mut Scratch, ke: &mut [f64]) -> Result<(), ElementError> {
-        check_shape(cell.x)?;
         let rule = gauss_legendre(self.info.in_plane_order);
         let points = rule.len() * rule.len();
         let terms = points * DK;
         let [g, weighted, hankel, p, block] = scratch.arrays([F * terms, F * terms, DK * 6 * DK, F * 6 * terms, F * F]);
         // G: 32 × (12 · points), the point running fastest among the columns.
         for_each_point(rule, |point, r, s, w| {
-            let plane = plane(cell.x, r, s);
-            let dv = positive(plane.det)? * w * half_thickness(cell.x);
-            gradients(cell.x, r, s, &plane, |f, gradient| {
+            let plane = cell.plane(r, s);
+            let dv = positive(plane.det * cell.half_height())? * w;
+            gradients(cell, r, s, &plane, |f, gradient| {
                 for (d, polynomial) in gradient.iter().enumerate() {
                     for (k, value) in polynomial.iter().enumerate() {
                         let at = ((4 * d + k) * points + point) * F + f;
@@ -241,18 +195,17 @@ impl Element for HermitePrism {
     }
 
     fn mass(&self, cell: &Cell<'_>, scratch: &mut Scratch, me: &mut [f64]) -> Result<(), ElementError> {
-        check_shape(cell.x)?;
         let rule = gauss_legendre(self.info.in_plane_order);
         let points = rule.len() * rule.len();
         let [n, weighted, hankel, p, block] =
             scratch.arrays([F * 4 * points, F * 4 * points, 16, F * 4 * points, F * F]);
         for_each_point(rule, |point, r, s, w| {
-            let dv = positive(plane(cell.x, r, s).det)? * w * half_thickness(cell.x);
+            let dv = positive(cell.plane(r, s).det * cell.half_height())? * w;
             for (node, corner) in CORNERS.iter().enumerate() {
                 let mut functions = [[0.0; 4]; 4];
                 match self.mass {
                     Mass::Cubic => {
-                        to_global(cell.x, node, &hermite::node_functions(*corner, r, s).n, &mut functions);
+                        to_global(cell, node, &hermite::node_functions(*corner, r, s).n, &mut functions);
                     }
                     Mass::Linear => functions[0] = hermite::trilinear(*corner, r, s),
                 }
@@ -289,19 +242,18 @@ impl Element for HermitePrism {
     fn mean_strains(
         &self,
         cell: &Cell<'_>,
-        parts: &[[f64; 2]],
+        parts: &[Part],
         scratch: &mut Scratch,
         b: &mut [f64],
     ) -> Result<(), ElementError> {
-        check_shape(cell.x)?;
         // Area means of the gradients: direction × function × power of q.
         let [means] = scratch.arrays([3 * F * 4]);
         let mut area = 0.0;
         for_each_point(gauss_legendre(self.info.in_plane_order), |_, r, s, w| {
-            let plane = plane(cell.x, r, s);
-            let da = positive(plane.det)? * w;
+            let plane = cell.plane(r, s);
+            let da = positive(plane.det * cell.half_height())? * w;
             area += da;
-            gradients(cell.x, r, s, &plane, |f, gradient| {
+            gradients(cell, r, s, &plane, |f, gradient| {
                 for (d, polynomial) in gradient.iter().enumerate() {
                     let at = 4 * (F * d + f);
                     for (mean, value) in means[at..at + 4].iter_mut().zip(polynomial) {
@@ -312,7 +264,7 @@ impl Element for HermitePrism {
             Ok(())
         })?;
         b.fill(0.0);
-        for ([low, high], b) in parts.iter().zip(b.chunks_exact_mut(6 * N)) {
+        for (Part { q: [low, high], .. }, b) in parts.iter().zip(b.chunks_exact_mut(6 * N)) {
             // Mean of q⁰ … q³ over the part, per area.
             let powers: Quartet = std::array::from_fn(|k| {
                 let p = k as i32 + 1;

@@ -8,23 +8,25 @@
 //! ```
 //! use fem_core::element::{Cell, Element, Scratch, Slice, Stack};
 //! use fem_core::material::Elastic;
-//! use fem_elements::{HermitePrism, Mass, hermite::CORNERS};
+//! use fem_elements::{HermitePrism, Mass};
 //!
 //! let element = HermitePrism::new(Mass::Cubic, HermitePrism::IN_PLANE_ORDER)?;
 //! let c = Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9).stiffness();
 //! let slice = |q| Slice { q, c, density: 1575.0 };
 //! let stack = Stack::new(vec![slice([-1.0, 0.2]), slice([0.2, 1.0])]);
-//! let x = CORNERS.map(|p| p.map(|p| 0.5e-3 * p)); // a cube of 1 mm
+//! // A cube of 1 mm.
+//! let corners = [[0.0, 0.0], [1e-3, 0.0], [1e-3, 1e-3], [0.0, 1e-3]];
+//! let cell = Cell { corners, z: [0.0, 1e-3], stack: &stack };
 //!
 //! let n = element.info().ndof();
 //! let mut k = vec![0.0; n * n];
-//! element.stiffness(&Cell { x: &x, stack: &stack }, &mut Scratch::default(), &mut k)?;
+//! element.stiffness(&cell, &mut Scratch::default(), &mut k)?;
 //!
 //! // u = e x along x: U10 = e x and U11 = e at every node.
 //! let e = 1e-3;
 //! let mut u = vec![0.0; n];
-//! for (u, x) in u.chunks_exact_mut(element.info().dofs.len()).zip(&x) {
-//!     (u[0], u[1]) = (e * x[0], e);
+//! for (u, node) in u.chunks_exact_mut(element.info().dofs.len()).zip(element.info().nodes) {
+//!     (u[0], u[1]) = (e * cell.position(*node)[0], e);
 //! }
 //! let energy: f64 = (0..n * n).map(|i| 0.5 * u[i / n] * k[i] * u[i % n]).sum();
 //! let expected = 0.5 * c[0][0] * e * e * 1e-9;

@@ -1,7 +1,7 @@
 //! Element matrices against an independent implementation (tests/data/element-3d.json; units N, mm, tonne).
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use fem_core::element::{Cell, Element, Scratch, Slice, Stack};
+use fem_core::element::{Cell, Element, Part, Scratch, Slice, Stack};
 use fem_core::material::Elastic;
 use fem_core::tensor::{Strain6, rotate_stiffness, stress};
 use fem_elements::{HermitePrism, Mass};
@@ -11,10 +11,17 @@ const TOLERANCE: f64 = 1e-10;
 
 struct Case {
     name: String,
-    x: Vec<[f64; 3]>,
+    corners: [[f64; 2]; 4],
+    z: [f64; 2],
     stack: Stack,
     angles: Vec<f64>,
     reference: Value,
+}
+
+impl Case {
+    fn cell(&self) -> Cell<'_> {
+        Cell { corners: self.corners, z: self.z, stack: &self.stack }
+    }
 }
 
 fn numbers(v: &Value) -> Vec<f64> {
@@ -33,7 +40,7 @@ fn cases() -> Vec<Case> {
     let read = |e: &Value| {
         let (z0, z1) = (e["z0"].as_f64().unwrap(), e["z1"].as_f64().unwrap());
         let xy = numbers(&e["xy"]);
-        let x = [z0, z1].iter().flat_map(|z| xy.chunks(2).map(move |p| [p[0], p[1], *z])).collect();
+        let corners = std::array::from_fn(|i| [xy[2 * i], xy[2 * i + 1]]);
         let plies = e["plies"].as_array().unwrap();
         let (mut z, mut slices, mut angles) = (z0, vec![], vec![]);
         for ply in plies {
@@ -44,7 +51,7 @@ fn cases() -> Vec<Case> {
             z += t;
         }
         let name = e["name"].as_str().unwrap().to_owned();
-        Case { name, x, stack: Stack::new(slices), angles, reference: e.clone() }
+        Case { name, corners, z: [z0, z1], stack: Stack::new(slices), angles, reference: e.clone() }
     };
     let cases: Vec<_> = file["elements"].as_array().unwrap().iter().map(read).collect();
     assert_eq!(cases.len(), 3);
@@ -66,7 +73,7 @@ fn scaled_error(n: usize, got: impl Fn(usize, usize) -> f64, want: impl Fn(usize
 
 fn stiffness(element: &dyn Element, case: &Case) -> Vec<f64> {
     let mut ke = vec![f64::NAN; 96 * 96];
-    element.stiffness(&Cell { x: &case.x, stack: &case.stack }, &mut Scratch::default(), &mut ke).unwrap();
+    element.stiffness(&case.cell(), &mut Scratch::default(), &mut ke).unwrap();
     ke
 }
 
@@ -77,14 +84,14 @@ impl Element for Plain {
     fn info(&self) -> &fem_core::element::ElementInfo {
         self.0.info()
     }
-    fn strain_operator(&self, x: &[[f64; 3]], xi: [f64; 3], b: &mut [f64]) -> f64 {
-        self.0.strain_operator(x, xi, b)
+    fn strain_operator(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], b: &mut [f64]) -> f64 {
+        self.0.strain_operator(cell, slice, xi, b)
     }
-    fn shape(&self, x: &[[f64; 3]], xi: [f64; 3], n: &mut [f64]) -> f64 {
-        self.0.shape(x, xi, n)
+    fn shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
+        self.0.shape(cell, xi, n)
     }
-    fn inertia_shape(&self, x: &[[f64; 3]], xi: [f64; 3], n: &mut [f64]) -> f64 {
-        self.0.inertia_shape(x, xi, n)
+    fn inertia_shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
+        self.0.inertia_shape(cell, xi, n)
     }
 }
 
@@ -109,10 +116,10 @@ fn stiffness_mass_and_averages_agree_with_the_independent_implementation() {
             let want = r["energy"].as_f64().unwrap();
             assert!((energy - want).abs() < TOLERANCE * want, "{}: energy {energy} {want}", case.name);
 
-            let cell = Cell { x: &case.x, stack: &case.stack };
-            let mean = |q: [f64; 2]| {
+            let cell = case.cell();
+            let mean = |slice: usize, q: [f64; 2]| {
                 let mut b = vec![0.0; 6 * 96];
-                element.mean_strains(&cell, &[q], &mut Scratch::default(), &mut b).unwrap();
+                element.mean_strains(&cell, &[Part { slice, q }], &mut Scratch::default(), &mut b).unwrap();
                 let e: [f64; 6] = std::array::from_fn(|i| (0..96).map(|j| b[i + 6 * j] * u[j]).sum());
                 e
             };
@@ -124,7 +131,7 @@ fn stiffness_mass_and_averages_agree_with_the_independent_implementation() {
             };
             for (i, average) in r["ply_average"].as_array().unwrap().iter().enumerate() {
                 let slice = &case.stack.slices[i];
-                let e = mean(slice.q);
+                let e = mean(i, slice.q);
                 close(&e, &numbers(&average["strain"]), "ply strain");
                 let want = numbers(&average["stress"]);
                 close(&stress(&slice.c, &Strain6::<fem_core::tensor::Global>::new(e)).0, &want, "ply stress");
@@ -136,7 +143,7 @@ fn stiffness_mass_and_averages_agree_with_the_independent_implementation() {
             let (z0, z1) = (r["z0"].as_f64().unwrap(), r["z1"].as_f64().unwrap());
             for interface in r["interface_average_strain"].as_array().unwrap() {
                 let q = 2.0 * (interface["z"].as_f64().unwrap() - z0) / (z1 - z0) - 1.0;
-                close(&mean([q, q]), &numbers(&interface["strain"]), "interface strain");
+                close(&mean(0, [q, q]), &numbers(&interface["strain"]), "interface strain");
             }
             for (mass, key) in [(Mass::Cubic, "M_cubic_scalar"), (Mass::Linear, "M_linear_scalar")] {
                 let want = numbers(&r[key]);
@@ -172,17 +179,17 @@ fn bad_cells_and_orders_are_refused() {
     let case = &cases()[0];
     let element = HermitePrism::new(Mass::Cubic, 4).unwrap();
     let mut ke = vec![0.0; 96 * 96];
-    let mut refused =
-        |x: &[[f64; 3]]| element.stiffness(&Cell { x, stack: &case.stack }, &mut Scratch::default(), &mut ke).is_err();
-    let mut folded = case.x.clone();
+    let mut refused = |corners: [[f64; 2]; 4], z: [f64; 2]| {
+        let cell = Cell { corners, z, stack: &case.stack };
+        element.stiffness(&cell, &mut Scratch::default(), &mut ke).is_err()
+    };
+    let mut folded = case.corners;
     folded.swap(1, 2);
-    folded.swap(5, 6);
-    assert!(refused(&folded));
-    let mut slanted = case.x.clone();
-    slanted[4][2] += 0.1;
-    assert!(refused(&slanted));
-    let mut nan = case.x.clone();
+    assert!(refused(folded, case.z));
+    let mut nan = case.corners;
     nan[0][0] = f64::NAN;
-    assert!(refused(&nan));
-    assert!(!refused(&case.x));
+    assert!(refused(nan, case.z));
+    assert!(refused(case.corners, [case.z[1], case.z[0]]));
+    assert!(refused(case.corners, [case.z[0], case.z[0]]));
+    assert!(!refused(case.corners, case.z));
 }

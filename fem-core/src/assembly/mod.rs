@@ -1,5 +1,6 @@
 //! Sparse matrices of a plate: pattern once, values many times, Cholesky with its storage reused (feature `assembly`).
 
+mod alike;
 mod factor;
 mod ordering;
 mod pattern;
@@ -12,8 +13,9 @@ pub use sparse::SparseStructure;
 
 use crate::constraint::Constraints;
 use crate::counters::Counters;
-use crate::element::{Cell, Element, ElementError, Scratch};
+use crate::element::{Element, ElementError, Scratch};
 use crate::plate::Plate;
+use alike::Alike;
 use pattern::CellMap;
 use std::num::NonZeroUsize;
 
@@ -25,13 +27,13 @@ pub enum Matrix {
     Mass,
 }
 
-/// Cells integrated side by side before their matrices are added.
+/// Matrices made side by side before they are added.
 const BATCH: usize = 64;
 
 /// Order in which the unknowns of `plate` are best eliminated: columns by nested dissection, levels within.
 pub fn elimination_order(plate: &Plate) -> Vec<usize> {
     let mut order = Vec::with_capacity(plate.ndof());
-    for column in nested_dissection(&plate.plane) {
+    for column in nested_dissection(plate) {
         order.extend(plate.dofs_of_column(column as usize));
     }
     order
@@ -39,8 +41,8 @@ pub fn elimination_order(plate: &Plate) -> Vec<usize> {
 
 /// Values of K or M on `pattern`.
 ///
-/// Threads share the integration only; matrices are added in cell order, so the result is the same bit for bit for any
-/// number of threads.
+/// Cells of equal shape and plies share one matrix. Threads share the integration only; matrices are added in one order,
+/// so the result is the same bit for bit for any number of threads.
 ///
 /// # Errors
 /// A cell that the element refuses.
@@ -56,12 +58,12 @@ pub fn assemble(
     let size = element.info().ndof().pow(2);
     let mut values = vec![0.0; pattern.rows.len()];
     let (mut map, mut work) = (CellMap::default(), Vec::new());
-    let mut batch = vec![0.0; size * BATCH.min(plate.cells())];
+    let alike = Alike::of(plate);
+    let mut batch = vec![0.0; size * BATCH.min(alike.len())];
     let mut scratches: Vec<Scratch> = (0..threads.get()).map(|_| Scratch::default()).collect();
     let integrate = |cell: usize, scratch: &mut Scratch, out: &mut [f64]| -> Result<(), AssemblyError> {
-        let x = plate.points(cell);
         let (quad, layer) = plate.place(cell);
-        let view = Cell { x: &x, stack: &plate.stacks[layer] };
+        let view = plate.cell(cell);
         let done = match matrix {
             Matrix::Stiffness => element.stiffness(&view, scratch, out),
             Matrix::Mass => element.mass(&view, scratch, out),
@@ -73,26 +75,26 @@ pub fn assemble(
             error,
         })
     };
-    for first in (0..plate.cells()).step_by(BATCH) {
-        let count = BATCH.min(plate.cells() - first);
+    for first in (0..alike.len()).step_by(BATCH) {
+        let count = BATCH.min(alike.len() - first);
         let batch = &mut batch[..count * size];
         let share = count.div_ceil(threads.get());
         if threads.get() == 1 {
             for (i, out) in batch.chunks_exact_mut(size).enumerate() {
-                integrate(first + i, &mut scratches[0], out)?;
+                integrate(alike.cells(first + i)[0] as usize, &mut scratches[0], out)?;
             }
         } else {
             std::thread::scope(|scope| {
-                let integrate = &integrate;
+                let (integrate, alike) = (&integrate, &alike);
                 let workers: Vec<_> = batch
                     .chunks_mut(share * size)
                     .zip(&mut scratches)
                     .enumerate()
                     .map(|(w, (part, scratch))| {
                         scope.spawn(move || {
-                            part.chunks_exact_mut(size)
-                                .enumerate()
-                                .try_for_each(|(i, out)| integrate(first + w * share + i, scratch, out))
+                            part.chunks_exact_mut(size).enumerate().try_for_each(|(i, out)| {
+                                integrate(alike.cells(first + w * share + i)[0] as usize, scratch, out)
+                            })
                         })
                     })
                     .collect();
@@ -104,9 +106,12 @@ pub fn assemble(
         }
         counters.elements += count as u64;
         for (i, a) in batch.chunks_exact(size).enumerate() {
-            map.set(plate, constraints, first + i);
-            map.scatter(pattern, a, &mut work, &mut values);
+            for cell in alike.cells(first + i) {
+                map.set(plate, constraints, *cell as usize);
+                map.scatter(pattern, a, &mut work, &mut values);
+            }
         }
     }
+    counters.elements_reused += (plate.cells() - alike.len()) as u64;
     Ok(values)
 }

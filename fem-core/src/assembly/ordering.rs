@@ -1,18 +1,19 @@
 //! Geometric nested dissection of the node columns of a plate.
 
-use crate::mesh::QuadMesh;
+use crate::plate::Plate;
 
 /// Columns at which dissection stops.
 const LEAF: usize = 6;
 
-/// Elimination order of the columns of `mesh`: halves first, their separator last, recursively (George 1973).
+/// Elimination order of the columns of `plate`: halves first, their separator last, recursively (George 1973).
 ///
 /// The set is cut at the median of its longer side; the columns of the right half that touch the left are the separator.
-pub fn nested_dissection(mesh: &QuadMesh) -> Vec<u32> {
-    let n = mesh.points.len();
+pub fn nested_dissection(plate: &Plate) -> Vec<u32> {
+    let n = plate.columns.len();
+    let quads = plate.plane.quads.len();
     let mut degree = vec![0_u32; n + 1];
-    for quad in &mesh.quads {
-        for c in quad {
+    for quad in 0..quads {
+        for c in plate.columns_of_quad(quad) {
             degree[*c as usize + 1] += 1;
         }
     }
@@ -21,20 +22,20 @@ pub fn nested_dissection(mesh: &QuadMesh) -> Vec<u32> {
     }
     let mut cells = vec![0_u32; degree[n] as usize];
     let mut fill = degree.clone();
-    for (q, quad) in mesh.quads.iter().enumerate() {
-        for c in quad {
+    for q in 0..quads {
+        for c in plate.columns_of_quad(q) {
             cells[fill[*c as usize] as usize] = q as u32;
             fill[*c as usize] += 1;
         }
     }
-    let mut work = Work { mesh, starts: degree, cells, left: vec![0; n], cut: 0, order: Vec::with_capacity(n) };
+    let mut work = Work { plate, starts: degree, cells, left: vec![0; n], cut: 0, order: Vec::with_capacity(n) };
     let mut all: Vec<u32> = (0..n as u32).collect();
     work.dissect(&mut all);
     work.order
 }
 
 struct Work<'a> {
-    mesh: &'a QuadMesh,
+    plate: &'a Plate,
     starts: Vec<u32>,
     cells: Vec<u32>,
     /// Number of the cut in which a column was last on the left.
@@ -50,14 +51,14 @@ impl Work<'_> {
             return;
         }
         let extent = |d: usize| {
-            let of = |c: &u32| self.mesh.points[*c as usize][d];
+            let of = |c: &u32| self.plate.columns[*c as usize][d];
             let (low, high) =
                 set.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
             high - low
         };
         let d = usize::from(extent(1) > extent(0));
         let by = |a: &u32, b: &u32| {
-            self.mesh.points[*a as usize][d].total_cmp(&self.mesh.points[*b as usize][d]).then(a.cmp(b))
+            self.plate.columns[*a as usize][d].total_cmp(&self.plate.columns[*b as usize][d]).then(a.cmp(b))
         };
         let half = set.len() / 2;
         set.select_nth_unstable_by(half, by);
@@ -71,7 +72,9 @@ impl Work<'_> {
         }
         let touches = |c: &u32| {
             let cells = self.starts[*c as usize] as usize..self.starts[*c as usize + 1] as usize;
-            self.cells[cells].iter().any(|q| self.mesh.quads[*q as usize].iter().any(|c| self.left[*c as usize] == cut))
+            self.cells[cells]
+                .iter()
+                .any(|q| self.plate.columns_of_quad(*q as usize).iter().any(|c| self.left[*c as usize] == cut))
         };
         right.sort_unstable_by_key(|c| (touches(c), *c));
         let inner = right.partition_point(|c| !touches(c));

@@ -1,0 +1,71 @@
+//! Cells that share one matrix (the report's LAMCEL: a repeated cell is integrated once).
+
+use crate::plate::Plate;
+use std::collections::HashMap;
+
+/// Classes of cells of equal shape, orientation and plies.
+pub(super) struct Alike {
+    /// Start of each class in `cells`, and their number at the end.
+    starts: Vec<u32>,
+    /// Cells by class, each class in the order of the plate.
+    cells: Vec<u32>,
+}
+
+/// Edges of the quadrilateral as seen from its first corner, and the height, in units of `GRAIN` of the cell's size; which
+/// stack; and the size itself, as an exponent of 2.
+type Shape = ([i64; 7], usize, i32);
+
+/// Shapes closer than this fraction of their size are equal: above the rounding of coordinates, far below what shows.
+const GRAIN: f64 = 1e-11;
+
+impl Alike {
+    pub(super) fn of(plate: &Plate) -> Self {
+        let stacks: Vec<usize> =
+            plate.stacks.iter().map(|s| plate.stacks.iter().position(|t| t == s).unwrap_or(0)).collect();
+        let mut numbers: HashMap<Shape, u32> = HashMap::new();
+        let mut starts = vec![0];
+        let class: Vec<u32> = (0..plate.cells())
+            .map(|cell| {
+                let number = numbers.len() as u32;
+                let class = *numbers.entry(shape(plate, cell, &stacks)).or_insert(number);
+                if class == number {
+                    starts.push(0);
+                }
+                starts[class as usize + 1] += 1;
+                class
+            })
+            .collect();
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut fill = starts.clone();
+        let mut cells = vec![0; class.len()];
+        for (cell, class) in class.into_iter().enumerate() {
+            cells[fill[class as usize] as usize] = cell as u32;
+            fill[class as usize] += 1;
+        }
+        Self { starts, cells }
+    }
+
+    /// Number of classes.
+    pub(super) fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Cells of a class; never empty.
+    pub(super) fn cells(&self, class: usize) -> &[u32] {
+        &self.cells[self.starts[class] as usize..self.starts[class + 1] as usize]
+    }
+}
+
+fn shape(plate: &Plate, number: usize, stacks: &[usize]) -> Shape {
+    let cell = plate.cell(number);
+    let p = cell.corners;
+    let edges: [f64; 6] = std::array::from_fn(|i| p[1 + i / 2][i % 2] - p[0][i % 2]);
+    let size = edges.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
+    let exponent = size.log2().floor() as i32;
+    let grain = f64::from(exponent).exp2() * GRAIN;
+    let height = 2.0 * cell.half_height();
+    let grains = |i: usize| (edges.get(i).copied().unwrap_or(height) / grain).round() as i64;
+    (std::array::from_fn(grains), stacks[plate.place(number).1], exponent)
+}
