@@ -32,6 +32,9 @@ pub enum Error {
     Step(#[from] StepError),
     #[error("the failure scan failed")]
     Scan(#[from] ScanError),
+    #[error("the scene describes no impact")]
+    #[diagnostic(help("set `analysis = \"impact\"` and describe impactor, contact and march"))]
+    NoImpact,
     #[error(transparent)]
     File(#[from] FileError),
     #[error("the plot failed")]

@@ -32,5 +32,5 @@ pub use fem_dynamics as dynamics;
 pub use fem_elements as elements;
 pub use fem_failure as failure;
 pub use fem_io as io;
-pub use model::{Model, NamedCriterion};
+pub use model::{Impact, Model, NamedCriterion, NamedProfile, Plan, Statics};
 pub use registry::{NO_REDUCTION, Registry, RegistryError};

@@ -2,7 +2,7 @@
 
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
-use crate::model::Model;
+use crate::model::{Impact, Model, Plan};
 use crate::stress::Watch;
 use fem_core::assembly::{Matrix, SparseStructure, Symbolic, assemble, pattern};
 use fem_core::counters::Counters;
@@ -54,6 +54,7 @@ pub struct Sizes {
 #[derive(Debug)]
 pub struct Prepared<'a> {
     model: &'a Model,
+    pub(crate) impact: &'a Impact,
     system: ImpactSystem,
     reduced: Option<Reduced>,
     /// Sizes and limits.
@@ -65,6 +66,10 @@ pub struct Prepared<'a> {
 /// What a run found.
 #[derive(Debug, Clone)]
 pub struct Outcome {
+    /// Mass of the impactor, kg.
+    pub mass: f64,
+    /// Its speed at first touch, m/s.
+    pub velocity: f64,
     /// Force, motion and energies over time.
     pub history: Vec<HistoryRow>,
     /// First reaching of index 1 per criterion, mode and place, by time.
@@ -85,33 +90,46 @@ pub struct Outcome {
     pub stopped: Option<String>,
 }
 
+/// K and M of `model`, and the number of entries of the factor of K.
+///
+/// # Errors
+/// A cell that the element refuses, a pattern too large to factorise.
+pub fn structure(
+    model: &Model,
+    threads: NonZeroUsize,
+    counters: &mut Counters,
+) -> Result<(SparseStructure, usize), Error> {
+    let pattern = Arc::new(pattern(&model.plate, &model.constraints));
+    let mut matrix =
+        |which| assemble(&model.plate, &*model.element, &model.constraints, &pattern, which, threads, counters);
+    let (k, m) = (matrix(Matrix::Stiffness)?, matrix(Matrix::Mass)?);
+    let symbolic = Symbolic::new(pattern.clone())?;
+    let entries = symbolic.entries();
+    let (plate, originals) = (model.plate.clone(), model.constraints.clone());
+    let name = move |column| plate.describe(originals.original(column));
+    Ok((SparseStructure::new(symbolic, k, m, name), entries))
+}
+
 /// Assembles and reduces `model` and checks the step.
 ///
 /// # Errors
-/// A cell that the element refuses, a structure that is not held, a reduction that fails, a step beyond the stability
-/// limit.
+/// A scene without an impact, a cell that the element refuses, a structure that is not held, a reduction that fails, a
+/// step beyond the stability limit.
 pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Error> {
+    let Plan::Impact(impact) = &model.plan else { return Err(Error::NoImpact) };
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
-    let pattern = Arc::new(pattern(&model.plate, &model.constraints));
-    let mut matrix =
-        |which| assemble(&model.plate, &*model.element, &model.constraints, &pattern, which, threads, &mut counters);
-    let (k, m) = (matrix(Matrix::Stiffness)?, matrix(Matrix::Mass)?);
+    let (mut structure, factor_entries) = structure(model, threads, &mut counters)?;
     stopwatch.lap("assemble");
-    let symbolic = Symbolic::new(pattern.clone())?;
-    let factor_entries = symbolic.entries();
-    let (plate, originals) = (model.plate.clone(), model.constraints.clone());
-    let name = move |column| plate.describe(originals.original(column));
-    let mut structure = SparseStructure::new(symbolic, k, m, name);
     let (unknowns, stiffness_entries) = (structure.ndof(), structure.entries());
-    let reduced = match &model.reduction {
+    let reduced = match &impact.reduction {
         None => None,
         Some(reduction) => {
-            let governors = model.governors(GOVERNORS);
-            let contact = std::slice::from_ref(&model.contact);
+            let governors = model.governors(impact, GOVERNORS);
+            let contact = std::slice::from_ref(&impact.contact);
             let basis = reduction.basis(&mut structure, contact, &governors);
             Some(basis.and_then(|basis| Reduced::project(&structure, &basis)).map_err(|why| {
-                let name = &model.scene.reduction.name;
+                let name = &impact.spec.reduction.name;
                 model.scene.source.error_at(&name.place, format!("reduction `{}`: {why}", name.value), "")
             })?)
         }
@@ -119,18 +137,19 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     (counters.factorisations, counters.solves) = structure.work();
     stopwatch.lap("reduce");
 
-    let impactor = &model.scene.impactor;
+    let impactor = &impact.spec.impactor;
     let (structure, load): (Box<dyn Structure>, _) = match &reduced {
-        None => (Box::new(structure), model.contact.0.clone()),
-        Some(r) => (Box::new(r.modal.clone()), r.restrict(&model.contact).into_iter().enumerate().collect()),
+        None => (Box::new(structure), impact.contact.0.clone()),
+        Some(r) => (Box::new(r.modal.clone()), r.restrict(&impact.contact).into_iter().enumerate().collect()),
     };
     let mut system = ImpactSystem::new(
         structure,
-        vec![Impactor { mass: impactor.mass, velocity: impactor.velocity, load, law: model.law.clone() }],
+        vec![Impactor { mass: impactor.mass, velocity: impactor.velocity, load, law: impact.law.clone() }],
     );
-    let march = &model.scene.march;
-    let limited = model.integrator.limit();
-    let (longest_step, highest) = limit::longest_step(&mut system, limited).map_err(|e| unmarchable(model, e))?;
+    let march = &impact.spec.march;
+    let limited = impact.integrator.limit();
+    let (longest_step, highest) =
+        limit::longest_step(&mut system, limited).map_err(|e| unmarchable(model, impact, e))?;
     let hertz = |omega: f64| omega / std::f64::consts::TAU;
     if let (StepLimit::OmegaDt(omega_dt), Some(omega)) = (limited, highest)
         && march.step.value > longest_step
@@ -154,13 +173,13 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         steps,
         step: march.end.value / steps as f64,
     };
-    Ok(Prepared { model, system, reduced, sizes, counters, stopwatch })
+    Ok(Prepared { model, impact, system, reduced, sizes, counters, stopwatch })
 }
 
 /// The error of an integrator that cannot march `model`; one that needs M⁻¹ where M has none is shown in the scene.
-fn unmarchable(model: &Model, error: StepError) -> Error {
+fn unmarchable(model: &Model, impact: &Impact, error: StepError) -> Error {
     let StepError::SingularMass(why) = error else { return error.into() };
-    let name = &model.scene.march.integrator.name;
+    let name = &impact.spec.march.integrator.name;
     let message = format!("`{}` needs the inverse of the mass matrix, which is singular: {why}", name.value);
     let help = "choose an implicit integrator such as `newmark`, a mass that is regular (`element.mass = \"cubic\"`), or \
                 another reduction";
@@ -175,7 +194,7 @@ fn unmarchable(model: &Model, error: StepError) -> Error {
 /// # Errors
 /// Trouble before the first step: a criterion whose material lacks a constant, a singular mass.
 pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Outcome, Error> {
-    let Prepared { model, mut system, reduced, sizes, mut counters, mut stopwatch } = prepared;
+    let Prepared { model, impact, mut system, reduced, sizes, mut counters, mut stopwatch } = prepared;
     let mut watch = match model.criteria.is_empty() {
         true => None,
         false => Some(Watch::new(model, reduced.as_ref())?),
@@ -185,9 +204,9 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
     let every = |interval: f64| ((interval / sizes.step).round() as u64).max(1);
     let scan_every = every(scene.failure.every);
     let row_every = scene.output.history_every.map_or(sizes.steps.div_ceil(HISTORY_ROWS), every);
-    let mut integrator = model.integrator.clone();
+    let mut integrator = impact.integrator.clone();
     let mut state = system.initial();
-    integrator.start(&mut system, &mut state).map_err(|e| unmarchable(model, e))?;
+    integrator.start(&mut system, &mut state).map_err(|e| unmarchable(model, impact, e))?;
 
     let mut ledger = Ledger::new(&system, &state)?;
     let n = sizes.marched;
@@ -245,6 +264,8 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
     counters.factorisations = counters.factorisations.max(factorisations);
     counters.solves = counters.solves.max(solves);
     Ok(Outcome {
+        mass: impact.spec.impactor.mass,
+        velocity: impact.spec.impactor.velocity,
         history: ledger.rows,
         events,
         peaks,

@@ -158,7 +158,6 @@ impl Summary {
         };
         let (peak_force, peak_force_time_s) = peak(|r| r.contact_force_n);
         let (deflection, _) = peak(|r| r.plate_displacement_m);
-        let impactor = &model.scene.impactor;
         let last = h.last();
         let thickness = model.laminate.thickness();
         let mut first: Vec<&FailureEvent> = Vec::new();
@@ -209,15 +208,15 @@ impl Summary {
                 lowest_frequency_Hz: sizes.lowest_frequency,
             },
             impact: Impact {
-                mass_kg: impactor.mass,
-                velocity_m_s: impactor.velocity,
-                energy_J: 0.5 * impactor.mass * impactor.velocity.powi(2),
+                mass_kg: outcome.mass,
+                velocity_m_s: outcome.velocity,
+                energy_J: 0.5 * outcome.mass * outcome.velocity.powi(2),
                 end_time_s: last.map_or(0.0, |r| r.time_s),
                 peak_force_N: peak_force,
                 peak_force_time_s,
                 peak_plate_displacement_m: deflection,
                 peak_plate_displacement_over_thickness: deflection / thickness,
-                impulse_N_s: impactor.mass * (impactor.velocity - last.map_or(0.0, |r| r.impactor_velocity_m_s)),
+                impulse_N_s: outcome.mass * (outcome.velocity - last.map_or(0.0, |r| r.impactor_velocity_m_s)),
                 final_impactor_velocity_m_s: last.map_or(0.0, |r| r.impactor_velocity_m_s),
                 contacts: outcome.contacts,
             },

@@ -6,9 +6,10 @@
 //! | --- | --- |
 //! | contracts | [`element`], [`failure`], [`contact`], [`time`], [`reduction`]; [`plugin`] introduces an implementation |
 //! | materials and laminates | [`tensor`], [`material`], [`layup`], [`laminate`] |
-//! | the plate and its unknowns | [`mesh`], [`dof`], [`plate`], [`support`], [`constraint`], [`patch`] |
-//! | matrices and stresses | [`quadrature`], [`structure`], [`recovery`], [`window`], [`counters`] |
+//! | the plate and its unknowns | [`mesh`], [`dof`], [`plate`], [`support`], [`constraint`], [`patch`], [`load`] |
+//! | matrices and stresses | [`quadrature`], [`structure`], [`recovery`], [`profile`], [`window`], [`counters`] |
 #![cfg_attr(feature = "assembly", doc = "| sparse matrices (feature `assembly`) | [`assembly`] |")]
+#![cfg_attr(feature = "formula", doc = "| formulas that people write (feature `formula`) | [`formula`] |")]
 #![cfg_attr(feature = "testkit", doc = "| checks of the contracts (feature `testkit`) | [`testkit`] |")]
 //!
 //! A plug-in crate depends on this crate alone, without its default feature `assembly`, which brings the sparse solver.
@@ -43,13 +44,17 @@ pub mod counters;
 pub mod dof;
 pub mod element;
 pub mod failure;
+#[cfg(feature = "formula")]
+pub mod formula;
 pub mod laminate;
 pub mod layup;
+pub mod load;
 pub mod material;
 pub mod mesh;
 pub mod patch;
 pub mod plate;
 pub mod plugin;
+pub mod profile;
 pub mod quadrature;
 pub mod recovery;
 pub mod reduction;

@@ -43,6 +43,48 @@ pub struct QuadQuality {
 }
 
 impl QuadMesh {
+    /// A rectangle with nodes at all pairs of the ascending `x` and `y`, m. Groups: the edges `x-min`, `x-max`, `y-min`,
+    /// `y-max`, the cells `plate`; nodes and cells count along x first.
+    pub fn rectangle(x: &[f64], y: &[f64]) -> Self {
+        let (nx, ny) = (x.len(), y.len());
+        let node = |i: usize, j: usize| (j * nx + i) as u32;
+        let mut mesh = Self {
+            points: y.iter().flat_map(|y| x.iter().map(move |x| [*x, *y])).collect(),
+            node_tags: (1..=(nx * ny) as u64).collect(),
+            ..Self::default()
+        };
+        for j in 1..ny {
+            for i in 1..nx {
+                mesh.quads.push([node(i - 1, j - 1), node(i, j - 1), node(i, j), node(i - 1, j)]);
+            }
+        }
+        mesh.quad_tags = (1..=mesh.quads.len() as u64).collect();
+        let (along_x, along_y) =
+            (|j: usize| (0..nx).map(move |i| node(i, j)), |i: usize| (0..ny).map(move |j| node(i, j)));
+        let edge = |nodes: Vec<u32>| Group {
+            dim: 1,
+            edges: nodes.windows(2).map(|n| [n[0], n[1]]).collect(),
+            nodes,
+            ..Group::default()
+        };
+        let plate = Group {
+            dim: 2,
+            nodes: (0..mesh.points.len() as u32).collect(),
+            quads: (0..mesh.quads.len() as u32).collect(),
+            ..Group::default()
+        };
+        mesh.groups = [
+            ("x-min", edge(along_y(0).collect())),
+            ("x-max", edge(along_y(nx - 1).collect())),
+            ("y-min", edge(along_x(0).collect())),
+            ("y-max", edge(along_x(ny - 1).collect())),
+            ("plate", plate),
+        ]
+        .map(|(name, group)| (name.to_owned(), group))
+        .into();
+        mesh
+    }
+
     /// Corner positions of a cell.
     pub fn corners(&self, quad: usize) -> [[f64; 2]; 4] {
         self.quads[quad].map(|n| self.points[n as usize])

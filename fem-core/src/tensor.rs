@@ -71,6 +71,13 @@ impl Strain6<Global> {
     }
 }
 
+impl Stress6<Global> {
+    /// The same stress in the frame of a ply; `angle` as in [`Strain6::to_ply`].
+    pub fn to_ply(&self, angle: f64) -> Stress6<Ply> {
+        Stress6::new(apply(&transpose(&strain_rotation(-angle)), &self.0))
+    }
+}
+
 impl Stress6<Ply> {
     /// The same stress in the plate's frame; `angle` as in [`Strain6::to_ply`].
     pub fn to_global(&self, angle: f64) -> Stress6<Global> {

@@ -5,6 +5,7 @@
 //! | few unknowns instead of many | [`reduce`] |
 //! | force of an indentation | [`contact`] |
 //! | structure and impactors as one system, with its energies | [`impact`] |
+//! | natural frequencies | [`modes`] |
 //! | steps in time | [`integrate`], [`limit`] |
 //!
 //! A mass strikes one that hangs on a spring:
@@ -64,4 +65,6 @@ pub mod contact;
 pub mod impact;
 pub mod integrate;
 pub mod limit;
+pub mod modes;
 pub mod reduce;
+mod vector;

@@ -24,7 +24,8 @@ pub(super) fn check(registry: &Registry, arguments: &Arguments) -> miette::Resul
 
 fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
     let model = Model::new(scene::read(&arguments.scene)?, registry)?;
-    let sizes = run::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model))?.sizes;
+    let prepared = run::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model))?;
+    let (impact, sizes) = (prepared.impact, prepared.sizes);
     let (plate, scene) = (&model.plate, &model.scene);
     let megabytes = |entries: usize| entries as f64 * 8e-6;
     let known = [("lowest excited", sizes.lowest_frequency), ("highest", sizes.highest_frequency)];
@@ -77,8 +78,8 @@ fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
                 "{} steps of {:.4} us to {:.4} ms with {} ({stable})",
                 sizes.steps,
                 sizes.step * 1e6,
-                scene.march.end.value * 1e3,
-                scene.march.integrator.name.value
+                impact.spec.march.end.value * 1e3,
+                impact.spec.march.integrator.name.value
             ),
         ),
         ("damage", if criteria.is_empty() { "off".into() } else { criteria.join(", ") }),

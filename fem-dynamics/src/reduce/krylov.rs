@@ -1,5 +1,6 @@
 //! Lanczos iteration in the metric of M.
 
+use crate::vector::{axpy, dot};
 use fem_core::reduction::ReductionError;
 use fem_core::structure::Structure;
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -138,15 +139,5 @@ where
             (self.inverse)(self.structure, &mut modes)?;
             return Ok(modes);
         }
-    }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn axpy(scale: f64, x: &[f64], y: &mut [f64]) {
-    for (y, x) in y.iter_mut().zip(x) {
-        *y += scale * x;
     }
 }

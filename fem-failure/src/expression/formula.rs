@@ -1,16 +1,11 @@
-//! One formula: checked, compiled, evaluated.
-//!
-//! `exmex` compiles and evaluates. It reads generously (`2 s1 -` loses an operator, `-s1^2` is (−s1)², a comparison may
-//! stand anywhere), so that only texts in which every symbol and bracket has its place reach it.
+//! A formula over the stress and the constants of a material.
 
-use exmex::{BinOp, Express, FlatEx, MakeOperators, MatchLiteral, Operator, literal_matcher_from_pattern};
+use fem_core::formula;
 use fem_core::material::{Elastic, Material, Strength};
 use fem_core::plugin::unknown_key;
 use fem_core::tensor::{Ply, Stress6};
 
 type Constant = fn(&Elastic) -> f64;
-type Function = fn(f64) -> f64;
-type Binary = fn(f64, f64) -> f64;
 
 /// What a symbol stands for.
 #[derive(Debug, Clone, Copy)]
@@ -48,62 +43,19 @@ const ELASTIC: [(&str, Constant); 9] = [
     ("G23", |e| e.g23),
 ];
 
-const FUNCTIONS: [(&str, Function); 8] = [
-    ("abs", f64::abs),
-    ("sqrt", f64::sqrt),
-    ("exp", f64::exp),
-    ("ln", f64::ln),
-    ("sin", f64::sin),
-    ("cos", f64::cos),
-    ("tan", f64::tan),
-    ("pos", crate::prelude::macaulay),
-];
-
-/// Operators with their priority: the higher, the tighter they bind.
-const OPERATORS: [(&str, i64, Binary); 9] = [
-    ("<", 0, |a, b| truth(a, b, a < b)),
-    ("<=", 0, |a, b| truth(a, b, a <= b)),
-    (">", 0, |a, b| truth(a, b, a > b)),
-    (">=", 0, |a, b| truth(a, b, a >= b)),
-    ("+", 1, |a, b| a + b),
-    ("-", 1, |a, b| a - b),
-    ("*", 2, |a, b| a * b),
-    ("/", 2, |a, b| a / b),
-    ("^", 3, |a, b| if b == 2.0 { a * a } else { a.powf(b) }),
-];
-
-/// 1 or 0; NaN where one of the two is none.
-fn truth(a: f64, b: f64, holds: bool) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::NAN } else { f64::from(u8::from(holds)) }
-}
-
-#[derive(Debug, Clone)]
-struct Language;
-
-impl MakeOperators<f64> for Language {
-    fn make<'a>() -> Vec<Operator<'a, f64>> {
-        let binary = OPERATORS
-            .iter()
-            .map(|&(name, prio, apply)| Operator::make_bin(name, BinOp { apply, prio, is_commutative: false }));
-        binary.chain(FUNCTIONS.iter().map(|&(name, apply)| Operator::make_unary(name, apply))).collect()
-    }
-}
-
-literal_matcher_from_pattern!(Numbers, r"^([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?");
-
 /// A formula over the stress and the constants of a material.
 #[derive(Debug, Clone)]
 pub(super) struct Formula {
-    compiled: FlatEx<f64, Language, Numbers>,
-    /// What to hand over, in the order that `compiled` wants.
+    formula: formula::Formula,
+    /// What to hand over, in the order that `formula` wants.
     symbols: Vec<Symbol>,
 }
 
 impl Formula {
     pub(super) fn parse(text: &str) -> Result<Self, String> {
-        let compiled = FlatEx::<f64, Language, Numbers>::parse(&checked(text)?).map_err(|e| e.to_string())?;
-        let symbols = compiled.var_names().iter().map(|name| symbol(name)).collect::<Result<_, _>>()?;
-        Ok(Self { compiled, symbols })
+        let formula = formula::Formula::parse(text, |name| symbol(name).map(drop))?;
+        let symbols = formula.names().iter().map(|name| symbol(name)).collect::<Result<_, _>>()?;
+        Ok(Self { formula, symbols })
     }
 
     /// Strengths that it names.
@@ -124,7 +76,7 @@ impl Formula {
                 Symbol::Elastic(constant) => constant(&m.elastic),
             };
         }
-        self.compiled.eval(&values[..self.symbols.len()]).unwrap_or(f64::NAN)
+        self.formula.value(&values[..self.symbols.len()])
     }
 }
 
@@ -135,114 +87,9 @@ fn symbol(name: &str) -> Result<Symbol, String> {
     stress.or_else(strength).or_else(elastic).ok_or_else(|| {
         let stresses = STRESSES[..6].iter().map(|s| s.0);
         let constants = Strength::ALL.iter().map(|s| s.name()).chain(ELASTIC.iter().map(|e| e.0));
-        let known = stresses.chain(constants).chain(FUNCTIONS.iter().map(|f| f.0));
+        let known = stresses.chain(constants).chain(formula::Formula::functions());
         format!("`{name}` {}", unknown_key(name, known))
     })
-}
-
-/// A bracket, or the whole text.
-#[derive(Default)]
-struct Level {
-    /// The operator before the last value.
-    operator: &'static str,
-    compared: bool,
-}
-
-/// The text with a 0 before every sign, so that the sign is a subtraction: −x² then is −(x²).
-///
-/// Refuses what is no formula or could be read in two ways.
-fn checked(text: &str) -> Result<String, String> {
-    let mut out = String::new();
-    let mut levels = vec![Level::default()];
-    // A value must come next, else an operator or a closing bracket.
-    let mut value_next = true;
-    // Nothing stands yet in this bracket or on this side of the comparison.
-    let mut opened = true;
-    let mut rest = text.trim_start();
-    while let Some(first) = rest.chars().next() {
-        let (token, after) = rest.split_at(token_length(rest));
-        let inner = levels.len() > 1;
-        let Some(level) = levels.last_mut() else { break };
-        if first.is_ascii_alphanumeric() || matches!(first, '_' | '.' | '(') {
-            if !value_next {
-                return Err(format!("an operator is missing before `{token}`"));
-            }
-            opened = false;
-            value_next = false;
-            let function = FUNCTIONS.iter().any(|f| f.0 == token);
-            if first == '(' {
-                levels.push(Level::default());
-                (value_next, opened) = (true, true);
-            } else if function {
-                if !after.trim_start().starts_with('(') {
-                    return Err(format!("`{token}` needs its argument in brackets"));
-                }
-                value_next = true;
-            } else if first.is_ascii_alphabetic() || first == '_' {
-                symbol(token)?;
-            } else if !token.parse::<f64>().is_ok_and(f64::is_finite) {
-                return Err(format!("`{token}` is no number"));
-            }
-        } else if first == ')' {
-            if value_next {
-                return Err("a value is missing before `)`".into());
-            }
-            levels.pop();
-            if levels.is_empty() {
-                return Err("a bracket is closed that was not opened".into());
-            }
-        } else if let Some((operator, priority, _)) = OPERATORS.iter().find(|o| o.0 == token) {
-            let sign = opened && matches!(first, '+' | '-');
-            if value_next && !sign {
-                let help = if matches!(first, '+' | '-') { ": put the signed value in brackets" } else { "" };
-                return Err(format!("a value is missing before `{token}`{help}"));
-            }
-            if sign {
-                out.push('0');
-            }
-            if *operator == "^" && level.operator == "^" {
-                return Err("`a^b^c` can be read in two ways: use brackets".into());
-            }
-            let comparison = *priority == 0;
-            if comparison && (!inner || std::mem::replace(&mut level.compared, true)) {
-                return Err(format!("the comparison with `{token}` needs brackets of its own"));
-            }
-            level.operator = operator;
-            (value_next, opened) = (true, comparison);
-        } else {
-            return Err(format!("`{token}` means nothing in a formula"));
-        }
-        out.push_str(token);
-        out.push(' ');
-        rest = after.trim_start();
-    }
-    if levels.len() > 1 {
-        return Err("a bracket is not closed".into());
-    }
-    if value_next {
-        return Err(if out.is_empty() { "it is empty".into() } else { "a value is missing at the end".into() });
-    }
-    Ok(out)
-}
-
-/// Bytes of the number, word, operator or other character at the beginning of `text`.
-fn token_length(text: &str) -> usize {
-    let bytes = text.as_bytes();
-    let run = |from: usize, part: fn(&u8) -> bool| bytes[from..].iter().take_while(|b| part(b)).count();
-    match bytes.first() {
-        Some(b'0'..=b'9' | b'.') => {
-            let mut end = run(0, |b| b.is_ascii_digit() || *b == b'.');
-            if matches!(bytes.get(end), Some(b'e' | b'E')) {
-                let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
-                let digits = run(end + 1 + sign, u8::is_ascii_digit);
-                end += if digits > 0 { 1 + sign + digits } else { 0 };
-            }
-            end
-        }
-        Some(b'a'..=b'z' | b'A'..=b'Z' | b'_') => run(0, |b| b.is_ascii_alphanumeric() || *b == b'_'),
-        Some(b'<' | b'>') if bytes.get(1) == Some(&b'=') => 2,
-        _ => text.chars().next().map_or(0, char::len_utf8),
-    }
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 //! [`SceneError`] that shows the line.
 
 mod laminate;
+mod load;
 pub(crate) mod material;
 mod plugin;
 pub(crate) mod reader;
@@ -15,8 +16,9 @@ mod support;
 mod tests;
 pub(crate) mod tree;
 
+pub use load::{Load, LoadKind, Pressure, ProfileLine};
 pub use plugin::PluginSpec;
-pub use run::{Damage, Failure, ImpactPoint, Impactor, Load, March, Output, Window};
+pub use run::{ContactLoad, Damage, Failure, Impact, ImpactPoint, Impactor, March, Output, Window};
 pub use source::{Located, Place, SceneError, SceneSource};
 pub use support::{Couple, Equation, NodeSet, Support, Term};
 
@@ -39,8 +41,10 @@ pub struct Scene {
     pub title: String,
     /// The preset beneath its keys.
     pub fidelity: Fidelity,
+    /// What is computed.
+    pub analysis: Analysis,
     /// The mesh.
-    pub mesh: MeshFile,
+    pub mesh: MeshSource,
     /// Its materials.
     pub materials: Vec<Located<Material>>,
     /// The laminate; its materials count in `materials`.
@@ -57,16 +61,10 @@ pub struct Scene {
     pub equations: Vec<Equation>,
     /// Sets of nodes that move together.
     pub couples: Vec<Couple>,
-    /// The impactor.
-    pub impactor: Impactor,
-    /// The contact law.
-    pub contact: PluginSpec,
     /// What is done about damage.
     pub damage: Damage,
-    /// The reduction; `none` for the full system.
-    pub reduction: PluginSpec,
-    /// The march in time.
-    pub march: March,
+    /// Lines through the thickness along which stresses are written.
+    pub profiles: Vec<ProfileLine>,
     /// Where and when failure is looked for.
     pub failure: Failure,
     /// What is written.
@@ -109,18 +107,43 @@ impl Fidelity {
     }
 }
 
-/// A mesh file.
+/// What is computed of a scene.
+#[derive(Debug, Clone)]
+pub enum Analysis {
+    /// The response to an impact.
+    Impact(Box<Impact>),
+    /// Displacements and stresses under loads at rest.
+    Static(Vec<Load>),
+    /// The lowest natural frequencies.
+    Modes {
+        /// How many.
+        count: usize,
+    },
+}
+
+/// Where the mesh comes from.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MeshFile {
-    /// Its path, resolved against the folder of the scene.
-    pub file: Located<PathBuf>,
-    /// Size of the file's unit of length, m.
-    pub metres_per_unit: f64,
+pub enum MeshSource {
+    /// A file of gmsh.
+    File {
+        /// Its path, resolved against the folder of the scene.
+        file: Located<PathBuf>,
+        /// Size of the file's unit of length, m.
+        metres_per_unit: f64,
+    },
+    /// A rectangle from the origin with equal cells.
+    Rectangle {
+        /// Edges along x and y, m.
+        size: [f64; 2],
+        /// Cells along x and y.
+        cells: [usize; 2],
+    },
 }
 
 const KEYS: Keys = &[
     ("title", r#""16 plies, 2.49 kg at 1.56 m/s""#),
     ("fidelity", r#""engineering""#),
+    ("analysis", r#""static""#),
     ("mesh", r#"{ file = "plate.msh", unit = "mm" }"#),
     ("materials", r#"{ as4-3502 = { library = "AS4/3502" } }"#),
     ("laminate", r#"{ plies = "[0/45/-45/90]2s", material = "as4-3502", ply_thickness = "0.13208 mm" }"#),
@@ -131,12 +154,24 @@ const KEYS: Keys = &[
     ("impactor", r#"{ mass = "2.49 kg", velocity = "1.56 m/s", at = { group = "impact" } }"#),
     ("contact", r#"{ law = "sun-yang", k = "1.07e5 N/mm^1.5", n = 1.5, m = 2.5, critical = "0.08 mm", beta = 0.4 }"#),
     ("effects", r#"{ damage = "onset" }"#),
+    ("load", r#"[{ pressure = "1 MPa", face = "top" }]"#),
+    ("modes", "{ count = 10 }"),
+    ("profile", r#"[{ name = "centre", at = { x = "50 mm", y = "50 mm" }, points = 5 }]"#),
     ("reduction", r#"{ method = "craig-bampton", modes = 40 }"#),
     ("march", r#"{ integrator = "newmark", step = "0.5 us", end = "1 ms" }"#),
     ("failure", r#"{ criteria = ["hashin-report"] }"#),
     ("output", "{ plots = true }"),
 ];
-const MESH: Keys = &[("file", r#""plate.msh""#), ("unit", r#""mm""#)];
+const MESH: Keys =
+    &[("file", r#""plate.msh""#), ("unit", r#""mm""#), ("rectangle", r#"["100 mm", "50 mm"]"#), ("cells", "[8, 4]")];
+const FILE: Keys = &[("file", r#""plate.msh""#), ("unit", r#""mm""#)];
+const RECTANGLE: Keys = &[("rectangle", r#"["100 mm", "50 mm"]"#), ("cells", "[8, 4]")];
+/// Natural frequencies unless a scene says how many.
+pub const DEFAULT_MODES: usize = 10;
+const MODES: Keys = &[("count", "10")];
+
+/// Most cells of a built-in mesh: more is a slip.
+const MAX_CELLS: usize = 4_000_000;
 
 /// Largest scene file: more is some other file, given by mistake.
 const MAX_BYTES: u64 = 1 << 22;
@@ -179,6 +214,7 @@ pub fn parse(text: &str, path: &Path) -> Result<Scene, SceneError> {
     let materials = material::read_all(&root.required("materials")?)?;
     let (laminate, interface) = laminate::read(&root.required("laminate")?, &materials)?;
     let element = root.required("element")?;
+    let analysis = read_analysis(&root)?;
     let damage = root.optional("effects").map_or(Ok(Damage::Onset), |field| run::read_effects(&field))?;
     Ok(Scene {
         title: root.required("title")?.text()?.to_owned(),
@@ -192,25 +228,85 @@ pub fn parse(text: &str, path: &Path) -> Result<Scene, SceneError> {
         supports: support::read_all(&root.required("support")?)?,
         equations: root.optional("equation").map_or(Ok(Vec::new()), |field| support::read_equations(&field))?,
         couples: root.optional("couple").map_or(Ok(Vec::new()), |field| support::read_couples(&field))?,
-        impactor: run::read_impactor(&root.required("impactor")?)?,
-        contact: PluginSpec::read(&root.required("contact")?, "law", &[])?,
+        failure: run::read_failure(
+            &root.required("failure")?,
+            damage == Damage::Onset && matches!(analysis, Analysis::Impact(_)),
+        )?,
+        analysis,
         damage,
-        reduction: PluginSpec::read(&root.required("reduction")?, "method", &[])?,
-        march: run::read_march(&root.required("march")?)?,
-        failure: run::read_failure(&root.required("failure")?, damage)?,
+        profiles: root.optional("profile").map_or(Ok(Vec::new()), |field| load::read_profiles(&field))?,
         output: root.optional("output").map_or(Ok(Output::default()), |field| run::read_output(&field))?,
         source,
     })
 }
 
-fn read_mesh(field: &Field<'_>, scene: &Path) -> Result<MeshFile, SceneError> {
-    let table = field.table(MESH)?;
+fn read_analysis(root: &Reader<'_>) -> Result<Analysis, SceneError> {
+    const IMPACT: &[&str] = &["impactor", "contact", "reduction", "march"];
+    // Keys that the chosen analysis has no use for; those of a preset lie there for others.
+    let unused = |analysis: &str, keys: &[&str]| {
+        let stray = keys.iter().filter_map(|key| root.optional(key)).find(|f| f.place().origin == Origin::Scene);
+        stray.map_or(Ok(()), |field| {
+            let help = "leave it out, or choose another `analysis`: impact, static, modes";
+            Err(field.error(format!("means nothing in the analysis `{analysis}`"), help))
+        })
+    };
+    let which = match root.optional("analysis") {
+        Some(field) => field.choice(&[("impact", 0), ("static", 1), ("modes", 2)])?,
+        None => 0,
+    };
+    match which {
+        1 => {
+            unused("static", &[IMPACT, &["modes"]].concat())?;
+            Ok(Analysis::Static(load::read_all(&root.required("load")?)?))
+        }
+        2 => {
+            unused("modes", &[IMPACT, &["load", "profile"]].concat())?;
+            let count = root.optional("modes").map_or(Ok(DEFAULT_MODES), |field| {
+                field.table(MODES)?.optional("count").map_or(Ok(DEFAULT_MODES), |field| field.count())
+            })?;
+            Ok(Analysis::Modes { count })
+        }
+        _ => {
+            unused("impact", &["load", "modes", "profile"])?;
+            Ok(Analysis::Impact(Box::new(Impact {
+                impactor: run::read_impactor(&root.required("impactor")?)?,
+                contact: PluginSpec::read(&root.required("contact")?, "law", &[])?,
+                reduction: PluginSpec::read(&root.required("reduction")?, "method", &[])?,
+                march: run::read_march(&root.required("march")?)?,
+            })))
+        }
+    }
+}
+
+fn read_mesh(field: &Field<'_>, scene: &Path) -> Result<MeshSource, SceneError> {
+    let any = field.table(MESH)?;
+    if any.optional("rectangle").is_some() {
+        return read_rectangle(&field.table(RECTANGLE)?);
+    }
+    let table = field.table(FILE)?;
     let file = table.required("file")?;
     let path = scene.parent().unwrap_or(Path::new("")).join(file.text()?);
     let unit = table.required("unit")?;
     let metres_per_unit = units::parse_as(&format!("1 {}", unit.text()?), Dimension::LENGTH)
         .map_err(|_| unit.error("must be a unit of length", "write the unit of the file's coordinates: mm, m, in"))?;
-    Ok(MeshFile { file: file.at(path), metres_per_unit })
+    Ok(MeshSource::File { file: file.at(path), metres_per_unit })
+}
+
+fn read_rectangle(table: &Reader<'_>) -> Result<MeshSource, SceneError> {
+    fn pair<T>(field: &Field<'_>, read: impl Fn(&Field<'_>) -> Result<T, SceneError>) -> Result<[T; 2], SceneError> {
+        let parts = field.list()?;
+        match &parts[..] {
+            [x, y] => Ok([read(x)?, read(y)?]),
+            _ => Err(field.error(format!("has {} values", parts.len()), "give two: along x and y")),
+        }
+    }
+    let size = pair(&table.required("rectangle")?, |field| field.positive(Dimension::LENGTH))?;
+    let field = table.required("cells")?;
+    let cells = pair(&field, |field| field.count())?;
+    match cells[0].checked_mul(cells[1]) {
+        Some(n) if n <= MAX_CELLS => Ok(MeshSource::Rectangle { size, cells }),
+        _ => Err(field.error(format!("{} x {} cells", cells[0], cells[1]), format!("at most {MAX_CELLS} in all"))),
+    }
 }
 
 /// `shared` where neither scene nor preset says.

@@ -17,10 +17,10 @@ pub struct Impactor {
     /// Where it strikes.
     pub at: Located<ImpactPoint>,
     /// How its force enters the plate.
-    pub load: Located<Load>,
+    pub load: Located<ContactLoad>,
 }
 
-/// Where an impactor strikes.
+/// A point of the plane: where an impactor strikes, for one.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ImpactPoint {
     /// At the one node of this group of the mesh.
@@ -31,7 +31,7 @@ pub enum ImpactPoint {
 
 /// How a contact force enters the plate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Load {
+pub enum ContactLoad {
     /// At one node: singular in a solid, so that stresses near it depend on the mesh.
     Node,
     /// As Hertz pressure over a circle.
@@ -48,6 +48,19 @@ pub enum Damage {
     Off,
     /// Its onset is found; the plate stays as it is.
     Onset,
+}
+
+/// An impact and how it is computed.
+#[derive(Debug, Clone)]
+pub struct Impact {
+    /// The impactor.
+    pub impactor: Impactor,
+    /// The contact law.
+    pub contact: PluginSpec,
+    /// The reduction; `none` for the full system.
+    pub reduction: PluginSpec,
+    /// The march in time.
+    pub march: March,
 }
 
 /// The march in time.
@@ -134,7 +147,7 @@ pub(super) fn read_impactor(field: &Field<'_>) -> Result<Impactor, SceneError> {
     Ok(Impactor { mass, velocity, at: read_point(&table.required("at")?)?, load: read_load(&table)? })
 }
 
-fn read_point(field: &Field<'_>) -> Result<Located<ImpactPoint>, SceneError> {
+pub(super) fn read_point(field: &Field<'_>) -> Result<Located<ImpactPoint>, SceneError> {
     let table = field.table(AT)?;
     let [x, y] = ["x", "y"].map(|key| table.optional(key));
     let point = match (table.optional("group"), x.or(y)) {
@@ -150,13 +163,13 @@ fn read_point(field: &Field<'_>) -> Result<Located<ImpactPoint>, SceneError> {
     Ok(field.at(point))
 }
 
-fn read_load(table: &Reader<'_>) -> Result<Located<Load>, SceneError> {
+fn read_load(table: &Reader<'_>) -> Result<Located<ContactLoad>, SceneError> {
     let [load, patch] = table.either(["load", "patch_radius"])?;
     if let Some(load) = load {
-        return Ok(load.at(load.choice(&[("node", Load::Node)])?));
+        return Ok(load.at(load.choice(&[("node", ContactLoad::Node)])?));
     }
     let patch = patch.map_or_else(|| table.required("patch_radius"), Ok)?;
-    Ok(patch.at(Load::Patch { radius: patch.positive(Dimension::LENGTH)? }))
+    Ok(patch.at(ContactLoad::Patch { radius: patch.positive(Dimension::LENGTH)? }))
 }
 
 pub(super) fn read_march(field: &Field<'_>) -> Result<March, SceneError> {
@@ -174,10 +187,10 @@ pub(super) fn read_march(field: &Field<'_>) -> Result<March, SceneError> {
     Ok(March { integrator, step: step_field.at(step), end: end_field.at(end) })
 }
 
-pub(super) fn read_failure(field: &Field<'_>, damage: Damage) -> Result<Failure, SceneError> {
+pub(super) fn read_failure(field: &Field<'_>, wanted: bool) -> Result<Failure, SceneError> {
     let table = field.table(FAILURE)?;
-    let criteria = match (table.optional("criteria"), damage) {
-        (None, Damage::Off) => Vec::new(),
+    let criteria = match (table.optional("criteria"), wanted) {
+        (None, false) => Vec::new(),
         _ => table.required("criteria")?.list()?.iter().map(PluginSpec::read_or_name).collect::<Result<_, _>>()?,
     };
     let window = table.required("window")?;

@@ -120,7 +120,7 @@ pub(super) fn read_couples(field: &Field<'_>) -> Result<Vec<Couple>, SceneError>
     field.list()?.iter().map(read).collect()
 }
 
-fn nodes(table: &Reader<'_>) -> Result<NodeSet, SceneError> {
+pub(super) fn nodes(table: &Reader<'_>) -> Result<NodeSet, SceneError> {
     const LEVELS: [(&str, Levels); 4] =
         [("mid-plane", Levels::MidPlane), ("bottom", Levels::Bottom), ("top", Levels::Top), ("all", Levels::All)];
     let group = table.required("group")?;

@@ -1,0 +1,102 @@
+//! Loads as consistent nodal forces, f = ∫ Nᵀ p dA: one per unknown, before elimination of constraints.
+
+use crate::dof::Dof;
+use crate::element::Element;
+use crate::plate::Plate;
+use crate::quadrature::gauss_legendre;
+use std::collections::HashSet;
+
+/// Gauss points per direction: exact for cubic functions under a pressure of degree 12.
+const ORDER: usize = 8;
+
+/// A face of the plate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Face {
+    Bottom,
+    Top,
+}
+
+/// Adds the forces of a pressure `p`(x, y), Pa, that presses on `face` of `quads`: downwards on the top, upwards on the
+/// bottom.
+pub fn pressure(
+    plate: &Plate,
+    element: &dyn Element,
+    face: Face,
+    quads: impl IntoIterator<Item = usize>,
+    p: impl Fn([f64; 2]) -> f64,
+    f: &mut [f64],
+) {
+    let (layer, q, sign) = match face {
+        Face::Bottom => (0, -1.0, 1.0),
+        Face::Top => (plate.layers() - 1, 1.0, -1.0),
+    };
+    let mut shape = vec![0.0; 3 * element.info().ndof()];
+    let mut dofs = Vec::new();
+    let rule = gauss_legendre(ORDER);
+    for quad in quads {
+        let number = quad * plate.layers() + layer;
+        let cell = plate.cell(number);
+        plate.cell_dofs(number, &mut dofs);
+        for &(r, wr) in rule {
+            for &(s, ws) in rule {
+                element.shape(&cell, [r, s, q], &mut shape);
+                let [x, y, _] = cell.position([r, s, q]);
+                let force = sign * p([x, y]) * cell.plane(r, s).det * wr * ws;
+                for (dof, n) in dofs.iter().zip(shape.chunks_exact(3)) {
+                    f[*dof] += force * n[2];
+                }
+            }
+        }
+    }
+}
+
+/// Adds the forces of `per_length` (x, y, z), N/m, along `edges` of the plane mesh, spread evenly through the thickness.
+pub fn edge(plate: &Plate, element: &dyn Element, edges: &[[u32; 2]], per_length: [f64; 3], f: &mut [f64]) {
+    let mut open: HashSet<[u32; 2]> = edges.iter().map(|[a, b]| [*a.min(b), *a.max(b)]).collect();
+    let thickness = plate.levels[plate.levels.len() - 1] - plate.levels[0];
+    let mut shape = vec![0.0; 3 * element.info().ndof()];
+    let mut dofs = Vec::new();
+    let rule = gauss_legendre(ORDER);
+    for (quad, corners) in plate.plane.quads.iter().enumerate() {
+        for side in 0..4 {
+            let (a, b) = (corners[side], corners[(side + 1) % 4]);
+            if !open.remove(&[a.min(b), a.max(b)]) {
+                continue;
+            }
+            let [p, q] = [a, b].map(|v| plate.plane.points[v as usize]);
+            let length = (q[0] - p[0]).hypot(q[1] - p[1]);
+            for layer in 0..plate.layers() {
+                let number = quad * plate.layers() + layer;
+                let cell = plate.cell(number);
+                plate.cell_dofs(number, &mut dofs);
+                for &(t, wt) in rule {
+                    let [r, s] = [[t, -1.0], [1.0, t], [-t, 1.0], [-1.0, -t]][side];
+                    for &(q, wq) in rule {
+                        element.shape(&cell, [r, s, q], &mut shape);
+                        let share = 0.5 * length * wt * wq * cell.half_height() / thickness;
+                        for (dof, n) in dofs.iter().zip(shape.chunks_exact(3)) {
+                            f[*dof] += share * (0..3).map(|d| per_length[d] * n[d]).sum::<f64>();
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Adds a force (x, y, z), N, at the node of `column` and `level`.
+///
+/// A force at a node of a solid is singular: its own displacement grows without bound as cells shrink.
+///
+/// # Errors
+/// A component along which the node cannot move.
+pub fn point(plate: &Plate, column: usize, level: usize, force: [f64; 3], f: &mut [f64]) -> Result<(), String> {
+    for (n, force) in force.into_iter().enumerate().filter(|(_, force)| *force != 0.0) {
+        let dof = Dof::new(n as u8 + 1, 0).and_then(|dof| plate.dofs_at(column, level, dof).next());
+        let axis = ["x", "y", "z"][n];
+        *dof.map(|dof| &mut f[dof])
+            .ok_or_else(|| format!("{} has no displacement along {axis}", plate.describe_column(column)))? += force;
+    }
+    Ok(())
+}

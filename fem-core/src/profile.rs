@@ -1,0 +1,239 @@
+//! Stresses along a line through the thickness.
+
+use crate::element::Element;
+use crate::laminate::Laminate;
+use crate::patch::locate;
+use crate::plate::Plate;
+use crate::quadrature::gauss_legendre;
+use crate::tensor::{Global, Ply, Strain6, Stress6, stress};
+use nalgebra::{DMatrix, SVector};
+
+/// State at a height of a profile. Interfaces appear twice, once per ply.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProfilePoint {
+    /// Ply, counted from the bottom.
+    pub ply: usize,
+    /// Height, m.
+    pub z: f64,
+    /// Displacement, m.
+    pub displacement: [f64; 3],
+    /// Stress in the plate's frame, Pa.
+    pub global: Stress6<Global>,
+    /// Stress in the ply's frame, Pa.
+    pub in_ply: Stress6<Ply>,
+    /// σ₃₃, σ₂₃, σ₃₁ of the plate's frame from equilibrium with the in-plane stresses, Pa.
+    pub equilibrium: Option<[f64; 3]>,
+}
+
+/// A line through the thickness at a point of the plane.
+#[derive(Debug, Clone)]
+pub struct Profile {
+    /// Quads that meet at the point, with its natural coordinates in each.
+    places: Vec<(usize, [f64; 2])>,
+    /// Quads around it, for derivatives.
+    around: Vec<usize>,
+    point: [f64; 2],
+}
+
+/// In-plane Gauss points a direction at which stresses are sampled for their derivatives.
+const SAMPLES: usize = 3;
+
+/// Terms of a complete cubic in the plane.
+const TERMS: usize = 10;
+
+/// Gauss points between two heights of a profile: stresses of a ply are cubic in z at most.
+const BETWEEN: usize = 3;
+
+impl Profile {
+    /// The line at `point`; `None` outside the plate.
+    pub fn at(plate: &Plate, point: [f64; 2]) -> Option<Self> {
+        let quads = &plate.plane.quads;
+        let place = |q: usize| Some((q, locate(&plate.plane.corners(q), point)?));
+        let places: Vec<(usize, [f64; 2])> = (0..quads.len()).filter_map(place).collect();
+        let own: Vec<usize> = places.iter().map(|p| p.0).collect();
+        // One to three cells are too few to differentiate in: take their neighbours along.
+        let touches = |q: &usize| quads[*q].iter().any(|v| own.iter().any(|o| quads[*o].contains(v)));
+        let around = if own.len() < 4 { (0..quads.len()).filter(touches).collect() } else { own };
+        (!places.is_empty()).then_some(Self { places, around, point })
+    }
+
+    /// The state at `points` heights of every ply, its faces included, for displacements `u` (before elimination of
+    /// constraints): means over the cells that meet at the point.
+    ///
+    /// With `equilibrium`, transverse stresses are also integrated from the bottom face, where the pressure is
+    /// `bottom` (Pa, pressing):
+    ///
+    /// τ(z) = −∫ (∂σ₁₁/∂x + ∂σ₁₂/∂y) dz, likewise along y;  σ₃₃(z) = −p − ∫ (∂τ₁₃/∂x + ∂τ₂₃/∂y) dz
+    ///
+    /// The in-plane derivatives are those of a cubic fitted to the stresses of the cells around the point. What τ misses
+    /// at the stress-free top is taken off linearly.
+    pub fn sample(
+        &self,
+        plate: &Plate,
+        laminate: &Laminate,
+        element: &dyn Element,
+        u: &[f64],
+        points: usize,
+        equilibrium: Option<f64>,
+    ) -> Vec<ProfilePoint> {
+        let z = laminate.boundaries();
+        let mut field = Field { plate, element, u, b: vec![0.0; 6 * element.info().ndof()], dofs: Vec::new() };
+        let mut all = Vec::new();
+        for ply in 0..laminate.plies.len() {
+            for i in 0..points.max(2) {
+                let share = i as f64 / (points.max(2) - 1) as f64;
+                let height = z[ply] + share * (z[ply + 1] - z[ply]);
+                let mut strain = [0.0; 6];
+                let mut displacement = [0.0; 3];
+                for (quad, at) in &self.places {
+                    let (e, d) = field.state(laminate, *quad, *at, ply, height);
+                    let n = self.places.len() as f64;
+                    strain.iter_mut().zip(e).for_each(|(m, e)| *m += e / n);
+                    displacement.iter_mut().zip(d).for_each(|(m, d)| *m += d / n);
+                }
+                let global: Stress6<Global> = stress(field.stiffness(laminate, ply), &Strain6::new(strain));
+                let in_ply = global.to_ply(laminate.plies[ply].angle);
+                all.push(ProfilePoint { ply, z: height, displacement, global, in_ply, equilibrium: None });
+            }
+        }
+        if let Some(bottom) = equilibrium {
+            self.integrate(&mut field, laminate, bottom, &mut all);
+        }
+        all
+    }
+
+    /// Fills in the transverse stresses from equilibrium.
+    fn integrate(&self, field: &mut Field<'_>, laminate: &Laminate, bottom: f64, all: &mut [ProfilePoint]) {
+        let fit = self.fit(field.plate);
+        let (low, high) = match all {
+            [first, .., last] => (first.z, last.z),
+            _ => return,
+        };
+        // Resultants so far: ∫ of the divergence of the in-plane stresses, and of its own divergence.
+        let (mut shear, mut second, mut normal) = ([0.0; 2], 0.0, -bottom);
+        let mut last: Option<(usize, f64)> = None;
+        for point in all.iter_mut() {
+            if let Some((ply, from)) = last.filter(|l| l.0 == point.ply) {
+                let half = 0.5 * (point.z - from);
+                normal += 2.0 * half * second;
+                for &(t, w) in gauss_legendre(BETWEEN) {
+                    let z = from + half * (1.0 + t);
+                    let [by_x, by_y, twice] = self.derivatives(field, laminate, &fit, ply, z);
+                    shear[0] -= half * w * by_x;
+                    shear[1] -= half * w * by_y;
+                    second += half * w * twice;
+                    // The double integral of `twice`, by parts.
+                    normal += half * w * twice * (point.z - z);
+                }
+            }
+            last = Some((point.ply, point.z));
+            point.equilibrium = Some([normal, shear[1], shear[0]]);
+        }
+        for point in all {
+            let share = (point.z - low) / (high - low);
+            if let Some([_, s23, s31]) = &mut point.equilibrium {
+                *s23 -= share * shear[1];
+                *s31 -= share * shear[0];
+            }
+        }
+    }
+
+    /// Least squares of a complete cubic around the point: rows give its coefficients from the samples.
+    fn fit(&self, plate: &Plate) -> Fit {
+        let rule = gauss_legendre(SAMPLES);
+        let section = plate.info().is_section();
+        let across = if section { gauss_legendre(1) } else { rule };
+        let mut samples = Vec::new();
+        for quad in &self.around {
+            let cell = plate.cell(quad * plate.layers());
+            for &(r, _) in rule {
+                for &(s, _) in across {
+                    let [x, y, _] = cell.position([r, s, 0.0]);
+                    samples.push((*quad, [r, s], [x - self.point[0], y - self.point[1]]));
+                }
+            }
+        }
+        let size = samples.iter().fold(0.0_f64, |m, s| m.max(s.2[0].abs()).max(s.2[1].abs()));
+        let terms = |[x, y]: [f64; 2]| -> [f64; TERMS] {
+            let (x, y) = (x / size, if section { 0.0 } else { y / size });
+            [1.0, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y]
+        };
+        let a = DMatrix::from_fn(samples.len(), TERMS, |i, j| terms(samples[i].2)[j]);
+        // The pseudo-inverse leaves out what the samples cannot tell (y on a section).
+        let inverse = a.pseudo_inverse(1e-10).unwrap_or_else(|_| DMatrix::zeros(TERMS, samples.len()));
+        Fit { inverse, size, samples: samples.into_iter().map(|s| (s.0, s.1)).collect() }
+    }
+
+    /// ∂σ₁₁/∂x + ∂σ₁₂/∂y, ∂σ₁₂/∂x + ∂σ₂₂/∂y, and the divergence of the two.
+    fn derivatives(&self, field: &mut Field<'_>, laminate: &Laminate, fit: &Fit, ply: usize, z: f64) -> [f64; 3] {
+        let mut coefficients = SVector::<[f64; 3], TERMS>::from_element([0.0; 3]);
+        for (i, (quad, at)) in fit.samples.iter().enumerate() {
+            let (e, _) = field.state(laminate, *quad, *at, ply, z);
+            let s: Stress6<Global> = stress(field.stiffness(laminate, ply), &Strain6::new(e));
+            for (c, row) in coefficients.iter_mut().zip(fit.inverse.column(i).iter()) {
+                for (c, s) in c.iter_mut().zip([s.0[0], s.0[1], s.0[3]]) {
+                    *c += row * s;
+                }
+            }
+        }
+        let [x, y, xx, xy, yy] = [1, 2, 3, 4, 5].map(|k| coefficients[k]);
+        let (h, hh) = (fit.size, fit.size * fit.size);
+        [(x[0] + y[2]) / h, (x[2] + y[1]) / h, (2.0 * xx[0] + 2.0 * xy[2] + 2.0 * yy[1]) / hh]
+    }
+}
+
+struct Fit {
+    /// Terms × samples.
+    inverse: DMatrix<f64>,
+    size: f64,
+    /// Quad and natural coordinates.
+    samples: Vec<(usize, [f64; 2])>,
+}
+
+/// A displacement field, evaluated in a ply of a cell.
+struct Field<'a> {
+    plate: &'a Plate,
+    element: &'a dyn Element,
+    u: &'a [f64],
+    b: Vec<f64>,
+    dofs: Vec<usize>,
+}
+
+impl<'a> Field<'a> {
+    fn layer(laminate: &Laminate, ply: usize) -> (usize, usize) {
+        let layer = (0..laminate.layers.len()).find(|l| laminate.plies_of(*l).contains(&ply)).unwrap_or(0);
+        (layer, ply - laminate.plies_of(layer).start)
+    }
+
+    fn stiffness(&self, laminate: &Laminate, ply: usize) -> &'a crate::tensor::Matrix6 {
+        let (layer, slice) = Self::layer(laminate, ply);
+        &self.plate.stacks[layer].slices[slice].c
+    }
+
+    /// Strain and displacement at height `z` of `ply`, at natural coordinates of a quad.
+    fn state(
+        &mut self,
+        laminate: &Laminate,
+        quad: usize,
+        [r, s]: [f64; 2],
+        ply: usize,
+        z: f64,
+    ) -> ([f64; 6], [f64; 3]) {
+        let (layer, slice) = Self::layer(laminate, ply);
+        let number = quad * self.plate.layers() + layer;
+        let cell = self.plate.cell(number);
+        let q = ((z - 0.5 * (cell.z[0] + cell.z[1])) / cell.half_height()).clamp(-1.0, 1.0);
+        self.plate.cell_dofs(number, &mut self.dofs);
+        let (mut strain, mut displacement) = ([0.0; 6], [0.0; 3]);
+        self.element.strain_operator(&cell, slice, [r, s, q], &mut self.b);
+        for (dof, column) in self.dofs.iter().zip(self.b.chunks_exact(6)) {
+            strain.iter_mut().zip(column).for_each(|(e, b)| *e += b * self.u[*dof]);
+        }
+        let shape = &mut self.b[..3 * self.dofs.len()];
+        self.element.shape(&cell, [r, s, q], shape);
+        for (dof, column) in self.dofs.iter().zip(shape.chunks_exact(3)) {
+            displacement.iter_mut().zip(column).for_each(|(d, n)| *d += n * self.u[*dof]);
+        }
+        (strain, displacement)
+    }
+}

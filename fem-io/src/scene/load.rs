@@ -1,0 +1,238 @@
+//! Loads of a static analysis.
+
+use super::reader::{Field, Keys, Reader};
+use super::run::{self, ImpactPoint};
+use super::source::{Located, Place, SceneError};
+use super::support::{self, NodeSet};
+use super::tree::Node;
+use crate::units;
+use fem_core::formula::Formula;
+use fem_core::load::Face;
+use fem_core::plugin::{Dimension, unknown_key};
+
+/// A load.
+#[derive(Debug, Clone)]
+pub struct Load {
+    /// What acts where.
+    pub kind: LoadKind,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// What acts where.
+#[derive(Debug, Clone)]
+pub enum LoadKind {
+    /// A pressure, Pa, that presses on a face.
+    Pressure {
+        /// Its distribution.
+        pressure: Pressure,
+        /// Which face.
+        face: Face,
+        /// Cells that it acts on; all if `None`.
+        group: Option<Located<String>>,
+    },
+    /// A force on a circle of the top face, spread like the pressure of Hertz' contact; pressing down.
+    Patch {
+        /// Total, N.
+        force: f64,
+        /// Centre of the circle.
+        at: Located<ImpactPoint>,
+        /// Radius of the circle, m.
+        radius: f64,
+    },
+    /// A force per length of an edge, N/m, spread evenly through the thickness.
+    Edge {
+        /// Along x, y, z.
+        force_per_length: [f64; 3],
+        /// A group of edges.
+        group: Located<String>,
+    },
+    /// A force at one node, N.
+    Point {
+        /// Along x, y, z.
+        force: [f64; 3],
+        /// The node.
+        node: NodeSet,
+    },
+    /// Weight: an acceleration of all masses, m/s².
+    Gravity {
+        /// Along x, y, z.
+        acceleration: [f64; 3],
+    },
+}
+
+/// A pressure over the plane.
+#[derive(Debug, Clone)]
+pub enum Pressure {
+    /// The same everywhere, Pa.
+    Uniform(f64),
+    /// A formula of x and y.
+    Formula {
+        /// The formula.
+        formula: Formula,
+        /// Unit of its value, Pa.
+        pascals: f64,
+        /// Unit of x and y, m.
+        metres: f64,
+    },
+}
+
+impl Pressure {
+    /// Pressure at (x, y) in m, Pa.
+    pub fn at(&self, [x, y]: [f64; 2]) -> f64 {
+        match self {
+            Self::Uniform(p) => *p,
+            Self::Formula { formula, pascals, metres } => {
+                let value = |name: &String| if name == "x" { x / metres } else { y / metres };
+                pascals * formula.value(&formula.names().iter().map(value).collect::<Vec<_>>())
+            }
+        }
+    }
+}
+
+/// A line through the thickness along which stresses are written.
+#[derive(Debug, Clone)]
+pub struct ProfileLine {
+    /// Part of the names of its files.
+    pub name: Located<String>,
+    /// Where it pierces the plane.
+    pub at: Located<ImpactPoint>,
+    /// Heights per ply.
+    pub points: usize,
+    /// Whether transverse stresses are also found from equilibrium.
+    pub equilibrium: bool,
+}
+
+const KEYS: Keys = &[
+    ("pressure", r#""1 MPa""#),
+    ("face", r#""top""#),
+    ("group", r#""plate""#),
+    ("force", r#"["0 N", "0 N", "-5 N"]"#),
+    ("force_per_length", r#"["10 N/mm", "0 N/mm", "0 N/mm"]"#),
+    ("gravity", r#"["0 m/s^2", "0 m/s^2", "-9.81 m/s^2"]"#),
+    ("at", r#""top""#),
+    ("patch_radius", r#""3 mm""#),
+];
+const PRESSURE: Keys = &[("face", r#""top""#), ("pressure", r#""1 MPa""#), ("group", r#""plate""#)];
+const FORMULA: Keys = &[("formula", r#""sin(3.14159*x/100)""#), ("unit", r#""MPa""#), ("length", r#""mm""#)];
+const PATCH: Keys = &[("patch_radius", r#""3 mm""#), ("force", r#""100 N""#), ("at", r#"{ x = "0 mm", y = "0 mm" }"#)];
+const EDGE: Keys = &[("force_per_length", r#"["10 N/mm", "0 N/mm", "0 N/mm"]"#), ("group", r#""x-max""#)];
+const POINT: Keys = &[("force", r#"["0 N", "0 N", "-5 N"]"#), ("group", r#""impact""#), ("at", r#""top""#)];
+const GRAVITY: Keys = &[("gravity", r#"["0 m/s^2", "0 m/s^2", "-9.81 m/s^2"]"#)];
+const PROFILE: Keys =
+    &[("name", r#""centre""#), ("at", r#"{ x = "50 mm", y = "50 mm" }"#), ("points", "5"), ("equilibrium", "true")];
+
+/// Most heights of a profile per ply.
+const MAX_POINTS: usize = 1000;
+
+pub(super) fn read_all(field: &Field<'_>) -> Result<Vec<Load>, SceneError> {
+    field.list()?.iter().map(read).collect()
+}
+
+fn read(field: &Field<'_>) -> Result<Load, SceneError> {
+    let any = field.table(KEYS)?;
+    let has = |key| any.optional(key).is_some();
+    let kind = if has("pressure") {
+        pressure(&field.table(PRESSURE)?)?
+    } else if has("patch_radius") {
+        let table = field.table(PATCH)?;
+        LoadKind::Patch {
+            force: table.required("force")?.quantity(Dimension::FORCE)?,
+            at: run::read_point(&table.required("at")?)?,
+            radius: table.required("patch_radius")?.positive(Dimension::LENGTH)?,
+        }
+    } else if has("force_per_length") {
+        let table = field.table(EDGE)?;
+        let Dimension(mut per_length) = Dimension::FORCE;
+        per_length[0] -= 1.0;
+        LoadKind::Edge {
+            force_per_length: vector(&table.required("force_per_length")?, Dimension(per_length))?,
+            group: group(&table.required("group")?)?,
+        }
+    } else if has("gravity") {
+        let table = field.table(GRAVITY)?;
+        LoadKind::Gravity { acceleration: vector(&table.required("gravity")?, Dimension::ACCELERATION)? }
+    } else if has("force") {
+        let table = field.table(POINT)?;
+        LoadKind::Point { force: vector(&table.required("force")?, Dimension::FORCE)?, node: support::nodes(&table)? }
+    } else {
+        return Err(field.error(
+            "says not what acts",
+            "a load has `pressure`, `force`, `patch_radius` with `force`, `force_per_length` or `gravity`",
+        ));
+    };
+    Ok(Load { kind, place: any.place().clone() })
+}
+
+fn group(field: &Field<'_>) -> Result<Located<String>, SceneError> {
+    Ok(field.at(field.text()?.to_owned()))
+}
+
+fn pressure(table: &Reader<'_>) -> Result<LoadKind, SceneError> {
+    let field = table.required("pressure")?;
+    let pressure = match field.node() {
+        Node::Table(_) => formula(&field.table(FORMULA)?)?,
+        _ => Pressure::Uniform(field.quantity(Dimension::PRESSURE)?),
+    };
+    let face = table
+        .optional("face")
+        .map_or(Ok(Face::Top), |field| field.choice(&[("top", Face::Top), ("bottom", Face::Bottom)]))?;
+    Ok(LoadKind::Pressure { pressure, face, group: table.optional("group").map(|f| group(&f)).transpose()? })
+}
+
+fn formula(table: &Reader<'_>) -> Result<Pressure, SceneError> {
+    let field = table.required("formula")?;
+    let known = |name: &str| match name {
+        "x" | "y" => Ok(()),
+        _ => Err(format!("`{name}` {}", unknown_key(name, ["x", "y"].into_iter().chain(Formula::functions())))),
+    };
+    let formula = Formula::parse(field.text()?, known)
+        .map_err(|why| field.error(why, "a formula of x and y, the coordinates in the unit `length`"))?;
+    let unit = |key, dimension| {
+        let field = table.required(key)?;
+        units::parse_as(&format!("1 {}", field.text()?), dimension)
+            .map_err(|e| field.error(e.to_string(), e.remedy(Some(dimension))))
+    };
+    Ok(Pressure::Formula {
+        formula,
+        pascals: unit("unit", Dimension::PRESSURE)?,
+        metres: unit("length", Dimension::LENGTH)?,
+    })
+}
+
+fn vector(field: &Field<'_>, dimension: Dimension) -> Result<[f64; 3], SceneError> {
+    let parts = field.list()?;
+    let [x, y, z] = &parts[..] else {
+        return Err(field.error(format!("has {} components", parts.len()), "give three: along x, y and z"));
+    };
+    Ok([x.quantity(dimension)?, y.quantity(dimension)?, z.quantity(dimension)?])
+}
+
+pub(super) fn read_profiles(field: &Field<'_>) -> Result<Vec<ProfileLine>, SceneError> {
+    let mut all: Vec<ProfileLine> = Vec::new();
+    for field in field.list()? {
+        let table = field.table(PROFILE)?;
+        let name = table.required("name")?;
+        let text = name.text()?;
+        if !text.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')) {
+            return Err(name.error(format!("`{text}` is to be part of a file name"), "use letters, digits, - and _"));
+        }
+        if all.iter().any(|p| p.name.value == text) {
+            return Err(name.error(format!("two profiles are called `{text}`"), "give each a name of its own"));
+        }
+        let points = match table.optional("points") {
+            None => 5,
+            Some(field) => match field.count()? {
+                n if (2..=MAX_POINTS).contains(&n) => n,
+                n => return Err(field.error(format!("{n} heights per ply"), format!("between 2 and {MAX_POINTS}"))),
+            },
+        };
+        all.push(ProfileLine {
+            name: name.at(text.to_owned()),
+            at: run::read_point(&table.required("at")?)?,
+            points,
+            equilibrium: table.optional("equilibrium").map_or(Ok(false), |field| field.flag())?,
+        });
+    }
+    Ok(all)
+}

@@ -1,0 +1,255 @@
+//! Looks up what a scene names: mesh, plug-ins, groups, supports.
+
+use super::NamedCriterion;
+use crate::error::Error;
+use crate::registry::{NO_REDUCTION, Registry, RegistryError};
+use fem_core::assembly::elimination_order;
+use fem_core::constraint::{Constraints, Equation};
+use fem_core::contact::ContactLaw;
+use fem_core::element::Element;
+use fem_core::failure::{FailureCriterion, Site, check_material};
+use fem_core::mesh::{Group, QuadMesh};
+use fem_core::plate::Plate;
+use fem_core::plugin::{Built, Kind, unknown_key};
+use fem_core::reduction::Reduction;
+use fem_core::support::{self, FreeMotions};
+use fem_core::time::Integrator;
+use fem_core::window;
+use fem_io::gmsh::{self, GmshMesh, MeshFault};
+use fem_io::scene::{self, Analysis, Located, MeshSource, NodeSet, Place, PluginSpec, Scene, SceneError, Support};
+use std::collections::BTreeSet;
+
+/// Looks things up for a scene and turns what is missing into errors that show the scene.
+pub(super) struct Builder<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) registry: &'a Registry,
+}
+
+macro_rules! build {
+    ($self:ident, $spec:expr, $kind:ident) => {{
+        let spec: &PluginSpec = $spec;
+        match $self.registry.build(Kind::$kind, &spec.name.value, &spec.params) {
+            Ok(Built::$kind(built)) => Ok(built),
+            Ok(_) => Err($self.error(
+                &spec.name,
+                format!("the plug-in registered as {} `{}` builds something else", Kind::$kind, spec.name.value),
+                "mend the plug-in",
+            )),
+            Err(RegistryError::Param(e)) => {
+                let known = $self.registry.param(Kind::$kind, &spec.name.value, &e.key);
+                let help = known.map_or(String::new(), |p| format!("`{}`: {}", p.name, p.doc));
+                let message = format!("{} `{}`: {e}", Kind::$kind, spec.name.value);
+                Err($self.scene.source.error_at(spec.place_of(&e.key), message, help))
+            }
+            Err(error) => {
+                let hint = match &error {
+                    RegistryError::Unknown { hint, .. } => hint.clone(),
+                    _ => String::new(),
+                };
+                Err($self.error(&spec.name, error.to_string(), hint))
+            }
+        }
+    }};
+}
+
+impl Builder<'_> {
+    pub(super) fn error<T>(&self, at: &Located<T>, message: impl Into<String>, help: impl Into<String>) -> SceneError {
+        self.scene.source.error_at(&at.place, message, help)
+    }
+
+    pub(super) fn element(&self) -> Result<Box<dyn Element>, SceneError> {
+        build!(self, &self.scene.element, Element)
+    }
+
+    pub(super) fn law(&self, impact: &scene::Impact) -> Result<Box<dyn ContactLaw>, SceneError> {
+        build!(self, &impact.contact, Contact)
+    }
+
+    pub(super) fn integrator(&self, impact: &scene::Impact) -> Result<Box<dyn Integrator>, SceneError> {
+        build!(self, &impact.march.integrator, Integrator)
+    }
+
+    pub(super) fn reduction(&self, impact: &scene::Impact) -> Result<Option<Box<dyn Reduction>>, SceneError> {
+        let spec = &impact.reduction;
+        if spec.name.value == NO_REDUCTION {
+            return match spec.params.keys().next() {
+                None => Ok(None),
+                Some(key) => Err(self.scene.source.error_at(
+                    spec.place_of(key),
+                    format!("`{key}` means nothing without a reduction"),
+                    "remove it or choose a method",
+                )),
+            };
+        }
+        build!(self, spec, Reduction).map(Some)
+    }
+
+    pub(super) fn criteria(&self) -> Result<Vec<NamedCriterion>, SceneError> {
+        let each = |spec: &PluginSpec| {
+            let criterion = build!(self, spec, Criterion)?;
+            self.check_criterion(spec, &*criterion)?;
+            Ok((spec.name.value.clone(), criterion))
+        };
+        self.scene.failure.criteria.iter().map(each).collect()
+    }
+
+    /// Refuses a criterion that has nothing to judge, or that a material does not suit.
+    fn check_criterion(&self, spec: &PluginSpec, criterion: &dyn FailureCriterion) -> Result<(), SceneError> {
+        let name = &spec.name.value;
+        let judged: BTreeSet<usize> = match (criterion.info().site, &self.scene.interface) {
+            (Site::Ply, _) => self.scene.laminate.value.plies.iter().map(|ply| ply.material).collect(),
+            (Site::Interface, Some(resin)) => BTreeSet::from([resin.value]),
+            (Site::Interface, None) => {
+                return Err(self.error(
+                    &spec.name,
+                    format!("criterion `{name}` judges the resin between plies, and the laminate names none"),
+                    "give `laminate.interface` the name of a material",
+                ));
+            }
+        };
+        for material in judged.into_iter().map(|m| &self.scene.materials[m]) {
+            if let Err(why) = check_material(criterion, name, &material.value) {
+                return Err(self.error(
+                    material,
+                    why.to_string(),
+                    "complete or correct the material, or remove the criterion",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn watched(&self, mesh: &QuadMesh, centre: Option<[f64; 2]>) -> Result<Vec<usize>, SceneError> {
+        let failure = &self.scene.failure;
+        let Some(radius) = failure.radius else { return Ok((0..mesh.quads.len()).collect()) };
+        let Some(centre) = centre else {
+            let message = "`failure.radius` counts from the impact, and here is none";
+            return Err(self.scene.source.error_at(&failure.place, message, "leave it out"));
+        };
+        let near = |q: &usize| {
+            let c = window::centroid(&mesh.corners(*q));
+            (c[0] - centre[0]).hypot(c[1] - centre[1]) <= radius
+        };
+        let watched: Vec<usize> = (0..mesh.quads.len()).filter(near).collect();
+        if watched.is_empty() {
+            let message = "no cell has its centre within `failure.radius` of the impact";
+            return Err(self.scene.source.error_at(&failure.place, message, "enlarge the radius or leave it out"));
+        }
+        Ok(watched)
+    }
+
+    pub(super) fn mesh(&self) -> Result<GmshMesh, Error> {
+        match &self.scene.mesh {
+            MeshSource::File { file, metres_per_unit } => {
+                gmsh::read(&file.value, *metres_per_unit).map_err(|error| match error.fault {
+                    MeshFault::Unreadable(_) => {
+                        self.error(file, error.to_string(), "`mesh.file` counts from the folder of the scene").into()
+                    }
+                    _ => error.into(),
+                })
+            }
+            MeshSource::Rectangle { size, cells } => {
+                let [x, y] = [0, 1]
+                    .map(|d| -> Vec<f64> { (0..=cells[d]).map(|i| size[d] * i as f64 / cells[d] as f64).collect() });
+                Ok(GmshMesh { mesh: QuadMesh::rectangle(&x, &y), warnings: Vec::new() })
+            }
+        }
+    }
+
+    pub(super) fn group<'p>(&self, plate: &'p Plate, group: &Located<String>) -> Result<&'p Group, SceneError> {
+        let groups = &plate.plane.groups;
+        groups.get(&group.value).ok_or_else(|| {
+            self.error(
+                group,
+                format!("the mesh has no group `{}`", group.value),
+                format!("`{}` {}", group.value, unknown_key(&group.value, groups.keys().map(String::as_str))),
+            )
+        })
+    }
+
+    /// Columns of a group.
+    pub(super) fn columns(&self, plate: &Plate, group: &Located<String>) -> Result<Vec<u32>, SceneError> {
+        Ok(plate.columns_of_group(self.group(plate, group)?))
+    }
+
+    pub(super) fn nodes(&self, plate: &Plate, set: &NodeSet) -> Result<(Vec<u32>, Vec<usize>), SceneError> {
+        let levels = set.levels.of(plate).map_err(|why| self.error(&set.group, why, ""))?;
+        Ok((self.columns(plate, &set.group)?, levels))
+    }
+
+    pub(super) fn constraints(&self, plate: &Plate) -> Result<(Constraints, bool), SceneError> {
+        let source = &self.scene.source;
+        let mut equations = Vec::new();
+        // Of each equation, where it stands in the scene.
+        let mut places = Vec::new();
+        let mut restraint = None;
+        for entry in &self.scene.supports {
+            match entry {
+                Support::Fix { nodes, dofs, axes, place } => {
+                    let (columns, levels) = self.nodes(plate, nodes)?;
+                    let origin = format!("support of `{}`", nodes.group.value);
+                    let fixed = support::fix(plate, &columns, &levels, dofs, *axes, &origin);
+                    if fixed.is_empty() {
+                        let message = format!("the support of `{}` fixes nothing", nodes.group.value);
+                        return Err(source.error_at(place, message, "the element has none of the unknowns of `fix`"));
+                    }
+                    equations.extend(fixed);
+                    places.resize(equations.len(), place);
+                }
+                Support::RestrainRigidMotions { place } => restraint = Some(place),
+            }
+        }
+        for couple in &self.scene.couples {
+            let (columns, levels) = self.nodes(plate, &couple.nodes)?;
+            let origin = format!("couple of `{}`", couple.nodes.group.value);
+            equations.extend(support::couple(plate, &columns, &levels, &couple.dofs, &origin));
+            places.resize(equations.len(), &couple.place);
+        }
+        for (number, equation) in self.scene.equations.iter().enumerate() {
+            equations.push(self.equation(plate, equation, number)?);
+            places.push(&equation.place);
+        }
+        let free = FreeMotions::of(plate, &equations);
+        let mut held = true;
+        match restraint {
+            _ if free.is_empty() => {}
+            // Rigid motions are modes like others.
+            None if matches!(self.scene.analysis, Analysis::Modes { .. }) => held = false,
+            Some(place) => {
+                equations.extend(free.restrain(plate).map_err(|why| source.error_at(place, why, ""))?);
+                places.resize(equations.len(), place);
+            }
+            None => {
+                return Err(source.error_at(
+                    self.scene.supports.first().map_or(&Place::TOP, Support::place),
+                    format!("the supports leave the plate free: {}", free.names()),
+                    "support the plate against it, or add `{ restrain = \"rigid-motions\" }` to `support`",
+                ));
+            }
+        }
+        let constraints = Constraints::eliminate(&elimination_order(plate), &equations);
+        constraints.map(|c| (c, held)).map_err(|why| {
+            let at = equations.iter().position(|e| e.origin == why.origin()).and_then(|i| places.get(i));
+            source.error_at(at.copied().unwrap_or(&Place::TOP), why.to_string(), "")
+        })
+    }
+
+    fn equation(&self, plate: &Plate, equation: &scene::Equation, number: usize) -> Result<Equation, SceneError> {
+        let mut terms = Vec::new();
+        for term in &equation.terms {
+            let (columns, levels) = self.nodes(plate, &term.node)?;
+            let ([column], [level]) = (&columns[..], &levels[..]) else {
+                return Err(self.error(
+                    &term.node.group,
+                    format!("a term of an equation stands at one node, but `{}` has more", term.node.group.value),
+                    "name a group of one node and one level",
+                ));
+            };
+            let dof = plate.dofs_at(*column as usize, *level, term.dof).next().ok_or_else(|| {
+                self.error(&term.node.group, format!("the element has no {}", term.dof), "choose another unknown")
+            })?;
+            terms.push((dof, term.factor));
+        }
+        Ok(Equation { terms, value: 0.0, origin: format!("equation {}", number + 1), holds: false })
+    }
+}

@@ -1,0 +1,162 @@
+//! From a scene to a model: everything that is decided before the first matrix.
+
+mod builder;
+mod plan;
+
+pub use plan::{Impact, NamedProfile, Plan, Statics};
+
+use crate::error::Error;
+use crate::registry::Registry;
+use builder::Builder;
+use fem_core::constraint::Constraints;
+use fem_core::dof::Dof;
+use fem_core::element::Element;
+use fem_core::failure::FailureCriterion;
+use fem_core::laminate::Laminate;
+use fem_core::material::Material;
+use fem_core::mesh::QuadMesh;
+use fem_core::plate::Plate;
+use fem_io::scene::{Analysis, Damage, Scene};
+
+/// A scene made concrete: mesh extruded, plug-ins built, supports turned into constraints, impact or loads placed.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// The scene it was made from.
+    pub scene: Scene,
+    /// Materials; layups and stations refer to them by index.
+    pub materials: Vec<Material>,
+    /// The laminate.
+    pub laminate: Laminate,
+    /// Cells and unknowns.
+    pub plate: Plate,
+    /// The element of all cells.
+    pub element: Box<dyn Element>,
+    /// Supports and other equations, eliminated.
+    pub constraints: Constraints,
+    /// Whether the supports stop all rigid motions.
+    pub held: bool,
+    /// What is computed.
+    pub plan: Plan,
+    /// Lines through the thickness along which stresses are wanted.
+    pub profiles: Vec<NamedProfile>,
+    /// Criteria by name; none when damage is off.
+    pub criteria: Vec<NamedCriterion>,
+    /// Quads whose stresses the criteria judge.
+    pub watched: Vec<usize>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// A criterion under the name by which the scene calls it.
+pub type NamedCriterion = (String, Box<dyn FailureCriterion>);
+
+/// Thickness over size of the plate outside of which the mesh's unit is probably wrong.
+const PLAUSIBLE_THICKNESS: std::ops::Range<f64> = 1e-4..0.5;
+
+/// Inner angle of a cell (degrees) beyond which its strains are poor.
+const POOR_ANGLE: f64 = 150.0;
+
+impl Model {
+    /// Builds the model of `scene` with the plug-ins of `registry`.
+    ///
+    /// # Errors
+    /// Whatever the scene names and the mesh or the registry does not have, and supports that do not fit together or
+    /// leave a rigid motion.
+    pub fn new(scene: Scene, registry: &Registry) -> Result<Self, Error> {
+        let builder = Builder { scene: &scene, registry };
+        let read = builder.mesh()?;
+        let mut warnings = read.warnings;
+        let mesh = read.mesh;
+        let materials: Vec<Material> = scene.materials.iter().map(|m| m.value.clone()).collect();
+        let laminate = scene.laminate.value.clone();
+        warnings.extend(implausible(&mesh, &laminate));
+
+        let element = builder.element()?;
+        let criteria = match scene.damage {
+            Damage::Off => Vec::new(),
+            Damage::Onset => builder.criteria()?,
+        };
+
+        let levels = laminate.levels();
+        let stacks = laminate.stacks(&materials);
+        let plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
+            .map_err(|why| builder.error(&scene.element.name, why, ""))?;
+        let (constraints, held) = builder.constraints(&plate)?;
+        let plan = match &scene.analysis {
+            Analysis::Impact(spec) => Plan::Impact(Box::new(builder.impact(spec, &plate, &*element, &constraints)?)),
+            Analysis::Static(loads) => Plan::Static(builder.statics(loads, &plate, &*element)?),
+            Analysis::Modes { count } => Plan::Modes { count: *count },
+        };
+        let centre = match &plan {
+            Plan::Impact(impact) => Some(impact.centre),
+            _ => None,
+        };
+        let watched = builder.watched(&plate.plane, centre)?;
+        let profiles = builder.profiles(&plate)?;
+        Ok(Self {
+            materials,
+            laminate,
+            plate,
+            element,
+            constraints,
+            held,
+            plan,
+            profiles,
+            criteria,
+            watched,
+            warnings,
+            scene,
+        })
+    }
+
+    /// Governors that a reduction may choose from, best first: deflections (U30 at the mid-plane or the lowest level),
+    /// each as far as possible from the contact and from those before it, so that any first few cover the plate evenly.
+    pub fn governors(&self, impact: &Impact, count: usize) -> Vec<usize> {
+        let level = self.plate.mid_level().unwrap_or(0);
+        let Some(deflection) = Dof::new(3, 0) else { return Vec::new() };
+        let candidates: Vec<(usize, [f64; 2])> = (0..self.plate.columns.len())
+            .filter_map(|column| {
+                let dof = self.plate.dofs_at(column, level, deflection).next()?;
+                Some((self.constraints.position(dof)?, self.plate.columns[column]))
+            })
+            .collect();
+        let square = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
+        let mut distance: Vec<f64> = candidates.iter().map(|c| square(c.1, impact.centre)).collect();
+        let mut chosen = Vec::new();
+        for _ in 0..count.min(candidates.len()) {
+            // On a symmetric mesh many are equally far: take the first of them, whatever the last bit says.
+            let farthest = distance.iter().fold(0.0_f64, |m, d| m.max(*d));
+            let Some(next) = distance.iter().position(|d| *d > 0.0 && *d >= farthest * (1.0 - 1e-9)) else { break };
+            chosen.push(candidates[next].0);
+            for (d, c) in distance.iter_mut().zip(&candidates) {
+                *d = d.min(square(c.1, candidates[next].1));
+            }
+        }
+        chosen
+    }
+}
+
+fn implausible(mesh: &QuadMesh, laminate: &Laminate) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let (low, high) = mesh.bounds();
+    let size = (high[0] - low[0]).max(high[1] - low[1]);
+    let ratio = laminate.thickness() / size;
+    if !PLAUSIBLE_THICKNESS.contains(&ratio) {
+        warnings.push(format!(
+            "the plate is {:.4} mm wide and {:.4} mm thick: is `mesh.unit` the unit of the mesh file?",
+            size * 1e3,
+            laminate.thickness() * 1e3
+        ));
+    }
+    let poor: Vec<u64> = (0..mesh.quads.len())
+        .filter(|q| mesh.quality(*q).largest_angle.to_degrees() > POOR_ANGLE)
+        .map(|q| mesh.quad_tags[q])
+        .collect();
+    if let Some(first) = poor.first() {
+        warnings.push(format!(
+            "{} cells have an inner angle above {POOR_ANGLE} degrees (first: cell {first}): their strains are poor",
+            poor.len()
+        ));
+    }
+    warnings
+}

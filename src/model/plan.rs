@@ -1,0 +1,206 @@
+//! What a model is for: an impact, loads at rest, natural modes.
+
+use super::builder::Builder;
+use fem_core::constraint::Constraints;
+use fem_core::contact::ContactLaw;
+use fem_core::element::Element;
+use fem_core::load;
+use fem_core::patch;
+use fem_core::plate::Plate;
+use fem_core::profile::Profile;
+use fem_core::reduction::{Functional, Reduction};
+use fem_core::time::Integrator;
+use fem_io::scene::{self, ContactLoad, ImpactPoint, Load, LoadKind, Located, ProfileLine, SceneError};
+
+/// What is computed, made concrete.
+#[derive(Debug, Clone)]
+pub enum Plan {
+    /// The response to an impact.
+    Impact(Box<Impact>),
+    /// Displacements and stresses under loads at rest.
+    Static(Statics),
+    /// The lowest natural frequencies.
+    Modes {
+        /// How many.
+        count: usize,
+    },
+}
+
+/// An impact: impactor, contact, march.
+#[derive(Debug, Clone)]
+pub struct Impact {
+    /// What the scene says of it.
+    pub spec: scene::Impact,
+    /// The contact: weights of the deflection under the impactor over the independent unknowns.
+    pub contact: Functional,
+    /// Where the impactor strikes, m.
+    pub centre: [f64; 2],
+    /// The contact law.
+    pub law: Box<dyn ContactLaw>,
+    /// The reduction, if any.
+    pub reduction: Option<Box<dyn Reduction>>,
+    /// The integrator.
+    pub integrator: Box<dyn Integrator>,
+}
+
+/// Loads at rest.
+#[derive(Debug, Clone)]
+pub struct Statics {
+    /// Nodal forces, one per unknown before elimination of constraints: N, or N m for derivatives.
+    pub forces: Vec<f64>,
+    /// Acceleration of all masses, m/s².
+    pub gravity: [f64; 3],
+}
+
+/// A profile of the scene and its place in the plate.
+#[derive(Debug, Clone)]
+pub struct NamedProfile {
+    /// What the scene says of it.
+    pub line: ProfileLine,
+    /// Where it is, m.
+    pub point: [f64; 2],
+    /// The line through the plate.
+    pub profile: Profile,
+}
+
+impl Builder<'_> {
+    pub(super) fn impact(
+        &self,
+        spec: &scene::Impact,
+        plate: &Plate,
+        element: &dyn Element,
+        constraints: &Constraints,
+    ) -> Result<Impact, SceneError> {
+        let (centre, contact) = self.contact_place(&spec.impactor, plate, element)?;
+        let contact = Functional(constraints.restrict(&contact.0));
+        if contact.0.is_empty() {
+            return Err(self.error(
+                &spec.impactor.at,
+                "the supports hold the plate exactly where the impactor strikes",
+                "move the impact or the support",
+            ));
+        }
+        Ok(Impact {
+            contact,
+            centre,
+            law: self.law(spec)?,
+            reduction: self.reduction(spec)?,
+            integrator: self.integrator(spec)?,
+            spec: spec.clone(),
+        })
+    }
+
+    pub(super) fn statics(&self, loads: &[Load], plate: &Plate, element: &dyn Element) -> Result<Statics, SceneError> {
+        let mut forces = vec![0.0; plate.ndof()];
+        let mut gravity = [0.0; 3];
+        for Load { kind, place } in loads {
+            match kind {
+                LoadKind::Pressure { pressure, face, group } => {
+                    let quads: Vec<usize> = match group {
+                        None => (0..plate.plane.quads.len()).collect(),
+                        Some(name) => self.group(plate, name)?.quads.iter().map(|q| *q as usize).collect(),
+                    };
+                    if let (true, Some(name)) = (quads.is_empty(), group) {
+                        return Err(self.error(name, "the group has no cells", "a pressure acts on a surface"));
+                    }
+                    load::pressure(plate, element, *face, quads, |at| pressure.at(at), &mut forces);
+                }
+                LoadKind::Patch { force, at, radius } => {
+                    let (centre, _) = self.point(at, plate)?;
+                    let patch = patch::hertz(plate, element, centre, *radius)
+                        .map_err(|why| self.scene.source.error_at(place, why, "choose a smaller `patch_radius`"))?;
+                    patch.add_to(*force, &mut forces);
+                }
+                LoadKind::Edge { force_per_length, group } => {
+                    let edges = &self.group(plate, group)?.edges;
+                    if edges.is_empty() {
+                        return Err(self.error(group, "the group has no edges", "name a physical curve"));
+                    }
+                    load::edge(plate, element, edges, *force_per_length, &mut forces);
+                }
+                LoadKind::Point { force, node } => {
+                    let (columns, levels) = self.nodes(plate, node)?;
+                    let ([column], [level]) = (&columns[..], &levels[..]) else {
+                        let message = format!("a force acts at one node, and `{}` has more", node.group.value);
+                        return Err(self.error(&node.group, message, "name a group of one node and one level"));
+                    };
+                    load::point(plate, *column as usize, *level, *force, &mut forces)
+                        .map_err(|why| self.error(&node.group, why, ""))?;
+                }
+                LoadKind::Gravity { acceleration } => {
+                    gravity.iter_mut().zip(acceleration).for_each(|(g, a)| *g += a);
+                }
+            }
+            if !forces.iter().all(|f| f.is_finite()) {
+                let help = "look for a division by zero, or a root of something negative, in the formula";
+                return Err(self.scene.source.error_at(place, "the load is not finite somewhere on the plate", help));
+            }
+        }
+        Ok(Statics { forces, gravity })
+    }
+
+    pub(super) fn profiles(&self, plate: &Plate) -> Result<Vec<NamedProfile>, SceneError> {
+        let each = |line: &ProfileLine| {
+            let (point, _) = self.point(&line.at, plate)?;
+            match Profile::at(plate, point) {
+                Some(profile) => Ok(NamedProfile { line: line.clone(), point, profile }),
+                None => Err(self.error(&line.at, "the point lies outside the plate", "move it")),
+            }
+        };
+        self.scene.profiles.iter().map(each).collect()
+    }
+
+    /// A point of the scene, m, and the column there if one is.
+    fn point(&self, at: &Located<ImpactPoint>, plate: &Plate) -> Result<([f64; 2], Option<usize>), SceneError> {
+        Ok(match &at.value {
+            ImpactPoint::Group(name) => {
+                let group = Located { value: name.clone(), place: at.place.clone() };
+                let columns = self.columns(plate, &group)?;
+                let [column] = columns[..] else {
+                    let dim = plate.plane.groups.get(name).map_or(0, |g| g.dim);
+                    return Err(self.error(
+                        at,
+                        format!("the group `{name}` (dimension {dim}) has {} nodes, one is wanted here", columns.len()),
+                        "make a physical point of it in gmsh, or give `at = { x = ..., y = ... }`",
+                    ));
+                };
+                (plate.columns[column as usize], Some(column as usize))
+            }
+            ImpactPoint::Point(p) => {
+                let (low, high) = plate.plane.bounds();
+                let reach = 1e-9 * (high[0] - low[0]).hypot(high[1] - low[1]);
+                let near = |q: &[f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]) <= reach;
+                (*p, plate.columns.iter().position(near))
+            }
+        })
+    }
+
+    /// Where the impactor strikes, and the deflection there as weights of the unknowns.
+    fn contact_place(
+        &self,
+        impactor: &scene::Impactor,
+        plate: &Plate,
+        element: &dyn Element,
+    ) -> Result<([f64; 2], Functional), SceneError> {
+        let at = &impactor.at;
+        let (centre, column) = self.point(at, plate)?;
+        let contact = match (impactor.load.value, column) {
+            (ContactLoad::Patch { radius }, _) => patch::hertz(plate, element, centre, radius).map_err(|why| {
+                let (low, high) = plate.plane.bounds();
+                let [width, depth] = [0, 1].map(|d| (high[d] - low[d]) * 1e3);
+                let size = format!("the plate is {width:.4} mm by {depth:.4} mm, if `mesh.unit` is right");
+                self.error(&impactor.load, why, format!("choose a smaller `impactor.patch_radius`; {size}"))
+            })?,
+            (ContactLoad::Node, Some(column)) => patch::node(plate, column)
+                .ok_or_else(|| self.error(at, "the element has no U30 to strike", "choose another element"))?,
+            (ContactLoad::Node, None) => {
+                return Err(self.error(
+                    at,
+                    "no node of the mesh lies at the impact point",
+                    "put a node there, name a group, or use a patch (`patch_radius`)",
+                ));
+            }
+        };
+        Ok((centre, contact))
+    }
+}
