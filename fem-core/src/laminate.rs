@@ -1,7 +1,7 @@
 //! Laminates: plies from the bottom up, grouped into layers of cells.
 
 use crate::element::{Slice, Stack};
-use crate::material::Material;
+use crate::material::{Material, MaterialError};
 use crate::tensor::rotate_stiffness;
 
 /// One ply.
@@ -68,7 +68,10 @@ impl Laminate {
     }
 
     /// The plies of each layer as its cells see them.
-    pub fn stacks(&self, materials: &[Material]) -> Vec<Stack> {
+    ///
+    /// # Errors
+    /// A ply's material has no density.
+    pub fn stacks(&self, materials: &[Material]) -> Result<Vec<Stack>, MaterialError> {
         let z = self.boundaries();
         let levels = self.levels();
         (0..self.layers.len())
@@ -81,24 +84,25 @@ impl Laminate {
                     i if i == end => 1.0,
                     i => 2.0 * (z[i] - low) / (high - low) - 1.0,
                 };
-                let slices = range
-                    .map(|i| {
-                        let ply = &self.plies[i];
-                        let material = &materials[ply.material];
-                        Slice {
-                            q: [q(i), q(i + 1)],
-                            c: rotate_stiffness(&material.elastic.stiffness(), ply.angle),
-                            density: material.density,
-                        }
+                let slice = |i: usize| {
+                    let ply = &self.plies[i];
+                    let material = &materials[ply.material];
+                    Ok(Slice {
+                        q: [q(i), q(i + 1)],
+                        c: rotate_stiffness(&material.elastic.stiffness(), ply.angle),
+                        density: material.mass_density()?,
                     })
-                    .collect();
-                Stack::new(slices)
+                };
+                Ok(Stack::new(range.map(slice).collect::<Result<_, _>>()?))
             })
             .collect()
     }
 
     /// Mass per area, kg/m².
-    pub fn areal_mass(&self, materials: &[Material]) -> f64 {
-        self.plies.iter().map(|p| p.thickness * materials[p.material].density).sum()
+    ///
+    /// # Errors
+    /// A ply's material has no density.
+    pub fn areal_mass(&self, materials: &[Material]) -> Result<f64, MaterialError> {
+        self.plies.iter().map(|p| Ok(p.thickness * materials[p.material].mass_density()?)).sum()
     }
 }

@@ -7,7 +7,8 @@ fn material(name: &str, strengths: &[(Strength, f64)]) -> Material {
     Material {
         name: name.into(),
         elastic: Elastic::isotropic(1.0, 0.3),
-        density: 1.0,
+        density: None,
+        giic: None,
         strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
     }
 }
