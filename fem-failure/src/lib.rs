@@ -32,6 +32,7 @@
 //! # Ok::<(), fem_core::failure::AssessError>(())
 //! ```
 
+pub mod delamination;
 pub mod envelope;
 pub mod scan;
 
