@@ -260,7 +260,8 @@ mod tests {
         Material {
             name: "m".into(),
             elastic: Elastic::isotropic(1e9, 0.3),
-            density: 1.0,
+            density: None,
+            giic: None,
             strengths: Strengths::default().with(Strength::Xt, 100.0).with(Strength::Yt, 10.0),
         }
     }

@@ -1,8 +1,9 @@
 //! Laminates: plies from the bottom up, grouped into layers of cells.
 
 use crate::element::{Slice, Stack};
-use crate::material::Material;
+use crate::material::{Material, MaterialError};
 use crate::tensor::rotate_stiffness;
+use nalgebra::Matrix3;
 
 /// One ply.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,7 +69,10 @@ impl Laminate {
     }
 
     /// The plies of each layer as its cells see them.
-    pub fn stacks(&self, materials: &[Material]) -> Vec<Stack> {
+    ///
+    /// # Errors
+    /// A ply's material has no density.
+    pub fn stacks(&self, materials: &[Material]) -> Result<Vec<Stack>, MaterialError> {
         let z = self.boundaries();
         let levels = self.levels();
         (0..self.layers.len())
@@ -81,24 +85,97 @@ impl Laminate {
                     i if i == end => 1.0,
                     i => 2.0 * (z[i] - low) / (high - low) - 1.0,
                 };
-                let slices = range
-                    .map(|i| {
-                        let ply = &self.plies[i];
-                        let material = &materials[ply.material];
-                        Slice {
-                            q: [q(i), q(i + 1)],
-                            c: rotate_stiffness(&material.elastic.stiffness(), ply.angle),
-                            density: material.density,
-                        }
+                let slice = |i: usize| {
+                    let ply = &self.plies[i];
+                    let material = &materials[ply.material];
+                    Ok(Slice {
+                        q: [q(i), q(i + 1)],
+                        c: rotate_stiffness(&material.elastic.stiffness(), ply.angle),
+                        density: material.mass_density()?,
                     })
-                    .collect();
-                Stack::new(slices)
+                };
+                Ok(Stack::new(range.map(slice).collect::<Result<_, _>>()?))
             })
             .collect()
     }
 
+    /// Bending stiffness of classical laminate theory, N·m: moments 11, 22, 12 in the plate's axes per curvature, no force
+    /// acting in the plane.
+    ///
+    /// D − B A⁻¹ B with (A, B, D) = Σ Q ∫ (1, z, z²) dz, where Q is a ply's stiffness without σ33 and B vanishes for
+    /// symmetric laminates. Meaningful for materials that pass [`Material::check`].
+    pub fn bending_stiffness(&self, materials: &[Material]) -> Matrix3<f64> {
+        const PLANE: [usize; 3] = [0, 1, 3];
+        let z = self.boundaries();
+        let [mut a, mut b, mut d] = [Matrix3::zeros(); 3];
+        for (ply, z) in self.plies.iter().zip(z.windows(2)) {
+            let c = rotate_stiffness(&materials[ply.material].elastic.stiffness(), ply.angle);
+            let q = Matrix3::from_fn(|i, j| {
+                let (i, j) = (PLANE[i], PLANE[j]);
+                c[i][j] - c[i][2] * c[2][j] / c[2][2]
+            });
+            a += q * (z[1] - z[0]);
+            b += q * (0.5 * (z[1].powi(2) - z[0].powi(2)));
+            d += q * ((z[1].powi(3) - z[0].powi(3)) / 3.0);
+        }
+        d - b * a.try_inverse().unwrap_or_else(|| Matrix3::repeat(f64::NAN)) * b
+    }
+
     /// Mass per area, kg/m².
-    pub fn areal_mass(&self, materials: &[Material]) -> f64 {
-        self.plies.iter().map(|p| p.thickness * materials[p.material].density).sum()
+    ///
+    /// # Errors
+    /// A ply's material has no density.
+    pub fn areal_mass(&self, materials: &[Material]) -> Result<f64, MaterialError> {
+        self.plies.iter().map(|p| Ok(p.thickness * materials[p.material].mass_density()?)).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::material::{Elastic, Strengths};
+
+    fn material(elastic: Elastic) -> Material {
+        Material { name: "m".into(), elastic, density: None, strengths: Strengths::default(), giic: None }
+    }
+
+    fn laminate(angles: &[f64]) -> Laminate {
+        let ply = |angle_deg: &f64| LaminaPly {
+            angle: angle_deg.to_radians(),
+            angle_deg: *angle_deg,
+            thickness: 1e-3,
+            material: 0,
+        };
+        Laminate { plies: angles.iter().map(ply).collect(), layers: vec![angles.len()] }
+    }
+
+    #[test]
+    fn bending_stiffness_of_known_plates() {
+        let close = |got: f64, want: f64| assert!((got / want - 1.0).abs() < 1e-13, "{got}, not {want}");
+        // E h³/12(1 − ν²), its ν-th and its (1 − ν)/2-th part.
+        let plate = laminate(&[0.0, 0.0]).bending_stiffness(&[material(Elastic::isotropic(70e9, 0.3))]);
+        let d = 70e9 * 8e-9 / (12.0 * (1.0 - 0.09));
+        close(plate[(0, 0)], d);
+        close(plate[(1, 0)], 0.3 * d);
+        close(plate[(2, 2)], 0.35 * d);
+        // [0/90], Q11 = 16, Q22 = 1, Q12 = 0 in units of q: A = 17 t q, B11 = −B22 = −15 t² q/2, D = 17 t³ q/3.
+        let (e, t): (f64, f64) = (160e9, 1e-3);
+        let tape = Elastic::transversely_isotropic(e, e / 16.0, 0.0, 0.0, e / 32.0);
+        let unsymmetric = laminate(&[0.0, 90.0]).bending_stiffness(&[material(tape)]);
+        let want = t.powi(3) * e / 16.0 * (17.0 / 3.0 - 7.5 * 7.5 / 17.0);
+        close(unsymmetric[(0, 0)], want);
+        close(unsymmetric[(1, 1)], want);
+    }
+
+    #[test]
+    fn only_a_mass_needs_a_density() {
+        let (plate, m) = (laminate(&[0.0]), [material(Elastic::isotropic(70e9, 0.3))]);
+        assert!(plate.bending_stiffness(&m)[(0, 0)] > 0.0);
+        assert!(plate.stacks(&m).unwrap_err().to_string().contains("`m`: the mass of the plate needs a density"));
+        assert!(plate.areal_mass(&m).is_err());
+        let [heavy] = m.map(|m| Material { density: Some(2700.0), ..m });
+        assert_eq!(plate.areal_mass(std::slice::from_ref(&heavy)), Ok(2.7));
+        assert_eq!(plate.stacks(&[heavy]).unwrap().len(), 1);
     }
 }

@@ -22,8 +22,9 @@
 //! let tape = Material {
 //!     name: "AS4/3502".into(),
 //!     elastic: Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9),
-//!     density: 1575.0,
+//!     density: Some(1575.0),
 //!     strengths: Strengths::default(),
+//!     giic: None,
 //! };
 //! tape.check()?;
 //! let ply = |angle_deg: f64| LaminaPly { angle_deg, angle: angle_deg.to_radians(), thickness: 1.3208e-4, material: 0 };
@@ -32,7 +33,7 @@
 //! // Two layers of cells, eight plies each, meet at the mid-plane.
 //! let laminate = Laminate { plies, layers: vec![8, 8] };
 //! assert_eq!(laminate.levels()[1], 0.0);
-//! assert!((laminate.areal_mass(&[tape]) - 3.328416).abs() < 1e-12);
+//! assert!((laminate.areal_mass(&[tape])? - 3.328416).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

@@ -197,10 +197,12 @@ pub struct Material {
     pub name: String,
     /// Elastic constants in the material's axes.
     pub elastic: Elastic,
-    /// Density, kg/m³.
-    pub density: f64,
+    /// Density, kg/m³, if it was given: criteria do without, a plate that moves does not ([`Material::mass_density`]).
+    pub density: Option<f64>,
     /// Strengths, Pa.
     pub strengths: Strengths,
+    /// Toughness of the interfaces between plies in mode II, GIIc, J/m², if it was given.
+    pub giic: Option<f64>,
 }
 
 impl Material {
@@ -213,8 +215,10 @@ impl Material {
         if let Err(why) = self.elastic.check() {
             return refuse(why);
         }
-        if !(self.density > 0.0 && self.density.is_finite()) {
-            return refuse(format!("density must be positive and finite, got {} kg/m3", self.density));
+        for (name, given, unit) in [("density", self.density, "kg/m3"), ("GIIc", self.giic, "J/m2")] {
+            if let Some(v) = given.filter(|v| !(*v > 0.0 && v.is_finite())) {
+                return refuse(format!("{name} must be positive and finite, got {v} {unit}"));
+            }
         }
         for &s in Strength::ALL {
             if let Some(v) = self.strengths.get(s).filter(|v| !(*v > 0.0 && v.is_finite())) {
@@ -222,6 +226,17 @@ impl Material {
             }
         }
         Ok(())
+    }
+
+    /// The density, for whoever needs a mass.
+    ///
+    /// # Errors
+    /// It was not given.
+    pub fn mass_density(&self) -> Result<f64, MaterialError> {
+        self.density.ok_or_else(|| MaterialError {
+            material: self.name.clone(),
+            why: "the mass of the plate needs a density, which the material does not give".into(),
+        })
     }
 
     /// Refuses a material that lacks a constant which `user` requires.
@@ -271,10 +286,17 @@ mod tests {
         let m = Material {
             name: "m".into(),
             elastic: Elastic::isotropic(3.79e9, 0.36),
-            density: 1260.0,
+            density: Some(1260.0),
             strengths: Strengths::default().with(Strength::Xt, 38e6),
+            giic: None,
         };
         assert!(m.check().is_ok());
+        let heavy = Material { density: Some(f64::INFINITY), ..m.clone() };
+        assert!(heavy.check().unwrap_err().to_string().contains("density must be positive and finite"));
+        let brittle = Material { density: None, giic: Some(0.0), ..m.clone() };
+        assert!(brittle.check().unwrap_err().to_string().contains("GIIc must be positive and finite"));
+        assert_eq!(m.mass_density(), Ok(1260.0));
+        assert!(brittle.mass_density().unwrap_err().to_string().contains("`m`: the mass of the plate needs a density"));
         let error = m.require(&[Strength::Xt, Strength::S12], "criterion `x`").unwrap_err().to_string();
         assert!(error.contains("S12") && !error.contains("Xt"), "{error}");
     }

@@ -33,7 +33,8 @@ fn as4_3502() -> Material {
     Material {
         name: "AS4/3502".into(),
         elastic: Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9),
-        density: 1575.0,
+        density: None,
+        giic: None,
         strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
     }
 }

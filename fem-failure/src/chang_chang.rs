@@ -121,7 +121,8 @@ mod tests {
         let m = Material {
             name: "m".into(),
             elastic: Elastic::isotropic(2.0, 0.0),
-            density: 1.0,
+            density: None,
+            giic: None,
             strengths: Strength::ALL.iter().fold(Strengths::default(), |s, which| s.with(*which, 2.0)),
         };
         // G = 1, S = 2, α = 1/3: T(1) = (1/2 + 1/4)/(2 + 4) = 1/8.

@@ -16,13 +16,14 @@
 //! let tape = Material {
 //!     name: "AS4/3502".into(),
 //!     elastic: Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9),
-//!     density: 1575.0,
+//!     density: None,
 //!     strengths: Strengths::default()
 //!         .with(Strength::Xt, 1793e6)
 //!         .with(Strength::Xc, 1724e6)
 //!         .with(Strength::Yt, 64e6)
 //!         .with(Strength::S12, 109e6)
 //!         .with(Strength::S23, 69e6),
+//!     giic: None,
 //! };
 //! // 32 MPa across the fibres, half of what the matrix bears; components are 11 22 33 12 23 31 in ply axes.
 //! let found = assess(&HashinReport::default(), "hashin-report", &Stress6::new([0.0, 32e6, 0.0, 0.0, 0.0, 0.0]), &tape)?;
@@ -31,6 +32,7 @@
 //! # Ok::<(), fem_core::failure::AssessError>(())
 //! ```
 
+pub mod delamination;
 pub mod envelope;
 pub mod scan;
 

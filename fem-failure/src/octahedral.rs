@@ -62,7 +62,8 @@ mod tests {
         let resin = Material {
             name: "3502 resin".into(),
             elastic: Elastic::isotropic(3.79e9, 0.36),
-            density: 1260.0,
+            density: None,
+            giic: None,
             strengths: Strengths::default().with(Strength::S12, 62e6),
         };
         let index = |s: [f64; 6]| {

@@ -52,7 +52,7 @@ pub struct ScanSite {
     pub material: u16,
 }
 
-/// The first time at which a mode reached index 1 at a place.
+/// The first time at which a mode reached index 1 at a place: what failed, where, when and under which stress.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FailureEvent {
     /// Time of the crossing, s, by linear interpolation of the index between the two samples around it.
@@ -71,6 +71,21 @@ pub struct FailureEvent {
     pub position: [f64; 3],
     /// Index at the sample that ended the crossing; at least 1.
     pub index: f64,
+    /// Stress at the crossing, in the axes of the site, interpolated like the index.
+    pub stress: Stress6<Ply>,
+    /// Index into the scan's materials.
+    pub material: u16,
+}
+
+/// First event of every criterion and mode; `events` are sorted by time.
+pub fn first_per_mode(events: &[FailureEvent]) -> Vec<&FailureEvent> {
+    let mut firsts: Vec<&FailureEvent> = Vec::new();
+    for e in events {
+        if !firsts.iter().any(|f| f.criterion == e.criterion && f.mode == e.mode) {
+            firsts.push(e);
+        }
+    }
+    firsts
 }
 
 /// The largest index that a mode reached anywhere.
@@ -184,6 +199,8 @@ pub struct Scan {
     order: Vec<u32>,
     /// Stresses in that order.
     stress: Vec<Stress6<Ply>>,
+    /// Those of the sample before.
+    stress_before: Vec<Stress6<Ply>>,
     /// Number of each site's place, in that order.
     slots: Vec<u32>,
     time: Option<f64>,
@@ -205,7 +222,14 @@ struct Watch {
     maxima: Vec<f64>,
     peaks: Vec<Option<Reading>>,
     /// Row per place.
-    first: Vec<Option<Reading>>,
+    first: Vec<Option<(Reading, Stress6<Ply>)>>,
+}
+
+/// Where a scan keeps the indices of one criterion at one site.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Probe {
+    watch: usize,
+    row: usize,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -289,7 +313,8 @@ impl Scan {
             });
         }
         let stress = vec![Stress6::new([0.0; 6]); sites.len()];
-        Ok(Self { sites, materials, watches, order, stress, slots, time: None, evaluations: 0 })
+        let stress_before = stress.clone();
+        Ok(Self { sites, materials, watches, order, stress, stress_before, slots, time: None, evaluations: 0 })
     }
 
     /// The sites, as given.
@@ -333,26 +358,27 @@ impl Scan {
             }
         }
         for watch in &mut self.watches {
-            watch.keep(self.time, t, &self.order, &self.slots);
+            watch.keep(self.time, t, &self.order, &self.slots, [&self.stress_before, &self.stress]);
             self.evaluations += watch.span.len() as u64;
         }
+        std::mem::swap(&mut self.stress_before, &mut self.stress);
         self.time = Some(t);
         Ok(())
     }
 
     /// First crossing of every criterion, mode and place that failed, by time.
     pub fn events(&self) -> Vec<FailureEvent> {
-        let mut found: Vec<(Reading, usize, usize)> = Vec::new();
+        let mut found: Vec<(Reading, Stress6<Ply>, usize, usize)> = Vec::new();
         for (w, watch) in self.watches.iter().enumerate() {
-            for (k, reading) in watch.first.iter().enumerate() {
-                found.extend(reading.map(|r| (r, w, k % watch.modes.len())));
+            for (k, first) in watch.first.iter().enumerate() {
+                found.extend(first.map(|(reading, stress)| (reading, stress, w, k % watch.modes.len())));
             }
         }
-        found.sort_by(|(a, aw, am), (b, bw, bm)| {
+        found.sort_by(|(a, _, aw, am), (b, _, bw, bm)| {
             let mode = (aw, am).cmp(&(bw, bm));
             a.time.total_cmp(&b.time).then(mode).then(b.index.total_cmp(&a.index)).then(a.site.cmp(&b.site))
         });
-        let event = |(r, w, mode): (Reading, usize, usize)| {
+        let event = |(r, stress, w, mode): (Reading, Stress6<Ply>, usize, usize)| {
             let (site, watch) = (&self.sites[r.site as usize], &self.watches[w]);
             FailureEvent {
                 time: r.time,
@@ -363,20 +389,11 @@ impl Scan {
                 angle: site.angle,
                 position: site.position,
                 index: r.index,
+                stress,
+                material: site.material,
             }
         };
         found.into_iter().map(event).collect()
-    }
-
-    /// First crossing of every criterion and mode that failed anywhere, by time.
-    pub fn first_per_mode(&self) -> Vec<FailureEvent> {
-        let mut firsts: Vec<FailureEvent> = Vec::new();
-        for e in self.events() {
-            if !firsts.iter().any(|f| f.criterion == e.criterion && f.mode == e.mode) {
-                firsts.push(e);
-            }
-        }
-        firsts
     }
 
     /// Largest index of every criterion and mode over all samples and sites, failed or not, in the order of the
@@ -408,6 +425,21 @@ impl Scan {
         sites.zip(watch.maxima.chunks_exact(watch.modes.len()))
     }
 
+    /// For histories: where criterion number `criterion` leaves its indices of site number `site`; `None` if there is no
+    /// such criterion or it does not look there.
+    pub fn probe(&self, criterion: usize, site: usize) -> Option<Probe> {
+        let span = self.watches.get(criterion)?.span.clone();
+        let row = self.order[span].iter().position(|&i| i as usize == site)?;
+        Some(Probe { watch: criterion, row })
+    }
+
+    /// The indices of the last sample where `probe` points, one per mode; zero before the first.
+    pub fn read(&self, probe: Probe) -> &[f64] {
+        let watch = &self.watches[probe.watch];
+        let modes = watch.modes.len();
+        &watch.before[probe.row * modes..][..modes]
+    }
+
     /// Criteria evaluated so far, counted once per site and sample.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
@@ -431,10 +463,11 @@ impl Watch {
         }
     }
 
-    /// Takes `now`, the indices at time `t`, into the records; `last` is the time of `before`.
-    fn keep(&mut self, last: Option<f64>, t: f64, order: &[u32], slots: &[u32]) {
+    /// Takes `now`, the indices at time `t`, into the records; `last` is the time of `before`. `stress` are those of the two.
+    fn keep(&mut self, last: Option<f64>, t: f64, order: &[u32], slots: &[u32], stress: [&[Stress6<Ply>]; 2]) {
         let modes = self.modes.len();
         let (order, slots) = (&order[self.span.clone()], &slots[self.span.clone()]);
+        let stress = stress.map(|s| &s[self.span.clone()]);
         for (maximum, now) in self.maxima.iter_mut().zip(&self.now) {
             *maximum = maximum.max(*now);
         }
@@ -446,23 +479,21 @@ impl Watch {
                     *peak = Some(here);
                 }
                 let before = self.before[row * modes + mode];
-                // A site that has crossed already left its record then.
+                // A site that has crossed already left its record then. An infinite index crosses at the sample before.
                 if index >= 1.0 && (last.is_none() || before < 1.0) {
                     let first = &mut self.first[slots[row] as usize * modes + mode];
-                    let here = Reading { time: last.map_or(t, |last| crossing(last, before, t, index)), ..here };
-                    if first.is_none_or(|f| here.precedes(&f)) {
-                        *first = Some(here);
+                    let share = if last.is_some() { (1.0 - before) / (index - before) } else { 1.0 };
+                    let time = last.map_or(t, |last| (last + (t - last) * share).min(t));
+                    let here = Reading { time, ..here };
+                    if first.is_none_or(|(f, _)| here.precedes(&f)) {
+                        let between = |i| (1.0 - share) * stress[0][row].0[i] + share * stress[1][row].0[i];
+                        *first = Some((here, Stress6::new(std::array::from_fn(between))));
                     }
                 }
             }
         }
         std::mem::swap(&mut self.now, &mut self.before);
     }
-}
-
-/// Time at which the line through (t0, f0) and (t1, f1) reaches 1, for f0 < 1 ≤ f1; `t0` if f1 is infinite.
-fn crossing(t0: f64, f0: f64, t1: f64, f1: f64) -> f64 {
-    (t0 + (t1 - t0) * ((1.0 - f0) / (f1 - f0))).min(t1)
 }
 
 #[cfg(test)]

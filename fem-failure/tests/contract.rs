@@ -16,7 +16,8 @@ fn material(name: &str, values: [f64; 9]) -> Material {
     Material {
         name: name.into(),
         elastic: Elastic::transversely_isotropic(138e9, 11e9, 0.28, 0.4, 5.5e9),
-        density: 1580.0,
+        density: None,
+        giic: None,
         strengths,
     }
 }

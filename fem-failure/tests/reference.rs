@@ -54,7 +54,8 @@ fn with_strengths(row: &Row, elastic: Elastic, strengths: &[(Strength, &str)]) -
     Material {
         name: row.text("material").into(),
         elastic,
-        density: 1e-9,
+        density: None,
+        giic: None,
         strengths: strengths.iter().fold(Strengths::default(), |s, (which, c)| s.with(*which, row.number(c))),
     }
 }

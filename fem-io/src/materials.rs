@@ -3,7 +3,7 @@
 use crate::scene::SceneError;
 use crate::scene::material;
 use crate::scene::reader::{Field, Keys, Reader};
-use crate::scene::source::{Origin, SceneSource};
+use crate::scene::source::{Origin, Place, SceneSource};
 use crate::scene::tree::{Entry, Node, Table};
 use fem_core::material::Material;
 use std::fmt;
@@ -62,7 +62,7 @@ impl fmt::Display for Status {
 ///
 /// ```
 /// let resin = fem_io::materials::library("3502 resin").ok_or("not there")?;
-/// assert_eq!(resin.material.density, 1260.0);
+/// assert_eq!(resin.material.density, Some(1260.0));
 /// # Ok::<(), &str>(())
 /// ```
 pub fn library(name: &str) -> Option<&'static LibraryMaterial> {
@@ -76,18 +76,25 @@ pub fn names() -> impl Iterator<Item = &'static str> + Clone {
 
 pub(crate) fn all() -> &'static [LibraryMaterial] {
     #[expect(clippy::expect_used, reason = "the library is part of the program and a test reads it")]
-    static ALL: LazyLock<Vec<LibraryMaterial>> = LazyLock::new(|| parse(LIBRARY).expect("the materials library"));
+    static ALL: LazyLock<Vec<LibraryMaterial>> = LazyLock::new(|| {
+        let source = SceneSource::default().with(Origin::Library, "materials library", LIBRARY);
+        parse(LIBRARY, &Arc::new(source)).expect("the materials library")
+    });
     &ALL
 }
 
 const MATERIAL: Keys = &[("summary", r#""carbon/epoxy tape""#), ("constants", "{ }")];
 const CONSTANT: Keys = &[("value", r#""130.3 GPa""#), ("status", r#""measured""#), ("source", r#""a data sheet""#)];
 
-fn parse(text: &str) -> Result<Vec<LibraryMaterial>, SceneError> {
-    let source = Arc::new(SceneSource::default().with(Origin::Library, "materials library", text));
-    let document = Table::parse(text, Origin::Library, &source)?;
-    let root = Reader::root(&document, &[("materials", "{ }")], &source)?;
-    root.required("materials")?.entries()?.iter().map(|(name, field)| read(name, field)).collect()
+/// The materials of a text in the format of the library, which `source` holds as such.
+pub(crate) fn parse(text: &str, source: &Arc<SceneSource>) -> Result<Vec<LibraryMaterial>, SceneError> {
+    let document = Table::parse(text, Origin::Library, source)?;
+    let root = Reader::root(&document, &[("materials", "{ }")], source)?;
+    let missing = || {
+        let top = Place { origin: Origin::Library, span: 0..0 };
+        source.error_at(&top, "`materials` is missing", "describe each material in a table [materials.\"its name\"]")
+    };
+    root.optional("materials").ok_or_else(missing)?.entries()?.iter().map(|(name, field)| read(name, field)).collect()
 }
 
 fn read(name: &str, field: &Field<'_>) -> Result<LibraryMaterial, SceneError> {
@@ -113,7 +120,7 @@ fn read(name: &str, field: &Field<'_>) -> Result<LibraryMaterial, SceneError> {
     Ok(LibraryMaterial {
         summary: own.required("summary")?.text()?.to_owned(),
         constants,
-        material: material::from_constants(name, &own.of(&table, material::KEYS)?)?,
+        material: material::from_constants(name, &own.of(&table, material::CONSTANTS, field.source())?)?,
         table,
     })
 }
@@ -125,7 +132,8 @@ mod tests {
 
     #[test]
     fn the_library_is_read_and_every_constant_has_a_source() {
-        assert_eq!(names().collect::<Vec<_>>(), ["AS4/3502", "3502 resin", "IM6/934"]);
+        let known = ["AS4/3502", "3502 resin", "IM6/934"];
+        assert_eq!(names().take(3).collect::<Vec<_>>(), known);
         for material in all() {
             assert!(material.constants.iter().all(|c| !c.source.is_empty() && !c.value.is_empty()));
             assert_eq!(material.material.check(), Ok(()));
@@ -136,7 +144,7 @@ mod tests {
     #[test]
     fn the_constants_of_the_report() {
         let fibre = &library("AS4/3502").unwrap().material;
-        assert_eq!(fibre.density, 1575.0);
+        assert_eq!(fibre.density, Some(1575.0));
         let s = &fibre.strengths;
         let mpa = [s.xt(), s.xc(), s.yt(), s.yc(), s.s12(), s.s23()].map(|v| v / 1e6);
         assert_eq!(mpa, [1793.0, 1724.0, 64.0, 138.0, 109.0, 69.0]);
@@ -148,11 +156,58 @@ mod tests {
         assert!(library("IM6/934").unwrap().constants.iter().all(|c| c.status == Status::Assumed));
     }
 
+    /// The sets of the reference tables, name and S23 apart, are as their source gives them.
+    #[test]
+    fn the_sets_of_the_reference_tables() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/criteria/materials.csv");
+        let mut rows = csv::Reader::from_path(file).unwrap();
+        let mut compared = 0;
+        for row in rows.deserialize::<std::collections::BTreeMap<String, String>>().map(Result::unwrap) {
+            let plain = |name: &str| name.replace(['/', '-'], "_");
+            let name =
+                names().find(|n| plain(n) == row["material"] || plain(n).replace("E_g", "Eg") == row["material"]);
+            let set = library(name.unwrap_or_else(|| panic!("{row:?}"))).unwrap();
+            let (e, s) = (&set.material.elastic, &set.material.strengths);
+            for (column, got) in [
+                ("E1", e.e1 / 1e6),
+                ("E2", e.e2 / 1e6),
+                ("nu12", e.nu12),
+                ("nu23", e.nu23),
+                ("G12", e.g12 / 1e6),
+                ("Xt", s.xt() / 1e6),
+                ("Xc", s.xc() / 1e6),
+                ("Yt", s.yt() / 1e6),
+                ("Yc", s.yc() / 1e6),
+                ("S12", s.s12() / 1e6),
+                ("S23", s.s23() / 1e6),
+            ] {
+                let want: f64 = row[column].parse().unwrap();
+                assert!((got / want - 1.0).abs() < 1e-14, "{}, {column}: {got}, not {want}", row["material"]);
+            }
+            let guessed = |c: &Constant| c.status != Status::Measured && c.key != "S23";
+            assert!(!set.constants.iter().any(guessed), "{:?}", set.constants);
+            compared += 1;
+        }
+        assert_eq!(compared, 6);
+    }
+
     #[test]
     fn a_slip_in_the_library_shows_its_line() {
-        let error = parse("[materials.x]\nsummary = \"x\"\nconstants.e = { value = \"1 GPa\", status = \"sure\" }")
-            .unwrap_err();
-        assert_eq!(error.location(), Some(("materials library", 3)));
-        assert!(error.remedy().contains("measured"), "{}", error.remedy());
+        for (text, line, remedy) in [
+            ("[materials.x]\nsummary = \"x\"\nconstants.e = { value = \"1 GPa\", status = \"sure\" }", 3, "measured"),
+            (
+                "[materials.x]\nsummary = \"x\"\n[materials.x.constants]\n\
+                 library = { value = 1, status = \"typical\", source = \"y\" }",
+                4,
+                "known: e, nu",
+            ),
+            ("[material.x]\n", 1, "did you mean `materials`"),
+            ("\n# nothing", 1, "[materials.\"its name\"]"),
+        ] {
+            let source = SceneSource::default().with(Origin::Library, "mine.toml", text);
+            let error = parse(text, &Arc::new(source)).unwrap_err();
+            assert_eq!(error.location(), Some(("mine.toml", line)), "{error}");
+            assert!(error.remedy().contains(remedy), "{error}: {}", error.remedy());
+        }
     }
 }

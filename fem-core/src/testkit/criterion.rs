@@ -274,7 +274,8 @@ mod tests {
         let m = Material {
             name: "m".into(),
             elastic: Elastic::isotropic(1e9, 0.3),
-            density: 1.0,
+            density: None,
+            giic: None,
             strengths: Strengths::default().with(Strength::Xt, 1000.0).with(Strength::S12, 50.0),
         };
         let faults = [

@@ -104,7 +104,8 @@ mod tests {
         Material {
             name: "m".into(),
             elastic: Elastic::transversely_isotropic(130.0, 10.0, 0.3, 0.4, 5.0),
-            density: 1.0,
+            density: None,
+            giic: None,
             strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
         }
     }

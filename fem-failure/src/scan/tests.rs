@@ -7,7 +7,8 @@ fn material(name: &str, strengths: &[(Strength, f64)]) -> Material {
     Material {
         name: name.into(),
         elastic: Elastic::isotropic(1.0, 0.3),
-        density: 1.0,
+        density: None,
+        giic: None,
         strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
     }
 }
@@ -68,6 +69,7 @@ fn the_crossing_is_interpolated_at_its_own_site() {
     assert_eq!((events[0].cell, events[0].index), (1, 2.0));
     assert!((events[0].time - 2.0 * (0.1 / 1.1)).abs() < 1e-15);
     assert_eq!((events[0].position, events[0].angle), ([1.0, 0.0, 0.0], 0.1));
+    assert!((events[0].stress.s11() - 1.0).abs() < 1e-15, "the index is the stress: {events:?}");
     let peak = &scan.peaks()[0];
     assert_eq!((peak.index, peak.time, peak.site.cell), (9.0, 3.0, 0));
     assert_eq!(scan.evaluations(), 6);
@@ -79,7 +81,7 @@ fn a_site_that_starts_broken_fails_at_the_first_sample() {
     let mut scan = plain(1);
     scan.sample(0.25, &[along(1.0)]).unwrap();
     scan.sample(0.5, &[along(1.5)]).unwrap();
-    assert_eq!(scan.events()[0].time, 0.25);
+    assert_eq!((scan.events()[0].time, scan.events()[0].stress), (0.25, along(1.0)));
     let mut scan = plain(1);
     scan.sample(0.25, &[along(1.0 - f64::EPSILON)]).unwrap();
     assert!(scan.events().is_empty());
@@ -122,10 +124,27 @@ fn each_place_and_mode_has_its_own_event() {
         (0.25, "h", "matrix compression", 1, Place::Ply(0)),
     ];
     assert_eq!(got, want.map(|(t, c, m, cell, p)| (t, c.to_owned(), m, cell, p)));
-    assert_eq!(scan.first_per_mode().len(), 4);
+    assert_eq!(first_per_mode(&scan.events()).len(), 4);
     // Modes that did not fail have their peak too.
     assert!(scan.peaks().iter().any(|p| p.mode == "fibre tension" && p.index < 1.0));
     assert_eq!(scan.evaluations(), 8);
+}
+
+#[test]
+fn a_probe_reads_the_indices_of_its_site() {
+    let sites = vec![site(0, Place::Interface(0), 1), site(0, Place::Ply(0), 0), site(1, Place::Ply(0), 0)];
+    let criteria: Vec<(String, Box<dyn FailureCriterion>)> =
+        vec![("p".into(), Box::new(Plain)), ("o".into(), Box::new(Octahedral))];
+    let mut scan = Scan::new(criteria, sites, vec![ply(), resin(10.0)]).unwrap();
+    assert_eq!((scan.probe(0, 0), scan.probe(1, 1), scan.probe(2, 0), scan.probe(0, 3)), (None, None, None, None));
+    let probes = [scan.probe(0, 2).unwrap(), scan.probe(1, 0).unwrap()];
+    assert_eq!(probes.map(|p| scan.read(p)[0]), [0.0, 0.0]);
+    for (t, s) in [(0.0, 0.5), (1.0, 0.75)] {
+        scan.sample(t, &[shear(10.0 * s), along(9.0), along(s)]).unwrap();
+        assert_eq!(probes.map(|p| scan.read(p)[0]), [s, s * s]);
+    }
+    assert!(scan.sample(2.0, &[shear(f64::NAN), along(1.0), along(1.0)]).is_err());
+    assert_eq!(probes.map(|p| scan.read(p)[0]), [0.75, 0.5625], "a refused sample leaves no trace");
 }
 
 #[test]

@@ -1,13 +1,18 @@
-//! Materials of a scene: from the library, from constants, or from constants over the library's.
+//! Materials of a scene: constants, over those of the library or of a file of the user's if one of them is named.
 
 use super::reader::{Field, Keys, Reader};
-use super::source::{Located, SceneError};
+use super::source::{Located, Origin, SceneError, SceneSource, read_text};
+use super::tree::Table;
 use crate::materials;
 use fem_core::material::{Elastic, Material, Strength, Strengths};
 use fem_core::plugin::Dimension;
+use std::path::Path;
+use std::sync::Arc;
 
-pub(crate) const KEYS: Keys = &[
+const KEYS: Keys = &[
     ("library", r#""AS4/3502""#),
+    ("file", r#""materials.toml""#),
+    ("name", r#""my tape""#),
     ("e", r#""70 GPa""#),
     ("nu", "0.3"),
     ("e1", r#""130.3 GPa""#),
@@ -29,14 +34,18 @@ pub(crate) const KEYS: Keys = &[
     ("Zt", r#""60 MPa""#),
     ("Zc", r#""138 MPa""#),
     ("S13", r#""90 MPa""#),
+    ("GIIc", r#""0.8 N/mm""#),
 ];
+
+/// The keys of constants.
+pub(crate) const CONSTANTS: Keys = KEYS.split_at(3).1;
 
 const ELASTIC: &str = "give e and nu (isotropic), or e1, e2, nu12, nu23, g12 (isotropic across the fibres), \
                        or all nine of e1, e2, e3, nu12, nu13, nu23, g12, g13, g23";
 
-/// All materials of the table `materials`.
-pub(super) fn read_all(field: &Field<'_>) -> Result<Vec<Located<Material>>, SceneError> {
-    field.entries()?.iter().map(|(name, field)| Ok(field.at(read(name, field)?))).collect()
+/// All materials of the table `materials`; files are looked for from `folder`.
+pub(super) fn read_all(field: &Field<'_>, folder: &Path) -> Result<Vec<Located<Material>>, SceneError> {
+    field.entries()?.iter().map(|(name, field)| Ok(field.at(read(name, field, folder)?))).collect()
 }
 
 /// Position of the material that `field` names.
@@ -44,25 +53,46 @@ pub(super) fn find(field: &Field<'_>, materials: &[Located<Material>]) -> Result
     field.word(materials.iter().map(|m| m.value.name.as_str()))
 }
 
-fn read(name: &str, field: &Field<'_>) -> Result<Material, SceneError> {
+fn read(name: &str, field: &Field<'_>, folder: &Path) -> Result<Material, SceneError> {
     let own = field.table(KEYS)?;
-    let Some(library) = own.optional("library") else { return from_constants(name, &own) };
-    let below = &materials::all()[library.word(materials::names())?];
-    let merged = field.any_table()?.clone().over(below.table.clone());
-    from_constants(name, &own.of(&merged, KEYS)?)
+    let over = |below: Table, source: &Arc<SceneSource>| {
+        let merged = field.any_table()?.clone().over(below);
+        from_constants(name, &own.of(&merged, KEYS, source)?)
+    };
+    match (own.optional("library"), own.optional("file"), own.optional("name")) {
+        (Some(_), Some(stray), _) => Err(stray.error("does not go with `library`", "leave one of the two out")),
+        (_, None, Some(stray)) => Err(stray.error("means nothing without `file`", "add the file or leave it out")),
+        (None, None, None) => from_constants(name, &own),
+        (Some(library), None, None) => {
+            over(materials::all()[library.word(materials::names())?].table.clone(), field.source())
+        }
+        (None, Some(file), _) => {
+            let path = folder.join(file.text()?);
+            let text = read_text(&path).map_err(|why| {
+                file.error(format!("cannot read `{}`: {why}", path.display()), "it counts from the folder of the scene")
+            })?;
+            let source = SceneSource::clone(field.source()).with(Origin::Library, path.display(), &text);
+            let source = Arc::new(source);
+            let given = materials::parse(&text, &source)?;
+            let which = own.required("name")?.word(given.iter().map(|m| m.material.name.as_str()))?;
+            over(given[which].table.clone(), &source)
+        }
+    }
 }
 
 /// A material from its constants alone.
 pub(crate) fn from_constants(name: &str, table: &Reader<'_>) -> Result<Material, SceneError> {
     let elastic = elastic(table)?;
-    let density = table.required("density")?.positive(Dimension::DENSITY)?;
+    let optional = |key, dimension| table.optional(key).map(|field| field.positive(dimension)).transpose();
     let mut strengths = Strengths::default();
     for &strength in Strength::ALL {
-        if let Some(field) = table.optional(strength.name()) {
-            strengths = strengths.with(strength, field.positive(Dimension::PRESSURE)?);
+        if let Some(pascals) = optional(strength.name(), Dimension::PRESSURE)? {
+            strengths = strengths.with(strength, pascals);
         }
     }
-    let material = Material { name: name.to_owned(), elastic, density, strengths };
+    let density = optional("density", Dimension::DENSITY)?;
+    let giic = optional("GIIc", Dimension::TOUGHNESS)?;
+    let material = Material { name: name.to_owned(), elastic, density, strengths, giic };
     match material.check() {
         Ok(()) => Ok(material),
         Err(e) => Err(table.error(e.to_string(), "no solid has these constants: look for a slip in one of them")),
@@ -96,7 +126,7 @@ mod tests {
     #[test]
     fn every_strength_that_a_criterion_may_ask_for_can_be_given() {
         for strength in Strength::ALL {
-            assert!(KEYS.iter().any(|(key, _)| *key == strength.name()), "{}", strength.name());
+            assert!(CONSTANTS.iter().any(|(key, _)| *key == strength.name()), "{}", strength.name());
         }
     }
 }

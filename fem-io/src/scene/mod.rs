@@ -29,7 +29,6 @@ use fem_core::plate::ZDerivatives;
 use fem_core::plugin::Dimension;
 use reader::{Field, Keys, Reader};
 use source::Origin;
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tree::Table;
@@ -173,24 +172,15 @@ const MODES: Keys = &[("count", "10")];
 /// Most cells of a built-in mesh: more is a slip.
 const MAX_CELLS: usize = 4_000_000;
 
-/// Largest scene file: more is some other file, given by mistake.
-const MAX_BYTES: u64 = 1 << 22;
-
 /// Reads the scene file `path`.
 ///
 /// # Errors
 /// A file that cannot be read, or as [`parse`].
 pub fn read(path: &Path) -> Result<Scene, SceneError> {
-    let refuse = |why: String| {
+    let text = source::read_text(path).map_err(|why| {
         let message = format!("cannot read the scene `{}`: {why}", path.display());
         Arc::new(SceneSource::new(path, "")).error(message, "")
-    };
-    let mut text = String::new();
-    let file = std::fs::File::open(path).map_err(|e| refuse(e.to_string()))?;
-    file.take(MAX_BYTES + 1).read_to_string(&mut text).map_err(|e| refuse(e.to_string()))?;
-    if text.len() as u64 > MAX_BYTES {
-        return Err(refuse(format!("it is longer than {MAX_BYTES} bytes, which no scene is")));
-    }
+    })?;
     parse(&text, path)
 }
 
@@ -211,7 +201,8 @@ pub fn parse(text: &str, path: &Path) -> Result<Scene, SceneError> {
     let merged = own.over(Table::parse(fidelity.preset(), Origin::Preset, &source)?);
     let root = Reader::root(&merged, KEYS, &source)?;
 
-    let materials = material::read_all(&root.required("materials")?)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let materials = material::read_all(&root.required("materials")?, folder)?;
     let (laminate, interface) = laminate::read(&root.required("laminate")?, &materials)?;
     let element = root.required("element")?;
     let analysis = read_analysis(&root)?;

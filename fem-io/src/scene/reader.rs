@@ -59,9 +59,14 @@ impl<'a> Reader<'a> {
         self.error(format!("`{}` is missing", self.path_of(key)), help)
     }
 
-    /// Another table in the place of this one.
-    pub(crate) fn of<'b>(&'b self, table: &'b Table, keys: Keys) -> Result<Reader<'b>, SceneError> {
-        Reader { table, path: self.path.clone(), place: self.place.clone(), keys, source: self.source }.checked()
+    /// Another table in the place of this one, with the texts that its entries stand in.
+    pub(crate) fn of<'b>(
+        &self,
+        table: &'b Table,
+        keys: Keys,
+        source: &'b Arc<SceneSource>,
+    ) -> Result<Reader<'b>, SceneError> {
+        Reader { table, path: self.path.clone(), place: self.place.clone(), keys, source }.checked()
     }
 
     /// Two keys that exclude each other: at most one of them remains, the scene's where the other is the preset's.
@@ -109,6 +114,10 @@ impl<'a> Field<'a> {
     /// Key and value together.
     pub(crate) fn entry_place(&self) -> Place {
         Place { span: self.key_place.span.start..self.place().span.end, ..self.key_place.clone() }
+    }
+
+    pub(crate) fn source(&self) -> &'a Arc<SceneSource> {
+        self.source
     }
 
     pub(crate) fn node(&self) -> &'a Node {

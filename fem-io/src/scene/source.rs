@@ -2,9 +2,24 @@
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 use std::fmt;
+use std::io::Read as _;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
+
+/// Largest file of text that is read: more is some other file, given by mistake.
+const MAX_BYTES: u64 = 1 << 22;
+
+/// The text of a file, or why there is none.
+pub(crate) fn read_text(path: &Path) -> Result<String, String> {
+    let mut text = String::new();
+    let file = std::fs::File::open(path).map_err(|e| e.to_string())?;
+    file.take(MAX_BYTES + 1).read_to_string(&mut text).map_err(|e| e.to_string())?;
+    match text.len() as u64 {
+        0..=MAX_BYTES => Ok(text),
+        _ => Err(format!("it is longer than {MAX_BYTES} bytes, which no such file is")),
+    }
+}
 
 /// The text that a value comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,7 +29,7 @@ pub(crate) enum Origin {
     Library,
 }
 
-/// Where a value stands: in the scene, in its preset, or in the materials library.
+/// Where a value stands: in the scene, in its preset, in the materials library or in a file of materials.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Place {
     pub(crate) origin: Origin,

@@ -130,6 +130,53 @@ fn a_scene_in_full() {
     assert_eq!(scene.reduction.params.count("vectors", 1, None), Ok(40));
 }
 
+/// The library is a file like any other.
+#[test]
+fn a_material_comes_from_a_file_of_ones_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(folder.path().join("mine.toml"), crate::materials::LIBRARY).unwrap();
+    let with = |constants: &str| parse(&spoilt("{ library = \"AS4/3502\" }", constants), &path);
+    // As text: a strength that nobody gave equals nothing.
+    let material = |constants: &str| match with(constants) {
+        Ok(scene) => format!("{:?}", scene.materials[0].value),
+        Err(e) => panic!("{}", rendered(&e)),
+    };
+    let named =
+        |name| Material { name: "as4-3502".into(), ..crate::materials::library(name).unwrap().material.clone() };
+    assert_eq!(material(r#"{ file = "mine.toml", name = "AS4/3502" }"#), format!("{:?}", named("AS4/3502")));
+    let tough =
+        material(r#"{ file = "mine.toml", name = "E-glass/MY750", density = "2.1 g/cm^3", GIIc = "0.8 N/mm" }"#);
+    assert_eq!(named("E-glass/MY750").density, None);
+    let want = Material { density: Some(2100.0), giic: Some(800.0), ..named("E-glass/MY750") };
+    assert_eq!(tough, format!("{want:?}"));
+
+    let broken = crate::materials::LIBRARY.replace("\"9.65 GPa\"", "\"9.65 mm\"");
+    std::fs::write(folder.path().join("broken.toml"), &broken).unwrap();
+    let line = |text: &str, words| 1 + text.lines().position(|line| line.contains(words)).unwrap();
+    let scene = line(&spoilt("{ library = \"AS4/3502\" }", "?"), "= ?");
+    for (constants, file, line, words) in [
+        (r#"{ file = "none.toml", name = "x" }"#, "scene.toml", scene, "cannot read"),
+        (r#"{ file = "mine.toml" }"#, "scene.toml", scene, "`materials.as4-3502.name` is missing"),
+        (r#"{ file = "mine.toml", name = "AS4/3503" }"#, "scene.toml", scene, "`AS4/3503` is none of the words"),
+        (r#"{ name = "AS4/3502" }"#, "scene.toml", scene, "means nothing without `file`"),
+        (r#"{ library = "AS4/3502", file = "mine.toml" }"#, "scene.toml", scene, "does not go with `library`"),
+        (r#"{ file = "mine.toml", name = "AS4/3502", nu12 = 9 }"#, "scene.toml", scene, "|nu12| < sqrt(E1/E2)"),
+        (r#"{ file = "broken.toml", name = "3502 resin" }"#, "broken.toml", line(&broken, "9.65 mm"), "is a length"),
+        (
+            r#"{ file = "mine.toml", name = "AS4/3502", e = "1 GPa" }"#,
+            "mine.toml",
+            line(&broken, "130.3"),
+            "does not go with e",
+        ),
+    ] {
+        let error = with(constants).expect_err(constants);
+        let (name, at) = error.location().unwrap();
+        assert!(name.ends_with(file) && at == line && error.to_string().contains(words), "{}", rendered(&error));
+        assert!(!error.remedy().is_empty(), "{error}");
+    }
+}
+
 #[test]
 fn a_formula_may_begin_with_a_number() {
     let scene = read_good(&spoilt("strict = true", r#"expression = ["2*s1"], limit = "2 MPa""#));
