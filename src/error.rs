@@ -35,6 +35,11 @@ pub enum Error {
     #[error("the scene describes no impact")]
     #[diagnostic(help("set `analysis = \"impact\"` and describe impactor, contact and march"))]
     NoImpact,
+    #[error("the scene describes no loads at rest")]
+    #[diagnostic(help("set `analysis = \"static\"` and give a `[[load]]`"))]
+    NoLoads,
+    #[error("a {0} is not finite: the structure is singular, or a load out of the range of numbers")]
+    NotFinite(&'static str),
     #[error(transparent)]
     File(#[from] FileError),
     #[error("the plot failed")]

@@ -20,9 +20,12 @@
 pub mod cli;
 pub mod cost;
 mod error;
+pub mod matrices;
 mod model;
+pub mod modes;
 mod registry;
 pub mod run;
+pub mod statics;
 mod stress;
 pub mod summary;
 
@@ -32,5 +35,5 @@ pub use fem_dynamics as dynamics;
 pub use fem_elements as elements;
 pub use fem_failure as failure;
 pub use fem_io as io;
-pub use model::{Impact, Model, NamedCriterion, NamedProfile, Plan, Statics};
+pub use model::{Impact, Model, NamedCriterion, NamedProfile, Plan};
 pub use registry::{NO_REDUCTION, Registry, RegistryError};

@@ -54,7 +54,7 @@ pub struct Sizes {
 #[derive(Debug)]
 pub struct Prepared<'a> {
     model: &'a Model,
-    pub(crate) impact: &'a Impact,
+    impact: &'a Impact,
     system: ImpactSystem,
     reduced: Option<Reduced>,
     /// Sizes and limits.

@@ -1,7 +1,8 @@
 //! Stresses along a march: sampled, recovered in batches, handed to the scan.
 
 use crate::error::Error;
-use crate::model::Model;
+use crate::model::{Model, NamedCriterion};
+use crate::summary::ply_name;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::recovery::{Recovery, Station};
@@ -11,6 +12,7 @@ use fem_core::window;
 use fem_dynamics::reduce::Reduced;
 use fem_failure::scan::{Place, Scan, ScanSite};
 use fem_io::scene::Window;
+use serde::Serialize;
 
 /// Samples recovered together.
 const BATCH: usize = 16;
@@ -137,6 +139,60 @@ impl<'a> Watch<'a> {
     pub(crate) fn sites(&self) -> usize {
         self.recovery.sites()
     }
+}
+
+/// The smallest factor on the loads that brings a criterion to failure, and where.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct Margin {
+    pub criterion: String,
+    pub mode: String,
+    pub reserve_factor: f64,
+    pub cell: u64,
+    pub ply: String,
+    pub x_m: f64,
+    pub y_m: f64,
+    pub z_m: f64,
+}
+
+/// The margin of each criterion for displacements `u` (before elimination of constraints); none for a criterion that no
+/// multiple of the stresses brings to failure.
+///
+/// # Errors
+/// A cell that the element refuses, a stress that is not finite.
+pub(crate) fn margins(model: &Model, u: &[f64]) -> Result<Vec<Margin>, Error> {
+    if model.criteria.is_empty() {
+        return Ok(Vec::new());
+    }
+    let recovery = recovery(model);
+    let mut stresses = vec![0.0; 6 * recovery.sites()];
+    recovery.stresses(&model.plate, &*model.element, u, 1, &mut stresses)?;
+    if !stresses.iter().all(|s| s.is_finite()) {
+        return Err(Error::NotFinite("stress"));
+    }
+    let sites = sites(model, &recovery);
+    let smallest = |(name, criterion): &NamedCriterion| {
+        let states = sites.iter().zip(stresses.chunks_exact(6));
+        let judged = states.filter(|(site, _)| site.place.site() == criterion.info().site);
+        let reserves = judged.filter_map(|(site, s)| {
+            let state = Stress6::new([s[0], s[1], s[2], s[3], s[4], s[5]]);
+            let reserve = criterion.reserve_factor(&state, &model.materials[usize::from(site.material)]);
+            let mode = reserve.mode.filter(|_| reserve.factor.is_finite())?;
+            Some((site, reserve.factor, mode))
+        });
+        let (site, reserve_factor, mode) = reserves.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(Margin {
+            criterion: name.clone(),
+            mode: criterion.info().modes[mode].to_owned(),
+            reserve_factor,
+            cell: model.plate.plane.quad_tags[site.cell as usize],
+            ply: ply_name(site.place),
+            x_m: site.position[0],
+            y_m: site.position[1],
+            z_m: site.position[2],
+        })
+    };
+    Ok(model.criteria.iter().filter_map(smallest).collect())
 }
 
 fn recovery(model: &Model) -> Recovery {

@@ -135,7 +135,7 @@ impl From<Counters> for Work {
 }
 
 /// "3" for a ply, "3|4" for an interface, counted from 1 at the bottom.
-fn ply_name(place: Place) -> String {
+pub(crate) fn ply_name(place: Place) -> String {
     match place {
         Place::Ply(k) => format!("{}", k + 1),
         Place::Interface(k) => format!("{}|{}", k + 1, k + 2),
@@ -198,7 +198,7 @@ impl Summary {
                 nodes: model.plate.nodes(),
                 plies: model.laminate.plies.len(),
                 thickness_mm: thickness * 1e3,
-                plate_mass_g: model.laminate.areal_mass(&model.materials) * model.plate.plane.area() * 1e3,
+                plate_mass_g: model.areal_mass * model.plate.plane.area() * 1e3,
                 unknowns: sizes.unknowns,
                 unknowns_marched: sizes.marched,
                 stiffness_entries: sizes.stiffness_entries,

@@ -1,7 +1,7 @@
 //! Loads as consistent nodal forces, f = ∫ Nᵀ p dA: one per unknown, before elimination of constraints.
 
 use crate::dof::Dof;
-use crate::element::Element;
+use crate::element::{Element, ElementError, Scratch};
 use crate::plate::Plate;
 use crate::quadrature::gauss_legendre;
 use std::collections::HashSet;
@@ -97,6 +97,29 @@ pub fn point(plate: &Plate, column: usize, level: usize, force: [f64; 3], f: &mu
         let axis = ["x", "y", "z"][n];
         *dof.map(|dof| &mut f[dof])
             .ok_or_else(|| format!("{} has no displacement along {axis}", plate.describe_column(column)))? += force;
+    }
+    Ok(())
+}
+
+/// Adds the forces of a uniform `acceleration` (x, y, z), m/s², of all masses: f = M a.
+///
+/// # Errors
+/// A cell that the element refuses.
+pub fn gravity(
+    plate: &Plate,
+    element: &dyn Element,
+    acceleration: [f64; 3],
+    f: &mut [f64],
+) -> Result<(), ElementError> {
+    let n = element.info().ndof();
+    let (mut mass, mut scratch, mut dofs) = (vec![0.0; n * n], Scratch::default(), Vec::new());
+    for number in 0..plate.cells() {
+        element.mass(&plate.cell(number), &mut scratch, &mut mass)?;
+        plate.cell_dofs(number, &mut dofs);
+        for (column, name) in mass.chunks_exact(n).zip(element.info().dofs.iter().cycle()) {
+            let a = if name.m() == 0 { acceleration[name.n() - 1] } else { 0.0 };
+            dofs.iter().zip(column).for_each(|(dof, m)| f[*dof] += m * a);
+        }
     }
     Ok(())
 }

@@ -7,6 +7,7 @@ use crate::plate::Plate;
 use crate::quadrature::gauss_legendre;
 use crate::tensor::{Global, Ply, Strain6, Stress6, stress};
 use nalgebra::{DMatrix, SVector};
+use std::collections::HashSet;
 
 /// State at a height of a profile. Interfaces appear twice, once per ply.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,8 +36,9 @@ pub struct Profile {
     point: [f64; 2],
 }
 
-/// In-plane Gauss points a direction at which stresses are sampled for their derivatives.
-const SAMPLES: usize = 3;
+/// Cells around a point whose stresses are differentiated: four deep from an edge, and all there are in a small mesh.
+const AROUND: usize = 30;
+const AROUND_SECTION: usize = 6;
 
 /// Terms of a complete cubic in the plane.
 const TERMS: usize = 10;
@@ -50,10 +52,17 @@ impl Profile {
         let quads = &plate.plane.quads;
         let place = |q: usize| Some((q, locate(&plate.plane.corners(q), point)?));
         let places: Vec<(usize, [f64; 2])> = (0..quads.len()).filter_map(place).collect();
-        let own: Vec<usize> = places.iter().map(|p| p.0).collect();
-        // One to three cells are too few to differentiate in: take their neighbours along.
-        let touches = |q: &usize| quads[*q].iter().any(|v| own.iter().any(|o| quads[*o].contains(v)));
-        let around = if own.len() < 4 { (0..quads.len()).filter(touches).collect() } else { own };
+        let mut around: Vec<usize> = places.iter().map(|p| p.0).collect();
+        let wanted = if plate.info().is_section() { AROUND_SECTION } else { AROUND };
+        while around.len() < wanted {
+            let vertices: HashSet<u32> = around.iter().flat_map(|q| quads[*q]).collect();
+            let ring: Vec<usize> =
+                (0..quads.len()).filter(|q| quads[*q].iter().any(|v| vertices.contains(v))).collect();
+            if ring.len() == around.len() {
+                break;
+            }
+            around = ring;
+        }
         (!places.is_empty()).then_some(Self { places, around, point })
     }
 
@@ -65,8 +74,9 @@ impl Profile {
     ///
     /// τ(z) = −∫ (∂σ₁₁/∂x + ∂σ₁₂/∂y) dz, likewise along y;  σ₃₃(z) = −p − ∫ (∂τ₁₃/∂x + ∂τ₂₃/∂y) dz
     ///
-    /// The in-plane derivatives are those of a cubic fitted to the stresses of the cells around the point. What τ misses
-    /// at the stress-free top is taken off linearly.
+    /// The in-plane derivatives are those of a cubic fitted to the stresses in the centres of the cells around the point,
+    /// where the parts of a displacement that an element interpolates linearly have their best slopes. What τ misses at
+    /// the stress-free top is taken off linearly.
     pub fn sample(
         &self,
         plate: &Plate,
@@ -140,35 +150,28 @@ impl Profile {
 
     /// Least squares of a complete cubic around the point: rows give its coefficients from the samples.
     fn fit(&self, plate: &Plate) -> Fit {
-        let rule = gauss_legendre(SAMPLES);
         let section = plate.info().is_section();
-        let across = if section { gauss_legendre(1) } else { rule };
-        let mut samples = Vec::new();
-        for quad in &self.around {
-            let cell = plate.cell(quad * plate.layers());
-            for &(r, _) in rule {
-                for &(s, _) in across {
-                    let [x, y, _] = cell.position([r, s, 0.0]);
-                    samples.push((*quad, [r, s], [x - self.point[0], y - self.point[1]]));
-                }
-            }
-        }
-        let size = samples.iter().fold(0.0_f64, |m, s| m.max(s.2[0].abs()).max(s.2[1].abs()));
+        let centre = |quad: &usize| {
+            let [x, y, _] = plate.cell(quad * plate.layers()).position([0.0; 3]);
+            [x - self.point[0], y - self.point[1]]
+        };
+        let samples: Vec<[f64; 2]> = self.around.iter().map(centre).collect();
+        let size = samples.iter().fold(0.0_f64, |m, s| m.max(s[0].abs()).max(s[1].abs()));
         let terms = |[x, y]: [f64; 2]| -> [f64; TERMS] {
             let (x, y) = (x / size, if section { 0.0 } else { y / size });
             [1.0, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y]
         };
-        let a = DMatrix::from_fn(samples.len(), TERMS, |i, j| terms(samples[i].2)[j]);
+        let a = DMatrix::from_fn(samples.len(), TERMS, |i, j| terms(samples[i])[j]);
         // The pseudo-inverse leaves out what the samples cannot tell (y on a section).
         let inverse = a.pseudo_inverse(1e-10).unwrap_or_else(|_| DMatrix::zeros(TERMS, samples.len()));
-        Fit { inverse, size, samples: samples.into_iter().map(|s| (s.0, s.1)).collect() }
+        Fit { inverse, size }
     }
 
     /// ∂σ₁₁/∂x + ∂σ₁₂/∂y, ∂σ₁₂/∂x + ∂σ₂₂/∂y, and the divergence of the two.
     fn derivatives(&self, field: &mut Field<'_>, laminate: &Laminate, fit: &Fit, ply: usize, z: f64) -> [f64; 3] {
         let mut coefficients = SVector::<[f64; 3], TERMS>::from_element([0.0; 3]);
-        for (i, (quad, at)) in fit.samples.iter().enumerate() {
-            let (e, _) = field.state(laminate, *quad, *at, ply, z);
+        for (i, quad) in self.around.iter().enumerate() {
+            let (e, _) = field.state(laminate, *quad, [0.0; 2], ply, z);
             let s: Stress6<Global> = stress(field.stiffness(laminate, ply), &Strain6::new(e));
             for (c, row) in coefficients.iter_mut().zip(fit.inverse.column(i).iter()) {
                 for (c, s) in c.iter_mut().zip([s.0[0], s.0[1], s.0[3]]) {
@@ -183,11 +186,9 @@ impl Profile {
 }
 
 struct Fit {
-    /// Terms × samples.
+    /// Terms × cells around.
     inverse: DMatrix<f64>,
     size: f64,
-    /// Quad and natural coordinates.
-    samples: Vec<(usize, [f64; 2])>,
 }
 
 /// A displacement field, evaluated in a ply of a cell.

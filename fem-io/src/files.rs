@@ -34,11 +34,11 @@ pub enum FileError {
     #[error("{file}, row {row}, column {column}: {value} is not a finite number")]
     NonFinite {
         /// Name of the table.
-        file: &'static str,
+        file: String,
         /// Row, counted from 1 without the header.
         row: usize,
         /// Column.
-        column: &'static str,
+        column: String,
         /// The value.
         value: f64,
     },

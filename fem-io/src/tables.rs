@@ -131,9 +131,11 @@ fn null_in(value: &Value) -> Option<Vec<String>> {
     }
 }
 
-#[derive(Serialize)]
+/// A value of a table.
+#[derive(Debug, Clone, Copy, Serialize)]
 #[serde(untagged)]
-enum Field<'a> {
+#[allow(missing_docs)]
+pub enum Field<'a> {
     Number(f64),
     Count(u64),
     Text(&'a str),
@@ -199,23 +201,37 @@ impl Row for EnvelopeRow {
     }
 }
 
-fn write_table<R: Row>(dir: &OutputDir, file: &'static str, rows: &[R]) -> Result<(), FileError> {
-    for (row, values) in rows.iter().enumerate() {
-        for (column, value) in values.fields() {
+fn write_table<R: Row>(dir: &OutputDir, file: &str, rows: &[R]) -> Result<(), FileError> {
+    let none = R::default();
+    let header: Vec<_> = rows.first().unwrap_or(&none).fields().into_iter().map(|(column, _)| column).collect();
+    let values = rows.iter().map(|row| row.fields().into_iter().map(|(_, value)| value).collect());
+    write_columns(dir, file, &header, values)
+}
+
+/// Writes a table of the columns `header` to `file`; every row has as many values.
+///
+/// # Errors
+/// A value that is not finite, and as [`OutputDir::write`].
+pub fn write_columns<'a>(
+    dir: &OutputDir,
+    file: &str,
+    header: &[&str],
+    rows: impl Iterator<Item = Vec<Field<'a>>> + Clone,
+) -> Result<(), FileError> {
+    for (row, values) in rows.clone().enumerate() {
+        for (column, value) in header.iter().zip(values) {
             if let Field::Number(value) = value
                 && !value.is_finite()
             {
-                return Err(FileError::NonFinite { file, row: row + 1, column, value });
+                return Err(FileError::NonFinite { file: file.into(), row: row + 1, column: (*column).into(), value });
             }
         }
     }
     dir.write(file, |out| {
         let mut table = csv::Writer::from_writer(out);
-        let none = R::default();
-        let header = rows.first().unwrap_or(&none).fields();
-        table.write_record(header.iter().map(|(column, _)| column)).map_err(cause)?;
+        table.write_record(header).map_err(cause)?;
         for row in rows {
-            table.serialize(row.fields().iter().map(|(_, value)| value).collect::<Vec<_>>()).map_err(cause)?;
+            table.serialize(row).map_err(cause)?;
         }
         table.flush()
     })

@@ -2,10 +2,11 @@
 
 use super::{print, warn};
 use crate::error::Error;
-use crate::model::Model;
+use crate::model::{Impact, Model, Plan};
 use crate::registry::Registry;
-use crate::run;
+use crate::run::{self, Sizes};
 use clap::Args;
+use fem_core::counters::Counters;
 use fem_io::scene;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -24,22 +25,36 @@ pub(super) fn check(registry: &Registry, arguments: &Arguments) -> miette::Resul
 
 fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
     let model = Model::new(scene::read(&arguments.scene)?, registry)?;
-    let prepared = run::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model))?;
-    let (impact, sizes) = (prepared.impact, prepared.sizes);
-    let (plate, scene) = (&model.plate, &model.scene);
-    let megabytes = |entries: usize| entries as f64 * 8e-6;
-    let known = [("lowest excited", sizes.lowest_frequency), ("highest", sizes.highest_frequency)];
-    let frequencies: Vec<_> = known.iter().filter_map(|(name, f)| Some(format!("{name} {:.1} Hz", (*f)?))).collect();
-    let redundant = match model.constraints.redundant.len() {
-        0 => String::new(),
-        n => format!(" ({n} redundant equations)"),
-    };
-    let stable = match sizes.longest_step {
-        s if s.is_finite() => format!("stable up to {:.4} us", s * 1e6),
-        _ => "no stability limit".to_owned(),
-    };
+    let mut lines = plate(&model);
+    match &model.plan {
+        Plan::Impact(impact) => {
+            let sizes = run::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model))?.sizes;
+            lines.extend(unknowns(&model, sizes.stiffness_entries, sizes.factor_entries));
+            lines.extend(march(impact, &sizes));
+        }
+        plan => {
+            let counters = &mut Counters::default();
+            let (structure, factor) =
+                run::structure(&model, NonZeroUsize::MIN, counters).inspect_err(|_| warn(&model))?;
+            lines.extend(unknowns(&model, structure.entries(), factor));
+            lines.push(match plan {
+                Plan::Modes { count } => ("analysis", format!("the {count} lowest modes")),
+                _ => ("analysis", "static".to_owned()),
+            });
+        }
+    }
     let criteria: Vec<_> = model.criteria.iter().map(|c| c.0.as_str()).collect();
-    let mut lines = vec![
+    lines.push(("damage", if criteria.is_empty() { "off".into() } else { criteria.join(", ") }));
+    lines.extend(model.warnings.iter().map(|warning| ("warning", warning.clone())));
+    let lines: String = lines.iter().map(|(what, text)| format!("  {what:<9} {text}\n")).collect();
+    Ok(format!("{}\n{lines}  the scene is valid\n", model.scene.title))
+}
+
+type Line = (&'static str, String);
+
+fn plate(model: &Model) -> Vec<Line> {
+    let plate = &model.plate;
+    vec![
         (
             "mesh",
             format!(
@@ -58,33 +73,41 @@ fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
                 plate.layers()
             ),
         ),
-        (
-            "unknowns",
-            format!("{} of {} after constraints{redundant}; {} marched", sizes.unknowns, plate.ndof(), sizes.marched),
-        ),
-        (
-            "memory",
-            format!(
-                "stiffness {:.1} MB, factor {:.1} MB",
-                2.0 * megabytes(sizes.stiffness_entries),
-                megabytes(sizes.factor_entries)
-            ),
-        ),
+    ]
+}
+
+fn unknowns(model: &Model, stiffness: usize, factor: usize) -> [Line; 2] {
+    let megabytes = |entries: usize| entries as f64 * 8e-6;
+    let redundant = match model.constraints.redundant.len() {
+        0 => String::new(),
+        n => format!(" ({n} redundant equations)"),
+    };
+    let (independent, all) = (model.constraints.ndof(), model.plate.ndof());
+    let memory = format!("stiffness {:.1} MB, factor {:.1} MB", 2.0 * megabytes(stiffness), megabytes(factor));
+    [("unknowns", format!("{independent} of {all} after constraints{redundant}")), ("memory", memory)]
+}
+
+fn march(impact: &Impact, sizes: &Sizes) -> [Line; 3] {
+    let known = [("lowest excited", sizes.lowest_frequency), ("highest", sizes.highest_frequency)];
+    let frequencies: Vec<_> = known.iter().filter_map(|(name, f)| Some(format!("{name} {:.1} Hz", (*f)?))).collect();
+    let stable = match sizes.longest_step {
+        s if s.is_finite() => format!("stable up to {:.4} us", s * 1e6),
+        _ => "no stability limit".to_owned(),
+    };
+    let spec = &impact.spec.march;
+    [
         ("contact", format!("static stiffness of the plate {:.2} N/mm", sizes.static_stiffness * 1e-3)),
         ("frequency", if frequencies.is_empty() { "the march needs none".into() } else { frequencies.join(", ") }),
         (
             "march",
             format!(
-                "{} steps of {:.4} us to {:.4} ms with {} ({stable})",
+                "{} unknowns, {} steps of {:.4} us to {:.4} ms with {} ({stable})",
+                sizes.marched,
                 sizes.steps,
                 sizes.step * 1e6,
-                impact.spec.march.end.value * 1e3,
-                impact.spec.march.integrator.name.value
+                spec.end.value * 1e3,
+                spec.integrator.name.value
             ),
         ),
-        ("damage", if criteria.is_empty() { "off".into() } else { criteria.join(", ") }),
-    ];
-    lines.extend(model.warnings.iter().map(|warning| ("warning", warning.clone())));
-    let lines: String = lines.iter().map(|(what, text)| format!("  {what:<9} {text}\n")).collect();
-    Ok(format!("{}\n{lines}  the scene is valid\n", scene.title))
+    ]
 }

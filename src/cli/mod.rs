@@ -3,6 +3,8 @@
 mod check;
 mod envelope;
 mod list;
+mod matrices;
+mod modes;
 mod run;
 
 use crate::model::Model;
@@ -38,6 +40,10 @@ enum Command {
     Check(check::Arguments),
     /// Draws and tabulates failure envelopes of a material.
     Envelope(envelope::Arguments),
+    /// Finds the lowest natural frequencies of a scene's plate and writes modes.csv.
+    Modes(modes::Arguments),
+    /// Writes stiffness and mass (Matrix Market) with the names of their unknowns.
+    Matrices(matrices::Arguments),
     /// Lists what a scene can name, with parameters and sources.
     List(list::Arguments),
 }
@@ -63,6 +69,8 @@ pub fn run_with(registry: Registry, arguments: impl IntoIterator<Item = impl Int
         Command::Run(a) => run::run(&registry, &a),
         Command::Check(a) => check::check(&registry, &a),
         Command::Envelope(a) => envelope::envelope(&registry, &a),
+        Command::Modes(a) => modes::modes(&registry, &a),
+        Command::Matrices(a) => matrices::matrices(&registry, &a),
         Command::List(a) => list::list(&registry, &a),
     };
     match done {

@@ -2,10 +2,10 @@
 
 use super::{print, warn};
 use crate::error::Error;
-use crate::model::Model;
+use crate::model::{Model, Plan};
 use crate::registry::Registry;
-use crate::run;
 use crate::summary::{self, Summary};
+use crate::{run, statics};
 use clap::Args;
 use fem_io::files::OutputDir;
 use fem_io::{scene, tables};
@@ -32,27 +32,44 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments) -> miette::Result<
 
 fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error> {
     let model = Model::new(scene::read(&arguments.scene)?, registry)?;
-    let prepared = run::prepare(&model, arguments.threads).inspect_err(|_| warn(&model))?;
+    let folder = || arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene));
+    match model.plan {
+        Plan::Impact(_) => impact(&model, arguments.threads, folder),
+        Plan::Static { .. } => {
+            let solution = statics::solve(&model, arguments.threads).inspect_err(|_| warn(&model))?;
+            let summary = statics::Summary::new(&model, &solution);
+            print(&summary.text());
+            let dir = OutputDir::create(folder())?;
+            statics::write(&dir, &model, &solution, &summary)?;
+            print(&format!("  results   {}\n", dir.path().display()));
+            Ok(ExitCode::SUCCESS)
+        }
+        Plan::Modes { count } => super::modes::compute(&model, count, arguments.threads, folder),
+    }
+}
+
+fn impact(model: &Model, threads: NonZeroUsize, folder: impl Fn() -> PathBuf) -> Result<ExitCode, Error> {
+    let prepared = run::prepare(model, threads).inspect_err(|_| warn(model))?;
     // After all that can be refused, so that a refusal leaves no folder; before the march, so that none is in vain.
-    let dir = OutputDir::create(arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene)))?;
+    let dir = OutputDir::create(folder())?;
     let sizes = prepared.sizes;
     let bar = progress();
     let outcome = run::march(prepared, |share| bar.set_position((share * 1000.0) as u64));
     bar.finish_and_clear();
     let outcome = outcome?;
-    let summary = Summary::new(&model, &sizes, &outcome);
-    summary::write_tables(&dir, &model, &outcome)?;
+    let summary = Summary::new(model, &sizes, &outcome);
+    summary::write_tables(&dir, model, &outcome)?;
     tables::write_json(&dir, "summary.json", &summary)?;
     print(&summary.text());
     if model.scene.output.plots {
-        summary::write_plots(&dir, &model, &outcome)?;
+        summary::write_plots(&dir, model, &outcome)?;
     }
     print(&format!("  results   {}\n", dir.path().display()));
     Ok(if summary.completed { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 /// `results/<folder of the scene>`; for a scene in the working folder the name of that folder.
-fn default_folder(scene: &Path) -> PathBuf {
+pub(super) fn default_folder(scene: &Path) -> PathBuf {
     let folder = scene.parent().filter(|p| p.file_name().is_some()).map(Path::to_owned);
     let folder = folder.or_else(|| std::path::absolute(scene).ok()?.parent().map(Path::to_owned));
     let name = folder.as_deref().and_then(Path::file_name).map(PathBuf::from);

@@ -3,7 +3,7 @@
 mod builder;
 mod plan;
 
-pub use plan::{Impact, NamedProfile, Plan, Statics};
+pub use plan::{Impact, NamedProfile, Plan};
 
 use crate::error::Error;
 use crate::registry::Registry;
@@ -13,7 +13,7 @@ use fem_core::dof::Dof;
 use fem_core::element::Element;
 use fem_core::failure::FailureCriterion;
 use fem_core::laminate::Laminate;
-use fem_core::material::Material;
+use fem_core::material::{Material, MaterialError};
 use fem_core::mesh::QuadMesh;
 use fem_core::plate::Plate;
 use fem_io::scene::{Analysis, Damage, Scene};
@@ -27,6 +27,8 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// The laminate.
     pub laminate: Laminate,
+    /// Mass per area, kg/m².
+    pub areal_mass: f64,
     /// Cells and unknowns.
     pub plate: Plate,
     /// The element of all cells.
@@ -78,13 +80,18 @@ impl Model {
         };
 
         let levels = laminate.levels();
-        let stacks = laminate.stacks(&materials);
+        let lacks = |why: MaterialError| {
+            let material = scene.materials.iter().find(|m| m.value.name == why.material).unwrap_or(&scene.materials[0]);
+            builder.error(material, why.to_string(), "add its `density`, for example: density = \"1.58 g/cm^3\"")
+        };
+        let areal_mass = laminate.areal_mass(&materials).map_err(lacks)?;
+        let stacks = laminate.stacks(&materials).map_err(lacks)?;
         let plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
             .map_err(|why| builder.error(&scene.element.name, why, ""))?;
         let (constraints, held) = builder.constraints(&plate)?;
         let plan = match &scene.analysis {
             Analysis::Impact(spec) => Plan::Impact(Box::new(builder.impact(spec, &plate, &*element, &constraints)?)),
-            Analysis::Static(loads) => Plan::Static(builder.statics(loads, &plate, &*element)?),
+            Analysis::Static(loads) => Plan::Static { forces: builder.forces(loads, &plate, &*element)? },
             Analysis::Modes { count } => Plan::Modes { count: *count },
         };
         let centre = match &plan {
@@ -96,6 +103,7 @@ impl Model {
         Ok(Self {
             materials,
             laminate,
+            areal_mass,
             plate,
             element,
             constraints,

@@ -1,6 +1,7 @@
 //! What a model is for: an impact, loads at rest, natural modes.
 
 use super::builder::Builder;
+use crate::error::Error;
 use fem_core::constraint::Constraints;
 use fem_core::contact::ContactLaw;
 use fem_core::element::Element;
@@ -18,7 +19,10 @@ pub enum Plan {
     /// The response to an impact.
     Impact(Box<Impact>),
     /// Displacements and stresses under loads at rest.
-    Static(Statics),
+    Static {
+        /// Nodal forces, one per unknown before elimination of constraints: N, or N m for derivatives.
+        forces: Vec<f64>,
+    },
     /// The lowest natural frequencies.
     Modes {
         /// How many.
@@ -41,15 +45,6 @@ pub struct Impact {
     pub reduction: Option<Box<dyn Reduction>>,
     /// The integrator.
     pub integrator: Box<dyn Integrator>,
-}
-
-/// Loads at rest.
-#[derive(Debug, Clone)]
-pub struct Statics {
-    /// Nodal forces, one per unknown before elimination of constraints: N, or N m for derivatives.
-    pub forces: Vec<f64>,
-    /// Acceleration of all masses, m/s².
-    pub gravity: [f64; 3],
 }
 
 /// A profile of the scene and its place in the plate.
@@ -90,9 +85,8 @@ impl Builder<'_> {
         })
     }
 
-    pub(super) fn statics(&self, loads: &[Load], plate: &Plate, element: &dyn Element) -> Result<Statics, SceneError> {
+    pub(super) fn forces(&self, loads: &[Load], plate: &Plate, element: &dyn Element) -> Result<Vec<f64>, Error> {
         let mut forces = vec![0.0; plate.ndof()];
-        let mut gravity = [0.0; 3];
         for Load { kind, place } in loads {
             match kind {
                 LoadKind::Pressure { pressure, face, group } => {
@@ -101,7 +95,7 @@ impl Builder<'_> {
                         Some(name) => self.group(plate, name)?.quads.iter().map(|q| *q as usize).collect(),
                     };
                     if let (true, Some(name)) = (quads.is_empty(), group) {
-                        return Err(self.error(name, "the group has no cells", "a pressure acts on a surface"));
+                        return Err(self.error(name, "the group has no cells", "a pressure acts on a surface").into());
                     }
                     load::pressure(plate, element, *face, quads, |at| pressure.at(at), &mut forces);
                 }
@@ -114,7 +108,7 @@ impl Builder<'_> {
                 LoadKind::Edge { force_per_length, group } => {
                     let edges = &self.group(plate, group)?.edges;
                     if edges.is_empty() {
-                        return Err(self.error(group, "the group has no edges", "name a physical curve"));
+                        return Err(self.error(group, "the group has no edges", "name a physical curve").into());
                     }
                     load::edge(plate, element, edges, *force_per_length, &mut forces);
                 }
@@ -122,21 +116,25 @@ impl Builder<'_> {
                     let (columns, levels) = self.nodes(plate, node)?;
                     let ([column], [level]) = (&columns[..], &levels[..]) else {
                         let message = format!("a force acts at one node, and `{}` has more", node.group.value);
-                        return Err(self.error(&node.group, message, "name a group of one node and one level"));
+                        return Err(self.error(&node.group, message, "name a group of one node and one level").into());
                     };
                     load::point(plate, *column as usize, *level, *force, &mut forces)
                         .map_err(|why| self.error(&node.group, why, ""))?;
                 }
                 LoadKind::Gravity { acceleration } => {
-                    gravity.iter_mut().zip(acceleration).for_each(|(g, a)| *g += a);
+                    load::gravity(plate, element, *acceleration, &mut forces)?;
                 }
             }
             if !forces.iter().all(|f| f.is_finite()) {
                 let help = "look for a division by zero, or a root of something negative, in the formula";
-                return Err(self.scene.source.error_at(place, "the load is not finite somewhere on the plate", help));
+                return Err(self
+                    .scene
+                    .source
+                    .error_at(place, "the load is not finite somewhere on the plate", help)
+                    .into());
             }
         }
-        Ok(Statics { forces, gravity })
+        Ok(forces)
     }
 
     pub(super) fn profiles(&self, plate: &Plate) -> Result<Vec<NamedProfile>, SceneError> {

@@ -83,6 +83,16 @@ pub enum Fidelity {
     Reference,
 }
 
+impl Scene {
+    /// The impact, if it describes one.
+    pub fn impact(&self) -> Option<&Impact> {
+        match &self.analysis {
+            Analysis::Impact(impact) => Some(impact),
+            _ => None,
+        }
+    }
+}
+
 impl Fidelity {
     const ALL: [(&'static str, Self); 3] =
         [("engineering", Self::Engineering), ("report", Self::Report), ("reference", Self::Reference)];

@@ -1,0 +1,55 @@
+//! K and M as files for other programs.
+
+use crate::error::Error;
+use crate::model::Model;
+use fem_core::assembly::{Matrix, Pattern, assemble, pattern};
+use fem_core::counters::Counters;
+use fem_io::files::OutputDir;
+use fem_io::tables::{self, Field};
+use sprs::io::write_matrix_market_to_bufwrite;
+use sprs::{CsMat, TriMat};
+use std::num::NonZeroUsize;
+
+/// Writes `stiffness.mtx` and `mass.mtx` (Matrix Market, both triangles; N/m and kg for translations) and
+/// `unknowns.csv`, which names row and column of each. Supports and other equations are eliminated.
+///
+/// # Errors
+/// A cell that the element refuses, a folder that cannot be written.
+pub fn write(dir: &OutputDir, model: &Model, threads: NonZeroUsize) -> Result<(), Error> {
+    let pattern = pattern(&model.plate, &model.constraints);
+    let mut counters = Counters::default();
+    for (matrix, name) in [(Matrix::Stiffness, "stiffness.mtx"), (Matrix::Mass, "mass.mtx")] {
+        let values =
+            assemble(&model.plate, &*model.element, &model.constraints, &pattern, matrix, threads, &mut counters)?;
+        write_matrix(dir, name, &pattern, &values)?;
+    }
+    let header = ["row", "unknown", "node", "x_m", "y_m", "z_m"];
+    let named: Vec<_> = (0..pattern.ndof()).map(|i| model.plate.locate(model.constraints.original(i))).collect();
+    let names: Vec<String> = named.iter().map(|n| n.2.to_string()).collect();
+    let row = |(i, name): (usize, &(usize, usize, _))| {
+        let [x, y] = model.plate.columns[name.0];
+        let tag = model.plate.plane.node_tags.get(name.0).copied().unwrap_or(0);
+        let place = [x, y, model.plate.levels[name.1]].map(Field::Number);
+        [Field::Count(i as u64 + 1), Field::Text(&names[i]), Field::Count(tag)].into_iter().chain(place).collect()
+    };
+    tables::write_columns(dir, "unknowns.csv", &header, named.iter().enumerate().map(row))?;
+    Ok(())
+}
+
+fn write_matrix(dir: &OutputDir, name: &str, pattern: &Pattern, values: &[f64]) -> Result<(), Error> {
+    let n = pattern.ndof();
+    // Both triangles: readers disagree on which one a symmetric file holds, and sprs writes the other one.
+    let mut full = TriMat::with_capacity((n, n), 2 * values.len());
+    for column in 0..n {
+        for entry in pattern.starts[column]..pattern.starts[column + 1] {
+            let (row, value) = (pattern.rows[entry], values[entry]);
+            full.add_triplet(row, column, value);
+            if row != column {
+                full.add_triplet(column, row, value);
+            }
+        }
+    }
+    let full: CsMat<f64> = full.to_csc();
+    dir.write(name, |out| write_matrix_market_to_bufwrite(out, &full))?;
+    Ok(())
+}

@@ -1,0 +1,131 @@
+//! Natural frequencies.
+
+use crate::cost::{Phase, Stopwatch};
+use crate::error::Error;
+use crate::model::Model;
+use crate::run;
+use fem_core::counters::Counters;
+use fem_core::structure::Structure;
+use fem_dynamics::modes::{self, Modes};
+use fem_io::files::OutputDir;
+use fem_io::tables::{self, Field};
+use serde::Serialize;
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::num::NonZeroUsize;
+
+/// The lowest modes of a model and what finding them cost.
+#[derive(Debug, Clone)]
+pub struct Solution {
+    /// Frequencies, and shapes over the independent unknowns.
+    pub modes: Modes,
+    /// Mass that moves with each mode along x, y and z, kg: (φᵀ M r)² for unit modal mass.
+    pub effective_masses: Vec<[f64; 3]>,
+    /// Independent unknowns.
+    pub unknowns: usize,
+    /// Work done.
+    pub counters: Counters,
+    /// Time per phase.
+    pub phases: Vec<Phase>,
+}
+
+/// Finds the `count` lowest modes.
+///
+/// # Errors
+/// A cell that the element refuses, a matrix that cannot be factorised, modes that do not converge.
+pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Solution, Error> {
+    let mut stopwatch = Stopwatch::default();
+    let mut counters = Counters::default();
+    let (mut structure, _) = run::structure(model, threads, &mut counters)?;
+    stopwatch.lap("assemble");
+    let modes = modes::lowest(&mut structure, count, model.held)?;
+    (counters.factorisations, counters.solves) = structure.work();
+    let n = structure.ndof();
+    let mut momenta = [0, 1, 2].map(|_| vec![0.0; n]);
+    for (axis, momentum) in momenta.iter_mut().enumerate() {
+        let moves = |i: usize| {
+            let dof = model.plate.locate(model.constraints.original(i)).2;
+            f64::from(u8::from(dof.m() == 0 && dof.n() == axis + 1))
+        };
+        structure.add_mass(1.0, &(0..n).map(moves).collect::<Vec<_>>(), momentum);
+    }
+    let mass = |shape: &[f64], m: &[f64]| shape.iter().zip(m).map(|(a, b)| a * b).sum::<f64>().powi(2);
+    let effective_masses = modes.shapes.chunks_exact(n.max(1)).map(|s| [0, 1, 2].map(|d| mass(s, &momenta[d])));
+    let effective_masses = effective_masses.collect();
+    stopwatch.lap("modes");
+    Ok(Solution { modes, effective_masses, unknowns: n, counters, phases: stopwatch.phases().to_vec() })
+}
+
+/// The summary of a modal analysis; units are in the key names.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Summary {
+    pub title: String,
+    pub version: &'static str,
+    pub unknowns: usize,
+    pub held: bool,
+    pub frequencies_Hz: Vec<f64>,
+    pub effective_masses_kg: Vec<[f64; 3]>,
+    pub elements: u64,
+    pub elements_reused: u64,
+    pub solves: u64,
+    pub phases: Vec<Phase>,
+    pub warnings: Vec<String>,
+}
+
+impl Summary {
+    /// Sums up a modal analysis.
+    pub fn new(model: &Model, solution: &Solution) -> Self {
+        Self {
+            title: model.scene.title.clone(),
+            version: env!("CARGO_PKG_VERSION"),
+            unknowns: solution.unknowns,
+            held: model.held,
+            frequencies_Hz: solution.modes.omega.iter().map(|w| w / TAU).collect(),
+            effective_masses_kg: solution.effective_masses.clone(),
+            elements: solution.counters.elements,
+            elements_reused: solution.counters.elements_reused,
+            solves: solution.counters.solves,
+            phases: solution.phases.clone(),
+            warnings: model.warnings.clone(),
+        }
+    }
+
+    /// The summary as people read it.
+    pub fn text(&self) -> String {
+        let mut t = format!("{}\n  model     {} unknowns\n", self.title, self.unknowns);
+        t.push_str("  mode   frequency (Hz)   mass along x, y, z (g)\n");
+        for (i, (f, m)) in self.frequencies_Hz.iter().zip(&self.effective_masses_kg).enumerate() {
+            let [x, y, z] = m.map(|m| m * 1e3);
+            let _ = writeln!(t, "  {:>4}   {f:>14.4}   {x:.4}, {y:.4}, {z:.4}", i + 1);
+        }
+        let phases: Vec<String> = self.phases.iter().map(|p| format!("{} {:.3} s", p.name, p.wall_s)).collect();
+        let _ = writeln!(
+            t,
+            "  work      {} element matrices, {} reused, {} solves; {}",
+            self.elements,
+            self.elements_reused,
+            self.solves,
+            phases.join(", ")
+        );
+        self.warnings.iter().for_each(|w| t.push_str(&format!("  warning   {w}\n")));
+        t
+    }
+}
+
+/// Writes `summary.json` and `modes.csv`.
+///
+/// # Errors
+/// A folder that cannot be written, a number that is not finite.
+pub fn write(dir: &OutputDir, solution: &Solution, summary: &Summary) -> Result<(), Error> {
+    tables::write_json(dir, "summary.json", summary)?;
+    let header =
+        ["mode", "frequency_Hz", "omega_rad_s", "effective_mass_x_kg", "effective_mass_y_kg", "effective_mass_z_kg"];
+    let row = |(i, (omega, mass)): (usize, (&f64, &[f64; 3]))| {
+        let numbers = [omega / TAU, *omega].into_iter().chain(*mass).map(Field::Number);
+        [Field::Count(i as u64 + 1)].into_iter().chain(numbers).collect()
+    };
+    let each = solution.modes.omega.iter().zip(&solution.effective_masses).enumerate();
+    tables::write_columns(dir, "modes.csv", &header, each.map(row))?;
+    Ok(())
+}

@@ -1,0 +1,310 @@
+//! Displacements, stresses and margins under loads at rest.
+
+use crate::cost::{Phase, Stopwatch};
+use crate::error::Error;
+use crate::model::{Model, NamedProfile, Plan};
+use crate::run;
+use crate::stress::{self, Margin};
+use fem_core::counters::Counters;
+use fem_core::dof::Dof;
+use fem_core::profile::ProfilePoint;
+use fem_core::structure::Structure;
+use fem_io::files::OutputDir;
+use fem_io::plot::{self, Axis, LinePlot, Series, Style};
+use fem_io::tables::{self, Field};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::num::NonZeroUsize;
+
+/// What a static analysis found.
+#[derive(Debug, Clone)]
+pub struct Solution {
+    /// Displacements, before elimination of constraints; one per unknown.
+    pub u: Vec<f64>,
+    /// Independent unknowns.
+    pub unknowns: usize,
+    /// Entries of the factor of K.
+    pub factor_entries: usize,
+    /// ½ uᵀ K u, J.
+    pub strain_energy: f64,
+    /// ‖f − K u‖ / ‖f‖ of the independent unknowns.
+    pub residual: f64,
+    /// Sum of the loads along x, y, z, N.
+    pub resultant: [f64; 3],
+    /// Per criterion, the smallest reserve factor and where.
+    pub margins: Vec<Margin>,
+    /// The states along the profiles of the model.
+    pub profiles: Vec<Vec<ProfilePoint>>,
+    /// Work done.
+    pub counters: Counters,
+    /// Time per phase.
+    pub phases: Vec<Phase>,
+}
+
+/// Solves K u = f.
+///
+/// # Errors
+/// A scene without loads at rest, a cell that the element refuses, a structure that is not held, a result that is not
+/// finite, a criterion whose material lacks a constant.
+pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
+    let Plan::Static { forces } = &model.plan else { return Err(Error::NoLoads) };
+    let mut stopwatch = Stopwatch::default();
+    let mut counters = Counters::default();
+    let (mut structure, factor_entries) = run::structure(model, threads, &mut counters)?;
+    stopwatch.lap("assemble");
+    let constraints = &model.constraints;
+    // u = C ũ + g, so that Cᵀ K C ũ = Cᵀ f; supports hold at zero, g = 0.
+    let mut f = vec![0.0; constraints.ndof()];
+    for (dof, force) in forces.iter().enumerate() {
+        for (i, c) in constraints.row(dof).0 {
+            f[*i] += c * force;
+        }
+    }
+    let resultant = [1, 2, 3].map(|n| {
+        let along = |(dof, f): (usize, &f64)| if model.plate.locate(dof).2 == dof_of(n) { *f } else { 0.0 };
+        forces.iter().enumerate().map(along).sum()
+    });
+    let mut independent = f.clone();
+    structure.solve_shifted(0.0, &mut independent, 1)?;
+    let mut rest = f.clone();
+    structure.add_stiffness(-1.0, &independent, &mut rest);
+    let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let strain_energy = 0.5 * f.iter().zip(&independent).map(|(f, u)| f * u).sum::<f64>();
+    if !strain_energy.is_finite() {
+        return Err(Error::NotFinite("displacement"));
+    }
+    let residual = norm(&rest) / norm(&f).max(f64::MIN_POSITIVE);
+    let mut u = vec![0.0; model.plate.ndof()];
+    constraints.expand(&independent, &mut u);
+    (counters.factorisations, counters.solves) = structure.work();
+    stopwatch.lap("solve");
+    let margins = stress::margins(model, &u)?;
+    let profiles = model.profiles.iter().map(|named| profile(model, named, &u)).collect();
+    stopwatch.lap("stresses");
+    let phases = stopwatch.phases().to_vec();
+    let unknowns = constraints.ndof();
+    Ok(Solution {
+        u,
+        unknowns,
+        factor_entries,
+        strain_energy,
+        residual,
+        resultant,
+        margins,
+        profiles,
+        counters,
+        phases,
+    })
+}
+
+fn dof_of(n: u8) -> Dof {
+    Dof::SOLID[4 * (usize::from(n) - 1)]
+}
+
+fn profile(model: &Model, named: &NamedProfile, u: &[f64]) -> Vec<ProfilePoint> {
+    let line = &named.line;
+    let bottom = line.equilibrium.then_some(0.0);
+    named.profile.sample(&model.plate, &model.laminate, &*model.element, u, line.points, bottom)
+}
+
+/// The summary of a static analysis; units are in the key names.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Summary {
+    pub title: String,
+    pub version: &'static str,
+    pub unknowns: usize,
+    pub factor_entries: usize,
+    pub resultant_N: [f64; 3],
+    pub strain_energy_J: f64,
+    pub largest_deflection: Deflection,
+    pub margins: Vec<Margin>,
+    pub residual_relative: f64,
+    pub elements: u64,
+    pub elements_reused: u64,
+    pub phases: Vec<Phase>,
+    pub warnings: Vec<String>,
+}
+
+/// Largest deflection of a node, and where.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[allow(missing_docs)]
+pub struct Deflection {
+    pub w_m: f64,
+    pub x_m: f64,
+    pub y_m: f64,
+    pub z_m: f64,
+}
+
+impl Summary {
+    /// Sums up a static analysis.
+    pub fn new(model: &Model, solution: &Solution) -> Self {
+        let nodes = nodes(model, &solution.u);
+        let largest = nodes.iter().max_by(|a, b| a.u[2].abs().total_cmp(&b.u[2].abs()));
+        let [w_m, x_m, y_m, z_m] = largest.map_or([0.0; 4], |n| [n.u[2], n.x[0], n.x[1], n.x[2]]);
+        Self {
+            title: model.scene.title.clone(),
+            version: env!("CARGO_PKG_VERSION"),
+            unknowns: solution.unknowns,
+            factor_entries: solution.factor_entries,
+            resultant_N: solution.resultant,
+            strain_energy_J: solution.strain_energy,
+            largest_deflection: Deflection { w_m, x_m, y_m, z_m },
+            margins: solution.margins.clone(),
+            residual_relative: solution.residual,
+            elements: solution.counters.elements,
+            elements_reused: solution.counters.elements_reused,
+            phases: solution.phases.clone(),
+            warnings: model.warnings.clone(),
+        }
+    }
+
+    /// The summary as people read it.
+    pub fn text(&self) -> String {
+        let d = &self.largest_deflection;
+        let [fx, fy, fz] = self.resultant_N;
+        let mut t = format!(
+            "{}\n  model     {} unknowns\n  loads     {fx:.4}, {fy:.4}, {fz:.4} N along x, y, z\n  \
+             response  largest deflection {:.6} mm at ({:.4}, {:.4}, {:.4}) mm; strain energy {:.6e} J\n",
+            self.title,
+            self.unknowns,
+            d.w_m * 1e3,
+            d.x_m * 1e3,
+            d.y_m * 1e3,
+            d.z_m * 1e3,
+            self.strain_energy_J
+        );
+        for m in &self.margins {
+            let _ = writeln!(
+                t,
+                "  margin    {} {}: reserve factor {:.4} in ply {} at ({:.3}, {:.3}) mm",
+                m.criterion,
+                m.mode,
+                m.reserve_factor,
+                m.ply,
+                m.x_m * 1e3,
+                m.y_m * 1e3
+            );
+        }
+        let phases: Vec<String> = self.phases.iter().map(|p| format!("{} {:.3} s", p.name, p.wall_s)).collect();
+        let _ = writeln!(t, "  accuracy  residual {:.1e} of the loads", self.residual_relative);
+        let _ = writeln!(
+            t,
+            "  work      {} element matrices, {} reused; {}",
+            self.elements,
+            self.elements_reused,
+            phases.join(", ")
+        );
+        self.warnings.iter().for_each(|w| t.push_str(&format!("  warning   {w}\n")));
+        t
+    }
+}
+
+/// A node with its displacement.
+struct Node {
+    tag: u64,
+    x: [f64; 3],
+    u: [f64; 3],
+}
+
+/// The nodes above and below each other at the vertices of the mesh, at the outermost levels and the mid-plane.
+fn nodes(model: &Model, u: &[f64]) -> Vec<Node> {
+    let plate = &model.plate;
+    let mut levels = plate.outer_levels().to_vec();
+    levels.extend(plate.mid_level());
+    levels.sort_unstable();
+    levels.dedup();
+    let at = |column: usize, level: usize| -> Option<Node> {
+        let value = |n: u8| plate.dofs_at(column, level, dof_of(n)).next().map(|d| u[d]);
+        let all = [1, 2, 3].map(value);
+        all.iter().any(Option::is_some).then(|| Node {
+            tag: plate.plane.node_tags.get(column).copied().unwrap_or(0),
+            x: [plate.columns[column][0], plate.columns[column][1], plate.levels[level]],
+            u: all.map(|v| v.unwrap_or(0.0)),
+        })
+    };
+    (0..plate.columns.len()).flat_map(|c| levels.iter().filter_map(move |l| at(c, *l))).collect()
+}
+
+/// Writes `summary.json`, `displacements.csv` and, per profile, `profile-<name>.csv` with pictures.
+///
+/// # Errors
+/// A folder that cannot be written, a number that is not finite.
+pub fn write(dir: &OutputDir, model: &Model, solution: &Solution, summary: &Summary) -> Result<(), Error> {
+    tables::write_json(dir, "summary.json", summary)?;
+    let nodes = nodes(model, &solution.u);
+    let row = |n: &Node| {
+        let numbers = n.x.into_iter().chain(n.u).map(Field::Number);
+        [Field::Count(n.tag)].into_iter().chain(numbers).collect()
+    };
+    let header = ["node", "x_m", "y_m", "z_m", "u_m", "v_m", "w_m"];
+    tables::write_columns(dir, "displacements.csv", &header, nodes.iter().map(row))?;
+    for (named, points) in model.profiles.iter().zip(&solution.profiles) {
+        write_profile(dir, model, named, points)?;
+    }
+    Ok(())
+}
+
+const PROFILE: [&str; 18] = [
+    "z_m",
+    "ply",
+    "angle_deg",
+    "u_m",
+    "v_m",
+    "w_m",
+    "sxx_Pa",
+    "syy_Pa",
+    "szz_Pa",
+    "sxy_Pa",
+    "syz_Pa",
+    "szx_Pa",
+    "s1_Pa",
+    "s2_Pa",
+    "s3_Pa",
+    "s12_Pa",
+    "s23_Pa",
+    "s13_Pa",
+];
+const EQUILIBRIUM: [&str; 3] = ["szz_equilibrium_Pa", "syz_equilibrium_Pa", "szx_equilibrium_Pa"];
+
+fn write_profile(dir: &OutputDir, model: &Model, named: &NamedProfile, points: &[ProfilePoint]) -> Result<(), Error> {
+    let name = &named.line.name.value;
+    let mut header = PROFILE.to_vec();
+    if named.line.equilibrium {
+        header.extend(EQUILIBRIUM);
+    }
+    let row = |p: &ProfilePoint| {
+        let mut row = vec![
+            Field::Number(p.z),
+            Field::Count(p.ply as u64 + 1),
+            Field::Number(model.laminate.plies[p.ply].angle_deg),
+        ];
+        let numbers = p.displacement.into_iter().chain(p.global.0).chain(p.in_ply.0);
+        row.extend(numbers.chain(p.equilibrium.into_iter().flatten()).map(Field::Number));
+        row
+    };
+    tables::write_columns(dir, &format!("profile-{name}.csv"), &header, points.iter().map(row))?;
+    if !model.scene.output.plots {
+        return Ok(());
+    }
+    // In-plane and transverse stresses differ by orders of magnitude: a picture each.
+    let in_plane = [("\u{3c3}xx", 0), ("\u{3c3}yy", 1), ("\u{3c4}xy", 3)];
+    let transverse = [("\u{3c4}zx", 5), ("\u{3c4}yz", 4), ("\u{3c3}zz", 2)];
+    for (suffix, components) in [("in-plane", in_plane), ("transverse", transverse)] {
+        let series = |(label, k): (&str, usize)| Series {
+            label: label.into(),
+            points: points.iter().map(|p| (p.global.0[k] * 1e-6, p.z * 1e3)).collect(),
+            style: Style::Solid,
+        };
+        let picture = plot::line_plot(&LinePlot {
+            title: format!("{}: {name}", model.scene.title),
+            x: Axis { label: format!("Stress, {suffix}"), unit: "MPa".into() },
+            y: Axis { label: "Height".into(), unit: "mm".into() },
+            series: components.map(series).to_vec(),
+            marks: Vec::new(),
+        })?;
+        dir.write(&format!("profile-{name}-{suffix}.svg"), |w| w.write_all(picture.svg.as_bytes()))?;
+        dir.write(&format!("profile-{name}-{suffix}.png"), |w| w.write_all(&picture.png))?;
+    }
+    Ok(())
+}
