@@ -2,7 +2,7 @@
 
 use crate::prism::{self, Prism};
 use fem_core::dof::Dof;
-use fem_core::element::{Cell, Element, ElementError, ElementInfo, PlaneMap, Scratch};
+use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch};
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::quadrature::MAX_POINTS;
 
@@ -88,8 +88,8 @@ impl Hex20 {
     pub fn new(in_plane_order: usize) -> Result<Self, ElementError> {
         if !(3..=MAX_POINTS).contains(&in_plane_order) {
             return Err(ElementError(format!(
-                "in-plane order {in_plane_order}: at least 3 Gauss points a direction are needed (2 leave zero-energy \
-                 modes), at most {MAX_POINTS} are offered"
+                "in-plane order {in_plane_order}: at least 3 Gauss points a direction are needed (2 leave two \
+                 zero-energy modes), at most {MAX_POINTS} are offered"
             )));
         }
         // Three points through a ply are exact: strains are quadratic in q.
@@ -135,6 +135,16 @@ impl Element for Hex20 {
 
     fn mass(&self, cell: &Cell<'_>, scratch: &mut Scratch, me: &mut [f64]) -> Result<(), ElementError> {
         prism::mass(self, cell, scratch, me)
+    }
+
+    fn mean_strains(
+        &self,
+        cell: &Cell<'_>,
+        parts: &[Part],
+        _scratch: &mut Scratch,
+        b: &mut [f64],
+    ) -> Result<(), ElementError> {
+        prism::mean_strains(self, cell, parts, b)
     }
 }
 

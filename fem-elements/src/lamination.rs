@@ -31,7 +31,8 @@ const NORMAL: usize = 2;
 /// section are equal with the shear stiffness H = (∫ fᵀ G⁻¹ f dz)⁻¹ and γ(z) = G⁻¹ f H γ.
 ///
 /// Limits: the plies have a plane of symmetry parallel to the plate (any angle in the plane). The two modes belong to the
-/// axes x and y: for a plate of one material H turns with the axes, for a laminate only by right angles.
+/// axes x and y: for a plate of one material H turns with the axes, for a laminate only by right angles. Turned by 45°,
+/// carbon and epoxy \[0/90/90/0\] has an H that differs by up to 20 %.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lamination<'a> {
     stack: &'a Stack,

@@ -8,7 +8,7 @@
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
-use fem_core::element::{Cell, Element, ElementError, PlaneMap, Scratch, positive};
+use fem_core::element::{Cell, Element, ElementError, Part, PlaneMap, Scratch, positive};
 
 /// Row of the strain vector (11 22 33 12 23 31) to which ∂u\[component\]/∂\[direction\] belongs.
 const STRAIN_ROW: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
@@ -145,6 +145,48 @@ pub(crate) fn mass<const F: usize, const K: usize, P: Prism<F, K>>(
                 // The mean of both triangles: symmetric to the last bit.
                 me[P::unknown(component, f) + ndof * P::unknown(component, f2)] =
                     0.5 * (block[f + F * f2] + block[f2 + F * f]);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// [`Element::mean_strains`]
+pub(crate) fn mean_strains<const F: usize, const K: usize, P: Prism<F, K>>(
+    prism: &P,
+    cell: &Cell<'_>,
+    parts: &[Part],
+    b: &mut [f64],
+) -> Result<(), ElementError> {
+    let (mut means, mut area) = ([[[0.0; K]; 3]; F], 0.0);
+    for (r, s, w) in prism.info().plane_points() {
+        let plane = cell.plane(r, s);
+        let da = positive(plane.det * cell.half_height())? * w;
+        area += da;
+        let gradients = prism.gradients(cell, r, s, &plane);
+        let values = gradients.as_flattened().as_flattened();
+        for (mean, value) in means.as_flattened_mut().as_flattened_mut().iter_mut().zip(values) {
+            *mean += da * value;
+        }
+    }
+    b.fill(0.0);
+    for (Part { q: [low, high], .. }, b) in parts.iter().zip(b.chunks_exact_mut(6 * 3 * F)) {
+        // Mean of q⁰, q¹ … over the part, per area.
+        let powers: [f64; K] = std::array::from_fn(|k| {
+            let p = k as i32 + 1;
+            let mean = if high > low {
+                (high.powi(p) - low.powi(p)) / (f64::from(p) * (high - low))
+            } else {
+                low.powi(k as i32)
+            };
+            mean / area
+        });
+        for (f, gradient) in means.iter().enumerate() {
+            for (d, polynomial) in gradient.iter().enumerate() {
+                let value = polynomial.iter().zip(powers).map(|(a, b)| a * b).sum();
+                for (component, rows) in STRAIN_ROW.iter().enumerate() {
+                    b[6 * P::unknown(component, f) + rows[d]] = value;
+                }
             }
         }
     }

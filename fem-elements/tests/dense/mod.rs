@@ -9,21 +9,21 @@ use fem_core::tensor::rotate_stiffness;
 use nalgebra::{DMatrix, DVector};
 
 /// A quadrilateral without a right angle or parallel edges, about 2 mm wide.
-pub const CROOKED: [[f64; 2]; 4] = [[0.1e-3, -0.2e-3], [2.3e-3, 0.3e-3], [1.9e-3, 1.8e-3], [-0.3e-3, 1.4e-3]];
+pub(crate) const CROOKED: [[f64; 2]; 4] = [[0.1e-3, -0.2e-3], [2.3e-3, 0.3e-3], [1.9e-3, 1.8e-3], [-0.3e-3, 1.4e-3]];
 
 /// Carbon and epoxy.
-pub fn carbon() -> Elastic {
+pub(crate) fn carbon() -> Elastic {
     Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9)
 }
 
 /// Pagano's ply, without units.
-pub fn pagano() -> Elastic {
+pub(crate) fn pagano() -> Elastic {
     let (nu, g) = (0.25, 0.5);
     Elastic { e1: 25.0, e2: 1.0, e3: 1.0, nu12: nu, nu13: nu, nu23: nu, g12: g, g13: g, g23: 0.2 }
 }
 
 /// Plies of the given angles (degrees) and relative thicknesses from the bottom up; densities 1 and 1.5 in turn.
-pub fn stack(elastic: &Elastic, plies: &[(f64, f64)]) -> Stack {
+pub(crate) fn stack(elastic: &Elastic, plies: &[(f64, f64)]) -> Stack {
     let total: f64 = plies.iter().map(|p| p.1).sum();
     let c = elastic.stiffness();
     let mut below = 0.0;
@@ -36,7 +36,7 @@ pub fn stack(elastic: &Elastic, plies: &[(f64, f64)]) -> Stack {
 }
 
 /// Plies of one thickness and density 1.
-pub fn even(elastic: &Elastic, angles: &[f64]) -> Stack {
+pub(crate) fn even(elastic: &Elastic, angles: &[f64]) -> Stack {
     let mut slices = stack(elastic, &angles.iter().map(|a| (*a, 1.0)).collect::<Vec<_>>()).slices;
     slices.iter_mut().for_each(|s| s.density = 1.0);
     Stack::new(slices)
@@ -44,7 +44,7 @@ pub fn even(elastic: &Elastic, angles: &[f64]) -> Stack {
 
 /// The element without what it overrides: the provided methods on the same operators.
 #[derive(Debug, Clone)]
-pub struct Plain<E>(pub E);
+pub(crate) struct Plain<E>(pub E);
 impl<E: Element + Clone> Element for Plain<E> {
     fn info(&self) -> &ElementInfo {
         self.0.info()
@@ -57,14 +57,14 @@ impl<E: Element + Clone> Element for Plain<E> {
     }
 }
 
-pub fn stiffness(element: &dyn Element, cell: &Cell<'_>) -> DMatrix<f64> {
+pub(crate) fn stiffness(element: &dyn Element, cell: &Cell<'_>) -> DMatrix<f64> {
     let n = element.info().ndof();
     let mut k = DMatrix::repeat(n, n, f64::NAN);
     element.stiffness(cell, &mut Scratch::default(), k.as_mut_slice()).unwrap();
     k
 }
 
-pub fn mass(element: &dyn Element, cell: &Cell<'_>) -> DMatrix<f64> {
+pub(crate) fn mass(element: &dyn Element, cell: &Cell<'_>) -> DMatrix<f64> {
     let n = element.info().ndof();
     let mut m = DMatrix::repeat(n, n, f64::NAN);
     element.mass(cell, &mut Scratch::default(), m.as_mut_slice()).unwrap();
@@ -72,13 +72,13 @@ pub fn mass(element: &dyn Element, cell: &Cell<'_>) -> DMatrix<f64> {
 }
 
 /// Largest difference relative to sqrt(aᵢᵢ aⱼⱼ) of the second matrix.
-pub fn difference(a: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
+pub(crate) fn difference(a: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
     let scale = b.diagonal().map(f64::sqrt);
     (a - b).component_div(&(&scale * scale.transpose())).amax()
 }
 
 /// Checks the overrides of an element against the provided methods.
-pub fn check_overrides<E: Element + Clone + 'static>(element: &E, cell: &Cell<'_>) {
+pub(crate) fn check_overrides<E: Element + Clone + 'static>(element: &E, cell: &Cell<'_>) {
     let plain = Plain(element.clone());
     let k = difference(&stiffness(element, cell), &stiffness(&plain, cell));
     assert!(k < 1e-12, "stiffness {k:e}");
@@ -98,7 +98,7 @@ pub fn check_overrides<E: Element + Clone + 'static>(element: &E, cell: &Cell<'_
 }
 
 /// Eigenvalues of K with unit diagonal, ascending.
-pub fn scaled_spectrum(k: &DMatrix<f64>) -> Vec<f64> {
+pub(crate) fn scaled_spectrum(k: &DMatrix<f64>) -> Vec<f64> {
     let scale = k.diagonal().map(|d| d.sqrt().recip());
     let mut values = k.component_mul(&(&scale * scale.transpose())).symmetric_eigenvalues().as_slice().to_vec();
     values.sort_by(f64::total_cmp);
@@ -106,7 +106,7 @@ pub fn scaled_spectrum(k: &DMatrix<f64>) -> Vec<f64> {
 }
 
 /// Six motions without energy and no seventh.
-pub fn check_rigid_motions(element: &dyn Element, cell: &Cell<'_>) {
+pub(crate) fn check_rigid_motions(element: &dyn Element, cell: &Cell<'_>) {
     let spectrum = scaled_spectrum(&stiffness(element, cell));
     assert!(spectrum[0] > -1e-12 && spectrum[5] < 1e-12, "{:?}", &spectrum[..7]);
     assert!(spectrum[6] > 1e-6, "{:?}", &spectrum[..7]);
@@ -124,14 +124,14 @@ pub fn check_rigid_motions(element: &dyn Element, cell: &Cell<'_>) {
 }
 
 /// A plate with dense matrices.
-pub struct Model {
-    pub plate: Plate,
-    pub k: DMatrix<f64>,
-    pub m: DMatrix<f64>,
+pub(crate) struct Model {
+    pub(crate) plate: Plate,
+    pub(crate) k: DMatrix<f64>,
+    pub(crate) m: DMatrix<f64>,
 }
 
 impl Model {
-    pub fn new(element: &dyn Element, plane: QuadMesh, faces: Vec<f64>, stacks: Vec<Stack>) -> Self {
+    pub(crate) fn new(element: &dyn Element, plane: QuadMesh, faces: Vec<f64>, stacks: Vec<Stack>) -> Self {
         let plate = Plate::new(plane, faces, stacks, *element.info(), ZDerivatives::Shared).unwrap();
         let n = plate.ndof();
         let mut model = Self { plate, k: DMatrix::zeros(n, n), m: DMatrix::zeros(n, n) };
@@ -151,7 +151,7 @@ impl Model {
     }
 
     /// Name and position of every unknown.
-    pub fn unknowns(&self) -> Vec<(Dof, [f64; 3])> {
+    pub(crate) fn unknowns(&self) -> Vec<(Dof, [f64; 3])> {
         let place = |i| {
             let (column, level, dof) = self.plate.locate(i);
             let [x, y] = self.plate.columns[column];
@@ -161,7 +161,7 @@ impl Model {
     }
 
     /// K u = `load` with u given where `given` says so.
-    pub fn solve(&self, load: &DVector<f64>, given: impl Fn(Dof, [f64; 3]) -> Option<f64>) -> DVector<f64> {
+    pub(crate) fn solve(&self, load: &DVector<f64>, given: impl Fn(Dof, [f64; 3]) -> Option<f64>) -> DVector<f64> {
         let given: Vec<_> = self.unknowns().into_iter().map(|(dof, p)| given(dof, p)).collect();
         let free: Vec<usize> = (0..given.len()).filter(|i| given[*i].is_none()).collect();
         let mut u = DVector::from_iterator(given.len(), given.iter().map(|g| g.unwrap_or(0.0)));
@@ -175,7 +175,7 @@ impl Model {
     }
 
     /// Lowest ω of K u = ω² M u with the unknowns fixed that `fixed` names, by inverse iteration.
-    pub fn lowest_frequency(&self, fixed: impl Fn(Dof, [f64; 3]) -> bool) -> f64 {
+    pub(crate) fn lowest_frequency(&self, fixed: impl Fn(Dof, [f64; 3]) -> bool) -> f64 {
         let unknowns = self.unknowns();
         let free: Vec<usize> = (0..unknowns.len()).filter(|i| !fixed(unknowns[*i].0, unknowns[*i].1)).collect();
         let part = |a: &DMatrix<f64>| a.select_rows(&free).select_columns(&free);
@@ -196,7 +196,7 @@ impl Model {
 }
 
 /// `nx` × `ny` cells on (0, 1) × (0, 1), mapped.
-pub fn grid(nx: usize, ny: usize, map: impl Fn(f64, f64) -> [f64; 2]) -> QuadMesh {
+pub(crate) fn grid(nx: usize, ny: usize, map: impl Fn(f64, f64) -> [f64; 2]) -> QuadMesh {
     let mut mesh = QuadMesh::default();
     for j in 0..=ny {
         mesh.points.extend((0..=nx).map(|i| map(i as f64 / nx as f64, j as f64 / ny as f64)));
@@ -211,7 +211,7 @@ pub fn grid(nx: usize, ny: usize, map: impl Fn(f64, f64) -> [f64; 2]) -> QuadMes
 }
 
 /// Five quadrilaterals: a crooked one inside the unit square.
-pub fn patch() -> QuadMesh {
+pub(crate) fn patch() -> QuadMesh {
     QuadMesh {
         points: vec![
             [0.0, 0.0],
@@ -230,7 +230,7 @@ pub fn patch() -> QuadMesh {
 
 /// Support of a quarter of a plate on 0 ≤ x ≤ a/2, 0 ≤ y ≤ b/2, symmetric about x = 0 and y = 0, simply supported at the
 /// other edges.
-pub fn quarter_support([a, b]: [f64; 2]) -> impl Fn(Dof, [f64; 3]) -> bool {
+pub(crate) fn quarter_support([a, b]: [f64; 2]) -> impl Fn(Dof, [f64; 3]) -> bool {
     move |dof, [x, y, _]| {
         let along = |end: f64, v: f64| (v - end).abs() < 1e-9 * end;
         match dof.n() {
