@@ -102,13 +102,13 @@ impl Prism<20, 3> for Hex20 {
         NODES.map(|node| node_functions(node, r, s)[0])
     }
 
-    fn gradients(&self, cell: &Cell<'_>, r: f64, s: f64, plane: &PlaneMap) -> [[[f64; 3]; 3]; 20] {
+    fn gradients(&self, cell: &Cell<'_>, r: f64, s: f64, plane: &PlaneMap, mut each: impl FnMut(usize, [[f64; 3]; 3])) {
         let h = cell.half_height();
-        NODES.map(|node| {
+        for (f, node) in NODES.into_iter().enumerate() {
             let [n, n_r, n_s] = node_functions(node, r, s);
             let by = |d: usize| std::array::from_fn(|k| plane.inverse[0][d] * n_r[k] + plane.inverse[1][d] * n_s[k]);
-            [by(0), by(1), [n[1] / h, 2.0 * n[2] / h, 0.0]]
-        })
+            each(f, [by(0), by(1), [n[1] / h, 2.0 * n[2] / h, 0.0]]);
+        }
     }
 
     fn unknown(component: usize, function: usize) -> usize {

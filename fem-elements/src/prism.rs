@@ -21,8 +21,8 @@ pub(crate) trait Prism<const F: usize, const K: usize>: Element {
     /// Coefficients of q⁰, q¹ … of the functions at an in-plane point.
     fn values(&self, cell: &Cell<'_>, r: f64, s: f64) -> [[f64; K]; F];
 
-    /// The same of their derivatives along x, y, z.
-    fn gradients(&self, cell: &Cell<'_>, r: f64, s: f64, plane: &PlaneMap) -> [[[f64; K]; 3]; F];
+    /// Calls `each(function, [∂x, ∂y, ∂z])` with the same of their derivatives.
+    fn gradients(&self, cell: &Cell<'_>, r: f64, s: f64, plane: &PlaneMap, each: impl FnMut(usize, [[f64; K]; 3]));
 
     /// Unknown of the cell that multiplies a function in a component.
     fn unknown(component: usize, function: usize) -> usize;
@@ -37,14 +37,14 @@ pub(crate) fn strain_operator<const F: usize, const K: usize, P: Prism<F, K>>(
 ) -> f64 {
     let plane = cell.plane(r, s);
     b.fill(0.0);
-    for (f, gradient) in prism.gradients(cell, r, s, &plane).iter().enumerate() {
+    prism.gradients(cell, r, s, &plane, |f, gradient| {
         for (d, polynomial) in gradient.iter().enumerate() {
             let value = at(polynomial, q);
             for (component, rows) in STRAIN_ROW.iter().enumerate() {
                 b[6 * P::unknown(component, f) + rows[d]] = value;
             }
         }
-    }
+    });
     plane.det * cell.half_height()
 }
 
@@ -79,13 +79,13 @@ pub(crate) fn stiffness<const F: usize, const K: usize, P: Prism<F, K>>(
     for (point, (r, s, w)) in prism.info().plane_points().enumerate() {
         let plane = cell.plane(r, s);
         let dv = positive(plane.det * cell.half_height())? * w;
-        for (f, gradient) in prism.gradients(cell, r, s, &plane).iter().enumerate() {
+        prism.gradients(cell, r, s, &plane, |f, gradient| {
             for (i, value) in gradient.as_flattened().iter().enumerate() {
                 let at = (i * points + point) * F + f;
                 g[at] = *value;
                 weighted[at] = dv * value;
             }
-        }
+        });
     }
     // [H(1,1) | H(1,2) | ...]: 3K × 18K.
     for (b, (n, n2)) in BLOCKS.iter().enumerate() {
@@ -163,11 +163,11 @@ pub(crate) fn mean_strains<const F: usize, const K: usize, P: Prism<F, K>>(
         let plane = cell.plane(r, s);
         let da = positive(plane.det * cell.half_height())? * w;
         area += da;
-        let gradients = prism.gradients(cell, r, s, &plane);
-        let values = gradients.as_flattened().as_flattened();
-        for (mean, value) in means.as_flattened_mut().as_flattened_mut().iter_mut().zip(values) {
-            *mean += da * value;
-        }
+        prism.gradients(cell, r, s, &plane, |f, gradient| {
+            for (mean, value) in means[f].as_flattened_mut().iter_mut().zip(gradient.as_flattened()) {
+                *mean += da * value;
+            }
+        });
     }
     b.fill(0.0);
     for (Part { q: [low, high], .. }, b) in parts.iter().zip(b.chunks_exact_mut(6 * 3 * F)) {
