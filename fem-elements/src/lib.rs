@@ -36,5 +36,11 @@
 
 pub mod hermite;
 mod hermite_prism;
+mod hex20;
+mod lamination;
+mod mitc4;
+mod prism;
 
 pub use hermite_prism::{HermitePrism, Mass};
+pub use hex20::Hex20;
+pub use mitc4::Mitc4;
