@@ -20,6 +20,7 @@
 pub mod cli;
 pub mod cost;
 mod error;
+mod indices;
 mod model;
 mod registry;
 pub mod run;
@@ -32,5 +33,5 @@ pub use fem_dynamics as dynamics;
 pub use fem_elements as elements;
 pub use fem_failure as failure;
 pub use fem_io as io;
-pub use model::{Model, NamedCriterion};
+pub use model::{Gauge, Model, NamedCriterion};
 pub use registry::{NO_REDUCTION, Registry, RegistryError};

@@ -1,5 +1,7 @@
 //! From a scene to a model: everything that is decided before the first matrix.
 
+mod gauge;
+
 use crate::error::Error;
 use crate::registry::{NO_REDUCTION, Registry, RegistryError};
 use fem_core::assembly::elimination_order;
@@ -9,7 +11,7 @@ use fem_core::dof::Dof;
 use fem_core::element::Element;
 use fem_core::failure::{FailureCriterion, Site, check_material};
 use fem_core::laminate::Laminate;
-use fem_core::material::Material;
+use fem_core::material::{Material, MaterialError};
 use fem_core::mesh::QuadMesh;
 use fem_core::patch;
 use fem_core::plate::Plate;
@@ -18,8 +20,11 @@ use fem_core::reduction::{Functional, Reduction};
 use fem_core::support::{self, FreeMotions};
 use fem_core::time::Integrator;
 use fem_core::window;
+use fem_failure::delamination::DelaminationThreshold;
 use fem_io::gmsh::{self, GmshMesh, MeshFault};
-use fem_io::scene::{Damage, ImpactPoint, Load, Located, NodeSet, Place, PluginSpec, Scene, SceneError, Support};
+use fem_io::scene::{
+    CriterionSpec, Damage, ImpactPoint, Load, Located, NodeSet, Place, PluginSpec, Scene, SceneError, Support,
+};
 use std::collections::BTreeSet;
 
 /// A scene made concrete: mesh extruded, plug-ins built, supports turned into constraints, the contact placed.
@@ -51,12 +56,20 @@ pub struct Model {
     pub criteria: Vec<NamedCriterion>,
     /// Quads whose stresses the criteria judge.
     pub watched: Vec<usize>,
+    /// Places whose indices are kept over time.
+    pub gauges: Vec<Gauge>,
+    /// Force at which the laminate delaminates, where damage is looked for and a material gives the toughness.
+    pub threshold: Option<DelaminationThreshold>,
+    /// Mass per area, kg/m².
+    pub areal_mass: f64,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
 
 /// A criterion under the name by which the scene calls it.
 pub type NamedCriterion = (String, Box<dyn FailureCriterion>);
+
+pub use gauge::Gauge;
 
 /// Thickness over size of the plate outside of which the mesh's unit is probably wrong.
 const PLAUSIBLE_THICKNESS: std::ops::Range<f64> = 1e-4..0.5;
@@ -89,12 +102,23 @@ impl Model {
         };
 
         let levels = laminate.levels();
-        let stacks = laminate.stacks(&materials);
+        let lacks = |why: MaterialError| {
+            let material = scene.materials.iter().find(|m| m.value.name == why.material).unwrap_or(&scene.materials[0]);
+            builder.error(material, why.to_string(), "add its `density`, for example: density = \"1.58 g/cm^3\"")
+        };
+        let areal_mass = laminate.areal_mass(&materials).map_err(lacks)?;
+        let stacks = laminate.stacks(&materials).map_err(lacks)?;
         let plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
             .map_err(|why| builder.error(&scene.element.name, why, "choose a solid element"))?;
         let constraints = builder.constraints(&plate)?;
         let (centre, contact) = builder.contact_place(&plate, &*element)?;
         let watched = builder.watched(&plate.plane, centre)?;
+        let gauges = builder.gauges(&plate, &watched, &criteria)?;
+        let resin = scene.interface.as_ref().map(|resin| resin.value);
+        let threshold = match scene.damage {
+            Damage::Off => None,
+            Damage::Onset => DelaminationThreshold::of(&laminate, &materials, resin),
+        };
         let contact = Functional(constraints.restrict(&contact.0));
         if contact.0.is_empty() {
             return Err(builder
@@ -118,6 +142,9 @@ impl Model {
             integrator,
             criteria,
             watched,
+            gauges,
+            threshold,
+            areal_mass,
             warnings,
             scene,
         })
@@ -241,10 +268,10 @@ impl Builder<'_> {
     }
 
     fn criteria(&self) -> Result<Vec<NamedCriterion>, SceneError> {
-        let each = |spec: &PluginSpec| {
-            let criterion = build!(self, spec, Criterion)?;
-            self.check_criterion(spec, &*criterion)?;
-            Ok((spec.name.value.clone(), criterion))
+        let each = |spec: &CriterionSpec| {
+            let criterion = build!(self, &spec.plugin, Criterion)?;
+            self.check_criterion(&spec.plugin, &*criterion)?;
+            Ok((spec.label.clone(), criterion))
         };
         self.scene.failure.criteria.iter().map(each).collect()
     }
@@ -397,10 +424,9 @@ impl Builder<'_> {
         Ok(Equation { terms, value: 0.0, origin: format!("equation {}", number + 1), holds: false })
     }
 
-    /// Where the impactor strikes, and the deflection there as weights of the unknowns.
-    fn contact_place(&self, plate: &Plate, element: &dyn Element) -> Result<([f64; 2], Functional), SceneError> {
-        let at = &self.scene.impactor.at;
-        let (centre, column) = match &at.value {
+    /// A place on the plate, and the column of the node there if there is one.
+    fn point(&self, plate: &Plate, at: &Located<ImpactPoint>) -> Result<([f64; 2], Option<usize>), SceneError> {
+        Ok(match &at.value {
             ImpactPoint::Group(name) => {
                 let group = Located { value: name.clone(), place: at.place.clone() };
                 let columns = self.columns(plate, &group)?;
@@ -408,8 +434,8 @@ impl Builder<'_> {
                     let dim = plate.plane.groups.get(name).map_or(0, |g| g.dim);
                     return Err(self.error(
                         at,
-                        format!("the group `{name}` (dimension {dim}) has {} nodes, an impact has one", columns.len()),
-                        "make a physical point of the impact point in gmsh, or give `at = { x = ..., y = ... }`",
+                        format!("the group `{name}` (dimension {dim}) has {} nodes, a point has one", columns.len()),
+                        "make a physical point of the place in gmsh, or give `at = { x = ..., y = ... }`",
                     ));
                 };
                 (plate.plane.points[*column as usize], Some(*column as usize))
@@ -420,7 +446,13 @@ impl Builder<'_> {
                 let near = |q: &[f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]) <= reach;
                 (*p, plate.plane.points.iter().position(near))
             }
-        };
+        })
+    }
+
+    /// Where the impactor strikes, and the deflection there as weights of the unknowns.
+    fn contact_place(&self, plate: &Plate, element: &dyn Element) -> Result<([f64; 2], Functional), SceneError> {
+        let at = &self.scene.impactor.at;
+        let (centre, column) = self.point(plate, at)?;
         let contact = match (self.scene.impactor.load.value, column) {
             (Load::Patch { radius }, _) => patch::hertz(plate, element, centre, radius).map_err(|why| {
                 let (low, high) = plate.plane.bounds();

@@ -154,7 +154,7 @@ mod groups {
     #[test]
     fn impact_on_a_curve() {
         let case = plate().scene("{ group = \"impact\" }", "{ group = \"support\" }");
-        let words = ["the group `support` (dimension 1) has 48 nodes, an impact has one", "physical point"];
+        let words = ["the group `support` (dimension 1) has 48 nodes, a point has one", "physical point"];
         insta::assert_snapshot!(refusal(&case, At::Scene("at = { group"), &words));
     }
 

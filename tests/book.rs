@@ -17,7 +17,8 @@ fn parameters(name: &str) -> Params {
     required.iter().fold(Params::default(), |params, (key, value)| params.with(key, value.clone()))
 }
 
-fn criteria() -> Vec<(PluginInfo, Box<dyn FailureCriterion>)> {
+/// All criteria of the registry, built.
+pub(crate) fn criteria() -> Vec<(PluginInfo, Box<dyn FailureCriterion>)> {
     let registry = Registry::standard();
     let build = |info: &PluginInfo| match registry.build(Kind::Criterion, info.name, &parameters(info.name)) {
         Ok(Built::Criterion(criterion)) => (*info, criterion),

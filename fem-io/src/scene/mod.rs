@@ -16,7 +16,7 @@ mod tests;
 pub(crate) mod tree;
 
 pub use plugin::PluginSpec;
-pub use run::{Damage, Failure, ImpactPoint, Impactor, Load, March, Output, Window};
+pub use run::{CriterionSpec, Damage, Depth, Failure, ImpactPoint, Impactor, IndexWatch, Load, March, Output, Window};
 pub use source::{Located, Place, SceneError, SceneSource};
 pub use support::{Couple, Equation, NodeSet, Support, Term};
 
