@@ -21,6 +21,7 @@ fn histories_and_maps_agree_with_each_other_and_with_the_events() {
     let watch =
         r#"{ at = { x = "15 mm", y = "5 mm" }, ply = 16 }, { at = { x = "5 mm", y = "2 mm" }, interface = "8|9" }"#;
     let case = watching(watch, "maps = true").scene("end = \"20 us\"", "end = \"100 us\"");
+    let case = case.scene("library = \"AS4/3502\"", "library = \"AS4/3502\", Yt = \"2 MPa\"");
     case.fem("run", &["--out", "out"]).good();
     let (header, history) = case.table("out/index_history.csv");
     assert_eq!(header, ["time_s", "criterion", "mode", "cell", "ply", "x_m", "y_m", "z_m", "index"]);

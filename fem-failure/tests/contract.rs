@@ -376,17 +376,26 @@ proptest! {
         }
     }
 
-    /// The searches for the worst plane miss nothing that 3600 planes show.
+    /// The searches for the worst plane miss nothing that 3600 planes show, near failure.
     #[test]
     fn no_plane_is_worse_than_the_one_found(m in any_material(), s in any_stress()) {
         let (puck, larc) = (Puck::default(), Larc05::default());
         prop_assume!(check_material(&puck, "p", &m).is_ok() && check_material(&larc, "l", &m).is_ok());
+        let mut out = [0.0; 4];
+        puck.indices(&s, &m, &mut out);
+        // Far beyond failure LaRC's index has needles at poles of its friction terms.
+        let s = s.scaled(1.0 / out[2].max(out[3]));
+        puck.indices(&s, &m, &mut out);
+        let puck_found = out[2].max(out[3]);
+        larc.indices(&s, &m, &mut out);
+        let larc_found = out[3];
+
         let r = &m.strengths;
-        let (mut worst_puck, mut worst_larc) = (0.0_f64, 0.0_f64);
         let a0 = larc.alpha0;
         let (eta_t, st) = (-1.0 / (2.0 * a0).tan(), r.yc() * a0.cos() * (a0.sin() + a0.cos() / (2.0 * a0).tan()));
         let eta_l = -r.s12() * (2.0 * a0).cos() / (r.yc() * a0.cos().powi(2));
         let ra = r.yc() / (2.0 * (1.0 + puck.p23c));
+        let (mut worst_puck, mut worst_larc) = (0.0_f64, 0.0_f64);
         for k in 0..3600 {
             let (sin, cos) = (f64::from(k) * std::f64::consts::PI / 3600.0).sin_cos();
             let n = s.s22() * cos * cos + s.s33() * sin * sin + 2.0 * s.s23() * sin * cos;
@@ -398,17 +407,10 @@ proptest! {
             let normal = if n >= 0.0 { (1.0 / r.yt() - p) * n } else { p * n };
             worst_puck = worst_puck.max((normal * normal + (t / ra).powi(2) + (l / r.s12()).powi(2)).sqrt() + p * n);
             let slips = (t / (st - eta_t * n)).powi(2) + (l / (r.s12() - eta_l * n)).powi(2);
-            // Beyond a pole of the friction terms the index is infinite by definition.
-            let open = st - eta_t * n <= 0.0 || r.s12() - eta_l * n <= 0.0;
-            worst_larc = worst_larc.max(if open { f64::INFINITY } else { slips + (n.max(0.0) / r.yt()).powi(2) });
+            worst_larc = worst_larc.max(slips + (n.max(0.0) / r.yt()).powi(2));
         }
-        let mut out = [0.0; 4];
-        puck.indices(&s, &m, &mut out);
-        let found = out[2].max(out[3]);
-        prop_assert!(found >= worst_puck * (1.0 - 1e-12) && found <= worst_puck * (1.0 + 1e-4), "{found}, {worst_puck}");
-        larc.indices(&s, &m, &mut out);
-        let found = out[3];
-        prop_assert!(found >= worst_larc * (1.0 - 1e-12), "{found} below {worst_larc}");
-        prop_assert!(found > 1e3 || found <= worst_larc * (1.0 + 1e-2), "{found} above {worst_larc}");
+        for (found, worst) in [(puck_found, worst_puck), (larc_found, worst_larc)] {
+            prop_assert!(found >= worst * (1.0 - 1e-12) && found <= worst * (1.0 + 1e-4), "{found}, {worst}: {s:?}");
+        }
     }
 }
