@@ -1,8 +1,10 @@
 //! From a scene to a model: everything that is decided before the first matrix.
 
 mod builder;
+mod gauge;
 mod plan;
 
+pub use gauge::Gauge;
 pub use plan::{Impact, NamedProfile, Plan};
 
 use crate::error::Error;
@@ -16,6 +18,7 @@ use fem_core::laminate::Laminate;
 use fem_core::material::{Material, MaterialError};
 use fem_core::mesh::QuadMesh;
 use fem_core::plate::Plate;
+use fem_failure::delamination::DelaminationThreshold;
 use fem_io::scene::{Analysis, Damage, Scene};
 
 /// A scene made concrete: mesh extruded, plug-ins built, supports turned into constraints, impact or loads placed.
@@ -45,6 +48,10 @@ pub struct Model {
     pub criteria: Vec<NamedCriterion>,
     /// Quads whose stresses the criteria judge.
     pub watched: Vec<usize>,
+    /// Places whose indices are kept over time.
+    pub gauges: Vec<Gauge>,
+    /// Force at which the laminate delaminates, where damage is looked for and a material gives the toughness.
+    pub threshold: Option<DelaminationThreshold>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -99,6 +106,12 @@ impl Model {
             _ => None,
         };
         let watched = builder.watched(&plate.plane, centre)?;
+        let gauges = builder.gauges(&plate, &watched, &criteria)?;
+        let resin = scene.interface.as_ref().map(|resin| resin.value);
+        let threshold = match scene.damage {
+            Damage::Off => None,
+            Damage::Onset => DelaminationThreshold::of(&laminate, &materials, resin),
+        };
         let profiles = builder.profiles(&plate)?;
         Ok(Self {
             materials,
@@ -112,6 +125,8 @@ impl Model {
             profiles,
             criteria,
             watched,
+            gauges,
+            threshold,
             warnings,
             scene,
         })

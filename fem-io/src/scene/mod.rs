@@ -18,7 +18,10 @@ pub(crate) mod tree;
 
 pub use load::{Load, LoadKind, Pressure, ProfileLine};
 pub use plugin::PluginSpec;
-pub use run::{ContactLoad, Damage, Failure, Impact, ImpactPoint, Impactor, March, Output, Window};
+pub use run::{
+    ContactLoad, CriterionSpec, Damage, Depth, Failure, Impact, ImpactPoint, Impactor, IndexWatch, March, Output,
+    Window,
+};
 pub use source::{Located, Place, SceneError, SceneSource};
 pub use support::{Couple, Equation, NodeSet, Support, Term};
 
