@@ -229,7 +229,7 @@ pub(super) fn read_march(field: &Field<'_>) -> Result<March, SceneError> {
     Ok(March { integrator, step: step_field.at(step), end: end_field.at(end) })
 }
 
-pub(super) fn read_failure(field: &Field<'_>, wanted: bool) -> Result<Failure, SceneError> {
+pub(super) fn read_failure(field: &Field<'_>, wanted: bool, in_time: bool) -> Result<Failure, SceneError> {
     let table = field.table(FAILURE)?;
     let criteria = match (table.optional("criteria"), wanted) {
         (None, false) => Vec::new(),
@@ -237,6 +237,9 @@ pub(super) fn read_failure(field: &Field<'_>, wanted: bool) -> Result<Failure, S
     };
     let watch = match table.optional("watch") {
         None => Vec::new(),
+        Some(field) if !in_time => {
+            return Err(field.error("histories need an impact", "leave it out, or write a `[[profile]]`"));
+        }
         Some(field) => field.list()?.iter().map(|field| read_watch(field, &criteria)).collect::<Result<_, _>>()?,
     };
     let window = table.required("window")?;
