@@ -1,6 +1,7 @@
 //! The report's solid element: a quadrilateral prism with twelve unknowns a node (eqs 16-23).
 
 use crate::hermite::{self, CORNERS, NodeFunctions, Quartet};
+use crate::hermite_hex;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::dof::Dof;
@@ -9,17 +10,17 @@ use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, Plugi
 use fem_core::quadrature::{MAX_POINTS, gauss_legendre};
 
 /// Functions of a cell per displacement component: 8 nodes × (value, ∂x, ∂y, ∂z).
-const F: usize = 32;
+pub(crate) const F: usize = 32;
 /// Unknowns of a cell.
-const N: usize = 96;
+pub(crate) const N: usize = 96;
 /// Derivative direction times power of q.
 const DK: usize = 12;
 
 /// Row of the strain vector (11 22 33 12 23 31) to which ∂u\[component\]/∂\[direction\] belongs.
-const STRAIN_ROW: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
+pub(crate) const STRAIN_ROW: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
 
 /// Blocks (component, component) of the symmetric stiffness.
-const BLOCKS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+pub(crate) const BLOCKS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
 /// Which shape functions carry the inertia.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,6 +29,24 @@ pub enum Mass {
     Cubic,
     /// Trilinear functions of the translations (the report): derivative unknowns have no inertia, M is singular.
     Linear,
+}
+
+impl Mass {
+    /// The choice in a scene.
+    pub(crate) fn of(params: &Params) -> Result<Self, ParamError> {
+        Ok(match params.choice("mass", &["cubic", "linear"])? {
+            "linear" => Self::Linear,
+            _ => Self::Cubic,
+        })
+    }
+
+    /// The functions of the node at `corner` that carry its inertia, derivatives natural.
+    pub(crate) fn functions(self, corner: [f64; 3], r: f64, s: f64) -> [Quartet; 4] {
+        match self {
+            Self::Cubic => hermite::node_functions(corner, r, s).n,
+            Self::Linear => [hermite::trilinear(corner, r, s), [0.0; 4], [0.0; 4], [0.0; 4]],
+        }
+    }
 }
 
 /// Quadrilateral prism with plane, parallel faces and upright edges.
@@ -59,34 +78,51 @@ impl HermitePrism {
                  modes), at most {MAX_POINTS} are offered"
             )));
         }
-        Ok(Self { info: ElementInfo { nodes: &CORNERS, dofs: &Dof::SOLID, in_plane_order, ply_order: 4 }, mass })
+        Ok(Self::of_order(mass, in_plane_order))
+    }
+
+    pub(crate) fn of_order(mass: Mass, in_plane_order: usize) -> Self {
+        Self { info: ElementInfo { nodes: &CORNERS, dofs: &Dof::SOLID, in_plane_order, ply_order: 4 }, mass }
+    }
+
+    /// The map of a parallelogram, whose exact integrals the order asked for would give as well.
+    fn constant_map(&self, cell: &Cell<'_>) -> Option<PlaneMap> {
+        (self.info.in_plane_order >= Self::IN_PLANE_ORDER).then(|| hermite_hex::constant_map(cell)).flatten()
     }
 }
 
-/// Turns the natural-derivative functions of `node` into those of its global derivatives: f,r = x,r f,x + y,r f,y at the
+/// `[[x,r  y,r], [x,s  y,s]]` at each node.
+type Jacobians = [[[f64; 2]; 2]; 8];
+
+fn jacobians(cell: &Cell<'_>) -> Jacobians {
+    CORNERS.map(|c| cell.plane(c[0], c[1]).jacobian)
+}
+
+/// Turns natural-derivative functions of a node into those of its global derivatives: f,r = x,r f,x + y,r f,y at the
 /// node (eq. 20).
-fn to_global(cell: &Cell<'_>, node: usize, f: &[Quartet; 4], out: &mut [Quartet; 4]) {
-    let j = cell.plane(CORNERS[node][0], CORNERS[node][1]).jacobian;
-    let h = cell.half_height();
-    out[0] = f[0];
+pub(crate) fn to_global([[x_r, y_r], [x_s, y_s]]: &[[f64; 2]; 2], half_height: f64, f: &[Quartet; 4]) -> [Quartet; 4] {
+    let mut out = *f;
     for k in 0..4 {
-        out[1][k] = f[1][k] * j[0][0] + f[2][k] * j[1][0];
-        out[2][k] = f[1][k] * j[0][1] + f[2][k] * j[1][1];
-        out[3][k] = f[3][k] * h;
+        out[1][k] = f[1][k] * x_r + f[2][k] * x_s;
+        out[2][k] = f[1][k] * y_r + f[2][k] * y_s;
+        out[3][k] = f[3][k] * half_height;
     }
+    out
 }
 
 /// Calls `each(function, [∂x, ∂y, ∂z])` for the 32 functions at an in-plane point, derivatives as polynomials in q.
-fn gradients(cell: &Cell<'_>, r: f64, s: f64, plane: &PlaneMap, mut each: impl FnMut(usize, [Quartet; 3])) {
+fn gradients(
+    cell: &Cell<'_>,
+    jacobians: &Jacobians,
+    r: f64,
+    s: f64,
+    plane: &PlaneMap,
+    mut each: impl FnMut(usize, [Quartet; 3]),
+) {
     let h = cell.half_height();
-    for (node, corner) in CORNERS.iter().enumerate() {
+    for (node, (corner, jacobian)) in CORNERS.iter().zip(jacobians).enumerate() {
         let natural: NodeFunctions = hermite::node_functions(*corner, r, s);
-        let mut n = [[0.0; 4]; 4];
-        let mut n_r = n;
-        let mut n_s = n;
-        to_global(cell, node, &natural.n, &mut n);
-        to_global(cell, node, &natural.n_r, &mut n_r);
-        to_global(cell, node, &natural.n_s, &mut n_s);
+        let [n, n_r, n_s] = [natural.n, natural.n_r, natural.n_s].map(|f| to_global(jacobian, h, &f));
         for m in 0..4 {
             let by = |d: usize| -> Quartet {
                 std::array::from_fn(|k| plane.inverse[0][d] * n_r[m][k] + plane.inverse[1][d] * n_s[m][k])
@@ -97,8 +133,22 @@ fn gradients(cell: &Cell<'_>, r: f64, s: f64, plane: &PlaneMap, mut each: impl F
 }
 
 /// Column of a function of a component in the cell's unknowns.
-const fn column(component: usize, function: usize) -> usize {
+pub(crate) const fn column(component: usize, function: usize) -> usize {
     12 * (function / 4) + 4 * component + function % 4
+}
+
+fn shape(cell: &Cell<'_>, functions: Mass, [r, s, q]: [f64; 3], n: &mut [f64]) -> f64 {
+    let h = cell.half_height();
+    n.fill(0.0);
+    for (node, (corner, jacobian)) in CORNERS.iter().zip(&jacobians(cell)).enumerate() {
+        let functions = to_global(jacobian, h, &functions.functions(*corner, r, s));
+        for (m, f) in functions.iter().enumerate() {
+            for component in 0..3 {
+                n[3 * column(component, 4 * node + m) + component] = hermite::at(f, q);
+            }
+        }
+    }
+    cell.plane(r, s).det * h
 }
 
 impl Element for HermitePrism {
@@ -109,7 +159,7 @@ impl Element for HermitePrism {
     fn strain_operator(&self, cell: &Cell<'_>, _slice: usize, [r, s, q]: [f64; 3], b: &mut [f64]) -> f64 {
         let plane = cell.plane(r, s);
         b.fill(0.0);
-        gradients(cell, r, s, &plane, |f, g| {
+        gradients(cell, &jacobians(cell), r, s, &plane, |f, g| {
             for (d, g) in g.iter().enumerate() {
                 let value = hermite::at(g, q);
                 for (component, rows) in STRAIN_ROW.iter().enumerate() {
@@ -120,44 +170,28 @@ impl Element for HermitePrism {
         plane.det * cell.half_height()
     }
 
-    fn shape(&self, cell: &Cell<'_>, [r, s, q]: [f64; 3], n: &mut [f64]) -> f64 {
-        n.fill(0.0);
-        for (node, corner) in CORNERS.iter().enumerate() {
-            let mut functions = [[0.0; 4]; 4];
-            to_global(cell, node, &hermite::node_functions(*corner, r, s).n, &mut functions);
-            for (m, f) in functions.iter().enumerate() {
-                for component in 0..3 {
-                    n[3 * column(component, 4 * node + m) + component] = hermite::at(f, q);
-                }
-            }
-        }
-        cell.plane(r, s).det * cell.half_height()
+    fn shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
+        shape(cell, Mass::Cubic, xi, n)
     }
 
     fn inertia_shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
-        if self.mass == Mass::Cubic {
-            return self.shape(cell, xi, n);
-        }
-        n.fill(0.0);
-        for (node, corner) in CORNERS.iter().enumerate() {
-            let f = hermite::at(&hermite::trilinear(*corner, xi[0], xi[1]), xi[2]);
-            for component in 0..3 {
-                n[3 * column(component, 4 * node) + component] = f;
-            }
-        }
-        cell.plane(xi[0], xi[1]).det * cell.half_height()
+        shape(cell, self.mass, xi, n)
     }
 
     fn stiffness(&self, cell: &Cell<'_>, scratch: &mut Scratch, ke: &mut [f64]) -> Result<(), ElementError> {
+        if let Some(map) = self.constant_map(cell) {
+            return hermite_hex::stiffness(cell, &map, scratch, ke);
+        }
         let rule = gauss_legendre(self.info.in_plane_order);
         let points = rule.len() * rule.len();
         let terms = points * DK;
         let [g, weighted, hankel, p, block] = scratch.arrays([F * terms, F * terms, DK * 6 * DK, F * 6 * terms, F * F]);
+        let jacobians = jacobians(cell);
         // G: 32 × (12 · points), the point running fastest among the columns.
         for_each_point(rule, |point, r, s, w| {
             let plane = cell.plane(r, s);
             let dv = positive(plane.det * cell.half_height())? * w;
-            gradients(cell, r, s, &plane, |f, gradient| {
+            gradients(cell, &jacobians, r, s, &plane, |f, gradient| {
                 for (d, polynomial) in gradient.iter().enumerate() {
                     for (k, value) in polynomial.iter().enumerate() {
                         let at = ((4 * d + k) * points + point) * F + f;
@@ -195,20 +229,18 @@ impl Element for HermitePrism {
     }
 
     fn mass(&self, cell: &Cell<'_>, scratch: &mut Scratch, me: &mut [f64]) -> Result<(), ElementError> {
+        if let Some(map) = self.constant_map(cell) {
+            return hermite_hex::mass(cell, &map, self.mass, scratch, me);
+        }
         let rule = gauss_legendre(self.info.in_plane_order);
         let points = rule.len() * rule.len();
+        let (jacobians, h) = (jacobians(cell), cell.half_height());
         let [n, weighted, hankel, p, block] =
             scratch.arrays([F * 4 * points, F * 4 * points, 16, F * 4 * points, F * F]);
         for_each_point(rule, |point, r, s, w| {
-            let dv = positive(cell.plane(r, s).det * cell.half_height())? * w;
-            for (node, corner) in CORNERS.iter().enumerate() {
-                let mut functions = [[0.0; 4]; 4];
-                match self.mass {
-                    Mass::Cubic => {
-                        to_global(cell, node, &hermite::node_functions(*corner, r, s).n, &mut functions);
-                    }
-                    Mass::Linear => functions[0] = hermite::trilinear(*corner, r, s),
-                }
+            let dv = positive(cell.plane(r, s).det * h)? * w;
+            for (node, (corner, jacobian)) in CORNERS.iter().zip(&jacobians).enumerate() {
+                let functions = to_global(jacobian, h, &self.mass.functions(*corner, r, s));
                 for (m, f) in functions.iter().enumerate() {
                     for (k, value) in f.iter().enumerate() {
                         let at = (k * points + point) * F + 4 * node + m;
@@ -248,12 +280,13 @@ impl Element for HermitePrism {
     ) -> Result<(), ElementError> {
         // Area means of the gradients: direction × function × power of q.
         let [means] = scratch.arrays([3 * F * 4]);
+        let jacobians = jacobians(cell);
         let mut area = 0.0;
         for_each_point(gauss_legendre(self.info.in_plane_order), |_, r, s, w| {
             let plane = cell.plane(r, s);
             let da = positive(plane.det * cell.half_height())? * w;
             area += da;
-            gradients(cell, r, s, &plane, |f, gradient| {
+            gradients(cell, &jacobians, r, s, &plane, |f, gradient| {
                 for (d, polynomial) in gradient.iter().enumerate() {
                     let at = 4 * (F * d + f);
                     for (mean, value) in means[at..at + 4].iter_mut().zip(polynomial) {
@@ -300,7 +333,7 @@ fn for_each_point(
 }
 
 /// `out ← a b`, column-major: a is m × k, b is k × n.
-fn multiply(out: &mut [f64], a: &[f64], b: &[f64], m: usize, k: usize, n: usize) {
+pub(crate) fn multiply(out: &mut [f64], a: &[f64], b: &[f64], m: usize, k: usize, n: usize) {
     matmul(
         MatMut::from_column_major_slice_mut(out, m, n),
         Accum::Replace,
@@ -324,12 +357,8 @@ impl Plugin for HermitePrism {
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let mass = match params.choice("mass", &["cubic", "linear"])? {
-            "linear" => Mass::Linear,
-            _ => Mass::Cubic,
-        };
         let order = params.count("in_plane_order", 3, Some(Self::IN_PLANE_ORDER))?;
-        Self::new(mass, order)
+        Self::new(Mass::of(params)?, order)
             .map(|e| Built::Element(Box::new(e)))
             .map_err(|e| ParamError::new("in_plane_order", e.to_string()))
     }

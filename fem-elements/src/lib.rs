@@ -35,6 +35,10 @@
 //! ```
 
 pub mod hermite;
+mod hermite_hex;
 mod hermite_prism;
+mod webster_beam;
 
+pub use hermite_hex::HermiteHex;
 pub use hermite_prism::{HermitePrism, Mass};
+pub use webster_beam::{PlaneState, WebsterBeam};
