@@ -8,13 +8,29 @@ use fem_core::dof::Dof;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::quadrature::{MAX_POINTS, gauss_legendre};
+use std::ops::Range;
 
 /// Functions of a cell per displacement component: 8 nodes × (value, ∂x, ∂y, ∂z).
 pub(crate) const F: usize = 32;
 /// Unknowns of a cell.
 pub(crate) const N: usize = 96;
-/// Derivative direction times power of q.
-const DK: usize = 12;
+/// Functions of the nodes of one face.
+const H: usize = 16;
+
+/// (direction d, power k of q) of the terms in the gradient of a function: those of its part even in q, then of its odd
+/// part.
+const TERMS: [(usize, usize); 11] =
+    [(0, 0), (0, 2), (1, 0), (1, 2), (2, 1), (0, 1), (0, 3), (1, 1), (1, 3), (2, 0), (2, 2)];
+const HALVES: [Range<usize>; 2] = [0..5, 5..11];
+
+/// With the function of a top node e + o, even plus odd in q, that of the node below is e − o times this: for value, ∂x,
+/// ∂y, ∂z.
+const BELOW: [f64; 4] = [1.0, 1.0, 1.0, -1.0];
+
+/// The columns of both halves of a matrix with `rows` rows and a column per term.
+fn halves(a: &[f64], rows: usize) -> [&[f64]; 2] {
+    HALVES.map(|half| &a[half.start * rows..half.end * rows])
+}
 
 /// Row of the strain vector (11 22 33 12 23 31) to which ∂u\[component\]/∂\[direction\] belongs.
 pub(crate) const STRAIN_ROW: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
@@ -57,8 +73,12 @@ impl Mass {
 /// With polynomials in q the integral through any number of plies is one Hankel matrix of the thickness moments, so the
 /// stiffness costs the same for one ply as for a hundred: for components n, n′
 ///
-/// K(n,n′) = Σ over in-plane points of w |J| G H(n,n′) Gᵀ, G: 32 × 12 (direction d, power k),
+/// K(n,n′) = Σ over in-plane points of w |J| G H(n,n′) Gᵀ, G: functions × (direction d, power k),
 /// H(n,n′)\[(d,k),(d′,k′)\] = M\[k+k′\]\[row(n,d)\]\[row(n′,d′)\].
+///
+/// Functions of nodes one above the other differ only in the sign of their odd powers of q. The sums run over the even
+/// and the odd parts of the 16 functions of one face, 11 terms in all, which halves the work. Parallelograms go the way of
+/// [`HermiteHex`](crate::HermiteHex).
 #[derive(Debug, Clone)]
 pub struct HermitePrism {
     info: ElementInfo,
@@ -110,19 +130,20 @@ pub(crate) fn to_global([[x_r, y_r], [x_s, y_s]]: &[[f64; 2]; 2], half_height: f
     out
 }
 
-/// Calls `each(function, [∂x, ∂y, ∂z])` for the 32 functions at an in-plane point, derivatives as polynomials in q.
+/// Calls `each(function, [∂x, ∂y, ∂z])` for the functions of `nodes` at an in-plane point, derivatives as polynomials in q.
 fn gradients(
     cell: &Cell<'_>,
     jacobians: &Jacobians,
+    nodes: Range<usize>,
     r: f64,
     s: f64,
     plane: &PlaneMap,
     mut each: impl FnMut(usize, [Quartet; 3]),
 ) {
     let h = cell.half_height();
-    for (node, (corner, jacobian)) in CORNERS.iter().zip(jacobians).enumerate() {
-        let natural: NodeFunctions = hermite::node_functions(*corner, r, s);
-        let [n, n_r, n_s] = [natural.n, natural.n_r, natural.n_s].map(|f| to_global(jacobian, h, &f));
+    for node in nodes {
+        let natural: NodeFunctions = hermite::node_functions(CORNERS[node], r, s);
+        let [n, n_r, n_s] = [natural.n, natural.n_r, natural.n_s].map(|f| to_global(&jacobians[node], h, &f));
         for m in 0..4 {
             let by = |d: usize| -> Quartet {
                 std::array::from_fn(|k| plane.inverse[0][d] * n_r[m][k] + plane.inverse[1][d] * n_s[m][k])
@@ -159,7 +180,7 @@ impl Element for HermitePrism {
     fn strain_operator(&self, cell: &Cell<'_>, _slice: usize, [r, s, q]: [f64; 3], b: &mut [f64]) -> f64 {
         let plane = cell.plane(r, s);
         b.fill(0.0);
-        gradients(cell, &jacobians(cell), r, s, &plane, |f, g| {
+        gradients(cell, &jacobians(cell), 0..8, r, s, &plane, |f, g| {
             for (d, g) in g.iter().enumerate() {
                 let value = hermite::at(g, q);
                 for (component, rows) in STRAIN_ROW.iter().enumerate() {
@@ -184,45 +205,65 @@ impl Element for HermitePrism {
         }
         let rule = gauss_legendre(self.info.in_plane_order);
         let points = rule.len() * rule.len();
-        let terms = points * DK;
-        let [g, weighted, hankel, p, block] = scratch.arrays([F * terms, F * terms, DK * 6 * DK, F * 6 * terms, F * F]);
+        let rows = H * points;
+        let columns = TERMS.len() * BLOCKS.len();
+        let [g, weighted, hankel, p, parts] = scratch.arrays([
+            rows * TERMS.len(),
+            rows * TERMS.len(),
+            TERMS.len() * columns,
+            2 * rows * columns,
+            4 * H * H,
+        ]);
         let jacobians = jacobians(cell);
-        // G: 32 × (12 · points), the point running fastest among the columns.
+        // G: 16 × (11 · points), the point running fastest among the columns.
         for_each_point(rule, |point, r, s, w| {
             let plane = cell.plane(r, s);
             let dv = positive(plane.det * cell.half_height())? * w;
-            gradients(cell, &jacobians, r, s, &plane, |f, gradient| {
-                for (d, polynomial) in gradient.iter().enumerate() {
-                    for (k, value) in polynomial.iter().enumerate() {
-                        let at = ((4 * d + k) * points + point) * F + f;
-                        g[at] = *value;
-                        weighted[at] = dv * value;
-                    }
+            gradients(cell, &jacobians, 4..8, r, s, &plane, |f, gradient| {
+                for (term, (d, k)) in TERMS.iter().enumerate() {
+                    let at = (term * points + point) * H + f - H;
+                    g[at] = gradient[*d][*k];
+                    weighted[at] = dv * gradient[*d][*k];
                 }
             });
             Ok(())
         })?;
-        // [H(1,1) | H(1,2) | ...]: 12 × 72.
-        for (b, (n, n2)) in BLOCKS.iter().enumerate() {
-            for (dk2, column) in hankel[b * DK * DK..(b + 1) * DK * DK].chunks_exact_mut(DK).enumerate() {
-                for (dk, h) in column.iter_mut().enumerate() {
-                    let moment = &cell.stack.stiffness_moments[dk % 4 + dk2 % 4];
-                    *h = moment[STRAIN_ROW[*n][dk / 4]][STRAIN_ROW[*n2][dk2 / 4]];
-                }
+        // [H(1,1) | H(1,2) | ...]: 11 × 66.
+        for (column, hankel) in hankel.chunks_exact_mut(TERMS.len()).enumerate() {
+            let (n, n2) = BLOCKS[column / TERMS.len()];
+            let (d2, k2) = TERMS[column % TERMS.len()];
+            for (h, (d, k)) in hankel.iter_mut().zip(&TERMS) {
+                *h = cell.stack.stiffness_moments[k + k2][STRAIN_ROW[n][*d]][STRAIN_ROW[n2][d2]];
             }
         }
-        // P = G H with (function, point) as rows; read again, each block of P is 32 × (12 · points).
-        multiply(p, weighted, hankel, F * points, DK, 6 * DK);
-        let g = MatRef::from_column_major_slice(g, F, terms);
+        // P = G H of the even halves and of the odd ones, with (function, point) as rows.
+        let hankel = MatRef::from_column_major_slice(hankel, TERMS.len(), columns);
+        for ((half, g), p) in HALVES.iter().zip(halves(weighted, rows)).zip(p.chunks_exact_mut(rows * columns)) {
+            let g = MatRef::from_column_major_slice(g, rows, half.len());
+            let p = MatMut::from_column_major_slice_mut(p, rows, columns);
+            matmul(p, Accum::Replace, g, hankel.subrows(half.start, half.len()), 1.0, Par::Seq);
+        }
         for (b, (n, n2)) in BLOCKS.iter().enumerate() {
-            let p = MatRef::from_column_major_slice(&p[b * F * terms..(b + 1) * F * terms], F, terms);
-            let out = MatMut::from_column_major_slice_mut(block, F, F);
-            matmul(out, Accum::Replace, p, g.transpose(), 1.0, Par::Seq);
-            for (f2, block) in block.chunks_exact(F).enumerate() {
-                for (f, value) in block.iter().enumerate() {
-                    ke[column(*n, f) + N * column(*n2, f2)] = *value;
-                    ke[column(*n2, f2) + N * column(*n, f)] = *value;
-                }
+            // Read again, each block of P is 16 × (11 · points).
+            let blocks = p.chunks_exact(rows * columns).map(|p| &p[b * rows * TERMS.len()..][..rows * TERMS.len()]);
+            let pairs = blocks.flat_map(|p| halves(p, rows).into_iter().zip(halves(g, rows)));
+            for ((p, g), part) in pairs.zip(parts.chunks_exact_mut(H * H)) {
+                let [p, g] = [p, g].map(|a| MatRef::from_column_major_slice(a, H, a.len() / H));
+                let part = MatMut::from_column_major_slice_mut(part, H, H);
+                matmul(part, Accum::Replace, p, g.transpose(), 1.0, Par::Seq);
+            }
+            let mut put = |f: usize, f2: usize, value: f64| {
+                ke[column(*n, f) + N * column(*n2, f2)] = value;
+                ke[column(*n2, f2) + N * column(*n, f)] = value;
+            };
+            for at in 0..H * H {
+                let (f, f2) = (at % H, at / H);
+                let [ee, eo, oe, oo] = [0, 1, 2, 3].map(|part| parts[part * H * H + at]);
+                let (sign, sign2) = (BELOW[f % 4], BELOW[f2 % 4]);
+                put(f, f2, sign * sign2 * (ee - eo - oe + oo));
+                put(f + H, f2, sign2 * (ee - eo + oe - oo));
+                put(f, f2 + H, sign * (ee + eo - oe - oo));
+                put(f + H, f2 + H, ee + eo + oe + oo);
             }
         }
         Ok(())
@@ -286,7 +327,7 @@ impl Element for HermitePrism {
             let plane = cell.plane(r, s);
             let da = positive(plane.det * cell.half_height())? * w;
             area += da;
-            gradients(cell, &jacobians, r, s, &plane, |f, gradient| {
+            gradients(cell, &jacobians, 0..8, r, s, &plane, |f, gradient| {
                 for (d, polynomial) in gradient.iter().enumerate() {
                     let at = 4 * (F * d + f);
                     for (mean, value) in means[at..at + 4].iter_mut().zip(polynomial) {

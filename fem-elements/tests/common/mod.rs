@@ -6,7 +6,7 @@ use fem_core::material::Elastic;
 use fem_core::tensor::rotate_stiffness;
 
 /// Eight plies of AS4/3502 with angles that leave no symmetry; N, mm, tonne.
-pub fn eight_plies() -> Stack {
+pub(crate) fn eight_plies() -> Stack {
     let c = Elastic::transversely_isotropic(130_300.0, 9650.0, 0.35, 0.40, 5930.0).stiffness();
     let ply = |i: u32| {
         let q = |i: u32| -1.0 + 0.25 * f64::from(i);
@@ -16,7 +16,7 @@ pub fn eight_plies() -> Stack {
 }
 
 /// Largest difference of `got` from `want`, relative to sqrt(kᵢᵢ kⱼⱼ) of the latter.
-pub fn scaled_error(n: usize, got: impl Fn(usize, usize) -> f64, want: impl Fn(usize, usize) -> f64) -> f64 {
+pub(crate) fn scaled_error(n: usize, got: impl Fn(usize, usize) -> f64, want: impl Fn(usize, usize) -> f64) -> f64 {
     let mut worst = 0.0_f64;
     for i in 0..n {
         for j in 0..n {
@@ -30,20 +30,20 @@ pub fn scaled_error(n: usize, got: impl Fn(usize, usize) -> f64, want: impl Fn(u
     worst
 }
 
-pub fn stiffness(element: &dyn Element, cell: &Cell<'_>) -> Vec<f64> {
+pub(crate) fn stiffness(element: &dyn Element, cell: &Cell<'_>) -> Vec<f64> {
     let mut ke = vec![f64::NAN; element.info().ndof().pow(2)];
     element.stiffness(cell, &mut Scratch::default(), &mut ke).unwrap();
     ke
 }
 
-pub fn mass(element: &dyn Element, cell: &Cell<'_>) -> Vec<f64> {
+pub(crate) fn mass(element: &dyn Element, cell: &Cell<'_>) -> Vec<f64> {
     let mut me = vec![f64::NAN; element.info().ndof().pow(2)];
     element.mass(cell, &mut Scratch::default(), &mut me).unwrap();
     me
 }
 
 /// Deformations without energy: eigenvalues of the stiffness, scaled to a unit diagonal, that vanish.
-pub fn zero_modes(element: &dyn Element, cell: &Cell<'_>) -> usize {
+pub(crate) fn zero_modes(element: &dyn Element, cell: &Cell<'_>) -> usize {
     let n = element.info().ndof();
     let ke = stiffness(element, cell);
     let scaled: Vec<f64> = (0..n * n).map(|k| ke[k] / (ke[(n + 1) * (k / n)] * ke[(n + 1) * (k % n)]).sqrt()).collect();
@@ -52,10 +52,10 @@ pub fn zero_modes(element: &dyn Element, cell: &Cell<'_>) -> usize {
 }
 
 /// x, y and z of a monomial.
-pub type Powers = [i32; 3];
+pub(crate) type Powers = [i32; 3];
 
 /// Monomials of at most the given powers and total degree.
-pub fn monomials(most: Powers, degree: i32) -> Vec<Powers> {
+pub(crate) fn monomials(most: Powers, degree: i32) -> Vec<Powers> {
     let each =
         |[a, b, c]: Powers| (0..=a).flat_map(move |i| (0..=b).flat_map(move |j| (0..=c).map(move |k| [i, j, k])));
     each(most).filter(|p| p.iter().sum::<i32>() <= degree).collect()
@@ -74,7 +74,7 @@ fn monomial(powers: Powers, m: usize, at: [f64; 3]) -> f64 {
 
 /// Worst error of the displacements and strains inside `cell` when its unknowns are those of a monomial field of one
 /// component.
-pub fn interpolation_error(element: &dyn Element, cell: &Cell<'_>, component: usize, powers: Powers) -> f64 {
+pub(crate) fn interpolation_error(element: &dyn Element, cell: &Cell<'_>, component: usize, powers: Powers) -> f64 {
     let info = element.info();
     let n = info.ndof();
     let unknowns = info.nodes.iter().flat_map(|node| {
