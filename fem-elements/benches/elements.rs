@@ -3,7 +3,7 @@
 //!
 //! `cargo bench -p fem-elements` prints per line the time of one matrix, matrices a second (`item/s`) and, where the
 //! element's work is one or more matrix products, multiply-adds a second in them (`Hz`); a multiply-add is two operations.
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::unwrap_used)]
 
 use divan::counter::{CyclesCount, ItemsCount};
 use divan::{Bencher, black_box};
@@ -30,8 +30,8 @@ struct Subject {
 
 /// Elements by name; `distort` runs from 0 to 1 over the cells.
 fn subjects() -> Vec<Subject> {
-    let prism = || HermitePrism::new(Mass::Cubic, 4);
-    let beam = |state| WebsterBeam::new(state, Mass::Cubic, 4);
+    let prism = HermitePrism::new(Mass::Cubic, 4).unwrap();
+    let beam = |state| WebsterBeam::new(state, Mass::Cubic, 4).unwrap();
     // 16 points × 16 functions × 11 × 6 · 11 for G H, and for (G H) Gᵀ six blocks of even and odd rows, 16 × (11 · 16) × 16.
     let general = 16 * 16 * 11 * 66 + 6 * 2 * 16 * 176 * 16;
     // Six blocks × 63 terms × 32².
@@ -40,11 +40,10 @@ fn subjects() -> Vec<Subject> {
     let mut add = |name, element: Box<dyn Element>, corners, multiply_adds| {
         all.push(Subject { name, element, corners, multiply_adds });
     };
-    add("hermite-prism", Box::new(prism().unwrap()), quadrilateral as fn(f64) -> Corners, Some(general));
-    add("hermite-prism, parallelograms", Box::new(prism().unwrap()), parallelogram, Some(constant));
+    add("hermite-prism", Box::new(prism), quadrilateral as fn(f64) -> Corners, Some(general));
     add("hermite-hex", Box::new(HermiteHex::new(Mass::Cubic)), parallelogram, Some(constant));
-    add("webster-beam, plane stress", Box::new(beam(PlaneState::Stress).unwrap()), rectangle, None);
-    add("webster-beam, plane strain", Box::new(beam(PlaneState::Strain).unwrap()), rectangle, None);
+    add("webster-beam, plane stress", Box::new(beam(PlaneState::Stress)), rectangle, None);
+    add("webster-beam, plane strain", Box::new(beam(PlaneState::Strain)), rectangle, None);
     all
 }
 

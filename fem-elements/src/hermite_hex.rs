@@ -23,28 +23,34 @@ const TERMS: usize = 9 * POWERS;
 /// * T = ∫∫ of the coefficient of qᵐ in ∂f/∂ξ\[a\] ∂f′/∂ξ\[a′\] over r and s
 /// * D = |J| Σ over d, d′ of ∂ξ\[a\]/∂x\[d\] ∂ξ\[a′\]/∂x\[d′\] Mₘ\[row(n,d)\]\[row(n′,d′)\]
 ///
-/// The prism takes the same way where it meets a parallelogram; this element makes sure that all are.
+/// Half the time of the prism, whose results it gives to rounding.
 #[derive(Debug, Clone)]
-pub struct HermiteHex(HermitePrism);
+pub struct HermiteHex {
+    prism: HermitePrism,
+    mass: Mass,
+}
 
 impl HermiteHex {
     /// With the given inertia.
     pub fn new(mass: Mass) -> Self {
-        Self(HermitePrism::of_order(mass, HermitePrism::IN_PLANE_ORDER))
+        Self { prism: HermitePrism::of_order(mass, HermitePrism::IN_PLANE_ORDER), mass }
     }
 }
 
-/// The map of the quadrilateral if it is the same everywhere, to rounding: 1e-12 of its size.
-pub(crate) fn constant_map(cell: &Cell<'_>) -> Option<PlaneMap> {
+/// The map of the quadrilateral, the same everywhere to rounding: 1e-12 of its size.
+///
+/// # Errors
+/// Another shape.
+fn constant_map(cell: &Cell<'_>) -> Result<PlaneMap, ElementError> {
     let [a, b, c, d] = cell.corners;
     let size = (0..2).map(|k| (c[k] - a[k]).abs().max((d[k] - b[k]).abs())).fold(0.0, f64::max);
-    (0..2).all(|k| (a[k] - b[k] + c[k] - d[k]).abs() <= 1e-12 * size).then(|| cell.plane(0.0, 0.0))
-}
-
-fn refuse_others(cell: &Cell<'_>) -> Result<(), ElementError> {
-    constant_map(cell).map(|_| ()).ok_or_else(|| {
-        ElementError("the quadrilateral is no parallelogram: take the element `hermite-prism` for this mesh".into())
-    })
+    if (0..2).all(|k| (a[k] - b[k] + c[k] - d[k]).abs() <= 1e-12 * size) {
+        Ok(cell.plane(0.0, 0.0))
+    } else {
+        Err(ElementError(
+            "the quadrilateral is no parallelogram: take the element `hermite-prism` for this mesh".into(),
+        ))
+    }
 }
 
 /// ∫∫ over r, s of the coefficients of q⁰ … q⁶ in all products of two of the `fields` of two of the 32 functions: one
@@ -81,84 +87,6 @@ fn mass_table(mass: Mass) -> Vec<f64> {
     table(|f, r, s| [mass.functions(CORNERS[f / 4], r, s)[f % 4]])
 }
 
-/// Stiffness of a cell with a constant map.
-///
-/// # Errors
-/// A Jacobian that is not positive.
-pub(crate) fn stiffness(
-    cell: &Cell<'_>,
-    map: &PlaneMap,
-    scratch: &mut Scratch,
-    ke: &mut [f64],
-) -> Result<(), ElementError> {
-    let h = cell.half_height();
-    let volume = positive(map.det * h)?;
-    let [r, s] = map.inverse;
-    let inverse = [[r[0], r[1], 0.0], [s[0], s[1], 0.0], [0.0, 0.0, 1.0 / h]];
-    let [geometry, products] = scratch.arrays([BLOCKS.len() * TERMS, BLOCKS.len() * F * F]);
-    for (pair, geometry) in geometry.chunks_exact_mut(BLOCKS.len() * POWERS).enumerate() {
-        for (d, by_d) in inverse[pair / 3].iter().enumerate() {
-            for (d2, by_d2) in inverse[pair % 3].iter().enumerate() {
-                let factor = volume * by_d * by_d2;
-                for (column, moment) in geometry.chunks_exact_mut(BLOCKS.len()).zip(&cell.stack.stiffness_moments) {
-                    for (value, (n, n2)) in column.iter_mut().zip(&BLOCKS) {
-                        *value += factor * moment[STRAIN_ROW[*n][d]][STRAIN_ROW[*n2][d2]];
-                    }
-                }
-            }
-        }
-    }
-    multiply(products, geometry, &STIFFNESS, BLOCKS.len(), TERMS, F * F);
-    for (b, (n, n2)) in BLOCKS.iter().enumerate() {
-        spread(
-            map,
-            h,
-            |i| products[BLOCKS.len() * i + b],
-            |f, f2, value| {
-                ke[column(*n, f) + N * column(*n2, f2)] = value;
-                ke[column(*n2, f2) + N * column(*n, f)] = value;
-            },
-        );
-    }
-    Ok(())
-}
-
-/// Mass of a cell with a constant map.
-///
-/// # Errors
-/// A Jacobian that is not positive.
-pub(crate) fn mass(
-    cell: &Cell<'_>,
-    map: &PlaneMap,
-    mass: Mass,
-    scratch: &mut Scratch,
-    me: &mut [f64],
-) -> Result<(), ElementError> {
-    let h = cell.half_height();
-    let volume = positive(map.det * h)?;
-    let table = match mass {
-        Mass::Cubic => &CUBIC_MASS,
-        Mass::Linear => &LINEAR_MASS,
-    };
-    let [products] = scratch.arrays([F * F]);
-    for (product, column) in products.iter_mut().zip(table.chunks_exact(POWERS)) {
-        *product = volume * column.iter().zip(&cell.stack.density_moments).map(|(t, m)| t * m).sum::<f64>();
-    }
-    me.fill(0.0);
-    spread(
-        map,
-        h,
-        |i| products[i],
-        |f, f2, value| {
-            for component in 0..3 {
-                me[column(component, f) + N * column(component, f2)] = value;
-                me[column(component, f2) + N * column(component, f)] = value;
-            }
-        },
-    );
-    Ok(())
-}
-
 /// Turns products of functions with natural derivatives as unknowns into those with global ones, node pair by node pair.
 fn spread(map: &PlaneMap, h: f64, product: impl Fn(usize) -> f64, mut put: impl FnMut(usize, usize, f64)) {
     let transposed = |a: [Quartet; 4]| -> [Quartet; 4] { std::array::from_fn(|i| a.map(|row| row[i])) };
@@ -176,29 +104,82 @@ fn spread(map: &PlaneMap, h: f64, product: impl Fn(usize) -> f64, mut put: impl 
 
 impl Element for HermiteHex {
     fn info(&self) -> &ElementInfo {
-        self.0.info()
+        self.prism.info()
     }
 
     fn strain_operator(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], b: &mut [f64]) -> f64 {
-        self.0.strain_operator(cell, slice, xi, b)
+        self.prism.strain_operator(cell, slice, xi, b)
     }
 
     fn shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
-        self.0.shape(cell, xi, n)
+        self.prism.shape(cell, xi, n)
     }
 
     fn inertia_shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
-        self.0.inertia_shape(cell, xi, n)
+        self.prism.inertia_shape(cell, xi, n)
     }
 
     fn stiffness(&self, cell: &Cell<'_>, scratch: &mut Scratch, ke: &mut [f64]) -> Result<(), ElementError> {
-        refuse_others(cell)?;
-        self.0.stiffness(cell, scratch, ke)
+        let map = constant_map(cell)?;
+        let h = cell.half_height();
+        let volume = positive(map.det * h)?;
+        let [r, s] = map.inverse;
+        let inverse = [[r[0], r[1], 0.0], [s[0], s[1], 0.0], [0.0, 0.0, 1.0 / h]];
+        let [geometry, products] = scratch.arrays([BLOCKS.len() * TERMS, BLOCKS.len() * F * F]);
+        for (pair, geometry) in geometry.chunks_exact_mut(BLOCKS.len() * POWERS).enumerate() {
+            let (by, by2) = (&inverse[pair / 3], &inverse[pair % 3]);
+            for (d, d2) in (0..3).flat_map(|d| (0..3).map(move |d2| (d, d2))) {
+                let factor = volume * by[d] * by2[d2];
+                // Most are zero: r and s depend on x and y alone, q on z.
+                if factor != 0.0 {
+                    for (column, moment) in geometry.chunks_exact_mut(BLOCKS.len()).zip(&cell.stack.stiffness_moments) {
+                        for (value, (n, n2)) in column.iter_mut().zip(&BLOCKS) {
+                            *value += factor * moment[STRAIN_ROW[*n][d]][STRAIN_ROW[*n2][d2]];
+                        }
+                    }
+                }
+            }
+        }
+        multiply(products, geometry, &STIFFNESS, BLOCKS.len(), TERMS, F * F);
+        for (b, (n, n2)) in BLOCKS.iter().enumerate() {
+            spread(
+                &map,
+                h,
+                |i| products[BLOCKS.len() * i + b],
+                |f, f2, value| {
+                    ke[column(*n, f) + N * column(*n2, f2)] = value;
+                    ke[column(*n2, f2) + N * column(*n, f)] = value;
+                },
+            );
+        }
+        Ok(())
     }
 
     fn mass(&self, cell: &Cell<'_>, scratch: &mut Scratch, me: &mut [f64]) -> Result<(), ElementError> {
-        refuse_others(cell)?;
-        self.0.mass(cell, scratch, me)
+        let map = constant_map(cell)?;
+        let h = cell.half_height();
+        let volume = positive(map.det * h)?;
+        let table = match self.mass {
+            Mass::Cubic => &CUBIC_MASS,
+            Mass::Linear => &LINEAR_MASS,
+        };
+        let [products] = scratch.arrays([F * F]);
+        for (product, column) in products.iter_mut().zip(table.chunks_exact(POWERS)) {
+            *product = volume * column.iter().zip(&cell.stack.density_moments).map(|(t, m)| t * m).sum::<f64>();
+        }
+        me.fill(0.0);
+        spread(
+            &map,
+            h,
+            |i| products[i],
+            |f, f2, value| {
+                for component in 0..3 {
+                    me[column(component, f) + N * column(component, f2)] = value;
+                    me[column(component, f2) + N * column(component, f)] = value;
+                }
+            },
+        );
+        Ok(())
     }
 
     fn mean_strains(
@@ -208,8 +189,8 @@ impl Element for HermiteHex {
         scratch: &mut Scratch,
         b: &mut [f64],
     ) -> Result<(), ElementError> {
-        refuse_others(cell)?;
-        self.0.mean_strains(cell, parts, scratch, b)
+        constant_map(cell)?;
+        self.prism.mean_strains(cell, parts, scratch, b)
     }
 }
 

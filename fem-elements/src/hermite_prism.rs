@@ -1,7 +1,6 @@
 //! The report's solid element: a quadrilateral prism with twelve unknowns a node (eqs 16-23).
 
 use crate::hermite::{self, CORNERS, NodeFunctions, Quartet};
-use crate::hermite_hex;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::dof::Dof;
@@ -77,8 +76,7 @@ impl Mass {
 /// H(n,n′)\[(d,k),(d′,k′)\] = M\[k+k′\]\[row(n,d)\]\[row(n′,d′)\].
 ///
 /// Functions of nodes one above the other differ only in the sign of their odd powers of q. The sums run over the even
-/// and the odd parts of the 16 functions of one face, 11 terms in all, which halves the work. Parallelograms go the way of
-/// [`HermiteHex`](crate::HermiteHex).
+/// and the odd parts of the 16 functions of one face, 11 terms in all, which halves the work.
 #[derive(Debug, Clone)]
 pub struct HermitePrism {
     info: ElementInfo,
@@ -103,11 +101,6 @@ impl HermitePrism {
 
     pub(crate) fn of_order(mass: Mass, in_plane_order: usize) -> Self {
         Self { info: ElementInfo { nodes: &CORNERS, dofs: &Dof::SOLID, in_plane_order, ply_order: 4 }, mass }
-    }
-
-    /// The map of a parallelogram, whose exact integrals the order asked for would give as well.
-    fn constant_map(&self, cell: &Cell<'_>) -> Option<PlaneMap> {
-        (self.info.in_plane_order >= Self::IN_PLANE_ORDER).then(|| hermite_hex::constant_map(cell)).flatten()
     }
 }
 
@@ -200,9 +193,6 @@ impl Element for HermitePrism {
     }
 
     fn stiffness(&self, cell: &Cell<'_>, scratch: &mut Scratch, ke: &mut [f64]) -> Result<(), ElementError> {
-        if let Some(map) = self.constant_map(cell) {
-            return hermite_hex::stiffness(cell, &map, scratch, ke);
-        }
         let rule = gauss_legendre(self.info.in_plane_order);
         let points = rule.len() * rule.len();
         let rows = H * points;
@@ -270,9 +260,6 @@ impl Element for HermitePrism {
     }
 
     fn mass(&self, cell: &Cell<'_>, scratch: &mut Scratch, me: &mut [f64]) -> Result<(), ElementError> {
-        if let Some(map) = self.constant_map(cell) {
-            return hermite_hex::mass(cell, &map, self.mass, scratch, me);
-        }
         let rule = gauss_legendre(self.info.in_plane_order);
         let points = rule.len() * rule.len();
         let (jacobians, h) = (jacobians(cell), cell.half_height());
