@@ -75,6 +75,8 @@ impl Registry {
             .with::<fem_elements::HermitePrism>()
             .with::<fem_elements::Hex20>()
             .with::<fem_elements::Mitc4>()
+            .with::<fem_elements::HermiteHex>()
+            .with::<fem_elements::WebsterBeam>()
             .with::<contact::SunYang>()
             .with::<contact::Hertz>()
             .with::<contact::Linear>()
