@@ -321,6 +321,18 @@ impl Summary {
                     d.contact_force_N
                 ));
             }
+        }
+        for n in &self.not_reached {
+            line(format_args!(
+                "            not reached: {} {}, largest index {:.3} at {:.4} ms, ply {}",
+                n.criterion,
+                n.mode,
+                n.largest_index,
+                n.time_s * 1e3,
+                n.ply
+            ));
+        }
+        if !self.first_damage.is_empty() {
             line(format_args!(
                 "  why       stress there at that time, MPa (plies: 1 along the fibres), and what it may grow by"
             ));
@@ -344,16 +356,6 @@ impl Summary {
                     d.reserve_factor.map_or_else(|| "      -".to_owned(), |r| format!("{r:>7.4}"))
                 ));
             }
-        }
-        for n in &self.not_reached {
-            line(format_args!(
-                "            not reached: {} {}, largest index {:.3} at {:.4} ms, ply {}",
-                n.criterion,
-                n.mode,
-                n.largest_index,
-                n.time_s * 1e3,
-                n.ply
-            ));
         }
         if let Some(d) = &self.delamination_threshold {
             let reached = match d.time_s {

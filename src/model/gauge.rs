@@ -11,7 +11,7 @@ use fem_io::scene::{Depth, IndexWatch, SceneError};
 /// A place whose indices are kept over time: one cell at one depth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gauge {
-    /// The quad: of those that hold the place the one whose centre is nearest.
+    /// The quad: of those that hold the place the one whose centre is nearest, the first of equals.
     pub quad: usize,
     /// Ply or interface.
     pub place: Place,
@@ -57,8 +57,10 @@ impl Builder<'_> {
             let c = window::centroid(&mesh.corners(quad));
             (c[0] - point[0]).hypot(c[1] - point[1])
         };
-        let holding = watched.iter().copied().filter(|q| patch::locate(&mesh.corners(*q), point).is_some());
-        let quad = holding.min_by(|a, b| from_centre(*a).total_cmp(&from_centre(*b))).ok_or_else(|| {
+        let holding = || watched.iter().copied().filter(|q| patch::locate(&mesh.corners(*q), point).is_some());
+        let nearest = holding().map(from_centre).fold(f64::INFINITY, f64::min);
+        // At a node of a symmetric mesh several are equally near: the first of them, whatever the last bit says.
+        let quad = holding().find(|q| from_centre(*q) <= nearest * (1.0 + 1e-9)).ok_or_else(|| {
             let [x, y] = point.map(|v| v * 1e3);
             let message = format!("no cell whose stresses are watched holds ({x:.4}, {y:.4}) mm");
             self.error(&watch.at, message, "choose a place on the plate and within `failure.radius` of the impact")
