@@ -1,7 +1,8 @@
 //! The report's solid element on parallelograms: the Jacobian is constant, so the matrices are tables times moments.
 
 use crate::hermite::{self, CORNERS, Quartet};
-use crate::hermite_prism::{BLOCKS, F, HermitePrism, Mass, N, STRAIN_ROW, column, multiply, to_global};
+use crate::hermite_prism::{F, HermitePrism, Mass, N, column, to_global};
+use crate::prism::{BLOCKS, STRAIN_ROW, matrix, multiply};
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::quadrature::gauss_legendre;
@@ -140,7 +141,7 @@ impl Element for HermiteHex {
                 }
             }
         }
-        multiply(products, geometry, &STIFFNESS, BLOCKS.len(), TERMS, F * F);
+        multiply(products, matrix(geometry, BLOCKS.len()), matrix(&STIFFNESS[..], TERMS));
         for (b, (n, n2)) in BLOCKS.iter().enumerate() {
             spread(
                 &map,

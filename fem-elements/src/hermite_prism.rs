@@ -1,6 +1,7 @@
 //! The report's solid element: a quadrilateral prism with twelve unknowns a node (eqs 16-23).
 
 use crate::hermite::{self, CORNERS, NodeFunctions, Quartet};
+use crate::prism::{BLOCKS, STRAIN_ROW, matrix, mean_powers, multiply};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::dof::Dof;
@@ -30,12 +31,6 @@ const BELOW: [f64; 4] = [1.0, 1.0, 1.0, -1.0];
 fn halves(a: &[f64], rows: usize) -> [&[f64]; 2] {
     HALVES.map(|half| &a[half.start * rows..half.end * rows])
 }
-
-/// Row of the strain vector (11 22 33 12 23 31) to which ∂u\[component\]/∂\[direction\] belongs.
-pub(crate) const STRAIN_ROW: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
-
-/// Blocks (component, component) of the symmetric stiffness.
-pub(crate) const BLOCKS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
 /// Which shape functions carry the inertia.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -282,7 +277,7 @@ impl Element for HermitePrism {
         for (i, h) in hankel.iter_mut().enumerate() {
             *h = cell.stack.density_moments[i % 4 + i / 4];
         }
-        multiply(p, weighted, hankel, F * points, 4, 4);
+        multiply(p, matrix(weighted, F * points), matrix(hankel, 4));
         let p = MatRef::from_column_major_slice(p, F, 4 * points);
         let n = MatRef::from_column_major_slice(n, F, 4 * points);
         matmul(MatMut::from_column_major_slice_mut(block, F, F), Accum::Replace, p, n.transpose(), 1.0, Par::Seq);
@@ -327,15 +322,7 @@ impl Element for HermitePrism {
         b.fill(0.0);
         for (Part { q: [low, high], .. }, b) in parts.iter().zip(b.chunks_exact_mut(6 * N)) {
             // Mean of q⁰ … q³ over the part, per area.
-            let powers: Quartet = std::array::from_fn(|k| {
-                let p = k as i32 + 1;
-                let mean = if high > low {
-                    (high.powi(p) - low.powi(p)) / (f64::from(p) * (high - low))
-                } else {
-                    low.powi(k as i32)
-                };
-                mean / area
-            });
+            let powers: Quartet = mean_powers(*low, *high).map(|mean| mean / area);
             for (at, polynomial) in means.chunks_exact(4).enumerate() {
                 let (d, f) = (at / F, at % F);
                 let value: f64 = polynomial.iter().zip(powers).map(|(a, b)| a * b).sum();
@@ -358,18 +345,6 @@ fn for_each_point(
         }
     }
     Ok(())
-}
-
-/// `out ← a b`, column-major: a is m × k, b is k × n.
-pub(crate) fn multiply(out: &mut [f64], a: &[f64], b: &[f64], m: usize, k: usize, n: usize) {
-    matmul(
-        MatMut::from_column_major_slice_mut(out, m, n),
-        Accum::Replace,
-        MatRef::from_column_major_slice(a, m, k),
-        MatRef::from_column_major_slice(b, k, n),
-        1.0,
-        Par::Seq,
-    );
 }
 
 impl Plugin for HermitePrism {

@@ -11,10 +11,10 @@ use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::element::{Cell, Element, ElementError, Part, PlaneMap, Scratch, positive};
 
 /// Row of the strain vector (11 22 33 12 23 31) to which ∂u\[component\]/∂\[direction\] belongs.
-const STRAIN_ROW: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
+pub(crate) const STRAIN_ROW: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
 
 /// Blocks (component, component) of the symmetric stiffness.
-const BLOCKS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+pub(crate) const BLOCKS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
 /// A solid with the same `F` scalar functions for each displacement component, polynomials of `K` ≤ 4 coefficients in q.
 pub(crate) trait Prism<const F: usize, const K: usize>: Element {
@@ -172,15 +172,7 @@ pub(crate) fn mean_strains<const F: usize, const K: usize, P: Prism<F, K>>(
     b.fill(0.0);
     for (Part { q: [low, high], .. }, b) in parts.iter().zip(b.chunks_exact_mut(6 * 3 * F)) {
         // Mean of q⁰, q¹ … over the part, per area.
-        let powers: [f64; K] = std::array::from_fn(|k| {
-            let p = k as i32 + 1;
-            let mean = if high > low {
-                (high.powi(p) - low.powi(p)) / (f64::from(p) * (high - low))
-            } else {
-                low.powi(k as i32)
-            };
-            mean / area
-        });
+        let powers: [f64; K] = mean_powers(*low, *high).map(|mean| mean / area);
         for (f, gradient) in means.iter().enumerate() {
             for (d, polynomial) in gradient.iter().enumerate() {
                 let value = polynomial.iter().zip(powers).map(|(a, b)| a * b).sum();
@@ -199,12 +191,20 @@ fn at<const K: usize>(p: &[f64; K], q: f64) -> f64 {
 }
 
 /// `m` rows, column-major.
-fn matrix(a: &[f64], m: usize) -> MatRef<'_, f64> {
+pub(crate) fn matrix(a: &[f64], m: usize) -> MatRef<'_, f64> {
     MatRef::from_column_major_slice(a, m, a.len() / m)
 }
 
+/// Means of q⁰, q¹ … over low ≤ q ≤ high, or their values there where both are one.
+pub(crate) fn mean_powers<const K: usize>(low: f64, high: f64) -> [f64; K] {
+    std::array::from_fn(|k| {
+        let p = k as i32 + 1;
+        if high > low { (high.powi(p) - low.powi(p)) / (f64::from(p) * (high - low)) } else { low.powi(k as i32) }
+    })
+}
+
 /// `out ← a b`
-fn multiply(out: &mut [f64], a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
+pub(crate) fn multiply(out: &mut [f64], a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
     let out = MatMut::from_column_major_slice_mut(out, a.nrows(), b.ncols());
     matmul(out, Accum::Replace, a, b, 1.0, Par::Seq);
 }

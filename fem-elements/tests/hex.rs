@@ -4,7 +4,8 @@
 mod common;
 
 use common::{eight_plies, interpolation_error, mass, monomials, scaled_error, stiffness, zero_modes};
-use fem_core::element::{Cell, Element, ElementInfo, Part, Scratch, Stack};
+use fem_core::element::{Cell, Element, Part, Scratch, Stack};
+use fem_core::testkit::Provided;
 use fem_elements::{HermiteHex, HermitePrism, Mass};
 
 const RECTANGLE: [[f64; 2]; 4] = [[0.2, -0.4], [1.5, -0.4], [1.5, 0.7], [0.2, 0.7]];
@@ -19,24 +20,6 @@ fn prism() -> HermitePrism {
     HermitePrism::new(Mass::Cubic, 4).unwrap()
 }
 
-/// The prism's operators with the provided matrices: Gauss points ply by ply.
-#[derive(Debug, Clone)]
-struct PlyByPly(HermitePrism);
-impl Element for PlyByPly {
-    fn info(&self) -> &ElementInfo {
-        self.0.info()
-    }
-    fn strain_operator(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], b: &mut [f64]) -> f64 {
-        self.0.strain_operator(cell, slice, xi, b)
-    }
-    fn shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
-        self.0.shape(cell, xi, n)
-    }
-    fn inertia_shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
-        self.0.inertia_shape(cell, xi, n)
-    }
-}
-
 #[test]
 fn parallelograms_agree_with_integration_ply_by_ply() {
     let stack = eight_plies();
@@ -44,7 +27,7 @@ fn parallelograms_agree_with_integration_ply_by_ply() {
         let cell = cell(corners, &stack);
         for m in [Mass::Cubic, Mass::Linear] {
             let prism = HermitePrism::new(m, 4).unwrap();
-            let plain = PlyByPly(prism.clone());
+            let plain = Provided(&prism);
             let elements: [&dyn Element; 2] = [&HermiteHex::new(m), &prism];
             for (matrix, name) in [(stiffness as fn(&dyn Element, &Cell<'_>) -> Vec<f64>, "stiffness"), (mass, "mass")]
             {

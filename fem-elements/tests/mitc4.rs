@@ -9,6 +9,7 @@ use fem_core::element::{Cell, Element, Stack};
 use fem_core::material::Elastic;
 use fem_core::mesh::QuadMesh;
 use fem_core::tensor::Matrix6;
+use fem_core::testkit::Provided;
 use fem_elements::Mitc4;
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Matrix3x2, SMatrix, Vector2, Vector6};
 use std::f64::consts::PI;
@@ -105,7 +106,7 @@ fn bad_cells_are_refused() {
         let cell = Cell { corners, z, stack };
         let (mut scratch, mut k) = (Default::default(), vec![0.0; N * N]);
         assert!(mitc4().stiffness(&cell, &mut scratch, &mut k).is_err());
-        assert!(Plain(mitc4()).stiffness(&cell, &mut scratch, &mut k).is_err());
+        assert!(Provided(&mitc4()).stiffness(&cell, &mut scratch, &mut k).is_err());
         assert_eq!(mitc4().mass(&cell, &mut scratch, &mut k).is_err(), std::ptr::eq(stack, &good));
     }
 }

@@ -1,9 +1,13 @@
 //! Element matrices against an independent implementation (tests/data/element-3d.json; units N, mm, tonne).
 #![allow(clippy::unwrap_used, missing_docs)]
 
+mod common;
+
+use common::{scaled_error, stiffness};
 use fem_core::element::{Cell, Element, Part, Scratch, Slice, Stack};
 use fem_core::material::Elastic;
 use fem_core::tensor::{Strain6, rotate_stiffness, stress};
+use fem_core::testkit::Provided;
 use fem_elements::{HermitePrism, Mass};
 use serde_json::Value;
 
@@ -58,43 +62,6 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-/// Largest difference of `got` from `want`, relative to sqrt(kᵢᵢ kⱼⱼ) of the reference.
-fn scaled_error(n: usize, got: impl Fn(usize, usize) -> f64, want: impl Fn(usize, usize) -> f64) -> f64 {
-    let mut worst = 0.0_f64;
-    for i in 0..n {
-        for j in 0..n {
-            let scale = (want(i, i) * want(j, j)).sqrt();
-            let difference = (got(i, j) - want(i, j)).abs();
-            worst = if scale > 0.0 { worst.max(difference / scale) } else { worst.max(difference) };
-        }
-    }
-    worst
-}
-
-fn stiffness(element: &dyn Element, case: &Case) -> Vec<f64> {
-    let mut ke = vec![f64::NAN; 96 * 96];
-    element.stiffness(&case.cell(), &mut Scratch::default(), &mut ke).unwrap();
-    ke
-}
-
-/// An element that overrides nothing: what the provided methods make of the same operators.
-#[derive(Debug, Clone)]
-struct Plain(HermitePrism);
-impl Element for Plain {
-    fn info(&self) -> &fem_core::element::ElementInfo {
-        self.0.info()
-    }
-    fn strain_operator(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], b: &mut [f64]) -> f64 {
-        self.0.strain_operator(cell, slice, xi, b)
-    }
-    fn shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
-        self.0.shape(cell, xi, n)
-    }
-    fn inertia_shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
-        self.0.inertia_shape(cell, xi, n)
-    }
-}
-
 #[test]
 fn stiffness_mass_and_averages_agree_with_the_independent_implementation() {
     for case in cases() {
@@ -105,9 +72,9 @@ fn stiffness_mass_and_averages_agree_with_the_independent_implementation() {
             upper[i * 96 - i * (i + 1) / 2 + j]
         };
         let fine = HermitePrism::new(Mass::Cubic, 16).unwrap();
-        let elements: [&dyn Element; 2] = [&fine, &Plain(fine.clone())];
+        let elements: [&dyn Element; 2] = [&fine, &Provided(&fine)];
         for element in elements {
-            let ke = stiffness(element, &case);
+            let ke = stiffness(element, &case.cell());
             let error = scaled_error(96, |i, j| ke[i + 96 * j], k_ref);
             assert!(error < TOLERANCE, "{}: stiffness {error:e}", case.name);
             let u: Vec<f64> = (0..96).map(|k| 1e-3 * f64::from(k + 1).sin()).collect();
@@ -165,8 +132,8 @@ fn stiffness_mass_and_averages_agree_with_the_independent_implementation() {
 #[test]
 fn order_four_is_exact_on_rectangles_and_close_on_distorted_cells() {
     for case in cases() {
-        let fine = stiffness(&HermitePrism::new(Mass::Cubic, 16).unwrap(), &case);
-        let four = stiffness(&HermitePrism::new(Mass::Cubic, 4).unwrap(), &case);
+        let fine = stiffness(&HermitePrism::new(Mass::Cubic, 16).unwrap(), &case.cell());
+        let four = stiffness(&HermitePrism::new(Mass::Cubic, 4).unwrap(), &case.cell());
         let error = scaled_error(96, |i, j| four[i + 96 * j], |i, j| fine[i + 96 * j]);
         let rectangle = case.reference["K_upper_inplane_gauss4"].is_string();
         assert!(error < if rectangle { 1e-12 } else { 1e-5 }, "{}: {error:e}", case.name);

@@ -84,11 +84,11 @@ fn stacks() -> [(&'static str, Stack); 2] {
     [("one ply", Stack::new(vec![tape(30.0)])), ("four plies", Stack::new(slices.to_vec()))]
 }
 
-/// The element without its overrides.
+/// An element without its overrides: what the provided methods make of its operators.
 #[derive(Debug, Clone)]
-struct Plain<'a>(&'a dyn Element);
+pub struct Provided<'a>(pub &'a dyn Element);
 
-impl Element for Plain<'_> {
+impl Element for Provided<'_> {
     fn info(&self) -> &ElementInfo {
         self.0.info()
     }
@@ -131,7 +131,7 @@ impl Matrices {
             }
             same(n, matrix, |i, j| matrix[j + n * i]).map_err(|e| format!("the {name} is not symmetric: {e:.1e}"))?;
         }
-        let plain = Matrices::of(&Plain(element), cell).map_err(|e| e.to_string())?;
+        let plain = Matrices::of(&Provided(element), cell).map_err(|e| e.to_string())?;
         for (name, own, provided) in [("stiffness", &self.k, &plain.k), ("mass", &self.m, &plain.m)] {
             same(n, own, |i, j| provided[i + n * j])
                 .map_err(|e| format!("the overridden {name} differs from the provided one by {e:.1e}"))?;

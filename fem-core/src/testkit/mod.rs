@@ -9,5 +9,5 @@ mod integrator;
 pub use card::card;
 pub use contact::check_contact_law;
 pub use criterion::check_criterion;
-pub use element::check_element;
+pub use element::{Provided, check_element};
 pub use integrator::{Mode, Modes, check_integrator};

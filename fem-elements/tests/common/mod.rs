@@ -1,4 +1,5 @@
-//! What the tests of several elements share.
+//! What the tests of several elements share; each of them uses a part.
+#![allow(dead_code)]
 
 use faer::{MatRef, Side};
 use fem_core::element::{Cell, Element, Scratch, Slice, Stack};

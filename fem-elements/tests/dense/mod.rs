@@ -1,11 +1,12 @@
 //! Small models with dense matrices, for the tests of elements.
 
 use fem_core::dof::Dof;
-use fem_core::element::{Cell, Element, ElementInfo, Part, Scratch, Slice, Stack};
+use fem_core::element::{Cell, Element, Part, Scratch, Slice, Stack};
 use fem_core::material::Elastic;
 use fem_core::mesh::QuadMesh;
 use fem_core::plate::{Plate, ZDerivatives};
 use fem_core::tensor::rotate_stiffness;
+use fem_core::testkit::Provided;
 use nalgebra::{DMatrix, DVector};
 
 /// A quadrilateral without a right angle or parallel edges, about 2 mm wide.
@@ -42,21 +43,6 @@ pub(crate) fn even(elastic: &Elastic, angles: &[f64]) -> Stack {
     Stack::new(slices)
 }
 
-/// The element without what it overrides: the provided methods on the same operators.
-#[derive(Debug, Clone)]
-pub(crate) struct Plain<E>(pub E);
-impl<E: Element + Clone> Element for Plain<E> {
-    fn info(&self) -> &ElementInfo {
-        self.0.info()
-    }
-    fn strain_operator(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], b: &mut [f64]) -> f64 {
-        self.0.strain_operator(cell, slice, xi, b)
-    }
-    fn shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
-        self.0.shape(cell, xi, n)
-    }
-}
-
 pub(crate) fn stiffness(element: &dyn Element, cell: &Cell<'_>) -> DMatrix<f64> {
     let n = element.info().ndof();
     let mut k = DMatrix::repeat(n, n, f64::NAN);
@@ -78,8 +64,8 @@ pub(crate) fn difference(a: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
 }
 
 /// Checks the overrides of an element against the provided methods.
-pub(crate) fn check_overrides<E: Element + Clone + 'static>(element: &E, cell: &Cell<'_>) {
-    let plain = Plain(element.clone());
+pub(crate) fn check_overrides(element: &dyn Element, cell: &Cell<'_>) {
+    let plain = Provided(element);
     let k = difference(&stiffness(element, cell), &stiffness(&plain, cell));
     assert!(k < 1e-12, "stiffness {k:e}");
     let m = difference(&mass(element, cell), &mass(&plain, cell));
