@@ -146,6 +146,15 @@ fn the_criterion_of_the_book_runs() {
 }
 
 #[test]
+fn the_element_of_the_book_is_taken() {
+    let element = fs::read_to_string(root().join("docs/book/src/element.toml")).unwrap().replace("\r\n", "\n");
+    let case = Case::example("as4-3502-8ply-25mm").append(&format!("\n{element}"));
+    let done = case.fem("check", &[]).good();
+    // Derivatives without inertia vibrate infinitely fast.
+    assert_ne!(done.stdout, Case::example("as4-3502-8ply-25mm").fem("check", &[]).good().stdout);
+}
+
+#[test]
 fn what_the_book_includes_and_links_to_is_there() {
     let book = root().join("docs/book/src");
     let mut included = 0;

@@ -24,15 +24,6 @@ pub const NODES: [[f64; 3]; 8] = [
 const DOFS: [Dof; 3] = [Dof::SOLID[0], Dof::SOLID[4], Dof::SOLID[8]];
 // ANCHOR_END: table
 
-/// Where the transverse shear strains come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shear {
-    /// Linear between the middles of opposite sides, in covariant components: a thin cell bends.
-    Assumed,
-    /// From the displacements where they are asked for: a thin cell locks.
-    Full,
-}
-
 /// Brick with functions N = (1 + r rᵢ)(1 + s sᵢ)(1 + q qᵢ)/8 of eight nodes, on any quadrilateral.
 ///
 /// ```text
@@ -48,8 +39,9 @@ pub enum Shear {
 /// the parasitic shear of linear functions.
 #[derive(Debug, Clone)]
 pub struct Hex8 {
-    /// Choice of the transverse shears.
-    pub shear: Shear,
+    /// Transverse shears are linear between the middles of opposite sides, so that a thin cell bends; otherwise they are
+    /// those of the displacements, and it locks.
+    pub assumed_shear: bool,
 }
 
 impl Element for Hex8 {
@@ -67,17 +59,11 @@ impl Element for Hex8 {
             let [fr, fs, fq] = [(r, ri), (s, si), (q, qi)].map(|(a, ai)| 0.5 * (1.0 + a * ai));
             let [x, y] = cartesian(0.5 * ri * fs * fq, 0.5 * si * fr * fq);
             let z = 0.5 * qi * fr * fs / h;
-            // Of U10, U20 and U30: γ₂₃ and γ₃₁ by their slopes along z.
-            let [[u23, u31], [v23, v31]] = match self.shear {
-                Shear::Full => [[0.0, z], [z, 0.0]],
-                Shear::Assumed => {
-                    let (along_r, along_s) = (cell.plane(0.0, si).jacobian[0], cell.plane(ri, 0.0).jacobian[1]);
-                    [0, 1].map(|d| {
-                        let [x, y] = cartesian(0.25 * qi * fs * along_r[d] / h, 0.25 * qi * fr * along_s[d] / h);
-                        [y, x]
-                    })
-                }
-            };
+            // Where U10 and U20 make the covariant shears γ(rq) and γ(sq): in the middles of the sides, or in place.
+            let [rq, sq] = if self.assumed_shear { [[0.0, si], [ri, 0.0]] } else { [[r, s]; 2] };
+            let (along_r, along_s) = (cell.plane(rq[0], rq[1]).jacobian[0], cell.plane(sq[0], sq[1]).jacobian[1]);
+            let [by_rq, by_sq] = [(rq[0] * ri, fs), (sq[1] * si, fr)].map(|(a, f)| 0.25 * qi * (1.0 + a) * f / h);
+            let [[u31, u23], [v31, v23]] = [0, 1].map(|d| cartesian(by_rq * along_r[d], by_sq * along_s[d]));
             b.copy_from_slice(&[
                 x, 0.0, 0.0, y, u23, u31, //
                 0.0, y, 0.0, x, v23, v31, //
@@ -106,18 +92,12 @@ impl Plugin for Hex8 {
         name: "hex8",
         summary: "8-node brick, 3 unknowns a node, any number of plies through one cell",
         source: "transverse shears: Bathe and Dvorkin, Int. J. Numer. Meth. Eng. 21 (1985) 367",
-        params: &[ParamInfo {
-            name: "shear",
-            doc: "transverse shear strains: `assumed` (default): thin cells bend; `full`: they lock",
-        }],
+        params: &[ParamInfo { name: "shear", doc: "`assumed` (default): thin cells bend; `full`: they lock" }],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let shear = match params.choice("shear", &["assumed", "full"])? {
-            "full" => Shear::Full,
-            _ => Shear::Assumed,
-        };
-        Ok(Built::Element(Box::new(Self { shear })))
+        let assumed_shear = params.choice("shear", &["assumed", "full"])? == "assumed";
+        Ok(Built::Element(Box::new(Self { assumed_shear })))
     }
 }
 // ANCHOR_END: plugin
