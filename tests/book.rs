@@ -1,7 +1,9 @@
 //! The book says what the program does.
 
+use crate::snapshots::element;
 use crate::support::{Case, root};
 use fem::Registry;
+use fem::core::dof::Dof;
 use fem::core::failure::{FailureCriterion, Site};
 use fem::core::plugin::{Built, Kind, Params, PluginInfo, Value};
 use std::fmt::Write;
@@ -27,9 +29,12 @@ pub(crate) fn criteria() -> Vec<(PluginInfo, Box<dyn FailureCriterion>)> {
     registry.list(Kind::Criterion).map(build).collect()
 }
 
+/// The head of what the tests write.
+const WRITTEN: &str = "<!-- Written by `UPDATE_BOOK=1 cargo test --test all book`. -->\n\n";
+
 /// Every criterion of the registry, in Markdown.
-fn table() -> String {
-    let mut text = "<!-- Written by `UPDATE_BOOK=1 cargo test --test all book`. -->\n\n".to_owned();
+fn criteria_table() -> String {
+    let mut text = WRITTEN.to_owned();
     text.push_str("| criterion | judges | modes | strengths | axes |\n| --- | --- | --- | --- | --- |\n");
     let all = criteria();
     for (info, criterion) in &all {
@@ -58,14 +63,70 @@ fn table() -> String {
     text
 }
 
-#[test]
-fn the_table_of_criteria_is_that_of_the_registry() {
-    let file = root().join("docs/book/src/criteria-table.md");
-    if std::env::var_os("UPDATE_BOOK").is_some() {
-        fs::write(&file, table()).unwrap();
+/// Every element of the registry with its default parameters, in Markdown.
+fn elements_table() -> String {
+    let mut text = WRITTEN.to_owned();
+    text.push_str("| element | is a | nodes | unknowns of a node | what for | parameters | source |\n");
+    text.push_str("| --- | --- | ---: | --- | --- | --- | --- |\n");
+    for info in Registry::standard().list(Kind::Element) {
+        let element = element(info.name, &Params::default());
+        let about = element.info();
+        let is_a = match (about.is_section(), about.is_shell()) {
+            (true, _) => "section",
+            (_, true) => "shell",
+            _ => "solid",
+        };
+        let unknowns: Vec<_> = about.dofs.iter().map(Dof::to_string).collect();
+        let params: Vec<_> = info.params.iter().map(|p| format!("`{}`: {}", p.name, p.doc)).collect();
+        let params = if params.is_empty() { "none".to_owned() } else { params.join("<br>") };
+        let [nodes, unknowns] = [about.nodes.len().to_string(), unknowns.join(" ")];
+        let cells = [&format!("`{}`", info.name), is_a, &nodes, &unknowns, info.summary, &params, info.source];
+        writeln!(text, "| {} |", cells.join(" | ")).unwrap();
     }
-    let written = fs::read_to_string(&file).unwrap().replace("\r\n", "\n");
-    assert_eq!(written, table(), "write the table anew: UPDATE_BOOK=1 cargo test --test all book");
+    text
+}
+
+#[test]
+fn the_tables_are_those_of_the_registry() {
+    for (file, table) in [("criteria-table.md", criteria_table()), ("elements-table.md", elements_table())] {
+        let file = root().join("docs/book/src").join(file);
+        if std::env::var_os("UPDATE_BOOK").is_some() {
+            fs::write(&file, &table).unwrap();
+        }
+        let written = fs::read_to_string(&file).unwrap().replace("\r\n", "\n");
+        assert_eq!(written, table, "write the tables anew: UPDATE_BOOK=1 cargo test --test all book");
+    }
+}
+
+/// The book explains whatever `check_element` and the matrices may say, and nothing that they do not.
+#[test]
+fn the_messages_about_elements_are_explained() {
+    let read = |file: &str| fs::read_to_string(root().join(file)).unwrap().replace("\r\n", "\n");
+    let source = read("fem-core/src/testkit/element.rs") + &read("fem-core/src/element.rs");
+    let pieces: Vec<&str> = source.split('"').collect();
+    let messages: Vec<&str> = pieces
+        .windows(2)
+        .filter(|w| ["Err(", "format!("].iter().any(|call| w[0].trim_end().ends_with(call)))
+        .map(|w| w[1])
+        // Where it was found stands before every message.
+        .filter(|message| !message.starts_with("{name} cell, {plies}"))
+        .collect();
+    let chapter = read("docs/book/src/own-element.md");
+    let (_, table) = chapter.split_once("| it says |").unwrap();
+    let rows = table.lines().skip(2).take_while(|line| line.starts_with('|'));
+    let explained: Vec<&str> = rows.map(|row| row.split('`').nth(1).unwrap()).collect();
+    // The longest of what stands between the values of a message.
+    let fixed = |message: &str| {
+        let parts = message.split(['{', '}', '…']).step_by(if message.contains('{') { 2 } else { 1 });
+        parts.max_by_key(|part| part.len()).unwrap().to_owned()
+    };
+    for message in &messages {
+        assert!(explained.iter().any(|e| e.contains(&fixed(message))), "{message:?} is not in the book");
+    }
+    for message in &explained {
+        assert!(messages.iter().any(|m| m.contains(&fixed(message))), "{message:?} is only in the book");
+    }
+    assert_eq!(messages.len(), explained.len(), "{messages:?} {explained:?}");
 }
 
 #[test]
@@ -82,6 +143,15 @@ fn the_criterion_of_the_book_runs() {
     let mut names: Vec<_> = modes.iter().map(|m| m["mode"].as_str().unwrap()).collect();
     names.sort_unstable();
     assert_eq!(names, ["fibre", "matrix compression", "matrix tension"]);
+}
+
+#[test]
+fn the_element_of_the_book_is_taken() {
+    let element = fs::read_to_string(root().join("docs/book/src/element.toml")).unwrap().replace("\r\n", "\n");
+    let case = Case::example("as4-3502-8ply-25mm").append(&format!("\n{element}"));
+    let done = case.fem("check", &[]).good();
+    // Derivatives without inertia vibrate infinitely fast.
+    assert_ne!(done.stdout, Case::example("as4-3502-8ply-25mm").fem("check", &[]).good().stdout);
 }
 
 #[test]
@@ -109,7 +179,7 @@ fn what_the_book_includes_and_links_to_is_there() {
             included += 1;
         }
     }
-    assert!(included >= 8 && linked >= 8, "{included} {linked}");
+    assert!(included >= 17 && linked >= 11, "{included} {linked}");
 }
 
 /// The anchor of a heading.
