@@ -9,3 +9,4 @@ mod model;
 mod report;
 mod snapshots;
 mod support;
+mod validation;
