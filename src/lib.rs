@@ -20,6 +20,7 @@
 pub mod cli;
 pub mod cost;
 mod error;
+mod indices;
 pub mod matrices;
 mod model;
 pub mod modes;
@@ -35,5 +36,5 @@ pub use fem_dynamics as dynamics;
 pub use fem_elements as elements;
 pub use fem_failure as failure;
 pub use fem_io as io;
-pub use model::{Impact, Model, NamedCriterion, NamedProfile, Plan};
+pub use model::{Gauge, Impact, Model, NamedCriterion, NamedProfile, Plan};
 pub use registry::{NO_REDUCTION, Registry, RegistryError};

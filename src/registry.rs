@@ -73,6 +73,10 @@ impl Registry {
         use {fem_dynamics::contact, fem_dynamics::integrate, fem_dynamics::reduce, fem_failure as failure};
         Self::empty()
             .with::<fem_elements::HermitePrism>()
+            .with::<fem_elements::Hex20>()
+            .with::<fem_elements::Mitc4>()
+            .with::<fem_elements::HermiteHex>()
+            .with::<fem_elements::WebsterBeam>()
             .with::<contact::SunYang>()
             .with::<contact::Hertz>()
             .with::<contact::Linear>()

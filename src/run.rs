@@ -3,6 +3,7 @@
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::{Impact, Model, Plan};
+pub use crate::stress::IndexHistory;
 use crate::stress::Watch;
 use fem_core::assembly::{Matrix, SparseStructure, Symbolic, assemble, pattern};
 use fem_core::counters::Counters;
@@ -11,7 +12,7 @@ use fem_core::time::{State, StepError, StepLimit};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
 use fem_dynamics::limit::{self, TooLong};
 use fem_dynamics::reduce::Reduced;
-use fem_failure::scan::{FailureEvent, Peak};
+use fem_failure::scan::{FailureEvent, Peak, Scan, ScanSite};
 use fem_io::tables::HistoryRow;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -76,6 +77,12 @@ pub struct Outcome {
     pub events: Vec<FailureEvent>,
     /// Largest index per criterion and mode.
     pub peaks: Vec<Peak>,
+    /// Indices over time at the gauges of the model.
+    pub histories: Vec<IndexHistory>,
+    /// Largest index per criterion and site, if the scene asks for maps.
+    pub maxima: Vec<Maximum>,
+    /// When the contact force first reached the threshold of the model, s.
+    pub threshold_time: Option<f64>,
     /// Sites watched.
     pub sites: usize,
     /// Largest deviation of the total energy from the energy of the impact, relative to it.
@@ -88,6 +95,19 @@ pub struct Outcome {
     pub phases: Vec<Phase>,
     /// Why the run ended before its time, if it did; everything above holds up to then.
     pub stopped: Option<String>,
+}
+
+/// The largest index of a criterion at a site over all samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Maximum {
+    /// Number of the criterion in the model.
+    pub criterion: usize,
+    /// Its mode; `None` where no mode ever applied.
+    pub mode: Option<usize>,
+    /// The index.
+    pub index: f64,
+    /// Where.
+    pub site: ScanSite,
 }
 
 /// K and M of `model`, and the number of entries of the factor of K.
@@ -209,6 +229,7 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
     integrator.start(&mut system, &mut state).map_err(|e| unmarchable(model, impact, e))?;
 
     let mut ledger = Ledger::new(&system, &state)?;
+    let mut threshold = model.threshold.map(|threshold| Crossing::new(threshold.force));
     let n = sizes.marched;
     if let Some(watch) = &mut watch {
         watch.sample(0.0, &state.u[..n])?;
@@ -220,7 +241,11 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
             // A sum of steps drifts; the product does not.
             state.t = step as f64 * sizes.step;
             counters.steps += 1;
-            ledger.contact(system.contact_force(0, &state) > 0.0);
+            let force = system.contact_force(0, &state);
+            ledger.contact(force > 0.0);
+            if let Some(threshold) = &mut threshold {
+                threshold.sample(state.t, force);
+            }
             if step.is_multiple_of(row_every) || step == sizes.steps {
                 ledger.row(&system, &state)?;
             }
@@ -249,6 +274,7 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
     }
     stopwatch.lap("march");
     let (mut events, mut peaks, mut sites) = (Vec::new(), Vec::new(), 0);
+    let (mut histories, mut maxima) = (Vec::new(), Vec::new());
     if let Some(watch) = &mut watch {
         if let (Err(error), None) = (watch.flush(), &stopped) {
             stopped = Some(chain(&error));
@@ -256,6 +282,10 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
         events = watch.scan().events();
         peaks = watch.scan().peaks();
         sites = watch.sites();
+        histories = watch.histories().cloned().collect();
+        if scene.output.maps {
+            maxima = (0..model.criteria.len()).flat_map(|criterion| largest(watch.scan(), criterion)).collect();
+        }
         counters.criterion_calls = watch.scan().evaluations();
         stopwatch.lap("scan");
     }
@@ -269,6 +299,9 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
         history: ledger.rows,
         events,
         peaks,
+        histories,
+        maxima,
+        threshold_time: threshold.and_then(|threshold| threshold.time),
         sites,
         energy_error: ledger.error,
         contacts: ledger.contacts,
@@ -276,6 +309,37 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
         phases: stopwatch.phases().to_vec(),
         stopped,
     })
+}
+
+/// Largest index of a criterion at each of its sites.
+fn largest(scan: &Scan, criterion: usize) -> impl Iterator<Item = Maximum> {
+    scan.maxima(criterion).map(move |(site, maxima)| {
+        let (mode, index) =
+            maxima.iter().enumerate().fold((None, 0.0), |m, (k, &v)| if v > m.1 { (Some(k), v) } else { m });
+        Maximum { criterion, mode, index, site: *site }
+    })
+}
+
+/// When a force first reaches a level, by linear interpolation between its samples.
+struct Crossing {
+    level: f64,
+    last: (f64, f64),
+    time: Option<f64>,
+}
+
+impl Crossing {
+    /// The force is 0 at the time 0.
+    fn new(level: f64) -> Self {
+        Self { level, last: (0.0, 0.0), time: None }
+    }
+
+    fn sample(&mut self, t: f64, force: f64) {
+        let (before, low) = self.last;
+        if self.time.is_none() && force >= self.level {
+            self.time = Some(before + (t - before) * ((self.level - low) / (force - low)));
+        }
+        self.last = (t, force);
+    }
 }
 
 /// An error with its causes, on one line.

@@ -10,7 +10,7 @@ use fem_core::structure::Structure;
 use fem_core::tensor::{Ply, Stress6};
 use fem_core::window;
 use fem_dynamics::reduce::Reduced;
-use fem_failure::scan::{Place, Scan, ScanSite};
+use fem_failure::scan::{Place, Probe, Scan, ScanSite};
 use fem_io::scene::Window;
 use serde::Serialize;
 
@@ -20,6 +20,33 @@ const BATCH: usize = 16;
 /// Largest stress operator that is kept, bytes; beyond it stresses are recovered from expanded displacements.
 const OPERATOR_LIMIT: usize = 256 << 20;
 
+/// Indices of one criterion at one place over time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IndexHistory {
+    /// Number of the criterion in the model.
+    pub criterion: usize,
+    /// The place.
+    pub site: ScanSite,
+    /// Times of the samples, s.
+    pub times: Vec<f64>,
+    /// One index per mode for each of them; where two layers of cells meet, the larger of the two sides.
+    pub indices: Vec<f64>,
+}
+
+impl IndexHistory {
+    /// Takes the indices at time `t` from every side of the place: the largest of each mode.
+    fn take<'a>(&mut self, t: f64, sides: impl Iterator<Item = &'a [f64]>) {
+        self.times.push(t);
+        let start = self.indices.len();
+        for side in sides {
+            self.indices.resize(start + side.len(), f64::NEG_INFINITY);
+            for (largest, index) in self.indices[start..].iter_mut().zip(side) {
+                *largest = largest.max(*index);
+            }
+        }
+    }
+}
+
 /// Watches the stresses of a march with the criteria of a model.
 pub(crate) struct Watch<'a> {
     model: &'a Model,
@@ -28,6 +55,7 @@ pub(crate) struct Watch<'a> {
     /// 6·sites × modes: stresses per unit of each modal coordinate.
     operator: Option<Vec<f64>>,
     scan: Scan,
+    gauges: Vec<(Vec<Probe>, IndexHistory)>,
     times: Vec<f64>,
     /// Coordinates of the samples waiting.
     waiting: Vec<f64>,
@@ -47,6 +75,7 @@ impl<'a> Watch<'a> {
             model,
             reduced,
             operator: None,
+            gauges: gauges(model, &scan),
             scan,
             times: Vec::new(),
             waiting: Vec::new(),
@@ -113,6 +142,9 @@ impl<'a> Watch<'a> {
                 *state = Stress6::new([s[0], s[1], s[2], s[3], s[4], s[5]]);
             }
             self.scan.sample(*t, &self.states)?;
+            for (probes, history) in &mut self.gauges {
+                history.take(*t, probes.iter().map(|probe| self.scan.read(*probe)));
+            }
         }
         self.times.clear();
         (self.stresses, self.waiting) = (stresses, waiting);
@@ -133,6 +165,11 @@ impl<'a> Watch<'a> {
     /// What the scan found.
     pub(crate) fn scan(&self) -> &Scan {
         &self.scan
+    }
+
+    /// What the gauges saw.
+    pub(crate) fn histories(&self) -> impl Iterator<Item = &IndexHistory> {
+        self.gauges.iter().map(|(_, history)| history)
     }
 
     /// Number of sites watched.
@@ -218,4 +255,23 @@ fn sites(model: &Model, recovery: &Recovery) -> Vec<ScanSite> {
         }
     };
     recovery.quads.iter().flat_map(|q| recovery.stations.iter().map(move |s| site(*q, s))).collect()
+}
+
+/// An empty history for every criterion of every gauge, and where the scan keeps its indices: an interface between two layers
+/// of cells has a stress from either side.
+fn gauges(model: &Model, scan: &Scan) -> Vec<(Vec<Probe>, IndexHistory)> {
+    let mut all = Vec::new();
+    for gauge in &model.gauges {
+        let sides: Vec<usize> = (0..scan.sites().len())
+            .filter(|s| scan.sites()[*s].cell as usize == gauge.quad && scan.sites()[*s].place == gauge.place)
+            .collect();
+        let Some(first) = sides.first() else { continue };
+        for &criterion in &gauge.criteria {
+            let probes = sides.iter().filter_map(|side| scan.probe(criterion, *side)).collect();
+            let history =
+                IndexHistory { criterion, site: scan.sites()[*first], times: Vec::new(), indices: Vec::new() };
+            all.push((probes, history));
+        }
+    }
+    all
 }

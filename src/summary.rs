@@ -2,10 +2,12 @@
 
 use crate::cost::{Phase, peak_memory};
 use crate::error::Error;
+use crate::indices;
 use crate::model::Model;
 use crate::run::{Outcome, Sizes};
 use fem_core::counters::Counters;
-use fem_failure::scan::{FailureEvent, Place};
+use fem_core::tensor::{Ply, Stress6};
+use fem_failure::scan::{FailureEvent, Place, first_per_mode};
 use fem_io::files::OutputDir;
 use fem_io::plot;
 use fem_io::tables::{self, EventRow, HistoryRow};
@@ -26,6 +28,8 @@ pub struct Summary {
     pub impact: Impact,
     pub first_damage: Vec<Damage>,
     pub not_reached: Vec<Margin>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub delamination_threshold: Option<Threshold>,
     pub accuracy: Accuracy,
     pub work: Work,
     pub phases: Vec<Phase>,
@@ -72,7 +76,8 @@ pub struct Impact {
     pub contacts: u32,
 }
 
-/// First event of a criterion's mode.
+/// First event of a criterion's mode, with the stress there at that time and how much of it the criterion would bear: 1 where
+/// this mode is what fails first, less where another mode of the criterion failed before.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
 pub struct Damage {
@@ -86,6 +91,39 @@ pub struct Damage {
     pub y_m: f64,
     pub z_m: f64,
     pub contact_force_N: f64,
+    pub stress: PlyStress,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reserve_factor: Option<f64>,
+}
+
+/// Stress in a ply's axes; of an interface in the plate's.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct PlyStress {
+    pub s11_MPa: f64,
+    pub s22_MPa: f64,
+    pub s33_MPa: f64,
+    pub s12_MPa: f64,
+    pub s23_MPa: f64,
+    pub s13_MPa: f64,
+}
+
+impl From<&Stress6<Ply>> for PlyStress {
+    fn from(s: &Stress6<Ply>) -> Self {
+        let [a, b, c, d, e, f] = s.0.map(|v| v * 1e-6);
+        Self { s11_MPa: a, s22_MPa: b, s33_MPa: c, s12_MPa: d, s23_MPa: e, s13_MPa: f }
+    }
+}
+
+/// The contact force at which the laminate delaminates, by energies and not by stresses, and when it was reached.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Threshold {
+    pub force_N: f64,
+    pub bending_stiffness_N_m: f64,
+    pub toughness_GIIc_J_m2: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_s: Option<f64>,
 }
 
 /// Largest index of a mode that did not reach 1.
@@ -160,13 +198,7 @@ impl Summary {
         let (deflection, _) = peak(|r| r.plate_displacement_m);
         let last = h.last();
         let thickness = model.laminate.thickness();
-        let mut first: Vec<&FailureEvent> = Vec::new();
-        for event in &outcome.events {
-            if !first.iter().any(|e| e.criterion == event.criterion && e.mode == event.mode) {
-                first.push(event);
-            }
-        }
-        let damage = |e: &&FailureEvent| Damage {
+        let damage = |e: &FailureEvent| Damage {
             criterion: e.criterion.clone(),
             mode: e.mode.to_owned(),
             time_s: e.time,
@@ -177,6 +209,8 @@ impl Summary {
             y_m: e.position[1],
             z_m: e.position[2],
             contact_force_N: force_at(h, e.time),
+            stress: (&e.stress).into(),
+            reserve_factor: reserve(model, e),
         };
         let margins = outcome.peaks.iter().filter(|p| p.index < 1.0).map(|p| Margin {
             criterion: p.criterion.clone(),
@@ -220,8 +254,14 @@ impl Summary {
                 final_impactor_velocity_m_s: last.map_or(0.0, |r| r.impactor_velocity_m_s),
                 contacts: outcome.contacts,
             },
-            first_damage: first.iter().map(damage).collect(),
+            first_damage: first_per_mode(&outcome.events).into_iter().map(damage).collect(),
             not_reached: margins.collect(),
+            delamination_threshold: model.threshold.map(|threshold| Threshold {
+                force_N: threshold.force,
+                bending_stiffness_N_m: threshold.bending_stiffness,
+                toughness_GIIc_J_m2: threshold.giic,
+                time_s: outcome.threshold_time,
+            }),
             accuracy: Accuracy {
                 energy_error_relative: outcome.energy_error,
                 step_s: sizes.step,
@@ -292,6 +332,42 @@ impl Summary {
                 n.ply
             ));
         }
+        if !self.first_damage.is_empty() {
+            line(format_args!(
+                "  why       stress there at that time, MPa (plies: 1 along the fibres), and what it may grow by"
+            ));
+            line(format_args!(
+                "            {:>9}  {:<15} {:<19} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7}  {:>7}",
+                "time", "criterion", "mode", "11", "22", "33", "12", "23", "13", "reserve"
+            ));
+            for d in &self.first_damage {
+                let s = &d.stress;
+                line(format_args!(
+                    "            {:>6.4} ms  {:<15} {:<19} {:>7.1} {:>7.1} {:>7.1} {:>7.1} {:>7.1} {:>7.1}  {}",
+                    d.time_s * 1e3,
+                    d.criterion,
+                    d.mode,
+                    s.s11_MPa,
+                    s.s22_MPa,
+                    s.s33_MPa,
+                    s.s12_MPa,
+                    s.s23_MPa,
+                    s.s13_MPa,
+                    d.reserve_factor.map_or_else(|| "      -".to_owned(), |r| format!("{r:>7.4}"))
+                ));
+            }
+        }
+        if let Some(d) = &self.delamination_threshold {
+            let reached = match d.time_s {
+                Some(t) => format!("first reached at {:.4} ms", t * 1e3),
+                None => format!("not reached: the peak is {:.2} of it", i.peak_force_N / d.force_N),
+            };
+            line(format_args!(
+                "  delam.    threshold of the contact force {:.1} N (Davies-Olsson, D* {:.4} N m, GIIc {:.1} J/m2), {reached}; \
+                 a threshold, not a stress criterion",
+                d.force_N, d.bending_stiffness_N_m, d.toughness_GIIc_J_m2
+            ));
+        }
         line(format_args!(
             "  accuracy  energy error {:.1e} of the impact energy; step {:.4} us{}",
             self.accuracy.energy_error_relative,
@@ -321,6 +397,13 @@ impl Summary {
     }
 }
 
+/// Reserve factor of the stress of an event by its criterion, unless that has none.
+fn reserve(model: &Model, event: &FailureEvent) -> Option<f64> {
+    let (_, criterion) = model.criteria.iter().find(|(name, _)| *name == event.criterion)?;
+    let material = &model.materials[usize::from(event.material)];
+    Some(criterion.reserve_factor(&event.stress, material).factor).filter(|factor| factor.is_finite())
+}
+
 fn angle_deg(model: &Model, event: &FailureEvent) -> f64 {
     match event.place {
         Place::Ply(k) => model.laminate.plies[usize::from(k)].angle_deg,
@@ -347,10 +430,10 @@ pub fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result
         index: e.index,
     };
     tables::write_events(dir, &outcome.events.iter().map(row).collect::<Vec<_>>())?;
-    Ok(())
+    indices::write_tables(dir, model, outcome)
 }
 
-/// Draws the contact force over time with the first event of each mode.
+/// Draws the contact force over time with the first event of each mode, and the indices at the gauges.
 ///
 /// # Errors
 /// As [`write_tables`], and numbers that no plot can show.
@@ -363,8 +446,9 @@ pub fn write_plots(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<
             marks.push((e.time, label));
         }
     }
+    marks.extend(outcome.threshold_time.map(|t| (t, "delamination threshold".to_owned())));
     let picture = plot::line_plot(&plot::force_history(&model.scene.title, &times, &forces, &marks)?)?;
     dir.write("contact_force.svg", |w| w.write_all(picture.svg.as_bytes()))?;
     dir.write("contact_force.png", |w| w.write_all(&picture.png))?;
-    Ok(())
+    indices::write_plots(dir, model, outcome)
 }

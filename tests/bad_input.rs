@@ -117,6 +117,15 @@ mod scene {
     }
 
     #[test]
+    fn material_without_the_density_that_a_plate_needs() {
+        let case = plate().scene("library = \"AS4/3502\"", "library = \"T300/BSL914C\"");
+        let words = ["material `as4-3502`: the mass of the plate needs a density", "density = \"1.58 g/cm^3\""];
+        refusal(&case, At::Scene("materials.as4-3502"), &words);
+        let case = case.scene("\"T300/BSL914C\"", "\"T300/BSL914C\", density = \"1.6 g/cm^3\"");
+        case.fem("check", &[]).good();
+    }
+
+    #[test]
     fn absent_file() {
         let case = plate();
         case.write();
@@ -154,7 +163,7 @@ mod groups {
     #[test]
     fn impact_on_a_curve() {
         let case = plate().scene("{ group = \"impact\" }", "{ group = \"support\" }");
-        let words = ["the group `support` (dimension 1) has 48 nodes, an impact has one", "physical point"];
+        let words = ["the group `support` (dimension 1) has 48 nodes, a point has one", "physical point"];
         insta::assert_snapshot!(refusal(&case, At::Scene("at = { group"), &words));
     }
 
@@ -447,6 +456,37 @@ mod failure {
     fn radius_without_cells() {
         let case = plate().append("radius = \"1 um\"\n");
         refusal(&case, At::Scene("[failure]"), &["no cell has its centre within `failure.radius` of the impact"]);
+    }
+
+    #[test]
+    fn two_criteria_of_one_name() {
+        let case = plate().scene("\"octahedral\"]", "\"hashin-report\"]");
+        let words = ["a second criterion is called `hashin-report`", "as = \"hashin-report-2\""];
+        refusal(&case, At::Scene("criteria ="), &words);
+    }
+
+    #[test]
+    fn places_that_cannot_be_watched() {
+        let scene = "criteria = [\"hashin-report\", \"octahedral\"]";
+        let many = r#"{ at = { group = "impact" }, ply = 1 }, "#.repeat(40);
+        for (watch, words) in [
+            (r#"{ at = { group = "impact" }, ply = 17 }"#, "the laminate has 16 plies"),
+            (r#"{ at = { group = "impact" }, interface = "16|17" }"#, "the laminate has 16 plies"),
+            (r#"{ at = { group = "impct" }, ply = 1 }"#, "did you mean `impact`?"),
+            (r#"{ at = { x = "1 m", y = "0 mm" }, ply = 1 }"#, "no cell whose stresses are watched holds (1000.0000,"),
+            (r#"{ at = { group = "support" }, ply = 1 }"#, "a point has one"),
+            (
+                r#"{ at = { group = "impact" }, ply = 1, criterion = "octahedral" }"#,
+                "none of the criteria judges plies",
+            ),
+            (&many, "asks for 40 histories"),
+        ] {
+            let case = plate().scene(scene, &format!("{scene}\nwatch = [{watch}]"));
+            refusal(&case, At::Scene("watch ="), &[words]);
+        }
+        let case = plate()
+            .scene(scene, "criteria = [\"puck\"]\nwatch = [{ at = { group = \"impact\" }, interface = \"1|2\" }]");
+        refusal(&case, At::Scene("watch ="), &["none of the criteria judges interfaces", "watch a `ply`"]);
     }
 }
 

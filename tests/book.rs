@@ -17,7 +17,8 @@ fn parameters(name: &str) -> Params {
     required.iter().fold(Params::default(), |params, (key, value)| params.with(key, value.clone()))
 }
 
-fn criteria() -> Vec<(PluginInfo, Box<dyn FailureCriterion>)> {
+/// All criteria of the registry, built.
+pub(crate) fn criteria() -> Vec<(PluginInfo, Box<dyn FailureCriterion>)> {
     let registry = Registry::standard();
     let build = |info: &PluginInfo| match registry.build(Kind::Criterion, info.name, &parameters(info.name)) {
         Ok(Built::Criterion(criterion)) => (*info, criterion),
@@ -84,11 +85,23 @@ fn the_criterion_of_the_book_runs() {
 }
 
 #[test]
-fn what_the_book_includes_is_there() {
+fn what_the_book_includes_and_links_to_is_there() {
     let book = root().join("docs/book/src");
     let mut included = 0;
-    for chapter in ["failure-criteria.md", "criteria.md", "SUMMARY.md"] {
-        let text = fs::read_to_string(book.join(chapter)).unwrap();
+    let (mut linked, mut chapters) = (0, vec!["SUMMARY.md".to_owned()]);
+    while let Some(chapter) = chapters.pop() {
+        let text = fs::read_to_string(book.join(&chapter)).unwrap_or_else(|e| panic!("{chapter}: {e}"));
+        for link in text.split("](").skip(1).map(|rest| rest.split(')').next().unwrap()) {
+            let (file, heading) = link.split_once('#').unwrap_or((link, ""));
+            let target = if file.is_empty() { chapter.clone() } else { file.to_owned() };
+            let content = fs::read_to_string(book.join(&target)).unwrap_or_else(|e| panic!("{chapter}: {link}: {e}"));
+            let headings = content.lines().filter_map(|line| line.strip_prefix("## ")).map(slug);
+            assert!(heading.is_empty() || headings.into_iter().any(|h| h == heading), "{chapter}: {link}");
+            if chapter == "SUMMARY.md" {
+                chapters.push(target);
+            }
+            linked += 1;
+        }
         for path in text.split("{{#include ").skip(1).map(|rest| rest.split("}}").next().unwrap()) {
             let (file, anchor) = path.split_once(':').unwrap_or((path, ""));
             let content = fs::read_to_string(book.join(file)).unwrap_or_else(|e| panic!("{chapter}: {file}: {e}"));
@@ -96,5 +109,38 @@ fn what_the_book_includes_is_there() {
             included += 1;
         }
     }
-    assert!(included >= 6, "{included}");
+    assert!(included >= 8 && linked >= 8, "{included} {linked}");
+}
+
+/// The anchor of a heading.
+fn slug(heading: &str) -> String {
+    let kept = |c: char| match c {
+        ' ' => Some('-'),
+        c if c.is_alphanumeric() || c == '-' => Some(c.to_ascii_lowercase()),
+        _ => None,
+    };
+    heading.chars().filter_map(kept).collect()
+}
+
+/// The example of the book of what may be watched, with a material of the book's own file.
+#[test]
+fn what_the_book_watches_is_written() {
+    let book = root().join("docs/book/src");
+    let watch = fs::read_to_string(book.join("watch.toml")).unwrap().replace("\r\n", "\n");
+    let case = Case::example("as4-3502-8ply-25mm")
+        .scene("[failure]\ncriteria = [\"hashin-report\", \"octahedral\"]\n", "")
+        .scene("{ library = \"AS4/3502\" }", "{ file = \"materials.toml\", name = \"our tape\" }")
+        .scene("end = \"1 ms\"", "end = \"0.05 ms\"")
+        .append(&format!("\n{watch}"));
+    case.write();
+    fs::copy(book.join("materials.toml"), case.folder().join("plate/materials.toml")).unwrap();
+    case.fem("run", &["--out", "results"]).good();
+    let (_, rows) = case.table("results/index_history.csv");
+    let histories: std::collections::BTreeSet<_> = rows.iter().map(|row| (&*row[1], &*row[4])).collect();
+    assert_eq!(
+        histories.into_iter().collect::<Vec<_>>(),
+        [("hashin-report", "1"), ("octahedral", "4|5"), ("puck", "1")]
+    );
+    assert!(case.names("results").contains(&"index_maxima.csv".to_owned()));
+    assert_eq!(case.summary("results")["delamination_threshold"]["toughness_GIIc_J_m2"], 600.0);
 }

@@ -157,6 +157,7 @@ const PURE: &[&str] = &[
     "steps",
     "contact_calls",
     "criterion_calls",
+    "reserve_factor",
 ];
 
 /// Ends of the names of quantities: their units, or what makes them pure.
@@ -176,6 +177,8 @@ const UNITS: &[&str] = &[
     "_MB",
     "_relative",
     "_index",
+    "_MPa",
+    "_J_m2",
 ];
 
 /// Every number has its unit in its name, and what is absent is left out.

@@ -52,6 +52,44 @@ fn a_scene_lends_its_materials_and_its_criteria() {
     assert!(done.stdout.contains("expression") && !done.stdout.contains("hashin-1980"), "{done:#?}");
 }
 
+/// The exercises publish no density, and an envelope needs none; nor does one of a material in a file of its own.
+#[test]
+fn every_tape_of_the_library_has_its_envelopes() {
+    let folder = tempdir().unwrap();
+    for name in ["AS4/3501-6", "T300/BSL914C", "E-glass/LY556", "E-glass/MY750", "IM7/8551-7"] {
+        let material = fem::io::materials::library(name).unwrap();
+        assert_eq!(material.material.density, None);
+        let done = draw(folder.path(), &format!("{name} --criteria hashin-1980,puck,cuntze --out drawn")).good();
+        let yt = material.material.strengths.yt() * 1e-6;
+        assert!(done.stdout.contains(&format!(" {yt:.1} ")), "{name}: {}", done.stdout);
+    }
+    let case = Case::example("as4-3502-8ply-25mm");
+    let own = "mine = { file = \"mine.toml\", name = \"my tape\" }\nmaterials.as4-3502 = {";
+    let case = case.scene("as4-3502 = {", own);
+    let scene = case.write();
+    let constant = |key: &str, value: &str| {
+        format!("{key} = {{ value = {value}, status = \"measured\", source = \"our laboratory\" }}\n")
+    };
+    let constants = [
+        ("e1", "\"140 GPa\""),
+        ("e2", "\"9 GPa\""),
+        ("nu12", "0.3"),
+        ("nu23", "0.4"),
+        ("g12", "\"5 GPa\""),
+        ("Yt", "\"51 MPa\""),
+        ("Yc", "\"180 MPa\""),
+        ("S23", "\"60 MPa\""),
+    ]
+    .map(|(key, value)| constant(key, value));
+    let text = format!(
+        "[materials.\"my tape\"]\nsummary = \"ours\"\n[materials.\"my tape\".constants]\n{}",
+        constants.concat()
+    );
+    std::fs::write(case.folder().join("plate/mine.toml"), text).unwrap();
+    let done = draw(case.folder(), &format!("mine --scene {scene} --criteria choi-chang --plane s2-s23")).good();
+    assert!(done.stdout.contains("51.0      180.0       60.0"), "{}", done.stdout);
+}
+
 #[test]
 fn what_cannot_be_drawn_is_refused_with_the_reason() {
     let folder = tempdir().unwrap();

@@ -4,7 +4,9 @@
 mod bad_input;
 mod book;
 mod command_line;
+mod criteria;
 mod envelope;
+mod indices;
 mod model;
 mod report;
 mod snapshots;

@@ -1,6 +1,6 @@
 //! Plane meshes of quadrilaterals with named groups.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A named group of a mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -30,6 +30,9 @@ pub struct QuadMesh {
     /// Number of each cell in the file.
     pub quad_tags: Vec<u64>,
 }
+
+/// Turns between two edges of a boundary that follow a curve, radians: less is straight, more a corner.
+const SMOOTH: std::ops::Range<f64> = 1e-4..0.7;
 
 /// Shape measures of a quadrilateral.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,6 +109,33 @@ impl QuadMesh {
         }
         let area = 0.5 * ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1]));
         QuadQuality { area, largest_angle, aspect: longest / shortest }
+    }
+
+    /// Largest angle by which the boundary turns from edge to edge where it follows a curve, radians: neighbouring turns of
+    /// one sign and about one size. 0 for a boundary of straight lines and sharp corners.
+    pub fn curved_turn(&self) -> f64 {
+        // Anticlockwise: the boundary runs from key to value.
+        let mut next: BTreeMap<u32, u32> = BTreeMap::new();
+        let edges = || self.quads.iter().flat_map(|q| (0..4).map(move |i| (q[i], q[(i + 1) % 4])));
+        let inner: BTreeSet<(u32, u32)> = edges().collect();
+        next.extend(edges().filter(|(a, b)| !inner.contains(&(*b, *a))));
+        let along = |a: u32, b: u32| {
+            let (p, q) = (self.points[a as usize], self.points[b as usize]);
+            (q[1] - p[1]).atan2(q[0] - p[0])
+        };
+        let turn = |a: u32| -> Option<(f64, u32)> {
+            let b = *next.get(&a)?;
+            let c = *next.get(&b)?;
+            let angle = along(b, c) - along(a, b);
+            Some((angle.sin().atan2(angle.cos()), b))
+        };
+        let smooth = |a: &u32| {
+            let (first, b) = turn(*a)?;
+            let (second, _) = turn(b)?;
+            let alike = second / first > 0.5 && second / first < 2.0;
+            (alike && first.abs() > SMOOTH.start && first.abs() < SMOOTH.end).then_some(first.abs())
+        };
+        next.keys().filter_map(smooth).fold(0.0, f64::max)
     }
 
     /// Lower and upper corner of the bounding box.

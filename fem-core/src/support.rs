@@ -174,26 +174,36 @@ impl FreeMotions {
         each.join(", ")
     }
 
-    /// Statically determinate equations that stop these motions and nothing else, at the node nearest to the centre:
-    /// its translations and the antisymmetric part of its derivatives. Under loads that balance the stopped motions they
-    /// carry no force.
+    /// Statically determinate equations that stop these motions and nothing else: the translations and the antisymmetric
+    /// part of the derivatives of the node nearest to the centre, or, where the element lacks those derivatives, the
+    /// translations of the node farthest from it. Under loads that balance the stopped motions they carry no force.
     ///
     /// # Errors
-    /// An element without derivative unknowns cannot stop a rotation at one node.
+    /// An element whose unknowns do not stop them at these two nodes.
     pub fn restrain(&self, plate: &Plate) -> Result<Vec<Equation>, String> {
         let distance = |c: &usize| (0..2).map(|d| (plate.columns[*c][d] - self.centre[d]).powi(2)).sum::<f64>();
         let column = (0..plate.columns.len())
             .filter(|c| !plate.dofs_of_column(*c).is_empty())
             .min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
         let Some(column) = column else { return Ok(Vec::new()) };
+        let far = (0..plate.columns.len())
+            .filter(|c| !plate.dofs_of_column(*c).is_empty())
+            .max_by(|a, b| distance(a).total_cmp(&distance(b)).then(b.cmp(a)));
         let level = plate.mid_level().unwrap_or(0);
-        let unknown = |n: u8, m: u8| Dof::new(n, m).and_then(|d| plate.dofs_at(column, level, d).next());
+        let unknown = |column: usize, n: u8, m: u8| Dof::new(n, m).and_then(|d| plate.dofs_at(column, level, d).next());
         let mut chosen: Vec<Equation> = Vec::new();
         let mut left = self.basis.clone();
-        for (n, m, n2, m2) in [(1, 0, 0, 0), (2, 0, 0, 0), (3, 0, 0, 0), (3, 2, 2, 3), (1, 3, 3, 1), (2, 1, 1, 2)] {
-            let Some(first) = unknown(n, m) else { continue };
-            let mut terms = vec![(first, 1.0)];
-            terms.extend(unknown(n2, m2).filter(|_| n2 > 0).map(|d| (d, -1.0)));
+        // At the centre u, v, w, then w,y − v,z and so on; at the far node u, v, w.
+        let mut terms: Vec<Vec<(usize, f64)>> = Vec::new();
+        terms.extend((1..=3).filter_map(|n| Some(vec![(unknown(column, n, 0)?, 1.0)])));
+        for (n, m) in [(3, 2), (1, 3), (2, 1)] {
+            let pair = unknown(column, n, m).zip(unknown(column, m, n));
+            terms.extend(pair.map(|(a, b)| vec![(a, 1.0), (b, -1.0)]));
+        }
+        terms.extend(
+            far.into_iter().flat_map(|far| (1..=3).filter_map(move |n| Some(vec![(unknown(far, n, 0)?, 1.0)]))),
+        );
+        for terms in terms {
             let equation = Equation { terms, value: 0.0, origin: "restraint of rigid motions".into(), holds: true };
             let row = self.row(plate, &equation);
             // Keep the equation if some motion still free is seen by it; that motion is then spent.
@@ -209,7 +219,10 @@ impl FreeMotions {
         if left.is_empty() {
             Ok(chosen)
         } else {
-            Err(format!("this element cannot restrain {} at one node: fix unknowns at two nodes", self.names()))
+            Err(format!(
+                "the unknowns of this element cannot restrain {}: fix unknowns at nodes of your choice",
+                self.names()
+            ))
         }
     }
 }

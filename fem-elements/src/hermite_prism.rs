@@ -7,19 +7,35 @@ use fem_core::dof::Dof;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::quadrature::{MAX_POINTS, gauss_legendre};
+use std::ops::Range;
 
 /// Functions of a cell per displacement component: 8 nodes × (value, ∂x, ∂y, ∂z).
-const F: usize = 32;
+pub(crate) const F: usize = 32;
 /// Unknowns of a cell.
-const N: usize = 96;
-/// Derivative direction times power of q.
-const DK: usize = 12;
+pub(crate) const N: usize = 96;
+/// Functions of the nodes of one face.
+const H: usize = 16;
+
+/// (direction d, power k of q) of the terms in the gradient of a function: those of its part even in q, then of its odd
+/// part.
+const TERMS: [(usize, usize); 11] =
+    [(0, 0), (0, 2), (1, 0), (1, 2), (2, 1), (0, 1), (0, 3), (1, 1), (1, 3), (2, 0), (2, 2)];
+const HALVES: [Range<usize>; 2] = [0..5, 5..11];
+
+/// With the function of a top node e + o, even plus odd in q, that of the node below is e − o times this: for value, ∂x,
+/// ∂y, ∂z.
+const BELOW: [f64; 4] = [1.0, 1.0, 1.0, -1.0];
+
+/// The columns of both halves of a matrix with `rows` rows and a column per term.
+fn halves(a: &[f64], rows: usize) -> [&[f64]; 2] {
+    HALVES.map(|half| &a[half.start * rows..half.end * rows])
+}
 
 /// Row of the strain vector (11 22 33 12 23 31) to which ∂u\[component\]/∂\[direction\] belongs.
-const STRAIN_ROW: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
+pub(crate) const STRAIN_ROW: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
 
 /// Blocks (component, component) of the symmetric stiffness.
-const BLOCKS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+pub(crate) const BLOCKS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
 /// Which shape functions carry the inertia.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,6 +46,24 @@ pub enum Mass {
     Linear,
 }
 
+impl Mass {
+    /// The choice in a scene.
+    pub(crate) fn of(params: &Params) -> Result<Self, ParamError> {
+        Ok(match params.choice("mass", &["cubic", "linear"])? {
+            "linear" => Self::Linear,
+            _ => Self::Cubic,
+        })
+    }
+
+    /// The functions of the node at `corner` that carry its inertia, derivatives natural.
+    pub(crate) fn functions(self, corner: [f64; 3], r: f64, s: f64) -> [Quartet; 4] {
+        match self {
+            Self::Cubic => hermite::node_functions(corner, r, s).n,
+            Self::Linear => [hermite::trilinear(corner, r, s), [0.0; 4], [0.0; 4], [0.0; 4]],
+        }
+    }
+}
+
 /// Quadrilateral prism with plane, parallel faces and upright edges.
 ///
 /// Unknowns count `12·node + 4·component + m` with m = 0 (value), 1, 2, 3 (derivative along x, y, z); nodes as in
@@ -38,8 +72,11 @@ pub enum Mass {
 /// With polynomials in q the integral through any number of plies is one Hankel matrix of the thickness moments, so the
 /// stiffness costs the same for one ply as for a hundred: for components n, n′
 ///
-/// K(n,n′) = Σ over in-plane points of w |J| G H(n,n′) Gᵀ, G: 32 × 12 (direction d, power k),
+/// K(n,n′) = Σ over in-plane points of w |J| G H(n,n′) Gᵀ, G: functions × (direction d, power k),
 /// H(n,n′)\[(d,k),(d′,k′)\] = M\[k+k′\]\[row(n,d)\]\[row(n′,d′)\].
+///
+/// Functions of nodes one above the other differ only in the sign of their odd powers of q. The sums run over the even
+/// and the odd parts of the 16 functions of one face, 11 terms in all, which halves the work.
 #[derive(Debug, Clone)]
 pub struct HermitePrism {
     info: ElementInfo,
@@ -59,34 +96,47 @@ impl HermitePrism {
                  modes), at most {MAX_POINTS} are offered"
             )));
         }
-        Ok(Self { info: ElementInfo { nodes: &CORNERS, dofs: &Dof::SOLID, in_plane_order, ply_order: 4 }, mass })
+        Ok(Self::of_order(mass, in_plane_order))
+    }
+
+    pub(crate) fn of_order(mass: Mass, in_plane_order: usize) -> Self {
+        Self { info: ElementInfo { nodes: &CORNERS, dofs: &Dof::SOLID, in_plane_order, ply_order: 4 }, mass }
     }
 }
 
-/// Turns the natural-derivative functions of `node` into those of its global derivatives: f,r = x,r f,x + y,r f,y at the
+/// `[[x,r  y,r], [x,s  y,s]]` at each node.
+type Jacobians = [[[f64; 2]; 2]; 8];
+
+fn jacobians(cell: &Cell<'_>) -> Jacobians {
+    CORNERS.map(|c| cell.plane(c[0], c[1]).jacobian)
+}
+
+/// Turns natural-derivative functions of a node into those of its global derivatives: f,r = x,r f,x + y,r f,y at the
 /// node (eq. 20).
-fn to_global(cell: &Cell<'_>, node: usize, f: &[Quartet; 4], out: &mut [Quartet; 4]) {
-    let j = cell.plane(CORNERS[node][0], CORNERS[node][1]).jacobian;
-    let h = cell.half_height();
-    out[0] = f[0];
+pub(crate) fn to_global([[x_r, y_r], [x_s, y_s]]: &[[f64; 2]; 2], half_height: f64, f: &[Quartet; 4]) -> [Quartet; 4] {
+    let mut out = *f;
     for k in 0..4 {
-        out[1][k] = f[1][k] * j[0][0] + f[2][k] * j[1][0];
-        out[2][k] = f[1][k] * j[0][1] + f[2][k] * j[1][1];
-        out[3][k] = f[3][k] * h;
+        out[1][k] = f[1][k] * x_r + f[2][k] * x_s;
+        out[2][k] = f[1][k] * y_r + f[2][k] * y_s;
+        out[3][k] = f[3][k] * half_height;
     }
+    out
 }
 
-/// Calls `each(function, [∂x, ∂y, ∂z])` for the 32 functions at an in-plane point, derivatives as polynomials in q.
-fn gradients(cell: &Cell<'_>, r: f64, s: f64, plane: &PlaneMap, mut each: impl FnMut(usize, [Quartet; 3])) {
+/// Calls `each(function, [∂x, ∂y, ∂z])` for the functions of `nodes` at an in-plane point, derivatives as polynomials in q.
+fn gradients(
+    cell: &Cell<'_>,
+    jacobians: &Jacobians,
+    nodes: Range<usize>,
+    r: f64,
+    s: f64,
+    plane: &PlaneMap,
+    mut each: impl FnMut(usize, [Quartet; 3]),
+) {
     let h = cell.half_height();
-    for (node, corner) in CORNERS.iter().enumerate() {
-        let natural: NodeFunctions = hermite::node_functions(*corner, r, s);
-        let mut n = [[0.0; 4]; 4];
-        let mut n_r = n;
-        let mut n_s = n;
-        to_global(cell, node, &natural.n, &mut n);
-        to_global(cell, node, &natural.n_r, &mut n_r);
-        to_global(cell, node, &natural.n_s, &mut n_s);
+    for node in nodes {
+        let natural: NodeFunctions = hermite::node_functions(CORNERS[node], r, s);
+        let [n, n_r, n_s] = [natural.n, natural.n_r, natural.n_s].map(|f| to_global(&jacobians[node], h, &f));
         for m in 0..4 {
             let by = |d: usize| -> Quartet {
                 std::array::from_fn(|k| plane.inverse[0][d] * n_r[m][k] + plane.inverse[1][d] * n_s[m][k])
@@ -97,8 +147,22 @@ fn gradients(cell: &Cell<'_>, r: f64, s: f64, plane: &PlaneMap, mut each: impl F
 }
 
 /// Column of a function of a component in the cell's unknowns.
-const fn column(component: usize, function: usize) -> usize {
+pub(crate) const fn column(component: usize, function: usize) -> usize {
     12 * (function / 4) + 4 * component + function % 4
+}
+
+fn shape(cell: &Cell<'_>, functions: Mass, [r, s, q]: [f64; 3], n: &mut [f64]) -> f64 {
+    let h = cell.half_height();
+    n.fill(0.0);
+    for (node, (corner, jacobian)) in CORNERS.iter().zip(&jacobians(cell)).enumerate() {
+        let functions = to_global(jacobian, h, &functions.functions(*corner, r, s));
+        for (m, f) in functions.iter().enumerate() {
+            for component in 0..3 {
+                n[3 * column(component, 4 * node + m) + component] = hermite::at(f, q);
+            }
+        }
+    }
+    cell.plane(r, s).det * h
 }
 
 impl Element for HermitePrism {
@@ -109,7 +173,7 @@ impl Element for HermitePrism {
     fn strain_operator(&self, cell: &Cell<'_>, _slice: usize, [r, s, q]: [f64; 3], b: &mut [f64]) -> f64 {
         let plane = cell.plane(r, s);
         b.fill(0.0);
-        gradients(cell, r, s, &plane, |f, g| {
+        gradients(cell, &jacobians(cell), 0..8, r, s, &plane, |f, g| {
             for (d, g) in g.iter().enumerate() {
                 let value = hermite::at(g, q);
                 for (component, rows) in STRAIN_ROW.iter().enumerate() {
@@ -120,75 +184,76 @@ impl Element for HermitePrism {
         plane.det * cell.half_height()
     }
 
-    fn shape(&self, cell: &Cell<'_>, [r, s, q]: [f64; 3], n: &mut [f64]) -> f64 {
-        n.fill(0.0);
-        for (node, corner) in CORNERS.iter().enumerate() {
-            let mut functions = [[0.0; 4]; 4];
-            to_global(cell, node, &hermite::node_functions(*corner, r, s).n, &mut functions);
-            for (m, f) in functions.iter().enumerate() {
-                for component in 0..3 {
-                    n[3 * column(component, 4 * node + m) + component] = hermite::at(f, q);
-                }
-            }
-        }
-        cell.plane(r, s).det * cell.half_height()
+    fn shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
+        shape(cell, Mass::Cubic, xi, n)
     }
 
     fn inertia_shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
-        if self.mass == Mass::Cubic {
-            return self.shape(cell, xi, n);
-        }
-        n.fill(0.0);
-        for (node, corner) in CORNERS.iter().enumerate() {
-            let f = hermite::at(&hermite::trilinear(*corner, xi[0], xi[1]), xi[2]);
-            for component in 0..3 {
-                n[3 * column(component, 4 * node) + component] = f;
-            }
-        }
-        cell.plane(xi[0], xi[1]).det * cell.half_height()
+        shape(cell, self.mass, xi, n)
     }
 
     fn stiffness(&self, cell: &Cell<'_>, scratch: &mut Scratch, ke: &mut [f64]) -> Result<(), ElementError> {
         let rule = gauss_legendre(self.info.in_plane_order);
         let points = rule.len() * rule.len();
-        let terms = points * DK;
-        let [g, weighted, hankel, p, block] = scratch.arrays([F * terms, F * terms, DK * 6 * DK, F * 6 * terms, F * F]);
-        // G: 32 × (12 · points), the point running fastest among the columns.
+        let rows = H * points;
+        let columns = TERMS.len() * BLOCKS.len();
+        let [g, weighted, hankel, p, parts] = scratch.arrays([
+            rows * TERMS.len(),
+            rows * TERMS.len(),
+            TERMS.len() * columns,
+            2 * rows * columns,
+            4 * H * H,
+        ]);
+        let jacobians = jacobians(cell);
+        // G: 16 × (11 · points), the point running fastest among the columns.
         for_each_point(rule, |point, r, s, w| {
             let plane = cell.plane(r, s);
             let dv = positive(plane.det * cell.half_height())? * w;
-            gradients(cell, r, s, &plane, |f, gradient| {
-                for (d, polynomial) in gradient.iter().enumerate() {
-                    for (k, value) in polynomial.iter().enumerate() {
-                        let at = ((4 * d + k) * points + point) * F + f;
-                        g[at] = *value;
-                        weighted[at] = dv * value;
-                    }
+            gradients(cell, &jacobians, 4..8, r, s, &plane, |f, gradient| {
+                for (term, (d, k)) in TERMS.iter().enumerate() {
+                    let at = (term * points + point) * H + f - H;
+                    g[at] = gradient[*d][*k];
+                    weighted[at] = dv * gradient[*d][*k];
                 }
             });
             Ok(())
         })?;
-        // [H(1,1) | H(1,2) | ...]: 12 × 72.
-        for (b, (n, n2)) in BLOCKS.iter().enumerate() {
-            for (dk2, column) in hankel[b * DK * DK..(b + 1) * DK * DK].chunks_exact_mut(DK).enumerate() {
-                for (dk, h) in column.iter_mut().enumerate() {
-                    let moment = &cell.stack.stiffness_moments[dk % 4 + dk2 % 4];
-                    *h = moment[STRAIN_ROW[*n][dk / 4]][STRAIN_ROW[*n2][dk2 / 4]];
-                }
+        // [H(1,1) | H(1,2) | ...]: 11 × 66.
+        for (column, hankel) in hankel.chunks_exact_mut(TERMS.len()).enumerate() {
+            let (n, n2) = BLOCKS[column / TERMS.len()];
+            let (d2, k2) = TERMS[column % TERMS.len()];
+            for (h, (d, k)) in hankel.iter_mut().zip(&TERMS) {
+                *h = cell.stack.stiffness_moments[k + k2][STRAIN_ROW[n][*d]][STRAIN_ROW[n2][d2]];
             }
         }
-        // P = G H with (function, point) as rows; read again, each block of P is 32 × (12 · points).
-        multiply(p, weighted, hankel, F * points, DK, 6 * DK);
-        let g = MatRef::from_column_major_slice(g, F, terms);
+        // P = G H of the even halves and of the odd ones, with (function, point) as rows.
+        let hankel = MatRef::from_column_major_slice(hankel, TERMS.len(), columns);
+        for ((half, g), p) in HALVES.iter().zip(halves(weighted, rows)).zip(p.chunks_exact_mut(rows * columns)) {
+            let g = MatRef::from_column_major_slice(g, rows, half.len());
+            let p = MatMut::from_column_major_slice_mut(p, rows, columns);
+            matmul(p, Accum::Replace, g, hankel.subrows(half.start, half.len()), 1.0, Par::Seq);
+        }
         for (b, (n, n2)) in BLOCKS.iter().enumerate() {
-            let p = MatRef::from_column_major_slice(&p[b * F * terms..(b + 1) * F * terms], F, terms);
-            let out = MatMut::from_column_major_slice_mut(block, F, F);
-            matmul(out, Accum::Replace, p, g.transpose(), 1.0, Par::Seq);
-            for (f2, block) in block.chunks_exact(F).enumerate() {
-                for (f, value) in block.iter().enumerate() {
-                    ke[column(*n, f) + N * column(*n2, f2)] = *value;
-                    ke[column(*n2, f2) + N * column(*n, f)] = *value;
-                }
+            // Read again, each block of P is 16 × (11 · points).
+            let blocks = p.chunks_exact(rows * columns).map(|p| &p[b * rows * TERMS.len()..][..rows * TERMS.len()]);
+            let pairs = blocks.flat_map(|p| halves(p, rows).into_iter().zip(halves(g, rows)));
+            for ((p, g), part) in pairs.zip(parts.chunks_exact_mut(H * H)) {
+                let [p, g] = [p, g].map(|a| MatRef::from_column_major_slice(a, H, a.len() / H));
+                let part = MatMut::from_column_major_slice_mut(part, H, H);
+                matmul(part, Accum::Replace, p, g.transpose(), 1.0, Par::Seq);
+            }
+            let mut put = |f: usize, f2: usize, value: f64| {
+                ke[column(*n, f) + N * column(*n2, f2)] = value;
+                ke[column(*n2, f2) + N * column(*n, f)] = value;
+            };
+            for at in 0..H * H {
+                let (f, f2) = (at % H, at / H);
+                let [ee, eo, oe, oo] = [0, 1, 2, 3].map(|part| parts[part * H * H + at]);
+                let (sign, sign2) = (BELOW[f % 4], BELOW[f2 % 4]);
+                put(f, f2, sign * sign2 * (ee - eo - oe + oo));
+                put(f + H, f2, sign2 * (ee - eo + oe - oo));
+                put(f, f2 + H, sign * (ee + eo - oe - oo));
+                put(f + H, f2 + H, ee + eo + oe + oo);
             }
         }
         Ok(())
@@ -197,18 +262,13 @@ impl Element for HermitePrism {
     fn mass(&self, cell: &Cell<'_>, scratch: &mut Scratch, me: &mut [f64]) -> Result<(), ElementError> {
         let rule = gauss_legendre(self.info.in_plane_order);
         let points = rule.len() * rule.len();
+        let (jacobians, h) = (jacobians(cell), cell.half_height());
         let [n, weighted, hankel, p, block] =
             scratch.arrays([F * 4 * points, F * 4 * points, 16, F * 4 * points, F * F]);
         for_each_point(rule, |point, r, s, w| {
-            let dv = positive(cell.plane(r, s).det * cell.half_height())? * w;
-            for (node, corner) in CORNERS.iter().enumerate() {
-                let mut functions = [[0.0; 4]; 4];
-                match self.mass {
-                    Mass::Cubic => {
-                        to_global(cell, node, &hermite::node_functions(*corner, r, s).n, &mut functions);
-                    }
-                    Mass::Linear => functions[0] = hermite::trilinear(*corner, r, s),
-                }
+            let dv = positive(cell.plane(r, s).det * h)? * w;
+            for (node, (corner, jacobian)) in CORNERS.iter().zip(&jacobians).enumerate() {
+                let functions = to_global(jacobian, h, &self.mass.functions(*corner, r, s));
                 for (m, f) in functions.iter().enumerate() {
                     for (k, value) in f.iter().enumerate() {
                         let at = (k * points + point) * F + 4 * node + m;
@@ -248,12 +308,13 @@ impl Element for HermitePrism {
     ) -> Result<(), ElementError> {
         // Area means of the gradients: direction × function × power of q.
         let [means] = scratch.arrays([3 * F * 4]);
+        let jacobians = jacobians(cell);
         let mut area = 0.0;
         for_each_point(gauss_legendre(self.info.in_plane_order), |_, r, s, w| {
             let plane = cell.plane(r, s);
             let da = positive(plane.det * cell.half_height())? * w;
             area += da;
-            gradients(cell, r, s, &plane, |f, gradient| {
+            gradients(cell, &jacobians, 0..8, r, s, &plane, |f, gradient| {
                 for (d, polynomial) in gradient.iter().enumerate() {
                     let at = 4 * (F * d + f);
                     for (mean, value) in means[at..at + 4].iter_mut().zip(polynomial) {
@@ -300,7 +361,7 @@ fn for_each_point(
 }
 
 /// `out ← a b`, column-major: a is m × k, b is k × n.
-fn multiply(out: &mut [f64], a: &[f64], b: &[f64], m: usize, k: usize, n: usize) {
+pub(crate) fn multiply(out: &mut [f64], a: &[f64], b: &[f64], m: usize, k: usize, n: usize) {
     matmul(
         MatMut::from_column_major_slice_mut(out, m, n),
         Accum::Replace,
@@ -324,12 +385,8 @@ impl Plugin for HermitePrism {
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let mass = match params.choice("mass", &["cubic", "linear"])? {
-            "linear" => Mass::Linear,
-            _ => Mass::Cubic,
-        };
         let order = params.count("in_plane_order", 3, Some(Self::IN_PLANE_ORDER))?;
-        Self::new(mass, order)
+        Self::new(Mass::of(params)?, order)
             .map(|e| Built::Element(Box::new(e)))
             .map_err(|e| ParamError::new("in_plane_order", e.to_string()))
     }

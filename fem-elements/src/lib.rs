@@ -1,7 +1,7 @@
 //! Elements: one file each, all implementing [`Element`](fem_core::element::Element).
 //!
-//! [`HermitePrism`] is the solid element of AFWAL-TR-87-4117; [`hermite`] holds the polynomials that an element of its
-//! family is made of.
+//! [`HermitePrism`] is the solid element of AFWAL-TR-87-4117, [`HermiteHex`] its quick form for parallelograms,
+//! [`WebsterBeam`] the section of a strip; [`hermite`] holds the polynomials that their family is made of.
 //!
 //! A uniform stretch stores the energy of its strain, whatever the number of plies:
 //!
@@ -35,6 +35,16 @@
 //! ```
 
 pub mod hermite;
+mod hermite_hex;
 mod hermite_prism;
+mod hex20;
+mod lamination;
+mod mitc4;
+mod prism;
+mod webster_beam;
 
+pub use hermite_hex::HermiteHex;
 pub use hermite_prism::{HermitePrism, Mass};
+pub use hex20::Hex20;
+pub use mitc4::Mitc4;
+pub use webster_beam::{PlaneState, WebsterBeam};

@@ -16,6 +16,9 @@ pub(crate) enum Angles {
     UpTo(f64),
 }
 
+/// Distance from an end of the angles at which a maximum that stands on the end is known for one.
+const NEXT_TO: f64 = 1e-7;
+
 /// Largest value of `f(sin, cos)` and its angle.
 ///
 /// Samples every degree and refines each sample that is no lower than its neighbours and within a tenth of the best: the
@@ -49,6 +52,14 @@ pub(crate) fn maximise(angles: Angles, f: impl Fn(f64, f64) -> f64) -> (f64, f64
             _ => (k.saturating_sub(1), (k + 1).min(last)),
         };
         if sample[k] >= threshold && sample[k] >= sample[before] && sample[k] >= sample[after] {
+            let inwards = match angles {
+                Angles::UpTo(_) if k == 0 => Some(NEXT_TO),
+                Angles::UpTo(_) if k == last => Some(end - NEXT_TO),
+                _ => None,
+            };
+            if inwards.is_some_and(|x| f(x.sin(), x.cos()) <= sample[k]) {
+                continue;
+            }
             let start = if k == 0 && before != 0 { -angle(1) } else { angle(before) };
             let refined = brent(start, angle(k), angle(after), sample[k], |x| f(x.sin(), x.cos()));
             if refined.1 > best.1 {

@@ -195,6 +195,46 @@ fn plane_criteria_refuse_spatial_stress_unless_told_to_ignore_it() {
     assert!(error.contains("ply 3 from the bottom of cell 5") && error.contains("three-dimensional"), "{error}");
 }
 
+/// What no table holds: every criterion under stresses at the ends of the numbers, and what is no stress.
+#[test]
+fn the_ends_of_the_numbers_are_judged_or_refused_by_every_criterion() {
+    let (tiny, huge) = (5e-324, f64::MAX);
+    let numbers = [
+        [tiny; 6],
+        [-tiny, tiny, -tiny, tiny, 0.0, 0.0],
+        [1e-310, -1e-312, 0.0, 0.0, 1e-311, 0.0],
+        [huge; 6],
+        [-huge, huge, -huge, huge, -huge, huge],
+        [1e150, -2e150, 1e149, 1e150, 1e150, 0.0],
+        [tiny, huge, 0.0, -huge, 0.0, 0.0],
+        [1e9, tiny, -0.0, -tiny, 0.0, 0.0],
+    ];
+    let no_numbers = [f64::NAN, -f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+    for (info, criterion) in &all() {
+        let m = &materials()[1];
+        for s in numbers {
+            match assess(&**criterion, info.name, &Stress6::new(s), m) {
+                Ok(a) => {
+                    // Infinite where the smallest stress would have to grow beyond the largest number.
+                    assert!(a.reserve.factor >= 0.0, "{}: {a:?} of {s:?}", info.name);
+                    assert!(s[0].abs() < 1e300 || a.reserve.factor < 1e-280, "{}: {a:?} of {s:?}", info.name);
+                    assert!(a.indices.iter().all(|v| !v.is_nan() || s.iter().any(|c| c.abs() > 1e140)), "{a:?}");
+                }
+                Err(AssessError::Scope(..)) => assert_ne!(criterion.scope(), "every finite stress", "{}", info.name),
+                Err(e) => panic!("{}: {e}", info.name),
+            }
+        }
+        for bad in no_numbers {
+            for i in 0..6 {
+                let mut s = [1e6; 6];
+                s[i] = bad;
+                let refused = assess(&**criterion, info.name, &Stress6::new(s), m);
+                assert!(matches!(refused, Err(AssessError::NotFinite(_))), "{}: {refused:?}", info.name);
+            }
+        }
+    }
+}
+
 /// Strengths of any fibre composite, Pa, in the order of [`Strength::ALL`].
 fn any_material() -> impl Strategy<Value = Material> {
     let ranges = [500.0..3000.0, 400.0..2000.0, 20.0..90.0, 100.0..250.0, 60.0..130.0, 40.0..120.0];
@@ -270,6 +310,107 @@ proptest! {
             let exposure = |s| 1.0 / criterion.reserve_factor(s, &m).factor;
             let (a, b) = (exposure(&s), exposure(&turned));
             prop_assert!((a - b).abs() <= 1e-8 * a.max(b), "{}: exposures {a} and {b}", info.name);
+        }
+    }
+
+    /// A ply has three planes of mirror symmetry, and the sign of a shear on one of them means nothing.
+    #[test]
+    fn mirrors_change_nothing(m in any_material(), s in any_stress()) {
+        for (info, criterion) in &all() {
+            let Ok(straight) = assess(&**criterion, info.name, &s, &m) else { continue };
+            for flipped in [[3, 5], [3, 4], [4, 5]] {
+                let mut mirrored = s.0;
+                flipped.iter().for_each(|i| mirrored[*i] = -mirrored[*i]);
+                let other = assess(&**criterion, info.name, &Stress6::new(mirrored), &m).unwrap();
+                let (a, b) = (straight.reserve.factor, other.reserve.factor);
+                // A search for the worst plane meets the mirrored one from the other side.
+                prop_assert!(a == b || (a / b - 1.0).abs() < 1e-8, "{}: {a} and {b} for {s:?}", info.name);
+            }
+        }
+    }
+
+    /// The unit of stress means nothing: MPa throughout gives what Pa does.
+    #[test]
+    fn units_change_nothing(m in any_material(), s in any_stress()) {
+        let e = m.elastic;
+        let elastic = Elastic::transversely_isotropic(e.e1 * 1e-6, e.e2 * 1e-6, e.nu12, e.nu23, e.g12 * 1e-6);
+        let megapascals = |all: Strengths, which: &Strength| match m.strengths.get(*which) {
+            Some(v) => all.with(*which, v * 1e-6),
+            None => all,
+        };
+        let strengths = Strength::ALL.iter().fold(Strengths::default(), megapascals);
+        let scaled = Material { elastic, strengths, ..m.clone() };
+        for (info, criterion) in &all() {
+            // Parameters with a unit stay in Pa.
+            if ["puck", "puck-2d", "chang-chang"].contains(&info.name) {
+                continue;
+            }
+            let Ok(a) = assess(&**criterion, info.name, &s, &m) else { continue };
+            let b = assess(&**criterion, info.name, &s.scaled(1e-6), &scaled).unwrap();
+            let (a, b) = (a.reserve.factor, b.reserve.factor);
+            prop_assert!(a == b || (a / b - 1.0).abs() < 1e-9, "{}: {a} and {b} for {s:?}", info.name);
+        }
+    }
+
+    /// Where a mode of the matrix hands over to another, the exposure does not jump.
+    #[test]
+    fn modes_of_the_matrix_meet(m in any_material(), s in any_stress(), plane in 0..3) {
+        let off = 1e-9 * s.s22().abs();
+        let beside = |side: f64| {
+            let [a, b, c, d, e, f] = s.0;
+            Stress6::new(match plane {
+                0 => [a, side * off, c, d, e, f],
+                1 => [a, b, side * off, d, e, f],
+                _ => [a, b, -b + side * off, d, e, f],
+            })
+        };
+        for (k, (info, criterion)) in all().iter().enumerate() {
+            // As printed the report's tensile mode does jump, and indices of LaRC may.
+            if k == 1 || info.name.starts_with("larc") {
+                continue;
+            }
+            let [a, b] = [1.0, -1.0].map(|side| assess(&**criterion, info.name, &beside(side), &m));
+            let (Ok(a), Ok(b)) = (a, b) else { continue };
+            let (a, b) = (1.0 / a.reserve.factor, 1.0 / b.reserve.factor);
+            prop_assert!((a - b).abs() <= 1e-6 * a.max(b).max(1.0), "{}: exposures {a} and {b} for {s:?}", info.name);
+        }
+    }
+
+    /// The searches for the worst plane miss nothing that 3600 planes show, near failure.
+    #[test]
+    fn no_plane_is_worse_than_the_one_found(m in any_material(), s in any_stress()) {
+        let (puck, larc) = (Puck::default(), Larc05::default());
+        prop_assume!(check_material(&puck, "p", &m).is_ok() && check_material(&larc, "l", &m).is_ok());
+        let mut out = [0.0; 4];
+        puck.indices(&s, &m, &mut out);
+        // Far beyond failure LaRC's index has needles at poles of its friction terms.
+        let s = s.scaled(1.0 / out[2].max(out[3]));
+        puck.indices(&s, &m, &mut out);
+        let puck_found = out[2].max(out[3]);
+        larc.indices(&s, &m, &mut out);
+        let larc_found = out[3];
+
+        let r = &m.strengths;
+        let a0 = larc.alpha0;
+        let (eta_t, st) = (-1.0 / (2.0 * a0).tan(), r.yc() * a0.cos() * (a0.sin() + a0.cos() / (2.0 * a0).tan()));
+        let eta_l = -r.s12() * (2.0 * a0).cos() / (r.yc() * a0.cos().powi(2));
+        let ra = r.yc() / (2.0 * (1.0 + puck.p23c));
+        let (mut worst_puck, mut worst_larc) = (0.0_f64, 0.0_f64);
+        for k in 0..3600 {
+            let (sin, cos) = (f64::from(k) * std::f64::consts::PI / 3600.0).sin_cos();
+            let n = s.s22() * cos * cos + s.s33() * sin * sin + 2.0 * s.s23() * sin * cos;
+            let t = (s.s33() - s.s22()) * sin * cos + s.s23() * (cos * cos - sin * sin);
+            let l = s.s31() * sin + s.s12() * cos;
+            let share = if t == 0.0 && l == 0.0 { 0.5 } else { t * t / (t * t + l * l) };
+            let (p23, p12) = if n >= 0.0 { (puck.p23t, puck.p12t) } else { (puck.p23c, puck.p12c) };
+            let p = p23 * share / ra + p12 * (1.0 - share) / r.s12();
+            let normal = if n >= 0.0 { (1.0 / r.yt() - p) * n } else { p * n };
+            worst_puck = worst_puck.max((normal * normal + (t / ra).powi(2) + (l / r.s12()).powi(2)).sqrt() + p * n);
+            let slips = (t / (st - eta_t * n)).powi(2) + (l / (r.s12() - eta_l * n)).powi(2);
+            worst_larc = worst_larc.max(slips + (n.max(0.0) / r.yt()).powi(2));
+        }
+        for (found, worst) in [(puck_found, worst_puck), (larc_found, worst_larc)] {
+            prop_assert!(found >= worst * (1.0 - 1e-12) && found <= worst * (1.0 + 1e-4), "{found}, {worst}: {s:?}");
         }
     }
 }

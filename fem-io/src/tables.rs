@@ -55,8 +55,34 @@ pub struct EventRow {
     pub y_m: f64,
     /// Place, m.
     pub z_m: f64,
-    /// Failure index, 1 at failure.
+    /// Failure index, 1 at failure; it may be infinite.
     pub index: f64,
+}
+
+/// A failure index at a place: a row of `index_maxima.csv`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct IndexRow {
+    /// Name of the criterion.
+    pub criterion: String,
+    /// Failure mode.
+    pub mode: String,
+    /// Cell, by its number in the mesh file.
+    pub cell: u64,
+    /// Ply counted from the bottom, such as `3`, or the two plies of an interface, `3|4`.
+    pub ply: String,
+    /// Centre of the place, m.
+    pub position_m: [f64; 3],
+    /// Failure index, 1 at failure; it may be infinite.
+    pub index: f64,
+}
+
+/// The same at a time: a row of `index_history.csv`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct IndexHistoryRow {
+    /// Time, s.
+    pub time_s: f64,
+    /// The index.
+    pub index: IndexRow,
 }
 
 /// A stress that brings a material to failure: a row of `envelope.csv`.
@@ -88,6 +114,22 @@ pub fn write_history(dir: &OutputDir, rows: &[HistoryRow]) -> Result<(), FileErr
 /// A value that is not finite, and as [`OutputDir::write`].
 pub fn write_events(dir: &OutputDir, rows: &[EventRow]) -> Result<(), FileError> {
     write_table(dir, "events.csv", rows)
+}
+
+/// Writes `index_maxima.csv`.
+///
+/// # Errors
+/// A value that is not finite, indices apart, and as [`OutputDir::write`].
+pub fn write_index_maxima(dir: &OutputDir, rows: &[IndexRow]) -> Result<(), FileError> {
+    write_table(dir, "index_maxima.csv", rows)
+}
+
+/// Writes `index_history.csv`.
+///
+/// # Errors
+/// A value that is not finite, indices apart, and as [`OutputDir::write`].
+pub fn write_index_history(dir: &OutputDir, rows: &[IndexHistoryRow]) -> Result<(), FileError> {
+    write_table(dir, "index_history.csv", rows)
 }
 
 /// Writes `envelope.csv`, all rows of the plane of the first; its stresses alone are in MPa.
@@ -137,6 +179,8 @@ fn null_in(value: &Value) -> Option<Vec<String>> {
 #[allow(missing_docs)]
 pub enum Field<'a> {
     Number(f64),
+    /// A number that may be infinite, written `inf`.
+    Index(f64),
     Count(u64),
     Text(&'a str),
 }
@@ -176,8 +220,32 @@ impl Row for EventRow {
             ("x_m", Field::Number(self.x_m)),
             ("y_m", Field::Number(self.y_m)),
             ("z_m", Field::Number(self.z_m)),
-            ("index", Field::Number(self.index)),
+            ("index", Field::Index(self.index)),
         ]
+    }
+}
+
+impl Row for IndexRow {
+    fn fields(&self) -> Vec<(&'static str, Field<'_>)> {
+        let [x, y, z] = self.position_m;
+        vec![
+            ("criterion", Field::Text(&self.criterion)),
+            ("mode", Field::Text(&self.mode)),
+            ("cell", Field::Count(self.cell)),
+            ("ply", Field::Text(&self.ply)),
+            ("x_m", Field::Number(x)),
+            ("y_m", Field::Number(y)),
+            ("z_m", Field::Number(z)),
+            ("index", Field::Index(self.index)),
+        ]
+    }
+}
+
+impl Row for IndexHistoryRow {
+    fn fields(&self) -> Vec<(&'static str, Field<'_>)> {
+        let mut fields = vec![("time_s", Field::Number(self.time_s))];
+        fields.extend(self.index.fields());
+        fields
     }
 }
 
@@ -220,9 +288,12 @@ pub fn write_columns<'a>(
 ) -> Result<(), FileError> {
     for (row, values) in rows.clone().enumerate() {
         for (column, value) in header.iter().zip(values) {
-            if let Field::Number(value) = value
-                && !value.is_finite()
-            {
+            let refused = match value {
+                Field::Number(value) => (!value.is_finite()).then_some(value),
+                Field::Index(value) => (!(value > f64::NEG_INFINITY)).then_some(value),
+                _ => None,
+            };
+            if let Some(value) = refused {
                 return Err(FileError::NonFinite { file: file.into(), row: row + 1, column: (*column).into(), value });
             }
         }
@@ -308,6 +379,22 @@ mod tests {
         write_events(&dir, &[event]).unwrap();
         let row = "0.00022,octahedral,\"tension, \"\"resin\"\"\",18446744073709551615,3|4,-45.0,0.001,-0.0,2.0,1.02\n";
         assert_eq!(read(&dir, "events.csv"), format!("{header}{row}"));
+    }
+
+    #[test]
+    fn an_index_may_be_infinite_but_not_nan() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = OutputDir::create(folder.path()).unwrap();
+        let index = |index| IndexRow { mode: "m".into(), position_m: [1.0, 2.0, 3.0], index, ..Default::default() };
+        write_index_maxima(&dir, &[index(f64::INFINITY), index(0.5)]).unwrap();
+        let header = "criterion,mode,cell,ply,x_m,y_m,z_m,index\n";
+        assert_eq!(read(&dir, "index_maxima.csv"), format!("{header},m,0,,1.0,2.0,3.0,inf\n,m,0,,1.0,2.0,3.0,0.5\n"));
+        write_index_history(&dir, &[IndexHistoryRow { time_s: 0.25, index: index(f64::INFINITY) }]).unwrap();
+        assert_eq!(read(&dir, "index_history.csv"), format!("time_s,{header}0.25,,m,0,,1.0,2.0,3.0,inf\n"));
+        for bad in [f64::NAN, f64::NEG_INFINITY] {
+            let error = write_index_maxima(&dir, &[index(bad)]).unwrap_err().to_string();
+            assert!(error.starts_with("index_maxima.csv, row 1, column index"), "{error}");
+        }
     }
 
     proptest! {

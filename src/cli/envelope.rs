@@ -9,7 +9,7 @@ use fem_core::plugin::{Built, Kind, Params, Value, unknown_key};
 use fem_failure::envelope::{self, EnvelopePoint, Envelopes, StressPlane};
 use fem_io::files::OutputDir;
 use fem_io::plot::{self, Axis, LinePlot, Series, Style};
-use fem_io::scene::{self, Scene};
+use fem_io::scene::{self, CriterionSpec, Scene};
 use fem_io::tables::{self, EnvelopeRow};
 use fem_io::{materials, units};
 use miette::{IntoDiagnostic, miette};
@@ -71,10 +71,10 @@ fn material<'a>(name: &str, scene: Option<&'a Scene>) -> miette::Result<&'a Mate
 fn criteria(registry: &Registry, asked: &[String], scene: Option<&Scene>) -> miette::Result<Vec<NamedCriterion>> {
     let specs = || scene.into_iter().flat_map(|s| &s.failure.criteria);
     if asked.is_empty() {
-        return specs().map(|spec| build(registry, &spec.name.value, &spec.params)).collect();
+        return specs().map(|spec| build_as(registry, spec)).collect();
     }
-    let each = |text: &String| match specs().find(|spec| spec.name.value == *text) {
-        Some(spec) => build(registry, text, &spec.params),
+    let each = |text: &String| match specs().find(|spec| spec.label == *text) {
+        Some(spec) => build_as(registry, spec),
         None => {
             let mut parts = text.split(':');
             let name = parts.next().unwrap_or_default();
@@ -94,6 +94,12 @@ fn parameter(text: &str) -> miette::Result<(&str, Value)> {
     let quantity = || units::parse_quantity(value).ok().map(|(v, dimension)| Value::Quantity(v, dimension));
     let number = value.parse().ok().map(Value::Number);
     Ok((key, number.or_else(quantity).unwrap_or_else(|| Value::Text(value.to_owned()))))
+}
+
+/// A criterion of a scene under the name that it has there.
+fn build_as(registry: &Registry, spec: &CriterionSpec) -> miette::Result<NamedCriterion> {
+    let (_, criterion) = build(registry, &spec.plugin.name.value, &spec.plugin.params)?;
+    Ok((spec.label.clone(), criterion))
 }
 
 fn build(registry: &Registry, name: &str, params: &Params) -> miette::Result<NamedCriterion> {

@@ -16,7 +16,9 @@ use fem_core::support::{self, FreeMotions};
 use fem_core::time::Integrator;
 use fem_core::window;
 use fem_io::gmsh::{self, GmshMesh, MeshFault};
-use fem_io::scene::{self, Analysis, Located, MeshSource, NodeSet, Place, PluginSpec, Scene, SceneError, Support};
+use fem_io::scene::{
+    self, Analysis, CriterionSpec, Located, MeshSource, NodeSet, Place, PluginSpec, Scene, SceneError, Support,
+};
 use std::collections::BTreeSet;
 
 /// Looks things up for a scene and turns what is missing into errors that show the scene.
@@ -85,10 +87,10 @@ impl Builder<'_> {
     }
 
     pub(super) fn criteria(&self) -> Result<Vec<NamedCriterion>, SceneError> {
-        let each = |spec: &PluginSpec| {
-            let criterion = build!(self, spec, Criterion)?;
-            self.check_criterion(spec, &*criterion)?;
-            Ok((spec.name.value.clone(), criterion))
+        let each = |spec: &CriterionSpec| {
+            let criterion = build!(self, &spec.plugin, Criterion)?;
+            self.check_criterion(&spec.plugin, &*criterion)?;
+            Ok((spec.label.clone(), criterion))
         };
         self.scene.failure.criteria.iter().map(each).collect()
     }

@@ -1,8 +1,10 @@
 //! From a scene to a model: everything that is decided before the first matrix.
 
 mod builder;
+mod gauge;
 mod plan;
 
+pub use gauge::Gauge;
 pub use plan::{Impact, NamedProfile, Plan};
 
 use crate::error::Error;
@@ -16,6 +18,7 @@ use fem_core::laminate::Laminate;
 use fem_core::material::{Material, MaterialError};
 use fem_core::mesh::QuadMesh;
 use fem_core::plate::Plate;
+use fem_failure::delamination::DelaminationThreshold;
 use fem_io::scene::{Analysis, Damage, Scene};
 
 /// A scene made concrete: mesh extruded, plug-ins built, supports turned into constraints, impact or loads placed.
@@ -45,6 +48,10 @@ pub struct Model {
     pub criteria: Vec<NamedCriterion>,
     /// Quads whose stresses the criteria judge.
     pub watched: Vec<usize>,
+    /// Places whose indices are kept over time.
+    pub gauges: Vec<Gauge>,
+    /// Force at which the laminate delaminates, where damage is looked for and a material gives the toughness.
+    pub threshold: Option<DelaminationThreshold>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -54,6 +61,12 @@ pub type NamedCriterion = (String, Box<dyn FailureCriterion>);
 
 /// Thickness over size of the plate outside of which the mesh's unit is probably wrong.
 const PLAUSIBLE_THICKNESS: std::ops::Range<f64> = 1e-4..0.5;
+
+/// Error of a deflection by straight edges along a curve that is worth a warning, and its size over θ², θ the turn from
+/// edge to edge: the area that the edges cut off, θ²/6, or three times that where an element has nodes in the middle of
+/// edges, because a support at these holds a polygon (16 edges round a circle: 7.5 %).
+const POLYGON_ERROR: f64 = 3e-3;
+const POLYGON: [f64; 2] = [1.0 / 6.0, 0.5];
 
 /// Inner angle of a cell (degrees) beyond which its strains are poor.
 const POOR_ANGLE: f64 = 150.0;
@@ -88,6 +101,7 @@ impl Model {
         let stacks = laminate.stacks(&materials).map_err(lacks)?;
         let plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
             .map_err(|why| builder.error(&scene.element.name, why, ""))?;
+        warnings.extend(polygon(&plate));
         let (constraints, held) = builder.constraints(&plate)?;
         let plan = match &scene.analysis {
             Analysis::Impact(spec) => Plan::Impact(Box::new(builder.impact(spec, &plate, &*element, &constraints)?)),
@@ -99,6 +113,12 @@ impl Model {
             _ => None,
         };
         let watched = builder.watched(&plate.plane, centre)?;
+        let gauges = builder.gauges(&plate, &watched, &criteria)?;
+        let resin = scene.interface.as_ref().map(|resin| resin.value);
+        let threshold = match scene.damage {
+            Damage::Off => None,
+            Damage::Onset => DelaminationThreshold::of(&laminate, &materials, resin),
+        };
         let profiles = builder.profiles(&plate)?;
         Ok(Self {
             materials,
@@ -112,6 +132,8 @@ impl Model {
             profiles,
             criteria,
             watched,
+            gauges,
+            threshold,
             warnings,
             scene,
         })
@@ -142,6 +164,20 @@ impl Model {
         }
         chosen
     }
+}
+
+fn polygon(plate: &Plate) -> Option<String> {
+    let turn = plate.plane.curved_turn();
+    let at_middles = plate.columns.len() > plate.plane.points.len();
+    let error = POLYGON[usize::from(at_middles)] * turn * turn;
+    (error > POLYGON_ERROR).then(|| {
+        format!(
+            "the edges along a curve turn by up to {:.1} degrees: straight edges cost about {:.1} % of a deflection; divide \
+             the curve more finely",
+            turn.to_degrees(),
+            error * 100.0
+        )
+    })
 }
 
 fn implausible(mesh: &QuadMesh, laminate: &Laminate) -> Vec<String> {

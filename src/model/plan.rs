@@ -100,7 +100,7 @@ impl Builder<'_> {
                     load::pressure(plate, element, *face, quads, |at| pressure.at(at), &mut forces);
                 }
                 LoadKind::Patch { force, at, radius } => {
-                    let (centre, _) = self.point(at, plate)?;
+                    let (centre, _) = self.point(plate, at)?;
                     let patch = patch::hertz(plate, element, centre, *radius)
                         .map_err(|why| self.scene.source.error_at(place, why, "choose a smaller `patch_radius`"))?;
                     patch.add_to(*force, &mut forces);
@@ -139,7 +139,7 @@ impl Builder<'_> {
 
     pub(super) fn profiles(&self, plate: &Plate) -> Result<Vec<NamedProfile>, SceneError> {
         let each = |line: &ProfileLine| {
-            let (point, _) = self.point(&line.at, plate)?;
+            let (point, _) = self.point(plate, &line.at)?;
             match Profile::at(plate, point) {
                 Some(profile) => Ok(NamedProfile { line: line.clone(), point, profile }),
                 None => Err(self.error(&line.at, "the point lies outside the plate", "move it")),
@@ -148,8 +148,12 @@ impl Builder<'_> {
         self.scene.profiles.iter().map(each).collect()
     }
 
-    /// A point of the scene, m, and the column there if one is.
-    fn point(&self, at: &Located<ImpactPoint>, plate: &Plate) -> Result<([f64; 2], Option<usize>), SceneError> {
+    /// A place on the plate, m, and the column of the node there if there is one.
+    pub(super) fn point(
+        &self,
+        plate: &Plate,
+        at: &Located<ImpactPoint>,
+    ) -> Result<([f64; 2], Option<usize>), SceneError> {
         Ok(match &at.value {
             ImpactPoint::Group(name) => {
                 let group = Located { value: name.clone(), place: at.place.clone() };
@@ -158,8 +162,8 @@ impl Builder<'_> {
                     let dim = plate.plane.groups.get(name).map_or(0, |g| g.dim);
                     return Err(self.error(
                         at,
-                        format!("the group `{name}` (dimension {dim}) has {} nodes, one is wanted here", columns.len()),
-                        "make a physical point of it in gmsh, or give `at = { x = ..., y = ... }`",
+                        format!("the group `{name}` (dimension {dim}) has {} nodes, a point has one", columns.len()),
+                        "make a physical point of the place in gmsh, or give `at = { x = ..., y = ... }`",
                     ));
                 };
                 (plate.columns[column as usize], Some(column as usize))
@@ -181,7 +185,7 @@ impl Builder<'_> {
         element: &dyn Element,
     ) -> Result<([f64; 2], Functional), SceneError> {
         let at = &impactor.at;
-        let (centre, column) = self.point(at, plate)?;
+        let (centre, column) = self.point(plate, at)?;
         let contact = match (impactor.load.value, column) {
             (ContactLoad::Patch { radius }, _) => patch::hertz(plate, element, centre, radius).map_err(|why| {
                 let (low, high) = plate.plane.bounds();

@@ -3,9 +3,11 @@
 mod card;
 mod contact;
 mod criterion;
+mod element;
 mod integrator;
 
 pub use card::card;
 pub use contact::check_contact_law;
 pub use criterion::check_criterion;
+pub use element::check_element;
 pub use integrator::{Mode, Modes, check_integrator};

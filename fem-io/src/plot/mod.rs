@@ -205,9 +205,8 @@ pub fn force_history(
     if times_s.len() != forces_n.len() {
         return Err(PlotError::Lengths { times: times_s.len(), forces: forces_n.len() });
     }
-    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let (time_unit, per_s) = if largest(times_s) <= 1.000_001e-3 { ("µs", 1e6) } else { ("ms", 1e3) };
-    let (force_unit, per_n) = if largest(forces_n) < 1e3 { ("N", 1.0) } else { ("kN", 1e-3) };
+    let (time_unit, per_s) = time_unit(times_s.iter().copied());
+    let (force_unit, per_n) = if largest(forces_n.iter().copied()) < 1e3 { ("N", 1.0) } else { ("kN", 1e-3) };
     let points: Vec<_> = times_s.iter().zip(forces_n).map(|(t, f)| (t * per_s, f * per_n)).collect();
 
     let mut events: Vec<_> = events.iter().map(|(t, name)| (t * per_s, name)).collect();
@@ -228,6 +227,44 @@ pub fn force_history(
         series: vec![Series { label: "Contact force".into(), points, style: Style::Solid }],
         marks,
     })
+}
+
+/// Indices from here on are not drawn.
+const INDEX_DRAWN: f64 = 1e100;
+
+/// Failure indices over time under the heading `title`: for every name its points (time in s, index), and a dashed line at 1.
+///
+/// Times are shown as by [`force_history`]. A point whose index is infinite is left out.
+pub fn index_history(title: &str, curves: &[(String, Vec<(f64, f64)>)]) -> LinePlot {
+    let times = || curves.iter().flat_map(|(_, points)| points.iter().map(|p| p.0));
+    let (time_unit, per_s) = time_unit(times());
+    let curve = |(label, points): &(String, Vec<(f64, f64)>)| Series {
+        label: label.clone(),
+        points: points.iter().filter(|p| p.1 < INDEX_DRAWN).map(|p| (p.0 * per_s, p.1)).collect(),
+        style: Style::Solid,
+    };
+    let failure = Series {
+        label: "failure".into(),
+        points: vec![(0.0, 1.0), (largest(times()) * per_s, 1.0)],
+        style: Style::Dashed,
+    };
+    let curves = curves.iter().map(curve).filter(|series| !series.points.is_empty());
+    LinePlot {
+        title: title.to_owned(),
+        x: Axis { label: "Time".into(), unit: time_unit.into() },
+        y: Axis { label: "Failure index".into(), unit: String::new() },
+        series: curves.chain([failure]).collect(),
+        marks: Vec::new(),
+    }
+}
+
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |m, v| m.max(v.abs()))
+}
+
+/// Unit for times up to the largest of `times`, s, and how many of it are a second.
+fn time_unit(times: impl Iterator<Item = f64>) -> (&'static str, f64) {
+    if largest(times) <= 1.000_001e-3 { ("µs", 1e6) } else { ("ms", 1e3) }
 }
 
 /// Height of the curve at `x`, between its points by a straight line; the end's height beyond an end.
@@ -360,6 +397,26 @@ mod tests {
         let labels: Vec<_> = large.marks.iter().map(|m| m.label.as_str()).collect();
         assert_eq!(labels, ["a, 0.0500 ms", "b, 1.50 ms"]);
         assert!((large.marks[1].y - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_index_history_shows_every_curve_and_where_failure_is() {
+        let curves = [
+            ("a".to_owned(), vec![(0.0, 0.0), (1e-3, 4.0)]),
+            ("b".to_owned(), vec![(0.0, 0.5), (5e-4, f64::INFINITY), (1e-3, 2.0)]),
+            ("c".to_owned(), vec![(0.0, f64::INFINITY)]),
+        ];
+        let plot = index_history("title", &curves);
+        assert_eq!((plot.x.unit.as_str(), plot.y.label.as_str()), ("µs", "Failure index"));
+        let drawn: Vec<_> = plot.series.iter().map(|s| (s.label.as_str(), s.points.clone(), s.style)).collect();
+        let line = |points: [(f64, f64); 2]| points.to_vec();
+        let want = [
+            ("a", line([(0.0, 0.0), (1e3, 4.0)]), Style::Solid),
+            ("b", line([(0.0, 0.5), (1e3, 2.0)]), Style::Solid),
+            ("failure", line([(0.0, 1.0), (1e3, 1.0)]), Style::Dashed),
+        ];
+        assert_eq!(drawn, want);
+        assert!(line_plot(&plot).unwrap().svg.contains(">failure</text>"));
     }
 
     #[test]

@@ -18,7 +18,10 @@ pub(crate) mod tree;
 
 pub use load::{Load, LoadKind, Pressure, ProfileLine};
 pub use plugin::PluginSpec;
-pub use run::{ContactLoad, Damage, Failure, Impact, ImpactPoint, Impactor, March, Output, Window};
+pub use run::{
+    ContactLoad, CriterionSpec, Damage, Depth, Failure, Impact, ImpactPoint, Impactor, IndexWatch, March, Output,
+    Window,
+};
 pub use source::{Located, Place, SceneError, SceneSource};
 pub use support::{Couple, Equation, NodeSet, Support, Term};
 
@@ -216,6 +219,7 @@ pub fn parse(text: &str, path: &Path) -> Result<Scene, SceneError> {
     let (laminate, interface) = laminate::read(&root.required("laminate")?, &materials)?;
     let element = root.required("element")?;
     let analysis = read_analysis(&root)?;
+    let in_time = matches!(analysis, Analysis::Impact(_));
     let damage = root.optional("effects").map_or(Ok(Damage::Onset), |field| run::read_effects(&field))?;
     Ok(Scene {
         title: root.required("title")?.text()?.to_owned(),
@@ -229,10 +233,7 @@ pub fn parse(text: &str, path: &Path) -> Result<Scene, SceneError> {
         supports: support::read_all(&root.required("support")?)?,
         equations: root.optional("equation").map_or(Ok(Vec::new()), |field| support::read_equations(&field))?,
         couples: root.optional("couple").map_or(Ok(Vec::new()), |field| support::read_couples(&field))?,
-        failure: run::read_failure(
-            &root.required("failure")?,
-            damage == Damage::Onset && matches!(analysis, Analysis::Impact(_)),
-        )?,
+        failure: run::read_failure(&root.required("failure")?, damage == Damage::Onset && in_time, in_time)?,
         analysis,
         damage,
         profiles: root.optional("profile").map_or(Ok(Vec::new()), |field| load::read_profiles(&field))?,

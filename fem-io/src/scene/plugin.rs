@@ -23,14 +23,14 @@ impl PluginSpec {
         self.places.get(key).unwrap_or(&self.name.place)
     }
 
-    /// Reads a bare name, or a table with the key `name`.
-    pub(super) fn read_or_name(field: &Field<'_>) -> Result<Self, SceneError> {
+    /// Reads a bare name, or a table with the key `name`; keys of `others` belong to somebody else.
+    pub(super) fn read_or_name(field: &Field<'_>, others: &[&str]) -> Result<Self, SceneError> {
         match field.node() {
             Node::Text(_) => {
                 let name = field.at(field.text()?.to_owned());
                 Ok(Self { name, params: Params::default(), places: BTreeMap::new() })
             }
-            _ => Self::read(field, "name", &[]),
+            _ => Self::read(field, "name", others),
         }
     }
 

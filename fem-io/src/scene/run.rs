@@ -20,7 +20,7 @@ pub struct Impactor {
     pub load: Located<ContactLoad>,
 }
 
-/// A point of the plane: where an impactor strikes, for one.
+/// A point of the plane: where an impactor strikes, or something is watched.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ImpactPoint {
     /// At the one node of this group of the mesh.
@@ -77,16 +77,47 @@ pub struct March {
 /// Where and when failure is looked for.
 #[derive(Debug, Clone)]
 pub struct Failure {
-    /// The criteria.
-    pub criteria: Vec<PluginSpec>,
+    /// The criteria; no two are called alike.
+    pub criteria: Vec<CriterionSpec>,
     /// Time between two scans, s.
     pub every: f64,
     /// What stresses are averaged over in the plane.
     pub window: Window,
     /// Only cells within this distance of the impact are scanned, m.
     pub radius: Option<f64>,
+    /// Places whose indices are written over time.
+    pub watch: Vec<IndexWatch>,
     /// Where it stands.
     pub place: Place,
+}
+
+/// A criterion as a scene names it.
+#[derive(Debug, Clone)]
+pub struct CriterionSpec {
+    /// The plug-in.
+    pub plugin: PluginSpec,
+    /// What results call it: the name that the scene gives it (`as`), otherwise the plug-in's.
+    pub label: String,
+}
+
+/// A place whose indices are written over time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IndexWatch {
+    /// Where on the plate.
+    pub at: Located<ImpactPoint>,
+    /// Where in the laminate.
+    pub depth: Located<Depth>,
+    /// The criterion, counted in [`Failure::criteria`]; all that look there if `None`.
+    pub criterion: Option<usize>,
+}
+
+/// A ply or the resin between two plies, counted from 0 at the bottom.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Depth {
+    /// Ply `k`.
+    Ply(usize),
+    /// Between ply `k` and the ply above it.
+    Interface(usize),
 }
 
 /// What the stresses of a ply are averaged over in the plane.
@@ -105,11 +136,13 @@ pub struct Output {
     pub history_every: Option<f64>,
     /// Plots of the histories.
     pub plots: bool,
+    /// A table of the largest indices over the plate.
+    pub maps: bool,
 }
 
 impl Default for Output {
     fn default() -> Self {
-        Self { history_every: None, plots: true }
+        Self { history_every: None, plots: true, maps: false }
     }
 }
 
@@ -127,9 +160,18 @@ const FAILURE: Keys = &[
     ("every", r#""5 us""#),
     ("window", r#""2.54 mm""#),
     ("radius", r#""10 mm""#),
+    ("watch", r#"[{ at = { group = "impact" }, ply = 1 }]"#),
 ];
+const WATCH: Keys = &[
+    ("at", r#"{ x = "0 mm", y = "0 mm" }"#),
+    ("ply", "1"),
+    ("interface", r#""1|2""#),
+    ("criterion", r#""hashin-report""#),
+];
+/// Key by which a scene names a criterion of its own way.
+const LABEL: &str = "as";
 const EFFECTS: Keys = &[("damage", r#""onset""#), ("membrane", r#""off""#), ("damping", r#""off""#)];
-const OUTPUT: Keys = &[("history_every", r#""1 us""#), ("plots", "true")];
+const OUTPUT: Keys = &[("history_every", r#""1 us""#), ("plots", "true"), ("maps", "true")];
 
 /// Most steps of a march: more is a slip in step or end, and would seem to hang.
 const MAX_STEPS: f64 = 1e9;
@@ -174,7 +216,7 @@ fn read_load(table: &Reader<'_>) -> Result<Located<ContactLoad>, SceneError> {
 
 pub(super) fn read_march(field: &Field<'_>) -> Result<March, SceneError> {
     let table = field.table(MARCH)?;
-    let integrator = PluginSpec::read_or_name(&table.required("integrator")?)?;
+    let integrator = PluginSpec::read_or_name(&table.required("integrator")?, &[])?;
     let (step_field, end_field) = (table.required("step")?, table.required("end")?);
     let (step, end) = (step_field.positive(Dimension::TIME)?, end_field.positive(Dimension::TIME)?);
     let steps = end / step;
@@ -187,11 +229,18 @@ pub(super) fn read_march(field: &Field<'_>) -> Result<March, SceneError> {
     Ok(March { integrator, step: step_field.at(step), end: end_field.at(end) })
 }
 
-pub(super) fn read_failure(field: &Field<'_>, wanted: bool) -> Result<Failure, SceneError> {
+pub(super) fn read_failure(field: &Field<'_>, wanted: bool, in_time: bool) -> Result<Failure, SceneError> {
     let table = field.table(FAILURE)?;
     let criteria = match (table.optional("criteria"), wanted) {
         (None, false) => Vec::new(),
-        _ => table.required("criteria")?.list()?.iter().map(PluginSpec::read_or_name).collect::<Result<_, _>>()?,
+        _ => read_criteria(&table.required("criteria")?)?,
+    };
+    let watch = match table.optional("watch") {
+        None => Vec::new(),
+        Some(field) if !in_time => {
+            return Err(field.error("histories need an impact", "leave it out, or write a `[[profile]]`"));
+        }
+        Some(field) => field.list()?.iter().map(|field| read_watch(field, &criteria)).collect::<Result<_, _>>()?,
     };
     let window = table.required("window")?;
     let window = match window.node() {
@@ -206,8 +255,58 @@ pub(super) fn read_failure(field: &Field<'_>, wanted: bool) -> Result<Failure, S
         every: table.required("every")?.positive(Dimension::TIME)?,
         window,
         radius: table.optional("radius").map(|field| field.positive(Dimension::LENGTH)).transpose()?,
+        watch,
         place: table.place().clone(),
     })
+}
+
+fn read_criteria(field: &Field<'_>) -> Result<Vec<CriterionSpec>, SceneError> {
+    let mut criteria: Vec<CriterionSpec> = Vec::new();
+    for field in field.list()? {
+        let plugin = PluginSpec::read_or_name(&field, &[LABEL])?;
+        let label = match field.node() {
+            Node::Table(_) => field.entries()?.into_iter().find(|(key, _)| *key == LABEL),
+            _ => None,
+        };
+        let label = label.map_or(Ok(plugin.name.value.as_str()), |(_, field)| field.text())?.to_owned();
+        if criteria.iter().any(|other| other.label == label) {
+            let name = &plugin.name.value;
+            return Err(field.error(
+                format!("a second criterion is called `{label}`, and results could not tell them apart"),
+                format!("give it another name in the results: {{ name = \"{name}\", {LABEL} = \"{name}-2\" }}"),
+            ));
+        }
+        criteria.push(CriterionSpec { plugin, label });
+    }
+    Ok(criteria)
+}
+
+fn read_watch(field: &Field<'_>, criteria: &[CriterionSpec]) -> Result<IndexWatch, SceneError> {
+    let table = field.table(WATCH)?;
+    let depth = match table.either(["ply", "interface"])? {
+        [_, Some(interface)] => interface.at(read_interface(&interface)?),
+        [ply, None] => {
+            let ply = ply
+                .ok_or_else(|| table.missing("ply", "give a ply, `ply = 1`, or an interface, `interface = \"1|2\"`"))?;
+            ply.at(Depth::Ply(ply.count()? - 1))
+        }
+    };
+    let criterion = table.optional("criterion").map(|field| field.word(criteria.iter().map(|c| c.label.as_str())));
+    Ok(IndexWatch { at: read_point(&table.required("at")?)?, depth, criterion: criterion.transpose()? })
+}
+
+/// `"3|4"`, as results write it.
+fn read_interface(field: &Field<'_>) -> Result<Depth, SceneError> {
+    let plies = field.text()?.split_once('|').and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+    match plies {
+        Some((below, above)) if 0_usize < below && below.checked_add(1) == Some(above) => {
+            Ok(Depth::Interface(below - 1))
+        }
+        _ => Err(field.error(
+            format!("`{}` is no interface", field.text()?),
+            "write the two plies that meet there, counted from 1 at the bottom: \"1|2\"",
+        )),
+    }
 }
 
 pub(super) fn read_effects(field: &Field<'_>) -> Result<Damage, SceneError> {
@@ -235,5 +334,6 @@ pub(super) fn read_output(field: &Field<'_>) -> Result<Output, SceneError> {
     Ok(Output {
         history_every: table.optional("history_every").map(|field| field.positive(Dimension::TIME)).transpose()?,
         plots: table.optional("plots").map_or(Ok(true), |field| field.flag())?,
+        maps: table.optional("maps").map_or(Ok(false), |field| field.flag())?,
     })
 }

@@ -29,7 +29,7 @@ impactor = { mass = "2.49 kg", velocity = "1.56 m/s", at = { group = "impact" } 
 contact = { law = "sun-yang", k = "1.07e5 N/mm^1.5", n = 1.5, m = 2.5, critical = "0.08 mm", beta = 0.4, knots = [1, "2 mm"] }
 march = { integrator = { name = "newmark", beta = 0.3 }, end = "1 ms" }
 failure = { criteria = ["hashin-report", { name = "octahedral", strict = true }], radius = "10 mm" }
-output = { history_every = "2 us", plots = false }
+output = { history_every = "2 us", plots = false, maps = true }
 
 [laminate]
 plies = "[0/45/-45/90{core}]2s"
@@ -76,7 +76,7 @@ fn a_scene_in_full() {
     assert_eq!(scene.title, "16 plies, 50 mm circular support, 2.49 kg at 1.56 m/s");
     assert_eq!(scene.fidelity, Fidelity::Engineering);
     assert_eq!(mesh_file(&scene), Path::new("cases/plate/plate.msh"));
-    assert_eq!(scene.mesh.metres_per_unit, 1e-3);
+    assert!(matches!(scene.mesh, MeshSource::File { metres_per_unit: 1e-3, .. }));
 
     let names: Vec<_> = scene.materials.iter().map(|m| m.value.name.as_str()).collect();
     assert_eq!(names, ["as4-3502", "resin", "foam"]);
@@ -123,11 +123,13 @@ fn a_scene_in_full() {
     assert_eq!(scene.impact().unwrap().march.integrator.name.value, "newmark");
     assert_eq!(scene.impact().unwrap().march.integrator.params.number("beta", None), Ok(0.3));
     assert_eq!((scene.impact().unwrap().march.step.value, scene.impact().unwrap().march.end.value), (0.5e-6, 1e-3));
-    assert_eq!(scene.failure.criteria[1].params.get("strict"), Some(&Value::Flag(true)));
+    assert_eq!(scene.failure.criteria[1].plugin.params.get("strict"), Some(&Value::Flag(true)));
     assert_eq!((scene.failure.every, scene.failure.radius), (5e-6, Some(10e-3)));
     assert_eq!(scene.failure.window, Window::Square(2.54e-3));
     assert_eq!(scene.damage, Damage::Onset);
-    assert_eq!((scene.output.history_every, scene.output.plots), (Some(2e-6), false));
+    let output = Output { history_every: Some(2e-6), plots: false, maps: true };
+    assert_eq!(scene.output, output);
+    assert_eq!(Output::default(), Output { history_every: None, plots: true, maps: false });
     assert_eq!(
         (scene.element.name.value.as_str(), scene.z_derivatives.value),
         ("hermite-prism", ZDerivatives::LayerWise)
@@ -185,9 +187,28 @@ fn a_material_comes_from_a_file_of_ones_own() {
 }
 
 #[test]
+fn criteria_are_told_apart_and_places_are_watched() {
+    let scene = read_good(
+        &spoilt(
+            "radius =",
+            "watch = [{ at = { group = \"impact\" }, ply = 16 }, \
+         { at = { x = \"1 mm\", y = \"-2 mm\" }, interface = \"3|4\", criterion = \"twin\" }], radius =",
+        )
+        .replace("{ name = \"octahedral\"", "{ name = \"hashin-report\", as = \"twin\""),
+    );
+    let criteria: Vec<_> = scene.failure.criteria.iter().map(|c| (&*c.plugin.name.value, &*c.label)).collect();
+    assert_eq!(criteria, [("hashin-report", "hashin-report"), ("hashin-report", "twin")]);
+    assert_eq!(scene.failure.criteria[1].plugin.params.keys().collect::<Vec<_>>(), ["strict"]);
+    let watch: Vec<_> = scene.failure.watch.iter().map(|w| (&w.at.value, w.depth.value, w.criterion)).collect();
+    let point = ImpactPoint::Point([1e-3, -2e-3]);
+    let group = ImpactPoint::Group("impact".into());
+    assert_eq!(watch, [(&group, Depth::Ply(15), None), (&point, Depth::Interface(2), Some(1))]);
+}
+
+#[test]
 fn a_formula_may_begin_with_a_number() {
     let scene = read_good(&spoilt("strict = true", r#"expression = ["2*s1"], limit = "2 MPa""#));
-    let params = &scene.failure.criteria[1].params;
+    let params = &scene.failure.criteria[1].plugin.params;
     assert_eq!(params.get("expression"), Some(&Value::List(vec![Value::Text("2*s1".into())])));
     assert_eq!(params.quantity("limit", Dimension::PRESSURE, None), Ok(2e6));
 }
@@ -202,16 +223,16 @@ fn presets_lie_beneath_the_scene() {
     assert_eq!(report.impact().unwrap().reduction.params.count("governors", 1, None), Ok(38));
     assert_eq!(report.impact().unwrap().march.step.value, 50e-9);
     let reference = read_good(&fidelity("reference"));
-    assert_eq!(reference.reduction.name.value, "none");
-    assert_eq!((reference.march.step.value, reference.failure.every), (0.25e-6, 1e-6));
+    assert_eq!(reference.impact().unwrap().reduction.name.value, "none");
+    assert_eq!((reference.impact().unwrap().march.step.value, reference.failure.every), (0.25e-6, 1e-6));
 
     let over = |text: &str| read_good(&format!("{text}\n{}", fidelity("report")));
-    assert_eq!(over("reduction.governors = 20").reduction.params.count("governors", 1, None), Ok(20));
+    assert_eq!(over("reduction.governors = 20").impact().unwrap().reduction.params.count("governors", 1, None), Ok(20));
     assert_eq!(
         over("element.z_derivatives = \"layer-wise\"").element.params.choice("mass", &["cubic", "linear"]),
         Ok("linear")
     );
-    let other = over("reduction = { method = \"modal\", modes = 5 }").reduction;
+    let other = over("reduction = { method = \"modal\", modes = 5 }").impact().unwrap().reduction.clone();
     assert_eq!(
         other.params.keys().collect::<Vec<_>>(),
         ["modes"],
@@ -310,6 +331,14 @@ fn refusals() {
         ("an endless march", spoilt("end = \"1 ms\"", "end = \"1 ms\", step = \"1e-20 s\"")),
         ("a march shorter than its step", spoilt("end = \"1 ms\"", "end = \"1 ns\"")),
         ("a window that is none", spoilt("radius =", "window = \"cell\", radius =")),
+        ("two criteria of one name", spoilt("\"octahedral\"", "\"hashin-report\"")),
+        ("a watch in no ply", spoilt("radius =", "watch = [{ at = { group = \"impact\" } }], radius =")),
+        ("a watch in a ply and beside it", spoilt("radius =", "watch = [{ ply = 1, interface = \"1|2\" }], radius =")),
+        ("a watch at no interface", spoilt("radius =", "watch = [{ interface = \"1|3\" }], radius =")),
+        (
+            "a watch of an unknown criterion",
+            spoilt("radius =", "watch = [{ criterion = \"puck\", ply = 1, at = { group = \"impact\" } }], radius ="),
+        ),
         ("an effect that does not exist yet", format!("effects = {{ membrane = \"auto\" }}\n{GOOD}")),
         ("a unit of length that is none", spoilt("unit = \"mm\"", "unit = \"kg\"")),
     ] {

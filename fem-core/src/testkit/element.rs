@@ -1,0 +1,382 @@
+//! The contract of an element.
+
+use crate::element::{Cell, Element, ElementError, ElementInfo, Part, Scratch, Slice, Stack};
+use crate::material::Elastic;
+use crate::mesh::QuadMesh;
+use crate::plate::{Plate, ZDerivatives};
+use crate::tensor::rotate_stiffness;
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// Agreement asked for, relative to √(kᵢᵢ kⱼⱼ) or the largest of what is compared.
+const TOLERANCE: f64 = 1e-10;
+
+/// Eigenvalues of the stiffness below this fraction of the largest count as zero.
+const ZERO: f64 = 1e-11;
+
+/// What an element can be but for its faults.
+///
+/// On regular, distorted, slender and tiny cells of one ply and of several:
+///
+/// * K and M are finite and symmetric, M is semi-definite, and both agree with what the provided methods make of the
+///   operators, as do mean strains
+/// * as many zero eigenvalues as rigid motions that the unknowns can express, and no force on any of these
+/// * linear displacements are reproduced, with their strains; a uniform motion carries the mass of the cell
+/// * the corner that is counted first, the axes and the unit of length do not matter
+/// * folded, flat and undefined cells are refused; so may be the distorted one, by an element for parallelograms
+///
+/// # Errors
+/// The first violation, in words.
+pub fn check_element(element: &dyn Element) -> Result<(), String> {
+    let info = element.info();
+    let valid = |n: &[f64; 3]| n.iter().all(|c| [-1.0, 0.0, 1.0].contains(c));
+    if info.nodes.is_empty() || info.dofs.is_empty() || !info.nodes.iter().all(valid) {
+        return Err("the table needs nodes at natural coordinates -1, 0 or 1, and unknowns".into());
+    }
+    if info.nodes.iter().enumerate().any(|(i, n)| info.nodes[..i].contains(n)) {
+        return Err("two nodes stand at one place".into());
+    }
+    for (name, corners, z) in cells(info) {
+        for (plies, stack) in stacks() {
+            let cell = Cell { corners, z, stack: &stack };
+            let found = match Matrices::of(element, &cell) {
+                Err(_) if name == "distorted" => continue,
+                found => found.map_err(|e| format!("{name} cell, {plies}: {e}"))?,
+            };
+            found.check(element, &cell, name == "regular").map_err(|why| format!("{name} cell, {plies}: {why}"))?;
+        }
+    }
+    frames(element)?;
+    refusals(element)
+}
+
+type Shape = (&'static str, [[f64; 2]; 4], [f64; 2]);
+
+/// Cells to look at, m; a section knows rectangles along x only.
+fn cells(info: &ElementInfo) -> Vec<Shape> {
+    let rectangle = |a: f64, b: f64| [[0.0, 0.0], [a, 0.0], [a, b], [0.0, b]];
+    let mut all = vec![
+        ("regular", rectangle(1e-3, 1e-3), [-0.5e-3, 0.5e-3]),
+        ("slender", rectangle(1.0, 1e-3), [0.0, 1e-3]),
+        ("thin", rectangle(1e-3, 1e-3), [2e-3, 2.001e-3]),
+        ("tiny", rectangle(2e-9, 1e-9), [0.0, 1e-9]),
+    ];
+    if !info.is_section() {
+        all.push(("distorted", [[1e-3, 1e-3], [3e-3, 1.2e-3], [3.4e-3, 2.9e-3], [0.8e-3, 2.6e-3]], [0.0, 0.7e-3]));
+    }
+    all
+}
+
+fn tape(angle_deg: f64) -> Slice {
+    let c = Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9).stiffness();
+    Slice { q: [-1.0, 1.0], c: rotate_stiffness(&c, f64::to_radians(angle_deg)), density: 1575.0 }
+}
+
+/// One ply, and an unsymmetric laminate with a soft layer.
+fn stacks() -> [(&'static str, Stack); 2] {
+    let soft = Slice { c: Elastic::isotropic(1e9, 0.3).stiffness(), density: 500.0, ..tape(0.0) };
+    let parts = [(tape(0.0), -0.5), (tape(45.0), 0.2), (soft, 0.6), (tape(90.0), 1.0)];
+    let mut low = -1.0;
+    let slices = parts.map(|(slice, high)| {
+        let slice = Slice { q: [low, high], ..slice };
+        low = high;
+        slice
+    });
+    [("one ply", Stack::new(vec![tape(30.0)])), ("four plies", Stack::new(slices.to_vec()))]
+}
+
+/// The element without its overrides.
+#[derive(Debug, Clone)]
+struct Plain<'a>(&'a dyn Element);
+
+impl Element for Plain<'_> {
+    fn info(&self) -> &ElementInfo {
+        self.0.info()
+    }
+    fn strain_operator(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], b: &mut [f64]) -> f64 {
+        self.0.strain_operator(cell, slice, xi, b)
+    }
+    fn shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
+        self.0.shape(cell, xi, n)
+    }
+    fn inertia_shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
+        self.0.inertia_shape(cell, xi, n)
+    }
+}
+
+struct Matrices {
+    n: usize,
+    k: Vec<f64>,
+    m: Vec<f64>,
+    means: Vec<f64>,
+}
+
+impl Matrices {
+    fn of(element: &dyn Element, cell: &Cell<'_>) -> Result<Self, ElementError> {
+        let n = element.info().ndof();
+        let parts = parts(cell.stack);
+        let (mut k, mut m) = (vec![f64::NAN; n * n], vec![f64::NAN; n * n]);
+        let mut means = vec![f64::NAN; 6 * n * parts.len()];
+        let mut scratch = Scratch::default();
+        element.stiffness(cell, &mut scratch, &mut k)?;
+        element.mass(cell, &mut scratch, &mut m)?;
+        element.mean_strains(cell, &parts, &mut scratch, &mut means)?;
+        Ok(Self { n, k, m, means })
+    }
+
+    fn check(&self, element: &dyn Element, cell: &Cell<'_>, regular: bool) -> Result<(), String> {
+        let n = self.n;
+        for (name, matrix) in [("stiffness", &self.k), ("mass", &self.m)] {
+            if !matrix.iter().all(|v| v.is_finite()) {
+                return Err(format!("the {name} is not finite"));
+            }
+            same(n, matrix, |i, j| matrix[j + n * i]).map_err(|e| format!("the {name} is not symmetric: {e:.1e}"))?;
+        }
+        let plain = Matrices::of(&Plain(element), cell).map_err(|e| e.to_string())?;
+        for (name, own, provided) in [("stiffness", &self.k, &plain.k), ("mass", &self.m, &plain.m)] {
+            same(n, own, |i, j| provided[i + n * j])
+                .map_err(|e| format!("the overridden {name} differs from the provided one by {e:.1e}"))?;
+        }
+        close(&self.means, &plain.means).map_err(|e| format!("overridden mean strains differ by {e:.1e}"))?;
+        self.rigid_motions(element, cell, regular)?;
+        linear_fields(element, cell)
+    }
+
+    fn rigid_motions(&self, element: &dyn Element, cell: &Cell<'_>, regular: bool) -> Result<(), String> {
+        let (info, n) = (element.info(), self.n);
+        let plate = single(cell, *info)?;
+        let size = (cell.corners[2][0] - cell.corners[0][0]).hypot(cell.corners[2][1] - cell.corners[0][1]);
+        let centre = cell.position([0.0; 3]);
+        let mut dofs = Vec::new();
+        plate.cell_dofs(0, &mut dofs);
+        let motions: Vec<[f64; 6]> = dofs.iter().map(|d| plate.rigid_motions(*d, centre, size)).collect();
+        let vector = |motion: usize| -> Vec<f64> { motions.iter().map(|m| m[motion]).collect() };
+        let mut expressible = 0;
+        let mass = mass_of(cell);
+        for motion in 0..6 {
+            let u = vector(motion);
+            if u.iter().all(|u| u.abs() < 1e-9) {
+                continue;
+            }
+            expressible += 1;
+            for i in 0..n {
+                let (force, size) = (0..n).fold((0.0, 0.0), |(f, s), j| {
+                    let term = self.k[i + n * j] * u[j];
+                    (f + term, s + f64::abs(term))
+                });
+                if f64::abs(force) > 1e-8 * size {
+                    return Err(format!("rigid motion {motion} meets a force: {force:.1e} of {size:.1e}"));
+                }
+            }
+            let carried: f64 = (0..n * n).map(|k| u[k % n] * self.m[k] * u[k / n]).sum();
+            if motion < 3 && (carried / mass - 1.0).abs() > 1e-9 {
+                return Err(format!("translation {motion} carries {carried:e} kg of {mass:e}"));
+            }
+        }
+        if !regular {
+            return Ok(());
+        }
+        let zero = |matrix: &[f64]| {
+            // Derivative unknowns times a length: all entries of one unit.
+            let scale = |i: usize| if info.dofs[i % info.dofs.len()].m() == 0 { 1.0 } else { 1.0 / size };
+            let a = DMatrix::from_fn(n, n, |i, j| matrix[i + n * j] * scale(i) * scale(j));
+            let eigenvalues = SymmetricEigen::new(a).eigenvalues;
+            let largest = eigenvalues.max();
+            let count = eigenvalues.iter().filter(|e| e.abs() <= ZERO * largest).count();
+            (count, eigenvalues.min() / largest)
+        };
+        let (zeros, lowest) = zero(&self.k);
+        if zeros != expressible || lowest < -ZERO {
+            return Err(format!("{zeros} zero eigenvalues of the stiffness for {expressible} rigid motions"));
+        }
+        match zero(&self.m).1 {
+            lowest if lowest < -ZERO => Err(format!("the mass has a negative eigenvalue: {lowest:.1e} of the largest")),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn parts(stack: &Stack) -> Vec<Part> {
+    let each = |(slice, s): (usize, &Slice)| [Part { slice, q: s.q }, Part { slice, q: [s.q[1], s.q[1]] }];
+    stack.slices.iter().enumerate().flat_map(each).collect()
+}
+
+fn mass_of(cell: &Cell<'_>) -> f64 {
+    let p = cell.corners;
+    let area = 0.5 * ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1]));
+    area * cell.half_height() * cell.stack.density_moments[0]
+}
+
+/// A plate of this one cell.
+fn single(cell: &Cell<'_>, info: ElementInfo) -> Result<Plate, String> {
+    let mesh = QuadMesh {
+        points: cell.corners.to_vec(),
+        quads: vec![[0, 1, 2, 3]],
+        node_tags: vec![1, 2, 3, 4],
+        quad_tags: vec![1],
+        ..QuadMesh::default()
+    };
+    Plate::new(mesh, cell.z.to_vec(), vec![cell.stack.clone()], info, ZDerivatives::Shared)
+}
+
+/// The largest difference of two matrices, where it exceeds the tolerance.
+fn same(n: usize, a: &[f64], b: impl Fn(usize, usize) -> f64) -> Result<(), f64> {
+    let mut worst = 0.0_f64;
+    for j in 0..n {
+        for i in 0..n {
+            let scale = (a[i + n * i] * a[j + n * j]).abs().sqrt().max(f64::MIN_POSITIVE);
+            worst = worst.max((a[i + n * j] - b(i, j)).abs() / scale);
+        }
+    }
+    if worst <= TOLERANCE { Ok(()) } else { Err(worst) }
+}
+
+fn close(a: &[f64], b: &[f64]) -> Result<(), f64> {
+    let largest = a.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let worst = a.iter().zip(b).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs())) / largest;
+    if worst <= TOLERANCE { Ok(()) } else { Err(worst) }
+}
+
+/// A displacement field with its gradient: value\[n\], gradient\[n\]\[m\] = ∂uₙ/∂xₘ.
+type FieldAt = ([f64; 3], [[f64; 3]; 3]);
+
+/// The unknowns of a cell that follow `field`.
+fn interpolate(info: &ElementInfo, cell: &Cell<'_>, field: impl Fn([f64; 3]) -> FieldAt) -> Vec<f64> {
+    let node = |at: &[f64; 3]| {
+        let (value, gradient) = field(cell.position(*at));
+        info.dofs.iter().map(move |d| if d.m() == 0 { value[d.n() - 1] } else { gradient[d.n() - 1][d.m() - 1] })
+    };
+    info.nodes.iter().flat_map(node).collect()
+}
+
+/// Displacements uₙ = xₘ are reproduced with the strains that the element does not give up for a stress.
+fn linear_fields(element: &dyn Element, cell: &Cell<'_>) -> Result<(), String> {
+    let info = element.info();
+    let (section, shell) = (info.is_section(), info.is_shell());
+    // Rows of the strain that the theory keeps, and fields that it can express.
+    let rows: &[usize] = match (section, shell) {
+        (true, _) => &[0, 2, 5],
+        (_, true) => &[0, 1, 3],
+        _ => &[0, 1, 2, 3, 4, 5],
+    };
+    let fits = |n: usize, m: usize| !(section && (n == 1 || m == 1)) && !(shell && (n == 2 || m == 2));
+    let (mut b, mut shape) = (vec![0.0; 6 * info.ndof()], vec![0.0; 3 * info.ndof()]);
+    let origin = cell.position([0.0; 3]);
+    for n in 0..3 {
+        for m in 0..3 {
+            if !fits(n, m) {
+                continue;
+            }
+            let field = |x: [f64; 3]| {
+                let (mut value, mut gradient) = ([0.0; 3], [[0.0; 3]; 3]);
+                value[n] = x[m] - origin[m];
+                gradient[n][m] = 1.0;
+                (value, gradient)
+            };
+            let u = interpolate(info, cell, field);
+            for (slice, s) in cell.stack.slices.iter().enumerate() {
+                let xi = [0.37, if section { 0.0 } else { -0.62 }, 0.4 * s.q[0] + 0.6 * s.q[1]];
+                element.strain_operator(cell, slice, xi, &mut b);
+                element.shape(cell, xi, &mut shape);
+                let sum = |operator: &[f64], rows: usize, row: usize| -> f64 {
+                    operator.chunks_exact(rows).zip(&u).map(|(c, u)| c[row] * u).sum()
+                };
+                let wanted = [[0, 3, 5], [3, 1, 4], [5, 4, 2]][n][m];
+                for row in rows {
+                    let (got, want) = (sum(&b, 6, *row), f64::from(u8::from(*row == wanted)));
+                    if (got - want).abs() > 1e-7 {
+                        return Err(format!("u{} = x{}: strain component {row} is {got}, not {want}", n + 1, m + 1));
+                    }
+                }
+                let (value, _) = field(cell.position(xi));
+                let size = cell.half_height().max((cell.corners[2][0] - cell.corners[0][0]).abs());
+                if (0..3).any(|d| (sum(&shape, 3, d) - value[d]).abs() > 1e-9 * size) {
+                    return Err(format!("u{} = x{} is not reproduced", n + 1, m + 1));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A quadratic field that no symmetry favours, in the frame turned by `angle` and with lengths times `unit`.
+fn wave(angle: f64, unit: f64) -> impl Fn([f64; 3]) -> FieldAt {
+    let (s, c) = angle.sin_cos();
+    let r = [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]];
+    let l = 2e-3;
+    move |x| {
+        // Back to the frame and unit of the field, its value and gradient there, and forth again.
+        let p: [f64; 3] = std::array::from_fn(|i| (0..3).map(|j| r[j][i] * x[j]).sum::<f64>() / (unit * l));
+        let a = [[0.3, -0.2, 0.5], [0.7, 0.1, -0.4], [-0.6, 0.8, 0.2]];
+        let quadratic = |i: usize| 0.3 * p[i] * p[(i + 1) % 3] - 0.2 * p[i] * p[i];
+        let value: [f64; 3] = std::array::from_fn(|i| l * ((0..3).map(|j| a[i][j] * p[j]).sum::<f64>() + quadratic(i)));
+        let gradient: [[f64; 3]; 3] = std::array::from_fn(|i| {
+            let mut row = a[i];
+            row[i] += 0.3 * p[(i + 1) % 3] - 0.4 * p[i];
+            row[(i + 1) % 3] += 0.3 * p[i];
+            row
+        });
+        let turned = std::array::from_fn(|i| unit * (0..3).map(|j| r[i][j] * value[j]).sum::<f64>());
+        let double = |i: usize, j: usize| -> f64 {
+            (0..3).map(|k| (0..3).map(|l| r[i][k] * r[j][l] * gradient[k][l]).sum::<f64>()).sum()
+        };
+        (turned, std::array::from_fn(|i| std::array::from_fn(|j| double(i, j))))
+    }
+}
+
+/// Energy of the field on the cell.
+fn energy(element: &dyn Element, cell: &Cell<'_>, field: impl Fn([f64; 3]) -> FieldAt) -> Result<f64, String> {
+    let found = Matrices::of(element, cell).map_err(|e| e.to_string())?;
+    let (n, u) = (found.n, interpolate(element.info(), cell, field));
+    Ok(0.5 * (0..n * n).map(|i| u[i % n] * found.k[i] * u[i / n]).sum::<f64>())
+}
+
+/// Neither the unit of length nor the axes nor the first corner matter.
+fn frames(element: &dyn Element) -> Result<(), String> {
+    let section = element.info().is_section();
+    let corners = if section {
+        [[0.0, 0.0], [2e-3, 0.0], [2e-3, 1e-3], [0.0, 1e-3]]
+    } else {
+        [[0.0, 0.0], [2e-3, 0.1e-3], [2.3e-3, 2.0e-3], [0.3e-3, 1.9e-3]]
+    };
+    let z = [-0.3e-3, 0.3e-3];
+    let stack = Stack::new(vec![tape(20.0)]);
+    let reference = energy(element, &Cell { corners, z, stack: &stack }, wave(0.0, 1.0))?;
+    let agree = |what: &str, got: f64| match (got / reference - 1.0).abs() {
+        error if error <= 1e-9 => Ok(()),
+        error => Err(format!("{what} changes the energy by {error:.1e}")),
+    };
+    for unit in [1e-3, 1e3] {
+        let scaled = Cell { corners: corners.map(|p| p.map(|p| unit * p)), z: z.map(|z| unit * z), stack: &stack };
+        agree("the unit of length", energy(element, &scaled, wave(0.0, unit))? / unit.powi(3))?;
+    }
+    if section {
+        return Ok(());
+    }
+    for turn in 1..4 {
+        let mut corners = corners;
+        corners.rotate_left(turn);
+        agree("the corner counted first", energy(element, &Cell { corners, z, stack: &stack }, wave(0.0, 1.0))?)?;
+    }
+    for degrees in [90.0, 33.0] {
+        let angle = f64::to_radians(degrees);
+        let (s, c) = angle.sin_cos();
+        let turned = Stack::new(vec![tape(20.0 + degrees)]);
+        let corners = corners.map(|[x, y]| [c * x - s * y, s * x + c * y]);
+        agree("a turn of the axes", energy(element, &Cell { corners, z, stack: &turned }, wave(angle, 1.0))?)?;
+    }
+    Ok(())
+}
+
+/// Cells that are none.
+fn refusals(element: &dyn Element) -> Result<(), String> {
+    let stack = Stack::new(vec![tape(0.0)]);
+    let (good, z) = ([[0.0, 0.0], [1e-3, 0.0], [1e-3, 1e-3], [0.0, 1e-3]], [0.0, 1e-3]);
+    let folded = [good[0], good[3], good[2], good[1]];
+    let undefined = [[f64::NAN, 0.0], good[1], good[2], good[3]];
+    for (what, corners, z) in [("folded", folded, z), ("undefined", undefined, z), ("flat", good, [0.0, 0.0])] {
+        if Matrices::of(element, &Cell { corners, z, stack: &stack }).is_ok() {
+            return Err(format!("a cell that is {what} is not refused"));
+        }
+    }
+    Ok(())
+}

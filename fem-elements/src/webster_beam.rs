@@ -1,0 +1,178 @@
+//! Webster's beam element: the section x-z of a strip (report eqs 1-15).
+
+use crate::hermite::{self, NodeFunctions};
+use crate::hermite_prism::Mass;
+use fem_core::dof::Dof;
+use fem_core::element::{Cell, Element, ElementError, ElementInfo};
+use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::quadrature::MAX_POINTS;
+use fem_core::tensor::Matrix6;
+
+/// Anticlockwise in the section, from the left of the bottom face.
+const NODES: [[f64; 3]; 4] = [[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]];
+
+/// U10 U11 U13 U30 U31 U33.
+const DOFS: [Dof; 6] = [Dof::SOLID[0], Dof::SOLID[1], Dof::SOLID[3], Dof::SOLID[8], Dof::SOLID[9], Dof::SOLID[11]];
+
+/// Which of the functions value, ∂r, ∂s, ∂q belong to the three unknowns of a component.
+const FUNCTIONS: [usize; 3] = [0, 1, 3];
+
+/// Components of strain in the section, and those across it.
+const WITHIN: [usize; 3] = [0, 2, 5];
+const ACROSS: [usize; 3] = [1, 3, 4];
+
+/// What holds across the strip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PlaneState {
+    /// σ₂₂ = σ₁₂ = σ₂₃ = 0: a narrow strip, free at its sides.
+    Stress,
+    /// ε₂₂ = γ₁₂ = γ₂₃ = 0: a strip out of a wide plate in cylindrical bending.
+    Strain,
+}
+
+/// Four-node section of a strip with six unknowns a node, any number of plies through one cell.
+///
+/// ```text
+///   4-----3     q
+///   |     |     |
+///   1-----2     o--- r
+/// ```
+///
+/// Unknowns count `6·node + 3·component + m` with component x, z and m = 0 (value), 1, 2 (derivative along x, z). The
+/// shape functions are those of the solid element at the face s = sᵢ, where (19) is (3). Complete cubics in x and z are
+/// reproduced. The cells are rectangles of the strip's width along x.
+///
+/// Under plane stress the strains across the section follow, ply by ply, from the stresses that vanish; they jump from
+/// ply to ply and the stiffness is the condensed one.
+#[derive(Debug, Clone)]
+pub struct WebsterBeam {
+    info: ElementInfo,
+    state: PlaneState,
+    mass: Mass,
+}
+
+impl WebsterBeam {
+    /// In-plane order 4 is exact.
+    pub const IN_PLANE_ORDER: usize = 4;
+
+    /// # Errors
+    /// In-plane orders below 3, which leave zero-energy modes, and above [`MAX_POINTS`].
+    pub fn new(state: PlaneState, mass: Mass, in_plane_order: usize) -> Result<Self, ElementError> {
+        if !(3..=MAX_POINTS).contains(&in_plane_order) {
+            return Err(ElementError(format!(
+                "in-plane order {in_plane_order}: at least 3 Gauss points along x are needed (2 leave 4 zero-energy \
+                 modes), at most {MAX_POINTS} are offered"
+            )));
+        }
+        Ok(Self { info: ElementInfo { nodes: &NODES, dofs: &DOFS, in_plane_order, ply_order: 4 }, state, mass })
+    }
+}
+
+/// The 3-D functions of a node of the section, which lies in their face s = 1.
+fn functions([ri, _, qi]: [f64; 3], r: f64) -> NodeFunctions {
+    hermite::node_functions([ri, 1.0, qi], r, 1.0)
+}
+
+/// Gauss-Jordan elimination of the strains across the section from σ(across) = 0: rows `ACROSS` then hold A with
+/// ε(across) = −A ε(within), rows `WITHIN` the condensed stiffness.
+fn eliminate(mut c: Matrix6) -> Matrix6 {
+    for k in ACROSS {
+        let pivot = c[k][k];
+        let row = c[k].map(|v| v / pivot);
+        for (i, other) in c.iter_mut().enumerate() {
+            let factor = other[k];
+            for (v, pivot_row) in other.iter_mut().zip(&row) {
+                *v = if i == k { *pivot_row } else { *v - factor * pivot_row };
+            }
+        }
+    }
+    c
+}
+
+impl Element for WebsterBeam {
+    fn info(&self) -> &ElementInfo {
+        &self.info
+    }
+
+    fn strain_operator(&self, cell: &Cell<'_>, slice: usize, [r, _, q]: [f64; 3], b: &mut [f64]) -> f64 {
+        let plane = cell.plane(r, 0.0);
+        let (half_length, half_height) = (plane.jacobian[0][0], cell.half_height());
+        let scale = [1.0, half_length, half_height];
+        b.fill(0.0);
+        for (corner, b) in NODES.iter().zip(b.chunks_exact_mut(6 * DOFS.len())) {
+            let natural = functions(*corner, r);
+            for (m, function) in FUNCTIONS.iter().enumerate() {
+                let by_x = scale[m] * hermite::at(&natural.n_r[*function], q) / half_length;
+                let by_z = scale[m] * hermite::at(&hermite::derivative(&natural.n[*function]), q) / half_height;
+                let (u, w) = (6 * m, 6 * (3 + m));
+                (b[u], b[u + 5]) = (by_x, by_z);
+                (b[w + 2], b[w + 5]) = (by_z, by_x);
+            }
+        }
+        if self.state == PlaneState::Stress {
+            let c = eliminate(cell.stack.slices[slice].c);
+            for e in b.chunks_exact_mut(6) {
+                for k in ACROSS {
+                    e[k] = -WITHIN.iter().map(|j| c[k][*j] * e[*j]).sum::<f64>();
+                }
+            }
+        }
+        plane.det * half_height
+    }
+
+    fn shape(&self, cell: &Cell<'_>, [r, _, q]: [f64; 3], n: &mut [f64]) -> f64 {
+        let plane = cell.plane(r, 0.0);
+        let scale = [1.0, plane.jacobian[0][0], cell.half_height()];
+        n.fill(0.0);
+        for (corner, n) in NODES.iter().zip(n.chunks_exact_mut(3 * DOFS.len())) {
+            let natural = functions(*corner, r);
+            for (m, function) in FUNCTIONS.iter().enumerate() {
+                let value = scale[m] * hermite::at(&natural.n[*function], q);
+                n[3 * m] = value;
+                n[3 * (3 + m) + 2] = value;
+            }
+        }
+        plane.det * cell.half_height()
+    }
+
+    fn inertia_shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
+        if self.mass == Mass::Cubic {
+            return self.shape(cell, xi, n);
+        }
+        n.fill(0.0);
+        for ([ri, _, qi], n) in NODES.iter().zip(n.chunks_exact_mut(3 * DOFS.len())) {
+            let value = hermite::at(&hermite::trilinear([*ri, 1.0, *qi], xi[0], 1.0), xi[2]);
+            n[0] = value;
+            n[3 * 3 + 2] = value;
+        }
+        cell.plane(xi[0], 0.0).det * cell.half_height()
+    }
+}
+
+impl Plugin for WebsterBeam {
+    const INFO: PluginInfo = PluginInfo {
+        kind: Kind::Element,
+        name: "webster-beam",
+        summary: "section of a strip along x, 6 unknowns a node, any number of plies through one cell",
+        source: "Webster, in AFWAL-TR-87-4117, eqs 1-15",
+        params: &[
+            ParamInfo {
+                name: "state",
+                doc: "`plane-stress` (default): sides free; `plane-strain`: no strain across the strip",
+            },
+            ParamInfo { name: "mass", doc: "`cubic` (default): consistent; `linear`: the report's, translations only" },
+            ParamInfo { name: "in_plane_order", doc: "Gauss points along x, at least 3; default 4" },
+        ],
+    };
+
+    fn build(params: &Params) -> Result<Built, ParamError> {
+        let state = match params.choice("state", &["plane-stress", "plane-strain"])? {
+            "plane-strain" => PlaneState::Strain,
+            _ => PlaneState::Stress,
+        };
+        let order = params.count("in_plane_order", 3, Some(Self::IN_PLANE_ORDER))?;
+        Self::new(state, Mass::of(params)?, order)
+            .map(|e| Built::Element(Box::new(e)))
+            .map_err(|e| ParamError::new("in_plane_order", e.to_string()))
+    }
+}

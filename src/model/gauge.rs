@@ -1,0 +1,96 @@
+//! Places whose failure indices are kept over time.
+
+use super::{Builder, NamedCriterion};
+use fem_core::failure::Site;
+use fem_core::patch;
+use fem_core::plate::Plate;
+use fem_core::window;
+use fem_failure::scan::Place;
+use fem_io::scene::{Depth, IndexWatch, SceneError};
+
+/// A place whose indices are kept over time: one cell at one depth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gauge {
+    /// The quad: of those that hold the place the one whose centre is nearest, the first of equals.
+    pub quad: usize,
+    /// Ply or interface.
+    pub place: Place,
+    /// The criteria, by their numbers in the model.
+    pub criteria: Vec<usize>,
+}
+
+/// Most histories: one picture shows them all, beside a line at failure.
+const MOST: usize = 39;
+
+impl Builder<'_> {
+    pub(super) fn gauges(
+        &self,
+        plate: &Plate,
+        watched: &[usize],
+        criteria: &[NamedCriterion],
+    ) -> Result<Vec<Gauge>, SceneError> {
+        let failure = &self.scene.failure;
+        if criteria.is_empty() {
+            return Ok(Vec::new());
+        }
+        let gauges = failure.watch.iter().map(|watch| self.gauge(plate, watched, criteria, watch));
+        let gauges = gauges.collect::<Result<Vec<_>, _>>()?;
+        let histories: usize = gauges.iter().map(|gauge| gauge.criteria.len()).sum();
+        if histories > MOST {
+            let message = format!("`failure.watch` asks for {histories} histories, a criterion at a place each");
+            let help = format!("name one `criterion` per place, or fewer places: at most {MOST} histories are kept");
+            return Err(self.error(&failure.watch[0].at, message, help));
+        }
+        Ok(gauges)
+    }
+
+    fn gauge(
+        &self,
+        plate: &Plate,
+        watched: &[usize],
+        criteria: &[NamedCriterion],
+        watch: &IndexWatch,
+    ) -> Result<Gauge, SceneError> {
+        let (point, _) = self.point(plate, &watch.at)?;
+        let mesh = &plate.plane;
+        let from_centre = |quad: usize| {
+            let c = window::centroid(&mesh.corners(quad));
+            (c[0] - point[0]).hypot(c[1] - point[1])
+        };
+        let holding = || watched.iter().copied().filter(|q| patch::locate(&mesh.corners(*q), point).is_some());
+        let nearest = holding().map(from_centre).fold(f64::INFINITY, f64::min);
+        // At a node of a symmetric mesh several are equally near: the first of them, whatever the last bit says.
+        let quad = holding().find(|q| from_centre(*q) <= nearest * (1.0 + 1e-9)).ok_or_else(|| {
+            let [x, y] = point.map(|v| v * 1e3);
+            let message = format!("no cell whose stresses are watched holds ({x:.4}, {y:.4}) mm");
+            self.error(&watch.at, message, "choose a place on the plate and within `failure.radius` of the impact")
+        })?;
+
+        let plies = self.scene.laminate.value.plies.len();
+        let (place, fits) = match watch.depth.value {
+            Depth::Ply(k) => (Place::Ply(k as u16), k < plies),
+            Depth::Interface(k) => (Place::Interface(k as u16), k + 1 < plies),
+        };
+        if !fits {
+            let message = format!("the laminate has {plies} plies");
+            return Err(self.error(&watch.depth, message, "plies are counted from 1 at the bottom"));
+        }
+        let looks = |k: &usize| {
+            let site = criteria[*k].1.info().site;
+            // Without a resin the laminate has no interface to look at.
+            site == place.site() && (site == Site::Ply || self.scene.interface.is_some())
+        };
+        let asked = (0..criteria.len()).filter(|k| watch.criterion.is_none_or(|asked| asked == *k));
+        let criteria: Vec<usize> = asked.filter(looks).collect();
+        if criteria.is_empty() {
+            let (message, help) = match place.site() {
+                Site::Ply => ("none of the criteria judges plies", "watch an `interface`, or choose another criterion"),
+                Site::Interface => {
+                    ("none of the criteria judges interfaces", "watch a `ply`, or choose another criterion")
+                }
+            };
+            return Err(self.error(&watch.depth, message, help));
+        }
+        Ok(Gauge { quad, place, criteria })
+    }
+}
