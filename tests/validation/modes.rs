@@ -47,7 +47,7 @@ fn three_plies_rather_thin() {
 }
 
 #[test]
-#[ignore = "five seconds"]
+#[ignore = "three seconds"]
 fn four_plies_thick() {
     check("vib3d_0_90_90_0_pag25.csv", "[0_2/90_2]s", 0.125, 8, 4.0, 5, 10);
 }
@@ -77,7 +77,8 @@ fn equal_frequencies_of_a_square_plate_are_all_found() {
 #[test]
 fn linear_inertia_functions_leave_few_modes_and_those_right() {
     let exact = reference("vib3d_iso_steel.csv")[0]["omega_rad_per_s"];
-    let fine = |keys: &str| steel().rectangle([40.0; 2], [6; 2]).element(keys).sides(super::scene::QUARTER).frequencies(4);
+    let fine =
+        |keys: &str| steel().rectangle([40.0; 2], [6; 2]).element(keys).sides(super::scene::QUARTER).frequencies(4);
     let (linear, cubic) = (fine("mass = 'linear'"), fine("mass = 'cubic'"));
     assert!(linear.iter().all(|omega| omega.is_finite() && *omega > 0.0), "{linear:?}");
     assert!((linear[0] / exact - 1.0).abs() < LINEAR_MASS, "{linear:?} {exact}");

@@ -1,6 +1,7 @@
 //! Scenes of rectangular plates, and tables to hold their results against.
 
 use crate::support::root;
+use fem::core::profile::ProfilePoint;
 use fem::io::scene;
 use fem::statics::{self, Solution};
 use fem::{Model, Registry, modes};
@@ -22,21 +23,15 @@ pub(super) fn isotropic(gpa: f64, nu: f64, density: f64) -> String {
     let g = 0.5 * gpa / (1.0 + nu);
     let axis = |i| format!("e{i} = '{gpa} GPa'\n");
     let plane = |ij| format!("nu{ij} = {nu}\ng{ij} = '{g} GPa'\n");
-    format!(
-        "{}{}density = '{density} g/cm^3'\n",
-        [1, 2, 3].map(axis).concat(),
-        [12, 13, 23].map(plane).concat()
-    )
+    format!("{}{}density = '{density} g/cm^3'\n", [1, 2, 3].map(axis).concat(), [12, 13, 23].map(plane).concat())
 }
 
 /// How a side is held, over its whole face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Side {
     Free,
-    /// Displacements are zero.
+    /// Displacements are zero, with their derivatives along the side and along z.
     Clamped,
-    /// The displacement across the side is zero, for straining along it alone.
-    Sliding,
     /// Deflection and displacement along the side are zero, with their derivatives along it and along z: a simple
     /// support, and a plane of antisymmetry.
     Supported,
@@ -132,22 +127,22 @@ impl Plate {
         let mut supports = String::new();
         for (side, group) in self.sides.iter().zip(["x-min", "x-max", "y-min", "y-max"]) {
             let (across, along) = if group.starts_with('x') { (1, 2) } else { (2, 1) };
-            let fix: Vec<String> = match side {
+            let held = |components: &[i32]| -> Vec<String> {
+                components.iter().flat_map(|n| [0, along, 3].map(|m| format!("U{n}{m}"))).collect()
+            };
+            let fix = match side {
                 Side::Free => continue,
-                Side::Clamped => ["U10", "U20", "U30"].map(String::from).to_vec(),
-                Side::Sliding => vec![format!("U{across}0")],
-                Supported => [along, 3].iter().flat_map(|n| [0, along, 3].map(|m| format!("U{n}{m}"))).collect(),
+                Side::Clamped => held(&[across, along, 3]),
+                Supported => held(&[along, 3]),
                 Symmetric => {
-                    let own = [0, along, 3].map(|m| format!("U{across}{m}"));
-                    own.into_iter().chain([along, 3].map(|n| format!("U{n}{across}"))).collect()
+                    let slopes = [along, 3].map(|n| format!("U{n}{across}"));
+                    held(&[across]).into_iter().chain(slopes).collect()
                 }
             };
             let _ = writeln!(supports, "[[support]]\ngroup = '{group}'\nat = 'all'\nfix = {fix:?}");
         }
         if analysis == "static" {
             supports.push_str("[[support]]\nrestrain = 'rigid-motions'\n");
-        } else if supports.is_empty() {
-            text.push_str("support = []\n");
         }
         let _ = write!(
             text,
@@ -197,9 +192,8 @@ pub(super) fn gmsh_grid(x: &[f64], y: &[f64], distortion: f64) -> MeshFile {
             let _ = writeln!(t, "{} {} 0", moved(x, i, 3 * node(i, j)), moved(y, j, 5 * node(i, j) + 1));
         }
     }
-    let lines = |all: Vec<Vec<usize>>| all;
-    let blocks = [
-        (0, 1, 15, lines(vec![vec![n]])),
+    let blocks: [(_, _, _, Vec<Vec<usize>>); 6] = [
+        (0, 1, 15, vec![vec![n]]),
         (1, 1, 1, (1..ny).map(|j| vec![node(0, j - 1), node(0, j)]).collect()),
         (1, 2, 1, (1..ny).map(|j| vec![node(nx - 1, j - 1), node(nx - 1, j)]).collect()),
         (1, 3, 1, (1..nx).map(|i| vec![node(i - 1, 0), node(i, 0)]).collect()),
@@ -243,6 +237,28 @@ pub(super) fn reference(name: &str) -> Vec<Row> {
 /// The largest absolute value of a column.
 pub(super) fn largest(rows: &[Row], column: &str) -> f64 {
     rows.iter().fold(0.0_f64, |m, r| m.max(r[column].abs()))
+}
+
+/// The largest difference of `column` from `value` of the points of a profile, at every row's ply and height. `height` is
+/// the column of z and its unit, mm; each ply of the table is `split` plies of the model.
+pub(super) fn farthest<'r>(
+    rows: impl IntoIterator<Item = &'r Row>,
+    column: &str,
+    height: (&str, f64),
+    split: usize,
+    profile: &[ProfilePoint],
+    value: impl Fn(&ProfilePoint) -> f64,
+) -> f64 {
+    let mut worst = 0.0_f64;
+    for row in rows {
+        let same = |p: &&ProfilePoint| {
+            p.ply / split + 1 == row["ply"] as usize && (p.z * 1e3 - row[height.0] * height.1).abs() < 1e-6
+        };
+        let mut here = profile.iter().filter(same).peekable();
+        assert!(here.peek().is_some(), "nothing at ply {} z {}", row["ply"], row[height.0]);
+        here.for_each(|p| worst = worst.max((value(p) - row[column]).abs()));
+    }
+    worst
 }
 
 /// The order p of errors C hᵖ by least squares, for meshes of `n` cells a side.
