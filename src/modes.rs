@@ -36,7 +36,7 @@ pub struct Solution {
 pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Solution, Error> {
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
-    let (mut structure, _) = run::structure(model, threads, &mut counters)?;
+    let (mut structure, _) = run::structure(model, true, threads, &mut counters)?;
     stopwatch.lap("assemble");
     let modes = modes::lowest(&mut structure, count, model.held)?;
     (counters.factorisations, counters.solves) = structure.work();

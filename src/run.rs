@@ -110,19 +110,21 @@ pub struct Maximum {
     pub site: ScanSite,
 }
 
-/// K and M of `model`, and the number of entries of the factor of K.
+/// K and M of `model`, and the number of entries of the factor of K. M is left zero where `inertia` is not wanted.
 ///
 /// # Errors
 /// A cell that the element refuses, a pattern too large to factorise.
 pub fn structure(
     model: &Model,
+    inertia: bool,
     threads: NonZeroUsize,
     counters: &mut Counters,
 ) -> Result<(SparseStructure, usize), Error> {
     let pattern = Arc::new(pattern(&model.plate, &model.constraints));
     let mut matrix =
         |which| assemble(&model.plate, &*model.element, &model.constraints, &pattern, which, threads, counters);
-    let (k, m) = (matrix(Matrix::Stiffness)?, matrix(Matrix::Mass)?);
+    let k = matrix(Matrix::Stiffness)?;
+    let m = if inertia { matrix(Matrix::Mass)? } else { vec![0.0; k.len()] };
     let symbolic = Symbolic::new(pattern.clone())?;
     let entries = symbolic.entries();
     let (plate, originals) = (model.plate.clone(), model.constraints.clone());
@@ -139,7 +141,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     let Plan::Impact(impact) = &model.plan else { return Err(Error::NoImpact) };
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
-    let (mut structure, factor_entries) = structure(model, threads, &mut counters)?;
+    let (mut structure, factor_entries) = structure(model, true, threads, &mut counters)?;
     stopwatch.lap("assemble");
     let (unknowns, stiffness_entries) = (structure.ndof(), structure.entries());
     let reduced = match &impact.reduction {

@@ -50,7 +50,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     let Plan::Static { forces } = &model.plan else { return Err(Error::NoLoads) };
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
-    let (mut structure, factor_entries) = run::structure(model, threads, &mut counters)?;
+    let (mut structure, factor_entries) = run::structure(model, false, threads, &mut counters)?;
     stopwatch.lap("assemble");
     let constraints = &model.constraints;
     // u = C ũ + g, so that Cᵀ K C ũ = Cᵀ f; supports hold at zero, g = 0.

@@ -12,7 +12,7 @@ use faer::{Accum, Mat, Par};
 use fem_core::element::{Cell, Element, Scratch, Slice, Stack};
 use fem_core::material::Elastic;
 use fem_core::tensor::rotate_stiffness;
-use fem_elements::{HermiteHex, HermitePrism, Mass, PlaneState, WebsterBeam};
+use fem_elements::{HermiteHex, HermitePrism, Hex20, Mass, Mitc4, PlaneState, WebsterBeam};
 
 fn main() {
     divan::main();
@@ -42,6 +42,8 @@ fn subjects() -> Vec<Subject> {
     };
     add("hermite-prism", Box::new(prism), quadrilateral as fn(f64) -> Corners, Some(general));
     add("hermite-hex", Box::new(HermiteHex::new(Mass::Cubic)), parallelogram, Some(constant));
+    add("hex20", Box::new(Hex20::new(3).unwrap()), quadrilateral, None);
+    add("mitc4", Box::new(Mitc4::default()), quadrilateral, None);
     add("webster-beam, plane stress", Box::new(beam(PlaneState::Stress)), rectangle, None);
     add("webster-beam, plane strain", Box::new(beam(PlaneState::Strain)), rectangle, None);
     all

@@ -35,7 +35,7 @@ fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
         plan => {
             let counters = &mut Counters::default();
             let (structure, factor) =
-                run::structure(&model, NonZeroUsize::MIN, counters).inspect_err(|_| warn(&model))?;
+                run::structure(&model, true, NonZeroUsize::MIN, counters).inspect_err(|_| warn(&model))?;
             lines.extend(unknowns(&model, structure.entries(), factor));
             lines.push(match plan {
                 Plan::Modes { count } => ("analysis", format!("the {count} lowest modes")),
