@@ -41,11 +41,11 @@ fn write_matrix(dir: &OutputDir, name: &str, pattern: &Pattern, values: &[f64]) 
     // Both triangles: readers disagree on which one a symmetric file holds, and sprs writes the other one.
     let mut full = TriMat::with_capacity((n, n), 2 * values.len());
     for column in 0..n {
-        for entry in pattern.starts[column]..pattern.starts[column + 1] {
-            let (row, value) = (pattern.rows[entry], values[entry]);
-            full.add_triplet(row, column, value);
-            if row != column {
-                full.add_triplet(column, row, value);
+        let entries = pattern.starts[column]..pattern.starts[column + 1];
+        for (row, value) in pattern.rows[entries.clone()].iter().zip(&values[entries]) {
+            full.add_triplet(*row, column, *value);
+            if *row != column {
+                full.add_triplet(column, *row, *value);
             }
         }
     }

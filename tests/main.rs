@@ -11,3 +11,4 @@ mod model;
 mod report;
 mod snapshots;
 mod support;
+mod validation;

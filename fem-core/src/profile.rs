@@ -40,8 +40,8 @@ pub struct Profile {
 const AROUND: usize = 30;
 const AROUND_SECTION: usize = 6;
 
-/// Terms of a complete cubic in the plane.
-const TERMS: usize = 10;
+/// Terms xⁱ yʲ of a cubic in each direction: without x³y a half-wave of sine over the cells around is 20 % off.
+const TERMS: usize = 16;
 
 /// Gauss points between two heights of a profile: stresses of a ply are cubic in z at most.
 const BETWEEN: usize = 3;
@@ -74,7 +74,7 @@ impl Profile {
     ///
     /// τ(z) = −∫ (∂σ₁₁/∂x + ∂σ₁₂/∂y) dz, likewise along y;  σ₃₃(z) = −p − ∫ (∂τ₁₃/∂x + ∂τ₂₃/∂y) dz
     ///
-    /// The in-plane derivatives are those of a cubic fitted to the stresses in the centres of the cells around the point,
+    /// The in-plane derivatives are those of a bicubic fitted to the stresses in the centres of the cells around the point,
     /// where the parts of a displacement that an element interpolates linearly have their best slopes. What τ misses at
     /// the stress-free top is taken off linearly.
     pub fn sample(
@@ -148,7 +148,7 @@ impl Profile {
         }
     }
 
-    /// Least squares of a complete cubic around the point: rows give its coefficients from the samples.
+    /// Least squares of a cubic in x times a cubic in y around the point: rows give its coefficients from the samples.
     fn fit(&self, plate: &Plate) -> Fit {
         let section = plate.info().is_section();
         let centre = |quad: &usize| {
@@ -159,7 +159,7 @@ impl Profile {
         let size = samples.iter().fold(0.0_f64, |m, s| m.max(s[0].abs()).max(s[1].abs()));
         let terms = |[x, y]: [f64; 2]| -> [f64; TERMS] {
             let (x, y) = (x / size, if section { 0.0 } else { y / size });
-            [1.0, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y]
+            std::array::from_fn(|k| x.powi(k as i32 % 4) * y.powi(k as i32 / 4))
         };
         let a = DMatrix::from_fn(samples.len(), TERMS, |i, j| terms(samples[i])[j]);
         // The pseudo-inverse leaves out what the samples cannot tell (y on a section).
@@ -179,7 +179,7 @@ impl Profile {
                 }
             }
         }
-        let [x, y, xx, xy, yy] = [1, 2, 3, 4, 5].map(|k| coefficients[k]);
+        let [x, y, xx, xy, yy] = [1, 4, 2, 5, 8].map(|k| coefficients[k]);
         let (h, hh) = (fit.size, fit.size * fit.size);
         [(x[0] + y[2]) / h, (x[2] + y[1]) / h, (2.0 * xx[0] + 2.0 * xy[2] + 2.0 * yy[1]) / hh]
     }

@@ -69,7 +69,7 @@ pub enum Pressure {
     /// A formula of x and y.
     Formula {
         /// The formula.
-        formula: Formula,
+        formula: Box<Formula>,
         /// Unit of its value, Pa.
         pascals: f64,
         /// Unit of x and y, m.
@@ -194,7 +194,7 @@ fn formula(table: &Reader<'_>) -> Result<Pressure, SceneError> {
             .map_err(|e| field.error(e.to_string(), e.remedy(Some(dimension))))
     };
     Ok(Pressure::Formula {
-        formula,
+        formula: Box::new(formula),
         pascals: unit("unit", Dimension::PRESSURE)?,
         metres: unit("length", Dimension::LENGTH)?,
     })

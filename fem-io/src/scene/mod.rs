@@ -230,7 +230,11 @@ pub fn parse(text: &str, path: &Path) -> Result<Scene, SceneError> {
         interface,
         z_derivatives: read_z_derivatives(&element)?,
         element: PluginSpec::read(&element, "kind", &["z_derivatives"])?,
-        supports: support::read_all(&root.required("support")?)?,
+        supports: match (&analysis, root.optional("support")) {
+            // A free plate has modes too.
+            (Analysis::Modes { .. }, None) => Vec::new(),
+            _ => support::read_all(&root.required("support")?)?,
+        },
         equations: root.optional("equation").map_or(Ok(Vec::new()), |field| support::read_equations(&field))?,
         couples: root.optional("couple").map_or(Ok(Vec::new()), |field| support::read_couples(&field))?,
         failure: run::read_failure(&root.required("failure")?, damage == Damage::Onset && in_time, in_time)?,

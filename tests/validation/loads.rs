@@ -1,0 +1,155 @@
+//! Each kind of load: its resultant and moments, and a problem with a closed form.
+
+use super::scene::{MeshFile, Plate, Side, gmsh_grid, isotropic};
+use fem::Plan;
+use std::f64::consts::PI;
+
+/// Where the element holds the exact solution.
+const EXACT: f64 = 1e-9;
+/// Cantilevers, against beam theory with shear.
+const BEAM: f64 = 5e-4;
+/// The same on distorted cells: an error that finer cells of the same distortion do not remove.
+const DISTORTED_BEAM: f64 = 5e-3;
+/// A thin plate under a small circle, against Navier's series of a point force.
+const POINT: f64 = 5e-3;
+
+/// 20 x 10 mm, 1 mm thick, E = 70 GPa, ν = 0 where nothing else is said.
+const E: f64 = 70e9;
+
+fn distorted() -> MeshFile {
+    gmsh_grid(&[0.0, 4.0, 10.0, 15.0, 20.0], &[0.0, 3.0, 7.0, 10.0], 0.25)
+}
+
+fn regular() -> MeshFile {
+    gmsh_grid(&[0.0, 5.0, 10.0, 15.0, 20.0], &[0.0, 5.0, 10.0], 0.0)
+}
+
+fn plate(mesh: &MeshFile, nu: f64) -> Plate {
+    Plate::new(&isotropic(E * 1e-9, nu, 2.7), "[0_2]", 0.5, vec![1, 1]).on(mesh).sides([Side::Free; 4])
+}
+
+/// The load does the work of `force` at `point` on every rigid motion.
+#[track_caller]
+fn resultant(load: &str, force: [f64; 3], point: [f64; 3]) {
+    let mesh = distorted();
+    let model = plate(&mesh, 0.3).load(load).model("static");
+    let Plan::Static { forces } = &model.plan else { panic!("{:?}", model.plan) };
+    let mut work = [0.0; 6];
+    for (dof, f) in forces.iter().enumerate() {
+        let motions = model.plate.rigid_motions(dof, [0.0; 3], 1.0);
+        work.iter_mut().zip(motions).for_each(|(w, m)| *w += f * m);
+    }
+    let ([x, y, z], [fx, fy, fz]) = (point, force);
+    let want = [fx, fy, fz, y * fz - z * fy, z * fx - x * fz, x * fy - y * fx];
+    let size = force.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+    for (got, want) in work.iter().zip(want) {
+        assert!((got - want).abs() < EXACT * size, "{load}: {work:?}, not {want:?}");
+    }
+}
+
+#[test]
+fn every_load_has_its_resultant_and_moments() {
+    resultant("pressure = '2 MPa'", [0.0, 0.0, -400.0], [10e-3, 5e-3, 0.5e-3]);
+    resultant("pressure = '2 MPa'\nface = 'bottom'\ngroup = 'plate'", [0.0, 0.0, 400.0], [10e-3, 5e-3, -0.5e-3]);
+    let edge = "force_per_length = ['10 N/mm', '0 N/mm', '-3 N/mm']\ngroup = 'x-max'";
+    resultant(edge, [100.0, 0.0, -30.0], [20e-3, 5e-3, 0.0]);
+    let corner = "force = ['1 N', '2 N', '3 N']\ngroup = 'corner'\nat = 'top'";
+    resultant(corner, [1.0, 2.0, 3.0], [20e-3, 10e-3, 0.5e-3]);
+    resultant(
+        "patch_radius = '2 mm'\nforce = '100 N'\nat = { x = '8 mm', y = '4 mm' }",
+        [0.0, 0.0, -100.0],
+        [8e-3, 4e-3, 0.5e-3],
+    );
+    let weight = 2700.0 * 20e-3 * 10e-3 * 1e-3;
+    let gravity = "gravity = ['1 m/s^2', '0 m/s^2', '-9.81 m/s^2']";
+    resultant(gravity, [weight, 0.0, -9.81 * weight], [10e-3, 5e-3, 0.0]);
+}
+
+#[test]
+fn edge_loads_pull_a_distorted_mesh_evenly() {
+    let mesh = distorted();
+    let nu = 0.3;
+    let pull = |plate: Plate, group: &str, force: &str| {
+        plate.load(&format!("force_per_length = ['{force} N/mm', '0 N/mm', '0 N/mm']\ngroup = '{group}'"))
+    };
+    let loaded = pull(pull(plate(&mesh, nu), "x-max", "10"), "x-min", "-10");
+    let solution = loaded.profile([7.0, 4.0], 3).profile([19.0, 4.0], 3).solve();
+    // 10 N/mm over 1 mm.
+    let stress = 10e6;
+    for p in solution.profiles.iter().flatten() {
+        let off = p.global.0.iter().zip([stress, 0.0, 0.0, 0.0, 0.0, 0.0]).map(|(s, want)| (s - want).abs());
+        assert!(off.fold(0.0, f64::max) < EXACT * stress, "{:?}", p.global);
+    }
+    let stretch = solution.profiles[1][0].displacement[0] - solution.profiles[0][0].displacement[0];
+    assert!((stretch / (stress / E * 12e-3) - 1.0).abs() < EXACT, "{stretch}");
+}
+
+#[test]
+fn opposite_pressures_squeeze_a_distorted_mesh_evenly() {
+    let mesh = distorted();
+    let loaded = plate(&mesh, 0.3).load("pressure = '5 MPa'").load("pressure = '5 MPa'\nface = 'bottom'");
+    let solution = loaded.profile([7.0, 4.0], 3).solve();
+    let [bottom, .., top] = &solution.profiles[0][..] else { panic!("an empty profile") };
+    let shortening = bottom.displacement[2] - top.displacement[2];
+    assert!((shortening / (5e6 / E * 1e-3) - 1.0).abs() < EXACT, "{shortening}");
+    assert!((bottom.global.0[2] / -5e6 - 1.0).abs() < EXACT, "{:?}", bottom.global);
+}
+
+#[test]
+fn a_hanging_bar_is_stretched_by_its_weight() {
+    // Without Poisson's ratio u = ρ g (L x − x²/2) / E, which rectangular cells hold exactly.
+    let bar = Plate::new(&isotropic(E * 1e-9, 0.0, 2.7), "[0]", 1.0, vec![1])
+        .rectangle([20.0, 10.0], [3, 2])
+        .sides([Side::Symmetric, Side::Free, Side::Free, Side::Free])
+        .load("gravity = ['9.81 m/s^2', '0 m/s^2', '0 m/s^2']")
+        .profile([20.0, 5.0], 2);
+    let u = bar.solve().profiles[0][0].displacement[0];
+    let want = 2700.0 * 9.81 * 20e-3 * 20e-3 / (2.0 * E);
+    assert!((u / want - 1.0).abs() < EXACT, "{u} {want}");
+}
+
+/// Mean deflection of the free end of a cantilever of 20 x 10 x 0.5 mm under a load of 1 N, over that of a beam.
+fn cantilever(load: &str, mesh: &MeshFile) -> f64 {
+    let mut beam = plate(mesh, 0.0).sides([Side::Clamped, Side::Free, Side::Free, Side::Free]);
+    beam.ply_mm = 0.25;
+    let ends = [0.0, 5.0, 10.0];
+    let beam = ends.iter().fold(beam.load(load), |beam, y| beam.profile([20.0, *y], 2));
+    let solution = beam.solve();
+    let [a, b, c] = [0, 1, 2].map(|i| solution.profiles[i][1].displacement[2]);
+    let (l, width, h) = (20e-3, 10e-3, 0.5e-3_f64);
+    let bending = -l * l * l / (3.0 * E * width * h.powi(3) / 12.0);
+    let shear = -1.2 * l / (0.5 * E * width * h);
+    (a + 4.0 * b + c) / 6.0 / (bending + shear)
+}
+
+#[test]
+fn a_cantilever_bends_under_a_load_along_its_edge() {
+    let load = "force_per_length = ['0 N/mm', '0 N/mm', '-0.1 N/mm']\ngroup = 'x-max'";
+    let even = cantilever(load, &regular());
+    assert!((even - 1.0).abs() < BEAM, "{even}");
+    let uneven = cantilever(load, &distorted());
+    assert!((uneven - 1.0).abs() < DISTORTED_BEAM, "{uneven}");
+}
+
+#[test]
+fn a_force_at_a_corner_lowers_the_end_on_average_as_if_spread_along_it() {
+    // Betti: the mean over the end under a force at the corner is the corner's deflection under a force spread along it.
+    let ratio = cantilever("force = ['0 N', '0 N', '-1 N']\ngroup = 'corner'\nat = 'mid-plane'", &regular());
+    assert!((ratio - 1.0).abs() < BEAM, "{ratio}");
+}
+
+#[test]
+fn a_small_circle_of_pressure_acts_on_a_thin_plate_like_a_force_at_its_middle() {
+    let (a, h, nu) = (100e-3, 1e-3_f64, 0.3);
+    let plate = Plate::new(&isotropic(E * 1e-9, nu, 2.7), "[0_2]", 0.5, vec![2])
+        .rectangle([a * 1e3; 2], [10; 2])
+        .sides([Side::Supported; 4])
+        .load("patch_radius = '1 mm'\nforce = '10 N'\nat = { x = '50 mm', y = '50 mm' }")
+        .profile([50.0; 2], 2);
+    let w = plate.solve().profiles[0][0].displacement[2];
+    let d = E * h.powi(3) / (12.0 * (1.0 - nu * nu));
+    let odd = || (0..200).map(|i| f64::from(2 * i + 1));
+    let series: f64 = odd().map(|m| odd().map(|n| (m * m + n * n).powi(-2)).sum::<f64>()).sum();
+    let want = -10.0 * 4.0 * a * a / (PI.powi(4) * d) * series;
+    assert!((w / want - 1.0).abs() < POINT, "{w} {want}");
+}

@@ -1,0 +1,10 @@
+//! Displacements, stresses and frequencies against solutions without finite elements.
+
+mod command;
+mod loads;
+mod modes;
+mod pagano;
+mod patch;
+mod scene;
+mod slender;
+mod strip;
