@@ -40,6 +40,17 @@ pub enum Error {
     NoLoads,
     #[error("a {0} is not finite: the structure is singular, or a load out of the range of numbers")]
     NotFinite(&'static str),
+    #[error(
+        "the loads are met to {residual:.1e} of their size only: the stiffness is too ill-conditioned for 16 digits"
+    )]
+    #[diagnostic(help(
+        "cells much wider than thick are stiff through their thickness and soft in bending: take the shell \
+                       `mitc4`, or fewer layers of narrower cells"
+    ))]
+    IllConditioned {
+        /// ‖f − K u‖ / ‖f‖
+        residual: f64,
+    },
     #[error(transparent)]
     File(#[from] FileError),
     #[error("the plot failed")]

@@ -16,6 +16,12 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::num::NonZeroUsize;
 
+/// Residual of the loads beyond which displacements are no result: they are about as wrong, for rounding in K alone.
+const MOST_RESIDUAL: f64 = 1e-2;
+
+/// Residual beyond which it is worth a warning.
+const NOTABLE_RESIDUAL: f64 = 1e-4;
+
 /// What a static analysis found.
 #[derive(Debug, Clone)]
 pub struct Solution {
@@ -44,8 +50,8 @@ pub struct Solution {
 /// Solves K u = f.
 ///
 /// # Errors
-/// A scene without loads at rest, a cell that the element refuses, a structure that is not held, a result that is not
-/// finite, a criterion whose material lacks a constant.
+/// A scene without loads at rest, a cell that the element refuses, a structure that is not held or too ill-conditioned, a
+/// result that is not finite, a criterion whose material lacks a constant.
 pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     let Plan::Static { forces } = &model.plan else { return Err(Error::NoLoads) };
     let mut stopwatch = Stopwatch::default();
@@ -74,6 +80,9 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
         return Err(Error::NotFinite("displacement"));
     }
     let residual = norm(&rest) / norm(&f).max(f64::MIN_POSITIVE);
+    if !(residual <= MOST_RESIDUAL) {
+        return Err(Error::IllConditioned { residual });
+    }
     let mut u = vec![0.0; model.plate.ndof()];
     constraints.expand(&independent, &mut u);
     (counters.factorisations, counters.solves) = structure.work();
@@ -94,6 +103,12 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
         profiles,
         counters,
         phases,
+    })
+}
+
+fn notable(residual: f64) -> Option<String> {
+    (residual > NOTABLE_RESIDUAL).then(|| {
+        format!("the stiffness is ill-conditioned: the loads are met to {residual:.1e} of their size, displacements hardly better")
     })
 }
 
@@ -155,7 +170,7 @@ impl Summary {
             elements: solution.counters.elements,
             elements_reused: solution.counters.elements_reused,
             phases: solution.phases.clone(),
-            warnings: model.warnings.clone(),
+            warnings: model.warnings.iter().cloned().chain(notable(solution.residual)).collect(),
         }
     }
 

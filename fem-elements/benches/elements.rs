@@ -43,7 +43,7 @@ fn subjects() -> Vec<Subject> {
     add("hermite-prism", Box::new(prism), quadrilateral as fn(f64) -> Corners, Some(general));
     add("hermite-hex", Box::new(HermiteHex::new(Mass::Cubic)), parallelogram, Some(constant));
     add("hex20", Box::new(Hex20::new(3).unwrap()), quadrilateral, None);
-    add("mitc4", Box::new(Mitc4::default()), quadrilateral, None);
+    add("mitc4", Box::<Mitc4>::default(), quadrilateral, None);
     add("webster-beam, plane stress", Box::new(beam(PlaneState::Stress)), rectangle, None);
     add("webster-beam, plane strain", Box::new(beam(PlaneState::Strain)), rectangle, None);
     all

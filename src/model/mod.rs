@@ -68,6 +68,11 @@ const PLAUSIBLE_THICKNESS: std::ops::Range<f64> = 1e-4..0.5;
 const POLYGON_ERROR: f64 = 3e-3;
 const POLYGON: [f64; 2] = [1.0 / 6.0, 0.5];
 
+/// Error of a deflection by flat solid cells that is worth a warning, and its size over (b/h)² (b/a)⁴, b the width of a
+/// cell, h the thickness, a the side of the plate (measured: 18 % with b/h = 125, b/a = 1/8).
+const FLAT_ERROR: f64 = 5e-3;
+const FLAT: f64 = 0.05;
+
 /// Inner angle of a cell (degrees) beyond which its strains are poor.
 const POOR_ANGLE: f64 = 150.0;
 
@@ -102,6 +107,7 @@ impl Model {
         let plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
             .map_err(|why| builder.error(&scene.element.name, why, ""))?;
         warnings.extend(polygon(&plate));
+        warnings.extend(flat(&plate));
         let (constraints, held) = builder.constraints(&plate)?;
         let plan = match &scene.analysis {
             Analysis::Impact(spec) => Plan::Impact(Box::new(builder.impact(spec, &plate, &*element, &constraints)?)),
@@ -176,6 +182,23 @@ fn polygon(plate: &Plate) -> Option<String> {
              the curve more finely",
             turn.to_degrees(),
             error * 100.0
+        )
+    })
+}
+
+/// Solids bend too stiffly where cells are much wider than the plate is thick.
+fn flat(plate: &Plate) -> Option<String> {
+    let mesh = &plate.plane;
+    let widest = (0..mesh.quads.len()).map(|q| mesh.quality(q).area.sqrt()).fold(0.0, f64::max);
+    let (low, high) = mesh.bounds();
+    let side = (high[0] - low[0]).max(high[1] - low[1]);
+    let over_thickness = widest / (plate.levels[plate.levels.len() - 1] - plate.levels[0]);
+    let error = FLAT * over_thickness.powi(2) * (widest / side).powi(4);
+    (!plate.info().is_shell() && error > FLAT_ERROR).then(|| {
+        format!(
+            "cells up to {over_thickness:.0} times as wide as the plate is thick bend too stiffly, by up to {:.1} %: make them \
+             narrower or take the shell `mitc4`",
+            error.min(1.0) * 100.0
         )
     })
 }
