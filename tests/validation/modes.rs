@@ -1,7 +1,7 @@
 //! Natural frequencies against exact elasticity and thin-plate theory.
 
 use super::scene::Side::{self, Supported, Symmetric};
-use super::scene::{PAGANO, Plate, isotropic, reference};
+use super::scene::{AS4, PAGANO, Plate, isotropic, reference};
 
 /// The first frequencies of a plate, relative.
 const FREQUENCY: f64 = 1e-3;
@@ -55,6 +55,30 @@ fn four_plies_thick() {
 #[test]
 fn four_plies_moderately_thick() {
     check("vib3d_0_90_90_0_pag25.csv", "[0/90]s", 0.25, 4, 10.0, 5, 10);
+}
+
+/// A whole strip of the section element: its first frequency is the slide along x, which nothing holds. Tables hold up to
+/// five half-waves.
+fn strip(table: &str, state: &str, plate: Plate, thickness: f64, ratio: f64, ranks: usize) {
+    let element = format!("kind = 'webster-beam', state = '{state}', z_derivatives = 'layer-wise'");
+    let plate = plate.element(&element).rectangle([ratio * thickness, 1.0], [30, 1]);
+    let omega = plate.sides([Supported, Supported, Side::Free, Side::Free]).frequencies(ranks + 1);
+    assert!(omega[0] < ZERO * omega[1], "{omega:?}");
+    for row in reference(table).iter().filter(|r| r["a_over_h"] == ratio && r["rank"] <= ranks as f64) {
+        let (got, want) = (omega[row["rank"] as usize], row["omega_rad_per_s"]);
+        assert!((got / want - 1.0).abs() < FREQUENCY, "{state}, {} half-waves: {got} {want}", row["m"]);
+    }
+}
+
+#[test]
+fn strips_in_plane_strain_and_plane_stress() {
+    // At a/h = 4 the shear without a half-wave comes next, which the tables leave out.
+    for (ratio, ranks) in [(4.0, 3), (10.0, 5)] {
+        let three = Plate::new(PAGANO, "[0_2/90_2/0_2]", 1.0 / 6.0, vec![1; 6]);
+        strip("vib2d_cylbend_0_90_0_pag25.csv", "plane-strain", three, 1.0, ratio, ranks);
+        let eight = Plate::new(AS4, "[0/90/0/90]s", 0.13, vec![1; 8]);
+        strip("vib2d_planestress_xply8_as4.csv", "plane-stress", eight, 1.04, ratio, ranks);
+    }
 }
 
 /// A steel plate of 80 x 80 x 8 mm on supports all around.
