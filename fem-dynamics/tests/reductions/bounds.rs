@@ -28,10 +28,8 @@ fn modes_that_rest_at_the_contact_do_not_enter() {
     let n = 31;
     let mut chain = Dense::chain(&vec![0.2; n], 3e6);
     chain.k[(n - 1, n - 1)] *= 2.0;
-    for name in ["modal", "craig-bampton"] {
-        let t = basis(&*reduction(name, n), &mut chain.clone(), &[Functional::dof(15)], &[]).unwrap();
-        assert_eq!(t.ncols(), 16, "{name}");
-    }
+    let t = basis(&*reduction("modal", n), &mut chain, &[Functional::dof(15)], &[]).unwrap();
+    assert_eq!(t.ncols(), 16);
 }
 
 #[test]

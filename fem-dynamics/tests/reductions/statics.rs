@@ -38,5 +38,6 @@ fn all_but_irs_keep_the_flexibility_at_the_contacts() {
 
 #[test]
 fn irs_does_not() {
-    assert!(error("irs", 7) > 1e-4, "{:e}", error("irs", 7));
+    let error = error("irs", 7);
+    assert!(error > 1e-4, "{error:e}");
 }
