@@ -11,6 +11,9 @@ const TOLERANCE: f64 = 1e-8;
 /// A direction shorter than this fraction of what it was before orthogonalisation is none.
 const EXHAUSTED: f64 = 1e-10;
 
+/// Sweeps after which a direction that is still not orthogonal is nothing but rounding.
+const SWEEPS: usize = 4;
+
 /// Vectors between two looks at the convergence.
 const LOOK: usize = 8;
 
@@ -99,7 +102,7 @@ where
 
     /// M x of a direction without its shares in the basis, and its length; none where nothing is left.
     fn remainder(&self, direction: &mut Direction) -> Result<Option<(Vec<f64>, f64)>, SolveError> {
-        loop {
+        for _ in 0..SWEEPS {
             let shares = self.sweep(direction);
             let mut image = vec![0.0; self.n];
             self.structure.add_mass(1.0, &direction.x, &mut image);
@@ -108,13 +111,14 @@ where
                 return Err(SolveError("the Lanczos iteration met a number that is not finite".into()));
             }
             if square <= EXHAUSTED * EXHAUSTED * direction.taken {
-                return Ok(None);
+                break;
             }
-            // Where little is left, rounding of what was taken shows in it.
+            // Where this sweep took more than it left, rounding of what it took shows in the rest.
             if dot(&shares, &shares) <= square {
                 return Ok((square > 0.0).then(|| (image, square.sqrt())));
             }
         }
+        Ok(None)
     }
 
     /// Adds one vector to the basis; `false` when the space is exhausted.
@@ -151,7 +155,7 @@ where
     /// # Errors
     /// Those of the operator, numbers that are not finite, and a space that grows without convergence.
     pub(crate) fn lowest(mut self, count: usize, share: f64) -> Result<(Vec<f64>, Vec<f64>), SolveError> {
-        let limit = self.n.min(5 * count + 80);
+        let limit = self.n.min(count.saturating_mul(5).saturating_add(80));
         loop {
             let grown = self.size() < limit && self.grow()?;
             let size = self.size();

@@ -68,7 +68,6 @@ fn the_force_converges_to_that_of_the_unreduced_chain() {
         let full = forces(mass, Box::new(chain()), vec![(HIT, 1.0)]);
         for (name, bounds) in L2 {
             let [few, some, many] = [10, 20, 40].map(|unknowns| errors(mass, name, unknowns, &full));
-            println!("{mass} kg, {name}: L2 {:.1e} {:.1e} {:.1e}, peak {:.1e}", few.0, some.0, many.0, many.1);
             assert!(many.0 <= bounds[case], "{mass} kg, {name}: {:e}", many.0);
             assert!(many.0 < some.0 && some.0 < few.0, "{mass} kg, {name}: {few:?} {some:?} {many:?}");
         }
