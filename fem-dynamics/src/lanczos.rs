@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use std::collections::VecDeque;
 
 /// Relative residual at which a mode counts as found; its frequency is then good to about the square of it.
-const TOLERANCE: f64 = 1e-8;
+const TOLERANCE: f64 = 1e-7;
 
 /// A direction shorter than this fraction of what it was before orthogonalisation is none.
 const EXHAUSTED: f64 = 1e-10;

@@ -24,7 +24,7 @@ impl Reduction for CraigBampton {
         keep: &[Functional],
         _: &[usize],
     ) -> Result<Vec<f64>, ReductionError> {
-        let modes = columns(structure, self.modes.saturating_add(keep.len()))?.saturating_sub(keep.len());
+        let modes = columns(structure, self.modes, keep.len())?;
         let shapes = StaticShapes::new(structure, keep.to_vec())?;
         let mut basis = shapes.shapes();
         // The inverse stiffness with the contacts held.

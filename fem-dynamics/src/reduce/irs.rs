@@ -11,10 +11,12 @@ use nalgebra::{Cholesky, DMatrix};
 /// `T_irs = T + S M T M_r⁻¹ K_r`, with S the inverse stiffness while contacts and governors are held, K_r = TᵀKT,
 /// M_r = TᵀMT.
 ///
-/// Low frequencies gain several digits over `guyan` with the same governors. The force of an impact does not: the
-/// static responses to the contact loads lie in the span of T but not of T_irs, so the static flexibility at the contact is
-/// no longer exact, and the force history hangs on it more than on the frequencies. It is here to be compared; for impacts
-/// take a reduction that keeps that flexibility.
+/// Low frequencies gain several digits over `guyan` with the same governors. The force of an impact gains nothing by
+/// that: static responses to the contact loads lie in the span of T but not of T_irs, so the static flexibility at the
+/// contact, on which the force hangs, is no longer exact. On a laminate of 16 plies with 38 governors it is 1.5 % off, and
+/// the force differs from that of the unreduced plate by 17 % (`guyan`: 6 %; forty vectors of `ritz` or `modal`: 0.3 %).
+/// On a chain that is struck for a short time it loses as well, on one that is struck for long it can win. It is here to
+/// be compared; for impacts take a reduction that keeps the flexibility.
 #[derive(Debug, Clone)]
 pub struct Irs {
     governors: Governors,

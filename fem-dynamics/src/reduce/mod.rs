@@ -191,13 +191,13 @@ fn static_responses(structure: &mut dyn Structure, functionals: &[Functional]) -
     Ok(x)
 }
 
-/// As many of `asked` vectors as the structure has room for.
+/// As many of `asked` vectors as the structure has room for beside `others`.
 ///
 /// # Errors
 /// More than [`LARGEST`] of them.
-fn columns(structure: &dyn Structure, asked: usize) -> Result<usize, ReductionError> {
+fn columns(structure: &dyn Structure, asked: usize, others: usize) -> Result<usize, ReductionError> {
     let n = structure.ndof();
-    let columns = asked.min(n);
+    let columns = asked.min(n.saturating_sub(others));
     if columns > LARGEST {
         return Err(ReductionError(format!(
             "{asked} vectors are asked for, more than {LARGEST}: dense matrices of that size cost more than the {n} \

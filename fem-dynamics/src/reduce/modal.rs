@@ -33,7 +33,7 @@ impl Reduction for ModalTruncation {
         keep: &[Functional],
         _: &[usize],
     ) -> Result<Vec<f64>, ReductionError> {
-        let modes = columns(structure, self.modes.saturating_add(keep.len()))?.saturating_sub(keep.len());
+        let modes = columns(structure, self.modes, keep.len())?;
         let responses = static_responses(structure, keep)?;
         let space = Lanczos::new(structure, solve, &responses);
         let (_, mut basis) = space.lowest(modes, EXCITED).map_err(refused)?;

@@ -23,7 +23,7 @@ impl Reduction for Ritz {
         keep: &[Functional],
         _: &[usize],
     ) -> Result<Vec<f64>, ReductionError> {
-        let vectors = columns(structure, self.vectors.max(keep.len()))?;
+        let vectors = columns(structure, self.vectors.max(keep.len()), 0)?;
         let start = static_responses(structure, keep)?;
         let mut space = Lanczos::new(structure, solve, &start);
         for _ in 0..vectors {
