@@ -112,6 +112,9 @@ fn every_reduction_keeps_the_static_flexibility() {
     for text in [
         "method = \"guyan\"\ngovernors = 0",
         "method = \"guyan\"\ngovernors = 20",
+        "method = \"guyan\"\ngovernors = 20\nselect = \"ratio\"",
+        "method = \"modal\"\nmodes = 0",
+        "method = \"modal\"\nmodes = 10",
         "method = \"craig-bampton\"\nmodes = 0",
         "method = \"craig-bampton\"\nmodes = 10",
         "method = \"ritz\"\nvectors = 1",

@@ -268,6 +268,7 @@ fn reductions_agree_with_the_full_model_of_case_1() {
     // (reduction, force L2, onset of first shear)
     for (reduction, bound, shear) in [
         (r#"{ method = "guyan", governors = 76 }"#, 1.2e-2, 0.08),
+        (r#"{ method = "modal", modes = 38 }"#, 2e-3, 0.01),
         (r#"{ method = "craig-bampton", modes = 38 }"#, 2e-3, 0.01),
         (r#"{ method = "ritz", vectors = 39 }"#, 1e-3, 0.01),
         (r#"{ method = "ritz", vectors = 80 }"#, 3e-4, 0.01),

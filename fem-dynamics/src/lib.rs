@@ -64,6 +64,7 @@
 pub mod contact;
 pub mod impact;
 pub mod integrate;
+mod lanczos;
 pub mod limit;
 pub mod modes;
 pub mod reduce;

@@ -1,17 +1,17 @@
 //! Craig-Bampton reduction.
 
-use super::krylov::Krylov;
-use super::{StaticShapes, solve};
+use super::{EXCITED, StaticShapes, columns, refused, solve};
+use crate::lanczos::Lanczos;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::reduction::{Functional, Reduction, ReductionError};
-use fem_core::structure::Structure;
+use fem_core::structure::{SolveError, Structure};
 
 /// Static shapes of the contacts plus the lowest modes with the contacts held: exact static flexibility at the contact,
 /// which is what the force history hangs on.
 ///
 /// Of the held modes only those that a contact force can excite are found, because the Krylov space starts from the
 /// contacts' own shapes: on a symmetric plate under a central impact that doubles the frequency that a given number of
-/// modes reaches.
+/// modes reaches. No more modes than unknowns are sought.
 #[derive(Debug, Clone)]
 pub struct CraigBampton {
     modes: usize,
@@ -24,36 +24,22 @@ impl Reduction for CraigBampton {
         keep: &[Functional],
         _: &[usize],
     ) -> Result<Vec<f64>, ReductionError> {
-        let shapes = StaticShapes::new(structure, keep)?;
+        let modes = columns(structure, self.modes, keep.len())?;
+        let shapes = StaticShapes::new(structure, keep.to_vec())?;
         let mut basis = shapes.shapes();
-        if self.modes == 0 {
-            return Ok(basis);
-        }
-        let n = structure.ndof();
         // The inverse stiffness with the contacts held.
-        let held = |structure: &mut dyn Structure, x: &mut [f64]| -> Result<(), ReductionError> {
+        let held = |structure: &mut dyn Structure, x: &mut [f64]| -> Result<(), SolveError> {
+            let n = structure.ndof();
             solve(structure, x)?;
-            x.chunks_exact_mut(n).for_each(|x| shapes.hold(keep, x));
+            x.chunks_exact_mut(n).for_each(|x| shapes.hold(x));
             Ok(())
         };
-        let start = excited(structure, held, &basis)?;
-        basis.extend(Krylov::new(structure, held, start)?.lowest_modes(self.modes)?);
+        if modes > 0 {
+            let space = Lanczos::excited(structure, held, &basis).map_err(refused)?;
+            basis.extend(space.lowest(modes, EXCITED).map_err(refused)?.1);
+        }
         Ok(basis)
     }
-}
-
-/// S M applied to the sum of `shapes`: the start of the Krylov space of what they excite.
-fn excited(
-    structure: &mut dyn Structure,
-    inverse: impl Fn(&mut dyn Structure, &mut [f64]) -> Result<(), ReductionError>,
-    shapes: &[f64],
-) -> Result<Vec<f64>, ReductionError> {
-    let mut x = vec![0.0; structure.ndof()];
-    for shape in shapes.chunks_exact(structure.ndof()) {
-        structure.add_mass(1.0, shape, &mut x);
-    }
-    inverse(structure, &mut x)?;
-    Ok(x)
 }
 
 impl Plugin for CraigBampton {

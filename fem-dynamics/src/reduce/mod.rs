@@ -1,20 +1,30 @@
 //! Reductions: each chooses a basis; projection and expansion are common ([`Reduced`]).
 
 mod craig_bampton;
+mod governors;
 mod guyan;
-mod krylov;
+mod irs;
+mod modal;
 mod ritz;
 
 pub use craig_bampton::CraigBampton;
 pub use guyan::Guyan;
+pub use irs::Irs;
+pub use modal::ModalTruncation;
 pub use ritz::Ritz;
 
 use fem_core::reduction::{Functional, ReductionError};
 use fem_core::structure::{SolveError, Structure};
-use nalgebra::{Cholesky, DMatrix, Dyn, SymmetricEigen};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
 
 /// Modal masses below this fraction of the largest (at equal stiffness) count as none: the mode follows statically.
 const MASSLESS: f64 = 1e-13;
+
+/// Least share of a mode in the static responses to the contacts; with less, no contact excites it.
+const EXCITED: f64 = 1e-9;
+
+/// Vectors of the largest basis that is made: dense matrices beyond that cost more than the sparse ones they replace.
+const LARGEST: usize = 2000;
 
 /// A structure in the coordinates in which its K and M are diagonal.
 ///
@@ -90,10 +100,13 @@ impl Reduced {
     /// The small eigenproblem is solved in the metric of K, which is definite where M need not be.
     ///
     /// # Errors
-    /// Columns that depend on each other, or numbers that are not finite.
+    /// No columns, columns that depend on each other, or numbers that are not finite.
     pub fn project(structure: &dyn Structure, basis: &[f64]) -> Result<Self, ReductionError> {
         let n = structure.ndof();
         let m = basis.len() / n.max(1);
+        if m == 0 {
+            return Err(ReductionError("the basis has no vectors".into()));
+        }
         let t = DMatrix::from_column_slice(n, m, basis);
         let product = |add: &dyn Fn(&[f64], &mut [f64])| {
             let mut image = DMatrix::zeros(n, m);
@@ -158,9 +171,40 @@ impl Reduced {
 }
 
 /// `X ← K⁻¹ X`.
-fn solve(structure: &mut dyn Structure, x: &mut [f64]) -> Result<(), ReductionError> {
+fn solve(structure: &mut dyn Structure, x: &mut [f64]) -> Result<(), SolveError> {
     let columns = x.len() / structure.ndof().max(1);
-    structure.solve_shifted(0.0, x, columns).map_err(|e| ReductionError(e.0))
+    structure.solve_shifted(0.0, x, columns)
+}
+
+fn refused(e: SolveError) -> ReductionError {
+    ReductionError(e.0)
+}
+
+/// K⁻¹ P for the unit loads P of `functionals`, `n × functionals`.
+fn static_responses(structure: &mut dyn Structure, functionals: &[Functional]) -> Result<Vec<f64>, ReductionError> {
+    let n = structure.ndof();
+    let mut x = vec![0.0; n * functionals.len()];
+    for (w, column) in functionals.iter().zip(x.chunks_exact_mut(n.max(1))) {
+        w.add_to(1.0, column);
+    }
+    solve(structure, &mut x).map_err(refused)?;
+    Ok(x)
+}
+
+/// As many of `asked` vectors as the structure has room for beside `others`.
+///
+/// # Errors
+/// More than [`LARGEST`] of them.
+fn columns(structure: &dyn Structure, asked: usize, others: usize) -> Result<usize, ReductionError> {
+    let n = structure.ndof();
+    let columns = asked.min(n.saturating_sub(others));
+    if columns > LARGEST {
+        return Err(ReductionError(format!(
+            "{asked} vectors are asked for, more than {LARGEST}: dense matrices of that size cost more than the {n} \
+             unknowns do; ask for fewer, or for no reduction"
+        )));
+    }
+    Ok(columns)
 }
 
 fn definite(a: DMatrix<f64>, what: &str) -> Result<Cholesky<f64, Dyn>, ReductionError> {
@@ -174,6 +218,7 @@ fn definite(a: DMatrix<f64>, what: &str) -> Result<Cholesky<f64, Dyn>, Reduction
 /// For unit vectors E these are Guyan's (eq. 28); for a weighted mean they condense on the mean.
 #[derive(Debug)]
 struct StaticShapes {
+    functionals: Vec<Functional>,
     /// X, `n × functionals`.
     flexibility: Vec<f64>,
     /// S.
@@ -181,32 +226,55 @@ struct StaticShapes {
 }
 
 impl StaticShapes {
-    fn new(structure: &mut dyn Structure, functionals: &[Functional]) -> Result<Self, ReductionError> {
-        let n = structure.ndof();
-        let mut x = vec![0.0; n * functionals.len()];
-        for (w, column) in functionals.iter().zip(x.chunks_exact_mut(n)) {
-            w.add_to(1.0, column);
+    fn new(structure: &mut dyn Structure, functionals: Vec<Functional>) -> Result<Self, ReductionError> {
+        let flexibility = static_responses(structure, &functionals)?;
+        Self::of(functionals, flexibility)
+    }
+
+    fn of(functionals: Vec<Functional>, x: Vec<f64>) -> Result<Self, ReductionError> {
+        let m = functionals.len();
+        if m == 0 {
+            return Err(ReductionError("there is neither a contact nor a governor to condense on".into()));
         }
-        solve(structure, &mut x)?;
-        let s =
-            DMatrix::from_fn(functionals.len(), functionals.len(), |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
+        let n = x.len() / m;
+        let s = DMatrix::from_fn(m, m, |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
         let factor = definite((&s + s.transpose()) * 0.5, "the flexibility at the governors")?;
-        Ok(Self { flexibility: x, factor })
+        Ok(Self { functionals, flexibility: x, factor })
+    }
+
+    /// The shapes for some of the functionals; the others are condensed.
+    fn only(&self, chosen: &[usize]) -> Result<Self, ReductionError> {
+        let n = self.flexibility.len() / self.functionals.len();
+        let x = chosen.iter().flat_map(|i| &self.flexibility[i * n..(i + 1) * n]).copied().collect();
+        Self::of(chosen.iter().map(|i| self.functionals[*i].clone()).collect(), x)
+    }
+
+    /// TᵀKT = S⁻¹ and TᵀMT.
+    fn condensed(&self, structure: &dyn Structure) -> (DMatrix<f64>, DMatrix<f64>) {
+        let m = self.functionals.len();
+        let n = self.flexibility.len() / m;
+        let x = DMatrix::from_column_slice(n, m, &self.flexibility);
+        let mut image = DMatrix::zeros(n, m);
+        for (x, y) in self.flexibility.chunks_exact(n.max(1)).zip(image.as_mut_slice().chunks_exact_mut(n.max(1))) {
+            structure.add_mass(1.0, x, y);
+        }
+        let k = self.factor.inverse();
+        let mass = &k * (x.transpose() * image) * &k;
+        ((&k + k.transpose()) * 0.5, (&mass + mass.transpose()) * 0.5)
     }
 
     /// T.
     fn shapes(&self) -> Vec<f64> {
-        let m = self.factor.l_dirty().nrows();
+        let m = self.functionals.len();
         let x = DMatrix::from_column_slice(self.flexibility.len() / m, m, &self.flexibility);
         (x * self.factor.inverse()).as_slice().to_vec()
     }
 
     /// `x ← x − X S⁻¹ Eᵀ x`: what remains of a displacement when the functionals are held at zero under forces at them.
-    fn hold(&self, functionals: &[Functional], x: &mut [f64]) {
+    fn hold(&self, x: &mut [f64]) {
         let n = x.len();
-        let reactions = self
-            .factor
-            .solve(&nalgebra::DVector::from_iterator(functionals.len(), functionals.iter().map(|w| w.of(x))));
+        let values = self.functionals.iter().map(|w| w.of(x));
+        let reactions = self.factor.solve(&DVector::from_iterator(self.functionals.len(), values));
         for (r, column) in reactions.iter().zip(self.flexibility.chunks_exact(n)) {
             for (x, c) in x.iter_mut().zip(column) {
                 *x -= r * c;

@@ -1,16 +1,16 @@
 //! Load-dependent Ritz vectors.
 
-use super::krylov::Krylov;
-use super::solve;
+use super::{columns, refused, solve, static_responses};
+use crate::lanczos::Lanczos;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::reduction::{Functional, Reduction, ReductionError};
 use fem_core::structure::Structure;
 
-/// The Krylov space {x, A x, A² x, …} of A = K⁻¹ M from the static response x = K⁻¹ p to each contact load.
+/// The Krylov space {X, A X, A² X, …} of A = K⁻¹ M from the static responses X = K⁻¹ P to the contact loads.
 ///
-/// It holds the exact static flexibility at the contact and, m vectors deep, the first 2m moments of its dynamic
-/// flexibility; modes that the contact cannot excite never enter. Each vector costs one solve, where a converged mode
-/// costs two or three.
+/// It holds the exact static flexibility at the contacts and, m vectors deep, the first 2m moments of their dynamic
+/// flexibility; modes that no contact can excite never enter. Each vector costs one solve, where a converged mode
+/// costs two or three. No more vectors than unknowns are made.
 #[derive(Debug, Clone)]
 pub struct Ritz {
     vectors: usize,
@@ -23,20 +23,15 @@ impl Reduction for Ritz {
         keep: &[Functional],
         _: &[usize],
     ) -> Result<Vec<f64>, ReductionError> {
-        let mut basis = Vec::new();
-        for contact in keep {
-            let mut x = vec![0.0; structure.ndof()];
-            contact.add_to(1.0, &mut x);
-            solve(structure, &mut x)?;
-            let mut krylov = Krylov::new(structure, solve, x)?;
-            for _ in 0..self.vectors.div_ceil(keep.len()) {
-                if !krylov.grow()? {
-                    break;
-                }
+        let vectors = columns(structure, self.vectors.max(keep.len()), 0)?;
+        let start = static_responses(structure, keep)?;
+        let mut space = Lanczos::new(structure, solve, &start);
+        for _ in 0..vectors {
+            if !space.grow().map_err(refused)? {
+                break;
             }
-            basis.extend(krylov.into_basis());
         }
-        Ok(basis)
+        Ok(space.into_basis())
     }
 }
 

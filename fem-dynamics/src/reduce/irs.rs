@@ -1,0 +1,64 @@
+//! The improved reduced system.
+
+use super::governors::Governors;
+use super::{refused, solve};
+use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
+use fem_core::reduction::{Functional, Reduction, ReductionError};
+use fem_core::structure::Structure;
+use nalgebra::{Cholesky, DMatrix};
+
+/// Guyan's shapes T corrected by the static response to the inertia that they neglect:
+/// `T_irs = T + S M T M_r⁻¹ K_r`, with S the inverse stiffness while contacts and governors are held, K_r = TᵀKT,
+/// M_r = TᵀMT.
+///
+/// Low frequencies gain several digits over `guyan` with the same governors. The force of an impact gains nothing by
+/// that: static responses to the contact loads lie in the span of T but not of T_irs, so the static flexibility at the
+/// contact, on which the force hangs, is no longer exact. On a laminate of 16 plies with 38 governors it is 1.5 % off, and
+/// the force differs from that of the unreduced plate by 17 % (`guyan`: 6 %; forty vectors of `ritz` or `modal`: 0.3 %).
+/// On a chain that is struck for a short time it loses as well, on one that is struck for long it can win. It is here to
+/// be compared; for impacts take a reduction that keeps the flexibility.
+#[derive(Debug, Clone)]
+pub struct Irs {
+    governors: Governors,
+}
+
+impl Reduction for Irs {
+    fn basis(
+        &self,
+        structure: &mut dyn Structure,
+        keep: &[Functional],
+        candidates: &[usize],
+    ) -> Result<Vec<f64>, ReductionError> {
+        let shapes = self.governors.condense(structure, keep, candidates)?;
+        let (k, m) = shapes.condensed(structure);
+        let mut basis = shapes.shapes();
+        let n = structure.ndof();
+        let singular = || ReductionError("the mass condensed on the governors is singular: ask for fewer".into());
+        let accelerations = Cholesky::new(m).ok_or_else(singular)?.solve(&k);
+        let moved = DMatrix::from_column_slice(n, k.nrows(), &basis) * accelerations;
+        let mut correction = vec![0.0; basis.len()];
+        for (x, y) in moved.as_slice().chunks_exact(n).zip(correction.chunks_exact_mut(n)) {
+            structure.add_mass(1.0, x, y);
+        }
+        solve(structure, &mut correction).map_err(refused)?;
+        for (t, x) in basis.chunks_exact_mut(n).zip(correction.chunks_exact_mut(n)) {
+            shapes.hold(x);
+            t.iter_mut().zip(x).for_each(|(t, x)| *t += *x);
+        }
+        Ok(basis)
+    }
+}
+
+impl Plugin for Irs {
+    const INFO: PluginInfo = PluginInfo {
+        kind: Kind::Reduction,
+        name: "irs",
+        summary: "guyan with one term of inertia; better frequencies, but the flexibility at the contact is not exact",
+        source: "O'Callahan 1989",
+        params: &Governors::PARAMS,
+    };
+
+    fn build(params: &Params) -> Result<Built, ParamError> {
+        Ok(Built::Reduction(Box::new(Self { governors: Governors::of(params)? })))
+    }
+}
