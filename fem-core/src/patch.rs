@@ -1,4 +1,4 @@
-//! Where a contact acts: one node, or the Hertz pressure on a circle of the top face.
+//! Where a contact acts: one node, the Hertz pressure on a circle of the top face, or a uniform pressure on a square.
 
 use crate::dof::Dof;
 use crate::element::Element;
@@ -11,6 +11,10 @@ use std::f64::consts::TAU;
 /// Rings and points per ring of the integration over the circle.
 const RINGS: usize = 24;
 const SPOKES: usize = 96;
+
+/// Panels a side of the integration over a square, and Gauss points a side of each.
+const PANELS: usize = 8;
+const PANEL_POINTS: usize = 6;
 
 /// Deflection away from an impactor above the plate, −U30 of the top node of `column`.
 pub fn node(plate: &Plate, column: usize) -> Option<Functional> {
@@ -26,9 +30,49 @@ pub fn node(plate: &Plate, column: usize) -> Option<Functional> {
 /// # Errors
 /// A circle that leaves the plate.
 pub fn hertz(plate: &Plate, element: &dyn Element, centre: [f64; 2], a: f64) -> Result<Functional, String> {
+    let points = gauss_legendre(RINGS).iter().flat_map(|&(g, w)| {
+        let c = 0.5 * (1.0 + g);
+        let rho = a * (1.0 - c * c).sqrt();
+        (0..SPOKES).map(move |spoke| {
+            let (sin, cos) = (TAU * (spoke as f64 + 0.5) / SPOKES as f64).sin_cos();
+            ([centre[0] + rho * cos, centre[1] + rho * sin], 3.0 * c * c * 0.5 * w / SPOKES as f64)
+        })
+    });
+    mean(plate, element, centre, a, points)
+        .ok_or_else(|| leaves(&format!("the contact patch of radius {:.4} mm", a * 1e3), centre))
+}
+
+/// Mean deflection under a uniform pressure on the square of side `side` around `centre`, parallel to the axes.
+///
+/// # Errors
+/// A square that leaves the plate.
+pub fn square(plate: &Plate, element: &dyn Element, centre: [f64; 2], side: f64) -> Result<Functional, String> {
+    let half = 0.5 * side / PANELS as f64;
+    let along = |d: usize| {
+        (0..PANELS).flat_map(move |i| {
+            let middle = centre[d] - 0.5 * side + (2 * i + 1) as f64 * half;
+            gauss_legendre(PANEL_POINTS).iter().map(move |(g, w)| (middle + half * g, 0.5 * w / PANELS as f64))
+        })
+    };
+    let points = along(0).flat_map(|(x, wx)| along(1).map(move |(y, wy)| ([x, y], wx * wy)));
+    mean(plate, element, centre, 0.5 * side, points)
+        .ok_or_else(|| leaves(&format!("the contact patch of side {:.4} mm", side * 1e3), centre))
+}
+
+fn leaves(patch: &str, centre: [f64; 2]) -> String {
+    format!("{patch} around ({:.4}, {:.4}) mm leaves the plate", centre[0] * 1e3, centre[1] * 1e3)
+}
+
+/// Weighted mean of −u₃ over points of the top face no farther than `reach` from `centre` along each axis.
+fn mean(
+    plate: &Plate,
+    element: &dyn Element,
+    centre: [f64; 2],
+    reach: f64,
+    points: impl Iterator<Item = ([f64; 2], f64)>,
+) -> Option<Functional> {
     let top = plate.layers() - 1;
-    let n = element.info().ndof();
-    let mut shape = vec![0.0; 3 * n];
+    let mut shape = vec![0.0; 3 * element.info().ndof()];
     let mut dofs = Vec::new();
     let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
     let near: Vec<usize> = (0..plate.plane.quads.len())
@@ -37,37 +81,22 @@ pub fn hertz(plate: &Plate, element: &dyn Element, centre: [f64; 2], a: f64) -> 
             (0..2).all(|d| {
                 let (low, high) =
                     p.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[d]), h.max(p[d])));
-                low - a <= centre[d] && centre[d] <= high + a
+                low - reach <= centre[d] && centre[d] <= high + reach
             })
         })
         .collect();
-    for &(g, w) in gauss_legendre(RINGS) {
-        let c = 0.5 * (1.0 + g);
-        let rho = a * (1.0 - c * c).sqrt();
-        for spoke in 0..SPOKES {
-            let (sin, cos) = (TAU * (spoke as f64 + 0.5) / SPOKES as f64).sin_cos();
-            let p = [centre[0] + rho * cos, centre[1] + rho * sin];
-            let weight = 3.0 * c * c * 0.5 * w / SPOKES as f64;
-            let found = near.iter().find_map(|q| locate(&plate.plane.corners(*q), p).map(|at| (*q, at)));
-            let Some((quad, [r, s])) = found else {
-                return Err(format!(
-                    "the contact patch of radius {:.4} mm around ({:.4}, {:.4}) mm leaves the plate",
-                    a * 1e3,
-                    centre[0] * 1e3,
-                    centre[1] * 1e3
-                ));
-            };
-            let cell = quad * plate.layers() + top;
-            element.shape(&plate.cell(cell), [r, s, 1.0], &mut shape);
-            plate.cell_dofs(cell, &mut dofs);
-            for (dof, n) in dofs.iter().zip(shape.chunks_exact(3)) {
-                if n[2] != 0.0 {
-                    *sum.entry(*dof).or_insert(0.0) -= weight * n[2];
-                }
+    for (p, weight) in points {
+        let (quad, [r, s]) = near.iter().find_map(|q| Some((*q, locate(&plate.plane.corners(*q), p)?)))?;
+        let cell = quad * plate.layers() + top;
+        element.shape(&plate.cell(cell), [r, s, 1.0], &mut shape);
+        plate.cell_dofs(cell, &mut dofs);
+        for (dof, n) in dofs.iter().zip(shape.chunks_exact(3)) {
+            if n[2] != 0.0 {
+                *sum.entry(*dof).or_insert(0.0) -= weight * n[2];
             }
         }
     }
-    Ok(Functional(sum.into_iter().collect()))
+    Some(Functional(sum.into_iter().collect()))
 }
 
 /// Natural coordinates of `p` in a convex quadrilateral, if it lies inside (to 1e-9 of its size).

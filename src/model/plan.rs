@@ -186,13 +186,19 @@ impl Builder<'_> {
     ) -> Result<([f64; 2], Functional), SceneError> {
         let at = &impactor.at;
         let (centre, column) = self.point(plate, at)?;
+        let too_large = |why: String, key: &str| {
+            let (low, high) = plate.plane.bounds();
+            let [width, depth] = [0, 1].map(|d| (high[d] - low[d]) * 1e3);
+            let size = format!("the plate is {width:.4} mm by {depth:.4} mm, if `mesh.unit` is right");
+            self.error(&impactor.load, why, format!("choose a smaller `impactor.{key}`; {size}"))
+        };
         let contact = match (impactor.load.value, column) {
-            (ContactLoad::Patch { radius }, _) => patch::hertz(plate, element, centre, radius).map_err(|why| {
-                let (low, high) = plate.plane.bounds();
-                let [width, depth] = [0, 1].map(|d| (high[d] - low[d]) * 1e3);
-                let size = format!("the plate is {width:.4} mm by {depth:.4} mm, if `mesh.unit` is right");
-                self.error(&impactor.load, why, format!("choose a smaller `impactor.patch_radius`; {size}"))
-            })?,
+            (ContactLoad::Patch { radius }, _) => {
+                patch::hertz(plate, element, centre, radius).map_err(|why| too_large(why, "patch_radius"))?
+            }
+            (ContactLoad::Square { side }, _) => {
+                patch::square(plate, element, centre, side).map_err(|why| too_large(why, "patch_side"))?
+            }
             (ContactLoad::Node, Some(column)) => patch::node(plate, column)
                 .ok_or_else(|| self.error(at, "the element has no U30 to strike", "choose another element"))?,
             (ContactLoad::Node, None) => {

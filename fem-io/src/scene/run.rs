@@ -39,6 +39,11 @@ pub enum ContactLoad {
         /// Radius of the circle, m.
         radius: f64,
     },
+    /// As uniform pressure over a square parallel to the axes.
+    Square {
+        /// Side of the square, m.
+        side: f64,
+    },
 }
 
 /// What is done about damage.
@@ -151,6 +156,7 @@ const IMPACTOR: Keys = &[
     ("velocity", r#""1.56 m/s""#),
     ("at", r#"{ group = "impact" }"#),
     ("patch_radius", r#""3 mm""#),
+    ("patch_side", r#""2 mm""#),
     ("load", r#""node""#),
 ];
 const AT: Keys = &[("group", r#""impact""#), ("x", r#""0 mm""#), ("y", r#""0 mm""#)];
@@ -206,7 +212,15 @@ pub(super) fn read_point(field: &Field<'_>) -> Result<Located<ImpactPoint>, Scen
 }
 
 fn read_load(table: &Reader<'_>) -> Result<Located<ContactLoad>, SceneError> {
-    let [load, patch] = table.either(["load", "patch_radius"])?;
+    let [round, square] = table.either(["patch_radius", "patch_side"])?;
+    if let Some(square) = square {
+        table.either(["load", "patch_side"])?;
+        return Ok(square.at(ContactLoad::Square { side: square.positive(Dimension::LENGTH)? }));
+    }
+    let [load, patch] = match round {
+        Some(_) => table.either(["load", "patch_radius"])?,
+        None => [table.optional("load"), None],
+    };
     if let Some(load) = load {
         return Ok(load.at(load.choice(&[("node", ContactLoad::Node)])?));
     }
