@@ -8,6 +8,7 @@ use crate::stress::{self, Margin};
 use fem_core::counters::Counters;
 use fem_core::dof::Dof;
 use fem_core::profile::ProfilePoint;
+use fem_core::reduction::Functional;
 use fem_core::structure::Structure;
 use fem_io::files::OutputDir;
 use fem_io::plot::{self, Axis, LinePlot, Series, Style};
@@ -60,12 +61,9 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     stopwatch.lap("assemble");
     let constraints = &model.constraints;
     // u = C ũ + g, so that Cᵀ K C ũ = Cᵀ f; supports hold at zero, g = 0.
+    let nodal: Vec<(usize, f64)> = forces.iter().copied().enumerate().filter(|(_, force)| *force != 0.0).collect();
     let mut f = vec![0.0; constraints.ndof()];
-    for (dof, force) in forces.iter().enumerate() {
-        for (i, c) in constraints.row(dof).0 {
-            f[*i] += c * force;
-        }
-    }
+    Functional(constraints.restrict(&nodal)).add_to(1.0, &mut f);
     let resultant = [1, 2, 3].map(|n| {
         let along = |(dof, f): (usize, &f64)| if model.plate.locate(dof).2 == dof_of(n) { *f } else { 0.0 };
         forces.iter().enumerate().map(along).sum()
@@ -118,7 +116,7 @@ fn dof_of(n: u8) -> Dof {
 
 fn profile(model: &Model, named: &NamedProfile, u: &[f64]) -> Vec<ProfilePoint> {
     let line = &named.line;
-    let bottom = line.equilibrium.then_some(0.0);
+    let bottom = line.equilibrium.then_some(named.bottom);
     named.profile.sample(&model.plate, &model.laminate, &*model.element, u, line.points, bottom)
 }
 

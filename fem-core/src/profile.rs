@@ -66,6 +66,11 @@ impl Profile {
         (!places.is_empty()).then_some(Self { places, around, point })
     }
 
+    /// The quads that meet at the point.
+    pub fn quads(&self) -> impl ExactSizeIterator<Item = usize> {
+        self.places.iter().map(|p| p.0)
+    }
+
     /// The state at `points` heights of every ply, its faces included, for displacements `u` (before elimination of
     /// constraints): means over the cells that meet at the point.
     ///
@@ -156,7 +161,7 @@ impl Profile {
             [x - self.point[0], y - self.point[1]]
         };
         let samples: Vec<[f64; 2]> = self.around.iter().map(centre).collect();
-        let size = samples.iter().fold(0.0_f64, |m, s| m.max(s[0].abs()).max(s[1].abs()));
+        let size = samples.iter().fold(f64::MIN_POSITIVE, |m, s| m.max(s[0].abs()).max(s[1].abs()));
         let terms = |[x, y]: [f64; 2]| -> [f64; TERMS] {
             let (x, y) = (x / size, if section { 0.0 } else { y / size });
             std::array::from_fn(|k| x.powi(k as i32 % 4) * y.powi(k as i32 / 4))

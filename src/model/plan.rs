@@ -5,13 +5,16 @@ use crate::error::Error;
 use fem_core::constraint::Constraints;
 use fem_core::contact::ContactLaw;
 use fem_core::element::Element;
-use fem_core::load;
+use fem_core::load::{self, Face};
 use fem_core::patch;
 use fem_core::plate::Plate;
 use fem_core::profile::Profile;
 use fem_core::reduction::{Functional, Reduction};
 use fem_core::time::Integrator;
-use fem_io::scene::{self, ContactLoad, ImpactPoint, Load, LoadKind, Located, ProfileLine, SceneError};
+use fem_io::scene::{self, Analysis, ContactLoad, ImpactPoint, Load, LoadKind, Located, ProfileLine, SceneError};
+
+/// Fewest cells whose stresses can be differentiated.
+const LEAST_CELLS: usize = 4;
 
 /// What is computed, made concrete.
 #[derive(Debug, Clone)]
@@ -56,6 +59,8 @@ pub struct NamedProfile {
     pub point: [f64; 2],
     /// The line through the plate.
     pub profile: Profile,
+    /// Pressure on the bottom face there, Pa.
+    pub bottom: f64,
 }
 
 impl Builder<'_> {
@@ -138,14 +143,42 @@ impl Builder<'_> {
     }
 
     pub(super) fn profiles(&self, plate: &Plate) -> Result<Vec<NamedProfile>, SceneError> {
+        let cells = plate.plane.quads.len();
         let each = |line: &ProfileLine| {
             let (point, _) = self.point(plate, &line.at)?;
-            match Profile::at(plate, point) {
-                Some(profile) => Ok(NamedProfile { line: line.clone(), point, profile }),
-                None => Err(self.error(&line.at, "the point lies outside the plate", "move it")),
+            let Some(profile) = Profile::at(plate, point) else {
+                return Err(self.error(&line.at, "the point lies outside the plate", "move it"));
+            };
+            if line.equilibrium && cells < LEAST_CELLS {
+                let message = format!("the stresses of {cells} cells cannot be differentiated for `equilibrium`");
+                let help = format!("take at least {LEAST_CELLS} cells, or leave `equilibrium` out");
+                return Err(self.error(&line.name, message, help));
             }
+            let bottom = self.bottom_pressure(plate, &profile, point)?;
+            Ok(NamedProfile { line: line.clone(), point, profile, bottom })
         };
         self.scene.profiles.iter().map(each).collect()
+    }
+
+    /// What presses on the bottom face at a point: where loaded and free cells meet, the mean over the cells.
+    fn bottom_pressure(&self, plate: &Plate, profile: &Profile, point: [f64; 2]) -> Result<f64, SceneError> {
+        let Analysis::Static(loads) = &self.scene.analysis else { return Ok(0.0) };
+        let mut sum = 0.0;
+        for load in loads {
+            let LoadKind::Pressure { pressure, face: Face::Bottom, group } = &load.kind else { continue };
+            let share = match group {
+                None => 1.0,
+                Some(name) => {
+                    let loaded = &self.group(plate, name)?.quads;
+                    let pressed = profile.quads().filter(|q| loaded.contains(&(*q as u32))).count();
+                    pressed as f64 / profile.quads().len() as f64
+                }
+            };
+            if share > 0.0 {
+                sum += share * pressure.at(point);
+            }
+        }
+        Ok(sum)
     }
 
     /// A place on the plate, m, and the column of the node there if there is one.

@@ -2,6 +2,8 @@
 
 use super::scene::{MeshFile, Plate, Side, gmsh_grid, isotropic};
 use fem::Plan;
+use fem::io::scene;
+use fem::{Model, Registry};
 use std::f64::consts::PI;
 
 /// Where the element holds the exact solution.
@@ -93,6 +95,11 @@ fn opposite_pressures_squeeze_a_distorted_mesh_evenly() {
     let shortening = bottom.displacement[2] - top.displacement[2];
     assert!((shortening / (5e6 / E * 1e-3) - 1.0).abs() < EXACT, "{shortening}");
     assert!((bottom.global.0[2] / -5e6 - 1.0).abs() < EXACT, "{:?}", bottom.global);
+    // Nothing varies in the plane: equilibrium carries the pressure of the bottom through to the top.
+    for p in &solution.profiles[0] {
+        let [normal, ..] = p.equilibrium.unwrap();
+        assert!((normal / -5e6 - 1.0).abs() < EXACT, "{normal} at {}", p.z);
+    }
 }
 
 #[test]
@@ -152,4 +159,12 @@ fn a_small_circle_of_pressure_acts_on_a_thin_plate_like_a_force_at_its_middle() 
     let series: f64 = odd().map(|m| odd().map(|n| (m * m + n * n).powi(-2)).sum::<f64>()).sum();
     let want = -10.0 * 4.0 * a * a / (PI.powi(4) * d) * series;
     assert!((w / want - 1.0).abs() < POINT, "{w} {want}");
+}
+
+#[test]
+fn equilibrium_in_one_cell_is_refused() {
+    let one = plate(&regular(), 0.3).rectangle([20.0, 10.0], [1, 1]).load("pressure = '5 MPa'").profile([10.0, 5.0], 3);
+    let scene = scene::parse(&one.text("static"), "scene.toml".as_ref()).unwrap();
+    let why = Model::new(scene, &Registry::standard()).unwrap_err().to_string();
+    assert!(why.contains("the stresses of 1 cells cannot be differentiated"), "{why}");
 }
