@@ -1,0 +1,85 @@
+//! The main job: assemble, reduce, march, scan.
+
+mod ledger;
+mod march;
+mod prepare;
+
+pub use crate::stress::IndexHistory;
+pub use march::march;
+pub use prepare::{Prepared, prepare, structure};
+
+use crate::cost::Phase;
+use fem_core::counters::Counters;
+use fem_failure::scan::{FailureEvent, Peak, ScanSite};
+use fem_io::tables::HistoryRow;
+
+/// Sizes and limits of a model that is ready to march.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sizes {
+    /// Independent unknowns of the full model.
+    pub unknowns: usize,
+    /// Unknowns of the march: modes of the reduced model, or those of the full one.
+    pub marched: usize,
+    /// Entries of one triangle of the stiffness.
+    pub stiffness_entries: usize,
+    /// Entries of its Cholesky factor.
+    pub factor_entries: usize,
+    /// Contact force per deflection under it, N/m, of the plate as marched.
+    pub static_stiffness: f64,
+    /// Highest frequency of the plate as marched, Hz; `None` where no integrator limit asked for it.
+    pub highest_frequency: Option<f64>,
+    /// Lowest frequency of the reduced plate that the impact excites, Hz.
+    pub lowest_frequency: Option<f64>,
+    /// Longest stable step, s; infinite for unconditionally stable integrators.
+    pub longest_step: f64,
+    /// Number of steps.
+    pub steps: u64,
+    /// The step, s: the scene's, shortened so that a whole number of steps reaches the end.
+    pub step: f64,
+}
+
+/// What a run found.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// Mass of the impactor, kg.
+    pub mass: f64,
+    /// Its speed at first touch, m/s.
+    pub velocity: f64,
+    /// Force, motion and energies over time.
+    pub history: Vec<HistoryRow>,
+    /// First reaching of index 1 per criterion, mode and place, by time.
+    pub events: Vec<FailureEvent>,
+    /// Largest index per criterion and mode.
+    pub peaks: Vec<Peak>,
+    /// Indices over time at the gauges of the model.
+    pub histories: Vec<IndexHistory>,
+    /// Largest index per criterion and site, if the scene asks for maps.
+    pub maxima: Vec<Maximum>,
+    /// When the contact force first reached the threshold of the model, s.
+    pub threshold_time: Option<f64>,
+    /// Sites watched.
+    pub sites: usize,
+    /// Largest deviation of the total energy from the energy of the impact, relative to it.
+    pub energy_error: f64,
+    /// Number of separate contacts seen.
+    pub contacts: u32,
+    /// Work done.
+    pub counters: Counters,
+    /// Time per phase.
+    pub phases: Vec<Phase>,
+    /// Why the run ended before its time, if it did; everything above holds up to then.
+    pub stopped: Option<String>,
+}
+
+/// The largest index of a criterion at a site over all samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Maximum {
+    /// Number of the criterion in the model.
+    pub criterion: usize,
+    /// Its mode; `None` where no mode ever applied.
+    pub mode: Option<usize>,
+    /// The index.
+    pub index: f64,
+    /// Where.
+    pub site: ScanSite,
+}
