@@ -96,37 +96,36 @@ impl Recovery {
                 element.mean_strains(&cell, parts, &mut scratch, &mut operators)?;
                 first += stations.len();
                 plate.cell_dofs(number, &mut dofs);
-                for (field, local) in local.chunks_exact_mut(n).enumerate() {
-                    let u = &u[field * plate.ndof()..];
-                    for (local, dof) in local.iter_mut().zip(&dofs) {
-                        *local = u[*dof];
-                    }
+                // Fields run fastest here and in the strains: one operation serves several of them.
+                for (dof, local) in dofs.iter().zip(local.chunks_exact_mut(fields)) {
+                    let of_dof = u[*dof..].iter().step_by(plate.ndof());
+                    local.iter_mut().zip(of_dof).for_each(|(local, u)| *local = *u);
                 }
                 let (here, rest) = strains.split_at_mut(6 * fields * stations.len());
                 strains = rest;
                 for (operator, here) in operators.chunks_exact(6 * n).zip(here.chunks_exact_mut(6 * fields)) {
-                    for (local, strain) in local.chunks_exact(n).zip(here.chunks_exact_mut(6)) {
-                        for (u, column) in local.iter().zip(operator.chunks_exact(6)) {
-                            for (e, b) in strain.iter_mut().zip(column) {
-                                *e += b * u;
+                    for (column, local) in operator.chunks_exact(6).zip(local.chunks_exact(fields)) {
+                        for (b, strain) in column.iter().zip(here.chunks_exact_mut(fields)) {
+                            if *b != 0.0 {
+                                strain.iter_mut().zip(local).for_each(|(e, u)| *e += b * u);
                             }
                         }
                     }
                 }
             }
         }
+        let mut mean = vec![0.0; 6 * fields];
         for (i, window) in self.windows.iter().enumerate() {
             for (s, station) in self.stations.iter().enumerate() {
+                mean.fill(0.0);
+                for (source, share) in window {
+                    let at = (source * self.stations.len() + s) * 6 * fields;
+                    mean.iter_mut().zip(&strains[at..]).for_each(|(m, e)| *m += share * e);
+                }
                 for field in 0..fields {
-                    let mut mean = [0.0; 6];
-                    for (source, share) in window {
-                        let at = (source * self.stations.len() + s) * 6 * fields + 6 * field;
-                        for (m, e) in mean.iter_mut().zip(&strains[at..at + 6]) {
-                            *m += share * e;
-                        }
-                    }
+                    let strain = std::array::from_fn(|c| mean[c * fields + field]);
                     let at = field * 6 * self.sites() + i * per_quad + 6 * s;
-                    out[at..at + 6].copy_from_slice(&crate::tensor::apply(&station.to_stress, &mean));
+                    out[at..at + 6].copy_from_slice(&crate::tensor::apply(&station.to_stress, &strain));
                 }
             }
         }

@@ -18,10 +18,10 @@ pub trait Structure: fmt::Debug + Send {
     /// Number of unknowns.
     fn ndof(&self) -> usize;
 
-    /// `y ← y + scale · K x`.
+    /// `Y ← Y + scale · K X`, X and Y of `ndof × columns`, column-major.
     fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]);
 
-    /// `y ← y + scale · M x`.
+    /// `Y ← Y + scale · M X`, X and Y of `ndof × columns`, column-major.
     fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]);
 
     /// `X ← (K + shift · M)⁻¹ X`, X of `ndof × columns`, column-major. The last factorisation is kept.

@@ -65,11 +65,8 @@ where
     /// # Errors
     /// Those of the operator.
     pub(crate) fn excited(structure: &'a mut dyn Structure, mut inverse: S, x: &[f64]) -> Result<Self, SolveError> {
-        let n = structure.ndof().max(1);
         let mut start = vec![0.0; x.len()];
-        for (x, y) in x.chunks_exact(n).zip(start.chunks_exact_mut(n)) {
-            structure.add_mass(1.0, x, y);
-        }
+        structure.add_mass(1.0, x, &mut start);
         inverse(structure, &mut start)?;
         Ok(Self::new(structure, inverse, &start))
     }

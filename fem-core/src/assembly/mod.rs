@@ -57,7 +57,7 @@ pub fn assemble(
 ) -> Result<Vec<f64>, AssemblyError> {
     let size = element.info().ndof().pow(2);
     let mut values = vec![0.0; pattern.rows.len()];
-    let (mut map, mut work) = (CellMap::default(), Vec::new());
+    let mut map = CellMap::default();
     let alike = Alike::of(plate);
     let mut batch = vec![0.0; size * BATCH.min(alike.len())];
     let mut scratches: Vec<Scratch> = (0..threads.get()).map(|_| Scratch::default()).collect();
@@ -108,7 +108,7 @@ pub fn assemble(
         for (i, a) in batch.chunks_exact(size).enumerate() {
             for cell in alike.cells(first + i) {
                 map.set(plate, constraints, *cell as usize);
-                map.scatter(pattern, a, &mut work, &mut values);
+                map.scatter(pattern, a, &mut values);
             }
         }
     }

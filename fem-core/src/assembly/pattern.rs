@@ -20,20 +20,81 @@ impl Pattern {
         self.starts.len() - 1
     }
 
-    /// `y ← y + scale · A x` for the symmetric matrix with this pattern and `values`.
+    /// `Y ← Y + scale · A X` for the symmetric matrix A with this pattern and `values`, column by column of X and Y; columns
+    /// go together in fours, which reads the matrix once.
     pub fn add_product(&self, values: &[f64], scale: f64, x: &[f64], y: &mut [f64]) {
+        let n = self.ndof();
+        if n == 0 {
+            return;
+        }
+        let (fours, rest) = (x.chunks_exact(4 * n), x.chunks_exact(4 * n).remainder());
+        let (mut from, mut to) = (Vec::new(), Vec::new());
+        let done = x.len() - rest.len();
+        for (x, y) in fours.zip(y.chunks_exact_mut(4 * n)) {
+            let (x, y): ([&[f64]; 4], &mut [f64]) = (std::array::from_fn(|c| &x[c * n..(c + 1) * n]), y);
+            from.clear();
+            from.extend((0..n).map(|i| x.map(|x| scale * x[i])));
+            to.clear();
+            to.resize(n, [0.0; 4]);
+            self.accumulate(values, &from, &mut to);
+            for (c, y) in y.chunks_exact_mut(n).enumerate() {
+                y.iter_mut().zip(&to).for_each(|(y, sum)| *y += sum[c]);
+            }
+        }
+        for (x, y) in rest.chunks_exact(n).zip(y[done..].chunks_exact_mut(n)) {
+            self.accumulate_one(values, scale, x, y);
+        }
+    }
+
+    /// Four columns, interleaved.
+    fn accumulate(&self, values: &[f64], x: &[[f64; 4]], y: &mut [[f64; 4]]) {
+        let add = |y: &mut [f64; 4], a: f64, x: &[f64; 4]| y.iter_mut().zip(x).for_each(|(y, x)| *y += a * x);
+        for j in 0..self.ndof() {
+            let range = self.starts[j]..self.starts[j + 1];
+            let (rows, values) = (&self.rows[range.clone()], &values[range]);
+            let Some((diagonal, below)) = values.split_first() else { continue };
+            let xj = x[j];
+            let mut sum = [0.0; 4];
+            add(&mut sum, *diagonal, &xj);
+            for (i, a) in rows[1..].iter().zip(below) {
+                add(&mut y[*i], *a, &xj);
+                add(&mut sum, *a, &x[*i]);
+            }
+            add(&mut y[j], 1.0, &sum);
+        }
+    }
+
+    fn accumulate_one(&self, values: &[f64], scale: f64, x: &[f64], y: &mut [f64]) {
         for j in 0..self.ndof() {
             let range = self.starts[j]..self.starts[j + 1];
             let (rows, values) = (&self.rows[range.clone()], &values[range]);
             let Some((diagonal, below)) = values.split_first() else { continue };
             let xj = scale * x[j];
-            let mut yj = diagonal * xj;
+            let mut sum = diagonal * x[j];
             for (i, a) in rows[1..].iter().zip(below) {
                 y[*i] += a * xj;
-                yj += a * x[*i] * scale;
+                sum += a * x[*i];
             }
-            y[j] += yj;
+            y[j] += scale * sum;
         }
+    }
+
+    /// The entries of `values` that are not zero, with their pattern; the diagonal stays.
+    pub(super) fn compact(&self, values: &[f64]) -> (Self, Vec<f64>) {
+        let mut pattern = Self { starts: Vec::with_capacity(self.starts.len()), rows: Vec::new() };
+        let mut kept = Vec::new();
+        pattern.starts.push(0);
+        for j in 0..self.ndof() {
+            let range = self.starts[j]..self.starts[j + 1];
+            for (row, value) in self.rows[range.clone()].iter().zip(&values[range]) {
+                if *value != 0.0 || *row == j {
+                    pattern.rows.push(*row);
+                    kept.push(*value);
+                }
+            }
+            pattern.starts.push(kept.len());
+        }
+        (pattern, kept)
     }
 }
 
@@ -65,6 +126,9 @@ pub(crate) struct CellMap {
     terms: Vec<(usize, usize, f64)>,
     /// Every unknown of the cell is one independent unknown or none.
     plain: bool,
+    /// Where the matrix to be added has the rows of `reduced`.
+    places: Vec<usize>,
+    work: Vec<f64>,
 }
 
 impl CellMap {
@@ -88,6 +152,10 @@ impl CellMap {
         for term in &mut self.terms {
             term.1 = self.reduced.partition_point(|i| *i < term.1);
         }
+        self.places.resize(self.reduced.len(), 0);
+        for (local, position, _) in &self.terms {
+            self.places[*position] = *local;
+        }
     }
 
     /// Tᵀ A T of a cell matrix, lower triangle of the ascending independent unknowns, `n × n` column-major.
@@ -98,28 +166,35 @@ impl CellMap {
         for (j, jr, cj) in &self.terms {
             let column = &a[j * m..(j + 1) * m];
             let out = &mut out[jr * n..(jr + 1) * n];
-            if self.plain {
-                for (i, ir, _) in &self.terms {
-                    out[*ir] = column[*i];
-                }
-            } else {
-                for (i, ir, ci) in &self.terms {
-                    out[*ir] += ci * cj * column[*i];
-                }
+            for (i, ir, ci) in &self.terms {
+                out[*ir] += ci * cj * column[*i];
             }
         }
     }
 
     /// Adds the lower triangle of a cell matrix into `values`.
+    pub(crate) fn scatter(&mut self, pattern: &Pattern, a: &[f64], values: &mut [f64]) {
+        if self.plain {
+            self.add_plain(pattern, a, values);
+            return;
+        }
+        let mut work = std::mem::take(&mut self.work);
+        self.transform(a, &mut work);
+        self.places.clear();
+        self.places.extend(0..self.reduced.len());
+        self.add_plain(pattern, &work, values);
+        self.work = work;
+    }
+
+    /// Adds the lower triangle of a matrix whose row and column `places[i]` belong to the independent unknown `reduced[i]`.
     ///
     /// Runs of consecutive unknowns are consecutive in every column that holds them: one search per run.
-    pub(crate) fn scatter(&self, pattern: &Pattern, a: &[f64], work: &mut Vec<f64>, values: &mut [f64]) {
-        self.transform(a, work);
-        let n = self.reduced.len();
+    fn add_plain(&self, pattern: &Pattern, a: &[f64], values: &mut [f64]) {
+        let (n, m) = (self.reduced.len(), a.len().isqrt());
         for (j, column) in self.reduced.iter().enumerate() {
             let start = pattern.starts[*column];
             let rows = &pattern.rows[start..pattern.starts[column + 1]];
-            let from = &work[j * n..(j + 1) * n];
+            let from = &a[self.places[j] * m..(self.places[j] + 1) * m];
             let (mut i, mut at) = (j, 0);
             while i < n {
                 let first = self.reduced[i];
@@ -128,8 +203,8 @@ impl CellMap {
                 while i + length < n && self.reduced[i + length] == first + length {
                     length += 1;
                 }
-                for (v, a) in values[start + at..start + at + length].iter_mut().zip(&from[i..i + length]) {
-                    *v += a;
+                for (v, place) in values[start + at..start + at + length].iter_mut().zip(&self.places[i..i + length]) {
+                    *v += from[*place];
                 }
                 i += length;
             }
@@ -167,19 +242,25 @@ pub fn pattern(plate: &Plate, constraints: &Constraints) -> Pattern {
     }
     let mut out = Pattern { starts: Vec::with_capacity(n + 1), rows: Vec::new() };
     out.starts.push(0);
-    let mut seen = vec![u32::MAX; n];
+    // Unknowns that the same cells share, such as those of a node, have their rows in common.
+    let (mut seen, mut union, mut of) = (vec![u32::MAX; n], Vec::new(), 0..0);
     for j in 0..n {
-        let begin = out.rows.len();
-        for cell in &cells[starts[j] as usize..starts[j + 1] as usize] {
-            let range = cell_starts[*cell as usize] as usize..cell_starts[*cell as usize + 1] as usize - 1;
-            for i in &members[range] {
-                if *i as usize >= j && seen[*i as usize] != j as u32 {
-                    seen[*i as usize] = j as u32;
-                    out.rows.push(*i as usize);
+        let here = starts[j] as usize..starts[j + 1] as usize;
+        if j == 0 || cells[here.clone()] != cells[of] {
+            union.clear();
+            for cell in &cells[here.clone()] {
+                let range = cell_starts[*cell as usize] as usize..cell_starts[*cell as usize + 1] as usize - 1;
+                for i in &members[range] {
+                    if *i as usize >= j && seen[*i as usize] != j as u32 {
+                        seen[*i as usize] = j as u32;
+                        union.push(*i as usize);
+                    }
                 }
             }
+            union.sort_unstable();
         }
-        out.rows[begin..].sort_unstable();
+        of = here;
+        out.rows.extend_from_slice(&union[union.partition_point(|i| *i < j)..]);
         out.starts.push(out.rows.len());
     }
     out

@@ -18,6 +18,8 @@ pub struct SparseStructure {
     pattern: Arc<Pattern>,
     k: Vec<f64>,
     m: Vec<f64>,
+    /// M without its zeros: the components of a displacement have no inertia in common.
+    inertia: (Pattern, Vec<f64>),
     factor: Cholesky,
     factored: Factored,
     combined: Vec<f64>,
@@ -41,6 +43,7 @@ impl SparseStructure {
             combined: vec![0.0; k.len()],
             factor: Cholesky::new(symbolic),
             factored: Factored::Nothing,
+            inertia: pattern.compact(&m),
             pattern,
             k,
             m,
@@ -104,7 +107,7 @@ impl Structure for SparseStructure {
     }
 
     fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
-        self.pattern.add_product(&self.m, scale, x, y);
+        self.inertia.0.add_product(&self.inertia.1, scale, x, y);
     }
 
     fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {

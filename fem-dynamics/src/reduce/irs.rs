@@ -37,9 +37,7 @@ impl Reduction for Irs {
         let accelerations = Cholesky::new(m).ok_or_else(singular)?.solve(&k);
         let moved = DMatrix::from_column_slice(n, k.nrows(), &basis) * accelerations;
         let mut correction = vec![0.0; basis.len()];
-        for (x, y) in moved.as_slice().chunks_exact(n).zip(correction.chunks_exact_mut(n)) {
-            structure.add_mass(1.0, x, y);
-        }
+        structure.add_mass(1.0, moved.as_slice(), &mut correction);
         solve(structure, &mut correction).map_err(refused)?;
         for (t, x) in basis.chunks_exact_mut(n).zip(correction.chunks_exact_mut(n)) {
             shapes.hold(x);

@@ -49,14 +49,16 @@ impl Structure for Modal {
     }
 
     fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {
-        for ((y, k), x) in y.iter_mut().zip(&self.stiffness).zip(x) {
-            *y += scale * k * x;
+        let n = self.stiffness.len();
+        for (y, x) in y.chunks_exact_mut(n).zip(x.chunks_exact(n)) {
+            y.iter_mut().zip(&self.stiffness).zip(x).for_each(|((y, k), x)| *y += scale * k * x);
         }
     }
 
     fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
-        for ((y, m), x) in y.iter_mut().zip(&self.mass).zip(x) {
-            *y += scale * m * x;
+        let n = self.mass.len();
+        for (y, x) in y.chunks_exact_mut(n).zip(x.chunks_exact(n)) {
+            y.iter_mut().zip(&self.mass).zip(x).for_each(|((y, m), x)| *y += scale * m * x);
         }
     }
 
@@ -110,10 +112,8 @@ impl Reduced {
         let t = DMatrix::from_column_slice(n, m, basis);
         let product = |add: &dyn Fn(&[f64], &mut [f64])| {
             let mut image = DMatrix::zeros(n, m);
-            for (x, y) in basis.chunks_exact(n).zip(image.as_mut_slice().chunks_exact_mut(n)) {
-                add(x, y);
-            }
-            let product = t.transpose() * image;
+            add(basis, image.as_mut_slice());
+            let product = t.tr_mul(&image);
             (&product + product.transpose()) * 0.5
         };
         let k = product(&|x, y| structure.add_stiffness(1.0, x, y));
@@ -255,11 +255,9 @@ impl StaticShapes {
         let n = self.flexibility.len() / m;
         let x = DMatrix::from_column_slice(n, m, &self.flexibility);
         let mut image = DMatrix::zeros(n, m);
-        for (x, y) in self.flexibility.chunks_exact(n.max(1)).zip(image.as_mut_slice().chunks_exact_mut(n.max(1))) {
-            structure.add_mass(1.0, x, y);
-        }
+        structure.add_mass(1.0, &self.flexibility, image.as_mut_slice());
         let k = self.factor.inverse();
-        let mass = &k * (x.transpose() * image) * &k;
+        let mass = &k * x.tr_mul(&image) * &k;
         ((&k + k.transpose()) * 0.5, (&mass + mass.transpose()) * 0.5)
     }
 

@@ -46,19 +46,25 @@ impl Dense {
     }
 }
 
+/// `Y ← Y + scale · A X`, column by column.
+fn add_product(a: &DMatrix<f64>, scale: f64, x: &[f64], y: &mut [f64]) {
+    let n = a.nrows();
+    for (x, y) in x.chunks_exact(n).zip(y.chunks_exact_mut(n)) {
+        DVectorViewMut::from_slice(y, n).gemv(scale, a, &DVectorView::from_slice(x, n), 1.0);
+    }
+}
+
 impl Structure for Dense {
     fn ndof(&self) -> usize {
         self.k.nrows()
     }
 
     fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {
-        let n = x.len();
-        DVectorViewMut::from_slice(y, n).gemv(scale, &self.k, &DVectorView::from_slice(x, n), 1.0);
+        add_product(&self.k, scale, x, y);
     }
 
     fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
-        let n = x.len();
-        DVectorViewMut::from_slice(y, n).gemv(scale, &self.m, &DVectorView::from_slice(x, n), 1.0);
+        add_product(&self.m, scale, x, y);
     }
 
     fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
