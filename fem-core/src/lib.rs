@@ -56,6 +56,7 @@ pub mod patch;
 pub mod plate;
 pub mod plugin;
 pub mod profile;
+pub mod prolongation;
 pub mod quadrature;
 pub mod recovery;
 pub mod reduction;

@@ -1,5 +1,6 @@
 //! What the dynamic half may ask of a linear structure, sparse or reduced.
 
+use crate::prolongation::Coarse;
 use std::fmt;
 
 /// A matrix that could not be factorised.
@@ -67,6 +68,14 @@ pub trait Structure: fmt::Debug + Send {
             }
         }
         Ok(1.02 * square.sqrt())
+    }
+
+    /// A coarse model of the structure, where it has one.
+    ///
+    /// # Errors
+    /// A coarse matrix that is too large to factorise.
+    fn coarse(&self) -> Result<Option<Coarse>, SolveError> {
+        Ok(None)
     }
 
     /// Factorisations and solved right-hand sides so far, where they cost anything.

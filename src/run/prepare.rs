@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::model::{Impact, Model, Plan};
 use fem_core::assembly::{Matrix, SparseStructure, Symbolic, assemble, pattern};
 use fem_core::counters::Counters;
+use fem_core::prolongation::Prolongation;
 use fem_core::structure::Structure;
 use fem_core::time::{StepError, StepLimit};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
@@ -49,7 +50,8 @@ pub fn structure(
     let entries = symbolic.entries();
     let (plate, originals) = (model.plate.clone(), model.constraints.clone());
     let name = move |column| plate.describe(originals.original(column));
-    Ok((SparseStructure::new(symbolic, k, m, name), entries))
+    let coarse = Prolongation::linear_in_z(&model.plate, &model.constraints);
+    Ok((SparseStructure::new(symbolic, k, m, name).with_coarse(coarse), entries))
 }
 
 /// Assembles and reduces `model` and checks the step.

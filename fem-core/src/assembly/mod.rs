@@ -1,6 +1,7 @@
 //! Sparse matrices of a plate: pattern once, values many times, Cholesky with its storage reused (feature `assembly`).
 
 mod alike;
+mod coarse;
 mod factor;
 mod ordering;
 mod pattern;

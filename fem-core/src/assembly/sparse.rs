@@ -1,6 +1,7 @@
 //! A plate's K and M as a [`Structure`].
 
-use super::{Cholesky, FactorError, Pattern, Symbolic};
+use super::{Cholesky, FactorError, Pattern, Symbolic, coarse};
+use crate::prolongation::{Coarse, Prolongation};
 use crate::structure::{SolveError, Structure};
 use std::fmt;
 use std::sync::Arc;
@@ -23,6 +24,7 @@ pub struct SparseStructure {
     factor: Cholesky,
     factored: Factored,
     combined: Vec<f64>,
+    prolongation: Option<Prolongation>,
     name: Box<dyn Fn(usize) -> String + Send>,
     factorisations: u64,
     solves: u64,
@@ -41,6 +43,7 @@ impl SparseStructure {
         Self {
             name: Box::new(name),
             combined: vec![0.0; k.len()],
+            prolongation: None,
             factor: Cholesky::new(symbolic),
             factored: Factored::Nothing,
             inertia: pattern.compact(&m),
@@ -50,6 +53,11 @@ impl SparseStructure {
             factorisations: 0,
             solves: 0,
         }
+    }
+
+    /// With a coarse model for those who can use one.
+    pub fn with_coarse(self, prolongation: Prolongation) -> Self {
+        Self { prolongation: Some(prolongation), ..self }
     }
 
     /// Entries of one triangle of K.
@@ -122,6 +130,16 @@ impl Structure for SparseStructure {
         self.factor.solve(x, 1);
         self.solves += 1;
         Ok(())
+    }
+
+    fn coarse(&self) -> Result<Option<Coarse>, SolveError> {
+        let Some(p) = &self.prolongation else { return Ok(None) };
+        let pattern = Arc::new(coarse::pattern(&self.pattern, p));
+        let k = coarse::product(&self.pattern, &self.k, p, &pattern);
+        let m = coarse::product(&self.inertia.0, &self.inertia.1, p, &pattern);
+        let symbolic = Symbolic::new(pattern).map_err(|e| SolveError(e.to_string()))?;
+        let structure = Self::new(symbolic, k, m, |i| format!("coarse unknown {}", i + 1));
+        Ok(Some(Coarse { structure: Box::new(structure), prolongation: p.clone() }))
     }
 
     fn work(&self) -> (u64, u64) {

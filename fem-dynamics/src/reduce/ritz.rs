@@ -3,17 +3,33 @@
 use super::{columns, refused, solve, static_responses};
 use crate::lanczos::Lanczos;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::prolongation::Coarse;
 use fem_core::reduction::{Functional, Reduction, ReductionError};
 use fem_core::structure::Structure;
 
-/// The Krylov space {X, A X, A² X, …} of A = K⁻¹ M from the static responses X = K⁻¹ P to the contact loads.
+/// Fine unknowns per coarse one, and coarse ones per vector, at least, for a coarse model to be worth its while.
+const COARSENING: usize = 2;
+const ROOM: usize = 4;
+
+/// The Krylov space {X, A X, A² X, …} of A = K⁻¹ M from the static responses X = K⁻¹ P to the contact loads, exactly or
+/// nearly so.
 ///
-/// It holds the exact static flexibility at the contacts and, m vectors deep, the first 2m moments of their dynamic
-/// flexibility; modes that no contact can excite never enter. Each vector costs one solve, where a converged mode
-/// costs two or three. No more vectors than unknowns are made.
+/// `space = "krylov"`: exactly. m vectors deep it holds the first 2m moments of the dynamic flexibility at the contacts;
+/// modes that no contact can excite never enter. Every vector takes a solve of its own, after the one before it, and each
+/// solve reads the whole factor.
+///
+/// `space = "two-level"` (the default): the space is built on the coarse model of the structure (u = P y, for a plate the
+/// displacements that are linear in z), with Y_k the Krylov vectors of PᵀKP and PᵀMP, and taken to the fine one by a single
+/// step A P Y_k of all vectors at once, which reads the factor once. What is wrong with P Y_k is stiff, and A wears it down
+/// by the square of the ratio of frequencies. X itself is exact, and with it the static flexibility at the contacts. On a
+/// laminate of 16 plies the force is as near to that of the full model as from the exact space of equal size. Structures
+/// without a coarse model, or with one that is hardly smaller, take the exact space.
+///
+/// No more vectors than unknowns are made.
 #[derive(Debug, Clone)]
 pub struct Ritz {
     vectors: usize,
+    two_level: bool,
 }
 
 impl Reduction for Ritz {
@@ -24,27 +40,63 @@ impl Reduction for Ritz {
         _: &[usize],
     ) -> Result<Vec<f64>, ReductionError> {
         let vectors = columns(structure, self.vectors.max(keep.len()), 0)?;
-        let start = static_responses(structure, keep)?;
-        let mut space = Lanczos::new(structure, solve, &start);
-        for _ in 0..vectors {
-            if !space.grow().map_err(refused)? {
-                break;
-            }
+        if self.two_level
+            && let Some(coarse) = structure.coarse().map_err(refused)?
+            && (ROOM * vectors..=structure.ndof() / COARSENING).contains(&coarse.prolongation.columns())
+        {
+            return two_level(structure, coarse, keep, vectors);
         }
-        Ok(space.into_basis())
+        let start = static_responses(structure, keep)?;
+        krylov(structure, &start, vectors)
     }
+}
+
+fn krylov(structure: &mut dyn Structure, start: &[f64], vectors: usize) -> Result<Vec<f64>, ReductionError> {
+    let mut space = Lanczos::new(structure, solve, start);
+    for _ in 0..vectors {
+        if !space.grow().map_err(refused)? {
+            break;
+        }
+    }
+    Ok(space.into_basis())
+}
+
+/// K⁻¹ [P, M P_c Y], P_c the prolongation.
+fn two_level(
+    structure: &mut dyn Structure,
+    Coarse { structure: mut small, prolongation }: Coarse,
+    keep: &[Functional],
+    vectors: usize,
+) -> Result<Vec<f64>, ReductionError> {
+    let n = structure.ndof();
+    let mut basis = vec![0.0; n * keep.len()];
+    for (w, column) in keep.iter().zip(basis.chunks_exact_mut(n)) {
+        w.add_to(1.0, column);
+    }
+    let mut start = prolongation.restrict(&basis);
+    solve(&mut *small, &mut start).map_err(refused)?;
+    let rough = prolongation.expand(&krylov(&mut *small, &start, vectors - keep.len())?);
+    let contacts = basis.len();
+    basis.resize(contacts + rough.len(), 0.0);
+    structure.add_mass(1.0, &rough, &mut basis[contacts..]);
+    solve(structure, &mut basis).map_err(refused)?;
+    Ok(basis)
 }
 
 impl Plugin for Ritz {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Reduction,
         name: "ritz",
-        summary: "Krylov vectors of the contact loads; exact static flexibility at the contact, one solve a vector",
+        summary: "Krylov vectors of the contact loads; exact static flexibility at the contact, few solves",
         source: "Wilson, Yuan, Dickens 1982",
-        params: &[ParamInfo { name: "vectors", doc: "vectors in all; default 40" }],
+        params: &[
+            ParamInfo { name: "vectors", doc: "vectors in all; default 60" },
+            ParamInfo { name: "space", doc: "`two-level` (default): by way of a coarse model; or `krylov`" },
+        ],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        Ok(Built::Reduction(Box::new(Self { vectors: params.count("vectors", 1, Some(40))? })))
+        let two_level = params.choice("space", &["two-level", "krylov"])? == "two-level";
+        Ok(Built::Reduction(Box::new(Self { vectors: params.count("vectors", 1, Some(60))?, two_level })))
     }
 }
