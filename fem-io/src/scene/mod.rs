@@ -190,11 +190,7 @@ const MAX_CELLS: usize = 4_000_000;
 /// # Errors
 /// A file that cannot be read, or as [`parse`].
 pub fn read(path: &Path) -> Result<Scene, SceneError> {
-    let text = source::read_text(path).map_err(|why| {
-        let message = format!("cannot read the scene `{}`: {why}", path.display());
-        Arc::new(SceneSource::new(path, "")).error(message, "")
-    })?;
-    parse(&text, path)
+    read_with(path, "")
 }
 
 /// Reads a scene from its text; `path` names it in errors, and its folder is where the mesh file is looked for.
@@ -203,8 +199,28 @@ pub fn read(path: &Path) -> Result<Scene, SceneError> {
 /// Anything that is no scene: TOML at fault, unknown, missing or contradicting keys, values without unit, of the wrong
 /// dimension or out of range. The first of these, with its place.
 pub fn parse(text: &str, path: &Path) -> Result<Scene, SceneError> {
-    let source = Arc::new(SceneSource::new(path, text));
+    parse_with(text, path, "")
+}
+
+/// As [`read`], with the keys of `setting`, a TOML text, laid over those of the scene: how a study varies it.
+///
+/// # Errors
+/// As [`read`], and anything that makes no sense in `setting`.
+pub fn read_with(path: &Path, setting: &str) -> Result<Scene, SceneError> {
+    parse_with(&read_text(path)?, path, setting)
+}
+
+fn read_text(path: &Path) -> Result<String, SceneError> {
+    source::read_text(path).map_err(|why| {
+        let message = format!("cannot read the scene `{}`: {why}", path.display());
+        Arc::new(SceneSource::new(path, "")).error(message, "")
+    })
+}
+
+fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneError> {
+    let source = Arc::new(SceneSource::new(path, text).with(Origin::Setting, "setting of the study", setting));
     let own = Table::parse(text, Origin::Scene, &source)?;
+    let own = Table::parse(setting, Origin::Setting, &source)?.over(own);
     let fidelity = match Reader::root(&own, KEYS, &source)?.optional("fidelity") {
         Some(field) => field.choice(&Fidelity::ALL)?,
         None => Fidelity::Engineering,
@@ -250,7 +266,7 @@ fn read_analysis(root: &Reader<'_>) -> Result<Analysis, SceneError> {
     const IMPACT: &[&str] = &["impactor", "contact", "reduction", "march"];
     // Keys that the chosen analysis has no use for; those of a preset lie there for others.
     let unused = |analysis: &str, keys: &[&str]| {
-        let stray = keys.iter().filter_map(|key| root.optional(key)).find(|f| f.place().origin == Origin::Scene);
+        let stray = keys.iter().filter_map(|key| root.optional(key)).find(|f| f.place().origin != Origin::Preset);
         stray.map_or(Ok(()), |field| {
             let help = "leave it out, or choose another `analysis`: impact, static, modes";
             Err(field.error(format!("means nothing in the analysis `{analysis}`"), help))

@@ -69,13 +69,13 @@ impl<'a> Reader<'a> {
         Reader { table, path: self.path.clone(), place: self.place.clone(), keys, source }.checked()
     }
 
-    /// Two keys that exclude each other: at most one of them remains, the scene's where the other is the preset's.
+    /// Two keys that exclude each other: at most one of them remains, that of the text which counts more.
     pub(crate) fn either(&self, keys: [&str; 2]) -> Result<[Option<Field<'a>>; 2], SceneError> {
         match keys.map(|key| self.optional(key)) {
             [Some(a), Some(b)] if a.place().origin == b.place().origin => {
                 Err(b.error(format!("excludes `{}`", keys[0]), "leave one of the two out"))
             }
-            [Some(a), Some(_)] if a.place().origin == Origin::Scene => Ok([Some(a), None]),
+            [Some(a), Some(b)] if a.place().origin > b.place().origin => Ok([Some(a), None]),
             [Some(_), Some(b)] => Ok([None, Some(b)]),
             one => Ok(one),
         }

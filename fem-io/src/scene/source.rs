@@ -21,15 +21,17 @@ pub(crate) fn read_text(path: &Path) -> Result<String, String> {
     }
 }
 
-/// The text that a value comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The text that a value comes from; of two that exclude each other the later one counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Origin {
-    Scene,
-    Preset,
     Library,
+    Preset,
+    Scene,
+    Setting,
 }
 
-/// Where a value stands: in the scene, in its preset, in the materials library or in a file of materials.
+/// Where a value stands: in the scene, in its preset, in the materials library, in a file of materials or in what a study
+/// sets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Place {
     pub(crate) origin: Origin,
@@ -54,12 +56,12 @@ pub struct Located<T> {
 #[derive(Debug, Clone)]
 pub struct SceneSource {
     /// In the order of [`Origin`].
-    documents: [NamedSource<String>; 3],
+    documents: [NamedSource<String>; 4],
 }
 
 impl Default for SceneSource {
     fn default() -> Self {
-        Self { documents: [(); 3].map(|()| NamedSource::new("", String::new())) }
+        Self { documents: [(); 4].map(|()| NamedSource::new("", String::new())) }
     }
 }
 
