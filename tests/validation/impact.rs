@@ -19,9 +19,10 @@ const CURVE: f64 = 2e-2;
 /// Deflection under the impactor, as L2 difference over the whole history.
 const DEFLECTION: f64 = 1e-2;
 
-/// Shorter separations, s, count as one contact: the tables do not show them, and those of repeated contacts come and go with
-/// the highest mode of a series.
-const APART: f64 = 5.5e-6;
+/// Separations up to this, us, count as one contact. Two of the series of repeated contacts, of eight contacts each, graze so at
+/// 3.01 ms: force is zero for one or two rows of their tables, and below 6 % of its largest around them. Such separations
+/// come and go with the highest mode.
+const GRAZING: f64 = 15.5;
 
 /// An impact in the middle of a simply supported square plate, or of a strip, of which symmetry leaves a quarter or half.
 #[derive(Debug, Clone)]
@@ -150,7 +151,10 @@ impl Strike {
             impulse: impulse(all - 1),
             velocity: velocities[all - 1] / rows[all - 1]["v_impactor_m_s"] - 1.0,
             deflection: l2(&deflections, &column(all, "w_contact_mm")),
-            contacts: history.contacts(),
+            contacts: [
+                contacts(rows[..all].iter().map(|r| (r["t_us"], r["F_N"]))),
+                contacts(history.rows.iter().map(|r| (1e6 * r.time_s, r.contact_force_n))),
+            ],
         }
     }
 }
@@ -162,12 +166,6 @@ struct History {
 }
 
 impl History {
-    /// Contacts with at least [`APART`] between them.
-    fn contacts(&self) -> usize {
-        let touching: Vec<f64> = self.rows.iter().filter(|r| r.contact_force_n > 0.0).map(|r| r.time_s).collect();
-        1 + touching.windows(2).filter(|t| t[1] - t[0] > APART).count()
-    }
-
     /// Between the rows.
     fn at(&self, t: f64, value: &dyn Fn(&HistoryRow) -> f64) -> f64 {
         let after = self.rows.partition_point(|r| r.time_s < t).clamp(1, self.rows.len() - 1);
@@ -189,7 +187,8 @@ struct Difference {
     /// Velocity of the impactor at the end.
     velocity: f64,
     deflection: f64,
-    contacts: usize,
+    /// Their number, in the series and here.
+    contacts: [usize; 2],
 }
 
 impl Difference {
@@ -207,6 +206,12 @@ impl Difference {
         assert!(self.impulse.abs() < IMPULSE && self.velocity.abs() < IMPULSE, "{self:?}");
         assert!(self.deflection < DEFLECTION, "{self:?}");
     }
+}
+
+/// How often force acts anew, of rows of time (us) and force.
+fn contacts(rows: impl Iterator<Item = (f64, f64)>) -> usize {
+    let touching: Vec<f64> = rows.filter(|(_, force)| *force > 0.0).map(|(t, _)| t).collect();
+    1 + touching.windows(2).filter(|t| t[1] - t[0] > GRAZING).count()
 }
 
 fn largest(values: &[f64]) -> f64 {
@@ -246,7 +251,7 @@ fn shell(material: String, plies: &'static str, ply_mm: f64, layers: &'static [u
 fn agrees(strike: &Strike, table: &str, contacts: usize) {
     let difference = strike.against(table);
     difference.small_in_force();
-    assert_eq!(difference.contacts, contacts, "{difference:?}");
+    assert_eq!(difference.contacts, [contacts; 2], "{difference:?}");
 }
 
 #[test]
@@ -351,13 +356,13 @@ fn repeated(law: &'static str, table: &str, contacts: usize) {
     let difference = strike.stiff_across().law(law).against(table);
     difference.small_in_motion();
     assert!(difference.first_impulse.abs() < IMPULSE, "{difference:?}");
-    assert_eq!(difference.contacts, contacts, "{difference:?}");
+    assert_eq!(difference.contacts, [contacts; 2], "{difference:?}");
 }
 
 #[test]
 #[ignore = "ten seconds"]
 fn repeated_contacts() {
-    repeated(HERTZ, "impact_as4x8_multi_fsdtri_patch2_hertz.csv", 8);
+    repeated(HERTZ, "impact_as4x8_multi_fsdtri_patch2_hertz.csv", 7);
 }
 
 #[test]
@@ -369,7 +374,7 @@ fn repeated_contacts_that_would_leave_a_dent() {
 #[test]
 #[ignore = "ten seconds"]
 fn repeated_contacts_that_reload_otherwise() {
-    repeated(RELOADING_BY_N, "impact_as4x8_multi_fsdtri_patch2_sunyang_reload_n.csv", 8);
+    repeated(RELOADING_BY_N, "impact_as4x8_multi_fsdtri_patch2_sunyang_reload_n.csv", 7);
 }
 
 /// A strip 1 mm wide in plane stress.
@@ -429,7 +434,7 @@ fn timoshenkos_beams() {
     for (i, (table, contacts)) in tables.into_iter().zip([1, 3]).enumerate() {
         agrees(&beam(1.0, i), table, contacts);
         let [real, half] = [10.0, 5.0].map(|height| beam(height, i).against(table));
-        assert!((-0.02..-0.005).contains(&real.peak) && real.contacts == contacts, "{real:?}");
+        assert!((-0.02..-0.005).contains(&real.peak) && real.contacts == [contacts; 2], "{real:?}");
         let order = order(&[1, 2], &[real.curve, half.curve]);
         assert!((1.7..2.6).contains(&order), "{order}: {real:?} {half:?}");
     }
