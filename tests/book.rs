@@ -6,6 +6,7 @@ use fem::Registry;
 use fem::core::dof::Dof;
 use fem::core::failure::{FailureCriterion, Site};
 use fem::core::plugin::{Built, Kind, Params, PluginInfo, Value};
+use fem::core::time::StepLimit;
 use std::fmt::Write;
 use std::fs;
 
@@ -77,8 +78,7 @@ fn elements_table() -> String {
             _ => "solid",
         };
         let unknowns: Vec<_> = about.dofs.iter().map(Dof::to_string).collect();
-        let params: Vec<_> = info.params.iter().map(|p| format!("`{}`: {}", p.name, p.doc)).collect();
-        let params = if params.is_empty() { "none".to_owned() } else { params.join("<br>") };
+        let params = parameters_of(info);
         let [nodes, unknowns] = [about.nodes.len().to_string(), unknowns.join(" ")];
         let cells = [&format!("`{}`", info.name), is_a, &nodes, &unknowns, info.summary, &params, info.source];
         writeln!(text, "| {} |", cells.join(" | ")).unwrap();
@@ -86,9 +86,51 @@ fn elements_table() -> String {
     text
 }
 
+/// Every contact law of the registry, in Markdown.
+fn contact_laws_table() -> String {
+    let mut text = WRITTEN.to_owned();
+    text.push_str("| law | what it is | parameters | source |\n| --- | --- | --- | --- |\n");
+    for info in Registry::standard().list(Kind::Contact) {
+        writeln!(text, "| `{}` | {} | {} | {} |", info.name, info.summary, parameters_of(info), info.source).unwrap();
+    }
+    text
+}
+
+/// Every integrator of the registry with its default parameters, in Markdown.
+fn integrators_table() -> String {
+    let mut text = WRITTEN.to_owned();
+    text.push_str(
+        "| integrator | what it is | ω Δt at most | parameters | source |\n| --- | --- | ---: | --- | --- |\n",
+    );
+    let registry = Registry::standard();
+    for info in registry.list(Kind::Integrator) {
+        let limit = match registry.build(Kind::Integrator, info.name, &Params::default()) {
+            Ok(Built::Integrator(integrator)) => integrator.limit(),
+            other => panic!("{}: {other:?}", info.name),
+        };
+        let limit = match limit {
+            StepLimit::None => "any".to_owned(),
+            StepLimit::OmegaDt(limit) => format!("{limit:.4}").trim_end_matches('0').to_owned(),
+        };
+        let cells = [&format!("`{}`", info.name), info.summary, &limit, &parameters_of(info), info.source];
+        writeln!(text, "| {} |", cells.join(" | ")).unwrap();
+    }
+    text
+}
+
+fn parameters_of(info: &PluginInfo) -> String {
+    let params: Vec<_> = info.params.iter().map(|p| format!("`{}`: {}", p.name, p.doc)).collect();
+    if params.is_empty() { "none".to_owned() } else { params.join("<br>") }
+}
+
 #[test]
 fn the_tables_are_those_of_the_registry() {
-    for (file, table) in [("criteria-table.md", criteria_table()), ("elements-table.md", elements_table())] {
+    for (file, table) in [
+        ("criteria-table.md", criteria_table()),
+        ("elements-table.md", elements_table()),
+        ("contact-laws-table.md", contact_laws_table()),
+        ("integrators-table.md", integrators_table()),
+    ] {
         let file = root().join("docs/book/src").join(file);
         if std::env::var_os("UPDATE_BOOK").is_some() {
             fs::write(&file, &table).unwrap();
@@ -155,6 +197,15 @@ fn the_element_of_the_book_is_taken() {
 }
 
 #[test]
+fn the_contact_of_the_book_is_taken() {
+    let contact = fs::read_to_string(root().join("docs/book/src/contact.toml")).unwrap().replace("\r\n", "\n");
+    let example = fs::read_to_string(root().join("examples/as4-3502-8ply-25mm/scene.toml")).unwrap();
+    let (_, from) = example.split_once("[contact]").unwrap();
+    let from = format!("[contact]{}", from.split_once("\n\n").unwrap().0);
+    Case::example("as4-3502-8ply-25mm").scene(&from, &contact).fem("check", &[]).good();
+}
+
+#[test]
 fn what_the_book_includes_and_links_to_is_there() {
     let book = root().join("docs/book/src");
     let mut included = 0;
@@ -179,7 +230,7 @@ fn what_the_book_includes_and_links_to_is_there() {
             included += 1;
         }
     }
-    assert!(included >= 17 && linked >= 11, "{included} {linked}");
+    assert!(included >= 32 && linked >= 13, "{included} {linked}");
 }
 
 /// The anchor of a heading.

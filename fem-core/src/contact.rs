@@ -29,7 +29,8 @@ pub struct ContactEnergy {
 /// The force is a pure function of the committed history and the present indentation, so that an integrator may try
 /// any number of states within a step; only [`ContactLaw::commit`], called once per accepted step, changes the history.
 pub trait ContactLaw: DynClone + Debug + Send + Sync {
-    /// Force and tangent at indentation `alpha` (m).
+    /// Force and tangent at indentation `alpha` (m). The force is continuous and never falls as `alpha` grows: an implicit
+    /// step seeks the one indentation at which it fits.
     fn force(&self, history: &ContactHistory, alpha: f64) -> ContactForce;
 
     /// Takes `alpha` into the history.

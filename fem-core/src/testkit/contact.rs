@@ -4,10 +4,11 @@ use crate::contact::{ContactEnergy, ContactForce, ContactHistory, ContactLaw};
 
 /// Checks `law` on a path of loading, unloading, reloading and separation up to the indentation `largest` (m).
 ///
-/// Demanded along the path: a force that is finite and never negative, none for α ≤ 0; a tangent that agrees with
-/// differences on one side at least; a commit that changes neither the force nor the energy at the indentation it takes,
-/// however often it is called; stored and dissipated energy not negative, dissipation that never falls; the sum of the
-/// two equal to ∫ F dα. NaN must come back as NaN.
+/// Demanded along the path: a force that is finite, never negative, continuous and never falling with α, none for α ≤ 0; a
+/// tangent that agrees with differences on one side at least; a commit that changes neither the force nor the energy at
+/// the indentation it takes, however often it is called; stored and dissipated energy not negative, nothing stored
+/// where there is no force, dissipation that never falls; the sum of the two equal to ∫ F dα. NaN must come back as NaN,
+/// and a fresh history as the first contact, whatever the law has seen before.
 ///
 /// # Errors
 /// The first violation, with the place on the path.
@@ -20,6 +21,8 @@ pub fn check_contact_law(law: &dyn ContactLaw, largest: f64) -> Result<(), Strin
     if !law.force(&h, f64::NAN).force.is_nan() {
         return Err("an indentation of NaN gives a force".into());
     }
+    let fresh = |part: f64| law.force(&ContactHistory::default(), part * largest);
+    let first = [0.3, 0.8].map(fresh);
     let mut walk = Walk { law, from: 0.0, work: 0.0, dissipated: 0.0 };
     for to in turns {
         let start = walk.from;
@@ -32,6 +35,9 @@ pub fn check_contact_law(law: &dyn ContactLaw, largest: f64) -> Result<(), Strin
                 )
             })?;
         }
+    }
+    if [0.3, 0.8].map(fresh) != first {
+        return Err("the law remembers outside the history: a fresh one does not give the first contact".into());
     }
     Ok(())
 }
@@ -52,10 +58,15 @@ impl Walk<'_> {
         let here = law.force(h, alpha);
         let before = law.energy(h, alpha);
         check_force(law, h, alpha, here, largest)?;
+        let highest = law.force(&ContactHistory::default(), largest).force;
+        let jump = jump(|a| law.force(h, a).force, self.from, alpha);
+        if jump > 1e-6 * highest {
+            return Err(format!("the force jumps by {jump:e}"));
+        }
 
         self.work += integral(|a| law.force(h, a).force, self.from, alpha);
         self.from = alpha;
-        let scale = largest * law.force(&ContactHistory::default(), largest).force;
+        let scale = largest * highest;
         let total = before.stored + before.dissipated;
         // The quadrature meets kinks of the force where a branch ends inside a step.
         if (total - self.work).abs() > 1e-6 * scale {
@@ -72,6 +83,9 @@ impl Walk<'_> {
             }
             if energy.stored < 0.0 || energy.dissipated < self.dissipated - 1e-12 * scale {
                 return Err(format!("stored energy is negative or dissipated energy has fallen: {energy:?}"));
+            }
+            if here.force == 0.0 && energy.stored > 1e-12 * scale {
+                return Err(format!("{:e} is stored without a force", energy.stored));
             }
             self.dissipated = energy.dissipated;
         }
@@ -92,6 +106,9 @@ fn check_force(
     if alpha <= 0.0 && here.force != 0.0 {
         return Err(format!("a force of {:e} without indentation", here.force));
     }
+    if here.tangent < 0.0 {
+        return Err(format!("the force falls as the indentation grows: {here:?}"));
+    }
     let d = 1e-6 * largest;
     let [below, above] = [alpha - d, alpha + d].map(|a| law.force(h, a));
     let slopes = [(here.force - below.force) / d, (above.force - here.force) / d];
@@ -102,6 +119,21 @@ fn check_force(
         return Err(format!("tangent {:e}, but differences give {slopes:?}", here.tangent));
     }
     Ok(())
+}
+
+/// What is left of the change of `f` from `a` to `b` in the steepest 2⁻⁴⁰ of the way.
+fn jump(f: impl Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
+    let [mut at_a, mut at_b] = [f(a), f(b)];
+    for _ in 0..40 {
+        let middle = 0.5 * (a + b);
+        let here = f(middle);
+        if (here - at_a).abs() > (at_b - here).abs() {
+            (b, at_b) = (middle, here);
+        } else {
+            (a, at_a) = (middle, here);
+        }
+    }
+    (at_b - at_a).abs()
 }
 
 /// Three-point Gauss rule.

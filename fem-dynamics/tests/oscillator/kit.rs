@@ -1,9 +1,10 @@
 //! The kit notices broken plug-ins.
 
-use crate::{hertz, scheme};
+use crate::{hertz, scheme, sun_yang};
 use fem_core::contact::{ContactEnergy, ContactForce, ContactHistory, ContactLaw};
 use fem_core::testkit::{check_contact_law, check_integrator};
 use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit};
+use std::sync::{Arc, Mutex};
 
 /// A sound law whose answers pass through functions.
 #[derive(Debug, Clone)]
@@ -52,8 +53,48 @@ fn of_contact_laws() {
         ("but the work is", energy(|_, _| (), |e, _| ContactEnergy { stored: 1.001 * e.stored, ..e })),
         ("commit changes the energy", energy(|h, _| h[0] += 1e-8, lost)),
         ("fallen", energy(largest, lent)),
+        ("jumps", force(|f, _, a| ContactForce { force: f.force + if a > 0.37 { 1e-3 } else { 0.0 }, ..f })),
+        ("the force falls", force(|f, _, _| ContactForce { tangent: -f.tangent, ..f })),
     ] {
         let why = check_contact_law(&law, 1.0).unwrap_err();
+        assert!(why.contains(says), "{says}: {why}");
+    }
+}
+
+/// A law that leaves a dent, and gives back all or keeps its history to itself.
+#[derive(Debug, Clone)]
+struct Secretive {
+    sound: Box<dyn ContactLaw>,
+    own: Option<Arc<Mutex<ContactHistory>>>,
+}
+
+impl ContactLaw for Secretive {
+    fn force(&self, h: &ContactHistory, alpha: f64) -> ContactForce {
+        self.sound.force(&self.own.as_ref().map_or(*h, |own| *own.lock().unwrap()), alpha)
+    }
+
+    fn commit(&self, h: &mut ContactHistory, alpha: f64) {
+        match &self.own {
+            Some(own) => self.sound.commit(&mut own.lock().unwrap(), alpha),
+            None => self.sound.commit(h, alpha),
+        }
+    }
+
+    fn energy(&self, h: &ContactHistory, alpha: f64) -> ContactEnergy {
+        if let Some(own) = &self.own {
+            return self.sound.energy(&own.lock().unwrap(), alpha);
+        }
+        let ContactEnergy { stored, dissipated } = self.sound.energy(h, alpha);
+        ContactEnergy { stored: stored + dissipated, dissipated: 0.0 }
+    }
+}
+
+#[test]
+fn of_contact_laws_with_a_history() {
+    let sound = sun_yang(2.0, 0.1, "unloading-curve");
+    check_contact_law(&*sound, 1.0).unwrap();
+    for (says, own) in [("stored without a force", None), ("remembers outside", Some(Arc::default()))] {
+        let why = check_contact_law(&Secretive { sound: sound.clone(), own }, 1.0).unwrap_err();
         assert!(why.contains(says), "{says}: {why}");
     }
 }
@@ -65,6 +106,9 @@ struct Careless {
     limit: StepLimit,
     deaf: bool,
     steps: f64,
+    /// The step that it takes for one of dt, given the last that it took.
+    step: fn(f64, f64) -> f64,
+    last: f64,
     after: fn(f64, &mut State),
 }
 
@@ -83,7 +127,9 @@ impl Integrator for Careless {
 
     fn step(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State, dt: f64) -> Result<(), StepError> {
         self.steps += 1.0;
-        let end = self.sound.step(sys, s, dt);
+        self.last = (self.step)(dt, self.last);
+        let end = self.sound.step(sys, s, self.last);
+        s.t += dt - self.last;
         (self.after)(self.steps, s);
         if self.deaf { Ok(()) } else { end }
     }
@@ -92,7 +138,15 @@ impl Integrator for Careless {
 #[test]
 fn of_integrators() {
     let sound = scheme("central-difference");
-    let sound = Careless { limit: sound.limit(), sound, deaf: false, steps: 0.0, after: |_, _| () };
+    let sound = Careless {
+        limit: sound.limit(),
+        sound,
+        deaf: false,
+        steps: 0.0,
+        step: |dt, _| dt,
+        last: 0.0,
+        after: |_, _| (),
+    };
     check_integrator(&sound, 2).unwrap();
     let why = check_integrator(&sound, 3).unwrap_err();
     assert!(why.contains("where 3 is claimed"), "{why}");
@@ -100,6 +154,12 @@ fn of_integrators() {
     let after = |after: fn(f64, &mut State)| Careless { after, ..sound.clone() };
     for (says, scheme) in [
         ("unit amplitude grows", Careless { limit: StepLimit::None, ..sound.clone() }),
+        // Stable at the limit, but not at a part of it.
+        (
+            "unit amplitude grows",
+            Careless { step: |dt, _| if (1.4..=1.5).contains(&dt) { 2.1 } else { dt }, ..sound.clone() },
+        ),
+        ("unequal ones", Careless { step: |dt, last| if last > 0.0 { last } else { dt }, ..sound.clone() }),
         ("end at t", after(|_, s| s.t += 1e-6)),
         ("restarted", after(|step, s| s.v[0] += 1e-9 * step)),
         ("commit", after(|_, s| s.contacts.iter_mut().for_each(|h| h[1] = 0.0))),
