@@ -6,6 +6,7 @@ mod list;
 mod matrices;
 mod modes;
 mod run;
+mod signals;
 
 use crate::model::Model;
 use crate::registry::Registry;

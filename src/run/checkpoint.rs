@@ -13,7 +13,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Name of the file in the folder of the results.
-pub const FILE: &str = "checkpoint.bin";
+const FILE: &str = "checkpoint.bin";
 
 /// Keys on which no number of the march depends, and its end, up to which it goes on.
 const FREE: &[&str] = &["title", "march.end", "output.plots", "output.maps", "output.checkpoint_every"];

@@ -173,7 +173,7 @@ impl<'a> March<'a> {
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
         let Prepared { model, impact, system, reduced, sizes, counters, mut stopwatch } = prepared;
         let followed = model.scene.output.modes.as_ref().zip(reduced.as_ref());
-        let modal = followed.map(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
+        let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
         let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, reduced)?) };
         stopwatch.lap("prepare stresses");
         let scan_every = steps_in(model.scene.failure.every, sizes.step);
@@ -201,14 +201,15 @@ impl<'a> March<'a> {
         if self.done() {
             return;
         }
-        self.progress.step += 1;
+        let step = self.progress.step + 1;
         let stepped = self.step();
-        self.judge(stepped);
+        self.judge(step, stepped);
     }
 
     fn step(&mut self) -> Result<(), Error> {
         let Progress { step, dt, row_every, state, ledger, threshold, .. } = &mut self.progress;
         self.integrator.step(&mut self.system, state, *dt)?;
+        *step += 1;
         // A sum of steps drifts; the product does not.
         state.t = *step as f64 * *dt;
         let force = self.system.contact_force(0, state);
@@ -241,9 +242,9 @@ impl<'a> March<'a> {
         sampled
     }
 
-    /// Stops a march that met an error or leaks energy.
-    fn judge(&mut self, done: Result<(), Error>) {
-        let Progress { step, state, ledger, stopped, .. } = &mut self.progress;
+    /// Stops a march that met an error in `step` or leaks energy.
+    fn judge(&mut self, step: u64, done: Result<(), Error>) {
+        let Progress { state, ledger, stopped, .. } = &mut self.progress;
         let at = || format!("step {step} (t = {:.6e} s)", state.t);
         if let Err(error) = done {
             *stopped = Some(format!("{}: {}", at(), chain(&error)));
@@ -280,7 +281,7 @@ impl<'a> March<'a> {
         self.stopwatch.lap("march");
         if self.progress.stopped.is_none() {
             let closed = self.close();
-            self.judge(closed);
+            self.judge(self.progress.step, closed);
         }
         let (mut events, mut peaks, mut sites) = (Vec::new(), Vec::new(), 0);
         let (mut histories, mut maxima) = (Vec::new(), Vec::new());
@@ -301,7 +302,7 @@ impl<'a> March<'a> {
         self.count();
         let Progress { step, ledger, threshold, work, stopped, .. } = self.progress;
         let mut counters = self.counters;
-        counters.steps = step - u64::from(stopped.is_some() && step > 0);
+        counters.steps = step;
         counters.contact_calls = work.contact_calls;
         // A full system has counted since it was assembled, a reduced one counts nothing.
         counters.factorisations = counters.factorisations.max(work.factorisations);

@@ -1,7 +1,7 @@
 //! The modal view of a march: what each mode of the reduced plate does (report eq. 43).
 
-use fem_dynamics::impact::ImpactSystem;
 use fem_core::time::State;
+use fem_dynamics::impact::ImpactSystem;
 use fem_dynamics::reduce::Modal;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -63,8 +63,8 @@ pub(super) struct Record {
 }
 
 impl ModalView {
-    /// Follows the `count` lowest modes of `modal` that a contact of the weights `load` excites.
-    pub(super) fn new(modal: &Modal, load: &[f64], count: usize) -> Self {
+    /// Follows the `count` lowest modes of `modal` that a contact of the weights `load` excites, if there are any.
+    pub(super) fn new(modal: &Modal, load: &[f64], count: usize) -> Option<Self> {
         let all = || modal.frequencies().zip(load).enumerate().filter(|(_, (omega, _))| omega.is_finite());
         let flexibility = |omega: f64, phi: f64| (phi / omega).powi(2);
         let total: f64 = all().map(|(_, (omega, phi))| flexibility(omega, *phi)).sum();
@@ -76,7 +76,8 @@ impl ModalView {
         };
         let modes: Vec<Mode> = all().map(mode).filter(|mode| mode.static_share >= EXCITED).take(count).collect();
         let zeros = vec![0.0; modes.len()];
-        Self { modes, record: Record { coordinates: Vec::new(), strain: zeros.clone(), kinetic: zeros } }
+        let record = Record { coordinates: Vec::new(), strain: zeros.clone(), kinetic: zeros };
+        (!modes.is_empty()).then_some(Self { modes, record })
     }
 
     /// Takes a row.
@@ -107,6 +108,7 @@ impl ModalView {
     /// What was seen; `strain` and `kinetic` are the sums over the rows of the energies of the plate, J.
     pub(super) fn finish(self, strain: f64, kinetic: f64) -> ModalHistory {
         let Record { coordinates, strain: of_strain, kinetic: of_kinetic } = self.record;
+        // Where a quotient of sums has no meaning, nothing has moved.
         let share = |twice: f64, total: f64| if total > 0.0 { 0.5 * twice / total } else { 0.0 };
         let n = self.modes.len();
         let modes = self.modes.iter().enumerate().map(|(i, mode)| ModeShare {
