@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::model::Model;
-use crate::run::Outcome;
+use crate::run::{ModeShare, Outcome};
 use fem_io::files::OutputDir;
 use fem_io::plot;
 use fem_io::tables::{self, Field};
@@ -23,7 +23,7 @@ pub(crate) fn write_table(dir: &OutputDir, outcome: &Outcome) -> Result<(), Erro
     Ok(tables::write_columns(dir, "modal_coordinates.csv", &header, rows.map(row))?)
 }
 
-/// Draws the deflection under the impactor and the part of each mode in it.
+/// Draws the deflection under the impactor, the part of each mode in it, and what is left to the others.
 ///
 /// # Errors
 /// As [`OutputDir::write`], and numbers that no plot can show.
@@ -34,11 +34,13 @@ pub(crate) fn write_plot(dir: &OutputDir, model: &Model, outcome: &Outcome) -> R
         outcome.history.iter().enumerate().map(|(i, row)| (row.time_s, value(i))).collect()
     };
     let sum = over_time(&|i| outcome.history[i].plate_displacement_m);
-    let part = |(k, mode): (usize, &crate::run::ModeShare)| {
+    let part = |(k, mode): (usize, &ModeShare)| {
         let label = format!("mode {}, {:.2} kHz", k + 1, mode.frequency_Hz * 1e-3);
         (label, over_time(&|i| modal.coordinates[i * n + k]))
     };
-    let parts: Vec<_> = modal.modes.iter().enumerate().map(part).collect();
+    let above = |i: usize| sum[i].1 - modal.coordinates[i * n..(i + 1) * n].iter().sum::<f64>();
+    let mut parts: Vec<_> = modal.modes.iter().enumerate().map(part).collect();
+    parts.push(("the other modes".to_owned(), over_time(&above)));
     let picture = plot::line_plot(&plot::modal_history(&model.scene.title, sum, parts))?;
     dir.write("modal_coordinates.svg", |w| w.write_all(picture.svg.as_bytes()))?;
     dir.write("modal_coordinates.png", |w| w.write_all(&picture.png))?;

@@ -9,6 +9,7 @@ mod envelope;
 mod indices;
 mod model;
 mod report;
+mod restart;
 mod snapshots;
 mod support;
 mod validation;

@@ -6,8 +6,8 @@ use fem_dynamics::reduce::Modal;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Least share of a mode in the static deflection; with less, the impact does not excite it.
-const EXCITED: f64 = 1e-6;
+/// Least share of a mode in the static deflection; with less, the impact hardly excites it.
+const EXCITED: f64 = 1e-3;
 
 /// The lowest modes that the impact excites, over time.
 ///

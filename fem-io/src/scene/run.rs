@@ -192,8 +192,8 @@ const OUTPUT: Keys = &[
 /// Time between two checkpoints unless the scene says otherwise, s.
 const CHECKPOINT_EVERY: f64 = 60.0;
 
-/// Most modes that are followed: one picture shows them all beside their sum.
-const MOST_MODES: usize = 39;
+/// Most modes that are followed: one picture shows them all beside the others and the sum.
+const MOST_MODES: usize = 38;
 
 /// Most steps of a march: more is a slip in step or end, and would seem to hang.
 const MAX_STEPS: f64 = 1e9;
