@@ -3,8 +3,8 @@
 use crate::cost::Cost;
 use crate::error::Error;
 use crate::indices;
-use crate::model::Model;
 use crate::modal;
+use crate::model::Model;
 use crate::run::{ModeShare, Outcome, Sizes};
 use fem_core::counters::Counters;
 use fem_core::tensor::{Ply, Stress6};

@@ -7,6 +7,7 @@ mod command_line;
 mod criteria;
 mod envelope;
 mod indices;
+mod modal;
 mod model;
 mod report;
 mod restart;

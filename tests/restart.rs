@@ -146,12 +146,16 @@ fn rows_of_the_history_stay_as_far_apart_as_they_were() {
 
 #[test]
 fn a_march_that_stopped_is_stopped_when_resumed() {
-    let case = strip().scene("end = \"20 us\"", "step = \"1 ms\"\nend = \"10 ms\"");
-    assert_eq!(case.fem("run", &["--out", "straight"]).status, 1);
-    assert_eq!(case.fem("run", &["--out", "out"]).status, 1);
-    let done = case.fem("run", &["--out", "out", "--resume"]);
-    assert!(done.status == 1 && done.stdout.contains("STOPPED"), "{done:#?}");
-    same(&case, "straight", "out");
+    let leaks = strip().scene("end = \"20 us\"", "step = \"1 ms\"\nend = \"10 ms\"");
+    let no_index = "criteria = [{ name = \"expression\", expression = \"0.5 * sqrt(1 - abs(s1) / 1e5)\" }]";
+    let no_index = strip().scene("criteria = [\"hashin-report\", \"octahedral\"]", no_index);
+    for (case, why) in [(leaks, "energy error"), (no_index, "has no index")] {
+        assert_eq!(case.fem("run", &["--out", "straight"]).status, 1);
+        assert_eq!(case.fem("run", &["--out", "out"]).status, 1);
+        let done = case.fem("run", &["--out", "out", "--resume"]);
+        assert!(done.status == 1 && done.stdout.contains("STOPPED") && done.stdout.contains(why), "{done:#?}");
+        same(&case, "straight", "out");
+    }
 }
 
 /// What a resume is refused with, on one line.

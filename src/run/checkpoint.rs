@@ -148,3 +148,43 @@ fn differences(then: &Keys, now: &Keys) -> Vec<String> {
     }
     words
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use fem_core::time::State;
+
+    #[test]
+    fn every_bit_of_a_state_comes_back() {
+        let odd = [f64::NAN, -f64::NAN, f64::from_bits(0x7ff0_0000_dead_beef), f64::INFINITY, -0.0, 5e-324, 0.1];
+        let state = State { t: f64::NAN, u: odd.to_vec(), v: Vec::new(), a: vec![1.0], contacts: vec![[-0.0; 8]] };
+        let back: State = postcard::from_bytes(&postcard::to_stdvec(&state).unwrap()).unwrap();
+        let bits = |s: &State| {
+            let numbers = [&s.u, &s.v, &s.a].into_iter().flatten().chain(s.contacts.as_flattened()).chain([&s.t]);
+            numbers.map(|x| x.to_bits()).collect::<Vec<_>>()
+        };
+        assert_eq!(bits(&back), bits(&state));
+        assert_eq!((back.u.len(), back.v.len()), (7, 0));
+    }
+
+    #[test]
+    fn differences_are_named_and_counted() {
+        let keys = |pairs: &[(&str, &str)]| -> Keys {
+            pairs.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect()
+        };
+        let then = keys(&[("a", "1"), ("b", "2"), ("materials.m", "x")]);
+        assert!(differences(&then, &then).is_empty());
+        let now = keys(&[("a", "3"), ("c", "4"), ("materials.m", "y")]);
+        let want = [
+            "`a` was 1 and is 3",
+            "`b` was 2 and is left out",
+            "`c` was left out",
+            "`materials.m` had other constants",
+        ];
+        assert_eq!(differences(&then, &now), want);
+        let more = keys(&[("d", "1"), ("e", "1"), ("f", "1"), ("g", "1"), ("h", "1"), ("i", "1")]);
+        assert_eq!(differences(&keys(&[]), &more).last().map(String::as_str), Some("and 2 more"));
+    }
+}

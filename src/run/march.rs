@@ -136,7 +136,8 @@ impl<'a> March<'a> {
     pub fn resume(prepared: Prepared<'a>, checkpoint: Checkpoint) -> Result<Self, Error> {
         let Checkpoint { folder, saved: (progress, modal, watched) } = checkpoint;
         let Sizes { steps, step: dt, .. } = prepared.sizes;
-        let differs = |what: String| Error::from(CheckpointError::Differs { folder: folder.clone(), differences: vec![what] });
+        let differs =
+            |what: String| Error::from(CheckpointError::Differs { folder: folder.clone(), differences: vec![what] });
         if progress.dt != dt {
             return Err(differs(format!(
                 "its step was {:e} s and would be {dt:e} s: `march.end` must be a whole number of steps",
@@ -178,7 +179,20 @@ impl<'a> March<'a> {
         stopwatch.lap("prepare stresses");
         let scan_every = steps_in(model.scene.failure.every, sizes.step);
         let (integrator, counted) = (impact.integrator.clone(), Work::default());
-        Ok(Self { model, impact, system, integrator, sizes, scan_every, watch, modal, counters, counted, stopwatch, progress })
+        Ok(Self {
+            model,
+            impact,
+            system,
+            integrator,
+            sizes,
+            scan_every,
+            watch,
+            modal,
+            counters,
+            counted,
+            stopwatch,
+            progress,
+        })
     }
 
     /// Whether there is nothing more to march: the end is reached, or the march has stopped.
@@ -265,7 +279,8 @@ impl<'a> March<'a> {
         self.stopwatch.lap("march");
         self.count();
         let watched = self.watch.as_ref().map(Watch::record);
-        let saved = checkpoint::write(dir, self.model, &(&self.progress, self.modal.as_ref().map(ModalView::record), watched));
+        let saved =
+            checkpoint::write(dir, self.model, &(&self.progress, self.modal.as_ref().map(ModalView::record), watched));
         self.stopwatch.lap("checkpoint");
         saved
     }
