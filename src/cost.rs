@@ -2,7 +2,36 @@
 
 use cpu_time::ProcessTime;
 use serde::Serialize;
+use std::fmt;
+use std::num::NonZeroUsize;
 use std::time::Instant;
+
+/// What a run cost on its machine, in the process that ended it: all that differs from run to run of one scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Cost {
+    pub threads: usize,
+    pub phases: Vec<Phase>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peak_memory_MB: Option<f64>,
+}
+
+impl Cost {
+    /// The cost of `phases`, and of the memory so far.
+    pub fn new(threads: NonZeroUsize, phases: Vec<Phase>) -> Self {
+        Self { threads: threads.get(), phases, peak_memory_MB: peak_memory().map(|b| b as f64 / 1e6) }
+    }
+}
+
+/// As people read it.
+impl fmt::Display for Cost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sum = |seconds: fn(&Phase) -> f64| self.phases.iter().map(seconds).sum::<f64>();
+        let phases: Vec<String> = self.phases.iter().map(|p| format!("{} {:.3} s", p.name, p.wall_s)).collect();
+        write!(f, "{:.3} s wall, {:.3} s processor: {}", sum(|p| p.wall_s), sum(|p| p.cpu_s), phases.join(", "))?;
+        self.peak_memory_MB.map_or(Ok(()), |m| write!(f, "; peak memory {m:.0} MB"))
+    }
+}
 
 /// Cost of one phase of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -50,7 +79,7 @@ impl Stopwatch {
 }
 
 /// Largest memory that the process has held, bytes; `None` where the system does not tell.
-pub fn peak_memory() -> Option<u64> {
+fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
     let kib: u64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;

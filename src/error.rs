@@ -1,5 +1,6 @@
 //! What can go wrong between a scene and its results.
 
+use crate::run::CheckpointError;
 use fem_core::assembly::AssemblyError;
 use fem_core::element::ElementError;
 use fem_core::time::StepError;
@@ -32,6 +33,12 @@ pub enum Error {
     Step(#[from] StepError),
     #[error("the failure scan failed")]
     Scan(#[from] ScanError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    #[error("there is nothing to resume: only an impact is marched in time")]
+    #[diagnostic(help("run without `--resume`"))]
+    NotMarched,
     #[error("the scene describes no impact")]
     #[diagnostic(help("set `analysis = \"impact\"` and describe impactor, contact and march"))]
     NoImpact,

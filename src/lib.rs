@@ -22,6 +22,7 @@ pub mod cost;
 mod error;
 mod indices;
 pub mod matrices;
+mod modal;
 mod model;
 pub mod modes;
 mod registry;

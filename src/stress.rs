@@ -10,9 +10,9 @@ use fem_core::structure::Structure;
 use fem_core::tensor::{Ply, Stress6};
 use fem_core::window;
 use fem_dynamics::reduce::Reduced;
-use fem_failure::scan::{Place, Probe, Scan, ScanSite};
+use fem_failure::scan::{self, Place, Probe, Scan, ScanSite};
 use fem_io::scene::Window;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Samples recovered together.
 const BATCH: usize = 16;
@@ -21,7 +21,7 @@ const BATCH: usize = 16;
 const OPERATOR_LIMIT: usize = 256 << 20;
 
 /// Indices of one criterion at one place over time.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct IndexHistory {
     /// Number of the criterion in the model.
     pub criterion: usize,
@@ -48,19 +48,30 @@ impl IndexHistory {
 }
 
 /// Watches the stresses of a march with the criteria of a model.
+#[derive(Debug)]
 pub(crate) struct Watch<'a> {
     model: &'a Model,
-    reduced: Option<&'a Reduced>,
+    reduced: Option<Reduced>,
     recovery: Recovery,
     /// 6·sites × modes: stresses per unit of each modal coordinate.
     operator: Option<Vec<f64>>,
     scan: Scan,
-    gauges: Vec<(Vec<Probe>, IndexHistory)>,
-    times: Vec<f64>,
-    /// Coordinates of the samples waiting.
-    waiting: Vec<f64>,
+    /// Where the scan keeps the indices of each history.
+    probes: Vec<Vec<Probe>>,
     stresses: Vec<f64>,
     states: Vec<Stress6<Ply>>,
+    record: Record,
+}
+
+/// What a watch keeps beside its scan.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct Record {
+    /// What the gauges saw.
+    histories: Vec<IndexHistory>,
+    /// Times of the samples waiting, and their coordinates. They are saved as they are, because a sum in another batch may
+    /// differ in its last bit.
+    times: Vec<f64>,
+    waiting: Vec<f64>,
 }
 
 impl<'a> Watch<'a> {
@@ -68,22 +79,22 @@ impl<'a> Watch<'a> {
     ///
     /// # Errors
     /// A criterion whose material lacks a constant, or a cell that the element refuses.
-    pub(crate) fn new(model: &'a Model, reduced: Option<&'a Reduced>) -> Result<Self, Error> {
+    pub(crate) fn new(model: &'a Model, reduced: Option<Reduced>) -> Result<Self, Error> {
         let recovery = recovery(model);
         let scan = Scan::new(model.criteria.clone(), sites(model, &recovery), model.materials.clone())?;
+        let (probes, histories) = gauges(model, &scan).into_iter().unzip();
         let mut watch = Self {
             model,
-            reduced,
+            reduced: None,
             operator: None,
-            gauges: gauges(model, &scan),
+            probes,
             scan,
-            times: Vec::new(),
-            waiting: Vec::new(),
+            record: Record { histories, ..Record::default() },
             stresses: vec![0.0; 6 * recovery.sites() * BATCH],
             states: vec![Stress6::new([0.0; 6]); recovery.sites()],
             recovery,
         };
-        if let Some(reduced) = reduced {
+        if let Some(reduced) = &reduced {
             let (n, modes) = (model.constraints.ndof(), reduced.modal.ndof());
             if 6 * watch.recovery.sites() * modes * size_of::<f64>() <= OPERATOR_LIMIT {
                 let mut operator = vec![0.0; 6 * watch.recovery.sites() * modes];
@@ -91,6 +102,7 @@ impl<'a> Watch<'a> {
                 watch.operator = Some(operator);
             }
         }
+        watch.reduced = reduced;
         Ok(watch)
     }
 
@@ -99,9 +111,9 @@ impl<'a> Watch<'a> {
     /// # Errors
     /// A stress or an index that is not finite.
     pub(crate) fn sample(&mut self, t: f64, coordinates: &[f64]) -> Result<(), Error> {
-        self.times.push(t);
-        self.waiting.extend_from_slice(coordinates);
-        if self.times.len() == BATCH { self.flush() } else { Ok(()) }
+        self.record.times.push(t);
+        self.record.waiting.extend_from_slice(coordinates);
+        if self.record.times.len() == BATCH { self.flush() } else { Ok(()) }
     }
 
     /// Scans the samples still waiting.
@@ -109,21 +121,27 @@ impl<'a> Watch<'a> {
     /// # Errors
     /// As [`Watch::sample`].
     pub(crate) fn flush(&mut self) -> Result<(), Error> {
-        let count = self.times.len();
+        let (times, waiting) = (std::mem::take(&mut self.record.times), std::mem::take(&mut self.record.waiting));
+        let mut stresses = std::mem::take(&mut self.stresses);
+        let done = self.judge(&times, &waiting, &mut stresses);
+        self.stresses = stresses;
+        done
+    }
+
+    fn judge(&mut self, times: &[f64], waiting: &[f64], stresses: &mut [f64]) -> Result<(), Error> {
+        let count = times.len();
         if count == 0 {
             return Ok(());
         }
         let rows = 6 * self.recovery.sites();
-        let width = self.waiting.len() / count;
-        let mut stresses = std::mem::take(&mut self.stresses);
-        let waiting = std::mem::take(&mut self.waiting);
+        let width = waiting.len() / count;
         let out = &mut stresses[..rows * count];
-        match (&self.operator, self.reduced) {
+        match (&self.operator, &self.reduced) {
             (Some(operator), _) => matmul(
                 MatMut::from_column_major_slice_mut(out, rows, count),
                 Accum::Replace,
                 MatRef::from_column_major_slice(operator, rows, width),
-                MatRef::from_column_major_slice(&waiting, width, count),
+                MatRef::from_column_major_slice(waiting, width, count),
                 1.0,
                 Par::Seq,
             ),
@@ -135,20 +153,17 @@ impl<'a> Watch<'a> {
                 }
                 self.recover(&u, n, count, out)?;
             }
-            (None, None) => self.recover(&waiting, width, count, out)?,
+            (None, None) => self.recover(waiting, width, count, out)?,
         }
-        for (t, stresses) in self.times.iter().zip(stresses.chunks_exact(rows)) {
+        for (t, stresses) in times.iter().zip(stresses.chunks_exact(rows)) {
             for (state, s) in self.states.iter_mut().zip(stresses.chunks_exact(6)) {
                 *state = Stress6::new([s[0], s[1], s[2], s[3], s[4], s[5]]);
             }
             self.scan.sample(*t, &self.states)?;
-            for (probes, history) in &mut self.gauges {
+            for (probes, history) in self.probes.iter().zip(&mut self.record.histories) {
                 history.take(*t, probes.iter().map(|probe| self.scan.read(*probe)));
             }
         }
-        self.times.clear();
-        (self.stresses, self.waiting) = (stresses, waiting);
-        self.waiting.clear();
         Ok(())
     }
 
@@ -168,8 +183,22 @@ impl<'a> Watch<'a> {
     }
 
     /// What the gauges saw.
-    pub(crate) fn histories(&self) -> impl Iterator<Item = &IndexHistory> {
-        self.gauges.iter().map(|(_, history)| history)
+    pub(crate) fn histories(&self) -> &[IndexHistory] {
+        &self.record.histories
+    }
+
+    /// What scan and watch have seen, to be kept.
+    pub(crate) fn record(&self) -> (&scan::Record, &Record) {
+        (self.scan.record(), &self.record)
+    }
+
+    /// Goes on from what a watch of the same model has seen; `false` where the records are of another size.
+    pub(crate) fn resume(&mut self, scan: scan::Record, record: Record) -> bool {
+        let fits = record.histories.len() == self.probes.len() && self.scan.resume(scan);
+        if fits {
+            self.record = record;
+        }
+        fits
     }
 
     /// Number of sites watched.

@@ -1,10 +1,11 @@
 //! The summary of a run: for machines (`summary.json`) and for people.
 
-use crate::cost::{Phase, peak_memory};
+use crate::cost::Cost;
 use crate::error::Error;
 use crate::indices;
+use crate::modal;
 use crate::model::Model;
-use crate::run::{Outcome, Sizes};
+use crate::run::{ModeShare, Outcome, Sizes};
 use fem_core::counters::Counters;
 use fem_core::tensor::{Ply, Stress6};
 use fem_failure::scan::{FailureEvent, Place, first_per_mode};
@@ -30,11 +31,10 @@ pub struct Summary {
     pub not_reached: Vec<Margin>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delamination_threshold: Option<Threshold>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub modes: Vec<ModeShare>,
     pub accuracy: Accuracy,
     pub work: Work,
-    pub phases: Vec<Phase>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub peak_memory_MB: Option<f64>,
     pub warnings: Vec<String>,
 }
 
@@ -262,20 +262,19 @@ impl Summary {
                 toughness_GIIc_J_m2: threshold.giic,
                 time_s: outcome.threshold_time,
             }),
+            modes: outcome.modal.as_ref().map_or(Vec::new(), |modal| modal.modes.clone()),
             accuracy: Accuracy {
                 energy_error_relative: outcome.energy_error,
                 step_s: sizes.step,
                 stable_step_s: Some(sizes.longest_step).filter(|s| s.is_finite()),
             },
             work: outcome.counters.into(),
-            phases: outcome.phases.clone(),
-            peak_memory_MB: peak_memory().map(|b| b as f64 / 1e6),
             warnings: model.warnings.clone(),
         }
     }
 
-    /// The summary as people read it.
-    pub fn text(&self) -> String {
+    /// The summary as people read it, with what it cost.
+    pub fn text(&self, cost: &Cost) -> String {
         let mut t = String::new();
         let mut line = |text: std::fmt::Arguments<'_>| {
             let _ = t.write_fmt(text);
@@ -357,6 +356,24 @@ impl Summary {
                 ));
             }
         }
+        if !self.modes.is_empty() {
+            line(format_args!("  modes     shares of each mode in the deflection at rest and in the plate's energies"));
+            line(format_args!(
+                "            {:>4} {:>12} {:>8} {:>8} {:>8}  {:>17}",
+                "mode", "frequency", "at rest", "strain", "kinetic", "largest part"
+            ));
+            for (k, m) in self.modes.iter().enumerate() {
+                line(format_args!(
+                    "            {:>4} {:>9.1} Hz {:>6.1} % {:>6.1} % {:>6.1} %  {:>14.6} mm",
+                    k + 1,
+                    m.frequency_Hz,
+                    m.static_share * 1e2,
+                    m.strain_share * 1e2,
+                    m.kinetic_share * 1e2,
+                    m.largest_m * 1e3
+                ));
+            }
+        }
         if let Some(d) = &self.delamination_threshold {
             let reached = match d.time_s {
                 Some(t) => format!("first reached at {:.4} ms", t * 1e3),
@@ -382,11 +399,7 @@ impl Summary {
             "  work      {} element matrices, {} factorisations, {} solves, {} steps, {} contact calls, {} criterion calls",
             w.elements, w.factorisations, w.solves, w.steps, w.contact_calls, w.criterion_calls
         ));
-        let phases: Vec<String> = self.phases.iter().map(|p| format!("{} {:.3} s", p.name, p.wall_s)).collect();
-        let wall: f64 = self.phases.iter().map(|p| p.wall_s).sum();
-        let cpu: f64 = self.phases.iter().map(|p| p.cpu_s).sum();
-        let memory = self.peak_memory_MB.map_or(String::new(), |m| format!("; peak memory {m:.0} MB"));
-        line(format_args!("  time      {wall:.3} s wall, {cpu:.3} s processor: {}{memory}", phases.join(", ")));
+        line(format_args!("  time      {cost}"));
         for warning in &self.warnings {
             line(format_args!("  warning   {warning}"));
         }
@@ -430,6 +443,7 @@ pub fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result
         index: e.index,
     };
     tables::write_events(dir, &outcome.events.iter().map(row).collect::<Vec<_>>())?;
+    modal::write_table(dir, outcome)?;
     indices::write_tables(dir, model, outcome)
 }
 
@@ -450,5 +464,6 @@ pub fn write_plots(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<
     let picture = plot::line_plot(&plot::force_history(&model.scene.title, &times, &forces, &marks)?)?;
     dir.write("contact_force.svg", |w| w.write_all(picture.svg.as_bytes()))?;
     dir.write("contact_force.png", |w| w.write_all(&picture.png))?;
+    modal::write_plot(dir, model, outcome)?;
     indices::write_plots(dir, model, outcome)
 }

@@ -111,7 +111,16 @@ fn run_writes_its_results_to_a_folder_named_like_that_of_the_scene() {
     assert_eq!(done.stderr, "");
     assert_eq!(case.names("."), ["plate", "results"]);
     assert_eq!(case.names("results"), ["plate"]);
-    let files = [".lock", "contact_force.png", "contact_force.svg", "events.csv", "history.csv", "summary.json"];
+    let files = [
+        ".lock",
+        "checkpoint.bin",
+        "contact_force.png",
+        "contact_force.svg",
+        "cost.json",
+        "events.csv",
+        "history.csv",
+        "summary.json",
+    ];
     assert_eq!(case.names("results/plate"), files);
 
     let (header, rows) = case.table("results/plate/history.csv");
@@ -139,6 +148,13 @@ fn run_writes_its_results_to_a_folder_named_like_that_of_the_scene() {
     assert_eq!(summary["completed"], true);
     assert_eq!(summary["work"]["steps"], 800);
     check_summary(&summary);
+    assert!(summary.as_object().is_some_and(|s| s.len() > 10), "{summary}");
+
+    let cost: Value = serde_json::from_str(&case.read("results/plate/cost.json")).unwrap();
+    check_summary(&cost);
+    let phases: Vec<_> = cost["phases"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap()).collect();
+    assert_eq!(phases, ["assemble", "reduce", "prepare stresses", "march", "scan", "checkpoint"]);
+    assert_eq!(cost["threads"], 1);
 }
 
 /// Numbers of the summary that have no unit.
@@ -162,6 +178,7 @@ const PURE: &[&str] = &[
     "contact_calls",
     "criterion_calls",
     "reserve_factor",
+    "threads",
 ];
 
 /// Ends of the names of quantities: their units, or what makes them pure.
@@ -183,6 +200,7 @@ const UNITS: &[&str] = &[
     "_index",
     "_MPa",
     "_J_m2",
+    "_share",
 ];
 
 /// Every number has its unit in its name, and what is absent is left out.
@@ -198,7 +216,6 @@ fn check_summary(summary: &Value) {
             Value::String(_) | Value::Bool(_) => {}
         }
     }
-    assert!(summary.as_object().is_some_and(|s| s.len() > 10), "{summary}");
     check("summary", summary);
 }
 
@@ -206,7 +223,8 @@ fn check_summary(summary: &Value) {
 fn without_plots_there_are_tables_alone() {
     let case = strip().append("[output]\nplots = false\n");
     case.fem("run", &["--out", "out"]).good();
-    assert_eq!(case.names("out"), [".lock", "events.csv", "history.csv", "summary.json"]);
+    let files = [".lock", "checkpoint.bin", "cost.json", "events.csv", "history.csv", "summary.json"];
+    assert_eq!(case.names("out"), files);
 }
 
 #[test]
@@ -215,7 +233,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
     for threads in ["1", "2"] {
         case.fem("run", &["--threads", threads, "--out", threads]).good();
     }
-    for file in ["history.csv", "events.csv"] {
+    for file in ["history.csv", "events.csv", "summary.json"] {
         let one = case.read(&format!("1/{file}"));
         assert!(one.lines().count() > 1, "{file}");
         assert!(case.read(&format!("2/{file}")) == one, "{file} with two threads");

@@ -76,7 +76,9 @@ fn nothing_of_it_is_written_unless_asked_for() {
     assert!(!case.names("out").iter().any(|name| name.starts_with("index")), "{:?}", case.names("out"));
     let case = watching(r#"{ at = { x = "15 mm", y = "5 mm" }, ply = 1 }"#, "plots = false");
     case.fem("run", &["--out", "out"]).good();
-    assert_eq!(case.names("out"), [".lock", "events.csv", "history.csv", "index_history.csv", "summary.json"]);
+    let files =
+        [".lock", "checkpoint.bin", "cost.json", "events.csv", "history.csv", "index_history.csv", "summary.json"];
+    assert_eq!(case.names("out"), files);
 }
 
 /// The stress of an event is the one at which its mode's index is 1, within what interpolation does to it.

@@ -24,6 +24,7 @@ macro_rules! tensor {
     ($(#[$doc:meta])* $name:ident, $($get:ident = $i:literal),+) => {
         $(#[$doc])*
         #[derive(Clone, Copy, PartialEq)]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(transparent, bound = ""))]
         #[repr(transparent)]
         pub struct $name<F: Frame>(pub [f64; 6], PhantomData<F>);
 

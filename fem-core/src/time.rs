@@ -6,6 +6,7 @@ use std::fmt::{self, Debug};
 
 /// State of a second-order system; a checkpoint of a march is this struct.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// Time, s.
     pub t: f64,

@@ -3,11 +3,12 @@
 use fem_core::failure::{FailureCriterion, Site, check_material};
 use fem_core::material::{Material, MaterialError};
 use fem_core::tensor::{Ply, Stress6};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Range;
 
 /// A ply or the resin between two plies, counted from 0 at the bottom.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Place {
     /// Ply `k`.
     Ply(u16),
@@ -38,7 +39,7 @@ impl fmt::Display for Place {
 }
 
 /// Where a stress is watched.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ScanSite {
     /// Cell of the mesh.
     pub cell: u32,
@@ -199,15 +200,35 @@ pub struct Scan {
     order: Vec<u32>,
     /// Stresses in that order.
     stress: Vec<Stress6<Ply>>,
-    /// Those of the sample before.
-    stress_before: Vec<Stress6<Ply>>,
     /// Number of each site's place, in that order.
     slots: Vec<u32>,
-    time: Option<f64>,
-    evaluations: u64,
+    record: Record,
 }
 
-/// One criterion and what it saw. Tables have a row of one number per mode for each site of `span`.
+/// What a scan has seen: with its sites, criteria and materials all that it takes to go on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// Time of the last sample.
+    time: Option<f64>,
+    /// Its stresses, in the order of `Scan::order`.
+    stress: Vec<Stress6<Ply>>,
+    evaluations: u64,
+    /// One per criterion.
+    seen: Vec<Seen>,
+}
+
+/// What one criterion saw. Tables have a row of one number per mode for each site that it looks at.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Seen {
+    /// Indices of the last sample.
+    last: Vec<f64>,
+    maxima: Vec<f64>,
+    peaks: Vec<Option<Reading>>,
+    /// Row per place.
+    first: Vec<Option<(Reading, Stress6<Ply>)>>,
+}
+
+/// One criterion and where it looks.
 #[derive(Debug, Clone)]
 struct Watch {
     name: String,
@@ -217,12 +238,8 @@ struct Watch {
     span: Range<usize>,
     /// Parts of `span` of one material each, from its start.
     runs: Vec<(u16, Range<usize>)>,
+    /// Indices of the present sample, a row for each site of `span`.
     now: Vec<f64>,
-    before: Vec<f64>,
-    maxima: Vec<f64>,
-    peaks: Vec<Option<Reading>>,
-    /// Row per place.
-    first: Vec<Option<(Reading, Stress6<Ply>)>>,
 }
 
 /// Where a scan keeps the indices of one criterion at one site.
@@ -232,7 +249,7 @@ pub struct Probe {
     row: usize,
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Reading {
     time: f64,
     index: f64,
@@ -281,7 +298,7 @@ impl Scan {
             .map(|slot| slot as u32)
             .collect();
 
-        let mut watches = Vec::with_capacity(criteria.len());
+        let (mut watches, mut seen) = (Vec::with_capacity(criteria.len()), Vec::with_capacity(criteria.len()));
         for (name, criterion) in criteria {
             let span = match criterion.info().site {
                 Site::Ply => 0..plies,
@@ -299,22 +316,17 @@ impl Scan {
             }
             let modes = criterion.info().modes;
             let size = span.len() * modes.len();
-            watches.push(Watch {
-                now: vec![0.0; size],
-                before: vec![0.0; size],
+            watches.push(Watch { now: vec![0.0; size], name, criterion, modes, span, runs });
+            seen.push(Seen {
+                last: vec![0.0; size],
                 maxima: vec![0.0; size],
                 peaks: vec![None; modes.len()],
                 first: vec![None; places.len() * modes.len()],
-                name,
-                criterion,
-                modes,
-                span,
-                runs,
             });
         }
         let stress = vec![Stress6::new([0.0; 6]); sites.len()];
-        let stress_before = stress.clone();
-        Ok(Self { sites, materials, watches, order, stress, stress_before, slots, time: None, evaluations: 0 })
+        let record = Record { time: None, stress: stress.clone(), evaluations: 0, seen };
+        Ok(Self { sites, materials, watches, order, stress, slots, record })
     }
 
     /// The sites, as given.
@@ -331,8 +343,9 @@ impl Scan {
         if stress.len() != self.sites.len() {
             return Err(ScanError::Length { got: stress.len(), want: self.sites.len() });
         }
-        if !t.is_finite() || self.time.is_some_and(|last| t <= last) {
-            return Err(ScanError::Time { time: t, last: self.time });
+        let last = self.record.time;
+        if !t.is_finite() || last.is_some_and(|last| t <= last) {
+            return Err(ScanError::Time { time: t, last });
         }
         for (s, site) in stress.iter().zip(&self.sites) {
             if !s.is_finite() {
@@ -357,20 +370,20 @@ impl Scan {
                 });
             }
         }
-        for watch in &mut self.watches {
-            watch.keep(self.time, t, &self.order, &self.slots, [&self.stress_before, &self.stress]);
-            self.evaluations += watch.span.len() as u64;
+        for (watch, seen) in self.watches.iter_mut().zip(&mut self.record.seen) {
+            watch.keep(seen, last, t, &self.order, &self.slots, [&self.record.stress, &self.stress]);
+            self.record.evaluations += watch.span.len() as u64;
         }
-        std::mem::swap(&mut self.stress_before, &mut self.stress);
-        self.time = Some(t);
+        std::mem::swap(&mut self.record.stress, &mut self.stress);
+        self.record.time = Some(t);
         Ok(())
     }
 
     /// First crossing of every criterion, mode and place that failed, by time.
     pub fn events(&self) -> Vec<FailureEvent> {
         let mut found: Vec<(Reading, Stress6<Ply>, usize, usize)> = Vec::new();
-        for (w, watch) in self.watches.iter().enumerate() {
-            for (k, first) in watch.first.iter().enumerate() {
+        for (w, (watch, seen)) in self.watches.iter().zip(&self.record.seen).enumerate() {
+            for (k, first) in seen.first.iter().enumerate() {
                 found.extend(first.map(|(reading, stress)| (reading, stress, w, k % watch.modes.len())));
             }
         }
@@ -400,8 +413,8 @@ impl Scan {
     /// criteria; a criterion that had nowhere to look has none.
     pub fn peaks(&self) -> Vec<Peak> {
         let mut peaks = Vec::new();
-        for watch in &self.watches {
-            for (mode, reading) in watch.modes.iter().zip(&watch.peaks) {
+        for (watch, seen) in self.watches.iter().zip(&self.record.seen) {
+            for (mode, reading) in watch.modes.iter().zip(&seen.peaks) {
                 peaks.extend(reading.map(|r| Peak {
                     criterion: watch.name.clone(),
                     mode,
@@ -422,7 +435,7 @@ impl Scan {
     pub fn maxima(&self, criterion: usize) -> impl Iterator<Item = (&ScanSite, &[f64])> {
         let watch = &self.watches[criterion];
         let sites = self.order[watch.span.clone()].iter().map(|&i| &self.sites[i as usize]);
-        sites.zip(watch.maxima.chunks_exact(watch.modes.len()))
+        sites.zip(self.record.seen[criterion].maxima.chunks_exact(watch.modes.len()))
     }
 
     /// For histories: where criterion number `criterion` leaves its indices of site number `site`; `None` if there is no
@@ -435,14 +448,31 @@ impl Scan {
 
     /// The indices of the last sample where `probe` points, one per mode; zero before the first.
     pub fn read(&self, probe: Probe) -> &[f64] {
-        let watch = &self.watches[probe.watch];
-        let modes = watch.modes.len();
-        &watch.before[probe.row * modes..][..modes]
+        let modes = self.watches[probe.watch].modes.len();
+        &self.record.seen[probe.watch].last[probe.row * modes..][..modes]
     }
 
     /// Criteria evaluated so far, counted once per site and sample.
     pub fn evaluations(&self) -> u64 {
-        self.evaluations
+        self.record.evaluations
+    }
+
+    /// What the scan has seen, to be kept.
+    pub fn record(&self) -> &Record {
+        &self.record
+    }
+
+    /// Goes on from what a scan of the same sites and criteria had seen; `false`, and nothing changes, where `record` is of
+    /// another size.
+    #[must_use]
+    pub fn resume(&mut self, record: Record) -> bool {
+        let size = |s: &Seen| [s.last.len(), s.maxima.len(), s.peaks.len(), s.first.len()];
+        let fits = record.stress.len() == self.sites.len()
+            && record.seen.iter().map(size).eq(self.record.seen.iter().map(size));
+        if fits {
+            self.record = record;
+        }
+        fits
     }
 }
 
@@ -463,25 +493,34 @@ impl Watch {
         }
     }
 
-    /// Takes `now`, the indices at time `t`, into the records; `last` is the time of `before`. `stress` are those of the two.
-    fn keep(&mut self, last: Option<f64>, t: f64, order: &[u32], slots: &[u32], stress: [&[Stress6<Ply>]; 2]) {
+    /// Takes `now`, the indices at time `t`, into `seen`, whose last are those of the time `last`. `stress` are those of the
+    /// two.
+    fn keep(
+        &mut self,
+        seen: &mut Seen,
+        last: Option<f64>,
+        t: f64,
+        order: &[u32],
+        slots: &[u32],
+        stress: [&[Stress6<Ply>]; 2],
+    ) {
         let modes = self.modes.len();
         let (order, slots) = (&order[self.span.clone()], &slots[self.span.clone()]);
         let stress = stress.map(|s| &s[self.span.clone()]);
-        for (maximum, now) in self.maxima.iter_mut().zip(&self.now) {
+        for (maximum, now) in seen.maxima.iter_mut().zip(&self.now) {
             *maximum = maximum.max(*now);
         }
         for (row, indices) in self.now.chunks_exact(modes).enumerate() {
             for (mode, &index) in indices.iter().enumerate() {
-                let peak = &mut self.peaks[mode];
+                let peak = &mut seen.peaks[mode];
                 let here = Reading { time: t, index, site: order[row] };
                 if peak.is_none_or(|p| index > p.index || (index == p.index && here.precedes(&p))) {
                     *peak = Some(here);
                 }
-                let before = self.before[row * modes + mode];
+                let before = seen.last[row * modes + mode];
                 // A site that has crossed already left its record then. An infinite index crosses at the sample before.
                 if index >= 1.0 && (last.is_none() || before < 1.0) {
-                    let first = &mut self.first[slots[row] as usize * modes + mode];
+                    let first = &mut seen.first[slots[row] as usize * modes + mode];
                     let share = if last.is_some() { (1.0 - before) / (index - before) } else { 1.0 };
                     let time = last.map_or(t, |last| (last + (t - last) * share).min(t));
                     let here = Reading { time, ..here };
@@ -492,7 +531,7 @@ impl Watch {
                 }
             }
         }
-        std::mem::swap(&mut self.now, &mut self.before);
+        std::mem::swap(&mut self.now, &mut seen.last);
     }
 }
 

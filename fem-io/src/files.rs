@@ -24,6 +24,14 @@ pub enum FileError {
         /// The folder.
         path: PathBuf,
     },
+    /// A checkpoint that is not as it was written.
+    #[error("`{}` is damaged: {why}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What was seen.
+        why: String,
+    },
     /// A name that leads out of the folder or clashes with its bookkeeping.
     #[error("`{name}` is no name for a result file: use a plain file name that does not begin with a dot")]
     Name {
@@ -149,7 +157,7 @@ impl OutputDir {
     }
 }
 
-fn failed(action: &'static str, path: &Path) -> impl Fn(io::Error) -> FileError {
+pub(crate) fn failed(action: &'static str, path: &Path) -> impl Fn(io::Error) -> FileError {
     move |cause| FileError::Io { action, path: path.to_owned(), cause }
 }
 

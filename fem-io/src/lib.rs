@@ -5,6 +5,7 @@
 //! | the scene, a TOML file over presets | [`scene`], with [`units`] and the library of [`materials`] |
 //! | meshes of gmsh | [`gmsh`] |
 //! | the folder of results: files that appear whole or not at all | [`files`] |
+//! | what a later run goes on from | [`checkpoint`] |
 //! | CSV and JSON, line plots as SVG and PNG | [`tables`], [`plot`] |
 //!
 //! Beyond this crate there are only SI units; whatever is refused is refused here, with its file, its line and a remedy:
@@ -19,6 +20,7 @@
 //! # Ok::<(), fem_io::units::UnitError>(())
 //! ```
 
+pub mod checkpoint;
 pub mod files;
 pub mod gmsh;
 pub mod materials;

@@ -3,12 +3,12 @@
 //! SI units throughout. Numbers are written with the fewest digits that read back as the same `f64`.
 
 use crate::files::{FileError, OutputDir};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::io;
 
 /// One instant of an impact: a row of `history.csv`.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct HistoryRow {
     /// Time since first contact, s.
     pub time_s: f64,

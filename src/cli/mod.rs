@@ -6,6 +6,7 @@ mod list;
 mod matrices;
 mod modes;
 mod run;
+mod signals;
 
 use crate::model::Model;
 use crate::registry::Registry;
@@ -33,8 +34,10 @@ struct Arguments {
 enum Command {
     /// Computes a scene: force history, stresses, first damage.
     ///
-    /// Prints a summary and writes summary.json, history.csv, events.csv and the contact force as SVG and PNG, and failure
-    /// indices over time and over the plate where the scene asks for them. Fails, and keeps what it had, when the march meets a number that is not finite or loses its energy balance.
+    /// Prints a summary and writes summary.json, cost.json, history.csv, events.csv and the contact force as SVG and PNG;
+    /// modes, and failure indices over time and over the plate, where the scene asks for them. Fails, and keeps what it had,
+    /// when the march meets a number that is not finite or loses its energy balance. Writes a checkpoint now and then, at
+    /// the end and when it is stopped (Ctrl-C, SIGTERM: exit status 130, 143), from which `--resume` goes on.
     Run(run::Arguments),
     /// Validates a scene with its mesh and prints sizes and the stable step; marches nothing.
     Check(check::Arguments),

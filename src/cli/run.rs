@@ -1,18 +1,23 @@
 //! `fem run`.
 
+use super::signals::Signals;
 use super::{print, warn};
+use crate::cost::Cost;
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::registry::Registry;
+use crate::run::{self, Checkpoint, March};
+use crate::statics;
 use crate::summary::{self, Summary};
-use crate::{run, statics};
 use clap::Args;
 use fem_io::files::OutputDir;
 use fem_io::{scene, tables};
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::Write as _;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -21,6 +26,10 @@ pub(super) struct Arguments {
     /// Folder of the results [default: results/<folder of the scene>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Go on from the checkpoint in the folder of the results: a march that was stopped or killed, or one with a later
+    /// `march.end`. The files are those of a run in one piece.
+    #[arg(long)]
+    resume: bool,
     /// Threads for the integration of element matrices; results do not depend on it.
     #[arg(long, value_name = "N", default_value = "1")]
     threads: NonZeroUsize,
@@ -34,7 +43,8 @@ fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error
     let model = Model::new(scene::read(&arguments.scene)?, registry)?;
     let folder = || arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene));
     match model.plan {
-        Plan::Impact(_) => impact(&model, arguments.threads, folder),
+        Plan::Impact(_) => impact(&model, arguments, &folder()),
+        _ if arguments.resume => Err(Error::NotMarched),
         Plan::Static { .. } => {
             let solution = statics::solve(&model, arguments.threads).inspect_err(|_| warn(&model))?;
             let summary = statics::Summary::new(&model, &solution);
@@ -48,24 +58,61 @@ fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error
     }
 }
 
-fn impact(model: &Model, threads: NonZeroUsize, folder: impl Fn() -> PathBuf) -> Result<ExitCode, Error> {
-    let prepared = run::prepare(model, threads).inspect_err(|_| warn(model))?;
-    // After all that can be refused, so that a refusal leaves no folder; before the march, so that none is in vain.
-    let dir = OutputDir::create(folder())?;
+fn impact(model: &Model, arguments: &Arguments, folder: &Path) -> Result<ExitCode, Error> {
+    let checkpoint = if arguments.resume { Some(Checkpoint::read(folder, model)?) } else { None };
+    let prepared = run::prepare(model, arguments.threads).inspect_err(|_| warn(model))?;
     let sizes = prepared.sizes;
-    let bar = progress();
-    let outcome = run::march(prepared, |share| bar.set_position((share * 1000.0) as u64));
-    bar.finish_and_clear();
-    let outcome = outcome?;
+    let mut march = match checkpoint {
+        None => March::start(prepared)?,
+        Some(checkpoint) => March::resume(prepared, checkpoint)?,
+    };
+    // After all that can be refused, so that a refusal leaves no folder; before the march, so that none is in vain.
+    let dir = OutputDir::create(folder)?;
+    if let Some(signal) = advance(&mut march, &dir, model.scene.output.checkpoint_every)? {
+        let again = if arguments.resume { "" } else { " --resume" };
+        let command: Vec<_> = std::env::args().collect();
+        let (t, share) = (march.time() * 1e3, march.share() * 1e2);
+        let command = command.join(" ");
+        let _ = writeln!(
+            std::io::stderr(),
+            "Stopped by a signal at {t:.4} ms, {share:.0} % of the march. To go on: {command}{again}"
+        );
+        return Ok(ExitCode::from(128 + signal));
+    }
+    let outcome = march.finish();
     let summary = Summary::new(model, &sizes, &outcome);
+    let cost = Cost::new(arguments.threads, outcome.phases.clone());
     summary::write_tables(&dir, model, &outcome)?;
     tables::write_json(&dir, "summary.json", &summary)?;
-    print(&summary.text());
+    tables::write_json(&dir, "cost.json", &cost)?;
+    print(&summary.text(&cost));
     if model.scene.output.plots {
         summary::write_plots(&dir, model, &outcome)?;
     }
     print(&format!("  results   {}\n", dir.path().display()));
     Ok(if summary.completed { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Marches to the end or to a signal, whose number it returns. A checkpoint is written there, and before whenever
+/// `interval` seconds have passed since the last one.
+fn advance(march: &mut March<'_>, dir: &OutputDir, interval: f64) -> Result<Option<u8>, Error> {
+    let signals = Signals::heed();
+    let bar = progress();
+    // An interval beyond what a clock counts is never over.
+    let interval = Duration::try_from_secs_f64(interval).unwrap_or(Duration::MAX);
+    let (mut saved, mut signal) = (Instant::now(), None);
+    while !march.done() && signal.is_none() {
+        march.advance();
+        if saved.elapsed() >= interval {
+            march.save(dir)?;
+            saved = Instant::now();
+        }
+        bar.set_position((march.share() * 1000.0) as u64);
+        signal = signals.received();
+    }
+    march.save(dir)?;
+    bar.finish_and_clear();
+    Ok(signal.filter(|_| !march.done()))
 }
 
 /// `results/<folder of the scene>`; for a scene in the working folder the name of that folder.

@@ -118,6 +118,7 @@ impl Model {
             Plan::Impact(impact) => Some(impact.centre),
             _ => None,
         };
+        builder.modes(&plan)?;
         let watched = builder.watched(&plate.plane, centre)?;
         let gauges = builder.gauges(&plate, &watched, &criteria)?;
         let resin = scene.interface.as_ref().map(|resin| resin.value);

@@ -90,6 +90,19 @@ impl Builder<'_> {
         })
     }
 
+    /// Refuses to follow modes that the plan does not have.
+    pub(super) fn modes(&self, plan: &Plan) -> Result<(), SceneError> {
+        let reduced = matches!(plan, Plan::Impact(impact) if impact.reduction.is_some());
+        match &self.scene.output.modes {
+            Some(modes) if !reduced => Err(self.error(
+                modes,
+                "`output.modes` follows the modes of a reduced plate, and this analysis has none",
+                "name a reduction, for example: reduction = { method = \"ritz\", vectors = 40 }; or leave `output.modes` out",
+            )),
+            _ => Ok(()),
+        }
+    }
+
     pub(super) fn forces(&self, loads: &[Load], plate: &Plate, element: &dyn Element) -> Result<Vec<f64>, Error> {
         let mut forces = vec![0.0; plate.ndof()];
         for Load { kind, place } in loads {

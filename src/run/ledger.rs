@@ -3,14 +3,17 @@
 use fem_core::time::{State, StepError};
 use fem_dynamics::impact::ImpactSystem;
 use fem_io::tables::HistoryRow;
+use serde::{Deserialize, Serialize};
 
 /// The history as it grows, with the energy ledger.
+#[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Ledger {
     pub(super) rows: Vec<HistoryRow>,
     initial: f64,
     pub(super) error: f64,
     pub(super) contacts: u32,
     touching: bool,
+    #[serde(skip)]
     work: Vec<f64>,
 }
 
@@ -59,6 +62,7 @@ impl Ledger {
 }
 
 /// When a force first reaches a level, by linear interpolation between its samples.
+#[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Crossing {
     level: f64,
     last: (f64, f64),

@@ -1,11 +1,20 @@
-//! The march in time, watched.
+//! The march in time, watched; it can be saved and gone on with.
 
+use super::checkpoint::{self, Checkpoint, CheckpointError};
 use super::ledger::{Crossing, Ledger};
+use super::modal::{self, ModalView};
 use super::prepare::{Prepared, unmarchable};
-use super::{Maximum, Outcome};
+use super::{Maximum, Outcome, Sizes};
+use crate::cost::Stopwatch;
 use crate::error::Error;
-use crate::stress::Watch;
-use fem_failure::scan::Scan;
+use crate::model::{Impact, Model};
+use crate::stress::{self, Watch};
+use fem_core::counters::Counters;
+use fem_core::time::{Integrator, State};
+use fem_dynamics::impact::ImpactSystem;
+use fem_failure::scan::{self, Scan};
+use fem_io::files::OutputDir;
+use serde::{Deserialize, Serialize};
 
 /// Energy error, relative to the energy of the impact, at which a run stops.
 const ENERGY_TOLERANCE: f64 = 1e-2;
@@ -15,107 +24,337 @@ const HISTORY_ROWS: u64 = 2000;
 
 /// Marches a prepared model to its end; `progress` hears the share of the steps done.
 ///
-/// A march that meets a number that is not finite, or whose energy error exceeds its tolerance, stops and keeps what it
-/// had ([`Outcome::stopped`]).
-///
 /// # Errors
-/// Trouble before the first step: a criterion whose material lacks a constant, a singular mass.
+/// As [`March::start`].
 pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Outcome, Error> {
-    let Prepared { model, impact, mut system, reduced, sizes, mut counters, mut stopwatch } = prepared;
-    let mut watch = match model.criteria.is_empty() {
-        true => None,
-        false => Some(Watch::new(model, reduced.as_ref())?),
-    };
-    stopwatch.lap("prepare stresses");
-    let scene = &model.scene;
-    let every = |interval: f64| ((interval / sizes.step).round() as u64).max(1);
-    let scan_every = every(scene.failure.every);
-    let row_every = scene.output.history_every.map_or(sizes.steps.div_ceil(HISTORY_ROWS), every);
-    let mut integrator = impact.integrator.clone();
-    let mut state = system.initial();
-    integrator.start(&mut system, &mut state).map_err(|e| unmarchable(model, impact, e))?;
+    let mut march = March::start(prepared)?;
+    while !march.done() {
+        march.advance();
+        progress(march.share());
+    }
+    Ok(march.finish())
+}
 
-    let mut ledger = Ledger::new(&system, &state)?;
-    let mut threshold = model.threshold.map(|threshold| Crossing::new(threshold.force));
-    let n = sizes.marched;
-    if let Some(watch) = &mut watch {
-        watch.sample(0.0, &state.u[..n])?;
+/// A march in time.
+///
+/// One that meets a number that is not finite, or whose energy error exceeds its tolerance, stops and keeps what it had
+/// ([`Outcome::stopped`]). One that is saved, and resumed by another process, finds bit for bit what it would have found
+/// in one piece, whenever and however often it was saved.
+#[derive(Debug)]
+pub struct March<'a> {
+    model: &'a Model,
+    impact: &'a Impact,
+    system: ImpactSystem,
+    integrator: Box<dyn Integrator>,
+    sizes: Sizes,
+    scan_every: u64,
+    watch: Option<Watch<'a>>,
+    modal: Option<ModalView>,
+    /// Work of the preparation.
+    counters: Counters,
+    /// What the system had counted when `Progress::work` was.
+    counted: Work,
+    stopwatch: Stopwatch,
+    progress: Progress,
+}
+
+/// How far a march is: with the scene, what it watches and the modes that it follows, all that it takes to go on.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Progress {
+    /// Steps done, and their length, s.
+    step: u64,
+    dt: f64,
+    /// Steps between two rows of the history.
+    row_every: u64,
+    state: State,
+    ledger: Ledger,
+    threshold: Option<Crossing>,
+    work: Work,
+    stopped: Option<String>,
+}
+
+/// A march as it is saved.
+pub(super) type Saved = (Progress, Option<modal::Record>, Option<(scan::Record, stress::Record)>);
+
+/// Counts of the system that is marched.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+struct Work {
+    factorisations: u64,
+    solves: u64,
+    contact_calls: u64,
+}
+
+impl Work {
+    fn of(system: &ImpactSystem) -> Self {
+        let (factorisations, solves) = system.structure().work();
+        Self { factorisations, solves, contact_calls: system.contact_calls() }
     }
-    let mut stopped = None;
-    for step in 1..=sizes.steps {
-        let mut advance = || -> Result<(), Error> {
-            integrator.step(&mut system, &mut state, sizes.step)?;
-            // A sum of steps drifts; the product does not.
-            state.t = step as f64 * sizes.step;
-            counters.steps += 1;
-            let force = system.contact_force(0, &state);
-            ledger.contact(force > 0.0);
-            if let Some(threshold) = &mut threshold {
-                threshold.sample(state.t, force);
-            }
-            if step.is_multiple_of(row_every) || step == sizes.steps {
-                ledger.row(&system, &state)?;
-            }
-            if let Some(watch) = watch.as_mut().filter(|_| step.is_multiple_of(scan_every) || step == sizes.steps) {
-                stopwatch.lap("march");
-                watch.sample(state.t, &state.u[..n])?;
-                stopwatch.lap("scan");
-            }
-            Ok(())
+
+    fn between(self, from: Self, to: Self) -> Self {
+        Self {
+            factorisations: self.factorisations + to.factorisations - from.factorisations,
+            solves: self.solves + to.solves - from.solves,
+            contact_calls: self.contact_calls + to.contact_calls - from.contact_calls,
+        }
+    }
+}
+
+impl<'a> March<'a> {
+    /// A march at its beginning.
+    ///
+    /// # Errors
+    /// A criterion whose material lacks a constant, a singular mass.
+    pub fn start(prepared: Prepared<'a>) -> Result<Self, Error> {
+        let (model, impact) = (prepared.model, prepared.impact);
+        let state = prepared.system.initial();
+        let Sizes { steps, step: dt, .. } = prepared.sizes;
+        let row_every = model.scene.output.history_every.map_or(steps.div_ceil(HISTORY_ROWS), |t| steps_in(t, dt));
+        let progress = Progress {
+            step: 0,
+            dt,
+            row_every,
+            ledger: Ledger::new(&prepared.system, &state)?,
+            state,
+            threshold: model.threshold.map(|threshold| Crossing::new(threshold.force)),
+            work: Work::default(),
+            stopped: None,
         };
-        if let Err(error) = advance() {
-            stopped = Some(format!("step {step} (t = {:.6e} s): {}", state.t, chain(&error)));
-            break;
+        let mut march = Self::at(prepared, progress)?;
+        let Self { integrator, system, progress: Progress { state, .. }, .. } = &mut march;
+        integrator.start(system, state).map_err(|e| unmarchable(model, impact, e))?;
+        if let Some(modal) = &mut march.modal {
+            modal.row(&march.progress.state);
         }
-        if !(ledger.error <= ENERGY_TOLERANCE) {
-            stopped = Some(format!(
-                "step {step} (t = {:.6e} s): the energy error is {:.3e} of the impact energy, more than {ENERGY_TOLERANCE:.0e}; \
-                 shorten `march.step`",
-                state.t, ledger.error
+        march.sample()?;
+        Ok(march)
+    }
+
+    /// A march that goes on from `checkpoint`.
+    ///
+    /// # Errors
+    /// A checkpoint of another step, beyond the end, or of another size than the model; as [`March::start`].
+    pub fn resume(prepared: Prepared<'a>, checkpoint: Checkpoint) -> Result<Self, Error> {
+        let Checkpoint { folder, saved: (progress, modal, watched) } = checkpoint;
+        let Sizes { steps, step: dt, .. } = prepared.sizes;
+        let differs =
+            |what: String| Error::from(CheckpointError::Differs { folder: folder.clone(), differences: vec![what] });
+        if progress.dt != dt {
+            return Err(differs(format!(
+                "its step was {:e} s and would be {dt:e} s: `march.end` must be a whole number of steps",
+                progress.dt
+            )));
+        }
+        if progress.step > steps {
+            return Err(CheckpointError::Beyond { folder, at: progress.state.t }.into());
+        }
+        let (mut march, sizes) = (Self::at(prepared, progress)?, || differs("its sizes are others".to_owned()));
+        let Self { system, integrator, progress, .. } = &mut march;
+        let fresh = system.initial();
+        if progress.state.u.len() != fresh.u.len() || progress.state.contacts.len() != fresh.contacts.len() {
+            return Err(sizes());
+        }
+        integrator.resume(system);
+        if progress.step < steps && progress.stopped.is_none() {
+            // A step in vain makes what is made once and kept, such as factors, so that the work of the others is what it
+            // would be in one piece. What it may meet, the next step meets again.
+            let _ = integrator.step(system, &mut progress.state.clone(), dt);
+        }
+        march.counted = Work::of(&march.system);
+        let fits = match (&mut march.modal, modal) {
+            (Some(view), Some(record)) => view.resume(record),
+            (view, record) => view.is_none() && record.is_none(),
+        };
+        let watch_fits = match (&mut march.watch, watched) {
+            (Some(watch), Some((scan, record))) => watch.resume(scan, record),
+            (watch, record) => watch.is_none() && record.is_none(),
+        };
+        if fits && watch_fits { Ok(march) } else { Err(sizes()) }
+    }
+
+    fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
+        let Prepared { model, impact, system, reduced, sizes, counters, mut stopwatch } = prepared;
+        let followed = model.scene.output.modes.as_ref().zip(reduced.as_ref());
+        let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
+        let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, reduced)?) };
+        stopwatch.lap("prepare stresses");
+        let scan_every = steps_in(model.scene.failure.every, sizes.step);
+        let (integrator, counted) = (impact.integrator.clone(), Work::default());
+        Ok(Self {
+            model,
+            impact,
+            system,
+            integrator,
+            sizes,
+            scan_every,
+            watch,
+            modal,
+            counters,
+            counted,
+            stopwatch,
+            progress,
+        })
+    }
+
+    /// Whether there is nothing more to march: the end is reached, or the march has stopped.
+    pub fn done(&self) -> bool {
+        self.progress.stopped.is_some() || self.progress.step >= self.sizes.steps
+    }
+
+    /// Share of the steps done.
+    pub fn share(&self) -> f64 {
+        self.progress.step as f64 / self.sizes.steps as f64
+    }
+
+    /// Time reached, s.
+    pub fn time(&self) -> f64 {
+        self.progress.state.t
+    }
+
+    /// Makes one step; a march that is done stays as it is.
+    pub fn advance(&mut self) {
+        if self.done() {
+            return;
+        }
+        let step = self.progress.step + 1;
+        let stepped = self.step();
+        self.judge(step, stepped);
+    }
+
+    fn step(&mut self) -> Result<(), Error> {
+        let Progress { step, dt, row_every, state, ledger, threshold, .. } = &mut self.progress;
+        self.integrator.step(&mut self.system, state, *dt)?;
+        *step += 1;
+        // A sum of steps drifts; the product does not.
+        state.t = *step as f64 * *dt;
+        let force = self.system.contact_force(0, state);
+        ledger.contact(force > 0.0);
+        if let Some(threshold) = threshold {
+            threshold.sample(state.t, force);
+        }
+        let (row, scan) = (step.is_multiple_of(*row_every), step.is_multiple_of(self.scan_every));
+        if row {
+            self.row()?;
+        }
+        if scan { self.sample() } else { Ok(()) }
+    }
+
+    fn row(&mut self) -> Result<(), Error> {
+        let Progress { ledger, state, .. } = &mut self.progress;
+        ledger.row(&self.system, state)?;
+        if let Some(modal) = &mut self.modal {
+            modal.row(state);
+        }
+        Ok(())
+    }
+
+    fn sample(&mut self) -> Result<(), Error> {
+        let Some(watch) = &mut self.watch else { return Ok(()) };
+        self.stopwatch.lap("march");
+        let State { t, u, .. } = &self.progress.state;
+        let sampled = watch.sample(*t, &u[..self.sizes.marched]);
+        self.stopwatch.lap("scan");
+        sampled
+    }
+
+    /// Stops a march that met an error in `step` or leaks energy.
+    fn judge(&mut self, step: u64, done: Result<(), Error>) {
+        let Progress { state, ledger, stopped, .. } = &mut self.progress;
+        let at = || format!("step {step} (t = {:.6e} s)", state.t);
+        if let Err(error) = done {
+            *stopped = Some(format!("{}: {}", at(), chain(&error)));
+        } else if !(ledger.error <= ENERGY_TOLERANCE) {
+            *stopped = Some(format!(
+                "{}: the energy error is {:.3e} of the impact energy, more than {ENERGY_TOLERANCE:.0e}; shorten `march.step`",
+                at(),
+                ledger.error
             ));
-            break;
-        }
-        if step.is_multiple_of(64) {
-            progress(step as f64 / sizes.steps as f64);
         }
     }
-    stopwatch.lap("march");
-    let (mut events, mut peaks, mut sites) = (Vec::new(), Vec::new(), 0);
-    let (mut histories, mut maxima) = (Vec::new(), Vec::new());
-    if let Some(watch) = &mut watch {
-        if let (Err(error), None) = (watch.flush(), &stopped) {
-            stopped = Some(chain(&error));
-        }
-        events = watch.scan().events();
-        peaks = watch.scan().peaks();
-        sites = watch.sites();
-        histories = watch.histories().cloned().collect();
-        if scene.output.maps {
-            maxima = (0..model.criteria.len()).flat_map(|criterion| largest(watch.scan(), criterion)).collect();
-        }
-        counters.criterion_calls = watch.scan().evaluations();
-        stopwatch.lap("scan");
+
+    /// Writes a checkpoint into `dir`: after it the march goes on, here or in another process.
+    ///
+    /// # Errors
+    /// A folder that cannot be written, a mesh that cannot be read any more.
+    pub fn save(&mut self, dir: &OutputDir) -> Result<(), Error> {
+        self.stopwatch.lap("march");
+        self.count();
+        let watched = self.watch.as_ref().map(Watch::record);
+        let saved =
+            checkpoint::write(dir, self.model, &(&self.progress, self.modal.as_ref().map(ModalView::record), watched));
+        self.stopwatch.lap("checkpoint");
+        saved
     }
-    counters.contact_calls = system.contact_calls();
-    let (factorisations, solves) = system.structure().work();
-    counters.factorisations = counters.factorisations.max(factorisations);
-    counters.solves = counters.solves.max(solves);
-    Ok(Outcome {
-        mass: impact.spec.impactor.mass,
-        velocity: impact.spec.impactor.velocity,
-        history: ledger.rows,
-        events,
-        peaks,
-        histories,
-        maxima,
-        threshold_time: threshold.and_then(|threshold| threshold.time),
-        sites,
-        energy_error: ledger.error,
-        contacts: ledger.contacts,
-        counters,
-        phases: stopwatch.phases().to_vec(),
-        stopped,
-    })
+
+    fn count(&mut self) {
+        let now = Work::of(&self.system);
+        self.progress.work = self.progress.work.between(self.counted, now);
+        self.counted = now;
+    }
+
+    /// What the march found. Its end is a row of the history and a sample of the stresses.
+    pub fn finish(mut self) -> Outcome {
+        self.stopwatch.lap("march");
+        if self.progress.stopped.is_none() {
+            let closed = self.close();
+            self.judge(self.progress.step, closed);
+        }
+        let (mut events, mut peaks, mut sites) = (Vec::new(), Vec::new(), 0);
+        let (mut histories, mut maxima) = (Vec::new(), Vec::new());
+        if let Some(watch) = &mut self.watch {
+            if let (Err(error), None) = (watch.flush(), &self.progress.stopped) {
+                self.progress.stopped = Some(chain(&error));
+            }
+            events = watch.scan().events();
+            peaks = watch.scan().peaks();
+            sites = watch.sites();
+            histories = watch.histories().to_vec();
+            if self.model.scene.output.maps {
+                maxima = (0..self.model.criteria.len()).flat_map(|k| largest(watch.scan(), k)).collect();
+            }
+            self.counters.criterion_calls = watch.scan().evaluations();
+        }
+        self.stopwatch.lap("scan");
+        self.count();
+        let Progress { step, ledger, threshold, work, stopped, .. } = self.progress;
+        let mut counters = self.counters;
+        counters.steps = step;
+        counters.contact_calls = work.contact_calls;
+        // A full system has counted since it was assembled, a reduced one counts nothing.
+        counters.factorisations = counters.factorisations.max(work.factorisations);
+        counters.solves = counters.solves.max(work.solves);
+        let energy = |of: fn(&fem_io::tables::HistoryRow) -> f64| ledger.rows.iter().map(of).sum();
+        Outcome {
+            mass: self.impact.spec.impactor.mass,
+            velocity: self.impact.spec.impactor.velocity,
+            modal: self.modal.map(|modal| modal.finish(energy(|r| r.plate_strain_j), energy(|r| r.plate_kinetic_j))),
+            history: ledger.rows,
+            events,
+            peaks,
+            histories,
+            maxima,
+            threshold_time: threshold.and_then(|threshold| threshold.time),
+            sites,
+            energy_error: ledger.error,
+            contacts: ledger.contacts,
+            counters,
+            phases: self.stopwatch.phases().to_vec(),
+            stopped,
+        }
+    }
+
+    /// Row and sample at the end, where they do not stand there yet.
+    fn close(&mut self) -> Result<(), Error> {
+        let Progress { step, row_every, .. } = self.progress;
+        if !step.is_multiple_of(row_every) {
+            self.row()?;
+        }
+        if step.is_multiple_of(self.scan_every) { Ok(()) } else { self.sample() }
+    }
+}
+
+/// Steps of `dt` in an interval, at least one.
+fn steps_in(interval: f64, dt: f64) -> u64 {
+    ((interval / dt).round() as u64).max(1)
 }
 
 /// Largest index of a criterion at each of its sites.

@@ -1,11 +1,15 @@
 //! The main job: assemble, reduce, march, scan.
 
+mod checkpoint;
 mod ledger;
 mod march;
+mod modal;
 mod prepare;
 
 pub use crate::stress::IndexHistory;
-pub use march::march;
+pub use checkpoint::{Checkpoint, CheckpointError};
+pub use march::{March, march};
+pub use modal::{ModalHistory, ModeShare};
 pub use prepare::{Prepared, prepare, structure};
 
 use crate::cost::Phase;
@@ -55,6 +59,8 @@ pub struct Outcome {
     pub histories: Vec<IndexHistory>,
     /// Largest index per criterion and site, if the scene asks for maps.
     pub maxima: Vec<Maximum>,
+    /// What the lowest modes do, if the scene asks for it.
+    pub modal: Option<ModalHistory>,
     /// When the contact force first reached the threshold of the model, s.
     pub threshold_time: Option<f64>,
     /// Sites watched.

@@ -104,7 +104,10 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         let help = "shorten `march.step`, reduce the model, or choose an implicit integrator such as `newmark`";
         return Err(model.scene.source.error_at(&march.step.place, why, help).into());
     }
-    let steps = (march.end.value / march.step.value * (1.0 - 1e-12)).ceil().max(1.0) as u64;
+    let count = march.end.value / march.step.value;
+    let steps = (count * (1.0 - 1e-12)).ceil().max(1.0) as u64;
+    // As it is written where it fits the end: a later end then changes no bit of it.
+    let whole = (count - steps as f64).abs() <= 1e-12 * count;
     let sizes = Sizes {
         unknowns,
         marched: system.structure().ndof(),
@@ -115,7 +118,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         lowest_frequency: reduced.as_ref().and_then(|r| r.modal.frequencies().next()).map(hertz),
         longest_step,
         steps,
-        step: march.end.value / steps as f64,
+        step: if whole { march.step.value } else { march.end.value / steps as f64 },
     };
     Ok(Prepared { model, impact, system, reduced, sizes, counters, stopwatch })
 }

@@ -258,6 +258,27 @@ pub fn index_history(title: &str, curves: &[(String, Vec<(f64, f64)>)]) -> LineP
     }
 }
 
+/// A deflection over time under the heading `title` with its parts by mode: names and points (time in s, deflection in m).
+///
+/// Times are shown as by [`force_history`], deflections in µm up to a tenth of a millimetre, else in mm.
+pub fn modal_history(title: &str, sum: Vec<(f64, f64)>, parts: Vec<(String, Vec<(f64, f64)>)>) -> LinePlot {
+    let (time_unit, per_s) = time_unit(sum.iter().map(|p| p.0));
+    let (unit, per_m) = if largest(sum.iter().map(|p| p.1)) < 1e-4 { ("µm", 1e6) } else { ("mm", 1e3) };
+    let series = |label: String, points: Vec<(f64, f64)>, style: Style| Series {
+        label,
+        points: points.into_iter().map(|(t, w)| (t * per_s, w * per_m)).collect(),
+        style,
+    };
+    let parts = parts.into_iter().map(|(label, points)| series(label, points, Style::Solid));
+    LinePlot {
+        title: title.to_owned(),
+        x: Axis { label: "Time".into(), unit: time_unit.into() },
+        y: Axis { label: "Deflection under the impactor".into(), unit: unit.into() },
+        series: [series("all modes".into(), sum, Style::Dashed)].into_iter().chain(parts).collect(),
+        marks: Vec::new(),
+    }
+}
+
 fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |m, v| m.max(v.abs()))
 }
@@ -417,6 +438,16 @@ mod tests {
         ];
         assert_eq!(drawn, want);
         assert!(line_plot(&plot).unwrap().svg.contains(">failure</text>"));
+    }
+
+    #[test]
+    fn a_modal_history_shows_the_sum_dashed_and_the_parts_solid() {
+        let points = |w: f64| vec![(0.0, 0.0), (2e-3, w)];
+        let plot = modal_history("title", points(1e-3), vec![("mode 1".into(), points(5e-4))]);
+        assert_eq!((plot.x.unit.as_str(), plot.y.unit.as_str()), ("ms", "mm"));
+        let drawn: Vec<_> = plot.series.iter().map(|s| (s.label.as_str(), s.points[1], s.style)).collect();
+        assert_eq!(drawn, [("all modes", (2.0, 1.0), Style::Dashed), ("mode 1", (2.0, 0.5), Style::Solid)]);
+        assert_eq!(modal_history("title", points(5e-5), Vec::new()).y.unit, "µm");
     }
 
     #[test]

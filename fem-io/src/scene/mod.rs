@@ -32,6 +32,7 @@ use fem_core::plate::ZDerivatives;
 use fem_core::plugin::Dimension;
 use reader::{Field, Keys, Reader};
 use source::Origin;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tree::Table;
@@ -71,6 +72,8 @@ pub struct Scene {
     pub failure: Failure,
     /// What is written.
     pub output: Output,
+    /// Every value of the scene and of the preset beneath it by the path of its key, `failure.watch[0].ply`, as it is written.
+    pub keys: BTreeMap<String, String>,
     /// Its text, for errors that show a place.
     pub source: Arc<SceneSource>,
 }
@@ -229,6 +232,8 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
     let source = Arc::new(SceneSource::clone(&source).with(Origin::Preset, name, fidelity.preset()));
     let merged = own.over(Table::parse(fidelity.preset(), Origin::Preset, &source)?);
     let root = Reader::root(&merged, KEYS, &source)?;
+    let mut keys = BTreeMap::new();
+    merged.flatten("", &mut keys);
 
     let folder = path.parent().unwrap_or(Path::new(""));
     let materials = material::read_all(&root.required("materials")?, folder)?;
@@ -258,6 +263,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
         damage,
         profiles: root.optional("profile").map_or(Ok(Vec::new()), |field| load::read_profiles(&field))?,
         output: root.optional("output").map_or(Ok(Output::default()), |field| run::read_output(&field))?,
+        keys,
         source,
     })
 }

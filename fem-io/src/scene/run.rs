@@ -135,10 +135,14 @@ pub enum Window {
 }
 
 /// What is written.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Output {
-    /// Time between two lines of the history, s; every step if `None`.
+    /// Time between two lines of the history, s; as few as 2000 lines need if `None`.
     pub history_every: Option<f64>,
+    /// Time on the clock between two checkpoints of a march, s.
+    pub checkpoint_every: f64,
+    /// How many modes of the reduced plate are followed, if any.
+    pub modes: Option<Located<usize>>,
     /// Plots of the histories.
     pub plots: bool,
     /// A table of the largest indices over the plate.
@@ -147,7 +151,7 @@ pub struct Output {
 
 impl Default for Output {
     fn default() -> Self {
-        Self { history_every: None, plots: true, maps: false }
+        Self { history_every: None, checkpoint_every: CHECKPOINT_EVERY, modes: None, plots: true, maps: false }
     }
 }
 
@@ -177,7 +181,19 @@ const WATCH: Keys = &[
 /// Key by which a scene names a criterion of its own way.
 const LABEL: &str = "as";
 const EFFECTS: Keys = &[("damage", r#""onset""#), ("membrane", r#""off""#), ("damping", r#""off""#)];
-const OUTPUT: Keys = &[("history_every", r#""1 us""#), ("plots", "true"), ("maps", "true")];
+const OUTPUT: Keys = &[
+    ("history_every", r#""1 us""#),
+    ("checkpoint_every", r#""60 s""#),
+    ("modes", "6"),
+    ("plots", "true"),
+    ("maps", "true"),
+];
+
+/// Time between two checkpoints unless the scene says otherwise, s.
+const CHECKPOINT_EVERY: f64 = 60.0;
+
+/// Most modes that are followed: one picture shows them all beside the others and the sum.
+const MOST_MODES: usize = 38;
 
 /// Most steps of a march: more is a slip in step or end, and would seem to hang.
 const MAX_STEPS: f64 = 1e9;
@@ -345,7 +361,14 @@ fn effect<T: Copy>(field: &Field<'_>, available: &[(&str, T)]) -> Result<T, Scen
 
 pub(super) fn read_output(field: &Field<'_>) -> Result<Output, SceneError> {
     let table = field.table(OUTPUT)?;
+    let modes = table.optional("modes").map(|field| match field.count()? {
+        count @ 1..=MOST_MODES => Ok(field.at(count)),
+        count => Err(field.error(format!("{count} modes"), format!("at most {MOST_MODES} can be followed"))),
+    });
+    let checkpoint = table.optional("checkpoint_every").map(|field| field.positive(Dimension::TIME));
     Ok(Output {
+        checkpoint_every: checkpoint.transpose()?.unwrap_or(CHECKPOINT_EVERY),
+        modes: modes.transpose()?,
         history_every: table.optional("history_every").map(|field| field.positive(Dimension::TIME)).transpose()?,
         plots: table.optional("plots").map_or(Ok(true), |field| field.flag())?,
         maps: table.optional("maps").map_or(Ok(false), |field| field.flag())?,

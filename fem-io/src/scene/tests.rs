@@ -127,9 +127,12 @@ fn a_scene_in_full() {
     assert_eq!((scene.failure.every, scene.failure.radius), (5e-6, Some(10e-3)));
     assert_eq!(scene.failure.window, Window::Square(2.54e-3));
     assert_eq!(scene.damage, Damage::Onset);
-    let output = Output { history_every: Some(2e-6), plots: false, maps: true };
+    let output = Output { history_every: Some(2e-6), plots: false, maps: true, ..Output::default() };
     assert_eq!(scene.output, output);
-    assert_eq!(Output::default(), Output { history_every: None, plots: true, maps: false });
+    assert_eq!(
+        Output::default(),
+        Output { history_every: None, checkpoint_every: 60.0, modes: None, plots: true, maps: false }
+    );
     assert_eq!(
         (scene.element.name.value.as_str(), scene.z_derivatives.value),
         ("hermite-prism", ZDerivatives::LayerWise)

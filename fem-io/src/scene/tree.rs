@@ -1,6 +1,7 @@
 //! A TOML document with the place of every key and value, and the laying of one over another.
 
 use super::source::{Origin, Place, SceneError, SceneSource};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use toml::de::{DeTable, DeValue};
 
@@ -33,6 +34,23 @@ impl Node {
             Self::Table(_) => "a table".to_owned(),
             Self::Date => "a date".to_owned(),
         }
+    }
+}
+
+impl Node {
+    fn flatten(&self, path: String, into: &mut BTreeMap<String, String>) {
+        let text = match self {
+            Self::Table(table) => return table.flatten(&path, into),
+            Self::List(items) => {
+                let each = items.iter().enumerate();
+                return each.for_each(|(i, item)| item.node.flatten(format!("{path}[{i}]"), into));
+            }
+            Self::Text(text) => format!("\"{text}\""),
+            Self::Number(value) => value.to_string(),
+            Self::Flag(flag) => flag.to_string(),
+            Self::Date => self.in_words(),
+        };
+        into.insert(path, text);
     }
 }
 
@@ -76,6 +94,13 @@ impl Table {
             }
         }
         self
+    }
+
+    /// Every value below the key `path` (empty at the top) by its own path, `failure.watch[0].ply`, as text.
+    pub(crate) fn flatten(&self, path: &str, into: &mut BTreeMap<String, String>) {
+        for Entry { key, item, .. } in &self.0 {
+            item.node.flatten(if path.is_empty() { key.clone() } else { format!("{path}.{key}") }, into);
+        }
     }
 
     fn names_another_plugin(&self, other: &Table) -> bool {
