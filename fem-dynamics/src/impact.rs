@@ -1,6 +1,6 @@
 //! A linear structure under the impact of lumped masses: the system that integrators march.
 
-use fem_core::contact::{ContactEnergy, ContactHistory, ContactLaw};
+use fem_core::contact::{Branches, ContactEnergy, ContactHistory, ContactLaw, Indentation};
 use fem_core::structure::Structure;
 use fem_core::time::{SecondOrderSystem, State, StepError};
 
@@ -307,6 +307,15 @@ impl SecondOrderSystem for ImpactSystem {
             let alpha = self.position(i, &state.u) - self.deflection(i, &state.u);
             impactor.law.commit(&mut state.contacts[i], alpha);
         }
+    }
+
+    fn indentation(&self, i: usize, s: &State) -> Indentation {
+        let [alpha, rate] = [&s.u, &s.v].map(|x| self.position(i, x) - self.deflection(i, x));
+        Indentation { alpha, rate }
+    }
+
+    fn branches(&self, i: usize, h: &ContactHistory) -> Branches {
+        self.impactors[i].law.branches(h)
     }
 }
 
