@@ -1,6 +1,6 @@
 //! The march in time, watched.
 
-use super::ledger::{Crossing, Ledger};
+use super::ledger::Ledger;
 use super::prepare::{Prepared, unmarchable};
 use super::{Maximum, Outcome};
 use crate::error::Error;
@@ -35,8 +35,7 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
     let mut state = system.initial();
     integrator.start(&mut system, &mut state).map_err(|e| unmarchable(model, impact, e))?;
 
-    let mut ledger = Ledger::new(&system, &state)?;
-    let mut threshold = model.threshold.map(|threshold| Crossing::new(threshold.force));
+    let mut ledger = Ledger::new(&system, &state, model.threshold.map(|threshold| threshold.force))?;
     let n = sizes.marched;
     if let Some(watch) = &mut watch {
         watch.sample(0.0, &state.u[..n])?;
@@ -48,11 +47,7 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
             // A sum of steps drifts; the product does not.
             state.t = step as f64 * sizes.step;
             counters.steps += 1;
-            let force = system.contact_force(0, &state);
-            ledger.contact(force > 0.0);
-            if let Some(threshold) = &mut threshold {
-                threshold.sample(state.t, force);
-            }
+            ledger.contacts(&system, &state);
             if step.is_multiple_of(row_every) || step == sizes.steps {
                 ledger.row(&system, &state)?;
             }
@@ -101,17 +96,14 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
     counters.factorisations = counters.factorisations.max(factorisations);
     counters.solves = counters.solves.max(solves);
     Ok(Outcome {
-        mass: impact.spec.impactor.mass,
-        velocity: impact.spec.impactor.velocity,
+        contacts: ledger.records().collect(),
         history: ledger.rows,
         events,
         peaks,
         histories,
         maxima,
-        threshold_time: threshold.and_then(|threshold| threshold.time),
         sites,
         energy_error: ledger.error,
-        contacts: ledger.contacts,
         counters,
         phases: stopwatch.phases().to_vec(),
         stopped,

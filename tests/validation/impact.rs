@@ -54,12 +54,12 @@ fn check(history: &[HistoryRow], table: &str, mass: f64) {
     let force = |t: f64| {
         let after = history.partition_point(|r| r.time_s < t).clamp(1, history.len() - 1);
         let (a, b) = (&history[after - 1], &history[after]);
-        a.contact_force_n + (t - a.time_s) / (b.time_s - a.time_s) * (b.contact_force_n - a.contact_force_n)
+        a.contact_force_n() + (t - a.time_s) / (b.time_s - a.time_s) * (b.contact_force_n() - a.contact_force_n())
     };
     let end = rows.iter().skip(2).position(|r| r["F_N"] == 0.0).map_or(rows.len(), |i| i + 2);
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
     let last = rows[end - 1]["t_us"] * 1e-6;
-    let peak = largest(&mut history.iter().filter(|r| r.time_s <= last).map(|r| r.contact_force_n));
+    let peak = largest(&mut history.iter().filter(|r| r.time_s <= last).map(|r| r.contact_force_n()));
     let want = largest(&mut rows[..end].iter().map(|r| r["F_N"]));
     assert!((peak / want - 1.0).abs() < PEAK, "{table}: peak {peak} N, not {want} N");
     let (mut off, mut all) = (0.0, 0.0);
@@ -69,7 +69,8 @@ fn check(history: &[HistoryRow], table: &str, mass: f64) {
     }
     assert!((off / all).sqrt() < CURVE, "{table}: curve {}", (off / all).sqrt());
     let start = rows[0]["v_impactor_m_s"];
-    let v = history[history.partition_point(|r| r.time_s < last).min(history.len() - 1)].impactor_velocity_m_s;
+    let v =
+        history[history.partition_point(|r| r.time_s < last).min(history.len() - 1)].impactors[0].impactor_velocity_m_s;
     let impulse = mass * (start - v);
     let wanted = mass * (start - rows[end - 1]["v_impactor_m_s"]);
     assert!((impulse / wanted - 1.0).abs() < IMPULSE, "{table}: impulse {impulse}, not {wanted}");

@@ -81,7 +81,7 @@ fn two_masses(scheme: Box<dyn Integrator>, n: f64, steps: u32) -> f64 {
         2.0 => (40.0, [-0.178717299436789, -0.6136498771549183, 0.6391331166747629, -0.5746602905989593]),
         _ => (10.0, [-0.2518907690463982, -0.509962880236784, 0.4166346015741468, -0.6111236537686259]),
     };
-    let impactor = Impactor { mass: 1.5, velocity: 1.0, load: vec![(0, 1.0)], law: sun_yang(k, n, 0.1) };
+    let impactor = Impactor { mass: 1.5, velocity: 1.0, start: 0.0, load: vec![(0, 1.0)], law: sun_yang(k, n, 0.1) };
     let mut sys = ImpactSystem::new(Box::new(OnSpring), vec![impactor]);
     let s = sys.initial();
     let s = end(scheme, &mut sys, s, 4.0, steps);
@@ -168,7 +168,7 @@ fn two_contacts_at_once_are_one() {
     let impactors = |parts: usize| {
         let share = 1.0 / parts as f64;
         let law = sun_yang(40.0 * share, 2.0, 0.1);
-        vec![Impactor { mass: 1.5 * share, velocity: 1.0, load: vec![(0, 1.0)], law }; parts]
+        vec![Impactor { mass: 1.5 * share, velocity: 1.0, start: 0.0, load: vec![(0, 1.0)], law }; parts]
     };
     let [one, two] = [1, 2].map(|parts| {
         let mut sys = ImpactSystem::new(Box::new(OnSpring), impactors(parts));
