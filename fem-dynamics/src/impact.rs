@@ -4,8 +4,9 @@ use fem_core::contact::{Branches, ContactEnergy, ContactHistory, ContactLaw, Ind
 use fem_core::structure::Structure;
 use fem_core::time::{SecondOrderSystem, State, StepError};
 
-/// Change of the contact forces, over the largest, at which several contacts count as solved.
-const TOLERANCE: f64 = 1e-13;
+/// Change of an indentation by its own force, relative, at which several contacts count as solved: ten times the
+/// tolerance of one.
+const TOLERANCE: f64 = 1e-14;
 /// Sweeps over several contacts before they count as unsolvable.
 const MOST_SWEEPS: usize = 20_000;
 
@@ -328,20 +329,20 @@ impl Influence {
         let mut evaluations = 0;
         self.forces.fill(0.0);
         for _ in 0..MOST_SWEEPS {
-            let (mut change, mut largest) = (0.0_f64, 0.0_f64);
+            let mut settled = true;
             for (i, impactor) in impactors.iter().enumerate() {
                 let row = &self.approach[i * count..(i + 1) * count];
                 let others = (0..count).filter(|j| *j != i).map(|j| row[j] * self.forces[j]);
-                let (force, calls) = contact(&*impactor.law, &h[i], self.free[i] - others.sum::<f64>(), row[i]);
+                let free = self.free[i] - others.sum::<f64>();
+                let (force, calls) = contact(&*impactor.law, &h[i], free, row[i]);
                 evaluations += calls;
                 if !force.is_finite() {
                     return Err(StepError::NotFinite { t });
                 }
-                change = change.max((force - self.forces[i]).abs());
-                largest = largest.max(force);
+                settled &= row[i] * (force - self.forces[i]).abs() <= TOLERANCE * free.abs();
                 self.forces[i] = force;
             }
-            if count < 2 || change <= TOLERANCE * largest {
+            if count < 2 || settled {
                 return Ok(evaluations);
             }
         }
