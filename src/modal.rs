@@ -33,7 +33,7 @@ pub(crate) fn write_plot(dir: &OutputDir, model: &Model, outcome: &Outcome) -> R
     let over_time = |value: &dyn Fn(usize) -> f64| -> Vec<(f64, f64)> {
         outcome.history.iter().enumerate().map(|(i, row)| (row.time_s, value(i))).collect()
     };
-    let sum = over_time(&|i| outcome.history[i].plate_displacement_m);
+    let sum = over_time(&|i| outcome.history[i].impactors[0].plate_displacement_m);
     let part = |(k, mode): (usize, &ModeShare)| {
         let label = format!("mode {}, {:.2} kHz", k + 1, mode.frequency_Hz * 1e-3);
         (label, over_time(&|i| modal.coordinates[i * n + k]))

@@ -10,9 +10,9 @@ use fem_core::counters::Counters;
 use fem_core::tensor::{Ply, Stress6};
 use fem_failure::scan::{FailureEvent, Place, first_per_mode};
 use fem_io::files::OutputDir;
-use fem_io::plot;
-use fem_io::tables::{self, EventRow, HistoryRow};
-use serde::Serialize;
+use fem_io::tables::{self, EventRow, HistoryRow, ImpactorRow};
+use fem_io::{plot, scene};
+use serde::{Serialize, Serializer};
 use std::fmt::Write as _;
 
 /// All that is said of a run; units are in the key names.
@@ -26,7 +26,8 @@ pub struct Summary {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stopped: Option<String>,
     pub model: ModelSize,
-    pub impact: Impact,
+    #[serde(serialize_with = "one_or_list")]
+    pub impact: Vec<Impact>,
     pub first_damage: Vec<Damage>,
     pub not_reached: Vec<Margin>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -59,13 +60,17 @@ pub struct ModelSize {
     pub lowest_frequency_Hz: Option<f64>,
 }
 
-/// The response.
+/// The response to an impactor; `name` and `start_time_s` where there are several.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
 pub struct Impact {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     pub mass_kg: f64,
     pub velocity_m_s: f64,
     pub energy_J: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start_time_s: Option<f64>,
     pub end_time_s: f64,
     pub peak_force_N: f64,
     pub peak_force_time_s: f64,
@@ -74,6 +79,14 @@ pub struct Impact {
     pub impulse_N_s: f64,
     pub final_impactor_velocity_m_s: f64,
     pub contacts: u32,
+}
+
+/// As a scene has it: a single impactor as a table, several as a list.
+fn one_or_list<S: Serializer>(impact: &[Impact], serializer: S) -> Result<S::Ok, S::Error> {
+    match impact {
+        [one] => one.serialize(serializer),
+        several => several.serialize(serializer),
+    }
 }
 
 /// First event of a criterion's mode, with the stress there at that time and how much of it the criterion would bear: 1 where
@@ -115,8 +128,9 @@ impl From<&Stress6<Ply>> for PlyStress {
     }
 }
 
-/// The contact force at which the laminate delaminates, by energies and not by stresses, and when it was reached.
-#[derive(Debug, Clone, Copy, Serialize)]
+/// The contact force at which the laminate delaminates, by energies and not by stresses, and when it was first reached; by
+/// which impactor, where there are several.
+#[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
 pub struct Threshold {
     pub force_N: f64,
@@ -124,6 +138,8 @@ pub struct Threshold {
     pub toughness_GIIc_J_m2: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub impactor: Option<String>,
 }
 
 /// Largest index of a mode that did not reach 1.
@@ -180,23 +196,18 @@ pub(crate) fn ply_name(place: Place) -> String {
     }
 }
 
+/// All contact forces together.
 fn force_at(history: &[HistoryRow], t: f64) -> f64 {
     let after = history.partition_point(|r| r.time_s < t).clamp(1, history.len().max(2) - 1);
     let (a, b) = (&history[after - 1], &history[after.min(history.len() - 1)]);
     let share = if b.time_s > a.time_s { (t - a.time_s) / (b.time_s - a.time_s) } else { 0.0 };
-    a.contact_force_n + share * (b.contact_force_n - a.contact_force_n)
+    a.contact_force_n() + share * (b.contact_force_n() - a.contact_force_n())
 }
 
 impl Summary {
     /// Sums up a run.
     pub fn new(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Self {
         let h = &outcome.history;
-        let peak = |value: fn(&HistoryRow) -> f64| {
-            h.iter().fold((0.0_f64, 0.0), |m, r| if value(r) > m.0 { (value(r), r.time_s) } else { m })
-        };
-        let (peak_force, peak_force_time_s) = peak(|r| r.contact_force_n);
-        let (deflection, _) = peak(|r| r.plate_displacement_m);
-        let last = h.last();
         let thickness = model.laminate.thickness();
         let damage = |e: &FailureEvent| Damage {
             criterion: e.criterion.clone(),
@@ -241,26 +252,18 @@ impl Summary {
                 static_stiffness_N_m: sizes.static_stiffness,
                 lowest_frequency_Hz: sizes.lowest_frequency,
             },
-            impact: Impact {
-                mass_kg: outcome.mass,
-                velocity_m_s: outcome.velocity,
-                energy_J: 0.5 * outcome.mass * outcome.velocity.powi(2),
-                end_time_s: last.map_or(0.0, |r| r.time_s),
-                peak_force_N: peak_force,
-                peak_force_time_s,
-                peak_plate_displacement_m: deflection,
-                peak_plate_displacement_over_thickness: deflection / thickness,
-                impulse_N_s: outcome.mass * (outcome.velocity - last.map_or(0.0, |r| r.impactor_velocity_m_s)),
-                final_impactor_velocity_m_s: last.map_or(0.0, |r| r.impactor_velocity_m_s),
-                contacts: outcome.contacts,
-            },
+            impact: impactors(model).iter().enumerate().map(|(i, spec)| impact(model, outcome, i, spec)).collect(),
             first_damage: first_per_mode(&outcome.events).into_iter().map(damage).collect(),
             not_reached: margins.collect(),
-            delamination_threshold: model.threshold.map(|threshold| Threshold {
-                force_N: threshold.force,
-                bending_stiffness_N_m: threshold.bending_stiffness,
-                toughness_GIIc_J_m2: threshold.giic,
-                time_s: outcome.threshold_time,
+            delamination_threshold: model.threshold.map(|threshold| {
+                let first = threshold_reached(model, outcome).min_by(|a, b| a.0.total_cmp(&b.0));
+                Threshold {
+                    force_N: threshold.force,
+                    bending_stiffness_N_m: threshold.bending_stiffness,
+                    toughness_GIIc_J_m2: threshold.giic,
+                    time_s: first.map(|first| first.0),
+                    impactor: first.and_then(|first| first.1.map(str::to_owned)),
+                }
             }),
             modes: outcome.modal.as_ref().map_or(Vec::new(), |modal| modal.modes.clone()),
             accuracy: Accuracy {
@@ -280,27 +283,32 @@ impl Summary {
             let _ = t.write_fmt(text);
             t.push('\n');
         };
-        let (m, i) = (&self.model, &self.impact);
+        let m = &self.model;
         line(format_args!("{}", self.title));
         line(format_args!(
             "  model     {} quads x {} layers, {} plies, {:.4} mm; {} unknowns, {} marched ({})",
             m.quads, m.layers, m.plies, m.thickness_mm, m.unknowns, m.unknowns_marched, self.fidelity
         ));
-        line(format_args!(
-            "  impact    {:.4} kg at {:.4} m/s = {:.4} J on a plate of {:.4} g",
-            i.mass_kg, i.velocity_m_s, i.energy_J, m.plate_mass_g
-        ));
-        line(format_args!(
-            "  force     peak {:.1} N at {:.4} ms; deflection {:.4} mm = {:.2} thicknesses; {} contact{}",
-            i.peak_force_N,
-            i.peak_force_time_s * 1e3,
-            i.peak_plate_displacement_m * 1e3,
-            i.peak_plate_displacement_over_thickness,
-            i.contacts,
-            if i.contacts == 1 { "" } else { "s" }
-        ));
+        for i in &self.impact {
+            let name = i.name.as_ref().map_or(String::new(), |name| format!("{name}: "));
+            let start = i.start_time_s.map_or(String::new(), |t| format!(", there at {:.4} ms", t * 1e3));
+            line(format_args!(
+                "  impact    {name}{:.4} kg at {:.4} m/s = {:.4} J on a plate of {:.4} g{start}",
+                i.mass_kg, i.velocity_m_s, i.energy_J, m.plate_mass_g
+            ));
+            line(format_args!(
+                "  force     {name}peak {:.1} N at {:.4} ms; deflection {:.4} mm = {:.2} thicknesses; {} contact{}",
+                i.peak_force_N,
+                i.peak_force_time_s * 1e3,
+                i.peak_plate_displacement_m * 1e3,
+                i.peak_plate_displacement_over_thickness,
+                i.contacts,
+                if i.contacts == 1 { "" } else { "s" }
+            ));
+        }
         if self.first_damage.is_empty() {
-            line(format_args!("  damage    none until {:.4} ms", i.end_time_s * 1e3));
+            let end = self.impact.first().map_or(0.0, |i| i.end_time_s);
+            line(format_args!("  damage    none until {:.4} ms", end * 1e3));
         } else {
             line(format_args!("  damage    first reaching of each mode (plies count from the bottom)"));
             line(format_args!(
@@ -375,9 +383,11 @@ impl Summary {
             }
         }
         if let Some(d) = &self.delamination_threshold {
+            let peak = self.impact.iter().map(|i| i.peak_force_N).fold(0.0, f64::max);
+            let by = d.impactor.as_ref().map_or(String::new(), |name| format!(" by {name}"));
             let reached = match d.time_s {
-                Some(t) => format!("first reached at {:.4} ms", t * 1e3),
-                None => format!("not reached: the peak is {:.2} of it", i.peak_force_N / d.force_N),
+                Some(t) => format!("first reached at {:.4} ms{by}", t * 1e3),
+                None => format!("not reached: the peak is {:.2} of it", peak / d.force_N),
             };
             line(format_args!(
                 "  delam.    threshold of the contact force {:.1} N (Davies-Olsson, D* {:.4} N m, GIIc {:.1} J/m2), {reached}; \
@@ -410,6 +420,53 @@ impl Summary {
     }
 }
 
+/// The impactors of the scene of `model`.
+fn impactors(model: &Model) -> &[scene::Impactor] {
+    model.scene.impact().map_or(&[], |impact| &impact.impactors)
+}
+
+/// What results call an impactor: nothing where it is the only one.
+fn called<'a>(model: &Model, impactor: &'a scene::Impactor) -> Option<&'a str> {
+    (impactors(model).len() > 1).then_some(impactor.name.as_str())
+}
+
+/// The response to impactor `i`, which is `spec`.
+fn impact(model: &Model, outcome: &Outcome, i: usize, spec: &scene::Impactor) -> Impact {
+    let peak = |value: fn(&ImpactorRow) -> f64| {
+        let values = outcome.history.iter().map(|r| (value(&r.impactors[i]), r.time_s));
+        values.fold((0.0_f64, 0.0), |m, v| if v.0 > m.0 { v } else { m })
+    };
+    let (peak_force, peak_force_time_s) = peak(|r| r.contact_force_n);
+    let (deflection, _) = peak(|r| r.plate_displacement_m);
+    let last = outcome.history.last();
+    let velocity = last.map_or(0.0, |r| r.impactors[i].impactor_velocity_m_s);
+    let name = called(model, spec);
+    Impact {
+        name: name.map(str::to_owned),
+        mass_kg: spec.mass,
+        velocity_m_s: spec.velocity,
+        energy_J: 0.5 * spec.mass * spec.velocity.powi(2),
+        start_time_s: name.map(|_| spec.start),
+        end_time_s: last.map_or(0.0, |r| r.time_s),
+        peak_force_N: peak_force,
+        peak_force_time_s,
+        peak_plate_displacement_m: deflection,
+        peak_plate_displacement_over_thickness: deflection / model.laminate.thickness(),
+        impulse_N_s: spec.mass * (spec.velocity - velocity),
+        final_impactor_velocity_m_s: velocity,
+        contacts: outcome.contacts[i].count,
+    }
+}
+
+/// When each force that did reach the threshold first did, and whose it is.
+fn threshold_reached<'a>(
+    model: &'a Model,
+    outcome: &'a Outcome,
+) -> impl Iterator<Item = (f64, Option<&'a str>)> + use<'a> {
+    let each = impactors(model).iter().zip(&outcome.contacts);
+    each.filter_map(|(impactor, contact)| Some((contact.threshold_time?, called(model, impactor))))
+}
+
 /// Reserve factor of the stress of an event by its criterion, unless that has none.
 fn reserve(model: &Model, event: &FailureEvent) -> Option<f64> {
     let (_, criterion) = model.criteria.iter().find(|(name, _)| *name == event.criterion)?;
@@ -429,7 +486,8 @@ fn angle_deg(model: &Model, event: &FailureEvent) -> f64 {
 /// # Errors
 /// A folder that cannot be written, a number that is not finite.
 pub fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
-    tables::write_history(dir, &outcome.history)?;
+    let names: Vec<_> = impactors(model).iter().map(|impactor| impactor.name.as_str()).collect();
+    tables::write_history(dir, &names, &outcome.history)?;
     let row = |e: &FailureEvent| EventRow {
         time_s: e.time,
         criterion: e.criterion.clone(),
@@ -447,12 +505,15 @@ pub fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result
     indices::write_tables(dir, model, outcome)
 }
 
-/// Draws the contact force over time with the first event of each mode, and the indices at the gauges.
+/// Draws the contact forces over time with the first event of each mode, and the indices at the gauges.
 ///
 /// # Errors
 /// As [`write_tables`], and numbers that no plot can show.
 pub fn write_plots(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
-    let (times, forces): (Vec<f64>, Vec<f64>) = outcome.history.iter().map(|r| (r.time_s, r.contact_force_n)).unzip();
+    let times: Vec<f64> = outcome.history.iter().map(|r| r.time_s).collect();
+    let force = |i: usize| outcome.history.iter().map(|r| r.impactors[i].contact_force_n).collect::<Vec<_>>();
+    let named = |impactor| called(model, impactor).unwrap_or("Contact force");
+    let forces: Vec<_> = impactors(model).iter().enumerate().map(|(i, spec)| (named(spec), force(i))).collect();
     let mut marks: Vec<(f64, String)> = Vec::new();
     for e in &outcome.events {
         let label = e.mode.to_owned();
@@ -460,7 +521,10 @@ pub fn write_plots(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<
             marks.push((e.time, label));
         }
     }
-    marks.extend(outcome.threshold_time.map(|t| (t, "delamination threshold".to_owned())));
+    marks.extend(threshold_reached(model, outcome).map(|(t, name)| {
+        let by = name.map_or(String::new(), |name| format!(" by {name}"));
+        (t, format!("delamination threshold{by}"))
+    }));
     let picture = plot::line_plot(&plot::force_history(&model.scene.title, &times, &forces, &marks)?)?;
     dir.write("contact_force.svg", |w| w.write_all(picture.svg.as_bytes()))?;
     dir.write("contact_force.png", |w| w.write_all(&picture.png))?;

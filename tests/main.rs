@@ -6,6 +6,7 @@ mod book;
 mod command_line;
 mod criteria;
 mod envelope;
+mod impactors;
 mod indices;
 mod modal;
 mod model;

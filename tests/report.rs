@@ -51,7 +51,7 @@ impl Computed {
     }
 
     pub(crate) fn peak_force(&self) -> f64 {
-        self.outcome.history.iter().fold(0.0, |m, r| r.contact_force_n.max(m))
+        self.outcome.history.iter().fold(0.0, |m, r| r.contact_force_n().max(m))
     }
 
     fn plies(&self) -> u16 {
@@ -99,7 +99,7 @@ fn case_1_fails_where_and_when_the_report_says() {
 #[test]
 fn the_force_of_case_1_ripples_at_ten_kilohertz() {
     let c = as_reported("as4-3502-16ply-50mm", "2 ms");
-    let (t, f): (Vec<f64>, Vec<f64>) = c.outcome.history.iter().map(|r| (r.time_s, r.contact_force_n)).unzip();
+    let (t, f): (Vec<f64>, Vec<f64>) = c.outcome.history.iter().map(|r| (r.time_s, r.contact_force_n())).unzip();
     // What is left of the force beside a parabola, weighted to zero at both ends.
     let rest = beside_parabola(&t, &f);
     let end = t[t.len() - 1];
@@ -227,7 +227,7 @@ fn agrees_with_the_independent_model(case: u8, step: &str, end: &str, end_s: f64
         let i = h.partition_point(|r| r.time_s < t).clamp(1, h.len() - 1);
         let (a, b) = (&h[i - 1], &h[i]);
         let share = (t - a.time_s) / (b.time_s - a.time_s);
-        a.contact_force_n + share * (b.contact_force_n - a.contact_force_n)
+        a.contact_force_n() + share * (b.contact_force_n() - a.contact_force_n())
     };
     let (ours, theirs): (Vec<f64>, Vec<f64>) = reference.iter().map(|(t, f)| (force(*t), *f)).unzip();
     let error = l2(&ours, &theirs);
@@ -263,7 +263,7 @@ fn all_cases_unreduced_agree_with_the_independent_model() {
 #[ignore = "long: the unreduced model"]
 fn reductions_agree_with_the_full_model_of_case_1() {
     let full = pinned(1, "0.5 us", "2 ms", NONE);
-    let forces = |c: &Computed| -> Vec<f64> { c.outcome.history.iter().map(|r| r.contact_force_n).collect() };
+    let forces = |c: &Computed| -> Vec<f64> { c.outcome.history.iter().map(|r| r.contact_force_n()).collect() };
     let want = forces(&full);
     // (reduction, force L2, onset of first shear)
     for (reduction, bound, shear) in [
@@ -316,7 +316,7 @@ fn the_same_energy_breaks_sooner_in_a_small_mass() {
     let first_share = |c: &Computed, t: f64| {
         let modal = c.outcome.modal.as_ref().unwrap();
         let row = c.outcome.history.iter().position(|r| r.time_s >= t).unwrap();
-        modal.coordinates[row * modal.modes.len()] / c.outcome.history[row].plate_displacement_m
+        modal.coordinates[row * modal.modes.len()] / c.outcome.history[row].impactors[0].plate_displacement_m
     };
     let shares = [(&large, 0.812e-3), (&small, 19.3e-6)].map(|(c, t)| first_share(c, t));
     assert!(shares[0] > 0.75 && shares[1] < 0.15, "{shares:?}");

@@ -15,6 +15,24 @@ pub struct ContactForce {
     pub tangent: f64,
 }
 
+/// Where a contact law passes from one smooth branch to another.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Branches {
+    /// Indentation at which the force begins, m: 0, or the dent.
+    pub touch: f64,
+    /// Largest indentation so far, m, of a law that follows another curve below it.
+    pub peak: Option<f64>,
+}
+
+/// How deep a contact is, and whether it deepens.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Indentation {
+    /// α, m.
+    pub alpha: f64,
+    /// dα/dt, m/s.
+    pub rate: f64,
+}
+
 /// Work done on a contact since it began.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ContactEnergy {
@@ -38,5 +56,10 @@ pub trait ContactLaw: DynClone + Debug + Send + Sync {
 
     /// Work done on the contact up to `alpha`.
     fn energy(&self, history: &ContactHistory, alpha: f64) -> ContactEnergy;
+
+    /// Where the force is not smooth, given the committed history; a march of high order ends a step there.
+    fn branches(&self, _history: &ContactHistory) -> Branches {
+        Branches::default()
+    }
 }
 dyn_clone::clone_trait_object!(ContactLaw);

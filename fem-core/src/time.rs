@@ -1,6 +1,6 @@
 //! The contract of a time integrator and of the second-order systems it marches.
 
-use crate::contact::ContactHistory;
+use crate::contact::{Branches, ContactHistory, Indentation};
 use dyn_clone::DynClone;
 use std::fmt::{self, Debug};
 
@@ -102,6 +102,12 @@ pub trait SecondOrderSystem {
 
     /// Commits the contact indentations of the accepted state into its histories.
     fn commit(&self, state: &mut State);
+
+    /// Indentation of contact `i` and its rate.
+    fn indentation(&self, i: usize, state: &State) -> Indentation;
+
+    /// Where the law of contact `i` changes its branch, after the committed history.
+    fn branches(&self, i: usize, h: &ContactHistory) -> Branches;
 }
 
 /// How an integrator limits its step.
@@ -117,6 +123,9 @@ pub enum StepLimit {
 ///
 /// It keeps only work arrays: all that a restart needs is in [`State`].
 pub trait Integrator: DynClone + Debug + Send {
+    /// Order of accuracy in u and v while forces are smooth.
+    fn order(&self) -> u32;
+
     /// The limit that the caller enforces before the march.
     fn limit(&self) -> StepLimit;
 

@@ -1,11 +1,14 @@
 //! A linear structure under the impact of lumped masses: the system that integrators march.
 
-use fem_core::contact::{ContactEnergy, ContactHistory, ContactLaw};
+use fem_core::contact::{Branches, ContactEnergy, ContactHistory, ContactLaw, Indentation};
 use fem_core::structure::Structure;
 use fem_core::time::{SecondOrderSystem, State, StepError};
 
-/// Relative change of the contact forces at which several contacts count as solved.
-const TOLERANCE: f64 = 1e-13;
+/// Change of an indentation by its own force, relative, at which several contacts count as solved: ten times the
+/// tolerance of one.
+const TOLERANCE: f64 = 1e-14;
+/// Sweeps over several contacts before they count as unsolvable.
+const MOST_SWEEPS: usize = 20_000;
 
 /// A mass that meets the structure through a contact law.
 #[derive(Debug, Clone)]
@@ -14,6 +17,8 @@ pub struct Impactor {
     pub mass: f64,
     /// Velocity towards the structure at t = 0, m/s.
     pub velocity: f64,
+    /// When it would reach the structure at rest, s; 0 if they touch from the beginning.
+    pub start: f64,
     /// p: deflection under the impactor w = pᵀu, away from it; p is also the load of a unit contact force.
     pub load: Vec<(usize, f64)>,
     /// Contact law F(α), α = z − w.
@@ -38,6 +43,10 @@ pub struct ImpactSystem {
 struct Influence {
     cm: f64,
     x: Vec<f64>,
+    /// Approach at contact i per force at contact j, pᵢᵀ Xⱼ and 1/(cm m) on the diagonal, by rows.
+    approach: Vec<f64>,
+    /// Approach at each contact without forces.
+    free: Vec<f64>,
     forces: Vec<f64>,
 }
 
@@ -69,12 +78,13 @@ impl ImpactSystem {
         Self { structure, impactors, influence: Influence::default(), contact_calls: 0 }
     }
 
-    /// The state at first touch.
+    /// The state at t = 0: the structure at rest, the impactors on their way.
     pub fn initial(&self) -> State {
         let n = self.structure.ndof();
         let mut state = State::at_rest(self.ndof(), self.impactors.len());
-        for (v, impactor) in state.v[n..].iter_mut().zip(&self.impactors) {
-            *v = impactor.velocity;
+        for (i, impactor) in self.impactors.iter().enumerate() {
+            state.u[n + i] = 0.0 - impactor.velocity * impactor.start;
+            state.v[n + i] = impactor.velocity;
         }
         state
     }
@@ -99,7 +109,7 @@ impl ImpactSystem {
         value(&self.impactors[i].load, u)
     }
 
-    /// Displacement of impactor `i` since first touch.
+    /// Displacement of impactor `i` from where it would touch the structure at rest.
     pub fn position(&self, i: usize, u: &[f64]) -> f64 {
         u[self.structure.ndof() + i]
     }
@@ -155,20 +165,21 @@ impl ImpactSystem {
     }
 
     /// Upper bound of the highest frequency (rad/s) of structure, impactors and contacts together: ω² ≤ ω_s² + Σ k_c
-    /// (pᵀM⁻¹p + 1/m), with `omega` = ω_s of the structure and k_c the steepest tangent of a contact that took all of the
-    /// impactor's energy.
+    /// (pᵀM⁻¹p + 1/m), with `omega` = ω_s of the structure and k_c the steepest tangent of a contact that took the energy of
+    /// all impactors.
     ///
     /// # Errors
     /// A singular mass: the bound does not exist.
     pub fn frequency_bound(&mut self, omega: f64) -> Result<f64, StepError> {
         let mut square = omega * omega;
         let mut x = vec![0.0; self.structure.ndof()];
+        let energy = self.impactors.iter().map(|i| 0.5 * i.mass * i.velocity.powi(2)).sum();
         for impactor in &self.impactors {
             x.fill(0.0);
             add(&impactor.load, 1.0, &mut x);
             self.structure.solve_mass(&mut x).map_err(|e| StepError::SingularMass(e.0))?;
             let mobility = value(&impactor.load, &x) + 1.0 / impactor.mass;
-            square += mobility * steepest(impactor);
+            square += mobility * steepest(&*impactor.law, energy);
         }
         Ok(square.sqrt())
     }
@@ -184,16 +195,20 @@ impl ImpactSystem {
             add(&impactor.load, 1.0, column);
         }
         self.structure.solve_shifted(cm, &mut x, count).map_err(|e| StepError::Factorisation(e.0))?;
-        self.influence = Influence { cm, x, forces: vec![0.0; count] };
+        let mut approach = Vec::with_capacity(count * count);
+        for (i, impactor) in self.impactors.iter().enumerate() {
+            let own = |j| if i == j { 1.0 / (cm * impactor.mass) } else { 0.0 };
+            approach.extend(x.chunks_exact(n).enumerate().map(|(j, x)| value(&impactor.load, x) + own(j)));
+        }
+        self.influence = Influence { cm, x, approach, free: vec![0.0; count], forces: vec![0.0; count] };
         Ok(())
     }
 }
 
-/// Steepest tangent on loading and unloading up to the indentation that takes all of the impactor's kinetic energy.
-fn steepest(impactor: &Impactor) -> f64 {
-    let energy = 0.5 * impactor.mass * impactor.velocity.powi(2);
+/// Steepest tangent on loading and unloading up to the indentation that takes `energy`.
+fn steepest(law: &dyn ContactLaw, energy: f64) -> f64 {
     let fresh = ContactHistory::default();
-    let work = |alpha: f64| impactor.law.energy(&fresh, alpha).stored;
+    let work = |alpha: f64| law.energy(&fresh, alpha).stored;
     let mut high = 1e-9;
     while work(high) < energy && high < 1.0 {
         high *= 2.0;
@@ -204,9 +219,9 @@ fn steepest(impactor: &Impactor) -> f64 {
         if work(middle) < energy { low = middle } else { high = middle }
     }
     let mut pressed = fresh;
-    impactor.law.commit(&mut pressed, high);
+    law.commit(&mut pressed, high);
     let below = high * (1.0 - 1e-9);
-    impactor.law.force(&fresh, high).tangent.max(impactor.law.force(&pressed, below).tangent)
+    law.force(&fresh, high).tangent.max(law.force(&pressed, below).tangent)
 }
 
 fn value(w: &[(usize, f64)], u: &[f64]) -> f64 {
@@ -272,34 +287,19 @@ impl SecondOrderSystem for ImpactSystem {
             *u /= cm * impactor.mass;
         }
         // u is the response without contact; each contact adds F (X, −1/(cm m)).
-        influence.forces.fill(0.0);
-        for _ in 0..200 {
-            let mut change = 0.0_f64;
-            for (i, impactor) in impactors.iter().enumerate() {
-                let x = &influence.x[i * n..(i + 1) * n];
-                let soft = value(&impactor.load, x) + 1.0 / (cm * impactor.mass);
-                let old = influence.forces[i];
-                let free = u[n + i] - value(&impactor.load, u) + soft * old;
-                let (force, calls) = contact(&*impactor.law, &h[i], free, soft);
-                *contact_calls += calls;
-                if !force.is_finite() {
-                    return Err(StepError::NotFinite { t });
+        for (i, impactor) in impactors.iter().enumerate() {
+            influence.free[i] = u[n + i] - value(&impactor.load, u);
+        }
+        *contact_calls += influence.balance(impactors, t, h)?;
+        for (i, (impactor, force)) in impactors.iter().zip(&influence.forces).enumerate() {
+            if *force != 0.0 {
+                for (u, x) in u.iter_mut().zip(&influence.x[i * n..(i + 1) * n]) {
+                    *u += force * x;
                 }
-                let more = force - old;
-                if more != 0.0 {
-                    for (u, x) in u.iter_mut().zip(x) {
-                        *u += more * x;
-                    }
-                    u[n + i] -= more / (cm * impactor.mass);
-                }
-                influence.forces[i] = force;
-                change = change.max(more.abs() / force.abs().max(f64::MIN_POSITIVE));
-            }
-            if impactors.len() < 2 || change <= TOLERANCE {
-                return Ok(());
+                u[n + i] -= force / (cm * impactor.mass);
             }
         }
-        Err(StepError::NoConvergence { t, what: "the contact forces of several impactors".into() })
+        Ok(())
     }
 
     fn commit(&self, state: &mut State) {
@@ -307,6 +307,46 @@ impl SecondOrderSystem for ImpactSystem {
             let alpha = self.position(i, &state.u) - self.deflection(i, &state.u);
             impactor.law.commit(&mut state.contacts[i], alpha);
         }
+    }
+
+    fn indentation(&self, i: usize, s: &State) -> Indentation {
+        let [alpha, rate] = [&s.u, &s.v].map(|x| self.position(i, x) - self.deflection(i, x));
+        Indentation { alpha, rate }
+    }
+
+    fn branches(&self, i: usize, h: &ContactHistory) -> Branches {
+        self.impactors[i].law.branches(h)
+    }
+}
+
+impl Influence {
+    /// Finds the contact forces, each in turn until none changes; returns the evaluations of contact laws.
+    ///
+    /// The approaches are symmetric and positive and no force falls with its indentation, so that this converges,
+    /// slowly where stiff contacts share a place.
+    fn balance(&mut self, impactors: &[Impactor], t: f64, h: &[ContactHistory]) -> Result<u64, StepError> {
+        let count = impactors.len();
+        let mut evaluations = 0;
+        self.forces.fill(0.0);
+        for _ in 0..MOST_SWEEPS {
+            let mut settled = true;
+            for (i, impactor) in impactors.iter().enumerate() {
+                let row = &self.approach[i * count..(i + 1) * count];
+                let others = (0..count).filter(|j| *j != i).map(|j| row[j] * self.forces[j]);
+                let free = self.free[i] - others.sum::<f64>();
+                let (force, calls) = contact(&*impactor.law, &h[i], free, row[i]);
+                evaluations += calls;
+                if !force.is_finite() {
+                    return Err(StepError::NotFinite { t });
+                }
+                settled &= row[i] * (force - self.forces[i]).abs() <= TOLERANCE * free.abs();
+                self.forces[i] = force;
+            }
+            if count < 2 || settled {
+                return Ok(evaluations);
+            }
+        }
+        Err(StepError::NoConvergence { t, what: "the contact forces of several impactors".into() })
     }
 }
 

@@ -48,7 +48,7 @@
 //! let Built::Contact(law) = Hertz::build(&Params::default().with("k", k))? else { unreachable!() };
 //! let Built::Integrator(mut newmark) = Newmark::build(&Params::default())? else { unreachable!() };
 //!
-//! let impactor = Impactor { mass: 0.1, velocity: 2.0, load: vec![(0, 1.0)], law };
+//! let impactor = Impactor { mass: 0.1, velocity: 2.0, start: 0.0, load: vec![(0, 1.0)], law };
 //! let mut system = ImpactSystem::new(Box::new(OnSpring { k: 1e6, m: 0.2 }), vec![impactor]);
 //! let mut state = system.initial();
 //! newmark.start(&mut system, &mut state)?;

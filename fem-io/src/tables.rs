@@ -8,30 +8,44 @@ use serde_json::Value;
 use std::io;
 
 /// One instant of an impact: a row of `history.csv`.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct HistoryRow {
-    /// Time since first contact, s.
+    /// Time since the beginning, s; an impactor without `start` touches the plate then.
     pub time_s: f64,
-    /// Contact force, N.
-    pub contact_force_n: f64,
-    /// Displacement of the impactor along the plate's normal, m.
-    pub impactor_displacement_m: f64,
-    /// Velocity of the impactor, m/s.
-    pub impactor_velocity_m_s: f64,
-    /// Displacement of the plate at the contact, m.
-    pub plate_displacement_m: f64,
-    /// Kinetic energy of the impactor, J.
+    /// Of each impactor.
+    pub impactors: Vec<ImpactorRow>,
+    /// Kinetic energy of the impactors, J.
     pub impactor_kinetic_j: f64,
     /// Kinetic energy of the plate, J.
     pub plate_kinetic_j: f64,
     /// Strain energy of the plate, J.
     pub plate_strain_j: f64,
-    /// Recoverable energy of the contact, J.
+    /// Recoverable energy of the contacts, J.
     pub contact_stored_j: f64,
-    /// Energy lost in the contact, J.
+    /// Energy lost in the contacts, J.
     pub contact_dissipated_j: f64,
     /// Sum of the energies less the initial kinetic energy, J; zero but for the integrator's error.
     pub energy_balance_j: f64,
+}
+
+impl HistoryRow {
+    /// All contact forces together, N.
+    pub fn contact_force_n(&self) -> f64 {
+        self.impactors.iter().map(|impactor| impactor.contact_force_n).sum()
+    }
+}
+
+/// One impactor at one instant.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct ImpactorRow {
+    /// Contact force, N.
+    pub contact_force_n: f64,
+    /// Displacement of the impactor along the plate's normal, m; 0 where it would touch the plate at rest.
+    pub impactor_displacement_m: f64,
+    /// Velocity of the impactor, m/s.
+    pub impactor_velocity_m_s: f64,
+    /// Displacement of the plate at the contact, m.
+    pub plate_displacement_m: f64,
 }
 
 /// First damage by one criterion and mode: a row of `events.csv`.
@@ -100,12 +114,48 @@ pub struct EnvelopeRow {
     pub stresses_mpa: [f64; 2],
 }
 
-/// Writes `history.csv`.
+/// Writes `history.csv`; every row has as many impactors as `impactors` has names. Where there are several, their columns
+/// begin with the name and a point.
 ///
 /// # Errors
 /// A value that is not finite, and as [`OutputDir::write`].
-pub fn write_history(dir: &OutputDir, rows: &[HistoryRow]) -> Result<(), FileError> {
-    write_table(dir, "history.csv", rows)
+pub fn write_history(dir: &OutputDir, impactors: &[&str], rows: &[HistoryRow]) -> Result<(), FileError> {
+    const OF_EACH: [&str; 4] =
+        ["contact_force_N", "impactor_displacement_m", "impactor_velocity_m_s", "plate_displacement_m"];
+    const ENERGIES: [&str; 6] = [
+        "impactor_kinetic_J",
+        "plate_kinetic_J",
+        "plate_strain_J",
+        "contact_stored_J",
+        "contact_dissipated_J",
+        "energy_balance_J",
+    ];
+    let of_each = impactors.iter().flat_map(|name| {
+        OF_EACH.map(|column| if impactors.len() == 1 { column.to_owned() } else { format!("{name}.{column}") })
+    });
+    let header: Vec<String> =
+        ["time_s".to_owned()].into_iter().chain(of_each).chain(ENERGIES.map(str::to_owned)).collect();
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let values = |row: &HistoryRow| {
+        let of_each = row.impactors.iter().flat_map(|impactor| {
+            [
+                impactor.contact_force_n,
+                impactor.impactor_displacement_m,
+                impactor.impactor_velocity_m_s,
+                impactor.plate_displacement_m,
+            ]
+        });
+        let energies = [
+            row.impactor_kinetic_j,
+            row.plate_kinetic_j,
+            row.plate_strain_j,
+            row.contact_stored_j,
+            row.contact_dissipated_j,
+            row.energy_balance_j,
+        ];
+        [row.time_s].into_iter().chain(of_each).chain(energies).map(Field::Number).collect()
+    };
+    write_columns(dir, "history.csv", &header, rows.iter().map(values))
 }
 
 /// Writes `events.csv`; without events it holds the header alone.
@@ -188,24 +238,6 @@ pub enum Field<'a> {
 /// A row of a table: its columns with their values, in order.
 trait Row: Default {
     fn fields(&self) -> Vec<(&'static str, Field<'_>)>;
-}
-
-impl Row for HistoryRow {
-    fn fields(&self) -> Vec<(&'static str, Field<'_>)> {
-        vec![
-            ("time_s", Field::Number(self.time_s)),
-            ("contact_force_N", Field::Number(self.contact_force_n)),
-            ("impactor_displacement_m", Field::Number(self.impactor_displacement_m)),
-            ("impactor_velocity_m_s", Field::Number(self.impactor_velocity_m_s)),
-            ("plate_displacement_m", Field::Number(self.plate_displacement_m)),
-            ("impactor_kinetic_J", Field::Number(self.impactor_kinetic_j)),
-            ("plate_kinetic_J", Field::Number(self.plate_kinetic_j)),
-            ("plate_strain_J", Field::Number(self.plate_strain_j)),
-            ("contact_stored_J", Field::Number(self.contact_stored_j)),
-            ("contact_dissipated_J", Field::Number(self.contact_dissipated_j)),
-            ("energy_balance_J", Field::Number(self.energy_balance_j)),
-        ]
-    }
 }
 
 impl Row for EventRow {
@@ -331,10 +363,12 @@ mod tests {
     fn numbers(v: [f64; 11]) -> HistoryRow {
         HistoryRow {
             time_s: v[0],
-            contact_force_n: v[1],
-            impactor_displacement_m: v[2],
-            impactor_velocity_m_s: v[3],
-            plate_displacement_m: v[4],
+            impactors: vec![ImpactorRow {
+                contact_force_n: v[1],
+                impactor_displacement_m: v[2],
+                impactor_velocity_m_s: v[3],
+                plate_displacement_m: v[4],
+            }],
             impactor_kinetic_j: v[5],
             plate_kinetic_j: v[6],
             plate_strain_j: v[7],
@@ -348,12 +382,31 @@ mod tests {
     fn history_has_its_columns_in_order() {
         let folder = tempfile::tempdir().unwrap();
         let dir = OutputDir::create(folder.path()).unwrap();
-        write_history(&dir, &[numbers([5e-7, 1.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, -1e-17])]).unwrap();
+        write_history(&dir, &["one"], &[numbers([5e-7, 1.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, -1e-17])])
+            .unwrap();
         assert_eq!(
             read(&dir, "history.csv"),
             "time_s,contact_force_N,impactor_displacement_m,impactor_velocity_m_s,plate_displacement_m,\
              impactor_kinetic_J,plate_kinetic_J,plate_strain_J,contact_stored_J,contact_dissipated_J,energy_balance_J\n\
              5e-7,1.5,3.0,4.0,5.0,6.0,7.0,8.0,9.0,10.0,-1e-17\n"
+        );
+    }
+
+    #[test]
+    fn columns_of_several_impactors_bear_their_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = OutputDir::create(folder.path()).unwrap();
+        let mut row = numbers([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0]);
+        row.impactors.push(ImpactorRow { contact_force_n: 12.0, ..row.impactors[0] });
+        assert_eq!(row.contact_force_n(), 14.0);
+        write_history(&dir, &["one", "two, late"], &[row]).unwrap();
+        assert_eq!(
+            read(&dir, "history.csv"),
+            "time_s,one.contact_force_N,one.impactor_displacement_m,one.impactor_velocity_m_s,one.plate_displacement_m,\
+             \"two, late.contact_force_N\",\"two, late.impactor_displacement_m\",\"two, late.impactor_velocity_m_s\",\
+             \"two, late.plate_displacement_m\",impactor_kinetic_J,plate_kinetic_J,plate_strain_J,contact_stored_J,\
+             contact_dissipated_J,energy_balance_J\n\
+             1.0,2.0,3.0,4.0,5.0,12.0,3.0,4.0,5.0,6.0,7.0,8.0,9.0,10.0,11.0\n"
         );
     }
 
@@ -402,7 +455,7 @@ mod tests {
         fn numbers_read_back_exactly(v in proptest::array::uniform11(POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO)) {
             let folder = tempfile::tempdir().unwrap();
             let dir = OutputDir::create(folder.path()).unwrap();
-            write_history(&dir, &[numbers(v)]).unwrap();
+            write_history(&dir, &["one"], &[numbers(v)]).unwrap();
             let text = read(&dir, "history.csv");
             let back = text.lines().nth(1).unwrap().split(',').map(|x| x.parse::<f64>().unwrap().to_bits());
             prop_assert_eq!(back.collect::<Vec<_>>(), v.map(f64::to_bits));
@@ -413,8 +466,8 @@ mod tests {
     fn a_number_that_is_none_is_named_and_nothing_is_written() {
         let folder = tempfile::tempdir().unwrap();
         let dir = OutputDir::create(folder.path()).unwrap();
-        let rows = [HistoryRow::default(), HistoryRow { plate_strain_j: f64::NAN, ..Default::default() }];
-        let error = write_history(&dir, &rows).unwrap_err().to_string();
+        let rows = [numbers([0.0; 11]), HistoryRow { plate_strain_j: f64::NAN, ..numbers([0.0; 11]) }];
+        let error = write_history(&dir, &["one"], &rows).unwrap_err().to_string();
         assert_eq!(error, "history.csv, row 2, column plate_strain_J: NaN is not a finite number");
         assert!(!folder.path().join("history.csv").exists());
     }

@@ -15,6 +15,7 @@ use fem_core::reduction::Reduction;
 use fem_core::support::{self, FreeMotions};
 use fem_core::time::Integrator;
 use fem_core::window;
+use fem_dynamics::integrate::located;
 use fem_io::gmsh::{self, GmshMesh, MeshFault};
 use fem_io::scene::{
     self, Analysis, CriterionSpec, Located, MeshSource, NodeSet, Place, PluginSpec, Scene, SceneError, Support,
@@ -63,12 +64,12 @@ impl Builder<'_> {
         build!(self, &self.scene.element, Element)
     }
 
-    pub(super) fn law(&self, impact: &scene::Impact) -> Result<Box<dyn ContactLaw>, SceneError> {
-        build!(self, &impact.contact, Contact)
+    pub(super) fn law(&self, impactor: &scene::Impactor) -> Result<Box<dyn ContactLaw>, SceneError> {
+        build!(self, &impactor.contact, Contact)
     }
 
     pub(super) fn integrator(&self, impact: &scene::Impact) -> Result<Box<dyn Integrator>, SceneError> {
-        build!(self, &impact.march.integrator, Integrator)
+        build!(self, &impact.march.integrator, Integrator).map(located)
     }
 
     pub(super) fn reduction(&self, impact: &scene::Impact) -> Result<Option<Box<dyn Reduction>>, SceneError> {
@@ -121,16 +122,17 @@ impl Builder<'_> {
         Ok(())
     }
 
-    pub(super) fn watched(&self, mesh: &QuadMesh, centre: Option<[f64; 2]>) -> Result<Vec<usize>, SceneError> {
+    /// Quads near one of `centres`; all where the scene gives no radius.
+    pub(super) fn watched(&self, mesh: &QuadMesh, centres: &[[f64; 2]]) -> Result<Vec<usize>, SceneError> {
         let failure = &self.scene.failure;
         let Some(radius) = failure.radius else { return Ok((0..mesh.quads.len()).collect()) };
-        let Some(centre) = centre else {
+        if centres.is_empty() {
             let message = "`failure.radius` counts from the impact, and here is none";
             return Err(self.scene.source.error_at(&failure.place, message, "leave it out"));
-        };
+        }
         let near = |q: &usize| {
             let c = window::centroid(&mesh.corners(*q));
-            (c[0] - centre[0]).hypot(c[1] - centre[1]) <= radius
+            centres.iter().any(|centre| (c[0] - centre[0]).hypot(c[1] - centre[1]) <= radius)
         };
         let watched: Vec<usize> = (0..mesh.quads.len()).filter(near).collect();
         if watched.is_empty() {

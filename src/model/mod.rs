@@ -5,7 +5,7 @@ mod gauge;
 mod plan;
 
 pub use gauge::Gauge;
-pub use plan::{Impact, NamedProfile, Plan};
+pub use plan::{Impact, NamedProfile, Plan, Strike};
 
 use crate::error::Error;
 use crate::registry::Registry;
@@ -114,12 +114,12 @@ impl Model {
             Analysis::Static(loads) => Plan::Static { forces: builder.forces(loads, &plate, &*element)? },
             Analysis::Modes { count } => Plan::Modes { count: *count },
         };
-        let centre = match &plan {
-            Plan::Impact(impact) => Some(impact.centre),
-            _ => None,
+        let centres: Vec<_> = match &plan {
+            Plan::Impact(impact) => impact.strikes.iter().map(|strike| strike.centre).collect(),
+            _ => Vec::new(),
         };
         builder.modes(&plan)?;
-        let watched = builder.watched(&plate.plane, centre)?;
+        let watched = builder.watched(&plate.plane, &centres)?;
         let gauges = builder.gauges(&plate, &watched, &criteria)?;
         let resin = scene.interface.as_ref().map(|resin| resin.value);
         let threshold = match scene.damage {
@@ -147,7 +147,7 @@ impl Model {
     }
 
     /// Governors that a reduction may choose from, best first: deflections (U30 at the mid-plane or the lowest level),
-    /// each as far as possible from the contact and from those before it, so that any first few cover the plate evenly.
+    /// each as far as possible from the contacts and from those before it, so that any first few cover the plate evenly.
     pub fn governors(&self, impact: &Impact, count: usize) -> Vec<usize> {
         let level = self.plate.mid_level().unwrap_or(0);
         let Some(deflection) = Dof::new(3, 0) else { return Vec::new() };
@@ -158,7 +158,9 @@ impl Model {
             })
             .collect();
         let square = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
-        let mut distance: Vec<f64> = candidates.iter().map(|c| square(c.1, impact.centre)).collect();
+        let from_contacts =
+            |c: &(usize, [f64; 2])| impact.strikes.iter().map(|s| square(c.1, s.centre)).fold(f64::INFINITY, f64::min);
+        let mut distance: Vec<f64> = candidates.iter().map(from_contacts).collect();
         let mut chosen = Vec::new();
         for _ in 0..count.min(candidates.len()) {
             // On a symmetric mesh many are equally far: take the first of them, whatever the last bit says.

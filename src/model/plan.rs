@@ -33,21 +33,41 @@ pub enum Plan {
     },
 }
 
-/// An impact: impactor, contact, march.
+/// An impact: what strikes where, and the march.
 #[derive(Debug, Clone)]
 pub struct Impact {
     /// What the scene says of it.
     pub spec: scene::Impact,
-    /// The contact: weights of the deflection under the impactor over the independent unknowns.
+    /// The contact of each impactor of the scene.
+    pub strikes: Vec<Strike>,
+    /// The reduction, if any.
+    pub reduction: Option<Box<dyn Reduction>>,
+    /// The integrator.
+    pub integrator: Box<dyn Integrator>,
+}
+
+/// The contact of an impactor with the plate.
+#[derive(Debug, Clone)]
+pub struct Strike {
+    /// Weights of the deflection under the impactor over the independent unknowns.
     pub contact: Functional,
     /// Where the impactor strikes, m.
     pub centre: [f64; 2],
     /// The contact law.
     pub law: Box<dyn ContactLaw>,
-    /// The reduction, if any.
-    pub reduction: Option<Box<dyn Reduction>>,
-    /// The integrator.
-    pub integrator: Box<dyn Integrator>,
+}
+
+impl Impact {
+    /// The contacts, those in the very same place once.
+    pub fn contacts(&self) -> Vec<Functional> {
+        let mut contacts: Vec<Functional> = Vec::new();
+        for strike in &self.strikes {
+            if !contacts.contains(&strike.contact) {
+                contacts.push(strike.contact.clone());
+            }
+        }
+        contacts
+    }
 }
 
 /// A profile of the scene and its place in the plate.
@@ -71,19 +91,20 @@ impl Builder<'_> {
         element: &dyn Element,
         constraints: &Constraints,
     ) -> Result<Impact, SceneError> {
-        let (centre, contact) = self.contact_place(&spec.impactor, plate, element)?;
-        let contact = Functional(constraints.restrict(&contact.0));
-        if contact.0.is_empty() {
-            return Err(self.error(
-                &spec.impactor.at,
-                "the supports hold the plate exactly where the impactor strikes",
-                "move the impact or the support",
-            ));
-        }
+        let strike = |impactor: &scene::Impactor| {
+            let (centre, contact) = self.contact_place(impactor, plate, element)?;
+            let contact = Functional(constraints.restrict(&contact.0));
+            if contact.0.is_empty() {
+                return Err(self.error(
+                    &impactor.at,
+                    "the supports hold the plate exactly where the impactor strikes",
+                    "move the impact or the support",
+                ));
+            }
+            Ok(Strike { contact, centre, law: self.law(impactor)? })
+        };
         Ok(Impact {
-            contact,
-            centre,
-            law: self.law(spec)?,
+            strikes: spec.impactors.iter().map(strike).collect::<Result<_, _>>()?,
             reduction: self.reduction(spec)?,
             integrator: self.integrator(spec)?,
             spec: spec.clone(),

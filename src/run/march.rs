@@ -1,13 +1,13 @@
 //! The march in time, watched; it can be saved and gone on with.
 
 use super::checkpoint::{self, Checkpoint, CheckpointError};
-use super::ledger::{Crossing, Ledger};
+use super::ledger::Ledger;
 use super::modal::{self, ModalView};
 use super::prepare::{Prepared, unmarchable};
 use super::{Maximum, Outcome, Sizes};
 use crate::cost::Stopwatch;
 use crate::error::Error;
-use crate::model::{Impact, Model};
+use crate::model::Model;
 use crate::stress::{self, Watch};
 use fem_core::counters::Counters;
 use fem_core::time::{Integrator, State};
@@ -43,7 +43,6 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
 #[derive(Debug)]
 pub struct March<'a> {
     model: &'a Model,
-    impact: &'a Impact,
     system: ImpactSystem,
     integrator: Box<dyn Integrator>,
     sizes: Sizes,
@@ -68,7 +67,6 @@ pub(super) struct Progress {
     row_every: u64,
     state: State,
     ledger: Ledger,
-    threshold: Option<Crossing>,
     work: Work,
     stopped: Option<String>,
 }
@@ -113,9 +111,8 @@ impl<'a> March<'a> {
             step: 0,
             dt,
             row_every,
-            ledger: Ledger::new(&prepared.system, &state)?,
+            ledger: Ledger::new(&prepared.system, &state, model.threshold.map(|threshold| threshold.force))?,
             state,
-            threshold: model.threshold.map(|threshold| Crossing::new(threshold.force)),
             work: Work::default(),
             stopped: None,
         };
@@ -179,20 +176,7 @@ impl<'a> March<'a> {
         stopwatch.lap("prepare stresses");
         let scan_every = steps_in(model.scene.failure.every, sizes.step);
         let (integrator, counted) = (impact.integrator.clone(), Work::default());
-        Ok(Self {
-            model,
-            impact,
-            system,
-            integrator,
-            sizes,
-            scan_every,
-            watch,
-            modal,
-            counters,
-            counted,
-            stopwatch,
-            progress,
-        })
+        Ok(Self { model, system, integrator, sizes, scan_every, watch, modal, counters, counted, stopwatch, progress })
     }
 
     /// Whether there is nothing more to march: the end is reached, or the march has stopped.
@@ -221,16 +205,12 @@ impl<'a> March<'a> {
     }
 
     fn step(&mut self) -> Result<(), Error> {
-        let Progress { step, dt, row_every, state, ledger, threshold, .. } = &mut self.progress;
+        let Progress { step, dt, row_every, state, ledger, .. } = &mut self.progress;
         self.integrator.step(&mut self.system, state, *dt)?;
         *step += 1;
         // A sum of steps drifts; the product does not.
         state.t = *step as f64 * *dt;
-        let force = self.system.contact_force(0, state);
-        ledger.contact(force > 0.0);
-        if let Some(threshold) = threshold {
-            threshold.sample(state.t, force);
-        }
+        ledger.contacts(&self.system, state);
         let (row, scan) = (step.is_multiple_of(*row_every), step.is_multiple_of(self.scan_every));
         if row {
             self.row()?;
@@ -315,7 +295,7 @@ impl<'a> March<'a> {
         }
         self.stopwatch.lap("scan");
         self.count();
-        let Progress { step, ledger, threshold, work, stopped, .. } = self.progress;
+        let Progress { step, ledger, work, stopped, .. } = self.progress;
         let mut counters = self.counters;
         counters.steps = step;
         counters.contact_calls = work.contact_calls;
@@ -324,18 +304,15 @@ impl<'a> March<'a> {
         counters.solves = counters.solves.max(work.solves);
         let energy = |of: fn(&fem_io::tables::HistoryRow) -> f64| ledger.rows.iter().map(of).sum();
         Outcome {
-            mass: self.impact.spec.impactor.mass,
-            velocity: self.impact.spec.impactor.velocity,
+            contacts: ledger.records().collect(),
             modal: self.modal.map(|modal| modal.finish(energy(|r| r.plate_strain_j), energy(|r| r.plate_kinetic_j))),
             history: ledger.rows,
             events,
             peaks,
             histories,
             maxima,
-            threshold_time: threshold.and_then(|threshold| threshold.time),
             sites,
             energy_error: ledger.error,
-            contacts: ledger.contacts,
             counters,
             phases: self.stopwatch.phases().to_vec(),
             stopped,

@@ -16,6 +16,7 @@ use crate::cost::Phase;
 use fem_core::counters::Counters;
 use fem_failure::scan::{FailureEvent, Peak, ScanSite};
 use fem_io::tables::HistoryRow;
+use serde::{Deserialize, Serialize};
 
 /// Sizes and limits of a model that is ready to march.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +29,7 @@ pub struct Sizes {
     pub stiffness_entries: usize,
     /// Entries of its Cholesky factor.
     pub factor_entries: usize,
-    /// Contact force per deflection under it, N/m, of the plate as marched.
+    /// Contact force of the first impactor per deflection under it, N/m, of the plate as marched.
     pub static_stiffness: f64,
     /// Highest frequency of the plate as marched, Hz; `None` where no integrator limit asked for it.
     pub highest_frequency: Option<f64>,
@@ -45,10 +46,8 @@ pub struct Sizes {
 /// What a run found.
 #[derive(Debug, Clone)]
 pub struct Outcome {
-    /// Mass of the impactor, kg.
-    pub mass: f64,
-    /// Its speed at first touch, m/s.
-    pub velocity: f64,
+    /// Of each impactor of the scene, what is seen between two rows of the history.
+    pub contacts: Vec<ContactRecord>,
     /// Force, motion and energies over time.
     pub history: Vec<HistoryRow>,
     /// First reaching of index 1 per criterion, mode and place, by time.
@@ -61,20 +60,25 @@ pub struct Outcome {
     pub maxima: Vec<Maximum>,
     /// What the lowest modes do, if the scene asks for it.
     pub modal: Option<ModalHistory>,
-    /// When the contact force first reached the threshold of the model, s.
-    pub threshold_time: Option<f64>,
     /// Sites watched.
     pub sites: usize,
     /// Largest deviation of the total energy from the energy of the impact, relative to it.
     pub energy_error: f64,
-    /// Number of separate contacts seen.
-    pub contacts: u32,
     /// Work done.
     pub counters: Counters,
     /// Time per phase.
     pub phases: Vec<Phase>,
     /// Why the run ended before its time, if it did; everything above holds up to then.
     pub stopped: Option<String>,
+}
+
+/// What is seen of a contact at every step.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct ContactRecord {
+    /// Number of separate contacts.
+    pub count: u32,
+    /// When the force first reached the delamination threshold of the model, s.
+    pub threshold_time: Option<f64>,
 }
 
 /// The largest index of a criterion at a site over all samples.

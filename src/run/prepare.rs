@@ -1,9 +1,9 @@
-//! Assemble, reduce, couple to the impactor.
+//! Assemble, reduce, couple to the impactors.
 
 use super::Sizes;
 use crate::cost::Stopwatch;
 use crate::error::Error;
-use crate::model::{Impact, Model, Plan};
+use crate::model::{Impact, Model, Plan, Strike};
 use fem_core::assembly::{Matrix, SparseStructure, Symbolic, assemble, pattern};
 use fem_core::counters::Counters;
 use fem_core::prolongation::Prolongation;
@@ -12,13 +12,14 @@ use fem_core::time::{StepError, StepLimit};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
 use fem_dynamics::limit::{self, TooLong};
 use fem_dynamics::reduce::Reduced;
+use fem_io::scene;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 /// Governors offered to a reduction.
 const GOVERNORS: usize = 2000;
 
-/// A model assembled, reduced and coupled to its impactor.
+/// A model assembled, reduced and coupled to its impactors.
 #[derive(Debug)]
 pub struct Prepared<'a> {
     pub(super) model: &'a Model,
@@ -70,8 +71,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         None => None,
         Some(reduction) => {
             let governors = model.governors(impact, GOVERNORS);
-            let contact = std::slice::from_ref(&impact.contact);
-            let basis = reduction.basis(&mut structure, contact, &governors);
+            let basis = reduction.basis(&mut structure, &impact.contacts(), &governors);
             Some(basis.and_then(|basis| Reduced::project(&structure, &basis)).map_err(|why| {
                 let name = &impact.spec.reduction.name;
                 model.scene.source.error_at(&name.place, format!("reduction `{}`: {why}", name.value), "")
@@ -81,15 +81,22 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     (counters.factorisations, counters.solves) = structure.work();
     stopwatch.lap("reduce");
 
-    let impactor = &impact.spec.impactor;
-    let (structure, load): (Box<dyn Structure>, _) = match &reduced {
-        None => (Box::new(structure), impact.contact.0.clone()),
-        Some(r) => (Box::new(r.modal.clone()), r.restrict(&impact.contact).into_iter().enumerate().collect()),
+    let impactor = |(spec, strike): (&scene::Impactor, &Strike)| Impactor {
+        mass: spec.mass,
+        velocity: spec.velocity,
+        start: spec.start,
+        load: match &reduced {
+            None => strike.contact.0.clone(),
+            Some(r) => r.restrict(&strike.contact).into_iter().enumerate().collect(),
+        },
+        law: strike.law.clone(),
     };
-    let mut system = ImpactSystem::new(
-        structure,
-        vec![Impactor { mass: impactor.mass, velocity: impactor.velocity, load, law: impact.law.clone() }],
-    );
+    let impactors = impact.spec.impactors.iter().zip(&impact.strikes).map(impactor).collect();
+    let structure: Box<dyn Structure> = match &reduced {
+        None => Box::new(structure),
+        Some(r) => Box::new(r.modal.clone()),
+    };
+    let mut system = ImpactSystem::new(structure, impactors);
     let march = &impact.spec.march;
     let limited = impact.integrator.limit();
     let (longest_step, highest) =

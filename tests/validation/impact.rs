@@ -133,15 +133,16 @@ impl Strike {
     /// What sets its history apart from that of `table`.
     fn against(&self, table: &str) -> Difference {
         let (history, rows) = (self.run(), reference(table));
-        let force = |row: &HistoryRow| history.parts * row.contact_force_n;
+        let force = |row: &HistoryRow| history.parts * row.contact_force_n();
         let all = rows.iter().position(|r| r["t_us"] > self.end).unwrap_or(rows.len());
         let first = rows.iter().skip(2).position(|r| r["F_N"] == 0.0).map_or(all, |i| i + 2);
         let sampled = |upto: usize, value: &dyn Fn(&HistoryRow) -> f64| -> Vec<f64> {
             rows[..upto].iter().map(|r| history.at(r["t_us"] * 1e-6, value)).collect()
         };
         let column = |upto: usize, name: &str| -> Vec<f64> { rows[..upto].iter().map(|r| r[name]).collect() };
-        let (forces, deflections) = (sampled(first, &force), sampled(all, &|r| 1e3 * r.plate_displacement_m));
-        let velocities = sampled(all, &|r| r.impactor_velocity_m_s);
+        let (forces, deflections) =
+            (sampled(first, &force), sampled(all, &|r| 1e3 * r.impactors[0].plate_displacement_m));
+        let velocities = sampled(all, &|r| r.impactors[0].impactor_velocity_m_s);
         let impulse =
             |row: usize| (self.velocity - velocities[row]) / (self.velocity - rows[row]["v_impactor_m_s"]) - 1.0;
         Difference {
@@ -153,7 +154,7 @@ impl Strike {
             deflection: l2(&deflections, &column(all, "w_contact_mm")),
             contacts: [
                 contacts(rows[..all].iter().map(|r| (r["t_us"], r["F_N"]))),
-                contacts(history.rows.iter().map(|r| (1e6 * r.time_s, r.contact_force_n))),
+                contacts(history.rows.iter().map(|r| (1e6 * r.time_s, r.contact_force_n()))),
             ],
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! What to look at: all functions ask one curve, that of unloading from the largest indentation so far. It is all that the
 //! law remembers, so that force and energy follow from it and from the present indentation alone.
-use fem_core::contact::{ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use fem_core::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw};
 use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 
 /// A sphere on a half-space that yields where the pressure reaches its limit.
@@ -92,6 +92,10 @@ impl ContactLaw for ElasticPlastic {
             stored: unloading.work(alpha),
             dissipated: (self.work(largest) - unloading.work(largest)).max(0.0),
         }
+    }
+
+    fn branches(&self, history: &ContactHistory) -> Branches {
+        Branches { touch: self.unloading(history[0]).dent, peak: Some(history[0]) }
     }
 }
 // ANCHOR_END: law

@@ -50,6 +50,10 @@ impl TrBdf2 {
 
 impl Integrator for TrBdf2 {
     // ANCHOR: start
+    fn order(&self) -> u32 {
+        2
+    }
+
     fn limit(&self) -> StepLimit {
         StepLimit::None
     }

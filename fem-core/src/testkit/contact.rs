@@ -1,14 +1,14 @@
 //! The contract of a contact law.
 
-use crate::contact::{ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use crate::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw};
 
 /// Checks `law` on a path of loading, unloading, reloading and separation up to the indentation `largest` (m).
 ///
 /// Demanded along the path: a force that is finite, never negative, continuous and never falling with α, none for α ≤ 0; a
 /// tangent that agrees with differences on one side at least; a commit that changes neither the force nor the energy at
 /// the indentation it takes, however often it is called; stored and dissipated energy not negative, nothing stored
-/// where there is no force, dissipation that never falls; the sum of the two equal to ∫ F dα. NaN must come back as NaN,
-/// and a fresh history as the first contact, whatever the law has seen before.
+/// where there is no force, dissipation that never falls; the sum of the two equal to ∫ F dα; branches as the law names
+/// them. NaN must come back as NaN, and a fresh history as the first contact, whatever the law has seen before.
 ///
 /// # Errors
 /// The first violation, with the place on the path.
@@ -72,6 +72,7 @@ impl Walk<'_> {
         if (total - self.work).abs() > 1e-6 * scale {
             return Err(format!("stored + dissipated = {total:e}, but the work is {:e}", self.work));
         }
+        check_branches(law, h, alpha)?;
         for again in ["the", "a second"] {
             law.commit(h, alpha);
             let (force, energy) = (law.force(h, alpha), law.energy(h, alpha));
@@ -90,6 +91,30 @@ impl Walk<'_> {
             self.dissipated = energy.dissipated;
         }
         Ok(())
+    }
+}
+
+/// The force begins at `touch`; below the largest indentation it changes with a commit only if the law says `peak`.
+fn check_branches(law: &dyn ContactLaw, h: &ContactHistory, alpha: f64) -> Result<(), String> {
+    let Branches { touch, peak } = law.branches(h);
+    let just_above = touch + 1e-3 * (alpha - touch);
+    if law.force(h, touch).force != 0.0 || (alpha > touch && !(law.force(h, just_above).force > 0.0)) {
+        return Err(format!("the force does not begin at {touch:e}, where `branches` says it does"));
+    }
+    let mut after = *h;
+    law.commit(&mut after, alpha);
+    match (peak, law.branches(&after).peak) {
+        (Some(before), Some(now)) if now != before.max(alpha) => {
+            Err(format!("the largest indentation so far is {:e}, but `branches` says {now:e}", before.max(alpha)))
+        }
+        (Some(_), None) => Err("`branches` forgets the largest indentation".into()),
+        (None, _)
+            if (1..10)
+                .any(|k| law.force(h, 0.1 * f64::from(k) * alpha) != law.force(&after, 0.1 * f64::from(k) * alpha)) =>
+        {
+            Err("a commit changes the force at smaller indentations, and `branches` names no peak".into())
+        }
+        _ => Ok(()),
     }
 }
 

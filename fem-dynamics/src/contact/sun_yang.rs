@@ -1,7 +1,7 @@
 //! The indentation law of Sun and Yang.
 
 use super::Hertz;
-use fem_core::contact::{ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use fem_core::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw};
 use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 
 /// Loading along a power law, unloading along a steeper one to a permanent dent (report eqs 24-26).
@@ -86,6 +86,10 @@ impl ContactLaw for SunYang {
         let work = before.work(alpha_max) + self.loading.work(alpha) - self.loading.work(alpha_max);
         let stored = self.curve(alpha, self.m).work(alpha);
         ContactEnergy { stored, dissipated: dissipated + work - stored }
+    }
+
+    fn branches(&self, history: &ContactHistory) -> Branches {
+        Branches { touch: self.present(history).dent, peak: Some(history[0]) }
     }
 }
 

@@ -16,6 +16,10 @@ use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit}
 pub struct CentralDifference;
 
 impl Integrator for CentralDifference {
+    fn order(&self) -> u32 {
+        2
+    }
+
     fn limit(&self) -> StepLimit {
         StepLimit::OmegaDt(MARGIN * 2.0)
     }

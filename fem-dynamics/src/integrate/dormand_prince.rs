@@ -49,6 +49,10 @@ impl DormandPrince {
 }
 
 impl Integrator for DormandPrince {
+    fn order(&self) -> u32 {
+        5
+    }
+
     fn limit(&self) -> StepLimit {
         StepLimit::None
     }

@@ -43,6 +43,11 @@ impl GeneralizedAlpha {
 }
 
 impl Integrator for GeneralizedAlpha {
+    fn order(&self) -> u32 {
+        // γ = 1/2 − α_m + α_f makes it second.
+        if (self.gamma - 0.5 + self.alpha_m - self.alpha_f).abs() < 1e-12 { 2 } else { 1 }
+    }
+
     fn limit(&self) -> StepLimit {
         let shortfall = 0.5 * self.gamma - self.beta;
         if shortfall > 0.0 { StepLimit::OmegaDt(MARGIN / shortfall.sqrt()) } else { StepLimit::None }

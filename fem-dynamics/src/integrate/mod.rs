@@ -9,12 +9,14 @@
 //! | `hht-alpha`, `generalized-alpha` | 2 | implicit, damps high modes | none |
 //!
 //! The histories of the contacts stay as committed during a step; a step ends with one commit. `a` in the state is the
-//! acceleration that the next step starts from, so that a state holds all that a restart needs.
+//! acceleration that the next step starts from, so that a state holds all that a restart needs. Schemes of order above 2
+//! are marched [`located`]: their steps are divided where a contact law changes its branch.
 
 mod central_difference;
 mod dormand_prince;
 mod generalized_alpha;
 mod hht_alpha;
+mod located;
 mod newmark;
 mod runge_kutta;
 mod stages;
@@ -23,6 +25,7 @@ pub use central_difference::CentralDifference;
 pub use dormand_prince::DormandPrince;
 pub use generalized_alpha::GeneralizedAlpha;
 pub use hht_alpha::HhtAlpha;
+pub use located::located;
 pub use newmark::Newmark;
 pub use runge_kutta::{Rk1, Rk2, Rk3, Rk4, RungeKutta};
 

@@ -69,6 +69,10 @@ impl<const ORDER: usize> RungeKutta<ORDER> {
 }
 
 impl<const ORDER: usize> Integrator for RungeKutta<ORDER> {
+    fn order(&self) -> u32 {
+        ORDER as u32
+    }
+
     fn limit(&self) -> StepLimit {
         StepLimit::OmegaDt(Self::SCHEME.limit)
     }

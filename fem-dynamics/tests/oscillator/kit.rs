@@ -1,7 +1,7 @@
 //! The kit notices broken plug-ins.
 
 use crate::{hertz, scheme, sun_yang};
-use fem_core::contact::{ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use fem_core::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw};
 use fem_core::testkit::{check_contact_law, check_integrator};
 use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit};
 use std::sync::{Arc, Mutex};
@@ -13,6 +13,7 @@ struct Spoiled {
     force: Force,
     commit: Commit,
     energy: Energy,
+    branches: Branches,
 }
 
 type Force = fn(ContactForce, &ContactHistory, f64) -> ContactForce;
@@ -31,16 +32,22 @@ impl ContactLaw for Spoiled {
     fn energy(&self, h: &ContactHistory, alpha: f64) -> ContactEnergy {
         (self.energy)(self.sound.energy(h, alpha), h)
     }
+
+    fn branches(&self, _: &ContactHistory) -> Branches {
+        self.branches
+    }
 }
 
 #[test]
 fn of_contact_laws() {
-    let sound = Spoiled { sound: hertz(2.0, 1.5), force: |f, _, _| f, commit: |_, _| (), energy: |e, _| e };
+    let branches = Branches::default();
+    let sound = Spoiled { sound: hertz(2.0, 1.5), force: |f, _, _| f, commit: |_, _| (), energy: |e, _| e, branches };
     check_contact_law(&sound, 1.0).unwrap();
 
     let force = |force: Force| Spoiled { force, ..sound.clone() };
     let energy = |commit: Commit, energy: Energy| Spoiled { commit, energy, ..sound.clone() };
     let stiffer: Force = |f, h, _| ContactForce { force: f.force * (1.0 + h[0]), tangent: f.tangent * (1.0 + h[0]) };
+    let sticky: Force = |f, h, a| ContactForce { force: if a == h[0] { 1.1 * f.force } else { f.force }, ..f };
     let largest: Commit = |h, alpha| h[0] = alpha.max(0.0);
     let lost: Energy = |e, h| ContactEnergy { dissipated: h[0], ..e };
     let lent: Energy = |e, h| ContactEnergy { stored: e.stored - 1e-3 * h[0], dissipated: 1e-3 * h[0] };
@@ -49,7 +56,10 @@ fn of_contact_laws() {
         ("negative", force(|f, _, _| ContactForce { force: -f.force, ..f })),
         ("tangent", force(|f, _, _| ContactForce { tangent: 1.01 * f.tangent, ..f })),
         ("NaN", force(|f, _, a| if a.is_nan() { ContactForce::default() } else { f })),
-        ("commit changes the force", Spoiled { commit: largest, ..force(stiffer) }),
+        ("does not begin", Spoiled { branches: Branches { touch: 1e-3, ..branches }, ..sound.clone() }),
+        ("largest indentation so far", Spoiled { branches: Branches { peak: Some(0.0), ..branches }, ..sound.clone() }),
+        ("names no peak", Spoiled { commit: largest, ..force(stiffer) }),
+        ("commit changes the force", Spoiled { commit: largest, ..force(sticky) }),
         ("but the work is", energy(|_, _| (), |e, _| ContactEnergy { stored: 1.001 * e.stored, ..e })),
         ("commit changes the energy", energy(|h, _| h[0] += 1e-8, lost)),
         ("fallen", energy(largest, lent)),
@@ -103,6 +113,7 @@ fn of_contact_laws_with_a_history() {
 #[derive(Debug, Clone)]
 struct Careless {
     sound: Box<dyn Integrator>,
+    order: u32,
     limit: StepLimit,
     deaf: bool,
     steps: f64,
@@ -113,6 +124,10 @@ struct Careless {
 }
 
 impl Integrator for Careless {
+    fn order(&self) -> u32 {
+        self.order
+    }
+
     fn limit(&self) -> StepLimit {
         self.limit
     }
@@ -139,6 +154,7 @@ impl Integrator for Careless {
 fn of_integrators() {
     let sound = scheme("central-difference");
     let sound = Careless {
+        order: 2,
         limit: sound.limit(),
         sound,
         deaf: false,
@@ -147,8 +163,8 @@ fn of_integrators() {
         last: 0.0,
         after: |_, _| (),
     };
-    check_integrator(&sound, 2).unwrap();
-    let why = check_integrator(&sound, 3).unwrap_err();
+    check_integrator(&sound).unwrap();
+    let why = check_integrator(&Careless { order: 3, ..sound.clone() }).unwrap_err();
     assert!(why.contains("where 3 is claimed"), "{why}");
 
     let after = |after: fn(f64, &mut State)| Careless { after, ..sound.clone() };
@@ -166,7 +182,7 @@ fn of_integrators() {
         ("elastic stop", after(|_, s| s.v[0] *= 1.0 - 1e-4 * s.contacts.len() as f64)),
         ("NaN gives Ok", Careless { deaf: true, ..sound.clone() }),
     ] {
-        let why = check_integrator(&scheme, 2).unwrap_err();
+        let why = check_integrator(&scheme).unwrap_err();
         assert!(why.contains(says), "{says}: {why}");
     }
 }

@@ -4,6 +4,7 @@
 mod contact;
 mod impact;
 mod kit;
+mod located;
 mod order;
 mod parameters;
 mod spectrum;

@@ -15,7 +15,8 @@ fn whole_steps(name: &str) -> Box<dyn Integrator> {
 #[test]
 fn contracts_hold() {
     for (name, order) in SCHEMES {
-        check_integrator(&*scheme(name), order).unwrap_or_else(|why| panic!("{name}: {why}"));
+        assert_eq!(scheme(name).order(), order as u32, "{name}");
+        check_integrator(&*scheme(name)).unwrap_or_else(|why| panic!("{name}: {why}"));
     }
 }
 

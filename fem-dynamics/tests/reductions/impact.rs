@@ -22,7 +22,7 @@ fn forces(mass: f64, structure: Box<dyn Structure>, load: Vec<(usize, f64)>) -> 
     let k = Value::Quantity(1e7, Dimension::contact_stiffness(1.5));
     let Ok(Built::Contact(law)) = Hertz::build(&Params::default().with("k", k)) else { panic!() };
     let Ok(Built::Integrator(mut newmark)) = Newmark::build(&Params::default()) else { panic!() };
-    let impactor = Impactor { mass, velocity: 2.0, load, law };
+    let impactor = Impactor { mass, velocity: 2.0, start: 0.0, load, law };
     let mut system = ImpactSystem::new(structure, vec![impactor]);
     let mut state = system.initial();
     newmark.start(&mut system, &mut state).unwrap();

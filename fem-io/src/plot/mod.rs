@@ -190,7 +190,7 @@ fn check(plot: &LinePlot) -> Result<(), PlotError> {
 /// Events that [`force_history`] names; a last mark counts those after them.
 const NAMED_EVENTS: usize = 12;
 
-/// The contact force over time under the heading `title`, with `events` (time in s, name) marked on it.
+/// Contact forces over time under the heading `title`, by name, with `events` (time in s, name) marked on the highest.
 ///
 /// Times in s are shown in µs up to one millisecond, else in ms; forces in N are shown in kN from one kilonewton on.
 ///
@@ -199,19 +199,26 @@ const NAMED_EVENTS: usize = 12;
 pub fn force_history(
     title: &str,
     times_s: &[f64],
-    forces_n: &[f64],
+    forces_n: &[(&str, Vec<f64>)],
     events: &[(f64, String)],
 ) -> Result<LinePlot, PlotError> {
-    if times_s.len() != forces_n.len() {
-        return Err(PlotError::Lengths { times: times_s.len(), forces: forces_n.len() });
+    if let Some((_, forces)) = forces_n.iter().find(|(_, forces)| forces.len() != times_s.len()) {
+        return Err(PlotError::Lengths { times: times_s.len(), forces: forces.len() });
     }
     let (time_unit, per_s) = time_unit(times_s.iter().copied());
-    let (force_unit, per_n) = if largest(forces_n.iter().copied()) < 1e3 { ("N", 1.0) } else { ("kN", 1e-3) };
-    let points: Vec<_> = times_s.iter().zip(forces_n).map(|(t, f)| (t * per_s, f * per_n)).collect();
+    let highest = largest(forces_n.iter().flat_map(|(_, forces)| forces.iter().copied()));
+    let (force_unit, per_n) = if highest < 1e3 { ("N", 1.0) } else { ("kN", 1e-3) };
+    let curve = |(label, forces): &(&str, Vec<f64>)| Series {
+        label: (*label).to_owned(),
+        points: times_s.iter().zip(forces).map(|(t, f)| (t * per_s, f * per_n)).collect(),
+        style: Style::Solid,
+    };
+    let series: Vec<_> = forces_n.iter().map(curve).collect();
 
     let mut events: Vec<_> = events.iter().map(|(t, name)| (t * per_s, name)).collect();
     events.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mark = |x: f64, name: &str| Mark { x, y: height_at(&points, x), label: name.to_owned() };
+    let height = |x: f64| series.iter().map(|curve| height_at(&curve.points, x)).reduce(f64::max).unwrap_or(0.0);
+    let mark = |x: f64, name: &str| Mark { x, y: height(x), label: name.to_owned() };
     let mut marks: Vec<_> = events
         .iter()
         .take(NAMED_EVENTS)
@@ -224,7 +231,7 @@ pub fn force_history(
         title: title.to_owned(),
         x: Axis { label: "Time".into(), unit: time_unit.into() },
         y: Axis { label: "Contact force".into(), unit: force_unit.into() },
-        series: vec![Series { label: "Contact force".into(), points, style: Style::Solid }],
+        series,
         marks,
     })
 }
@@ -408,12 +415,18 @@ mod tests {
 
     #[test]
     fn a_force_history_chooses_its_units_and_puts_events_on_the_curve() {
-        let small = force_history("title", &[0.0, 1e-3], &[0.0, 900.0], &[(2.5e-4, "shear".into())]).unwrap();
+        let small =
+            force_history("title", &[0.0, 1e-3], &[("force", vec![0.0, 900.0])], &[(2.5e-4, "shear".into())]).unwrap();
         assert_eq!((small.x.unit.as_str(), small.y.unit.as_str()), ("µs", "N"));
         assert_eq!(small.marks, [Mark { x: 250.0, y: 225.0, label: "shear, 250 µs".into() }]);
 
-        let large =
-            force_history("title", &[0.0, 2e-3], &[0.0, 4000.0], &[(1.5e-3, "b".into()), (5e-5, "a".into())]).unwrap();
+        let large = force_history(
+            "title",
+            &[0.0, 2e-3],
+            &[("force", vec![0.0, 4000.0])],
+            &[(1.5e-3, "b".into()), (5e-5, "a".into())],
+        )
+        .unwrap();
         assert_eq!((large.x.unit.as_str(), large.y.unit.as_str()), ("ms", "kN"));
         let labels: Vec<_> = large.marks.iter().map(|m| m.label.as_str()).collect();
         assert_eq!(labels, ["a, 0.0500 ms", "b, 1.50 ms"]);
@@ -453,16 +466,21 @@ mod tests {
     #[test]
     fn events_beyond_the_first_dozen_are_counted() {
         let events: Vec<_> = (0..30).map(|i| (f64::from(i) * 1e-5, "x".to_owned())).collect();
-        let marks = force_history("title", &[0.0, 1e-3], &[0.0, 1.0], &events).unwrap().marks;
+        let marks = force_history("title", &[0.0, 1e-3], &[("force", vec![0.0, 1.0])], &events).unwrap().marks;
         assert_eq!((marks.len(), marks[12].label.as_str()), (13, "18 later events"));
-        assert!(line_plot(&force_history("title", &[0.0, 1e-3], &[0.0, 1.0], &events).unwrap()).is_ok());
+        assert!(
+            line_plot(&force_history("title", &[0.0, 1e-3], &[("force", vec![0.0, 1.0])], &events).unwrap()).is_ok()
+        );
     }
 
     #[test]
     fn a_force_history_refuses_what_does_not_fit() {
-        assert_eq!(force_history("title", &[0.0], &[], &[]), Err(PlotError::Lengths { times: 1, forces: 0 }));
+        assert_eq!(
+            force_history("title", &[0.0], &[("force", vec![])], &[]),
+            Err(PlotError::Lengths { times: 1, forces: 0 })
+        );
         for (t, f, event) in [(f64::NAN, 1.0, 0.0), (1.0, f64::INFINITY, 0.0), (1.0, 1.0, f64::NAN)] {
-            let plot = force_history("title", &[0.0, t], &[0.0, f], &[(event, "x".into())]).unwrap();
+            let plot = force_history("title", &[0.0, t], &[("force", vec![0.0, f])], &[(event, "x".into())]).unwrap();
             assert!(matches!(line_plot(&plot), Err(PlotError::NonFinite { .. })));
         }
     }

@@ -296,12 +296,7 @@ fn read_analysis(root: &Reader<'_>) -> Result<Analysis, SceneError> {
         }
         _ => {
             unused("impact", &["load", "modes", "profile"])?;
-            Ok(Analysis::Impact(Box::new(Impact {
-                impactor: run::read_impactor(&root.required("impactor")?)?,
-                contact: PluginSpec::read(&root.required("contact")?, "law", &[])?,
-                reduction: PluginSpec::read(&root.required("reduction")?, "method", &[])?,
-                march: run::read_march(&root.required("march")?)?,
-            })))
+            Ok(Analysis::Impact(Box::new(run::read_impact(root)?)))
         }
     }
 }

@@ -8,16 +8,22 @@ use crate::units;
 use fem_core::plugin::Dimension;
 
 /// A rigid mass that strikes the top face from above.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Impactor {
+    /// What results call it where there are several; no two are called alike.
+    pub name: String,
     /// Mass, kg.
     pub mass: f64,
-    /// Speed downwards at first touch, m/s.
+    /// Speed downwards before first touch, m/s.
     pub velocity: f64,
+    /// When it would reach the plate at rest, s; it flies freely before.
+    pub start: f64,
     /// Where it strikes.
     pub at: Located<ImpactPoint>,
     /// How its force enters the plate.
     pub load: Located<ContactLoad>,
+    /// The contact law.
+    pub contact: PluginSpec,
 }
 
 /// A point of the plane: where an impactor strikes, or something is watched.
@@ -58,10 +64,8 @@ pub enum Damage {
 /// An impact and how it is computed.
 #[derive(Debug, Clone)]
 pub struct Impact {
-    /// The impactor.
-    pub impactor: Impactor,
-    /// The contact law.
-    pub contact: PluginSpec,
+    /// The impactors, at least one.
+    pub impactors: Vec<Impactor>,
     /// The reduction; `none` for the full system.
     pub reduction: PluginSpec,
     /// The march in time.
@@ -156,12 +160,15 @@ impl Default for Output {
 }
 
 const IMPACTOR: Keys = &[
+    ("name", r#""first""#),
     ("mass", r#""2.49 kg""#),
     ("velocity", r#""1.56 m/s""#),
+    ("start", r#""50 us""#),
     ("at", r#"{ group = "impact" }"#),
     ("patch_radius", r#""3 mm""#),
     ("patch_side", r#""2 mm""#),
     ("load", r#""node""#),
+    ("contact", r#"{ law = "hertz", k = "1.07e5 N/mm^1.5" }"#),
 ];
 const AT: Keys = &[("group", r#""impact""#), ("x", r#""0 mm""#), ("y", r#""0 mm""#)];
 const MARCH: Keys = &[("integrator", r#""newmark""#), ("step", r#""0.5 us""#), ("end", r#""1 ms""#)];
@@ -198,8 +205,28 @@ const MOST_MODES: usize = 38;
 /// Most steps of a march: more is a slip in step or end, and would seem to hang.
 const MAX_STEPS: f64 = 1e9;
 
-pub(super) fn read_impactor(field: &Field<'_>) -> Result<Impactor, SceneError> {
+/// The keys of an impact: one table of an impactor or a list of them, a contact law for those without their own.
+pub(super) fn read_impact(root: &Reader<'_>) -> Result<Impact, SceneError> {
+    let march = read_march(&root.required("march")?)?;
+    let field = root.required("impactor")?;
+    let fields = if matches!(field.node(), Node::List(_)) { field.list()? } else { vec![field] };
+    let mut impactors: Vec<Impactor> = Vec::new();
+    for (number, field) in (1..).zip(&fields) {
+        let impactor = read_impactor(root, field, number, march.end.value)?;
+        if impactors.iter().any(|other| other.name == impactor.name) {
+            let message =
+                format!("a second impactor is called `{}`, and results could not tell them apart", impactor.name);
+            return Err(field.error(message, "give each a `name` of its own"));
+        }
+        impactors.push(impactor);
+    }
+    Ok(Impact { impactors, reduction: PluginSpec::read(&root.required("reduction")?, "method", &[])?, march })
+}
+
+fn read_impactor(root: &Reader<'_>, field: &Field<'_>, number: usize, end: f64) -> Result<Impactor, SceneError> {
     let table = field.table(IMPACTOR)?;
+    let name =
+        table.optional("name").map_or(Ok(format!("impactor-{number}")), |field| field.text().map(str::to_owned))?;
     let velocity_field = table.required("velocity")?;
     let (mass, velocity) =
         (table.required("mass")?.positive(Dimension::MASS)?, velocity_field.positive(Dimension::VELOCITY)?);
@@ -208,7 +235,26 @@ pub(super) fn read_impactor(field: &Field<'_>) -> Result<Impactor, SceneError> {
         return Err(velocity_field
             .error("the energy of the impact is out of the range of numbers", "look for a slip in mass or velocity"));
     }
-    Ok(Impactor { mass, velocity, at: read_point(&table.required("at")?)?, load: read_load(&table)? })
+    let start = match table.optional("start") {
+        None => 0.0,
+        Some(field) => match field.quantity(Dimension::TIME)? {
+            start if !(0.0..end).contains(&start) => {
+                let message = format!("{start:e} s is not within the march, which ends at {end:e} s");
+                return Err(field.error(message, "give a time from 0 on and before `march.end`"));
+            }
+            start => start,
+        },
+    };
+    let contact = table.optional("contact").map_or_else(|| root.required("contact"), Ok)?;
+    Ok(Impactor {
+        name,
+        mass,
+        velocity,
+        start,
+        at: read_point(&table.required("at")?)?,
+        load: read_load(&table)?,
+        contact: PluginSpec::read(&contact, "law", &[])?,
+    })
 }
 
 pub(super) fn read_point(field: &Field<'_>) -> Result<Located<ImpactPoint>, SceneError> {

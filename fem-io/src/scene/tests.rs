@@ -108,17 +108,24 @@ fn a_scene_in_full() {
     assert_eq!(scene.equations[0].terms[1].factor, -2e-3);
     assert_eq!((scene.couples[0].nodes.levels, scene.couples[0].dofs.len()), (Levels::All, 1));
 
-    assert_eq!((scene.impact().unwrap().impactor.mass, scene.impact().unwrap().impactor.velocity), (2.49, 1.56));
-    assert_eq!(scene.impact().unwrap().impactor.at.value, ImpactPoint::Group("impact".into()));
-    assert_eq!(scene.impact().unwrap().impactor.load.value, ContactLoad::Patch { radius: 3e-3 });
-    assert_eq!(scene.impact().unwrap().contact.name.value, "sun-yang");
-    let k = scene.impact().unwrap().contact.params.quantity("k", Dimension::contact_stiffness(1.5), None).unwrap();
+    assert_eq!(
+        (scene.impact().unwrap().impactors[0].mass, scene.impact().unwrap().impactors[0].velocity),
+        (2.49, 1.56)
+    );
+    assert_eq!(scene.impact().unwrap().impactors[0].at.value, ImpactPoint::Group("impact".into()));
+    assert_eq!(scene.impact().unwrap().impactors[0].load.value, ContactLoad::Patch { radius: 3e-3 });
+    assert_eq!(scene.impact().unwrap().impactors[0].contact.name.value, "sun-yang");
+    let k = scene.impact().unwrap().impactors[0]
+        .contact
+        .params
+        .quantity("k", Dimension::contact_stiffness(1.5), None)
+        .unwrap();
     assert!((k / (1.07e5 * 1e-3_f64.powf(-1.5)) - 1.0).abs() < 1e-14);
     assert_eq!(
-        scene.impact().unwrap().contact.params.get("knots"),
+        scene.impact().unwrap().impactors[0].contact.params.get("knots"),
         Some(&Value::List(vec![Value::Number(1.0), Value::Quantity(2e-3, Dimension::LENGTH)]))
     );
-    assert_eq!(scene.impact().unwrap().contact.params.keys().find(|k| *k == "law"), None);
+    assert_eq!(scene.impact().unwrap().impactors[0].contact.params.keys().find(|k| *k == "law"), None);
 
     assert_eq!(scene.impact().unwrap().march.integrator.name.value, "newmark");
     assert_eq!(scene.impact().unwrap().march.integrator.params.number("beta", None), Ok(0.3));
@@ -220,7 +227,7 @@ fn a_formula_may_begin_with_a_number() {
 fn presets_lie_beneath_the_scene() {
     let fidelity = |name: &str| format!("fidelity = \"{name}\"\n{GOOD}");
     let report = read_good(&fidelity("report"));
-    assert_eq!(report.impact().unwrap().impactor.load.value, ContactLoad::Node);
+    assert_eq!(report.impact().unwrap().impactors[0].load.value, ContactLoad::Node);
     assert_eq!((report.failure.window, report.z_derivatives.value), (Window::Element, ZDerivatives::Shared));
     assert_eq!(report.element.params.choice("mass", &["cubic", "linear"]), Ok("linear"));
     assert_eq!(report.impact().unwrap().reduction.params.count("governors", 1, None), Ok(38));
@@ -243,8 +250,42 @@ fn presets_lie_beneath_the_scene() {
     );
     let patch = spoilt("at = { group = \"impact\" }", "at = { x = \"1 mm\", y = \"0 mm\" }, patch_radius = \"2 mm\"");
     let patch = read_good(&format!("fidelity = \"report\"\n{patch}"));
-    assert_eq!(patch.impact().unwrap().impactor.load.value, ContactLoad::Patch { radius: 2e-3 });
-    assert_eq!(patch.impact().unwrap().impactor.at.value, ImpactPoint::Point([1e-3, 0.0]));
+    assert_eq!(patch.impact().unwrap().impactors[0].load.value, ContactLoad::Patch { radius: 2e-3 });
+    assert_eq!(patch.impact().unwrap().impactors[0].at.value, ImpactPoint::Point([1e-3, 0.0]));
+}
+
+/// [`GOOD`] with several impactors.
+fn several(impactors: &str) -> String {
+    let own = r#"impactor = { mass = "2.49 kg", velocity = "1.56 m/s", at = { group = "impact" } }"#;
+    format!("{}\n{impactors}", spoilt(own, ""))
+}
+
+const TWO: &str = r#"
+[[impactor]]
+mass = "10 g"
+velocity = "3 m/s"
+at = { group = "impact" }
+
+[[impactor]]
+name = "late"
+mass = "20 g"
+velocity = "2 m/s"
+start = "50 us"
+at = { x = "1 mm", y = "2 mm" }
+patch_side = "2 mm"
+contact = { law = "hertz", k = "1e5 N/mm^1.5" }
+"#;
+
+#[test]
+fn impactors_may_be_several() {
+    let scene = read_good(&several(TWO));
+    let [first, late] = &scene.impact().unwrap().impactors[..] else { panic!("{scene:?}") };
+    assert_eq!((first.name.as_str(), first.mass, first.velocity, first.start), ("impactor-1", 0.01, 3.0, 0.0));
+    assert_eq!((late.name.as_str(), late.mass, late.velocity, late.start), ("late", 0.02, 2.0, 50e-6));
+    assert_eq!(first.load.value, ContactLoad::Patch { radius: 3e-3 }, "the preset serves each");
+    assert_eq!(late.load.value, ContactLoad::Square { side: 2e-3 });
+    assert_eq!((first.contact.name.value.as_str(), late.contact.name.value.as_str()), ("sun-yang", "hertz"));
+    assert_eq!(late.contact.params.keys().collect::<Vec<_>>(), ["k"], "its own law alone");
 }
 
 #[test]
@@ -262,18 +303,21 @@ fn the_root_crate_can_point_at_any_value() {
     let line =
         |place: &Place| scene.source.error_at(place, "m", "").location().map(|(file, line)| (file.to_owned(), line));
     let at = |n| Some(("cases/plate/scene.toml".to_owned(), n));
-    assert_eq!(line(&scene.impact().unwrap().contact.name.place), at(13));
+    assert_eq!(line(&scene.impact().unwrap().impactors[0].contact.name.place), at(13));
     assert_eq!(
         line(scene.impact().unwrap().reduction.place_of("vectors")),
         Some(("preset `engineering`".to_owned(), 5))
     );
     let error = scene.source.error_at(
-        scene.impact().unwrap().contact.place_of("n"),
+        scene.impact().unwrap().impactors[0].contact.place_of("n"),
         "`n`: must be 1 to 4, got 15",
         "Hertz: n = 1.5",
     );
     insta::assert_snapshot!(rendered(&error));
-    assert_eq!(scene.impact().unwrap().contact.place_of("absent"), &scene.impact().unwrap().contact.name.place);
+    assert_eq!(
+        scene.impact().unwrap().impactors[0].contact.place_of("absent"),
+        &scene.impact().unwrap().impactors[0].contact.name.place
+    );
 }
 
 /// Every refusal: line, key and remedy, as people see it.
@@ -281,6 +325,11 @@ fn the_root_crate_can_point_at_any_value() {
 fn refusals() {
     let mut report = String::new();
     for (what, text) in [
+        ("impactors of one name", several(&TWO.replace("\"late\"", "\"impactor-1\""))),
+        ("an impactor after the end", several(&TWO.replace("50 us", "1 ms"))),
+        ("an impactor before the beginning", several(&TWO.replace("50 us", "-1 us"))),
+        ("a missing key of one of several", several(&TWO.replace("mass = \"20 g\"", ""))),
+        ("no impactor", several("").replace("title =", "impactor = []\ntitle =")),
         ("a bare number where a unit belongs", spoilt("mass = \"2.49 kg\"", "mass = 2.49")),
         ("a text without unit", spoilt("\"2.49 kg\"", "\"2.49\"")),
         ("an unknown unit", spoilt("1.56 m/s\", at", "1.56 m/sec\", at")),
@@ -390,7 +439,8 @@ fn the_examples_are_the_cases_of_the_report() {
         let scene = read(&examples.join(case).join("scene.toml")).unwrap_or_else(|e| panic!("{}", rendered(&e)));
         let laminate = &scene.laminate.value;
         let thickness = laminate.thickness();
-        let energy = 0.5 * scene.impact().unwrap().impactor.mass * scene.impact().unwrap().impactor.velocity.powi(2);
+        let energy =
+            0.5 * scene.impact().unwrap().impactors[0].mass * scene.impact().unwrap().impactors[0].velocity.powi(2);
         assert_eq!((laminate.plies.len(), laminate.layers.len()), (plies, 2), "{case}");
         assert!(laminate.plies.iter().eq(laminate.plies.iter().rev()), "{case} is symmetric");
         assert!((thickness * 1e3 - millimetres).abs() < 1e-4, "{case}: {thickness} m");

@@ -79,18 +79,26 @@ impl Table {
         self.0.iter().find(|e| e.key == key)
     }
 
-    /// Lays `self` over `under`: tables merge key by key, any other value replaces what lies beneath. A table that names
-    /// another plug-in than the one beneath replaces it, because its parameters mean nothing to the new one.
+    /// Lays `self` over `under`: tables merge key by key, each table of a list with the one table beneath it, any other
+    /// value replaces what lies beneath. A table that names another plug-in than the one beneath replaces it, because its
+    /// parameters mean nothing to the new one.
     pub(crate) fn over(mut self, under: Table) -> Table {
         for below in under.0 {
             let Some(above) = self.0.iter_mut().find(|e| e.key == below.key) else {
                 self.0.push(below);
                 continue;
             };
-            if let (Node::Table(over), Node::Table(under)) = (&mut above.item.node, below.item.node)
-                && !over.names_another_plugin(&under)
-            {
-                *over = std::mem::take(over).over(under);
+            let Node::Table(under) = below.item.node else { continue };
+            let above = match &mut above.item.node {
+                Node::List(items) => items.as_mut_slice(),
+                _ => std::slice::from_mut(&mut above.item),
+            };
+            for item in above {
+                if let Node::Table(over) = &mut item.node
+                    && !over.names_another_plugin(&under)
+                {
+                    *over = std::mem::take(over).over(under.clone());
+                }
             }
         }
         self
