@@ -121,18 +121,19 @@ impl Builder<'_> {
         Ok(())
     }
 
-    pub(super) fn watched(&self, mesh: &QuadMesh, centre: Option<[f64; 2]>) -> Result<Vec<usize>, SceneError> {
+    pub(super) fn watched(&self, plate: &Plate, centre: Option<[f64; 2]>) -> Result<Vec<usize>, SceneError> {
         let failure = &self.scene.failure;
-        let Some(radius) = failure.radius else { return Ok((0..mesh.quads.len()).collect()) };
+        let kept = plate.symmetry().quads().map(|(quad, _)| quad);
+        let Some(radius) = failure.radius else { return Ok(kept.collect()) };
         let Some(centre) = centre else {
             let message = "`failure.radius` counts from the impact, and here is none";
             return Err(self.scene.source.error_at(&failure.place, message, "leave it out"));
         };
         let near = |q: &usize| {
-            let c = window::centroid(&mesh.corners(*q));
+            let c = window::centroid(&plate.plane.corners(*q));
             (c[0] - centre[0]).hypot(c[1] - centre[1]) <= radius
         };
-        let watched: Vec<usize> = (0..mesh.quads.len()).filter(near).collect();
+        let watched: Vec<usize> = kept.filter(near).collect();
         if watched.is_empty() {
             let message = "no cell has its centre within `failure.radius` of the impact";
             return Err(self.scene.source.error_at(&failure.place, message, "enlarge the radius or leave it out"));
@@ -211,6 +212,9 @@ impl Builder<'_> {
             equations.push(self.equation(plate, equation, number)?);
             places.push(&equation.place);
         }
+        self.symmetric_supports(plate, &equations, &places)?;
+        equations.extend(plate.symmetry().equations(plate));
+        places.resize(equations.len(), self.scene.symmetry.as_ref().map_or(&Place::TOP, |symmetry| &symmetry.place));
         let free = FreeMotions::of(plate, &equations);
         let mut held = true;
         match restraint {
@@ -229,10 +233,19 @@ impl Builder<'_> {
                 ));
             }
         }
-        let constraints = Constraints::eliminate(&elimination_order(plate), &equations);
-        constraints.map(|c| (c, held)).map_err(|why| {
+        Ok((self.eliminate(plate, &equations, &places)?, held))
+    }
+
+    /// Eliminates `equations`, which stand at `places`.
+    pub(super) fn eliminate(
+        &self,
+        plate: &Plate,
+        equations: &[Equation],
+        places: &[&Place],
+    ) -> Result<Constraints, SceneError> {
+        Constraints::eliminate(&elimination_order(plate), equations).map_err(|why| {
             let at = equations.iter().position(|e| e.origin == why.origin()).and_then(|i| places.get(i));
-            source.error_at(at.copied().unwrap_or(&Place::TOP), why.to_string(), "")
+            self.scene.source.error_at(at.copied().unwrap_or(&Place::TOP), why.to_string(), "")
         })
     }
 

@@ -72,6 +72,7 @@ impl Builder<'_> {
         constraints: &Constraints,
     ) -> Result<Impact, SceneError> {
         let (centre, contact) = self.contact_place(&spec.impactor, plate, element)?;
+        self.symmetric_impact(plate, &spec.impactor.at, centre)?;
         let contact = Functional(constraints.restrict(&contact.0));
         if contact.0.is_empty() {
             return Err(self.error(
@@ -138,6 +139,7 @@ impl Builder<'_> {
                     .error_at(place, "the load is not finite somewhere on the plate", help)
                     .into());
             }
+            self.symmetric_load(plate, &forces, place)?;
         }
         Ok(forces)
     }

@@ -110,10 +110,10 @@ impl CellMap {
         }
     }
 
-    /// Adds the lower triangle of a cell matrix into `values`.
+    /// Adds the lower triangle of `weight` times a cell matrix into `values`.
     ///
     /// Runs of consecutive unknowns are consecutive in every column that holds them: one search per run.
-    pub(crate) fn scatter(&self, pattern: &Pattern, a: &[f64], work: &mut Vec<f64>, values: &mut [f64]) {
+    pub(crate) fn scatter(&self, pattern: &Pattern, a: &[f64], weight: f64, work: &mut Vec<f64>, values: &mut [f64]) {
         self.transform(a, work);
         let n = self.reduced.len();
         for (j, column) in self.reduced.iter().enumerate() {
@@ -129,7 +129,7 @@ impl CellMap {
                     length += 1;
                 }
                 for (v, a) in values[start + at..start + at + length].iter_mut().zip(&from[i..i + length]) {
-                    *v += a;
+                    *v += weight * a;
                 }
                 i += length;
             }
@@ -143,7 +143,7 @@ pub fn pattern(plate: &Plate, constraints: &Constraints) -> Pattern {
     let mut map = CellMap::default();
     let (mut starts, mut members) = (vec![0_u32; n + 1], Vec::new());
     // Cells of every column, then rows of every column through its cells.
-    for cell in 0..plate.cells() {
+    for (cell, _) in plate.kept_cells() {
         map.set(plate, constraints, cell);
         for i in &map.reduced {
             starts[i + 1] += 1;
