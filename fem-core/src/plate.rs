@@ -153,9 +153,9 @@ impl Plate {
     /// Cells that represent others or themselves alone, ascending, and how many they stand for.
     pub fn kept_cells(&self) -> impl Iterator<Item = (usize, f64)> + Clone {
         let layers = self.layers();
-        self.symmetry.quads().flat_map(move |(quad, weight)| {
-            (quad * layers..(quad + 1) * layers).map(move |cell| (cell, weight))
-        })
+        self.symmetry
+            .quads()
+            .flat_map(move |(quad, weight)| (quad * layers..(quad + 1) * layers).map(move |cell| (cell, weight)))
     }
 
     /// Number of unknowns before constraints.

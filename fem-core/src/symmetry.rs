@@ -151,9 +151,8 @@ impl Symmetry {
         // The part that is kept lies at large y, and at large x: as compact as it can be.
         let rank = |p: [f64; 2]| [1, 0].map(|d| ((p[d] - centre[d]) / reach).round() as i64);
         let column_ranks: Vec<_> = plate.columns.iter().map(|p| rank(*p)).collect();
-        let quad_ranks: Vec<_> = (0..plate.plane.quads.len())
-            .map(|q| rank(crate::window::centroid(&plate.plane.corners(q))))
-            .collect();
+        let quad_ranks: Vec<_> =
+            (0..plate.plane.quads.len()).map(|q| rank(crate::window::centroid(&plate.plane.corners(q)))).collect();
         let columns = representatives(&column_ranks, images.iter().map(|(_, i)| &i[..]));
         let quads = representatives(&quad_ranks, cells.iter().map(|i| &i[..]));
         let mut sizes = vec![0; quads.len()];
@@ -301,4 +300,145 @@ fn quad_images(plate: &Plate, images: &[u32]) -> Result<Vec<u32>, String> {
         })
     };
     quads.iter().enumerate().map(image).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::element::{ElementInfo, Slice, Stack};
+    use crate::material::Elastic;
+    use crate::mesh::QuadMesh;
+    use crate::plate::ZDerivatives;
+    use crate::tensor::rotate_stiffness;
+
+    const NODES: [[f64; 3]; 8] = [
+        [-1.0, -1.0, -1.0],
+        [1.0, -1.0, -1.0],
+        [1.0, 1.0, -1.0],
+        [-1.0, 1.0, -1.0],
+        [-1.0, -1.0, 1.0],
+        [1.0, -1.0, 1.0],
+        [1.0, 1.0, 1.0],
+        [-1.0, 1.0, 1.0],
+    ];
+    const INFO: ElementInfo = ElementInfo { nodes: &NODES, dofs: &Dof::SOLID, in_plane_order: 2, ply_order: 2 };
+
+    fn tape(angle: f64) -> Matrix6 {
+        let tape = Elastic::transversely_isotropic(130e9, 9.6e9, 0.35, 0.4, 5.9e9);
+        rotate_stiffness(&tape.stiffness(), angle.to_radians())
+    }
+
+    /// A plate from (1, 2) to (7, 6) in two layers, its nodes, cells and corners counted in a disorder of their own.
+    fn plate(cells: [usize; 2], disorder: usize) -> Plate {
+        let lines = |n: usize, low: f64, high: f64| -> Vec<f64> {
+            (0..=n).map(|i| low + (high - low) * i as f64 / n as f64).collect()
+        };
+        let mesh = QuadMesh::rectangle(&lines(cells[0], 1.0, 7.0), &lines(cells[1], 2.0, 6.0));
+        let shuffled = |n: usize| -> Vec<usize> {
+            let mut all: Vec<usize> = (0..n).collect();
+            all.sort_by_key(|i| (i * 7919 * disorder) % 1009);
+            all
+        };
+        let nodes = shuffled(mesh.points.len());
+        let number = |old: u32| nodes.iter().position(|n| *n == old as usize).unwrap() as u32;
+        let mut other = mesh.clone();
+        other.points = nodes.iter().map(|n| mesh.points[*n]).collect();
+        other.quads = shuffled(mesh.quads.len()).iter().map(|q| mesh.quads[*q].map(number)).collect();
+        other.quads.iter_mut().enumerate().for_each(|(i, quad)| quad.rotate_left(i * disorder % 4));
+        let stack = || Stack::new(vec![Slice { q: [-1.0, 1.0], c: tape(0.0), density: 1.0 }]);
+        Plate::new(other, vec![-1.0, 0.0, 1.0], vec![stack(), stack()], INFO, ZDerivatives::LayerWise).unwrap()
+    }
+
+    /// Unknowns of a motion that is its own image under all operations of `group`, and of one that is not.
+    fn motion(plate: &Plate, group: Group, symmetric: bool) -> Vec<f64> {
+        // Monomials xᵃ yᵇ z of each displacement; those whose sign an operation changes are left out.
+        let value = |dof: usize| {
+            let (column, level, name) = plate.locate(dof);
+            let [x, y] = [plate.columns[column][0] - 4.0, plate.columns[column][1] - 4.0];
+            let z = plate.levels[level] + 0.3;
+            let mut sum = 0.0;
+            for (a, b) in (0..4).flat_map(|a| (0..4).map(move |b| (a, b))) {
+                let sign = |o: &Operation| o.0[name.n() - 1] * o.0[0].powi(a) * o.0[1].powi(b);
+                if symmetric && group.operations().iter().any(|o| sign(o) < 0.0) {
+                    continue;
+                }
+                let power = |x: f64, n: i32| if n < 0 { 0.0 } else { x.powi(n) };
+                sum += f64::from(1 + a + 3 * b)
+                    * match name.m() {
+                        1 => f64::from(a) * power(x, a - 1) * y.powi(b) * z,
+                        2 => f64::from(b) * x.powi(a) * power(y, b - 1) * z,
+                        3 => x.powi(a) * y.powi(b),
+                        _ => x.powi(a) * y.powi(b) * z,
+                    };
+            }
+            sum
+        };
+        (0..plate.ndof()).map(value).collect()
+    }
+
+    #[test]
+    fn equations_hold_for_symmetric_motions_in_any_numbering() {
+        for (name, group) in Group::ALL {
+            for cells in [[4, 4], [5, 3], [4, 3]] {
+                let mut free = Vec::new();
+                for disorder in [0, 1, 5] {
+                    let mut plate = plate(cells, disorder);
+                    plate.fold(group).unwrap();
+                    let equations = plate.symmetry().equations(&plate);
+                    let worst = |u: &[f64]| {
+                        let rest = |e: &Equation| e.terms.iter().map(|(d, c)| c * u[*d]).sum::<f64>().abs();
+                        equations.iter().map(rest).fold(0.0, f64::max)
+                    };
+                    let (own, other) = (motion(&plate, group, true), motion(&plate, group, false));
+                    let largest = own.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+                    assert!(worst(&own) < 1e-12 * largest, "{name} {cells:?} {disorder}: {:e}", worst(&own));
+                    assert!(worst(&other) > 1e-3 * largest, "{name} {cells:?} {disorder}");
+                    let represented: f64 = plate.symmetry().quads().map(|(_, weight)| weight).sum();
+                    assert_eq!(represented as usize, cells[0] * cells[1]);
+                    assert_eq!(plate.kept_cells().count(), 2 * plate.symmetry().quads().len());
+                    free.push(plate.ndof() - equations.len());
+                }
+                assert!(free.iter().all(|n| *n == free[0]), "{name} {cells:?}: {free:?}");
+            }
+        }
+        // Of a quarter of 4 x 4 cells 3 x 3 columns; the inner ones have all unknowns, those on the planes fewer.
+        let mut quarter = plate([4, 4], 5);
+        quarter.fold(Group::Quarter).unwrap();
+        assert_eq!(quarter.symmetry().quads().map(|(_, weight)| weight).collect::<Vec<_>>(), [4.0; 4]);
+    }
+
+    #[test]
+    fn what_has_no_image_is_named() {
+        let mut mesh = plate([4, 4], 0).plane;
+        mesh.points[6][0] += 1e-3;
+        mesh.node_tags[6] = 4711;
+        let stack = Stack::new(vec![Slice { q: [-1.0, 1.0], c: tape(0.0), density: 1.0 }]);
+        let fold = |mesh: &QuadMesh, group| {
+            Plate::new(mesh.clone(), vec![0.0, 1.0], vec![stack.clone()], INFO, ZDerivatives::Shared)
+                .unwrap()
+                .fold(group)
+        };
+        let why = fold(&mesh, Group::HalfTurn).unwrap_err();
+        assert!(why.contains("node 4711 at (2501.000000, 3000.000000) mm has no image"), "{why}");
+        mesh.points[6][0] -= 1e-3;
+        fold(&mesh, Group::Quarter).unwrap();
+        // A hole on one side.
+        mesh.quads.swap_remove(5);
+        mesh.quad_tags.swap_remove(5);
+        let why = fold(&mesh, Group::MirrorY).unwrap_err();
+        assert!(why.contains("cell 10 at (3250.000000, 4500.000000) mm has no image"), "{why}");
+    }
+
+    #[test]
+    fn mirrors_need_plies_along_the_axes_and_half_turns_do_not() {
+        let keeps = |group: Group, c: &Matrix6| group.operations().iter().all(|o| o.keeps_stiffness(c));
+        for angle in [0.0, 90.0, -90.0, 180.0] {
+            assert!(Group::ALL.iter().all(|(_, group)| keeps(*group, &tape(angle))), "{angle}");
+        }
+        for angle in [45.0, 0.001, 89.9] {
+            assert!(keeps(Group::HalfTurn, &tape(angle)) && !keeps(Group::MirrorX, &tape(angle)), "{angle}");
+            assert!(!keeps(Group::MirrorY, &tape(angle)) && !keeps(Group::Quarter, &tape(angle)), "{angle}");
+        }
+    }
 }
