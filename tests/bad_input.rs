@@ -419,7 +419,7 @@ mod symmetry {
 
     #[test]
     fn support_on_one_side() {
-        let case = half(strip());
+        let case = half(strip()).scene("[[support]]\nrestrain = \"rigid-motions\"\n", "");
         let words =
             ["support of `clamped`: U10 at node", "breaks the symmetry `half-turn`", "holds its image, U10 at node"];
         broken(&case, "[[support]]", &words);

@@ -45,7 +45,10 @@ fn check(plate: &Plate, symmetry: &str, share: std::ops::Range<f64>) {
 
 /// 60 x 40 mm under a pressure that a half-turn keeps and, with `odd` zero, mirrors too.
 fn pressed(plies: &str, layers: Vec<usize>, cells: [usize; 2], odd: f64) -> Plate {
-    let material = format!("{AS4}Xt = '1400 MPa'\nXc = '1130 MPa'\nYt = '70 MPa'\nYc = '200 MPa'\nSl = '99 MPa'\n");
+    let material = format!(
+        "{AS4}Xt = '1400 MPa'\nXc = '1130 MPa'\nYt = '70 MPa'\nYc = '200 MPa'\n\
+         Zt = '70 MPa'\nZc = '200 MPa'\nS12 = '99 MPa'\nS13 = '99 MPa'\nS23 = '60 MPa'\n"
+    );
     let pressure = format!("1 + ((x-30)/30)^2 + {odd}*(x-30)*(y-20)/600");
     let mut plate = Plate::new(&material, plies, 0.25, layers).rectangle([60.0, 40.0], cells).pressure(&pressure);
     plate.more.push_str("[failure]\ncriteria = ['tsai-wu']\nwindow = '12 mm'\n");
@@ -183,14 +186,19 @@ fn compare(symmetry: &str, edits: &[(&str, &str)], rounding: f64) {
     assert!(2 * b.sites <= a.sites + a.sites / 10, "{} of {}", b.sites, a.sites);
 }
 
-const WEAK: (&str, &str) = ("library = \"AS4/3502\"", "library = \"AS4/3502\", Yt = \"10 MPa\"");
+const WEAK: (&str, &str) = ("library = \"AS4/3502\"", "library = \"AS4/3502\", Yt = \"2 MPa\"");
 const SHORT: (&str, &str) = ("end = \"1 ms\"", "end = \"40 us\"");
 const FULL: (&str, &str) = ("[march]", "[reduction]\nmethod = 'none'\n[march]\nintegrator = 'newmark'\nstep = '1 us'");
 
 #[test]
 fn an_impact_on_angle_plies_under_a_half_turn() {
     compare("half-turn", &[WEAK, SHORT, FULL], SAME);
-    compare("half-turn", &[WEAK, ("end = \"1 ms\"", "end = \"200 us\"")], 1e-6);
+}
+
+/// Ritz vectors of whole and folded drift apart: rounding grows from each to the next, within the space that they span.
+#[test]
+fn a_reduced_impact_differs_by_less_than_its_reduction_costs() {
+    compare("half-turn", &[WEAK, SHORT], 2e-3);
 }
 
 #[test]
