@@ -4,6 +4,7 @@ use crate::error::Error;
 use crate::model::Model;
 use crate::run::{IndexHistory, Outcome};
 use crate::summary::ply_name;
+use fem_core::window;
 use fem_failure::scan::ScanSite;
 use fem_io::files::OutputDir;
 use fem_io::plot;
@@ -31,7 +32,16 @@ pub(crate) fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) ->
         tables::write_index_history(dir, &rows)?;
     }
     if model.scene.output.maps {
-        let rows = outcome.maxima.iter().map(|m| row(model, m.criterion, m.mode, &m.site, m.index));
+        let (mesh, symmetry) = (&model.plate.plane, model.plate.symmetry());
+        let mut represented = vec![Vec::new(); mesh.quads.len()];
+        (0..mesh.quads.len()).for_each(|quad| represented[symmetry.quad(quad)].push(quad));
+        let rows = outcome.maxima.iter().flat_map(|m| {
+            represented[m.site.cell as usize].iter().map(|quad| {
+                let [x, y] = window::centroid(&mesh.corners(*quad));
+                let site = ScanSite { cell: *quad as u32, position: [x, y, m.site.position[2]], ..m.site };
+                row(model, m.criterion, m.mode, &site, m.index)
+            })
+        });
         tables::write_index_maxima(dir, &rows.collect::<Vec<_>>())?;
     }
     Ok(())

@@ -4,6 +4,7 @@ use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::Model;
 use crate::run;
+use crate::summary::in_words;
 use fem_core::counters::Counters;
 use fem_core::structure::Structure;
 use fem_dynamics::modes::{self, Modes};
@@ -42,7 +43,9 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Solut
     (counters.factorisations, counters.solves) = structure.work();
     let n = structure.ndof();
     let mut momenta = [0, 1, 2].map(|_| vec![0.0; n]);
-    for (axis, momentum) in momenta.iter_mut().enumerate() {
+    // Symmetric modes have no net motion across a mirror, or off the axis of a half-turn.
+    let open = |axis: usize| model.plate.symmetry().operations().all(|o| o.keeps_axis(axis));
+    for (axis, momentum) in momenta.iter_mut().enumerate().filter(|(axis, _)| open(*axis)) {
         let moves = |i: usize| {
             let dof = model.plate.locate(model.constraints.original(i)).2;
             f64::from(u8::from(dof.m() == 0 && dof.n() == axis + 1))
@@ -62,6 +65,8 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Solut
 pub struct Summary {
     pub title: String,
     pub version: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub symmetry: Option<&'static str>,
     pub unknowns: usize,
     pub held: bool,
     pub frequencies_Hz: Vec<f64>,
@@ -79,6 +84,7 @@ impl Summary {
         Self {
             title: model.scene.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
+            symmetry: model.plate.symmetry().name(),
             unknowns: solution.unknowns,
             held: model.held,
             frequencies_Hz: solution.modes.omega.iter().map(|w| w / TAU).collect(),
@@ -93,7 +99,9 @@ impl Summary {
 
     /// The summary as people read it.
     pub fn text(&self) -> String {
-        let mut t = format!("{}\n  model     {} unknowns\n", self.title, self.unknowns);
+        let alone = if self.symmetry.is_some() { ": its symmetric modes alone" } else { "" };
+        let symmetry = in_words(self.symmetry);
+        let mut t = format!("{}\n  model     {} unknowns{symmetry}{alone}\n", self.title, self.unknowns);
         t.push_str("  mode   frequency (Hz)   mass along x, y, z (g)\n");
         for (i, (f, m)) in self.frequencies_Hz.iter().zip(&self.effective_masses_kg).enumerate() {
             let [x, y, z] = m.map(|m| m * 1e3);

@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::model::{Model, NamedProfile, Plan};
 use crate::run;
 use crate::stress::{self, Margin};
+use crate::summary::in_words;
 use fem_core::counters::Counters;
 use fem_core::dof::Dof;
 use fem_core::profile::ProfilePoint;
@@ -126,6 +127,8 @@ fn profile(model: &Model, named: &NamedProfile, u: &[f64]) -> Vec<ProfilePoint> 
 pub struct Summary {
     pub title: String,
     pub version: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub symmetry: Option<&'static str>,
     pub unknowns: usize,
     pub factor_entries: usize,
     pub resultant_N: [f64; 3],
@@ -158,6 +161,7 @@ impl Summary {
         Self {
             title: model.scene.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
+            symmetry: model.plate.symmetry().name(),
             unknowns: solution.unknowns,
             factor_entries: solution.factor_entries,
             resultant_N: solution.resultant,
@@ -177,10 +181,11 @@ impl Summary {
         let d = &self.largest_deflection;
         let [fx, fy, fz] = self.resultant_N;
         let mut t = format!(
-            "{}\n  model     {} unknowns\n  loads     {fx:.4}, {fy:.4}, {fz:.4} N along x, y, z\n  \
+            "{}\n  model     {} unknowns{}\n  loads     {fx:.4}, {fy:.4}, {fz:.4} N along x, y, z\n  \
              response  largest deflection {:.6} mm at ({:.4}, {:.4}, {:.4}) mm; strain energy {:.6e} J\n",
             self.title,
             self.unknowns,
+            in_words(self.symmetry),
             d.w_m * 1e3,
             d.x_m * 1e3,
             d.y_m * 1e3,

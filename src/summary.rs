@@ -43,6 +43,8 @@ pub struct Summary {
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
 pub struct ModelSize {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub symmetry: Option<&'static str>,
     pub quads: usize,
     pub layers: usize,
     pub cells: usize,
@@ -196,6 +198,11 @@ pub(crate) fn ply_name(place: Place) -> String {
     }
 }
 
+/// ", symmetry quarter", or nothing.
+pub(crate) fn in_words(symmetry: Option<&str>) -> String {
+    symmetry.map_or_else(String::new, |name| format!(", symmetry {name}"))
+}
+
 /// All contact forces together.
 fn force_at(history: &[HistoryRow], t: f64) -> f64 {
     let after = history.partition_point(|r| r.time_s < t).clamp(1, history.len().max(2) - 1);
@@ -237,6 +244,7 @@ impl Summary {
             completed: outcome.stopped.is_none(),
             stopped: outcome.stopped.clone(),
             model: ModelSize {
+                symmetry: model.plate.symmetry().name(),
                 quads: model.plate.plane.quads.len(),
                 layers: model.plate.layers(),
                 cells: model.plate.cells(),
@@ -286,8 +294,15 @@ impl Summary {
         let m = &self.model;
         line(format_args!("{}", self.title));
         line(format_args!(
-            "  model     {} quads x {} layers, {} plies, {:.4} mm; {} unknowns, {} marched ({})",
-            m.quads, m.layers, m.plies, m.thickness_mm, m.unknowns, m.unknowns_marched, self.fidelity
+            "  model     {} quads x {} layers, {} plies, {:.4} mm; {} unknowns, {} marched ({}){}",
+            m.quads,
+            m.layers,
+            m.plies,
+            m.thickness_mm,
+            m.unknowns,
+            m.unknowns_marched,
+            self.fidelity,
+            in_words(m.symmetry)
         ));
         for i in &self.impact {
             let name = i.name.as_ref().map_or(String::new(), |name| format!("{name}: "));

@@ -379,6 +379,72 @@ mod supports {
     }
 }
 
+mod symmetry {
+    use super::*;
+
+    fn half(case: Case) -> Case {
+        with_keys(case, "symmetry = \"half-turn\"")
+    }
+
+    /// The refusal of a symmetry that the scene does not have.
+    #[track_caller]
+    fn broken(case: &Case, at: &str, words: &[&str]) {
+        refusal(case, At::Scene(at), &[words, &["leave `symmetry` out"]].concat());
+    }
+
+    #[test]
+    fn word_that_is_none() {
+        let case = with_keys(plate(), "symmetry = \"third-turn\"");
+        refusal(&case, At::Scene("symmetry ="), &["`third-turn`", "half-turn, mirror-x, mirror-y, quarter"]);
+    }
+
+    #[test]
+    fn mesh_without_an_image() {
+        let case = half(plate()).mesh("\n2.539999999994706 0 0", "\n2.549 0 0");
+        broken(&case, "symmetry =", &["the mesh has no symmetry `half-turn`", "node", "has no image"]);
+    }
+
+    #[test]
+    fn ply_that_a_mirror_turns() {
+        let case = with_keys(plate(), "symmetry = \"quarter\"");
+        let words = ["ply 2 at 45 degrees breaks the symmetry `quarter`", "plies at 0 and 90 degrees"];
+        refusal(&case, At::Scene("symmetry ="), &words);
+    }
+
+    #[test]
+    fn impact_off_the_axis() {
+        let case = half(plate()).scene("at = { group = \"impact\" }", "at = { x = \"1 mm\", y = \"0 mm\" }");
+        broken(&case, "at = { x", &["an impact at (1.000000, 0.000000) mm breaks the symmetry `half-turn`"]);
+    }
+
+    #[test]
+    fn support_on_one_side() {
+        let case = half(strip()).scene("[[support]]\nrestrain = \"rigid-motions\"\n", "");
+        let words =
+            ["support of `clamped`: U10 at node", "breaks the symmetry `half-turn`", "holds its image, U10 at node"];
+        broken(&case, "[[support]]", &words);
+    }
+
+    #[test]
+    fn load_on_one_side() {
+        let load = "[[load]]\nforce = [\"0 N\", \"0 N\", \"-1 N\"]\ngroup = \"tip\"\nat = \"top\"\n";
+        let scene = format!(
+            "title = \"t\"\nanalysis = \"static\"\nsymmetry = \"half-turn\"\nmesh = {{ file = \"plate.msh\", unit = \"mm\" }}\n\
+             materials.m = {{ library = \"AS4/3502\" }}\nlaminate = {{ plies = \"[0/45]s\", material = \"m\", ply_thickness = \"0.1 mm\" }}\n\
+             support = [{{ group = \"plate\", at = \"bottom\", fix = [\"U30\"] }}, {{ restrain = \"rigid-motions\" }}]\n{load}"
+        );
+        let case = strip().text(&scene);
+        broken(&case, "[[load]]", &["the load breaks the symmetry `half-turn`", "what acts on U30 at node"]);
+    }
+
+    #[test]
+    fn criterion_that_sees_the_sign_of_a_shear() {
+        let expression = r#"[{ name = "expression", expression = "s23/Yt" }]"#;
+        let case = half(plate()).scene("[\"hashin-report\", \"octahedral\"]", expression);
+        broken(&case, "symmetry =", &["criterion `expression` breaks the symmetry `half-turn`", "sign of a shear"]);
+    }
+}
+
 mod marches {
     use super::*;
 

@@ -30,6 +30,12 @@ impl Case {
         self
     }
 
+    /// The same mesh with another scene.
+    pub(crate) fn text(mut self, scene: &str) -> Self {
+        self.scene = scene.to_owned();
+        self
+    }
+
     /// The same with more lines at the end of the scene.
     pub(crate) fn append(mut self, lines: &str) -> Self {
         self.scene.push_str(lines);

@@ -6,7 +6,7 @@
 //! | --- | --- |
 //! | contracts | [`element`], [`failure`], [`contact`], [`time`], [`reduction`]; [`plugin`] introduces an implementation |
 //! | materials and laminates | [`tensor`], [`material`], [`layup`], [`laminate`] |
-//! | the plate and its unknowns | [`mesh`], [`dof`], [`plate`], [`support`], [`constraint`], [`patch`], [`load`] |
+//! | the plate and its unknowns | [`mesh`], [`dof`], [`plate`], [`support`], [`symmetry`], [`constraint`], [`patch`], [`load`] |
 //! | matrices and stresses | [`quadrature`], [`structure`], [`recovery`], [`profile`], [`window`], [`counters`] |
 #![cfg_attr(feature = "assembly", doc = "| sparse matrices (feature `assembly`) | [`assembly`] |")]
 #![cfg_attr(feature = "formula", doc = "| formulas that people write (feature `formula`) | [`formula`] |")]
@@ -62,6 +62,7 @@ pub mod recovery;
 pub mod reduction;
 pub mod structure;
 pub mod support;
+pub mod symmetry;
 pub mod tensor;
 #[cfg(feature = "testkit")]
 pub mod testkit;

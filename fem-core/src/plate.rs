@@ -3,6 +3,7 @@
 use crate::dof::Dof;
 use crate::element::{Cell, ElementInfo, Stack};
 use crate::mesh::{Group, QuadMesh};
+use crate::symmetry::{self, Symmetry};
 use std::collections::HashMap;
 use std::fmt::Write;
 
@@ -48,6 +49,7 @@ pub struct Plate {
     pitch: usize,
     /// First unknown of each node, and the total at the end.
     offsets: Vec<usize>,
+    symmetry: Symmetry,
 }
 
 impl Plate {
@@ -90,6 +92,7 @@ impl Plate {
             }
         };
         let mut plate = Self {
+            symmetry: Symmetry::none(columns.len(), plane.quads.len()),
             plane,
             columns,
             levels,
@@ -130,6 +133,29 @@ impl Plate {
             next += if below && above { inner } else { 0 };
             self.offsets.push(next);
         }
+    }
+
+    /// Folds the plate by a symmetry: matrices then are those of its symmetric motions, which
+    /// [`Symmetry::equations`] must be among the constraints to make.
+    ///
+    /// # Errors
+    /// A mesh that is not symmetric.
+    pub fn fold(&mut self, group: symmetry::Group) -> Result<(), String> {
+        self.symmetry = Symmetry::of(group, self)?;
+        Ok(())
+    }
+
+    /// How the plate is folded.
+    pub fn symmetry(&self) -> &Symmetry {
+        &self.symmetry
+    }
+
+    /// Cells that represent others or themselves alone, ascending, and how many they stand for.
+    pub fn kept_cells(&self) -> impl Iterator<Item = (usize, f64)> + Clone {
+        let layers = self.layers();
+        self.symmetry
+            .quads()
+            .flat_map(move |(quad, weight)| (quad * layers..(quad + 1) * layers).map(move |cell| (cell, weight)))
     }
 
     /// Number of unknowns before constraints.

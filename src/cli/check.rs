@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::model::{Impact, Model, Plan};
 use crate::registry::Registry;
 use crate::run::{self, Sizes};
+use crate::summary::in_words;
 use clap::Args;
 use fem_core::counters::Counters;
 use fem_io::scene;
@@ -58,10 +59,11 @@ fn plate(model: &Model) -> Vec<Line> {
         (
             "mesh",
             format!(
-                "{} quads, {} nodes, groups {}",
+                "{} quads, {} nodes, groups {}{}",
                 plate.plane.quads.len(),
                 plate.plane.points.len(),
-                plate.plane.groups.keys().map(String::as_str).collect::<Vec<_>>().join(", ")
+                plate.plane.groups.keys().map(String::as_str).collect::<Vec<_>>().join(", "),
+                in_words(plate.symmetry().name())
             ),
         ),
         (

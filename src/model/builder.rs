@@ -122,19 +122,20 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Quads near one of `centres`; all where the scene gives no radius.
-    pub(super) fn watched(&self, mesh: &QuadMesh, centres: &[[f64; 2]]) -> Result<Vec<usize>, SceneError> {
+    /// Quads near one of `centres` that the symmetry keeps; all of these where the scene gives no radius.
+    pub(super) fn watched(&self, plate: &Plate, centres: &[[f64; 2]]) -> Result<Vec<usize>, SceneError> {
         let failure = &self.scene.failure;
-        let Some(radius) = failure.radius else { return Ok((0..mesh.quads.len()).collect()) };
+        let kept = plate.symmetry().quads().map(|(quad, _)| quad);
+        let Some(radius) = failure.radius else { return Ok(kept.collect()) };
         if centres.is_empty() {
             let message = "`failure.radius` counts from the impact, and here is none";
             return Err(self.scene.source.error_at(&failure.place, message, "leave it out"));
         }
         let near = |q: &usize| {
-            let c = window::centroid(&mesh.corners(*q));
+            let c = window::centroid(&plate.plane.corners(*q));
             centres.iter().any(|centre| (c[0] - centre[0]).hypot(c[1] - centre[1]) <= radius)
         };
-        let watched: Vec<usize> = (0..mesh.quads.len()).filter(near).collect();
+        let watched: Vec<usize> = kept.filter(near).collect();
         if watched.is_empty() {
             let message = "no cell has its centre within `failure.radius` of the impact";
             return Err(self.scene.source.error_at(&failure.place, message, "enlarge the radius or leave it out"));
@@ -213,6 +214,9 @@ impl Builder<'_> {
             equations.push(self.equation(plate, equation, number)?);
             places.push(&equation.place);
         }
+        self.symmetric_supports(plate, &equations, &places)?;
+        equations.extend(plate.symmetry().equations(plate));
+        places.resize(equations.len(), self.scene.symmetry.as_ref().map_or(&Place::TOP, |symmetry| &symmetry.place));
         let free = FreeMotions::of(plate, &equations);
         let mut held = true;
         match restraint {
@@ -231,10 +235,19 @@ impl Builder<'_> {
                 ));
             }
         }
-        let constraints = Constraints::eliminate(&elimination_order(plate), &equations);
-        constraints.map(|c| (c, held)).map_err(|why| {
+        Ok((self.eliminate(plate, &equations, &places)?, held))
+    }
+
+    /// Eliminates `equations`, which stand at `places`.
+    pub(super) fn eliminate(
+        &self,
+        plate: &Plate,
+        equations: &[Equation],
+        places: &[&Place],
+    ) -> Result<Constraints, SceneError> {
+        Constraints::eliminate(&elimination_order(plate), equations).map_err(|why| {
             let at = equations.iter().position(|e| e.origin == why.origin()).and_then(|i| places.get(i));
-            source.error_at(at.copied().unwrap_or(&Place::TOP), why.to_string(), "")
+            self.scene.source.error_at(at.copied().unwrap_or(&Place::TOP), why.to_string(), "")
         })
     }
 

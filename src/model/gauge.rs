@@ -11,7 +11,8 @@ use fem_io::scene::{Depth, IndexWatch, SceneError};
 /// A place whose indices are kept over time: one cell at one depth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gauge {
-    /// The quad: of those that hold the place the one whose centre is nearest, the first of equals.
+    /// The quad: of those that hold the place the one whose centre is nearest, the first of equals, or the one that
+    /// represents it in a symmetric plate.
     pub quad: usize,
     /// Ply or interface.
     pub place: Place,
@@ -57,7 +58,9 @@ impl Builder<'_> {
             let c = window::centroid(&mesh.corners(quad));
             (c[0] - point[0]).hypot(c[1] - point[1])
         };
-        let holding = || watched.iter().copied().filter(|q| patch::locate(&mesh.corners(*q), point).is_some());
+        let is_watched = |q: &usize| watched.binary_search(&plate.symmetry().quad(*q)).is_ok();
+        let holds = |q: &usize| patch::locate(&mesh.corners(*q), point).is_some();
+        let holding = || (0..mesh.quads.len()).filter(is_watched).filter(holds);
         let nearest = holding().map(from_centre).fold(f64::INFINITY, f64::min);
         // At a node of a symmetric mesh several are equally near: the first of them, whatever the last bit says.
         let quad = holding().find(|q| from_centre(*q) <= nearest * (1.0 + 1e-9)).ok_or_else(|| {
@@ -91,6 +94,6 @@ impl Builder<'_> {
             };
             return Err(self.error(&watch.depth, message, help));
         }
-        Ok(Gauge { quad, place, criteria })
+        Ok(Gauge { quad: plate.symmetry().quad(quad), place, criteria })
     }
 }

@@ -3,6 +3,7 @@
 mod builder;
 mod gauge;
 mod plan;
+mod symmetry;
 
 pub use gauge::Gauge;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
@@ -46,7 +47,7 @@ pub struct Model {
     pub profiles: Vec<NamedProfile>,
     /// Criteria by name; none when damage is off.
     pub criteria: Vec<NamedCriterion>,
-    /// Quads whose stresses the criteria judge.
+    /// Quads whose stresses the criteria judge; of those that a symmetry maps onto each other one.
     pub watched: Vec<usize>,
     /// Places whose indices are kept over time.
     pub gauges: Vec<Gauge>,
@@ -104,8 +105,9 @@ impl Model {
         };
         let areal_mass = laminate.areal_mass(&materials).map_err(lacks)?;
         let stacks = laminate.stacks(&materials).map_err(lacks)?;
-        let plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
+        let mut plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
             .map_err(|why| builder.error(&scene.element.name, why, ""))?;
+        builder.fold(&mut plate, &laminate, &materials, &criteria)?;
         warnings.extend(polygon(&plate));
         warnings.extend(flat(&plate));
         let (constraints, held) = builder.constraints(&plate)?;
@@ -119,7 +121,7 @@ impl Model {
             _ => Vec::new(),
         };
         builder.modes(&plan)?;
-        let watched = builder.watched(&plate.plane, &centres)?;
+        let watched = builder.watched(&plate, &centres)?;
         let gauges = builder.gauges(&plate, &watched, &criteria)?;
         let resin = scene.interface.as_ref().map(|resin| resin.value);
         let threshold = match scene.damage {

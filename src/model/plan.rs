@@ -93,6 +93,7 @@ impl Builder<'_> {
     ) -> Result<Impact, SceneError> {
         let strike = |impactor: &scene::Impactor| {
             let (centre, contact) = self.contact_place(impactor, plate, element)?;
+            self.symmetric_impact(plate, &impactor.at, centre)?;
             let contact = Functional(constraints.restrict(&contact.0));
             if contact.0.is_empty() {
                 return Err(self.error(
@@ -172,6 +173,7 @@ impl Builder<'_> {
                     .error_at(place, "the load is not finite somewhere on the plate", help)
                     .into());
             }
+            self.symmetric_load(plate, &forces, place)?;
         }
         Ok(forces)
     }

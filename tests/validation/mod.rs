@@ -9,3 +9,4 @@ mod patch;
 mod scene;
 mod slender;
 mod strip;
+mod symmetry;

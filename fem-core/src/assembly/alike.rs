@@ -7,8 +7,8 @@ use std::collections::HashMap;
 pub(super) struct Alike {
     /// Start of each class in `cells`, and their number at the end.
     starts: Vec<u32>,
-    /// Cells by class, each class in the order of the plate.
-    cells: Vec<u32>,
+    /// Cells by class, each class in the order of the plate, and how many each stands for.
+    cells: Vec<(u32, f64)>,
 }
 
 /// Edges of the quadrilateral as seen from its first corner, and the height, in units of `GRAIN` of the cell's size; which
@@ -24,8 +24,10 @@ impl Alike {
             plate.stacks.iter().map(|s| plate.stacks.iter().position(|t| t == s).unwrap_or(0)).collect();
         let mut numbers: HashMap<Shape, u32> = HashMap::new();
         let mut starts = vec![0];
-        let class: Vec<u32> = (0..plate.cells())
-            .map(|cell| {
+        let kept = plate.kept_cells();
+        let class: Vec<u32> = kept
+            .clone()
+            .map(|(cell, _)| {
                 let number = numbers.len() as u32;
                 let class = *numbers.entry(shape(plate, cell, &stacks)).or_insert(number);
                 if class == number {
@@ -39,9 +41,9 @@ impl Alike {
             starts[i] += starts[i - 1];
         }
         let mut fill = starts.clone();
-        let mut cells = vec![0; class.len()];
-        for (cell, class) in class.into_iter().enumerate() {
-            cells[fill[class as usize] as usize] = cell as u32;
+        let mut cells = vec![(0, 0.0); class.len()];
+        for ((cell, weight), class) in kept.zip(class) {
+            cells[fill[class as usize] as usize] = (cell as u32, weight);
             fill[class as usize] += 1;
         }
         Self { starts, cells }
@@ -52,8 +54,13 @@ impl Alike {
         self.starts.len() - 1
     }
 
-    /// Cells of a class; never empty.
-    pub(super) fn cells(&self, class: usize) -> &[u32] {
+    /// Number of cells in all classes.
+    pub(super) fn total(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Cells of a class, and how many each stands for; never empty.
+    pub(super) fn cells(&self, class: usize) -> &[(u32, f64)] {
         &self.cells[self.starts[class] as usize..self.starts[class + 1] as usize]
     }
 }

@@ -42,7 +42,8 @@ pub fn elimination_order(plate: &Plate) -> Vec<usize> {
 
 /// Values of K or M on `pattern`.
 ///
-/// Cells of equal shape and plies share one matrix. Threads share the integration only; matrices are added in one order,
+/// Cells of equal shape and plies share one matrix; of those that a symmetry maps onto each other one counts for all.
+/// Threads share the integration only; matrices are added in one order,
 /// so the result is the same bit for bit for any number of threads.
 ///
 /// # Errors
@@ -82,7 +83,7 @@ pub fn assemble(
         let share = count.div_ceil(threads.get());
         if threads.get() == 1 {
             for (i, out) in batch.chunks_exact_mut(size).enumerate() {
-                integrate(alike.cells(first + i)[0] as usize, &mut scratches[0], out)?;
+                integrate(alike.cells(first + i)[0].0 as usize, &mut scratches[0], out)?;
             }
         } else {
             std::thread::scope(|scope| {
@@ -94,7 +95,7 @@ pub fn assemble(
                     .map(|(w, (part, scratch))| {
                         scope.spawn(move || {
                             part.chunks_exact_mut(size).enumerate().try_for_each(|(i, out)| {
-                                integrate(alike.cells(first + w * share + i)[0] as usize, scratch, out)
+                                integrate(alike.cells(first + w * share + i)[0].0 as usize, scratch, out)
                             })
                         })
                     })
@@ -107,12 +108,12 @@ pub fn assemble(
         }
         counters.elements += count as u64;
         for (i, a) in batch.chunks_exact(size).enumerate() {
-            for cell in alike.cells(first + i) {
+            for (cell, weight) in alike.cells(first + i) {
                 map.set(plate, constraints, *cell as usize);
-                map.scatter(pattern, a, &mut values);
+                map.scatter(pattern, a, *weight, &mut values);
             }
         }
     }
-    counters.elements_reused += (plate.cells() - alike.len()) as u64;
+    counters.elements_reused += (alike.total() - alike.len()) as u64;
     Ok(values)
 }

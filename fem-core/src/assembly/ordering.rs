@@ -10,11 +10,13 @@ const LEAF: usize = 6;
 /// The set is cut at the median of its longer side; the columns of the right half that touch the left are the separator.
 pub fn nested_dissection(plate: &Plate) -> Vec<u32> {
     let n = plate.columns.len();
-    let quads = plate.plane.quads.len();
+    // Of columns that a symmetry ties together one stands for all, with the cells of all.
+    let symmetry = plate.symmetry();
+    let columns = |quad| plate.columns_of_quad(quad).iter().map(|c| symmetry.column(*c) as usize);
     let mut degree = vec![0_u32; n + 1];
-    for quad in 0..quads {
-        for c in plate.columns_of_quad(quad) {
-            degree[*c as usize + 1] += 1;
+    for (quad, _) in symmetry.quads() {
+        for c in columns(quad) {
+            degree[c + 1] += 1;
         }
     }
     for i in 0..n {
@@ -22,15 +24,16 @@ pub fn nested_dissection(plate: &Plate) -> Vec<u32> {
     }
     let mut cells = vec![0_u32; degree[n] as usize];
     let mut fill = degree.clone();
-    for q in 0..quads {
-        for c in plate.columns_of_quad(q) {
-            cells[fill[*c as usize] as usize] = q as u32;
-            fill[*c as usize] += 1;
+    for (quad, _) in symmetry.quads() {
+        for c in columns(quad) {
+            cells[fill[c] as usize] = quad as u32;
+            fill[c] += 1;
         }
     }
     let mut work = Work { plate, starts: degree, cells, left: vec![0; n], cut: 0, order: Vec::with_capacity(n) };
-    let mut all: Vec<u32> = (0..n as u32).collect();
-    work.dissect(&mut all);
+    let (mut kept, tied): (Vec<u32>, Vec<u32>) = (0..n as u32).partition(|c| symmetry.column(*c) == *c);
+    work.dissect(&mut kept);
+    work.order.extend(tied);
     work.order
 }
 
@@ -70,11 +73,11 @@ impl Work<'_> {
         for c in left.iter() {
             self.left[*c as usize] = cut;
         }
+        let symmetry = self.plate.symmetry();
+        let on_left = |c: &u32| self.left[symmetry.column(*c) as usize] == cut;
         let touches = |c: &u32| {
             let cells = self.starts[*c as usize] as usize..self.starts[*c as usize + 1] as usize;
-            self.cells[cells]
-                .iter()
-                .any(|q| self.plate.columns_of_quad(*q as usize).iter().any(|c| self.left[*c as usize] == cut))
+            self.cells[cells].iter().any(|q| self.plate.columns_of_quad(*q as usize).iter().any(on_left))
         };
         right.sort_unstable_by_key(|c| (touches(c), *c));
         let inner = right.partition_point(|c| !touches(c));

@@ -172,24 +172,24 @@ impl CellMap {
         }
     }
 
-    /// Adds the lower triangle of a cell matrix into `values`.
-    pub(crate) fn scatter(&mut self, pattern: &Pattern, a: &[f64], values: &mut [f64]) {
+    /// Adds the lower triangle of `weight` times a cell matrix into `values`.
+    pub(crate) fn scatter(&mut self, pattern: &Pattern, a: &[f64], weight: f64, values: &mut [f64]) {
         if self.plain {
-            self.add_plain(pattern, a, values);
+            self.add_plain(pattern, a, weight, values);
             return;
         }
         let mut work = std::mem::take(&mut self.work);
         self.transform(a, &mut work);
         self.places.clear();
         self.places.extend(0..self.reduced.len());
-        self.add_plain(pattern, &work, values);
+        self.add_plain(pattern, &work, weight, values);
         self.work = work;
     }
 
     /// Adds the lower triangle of a matrix whose row and column `places[i]` belong to the independent unknown `reduced[i]`.
     ///
     /// Runs of consecutive unknowns are consecutive in every column that holds them: one search per run.
-    fn add_plain(&self, pattern: &Pattern, a: &[f64], values: &mut [f64]) {
+    fn add_plain(&self, pattern: &Pattern, a: &[f64], weight: f64, values: &mut [f64]) {
         let (n, m) = (self.reduced.len(), a.len().isqrt());
         for (j, column) in self.reduced.iter().enumerate() {
             let start = pattern.starts[*column];
@@ -204,7 +204,7 @@ impl CellMap {
                     length += 1;
                 }
                 for (v, place) in values[start + at..start + at + length].iter_mut().zip(&self.places[i..i + length]) {
-                    *v += from[*place];
+                    *v += weight * from[*place];
                 }
                 i += length;
             }
@@ -218,7 +218,7 @@ pub fn pattern(plate: &Plate, constraints: &Constraints) -> Pattern {
     let mut map = CellMap::default();
     let (mut starts, mut members) = (vec![0_u32; n + 1], Vec::new());
     // Cells of every column, then rows of every column through its cells.
-    for cell in 0..plate.cells() {
+    for (cell, _) in plate.kept_cells() {
         map.set(plate, constraints, cell);
         for i in &map.reduced {
             starts[i + 1] += 1;

@@ -30,6 +30,7 @@ use fem_core::laminate::Laminate;
 use fem_core::material::Material;
 use fem_core::plate::ZDerivatives;
 use fem_core::plugin::Dimension;
+use fem_core::symmetry::Group;
 use reader::{Field, Keys, Reader};
 use source::Origin;
 use std::collections::BTreeMap;
@@ -48,6 +49,8 @@ pub struct Scene {
     pub analysis: Analysis,
     /// The mesh.
     pub mesh: MeshSource,
+    /// By what plate, supports and loads are symmetric, where only symmetric motions are wanted.
+    pub symmetry: Option<Located<Group>>,
     /// Its materials.
     pub materials: Vec<Located<Material>>,
     /// The laminate; its materials count in `materials`.
@@ -160,6 +163,7 @@ const KEYS: Keys = &[
     ("fidelity", r#""engineering""#),
     ("analysis", r#""static""#),
     ("mesh", r#"{ file = "plate.msh", unit = "mm" }"#),
+    ("symmetry", r#""half-turn""#),
     ("materials", r#"{ as4-3502 = { library = "AS4/3502" } }"#),
     ("laminate", r#"{ plies = "[0/45/-45/90]2s", material = "as4-3502", ply_thickness = "0.13208 mm" }"#),
     ("element", r#"{ kind = "hermite-prism" }"#),
@@ -246,6 +250,10 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
         title: root.required("title")?.text()?.to_owned(),
         fidelity,
         mesh: read_mesh(&root.required("mesh")?, path)?,
+        symmetry: match root.optional("symmetry") {
+            Some(field) => Some(field.at(field.choice(&Group::ALL)?)),
+            None => None,
+        },
         materials,
         laminate,
         interface,

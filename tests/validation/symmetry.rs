@@ -1,0 +1,207 @@
+//! Folded plates against whole ones.
+
+use super::scene::Side::{Clamped, Free, Supported};
+use super::scene::{AS4, Plate, gmsh_grid};
+use crate::support::root;
+use fem::core::dof::Dof;
+use fem::io::scene;
+use fem::run::Outcome;
+use fem::{Model, Registry, modes, run, statics};
+use std::num::NonZeroUsize;
+
+/// Agreement of folded and whole, relative to the largest of what is compared.
+const SAME: f64 = 1e-10;
+
+/// The same plate, folded.
+fn folded(plate: &Plate, symmetry: &str) -> Plate {
+    let mesh = format!("{}\nsymmetry = '{symmetry}'", plate.mesh);
+    Plate { mesh, ..plate.clone() }
+}
+
+/// Displacements, energy and margins of a folded plate are those of the whole, at `share` of its unknowns.
+fn check(plate: &Plate, symmetry: &str, share: std::ops::Range<f64>) {
+    let [whole, part] = [plate.clone(), folded(plate, symmetry)].map(|p| p.model("static"));
+    let [a, b] = [&whole, &part].map(|m| statics::solve(m, NonZeroUsize::MIN).unwrap());
+    let of = |k: usize, u: &[f64]| {
+        let kind = |(dof, _): &(usize, &f64)| whole.plate.locate(*dof).2 == Dof::SOLID[k];
+        u.iter().enumerate().filter(kind).map(|(_, u)| *u).collect::<Vec<f64>>()
+    };
+    for group in [0..1, 4..5, 8..9, 1..4, 5..8, 9..12] {
+        let (ua, ub): (Vec<f64>, Vec<f64>) =
+            group.clone().flat_map(|k| of(k, &a.u).into_iter().zip(of(k, &b.u)).collect::<Vec<_>>()).unzip();
+        let largest = ua.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+        let worst = ua.iter().zip(&ub).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+        assert!(worst <= SAME * largest, "{symmetry}, unknowns {group:?}: {worst:e} of {largest:e}");
+    }
+    assert!((a.strain_energy / b.strain_energy - 1.0).abs() < SAME, "{} {}", a.strain_energy, b.strain_energy);
+    assert_eq!(a.resultant, b.resultant);
+    assert!(share.contains(&(b.unknowns as f64 / a.unknowns as f64)), "{} of {}", b.unknowns, a.unknowns);
+    assert!(!a.margins.is_empty() && a.margins.len() == b.margins.len());
+    for (a, b) in a.margins.iter().zip(&b.margins) {
+        assert!((a.reserve_factor / b.reserve_factor - 1.0).abs() < SAME, "{a:?} {b:?}");
+        assert_eq!((&a.criterion, &a.mode), (&b.criterion, &b.mode));
+    }
+}
+
+/// 60 x 40 mm under a pressure that a half-turn keeps and, with `odd` zero, mirrors too.
+fn pressed(plies: &str, layers: Vec<usize>, cells: [usize; 2], odd: f64) -> Plate {
+    let material = format!(
+        "{AS4}Xt = '1400 MPa'\nXc = '1130 MPa'\nYt = '70 MPa'\nYc = '200 MPa'\n\
+         Zt = '70 MPa'\nZc = '200 MPa'\nS12 = '99 MPa'\nS13 = '99 MPa'\nS23 = '60 MPa'\n"
+    );
+    let pressure = format!("1 + ((x-30)/30)^2 + {odd}*(x-30)*(y-20)/600");
+    let mut plate = Plate::new(&material, plies, 0.25, layers).rectangle([60.0, 40.0], cells).pressure(&pressure);
+    plate.more.push_str("[failure]\ncriteria = ['tsai-wu']\nwindow = '12 mm'\n");
+    plate
+}
+
+#[test]
+fn angle_plies_under_a_half_turn() {
+    for (element, layers, share) in [
+        ("kind = 'hermite-prism'", vec![2, 6], 0.45..0.56),
+        ("kind = 'hermite-hex'", vec![4, 4], 0.45..0.56),
+        ("kind = 'hermite-prism', z_derivatives = 'layer-wise'", vec![4, 4], 0.45..0.56),
+        ("kind = 'hex20'", vec![8], 0.45..0.56),
+        ("kind = 'mitc4'", vec![8], 0.45..0.56),
+    ] {
+        // Cells that lie on the axis, on both lines through it, and on one.
+        for cells in [[5, 3], [4, 4], [5, 4]] {
+            let plate = pressed("[0/45/-45/90]s", layers.clone(), cells, 0.7).element(element);
+            check(&plate.clone().sides([Supported, Supported, Clamped, Clamped]), "half-turn", share.clone());
+        }
+    }
+}
+
+#[test]
+fn cross_plies_under_mirrors() {
+    for element in ["kind = 'hermite-prism'", "kind = 'hex20'", "kind = 'mitc4'"] {
+        for cells in [[5, 3], [6, 4], [5, 4]] {
+            let layers = if element.contains("mitc4") { vec![4] } else { vec![1, 3] };
+            let plate = pressed("[0/90]s", layers, cells, 0.0).element(element).sides([Clamped; 4]);
+            check(&plate, "mirror-x", 0.35..0.6);
+            check(&plate, "mirror-y", 0.35..0.6);
+            check(&plate, "quarter", 0.12..0.4);
+        }
+    }
+}
+
+/// A plate that nothing holds in its plane: the half-turn leaves one motion to restrain, both mirrors none.
+#[test]
+fn what_the_symmetry_leaves_free_is_restrained() {
+    let ring = |plate: Plate| {
+        let mut plate = plate.sides([Free; 4]);
+        for group in ["x-min", "x-max", "y-min", "y-max"] {
+            plate.more.push_str(&format!("[[support]]\ngroup = '{group}'\nat = 'bottom'\nfix = ['U30']\n"));
+        }
+        plate
+    };
+    check(&ring(pressed("[0/45/-45/90]s", vec![4, 4], [6, 4], 0.7)), "half-turn", 0.45..0.56);
+    check(&ring(pressed("[0/90]s", vec![2, 2], [6, 4], 0.0)), "quarter", 0.2..0.4);
+    let lines = |n: usize, size: f64| (0..=n).map(|i| size * i as f64 / n as f64).collect::<Vec<f64>>();
+    let mesh = gmsh_grid(&lines(6, 60.0), &lines(4, 40.0), 0.0);
+    let plate = pressed("[0/45/-45/90]s", vec![4, 4], [6, 4], 0.7).on(&mesh);
+    check(&ring(plate), "half-turn", 0.45..0.56);
+}
+
+/// The modes of a folded plate are those of the whole that are symmetric, all of them.
+#[test]
+fn symmetric_modes_alone_and_all_of_them() {
+    for (plies, symmetry, signs) in [
+        ("[0/45/-45/90]s", "half-turn", [-1.0, -1.0]),
+        ("[0/90]s", "mirror-x", [-1.0, 1.0]),
+        ("[0/90]s", "mirror-y", [1.0, -1.0]),
+    ] {
+        let layers = if plies.contains("45") { vec![4, 4] } else { vec![2, 2] };
+        let plate = Plate::new(AS4, plies, 0.25, layers).rectangle([60.0, 40.0], [6, 5]).sides([Clamped; 4]);
+        let model = plate.model("modes");
+        let all = modes::solve(&model, 12, NonZeroUsize::MIN).unwrap().modes;
+        let level = model.plate.mid_level().unwrap();
+        let mut u = vec![0.0; model.plate.ndof()];
+        let mut even = |shape: &[f64]| {
+            model.constraints.expand(shape, &mut u);
+            let w = |column: usize| model.plate.dofs_at(column, level, Dof::SOLID[8]).next().map_or(0.0, |d| u[d]);
+            let columns = &model.plate.columns;
+            let image = |[x, y]: [f64; 2]| [30e-3 + signs[0] * (x - 30e-3), 20e-3 + signs[1] * (y - 20e-3)];
+            let (mut same, mut sum) = (0.0_f64, 0.0_f64);
+            for (column, place) in columns.iter().enumerate() {
+                let [x, y] = image(*place);
+                let other = columns.iter().position(|p| (p[0] - x).hypot(p[1] - y) < 1e-9).unwrap();
+                same += w(column) * w(other);
+                sum += w(column).powi(2);
+            }
+            assert!((same.abs() / sum - 1.0).abs() < 1e-6, "a mode is even or odd: {same} of {sum}");
+            same > 0.0
+        };
+        let shapes = all.shapes.chunks_exact(model.constraints.ndof());
+        let want: Vec<f64> = all.omega.iter().zip(shapes).filter(|(_, shape)| even(shape)).map(|(w, _)| *w).collect();
+        assert!((3..12).contains(&want.len()), "{want:?}");
+        let got = folded(&plate, symmetry).frequencies(want.len());
+        for (got, want) in got.iter().zip(&want) {
+            assert!((got / want - 1.0).abs() < SAME, "{symmetry}: {got} {want}");
+        }
+    }
+}
+
+/// The masses that move with the modes along an axis add up to the same; none moves across a mirror.
+#[test]
+fn effective_masses_are_those_of_the_whole() {
+    let plate = Plate::new(AS4, "[0/90]s", 0.25, vec![2, 2]).rectangle([60.0, 40.0], [4, 4]).sides([Clamped; 4]);
+    let solve = |plate: &Plate| modes::solve(&plate.model("modes"), 3, NonZeroUsize::MIN).unwrap().effective_masses;
+    let (whole, part) = (solve(&plate), solve(&folded(&plate, "quarter")));
+    assert!((whole[0][2] / part[0][2] - 1.0).abs() < 1e-8, "{whole:?} {part:?}");
+    assert!(part.iter().all(|m| m[0] == 0.0 && m[1] == 0.0), "{part:?}");
+}
+
+/// The first example, changed.
+fn impact(edits: &[(&str, &str)]) -> (Model, Outcome) {
+    let path = root().join("examples/as4-3502-16ply-50mm/scene.toml");
+    let mut text = std::fs::read_to_string(&path).unwrap();
+    for (from, to) in edits {
+        assert!(text.contains(from), "no `{from}`");
+        text = text.replace(from, to);
+    }
+    let model = Model::new(scene::parse(&text, &path).unwrap(), &Registry::standard()).unwrap();
+    let outcome = run::march(run::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
+    assert_eq!(outcome.stopped, None);
+    (model, outcome)
+}
+
+/// Histories within `rounding` of their peaks, and the same events.
+fn compare(symmetry: &str, edits: &[(&str, &str)], rounding: f64) {
+    let key = format!("symmetry = '{symmetry}'\nmesh = {{");
+    let (whole, a) = impact(edits);
+    let (part, b) = impact(&[edits, &[("mesh = {", &key)]].concat());
+    let peak = a.history.iter().fold(0.0_f64, |m, r| m.max(r.contact_force_n()));
+    let worst = a.history.iter().zip(&b.history).map(|(a, b)| (a.contact_force_n() - b.contact_force_n()).abs());
+    let worst = worst.fold(0.0, f64::max);
+    assert!(peak > 100.0 && worst <= rounding * peak, "{symmetry}: {worst:e} of {peak}");
+    assert_eq!(a.history.len(), b.history.len());
+    assert!(!a.events.is_empty() && a.events.len() == b.events.len(), "{} {}", a.events.len(), b.events.len());
+    for (a, b) in a.events.iter().zip(&b.events) {
+        assert_eq!((&a.criterion, a.mode, a.place), (&b.criterion, b.mode, b.place));
+        assert!((a.time / b.time - 1.0).abs() < 10.0 * rounding, "{a:?} {b:?}");
+        assert_eq!(part.plate.symmetry().quad(a.cell as usize), b.cell as usize);
+    }
+    assert!(part.constraints.ndof() as f64 <= 0.56 * whole.constraints.ndof() as f64);
+    assert!(2 * b.sites <= a.sites + a.sites / 10, "{} of {}", b.sites, a.sites);
+}
+
+const WEAK: (&str, &str) = ("library = \"AS4/3502\"", "library = \"AS4/3502\", Yt = \"2 MPa\"");
+const SHORT: (&str, &str) = ("end = \"1 ms\"", "end = \"40 us\"");
+const FULL: (&str, &str) = ("[march]", "[reduction]\nmethod = 'none'\n[march]\nintegrator = 'newmark'\nstep = '1 us'");
+
+#[test]
+fn an_impact_on_angle_plies_under_a_half_turn() {
+    compare("half-turn", &[WEAK, SHORT, FULL], SAME);
+}
+
+/// Ritz vectors of whole and folded drift apart: rounding grows from each to the next, within the space that they span.
+#[test]
+fn a_reduced_impact_differs_by_less_than_its_reduction_costs() {
+    compare("half-turn", &[WEAK, SHORT], 2e-3);
+}
+
+#[test]
+fn an_impact_on_cross_plies_in_a_quarter() {
+    compare("quarter", &[WEAK, SHORT, FULL, ("[0/45/-45/90]2s", "[0/90]4s")], SAME);
+}
