@@ -129,7 +129,7 @@ pub fn structure(
     let entries = symbolic.entries();
     let (plate, originals) = (model.plate.clone(), model.constraints.clone());
     let name = move |column| plate.describe(originals.original(column));
-    Ok((SparseStructure::new(symbolic, k, m, name), entries))
+    Ok((SparseStructure::new(symbolic, k, m, threads, name), entries))
 }
 
 /// Assembles and reduces `model` and checks the step.

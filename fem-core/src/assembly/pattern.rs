@@ -5,36 +5,93 @@ use crate::element::ElementError;
 use crate::plate::Plate;
 use std::fmt;
 
-/// Lower triangle of a symmetric matrix, compressed columns, rows ascending.
+/// Lower triangle of a symmetric matrix, compressed columns, rows ascending, the diagonal in every column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pattern {
     /// Start of each column, and the number of entries at the end.
     pub starts: Vec<usize>,
     /// Row of each entry.
     pub rows: Vec<usize>,
+    /// First columns of the runs of columns that no row or column of the matrix tells apart, and the number of columns.
+    groups: Vec<usize>,
 }
 
 impl Pattern {
+    /// The pattern with these starts of columns and rows.
+    pub fn new(starts: Vec<usize>, rows: Vec<usize>) -> Self {
+        let n = starts.len() - 1;
+        let column = |j: usize| &rows[starts[j]..starts[j + 1]];
+        let mut first = vec![false; n + 1];
+        first[0] = true;
+        first[n] = true;
+        for j in 0..n {
+            let rows = column(j);
+            if j > 0 && column(j - 1)[1..] != *rows {
+                first[j] = true;
+            }
+            // A row above in only one of two columns shows as an end of a run of rows.
+            for pair in rows.windows(2) {
+                if pair[1] != pair[0] + 1 {
+                    first[pair[0] + 1] = true;
+                    first[pair[1]] = true;
+                }
+            }
+            first[rows[rows.len() - 1] + 1] = true;
+        }
+        let groups = (0..=n).filter(|j| first[*j]).collect();
+        Self { starts, rows, groups }
+    }
+
     /// Number of columns.
     pub fn ndof(&self) -> usize {
         self.starts.len() - 1
     }
 
+    /// First columns of the runs of columns with equal neighbours, and the number of columns at the end.
+    pub(crate) fn groups(&self) -> &[usize] {
+        &self.groups
+    }
+
     /// `y ← y + scale · A x` for the symmetric matrix with this pattern and `values`.
     pub fn add_product(&self, values: &[f64], scale: f64, x: &[f64], y: &mut [f64]) {
-        for j in 0..self.ndof() {
-            let range = self.starts[j]..self.starts[j + 1];
-            let (rows, values) = (&self.rows[range.clone()], &values[range]);
-            let Some((diagonal, below)) = values.split_first() else { continue };
-            let xj = scale * x[j];
-            let mut yj = diagonal * xj;
-            for (i, a) in rows[1..].iter().zip(below) {
-                y[*i] += a * xj;
-                yj += a * x[*i] * scale;
+        // The columns of a group share their rows: a dense trapezoid between two gathered vectors.
+        let (mut from, mut to) = (Vec::new(), Vec::new());
+        for group in self.groups.windows(2) {
+            let rows = &self.rows[self.starts[group[0]]..self.starts[group[0] + 1]];
+            from.clear();
+            from.extend(rows.iter().map(|i| scale * x[*i]));
+            to.clear();
+            to.resize(rows.len(), 0.0);
+            for (local, j) in (group[0]..group[1]).enumerate() {
+                let values = &values[self.starts[j]..self.starts[j + 1]];
+                to[local] += values[0] * from[local];
+                let (xj, below) = (from[local], &from[local + 1..]);
+                to[local] += add_and_dot(&values[1..], xj, below, &mut to[local + 1..]);
             }
-            y[j] += yj;
+            for (i, t) in rows.iter().zip(&to) {
+                y[*i] += t;
+            }
         }
     }
+}
+
+/// `y ← y + s a`; returns `a · x`.
+fn add_and_dot(a: &[f64], s: f64, x: &[f64], y: &mut [f64]) -> f64 {
+    const LANES: usize = 4;
+    let mut sums = [0.0; LANES];
+    let (mut a, mut x, mut y) = (a.chunks_exact(LANES), x.chunks_exact(LANES), y.chunks_exact_mut(LANES));
+    for ((a, x), y) in (&mut a).zip(&mut x).zip(&mut y) {
+        for k in 0..LANES {
+            y[k] += s * a[k];
+            sums[k] += a[k] * x[k];
+        }
+    }
+    let mut sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+    for ((a, x), y) in a.remainder().iter().zip(x.remainder()).zip(y.into_remainder()) {
+        *y += s * a;
+        sum += a * x;
+    }
+    sum
 }
 
 /// An element matrix that could not be made.
@@ -165,22 +222,22 @@ pub fn pattern(plate: &Plate, constraints: &Constraints) -> Pattern {
             fill[*i as usize] += 1;
         }
     }
-    let mut out = Pattern { starts: Vec::with_capacity(n + 1), rows: Vec::new() };
-    out.starts.push(0);
+    let (mut column_starts, mut rows) = (Vec::with_capacity(n + 1), Vec::new());
+    column_starts.push(0);
     let mut seen = vec![u32::MAX; n];
     for j in 0..n {
-        let begin = out.rows.len();
+        let begin = rows.len();
         for cell in &cells[starts[j] as usize..starts[j + 1] as usize] {
             let range = cell_starts[*cell as usize] as usize..cell_starts[*cell as usize + 1] as usize - 1;
             for i in &members[range] {
                 if *i as usize >= j && seen[*i as usize] != j as u32 {
                     seen[*i as usize] = j as u32;
-                    out.rows.push(*i as usize);
+                    rows.push(*i as usize);
                 }
             }
         }
-        out.rows[begin..].sort_unstable();
-        out.starts.push(out.rows.len());
+        rows[begin..].sort_unstable();
+        column_starts.push(rows.len());
     }
-    out
+    Pattern::new(column_starts, rows)
 }

@@ -3,6 +3,7 @@
 use super::{Cholesky, FactorError, Pattern, Symbolic};
 use crate::structure::{SolveError, Structure};
 use std::fmt;
+use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 /// What the factor at hand belongs to.
@@ -33,13 +34,19 @@ impl fmt::Debug for SparseStructure {
 }
 
 impl SparseStructure {
-    /// `k` and `m` on the pattern of `symbolic`; `name(column)` describes an unknown in messages.
-    pub fn new(symbolic: Symbolic, k: Vec<f64>, m: Vec<f64>, name: impl Fn(usize) -> String + Send + 'static) -> Self {
+    /// `k` and `m` on the pattern of `symbolic`, factorised by `threads`; `name(column)` describes an unknown in messages.
+    pub fn new(
+        symbolic: Symbolic,
+        k: Vec<f64>,
+        m: Vec<f64>,
+        threads: NonZeroUsize,
+        name: impl Fn(usize) -> String + Send + 'static,
+    ) -> Self {
         let pattern = symbolic.pattern().clone();
         Self {
             name: Box::new(name),
             combined: vec![0.0; k.len()],
-            factor: Cholesky::new(symbolic),
+            factor: Cholesky::new(symbolic, threads),
             factored: Factored::Nothing,
             pattern,
             k,
