@@ -52,7 +52,7 @@ pub fn structure(
     let (plate, originals) = (model.plate.clone(), model.constraints.clone());
     let name = move |column| plate.describe(originals.original(column));
     let coarse = Prolongation::linear_in_z(&model.plate, &model.constraints);
-    Ok((SparseStructure::new(symbolic, k, m, name).with_coarse(coarse), entries))
+    Ok((SparseStructure::new(symbolic, k, m, threads, name).with_coarse(coarse), entries))
 }
 
 /// Assembles and reduces `model` and checks the step.

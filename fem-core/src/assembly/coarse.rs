@@ -28,17 +28,17 @@ pub(super) fn pattern(fine: &Pattern, p: &Prolongation) -> Pattern {
             }
         }
     }
-    let mut out = Pattern { starts: vec![0], rows: Vec::new() };
+    let (mut starts, mut all) = (vec![0], Vec::new());
     for (b, rows) in below.iter_mut().enumerate() {
         rows.sort_unstable();
         rows.dedup();
         for j in blocks[b]..blocks[b + 1] {
-            out.rows.extend(j..blocks[b + 1]);
-            rows[1..].iter().for_each(|r| out.rows.extend(blocks[*r]..blocks[*r + 1]));
-            out.starts.push(out.rows.len());
+            all.extend(j..blocks[b + 1]);
+            rows[1..].iter().for_each(|r| all.extend(blocks[*r]..blocks[*r + 1]));
+            starts.push(all.len());
         }
     }
-    out
+    Pattern::new(starts, all)
 }
 
 /// PᵀAP on its pattern `coarse`.

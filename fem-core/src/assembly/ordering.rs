@@ -5,86 +5,131 @@ use crate::plate::Plate;
 /// Columns at which dissection stops.
 const LEAF: usize = 6;
 
+/// Shares of a set that a cut leaves on its left, tried along both axes.
+const SHARES: [f64; 5] = [0.5, 0.45, 0.55, 0.4, 0.6];
+
 /// Elimination order of the columns of `plate`: halves first, their separator last, recursively (George 1973).
 ///
-/// The set is cut at the median of its longer side; the columns of the right half that touch the left are the separator.
+/// Of several cuts across each axis the one with the smallest separator wins; a separator is a smallest set of columns
+/// that touches every connection across the cut (Kőnig 1931, by augmenting paths).
 pub fn nested_dissection(plate: &Plate) -> Vec<u32> {
     let n = plate.columns.len();
-    // Of columns that a symmetry ties together one stands for all, with the cells of all.
+    // Of columns that a symmetry ties together one stands for all, with the neighbours of all.
     let symmetry = plate.symmetry();
-    let columns = |quad| plate.columns_of_quad(quad).iter().map(|c| symmetry.column(*c) as usize);
-    let mut degree = vec![0_u32; n + 1];
+    let mut neighbours = vec![Vec::new(); n];
     for (quad, _) in symmetry.quads() {
-        for c in columns(quad) {
-            degree[c + 1] += 1;
+        let corners: Vec<u32> = plate.columns_of_quad(quad).iter().map(|c| symmetry.column(*c)).collect();
+        for c in &corners {
+            neighbours[*c as usize].extend(corners.iter().filter(|other| *other != c));
         }
     }
-    for i in 0..n {
-        degree[i + 1] += degree[i];
+    for list in &mut neighbours {
+        list.sort_unstable();
+        list.dedup();
     }
-    let mut cells = vec![0_u32; degree[n] as usize];
-    let mut fill = degree.clone();
-    for (quad, _) in symmetry.quads() {
-        for c in columns(quad) {
-            cells[fill[c] as usize] = quad as u32;
-            fill[c] += 1;
-        }
-    }
-    let mut work = Work { plate, starts: degree, cells, left: vec![0; n], cut: 0, order: Vec::with_capacity(n) };
-    let (mut kept, tied): (Vec<u32>, Vec<u32>) = (0..n as u32).partition(|c| symmetry.column(*c) == *c);
-    work.dissect(&mut kept);
+    let mut work = Work { plate, neighbours, side: vec![0; n], cut: 0, order: Vec::with_capacity(n) };
+    let (kept, tied): (Vec<u32>, Vec<u32>) = (0..n as u32).partition(|c| symmetry.column(*c) == *c);
+    work.dissect(kept);
     work.order.extend(tied);
     work.order
 }
 
 struct Work<'a> {
     plate: &'a Plate,
-    starts: Vec<u32>,
-    cells: Vec<u32>,
-    /// Number of the cut in which a column was last on the left.
-    left: Vec<u32>,
+    neighbours: Vec<Vec<u32>>,
+    /// Twice the number of the cut that a column took part in last, plus one on its right.
+    side: Vec<u32>,
     cut: u32,
     order: Vec<u32>,
 }
 
 impl Work<'_> {
-    fn dissect(&mut self, set: &mut [u32]) {
+    fn dissect(&mut self, mut set: Vec<u32>) {
         if set.len() <= LEAF {
-            self.order.extend_from_slice(set);
+            self.order.extend(set);
             return;
         }
-        let extent = |d: usize| {
-            let of = |c: &u32| self.plate.columns[*c as usize][d];
-            let (low, high) =
-                set.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-            high - low
-        };
-        let d = usize::from(extent(1) > extent(0));
-        let by = |a: &u32, b: &u32| {
-            self.plate.columns[*a as usize][d].total_cmp(&self.plate.columns[*b as usize][d]).then(a.cmp(b))
-        };
-        let half = set.len() / 2;
-        set.select_nth_unstable_by(half, by);
-        let (left, right) = set.split_at_mut(half);
-        // Input order decides ties below, so make it independent of the selection's shuffle.
-        left.sort_unstable();
-        self.cut += 1;
-        let cut = self.cut;
-        for c in left.iter() {
-            self.left[*c as usize] = cut;
+        let mut best: Option<(f64, Vec<u32>, [Vec<u32>; 2])> = None;
+        for axis in 0..2 {
+            let place = |c: &u32| self.plate.columns[*c as usize][axis];
+            set.sort_unstable_by(|a, b| place(a).total_cmp(&place(b)).then(a.cmp(b)));
+            for share in SHARES {
+                let (left, right) = set.split_at((share * set.len() as f64) as usize);
+                let separator = self.separator(left, right);
+                let keep = |half: &[u32]| -> Vec<u32> {
+                    half.iter().copied().filter(|c| separator.binary_search(c).is_err()).collect()
+                };
+                let halves = [keep(left), keep(right)];
+                let [l, r] = [halves[0].len() as f64, halves[1].len() as f64];
+                let uneven = (l - r) / (l + r).max(1.0);
+                let cost = separator.len() as f64 * (1.0 + 2.0 * uneven * uneven);
+                if best.as_ref().is_none_or(|b| cost < b.0) {
+                    best = Some((cost, separator, halves));
+                }
+            }
         }
-        let symmetry = self.plate.symmetry();
-        let on_left = |c: &u32| self.left[symmetry.column(*c) as usize] == cut;
-        let touches = |c: &u32| {
-            let cells = self.starts[*c as usize] as usize..self.starts[*c as usize + 1] as usize;
-            self.cells[cells].iter().any(|q| self.plate.columns_of_quad(*q as usize).iter().any(on_left))
-        };
-        right.sort_unstable_by_key(|c| (touches(c), *c));
-        let inner = right.partition_point(|c| !touches(c));
-        let (right, separator) = right.split_at_mut(inner);
-        let separator = separator.to_vec();
-        self.dissect(left);
-        self.dissect(right);
-        self.order.extend(separator);
+        if let Some((_, separator, halves)) = best {
+            halves.into_iter().for_each(|half| self.dissect(half));
+            self.order.extend(separator);
+        }
     }
+
+    /// Neighbours of `c` on a side of the present cut.
+    fn across(&self, c: u32, side: u32) -> impl Iterator<Item = u32> {
+        self.neighbours[c as usize].iter().copied().filter(move |d| self.side[*d as usize] == side)
+    }
+
+    /// A smallest set of columns without which `left` and `right` do not touch, ascending.
+    fn separator(&mut self, left: &[u32], right: &[u32]) -> Vec<u32> {
+        self.cut += 1;
+        let sides = [2 * self.cut, 2 * self.cut + 1];
+        for (half, side) in [(left, sides[0]), (right, sides[1])] {
+            half.iter().for_each(|c| self.side[*c as usize] = side);
+        }
+        let shore = |half: &[u32], other: u32| -> Vec<u32> {
+            let mut shore: Vec<u32> =
+                half.iter().copied().filter(|c| self.across(*c, other).next().is_some()).collect();
+            shore.sort_unstable();
+            shore
+        };
+        let (left, right) = (shore(left, sides[1]), shore(right, sides[0]));
+        let links: Vec<Vec<usize>> = left
+            .iter()
+            .map(|c| self.across(*c, sides[1]).map(|d| right.partition_point(|r| *r < d)).collect())
+            .collect();
+        let mut mate: Vec<Option<usize>> = vec![None; right.len()];
+        let mut matched = vec![false; left.len()];
+        for (l, matched) in matched.iter_mut().enumerate() {
+            *matched = augment(l, &links, &mut mate, &mut vec![false; right.len()]);
+        }
+        // What alternating paths from unmatched columns reach: the cover is the rest on the left, these on the right.
+        let mut reached = (vec![false; left.len()], vec![false; right.len()]);
+        let mut open: Vec<usize> = (0..left.len()).filter(|l| !matched[*l]).collect();
+        while let Some(l) = open.pop() {
+            if std::mem::replace(&mut reached.0[l], true) {
+                continue;
+            }
+            for r in &links[l] {
+                if !std::mem::replace(&mut reached.1[*r], true) {
+                    open.extend(mate[*r]);
+                }
+            }
+        }
+        let kept_left = left.iter().zip(&reached.0).filter(|(_, r)| !**r).map(|(c, _)| *c);
+        let kept_right = right.iter().zip(&reached.1).filter(|(_, r)| **r).map(|(c, _)| *c);
+        let mut separator: Vec<u32> = kept_left.chain(kept_right).collect();
+        separator.sort_unstable();
+        separator
+    }
+}
+
+/// Finds a partner for `l`, if those that have one can be matched anew.
+fn augment(l: usize, links: &[Vec<usize>], mate: &mut [Option<usize>], tried: &mut [bool]) -> bool {
+    for r in &links[l] {
+        if !std::mem::replace(&mut tried[*r], true) && mate[*r].is_none_or(|other| augment(other, links, mate, tried)) {
+            mate[*r] = Some(l);
+            return true;
+        }
+    }
+    false
 }

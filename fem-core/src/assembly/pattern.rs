@@ -5,19 +5,51 @@ use crate::element::ElementError;
 use crate::plate::Plate;
 use std::fmt;
 
-/// Lower triangle of a symmetric matrix, compressed columns, rows ascending.
+/// Lower triangle of a symmetric matrix, compressed columns, rows ascending, the diagonal in every column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pattern {
     /// Start of each column, and the number of entries at the end.
     pub starts: Vec<usize>,
     /// Row of each entry.
     pub rows: Vec<usize>,
+    /// First columns of the runs of columns that no row or column of the matrix tells apart, and the number of columns.
+    groups: Vec<usize>,
 }
 
 impl Pattern {
+    /// The pattern with these starts of columns and rows.
+    pub fn new(starts: Vec<usize>, rows: Vec<usize>) -> Self {
+        let n = starts.len() - 1;
+        let column = |j: usize| &rows[starts[j]..starts[j + 1]];
+        let mut first = vec![false; n + 1];
+        first[0] = true;
+        first[n] = true;
+        for j in 0..n {
+            let rows = column(j);
+            if j > 0 && column(j - 1)[1..] != *rows {
+                first[j] = true;
+            }
+            // A row above in only one of two columns shows as an end of a run of rows.
+            for pair in rows.windows(2) {
+                if pair[1] != pair[0] + 1 {
+                    first[pair[0] + 1] = true;
+                    first[pair[1]] = true;
+                }
+            }
+            first[rows[rows.len() - 1] + 1] = true;
+        }
+        let groups = (0..=n).filter(|j| first[*j]).collect();
+        Self { starts, rows, groups }
+    }
+
     /// Number of columns.
     pub fn ndof(&self) -> usize {
         self.starts.len() - 1
+    }
+
+    /// First columns of the runs of columns with equal neighbours, and the number of columns at the end.
+    pub(crate) fn groups(&self) -> &[usize] {
+        &self.groups
     }
 
     /// `Y ← Y + scale · A X` for the symmetric matrix A with this pattern and `values`, column by column of X and Y; columns
@@ -28,74 +60,97 @@ impl Pattern {
             return;
         }
         let (fours, rest) = (x.chunks_exact(4 * n), x.chunks_exact(4 * n).remainder());
-        let (mut from, mut to) = (Vec::new(), Vec::new());
         let done = x.len() - rest.len();
         for (x, y) in fours.zip(y.chunks_exact_mut(4 * n)) {
-            let (x, y): ([&[f64]; 4], &mut [f64]) = (std::array::from_fn(|c| &x[c * n..(c + 1) * n]), y);
-            from.clear();
-            from.extend((0..n).map(|i| x.map(|x| scale * x[i])));
-            to.clear();
-            to.resize(n, [0.0; 4]);
-            self.accumulate(values, &from, &mut to);
-            for (c, y) in y.chunks_exact_mut(n).enumerate() {
-                y.iter_mut().zip(&to).for_each(|(y, sum)| *y += sum[c]);
-            }
+            self.add_product_of_four(values, scale, x, y);
         }
         for (x, y) in rest.chunks_exact(n).zip(y[done..].chunks_exact_mut(n)) {
-            self.accumulate_one(values, scale, x, y);
+            self.add_product_of_one(values, scale, x, y);
         }
     }
 
-    /// Four columns, interleaved.
-    fn accumulate(&self, values: &[f64], x: &[[f64; 4]], y: &mut [[f64; 4]]) {
+    /// The columns of a group share their rows: a dense trapezoid between two gathered vectors.
+    fn add_product_of_one(&self, values: &[f64], scale: f64, x: &[f64], y: &mut [f64]) {
+        let (mut from, mut to) = (Vec::new(), Vec::new());
+        for group in self.groups.windows(2) {
+            let rows = &self.rows[self.starts[group[0]]..self.starts[group[0] + 1]];
+            from.clear();
+            from.extend(rows.iter().map(|i| scale * x[*i]));
+            to.clear();
+            to.resize(rows.len(), 0.0);
+            for (local, j) in (group[0]..group[1]).enumerate() {
+                let values = &values[self.starts[j]..self.starts[j + 1]];
+                to[local] += values[0] * from[local];
+                let (xj, below) = (from[local], &from[local + 1..]);
+                to[local] += add_and_dot(&values[1..], xj, below, &mut to[local + 1..]);
+            }
+            for (i, t) in rows.iter().zip(&to) {
+                y[*i] += t;
+            }
+        }
+    }
+
+    /// The same with four columns side by side.
+    fn add_product_of_four(&self, values: &[f64], scale: f64, x: &[f64], y: &mut [f64]) {
+        let n = self.ndof();
         let add = |y: &mut [f64; 4], a: f64, x: &[f64; 4]| y.iter_mut().zip(x).for_each(|(y, x)| *y += a * x);
-        for j in 0..self.ndof() {
-            let range = self.starts[j]..self.starts[j + 1];
-            let (rows, values) = (&self.rows[range.clone()], &values[range]);
-            let Some((diagonal, below)) = values.split_first() else { continue };
-            let xj = x[j];
-            let mut sum = [0.0; 4];
-            add(&mut sum, *diagonal, &xj);
-            for (i, a) in rows[1..].iter().zip(below) {
-                add(&mut y[*i], *a, &xj);
-                add(&mut sum, *a, &x[*i]);
+        let (mut from, mut to) = (Vec::new(), Vec::new());
+        for group in self.groups.windows(2) {
+            let rows = &self.rows[self.starts[group[0]]..self.starts[group[0] + 1]];
+            from.clear();
+            from.extend(rows.iter().map(|i| -> [f64; 4] { std::array::from_fn(|c| scale * x[c * n + i]) }));
+            to.clear();
+            to.resize(rows.len(), [0.0; 4]);
+            for (local, j) in (group[0]..group[1]).enumerate() {
+                let values = &values[self.starts[j]..self.starts[j + 1]];
+                let (xj, mut sum) = (from[local], [0.0; 4]);
+                add(&mut sum, values[0], &xj);
+                for ((a, x), to) in values[1..].iter().zip(&from[local + 1..]).zip(&mut to[local + 1..]) {
+                    add(to, *a, &xj);
+                    add(&mut sum, *a, x);
+                }
+                add(&mut to[local], 1.0, &sum);
             }
-            add(&mut y[j], 1.0, &sum);
-        }
-    }
-
-    fn accumulate_one(&self, values: &[f64], scale: f64, x: &[f64], y: &mut [f64]) {
-        for j in 0..self.ndof() {
-            let range = self.starts[j]..self.starts[j + 1];
-            let (rows, values) = (&self.rows[range.clone()], &values[range]);
-            let Some((diagonal, below)) = values.split_first() else { continue };
-            let xj = scale * x[j];
-            let mut sum = diagonal * x[j];
-            for (i, a) in rows[1..].iter().zip(below) {
-                y[*i] += a * xj;
-                sum += a * x[*i];
+            for (i, t) in rows.iter().zip(&to) {
+                t.iter().enumerate().for_each(|(c, t)| y[c * n + i] += t);
             }
-            y[j] += scale * sum;
         }
     }
 
     /// The entries of `values` that are not zero, with their pattern; the diagonal stays.
     pub(super) fn compact(&self, values: &[f64]) -> (Self, Vec<f64>) {
-        let mut pattern = Self { starts: Vec::with_capacity(self.starts.len()), rows: Vec::new() };
-        let mut kept = Vec::new();
-        pattern.starts.push(0);
+        let (mut starts, mut rows, mut kept) = (vec![0], Vec::new(), Vec::new());
         for j in 0..self.ndof() {
             let range = self.starts[j]..self.starts[j + 1];
             for (row, value) in self.rows[range.clone()].iter().zip(&values[range]) {
                 if *value != 0.0 || *row == j {
-                    pattern.rows.push(*row);
+                    rows.push(*row);
                     kept.push(*value);
                 }
             }
-            pattern.starts.push(kept.len());
+            starts.push(kept.len());
         }
-        (pattern, kept)
+        (Self::new(starts, rows), kept)
     }
+}
+
+/// `y ← y + s a`; returns `a · x`.
+fn add_and_dot(a: &[f64], s: f64, x: &[f64], y: &mut [f64]) -> f64 {
+    const LANES: usize = 4;
+    let mut sums = [0.0; LANES];
+    let (mut a, mut x, mut y) = (a.chunks_exact(LANES), x.chunks_exact(LANES), y.chunks_exact_mut(LANES));
+    for ((a, x), y) in (&mut a).zip(&mut x).zip(&mut y) {
+        for k in 0..LANES {
+            y[k] += s * a[k];
+            sums[k] += a[k] * x[k];
+        }
+    }
+    let mut sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+    for ((a, x), y) in a.remainder().iter().zip(x.remainder()).zip(y.into_remainder()) {
+        *y += s * a;
+        sum += a * x;
+    }
+    sum
 }
 
 /// An element matrix that could not be made.
@@ -240,8 +295,8 @@ pub fn pattern(plate: &Plate, constraints: &Constraints) -> Pattern {
             fill[*i as usize] += 1;
         }
     }
-    let mut out = Pattern { starts: Vec::with_capacity(n + 1), rows: Vec::new() };
-    out.starts.push(0);
+    let (mut column_starts, mut rows) = (Vec::with_capacity(n + 1), Vec::new());
+    column_starts.push(0);
     // Unknowns that the same cells share, such as those of a node, have their rows in common.
     let (mut seen, mut union, mut of) = (vec![u32::MAX; n], Vec::new(), 0..0);
     for j in 0..n {
@@ -260,8 +315,8 @@ pub fn pattern(plate: &Plate, constraints: &Constraints) -> Pattern {
             union.sort_unstable();
         }
         of = here;
-        out.rows.extend_from_slice(&union[union.partition_point(|i| *i < j)..]);
-        out.starts.push(out.rows.len());
+        rows.extend_from_slice(&union[union.partition_point(|i| *i < j)..]);
+        column_starts.push(rows.len());
     }
-    out
+    Pattern::new(column_starts, rows)
 }

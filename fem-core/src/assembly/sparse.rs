@@ -4,6 +4,7 @@ use super::{Cholesky, FactorError, Pattern, Symbolic, coarse};
 use crate::prolongation::{Coarse, Prolongation};
 use crate::structure::{SolveError, Structure};
 use std::fmt;
+use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 /// What the factor at hand belongs to.
@@ -25,6 +26,7 @@ pub struct SparseStructure {
     factored: Factored,
     combined: Vec<f64>,
     prolongation: Option<Prolongation>,
+    threads: NonZeroUsize,
     name: Box<dyn Fn(usize) -> String + Send>,
     factorisations: u64,
     solves: u64,
@@ -37,14 +39,21 @@ impl fmt::Debug for SparseStructure {
 }
 
 impl SparseStructure {
-    /// `k` and `m` on the pattern of `symbolic`; `name(column)` describes an unknown in messages.
-    pub fn new(symbolic: Symbolic, k: Vec<f64>, m: Vec<f64>, name: impl Fn(usize) -> String + Send + 'static) -> Self {
+    /// `k` and `m` on the pattern of `symbolic`, factorised by `threads`; `name(column)` describes an unknown in messages.
+    pub fn new(
+        symbolic: Symbolic,
+        k: Vec<f64>,
+        m: Vec<f64>,
+        threads: NonZeroUsize,
+        name: impl Fn(usize) -> String + Send + 'static,
+    ) -> Self {
         let pattern = symbolic.pattern().clone();
         Self {
             name: Box::new(name),
             combined: vec![0.0; k.len()],
             prolongation: None,
-            factor: Cholesky::new(symbolic),
+            threads,
+            factor: Cholesky::new(symbolic, threads),
             factored: Factored::Nothing,
             inertia: pattern.compact(&m),
             pattern,
@@ -138,7 +147,7 @@ impl Structure for SparseStructure {
         let k = coarse::product(&self.pattern, &self.k, p, &pattern);
         let m = coarse::product(&self.inertia.0, &self.inertia.1, p, &pattern);
         let symbolic = Symbolic::new(pattern).map_err(|e| SolveError(e.to_string()))?;
-        let structure = Self::new(symbolic, k, m, |i| format!("coarse unknown {}", i + 1));
+        let structure = Self::new(symbolic, k, m, self.threads, |i| format!("coarse unknown {}", i + 1));
         Ok(Some(Coarse { structure: Box::new(structure), prolongation: p.clone() }))
     }
 

@@ -1,0 +1,146 @@
+//! Sparse Cholesky: multifrontal over the elimination tree, with faer's dense kernels in the fronts (Duff and Reid 1983).
+//!
+//! | step | where |
+//! | --- | --- |
+//! | elimination tree, fronts, their order | `analysis` |
+//! | subtrees to threads | `schedule` |
+//! | elimination | `numeric` |
+//! | substitution | `solve` |
+
+mod analysis;
+mod numeric;
+mod schedule;
+mod solve;
+#[cfg(test)]
+mod tests;
+
+use super::Pattern;
+use analysis::Tree;
+use schedule::Schedule;
+use std::fmt;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+
+/// Why a matrix has no Cholesky factor.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum FactorError {
+    /// An entry is NaN or infinite.
+    NotFinite {
+        /// Its column.
+        column: usize,
+    },
+    /// The pivot of this column is not positive: the structure is not held there, or the matrix is singular.
+    NotPositive {
+        /// The column.
+        column: usize,
+    },
+    /// The factor would not fit.
+    TooLarge(String),
+}
+
+impl fmt::Display for FactorError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { column } => write!(f, "column {column} holds a number that is not finite"),
+            Self::NotPositive { column } => write!(f, "the pivot of column {column} is not positive"),
+            Self::TooLarge(why) => write!(f, "the factor is too large: {why}"),
+        }
+    }
+}
+impl std::error::Error for FactorError {}
+
+/// The symbolic factorisation of a pattern.
+#[derive(Debug, Clone)]
+pub struct Symbolic {
+    pattern: Arc<Pattern>,
+    tree: Arc<Tree>,
+}
+
+impl Symbolic {
+    /// Analyses `pattern`; its own order is the elimination order.
+    ///
+    /// # Errors
+    /// [`FactorError::TooLarge`] where this machine could not hold the factor and what its making needs.
+    pub fn new(pattern: Arc<Pattern>) -> Result<Self, FactorError> {
+        if u32::try_from(pattern.ndof()).is_err() {
+            return Err(FactorError::TooLarge(format!("{} unknowns", pattern.ndof())));
+        }
+        // Asking for all of it at once is refused where parts of it would be granted and then not found.
+        let fits = |entries| Vec::<f64>::new().try_reserve_exact(entries).is_ok();
+        let tree = Tree::new(&pattern, fits)
+            .map_err(|entries| FactorError::TooLarge(format!("it needs {:.1} GB or more", 8e-9 * entries as f64)))?;
+        Ok(Self { pattern, tree: Arc::new(tree) })
+    }
+
+    /// Entries that the factor stores.
+    pub fn entries(&self) -> usize {
+        self.tree.storage
+    }
+
+    /// Additions and multiplications of a factorisation.
+    pub fn flops(&self) -> f64 {
+        self.tree.fronts.iter().map(analysis::Front::flops).sum()
+    }
+
+    /// Memory that factorising takes on one thread, the factor included, bytes.
+    pub fn bytes(&self) -> f64 {
+        8.0 * self.tree.total() as f64
+    }
+
+    /// The pattern analysed.
+    pub fn pattern(&self) -> &Arc<Pattern> {
+        &self.pattern
+    }
+}
+
+/// A Cholesky factorisation whose storage serves any number of matrices of one pattern.
+pub struct Cholesky {
+    symbolic: Symbolic,
+    schedule: Schedule,
+    panels: Vec<f64>,
+    local: Vec<f64>,
+}
+
+impl fmt::Debug for Cholesky {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Cholesky").field("entries", &self.panels.len()).finish_non_exhaustive()
+    }
+}
+
+impl Cholesky {
+    /// Reserves the storage. The factor is the same bit for bit for any number of `threads`.
+    pub fn new(symbolic: Symbolic, threads: NonZeroUsize) -> Self {
+        let schedule = Schedule::new(&symbolic.tree, threads.get());
+        Self { panels: vec![0.0; symbolic.entries()], schedule, symbolic, local: Vec::new() }
+    }
+
+    /// Factorises the matrix of the analysed pattern with these `values`.
+    ///
+    /// # Errors
+    /// A number that is not finite, or a pivot that is not positive.
+    pub fn factorise(&mut self, values: &[f64]) -> Result<(), FactorError> {
+        let pattern = &*self.symbolic.pattern;
+        if let Some(bad) = values.iter().position(|v| !v.is_finite()) {
+            return Err(FactorError::NotFinite { column: pattern.starts.partition_point(|s| *s <= bad) - 1 });
+        }
+        let matrix = numeric::Matrix { pattern, values };
+        numeric::factorise(&self.symbolic.tree, &self.schedule, matrix, &mut self.panels)
+            .map_err(|bad| FactorError::NotPositive { column: bad.column })
+    }
+
+    /// `X ← A⁻¹ X`, X of `n × columns`, column-major.
+    pub fn solve(&mut self, x: &mut [f64], columns: usize) {
+        let (tree, n) = (&*self.symbolic.tree, self.symbolic.pattern.ndof());
+        if n == 0 {
+            return;
+        }
+        for x in x[..n * columns].chunks_mut(n * solve::BLOCK) {
+            if x.len() < n * solve::FEW {
+                x.chunks_exact_mut(n).for_each(|x| solve::single(tree, &self.panels, x, &mut self.local));
+            } else {
+                solve::block(tree, &self.panels, x, n, &mut self.local);
+            }
+        }
+    }
+}

@@ -1,0 +1,263 @@
+//! Multifrontal elimination: each front takes the updates of its children, eliminates its pivots, passes an update on.
+
+use super::analysis::{Front, Tree};
+use super::schedule::{Item, Schedule};
+use crate::assembly::Pattern;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::matmul::triangular::{BlockStructure, matmul};
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::prelude::{Reborrow, ReborrowMut};
+use faer::{Accum, MatMut, Par};
+use std::ops::Range;
+
+/// The matrix to factorise.
+#[derive(Clone, Copy)]
+pub(super) struct Matrix<'a> {
+    pub pattern: &'a Pattern,
+    pub values: &'a [f64],
+}
+
+/// A pivot that is not positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct BadPivot {
+    /// The front, whose number orders several of these.
+    front: usize,
+    pub column: usize,
+}
+
+/// Fills `panels` with the factor.
+///
+/// Every front is computed by one thread and takes its children in one order: no number depends on the threads.
+pub(super) fn factorise(
+    tree: &Tree,
+    schedule: &Schedule,
+    matrix: Matrix<'_>,
+    panels: &mut [f64],
+) -> Result<(), BadPivot> {
+    // The panels of a subtree are contiguous, and so are those between two subtrees.
+    let mut shares: Vec<Vec<(Range<usize>, &mut [f64])>> = (0..schedule.workers).map(|_| Vec::new()).collect();
+    let mut top = Vec::new();
+    let mut rest = panels;
+    for item in &schedule.items {
+        let (piece, after) = rest.split_at_mut(tree.panels(item.fronts()).len());
+        rest = after;
+        match item {
+            Item::Subtree { worker, fronts } => shares[*worker].push((fronts.clone(), piece)),
+            Item::Front(f) => top.push((*f, piece)),
+        }
+    }
+    let work = |share: Vec<(Range<usize>, &mut [f64])>| {
+        let mut worker = Worker::new(tree, share.iter().map(|s| s.0.clone()));
+        for (fronts, panels) in share {
+            worker.subtree(tree, matrix, fronts, panels)?;
+        }
+        Ok(worker.stack)
+    };
+    // Work goes to the first workers first.
+    shares.retain(|share| !share.is_empty());
+    let mut shares = shares.into_iter();
+    let own = shares.next().unwrap_or_default();
+    let results: Vec<Result<Vec<f64>, BadPivot>> = std::thread::scope(|scope| {
+        let others: Vec<_> = shares.map(|share| scope.spawn(|| work(share))).collect();
+        let own = work(own);
+        let join = |other: std::thread::ScopedJoinHandle<'_, _>| match other.join() {
+            Ok(result) => result,
+            Err(panic) => std::panic::resume_unwind(panic),
+        };
+        std::iter::once(own).chain(others.into_iter().map(join)).collect()
+    });
+    // A front above that comes before the first failure in the order of one thread may fail itself: it goes first.
+    let mut failure = results.iter().filter_map(|r| r.as_ref().err()).min_by_key(|e| e.front).copied();
+    let limit = failure.map_or(usize::MAX, |e| e.front);
+    if !top.is_empty() {
+        let updates: Vec<&[f64]> = results.iter().map(|r| r.as_deref().unwrap_or_default()).collect();
+        failure = above(tree, schedule, matrix, top, &updates, limit).err().or(failure);
+    }
+    failure.map_or(Ok(()), Err)
+}
+
+/// Eliminates the fronts above the subtrees up to front `limit`; `updates` of the subtrees lie worker by worker.
+fn above(
+    tree: &Tree,
+    schedule: &Schedule,
+    matrix: Matrix<'_>,
+    top: Vec<(usize, &mut [f64])>,
+    updates: &[&[f64]],
+    limit: usize,
+) -> Result<(), BadPivot> {
+    let mut worker = Worker::new(tree, top.iter().map(|t| t.0..t.0));
+    let square = top.iter().map(|t| tree.fronts[t.0].below().pow(2)).max().unwrap_or(0);
+    worker.square.resize(square, 0.0);
+    let mut taken = vec![0; updates.len()];
+    let mut top = top.into_iter();
+    for item in schedule.items.iter().take_while(|item| item.fronts().end <= limit) {
+        match item {
+            Item::Subtree { worker: w, fronts } => {
+                let length = tree.fronts[fronts.end - 1].update();
+                worker.stack.extend_from_slice(&updates[*w][taken[*w]..taken[*w] + length]);
+                taken[*w] += length;
+            }
+            Item::Front(_) => {
+                if let Some((f, panel)) = top.next() {
+                    worker.eliminate(tree, matrix, f, panel)?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Buffers of one thread.
+struct Worker {
+    /// Place of an unknown in the front at work; others hold what is left of earlier fronts.
+    place: Vec<u32>,
+    /// Updates that wait for their parents: lower triangles, packed by columns.
+    stack: Vec<f64>,
+    /// The update in the making.
+    square: Vec<f64>,
+    scratch: MemBuffer,
+}
+
+impl Worker {
+    fn new(tree: &Tree, shares: impl Iterator<Item = Range<usize>>) -> Self {
+        let (mut held, mut stack, mut square) = (0, 0, 0);
+        for fronts in shares {
+            let (peak, s) = tree.memory(fronts.clone());
+            stack = stack.max(held + peak);
+            square = square.max(s);
+            held += fronts.last().map_or(0, |f| tree.fronts[f].update());
+        }
+        let pivots = tree.fronts.iter().map(|f| f.pivots).max().unwrap_or(0);
+        let scratch = cholesky_in_place_scratch::<f64>(pivots, Par::Seq, Default::default());
+        let unknowns = tree.unknowns.iter().max().map_or(0, |u| *u as usize + 1);
+        Self {
+            place: vec![0; unknowns],
+            stack: Vec::with_capacity(stack),
+            square: vec![0.0; square],
+            scratch: MemBuffer::new(scratch),
+        }
+    }
+
+    fn subtree(
+        &mut self,
+        tree: &Tree,
+        matrix: Matrix<'_>,
+        fronts: Range<usize>,
+        mut panels: &mut [f64],
+    ) -> Result<(), BadPivot> {
+        for f in fronts {
+            let (panel, rest) = panels.split_at_mut(tree.panels(f..f + 1).len());
+            panels = rest;
+            self.eliminate(tree, matrix, f, panel)?;
+        }
+        Ok(())
+    }
+
+    fn eliminate(&mut self, tree: &Tree, matrix: Matrix<'_>, f: usize, panel: &mut [f64]) -> Result<(), BadPivot> {
+        let front = &tree.fronts[f];
+        let unknowns = tree.unknowns(front);
+        let (size, pivots, below) = (front.size(), front.pivots, front.below());
+        for (k, u) in unknowns.iter().enumerate() {
+            self.place[*u as usize] = k as u32;
+        }
+        panel.fill(0.0);
+        for (u, column) in unknowns.iter().zip(panel.chunks_exact_mut(size)) {
+            let entries = matrix.pattern.starts[*u as usize]..matrix.pattern.starts[*u as usize + 1];
+            for (row, value) in matrix.pattern.rows[entries.clone()].iter().zip(&matrix.values[entries]) {
+                column[self.place[*row] as usize] = *value;
+            }
+        }
+        let square = &mut self.square[..below * below];
+        for (k, column) in square.chunks_exact_mut(below.max(1)).enumerate() {
+            column[k..].fill(0.0);
+        }
+        let children = &tree.children[front.children.clone()];
+        let taken: usize = children.iter().map(|c| tree.fronts[*c as usize].update()).sum();
+        let base = self.stack.len() - taken;
+        let mut at = base;
+        for child in children {
+            let child = &tree.fronts[*child as usize];
+            let update = &self.stack[at..at + child.update()];
+            at += child.update();
+            extend_add(tree, child, &self.place, update, panel, square, (size, pivots));
+        }
+        self.stack.truncate(base);
+
+        let bad = |index: usize| BadPivot { front: f, column: unknowns[index] as usize };
+        let (diagonal, under) = MatMut::from_column_major_slice_mut(panel, size, pivots).split_at_row_mut(pivots);
+        let mut diagonal = diagonal;
+        let mut under = under;
+        let stack = MemStack::new(&mut self.scratch);
+        cholesky_in_place(diagonal.rb_mut(), Default::default(), Par::Seq, stack, Default::default()).map_err(|e| {
+            match e {
+                LltError::NonPositivePivot { index } => bad(index),
+            }
+        })?;
+        if let Some(index) = (0..pivots).find(|i| !diagonal[(*i, *i)].is_finite()) {
+            return Err(bad(index));
+        }
+        if below == 0 {
+            return Ok(());
+        }
+        solve_lower_triangular_in_place(diagonal.rb(), under.rb_mut().transpose_mut(), Par::Seq);
+        matmul(
+            MatMut::from_column_major_slice_mut(square, below, below),
+            BlockStructure::TriangularLower,
+            Accum::Add,
+            under.rb(),
+            BlockStructure::Rectangular,
+            under.rb().transpose(),
+            BlockStructure::Rectangular,
+            -1.0,
+            Par::Seq,
+        );
+        for (k, column) in square.chunks_exact(below).enumerate() {
+            self.stack.extend_from_slice(&column[k..]);
+        }
+        Ok(())
+    }
+}
+
+/// Adds the packed update of `child` into the front at work.
+fn extend_add(
+    tree: &Tree,
+    child: &Front,
+    place: &[u32],
+    mut update: &[f64],
+    panel: &mut [f64],
+    square: &mut [f64],
+    (size, pivots): (usize, usize),
+) {
+    let rows = &tree.unknowns(child)[child.pivots..];
+    let places: Vec<usize> = rows.iter().map(|u| place[*u as usize] as usize).collect();
+    // Runs of consecutive places: (first row of the update, place, length).
+    let mut runs: Vec<(usize, usize, usize)> = Vec::new();
+    for (row, place) in places.iter().enumerate() {
+        match runs.last_mut() {
+            Some((_, first, length)) if *first + *length == *place => *length += 1,
+            _ => runs.push((row, *place, 1)),
+        }
+    }
+    let below = size - pivots;
+    let mut current = 0;
+    for (k, to) in places.iter().enumerate() {
+        let (column, after) = update.split_at(rows.len() - k);
+        update = after;
+        let (target, offset) = if *to < pivots {
+            (&mut panel[to * size..(to + 1) * size], 0)
+        } else {
+            (&mut square[(to - pivots) * below..(to - pivots + 1) * below], pivots)
+        };
+        if runs[current].0 + runs[current].2 == k {
+            current += 1;
+        }
+        for (row, place, length) in &runs[current..] {
+            let skip = k.saturating_sub(*row);
+            let target = &mut target[place + skip - offset..place + length - offset];
+            for (t, u) in target.iter_mut().zip(&column[row + skip - k..row + length - k]) {
+                *t += u;
+            }
+        }
+    }
+}
