@@ -367,14 +367,12 @@ fn contact(law: &dyn ContactLaw, h: &ContactHistory, free: f64, soft: f64) -> (f
         } else {
             low = alpha
         }
-        let mut next = alpha - residual / (1.0 + soft * c.tangent);
-        if !(next > low && next < high) {
-            next = 0.5 * (low + high);
-        }
+        let next = alpha - residual / (1.0 + soft * c.tangent);
+        // Before the bracket is asked: at the solution rounding decides on which side of it the next value lies.
         if (next - alpha).abs() <= 1e-15 * (free.abs() + alpha.abs()) || !residual.is_finite() {
             return ((free - next) / soft, calls);
         }
-        alpha = next;
+        alpha = if next > low && next < high { next } else { 0.5 * (low + high) };
     }
     ((free - alpha) / soft, 100)
 }
