@@ -82,9 +82,16 @@ impl Prolongation {
 
     /// U = P Y, column by column.
     pub fn expand(&self, y: &[f64]) -> Vec<f64> {
-        let n = self.starts.len() - 1;
-        let columns = y.chunks_exact(self.columns().max(1));
-        columns.flat_map(|y| (0..n).map(move |i| self.row(i).iter().map(|(j, p)| p * y[*j]).sum())).collect()
+        let (n, m) = (self.starts.len() - 1, self.columns().max(1));
+        let mut all = vec![0.0; n * (y.len() / m)];
+        for (y, u) in y.chunks_exact(m).zip(all.chunks_exact_mut(n.max(1))) {
+            for (u, row) in u.iter_mut().zip(self.starts.windows(2)) {
+                for (j, p) in &self.terms[row[0]..row[1]] {
+                    *u += p * y[*j];
+                }
+            }
+        }
+        all
     }
 
     /// Y = Pᵀ U, column by column.

@@ -113,7 +113,7 @@ impl Reduced {
         let product = |add: &dyn Fn(&[f64], &mut [f64])| {
             let mut image = DMatrix::zeros(n, m);
             add(basis, image.as_mut_slice());
-            let product = t.tr_mul(&image);
+            let product = t.transpose() * image;
             (&product + product.transpose()) * 0.5
         };
         let k = product(&|x, y| structure.add_stiffness(1.0, x, y));
@@ -257,7 +257,7 @@ impl StaticShapes {
         let mut image = DMatrix::zeros(n, m);
         structure.add_mass(1.0, &self.flexibility, image.as_mut_slice());
         let k = self.factor.inverse();
-        let mass = &k * x.tr_mul(&image) * &k;
+        let mass = &k * (x.transpose() * image) * &k;
         ((&k + k.transpose()) * 0.5, (&mass + mass.transpose()) * 0.5)
     }
 
