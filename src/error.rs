@@ -42,6 +42,10 @@ pub enum Error {
     #[error("the scene describes no impact")]
     #[diagnostic(help("set `analysis = \"impact\"` and describe impactor, contact and march"))]
     NoImpact,
+    #[error("the march stopped: {0}")]
+    Stopped(String),
+    #[error("no limit: stable for every step")]
+    Unlimited,
     #[error("the scene describes no loads at rest")]
     #[diagnostic(help("set `analysis = \"static\"` and give a `[[load]]`"))]
     NoLoads,

@@ -29,6 +29,7 @@ mod registry;
 pub mod run;
 pub mod statics;
 mod stress;
+pub mod study;
 pub mod summary;
 
 pub use error::Error;

@@ -7,6 +7,7 @@ mod matrices;
 mod modes;
 mod run;
 mod signals;
+mod study;
 
 use crate::model::Model;
 use crate::registry::Registry;
@@ -45,6 +46,11 @@ enum Command {
     Envelope(envelope::Arguments),
     /// Finds the lowest natural frequencies of a scene's plate and writes modes.csv.
     Modes(modes::Arguments),
+    /// Shows what settings cost and what error they leave: runs a scene under each and compares.
+    ///
+    /// The reference is the full model, without reduction, marched by Newmark's method at a quarter of the scene's step.
+    /// Prints a table and writes study.csv, which grows line by line.
+    Study(study::Arguments),
     /// Writes stiffness and mass (Matrix Market) with the names of their unknowns.
     Matrices(matrices::Arguments),
     /// Lists what a scene can name, with parameters and sources.
@@ -73,6 +79,7 @@ pub fn run_with(registry: Registry, arguments: impl IntoIterator<Item = impl Int
         Command::Check(a) => check::check(&registry, &a),
         Command::Envelope(a) => envelope::envelope(&registry, &a),
         Command::Modes(a) => modes::modes(&registry, &a),
+        Command::Study(a) => study::study(&registry, &a),
         Command::Matrices(a) => matrices::matrices(&registry, &a),
         Command::List(a) => list::list(&registry, &a),
     };

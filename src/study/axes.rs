@@ -25,6 +25,16 @@ pub struct Setting {
     pub at_limit: bool,
 }
 
+impl Setting {
+    /// Its keys with another step, s.
+    pub(super) fn keys_with_step(&self, step: f64) -> String {
+        let others: String = self.keys.lines().filter(|l| !l.starts_with(STEP)).map(|l| format!("{l}\n")).collect();
+        format!("{others}{STEP} = \"{step:e} s\"\n")
+    }
+}
+
+const STEP: &str = "march.step";
+
 /// Parameters by which reductions call their size.
 const SIZES: [&str; 3] = ["vectors", "modes", "governors"];
 
@@ -57,13 +67,13 @@ impl Axis {
 }
 
 /// Keys of the full model at `step`, s.
-pub(super) fn full(step: f64) -> String {
+pub fn full(step: f64) -> String {
     format!("reduction = {{ method = \"{NO_REDUCTION}\" }}\n{}", marched("newmark", step))
 }
 
 /// Keys of a march.
 fn marched(integrator: &str, step: f64) -> String {
-    format!("march.integrator = \"{integrator}\"\nmarch.step = \"{step:e} s\"\n")
+    format!("march.integrator = \"{integrator}\"\n{STEP} = \"{step:e} s\"\n")
 }
 
 fn reductions(registry: &Registry) -> Vec<Setting> {

@@ -11,7 +11,7 @@ pub(super) struct Force {
 
 impl Force {
     pub(super) fn of(history: &[HistoryRow]) -> Self {
-        let (times, forces) = history.iter().map(|r| (r.time_s, r.contact_force_n)).unzip();
+        let (times, forces) = history.iter().map(|r| (r.time_s, r.contact_force_n())).unzip();
         Self { times, forces }
     }
 

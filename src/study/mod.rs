@@ -4,7 +4,7 @@ mod axes;
 mod force;
 mod table;
 
-pub use axes::{Axis, Setting};
+pub use axes::{Axis, Setting, full};
 pub use table::{text, write};
 
 use crate::error::Error;
@@ -14,7 +14,6 @@ use crate::run::{self, Outcome};
 use fem_failure::scan::first_per_mode;
 use fem_io::scene;
 use force::Force;
-use serde::Serialize;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
@@ -40,26 +39,38 @@ struct Onset {
     time: f64,
 }
 
-/// One line of a study.
-#[derive(Debug, Clone, Serialize)]
-#[allow(missing_docs, non_snake_case)]
+/// One line of a study: figures, or why there are none.
+#[derive(Debug, Clone)]
 pub struct Row {
+    /// What was varied.
     pub axis: &'static str,
+    /// How.
     pub setting: String,
+    /// What the run gave.
+    pub figures: Option<Figures>,
+    /// Why there was none.
+    pub refused: Option<String>,
+}
+
+/// Errors against the reference, and cost.
+#[derive(Debug, Clone, Copy)]
+pub struct Figures {
+    /// Unknowns of the march.
     pub unknowns_marched: usize,
+    /// Step, s.
     pub step_s: f64,
     /// ‖F − F_ref‖ / ‖F_ref‖ over time.
-    pub force_L2_error: f64,
+    pub force_l2_error: f64,
     /// Relative error of the largest force.
     pub force_peak_error: f64,
     /// Largest difference of the time of a first onset, s; none where no mode is reached in both runs.
     pub onset_error_s: Option<f64>,
     /// First onsets found in one of the two runs alone.
     pub onsets_unmatched: usize,
+    /// Processor time to assemble, reduce and prepare the stresses, s.
     pub setup_cpu_s: f64,
+    /// Processor time of the march, s.
     pub march_cpu_s: f64,
-    /// Why there are no figures, where there are none.
-    pub refused: Option<String>,
 }
 
 /// Runs `path` with `setting` over its keys.
@@ -90,40 +101,55 @@ fn onsets(outcome: &Outcome) -> Vec<Onset> {
     first.into_iter().map(|e| Onset { name: format!("{} {}", e.criterion, e.mode), time: e.time }).collect()
 }
 
+/// Runs `path` under `setting`.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_under(path: &Path, setting: &Setting, registry: &Registry) -> Result<Run, Error> {
+    if !setting.at_limit {
+        return run(path, &setting.keys, registry);
+    }
+    let model = Model::new(scene::read_with(path, &setting.keys_with_step(TINY))?, registry)?;
+    let longest = run::prepare(&model, NonZeroUsize::MIN)?.sizes.longest_step;
+    if !longest.is_finite() {
+        return Err(Error::Unlimited);
+    }
+    run(path, &setting.keys_with_step(AT_LIMIT * longest), registry)
+}
+
+/// A step that no limit forbids, s.
+const TINY: f64 = 1e-11;
+
+/// Share of its limit at which an integrator is tried.
+const AT_LIMIT: f64 = 0.99;
+
 /// The line of a run under `setting`, or of why there is none.
 pub fn row(setting: &Setting, run: &Result<Run, Error>, reference: &Run) -> Row {
-    let mut row = Row {
-        axis: setting.axis.name(),
-        setting: setting.label.clone(),
-        unknowns_marched: 0,
-        step_s: f64::NAN,
-        force_L2_error: f64::NAN,
-        force_peak_error: f64::NAN,
-        onset_error_s: None,
-        onsets_unmatched: 0,
-        setup_cpu_s: f64::NAN,
-        march_cpu_s: f64::NAN,
-        refused: None,
-    };
-    let run = match run {
-        Ok(run) => run,
-        Err(why) => return Row { refused: Some(why.to_string()), ..row },
-    };
+    let row = Row { axis: setting.axis.name(), setting: setting.label.clone(), figures: None, refused: None };
+    match run {
+        Ok(run) => Row { figures: Some(figures(run, reference)), ..row },
+        Err(why) => Row { refused: Some(why.to_string()), ..row },
+    }
+}
+
+fn figures(run: &Run, reference: &Run) -> Figures {
     let of = |name: &str, others: &[Onset]| others.iter().find(|o| o.name == name).map(|o| o.time);
+    let (mut onset_error_s, mut onsets_unmatched) = (None::<f64>, 0);
     for onset in &reference.onsets {
         match of(&onset.name, &run.onsets) {
-            Some(time) => row.onset_error_s = row.onset_error_s.max(Some((time - onset.time).abs())),
-            None => row.onsets_unmatched += 1,
+            Some(time) => onset_error_s = Some(onset_error_s.unwrap_or(0.0).max((time - onset.time).abs())),
+            None => onsets_unmatched += 1,
         }
     }
-    row.onsets_unmatched += run.onsets.iter().filter(|o| of(&o.name, &reference.onsets).is_none()).count();
-    Row {
+    onsets_unmatched += run.onsets.iter().filter(|o| of(&o.name, &reference.onsets).is_none()).count();
+    Figures {
         unknowns_marched: run.unknowns[1],
         step_s: run.step,
-        force_L2_error: run.force.difference(&reference.force),
+        force_l2_error: run.force.difference(&reference.force),
         force_peak_error: run.force.peak() / reference.force.peak() - 1.0,
+        onset_error_s,
+        onsets_unmatched,
         setup_cpu_s: run.setup_s,
         march_cpu_s: run.march_s,
-        ..row
     }
 }
