@@ -5,6 +5,7 @@ use crate::model::{Model, NamedCriterion};
 use crate::summary::ply_name;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
+use fem_core::failure::Site;
 use fem_core::recovery::{Recovery, Station};
 use fem_core::structure::Structure;
 use fem_core::tensor::{Ply, Stress6};
@@ -267,7 +268,9 @@ fn recovery(model: &Model) -> Recovery {
         Window::Element => window::own(mesh),
         Window::Square(side) => window::square(mesh, side),
     };
-    let resin = model.scene.interface.as_ref().map(|i| i.value);
+    // Where nobody looks there is nothing to recover.
+    let looks = model.criteria.iter().any(|(_, criterion)| criterion.info().site == Site::Interface);
+    let resin = model.scene.interface.as_ref().map(|i| i.value).filter(|_| looks);
     Recovery::new(&model.plate, &model.laminate, &model.materials, resin, model.watched.clone(), &windows)
 }
 

@@ -125,11 +125,11 @@ fn run_writes_its_results_to_a_folder_named_like_that_of_the_scene() {
 
     let (header, rows) = case.table("results/plate/history.csv");
     assert_eq!(header[..2], ["time_s", "contact_force_N"]);
-    assert_eq!(rows.len(), 801);
+    assert_eq!(rows.len(), 2001);
     let numbers: Vec<Vec<f64>> = rows.iter().map(|r| r.iter().map(|v| v.parse().unwrap()).collect()).collect();
     assert!(numbers.iter().flatten().all(|v| v.is_finite()));
     assert!(numbers.windows(2).all(|pair| pair[0][0] < pair[1][0]), "times grow");
-    assert!((numbers[800][0] - 0.4e-3).abs() < 1e-12, "the last row is the end");
+    assert!((numbers[2000][0] - 0.4e-3).abs() < 1e-12, "the last row is the end");
 
     let (header, rows) = case.table("results/plate/events.csv");
     assert_eq!(header[..5], ["time_s", "criterion", "mode", "cell", "ply"]);
@@ -146,7 +146,7 @@ fn run_writes_its_results_to_a_folder_named_like_that_of_the_scene() {
     let peak = numbers.iter().fold(0.0_f64, |m, r| m.max(r[1]));
     assert_eq!(summary["impact"]["peak_force_N"].as_f64(), Some(peak));
     assert_eq!(summary["completed"], true);
-    assert_eq!(summary["work"]["steps"], 800);
+    assert_eq!(summary["work"]["steps"], 4000);
     check_summary(&summary);
     assert!(summary.as_object().is_some_and(|s| s.len() > 10), "{summary}");
 

@@ -1,6 +1,6 @@
 //! The model between scene and march: assembly, constraints, contact patch, reductions.
 
-use crate::support::root;
+use crate::support::{root, whole};
 use fem::core::assembly::{Matrix, Pattern, assemble, elimination_order, pattern};
 use fem::core::constraint::Constraints;
 use fem::core::counters::Counters;
@@ -12,7 +12,7 @@ const EXAMPLE: &str = "as4-3502-16ply-50mm";
 
 fn model_of(edits: &[(&str, &str)]) -> Result<Model, Error> {
     let path = root().join("examples").join(EXAMPLE).join("scene.toml");
-    let mut text = std::fs::read_to_string(&path).unwrap();
+    let mut text = whole(&std::fs::read_to_string(&path).unwrap());
     for (from, to) in edits {
         assert!(text.contains(from), "no `{from}`");
         text = text.replace(from, to);

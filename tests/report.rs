@@ -308,7 +308,7 @@ fn the_same_energy_breaks_sooner_in_a_small_mass() {
     assert!((15.0..50.0).contains(&ratio), "{ratio}");
     // Strengths, stiffness and contact of IM6/934 are assumed: these are regressions, not validation.
     within(large.onset(TENSION, None).unwrap(), 0.812e-3, 0.02, "large mass, tension");
-    within(small.onset(TENSION, None).unwrap(), 24.1e-6, 0.02, "small mass, tension");
+    within(small.onset(TENSION, None).unwrap(), 23.5e-6, 0.02, "small mass, tension");
     within(small.onset(SHEAR, None).unwrap(), 19.3e-6, 0.03, "small mass, shear");
     within(large.peak_force(), 5302.0, 0.01, "large mass, force");
     within(small.peak_force(), 5599.0, 0.01, "small mass, force");

@@ -135,7 +135,7 @@ fn a_later_end_goes_on_from_a_finished_run() {
 
 #[test]
 fn rows_of_the_history_stay_as_far_apart_as_they_were() {
-    let until = |end: &str| strip().scene("end = \"20 us\"", &format!("end = \"{end}\""));
+    let until = |end: &str| strip().scene("end = \"20 us\"", &format!("step = \"0.5 us\"\nend = \"{end}\""));
     let (short, long) = (until("0.5 ms"), until("1.5 ms"));
     short.fem("run", &["--out", "out"]).good();
     fs::rename(short.folder().join("out"), long.folder().join("out")).unwrap();
@@ -192,8 +192,8 @@ fn what_does_not_fit_is_refused() {
     refused(&resume(mesh), &["`mesh.file` was", "CRC-32"]);
     let preset = strip().scene("title = ", "fidelity = \"reference\"\ntitle = ");
     refused(&resume(preset), &["`fidelity` was left out", "more"]);
-    let step = strip().scene("end = \"20 us\"", "end = \"20.2 us\"");
-    refused(&resume(step), &["its step was 5e-7 s", "must be a whole number of steps"]);
+    let step = strip().scene("end = \"20 us\"", "end = \"20.05 us\"");
+    refused(&resume(step), &["its step was 1e-7 s", "must be a whole number of steps"]);
     let early = strip().scene("end = \"20 us\"", "end = \"10 us\"");
     refused(&resume(early), &["beyond `march.end`", "a later one"]);
     // Nothing that changes a number.

@@ -19,7 +19,7 @@ impl Case {
         let example = root().join("examples").join(name);
         Self {
             folder: tempfile::tempdir().unwrap(),
-            scene: fs::read_to_string(example.join("scene.toml")).unwrap(),
+            scene: whole(&fs::read_to_string(example.join("scene.toml")).unwrap()),
             mesh: fs::read(example.join("plate.msh")).unwrap(),
         }
     }
@@ -106,6 +106,12 @@ impl Case {
         let header = row(reader.headers().unwrap());
         (header, reader.records().map(|r| row(&r.unwrap())).collect())
     }
+}
+
+/// A scene without its symmetry and what is said of it: tests go on to change what symmetry asks for.
+pub(crate) fn whole(scene: &str) -> String {
+    let lines = scene.split_inclusive('\n');
+    lines.filter(|line| !line.starts_with("symmetry = ") && !line.contains("half a turn")).collect()
 }
 
 /// A circular plate on a ring.

@@ -2,7 +2,7 @@
 
 use super::scene::Side::{Clamped, Free, Supported};
 use super::scene::{AS4, Plate, gmsh_grid};
-use crate::support::root;
+use crate::support::{root, whole};
 use fem::core::dof::Dof;
 use fem::io::scene;
 use fem::run::Outcome;
@@ -76,7 +76,8 @@ fn angle_plies_under_a_half_turn() {
 fn cross_plies_under_mirrors() {
     for element in ["kind = 'hermite-prism'", "kind = 'hex20'", "kind = 'mitc4'"] {
         for cells in [[5, 3], [6, 4], [5, 4]] {
-            let layers = if element.contains("mitc4") { vec![4] } else { vec![1, 3] };
+            // Layers of a single ply are so thin for their width that rounding alone takes 1e-10.
+            let layers = if element.contains("mitc4") { vec![4] } else { vec![2, 2] };
             let plate = pressed("[0/90]s", layers, cells, 0.0).element(element).sides([Clamped; 4]);
             check(&plate, "mirror-x", 0.35..0.6);
             check(&plate, "mirror-y", 0.35..0.6);
@@ -155,7 +156,7 @@ fn effective_masses_are_those_of_the_whole() {
 /// The first example, changed.
 fn impact(edits: &[(&str, &str)]) -> (Model, Outcome) {
     let path = root().join("examples/as4-3502-16ply-50mm/scene.toml");
-    let mut text = std::fs::read_to_string(&path).unwrap();
+    let mut text = whole(&std::fs::read_to_string(&path).unwrap());
     for (from, to) in edits {
         assert!(text.contains(from), "no `{from}`");
         text = text.replace(from, to);

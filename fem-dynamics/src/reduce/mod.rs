@@ -20,6 +20,9 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
 /// Modal masses below this fraction of the largest (at equal stiffness) count as none: the mode follows statically.
 const MASSLESS: f64 = 1e-13;
 
+/// A vector of a basis counts as a combination of those before it when this share of its energy is left.
+const DEPENDENT: f64 = 1e-12;
+
 /// Least share of a mode in the static responses to the contacts; with less, no contact excites it.
 const EXCITED: f64 = 1e-9;
 
@@ -99,10 +102,11 @@ pub struct Reduced {
 impl Reduced {
     /// Projects `structure` on the columns of `basis` (`ndof × m`) and diagonalises: TᵀKT, TᵀMT.
     ///
-    /// The small eigenproblem is solved in the metric of K, which is definite where M need not be.
+    /// The small eigenproblem is solved in the metric of K, which is definite where M need not be. Columns that depend on
+    /// those before them are left out.
     ///
     /// # Errors
-    /// No columns, columns that depend on each other, or numbers that are not finite.
+    /// No columns, a stiffness that is not definite on them, or numbers that are not finite.
     pub fn project(structure: &dyn Structure, basis: &[f64]) -> Result<Self, ReductionError> {
         let n = structure.ndof();
         let m = basis.len() / n.max(1);
@@ -121,6 +125,11 @@ impl Reduced {
         if !k.iter().chain(mass.iter()).all(|v| v.is_finite()) {
             return Err(ReductionError("the reduced matrices are not finite".into()));
         }
+        let kept = independent(&k);
+        let m = kept.len();
+        let all = m == t.ncols();
+        let only = |a: DMatrix<f64>| if all { a } else { a.select_rows(&kept).select_columns(&kept) };
+        let (k, mass, t) = (only(k), only(mass), if all { t } else { t.select_columns(&kept) });
         let l = definite(k, "the reduced stiffness")?.unpack();
         let singular = || ReductionError("the reduced stiffness is singular".into());
         let half = l.solve_lower_triangular(&mass).ok_or_else(singular)?;
@@ -205,6 +214,27 @@ fn columns(structure: &dyn Structure, asked: usize, others: usize) -> Result<usi
         )));
     }
     Ok(columns)
+}
+
+/// Columns that do not depend on those before them, of a basis with the Gram matrix `gram`.
+fn independent(gram: &DMatrix<f64>) -> Vec<usize> {
+    let mut kept: Vec<usize> = Vec::new();
+    // Rows of the Cholesky factor of the columns kept.
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    for j in 0..gram.ncols() {
+        let mut row = Vec::with_capacity(rows.len() + 1);
+        for (i, other) in kept.iter().zip(&rows) {
+            let known: f64 = other.iter().zip(&row).map(|(a, b)| a * b).sum();
+            row.push((gram[(*i, j)] - known) / other[row.len()]);
+        }
+        let left = gram[(j, j)] - row.iter().map(|x| x * x).sum::<f64>();
+        if left > DEPENDENT * gram[(j, j)] {
+            row.push(left.sqrt());
+            rows.push(row);
+            kept.push(j);
+        }
+    }
+    kept
 }
 
 fn definite(a: DMatrix<f64>, what: &str) -> Result<Cholesky<f64, Dyn>, ReductionError> {
