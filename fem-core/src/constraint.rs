@@ -197,6 +197,14 @@ impl Constraints {
         Ok(Self { starts, terms, offset, independent, redundant })
     }
 
+    /// No equations: all unknowns are independent, numbered in `order`.
+    pub(crate) fn none(order: &[usize]) -> Self {
+        let mut terms = vec![(0, 1.0); order.len()];
+        order.iter().enumerate().for_each(|(i, dof)| terms[*dof].0 = i);
+        let (starts, offset) = ((0..=order.len()).collect(), vec![0.0; order.len()]);
+        Self { starts, terms, offset, independent: order.to_vec(), redundant: Vec::new() }
+    }
+
     /// Number of independent unknowns.
     pub fn ndof(&self) -> usize {
         self.independent.len()
@@ -218,6 +226,34 @@ impl Constraints {
             [(i, _)] if self.independent[*i] == dof => Some(*i),
             _ => None,
         }
+    }
+
+    /// The same with the independent unknowns `kept` alone, numbered in their order; the others count as zero.
+    pub(crate) fn only(&self, kept: &[usize]) -> Self {
+        let mut number = vec![None; self.ndof()];
+        kept.iter().enumerate().for_each(|(new, i)| number[*i] = Some(new));
+        let term = |(i, c): &(usize, f64)| Some((number[*i]?, *c));
+        let all: Vec<usize> = (0..self.offset.len()).collect();
+        let independent = kept.iter().map(|i| self.independent[*i]).collect();
+        Self { independent, ..self.select(&all, term) }
+    }
+
+    /// The same for some of the unknowns, which are called by their place in `unknowns`.
+    pub(crate) fn of(&self, unknowns: &[usize]) -> Self {
+        let mut place = vec![usize::MAX; self.offset.len()];
+        unknowns.iter().enumerate().for_each(|(at, dof)| place[*dof] = at);
+        let independent = self.independent.iter().map(|dof| place[*dof]).collect();
+        Self { independent, ..self.select(unknowns, |term| Some(*term)) }
+    }
+
+    fn select(&self, unknowns: &[usize], term: impl Fn(&(usize, f64)) -> Option<(usize, f64)>) -> Self {
+        let (mut starts, mut terms) = (vec![0], Vec::new());
+        for dof in unknowns {
+            terms.extend(self.row(*dof).0.iter().filter_map(&term));
+            starts.push(terms.len());
+        }
+        let offset = unknowns.iter().map(|dof| self.offset[*dof]).collect();
+        Self { starts, terms, offset, independent: Vec::new(), redundant: Vec::new() }
     }
 
     /// A functional of all unknowns as one of the independent ones: Cᵀ w.

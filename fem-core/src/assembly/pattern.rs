@@ -203,17 +203,17 @@ pub(crate) struct CellMap {
 impl CellMap {
     pub(crate) fn set(&mut self, plate: &Plate, constraints: &Constraints, cell: usize) {
         plate.cell_dofs(cell, &mut self.dofs);
-        self.number(constraints, |i| i);
+        self.number(constraints);
     }
 
-    /// The same for the unknowns `dofs`, where the independent ones have other numbers.
-    pub(super) fn set_unknowns(&mut self, dofs: &[usize], constraints: &Constraints, number: impl Fn(usize) -> usize) {
+    /// The same for the unknowns `dofs`.
+    pub(super) fn set_unknowns(&mut self, dofs: &[usize], constraints: &Constraints) {
         self.dofs.clear();
         self.dofs.extend_from_slice(dofs);
-        self.number(constraints, number);
+        self.number(constraints);
     }
 
-    fn number(&mut self, constraints: &Constraints, number: impl Fn(usize) -> usize) {
+    fn number(&mut self, constraints: &Constraints) {
         self.reduced.clear();
         self.terms.clear();
         self.plain = true;
@@ -221,8 +221,8 @@ impl CellMap {
             let (terms, _) = constraints.row(*dof);
             self.plain &= terms.len() < 2 && terms.iter().all(|t| t.1 == 1.0);
             for (i, c) in terms {
-                self.reduced.push(number(*i));
-                self.terms.push((local, number(*i), *c));
+                self.reduced.push(*i);
+                self.terms.push((local, *i, *c));
             }
         }
         self.reduced.sort_unstable();

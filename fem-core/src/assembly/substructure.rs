@@ -5,7 +5,7 @@ use super::pattern::{CellMap, Cliques};
 use super::{
     AssemblyError, Cholesky, FactorError, Matrix, Pattern, Symbolic, assemble, elimination_order, ordering, pattern,
 };
-use crate::constraint::{ConstraintError, Constraints};
+use crate::constraint::Constraints;
 use crate::counters::Counters;
 use crate::element::Element;
 use crate::plate::Plate;
@@ -52,8 +52,6 @@ pub enum CondensationError {
         /// Why.
         why: FactorError,
     },
-    /// Unknowns that could not be numbered.
-    Order(ConstraintError),
     /// The condensed matrices would not fit.
     TooLarge {
         /// Their entries.
@@ -65,7 +63,6 @@ impl fmt::Display for CondensationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Assembly(why) => write!(f, "{why}"),
-            Self::Order(why) => write!(f, "{why}"),
             Self::TooLarge { entries } => write!(
                 f,
                 "the condensed matrices need {:.1} GB: divide the plate into substructures with shorter outlines",
@@ -85,12 +82,6 @@ impl From<AssemblyError> for CondensationError {
     }
 }
 
-impl From<ConstraintError> for CondensationError {
-    fn from(why: ConstraintError) -> Self {
-        Self::Order(why)
-    }
-}
-
 /// From masters to all independent unknowns: u = T u_m, substructure by substructure T = [−K_ii⁻¹ K_ib; I].
 ///
 /// Masters are what belongs to node columns on the outline of a substructure, what an equation or support names, and what a
@@ -102,10 +93,8 @@ pub struct Condensation {
     masters: Vec<usize>,
     /// Master of each independent unknown, [`INSIDE`] for those that are none.
     numbers: Vec<usize>,
-    /// Those that have an inside.
     parts: Vec<Part>,
     insides: Vec<Inside>,
-    condensed: usize,
 }
 
 const INSIDE: usize = usize::MAX;
@@ -148,37 +137,50 @@ pub fn condense(
     threads: NonZeroUsize,
     counters: &mut Counters,
 ) -> Result<Condensed, CondensationError> {
-    let (mut parts, classes) = divide(plate, constraints, division);
-    let (masters, numbers) = number(plate, constraints, &parts, &classes);
-    let mut map = CellMap::default();
-    let mut cliques = Cliques::default();
-    let mut members = vec![Vec::new(); classes.len()];
+    let Divided { parts, classes, loose } = divide(plate, constraints, division);
+    let (beside, unknowns) = plate.part(&loose);
+    let masters = masters(plate, constraints, &parts, &classes, &loose);
+    let on_masters = constraints.only(&masters);
+    let beside_on_masters = on_masters.of(&unknowns);
+    fits(&parts, &classes)?;
+
+    let (mut map, mut cliques) = (CellMap::default(), Cliques::default());
+    for (cell, _) in beside.kept_cells() {
+        map.set(&beside, &beside_on_masters, cell);
+        cliques.push(&map.reduced);
+    }
+    let mut outlines = vec![Vec::new(); classes.len()];
     for part in &parts {
         let outline = &part.unknowns[classes[part.class].inside..];
-        map.set_unknowns(outline, constraints, |i| numbers[i]);
+        map.set_unknowns(outline, &on_masters);
         cliques.push(&map.reduced);
-        members[part.class].push(outline);
+        outlines[part.class].push(outline);
     }
-    fits(&parts, &classes)?;
     let pattern = cliques.pattern(masters.len());
-    let (mut k, mut m) = (vec![0.0; pattern.rows.len()], vec![0.0; pattern.rows.len()]);
+    let mut matrix = |which| assemble(&beside, element, &beside_on_masters, &pattern, which, threads, counters);
+    let mut k = matrix(Matrix::Stiffness)?;
+    let mut m = if inertia { matrix(Matrix::Mass)? } else { vec![0.0; k.len()] };
     let mut insides = Vec::with_capacity(classes.len());
-    for (class, outlines) in classes.iter().zip(&members) {
+    for (class, outlines) in classes.iter().zip(&outlines) {
         let (inside, [stiffness, mass]) = class.condense(element, inertia, threads, counters)?;
         insides.push(inside);
         counters.elements_reused += ((outlines.len() - 1) * class.plate.cells()) as u64;
         for outline in outlines {
-            map.set_unknowns(outline, constraints, |i| numbers[i]);
+            map.set_unknowns(outline, &on_masters);
             map.scatter(&pattern, &stiffness, 1.0, &mut k);
             if inertia {
                 map.scatter(&pattern, &mass, 1.0, &mut m);
             }
         }
     }
-    parts.retain(|part| classes[part.class].inside > 0);
-    let condensed = classes.iter().filter(|class| class.inside > 0).count();
-    let way = Condensation { constraints: constraints.clone(), masters, numbers, parts, insides, condensed };
-    Ok(Condensed { pattern, k, m, way })
+    let mut numbers = vec![INSIDE; constraints.ndof()];
+    masters.iter().enumerate().for_each(|(number, i)| numbers[*i] = number);
+    Ok(Condensed {
+        pattern,
+        k,
+        m,
+        way: Condensation { constraints: constraints.clone(), masters, numbers, parts, insides },
+    })
 }
 
 /// Refuses dense matrices of outlines that this machine could not hold beside their sum.
@@ -193,34 +195,40 @@ fn fits(parts: &[Part], classes: &[Class]) -> Result<(), CondensationError> {
     }
 }
 
-/// The substructures of a plate, by the first of their quads, and their classes.
-fn divide(plate: &Plate, constraints: &Constraints, division: &Division) -> (Vec<Part>, Vec<Class>) {
+/// A plate divided.
+struct Divided {
+    /// Substructures that have an inside, by the first of their quads.
+    parts: Vec<Part>,
+    classes: Vec<Class>,
+    /// All other quads.
+    loose: Vec<u32>,
+}
+
+fn divide(plate: &Plate, constraints: &Constraints, division: &Division) -> Divided {
     let stays = stays(plate, constraints, &division.kept);
-    let mut groups: Vec<(Vec<u32>, bool)> = Vec::new();
-    let mut group_of = BTreeMap::new();
-    for (quad, of) in (0_u32..).zip(&division.quads) {
-        let new = groups.len();
-        let group = of.map_or(new, |of| *group_of.entry(of).or_insert(new));
-        if group == new {
-            groups.push((Vec::new(), of.is_some()));
-        }
-        groups[group].0.push(quad);
+    let (mut groups, mut loose): (BTreeMap<u32, Vec<u32>>, Vec<u32>) = (BTreeMap::new(), Vec::new());
+    for (quad, group) in (0..).zip(&division.quads) {
+        group.map_or(&mut loose, |group| groups.entry(group).or_default()).push(quad);
     }
-    let mut classes = Vec::new();
+    let mut classes: Vec<Class> = Vec::new();
     let mut numbers: HashMap<Shape, usize> = HashMap::new();
-    let mut part = |(quads, condensed): &(Vec<u32>, bool)| {
-        let (part, unknowns) = plate.part(quads);
-        let outline = if *condensed { part.outline() } else { (0..part.columns.len() as u32).collect() };
+    let mut parts = Vec::new();
+    for quads in groups.into_values() {
+        let (part, unknowns) = plate.part(&quads);
         let mut inside: Vec<bool> = unknowns.iter().map(|dof| !stays[*dof]).collect();
-        outline.iter().for_each(|column| inside[part.dofs_of_column(*column as usize)].fill(false));
+        part.outline().iter().for_each(|column| inside[part.dofs_of_column(*column as usize)].fill(false));
+        if !inside.contains(&true) {
+            loose.extend(quads);
+            continue;
+        }
         let class = *numbers.entry(shape(&part, &inside)).or_insert_with(|| {
             classes.push(Class::new(part, &inside));
             classes.len() - 1
         });
-        let unknowns = classes[class].order.iter().map(|own| unknowns[*own]).collect();
-        Part { class, unknowns }
-    };
-    (groups.iter().map(&mut part).collect(), classes)
+        parts.push(Part { class, unknowns: classes[class].order.iter().map(|own| unknowns[*own]).collect() });
+    }
+    loose.sort_unstable();
+    Divided { parts, classes, loose }
 }
 
 /// Whether an unknown of the plate is a master by itself: `kept`, held, or in an equation with others.
@@ -245,21 +253,19 @@ fn shape(part: &Plate, inside: &[bool]) -> Shape {
     (part.plane.quads.clone(), places, exponent, inside)
 }
 
-/// Masters in an order that is good to eliminate them in, and the master of each independent unknown.
-fn number(plate: &Plate, constraints: &Constraints, parts: &[Part], classes: &[Class]) -> (Vec<usize>, Vec<usize>) {
-    let mut column_of = vec![0; constraints.ndof()];
+/// The independent unknowns that are masters, in an order that is good to eliminate them in.
+fn masters(plate: &Plate, constraints: &Constraints, parts: &[Part], classes: &[Class], loose: &[u32]) -> Vec<usize> {
+    let mut column_of = vec![0; plate.ndof()];
     for column in 0..plate.columns.len() {
-        for i in plate.dofs_of_column(column).filter_map(|dof| constraints.position(dof)) {
-            column_of[i] = column as u32;
-        }
+        column_of[plate.dofs_of_column(column)].fill(column as u32);
     }
-    let mut master = vec![true; constraints.ndof()];
-    let mut cliques = Vec::with_capacity(parts.len());
+    let mut inside = vec![false; plate.ndof()];
+    let mut cliques: Vec<Vec<u32>> = loose.iter().map(|quad| plate.columns_of_quad(*quad as usize).to_vec()).collect();
     for part in parts {
-        let (inside, outline) = part.unknowns.split_at(classes[part.class].inside);
-        inside.iter().filter_map(|dof| constraints.position(*dof)).for_each(|i| master[i] = false);
-        let mut clique: Vec<u32> =
-            outline.iter().flat_map(|dof| constraints.row(*dof).0).map(|(i, _)| column_of[*i]).collect();
+        let (own, outline) = part.unknowns.split_at(classes[part.class].inside);
+        own.iter().for_each(|dof| inside[*dof] = true);
+        let tied = |dof: &usize| constraints.row(*dof).0.iter().map(|(i, _)| column_of[constraints.original(*i)]);
+        let mut clique: Vec<u32> = outline.iter().flat_map(|dof| tied(dof).chain([column_of[*dof]])).collect();
         clique.sort_unstable();
         clique.dedup();
         cliques.push(clique);
@@ -268,11 +274,8 @@ fn number(plate: &Plate, constraints: &Constraints, parts: &[Part], classes: &[C
     set.sort_unstable();
     set.dedup();
     let columns = ordering::dissect(&plate.columns, cliques.into_iter(), set).into_iter();
-    let independent = columns.flat_map(|c| plate.dofs_of_column(c as usize)).filter_map(|d| constraints.position(d));
-    let masters: Vec<usize> = independent.filter(|i| master[*i]).collect();
-    let mut numbers = vec![INSIDE; constraints.ndof()];
-    masters.iter().enumerate().for_each(|(number, i)| numbers[*i] = number);
-    (masters, numbers)
+    let unknowns = columns.flat_map(|c| plate.dofs_of_column(c as usize)).filter(|dof| !inside[*dof]);
+    unknowns.filter_map(|dof| constraints.position(dof)).collect()
 }
 
 impl Class {
@@ -292,7 +295,7 @@ impl Class {
         threads: NonZeroUsize,
         counters: &mut Counters,
     ) -> Result<(Inside, [Vec<f64>; 2]), CondensationError> {
-        let free = Constraints::eliminate(&self.order, &[])?;
+        let free = Constraints::none(&self.order);
         let pattern = pattern(&self.plate, &free);
         let mut matrix = |which| assemble(&self.plate, element, &free, &pattern, which, threads, counters);
         let k = matrix(Matrix::Stiffness)?;
@@ -404,7 +407,7 @@ impl Condensation {
 
     /// Substructures that have an inside, and how many of them were condensed: the others are equal to one of these.
     pub fn counts(&self) -> (usize, usize) {
-        (self.parts.len(), self.condensed)
+        (self.parts.len(), self.insides.len())
     }
 
     /// U = T U_m, column by column.
