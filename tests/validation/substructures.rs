@@ -2,6 +2,7 @@
 
 use super::scene::Side::{Clamped, Free, Supported};
 use super::scene::{AS4, Plate, gmsh_grid};
+use crate::support::strip;
 use fem::core::dof::Dof;
 use fem::core::plugin::{Built, Kind, Params, Value};
 use fem::core::reduction::Functional;
@@ -303,4 +304,19 @@ fn an_impact_on_substructures() {
             assert_eq!(same.events.len(), whole.events.len());
         }
     }
+}
+
+#[test]
+fn the_command_says_how_the_plate_is_divided() {
+    let scene = divided(&pressed(vec![4, 4], [6, 4]), "cells = [3, 2]").text("static");
+    let case = strip().text(&scene);
+    let words = "masters of 4 substructures, 1 condensed and 3 reused";
+    let checked = case.fem("check", &[]).good().stdout;
+    assert!(checked.contains(words), "{checked}");
+    let ran = case.fem("run", &["--out", "results"]).good().stdout;
+    assert!(ran.contains(words), "{ran}");
+    let summary = case.summary("results");
+    let parts = &summary["substructures"];
+    assert_eq!((parts["count"].as_u64(), parts["condensed"].as_u64()), (Some(4), Some(1)), "{summary}");
+    assert!(parts["masters"].as_u64() < summary["unknowns"].as_u64(), "{summary}");
 }

@@ -123,11 +123,10 @@ type Shape = (Vec<[u32; 4]>, Vec<[i64; 2]>, i32, Vec<usize>);
 /// Assembles K and M of `plate` substructure by substructure, each condensed on its masters; equal ones once.
 ///
 /// Equal are substructures of the same quads in the same arrangement with the same unknowns inside; what supports do to an
-/// outline makes no difference. Of a plate folded by a symmetry nothing would be inside: it is right, and useless.
+/// outline makes no difference. Of a plate folded by a symmetry nothing would be inside, for every unknown is tied to another.
 ///
 /// # Errors
 /// A cell that the element refuses, an inside that cannot be factorised.
-#[allow(clippy::too_many_arguments)]
 pub fn condense(
     plate: &Plate,
     element: &dyn Element,
