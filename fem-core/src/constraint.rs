@@ -342,13 +342,13 @@ mod tests {
 
     #[test]
     fn part_of_the_unknowns_and_of_the_independent_ones() {
-        let c = Constraints::eliminate(&[3, 2, 1, 0, 4], &[equation(&[(1, 1.0), (2, -2.0), (4, -3.0)], 0.0)]).unwrap();
-        assert_eq!((c.row(1).0, c.original(1)), (&[(1, 2.0), (3, 3.0)][..], 2));
+        let c = Constraints::eliminate(&[3, 2, 1, 0, 4], &[equation(&[(1, 4.0), (2, -2.0), (4, -1.0)], 0.0)]).unwrap();
+        assert_eq!((c.row(1).0, c.original(1)), (&[(1, 0.5), (3, 0.25)][..], 2));
         let only = c.only(&[3, 0]);
-        assert_eq!((only.ndof(), only.row(1).0, only.row(2).0), (2, &[(0, 3.0)][..], &[][..]));
+        assert_eq!((only.ndof(), only.row(1).0, only.row(2).0), (2, &[(0, 0.25)][..], &[][..]));
         assert_eq!((only.position(4), only.position(3), only.position(2)), (Some(0), Some(1), None));
         let part = c.of(&[4, 1]);
-        assert_eq!((part.row(1), part.position(0)), ((&[(1, 2.0), (3, 3.0)][..], 0.0), Some(3)));
+        assert_eq!((part.row(1), part.position(0)), ((&[(1, 0.5), (3, 0.25)][..], 0.0), Some(3)));
         assert_eq!(Constraints::none(&[2, 0, 1]), Constraints::eliminate(&[2, 0, 1], &[]).unwrap());
     }
 }
