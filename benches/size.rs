@@ -17,6 +17,7 @@ use fem::core::mesh::QuadMesh;
 use fem::core::patch;
 use fem::core::plate::{Plate, ZDerivatives};
 use fem::core::plugin::{Built, Params, Plugin, Value};
+use fem::core::prolongation::Prolongation;
 use fem::core::reduction::Functional;
 use fem::core::structure::Structure;
 use fem::core::support;
@@ -182,7 +183,8 @@ fn measure(side: usize) -> Vec<(&'static str, f64)> {
 
     let contact = constraints.restrict(&patch::node(&plate, plate.columns.len() / 2).unwrap().0);
     let contact = Functional(contact);
-    let mut structure = SparseStructure::new(symbolic, k, m, ONE, |_| String::new());
+    let coarse = Prolongation::linear_in_z(&plate, &constraints);
+    let mut structure = SparseStructure::new(symbolic, k, m, ONE, |_| String::new()).with_coarse(coarse);
     let Built::Reduction(ritz) = Ritz::build(&Params::default()).unwrap() else { unreachable!() };
     structure.solve_shifted(0.0, &mut vec![0.0; n], 1).unwrap();
     let start = ThreadTime::now();

@@ -23,6 +23,8 @@ pub enum Error {
     Mesh(#[from] MeshError),
     #[error("the matrices cannot be assembled")]
     Assembly(#[from] AssemblyError),
+    #[error("the substructures cannot be condensed")]
+    Condensation(#[from] fem_core::assembly::CondensationError),
     #[error("the stresses cannot be recovered")]
     Element(#[from] ElementError),
     #[error("the model cannot be solved")]

@@ -3,8 +3,9 @@
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::Model;
-use crate::run;
-use crate::summary::in_words;
+use crate::run::{self, Substructures};
+use crate::summary::{and, in_words};
+use fem_core::assembly::{Matrix, assemble, pattern};
 use fem_core::counters::Counters;
 use fem_core::structure::Structure;
 use fem_dynamics::modes::{self, Modes};
@@ -24,6 +25,8 @@ pub struct Solution {
     pub effective_masses: Vec<[f64; 3]>,
     /// Independent unknowns.
     pub unknowns: usize,
+    /// How the plate is divided, if it is.
+    pub substructures: Option<Substructures>,
     /// Work done.
     pub counters: Counters,
     /// Time per phase.
@@ -37,11 +40,22 @@ pub struct Solution {
 pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Solution, Error> {
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
-    let (mut structure, _) = run::structure(model, true, threads, &mut counters)?;
+    let mut assembled = run::structure(model, true, threads, &mut counters)?;
     stopwatch.lap("assemble");
-    let modes = modes::lowest(&mut structure, count, model.held)?;
-    (counters.factorisations, counters.solves) = structure.work();
-    let n = structure.ndof();
+    let mut modes = modes::lowest(&mut assembled.structure, count, model.held)?;
+    (counters.factorisations, counters.solves) = assembled.structure.work();
+    modes.shapes = assembled.expand(modes.shapes);
+    let n = model.constraints.ndof();
+    // Substructures that are condensed have forgotten how their mass is spread.
+    let whole = match &assembled.condensation {
+        None => None,
+        Some(_) => {
+            let Model { plate, element, constraints, .. } = model;
+            let pattern = pattern(plate, constraints);
+            let m = assemble(plate, &**element, constraints, &pattern, Matrix::Mass, threads, &mut counters)?;
+            Some((pattern, m))
+        }
+    };
     let mut momenta = [0, 1, 2].map(|_| vec![0.0; n]);
     // Symmetric modes have no net motion across a mirror, or off the axis of a half-turn.
     let open = |axis: usize| model.plate.symmetry().operations().all(|o| o.keeps_axis(axis));
@@ -50,13 +64,18 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Solut
             let dof = model.plate.locate(model.constraints.original(i)).2;
             f64::from(u8::from(dof.m() == 0 && dof.n() == axis + 1))
         };
-        structure.add_mass(1.0, &(0..n).map(moves).collect::<Vec<_>>(), momentum);
+        let moves: Vec<f64> = (0..n).map(moves).collect();
+        match &whole {
+            None => assembled.structure.add_mass(1.0, &moves, momentum),
+            Some((pattern, m)) => pattern.add_product(m, 1.0, &moves, momentum),
+        }
     }
     let mass = |shape: &[f64], m: &[f64]| shape.iter().zip(m).map(|(a, b)| a * b).sum::<f64>().powi(2);
     let effective_masses = modes.shapes.chunks_exact(n.max(1)).map(|s| [0, 1, 2].map(|d| mass(s, &momenta[d])));
     let effective_masses = effective_masses.collect();
     stopwatch.lap("modes");
-    Ok(Solution { modes, effective_masses, unknowns: n, counters, phases: stopwatch.phases().to_vec() })
+    let (substructures, phases) = (assembled.substructures(), stopwatch.phases().to_vec());
+    Ok(Solution { modes, effective_masses, unknowns: n, substructures, counters, phases })
 }
 
 /// The summary of a modal analysis; units are in the key names.
@@ -68,6 +87,8 @@ pub struct Summary {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub symmetry: Option<&'static str>,
     pub unknowns: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub substructures: Option<Substructures>,
     pub held: bool,
     pub frequencies_Hz: Vec<f64>,
     pub effective_masses_kg: Vec<[f64; 3]>,
@@ -86,6 +107,7 @@ impl Summary {
             version: env!("CARGO_PKG_VERSION"),
             symmetry: model.plate.symmetry().name(),
             unknowns: solution.unknowns,
+            substructures: solution.substructures,
             held: model.held,
             frequencies_Hz: solution.modes.omega.iter().map(|w| w / TAU).collect(),
             effective_masses_kg: solution.effective_masses.clone(),
@@ -101,7 +123,8 @@ impl Summary {
     pub fn text(&self) -> String {
         let alone = if self.symmetry.is_some() { ": its symmetric modes alone" } else { "" };
         let symmetry = in_words(self.symmetry);
-        let mut t = format!("{}\n  model     {} unknowns{symmetry}{alone}\n", self.title, self.unknowns);
+        let divided = and(self.substructures);
+        let mut t = format!("{}\n  model     {} unknowns{divided}{symmetry}{alone}\n", self.title, self.unknowns);
         t.push_str("  mode   frequency (Hz)   mass along x, y, z (g)\n");
         for (i, (f, m)) in self.frequencies_Hz.iter().zip(&self.effective_masses_kg).enumerate() {
             let [x, y, z] = m.map(|m| m * 1e3);

@@ -3,9 +3,9 @@
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::{Model, NamedProfile, Plan};
-use crate::run;
+use crate::run::{self, Substructures};
 use crate::stress::{self, Margin};
-use crate::summary::in_words;
+use crate::summary::{and, in_words};
 use fem_core::counters::Counters;
 use fem_core::dof::Dof;
 use fem_core::profile::ProfilePoint;
@@ -31,6 +31,8 @@ pub struct Solution {
     pub u: Vec<f64>,
     /// Independent unknowns.
     pub unknowns: usize,
+    /// How the plate is divided, if it is.
+    pub substructures: Option<Substructures>,
     /// Entries of the factor of K.
     pub factor_entries: usize,
     /// ½ uᵀ K u, J.
@@ -58,7 +60,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     let Plan::Static { forces } = &model.plan else { return Err(Error::NoLoads) };
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
-    let (mut structure, factor_entries) = run::structure(model, false, threads, &mut counters)?;
+    let mut assembled = run::structure(model, false, threads, &mut counters)?;
     stopwatch.lap("assemble");
     let constraints = &model.constraints;
     // u = C ũ + g, so that Cᵀ K C ũ = Cᵀ f; supports hold at zero, g = 0.
@@ -69,10 +71,12 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
         let along = |(dof, f): (usize, &f64)| if model.plate.locate(dof).2 == dof_of(n) { *f } else { 0.0 };
         forces.iter().enumerate().map(along).sum()
     });
-    let mut independent = f.clone();
-    structure.solve_shifted(0.0, &mut independent, 1)?;
-    let mut rest = f.clone();
-    structure.add_stiffness(-1.0, &independent, &mut rest);
+    let (mut rest, own) = assembled.load(&f);
+    let mut solved = rest.clone();
+    assembled.structure.solve_shifted(0.0, &mut solved, 1)?;
+    assembled.structure.add_stiffness(-1.0, &solved, &mut rest);
+    let mut independent = assembled.expand(solved);
+    independent.iter_mut().zip(own.iter().flatten()).for_each(|(u, own)| *u += own);
     let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
     let strain_energy = 0.5 * f.iter().zip(&independent).map(|(f, u)| f * u).sum::<f64>();
     if !strain_energy.is_finite() {
@@ -84,7 +88,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     }
     let mut u = vec![0.0; model.plate.ndof()];
     constraints.expand(&independent, &mut u);
-    (counters.factorisations, counters.solves) = structure.work();
+    (counters.factorisations, counters.solves) = assembled.structure.work();
     stopwatch.lap("solve");
     let margins = stress::margins(model, &u)?;
     let profiles = model.profiles.iter().map(|named| profile(model, named, &u)).collect();
@@ -94,7 +98,8 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     Ok(Solution {
         u,
         unknowns,
-        factor_entries,
+        substructures: assembled.substructures(),
+        factor_entries: assembled.factor_entries,
         strain_energy,
         residual,
         resultant,
@@ -130,6 +135,8 @@ pub struct Summary {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub symmetry: Option<&'static str>,
     pub unknowns: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub substructures: Option<Substructures>,
     pub factor_entries: usize,
     pub resultant_N: [f64; 3],
     pub strain_energy_J: f64,
@@ -163,6 +170,7 @@ impl Summary {
             version: env!("CARGO_PKG_VERSION"),
             symmetry: model.plate.symmetry().name(),
             unknowns: solution.unknowns,
+            substructures: solution.substructures,
             factor_entries: solution.factor_entries,
             resultant_N: solution.resultant,
             strain_energy_J: solution.strain_energy,
@@ -181,11 +189,12 @@ impl Summary {
         let d = &self.largest_deflection;
         let [fx, fy, fz] = self.resultant_N;
         let mut t = format!(
-            "{}\n  model     {} unknowns{}\n  loads     {fx:.4}, {fy:.4}, {fz:.4} N along x, y, z\n  \
+            "{}\n  model     {} unknowns{}{}\n  loads     {fx:.4}, {fy:.4}, {fz:.4} N along x, y, z\n  \
              response  largest deflection {:.6} mm at ({:.4}, {:.4}, {:.4}) mm; strain energy {:.6e} J\n",
             self.title,
             self.unknowns,
             in_words(self.symmetry),
+            and(self.substructures),
             d.w_m * 1e3,
             d.x_m * 1e3,
             d.y_m * 1e3,

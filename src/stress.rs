@@ -5,6 +5,7 @@ use crate::model::{Model, NamedCriterion};
 use crate::summary::ply_name;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
+use fem_core::assembly::Condensation;
 use fem_core::failure::Site;
 use fem_core::recovery::{Recovery, Station};
 use fem_core::structure::Structure;
@@ -53,6 +54,7 @@ impl IndexHistory {
 pub(crate) struct Watch<'a> {
     model: &'a Model,
     reduced: Option<Reduced>,
+    condensation: Option<Condensation>,
     recovery: Recovery,
     /// 6·sites × modes: stresses per unit of each modal coordinate.
     operator: Option<Vec<f64>>,
@@ -76,17 +78,23 @@ pub(crate) struct Record {
 }
 
 impl<'a> Watch<'a> {
-    /// Prepares the scan of `model`; with `reduced`, the march runs in its coordinates.
+    /// Prepares the scan of `model`; with `reduced`, the march runs in its coordinates, and with `condensation` these are of
+    /// masters alone.
     ///
     /// # Errors
     /// A criterion whose material lacks a constant, or a cell that the element refuses.
-    pub(crate) fn new(model: &'a Model, reduced: Option<Reduced>) -> Result<Self, Error> {
+    pub(crate) fn new(
+        model: &'a Model,
+        reduced: Option<Reduced>,
+        condensation: Option<Condensation>,
+    ) -> Result<Self, Error> {
         let recovery = recovery(model);
         let scan = Scan::new(model.criteria.clone(), sites(model, &recovery), model.materials.clone())?;
         let (probes, histories) = gauges(model, &scan).into_iter().unzip();
         let mut watch = Self {
             model,
             reduced: None,
+            condensation,
             operator: None,
             probes,
             scan,
@@ -96,10 +104,10 @@ impl<'a> Watch<'a> {
             recovery,
         };
         if let Some(reduced) = &reduced {
-            let (n, modes) = (model.constraints.ndof(), reduced.modal.ndof());
+            let modes = reduced.modal.ndof();
             if 6 * watch.recovery.sites() * modes * size_of::<f64>() <= OPERATOR_LIMIT {
                 let mut operator = vec![0.0; 6 * watch.recovery.sites() * modes];
-                watch.recover(&reduced.basis, n, modes, &mut operator)?;
+                watch.recover(&reduced.basis, modes, &mut operator)?;
                 watch.operator = Some(operator);
             }
         }
@@ -147,14 +155,14 @@ impl<'a> Watch<'a> {
                 Par::Seq,
             ),
             (None, Some(reduced)) => {
-                let n = self.model.constraints.ndof();
+                let n = reduced.basis.len() / width;
                 let mut u = vec![0.0; n * count];
                 for (q, u) in waiting.chunks_exact(width).zip(u.chunks_exact_mut(n)) {
                     reduced.expand(q, u);
                 }
-                self.recover(&u, n, count, out)?;
+                self.recover(&u, count, out)?;
             }
-            (None, None) => self.recover(waiting, width, count, out)?,
+            (None, None) => self.recover(waiting, count, out)?,
         }
         for (t, stresses) in times.iter().zip(stresses.chunks_exact(rows)) {
             for (state, s) in self.states.iter_mut().zip(stresses.chunks_exact(6)) {
@@ -168,11 +176,13 @@ impl<'a> Watch<'a> {
         Ok(())
     }
 
-    /// Stresses of displacement fields given in independent unknowns, `n × fields`.
-    fn recover(&self, fields: &[f64], n: usize, count: usize, out: &mut [f64]) -> Result<(), Error> {
+    /// Stresses of `count` displacement fields given in the unknowns of the structure, one after the other.
+    fn recover(&self, fields: &[f64], count: usize, out: &mut [f64]) -> Result<(), Error> {
         let model = self.model;
+        let expanded = self.condensation.as_ref().map(|condensation| condensation.expand(fields));
+        let fields = expanded.as_deref().unwrap_or(fields);
         let mut u = vec![0.0; model.plate.ndof() * count];
-        for (field, u) in fields.chunks_exact(n).zip(u.chunks_exact_mut(model.plate.ndof())) {
+        for (field, u) in fields.chunks_exact(model.constraints.ndof()).zip(u.chunks_exact_mut(model.plate.ndof())) {
             model.constraints.expand(field, u);
         }
         Ok(self.recovery.stresses(&model.plate, &*model.element, &u, count, out)?)

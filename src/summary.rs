@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::indices;
 use crate::modal;
 use crate::model::Model;
-use crate::run::{ModeShare, Outcome, Sizes};
+use crate::run::{ModeShare, Outcome, Sizes, Substructures};
 use fem_core::counters::Counters;
 use fem_core::tensor::{Ply, Stress6};
 use fem_failure::scan::{FailureEvent, Place, first_per_mode};
@@ -13,7 +13,7 @@ use fem_io::files::OutputDir;
 use fem_io::tables::{self, EventRow, HistoryRow, ImpactorRow};
 use fem_io::{plot, scene};
 use serde::{Serialize, Serializer};
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 
 /// All that is said of a run; units are in the key names.
 #[derive(Debug, Clone, Serialize)]
@@ -53,6 +53,8 @@ pub struct ModelSize {
     pub thickness_mm: f64,
     pub plate_mass_g: f64,
     pub unknowns: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub substructures: Option<Substructures>,
     pub unknowns_marched: usize,
     pub stiffness_entries: usize,
     pub factor_entries: usize,
@@ -200,7 +202,12 @@ pub(crate) fn ply_name(place: Place) -> String {
 
 /// ", symmetry quarter", or nothing.
 pub(crate) fn in_words(symmetry: Option<&str>) -> String {
-    symmetry.map_or_else(String::new, |name| format!(", symmetry {name}"))
+    and(symmetry.map(|name| format!("symmetry {name}")))
+}
+
+/// ", 12 masters of 4 substructures", or nothing.
+pub(crate) fn and(what: Option<impl Display>) -> String {
+    what.map_or_else(String::new, |what| format!(", {what}"))
 }
 
 /// All contact forces together.
@@ -253,6 +260,7 @@ impl Summary {
                 thickness_mm: thickness * 1e3,
                 plate_mass_g: model.areal_mass * model.plate.plane.area() * 1e3,
                 unknowns: sizes.unknowns,
+                substructures: sizes.substructures,
                 unknowns_marched: sizes.marched,
                 stiffness_entries: sizes.stiffness_entries,
                 factor_entries: sizes.factor_entries,
@@ -294,12 +302,13 @@ impl Summary {
         let m = &self.model;
         line(format_args!("{}", self.title));
         line(format_args!(
-            "  model     {} quads x {} layers, {} plies, {:.4} mm; {} unknowns, {} marched ({}){}",
+            "  model     {} quads x {} layers, {} plies, {:.4} mm; {} unknowns{}, {} marched ({}){}",
             m.quads,
             m.layers,
             m.plies,
             m.thickness_mm,
             m.unknowns,
+            and(m.substructures),
             m.unknowns_marched,
             self.fidelity,
             in_words(m.symmetry)

@@ -694,3 +694,76 @@ mod arguments {
         }
     }
 }
+
+mod substructures {
+    use super::*;
+
+    /// A plate of 8 x 6 built-in cells.
+    fn divided(substructures: &str) -> Case {
+        let scene = format!(
+            "title = \"t\"\nanalysis = \"static\"\nsubstructures = {{ {substructures} }}\n\
+             mesh = {{ rectangle = [\"40 mm\", \"30 mm\"], cells = [8, 6] }}\n\
+             materials.m = {{ library = \"AS4/3502\" }}\nlaminate = {{ plies = \"[0/90]s\", material = \"m\", ply_thickness = \"0.25 mm\" }}\n\
+             support = [{{ group = \"x-min\", at = \"all\", fix = [\"U10\", \"U20\", \"U30\"] }}]\nload = [{{ pressure = \"1 MPa\" }}]\n"
+        );
+        strip().text(&scene)
+    }
+
+    #[track_caller]
+    fn refused(case: &Case, words: &[&str]) {
+        refusal(case, At::Scene("substructures ="), words);
+    }
+
+    #[test]
+    fn group_that_is_none() {
+        refused(&divided("groups = [\"plat\"]"), &["the mesh has no group `plat`", "did you mean `plate`"]);
+        refused(&divided("groups = [\"x-max\"]"), &["the group has no cells", "physical surface"]);
+    }
+
+    #[test]
+    fn groups_with_a_common_cell() {
+        refused(
+            &divided("groups = [\"plate\", \"plate\"]"),
+            &["cell 1 belongs to `plate` too", "without common cells"],
+        );
+    }
+
+    #[test]
+    fn blocks_that_do_not_divide_the_mesh() {
+        refused(&divided("cells = [4, 4]"), &["blocks of 4 x 4 cells do not divide a mesh of 8 x 6", "divisors"]);
+        refused(&divided("cells = [0, 1]"), &["must be a whole number of at least 1"]);
+        refused(&divided("cells = [4]"), &["has 1 values", "give two"]);
+    }
+
+    #[test]
+    fn blocks_of_a_mesh_of_gmsh() {
+        let case = with_keys(strip(), "substructures = { cells = [2, 2] }");
+        refused(&case, &["blocks of cells need a built-in mesh", "groups = ["]);
+    }
+
+    #[test]
+    fn parts_of_no_kind_and_of_two() {
+        refused(&divided("masters = []"), &["the substructures are not named", "give `groups`"]);
+        refused(&divided("cells = [2, 2], groups = [\"plate\"]"), &["excludes `groups`"]);
+    }
+
+    #[test]
+    fn masters_that_are_none() {
+        let masters = "masters = [{ group = \"plate\", at = \"top\", dofs = [\"U30\"] }], cells = [4, 3]";
+        refused(&divided(&masters.replace("plate", "plat")), &["the mesh has no group `plat`"]);
+        refused(&divided(&masters.replace("U30", "W")), &["`W`"]);
+        let shell = divided(&masters.replace("U30", "U31")).scene("mesh =", "element = { kind = \"hex20\" }\nmesh =");
+        refused(&shell, &["the masters of `plate` are none", "the element has none of the unknowns"]);
+    }
+
+    #[test]
+    fn folded_plate() {
+        let case = divided("cells = [4, 3]").scene("mesh =", "symmetry = \"half-turn\"\nmesh =");
+        let case = case.scene("group = \"x-min\"", "group = \"plate\"");
+        refusal(
+            &case,
+            At::Scene("symmetry ="),
+            &["nothing can be condensed", "leave `symmetry` or `substructures` out"],
+        );
+    }
+}

@@ -197,6 +197,14 @@ impl Constraints {
         Ok(Self { starts, terms, offset, independent, redundant })
     }
 
+    /// No equations: all unknowns are independent, numbered in `order`.
+    pub(crate) fn none(order: &[usize]) -> Self {
+        let mut terms = vec![(0, 1.0); order.len()];
+        order.iter().enumerate().for_each(|(i, dof)| terms[*dof].0 = i);
+        let (starts, offset) = ((0..=order.len()).collect(), vec![0.0; order.len()]);
+        Self { starts, terms, offset, independent: order.to_vec(), redundant: Vec::new() }
+    }
+
     /// Number of independent unknowns.
     pub fn ndof(&self) -> usize {
         self.independent.len()
@@ -218,6 +226,34 @@ impl Constraints {
             [(i, _)] if self.independent[*i] == dof => Some(*i),
             _ => None,
         }
+    }
+
+    /// The same with the independent unknowns `kept` alone, numbered in their order; the others count as zero.
+    pub(crate) fn only(&self, kept: &[usize]) -> Self {
+        let mut number = vec![None; self.ndof()];
+        kept.iter().enumerate().for_each(|(new, i)| number[*i] = Some(new));
+        let term = |(i, c): &(usize, f64)| Some((number[*i]?, *c));
+        let all: Vec<usize> = (0..self.offset.len()).collect();
+        let independent = kept.iter().map(|i| self.independent[*i]).collect();
+        Self { independent, ..self.select(&all, term) }
+    }
+
+    /// The same for some of the unknowns, which are called by their place in `unknowns`.
+    pub(crate) fn of(&self, unknowns: &[usize]) -> Self {
+        let mut place = vec![usize::MAX; self.offset.len()];
+        unknowns.iter().enumerate().for_each(|(at, dof)| place[*dof] = at);
+        let independent = self.independent.iter().map(|dof| place[*dof]).collect();
+        Self { independent, ..self.select(unknowns, |term| Some(*term)) }
+    }
+
+    fn select(&self, unknowns: &[usize], term: impl Fn(&(usize, f64)) -> Option<(usize, f64)>) -> Self {
+        let (mut starts, mut terms) = (vec![0], Vec::new());
+        for dof in unknowns {
+            terms.extend(self.row(*dof).0.iter().filter_map(&term));
+            starts.push(terms.len());
+        }
+        let offset = unknowns.iter().map(|dof| self.offset[*dof]).collect();
+        Self { starts, terms, offset, independent: Vec::new(), redundant: Vec::new() }
     }
 
     /// A functional of all unknowns as one of the independent ones: Cᵀ w.
@@ -302,5 +338,17 @@ mod tests {
         assert_eq!(one.ndof(), 0);
         assert!(solve(2, &[equation(&[(0, f64::NAN)], 0.0)]).is_err());
         assert!(solve(2, &[equation(&[], 0.0)]).is_err());
+    }
+
+    #[test]
+    fn part_of_the_unknowns_and_of_the_independent_ones() {
+        let c = Constraints::eliminate(&[3, 2, 1, 0, 4], &[equation(&[(1, 4.0), (2, -2.0), (4, -1.0)], 0.0)]).unwrap();
+        assert_eq!((c.row(1).0, c.original(1)), (&[(1, 0.5), (3, 0.25)][..], 2));
+        let only = c.only(&[3, 0]);
+        assert_eq!((only.ndof(), only.row(1).0, only.row(2).0), (2, &[(0, 0.25)][..], &[][..]));
+        assert_eq!((only.position(4), only.position(3), only.position(2)), (Some(0), Some(1), None));
+        let part = c.of(&[4, 1]);
+        assert_eq!((part.row(1), part.position(0)), ((&[(1, 0.5), (3, 0.25)][..], 0.0), Some(3)));
+        assert_eq!(Constraints::none(&[2, 0, 1]), Constraints::eliminate(&[2, 0, 1], &[]).unwrap());
     }
 }

@@ -1,5 +1,7 @@
 //! A plate of cells: a plane mesh extruded through the layers of a laminate, and the numbers of its unknowns.
 
+mod part;
+
 use crate::dof::Dof;
 use crate::element::{Cell, ElementInfo, Stack};
 use crate::mesh::{Group, QuadMesh};

@@ -4,7 +4,7 @@ use super::{print, warn};
 use crate::error::Error;
 use crate::model::{Impact, Model, Plan};
 use crate::registry::Registry;
-use crate::run::{self, Sizes};
+use crate::run::{self, Sizes, Substructures};
 use crate::summary::in_words;
 use clap::Args;
 use fem_core::counters::Counters;
@@ -31,13 +31,14 @@ fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
         Plan::Impact(impact) => {
             let sizes = run::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model))?.sizes;
             lines.extend(unknowns(&model, sizes.stiffness_entries, sizes.factor_entries));
+            lines.extend(divided(sizes.substructures));
             lines.extend(march(impact, &sizes));
         }
         plan => {
             let counters = &mut Counters::default();
-            let (structure, factor) =
-                run::structure(&model, true, NonZeroUsize::MIN, counters).inspect_err(|_| warn(&model))?;
-            lines.extend(unknowns(&model, structure.entries(), factor));
+            let assembled = run::structure(&model, true, NonZeroUsize::MIN, counters).inspect_err(|_| warn(&model))?;
+            lines.extend(unknowns(&model, assembled.structure.entries(), assembled.factor_entries));
+            lines.extend(divided(assembled.substructures()));
             lines.push(match plan {
                 Plan::Modes { count } => ("analysis", format!("the {count} lowest modes")),
                 _ => ("analysis", "static".to_owned()),
@@ -87,6 +88,10 @@ fn unknowns(model: &Model, stiffness: usize, factor: usize) -> [Line; 2] {
     let (independent, all) = (model.constraints.ndof(), model.plate.ndof());
     let memory = format!("stiffness {:.1} MB, factor {:.1} MB", 2.0 * megabytes(stiffness), megabytes(factor));
     [("unknowns", format!("{independent} of {all} after constraints{redundant}")), ("memory", memory)]
+}
+
+fn divided(substructures: Option<Substructures>) -> Option<Line> {
+    substructures.map(|parts| ("divided", parts.to_string()))
 }
 
 fn march(impact: &Impact, sizes: &Sizes) -> [Line; 3] {

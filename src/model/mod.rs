@@ -3,6 +3,7 @@
 mod builder;
 mod gauge;
 mod plan;
+mod substructures;
 mod symmetry;
 
 pub use gauge::Gauge;
@@ -11,6 +12,7 @@ pub use plan::{Impact, NamedProfile, Plan, Strike};
 use crate::error::Error;
 use crate::registry::Registry;
 use builder::Builder;
+use fem_core::assembly::Division;
 use fem_core::constraint::Constraints;
 use fem_core::dof::Dof;
 use fem_core::element::Element;
@@ -41,6 +43,8 @@ pub struct Model {
     pub constraints: Constraints,
     /// Whether the supports stop all rigid motions.
     pub held: bool,
+    /// The substructures, if the scene divides the plate into some.
+    pub division: Option<Division>,
     /// What is computed.
     pub plan: Plan,
     /// Lines through the thickness along which stresses are wanted.
@@ -121,6 +125,7 @@ impl Model {
             _ => Vec::new(),
         };
         builder.modes(&plan)?;
+        let division = builder.division(&plate, &constraints, &plan)?;
         let watched = builder.watched(&plate, &centres)?;
         let gauges = builder.gauges(&plate, &watched, &criteria)?;
         let resin = scene.interface.as_ref().map(|resin| resin.value);
@@ -137,6 +142,7 @@ impl Model {
             element,
             constraints,
             held,
+            division,
             plan,
             profiles,
             criteria,

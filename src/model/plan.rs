@@ -57,19 +57,6 @@ pub struct Strike {
     pub law: Box<dyn ContactLaw>,
 }
 
-impl Impact {
-    /// The contacts, those in the very same place once.
-    pub fn contacts(&self) -> Vec<Functional> {
-        let mut contacts: Vec<Functional> = Vec::new();
-        for strike in &self.strikes {
-            if !contacts.contains(&strike.contact) {
-                contacts.push(strike.contact.clone());
-            }
-        }
-        contacts
-    }
-}
-
 /// A profile of the scene and its place in the plate.
 #[derive(Debug, Clone)]
 pub struct NamedProfile {

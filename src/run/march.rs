@@ -169,10 +169,10 @@ impl<'a> March<'a> {
     }
 
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
-        let Prepared { model, impact, system, reduced, sizes, counters, mut stopwatch } = prepared;
+        let Prepared { model, impact, system, reduced, condensation, sizes, counters, mut stopwatch } = prepared;
         let followed = model.scene.output.modes.as_ref().zip(reduced.as_ref());
         let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
-        let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, reduced)?) };
+        let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, reduced, condensation)?) };
         stopwatch.lap("prepare stresses");
         let scan_every = steps_in(model.scene.failure.every, sizes.step);
         let (integrator, counted) = (impact.integrator.clone(), Work::default());

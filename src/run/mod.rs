@@ -10,19 +10,22 @@ pub use crate::stress::IndexHistory;
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use march::{March, march};
 pub use modal::{ModalHistory, ModeShare};
-pub use prepare::{Prepared, prepare, structure};
+pub use prepare::{Assembled, Prepared, prepare, structure};
 
 use crate::cost::Phase;
 use fem_core::counters::Counters;
 use fem_failure::scan::{FailureEvent, Peak, ScanSite};
 use fem_io::tables::HistoryRow;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Sizes and limits of a model that is ready to march.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sizes {
     /// Independent unknowns of the full model.
     pub unknowns: usize,
+    /// How the plate is divided, if it is.
+    pub substructures: Option<Substructures>,
     /// Unknowns of the march: modes of the reduced model, or those of the full one.
     pub marched: usize,
     /// Entries of one triangle of the stiffness.
@@ -41,6 +44,24 @@ pub struct Sizes {
     pub steps: u64,
     /// The step, s: the scene's, shortened so that a whole number of steps reaches the end.
     pub step: f64,
+}
+
+/// A plate that is divided into substructures.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Substructures {
+    /// Those that have an inside.
+    pub count: usize,
+    /// How many of them were condensed; the others are equal to one of these.
+    pub condensed: usize,
+    /// Unknowns that are left.
+    pub masters: usize,
+}
+
+impl fmt::Display for Substructures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { count, condensed, masters } = self;
+        write!(f, "{masters} masters of {count} substructures, {condensed} condensed and {} reused", count - condensed)
+    }
 }
 
 /// What a run found.

@@ -1,12 +1,13 @@
 //! Assemble, reduce, couple to the impactors.
 
-use super::Sizes;
+use super::{Sizes, Substructures};
 use crate::cost::Stopwatch;
 use crate::error::Error;
 use crate::model::{Impact, Model, Plan, Strike};
-use fem_core::assembly::{Matrix, SparseStructure, Symbolic, assemble, pattern};
+use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, Symbolic, assemble, condense, pattern};
 use fem_core::counters::Counters;
 use fem_core::prolongation::Prolongation;
+use fem_core::reduction::Functional;
 use fem_core::structure::Structure;
 use fem_core::time::{StepError, StepLimit};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
@@ -26,13 +27,75 @@ pub struct Prepared<'a> {
     pub(super) impact: &'a Impact,
     pub(super) system: ImpactSystem,
     pub(super) reduced: Option<Reduced>,
+    pub(super) condensation: Option<Condensation>,
     /// Sizes and limits.
     pub sizes: Sizes,
     pub(super) counters: Counters,
     pub(super) stopwatch: Stopwatch,
 }
 
-/// K and M of `model`, and the number of entries of the factor of K. M is left zero where `inertia` is not wanted.
+/// K and M of a model, condensed on its masters where the scene divides the plate into substructures.
+#[derive(Debug)]
+pub struct Assembled {
+    /// Both matrices.
+    pub structure: SparseStructure,
+    /// Entries of the factor of K.
+    pub factor_entries: usize,
+    /// From the masters to the independent unknowns of the model.
+    pub condensation: Option<Condensation>,
+}
+
+impl Assembled {
+    /// A load on the independent unknowns as one on those of the structure, and the displacements that come on top of
+    /// what follows from these, if any.
+    pub fn load(&self, f: &[f64]) -> (Vec<f64>, Option<Vec<f64>>) {
+        match &self.condensation {
+            None => (f.to_vec(), None),
+            Some(condensation) => {
+                let (on_masters, own) = condensation.load(f);
+                (on_masters, Some(own))
+            }
+        }
+    }
+
+    /// Displacements of all independent unknowns.
+    pub fn expand(&self, u: Vec<f64>) -> Vec<f64> {
+        match &self.condensation {
+            None => u,
+            Some(condensation) => condensation.expand(&u),
+        }
+    }
+
+    /// Independent unknown that one of the structure stands for.
+    pub fn independent(&self, i: usize) -> usize {
+        self.condensation.as_ref().map_or(i, |condensation| condensation.independent(i))
+    }
+
+    /// How the plate is divided, if it is.
+    pub fn substructures(&self) -> Option<Substructures> {
+        let condensation = self.condensation.as_ref()?;
+        let (count, condensed) = condensation.counts();
+        Some(Substructures { count, condensed, masters: condensation.ndof() })
+    }
+
+    fn functional(&self, w: &Functional) -> Functional {
+        let Some(condensation) = &self.condensation else { return w.clone() };
+        let mut f = vec![0.0; condensation.independents()];
+        w.add_to(1.0, &mut f);
+        let on_masters = condensation.load(&f).0.into_iter().enumerate();
+        Functional(on_masters.filter(|(_, w)| *w != 0.0).collect())
+    }
+
+    /// Those of some independent unknowns that the structure has.
+    fn own(&self, unknowns: Vec<usize>) -> Vec<usize> {
+        match &self.condensation {
+            None => unknowns,
+            Some(condensation) => unknowns.into_iter().filter_map(|i| condensation.master(i)).collect(),
+        }
+    }
+}
+
+/// Assembles K and M of `model`. M is left zero where `inertia` is not wanted.
 ///
 /// # Errors
 /// A cell that the element refuses, a pattern too large to factorise.
@@ -41,18 +104,28 @@ pub fn structure(
     inertia: bool,
     threads: NonZeroUsize,
     counters: &mut Counters,
-) -> Result<(SparseStructure, usize), Error> {
-    let pattern = Arc::new(pattern(&model.plate, &model.constraints));
-    let mut matrix =
-        |which| assemble(&model.plate, &*model.element, &model.constraints, &pattern, which, threads, counters);
-    let k = matrix(Matrix::Stiffness)?;
-    let m = if inertia { matrix(Matrix::Mass)? } else { vec![0.0; k.len()] };
-    let symbolic = Symbolic::new(pattern.clone())?;
-    let entries = symbolic.entries();
-    let (plate, originals) = (model.plate.clone(), model.constraints.clone());
-    let name = move |column| plate.describe(originals.original(column));
-    let coarse = Prolongation::linear_in_z(&model.plate, &model.constraints);
-    Ok((SparseStructure::new(symbolic, k, m, threads, name).with_coarse(coarse), entries))
+) -> Result<Assembled, Error> {
+    let Model { plate, element, constraints, division, .. } = model;
+    let (described, originals) = (plate.clone(), constraints.clone());
+    let name = move |i: usize| described.describe(originals.original(i));
+    let Some(division) = division else {
+        let pattern = Arc::new(pattern(plate, constraints));
+        let mut matrix = |which| assemble(plate, &**element, constraints, &pattern, which, threads, counters);
+        let k = matrix(Matrix::Stiffness)?;
+        let m = if inertia { matrix(Matrix::Mass)? } else { vec![0.0; k.len()] };
+        let symbolic = Symbolic::new(pattern.clone())?;
+        let factor_entries = symbolic.entries();
+        let coarse = Prolongation::linear_in_z(plate, constraints);
+        let structure = SparseStructure::new(symbolic, k, m, threads, name).with_coarse(coarse);
+        return Ok(Assembled { structure, factor_entries, condensation: None });
+    };
+    let Condensed { pattern, k, m, way } =
+        condense(plate, &**element, constraints, division, inertia, threads, counters)?;
+    let symbolic = Symbolic::new(Arc::new(pattern))?;
+    let factor_entries = symbolic.entries();
+    let masters: Vec<usize> = (0..way.ndof()).map(|i| way.independent(i)).collect();
+    let structure = SparseStructure::new(symbolic, k, m, threads, move |i| name(masters[i]));
+    Ok(Assembled { structure, factor_entries, condensation: Some(way) })
 }
 
 /// Assembles and reduces `model` and checks the step.
@@ -64,34 +137,38 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     let Plan::Impact(impact) = &model.plan else { return Err(Error::NoImpact) };
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
-    let (mut structure, factor_entries) = structure(model, true, threads, &mut counters)?;
+    let mut assembled = structure(model, true, threads, &mut counters)?;
     stopwatch.lap("assemble");
-    let (unknowns, stiffness_entries) = (structure.ndof(), structure.entries());
+    let (stiffness_entries, factor_entries) = (assembled.structure.entries(), assembled.factor_entries);
+    let substructures = assembled.substructures();
+    let contacts: Vec<Functional> = impact.strikes.iter().map(|s| assembled.functional(&s.contact)).collect();
     let reduced = match &impact.reduction {
         None => None,
         Some(reduction) => {
-            let governors = model.governors(impact, GOVERNORS);
-            let basis = reduction.basis(&mut structure, &impact.contacts(), &governors);
-            Some(basis.and_then(|basis| Reduced::project(&structure, &basis)).map_err(|why| {
+            let governors = assembled.own(model.governors(impact, GOVERNORS));
+            let structure = &mut assembled.structure;
+            let basis = reduction.basis(structure, &distinct(&contacts), &governors);
+            Some(basis.and_then(|basis| Reduced::project(structure, &basis)).map_err(|why| {
                 let name = &impact.spec.reduction.name;
                 model.scene.source.error_at(&name.place, format!("reduction `{}`: {why}", name.value), "")
             })?)
         }
     };
+    let Assembled { structure, condensation, .. } = assembled;
     (counters.factorisations, counters.solves) = structure.work();
     stopwatch.lap("reduce");
 
-    let impactor = |(spec, strike): (&scene::Impactor, &Strike)| Impactor {
+    let impactor = |((spec, strike), contact): ((&scene::Impactor, &Strike), &Functional)| Impactor {
         mass: spec.mass,
         velocity: spec.velocity,
         start: spec.start,
         load: match &reduced {
-            None => strike.contact.0.clone(),
-            Some(r) => r.restrict(&strike.contact).into_iter().enumerate().collect(),
+            None => contact.0.clone(),
+            Some(r) => r.restrict(contact).into_iter().enumerate().collect(),
         },
         law: strike.law.clone(),
     };
-    let impactors = impact.spec.impactors.iter().zip(&impact.strikes).map(impactor).collect();
+    let impactors = impact.spec.impactors.iter().zip(&impact.strikes).zip(&contacts).map(impactor).collect();
     let structure: Box<dyn Structure> = match &reduced {
         None => Box::new(structure),
         Some(r) => Box::new(r.modal.clone()),
@@ -116,7 +193,8 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     // As it is written where it fits the end: a later end then changes no bit of it.
     let whole = (count - steps as f64).abs() <= 1e-12 * count;
     let sizes = Sizes {
-        unknowns,
+        unknowns: model.constraints.ndof(),
+        substructures,
         marched: system.structure().ndof(),
         stiffness_entries,
         factor_entries,
@@ -127,7 +205,18 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         steps,
         step: if whole { march.step.value } else { march.end.value / steps as f64 },
     };
-    Ok(Prepared { model, impact, system, reduced, sizes, counters, stopwatch })
+    Ok(Prepared { model, impact, system, reduced, condensation, sizes, counters, stopwatch })
+}
+
+/// Contacts in the very same place once.
+fn distinct(contacts: &[Functional]) -> Vec<Functional> {
+    let mut distinct: Vec<Functional> = Vec::new();
+    for contact in contacts {
+        if !distinct.contains(contact) {
+            distinct.push(contact.clone());
+        }
+    }
+    distinct
 }
 
 /// The error of an integrator that cannot march `model`; one that needs M⁻¹ where M has none is shown in the scene.

@@ -9,4 +9,5 @@ mod patch;
 mod scene;
 mod slender;
 mod strip;
+mod substructures;
 mod symmetry;

@@ -170,6 +170,13 @@ impl Plate {
 /// A mesh file that lives as long as this.
 pub(super) struct MeshFile(TempDir);
 
+impl MeshFile {
+    /// The folder of `plate.msh`.
+    pub(super) fn path(&self) -> &std::path::Path {
+        self.0.path()
+    }
+}
+
 /// A gmsh file of the quads between lines at `x` and `y`, mm, whose inner nodes are moved by up to `distortion` of the
 /// distance to their neighbours. The upper right corner is a group `corner`.
 pub(super) fn gmsh_grid(x: &[f64], y: &[f64], distortion: f64) -> MeshFile {

@@ -16,7 +16,7 @@ pub(super) struct Alike {
 type Shape = ([i64; 7], usize, i32);
 
 /// Shapes closer than this fraction of their size are equal: above the rounding of coordinates, far below what shows.
-const GRAIN: f64 = 1e-11;
+pub(super) const GRAIN: f64 = 1e-11;
 
 impl Alike {
     pub(super) fn of(plate: &Plate) -> Self {

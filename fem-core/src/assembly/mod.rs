@@ -6,11 +6,13 @@ mod factor;
 mod ordering;
 mod pattern;
 mod sparse;
+mod substructure;
 
 pub use factor::{Cholesky, FactorError, Symbolic};
 pub use ordering::nested_dissection;
 pub use pattern::{AssemblyError, Pattern, pattern};
 pub use sparse::SparseStructure;
+pub use substructure::{Condensation, CondensationError, Condensed, Division, condense};
 
 use crate::constraint::Constraints;
 use crate::counters::Counters;

@@ -13,29 +13,36 @@ const SHARES: [f64; 5] = [0.5, 0.45, 0.55, 0.4, 0.6];
 /// Of several cuts across each axis the one with the smallest separator wins; a separator is a smallest set of columns
 /// that touches every connection across the cut (Kőnig 1931, by augmenting paths).
 pub fn nested_dissection(plate: &Plate) -> Vec<u32> {
-    let n = plate.columns.len();
     // Of columns that a symmetry ties together one stands for all, with the neighbours of all.
     let symmetry = plate.symmetry();
-    let mut neighbours = vec![Vec::new(); n];
-    for (quad, _) in symmetry.quads() {
-        let corners: Vec<u32> = plate.columns_of_quad(quad).iter().map(|c| symmetry.column(*c)).collect();
-        for c in &corners {
-            neighbours[*c as usize].extend(corners.iter().filter(|other| *other != c));
+    let corners =
+        symmetry.quads().map(|(quad, _)| plate.columns_of_quad(quad).iter().map(|c| symmetry.column(*c)).collect());
+    let (kept, tied): (Vec<u32>, Vec<u32>) = (0..plate.columns.len() as u32).partition(|c| symmetry.column(*c) == *c);
+    let mut order = dissect(&plate.columns, corners, kept);
+    order.extend(tied);
+    order
+}
+
+/// The same for a `set` of the columns at `places`, where all columns of a clique are neighbours.
+pub(super) fn dissect(places: &[[f64; 2]], cliques: impl Iterator<Item = Vec<u32>>, set: Vec<u32>) -> Vec<u32> {
+    let mut neighbours = vec![Vec::new(); places.len()];
+    for clique in cliques {
+        for c in &clique {
+            neighbours[*c as usize].extend(clique.iter().filter(|other| *other != c));
         }
     }
     for list in &mut neighbours {
         list.sort_unstable();
         list.dedup();
     }
-    let mut work = Work { plate, neighbours, side: vec![0; n], cut: 0, order: Vec::with_capacity(n) };
-    let (kept, tied): (Vec<u32>, Vec<u32>) = (0..n as u32).partition(|c| symmetry.column(*c) == *c);
-    work.dissect(kept);
-    work.order.extend(tied);
+    let mut work =
+        Work { places, neighbours, side: vec![0; places.len()], cut: 0, order: Vec::with_capacity(set.len()) };
+    work.dissect(set);
     work.order
 }
 
 struct Work<'a> {
-    plate: &'a Plate,
+    places: &'a [[f64; 2]],
     neighbours: Vec<Vec<u32>>,
     /// Twice the number of the cut that a column took part in last, plus one on its right.
     side: Vec<u32>,
@@ -51,7 +58,7 @@ impl Work<'_> {
         }
         let mut best: Option<(f64, Vec<u32>, [Vec<u32>; 2])> = None;
         for axis in 0..2 {
-            let place = |c: &u32| self.plate.columns[*c as usize][axis];
+            let place = |c: &u32| self.places[*c as usize][axis];
             set.sort_unstable_by(|a, b| place(a).total_cmp(&place(b)).then(a.cmp(b)));
             for share in SHARES {
                 let (left, right) = set.split_at((share * set.len() as f64) as usize);

@@ -117,6 +117,20 @@ impl Pattern {
         }
     }
 
+    /// The first `n` rows and columns, with their part of `values`.
+    pub(super) fn leading(&self, values: &[f64], n: usize) -> (Self, Vec<f64>) {
+        let (mut starts, mut rows, mut kept) = (vec![0], Vec::new(), Vec::new());
+        for j in 0..n {
+            let start = self.starts[j];
+            let column = &self.rows[start..self.starts[j + 1]];
+            let count = column.partition_point(|row| *row < n);
+            rows.extend_from_slice(&column[..count]);
+            kept.extend_from_slice(&values[start..start + count]);
+            starts.push(rows.len());
+        }
+        (Self::new(starts, rows), kept)
+    }
+
     /// The entries of `values` that are not zero, with their pattern; the diagonal stays.
     pub(super) fn compact(&self, values: &[f64]) -> (Self, Vec<f64>) {
         let (mut starts, mut rows, mut kept) = (vec![0], Vec::new(), Vec::new());
@@ -189,6 +203,17 @@ pub(crate) struct CellMap {
 impl CellMap {
     pub(crate) fn set(&mut self, plate: &Plate, constraints: &Constraints, cell: usize) {
         plate.cell_dofs(cell, &mut self.dofs);
+        self.number(constraints);
+    }
+
+    /// The same for the unknowns `dofs`.
+    pub(super) fn set_unknowns(&mut self, dofs: &[usize], constraints: &Constraints) {
+        self.dofs.clear();
+        self.dofs.extend_from_slice(dofs);
+        self.number(constraints);
+    }
+
+    fn number(&mut self, constraints: &Constraints) {
         self.reduced.clear();
         self.terms.clear();
         self.plain = true;
@@ -269,54 +294,73 @@ impl CellMap {
 
 /// The pattern of K and M of a plate under constraints.
 pub fn pattern(plate: &Plate, constraints: &Constraints) -> Pattern {
-    let n = constraints.ndof();
-    let mut map = CellMap::default();
-    let (mut starts, mut members) = (vec![0_u32; n + 1], Vec::new());
-    // Cells of every column, then rows of every column through its cells.
+    let (mut map, mut cliques) = (CellMap::default(), Cliques::default());
     for (cell, _) in plate.kept_cells() {
         map.set(plate, constraints, cell);
-        for i in &map.reduced {
-            starts[i + 1] += 1;
+        cliques.push(&map.reduced);
+    }
+    cliques.pattern(constraints.ndof())
+}
+
+/// Sets of unknowns that are all coupled to each other, such as those of a cell.
+#[derive(Debug, Default)]
+pub(super) struct Cliques {
+    members: Vec<u32>,
+    /// End of each clique in `members`.
+    ends: Vec<u32>,
+}
+
+impl Cliques {
+    pub(super) fn push(&mut self, unknowns: &[usize]) {
+        self.members.extend(unknowns.iter().map(|i| *i as u32));
+        self.ends.push(self.members.len() as u32);
+    }
+
+    fn of(&self, clique: u32) -> &[u32] {
+        let start = if clique == 0 { 0 } else { self.ends[clique as usize - 1] };
+        &self.members[start as usize..self.ends[clique as usize] as usize]
+    }
+
+    /// The pattern of a matrix of `n` unknowns, each of which is in a clique.
+    pub(super) fn pattern(&self, n: usize) -> Pattern {
+        // Cliques of every column, then rows of every column through its cliques.
+        let mut starts = vec![0_u32; n + 1];
+        for i in &self.members {
+            starts[*i as usize + 1] += 1;
         }
-        members.extend(map.reduced.iter().map(|i| *i as u32));
-        members.push(u32::MAX);
-    }
-    for i in 0..n {
-        starts[i + 1] += starts[i];
-    }
-    let mut fill = starts.clone();
-    let mut cells = vec![0_u32; starts[n] as usize];
-    let mut cell_starts = vec![0_u32];
-    for (at, i) in members.iter().enumerate() {
-        if *i == u32::MAX {
-            cell_starts.push(at as u32 + 1);
-        } else {
-            cells[fill[*i as usize] as usize] = cell_starts.len() as u32 - 1;
-            fill[*i as usize] += 1;
+        for i in 0..n {
+            starts[i + 1] += starts[i];
         }
-    }
-    let (mut column_starts, mut rows) = (Vec::with_capacity(n + 1), Vec::new());
-    column_starts.push(0);
-    // Unknowns that the same cells share, such as those of a node, have their rows in common.
-    let (mut seen, mut union, mut of) = (vec![u32::MAX; n], Vec::new(), 0..0);
-    for j in 0..n {
-        let here = starts[j] as usize..starts[j + 1] as usize;
-        if j == 0 || cells[here.clone()] != cells[of] {
-            union.clear();
-            for cell in &cells[here.clone()] {
-                let range = cell_starts[*cell as usize] as usize..cell_starts[*cell as usize + 1] as usize - 1;
-                for i in &members[range] {
-                    if *i as usize >= j && seen[*i as usize] != j as u32 {
-                        seen[*i as usize] = j as u32;
-                        union.push(*i as usize);
+        let mut fill = starts.clone();
+        let mut cliques = vec![0_u32; starts[n] as usize];
+        for clique in 0..self.ends.len() as u32 {
+            for i in self.of(clique) {
+                cliques[fill[*i as usize] as usize] = clique;
+                fill[*i as usize] += 1;
+            }
+        }
+        let (mut column_starts, mut rows) = (Vec::with_capacity(n + 1), Vec::new());
+        column_starts.push(0);
+        // Unknowns that the same cliques share, such as those of a node, have their rows in common.
+        let (mut seen, mut union, mut of) = (vec![u32::MAX; n], Vec::new(), 0..0);
+        for j in 0..n {
+            let here = starts[j] as usize..starts[j + 1] as usize;
+            if j == 0 || cliques[here.clone()] != cliques[of] {
+                union.clear();
+                for clique in &cliques[here.clone()] {
+                    for i in self.of(*clique) {
+                        if *i as usize >= j && seen[*i as usize] != j as u32 {
+                            seen[*i as usize] = j as u32;
+                            union.push(*i as usize);
+                        }
                     }
                 }
+                union.sort_unstable();
             }
-            union.sort_unstable();
+            of = here;
+            rows.extend_from_slice(&union[union.partition_point(|i| *i < j)..]);
+            column_starts.push(rows.len());
         }
-        of = here;
-        rows.extend_from_slice(&union[union.partition_point(|i| *i < j)..]);
-        column_starts.push(rows.len());
+        Pattern::new(column_starts, rows)
     }
-    Pattern::new(column_starts, rows)
 }

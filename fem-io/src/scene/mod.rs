@@ -11,6 +11,7 @@ mod plugin;
 pub(crate) mod reader;
 mod run;
 pub(crate) mod source;
+mod substructures;
 mod support;
 #[cfg(test)]
 mod tests;
@@ -23,6 +24,7 @@ pub use run::{
     Window,
 };
 pub use source::{Located, Place, SceneError, SceneSource};
+pub use substructures::{Masters, Parts, Substructures};
 pub use support::{Couple, Equation, NodeSet, Support, Term};
 
 use crate::units;
@@ -67,6 +69,8 @@ pub struct Scene {
     pub equations: Vec<Equation>,
     /// Sets of nodes that move together.
     pub couples: Vec<Couple>,
+    /// The substructures that the plate is divided into, if it is.
+    pub substructures: Option<Substructures>,
     /// What is done about damage.
     pub damage: Damage,
     /// Lines through the thickness along which stresses are written.
@@ -170,6 +174,7 @@ const KEYS: Keys = &[
     ("support", r#"[{ group = "support", at = "mid-plane", fix = ["U30"] }, { restrain = "rigid-motions" }]"#),
     ("equation", r#"[{ terms = [{ group = "a", at = "top", dof = "U10", factor = 1.0 }] }]"#),
     ("couple", r#"[{ group = "edge", at = "all", dofs = ["U30"] }]"#),
+    ("substructures", "{ cells = [5, 5] }"),
     ("impactor", r#"{ mass = "2.49 kg", velocity = "1.56 m/s", at = { group = "impact" } }"#),
     ("contact", r#"{ law = "sun-yang", k = "1.07e5 N/mm^1.5", n = 1.5, m = 2.5, critical = "0.08 mm", beta = 0.4 }"#),
     ("effects", r#"{ damage = "onset" }"#),
@@ -266,6 +271,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
         },
         equations: root.optional("equation").map_or(Ok(Vec::new()), |field| support::read_equations(&field))?,
         couples: root.optional("couple").map_or(Ok(Vec::new()), |field| support::read_couples(&field))?,
+        substructures: root.optional("substructures").map(|field| substructures::read(&field)).transpose()?,
         failure: run::read_failure(&root.required("failure")?, damage == Damage::Onset && in_time, in_time)?,
         analysis,
         damage,
@@ -324,19 +330,21 @@ fn read_mesh(field: &Field<'_>, scene: &Path) -> Result<MeshSource, SceneError> 
 }
 
 fn read_rectangle(table: &Reader<'_>) -> Result<MeshSource, SceneError> {
-    fn pair<T>(field: &Field<'_>, read: impl Fn(&Field<'_>) -> Result<T, SceneError>) -> Result<[T; 2], SceneError> {
-        let parts = field.list()?;
-        match &parts[..] {
-            [x, y] => Ok([read(x)?, read(y)?]),
-            _ => Err(field.error(format!("has {} values", parts.len()), "give two: along x and y")),
-        }
-    }
     let size = pair(&table.required("rectangle")?, |field| field.positive(Dimension::LENGTH))?;
     let field = table.required("cells")?;
     let cells = pair(&field, |field| field.count())?;
     match cells[0].checked_mul(cells[1]) {
         Some(n) if n <= MAX_CELLS => Ok(MeshSource::Rectangle { size, cells }),
         _ => Err(field.error(format!("{} x {} cells", cells[0], cells[1]), format!("at most {MAX_CELLS} in all"))),
+    }
+}
+
+/// Two values: along x and along y.
+fn pair<T>(field: &Field<'_>, read: impl Fn(&Field<'_>) -> Result<T, SceneError>) -> Result<[T; 2], SceneError> {
+    let parts = field.list()?;
+    match &parts[..] {
+        [x, y] => Ok([read(x)?, read(y)?]),
+        _ => Err(field.error(format!("has {} values", parts.len()), "give two: along x and y")),
     }
 }
 

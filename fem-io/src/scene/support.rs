@@ -127,7 +127,7 @@ pub(super) fn nodes(table: &Reader<'_>) -> Result<NodeSet, SceneError> {
     Ok(NodeSet { group: group.at(group.text()?.to_owned()), levels: table.required("at")?.choice(&LEVELS)? })
 }
 
-fn dofs(field: &Field<'_>) -> Result<Vec<Dof>, SceneError> {
+pub(super) fn dofs(field: &Field<'_>) -> Result<Vec<Dof>, SceneError> {
     field.list()?.iter().map(dof).collect()
 }
 

@@ -131,15 +131,22 @@ impl Cholesky {
 
     /// `X ← A⁻¹ X`, X of `n × columns`, column-major.
     pub fn solve(&mut self, x: &mut [f64], columns: usize) {
+        let mut local = std::mem::take(&mut self.local);
+        self.solve_in(x, columns, &mut local);
+        self.local = local;
+    }
+
+    /// The same with room lent by the caller.
+    pub(super) fn solve_in(&self, x: &mut [f64], columns: usize, local: &mut Vec<f64>) {
         let (tree, n) = (&*self.symbolic.tree, self.symbolic.pattern.ndof());
         if n == 0 {
             return;
         }
         for x in x[..n * columns].chunks_mut(n * solve::BLOCK) {
             if x.len() < n * solve::FEW {
-                x.chunks_exact_mut(n).for_each(|x| solve::single(tree, &self.panels, x, &mut self.local));
+                x.chunks_exact_mut(n).for_each(|x| solve::single(tree, &self.panels, x, local));
             } else {
-                solve::block(tree, &self.panels, x, n, &mut self.local);
+                solve::block(tree, &self.panels, x, n, local);
             }
         }
     }

@@ -1,0 +1,463 @@
+//! Substructures: parts of a plate condensed on their outlines, equal parts once (AFWAL-TR-87-4117, eqs 27-30).
+
+use super::alike::GRAIN;
+use super::pattern::{CellMap, Cliques};
+use super::{
+    AssemblyError, Cholesky, FactorError, Matrix, Pattern, Symbolic, assemble, elimination_order, ordering, pattern,
+};
+use crate::constraint::Constraints;
+use crate::counters::Counters;
+use crate::element::Element;
+use crate::plate::Plate;
+use std::collections::{BTreeMap, HashMap};
+use std::fmt;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+
+/// Unit displacements of an outline whose static shapes are found together.
+const BLOCK: usize = 64;
+
+/// Which cells are condensed together, and what stays beside their outlines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Division {
+    /// Substructure of each quad; quads of none are assembled as they are.
+    pub quads: Vec<Option<u32>>,
+    /// Unknowns (before constraints) that stay, wherever they are.
+    pub kept: Vec<usize>,
+}
+
+/// K* = TᵀKT and M* = TᵀMT of a plate on its masters, and the way back.
+#[derive(Debug)]
+pub struct Condensed {
+    /// Pattern of both.
+    pub pattern: Pattern,
+    /// Values of K*.
+    pub k: Vec<f64>,
+    /// Values of M*; zero where inertia was not wanted.
+    pub m: Vec<f64>,
+    /// From the masters to all unknowns.
+    pub way: Condensation,
+}
+
+/// Why a plate could not be condensed.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum CondensationError {
+    /// A cell that the element refuses.
+    Assembly(AssemblyError),
+    /// The inside of a substructure whose stiffness has no factor.
+    Factor {
+        /// A cell of the substructure.
+        quad_tag: u64,
+        /// Why.
+        why: FactorError,
+    },
+    /// The condensed matrices would not fit.
+    TooLarge {
+        /// Their entries.
+        entries: usize,
+    },
+}
+
+impl fmt::Display for CondensationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Assembly(why) => write!(f, "{why}"),
+            Self::TooLarge { entries } => write!(
+                f,
+                "the condensed matrices need {:.1} GB: divide the plate into substructures with shorter outlines",
+                8e-9 * *entries as f64
+            ),
+            Self::Factor { quad_tag, why } => {
+                write!(f, "the stiffness inside the substructure of cell {quad_tag} cannot be factorised: {why}")
+            }
+        }
+    }
+}
+impl std::error::Error for CondensationError {}
+
+impl From<AssemblyError> for CondensationError {
+    fn from(why: AssemblyError) -> Self {
+        Self::Assembly(why)
+    }
+}
+
+/// From masters to all independent unknowns: u = T u_m, substructure by substructure T = [−K_ii⁻¹ K_ib; I].
+///
+/// Masters are what belongs to node columns on the outline of a substructure, what an equation or support names, and what a
+/// [`Division`] keeps; all else is inside.
+#[derive(Debug)]
+pub struct Condensation {
+    constraints: Constraints,
+    /// Independent unknown of each master.
+    masters: Vec<usize>,
+    /// Master of each independent unknown, [`INSIDE`] for those that are none.
+    numbers: Vec<usize>,
+    parts: Vec<Part>,
+    insides: Vec<Inside>,
+}
+
+const INSIDE: usize = usize::MAX;
+
+/// A substructure in its place.
+#[derive(Debug)]
+struct Part {
+    class: usize,
+    /// Unknowns of the plate: those inside, then those of the outline.
+    unknowns: Vec<usize>,
+}
+
+/// Substructures that are equal but for their place.
+#[derive(Debug)]
+struct Class {
+    plate: Plate,
+    /// The unknowns of `plate` in the order in which they are eliminated: those inside come first.
+    order: Vec<usize>,
+    inside: usize,
+}
+
+/// What equal substructures have in common: quads and vertices from the first one, in units of `GRAIN` of their size, that size
+/// as an exponent of 2, and the unknowns inside.
+type Shape = (Vec<[u32; 4]>, Vec<[i64; 2]>, i32, Vec<usize>);
+
+/// Assembles K and M of `plate` substructure by substructure, each condensed on its masters; equal ones once.
+///
+/// Equal are substructures of the same quads in the same arrangement with the same unknowns inside; what supports do to an
+/// outline makes no difference. Of a plate folded by a symmetry nothing would be inside, for every unknown is tied to another.
+///
+/// # Errors
+/// A cell that the element refuses, an inside that cannot be factorised.
+pub fn condense(
+    plate: &Plate,
+    element: &dyn Element,
+    constraints: &Constraints,
+    division: &Division,
+    inertia: bool,
+    threads: NonZeroUsize,
+    counters: &mut Counters,
+) -> Result<Condensed, CondensationError> {
+    let Divided { parts, classes, loose } = divide(plate, constraints, division);
+    let (beside, unknowns) = plate.part(&loose);
+    let masters = masters(plate, constraints, &parts, &classes, &loose);
+    let on_masters = constraints.only(&masters);
+    let beside_on_masters = on_masters.of(&unknowns);
+    fits(&parts, &classes)?;
+
+    let (mut map, mut cliques) = (CellMap::default(), Cliques::default());
+    for (cell, _) in beside.kept_cells() {
+        map.set(&beside, &beside_on_masters, cell);
+        cliques.push(&map.reduced);
+    }
+    let mut outlines = vec![Vec::new(); classes.len()];
+    for part in &parts {
+        let outline = &part.unknowns[classes[part.class].inside..];
+        map.set_unknowns(outline, &on_masters);
+        cliques.push(&map.reduced);
+        outlines[part.class].push(outline);
+    }
+    let pattern = cliques.pattern(masters.len());
+    let mut matrix = |which| assemble(&beside, element, &beside_on_masters, &pattern, which, threads, counters);
+    let mut k = matrix(Matrix::Stiffness)?;
+    let mut m = if inertia { matrix(Matrix::Mass)? } else { vec![0.0; k.len()] };
+    let mut insides = Vec::with_capacity(classes.len());
+    for (class, outlines) in classes.iter().zip(&outlines) {
+        let (inside, [stiffness, mass]) = class.condense(element, inertia, threads, counters)?;
+        insides.push(inside);
+        counters.elements_reused += ((outlines.len() - 1) * class.plate.cells()) as u64;
+        for outline in outlines {
+            map.set_unknowns(outline, &on_masters);
+            map.scatter(&pattern, &stiffness, 1.0, &mut k);
+            if inertia {
+                map.scatter(&pattern, &mass, 1.0, &mut m);
+            }
+        }
+    }
+    let mut numbers = vec![INSIDE; constraints.ndof()];
+    masters.iter().enumerate().for_each(|(number, i)| numbers[*i] = number);
+    Ok(Condensed {
+        pattern,
+        k,
+        m,
+        way: Condensation { constraints: constraints.clone(), masters, numbers, parts, insides },
+    })
+}
+
+/// Refuses dense matrices of outlines that this machine could not hold beside their sum.
+fn fits(parts: &[Part], classes: &[Class]) -> Result<(), CondensationError> {
+    let entries = |part: &Part| (part.unknowns.len() - classes[part.class].inside).pow(2);
+    let largest = parts.iter().map(entries).max().unwrap_or(0);
+    let all = 2 * largest + 2 * parts.iter().map(entries).sum::<usize>();
+    if Vec::<f64>::new().try_reserve_exact(all).is_ok() {
+        Ok(())
+    } else {
+        Err(CondensationError::TooLarge { entries: all })
+    }
+}
+
+/// A plate divided.
+struct Divided {
+    /// Substructures that have an inside, by the first of their quads.
+    parts: Vec<Part>,
+    classes: Vec<Class>,
+    /// All other quads.
+    loose: Vec<u32>,
+}
+
+fn divide(plate: &Plate, constraints: &Constraints, division: &Division) -> Divided {
+    let stays = stays(plate, constraints, &division.kept);
+    let (mut groups, mut loose): (BTreeMap<u32, Vec<u32>>, Vec<u32>) = (BTreeMap::new(), Vec::new());
+    for (quad, group) in (0..).zip(&division.quads) {
+        group.map_or(&mut loose, |group| groups.entry(group).or_default()).push(quad);
+    }
+    let mut classes: Vec<Class> = Vec::new();
+    let mut numbers: HashMap<Shape, usize> = HashMap::new();
+    let mut parts = Vec::new();
+    for quads in groups.into_values() {
+        let (part, unknowns) = plate.part(&quads);
+        let mut inside: Vec<bool> = unknowns.iter().map(|dof| !stays[*dof]).collect();
+        part.outline().iter().for_each(|column| inside[part.dofs_of_column(*column as usize)].fill(false));
+        if !inside.contains(&true) {
+            loose.extend(quads);
+            continue;
+        }
+        let class = *numbers.entry(shape(&part, &inside)).or_insert_with(|| {
+            classes.push(Class::new(part, &inside));
+            classes.len() - 1
+        });
+        parts.push(Part { class, unknowns: classes[class].order.iter().map(|own| unknowns[*own]).collect() });
+    }
+    loose.sort_unstable();
+    Divided { parts, classes, loose }
+}
+
+/// Whether an unknown of the plate is a master by itself: `kept`, held, or in an equation with others.
+fn stays(plate: &Plate, constraints: &Constraints, kept: &[usize]) -> Vec<bool> {
+    let mut stays = vec![false; plate.ndof()];
+    kept.iter().for_each(|dof| stays[*dof] = true);
+    for dof in (0..plate.ndof()).filter(|dof| constraints.position(*dof).is_none()) {
+        stays[dof] = true;
+        constraints.row(dof).0.iter().for_each(|(i, _)| stays[constraints.original(*i)] = true);
+    }
+    stays
+}
+
+fn shape(part: &Plate, inside: &[bool]) -> Shape {
+    let points = &part.plane.points;
+    let from_first = |p: &[f64; 2]| [p[0] - points[0][0], p[1] - points[0][1]];
+    let size = points.iter().flat_map(from_first).fold(0.0_f64, |m, x| m.max(x.abs()));
+    let exponent = size.log2().floor() as i32;
+    let grain = f64::from(exponent).exp2() * GRAIN;
+    let places = points.iter().map(|p| from_first(p).map(|x| (x / grain).round() as i64)).collect();
+    let inside = (0..inside.len()).filter(|dof| inside[*dof]).collect();
+    (part.plane.quads.clone(), places, exponent, inside)
+}
+
+/// The independent unknowns that are masters, in an order that is good to eliminate them in.
+fn masters(plate: &Plate, constraints: &Constraints, parts: &[Part], classes: &[Class], loose: &[u32]) -> Vec<usize> {
+    let mut column_of = vec![0; plate.ndof()];
+    for column in 0..plate.columns.len() {
+        column_of[plate.dofs_of_column(column)].fill(column as u32);
+    }
+    let mut inside = vec![false; plate.ndof()];
+    let mut cliques: Vec<Vec<u32>> = loose.iter().map(|quad| plate.columns_of_quad(*quad as usize).to_vec()).collect();
+    for part in parts {
+        let (own, outline) = part.unknowns.split_at(classes[part.class].inside);
+        own.iter().for_each(|dof| inside[*dof] = true);
+        let tied = |dof: &usize| constraints.row(*dof).0.iter().map(|(i, _)| column_of[constraints.original(*i)]);
+        let mut clique: Vec<u32> = outline.iter().flat_map(|dof| tied(dof).chain([column_of[*dof]])).collect();
+        clique.sort_unstable();
+        clique.dedup();
+        cliques.push(clique);
+    }
+    let mut set: Vec<u32> = cliques.iter().flatten().copied().collect();
+    set.sort_unstable();
+    set.dedup();
+    let columns = ordering::dissect(&plate.columns, cliques.into_iter(), set).into_iter();
+    let unknowns = columns.flat_map(|c| plate.dofs_of_column(c as usize)).filter(|dof| !inside[*dof]);
+    unknowns.filter_map(|dof| constraints.position(dof)).collect()
+}
+
+impl Class {
+    fn new(plate: Plate, inside: &[bool]) -> Self {
+        let mut order = elimination_order(&plate);
+        order.retain(|dof| inside[*dof]);
+        let count = order.len();
+        order.extend((0..inside.len()).filter(|dof| !inside[*dof]));
+        Self { plate, order, inside: count }
+    }
+
+    /// K* and M* of the outline, both triangles, column-major; M* is zero where `inertia` is not wanted.
+    fn condense(
+        &self,
+        element: &dyn Element,
+        inertia: bool,
+        threads: NonZeroUsize,
+        counters: &mut Counters,
+    ) -> Result<(Inside, [Vec<f64>; 2]), CondensationError> {
+        let free = Constraints::none(&self.order);
+        let pattern = pattern(&self.plate, &free);
+        let mut matrix = |which| assemble(&self.plate, element, &free, &pattern, which, threads, counters);
+        let k = matrix(Matrix::Stiffness)?;
+        let m = if inertia { matrix(Matrix::Mass)? } else { vec![0.0; k.len()] };
+        let (leading, values) = pattern.leading(&k, self.inside);
+        let refused = |why| CondensationError::Factor { quad_tag: self.plate.plane.quad_tags[0], why };
+        let mut factor = Cholesky::new(Symbolic::new(Arc::new(leading)).map_err(refused)?, threads);
+        factor.factorise(&values).map_err(refused)?;
+        let inside = Inside { count: self.inside, pattern, k, factor };
+
+        let (n, outline) = (self.order.len(), self.order.len() - self.inside);
+        let mut condensed = [vec![0.0; outline * outline], vec![0.0; outline * outline]];
+        for first in (0..outline).step_by(BLOCK) {
+            let count = BLOCK.min(outline - first);
+            let mut shapes = vec![0.0; n * count];
+            (0..count).for_each(|c| shapes[c * n + self.inside + first + c] = 1.0);
+            inside.follow(&mut shapes);
+            let mut take = |which: usize, forces: &[f64]| {
+                let columns = condensed[which][first * outline..].chunks_exact_mut(outline);
+                columns.zip(forces.chunks_exact(n)).for_each(|(to, from)| to.copy_from_slice(&from[self.inside..]));
+            };
+            let mut forces = vec![0.0; n * count];
+            inside.pattern.add_product(&inside.k, 1.0, &shapes, &mut forces);
+            take(0, &forces);
+            if inertia {
+                // TᵀMT = (M T)_b − K_bi K_ii⁻¹ (M T)_i
+                forces.fill(0.0);
+                inside.pattern.add_product(&m, 1.0, &shapes, &mut forces);
+                inside.hand_over(&mut forces);
+                take(1, &forces);
+            }
+        }
+        condensed.iter_mut().for_each(|a| symmetrise(a, outline));
+        Ok((inside, condensed))
+    }
+}
+
+/// `A ← (A + Aᵀ)/2`
+fn symmetrise(a: &mut [f64], n: usize) {
+    for j in 0..n {
+        for i in j + 1..n {
+            let mean = 0.5 * (a[j * n + i] + a[i * n + j]);
+            (a[j * n + i], a[i * n + j]) = (mean, mean);
+        }
+    }
+}
+
+/// The stiffness of a class, unknowns inside first, and the factor of the part inside.
+#[derive(Debug)]
+struct Inside {
+    count: usize,
+    pattern: Pattern,
+    k: Vec<f64>,
+    factor: Cholesky,
+}
+
+impl Inside {
+    /// `X_i ← K_ii⁻¹ X_i`, column by column.
+    fn solve(&self, x: &mut [f64]) {
+        let n = self.pattern.ndof();
+        let mut inner: Vec<f64> = x.chunks_exact(n).flat_map(|x| &x[..self.count]).copied().collect();
+        self.factor.solve_in(&mut inner, x.len() / n, &mut Vec::new());
+        for (x, inner) in x.chunks_exact_mut(n).zip(inner.chunks_exact(self.count.max(1))) {
+            x[..self.count].copy_from_slice(inner);
+        }
+    }
+
+    /// `X_i ← −K_ii⁻¹ K_ib X_b`, column by column, where X_i = 0.
+    fn follow(&self, x: &mut [f64]) {
+        let mut forces = vec![0.0; x.len()];
+        self.pattern.add_product(&self.k, -1.0, x, &mut forces);
+        self.solve(&mut forces);
+        let n = self.pattern.ndof();
+        for (x, response) in x.chunks_exact_mut(n).zip(forces.chunks_exact(n)) {
+            x[..self.count].copy_from_slice(&response[..self.count]);
+        }
+    }
+
+    /// `F_b ← F_b − K_bi K_ii⁻¹ F_i`, column by column; returns `[K_ii⁻¹ F_i; 0]`.
+    fn hand_over(&self, f: &mut [f64]) -> Vec<f64> {
+        let mut x = f.to_vec();
+        self.solve(&mut x);
+        x.chunks_exact_mut(self.pattern.ndof()).for_each(|x| x[self.count..].fill(0.0));
+        self.pattern.add_product(&self.k, -1.0, &x, f);
+        x
+    }
+}
+
+impl Condensation {
+    /// Number of masters.
+    pub fn ndof(&self) -> usize {
+        self.masters.len()
+    }
+
+    /// Number of independent unknowns.
+    pub fn independents(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// Independent unknown that a master stands for.
+    pub fn independent(&self, master: usize) -> usize {
+        self.masters[master]
+    }
+
+    /// Master of an independent unknown, if it is one.
+    pub fn master(&self, independent: usize) -> Option<usize> {
+        Some(self.numbers[independent]).filter(|number| *number != INSIDE)
+    }
+
+    /// Substructures that have an inside, and how many of them were condensed: the others are equal to one of these.
+    pub fn counts(&self) -> (usize, usize) {
+        (self.parts.len(), self.insides.len())
+    }
+
+    /// U = T U_m, column by column.
+    pub fn expand(&self, masters: &[f64]) -> Vec<f64> {
+        let (n, columns) = (self.numbers.len(), masters.len() / self.ndof().max(1));
+        let mut all = vec![0.0; n * columns];
+        for (all, masters) in all.chunks_exact_mut(n.max(1)).zip(masters.chunks_exact(self.ndof().max(1))) {
+            self.masters.iter().zip(masters).for_each(|(i, u)| all[*i] = *u);
+        }
+        let mut local = Vec::new();
+        for part in &self.parts {
+            let inside = &self.insides[part.class];
+            let value = |all: &[f64], dof: usize| self.constraints.row(dof).0.iter().map(|(i, c)| c * all[*i]).sum();
+            local.clear();
+            for all in all.chunks_exact(n) {
+                local.resize(local.len() + inside.count, 0.0);
+                local.extend(part.unknowns[inside.count..].iter().map(|dof| -> f64 { value(all, *dof) }));
+            }
+            inside.follow(&mut local);
+            for (all, local) in all.chunks_exact_mut(n).zip(local.chunks_exact(part.unknowns.len())) {
+                self.add_inside(part, local, all);
+            }
+        }
+        all
+    }
+
+    /// Condenses a load on the independent unknowns: TᵀF, and the displacements [K_ii⁻¹ F_i; 0] that come on top of
+    /// [`Condensation::expand`] where the load acts inside.
+    pub fn load(&self, f: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (mut on_masters, mut own) = (f.to_vec(), vec![0.0; f.len()]);
+        for part in &self.parts {
+            let inside = &self.insides[part.class];
+            let force = |dof: &usize| self.constraints.position(*dof).map_or(0.0, |i| f[i]);
+            let mut local: Vec<f64> = part.unknowns[..inside.count].iter().map(force).collect();
+            if local.iter().all(|f| *f == 0.0) {
+                continue;
+            }
+            local.resize(part.unknowns.len(), 0.0);
+            let response = inside.hand_over(&mut local);
+            self.add_inside(part, &response, &mut own);
+            for (dof, force) in part.unknowns.iter().zip(&local).skip(inside.count) {
+                self.constraints.row(*dof).0.iter().for_each(|(i, c)| on_masters[*i] += c * force);
+            }
+        }
+        (self.masters.iter().map(|i| on_masters[*i]).collect(), own)
+    }
+
+    fn add_inside(&self, part: &Part, local: &[f64], all: &mut [f64]) {
+        let inside = &part.unknowns[..self.insides[part.class].count];
+        for (i, u) in inside.iter().zip(local).filter_map(|(dof, u)| Some((self.constraints.position(*dof)?, u))) {
+            all[i] += u;
+        }
+    }
+}

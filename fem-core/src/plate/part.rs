@@ -1,0 +1,64 @@
+//! Some of the cells of a plate as a plate of their own.
+
+use super::{Plate, columns, ordered};
+use crate::mesh::{Group, QuadMesh};
+use crate::symmetry::Symmetry;
+use std::collections::BTreeMap;
+
+impl Plate {
+    /// The cells over `quads`, and which unknown of this plate each of its unknowns is. Vertices and cells keep their order, so
+    /// that equal parts of a regular mesh have equal numbers.
+    pub fn part(&self, quads: &[u32]) -> (Self, Vec<usize>) {
+        let whole = &self.plane;
+        let mut vertices: Vec<u32> = quads.iter().flat_map(|q| whole.quads[*q as usize]).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let number = |vertex: u32| vertices.partition_point(|v| *v < vertex) as u32;
+        let plane = QuadMesh {
+            points: vertices.iter().map(|v| whole.points[*v as usize]).collect(),
+            quads: quads.iter().map(|q| whole.quads[*q as usize].map(number)).collect(),
+            groups: BTreeMap::new(),
+            node_tags: vertices.iter().map(|v| whole.node_tags[*v as usize]).collect(),
+            quad_tags: quads.iter().map(|q| whole.quad_tags[*q as usize]).collect(),
+        };
+        let (columns, quad_columns, edges) = columns(&plane, &self.places);
+        let mut part = Self {
+            symmetry: Symmetry::none(columns.len(), quads.len()),
+            plane,
+            columns,
+            levels: self.levels.clone(),
+            stacks: self.stacks.clone(),
+            info: self.info,
+            z_derivatives: self.z_derivatives,
+            quad_columns,
+            slots: self.slots.clone(),
+            places: self.places.clone(),
+            edges,
+            pitch: self.pitch,
+            offsets: Vec::new(),
+        };
+        part.number();
+        let mut unknowns = vec![0; part.ndof()];
+        let (mut own, mut of_whole) = (Vec::new(), Vec::new());
+        for cell in 0..part.cells() {
+            let (quad, layer) = part.place(cell);
+            part.cell_dofs(cell, &mut own);
+            self.cell_dofs(quads[quad] as usize * self.layers() + layer, &mut of_whole);
+            own.iter().zip(&of_whole).for_each(|(own, whole)| unknowns[*own] = *whole);
+        }
+        (part, unknowns)
+    }
+
+    /// Columns on edges that a single quad has, ascending.
+    pub fn outline(&self) -> Vec<u32> {
+        let mut sides: BTreeMap<[u32; 2], u32> = BTreeMap::new();
+        for quad in &self.plane.quads {
+            for i in 0..4 {
+                *sides.entry(ordered([quad[i], quad[(i + 1) % 4]])).or_insert(0) += 1;
+            }
+        }
+        let edges: Vec<[u32; 2]> = sides.into_iter().filter(|side| side.1 == 1).map(|side| side.0).collect();
+        let nodes = edges.iter().flatten().copied().collect();
+        self.columns_of_group(&Group { dim: 1, nodes, edges, quads: Vec::new() })
+    }
+}
