@@ -47,7 +47,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
         return Err(damaged(format!("its format is not version {VERSION}, which this program reads")));
     }
     let length = bytes.len().saturating_sub(HEADER);
-    if part(12, 20) != (length as u64).to_le_bytes() {
+    if bytes.len() < HEADER || part(12, 20) != (length as u64).to_le_bytes() {
         return Err(damaged(format!("its length is not the one that it names; {length} bytes follow its header")));
     }
     let payload = bytes.split_off(HEADER);
