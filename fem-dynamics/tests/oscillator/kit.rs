@@ -97,6 +97,10 @@ impl ContactLaw for Secretive {
         let ContactEnergy { stored, dissipated } = self.sound.energy(h, alpha);
         ContactEnergy { stored: stored + dissipated, dissipated: 0.0 }
     }
+
+    fn branches(&self, h: &ContactHistory) -> Branches {
+        self.sound.branches(&self.own.as_ref().map_or(*h, |own| *own.lock().unwrap()))
+    }
 }
 
 #[test]

@@ -129,7 +129,7 @@ fn a_scene_in_full() {
 
     assert_eq!(scene.impact().unwrap().march.integrator.name.value, "newmark");
     assert_eq!(scene.impact().unwrap().march.integrator.params.number("beta", None), Ok(0.3));
-    assert_eq!((scene.impact().unwrap().march.step.value, scene.impact().unwrap().march.end.value), (0.5e-6, 1e-3));
+    assert_eq!((scene.impact().unwrap().march.step.value, scene.impact().unwrap().march.end.value), (0.1e-6, 1e-3));
     assert_eq!(scene.failure.criteria[1].plugin.params.get("strict"), Some(&Value::Flag(true)));
     assert_eq!((scene.failure.every, scene.failure.radius), (5e-6, Some(10e-3)));
     assert_eq!(scene.failure.window, Window::Square(2.54e-3));
