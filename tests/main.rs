@@ -13,5 +13,6 @@ mod model;
 mod report;
 mod restart;
 mod snapshots;
+mod study;
 mod support;
 mod validation;
