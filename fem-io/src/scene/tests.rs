@@ -146,7 +146,7 @@ fn a_scene_in_full() {
     );
     assert_eq!(scene.element.params.choice("mass", &["linear", "cubic"]), Ok("cubic"));
     assert_eq!(scene.element.params.get("z_derivatives"), None);
-    assert_eq!(scene.impact().unwrap().reduction.params.count("vectors", 1, None), Ok(40));
+    assert_eq!(scene.impact().unwrap().reduction.params.count("vectors", 1, None), Ok(60));
 }
 
 /// The library is a file like any other.
