@@ -104,7 +104,7 @@ fn onsets(outcome: &Outcome) -> Vec<Onset> {
 /// Runs `path` under `setting`.
 ///
 /// # Errors
-/// As [`run`].
+/// As [`run()`].
 pub fn run_under(path: &Path, setting: &Setting, registry: &Registry) -> Result<Run, Error> {
     if !setting.at_limit {
         return run(path, &setting.keys, registry);
