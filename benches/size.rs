@@ -186,8 +186,8 @@ fn measure(side: usize) -> Vec<(&'static str, f64)> {
     let struck = (0..plate.columns.len()).min_by(|a, b| middle(a).total_cmp(&middle(b))).unwrap();
     let contact = constraints.restrict(&patch::node(&plate, struck).unwrap().0);
     let contact = Functional(contact);
-    let coarse = Prolongation::linear_in_z(&plate, &constraints);
-    let mut structure = SparseStructure::new(symbolic, k, m, ONE, |_| String::new()).with_coarse(coarse);
+    let mut structure = SparseStructure::new(symbolic, k, m, ONE, |_| String::new());
+    structure.offer_coarse(Prolongation::linear_in_z(&plate, &constraints));
     let Built::Reduction(ritz) = Ritz::build(&Params::default()).unwrap() else { unreachable!() };
     structure.solve_shifted(0.0, &mut vec![0.0; n], 1).unwrap();
     let start = ThreadTime::now();

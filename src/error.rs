@@ -46,8 +46,6 @@ pub enum Error {
     NoImpact,
     #[error("the march stopped: {0}")]
     Stopped(String),
-    #[error("no limit: stable for every step")]
-    Unlimited,
     #[error("the scene describes no loads at rest")]
     #[diagnostic(help("set `analysis = \"static\"` and give a `[[load]]`"))]
     NoLoads,

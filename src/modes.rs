@@ -1,6 +1,6 @@
 //! Natural frequencies.
 
-use crate::cost::{Phase, Stopwatch};
+use crate::cost::{Cost, Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::Model;
 use crate::run::{self, Substructures};
@@ -95,7 +95,6 @@ pub struct Summary {
     pub elements: u64,
     pub elements_reused: u64,
     pub solves: u64,
-    pub phases: Vec<Phase>,
     pub warnings: Vec<String>,
 }
 
@@ -114,13 +113,12 @@ impl Summary {
             elements: solution.counters.elements,
             elements_reused: solution.counters.elements_reused,
             solves: solution.counters.solves,
-            phases: solution.phases.clone(),
             warnings: model.warnings.clone(),
         }
     }
 
     /// The summary as people read it.
-    pub fn text(&self) -> String {
+    pub fn text(&self, cost: &Cost) -> String {
         let alone = if self.symmetry.is_some() { ": its symmetric modes alone" } else { "" };
         let symmetry = in_words(self.symmetry);
         let divided = and(self.substructures);
@@ -130,15 +128,9 @@ impl Summary {
             let [x, y, z] = m.map(|m| m * 1e3);
             let _ = writeln!(t, "  {:>4}   {f:>14.4}   {x:.4}, {y:.4}, {z:.4}", i + 1);
         }
-        let phases: Vec<String> = self.phases.iter().map(|p| format!("{} {:.3} s", p.name, p.wall_s)).collect();
-        let _ = writeln!(
-            t,
-            "  work      {} element matrices, {} reused, {} solves; {}",
-            self.elements,
-            self.elements_reused,
-            self.solves,
-            phases.join(", ")
-        );
+        let Self { elements, elements_reused, solves, .. } = self;
+        let _ = writeln!(t, "  work      {elements} element matrices, {elements_reused} reused, {solves} solves");
+        let _ = writeln!(t, "  time      {cost}");
         self.warnings.iter().for_each(|w| t.push_str(&format!("  warning   {w}\n")));
         t
     }

@@ -1,6 +1,6 @@
 //! Displacements, stresses and margins under loads at rest.
 
-use crate::cost::{Phase, Stopwatch};
+use crate::cost::{Cost, Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::{Model, NamedProfile, Plan};
 use crate::run::{self, Substructures};
@@ -75,6 +75,11 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     let mut solved = rest.clone();
     assembled.structure.solve_shifted(0.0, &mut solved, 1)?;
     assembled.structure.add_stiffness(-1.0, &solved, &mut rest);
+    // One step of iterative refinement, for a solve beside the factor.
+    let mut more = rest.clone();
+    assembled.structure.solve_shifted(0.0, &mut more, 1)?;
+    assembled.structure.add_stiffness(-1.0, &more, &mut rest);
+    solved.iter_mut().zip(&more).for_each(|(u, more)| *u += more);
     let mut independent = assembled.expand(solved);
     independent.iter_mut().zip(own.iter().flatten()).for_each(|(u, own)| *u += own);
     let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -145,7 +150,6 @@ pub struct Summary {
     pub residual_relative: f64,
     pub elements: u64,
     pub elements_reused: u64,
-    pub phases: Vec<Phase>,
     pub warnings: Vec<String>,
 }
 
@@ -179,13 +183,12 @@ impl Summary {
             residual_relative: solution.residual,
             elements: solution.counters.elements,
             elements_reused: solution.counters.elements_reused,
-            phases: solution.phases.clone(),
             warnings: model.warnings.iter().cloned().chain(notable(solution.residual)).collect(),
         }
     }
 
     /// The summary as people read it.
-    pub fn text(&self) -> String {
+    pub fn text(&self, cost: &Cost) -> String {
         let d = &self.largest_deflection;
         let [fx, fy, fz] = self.resultant_N;
         let mut t = format!(
@@ -213,15 +216,9 @@ impl Summary {
                 m.y_m * 1e3
             );
         }
-        let phases: Vec<String> = self.phases.iter().map(|p| format!("{} {:.3} s", p.name, p.wall_s)).collect();
         let _ = writeln!(t, "  accuracy  residual {:.1e} of the loads", self.residual_relative);
-        let _ = writeln!(
-            t,
-            "  work      {} element matrices, {} reused; {}",
-            self.elements,
-            self.elements_reused,
-            phases.join(", ")
-        );
+        let _ = writeln!(t, "  work      {} element matrices, {} reused", self.elements, self.elements_reused);
+        let _ = writeln!(t, "  time      {cost}");
         self.warnings.iter().for_each(|w| t.push_str(&format!("  warning   {w}\n")));
         t
     }

@@ -15,4 +15,5 @@ mod restart;
 mod snapshots;
 mod study;
 mod support;
+mod two_level;
 mod validation;

@@ -328,18 +328,17 @@ fn the_same_energy_breaks_sooner_in_a_small_mass() {
 
 #[test]
 fn the_examples_give_their_numbers() {
-    // (example, tension in the bottom ply us, peak force N until the scene's end, share it is good to): engineering settings.
-    // On the last plate forty Ritz vectors follow the ripple on the force to 1.4 % of it: 120 give 461.1, 200 give 458.8.
-    for (case, tension, force, share) in [
-        ("as4-3502-16ply-50mm", 454.7, 1907.2, 0.01),
-        ("as4-3502-16ply-75mm", 780.0, 2128.6, 0.01),
-        ("as4-3502-8ply-25mm", 267.6, 1019.6, 0.01),
-        ("as4-3502-8ply-50mm", 821.5, 633.6, 0.01),
-        ("as4-3502-8ply-75mm", 1509.8, 458.8, 0.02),
+    // (example, tension in the bottom ply us, peak force N until the scene's end): engineering settings.
+    for (case, tension, force) in [
+        ("as4-3502-16ply-50mm", 454.7, 1907.2),
+        ("as4-3502-16ply-75mm", 780.0, 2128.6),
+        ("as4-3502-8ply-25mm", 267.6, 1019.6),
+        ("as4-3502-8ply-50mm", 821.5, 633.6),
+        ("as4-3502-8ply-75mm", 1509.8, 458.8),
     ] {
         let c = Computed::example(case, "", &[]);
         within(c.onset(TENSION, Some(1)).unwrap() * 1e6, tension, 0.01, case);
-        within(c.peak_force(), force, share, case);
+        within(c.peak_force(), force, 0.01, case);
         assert!(c.outcome.energy_error <= 1e-4, "{case}: {}", c.outcome.energy_error);
     }
 }

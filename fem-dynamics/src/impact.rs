@@ -114,10 +114,14 @@ impl ImpactSystem {
         u[self.structure.ndof() + i]
     }
 
+    /// Indentation z − w of impactor `i` for displacements, its rate for velocities.
+    fn approach(&self, i: usize, x: &[f64]) -> f64 {
+        self.position(i, x) - self.deflection(i, x)
+    }
+
     /// Contact force of impactor `i` in an accepted state.
     pub fn contact_force(&self, i: usize, state: &State) -> f64 {
-        let alpha = self.position(i, &state.u) - self.deflection(i, &state.u);
-        self.impactors[i].law.force(&state.contacts[i], alpha).force
+        self.impactors[i].law.force(&state.contacts[i], self.approach(i, &state.u)).force
     }
 
     /// The energy ledger of an accepted state.
@@ -136,7 +140,7 @@ impl ImpactSystem {
         };
         for (i, impactor) in self.impactors.iter().enumerate() {
             energies.impactor += 0.5 * impactor.mass * state.v[n + i].powi(2);
-            let alpha = self.position(i, &state.u) - self.deflection(i, &state.u);
+            let alpha = self.approach(i, &state.u);
             let ContactEnergy { stored, dissipated } = impactor.law.energy(&state.contacts[i], alpha);
             energies.stored += stored;
             energies.dissipated += dissipated;
@@ -244,8 +248,7 @@ impl SecondOrderSystem for ImpactSystem {
         f.fill(0.0);
         self.structure.add_stiffness(-1.0, &u[..n], &mut f[..n]);
         for (i, impactor) in self.impactors.iter().enumerate() {
-            let alpha = u[n + i] - value(&impactor.load, u);
-            let force = impactor.law.force(&h[i], alpha).force;
+            let force = impactor.law.force(&h[i], self.approach(i, u)).force;
             self.contact_calls += 1;
             add(&impactor.load, force, f);
             f[n + i] = -force;
@@ -304,14 +307,13 @@ impl SecondOrderSystem for ImpactSystem {
 
     fn commit(&self, state: &mut State) {
         for (i, impactor) in self.impactors.iter().enumerate() {
-            let alpha = self.position(i, &state.u) - self.deflection(i, &state.u);
+            let alpha = self.approach(i, &state.u);
             impactor.law.commit(&mut state.contacts[i], alpha);
         }
     }
 
     fn indentation(&self, i: usize, s: &State) -> Indentation {
-        let [alpha, rate] = [&s.u, &s.v].map(|x| self.position(i, x) - self.deflection(i, x));
-        Indentation { alpha, rate }
+        Indentation { alpha: self.approach(i, &s.u), rate: self.approach(i, &s.v) }
     }
 
     fn branches(&self, i: usize, h: &ContactHistory) -> Branches {

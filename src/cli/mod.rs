@@ -12,6 +12,7 @@ mod study;
 use crate::model::Model;
 use crate::registry::Registry;
 use clap::{Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
 use miette::{GraphicalReportHandler, GraphicalTheme, Report};
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
@@ -115,4 +116,10 @@ fn warn(model: &Model) {
 /// Prints to standard output; a closed pipe ends quietly.
 fn print(text: &str) {
     let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
+/// A bar on a terminal, nothing elsewhere.
+fn progress(length: u64, template: &str) -> ProgressBar {
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(length).with_style(style)
 }

@@ -2,6 +2,7 @@
 
 use super::run::default_folder;
 use super::{print, warn};
+use crate::cost::Cost;
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::modes::{self, Summary};
@@ -9,6 +10,7 @@ use crate::registry::Registry;
 use clap::Args;
 use fem_io::files::OutputDir;
 use fem_io::scene::{self, DEFAULT_MODES};
+use fem_io::tables;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -47,9 +49,11 @@ pub(super) fn compute(
 ) -> Result<ExitCode, Error> {
     let solution = modes::solve(model, count, threads).inspect_err(|_| warn(model))?;
     let summary = Summary::new(model, &solution);
-    print(&summary.text());
+    let cost = Cost::new(threads, solution.phases.clone());
+    print(&summary.text(&cost));
     let dir = OutputDir::create(folder())?;
     modes::write(&dir, &solution, &summary)?;
+    tables::write_json(&dir, "cost.json", &cost)?;
     print(&format!("  results   {}\n", dir.path().display()));
     Ok(ExitCode::SUCCESS)
 }

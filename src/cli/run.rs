@@ -1,7 +1,7 @@
 //! `fem run`.
 
 use super::signals::Signals;
-use super::{print, warn};
+use super::{print, progress, warn};
 use crate::cost::Cost;
 use crate::error::Error;
 use crate::model::{Model, Plan};
@@ -12,7 +12,6 @@ use crate::summary::{self, Summary};
 use clap::Args;
 use fem_io::files::OutputDir;
 use fem_io::{scene, tables};
-use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write as _;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -48,9 +47,11 @@ fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error
         Plan::Static { .. } => {
             let solution = statics::solve(&model, arguments.threads).inspect_err(|_| warn(&model))?;
             let summary = statics::Summary::new(&model, &solution);
-            print(&summary.text());
+            let cost = Cost::new(arguments.threads, solution.phases.clone());
+            print(&summary.text(&cost));
             let dir = OutputDir::create(folder())?;
             statics::write(&dir, &model, &solution, &summary)?;
+            tables::write_json(&dir, "cost.json", &cost)?;
             print(&format!("  results   {}\n", dir.path().display()));
             Ok(ExitCode::SUCCESS)
         }
@@ -97,7 +98,7 @@ fn impact(model: &Model, arguments: &Arguments, folder: &Path) -> Result<ExitCod
 /// `interval` seconds have passed since the last one.
 fn advance(march: &mut March<'_>, dir: &OutputDir, interval: f64) -> Result<Option<u8>, Error> {
     let signals = Signals::heed();
-    let bar = progress();
+    let bar = progress(1000, "march {bar:40} {percent:>3} %  {eta} left");
     // An interval beyond what a clock counts is never over.
     let interval = Duration::try_from_secs_f64(interval).unwrap_or(Duration::MAX);
     let (mut saved, mut signal) = (Instant::now(), None);
@@ -121,10 +122,4 @@ pub(super) fn default_folder(scene: &Path) -> PathBuf {
     let folder = folder.or_else(|| std::path::absolute(scene).ok()?.parent().map(Path::to_owned));
     let name = folder.as_deref().and_then(Path::file_name).map(PathBuf::from);
     Path::new("results").join(name.unwrap_or_else(|| PathBuf::from("scene")))
-}
-
-/// A bar on a terminal, nothing elsewhere.
-fn progress() -> ProgressBar {
-    let style = ProgressStyle::with_template("march {bar:40} {percent:>3} %  {eta} left");
-    ProgressBar::new(1000).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }

@@ -1,14 +1,14 @@
 //! `fem study`.
 
-use super::print;
 use super::run::default_folder;
+use super::{print, progress};
 use crate::error::Error;
 use crate::registry::Registry;
 use crate::study::{self, Axis, Setting};
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use fem_io::files::OutputDir;
 use fem_io::scene;
-use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -20,8 +20,8 @@ pub(super) struct Arguments {
     /// Scene file (TOML) of an impact.
     scene: PathBuf,
     /// What is varied [default: everything]
-    #[arg(long, value_delimiter = ',', value_name = "AXES")]
-    axis: Vec<Axis>,
+    #[arg(long, value_delimiter = ',', value_name = "AXES", value_parser = PossibleValuesParser::new(Axis::ALL.map(Axis::name)))]
+    axis: Vec<String>,
     /// Folder of the results [default: results/<folder of the scene>-study]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -34,14 +34,15 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments) -> miette::Resul
 fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error> {
     let path = &arguments.scene;
     let step = scene::read(path)?.impact().ok_or(Error::NoImpact)?.march.step.value;
-    let axes: &[Axis] = if arguments.axis.is_empty() { &[Axis::Reduction, Axis::Integrator] } else { &arguments.axis };
-    let settings: Vec<Setting> = axes.iter().flat_map(|axis| axis.settings(registry, step)).collect();
+    let asked = |axis: &Axis| arguments.axis.is_empty() || arguments.axis.iter().any(|name| name == axis.name());
+    let settings: Vec<Setting> =
+        Axis::ALL.iter().filter(|axis| asked(axis)).flat_map(|axis| axis.settings(registry, step)).collect();
     let folder = arguments.out.clone().unwrap_or_else(|| {
         let mut folder = default_folder(path).into_os_string();
         folder.push("-study");
         folder.into()
     });
-    let bar = ProgressBar::new(settings.len() as u64 + 1).with_style(style());
+    let bar = progress(settings.len() as u64 + 1, "study {bar:40} {pos}/{len}  {msg}");
     bar.set_message("reference");
     let reference = study::run(path, &study::full(REFERENCE_STEP * step), registry)?;
     let dir = OutputDir::create(folder)?;
@@ -49,7 +50,7 @@ fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error
     for setting in &settings {
         bar.inc(1);
         bar.set_message(setting.label.clone());
-        rows.push(study::row(setting, &study::run_under(path, setting, registry), &reference));
+        rows.push(study::compare(path, setting, registry, &reference));
         study::write(&dir, &rows)?;
     }
     bar.finish_and_clear();
@@ -62,10 +63,4 @@ fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error
         dir.path().display()
     ));
     Ok(ExitCode::SUCCESS)
-}
-
-/// A bar on a terminal, nothing elsewhere.
-fn style() -> ProgressStyle {
-    let style = ProgressStyle::with_template("study {bar:40} {pos}/{len}  {msg}");
-    style.unwrap_or_else(|_| ProgressStyle::default_bar())
 }

@@ -115,8 +115,7 @@ pub fn structure(
         let m = if inertia { matrix(Matrix::Mass)? } else { vec![0.0; k.len()] };
         let symbolic = Symbolic::new(pattern.clone())?;
         let factor_entries = symbolic.entries();
-        let coarse = Prolongation::linear_in_z(plate, constraints);
-        let structure = SparseStructure::new(symbolic, k, m, threads, name).with_coarse(coarse);
+        let structure = SparseStructure::new(symbolic, k, m, threads, name);
         return Ok(Assembled { structure, factor_entries, condensation: None });
     };
     let Condensed { pattern, k, m, way } =
@@ -147,6 +146,9 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         Some(reduction) => {
             let governors = assembled.own(model.governors(impact, GOVERNORS));
             let structure = &mut assembled.structure;
+            if assembled.condensation.is_none() {
+                structure.offer_coarse(Prolongation::linear_in_z(&model.plate, &model.constraints));
+            }
             let basis = reduction.basis(structure, &distinct(&contacts), &governors);
             Some(basis.and_then(|basis| Reduced::project(structure, &basis)).map_err(|why| {
                 let name = &impact.spec.reduction.name;

@@ -1,10 +1,11 @@
 //! What a study varies.
 
 use crate::registry::{NO_REDUCTION, Registry};
-use fem_core::plugin::{Kind, PluginInfo};
+use fem_core::plugin::{Built, Kind, Params, PluginInfo};
+use fem_core::time::StepLimit;
 
 /// A part of the settings that is varied while the others stay as the scene has them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
     /// Every reduction on offer, with several numbers of unknowns.
     Reduction,
@@ -49,7 +50,10 @@ const OTHER_WAYS: [(&str, &str, &str); 3] =
 const STEPS: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 
 impl Axis {
-    /// Its name in tables.
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Reduction, Self::Integrator];
+
+    /// Its name in tables and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Reduction => "reduction",
@@ -107,8 +111,12 @@ fn integrators(registry: &Registry, step: f64) -> Vec<Setting> {
             keys: marched(name, step),
             at_limit,
         };
+        let limited = match registry.build(Kind::Integrator, name, &Params::default()) {
+            Ok(Built::Integrator(integrator)) => integrator.limit() != StepLimit::None,
+            _ => false,
+        };
         let steps = STEPS.map(|share| setting(format!("{:.4} us", step * share * 1e6), step * share, false));
-        steps.into_iter().chain([setting("at its limit".into(), step, true)])
+        steps.into_iter().chain(limited.then(|| setting("at its limit".into(), step, true)))
     };
     registry.list(Kind::Integrator).flat_map(each).collect()
 }

@@ -39,17 +39,15 @@ struct Onset {
     time: f64,
 }
 
-/// One line of a study: figures, or why there are none.
+/// One line of a study.
 #[derive(Debug, Clone)]
 pub struct Row {
     /// What was varied.
     pub axis: &'static str,
     /// How.
     pub setting: String,
-    /// What the run gave.
-    pub figures: Option<Figures>,
-    /// Why there was none.
-    pub refused: Option<String>,
+    /// What the run gave, or why it gave nothing.
+    pub figures: Result<Figures, String>,
 }
 
 /// Errors against the reference, and cost.
@@ -101,20 +99,21 @@ fn onsets(outcome: &Outcome) -> Vec<Onset> {
     first.into_iter().map(|e| Onset { name: format!("{} {}", e.criterion, e.mode), time: e.time }).collect()
 }
 
-/// Runs `path` under `setting`.
-///
-/// # Errors
-/// As [`run()`].
-pub fn run_under(path: &Path, setting: &Setting, registry: &Registry) -> Result<Run, Error> {
-    if !setting.at_limit {
-        return run(path, &setting.keys, registry);
-    }
+/// Runs `path` under `setting` and compares.
+pub fn compare(path: &Path, setting: &Setting, registry: &Registry, reference: &Run) -> Row {
+    let keys = match setting.at_limit {
+        true => longest_step(path, setting, registry).map(|step| setting.keys_with_step(AT_LIMIT * step)),
+        false => Ok(setting.keys.clone()),
+    };
+    let run = keys.and_then(|keys| run(path, &keys, registry));
+    let figures = run.map(|run| figures(&run, reference)).map_err(|why| why.to_string());
+    Row { axis: setting.axis.name(), setting: setting.label.clone(), figures }
+}
+
+/// The longest step that is stable under `setting`, s.
+fn longest_step(path: &Path, setting: &Setting, registry: &Registry) -> Result<f64, Error> {
     let model = Model::new(scene::read_with(path, &setting.keys_with_step(TINY))?, registry)?;
-    let longest = run::prepare(&model, NonZeroUsize::MIN)?.sizes.longest_step;
-    if !longest.is_finite() {
-        return Err(Error::Unlimited);
-    }
-    run(path, &setting.keys_with_step(AT_LIMIT * longest), registry)
+    Ok(run::prepare(&model, NonZeroUsize::MIN)?.sizes.longest_step)
 }
 
 /// A step that no limit forbids, s.
@@ -122,15 +121,6 @@ const TINY: f64 = 1e-11;
 
 /// Share of its limit at which an integrator is tried.
 const AT_LIMIT: f64 = 0.99;
-
-/// The line of a run under `setting`, or of why there is none.
-pub fn row(setting: &Setting, run: &Result<Run, Error>, reference: &Run) -> Row {
-    let row = Row { axis: setting.axis.name(), setting: setting.label.clone(), figures: None, refused: None };
-    match run {
-        Ok(run) => Row { figures: Some(figures(run, reference)), ..row },
-        Err(why) => Row { refused: Some(why.to_string()), ..row },
-    }
-}
 
 fn figures(run: &Run, reference: &Run) -> Figures {
     let of = |name: &str, others: &[Onset]| others.iter().find(|o| o.name == name).map(|o| o.time);

@@ -33,9 +33,9 @@ pub fn write(dir: &OutputDir, rows: &[Row]) -> Result<(), Error> {
 
 fn line(row: &Row) -> Vec<Field<'_>> {
     let head = [Field::Text(row.axis), Field::Text(&row.setting)].into_iter();
-    let Some(f) = &row.figures else {
-        let why = row.refused.as_deref().unwrap_or_default();
-        return head.chain([Field::Text(""); 8]).chain([Field::Text(why)]).collect();
+    let f = match &row.figures {
+        Ok(figures) => figures,
+        Err(why) => return head.chain([Field::Text(""); 8]).chain([Field::Text(why)]).collect(),
     };
     let onset = f.onset_error_s.map_or(Field::Text(""), Field::Number);
     let figures = [
@@ -59,11 +59,13 @@ pub fn text(rows: &[Row]) -> String {
          | --- | --- | --- | --- | --- | --- | --- |\n",
     );
     for row in rows {
-        let Some(f) = &row.figures else {
-            let why = row.refused.as_deref().unwrap_or_default();
-            let why: String = why.chars().take(WORDS).collect();
-            let _ = writeln!(text, "| {} | | | {why} | | | |", row.setting);
-            continue;
+        let f = match &row.figures {
+            Ok(figures) => figures,
+            Err(why) => {
+                let why: String = why.chars().take(WORDS).collect();
+                let _ = writeln!(text, "| {} | | | {why} | | | |", row.setting);
+                continue;
+            }
         };
         let onset = f.onset_error_s.map_or_else(|| "-".to_owned(), |s| format!("{:.3}", s * 1e6));
         let unmatched =

@@ -50,6 +50,8 @@ struct Strike {
     /// Name and other keys of the law.
     law: &'static str,
     vectors: usize,
+    /// How they are found.
+    space: &'static str,
     /// us.
     step: f64,
     end: f64,
@@ -110,7 +112,7 @@ impl Strike {
             .sides([Side::Supported, Side::Symmetric, across[0], across[1]]);
         plate.more = format!(
             "[impactor]\nmass = '{} kg'\nvelocity = '{} m/s'\nat = {{ x = '{} mm', y = '{} mm' }}\npatch_side = '{side} mm'\n\
-             [contact]\n{}\nk = '{} N/m^1.5'\n[effects]\ndamage = 'off'\n[reduction]\nmethod = 'ritz'\nvectors = {}\n\
+             [contact]\n{}\nk = '{} N/m^1.5'\n[effects]\ndamage = 'off'\n[reduction]\nmethod = 'ritz'\nvectors = {}\nspace = '{}'\n\
              [march]\nintegrator = 'newmark'\nstep = '{} us'\nend = '{} us'\n[output]\nhistory_every = '1 us'\n",
             self.mass / parts,
             self.velocity,
@@ -119,6 +121,7 @@ impl Strike {
             self.law,
             self.k / parts,
             self.vectors,
+            self.space,
             self.step,
             self.end,
         );
@@ -242,6 +245,7 @@ fn shell(material: String, plies: &'static str, ply_mm: f64, layers: &'static [u
         k: 14901620370.37037,
         law: HERTZ,
         vectors: 150,
+        space: "two-level",
         step: 0.1,
         end: 90.0,
     }
@@ -296,6 +300,7 @@ fn as4x16() -> Strike {
         k: 3383637096.3801656,
         law: HERTZ,
         vectors: 100,
+        space: "two-level",
         step: 0.5,
         end: 8000.0,
     }
@@ -320,22 +325,20 @@ fn a_small_mass_on_sixteen_plies() {
 }
 
 /// With the modulus that the plies have across the laminate, the squeeze under the patch makes the contact softer than that
-/// of the series, which finer cells and a second layer do not change: the first force is lower, by 1 % (large mass) and 2 %
-/// (small mass), the impulse of the first contact higher, by 0.3 %, 0.6 % and, finer, 0.65 %. The peak of the small mass
-/// stands on a ripple of the highest modes: from 100 to 500 vectors it lies 1.7 to 2.5 % low, while the impulse moves by
-/// 2e-5.
+/// of the series, which finer cells and a second layer do not change: the first force is lower, by 1.0 % (large mass), 2.0 %
+/// and, finer, 1.7 % (small mass), the impulse of the first contact higher, by 0.3 %, 0.6 % and 0.65 %. The peak of the
+/// small mass stands on a ripple of the highest modes: by way of the coarse model and from 100 to 500 vectors it lies 1.7 to
+/// 2.5 % low, while the impulse moves by 2e-5.
 #[test]
 #[ignore = "twenty seconds"]
 fn solids_squeeze_under_the_contact() {
     let finer = Strike { growth: 1.15, longest: 3.0, layers: &[8, 8], vectors: 150, ..small_mass() };
     let [large, small] = ["large", "small"].map(|mass| format!("impact_as4x16_{mass}mass_fsdtri_patch2_hertz.csv"));
-    for (strike, table, peak, ripple, impulse) in [
-        (as4x16(), &large, -0.0104, 1e-3, 0.0033),
-        (small_mass(), &small, -0.0190, 4e-3, 0.0058),
-        (finer, &small, -0.0209, 5e-3, 0.0065),
-    ] {
-        let difference = strike.against(table);
-        assert!((difference.peak - peak).abs() < ripple, "{difference:?}");
+    for (strike, table, peak, impulse) in
+        [(as4x16(), &large, -0.0103, 0.0033), (small_mass(), &small, -0.0203, 0.0058), (finer, &small, -0.0173, 0.0065)]
+    {
+        let difference = Strike { space: "krylov", ..strike }.against(table);
+        assert!((difference.peak - peak).abs() < 1e-3, "{difference:?}");
         assert!((difference.first_impulse - impulse).abs() < 3e-4, "{difference:?}");
         assert!(difference.curve < 2.0 * CURVE && difference.impulse.abs() < IMPULSE, "{difference:?}");
     }

@@ -64,9 +64,9 @@ impl SparseStructure {
         }
     }
 
-    /// With a coarse model for those who can use one.
-    pub fn with_coarse(self, prolongation: Prolongation) -> Self {
-        Self { prolongation: Some(prolongation), ..self }
+    /// Offers a coarse model to those who can use one.
+    pub fn offer_coarse(&mut self, prolongation: Prolongation) {
+        self.prolongation = Some(prolongation);
     }
 
     /// Entries of one triangle of K.

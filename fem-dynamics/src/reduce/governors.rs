@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 const POOL: usize = 4;
 
 /// Ratios that differ by less than this fraction are equal, whatever the last bits say.
-const EQUAL: f64 = 1e-8;
+const EQUAL: f64 = 1e-9;
 
 /// How many governors are kept beside the contacts, and which.
 #[derive(Debug, Clone)]
