@@ -322,8 +322,8 @@ fn write_profile(dir: &OutputDir, model: &Model, named: &NamedProfile, points: &
         };
         let picture = plot::line_plot(&LinePlot {
             title: format!("{}: {name}", model.scene.title),
-            x: Axis { label: format!("Stress, {suffix}"), unit: "MPa".into() },
-            y: Axis { label: "Height".into(), unit: "mm".into() },
+            x: Axis::linear(format!("Stress, {suffix}"), "MPa"),
+            y: Axis::linear("Height", "mm"),
             series: components.map(series).to_vec(),
             marks: Vec::new(),
         })?;

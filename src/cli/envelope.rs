@@ -139,7 +139,7 @@ fn picture(criteria: &[NamedCriterion], found: &Envelopes, m: &Material, plane: 
             series.push(Series { label: name.clone(), points, style });
         }
     }
-    let axis = |name: &str| Axis { label: format!("Stress {name}"), unit: "MPa".into() };
+    let axis = |name: &str| Axis::linear(format!("Stress {name}"), "MPa");
     let [x, y] = plane.names();
     LinePlot { title: format!("Failure envelopes of {}", m.name), x: axis(x), y: axis(y), series, marks: Vec::new() }
 }

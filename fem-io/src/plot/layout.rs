@@ -4,7 +4,7 @@ use super::flags::{Flag, GAP, flags};
 use super::scale::Range;
 use super::shapes::{Anchor, Color, Drawing, Shape, Text};
 use super::words::{clean, room};
-use super::{Axis, LinePlot, Mark, PlotError, Series, Style};
+use super::{Axis, LinePlot, Mark, PlotError, Scale, Series, Style};
 
 pub(super) const WIDTH: f64 = 1600.0;
 /// Height of the area of the curves.
@@ -20,6 +20,7 @@ const WHITE: Color = [0xff; 3];
 const INK: Color = [0x22, 0x22, 0x22];
 const FAINT: Color = [0x66, 0x66, 0x66];
 const GRID: Color = [0xe3, 0xe3, 0xe3];
+const MINOR_GRID: Color = [0xf0, 0xf0, 0xf0];
 /// Okabe and Ito (2008), without the yellow, which is lost on white, and the vermilion, which is for marks.
 const PALETTE: [Color; 6] = [
     [0x00, 0x72, 0xb2],
@@ -39,10 +40,10 @@ pub(super) fn lay_out(plot: &LinePlot) -> Result<Drawing, PlotError> {
     };
     let range =
         |axis: &Axis, largest| PlotError::Range { title: plot.title.clone(), axis: axis.label.clone(), largest };
-    let x = Range::of(values().map(|p| p.0)).map_err(|largest| range(&plot.x, largest))?;
-    // Curves over time fill the width; one around zero is a figure of its own and stands free.
-    let x = if x.lo < 0.0 && x.hi > 0.0 { x.with_air() } else { x };
-    let y = Range::of(values().map(|p| p.1)).map_err(|largest| range(&plot.y, largest))?.with_air();
+    let x = Range::of(plot.x.scale, values().map(|p| p.0)).map_err(|largest| range(&plot.x, largest))?;
+    // Curves over time fill the width; one around zero, or without a zero, is a figure of its own and stands free.
+    let x = if x.crosses_zero() || plot.x.scale == Scale::Logarithmic { x.with_air() } else { x };
+    let y = Range::of(plot.y.scale, values().map(|p| p.1)).map_err(|largest| range(&plot.y, largest))?.with_air();
 
     let y_ticks = y.ticks(9);
     let widest = |ticks: &[(f64, String)]| ticks.iter().map(|t| room(&t.1, SMALL)).fold(0.0, f64::max);
@@ -57,7 +58,7 @@ pub(super) fn lay_out(plot: &LinePlot) -> Result<Drawing, PlotError> {
             names.push(series);
         }
     }
-    let color = |s: &Series| PALETTE[names.iter().position(|n| n.label == s.label).unwrap_or(0) % PALETTE.len()];
+    let pen = |s: &Series| Pen::new(s.style, names.iter().position(|n| n.label == s.label).unwrap_or(0));
     let legend = if names.len() > 1 { legend(&names, left, right) } else { Vec::new() };
     let flags = flags(&plot.marks, |m| left + x.fraction(m.x) * (right - left), left, right);
     let rows = |rows: Option<usize>| rows.map_or(0.0, |last| (last + 1) as f64 * ROW);
@@ -73,16 +74,44 @@ pub(super) fn lay_out(plot: &LinePlot) -> Result<Drawing, PlotError> {
         canvas.line(vec![[flag.x, flag.baseline(top) - 0.75 * SMALL], [flag.x, area.bottom]], 2.0, FAINT, true);
     }
     for series in &plot.series {
-        canvas.curve(&area, series, color(series));
+        canvas.curve(&area, series, &pen(series));
     }
     for (flag, mark) in flags.iter().zip(&plot.marks) {
         canvas.flag(&area, flag, mark, top);
     }
     for (entry, series) in legend.iter().zip(&names) {
-        canvas.legend(entry, series.style, color(series), legend_top);
+        canvas.legend(entry, &pen(series), legend_top);
     }
     let height = (area.bottom + 2.0 * LABEL + EDGE + 30.0).ceil();
     Ok(Drawing { title: clean(&plot.title, TITLE, WIDTH), width: WIDTH, height, shapes: canvas.0 })
+}
+
+/// What a curve is drawn with: a line, dots or both.
+struct Pen {
+    color: Color,
+    line: Option<Stroke>,
+    dots: bool,
+}
+
+#[derive(Clone, Copy)]
+struct Stroke {
+    width: f64,
+    dashed: bool,
+}
+
+impl Pen {
+    /// Pen of the `n`-th name.
+    fn new(style: Style, n: usize) -> Self {
+        let stroke = |dashed| Some(Stroke { width: 3.5, dashed });
+        let color = PALETTE[n % PALETTE.len()];
+        match style {
+            Style::Solid => Self { color, line: stroke(false), dots: false },
+            Style::Dashed => Self { color, line: stroke(true), dots: false },
+            Style::Dots => Self { color, line: None, dots: true },
+            Style::Joined => Self { color, line: stroke(n / PALETTE.len() % 2 == 1), dots: true },
+            Style::Guide => Self { color: INK, line: Some(Stroke { width: 2.5, dashed: true }), dots: false },
+        }
+    }
 }
 
 /// First, lowest, highest and last of every run of points within one pixel column.
@@ -111,6 +140,8 @@ struct Entry {
     text: String,
 }
 
+/// Radius of the dot of a point.
+const DOT: f64 = 6.0;
 /// Length of the line beside a name in the legend.
 const SAMPLE: f64 = 56.0;
 
@@ -143,11 +174,16 @@ struct Area {
 }
 
 impl Area {
+    fn across(&self, x: f64) -> f64 {
+        self.left + self.x.fraction(x) * (self.right - self.left)
+    }
+
+    fn up(&self, y: f64) -> f64 {
+        self.bottom - self.y.fraction(y) * (self.bottom - self.top)
+    }
+
     fn place(&self, x: f64, y: f64) -> [f64; 2] {
-        [
-            self.left + self.x.fraction(x) * (self.right - self.left),
-            self.bottom - self.y.fraction(y) * (self.bottom - self.top),
-        ]
+        [self.across(x), self.up(y)]
     }
 }
 
@@ -164,24 +200,29 @@ impl Canvas {
 
     fn axes(&mut self, area: &Area, x_ticks: &[(f64, String)], y_ticks: &[(f64, String)], plot: &LinePlot) {
         let &Area { left, right, top, bottom, .. } = area;
+        for x in area.x.minor_ticks().into_iter().map(|value| area.across(value)) {
+            self.line(vec![[x, bottom], [x, top]], 1.5, MINOR_GRID, false);
+        }
+        for y in area.y.minor_ticks().into_iter().map(|value| area.up(value)) {
+            self.line(vec![[left, y], [right, y]], 1.5, MINOR_GRID, false);
+        }
         for (value, label) in x_ticks {
-            let [x, _] = area.place(*value, area.y.lo);
+            let x = area.across(*value);
             self.line(vec![[x, bottom], [x, top]], 1.5, GRID, false);
             self.line(vec![[x, bottom], [x, bottom + 8.0]], 2.0, INK, false);
             self.text([x, bottom + 14.0 + SMALL], label, SMALL, INK, Anchor::Middle);
         }
         for (value, label) in y_ticks {
-            let [_, y] = area.place(area.x.lo, *value);
+            let y = area.up(*value);
             self.line(vec![[left, y], [right, y]], 1.5, GRID, false);
             self.line(vec![[left - 8.0, y], [left, y]], 2.0, INK, false);
             self.text([left - 16.0, y + 0.35 * SMALL], label, SMALL, INK, Anchor::End);
         }
-        let [zero_x, zero_y] = area.place(0.0, 0.0);
-        if area.y.lo < 0.0 && area.y.hi > 0.0 {
-            self.line(vec![[left, zero_y], [right, zero_y]], 1.5, FAINT, false);
+        if area.y.crosses_zero() {
+            self.line(vec![[left, area.up(0.0)], [right, area.up(0.0)]], 1.5, FAINT, false);
         }
-        if area.x.lo < 0.0 && area.x.hi > 0.0 {
-            self.line(vec![[zero_x, bottom], [zero_x, top]], 1.5, FAINT, false);
+        if area.x.crosses_zero() {
+            self.line(vec![[area.across(0.0), bottom], [area.across(0.0), top]], 1.5, FAINT, false);
         }
         self.line(vec![[left, top], [left, bottom], [right, bottom]], 2.0, INK, false);
         let name = |axis: &Axis, most| {
@@ -200,14 +241,15 @@ impl Canvas {
         }));
     }
 
-    fn curve(&mut self, area: &Area, series: &Series, color: Color) {
+    /// A curve of a single point is a dot whatever the pen.
+    fn curve(&mut self, area: &Area, series: &Series, pen: &Pen) {
         let points: Vec<_> = series.points.iter().map(|&(x, y)| area.place(x, y)).collect();
         let points = thin(&points);
-        if series.style == Style::Dots || points.len() == 1 {
-            self.0.extend(points.into_iter().map(|centre| Shape::Dot { centre, radius: 6.0, color }));
-        } else {
-            self.line(points, 3.5, color, series.style == Style::Dashed);
+        let dots = if pen.dots || points.len() == 1 { points.clone() } else { Vec::new() };
+        if let Some(Stroke { width, dashed }) = pen.line.filter(|_| points.len() > 1) {
+            self.line(points, width, pen.color, dashed);
         }
+        self.0.extend(dots.into_iter().map(|centre| Shape::Dot { centre, radius: DOT, color: pen.color }));
     }
 
     fn flag(&mut self, area: &Area, flag: &Flag, mark: &Mark, top: f64) {
@@ -220,13 +262,14 @@ impl Canvas {
         self.text([x, baseline], &flag.text, SMALL, INK, anchor);
     }
 
-    fn legend(&mut self, entry: &Entry, style: Style, color: Color, top: f64) {
+    fn legend(&mut self, entry: &Entry, pen: &Pen, top: f64) {
         let baseline = top + (entry.row as f64 + 0.6) * ROW;
         let middle = baseline - 0.35 * SMALL;
-        if style == Style::Dots {
-            self.0.push(Shape::Dot { centre: [entry.left + 0.5 * SAMPLE, middle], radius: 6.0, color });
-        } else {
-            self.line(vec![[entry.left, middle], [entry.left + SAMPLE, middle]], 3.5, color, style == Style::Dashed);
+        if let Some(Stroke { width, dashed }) = pen.line {
+            self.line(vec![[entry.left, middle], [entry.left + SAMPLE, middle]], width, pen.color, dashed);
+        }
+        if pen.dots {
+            self.0.push(Shape::Dot { centre: [entry.left + 0.5 * SAMPLE, middle], radius: DOT, color: pen.color });
         }
         self.text([entry.left + SAMPLE + 14.0, baseline], &entry.text, SMALL, INK, Anchor::Start);
     }

@@ -11,6 +11,9 @@ mod scale;
 mod shapes;
 mod svg;
 mod words;
+mod work_precision;
+
+pub use work_precision::work_precision;
 
 /// Curves over a common axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,6 +37,29 @@ pub struct Axis {
     pub label: String,
     /// Unit that the values are in, e.g. `kN`; empty for a pure number.
     pub unit: String,
+    /// Where its values stand.
+    pub scale: Scale,
+}
+
+/// Where the values of an axis stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// At distances in proportion to their differences.
+    Linear,
+    /// At distances in proportion to their ratios, for positive values.
+    Logarithmic,
+}
+
+impl Axis {
+    /// An axis with a linear scale.
+    pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self { label: label.into(), unit: unit.into(), scale: Scale::Linear }
+    }
+
+    /// An axis with a logarithmic scale, for positive values.
+    pub fn logarithmic(label: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self { scale: Scale::Logarithmic, ..Self::linear(label, unit) }
+    }
 }
 
 /// One curve.
@@ -56,6 +82,11 @@ pub enum Style {
     Dashed,
     /// Each as a dot.
     Dots,
+    /// Each as a dot, joined by a line. From the seventh name on colours begin again and the line is dashed, so that
+    /// twelve names differ.
+    Joined,
+    /// Joined by a thin dark dashed line, for what other curves are compared with.
+    Guide,
 }
 
 /// A named point, with a dashed line from the axis through the point to its label above the curves.
@@ -112,6 +143,20 @@ pub enum PlotError {
         /// Largest magnitude.
         largest: f64,
     },
+    /// Zero or less where there is no place for it.
+    #[error(
+        "plot `{title}`: {value} in {what} has no place on the logarithmic axis `{axis}`, which is for values above 0"
+    )]
+    NotPositive {
+        /// Title of the plot.
+        title: String,
+        /// Label of the axis.
+        axis: String,
+        /// The curve and point, or the mark.
+        what: String,
+        /// Its coordinate.
+        value: f64,
+    },
     /// More labels than a picture holds.
     #[error("plot `{title}`: {count} {what} are too many for one picture, which holds {most}")]
     TooMany {
@@ -148,7 +193,8 @@ pub enum PlotError {
 /// all its peaks. Colours are those of Okabe and Ito (2008), which the colour-blind can tell apart.
 ///
 /// # Errors
-/// No points; points or marks that are not finite or are beyond 10²⁵⁰; more than 40 curves or marks.
+/// No points; points or marks that are not finite, are beyond 10²⁵⁰ or are not positive where an axis is logarithmic;
+/// more than 40 curves or marks.
 pub fn line_plot(plot: &LinePlot) -> Result<Picture, PlotError> {
     check(plot)?;
     let drawing = layout::lay_out(plot)?;
@@ -169,22 +215,26 @@ fn check(plot: &LinePlot) -> Result<(), PlotError> {
     if plot.series.is_empty() {
         return Err(PlotError::Empty { title: title(), what: "the whole plot".into() });
     }
-    let finite = |x: f64, y: f64, what: &dyn Fn() -> String| {
-        if x.is_finite() && y.is_finite() {
-            Ok(())
-        } else {
-            Err(PlotError::NonFinite { title: title(), what: what(), x, y })
+    let drawable = |x: f64, y: f64, what: &dyn Fn() -> String| {
+        if !(x.is_finite() && y.is_finite()) {
+            return Err(PlotError::NonFinite { title: title(), what: what(), x, y });
         }
+        for (axis, value) in [(&plot.x, x), (&plot.y, y)] {
+            if axis.scale == Scale::Logarithmic && value <= 0.0 {
+                return Err(PlotError::NotPositive { title: title(), axis: axis.label.clone(), what: what(), value });
+            }
+        }
+        Ok(())
     };
     for series in &plot.series {
         if series.points.is_empty() {
             return Err(PlotError::Empty { title: title(), what: format!("curve `{}`", series.label) });
         }
         for (i, &(x, y)) in series.points.iter().enumerate() {
-            finite(x, y, &|| format!("curve `{}`, point {}", series.label, i + 1))?;
+            drawable(x, y, &|| format!("curve `{}`, point {}", series.label, i + 1))?;
         }
     }
-    plot.marks.iter().try_for_each(|m| finite(m.x, m.y, &|| format!("mark `{}`", m.label)))
+    plot.marks.iter().try_for_each(|m| drawable(m.x, m.y, &|| format!("mark `{}`", m.label)))
 }
 
 /// Events that [`force_history`] names; a last mark counts those after them.
@@ -229,8 +279,8 @@ pub fn force_history(
     }
     Ok(LinePlot {
         title: title.to_owned(),
-        x: Axis { label: "Time".into(), unit: time_unit.into() },
-        y: Axis { label: "Contact force".into(), unit: force_unit.into() },
+        x: Axis::linear("Time", time_unit),
+        y: Axis::linear("Contact force", force_unit),
         series,
         marks,
     })
@@ -258,8 +308,8 @@ pub fn index_history(title: &str, curves: &[(String, Vec<(f64, f64)>)]) -> LineP
     let curves = curves.iter().map(curve).filter(|series| !series.points.is_empty());
     LinePlot {
         title: title.to_owned(),
-        x: Axis { label: "Time".into(), unit: time_unit.into() },
-        y: Axis { label: "Failure index".into(), unit: String::new() },
+        x: Axis::linear("Time", time_unit),
+        y: Axis::linear("Failure index", ""),
         series: curves.chain([failure]).collect(),
         marks: Vec::new(),
     }
@@ -279,8 +329,8 @@ pub fn modal_history(title: &str, sum: Vec<(f64, f64)>, parts: Vec<(String, Vec<
     let parts = parts.into_iter().map(|(label, points)| series(label, points, Style::Solid));
     LinePlot {
         title: title.to_owned(),
-        x: Axis { label: "Time".into(), unit: time_unit.into() },
-        y: Axis { label: "Deflection under the impactor".into(), unit: unit.into() },
+        x: Axis::linear("Time", time_unit),
+        y: Axis::linear("Deflection under the impactor", unit),
         series: [series("all modes".into(), sum, Style::Dashed)].into_iter().chain(parts).collect(),
         marks: Vec::new(),
     }
@@ -319,8 +369,8 @@ mod tests {
     fn plot(points: &[(f64, f64)]) -> LinePlot {
         LinePlot {
             title: "Test".into(),
-            x: Axis { label: "Time".into(), unit: "ms".into() },
-            y: Axis { label: "Ratio".into(), unit: String::new() },
+            x: Axis::linear("Time", "ms"),
+            y: Axis::linear("Ratio", ""),
             series: vec![Series { label: "curve".into(), points: points.to_vec(), style: Style::Solid }],
             marks: Vec::new(),
         }
@@ -375,6 +425,34 @@ mod tests {
     }
 
     #[test]
+    fn joined_curves_of_twelve_names_differ() {
+        let mut plot = plot(&[(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)]);
+        let curve = |k: usize| Series { label: format!("curve {k}"), style: Style::Joined, ..plot.series[0].clone() };
+        plot.series = (0..12).map(curve).collect();
+        let svg = line_plot(&plot).unwrap().svg;
+        // Every curve has three dots and a line, its sample in the legend one of each.
+        assert_eq!((svg.matches("<circle").count(), svg.matches("stroke-dasharray").count()), (48, 12));
+        let line = |l: &&str| l.contains("stroke-width=\"3.5\"");
+        let pens = svg.lines().filter(line).map(|l| l.split(" points").next().unwrap());
+        assert_eq!(pens.collect::<std::collections::BTreeSet<_>>().len(), 12);
+    }
+
+    #[test]
+    fn logarithmic_axes_turn_powers_into_straight_lines() {
+        let mut plot = plot(&[(0.01, 1e-4), (1.0, 1.0), (10.0, 100.0)]);
+        (plot.x.scale, plot.y.scale) = (Scale::Logarithmic, Scale::Logarithmic);
+        let svg = line_plot(&plot).unwrap().svg;
+        let curve = svg.lines().find(|l| l.contains("stroke-width=\"3.5\"")).unwrap();
+        let places = curve.split("points=\"").nth(1).unwrap().trim_end_matches("\"/>").split([' ', ',']);
+        let p: Vec<f64> = places.map(|number| number.parse().unwrap()).collect();
+        assert!((p[2] - p[0] - 2.0 * (p[4] - p[2])).abs() < 0.4, "{curve}");
+        assert!((p[3] - p[1] - 2.0 * (p[5] - p[3])).abs() < 0.4, "{curve}");
+        assert!(["0.01", "0.1", "1", "10", "1e−4"].iter().all(|label| svg.contains(&format!(">{label}</text>"))));
+        // Two to nine times 0.01, 0.1 and 1, and 0.9 and 0.8 in the air below 0.01, at x; six decades at y have none.
+        assert_eq!(svg.matches("#f0f0f0").count(), 26);
+    }
+
+    #[test]
     fn a_curve_in_pieces_has_one_colour_and_one_name() {
         let mut plot = plot(&[(-1.0, 0.0), (1.0, 1.0)]);
         plot.series.push(Series { label: "other".into(), ..plot.series[0].clone() });
@@ -397,12 +475,35 @@ mod tests {
     }
 
     #[test]
+    fn poor_curves_are_still_drawn_on_logarithmic_axes() {
+        for points in [&[(3.0, 5.0)][..], &[(1e-3, 7.0), (1e-3, 7.0)], &[(1e-250, 1e250), (1e250, 5e-324)]] {
+            let mut plot = plot(points);
+            (plot.x.scale, plot.y.scale) = (Scale::Logarithmic, Scale::Logarithmic);
+            let picture = line_plot(&plot).unwrap();
+            assert!(!picture.svg.contains("NaN") && !picture.svg.contains("inf"), "{points:?}");
+            assert!(colored(&picture, [0x00, 0x72, 0xb2]) > 50, "{points:?}");
+        }
+    }
+
+    #[test]
     fn what_cannot_be_drawn_is_refused_by_name() {
         let refusal = |plot: &LinePlot| line_plot(plot).unwrap_err().to_string();
         assert_eq!(refusal(&plot(&[])), "plot `Test`: no points to draw in curve `curve`");
         let nan = plot(&[(0.0, 0.0), (1.0, f64::NAN)]);
         assert_eq!(refusal(&nan), "plot `Test`: (1, NaN) in curve `curve`, point 2 is not finite");
         assert!(refusal(&plot(&[(0.0, 1e300)])).contains("on the axis `Ratio` are too large"));
+        let mut ratios = plot(&[(0.0, 1.0), (1.0, -2.0)]);
+        ratios.y = Axis::logarithmic("Ratio", "");
+        let where_it_is = "in curve `curve`, point 2 has no place on the logarithmic axis `Ratio`";
+        assert!(refusal(&ratios).contains(&format!("-2 {where_it_is}")), "{}", refusal(&ratios));
+        ratios.series[0].points[1].1 = 0.0;
+        assert!(refusal(&ratios).contains(&format!("0 {where_it_is}")));
+        ratios.series[0].points[1].1 = 1e-300;
+        assert!(line_plot(&ratios).is_ok());
+        ratios.x = Axis::logarithmic("Time", "ms");
+        ratios.series[0].points[0].0 = 1.0;
+        ratios.marks = vec![Mark { x: 0.0, y: 1.0, label: "m".into() }];
+        assert!(refusal(&ratios).contains("0 in mark `m` has no place on the logarithmic axis `Time`"));
         let mut bare = plot(&[(0.0, 0.0)]);
         bare.marks = vec![Mark { x: f64::INFINITY, y: 0.0, label: "m".into() }];
         assert!(refusal(&bare).contains("mark `m` is not finite"));
