@@ -30,6 +30,7 @@ pub use support::{Couple, Equation, NodeSet, Support, Term};
 use crate::units;
 use fem_core::laminate::Laminate;
 use fem_core::material::Material;
+use fem_core::mesh::Curves;
 use fem_core::plate::ZDerivatives;
 use fem_core::plugin::Dimension;
 use fem_core::symmetry::Group;
@@ -152,14 +153,29 @@ pub enum MeshSource {
         file: Located<PathBuf>,
         /// Size of the file's unit of length, m.
         metres_per_unit: f64,
+        /// How often every cell is divided into four; [`refined_cells`] says whether that is too often.
+        refine: Located<u32>,
+        /// What becomes of curved edges then.
+        curves: Curves,
     },
     /// A rectangle from the origin with equal cells.
     Rectangle {
         /// Edges along x and y, m.
         size: [f64; 2],
-        /// Cells along x and y.
+        /// Cells along x and y, refined as the scene asks for.
         cells: [usize; 2],
     },
+}
+
+/// Cells that become of `cells` when each is divided into four, `times` in a row.
+///
+/// # Errors
+/// More than four million, in words.
+pub fn refined_cells(cells: usize, times: u32) -> Result<usize, String> {
+    let refined = 4_usize.checked_pow(times).and_then(|parts| cells.checked_mul(parts));
+    refined
+        .filter(|n| *n <= MAX_CELLS)
+        .ok_or_else(|| format!("refining {times} times makes more than {MAX_CELLS} cells of {cells}"))
 }
 
 const KEYS: Keys = &[
@@ -186,15 +202,21 @@ const KEYS: Keys = &[
     ("failure", r#"{ criteria = ["hashin-report"] }"#),
     ("output", "{ plots = true }"),
 ];
-const MESH: Keys =
-    &[("file", r#""plate.msh""#), ("unit", r#""mm""#), ("rectangle", r#"["100 mm", "50 mm"]"#), ("cells", "[8, 4]")];
-const FILE: Keys = &[("file", r#""plate.msh""#), ("unit", r#""mm""#)];
-const RECTANGLE: Keys = &[("rectangle", r#"["100 mm", "50 mm"]"#), ("cells", "[8, 4]")];
+const MESH: Keys = &[
+    ("file", r#""plate.msh""#),
+    ("unit", r#""mm""#),
+    ("rectangle", r#"["100 mm", "50 mm"]"#),
+    ("cells", "[8, 4]"),
+    ("refine", "1"),
+    ("curves", r#""kept""#),
+];
+const FILE: Keys = &[("file", r#""plate.msh""#), ("unit", r#""mm""#), ("refine", "1"), ("curves", r#""kept""#)];
+const RECTANGLE: Keys = &[("rectangle", r#"["100 mm", "50 mm"]"#), ("cells", "[8, 4]"), ("refine", "1")];
 /// Natural frequencies unless a scene says how many.
 pub const DEFAULT_MODES: usize = 10;
 const MODES: Keys = &[("count", "10")];
 
-/// Most cells of a built-in mesh: more is a slip.
+/// Most cells of a built-in or refined mesh: more is a slip.
 const MAX_CELLS: usize = 4_000_000;
 
 /// Reads the scene file `path`.
@@ -326,17 +348,32 @@ fn read_mesh(field: &Field<'_>, scene: &Path) -> Result<MeshSource, SceneError> 
     let unit = table.required("unit")?;
     let metres_per_unit = units::parse_as(&format!("1 {}", unit.text()?), Dimension::LENGTH)
         .map_err(|_| unit.error("must be a unit of length", "write the unit of the file's coordinates: mm, m, in"))?;
-    Ok(MeshSource::File { file: file.at(path), metres_per_unit })
+    let curves = table.optional("curves").map_or(Ok(Curves::Kept), |field| field.choice(&Curves::ALL))?;
+    Ok(MeshSource::File { file: file.at(path), metres_per_unit, refine: read_refine(&table, 1)?, curves })
 }
 
 fn read_rectangle(table: &Reader<'_>) -> Result<MeshSource, SceneError> {
     let size = pair(&table.required("rectangle")?, |field| field.positive(Dimension::LENGTH))?;
     let field = table.required("cells")?;
     let cells = pair(&field, |field| field.count())?;
-    match cells[0].checked_mul(cells[1]) {
-        Some(n) if n <= MAX_CELLS => Ok(MeshSource::Rectangle { size, cells }),
-        _ => Err(field.error(format!("{} x {} cells", cells[0], cells[1]), format!("at most {MAX_CELLS} in all"))),
-    }
+    let all = match cells[0].checked_mul(cells[1]) {
+        Some(n) if n <= MAX_CELLS => n,
+        _ => {
+            return Err(
+                field.error(format!("{} x {} cells", cells[0], cells[1]), format!("at most {MAX_CELLS} in all"))
+            );
+        }
+    };
+    let refine = read_refine(table, all)?;
+    Ok(MeshSource::Rectangle { size, cells: cells.map(|n| n << refine.value) })
+}
+
+/// How often a mesh of at least `cells` cells is refined.
+fn read_refine(table: &Reader<'_>, cells: usize) -> Result<Located<u32>, SceneError> {
+    let Some(field) = table.optional("refine") else { return Ok(Located { value: 0, place: table.place().clone() }) };
+    let times = field.at_least(0)? as u32;
+    refined_cells(cells, times).map_err(|why| field.error(why, "refine less often"))?;
+    Ok(field.at(times))
 }
 
 /// Two values: along x and along y.
