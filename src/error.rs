@@ -44,6 +44,16 @@ pub enum Error {
     #[error("the scene describes no impact")]
     #[diagnostic(help("set `analysis = \"impact\"` and describe impactor, contact and march"))]
     NoImpact,
+    #[error("the scene does not run as it is, and there is nothing to study: {0}")]
+    Study(String),
+    #[error("there is no axis `{name}`")]
+    #[diagnostic(help("{help}"))]
+    Axis {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        help: String,
+    },
     #[error("the march stopped: {0}")]
     Stopped(String),
     #[error("the scene describes no loads at rest")]

@@ -25,6 +25,8 @@ pub struct Solution {
     pub effective_masses: Vec<[f64; 3]>,
     /// Independent unknowns.
     pub unknowns: usize,
+    /// Entries of the factor of K.
+    pub factor_entries: usize,
     /// How the plate is divided, if it is.
     pub substructures: Option<Substructures>,
     /// Work done.
@@ -75,7 +77,8 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Solut
     let effective_masses = effective_masses.collect();
     stopwatch.lap("modes");
     let (substructures, phases) = (assembled.substructures(), stopwatch.phases().to_vec());
-    Ok(Solution { modes, effective_masses, unknowns: n, substructures, counters, phases })
+    let factor_entries = assembled.factor_entries;
+    Ok(Solution { modes, effective_masses, unknowns: n, factor_entries, substructures, counters, phases })
 }
 
 /// The summary of a modal analysis; units are in the key names.

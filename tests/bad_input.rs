@@ -695,6 +695,25 @@ mod arguments {
     }
 }
 
+mod refinement {
+    use super::*;
+
+    #[test]
+    fn more_cells_than_anyone_wants() {
+        // 8 cells: 4^9 of each are 2 million, 4^10 are 8 million.
+        let refined = |times: &str| strip().scene("unit = \"mm\"", &format!("unit = \"mm\", refine = {times}"));
+        let words = ["refining 10 times makes more than 4000000 cells of 8", "refine less often"];
+        refusal(&refined("10"), At::Scene("mesh ="), &words);
+        refusal(
+            &refined("1000000000"),
+            At::Scene("mesh ="),
+            &["refining 1000000000 times makes more than", "refine less often"],
+        );
+        refusal(&refined("-1"), At::Scene("mesh ="), &["`mesh.refine`: must be a whole number of at least 0"]);
+        refusal(&refined("1, curves = \"round\""), At::Scene("mesh ="), &["`mesh.curves`", "known: kept, straight"]);
+    }
+}
+
 mod substructures {
     use super::*;
 

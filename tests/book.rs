@@ -206,6 +206,20 @@ fn the_contact_of_the_book_is_taken() {
 }
 
 #[test]
+fn the_mesh_of_the_book_is_refined() {
+    let mesh = fs::read_to_string(root().join("docs/book/src/mesh.toml")).unwrap();
+    let quads = |case: Case| {
+        let done = case.fem("check", &[]).good();
+        let words: Vec<_> = done.stdout.split_whitespace().collect();
+        let at = words.iter().position(|word| word.starts_with("quads")).unwrap_or_else(|| panic!("{}", done.stdout));
+        words[at - 1].parse::<usize>().unwrap()
+    };
+    let example = || Case::example("as4-3502-8ply-25mm");
+    let refined = example().scene("mesh = { file = \"plate.msh\", unit = \"mm\" }", mesh.trim());
+    assert_eq!(quads(refined), 4 * quads(example()));
+}
+
+#[test]
 fn what_the_book_includes_and_links_to_is_there() {
     let book = root().join("docs/book/src");
     let mut included = 0;
@@ -230,7 +244,7 @@ fn what_the_book_includes_and_links_to_is_there() {
             included += 1;
         }
     }
-    assert!(included >= 32 && linked >= 13, "{included} {linked}");
+    assert!(included >= 33 && linked >= 14, "{included} {linked}");
 }
 
 /// The anchor of a heading.

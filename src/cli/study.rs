@@ -3,28 +3,58 @@
 use super::run::default_folder;
 use super::{print, progress};
 use crate::error::Error;
+use crate::model::Model;
 use crate::registry::Registry;
-use crate::study::{self, Axis, Setting};
+use crate::study::{self, Options, Progress, Report, Session};
 use clap::Args;
-use clap::builder::PossibleValuesParser;
 use fem_io::files::OutputDir;
 use fem_io::scene;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Step of the reference over that of the scene.
-const REFERENCE_STEP: f64 = 0.25;
-
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Scene file (TOML) of an impact.
+    /// Scene file (TOML)
     scene: PathBuf,
-    /// What is varied [default: everything]
-    #[arg(long, value_delimiter = ',', value_name = "AXES", value_parser = PossibleValuesParser::new(Axis::ALL.map(Axis::name)))]
+    /// What is varied, of mesh, layers, reduction, step, geometry, z-derivatives, quadrature, reductions, integrators,
+    /// element, mass, contact, window and the scene's own axes [default: what the scene says, or all that fit it]
+    #[arg(long, value_delimiter = ',', value_name = "AXES")]
     axis: Vec<String>,
+    /// Processor time that the study may take, for example 60s or 10min; what is run then depends on the machine
+    /// [default: four minutes of a common machine, the same runs everywhere]
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    budget: Option<f64>,
+    /// Writes scene.toml, the scene with the cheapest setting whose error is within this, for example 1% or 0.003
+    #[arg(long, value_name = "ERROR", value_parser = share)]
+    tolerance: Option<f64>,
+    /// Go on with the study in the folder of the results; what has run there is not run again
+    #[arg(long)]
+    resume: bool,
     /// Folder of the results [default: results/<folder of the scene>-study]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+}
+
+/// A time above zero with its unit, s.
+fn time(text: &str) -> Result<f64, String> {
+    let spaced = text.find(|c: char| c.is_alphabetic()).map_or(text.to_owned(), |at| {
+        let (number, unit) = text.split_at(at);
+        format!("{} {unit}", number.trim())
+    });
+    match fem_io::units::parse_as(&spaced, fem_core::plugin::Dimension::TIME) {
+        Ok(seconds) if seconds > 0.0 => Ok(seconds),
+        Ok(_) => Err("must be longer than nothing".into()),
+        Err(why) => Err(why.to_string()),
+    }
+}
+
+/// A relative error between 0 and 1, or one in percent.
+fn share(text: &str) -> Result<f64, String> {
+    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+    match number.trim().parse::<f64>() {
+        Ok(share) if share * unit > 0.0 && share * unit < 1.0 => Ok(share * unit),
+        _ => Err("must be an error between 0 and 1, or in percent: 0.01 or 1%".into()),
+    }
 }
 
 pub(super) fn study(registry: &Registry, arguments: &Arguments) -> miette::Result<ExitCode> {
@@ -33,34 +63,50 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments) -> miette::Resul
 
 fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error> {
     let path = &arguments.scene;
-    let step = scene::read(path)?.impact().ok_or(Error::NoImpact)?.march.step.value;
-    let asked = |axis: &Axis| arguments.axis.is_empty() || arguments.axis.iter().any(|name| name == axis.name());
-    let settings: Vec<Setting> =
-        Axis::ALL.iter().filter(|axis| asked(axis)).flat_map(|axis| axis.settings(registry, step)).collect();
+    let model = Model::new(scene::read(path)?, registry)?;
     let folder = arguments.out.clone().unwrap_or_else(|| {
         let mut folder = default_folder(path).into_os_string();
         folder.push("-study");
         folder.into()
     });
-    let bar = progress(settings.len() as u64 + 1, "study {bar:40} {pos}/{len}  {msg}");
-    bar.set_message("reference");
-    let reference = study::run(path, &study::full(REFERENCE_STEP * step), registry)?;
-    let dir = OutputDir::create(folder)?;
-    let mut rows = Vec::new();
-    for setting in &settings {
-        bar.inc(1);
-        bar.set_message(setting.label.clone());
-        rows.push(study::compare(path, setting, registry, &reference));
-        study::write(&dir, &rows)?;
+    let options = Options { axes: arguments.axis.clone(), budget: arguments.budget };
+    study::check(&model, registry, &options)?;
+    let mut session = Session::open(path, &model, registry, OutputDir::create(folder)?, arguments.resume)?;
+    let bar = progress(1000, "study {bar:40} {percent:>3} %  {msg}");
+    let found = session.found();
+    if found > 0 {
+        print(&format!("  {found} runs are there already\n"));
     }
+    let report = study::study(&mut session, &model, &options, &mut |told| match told {
+        Progress::Planned(plan) => bar.suspend(|| print(&format!("{plan}\n"))),
+        Progress::Runs { what, share } => {
+            bar.set_position((share * 1000.0) as u64);
+            bar.set_message(what);
+        }
+    })?;
     bar.finish_and_clear();
-    print(&format!(
-        "Errors against the full model of {} unknowns at steps of {:.4} us ({:.1} s of processor time)\n\n{}\n  results   {}\n",
-        reference.unknowns[0],
-        reference.step * 1e6,
-        reference.setup_s + reference.march_s,
-        study::text(&rows),
-        dir.path().display()
-    ));
-    Ok(ExitCode::SUCCESS)
+    study::write(session.dir(), &report)?;
+    study::write_pictures(session.dir(), &report)?;
+    let text = study::text(&report);
+    session.dir().write("study.md", |out| out.write_all(text.as_bytes()))?;
+    print(&text);
+    let promised = arguments.tolerance.map_or(Ok(true), |tolerance| promise(&session, arguments, &report, tolerance))?;
+    print(&format!("\n  results   {}\n", session.dir().path().display()));
+    Ok(if promised { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Writes the scene with the cheapest setting that keeps `tolerance`; `false` where none does.
+fn promise(session: &Session<'_>, arguments: &Arguments, report: &Report, tolerance: f64) -> Result<bool, Error> {
+    let all: Vec<usize> = (0..report.asked.len()).collect();
+    let Some(row) = report.cheapest(&all, tolerance) else {
+        let best = report.rows.iter().filter_map(|row| row.worst()).reduce(f64::min);
+        let best = best.map_or(String::new(), |best| format!("; the best leaves {best:.1e}"));
+        print(&format!("\n  no run is certain to keep {tolerance} in everything asked{best}: give it more time, or ask less\n"));
+        return Ok(false);
+    };
+    let text = scene::rewrite(&arguments.scene, &row.level.setting)?;
+    session.dir().write("scene.toml", |out| out.write_all(text.as_bytes()))?;
+    let file = session.dir().path().join("scene.toml");
+    print(&format!("\n  {tolerance} in everything asked is kept by {}\n", file.display()));
+    Ok(true)
 }

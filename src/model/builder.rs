@@ -145,13 +145,20 @@ impl Builder<'_> {
 
     pub(super) fn mesh(&self) -> Result<GmshMesh, Error> {
         match &self.scene.mesh {
-            MeshSource::File { file, metres_per_unit } => {
-                gmsh::read(&file.value, *metres_per_unit).map_err(|error| match error.fault {
+            MeshSource::File { file, metres_per_unit, refine, curves } => {
+                let mut read = gmsh::read(&file.value, *metres_per_unit).map_err(|error| match error.fault {
                     MeshFault::Unreadable(_) => {
-                        self.error(file, error.to_string(), "`mesh.file` counts from the folder of the scene").into()
+                        let message = error.to_string();
+                        Error::from(self.error(file, message, "`mesh.file` counts from the folder of the scene"))
                     }
                     _ => error.into(),
-                })
+                })?;
+                scene::refined_cells(read.mesh.quads.len(), refine.value)
+                    .map_err(|why| self.error(refine, format!("`mesh.refine`: {why}"), "refine less often"))?;
+                for _ in 0..refine.value {
+                    read.mesh = read.mesh.refined(*curves);
+                }
+                Ok(read)
             }
             MeshSource::Rectangle { size, cells } => {
                 let [x, y] = [0, 1]

@@ -1,6 +1,7 @@
 //! The march in time, watched; it can be saved and gone on with.
 
-use super::checkpoint::{self, Checkpoint, CheckpointError};
+use super::checkpoint::{self, Checkpoint};
+use super::saved::CheckpointError;
 use super::ledger::Ledger;
 use super::modal::{self, ModalView};
 use super::prepare::{Prepared, unmarchable};

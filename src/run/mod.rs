@@ -5,12 +5,14 @@ mod ledger;
 mod march;
 mod modal;
 mod prepare;
+pub(crate) mod saved;
 
 pub use crate::stress::IndexHistory;
-pub use checkpoint::{Checkpoint, CheckpointError};
+pub use checkpoint::Checkpoint;
 pub use march::{March, march};
 pub use modal::{ModalHistory, ModeShare};
 pub use prepare::{Assembled, Prepared, prepare, structure};
+pub use saved::CheckpointError;
 
 use crate::cost::Phase;
 use fem_core::counters::Counters;

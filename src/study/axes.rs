@@ -1,45 +1,65 @@
 //! What a study varies.
 
+use crate::model::{Model, Plan};
 use crate::registry::{NO_REDUCTION, Registry};
-use fem_core::plugin::{Built, Kind, Params, PluginInfo};
+use fem_core::mesh::QuadMesh;
+use fem_core::plate::ZDerivatives;
+use fem_core::plugin::{Built, Kind, Params, unknown_key};
 use fem_core::time::StepLimit;
+use fem_io::scene::{Analysis, ContactLoad, MeshSource, Scene, SceneError, Setting, Window};
 
 /// A part of the settings that is varied while the others stay as the scene has them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Axis {
-    /// Every reduction on offer, with several numbers of unknowns.
-    Reduction,
-    /// Every integrator on offer, with several steps.
-    Integrator,
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// Its name in tables and on the command line.
+    pub name: String,
+    /// What its levels are.
+    pub kind: AxisKind,
+    /// The levels; those of a ladder from coarse to fine.
+    pub levels: Vec<Level>,
 }
 
-/// One variation of a scene.
+/// What the levels of an axis are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AxisKind {
+    /// Finer and finer: each halves a length or a time, or doubles a number.
+    Ladder,
+    /// Other ways to the same answer.
+    Ways,
+    /// Other problems: what they change is no error.
+    Problems,
+}
+
+/// A level of an axis.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Setting {
-    /// What it varies.
-    pub axis: Axis,
+pub struct Level {
     /// Its name in tables.
     pub label: String,
-    /// The keys that it lays over the scene, TOML.
-    pub keys: String,
-    /// True where the step is to be the longest that is stable, which takes a look at the model.
+    /// What it lays over the scene; nothing where it is the scene's own.
+    pub setting: Setting,
+    /// Whether the step is to be the longest that is stable, which takes a look at the model.
     pub at_limit: bool,
 }
 
-impl Setting {
-    /// Its keys with another step, s.
-    pub(super) fn keys_with_step(&self, step: f64) -> String {
-        let others: String = self.keys.lines().filter(|l| !l.starts_with(STEP)).map(|l| format!("{l}\n")).collect();
-        format!("{others}{STEP} = \"{step:e} s\"\n")
+impl Level {
+    fn new<const N: usize>(label: impl Into<String>, keys: [(&str, String); N]) -> Self {
+        let setting = keys.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+        Self { label: label.into(), setting, at_limit: false }
+    }
+
+    /// The scene as it is.
+    fn own(label: impl Into<String>) -> Self {
+        Self::new(label, [])
     }
 }
 
-const STEP: &str = "march.step";
-
 /// Parameters by which reductions call their size.
-const SIZES: [&str; 3] = ["vectors", "modes", "governors"];
+pub(super) const SIZES: [&str; 3] = ["vectors", "modes", "governors"];
 
-/// Sizes that are tried.
+/// Size of a reduction that leaves it to a default.
+const SIZE: usize = 40;
+
+/// Sizes of reductions that are alternatives.
 const LADDER: [usize; 4] = [20, 40, 80, 160];
 
 /// Reductions that have another way: parameter and value of it.
@@ -47,42 +67,174 @@ const OTHER_WAYS: [(&str, &str, &str); 3] =
     [("guyan", "select", "ratio"), ("irs", "select", "ratio"), ("ritz", "space", "krylov")];
 
 /// Steps that are tried, over that of the scene.
-const STEPS: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
+const STEPS: [f64; 6] = [8.0, 4.0, 2.0, 1.0, 0.5, 0.25];
 
-impl Axis {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::Reduction, Self::Integrator];
+/// Refinements of the scene's mesh that are tried, and how often one of equal cells is coarsened.
+const REFINEMENTS: usize = 3;
+const COARSENINGS: usize = 2;
 
-    /// Its name in tables and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Reduction => "reduction",
-            Self::Integrator => "integrator",
-        }
+/// Key of the step.
+pub(super) const STEP: &str = "march.step";
+
+/// Names of all axes, in the order in which they are run.
+pub const NAMES: [&str; 13] = [
+    "mesh",
+    "layers",
+    "reduction",
+    "step",
+    "geometry",
+    "z-derivatives",
+    "quadrature",
+    "reductions",
+    "integrators",
+    "element",
+    "mass",
+    "contact",
+    "window",
+];
+
+/// The axes of `model`: those of `names`, or else those that its scene asks for, or else all that fit it, and the scene's
+/// own. An axis of other ways brings the ladders that they are judged by.
+///
+/// # Errors
+/// A name that no axis has.
+pub(super) fn axes(model: &Model, registry: &Registry, names: &[String]) -> Result<Vec<Axis>, SceneError> {
+    let study = &model.scene.study;
+    let own = || study.own.iter().map(|own| own.name.value.as_str());
+    for name in study.axes.iter().flatten().filter(|name| !NAMES.contains(&name.value.as_str())) {
+        let help = format!("`{}` {}", name.value, unknown_key(&name.value, NAMES.into_iter().chain(own())));
+        return Err(model.scene.source.error_at(&name.place, format!("there is no axis `{}`", name.value), help));
     }
+    let asked: Vec<&str> = match (names, &study.axes) {
+        ([], None) => NAMES.into_iter().chain(own()).collect(),
+        ([], Some(axes)) => axes.iter().map(|name| name.value.as_str()).chain(own()).collect(),
+        (names, _) => names.iter().map(String::as_str).collect(),
+    };
+    let wanted = |name: &str| asked.contains(&name) || asked.iter().any(|axis| judges(axis).contains(&name));
+    let mut axes: Vec<Axis> = NAMES.into_iter().filter(|name| wanted(name)).filter_map(|name| standard(name, model, registry)).collect();
+    for axis in study.own.iter().filter(|axis| asked.contains(&axis.name.value.as_str())) {
+        let label = |keys: &Setting| keys.iter().map(|(key, value)| format!("{key} {value}")).collect::<Vec<_>>().join(", ");
+        let levels = axis.levels.iter().map(|keys| Level { label: label(keys), setting: keys.clone(), at_limit: false });
+        let kind = if axis.ladder { AxisKind::Ladder } else { AxisKind::Problems };
+        axes.push(Axis { name: axis.name.value.clone(), kind, levels: levels.collect() });
+    }
+    Ok(axes)
+}
 
-    /// Its settings for a scene whose step is `step` (s).
-    pub fn settings(self, registry: &Registry, step: f64) -> Vec<Setting> {
-        match self {
-            Self::Reduction => reductions(registry),
-            Self::Integrator => integrators(registry, step),
-        }
+/// The ladders by whose finest levels the ways of an axis are judged; by the scene as it is, where there are none.
+pub(super) fn judges(axis: &str) -> &'static [&'static str] {
+    match axis {
+        "reductions" => &["reduction", "step"],
+        "integrators" => &["step"],
+        "geometry" => &["mesh"],
+        _ => &[],
     }
 }
 
-/// Keys of the full model at `step`, s.
-pub fn full(step: f64) -> String {
-    format!("reduction = {{ method = \"{NO_REDUCTION}\" }}\n{}", marched("newmark", step))
+/// The axis `name` of `model`, if it has at least one level beside the scene's own.
+fn standard(name: &str, model: &Model, registry: &Registry) -> Option<Axis> {
+    let scene = &model.scene;
+    let (kind, levels) = match name {
+        "mesh" => (AxisKind::Ladder, mesh(scene)),
+        "layers" => (AxisKind::Ladder, layers(model)),
+        "reduction" => (AxisKind::Ladder, reduction(model, registry)?),
+        "step" => (AxisKind::Ladder, steps(scene)?),
+        "geometry" => (AxisKind::Ways, geometry(scene, &model.plate.plane)),
+        "z-derivatives" => (AxisKind::Ways, z_derivatives(model)),
+        "quadrature" => (AxisKind::Ways, quadrature(scene, registry)),
+        "reductions" => (AxisKind::Ways, scene.impact().map(|_| reductions(registry))?),
+        "integrators" => (AxisKind::Ways, integrators(scene, registry)?),
+        "element" => (AxisKind::Ways, elements(scene, registry)),
+        "mass" => (AxisKind::Ways, mass(scene, registry)),
+        "contact" => (AxisKind::Problems, contact(scene)?),
+        "window" => (AxisKind::Problems, window(model)),
+        _ => return None,
+    };
+    let varies = levels.iter().any(|level| !level.setting.is_empty());
+    varies.then(|| Axis { name: name.to_owned(), kind, levels })
 }
 
-/// Keys of a march.
-fn marched(integrator: &str, step: f64) -> String {
-    format!("march.integrator = \"{integrator}\"\n{STEP} = \"{step:e} s\"\n")
+fn quoted(text: impl std::fmt::Display) -> String {
+    format!("\"{text}\"")
 }
 
-fn reductions(registry: &Registry) -> Vec<Setting> {
-    let setting = |label: String, keys: String| Setting { axis: Axis::Reduction, label, keys, at_limit: false };
-    let mut all = vec![setting(NO_REDUCTION.into(), format!("reduction = {{ method = \"{NO_REDUCTION}\" }}"))];
+/// A whole number of the scene.
+pub(super) fn value(scene: &Scene, key: &str) -> Option<usize> {
+    scene.keys.get(key)?.parse().ok()
+}
+
+fn mesh(scene: &Scene) -> Vec<Level> {
+    let refined = value(scene, "mesh.refine").unwrap_or(0);
+    let mut levels = Vec::new();
+    if let (MeshSource::Rectangle { cells, .. }, 0) = (&scene.mesh, refined) {
+        let coarser = (1..=COARSENINGS).rev().map(|k| 1 << k).filter(|by| cells.iter().all(|n| n % by == 0));
+        levels.extend(coarser.map(|by| {
+            let [x, y] = cells.map(|n| n / by);
+            Level::new(format!("{x} x {y} cells"), [("mesh.cells", format!("[{x}, {y}]"))])
+        }));
+    }
+    let refine = |n: usize| Level::new(format!("refine {n}"), [("mesh.refine", n.to_string())]);
+    levels.extend((0..refined).map(refine));
+    levels.push(Level::own(if refined == 0 { "as given".to_owned() } else { format!("refine {refined}") }));
+    levels.extend((1..=REFINEMENTS).map(|k| refine(refined + k)));
+    levels
+}
+
+/// The mesh refined without regard to the curves that its boundary follows, or with regard where the scene has none.
+fn geometry(scene: &Scene, plane: &QuadMesh) -> Vec<Level> {
+    if plane.curved_turn() == 0.0 {
+        return Vec::new();
+    }
+    let refined = value(scene, "mesh.refine").unwrap_or(0) + 1;
+    let other = if scene.keys.get("mesh.curves").is_some_and(|kept| kept == "\"straight\"") { "kept" } else { "straight" };
+    let keys = [("mesh.refine", refined.to_string()), ("mesh.curves", quoted(other))];
+    vec![Level::new(format!("refine {refined}, curves {other}"), keys)]
+}
+
+fn layers(model: &Model) -> Vec<Level> {
+    if model.plate.info().is_shell() {
+        return Vec::new();
+    }
+    let (plies, own) = (model.laminate.plies.len(), model.laminate.layers.len());
+    let level = |n: usize| Level::new(in_layers(n), [("laminate.layers", n.to_string())]);
+    let halved = std::iter::successors(Some(own), |n| Some(n / 2).filter(|n| *n > 0)).skip(1);
+    let doubled = std::iter::successors(Some(own), |n| Some((2 * n).min(plies)).filter(|m| m > n)).skip(1);
+    let mut levels: Vec<Level> = halved.map(level).collect();
+    levels.reverse();
+    levels.push(Level::own(in_layers(own)));
+    levels.extend(doubled.map(level));
+    levels
+}
+
+fn in_layers(n: usize) -> String {
+    if n == 1 { "1 layer".to_owned() } else { format!("{n} layers") }
+}
+
+fn reduction(model: &Model, registry: &Registry) -> Option<Vec<Level>> {
+    let scene = &model.scene;
+    let name = &scene.impact()?.reduction.name.value;
+    if name == NO_REDUCTION {
+        let ritz = |n: usize| Level::new(format!("ritz {n}"), reduced("ritz", Some(("vectors", n)), ""));
+        return Some(LADDER.map(ritz).into_iter().chain([Level::own(NO_REDUCTION)]).collect());
+    }
+    let info = registry.list(Kind::Reduction).find(|info| info.name == name)?;
+    let size = info.params.iter().map(|p| p.name).find(|param| SIZES.contains(param))?;
+    let own = value(scene, &format!("reduction.{size}")).unwrap_or(SIZE);
+    let key = format!("reduction.{size}");
+    let level = |n: usize| Level::new(format!("{n} {size}"), [(key.as_str(), n.to_string())]);
+    let coarser = [4, 2].map(|by| own / by).into_iter().filter(|n| *n > 0).map(level);
+    let finer = [2, 4].map(|by| level(own * by));
+    Some(coarser.chain([Level::own(format!("{own} {size}"))]).chain(finer).collect())
+}
+
+/// Keys of a reduction.
+fn reduced(name: &str, size: Option<(&str, usize)>, choice: &str) -> [(&'static str, String); 1] {
+    let size = size.map_or(String::new(), |(key, n)| format!(", {key} = {n}"));
+    [("reduction", format!("{{ method = \"{name}\"{size}{choice} }}"))]
+}
+
+fn reductions(registry: &Registry) -> Vec<Level> {
+    let mut all = vec![Level::new(NO_REDUCTION, reduced(NO_REDUCTION, None, ""))];
     for info in registry.list(Kind::Reduction) {
         let name = info.name;
         let size = info.params.iter().map(|p| p.name).find(|param| SIZES.contains(param));
@@ -91,32 +243,108 @@ fn reductions(registry: &Registry) -> Vec<Setting> {
             let label = way.map_or(name.to_owned(), |(_, _, value)| format!("{name} {value}"));
             let choice = way.map_or(String::new(), |(_, key, value)| format!(", {key} = \"{value}\""));
             match size {
-                None => all.push(setting(label, format!("reduction = {{ method = \"{name}\"{choice} }}"))),
-                Some(size) => all.extend(LADDER.map(|count| {
-                    let keys = format!("reduction = {{ method = \"{name}\", {size} = {count}{choice} }}");
-                    setting(format!("{label} {count}"), keys)
-                })),
+                None => all.push(Level::new(label, reduced(name, None, &choice))),
+                Some(size) => all.extend(
+                    LADDER.map(|n| Level::new(format!("{label} {n}"), reduced(name, Some((size, n)), &choice))),
+                ),
             }
         }
     }
     all
 }
 
-fn integrators(registry: &Registry, step: f64) -> Vec<Setting> {
-    let each = |info: &PluginInfo| {
-        let name = info.name;
-        let setting = move |label: String, step, at_limit| Setting {
-            axis: Axis::Integrator,
-            label: format!("{name} {label}"),
-            keys: marched(name, step),
-            at_limit,
-        };
+pub(super) fn seconds(step: f64) -> String {
+    quoted(format!("{step:e} s"))
+}
+
+fn steps(scene: &Scene) -> Option<Vec<Level>> {
+    let step = scene.impact()?.march.step.value;
+    let level = |share: f64| {
+        let label = format!("{:.4} us", step * share * 1e6);
+        if share == 1.0 { Level::own(label) } else { Level::new(label, [(STEP, seconds(step * share))]) }
+    };
+    Some(STEPS.map(level).to_vec())
+}
+
+fn integrators(scene: &Scene, registry: &Registry) -> Option<Vec<Level>> {
+    let step = scene.impact()?.march.step.value;
+    let each = |name: &'static str| {
+        let keys = |step| [("march.integrator", quoted(name)), (STEP, seconds(step))];
         let limited = match registry.build(Kind::Integrator, name, &Params::default()) {
             Ok(Built::Integrator(integrator)) => integrator.limit() != StepLimit::None,
             _ => false,
         };
-        let steps = STEPS.map(|share| setting(format!("{:.4} us", step * share * 1e6), step * share, false));
-        steps.into_iter().chain(limited.then(|| setting("at its limit".into(), step, true)))
+        let steps = [4.0, 2.0, 1.0, 0.5].map(|share| step * share);
+        let each = steps.map(|step| Level::new(format!("{name} {:.4} us", step * 1e6), keys(step)));
+        let longest = Level { at_limit: true, ..Level::new(format!("{name} at its limit"), keys(step)) };
+        each.into_iter().chain(limited.then_some(longest))
     };
-    registry.list(Kind::Integrator).flat_map(each).collect()
+    Some(registry.list(Kind::Integrator).flat_map(|info| each(info.name)).collect())
+}
+
+fn z_derivatives(model: &Model) -> Vec<Level> {
+    let other = match model.scene.z_derivatives.value {
+        ZDerivatives::Shared => "layer-wise",
+        ZDerivatives::LayerWise => "shared",
+    };
+    let matter = model.plate.layers() > 1 && model.plate.info().dofs.iter().any(|dof| dof.m() == 3);
+    if matter { vec![Level::new(other, [("element.z_derivatives", quoted(other))])] } else { Vec::new() }
+}
+
+fn quadrature(scene: &Scene, registry: &Registry) -> Vec<Level> {
+    const ORDERS: [usize; 4] = [3, 4, 5, 6];
+    const KEY: &str = "in_plane_order";
+    let kind = &scene.element.name.value;
+    let orders = ORDERS.into_iter().filter(|_| registry.param(Kind::Element, kind, KEY).is_some());
+    orders.map(|n| Level::new(format!("{n} Gauss points"), [("element.in_plane_order", n.to_string())])).collect()
+}
+
+fn mass(scene: &Scene, registry: &Registry) -> Vec<Level> {
+    let kind = &scene.element.name.value;
+    let inert = !matches!(scene.analysis, Analysis::Static(_));
+    let words = ["linear", "cubic"].into_iter().filter(|_| inert && registry.param(Kind::Element, kind, "mass").is_some());
+    let others = words.filter(|word| scene.keys.get("element.mass").is_none_or(|own| *own != quoted(word)));
+    others.map(|word| Level::new(word, [("element.mass", quoted(word))])).collect()
+}
+
+fn elements(scene: &Scene, registry: &Registry) -> Vec<Level> {
+    let others = registry.list(Kind::Element).map(|info| info.name).filter(|name| *name != scene.element.name.value);
+    others
+        .map(|name| {
+            // A shell has one layer of cells.
+            let mut level = Level::new(name, [("element.kind", quoted(name))]);
+            if name == "mitc4" {
+                level.setting.insert("laminate.layers".into(), "1".into());
+            }
+            level
+        })
+        .collect()
+}
+
+fn contact(scene: &Scene) -> Option<Vec<Level>> {
+    let node = Level::new("node", [("impactor.load", quoted("node"))]);
+    let side = |side: f64| {
+        Level::new(format!("square {:.3} mm", side * 1e3), [("impactor.patch_side", quoted(format!("{side:e} m")))])
+    };
+    let radius = |radius: f64| {
+        Level::new(format!("radius {:.3} mm", radius * 1e3), [("impactor.patch_radius", quoted(format!("{radius:e} m")))])
+    };
+    Some(match scene.impact()?.impactors.first()?.load.value {
+        ContactLoad::Node => [1e-3, 2e-3, 4e-3].map(radius).to_vec(),
+        ContactLoad::Patch { radius: own } => vec![node, radius(0.5 * own), radius(2.0 * own)],
+        ContactLoad::Square { side: own } => vec![node, side(0.5 * own), side(2.0 * own)],
+    })
+}
+
+fn window(model: &Model) -> Vec<Level> {
+    if model.criteria.is_empty() || !matches!(model.plan, Plan::Impact(_)) {
+        return Vec::new();
+    }
+    let side = |side: f64| Level::new(format!("{:.3} mm", side * 1e3), [("failure.window", quoted(format!("{side:e} m")))]);
+    match model.scene.failure.window {
+        Window::Element => [1e-3, 2e-3, 4e-3].map(side).to_vec(),
+        Window::Square(own) => {
+            vec![Level::new("element", [("failure.window", quoted("element"))]), side(0.5 * own), side(2.0 * own)]
+        }
+    }
 }

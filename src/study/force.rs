@@ -1,9 +1,10 @@
 //! Contact-force histories, compared.
 
 use fem_io::tables::HistoryRow;
+use serde::{Deserialize, Serialize};
 
 /// A force over time.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Force {
     times: Vec<f64>,
     forces: Vec<f64>,
@@ -13,10 +14,6 @@ impl Force {
     pub(super) fn of(history: &[HistoryRow]) -> Self {
         let (times, forces) = history.iter().map(|r| (r.time_s, r.contact_force_n())).unzip();
         Self { times, forces }
-    }
-
-    pub(super) fn peak(&self) -> f64 {
-        self.forces.iter().fold(0.0, |a, b| a.max(*b))
     }
 
     /// ‖F − F_ref‖ / ‖F_ref‖ at the times of the reference.

@@ -1,145 +1,160 @@
-//! What settings cost and what they leave: a scene run under variations, against a reference.
+//! What accuracy costs in time: a scene run under many settings, against a reference that the study proves.
+//!
+//! 1. The scene runs as it is.
+//! 2. Every [`Axis`] varies one part of the settings. A ladder of finer and finer levels shows its order of convergence and
+//!    what error each level leaves ([`Convergence`]).
+//! 3. Levels of all ladders together, the cheapest whose errors add up to a tenth, a hundredth, ..., run jointly. The finest
+//!    of them that the limit allows is the reference: it is proven where the two finest agree to the tolerance.
+//! 4. Errors of all runs count from the reference, extrapolated along every ladder that converges (Richardson).
+//!
+//! What is run is decided by nominal seconds, which follow from sizes alone, so that studies of one scene are equal but for
+//! their seconds; a budget is kept by the seconds of the machine.
 
 mod axes;
+mod converge;
 mod force;
+mod ladder;
+mod picture;
+mod plan;
+mod predict;
+mod quantity;
+mod record;
+mod report;
+mod session;
 mod table;
+mod text;
 
-pub use axes::{Axis, Setting, full};
-pub use table::{text, write};
+pub use axes::{Axis, AxisKind, Level, NAMES};
+pub use converge::{Convergence, limit};
+pub use ladder::Ladder;
+pub use picture::write_pictures;
+pub use plan::{Plan, Planned};
+pub use quantity::{FORCE_HISTORY, Figure};
+pub use record::{PHASES, Record, Size};
+pub use report::{Report, Row};
+pub use session::Session;
+pub use table::write;
+pub use text::text;
 
 use crate::error::Error;
 use crate::model::Model;
 use crate::registry::Registry;
-use crate::run::{self, Outcome};
-use fem_failure::scan::first_per_mode;
-use fem_io::scene;
-use force::Force;
-use std::num::NonZeroUsize;
-use std::path::Path;
+use axes::{STEP, axes, judges, seconds};
+use fem_core::plugin::unknown_key;
+use fem_io::scene::Setting;
+use plan::Planner;
 
-/// A scene that was run under one setting.
-#[derive(Debug, Clone)]
-pub struct Run {
-    /// Unknowns of the full model and of the march.
-    pub unknowns: [usize; 2],
-    /// Step, s.
-    pub step: f64,
-    force: Force,
-    onsets: Vec<Onset>,
-    /// Processor time to assemble, reduce and prepare the stresses, s.
-    pub setup_s: f64,
-    /// Processor time of the march, s.
-    pub march_s: f64,
-}
+/// Relative error to which a reference must have converged unless the scene says otherwise.
+const TOLERANCE: f64 = 1e-3;
 
-/// First reaching of a mode of failure.
-#[derive(Debug, Clone)]
-struct Onset {
-    name: String,
-    time: f64,
-}
-
-/// One line of a study.
-#[derive(Debug, Clone)]
-pub struct Row {
-    /// What was varied.
-    pub axis: &'static str,
-    /// How.
-    pub setting: String,
-    /// What the run gave, or why it gave nothing.
-    pub figures: Result<Figures, String>,
-}
-
-/// Errors against the reference, and cost.
-#[derive(Debug, Clone, Copy)]
-pub struct Figures {
-    /// Unknowns of the march.
-    pub unknowns_marched: usize,
-    /// Step, s.
-    pub step_s: f64,
-    /// ‖F − F_ref‖ / ‖F_ref‖ over time.
-    pub force_l2_error: f64,
-    /// Relative error of the largest force.
-    pub force_peak_error: f64,
-    /// Largest difference of the time of a first onset, s; none where no mode is reached in both runs.
-    pub onset_error_s: Option<f64>,
-    /// First onsets found in one of the two runs alone.
-    pub onsets_unmatched: usize,
-    /// Processor time to assemble, reduce and prepare the stresses, s.
-    pub setup_cpu_s: f64,
-    /// Processor time of the march, s.
-    pub march_cpu_s: f64,
-}
-
-/// Runs `path` with `setting` over its keys.
-///
-/// # Errors
-/// Those of a run, and a march that stopped before its end.
-pub fn run(path: &Path, setting: &str, registry: &Registry) -> Result<Run, Error> {
-    let model = Model::new(scene::read_with(path, setting)?, registry)?;
-    let prepared = run::prepare(&model, NonZeroUsize::MIN)?;
-    let sizes = prepared.sizes;
-    let outcome = run::march(prepared, |_| ())?;
-    if let Some(why) = outcome.stopped {
-        return Err(Error::Stopped(why));
-    }
-    let seconds = |of: &dyn Fn(&str) -> bool| outcome.phases.iter().filter(|p| of(p.name)).map(|p| p.cpu_s).sum();
-    Ok(Run {
-        unknowns: [sizes.unknowns, sizes.marched],
-        step: sizes.step,
-        force: Force::of(&outcome.history),
-        onsets: onsets(&outcome),
-        setup_s: seconds(&|name| !matches!(name, "march" | "scan")),
-        march_s: seconds(&|name| name == "march"),
-    })
-}
-
-fn onsets(outcome: &Outcome) -> Vec<Onset> {
-    let first = first_per_mode(&outcome.events);
-    first.into_iter().map(|e| Onset { name: format!("{} {}", e.criterion, e.mode), time: e.time }).collect()
-}
-
-/// Runs `path` under `setting` and compares.
-pub fn compare(path: &Path, setting: &Setting, registry: &Registry, reference: &Run) -> Row {
-    let keys = match setting.at_limit {
-        true => longest_step(path, setting, registry).map(|step| setting.keys_with_step(AT_LIMIT * step)),
-        false => Ok(setting.keys.clone()),
-    };
-    let run = keys.and_then(|keys| run(path, &keys, registry));
-    let figures = run.map(|run| figures(&run, reference)).map_err(|why| why.to_string());
-    Row { axis: setting.axis.name(), setting: setting.label.clone(), figures }
-}
-
-/// The longest step that is stable under `setting`, s.
-fn longest_step(path: &Path, setting: &Setting, registry: &Registry) -> Result<f64, Error> {
-    let model = Model::new(scene::read_with(path, &setting.keys_with_step(TINY))?, registry)?;
-    Ok(run::prepare(&model, NonZeroUsize::MIN)?.sizes.longest_step)
-}
-
-/// A step that no limit forbids, s.
-const TINY: f64 = 1e-11;
+/// Share of the tolerance below which differences are of no interest.
+const MATTERS: f64 = 0.3;
 
 /// Share of its limit at which an integrator is tried.
 const AT_LIMIT: f64 = 0.99;
 
-fn figures(run: &Run, reference: &Run) -> Figures {
-    let of = |name: &str, others: &[Onset]| others.iter().find(|o| o.name == name).map(|o| o.time);
-    let (mut onset_error_s, mut onsets_unmatched) = (None::<f64>, 0);
-    for onset in &reference.onsets {
-        match of(&onset.name, &run.onsets) {
-            Some(time) => onset_error_s = Some(onset_error_s.unwrap_or(0.0).max((time - onset.time).abs())),
-            None => onsets_unmatched += 1,
+/// A step that no limit forbids, s.
+const TINY: f64 = 1e-11;
+
+/// What is asked of a study beside the scene.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Names of axes; what the scene says, or all that fit it, if empty.
+    pub axes: Vec<String>,
+    /// Processor time that the study may take, s.
+    pub budget: Option<f64>,
+}
+
+/// What a study tells while it runs.
+#[derive(Debug)]
+pub enum Progress<'a> {
+    /// What will be run.
+    Planned(&'a Plan),
+    /// What runs now, and how much of the plan is done.
+    Runs {
+        /// In words.
+        what: String,
+        /// Share of the plan's time.
+        share: f64,
+    },
+}
+
+/// Refuses axes that the scene of `model` does not have.
+///
+/// # Errors
+/// The first of them, with those that there are.
+pub fn check(model: &Model, registry: &Registry, options: &Options) -> Result<(), Error> {
+    let own = model.scene.study.own.iter().map(|own| own.name.value.as_str());
+    let known: Vec<&str> = NAMES.into_iter().chain(own).collect();
+    match options.axes.iter().find(|name| !known.contains(&name.as_str())) {
+        None => axes(model, registry, &options.axes).map(drop).map_err(Error::from),
+        Some(name) => Err(Error::Axis { name: name.clone(), help: format!("`{name}` {}", unknown_key(name, known.into_iter())) }),
+    }
+}
+
+/// Studies the scene of `session`, whose model is `model`.
+///
+/// # Errors
+/// An axis or a quantity that the scene does not have, a scene that does not run as it is, a folder that cannot be
+/// written. A level that does not run is a row of the report.
+pub fn study(
+    session: &mut Session<'_>,
+    model: &Model,
+    options: &Options,
+    tell: &mut dyn FnMut(Progress<'_>),
+) -> Result<Report, Error> {
+    let axes = axes(model, session.registry(), &options.axes)?;
+    tell(Progress::Runs { what: "the scene as it is".into(), share: 0.0 });
+    let base = session.run(&Setting::new())?.map_err(Error::Study)?;
+    let asked = quantity::asked(model, &base.figures, base.force.is_some())?;
+    let tolerance = model.scene.study.tolerance.unwrap_or(TOLERANCE);
+
+    let mut planner = Planner::new(session, &base, options.budget);
+    let plan = planner.plan(session, &axes);
+    tell(Progress::Planned(&plan));
+    let whole = plan.seconds();
+    let mut report = Report::new(model, base, asked, tolerance);
+    report.left_out.extend(plan.left_out.iter().cloned());
+
+    let mut done = 0.0;
+    let mut run = |session: &mut Session<'_>, report: &mut Report, planned: &Planned| -> Result<(), Error> {
+        tell(Progress::Runs { what: format!("{} {}", planned.axis, planned.level.label), share: done / whole });
+        done += planned.seconds;
+        let setting = match planned.level.at_limit {
+            true => at_limit(session, &planned.level.setting),
+            false => Ok(planned.level.setting.clone()),
+        };
+        let result = match setting {
+            Ok(setting) => session.run(&setting)?,
+            Err(why) => Err(why.to_string()),
+        };
+        report.add(planned, result);
+        Ok(())
+    };
+    for planned in plan.runs.iter().filter(|planned| planned.kind == AxisKind::Ladder) {
+        run(session, &mut report, planned)?;
+    }
+    report.climb(&axes, MATTERS * tolerance);
+    for planned in planner.joint(session, &report) {
+        run(session, &mut report, &planned)?;
+    }
+    for planned in plan.runs.iter().filter(|planned| planned.kind != AxisKind::Ladder) {
+        match planner.affords(session, planned) {
+            true => run(session, &mut report, planned)?,
+            false => report.left_out.push((planned.axis.clone(), planned.level.label.clone(), plan::SPENT.into())),
         }
     }
-    onsets_unmatched += run.onsets.iter().filter(|o| of(&o.name, &reference.onsets).is_none()).count();
-    Figures {
-        unknowns_marched: run.unknowns[1],
-        step_s: run.step,
-        force_l2_error: run.force.difference(&reference.force),
-        force_peak_error: run.force.peak() / reference.force.peak() - 1.0,
-        onset_error_s,
-        onsets_unmatched,
-        setup_cpu_s: run.setup_s,
-        march_cpu_s: run.march_s,
-    }
+    report.judge(&axes, judges);
+    Ok(report)
+}
+
+/// The keys of `setting` with the longest stable step.
+fn at_limit(session: &Session<'_>, setting: &Setting) -> Result<Setting, Error> {
+    let with = |step: f64| {
+        let mut setting = setting.clone();
+        setting.insert(STEP.to_owned(), seconds(step));
+        setting
+    };
+    let longest = record::longest_step(session.path(), &with(TINY), session.registry())?;
+    Ok(with(AT_LIMIT * longest))
 }

@@ -1,86 +1,93 @@
-//! A study as a table: for machines and for people.
+//! A study as a table for machines.
 
-use super::Row;
+use super::record::{PHASES, Record};
+use super::report::{Report, Row};
 use crate::error::Error;
 use fem_io::files::OutputDir;
 use fem_io::tables::{self, Field};
-use std::fmt::Write as _;
 
-const COLUMNS: [&str; 11] = [
+const SIZES: [&str; 20] = [
     "axis",
     "setting",
-    "unknowns_marched",
-    "step_s",
-    "force_L2_error",
-    "force_peak_error",
-    "onset_error_s",
-    "onsets_unmatched",
-    "setup_cpu_s",
-    "march_cpu_s",
+    "keys",
     "refused",
+    "best_for_its_work",
+    "cells",
+    "layers",
+    "cell_m",
+    "unknowns",
+    "unknowns_marched",
+    "factor_entries",
+    "step_s",
+    "elements",
+    "factorisations",
+    "solves",
+    "steps",
+    "contact_calls",
+    "criterion_calls",
+    "nominal_s",
+    "worst_error",
 ];
 
-/// Characters of a refusal that a table shows.
-const WORDS: usize = 72;
-
-/// Writes study.csv, whole or not at all.
+/// Writes study.csv, whole or not at all: a line per run with its keys, sizes and work; values and errors of all quantities;
+/// seconds and memory, which alone differ from study to study.
 ///
 /// # Errors
-/// A folder that cannot be written.
-pub fn write(dir: &OutputDir, rows: &[Row]) -> Result<(), Error> {
-    Ok(tables::write_columns(dir, "study.csv", &COLUMNS, rows.iter().map(line))?)
+/// A folder that cannot be written, a number that is not finite.
+pub fn write(dir: &OutputDir, report: &Report) -> Result<(), Error> {
+    let figures = || report.base().result.iter().flat_map(|record| &record.figures).map(|f| f.name.as_str());
+    let mut header: Vec<String> = SIZES.map(str::to_owned).to_vec();
+    header.extend(figures().map(str::to_owned));
+    header.extend(report.asked.iter().map(|name| format!("{name} error")));
+    header.extend(report.asked.iter().map(|name| format!("{name} of its axis")));
+    header.extend(PHASES.map(|phase| format!("{phase}_cpu_s")));
+    header.extend(["expected_cpu_s", "peak_memory_MB"].map(str::to_owned));
+    let names: Vec<&str> = figures().collect();
+    let keys: Vec<String> = report.rows.iter().map(keys).collect();
+    let rows = report.rows.iter().zip(&keys).map(|(row, keys)| line(row, keys, &names, report.asked.len()));
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    Ok(tables::write_columns(dir, "study.csv", &header, rows)?)
 }
 
-fn line(row: &Row) -> Vec<Field<'_>> {
-    let head = [Field::Text(row.axis), Field::Text(&row.setting)].into_iter();
-    let f = match &row.figures {
-        Ok(figures) => figures,
-        Err(why) => return head.chain([Field::Text(""); 8]).chain([Field::Text(why)]).collect(),
+fn keys(row: &Row) -> String {
+    row.level.setting.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join("; ")
+}
+
+const NONE: Field<'_> = Field::Text("");
+
+fn number(value: Option<f64>) -> Field<'static> {
+    value.filter(|value| value.is_finite()).map_or(NONE, Field::Number)
+}
+
+fn line<'a>(row: &'a Row, keys: &'a str, names: &[&str], asked: usize) -> Vec<Field<'a>> {
+    let (record, why) = match &row.result {
+        Ok(record) => (Some(record), ""),
+        Err(why) => (None, why.as_str()),
     };
-    let onset = f.onset_error_s.map_or(Field::Text(""), Field::Number);
-    let figures = [
-        Field::Count(f.unknowns_marched as u64),
-        Field::Number(f.step_s),
-        Field::Number(f.force_l2_error),
-        Field::Number(f.force_peak_error),
-        onset,
-        Field::Count(f.onsets_unmatched as u64),
-        Field::Number(f.setup_cpu_s),
-        Field::Number(f.march_cpu_s),
-        Field::Text(""),
+    let count = |of: fn(&Record) -> u64| record.map_or(NONE, |r| Field::Count(of(r)));
+    let mut line = vec![
+        Field::Text(&row.axis),
+        Field::Text(&row.level.label),
+        Field::Text(keys),
+        Field::Text(why),
+        Field::Text(if row.front { "yes" } else { "" }),
+        count(|r| r.size.cells as u64),
+        count(|r| r.size.layers as u64),
+        number(record.map(|r| r.size.cell_m)),
+        count(|r| r.size.unknowns as u64),
+        count(|r| r.size.marched as u64),
+        count(|r| r.size.factor_entries as u64),
+        number(record.map(|r| r.size.step_s)),
     ];
-    head.chain(figures).collect()
-}
-
-/// The table as people read it, in Markdown.
-pub fn text(rows: &[Row]) -> String {
-    let mut text = String::from(
-        "| setting | unknowns | step, us | force, L2 | peak | onsets, us | setup + march, s |\n\
-         | --- | --- | --- | --- | --- | --- | --- |\n",
-    );
-    for row in rows {
-        let f = match &row.figures {
-            Ok(figures) => figures,
-            Err(why) => {
-                let why: String = why.chars().take(WORDS).collect();
-                let _ = writeln!(text, "| {} | | | {why} | | | |", row.setting);
-                continue;
-            }
-        };
-        let onset = f.onset_error_s.map_or_else(|| "-".to_owned(), |s| format!("{:.3}", s * 1e6));
-        let unmatched =
-            if f.onsets_unmatched > 0 { format!(", {} unmatched", f.onsets_unmatched) } else { String::new() };
-        let _ = writeln!(
-            text,
-            "| {} | {} | {:.4} | {:.1e} | {:+.1e} | {onset}{unmatched} | {:.3} + {:.3} |",
-            row.setting,
-            f.unknowns_marched,
-            f.step_s * 1e6,
-            f.force_l2_error,
-            f.force_peak_error,
-            f.setup_cpu_s,
-            f.march_cpu_s
-        );
+    line.extend((0..6).map(|k| record.map_or(NONE, |r| Field::Count(r.size.counts[k]))));
+    line.push(number(Some(row.work())));
+    line.push(number(row.worst()));
+    line.extend(names.iter().map(|name| number(record.and_then(|r| r.value(name)))));
+    for errors in [&row.errors, &row.own] {
+        line.extend((0..asked).map(|q| number(errors.get(q).copied().flatten())));
     }
-    text
+    line.extend((0..PHASES.len()).map(|k| number(record.map(|r| r.seconds[k]))));
+    line.push(number(Some(row.expected_s)));
+    line.push(number(record.and_then(|r| r.memory).map(|bytes| bytes as f64 / 1e6)));
+    line
 }

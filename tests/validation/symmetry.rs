@@ -205,3 +205,33 @@ fn a_reduced_impact_differs_by_less_than_its_reduction_costs() {
 fn an_impact_on_cross_plies_in_a_quarter() {
     compare("quarter", &[WEAK, SHORT, FULL, ("[0/45/-45/90]2s", "[0/90]4s")], SAME);
 }
+
+/// The edge of the plate, which is its support, stays a circle, and halves of the plate each other's images.
+#[test]
+fn a_refined_plate_is_as_symmetric_as_its_mesh() {
+    let model = |edits: &[(&str, &str)]| {
+        let path = root().join("examples/as4-3502-16ply-50mm/scene.toml");
+        let text = edits.iter().fold(std::fs::read_to_string(&path).unwrap(), |text, (from, to)| {
+            assert!(text.contains(from), "no `{from}`");
+            text.replace(from, to)
+        });
+        Model::new(scene::parse(&text, &path).unwrap(), &Registry::standard()).unwrap()
+    };
+    let (coarse, fine) = (model(&[]), model(&[("unit = \"mm\"", "unit = \"mm\", refine = 1")]));
+    let mesh = &fine.plate.plane;
+    assert_eq!(fine.plate.symmetry().name(), Some("half-turn"));
+    assert_eq!(
+        (mesh.quads.len(), fine.plate.symmetry().quads().len()),
+        (4 * coarse.plate.plane.quads.len(), mesh.quads.len() / 2)
+    );
+    assert!(fine.warnings.is_empty(), "{:?}", fine.warnings);
+    let support = &mesh.groups["support"];
+    assert_eq!(support.nodes.len(), 2 * coarse.plate.plane.groups["support"].nodes.len());
+    for node in &support.nodes {
+        let [x, y] = mesh.points[*node as usize];
+        assert!((x.hypot(y) / 25e-3 - 1.0).abs() < 1e-12, "{x} {y}");
+    }
+    // The boundary has 48 edges; twice as many enclose the area of a regular polygon.
+    let polygon = 48.0 * 25e-3_f64.powi(2) * (std::f64::consts::TAU / 96.0).sin();
+    assert!((mesh.area() / polygon - 1.0).abs() < 1e-12, "{} {polygon}", mesh.area());
+}

@@ -11,6 +11,7 @@ mod plugin;
 pub(crate) mod reader;
 mod run;
 pub(crate) mod source;
+mod study;
 mod substructures;
 mod support;
 #[cfg(test)]
@@ -24,12 +25,14 @@ pub use run::{
     Window,
 };
 pub use source::{Located, Place, SceneError, SceneSource};
+pub use study::{OwnAxis, Quantity, Setting, Study, rewrite};
 pub use substructures::{Masters, Parts, Substructures};
 pub use support::{Couple, Equation, NodeSet, Support, Term};
 
 use crate::units;
 use fem_core::laminate::Laminate;
 use fem_core::material::Material;
+use fem_core::mesh::Curves;
 use fem_core::plate::ZDerivatives;
 use fem_core::plugin::Dimension;
 use fem_core::symmetry::Group;
@@ -79,6 +82,8 @@ pub struct Scene {
     pub failure: Failure,
     /// What is written.
     pub output: Output,
+    /// What a study of it varies and looks at.
+    pub study: Study,
     /// Every value of the scene and of the preset beneath it by the path of its key, `failure.watch[0].ply`, as it is written.
     pub keys: BTreeMap<String, String>,
     /// Its text, for errors that show a place.
@@ -152,14 +157,29 @@ pub enum MeshSource {
         file: Located<PathBuf>,
         /// Size of the file's unit of length, m.
         metres_per_unit: f64,
+        /// How often every cell is divided into four; [`refined_cells`] says whether that is too often.
+        refine: Located<u32>,
+        /// What becomes of curved edges then.
+        curves: Curves,
     },
     /// A rectangle from the origin with equal cells.
     Rectangle {
         /// Edges along x and y, m.
         size: [f64; 2],
-        /// Cells along x and y.
+        /// Cells along x and y, refined as the scene asks for.
         cells: [usize; 2],
     },
+}
+
+/// Cells that become of `cells` when each is divided into four, `times` in a row.
+///
+/// # Errors
+/// More than four million, in words.
+pub fn refined_cells(cells: usize, times: u32) -> Result<usize, String> {
+    let refined = 4_usize.checked_pow(times).and_then(|parts| cells.checked_mul(parts));
+    refined
+        .filter(|n| *n <= MAX_CELLS)
+        .ok_or_else(|| format!("refining {times} times makes more than {MAX_CELLS} cells of {cells}"))
 }
 
 const KEYS: Keys = &[
@@ -185,16 +205,23 @@ const KEYS: Keys = &[
     ("march", r#"{ integrator = "newmark", step = "0.5 us", end = "1 ms" }"#),
     ("failure", r#"{ criteria = ["hashin-report"] }"#),
     ("output", "{ plots = true }"),
+    ("study", r#"{ quantities = ["peak-force"] }"#),
 ];
-const MESH: Keys =
-    &[("file", r#""plate.msh""#), ("unit", r#""mm""#), ("rectangle", r#"["100 mm", "50 mm"]"#), ("cells", "[8, 4]")];
-const FILE: Keys = &[("file", r#""plate.msh""#), ("unit", r#""mm""#)];
-const RECTANGLE: Keys = &[("rectangle", r#"["100 mm", "50 mm"]"#), ("cells", "[8, 4]")];
+const MESH: Keys = &[
+    ("file", r#""plate.msh""#),
+    ("unit", r#""mm""#),
+    ("rectangle", r#"["100 mm", "50 mm"]"#),
+    ("cells", "[8, 4]"),
+    ("refine", "1"),
+    ("curves", r#""kept""#),
+];
+const FILE: Keys = &[("file", r#""plate.msh""#), ("unit", r#""mm""#), ("refine", "1"), ("curves", r#""kept""#)];
+const RECTANGLE: Keys = &[("rectangle", r#"["100 mm", "50 mm"]"#), ("cells", "[8, 4]"), ("refine", "1")];
 /// Natural frequencies unless a scene says how many.
 pub const DEFAULT_MODES: usize = 10;
 const MODES: Keys = &[("count", "10")];
 
-/// Most cells of a built-in mesh: more is a slip.
+/// Most cells of a built-in or refined mesh: more is a slip.
 const MAX_CELLS: usize = 4_000_000;
 
 /// Reads the scene file `path`.
@@ -202,7 +229,7 @@ const MAX_CELLS: usize = 4_000_000;
 /// # Errors
 /// A file that cannot be read, or as [`parse`].
 pub fn read(path: &Path) -> Result<Scene, SceneError> {
-    read_with(path, "")
+    read_with(path, &Setting::new())
 }
 
 /// Reads a scene from its text; `path` names it in errors, and its folder is where the mesh file is looked for.
@@ -214,12 +241,12 @@ pub fn parse(text: &str, path: &Path) -> Result<Scene, SceneError> {
     parse_with(text, path, "")
 }
 
-/// As [`read`], with the keys of `setting`, a TOML text, laid over those of the scene: how a study varies it.
+/// As [`read`], with the keys of `setting` laid over those of the scene: how a study varies it.
 ///
 /// # Errors
 /// As [`read`], and anything that makes no sense in `setting`.
-pub fn read_with(path: &Path, setting: &str) -> Result<Scene, SceneError> {
-    parse_with(&read_text(path)?, path, setting)
+pub fn read_with(path: &Path, setting: &Setting) -> Result<Scene, SceneError> {
+    parse_with(&read_text(path)?, path, &study::text(setting))
 }
 
 fn read_text(path: &Path) -> Result<String, SceneError> {
@@ -277,6 +304,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
         damage,
         profiles: root.optional("profile").map_or(Ok(Vec::new()), |field| load::read_profiles(&field))?,
         output: root.optional("output").map_or(Ok(Output::default()), |field| run::read_output(&field))?,
+        study: root.optional("study").map_or(Ok(Study::default()), |field| study::read(&field))?,
         keys,
         source,
     })
@@ -326,17 +354,32 @@ fn read_mesh(field: &Field<'_>, scene: &Path) -> Result<MeshSource, SceneError> 
     let unit = table.required("unit")?;
     let metres_per_unit = units::parse_as(&format!("1 {}", unit.text()?), Dimension::LENGTH)
         .map_err(|_| unit.error("must be a unit of length", "write the unit of the file's coordinates: mm, m, in"))?;
-    Ok(MeshSource::File { file: file.at(path), metres_per_unit })
+    let curves = table.optional("curves").map_or(Ok(Curves::Kept), |field| field.choice(&Curves::ALL))?;
+    Ok(MeshSource::File { file: file.at(path), metres_per_unit, refine: read_refine(&table, 1)?, curves })
 }
 
 fn read_rectangle(table: &Reader<'_>) -> Result<MeshSource, SceneError> {
     let size = pair(&table.required("rectangle")?, |field| field.positive(Dimension::LENGTH))?;
     let field = table.required("cells")?;
     let cells = pair(&field, |field| field.count())?;
-    match cells[0].checked_mul(cells[1]) {
-        Some(n) if n <= MAX_CELLS => Ok(MeshSource::Rectangle { size, cells }),
-        _ => Err(field.error(format!("{} x {} cells", cells[0], cells[1]), format!("at most {MAX_CELLS} in all"))),
-    }
+    let all = match cells[0].checked_mul(cells[1]) {
+        Some(n) if n <= MAX_CELLS => n,
+        _ => {
+            return Err(
+                field.error(format!("{} x {} cells", cells[0], cells[1]), format!("at most {MAX_CELLS} in all"))
+            );
+        }
+    };
+    let refine = read_refine(table, all)?;
+    Ok(MeshSource::Rectangle { size, cells: cells.map(|n| n << refine.value) })
+}
+
+/// How often a mesh of at least `cells` cells is refined.
+fn read_refine(table: &Reader<'_>, cells: usize) -> Result<Located<u32>, SceneError> {
+    let Some(field) = table.optional("refine") else { return Ok(Located { value: 0, place: table.place().clone() }) };
+    let times = field.at_least(0)? as u32;
+    refined_cells(cells, times).map_err(|why| field.error(why, "refine less often"))?;
+    Ok(field.at(times))
 }
 
 /// Two values: along x and along y.

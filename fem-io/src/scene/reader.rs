@@ -172,9 +172,14 @@ impl<'a> Field<'a> {
 
     /// A whole number of at least 1.
     pub(crate) fn count(&self) -> Result<usize, SceneError> {
+        self.at_least(1)
+    }
+
+    /// A whole number of at least `least`, a thousand million at most.
+    pub(crate) fn at_least(&self, least: u32) -> Result<usize, SceneError> {
         match self.node() {
-            Node::Number(n) if n.fract() == 0.0 && (1.0..=1e9).contains(n) => Ok(*n as usize),
-            _ => Err(self.wrong("a whole number of at least 1")),
+            Node::Number(n) if n.fract() == 0.0 && (f64::from(least)..=1e9).contains(n) => Ok(*n as usize),
+            _ => Err(self.wrong(&format!("a whole number of at least {least}"))),
         }
     }
 

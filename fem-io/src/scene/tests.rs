@@ -254,6 +254,26 @@ fn presets_lie_beneath_the_scene() {
     assert_eq!(patch.impact().unwrap().impactors[0].at.value, ImpactPoint::Point([1e-3, 0.0]));
 }
 
+#[test]
+fn a_mesh_may_be_refined() {
+    let mesh = |keys: &str| read_good(&spoilt(r#"file = "plate.msh", unit = "mm""#, keys)).mesh;
+    let file = |keys: &str| match mesh(&format!(r#"file = "plate.msh", unit = "mm"{keys}"#)) {
+        MeshSource::File { refine, curves, .. } => (refine.value, curves),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(file(""), (0, Curves::Kept));
+    assert_eq!(file(r#", refine = 2"#), (2, Curves::Kept));
+    assert_eq!(file(r#", refine = 0, curves = "straight""#), (0, Curves::Straight));
+    let rectangle = r#"rectangle = ["10 mm", "20 mm"], cells = [3, 5]"#;
+    for (keys, cells) in [("", [3, 5]), (", refine = 0", [3, 5]), (", refine = 2", [12, 20])] {
+        assert_eq!(mesh(&format!("{rectangle}{keys}")), MeshSource::Rectangle { size: [0.01, 0.02], cells });
+    }
+    assert_eq!(refined_cells(15, 9), Ok(3_932_160));
+    for (cells, times) in [(16, 9), (1, 11), (1, 31), (1, 32), (1, u32::MAX), (usize::MAX, 0), (usize::MAX, 1)] {
+        assert!(refined_cells(cells, times).unwrap_err().contains("more than 4000000"), "{cells} {times}");
+    }
+}
+
 /// [`GOOD`] with several impactors.
 fn several(impactors: &str) -> String {
     let own = r#"impactor = { mass = "2.49 kg", velocity = "1.56 m/s", at = { group = "impact" } }"#;
@@ -392,6 +412,24 @@ fn refusals() {
             spoilt("radius =", "watch = [{ criterion = \"puck\", ply = 1, at = { group = \"impact\" } }], radius ="),
         ),
         ("an effect that does not exist yet", format!("effects = {{ membrane = \"auto\" }}\n{GOOD}")),
+        ("a mesh refined by halves", spoilt("unit = \"mm\"", "unit = \"mm\", refine = 0.5")),
+        ("a mesh refined backwards", spoilt("unit = \"mm\"", "unit = \"mm\", refine = -1")),
+        ("a mesh refined without end", spoilt("unit = \"mm\"", "unit = \"mm\", refine = 1000000000")),
+        (
+            "too many cells",
+            spoilt(
+                r#"file = "plate.msh", unit = "mm""#,
+                r#"rectangle = ["1 m", "1 m"], cells = [500, 500], refine = 3"#,
+            ),
+        ),
+        (
+            "a rectangle with curves",
+            spoilt(
+                r#"file = "plate.msh", unit = "mm""#,
+                r#"rectangle = ["1 m", "1 m"], cells = [5, 5], curves = "kept""#,
+            ),
+        ),
+        ("curves that are none", spoilt("unit = \"mm\"", "unit = \"mm\", curves = \"round\"")),
         ("a unit of length that is none", spoilt("unit = \"mm\"", "unit = \"kg\"")),
     ] {
         let error = parse(&text, Path::new("scene.toml")).expect_err(what);

@@ -38,6 +38,32 @@ impl Node {
 }
 
 impl Node {
+    fn table_mut(&mut self) -> Option<&mut Table> {
+        match self {
+            Self::Table(table) => Some(table),
+            _ => None,
+        }
+    }
+
+    /// As a value in a line of TOML; `None` for a date, which no key of a scene takes.
+    fn to_toml(&self) -> Option<toml_edit::Value> {
+        Some(match self {
+            Self::Text(text) => text.as_str().into(),
+            Self::Number(value) if value.fract() == 0.0 && value.abs() < 1e15 => (*value as i64).into(),
+            Self::Number(value) => (*value).into(),
+            Self::Flag(flag) => (*flag).into(),
+            Self::List(items) => {
+                let items = items.iter().map(|item| item.node.to_toml());
+                toml_edit::Value::Array(items.collect::<Option<toml_edit::Array>>()?)
+            }
+            Self::Table(Table(entries)) => {
+                let entries = entries.iter().map(|e| Some((e.key.as_str(), e.item.node.to_toml()?)));
+                toml_edit::Value::InlineTable(entries.collect::<Option<toml_edit::InlineTable>>()?)
+            }
+            Self::Date => return None,
+        })
+    }
+
     fn flatten(&self, path: String, into: &mut BTreeMap<String, String>) {
         let text = match self {
             Self::Table(table) => return table.flatten(&path, into),
@@ -79,29 +105,41 @@ impl Table {
         self.0.iter().find(|e| e.key == key)
     }
 
-    /// Lays `self` over `under`: tables merge key by key, each table of a list with the one table beneath it, any other
-    /// value replaces what lies beneath. A table that names another plug-in than the one beneath replaces it, because its
-    /// parameters mean nothing to the new one.
+    /// Lays `self` over `under`: tables merge key by key, each table of a list with the one table above or beneath it, any
+    /// other value replaces what lies beneath. A table that names another plug-in than the one beneath replaces it, because
+    /// its parameters mean nothing to the new one.
     pub(crate) fn over(mut self, under: Table) -> Table {
         for below in under.0 {
             let Some(above) = self.0.iter_mut().find(|e| e.key == below.key) else {
                 self.0.push(below);
                 continue;
             };
-            let Node::Table(under) = below.item.node else { continue };
-            let above = match &mut above.item.node {
-                Node::List(items) => items.as_mut_slice(),
-                _ => std::slice::from_mut(&mut above.item),
-            };
-            for item in above {
-                if let Node::Table(over) = &mut item.node
-                    && !over.names_another_plugin(&under)
-                {
-                    *over = std::mem::take(over).over(under.clone());
+            match (&mut above.item.node, below.item.node) {
+                (Node::Table(over), Node::Table(under)) => over.lie_over(under),
+                (Node::List(items), Node::Table(under)) => {
+                    let tables = items.iter_mut().filter_map(|item| item.node.table_mut());
+                    tables.for_each(|over| over.lie_over(under.clone()));
                 }
+                (Node::Table(over), Node::List(mut items)) if !items.is_empty() => {
+                    for item in &mut items {
+                        let mut over = over.clone();
+                        if let Some(under) = item.node.table_mut() {
+                            over.lie_over(std::mem::take(under));
+                        }
+                        item.node = Node::Table(over);
+                    }
+                    above.item.node = Node::List(items);
+                }
+                _ => {}
             }
         }
         self
+    }
+
+    fn lie_over(&mut self, under: Table) {
+        if !self.names_another_plugin(&under) {
+            *self = std::mem::take(self).over(under);
+        }
     }
 
     /// Every value below the key `path` (empty at the top) by its own path, `failure.watch[0].ply`, as text.
@@ -109,6 +147,23 @@ impl Table {
         for Entry { key, item, .. } in &self.0 {
             item.node.flatten(if path.is_empty() { key.clone() } else { format!("{path}.{key}") }, into);
         }
+    }
+
+    /// Its values by the paths of their keys, both TOML.
+    pub(crate) fn setting(&self) -> Option<BTreeMap<String, String>> {
+        let mut setting = BTreeMap::new();
+        for Entry { key, item, .. } in &self.0 {
+            let key = toml_edit::Key::new(key.as_str()).to_string();
+            match &item.node {
+                Node::Table(table) => {
+                    setting.extend(table.setting()?.into_iter().map(|(path, value)| (format!("{key}.{path}"), value)));
+                }
+                node => {
+                    setting.insert(key, node.to_toml()?.to_string());
+                }
+            }
+        }
+        Some(setting)
     }
 
     fn names_another_plugin(&self, other: &Table) -> bool {

@@ -1,6 +1,14 @@
 //! Plane meshes of quadrilaterals with named groups.
 
-use std::collections::{BTreeMap, BTreeSet};
+mod curve;
+mod refine;
+#[cfg(test)]
+mod tests;
+
+pub use refine::Curves;
+
+use curve::Chains;
+use std::collections::{BTreeMap, HashSet};
 
 /// A named group of a mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -30,9 +38,6 @@ pub struct QuadMesh {
     /// Number of each cell in the file.
     pub quad_tags: Vec<u64>,
 }
-
-/// Turns between two edges of a boundary that follow a curve, radians: less is straight, more a corner.
-const SMOOTH: std::ops::Range<f64> = 1e-4..0.7;
 
 /// Shape measures of a quadrilateral.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,47 +100,22 @@ impl QuadMesh {
 
     /// Quality of a cell.
     pub fn quality(&self, quad: usize) -> QuadQuality {
-        let p = self.corners(quad);
-        let mut largest_angle = 0.0_f64;
-        let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
-        for i in 0..4 {
-            let [a, b, c] = [p[(i + 3) % 4], p[i], p[(i + 1) % 4]];
-            let (u, v) = ([c[0] - b[0], c[1] - b[1]], [a[0] - b[0], a[1] - b[1]]);
-            let angle = (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]);
-            largest_angle = largest_angle.max(angle.rem_euclid(std::f64::consts::TAU));
-            let edge = u[0].hypot(u[1]);
-            shortest = shortest.min(edge);
-            longest = longest.max(edge);
-        }
-        let area = 0.5 * ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1]));
-        QuadQuality { area, largest_angle, aspect: longest / shortest }
+        quality(self.corners(quad))
     }
 
-    /// Largest angle by which the boundary turns from edge to edge where it follows a curve, radians: neighbouring turns of
-    /// one sign and about one size. 0 for a boundary of straight lines and sharp corners.
+    /// Edges of one cell alone, which lies to their left.
+    fn boundary(&self) -> Vec<[u32; 2]> {
+        let edges = || self.quads.iter().flat_map(|q| (0..4).map(move |i| [q[i], q[(i + 1) % 4]]));
+        let all: HashSet<[u32; 2]> = edges().collect();
+        edges().filter(|[a, b]| !all.contains(&[*b, *a])).collect()
+    }
+
+    /// Largest angle by which the boundary turns from edge to edge where it follows a curve, radians: turns of less than
+    /// 0.7 between edges that neither begin nor end a straight line, where the circles through three nodes in a row have
+    /// one sense and about one size. 0 for a boundary of straight lines and sharp corners.
     pub fn curved_turn(&self) -> f64 {
-        // Anticlockwise: the boundary runs from key to value.
-        let mut next: BTreeMap<u32, u32> = BTreeMap::new();
-        let edges = || self.quads.iter().flat_map(|q| (0..4).map(move |i| (q[i], q[(i + 1) % 4])));
-        let inner: BTreeSet<(u32, u32)> = edges().collect();
-        next.extend(edges().filter(|(a, b)| !inner.contains(&(*b, *a))));
-        let along = |a: u32, b: u32| {
-            let (p, q) = (self.points[a as usize], self.points[b as usize]);
-            (q[1] - p[1]).atan2(q[0] - p[0])
-        };
-        let turn = |a: u32| -> Option<(f64, u32)> {
-            let b = *next.get(&a)?;
-            let c = *next.get(&b)?;
-            let angle = along(b, c) - along(a, b);
-            Some((angle.sin().atan2(angle.cos()), b))
-        };
-        let smooth = |a: &u32| {
-            let (first, b) = turn(*a)?;
-            let (second, _) = turn(b)?;
-            let alike = second / first > 0.5 && second / first < 2.0;
-            (alike && first.abs() > SMOOTH.start && first.abs() < SMOOTH.end).then_some(first.abs())
-        };
-        next.keys().filter_map(smooth).fold(0.0, f64::max)
+        let chains = Chains::of(&self.points, self.boundary());
+        chains.edges().iter().flat_map(|edge| chains.bends(*edge)).fold(0.0, |m, bend| m.max(bend.turn.abs()))
     }
 
     /// Lower and upper corner of the bounding box.
@@ -155,4 +135,20 @@ impl QuadMesh {
     pub fn area(&self) -> f64 {
         (0..self.quads.len()).map(|q| self.quality(q).area).sum()
     }
+}
+
+fn quality(p: [[f64; 2]; 4]) -> QuadQuality {
+    let mut largest_angle = 0.0_f64;
+    let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
+    for i in 0..4 {
+        let [a, b, c] = [p[(i + 3) % 4], p[i], p[(i + 1) % 4]];
+        let (u, v) = ([c[0] - b[0], c[1] - b[1]], [a[0] - b[0], a[1] - b[1]]);
+        let angle = (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]);
+        largest_angle = largest_angle.max(angle.rem_euclid(std::f64::consts::TAU));
+        let edge = u[0].hypot(u[1]);
+        shortest = shortest.min(edge);
+        longest = longest.max(edge);
+    }
+    let area = 0.5 * ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1]));
+    QuadQuality { area, largest_angle, aspect: longest / shortest }
 }

@@ -1,0 +1,208 @@
+//! What a study of the scene varies and looks at, and the settings that it lays over the scene.
+
+use super::reader::{Field, Keys};
+use super::source::{Located, SceneError, SceneSource};
+use fem_core::plugin::Dimension;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+use toml_edit::{DocumentMut, InlineTable, Item, Key, Table, TableLike, Value};
+
+/// Keys that lie over those of a scene: values by the paths of their keys, both as TOML writes them.
+pub type Setting = BTreeMap<String, String>;
+
+/// What a scene says of studies of it.
+#[derive(Debug, Clone, Default)]
+pub struct Study {
+    /// Axes by the names that the study gives them; those that fit the scene if `None`.
+    pub axes: Option<Vec<Located<String>>>,
+    /// Axes of the scene's own.
+    pub own: Vec<OwnAxis>,
+    /// What accuracy is asked of; what fits the analysis if empty.
+    pub quantities: Vec<Located<Quantity>>,
+    /// Relative error to which the reference must have converged.
+    pub tolerance: Option<f64>,
+}
+
+/// An axis that a scene names.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OwnAxis {
+    /// What results call it.
+    pub name: Located<String>,
+    /// Whether its levels grow finer, so that errors count from the last one; otherwise they are alternatives to the scene.
+    pub ladder: bool,
+    /// What each level lays over the scene.
+    pub levels: Vec<Setting>,
+}
+
+/// Something that has an error.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Quantity {
+    /// One that the study knows by this name, or all whose names begin so.
+    Named(String),
+    /// A stress at a place.
+    Stress {
+        /// What results call it.
+        name: String,
+        /// Name of the `[[profile]]` that it lies on.
+        profile: String,
+        /// Column of the profile's table without its unit: `sxx`, `s12`.
+        component: String,
+        /// Height, m.
+        height: f64,
+    },
+}
+
+const KEYS: Keys = &[
+    ("axes", r#"["mesh", "layers", "reduction", "step"]"#),
+    ("axis", r#"[{ name = "patch", levels = [{ impactor.patch_radius = "2 mm" }] }]"#),
+    ("quantities", r#"["peak-force", "first-damage"]"#),
+    ("tolerance", "1e-3"),
+];
+const AXIS: Keys = &[
+    ("name", r#""patch""#),
+    ("ladder", "true"),
+    ("levels", r#"[{ impactor.patch_radius = "2 mm" }, { impactor.patch_radius = "1 mm" }]"#),
+];
+const STRESS: Keys =
+    &[("name", r#""sxx-top""#), ("profile", r#""centre""#), ("component", r#""sxx""#), ("height", r#""0.5 mm""#)];
+
+pub(super) fn read(field: &Field<'_>) -> Result<Study, SceneError> {
+    let table = field.table(KEYS)?;
+    let names = |field: Field<'_>| field.list()?.iter().map(name).collect::<Result<Vec<_>, _>>();
+    let quantities = |field: Field<'_>| field.list()?.iter().map(quantity).collect::<Result<Vec<_>, _>>();
+    let own = |field: Field<'_>| field.list()?.iter().map(axis).collect::<Result<Vec<_>, _>>();
+    let tolerance = |field: Field<'_>| match field.number()? {
+        tolerance if tolerance > 0.0 && tolerance < 1.0 => Ok(tolerance),
+        tolerance => Err(field.error(format!("{tolerance} is no relative error"), "give a number between 0 and 1: 1e-3")),
+    };
+    Ok(Study {
+        axes: table.optional("axes").map(names).transpose()?,
+        own: table.optional("axis").map(own).transpose()?.unwrap_or_default(),
+        quantities: table.optional("quantities").map(quantities).transpose()?.unwrap_or_default(),
+        tolerance: table.optional("tolerance").map(tolerance).transpose()?,
+    })
+}
+
+fn name(field: &Field<'_>) -> Result<Located<String>, SceneError> {
+    Ok(field.at(field.text()?.to_owned()))
+}
+
+fn axis(field: &Field<'_>) -> Result<OwnAxis, SceneError> {
+    let table = field.table(AXIS)?;
+    let level = |field: &Field<'_>| {
+        let help = "write keys of the scene with their values: { impactor.patch_radius = \"2 mm\" }";
+        field.any_table()?.setting().filter(|keys| !keys.is_empty()).ok_or_else(|| field.error("lays nothing", help))
+    };
+    Ok(OwnAxis {
+        name: name(&table.required("name")?)?,
+        ladder: table.optional("ladder").map_or(Ok(true), |field| field.flag())?,
+        levels: table.required("levels")?.list()?.iter().map(level).collect::<Result<_, _>>()?,
+    })
+}
+
+fn quantity(field: &Field<'_>) -> Result<Located<Quantity>, SceneError> {
+    if let super::tree::Node::Text(_) = field.node() {
+        return Ok(field.at(Quantity::Named(field.text()?.to_owned())));
+    }
+    let table = field.table(STRESS)?;
+    let text = |key| Ok(table.required(key)?.text()?.to_owned());
+    Ok(field.at(Quantity::Stress {
+        name: text("name")?,
+        profile: text("profile")?,
+        component: text("component")?,
+        height: table.required("height")?.quantity(Dimension::LENGTH)?,
+    }))
+}
+
+/// A setting as the text of a TOML document.
+pub(super) fn text(setting: &Setting) -> String {
+    setting.iter().map(|(path, value)| format!("{path} = {value}\n")).collect()
+}
+
+/// The text of the scene `path` with `setting` written into it. Comments stay; relative names of files are
+/// made absolute, so that the scene can lie anywhere.
+///
+/// # Errors
+/// A scene that cannot be read, or a setting that does not fit its keys.
+pub fn rewrite(path: &Path, setting: &Setting) -> Result<String, SceneError> {
+    let text = super::read_text(path)?;
+    let source = Arc::new(SceneSource::new(path, &text));
+    let wrong = |why: String| source.error(why, "");
+    let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| wrong(e.to_string()))?;
+    for (keys, value) in setting {
+        let keys = Key::parse(keys).map_err(|e| wrong(e.to_string()))?;
+        let value: Value = value.parse().map_err(|e: toml_edit::TomlError| wrong(e.to_string()))?;
+        put(document.as_table_mut(), &keys, &value);
+    }
+    let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned)).unwrap_or_default();
+    let rooted = |item: Option<&mut Item>| {
+        if let Some(item) = item
+            && let Some(file) = item.as_str()
+        {
+            *item = toml_edit::value(folder.join(file).display().to_string());
+        }
+    };
+    rooted(document.get_mut("mesh").and_then(|mesh| mesh.get_mut("file")));
+    let materials = document.get_mut("materials").and_then(Item::as_table_like_mut);
+    for (_, material) in materials.into_iter().flat_map(|materials| materials.iter_mut()) {
+        rooted(material.as_table_like_mut().and_then(|material| material.get_mut("file")));
+    }
+    Ok(document.to_string())
+}
+
+/// Names of plug-ins: a table that names another one is made anew.
+const NAMES: [&str; 4] = ["kind", "law", "method", "name"];
+
+fn put(table: &mut dyn TableLike, keys: &[Key], value: &Value) {
+    match keys {
+        [] => {}
+        [key] => drop(table.insert(key, Item::Value(value.clone()))),
+        [key, rest @ ..] => {
+            if let ([last], Some(old)) = (rest, table.get_mut(key))
+                && NAMES.contains(&last.get())
+                && old.get(last.get()).is_some_and(|name| name.as_str() != value.as_str())
+            {
+                *old = if old.is_table() { Item::Table(Table::new()) } else { Item::Value(InlineTable::new().into()) };
+            }
+            match table.entry(key).or_insert_with(|| Item::Table(Table::new())) {
+                Item::ArrayOfTables(tables) => tables.iter_mut().for_each(|table| put(table, rest, value)),
+                item => item.as_table_like_mut().into_iter().for_each(|table| put(table, rest, value)),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    #[test]
+    fn a_setting_goes_into_the_text() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        let scene = "# What it is.\nmesh = { file = \"plate.msh\", unit = \"mm\" }\n\n[[impactor]]\nmass = \"1 kg\" # heavy\n\n\
+                     [reduction]\nmethod = \"guyan\"\ngovernors = 3\n\n[materials.m]\nfile = \"m.toml\"\n";
+        std::fs::write(&path, scene).unwrap();
+        let setting = [
+            ("mesh.refine", "1"),
+            ("impactor.patch_radius", "\"2 mm\""),
+            ("reduction.method", "\"ritz\""),
+            ("reduction.vectors", "20"),
+            ("march.step", "\"0.1 us\""),
+        ];
+        let setting = setting.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
+        let text = rewrite(&path, &setting).unwrap();
+        let root = folder.path().display();
+        assert_eq!(
+            text,
+            format!(
+                "# What it is.\nmesh = {{ file = \"{root}/plate.msh\", unit = \"mm\" , refine = 1 }}\n\n[[impactor]]\n\
+                 mass = \"1 kg\" # heavy\npatch_radius = \"2 mm\"\n\n[reduction]\nmethod = \"ritz\"\nvectors = 20\n\n\
+                 [materials.m]\nfile = \"{root}/m.toml\"\n\n[march]\nstep = \"0.1 us\"\n"
+            )
+        );
+    }
+}

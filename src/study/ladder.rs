@@ -1,0 +1,102 @@
+//! A ladder that was climbed: what error each of its levels leaves, and how fast it falls.
+
+use super::axes::Level;
+use super::converge::{Convergence, limit};
+use super::quantity::FORCE_HISTORY;
+use super::record::{Record, Size};
+
+/// An axis of finer and finer levels after its runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ladder {
+    /// Name of the axis.
+    pub axis: String,
+    /// The levels that ran, coarse to fine.
+    pub levels: Vec<Rung>,
+    /// Per quantity: what its sequence says, and what is to be added to the finest level's value to reach the limit.
+    pub limits: Vec<Limit>,
+}
+
+/// A level of a ladder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rung {
+    /// The level.
+    pub level: Level,
+    /// Sizes of its run.
+    pub size: Size,
+    /// Relative error of each quantity that this axis leaves, the others as the scene has them.
+    pub errors: Vec<(String, f64)>,
+    values: Vec<Option<f64>>,
+}
+
+/// The limit of a quantity along a ladder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limit {
+    /// The quantity.
+    pub quantity: String,
+    /// What is known of it; differences are relative.
+    pub convergence: Convergence,
+    /// The limit, where the quantity is a number.
+    pub value: Option<f64>,
+}
+
+impl Rung {
+    /// The largest of its errors of `quantities`.
+    pub fn worst(&self, quantities: &[String]) -> f64 {
+        let errors = self.errors.iter().filter(|e| quantities.contains(&e.0)).map(|e| e.1);
+        errors.fold(0.0, |m, e| if e > m || e.is_nan() { e } else { m })
+    }
+}
+
+impl Ladder {
+    /// From the runs of an axis, coarse to fine; differences below `matters` are of no interest.
+    pub(super) fn new(axis: &str, runs: &[(Level, Record)], quantities: &[String], matters: f64) -> Self {
+        let mut ladder = Self { axis: axis.to_owned(), levels: Vec::new(), limits: Vec::new() };
+        let Some((_, finest)) = runs.last() else { return ladder };
+        ladder.levels = runs
+            .iter()
+            .map(|(level, record)| Rung { level: level.clone(), size: record.size, errors: Vec::new(), values: Vec::new() })
+            .collect();
+        for quantity in quantities {
+            let values: Vec<Option<f64>> = runs.iter().map(|(_, record)| record.value(quantity)).collect();
+            let difference = |a: &Record, b: &Record| a.difference(b, quantity).map_or(f64::NAN, f64::abs);
+            let pairs = runs.windows(2).map(|pair| difference(&pair[0].1, &pair[1].1));
+            let convergence = Convergence::of(&pairs.collect::<Vec<_>>(), matters);
+            let known: Option<Vec<f64>> = values.iter().copied().collect();
+            let scale = finest.value(quantity).unwrap_or(0.0).abs();
+            let value = known.and_then(|values| limit(&values, convergence, scale));
+            let left = Some(convergence.left()).filter(|left| left.is_finite()).unwrap_or(match convergence {
+                Convergence::Stalls { difference } => difference,
+                _ => 0.0,
+            });
+            for (rung, (_, record)) in ladder.levels.iter_mut().zip(runs) {
+                let own = record.value(quantity);
+                let error = match (own, value) {
+                    (Some(own), Some(value)) if quantity != FORCE_HISTORY => ((own - value) / value).abs(),
+                    _ => difference(record, finest),
+                };
+                // An error below what is left of the last level is not known to be smaller.
+                rung.errors.push((quantity.clone(), if error >= left { error } else { left }));
+                rung.values.push(own);
+            }
+            ladder.limits.push(Limit { quantity: quantity.clone(), convergence, value });
+        }
+        ladder
+    }
+
+    /// What is to be added to the value of `quantity` at the level of `setting` to reach the limit, and its uncertainty,
+    /// both relative; `None` where the ladder has no such level or no limit.
+    pub(super) fn correction(&self, quantity: &str, label: &str) -> Option<(f64, f64)> {
+        let k = self.limits.iter().position(|limit| limit.quantity == quantity)?;
+        let limit = &self.limits[k];
+        let rung = self.levels.iter().find(|rung| rung.level.label == label)?;
+        let left = limit.convergence.left();
+        match (rung.values[k], limit.value, limit.convergence) {
+            (Some(own), Some(value), Convergence::Converges { .. }) => {
+                let correction = (value - own) / own.abs();
+                Some((correction, left.min(correction.abs()).max(0.5 * left)))
+            }
+            _ if left.is_finite() => Some((0.0, rung.errors[k].1)),
+            _ => None,
+        }
+    }
+}

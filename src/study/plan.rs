@@ -1,0 +1,247 @@
+//! What a study runs within its limits.
+
+use super::axes::{Axis, AxisKind, Level};
+use super::predict::{self, Rates};
+use super::record::{Record, Size};
+use super::report::Report;
+use super::session::Session;
+use crate::cost::processor_time;
+use crate::error::Error;
+use crate::model::Model;
+use fem_io::scene;
+
+/// Nominal seconds of a study without a budget, and of its largest run.
+const LIMIT: f64 = 240.0;
+const LARGEST: f64 = 60.0;
+
+/// Shares of the time for ladders and for levels of them together; the rest is for other ways and problems.
+const LADDERS: f64 = 0.4;
+const JOINT: f64 = 0.4;
+
+/// Largest share of the time that one run may take.
+const ONE: f64 = 0.25;
+
+/// Entries of a factor beyond which no run is planned: 8 bytes each, and as much again on the way.
+const MOST_ENTRIES: usize = 400_000_000;
+
+/// Cells beyond which a model is not even made to be measured.
+const MOST_CELLS: f64 = 200_000.0;
+
+/// Errors that levels of all ladders together are sought for, and how much smaller the sum of their errors is to be.
+const TARGETS: [f64; 10] = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5];
+const SAFETY: f64 = 0.7;
+
+/// Why a run was left out.
+pub(super) const SPENT: &str = "beyond the time of the study";
+
+/// A run that is planned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Planned {
+    /// Name of its axis; `joint` for levels of all ladders together.
+    pub axis: String,
+    /// What the levels of the axis are.
+    pub kind: AxisKind,
+    /// The level.
+    pub level: Level,
+    /// Sizes as they are expected.
+    pub size: Size,
+    /// Processor time as it is expected, s.
+    pub seconds: f64,
+}
+
+/// Name of the axis of levels of all ladders together.
+pub(super) const TOGETHER: &str = "joint";
+
+/// What a study is going to run.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Plan {
+    /// The runs along single axes, in order.
+    pub runs: Vec<Planned>,
+    /// Axis and level of what is not run, and why.
+    pub left_out: Vec<(String, String, String)>,
+    /// Seconds that runs of levels of all ladders together may take.
+    pub joint: f64,
+}
+
+impl Plan {
+    /// Processor time of all, s, as it is expected.
+    pub fn seconds(&self) -> f64 {
+        self.runs.iter().map(|run| run.seconds).sum::<f64>() + self.joint
+    }
+}
+
+/// Decides what is run.
+#[derive(Debug)]
+pub(super) struct Planner {
+    base: Size,
+    budget: Option<f64>,
+    /// Processor time of the process when the study began, s.
+    began: f64,
+    /// Nominal seconds, or seconds, granted so far.
+    spent: f64,
+}
+
+impl Planner {
+    pub(super) fn new(session: &Session<'_>, base: &Record, budget: Option<f64>) -> Self {
+        let mut planner = Self { base: base.size, budget, began: processor_time() - base.total(), spent: 0.0 };
+        planner.spent = planner.rates(session).seconds(&base.size);
+        planner
+    }
+
+    fn whole(&self) -> f64 {
+        self.budget.unwrap_or(LIMIT)
+    }
+
+    fn largest(&self) -> f64 {
+        self.budget.map_or(LARGEST, |budget| ONE * budget)
+    }
+
+    /// Nominal ones without a budget: the same runs on every machine.
+    fn rates(&self, session: &Session<'_>) -> Rates {
+        if self.budget.is_some() { Rates::of(session.records()) } else { Rates::NOMINAL }
+    }
+
+    /// What is left of the time.
+    fn rest(&self) -> f64 {
+        match self.budget {
+            Some(budget) => budget - (processor_time() - self.began),
+            None => LIMIT - self.spent,
+        }
+    }
+
+    /// The levels of `axes` that fit the time: of the ladders those next to the scene first, of the rest in order.
+    pub(super) fn plan(&mut self, session: &Session<'_>, axes: &[Axis]) -> Plan {
+        let rates = self.rates(session);
+        let mut plan = Plan { joint: JOINT * self.whole(), ..Plan::default() };
+        let ladders: Vec<&Axis> = axes.iter().filter(|axis| axis.kind == AxisKind::Ladder).collect();
+        // Without ladders to combine, their time is for the rest.
+        let share = |kind| match (kind, ladders.is_empty()) {
+            (AxisKind::Ladder, _) => LADDERS,
+            (_, false) => 1.0 - LADDERS - JOINT,
+            (_, true) => 1.0,
+        };
+        if ladders.is_empty() {
+            plan.joint = 0.0;
+        }
+        for kinds in [&[AxisKind::Ladder][..], &[AxisKind::Ways, AxisKind::Problems]] {
+            let mut all = Vec::new();
+            for axis in axes.iter().filter(|axis| kinds.contains(&axis.kind)) {
+                for level in &axis.levels {
+                    match self.expect(session, axis, level, rates) {
+                        Ok(planned) => all.push(planned),
+                        Err(why) => plan.left_out.push((axis.name.clone(), level.label.clone(), why)),
+                    }
+                }
+            }
+            all.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+            let mut time = share(kinds[0]) * self.whole();
+            for planned in all {
+                let known = planned.level.setting.is_empty() || session.has(&planned.level.setting);
+                if known || planned.seconds <= time.min(self.largest()) {
+                    time -= if known { 0.0 } else { planned.seconds };
+                    plan.runs.push(planned);
+                } else {
+                    let why = format!("{SPENT}: about {:.0} s", planned.seconds);
+                    plan.left_out.push((planned.axis, planned.level.label, why));
+                }
+            }
+        }
+        let place = |axis: &str| axes.iter().position(|a| a.name == axis);
+        plan.runs.sort_by_key(|planned| (planned.kind != AxisKind::Ladder, place(&planned.axis)));
+        self.spent += plan.runs.iter().filter(|run| run.kind == AxisKind::Ladder).map(|run| run.seconds).sum::<f64>();
+        plan
+    }
+
+    fn expect(&self, session: &Session<'_>, axis: &Axis, level: &Level, rates: Rates) -> Result<Planned, String> {
+        let size = if level.setting.is_empty() { self.base } else { self.size(session, level)? };
+        if size.factor_entries > MOST_ENTRIES {
+            return Err(format!("about {} unknowns are too many", size.unknowns));
+        }
+        let seconds = rates.seconds(&size);
+        Ok(Planned { axis: axis.name.clone(), kind: axis.kind, level: level.clone(), size, seconds })
+    }
+
+    /// Sizes under the setting of `level`.
+    fn size(&self, session: &Session<'_>, level: &Level) -> Result<Size, String> {
+        let size = || -> Result<Size, Error> {
+            let scene = scene::read_with(session.path(), &level.setting)?;
+            Ok(predict::size(&Model::new(scene, session.registry())?, &self.base))
+        };
+        let refined = level.setting.get("mesh.refine").and_then(|n| n.parse::<i32>().ok()).unwrap_or(0);
+        if self.base.cells as f64 * 4.0_f64.powi(refined) > MOST_CELLS {
+            return Err("more cells than a study makes".into());
+        }
+        size().map_err(|why| why.to_string())
+    }
+
+    /// Whether there is time for a run beside the ladders.
+    pub(super) fn affords(&mut self, session: &Session<'_>, planned: &Planned) -> bool {
+        if planned.level.setting.is_empty() || session.has(&planned.level.setting) {
+            return true;
+        }
+        let seconds = self.rates(session).seconds(&planned.size);
+        self.spent += seconds;
+        self.budget.is_none() || seconds <= self.rest()
+    }
+
+    /// Levels of all ladders of `report` together: the cheapest for each target, and the finest that the time allows.
+    pub(super) fn joint(&mut self, session: &Session<'_>, report: &Report) -> Vec<Planned> {
+        let ladders = &report.ladders;
+        if ladders.is_empty() {
+            return Vec::new();
+        }
+        let rates = self.rates(session);
+        let mut time = (JOINT * self.whole()).min(self.rest());
+        let mut all = vec![Vec::new()];
+        for ladder in ladders {
+            all = all
+                .iter()
+                .flat_map(|levels: &Vec<usize>| (0..ladder.levels.len()).map(move |k| [&levels[..], &[k]].concat()))
+                .collect();
+        }
+        let mut choices: Vec<(f64, Planned)> = all
+            .iter()
+            .map(|levels| {
+                let each = || ladders.iter().zip(levels).map(|(ladder, k)| &ladder.levels[*k]);
+                let size = predict::together(&self.base, each().map(|level| &level.size));
+                let label = each().map(|level| level.level.label.as_str()).collect::<Vec<_>>().join(", ");
+                let setting = each().flat_map(|level| level.level.setting.clone()).collect();
+                let level = Level { label, setting, at_limit: false };
+                let error = each().map(|level| level.worst(&report.asked)).sum();
+                let seconds = rates.seconds(&size);
+                (error, Planned { axis: TOGETHER.into(), kind: AxisKind::Ladder, level, size, seconds })
+            })
+            .filter(|(_, planned)| planned.size.factor_entries <= MOST_ENTRIES)
+            .collect();
+        choices.sort_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds));
+        let mut chosen: Vec<Planned> = Vec::new();
+        let mut choose = |planned: &Planned, time: &mut f64| {
+            if chosen.iter().all(|other| other.level != planned.level) {
+                *time -= planned.seconds;
+                chosen.push(planned.clone());
+            }
+        };
+        // The finest first: everything is measured by it. Half of the time is left for a second one that proves it.
+        let within = |most: f64| {
+            let affordable = choices.iter().filter(move |c| c.1.seconds <= most);
+            affordable.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.seconds.total_cmp(&b.1.seconds)))
+        };
+        if let Some((error, finest)) = within(0.5 * time) {
+            choose(finest, &mut time);
+            // Another one nearly as fine, of which every ladder that has one takes another level.
+            let other = choices.iter().filter(|c| c.1.seconds <= time && c.1.level != finest.level && c.0 > *error);
+            if let Some((_, second)) = other.min_by(|a, b| a.0.total_cmp(&b.0)) {
+                choose(second, &mut time);
+            }
+        }
+        for target in TARGETS {
+            let Some((_, cheapest)) = choices.iter().find(|(error, _)| *error <= SAFETY * target) else { continue };
+            if cheapest.seconds <= time {
+                choose(cheapest, &mut time);
+            }
+        }
+        chosen.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+        self.spent += chosen.iter().map(|planned| planned.seconds).sum::<f64>();
+        chosen
+    }
+}

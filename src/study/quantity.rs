@@ -1,0 +1,148 @@
+//! What accuracy is asked of.
+
+use crate::model::Model;
+use crate::run::{Outcome, Sizes};
+use crate::statics::Solution;
+use crate::summary::{Summary, ply_name};
+use fem_core::plugin::unknown_key;
+use fem_core::profile::ProfilePoint;
+use fem_failure::scan::first_per_mode;
+use fem_io::scene::{Quantity, SceneError};
+use serde::{Deserialize, Serialize};
+
+/// The force over time, whose error is the L2 norm of a difference.
+pub const FORCE_HISTORY: &str = "force-history";
+
+/// A number that a run found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Figure {
+    /// Its name.
+    pub name: String,
+    /// Its value, SI units.
+    pub value: f64,
+    /// Whether accuracy is asked of it where a scene does not say of what.
+    pub asked: bool,
+}
+
+impl Figure {
+    fn new(name: impl Into<String>, value: f64, asked: bool) -> Self {
+        Self { name: name.into(), value, asked }
+    }
+}
+
+/// Of an impact.
+pub(super) fn of_impact(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Vec<Figure> {
+    let summary = Summary::new(model, sizes, outcome);
+    let mut figures = Vec::new();
+    for impact in &summary.impact {
+        let name = |what: &str| impact.name.as_ref().map_or(what.to_owned(), |name| format!("{name} {what}"));
+        figures.push(Figure::new(name("peak-force"), impact.peak_force_N, true));
+        figures.push(Figure::new(name("peak-time"), impact.peak_force_time_s, false));
+        figures.push(Figure::new(name("impulse"), impact.impulse_N_s, true));
+        figures.push(Figure::new(name("deflection"), impact.peak_plate_displacement_m, true));
+    }
+    figures.push(Figure::new("compliance", 1.0 / sizes.static_stiffness, false));
+    let first = outcome.events.iter().map(|e| e.time).reduce(f64::min);
+    figures.extend(first.map(|time| Figure::new("first-damage", time, true)));
+    for event in first_per_mode(&outcome.events) {
+        figures.push(Figure::new(format!("onset {} {}", event.criterion, event.mode), event.time, false));
+    }
+    for history in &outcome.histories {
+        let [x, y, _] = history.site.position;
+        let place = format!("{} at ({:.2}, {:.2}) mm", ply_name(history.site.place), x * 1e3, y * 1e3);
+        let name = format!("index {} {place}", model.criteria[history.criterion].0);
+        figures.push(Figure::new(name, history.indices.iter().fold(0.0, |m: f64, i| m.max(*i)), false));
+    }
+    figures
+}
+
+/// Stresses below this share of the largest of their profile are not asked for.
+const NOTABLE: f64 = 1e-3;
+
+const COMPONENTS: [&str; 12] =
+    ["sxx", "syy", "szz", "sxy", "syz", "szx", "s1", "s2", "s3", "s12", "s23", "s13"];
+
+/// Of loads at rest.
+///
+/// # Errors
+/// A stress that the scene asks for at a place that no profile has.
+pub(super) fn of_statics(model: &Model, solution: &Solution) -> Result<Vec<Figure>, SceneError> {
+    let summary = crate::statics::Summary::new(model, solution);
+    let mut figures = vec![
+        Figure::new("deflection", summary.largest_deflection.w_m, true),
+        Figure::new("energy", solution.strain_energy, true),
+    ];
+    let reserve = solution.margins.iter().map(|m| m.reserve_factor).reduce(f64::min);
+    figures.extend(reserve.map(|factor| Figure::new("reserve-factor", factor, false)));
+    for (named, points) in model.profiles.iter().zip(&solution.profiles) {
+        let extremes = [0, 1, 2, 3, 4, 5].map(|k| extreme(points.iter().map(|p| p.global.0[k])));
+        let largest = extreme(extremes.into_iter()).abs();
+        for (component, value) in COMPONENTS.into_iter().zip(extremes).filter(|(_, v)| v.abs() > NOTABLE * largest) {
+            figures.push(Figure::new(format!("{} {component}", named.line.name.value), value, true));
+        }
+    }
+    for quantity in &model.scene.study.quantities {
+        let Quantity::Stress { name, profile, component, height } = &quantity.value else { continue };
+        let wrong = |message: String, help: String| model.scene.source.error_at(&quantity.place, message, help);
+        let names = || model.profiles.iter().map(|p| p.line.name.value.as_str());
+        let Some(p) = names().position(|p| p == profile) else {
+            let help = format!("`{profile}` {}", unknown_key(profile, names()));
+            return Err(wrong(format!("there is no profile `{profile}`"), help));
+        };
+        let Some(k) = COMPONENTS.iter().position(|c| c == component) else {
+            let help = format!("`{component}` {}", unknown_key(component, COMPONENTS.into_iter()));
+            return Err(wrong(format!("there is no stress `{component}`"), help));
+        };
+        let value = at(&solution.profiles[p], k, *height);
+        let outside = || wrong(format!("the plate has nothing at a height of {height:e} m"), "heights count from the mid-plane".into());
+        figures.push(Figure::new(name, value.ok_or_else(outside)?, true));
+    }
+    Ok(figures)
+}
+
+fn extreme(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |m, v| if v.abs() > f64::abs(m) { v } else { m })
+}
+
+/// Stress `k` at `height`, between two points of a profile by a straight line.
+fn at(points: &[ProfilePoint], k: usize, height: f64) -> Option<f64> {
+    let stress = |p: &ProfilePoint| if k < 6 { p.global.0[k] } else { p.in_ply.0[k - 6] };
+    let reach = 1e-9 * (points.last()?.z - points.first()?.z);
+    points.windows(2).find_map(|pair| {
+        let [a, b] = pair else { return None };
+        let inside = height >= a.z - reach && height <= b.z + reach && b.z > a.z;
+        inside.then(|| stress(a) + (stress(b) - stress(a)) * (height - a.z) / (b.z - a.z))
+    })
+}
+
+/// Of natural modes.
+pub(super) fn of_modes(omega: &[f64]) -> Vec<Figure> {
+    let frequency = |(k, omega): (usize, &f64)| Figure::new(format!("frequency {}", k + 1), omega / std::f64::consts::TAU, true);
+    omega.iter().enumerate().map(frequency).collect()
+}
+
+/// Names of what accuracy is asked of, among those that the scene as it is has found.
+///
+/// # Errors
+/// A name that none has.
+pub(super) fn asked(model: &Model, figures: &[Figure], forced: bool) -> Result<Vec<String>, SceneError> {
+    let force = forced.then_some(FORCE_HISTORY);
+    let known = || force.into_iter().chain(figures.iter().map(|f| f.name.as_str()));
+    if model.scene.study.quantities.is_empty() {
+        let by_default = figures.iter().filter(|f| f.asked).map(|f| f.name.as_str());
+        return Ok(force.into_iter().chain(by_default).map(str::to_owned).collect());
+    }
+    let mut names: Vec<String> = Vec::new();
+    for quantity in &model.scene.study.quantities {
+        let (Quantity::Named(word) | Quantity::Stress { name: word, .. }) = &quantity.value;
+        let mut found = known().filter(|name| *name == word || name.starts_with(&format!("{word} "))).peekable();
+        if found.peek().is_none() {
+            let message = format!("the scene has no `{word}`");
+            let help = format!("`{word}` {}", unknown_key(word, known()));
+            return Err(model.scene.source.error_at(&quantity.place, message, help));
+        }
+        names.extend(found.map(str::to_owned));
+    }
+    names.dedup();
+    Ok(names)
+}

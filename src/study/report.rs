@@ -1,0 +1,306 @@
+//! What a study found.
+
+use super::axes::{Axis, AxisKind, Level};
+use super::converge::Convergence;
+use super::ladder::Ladder;
+use super::plan::{Planned, TOGETHER};
+use super::predict::nominal;
+use super::quantity::FORCE_HISTORY;
+use super::record::Record;
+use crate::model::Model;
+use fem_io::scene::{ContactLoad, Setting};
+
+/// What a study found.
+#[derive(Debug, Clone)]
+pub struct Report {
+    /// Title of the scene.
+    pub title: String,
+    /// The quantities that accuracy is asked of.
+    pub asked: Vec<String>,
+    /// Relative error to which the reference must have converged.
+    pub tolerance: f64,
+    /// The runs, in the order in which they were made.
+    pub rows: Vec<Row>,
+    /// The ladders, climbed.
+    pub ladders: Vec<Ladder>,
+    /// Axis and level of what was not run, and why.
+    pub left_out: Vec<(String, String, String)>,
+    /// What errors count from.
+    pub reference: Reference,
+    /// What the user should know.
+    pub notes: Vec<String>,
+    singular: bool,
+    straight: bool,
+}
+
+/// A run.
+#[derive(Debug, Clone)]
+pub struct Row {
+    /// Name of its axis.
+    pub axis: String,
+    /// What the levels of the axis are.
+    pub kind: AxisKind,
+    /// The level.
+    pub level: Level,
+    /// What it gave, or why it gave nothing.
+    pub result: Result<Record, String>,
+    /// Processor time as it was expected, s.
+    pub expected_s: f64,
+    /// Relative error of each quantity that its axis alone leaves, or changes.
+    pub own: Vec<Option<f64>>,
+    /// Relative error of each quantity, counted from the reference.
+    pub errors: Vec<Option<f64>>,
+    /// Whether no cheaper run has a smaller worst error.
+    pub front: bool,
+}
+
+/// What errors count from.
+#[derive(Debug, Clone, Default)]
+pub struct Reference {
+    /// Its place among the rows.
+    pub row: usize,
+    /// Per quantity: its value extrapolated along every ladder, where it is a number.
+    pub values: Vec<Option<f64>>,
+    /// Per quantity: the relative error that is left, as far as known.
+    pub bars: Vec<f64>,
+    /// Per quantity: relative difference of the two finest runs.
+    pub agreement: Vec<Option<f64>>,
+}
+
+impl Row {
+    fn new(axis: &str, kind: AxisKind, level: Level, result: Result<Record, String>, expected_s: f64) -> Self {
+        let (own, errors) = (Vec::new(), Vec::new());
+        Self { axis: axis.to_owned(), kind, level, result, expected_s, own, errors, front: false }
+    }
+
+    /// The largest of its errors; `None` where one is unknown.
+    pub fn worst(&self) -> Option<f64> {
+        let each = self.errors.iter().copied().collect::<Option<Vec<f64>>>()?;
+        each.into_iter().reduce(f64::max).filter(|worst| worst.is_finite())
+    }
+
+    /// The largest of its errors and differences along its axis.
+    pub fn own_worst(&self) -> Option<f64> {
+        self.own.iter().copied().flatten().reduce(f64::max)
+    }
+
+    /// Nominal seconds: what it costs, whatever the machine.
+    pub fn work(&self) -> f64 {
+        self.result.as_ref().map_or(f64::INFINITY, |record| nominal(&record.size).iter().sum())
+    }
+
+    /// Whether it solves the problem of the scene, and not another one.
+    pub(super) fn competes(&self) -> bool {
+        self.kind != AxisKind::Problems
+    }
+}
+
+impl Report {
+    pub(super) fn new(model: &Model, base: Record, asked: Vec<String>, tolerance: f64) -> Self {
+        let scene = &model.scene;
+        let node = |impact: &fem_io::scene::Impact| impact.impactors.iter().any(|i| i.load.value == ContactLoad::Node);
+        let level = Level { label: "as it is".into(), setting: Setting::new(), at_limit: false };
+        Self {
+            title: scene.title.clone(),
+            asked,
+            tolerance,
+            rows: vec![Row::new("scene", AxisKind::Ways, level, Ok(base), 0.0)],
+            ladders: Vec::new(),
+            left_out: Vec::new(),
+            reference: Reference::default(),
+            notes: Vec::new(),
+            singular: !model.plate.info().is_shell() && scene.impact().is_some_and(node),
+            straight: scene.keys.get("mesh.curves").is_some_and(|curves| curves == "\"straight\""),
+        }
+    }
+
+    /// The scene as it is.
+    pub fn base(&self) -> &Row {
+        &self.rows[0]
+    }
+
+    pub(super) fn add(&mut self, planned: &Planned, result: Result<Record, String>) {
+        // The scene's own level is there already.
+        if planned.level.setting.is_empty() && planned.axis != TOGETHER {
+            return;
+        }
+        let Planned { axis, kind, level, seconds, .. } = planned;
+        self.rows.push(Row::new(axis, *kind, level.clone(), result, *seconds));
+    }
+
+    /// The runs of an axis of which there are results, in the order of its levels.
+    fn runs(&self, axis: &Axis) -> Vec<(Level, Record)> {
+        let run = |level: &Level| {
+            let row = match level.setting.is_empty() {
+                true => self.rows.first(),
+                false => self.rows.iter().find(|row| row.axis == axis.name && row.level == *level),
+            };
+            Some((level.clone(), row?.result.as_ref().ok()?.clone()))
+        };
+        axis.levels.iter().filter_map(run).collect()
+    }
+
+    /// Sees what the ladders among `axes` say; differences below `matters` are of no interest.
+    pub(super) fn climb(&mut self, axes: &[Axis], matters: f64) {
+        let ladders = axes.iter().filter(|axis| axis.kind == AxisKind::Ladder);
+        let climbed = ladders.map(|axis| Ladder::new(&axis.name, &self.runs(axis), &self.asked, matters));
+        self.ladders = climbed.filter(|ladder| ladder.levels.len() > 1).collect();
+    }
+
+    /// Counts errors from the reference, and what each axis changes from its judge.
+    pub(super) fn judge(&mut self, axes: &[Axis], judges: fn(&str) -> &'static [&'static str]) {
+        self.refer();
+        let finest = |axis: &str| {
+            let axis = axes.iter().find(|a| a.name == axis)?;
+            self.runs(axis).pop().map(|run| run.1)
+        };
+        let judge: Vec<Option<Record>> =
+            self.rows.iter().map(|row| judges(&row.axis).first().and_then(|name| finest(name))).collect();
+        let (asked, reference) = (self.asked.clone(), self.reference.clone());
+        let exact = self.rows[reference.row].result.clone();
+        let base = self.rows[0].result.clone();
+        let ladders = self.ladders.clone();
+        for (row, judge) in self.rows.iter_mut().zip(judge) {
+            let Ok(record) = &row.result else { continue };
+            row.errors = asked
+                .iter()
+                .zip(&reference.values)
+                .map(|(quantity, value)| match (value, record.value(quantity)) {
+                    (Some(value), Some(own)) if quantity != FORCE_HISTORY => Some(((own - value) / value).abs()),
+                    _ => Some(record.difference(exact.as_ref().ok()?, quantity)?.abs()),
+                })
+                .collect();
+            let ladder = ladders.iter().find(|ladder| ladder.axis == row.axis);
+            let rung = ladder.and_then(|ladder| ladder.levels.iter().find(|rung| rung.level == row.level));
+            let other = judge.or_else(|| base.clone().ok());
+            row.own = match rung {
+                Some(rung) => rung.errors.iter().map(|e| Some(e.1)).collect(),
+                None => asked.iter().map(|q| Some(record.difference(other.as_ref()?, q)?.abs())).collect(),
+            };
+        }
+        self.mark_front();
+        self.take_notes();
+    }
+
+    /// The finest joint run is the reference; the scene itself, where there is none.
+    fn refer(&mut self) {
+        let total = |row: &Row| -> f64 {
+            let labels: Vec<&str> = row.level.label.split(", ").collect();
+            let each = self.ladders.iter().zip(labels);
+            let error = |(ladder, label): (&Ladder, &str)| {
+                let rung = ladder.levels.iter().find(|rung| rung.level.label == label);
+                rung.map_or(f64::INFINITY, |rung| rung.worst(&self.asked))
+            };
+            each.map(error).sum()
+        };
+        let mut joint: Vec<(usize, f64)> = self
+            .rows
+            .iter()
+            .enumerate()
+            .filter(|(_, row)| row.axis == TOGETHER && row.result.is_ok())
+            .map(|(k, row)| (k, total(row)))
+            .collect();
+        joint.sort_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
+        let row = joint.first().map_or(0, |first| first.0);
+        let (finest, second) = (&self.rows[row], joint.get(1).map(|second| &self.rows[second.0]));
+        let Ok(record) = &finest.result else { return };
+        let labels: Vec<&str> = finest.level.label.split(", ").collect();
+        let mut reference = Reference { row, ..Reference::default() };
+        for quantity in &self.asked {
+            let each = self.ladders.iter().zip(&labels).map(|(ladder, label)| ladder.correction(quantity, label));
+            let (mut correction, mut bar) = (0.0, 0.0);
+            for found in each {
+                let (by, uncertain) = found.unwrap_or((0.0, f64::INFINITY));
+                correction += by;
+                bar += uncertain;
+            }
+            if self.ladders.is_empty() {
+                bar = f64::INFINITY;
+            }
+            let value = record.value(quantity);
+            reference.values.push(value.map(|value| value + correction * value.abs()));
+            reference.bars.push(bar);
+            let second = second.and_then(|row| row.result.as_ref().ok());
+            reference.agreement.push(second.and_then(|second| second.difference(record, quantity)).map(f64::abs));
+        }
+        self.reference = reference;
+    }
+
+    /// Whether the two finest runs agree to the tolerance in what is asked.
+    pub fn proven(&self) -> bool {
+        let agrees = |difference: &Option<f64>| difference.is_some_and(|d| d <= self.tolerance);
+        !self.reference.agreement.is_empty() && self.reference.agreement.iter().all(agrees)
+    }
+
+    /// Rows that compete, by work, cheapest first.
+    fn by_work(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.rows.len()).filter(|k| self.rows[*k].competes()).collect();
+        order.sort_by(|a, b| self.rows[*a].work().total_cmp(&self.rows[*b].work()));
+        order
+    }
+
+    fn mark_front(&mut self) {
+        let mut best = f64::INFINITY;
+        for k in self.by_work() {
+            let row = &mut self.rows[k];
+            row.front = row.worst().is_some_and(|worst| worst < best);
+            if row.front {
+                best = row.worst().unwrap_or(best);
+            }
+        }
+    }
+
+    /// The cheapest run whose error of every quantity in `quantities` (counted in `asked`) is within `tolerance`, what is
+    /// left of the reference included.
+    pub fn cheapest(&self, quantities: &[usize], tolerance: f64) -> Option<&Row> {
+        let within = |row: &&Row| {
+            let error = |q: &usize| row.errors.get(*q).copied().flatten().map(|e| e + self.reference.bars[*q]);
+            quantities.iter().all(|q| error(q).is_some_and(|error| error <= tolerance))
+        };
+        self.by_work().into_iter().map(|k| &self.rows[k]).find(within)
+    }
+
+    fn take_notes(&mut self) {
+        let mut notes = Vec::new();
+        for ladder in &self.ladders {
+            let stalls = ladder.limits.iter().filter_map(|limit| match limit.convergence {
+                Convergence::Stalls { difference } => Some((limit.quantity.as_str(), difference)),
+                _ => None,
+            });
+            for (quantity, difference) in stalls {
+                let why = match (ladder.axis.as_str(), self.singular) {
+                    ("mesh" | "layers", true) => {
+                        ": a force at a node of a solid is singular, and what is near it follows the mesh; use a patch"
+                    }
+                    _ => "",
+                };
+                notes.push(format!(
+                    "{quantity} does not converge along {}: the last level changes it by {difference:.1e}, no less than the \
+                     one before; nothing is extrapolated{why}",
+                    ladder.axis
+                ));
+            }
+        }
+        if self.singular && !notes.iter().any(|note| note.contains("singular")) {
+            notes.push(
+                "the contact force acts at a node of a solid, where its deflection has no limit: errors near the contact are \
+                 of this mesh only; use a patch"
+                    .into(),
+            );
+        }
+        if let Some(row) = self.rows.iter().find(|row| row.axis == "geometry") {
+            let error = row.own_worst().unwrap_or(0.0);
+            notes.push(match self.straight {
+                true => format!(
+                    "geometry: the mesh keeps straight edges along a curve, and refinement leads to the polygon's answer; the \
+                     curve's is {error:.1e} away. This error is in no other figure: set `mesh.curves = \"kept\"`"
+                ),
+                false => format!(
+                    "geometry: edges that stay straight along the curve would leave {error:.1e} on the next finer mesh; \
+                     refinement follows the curve"
+                ),
+            });
+        }
+        self.notes = notes;
+    }
+}

@@ -1,0 +1,89 @@
+//! The runs of a study, kept from process to process.
+
+use super::record::Record;
+use crate::error::Error;
+use crate::model::Model;
+use crate::registry::Registry;
+use crate::run::saved::{self, CheckpointError, Keys};
+use fem_io::files::OutputDir;
+use fem_io::scene::Setting;
+use std::path::{Path, PathBuf};
+
+/// Name of the file in the folder of the study.
+const FILE: &str = "study.bin";
+
+/// A run, or why there is none.
+type Kept = (Setting, Result<Record, String>);
+
+/// The runs of a study of one scene; each is saved as soon as it is done, none is made twice.
+#[derive(Debug)]
+pub struct Session<'a> {
+    path: PathBuf,
+    registry: &'a Registry,
+    dir: OutputDir,
+    identity: Keys,
+    runs: Vec<Kept>,
+    /// How many of these another process has made.
+    found: usize,
+}
+
+impl<'a> Session<'a> {
+    /// A session on the scene `path`, whose model is `model`, in `dir`; with `resume` it goes on from one that lies there.
+    ///
+    /// # Errors
+    /// With `resume`, no study in the folder, a damaged one or one of another scene.
+    pub fn open(
+        path: &Path,
+        model: &Model,
+        registry: &'a Registry,
+        dir: OutputDir,
+        resume: bool,
+    ) -> Result<Self, CheckpointError> {
+        let identity = saved::identity(model)?;
+        let runs: Vec<Kept> = if resume { saved::read(dir.path(), FILE, &identity)? } else { Vec::new() };
+        let found = runs.len();
+        Ok(Self { path: path.to_owned(), registry, dir, identity, runs, found })
+    }
+
+    /// Number of runs that another process has left.
+    pub fn found(&self) -> usize {
+        self.found
+    }
+
+    /// The folder.
+    pub fn dir(&self) -> &OutputDir {
+        &self.dir
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    pub(super) fn registry(&self) -> &Registry {
+        self.registry
+    }
+
+    /// Whether the run under `setting` is known.
+    pub(super) fn has(&self, setting: &Setting) -> bool {
+        self.runs.iter().any(|run| run.0 == *setting)
+    }
+
+    /// All that ran.
+    pub(super) fn records(&self) -> impl Iterator<Item = &Record> + Clone {
+        self.runs.iter().filter_map(|(_, run)| run.as_ref().ok())
+    }
+
+    /// Runs the scene under `setting`, unless that is done.
+    ///
+    /// # Errors
+    /// A folder that cannot be written. What is wrong with the run itself is its result.
+    pub(super) fn run(&mut self, setting: &Setting) -> Result<Result<Record, String>, Error> {
+        if let Some((_, run)) = self.runs.iter().find(|run| run.0 == *setting) {
+            return Ok(run.clone());
+        }
+        let run = Record::of(&self.path, setting, self.registry).map_err(|why| why.to_string());
+        self.runs.push((setting.clone(), run.clone()));
+        saved::write(&self.dir, FILE, &self.identity, &self.runs)?;
+        Ok(run)
+    }
+}

@@ -1,0 +1,213 @@
+//! A study as people read it.
+
+use super::axes::AxisKind;
+use super::converge::Convergence;
+use super::ladder::Ladder;
+use super::plan::{Plan, TOGETHER};
+use super::report::{Report, Row};
+use std::fmt::{self, Write as _};
+
+/// Characters of a refusal that a table shows.
+const WORDS: usize = 72;
+
+/// Errors for which the cheapest run is named.
+const TARGETS: [f64; 4] = [0.1, 0.01, 1e-3, 1e-4];
+
+/// What will be run, before it is run.
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "  will run, about {:.0} s of processor time:", self.seconds())?;
+        let mut axes: Vec<&str> = self.runs.iter().map(|run| run.axis.as_str()).collect();
+        axes.dedup();
+        for axis in axes {
+            let runs: Vec<_> = self.runs.iter().filter(|run| run.axis == axis).collect();
+            let seconds: f64 = runs.iter().map(|run| run.seconds).sum();
+            let labels: Vec<&str> = runs.iter().map(|run| run.level.label.as_str()).collect();
+            let labels = match labels[..] {
+                [first, .., last] if labels.len() > 8 => format!("{} from {first} to {last}", labels.len()),
+                _ => labels.join(", "),
+            };
+            writeln!(f, "    {axis:<14} {labels} ({seconds:.1} s)")?;
+        }
+        if self.joint > 0.0 {
+            writeln!(f, "    {TOGETHER:<14} levels of all ladders together (up to {:.0} s)", self.joint)?;
+        }
+        for (axis, label, why) in self.left_out.iter().filter(|(axis, ..)| axis != "reductions" && axis != "element") {
+            let why: String = why.chars().take(WORDS).collect();
+            writeln!(f, "    left out       {axis} {label}: {why}")?;
+        }
+        Ok(())
+    }
+}
+
+/// A time in three digits.
+fn seconds(s: f64) -> String {
+    match s {
+        s if s < 0.0095 => format!("{:.1} ms", s * 1e3),
+        s if s < 10.0 => format!("{s:.2} s"),
+        s => format!("{s:.0} s"),
+    }
+}
+
+fn percent(x: f64) -> String {
+    match x {
+        x if x >= 0.01 => format!("{:.0} %", x * 100.0),
+        x => format!("{} %", x * 100.0),
+    }
+}
+
+/// What a study found, in Markdown.
+pub fn text(report: &Report) -> String {
+    let mut t = String::new();
+    // Writing to a text cannot fail.
+    let _ = write(report, &mut t);
+    t
+}
+
+fn write(report: &Report, t: &mut String) -> fmt::Result {
+    let Ok(base) = &report.base().result else { return Ok(()) };
+    let ran: f64 = report.rows.iter().filter_map(|row| row.result.as_ref().ok()).map(|record| record.total()).sum();
+    let reference = &report.rows[report.reference.row];
+    writeln!(t, "{}: what accuracy costs\n", report.title)?;
+    writeln!(
+        t,
+        "  {} runs in {} of processor time; the scene as it is takes {}",
+        report.rows.len(),
+        seconds(ran),
+        seconds(base.total())
+    )?;
+    if report.reference.row > 0 {
+        writeln!(t, "  errors count from: {}, extrapolated along each ladder", described(reference))?;
+        let agreement = report.reference.agreement.iter().flatten().copied().reduce(f64::max);
+        let verdict = if report.proven() { "proven" } else { "NOT proven" };
+        match agreement {
+            Some(worst) => writeln!(
+                t,
+                "  reference {verdict}: the two finest runs differ by at most {worst:.1e} (asked: {:.1e})",
+                report.tolerance
+            )?,
+            None => writeln!(t, "  reference NOT proven: there is no second run as fine")?,
+        }
+    } else {
+        writeln!(t, "  no ladder was climbed: what is shown are differences from the scene as it is")?;
+    }
+
+    writeln!(t, "\nError of the scene as it is, and where it comes from\n")?;
+    let names: Vec<&str> = report.ladders.iter().map(|ladder| ladder.axis.as_str()).collect();
+    writeln!(t, "| quantity | error | left in the reference | {} |", names.join(" | "))?;
+    writeln!(t, "| --- | --- | --- |{}", " --- |".repeat(names.len()))?;
+    for (q, quantity) in report.asked.iter().enumerate() {
+        let error = report.base().errors.get(q).copied().flatten();
+        let parts: Vec<String> = report.ladders.iter().map(|ladder| part(ladder, quantity)).collect();
+        let bar = report.reference.bars.get(q).copied().filter(|bar| bar.is_finite());
+        writeln!(t, "| {quantity} | {} | {} | {} |", figure(error), figure(bar), parts.join(" | "))?;
+    }
+
+    writeln!(t, "\nThe cheapest run for an error\n")?;
+    let mut previous = String::new();
+    for (quantities, name) in goals(report) {
+        for target in TARGETS {
+            let Some(row) = report.cheapest(&quantities, target) else { continue };
+            let Ok(record) = &row.result else { continue };
+            let error = quantities.iter().filter_map(|q| row.errors[*q]).reduce(f64::max).unwrap_or(0.0);
+            let bar = quantities.iter().map(|q| report.reference.bars[*q]).fold(0.0, f64::max);
+            let line =
+                format!("{}: {} ({error:.1e} +- {bar:.0e})", described(row), seconds(record.total()));
+            if line != previous {
+                writeln!(t, "  {:<8}of {name}: {line}", percent(target))?;
+            }
+            previous = line;
+        }
+    }
+
+    for kind in [AxisKind::Ladder, AxisKind::Ways, AxisKind::Problems] {
+        table(report, kind, t)?;
+    }
+    for note in &report.notes {
+        writeln!(t, "\n  note      {note}")?;
+    }
+    Ok(())
+}
+
+/// Every quantity by itself, and all together where there are several.
+fn goals(report: &Report) -> Vec<(Vec<usize>, &str)> {
+    let mut goals: Vec<(Vec<usize>, &str)> =
+        report.asked.iter().enumerate().map(|(q, name)| (vec![q], name.as_str())).collect();
+    if report.asked.len() > 1 {
+        goals.push(((0..report.asked.len()).collect(), "everything asked"));
+    }
+    goals
+}
+
+/// What a ladder leaves of a quantity at the scene's own level, with its order.
+fn part(ladder: &Ladder, quantity: &str) -> String {
+    let own = ladder.levels.iter().find(|rung| rung.level.setting.is_empty());
+    let error = own.and_then(|rung| rung.errors.iter().find(|e| e.0 == quantity)).map(|e| e.1);
+    let convergence = ladder.limits.iter().find(|limit| limit.quantity == quantity).map(|limit| limit.convergence);
+    let how = match convergence {
+        Some(Convergence::Converges { order, .. }) => format!(", order {order:.1}"),
+        Some(Convergence::Stalls { .. }) => ", does not converge".to_owned(),
+        Some(Convergence::Unknown { .. }) => ", order unknown".to_owned(),
+        _ => String::new(),
+    };
+    format!("{}{how}", figure(error))
+}
+
+fn figure(error: Option<f64>) -> String {
+    error.map_or_else(|| "-".to_owned(), |error| format!("{error:.1e}"))
+}
+
+/// The settings of a run that cost.
+fn described(row: &Row) -> String {
+    let Ok(record) = &row.result else { return row.level.label.clone() };
+    let size = &record.size;
+    let mut words = vec![format!("cells {:.3} mm", size.cell_m * 1e3)];
+    words.push(if size.layers == 1 { "1 layer".into() } else { format!("{} layers", size.layers) });
+    if size.step_s > 0.0 {
+        words.push(format!("{} unknowns marched", size.marched));
+        words.push(format!("step {:.4} us", size.step_s * 1e6));
+    }
+    if row.kind != AxisKind::Ladder && !row.level.setting.is_empty() {
+        words.push(row.level.label.clone());
+    }
+    words.join(", ")
+}
+
+fn table(report: &Report, kind: AxisKind, t: &mut String) -> fmt::Result {
+    let rows = || report.rows.iter().filter(move |row| row.kind == kind);
+    if rows().next().is_none() {
+        return Ok(());
+    }
+    let (heading, own) = match kind {
+        AxisKind::Ladder => ("Ladders", "of its axis"),
+        AxisKind::Ways => ("Other ways", "against its judge"),
+        AxisKind::Problems => ("Other problems: what they change is no error", "change"),
+    };
+    let each: Vec<&str> = report.asked.iter().map(String::as_str).collect();
+    writeln!(t, "\n{heading}\n")?;
+    writeln!(t, "| axis | setting | unknowns | {} | worst, {own} | time, s |", each.join(" | "))?;
+    writeln!(t, "| --- | --- | --- |{} --- | --- |", " --- |".repeat(each.len()))?;
+    for row in rows() {
+        let (axis, label) = (&row.axis, &row.level.label);
+        let Ok(record) = &row.result else {
+            let why = row.result.as_ref().err().map_or("", String::as_str);
+            let why: String = why.chars().take(WORDS).collect();
+            writeln!(t, "| {axis} | {label} | | {why} |{} | |", " |".repeat(each.len().saturating_sub(1)))?;
+            continue;
+        };
+        let errors: Vec<String> = row.errors.iter().map(|error| figure(*error)).collect();
+        let unknowns = match record.size.marched {
+            0 => record.size.unknowns.to_string(),
+            marched => format!("{}, {marched}", record.size.unknowns),
+        };
+        let best = if row.front { " *" } else { "" };
+        writeln!(
+            t,
+            "| {axis} | {label}{best} | {unknowns} | {} | {} | {:.3} |",
+            errors.join(" | "),
+            figure(row.own_worst()),
+            record.total()
+        )?;
+    }
+    Ok(())
+}
