@@ -1,61 +1,133 @@
-//! `fem study`: its figures are errors against the full model, and its refusals are said.
+//! `fem study`: what accuracy costs, counted from a reference that the study proves.
 
-use crate::support::{root, strip};
+use crate::support::{Case, fem, root, strip};
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Reductions of a cantilever of 8 cells.
+/// The rows of study.csv by axis and setting, values by column.
+pub(crate) fn rows(case: &Case, folder: &str) -> BTreeMap<(String, String), BTreeMap<String, String>> {
+    let (header, rows) = case.table(&format!("{folder}/study.csv"));
+    let by_column = |row: Vec<String>| header.iter().cloned().zip(row).collect::<BTreeMap<_, _>>();
+    let key = |row: &BTreeMap<String, String>| (row["axis"].clone(), row["setting"].clone());
+    rows.into_iter().map(by_column).map(|row| (key(&row), row)).collect()
+}
+
+fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("{column}: {row:?}"))
+}
+
+/// A cantilever of 8 cells, marched for a short time.
+fn short() -> Case {
+    strip().scene("end = \"20 us\"", "end = \"4 us\"").append("[reduction]\nmethod = \"ritz\"\nvectors = 20\n")
+}
+
 #[test]
-fn of_reductions() {
-    let case = strip();
-    let done = case.fem("study", &["--axis", "reduction", "--out", "study"]).good();
-    assert!(
-        done.stdout.starts_with("Errors against the full model of 558 unknowns at steps of 0.0250 us"),
-        "{done:#?}"
-    );
-    let (header, rows) = case.table("study/study.csv");
-    assert_eq!(header[..5], ["axis", "setting", "unknowns_marched", "step_s", "force_L2_error"]);
-    let error = |setting: &str| -> f64 {
-        let row = rows.iter().find(|r| r[1] == setting).unwrap_or_else(|| panic!("no {setting}"));
-        row[4].parse().unwrap_or_else(|_| panic!("{row:?}"))
+fn reductions_are_judged_by_the_largest() {
+    let case = short();
+    let done = case.fem("study", &["--axis", "reductions", "--out", "study"]).good();
+    let rows = rows(&case, "study");
+    let error = |setting: &str| number(&rows[&("reductions".into(), setting.into())], "force-history of its axis");
+    // The full model at the step of the scene, and the same space found in another way.
+    assert!(error("none") < 5e-3, "{}", error("none"));
+    assert!(error("ritz krylov 80") < error("ritz krylov 20"), "{rows:?}");
+    let refused = &rows[&("reductions".into(), "guyan 40".into())]["refused"];
+    assert!(refused.contains("governors are asked for, but the model offers only"), "{refused}");
+    assert!(done.stdout.contains("will run, about"), "{done:#?}");
+}
+
+#[test]
+fn integrators_are_tried_up_to_their_limits() {
+    let case = short();
+    case.fem("study", &["--axis", "integrators", "--out", "study"]).good();
+    let rows = rows(&case, "study");
+    let of = |label: &str| &rows[&("integrators".into(), label.into())];
+    let at_limit = number(of("rk4 at its limit"), "step_s");
+    for ((_, label), row) in rows.iter().filter(|((axis, label), _)| axis == "integrators" && label.starts_with("rk4"))
+    {
+        let step: Option<f64> = label[4..].split(' ').next().and_then(|step| step.parse().ok());
+        let Some(step) = step else { continue };
+        assert_eq!(row["refused"].contains("stability limit"), step * 1e-6 > at_limit, "{row:?}");
+    }
+    let limited = rows.keys().filter(|(_, label)| label.ends_with("at its limit")).map(|(_, label)| label.as_str());
+    let all = ["central-difference", "rk1", "rk2", "rk3", "rk4"].map(|name| format!("{name} at its limit"));
+    assert!(limited.eq(all.iter().map(String::as_str)), "{rows:?}");
+}
+
+/// Two studies differ in their seconds alone, and one that goes on runs nothing twice.
+#[test]
+fn studies_of_one_scene_are_equal() {
+    let case = short();
+    let arguments = |out| ["--axis", "mesh,reduction,step", "--out", out];
+    for out in ["one", "two"] {
+        case.fem("study", &arguments(out)).good();
+    }
+    let stable = |out: &str| {
+        let mut rows = rows(&case, out);
+        let mut taken = 0.0;
+        for row in rows.values_mut() {
+            taken += row
+                .iter()
+                .filter(|(column, _)| column.ends_with("_cpu_s"))
+                .filter_map(|(_, s)| s.parse::<f64>().ok())
+                .sum::<f64>();
+            row.retain(|column, _| !column.ends_with("_cpu_s") && column != "peak_memory_MB");
+        }
+        (rows, taken)
     };
-    // The full model at four times the step of the reference.
-    assert!(error("none") > 0.0 && error("none") < 2e-3, "{}", error("none"));
-    assert!(
-        error("ritz 80") < error("ritz 20") && error("ritz 80") < 5e-3,
-        "{} {}",
-        error("ritz 80"),
-        error("ritz 20")
-    );
-    // More governors than nodes.
-    let refused = rows.iter().find(|r| r[1] == "guyan 20").unwrap();
-    assert!(
-        refused[4].is_empty() && refused[10].contains("20 governors are asked for, but the model offers only 12"),
-        "{refused:?}"
-    );
-    assert!(done.stdout.contains("| guyan 20 |"), "{done:#?}");
+    let (one, two) = (stable("one"), stable("two"));
+    assert_eq!(one.0, two.0);
+    let again = case.fem("study", &[&arguments("one")[..], &["--resume"]].concat()).good();
+    assert!(again.stdout.contains("runs are there already"), "{again:#?}");
+    assert_eq!(stable("one").1, one.1, "a run was made again");
+    // Of another scene there is nothing to go on with.
+    let other = case.scene("end = \"4 us\"", "end = \"5 us\"");
+    let refused = other.fem("study", &[&arguments("one")[..], &["--resume"]].concat());
+    assert!(refused.status == 1 && refused.stderr.contains("`march.end` was \"4 us\" and is \"5 us\""), "{refused:#?}");
 }
 
 #[test]
-fn of_integrators() {
-    let case =
-        strip().scene("end = \"20 us\"", "end = \"4 us\"").append("[reduction]\nmethod = \"ritz\"\nvectors = 10\n");
-    case.fem("study", &["--axis", "integrator", "--out", "study"]).good();
-    let (_, rows) = case.table("study/study.csv");
-    let row = |setting: &str| rows.iter().find(|r| r[1] == setting).unwrap_or_else(|| panic!("no {setting}: {rows:?}"));
-    let limited: Vec<_> =
-        rows.iter().filter(|r| r[1].starts_with("rk4") && r[10].contains("stability limit")).collect();
-    let at_limit: f64 = row("rk4 at its limit")[3].parse().unwrap();
-    assert!(limited.iter().all(|r| r[1][4..r[1].len() - 3].parse::<f64>().unwrap() * 1e-6 > at_limit), "{limited:?}");
-    let at_limits: Vec<_> = rows.iter().filter(|r| r[1].ends_with("at its limit")).map(|r| &r[1]).collect();
-    let limited = ["rk1", "rk2", "rk3", "rk4", "central-difference"].map(|name| format!("{name} at its limit"));
-    assert!(at_limits.iter().copied().eq(&limited), "{at_limits:?}");
-    assert_eq!(row("newmark 0.1000 us")[2], "10");
+fn a_scene_names_its_own_axes_and_quantities() {
+    let case = short().append(
+        "[study]\naxes = [\"step\"]\nquantities = [\"impulse\"]\n\n[[study.axis]]\nname = \"patch\"\nladder = false\n\
+         levels = [{ impactor.patch_radius = \"0.5 mm\" }]\n",
+    );
+    let done = case.fem("study", &["--out", "study", "--tolerance", "10%"]).good();
+    let rows = rows(&case, "study");
+    let axes: BTreeSet<_> = rows.keys().map(|(axis, _)| axis.as_str()).collect();
+    assert_eq!(axes.into_iter().collect::<Vec<_>>(), ["joint", "patch", "scene", "step"]);
+    let columns =
+        rows.values().next().map(|row| row.keys().filter(|c| c.ends_with(" error")).cloned().collect::<Vec<_>>());
+    assert_eq!(columns.unwrap(), ["impulse error"]);
+    assert!(done.stdout.contains("is kept by"), "{done:#?}");
+    // The scene that it wrote keeps what it promises.
+    fem(case.folder(), &["run", "study/scene.toml", "--out", "promised"]).good();
+    let impulse = |out: &str| case.summary(out)["impact"]["impulse_N_s"].as_f64().unwrap();
+    let exact = number(&rows[&("step".into(), "0.0250 us".into())], "impulse");
+    assert!((impulse("promised") / exact - 1.0).abs() < 0.1);
 }
 
 #[test]
-fn of_a_scene_without_an_impact() {
+fn what_a_study_does_not_know_is_refused() {
+    let case = short();
+    let axis = case.fem("study", &["--axis", "mash"]);
+    assert!(
+        axis.status == 1 && axis.stderr.contains("there is no axis `mash`") && axis.stderr.contains("mesh"),
+        "{axis:#?}"
+    );
+    let case = case.append("[study]\nquantities = [\"peek-force\"]\n");
+    let quantity = case.fem("study", &["--axis", "step"]);
+    assert!(quantity.status == 1 && quantity.stderr.contains("the scene has no `peek-force`"), "{quantity:#?}");
+    assert!(quantity.stderr.contains("peak-force"), "{quantity:#?}");
+}
+
+/// Loads at rest and natural modes have an accuracy, too.
+#[test]
+fn of_other_analyses() {
     let scene = std::fs::read_to_string(root().join("examples/pagano-0-90-0/scene.toml")).unwrap();
-    let case = strip().text(&scene);
-    let done = case.fem("study", &[]);
-    assert!(done.status == 1 && done.stderr.contains("the scene describes no impact"), "{done:#?}");
-    assert_eq!(case.names("."), ["plate"], "a refusal leaves no folder");
+    let case = strip().text(&scene.replace("cells = [6, 6]", "cells = [4, 4]"));
+    let scene = case.append("[study]\nquantities = [\"deflection\", { name = \"sxx-top\", profile = \"centre\", component = \"sxx\", height = \"0.5 mm\" }]\n");
+    let done = scene.fem("study", &["--axis", "mesh", "--budget", "20s", "--out", "study"]).good();
+    let rows = rows(&scene, "study");
+    let deflection = number(&rows[&("scene".into(), "as it is".into())], "deflection");
+    assert!((deflection.abs() * 1e3 / 0.07530 - 1.0).abs() < 1e-3, "{deflection}");
+    assert!(done.stdout.contains("order"), "{done:#?}");
 }

@@ -88,9 +88,10 @@ fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error
     study::write(session.dir(), &report)?;
     study::write_pictures(session.dir(), &report)?;
     let text = study::text(&report);
-    session.dir().write("study.md", |out| out.write_all(text.as_bytes()))?;
+    session.dir().write("study.md", |out| write!(out, "{text}{}", study::tables(&report)))?;
     print(&text);
-    let promised = arguments.tolerance.map_or(Ok(true), |tolerance| promise(&session, arguments, &report, tolerance))?;
+    let promised =
+        arguments.tolerance.map_or(Ok(true), |tolerance| promise(&session, arguments, &report, tolerance))?;
     print(&format!("\n  results   {}\n", session.dir().path().display()));
     Ok(if promised { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
@@ -101,7 +102,9 @@ fn promise(session: &Session<'_>, arguments: &Arguments, report: &Report, tolera
     let Some(row) = report.cheapest(&all, tolerance) else {
         let best = report.rows.iter().filter_map(|row| row.worst()).reduce(f64::min);
         let best = best.map_or(String::new(), |best| format!("; the best leaves {best:.1e}"));
-        print(&format!("\n  no run is certain to keep {tolerance} in everything asked{best}: give it more time, or ask less\n"));
+        print(&format!(
+            "\n  no run is certain to keep {tolerance} in everything asked{best}: give it more time, or ask less\n"
+        ));
         return Ok(false);
     };
     let text = scene::rewrite(&arguments.scene, &row.level.setting)?;

@@ -1,10 +1,10 @@
 //! The march in time, watched; it can be saved and gone on with.
 
 use super::checkpoint::{self, Checkpoint};
-use super::saved::CheckpointError;
 use super::ledger::Ledger;
 use super::modal::{self, ModalView};
 use super::prepare::{Prepared, unmarchable};
+use super::saved::CheckpointError;
 use super::{Maximum, Outcome, Sizes};
 use crate::cost::Stopwatch;
 use crate::error::Error;

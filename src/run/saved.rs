@@ -113,7 +113,8 @@ pub(crate) type Keys = BTreeMap<String, String>;
 /// A mesh that cannot be read any more.
 pub(crate) fn identity(model: &Model) -> Result<Keys, FileError> {
     let scene = &model.scene;
-    let depends = |key: &str| !FREE.iter().any(|free| key.starts_with(free)) && !key.starts_with(MATERIALS) && key != MESH;
+    let depends =
+        |key: &str| !FREE.iter().any(|free| key.starts_with(free)) && !key.starts_with(MATERIALS) && key != MESH;
     let mut keys = scene.keys.clone();
     keys.retain(|key, _| depends(key));
     keys.extend(model.materials.iter().map(|m| (format!("{MATERIALS}{}", m.name), format!("{m:?}"))));

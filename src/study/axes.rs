@@ -101,7 +101,7 @@ pub const NAMES: [&str; 13] = [
 pub(super) fn axes(model: &Model, registry: &Registry, names: &[String]) -> Result<Vec<Axis>, SceneError> {
     let study = &model.scene.study;
     let own = || study.own.iter().map(|own| own.name.value.as_str());
-    for name in study.axes.iter().flatten().filter(|name| !NAMES.contains(&name.value.as_str())) {
+    if let Some(name) = study.axes.iter().flatten().find(|name| !NAMES.contains(&name.value.as_str())) {
         let help = format!("`{}` {}", name.value, unknown_key(&name.value, NAMES.into_iter().chain(own())));
         return Err(model.scene.source.error_at(&name.place, format!("there is no axis `{}`", name.value), help));
     }
@@ -111,10 +111,13 @@ pub(super) fn axes(model: &Model, registry: &Registry, names: &[String]) -> Resu
         (names, _) => names.iter().map(String::as_str).collect(),
     };
     let wanted = |name: &str| asked.contains(&name) || asked.iter().any(|axis| judges(axis).contains(&name));
-    let mut axes: Vec<Axis> = NAMES.into_iter().filter(|name| wanted(name)).filter_map(|name| standard(name, model, registry)).collect();
+    let mut axes: Vec<Axis> =
+        NAMES.into_iter().filter(|name| wanted(name)).filter_map(|name| standard(name, model, registry)).collect();
     for axis in study.own.iter().filter(|axis| asked.contains(&axis.name.value.as_str())) {
-        let label = |keys: &Setting| keys.iter().map(|(key, value)| format!("{key} {value}")).collect::<Vec<_>>().join(", ");
-        let levels = axis.levels.iter().map(|keys| Level { label: label(keys), setting: keys.clone(), at_limit: false });
+        let label =
+            |keys: &Setting| keys.iter().map(|(key, value)| format!("{key} {value}")).collect::<Vec<_>>().join(", ");
+        let levels =
+            axis.levels.iter().map(|keys| Level { label: label(keys), setting: keys.clone(), at_limit: false });
         let kind = if axis.ladder { AxisKind::Ladder } else { AxisKind::Problems };
         axes.push(Axis { name: axis.name.value.clone(), kind, levels: levels.collect() });
     }
@@ -186,7 +189,8 @@ fn geometry(scene: &Scene, plane: &QuadMesh) -> Vec<Level> {
         return Vec::new();
     }
     let refined = value(scene, "mesh.refine").unwrap_or(0) + 1;
-    let other = if scene.keys.get("mesh.curves").is_some_and(|kept| kept == "\"straight\"") { "kept" } else { "straight" };
+    let other =
+        if scene.keys.get("mesh.curves").is_some_and(|kept| kept == "\"straight\"") { "kept" } else { "straight" };
     let keys = [("mesh.refine", refined.to_string()), ("mesh.curves", quoted(other))];
     vec![Level::new(format!("refine {refined}, curves {other}"), keys)]
 }
@@ -302,7 +306,8 @@ fn quadrature(scene: &Scene, registry: &Registry) -> Vec<Level> {
 fn mass(scene: &Scene, registry: &Registry) -> Vec<Level> {
     let kind = &scene.element.name.value;
     let inert = !matches!(scene.analysis, Analysis::Static(_));
-    let words = ["linear", "cubic"].into_iter().filter(|_| inert && registry.param(Kind::Element, kind, "mass").is_some());
+    let words =
+        ["linear", "cubic"].into_iter().filter(|_| inert && registry.param(Kind::Element, kind, "mass").is_some());
     let others = words.filter(|word| scene.keys.get("element.mass").is_none_or(|own| *own != quoted(word)));
     others.map(|word| Level::new(word, [("element.mass", quoted(word))])).collect()
 }
@@ -327,7 +332,10 @@ fn contact(scene: &Scene) -> Option<Vec<Level>> {
         Level::new(format!("square {:.3} mm", side * 1e3), [("impactor.patch_side", quoted(format!("{side:e} m")))])
     };
     let radius = |radius: f64| {
-        Level::new(format!("radius {:.3} mm", radius * 1e3), [("impactor.patch_radius", quoted(format!("{radius:e} m")))])
+        Level::new(
+            format!("radius {:.3} mm", radius * 1e3),
+            [("impactor.patch_radius", quoted(format!("{radius:e} m")))],
+        )
     };
     Some(match scene.impact()?.impactors.first()?.load.value {
         ContactLoad::Node => [1e-3, 2e-3, 4e-3].map(radius).to_vec(),
@@ -340,7 +348,8 @@ fn window(model: &Model) -> Vec<Level> {
     if model.criteria.is_empty() || !matches!(model.plan, Plan::Impact(_)) {
         return Vec::new();
     }
-    let side = |side: f64| Level::new(format!("{:.3} mm", side * 1e3), [("failure.window", quoted(format!("{side:e} m")))]);
+    let side =
+        |side: f64| Level::new(format!("{:.3} mm", side * 1e3), [("failure.window", quoted(format!("{side:e} m")))]);
     match model.scene.failure.window {
         Window::Element => [1e-3, 2e-3, 4e-3].map(side).to_vec(),
         Window::Square(own) => {

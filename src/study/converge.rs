@@ -1,7 +1,8 @@
 //! What a sequence of finer and finer results says of its limit.
 
-/// Least ratio of two successive differences of a sequence that converges: order one half.
-const SHRINKS: f64 = std::f64::consts::SQRT_2;
+/// Least ratio of two successive differences of a sequence that is said to converge: order 0.3, with more than four times
+/// the last difference left. Those of a logarithm do not shrink at all.
+const SHRINKS: f64 = 1.23;
 
 /// Highest order that is believed; a larger one is a difference that happens to vanish.
 const HIGHEST: f64 = 8.0;
@@ -16,7 +17,7 @@ pub enum Convergence {
         /// Error that is left in the last level.
         left: f64,
     },
-    /// The last difference is smaller than what matters, and so is the error of the last level.
+    /// Differences do not shrink any more, but the last is smaller than what matters, and so is the error of the last level.
     Settled {
         /// The last difference.
         left: f64,
@@ -36,28 +37,24 @@ pub enum Convergence {
 impl Convergence {
     /// From the differences of successive levels, coarse to fine; none is of interest that is below `matters`.
     pub fn of(differences: &[f64], matters: f64) -> Self {
-        match differences {
+        match *differences {
             [] => Self::Unknown { difference: None },
-            [.., last] if *last <= matters => Self::Settled { left: *last },
-            [difference] => Self::Unknown { difference: Some(*difference) },
-            [.., before, last] => {
-                let ratio = before / last;
-                // A NaN stalls.
-                if !(ratio >= SHRINKS) {
-                    return Self::Stalls { difference: *last };
-                }
-                let order = ratio.log2().min(HIGHEST);
+            [.., before, last] if before / last >= SHRINKS => {
+                let order = (before / last).log2().min(HIGHEST);
                 Self::Converges { order, left: last / (order.exp2() - 1.0) }
             }
+            [.., last] if last <= matters => Self::Settled { left: last },
+            [difference] => Self::Unknown { difference: Some(difference) },
+            [.., difference] => Self::Stalls { difference },
         }
     }
 
-    /// Error of the last level; the last difference where nothing better is known, infinite for one that stalls.
+    /// Error of the last level; infinite for one that stalls. Of two levels alone it is taken to be of second order.
     pub fn left(self) -> f64 {
         match self {
             Self::Converges { left, .. } | Self::Settled { left } => left,
             Self::Stalls { .. } | Self::Unknown { difference: None } => f64::INFINITY,
-            Self::Unknown { difference: Some(difference) } => difference,
+            Self::Unknown { difference: Some(difference) } => difference / 3.0,
         }
     }
 

@@ -54,7 +54,12 @@ impl Ladder {
         let Some((_, finest)) = runs.last() else { return ladder };
         ladder.levels = runs
             .iter()
-            .map(|(level, record)| Rung { level: level.clone(), size: record.size, errors: Vec::new(), values: Vec::new() })
+            .map(|(level, record)| Rung {
+                level: level.clone(),
+                size: record.size,
+                errors: Vec::new(),
+                values: Vec::new(),
+            })
             .collect();
         for quantity in quantities {
             let values: Vec<Option<f64>> = runs.iter().map(|(_, record)| record.value(quantity)).collect();

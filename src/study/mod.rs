@@ -34,7 +34,7 @@ pub use record::{PHASES, Record, Size};
 pub use report::{Report, Row};
 pub use session::Session;
 pub use table::write;
-pub use text::text;
+pub use text::{tables, text};
 
 use crate::error::Error;
 use crate::model::Model;
@@ -45,10 +45,10 @@ use fem_io::scene::Setting;
 use plan::Planner;
 
 /// Relative error to which a reference must have converged unless the scene says otherwise.
-const TOLERANCE: f64 = 1e-3;
+const TOLERANCE: f64 = 1e-2;
 
 /// Share of the tolerance below which differences are of no interest.
-const MATTERS: f64 = 0.3;
+const MATTERS: f64 = 0.03;
 
 /// Share of its limit at which an integrator is tried.
 const AT_LIMIT: f64 = 0.99;
@@ -88,7 +88,9 @@ pub fn check(model: &Model, registry: &Registry, options: &Options) -> Result<()
     let known: Vec<&str> = NAMES.into_iter().chain(own).collect();
     match options.axes.iter().find(|name| !known.contains(&name.as_str())) {
         None => axes(model, registry, &options.axes).map(drop).map_err(Error::from),
-        Some(name) => Err(Error::Axis { name: name.clone(), help: format!("`{name}` {}", unknown_key(name, known.into_iter())) }),
+        Some(name) => {
+            Err(Error::Axis { name: name.clone(), help: format!("`{name}` {}", unknown_key(name, known.into_iter())) })
+        }
     }
 }
 

@@ -47,7 +47,8 @@ fn draw(
     let series: Vec<(String, Vec<(f64, f64)>)> = axes
         .iter()
         .map(|axis| {
-            let mut points: Vec<(f64, f64)> = report.rows.iter().filter(|r| r.axis == *axis).filter_map(point).collect();
+            let mut points: Vec<(f64, f64)> =
+                report.rows.iter().filter(|r| r.axis == *axis).filter_map(point).collect();
             points.sort_by(|a, b| a.0.total_cmp(&b.0));
             ((*axis).to_owned(), points)
         })

@@ -31,6 +31,9 @@ const MOST_CELLS: f64 = 200_000.0;
 const TARGETS: [f64; 10] = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5];
 const SAFETY: f64 = 0.7;
 
+/// Share of their time that the finest of them may take.
+const FINEST: f64 = 0.7;
+
 /// Why a run was left out.
 pub(super) const SPENT: &str = "beyond the time of the study";
 
@@ -199,7 +202,8 @@ impl Planner {
                 .flat_map(|levels: &Vec<usize>| (0..ladder.levels.len()).map(move |k| [&levels[..], &[k]].concat()))
                 .collect();
         }
-        let mut choices: Vec<(f64, Planned)> = all
+        let sure = report.convergent();
+        let mut choices: Vec<(Vec<usize>, f64, Planned)> = all
             .iter()
             .map(|levels| {
                 let each = || ladders.iter().zip(levels).map(|(ladder, k)| &ladder.levels[*k]);
@@ -207,13 +211,13 @@ impl Planner {
                 let label = each().map(|level| level.level.label.as_str()).collect::<Vec<_>>().join(", ");
                 let setting = each().flat_map(|level| level.level.setting.clone()).collect();
                 let level = Level { label, setting, at_limit: false };
-                let error = each().map(|level| level.worst(&report.asked)).sum();
+                let error = each().map(|level| level.worst(&sure)).sum();
                 let seconds = rates.seconds(&size);
-                (error, Planned { axis: TOGETHER.into(), kind: AxisKind::Ladder, level, size, seconds })
+                (levels.clone(), error, Planned { axis: TOGETHER.into(), kind: AxisKind::Ladder, level, size, seconds })
             })
-            .filter(|(_, planned)| planned.size.factor_entries <= MOST_ENTRIES)
+            .filter(|(_, _, planned)| planned.size.factor_entries <= MOST_ENTRIES)
             .collect();
-        choices.sort_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds));
+        choices.sort_by(|a, b| a.2.seconds.total_cmp(&b.2.seconds));
         let mut chosen: Vec<Planned> = Vec::new();
         let mut choose = |planned: &Planned, time: &mut f64| {
             if chosen.iter().all(|other| other.level != planned.level) {
@@ -221,21 +225,18 @@ impl Planner {
                 chosen.push(planned.clone());
             }
         };
-        // The finest first: everything is measured by it. Half of the time is left for a second one that proves it.
-        let within = |most: f64| {
-            let affordable = choices.iter().filter(move |c| c.1.seconds <= most);
-            affordable.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.seconds.total_cmp(&b.1.seconds)))
-        };
-        if let Some((error, finest)) = within(0.5 * time) {
+        // The finest first, because everything is measured by it, and one that is coarser along every ladder, to prove it.
+        let affordable = choices.iter().filter(|c| c.2.seconds <= FINEST * time);
+        let finest = affordable.min_by(|a, b| a.1.total_cmp(&b.1).then(a.2.seconds.total_cmp(&b.2.seconds)));
+        if let Some((levels, _, finest)) = finest {
             choose(finest, &mut time);
-            // Another one nearly as fine, of which every ladder that has one takes another level.
-            let other = choices.iter().filter(|c| c.1.seconds <= time && c.1.level != finest.level && c.0 > *error);
-            if let Some((_, second)) = other.min_by(|a, b| a.0.total_cmp(&b.0)) {
-                choose(second, &mut time);
-            }
+            let below: Vec<usize> = levels.iter().map(|k| k.saturating_sub(1)).collect();
+            choices.iter().filter(|c| c.0 == below).for_each(|(_, _, second)| choose(second, &mut time));
         }
         for target in TARGETS {
-            let Some((_, cheapest)) = choices.iter().find(|(error, _)| *error <= SAFETY * target) else { continue };
+            let Some((_, _, cheapest)) = choices.iter().find(|(_, error, _)| *error <= SAFETY * target) else {
+                continue;
+            };
             if cheapest.seconds <= time {
                 choose(cheapest, &mut time);
             }

@@ -56,11 +56,10 @@ pub(super) fn of_impact(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Vec<
     figures
 }
 
-/// Stresses below this share of the largest of their profile are not asked for.
-const NOTABLE: f64 = 1e-3;
+/// Stresses below this share of the largest of their profile are not asked for, unless by name.
+const NOTABLE: f64 = 0.1;
 
-const COMPONENTS: [&str; 12] =
-    ["sxx", "syy", "szz", "sxy", "syz", "szx", "s1", "s2", "s3", "s12", "s23", "s13"];
+const COMPONENTS: [&str; 12] = ["sxx", "syy", "szz", "sxy", "syz", "szx", "s1", "s2", "s3", "s12", "s23", "s13"];
 
 /// Of loads at rest.
 ///
@@ -77,8 +76,9 @@ pub(super) fn of_statics(model: &Model, solution: &Solution) -> Result<Vec<Figur
     for (named, points) in model.profiles.iter().zip(&solution.profiles) {
         let extremes = [0, 1, 2, 3, 4, 5].map(|k| extreme(points.iter().map(|p| p.global.0[k])));
         let largest = extreme(extremes.into_iter()).abs();
-        for (component, value) in COMPONENTS.into_iter().zip(extremes).filter(|(_, v)| v.abs() > NOTABLE * largest) {
-            figures.push(Figure::new(format!("{} {component}", named.line.name.value), value, true));
+        for (component, value) in COMPONENTS.into_iter().zip(extremes) {
+            let name = format!("{} {component}", named.line.name.value);
+            figures.push(Figure::new(name, value, value.abs() > NOTABLE * largest));
         }
     }
     for quantity in &model.scene.study.quantities {
@@ -94,7 +94,12 @@ pub(super) fn of_statics(model: &Model, solution: &Solution) -> Result<Vec<Figur
             return Err(wrong(format!("there is no stress `{component}`"), help));
         };
         let value = at(&solution.profiles[p], k, *height);
-        let outside = || wrong(format!("the plate has nothing at a height of {height:e} m"), "heights count from the mid-plane".into());
+        let outside = || {
+            wrong(
+                format!("the plate has nothing at a height of {height:e} m"),
+                "heights count from the mid-plane".into(),
+            )
+        };
         figures.push(Figure::new(name, value.ok_or_else(outside)?, true));
     }
     Ok(figures)
@@ -117,7 +122,8 @@ fn at(points: &[ProfilePoint], k: usize, height: f64) -> Option<f64> {
 
 /// Of natural modes.
 pub(super) fn of_modes(omega: &[f64]) -> Vec<Figure> {
-    let frequency = |(k, omega): (usize, &f64)| Figure::new(format!("frequency {}", k + 1), omega / std::f64::consts::TAU, true);
+    let frequency =
+        |(k, omega): (usize, &f64)| Figure::new(format!("frequency {}", k + 1), omega / std::f64::consts::TAU, true);
     omega.iter().enumerate().map(frequency).collect()
 }
 

@@ -94,20 +94,45 @@ impl Record {
     pub fn of(path: &Path, setting: &Setting, registry: &Registry) -> Result<Self, Error> {
         cost::forget_peak_memory();
         let model = Model::new(scene::read_with(path, setting)?, registry)?;
-        let (size, figures, force, phases) = match &model.plan {
-            Plan::Impact(_) => impact(&model)?,
+        let mut record = match &model.plan {
+            Plan::Impact(_) => Self::of_impact(&model)?,
             Plan::Static { .. } => {
                 let solution = statics::solve(&model, NonZeroUsize::MIN)?;
                 let size = Size { factor_entries: solution.factor_entries, ..Size::of(&model, &solution.counters) };
-                (size, quantity::of_statics(&model, &solution)?, None, solution.phases)
+                Self::new(size, quantity::of_statics(&model, &solution)?, None, &solution.phases)
             }
             Plan::Modes { count } => {
                 let solution = modes::solve(&model, *count, NonZeroUsize::MIN)?;
                 let size = Size { factor_entries: solution.factor_entries, ..Size::of(&model, &solution.counters) };
-                (size, quantity::of_modes(&solution.modes.omega), None, solution.phases)
+                Self::new(size, quantity::of_modes(&solution.modes.omega), None, &solution.phases)
             }
         };
-        Ok(Self { size, figures, force, seconds: seconds(&phases), memory: cost::peak_memory() })
+        record.memory = cost::peak_memory();
+        Ok(record)
+    }
+
+    fn new(size: Size, figures: Vec<Figure>, force: Option<Force>, phases: &[Phase]) -> Self {
+        Self { size, figures, force, seconds: seconds(phases), memory: None }
+    }
+
+    fn of_impact(model: &Model) -> Result<Self, Error> {
+        let prepared = run::prepare(model, NonZeroUsize::MIN)?;
+        let sizes = prepared.sizes;
+        let outcome = run::march(prepared, |_| ())?;
+        if let Some(why) = outcome.stopped {
+            return Err(Error::Stopped(why));
+        }
+        let size = Size {
+            marched: sizes.marched,
+            reduced: sizes.marched < sizes.unknowns,
+            factor_entries: sizes.factor_entries,
+            sites: outcome.sites,
+            step_s: sizes.step,
+            samples: (sizes.steps as f64 * sizes.step / model.scene.failure.every) as u64,
+            ..Size::of(model, &outcome.counters)
+        };
+        let force = Force::of(&outcome.history);
+        Ok(Self::new(size, quantity::of_impact(model, &sizes, &outcome), Some(force), &outcome.phases))
     }
 
     /// Value of the figure `name`.
@@ -128,26 +153,6 @@ impl Record {
     pub fn total(&self) -> f64 {
         self.seconds.iter().sum()
     }
-}
-
-fn impact(model: &Model) -> Result<(Size, Vec<Figure>, Option<Force>, Vec<Phase>), Error> {
-    let prepared = run::prepare(model, NonZeroUsize::MIN)?;
-    let sizes = prepared.sizes;
-    let outcome = run::march(prepared, |_| ())?;
-    if let Some(why) = outcome.stopped {
-        return Err(Error::Stopped(why));
-    }
-    let size = Size {
-        marched: sizes.marched,
-        reduced: sizes.marched < sizes.unknowns,
-        factor_entries: sizes.factor_entries,
-        sites: outcome.sites,
-        step_s: sizes.step,
-        samples: (sizes.steps as f64 * sizes.step / model.scene.failure.every) as u64,
-        ..Size::of(model, &outcome.counters)
-    };
-    let force = Force::of(&outcome.history);
-    Ok((size, quantity::of_impact(model, &sizes, &outcome), Some(force), outcome.phases))
 }
 
 /// Seconds per [`PHASES`] of what a run calls its phases.

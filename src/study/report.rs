@@ -63,7 +63,7 @@ pub struct Reference {
     pub values: Vec<Option<f64>>,
     /// Per quantity: the relative error that is left, as far as known.
     pub bars: Vec<f64>,
-    /// Per quantity: relative difference of the two finest runs.
+    /// Per quantity: relative difference of the run that is a level coarser along every ladder.
     pub agreement: Vec<Option<f64>>,
 }
 
@@ -147,6 +147,16 @@ impl Report {
         self.ladders = climbed.filter(|ladder| ladder.levels.len() > 1).collect();
     }
 
+    /// What is asked and converges along every ladder; all of it, if nothing does.
+    pub(super) fn convergent(&self) -> Vec<String> {
+        let stalls = |name: &&String| {
+            let limits = self.ladders.iter().flat_map(|ladder| &ladder.limits);
+            limits.filter(|l| l.quantity == **name).any(|l| matches!(l.convergence, Convergence::Stalls { .. }))
+        };
+        let sure: Vec<String> = self.asked.iter().filter(|name| !stalls(name)).cloned().collect();
+        if sure.is_empty() { self.asked.clone() } else { sure }
+    }
+
     /// Counts errors from the reference, and what each axis changes from its judge.
     pub(super) fn judge(&mut self, axes: &[Axis], judges: fn(&str) -> &'static [&'static str]) {
         self.refer();
@@ -184,27 +194,29 @@ impl Report {
 
     /// The finest joint run is the reference; the scene itself, where there is none.
     fn refer(&mut self) {
+        let sure = self.convergent();
         let total = |row: &Row| -> f64 {
             let labels: Vec<&str> = row.level.label.split(", ").collect();
             let each = self.ladders.iter().zip(labels);
             let error = |(ladder, label): (&Ladder, &str)| {
                 let rung = ladder.levels.iter().find(|rung| rung.level.label == label);
-                rung.map_or(f64::INFINITY, |rung| rung.worst(&self.asked))
+                rung.map_or(f64::INFINITY, |rung| rung.worst(&sure))
             };
             each.map(error).sum()
         };
-        let mut joint: Vec<(usize, f64)> = self
-            .rows
-            .iter()
-            .enumerate()
-            .filter(|(_, row)| row.axis == TOGETHER && row.result.is_ok())
-            .map(|(k, row)| (k, total(row)))
-            .collect();
-        joint.sort_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
-        let row = joint.first().map_or(0, |first| first.0);
-        let (finest, second) = (&self.rows[row], joint.get(1).map(|second| &self.rows[second.0]));
+        let joint = self.rows.iter().enumerate().filter(|(_, row)| row.axis == TOGETHER && row.result.is_ok());
+        let finest = joint.map(|(k, row)| (k, total(row))).min_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
+        let row = finest.map_or(0, |finest| finest.0);
+        let finest = &self.rows[row];
         let Ok(record) = &finest.result else { return };
         let labels: Vec<&str> = finest.level.label.split(", ").collect();
+        // The run one level below on every ladder.
+        let below = self.ladders.iter().zip(&labels).map(|(ladder, label)| {
+            let k = ladder.levels.iter().position(|rung| rung.level.label == *label).unwrap_or(0);
+            ladder.levels[k.saturating_sub(1)].level.label.as_str()
+        });
+        let below = below.collect::<Vec<_>>().join(", ");
+        let second = self.rows.iter().find(|row| row.axis == TOGETHER && row.level.label == below);
         let mut reference = Reference { row, ..Reference::default() };
         for quantity in &self.asked {
             let each = self.ladders.iter().zip(&labels).map(|(ladder, label)| ladder.correction(quantity, label));
@@ -220,13 +232,13 @@ impl Report {
             let value = record.value(quantity);
             reference.values.push(value.map(|value| value + correction * value.abs()));
             reference.bars.push(bar);
-            let second = second.and_then(|row| row.result.as_ref().ok());
+            let second = second.and_then(|row| row.result.as_ref().ok()).filter(|_| below != finest.level.label);
             reference.agreement.push(second.and_then(|second| second.difference(record, quantity)).map(f64::abs));
         }
         self.reference = reference;
     }
 
-    /// Whether the two finest runs agree to the tolerance in what is asked.
+    /// Whether it agrees to the tolerance, in all that is asked, with the run a level coarser along every ladder.
     pub fn proven(&self) -> bool {
         let agrees = |difference: &Option<f64>| difference.is_some_and(|d| d <= self.tolerance);
         !self.reference.agreement.is_empty() && self.reference.agreement.iter().all(agrees)

@@ -56,15 +56,24 @@ fn percent(x: f64) -> String {
     }
 }
 
-/// What a study found, in Markdown.
+/// What a study found, in Markdown: where the error of the scene comes from, and the cheapest run for an error.
 pub fn text(report: &Report) -> String {
     let mut t = String::new();
     // Writing to a text cannot fail.
-    let _ = write(report, &mut t);
+    let _ = summary(report, &mut t);
     t
 }
 
-fn write(report: &Report, t: &mut String) -> fmt::Result {
+/// Every run of a study, in Markdown.
+pub fn tables(report: &Report) -> String {
+    let mut t = String::new();
+    for kind in [AxisKind::Ladder, AxisKind::Ways, AxisKind::Problems] {
+        let _ = table(report, kind, &mut t);
+    }
+    t
+}
+
+fn summary(report: &Report, t: &mut String) -> fmt::Result {
     let Ok(base) = &report.base().result else { return Ok(()) };
     let ran: f64 = report.rows.iter().filter_map(|row| row.result.as_ref().ok()).map(|record| record.total()).sum();
     let reference = &report.rows[report.reference.row];
@@ -83,10 +92,10 @@ fn write(report: &Report, t: &mut String) -> fmt::Result {
         match agreement {
             Some(worst) => writeln!(
                 t,
-                "  reference {verdict}: the two finest runs differ by at most {worst:.1e} (asked: {:.1e})",
+                "  reference {verdict}: a level coarser along every ladder changes it by at most {worst:.1e} (asked: {:.1e})",
                 report.tolerance
             )?,
-            None => writeln!(t, "  reference NOT proven: there is no second run as fine")?,
+            None => writeln!(t, "  reference NOT proven: there is none a level coarser")?,
         }
     } else {
         writeln!(t, "  no ladder was climbed: what is shown are differences from the scene as it is")?;
@@ -111,8 +120,7 @@ fn write(report: &Report, t: &mut String) -> fmt::Result {
             let Ok(record) = &row.result else { continue };
             let error = quantities.iter().filter_map(|q| row.errors[*q]).reduce(f64::max).unwrap_or(0.0);
             let bar = quantities.iter().map(|q| report.reference.bars[*q]).fold(0.0, f64::max);
-            let line =
-                format!("{}: {} ({error:.1e} +- {bar:.0e})", described(row), seconds(record.total()));
+            let line = format!("{}: {} ({error:.1e} +- {bar:.0e})", described(row), seconds(record.total()));
             if line != previous {
                 writeln!(t, "  {:<8}of {name}: {line}", percent(target))?;
             }
@@ -120,13 +128,10 @@ fn write(report: &Report, t: &mut String) -> fmt::Result {
         }
     }
 
-    for kind in [AxisKind::Ladder, AxisKind::Ways, AxisKind::Problems] {
-        table(report, kind, t)?;
+    if !report.notes.is_empty() {
+        writeln!(t)?;
     }
-    for note in &report.notes {
-        writeln!(t, "\n  note      {note}")?;
-    }
-    Ok(())
+    report.notes.iter().try_for_each(|note| writeln!(t, "  note      {note}"))
 }
 
 /// Every quantity by itself, and all together where there are several.

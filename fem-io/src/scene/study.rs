@@ -74,7 +74,9 @@ pub(super) fn read(field: &Field<'_>) -> Result<Study, SceneError> {
     let own = |field: Field<'_>| field.list()?.iter().map(axis).collect::<Result<Vec<_>, _>>();
     let tolerance = |field: Field<'_>| match field.number()? {
         tolerance if tolerance > 0.0 && tolerance < 1.0 => Ok(tolerance),
-        tolerance => Err(field.error(format!("{tolerance} is no relative error"), "give a number between 0 and 1: 1e-3")),
+        tolerance => {
+            Err(field.error(format!("{tolerance} is no relative error"), "give a number between 0 and 1: 1e-3"))
+        }
     };
     Ok(Study {
         axes: table.optional("axes").map(names).transpose()?,
