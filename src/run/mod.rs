@@ -1,5 +1,6 @@
 //! The main job: assemble, reduce, march, scan.
 
+mod accuracy;
 mod checkpoint;
 mod ledger;
 mod march;
@@ -7,6 +8,7 @@ mod modal;
 mod prepare;
 
 pub use crate::stress::IndexHistory;
+pub use accuracy::{Accuracy, ReductionError, Residual, StepError};
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use march::{March, march};
 pub use modal::{ModalHistory, ModeShare};
@@ -85,6 +87,8 @@ pub struct Outcome {
     pub sites: usize,
     /// Largest deviation of the total energy from the energy of the impact, relative to it.
     pub energy_error: f64,
+    /// Estimates of other errors.
+    pub accuracy: Accuracy,
     /// Work done.
     pub counters: Counters,
     /// Time per phase.
