@@ -173,12 +173,12 @@ impl<'a> March<'a> {
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
         let Prepared { model, impact, system, reduced, full, condensation, sizes, counters, mut stopwatch } = prepared;
         stopwatch.lap("reduce");
-        // Here, where the full plate is at hand and nothing else takes memory yet.
-        let estimates = match (&reduced, full) {
-            (Some(reduced), Some(full)) => Estimates::new(&system, reduced, full, impact.integrator.clone(), &sizes),
-            _ => Estimates::default(),
-        };
-        stopwatch.lap("accuracy");
+        let mut estimates = Estimates::default();
+        // Here, where nothing else takes memory yet beside the full plate.
+        if let (Some(reduced), Some(full)) = (&reduced, full) {
+            estimates = Estimates::new(&system, reduced, full, impact.integrator.clone(), &sizes);
+            stopwatch.lap("accuracy");
+        }
         let followed = model.scene.output.modes.as_ref().zip(reduced.as_ref());
         let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
         let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, reduced, condensation)?) };
@@ -325,8 +325,8 @@ impl<'a> March<'a> {
         counters.factorisations = counters.factorisations.max(work.factorisations);
         counters.solves = counters.solves.max(work.solves);
         let energy = |of: fn(&fem_io::tables::HistoryRow) -> f64| ledger.rows.iter().map(of).sum();
-        let accuracy =
-            if stopped.is_none() { self.estimates.finish(&ledger.rows, self.sizes.step) } else { Accuracy::default() };
+        let ended = stopped.is_none() && step == self.sizes.steps;
+        let accuracy = if ended { self.estimates.finish(&ledger.rows, self.sizes.step) } else { Accuracy::default() };
         Outcome {
             accuracy,
             contacts: ledger.records().collect(),

@@ -167,19 +167,19 @@ pub struct Accuracy {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stable_step_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub step_error_force_L2: Option<f64>,
+    pub step_error_force_L2_relative: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub step_error_peak_force: Option<f64>,
+    pub step_error_peak_force_relative: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub compared_step_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub compared_step_force_L2: Option<f64>,
+    pub compared_force_L2_relative: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub reduction_error_force_L2: Option<f64>,
+    pub reduction_error_force_L2_relative: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub reduction_residual_energy: Option<f64>,
+    pub reduction_residual_energy_relative: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub reduction_flexibility_error: Option<f64>,
+    pub reduction_flexibility_error_relative: Option<f64>,
 }
 
 /// Work counters.
@@ -303,13 +303,13 @@ impl Summary {
                 energy_error_relative: outcome.energy_error,
                 step_s: sizes.step,
                 stable_step_s: Some(sizes.longest_step).filter(|s| s.is_finite()),
-                step_error_force_L2: step.map(|e| e.force),
-                step_error_peak_force: step.map(|e| e.peak),
+                step_error_force_L2_relative: step.map(|e| e.force),
+                step_error_peak_force_relative: step.map(|e| e.peak),
                 compared_step_s: step.map(|e| e.compared),
-                compared_step_force_L2: step.map(|e| e.difference),
-                reduction_error_force_L2: residual.map(|r| r.force),
-                reduction_residual_energy: residual.map(|r| r.energy),
-                reduction_flexibility_error: reduction.map(|e| e.flexibility),
+                compared_force_L2_relative: step.map(|e| e.difference),
+                reduction_error_force_L2_relative: residual.map(|r| r.force),
+                reduction_residual_energy_relative: residual.map(|r| r.energy),
+                reduction_flexibility_error_relative: reduction.map(|e| e.flexibility),
             },
             work: outcome.counters.into(),
             warnings: model.warnings.clone(),

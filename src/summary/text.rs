@@ -168,22 +168,22 @@ impl Summary {
         if !self.completed {
             return vec!["errors of step and reduction are not estimated: the march has stopped".to_owned()];
         }
-        let compared = a.compared_step_s.zip(a.compared_step_force_L2);
-        let step = match (a.step_error_force_L2, compared) {
+        let compared = a.compared_step_s.zip(a.compared_force_L2_relative);
+        let step = match (a.step_error_force_L2_relative, compared) {
             (Some(error), Some((step, change))) => format!(
                 "step: force within about {error:.1e} ({} the step changes it by {change:.1e})",
                 if step > a.step_s { "twice" } else { "half" }
             ),
             _ => "step: error not estimated; half the step would show it".to_owned(),
         };
-        let flexibility = a.reduction_flexibility_error.map_or(String::new(), |error| {
+        let flexibility = a.reduction_flexibility_error_relative.map_or(String::new(), |error| {
             if error < EXACT {
                 "stiffness at the contact exact".to_owned()
             } else {
                 format!("stiffness at the contact within {error:.1e}")
             }
         });
-        let reduction = match (a.reduction_error_force_L2, a.reduction_residual_energy) {
+        let reduction = match (a.reduction_error_force_L2_relative, a.reduction_residual_energy_relative) {
             _ if m.unknowns_marched == m.substructures.map_or(m.unknowns, |s| s.masters) => {
                 "reduction: none, all unknowns are marched".to_owned()
             }

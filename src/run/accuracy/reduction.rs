@@ -114,3 +114,20 @@ fn spread<T>(all: &[T], count: usize) -> Vec<&T> {
     let number = |i: usize| (((i as f64 + 0.5) * GOLDEN).fract() * all.len() as f64) as usize;
     (0..count.min(all.len())).filter_map(|i| all.get(number(i))).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn instants_lie_all_over_the_contact() {
+        let all: Vec<usize> = (0..60).collect();
+        let mut chosen: Vec<usize> = spread(&all, INSTANTS).into_iter().copied().collect();
+        chosen.sort_unstable();
+        assert!(chosen.len() == INSTANTS && chosen[0] < 20 && chosen[INSTANTS - 1] >= 40, "{chosen:?}");
+        let gaps: Vec<usize> = chosen.windows(2).map(|w| w[1] - w[0]).collect();
+        assert!(gaps.iter().all(|g| *g >= 5) && gaps.iter().any(|g| *g != gaps[0]), "{gaps:?}");
+        assert_eq!(spread(&all[..2], INSTANTS).len(), 2);
+        assert!(spread::<usize>(&[], INSTANTS).is_empty());
+    }
+}

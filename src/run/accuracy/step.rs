@@ -146,3 +146,52 @@ impl Companion {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use fem_io::tables::ImpactorRow;
+
+    /// A history with steps of 1 s and rows after some of them.
+    fn history(steps: &[u64], force: impl Fn(f64) -> f64) -> Vec<HistoryRow> {
+        let row = |step: &u64| {
+            let time_s = *step as f64;
+            let impactor = ImpactorRow { contact_force_n: force(time_s), ..ImpactorRow::default() };
+            HistoryRow { time_s, impactors: vec![impactor], ..HistoryRow::default() }
+        };
+        steps.iter().map(row).collect()
+    }
+
+    fn companion(ratio: f64, stride: u64, force: impl Fn(f64) -> f64) -> Companion {
+        let change = Some((ratio.powf(ORDER) - 1.0).abs());
+        let forces = (1..=10 / stride).map(|i| force((i * stride) as f64)).collect();
+        Companion { dt: ratio, change, stride, forces }
+    }
+
+    #[test]
+    fn an_error_of_the_order_is_found_from_either_side() {
+        let exact = |t: f64| t * (12.0 - t);
+        let marched = |dt: f64| move |t: f64| (1.0 + 1e-3 * dt.powf(ORDER)) * exact(t);
+        for (ratio, stride) in [(2.0, 2), (0.5, 1)] {
+            let found =
+                companion(ratio, stride, marched(ratio)).compare(&history(&[0, 1, 2, 6, 9, 10], marched(1.0)), 1.0);
+            let StepError { compared, force, peak, .. } = found.unwrap();
+            assert!(
+                compared == ratio && (force - 1e-3).abs() < 2e-6 && (peak - 1e-3).abs() < 2e-6,
+                "{force:e} {peak:e}"
+            );
+        }
+    }
+
+    #[test]
+    fn rows_that_the_marches_do_not_share_are_left_out() {
+        let odd = companion(2.0, 2, |t| t).compare(&history(&[0, 1, 3, 5], |t| t), 1.0);
+        let beyond = companion(2.0, 2, |t| t).compare(&history(&[12, 14], |t| t), 1.0);
+        let untouched = companion(2.0, 2, |_| 0.0).compare(&history(&[2, 4], |_| 0.0), 1.0);
+        assert_eq!([odd, beyond, untouched], [None; 3]);
+        let same = companion(2.0, 2, |t| t).compare(&history(&[0, 1, 2, 3, 4], |t| t), 1.0).unwrap();
+        assert_eq!((same.difference, same.force, same.peak), (0.0, 0.0, 0.0));
+    }
+}
