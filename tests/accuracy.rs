@@ -82,14 +82,16 @@ fn the_error_of_a_reduction_is_found_within_a_factor_of_six() {
         let run = plate("0.1 us", keys);
         let reduction = run.outcome.accuracy.reduction.unwrap();
         let (residual, truth) = (reduction.residual.unwrap(), error(&run, &full));
-        println!("{keys}: {residual:?}, truth {truth:.3e}");
-        within(6.0, residual.force, truth);
-        assert!(residual.energy < residual.force, "{keys}: the contact is stiffer than the plate");
+        let force = residual.force.unwrap();
+        within(6.0, force, truth);
+        assert!(residual.energy < force, "{keys}: the contact is stiffer than the plate");
         assert!(reduction.flexibility < 1e-9, "{keys} holds the static response: {:e}", reduction.flexibility);
     }
     let irs = plate("0.1 us", "reduction = { method = \"irs\", governors = 40 }");
     let flexibility = irs.sizes.static_stiffness / full.sizes.static_stiffness;
-    within(1.001, 1.0 + irs.outcome.accuracy.reduction.unwrap().flexibility, flexibility.max(1.0 / flexibility));
+    let reduction = irs.outcome.accuracy.reduction.unwrap();
+    assert!((reduction.flexibility - (1.0 / flexibility - 1.0).abs()).abs() < 1e-9, "{reduction:?}, {flexibility}");
+    assert!(reduction.flexibility > 1e-4 && reduction.residual.unwrap().force.is_none(), "{reduction:?}");
 }
 
 #[test]
@@ -127,7 +129,10 @@ fn nothing_is_said_that_is_not_known() {
     // So small a plate, marched for so long, that a second march would take as long as all the rest.
     let small = strip().scene("end = \"20 us\"", "end = \"1 ms\"");
     let done = small.fem("run", &["--out", "out"]).good();
-    assert!(done.stdout.contains("reduction: stiffness at the contact exact; error of the force not"), "{done:#?}");
+    assert!(
+        done.stdout.contains("reduction: error of the force not estimated; stiffness at the contact exact"),
+        "{done:#?}"
+    );
     let accuracy = said(&small);
     assert!(accuracy["reduction_flexibility_error_relative"].as_f64().unwrap() < 1e-9, "{accuracy}");
     assert!(accuracy.get("step_error_force_L2_relative").is_none(), "{accuracy}");

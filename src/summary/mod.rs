@@ -307,7 +307,7 @@ impl Summary {
                 step_error_peak_force_relative: step.map(|e| e.peak),
                 compared_step_s: step.map(|e| e.compared),
                 compared_force_L2_relative: step.map(|e| e.difference),
-                reduction_error_force_L2_relative: residual.map(|r| r.force),
+                reduction_error_force_L2_relative: residual.and_then(|r| r.force),
                 reduction_residual_energy_relative: residual.map(|r| r.energy),
                 reduction_flexibility_error_relative: reduction.map(|e| e.flexibility),
             },

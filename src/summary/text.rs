@@ -176,22 +176,21 @@ impl Summary {
             ),
             _ => "step: error not estimated; half the step would show it".to_owned(),
         };
-        let flexibility = a.reduction_flexibility_error_relative.map_or(String::new(), |error| {
-            if error < EXACT {
-                "stiffness at the contact exact".to_owned()
-            } else {
-                format!("stiffness at the contact within {error:.1e}")
-            }
-        });
-        let reduction = match (a.reduction_error_force_L2_relative, a.reduction_residual_energy_relative) {
-            _ if m.unknowns_marched == m.substructures.map_or(m.unknowns, |s| s.masters) => {
-                "reduction: none, all unknowns are marched".to_owned()
-            }
-            (Some(force), Some(energy)) => format!(
-                "reduction: force within about {force:.1e}, displacements within {energy:.1e} in energy; {flexibility}"
-            ),
-            _ if flexibility.is_empty() => "reduction: error not estimated".to_owned(),
-            _ => format!("reduction: {flexibility}; error of the force not estimated, more vectors would show it"),
+        let reduction = if m.unknowns_marched == m.substructures.map_or(m.unknowns, |s| s.masters) {
+            "reduction: none, all unknowns are marched".to_owned()
+        } else {
+            let force = a.reduction_error_force_L2_relative.map_or_else(
+                || "error of the force not estimated".to_owned(),
+                |error| format!("force within about {error:.1e}"),
+            );
+            let energy = a.reduction_residual_energy_relative;
+            let energy = energy.map_or(String::new(), |error| format!(", displacements within {error:.1e} in energy"));
+            let stiffness = a.reduction_flexibility_error_relative;
+            let stiffness = stiffness.map_or(String::new(), |error| match error {
+                rounding if rounding < EXACT => "; stiffness at the contact exact".to_owned(),
+                error => format!("; stiffness at the contact within {error:.1e}"),
+            });
+            format!("reduction: {force}{energy}{stiffness}")
         };
         vec![step, reduction]
     }

@@ -8,10 +8,13 @@ use fem_dynamics::reduce::Reduced;
 
 /// Solutions that a reduction took for each that is spent on an instant, and instants at most.
 const SOLVES: u64 = 10;
-const INSTANTS: usize = 4;
+const INSTANTS: usize = 3;
 
 /// Steps of this fraction of a span, taken modulo the span, fall evenly and never into the rhythm of a vibration.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
+
+/// Error of the flexibility up to which a static response counts as held.
+const HELD: f64 = 1e-6;
 
 /// What a reduction leaves out, relative.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,15 +32,20 @@ pub struct ReductionError {
 /// ε = rᵀ K⁻¹ r                      twice the strain energy of K⁻¹ r, what is missing if it follows at rest
 /// ```
 ///
-/// K⁻¹ r does not move the contacts of a reduction that holds their static responses K⁻¹ w, as all do but `irs`: wᵀ K⁻¹ r is then
-/// a sum of products Φᵀ r. So its energy is measured. What vibrates with that energy exchanges it with the contact, a spring
-/// of stiffness k: (δF)² ≈ k ε.
+/// K⁻¹ r does not move the contacts of a reduction that holds their static responses K⁻¹ w, as all do but `irs`: wᵀ K⁻¹ r is
+/// then a sum of products Φᵀ r. So its energy is measured, the quasi-static part of what is left out. What vibrates with that
+/// energy exchanges it with the contact, a spring of stiffness k: (δF)² ≈ k ε.
+///
+/// Against 320 Ritz vectors of the exact space (three examples with large and small masses; `ritz`, `craig-bampton`, `modal`)
+/// the estimate of the force was 0.2 to 5 times its error, and 0.9 to 10 times with `guyan`; the error in energy was 0.03 to 1.6
+/// times that of the force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Residual {
     /// Largest of √ε over the largest √(uᵀ K u): error of the displacements in the norm of the energy.
     pub energy: f64,
-    /// Root of the sum of k ε over that of F², an estimate of the error of the contact force.
-    pub force: f64,
+    /// Root of the sum of k ε over that of F², an estimate of the error of the contact force; nothing where the static
+    /// response is not held: it would be up to 40 times too large.
+    pub force: Option<f64>,
 }
 
 /// Asks the full plate; nothing where it gives no finite answer.
@@ -72,8 +80,10 @@ pub(super) fn estimate(mut full: Full, reduced: &Reduced, instants: &[Instant]) 
         change += instant.stiffness * epsilon.max(0.0);
         size += instant.forces.iter().sum::<f64>().powi(2);
     }
-    let residual = Residual { energy: (left / energy).sqrt(), force: (change / size).sqrt() };
-    let residual = Some(residual).filter(|r| r.energy.is_finite() && r.force.is_finite());
+    let (energy, force) = ((left / energy).sqrt(), (change / size).sqrt());
+    let force = Some(force).filter(|force| force.is_finite() && flexibility < HELD);
+    // There is no energy without an instant in contact.
+    let residual = energy.is_finite().then_some(Residual { energy, force });
     flexibility.is_finite().then_some(ReductionError { flexibility, residual })
 }
 
