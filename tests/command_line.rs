@@ -153,7 +153,7 @@ fn run_writes_its_results_to_a_folder_named_like_that_of_the_scene() {
     let cost: Value = serde_json::from_str(&case.read("results/plate/cost.json")).unwrap();
     check_summary(&cost);
     let phases: Vec<_> = cost["phases"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap()).collect();
-    assert_eq!(phases, ["assemble", "reduce", "prepare stresses", "march", "scan", "checkpoint"]);
+    assert_eq!(phases, ["assemble", "reduce", "accuracy", "prepare stresses", "march", "scan", "checkpoint"]);
     assert_eq!(cost["threads"], 1);
 }
 

@@ -1,6 +1,7 @@
 //! Tests of the whole: the command, what it refuses, what it finds.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod accuracy;
 mod bad_input;
 mod book;
 mod command_line;

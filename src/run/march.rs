@@ -1,5 +1,6 @@
 //! The march in time, watched; it can be saved and gone on with.
 
+use super::accuracy::{Accuracy, Estimates};
 use super::checkpoint::{self, Checkpoint};
 use super::ledger::Ledger;
 use super::modal::{self, ModalView};
@@ -50,6 +51,7 @@ pub struct March<'a> {
     scan_every: u64,
     watch: Option<Watch<'a>>,
     modal: Option<ModalView>,
+    estimates: Estimates,
     /// Work of the preparation.
     counters: Counters,
     /// What the system had counted when `Progress::work` was.
@@ -170,14 +172,34 @@ impl<'a> March<'a> {
     }
 
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
-        let Prepared { model, impact, system, reduced, condensation, sizes, counters, mut stopwatch } = prepared;
+        let Prepared { model, impact, system, reduced, full, condensation, sizes, counters, mut stopwatch } = prepared;
+        stopwatch.lap("reduce");
+        let mut estimates = Estimates::default();
+        // Here, where nothing else takes memory yet beside the full plate.
+        if let (Some(reduced), Some(full)) = (&reduced, full) {
+            estimates = Estimates::new(&system, reduced, full, impact.integrator.clone(), &sizes);
+            stopwatch.lap("accuracy");
+        }
         let followed = model.scene.output.modes.as_ref().zip(reduced.as_ref());
         let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
         let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, reduced, condensation)?) };
         stopwatch.lap("prepare stresses");
         let scan_every = steps_in(model.scene.failure.every, sizes.step);
         let (integrator, counted) = (impact.integrator.clone(), Work::default());
-        Ok(Self { model, system, integrator, sizes, scan_every, watch, modal, counters, counted, stopwatch, progress })
+        Ok(Self {
+            model,
+            system,
+            integrator,
+            sizes,
+            scan_every,
+            watch,
+            modal,
+            estimates,
+            counters,
+            counted,
+            stopwatch,
+            progress,
+        })
     }
 
     /// Whether there is nothing more to march: the end is reached, or the march has stopped.
@@ -304,7 +326,10 @@ impl<'a> March<'a> {
         counters.factorisations = counters.factorisations.max(work.factorisations);
         counters.solves = counters.solves.max(work.solves);
         let energy = |of: fn(&fem_io::tables::HistoryRow) -> f64| ledger.rows.iter().map(of).sum();
+        let ended = stopped.is_none() && step == self.sizes.steps;
+        let accuracy = if ended { self.estimates.finish(&ledger.rows, self.sizes.step) } else { Accuracy::default() };
         Outcome {
+            accuracy,
             contacts: ledger.records().collect(),
             modal: self.modal.map(|modal| modal.finish(energy(|r| r.plate_strain_j), energy(|r| r.plate_kinetic_j))),
             history: ledger.rows,

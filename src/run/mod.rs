@@ -1,5 +1,6 @@
 //! The main job: assemble, reduce, march, scan.
 
+mod accuracy;
 mod checkpoint;
 mod ledger;
 mod march;
@@ -8,6 +9,7 @@ mod prepare;
 pub(crate) mod saved;
 
 pub use crate::stress::IndexHistory;
+pub use accuracy::{Accuracy, ReductionError, Residual, StepError};
 pub use checkpoint::Checkpoint;
 pub use march::{March, march};
 pub use modal::{ModalHistory, ModeShare};
@@ -87,6 +89,8 @@ pub struct Outcome {
     pub sites: usize,
     /// Largest deviation of the total energy from the energy of the impact, relative to it.
     pub energy_error: f64,
+    /// Estimates of other errors.
+    pub accuracy: Accuracy,
     /// Work done.
     pub counters: Counters,
     /// Time per phase.

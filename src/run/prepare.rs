@@ -27,11 +27,21 @@ pub struct Prepared<'a> {
     pub(super) impact: &'a Impact,
     pub(super) system: ImpactSystem,
     pub(super) reduced: Option<Reduced>,
+    /// What a reduced model was made from.
+    pub(super) full: Option<Full>,
     pub(super) condensation: Option<Condensation>,
     /// Sizes and limits.
     pub sizes: Sizes,
     pub(super) counters: Counters,
     pub(super) stopwatch: Stopwatch,
+}
+
+/// The plate before its reduction.
+#[derive(Debug)]
+pub(super) struct Full {
+    pub(super) structure: SparseStructure,
+    /// Where each impactor strikes.
+    pub(super) contacts: Vec<Functional>,
 }
 
 /// K and M of a model, condensed on its masters where the scene divides the plate into substructures.
@@ -43,6 +53,13 @@ pub struct Assembled {
     pub factor_entries: usize,
     /// From the masters to the independent unknowns of the model.
     pub condensation: Option<Condensation>,
+}
+
+impl Full {
+    /// Right-hand sides solved for so far.
+    pub(super) fn solves(&self) -> u64 {
+        self.structure.work().1
+    }
 }
 
 impl Assembled {
@@ -170,10 +187,11 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         },
         law: strike.law.clone(),
     };
-    let impactors = impact.spec.impactors.iter().zip(&impact.strikes).zip(&contacts).map(impactor).collect();
-    let structure: Box<dyn Structure> = match &reduced {
-        None => Box::new(structure),
-        Some(r) => Box::new(r.modal.clone()),
+    let impactors: Vec<Impactor> =
+        impact.spec.impactors.iter().zip(&impact.strikes).zip(&contacts).map(impactor).collect();
+    let (structure, full): (Box<dyn Structure>, _) = match &reduced {
+        None => (Box::new(structure), None),
+        Some(r) => (Box::new(r.modal.clone()), Some(Full { structure, contacts })),
     };
     let mut system = ImpactSystem::new(structure, impactors);
     let march = &impact.spec.march;
@@ -207,7 +225,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         steps,
         step: if whole { march.step.value } else { march.end.value / steps as f64 },
     };
-    Ok(Prepared { model, impact, system, reduced, condensation, sizes, counters, stopwatch })
+    Ok(Prepared { model, impact, system, reduced, full, condensation, sizes, counters, stopwatch })
 }
 
 /// Contacts in the very same place once.

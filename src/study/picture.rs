@@ -1,72 +1,39 @@
 //! A study as pictures.
 
+use super::axes::AxisKind;
 use super::plan::TOGETHER;
 use super::report::{Report, Row};
 use crate::error::Error;
 use fem_io::files::OutputDir;
-use fem_io::plot::{self, PlotError};
+use fem_io::plot::{self, LinePlot, PlotError, Series, Style};
 
 /// Errors whose cheapest run is named in a picture.
 const NAMED: [f64; 3] = [0.1, 0.01, 1e-3];
 
-/// Draws errors over processor time: `work-precision` of everything asked, `work-precision-QUANTITY` of each, and `axes`,
-/// what each axis alone leaves; as SVG and PNG. A picture that would show nothing is left out.
+/// Axes of so many runs that they have a name of their own in pictures; the other ways share one.
+const OF_THEIR_OWN: [&str; 2] = ["reductions", "integrators"];
+const OTHERS: &str = "other ways";
+
+/// Draws errors over processor time: `work-precision` of everything asked, `work-precision-QUANTITY` of each, and `ladders`,
+/// what each ladder alone leaves; as SVG and PNG. A picture that would show nothing is left out.
 ///
 /// # Errors
 /// A folder that cannot be written.
 pub fn write_pictures(dir: &OutputDir, report: &Report) -> Result<(), Error> {
     let all: Vec<usize> = (0..report.asked.len()).collect();
     let what = if all.len() == 1 { report.asked[0].as_str() } else { "everything asked" };
-    draw(dir, report, "work-precision", what, &all, |row| row.worst())?;
+    draw(dir, "work-precision", &work_precision(report, what, &all))?;
     if all.len() > 1 {
         for (q, quantity) in report.asked.iter().enumerate() {
             let name = format!("work-precision-{}", quantity.replace([' ', '/', '|'], "-"));
-            draw(dir, report, &name, quantity, &[q], |row| row.errors.get(q).copied().flatten())?;
+            draw(dir, &name, &work_precision(report, quantity, &[q]))?;
         }
     }
-    draw(dir, report, "axes", &format!("{what}, each axis alone"), &[], |row| {
-        Some(row).filter(|row| row.axis != TOGETHER).and_then(Row::own_worst)
-    })
+    draw(dir, "ladders", &ladders(report, what))
 }
 
-fn draw(
-    dir: &OutputDir,
-    report: &Report,
-    name: &str,
-    what: &str,
-    quantities: &[usize],
-    error: impl Fn(&Row) -> Option<f64>,
-) -> Result<(), Error> {
-    let mut axes: Vec<&str> = Vec::new();
-    for row in &report.rows {
-        if !axes.contains(&row.axis.as_str()) {
-            axes.push(&row.axis);
-        }
-    }
-    let point = |row: &Row| Some((row.result.as_ref().ok()?.total(), error(row)?));
-    let series: Vec<(String, Vec<(f64, f64)>)> = axes
-        .iter()
-        .map(|axis| {
-            let mut points: Vec<(f64, f64)> =
-                report.rows.iter().filter(|r| r.axis == *axis).filter_map(point).collect();
-            points.sort_by(|a, b| a.0.total_cmp(&b.0));
-            ((*axis).to_owned(), points)
-        })
-        .collect();
-    let (mut front, mut named) = (Vec::new(), Vec::new());
-    if !quantities.is_empty() {
-        front = pareto(report, &error);
-        for target in NAMED {
-            let row = report.cheapest(quantities, target);
-            if let Some((row, (t, e))) = row.and_then(|row| Some((row, point(row)?)))
-                && !named.iter().any(|(_, _, label): &(f64, f64, String)| *label == row.level.label)
-            {
-                named.push((t, e, row.level.label.clone()));
-            }
-        }
-    }
-    let drawn = plot::line_plot(&plot::work_precision(&report.title, what, &series, &front, &named));
-    let picture = match drawn {
+fn draw(dir: &OutputDir, name: &str, plot: &LinePlot) -> Result<(), Error> {
+    let picture = match plot::line_plot(plot) {
         Err(PlotError::Empty { .. }) => return Ok(()),
         drawn => drawn?,
     };
@@ -75,17 +42,62 @@ fn draw(
     Ok(())
 }
 
-/// The runs that no faster one beats, by seconds.
-fn pareto(report: &Report, error: &impl Fn(&Row) -> Option<f64>) -> Vec<(f64, f64)> {
-    let rows = report.rows.iter().filter(|row| row.competes());
-    let mut points: Vec<(f64, f64)> =
-        rows.filter_map(|row| Some((row.result.as_ref().ok()?.total(), error(row)?))).collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+/// The largest error of `quantities` over time: ladders and joint runs as lines, other ways as dots.
+fn work_precision(report: &Report, what: &str, quantities: &[usize]) -> LinePlot {
+    let error = |row: &Row| {
+        let each = quantities.iter().map(|q| row.errors.get(*q).copied().flatten());
+        each.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::max)
+    };
+    let point = |row: &Row| Some((row.result.as_ref().ok()?.total(), error(row)?));
+    let series = |label: &str, style: Style, of: &dyn Fn(&Row) -> bool| {
+        let mut points: Vec<(f64, f64)> = report.rows.iter().filter(|row| of(row)).filter_map(point).collect();
+        if style == Style::Joined {
+            points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        }
+        Series { label: label.to_owned(), points, style }
+    };
+    let mut all: Vec<Series> = Vec::new();
+    for ladder in &report.ladders {
+        let scene = |row: &Row| row.axis == ladder.axis || row.level.setting.is_empty() && row.axis != TOGETHER;
+        all.push(series(&ladder.axis, Style::Joined, &scene));
+    }
+    all.push(series(TOGETHER, Style::Joined, &|row| row.axis == TOGETHER));
+    for name in OF_THEIR_OWN {
+        all.push(series(name, Style::Dots, &|row| row.axis == name));
+    }
+    let other = |row: &Row| row.kind == AxisKind::Ways && !OF_THEIR_OWN.contains(&row.axis.as_str());
+    all.push(series(OTHERS, Style::Dots, &|row| other(row) && !row.level.setting.is_empty()));
+
+    // By seconds, as the picture shows them.
+    let mut front: Vec<(f64, f64)> = report.rows.iter().filter(|row| row.competes()).filter_map(point).collect();
+    front.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut best = f64::INFINITY;
-    points.retain(|point| {
+    front.retain(|point| {
         let better = point.1 < best;
         best = best.min(point.1);
         better
     });
-    points
+    let mut named: Vec<(f64, f64, String)> = Vec::new();
+    for row in NAMED.into_iter().filter_map(|target| report.cheapest(quantities, target)) {
+        if let Some((t, e)) = point(row).filter(|_| named.iter().all(|other| other.2 != row.level.label)) {
+            named.push((t, e, row.level.label.clone()));
+        }
+    }
+    plot::work_precision(&report.title, what, all, &front, &named)
+}
+
+/// What each ladder alone leaves of everything asked that converges, over time.
+fn ladders(report: &Report, what: &str) -> LinePlot {
+    let sure = report.convergent();
+    let time = |axis: &str, label: &str| {
+        let own = |row: &&Row| row.axis == axis && row.level.label == label;
+        let row = report.rows.iter().find(own).unwrap_or(report.base());
+        row.result.as_ref().map_or(f64::NAN, |record| record.total())
+    };
+    let series = report.ladders.iter().map(|ladder| Series {
+        label: ladder.axis.clone(),
+        points: ladder.levels.iter().map(|rung| (time(&ladder.axis, &rung.level.label), rung.worst(&sure))).collect(),
+        style: Style::Joined,
+    });
+    plot::work_precision(&report.title, &format!("{what}, each ladder alone"), series.collect(), &[], &[])
 }

@@ -6,7 +6,7 @@ mod text;
 pub use files::{write_plots, write_tables};
 
 use crate::model::Model;
-use crate::run::{ModeShare, Outcome, Sizes, Substructures};
+use crate::run::{self, ModeShare, Outcome, Sizes, Substructures};
 use fem_core::counters::Counters;
 use fem_core::tensor::{Ply, Stress6};
 use fem_failure::scan::{FailureEvent, Place, first_per_mode};
@@ -157,7 +157,8 @@ pub struct Margin {
     pub ply: String,
 }
 
-/// What is known of the error.
+/// What is known of the error: where the estimates come from and what they are worth, say [`run::StepError`] and
+/// [`run::Residual`]. The step compared with is that of the second march, its force the difference from that of the run.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
 pub struct Accuracy {
@@ -165,6 +166,20 @@ pub struct Accuracy {
     pub step_s: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stable_step_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step_error_force_L2_relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step_error_peak_force_relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compared_step_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compared_force_L2_relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reduction_error_force_L2_relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reduction_residual_energy_relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reduction_flexibility_error_relative: Option<f64>,
 }
 
 /// Work counters.
@@ -222,6 +237,8 @@ impl Summary {
     /// Sums up a run.
     pub fn new(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Self {
         let h = &outcome.history;
+        let run::Accuracy { step, reduction } = outcome.accuracy;
+        let residual = reduction.and_then(|error| error.residual);
         let thickness = model.laminate.thickness();
         let damage = |e: &FailureEvent| Damage {
             criterion: e.criterion.clone(),
@@ -286,6 +303,13 @@ impl Summary {
                 energy_error_relative: outcome.energy_error,
                 step_s: sizes.step,
                 stable_step_s: Some(sizes.longest_step).filter(|s| s.is_finite()),
+                step_error_force_L2_relative: step.map(|e| e.force),
+                step_error_peak_force_relative: step.map(|e| e.peak),
+                compared_step_s: step.map(|e| e.compared),
+                compared_force_L2_relative: step.map(|e| e.difference),
+                reduction_error_force_L2_relative: residual.and_then(|r| r.force),
+                reduction_residual_energy_relative: residual.map(|r| r.energy),
+                reduction_flexibility_error_relative: reduction.map(|e| e.flexibility),
             },
             work: outcome.counters.into(),
             warnings: model.warnings.clone(),

@@ -4,6 +4,9 @@ use super::{Summary, and, in_words};
 use crate::cost::Cost;
 use std::fmt::Write as _;
 
+/// Errors that are nothing but rounding.
+const EXACT: f64 = 1e-9;
+
 impl Summary {
     /// The summary as people read it, with what it cost.
     pub fn text(&self, cost: &Cost) -> String {
@@ -141,6 +144,9 @@ impl Summary {
                 None => " (no stability limit)".to_owned(),
             }
         ));
+        for estimate in self.estimates() {
+            line(format_args!("            {estimate}"));
+        }
         let w = &self.work;
         line(format_args!(
             "  work      {} element matrices, {} factorisations, {} solves, {} steps, {} contact calls, {} criterion calls",
@@ -154,5 +160,38 @@ impl Summary {
             line(format_args!("  STOPPED   {why}"));
         }
         t
+    }
+
+    /// What is known of the errors of step and reduction, each in a line.
+    fn estimates(&self) -> Vec<String> {
+        let (a, m) = (&self.accuracy, &self.model);
+        if !self.completed {
+            return vec!["errors of step and reduction are not estimated: the march has stopped".to_owned()];
+        }
+        let compared = a.compared_step_s.zip(a.compared_force_L2_relative);
+        let step = match (a.step_error_force_L2_relative, compared) {
+            (Some(error), Some((step, change))) => format!(
+                "step: force within about {error:.1e} ({} the step changes it by {change:.1e})",
+                if step > a.step_s { "twice" } else { "half" }
+            ),
+            _ => "step: error not estimated; half the step would show it".to_owned(),
+        };
+        let reduction = if m.unknowns_marched == m.substructures.map_or(m.unknowns, |s| s.masters) {
+            "reduction: none, all unknowns are marched".to_owned()
+        } else {
+            let force = a.reduction_error_force_L2_relative.map_or_else(
+                || "error of the force not estimated".to_owned(),
+                |error| format!("force within about {error:.1e}"),
+            );
+            let energy = a.reduction_residual_energy_relative;
+            let energy = energy.map_or(String::new(), |error| format!(", displacements within {error:.1e} in energy"));
+            let stiffness = a.reduction_flexibility_error_relative;
+            let stiffness = stiffness.map_or(String::new(), |error| match error {
+                rounding if rounding < EXACT => "; stiffness at the contact exact".to_owned(),
+                error => format!("; stiffness at the contact within {error:.1e}"),
+            });
+            format!("reduction: {force}{energy}{stiffness}")
+        };
+        vec![step, reduction]
     }
 }

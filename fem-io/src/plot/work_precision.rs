@@ -4,7 +4,7 @@ use super::{Axis, LinePlot, Mark, Series, Style};
 
 /// Relative error of `quantity` over processor time in s, both logarithmic, under the heading `title`.
 ///
-/// Every series is a name and its points (time, error) in the order in which they are joined. `front` are the points
+/// Points of `series` are (time, error). `front` are the points
 /// that no other one beats in both, drawn as stairs: the least error within a time. `named` points (time, error, name)
 /// are marked.
 ///
@@ -13,15 +13,11 @@ use super::{Axis, LinePlot, Mark, Series, Style};
 pub fn work_precision(
     title: &str,
     quantity: &str,
-    series: &[(String, Vec<(f64, f64)>)],
+    series: Vec<Series>,
     front: &[(f64, f64)],
     named: &[(f64, f64, String)],
 ) -> LinePlot {
-    let studies = series.iter().map(|(label, points)| Series {
-        label: label.clone(),
-        points: drawable(points),
-        style: Style::Joined,
-    });
+    let studies = series.into_iter().map(|series| Series { points: drawable(&series.points), ..series });
     let mut curves: Vec<_> = studies.filter(|series| !series.points.is_empty()).collect();
     let longest = curves.iter().flat_map(|series| &series.points).map(|p| p.0).fold(0.0, f64::max);
     let points = stairs(drawable(front), longest);
@@ -58,21 +54,21 @@ mod tests {
     use super::*;
     use crate::plot::{Scale, line_plot};
 
-    fn study(label: &str, points: &[(f64, f64)]) -> (String, Vec<(f64, f64)>) {
-        (label.to_owned(), points.to_vec())
+    fn study(label: &str, points: &[(f64, f64)]) -> Series {
+        Series { label: label.to_owned(), points: points.to_vec(), style: Style::Joined }
     }
 
     #[test]
     fn studies_front_and_names_are_drawn() {
         let series = [study("mesh", &[(0.1, 0.2), (1.0, 0.05)]), study("step", &[(0.3, 0.01), (4.0, 0.02)])];
         let plot =
-            work_precision("title", "the force", &series, &[(0.3, 0.01), (0.1, 0.2)], &[(0.3, 0.01, "knee".into())]);
+            work_precision("title", "the force", series.to_vec(), &[(0.3, 0.01), (0.1, 0.2)], &[(0.3, 0.01, "knee".into())]);
         assert_eq!((plot.x.scale, plot.y.scale), (Scale::Logarithmic, Scale::Logarithmic));
         let drawn: Vec<_> = plot.series.iter().map(|s| (s.label.as_str(), s.points.as_slice(), s.style)).collect();
         let stairs = [(0.1, 0.2), (0.3, 0.2), (0.3, 0.01), (4.0, 0.01)];
         let want = [
-            ("mesh", series[0].1.as_slice(), Style::Joined),
-            ("step", &series[1].1, Style::Joined),
+            ("mesh", series[0].points.as_slice(), Style::Joined),
+            ("step", &series[1].points, Style::Joined),
             ("best for its time", &stairs, Style::Guide),
         ];
         assert_eq!(drawn, want);
@@ -86,13 +82,13 @@ mod tests {
         let bad = [(1.0, 0.0), (1.0, f64::NAN), (1.0, f64::INFINITY), (1.0, -0.1), (0.0, 0.1), (f64::NAN, 0.1)];
         let mixed: Vec<_> = bad.iter().copied().chain([(2.0, 0.3)]).collect();
         let named: Vec<_> = mixed.iter().map(|p| (p.0, p.1, "name".to_owned())).collect();
-        let plot = work_precision("title", "x", &[study("none", &bad), study("one", &mixed)], &mixed, &named);
+        let plot = work_precision("title", "x", vec![study("none", &bad), study("one", &mixed)], &mixed, &named);
         let drawn: Vec<_> = plot.series.iter().map(|s| (s.label.as_str(), s.points.as_slice())).collect();
         assert_eq!(drawn, [("one", &[(2.0, 0.3)][..]), ("best for its time", &[(2.0, 0.3), (2.0, 0.3)])]);
         assert_eq!(plot.marks, [Mark { x: 2.0, y: 0.3, label: "name".into() }]);
         assert!(line_plot(&plot).is_ok());
 
-        let nothing = work_precision("title", "x", &[study("none", &bad)], &bad, &[]);
+        let nothing = work_precision("title", "x", vec![study("none", &bad)], &bad, &[]);
         assert_eq!(nothing.series, []);
     }
 }

@@ -1,0 +1,57 @@
+//! What a run says of its own errors: those of its time step and of its reduction.
+//!
+//! Both come from a second march of the reduced plate without stresses, made before the run's own march, while the full
+//! plate is still at hand. Nothing depends on where a march was stopped and resumed, and whether an estimate is cheap enough
+//! is decided by counts, not by a clock, so that results are the same on every machine.
+
+mod reduction;
+mod step;
+
+pub use reduction::{ReductionError, Residual};
+pub use step::StepError;
+
+use super::Sizes;
+use super::prepare::Full;
+use fem_core::time::Integrator;
+use fem_dynamics::impact::ImpactSystem;
+use fem_dynamics::reduce::Reduced;
+use fem_io::tables::HistoryRow;
+use step::Companion;
+
+/// Estimated errors of a run; nothing where no honest estimate is cheap.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Accuracy {
+    /// Of the time step.
+    pub step: Option<StepError>,
+    /// Of the reduction.
+    pub reduction: Option<ReductionError>,
+}
+
+/// What is known before the march itself.
+#[derive(Debug, Default)]
+pub(super) struct Estimates {
+    companion: Option<Companion>,
+    reduction: Option<ReductionError>,
+}
+
+impl Estimates {
+    /// Marches a copy of the reduced plate, and asks the full one what the reduction leaves out of that.
+    pub(super) fn new(
+        system: &ImpactSystem,
+        reduced: &Reduced,
+        full: Full,
+        integrator: Box<dyn Integrator>,
+        sizes: &Sizes,
+    ) -> Self {
+        let copy = ImpactSystem::new(Box::new(reduced.modal.clone()), system.impactors().to_vec());
+        let (companion, instants) = step::march(copy, integrator, sizes, full.solves()).unzip();
+        let reduction = reduction::estimate(full, reduced, &instants.unwrap_or_default());
+        Self { companion, reduction }
+    }
+
+    /// The estimates for a march with steps of `dt` that reached its end.
+    pub(super) fn finish(self, history: &[HistoryRow], dt: f64) -> Accuracy {
+        let step = self.companion.and_then(|companion| companion.compare(history, dt));
+        Accuracy { step, reduction: self.reduction }
+    }
+}

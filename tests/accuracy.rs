@@ -1,0 +1,153 @@
+//! What a run says of its own errors, against the errors.
+
+use crate::report::Computed;
+use crate::support::{Case, root, strip};
+use fem::io::files::OutputDir;
+use fem::io::scene;
+use fem::run::{self, Accuracy, Checkpoint, March};
+use fem::{Model, Registry};
+use serde_json::Value;
+use std::num::NonZeroUsize;
+
+const PLATE: &str = "as4-3502-8ply-25mm";
+
+/// The first 0.5 ms of a stiff plate by an integrator, with other keys; stresses are looked at in the end alone.
+fn plate_by(integrator: &str, step: &str, keys: &str) -> Computed {
+    let march = format!("integrator = \"{integrator}\"\nstep = \"{step}\"\nend = \"0.5 ms\"");
+    let seldom = "criteria = [\"octahedral\"]\nevery = \"1 s\"\n[output]\nhistory_every = \"0.4 us\"";
+    let edits = [("end = \"1 ms\"", march.as_str()), ("criteria = [\"hashin-report\", \"octahedral\"]", seldom)];
+    Computed::example(PLATE, keys, &edits)
+}
+
+fn plate(step: &str, keys: &str) -> Computed {
+    plate_by("newmark", step, keys)
+}
+
+fn small_mass(step: &str) -> Computed {
+    let (step, seldom) = (format!("step = \"{step}\""), "every = \"1 s\"");
+    let edits = [("step = \"0.1 us\"", step.as_str()), ("every = \"0.5 us\"", seldom)];
+    Computed::example("im6-934-32ply-small-mass", "", &edits)
+}
+
+/// ‖F − F_ref‖/‖F_ref‖ at equal times.
+fn error(run: &Computed, reference: &Computed) -> f64 {
+    let rows = || run.outcome.history.iter().zip(&reference.outcome.history);
+    assert!(rows().all(|(a, b)| (a.time_s - b.time_s).abs() < 1e-12) && rows().count() > 300);
+    let difference: f64 = rows().map(|(a, b)| (a.contact_force_n() - b.contact_force_n()).powi(2)).sum();
+    let size: f64 = rows().map(|(_, b)| b.contact_force_n().powi(2)).sum();
+    (difference / size).sqrt()
+}
+
+/// What the summary says.
+fn said(case: &Case) -> Value {
+    let summary: Value = serde_json::from_str(&case.read("out/summary.json")).unwrap();
+    summary["accuracy"].clone()
+}
+
+#[track_caller]
+fn within(factor: f64, estimate: f64, truth: f64) {
+    assert!((1.0 / factor..factor).contains(&(estimate / truth)), "{estimate:.3e} for {truth:.3e}");
+}
+
+#[test]
+fn the_error_of_the_step_is_found_within_a_factor_of_three() {
+    let (fine, run) = (plate("0.0125 us", ""), plate("0.1 us", ""));
+    let step = run.outcome.accuracy.step.unwrap();
+    within(3.0, step.force, error(&run, &fine));
+    assert_eq!(step.compared, 2.0 * run.sizes.step);
+
+    let run = small_mass("0.1 us");
+    within(3.0, run.outcome.accuracy.step.unwrap().force, error(&run, &small_mass("0.0125 us")));
+}
+
+#[test]
+fn twice_an_unstable_step_is_not_tried() {
+    let explicit = |step| plate_by("central-difference", step, "reduction = { method = \"ritz\", vectors = 40 }");
+    let run = explicit("0.1 us");
+    let (step, sizes) = (run.outcome.accuracy.step.unwrap(), run.sizes);
+    assert!(sizes.step < sizes.longest_step && 2.0 * sizes.step > sizes.longest_step, "{sizes:?}");
+    assert_eq!(step.compared, 0.5 * sizes.step);
+    within(3.0, step.force, error(&run, &explicit("0.0125 us")));
+}
+
+#[test]
+fn the_error_of_a_reduction_is_found_within_a_factor_of_six() {
+    let full = plate("0.1 us", "reduction = { method = \"ritz\", vectors = 160, space = \"krylov\" }");
+    for keys in [
+        "reduction = { method = \"ritz\", vectors = 20 }",
+        "reduction = { method = \"ritz\", vectors = 60 }",
+        "reduction = { method = \"craig-bampton\", modes = 40 }",
+        "reduction = { method = \"guyan\", governors = 40 }",
+    ] {
+        let run = plate("0.1 us", keys);
+        let reduction = run.outcome.accuracy.reduction.unwrap();
+        let (residual, truth) = (reduction.residual.unwrap(), error(&run, &full));
+        let force = residual.force.unwrap();
+        within(6.0, force, truth);
+        assert!(residual.energy < force, "{keys}: the contact is stiffer than the plate");
+        assert!(reduction.flexibility < 1e-9, "{keys} holds the static response: {:e}", reduction.flexibility);
+    }
+    let irs = plate("0.1 us", "reduction = { method = \"irs\", governors = 40 }");
+    let flexibility = irs.sizes.static_stiffness / full.sizes.static_stiffness;
+    let reduction = irs.outcome.accuracy.reduction.unwrap();
+    assert!((reduction.flexibility - (1.0 / flexibility - 1.0).abs()).abs() < 1e-9, "{reduction:?}, {flexibility}");
+    assert!(reduction.flexibility > 1e-4 && reduction.residual.unwrap().force.is_none(), "{reduction:?}");
+}
+
+#[test]
+fn a_resumed_run_says_the_same() {
+    let path = root().join("examples").join(PLATE).join("scene.toml");
+    let model = Model::new(scene::read(&path).unwrap(), &Registry::standard()).unwrap();
+    let prepared = || run::prepare(&model, NonZeroUsize::MIN).unwrap();
+    let straight = run::march(run::prepare(&model, NonZeroUsize::new(2).unwrap()).unwrap(), |_| {}).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let dir = OutputDir::create(folder.path().join("out")).unwrap();
+    let mut march = March::start(prepared()).unwrap();
+    for _ in 0..2001 {
+        march.advance();
+    }
+    march.save(&dir).unwrap();
+    let cut = march.finish();
+    assert!(cut.counters.steps == 2001 && cut.accuracy == Accuracy::default(), "{:?}", cut.accuracy);
+    let mut march = March::resume(prepared(), Checkpoint::read(dir.path(), &model).unwrap()).unwrap();
+    while !march.done() {
+        march.advance();
+    }
+    let resumed = march.finish();
+    assert!(straight.accuracy.step.is_some() && straight.accuracy.reduction.is_some());
+    assert_eq!(resumed.accuracy, straight.accuracy);
+    assert_eq!(resumed.counters, straight.counters);
+}
+
+#[test]
+fn nothing_is_said_that_is_not_known() {
+    // Every unknown is marched, by a march that is all the run.
+    let full = strip().append("[reduction]\nmethod = \"none\"\n").fem("run", &["--out", "out"]).good();
+    assert!(full.stdout.contains("reduction: none, all unknowns are marched"), "{full:#?}");
+    assert!(full.stdout.contains("step: error not estimated; half the step would show it"), "{full:#?}");
+
+    // So small a plate, marched for so long, that a second march would take as long as all the rest.
+    let small = strip().scene("end = \"20 us\"", "end = \"1 ms\"");
+    let done = small.fem("run", &["--out", "out"]).good();
+    assert!(
+        done.stdout.contains("reduction: error of the force not estimated; stiffness at the contact exact"),
+        "{done:#?}"
+    );
+    let accuracy = said(&small);
+    assert!(accuracy["reduction_flexibility_error_relative"].as_f64().unwrap() < 1e-9, "{accuracy}");
+    assert!(accuracy.get("step_error_force_L2_relative").is_none(), "{accuracy}");
+
+    // The tolerance of an integrator that divides its steps decides, not their length.
+    let divided = plate_by("dormand-prince", "0.4 us", "").outcome.accuracy;
+    assert!(divided.step.is_none(), "{divided:?}");
+}
+
+#[test]
+fn a_march_that_stops_has_no_estimates() {
+    let case = strip().scene("end = \"20 us\"", "step = \"1 ms\"\nend = \"10 ms\"");
+    let done = case.fem("run", &["--out", "out"]);
+    assert!(done.status == 1 && done.stdout.contains("STOPPED"), "{done:#?}");
+    assert!(done.stdout.contains("not estimated: the march has stopped"), "{done:#?}");
+    let accuracy = said(&case);
+    assert_eq!(accuracy.as_object().unwrap().len(), 2, "{accuracy}");
+}
