@@ -1,7 +1,7 @@
 //! The estimated error of a mesh against the difference from a much finer one.
 
 use super::scene::{AS4, PAGANO, Plate, QUARTER, Side};
-use crate::support::root;
+use crate::support::{fem, root};
 use fem::core::estimate::mesh_error;
 use fem::core::patch::locate;
 use fem::core::quadrature::gauss_legendre;
@@ -148,4 +148,18 @@ fn nothing_is_said_where_a_plate_is_one_cell_wide() {
     assert_eq!(strip(SOLIDS[0], [8, 1]), None);
     assert_eq!(strip("kind = 'webster-beam'", [8, 1]), None);
     assert!(strip(SOLIDS[0], [8, 2]).is_some_and(|error| error > 1e-3 && error < 0.3));
+}
+
+#[test]
+fn an_example_says_what_the_book_quotes() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = root().join("examples/pagano-0-90-0/scene.toml");
+    let done = fem(folder.path(), &["run", scene.to_str().unwrap(), "--out", "out"]).good();
+    assert!(done.stdout.contains("; mesh about 0.24 % in the energy norm"), "{}", done.stdout);
+    let summary: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("out/summary.json")).unwrap()).unwrap();
+    let error = summary["mesh_error_relative"].as_f64().unwrap();
+    assert!((error - 0.0024).abs() < 5e-5, "{error}");
+    let book = std::fs::read_to_string(root().join("docs/book/src/meshes.md")).unwrap();
+    assert!(book.contains("0.24 % for `examples/pagano-0-90-0`"), "{book}");
 }
