@@ -141,7 +141,8 @@ pub fn study(
     for planned in planner.joint(session, &report) {
         run(session, &mut report, &planned)?;
     }
-    for planned in plan.runs.iter().filter(|planned| planned.kind != AxisKind::Ladder) {
+    let beside = plan.runs.iter().filter(|planned| planned.kind != AxisKind::Ladder);
+    for planned in beside.chain(&plan.spare) {
         match planner.affords(session, planned) {
             true => run(session, &mut report, planned)?,
             false => report.left_out.push((planned.axis.clone(), planned.level.label.clone(), plan::SPENT.into())),

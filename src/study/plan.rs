@@ -60,6 +60,8 @@ pub(super) const TOGETHER: &str = "joint";
 pub struct Plan {
     /// The runs along single axes, in order.
     pub runs: Vec<Planned>,
+    /// Runs beside the ladders for which time may be left.
+    pub spare: Vec<Planned>,
     /// Axis and level of what is not run, and why.
     pub left_out: Vec<(String, String, String)>,
     /// Seconds that runs of levels of all ladders together may take.
@@ -145,6 +147,8 @@ impl Planner {
                 if known || planned.seconds <= time.min(self.largest()) {
                     time -= if known { 0.0 } else { planned.seconds };
                     plan.runs.push(planned);
+                } else if planned.kind != AxisKind::Ladder && planned.seconds <= self.largest() {
+                    plan.spare.push(planned);
                 } else {
                     plan.left_out.push((planned.axis, planned.level.label, SPENT.into()));
                 }
@@ -187,8 +191,9 @@ impl Planner {
             return true;
         }
         let seconds = self.rates(session).seconds(&planned.size);
-        self.spent += seconds;
-        self.budget.is_none() || seconds <= self.rest()
+        let affordable = seconds <= self.rest();
+        self.spent += if affordable { seconds } else { 0.0 };
+        affordable
     }
 
     /// Levels of all ladders of `report` together: the cheapest for each target, and the finest that the time allows.

@@ -288,8 +288,8 @@ impl Report {
                     _ => "",
                 };
                 notes.push(format!(
-                    "{quantity} does not converge along {}: the last level changes it by {difference:.1e}, no less than the \
-                     one before; nothing is extrapolated{why}",
+                    "{quantity} does not converge along {} as far as it was climbed: the last level changes it by \
+                     {difference:.1e}, hardly less than the one before; nothing is extrapolated{why}",
                     ladder.axis
                 ));
             }

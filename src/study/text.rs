@@ -35,6 +35,11 @@ impl fmt::Display for Plan {
         if self.joint > 0.0 {
             writeln!(f, "    {TOGETHER:<14} levels of all ladders together (up to {:.0} s)", self.joint)?;
         }
+        let spare: Vec<_> =
+            self.spare.iter().map(|run| (run.axis.clone(), run.level.label.clone(), String::new())).collect();
+        for (axis, labels, _) in grouped(&spare) {
+            writeln!(f, "    if time allows {axis}: {labels}")?;
+        }
         for (axis, labels, why) in grouped(&self.left_out) {
             writeln!(f, "    left out       {axis}: {labels}: {why}")?;
         }
@@ -169,7 +174,7 @@ fn part(ladder: &Ladder, quantity: &str) -> String {
     let convergence = ladder.limits.iter().find(|limit| limit.quantity == quantity).map(|limit| limit.convergence);
     let how = match convergence {
         Some(Convergence::Converges { order, .. }) => format!(", order {order:.1}"),
-        Some(Convergence::Stalls { .. }) => ", does not converge".to_owned(),
+        Some(Convergence::Stalls { .. }) => ", no convergence".to_owned(),
         Some(Convergence::Unknown { .. }) => ", order unknown".to_owned(),
         _ => String::new(),
     };
