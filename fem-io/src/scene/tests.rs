@@ -360,6 +360,13 @@ fn refusals() {
         ("a number out of range", spoilt("\"2.49 kg\"", "\"1e999 kg\"")),
         ("not a number", spoilt("nu = 0.3", "nu = nan")),
         ("a quantity in quotes where a pure number belongs", spoilt("nu = 0.3", "nu = \"0.3\"")),
+        ("a study to a tolerance that is no error", format!("study = {{ tolerance = 2 }}\n{GOOD}")),
+        ("an axis without levels", format!("study = {{ axis = [{{ name = \"n\", levels = [] }}] }}\n{GOOD}")),
+        ("a level that lays nothing", format!("study = {{ axis = [{{ name = \"n\", levels = [{{}}] }}] }}\n{GOOD}")),
+        (
+            "a stress without its height",
+            format!("study = {{ quantities = [{{ name = \"s\", profile = \"c\", component = \"sxx\" }}] }}\n{GOOD}"),
+        ),
         ("an unknown key at the top", spoilt("output =", "outputs =")),
         ("an unknown key in a table", spoilt("radius = \"10 mm\"", "raduis = \"10 mm\"")),
         ("an unknown key in a list", spoilt("dofs = [\"U30\"]", "dof = [\"U30\"]")),
