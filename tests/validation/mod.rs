@@ -9,5 +9,6 @@ mod patch;
 mod scene;
 mod slender;
 mod strip;
+mod study;
 mod substructures;
 mod symmetry;
