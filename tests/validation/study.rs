@@ -102,16 +102,15 @@ fn a_thick_sandwich() {
     studied.number("middle", at(2.0, 0.0, "txz") * 1e6, 0.0, 2.5);
 }
 
-/// One layer of cells per ply leaves 4e-5 of the deflection; the series leaves 2e-4 of the stress.
-#[track_caller]
-fn under_a_smooth_patch_load(refinements: &[usize], decades: f64) {
+/// The series leaves 4.4e-5 of the deflection, of which layers half as thick take 5e-7 away, and 2e-4 of the stress.
+#[test]
+fn a_smooth_patch_load() {
     let mesh = patch::mesh(&[0.0], 1);
     let plate = patch::plate(&mesh).profile([patch::HALF; 2], 5);
     let text = format!(
         "{}[study]\nquantities = ['deflection', {{ name = 'bottom', profile = '0', component = 'sxx', height = '-0.52 mm' }}]\n\
-         [[study.axis]]\nname = 'cells'\nlevels = [{}]\n",
+         [[study.axis]]\nname = 'cells'\nlevels = [{{ mesh.refine = 0 }}, {{ mesh.refine = 1 }}, {{ mesh.refine = 2 }}]\n",
         plate.text("static"),
-        refinements.iter().map(|n| format!("{{ mesh.refine = {n} }}, ")).collect::<String>(),
     );
     let exact = patch::exact();
     let middle: Vec<&Exact> = exact.iter().filter(|r| r["x_mm"] == patch::HALF && r["y_mm"] == patch::HALF).collect();
@@ -120,13 +119,8 @@ fn under_a_smooth_patch_load(refinements: &[usize], decades: f64) {
     let deflection = middle.iter().filter(between).map(|r| r["w_mm"].abs()).fold(0.0, f64::max);
     let bottom = middle.iter().find(|r| r["z_mm"] == -0.52).unwrap()["sx_MPa"];
     let studied = Studied::new(&text, &["cells"]);
-    studied.number("deflection", deflection * 1e-3, 4.4e-5, decades);
-    studied.number("bottom", bottom * 1e6, 1.8e-4, decades);
-}
-
-#[test]
-fn a_smooth_patch_load() {
-    under_a_smooth_patch_load(&[0, 1, 2, 3], 1.0);
+    studied.number("deflection", deflection * 1e-3, 4.4e-5, 1.0);
+    studied.number("bottom", bottom * 1e6, 1.8e-4, 1.0);
 }
 
 /// `floors` and `decades` of peak force, impulse and force history.
@@ -296,12 +290,12 @@ fn straight_edges_along_a_circle() {
     assert!(circle.contains("refinement follows the curve"), "{circle}");
 }
 
-/// The half plate of case 1 of AFWAL-TR-87-4117, without what asks for no accuracy here.
-fn case_1(end: &str) -> Case {
+/// A tenth of the time of the half plate of case 1 of AFWAL-TR-87-4117, without what asks for no accuracy here.
+fn case_1() -> Case {
     let scene = std::fs::read_to_string(root().join("examples/as4-3502-16ply-50mm/scene.toml")).unwrap();
     Case::example("as4-3502-16ply-50mm")
         .text(&scene)
-        .scene("end = \"1 ms\"", &format!("end = \"{end}\""))
+        .scene("end = \"1 ms\"", "end = \"0.1 ms\"")
         .scene("[failure]\ncriteria = [\"hashin-report\", \"octahedral\"]\n", "[effects]\ndamage = \"off\"\n")
         .append("[study]\nquantities = [\"impulse\", \"deflection\"]\n")
 }
@@ -314,7 +308,7 @@ fn keeps_a_percent(case: &Case, axes: &str) {
     fem(case.folder(), &["run", "study/scene.toml", "--out", "promised"]).good();
     let finer = [
         ("laminate.layers", "8"),
-        ("reduction", "{ method = \"ritz\", vectors = 160 }"),
+        ("reduction", "{ method = \"ritz\", vectors = 120 }"),
         ("march.step", "\"0.05 us\""),
     ];
     let setting: Setting = finer.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
@@ -334,15 +328,9 @@ fn a_tenth_of_case_1_keeps_its_tolerance() {
         let levels: String = levels.iter().map(|level| format!("{{ {key} = {level} }}, ")).collect();
         format!("[[study.axis]]\nname = '{name}'\nlevels = [{levels}]\n")
     };
-    let case = case_1("0.1 ms")
+    let case = case_1()
         .append(&own("through", "laminate.layers", &["2", "4"]))
-        .append(&own("vectors", "reduction.vectors", &["10", "20", "40", "80"]))
+        .append(&own("vectors", "reduction.vectors", &["10", "20", "40"]))
         .append(&own("steps", "march.step", &["'0.4 us'", "'0.2 us'", "'0.1 us'"]));
     keeps_a_percent(&case, "through,vectors,steps");
-}
-
-#[test]
-#[ignore = "minutes"]
-fn case_1_keeps_its_tolerance() {
-    keeps_a_percent(&case_1("1 ms"), "layers,reduction,step");
 }
