@@ -88,12 +88,12 @@ impl Ladder {
         ladder
     }
 
-    /// What is to be added to the value of `quantity` at the level of `setting` to reach the limit, and its uncertainty,
-    /// both relative; `None` where the ladder has no such level or no limit.
-    pub(super) fn correction(&self, quantity: &str, label: &str) -> Option<(f64, f64)> {
+    /// What is to be added to the value of `quantity` at level `rung` to reach the limit, and its uncertainty,
+    /// both relative; `None` where there is no limit.
+    pub(super) fn correction(&self, quantity: &str, rung: usize) -> Option<(f64, f64)> {
         let k = self.limits.iter().position(|limit| limit.quantity == quantity)?;
         let limit = &self.limits[k];
-        let rung = self.levels.iter().find(|rung| rung.level.label == label)?;
+        let rung = self.levels.get(rung)?;
         let left = limit.convergence.left();
         match (rung.values[k], limit.value, limit.convergence) {
             (Some(own), Some(value), Convergence::Converges { .. }) => {

@@ -26,7 +26,7 @@ mod text;
 
 pub use axes::{Axis, AxisKind, Level, NAMES};
 pub use converge::{Convergence, limit};
-pub use ladder::Ladder;
+pub use ladder::{Ladder, Limit};
 pub use picture::write_pictures;
 pub use plan::{Plan, Planned};
 pub use predict::{Better, one_level_better};

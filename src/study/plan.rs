@@ -50,6 +50,8 @@ pub struct Planned {
     pub size: Size,
     /// Processor time as it is expected, s.
     pub seconds: f64,
+    /// Its place on every ladder, if it is of levels of all ladders together.
+    pub rungs: Vec<usize>,
 }
 
 /// Name of the axis of levels of all ladders together.
@@ -169,7 +171,8 @@ impl Planner {
             return Err(format!("about {} unknowns are more than a study makes", size.unknowns));
         }
         let seconds = rates.seconds(&size);
-        Ok(Planned { axis: axis.name.clone(), kind: axis.kind, level: level.clone(), size, seconds })
+        let (axis, kind, level) = (axis.name.clone(), axis.kind, level.clone());
+        Ok(Planned { axis, kind, level, size, seconds, rungs: Vec::new() })
     }
 
     /// Sizes under the setting of `level`.
@@ -212,21 +215,21 @@ impl Planner {
                 .collect();
         }
         let sure = report.convergent();
-        let mut choices: Vec<(Vec<usize>, f64, Planned)> = all
-            .iter()
-            .map(|levels| {
-                let each = || ladders.iter().zip(levels).map(|(ladder, k)| &ladder.levels[*k]);
+        let mut choices: Vec<(f64, Planned)> = all
+            .into_iter()
+            .map(|rungs| {
+                let each = || ladders.iter().zip(&rungs).map(|(ladder, k)| &ladder.levels[*k]);
                 let size = predict::together(&self.base, each().map(|level| &level.size));
                 let label = each().map(|level| level.level.label.as_str()).collect::<Vec<_>>().join(", ");
                 let setting = each().flat_map(|level| level.level.setting.clone()).collect();
                 let level = Level { label, setting, at_limit: false };
                 let error = each().map(|level| level.worst(&sure)).sum();
                 let seconds = rates.seconds(&size);
-                (levels.clone(), error, Planned { axis: TOGETHER.into(), kind: AxisKind::Ladder, level, size, seconds })
+                (error, Planned { axis: TOGETHER.into(), kind: AxisKind::Ladder, level, size, seconds, rungs })
             })
-            .filter(|(_, _, planned)| planned.size.factor_entries <= MOST_ENTRIES)
+            .filter(|(_, planned)| planned.size.factor_entries <= MOST_ENTRIES)
             .collect();
-        choices.sort_by(|a, b| a.2.seconds.total_cmp(&b.2.seconds));
+        choices.sort_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds));
         let mut chosen: Vec<Planned> = Vec::new();
         let mut choose = |planned: &Planned, time: &mut f64| {
             if chosen.iter().all(|other| other.level != planned.level) {
@@ -235,15 +238,17 @@ impl Planner {
             }
         };
         // The finest first, because everything is measured by it, and one that is coarser along every ladder, to prove it.
-        let affordable = choices.iter().filter(|c| c.2.seconds <= FINEST * time);
-        let finest = affordable.min_by(|a, b| a.1.total_cmp(&b.1).then(a.2.seconds.total_cmp(&b.2.seconds)));
-        if let Some((levels, _, finest)) = finest {
+        let affordable = choices.iter().filter(|c| c.1.seconds <= FINEST * time);
+        // Where errors are equal, the higher rungs count: a ladder that stalls leaves the same everywhere.
+        let height = |planned: &Planned| planned.rungs.iter().sum::<usize>();
+        let finest = affordable.min_by(|a, b| a.0.total_cmp(&b.0).then(height(&b.1).cmp(&height(&a.1))));
+        if let Some((_, finest)) = finest {
             choose(finest, &mut time);
-            let below: Vec<usize> = levels.iter().map(|k| k.saturating_sub(1)).collect();
-            choices.iter().filter(|c| c.0 == below).for_each(|(_, _, second)| choose(second, &mut time));
+            let below = below(&finest.rungs);
+            choices.iter().filter(|c| c.1.rungs == below).for_each(|(_, second)| choose(second, &mut time));
         }
         for target in TARGETS {
-            let Some((_, _, cheapest)) = choices.iter().find(|(_, error, _)| *error <= SAFETY * target) else {
+            let Some((_, cheapest)) = choices.iter().find(|(error, _)| *error <= SAFETY * target) else {
                 continue;
             };
             if cheapest.seconds <= time {
@@ -254,4 +259,9 @@ impl Planner {
         self.spent += chosen.iter().map(|planned| planned.seconds).sum::<f64>();
         chosen
     }
+}
+
+/// A level coarser along every ladder.
+pub(super) fn below(rungs: &[usize]) -> Vec<usize> {
+    rungs.iter().map(|k| k.saturating_sub(1)).collect()
 }

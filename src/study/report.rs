@@ -3,7 +3,7 @@
 use super::axes::{Axis, AxisKind, LADDERS, Level};
 use super::converge::Convergence;
 use super::ladder::Ladder;
-use super::plan::{Planned, SPENT, TOGETHER};
+use super::plan::{Planned, SPENT, TOGETHER, below};
 use super::predict::nominal;
 use super::quantity::FORCE_HISTORY;
 use super::record::Record;
@@ -43,13 +43,15 @@ pub struct Row {
     pub kind: AxisKind,
     /// The level.
     pub level: Level,
+    /// Its place on every ladder, if it is of levels of all ladders together.
+    pub rungs: Vec<usize>,
     /// What it gave, or why it gave nothing.
     pub result: Result<Record, String>,
     /// Processor time as it was expected, s.
     pub expected_s: f64,
     /// Relative error of each quantity that its axis alone leaves, or changes.
     pub own: Vec<Option<f64>>,
-    /// Relative error of each quantity, counted from the reference.
+    /// Relative error of each quantity, counted from the reference; what the reference leaves, where it is below that.
     pub errors: Vec<Option<f64>>,
     /// Whether no cheaper run has a smaller worst error.
     pub front: bool,
@@ -70,8 +72,8 @@ pub struct Reference {
 
 impl Row {
     fn new(axis: &str, kind: AxisKind, level: Level, result: Result<Record, String>, expected_s: f64) -> Self {
-        let (own, errors) = (Vec::new(), Vec::new());
-        Self { axis: axis.to_owned(), kind, level, result, expected_s, own, errors, front: false }
+        let (rungs, own, errors) = (Vec::new(), Vec::new(), Vec::new());
+        Self { axis: axis.to_owned(), kind, level, rungs, result, expected_s, own, errors, front: false }
     }
 
     /// The largest of its errors; `None` where one is unknown.
@@ -125,8 +127,8 @@ impl Report {
         if planned.level.setting.is_empty() && planned.axis != TOGETHER {
             return;
         }
-        let Planned { axis, kind, level, seconds, .. } = planned;
-        self.rows.push(Row::new(axis, *kind, level.clone(), result, *seconds));
+        let Planned { axis, kind, level, seconds, rungs, .. } = planned;
+        self.rows.push(Row { rungs: rungs.clone(), ..Row::new(axis, *kind, level.clone(), result, *seconds) });
     }
 
     /// The runs of an axis of which there are results, in the order of its levels.
@@ -175,10 +177,14 @@ impl Report {
             let Ok(record) = &row.result else { continue };
             row.errors = asked
                 .iter()
-                .zip(&reference.values)
-                .map(|(quantity, value)| match (value, record.value(quantity)) {
-                    (Some(value), Some(own)) if quantity != FORCE_HISTORY => Some(((own - value) / value).abs()),
-                    _ => Some(record.difference(exact.as_ref().ok()?, quantity)?.abs()),
+                .zip(reference.values.iter().zip(&reference.bars))
+                .map(|(quantity, (value, bar))| {
+                    let error = match (value, record.value(quantity)) {
+                        (Some(value), Some(own)) if quantity != FORCE_HISTORY => ((own - value) / value).abs(),
+                        _ => record.difference(exact.as_ref().ok()?, quantity)?.abs(),
+                    };
+                    // An error below what is left of the reference is not known to be smaller.
+                    Some(if error < *bar && bar.is_finite() { *bar } else { error })
                 })
                 .collect();
             let ladder = ladders.iter().find(|ladder| ladder.axis == row.axis);
@@ -197,43 +203,31 @@ impl Report {
     fn refer(&mut self) {
         let sure = self.convergent();
         let total = |row: &Row| -> f64 {
-            let labels: Vec<&str> = row.level.label.split(", ").collect();
-            let each = self.ladders.iter().zip(labels);
-            let error = |(ladder, label): (&Ladder, &str)| {
-                let rung = ladder.levels.iter().find(|rung| rung.level.label == label);
-                rung.map_or(f64::INFINITY, |rung| rung.worst(&sure))
-            };
-            each.map(error).sum()
+            self.ladders.iter().zip(&row.rungs).map(|(ladder, k)| ladder.levels[*k].worst(&sure)).sum()
         };
         let joint = self.rows.iter().enumerate().filter(|(_, row)| row.axis == TOGETHER && row.result.is_ok());
         let finest = joint.map(|(k, row)| (k, total(row))).min_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
         let row = finest.map_or(0, |finest| finest.0);
         let finest = &self.rows[row];
         let Ok(record) = &finest.result else { return };
-        let labels: Vec<&str> = finest.level.label.split(", ").collect();
-        // The run one level below on every ladder.
-        let below = self.ladders.iter().zip(&labels).map(|(ladder, label)| {
-            let k = ladder.levels.iter().position(|rung| rung.level.label == *label).unwrap_or(0);
-            ladder.levels[k.saturating_sub(1)].level.label.as_str()
-        });
-        let below = below.collect::<Vec<_>>().join(", ");
-        let second = self.rows.iter().find(|row| row.axis == TOGETHER && row.level.label == below);
+        let below = below(&finest.rungs);
+        let second = self.rows.iter().find(|row| row.axis == TOGETHER && row.rungs == below);
+        let second = second.and_then(|row| row.result.as_ref().ok()).filter(|_| below != finest.rungs);
         let mut reference = Reference { row, ..Reference::default() };
         for quantity in &self.asked {
-            let each = self.ladders.iter().zip(&labels).map(|(ladder, label)| ladder.correction(quantity, label));
+            let each = self.ladders.iter().zip(&finest.rungs).map(|(ladder, k)| ladder.correction(quantity, *k));
             let (mut correction, mut bar) = (0.0, 0.0);
             for found in each {
                 let (by, uncertain) = found.unwrap_or((0.0, f64::INFINITY));
                 correction += by;
                 bar += uncertain;
             }
-            if self.ladders.is_empty() {
+            if finest.rungs.is_empty() {
                 bar = f64::INFINITY;
             }
             let value = record.value(quantity);
             reference.values.push(value.map(|value| value + correction * value.abs()));
             reference.bars.push(bar);
-            let second = second.and_then(|row| row.result.as_ref().ok()).filter(|_| below != finest.level.label);
             reference.agreement.push(second.and_then(|second| second.difference(record, quantity)).map(f64::abs));
         }
         self.reference = reference;

@@ -4,7 +4,7 @@
 //! and then differ by it, which [`Strike::stiff_across`] shows: plies that do not yield across the laminate leave of a solid
 //! what first-order theory has, and its histories meet the series.
 
-use super::scene::{AS4, Plate, Side, gmsh_grid, isotropic, order, reference};
+use super::scene::{AS4, MeshFile, Plate, Side, gmsh_grid, isotropic, order, reference};
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
 use fem::{Model, Registry, run};
@@ -26,35 +26,35 @@ const GRAZING: f64 = 15.5;
 
 /// An impact in the middle of a simply supported square plate, or of a strip, of which symmetry leaves a quarter or half.
 #[derive(Debug, Clone)]
-struct Strike {
-    element: String,
-    material: String,
-    plies: &'static str,
-    ply_mm: f64,
+pub(super) struct Strike {
+    pub(super) element: String,
+    pub(super) material: String,
+    pub(super) plies: &'static str,
+    pub(super) ply_mm: f64,
     /// Plies per layer of cells.
-    layers: &'static [usize],
+    pub(super) layers: &'static [usize],
     /// Half the side or length, mm.
-    half: f64,
+    pub(super) half: f64,
     /// Width of a strip, mm.
-    width: Option<f64>,
+    pub(super) width: Option<f64>,
     /// Side of the square over which the contact acts, mm.
-    patch: f64,
+    pub(super) patch: f64,
     /// Cells are half a patch long under the impactor, longer by `growth` from one to the next, at most `longest`, mm.
-    growth: f64,
-    longest: f64,
+    pub(super) growth: f64,
+    pub(super) longest: f64,
     /// kg and m/s.
-    mass: f64,
-    velocity: f64,
+    pub(super) mass: f64,
+    pub(super) velocity: f64,
     /// N/m^1.5.
-    k: f64,
+    pub(super) k: f64,
     /// Name and other keys of the law.
-    law: &'static str,
-    vectors: usize,
+    pub(super) law: &'static str,
+    pub(super) vectors: usize,
     /// How they are found.
-    space: &'static str,
+    pub(super) space: &'static str,
     /// us.
-    step: f64,
-    end: f64,
+    pub(super) step: f64,
+    pub(super) end: f64,
 }
 
 const HERTZ: &str = "law = 'hertz'";
@@ -95,19 +95,30 @@ impl Strike {
         from_middle.iter().enumerate().rev().map(line).collect()
     }
 
-    fn run(&self) -> History {
+    /// Of the quarter or half that symmetry leaves.
+    pub(super) fn mesh(&self) -> MeshFile {
         let x = self.lines();
         let y = self.width.map_or_else(|| x.clone(), |width| vec![0.0, width]);
-        let mesh = gmsh_grid(&x, &y, 0.0);
-        let (parts, across) = match self.width {
-            Some(_) => (2.0, [Side::Free; 2]),
-            None => (4.0, [Side::Supported, Side::Symmetric]),
+        gmsh_grid(&x, &y, 0.0)
+    }
+
+    /// Of the whole plate to that which is computed.
+    pub(super) fn parts(&self) -> f64 {
+        if self.width.is_some() { 2.0 } else { 4.0 }
+    }
+
+    /// The scene on its mesh.
+    pub(super) fn text(&self, mesh: &MeshFile) -> String {
+        let parts = self.parts();
+        let across = match self.width {
+            Some(_) => [Side::Free; 2],
+            None => [Side::Supported, Side::Symmetric],
         };
         // The part of the patch that lies on the part of the plate bears its part of the force.
         let side = 0.5 * self.patch;
         let at = [self.half - 0.5 * side, self.width.map_or(self.half - 0.5 * side, |width| 0.5 * width)];
         let mut plate = Plate::new(&self.material, self.plies, self.ply_mm, self.layers.to_vec())
-            .on(&mesh)
+            .on(mesh)
             .element(&self.element)
             .sides([Side::Supported, Side::Symmetric, across[0], across[1]]);
         plate.more = format!(
@@ -125,12 +136,17 @@ impl Strike {
             self.step,
             self.end,
         );
-        let scene = scene::parse(&plate.text("impact"), "scene.toml".as_ref()).unwrap();
+        plate.text("impact")
+    }
+
+    fn run(&self) -> History {
+        let mesh = self.mesh();
+        let scene = scene::parse(&self.text(&mesh), "scene.toml".as_ref()).unwrap();
         let model = Model::new(scene, &Registry::standard()).unwrap();
         let outcome = run::march(run::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
         assert_eq!(outcome.stopped, None);
         assert!(outcome.energy_error < 1e-4, "{}", outcome.energy_error);
-        History { rows: outcome.history, parts }
+        History { rows: outcome.history, parts: self.parts() }
     }
 
     /// What sets its history apart from that of `table`.
@@ -259,25 +275,37 @@ fn agrees(strike: &Strike, table: &str, contacts: usize) {
     assert_eq!(difference.contacts, [contacts; 2], "{difference:?}");
 }
 
-#[test]
-fn karas() {
-    agrees(&shell(isotropic(206.0, 0.28, 7.833), "[0]", 8.0, &[1]), "impact_karas_fsdtri_patch2.csv", 1);
+pub(super) const KARAS: &str = "impact_karas_fsdtri_patch2.csv";
+pub(super) const SUN_AND_CHEN: &str = "impact_sunchenA_fsdtri_patch2_hertz.csv";
+
+/// A steel ball on a steel plate.
+pub(super) fn on_steel() -> Strike {
+    shell(isotropic(206.0, 0.28, 7.833), "[0]", 8.0, &[1])
 }
 
-/// The first of two contacts. The other shear stiffness shows in the slow rebound: 3 % of its velocity.
 #[test]
-fn sun_and_chen() {
+fn karas() {
+    agrees(&on_steel(), KARAS, 1);
+}
+
+/// A steel ball on ten plies.
+pub(super) fn on_ten_plies() -> Strike {
     let material = "e1 = '120 GPa'\ne2 = '7.9 GPa'\ne3 = '7.9 GPa'\nnu12 = 0.3\nnu13 = 0.3\nnu23 = 0.3\n\
                     g12 = '5.5 GPa'\ng13 = '5.5 GPa'\ng23 = '5.5 GPa'\ndensity = '1.58 g/cm^3'\n";
-    let strike = Strike {
+    Strike {
         mass: 0.008537345412820706,
         velocity: 3.0,
         k: 811585276.4303534,
         step: 0.2,
         end: 250.0,
         ..shell(material.into(), "[0/90/0/90/0]s", 0.269, &[10])
-    };
-    let difference = strike.against("impact_sunchenA_fsdtri_patch2_hertz.csv");
+    }
+}
+
+/// The first of two contacts. The other shear stiffness shows in the slow rebound: 3 % of its velocity.
+#[test]
+fn sun_and_chen() {
+    let difference = on_ten_plies().against(SUN_AND_CHEN);
     assert!(difference.peak.abs() < PEAK && difference.curve < CURVE, "{difference:?}");
     assert!(difference.first_impulse.abs() < IMPULSE, "{difference:?}");
 }

@@ -10,5 +10,6 @@ mod patch;
 mod scene;
 mod slender;
 mod strip;
+mod study;
 mod substructures;
 mod symmetry;

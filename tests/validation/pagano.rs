@@ -1,6 +1,6 @@
 //! Cross-ply plates under a sine pressure (Pagano 1970): a quarter of the plate, derivatives along z layer by layer.
 
-use super::scene::{AS4, PAGANO, Plate, farthest, largest, order, reference};
+use super::scene::{AS4, PAGANO, Plate, Row, farthest, largest, order, reference};
 use fem::core::profile::ProfilePoint;
 use std::f64::consts::PI;
 
@@ -18,14 +18,14 @@ const SHARED_SHEAR: f64 = 0.25;
 const ORDER: std::ops::Range<f64> = 3.5..4.5;
 
 /// A laminate of the reference tables.
-struct Laminate {
+pub(super) struct Laminate {
     table: &'static str,
     material: &'static str,
     angles: &'static [u32],
     ply: f64,
 }
 
-const THREE: Laminate =
+pub(super) const THREE: Laminate =
     Laminate { table: "pagano_bidir_0_90_0_pag25.csv", material: PAGANO, angles: &[0, 90, 0], ply: 1.0 / 3.0 };
 const FOUR: Laminate =
     Laminate { table: "pagano_bidir_0_90_90_0_pag25.csv", material: PAGANO, angles: &[0, 90, 90, 0], ply: 0.25 };
@@ -40,7 +40,7 @@ const SIXTEEN: Laminate = Laminate {
 
 /// Cells a side of the quarter, and layers of cells per ply.
 #[derive(Clone, Copy)]
-struct Mesh(usize, usize);
+pub(super) struct Mesh(pub(super) usize, pub(super) usize);
 
 /// Largest errors of a solution, each relative to the largest value of its column.
 #[derive(Debug)]
@@ -53,23 +53,37 @@ struct Errors {
     equilibrium: f64,
 }
 
-fn errors(laminate: &Laminate, ratio: f64, Mesh(cells, split): Mesh, z_derivatives: &str) -> Errors {
-    let Laminate { table, material, angles, ply } = *laminate;
-    let rows: Vec<_> = reference(table).into_iter().filter(|r| r["a_over_h"] == ratio).collect();
-    let h = ply * angles.len() as f64;
-    let a = ratio * h;
-    let points = (rows.len() / angles.len() - 1) / split + 1;
-    let plies: Vec<String> = angles.iter().map(|angle| format!("{angle}_{split}")).collect();
-    let (half, wave) = (0.5 * a, PI / a);
-    let plate =
-        Plate::new(material, &format!("[{}]", plies.join("/")), ply / split as f64, vec![1; angles.len() * split])
+impl Laminate {
+    /// The exact solution for a plate of this ratio of side to height.
+    pub(super) fn exact(&self, ratio: f64) -> Vec<Row> {
+        reference(self.table).into_iter().filter(|r| r["a_over_h"] == ratio).collect()
+    }
+
+    /// mm.
+    pub(super) fn height(&self) -> f64 {
+        self.ply * self.angles.len() as f64
+    }
+
+    /// A quarter of that plate, with profiles of `points` per ply in the middle of the plate, of a side along y, of a side
+    /// along x and in a corner.
+    pub(super) fn plate(&self, ratio: f64, Mesh(cells, split): Mesh, points: usize) -> Plate {
+        let a = ratio * self.height();
+        let plies: Vec<String> = self.angles.iter().map(|angle| format!("{angle}_{split}")).collect();
+        let (half, wave, layers) = (0.5 * a, PI / a, vec![1; self.angles.len() * split]);
+        Plate::new(self.material, &format!("[{}]", plies.join("/")), self.ply / split as f64, layers)
             .rectangle([half; 2], [cells; 2])
-            .element(&format!("z_derivatives = '{z_derivatives}'"))
             .pressure(&format!("-sin({wave}*x)*sin({wave}*y)"))
             .profile([half, half], points)
             .profile([0.0, half], points)
             .profile([half, 0.0], points)
-            .profile([0.0, 0.0], points);
+            .profile([0.0, 0.0], points)
+    }
+}
+
+fn errors(laminate: &Laminate, ratio: f64, mesh: Mesh, z_derivatives: &str) -> Errors {
+    let (rows, h, split) = (laminate.exact(ratio), laminate.height(), mesh.1);
+    let points = (rows.len() / laminate.angles.len() - 1) / split + 1;
+    let plate = laminate.plate(ratio, mesh, points).element(&format!("z_derivatives = '{z_derivatives}'"));
     let solution = plate.solve();
     let worst = |column: &str, profile: usize, value: &dyn Fn(&ProfilePoint) -> f64| {
         farthest(&rows, column, ("z_over_h", h), split, &solution.profiles[profile], value) / largest(&rows, column)

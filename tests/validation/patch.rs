@@ -1,6 +1,6 @@
 //! A smooth load on a small square in the middle of a plate of eight plies, against harmonics of exact elasticity.
 
-use super::scene::{AS4, Plate, farthest, gmsh_grid, largest, reference};
+use super::scene::{AS4, MeshFile, Plate, Row, farthest, gmsh_grid, largest, reference};
 use std::f64::consts::PI;
 
 /// Every displacement and stress at every station, relative to the largest of its column.
@@ -8,6 +8,30 @@ const STATION: f64 = 2e-2;
 
 const SIDE: f64 = 25.0;
 const LOADED: f64 = 4.0;
+
+/// Half the side: the middle of the plate.
+pub(super) const HALF: f64 = 0.5 * SIDE;
+/// Edge of the load.
+const EDGE: f64 = 0.5 * (SIDE - LOADED);
+
+pub(super) fn exact() -> Vec<Row> {
+    reference("patch3d_xply8_as4_25x25_c4.csv")
+}
+
+/// Lines of cells at `outside` and equal cells in the loaded square.
+pub(super) fn mesh(outside: &[f64], inside: usize) -> MeshFile {
+    let fine = (0..=inside).map(|i| EDGE + (HALF - EDGE) * i as f64 / inside as f64);
+    let lines: Vec<f64> = outside.iter().copied().chain(fine).collect();
+    gmsh_grid(&lines, &lines, 0.0)
+}
+
+/// A quarter of the plate under its load.
+pub(super) fn plate(mesh: &MeshFile) -> Plate {
+    let wave = PI / LOADED;
+    let bump = |x: &str| format!("({x} > {EDGE})*cos({wave}*({x} - {HALF}))^2");
+    let formula = format!("100*{}*{}", bump("x"), bump("y"));
+    Plate::new(AS4, "[0/90/0/90]s", 0.13, vec![1; 8]).on(mesh).pressure(&formula)
+}
 
 /// A quarter of the plate: lines of cells at `outside` and equal cells in the loaded square. Per column of the table,
 /// the largest error.
@@ -21,22 +45,13 @@ const LOADED: f64 = 4.0;
 ///
 /// Transverse shear from equilibrium is far off here (7e-2 on the third mesh): its cubic fit is wider than the load.
 fn errors(outside: &[f64], inside: usize) -> Vec<(&'static str, f64)> {
-    let rows = reference("patch3d_xply8_as4_25x25_c4.csv");
-    let (half, edge, wave) = (0.5 * SIDE, 0.5 * (SIDE - LOADED), PI / LOADED);
-    let fine = (0..=inside).map(|i| edge + (half - edge) * i as f64 / inside as f64);
-    let lines: Vec<f64> = outside.iter().copied().chain(fine).collect();
-    let mesh = gmsh_grid(&lines, &lines, 0.0);
+    let rows = exact();
+    let mesh = mesh(outside, inside);
     let mut stations: Vec<[f64; 2]> = rows.iter().map(|r| [r["x_mm"], r["y_mm"]]).collect();
     stations.dedup();
-    let bump = |x: &str| format!("({x} > {edge})*cos({wave}*({x} - {half}))^2");
-    let plate = Plate::new(AS4, "[0/90/0/90]s", 0.13, vec![1; 8]).on(&mesh).pressure(&format!(
-        "100*{}*{}",
-        bump("x"),
-        bump("y")
-    ));
     // The stations lie in another quarter.
     let mirrored = |plate: Plate, s: &[f64; 2]| plate.profile([SIDE - s[0], SIDE - s[1]], 5);
-    let solution = stations.iter().fold(plate, mirrored).solve();
+    let solution = stations.iter().fold(plate(&mesh), mirrored).solve();
     let columns = [
         ("w_mm", 1e3, 0),
         ("sx_MPa", 1e-6, 0),
