@@ -73,6 +73,16 @@ impl Plan {
     }
 }
 
+/// Levels of all ladders together.
+struct Choice {
+    /// Their places.
+    levels: Vec<usize>,
+    /// Sum of the errors that the ladders alone leave, of what converges and of all that is asked.
+    error: f64,
+    of_all: f64,
+    planned: Planned,
+}
+
 /// Decides what is run.
 #[derive(Debug)]
 pub(super) struct Planner {
@@ -203,21 +213,22 @@ impl Planner {
                 .collect();
         }
         let sure = report.convergent();
-        let mut choices: Vec<(Vec<usize>, f64, Planned)> = all
-            .iter()
+        let mut choices: Vec<Choice> = all
+            .into_iter()
             .map(|levels| {
-                let each = || ladders.iter().zip(levels).map(|(ladder, k)| &ladder.levels[*k]);
+                let each = || ladders.iter().zip(&levels).map(|(ladder, k)| &ladder.levels[*k]);
                 let size = predict::together(&self.base, each().map(|level| &level.size));
                 let label = each().map(|level| level.level.label.as_str()).collect::<Vec<_>>().join(", ");
                 let setting = each().flat_map(|level| level.level.setting.clone()).collect();
                 let level = Level { label, setting, at_limit: false };
-                let error = each().map(|level| level.worst(&sure)).sum();
+                let [error, of_all] = [&sure, &report.asked].map(|names| each().map(|level| level.worst(names)).sum());
                 let seconds = rates.seconds(&size);
-                (levels.clone(), error, Planned { axis: TOGETHER.into(), kind: AxisKind::Ladder, level, size, seconds })
+                let planned = Planned { axis: TOGETHER.into(), kind: AxisKind::Ladder, level, size, seconds };
+                Choice { levels, error, of_all, planned }
             })
-            .filter(|(_, _, planned)| planned.size.factor_entries <= MOST_ENTRIES)
+            .filter(|choice| choice.planned.size.factor_entries <= MOST_ENTRIES)
             .collect();
-        choices.sort_by(|a, b| a.2.seconds.total_cmp(&b.2.seconds));
+        choices.sort_by(|a, b| a.planned.seconds.total_cmp(&b.planned.seconds));
         let mut chosen: Vec<Planned> = Vec::new();
         let mut choose = |planned: &Planned, time: &mut f64| {
             if chosen.iter().all(|other| other.level != planned.level) {
@@ -226,19 +237,24 @@ impl Planner {
             }
         };
         // The finest first, because everything is measured by it, and one that is coarser along every ladder, to prove it.
-        let affordable = choices.iter().filter(|c| c.2.seconds <= FINEST * time);
-        let finest = affordable.min_by(|a, b| a.1.total_cmp(&b.1).then(a.2.seconds.total_cmp(&b.2.seconds)));
-        if let Some((levels, _, finest)) = finest {
-            choose(finest, &mut time);
-            let below: Vec<usize> = levels.iter().map(|k| k.saturating_sub(1)).collect();
-            choices.iter().filter(|c| c.0 == below).for_each(|(_, _, second)| choose(second, &mut time));
+        // What does not converge has no error that could tell, and counts from the finest level there is.
+        let stalls = sure.len() < report.asked.len();
+        let dearer = |a: &Choice, b: &Choice| a.planned.seconds.total_cmp(&b.planned.seconds);
+        let finest = choices.iter().filter(|c| c.planned.seconds <= FINEST * time).min_by(|a, b| {
+            let errors = a.error.total_cmp(&b.error).then(a.of_all.total_cmp(&b.of_all));
+            errors.then(if stalls { dearer(b, a) } else { dearer(a, b) })
+        });
+        if let Some(finest) = finest {
+            choose(&finest.planned, &mut time);
+            let below: Vec<usize> = finest.levels.iter().map(|k| k.saturating_sub(1)).collect();
+            choices.iter().filter(|c| c.levels == below).for_each(|second| choose(&second.planned, &mut time));
         }
         for target in TARGETS {
-            let Some((_, _, cheapest)) = choices.iter().find(|(_, error, _)| *error <= SAFETY * target) else {
+            let Some(cheapest) = choices.iter().find(|choice| choice.error <= SAFETY * target) else {
                 continue;
             };
-            if cheapest.seconds <= time {
-                choose(cheapest, &mut time);
+            if cheapest.planned.seconds <= time {
+                choose(&cheapest.planned, &mut time);
             }
         }
         chosen.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
