@@ -1,5 +1,6 @@
 //! What a run costs: time per phase, processor time, memory.
 
+use crate::study::Better;
 use cpu_time::ProcessTime;
 use serde::Serialize;
 use std::fmt;
@@ -14,12 +15,19 @@ pub struct Cost {
     pub phases: Vec<Phase>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub peak_memory_MB: Option<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub one_level_better: Vec<Better>,
 }
 
 impl Cost {
     /// The cost of `phases`, and of the memory so far.
     pub fn new(threads: NonZeroUsize, phases: Vec<Phase>) -> Self {
-        Self { threads: threads.get(), phases, peak_memory_MB: peak_memory().map(|b| b as f64 / 1e6) }
+        Self {
+            threads: threads.get(),
+            phases,
+            peak_memory_MB: peak_memory().map(|b| b as f64 / 1e6),
+            one_level_better: Vec::new(),
+        }
     }
 }
 
@@ -29,7 +37,10 @@ impl fmt::Display for Cost {
         let sum = |seconds: fn(&Phase) -> f64| self.phases.iter().map(seconds).sum::<f64>();
         let phases: Vec<String> = self.phases.iter().map(|p| format!("{} {:.3} s", p.name, p.wall_s)).collect();
         write!(f, "{:.3} s wall, {:.3} s processor: {}", sum(|p| p.wall_s), sum(|p| p.cpu_s), phases.join(", "))?;
-        self.peak_memory_MB.map_or(Ok(()), |m| write!(f, "; peak memory {m:.0} MB"))
+        self.peak_memory_MB.map_or(Ok(()), |m| write!(f, "; peak memory {m:.0} MB"))?;
+        let better: Vec<String> =
+            self.one_level_better.iter().map(|b| format!("{} +{:.2} s", b.what, b.more_cpu_s)).collect();
+        if better.is_empty() { Ok(()) } else { write!(f, "\n  better    would cost: {}", better.join(", ")) }
     }
 }
 

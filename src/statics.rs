@@ -8,6 +8,7 @@ use crate::stress::{self, Margin};
 use crate::summary::{and, in_words};
 use fem_core::counters::Counters;
 use fem_core::dof::Dof;
+use fem_core::estimate::mesh_error;
 use fem_core::profile::ProfilePoint;
 use fem_core::reduction::Functional;
 use fem_core::structure::Structure;
@@ -39,6 +40,8 @@ pub struct Solution {
     pub strain_energy: f64,
     /// ‖f − K u‖ / ‖f‖ of the independent unknowns.
     pub residual: f64,
+    /// Error of the mesh in the energy norm, relative, where [`mesh_error`] can say.
+    pub mesh_error: Option<f64>,
     /// Sum of the loads along x, y, z, N.
     pub resultant: [f64; 3],
     /// Per criterion, the smallest reserve factor and where.
@@ -98,6 +101,8 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     let margins = stress::margins(model, &u)?;
     let profiles = model.profiles.iter().map(|named| profile(model, named, &u)).collect();
     stopwatch.lap("stresses");
+    let mesh_error = mesh_error(&model.plate, &*model.element, &u)?;
+    stopwatch.lap("mesh error");
     let phases = stopwatch.phases().to_vec();
     let unknowns = constraints.ndof();
     Ok(Solution {
@@ -107,6 +112,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
         factor_entries: assembled.factor_entries,
         strain_energy,
         residual,
+        mesh_error,
         resultant,
         margins,
         profiles,
@@ -148,6 +154,8 @@ pub struct Summary {
     pub largest_deflection: Deflection,
     pub margins: Vec<Margin>,
     pub residual_relative: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh_error_relative: Option<f64>,
     pub elements: u64,
     pub elements_reused: u64,
     pub warnings: Vec<String>,
@@ -181,6 +189,7 @@ impl Summary {
             largest_deflection: Deflection { w_m, x_m, y_m, z_m },
             margins: solution.margins.clone(),
             residual_relative: solution.residual,
+            mesh_error_relative: solution.mesh_error,
             elements: solution.counters.elements,
             elements_reused: solution.counters.elements_reused,
             warnings: model.warnings.iter().cloned().chain(notable(solution.residual)).collect(),
@@ -216,7 +225,10 @@ impl Summary {
                 m.y_m * 1e3
             );
         }
-        let _ = writeln!(t, "  accuracy  residual {:.1e} of the loads", self.residual_relative);
+        let mesh = self.mesh_error_relative.map_or(String::new(), |error| {
+            format!("; mesh about {:.2} % in the energy norm (strains against a smooth fit of them)", 100.0 * error)
+        });
+        let _ = writeln!(t, "  accuracy  residual {:.1e} of the loads{mesh}", self.residual_relative);
         let _ = writeln!(t, "  work      {} element matrices, {} reused", self.elements, self.elements_reused);
         let _ = writeln!(t, "  time      {cost}");
         self.warnings.iter().for_each(|w| t.push_str(&format!("  warning   {w}\n")));

@@ -44,6 +44,7 @@ pub mod contact;
 pub mod counters;
 pub mod dof;
 pub mod element;
+pub mod estimate;
 pub mod failure;
 #[cfg(feature = "formula")]
 pub mod formula;

@@ -8,6 +8,7 @@ use crate::model::{Model, Plan};
 use crate::registry::Registry;
 use crate::run::{self, Checkpoint, March};
 use crate::statics;
+use crate::study;
 use crate::summary::{self, Summary};
 use clap::Args;
 use fem_io::files::OutputDir;
@@ -82,7 +83,9 @@ fn impact(model: &Model, arguments: &Arguments, folder: &Path) -> Result<ExitCod
     }
     let outcome = march.finish();
     let summary = Summary::new(model, &sizes, &outcome);
-    let cost = Cost::new(arguments.threads, outcome.phases.clone());
+    let mut cost = Cost::new(arguments.threads, outcome.phases.clone());
+    let size = study::Size::of_impact(model, &sizes, &outcome);
+    cost.one_level_better = study::one_level_better(&size, study::seconds_per_phase(&outcome.phases));
     summary::write_tables(&dir, model, &outcome)?;
     tables::write_json(&dir, "summary.json", &summary)?;
     tables::write_json(&dir, "cost.json", &cost)?;

@@ -1,6 +1,6 @@
 //! The march in time, watched; it can be saved and gone on with.
 
-use super::accuracy::{Accuracy, Estimates};
+use super::accuracy::{self, Accuracy, Estimates};
 use super::checkpoint::{self, Checkpoint};
 use super::ledger::Ledger;
 use super::modal::{self, ModalView};
@@ -178,6 +178,7 @@ impl<'a> March<'a> {
         // Here, where nothing else takes memory yet beside the full plate.
         if let (Some(reduced), Some(full)) = (&reduced, full) {
             estimates = Estimates::new(&system, reduced, full, impact.integrator.clone(), &sizes);
+            estimates.mesh = accuracy::mesh::estimate(model, &system, reduced, condensation.as_ref())?;
             stopwatch.lap("accuracy");
         }
         let followed = model.scene.output.modes.as_ref().zip(reduced.as_ref());

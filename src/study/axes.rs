@@ -93,6 +93,9 @@ pub const NAMES: [&str; 13] = [
     "window",
 ];
 
+/// Those of them that are ladders.
+pub(super) const LADDERS: [&str; 4] = ["mesh", "layers", "reduction", "step"];
+
 /// The axes of `model`: those of `names`, or else those that its scene asks for, or else all that fit it, and the scene's
 /// own. An axis of other ways brings the ladders that they are judged by.
 ///

@@ -29,8 +29,9 @@ pub use converge::{Convergence, limit};
 pub use ladder::Ladder;
 pub use picture::write_pictures;
 pub use plan::{Plan, Planned};
+pub use predict::{Better, one_level_better};
 pub use quantity::{FORCE_HISTORY, Figure};
-pub use record::{PHASES, Record, Size};
+pub use record::{PHASES, Record, Size, seconds as seconds_per_phase};
 pub use report::{Report, Row};
 pub use session::Session;
 pub use table::write;
@@ -140,7 +141,8 @@ pub fn study(
     for planned in planner.joint(session, &report) {
         run(session, &mut report, &planned)?;
     }
-    for planned in plan.runs.iter().filter(|planned| planned.kind != AxisKind::Ladder) {
+    let beside = plan.runs.iter().filter(|planned| planned.kind != AxisKind::Ladder);
+    for planned in beside.chain(&plan.spare) {
         match planner.affords(session, planned) {
             true => run(session, &mut report, planned)?,
             false => report.left_out.push((planned.axis.clone(), planned.level.label.clone(), plan::SPENT.into())),

@@ -60,6 +60,8 @@ pub(super) const TOGETHER: &str = "joint";
 pub struct Plan {
     /// The runs along single axes, in order.
     pub runs: Vec<Planned>,
+    /// Runs beside the ladders for which time may be left.
+    pub spare: Vec<Planned>,
     /// Axis and level of what is not run, and why.
     pub left_out: Vec<(String, String, String)>,
     /// Seconds that runs of levels of all ladders together may take.
@@ -122,7 +124,7 @@ impl Planner {
         }
     }
 
-    /// The levels of `axes` that fit the time: of the ladders those next to the scene first, of the rest in order.
+    /// The levels of `axes` that fit the time: of the ladders those next to the scene first, of the rest the cheapest.
     pub(super) fn plan(&mut self, session: &Session<'_>, axes: &[Axis]) -> Plan {
         let rates = self.rates(session);
         let mut plan = Plan { joint: JOINT * self.whole(), ..Plan::default() };
@@ -139,28 +141,34 @@ impl Planner {
         for kinds in [&[AxisKind::Ladder][..], &[AxisKind::Ways, AxisKind::Problems]] {
             let mut all = Vec::new();
             for axis in axes.iter().filter(|axis| kinds.contains(&axis.kind)) {
-                for level in &axis.levels {
+                let own = axis.levels.iter().position(|level| level.setting.is_empty());
+                for (k, level) in axis.levels.iter().enumerate() {
+                    let far = own.filter(|_| axis.kind == AxisKind::Ladder).map_or(0, |own| own.abs_diff(k));
                     match self.expect(session, axis, level, rates) {
-                        Ok(planned) => all.push(planned),
+                        Ok(planned) => all.push((far, planned)),
                         Err(why) => plan.left_out.push((axis.name.clone(), level.label.clone(), why)),
                     }
                 }
             }
-            all.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+            all.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.seconds.total_cmp(&b.1.seconds)));
             let mut time = share(kinds[0]) * self.whole();
-            for planned in all {
+            for (_, planned) in all {
                 let known = planned.level.setting.is_empty() || session.has(&planned.level.setting);
                 if known || planned.seconds <= time.min(self.largest()) {
                     time -= if known { 0.0 } else { planned.seconds };
                     plan.runs.push(planned);
+                } else if planned.kind != AxisKind::Ladder && planned.seconds <= self.largest() {
+                    plan.spare.push(planned);
                 } else {
-                    let why = format!("{SPENT}: about {:.0} s", planned.seconds);
-                    plan.left_out.push((planned.axis, planned.level.label, why));
+                    plan.left_out.push((planned.axis, planned.level.label, SPENT.into()));
                 }
             }
         }
-        let place = |axis: &str| axes.iter().position(|a| a.name == axis);
-        plan.runs.sort_by_key(|planned| (planned.kind != AxisKind::Ladder, place(&planned.axis)));
+        let place = |planned: &Planned| {
+            let axis = axes.iter().position(|a| a.name == planned.axis);
+            (axis, axis.and_then(|axis| axes[axis].levels.iter().position(|level| *level == planned.level)))
+        };
+        plan.runs.sort_by_key(|planned| (planned.kind != AxisKind::Ladder, place(planned)));
         self.spent += plan.runs.iter().filter(|run| run.kind == AxisKind::Ladder).map(|run| run.seconds).sum::<f64>();
         plan
     }
@@ -168,7 +176,7 @@ impl Planner {
     fn expect(&self, session: &Session<'_>, axis: &Axis, level: &Level, rates: Rates) -> Result<Planned, String> {
         let size = if level.setting.is_empty() { self.base } else { self.size(session, level)? };
         if size.factor_entries > MOST_ENTRIES {
-            return Err(format!("about {} unknowns are too many", size.unknowns));
+            return Err(format!("about {} unknowns are more than a study makes", size.unknowns));
         }
         let seconds = rates.seconds(&size);
         Ok(Planned { axis: axis.name.clone(), kind: axis.kind, level: level.clone(), size, seconds })
@@ -193,8 +201,9 @@ impl Planner {
             return true;
         }
         let seconds = self.rates(session).seconds(&planned.size);
-        self.spent += seconds;
-        self.budget.is_none() || seconds <= self.rest()
+        let affordable = seconds <= self.rest();
+        self.spent += if affordable { seconds } else { 0.0 };
+        affordable
     }
 
     /// Levels of all ladders of `report` together: the cheapest for each target, and the finest that the time allows.

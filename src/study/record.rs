@@ -6,7 +6,7 @@ use crate::cost::{self, Phase};
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::registry::Registry;
-use crate::run;
+use crate::run::{self, Outcome, Sizes};
 use crate::{modes, statics};
 use fem_core::counters::Counters;
 use fem_io::scene::{self, Setting};
@@ -75,6 +75,19 @@ impl Size {
         }
     }
 
+    /// Of an impact.
+    pub fn of_impact(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Self {
+        Self {
+            marched: sizes.marched,
+            reduced: sizes.marched < sizes.unknowns,
+            factor_entries: sizes.factor_entries,
+            sites: outcome.sites,
+            step_s: sizes.step,
+            samples: (sizes.steps as f64 * sizes.step / model.scene.failure.every) as u64,
+            ..Self::of(model, &outcome.counters)
+        }
+    }
+
     /// Right-hand sides solved.
     pub fn solves(&self) -> u64 {
         self.counts[2]
@@ -122,15 +135,7 @@ impl Record {
         if let Some(why) = outcome.stopped {
             return Err(Error::Stopped(why));
         }
-        let size = Size {
-            marched: sizes.marched,
-            reduced: sizes.marched < sizes.unknowns,
-            factor_entries: sizes.factor_entries,
-            sites: outcome.sites,
-            step_s: sizes.step,
-            samples: (sizes.steps as f64 * sizes.step / model.scene.failure.every) as u64,
-            ..Size::of(model, &outcome.counters)
-        };
+        let size = Size::of_impact(model, &sizes, &outcome);
         let force = Force::of(&outcome.history);
         Ok(Self::new(size, quantity::of_impact(model, &sizes, &outcome), Some(force), &outcome.phases))
     }
@@ -156,13 +161,13 @@ impl Record {
 }
 
 /// Seconds per [`PHASES`] of what a run calls its phases.
-fn seconds(phases: &[Phase]) -> [f64; PHASES.len()] {
+pub fn seconds(phases: &[Phase]) -> [f64; PHASES.len()] {
     let mut seconds = [0.0; PHASES.len()];
     // What a run estimates of its own errors is no part of its counted work either.
     for phase in phases.iter().filter(|phase| phase.name != "accuracy") {
         let place = match phase.name {
             "assemble" => 0,
-            "reduce" | "solve" | "modes" => 1,
+            "reduce" | "solve" | "modes" | "accuracy" => 1,
             "prepare stresses" | "stresses" => 2,
             "march" => 3,
             _ => 4,

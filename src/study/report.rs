@@ -1,14 +1,15 @@
 //! What a study found.
 
-use super::axes::{Axis, AxisKind, Level};
+use super::axes::{Axis, AxisKind, LADDERS, Level};
 use super::converge::Convergence;
 use super::ladder::Ladder;
-use super::plan::{Planned, TOGETHER};
+use super::plan::{Planned, SPENT, TOGETHER};
 use super::predict::nominal;
 use super::quantity::FORCE_HISTORY;
 use super::record::Record;
 use crate::model::Model;
 use fem_io::scene::{ContactLoad, Setting};
+use std::collections::BTreeSet;
 
 /// What a study found.
 #[derive(Debug, Clone)]
@@ -293,8 +294,8 @@ impl Report {
                     _ => "",
                 };
                 notes.push(format!(
-                    "{quantity} does not converge along {}: the last level changes it by {difference:.1e}, no less than the \
-                     one before; nothing is extrapolated{why}",
+                    "{quantity} does not converge along {} as far as it was climbed: the last level changes it by \
+                     {difference:.1e}, hardly less than the one before; nothing is extrapolated{why}",
                     ladder.axis
                 ));
             }
@@ -318,6 +319,16 @@ impl Report {
                      refinement follows the curve"
                 ),
             });
+        }
+        let unclimbed: BTreeSet<&str> = self
+            .left_out
+            .iter()
+            .filter(|(axis, _, why)| why == SPENT && LADDERS.contains(&axis.as_str()))
+            .map(|(axis, ..)| axis.as_str())
+            .filter(|axis| self.ladders.iter().all(|ladder| ladder.axis != *axis))
+            .collect();
+        for axis in unclimbed {
+            notes.push(format!("there was no time for the ladder `{axis}`: what it leaves is in no figure"));
         }
         self.notes = notes;
     }

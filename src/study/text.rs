@@ -10,6 +10,9 @@ use std::fmt::{self, Write as _};
 /// Characters of a refusal that a table shows.
 const WORDS: usize = 72;
 
+/// Levels of an axis beyond which the first and the last stand for all.
+const MANY: usize = 8;
+
 /// Errors for which the cheapest run is named.
 const TARGETS: [f64; 4] = [0.1, 0.01, 1e-3, 1e-4];
 
@@ -24,7 +27,7 @@ impl fmt::Display for Plan {
             let seconds: f64 = runs.iter().map(|run| run.seconds).sum();
             let labels: Vec<&str> = runs.iter().map(|run| run.level.label.as_str()).collect();
             let labels = match labels[..] {
-                [first, .., last] if labels.len() > 8 => format!("{} from {first} to {last}", labels.len()),
+                [first, .., last] if labels.len() > MANY => format!("{} from {first} to {last}", labels.len()),
                 _ => labels.join(", "),
             };
             writeln!(f, "    {axis:<14} {labels} ({seconds:.1} s)")?;
@@ -32,12 +35,32 @@ impl fmt::Display for Plan {
         if self.joint > 0.0 {
             writeln!(f, "    {TOGETHER:<14} levels of all ladders together (up to {:.0} s)", self.joint)?;
         }
-        for (axis, label, why) in self.left_out.iter().filter(|(axis, ..)| axis != "reductions" && axis != "element") {
-            let why: String = why.chars().take(WORDS).collect();
-            writeln!(f, "    left out       {axis} {label}: {why}")?;
+        let spare: Vec<_> =
+            self.spare.iter().map(|run| (run.axis.clone(), run.level.label.clone(), String::new())).collect();
+        for (axis, labels, _) in grouped(&spare) {
+            writeln!(f, "    if time allows {axis}: {labels}")?;
+        }
+        for (axis, labels, why) in grouped(&self.left_out) {
+            writeln!(f, "    left out       {axis}: {labels}: {why}")?;
         }
         Ok(())
     }
+}
+
+/// What was left out, the levels of an axis for one reason together.
+fn grouped(left_out: &[(String, String, String)]) -> Vec<(&str, String, String)> {
+    let mut groups: Vec<(&str, Vec<&str>, &str)> = Vec::new();
+    for (axis, label, why) in left_out {
+        match groups.iter_mut().find(|group| group.0 == axis && group.2 == why) {
+            Some(group) => group.1.push(label),
+            None => groups.push((axis, vec![label], why)),
+        }
+    }
+    let shown = |labels: Vec<&str>| match labels[..] {
+        [first, .., last] if labels.len() > MANY => format!("{} from {first} to {last}", labels.len()),
+        _ => labels.join(", "),
+    };
+    groups.into_iter().map(|(axis, labels, why)| (axis, shown(labels), why.chars().take(WORDS).collect())).collect()
 }
 
 /// A time in three digits.
@@ -151,7 +174,7 @@ fn part(ladder: &Ladder, quantity: &str) -> String {
     let convergence = ladder.limits.iter().find(|limit| limit.quantity == quantity).map(|limit| limit.convergence);
     let how = match convergence {
         Some(Convergence::Converges { order, .. }) => format!(", order {order:.1}"),
-        Some(Convergence::Stalls { .. }) => ", does not converge".to_owned(),
+        Some(Convergence::Stalls { .. }) => ", no convergence".to_owned(),
         Some(Convergence::Unknown { .. }) => ", order unknown".to_owned(),
         _ => String::new(),
     };

@@ -180,6 +180,8 @@ pub struct Accuracy {
     pub reduction_residual_energy_relative: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reduction_flexibility_error_relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh_error_relative: Option<f64>,
 }
 
 /// Work counters.
@@ -237,7 +239,7 @@ impl Summary {
     /// Sums up a run.
     pub fn new(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Self {
         let h = &outcome.history;
-        let run::Accuracy { step, reduction } = outcome.accuracy;
+        let run::Accuracy { step, reduction, mesh } = outcome.accuracy;
         let residual = reduction.and_then(|error| error.residual);
         let thickness = model.laminate.thickness();
         let damage = |e: &FailureEvent| Damage {
@@ -310,6 +312,7 @@ impl Summary {
                 reduction_error_force_L2_relative: residual.and_then(|r| r.force),
                 reduction_residual_energy_relative: residual.map(|r| r.energy),
                 reduction_flexibility_error_relative: reduction.map(|e| e.flexibility),
+                mesh_error_relative: mesh,
             },
             work: outcome.counters.into(),
             warnings: model.warnings.clone(),

@@ -162,11 +162,11 @@ impl Summary {
         t
     }
 
-    /// What is known of the errors of step and reduction, each in a line.
+    /// What is known of the errors of step, reduction and mesh, each in a line.
     fn estimates(&self) -> Vec<String> {
         let (a, m) = (&self.accuracy, &self.model);
         if !self.completed {
-            return vec!["errors of step and reduction are not estimated: the march has stopped".to_owned()];
+            return vec!["errors of step, reduction and mesh are not estimated: the march has stopped".to_owned()];
         }
         let compared = a.compared_step_s.zip(a.compared_force_L2_relative);
         let step = match (a.step_error_force_L2_relative, compared) {
@@ -192,6 +192,10 @@ impl Summary {
             });
             format!("reduction: {force}{energy}{stiffness}")
         };
-        vec![step, reduction]
+        let mesh = a.mesh_error_relative.map_or_else(
+            || "mesh: error not estimated; `fem study` shows it".to_owned(),
+            |error| format!("mesh: at rest under the contact within {error:.1e} in energy norm; layers are not judged"),
+        );
+        vec![step, reduction, mesh]
     }
 }

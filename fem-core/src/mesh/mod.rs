@@ -104,7 +104,7 @@ impl QuadMesh {
     }
 
     /// Edges of one cell alone, which lies to their left.
-    fn boundary(&self) -> Vec<[u32; 2]> {
+    pub(crate) fn boundary(&self) -> Vec<[u32; 2]> {
         let edges = || self.quads.iter().flat_map(|q| (0..4).map(move |i| [q[i], q[(i + 1) % 4]]));
         let all: HashSet<[u32; 2]> = edges().collect();
         edges().filter(|[a, b]| !all.contains(&[*b, *a])).collect()

@@ -61,8 +61,13 @@ mod tests {
     #[test]
     fn studies_front_and_names_are_drawn() {
         let series = [study("mesh", &[(0.1, 0.2), (1.0, 0.05)]), study("step", &[(0.3, 0.01), (4.0, 0.02)])];
-        let plot =
-            work_precision("title", "the force", series.to_vec(), &[(0.3, 0.01), (0.1, 0.2)], &[(0.3, 0.01, "knee".into())]);
+        let plot = work_precision(
+            "title",
+            "the force",
+            series.to_vec(),
+            &[(0.3, 0.01), (0.1, 0.2)],
+            &[(0.3, 0.01, "knee".into())],
+        );
         assert_eq!((plot.x.scale, plot.y.scale), (Scale::Logarithmic, Scale::Logarithmic));
         let drawn: Vec<_> = plot.series.iter().map(|s| (s.label.as_str(), s.points.as_slice(), s.style)).collect();
         let stairs = [(0.1, 0.2), (0.3, 0.2), (0.3, 0.01), (4.0, 0.01)];

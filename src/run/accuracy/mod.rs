@@ -1,9 +1,10 @@
-//! What a run says of its own errors: those of its time step and of its reduction.
+//! What a run says of its own errors: those of its time step, of its reduction and of its mesh.
 //!
-//! Both come from a second march of the reduced plate without stresses, made before the run's own march, while the full
+//! The first two come from a second march of the reduced plate without stresses, made before the run's own march, while the full
 //! plate is still at hand. Nothing depends on where a march was stopped and resumed, and whether an estimate is cheap enough
 //! is decided by counts, not by a clock, so that results are the same on every machine.
 
+pub(super) mod mesh;
 mod reduction;
 mod step;
 
@@ -25,6 +26,8 @@ pub struct Accuracy {
     pub step: Option<StepError>,
     /// Of the reduction.
     pub reduction: Option<ReductionError>,
+    /// Of the mesh, relative, in the energy norm of the deflection under a contact at rest; layers are not judged.
+    pub mesh: Option<f64>,
 }
 
 /// What is known before the march itself.
@@ -32,6 +35,7 @@ pub struct Accuracy {
 pub(super) struct Estimates {
     companion: Option<Companion>,
     reduction: Option<ReductionError>,
+    pub(super) mesh: Option<f64>,
 }
 
 impl Estimates {
@@ -46,12 +50,12 @@ impl Estimates {
         let copy = ImpactSystem::new(Box::new(reduced.modal.clone()), system.impactors().to_vec());
         let (companion, instants) = step::march(copy, integrator, sizes, full.solves()).unzip();
         let reduction = reduction::estimate(full, reduced, &instants.unwrap_or_default());
-        Self { companion, reduction }
+        Self { companion, reduction, mesh: None }
     }
 
     /// The estimates for a march with steps of `dt` that reached its end.
     pub(super) fn finish(self, history: &[HistoryRow], dt: f64) -> Accuracy {
         let step = self.companion.and_then(|companion| companion.compare(history, dt));
-        Accuracy { step, reduction: self.reduction }
+        Accuracy { step, reduction: self.reduction, mesh: self.mesh }
     }
 }

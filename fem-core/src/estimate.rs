@@ -1,0 +1,194 @@
+//! How far a solution is from that of an infinitely fine mesh, judged by itself.
+
+use crate::element::{Element, ElementError, Stack, positive};
+use crate::plate::Plate;
+use crate::quadrature::gauss_legendre;
+use crate::tensor::apply;
+use crate::window::centroid;
+use nalgebra::{SMatrix, SVector};
+
+/// Where a cell is sampled, ± √(2/3) along its axes: a rule of third degree with equal weights. The error of strains that
+/// are polynomials of first or second degree in a cell, a Legendre polynomial in r or s, vanishes there in the mean and
+/// times r or s, so that a smooth fit does not see it.
+const POINTS: [[f64; 2]; 4] = [
+    [-0.816_496_580_927_726, 0.0],
+    [0.816_496_580_927_726, 0.0],
+    [0.0, -0.816_496_580_927_726],
+    [0.0, 0.816_496_580_927_726],
+];
+
+/// Heights in a layer of cells, between which strains are taken for linear.
+const HEIGHTS: usize = 2;
+
+/// Terms of a complete cubic in x and y: as many as the points of four cells determine.
+const TERMS: usize = 10;
+
+/// Relative error of displacements `u` (before elimination of constraints) in the energy norm, ‖u − uₕ‖ / ‖u‖ with
+/// ‖u‖² = ½ ∫ ε·C ε dV, for the division of the plate into cells; how layers of cells divide the thickness is not judged.
+///
+/// The strains in a cell and in all that touch it are fitted by a cubic in x and y (least squares, weighted by area). How far
+/// the cell's strains are from the fit is taken for their error, and integrated through the plies with the moments of the
+/// laminate: superconvergent patch recovery after Zienkiewicz and Zhu (Int. J. Numer. Meth. Eng. 33 (1992) 1331-1364), with
+/// a patch to a cell instead of one to a node. No constant is fitted.
+///
+/// Estimate over error, the error being the distance from a solution on a finer mesh:
+///
+/// | | hermite-prism | hex20 | mitc4 |
+/// | --- | --- | --- | --- |
+/// | Pagano's plate, 0/90/0, a/h = 10, a quarter of it in 2 x 2 cells | 0.98 | 0.98 | 0.65 |
+/// | in 4 x 4 cells | 1.22 | 1.08 | 0.97 |
+/// | 16 plies of AS4/3502 on a ring of 50 mm, load on a circle of radius 3 mm, cells of 2.5 mm | 0.85 | 0.97 | 0.95 |
+/// | with cells half as wide | 1.1 | 0.9 | 1.1 |
+///
+/// On these the jumps of strain between cells say 0.6 to 2.7 and strains averaged at nodes 0.9 to 5.3, because both depend on
+/// the degree of an element and on which derivatives it shares at nodes.
+///
+/// `None` where nothing honest can be said: a section of a strip, a cell none of whose nodes is inside the plate (fewer
+/// than two cells across), no strain at all. What it does not see: edges that should be curved, supports at too few
+/// nodes, and that a point force or a sharp corner spoils cells around it as well.
+///
+/// # Errors
+/// A cell whose Jacobian is not positive.
+pub fn mesh_error(plate: &Plate, element: &dyn Element, u: &[f64]) -> Result<Option<f64>, ElementError> {
+    let quads = &plate.plane.quads;
+    let mut inside = vec![true; plate.plane.points.len()];
+    plate.plane.boundary().iter().flatten().for_each(|node| inside[*node as usize] = false);
+    if plate.info().is_section() || !quads.iter().all(|quad| quad.iter().any(|node| inside[*node as usize])) {
+        return Ok(None);
+    }
+    let mut touching: Vec<Vec<usize>> = vec![Vec::new(); plate.plane.points.len()];
+    for (number, quad) in quads.iter().enumerate() {
+        quad.iter().for_each(|node| touching[*node as usize].push(number));
+    }
+    let mut strains = Strains { plate, element, u, b: vec![0.0; 6 * element.info().ndof()], dofs: Vec::new() };
+    let mut samples: Vec<Vec<Sample>> = vec![Vec::new(); quads.len()];
+    let (mut energy, mut error) = (0.0, 0.0);
+    for (quad, weight) in plate.symmetry().quads() {
+        let mut around: Vec<usize> = quads[quad].iter().flat_map(|node| &touching[*node as usize]).copied().collect();
+        around.sort_unstable();
+        around.dedup();
+        for other in &around {
+            if samples[*other].is_empty() {
+                samples[*other] = strains.of(*other)?;
+            }
+        }
+        let Some(smooth) = Fit::of(centroid(&plate.plane.corners(quad)), || around.iter().flat_map(|q| &samples[*q]))
+        else {
+            return Ok(None);
+        };
+        for sample in &samples[quad] {
+            energy += weight * sample.area * energy_density(plate, &sample.strains);
+            error += weight * sample.area * energy_density(plate, &smooth.less(sample));
+        }
+    }
+    let relative = (error / (energy + error)).sqrt();
+    Ok(relative.is_finite().then_some(relative))
+}
+
+/// What a cell says at one of [`POINTS`].
+#[derive(Clone)]
+struct Sample {
+    at: [f64; 2],
+    /// Area that it stands for, m².
+    area: f64,
+    /// From the bottom up, [`HEIGHTS`] a layer.
+    strains: Vec<[f64; 6]>,
+}
+
+/// Strains of a displacement field.
+struct Strains<'a> {
+    plate: &'a Plate,
+    element: &'a dyn Element,
+    u: &'a [f64],
+    b: Vec<f64>,
+    dofs: Vec<usize>,
+}
+
+impl Strains<'_> {
+    fn of(&mut self, quad: usize) -> Result<Vec<Sample>, ElementError> {
+        let layers = self.plate.layers();
+        let corners = self.plate.cell(quad * layers);
+        let mut samples = POINTS.map(|[r, s]| {
+            let [x, y, _] = corners.position([r, s, 0.0]);
+            Sample { at: [x, y], area: corners.plane(r, s).det, strains: Vec::new() }
+        });
+        for number in quad * layers..(quad + 1) * layers {
+            let cell = self.plate.cell(number);
+            self.plate.cell_dofs(number, &mut self.dofs);
+            for ([r, s], sample) in POINTS.iter().zip(&mut samples) {
+                for (q, _) in gauss_legendre(HEIGHTS) {
+                    positive(self.element.strain_operator(&cell, slice_at(cell.stack, *q), [*r, *s, *q], &mut self.b))?;
+                    let mut strain = [0.0; 6];
+                    for (dof, column) in self.dofs.iter().zip(self.b.chunks_exact(6)) {
+                        strain.iter_mut().zip(column).for_each(|(e, b)| *e += b * self.u[*dof]);
+                    }
+                    sample.strains.push(strain);
+                }
+            }
+        }
+        Ok(samples.to_vec())
+    }
+}
+
+/// The ply at height `q`.
+fn slice_at(stack: &Stack, q: f64) -> usize {
+    stack.slices.partition_point(|slice| slice.q[1] < q).min(stack.slices.len() - 1)
+}
+
+/// ½ ∫ ε·C ε dz through the plies, J/m², of strains that are linear in z in each layer.
+fn energy_density(plate: &Plate, strains: &[[f64; 6]]) -> f64 {
+    let of_layer = |(layer, pair): (usize, &[[f64; 6]])| {
+        let cell = plate.cell(layer);
+        let q = gauss_legendre(HEIGHTS)[1].0;
+        let mean: [f64; 6] = std::array::from_fn(|c| 0.5 * (pair[1][c] + pair[0][c]));
+        let slope: [f64; 6] = std::array::from_fn(|c| 0.5 * (pair[1][c] - pair[0][c]) / q);
+        let [m0, m1, m2, ..] = &cell.stack.stiffness_moments;
+        let product = |a: &[f64; 6], b: [f64; 6]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let sum = product(&mean, apply(m0, &mean))
+            + 2.0 * product(&mean, apply(m1, &slope))
+            + product(&slope, apply(m2, &slope));
+        0.5 * cell.half_height() * sum
+    };
+    strains.chunks_exact(HEIGHTS).enumerate().map(of_layer).sum()
+}
+
+/// Strains as cubics in x and y.
+struct Fit {
+    centre: [f64; 2],
+    size: f64,
+    /// Of each strain at each height.
+    coefficients: Vec<SVector<f64, TERMS>>,
+}
+
+impl Fit {
+    /// Least squares; `None` where the samples do not determine it.
+    fn of<'s, I: Iterator<Item = &'s Sample>>(centre: [f64; 2], samples: impl Fn() -> I) -> Option<Self> {
+        let far = |sample: &Sample| (sample.at[0] - centre[0]).abs().max((sample.at[1] - centre[1]).abs());
+        let size = samples().map(far).fold(0.0, f64::max);
+        let mut fit = Self { centre, size, coefficients: Vec::new() };
+        let mut gram = SMatrix::<f64, TERMS, TERMS>::zeros();
+        for sample in samples() {
+            let terms = fit.terms(sample.at);
+            gram.ger(sample.area, &terms, &terms, 1.0);
+            fit.coefficients.resize(6 * sample.strains.len(), SVector::zeros());
+            for (c, strain) in fit.coefficients.iter_mut().zip(sample.strains.iter().flatten()) {
+                c.axpy(sample.area * strain, &terms, 1.0);
+            }
+        }
+        let gram = gram.cholesky()?;
+        fit.coefficients.iter_mut().for_each(|c| gram.solve_mut(c));
+        Some(fit)
+    }
+
+    fn terms(&self, at: [f64; 2]) -> SVector<f64, TERMS> {
+        let [x, y] = [0, 1].map(|d| (at[d] - self.centre[d]) / self.size);
+        SVector::from([1.0, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y])
+    }
+
+    /// The fit less the strains of a sample.
+    fn less(&self, sample: &Sample) -> Vec<[f64; 6]> {
+        let terms = self.terms(sample.at);
+        let strains = sample.strains.iter().zip(self.coefficients.chunks_exact(6));
+        strains.map(|(strain, fit)| std::array::from_fn(|c| fit[c].dot(&terms) - strain[c])).collect()
+    }
+}
