@@ -163,8 +163,7 @@ impl Record {
 /// Seconds per [`PHASES`] of what a run calls its phases.
 pub fn seconds(phases: &[Phase]) -> [f64; PHASES.len()] {
     let mut seconds = [0.0; PHASES.len()];
-    // What a run estimates of its own errors is no part of its counted work either.
-    for phase in phases.iter().filter(|phase| phase.name != "accuracy") {
+    for phase in phases {
         let place = match phase.name {
             "assemble" => 0,
             "reduce" | "solve" | "modes" | "accuracy" => 1,
