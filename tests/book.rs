@@ -1,7 +1,7 @@
 //! The book says what the program does.
 
 use crate::snapshots::element;
-use crate::support::{Case, root};
+use crate::support::{Case, root, strip};
 use fem::Registry;
 use fem::core::dof::Dof;
 use fem::core::failure::{FailureCriterion, Site};
@@ -217,6 +217,36 @@ fn the_mesh_of_the_book_is_refined() {
     let example = || Case::example("as4-3502-8ply-25mm");
     let refined = example().scene("mesh = { file = \"plate.msh\", unit = \"mm\" }", mesh.trim());
     assert_eq!(quads(refined), 4 * quads(example()));
+}
+
+/// Axes, keys and quantities of studies are those of the program.
+#[test]
+fn the_studies_of_the_book_are_made() {
+    let read = |file: &str| fs::read_to_string(root().join("docs/book/src").join(file)).unwrap().replace("\r\n", "\n");
+    let chapter = read("study.md");
+    for axis in fem::study::NAMES {
+        assert!(chapter.contains(&format!("`{axis}`")), "{axis}");
+    }
+    let case = Case::example("as4-3502-8ply-25mm")
+        .scene("end = \"1 ms\"", "end = \"0.4 ms\"")
+        .append(&format!("\n{}", read("study.toml")));
+    case.fem("study", &["--axis", "samples,tip", "--out", "study"]).good();
+    let (header, rows) = case.table("study/study.csv");
+    let settings: Vec<_> = rows.iter().map(|row| (&*row[0], &*row[3])).collect();
+    // The scene, two levels beside its own every 5 us, these and its own together, and two other problems.
+    assert!(settings.iter().all(|(_, refused)| refused.is_empty()), "{settings:?}");
+    let count = |axis: &str| settings.iter().filter(|row| row.0 == axis).count();
+    assert!(count("samples") == 3 && count("joint") >= 2 && count("tip") == 2, "{settings:?}");
+    for quantity in ["peak-force error", "impulse error", "first-damage error"] {
+        assert!(header.iter().any(|column| column == quantity), "{header:?}");
+    }
+
+    let plate = fs::read_to_string(root().join("examples/pagano-0-90-0/scene.toml")).unwrap();
+    let plate = strip().text(&plate.replace("cells = [6, 6]", "cells = [2, 2]"));
+    let plate = plate.append(&format!("\n{}", read("study-stress.toml")));
+    plate.fem("study", &["--axis", "mesh", "--budget", "1s", "--out", "study"]).good();
+    let (header, _) = plate.table("study/study.csv");
+    assert!(header.iter().any(|column| column == "sxx at the top error"), "{header:?}");
 }
 
 #[test]

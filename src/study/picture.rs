@@ -29,7 +29,7 @@ pub fn write_pictures(dir: &OutputDir, report: &Report) -> Result<(), Error> {
             draw(dir, &name, &work_precision(report, quantity, &[q]))?;
         }
     }
-    draw(dir, "ladders", &ladders(report, what))
+    draw(dir, "ladders", &ladders(report))
 }
 
 fn draw(dir: &OutputDir, name: &str, plot: &LinePlot) -> Result<(), Error> {
@@ -87,8 +87,13 @@ fn work_precision(report: &Report, what: &str, quantities: &[usize]) -> LinePlot
 }
 
 /// What each ladder alone leaves of everything asked that converges, over time.
-fn ladders(report: &Report, what: &str) -> LinePlot {
+fn ladders(report: &Report) -> LinePlot {
     let sure = report.convergent();
+    let what = match &sure[..] {
+        [one] => one.as_str(),
+        some if some.len() < report.asked.len() => "what converges",
+        _ => "everything asked",
+    };
     let time = |axis: &str, label: &str| {
         let own = |row: &&Row| row.axis == axis && row.level.label == label;
         let row = report.rows.iter().find(own).unwrap_or(report.base());

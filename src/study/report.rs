@@ -167,8 +167,14 @@ impl Report {
             let axis = axes.iter().find(|a| a.name == axis)?;
             self.runs(axis).pop().map(|run| run.1)
         };
-        let judge: Vec<Option<Record>> =
-            self.rows.iter().map(|row| judges(&row.axis).first().and_then(|name| finest(name))).collect();
+        // Edges along curves are judged by the same cells with the edges of the scene.
+        let twin = |row: &Row| {
+            let mut setting = row.level.setting.clone();
+            setting.remove("mesh.curves")?;
+            self.rows.iter().find(|other| other.level.setting == setting)?.result.clone().ok()
+        };
+        let finest = |row: &Row| judges(&row.axis).first().and_then(|name| finest(name));
+        let judge: Vec<Option<Record>> = self.rows.iter().map(|row| twin(row).or_else(|| finest(row))).collect();
         let (asked, reference) = (self.asked.clone(), self.reference.clone());
         let exact = self.rows[reference.row].result.clone();
         let base = self.rows[0].result.clone();

@@ -103,25 +103,25 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
     writeln!(t, "{}: what accuracy costs\n", report.title)?;
     writeln!(
         t,
-        "  {} runs in {} of processor time; the scene as it is takes {}",
+        "* {} runs in {} of processor time; the scene as it is takes {}",
         report.rows.len(),
         seconds(ran),
         seconds(base.total())
     )?;
     if report.reference.row > 0 {
-        writeln!(t, "  errors count from: {}, extrapolated along each ladder", described(reference))?;
+        writeln!(t, "* errors count from: {}, extrapolated along each ladder", described(reference))?;
         let agreement = report.reference.agreement.iter().flatten().copied().reduce(f64::max);
         let verdict = if report.proven() { "proven" } else { "NOT proven" };
         match agreement {
             Some(worst) => writeln!(
                 t,
-                "  reference {verdict}: a level coarser along every ladder changes it by at most {worst:.1e} (asked: {:.1e})",
+                "* reference {verdict}: a level coarser along every ladder changes it by at most {worst:.1e} (asked: {:.1e})",
                 report.tolerance
             )?,
-            None => writeln!(t, "  reference NOT proven: there is none a level coarser")?,
+            None => writeln!(t, "* reference NOT proven: there is none a level coarser")?,
         }
     } else {
-        writeln!(t, "  no ladder was climbed: what is shown are differences from the scene as it is")?;
+        writeln!(t, "* no ladder was climbed: what is shown are differences from the scene as it is")?;
     }
 
     writeln!(t, "\nError of the scene as it is, and where it comes from\n")?;
@@ -145,7 +145,7 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
             let bar = quantities.iter().map(|q| report.reference.bars[*q]).fold(0.0, f64::max);
             let line = format!("{}: {} ({error:.1e} +- {bar:.0e})", described(row), seconds(record.total()));
             if line != previous {
-                writeln!(t, "  {:<8}of {name}: {line}", percent(target))?;
+                writeln!(t, "* {} of {name}: {line}", percent(target))?;
             }
             previous = line;
         }
@@ -154,7 +154,7 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
     if !report.notes.is_empty() {
         writeln!(t)?;
     }
-    report.notes.iter().try_for_each(|note| writeln!(t, "  note      {note}"))
+    report.notes.iter().try_for_each(|note| writeln!(t, "* note: {note}"))
 }
 
 /// Every quantity by itself, and all together where there are several.
