@@ -54,6 +54,12 @@ pub enum Error {
         /// What there is.
         help: String,
     },
+    #[error("the ladders of the study have {together:.0} combinations of levels, too many to choose from")]
+    #[diagnostic(help("name fewer of them with `--axis`, or give the scene's own axes fewer levels"))]
+    TooManyLevels {
+        /// How many.
+        together: f64,
+    },
     #[error("the march stopped: {0}")]
     Stopped(String),
     #[error("the scene describes no loads at rest")]

@@ -113,6 +113,12 @@ fn what_a_study_does_not_know_is_refused() {
         axis.status == 1 && axis.stderr.contains("there is no axis `mash`") && axis.stderr.contains("mesh"),
         "{axis:#?}"
     );
+    let own = |name: char| {
+        let levels: String = (1..=30).map(|n| format!("{{ reduction.vectors = {n} }}, ")).collect();
+        format!("[[study.axis]]\nname = \"{name}\"\nlevels = [{levels}]\n")
+    };
+    let many = short().append(&['a', 'b', 'c', 'd'].map(own).concat()).fem("study", &["--axis", "a,b,c,d"]);
+    assert!(many.status == 1 && many.stderr.contains("have 810000 combinations"), "{many:#?}");
     let case = case.append("[study]\nquantities = [\"peek-force\"]\n");
     let quantity = case.fem("study", &["--axis", "step"]);
     assert!(quantity.status == 1 && quantity.stderr.contains("the scene has no `peek-force`"), "{quantity:#?}");

@@ -51,6 +51,9 @@ const TOLERANCE: f64 = 1e-2;
 /// Share of the tolerance below which differences are of no interest.
 const MATTERS: f64 = 0.03;
 
+/// Most combinations of levels of all ladders.
+const MOST_TOGETHER: f64 = 1e5;
+
 /// Share of its limit at which an integrator is tried.
 const AT_LIMIT: f64 = 0.99;
 
@@ -80,19 +83,21 @@ pub enum Progress<'a> {
     },
 }
 
-/// Refuses axes that the scene of `model` does not have.
+/// Refuses axes that the scene of `model` does not have, and ladders too many to be combined.
 ///
 /// # Errors
-/// The first of them, with those that there are.
+/// The first such axis, with those that there are; the number of combinations.
 pub fn check(model: &Model, registry: &Registry, options: &Options) -> Result<(), Error> {
     let own = model.scene.study.own.iter().map(|own| own.name.value.as_str());
     let known: Vec<&str> = NAMES.into_iter().chain(own).collect();
-    match options.axes.iter().find(|name| !known.contains(&name.as_str())) {
-        None => axes(model, registry, &options.axes).map(drop).map_err(Error::from),
-        Some(name) => {
-            Err(Error::Axis { name: name.clone(), help: format!("`{name}` {}", unknown_key(name, known.into_iter())) })
-        }
+    if let Some(name) = options.axes.iter().find(|name| !known.contains(&name.as_str())) {
+        let help = format!("`{name}` {}", unknown_key(name, known.into_iter()));
+        return Err(Error::Axis { name: name.clone(), help });
     }
+    let axes = axes(model, registry, &options.axes)?;
+    let ladders = axes.iter().filter(|axis| axis.kind == AxisKind::Ladder);
+    let together = ladders.map(|axis| axis.levels.len() as f64).product();
+    if together > MOST_TOGETHER { Err(Error::TooManyLevels { together }) } else { Ok(()) }
 }
 
 /// Studies the scene of `session`, whose model is `model`.

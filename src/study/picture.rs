@@ -1,6 +1,7 @@
 //! A study as pictures.
 
 use super::axes::AxisKind;
+use super::ladder::Rung;
 use super::plan::TOGETHER;
 use super::report::{Report, Row};
 use crate::error::Error;
@@ -50,16 +51,14 @@ fn work_precision(report: &Report, what: &str, quantities: &[usize]) -> LinePlot
     };
     let point = |row: &Row| Some((row.result.as_ref().ok()?.total(), error(row)?));
     let series = |label: &str, style: Style, of: &dyn Fn(&Row) -> bool| {
-        let mut points: Vec<(f64, f64)> = report.rows.iter().filter(|row| of(row)).filter_map(point).collect();
-        if style == Style::Joined {
-            points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        }
+        let points = report.rows.iter().filter(|row| of(row)).filter_map(point).collect();
         Series { label: label.to_owned(), points, style }
     };
     let mut all: Vec<Series> = Vec::new();
     for ladder in &report.ladders {
-        let scene = |row: &Row| row.axis == ladder.axis || row.level.setting.is_empty() && row.axis != TOGETHER;
-        all.push(series(&ladder.axis, Style::Joined, &scene));
+        let row = |rung: &Rung| report.row_of(&ladder.axis, &rung.level);
+        let points = ladder.levels.iter().filter_map(row).filter_map(point).collect();
+        all.push(Series { label: ladder.axis.clone(), points, style: Style::Joined });
     }
     all.push(series(TOGETHER, Style::Joined, &|row| row.axis == TOGETHER));
     for name in OF_THEIR_OWN {
@@ -94,14 +93,13 @@ fn ladders(report: &Report) -> LinePlot {
         some if some.len() < report.asked.len() => "what converges",
         _ => "everything asked",
     };
-    let time = |axis: &str, label: &str| {
-        let own = |row: &&Row| row.axis == axis && row.level.label == label;
-        let row = report.rows.iter().find(own).unwrap_or(report.base());
-        row.result.as_ref().map_or(f64::NAN, |record| record.total())
+    let point = |axis: &str, rung: &Rung| {
+        let record = report.row_of(axis, &rung.level)?.result.as_ref().ok()?;
+        Some((record.total(), rung.worst(&sure)))
     };
     let series = report.ladders.iter().map(|ladder| Series {
         label: ladder.axis.clone(),
-        points: ladder.levels.iter().map(|rung| (time(&ladder.axis, &rung.level.label), rung.worst(&sure))).collect(),
+        points: ladder.levels.iter().filter_map(|rung| point(&ladder.axis, rung)).collect(),
         style: Style::Joined,
     });
     plot::work_precision(&report.title, &format!("{what}, each ladder alone"), series.collect(), &[], &[])

@@ -131,14 +131,19 @@ impl Report {
         self.rows.push(Row { rungs: rungs.clone(), ..Row::new(axis, *kind, level.clone(), result, *seconds) });
     }
 
+    /// The run at `level` of `axis`, which may be the scene itself.
+    pub(super) fn row_of(&self, axis: &str, level: &Level) -> Option<&Row> {
+        match level.setting.is_empty() {
+            true => self.rows.first(),
+            false => self.rows.iter().find(|row| row.axis == axis && row.level == *level),
+        }
+    }
+
     /// The runs of an axis of which there are results, in the order of its levels.
     fn runs(&self, axis: &Axis) -> Vec<(Level, Record)> {
         let run = |level: &Level| {
-            let row = match level.setting.is_empty() {
-                true => self.rows.first(),
-                false => self.rows.iter().find(|row| row.axis == axis.name && row.level == *level),
-            };
-            Some((level.clone(), row?.result.as_ref().ok()?.clone()))
+            let row = self.row_of(&axis.name, level)?;
+            Some((level.clone(), row.result.as_ref().ok()?.clone()))
         };
         axis.levels.iter().filter_map(run).collect()
     }
