@@ -47,10 +47,12 @@ enum Command {
     Envelope(envelope::Arguments),
     /// Finds the lowest natural frequencies of a scene's plate and writes modes.csv.
     Modes(modes::Arguments),
-    /// Shows what settings cost and what error they leave: runs a scene under each and compares.
+    /// Shows what accuracy costs: where the error of a scene comes from, and the cheapest setting for a smaller one.
     ///
-    /// The reference is the full model, without reduction, marched by Newmark's method at a quarter of the scene's step.
-    /// Prints a table and writes study.csv, which grows line by line.
+    /// Runs the scene along ladders of finer and finer settings, each by itself and the cheapest levels of all together, and
+    /// in other ways. Errors count from the finest joint run, extrapolated along every ladder that converges. Says what it
+    /// will run, prints tables, writes study.csv, study.md and pictures of errors over time; every run is kept at once in
+    /// study.bin, from which `--resume` goes on.
     Study(study::Arguments),
     /// Writes stiffness and mass (Matrix Market) with the names of their unknowns.
     Matrices(matrices::Arguments),

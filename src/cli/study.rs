@@ -79,6 +79,11 @@ fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error
     }
     let report = study::study(&mut session, &model, &options, &mut |told| match told {
         Progress::Planned(plan) => bar.suspend(|| print(&format!("{plan}\n"))),
+        Progress::Together([]) => {}
+        Progress::Together(runs) => {
+            let each: String = runs.iter().map(|r| format!("\n    {} ({:.1} s)", r.level.label, r.seconds)).collect();
+            bar.suspend(|| print(&format!("  ladders climbed; now together:{each}\n\n")));
+        }
         Progress::Runs { what, share } => {
             bar.set_position((share * 1000.0) as u64);
             bar.set_message(what);

@@ -74,6 +74,8 @@ pub struct Options {
 pub enum Progress<'a> {
     /// What will be run.
     Planned(&'a Plan),
+    /// The levels of all ladders together that will be run.
+    Together(&'a [Planned]),
     /// What runs now, and how much of the plan is done.
     Runs {
         /// In words.
@@ -82,6 +84,9 @@ pub enum Progress<'a> {
         share: f64,
     },
 }
+
+/// Whom a study tells of its progress.
+pub type Tell<'a> = &'a mut dyn FnMut(Progress<'_>);
 
 /// Refuses axes that the scene of `model` does not have, and ladders too many to be combined.
 ///
@@ -105,12 +110,7 @@ pub fn check(model: &Model, registry: &Registry, options: &Options) -> Result<()
 /// # Errors
 /// An axis or a quantity that the scene does not have, a scene that does not run as it is, a folder that cannot be
 /// written. A level that does not run is a row of the report.
-pub fn study(
-    session: &mut Session<'_>,
-    model: &Model,
-    options: &Options,
-    tell: &mut dyn FnMut(Progress<'_>),
-) -> Result<Report, Error> {
+pub fn study(session: &mut Session<'_>, model: &Model, options: &Options, tell: Tell<'_>) -> Result<Report, Error> {
     let axes = axes(model, session.registry(), &options.axes)?;
     tell(Progress::Runs { what: "the scene as it is".into(), share: 0.0 });
     let base = session.run(&Setting::new())?.map_err(Error::Study)?;
@@ -125,31 +125,34 @@ pub fn study(
     report.left_out.extend(plan.left_out.iter().cloned());
 
     let mut done = 0.0;
-    let mut run = |session: &mut Session<'_>, report: &mut Report, planned: &Planned| -> Result<(), Error> {
-        tell(Progress::Runs { what: format!("{} {}", planned.axis, planned.level.label), share: done / whole });
-        done += planned.seconds;
-        let setting = match planned.level.at_limit {
-            true => at_limit(session, &planned.level.setting),
-            false => Ok(planned.level.setting.clone()),
+    let mut run =
+        |session: &mut Session<'_>, report: &mut Report, tell: Tell<'_>, planned: &Planned| -> Result<(), Error> {
+            tell(Progress::Runs { what: format!("{} {}", planned.axis, planned.level.label), share: done / whole });
+            done += planned.seconds;
+            let setting = match planned.level.at_limit {
+                true => at_limit(session, &planned.level.setting),
+                false => Ok(planned.level.setting.clone()),
+            };
+            let result = match setting {
+                Ok(setting) => session.run(&setting)?,
+                Err(why) => Err(why.to_string()),
+            };
+            report.add(planned, result);
+            Ok(())
         };
-        let result = match setting {
-            Ok(setting) => session.run(&setting)?,
-            Err(why) => Err(why.to_string()),
-        };
-        report.add(planned, result);
-        Ok(())
-    };
     for planned in plan.runs.iter().filter(|planned| planned.kind == AxisKind::Ladder) {
-        run(session, &mut report, planned)?;
+        run(session, &mut report, tell, planned)?;
     }
     report.climb(&axes, MATTERS * tolerance);
-    for planned in planner.joint(session, &report) {
-        run(session, &mut report, &planned)?;
+    let together = planner.joint(session, &report);
+    tell(Progress::Together(&together));
+    for planned in &together {
+        run(session, &mut report, tell, planned)?;
     }
     let beside = plan.runs.iter().filter(|planned| planned.kind != AxisKind::Ladder);
     for planned in beside.chain(&plan.spare) {
         match planner.affords(session, planned) {
-            true => run(session, &mut report, planned)?,
+            true => run(session, &mut report, tell, planned)?,
             false => report.left_out.push((planned.axis.clone(), planned.level.label.clone(), plan::SPENT.into())),
         }
     }

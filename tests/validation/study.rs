@@ -45,7 +45,7 @@ impl Studied {
         run::march(run::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap().history
     }
 
-    /// Holds what the study says of `quantity` against the errors of its runs: down to three times `floor`, by which the
+    /// Holds what the study says of `quantity` against the errors of its runs: down to twice `floor`, by which the
     /// model differs from what is exact, and to what the study says that its reference leaves, each within a factor 2, over
     /// as many `decades`. The finest run claims no less than half of its error.
     #[track_caller]
@@ -57,7 +57,7 @@ impl Studied {
         for (k, row) in report.rows.iter().enumerate().filter(|(_, row)| row.result.is_ok()) {
             let (estimate, exact) = (row.errors[q].unwrap(), error(row));
             let run = format!("{quantity} of {}, {}: {estimate:e} for {exact:e}", row.axis, row.level.label);
-            if exact > (3.0 * floor).max(bar) {
+            if exact > (2.0 * floor).max(bar) {
                 assert!((0.5..2.0).contains(&(estimate / exact)), "{run}");
                 (least, most) = (least.min(exact), most.max(exact));
             }
@@ -102,14 +102,15 @@ fn a_thick_sandwich() {
     studied.number("middle", at(2.0, 0.0, "txz") * 1e6, 0.0, 2.5);
 }
 
-/// The series leaves 4.4e-5 of the deflection, of which layers half as thick take 5e-7 away, and 2e-4 of the stress.
+/// The series leaves 4.3e-5 of the deflection: finer meshes agree with each other to 2e-8, and layers half as thick take 5e-7
+/// away. It leaves 2e-4 of the stress.
 #[test]
 fn a_smooth_patch_load() {
     let mesh = patch::mesh(&[0.0], 1);
     let plate = patch::plate(&mesh).profile([patch::HALF; 2], 5);
     let text = format!(
         "{}[study]\nquantities = ['deflection', {{ name = 'bottom', profile = '0', component = 'sxx', height = '-0.52 mm' }}]\n\
-         [[study.axis]]\nname = 'cells'\nlevels = [{{ mesh.refine = 0 }}, {{ mesh.refine = 1 }}, {{ mesh.refine = 2 }}]\n",
+         [[study.axis]]\nname = 'cells'\nlevels = [{{ mesh.refine = 0 }}, {{ mesh.refine = 1 }}, {{ mesh.refine = 2 }}, {{ mesh.refine = 3 }}]\n",
         plate.text("static"),
     );
     let exact = patch::exact();
@@ -119,7 +120,7 @@ fn a_smooth_patch_load() {
     let deflection = middle.iter().filter(between).map(|r| r["w_mm"].abs()).fold(0.0, f64::max);
     let bottom = middle.iter().find(|r| r["z_mm"] == -0.52).unwrap()["sx_MPa"];
     let studied = Studied::new(&text, &["cells"]);
-    studied.number("deflection", deflection * 1e-3, 4.4e-5, 1.0);
+    studied.number("deflection", deflection * 1e-3, 4.4e-5, 2.0);
     studied.number("bottom", bottom * 1e6, 1.8e-4, 1.0);
 }
 
