@@ -1,6 +1,5 @@
 //! What a run costs: time per phase, processor time, memory.
 
-use crate::study::Better;
 use cpu_time::ProcessTime;
 use serde::Serialize;
 use std::fmt;
@@ -42,6 +41,15 @@ impl fmt::Display for Cost {
             self.one_level_better.iter().map(|b| format!("{} +{:.2} s", b.what, b.more_cpu_s)).collect();
         if better.is_empty() { Ok(()) } else { write!(f, "\n  better    would cost: {}", better.join(", ")) }
     }
+}
+
+/// A finer setting and its cost.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Better {
+    /// What is finer.
+    pub what: &'static str,
+    /// Processor time that it takes in addition, s, as it is expected.
+    pub more_cpu_s: f64,
 }
 
 /// Cost of one phase of a run.

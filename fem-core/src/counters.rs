@@ -2,6 +2,7 @@
 
 /// Counts of the expensive operations of a run; equal from run to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Counters {
     /// Element matrices integrated.
     pub elements: u64,

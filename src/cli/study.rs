@@ -5,7 +5,7 @@ use super::{print, progress};
 use crate::error::Error;
 use crate::model::Model;
 use crate::registry::Registry;
-use crate::study::{self, Options, Progress, Report, Session};
+use crate::study::{self, Progress, Report, Session};
 use clap::Args;
 use fem_io::files::OutputDir;
 use fem_io::scene;
@@ -69,15 +69,14 @@ fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error
         folder.push("-study");
         folder.into()
     });
-    let options = Options { axes: arguments.axis.clone(), budget: arguments.budget };
-    study::check(&model, registry, &options)?;
+    let axes = study::axes(&model, registry, &arguments.axis)?;
     let mut session = Session::open(path, &model, registry, OutputDir::create(folder)?, arguments.resume)?;
     let bar = progress(1000, "study {bar:40} {percent:>3} %  {msg}");
     let found = session.found();
     if found > 0 {
         print(&format!("  {found} runs are there already\n"));
     }
-    let report = study::study(&mut session, &model, &options, &mut |told| match told {
+    let report = study::study(&mut session, &model, &axes, arguments.budget, &mut |told| match told {
         Progress::Planned(plan) => bar.suspend(|| print(&format!("{plan}\n"))),
         Progress::Together([]) => {}
         Progress::Together(runs) => {

@@ -1,12 +1,13 @@
 //! What a study varies.
 
+use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::registry::{NO_REDUCTION, Registry};
 use fem_core::mesh::QuadMesh;
 use fem_core::plate::ZDerivatives;
 use fem_core::plugin::{Built, Kind, Params, unknown_key};
 use fem_core::time::StepLimit;
-use fem_io::scene::{Analysis, ContactLoad, MeshSource, Scene, SceneError, Setting, Window};
+use fem_io::scene::{Analysis, ContactLoad, MeshSource, Scene, Setting, Window};
 
 /// A part of the settings that is varied while the others stay as the scene has them.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,20 +97,32 @@ pub const NAMES: [&str; 13] = [
 /// Those of them that are ladders.
 pub(super) const LADDERS: [&str; 4] = ["mesh", "layers", "reduction", "step"];
 
+/// Most combinations of levels of all ladders.
+const MOST_TOGETHER: f64 = 1e5;
+
 /// The axes of `model`: those of `names`, or else those that its scene asks for, or else all that fit it, and the scene's
 /// own. An axis of other ways brings the ladders that they are judged by.
 ///
 /// # Errors
-/// A name that no axis has.
-pub(super) fn axes(model: &Model, registry: &Registry, names: &[String]) -> Result<Vec<Axis>, SceneError> {
+/// A name that no axis has, ladders of too many levels to be combined.
+pub fn axes(model: &Model, registry: &Registry, names: &[String]) -> Result<Vec<Axis>, Error> {
     let study = &model.scene.study;
     let own = || study.own.iter().map(|own| own.name.value.as_str());
+    let known = || NAMES.into_iter().chain(own());
+    if let Some(name) = names.iter().find(|name| known().all(|known| known != name.as_str())) {
+        let help = format!("`{name}` {}", unknown_key(name, known()));
+        return Err(Error::Axis { name: name.clone(), help });
+    }
     if let Some(name) = study.axes.iter().flatten().find(|name| !NAMES.contains(&name.value.as_str())) {
-        let help = format!("`{}` {}", name.value, unknown_key(&name.value, NAMES.into_iter().chain(own())));
-        return Err(model.scene.source.error_at(&name.place, format!("there is no axis `{}`", name.value), help));
+        let help = format!("`{}` {}", name.value, unknown_key(&name.value, known()));
+        return Err(model
+            .scene
+            .source
+            .error_at(&name.place, format!("there is no axis `{}`", name.value), help)
+            .into());
     }
     let asked: Vec<&str> = match (names, &study.axes) {
-        ([], None) => NAMES.into_iter().chain(own()).collect(),
+        ([], None) => known().collect(),
         ([], Some(axes)) => axes.iter().map(|name| name.value.as_str()).chain(own()).collect(),
         (names, _) => names.iter().map(String::as_str).collect(),
     };
@@ -124,7 +137,9 @@ pub(super) fn axes(model: &Model, registry: &Registry, names: &[String]) -> Resu
         let kind = if axis.ladder { AxisKind::Ladder } else { AxisKind::Problems };
         axes.push(Axis { name: axis.name.value.clone(), kind, levels: levels.collect() });
     }
-    Ok(axes)
+    let ladders = axes.iter().filter(|axis| axis.kind == AxisKind::Ladder);
+    let together = ladders.map(|axis| axis.levels.len() as f64).product();
+    if together > MOST_TOGETHER { Err(Error::TooManyLevels { together }) } else { Ok(axes) }
 }
 
 /// The ladders by whose finest levels the ways of an axis are judged; by the scene as it is, where there are none.
@@ -319,9 +334,12 @@ fn elements(scene: &Scene, registry: &Registry) -> Vec<Level> {
     let others = registry.list(Kind::Element).map(|info| info.name).filter(|name| *name != scene.element.name.value);
     others
         .map(|name| {
-            // A shell has one layer of cells.
             let mut level = Level::new(name, [("element.kind", quoted(name))]);
-            if name == "mitc4" {
+            let built = registry.build(Kind::Element, name, &Params::default());
+            // A shell has one layer of cells.
+            if let Ok(Built::Element(element)) = built
+                && element.info().is_shell()
+            {
                 level.setting.insert("laminate.layers".into(), "1".into());
             }
             level

@@ -4,7 +4,8 @@
 //! 2. Every [`Axis`] varies one part of the settings. A ladder of finer and finer levels shows its order of convergence and
 //!    what error each level leaves ([`Convergence`]).
 //! 3. Levels of all ladders together, the cheapest whose errors add up to a tenth, a hundredth, ..., run jointly. The finest
-//!    of them that the limit allows is the reference: it is proven where the two finest agree to the tolerance.
+//!    of them that the limit allows is the reference: it is proven where the run a level coarser on
+//!    every ladder agrees to the tolerance.
 //! 4. Errors of all runs count from the reference, extrapolated along every ladder that converges (Richardson).
 //!
 //! What is run is decided by nominal seconds, which follow from sizes alone, so that studies of one scene are equal but for
@@ -24,12 +25,12 @@ mod session;
 mod table;
 mod text;
 
-pub use axes::{Axis, AxisKind, Level, NAMES};
+pub use axes::{Axis, AxisKind, Level, NAMES, axes};
 pub use converge::{Convergence, limit};
 pub use ladder::{Ladder, Limit};
 pub use picture::write_pictures;
 pub use plan::{Plan, Planned};
-pub use predict::{Better, one_level_better};
+pub use predict::one_level_better;
 pub use quantity::{FORCE_HISTORY, Figure};
 pub use record::{PHASES, Record, Size, seconds as seconds_per_phase};
 pub use report::{Report, Row};
@@ -39,9 +40,7 @@ pub use text::{tables, text};
 
 use crate::error::Error;
 use crate::model::Model;
-use crate::registry::Registry;
-use axes::{STEP, axes, judges, seconds};
-use fem_core::plugin::unknown_key;
+use axes::{STEP, seconds};
 use fem_io::scene::Setting;
 use plan::Planner;
 
@@ -51,23 +50,11 @@ const TOLERANCE: f64 = 1e-2;
 /// Share of the tolerance below which differences are of no interest.
 const MATTERS: f64 = 0.03;
 
-/// Most combinations of levels of all ladders.
-const MOST_TOGETHER: f64 = 1e5;
-
 /// Share of its limit at which an integrator is tried.
 const AT_LIMIT: f64 = 0.99;
 
 /// A step that no limit forbids, s.
 const TINY: f64 = 1e-11;
-
-/// What is asked of a study beside the scene.
-#[derive(Debug, Clone, Default)]
-pub struct Options {
-    /// Names of axes; what the scene says, or all that fit it, if empty.
-    pub axes: Vec<String>,
-    /// Processor time that the study may take, s.
-    pub budget: Option<f64>,
-}
 
 /// What a study tells while it runs.
 #[derive(Debug)]
@@ -88,37 +75,25 @@ pub enum Progress<'a> {
 /// Whom a study tells of its progress.
 pub type Tell<'a> = &'a mut dyn FnMut(Progress<'_>);
 
-/// Refuses axes that the scene of `model` does not have, and ladders too many to be combined.
+/// Studies the scene of `session`, whose model is `model`, along `axes`, in `budget` seconds of processor time if given.
 ///
 /// # Errors
-/// The first such axis, with those that there are; the number of combinations.
-pub fn check(model: &Model, registry: &Registry, options: &Options) -> Result<(), Error> {
-    let own = model.scene.study.own.iter().map(|own| own.name.value.as_str());
-    let known: Vec<&str> = NAMES.into_iter().chain(own).collect();
-    if let Some(name) = options.axes.iter().find(|name| !known.contains(&name.as_str())) {
-        let help = format!("`{name}` {}", unknown_key(name, known.into_iter()));
-        return Err(Error::Axis { name: name.clone(), help });
-    }
-    let axes = axes(model, registry, &options.axes)?;
-    let ladders = axes.iter().filter(|axis| axis.kind == AxisKind::Ladder);
-    let together = ladders.map(|axis| axis.levels.len() as f64).product();
-    if together > MOST_TOGETHER { Err(Error::TooManyLevels { together }) } else { Ok(()) }
-}
-
-/// Studies the scene of `session`, whose model is `model`.
-///
-/// # Errors
-/// An axis or a quantity that the scene does not have, a scene that does not run as it is, a folder that cannot be
+/// A quantity that the scene does not have, a scene that does not run as it is, a folder that cannot be
 /// written. A level that does not run is a row of the report.
-pub fn study(session: &mut Session<'_>, model: &Model, options: &Options, tell: Tell<'_>) -> Result<Report, Error> {
-    let axes = axes(model, session.registry(), &options.axes)?;
+pub fn study(
+    session: &mut Session<'_>,
+    model: &Model,
+    axes: &[Axis],
+    budget: Option<f64>,
+    tell: Tell<'_>,
+) -> Result<Report, Error> {
     tell(Progress::Runs { what: "the scene as it is".into(), share: 0.0 });
     let base = session.run(&Setting::new())?.map_err(Error::Study)?;
     let asked = quantity::asked(model, &base.figures, base.force.is_some())?;
     let tolerance = model.scene.study.tolerance.unwrap_or(TOLERANCE);
 
-    let mut planner = Planner::new(session, &base, options.budget);
-    let plan = planner.plan(session, &axes);
+    let mut planner = Planner::new(session, &base, budget);
+    let plan = planner.plan(session, axes);
     tell(Progress::Planned(&plan));
     let whole = plan.seconds();
     let mut report = Report::new(model, base, asked, tolerance);
@@ -143,7 +118,7 @@ pub fn study(session: &mut Session<'_>, model: &Model, options: &Options, tell: 
     for planned in plan.runs.iter().filter(|planned| planned.kind == AxisKind::Ladder) {
         run(session, &mut report, tell, planned)?;
     }
-    report.climb(&axes, MATTERS * tolerance);
+    report.climb(axes, MATTERS * tolerance);
     let together = planner.joint(session, &report);
     tell(Progress::Together(&together));
     for planned in &together {
@@ -156,7 +131,7 @@ pub fn study(session: &mut Session<'_>, model: &Model, options: &Options, tell: 
             false => report.left_out.push((planned.axis.clone(), planned.level.label.clone(), plan::SPENT.into())),
         }
     }
-    report.judge(&axes, judges);
+    report.judge(axes);
     Ok(report)
 }
 

@@ -82,7 +82,7 @@ impl Plan {
 pub(super) struct Planner {
     base: Size,
     budget: Option<f64>,
-    /// Processor time of the process when the study began, s.
+    /// Processor time of the process when the study began, s; negative by what ran before the process.
     began: f64,
     /// Nominal seconds, or seconds, granted so far.
     spent: f64,
@@ -90,7 +90,9 @@ pub(super) struct Planner {
 
 impl Planner {
     pub(super) fn new(session: &Session<'_>, base: &Record, budget: Option<f64>) -> Self {
-        let mut planner = Self { base: base.size, budget, began: processor_time() - base.total(), spent: 0.0 };
+        // What another process has run counts, too.
+        let before: f64 = session.records().map(Record::total).sum();
+        let mut planner = Self { base: base.size, budget, began: processor_time() - before, spent: 0.0 };
         planner.spent = planner.rates(session).seconds(&base.size);
         planner
     }

@@ -6,8 +6,9 @@
 
 use super::axes::{SIZES, value};
 use super::record::{PHASES, Record, Size};
+use crate::cost::Better;
 use crate::model::{Model, Plan};
-use serde::Serialize;
+use fem_core::counters::Counters;
 
 /// Entries of a factor, GFLOP that make it, and the exponent between the two (cells of two layers, 30 000 to 300 000
 /// unknowns).
@@ -39,14 +40,14 @@ const FILL: f64 = 1.2;
 pub(super) fn nominal(size: &Size) -> [f64; PHASES.len()] {
     let (entries, modes, n) = (size.factor_entries as f64, size.marched as f64, size.unknowns as f64);
     let factor = |entries: f64| GFLOP / FACTOR * (entries / ENTRIES).powf(GROWTH);
-    let (sites, steps, samples) = (size.sites as f64, size.steps() as f64, size.samples as f64);
+    let (sites, steps, samples) = (size.sites as f64, size.work.steps as f64, size.samples as f64);
     let marched = size.reduced || size.marched == 0;
-    let solves = if marched { size.solves() as f64 } else { 0.0 };
+    let solves = if marched { size.work.solves as f64 } else { 0.0 };
     let basis = if size.reduced { solves * SOLVE * entries + modes * modes * n * ORTHOGONALISE } else { 0.0 };
     let step = if marched { STEP + MODE * modes } else { entries * SOLVE_ALONE };
     let stresses = if size.reduced { modes } else { 1.0 };
     [
-        size.counts[0] as f64 * ELEMENT + size.cells as f64 * CELL,
+        size.work.elements as f64 * ELEMENT + size.cells as f64 * CELL,
         factor(entries) + basis,
         sites * stresses * RECOVER,
         steps * step,
@@ -95,36 +96,27 @@ pub fn one_level_better(size: &Size, seconds: [f64; PHASES.len()]) -> Vec<Better
             sites: times(size.sites, columns),
             ..*size
         };
-        finer.counts[0] = (size.counts[0] as f64 * cells) as u64;
+        finer.work.elements = (size.work.elements as f64 * cells) as u64;
         if !size.reduced && size.marched > 0 {
             finer.marched = finer.unknowns;
         }
         finer
     };
     let mut all = Vec::new();
-    if size.steps() > 0 {
+    if size.work.steps > 0 {
         let mut finer = *size;
-        finer.counts[3] *= 2;
+        finer.work.steps *= 2;
         all.push(more("half the step", finer));
     }
     if size.reduced {
         let mut finer = Size { marched: 2 * size.marched, ..*size };
-        finer.counts[2] *= 2;
+        finer.work.solves *= 2;
         all.push(more("twice the vectors", finer));
     }
     all.push(more("cells of half the edge", with(4.0, 4.0, 1.0)));
     let levels = (2 * size.layers + 1) as f64 / (size.layers + 1) as f64;
     all.push(more("twice the layers", with(2.0, 1.0, levels)));
     all
-}
-
-/// A finer setting and its cost.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Better {
-    /// What is finer.
-    pub what: &'static str,
-    /// Processor time that it takes in addition, s, as it is expected.
-    pub more_cpu_s: f64,
 }
 
 /// Sizes of `model` before it is run, from those of a run of the same scene under another setting.
@@ -146,16 +138,16 @@ pub(super) fn size(model: &Model, base: &Size) -> Size {
         sites: scaled(base.sites as f64, quads) as usize,
         ..*base
     };
-    size.counts[0] = scaled(base.counts[0] as f64, ratio(cells, base.cells)) as u64;
+    size.work.elements = scaled(base.work.elements as f64, ratio(cells, base.cells)) as u64;
     if let Plan::Impact(impact) = &model.plan {
         let (spec, before) = (&impact.spec, base.marched);
         let asked = SIZES.iter().find_map(|size| value(&model.scene, &format!("reduction.{size}")));
         size.reduced = impact.reduction.is_some();
         size.marched = if size.reduced { asked.unwrap_or(before).min(unknowns) } else { unknowns };
         if size.reduced && base.reduced {
-            size.counts[2] = scaled(base.counts[2] as f64, ratio(size.marched, before)) as u64;
+            size.work.solves = scaled(base.work.solves as f64, ratio(size.marched, before)) as u64;
         }
-        size.counts[3] = (spec.march.end.value / spec.march.step.value).ceil() as u64;
+        size.work.steps = (spec.march.end.value / spec.march.step.value).ceil() as u64;
         size.step_s = spec.march.step.value;
     }
     size
@@ -168,6 +160,7 @@ pub(super) fn together<'a>(base: &Size, each: impl Iterator<Item = &'a Size> + C
         each.clone().fold(own, |value, size| if own > 0.0 { value * of(size) / own } else { value })
     };
     let count = |of: &dyn Fn(&Size) -> usize| product(&|size| of(size) as f64).round() as usize;
+    let number = |of: &dyn Fn(&Size) -> u64| product(&|size| of(size) as f64).round() as u64;
     Size {
         cells: count(&|s| s.cells),
         layers: count(&|s| s.layers),
@@ -179,7 +172,13 @@ pub(super) fn together<'a>(base: &Size, each: impl Iterator<Item = &'a Size> + C
         factor_entries: count(&|s| s.factor_entries),
         sites: count(&|s| s.sites),
         step_s: product(&|s| s.step_s),
-        samples: product(&|s| s.samples as f64).round() as u64,
-        counts: std::array::from_fn(|k| product(&|s| s.counts[k] as f64).round() as u64),
+        samples: number(&|s| s.samples),
+        // What else is counted tells nothing of the time.
+        work: Counters {
+            elements: number(&|s| s.work.elements),
+            solves: number(&|s| s.work.solves),
+            steps: number(&|s| s.work.steps),
+            ..base.work
+        },
     }
 }

@@ -147,8 +147,11 @@ pub(super) fn asked(model: &Model, figures: &[Figure], forced: bool) -> Result<V
             let help = format!("`{word}` {}", unknown_key(word, known()));
             return Err(model.scene.source.error_at(&quantity.place, message, help));
         }
-        names.extend(found.map(str::to_owned));
+        for name in found.map(str::to_owned) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
     }
-    names.dedup();
     Ok(names)
 }

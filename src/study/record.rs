@@ -56,13 +56,12 @@ pub struct Size {
     pub step_s: f64,
     /// Samples of the stresses.
     pub samples: u64,
-    /// Element matrices integrated, factorisations, solves, steps, evaluations of contact laws and criteria.
-    pub counts: [u64; 6],
+    /// Work done.
+    pub work: Counters,
 }
 
 impl Size {
     fn of(model: &Model, counters: &Counters) -> Self {
-        let c = counters;
         let plane = &model.plate.plane;
         Self {
             cells: model.plate.cells(),
@@ -70,7 +69,7 @@ impl Size {
             cell_m: (plane.area() / plane.quads.len() as f64).sqrt(),
             columns: model.plate.columns.len(),
             unknowns: model.constraints.ndof(),
-            counts: [c.elements, c.factorisations, c.solves, c.steps, c.contact_calls, c.criterion_calls],
+            work: *counters,
             ..Self::default()
         }
     }
@@ -86,16 +85,6 @@ impl Size {
             samples: (sizes.steps as f64 * sizes.step / model.scene.failure.every) as u64,
             ..Self::of(model, &outcome.counters)
         }
-    }
-
-    /// Right-hand sides solved.
-    pub fn solves(&self) -> u64 {
-        self.counts[2]
-    }
-
-    /// Steps.
-    pub fn steps(&self) -> u64 {
-        self.counts[3]
     }
 }
 

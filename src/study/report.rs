@@ -1,6 +1,6 @@
 //! What a study found.
 
-use super::axes::{Axis, AxisKind, LADDERS, Level};
+use super::axes::{Axis, AxisKind, LADDERS, Level, judges};
 use super::converge::Convergence;
 use super::ladder::Ladder;
 use super::plan::{Planned, SPENT, TOGETHER, below};
@@ -166,7 +166,7 @@ impl Report {
     }
 
     /// Counts errors from the reference, and what each axis changes from its judge.
-    pub(super) fn judge(&mut self, axes: &[Axis], judges: fn(&str) -> &'static [&'static str]) {
+    pub(super) fn judge(&mut self, axes: &[Axis]) {
         self.refer();
         let finest = |axis: &str| {
             let axis = axes.iter().find(|a| a.name == axis)?;

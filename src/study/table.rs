@@ -3,6 +3,7 @@
 use super::record::{PHASES, Record};
 use super::report::{Report, Row};
 use crate::error::Error;
+use fem_core::counters::Counters;
 use fem_io::files::OutputDir;
 use fem_io::tables::{self, Field};
 
@@ -79,7 +80,9 @@ fn line<'a>(row: &'a Row, keys: &'a str, names: &[&str], asked: usize) -> Vec<Fi
         count(|r| r.size.factor_entries as u64),
         number(record.map(|r| r.size.step_s)),
     ];
-    line.extend((0..6).map(|k| record.map_or(NONE, |r| Field::Count(r.size.counts[k]))));
+    let work: [fn(&Counters) -> u64; 6] =
+        [|w| w.elements, |w| w.factorisations, |w| w.solves, |w| w.steps, |w| w.contact_calls, |w| w.criterion_calls];
+    line.extend(work.map(|of| record.map_or(NONE, |r| Field::Count(of(&r.size.work)))));
     line.push(number(Some(row.work())));
     line.push(number(row.worst()));
     line.extend(names.iter().map(|name| number(record.and_then(|r| r.value(name)))));

@@ -8,7 +8,7 @@ use crate::support::{Case, fem, root};
 use fem::io::files::OutputDir;
 use fem::io::scene::{self, Setting};
 use fem::io::tables::HistoryRow;
-use fem::study::{Convergence, Limit, Options, Report, Row, Session, study};
+use fem::study::{Convergence, Limit, Report, Row, Session, study};
 use fem::{Model, Registry, run};
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
@@ -30,8 +30,9 @@ impl Studied {
         let model = Model::new(scene::read(&path).unwrap(), &registry).unwrap();
         let out = OutputDir::create(folder.path().join("study")).unwrap();
         let mut session = Session::open(&path, &model, &registry, out, false).unwrap();
-        let options = Options { axes: axes.iter().map(|&axis| axis.to_owned()).collect(), budget: None };
-        let report = study(&mut session, &model, &options, &mut |_| ()).unwrap();
+        let names: Vec<String> = axes.iter().map(|&axis| axis.to_owned()).collect();
+        let axes = fem::study::axes(&model, &registry, &names).unwrap();
+        let report = study(&mut session, &model, &axes, None, &mut |_| ()).unwrap();
         Self { folder, report }
     }
 

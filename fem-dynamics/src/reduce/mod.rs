@@ -44,6 +44,11 @@ impl Modal {
     pub fn frequencies(&self) -> impl Iterator<Item = f64> + '_ {
         self.stiffness.iter().zip(&self.mass).map(|(k, m)| if *m > 0.0 { k.sqrt() } else { f64::INFINITY })
     }
+
+    /// Modal stiffnesses: ω², and 1 of modes without inertia.
+    pub fn stiffnesses(&self) -> &[f64] {
+        &self.stiffness
+    }
 }
 
 impl Structure for Modal {

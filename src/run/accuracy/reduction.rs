@@ -76,7 +76,7 @@ pub(super) fn estimate(mut full: Full, reduced: &Reduced, instants: &[Instant]) 
         // rᵀ K⁻¹ r = (load − K u)ᵀ (solved − u), of which uᵀ r = 0.
         let epsilon: f64 = load.iter().zip(solved.iter().zip(&u)).map(|(f, (x, u))| f * (x - u)).sum();
         left = left.max(epsilon);
-        energy = energy.max(stiffnesses(reduced).zip(&instant.q).map(|(k, q)| k * q * q).sum());
+        energy = energy.max(reduced.modal.stiffnesses().iter().zip(&instant.q).map(|(k, q)| k * q * q).sum());
         change += instant.stiffness * epsilon.max(0.0);
         size += instant.forces.iter().sum::<f64>().powi(2);
     }
@@ -85,11 +85,6 @@ pub(super) fn estimate(mut full: Full, reduced: &Reduced, instants: &[Instant]) 
     // There is no energy without an instant in contact.
     let residual = energy.is_finite().then_some(Residual { energy, force });
     flexibility.is_finite().then_some(ReductionError { flexibility, residual })
-}
-
-/// Modal stiffnesses: ω², and 1 of modes without inertia.
-fn stiffnesses(reduced: &Reduced) -> impl Iterator<Item = f64> + '_ {
-    reduced.modal.frequencies().map(|omega| if omega.is_finite() { omega * omega } else { 1.0 })
 }
 
 /// Σ F w − M Φ q̈.
@@ -113,7 +108,7 @@ fn inertial_load(full: &Full, reduced: &Reduced, modes: &[Vec<f64>], instant: &I
 fn flexibility(contacts: &[Functional], reduced: &Reduced, modes: &[Vec<f64>], solved: &[f64]) -> f64 {
     let each = contacts.iter().zip(modes).zip(solved.chunks_exact(solved.len() / contacts.len()));
     let error = |((w, mode), solved): ((&Functional, &Vec<f64>), &[f64])| {
-        let of_reduced: f64 = stiffnesses(reduced).zip(mode).map(|(k, m)| m * m / k).sum();
+        let of_reduced: f64 = reduced.modal.stiffnesses().iter().zip(mode).map(|(k, m)| m * m / k).sum();
         (of_reduced / w.of(solved) - 1.0).abs()
     };
     each.map(error).fold(0.0, f64::max)
