@@ -22,11 +22,13 @@ use fem::core::reduction::Functional;
 use fem::core::structure::Structure;
 use fem::core::support;
 use fem::dynamics::contact::Hertz;
+use fem::dynamics::guard::Guard;
 use fem::dynamics::impact::{ImpactSystem, Impactor};
 use fem::dynamics::integrate::Newmark;
 use fem::dynamics::reduce::{Reduced, Ritz};
 use fem::elements::{HermitePrism, Mass};
 use fem::io::materials;
+use fem::run;
 use std::hint::black_box;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -195,16 +197,20 @@ fn measure(side: usize) -> Vec<(&'static str, f64)> {
     let reduced = Reduced::project(&structure, &basis).unwrap();
     note("reduction to 60, s", start.elapsed().as_secs_f64());
     let load = reduced.restrict(&contact).into_iter().enumerate().collect();
-    note("2000 reduced steps, s", STEPS as f64 * step(Box::new(reduced.modal.clone()), load, STEPS));
-    let full = step(Box::new(structure), contact.0.clone(), samples);
+    let [reduced, guards] = step(Box::new(reduced.modal.clone()), load, STEPS);
+    note("2000 reduced steps, s", STEPS as f64 * reduced);
+    note("guards / reduced step", guards / reduced);
+    let [full, guards] = step(Box::new(structure), contact.0.clone(), samples);
     note("full step, s", full);
     note("full step / solve", full / solve);
+    note("guards / full step", guards / full);
     note("peak memory, GB", peak_memory());
     row
 }
 
-/// Least processor time of a Newmark step of an impact on `structure`, s: of all steps where there are many, else of each.
-fn step(structure: Box<dyn Structure>, load: Vec<(usize, f64)>, steps: usize) -> f64 {
+/// Least processor times (s) of a Newmark step of an impact on `structure`, of all steps where there are many, else of each,
+/// and of the guards at a step.
+fn step(structure: Box<dyn Structure>, load: Vec<(usize, f64)>, steps: usize) -> [f64; 2] {
     let stiffness = Value::Quantity(1e9, fem::core::plugin::Dimension::contact_stiffness(1.5));
     let Built::Contact(law) = Hertz::build(&Params::default().with("k", stiffness)).unwrap() else { unreachable!() };
     let Built::Integrator(mut newmark) = Newmark::build(&Params::default()).unwrap() else { unreachable!() };
@@ -212,5 +218,13 @@ fn step(structure: Box<dyn Structure>, load: Vec<(usize, f64)>, steps: usize) ->
     let mut state = system.initial();
     let mut one = |n: usize| (0..n).for_each(|_| newmark.step(&mut system, &mut state, 5e-7).unwrap());
     one(1);
-    if steps == STEPS { seconds(3, || one(steps)) / steps as f64 } else { seconds(steps, || one(1)) }
+    let march = if steps == STEPS { seconds(3, || one(steps)) / steps as f64 } else { seconds(steps, || one(1)) };
+
+    // A march knows indentation, force and velocity for its record of the contacts.
+    let (guard, touch, mut work) = (Guard::new(&system), system.touch(0, &state), Vec::new());
+    let look = |_| guard.touch(0, black_box(touch)).unwrap();
+    let touches = seconds(3, || (0..STEPS).for_each(look)) / STEPS as f64;
+    let mut balance = || guard.balance(&system.energies(&state, &mut work)).unwrap();
+    let balances = seconds(3, || (0..20).for_each(|_| _ = balance())) / 20.0;
+    [march, touches + balances / run::BALANCE_EVERY as f64]
 }

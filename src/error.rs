@@ -4,6 +4,7 @@ use crate::run::CheckpointError;
 use fem_core::assembly::AssemblyError;
 use fem_core::element::ElementError;
 use fem_core::time::StepError;
+use fem_dynamics::guard::Alarm;
 use fem_failure::scan::ScanError;
 use fem_io::files::FileError;
 use fem_io::gmsh::MeshError;
@@ -32,7 +33,11 @@ pub enum Error {
     #[error("the matrices cannot be analysed")]
     Factor(#[from] fem_core::assembly::FactorError),
     #[error("the march failed")]
+    #[diagnostic(help("{}", if matches!(.0, StepError::Factorisation(_)) { MATRIX } else { STEP }))]
     Step(#[from] StepError),
+    #[error(transparent)]
+    #[diagnostic(help("{}", remedy(.0)))]
+    Guard(#[from] Alarm),
     #[error("the failure scan failed")]
     Scan(#[from] ScanError),
     #[error(transparent)]
@@ -82,4 +87,18 @@ pub enum Error {
     File(#[from] FileError),
     #[error("the plot failed")]
     Plot(#[from] PlotError),
+}
+
+const STEP: &str = "shorten `march.step`";
+const MATRIX: &str =
+    "look at the supports, at the constants of the materials, and at the element where it is not a shipped one";
+const LAW: &str = "look at the contact law: `fem_core::testkit::check_contact_law` finds what is wrong with it";
+
+/// What helps against an alarm.
+fn remedy(alarm: &Alarm) -> &'static str {
+    match alarm {
+        Alarm::Pull { .. } => LAW,
+        Alarm::Indefinite { .. } => MATRIX,
+        _ => STEP,
+    }
 }

@@ -1,5 +1,6 @@
 //! A linear structure under the impact of lumped masses: the system that integrators march.
 
+use crate::guard::Touch;
 use fem_core::contact::{Branches, ContactEnergy, ContactHistory, ContactLaw, Indentation};
 use fem_core::structure::Structure;
 use fem_core::time::{SecondOrderSystem, State, StepError};
@@ -23,6 +24,29 @@ pub struct Impactor {
     pub load: Vec<(usize, f64)>,
     /// Contact law F(α), α = z − w.
     pub law: Box<dyn ContactLaw>,
+}
+
+/// Deepest indentation that is looked at, m.
+const DEEPEST: f64 = 1.0;
+
+impl Impactor {
+    /// Indentation (m) at which the contact has taken `energy` (J) on first loading; `None` beyond a metre.
+    pub fn indentation_of(&self, energy: f64) -> Option<f64> {
+        let work = |alpha: f64| self.law.energy(&ContactHistory::default(), alpha).stored;
+        let mut high = 1e-9;
+        while !(work(high) >= energy) {
+            high *= 2.0;
+            if high > DEEPEST {
+                return None;
+            }
+        }
+        let mut low = 0.0;
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if work(middle) < energy { low = middle } else { high = middle }
+        }
+        Some(high)
+    }
 }
 
 /// `M ü + K u = Σ F p`, `m z̈ = −F` (report eqs 33-35), unknowns: those of the structure, then one z per impactor,
@@ -121,7 +145,14 @@ impl ImpactSystem {
 
     /// Contact force of impactor `i` in an accepted state.
     pub fn contact_force(&self, i: usize, state: &State) -> f64 {
-        self.impactors[i].law.force(&state.contacts[i], self.approach(i, &state.u)).force
+        self.touch(i, state).force
+    }
+
+    /// Indentation, force and velocity of impactor `i` in an accepted state.
+    pub fn touch(&self, i: usize, state: &State) -> Touch {
+        let indentation = self.approach(i, &state.u);
+        let force = self.impactors[i].law.force(&state.contacts[i], indentation).force;
+        Touch { indentation, force, velocity: state.v[self.structure.ndof() + i] }
     }
 
     /// The energy ledger of an accepted state.
@@ -183,7 +214,7 @@ impl ImpactSystem {
             add(&impactor.load, 1.0, &mut x);
             self.structure.solve_mass(&mut x).map_err(|e| StepError::SingularMass(e.0))?;
             let mobility = value(&impactor.load, &x) + 1.0 / impactor.mass;
-            square += mobility * steepest(&*impactor.law, energy);
+            square += mobility * steepest(impactor, energy);
         }
         Ok(square.sqrt())
     }
@@ -210,18 +241,9 @@ impl ImpactSystem {
 }
 
 /// Steepest tangent on loading and unloading up to the indentation that takes `energy`.
-fn steepest(law: &dyn ContactLaw, energy: f64) -> f64 {
-    let fresh = ContactHistory::default();
-    let work = |alpha: f64| law.energy(&fresh, alpha).stored;
-    let mut high = 1e-9;
-    while work(high) < energy && high < 1.0 {
-        high *= 2.0;
-    }
-    let mut low = 0.0;
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if work(middle) < energy { low = middle } else { high = middle }
-    }
+fn steepest(impactor: &Impactor, energy: f64) -> f64 {
+    let (law, fresh) = (&*impactor.law, ContactHistory::default());
+    let high = impactor.indentation_of(energy).unwrap_or(DEEPEST);
     let mut pressed = fresh;
     law.commit(&mut pressed, high);
     let below = high * (1.0 - 1e-9);

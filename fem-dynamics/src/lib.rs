@@ -7,6 +7,7 @@
 //! | structure and impactors as one system, with its energies | [`impact`] |
 //! | natural frequencies | [`modes`] |
 //! | steps in time | [`integrate`], [`limit`] |
+//! | what no impact can do | [`guard`] |
 //!
 //! A mass strikes one that hangs on a spring:
 //!
@@ -62,6 +63,7 @@
 //! ```
 
 pub mod contact;
+pub mod guard;
 pub mod impact;
 pub mod integrate;
 mod lanczos;

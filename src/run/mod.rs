@@ -11,7 +11,7 @@ pub(crate) mod saved;
 pub use crate::stress::IndexHistory;
 pub use accuracy::{Accuracy, ReductionError, Residual, StepError};
 pub use checkpoint::Checkpoint;
-pub use march::{March, march};
+pub use march::{BALANCE_EVERY, March, march};
 pub use modal::{ModalHistory, ModeShare};
 pub use prepare::{Assembled, Prepared, prepare, structure};
 pub use saved::CheckpointError;

@@ -6,6 +6,7 @@ use std::time::Instant;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Room {
     Time,
+    Guards,
     Space,
     Algebra,
     Failure,
@@ -14,12 +15,13 @@ pub(crate) enum Room {
 }
 
 impl Room {
-    pub(crate) const ALL: [Self; 6] =
-        [Self::Time, Self::Space, Self::Algebra, Self::Failure, Self::Resources, Self::Input];
+    pub(crate) const ALL: [Self; 7] =
+        [Self::Time, Self::Guards, Self::Space, Self::Algebra, Self::Failure, Self::Resources, Self::Input];
 
     pub(crate) fn title(self) -> &'static str {
         match self {
             Self::Time => "Time integration and contact",
+            Self::Guards => "Guards of a march",
             Self::Space => "Space",
             Self::Algebra => "Algebra",
             Self::Failure => "Failure criteria",
