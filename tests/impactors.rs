@@ -124,3 +124,15 @@ fn results_say_whose_is_what() {
     let picture = case.read("results/contact_force.svg");
     assert!(picture.contains(">impactor-1</text>") && picture.contains(">late</text>"));
 }
+
+#[test]
+fn an_indentation_that_no_contact_law_describes_is_warned_of() {
+    let soft = strip().scene("k = \"1.07e5 N/mm^1.5\"", "k = \"1 N/mm^1.5\"").scene("end = \"20 us\"", "end = \"0.5 ms\"");
+    let done = soft.fem("run", &["--out", "out"]).good();
+    let summary = soft.summary("out");
+    let deepest = summary["impact"]["peak_indentation_m"].as_f64().unwrap();
+    let warned = summary["warnings"][0].as_str().unwrap();
+    assert!(warned.contains(&format!("pressed {:.4} mm deep into a plate of 2.1133 mm", deepest * 1e3)), "{warned}");
+    assert!(done.stdout.contains(warned), "{done:#?}");
+    assert!(deepest > 0.25 * 2.1133e-3, "{deepest}");
+}

@@ -30,7 +30,7 @@ impl Ledger {
         for (i, contact) in self.contacts.iter_mut().enumerate() {
             let touch = system.touch(i, state);
             guard.touch(i, touch)?;
-            contact.sample(state.t, touch.force);
+            contact.sample(state.t, touch);
         }
         Ok(())
     }
@@ -88,8 +88,9 @@ struct Contact {
 
 impl Contact {
     /// The threshold's time comes by linear interpolation between samples.
-    fn sample(&mut self, t: f64, force: f64) {
+    fn sample(&mut self, t: f64, Touch { indentation, force, .. }: Touch) {
         let (before, low) = self.last;
+        self.record.deepest = self.record.deepest.max(indentation);
         self.record.count += u32::from(force > 0.0 && low <= 0.0);
         if let (None, Some(level)) = (self.record.threshold_time, self.threshold)
             && force >= level

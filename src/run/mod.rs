@@ -104,6 +104,8 @@ pub struct Outcome {
 pub struct ContactRecord {
     /// Number of separate contacts.
     pub count: u32,
+    /// Largest indentation, m.
+    pub deepest: f64,
     /// When the force first reached the delamination threshold of the model, s.
     pub threshold_time: Option<f64>,
 }
