@@ -1,6 +1,7 @@
 //! The contract of an element, and the kernels that any element gets for free.
 
 use crate::dof::Dof;
+use crate::large::LargeDisplacement;
 use crate::quadrature::gauss_legendre;
 use crate::tensor::Matrix6;
 use dyn_clone::DynClone;
@@ -288,6 +289,11 @@ pub trait Element: DynClone + Debug + Send + Sync {
             }
         }
         Ok(())
+    }
+
+    /// The element under large displacements, where it knows them.
+    fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
+        None
     }
 }
 dyn_clone::clone_trait_object!(Element);

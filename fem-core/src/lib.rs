@@ -49,6 +49,7 @@ pub mod failure;
 #[cfg(feature = "formula")]
 pub mod formula;
 pub mod laminate;
+pub mod large;
 pub mod layup;
 pub mod load;
 pub mod material;

@@ -4,6 +4,7 @@ use crate::hermite::{self, CORNERS, Quartet};
 use crate::hermite_prism::{F, HermitePrism, Mass, N, column, to_global};
 use crate::prism::{BLOCKS, STRAIN_ROW, matrix, multiply};
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
+use fem_core::large::LargeDisplacement;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::quadrature::gauss_legendre;
 use std::sync::LazyLock;
@@ -192,6 +193,10 @@ impl Element for HermiteHex {
     ) -> Result<(), ElementError> {
         constant_map(cell)?;
         self.prism.mean_strains(cell, parts, scratch, b)
+    }
+
+    fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
+        Some(&self.prism)
     }
 }
 

@@ -1,11 +1,13 @@
 //! The report's solid element: a quadrilateral prism with twelve unknowns a node (eqs 16-23).
 
 use crate::hermite::{self, CORNERS, NodeFunctions, Quartet};
+use crate::large::{Gradients, Solid};
 use crate::prism::{BLOCKS, STRAIN_ROW, matrix, mean_powers, multiply};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::dof::Dof;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
+use fem_core::large::LargeDisplacement;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::quadrature::{MAX_POINTS, gauss_legendre};
 use std::ops::Range;
@@ -332,6 +334,43 @@ impl Element for HermitePrism {
             }
         }
         Ok(())
+    }
+
+    fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
+        Some(self)
+    }
+}
+
+impl HermitePrism {
+    fn solid<T>(&self, cell: &Cell<'_>, with: impl FnOnce(&Solid<'_, F, 4>) -> T) -> T {
+        let jacobians = jacobians(cell);
+        let fill = |r: f64, s: f64, plane: &PlaneMap, out: &mut Gradients<F, 4>| {
+            gradients(cell, &jacobians, 0..8, r, s, plane, |f, gradient| out[f] = gradient);
+        };
+        with(&Solid { info: &self.info, gradients: &fill, unknown: column })
+    }
+}
+
+impl LargeDisplacement for HermitePrism {
+    fn internal(
+        &self,
+        cell: &Cell<'_>,
+        u: &[f64],
+        scratch: &mut Scratch,
+        force: &mut [f64],
+        tangent: Option<&mut [f64]>,
+    ) -> Result<f64, ElementError> {
+        self.solid(cell, |solid| solid.internal(cell, u, scratch, force, tangent))
+    }
+
+    fn mean_large_strains(
+        &self,
+        cell: &Cell<'_>,
+        parts: &[Part],
+        u: &[f64],
+        strains: &mut [f64],
+    ) -> Result<(), ElementError> {
+        self.solid(cell, |solid| solid.mean_strains(cell, parts, u, strains))
     }
 }
 

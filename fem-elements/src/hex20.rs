@@ -1,8 +1,10 @@
 //! The 20-node serendipity hexahedron.
 
+use crate::large::{Gradients, Solid};
 use crate::prism::{self, Prism};
 use fem_core::dof::Dof;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch};
+use fem_core::large::LargeDisplacement;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::quadrature::MAX_POINTS;
 
@@ -145,6 +147,42 @@ impl Element for Hex20 {
         b: &mut [f64],
     ) -> Result<(), ElementError> {
         prism::mean_strains(self, cell, parts, b)
+    }
+
+    fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
+        Some(self)
+    }
+}
+
+impl Hex20 {
+    fn solid<T>(&self, cell: &Cell<'_>, with: impl FnOnce(&Solid<'_, 20, 3>) -> T) -> T {
+        let fill = |r: f64, s: f64, plane: &PlaneMap, out: &mut Gradients<20, 3>| {
+            self.gradients(cell, r, s, plane, |f, gradient| out[f] = gradient);
+        };
+        with(&Solid { info: &self.info, gradients: &fill, unknown: Self::unknown })
+    }
+}
+
+impl LargeDisplacement for Hex20 {
+    fn internal(
+        &self,
+        cell: &Cell<'_>,
+        u: &[f64],
+        scratch: &mut Scratch,
+        force: &mut [f64],
+        tangent: Option<&mut [f64]>,
+    ) -> Result<f64, ElementError> {
+        self.solid(cell, |solid| solid.internal(cell, u, scratch, force, tangent))
+    }
+
+    fn mean_large_strains(
+        &self,
+        cell: &Cell<'_>,
+        parts: &[Part],
+        u: &[f64],
+        strains: &mut [f64],
+    ) -> Result<(), ElementError> {
+        self.solid(cell, |solid| solid.mean_strains(cell, parts, u, strains))
     }
 }
 

@@ -39,6 +39,7 @@ mod hermite_hex;
 mod hermite_prism;
 mod hex20;
 mod lamination;
+mod large;
 mod mitc4;
 mod prism;
 mod webster_beam;

@@ -1,10 +1,11 @@
 //! The shell of Bathe and Dvorkin on a flat quadrilateral, laminated.
 
-use crate::lamination::Lamination;
+use crate::lamination::{Lamination, PlyStrain};
 use fem_core::dof::Dof;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, Scratch, positive};
+use fem_core::large::LargeDisplacement;
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
-use nalgebra::{Matrix4, Matrix5, SMatrix, Vector4};
+use nalgebra::{Matrix2, Matrix4, Matrix5, SMatrix, SVector, Vector4};
 
 /// Corners, anticlockwise.
 const NODES: [[f64; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
@@ -155,14 +156,111 @@ impl Element for Mitc4 {
             volume += dv;
         }
         mean /= volume;
-        for (Part { slice, q: [low, high] }, b) in parts.iter().zip(b.chunks_exact_mut(6 * N)) {
-            // Simpson's rule is exact for the second degree.
-            let at = |q: f64| lamination.strain(*slice, q, h);
-            let strain = (at(*low) + at(0.5 * (low + high)) * 4.0 + at(*high)) / 6.0;
-            b.copy_from_slice((strain * mean).as_slice());
+        for (part, b) in parts.iter().zip(b.chunks_exact_mut(6 * N)) {
+            b.copy_from_slice((mean_ply_strain(&lamination, part, h) * mean).as_slice());
         }
         Ok(())
     }
+
+    fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
+        Some(self)
+    }
+}
+
+/// Section strains of displacements, with what w adds to those of the middle (von Kármán): ½ w,x², ½ w,y², w,x w,y.
+struct Bent {
+    strain: SVector<f64, 8>,
+    /// Their derivatives by the unknowns.
+    operator: SectionOperator,
+    /// w,x and w,y from the unknowns.
+    slopes: SMatrix<f64, 2, N>,
+    /// |∂x/∂ξ|
+    jacobian: f64,
+}
+
+impl Bent {
+    fn new(cell: &Cell<'_>, r: f64, s: f64, u: &SVector<f64, N>) -> Self {
+        let (mut operator, jacobian) = section_operator(cell, r, s);
+        let mut strain = operator * u;
+        // The operator has the derivatives of the bilinear functions in its first row, as those of u by x, and its second.
+        let mut slopes = SMatrix::<f64, 2, N>::zeros();
+        for i in 0..4 {
+            slopes[(0, 5 * i + 2)] = operator[(0, 5 * i)];
+            slopes[(1, 5 * i + 2)] = operator[(1, 5 * i + 1)];
+        }
+        let [x, y]: [f64; 2] = (slopes * u).into();
+        for (row, half, by_x, by_y) in [(0, 0.5 * x * x, x, 0.0), (1, 0.5 * y * y, 0.0, y), (2, x * y, y, x)] {
+            strain[row] += half;
+            let mut derivative = operator.row_mut(row);
+            derivative += slopes.row(0) * by_x + slopes.row(1) * by_y;
+        }
+        Self { strain, operator, slopes, jacobian }
+    }
+}
+
+/// Von Kármán's strains: slopes of the deflection enter squared, the rotations of normals do not. Right for rotations up to
+/// some 0.2; Green and Lagrange's other terms are of the fourth order.
+impl LargeDisplacement for Mitc4 {
+    fn internal(
+        &self,
+        cell: &Cell<'_>,
+        u: &[f64],
+        _scratch: &mut Scratch,
+        force: &mut [f64],
+        tangent: Option<&mut [f64]>,
+    ) -> Result<f64, ElementError> {
+        let h = cell.half_height();
+        let section = Lamination::new(cell.stack)?.section(h) / h;
+        let u = SVector::<f64, N>::from_column_slice(u);
+        let (mut sum, mut matrix, mut energy) = (SVector::<f64, N>::zeros(), SMatrix::<f64, N, N>::zeros(), 0.0);
+        for (r, s, w) in self.info.plane_points() {
+            let bent = Bent::new(cell, r, s, &u);
+            let dv = positive(bent.jacobian)? * w;
+            let forces = section * bent.strain;
+            energy += 0.5 * dv * bent.strain.dot(&forces);
+            sum += bent.operator.tr_mul(&forces) * dv;
+            if tangent.is_some() {
+                let membrane = Matrix2::new(forces[0], forces[2], forces[2], forces[1]);
+                matrix += bent.operator.tr_mul(&(section * bent.operator * dv));
+                matrix += bent.slopes.tr_mul(&(membrane * bent.slopes * dv));
+            }
+        }
+        force.copy_from_slice(sum.as_slice());
+        if let Some(tangent) = tangent {
+            tangent.copy_from_slice(matrix.as_slice());
+        }
+        Ok(energy)
+    }
+
+    fn mean_large_strains(
+        &self,
+        cell: &Cell<'_>,
+        parts: &[Part],
+        u: &[f64],
+        strains: &mut [f64],
+    ) -> Result<(), ElementError> {
+        let h = cell.half_height();
+        let lamination = Lamination::new(cell.stack)?;
+        let u = SVector::<f64, N>::from_column_slice(u);
+        let (mut mean, mut volume) = (SVector::<f64, 8>::zeros(), 0.0);
+        for (r, s, w) in self.info.plane_points() {
+            let bent = Bent::new(cell, r, s, &u);
+            let dv = positive(bent.jacobian)? * w;
+            mean += bent.strain * dv;
+            volume += dv;
+        }
+        mean /= volume;
+        for (part, strains) in parts.iter().zip(strains.chunks_exact_mut(6)) {
+            strains.copy_from_slice((mean_ply_strain(&lamination, part, h) * mean).as_slice());
+        }
+        Ok(())
+    }
+}
+
+/// Mean of the strains within a part of a ply from the section strains, by Simpson's rule: exact for the second degree.
+fn mean_ply_strain(lamination: &Lamination<'_>, Part { slice, q: [low, high] }: &Part, h: f64) -> PlyStrain {
+    let at = |q: f64| lamination.strain(*slice, q, h);
+    (at(*low) + at(0.5 * (low + high)) * 4.0 + at(*high)) / 6.0
 }
 
 impl Plugin for Mitc4 {

@@ -1,0 +1,47 @@
+//! The contract of an element under large displacements.
+
+use crate::element::{Cell, ElementError, Part, Scratch};
+
+/// What an element offers besides its linear matrices where membrane stiffening is asked for.
+///
+/// Strains are Green and Lagrange's, E = ½ (H + Hᵀ + Hᵀ H) with H = ∂u/∂X in the plate's frame before deformation; stresses
+/// S = C E are the second ones of Piola and Kirchhoff, on the plies' axes as they turn with the cell. Strains are small,
+/// displacements and rotations are not.
+///
+/// At u = 0 the tangent is the stiffness of [`crate::element::Element::stiffness`] up to the quadrature through the plies.
+pub trait LargeDisplacement {
+    /// Internal force f = ∂W/∂u (N, conjugate to the unknowns) at the displacements `u` (both ndof), W = Σ over plies
+    /// ∫ ½ Eᵀ C E dV; and the tangent ∂f/∂u (ndof × ndof, symmetric) where it is asked for. Returns W, J.
+    ///
+    /// # Errors
+    /// A Jacobian that is not positive at a Gauss point.
+    fn internal(
+        &self,
+        cell: &Cell<'_>,
+        u: &[f64],
+        scratch: &mut Scratch,
+        force: &mut [f64],
+        tangent: Option<&mut [f64]>,
+    ) -> Result<f64, ElementError>;
+
+    /// Means of E over parts of the cell (report eqs 12, 14), engineering shears, one after the other: `strains` holds
+    /// six per part.
+    ///
+    /// # Errors
+    /// As [`LargeDisplacement::internal`].
+    fn mean_large_strains(
+        &self,
+        cell: &Cell<'_>,
+        parts: &[Part],
+        u: &[f64],
+        strains: &mut [f64],
+    ) -> Result<(), ElementError>;
+}
+
+/// E of a displacement gradient `h[i][j]` = ∂uᵢ/∂Xⱼ, in the order 11 22 33 12 23 31, engineering shears.
+pub fn green_lagrange(h: &[[f64; 3]; 3]) -> [f64; 6] {
+    let product = |a: usize, b: usize| (0..3).map(|i| h[i][a] * h[i][b]).sum::<f64>();
+    let normal = |a: usize| h[a][a] + 0.5 * product(a, a);
+    let shear = |a: usize, b: usize| h[a][b] + h[b][a] + product(a, b);
+    [normal(0), normal(1), normal(2), shear(0, 1), shear(1, 2), shear(2, 0)]
+}

@@ -1,0 +1,239 @@
+//! Solids whose functions are polynomials in q, under large displacements.
+//!
+//! At an in-plane point the displacement gradient H is a polynomial in q, so is every function's. What is integrated through
+//! the plies are 9 stresses and, for the tangent, 45 moduli A = ∂P/∂H, each times powers of q; the functions come in once per
+//! in-plane point, however many plies there are:
+//!
+//! f(n) = Σ over in-plane points of w |J| G p(n), p(n)\[(d,k)\] = ∫ P\[n\]\[d\] qᵏ dq, P = (I + H) S,
+//! K(n,n′) = Σ of w |J| G A(n,n′) Gᵀ, A(n,n′)\[(d,k),(d′,k′)\] = ∫ ∂P\[n\]\[d\]/∂H\[n′\]\[d′\] qᵏ⁺ᵏ′ dq.
+
+use crate::prism::{BLOCKS, STRAIN_ROW, matrix, multiply};
+use fem_core::element::{Cell, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
+use fem_core::large::green_lagrange;
+use fem_core::quadrature::gauss_legendre;
+use fem_core::tensor::Matrix6;
+
+/// Gradients [∂x, ∂y, ∂z] of `F` functions at an in-plane point, polynomials of `K` coefficients in q.
+pub(crate) type Gradients<const F: usize, const K: usize> = [[[f64; K]; 3]; F];
+
+/// Displacement gradient at an in-plane point, polynomials in q.
+type Polynomial<const K: usize> = [[[f64; K]; 3]; 3];
+
+/// A solid with the same `F` scalar functions for each displacement component, polynomials of `K` ≤ 4 coefficients in q.
+pub(crate) struct Solid<'a, const F: usize, const K: usize> {
+    pub(crate) info: &'a ElementInfo,
+    /// Fills in the gradients at an in-plane point of the map.
+    pub(crate) gradients: &'a dyn Fn(f64, f64, &PlaneMap, &mut Gradients<F, K>),
+    /// Unknown of the cell that multiplies a function in a component.
+    pub(crate) unknown: fn(usize, usize) -> usize,
+}
+
+/// Powers of q that a product of two polynomials has: 2 K − 1 for K = 4.
+const POWERS: usize = 7;
+
+/// Pairs of components of H, each once.
+const PAIRS: usize = 45;
+
+impl<const F: usize, const K: usize> Solid<'_, F, K> {
+    /// [`fem_core::large::LargeDisplacement::internal`]
+    pub(crate) fn internal(
+        &self,
+        cell: &Cell<'_>,
+        u: &[f64],
+        scratch: &mut Scratch,
+        force: &mut [f64],
+        tangent: Option<&mut [f64]>,
+    ) -> Result<f64, ElementError> {
+        let terms = 3 * K;
+        let points = self.info.plane_points().count();
+        let wanted = tangent.is_some();
+        let [g, p, hankel, block] = scratch.arrays(if wanted {
+            [F * terms * points, BLOCKS.len() * F * terms * points, BLOCKS.len() * terms * terms, F * F]
+        } else {
+            [0; 4]
+        });
+        let mut functions: Gradients<F, K> = [[[0.0; K]; 3]; F];
+        let mut energy = 0.0;
+        force.fill(0.0);
+        for (point, (r, s, w)) in self.info.plane_points().enumerate() {
+            let dv = self.at(cell, r, s, &mut functions)? * w;
+            let through = self.through(cell, &self.gradient(&functions, u), wanted);
+            energy += dv * through.energy;
+            for (f, gradient) in functions.iter().enumerate() {
+                for (n, stresses) in through.stresses.iter().enumerate() {
+                    let work = gradient.as_flattened().iter().zip(stresses.as_flattened());
+                    force[(self.unknown)(n, f)] += dv * work.map(|(g, p)| g * p).sum::<f64>();
+                }
+            }
+            if wanted {
+                let part = &mut g[F * terms * point..F * terms * (point + 1)];
+                for (f, gradient) in functions.iter().enumerate() {
+                    for (i, value) in gradient.as_flattened().iter().enumerate() {
+                        part[F * i + f] = *value;
+                    }
+                }
+                through.hankel(dv, hankel);
+                for (b, hankel) in hankel.chunks_exact(terms * terms).enumerate() {
+                    let at = F * terms * (points * b + point);
+                    multiply(&mut p[at..at + F * terms], matrix(part, F), matrix(hankel, terms));
+                }
+            }
+        }
+        if let Some(tangent) = tangent {
+            self.gather(g, p, block, tangent);
+        }
+        Ok(energy)
+    }
+
+    /// K = Σ over points of P Gᵀ, block by block.
+    fn gather(&self, g: &[f64], p: &[f64], block: &mut [f64], tangent: &mut [f64]) {
+        let g = matrix(g, F);
+        for ((n, n2), p) in BLOCKS.iter().zip(p.chunks_exact(F * g.ncols())) {
+            multiply(block, matrix(p, F), g.transpose());
+            for (f2, column) in block.chunks_exact(F).enumerate() {
+                for (f, value) in column.iter().enumerate() {
+                    let (i, j) = ((self.unknown)(*n, f), (self.unknown)(*n2, f2));
+                    tangent[i + 3 * F * j] = *value;
+                    tangent[j + 3 * F * i] = *value;
+                }
+            }
+        }
+    }
+
+    /// [`fem_core::large::LargeDisplacement::mean_large_strains`]
+    pub(crate) fn mean_strains(
+        &self,
+        cell: &Cell<'_>,
+        parts: &[Part],
+        u: &[f64],
+        strains: &mut [f64],
+    ) -> Result<(), ElementError> {
+        let mut functions: Gradients<F, K> = [[[0.0; K]; 3]; F];
+        let mut volume = 0.0;
+        strains.fill(0.0);
+        for (r, s, w) in self.info.plane_points() {
+            let dv = self.at(cell, r, s, &mut functions)? * w;
+            volume += dv;
+            let gradient = self.gradient(&functions, u);
+            for (Part { q: [low, high], .. }, strains) in parts.iter().zip(strains.chunks_exact_mut(6)) {
+                let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+                for &(t, wt) in gauss_legendre(if half > 0.0 { self.info.ply_order } else { 1 }) {
+                    let strain = green_lagrange(&at(&gradient, middle + half * t));
+                    for (mean, e) in strains.iter_mut().zip(strain) {
+                        *mean += 0.5 * wt * dv * e;
+                    }
+                }
+            }
+        }
+        strains.iter_mut().for_each(|e| *e /= volume);
+        Ok(())
+    }
+
+    /// Gradients of the functions at an in-plane point, and |∂x/∂ξ|.
+    fn at(&self, cell: &Cell<'_>, r: f64, s: f64, functions: &mut Gradients<F, K>) -> Result<f64, ElementError> {
+        let plane = cell.plane(r, s);
+        (self.gradients)(r, s, &plane, functions);
+        positive(plane.det * cell.half_height())
+    }
+
+    fn gradient(&self, functions: &Gradients<F, K>, u: &[f64]) -> Polynomial<K> {
+        let mut h = [[[0.0; K]; 3]; 3];
+        for (f, gradient) in functions.iter().enumerate() {
+            for (n, h) in h.iter_mut().enumerate() {
+                let u = u[(self.unknown)(n, f)];
+                for (h, g) in h.as_flattened_mut().iter_mut().zip(gradient.as_flattened()) {
+                    *h += u * g;
+                }
+            }
+        }
+        h
+    }
+
+    /// Integrates through the plies.
+    fn through(&self, cell: &Cell<'_>, gradient: &Polynomial<K>, tangent: bool) -> Through<K> {
+        let mut sum = Through { energy: 0.0, stresses: [[[0.0; K]; 3]; 3], moduli: [[0.0; PAIRS]; POWERS] };
+        for slice in &cell.stack.slices {
+            let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
+            for &(t, wt) in gauss_legendre(self.info.ply_order) {
+                sum.add(&at(gradient, middle + half * t), &slice.c, middle + half * t, wt * half, tangent);
+            }
+        }
+        sum
+    }
+}
+
+/// Integrals through the plies at an in-plane point.
+struct Through<const K: usize> {
+    /// ∫ ½ Eᵀ C E dq
+    energy: f64,
+    /// ∫ P qᵏ dq
+    stresses: Polynomial<K>,
+    /// ∫ A qᵏ dq, pairs of components of H by columns of the upper triangle.
+    moduli: [[f64; PAIRS]; POWERS],
+}
+
+impl<const K: usize> Through<K> {
+    fn add(&mut self, h: &[[f64; 3]; 3], c: &Matrix6, q: f64, w: f64, tangent: bool) {
+        let strain = green_lagrange(h);
+        let stress = c.map(|row| row.iter().zip(strain).map(|(c, e)| c * e).sum::<f64>());
+        self.energy += 0.5 * w * strain.iter().zip(stress).map(|(e, s)| e * s).sum::<f64>();
+        let mut f = *h;
+        (0..3).for_each(|i| f[i][i] += 1.0);
+        let s = |a: usize, b: usize| stress[STRAIN_ROW[a][b]];
+        for (row, stresses) in f.iter().zip(&mut self.stresses) {
+            for (d, sum) in stresses.iter_mut().enumerate() {
+                let mut power = w * (0..3).map(|e| row[e] * s(e, d)).sum::<f64>();
+                for sum in sum {
+                    *sum += power;
+                    power *= q;
+                }
+            }
+        }
+        if !tangent {
+            return;
+        }
+        // ∂E/∂H: column 3 n + d has F[n][e] in the row of (d, e), once for normal strains as for engineering shears.
+        let mut by = [[0.0; 6]; 9];
+        for (at, column) in by.iter_mut().enumerate() {
+            for e in 0..3 {
+                column[STRAIN_ROW[at % 3][e]] += f[at / 3][e];
+            }
+        }
+        let cby = by.map(|column| c.map(|row| row.iter().zip(column).map(|(c, b)| c * b).sum::<f64>()));
+        let mut pairs = [0.0; PAIRS];
+        let mut at = 0;
+        for (j, cb) in cby.iter().enumerate() {
+            for (i, b) in by[..=j].iter().enumerate() {
+                let geometric = if i / 3 == j / 3 { s(i % 3, j % 3) } else { 0.0 };
+                pairs[at] = w * (b.iter().zip(cb).map(|(b, c)| b * c).sum::<f64>() + geometric);
+                at += 1;
+            }
+        }
+        let mut power = 1.0;
+        for moduli in &mut self.moduli[..2 * K - 1] {
+            for (sum, pair) in moduli.iter_mut().zip(&pairs) {
+                *sum += power * pair;
+            }
+            power *= q;
+        }
+    }
+
+    /// dv A(n,n′) of the blocks, each 3 K × 3 K.
+    fn hankel(&self, dv: f64, out: &mut [f64]) {
+        let terms = 3 * K;
+        for ((n, n2), block) in BLOCKS.iter().zip(out.chunks_exact_mut(terms * terms)) {
+            for (j, column) in block.chunks_exact_mut(terms).enumerate() {
+                for (i, value) in column.iter_mut().enumerate() {
+                    let (a, b) = (3 * n + i / K, 3 * n2 + j / K);
+                    let (low, high) = (a.min(b), a.max(b));
+                    *value = dv * self.moduli[i % K + j % K][high * (high + 1) / 2 + low];
+                }
+            }
+        }
+    }
+}
+
+/// A displacement gradient at q.
+fn at<const K: usize>(gradient: &Polynomial<K>, q: f64) -> [[f64; 3]; 3] {
+    gradient.map(|row| row.map(|p| p.iter().rev().fold(0.0, |sum, c| sum * q + c)))
+}

@@ -1,0 +1,182 @@
+//! Large displacements: forces and tangents against differences, motions whose strains are known.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+#[allow(dead_code, reason = "other tests need the rest")]
+mod dense;
+
+use dense::*;
+use fem_core::element::{Cell, Element, Part, Scratch, Stack};
+use fem_core::large::{LargeDisplacement, green_lagrange};
+use fem_elements::{HermiteHex, HermitePrism, Hex20, Mass, Mitc4};
+use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3, Vector6};
+
+const PARALLELOGRAM: [[f64; 2]; 4] = [[0.0, 0.0], [2.0e-3, 0.5e-3], [2.7e-3, 1.9e-3], [0.7e-3, 1.4e-3]];
+
+fn plies() -> Stack {
+    stack(&carbon(), &[(0.0, 1.0), (90.0, 2.0), (-45.0, 0.5), (20.0, 1.0)])
+}
+
+fn solids() -> [Box<dyn Element>; 3] {
+    [
+        Box::new(HermitePrism::new(Mass::Cubic, 4).unwrap()),
+        Box::new(HermiteHex::new(Mass::Cubic)),
+        Box::new(Hex20::new(3).unwrap()),
+    ]
+}
+
+fn all() -> impl Iterator<Item = Box<dyn Element>> {
+    solids().into_iter().chain([Box::new(Mitc4::default()) as Box<dyn Element>])
+}
+
+/// A cell that every element takes, 0.8 mm high.
+fn cell(stack: &Stack) -> Cell<'_> {
+    Cell { corners: PARALLELOGRAM, z: [-0.3e-3, 0.5e-3], stack }
+}
+
+/// Energy, force and tangent at `u`.
+fn internal(element: &dyn Element, cell: &Cell<'_>, u: &DVector<f64>) -> (f64, DVector<f64>, DMatrix<f64>) {
+    let n = u.len();
+    let (mut force, mut tangent) = (DVector::repeat(n, f64::NAN), DMatrix::repeat(n, n, f64::NAN));
+    let large = element.large_displacements().unwrap();
+    let energy =
+        large.internal(cell, u.as_slice(), &mut Scratch::default(), force.as_mut_slice(), Some(tangent.as_mut_slice()));
+    (energy.unwrap(), force, tangent)
+}
+
+/// Unknowns of the displacement u(X) = `a` + `h` X + part of an arbitrary field; derivatives follow.
+fn motion(element: &dyn Element, cell: &Cell<'_>, h: &Matrix3<f64>, wild: f64) -> DVector<f64> {
+    let info = element.info();
+    let mut u = Vec::new();
+    for (i, node) in info.nodes.iter().enumerate() {
+        let x = Vector3::from(cell.position(*node));
+        for (k, dof) in info.dofs.iter().enumerate() {
+            let (n, m) = (dof.n() - 1, dof.m());
+            let noise = wild * ((7 * i + 13 * k) as f64).sin();
+            u.push(if m == 0 { (h * x)[n] + 1e-3 * noise } else { h[(n, m - 1)] + noise });
+        }
+    }
+    DVector::from_vec(u)
+}
+
+#[test]
+fn without_displacements_there_is_no_force_and_the_tangent_is_the_stiffness() {
+    let stack = plies();
+    for element in all() {
+        let u = DVector::zeros(element.info().ndof());
+        let (energy, force, tangent) = internal(&*element, &cell(&stack), &u);
+        assert_eq!((energy, force.amax()), (0.0, 0.0));
+        let error = difference(&tangent, &stiffness(&*element, &cell(&stack)));
+        assert!(error < 1e-12, "{element:?}: {error:e}");
+    }
+}
+
+#[test]
+fn forces_are_derivatives_of_the_energy_and_tangents_of_the_forces() {
+    let stack = plies();
+    for element in all() {
+        let cell = cell(&stack);
+        let u = motion(&*element, &cell, &Matrix3::new(0.02, 0.1, 0.0, -0.1, 0.01, 0.05, -0.2, 0.1, 0.03), 0.05);
+        let (_, force, tangent) = internal(&*element, &cell, &u);
+        for k in 0..u.len() {
+            // Displacements in metres, derivatives pure numbers. Energies are polynomials of the fourth degree.
+            let translation = element.info().dofs[k % element.info().dofs.len()].m() == 0;
+            let step = if translation { 1e-6 } else { 1e-3 };
+            let at = |steps: f64| {
+                let mut u = u.clone();
+                u[k] += steps * step;
+                internal(&*element, &cell, &u)
+            };
+            let [(a, fa, _), (b, fb, _), (c, fc, _), (d, fd, _)] = [-2.0, -1.0, 1.0, 2.0].map(at);
+            let slope = (a - 8.0 * b + 8.0 * c - d) / (12.0 * step);
+            let rough = (force[k] - slope).abs() / (force.amax().max(tangent[(k, k)] * step));
+            assert!(rough < 1e-7, "{element:?}, force {k}: {} {slope}", force[k]);
+            let column = (fa - fb * 8.0 + fc * 8.0 - fd) / (12.0 * step);
+            for (i, (got, want)) in tangent.column(k).iter().zip(&column).enumerate() {
+                let scale = (tangent[(i, i)] * tangent[(k, k)]).abs().sqrt();
+                assert!((got - want).abs() < 1e-7 * scale, "{element:?}, tangent {i} {k}: {got} {want}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_turned_cell_has_no_energy_and_a_stretched_one_has_the_same_however_turned() {
+    let stack = plies();
+    let turn = Rotation3::from_euler_angles(0.7, -1.1, 2.0).into_inner();
+    let stretch = Matrix3::new(1.01, 0.02, -0.01, 0.0, 0.98, 0.03, 0.01, 0.0, 1.02);
+    for element in solids() {
+        let cell = cell(&stack);
+        let energy =
+            |f: Matrix3<f64>| internal(&*element, &cell, &motion(&*element, &cell, &(f - Matrix3::identity()), 0.0)).0;
+        // W = volume · mean of ½ Eᵀ C E
+        let e = Vector6::from(green_lagrange(&(stretch - Matrix3::identity()).transpose().into()));
+        let area = 2.45e-6;
+        let mean: f64 = stack
+            .slices
+            .iter()
+            .map(|s| {
+                let stress: Vec<f64> = s.c.iter().map(|row| row.iter().zip(&e).map(|(c, e)| c * e).sum()).collect();
+                0.5 * (s.q[1] - s.q[0]) * 0.5 * stress.iter().zip(&e).map(|(s, e)| s * e).sum::<f64>()
+            })
+            .sum();
+        let want = area * 0.8e-3 * mean;
+        let [got, turned, rigid] = [stretch, turn * stretch, turn].map(energy);
+        assert!((got / want - 1.0).abs() < 1e-12, "{element:?}: {got} {want}");
+        assert!((turned / want - 1.0).abs() < 1e-12, "{element:?}: {turned} {want}");
+        assert!(rigid < 1e-26 * want / 1e-4, "{element:?}: {rigid:e} of {want:e}");
+    }
+}
+
+#[test]
+fn means_of_a_uniform_strain_are_that_strain() {
+    let stack = plies();
+    let h = Matrix3::new(0.01, 0.02, -0.01, 0.0, -0.02, 0.03, 0.01, 0.0, 0.02);
+    let want = green_lagrange(&h.transpose().into());
+    let parts: Vec<Part> = (stack.slices.iter().enumerate())
+        .flat_map(|(slice, s)| [s.q, [s.q[1]; 2]].map(|q| Part { slice, q }))
+        .collect();
+    for element in solids() {
+        let u = motion(&*element, &cell(&stack), &h, 0.0);
+        let mut strains = vec![f64::NAN; 6 * parts.len()];
+        let large = element.large_displacements().unwrap();
+        large.mean_large_strains(&cell(&stack), &parts, u.as_slice(), &mut strains).unwrap();
+        for strain in strains.chunks_exact(6) {
+            let error = strain.iter().zip(want).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(error < 1e-15, "{element:?}: {strain:?} {want:?}");
+        }
+    }
+}
+
+/// The shell: slopes of w and the strains that they add to those of u and v (von Kármán).
+#[test]
+fn the_shell_has_the_strains_of_von_karman() {
+    let stack = plies();
+    let shell = Mitc4::default();
+    let cell = cell(&stack);
+    let slopes = [0.15, -0.1];
+    // Normals stay upright to the middle, which is what the rotations U13 = −w,x do.
+    let h = Matrix3::new(0.01, 0.004, -slopes[0], 0.0, -0.02, -slopes[1], slopes[0], slopes[1], 0.0);
+    let u = motion(&shell, &Cell { z: [-0.4e-3, 0.4e-3], ..cell }, &h, 0.0);
+    let part = Part { slice: 1, q: [0.0; 2] };
+    let mut strain = [f64::NAN; 6];
+    shell.mean_large_strains(&Cell { z: [-0.4e-3, 0.4e-3], ..cell }, &[part], u.as_slice(), &mut strain).unwrap();
+    let want = [0.01 + 0.5 * slopes[0] * slopes[0], -0.02 + 0.5 * slopes[1] * slopes[1], 0.004 + slopes[0] * slopes[1]];
+    for (got, want) in [strain[0], strain[1], strain[3]].into_iter().zip(want) {
+        assert!((got - want).abs() < 1e-15, "{got} {want}");
+    }
+    assert!(strain[4].abs() < 1e-15 && strain[5].abs() < 1e-15, "{strain:?}");
+}
+
+#[test]
+fn a_folded_cell_is_refused() {
+    let stack = plies();
+    let [a, b, c, d] = PARALLELOGRAM;
+    for element in solids() {
+        let n = element.info().ndof();
+        let (u, mut force) = (vec![0.0; n], vec![0.0; n]);
+        let folded = Cell { corners: [a, c, b, d], ..cell(&stack) };
+        let large = element.large_displacements().unwrap();
+        let refused = large.internal(&folded, &u, &mut Scratch::default(), &mut force, None).unwrap_err();
+        assert!(refused.0.contains("Jacobian"), "{refused}");
+    }
+}
