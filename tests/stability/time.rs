@@ -1,5 +1,6 @@
 //! Steps at and beyond their limits, stiff and soft contact, long and short marches.
 
+mod chatter;
 mod contact;
 mod marches;
 mod plate;
@@ -9,13 +10,13 @@ use crate::case::Case;
 use fem::Registry;
 use fem::core::contact::ContactLaw;
 use fem::core::plugin::{Built, Dimension, Kind, Params, Value};
-use fem::core::time::{Integrator, State, StepError};
+use fem::core::time::{Integrator, State, StepError, StepLimit};
 use fem::dynamics::impact::{ImpactSystem, Impactor};
 use fem::dynamics::integrate::located;
 use plate::Navier;
 
 pub(crate) fn cases() -> Vec<Case> {
-    [steps::cases(), contact::cases(), marches::cases()].into_iter().flatten().collect()
+    [steps::cases(), contact::cases(), chatter::cases(), marches::cases()].into_iter().flatten().collect()
 }
 
 /// The energy error at which a run stops.
@@ -67,20 +68,22 @@ fn sun_yang(k: f64, critical: f64) -> Box<dyn ContactLaw> {
     law("sun-yang", &params)
 }
 
+fn limit(scheme: &dyn Integrator) -> Option<f64> {
+    match scheme.limit() {
+        StepLimit::OmegaDt(limit) => Some(limit),
+        StepLimit::None => None,
+    }
+}
+
 /// `plate` under masses that touch its middle at t = 0.
 fn struck(plate: &Navier, masses: &[f64], velocity: f64, law: Box<dyn ContactLaw>) -> ImpactSystem {
-    let impactor = |mass: &f64| Impactor {
-        mass: *mass,
-        velocity,
-        start: 0.0,
-        load: plate.load([0.5, 0.5]),
-        law: law.clone(),
-    };
+    let impactor =
+        |mass: &f64| Impactor { mass: *mass, velocity, start: 0.0, load: plate.load([0.5, 0.5]), law: law.clone() };
     ImpactSystem::new(Box::new(plate.clone()), masses.iter().map(impactor).collect())
 }
 
 /// What is seen of a march after every step.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 struct Seen {
     /// Energy over that of the impact.
     energies: Vec<f64>,
@@ -96,12 +99,7 @@ impl Seen {
     }
 }
 
-fn march(
-    mut scheme: Box<dyn Integrator>,
-    system: &mut ImpactSystem,
-    dt: f64,
-    steps: usize,
-) -> Result<Seen, StepError> {
+fn march(mut scheme: Box<dyn Integrator>, system: &mut ImpactSystem, dt: f64, steps: usize) -> Result<Seen, StepError> {
     let mut state = system.initial();
     scheme.start(system, &mut state)?;
     let mut work = Vec::new();

@@ -13,11 +13,11 @@ use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit}
 /// ```
 ///
 /// Loads and contact forces are weighted like the internal ones. Division by 1 − α_f leaves one implicit equation in
-/// u₁ with contact at full weight, `(cm M + cc C + K) u₁ = r + p₁ + contact(u₁; h)`:
+/// d = u₁ − ũ with contact at full weight, `(cm M + cc C) d + K (ũ + d) = r + p₁ + contact(ũ + d; h)`:
 ///
 /// ```text
 /// cm = (1 − α_m)/((1 − α_f) β Δt²)        cc = γ/(β Δt)
-/// r  = cm M ũ − α_m/(1 − α_f) M a₀ + C (cc ũ − ṽ) + α_f/(1 − α_f) f₀
+/// r  = α_f/(1 − α_f) f₀ − α_m/(1 − α_f) M a₀ − C ṽ
 /// ```
 ///
 /// With ρ∞, the spectral radius for ω Δt → ∞, from 0 to 1: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1),
@@ -30,15 +30,13 @@ pub struct GeneralizedAlpha {
     gamma: f64,
     /// ũ.
     predicted: Vec<f64>,
-    /// r, then u₁.
-    u: Vec<f64>,
-    /// What M, then what C is applied to.
-    x: Vec<f64>,
+    /// r, then d.
+    d: Vec<f64>,
 }
 
 impl GeneralizedAlpha {
     pub(super) fn new(alpha_m: f64, alpha_f: f64, beta: f64, gamma: f64) -> Self {
-        Self { alpha_m, alpha_f, beta, gamma, predicted: Vec::new(), u: Vec::new(), x: Vec::new() }
+        Self { alpha_m, alpha_f, beta, gamma, predicted: Vec::new(), d: Vec::new() }
     }
 }
 
@@ -59,40 +57,37 @@ impl Integrator for GeneralizedAlpha {
     }
 
     fn resume(&mut self, sys: &mut dyn SecondOrderSystem) {
-        for work in [&mut self.predicted, &mut self.u, &mut self.x] {
+        for work in [&mut self.predicted, &mut self.d] {
             work.resize(sys.ndof(), 0.0);
         }
     }
 
     fn step(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State, dt: f64) -> Result<(), StepError> {
         self.resume(sys);
-        let Self { alpha_m, alpha_f, beta, gamma, predicted, u, x } = self;
+        let Self { alpha_m, alpha_f, beta, gamma, predicted, d } = self;
         let weight = 1.0 / (1.0 - *alpha_f);
         let (cm, cc) = ((1.0 - *alpha_m) * weight / (*beta * dt * dt), *gamma / (*beta * dt));
-        let ndof = u.len();
 
-        u.fill(0.0);
+        d.fill(0.0);
         if *alpha_f != 0.0 {
-            sys.force(s.t, &s.u, &s.v, &s.contacts, u);
-            u.iter_mut().for_each(|f| *f *= *alpha_f * weight);
+            sys.force(s.t, &s.u, &s.v, &s.contacts, d);
+            d.iter_mut().for_each(|f| *f *= *alpha_f * weight);
         }
-        for i in 0..ndof {
+        if *alpha_m != 0.0 {
+            sys.add_mass(-*alpha_m * weight, &s.a, d);
+        }
+        for i in 0..d.len() {
             predicted[i] = s.u[i] + dt * s.v[i] + (0.5 - *beta) * dt * dt * s.a[i];
-            x[i] = cm * predicted[i] - *alpha_m * weight * s.a[i];
-        }
-        sys.add_mass(1.0, x, u);
-        for i in 0..ndof {
             s.v[i] += (1.0 - *gamma) * dt * s.a[i];
-            x[i] = cc * predicted[i] - s.v[i];
         }
-        sys.add_damping(1.0, x, u);
+        sys.add_damping(-1.0, &s.v, d);
         s.t += dt;
-        sys.solve_implicit(cm, cc, s.t, &s.contacts, u)?;
-        for i in 0..ndof {
-            s.a[i] = (u[i] - predicted[i]) / (*beta * dt * dt);
+        sys.solve_implicit(cm, cc, s.t, &s.contacts, predicted, d)?;
+        for i in 0..d.len() {
+            s.u[i] = predicted[i] + d[i];
+            s.a[i] = d[i] / (*beta * dt * dt);
             s.v[i] += *gamma * dt * s.a[i];
         }
-        s.u.copy_from_slice(u);
         accept(sys, s)
     }
 }

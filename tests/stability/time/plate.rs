@@ -37,10 +37,14 @@ impl Navier {
     pub(super) fn new(count: u32, units: Units) -> Self {
         let waves = |of: u32| (1..=count).map(move |i| [f64::from(of), f64::from(i)]);
         let waves: Vec<[f64; 2]> = (1..=count).flat_map(waves).collect();
-        let stiffness = |[i, j]: &[f64; 2]| {
-            0.25 * RIGIDITY * (PI * PI * (i * i + j * j) / EDGE).powi(2) / units.stiffness()
-        };
+        let stiffness =
+            |[i, j]: &[f64; 2]| 0.25 * RIGIDITY * (PI * PI * (i * i + j * j) / EDGE).powi(2) / units.stiffness();
         Self { stiffness: waves.iter().map(stiffness).collect(), waves, mass: 0.25 * MASS / units.mass }
+    }
+
+    /// One mode that nothing moves.
+    pub(super) fn ground() -> Self {
+        Self { waves: vec![[1.0, 1.0]], stiffness: vec![1e15], mass: MASS }
     }
 
     /// The deflection at a place, in edges.
@@ -57,6 +61,11 @@ impl Navier {
     /// Lowest circular frequency.
     pub(super) fn lowest(&self) -> f64 {
         (self.stiffness[0] / self.mass).sqrt()
+    }
+
+    /// Highest circular frequency.
+    pub(super) fn highest(&self) -> f64 {
+        (self.stiffness.iter().fold(0.0, |a: f64, b| a.max(*b)) / self.mass).sqrt()
     }
 }
 
@@ -86,10 +95,6 @@ impl Structure for Navier {
     }
 
     fn highest_frequency(&mut self) -> Result<f64, SolveError> {
-        Ok((largest(&self.stiffness) / self.mass).sqrt())
+        Ok(self.highest())
     }
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |a: f64, b| a.max(*b))
 }

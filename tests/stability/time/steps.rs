@@ -1,11 +1,11 @@
 //! Steps at the limits of integrators, and beyond them.
 
 use super::plate::{MASS, Navier, Units};
-use super::{TOLERANCE, hertz, integrator, integrators, largest, march, struck, sun_yang};
+use super::{TOLERANCE, hertz, integrator, integrators, largest, limit, march, struck, sun_yang};
 use crate::case::{Case, Room};
 use crate::support::strip;
 use fem::core::testkit::{Mode, Modes};
-use fem::core::time::{Integrator, StepLimit};
+use fem::core::time::Integrator;
 use fem::dynamics::limit::longest_step;
 
 /// Explicit schemes that no step of an undamped oscillator suits; their limit holds the growth of a step to 1e-6.
@@ -75,13 +75,6 @@ pub(super) fn cases() -> Vec<Case> {
             unchecked,
         ),
     ]
-}
-
-fn limit(scheme: &dyn Integrator) -> Option<f64> {
-    match scheme.limit() {
-        StepLimit::OmegaDt(limit) => Some(limit),
-        StepLimit::None => None,
-    }
 }
 
 /// Integrators that have stable steps, with their limits.
@@ -187,7 +180,8 @@ fn refused() -> f64 {
             for command in ["check", "run"] {
                 let options: &[&str] = if command == "run" { &["--out", "out"] } else { &[] };
                 let done = case.fem(command, options);
-                let said = ["scene.toml:", "step =", "stability limit", "highest frequency of plate and contact", " Hz"];
+                let said =
+                    ["scene.toml:", "step =", "stability limit", "highest frequency of plate and contact", " Hz"];
                 let named = said.iter().all(|words| done.stderr.contains(words));
                 passed += u32::from(done.status == 0 || !named || !case.names("out").is_empty());
             }
