@@ -63,9 +63,14 @@ impl Navier {
         (self.stiffness[0] / self.mass).sqrt()
     }
 
+    /// Largest modal stiffness.
+    pub(super) fn stiffest(&self) -> f64 {
+        self.stiffness.iter().fold(0.0, |a, b| a.max(*b))
+    }
+
     /// Highest circular frequency.
     pub(super) fn highest(&self) -> f64 {
-        (self.stiffness.iter().fold(0.0, |a: f64, b| a.max(*b)) / self.mass).sqrt()
+        (self.stiffest() / self.mass).sqrt()
     }
 }
 
