@@ -1,7 +1,7 @@
 //! Long marches, and what must not change them.
 
 use super::plate::{MASS, Navier, Units};
-use super::{TOLERANCE, hertz, integrator, integrator_with, largest, march, spring, struck, sun_yang};
+use super::{hertz, integrator, integrator_with, largest, march, spring, struck, sun_yang};
 use crate::case::{Case, Room};
 use crate::support::strip;
 use fem::core::plugin::{Dimension, Params, Value};
@@ -247,9 +247,6 @@ fn none() -> f64 {
         for command in ["check", "run"] {
             let done = case.fem(command, &[]);
             let named = ["scene.toml:", &line, "help:"].iter().all(|words| done.stderr.contains(words));
-            if done.status == 0 || !named {
-                eprintln!("{} {}", done.status, done.stderr);
-            }
             passed += u32::from(done.status == 0 || !named);
         }
     }
