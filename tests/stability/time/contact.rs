@@ -6,10 +6,9 @@ use crate::case::{Case, Room};
 use fem::core::contact::ContactLaw;
 use fem::dynamics::impact::{ImpactSystem, Impactor};
 use std::f64::consts::PI;
-use std::sync::LazyLock;
 
 pub(super) fn cases() -> Vec<Case> {
-    let sweep = "Newmark; Navier's plate of 25 modes, Hertz and Sun-Yang contact; K of a steel tip times 1e-4, 1, 1e4; \
+    let swept = "Newmark; Navier's plate of 25 modes, Hertz and Sun-Yang contact; K of a steel tip times 1e-4, 1, 1e4; \
                  impactor of 1e-4 to 1e6 of the plate's mass; 1 mm/s to 300 m/s; the step shortened where a run would stop";
     let case = |name, varied, measure, bound, worst| Case {
         room: Room::Time,
@@ -21,33 +20,33 @@ pub(super) fn cases() -> Vec<Case> {
         worst,
     };
     vec![
-        case("stiff and soft contact: energy", sweep, "energy error over that of the impact", TOLERANCE, || {
-            SWEEP.energy
+        case("stiff and soft contact: energy", swept, "energy error over that of the impact", TOLERANCE, || {
+            sweep().energy
         }),
         case(
             "stiff and soft contact: impulse",
-            sweep,
+            swept,
             "m (v0 - v1) against the integral of the force, over m v0",
             1e-10,
-            || SWEEP.impulse,
+            || sweep().impulse,
         ),
         case(
             "stiff and soft contact: rebound",
-            sweep,
+            swept,
             "speed of the impactor over that before, less 1, where positive",
             1e-3,
-            || SWEEP.rebound,
+            || sweep().rebound,
         ),
         case(
             "stiff and soft contact: sign",
-            sweep,
+            swept,
             "steps after which the contact force is not a number from 0 on",
             0.0,
-            || SWEEP.negative,
+            || sweep().negative,
         ),
         case(
             "contact inside one step",
-            "every integrator without a limit; a mass against a spring and against Navier's plate; steps of 0.3 to 1e4 \
+            "every integrator without a limit; a mass against a spring and against Navier's plate; steps of 0.3 to 1e3 \
              times the contact",
             "marches without an error whose energy error stays below 1e-2 while the speed after is off by more than 5 %",
             0.0,
@@ -55,9 +54,9 @@ pub(super) fn cases() -> Vec<Case> {
         ),
         case(
             "two impactors in one place",
-            "Newmark, rk4; halves of mass and stiffness; Navier's plate of 25 modes; K times 1e-4, 1, 1e4",
+            "Newmark, rk4; halves of mass and stiffness; Navier's plate of 25 modes; K times 1e-4, 1",
             "difference of the force from that of one impactor, over the largest",
-            1e-9,
+            1e-12,
             two_in_one_place,
         ),
         case(
@@ -81,7 +80,7 @@ pub(super) fn cases() -> Vec<Case> {
 /// Stiffness of a steel tip, N/m^1.5.
 const K: f64 = 8e8;
 
-/// The worst of a sweep.
+/// The worst of the sweep, which each row makes for itself: it takes some seconds.
 #[derive(Debug, Default)]
 struct Sweep {
     energy: f64,
@@ -90,7 +89,7 @@ struct Sweep {
     negative: f64,
 }
 
-static SWEEP: LazyLock<Sweep> = LazyLock::new(|| {
+fn sweep() -> Sweep {
     let plate = Navier::new(5, Units::SI);
     let mut worst = Sweep::default();
     for stiffer in [1e-4, 1.0, 1e4] {
@@ -103,7 +102,7 @@ static SWEEP: LazyLock<Sweep> = LazyLock::new(|| {
         }
     }
     worst
-});
+}
 
 impl Sweep {
     fn take(&mut self, plate: &Navier, mass: f64, velocity: f64, law: &dyn Fn() -> Box<dyn ContactLaw>) {
@@ -143,7 +142,7 @@ fn inside_one_step() -> f64 {
         let fine = march(integrator("newmark"), &mut system(), 2e-4 * contact, 20_000).unwrap();
         assert!(fine.imbalance() < 1e-4 && *fine.forces.last().unwrap() == 0.0, "{:e}", fine.imbalance());
         for (_, scheme) in integrators().into_iter().filter(|(_, scheme)| super::limit(&**scheme).is_none()) {
-            for times in [0.3, 0.7, 1.0, 1.5, 3.0, 10.0, 100.0, 1e4] {
+            for times in [0.3, 0.7, 1.0, 1.5, 3.0, 10.0, 100.0, 1e3] {
                 let dt = times * contact;
                 let Ok(seen) = march(scheme.clone(), &mut system(), dt, (4.0 / times) as usize + 4) else { continue };
                 let off = (speed(&seen) - speed(&fine)).abs();
@@ -173,7 +172,7 @@ fn off(a: impl IntoIterator<Item = f64>, b: &[f64]) -> f64 {
 fn two_in_one_place() -> f64 {
     let plate = Navier::new(5, Units::SI);
     let middle = [0.5, 0.5];
-    let errors = ["newmark", "rk4"].into_iter().flat_map(|name| [1e-4, 1.0, 1e4].map(|stiffer| (name, stiffer * K)));
+    let errors = ["newmark", "rk4"].into_iter().flat_map(|name| [1e-4, 1.0].map(|stiffer| (name, stiffer * K)));
     largest(errors.map(|(name, k)| {
         let [mut one, mut two] = [(1, 1.0), (2, 0.5)]
             .map(|(count, share)| several(&plate, share * MASS, &|| sun_yang(share * k, 2e-5), &vec![middle; count]));
