@@ -20,9 +20,13 @@ pub(super) fn cases() -> Vec<Case> {
         worst,
     };
     vec![
-        case("stiff and soft contact: energy", swept, "energy error over that of the impact", TOLERANCE, || {
-            sweep().energy
-        }),
+        case(
+            "stiff and soft contact: energy",
+            swept,
+            "energy error over that of the impact (and no force is negative)",
+            TOLERANCE,
+            || sweep().energy,
+        ),
         case(
             "stiff and soft contact: impulse",
             swept,
@@ -36,13 +40,6 @@ pub(super) fn cases() -> Vec<Case> {
             "speed of the impactor over that before, less 1, where positive",
             1e-3,
             || sweep().rebound,
-        ),
-        case(
-            "stiff and soft contact: sign",
-            swept,
-            "steps after which the contact force is not a number from 0 on",
-            0.0,
-            || sweep().negative,
         ),
         case(
             "contact inside one step",
@@ -86,7 +83,6 @@ struct Sweep {
     energy: f64,
     impulse: f64,
     rebound: f64,
-    negative: f64,
 }
 
 fn sweep() -> Sweep {
@@ -125,7 +121,7 @@ impl Sweep {
         self.energy = largest([self.energy, seen.imbalance()]);
         self.impulse = largest([self.impulse, ((velocity - after - impulse / mass) / velocity).abs()]);
         self.rebound = largest([self.rebound, (after.abs() / velocity - 1.0).max(0.0)]);
-        self.negative += seen.forces.iter().filter(|force| !(**force >= 0.0)).count() as f64;
+        assert!(seen.forces.iter().all(|force| *force >= 0.0));
     }
 }
 
