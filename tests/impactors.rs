@@ -127,7 +127,8 @@ fn results_say_whose_is_what() {
 
 #[test]
 fn an_indentation_that_no_contact_law_describes_is_warned_of() {
-    let soft = strip().scene("k = \"1.07e5 N/mm^1.5\"", "k = \"1 N/mm^1.5\"").scene("end = \"20 us\"", "end = \"0.5 ms\"");
+    let soft =
+        strip().scene("k = \"1.07e5 N/mm^1.5\"", "k = \"1 N/mm^1.5\"").scene("end = \"20 us\"", "end = \"0.5 ms\"");
     let done = soft.fem("run", &["--out", "out"]).good();
     let summary = soft.summary("out");
     let deepest = summary["impact"]["peak_indentation_m"].as_f64().unwrap();
