@@ -70,7 +70,7 @@ fn cells(line: &str) -> Vec<&str> {
 /// A bound or a worst value: what is rounding error by its decade, the rest with two digits.
 fn figure(value: f64) -> String {
     match value {
-        0.0 => "0".into(),
+        v if v.fract() == 0.0 && v < 1e6 => format!("{v}"),
         v if v < ROUNDING => format!("1e{}", v.log10().ceil()),
         v if (1e-2..1e4).contains(&v) => format!("{}", format!("{v:.1e}").parse::<f64>().unwrap()),
         v => format!("{v:.1e}"),
