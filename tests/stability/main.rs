@@ -4,7 +4,13 @@
 //! writes the table anew.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
 
+mod algebra;
 mod case;
+mod plates;
+#[path = "../validation/scene.rs"]
+#[allow(dead_code, reason = "the other test binary needs the rest")]
+mod scene;
+mod space;
 #[path = "../support.rs"]
 #[allow(dead_code, reason = "the other test binary needs the rest")]
 mod support;
@@ -17,7 +23,7 @@ use std::process::ExitCode;
 use std::sync::{Arc, Mutex};
 
 fn main() -> ExitCode {
-    let cases: Vec<Case> = [time::cases()].into_iter().flatten().collect();
+    let cases: Vec<Case> = [time::cases(), space::cases(), algebra::cases()].into_iter().flatten().collect();
     let all: Arc<Mutex<Vec<Measured>>> = Arc::default();
     let trial = |case: &Case| {
         let (case, all) = (*case, all.clone());

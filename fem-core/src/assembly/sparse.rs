@@ -1,6 +1,6 @@
 //! A plate's K and M as a [`Structure`].
 
-use super::{Cholesky, FactorError, Pattern, Symbolic, coarse};
+use super::{Cholesky, FactorError, Pattern, Symbolic, coarse, condition};
 use crate::prolongation::{Coarse, Prolongation};
 use crate::structure::{SolveError, Structure};
 use std::fmt;
@@ -77,6 +77,20 @@ impl SparseStructure {
     /// The pattern with the values of K and M.
     pub fn matrices(&self) -> (&Pattern, &[f64], &[f64]) {
         (&self.pattern, &self.k, &self.m)
+    }
+
+    /// Condition number of K with its unknowns in units that make its diagonal 1, estimated: displacements under loads at
+    /// rest lose up to log₁₀ of it of their 16 digits. Some five solves (Higham 1988).
+    ///
+    /// # Errors
+    /// A stiffness that is not positive definite.
+    pub fn condition(&mut self) -> Result<f64, SolveError> {
+        self.factorise(Factored::Shifted(0.0))?;
+        let (factor, solves) = (&mut self.factor, &mut self.solves);
+        Ok(condition::estimate(&self.pattern, &self.k, |x| {
+            factor.solve(x, 1);
+            *solves += 1;
+        }))
     }
 
     fn factorise(&mut self, what: Factored) -> Result<(), SolveError> {
