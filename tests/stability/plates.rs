@@ -51,6 +51,27 @@ pub(crate) fn jiggled(mut mesh: QuadMesh, share: f64) -> QuadMesh {
     mesh
 }
 
+/// Nodes and cells in another order, cells from another corner.
+pub(crate) fn shuffled(mesh: &QuadMesh, seed: usize) -> QuadMesh {
+    let order = |n: usize| -> Vec<usize> {
+        let mut all: Vec<usize> = (0..n).collect();
+        all.sort_by_key(|i| (i * 7919 + 13) * (104_729 + 2 * seed) % 1_000_003);
+        all
+    };
+    let (nodes, cells) = (order(mesh.points.len()), order(mesh.quads.len()));
+    let mut number = vec![0; nodes.len()];
+    (0..).zip(&nodes).for_each(|(new, old)| number[*old] = new);
+    let of = |n: &u32| number[*n as usize];
+    let mut other = mesh.clone();
+    other.points = nodes.iter().map(|old| mesh.points[*old]).collect();
+    other.quads = cells.iter().map(|old| std::array::from_fn(|k| of(&mesh.quads[*old][(k + seed) % 4]))).collect();
+    for group in other.groups.values_mut() {
+        group.nodes.iter_mut().for_each(|n| *n = of(n));
+        group.edges.iter_mut().for_each(|e| *e = [of(&e[0]), of(&e[1])]);
+    }
+    other
+}
+
 /// A group of single nodes.
 pub(crate) fn with_nodes(mut mesh: QuadMesh, name: &str, nodes: &[u32]) -> QuadMesh {
     mesh.groups.insert(name.to_owned(), Group { dim: 0, nodes: nodes.to_vec(), ..Group::default() });

@@ -223,7 +223,7 @@ fn anisotropic() -> f64 {
 
 fn nearly_incompressible() -> impl Iterator<Item = Strip> {
     let each = |nu| [4.0, 10.0, 100.0].map(|slenderness| (nu, slenderness));
-    let all = [0.0, 0.3, 0.4, 0.45, 0.49, 0.499, 0.4999].into_iter().flat_map(each);
+    let all = [0.0, 0.3, 0.4, 0.44, 0.49, 0.499, 0.4999].into_iter().flat_map(each);
     all.map(|(nu, slenderness)| Strip { plies: halves(Elastic::isotropic(2e5, nu)), slenderness, cells: 12 })
 }
 
