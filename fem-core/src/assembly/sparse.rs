@@ -133,6 +133,10 @@ impl Structure for SparseStructure {
         self.pattern.ndof()
     }
 
+    fn name(&self, i: usize) -> String {
+        (self.name)(i)
+    }
+
     fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {
         self.pattern.add_product(&self.k, scale, x, y);
     }
