@@ -208,7 +208,9 @@ impl FreeMotions {
             terms.extend(pair.map(|(a, b)| vec![(a, 1.0), (b, -1.0)]));
         }
         terms.extend(
-            far.into_iter().chain(side).flat_map(|at| (1..=3).filter_map(move |n| Some(vec![(unknown(at, n, 0)?, 1.0)]))),
+            far.into_iter()
+                .chain(side)
+                .flat_map(|at| (1..=3).filter_map(move |n| Some(vec![(unknown(at, n, 0)?, 1.0)]))),
         );
         for terms in terms {
             let equation = Equation { terms, value: 0.0, origin: "restraint of rigid motions".into(), holds: true };

@@ -10,11 +10,8 @@ use std::num::NonZeroUsize;
 use tempfile::TempDir;
 
 /// Solids for cells of any shape, as keys of a scene's `element`.
-pub(crate) const SOLIDS: [&str; 3] = [
-    "kind = 'hermite-prism'",
-    "kind = 'hermite-prism', z_derivatives = 'layer-wise'",
-    "kind = 'hex20'",
-];
+pub(crate) const SOLIDS: [&str; 3] =
+    ["kind = 'hermite-prism'", "kind = 'hermite-prism', z_derivatives = 'layer-wise'", "kind = 'hex20'"];
 /// A solid for parallelograms.
 pub(crate) const HEX: &str = "kind = 'hermite-hex', z_derivatives = 'layer-wise'";
 pub(crate) const SHELL: &str = "kind = 'mitc4'";

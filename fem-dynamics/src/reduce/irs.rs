@@ -1,7 +1,7 @@
 //! The improved reduced system.
 
 use super::governors::Governors;
-use super::{refused, solve};
+use super::{independent, refused, solve};
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
 use fem_core::reduction::{Functional, Reduction, ReductionError};
 use fem_core::structure::Structure;
@@ -33,8 +33,10 @@ impl Reduction for Irs {
         let (k, m) = shapes.condensed(structure);
         let mut basis = shapes.shapes();
         let n = structure.ndof();
-        let singular = || ReductionError("the mass condensed on the governors is singular: ask for fewer".into());
-        let accelerations = Cholesky::new(m).ok_or_else(singular)?.solve(&k);
+        let accelerations = match Cholesky::new(m.clone()).filter(|_| independent(&m).len() == m.nrows()) {
+            Some(mass) => mass.solve(&k),
+            None => return Err(shapes.dependent(&m).named(structure)),
+        };
         let moved = DMatrix::from_column_slice(n, k.nrows(), &basis) * accelerations;
         let mut correction = vec![0.0; basis.len()];
         structure.add_mass(1.0, moved.as_slice(), &mut correction);

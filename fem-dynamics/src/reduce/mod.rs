@@ -249,6 +249,12 @@ struct Dependent {
 }
 
 impl Dependent {
+    fn among(functionals: &[Functional], gram: &DMatrix<f64>) -> Self {
+        let kept = independent(gram);
+        let dependent = functionals.iter().enumerate().filter(|(i, _)| !kept.contains(i));
+        Self { functionals: dependent.map(|(_, w)| w.clone()).collect() }
+    }
+
     fn named(&self, structure: &dyn Structure) -> ReductionError {
         let name = |w: &Functional| match w.0[..] {
             [(i, _)] => structure.name(i),
@@ -288,15 +294,17 @@ impl StaticShapes {
         let n = x.len() / m.max(1);
         let s = DMatrix::from_fn(m, m, |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
         let s = (&s + s.transpose()) * 0.5;
-        let kept = independent(&s);
         // Where S is that near to singular, its inverse, K* and M* hold no digit.
-        match Cholesky::new(s).filter(|_| m > 0 && kept.len() == m) {
+        let factor = Cholesky::new(s.clone()).filter(|_| m > 0 && independent(&s).len() == m);
+        match factor {
             Some(factor) => Ok(Self { functionals, flexibility: x, factor }),
-            None => {
-                let dependent = (0..m).filter(|i| !kept.contains(i)).map(|i| functionals[i].clone());
-                Err(Dependent { functionals: dependent.collect() })
-            }
+            None => Err(Dependent::among(&functionals, &s)),
         }
+    }
+
+    /// Those of the functionals that `gram`, a matrix condensed on them, cannot tell from the ones before.
+    fn dependent(&self, gram: &DMatrix<f64>) -> Dependent {
+        Dependent::among(&self.functionals, gram)
     }
 
     /// The shapes for some of the functionals; the others are condensed.

@@ -33,7 +33,8 @@ pub(super) fn orient(
             return Err(source.error(source.find(Item::Element(cell.tag)), fault));
         }
         let corners = cell.nodes.map(|n| nodes.plane(n));
-        if let Some((node, degrees)) = cell.nodes.into_iter().zip(angles(corners)).find(|(_, angle)| *angle > BLUNTEST) {
+        if let Some((node, degrees)) = cell.nodes.into_iter().zip(angles(corners)).find(|(_, angle)| *angle > BLUNTEST)
+        {
             let fault = MeshFault::Blunt { cell: cell.tag, node: nodes.tag(node), degrees };
             return Err(source.error(source.find(Item::Element(cell.tag)), fault));
         }

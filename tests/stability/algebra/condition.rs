@@ -13,7 +13,15 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 pub(super) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| Case { room: Room::Algebra, name, varied, measure, bound, long: false, worst };
+    let case = |name, varied, measure, bound, worst| Case {
+        room: Room::Algebra,
+        name,
+        varied,
+        measure,
+        bound,
+        long: false,
+        worst,
+    };
     vec![
         case(
             "estimate of a condition number: Hilbert's matrices",
@@ -53,8 +61,9 @@ fn hilbert() -> f64 {
             let entry = |i: usize, j: usize| 1.0 / (i + j + 1) as f64;
             let starts = (0..=n).map(|j| (0..j).map(|j| n - j).sum()).collect();
             let pattern = Arc::new(Pattern::new(starts, (0..n).flat_map(|j| j..n).collect()));
-            let values: Vec<f64> =
-                (0..n).flat_map(|j| (j..n).map(move |i| entry(i, j) * scale(i) * scale(j)).collect::<Vec<_>>()).collect();
+            let values: Vec<f64> = (0..n)
+                .flat_map(|j| (j..n).map(move |i| entry(i, j) * scale(i) * scale(j)).collect::<Vec<_>>())
+                .collect();
             let m = vec![0.0; values.len()];
             let symbolic = Symbolic::new(pattern).unwrap();
             let mut structure = SparseStructure::new(symbolic, values, m, NonZeroUsize::MIN, |i| i.to_string());
@@ -116,7 +125,8 @@ fn digits() -> f64 {
                     .sides([Side::Free; 4])
                     .pressure("1");
                 for side in ["x-min", "x-max", "y-min", "y-max"] {
-                    let _ = writeln!(plate.more, "[[support]]\ngroup = '{side}'\nat = 'all'\nfix = ['U10', 'U20', 'U30']");
+                    let _ =
+                        writeln!(plate.more, "[[support]]\ngroup = '{side}'\nat = 'all'\nfix = ['U10', 'U20', 'U30']");
                 }
                 let mesh = jiggled(rectangle([20.0; 2], [8; 2]), 0.1);
                 let mesh = if order == 0 { mesh } else { shuffled(&mesh, order) };

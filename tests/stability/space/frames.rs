@@ -9,7 +9,15 @@ use std::fmt::Write as _;
 use std::num::NonZeroUsize;
 
 pub(super) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| Case { room: Room::Space, name, varied, measure, bound, long: false, worst };
+    let case = |name, varied, measure, bound, worst| Case {
+        room: Room::Space,
+        name,
+        varied,
+        measure,
+        bound,
+        long: false,
+        worst,
+    };
     const ALL: &str = "change of displacements, of stresses along the fibres of every ply and of a contact force";
     vec![
         case(
@@ -184,9 +192,8 @@ fn changed(frames: &[Frame]) -> f64 {
 
 /// Largest change in any of the frames, relative to the largest value of its kind.
 fn changed_of(elements: &[&str], frames: &[Frame]) -> f64 {
-    let far = |a: &[f64], b: &[f64]| {
-        worst(a.iter().zip(b).map(|(a, b)| (a - b).abs())) / worst(b.iter().map(|b| b.abs()))
-    };
+    let far =
+        |a: &[f64], b: &[f64]| worst(a.iter().zip(b).map(|(a, b)| (a - b).abs())) / worst(b.iter().map(|b| b.abs()));
     let mut all = Vec::new();
     for element in elements {
         let plain = Frame::default();

@@ -7,7 +7,15 @@ use fem::core::mesh::QuadMesh;
 use std::f64::consts::PI;
 
 pub(super) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| Case { room: Room::Space, name, varied, measure, bound, long: false, worst };
+    let case = |name, varied, measure, bound, worst| Case {
+        room: Room::Space,
+        name,
+        varied,
+        measure,
+        bound,
+        long: false,
+        worst,
+    };
     vec![
         case(
             "patch test on slender cells",
@@ -100,7 +108,8 @@ fn pinched(mesh: QuadMesh, degrees: f64) -> QuadMesh {
 fn stretched(mesh: &QuadMesh, elements: &[&str]) -> f64 {
     let of = |element: &&str| {
         let layers = if *element == SHELL { vec![2] } else { vec![1, 1] };
-        let pull = |n: f64, group: &str| format!("force_per_length = ['{n} N/mm', '0 N/mm', '0 N/mm']\ngroup = '{group}'");
+        let pull =
+            |n: f64, group: &str| format!("force_per_length = ['{n} N/mm', '0 N/mm', '0 N/mm']\ngroup = '{group}'");
         let plate = Plate::new(AS4, "[30_2]", 0.5, layers).element(element).sides([Side::Free; 4]);
         let plate = plate.load(&pull(10.0, "x-max")).load(&pull(-10.0, "x-min"));
         let meshed = on(middles(mesh).into_iter().fold(plate, probe), mesh);
@@ -132,7 +141,8 @@ fn bent(mesh: &QuadMesh, elements: &[&str]) -> f64 {
 }
 
 fn degenerate() -> f64 {
-    let one = |corner: [f64; 2]| moved(square(2), |p| if p == [0.5 * SIDE; 2] { corner.map(|x| x * 0.5 * SIDE) } else { p });
+    let one =
+        |corner: [f64; 2]| moved(square(2), |p| if p == [0.5 * SIDE; 2] { corner.map(|x| x * 0.5 * SIDE) } else { p });
     let angles = [176.0, 178.0, 179.0, 179.99, 180.0, 190.0, 225.0, 250.0];
     let mut meshes: Vec<QuadMesh> = angles.map(|degrees| pinched(square(2), degrees)).to_vec();
     // A cell without area, edges that cross.

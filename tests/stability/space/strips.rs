@@ -91,9 +91,16 @@ fn constants(e: &Elastic) -> String {
     )
 }
 
-
 pub(super) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| Case { room: Room::Space, name, varied, measure, bound, long: false, worst };
+    let case = |name, varied, measure, bound, worst| Case {
+        room: Room::Space,
+        name,
+        varied,
+        measure,
+        bound,
+        long: false,
+        worst,
+    };
     vec![
         case(
             "slender and stout strips of solids",
@@ -158,12 +165,14 @@ fn steel() -> Elastic {
 }
 
 fn slender_solids() -> f64 {
-    let strips = [2.0, 4.0, 10.0, 100.0, 1e3].map(|slenderness| Strip { plies: halves(steel()), slenderness, cells: 12 });
+    let strips =
+        [2.0, 4.0, 10.0, 100.0, 1e3].map(|slenderness| Strip { plies: halves(steel()), slenderness, cells: 12 });
     worst(strips.iter().flat_map(|strip| SOLID.map(|element| strip.errors(element)[0])))
 }
 
 fn slender_shells() -> f64 {
-    let strips = [10.0, 100.0, 1e3, 1e4, 1e5].map(|slenderness| Strip { plies: halves(steel()), slenderness, cells: 12 });
+    let strips =
+        [10.0, 100.0, 1e3, 1e4, 1e5].map(|slenderness| Strip { plies: halves(steel()), slenderness, cells: 12 });
     worst(strips.iter().map(|strip| strip.errors(SHELL)[0]))
 }
 
