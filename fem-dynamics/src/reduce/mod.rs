@@ -130,7 +130,7 @@ impl Reduced {
         if !k.iter().chain(mass.iter()).all(|v| v.is_finite()) {
             return Err(ReductionError("the reduced matrices are not finite".into()));
         }
-        let kept = independent(&k);
+        let kept = independent(&k, DEPENDENT);
         let m = kept.len();
         let all = m == t.ncols();
         let only = |a: DMatrix<f64>| if all { a } else { a.select_rows(&kept).select_columns(&kept) };
@@ -221,8 +221,8 @@ fn columns(structure: &dyn Structure, asked: usize, others: usize) -> Result<usi
     Ok(columns)
 }
 
-/// Columns that do not depend on those before them, of a basis with the Gram matrix `gram`.
-fn independent(gram: &DMatrix<f64>) -> Vec<usize> {
+/// Columns of which more than a share `least` is left beside those before them, of a basis with the Gram matrix `gram`.
+fn independent(gram: &DMatrix<f64>, least: f64) -> Vec<usize> {
     let mut kept: Vec<usize> = Vec::new();
     // Rows of the Cholesky factor of the columns kept.
     let mut rows: Vec<Vec<f64>> = Vec::new();
@@ -233,7 +233,7 @@ fn independent(gram: &DMatrix<f64>) -> Vec<usize> {
             row.push((gram[(*i, j)] - known) / other[row.len()]);
         }
         let left = gram[(j, j)] - row.iter().map(|x| x * x).sum::<f64>();
-        if left > DEPENDENT * gram[(j, j)] {
+        if left > least * gram[(j, j)] {
             row.push(left.sqrt());
             rows.push(row);
             kept.push(j);
@@ -249,8 +249,8 @@ struct Dependent {
 }
 
 impl Dependent {
-    fn among(functionals: &[Functional], gram: &DMatrix<f64>) -> Self {
-        let kept = independent(gram);
+    fn among(functionals: &[Functional], gram: &DMatrix<f64>, least: f64) -> Self {
+        let kept = independent(gram, least);
         let dependent = functionals.iter().enumerate().filter(|(i, _)| !kept.contains(i));
         Self { functionals: dependent.map(|(_, w)| w.clone()).collect() }
     }
@@ -269,6 +269,14 @@ impl Dependent {
             ),
         })
     }
+}
+
+/// Eᵀ X of functionals E, X = K⁻¹ E.
+fn flexibility(functionals: &[Functional], x: &[f64]) -> DMatrix<f64> {
+    let m = functionals.len();
+    let n = x.len() / m.max(1);
+    let s = DMatrix::from_fn(m, m, |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
+    (&s + s.transpose()) * 0.5
 }
 
 /// The static shapes for unit values of functionals: T = X S⁻¹ with X = K⁻¹ E and S = Eᵀ X.
@@ -290,21 +298,19 @@ impl StaticShapes {
     }
 
     fn of(functionals: Vec<Functional>, x: Vec<f64>) -> Result<Self, Dependent> {
-        let m = functionals.len();
-        let n = x.len() / m.max(1);
-        let s = DMatrix::from_fn(m, m, |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
-        let s = (&s + s.transpose()) * 0.5;
+        let s = flexibility(&functionals, &x);
         // Where S is that near to singular, its inverse, K* and M* hold no digit.
-        let factor = Cholesky::new(s.clone()).filter(|_| m > 0 && independent(&s).len() == m);
-        match factor {
+        let dependent = Dependent::among(&functionals, &s, DEPENDENT);
+        match Cholesky::new(s).filter(|_| !functionals.is_empty() && dependent.functionals.is_empty()) {
             Some(factor) => Ok(Self { functionals, flexibility: x, factor }),
-            None => Err(Dependent::among(&functionals, &s)),
+            None => Err(dependent),
         }
     }
 
-    /// Those of the functionals that `gram`, a matrix condensed on them, cannot tell from the ones before.
-    fn dependent(&self, gram: &DMatrix<f64>) -> Dependent {
-        Dependent::among(&self.functionals, gram)
+    /// Refuses functionals of which no more than a share `least` is left beside those before them.
+    fn tell_apart(&self, least: f64) -> Result<(), Dependent> {
+        let dependent = Dependent::among(&self.functionals, &flexibility(&self.functionals, &self.flexibility), least);
+        if dependent.functionals.is_empty() { Ok(()) } else { Err(dependent) }
     }
 
     /// The shapes for some of the functionals; the others are condensed.
