@@ -1,15 +1,11 @@
 //! The improved reduced system.
 
 use super::governors::Governors;
-use super::{refused, solve};
+use super::{DEPENDENT, refused, solve};
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
 use fem_core::reduction::{Functional, Reduction, ReductionError};
 use fem_core::structure::Structure;
 use nalgebra::{Cholesky, DMatrix};
-
-/// Share of its flexibility that each governor must have beside those before it. Rounding in M_r⁻¹ K_r grows with the inverse
-/// of its square: two governors 1e-8 of a plate apart make a lowest frequency 70 % wrong that `guyan` has right.
-const LEAST: f64 = 1e-7;
 
 /// Guyan's shapes T corrected by the static response to the inertia that they neglect:
 /// `T_irs = T + S M T M_r⁻¹ K_r`, with S the inverse stiffness while contacts and governors are held, K_r = TᵀKT,
@@ -34,8 +30,8 @@ impl Reduction for Irs {
         candidates: &[usize],
     ) -> Result<Vec<f64>, ReductionError> {
         let shapes = self.governors.condense(structure, keep, candidates)?;
-        shapes.tell_apart(LEAST).map_err(|dependent| dependent.named(structure))?;
         let (k, m) = shapes.condensed(structure);
+        shapes.tell_apart(&m, DEPENDENT).map_err(|dependent| dependent.named(structure))?;
         let mut basis = shapes.shapes();
         let n = structure.ndof();
         let singular = || ReductionError("the mass condensed on the governors is singular: ask for fewer".into());

@@ -271,14 +271,6 @@ impl Dependent {
     }
 }
 
-/// Eᵀ X of functionals E, X = K⁻¹ E.
-fn flexibility(functionals: &[Functional], x: &[f64]) -> DMatrix<f64> {
-    let m = functionals.len();
-    let n = x.len() / m.max(1);
-    let s = DMatrix::from_fn(m, m, |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
-    (&s + s.transpose()) * 0.5
-}
-
 /// The static shapes for unit values of functionals: T = X S⁻¹ with X = K⁻¹ E and S = Eᵀ X.
 ///
 /// For unit vectors E these are Guyan's (eq. 28); for a weighted mean they condense on the mean.
@@ -298,7 +290,10 @@ impl StaticShapes {
     }
 
     fn of(functionals: Vec<Functional>, x: Vec<f64>) -> Result<Self, Dependent> {
-        let s = flexibility(&functionals, &x);
+        let m = functionals.len();
+        let n = x.len() / m.max(1);
+        let s = DMatrix::from_fn(m, m, |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
+        let s = (&s + s.transpose()) * 0.5;
         // Where S is that near to singular, its inverse, K* and M* hold no digit.
         let dependent = Dependent::among(&functionals, &s, DEPENDENT);
         match Cholesky::new(s).filter(|_| !functionals.is_empty() && dependent.functionals.is_empty()) {
@@ -307,9 +302,10 @@ impl StaticShapes {
         }
     }
 
-    /// Refuses functionals of which no more than a share `least` is left beside those before them.
-    fn tell_apart(&self, least: f64) -> Result<(), Dependent> {
-        let dependent = Dependent::among(&self.functionals, &flexibility(&self.functionals, &self.flexibility), least);
+    /// Refuses functionals of which no more than a share `least` is left beside those before them in `gram`, a matrix condensed
+    /// on them.
+    fn tell_apart(&self, gram: &DMatrix<f64>, least: f64) -> Result<(), Dependent> {
+        let dependent = Dependent::among(&self.functionals, gram, least);
         if dependent.functionals.is_empty() { Ok(()) } else { Err(dependent) }
     }
 
