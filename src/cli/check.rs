@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::model::{Impact, Model, Plan};
 use crate::registry::Registry;
 use crate::run::{self, Sizes, Substructures};
+use crate::statics::{digits, few_digits};
 use crate::summary::in_words;
 use clap::Args;
 use fem_core::counters::Counters;
@@ -36,9 +37,15 @@ fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
         }
         plan => {
             let counters = &mut Counters::default();
-            let assembled = run::structure(&model, true, NonZeroUsize::MIN, counters).inspect_err(|_| warn(&model))?;
+            let assembled = run::structure(&model, true, NonZeroUsize::MIN, counters);
+            let mut assembled = assembled.inspect_err(|_| warn(&model))?;
             lines.extend(unknowns(&model, assembled.structure.entries(), assembled.factor_entries));
             lines.extend(divided(assembled.substructures()));
+            if model.held {
+                let condition = assembled.structure.condition().map_err(Error::from).inspect_err(|_| warn(&model))?;
+                lines.push(("stiffness", digits(condition)));
+                lines.extend(few_digits(condition).map(|warning| ("warning", warning)));
+            }
             lines.push(match plan {
                 Plan::Modes { count } => ("analysis", format!("the {count} lowest modes")),
                 _ => ("analysis", "static".to_owned()),

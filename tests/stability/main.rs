@@ -4,8 +4,14 @@
 //! writes the table anew.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
 
+mod algebra;
 mod case;
 mod guards;
+mod plates;
+#[path = "../validation/scene.rs"]
+#[allow(dead_code, reason = "the other test binary needs the rest")]
+mod scene;
+mod space;
 #[path = "../support.rs"]
 #[allow(dead_code, reason = "the other test binary needs the rest")]
 mod support;
@@ -18,7 +24,8 @@ use std::process::ExitCode;
 use std::sync::{Arc, Mutex};
 
 fn main() -> ExitCode {
-    let cases: Vec<Case> = [time::cases(), guards::cases()].into_iter().flatten().collect();
+    let rooms = [time::cases(), guards::cases(), space::cases(), algebra::cases()];
+    let cases: Vec<Case> = rooms.into_iter().flatten().collect();
     let all: Arc<Mutex<Vec<Measured>>> = Arc::default();
     let trial = |case: &Case| {
         let (case, all) = (*case, all.clone());

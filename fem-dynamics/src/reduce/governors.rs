@@ -71,7 +71,8 @@ impl Governors {
             return Ok(shapes);
         }
         let (k, m) = shapes.condensed(structure);
-        shapes.only(&eliminate(k, m, keep.len(), self.count))
+        let left = shapes.only(&eliminate(k, m, keep.len(), self.count));
+        left.map_err(|dependent| dependent.named(structure))
     }
 }
 

@@ -130,13 +130,13 @@ impl Reduced {
         if !k.iter().chain(mass.iter()).all(|v| v.is_finite()) {
             return Err(ReductionError("the reduced matrices are not finite".into()));
         }
-        let kept = independent(&k);
+        let kept = independent(&k, DEPENDENT);
         let m = kept.len();
         let all = m == t.ncols();
         let only = |a: DMatrix<f64>| if all { a } else { a.select_rows(&kept).select_columns(&kept) };
         let (k, mass, t) = (only(k), only(mass), if all { t } else { t.select_columns(&kept) });
-        let l = definite(k, "the reduced stiffness")?.unpack();
         let singular = || ReductionError("the reduced stiffness is singular".into());
+        let l = Cholesky::new(k).ok_or_else(singular)?.unpack();
         let half = l.solve_lower_triangular(&mass).ok_or_else(singular)?;
         let inner = l.solve_lower_triangular(&half.transpose()).ok_or_else(singular)?;
         // 1/ω² and the modes in the metric of K.
@@ -221,8 +221,8 @@ fn columns(structure: &dyn Structure, asked: usize, others: usize) -> Result<usi
     Ok(columns)
 }
 
-/// Columns that do not depend on those before them, of a basis with the Gram matrix `gram`.
-fn independent(gram: &DMatrix<f64>) -> Vec<usize> {
+/// Columns of which more than a share `least` is left beside those before them, of a basis with the Gram matrix `gram`.
+fn independent(gram: &DMatrix<f64>, least: f64) -> Vec<usize> {
     let mut kept: Vec<usize> = Vec::new();
     // Rows of the Cholesky factor of the columns kept.
     let mut rows: Vec<Vec<f64>> = Vec::new();
@@ -233,7 +233,7 @@ fn independent(gram: &DMatrix<f64>) -> Vec<usize> {
             row.push((gram[(*i, j)] - known) / other[row.len()]);
         }
         let left = gram[(j, j)] - row.iter().map(|x| x * x).sum::<f64>();
-        if left > DEPENDENT * gram[(j, j)] {
+        if left > least * gram[(j, j)] {
             row.push(left.sqrt());
             rows.push(row);
             kept.push(j);
@@ -242,10 +242,33 @@ fn independent(gram: &DMatrix<f64>) -> Vec<usize> {
     kept
 }
 
-fn definite(a: DMatrix<f64>, what: &str) -> Result<Cholesky<f64, Dyn>, ReductionError> {
-    Cholesky::new(a).ok_or_else(|| {
-        ReductionError(format!("{what} is not positive definite: some of the governors depend on each other"))
-    })
+/// Functionals whose values follow from those before them, to rounding; none where there is none at all.
+#[derive(Debug)]
+struct Dependent {
+    functionals: Vec<Functional>,
+}
+
+impl Dependent {
+    fn among(functionals: &[Functional], gram: &DMatrix<f64>, least: f64) -> Self {
+        let kept = independent(gram, least);
+        let dependent = functionals.iter().enumerate().filter(|(i, _)| !kept.contains(i));
+        Self { functionals: dependent.map(|(_, w)| w.clone()).collect() }
+    }
+
+    fn named(&self, structure: &dyn Structure) -> ReductionError {
+        let name = |w: &Functional| match w.0[..] {
+            [(i, _)] => structure.name(i),
+            _ => "the deflection under a contact".into(),
+        };
+        let names: Vec<String> = self.functionals.iter().map(name).collect();
+        ReductionError(match &names[..] {
+            [] => "there is neither a contact nor a governor to condense on".into(),
+            names => format!(
+                "some governors follow from those before them, whatever the load: {}; leave them out, or ask for fewer",
+                names.join(", ")
+            ),
+        })
+    }
 }
 
 /// The static shapes for unit values of functionals: T = X S⁻¹ with X = K⁻¹ E and S = Eᵀ X.
@@ -263,22 +286,31 @@ struct StaticShapes {
 impl StaticShapes {
     fn new(structure: &mut dyn Structure, functionals: Vec<Functional>) -> Result<Self, ReductionError> {
         let flexibility = static_responses(structure, &functionals)?;
-        Self::of(functionals, flexibility)
+        Self::of(functionals, flexibility).map_err(|dependent| dependent.named(structure))
     }
 
-    fn of(functionals: Vec<Functional>, x: Vec<f64>) -> Result<Self, ReductionError> {
+    fn of(functionals: Vec<Functional>, x: Vec<f64>) -> Result<Self, Dependent> {
         let m = functionals.len();
-        if m == 0 {
-            return Err(ReductionError("there is neither a contact nor a governor to condense on".into()));
-        }
-        let n = x.len() / m;
+        let n = x.len() / m.max(1);
         let s = DMatrix::from_fn(m, m, |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
-        let factor = definite((&s + s.transpose()) * 0.5, "the flexibility at the governors")?;
-        Ok(Self { functionals, flexibility: x, factor })
+        let s = (&s + s.transpose()) * 0.5;
+        // Where S is that near to singular, its inverse, K* and M* hold no digit.
+        let dependent = Dependent::among(&functionals, &s, DEPENDENT);
+        match Cholesky::new(s).filter(|_| !functionals.is_empty() && dependent.functionals.is_empty()) {
+            Some(factor) => Ok(Self { functionals, flexibility: x, factor }),
+            None => Err(dependent),
+        }
+    }
+
+    /// Refuses functionals of which no more than a share `least` is left beside those before them in `gram`, a matrix condensed
+    /// on them.
+    fn tell_apart(&self, gram: &DMatrix<f64>, least: f64) -> Result<(), Dependent> {
+        let dependent = Dependent::among(&self.functionals, gram, least);
+        if dependent.functionals.is_empty() { Ok(()) } else { Err(dependent) }
     }
 
     /// The shapes for some of the functionals; the others are condensed.
-    fn only(&self, chosen: &[usize]) -> Result<Self, ReductionError> {
+    fn only(&self, chosen: &[usize]) -> Result<Self, Dependent> {
         let n = self.flexibility.len() / self.functionals.len();
         let x = chosen.iter().flat_map(|i| &self.flexibility[i * n..(i + 1) * n]).copied().collect();
         Self::of(chosen.iter().map(|i| self.functionals[*i].clone()).collect(), x)
