@@ -56,6 +56,11 @@ pub(crate) struct Measured {
 }
 
 impl Case {
+    /// The same, run with `--ignored` only.
+    pub(crate) fn long(self) -> Self {
+        Self { long: true, ..self }
+    }
+
     /// Name as a test: `time::a_name_of_words`.
     pub(crate) fn title(&self) -> String {
         format!("{:?}::{}", self.room, self.name.replace(|c: char| !c.is_alphanumeric(), "_")).to_lowercase()

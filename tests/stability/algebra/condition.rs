@@ -43,7 +43,8 @@ pub(super) fn cases() -> Vec<Case> {
             "change of the deflection over what the condition number says may be lost",
             1.0,
             digits,
-        ),
+        )
+        .long(),
     ]
 }
 
@@ -68,7 +69,7 @@ fn hilbert() -> f64 {
             let symbolic = Symbolic::new(pattern).unwrap();
             let mut structure = SparseStructure::new(symbolic, values, m, NonZeroUsize::MIN, |i| i.to_string());
             let inverse = |i: usize, j: usize| {
-                let sign = if (i + j) % 2 == 0 { 1.0 } else { -1.0 };
+                let sign = if (i + j).is_multiple_of(2) { 1.0 } else { -1.0 };
                 sign * (i + j + 1) as f64
                     * choose(n + i, n - j - 1)
                     * choose(n + j, n - i - 1)

@@ -29,7 +29,8 @@ pub(super) fn cases() -> Vec<Case> {
             "change of the impulse that the unreduced plate with the same mass gives, where the scene is not refused, nor stopped, by name",
             5e-2,
             impacts,
-        ),
+        )
+        .long(),
         case(
             "singular mass in natural modes",
             "the linear mass of every element that has one, 1 to 12 modes",
