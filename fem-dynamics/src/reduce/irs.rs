@@ -1,7 +1,7 @@
 //! The improved reduced system.
 
 use super::governors::Governors;
-use super::{DEPENDENT, refused, solve};
+use super::{refused, solve};
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
 use fem_core::reduction::{Functional, Reduction, ReductionError};
 use fem_core::structure::Structure;
@@ -31,7 +31,7 @@ impl Reduction for Irs {
     ) -> Result<Vec<f64>, ReductionError> {
         let shapes = self.governors.condense(structure, keep, candidates)?;
         let (k, m) = shapes.condensed(structure);
-        shapes.tell_apart(&m, DEPENDENT).map_err(|dependent| dependent.named(structure))?;
+        shapes.tell_apart(&m).map_err(|dependent| dependent.named(structure))?;
         let mut basis = shapes.shapes();
         let n = structure.ndof();
         let singular = || ReductionError("the mass condensed on the governors is singular: ask for fewer".into());

@@ -130,7 +130,7 @@ impl Reduced {
         if !k.iter().chain(mass.iter()).all(|v| v.is_finite()) {
             return Err(ReductionError("the reduced matrices are not finite".into()));
         }
-        let kept = independent(&k, DEPENDENT);
+        let kept = independent(&k);
         let m = kept.len();
         let all = m == t.ncols();
         let only = |a: DMatrix<f64>| if all { a } else { a.select_rows(&kept).select_columns(&kept) };
@@ -221,8 +221,8 @@ fn columns(structure: &dyn Structure, asked: usize, others: usize) -> Result<usi
     Ok(columns)
 }
 
-/// Columns of which more than a share `least` is left beside those before them, of a basis with the Gram matrix `gram`.
-fn independent(gram: &DMatrix<f64>, least: f64) -> Vec<usize> {
+/// Columns that do not depend on those before them, of a basis with the Gram matrix `gram`.
+fn independent(gram: &DMatrix<f64>) -> Vec<usize> {
     let mut kept: Vec<usize> = Vec::new();
     // Rows of the Cholesky factor of the columns kept.
     let mut rows: Vec<Vec<f64>> = Vec::new();
@@ -233,7 +233,7 @@ fn independent(gram: &DMatrix<f64>, least: f64) -> Vec<usize> {
             row.push((gram[(*i, j)] - known) / other[row.len()]);
         }
         let left = gram[(j, j)] - row.iter().map(|x| x * x).sum::<f64>();
-        if left > least * gram[(j, j)] {
+        if left > DEPENDENT * gram[(j, j)] {
             row.push(left.sqrt());
             rows.push(row);
             kept.push(j);
@@ -249,8 +249,8 @@ struct Dependent {
 }
 
 impl Dependent {
-    fn among(functionals: &[Functional], gram: &DMatrix<f64>, least: f64) -> Self {
-        let kept = independent(gram, least);
+    fn among(functionals: &[Functional], gram: &DMatrix<f64>) -> Self {
+        let kept = independent(gram);
         let dependent = functionals.iter().enumerate().filter(|(i, _)| !kept.contains(i));
         Self { functionals: dependent.map(|(_, w)| w.clone()).collect() }
     }
@@ -269,6 +269,14 @@ impl Dependent {
             ),
         })
     }
+}
+
+/// S: values of functionals under the loads with the responses `x`.
+fn flexibility(functionals: &[Functional], x: &[f64]) -> DMatrix<f64> {
+    let m = functionals.len();
+    let n = x.len() / m.max(1);
+    let s = DMatrix::from_fn(m, m, |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
+    (&s + s.transpose()) * 0.5
 }
 
 /// The static shapes for unit values of functionals: T = X S⁻¹ with X = K⁻¹ E and S = Eᵀ X.
@@ -290,30 +298,42 @@ impl StaticShapes {
     }
 
     fn of(functionals: Vec<Functional>, x: Vec<f64>) -> Result<Self, Dependent> {
-        let m = functionals.len();
-        let n = x.len() / m.max(1);
-        let s = DMatrix::from_fn(m, m, |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
-        let s = (&s + s.transpose()) * 0.5;
+        let s = flexibility(&functionals, &x);
         // Where S is that near to singular, its inverse, K* and M* hold no digit.
-        let dependent = Dependent::among(&functionals, &s, DEPENDENT);
+        let dependent = Dependent::among(&functionals, &s);
         match Cholesky::new(s).filter(|_| !functionals.is_empty() && dependent.functionals.is_empty()) {
             Some(factor) => Ok(Self { functionals, flexibility: x, factor }),
             None => Err(dependent),
         }
     }
 
-    /// Refuses functionals of which no more than a share `least` is left beside those before them in `gram`, a matrix condensed
-    /// on them.
-    fn tell_apart(&self, gram: &DMatrix<f64>, least: f64) -> Result<(), Dependent> {
-        let dependent = Dependent::among(&self.functionals, gram, least);
+    /// The same for those that do not follow from the ones before them, at least `least` of them.
+    fn of_independent(
+        structure: &mut dyn Structure,
+        functionals: Vec<Functional>,
+        least: usize,
+    ) -> Result<Self, ReductionError> {
+        let x = static_responses(structure, &functionals)?;
+        let kept = independent(&flexibility(&functionals, &x));
+        let shapes = if kept.len() < least { Self::of(functionals, x) } else { Self::some(&functionals, &x, &kept) };
+        shapes.map_err(|dependent| dependent.named(structure))
+    }
+
+    fn some(functionals: &[Functional], x: &[f64], chosen: &[usize]) -> Result<Self, Dependent> {
+        let n = x.len() / functionals.len();
+        let x = chosen.iter().flat_map(|i| &x[i * n..(i + 1) * n]).copied().collect();
+        Self::of(chosen.iter().map(|i| functionals[*i].clone()).collect(), x)
+    }
+
+    /// Refuses functionals that follow from those before them in `gram`, a matrix condensed on them.
+    fn tell_apart(&self, gram: &DMatrix<f64>) -> Result<(), Dependent> {
+        let dependent = Dependent::among(&self.functionals, gram);
         if dependent.functionals.is_empty() { Ok(()) } else { Err(dependent) }
     }
 
     /// The shapes for some of the functionals; the others are condensed.
     fn only(&self, chosen: &[usize]) -> Result<Self, Dependent> {
-        let n = self.flexibility.len() / self.functionals.len();
-        let x = chosen.iter().flat_map(|i| &self.flexibility[i * n..(i + 1) * n]).copied().collect();
-        Self::of(chosen.iter().map(|i| self.functionals[*i].clone()).collect(), x)
+        Self::some(&self.functionals, &self.flexibility, chosen)
     }
 
     /// TᵀKT = S⁻¹ and TᵀMT.
