@@ -5,6 +5,11 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
 
 mod case;
+mod failure;
+mod input;
+#[path = "../registry.rs"]
+mod registry;
+mod resources;
 #[path = "../support.rs"]
 #[allow(dead_code, reason = "the other test binary needs the rest")]
 mod support;
@@ -17,7 +22,8 @@ use std::process::ExitCode;
 use std::sync::{Arc, Mutex};
 
 fn main() -> ExitCode {
-    let cases: Vec<Case> = [time::cases()].into_iter().flatten().collect();
+    let cases: Vec<Case> =
+        [time::cases(), failure::cases(), resources::cases(), input::cases()].into_iter().flatten().collect();
     let all: Arc<Mutex<Vec<Measured>>> = Arc::default();
     let trial = |case: &Case| {
         let (case, all) = (*case, all.clone());

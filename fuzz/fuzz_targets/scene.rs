@@ -1,0 +1,3 @@
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| fem_fuzz::limited(fem_fuzz::targets::scene, data));
