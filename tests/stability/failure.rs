@@ -127,7 +127,7 @@ fn ordinary() -> Vec<Stress6<Ply>> {
             scale * ((f64::from(k) * irrationals[i]).fract() - 0.5)
         };
         let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(component);
-        Stress6::new(if k % 2 == 0 { [a, b, 0.0, d, 0.0, 0.0] } else { [a, b, c, d, e, f] })
+        Stress6::new(if k.is_multiple_of(2) { [a, b, 0.0, d, 0.0, 0.0] } else { [a, b, c, d, e, f] })
     };
     (1..=12).map(stress).collect()
 }
@@ -185,7 +185,7 @@ fn ends_of_the_numbers() -> f64 {
             Stress6::new([0, 1, 2, 3, 4, 5].map(|i| {
                 let choice = (f64::from(k + 1) * f64::from([2, 3, 5, 7, 11, 13][i]).sqrt()).fract() * 12.0;
                 let end = ENDS[choice as usize / 2];
-                if choice as usize % 2 == 0 { end } else { -end }
+                if (choice as usize).is_multiple_of(2) { end } else { -end }
             }))
         })
     };

@@ -1,5 +1,4 @@
-//! Memory, disk, folders and signals that a run meets.
-#![cfg(target_os = "linux")]
+//! Memory, disk, folders and signals that a run meets, on Linux.
 
 use crate::case::{Case, Room};
 use crate::support::{self, Done, OFTEN, plate, strip, watched};
