@@ -12,7 +12,7 @@ use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 /// Vectors of a reduction that does not say how many.
 const VECTORS: usize = 60;
 
-// Measured on plates of 2000 to 47 000 unknowns; a row of `docs/stability.md` holds them against what runs take.
+// Measured on plates of 6000 to 47 000 unknowns; a row of `docs/stability.md` holds them against what runs take.
 /// The program and the smallest of models, bytes.
 const PROGRAM: f64 = 2e7;
 /// Mesh and constraints, bytes per unknown.

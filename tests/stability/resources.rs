@@ -17,7 +17,7 @@ pub(crate) fn cases() -> Vec<Case> {
     };
     let foreseen = case(
         "memory that is foreseen",
-        "plates of 2000, 12 000 and 47 000 unknowns, reduced and in full",
+        "plates of 6000, 12 000 and 47 000 unknowns, reduced and in full",
         "ratio of the estimate of `fem check` and the peak of `fem run`, the larger over the smaller",
         1.5,
         memory_foreseen,
@@ -26,7 +26,7 @@ pub(crate) fn cases() -> Vec<Case> {
         Case { long: true, ..foreseen },
         case(
             "memory that there is not",
-            "a plate of a million cells with 4 GB of addresses, one of 7000 with 0.3 GB; run, check, modes",
+            "a plate of a million cells with 4 GB of addresses, one of 4600 with 0.3 GB; run, check, modes",
             "commands that do not refuse with need, memory, parts and remedy",
             0.0,
             memory_that_there_is_not,
