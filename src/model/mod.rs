@@ -10,6 +10,7 @@ pub use gauge::Gauge;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 
 use crate::error::Error;
+use crate::memory;
 use crate::registry::Registry;
 use builder::Builder;
 use fem_core::assembly::Division;
@@ -116,6 +117,7 @@ impl Model {
         let mut plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
             .map_err(|why| builder.error(&scene.element.name, why, ""))?;
         builder.fold(&mut plate, &laminate, &materials, &criteria)?;
+        memory::check_plate(&plate)?;
         warnings.extend(polygon(&plate));
         warnings.extend(flat(&plate));
         warnings.extend(incompressible(&plate, &laminate, &materials));

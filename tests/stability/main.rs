@@ -6,8 +6,13 @@
 
 mod algebra;
 mod case;
+mod failure;
 mod guards;
+mod input;
 mod plates;
+#[path = "../registry.rs"]
+mod registry;
+mod resources;
 #[path = "../validation/scene.rs"]
 #[allow(dead_code, reason = "the other test binary needs the rest")]
 mod scene;
@@ -24,7 +29,15 @@ use std::process::ExitCode;
 use std::sync::{Arc, Mutex};
 
 fn main() -> ExitCode {
-    let rooms = [time::cases(), guards::cases(), space::cases(), algebra::cases()];
+    let rooms = [
+        time::cases(),
+        guards::cases(),
+        space::cases(),
+        algebra::cases(),
+        failure::cases(),
+        resources::cases(),
+        input::cases(),
+    ];
     let cases: Vec<Case> = rooms.into_iter().flatten().collect();
     let all: Arc<Mutex<Vec<Measured>>> = Arc::default();
     let trial = |case: &Case| {
