@@ -10,61 +10,57 @@ use fem::io::scene;
 use std::path::Path;
 
 pub(crate) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| {
-        let room = Room::Failure;
-        Case { room, name, varied, measure, bound, long: false, worst }
-    };
     vec![
-        case(
+        Room::Failure.case(
             "no stress",
             "every criterion and tape of the library; components 0 and -0 in all combinations",
             "largest index, infinite where the reserve is not",
             0.0,
             no_stress,
         ),
-        case(
+        Room::Failure.case(
             "signs of zero and ties",
             "every criterion; components 0, a and -a in all combinations, 0 against -0",
             "difference of the exposures (1 / reserve), relative",
             1e-12,
             signs_of_zero,
         ),
-        case(
+        Room::Failure.case(
             "stresses of any size",
             "every criterion; 12 stresses scaled by 1e-300 to 1e280",
             "reserve times scale against the reserve unscaled, relative",
             1e-9,
             any_size,
         ),
-        case(
+        Room::Failure.case(
             "index at the reserve",
             "every criterion but the LaRC, whose indices jump; the same stresses",
             "difference of the largest index from 1",
             1e-9,
             at_the_reserve,
         ),
-        case(
+        Room::Failure.case(
             "ends of the numbers",
             "every criterion; components 0, 5e-324, 1e-310, 1e-300, 1e300 and the largest number, of either sign",
             "stresses without a reserve, or with one that their indices contradict",
             0.0,
             ends_of_the_numbers,
         ),
-        case(
+        Room::Failure.case(
             "stresses that are no numbers",
             "every criterion; NaN and infinity in each component, beside zeros and beside stresses",
             "stresses that are judged or scanned, or whose NaN leaves all indices below 1",
             0.0,
             no_numbers,
         ),
-        case(
+        Room::Failure.case(
             "strengths that are none, of a library",
             "every criterion; each strength that it needs 0, negative, NaN, infinite",
             "materials that are not refused by the name of the strength",
             0.0,
             strengths_of_a_library,
         ),
-        case(
+        Room::Failure.case(
             "strengths that are none, of a scene",
             "each strength 0, negative, NaN, infinite, too large for a number",
             "scenes that are not refused by the name of the strength and its line",

@@ -13,8 +13,7 @@ mod targets;
 
 pub(crate) fn cases() -> Vec<Case> {
     let case = |name, varied, worst| {
-        let (room, measure) = (Room::Input, "inputs that panic or break a promise of the reader");
-        Case { room, name, varied, measure, bound: 0.0, long: false, worst }
+        Room::Input.case(name, varied, "inputs that panic or break a promise of the reader", 0.0, worst)
     };
     vec![
         case("corpus of the mesh reader", "13 inputs by hand, 200 found by fuzzing", || {
@@ -32,15 +31,13 @@ pub(crate) fn cases() -> Vec<Case> {
         case("corpus of the units", "11 inputs by hand, 200 found by fuzzing", || {
             replayed("units", [11, 200], targets::units)
         }),
-        Case {
-            room: Room::Input,
-            name: "nesting without end",
-            varied: "100 000 brackets: lists and tables of a scene, layups, formulas, units",
-            measure: "texts that are not refused",
-            bound: 0.0,
-            long: false,
-            worst: nested,
-        },
+        Room::Input.case(
+            "nesting without end",
+            "100 000 brackets: lists and tables of a scene, layups, formulas, units",
+            "texts that are not refused",
+            0.0,
+            nested,
+        ),
     ]
 }
 

@@ -11,11 +11,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
 pub(crate) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| {
-        let room = Room::Resources;
-        Case { room, name, varied, measure, bound, long: false, worst }
-    };
-    let foreseen = case(
+    let foreseen = Room::Resources.case(
         "memory that is foreseen",
         "plates of 6000, 12 000 and 47 000 unknowns, reduced and in full",
         "ratio of the estimate of `fem check` and the peak of `fem run`, the larger over the smaller",
@@ -23,50 +19,50 @@ pub(crate) fn cases() -> Vec<Case> {
         memory_foreseen,
     );
     vec![
-        Case { long: true, ..foreseen },
-        case(
+        foreseen.long(),
+        Room::Resources.case(
             "memory that there is not",
             "a plate of a million cells with 4 GB of addresses, one of 4600 with 0.3 GB; run, check, modes",
             "commands that do not refuse with need, memory, parts and remedy",
             0.0,
             memory_that_there_is_not,
         ),
-        case(
+        Room::Resources.case(
             "full disk",
             "files cut at 0 to 32 kB, over the results of an earlier run; run, modes, matrices",
             "commands that do not say so, files neither as before nor whole, files left over",
             0.0,
             full_disk,
         ),
-        case(
+        Room::Resources.case(
             "folders that take no results",
             "a file, a folder below one, a folder of the kernel, a folder in use; run, modes, matrices",
             "commands that do not refuse by the name of the folder with a remedy",
             0.0,
             folders,
         ),
-        case(
+        Room::Resources.case(
             "signals",
             "Ctrl-C, SIGTERM, SIGHUP in a march; Ctrl-C twice; SIGHUP under nohup",
             "runs without their exit status, checkpoint and word on how to go on",
             0.0,
             signals,
         ),
-        case(
+        Room::Resources.case(
             "kill -9",
             "20 kills, half of them 0 to 40 ms after the start, half as long after a checkpoint; each run resumed",
             "files that differ from those of a run in one piece",
             0.0,
             kills,
         ),
-        case(
+        Room::Resources.case(
             "damaged checkpoint",
             "cut at 12 lengths, one bit flipped in 12 bytes",
             "damage that is not refused",
             0.0,
             damaged,
         ),
-        case(
+        Room::Resources.case(
             "standard output that takes nothing",
             "a closed pipe, no output at all, a full disk; list, check, run, envelope, --help",
             "commands that panic or end otherwise than 0 with a closed pipe, than 1 with a full disk",
@@ -226,15 +222,15 @@ fn kill(signal: &str, run: &Child) {
     assert!(Command::new("kill").args([signal, &run.id().to_string()]).status().unwrap().success());
 }
 
-/// A march that lasts.
-fn lasting() -> support::Case {
-    watched().scene("end = \"20 us\"", "end = \"2 ms\"").append(OFTEN)
+/// A march of so many milliseconds, 10 000 steps each.
+fn lasting(end: u32) -> support::Case {
+    watched().scene("end = \"20 us\"", &format!("end = \"{end} ms\"")).append(OFTEN)
 }
 
 fn signals() -> f64 {
     let mut wrong = Wrong::default();
     for (signal, status) in [("-INT", 130), ("-TERM", 143), ("-HUP", 129)] {
-        let case = lasting();
+        let case = lasting(1000);
         let mut run = case.spawn(&["--out", "out"]);
         assert!(case.new_checkpoint(&mut run, &None), "the march lasts");
         kill(signal, &run);
@@ -244,7 +240,7 @@ fn signals() -> f64 {
         wrong.unless(case.names("out") == [".lock", "checkpoint.bin"], || format!("{:?}", case.names("out")));
     }
     // Twice: at once, whatever the first one has begun.
-    let case = lasting();
+    let case = lasting(1000);
     let mut run = case.spawn(&["--out", "out"]);
     assert!(case.new_checkpoint(&mut run, &None), "the march lasts");
     kill("-INT", &run);
@@ -270,7 +266,7 @@ fn signals() -> f64 {
 }
 
 fn kills() -> f64 {
-    let case = lasting();
+    let case = lasting(10);
     let mut random = 1_u64;
     for k in 0..20 {
         let before = fs::read(case.folder().join("out/checkpoint.bin")).ok();

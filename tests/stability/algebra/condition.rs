@@ -13,38 +13,30 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 pub(super) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| Case {
-        room: Room::Algebra,
-        name,
-        varied,
-        measure,
-        bound,
-        long: false,
-        worst,
-    };
     vec![
-        case(
+        Room::Algebra.case(
             "estimate of a condition number: Hilbert's matrices",
             "orders 2 to 9, conditions to 1e12, whose inverses are known, in units of 1 to 1e9",
             "factor between the estimate and the number, either way",
             3.0,
             hilbert,
         ),
-        case(
+        Room::Algebra.case(
             "estimate of a condition number: plates",
             "4 cells of every element, held along a side, 0.01 to 10 mm thick",
             "factor between the estimate and the number by a dense inverse, either way",
             3.0,
             plates,
         ),
-        case(
-            "digits that rounding costs",
-            "a clamped plate, 2 to 5000 times as wide as thick, in three orders of its nodes; every element",
-            "change of the deflection over what the condition number says may be lost",
-            1.0,
-            digits,
-        )
-        .long(),
+        Room::Algebra
+            .case(
+                "digits that rounding costs",
+                "a clamped plate, 2 to 5000 times as wide as thick, in three orders of its nodes; every element",
+                "change of the deflection over what the condition number says may be lost",
+                1.0,
+                digits,
+            )
+            .long(),
     ]
 }
 

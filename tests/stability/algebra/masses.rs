@@ -13,17 +13,8 @@ use std::fmt::Write as _;
 use std::num::NonZeroUsize;
 
 pub(super) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| Case {
-        room: Room::Algebra,
-        name,
-        varied,
-        measure,
-        bound,
-        long: false,
-        worst,
-    };
     vec![
-        case(
+        Room::Algebra.case(
             "singular mass in impacts",
             "the linear mass; every reduction and integrator of the registry",
             "change of the impulse that the unreduced plate with the same mass gives, where the scene is not refused, nor stopped, by name",
@@ -31,14 +22,14 @@ pub(super) fn cases() -> Vec<Case> {
             impacts,
         )
         .long(),
-        case(
+        Room::Algebra.case(
             "singular mass in natural modes",
             "the linear mass of every element that has one, 1 to 12 modes",
             "change of the lowest frequency, with the regular mass",
             5e-2,
             natural_modes,
         ),
-        case(
+        Room::Algebra.case(
             "governors that depend on each other",
             "one twice, and two 1e-3 to 1e-7 of the plate apart; guyan and irs, by distance and by ratio",
             "choices that neither give the lowest frequency to 5 % nor are refused by the name of a governor",

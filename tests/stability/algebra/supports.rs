@@ -9,38 +9,29 @@ use fem::{Error, statics};
 use std::fmt::Write as _;
 
 pub(super) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| Case {
-        room: Room::Algebra,
-        name,
-        varied,
-        measure,
-        bound,
-        long: false,
-        worst,
-    };
     vec![
-        case(
+        Room::Algebra.case(
             "motions left free",
             "all 63 combinations of the six rigid motions; elements with and without derivatives, and the shell",
             "combinations that are not refused by the names of all their motions",
             0.0,
             free_motions,
         ),
-        case(
+        Room::Algebra.case(
             "supports that all but leave a motion free",
             "two of three supported nodes 1e-3 to 1e-10 of the plate apart; elements with and without derivatives, and the shell",
             "plates that are neither refused by name, nor warned of, nor right to 0.1 %",
             0.0,
             near_hinges,
         ),
-        case(
+        Room::Algebra.case(
             "chains of equations",
             "100 ties with ratios from 0.01 to 100, forward, backward and without order",
             "error of a factor between two unknowns",
             1e-12,
             chains,
         ),
-        case(
+        Room::Algebra.case(
             "equations that repeat, contradict or run in a circle",
             "2 to 100 of them",
             "sets that are not solved, or refused by the names of their equations, as they should be",

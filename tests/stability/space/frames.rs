@@ -9,60 +9,51 @@ use std::fmt::Write as _;
 use std::num::NonZeroUsize;
 
 pub(super) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| Case {
-        room: Room::Space,
-        name,
-        varied,
-        measure,
-        bound,
-        long: false,
-        worst,
-    };
     const ALL: &str = "change of displacements, of stresses along the fibres of every ply and of a contact force";
     vec![
-        case(
+        Room::Space.case(
             "plate far from the origin",
             "moved by 1 to 1e6 of its sizes; every element for cells of any shape",
             ALL,
             1e-6,
             || changed(&[1.0, 1e3, 1e6].map(|by| Frame { shift: by * SIZE[0], ..Frame::default() })),
         ),
-        case(
+        Room::Space.case(
             "solids turned with their fibres",
             "by 0.001 to 180 degrees; every solid for cells of any shape",
             ALL,
             1e-9,
             || changed_of(&SOLIDS, &turned()),
         ),
-        case(
+        Room::Space.case(
             "shell turned with its fibres",
             "by 0.001 to 180 degrees; its shear stiffness belongs to bending about the axes",
             ALL,
             2e-2,
             || changed_of(&[SHELL], &turned()),
         ),
-        case(
+        Room::Space.case(
             "round patch on a turned plate",
             "by 0.001 to 180 degrees; a solid",
             "change of the mean deflection under the pressure of a contact",
             1e-4,
             round_patch,
         ),
-        case(
+        Room::Space.case(
             "unit of length",
             "a plate of 1e-6 to 1e6 times the size; every element for cells of any shape",
             "change of displacements over the size and of stresses along the fibres of every ply",
             1e-9,
             || changed(&[1e-6, 1e-3, 1e3, 1e6].map(|scale| Frame { scale, ..Frame::default() })),
         ),
-        case(
+        Room::Space.case(
             "unit of force",
             "moduli and loads of 1e-9 to 1e9 times the size; every element for cells of any shape",
             "change of displacements and of stresses along the fibres of every ply over that",
             1e-9,
             || changed(&[1e-9, 1e-3, 1e3, 1e9].map(|force| Frame { force, ..Frame::default() })),
         ),
-        case(
+        Room::Space.case(
             "order of nodes and cells",
             "three orders of nodes, of cells and of their corners; every element for cells of any shape",
             ALL,

@@ -7,59 +7,50 @@ use fem::core::mesh::QuadMesh;
 use std::f64::consts::PI;
 
 pub(super) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| Case {
-        room: Room::Space,
-        name,
-        varied,
-        measure,
-        bound,
-        long: false,
-        worst,
-    };
     vec![
-        case(
+        Room::Space.case(
             "patch test on slender cells",
             "sides of cells to 1:1000, beside square ones; every element of plates",
             "error of a uniform stress, oblique to the fibres, in the middle of every cell",
             1e-5,
             || stretched(&slender(), &[SOLIDS[0], SOLIDS[1], SOLIDS[2], HEX, SHELL]),
         ),
-        case(
+        Room::Space.case(
             "patch test on shaken meshes",
             "inner nodes moved by up to 0.1 to 0.4 of the distance to the next; every element for such cells",
             "error of a uniform stress, oblique to the fibres, in the middle of every cell",
             1e-9,
             || worst([0.1, 0.2, 0.3, 0.4].map(|share| stretched(&jiggled(square(8), share), &GENERAL))),
         ),
-        case(
+        Room::Space.case(
             "patch test on nearly degenerate cells",
             "largest inner angle of every fourth cell from 90 to 174.9 degrees; every element for such cells",
             "error of a uniform stress, oblique to the fibres, in the middle of every cell",
             1e-9,
             || worst(ANGLES.map(|degrees| stretched(&pinched(square(8), degrees), &GENERAL))),
         ),
-        case(
+        Room::Space.case(
             "bending on slender cells",
             "sides of cells to 1:1000, beside square ones; every element of plates",
             "change of the deflection of a laminate that square cells give",
             1e-2,
             || bent(&slender(), &[SOLIDS[0], SOLIDS[1], SOLIDS[2], HEX, SHELL]),
         ),
-        case(
+        Room::Space.case(
             "bending on shaken meshes",
             "inner nodes moved by up to 0.1 to 0.4 of the distance to the next; every element for such cells",
             "change of the deflection of a laminate that square cells give",
             2e-2,
             || worst([0.1, 0.2, 0.3, 0.4].map(|share| bent(&jiggled(square(8), share), &GENERAL))),
         ),
-        case(
+        Room::Space.case(
             "bending on nearly degenerate cells",
             "largest inner angle of every fourth cell from 90 to 174.9 degrees; every element for such cells",
             "change of the deflection of a laminate that square cells give",
             5e-2,
             || worst(ANGLES.map(|degrees| bent(&pinched(square(8), degrees), &GENERAL))),
         ),
-        case(
+        Room::Space.case(
             "degenerate cells",
             "an inner angle from 176 to 270 degrees, nodes in one place or on one line, edges that cross",
             "meshes that are not refused with the number of the cell, or of the nodes in one place",

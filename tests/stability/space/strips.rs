@@ -92,59 +92,50 @@ fn constants(e: &Elastic) -> String {
 }
 
 pub(super) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| Case {
-        room: Room::Space,
-        name,
-        varied,
-        measure,
-        bound,
-        long: false,
-        worst,
-    };
     vec![
-        case(
+        Room::Space.case(
             "slender and stout strips of solids",
             "span over height from 2 to 1000; every solid and the section, 12 cells",
             "error of the deflection, against exact elasticity",
             1e-2,
             slender_solids,
         ),
-        case(
+        Room::Space.case(
             "slender strips of shells",
             "span over height from 10 to 1e5; 12 cells",
             "error of the deflection, against exact elasticity",
             1e-2,
             slender_shells,
         ),
-        case(
+        Room::Space.case(
             "strips too slender for solids",
             "span over height from 1e3 to 1e5, 4 to 24 cells; every solid and the section",
             "deflections more than 1 % off without a refusal or a warning",
             0.0,
             too_slender,
         ),
-        case(
+        Room::Space.case(
             "thin plies beside thick ones, stiff beside soft",
             "thickness 1 to 1:1000, modulus 1 to 1:1e4 of faces and core, span over height 4 to 100; every solid and the section",
             "error of the deflection and of the stress along the strip, against exact elasticity",
             2e-2,
             sandwich,
         ),
-        case(
+        Room::Space.case(
             "anisotropic plies",
             "E1/E3 from 1 to 200, cross-ply of three, span over height 4 to 100; every solid and the section, 2 layers a ply",
             "error of the deflection, against exact elasticity",
             2e-2,
             anisotropic,
         ),
-        case(
+        Room::Space.case(
             "nearly incompressible: deflection",
             "Poisson's ratio from 0 to 0.4999, span over height 4 to 100; every element",
             "error of the deflection, against exact elasticity",
             2e-2,
             incompressible_deflection,
         ),
-        case(
+        Room::Space.case(
             "nearly incompressible: stress",
             "the same, solids and the section",
             "error of the stress along the strip at the faces where no warning is given, against exact elasticity",

@@ -10,38 +10,29 @@ use std::f64::consts::PI;
 pub(super) fn cases() -> Vec<Case> {
     let swept = "Newmark; Navier's plate of 25 modes, Hertz and Sun-Yang contact; K of a steel tip times 1e-4, 1, 1e4; \
                  impactor of 1e-4 to 1e6 of the plate's mass; 1 mm/s to 300 m/s; the step shortened where a run would stop";
-    let case = |name, varied, measure, bound, worst| Case {
-        room: Room::Time,
-        name,
-        varied,
-        measure,
-        bound,
-        long: false,
-        worst,
-    };
     vec![
-        case(
+        Room::Time.case(
             "stiff and soft contact: energy",
             swept,
             "energy error over that of the impact (and no force is negative)",
             TOLERANCE,
             || sweep().energy,
         ),
-        case(
+        Room::Time.case(
             "stiff and soft contact: impulse",
             swept,
             "m (v0 - v1) against the integral of the force, over m v0",
             1e-10,
             || sweep().impulse,
         ),
-        case(
+        Room::Time.case(
             "stiff and soft contact: rebound",
             swept,
             "speed of the impactor over that before, less 1, where positive",
             1e-3,
             || sweep().rebound,
         ),
-        case(
+        Room::Time.case(
             "contact inside one step",
             "every integrator without a limit; a mass against a spring and against Navier's plate; steps of 0.3 to 1e3 \
              times the contact",
@@ -49,14 +40,14 @@ pub(super) fn cases() -> Vec<Case> {
             0.0,
             inside_one_step,
         ),
-        case(
+        Room::Time.case(
             "two impactors in one place",
             "Newmark, rk4; halves of mass and stiffness; Navier's plate of 25 modes; K times 1e-4, 1",
             "difference of the force from that of one impactor, over the largest",
             1e-12,
             two_in_one_place,
         ),
-        case(
+        Room::Time.case(
             "two impactors, mirrored",
             "Newmark, rk4; Navier's plate of 25 modes, 1/100 to 1e4 of its mass; K times 1e-4, 1 (at 1e4 they chatter, and \
              rounding grows to all of the force)",
@@ -64,7 +55,7 @@ pub(super) fn cases() -> Vec<Case> {
             1e-12,
             mirrored,
         ),
-        case(
+        Room::Time.case(
             "two impactors near each other",
             "Newmark; apart by 0, 1e-12, 1e-6, 1e-3 and 1e-1 of the edge; 1/100 to 1e4 of the plate's mass; K times 1, 1e4",
             "energy error over that of the impact",

@@ -12,27 +12,15 @@ use std::f64::consts::PI;
 use std::fs;
 
 pub(super) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| Case {
-        room: Room::Time,
-        name,
-        varied,
-        measure,
-        bound,
-        long: false,
-        worst,
-    };
     vec![
-        Case {
-            long: true,
-            ..case(
+        Room::Time.case(
                 "a second at microsecond steps",
                 "Newmark; Navier's plate of 25 modes under 1/100, 1 and 300 of its mass, which fly away after the contact",
                 "drift of the energy after 1e5 of 1e6 steps, over that of the impact",
                 1e-10,
                 drift,
-            )
-        },
-        case(
+            ).long(),
+        Room::Time.case(
             "high modes on a spring that stays pressed",
             "Newmark, HHT, generalized-alpha; spring 0.01 to 100 times as stiff as the mode, omega dt = 0.5 to 73, 1e5 steps \
              (exact modes with a contact force that is linear within the step blow up from omega dt = 3.1 to 0.35 on)",
@@ -40,7 +28,7 @@ pub(super) fn cases() -> Vec<Case> {
             1e-9,
             pressed,
         ),
-        case(
+        Room::Time.case(
             "one mode bouncing on a spring",
             "Newmark, HHT, generalized-alpha; spring 0.01 to 100 times as stiff as the mode; 40 steps from 0.01 to 0.1 of \
              1/omega with the spring; 200 radians of the mode",
@@ -48,7 +36,7 @@ pub(super) fn cases() -> Vec<Case> {
             1e-3,
             bouncing,
         ),
-        case(
+        Room::Time.case(
             "units",
             "Newmark, HHT, generalized-alpha, rk4, central-difference, dormand-prince; units of mass 1e-9, 1e3, of length \
              1e-6, 1e3, of time 1e-6, 1e3 of SI; Hertz and Sun-Yang contact",
@@ -56,7 +44,7 @@ pub(super) fn cases() -> Vec<Case> {
             1e-9,
             units,
         ),
-        case(
+        Room::Time.case(
             "impacts that are none",
             "`fem check` and `fem run` of a clamped strip; mass, velocity, start, step and end that are zero, negative, not \
              finite, denormal or out of the march",
@@ -64,7 +52,7 @@ pub(super) fn cases() -> Vec<Case> {
             0.0,
             none,
         ),
-        case(
+        Room::Time.case(
             "the same run",
             "`fem run` of a clamped strip with 1, 2, 4 threads, and once more",
             "files but cost.json that are not the same in every byte",

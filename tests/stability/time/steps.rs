@@ -12,17 +12,8 @@ use fem::dynamics::limit::longest_step;
 const GROWING: [&str; 2] = ["rk1", "rk2"];
 
 pub(super) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| Case {
-        room: Room::Time,
-        name,
-        varied,
-        measure,
-        bound,
-        long: false,
-        worst,
-    };
     vec![
-        case(
+        Room::Time.case(
             "just below the limit",
             "every integrator with a limit but rk1 and rk2, also newmark of beta = 1/6 and 0.1; one oscillator, 1e6 steps \
              of 0.999 of the limit",
@@ -30,28 +21,28 @@ pub(super) fn cases() -> Vec<Case> {
             1e-9,
             below_the_limit,
         ),
-        case(
+        Room::Time.case(
             "without a limit",
             "every integrator without; one oscillator, omega dt = 3, 100, 1e4; 2e5 steps, where these are divided, 6e4 radians",
             "largest energy of the second half of the march over that of the first, less 1",
             1e-9,
             without_a_limit,
         ),
-        case(
+        Room::Time.case(
             "schemes that grow at every step",
             "rk1, rk2; one oscillator, 1e4 steps of 0.999 of the limit",
             "amplitude at the end over that at the beginning, less 1 (over 1e6 steps it is e)",
             1.01e-2,
             growth_as_stated,
         ),
-        case(
+        Room::Time.case(
             "schemes that grow grow as they should",
             "rk1, rk2; one oscillator, 1e6 steps of 0.999 of the limit, against Taylor's series of exp(i omega dt)",
             "error of the logarithm of the amplitude, relative",
             1e-6,
             growth_of_theory,
         ),
-        case(
+        Room::Time.case(
             "plate and contact just below the limit",
             "every integrator with a limit but rk1 and rk2; Navier's plate of 25 modes under 1/100 and 10 of its mass, \
              elastic and dissipating contact; 4e4 steps of 0.999 of the longest",
@@ -59,14 +50,14 @@ pub(super) fn cases() -> Vec<Case> {
             1e-3,
             plate_below_the_limit,
         ),
-        case(
+        Room::Time.case(
             "beyond the limit, by command",
             "`fem check` and `fem run` of a clamped strip; every integrator with a limit; 1.0001, 1.5 and 1000 of it",
             "commands that do not refuse with line, frequency and limit, or that leave results",
             0.0,
             refused,
         ),
-        case(
+        Room::Time.case(
             "beyond the limit, unchecked",
             "every integrator with a limit but rk1 and rk2; Navier's plate of 25 modes under its own mass; 1.2 to 1000 of \
              the longest step of the plate alone by linear theory",
