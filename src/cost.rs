@@ -110,8 +110,13 @@ pub fn forget_peak_memory() {
 
 /// Largest memory that the process has held, bytes; `None` where the system does not tell.
 pub fn peak_memory() -> Option<u64> {
+    status("VmHWM")
+}
+
+/// A size that Linux tells of the process, bytes.
+pub(crate) fn status(key: &str) -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    let line = status.lines().find_map(|l| l.strip_prefix(key)?.strip_prefix(':'))?;
     let kib: u64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
     Some(kib * 1024)
 }

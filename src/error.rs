@@ -32,6 +32,19 @@ pub enum Error {
     Solve(#[from] fem_core::structure::SolveError),
     #[error("the matrices cannot be analysed")]
     Factor(#[from] fem_core::assembly::FactorError),
+    #[error("this takes about {needed} of memory, and {available} are free: {parts}")]
+    #[diagnostic(help(
+        "take fewer cells (a coarser mesh, a smaller `mesh.refine`), fewer `laminate.layers`, a `symmetry` of the plate, \
+         `substructures`, or a machine with more memory"
+    ))]
+    Memory {
+        /// What it takes.
+        needed: String,
+        /// What there is.
+        available: String,
+        /// What takes it.
+        parts: String,
+    },
     #[error("the march failed")]
     #[diagnostic(help("{}", if matches!(.0, StepError::Factorisation(_)) { MATRIX } else { STEP }))]
     Step(#[from] StepError),

@@ -22,6 +22,7 @@ pub mod cost;
 mod error;
 mod indices;
 pub mod matrices;
+pub mod memory;
 mod modal;
 mod model;
 pub mod modes;

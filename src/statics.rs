@@ -25,6 +25,9 @@ const MOST_RESIDUAL: f64 = 1e-2;
 /// Residual beyond which it is worth a warning.
 const NOTABLE_RESIDUAL: f64 = 1e-4;
 
+/// Condition of the stiffness beyond which its digits are worth a warning: six of 16 are left.
+const NOTABLE_CONDITION: f64 = 1e10;
+
 /// What a static analysis found.
 #[derive(Debug, Clone)]
 pub struct Solution {
@@ -40,6 +43,8 @@ pub struct Solution {
     pub strain_energy: f64,
     /// ‖f − K u‖ / ‖f‖ of the independent unknowns.
     pub residual: f64,
+    /// Condition number of K, estimated ([`condition`](fem_core::assembly::SparseStructure::condition)).
+    pub condition: f64,
     /// Error of the mesh in the energy norm, relative, where [`mesh_error`] can say.
     pub mesh_error: Option<f64>,
     /// Sum of the loads along x, y, z, N.
@@ -94,6 +99,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     if !(residual <= MOST_RESIDUAL) {
         return Err(Error::IllConditioned { residual });
     }
+    let condition = assembled.structure.condition()?;
     let mut u = vec![0.0; model.plate.ndof()];
     constraints.expand(&independent, &mut u);
     (counters.factorisations, counters.solves) = assembled.structure.work();
@@ -112,6 +118,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
         factor_entries: assembled.factor_entries,
         strain_energy,
         residual,
+        condition,
         mesh_error,
         resultant,
         margins,
@@ -124,6 +131,24 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
 fn notable(residual: f64) -> Option<String> {
     (residual > NOTABLE_RESIDUAL).then(|| {
         format!("the stiffness is ill-conditioned: the loads are met to {residual:.1e} of their size, displacements hardly better")
+    })
+}
+
+/// What the condition of the stiffness costs, in words.
+pub(crate) fn digits(condition: f64) -> String {
+    let lost = condition.log10().clamp(0.0, 16.0);
+    format!("condition {condition:.1e}: rounding costs up to {lost:.0} of 16 digits")
+}
+
+/// A warning of a condition that leaves few digits.
+pub(crate) fn few_digits(condition: f64) -> Option<String> {
+    let enough = condition <= NOTABLE_CONDITION;
+    (!enough).then(|| {
+        format!(
+            "the stiffness has the {}: supports that all but leave a motion free, cells much wider than thick and moduli far \
+             apart do that",
+            digits(condition)
+        )
     })
 }
 
@@ -154,6 +179,7 @@ pub struct Summary {
     pub largest_deflection: Deflection,
     pub margins: Vec<Margin>,
     pub residual_relative: f64,
+    pub condition_estimate: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh_error_relative: Option<f64>,
     pub elements: u64,
@@ -189,10 +215,17 @@ impl Summary {
             largest_deflection: Deflection { w_m, x_m, y_m, z_m },
             margins: solution.margins.clone(),
             residual_relative: solution.residual,
+            condition_estimate: solution.condition,
             mesh_error_relative: solution.mesh_error,
             elements: solution.counters.elements,
             elements_reused: solution.counters.elements_reused,
-            warnings: model.warnings.iter().cloned().chain(notable(solution.residual)).collect(),
+            warnings: model
+                .warnings
+                .iter()
+                .cloned()
+                .chain(notable(solution.residual))
+                .chain(few_digits(solution.condition))
+                .collect(),
         }
     }
 
@@ -228,7 +261,8 @@ impl Summary {
         let mesh = self.mesh_error_relative.map_or(String::new(), |error| {
             format!("; mesh about {:.2} % in the energy norm (strains against a smooth fit of them)", 100.0 * error)
         });
-        let _ = writeln!(t, "  accuracy  residual {:.1e} of the loads{mesh}", self.residual_relative);
+        let (residual, condition) = (self.residual_relative, digits(self.condition_estimate));
+        let _ = writeln!(t, "  accuracy  residual {residual:.1e} of the loads; {condition}{mesh}");
         let _ = writeln!(t, "  work      {} element matrices, {} reused", self.elements, self.elements_reused);
         let _ = writeln!(t, "  time      {cost}");
         self.warnings.iter().for_each(|w| t.push_str(&format!("  warning   {w}\n")));

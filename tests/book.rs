@@ -1,34 +1,15 @@
 //! The book says what the program does.
 
+use crate::registry::criteria;
 use crate::snapshots::element;
 use crate::support::{Case, root, strip};
 use fem::Registry;
 use fem::core::dof::Dof;
-use fem::core::failure::{FailureCriterion, Site};
-use fem::core::plugin::{Built, Kind, Params, PluginInfo, Value};
+use fem::core::failure::Site;
+use fem::core::plugin::{Built, Kind, Params, PluginInfo};
 use fem::core::time::StepLimit;
 use std::fmt::Write;
 use std::fs;
-
-/// Parameters of a criterion that cannot be built without.
-fn parameters(name: &str) -> Params {
-    let required: &[(&str, Value)] = match name {
-        "max-strain" => &["e1t", "e1c", "e2t", "e2c", "g12", "g23"].map(|key| (key, Value::Number(0.01))),
-        "expression" => &[("expression", Value::Text("s1/E1".into()))],
-        _ => &[],
-    };
-    required.iter().fold(Params::default(), |params, (key, value)| params.with(key, value.clone()))
-}
-
-/// All criteria of the registry, built.
-pub(crate) fn criteria() -> Vec<(PluginInfo, Box<dyn FailureCriterion>)> {
-    let registry = Registry::standard();
-    let build = |info: &PluginInfo| match registry.build(Kind::Criterion, info.name, &parameters(info.name)) {
-        Ok(Built::Criterion(criterion)) => (*info, criterion),
-        other => panic!("{}: {other:?}", info.name),
-    };
-    registry.list(Kind::Criterion).map(build).collect()
-}
 
 /// The head of what the tests write.
 const WRITTEN: &str = "<!-- Written by `UPDATE_BOOK=1 cargo test --test all book`. -->\n\n";

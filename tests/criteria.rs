@@ -1,25 +1,11 @@
 //! One table, the registry, and everything that shows or tries the criteria.
 
-use crate::book::criteria;
+use crate::registry::{criteria, tapes};
 use crate::support::{fem, root, strip};
 use fem::Registry;
 use fem::core::failure::check_material;
-use fem::core::material::{Material, Strength};
 use fem::core::plugin::Kind;
 use fem::core::testkit::check_criterion;
-
-/// Tapes of the library with what interfaces need; S23 far from Yc/2 in all but one of them.
-fn materials() -> Vec<Material> {
-    let tapes = fem::io::materials::names().filter_map(fem::io::materials::library).map(|m| m.material.clone());
-    tapes
-        .filter(|m| m.strengths.get(Strength::Yt).is_some())
-        .map(|m| {
-            let (s, yt, yc, s12) = (m.strengths, m.strengths.yt(), m.strengths.yc(), m.strengths.s12());
-            let strengths = s.with(Strength::Zt, yt).with(Strength::Zc, yc).with(Strength::S13, s12);
-            Material { strengths, ..m }
-        })
-        .collect()
-}
 
 #[test]
 fn every_criterion_is_listed_described_offered_and_tried() {
@@ -40,8 +26,7 @@ fn every_criterion_is_listed_described_offered_and_tried() {
         assert!(listed.lines().any(|line| line.starts_with(&format!("{name} "))), "{name} is not listed");
         assert!(book.lines().any(|line| line == format!("## {name}")), "{name} is not in the book");
         assert!(costs.lines().any(|line| line.starts_with(&format!("| `{name}` |"))), "{name} has no cost in the book");
-        let suitable: Vec<_> =
-            materials().into_iter().filter(|m| check_material(&**criterion, name, m).is_ok()).collect();
+        let suitable: Vec<_> = tapes().into_iter().filter(|m| check_material(&**criterion, name, m).is_ok()).collect();
         assert!(suitable.len() >= 4, "{name} suits {} materials", suitable.len());
         for m in suitable {
             check_criterion(&**criterion, &m).unwrap_or_else(|why| panic!("{name} on {}: {why}", m.name));

@@ -11,6 +11,7 @@ mod impactors;
 mod indices;
 mod modal;
 mod model;
+mod registry;
 mod report;
 mod restart;
 mod snapshots;

@@ -1,67 +1,20 @@
 //! A march that is stopped and resumed finds what it finds in one piece.
 
-use crate::support::{Case, Done, fem, strip};
+use crate::support::{Case, Done, OFTEN, fem, strip, watched};
 use fem::io::{checkpoint, files::OutputDir, scene};
 use fem::run::{self, Checkpoint, March, Outcome, Prepared};
 use fem::{Model, Registry};
 use std::fs;
 use std::num::NonZeroUsize;
-use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
-
-/// Everything that a run can write.
-const ALL: &str = "[output]\nmaps = true\nmodes = 3\nhistory_every = \"1 us\"\n";
-
-/// A checkpoint after every step, which makes a march last.
-const OFTEN: &str = "checkpoint_every = \"1 ns\"\n";
-
-/// A strip that is watched at a gauge, with all results.
-fn watched() -> Case {
-    let criteria = "criteria = [\"hashin-report\", \"octahedral\"]";
-    let watch = "watch = [{ at = { x = \"15 mm\", y = \"5 mm\" }, ply = 1 }]\nevery = \"1.5 us\"";
-    strip().scene(criteria, &format!("{criteria}\n{watch}")).append(ALL)
-}
+use std::process::Command;
+use std::time::Duration;
 
 /// Compares all files of two folders of results but what the machine has to say, `cost.json`.
 #[track_caller]
 fn same(case: &Case, a: &str, b: &str) {
     let names = case.names(a);
     assert!(names.len() >= 6 && names.contains(&"checkpoint.bin".to_owned()), "{names:?}");
-    assert_eq!(names, case.names(b), "nothing is left behind");
-    for name in names.iter().filter(|name| *name != "cost.json") {
-        let [one, other] = [a, b].map(|folder| fs::read(case.folder().join(folder).join(name)).unwrap());
-        assert!(one == other, "{name} differs");
-    }
-}
-
-fn spawn(case: &Case, arguments: &[&str]) -> Child {
-    let scene = case.write();
-    Command::new(env!("CARGO_BIN_EXE_fem"))
-        .args([&["run", scene], arguments].concat())
-        .current_dir(case.folder())
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap()
-}
-
-/// Waits until the checkpoint of `out` is another one than `before`; `false` if the run ends first.
-fn new_checkpoint(case: &Case, run: &mut Child, before: &Option<Vec<u8>>) -> bool {
-    let path = case.folder().join("out/checkpoint.bin");
-    let started = Instant::now();
-    while started.elapsed() < Duration::from_secs(120) {
-        if run.try_wait().unwrap().is_some() {
-            return false;
-        }
-        if let Ok(now) = fs::read(&path)
-            && Some(&now) != before.as_ref()
-        {
-            return true;
-        }
-        std::thread::sleep(Duration::from_micros(300));
-    }
-    panic!("no checkpoint within two minutes");
+    assert_eq!(case.differing(a, b), [""; 0]);
 }
 
 #[test]
@@ -70,8 +23,8 @@ fn killed_at_any_moment_and_resumed() {
     let mut arguments = vec!["--out", "out"];
     let (mut kills, mut before) = (0, None);
     for delay in 0..6 {
-        let mut run = spawn(&case, &arguments);
-        if !new_checkpoint(&case, &mut run, &before) {
+        let mut run = case.spawn(&arguments);
+        if !case.new_checkpoint(&mut run, &before) {
             break;
         }
         // Somewhere in a step, in a write, between two renames.
@@ -102,8 +55,8 @@ fn signals_stop_a_march_after_a_checkpoint() {
     let mut arguments = vec!["--out", "out"];
     let mut before = None;
     for (signal, status) in [("-TERM", 143), ("-INT", 130)] {
-        let mut run = spawn(&case, &arguments);
-        assert!(new_checkpoint(&case, &mut run, &before), "the march lasts");
+        let mut run = case.spawn(&arguments);
+        assert!(case.new_checkpoint(&mut run, &before), "the march lasts");
         let killed = Command::new("kill").args([signal, &run.id().to_string()]).status().unwrap();
         assert!(killed.success());
         let done = run.wait_with_output().unwrap();

@@ -3,7 +3,8 @@
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// A scene and its mesh in `plate/` of a folder of their own, which is the working folder of the command.
@@ -80,6 +81,47 @@ impl Case {
         fem(self.folder(), &[&[command, scene], options].concat())
     }
 
+    /// Starts `fem run plate/scene.toml OPTIONS` and does not wait for it.
+    pub(crate) fn spawn(&self, options: &[&str]) -> Child {
+        let scene = self.write();
+        Command::new(env!("CARGO_BIN_EXE_fem"))
+            .args([&["run", scene], options].concat())
+            .current_dir(self.folder())
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap()
+    }
+
+    /// Waits until the checkpoint in `out` is another one than `before`; `false` if the run ends first.
+    pub(crate) fn new_checkpoint(&self, run: &mut Child, before: &Option<Vec<u8>>) -> bool {
+        let path = self.folder().join("out/checkpoint.bin");
+        let started = Instant::now();
+        while started.elapsed() < Duration::from_secs(120) {
+            if run.try_wait().unwrap().is_some() {
+                return false;
+            }
+            if let Ok(now) = fs::read(&path)
+                && Some(&now) != before.as_ref()
+            {
+                return true;
+            }
+            std::thread::sleep(Duration::from_micros(300));
+        }
+        panic!("no checkpoint within two minutes");
+    }
+
+    /// Files that two folders of results do not have in common, but for what the machine has to say, `cost.json`.
+    pub(crate) fn differing(&self, a: &str, b: &str) -> Vec<String> {
+        let read = |folder: &str, name: &str| fs::read(self.folder().join(folder).join(name)).ok();
+        let mut names = [self.names(a), self.names(b)].concat();
+        names.sort();
+        names.dedup();
+        names.retain(|name| if name == "cost.json" { false } else { read(a, name) != read(b, name) });
+        names
+    }
+
     /// Names in a folder below the working folder, sorted; none where it does not exist.
     pub(crate) fn names(&self, folder: &str) -> Vec<String> {
         let Ok(entries) = fs::read_dir(self.folder().join(folder)) else { return Vec::new() };
@@ -128,6 +170,17 @@ pub(crate) fn strip() -> Case {
         .scene("fix = [\"U30\"]", "fix = [\"U10\", \"U20\", \"U30\"]")
         .scene("at = { group = \"impact\" }", "at = { x = \"15 mm\", y = \"5 mm\" }")
         .scene("end = \"1 ms\"", "end = \"20 us\"")
+}
+
+/// A checkpoint after every step, which makes a march last.
+pub(crate) const OFTEN: &str = "checkpoint_every = \"1 ns\"\n";
+
+/// A strip that is watched at a gauge, with everything that a run can write.
+pub(crate) fn watched() -> Case {
+    let criteria = "criteria = [\"hashin-report\", \"octahedral\"]";
+    let watch = "watch = [{ at = { x = \"15 mm\", y = \"5 mm\" }, ply = 1 }]\nevery = \"1.5 us\"";
+    let output = "[output]\nmaps = true\nmodes = 3\nhistory_every = \"1 us\"\n";
+    strip().scene(criteria, &format!("{criteria}\n{watch}")).append(output)
 }
 
 /// What a command left.

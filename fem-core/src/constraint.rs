@@ -78,6 +78,9 @@ impl fmt::Display for ConstraintError {
 }
 impl std::error::Error for ConstraintError {}
 
+/// Factors below this fraction of what they are beside are rounding errors.
+const NOTHING: f64 = 1e-12;
+
 /// All unknowns in terms of the independent ones: u = C ũ + g.
 ///
 /// Independent unknowns keep the order that [`Constraints::eliminate`] was given.
@@ -122,8 +125,11 @@ impl Constraints {
             for (dof, c) in &equation.terms {
                 *row.terms.entry(*dof).or_insert(0.0) += c;
             }
-            let used = substitute(&mut row, &rows, &row_of);
-            row.terms.retain(|_, c| c.abs() > 1e-12 * scale);
+            row.terms.retain(|_, c| c.abs() > NOTHING * scale);
+            let (used, sizes) = substitute(&mut row, &rows, &row_of);
+            // What is left of a sum is nothing beside its parts, not beside other terms: along a chain of ties factors may
+            // differ by any power.
+            row.terms.retain(|dof, c| c.abs() > NOTHING * sizes.get(dof).copied().unwrap_or(0.0));
             let origins = || -> Vec<String> {
                 let named: BTreeSet<_> = used.iter().map(|r| &equations[rows[*r].equation].origin).collect();
                 named.into_iter().cloned().collect()
@@ -276,9 +282,11 @@ impl Constraints {
     }
 }
 
-/// Replaces bound unknowns of `row` until none is left; returns the rows used.
-fn substitute(row: &mut Row, rows: &[Row], row_of: &[u32]) -> BTreeSet<usize> {
+/// Replaces bound unknowns of `row` until none is left; returns the rows used, and of each unknown the largest factor that
+/// went into its sum.
+fn substitute(row: &mut Row, rows: &[Row], row_of: &[u32]) -> (BTreeSet<usize>, BTreeMap<usize, f64>) {
     let mut used = BTreeSet::new();
+    let mut sizes: BTreeMap<usize, f64> = row.terms.iter().map(|(dof, c)| (*dof, c.abs())).collect();
     let mut open: Vec<usize> = row.terms.keys().copied().collect();
     while let Some(dof) = open.pop() {
         let Some(other) = rows.get(row_of[dof] as usize) else { continue };
@@ -287,10 +295,12 @@ fn substitute(row: &mut Row, rows: &[Row], row_of: &[u32]) -> BTreeSet<usize> {
         row.value -= factor * other.value;
         for (d, c) in &other.terms {
             *row.terms.entry(*d).or_insert(0.0) += factor * c;
+            let size = sizes.entry(*d).or_insert(0.0);
+            *size = size.max((factor * c).abs());
             open.push(*d);
         }
     }
-    used
+    (used, sizes)
 }
 
 #[cfg(test)]
@@ -319,6 +329,19 @@ mod tests {
         for e in &equations {
             let sum: f64 = e.terms.iter().map(|(d, f)| f * u[*d]).sum();
             assert!((sum - e.value).abs() < 1e-13, "{}: {sum}", e.origin);
+        }
+    }
+
+    #[test]
+    fn factors_of_a_chain_multiply_in_any_order() {
+        let (n, ratio) = (100, 2.0_f64);
+        let forward: Vec<_> = (0..n).map(|i| equation(&[(i + 1, 1.0), (i, -ratio)], 0.0)).collect();
+        let backward = forward.iter().rev().cloned().collect();
+        for equations in [forward, backward] {
+            let c = solve(n + 1, &equations).unwrap();
+            let mut u = vec![0.0; n + 1];
+            c.expand(&[1.0], &mut u);
+            assert!((u[0] / u[n] * ratio.powi(n as i32) - 1.0).abs() < 1e-12, "{u:?}");
         }
     }
 

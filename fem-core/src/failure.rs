@@ -112,8 +112,9 @@ dyn_clone::clone_trait_object!(FailureCriterion);
 /// Whether `criterion`, called `name`, can judge a ply or an interface of material `m`.
 ///
 /// # Errors
-/// A required strength is missing, or [`FailureCriterion::check`] refuses the material.
+/// Constants that no solid has, a required strength that is missing, a material that [`FailureCriterion::check`] refuses.
 pub fn check_material(criterion: &dyn FailureCriterion, name: &str, m: &Material) -> Result<(), MaterialError> {
+    m.check()?;
     let user = format!("criterion `{name}`");
     m.require(criterion.info().strengths, &user)?;
     criterion
@@ -227,7 +228,13 @@ pub fn search_reserve(
     let mut found = worst(failed);
     while found.0 < 1.0 {
         if failed > 1e3 * strongest / largest {
-            return Reserve::UNBOUNDED;
+            // Far beyond all strengths; the stress itself may lie farther still, and must not pass then.
+            let own = worst(k);
+            if !(k > failed && own.0 >= 1.0) {
+                return Reserve::UNBOUNDED;
+            }
+            (safe, failed, found) = (failed, k, own);
+            break;
         }
         safe = failed;
         // As if no index grew faster than R⁴.

@@ -19,6 +19,10 @@ const FUNCTIONS: [(&str, Function); 8] = [
     ("pos", positive_part),
 ];
 
+/// Longest formula, bytes, and deepest brackets: more is a slip, and would take long to compile.
+const MAX_LENGTH: usize = 4096;
+const MAX_DEPTH: usize = 64;
+
 /// Operators with their priority: the higher, the tighter they bind.
 const OPERATORS: [(&str, i64, Binary); 9] = [
     ("<", 0, |a, b| truth(a, b, a < b)),
@@ -29,12 +33,21 @@ const OPERATORS: [(&str, i64, Binary); 9] = [
     ("-", 1, |a, b| a - b),
     ("*", 2, |a, b| a * b),
     ("/", 2, |a, b| a / b),
-    ("^", 3, |a, b| if b == 2.0 { a * a } else { a.powf(b) }),
+    ("^", 3, power),
 ];
 
 /// The argument where it is positive, else 0; NaN stays NaN.
 fn positive_part(x: f64) -> f64 {
     if x < 0.0 { 0.0 } else { x }
+}
+
+/// a to the power of b; NaN where one of the two is none, also for b = 0 and a = 1.
+fn power(a: f64, b: f64) -> f64 {
+    match b {
+        2.0 => a * a,
+        _ if a.is_nan() || b.is_nan() => f64::NAN,
+        _ => a.powf(b),
+    }
 }
 
 /// 1 or 0; NaN where one of the two is none.
@@ -104,6 +117,9 @@ struct Level {
 ///
 /// Refuses what is no formula or could be read in two ways.
 fn checked(text: &str, name: &dyn Fn(&str) -> Result<(), String>) -> Result<String, String> {
+    if text.len() > MAX_LENGTH {
+        return Err(format!("it has more than {MAX_LENGTH} characters"));
+    }
     let mut out = String::new();
     let mut levels = vec![Level::default()];
     // A value must come next, else an operator or a closing bracket.
@@ -123,6 +139,9 @@ fn checked(text: &str, name: &dyn Fn(&str) -> Result<(), String>) -> Result<Stri
             value_next = false;
             let function = FUNCTIONS.iter().any(|f| f.0 == token);
             if first == '(' {
+                if levels.len() > MAX_DEPTH {
+                    return Err(format!("brackets nest at most {MAX_DEPTH} deep"));
+                }
                 levels.push(Level::default());
                 (value_next, opened) = (true, true);
             } else if function {

@@ -215,8 +215,11 @@ impl Params {
 /// "is not known", the nearest match if there is one, and the list.
 pub fn unknown_key<'a>(key: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<_> = known.collect();
-    let nearest =
-        known.iter().map(|k| (edit_distance(key, k), *k)).min().filter(|(d, k)| *d <= 1 + k.len().max(key.len()) / 3);
+    let length = key.chars().count();
+    let most = |k: &str| 1 + k.len().max(key.len()) / 3;
+    // Words of very different length differ by as much, however long they are.
+    let comparable = known.iter().filter(|k| k.chars().count().abs_diff(length) <= most(k));
+    let nearest = comparable.map(|k| (edit_distance(key, k), *k)).min().filter(|(d, k)| *d <= most(k));
     let hint = nearest.map_or(String::new(), |(_, k)| format!("; did you mean `{k}`?"));
     if known.is_empty() {
         "is not known: nothing can be set here".to_owned()
@@ -361,5 +364,11 @@ mod tests {
         let known = [ParamInfo { name: "kk", doc: "" }, ParamInfo { name: "n", doc: "" }];
         assert!(p.only(&known).unwrap_err().why.contains("did you mean `kk`"));
         assert_eq!(Dimension::contact_stiffness(1.5).to_string(), "m^-0.5 kg s^-2");
+    }
+
+    #[test]
+    fn a_word_of_any_length_is_compared_in_no_time() {
+        let said = unknown_key(&"k".repeat(1 << 24), ["k", "kk"].into_iter());
+        assert_eq!(said, "is not known (known: k, kk)");
     }
 }

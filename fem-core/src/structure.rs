@@ -19,6 +19,11 @@ pub trait Structure: fmt::Debug + Send {
     /// Number of unknowns.
     fn ndof(&self) -> usize;
 
+    /// What unknown `i` is called in messages.
+    fn name(&self, i: usize) -> String {
+        format!("unknown {}", i + 1)
+    }
+
     /// `Y ← Y + scale · K X`, X and Y of `ndof × columns`, column-major.
     fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]);
 

@@ -176,24 +176,31 @@ impl FreeMotions {
 
     /// Statically determinate equations that stop these motions and nothing else: the translations and the antisymmetric
     /// part of the derivatives of the node nearest to the centre, or, where the element lacks those derivatives, the
-    /// translations of the node farthest from it. Under loads that balance the stopped motions they carry no force.
+    /// translations of the node farthest from it and of the one farthest from the line through both. Under loads that
+    /// balance the stopped motions they carry no force.
     ///
     /// # Errors
-    /// An element whose unknowns do not stop them at these two nodes.
+    /// An element whose unknowns do not stop them at these three nodes.
     pub fn restrain(&self, plate: &Plate) -> Result<Vec<Equation>, String> {
         let distance = |c: &usize| (0..2).map(|d| (plate.columns[*c][d] - self.centre[d]).powi(2)).sum::<f64>();
         let column = (0..plate.columns.len())
             .filter(|c| !plate.dofs_of_column(*c).is_empty())
             .min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
         let Some(column) = column else { return Ok(Vec::new()) };
-        let far = (0..plate.columns.len())
-            .filter(|c| !plate.dofs_of_column(*c).is_empty())
-            .max_by(|a, b| distance(a).total_cmp(&distance(b)).then(b.cmp(a)));
+        let farthest = |from: &dyn Fn(&usize) -> f64| {
+            let columns = (0..plate.columns.len()).filter(|c| !plate.dofs_of_column(*c).is_empty());
+            columns.max_by(|a, b| from(a).total_cmp(&from(b)).then(b.cmp(a)))
+        };
+        let far = farthest(&distance);
+        let side = far.and_then(|far| {
+            let from = |c: usize, d: usize| plate.columns[c][d] - plate.columns[column][d];
+            farthest(&|c: &usize| (from(far, 0) * from(*c, 1) - from(far, 1) * from(*c, 0)).abs())
+        });
         let level = plate.mid_level().unwrap_or(0);
         let unknown = |column: usize, n: u8, m: u8| Dof::new(n, m).and_then(|d| plate.dofs_at(column, level, d).next());
         let mut chosen: Vec<Equation> = Vec::new();
         let mut left = self.basis.clone();
-        // At the centre u, v, w, then w,y − v,z and so on; at the far node u, v, w.
+        // At the centre u, v, w, then w,y − v,z and so on; at the far node and beside both u, v, w.
         let mut terms: Vec<Vec<(usize, f64)>> = Vec::new();
         terms.extend((1..=3).filter_map(|n| Some(vec![(unknown(column, n, 0)?, 1.0)])));
         for (n, m) in [(3, 2), (1, 3), (2, 1)] {
@@ -201,7 +208,9 @@ impl FreeMotions {
             terms.extend(pair.map(|(a, b)| vec![(a, 1.0), (b, -1.0)]));
         }
         terms.extend(
-            far.into_iter().flat_map(|far| (1..=3).filter_map(move |n| Some(vec![(unknown(far, n, 0)?, 1.0)]))),
+            far.into_iter()
+                .chain(side)
+                .flat_map(|at| (1..=3).filter_map(move |n| Some(vec![(unknown(at, n, 0)?, 1.0)]))),
         );
         for terms in terms {
             let equation = Equation { terms, value: 0.0, origin: "restraint of rigid motions".into(), holds: true };

@@ -85,9 +85,13 @@ pub trait SecondOrderSystem {
     /// [`StepError::SingularMass`] when M has no inverse.
     fn solve_mass(&mut self, cc: f64, x: &mut [f64]) -> Result<(), StepError>;
 
-    /// Solves `(cm M + cc C + K) u = r + p(t) + contact(u; h)` for the displacement u.
+    /// Solves `(cm M + cc C) d + K (from + d) = r + p(t) + contact(from + d; h)` for the change d of the displacement.
     ///
-    /// `u` holds r on entry and the solution on return; the factorisation for (`cm`, `cc`) is kept between calls.
+    /// `d` holds r on entry and the solution on return; the factorisation for (`cm`, `cc`) is kept between calls.
+    ///
+    /// It is the change that is asked for because velocities and accelerations are made from it: as the difference of two
+    /// displacements it would have an error of ε |u|, and the acceleration one of ε |u|/Δt². A mass in free flight, u =
+    /// v t, would change its speed by some ε times the number of steps, at every step.
     ///
     /// # Errors
     /// No convergence, or a matrix that cannot be factorised.
@@ -97,7 +101,8 @@ pub trait SecondOrderSystem {
         cc: f64,
         t: f64,
         h: &[ContactHistory],
-        u: &mut [f64],
+        from: &[f64],
+        d: &mut [f64],
     ) -> Result<(), StepError>;
 
     /// Commits the contact indentations of the accepted state into its histories.

@@ -26,21 +26,21 @@ pub struct Impactor {
     pub law: Box<dyn ContactLaw>,
 }
 
-/// Deepest indentation that is looked at, m.
-const DEEPEST: f64 = 1.0;
-
 impl Impactor {
-    /// Indentation (m) at which the contact has taken `energy` (J) on first loading; `None` beyond a metre.
+    /// Indentation (m) at which the contact has taken `energy` (J) on first loading; `None` where it never does.
     pub fn indentation_of(&self, energy: f64) -> Option<f64> {
         let work = |alpha: f64| self.law.energy(&ContactHistory::default(), alpha).stored;
-        let mut high = 1e-9;
+        let mut high = 1.0;
         while !(work(high) >= energy) {
             high *= 2.0;
-            if high > DEEPEST {
+            if high > f64::MAX {
                 return None;
             }
         }
-        let mut low = 0.0;
+        while work(0.5 * high) >= energy && high > f64::MIN_POSITIVE {
+            high *= 0.5;
+        }
+        let mut low = 0.5 * high;
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if work(middle) < energy { low = middle } else { high = middle }
@@ -243,7 +243,7 @@ impl ImpactSystem {
 /// Steepest tangent on loading and unloading up to the indentation that takes `energy`.
 fn steepest(impactor: &Impactor, energy: f64) -> f64 {
     let (law, fresh) = (&*impactor.law, ContactHistory::default());
-    let high = impactor.indentation_of(energy).unwrap_or(DEEPEST);
+    let high = impactor.indentation_of(energy).unwrap_or(f64::MAX);
     let mut pressed = fresh;
     law.commit(&mut pressed, high);
     let below = high * (1.0 - 1e-9);
@@ -302,26 +302,29 @@ impl SecondOrderSystem for ImpactSystem {
         _: f64,
         t: f64,
         h: &[ContactHistory],
-        u: &mut [f64],
+        from: &[f64],
+        d: &mut [f64],
     ) -> Result<(), StepError> {
         self.prepare(cm)?;
         let n = self.structure.ndof();
         let Self { structure, impactors, influence, contact_calls } = self;
-        structure.solve_shifted(cm, &mut u[..n], 1).map_err(|e| StepError::Factorisation(e.0))?;
-        for (u, impactor) in u[n..].iter_mut().zip(impactors.iter()) {
-            *u /= cm * impactor.mass;
+        structure.add_stiffness(-1.0, &from[..n], &mut d[..n]);
+        structure.solve_shifted(cm, &mut d[..n], 1).map_err(|e| StepError::Factorisation(e.0))?;
+        for (d, impactor) in d[n..].iter_mut().zip(impactors.iter()) {
+            *d /= cm * impactor.mass;
         }
-        // u is the response without contact; each contact adds F (X, −1/(cm m)).
+        // d is the response without contact; each contact adds F (X, −1/(cm m)).
         for (i, impactor) in impactors.iter().enumerate() {
-            influence.free[i] = u[n + i] - value(&impactor.load, u);
+            let approach = |x: &[f64]| x[n + i] - value(&impactor.load, x);
+            influence.free[i] = approach(from) + approach(d);
         }
         *contact_calls += influence.balance(impactors, t, h)?;
         for (i, (impactor, force)) in impactors.iter().zip(&influence.forces).enumerate() {
             if *force != 0.0 {
-                for (u, x) in u.iter_mut().zip(&influence.x[i * n..(i + 1) * n]) {
-                    *u += force * x;
+                for (d, x) in d.iter_mut().zip(&influence.x[i * n..(i + 1) * n]) {
+                    *d += force * x;
                 }
-                u[n + i] -= force / (cm * impactor.mass);
+                d[n + i] -= force / (cm * impactor.mass);
             }
         }
         Ok(())
@@ -391,10 +394,12 @@ fn contact(law: &dyn ContactLaw, h: &ContactHistory, free: f64, soft: f64) -> (f
         } else {
             low = alpha
         }
-        let next = alpha - residual / (1.0 + soft * c.tangent);
+        let correction = -residual / (1.0 + soft * c.tangent);
+        let next = alpha + correction;
         // Before the bracket is asked: at the solution rounding decides on which side of it the next value lies.
         if (next - alpha).abs() <= 1e-15 * (free.abs() + alpha.abs()) || !residual.is_finite() {
-            return ((free - next) / soft, calls);
+            // Not (free - next)/soft, which has the error of α over that of a short step's small `soft`.
+            return (c.force + c.tangent * correction, calls);
         }
         alpha = if next > low && next < high { next } else { 0.5 * (low + high) };
     }

@@ -73,6 +73,7 @@ pub enum FileError {
 fn remedy(cause: &io::Error) -> &'static str {
     match cause.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => ": free some space or choose another folder",
+        io::ErrorKind::FileTooLarge => ": lift the limit on the size of files (`ulimit -f`) or choose another folder",
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => ": choose a folder that you may write",
         io::ErrorKind::NotADirectory => ": choose a folder, not a file",
         _ => "",

@@ -2,9 +2,11 @@
 
 use super::{print, warn};
 use crate::error::Error;
+use crate::memory::Estimate;
 use crate::model::{Impact, Model, Plan};
 use crate::registry::Registry;
 use crate::run::{self, Sizes, Substructures};
+use crate::statics::{digits, few_digits};
 use crate::summary::in_words;
 use clap::Args;
 use fem_core::counters::Counters;
@@ -30,15 +32,21 @@ fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
     match &model.plan {
         Plan::Impact(impact) => {
             let sizes = run::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model))?.sizes;
-            lines.extend(unknowns(&model, sizes.stiffness_entries, sizes.factor_entries));
+            lines.extend(unknowns(&model, &sizes.memory));
             lines.extend(divided(sizes.substructures));
             lines.extend(march(impact, &sizes));
         }
         plan => {
             let counters = &mut Counters::default();
-            let assembled = run::structure(&model, true, NonZeroUsize::MIN, counters).inspect_err(|_| warn(&model))?;
-            lines.extend(unknowns(&model, assembled.structure.entries(), assembled.factor_entries));
+            let assembled = run::structure(&model, true, NonZeroUsize::MIN, counters);
+            let mut assembled = assembled.inspect_err(|_| warn(&model))?;
+            lines.extend(unknowns(&model, &assembled.memory));
             lines.extend(divided(assembled.substructures()));
+            if model.held {
+                let condition = assembled.structure.condition().map_err(Error::from).inspect_err(|_| warn(&model))?;
+                lines.push(("stiffness", digits(condition)));
+                lines.extend(few_digits(condition).map(|warning| ("warning", warning)));
+            }
             lines.push(match plan {
                 Plan::Modes { count } => ("analysis", format!("the {count} lowest modes")),
                 _ => ("analysis", "static".to_owned()),
@@ -79,14 +87,13 @@ fn plate(model: &Model) -> Vec<Line> {
     ]
 }
 
-fn unknowns(model: &Model, stiffness: usize, factor: usize) -> [Line; 2] {
-    let megabytes = |entries: usize| entries as f64 * 8e-6;
+fn unknowns(model: &Model, memory: &Estimate) -> [Line; 2] {
     let redundant = match model.constraints.redundant.len() {
         0 => String::new(),
         n => format!(" ({n} redundant equations)"),
     };
     let (independent, all) = (model.constraints.ndof(), model.plate.ndof());
-    let memory = format!("stiffness {:.1} MB, factor {:.1} MB", 2.0 * megabytes(stiffness), megabytes(factor));
+    let memory = format!("about {:.0} MB at the peak: {memory}", memory.bytes() * 1e-6);
     [("unknowns", format!("{independent} of {all} after constraints{redundant}")), ("memory", memory)]
 }
 

@@ -13,10 +13,11 @@ use crate::model::Model;
 use crate::registry::Registry;
 use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
-use miette::{GraphicalReportHandler, GraphicalTheme, Report};
+use miette::{GraphicalReportHandler, GraphicalTheme, Report, miette};
 use std::ffi::OsString;
-use std::io::{IsTerminal, Write};
+use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
+use std::sync::OnceLock;
 use textwrap::WordSplitter;
 
 /// Low-velocity impact on laminated composites.
@@ -39,7 +40,7 @@ enum Command {
     /// Prints a summary and writes summary.json, cost.json, history.csv, events.csv and the contact force as SVG and PNG;
     /// modes, and failure indices over time and over the plate, where the scene asks for them. Fails, and keeps what it had,
     /// when the march meets a number that is not finite or loses its energy balance. Writes a checkpoint now and then, at
-    /// the end and when it is stopped (Ctrl-C, SIGTERM: exit status 130, 143), from which `--resume` goes on.
+    /// the end and when it is stopped (Ctrl-C, SIGTERM, SIGHUP: exit status 130, 143, 129), from which `--resume` goes on.
     Run(run::Arguments),
     /// Validates a scene with its mesh and prints sizes and the stable step; marches nothing.
     Check(check::Arguments),
@@ -86,7 +87,8 @@ pub fn run_with(registry: Registry, arguments: impl IntoIterator<Item = impl Int
         Command::Matrices(a) => matrices::matrices(&registry, &a),
         Command::List(a) => list::list(&registry, &a),
     };
-    match done {
+    let lost = || LOST.get().map_or(Ok(()), |why| Err(miette!("cannot write to standard output: {why}")));
+    match done.and_then(|code| lost().map(|()| code)) {
         Ok(code) => code,
         Err(report) => {
             complain(&report);
@@ -115,9 +117,16 @@ fn warn(model: &Model) {
     }
 }
 
-/// Prints to standard output; a closed pipe ends quietly.
+/// Why standard output did not take all that was printed, if it did not.
+static LOST: OnceLock<io::Error> = OnceLock::new();
+
+/// Prints to standard output; a closed pipe ends quietly, a full disk at the end of the command.
 fn print(text: &str) {
-    let _ = std::io::stdout().write_all(text.as_bytes());
+    if let Err(why) = io::stdout().write_all(text.as_bytes())
+        && why.kind() != io::ErrorKind::BrokenPipe
+    {
+        let _ = LOST.set(why);
+    }
 }
 
 /// A bar on a terminal, nothing elsewhere.

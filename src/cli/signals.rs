@@ -5,7 +5,14 @@ use signal_hook::flag;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Hears the first Ctrl-C or SIGTERM; a second one ends the process as if nobody listened.
+/// Signals that are heard.
+#[cfg(unix)]
+const HEARD: [i32; 3] = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
+#[cfg(not(unix))]
+const HEARD: [i32; 2] = [SIGINT, SIGTERM];
+
+/// Hears the first Ctrl-C, SIGTERM or SIGHUP (a terminal that closes); a second one ends the process as if nobody listened.
+/// What the process was told to ignore, as `nohup` does, stays ignored.
 #[derive(Debug, Default)]
 pub(super) struct Signals {
     received: Arc<AtomicUsize>,
@@ -16,7 +23,7 @@ impl Signals {
     pub(super) fn heed() -> Self {
         let signals = Self::default();
         let heard = Arc::new(AtomicBool::new(false));
-        for signal in [SIGINT, SIGTERM] {
+        for signal in HEARD.into_iter().filter(|signal| !ignored(*signal)) {
             // In this order: the first signal finds `heard` false.
             let _ = flag::register_conditional_default(signal, Arc::clone(&heard))
                 .and_then(|_| flag::register(signal, Arc::clone(&heard)))
@@ -29,4 +36,14 @@ impl Signals {
     pub(super) fn received(&self) -> Option<u8> {
         u8::try_from(self.received.load(Ordering::Relaxed)).ok().filter(|signal| *signal != 0)
     }
+}
+
+/// Whether the process was started with `signal` ignored; `false` where the system does not tell.
+fn ignored(signal: i32) -> bool {
+    let mask = || {
+        let status = std::fs::read_to_string("/proc/self/status").ok()?;
+        let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"))?;
+        u64::from_str_radix(mask.trim(), 16).ok()
+    };
+    mask().is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }

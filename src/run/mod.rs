@@ -17,6 +17,7 @@ pub use prepare::{Assembled, Prepared, prepare, structure};
 pub use saved::CheckpointError;
 
 use crate::cost::Phase;
+use crate::memory::Estimate;
 use fem_core::counters::Counters;
 use fem_failure::scan::{FailureEvent, Peak, ScanSite};
 use fem_io::tables::HistoryRow;
@@ -36,6 +37,8 @@ pub struct Sizes {
     pub stiffness_entries: usize,
     /// Entries of its Cholesky factor.
     pub factor_entries: usize,
+    /// What the run takes at its peak, as it is expected.
+    pub memory: Estimate,
     /// Contact force of the first impactor per deflection under it, N/m, of the plate as marched.
     pub static_stiffness: f64,
     /// Highest frequency of the plate as marched, Hz; `None` where no integrator limit asked for it.

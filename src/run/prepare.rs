@@ -3,8 +3,9 @@
 use super::{Sizes, Substructures};
 use crate::cost::Stopwatch;
 use crate::error::Error;
+use crate::memory::{self, Estimate};
 use crate::model::{Impact, Model, Plan, Strike};
-use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, Symbolic, assemble, condense, pattern};
+use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, assemble, condense, pattern};
 use fem_core::counters::Counters;
 use fem_core::prolongation::Prolongation;
 use fem_core::reduction::Functional;
@@ -51,6 +52,8 @@ pub struct Assembled {
     pub structure: SparseStructure,
     /// Entries of the factor of K.
     pub factor_entries: usize,
+    /// What the computation takes at its peak, as it is expected.
+    pub memory: Estimate,
     /// From the masters to the independent unknowns of the model.
     pub condensation: Option<Condensation>,
 }
@@ -115,7 +118,7 @@ impl Assembled {
 /// Assembles K and M of `model`. M is left zero where `inertia` is not wanted.
 ///
 /// # Errors
-/// A cell that the element refuses, a pattern too large to factorise.
+/// A cell that the element refuses, more memory than there is.
 pub fn structure(
     model: &Model,
     inertia: bool,
@@ -127,21 +130,21 @@ pub fn structure(
     let name = move |i: usize| described.describe(originals.original(i));
     let Some(division) = division else {
         let pattern = Arc::new(pattern(plate, constraints));
+        let (symbolic, memory) = memory::analysed(model, pattern.clone())?;
         let mut matrix = |which| assemble(plate, &**element, constraints, &pattern, which, threads, counters);
         let k = matrix(Matrix::Stiffness)?;
         let m = if inertia { matrix(Matrix::Mass)? } else { vec![0.0; k.len()] };
-        let symbolic = Symbolic::new(pattern.clone())?;
         let factor_entries = symbolic.entries();
         let structure = SparseStructure::new(symbolic, k, m, threads, name);
-        return Ok(Assembled { structure, factor_entries, condensation: None });
+        return Ok(Assembled { structure, factor_entries, memory, condensation: None });
     };
     let Condensed { pattern, k, m, way } =
         condense(plate, &**element, constraints, division, inertia, threads, counters)?;
-    let symbolic = Symbolic::new(Arc::new(pattern))?;
+    let (symbolic, memory) = memory::analysed(model, Arc::new(pattern))?;
     let factor_entries = symbolic.entries();
     let masters: Vec<usize> = (0..way.ndof()).map(|i| way.independent(i)).collect();
     let structure = SparseStructure::new(symbolic, k, m, threads, move |i| name(masters[i]));
-    Ok(Assembled { structure, factor_entries, condensation: Some(way) })
+    Ok(Assembled { structure, factor_entries, memory, condensation: Some(way) })
 }
 
 /// Assembles and reduces `model` and checks the step.
@@ -156,7 +159,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     let mut assembled = structure(model, true, threads, &mut counters)?;
     stopwatch.lap("assemble");
     let (stiffness_entries, factor_entries) = (assembled.structure.entries(), assembled.factor_entries);
-    let substructures = assembled.substructures();
+    let (substructures, memory) = (assembled.substructures(), assembled.memory);
     let contacts: Vec<Functional> = impact.strikes.iter().map(|s| assembled.functional(&s.contact)).collect();
     let reduced = match &impact.reduction {
         None => None,
@@ -218,6 +221,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         marched: system.structure().ndof(),
         stiffness_entries,
         factor_entries,
+        memory,
         static_stiffness: 1.0 / system.static_flexibility(0)?,
         highest_frequency: highest.map(hertz),
         lowest_frequency: reduced.as_ref().and_then(|r| r.modal.frequencies().next()).map(hertz),

@@ -18,6 +18,18 @@ impl Room {
     pub(crate) const ALL: [Self; 7] =
         [Self::Time, Self::Guards, Self::Space, Self::Algebra, Self::Failure, Self::Resources, Self::Input];
 
+    /// A case that does not wait for `--ignored`; see [`Case`].
+    pub(crate) fn case(
+        self,
+        name: &'static str,
+        varied: &'static str,
+        measure: &'static str,
+        bound: f64,
+        worst: fn() -> f64,
+    ) -> Case {
+        Case { room: self, name, varied, measure, bound, long: false, worst }
+    }
+
     pub(crate) fn title(self) -> &'static str {
         match self {
             Self::Time => "Time integration and contact",
@@ -56,6 +68,11 @@ pub(crate) struct Measured {
 }
 
 impl Case {
+    /// The same, run with `--ignored` only.
+    pub(crate) fn long(self) -> Self {
+        Self { long: true, ..self }
+    }
+
     /// Name as a test: `time::a_name_of_words`.
     pub(crate) fn title(&self) -> String {
         format!("{:?}::{}", self.room, self.name.replace(|c: char| !c.is_alphanumeric(), "_")).to_lowercase()

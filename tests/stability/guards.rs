@@ -13,24 +13,15 @@ use fem::{Model, Registry, io::scene};
 use std::num::NonZeroUsize;
 
 pub(crate) fn cases() -> Vec<Case> {
-    let case = |name, varied, measure, bound, worst| Case {
-        room: Room::Guards,
-        name,
-        varied,
-        measure,
-        bound,
-        long: false,
-        worst,
-    };
     vec![
-        case(
+        Room::Guards.case(
             "faulty contact laws",
             "a force of NaN, of infinity, below zero; one that gives back a hundred times what it took",
             "runs not stopped with step, time, cause and remedy",
             0.0,
             laws,
         ),
-        case(
+        Room::Guards.case(
             "faulty integrators",
             "NaN in one unknown; gain and loss of 0.1 % of the velocities a step; rk4 that hides its limit, at 3 and 30 \
              times that limit; an impactor set into the plate, and one made too fast",
@@ -38,21 +29,21 @@ pub(crate) fn cases() -> Vec<Case> {
             0.0,
             integrators,
         ),
-        case(
+        Room::Guards.case(
             "steps until a fault is seen",
             "all of the above whose fault shows at once",
             "steps from the fault to the stop",
             run::BALANCE_EVERY as f64,
             delay,
         ),
-        case(
+        Room::Guards.case(
             "matrices that are not positive definite",
             "an oscillator under a ball, its stiffness or its mass times five factors from -0.1 to -1000",
             "marches not stopped by name",
             0.0,
             indefinite,
         ),
-        case(
+        Room::Guards.case(
             "sound marches",
             "a ball on an oscillator, every integrator, steps from 0.01 to 10 us that change the energy by less than 9e-3",
             "marches stopped by mistake",

@@ -4,8 +4,19 @@
 //! writes the table anew.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
 
+mod algebra;
 mod case;
+mod failure;
 mod guards;
+mod input;
+mod plates;
+#[path = "../registry.rs"]
+mod registry;
+mod resources;
+#[path = "../validation/scene.rs"]
+#[allow(dead_code, reason = "the other test binary needs the rest")]
+mod scene;
+mod space;
 #[path = "../support.rs"]
 #[allow(dead_code, reason = "the other test binary needs the rest")]
 mod support;
@@ -18,7 +29,16 @@ use std::process::ExitCode;
 use std::sync::{Arc, Mutex};
 
 fn main() -> ExitCode {
-    let cases: Vec<Case> = [time::cases(), guards::cases()].into_iter().flatten().collect();
+    let rooms = [
+        time::cases(),
+        guards::cases(),
+        space::cases(),
+        algebra::cases(),
+        failure::cases(),
+        resources::cases(),
+        input::cases(),
+    ];
+    let cases: Vec<Case> = rooms.into_iter().flatten().collect();
     let all: Arc<Mutex<Vec<Measured>>> = Arc::default();
     let trial = |case: &Case| {
         let (case, all) = (*case, all.clone());

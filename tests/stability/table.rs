@@ -13,25 +13,27 @@ const END: &str = "<!-- End of what is written. -->\n";
 
 /// Compares the table with what was measured, or writes it anew. Cases that did not run keep their row.
 ///
-/// A figure stands as it is while the measured one rounds to it or to a neighbour, a time within a factor of 4: no table
-/// changes by the noise of a machine.
+/// A figure stands as it is while the measured one rounds to it or to a neighbour, a rounding error while it is no larger, a
+/// time within a factor of 4 when the table is written and always when it is compared: no table changes by the noise of a
+/// machine.
 pub(crate) fn compare(cases: &[Case], measured: &[Measured]) -> Result<(), String> {
     let path = root().join(FILE);
     let text = fs::read_to_string(&path).map_err(|e| format!("{FILE}: {e}"))?;
     let marked = text.split_once(BEGIN).and_then(|(head, rest)| Some((head, rest.split_once(END)?)));
     let Some((head, (old, tail))) = marked else { return Err(format!("{FILE}: no place for the table")) };
-    let new = table(cases, measured, old);
+    let update = std::env::var_os("UPDATE_STABILITY").is_some();
+    let new = table(cases, measured, old, update);
     if new == old {
         return Ok(());
     }
-    if std::env::var_os("UPDATE_STABILITY").is_some() {
+    if update {
         return fs::write(&path, [head, BEGIN, &new, END, tail].concat()).map_err(|e| format!("{FILE}: {e}"));
     }
     let differ = new.lines().filter(|line| !old.contains(line)).collect::<Vec<_>>().join("\n");
     Err(format!("{FILE} is not what was measured; write it anew with UPDATE_STABILITY=1. Now:\n{differ}"))
 }
 
-fn table(cases: &[Case], measured: &[Measured], old: &str) -> String {
+fn table(cases: &[Case], measured: &[Measured], old: &str, times: bool) -> String {
     let mut text = String::new();
     for room in Room::ALL {
         let rows: Vec<_> = cases.iter().filter(|case| case.room == room).collect();
@@ -45,7 +47,11 @@ fn table(cases: &[Case], measured: &[Measured], old: &str) -> String {
             let (worst, seconds) = match measured.iter().find(|m| m.name == case.name) {
                 Some(m) => (
                     if near(shown(4), m.worst) { shown(4).to_owned() } else { figure(m.worst) },
-                    if close(shown(5), m.seconds) { shown(5).to_owned() } else { time(m.seconds) },
+                    if close(shown(5), m.seconds) || (!times && before.is_some()) {
+                        shown(5).to_owned()
+                    } else {
+                        time(m.seconds)
+                    },
                 ),
                 None => (shown(4).to_owned(), shown(5).to_owned()),
             };
@@ -64,7 +70,7 @@ fn cells(line: &str) -> Vec<&str> {
 /// A bound or a worst value: what is rounding error by its decade, the rest with two digits.
 fn figure(value: f64) -> String {
     match value {
-        0.0 => "0".into(),
+        v if v.fract() == 0.0 && v < 1e6 => format!("{v}"),
         v if v < ROUNDING => format!("1e{}", v.log10().ceil()),
         v if (1e-2..1e4).contains(&v) => format!("{}", format!("{v:.1e}").parse::<f64>().unwrap()),
         v => format!("{v:.1e}"),

@@ -1,50 +1,119 @@
 //! Steps at and beyond their limits, stiff and soft contact, long and short marches.
 
-use crate::case::{Case, Room};
+mod chatter;
+mod contact;
+mod marches;
+mod plate;
+mod steps;
+
+use crate::case::Case;
 use fem::Registry;
-use fem::core::plugin::{Built, Kind, Params};
-use fem::core::testkit::{Mode, Modes};
-use fem::core::time::{Integrator, StepLimit};
+use fem::core::contact::ContactLaw;
+use fem::core::plugin::{Built, Dimension, Kind, Params, Value};
+use fem::core::time::{Integrator, State, StepError, StepLimit};
+use fem::dynamics::impact::{ImpactSystem, Impactor};
+use fem::dynamics::integrate::located;
+use plate::Navier;
 
 pub(crate) fn cases() -> Vec<Case> {
-    vec![Case {
-        room: Room::Time,
-        name: "just below the limit",
-        varied: "every integrator; one oscillator, 1e6 steps of 0.999 of the limit, or of omega dt = 3 without one",
-        measure: "largest energy of the second half of the march over that of the first, less 1",
-        bound: 2.0,
-        long: false,
-        worst: below_the_limit,
-    }]
+    [steps::cases(), contact::cases(), chatter::cases(), marches::cases()].into_iter().flatten().collect()
 }
 
-fn integrators() -> impl Iterator<Item = Box<dyn Integrator>> {
-    let registry = Registry::standard();
-    let names: Vec<_> = registry.list(Kind::Integrator).map(|info| info.name).collect();
-    names.into_iter().map(move |name| match registry.build(Kind::Integrator, name, &Params::default()) {
+/// The energy error at which a run stops.
+const TOLERANCE: f64 = 1e-2;
+
+fn integrator_with(name: &str, params: &Params) -> Box<dyn Integrator> {
+    match Registry::standard().build(Kind::Integrator, name, params) {
         Ok(Built::Integrator(integrator)) => integrator,
         other => panic!("{name}: {other:?}"),
-    })
+    }
 }
 
-fn below_the_limit() -> f64 {
-    let grown = integrators().map(|mut integrator| {
-        let dt = match integrator.limit() {
-            StepLimit::OmegaDt(limit) => 0.999 * limit,
-            StepLimit::None => 3.0,
-        };
-        let mut system = Modes::free([Mode::new(1.0, 0.0)]);
-        let mut state = system.state();
-        state.v[0] = 1.0;
-        integrator.start(&mut system, &mut state).unwrap();
-        let mut largest = || {
-            (0..500_000).fold(0.0_f64, |largest, _| {
-                integrator.step(&mut system, &mut state, dt).unwrap();
-                largest.max(state.u[0].powi(2) + state.v[0].powi(2))
-            })
-        };
-        let first = largest();
-        largest() / first - 1.0
-    });
-    grown.fold(0.0, f64::max)
+/// As a run marches it.
+fn integrator(name: &str) -> Box<dyn Integrator> {
+    located(integrator_with(name, &Params::default()))
+}
+
+/// Every integrator of the registry, and those of Newmark's family that have a limit.
+fn integrators() -> Vec<(String, Box<dyn Integrator>)> {
+    let registry = Registry::standard();
+    let names = registry.list(Kind::Integrator).map(|info| info.name);
+    let mut all: Vec<_> = names.map(|name| (name.to_owned(), integrator(name))).collect();
+    for beta in [0.1, 1.0 / 6.0] {
+        let params = Params::default().with("beta", Value::Number(beta));
+        all.push((format!("newmark of beta = {beta}"), integrator_with("newmark", &params)));
+    }
+    all
+}
+
+fn law(name: &str, params: &Params) -> Box<dyn ContactLaw> {
+    match Registry::standard().build(Kind::Contact, name, params) {
+        Ok(Built::Contact(law)) => law,
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+fn spring(k: f64) -> Box<dyn ContactLaw> {
+    law("linear", &Params::default().with("k", Value::Quantity(k, Dimension::contact_stiffness(1.0))))
+}
+
+fn hertz(k: f64) -> Box<dyn ContactLaw> {
+    law("hertz", &Params::default().with("k", Value::Quantity(k, Dimension::contact_stiffness(1.5))))
+}
+
+fn sun_yang(k: f64, critical: f64) -> Box<dyn ContactLaw> {
+    let params = Params::default()
+        .with("k", Value::Quantity(k, Dimension::contact_stiffness(1.5)))
+        .with("critical", Value::Quantity(critical, Dimension::LENGTH));
+    law("sun-yang", &params)
+}
+
+fn limit(scheme: &dyn Integrator) -> Option<f64> {
+    match scheme.limit() {
+        StepLimit::OmegaDt(limit) => Some(limit),
+        StepLimit::None => None,
+    }
+}
+
+/// `plate` under masses that touch its middle at t = 0.
+fn struck(plate: &Navier, masses: &[f64], velocity: f64, law: Box<dyn ContactLaw>) -> ImpactSystem {
+    let impactor =
+        |mass: &f64| Impactor { mass: *mass, velocity, start: 0.0, load: plate.load([0.5, 0.5]), law: law.clone() };
+    ImpactSystem::new(Box::new(plate.clone()), masses.iter().map(impactor).collect())
+}
+
+/// What is seen of a march after every step.
+#[derive(Debug, Default, Clone)]
+struct Seen {
+    /// Energy over that of the impact.
+    energies: Vec<f64>,
+    /// Contact force of the first impactor.
+    forces: Vec<f64>,
+    /// At the end.
+    state: State,
+}
+
+impl Seen {
+    fn imbalance(&self) -> f64 {
+        largest(self.energies.iter().map(|energy| (energy - 1.0).abs()))
+    }
+}
+
+fn march(mut scheme: Box<dyn Integrator>, system: &mut ImpactSystem, dt: f64, steps: usize) -> Result<Seen, StepError> {
+    let mut state = system.initial();
+    scheme.start(system, &mut state)?;
+    let mut work = Vec::new();
+    let start = system.energies(&state, &mut work).total();
+    let mut seen = Seen::default();
+    for _ in 0..steps {
+        scheme.step(system, &mut state, dt)?;
+        seen.energies.push(system.energies(&state, &mut work).total() / start);
+        seen.forces.push(system.contact_force(0, &state));
+    }
+    Ok(Seen { state, ..seen })
+}
+
+/// The largest of some numbers, or NaN where one is.
+fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |a, b| if b <= a { a } else { b })
 }

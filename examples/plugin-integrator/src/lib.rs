@@ -10,17 +10,17 @@ use std::f64::consts::SQRT_2;
 /// is too fast for the step is gone after one.
 ///
 /// ```text
-/// v₁ = c (u₁ − u₀) − v₀    a₁ = c (v₁ − v₀) − a₀              at t + γ Δt, c = 2/(γ Δt)
-/// v₂ = c (u₂ − ū)          a₂ = c (v₂ − v̄)                    at t + Δt
+/// v₁ = c d₁ − v₀    a₁ = c (v₁ − v₀) − a₀    d₁ = u₁ − u₀     at t + γ Δt, c = 2/(γ Δt)
+/// v₂ = c d₂         a₂ = c (v₂ − v̄)          d₂ = u₂ − ū      at t + Δt
 /// ū = e u₁ − (e − 1) u₀    v̄ = e v₁ − (e − 1) v₀              e = 1/(2 − 2γ)
 /// ```
 ///
 /// Both parts ask for (c² M + c C + K)⁻¹, because γ = 2 − √2.
 #[derive(Debug, Clone, Default)]
 pub struct TrBdf2 {
-    /// u₁, then u₂.
-    u: Vec<f64>,
-    /// What M, then what C is applied to.
+    /// d₁, then d₂.
+    d: Vec<f64>,
+    /// What M is applied to.
     x: Vec<f64>,
 }
 
@@ -29,21 +29,21 @@ const E: f64 = 0.5 / (1.0 - GAMMA);
 
 // ANCHOR: solve
 impl TrBdf2 {
-    /// Solves `(c² M + c C + K) u = M m + C d + p(t) + contact(u; h)`, with m and d of each unknown from `given`.
+    /// Solves `(c² M + c C) d + K (u + d) = M m + C v + p(t) + contact(u + d; h)` with u of `s`, and m of each unknown from
+    /// `given`; the part C v only where it is `damped`.
     fn solve(
         &mut self,
         sys: &mut dyn SecondOrderSystem,
         s: &State,
-        (t, c): (f64, f64),
-        given: impl Fn(usize) -> [f64; 2],
+        (t, c, damped): (f64, f64, f64),
+        given: impl Fn(usize) -> f64,
     ) -> Result<(), StepError> {
-        let Self { u, x } = self;
-        u.fill(0.0);
-        x.iter_mut().enumerate().for_each(|(i, x)| *x = given(i)[0]);
-        sys.add_mass(1.0, x, u);
-        x.iter_mut().enumerate().for_each(|(i, x)| *x = given(i)[1]);
-        sys.add_damping(1.0, x, u);
-        sys.solve_implicit(c * c, c, t, &s.contacts, u)
+        let Self { d, x } = self;
+        d.fill(0.0);
+        x.iter_mut().enumerate().for_each(|(i, x)| *x = given(i));
+        sys.add_mass(1.0, x, d);
+        sys.add_damping(damped, &s.v, d);
+        sys.solve_implicit(c * c, c, t, &s.contacts, &s.u, d)
     }
 }
 // ANCHOR_END: solve
@@ -66,7 +66,7 @@ impl Integrator for TrBdf2 {
     }
 
     fn resume(&mut self, sys: &mut dyn SecondOrderSystem) {
-        self.u.resize(sys.ndof(), 0.0);
+        self.d.resize(sys.ndof(), 0.0);
         self.x.resize(sys.ndof(), 0.0);
     }
     // ANCHOR_END: start
@@ -74,19 +74,18 @@ impl Integrator for TrBdf2 {
     // ANCHOR: step
     fn step(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State, dt: f64) -> Result<(), StepError> {
         let c = 2.0 / (GAMMA * dt);
-        self.solve(sys, s, (s.t + GAMMA * dt, c), |i| [c * (c * s.u[i] + 2.0 * s.v[i]) + s.a[i], c * s.u[i] + s.v[i]])?;
+        self.solve(sys, s, (s.t + GAMMA * dt, c, 1.0), |i| 2.0 * c * s.v[i] + s.a[i])?;
         // ū, v̄ in the place of u₀, v₀.
-        for (i, u) in self.u.iter().enumerate() {
-            let v = c * (u - s.u[i]) - s.v[i];
-            s.u[i] = E * u - (E - 1.0) * s.u[i];
-            s.v[i] = E * v - (E - 1.0) * s.v[i];
+        for (i, d) in self.d.iter().enumerate() {
+            s.u[i] += E * d;
+            s.v[i] += E * (c * d - 2.0 * s.v[i]);
         }
         s.t += dt;
-        self.solve(sys, s, (s.t, c), |i| [c * (c * s.u[i] + s.v[i]), c * s.u[i]])?;
-        for (i, u) in self.u.iter().enumerate() {
-            let v = c * (u - s.u[i]);
-            s.a[i] = c * (v - s.v[i]);
-            (s.u[i], s.v[i]) = (*u, v);
+        self.solve(sys, s, (s.t, c, 0.0), |i| c * s.v[i])?;
+        for (i, d) in self.d.iter().enumerate() {
+            s.u[i] += d;
+            s.a[i] = c * (c * d - s.v[i]);
+            s.v[i] = c * d;
         }
         if [&s.u, &s.v, &s.a].into_iter().flatten().any(|x| !x.is_finite()) {
             return Err(StepError::NotFinite { t: s.t });

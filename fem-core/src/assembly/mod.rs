@@ -2,6 +2,7 @@
 
 mod alike;
 mod coarse;
+mod condition;
 mod factor;
 mod ordering;
 mod pattern;

@@ -1,6 +1,6 @@
 //! A plate's K and M as a [`Structure`].
 
-use super::{Cholesky, FactorError, Pattern, Symbolic, coarse};
+use super::{Cholesky, FactorError, Pattern, Symbolic, coarse, condition};
 use crate::prolongation::{Coarse, Prolongation};
 use crate::structure::{SolveError, Structure};
 use std::fmt;
@@ -79,6 +79,20 @@ impl SparseStructure {
         (&self.pattern, &self.k, &self.m)
     }
 
+    /// Condition number of K with its unknowns in units that make its diagonal 1, estimated: displacements under loads at
+    /// rest lose up to log₁₀ of it of their 16 digits. Some five solves (Higham 1988).
+    ///
+    /// # Errors
+    /// A stiffness that is not positive definite.
+    pub fn condition(&mut self) -> Result<f64, SolveError> {
+        self.factorise(Factored::Shifted(0.0))?;
+        let (factor, solves) = (&mut self.factor, &mut self.solves);
+        Ok(condition::estimate(&self.pattern, &self.k, |x| {
+            factor.solve(x, 1);
+            *solves += 1;
+        }))
+    }
+
     fn factorise(&mut self, what: Factored) -> Result<(), SolveError> {
         if self.factored == what {
             return Ok(());
@@ -117,6 +131,10 @@ impl SparseStructure {
 impl Structure for SparseStructure {
     fn ndof(&self) -> usize {
         self.pattern.ndof()
+    }
+
+    fn name(&self, i: usize) -> String {
+        (self.name)(i)
     }
 
     fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {

@@ -96,23 +96,26 @@ impl SecondOrderSystem for Modes {
         cc: f64,
         t: f64,
         h: &[ContactHistory],
-        u: &mut [f64],
+        from: &[f64],
+        d: &mut [f64],
     ) -> Result<(), StepError> {
         for (i, mode) in self.modes.iter().enumerate() {
-            let d = cm * mode.m + cc * mode.c + mode.k;
-            let r = u[i] + (self.load)(i, t);
-            // The force never falls with u and is zero for u <= 0: the root lies between 0 and r/d, or is r/d.
-            let (mut low, mut high) = (0.0, r / d);
-            u[i] = high;
+            let slope = cm * mode.m + cc * mode.c + mode.k;
+            let r = d[i] + (self.load)(i, t) - mode.k * from[i];
+            // The force never falls with u and is zero for u <= 0: the root lies between there and r/slope, or is that.
+            let (mut low, mut high) = (-from[i], r / slope);
+            d[i] = high;
             for _ in 0..200 {
-                let contact = self.contact(h, i, u[i]);
-                let residual = d * u[i] + contact.force - r;
-                *(if residual > 0.0 { &mut high } else { &mut low }) = u[i];
-                let newton = u[i] - residual / (d + contact.tangent);
-                if (newton - u[i]).abs() <= 1e-14 * u[i].abs() {
+                let contact = self.contact(h, i, from[i] + d[i]);
+                let residual = slope * d[i] + contact.force - r;
+                *(if residual > 0.0 { &mut high } else { &mut low }) = d[i];
+                let newton = d[i] - residual / (slope + contact.tangent);
+                // At the solution, the rounding of from + d decides on which side of it the next value lies.
+                if (newton - d[i]).abs() <= 1e-14 * d[i].abs() + 1e-15 * from[i].abs() {
+                    d[i] = newton;
                     break;
                 }
-                u[i] = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+                d[i] = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
             }
         }
         Ok(())

@@ -66,12 +66,14 @@ impl Governors {
         }
         free.truncate(if self.ratio { POOL * self.count } else { self.count });
         let functionals = keep.iter().cloned().chain(free.into_iter().map(Functional::dof)).collect();
-        let shapes = StaticShapes::new(structure, functionals)?;
         if !self.ratio {
-            return Ok(shapes);
+            return StaticShapes::new(structure, functionals);
         }
+        // Candidates that follow from others need no elimination.
+        let shapes = StaticShapes::of_independent(structure, functionals, keep.len() + self.count)?;
         let (k, m) = shapes.condensed(structure);
-        shapes.only(&eliminate(k, m, keep.len(), self.count))
+        let left = shapes.only(&eliminate(k, m, keep.len(), self.count));
+        left.map_err(|dependent| dependent.named(structure))
     }
 }
 

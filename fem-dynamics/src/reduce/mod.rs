@@ -135,8 +135,8 @@ impl Reduced {
         let all = m == t.ncols();
         let only = |a: DMatrix<f64>| if all { a } else { a.select_rows(&kept).select_columns(&kept) };
         let (k, mass, t) = (only(k), only(mass), if all { t } else { t.select_columns(&kept) });
-        let l = definite(k, "the reduced stiffness")?.unpack();
         let singular = || ReductionError("the reduced stiffness is singular".into());
+        let l = Cholesky::new(k).ok_or_else(singular)?.unpack();
         let half = l.solve_lower_triangular(&mass).ok_or_else(singular)?;
         let inner = l.solve_lower_triangular(&half.transpose()).ok_or_else(singular)?;
         // 1/ω² and the modes in the metric of K.
@@ -242,10 +242,41 @@ fn independent(gram: &DMatrix<f64>) -> Vec<usize> {
     kept
 }
 
-fn definite(a: DMatrix<f64>, what: &str) -> Result<Cholesky<f64, Dyn>, ReductionError> {
-    Cholesky::new(a).ok_or_else(|| {
-        ReductionError(format!("{what} is not positive definite: some of the governors depend on each other"))
-    })
+/// Functionals whose values follow from those before them, to rounding; none where there is none at all.
+#[derive(Debug)]
+struct Dependent {
+    functionals: Vec<Functional>,
+}
+
+impl Dependent {
+    fn among(functionals: &[Functional], gram: &DMatrix<f64>) -> Self {
+        let kept = independent(gram);
+        let dependent = functionals.iter().enumerate().filter(|(i, _)| !kept.contains(i));
+        Self { functionals: dependent.map(|(_, w)| w.clone()).collect() }
+    }
+
+    fn named(&self, structure: &dyn Structure) -> ReductionError {
+        let name = |w: &Functional| match w.0[..] {
+            [(i, _)] => structure.name(i),
+            _ => "the deflection under a contact".into(),
+        };
+        let names: Vec<String> = self.functionals.iter().map(name).collect();
+        ReductionError(match &names[..] {
+            [] => "there is neither a contact nor a governor to condense on".into(),
+            names => format!(
+                "some governors follow from those before them, whatever the load: {}; leave them out, or ask for fewer",
+                names.join(", ")
+            ),
+        })
+    }
+}
+
+/// S: values of functionals under the loads with the responses `x`.
+fn flexibility(functionals: &[Functional], x: &[f64]) -> DMatrix<f64> {
+    let m = functionals.len();
+    let n = x.len() / m.max(1);
+    let s = DMatrix::from_fn(m, m, |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
+    (&s + s.transpose()) * 0.5
 }
 
 /// The static shapes for unit values of functionals: T = X S⁻¹ with X = K⁻¹ E and S = Eᵀ X.
@@ -263,25 +294,46 @@ struct StaticShapes {
 impl StaticShapes {
     fn new(structure: &mut dyn Structure, functionals: Vec<Functional>) -> Result<Self, ReductionError> {
         let flexibility = static_responses(structure, &functionals)?;
-        Self::of(functionals, flexibility)
+        Self::of(functionals, flexibility).map_err(|dependent| dependent.named(structure))
     }
 
-    fn of(functionals: Vec<Functional>, x: Vec<f64>) -> Result<Self, ReductionError> {
-        let m = functionals.len();
-        if m == 0 {
-            return Err(ReductionError("there is neither a contact nor a governor to condense on".into()));
+    fn of(functionals: Vec<Functional>, x: Vec<f64>) -> Result<Self, Dependent> {
+        let s = flexibility(&functionals, &x);
+        // Where S is that near to singular, its inverse, K* and M* hold no digit.
+        let dependent = Dependent::among(&functionals, &s);
+        match Cholesky::new(s).filter(|_| !functionals.is_empty() && dependent.functionals.is_empty()) {
+            Some(factor) => Ok(Self { functionals, flexibility: x, factor }),
+            None => Err(dependent),
         }
-        let n = x.len() / m;
-        let s = DMatrix::from_fn(m, m, |i, j| functionals[i].of(&x[j * n..(j + 1) * n]));
-        let factor = definite((&s + s.transpose()) * 0.5, "the flexibility at the governors")?;
-        Ok(Self { functionals, flexibility: x, factor })
+    }
+
+    /// The same for those that do not follow from the ones before them, at least `least` of them.
+    fn of_independent(
+        structure: &mut dyn Structure,
+        functionals: Vec<Functional>,
+        least: usize,
+    ) -> Result<Self, ReductionError> {
+        let x = static_responses(structure, &functionals)?;
+        let kept = independent(&flexibility(&functionals, &x));
+        let shapes = if kept.len() < least { Self::of(functionals, x) } else { Self::some(&functionals, &x, &kept) };
+        shapes.map_err(|dependent| dependent.named(structure))
+    }
+
+    fn some(functionals: &[Functional], x: &[f64], chosen: &[usize]) -> Result<Self, Dependent> {
+        let n = x.len() / functionals.len();
+        let x = chosen.iter().flat_map(|i| &x[i * n..(i + 1) * n]).copied().collect();
+        Self::of(chosen.iter().map(|i| functionals[*i].clone()).collect(), x)
+    }
+
+    /// Refuses functionals that follow from those before them in `gram`, a matrix condensed on them.
+    fn tell_apart(&self, gram: &DMatrix<f64>) -> Result<(), Dependent> {
+        let dependent = Dependent::among(&self.functionals, gram);
+        if dependent.functionals.is_empty() { Ok(()) } else { Err(dependent) }
     }
 
     /// The shapes for some of the functionals; the others are condensed.
-    fn only(&self, chosen: &[usize]) -> Result<Self, ReductionError> {
-        let n = self.flexibility.len() / self.functionals.len();
-        let x = chosen.iter().flat_map(|i| &self.flexibility[i * n..(i + 1) * n]).copied().collect();
-        Self::of(chosen.iter().map(|i| self.functionals[*i].clone()).collect(), x)
+    fn only(&self, chosen: &[usize]) -> Result<Self, Dependent> {
+        Self::some(&self.functionals, &self.flexibility, chosen)
     }
 
     /// TᵀKT = S⁻¹ and TᵀMT.

@@ -142,3 +142,12 @@ fn dormand_prince_finds_a_contact_inside_one_step() {
     let seen = impact(dormand_prince(1e-8, 1e-10), 1.0, 1.0, law, 2.0 * time, 1);
     assert_close("restitution", -seen.end.v[0], (5.0_f64 / 7.0).sqrt(), 1e-3);
 }
+
+#[test]
+fn free_flight_keeps_the_speed_to_the_last_bit() {
+    for (name, _) in SCHEMES {
+        let mut sys = Modes::sphere(3.7, hertz(1.0, 1.5));
+        let s = State { u: vec![-1.0], v: vec![-0.3], ..sys.state() };
+        march(scheme(name), &mut sys, s, 1e-3, 10_000, |s| assert_eq!(s.v, [-0.3], "{name} at {}", s.t));
+    }
+}

@@ -146,7 +146,7 @@ mod tests {
     #[test]
     fn nan_is_never_lost() {
         let nan = Stress6::new([f64::NAN; 6]);
-        for text in ["pos(s1)", "(s1 < 1)", "abs(s2)", "(s1 >= 0)*0"] {
+        for text in ["pos(s1)", "(s1 < 1)", "abs(s2)", "(s1 >= 0)*0", "s1^0", "1^s1", "s1^2"] {
             assert!(Formula::parse(text).unwrap().value(&nan, &material()).is_nan(), "{text}");
         }
         assert!(value("s1/Zt").is_nan(), "a strength that is missing");
@@ -189,6 +189,14 @@ mod tests {
             let why = Formula::parse(text).err().unwrap_or_default();
             assert!(why.contains(words), "{text:?}: {why:?}");
         }
+    }
+
+    #[test]
+    fn no_text_takes_long() {
+        let refused = |text: &str| Formula::parse(text).err().unwrap_or_default();
+        assert!(refused(&["(".repeat(65), "s1".into(), ")".repeat(65)].concat()).contains("64 deep"));
+        assert!(refused(&"s1+".repeat(1400)).contains("more than 4096"));
+        assert!(Formula::parse(&["(".repeat(64), "s1".into(), ")".repeat(64)].concat()).is_ok());
     }
 
     proptest! {

@@ -6,10 +6,14 @@ use super::elements::{Element, Node, NodeTable};
 use super::error::{MeshError, MeshFault};
 use super::source::{Item, Source};
 
+/// Largest inner angle of a cell, degrees. Beyond, a cell is all but a triangle: the map onto it is nearly singular at the
+/// blunt corner, and what is made of its derivatives there is no stress of the plate.
+pub(super) const BLUNTEST: f64 = 175.0;
+
 /// Lengths below this fraction of the mesh's size count as nothing.
 const NOTHING: f64 = 1e-9;
 
-/// Turns clockwise cells round, refuses those that are not convex. Returns the tags of the turned ones.
+/// Turns clockwise cells round, refuses those that are not convex or nearly so. Returns the tags of the turned ones.
 pub(super) fn orient(
     source: &Source<'_>,
     nodes: &NodeTable,
@@ -28,6 +32,12 @@ pub(super) fn orient(
             let fault = MeshFault::Folded { cell: cell.tag, node: nodes.tag(cell.nodes[worst]) };
             return Err(source.error(source.find(Item::Element(cell.tag)), fault));
         }
+        let corners = cell.nodes.map(|n| nodes.plane(n));
+        if let Some((node, degrees)) = cell.nodes.into_iter().zip(angles(corners)).find(|(_, angle)| *angle > BLUNTEST)
+        {
+            let fault = MeshFault::Blunt { cell: cell.tag, node: nodes.tag(node), degrees };
+            return Err(source.error(source.find(Item::Element(cell.tag)), fault));
+        }
     }
     Ok(turned)
 }
@@ -35,12 +45,21 @@ pub(super) fn orient(
 /// Sines of the inner angles; all positive only for an anticlockwise convex quadrilateral, not a number where an edge
 /// has no length.
 fn sines(p: [[f64; 2]; 4]) -> [f64; 4] {
-    [0, 1, 2, 3].map(|i| {
-        let [before, here, after] = [p[(i + 3) % 4], p[i], p[(i + 1) % 4]];
-        let u = [after[0] - here[0], after[1] - here[1]];
-        let v = [before[0] - here[0], before[1] - here[1]];
-        (u[0] * v[1] - u[1] * v[0]) / (u[0].hypot(u[1]) * v[0].hypot(v[1]))
-    })
+    edges(p).map(|[u, v]| cross(u, v) / (u[0].hypot(u[1]) * v[0].hypot(v[1])))
+}
+
+/// Inner angles of a convex quadrilateral, degrees.
+fn angles(p: [[f64; 2]; 4]) -> [f64; 4] {
+    edges(p).map(|[u, v]| cross(u, v).atan2(u[0] * v[0] + u[1] * v[1]).abs().to_degrees())
+}
+
+/// At each corner the edges to the next one and to the one before.
+fn edges(p: [[f64; 2]; 4]) -> [[[f64; 2]; 2]; 4] {
+    [0, 1, 2, 3].map(|i| [p[(i + 1) % 4], p[(i + 3) % 4]].map(|end| [end[0] - p[i][0], end[1] - p[i][1]]))
+}
+
+fn cross(u: [f64; 2], v: [f64; 2]) -> f64 {
+    u[0] * v[1] - u[1] * v[0]
 }
 
 /// Directed edges of anticlockwise cells, each with its cell, sorted. In a sound mesh each occurs once, since a second

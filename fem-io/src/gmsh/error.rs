@@ -183,6 +183,19 @@ pub enum MeshFault {
         /// Node at its worst corner.
         node: u64,
     },
+    /// A cell that is convex, but only just.
+    #[error(
+        "cell {cell} has an inner angle of {degrees:.2} degrees at node {node}, more than 175, and is all but a triangle: \
+         mesh with transfinite surfaces or Mesh.Smoothing = 10, or refine there"
+    )]
+    Blunt {
+        /// Cell.
+        cell: u64,
+        /// Node at the blunt corner.
+        node: u64,
+        /// Angle there.
+        degrees: f64,
+    },
     /// Two cells over the same place.
     #[error(
         "cells {} and {} lie on the same side of the edge between nodes {} and {}: they overlap; \

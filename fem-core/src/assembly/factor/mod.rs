@@ -35,8 +35,13 @@ pub enum FactorError {
         /// The column.
         column: usize,
     },
-    /// The factor would not fit.
-    TooLarge(String),
+    /// More unknowns than can be numbered.
+    TooLarge(usize),
+    /// This machine could not hold the factor and what its making needs.
+    NoRoom {
+        /// As much or more, bytes.
+        bytes: f64,
+    },
 }
 
 impl fmt::Display for FactorError {
@@ -44,7 +49,8 @@ impl fmt::Display for FactorError {
         match self {
             Self::NotFinite { column } => write!(f, "column {column} holds a number that is not finite"),
             Self::NotPositive { column } => write!(f, "the pivot of column {column} is not positive"),
-            Self::TooLarge(why) => write!(f, "the factor is too large: {why}"),
+            Self::TooLarge(unknowns) => write!(f, "{unknowns} unknowns are more than can be numbered"),
+            Self::NoRoom { bytes } => write!(f, "the factor needs {:.1} GB or more, which there are not", bytes * 1e-9),
         }
     }
 }
@@ -61,15 +67,14 @@ impl Symbolic {
     /// Analyses `pattern`; its own order is the elimination order.
     ///
     /// # Errors
-    /// [`FactorError::TooLarge`] where this machine could not hold the factor and what its making needs.
+    /// [`FactorError::TooLarge`], [`FactorError::NoRoom`].
     pub fn new(pattern: Arc<Pattern>) -> Result<Self, FactorError> {
         if u32::try_from(pattern.ndof()).is_err() {
-            return Err(FactorError::TooLarge(format!("{} unknowns", pattern.ndof())));
+            return Err(FactorError::TooLarge(pattern.ndof()));
         }
         // Asking for all of it at once is refused where parts of it would be granted and then not found.
         let fits = |entries| Vec::<f64>::new().try_reserve_exact(entries).is_ok();
-        let tree = Tree::new(&pattern, fits)
-            .map_err(|entries| FactorError::TooLarge(format!("it needs {:.1} GB or more", 8e-9 * entries as f64)))?;
+        let tree = Tree::new(&pattern, fits).map_err(|entries| FactorError::NoRoom { bytes: 8.0 * entries as f64 })?;
         Ok(Self { pattern, tree: Arc::new(tree) })
     }
 

@@ -1,0 +1,165 @@
+//! What holds of every reader, whatever it is given: an error with words and a place in the text, or a value that is
+//! sound. A target panics where it does not.
+
+use fem_core::failure::{FailureCriterion as _, Site};
+use fem_core::layup::{self, LayupPly};
+use fem_core::material::{Elastic, Material, Strength, Strengths};
+use fem_core::mesh::{Curves, QuadMesh};
+use fem_core::tensor::Stress6;
+use fem_failure::Expression;
+use fem_io::scene::{self, ContactLoad, MeshSource};
+use fem_io::{gmsh, units};
+use miette::Diagnostic as _;
+use std::path::Path;
+
+fn text(data: &[u8]) -> &str {
+    std::str::from_utf8(data).unwrap_or_default()
+}
+
+/// A mesh that is read has finite corners and cells of positive area.
+pub fn mesh(data: &[u8]) {
+    match gmsh::parse(data, "plate.msh", 1e-3) {
+        Ok(plate) => {
+            let mesh = plate.mesh;
+            sound(&mesh);
+            sound(&mesh.refined(Curves::Kept));
+        }
+        Err(error) => {
+            assert!(!error.fault.to_string().is_empty());
+            match error.place {
+                gmsh::Place::File => {}
+                gmsh::Place::Line(line) => assert!((1..=1 + newlines(data)).contains(&line), "{error}"),
+                gmsh::Place::Byte(byte) => assert!(byte <= data.len(), "{error}"),
+            }
+        }
+    }
+}
+
+fn sound(mesh: &QuadMesh) {
+    assert!(mesh.points.iter().flatten().all(|x| x.is_finite()));
+    assert!(!mesh.quads.is_empty() && mesh.quads.len() == mesh.quad_tags.len());
+    assert!((0..mesh.quads.len()).all(|q| mesh.quality(q).area > 0.0), "a cell without area");
+    assert!(mesh.area().is_finite() && mesh.curved_turn().is_finite());
+    let (nodes, cells) = (mesh.points.len() as u32, mesh.quads.len() as u32);
+    for group in mesh.groups.values() {
+        assert!(group.nodes.is_sorted_by(|a, b| a < b) && group.nodes.last().is_none_or(|n| *n < nodes));
+        assert!(group.quads.iter().all(|q| *q < cells));
+    }
+}
+
+fn newlines(data: &[u8]) -> usize {
+    data.iter().filter(|b| **b == b'\n').count()
+}
+
+/// A scene that is read has quantities that a computation can begin with. Its folder is none, so that it names no files.
+pub fn scene(data: &[u8]) {
+    match scene::parse(text(data), Path::new("no-such-folder/scene.toml")) {
+        Ok(scene) => {
+            let positive = |x: f64| assert!(x > 0.0 && x.is_finite(), "{x}");
+            let plies = &scene.laminate.value.plies;
+            assert_eq!(plies.len(), scene.laminate.value.layers.iter().sum::<usize>());
+            plies.iter().for_each(|ply| positive(ply.thickness));
+            positive(scene.laminate.value.thickness());
+            assert!(plies.iter().all(|ply| ply.angle.is_finite() && ply.material < scene.materials.len()));
+            for material in &scene.materials {
+                assert_eq!(material.value.check(), Ok(()));
+            }
+            match scene.mesh {
+                MeshSource::Rectangle { size, cells } => {
+                    size.into_iter().for_each(positive);
+                    assert!(cells.iter().all(|n| *n > 0));
+                }
+                MeshSource::File { metres_per_unit, .. } => positive(metres_per_unit),
+            }
+            if let Some(impact) = scene.impact() {
+                for impactor in &impact.impactors {
+                    [impactor.mass, impactor.velocity].into_iter().for_each(positive);
+                    assert!(impactor.start >= 0.0 && impactor.start.is_finite());
+                    match impactor.load.value {
+                        ContactLoad::Node => {}
+                        ContactLoad::Patch { radius: length } | ContactLoad::Square { side: length } => {
+                            positive(length)
+                        }
+                    }
+                }
+                [impact.march.step.value, impact.march.end.value, scene.failure.every].into_iter().for_each(positive);
+            }
+            scene.output.history_every.into_iter().for_each(positive);
+            assert!(scene.output.checkpoint_every >= 0.0);
+        }
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
+            let source = error.source_code();
+            for label in error.labels().into_iter().flatten() {
+                assert!(source.is_some_and(|text| text.read_span(label.inner(), 0, 0).is_ok()), "no place for {error}");
+            }
+        }
+    }
+}
+
+/// A layup that is read and written ply by ply is the same layup.
+pub fn layup(data: &[u8]) {
+    let text = text(data);
+    match layup::parse(text) {
+        Ok(plies) => {
+            assert!(!plies.is_empty() && plies.len() <= layup::MAX_PLIES);
+            assert!(plies.iter().all(|ply| ply.angle_deg.abs() <= 180.0 && ply.angle_deg.to_bits() != MINUS_ZERO));
+            if plies.len() <= 100 {
+                let written = format!("[{}]", plies.iter().map(written).collect::<Vec<_>>().join("/"));
+                assert_eq!(layup::parse(&written).as_ref(), Ok(&plies), "{written}");
+            }
+        }
+        Err(error) => {
+            assert!(!error.why.is_empty() && text.is_char_boundary(error.at), "{error}");
+            assert!(error.to_string().ends_with('^'));
+        }
+    }
+}
+
+const MINUS_ZERO: u64 = 1 << 63;
+
+fn written(ply: &LayupPly) -> String {
+    let label = ply.label.as_ref().map_or(String::new(), |label| format!("{{{label}}}"));
+    format!("{}{label}", ply.angle_deg)
+}
+
+/// A formula that is read has a value, and none for a stress that is no number.
+pub fn expression(data: &[u8]) {
+    let text = text(data);
+    match Expression::new(Site::Ply, &[("failure", text)]) {
+        Ok(criterion) => {
+            let index = |component| {
+                let mut index = [0.0];
+                criterion.indices(&Stress6::new([component; 6]), &material(), &mut index);
+                index[0]
+            };
+            for component in [0.0, 1e6, -1e300] {
+                index(component);
+            }
+            let names_a_stress = text.as_bytes().windows(2).any(|pair| pair[0] == b's' && pair[1].is_ascii_digit());
+            assert!(index(f64::NAN).is_nan() || !names_a_stress, "{text} is {} without a stress", index(f64::NAN));
+        }
+        Err(why) => assert!(why.starts_with("mode `failure`, `") && !why.ends_with(": "), "{why}"),
+    }
+}
+
+fn material() -> Material {
+    let strengths = Strength::ALL.iter().fold(Strengths::default(), |all, which| all.with(*which, 1e7));
+    let elastic = Elastic::transversely_isotropic(1.3e11, 1e10, 0.3, 0.4, 5e9);
+    Material { name: "tape".into(), elastic, density: None, strengths, giic: None }
+}
+
+/// A quantity that is read is finite, and 0 only where it is written so.
+pub fn units(data: &[u8]) {
+    let text = text(data);
+    match units::parse_quantity(text) {
+        Ok((value, dimension)) => {
+            assert!(
+                value.is_finite() && dimension.0.iter().all(|exponent| exponent.is_finite()),
+                "{text}: {dimension}"
+            );
+            assert_eq!(units::parse_as(text, dimension), Ok(value));
+        }
+        Err(error) => assert!(!error.to_string().is_empty() && !error.remedy(None).is_empty()),
+    }
+}
