@@ -156,7 +156,7 @@ pub struct Part {
 }
 
 /// Work arrays of one thread: handed out by size, kept between cells.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Scratch {
     buffers: Vec<Vec<f64>>,
 }

@@ -3,6 +3,7 @@
 mod command;
 mod estimate;
 mod impact;
+mod large;
 mod loads;
 mod modes;
 mod pagano;

@@ -3,13 +3,17 @@
 mod alike;
 mod coarse;
 mod condition;
+mod equilibrium;
 mod factor;
+mod large;
 mod ordering;
 mod pattern;
 mod sparse;
 mod substructure;
 
+pub use equilibrium::{Equilibrium, EquilibriumError};
 pub use factor::{Cholesky, FactorError, Symbolic};
+pub use large::LargePlate;
 pub use ordering::nested_dissection;
 pub use pattern::{AssemblyError, Pattern, pattern};
 pub use sparse::SparseStructure;

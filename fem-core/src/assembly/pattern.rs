@@ -186,7 +186,7 @@ impl fmt::Display for AssemblyError {
 impl std::error::Error for AssemblyError {}
 
 /// The independent unknowns of a cell, and how its own depend on them.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct CellMap {
     dofs: Vec<usize>,
     /// Independent unknowns, ascending.
@@ -235,6 +235,20 @@ impl CellMap {
         self.places.resize(self.reduced.len(), 0);
         for (local, position, _) in &self.terms {
             self.places[*position] = *local;
+        }
+    }
+
+    /// The cell's part of the displacements of a plate.
+    pub(super) fn gather(&self, all: &[f64], u: &mut [f64]) {
+        for (u, dof) in u.iter_mut().zip(&self.dofs) {
+            *u = all[*dof];
+        }
+    }
+
+    /// Adds `weight` Tᵀ f of a cell to a vector of the independent unknowns.
+    pub(super) fn scatter_vector(&self, f: &[f64], weight: f64, to: &mut [f64]) {
+        for (local, position, factor) in &self.terms {
+            to[self.reduced[*position]] += weight * factor * f[*local];
         }
     }
 

@@ -1,0 +1,144 @@
+//! Equilibrium of a plate under large displacements and loads at rest.
+
+use super::{AssemblyError, Cholesky, FactorError, LargePlate, Symbolic};
+use std::fmt;
+use std::num::NonZeroUsize;
+
+/// Iterations before a load counts as one that cannot be borne.
+const MOST: usize = 60;
+
+/// Newton decrement rᵀ K⁻¹ r over the work of the load at which an iteration ends: the error of the energy is half as large,
+/// that of displacements its root.
+const ENOUGH: f64 = 1e-22;
+
+/// Decrement below which a whole step is right and a line search only measures rounding.
+const NEAR: f64 = 1e-6;
+
+/// Displacements in equilibrium with a load.
+#[derive(Debug, Clone)]
+pub struct Equilibrium {
+    /// Independent displacements.
+    pub u: Vec<f64>,
+    /// Strain energy, J.
+    pub energy: f64,
+    /// Newton decrements rᵀ K⁻¹ r over the work of the load, one per iteration: the squared distance to the solution in the
+    /// energy norm. Near the solution each is about the square of the one before.
+    pub decrements: Vec<f64>,
+}
+
+/// Why there is no equilibrium.
+#[derive(Debug, Clone)]
+pub enum EquilibriumError {
+    /// A cell that could not be integrated.
+    Assembly(AssemblyError),
+    /// A tangent that is not positive definite, or too large.
+    Factor(FactorError),
+    /// Newton's method did not end; the last decrement.
+    NoConvergence(f64),
+}
+
+impl fmt::Display for EquilibriumError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Assembly(error) => error.fmt(f),
+            Self::Factor(FactorError::NotPositive { .. }) => {
+                f.write_str("the tangent stiffness is not positive definite: the plate buckles under this load, or is not held")
+            }
+            Self::Factor(error) => error.fmt(f),
+            Self::NoConvergence(decrement) => write!(
+                f,
+                "Newton's method did not end in {MOST} iterations (decrement {decrement:.1e} of the work of the load): lower the \
+                 load, or refine the mesh where it bends most"
+            ),
+        }
+    }
+}
+impl std::error::Error for EquilibriumError {}
+
+impl LargePlate {
+    /// Solves f(ũ) = `load` by Newton's method from `u`.
+    ///
+    /// Far from the solution the step is the first minimum of the energy along it: the strain energy is a polynomial of the
+    /// fourth degree in the displacements, so that five numbers give all of it along a line and the search is exact. A plate that
+    /// stiffens is never overshot and needs no load steps.
+    ///
+    /// # Errors
+    /// See [`EquilibriumError`].
+    pub fn equilibrium(
+        &mut self,
+        symbolic: Symbolic,
+        load: &[f64],
+        mut u: Vec<f64>,
+        threads: NonZeroUsize,
+    ) -> Result<Equilibrium, EquilibriumError> {
+        let n = self.ndof();
+        let mut tangent = vec![0.0; symbolic.pattern().rows.len()];
+        let mut factor = Cholesky::new(symbolic, threads);
+        let (mut force, mut step, mut tried) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        let mut decrements = Vec::new();
+        for _ in 0..MOST {
+            let energy = self.internal(&u, &mut force, Some(&mut tangent)).map_err(EquilibriumError::Assembly)?;
+            factor.factorise(&tangent).map_err(EquilibriumError::Factor)?;
+            for ((step, load), force) in step.iter_mut().zip(load).zip(&force) {
+                *step = load - force;
+            }
+            let residual = step.clone();
+            factor.solve(&mut step, 1);
+            // The work that the load would do on a linear plate, before there is any other.
+            let work = dot(load, &u).abs().max(dot(load, &step).abs()).max(f64::MIN_POSITIVE);
+            let decrement = dot(&residual, &step) / work;
+            decrements.push(decrement);
+            let near = decrement <= NEAR;
+            let length = if near { 1.0 } else { self.minimum(energy, &force, load, &u, &step, &mut tried)? };
+            u.iter_mut().zip(&step).for_each(|(u, d)| *u += length * d);
+            if !(decrement > ENOUGH) {
+                let energy = self.internal(&u, &mut force, None).map_err(EquilibriumError::Assembly)?;
+                return Ok(Equilibrium { u, energy, decrements });
+            }
+        }
+        Err(EquilibriumError::NoConvergence(decrements.last().copied().unwrap_or(f64::NAN)))
+    }
+
+    /// First minimum of W(u + s d) − s loadᵀ d beyond s = 0.
+    fn minimum(
+        &mut self,
+        energy: f64,
+        force: &[f64],
+        load: &[f64],
+        u: &[f64],
+        d: &[f64],
+        tried: &mut [f64],
+    ) -> Result<f64, EquilibriumError> {
+        let mut scrap = vec![0.0; u.len()];
+        let mut at = |s: f64| {
+            tried.iter_mut().zip(u).zip(d).for_each(|((t, u), d)| *t = u + s * d);
+            self.internal(tried, &mut scrap, None).map_err(EquilibriumError::Assembly)
+        };
+        // W = energy + a s + s² (b + c s + e s²)
+        let a = dot(force, d);
+        let part = |s: f64, w: f64| (w - energy - a * s) / (s * s);
+        let [half, one, two] = [(0.5, at(0.5)?), (1.0, at(1.0)?), (2.0, at(2.0)?)].map(|(s, w)| part(s, w));
+        let e = (two - one - 2.0 * (one - half)) / 1.5;
+        let c = two - one - 3.0 * e;
+        let b = one - c - e;
+        let slope = |s: f64| a - dot(load, d) + s * (2.0 * b + s * (3.0 * c + s * 4.0 * e));
+        // The slope at 0 is minus the decrement; bisect the first change of its sign on a grid.
+        let (mut low, mut high) = (0.0, 1.0);
+        for k in 1..=200 {
+            high = f64::from(k) / 100.0;
+            if slope(high) >= 0.0 {
+                break;
+            }
+            low = high;
+        }
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if slope(middle) < 0.0 { low = middle } else { high = middle }
+        }
+        Ok(high)
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,124 @@
+//! Internal forces and tangents of a plate under large displacements.
+
+use super::pattern::CellMap;
+use super::{AssemblyError, Pattern};
+use crate::constraint::Constraints;
+use crate::element::{Element, ElementError, Scratch};
+use crate::large::LargeDisplacement;
+use crate::plate::Plate;
+use std::sync::Arc;
+
+/// A plate whose cells take large displacements: f(ũ) = Cᵀ f(C ũ) and its derivative on the pattern of K.
+///
+/// Cells differ by their displacements, so that none is alike another; of those that a symmetry maps onto each other one
+/// counts for all. Nothing is allocated after the first call.
+#[derive(Debug, Clone)]
+pub struct LargePlate {
+    plate: Plate,
+    element: Box<dyn Element>,
+    constraints: Constraints,
+    pattern: Arc<Pattern>,
+    /// Cells, and how many each stands for, with their unknowns.
+    cells: Vec<(usize, f64, CellMap)>,
+    /// Displacements before elimination.
+    all: Vec<f64>,
+    work: Work,
+}
+
+/// Arrays of a cell.
+#[derive(Debug, Clone, Default)]
+struct Work {
+    u: Vec<f64>,
+    force: Vec<f64>,
+    tangent: Vec<f64>,
+    scratch: Scratch,
+}
+
+impl LargePlate {
+    /// `pattern` is that of K of the same plate; `None` where the element knows no large displacements.
+    pub fn new(
+        plate: &Plate,
+        element: Box<dyn Element>,
+        constraints: &Constraints,
+        pattern: &Arc<Pattern>,
+    ) -> Option<Self> {
+        element.large_displacements()?;
+        let cells = plate.kept_cells().map(|(cell, weight)| {
+            let mut map = CellMap::default();
+            map.set(plate, constraints, cell);
+            (cell, weight, map)
+        });
+        let n = element.info().ndof();
+        Some(Self {
+            cells: cells.collect(),
+            plate: plate.clone(),
+            element,
+            constraints: constraints.clone(),
+            pattern: pattern.clone(),
+            all: vec![0.0; plate.ndof()],
+            work: Work { u: vec![0.0; n], force: vec![0.0; n], tangent: vec![0.0; n * n], ..Work::default() },
+        })
+    }
+
+    /// Number of independent unknowns.
+    pub fn ndof(&self) -> usize {
+        self.constraints.ndof()
+    }
+
+    /// Cells that are integrated for each force.
+    pub fn cells(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Internal force at the independent displacements `u`, and the tangent where it is asked for; returns the strain energy, J.
+    ///
+    /// # Errors
+    /// A cell that the element refuses, displacements that are not finite.
+    pub fn internal(
+        &mut self,
+        u: &[f64],
+        force: &mut [f64],
+        mut tangent: Option<&mut [f64]>,
+    ) -> Result<f64, AssemblyError> {
+        let Self { plate, element, constraints, pattern, cells, all, work } = self;
+        constraints.expand(u, all);
+        force.fill(0.0);
+        if let Some(tangent) = &mut tangent {
+            tangent.fill(0.0);
+        }
+        let mut energy = 0.0;
+        for (cell, weight, map) in cells {
+            let failed = |error| {
+                let (quad, layer) = plate.place(*cell);
+                AssemblyError { quad_tag: plate.plane.quad_tags[quad], layer, error }
+            };
+            let Some(large) = element.large_displacements() else { continue };
+            let one = work.integrate(large, plate, *cell, map, all, tangent.is_some()).map_err(failed)?;
+            if !one.is_finite() {
+                return Err(failed(ElementError("its strain energy is not finite".into())));
+            }
+            energy += *weight * one;
+            map.scatter_vector(&work.force, *weight, force);
+            if let Some(tangent) = &mut tangent {
+                map.scatter(pattern, &work.tangent, *weight, tangent);
+            }
+        }
+        Ok(energy)
+    }
+}
+
+impl Work {
+    fn integrate(
+        &mut self,
+        large: &dyn LargeDisplacement,
+        plate: &Plate,
+        cell: usize,
+        map: &CellMap,
+        all: &[f64],
+        tangent: bool,
+    ) -> Result<f64, ElementError> {
+        let Self { u, force, tangent: matrix, scratch } = self;
+        map.gather(all, u);
+        large.internal(&plate.cell(cell), u, scratch, force, tangent.then_some(matrix))
+    }
+}
