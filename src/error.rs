@@ -103,6 +103,8 @@ pub enum Error {
 }
 
 const STEP: &str = "shorten `march.step`";
+const STEP_OR_LAW: &str = "shorten `march.step`; where that changes nothing, look at the contact law: \
+                           `fem_core::testkit::check_contact_law` finds what is wrong with it";
 const MATRIX: &str =
     "look at the supports, at the constants of the materials, and at the element where it is not a shipped one";
 const LAW: &str = "look at the contact law: `fem_core::testkit::check_contact_law` finds what is wrong with it";
@@ -111,6 +113,7 @@ const LAW: &str = "look at the contact law: `fem_core::testkit::check_contact_la
 fn remedy(alarm: &Alarm) -> &'static str {
     match alarm {
         Alarm::Pull { .. } => LAW,
+        Alarm::NotFinite(_) | Alarm::Energy(0.0..) => STEP_OR_LAW,
         Alarm::Indefinite { .. } => MATRIX,
         _ => STEP,
     }

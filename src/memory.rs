@@ -106,7 +106,9 @@ pub(crate) fn check_plate(plate: &Plate) -> Result<(), Error> {
 }
 
 fn check(needed: f64, parts: impl Fn() -> String) -> Result<(), Error> {
-    let fits = available().is_none_or(|available| needed <= available as f64);
+    // What the process holds already is part of what is needed.
+    let held = crate::cost::status("VmRSS").unwrap_or(0);
+    let fits = available().is_none_or(|available| needed <= (available + held) as f64);
     if fits { Ok(()) } else { Err(refused(needed, parts())) }
 }
 
@@ -118,9 +120,9 @@ fn refused(needed: f64, parts: String) -> Error {
 /// Memory that the process can still be given, bytes: of the machine, of its control group, of its limit on addresses,
 /// whichever is least. `None` where the system does not tell.
 pub fn available() -> Option<u64> {
-    let memory = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
+    let memory = RefreshKind::nothing().with_memory(MemoryRefreshKind::everything());
     let system = System::new_with_specifics(memory);
-    let machine = Some(system.available_memory()).filter(|bytes| *bytes > 0);
+    let machine = Some(system.available_memory()).filter(|bytes| *bytes > 0).map(|bytes| bytes + system.free_swap());
     // What a group keeps of files it gives back when asked, and is not counted.
     let group = system.cgroup_limits().map(|limits| limits.total_memory.saturating_sub(limits.rss));
     [machine, group, addresses()].into_iter().flatten().min()

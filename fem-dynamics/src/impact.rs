@@ -29,7 +29,10 @@ pub struct Impactor {
 impl Impactor {
     /// Indentation (m) at which the contact has taken `energy` (J) on first loading; `None` where it never does.
     pub fn indentation_of(&self, energy: f64) -> Option<f64> {
-        let work = |alpha: f64| self.law.energy(&ContactHistory::default(), alpha).stored;
+        let work = |alpha: f64| {
+            let ContactEnergy { stored, dissipated } = self.law.energy(&ContactHistory::default(), alpha);
+            stored + dissipated
+        };
         let mut high = 1.0;
         while !(work(high) >= energy) {
             high *= 2.0;

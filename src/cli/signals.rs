@@ -5,10 +5,10 @@ use signal_hook::flag;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Signals that are heard.
-#[cfg(unix)]
+/// Signals that are heard. SIGHUP where the system tells whether it is to be ignored.
+#[cfg(target_os = "linux")]
 const HEARD: [i32; 3] = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
-#[cfg(not(unix))]
+#[cfg(not(target_os = "linux"))]
 const HEARD: [i32; 2] = [SIGINT, SIGTERM];
 
 /// Hears the first Ctrl-C, SIGTERM or SIGHUP (a terminal that closes); a second one ends the process as if nobody listened.

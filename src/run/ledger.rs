@@ -35,25 +35,31 @@ impl Ledger {
         Ok(())
     }
 
-    /// Adds up the energies.
-    pub(super) fn balance(&mut self, system: &ImpactSystem, guard: &Guard, state: &State) -> Result<Energies, Alarm> {
+    /// Adds up the energies; they are returned as well where an alarm is.
+    pub(super) fn balance(
+        &mut self,
+        system: &ImpactSystem,
+        guard: &Guard,
+        state: &State,
+    ) -> (Energies, Result<(), Alarm>) {
         let energies = system.energies(state, &mut self.work);
-        let change = guard.balance(&energies).inspect_err(|alarm| {
-            if let Alarm::Energy(change) = alarm {
-                self.error = self.error.max(change.abs());
-            }
-        })?;
-        self.error = self.error.max(change.abs());
-        Ok(energies)
+        let balanced = guard.balance(&energies);
+        if let Ok(change) | Err(Alarm::Energy(change)) = balanced {
+            self.error = self.error.max(change.abs());
+        }
+        (energies, balanced.map(|_| ()))
     }
 
     pub(super) fn records(&self) -> impl Iterator<Item = ContactRecord> {
         self.contacts.iter().map(|contact| contact.record)
     }
 
-    /// Writes a row.
+    /// Writes a row, also the last one of a march that leaks; none of numbers that are not finite.
     pub(super) fn row(&mut self, system: &ImpactSystem, guard: &Guard, state: &State) -> Result<(), Alarm> {
-        let e = self.balance(system, guard, state)?;
+        let (e, balanced) = self.balance(system, guard, state);
+        if let Err(Alarm::NotFinite(_)) = balanced {
+            return balanced;
+        }
         let impactor = |i: usize| {
             let Touch { force, velocity, .. } = system.touch(i, state);
             ImpactorRow {
@@ -73,7 +79,7 @@ impl Ledger {
             contact_dissipated_j: e.dissipated,
             energy_balance_j: e.total() - guard.energy(),
         });
-        Ok(())
+        balanced
     }
 }
 

@@ -41,7 +41,8 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
 
 /// A march in time.
 ///
-/// One that meets what no impact can do ([`Guard`]), or an error, stops and keeps what it had ([`Outcome::stopped`]). One that is saved, and resumed by another process, finds bit for bit what it would have found
+/// One that meets what no impact can do ([`Guard`]), or an error, stops and keeps what it had ([`Outcome::stopped`]). One
+/// that is saved, and resumed by another process, finds bit for bit what it would have found
 /// in one piece, whenever and however often it was saved.
 #[derive(Debug)]
 pub struct March<'a> {
@@ -241,7 +242,7 @@ impl<'a> March<'a> {
         if row {
             self.row()?;
         } else if step.is_multiple_of(BALANCE_EVERY) {
-            ledger.balance(system, guard, state)?;
+            ledger.balance(system, guard, state).1?;
         }
         if scan { self.sample() } else { Ok(()) }
     }

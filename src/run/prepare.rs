@@ -203,7 +203,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         limit::longest_step(&mut system, limited).map_err(|e| unmarchable(model, impact, e))?;
     let hertz = |omega: f64| omega / std::f64::consts::TAU;
     if let (StepLimit::OmegaDt(omega_dt), Some(omega)) = (limited, highest)
-        && march.step.value > longest_step
+        && !(march.step.value <= longest_step)
     {
         let frequency = hertz(omega_dt / longest_step);
         let (step, limit, plate) = (march.step.value, longest_step, hertz(omega));

@@ -13,9 +13,9 @@ const END: &str = "<!-- End of what is written. -->\n";
 
 /// Compares the table with what was measured, or writes it anew. Cases that did not run keep their row.
 ///
-/// A figure stands as it is while the measured one rounds to it or to a neighbour, a rounding error while it is no larger, a
-/// time within a factor of 4 when the table is written and always when it is compared: no table changes by the noise of a
-/// machine.
+/// When it is written, a figure stays while the measured one rounds to it or to a neighbour, a rounding error within decades, a
+/// time within a factor of 4; when it is compared, figures that are no worse stay as well, and times say nothing: no table
+/// changes by the noise of a machine.
 pub(crate) fn compare(cases: &[Case], measured: &[Measured]) -> Result<(), String> {
     let path = root().join(FILE);
     let text = fs::read_to_string(&path).map_err(|e| format!("{FILE}: {e}"))?;
@@ -33,7 +33,7 @@ pub(crate) fn compare(cases: &[Case], measured: &[Measured]) -> Result<(), Strin
     Err(format!("{FILE} is not what was measured; write it anew with UPDATE_STABILITY=1. Now:\n{differ}"))
 }
 
-fn table(cases: &[Case], measured: &[Measured], old: &str, times: bool) -> String {
+fn table(cases: &[Case], measured: &[Measured], old: &str, update: bool) -> String {
     let mut text = String::new();
     for room in Room::ALL {
         let rows: Vec<_> = cases.iter().filter(|case| case.room == room).collect();
@@ -46,8 +46,8 @@ fn table(cases: &[Case], measured: &[Measured], old: &str, times: bool) -> Strin
             let shown = |k: usize| before.as_ref().and_then(|cells| cells.get(k)).copied().unwrap_or_default();
             let (worst, seconds) = match measured.iter().find(|m| m.name == case.name) {
                 Some(m) => (
-                    if near(shown(4), m.worst) { shown(4).to_owned() } else { figure(m.worst) },
-                    if close(shown(5), m.seconds) || (!times && before.is_some()) {
+                    if near(shown(4), m.worst, update) { shown(4).to_owned() } else { figure(m.worst) },
+                    if close(shown(5), m.seconds) || (!update && before.is_some()) {
                         shown(5).to_owned()
                     } else {
                         time(m.seconds)
@@ -56,7 +56,8 @@ fn table(cases: &[Case], measured: &[Measured], old: &str, times: bool) -> Strin
                 None => (shown(4).to_owned(), shown(5).to_owned()),
             };
             let Case { name, varied, measure, bound, .. } = case;
-            writeln!(text, "| {name} | {varied} | {measure} | {} | {worst} | {seconds} |", figure(*bound)).unwrap();
+            let bound = if *bound < 1e-2 && *bound > 0.0 { format!("{bound:e}") } else { format!("{bound}") };
+            writeln!(text, "| {name} | {varied} | {measure} | {bound} | {worst} | {seconds} |").unwrap();
         }
     }
     text.push('\n');
@@ -80,16 +81,12 @@ fn figure(value: f64) -> String {
 /// Values below are rounding errors, of which the decade is all that other machines agree on.
 const ROUNDING: f64 = 1e-8;
 
-fn near(shown: &str, value: f64) -> bool {
+/// Whether a figure may stay. When the table is compared, a better one is no difference: rounding is not the same everywhere.
+fn near(shown: &str, value: f64, update: bool) -> bool {
     let Ok(shown) = shown.parse::<f64>() else { return false };
-    let ratio = value / shown;
-    if value == shown {
-        true
-    } else if value < ROUNDING {
-        (1e-2..=10.0).contains(&ratio)
-    } else {
-        (ratio - 1.0).abs() < 0.06
-    }
+    let (small, least) = (value < ROUNDING, if update { 0.94 } else { 0.0 });
+    let most = if small { 10.0 } else { 1.06 };
+    value == shown || (if small && update { 1e-2 } else { least }..=most).contains(&(value / shown))
 }
 
 fn time(seconds: f64) -> String {

@@ -223,13 +223,18 @@ fn columns(structure: &dyn Structure, asked: usize, others: usize) -> Result<usi
 
 /// Columns that do not depend on those before them, of a basis with the Gram matrix `gram`.
 fn independent(gram: &DMatrix<f64>) -> Vec<usize> {
+    shares(gram).into_iter().enumerate().filter(|(_, share)| *share > DEPENDENT).map(|(j, _)| j).collect()
+}
+
+/// How much of each column is left beside those before it, those left out of which nothing is.
+fn shares(gram: &DMatrix<f64>) -> Vec<f64> {
     let mut kept: Vec<usize> = Vec::new();
     // Rows of the Cholesky factor of the columns kept.
     let mut rows: Vec<Vec<f64>> = Vec::new();
-    for j in 0..gram.ncols() {
-        let mut row = Vec::with_capacity(rows.len() + 1);
+    let column = |j: usize| {
+        let mut row: Vec<f64> = Vec::with_capacity(kept.len() + 1);
         for (i, other) in kept.iter().zip(&rows) {
-            let known: f64 = other.iter().zip(&row).map(|(a, b)| a * b).sum();
+            let known: f64 = row.iter().zip(other).map(|(a, b)| a * b).sum();
             row.push((gram[(*i, j)] - known) / other[row.len()]);
         }
         let left = gram[(j, j)] - row.iter().map(|x| x * x).sum::<f64>();
@@ -238,8 +243,9 @@ fn independent(gram: &DMatrix<f64>) -> Vec<usize> {
             rows.push(row);
             kept.push(j);
         }
-    }
-    kept
+        left / gram[(j, j)]
+    };
+    (0..gram.ncols()).map(column).collect()
 }
 
 /// Functionals whose values follow from those before them, to rounding; none where there is none at all.
@@ -329,6 +335,13 @@ impl StaticShapes {
     fn tell_apart(&self, gram: &DMatrix<f64>) -> Result<(), Dependent> {
         let dependent = Dependent::among(&self.functionals, gram);
         if dependent.functionals.is_empty() { Ok(()) } else { Err(dependent) }
+    }
+
+    /// The functional of which least is left beside those before it.
+    fn nearest(&self) -> Dependent {
+        let shares = shares(&flexibility(&self.functionals, &self.flexibility));
+        let least = (0..shares.len()).min_by(|i, j| shares[*i].total_cmp(&shares[*j]));
+        Dependent { functionals: least.map(|i| self.functionals[i].clone()).into_iter().collect() }
     }
 
     /// The shapes for some of the functionals; the others are condensed.

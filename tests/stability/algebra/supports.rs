@@ -13,13 +13,15 @@ pub(super) fn cases() -> Vec<Case> {
         Room::Algebra.case(
             "motions left free",
             "all 63 combinations of the six rigid motions; elements with and without derivatives, and the shell",
-            "combinations that are not refused by the names of all their motions",
+            "combinations that are not refused by the names of all their motions (the 8 with no translation held: as having no \
+             support)",
             0.0,
             free_motions,
         ),
         Room::Algebra.case(
             "supports that all but leave a motion free",
-            "two of three supported nodes 1e-3 to 1e-10 of the plate apart; elements with and without derivatives, and the shell",
+            "two of three supported nodes 1e-3 to 1e-10 of the plate apart, under a pull that asks nothing of them; elements with and \
+             without derivatives, and the shell",
             "plates that are neither refused by name, nor warned of, nor right to 0.1 %",
             0.0,
             near_hinges,

@@ -14,9 +14,9 @@ pub(super) fn cases() -> Vec<Case> {
         Room::Time.case(
             "stiff and soft contact: energy",
             swept,
-            "energy error over that of the impact (and no force is negative)",
-            TOLERANCE,
-            || sweep().energy,
+            "times that the step has to be divided by four until the energy error is below 1e-2 (and no force is negative)",
+            3.0,
+            || sweep().divided,
         ),
         Room::Time.case(
             "stiff and soft contact: impulse",
@@ -71,7 +71,7 @@ const K: f64 = 8e8;
 /// The worst of the sweep, which each row makes for itself: it takes some seconds.
 #[derive(Debug, Default)]
 struct Sweep {
-    energy: f64,
+    divided: f64,
     impulse: f64,
     rebound: f64,
 }
@@ -97,19 +97,19 @@ impl Sweep {
         let fastest = system().frequency_bound(plate.highest()).unwrap();
         let end = (1.5 * PI * (mass * plate.flexibility()).sqrt()).max(600.0 / fastest);
         // As somebody does who is told to shorten the step.
-        let marches = [10_000_usize, 40_000, 160_000, 640_000].into_iter().map(|most| {
+        let marches = [10_000_usize, 40_000, 160_000, 640_000].into_iter().enumerate().map(|(divided, most)| {
             let steps = ((10.0 * end * fastest) as usize).min(most);
             let dt = end / steps as f64;
-            (dt, march(integrator("newmark"), &mut system(), dt, steps))
+            (divided, dt, march(integrator("newmark"), &mut system(), dt, steps))
         });
-        let accepted = marches.flat_map(|(dt, seen)| seen.map(|seen| (dt, seen)));
-        let Some((dt, seen)) = accepted.into_iter().find(|(_, seen)| seen.imbalance() <= TOLERANCE) else {
+        let accepted = marches.flat_map(|(divided, dt, seen)| seen.map(|seen| (divided, dt, seen)));
+        let Some((divided, dt, seen)) = accepted.into_iter().find(|(_, _, seen)| seen.imbalance() <= TOLERANCE) else {
             panic!("{mass} kg, {velocity} m/s, {:?}: no step is short enough", law());
         };
         let after = seen.state.v.last().unwrap();
         // Newmark's velocities are those of the trapezoidal rule, with no force before the first step.
         let impulse = dt * (seen.forces.iter().sum::<f64>() - 0.5 * seen.forces.last().unwrap());
-        self.energy = largest([self.energy, seen.imbalance()]);
+        self.divided = largest([self.divided, divided as f64]);
         self.impulse = largest([self.impulse, ((velocity - after - impulse / mass) / velocity).abs()]);
         self.rebound = largest([self.rebound, (after.abs() / velocity - 1.0).max(0.0)]);
         assert!(seen.forces.iter().all(|force| *force >= 0.0));
