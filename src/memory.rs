@@ -119,7 +119,7 @@ fn refused(needed: f64, parts: String) -> Error {
 
 /// Memory that the process can still be given, bytes: of the machine, of its control group, of its limit on addresses,
 /// whichever is least. `None` where the system does not tell.
-pub fn available() -> Option<u64> {
+fn available() -> Option<u64> {
     let memory = RefreshKind::nothing().with_memory(MemoryRefreshKind::everything());
     let system = System::new_with_specifics(memory);
     let machine = Some(system.available_memory()).filter(|bytes| *bytes > 0).map(|bytes| bytes + system.free_swap());

@@ -21,8 +21,8 @@ use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit}
 /// ```
 ///
 /// With ρ∞, the spectral radius for ω Δt → ∞, from 0 to 1: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1),
-/// γ = 1/2 − α_m + α_f, β = (1 − α_m + α_f)²/4: second order, stable for
-/// every step of a linear system.
+/// γ = 1/2 − α_m + α_f, β = (1 − α_m + α_f)²/4: second order, stable for every step of a
+/// linear system.
 ///
 /// A contact that opens and closes is none: at each bounce a mode may gain some (ω Δt)³ of its energy, ω with the stiffness
 /// of the contact. Where step and period are commensurate it does so every time, and from ω Δt of about 1/3 on a light mode
