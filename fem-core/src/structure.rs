@@ -1,4 +1,4 @@
-//! What the dynamic half may ask of a linear structure, sparse or reduced.
+//! What the dynamic half may ask of a structure, sparse or reduced, linear or not.
 
 use crate::prolongation::Coarse;
 use std::fmt;
@@ -14,7 +14,7 @@ impl fmt::Display for SolveError {
 }
 impl std::error::Error for SolveError {}
 
-/// A linear structure with stiffness K (symmetric, positive definite) and mass M (symmetric, semi-definite).
+/// A structure with stiffness K (symmetric, positive definite) and mass M (symmetric, semi-definite).
 pub trait Structure: fmt::Debug + Send {
     /// Number of unknowns.
     fn ndof(&self) -> usize;
@@ -29,6 +29,9 @@ pub trait Structure: fmt::Debug + Send {
 
     /// `Y ← Y + scale · M X`, X and Y of `ndof × columns`, column-major.
     fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]);
+
+    /// `y ← y + scale · C x`, C of viscous damping; none adds nothing.
+    fn add_damping(&self, _scale: f64, _x: &[f64], _y: &mut [f64]) {}
 
     /// `X ← (K + shift · M)⁻¹ X`, X of `ndof × columns`, column-major. The last factorisation is kept.
     ///
@@ -75,6 +78,11 @@ pub trait Structure: fmt::Debug + Send {
         Ok(1.02 * square.sqrt())
     }
 
+    /// Its internal force, where that is not K u.
+    fn nonlinear(&mut self) -> Option<&mut dyn Nonlinear> {
+        None
+    }
+
     /// A coarse model of the structure, where it has one.
     ///
     /// # Errors
@@ -87,4 +95,37 @@ pub trait Structure: fmt::Debug + Send {
     fn work(&self) -> (u64, u64) {
         (0, 0)
     }
+}
+
+/// Internal forces that are not linear in the displacements: f(u) = ∂W/∂u with f(0) = 0 and ∂f/∂u = K at u = 0.
+pub trait Nonlinear {
+    /// Internal force at `u`; returns the strain energy W, J.
+    ///
+    /// # Errors
+    /// A cell that cannot be integrated, displacements that are not finite.
+    fn internal(&mut self, u: &[f64], force: &mut [f64]) -> Result<f64, SolveError>;
+
+    /// Factorises a tangent and keeps it.
+    ///
+    /// # Errors
+    /// A matrix that is not positive definite; the message names the unknown.
+    fn linearise(&mut self, tangent: &Tangent) -> Result<(), SolveError>;
+
+    /// `X ← A⁻¹ X` with the last tangent, X of `ndof × columns`, column-major.
+    ///
+    /// # Errors
+    /// There was none.
+    fn solve_linearised(&mut self, x: &mut [f64], columns: usize) -> Result<(), SolveError>;
+}
+
+/// Which tangent is meant: A = ∂f/∂u + cm M + cc C, C the damping.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Tangent {
+    /// Factor on the mass.
+    pub cm: f64,
+    /// Factor on the damping.
+    pub cc: f64,
+    /// Displacements at which the internal force is derived.
+    pub u: Vec<f64>,
 }

@@ -135,7 +135,7 @@ impl std::error::Error for Alarm {}
 
 impl Guard {
     /// The bounds of `system` from its initial state.
-    pub fn new(system: &ImpactSystem) -> Self {
+    pub fn new(system: &mut ImpactSystem) -> Self {
         let energy = system.energies(&system.initial(), &mut Vec::new()).total();
         let most = GROSS * energy;
         let bounds = system.impactors().iter().map(|impactor| Bounds {

@@ -1,9 +1,12 @@
-//! A linear structure under the impact of lumped masses: the system that integrators march.
+//! A structure under the impact of lumped masses: the system that integrators march.
+
+mod newton;
 
 use crate::guard::Touch;
 use fem_core::contact::{Branches, ContactEnergy, ContactHistory, ContactLaw, Indentation};
-use fem_core::structure::Structure;
+use fem_core::structure::{SolveError, Structure};
 use fem_core::time::{SecondOrderSystem, State, StepError};
+use newton::Newton;
 
 /// Change of an indentation by its own force, relative, at which several contacts count as solved: ten times the
 /// tolerance of one.
@@ -52,20 +55,22 @@ impl Impactor {
     }
 }
 
-/// `M ü + K u = Σ F p`, `m z̈ = −F` (report eqs 33-35), unknowns: those of the structure, then one z per impactor,
+/// `M ü + f(u) = Σ F p`, `m z̈ = −F` (report eqs 33-35), unknowns: those of the structure, then one z per impactor,
 /// positive towards the structure.
 ///
-/// The structure is linear, so an implicit step needs the response to each contact load once per step length and then
-/// one back-substitution and a scalar equation per step.
+/// Of a linear structure, f = K u, an implicit step needs the response to each contact load once per step length and then
+/// one back-substitution and a scalar equation per step. Otherwise it is an iteration of Newton's, each turn of which costs
+/// an internal force and as much again; the tangent is renewed where the iteration is slow.
 #[derive(Debug)]
 pub struct ImpactSystem {
     structure: Box<dyn Structure>,
     impactors: Vec<Impactor>,
     influence: Influence,
+    newton: Newton,
     contact_calls: u64,
 }
 
-/// Responses X = (K + cm M)⁻¹ p to the contact loads, for one cm.
+/// Responses X = (K + cm M)⁻¹ p to the contact loads, for one cm; of a structure that is not linear, to its tangent.
 #[derive(Debug, Default)]
 struct Influence {
     cm: f64,
@@ -102,7 +107,7 @@ impl Energies {
 impl ImpactSystem {
     /// Couples `impactors` to `structure`.
     pub fn new(structure: Box<dyn Structure>, impactors: Vec<Impactor>) -> Self {
-        Self { structure, impactors, influence: Influence::default(), contact_calls: 0 }
+        Self { structure, impactors, influence: Influence::default(), newton: Newton::default(), contact_calls: 0 }
     }
 
     /// The state at t = 0: the structure at rest, the impactors on their way.
@@ -159,8 +164,12 @@ impl ImpactSystem {
     }
 
     /// The energy ledger of an accepted state.
-    pub fn energies(&self, state: &State, work: &mut Vec<f64>) -> Energies {
+    pub fn energies(&mut self, state: &State, work: &mut Vec<f64>) -> Energies {
         let n = self.structure.ndof();
+        work.clear();
+        work.resize(n, 0.0);
+        // What cannot be integrated is no number, which the guard sees.
+        let large = self.structure.nonlinear().map(|f| f.internal(&state.u[..n], work).unwrap_or(f64::NAN));
         let mut product = |x: &[f64], add: &dyn Fn(&[f64], &mut [f64])| {
             work.clear();
             work.resize(n, 0.0);
@@ -169,7 +178,7 @@ impl ImpactSystem {
         };
         let mut energies = Energies {
             kinetic: product(&state.v[..n], &|x, y| self.structure.add_mass(1.0, x, y)),
-            strain: product(&state.u[..n], &|x, y| self.structure.add_stiffness(1.0, x, y)),
+            strain: large.unwrap_or_else(|| product(&state.u[..n], &|x, y| self.structure.add_stiffness(1.0, x, y))),
             ..Energies::default()
         };
         for (i, impactor) in self.impactors.iter().enumerate() {
@@ -226,20 +235,8 @@ impl ImpactSystem {
         if self.influence.cm == cm && !self.influence.x.is_empty() {
             return Ok(());
         }
-        let n = self.structure.ndof();
-        let count = self.impactors.len();
-        let mut x = vec![0.0; n * count];
-        for (impactor, column) in self.impactors.iter().zip(x.chunks_exact_mut(n)) {
-            add(&impactor.load, 1.0, column);
-        }
-        self.structure.solve_shifted(cm, &mut x, count).map_err(|e| StepError::Factorisation(e.0))?;
-        let mut approach = Vec::with_capacity(count * count);
-        for (i, impactor) in self.impactors.iter().enumerate() {
-            let own = |j| if i == j { 1.0 / (cm * impactor.mass) } else { 0.0 };
-            approach.extend(x.chunks_exact(n).enumerate().map(|(j, x)| value(&impactor.load, x) + own(j)));
-        }
-        self.influence = Influence { cm, x, approach, free: vec![0.0; count], forces: vec![0.0; count] };
-        Ok(())
+        let Self { structure, impactors, influence, .. } = self;
+        influence.set(cm, structure.ndof(), impactors, |x, count| structure.solve_shifted(cm, x, count))
     }
 }
 
@@ -271,7 +268,14 @@ impl SecondOrderSystem for ImpactSystem {
     fn force(&mut self, _: f64, u: &[f64], _: &[f64], h: &[ContactHistory], f: &mut [f64]) {
         let n = self.structure.ndof();
         f.fill(0.0);
-        self.structure.add_stiffness(-1.0, &u[..n], &mut f[..n]);
+        match self.structure.nonlinear() {
+            None => self.structure.add_stiffness(-1.0, &u[..n], &mut f[..n]),
+            // What cannot be integrated is no number, which the guard sees.
+            Some(structure) => match structure.internal(&u[..n], &mut f[..n]) {
+                Ok(_) => f[..n].iter_mut().for_each(|f| *f = -*f),
+                Err(_) => f.fill(f64::NAN),
+            },
+        }
         for (i, impactor) in self.impactors.iter().enumerate() {
             let force = impactor.law.force(&h[i], self.approach(i, u)).force;
             self.contact_calls += 1;
@@ -288,7 +292,10 @@ impl SecondOrderSystem for ImpactSystem {
         }
     }
 
-    fn add_damping(&self, _: f64, _: &[f64], _: &mut [f64]) {}
+    fn add_damping(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        let n = self.structure.ndof();
+        self.structure.add_damping(scale, &x[..n], &mut y[..n]);
+    }
 
     fn solve_mass(&mut self, _: f64, x: &mut [f64]) -> Result<(), StepError> {
         let n = self.structure.ndof();
@@ -302,34 +309,26 @@ impl SecondOrderSystem for ImpactSystem {
     fn solve_implicit(
         &mut self,
         cm: f64,
-        _: f64,
+        cc: f64,
         t: f64,
         h: &[ContactHistory],
         from: &[f64],
         d: &mut [f64],
     ) -> Result<(), StepError> {
+        if self.structure.nonlinear().is_some() {
+            return self.iterate(cm, cc, t, h, from, d);
+        }
         self.prepare(cm)?;
         let n = self.structure.ndof();
-        let Self { structure, impactors, influence, contact_calls } = self;
+        let Self { structure, impactors, influence, contact_calls, .. } = self;
         structure.add_stiffness(-1.0, &from[..n], &mut d[..n]);
         structure.solve_shifted(cm, &mut d[..n], 1).map_err(|e| StepError::Factorisation(e.0))?;
         for (d, impactor) in d[n..].iter_mut().zip(impactors.iter()) {
             *d /= cm * impactor.mass;
         }
-        // d is the response without contact; each contact adds F (X, −1/(cm m)).
-        for (i, impactor) in impactors.iter().enumerate() {
-            let approach = |x: &[f64]| x[n + i] - value(&impactor.load, x);
-            influence.free[i] = approach(from) + approach(d);
-        }
-        *contact_calls += influence.balance(impactors, t, h)?;
-        for (i, (impactor, force)) in impactors.iter().zip(&influence.forces).enumerate() {
-            if *force != 0.0 {
-                for (d, x) in d.iter_mut().zip(&influence.x[i * n..(i + 1) * n]) {
-                    *d += force * x;
-                }
-                d[n + i] -= force / (cm * impactor.mass);
-            }
-        }
+        influence.free.fill(0.0);
+        influence.approached(impactors, from);
+        *contact_calls += influence.touch(impactors, t, h, d)?;
         Ok(())
     }
 
@@ -350,6 +349,63 @@ impl SecondOrderSystem for ImpactSystem {
 }
 
 impl Influence {
+    /// The responses for `cm`, found by `solve`, of a structure of `n` unknowns.
+    fn set(
+        &mut self,
+        cm: f64,
+        n: usize,
+        impactors: &[Impactor],
+        solve: impl FnOnce(&mut [f64], usize) -> Result<(), SolveError>,
+    ) -> Result<(), StepError> {
+        let count = impactors.len();
+        let Self { x, approach, free, forces, .. } = self;
+        x.clear();
+        x.resize(n * count, 0.0);
+        for (impactor, column) in impactors.iter().zip(x.chunks_exact_mut(n)) {
+            add(&impactor.load, 1.0, column);
+        }
+        solve(x, count).map_err(|e| StepError::Factorisation(e.0))?;
+        approach.clear();
+        for (i, impactor) in impactors.iter().enumerate() {
+            let own = |j| if i == j { 1.0 / (cm * impactor.mass) } else { 0.0 };
+            approach.extend(x.chunks_exact(n).enumerate().map(|(j, x)| value(&impactor.load, x) + own(j)));
+        }
+        free.resize(count, 0.0);
+        forces.resize(count, 0.0);
+        self.cm = cm;
+        Ok(())
+    }
+
+    /// Adds what the displacements `x` add to the approaches without forces.
+    fn approached(&mut self, impactors: &[Impactor], x: &[f64]) {
+        let n = x.len() - impactors.len();
+        for (i, (impactor, free)) in impactors.iter().zip(&mut self.free).enumerate() {
+            *free += x[n + i] - value(&impactor.load, x);
+        }
+    }
+
+    /// Work of the contact forces along `d`.
+    fn work(&self, impactors: &[Impactor], d: &[f64]) -> f64 {
+        impactors.iter().zip(&self.forces).map(|(impactor, force)| force * value(&impactor.load, d)).sum()
+    }
+
+    /// Finds the contact forces for the response `d` without contact, and adds that to each, F (X, −1/(cm m)); returns the
+    /// evaluations of contact laws.
+    fn touch(&mut self, impactors: &[Impactor], t: f64, h: &[ContactHistory], d: &mut [f64]) -> Result<u64, StepError> {
+        self.approached(impactors, d);
+        let calls = self.balance(impactors, t, h)?;
+        let n = d.len() - impactors.len();
+        for (i, (impactor, force)) in impactors.iter().zip(&self.forces).enumerate() {
+            if *force != 0.0 {
+                for (d, x) in d.iter_mut().zip(&self.x[i * n..(i + 1) * n]) {
+                    *d += force * x;
+                }
+                d[n + i] -= force / (self.cm * impactor.mass);
+            }
+        }
+        Ok(calls)
+    }
+
     /// Finds the contact forces, each in turn until none changes; returns the evaluations of contact laws.
     ///
     /// The approaches are symmetric and positive and no force falls with its indentation, so that this converges,

@@ -1,11 +1,13 @@
 //! From a scene to a model: everything that is decided before the first matrix.
 
 mod builder;
+mod effects;
 mod gauge;
 mod plan;
 mod substructures;
 mod symmetry;
 
+pub use effects::Effects;
 pub use gauge::Gauge;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 
@@ -58,6 +60,8 @@ pub struct Model {
     pub gauges: Vec<Gauge>,
     /// Force at which the laminate delaminates, where damage is looked for and a material gives the toughness.
     pub threshold: Option<DelaminationThreshold>,
+    /// What is simulated beyond the linear elastic plate.
+    pub effects: Effects,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -102,7 +106,8 @@ impl Model {
         warnings.extend(implausible(&mesh, &laminate));
 
         let element = builder.element()?;
-        let criteria = match scene.damage {
+        let effects = builder.effects(&*element)?;
+        let criteria = match scene.effects.damage {
             Damage::Off => Vec::new(),
             Damage::Onset => builder.criteria()?,
         };
@@ -136,7 +141,7 @@ impl Model {
         let watched = builder.watched(&plate, &centres)?;
         let gauges = builder.gauges(&plate, &watched, &criteria)?;
         let resin = scene.interface.as_ref().map(|resin| resin.value);
-        let threshold = match scene.damage {
+        let threshold = match scene.effects.damage {
             Damage::Off => None,
             Damage::Onset => DelaminationThreshold::of(&laminate, &materials, resin),
         };
@@ -156,6 +161,7 @@ impl Model {
             watched,
             gauges,
             threshold,
+            effects,
             warnings,
             scene,
         })

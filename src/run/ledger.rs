@@ -38,7 +38,7 @@ impl Ledger {
     /// Adds up the energies; they are returned as well where an alarm is.
     pub(super) fn balance(
         &mut self,
-        system: &ImpactSystem,
+        system: &mut ImpactSystem,
         guard: &Guard,
         state: &State,
     ) -> (Energies, Result<(), Alarm>) {
@@ -55,7 +55,7 @@ impl Ledger {
     }
 
     /// Writes a row, also the last one of a march that leaks; none of numbers that are not finite.
-    pub(super) fn row(&mut self, system: &ImpactSystem, guard: &Guard, state: &State) -> Result<(), Alarm> {
+    pub(super) fn row(&mut self, system: &mut ImpactSystem, guard: &Guard, state: &State) -> Result<(), Alarm> {
         let (e, balanced) = self.balance(system, guard, state);
         if let Err(Alarm::NotFinite(_)) = balanced {
             return balanced;

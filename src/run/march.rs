@@ -173,7 +173,8 @@ impl<'a> March<'a> {
     }
 
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
-        let Prepared { model, impact, system, reduced, full, condensation, sizes, counters, mut stopwatch } = prepared;
+        let Prepared { model, impact, mut system, reduced, full, condensation, sizes, counters, mut stopwatch } =
+            prepared;
         stopwatch.lap("reduce");
         let mut estimates = Estimates::default();
         // Here, where nothing else takes memory yet beside the full plate.
@@ -190,7 +191,7 @@ impl<'a> March<'a> {
         let (integrator, counted) = (impact.integrator.clone(), Work::default());
         Ok(Self {
             model,
-            guard: Guard::new(&system),
+            guard: Guard::new(&mut system),
             system,
             integrator,
             sizes,
@@ -249,7 +250,7 @@ impl<'a> March<'a> {
 
     fn row(&mut self) -> Result<(), Error> {
         let Progress { ledger, state, .. } = &mut self.progress;
-        ledger.row(&self.system, &self.guard, state)?;
+        ledger.row(&mut self.system, &self.guard, state)?;
         if let Some(modal) = &mut self.modal {
             modal.row(state);
         }

@@ -22,7 +22,13 @@ fn middle(plate: &Plate, q: f64) -> (f64, Vec<f64>) {
     let start = std::time::Instant::now();
     let u = vec![0.0; load.len()];
     let found = large.equilibrium(Symbolic::new(pattern).unwrap(), &load, u, NonZeroUsize::MIN).unwrap();
-    eprintln!("{} unknowns, {} cells, {:.3} s, {:?}", load.len(), large.cells(), start.elapsed().as_secs_f64(), found.decrements);
+    eprintln!(
+        "{} unknowns, {} cells, {:.3} s, {:?}",
+        load.len(),
+        large.cells(),
+        start.elapsed().as_secs_f64(),
+        found.decrements
+    );
     let mut all = vec![0.0; model.plate.ndof()];
     model.constraints.expand(&found.u, &mut all);
     let corner = model.plate.columns.iter().position(|c| c.iter().all(|x| (x - 50e-3).abs() < 1e-9)).unwrap();

@@ -41,9 +41,9 @@ impl fmt::Display for EquilibriumError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Assembly(error) => error.fmt(f),
-            Self::Factor(FactorError::NotPositive { .. }) => {
-                f.write_str("the tangent stiffness is not positive definite: the plate buckles under this load, or is not held")
-            }
+            Self::Factor(FactorError::NotPositive { .. }) => f.write_str(
+                "the tangent stiffness is not positive definite: the plate buckles under this load, or is not held",
+            ),
             Self::Factor(error) => error.fmt(f),
             Self::NoConvergence(decrement) => write!(
                 f,

@@ -1,8 +1,8 @@
 //! A plate's K and M as a [`Structure`].
 
-use super::{Cholesky, FactorError, Pattern, Symbolic, coarse, condition};
+use super::{Cholesky, FactorError, LargePlate, Pattern, Symbolic, coarse, condition};
 use crate::prolongation::{Coarse, Prolongation};
-use crate::structure::{SolveError, Structure};
+use crate::structure::{Nonlinear, SolveError, Structure, Tangent};
 use std::fmt;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -13,6 +13,7 @@ enum Factored {
     Nothing,
     Shifted(f64),
     Mass,
+    Tangent,
 }
 
 /// Sparse stiffness and mass on one pattern, with one factorisation kept.
@@ -25,7 +26,10 @@ pub struct SparseStructure {
     factor: Cholesky,
     factored: Factored,
     combined: Vec<f64>,
+    /// Of a tangent, which comes with its force.
+    force: Vec<f64>,
     prolongation: Option<Prolongation>,
+    large: Option<LargePlate>,
     threads: NonZeroUsize,
     name: Box<dyn Fn(usize) -> String + Send>,
     factorisations: u64,
@@ -51,7 +55,9 @@ impl SparseStructure {
         Self {
             name: Box::new(name),
             combined: vec![0.0; k.len()],
+            force: Vec::new(),
             prolongation: None,
+            large: None,
             threads,
             factor: Cholesky::new(symbolic, threads),
             factored: Factored::Nothing,
@@ -67,6 +73,11 @@ impl SparseStructure {
     /// Offers a coarse model to those who can use one.
     pub fn offer_coarse(&mut self, prolongation: Prolongation) {
         self.prolongation = Some(prolongation);
+    }
+
+    /// Gives the structure the internal forces of large displacements; its K is their tangent at rest.
+    pub fn stiffen(&mut self, large: LargePlate) {
+        self.large = Some(large);
     }
 
     /// Entries of one triangle of K.
@@ -100,6 +111,7 @@ impl SparseStructure {
         let values = match what {
             Factored::Mass => &self.m,
             Factored::Shifted(0.0) | Factored::Nothing => &self.k,
+            Factored::Tangent => &self.combined,
             Factored::Shifted(shift) => {
                 for ((c, k), m) in self.combined.iter_mut().zip(&self.k).zip(&self.m) {
                     *c = k + shift * m;
@@ -152,6 +164,10 @@ impl Structure for SparseStructure {
         Ok(())
     }
 
+    fn nonlinear(&mut self) -> Option<&mut dyn Nonlinear> {
+        self.large.is_some().then_some(self as _)
+    }
+
     fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
         self.factorise(Factored::Mass)?;
         self.factor.solve(x, 1);
@@ -172,4 +188,33 @@ impl Structure for SparseStructure {
     fn work(&self) -> (u64, u64) {
         (self.factorisations, self.solves)
     }
+}
+
+impl Nonlinear for SparseStructure {
+    fn internal(&mut self, u: &[f64], force: &mut [f64]) -> Result<f64, SolveError> {
+        let large = self.large.as_mut().ok_or_else(linear)?;
+        large.internal(u, force, None).map_err(|e| SolveError(e.to_string()))
+    }
+
+    fn linearise(&mut self, Tangent { cm, cc: _, u }: &Tangent) -> Result<(), SolveError> {
+        let large = self.large.as_mut().ok_or_else(linear)?;
+        self.force.resize(u.len(), 0.0);
+        large.internal(u, &mut self.force, Some(&mut self.combined)).map_err(|e| SolveError(e.to_string()))?;
+        self.combined.iter_mut().zip(&self.m).for_each(|(k, m)| *k += cm * m);
+        self.factored = Factored::Nothing;
+        self.factorise(Factored::Tangent)
+    }
+
+    fn solve_linearised(&mut self, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
+        if self.factored != Factored::Tangent {
+            return Err(SolveError("no tangent has been factorised".into()));
+        }
+        self.factor.solve(x, columns);
+        self.solves += columns as u64;
+        Ok(())
+    }
+}
+
+fn linear() -> SolveError {
+    SolveError("the structure knows no large displacements".into())
 }

@@ -4,6 +4,7 @@
 //! [`Fidelity`]; plug-ins are named with their parameters and checked by whoever knows them. Whatever is wrong becomes a
 //! [`SceneError`] that shows the line.
 
+mod effects;
 mod laminate;
 mod load;
 pub(crate) mod material;
@@ -18,11 +19,11 @@ mod support;
 mod tests;
 pub(crate) mod tree;
 
+pub use effects::{Damage, Effects, Switch};
 pub use load::{Load, LoadKind, Pressure, ProfileLine};
 pub use plugin::PluginSpec;
 pub use run::{
-    ContactLoad, CriterionSpec, Damage, Depth, Failure, Impact, ImpactPoint, Impactor, IndexWatch, March, Output,
-    Window,
+    ContactLoad, CriterionSpec, Depth, Failure, Impact, ImpactPoint, Impactor, IndexWatch, March, Output, Window,
 };
 pub use source::{Located, Place, SceneError, SceneSource};
 pub use study::{OwnAxis, Quantity, Setting, Study, rewrite};
@@ -74,8 +75,8 @@ pub struct Scene {
     pub couples: Vec<Couple>,
     /// The substructures that the plate is divided into, if it is.
     pub substructures: Option<Substructures>,
-    /// What is done about damage.
-    pub damage: Damage,
+    /// The effects that are simulated.
+    pub effects: Effects,
     /// Lines through the thickness along which stresses are written.
     pub profiles: Vec<ProfileLine>,
     /// Where and when failure is looked for.
@@ -277,7 +278,8 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
     let element = root.required("element")?;
     let analysis = read_analysis(&root)?;
     let in_time = matches!(analysis, Analysis::Impact(_));
-    let damage = root.optional("effects").map_or(Ok(Damage::Onset), |field| run::read_effects(&field))?;
+    let effects = root.optional("effects").map_or(Ok(Effects::default()), |field| effects::read(&field))?;
+    let onset = effects.damage == Damage::Onset;
     Ok(Scene {
         title: root.required("title")?.text()?.to_owned(),
         fidelity,
@@ -299,9 +301,9 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
         equations: root.optional("equation").map_or(Ok(Vec::new()), |field| support::read_equations(&field))?,
         couples: root.optional("couple").map_or(Ok(Vec::new()), |field| support::read_couples(&field))?,
         substructures: root.optional("substructures").map(|field| substructures::read(&field)).transpose()?,
-        failure: run::read_failure(&root.required("failure")?, damage == Damage::Onset && in_time, in_time)?,
+        failure: run::read_failure(&root.required("failure")?, onset && in_time, in_time)?,
         analysis,
-        damage,
+        effects,
         profiles: root.optional("profile").map_or(Ok(Vec::new()), |field| load::read_profiles(&field))?,
         output: root.optional("output").map_or(Ok(Output::default()), |field| run::read_output(&field))?,
         study: root.optional("study").map_or(Ok(Study::default()), |field| study::read(&field))?,

@@ -52,15 +52,6 @@ pub enum ContactLoad {
     },
 }
 
-/// What is done about damage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Damage {
-    /// Nothing.
-    Off,
-    /// Its onset is found; the plate stays as it is.
-    Onset,
-}
-
 /// An impact and how it is computed.
 #[derive(Debug, Clone)]
 pub struct Impact {
@@ -187,7 +178,6 @@ const WATCH: Keys = &[
 ];
 /// Key by which a scene names a criterion of its own way.
 const LABEL: &str = "as";
-const EFFECTS: Keys = &[("damage", r#""onset""#), ("membrane", r#""off""#), ("damping", r#""off""#)];
 const OUTPUT: Keys = &[
     ("history_every", r#""1 us""#),
     ("checkpoint_every", r#""60 s""#),
@@ -383,26 +373,6 @@ fn read_interface(field: &Field<'_>) -> Result<Depth, SceneError> {
             "write the two plies that meet there, counted from 1 at the bottom: \"1|2\"",
         )),
     }
-}
-
-pub(super) fn read_effects(field: &Field<'_>) -> Result<Damage, SceneError> {
-    let table = field.table(EFFECTS)?;
-    for key in ["membrane", "damping"] {
-        if let Some(field) = table.optional(key) {
-            effect(&field, &[("off", ())])?;
-        }
-    }
-    table
-        .optional("damage")
-        .map_or(Ok(Damage::Onset), |field| effect(&field, &[("onset", Damage::Onset), ("off", Damage::Off)]))
-}
-
-fn effect<T: Copy>(field: &Field<'_>, available: &[(&str, T)]) -> Result<T, SceneError> {
-    let text = field.text()?;
-    available.iter().find(|(word, _)| *word == text).map(|(_, effect)| *effect).ok_or_else(|| {
-        let words: Vec<_> = available.iter().map(|(word, _)| *word).collect();
-        field.error(format!("`{text}` is not available yet"), format!("available: {}", words.join(", ")))
-    })
 }
 
 pub(super) fn read_output(field: &Field<'_>) -> Result<Output, SceneError> {

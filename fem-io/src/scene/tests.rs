@@ -133,7 +133,7 @@ fn a_scene_in_full() {
     assert_eq!(scene.failure.criteria[1].plugin.params.get("strict"), Some(&Value::Flag(true)));
     assert_eq!((scene.failure.every, scene.failure.radius), (5e-6, Some(10e-3)));
     assert_eq!(scene.failure.window, Window::Square(2.54e-3));
-    assert_eq!(scene.damage, Damage::Onset);
+    assert_eq!(scene.effects.damage, Damage::Onset);
     let output = Output { history_every: Some(2e-6), plots: false, maps: true, ..Output::default() };
     assert_eq!(scene.output, output);
     assert_eq!(

@@ -1,0 +1,144 @@
+//! Implicit steps of a structure whose internal force is not linear.
+
+use super::ImpactSystem;
+use fem_core::contact::ContactHistory;
+use fem_core::structure::{Nonlinear, SolveError, Tangent};
+use fem_core::time::StepError;
+
+/// Error of the change of displacement at which an iteration ends, relative, in the energy norm of the tangent.
+const ENOUGH: f64 = 1e-9;
+
+/// The same relative to the displacement itself: what rounding leaves.
+const ROUNDING: f64 = 1e-11;
+
+/// Factor on the error per turn above which the tangent is renewed: a tangent costs some turns.
+const SLOW: f64 = 0.1;
+
+/// Turns, and tangents among them, before a step counts as unsolvable.
+const MOST: usize = 60;
+const MOST_TANGENTS: usize = 12;
+
+/// What an iteration keeps between steps.
+#[derive(Debug, Default)]
+pub(super) struct Newton {
+    tangent: Option<Tangent>,
+    load: Vec<f64>,
+    at: Vec<f64>,
+    residual: Vec<f64>,
+    step: Vec<f64>,
+    /// Turns and tangents so far.
+    turns: u64,
+    tangents: u64,
+}
+
+impl ImpactSystem {
+    /// The tangent in use, if there is one: a march that is resumed takes it again.
+    pub fn tangent(&self) -> Option<&Tangent> {
+        self.newton.tangent.as_ref()
+    }
+
+    /// Iterations of implicit steps so far, and the tangents that they took.
+    pub fn iterations(&self) -> (u64, u64) {
+        (self.newton.turns, self.newton.tangents)
+    }
+
+    /// Takes the tangent of the structure.
+    ///
+    /// # Errors
+    /// One that is not positive definite, which only a structure can have that buckles or is not held.
+    pub fn linearise(&mut self, tangent: Tangent) -> Result<(), StepError> {
+        let Self { structure, impactors, influence, newton, .. } = self;
+        let n = structure.ndof();
+        let Some(large) = structure.nonlinear() else { return Ok(()) };
+        newton.tangent = None;
+        large.linearise(&tangent).map_err(unsolved)?;
+        influence.set(tangent.cm, n, impactors, |x, count| large.solve_linearised(x, count))?;
+        newton.tangent = Some(tangent);
+        newton.tangents += 1;
+        Ok(())
+    }
+
+    /// Newton's method for the change d, with a tangent that is kept as long as it serves:
+    ///
+    /// A δ = r − cm M d − cc C d − f(ũ + d) + Σ F p, A = K_T + cm M + cc C, d ← d + δ,
+    ///
+    /// the contact forces F such that the laws hold at ũ + d + δ. The error after a turn is estimated from how fast δ falls in
+    /// the norm of A.
+    pub(super) fn iterate(
+        &mut self,
+        cm: f64,
+        cc: f64,
+        t: f64,
+        h: &[ContactHistory],
+        from: &[f64],
+        d: &mut [f64],
+    ) -> Result<(), StepError> {
+        let n = self.structure.ndof();
+        let take = |u: &[f64]| Tangent { cm, cc, u: u.to_vec() };
+        if !self.newton.tangent.as_ref().is_some_and(|tangent| tangent.cm == cm && tangent.cc == cc) {
+            self.linearise(take(&from[..n]))?;
+        }
+        self.newton.load.clear();
+        self.newton.load.extend_from_slice(d);
+        d.fill(0.0);
+        let (mut largest, mut tangents) = (0.0_f64, 0);
+        // The size of the turn before, with the same tangent.
+        let mut before = None;
+        for _ in 0..MOST {
+            let Self { structure, impactors, influence, newton, contact_calls } = self;
+            let Newton { load, at, residual, step, .. } = newton;
+            newton.turns += 1;
+            at.clear();
+            at.extend(from[..n].iter().zip(&*d).map(|(u, d)| u + d));
+            residual.resize(n, 0.0);
+            let energy = nonlinear(structure.nonlinear())?.internal(at, residual).map_err(unsolved)?;
+            residual.iter_mut().zip(&*load).for_each(|(f, r)| *f = r - *f);
+            structure.add_mass(-cm, &d[..n], residual);
+            structure.add_damping(-cc, &d[..n], residual);
+            step.clear();
+            step.extend_from_slice(residual);
+            nonlinear(structure.nonlinear())?.solve_linearised(step, 1).map_err(unsolved)?;
+            let free = impactors.iter().zip(&load[n..]).zip(&d[n..]);
+            step.extend(free.map(|((impactor, r), d)| r / (cm * impactor.mass) - d));
+            influence.free.fill(0.0);
+            influence.approached(impactors, from);
+            influence.approached(impactors, d);
+            *contact_calls += influence.touch(impactors, t, h, step)?;
+            d.iter_mut().zip(&*step).for_each(|(d, step)| *d += step);
+            let work: f64 = residual.iter().zip(&*step).map(|(r, d)| r * d).sum();
+            let square = work + influence.work(impactors, step);
+            if !square.is_finite() {
+                return Err(StepError::NotFinite { t });
+            }
+            let size = square.abs().sqrt();
+            largest = largest.max(size);
+            let rate = before.map(|before: f64| size / before);
+            let left = match rate {
+                Some(rate) if rate < 0.5 => size * rate / (1.0 - rate),
+                _ => size,
+            };
+            if left <= ENOUGH * largest || size <= ROUNDING * energy.abs().sqrt() {
+                return Ok(());
+            }
+            before = Some(size);
+            if rate.is_some_and(|rate| rate > SLOW) {
+                if tangents == MOST_TANGENTS {
+                    break;
+                }
+                let point: Vec<f64> = from[..n].iter().zip(&*d).map(|(u, d)| u + d).collect();
+                self.linearise(take(&point))?;
+                tangents += 1;
+                before = None;
+            }
+        }
+        Err(StepError::NoConvergence { t, what: "Newton's method for the large displacements of the plate".into() })
+    }
+}
+
+fn nonlinear<'a>(structure: Option<&'a mut dyn Nonlinear>) -> Result<&'a mut dyn Nonlinear, StepError> {
+    structure.ok_or_else(|| StepError::Factorisation("the structure has become linear".into()))
+}
+
+fn unsolved(e: SolveError) -> StepError {
+    StepError::Factorisation(e.0)
+}
