@@ -221,7 +221,7 @@ fn step(structure: Box<dyn Structure>, load: Vec<(usize, f64)>, steps: usize) ->
     let march = if steps == STEPS { seconds(3, || one(steps)) / steps as f64 } else { seconds(steps, || one(1)) };
 
     // A march knows indentation, force and velocity for its record of the contacts.
-    let (guard, touch, mut work) = (Guard::new(&system), system.touch(0, &state), Vec::new());
+    let (guard, touch, mut work) = (Guard::new(&mut system), system.touch(0, &state), Vec::new());
     let look = |_| guard.touch(0, black_box(touch)).unwrap();
     let touches = seconds(3, || (0..STEPS).for_each(look)) / STEPS as f64;
     let mut balance = || guard.balance(&system.energies(&state, &mut work)).unwrap();

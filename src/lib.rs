@@ -39,5 +39,5 @@ pub use fem_dynamics as dynamics;
 pub use fem_elements as elements;
 pub use fem_failure as failure;
 pub use fem_io as io;
-pub use model::{Gauge, Impact, Model, NamedCriterion, NamedProfile, Plan, Strike};
+pub use model::{Effects, Gauge, Impact, Model, NamedCriterion, NamedProfile, Plan, Strike};
 pub use registry::{NO_REDUCTION, Registry, RegistryError};

@@ -304,7 +304,7 @@ fn guarded(
     steps: u32,
 ) -> (Result<(), Alarm>, f64) {
     let mut system = ImpactSystem::new(Box::new(on), balls.to_vec());
-    let (guard, mut state, mut work) = (Guard::new(&system), system.initial(), Vec::new());
+    let (guard, mut state, mut work) = (Guard::new(&mut system), system.initial(), Vec::new());
     integrator.start(&mut system, &mut state).unwrap();
     let mut error = 0.0_f64;
     for _ in 0..steps {
