@@ -4,6 +4,7 @@ mod accuracy;
 mod checkpoint;
 mod ledger;
 mod march;
+mod membrane;
 mod modal;
 mod prepare;
 pub(crate) mod saved;

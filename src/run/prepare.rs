@@ -1,19 +1,20 @@
 //! Assemble, reduce, couple to the impactors.
 
+use super::membrane::StretchOf;
 use super::{Sizes, Substructures};
 use crate::cost::Stopwatch;
 use crate::error::Error;
 use crate::memory::{self, Estimate};
 use crate::model::{Impact, Model, Plan, Strike};
-use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, assemble, condense, pattern};
+use fem_core::assembly::{Condensation, Condensed, LargePlate, Matrix, SparseStructure, assemble, condense, pattern};
 use fem_core::counters::Counters;
 use fem_core::prolongation::Prolongation;
 use fem_core::reduction::Functional;
-use fem_core::structure::Structure;
+use fem_core::structure::{SolveError, Structure};
 use fem_core::time::{StepError, StepLimit};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
 use fem_dynamics::limit::{self, TooLong};
-use fem_dynamics::reduce::Reduced;
+use fem_dynamics::reduce::{Reduced, Stiffened};
 use fem_io::scene;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -176,7 +177,19 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
             })?)
         }
     };
-    let Assembled { structure, condensation, .. } = assembled;
+    let Assembled { mut structure, condensation, .. } = assembled;
+    let stiffened = match &reduced {
+        Some(reduced) if model.effects.membrane => {
+            let stiffened = Stiffened::new(&mut structure, reduced, &distinct(&contacts), &StretchOf(model));
+            Some(stiffened.map_err(|why| SolveError(why.0))?)
+        }
+        None if model.effects.membrane => {
+            let pattern = structure.shared_pattern();
+            structure.stiffen(LargePlate::new(&model.plate, model.element.clone(), &model.constraints, pattern));
+            None
+        }
+        _ => None,
+    };
     (counters.factorisations, counters.solves) = structure.work();
     stopwatch.lap("reduce");
 
@@ -194,7 +207,13 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         impact.spec.impactors.iter().zip(&impact.strikes).zip(&contacts).map(impactor).collect();
     let (structure, full): (Box<dyn Structure>, _) = match &reduced {
         None => (Box::new(structure), None),
-        Some(r) => (Box::new(r.modal.clone()), Some(Full { structure, contacts })),
+        Some(r) => {
+            let modal: Box<dyn Structure> = match &stiffened {
+                Some(stiffened) => Box::new(stiffened.clone()),
+                None => Box::new(r.modal.clone()),
+            };
+            (modal, Some(Full { structure, contacts }))
+        }
     };
     let mut system = ImpactSystem::new(structure, impactors);
     let march = &impact.spec.march;

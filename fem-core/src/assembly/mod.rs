@@ -9,6 +9,7 @@ mod large;
 mod ordering;
 mod pattern;
 mod sparse;
+mod stretch;
 mod substructure;
 
 pub use equilibrium::{Equilibrium, EquilibriumError};
@@ -17,6 +18,7 @@ pub use large::LargePlate;
 pub use ordering::nested_dissection;
 pub use pattern::{AssemblyError, Pattern, pattern};
 pub use sparse::SparseStructure;
+pub use stretch::Stretch;
 pub use substructure::{Condensation, CondensationError, Condensed, Division, condense};
 
 use crate::constraint::Constraints;

@@ -76,8 +76,13 @@ impl SparseStructure {
     }
 
     /// Gives the structure the internal forces of large displacements; its K is their tangent at rest.
-    pub fn stiffen(&mut self, large: LargePlate) {
-        self.large = Some(large);
+    pub fn stiffen(&mut self, large: Option<LargePlate>) {
+        self.large = large;
+    }
+
+    /// The pattern of K and M.
+    pub fn shared_pattern(&self) -> &Arc<Pattern> {
+        &self.pattern
     }
 
     /// Entries of one triangle of K.

@@ -6,12 +6,14 @@ mod guyan;
 mod irs;
 mod modal;
 mod ritz;
+mod stiffened;
 
 pub use craig_bampton::CraigBampton;
 pub use guyan::Guyan;
 pub use irs::Irs;
 pub use modal::ModalTruncation;
 pub use ritz::Ritz;
+pub use stiffened::{Stiffened, Stretching};
 
 use fem_core::reduction::{Functional, ReductionError};
 use fem_core::structure::{SolveError, Structure};

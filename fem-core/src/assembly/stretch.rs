@@ -1,0 +1,309 @@
+//! How deflections stretch a plate: von Kármán's quadratic strains of given displacement fields.
+
+use super::AssemblyError;
+use super::pattern::CellMap;
+use crate::constraint::Constraints;
+use crate::element::{Cell, Element, ElementError, positive};
+use crate::plate::Plate;
+use crate::quadrature::gauss_legendre;
+use crate::tensor::Matrix6;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+
+/// Rows of the strains in the plane of the plate, 11, 22 and 12.
+const PLANE: [usize; 3] = [0, 1, 3];
+
+/// Step of the differences of shape functions, in natural coordinates.
+const STEP: f64 = 0.25;
+
+/// A stress that a theory takes as zero, relative to the others.
+const ABSENT: f64 = 1e-12;
+
+/// The strains by which deflections w = Σ qᵢ wᵢ of a plate stretch it, ε(q) = Σ over pairs i ≤ j of qᵢ qⱼ ε_ij:
+///
+/// ε₁₁ = ½ w,x², ε₂₂ = ½ w,y², γ₁₂ = w,x w,y,
+///
+/// w taken in the middle of each cell; for any element, from its shape functions and its strain operator. Pairs count by rows
+/// of the upper triangle.
+#[derive(Debug)]
+pub struct Stretch<'a> {
+    plate: &'a Plate,
+    element: &'a dyn Element,
+    constraints: &'a Constraints,
+    /// The fields before elimination, `plate.ndof()` each.
+    fields: Vec<f64>,
+    count: usize,
+}
+
+/// Work arrays, and what is known of a cell.
+#[derive(Debug, Default)]
+struct OfCell {
+    /// ε of all pairs at all in-plane points, `3 points × pairs`.
+    strains: Vec<f64>,
+    /// A ε, A = ∫ C dz, weighted by the area.
+    stresses: Vec<f64>,
+    /// ∫ Bᵀ C dz at all in-plane points, weighted by the area, `ndof × 3 points`.
+    operator: Vec<f64>,
+    b: Vec<f64>,
+    shape: Vec<f64>,
+    slopes: Vec<[f64; 2]>,
+}
+
+impl<'a> Stretch<'a> {
+    /// `fields`: independent displacements, one after the other.
+    pub fn new(plate: &'a Plate, element: &'a dyn Element, constraints: &'a Constraints, fields: &[f64]) -> Self {
+        let (n, all) = (constraints.ndof(), plate.ndof());
+        let count = fields.len() / n.max(1);
+        let mut expanded = vec![0.0; all * count];
+        for (field, expanded) in fields.chunks_exact(n.max(1)).zip(expanded.chunks_exact_mut(all.max(1))) {
+            constraints.expand(field, expanded);
+        }
+        Self { plate, element, constraints, fields: expanded, count }
+    }
+
+    /// Number of pairs of fields.
+    pub fn pairs(&self) -> usize {
+        self.count * (self.count + 1) / 2
+    }
+
+    /// ∫ ε_pᵀ C ε_p′ dV of all pairs, `pairs × pairs`, J.
+    ///
+    /// # Errors
+    /// A cell that is folded.
+    pub fn gram(&self) -> Result<Vec<f64>, AssemblyError> {
+        let pairs = self.pairs();
+        let mut gram = vec![0.0; pairs * pairs];
+        self.each(|weight, _, _, of| {
+            let rows = of.strains.len() / pairs;
+            matmul(
+                MatMut::from_column_major_slice_mut(&mut gram, pairs, pairs),
+                Accum::Add,
+                MatRef::from_column_major_slice(&of.strains, rows, pairs).transpose(),
+                MatRef::from_column_major_slice(&of.stresses, rows, pairs),
+                weight,
+                Par::Seq,
+            );
+        })?;
+        Ok(gram)
+    }
+
+    /// Forces ∫ Bᵀ C ε dV that the strains ε = Σ over pairs of c_p ε_p do on the independent unknowns, for each column c
+    /// of `combinations` (`pairs × columns`); `ndof × columns`, N.
+    ///
+    /// # Errors
+    /// As [`Stretch::gram`].
+    pub fn forces(&self, combinations: &[f64]) -> Result<Vec<f64>, AssemblyError> {
+        let pairs = self.pairs();
+        let columns = combinations.len() / pairs;
+        let (n, local) = (self.constraints.ndof(), self.element.info().ndof());
+        let mut forces = vec![0.0; n * columns];
+        let (mut combined, mut of_cell) = (Vec::new(), vec![0.0; local * columns]);
+        self.each(|weight, _, map, of| {
+            let rows = of.strains.len() / pairs;
+            combined.resize(rows * columns, 0.0);
+            matmul(
+                MatMut::from_column_major_slice_mut(&mut combined, rows, columns),
+                Accum::Replace,
+                MatRef::from_column_major_slice(&of.strains, rows, pairs),
+                MatRef::from_column_major_slice(combinations, pairs, columns),
+                1.0,
+                Par::Seq,
+            );
+            matmul(
+                MatMut::from_column_major_slice_mut(&mut of_cell, local, columns),
+                Accum::Replace,
+                MatRef::from_column_major_slice(&of.operator, local, rows),
+                MatRef::from_column_major_slice(&combined, rows, columns),
+                1.0,
+                Par::Seq,
+            );
+            for (force, total) in of_cell.chunks_exact(local).zip(forces.chunks_exact_mut(n)) {
+                map.scatter_vector(force, weight, total);
+            }
+        })?;
+        Ok(forces)
+    }
+
+    /// Forms B_t, `count × count` over the independent displacements `modes`, one after the other: b_t = qᵀ B_t q is the work
+    /// of a membrane stress on the strains of the deflections w = Σ qᵢ wᵢ of `modes`, the stress C (ε + B s) of a combination
+    /// ε = Σ c_p ε_p (`pairs × terms`) and of the displacements s (`ndof × terms`; none are zero). J.
+    ///
+    /// # Errors
+    /// As [`Stretch::gram`].
+    pub fn forms(
+        &self,
+        combinations: &[f64],
+        shapes: Option<&[f64]>,
+        modes: &[f64],
+    ) -> Result<Vec<f64>, AssemblyError> {
+        let pairs = self.pairs();
+        let terms = combinations.len() / pairs;
+        let modes = Self::new(self.plate, self.element, self.constraints, modes);
+        let shapes = shapes.map(|shapes| Self::new(self.plate, self.element, self.constraints, shapes).fields);
+        let (count, local) = (modes.count, self.element.info().ndof());
+        let mut forms = vec![0.0; terms * count * count];
+        let (mut stress, mut u, mut slopes, mut shape) = (Vec::new(), vec![0.0; local], Vec::new(), Vec::new());
+        let (mut x, mut y) = (Vec::new(), Vec::new());
+        self.each(|weight, cell, map, of| {
+            let rows = of.strains.len() / pairs;
+            let points = rows / 3;
+            stress.resize(rows * terms, 0.0);
+            matmul(
+                MatMut::from_column_major_slice_mut(&mut stress, rows, terms),
+                Accum::Replace,
+                MatRef::from_column_major_slice(&of.stresses, rows, pairs),
+                MatRef::from_column_major_slice(combinations, pairs, terms),
+                1.0,
+                Par::Seq,
+            );
+            for (field, stress) in
+                shapes.iter().flat_map(|s| s.chunks_exact(self.plate.ndof())).zip(stress.chunks_exact_mut(rows))
+            {
+                map.gather(field, &mut u);
+                for (stress, column) in stress.iter_mut().zip(of.operator.chunks_exact(local)) {
+                    *stress += column.iter().zip(&u).map(|(b, u)| b * u).sum::<f64>();
+                }
+            }
+            // Slopes of all modes, two rows per point.
+            x.resize(2 * points * count, 0.0);
+            y.resize(2 * points * count, 0.0);
+            for (point, (r, s, _)) in self.element.info().plane_points().enumerate() {
+                let gradient = gradient(self.element, cell, [r, s], &mut shape);
+                modes.slopes(map, &gradient, &mut u, &mut slopes);
+                for (i, slope) in slopes.iter().enumerate() {
+                    x[2 * (points * i + point)..][..2].copy_from_slice(slope);
+                }
+            }
+            for (stress, form) in stress.chunks_exact(rows).zip(forms.chunks_exact_mut(count * count)) {
+                for (x, y) in x.chunks_exact(2 * points).zip(y.chunks_exact_mut(2 * points)) {
+                    for ((x, y), n) in x.chunks_exact(2).zip(y.chunks_exact_mut(2)).zip(stress.chunks_exact(3)) {
+                        y[0] = n[0] * x[0] + n[2] * x[1];
+                        y[1] = n[2] * x[0] + n[1] * x[1];
+                    }
+                }
+                matmul(
+                    MatMut::from_column_major_slice_mut(form, count, count),
+                    Accum::Add,
+                    MatRef::from_column_major_slice(&x, 2 * points, count).transpose(),
+                    MatRef::from_column_major_slice(&y, 2 * points, count),
+                    0.5 * weight,
+                    Par::Seq,
+                );
+            }
+        })?;
+        Ok(forms)
+    }
+
+    /// Slopes of the fields at a point.
+    fn slopes(&self, map: &CellMap, gradient: &[[f64; 2]], u: &mut [f64], slopes: &mut Vec<[f64; 2]>) {
+        slopes.clear();
+        slopes.extend(self.fields.chunks_exact(self.plate.ndof()).map(|field| {
+            map.gather(field, u);
+            [0, 1].map(|d| gradient.iter().zip(&*u).map(|(g, u)| g[d] * u).sum())
+        }));
+    }
+
+    /// Calls `take` with each cell that counts, and how much.
+    fn each(&self, mut take: impl FnMut(f64, &Cell<'_>, &CellMap, &OfCell)) -> Result<(), AssemblyError> {
+        let (mut map, mut of) = (CellMap::default(), OfCell::default());
+        for (cell, weight) in self.plate.kept_cells() {
+            map.set(self.plate, self.constraints, cell);
+            let view = self.plate.cell(cell);
+            self.integrate(&view, &map, &mut of).map_err(|error| {
+                let (quad, layer) = self.plate.place(cell);
+                AssemblyError { quad_tag: self.plate.plane.quad_tags[quad], layer, error }
+            })?;
+            take(weight, &view, &map, &of);
+        }
+        Ok(())
+    }
+
+    fn integrate(&self, cell: &Cell<'_>, map: &CellMap, of: &mut OfCell) -> Result<(), ElementError> {
+        let info = self.element.info();
+        let (local, pairs) = (info.ndof(), self.pairs());
+        let rows = 3 * info.plane_points().count();
+        let OfCell { strains, stresses, operator, b, shape, slopes } = of;
+        strains.resize(rows * pairs, 0.0);
+        stresses.resize(rows * pairs, 0.0);
+        operator.clear();
+        operator.resize(local * rows, 0.0);
+        b.resize(6 * local, 0.0);
+        let mut u = vec![0.0; local];
+        for (point, (r, s, w)) in info.plane_points().enumerate() {
+            let gradient = gradient(self.element, cell, [r, s], shape);
+            self.slopes(map, &gradient, &mut u, slopes);
+            let mut stiffness = [[0.0; 3]; 3];
+            let columns = &mut operator[local * 3 * point..local * 3 * (point + 1)];
+            for (number, slice) in cell.stack.slices.iter().enumerate() {
+                let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
+                for &(t, wt) in gauss_legendre(info.ply_order) {
+                    let det = self.element.strain_operator(cell, number, [r, s, middle + half * t], b);
+                    let dv = positive(det)? * w * wt * half;
+                    let c = reduced(&slice.c, b);
+                    for (i, strain) in b.chunks_exact(6).enumerate() {
+                        for (k, row) in PLANE.iter().enumerate() {
+                            let stress = c[*row].iter().zip(strain).map(|(c, e)| c * e).sum::<f64>();
+                            columns[local * k + i] += dv * stress;
+                        }
+                    }
+                    for (sum, i) in stiffness.iter_mut().zip(PLANE) {
+                        sum.iter_mut().zip(PLANE).for_each(|(sum, j)| *sum += dv * c[i][j]);
+                    }
+                }
+            }
+            let mut pair = 0;
+            for (i, a) in slopes.iter().enumerate() {
+                for (j, b) in slopes.iter().enumerate().skip(i) {
+                    let twice = if i == j { 0.5 } else { 1.0 };
+                    let strain = [a[0] * b[0], a[1] * b[1], a[0] * b[1] + a[1] * b[0]].map(|e| twice * e);
+                    let at = rows * pair + 3 * point;
+                    for (k, row) in stiffness.iter().enumerate() {
+                        strains[at + k] = strain[k];
+                        stresses[at + k] = row.iter().zip(strain).map(|(c, e)| c * e).sum();
+                    }
+                    pair += 1;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// ∂w/∂x and ∂w/∂y per unknown in the middle of a cell: differences that are exact for polynomials of the fourth degree.
+fn gradient(element: &dyn Element, cell: &Cell<'_>, at: [f64; 2], shape: &mut Vec<f64>) -> Vec<[f64; 2]> {
+    let local = element.info().ndof();
+    shape.resize(3 * local, 0.0);
+    let mut natural = vec![[0.0; 2]; local];
+    let directions = if element.info().is_section() { 1 } else { 2 };
+    for d in 0..directions {
+        for (steps, weight) in [(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)] {
+            let mut xi = [at[0], at[1], 0.0];
+            xi[d] += steps * STEP;
+            element.shape(cell, xi, shape);
+            for (g, n) in natural.iter_mut().zip(shape.chunks_exact(3)) {
+                g[d] += weight / (12.0 * STEP) * n[2];
+            }
+        }
+    }
+    let [by_r, by_s] = cell.plane(at[0], at[1]).inverse;
+    natural.into_iter().map(|[r, s]| [r * by_r[0] + s * by_s[0], r * by_r[1] + s * by_s[1]]).collect()
+}
+
+/// C without the normal stresses that a theory takes as zero, known by its strain operator: they are condensed.
+fn reduced(c: &Matrix6, b: &[f64]) -> Matrix6 {
+    let mut c = *c;
+    for k in [2, 1] {
+        let product = |strain: &[f64]| c[k].iter().zip(strain).map(|(c, e)| c * e).sum::<f64>();
+        let parts = |strain: &[f64]| c[k].iter().zip(strain).map(|(c, e)| (c * e).abs()).sum::<f64>();
+        let stress = b.chunks_exact(6).map(|strain| product(strain).abs()).fold(0.0, f64::max);
+        let size = b.chunks_exact(6).map(parts).fold(0.0, f64::max);
+        if stress <= ABSENT * size {
+            let row = c[k];
+            for i in 0..6 {
+                let factor = row[i] / row[k];
+                c[i].iter_mut().zip(row).for_each(|(c, k)| *c -= factor * k);
+            }
+        }
+    }
+    c
+}

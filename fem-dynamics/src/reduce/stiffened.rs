@@ -1,0 +1,333 @@
+//! A reduced plate whose deflections stretch it.
+
+use super::{Modal, Reduced};
+use fem_core::reduction::{Functional, ReductionError};
+use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent};
+use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, DVectorView, DVectorViewMut, Dyn, SymmetricEigen};
+
+/// Membrane tensions under which the static responses to a contact are directions: their stiffness against a mode over its
+/// bending stiffness, of the lowest mode, 0 for none. That of tension grows with k², that of bending with k⁴.
+const TENSIONS: [f64; 7] = [0.0, 1.0, 4.0, 16.0, 64.0, 256.0, 1024.0];
+
+/// Share of a direction beside those before it below which it is none of its own.
+const SAME: f64 = 1e-8;
+
+/// Membrane strains below this share of the largest (of the energy, at deflections of a static contact) are left out.
+const NEGLIGIBLE: f64 = 1e-10;
+
+/// Quadratic strains of deflections, ε(q) = Σ over pairs i ≤ j of qᵢ qⱼ ε_ij for some displacement fields, and what they do.
+/// Pairs count by rows of the upper triangle, fields are columns of independent displacements.
+pub trait Stretching {
+    /// ∫ ε_pᵀ C ε_p′ dV of all pairs of `fields`; `pairs × pairs`.
+    ///
+    /// # Errors
+    /// A cell that cannot be integrated.
+    fn gram(&self, fields: &[f64]) -> Result<Vec<f64>, SolveError>;
+
+    /// Forces ∫ Bᵀ C ε dV of ε = Σ over pairs of c_p ε_p, per column c of `combinations`; `ndof × columns`.
+    ///
+    /// # Errors
+    /// As [`Stretching::gram`].
+    fn forces(&self, fields: &[f64], combinations: &[f64]) -> Result<Vec<f64>, SolveError>;
+
+    /// B_t, per column c of `combinations`: qᵀ B_t q is the work of the stress C (ε + B s) on the quadratic strains of the
+    /// deflections Σ qᵢ `modes`ᵢ, s a column of `shapes` or nothing; `modes × modes`, one after the other.
+    ///
+    /// # Errors
+    /// As [`Stretching::gram`].
+    fn forms(
+        &self,
+        fields: &[f64],
+        combinations: &[f64],
+        shapes: Option<&[f64]>,
+        modes: &[f64],
+    ) -> Result<Vec<f64>, SolveError>;
+}
+
+/// A reduced plate with the energy of its stretching,
+///
+/// W = ½ qᵀ Λ q + Σ_t (c_tᵀ q) b_t + ½ Σ_t σ_t b_t², b_t = qᵀ B_t q.
+///
+/// The membrane stresses are combinations of few patterns, which the deflections under a static contact call for
+/// ([`Directions`]); σ_t b_t is how much of each there is, found from its work on the strains of all deflections. In its
+/// plane, and through its thickness, the plate follows those strains at once: u = Φ q + Σ a_t s_t, a_t = qᵀ A_t q, the s_t
+/// orthogonal to Φ in K. That is static condensation, exact to the fourth order of q. c vanishes for symmetric laminates,
+/// but for modes in the plane.
+///
+/// Of the strains of large deflections only von Kármán's are there; slopes are small beside 1.
+#[derive(Debug, Clone)]
+pub struct Stiffened {
+    modal: Modal,
+    /// B_t, one after the other.
+    forms: Vec<f64>,
+    /// σ_t
+    stiffness: Vec<f64>,
+    /// c_t, one after the other; empty where none matters.
+    couplings: Vec<f64>,
+    companions: Companions,
+    factor: Option<Cholesky<f64, Dyn>>,
+    /// B_t q.
+    products: Vec<f64>,
+    /// b_t.
+    values: Vec<f64>,
+}
+
+/// What a plate does beside its modes because they stretch it: Σ a_t s_t, a_t = qᵀ A_t q.
+#[derive(Debug, Clone)]
+pub struct Companions {
+    /// A_t, one after the other.
+    forms: Vec<f64>,
+    /// s_t, `ndof × terms`.
+    shapes: Vec<f64>,
+}
+
+impl Companions {
+    /// Adds to u = Φ q what the stretching adds.
+    pub fn complete(&self, q: &[f64], u: &mut [f64]) {
+        for (form, shape) in self.forms.chunks_exact(q.len() * q.len()).zip(self.shapes.chunks_exact(u.len())) {
+            let columns = form.chunks_exact(q.len()).zip(q);
+            let a: f64 = columns.map(|(column, qj)| qj * column.iter().zip(q).map(|(a, q)| a * q).sum::<f64>()).sum();
+            u.iter_mut().zip(shape).for_each(|(u, s)| *u += a * s);
+        }
+    }
+}
+
+impl Stiffened {
+    /// Finds how the modes of `reduced` that the static response to `contacts` calls for stretch the plate `structure`.
+    ///
+    /// # Errors
+    /// A structure that is not held, a cell that cannot be integrated.
+    pub fn new(
+        structure: &mut dyn Structure,
+        reduced: &Reduced,
+        contacts: &[Functional],
+        stretching: &dyn Stretching,
+    ) -> Result<Self, ReductionError> {
+        let failed = |e: SolveError| ReductionError(e.0);
+        let (n, rigid) = (reduced.ndof, &reduced.modal.stiffness);
+        let loads: Vec<Vec<f64>> = contacts.iter().map(|contact| reduced.restrict(contact)).collect();
+        let Directions { vectors, reach } = Directions::new(rigid, &loads);
+        let basis = DMatrixView::from_slice(&reduced.basis, n, rigid.len());
+        let fields = basis * &vectors;
+        let m = vectors.ncols();
+        let pairs = (0..m).flat_map(|i| (i..m).map(move |j| (i, j)));
+        // In units of the deflections of a static contact all pairs are comparable.
+        let scale: Vec<f64> = pairs.map(|(i, j)| reach[i] * reach[j]).collect();
+
+        let gram = stretching.gram(fields.as_slice()).map_err(failed)?;
+        let p = scale.len();
+        let scaled = DMatrix::from_fn(p, p, |i, j| 0.5 * (gram[i + p * j] + gram[j + p * i]) * scale[i] * scale[j]);
+        let (strains, energies) = largest(scaled, NEGLIGIBLE)?;
+        let terms = strains.ncols();
+        let combinations = DMatrix::from_fn(p, terms, |i, t| scale[i] * strains[(i, t)]);
+        let forces = stretching.forces(fields.as_slice(), combinations.as_slice()).map_err(failed)?;
+        let forces = DMatrix::from_vec(n, terms, forces);
+
+        // K⁻¹ beside Φ: what the modes themselves would do is theirs.
+        let mut shapes = -forces.clone();
+        structure.solve_shifted(0.0, shapes.as_mut_slice(), terms).map_err(failed)?;
+        let couplings = basis.transpose() * &forces;
+        shapes += basis * DMatrix::from_fn(rigid.len(), terms, |r, t| couplings[(r, t)] / rigid[r]);
+        let released = forces.transpose() * &shapes;
+        let left = DMatrix::from_diagonal(&energies) + (&released + released.transpose()) * 0.5;
+        let (turn, stiffness) = largest(left, NEGLIGIBLE)?;
+        let forms = |combinations: &DMatrix<f64>, shapes: Option<&DMatrix<f64>>| {
+            let shapes = shapes.map(DMatrix::as_slice);
+            stretching.forms(fields.as_slice(), combinations.as_slice(), shapes, &reduced.basis).map_err(failed)
+        };
+        // The work of a stress on its own strains is σ_t, respectively the energy: per that, it counts how much there is.
+        let counted = |mut forms: Vec<f64>, of: &DVector<f64>| {
+            for (form, value) in forms.chunks_exact_mut(rigid.len() * rigid.len()).zip(of) {
+                form.iter_mut().for_each(|f| *f /= value);
+            }
+            forms
+        };
+        let couplings = couplings * &turn;
+        let top = stiffness.iter().fold(0.0, |a: f64, b| a.max(*b));
+        let taken =
+            couplings.column_iter().flat_map(|c| c.iter().zip(rigid).map(|(c, k)| c * c / k).collect::<Vec<_>>());
+        let coupled = taken.fold(0.0, f64::max) > NEGLIGIBLE * top;
+        Ok(Self {
+            modal: reduced.modal.clone(),
+            forms: counted(forms(&(&combinations * &turn), Some(&(&shapes * &turn)))?, &stiffness),
+            couplings: if coupled { couplings.as_slice().to_vec() } else { Vec::new() },
+            products: vec![0.0; rigid.len() * stiffness.len()],
+            values: vec![0.0; stiffness.len()],
+            stiffness: stiffness.as_slice().to_vec(),
+            companions: Companions {
+                forms: counted(forms(&combinations, None)?, &energies),
+                shapes: shapes.as_slice().to_vec(),
+            },
+            factor: None,
+        })
+    }
+
+    /// Patterns of membrane stress.
+    pub fn patterns(&self) -> usize {
+        self.stiffness.len()
+    }
+
+    /// What the plate does beside its modes.
+    pub fn companions(&self) -> &Companions {
+        &self.companions
+    }
+
+    /// Finds B_t q and b_t.
+    fn stretch(&mut self, q: &[f64]) {
+        let forms = self.forms.chunks_exact(q.len() * q.len());
+        for ((form, product), value) in forms.zip(self.products.chunks_exact_mut(q.len())).zip(&mut self.values) {
+            product.fill(0.0);
+            for (column, q) in form.chunks_exact(q.len()).zip(q) {
+                product.iter_mut().zip(column).for_each(|(p, b)| *p += q * b);
+            }
+            *value = product.iter().zip(q).map(|(p, q)| p * q).sum();
+        }
+    }
+
+    /// c_t of term `t`, if there are any.
+    fn coupling(&self, t: usize) -> &[f64] {
+        let n = self.modal.ndof();
+        self.couplings.get(t * n..(t + 1) * n).unwrap_or_default()
+    }
+
+    /// ∂W/∂b_t.
+    fn tension(&self, t: usize, q: &[f64]) -> f64 {
+        let coupled: f64 = self.coupling(t).iter().zip(q).map(|(c, q)| c * q).sum();
+        self.stiffness[t] * self.values[t] + coupled
+    }
+}
+
+/// Combinations P of the modes of a reduced plate whose deflections stretch it, orthonormal in its stiffness: the static
+/// responses to each contact of the plate under no tension and more and more, q_i = p_i/(λ_i + ν √λ_i).
+struct Directions {
+    vectors: DMatrix<f64>,
+    /// Largest coordinate of each in the static responses.
+    reach: Vec<f64>,
+}
+
+impl Directions {
+    fn new(stiffness: &[f64], loads: &[Vec<f64>]) -> Self {
+        let n = stiffness.len();
+        let dot = |a: &DVector<f64>, b: &DVector<f64>| -> f64 { (0..n).map(|i| a[i] * stiffness[i] * b[i]).sum() };
+        let lowest = stiffness.first().map_or(0.0, |k| k.sqrt());
+        let under = |load: &[f64], tension: f64| {
+            DVector::from_fn(n, |i, _| load[i] / (stiffness[i] + tension * lowest * stiffness[i].sqrt()))
+        };
+        let family: Vec<_> = loads.iter().flat_map(|load| TENSIONS.map(|tension| under(load, tension))).collect();
+        let mut kept: Vec<DVector<f64>> = Vec::new();
+        for candidate in &family {
+            let mut rest = candidate.clone();
+            // Twice is enough.
+            for _ in 0..2 {
+                kept.iter().for_each(|vector| rest.axpy(-dot(vector, &rest), vector, 1.0));
+            }
+            let left = dot(&rest, &rest);
+            if left > SAME * dot(candidate, candidate) {
+                kept.push(rest / left.sqrt());
+            }
+        }
+        let reach = |v: &DVector<f64>| family.iter().map(|shape| dot(v, shape).abs()).fold(0.0, f64::max);
+        Self { reach: kept.iter().map(reach).collect(), vectors: DMatrix::from_columns(&kept) }
+    }
+}
+
+/// Eigenvectors and eigenvalues above `share` of the largest, descending.
+fn largest(matrix: DMatrix<f64>, share: f64) -> Result<(DMatrix<f64>, DVector<f64>), ReductionError> {
+    if !matrix.iter().all(|v| v.is_finite()) {
+        return Err(ReductionError("the membrane energy of the modes is not finite".into()));
+    }
+    let eigen = SymmetricEigen::new(matrix);
+    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
+    order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+    let top = order.first().map_or(0.0, |i| eigen.eigenvalues[*i]);
+    order.retain(|i| share == 0.0 || eigen.eigenvalues[*i] > share * top);
+    let values = DVector::from_iterator(order.len(), order.iter().map(|i| eigen.eigenvalues[*i]));
+    Ok((eigen.eigenvectors.select_columns(&order), values))
+}
+
+impl Structure for Stiffened {
+    fn ndof(&self) -> usize {
+        self.modal.ndof()
+    }
+
+    fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        self.modal.add_stiffness(scale, x, y);
+    }
+
+    fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        self.modal.add_mass(scale, x, y);
+    }
+
+    fn add_damping(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        self.modal.add_damping(scale, x, y);
+    }
+
+    fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
+        self.modal.solve_shifted(shift, x, columns)
+    }
+
+    fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
+        self.modal.solve_mass(x)
+    }
+
+    fn highest_frequency(&mut self) -> Result<f64, SolveError> {
+        self.modal.highest_frequency()
+    }
+
+    fn nonlinear(&mut self) -> Option<&mut dyn Nonlinear> {
+        Some(self)
+    }
+}
+
+impl Nonlinear for Stiffened {
+    fn internal(&mut self, q: &[f64], force: &mut [f64]) -> Result<f64, SolveError> {
+        self.stretch(q);
+        let mut energy = 0.0;
+        for ((f, k), q) in force.iter_mut().zip(&self.modal.stiffness).zip(q) {
+            *f = k * q;
+            energy += 0.5 * k * q * q;
+        }
+        for (t, product) in self.products.chunks_exact(q.len()).enumerate() {
+            let (value, tension) = (self.values[t], self.tension(t, q));
+            // ½ σ b² + (cᵀ q) b
+            energy += value * (tension - 0.5 * self.stiffness[t] * value);
+            force.iter_mut().zip(product).for_each(|(f, p)| *f += 2.0 * tension * p);
+            force.iter_mut().zip(self.coupling(t)).for_each(|(f, c)| *f += value * c);
+        }
+        Ok(energy)
+    }
+
+    fn linearise(&mut self, Tangent { cm, cc: _, u: q }: &Tangent) -> Result<(), SolveError> {
+        self.stretch(q);
+        let n = q.len();
+        let mut tangent = DMatrix::zeros(n, n);
+        for (t, (form, product)) in self.forms.chunks_exact(n * n).zip(self.products.chunks_exact(n)).enumerate() {
+            let (form, product) = (DMatrixView::from_slice(form, n, n), DVectorView::from_slice(product, n));
+            tangent += form * (2.0 * self.tension(t, q));
+            tangent.ger(4.0 * self.stiffness[t], &product, &product, 1.0);
+            let coupling = self.coupling(t);
+            if !coupling.is_empty() {
+                let coupling = DVectorView::from_slice(coupling, n);
+                tangent.ger(2.0, &coupling, &product, 1.0);
+                tangent.ger(2.0, &product, &coupling, 1.0);
+            }
+        }
+        for (i, (k, mass)) in self.modal.stiffness.iter().zip(&self.modal.mass).enumerate() {
+            tangent[(i, i)] += k + cm * mass;
+        }
+        self.factor = None;
+        let buckles =
+            || SolveError("the tangent stiffness of the reduced plate is not positive definite: it buckles".into());
+        self.factor = Some(Cholesky::new(tangent).ok_or_else(buckles)?);
+        Ok(())
+    }
+
+    fn solve_linearised(&mut self, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
+        let factor = self.factor.as_ref().ok_or_else(|| SolveError("no tangent has been factorised".into()))?;
+        for column in x.chunks_exact_mut(self.modal.ndof()).take(columns) {
+            let n = column.len();
+            factor.solve_mut(&mut DVectorViewMut::from_slice(column, n));
+        }
+        Ok(())
+    }
+}
