@@ -4,8 +4,9 @@ use super::{AssemblyError, Cholesky, FactorError, LargePlate, Symbolic, conditio
 use std::fmt;
 use std::num::NonZeroUsize;
 
-/// Iterations before a load counts as one that cannot be borne.
-const MOST: usize = 60;
+/// Iterations before a load counts as one that cannot be borne: plates take some ten, a cantilever that bends to a right angle
+/// fifty.
+const MOST: usize = 200;
 
 /// Newton decrement rᵀ K⁻¹ r over the work of the load at which an iteration ends: the error of the energy is half as large,
 /// that of displacements its root.
