@@ -1,7 +1,7 @@
 //! What can go wrong between a scene and its results.
 
 use crate::run::CheckpointError;
-use fem_core::assembly::AssemblyError;
+use fem_core::assembly::{AssemblyError, EquilibriumError, FactorError};
 use fem_core::element::ElementError;
 use fem_core::time::StepError;
 use fem_dynamics::guard::Alarm;
@@ -83,6 +83,14 @@ pub enum Error {
     #[error("the scene describes no loads at rest")]
     #[diagnostic(help("set `analysis = \"static\"` and give a `[[load]]`"))]
     NoLoads,
+    #[error("the element knows no large displacements")]
+    #[diagnostic(help(
+        "choose an element that does, such as `hermite-prism` or `mitc4`, or leave `effects.membrane` out"
+    ))]
+    SmallOnly,
+    #[error("there is no equilibrium under large displacements")]
+    #[diagnostic(help("{}", at_rest(.0)))]
+    Equilibrium(#[from] EquilibriumError),
     #[error("a {0} is not finite: the structure is singular, or a load out of the range of numbers")]
     NotFinite(&'static str),
     #[error(
@@ -108,6 +116,18 @@ const STEP_OR_LAW: &str = "shorten `march.step`; where that changes nothing, loo
 const MATRIX: &str =
     "look at the supports, at the constants of the materials, and at the element where it is not a shipped one";
 const LAW: &str = "look at the contact law: `fem_core::testkit::check_contact_law` finds what is wrong with it";
+
+/// What helps where there is no equilibrium.
+fn at_rest(error: &EquilibriumError) -> &'static str {
+    match error {
+        EquilibriumError::Factor(FactorError::NotPositive { .. }) => {
+            "lower the load below the one that buckles the plate; where there is none in the plane, look at the supports: \
+             they must stop every rigid motion"
+        }
+        EquilibriumError::NoConvergence(_) => "lower the load, or refine the mesh where the plate bends most",
+        _ => MATRIX,
+    }
+}
 
 /// What helps against an alarm.
 fn remedy(alarm: &Alarm) -> &'static str {

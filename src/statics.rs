@@ -2,14 +2,18 @@
 
 use crate::cost::{Cost, Phase, Stopwatch};
 use crate::error::Error;
+use crate::memory;
 use crate::model::{Model, NamedProfile, Plan};
 use crate::run::{self, Substructures};
 use crate::stress::{self, Margin};
 use crate::summary::{and, in_words};
+use fem_core::assembly::{LargePlate, pattern};
 use fem_core::counters::Counters;
 use fem_core::dof::Dof;
+use fem_core::element::ElementError;
 use fem_core::estimate::mesh_error;
-use fem_core::profile::ProfilePoint;
+use fem_core::field::Field as Displacements;
+use fem_core::profile::{ProfilePoint, Resultants};
 use fem_core::reduction::Functional;
 use fem_core::structure::Structure;
 use fem_io::files::OutputDir;
@@ -18,6 +22,7 @@ use fem_io::tables::{self, Field};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 /// Residual of the loads beyond which displacements are no result: they are about as wrong, for rounding in K alone.
 const MOST_RESIDUAL: f64 = 1e-2;
@@ -39,13 +44,17 @@ pub struct Solution {
     pub substructures: Option<Substructures>,
     /// Entries of the factor of K.
     pub factor_entries: usize,
-    /// ½ uᵀ K u, J.
+    /// ½ uᵀ K u, J, or ½ ∫ Eᵀ C E dV.
     pub strain_energy: f64,
-    /// ‖f − K u‖ / ‖f‖ of the independent unknowns.
+    /// ‖f − K u‖ / ‖f‖ of the independent unknowns, K u being the internal force.
     pub residual: f64,
-    /// Condition number of K, estimated ([`condition`](fem_core::assembly::SparseStructure::condition)).
+    /// Condition number of K, or of its tangent at the end, estimated
+    /// ([`condition`](fem_core::assembly::SparseStructure::condition)).
     pub condition: f64,
-    /// Error of the mesh in the energy norm, relative, where [`mesh_error`] can say.
+    /// Under large displacements, the Newton decrement of each iteration
+    /// ([`Equilibrium::decrements`](fem_core::assembly::Equilibrium::decrements)).
+    pub decrements: Option<Vec<f64>>,
+    /// Error of the mesh in the energy norm, relative, where [`mesh_error`] can say; never under large displacements.
     pub mesh_error: Option<f64>,
     /// Sum of the loads along x, y, z, N.
     pub resultant: [f64; 3],
@@ -53,23 +62,34 @@ pub struct Solution {
     pub margins: Vec<Margin>,
     /// The states along the profiles of the model.
     pub profiles: Vec<Vec<ProfilePoint>>,
+    /// Forces and moments per length at each of them.
+    pub resultants: Vec<Resultants>,
     /// Work done.
     pub counters: Counters,
     /// Time per phase.
     pub phases: Vec<Phase>,
 }
 
-/// Solves K u = f.
+/// Displacements of the independent unknowns, and how they were found.
+struct Found {
+    independent: Vec<f64>,
+    substructures: Option<Substructures>,
+    factor_entries: usize,
+    strain_energy: f64,
+    residual: f64,
+    condition: f64,
+    decrements: Option<Vec<f64>>,
+}
+
+/// Solves K u = f, or f(u) = f where the model has large displacements.
 ///
 /// # Errors
-/// A scene without loads at rest, a cell that the element refuses, a structure that is not held or too ill-conditioned, a
-/// result that is not finite, a criterion whose material lacks a constant.
+/// A scene without loads at rest, a cell that the element refuses, a structure that is not held, buckles or is too
+/// ill-conditioned, a result that is not finite, a criterion whose material lacks a constant.
 pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     let Plan::Static { forces } = &model.plan else { return Err(Error::NoLoads) };
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
-    let mut assembled = run::structure(model, false, threads, &mut counters)?;
-    stopwatch.lap("assemble");
     let constraints = &model.constraints;
     // u = C ũ + g, so that Cᵀ K C ũ = Cᵀ f; supports hold at zero, g = 0.
     let nodal: Vec<(usize, f64)> = forces.iter().copied().enumerate().filter(|(_, force)| *force != 0.0).collect();
@@ -79,7 +99,63 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
         let along = |(dof, f): (usize, &f64)| if model.plate.locate(dof).2 == dof_of(n) { *f } else { 0.0 };
         forces.iter().enumerate().map(along).sum()
     });
-    let (mut rest, own) = assembled.load(&f);
+    let solver = if model.effects.membrane { bent } else { straight };
+    let found = solver(model, &f, threads, &mut counters, &mut stopwatch)?;
+    if !found.strain_energy.is_finite() {
+        return Err(Error::NotFinite("displacement"));
+    }
+    if !(found.residual <= MOST_RESIDUAL) {
+        return Err(Error::IllConditioned { residual: found.residual });
+    }
+    let mut u = vec![0.0; model.plate.ndof()];
+    constraints.expand(&found.independent, &mut u);
+    stopwatch.lap("solve");
+    let margins = stress::margins(model, &u)?;
+    let mut field = Displacements::new(&model.plate, &model.laminate, &*model.element, &u);
+    if model.effects.membrane {
+        field = field.with_large_strains();
+    }
+    let sample = |named: &NamedProfile| {
+        let line = &named.line;
+        let bottom = line.equilibrium.then_some(named.bottom);
+        Ok((named.profile.sample(&field, line.points, bottom)?, named.profile.resultants(&field)?))
+    };
+    let sampled: Vec<_> = model.profiles.iter().map(sample).collect::<Result<_, ElementError>>()?;
+    let (profiles, resultants) = sampled.into_iter().unzip();
+    stopwatch.lap("stresses");
+    let mesh_error = if model.effects.membrane { None } else { mesh_error(&model.plate, &*model.element, &u)? };
+    stopwatch.lap("mesh error");
+    let phases = stopwatch.phases().to_vec();
+    Ok(Solution {
+        unknowns: constraints.ndof(),
+        substructures: found.substructures,
+        factor_entries: found.factor_entries,
+        strain_energy: found.strain_energy,
+        residual: found.residual,
+        condition: found.condition,
+        decrements: found.decrements,
+        u,
+        mesh_error,
+        resultant,
+        margins,
+        profiles,
+        resultants,
+        counters,
+        phases,
+    })
+}
+
+/// Small displacements.
+fn straight(
+    model: &Model,
+    f: &[f64],
+    threads: NonZeroUsize,
+    counters: &mut Counters,
+    stopwatch: &mut Stopwatch,
+) -> Result<Found, Error> {
+    let mut assembled = run::structure(model, false, threads, counters)?;
+    stopwatch.lap("assemble");
+    let (mut rest, own) = assembled.load(f);
     let mut solved = rest.clone();
     assembled.structure.solve_shifted(0.0, &mut solved, 1)?;
     assembled.structure.add_stiffness(-1.0, &solved, &mut rest);
@@ -91,40 +167,43 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     let mut independent = assembled.expand(solved);
     independent.iter_mut().zip(own.iter().flatten()).for_each(|(u, own)| *u += own);
     let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let strain_energy = 0.5 * f.iter().zip(&independent).map(|(f, u)| f * u).sum::<f64>();
-    if !strain_energy.is_finite() {
-        return Err(Error::NotFinite("displacement"));
-    }
-    let residual = norm(&rest) / norm(&f).max(f64::MIN_POSITIVE);
-    if !(residual <= MOST_RESIDUAL) {
-        return Err(Error::IllConditioned { residual });
-    }
     let condition = assembled.structure.condition()?;
-    let mut u = vec![0.0; model.plate.ndof()];
-    constraints.expand(&independent, &mut u);
     (counters.factorisations, counters.solves) = assembled.structure.work();
-    stopwatch.lap("solve");
-    let margins = stress::margins(model, &u)?;
-    let profiles = model.profiles.iter().map(|named| profile(model, named, &u)).collect();
-    stopwatch.lap("stresses");
-    let mesh_error = mesh_error(&model.plate, &*model.element, &u)?;
-    stopwatch.lap("mesh error");
-    let phases = stopwatch.phases().to_vec();
-    let unknowns = constraints.ndof();
-    Ok(Solution {
-        u,
-        unknowns,
+    Ok(Found {
+        strain_energy: 0.5 * f.iter().zip(&independent).map(|(f, u)| f * u).sum::<f64>(),
+        independent,
         substructures: assembled.substructures(),
         factor_entries: assembled.factor_entries,
-        strain_energy,
-        residual,
+        residual: norm(&rest) / norm(f).max(f64::MIN_POSITIVE),
         condition,
-        mesh_error,
-        resultant,
-        margins,
-        profiles,
-        counters,
-        phases,
+        decrements: None,
+    })
+}
+
+/// Large displacements.
+fn bent(
+    model: &Model,
+    f: &[f64],
+    threads: NonZeroUsize,
+    counters: &mut Counters,
+    _: &mut Stopwatch,
+) -> Result<Found, Error> {
+    let Model { plate, element, constraints, .. } = model;
+    let pattern = Arc::new(pattern(plate, constraints));
+    let (symbolic, _) = memory::analysed(model, pattern.clone())?;
+    let factor_entries = symbolic.entries();
+    let mut large = LargePlate::new(plate, element.clone(), constraints, &pattern).ok_or(Error::SmallOnly)?;
+    let found = large.equilibrium(symbolic, f, vec![0.0; f.len()], threads)?;
+    counters.elements = large.integrated();
+    (counters.factorisations, counters.solves) = (found.decrements.len() as u64, found.solves);
+    Ok(Found {
+        independent: found.u,
+        substructures: None,
+        factor_entries,
+        strain_energy: found.energy,
+        residual: found.residual,
+        condition: found.condition,
+        decrements: Some(found.decrements),
     })
 }
 
@@ -156,12 +235,6 @@ fn dof_of(n: u8) -> Dof {
     Dof::SOLID[4 * (usize::from(n) - 1)]
 }
 
-fn profile(model: &Model, named: &NamedProfile, u: &[f64]) -> Vec<ProfilePoint> {
-    let line = &named.line;
-    let bottom = line.equilibrium.then_some(named.bottom);
-    named.profile.sample(&model.plate, &model.laminate, &*model.element, u, line.points, bottom)
-}
-
 /// The summary of a static analysis; units are in the key names.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
@@ -177,6 +250,10 @@ pub struct Summary {
     pub resultant_N: [f64; 3],
     pub strain_energy_J: f64,
     pub largest_deflection: Deflection,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub large_displacements: Option<Newton>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub profiles: Vec<ProfileResultants>,
     pub margins: Vec<Margin>,
     pub residual_relative: f64,
     pub condition_estimate: f64,
@@ -197,6 +274,27 @@ pub struct Deflection {
     pub z_m: f64,
 }
 
+/// How large displacements were found.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[allow(missing_docs)]
+pub struct Newton {
+    pub iterations: usize,
+    /// Newton decrement over the work of the load: twice the relative error of the energy before the last step.
+    pub last_decrement: f64,
+}
+
+/// Forces and moments per length at a profile: components 11, 22, 12, and 31, 23 of the shear force.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct ProfileResultants {
+    pub name: String,
+    pub x_m: f64,
+    pub y_m: f64,
+    pub N_N_per_m: [f64; 3],
+    pub M_N: [f64; 3],
+    pub Q_N_per_m: [f64; 2],
+}
+
 impl Summary {
     /// Sums up a static analysis.
     pub fn new(model: &Model, solution: &Solution) -> Self {
@@ -213,6 +311,11 @@ impl Summary {
             resultant_N: solution.resultant,
             strain_energy_J: solution.strain_energy,
             largest_deflection: Deflection { w_m, x_m, y_m, z_m },
+            large_displacements: solution.decrements.as_ref().map(|decrements| Newton {
+                iterations: decrements.len(),
+                last_decrement: decrements.last().copied().unwrap_or(0.0),
+            }),
+            profiles: model.profiles.iter().zip(&solution.resultants).map(in_summary).collect(),
             margins: solution.margins.clone(),
             residual_relative: solution.residual,
             condition_estimate: solution.condition,
@@ -246,6 +349,13 @@ impl Summary {
             d.z_m * 1e3,
             self.strain_energy_J
         );
+        if let Some(Newton { iterations, last_decrement }) = self.large_displacements {
+            let _ = writeln!(
+                t,
+                "  membrane  large displacements, found in {iterations} Newton iterations (last decrement {last_decrement:.1e} of \
+                 the work of the loads); reserve factors are those of the stresses, not of the loads"
+            );
+        }
         for m in &self.margins {
             let _ = writeln!(
                 t,
@@ -263,10 +373,22 @@ impl Summary {
         });
         let (residual, condition) = (self.residual_relative, digits(self.condition_estimate));
         let _ = writeln!(t, "  accuracy  residual {residual:.1e} of the loads; {condition}{mesh}");
-        let _ = writeln!(t, "  work      {} element matrices, {} reused", self.elements, self.elements_reused);
+        let what = if self.large_displacements.is_some() { "integrations of cells" } else { "element matrices" };
+        let _ = writeln!(t, "  work      {} {what}, {} reused", self.elements, self.elements_reused);
         let _ = writeln!(t, "  time      {cost}");
         self.warnings.iter().for_each(|w| t.push_str(&format!("  warning   {w}\n")));
         t
+    }
+}
+
+fn in_summary((named, resultants): (&NamedProfile, &Resultants)) -> ProfileResultants {
+    ProfileResultants {
+        name: named.line.name.value.clone(),
+        x_m: named.point[0],
+        y_m: named.point[1],
+        N_N_per_m: resultants.membrane,
+        M_N: resultants.bending,
+        Q_N_per_m: resultants.shear,
     }
 }
 

@@ -218,7 +218,8 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// The smallest factor on the loads that brings a criterion to failure, and where.
+/// The smallest factor on the stresses that brings a criterion to failure, and where; without large displacements it is a
+/// factor on the loads as well.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct Margin {
@@ -243,7 +244,10 @@ pub(crate) fn margins(model: &Model, u: &[f64]) -> Result<Vec<Margin>, Error> {
     }
     let recovery = recovery(model);
     let mut stresses = vec![0.0; 6 * recovery.sites()];
-    recovery.stresses(&model.plate, &*model.element, u, 1, &mut stresses)?;
+    match model.element.large_displacements().filter(|_| model.effects.membrane) {
+        Some(large) => recovery.large_stresses(&model.plate, large, u, &mut stresses)?,
+        None => recovery.stresses(&model.plate, &*model.element, u, 1, &mut stresses)?,
+    }
     if !stresses.iter().all(|s| s.is_finite()) {
         return Err(Error::NotFinite("stress"));
     }

@@ -1,6 +1,7 @@
 //! The contract of an element under large displacements.
 
 use crate::element::{Cell, ElementError, Part, Scratch};
+use std::fmt::Debug;
 
 /// What an element offers besides its linear matrices where membrane stiffening is asked for.
 ///
@@ -9,7 +10,7 @@ use crate::element::{Cell, ElementError, Part, Scratch};
 /// displacements and rotations are not.
 ///
 /// At u = 0 the tangent is the stiffness of [`crate::element::Element::stiffness`] up to the quadrature through the plies.
-pub trait LargeDisplacement {
+pub trait LargeDisplacement: Debug {
     /// Internal force f = ∂W/∂u (N, conjugate to the unknowns) at the displacements `u` (both ndof), W = Σ over plies
     /// ∫ ½ Eᵀ C E dV; and the tangent ∂f/∂u (ndof × ndof, symmetric) where it is asked for. Returns W, J.
     ///
@@ -23,6 +24,12 @@ pub trait LargeDisplacement {
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, ElementError>;
+
+    /// E in the ply `slice` at natural point `xi`, engineering shears.
+    ///
+    /// # Errors
+    /// As [`LargeDisplacement::internal`].
+    fn large_strain(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError>;
 
     /// Means of E over parts of the cell (report eqs 12, 14), engineering shears, one after the other: `strains` holds
     /// six per part.

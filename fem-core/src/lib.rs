@@ -46,6 +46,7 @@ pub mod dof;
 pub mod element;
 pub mod estimate;
 pub mod failure;
+pub mod field;
 #[cfg(feature = "formula")]
 pub mod formula;
 pub mod laminate;

@@ -1,11 +1,11 @@
 //! Stresses along a line through the thickness.
 
-use crate::element::Element;
-use crate::laminate::Laminate;
+use crate::element::ElementError;
+use crate::field::{Field, Spot};
 use crate::patch::locate;
 use crate::plate::Plate;
 use crate::quadrature::gauss_legendre;
-use crate::tensor::{Global, Ply, Strain6, Stress6, stress};
+use crate::tensor::{Global, Ply, Strain6, Stress6};
 use nalgebra::{DMatrix, SVector};
 use std::collections::HashSet;
 
@@ -24,6 +24,17 @@ pub struct ProfilePoint {
     pub in_ply: Stress6<Ply>,
     /// σ₃₃, σ₂₃, σ₃₁ of the plate's frame from equilibrium with the in-plane stresses, Pa.
     pub equilibrium: Option<[f64; 3]>,
+}
+
+/// Forces and moments per length of what is cut along the lines x and y.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resultants {
+    /// ∫ σ dz of the components 11, 22, 12, N/m.
+    pub membrane: [f64; 3],
+    /// ∫ σ z dz of the same, z from the middle of the thickness, N.
+    pub bending: [f64; 3],
+    /// ∫ τ dz of the components 31, 23, N/m.
+    pub shear: [f64; 2],
 }
 
 /// A line through the thickness at a point of the plane.
@@ -45,6 +56,9 @@ const TERMS: usize = 16;
 
 /// Gauss points between two heights of a profile: stresses of a ply are cubic in z at most.
 const BETWEEN: usize = 3;
+
+/// Gauss points through a ply for resultants: large strains of cubic displacements are of sixth degree in z.
+const PLY_POINTS: usize = 4;
 
 impl Profile {
     /// The line at `point`; `None` outside the plate.
@@ -71,8 +85,8 @@ impl Profile {
         self.places.iter().map(|p| p.0)
     }
 
-    /// The state at `points` heights of every ply, its faces included, for displacements `u` (before elimination of
-    /// constraints): means over the cells that meet at the point.
+    /// The state of `field` at `points` heights of every ply, its faces included: means over the cells that meet at the
+    /// point.
     ///
     /// With `equilibrium`, transverse stresses are also integrated from the bottom face, where the pressure is
     /// `bottom` (Pa, pressing):
@@ -82,47 +96,72 @@ impl Profile {
     /// The in-plane derivatives are those of a bicubic fitted to the stresses in the centres of the cells around the point,
     /// where the parts of a displacement that an element interpolates linearly have their best slopes. What τ misses at
     /// the stress-free top is taken off linearly.
+    ///
+    /// # Errors
+    /// A cell that the element refuses.
     pub fn sample(
         &self,
-        plate: &Plate,
-        laminate: &Laminate,
-        element: &dyn Element,
-        u: &[f64],
+        field: &Field<'_>,
         points: usize,
         equilibrium: Option<f64>,
-    ) -> Vec<ProfilePoint> {
-        let z = laminate.boundaries();
-        let mut field = Field { plate, element, u, b: vec![0.0; 6 * element.info().ndof()], dofs: Vec::new() };
+    ) -> Result<Vec<ProfilePoint>, ElementError> {
+        let z = field.laminate().boundaries();
         let mut all = Vec::new();
-        for ply in 0..laminate.plies.len() {
+        for (ply, lamina) in field.laminate().plies.iter().enumerate() {
             for i in 0..points.max(2) {
                 let share = i as f64 / (points.max(2) - 1) as f64;
                 let height = z[ply] + share * (z[ply + 1] - z[ply]);
-                let mut strain = [0.0; 6];
-                let mut displacement = [0.0; 3];
-                for (quad, at) in &self.places {
-                    let (e, d) = field.state(laminate, *quad, *at, ply, height);
-                    let n = self.places.len() as f64;
-                    strain.iter_mut().zip(e).for_each(|(m, e)| *m += e / n);
-                    displacement.iter_mut().zip(d).for_each(|(m, d)| *m += d / n);
-                }
-                let global: Stress6<Global> = stress(field.stiffness(laminate, ply), &Strain6::new(strain));
-                let in_ply = global.to_ply(laminate.plies[ply].angle);
+                let (global, displacement) = self.mean(field, ply, height)?;
+                let in_ply = global.to_ply(lamina.angle);
                 all.push(ProfilePoint { ply, z: height, displacement, global, in_ply, equilibrium: None });
             }
         }
         if let Some(bottom) = equilibrium {
-            self.integrate(&mut field, laminate, bottom, &mut all);
+            self.integrate(field, bottom, &mut all)?;
         }
-        all
+        Ok(all)
+    }
+
+    /// Forces and moments per length: stresses, as [`Profile::sample`] has them, integrated through every ply exactly.
+    ///
+    /// # Errors
+    /// A cell that the element refuses.
+    pub fn resultants(&self, field: &Field<'_>) -> Result<Resultants, ElementError> {
+        let mut sum = Resultants { membrane: [0.0; 3], bending: [0.0; 3], shear: [0.0; 2] };
+        for (ply, z) in field.laminate().boundaries().windows(2).enumerate() {
+            let half = 0.5 * (z[1] - z[0]);
+            for &(t, w) in gauss_legendre(PLY_POINTS) {
+                let height = z[0] + half * (1.0 + t);
+                let (s, _) = self.mean(field, ply, height)?;
+                for (k, s) in [s.s11(), s.s22(), s.s12()].into_iter().enumerate() {
+                    sum.membrane[k] += half * w * s;
+                    sum.bending[k] += half * w * s * height;
+                }
+                sum.shear[0] += half * w * s.s31();
+                sum.shear[1] += half * w * s.s23();
+            }
+        }
+        Ok(sum)
+    }
+
+    /// Mean stress and displacement over the cells that meet at the point.
+    fn mean(&self, field: &Field<'_>, ply: usize, z: f64) -> Result<(Stress6<Global>, [f64; 3]), ElementError> {
+        let n = self.places.len() as f64;
+        let (mut strain, mut displacement) = ([0.0; 6], [0.0; 3]);
+        for &(quad, at) in &self.places {
+            let (e, d) = field.at(Spot { quad, at, ply, z })?;
+            strain.iter_mut().zip(e.0).for_each(|(m, e)| *m += e / n);
+            displacement.iter_mut().zip(d).for_each(|(m, d)| *m += d / n);
+        }
+        Ok((field.stress(ply, &Strain6::new(strain)), displacement))
     }
 
     /// Fills in the transverse stresses from equilibrium.
-    fn integrate(&self, field: &mut Field<'_>, laminate: &Laminate, bottom: f64, all: &mut [ProfilePoint]) {
-        let fit = self.fit(field.plate);
+    fn integrate(&self, field: &Field<'_>, bottom: f64, all: &mut [ProfilePoint]) -> Result<(), ElementError> {
+        let fit = self.fit(field.plate());
         let (low, high) = match all {
             [first, .., last] => (first.z, last.z),
-            _ => return,
+            _ => return Ok(()),
         };
         // Resultants so far: ∫ of the divergence of the in-plane stresses, and of its own divergence.
         let (mut shear, mut second, mut normal) = ([0.0; 2], 0.0, -bottom);
@@ -133,7 +172,7 @@ impl Profile {
                 normal += 2.0 * half * second;
                 for &(t, w) in gauss_legendre(BETWEEN) {
                     let z = from + half * (1.0 + t);
-                    let [by_x, by_y, twice] = self.derivatives(field, laminate, &fit, ply, z);
+                    let [by_x, by_y, twice] = self.derivatives(field, &fit, ply, z)?;
                     shear[0] -= half * w * by_x;
                     shear[1] -= half * w * by_y;
                     second += half * w * twice;
@@ -151,6 +190,7 @@ impl Profile {
                 *s31 -= share * shear[0];
             }
         }
+        Ok(())
     }
 
     /// Least squares of a cubic in x times a cubic in y around the point: rows give its coefficients from the samples.
@@ -173,11 +213,11 @@ impl Profile {
     }
 
     /// ∂σ₁₁/∂x + ∂σ₁₂/∂y, ∂σ₁₂/∂x + ∂σ₂₂/∂y, and the divergence of the two.
-    fn derivatives(&self, field: &mut Field<'_>, laminate: &Laminate, fit: &Fit, ply: usize, z: f64) -> [f64; 3] {
+    fn derivatives(&self, field: &Field<'_>, fit: &Fit, ply: usize, z: f64) -> Result<[f64; 3], ElementError> {
         let mut coefficients = SVector::<[f64; 3], TERMS>::from_element([0.0; 3]);
-        for (i, quad) in self.around.iter().enumerate() {
-            let (e, _) = field.state(laminate, *quad, [0.0; 2], ply, z);
-            let s: Stress6<Global> = stress(field.stiffness(laminate, ply), &Strain6::new(e));
+        for (i, &quad) in self.around.iter().enumerate() {
+            let (e, _) = field.at(Spot { quad, at: [0.0; 2], ply, z })?;
+            let s = field.stress(ply, &e);
             for (c, row) in coefficients.iter_mut().zip(fit.inverse.column(i).iter()) {
                 for (c, s) in c.iter_mut().zip([s.0[0], s.0[1], s.0[3]]) {
                     *c += row * s;
@@ -186,7 +226,7 @@ impl Profile {
         }
         let [x, y, xx, xy, yy] = [1, 4, 2, 5, 8].map(|k| coefficients[k]);
         let (h, hh) = (fit.size, fit.size * fit.size);
-        [(x[0] + y[2]) / h, (x[2] + y[1]) / h, (2.0 * xx[0] + 2.0 * xy[2] + 2.0 * yy[1]) / hh]
+        Ok([(x[0] + y[2]) / h, (x[2] + y[1]) / h, (2.0 * xx[0] + 2.0 * xy[2] + 2.0 * yy[1]) / hh])
     }
 }
 
@@ -194,52 +234,4 @@ struct Fit {
     /// Terms × cells around.
     inverse: DMatrix<f64>,
     size: f64,
-}
-
-/// A displacement field, evaluated in a ply of a cell.
-struct Field<'a> {
-    plate: &'a Plate,
-    element: &'a dyn Element,
-    u: &'a [f64],
-    b: Vec<f64>,
-    dofs: Vec<usize>,
-}
-
-impl<'a> Field<'a> {
-    fn layer(laminate: &Laminate, ply: usize) -> (usize, usize) {
-        let layer = (0..laminate.layers.len()).find(|l| laminate.plies_of(*l).contains(&ply)).unwrap_or(0);
-        (layer, ply - laminate.plies_of(layer).start)
-    }
-
-    fn stiffness(&self, laminate: &Laminate, ply: usize) -> &'a crate::tensor::Matrix6 {
-        let (layer, slice) = Self::layer(laminate, ply);
-        &self.plate.stacks[layer].slices[slice].c
-    }
-
-    /// Strain and displacement at height `z` of `ply`, at natural coordinates of a quad.
-    fn state(
-        &mut self,
-        laminate: &Laminate,
-        quad: usize,
-        [r, s]: [f64; 2],
-        ply: usize,
-        z: f64,
-    ) -> ([f64; 6], [f64; 3]) {
-        let (layer, slice) = Self::layer(laminate, ply);
-        let number = quad * self.plate.layers() + layer;
-        let cell = self.plate.cell(number);
-        let q = ((z - 0.5 * (cell.z[0] + cell.z[1])) / cell.half_height()).clamp(-1.0, 1.0);
-        self.plate.cell_dofs(number, &mut self.dofs);
-        let (mut strain, mut displacement) = ([0.0; 6], [0.0; 3]);
-        self.element.strain_operator(&cell, slice, [r, s, q], &mut self.b);
-        for (dof, column) in self.dofs.iter().zip(self.b.chunks_exact(6)) {
-            strain.iter_mut().zip(column).for_each(|(e, b)| *e += b * self.u[*dof]);
-        }
-        let shape = &mut self.b[..3 * self.dofs.len()];
-        self.element.shape(&cell, [r, s, q], shape);
-        for (dof, column) in self.dofs.iter().zip(shape.chunks_exact(3)) {
-            displacement.iter_mut().zip(column).for_each(|(d, n)| *d += n * self.u[*dof]);
-        }
-        (strain, displacement)
-    }
 }

@@ -2,6 +2,7 @@
 
 use crate::element::{Element, ElementError, Part, Scratch};
 use crate::laminate::Laminate;
+use crate::large::LargeDisplacement;
 use crate::material::Material;
 use crate::plate::Plate;
 use crate::tensor::{Matrix6, strain_rotation};
@@ -114,6 +115,45 @@ impl Recovery {
                 }
             }
         }
+        self.averaged(&strains, fields, out);
+        Ok(())
+    }
+
+    /// Stresses S = C E of large displacements `u` (one field, before elimination of constraints), on the axes of the sites as
+    /// they turn with the plate: six components per site, `out` is 6·sites.
+    ///
+    /// # Errors
+    /// A cell that the element refuses.
+    pub fn large_stresses(
+        &self,
+        plate: &Plate,
+        element: &dyn LargeDisplacement,
+        u: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), ElementError> {
+        let parts: Vec<Part> = self.stations.iter().map(|s| s.part).collect();
+        let mut strains = vec![0.0; self.sources.len() * 6 * parts.len()];
+        let (mut rest, mut dofs, mut local) = (strains.as_mut_slice(), Vec::new(), Vec::new());
+        for quad in &self.sources {
+            let mut parts = parts.as_slice();
+            for stations in self.stations.chunk_by(|a, b| a.layer == b.layer) {
+                let number = quad * plate.layers() + stations[0].layer;
+                plate.cell_dofs(number, &mut dofs);
+                local.clear();
+                local.extend(dofs.iter().map(|dof| u[*dof]));
+                let (of_layer, above) = parts.split_at(stations.len());
+                let (here, next) = rest.split_at_mut(6 * stations.len());
+                element.mean_large_strains(&plate.cell(number), of_layer, &local, here)?;
+                (parts, rest) = (above, next);
+            }
+        }
+        self.averaged(&strains, 1, out);
+        Ok(())
+    }
+
+    /// Stresses of the strains of the sources, averaged over windows; several fields, which run fastest among the strains.
+    fn averaged(&self, strains: &[f64], fields: usize, out: &mut [f64]) {
+        let per_quad = 6 * self.stations.len();
         let mut mean = vec![0.0; 6 * fields];
         for (i, window) in self.windows.iter().enumerate() {
             for (s, station) in self.stations.iter().enumerate() {
@@ -129,7 +169,6 @@ impl Recovery {
                 }
             }
         }
-        Ok(())
     }
 }
 

@@ -347,7 +347,7 @@ impl HermitePrism {
         let fill = |r: f64, s: f64, plane: &PlaneMap, out: &mut Gradients<F, 4>| {
             gradients(cell, &jacobians, 0..8, r, s, plane, |f, gradient| out[f] = gradient);
         };
-        with(&Solid { info: &self.info, gradients: &fill, unknown: column })
+        with(&Solid { info: &self.info, gradients: &fill, unknown: |n, f| Some(column(n, f)) })
     }
 }
 
@@ -361,6 +361,10 @@ impl LargeDisplacement for HermitePrism {
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, ElementError> {
         self.solid(cell, |solid| solid.internal(cell, u, scratch, force, tangent))
+    }
+
+    fn large_strain(&self, cell: &Cell<'_>, _slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError> {
+        self.solid(cell, |solid| solid.strain(cell, xi, u))
     }
 
     fn mean_large_strains(

@@ -159,7 +159,7 @@ impl Hex20 {
         let fill = |r: f64, s: f64, plane: &PlaneMap, out: &mut Gradients<20, 3>| {
             self.gradients(cell, r, s, plane, |f, gradient| out[f] = gradient);
         };
-        with(&Solid { info: &self.info, gradients: &fill, unknown: Self::unknown })
+        with(&Solid { info: &self.info, gradients: &fill, unknown: |n, f| Some(Self::unknown(n, f)) })
     }
 }
 
@@ -173,6 +173,10 @@ impl LargeDisplacement for Hex20 {
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, ElementError> {
         self.solid(cell, |solid| solid.internal(cell, u, scratch, force, tangent))
+    }
+
+    fn large_strain(&self, cell: &Cell<'_>, _slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError> {
+        self.solid(cell, |solid| solid.strain(cell, xi, u))
     }
 
     fn mean_large_strains(

@@ -24,8 +24,8 @@ pub(crate) struct Solid<'a, const F: usize, const K: usize> {
     pub(crate) info: &'a ElementInfo,
     /// Fills in the gradients at an in-plane point of the map.
     pub(crate) gradients: &'a dyn Fn(f64, f64, &PlaneMap, &mut Gradients<F, K>),
-    /// Unknown of the cell that multiplies a function in a component.
-    pub(crate) unknown: fn(usize, usize) -> usize,
+    /// Unknown of the cell that multiplies a function in a component; none in one that stays zero.
+    pub(crate) unknown: fn(usize, usize) -> Option<usize>,
 }
 
 /// Powers of q that a product of two polynomials has: 2 K − 1 for K = 4.
@@ -61,8 +61,9 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
             energy += dv * through.energy;
             for (f, gradient) in functions.iter().enumerate() {
                 for (n, stresses) in through.stresses.iter().enumerate() {
+                    let Some(unknown) = (self.unknown)(n, f) else { continue };
                     let work = gradient.as_flattened().iter().zip(stresses.as_flattened());
-                    force[(self.unknown)(n, f)] += dv * work.map(|(g, p)| g * p).sum::<f64>();
+                    force[unknown] += dv * work.map(|(g, p)| g * p).sum::<f64>();
                 }
             }
             if wanted {
@@ -87,17 +88,24 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
 
     /// K = Σ over points of P Gᵀ, block by block.
     fn gather(&self, g: &[f64], p: &[f64], block: &mut [f64], tangent: &mut [f64]) {
-        let g = matrix(g, F);
+        let (g, ndof) = (matrix(g, F), self.info.ndof());
         for ((n, n2), p) in BLOCKS.iter().zip(p.chunks_exact(F * g.ncols())) {
             multiply(block, matrix(p, F), g.transpose());
             for (f2, column) in block.chunks_exact(F).enumerate() {
                 for (f, value) in column.iter().enumerate() {
-                    let (i, j) = ((self.unknown)(*n, f), (self.unknown)(*n2, f2));
-                    tangent[i + 3 * F * j] = *value;
-                    tangent[j + 3 * F * i] = *value;
+                    let (Some(i), Some(j)) = ((self.unknown)(*n, f), (self.unknown)(*n2, f2)) else { continue };
+                    tangent[i + ndof * j] = *value;
+                    tangent[j + ndof * i] = *value;
                 }
             }
         }
+    }
+
+    /// [`fem_core::large::LargeDisplacement::large_strain`]
+    pub(crate) fn strain(&self, cell: &Cell<'_>, [r, s, q]: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError> {
+        let mut functions: Gradients<F, K> = [[[0.0; K]; 3]; F];
+        self.at(cell, r, s, &mut functions)?;
+        Ok(green_lagrange(&at(&self.gradient(&functions, u), q)))
     }
 
     /// [`fem_core::large::LargeDisplacement::mean_large_strains`]
@@ -140,7 +148,8 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
         let mut h = [[[0.0; K]; 3]; 3];
         for (f, gradient) in functions.iter().enumerate() {
             for (n, h) in h.iter_mut().enumerate() {
-                let u = u[(self.unknown)(n, f)];
+                let Some(unknown) = (self.unknown)(n, f) else { continue };
+                let u = u[unknown];
                 for (h, g) in h.as_flattened_mut().iter_mut().zip(gradient.as_flattened()) {
                     *h += u * g;
                 }

@@ -232,6 +232,18 @@ impl LargeDisplacement for Mitc4 {
         Ok(energy)
     }
 
+    fn large_strain(
+        &self,
+        cell: &Cell<'_>,
+        slice: usize,
+        [r, s, q]: [f64; 3],
+        u: &[f64],
+    ) -> Result<[f64; 6], ElementError> {
+        let bent = Bent::new(cell, r, s, &SVector::from_column_slice(u));
+        positive(bent.jacobian)?;
+        Ok((Lamination::new(cell.stack)?.strain(slice, q, cell.half_height()) * bent.strain).into())
+    }
+
     fn mean_large_strains(
         &self,
         cell: &Cell<'_>,

@@ -2,8 +2,10 @@
 
 use crate::hermite::{self, NodeFunctions};
 use crate::hermite_prism::Mass;
+use crate::large::{Gradients, Solid};
 use fem_core::dof::Dof;
-use fem_core::element::{Cell, Element, ElementError, ElementInfo};
+use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, Stack};
+use fem_core::large::LargeDisplacement;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::quadrature::MAX_POINTS;
 use fem_core::tensor::Matrix6;
@@ -109,14 +111,7 @@ impl Element for WebsterBeam {
                 (b[w + 2], b[w + 5]) = (by_z, by_x);
             }
         }
-        if self.state == PlaneState::Stress {
-            let c = eliminate(cell.stack.slices[slice].c);
-            for e in b.chunks_exact_mut(6) {
-                for k in ACROSS {
-                    e[k] = -WITHIN.iter().map(|j| c[k][*j] * e[*j]).sum::<f64>();
-                }
-            }
-        }
+        self.complete(&cell.stack.slices[slice].c, b);
         plane.det * half_height
     }
 
@@ -146,6 +141,96 @@ impl Element for WebsterBeam {
             n[3 * 3 + 2] = value;
         }
         cell.plane(xi[0], 0.0).det * cell.half_height()
+    }
+
+    fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
+        Some(self)
+    }
+}
+
+/// Functions of the section, value, ∂x, ∂z at each of four nodes.
+const F: usize = 12;
+
+impl WebsterBeam {
+    fn solid<T>(&self, cell: &Cell<'_>, with: impl FnOnce(&Solid<'_, F, 4>) -> T) -> T {
+        let fill = |r: f64, _: f64, plane: &PlaneMap, out: &mut Gradients<F, 4>| {
+            let (half_length, half_height) = (plane.jacobian[0][0], cell.half_height());
+            let scale = [1.0, half_length, half_height];
+            for (corner, out) in NODES.iter().zip(out.chunks_exact_mut(FUNCTIONS.len())) {
+                let natural = functions(*corner, r);
+                for ((function, scale), [by_x, _, by_z]) in FUNCTIONS.iter().zip(scale).zip(out) {
+                    *by_x = natural.n_r[*function].map(|c| scale / half_length * c);
+                    *by_z = hermite::derivative(&natural.n[*function]).map(|c| scale / half_height * c);
+                }
+            }
+        };
+        let unknown = |component: usize, f: usize| match component {
+            1 => None,
+            x_or_z => {
+                Some(2 * FUNCTIONS.len() * (f / FUNCTIONS.len()) + x_or_z / 2 * FUNCTIONS.len() + f % FUNCTIONS.len())
+            }
+        };
+        with(&Solid { info: &self.info, gradients: &fill, unknown })
+    }
+
+    /// The plies as the section sees them: under plane stress those strains across it that leave no stress are free.
+    fn seen(&self, stack: &Stack) -> Stack {
+        let mut stack = stack.clone();
+        if self.state == PlaneState::Stress {
+            for slice in &mut stack.slices {
+                slice.c = eliminate(slice.c);
+                ACROSS.into_iter().for_each(|k| slice.c[k] = [0.0; 6]);
+                slice.c.iter_mut().for_each(|row| ACROSS.into_iter().for_each(|k| row[k] = 0.0));
+            }
+        }
+        stack
+    }
+
+    /// Fills in what plane stress in a ply of stiffness `c` makes of strains across the section.
+    fn complete(&self, c: &Matrix6, strains: &mut [f64]) {
+        if self.state == PlaneState::Stress {
+            let c = eliminate(*c);
+            for e in strains.chunks_exact_mut(6) {
+                for k in ACROSS {
+                    e[k] = -WITHIN.iter().map(|j| c[k][*j] * e[*j]).sum::<f64>();
+                }
+            }
+        }
+    }
+}
+
+impl LargeDisplacement for WebsterBeam {
+    fn internal(
+        &self,
+        cell: &Cell<'_>,
+        u: &[f64],
+        scratch: &mut Scratch,
+        force: &mut [f64],
+        tangent: Option<&mut [f64]>,
+    ) -> Result<f64, ElementError> {
+        let stack = self.seen(cell.stack);
+        let cell = Cell { stack: &stack, ..*cell };
+        self.solid(&cell, |solid| solid.internal(&cell, u, scratch, force, tangent))
+    }
+
+    fn large_strain(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError> {
+        let mut strain = self.solid(cell, |solid| solid.strain(cell, xi, u))?;
+        self.complete(&cell.stack.slices[slice].c, &mut strain);
+        Ok(strain)
+    }
+
+    fn mean_large_strains(
+        &self,
+        cell: &Cell<'_>,
+        parts: &[Part],
+        u: &[f64],
+        strains: &mut [f64],
+    ) -> Result<(), ElementError> {
+        self.solid(cell, |solid| solid.mean_strains(cell, parts, u, strains))?;
+        for (part, strain) in parts.iter().zip(strains.chunks_exact_mut(6)) {
+            self.complete(&cell.stack.slices[part.slice].c, strain);
+        }
+        Ok(())
     }
 }
 

@@ -5,9 +5,10 @@
 mod dense;
 
 use dense::*;
-use fem_core::element::{Cell, Element, Part, Scratch, Stack};
+use fem_core::element::{Cell, Element, Part, Scratch, Slice, Stack};
 use fem_core::large::{LargeDisplacement, green_lagrange};
-use fem_elements::{HermiteHex, HermitePrism, Hex20, Mass, Mitc4};
+use fem_core::quadrature::gauss_legendre;
+use fem_elements::{HermiteHex, HermitePrism, Hex20, Mass, Mitc4, PlaneState, WebsterBeam};
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3, Vector6};
 
 const PARALLELOGRAM: [[f64; 2]; 4] = [[0.0, 0.0], [2.0e-3, 0.5e-3], [2.7e-3, 1.9e-3], [0.7e-3, 1.4e-3]];
@@ -24,13 +25,23 @@ fn solids() -> [Box<dyn Element>; 3] {
     ]
 }
 
-fn all() -> impl Iterator<Item = Box<dyn Element>> {
-    solids().into_iter().chain([Box::new(Mitc4::default()) as Box<dyn Element>])
+fn sections() -> [Box<dyn Element>; 2] {
+    [PlaneState::Stress, PlaneState::Strain]
+        .map(|state| -> Box<dyn Element> { Box::new(WebsterBeam::new(state, Mass::Cubic, 4).unwrap()) })
 }
 
-/// A cell that every element takes, 0.8 mm high.
-fn cell(stack: &Stack) -> Cell<'_> {
-    Cell { corners: PARALLELOGRAM, z: [-0.3e-3, 0.5e-3], stack }
+fn all() -> impl Iterator<Item = Box<dyn Element>> {
+    solids().into_iter().chain(sections()).chain([Box::new(Mitc4::default()) as Box<dyn Element>])
+}
+
+/// A cell that the element takes, 0.8 mm high.
+fn cell<'a>(element: &dyn Element, stack: &'a Stack) -> Cell<'a> {
+    let corners = if element.info().is_section() {
+        [[0.0, -0.5e-3], [2.0e-3, -0.5e-3], [2.0e-3, 1.0e-3], [0.0, 1.0e-3]]
+    } else {
+        PARALLELOGRAM
+    };
+    Cell { corners, z: [-0.3e-3, 0.5e-3], stack }
 }
 
 /// Energy, force and tangent at `u`.
@@ -63,9 +74,9 @@ fn without_displacements_there_is_no_force_and_the_tangent_is_the_stiffness() {
     let stack = plies();
     for element in all() {
         let u = DVector::zeros(element.info().ndof());
-        let (energy, force, tangent) = internal(&*element, &cell(&stack), &u);
+        let (energy, force, tangent) = internal(&*element, &cell(&*element, &stack), &u);
         assert_eq!((energy, force.amax()), (0.0, 0.0));
-        let error = difference(&tangent, &stiffness(&*element, &cell(&stack)));
+        let error = difference(&tangent, &stiffness(&*element, &cell(&*element, &stack)));
         assert!(error < 1e-12, "{element:?}: {error:e}");
     }
 }
@@ -74,7 +85,7 @@ fn without_displacements_there_is_no_force_and_the_tangent_is_the_stiffness() {
 fn forces_are_derivatives_of_the_energy_and_tangents_of_the_forces() {
     let stack = plies();
     for element in all() {
-        let cell = cell(&stack);
+        let cell = cell(&*element, &stack);
         let u = motion(&*element, &cell, &Matrix3::new(0.02, 0.1, 0.0, -0.1, 0.01, 0.05, -0.2, 0.1, 0.03), 0.05);
         let (_, force, tangent) = internal(&*element, &cell, &u);
         for k in 0..u.len() {
@@ -105,7 +116,7 @@ fn a_turned_cell_has_no_energy_and_a_stretched_one_has_the_same_however_turned()
     let turn = Rotation3::from_euler_angles(0.7, -1.1, 2.0).into_inner();
     let stretch = Matrix3::new(1.01, 0.02, -0.01, 0.0, 0.98, 0.03, 0.01, 0.0, 1.02);
     for element in solids() {
-        let cell = cell(&stack);
+        let cell = cell(&*element, &stack);
         let energy =
             |f: Matrix3<f64>| internal(&*element, &cell, &motion(&*element, &cell, &(f - Matrix3::identity()), 0.0)).0;
         // W = volume · mean of ½ Eᵀ C E
@@ -127,22 +138,76 @@ fn a_turned_cell_has_no_energy_and_a_stretched_one_has_the_same_however_turned()
     }
 }
 
+/// The parts of every ply: all of it, and its upper face.
+fn parts(stack: &Stack) -> Vec<Part> {
+    let of_slice = |(slice, s): (usize, &Slice)| [s.q, [s.q[1]; 2]].map(|q| Part { slice, q });
+    stack.slices.iter().enumerate().flat_map(of_slice).collect()
+}
+
+fn mean_strains(element: &dyn Element, cell: &Cell<'_>, u: &DVector<f64>) -> Vec<f64> {
+    let parts = parts(cell.stack);
+    let mut strains = vec![f64::NAN; 6 * parts.len()];
+    element.large_displacements().unwrap().mean_large_strains(cell, &parts, u.as_slice(), &mut strains).unwrap();
+    strains
+}
+
 #[test]
 fn means_of_a_uniform_strain_are_that_strain() {
     let stack = plies();
     let h = Matrix3::new(0.01, 0.02, -0.01, 0.0, -0.02, 0.03, 0.01, 0.0, 0.02);
     let want = green_lagrange(&h.transpose().into());
-    let parts: Vec<Part> = (stack.slices.iter().enumerate())
-        .flat_map(|(slice, s)| [s.q, [s.q[1]; 2]].map(|q| Part { slice, q }))
-        .collect();
     for element in solids() {
-        let u = motion(&*element, &cell(&stack), &h, 0.0);
-        let mut strains = vec![f64::NAN; 6 * parts.len()];
-        let large = element.large_displacements().unwrap();
-        large.mean_large_strains(&cell(&stack), &parts, u.as_slice(), &mut strains).unwrap();
+        let cell = cell(&*element, &stack);
+        let u = motion(&*element, &cell, &h, 0.0);
+        let strains = mean_strains(&*element, &cell, &u);
         for strain in strains.chunks_exact(6) {
             let error = strain.iter().zip(want).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(error < 1e-15, "{element:?}: {strain:?} {want:?}");
+        }
+    }
+}
+
+#[test]
+fn means_are_those_of_the_strains_at_points() {
+    let stack = plies();
+    for element in all() {
+        let cell = cell(&*element, &stack);
+        let u = motion(&*element, &cell, &Matrix3::new(0.02, 0.1, 0.0, -0.1, 0.01, 0.05, -0.2, 0.1, 0.03), 0.05);
+        let large = element.large_displacements().unwrap();
+        let strains = mean_strains(&*element, &cell, &u);
+        for (Part { slice, q: [low, high] }, mean) in parts(&stack).into_iter().zip(strains.chunks_exact(6)) {
+            let (mut sum, mut volume) = ([0.0; 6], 0.0);
+            for (r, s, w) in element.info().plane_points() {
+                for &(t, wt) in gauss_legendre(4) {
+                    let q = 0.5 * (low + high) + 0.5 * (high - low) * t;
+                    let dv = w * wt * cell.plane(r, s).det;
+                    let strain = large.large_strain(&cell, slice, [r, s, q], u.as_slice()).unwrap();
+                    sum.iter_mut().zip(strain).for_each(|(sum, e)| *sum += dv * e);
+                    volume += dv;
+                }
+            }
+            for (mean, sum) in mean.iter().zip(sum) {
+                assert!((mean - sum / volume).abs() < 1e-14, "{element:?}: {mean} {}", sum / volume);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_turned_section_has_no_energy_and_strains_across_it_leave_no_stress() {
+    let stack = plies();
+    let turn = Rotation3::from_euler_angles(0.0, 0.9, 0.0).into_inner();
+    let stretch = Matrix3::new(1.01, 0.0, -0.02, 0.0, 1.0, 0.0, 0.01, 0.0, 0.97);
+    for element in sections() {
+        let cell = cell(&*element, &stack);
+        let at = |f: Matrix3<f64>| motion(&*element, &cell, &(f - Matrix3::identity()), 0.0);
+        let [want, turned, rigid] = [stretch, turn * stretch, turn].map(|f| internal(&*element, &cell, &at(f)).0);
+        assert!((turned / want - 1.0).abs() < 1e-12, "{element:?}: {turned} {want}");
+        assert!(rigid < 1e-22 * want, "{element:?}: {rigid:e} of {want:e}");
+        for (ply, strain) in stack.slices.iter().zip(mean_strains(&*element, &cell, &at(stretch)).chunks_exact(12)) {
+            let across = [1, 3, 4].map(|k| ply.c[k].iter().zip(strain).map(|(c, e)| c * e).sum::<f64>());
+            let free = if format!("{element:?}").contains("Stress") { across } else { [1, 3, 4].map(|k| strain[k]) };
+            assert!(free.iter().all(|free| free.abs() < 1e-15 * ply.c[0][0]), "{element:?}: {free:?}");
         }
     }
 }
@@ -152,7 +217,7 @@ fn means_of_a_uniform_strain_are_that_strain() {
 fn the_shell_has_the_strains_of_von_karman() {
     let stack = plies();
     let shell = Mitc4::default();
-    let cell = cell(&stack);
+    let cell = cell(&shell, &stack);
     let slopes = [0.15, -0.1];
     // Normals stay upright to the middle, which is what the rotations U13 = −w,x do.
     let h = Matrix3::new(0.01, 0.004, -slopes[0], 0.0, -0.02, -slopes[1], slopes[0], slopes[1], 0.0);
@@ -174,7 +239,7 @@ fn a_folded_cell_is_refused() {
     for element in solids() {
         let n = element.info().ndof();
         let (u, mut force) = (vec![0.0; n], vec![0.0; n]);
-        let folded = Cell { corners: [a, c, b, d], ..cell(&stack) };
+        let folded = Cell { corners: [a, c, b, d], ..cell(&*element, &stack) };
         let large = element.large_displacements().unwrap();
         let refused = large.internal(&folded, &u, &mut Scratch::default(), &mut force, None).unwrap_err();
         assert!(refused.0.contains("Jacobian"), "{refused}");

@@ -145,7 +145,7 @@ impl Model {
             Damage::Off => None,
             Damage::Onset => DelaminationThreshold::of(&laminate, &materials, resin),
         };
-        let profiles = builder.profiles(&plate)?;
+        let profiles = builder.profiles(&plate, effects)?;
         Ok(Self {
             materials,
             laminate,

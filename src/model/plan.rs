@@ -1,5 +1,6 @@
 //! What a model is for: an impact, loads at rest, natural modes.
 
+use super::Effects;
 use super::builder::Builder;
 use crate::error::Error;
 use fem_core::constraint::Constraints;
@@ -165,13 +166,17 @@ impl Builder<'_> {
         Ok(forces)
     }
 
-    pub(super) fn profiles(&self, plate: &Plate) -> Result<Vec<NamedProfile>, SceneError> {
+    pub(super) fn profiles(&self, plate: &Plate, effects: Effects) -> Result<Vec<NamedProfile>, SceneError> {
         let cells = plate.plane.quads.len();
         let each = |line: &ProfileLine| {
             let (point, _) = self.point(plate, &line.at)?;
             let Some(profile) = Profile::at(plate, point) else {
                 return Err(self.error(&line.at, "the point lies outside the plate", "move it"));
             };
+            if line.equilibrium && effects.membrane {
+                let message = "`equilibrium` integrates stresses of small displacements";
+                return Err(self.error(&line.name, message, "leave `equilibrium` out, or `effects.membrane`"));
+            }
             if line.equilibrium && cells < LEAST_CELLS {
                 let message = format!("the stresses of {cells} cells cannot be differentiated for `equilibrium`");
                 let help = format!("take at least {LEAST_CELLS} cells, or leave `equilibrium` out");

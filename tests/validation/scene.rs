@@ -118,6 +118,19 @@ impl Plate {
         self
     }
 
+    /// The same with a profile at a point, mm, of what the element itself says.
+    pub(super) fn probe(mut self, [x, y]: [f64; 2]) -> Self {
+        let name = self.more.matches("[[profile]]").count();
+        let _ = writeln!(self.more, "[[profile]]\nname = '{name}'\nat = {{ x = '{x} mm', y = '{y} mm' }}\npoints = 2");
+        self
+    }
+
+    /// The same with more of the scene's text.
+    pub(super) fn with(mut self, text: &str) -> Self {
+        let _ = writeln!(self.more, "{text}");
+        self
+    }
+
     /// The scene.
     pub(super) fn text(&self, analysis: &str) -> String {
         let mut text = format!(
@@ -182,13 +195,7 @@ impl MeshFile {
 pub(super) fn gmsh_grid(x: &[f64], y: &[f64], distortion: f64) -> MeshFile {
     let (nx, ny) = (x.len(), y.len());
     let node = |i: usize, j: usize| 1 + i + j * nx;
-    let mut t = String::from("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n6\n0 1 \"corner\"\n");
-    ["x-min", "x-max", "y-min", "y-max"].iter().enumerate().for_each(|(i, s)| t += &format!("1 {} \"{s}\"\n", i + 1));
-    let _ = writeln!(t, "2 5 \"plate\"\n$EndPhysicalNames\n$Entities\n1 4 1 0\n1 {} {} 0 1 1", x[nx - 1], y[ny - 1]);
-    (1..5).for_each(|i| t += &format!("{i} 0 0 0 0 0 0 1 {i} 0\n"));
-    let n = nx * ny;
-    let _ = writeln!(t, "5 0 0 0 0 0 0 1 5 0\n$EndEntities\n$Nodes\n1 {n} 1 {n}\n2 5 0 {n}");
-    (1..=n).for_each(|i| t += &format!("{i}\n"));
+    let mut nodes = Vec::new();
     for j in 0..ny {
         for i in 0..nx {
             let inner = (1..nx - 1).contains(&i) && (1..ny - 1).contains(&j);
@@ -196,36 +203,58 @@ pub(super) fn gmsh_grid(x: &[f64], y: &[f64], distortion: f64) -> MeshFile {
                 let share = if inner { distortion * ((seed * 7919 % 101) as f64 / 50.0 - 1.0) } else { 0.0 };
                 line[k] + share * (line[(k + 1).min(line.len() - 1)] - line[k])
             };
-            let _ = writeln!(t, "{} {} 0", moved(x, i, 3 * node(i, j)), moved(y, j, 5 * node(i, j) + 1));
+            nodes.push([moved(x, i, 3 * node(i, j)), moved(y, j, 5 * node(i, j) + 1)]);
         }
     }
-    let blocks: [(_, _, _, Vec<Vec<usize>>); 6] = [
-        (0, 1, 15, vec![vec![n]]),
-        (1, 1, 1, (1..ny).map(|j| vec![node(0, j - 1), node(0, j)]).collect()),
-        (1, 2, 1, (1..ny).map(|j| vec![node(nx - 1, j - 1), node(nx - 1, j)]).collect()),
-        (1, 3, 1, (1..nx).map(|i| vec![node(i - 1, 0), node(i, 0)]).collect()),
-        (1, 4, 1, (1..nx).map(|i| vec![node(i - 1, ny - 1), node(i, ny - 1)]).collect()),
-        (2, 5, 3, (1..ny).flat_map(|j| (1..nx).map(move |i| (i, j))).map(|(i, j)| quad(&node, i, j)).collect()),
-    ];
-    let m: usize = blocks.iter().map(|b| b.3.len()).sum();
-    let _ = writeln!(t, "$EndNodes\n$Elements\n{} {m} 1 {m}", blocks.len());
-    let mut tag = 0;
-    for (dim, entity, kind, elements) in blocks {
-        let _ = writeln!(t, "{dim} {entity} {kind} {}", elements.len());
+    let quad = |i: usize, j: usize| vec![node(i - 1, j - 1), node(i, j - 1), node(i, j), node(i - 1, j)];
+    gmsh_file(
+        &nodes,
+        &[
+            ("corner", vec![vec![nx * ny]]),
+            ("x-min", (1..ny).map(|j| vec![node(0, j - 1), node(0, j)]).collect()),
+            ("x-max", (1..ny).map(|j| vec![node(nx - 1, j - 1), node(nx - 1, j)]).collect()),
+            ("y-min", (1..nx).map(|i| vec![node(i - 1, 0), node(i, 0)]).collect()),
+            ("y-max", (1..nx).map(|i| vec![node(i - 1, ny - 1), node(i, ny - 1)]).collect()),
+            ("plate", (1..ny).flat_map(|j| (1..nx).map(move |i| (i, j))).map(|(i, j)| quad(i, j)).collect()),
+        ],
+    )
+}
+
+/// A gmsh file of nodes, mm, and of groups of points, edges or quads, which number nodes from 1.
+pub(super) fn gmsh_file(nodes: &[[f64; 2]], groups: &[(&str, Vec<Vec<usize>>)]) -> MeshFile {
+    let dim = |elements: &[Vec<usize>]| [0, 0, 1, 1, 2][elements[0].len()];
+    let count = |wanted: usize| groups.iter().filter(|g| dim(&g.1) == wanted).count();
+    let mut t = format!("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n{}\n", groups.len());
+    for (tag, (name, elements)) in (1..).zip(groups) {
+        let _ = writeln!(t, "{} {tag} \"{name}\"", dim(elements));
+    }
+    let _ = writeln!(t, "$EndPhysicalNames\n$Entities\n{} {} {} 0", count(0), count(1), count(2));
+    for (tag, (_, elements)) in (1..).zip(groups) {
+        let _ = match dim(elements) {
+            0 => writeln!(t, "{tag} {} {} 0 1 {tag}", nodes[elements[0][0] - 1][0], nodes[elements[0][0] - 1][1]),
+            _ => writeln!(t, "{tag} 0 0 0 0 0 0 1 {tag} 0"),
+        };
+    }
+    let n = nodes.len();
+    let _ = writeln!(t, "$EndEntities\n$Nodes\n1 {n} 1 {n}\n2 {} 0 {n}", groups.len());
+    (1..=n).for_each(|i| t += &format!("{i}\n"));
+    nodes.iter().for_each(|[x, y]| t += &format!("{x} {y} 0\n"));
+    let m: usize = groups.iter().map(|g| g.1.len()).sum();
+    let _ = writeln!(t, "$EndNodes\n$Elements\n{} {m} 1 {m}", groups.len());
+    let mut number = 0;
+    for (tag, (_, elements)) in (1..).zip(groups) {
+        let kind = [15, 15, 1, 1, 3][elements[0].len()];
+        let _ = writeln!(t, "{} {tag} {kind} {}", dim(elements), elements.len());
         for nodes in elements {
-            tag += 1;
+            number += 1;
             let nodes: Vec<String> = nodes.iter().map(usize::to_string).collect();
-            let _ = writeln!(t, "{tag} {}", nodes.join(" "));
+            let _ = writeln!(t, "{number} {}", nodes.join(" "));
         }
     }
     t.push_str("$EndElements\n");
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("plate.msh"), t).unwrap();
     MeshFile(folder)
-}
-
-fn quad(node: &impl Fn(usize, usize) -> usize, i: usize, j: usize) -> Vec<usize> {
-    vec![node(i - 1, j - 1), node(i, j - 1), node(i, j), node(i - 1, j)]
 }
 
 /// A row of a table by the names of its columns; texts are NaN.

@@ -85,6 +85,20 @@ fn cross_plies_under_mirrors() {
     }
 }
 
+/// Deflections beyond the thickness.
+#[test]
+fn large_displacements() {
+    let on = "[effects]\nmembrane = 'on'";
+    for element in ["kind = 'hermite-prism'", "kind = 'mitc4'"] {
+        let layers = if element.contains("mitc4") { vec![4] } else { vec![1, 3] };
+        let plate = pressed("[0/90]s", layers, [6, 4], 0.0).element(element).sides([Clamped; 4]).with(on);
+        assert!(plate.solve().u.iter().any(|u| u.abs() > 1e-3));
+        check(&plate, "quarter", 0.12..0.4);
+    }
+    let plate = pressed("[0/45/-45/90]s", vec![8], [4, 4], 0.7).element("kind = 'mitc4'").with(on);
+    check(&plate.sides([Supported, Supported, Clamped, Clamped]), "half-turn", 0.45..0.56);
+}
+
 /// A plate that nothing holds in its plane: the half-turn leaves one motion to restrain, both mirrors none.
 #[test]
 fn what_the_symmetry_leaves_free_is_restrained() {

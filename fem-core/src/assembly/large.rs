@@ -23,6 +23,7 @@ pub struct LargePlate {
     /// Displacements before elimination.
     all: Vec<f64>,
     work: Work,
+    integrated: u64,
 }
 
 /// Arrays of a cell.
@@ -56,6 +57,7 @@ impl LargePlate {
             constraints: constraints.clone(),
             pattern: pattern.clone(),
             all: vec![0.0; plate.ndof()],
+            integrated: 0,
             work: Work { u: vec![0.0; n], force: vec![0.0; n], tangent: vec![0.0; n * n], ..Work::default() },
         })
     }
@@ -70,6 +72,11 @@ impl LargePlate {
         self.cells.len()
     }
 
+    /// Cells integrated so far.
+    pub fn integrated(&self) -> u64 {
+        self.integrated
+    }
+
     /// Internal force at the independent displacements `u`, and the tangent where it is asked for; returns the strain energy, J.
     ///
     /// # Errors
@@ -80,7 +87,8 @@ impl LargePlate {
         force: &mut [f64],
         mut tangent: Option<&mut [f64]>,
     ) -> Result<f64, AssemblyError> {
-        let Self { plate, element, constraints, pattern, cells, all, work } = self;
+        let Self { plate, element, constraints, pattern, cells, all, work, integrated } = self;
+        *integrated += cells.len() as u64;
         constraints.expand(u, all);
         force.fill(0.0);
         if let Some(tangent) = &mut tangent {

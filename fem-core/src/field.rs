@@ -1,0 +1,106 @@
+//! A displacement field of a plate, evaluated in its plies.
+
+use crate::element::{Element, ElementError};
+use crate::laminate::Laminate;
+use crate::large::LargeDisplacement;
+use crate::plate::Plate;
+use crate::tensor::{Global, Strain6, Stress6, stress};
+
+/// A displacement field.
+#[derive(Debug, Clone, Copy)]
+pub struct Field<'a> {
+    plate: &'a Plate,
+    laminate: &'a Laminate,
+    element: &'a dyn Element,
+    /// Unknowns, before elimination of constraints.
+    u: &'a [f64],
+    large: Option<&'a dyn LargeDisplacement>,
+}
+
+/// Where a field is looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spot {
+    /// Number of the quad.
+    pub quad: usize,
+    /// Natural coordinates in it.
+    pub at: [f64; 2],
+    /// Ply, counted from the bottom: at an interface strains belong to one of two.
+    pub ply: usize,
+    /// Height, m.
+    pub z: f64,
+}
+
+impl<'a> Field<'a> {
+    /// The field of the unknowns `u`, with small strains.
+    pub fn new(plate: &'a Plate, laminate: &'a Laminate, element: &'a dyn Element, u: &'a [f64]) -> Self {
+        Self { plate, laminate, element, u, large: None }
+    }
+
+    /// The same with the strains of large displacements, where the element knows them.
+    #[must_use]
+    pub fn with_large_strains(self) -> Self {
+        Self { large: self.element.large_displacements(), ..self }
+    }
+
+    /// The plate.
+    pub fn plate(&self) -> &'a Plate {
+        self.plate
+    }
+
+    /// The laminate.
+    pub fn laminate(&self) -> &'a Laminate {
+        self.laminate
+    }
+
+    /// Stress in `ply` of a strain, both in the plate's frame, Pa. Under large displacements S = C E, on axes that turn with
+    /// the plate.
+    pub fn stress(&self, ply: usize, strain: &Strain6<Global>) -> Stress6<Global> {
+        let (layer, slice) = self.slice(ply);
+        stress(&self.plate.stacks[layer].slices[slice].c, strain)
+    }
+
+    /// Strain in the plate's frame and displacement, m.
+    ///
+    /// # Errors
+    /// Under large displacements, a cell that the element refuses.
+    pub fn at(&self, spot: Spot) -> Result<(Strain6<Global>, [f64; 3]), ElementError> {
+        let Spot { quad, at: [r, s], ply, z } = spot;
+        let (layer, slice) = self.slice(ply);
+        let number = quad * self.plate.layers() + layer;
+        let cell = self.plate.cell(number);
+        let xi = [r, s, ((z - 0.5 * (cell.z[0] + cell.z[1])) / cell.half_height()).clamp(-1.0, 1.0)];
+        let mut dofs = Vec::new();
+        self.plate.cell_dofs(number, &mut dofs);
+        let mut operator = vec![0.0; 6 * dofs.len()];
+        let strain = match self.large {
+            Some(large) => {
+                let local: Vec<f64> = dofs.iter().map(|dof| self.u[*dof]).collect();
+                large.large_strain(&cell, slice, xi, &local)?
+            }
+            None => {
+                self.element.strain_operator(&cell, slice, xi, &mut operator);
+                self.product(&dofs, &operator)
+            }
+        };
+        let shape = &mut operator[..3 * dofs.len()];
+        self.element.shape(&cell, xi, shape);
+        let displacement = self.product(&dofs, shape);
+        Ok((Strain6::new(strain), displacement))
+    }
+
+    /// The layer of cells that holds a ply, and its number there.
+    fn slice(&self, ply: usize) -> (usize, usize) {
+        let mut layers = 0..self.laminate.layers.len();
+        let layer = layers.find(|l| self.laminate.plies_of(*l).contains(&ply)).unwrap_or(0);
+        (layer, ply - self.laminate.plies_of(layer).start)
+    }
+
+    /// What an operator of `N` rows makes of the unknowns of a cell.
+    fn product<const N: usize>(&self, dofs: &[usize], operator: &[f64]) -> [f64; N] {
+        let mut all = [0.0; N];
+        for (dof, column) in dofs.iter().zip(operator.chunks_exact(N)) {
+            all.iter_mut().zip(column).for_each(|(sum, b)| *sum += b * self.u[*dof]);
+        }
+        all
+    }
+}
