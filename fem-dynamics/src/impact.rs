@@ -3,6 +3,7 @@
 mod newton;
 
 use crate::guard::Touch;
+use crate::vector::dot;
 use fem_core::contact::{Branches, ContactEnergy, ContactHistory, ContactLaw, Indentation};
 use fem_core::structure::{SolveError, Structure};
 use fem_core::time::{SecondOrderSystem, State, StepError};
@@ -55,7 +56,7 @@ impl Impactor {
     }
 }
 
-/// `M ü + f(u) = Σ F p`, `m z̈ = −F` (report eqs 33-35), unknowns: those of the structure, then one z per impactor,
+/// `M ü + C u̇ + f(u) = Σ F p`, `m z̈ = −F` (report eqs 33-35), unknowns: those of the structure, then one z per impactor,
 /// positive towards the structure.
 ///
 /// Of a linear structure, f = K u, an implicit step needs the response to each contact load once per step length and then
@@ -70,10 +71,11 @@ pub struct ImpactSystem {
     contact_calls: u64,
 }
 
-/// Responses X = (K + cm M)⁻¹ p to the contact loads, for one cm; of a structure that is not linear, to its tangent.
+/// Responses X = (K + cm M + cc C)⁻¹ p to the contact loads, for one (cm, cc); of a structure that is not linear, to its tangent.
 #[derive(Debug, Default)]
 struct Influence {
     cm: f64,
+    cc: f64,
     x: Vec<f64>,
     /// Approach at contact i per force at contact j, pᵢᵀ Xⱼ and 1/(cm m) on the diagonal, by rows.
     approach: Vec<f64>,
@@ -95,12 +97,14 @@ pub struct Energies {
     pub stored: f64,
     /// Work lost in the contacts.
     pub dissipated: f64,
+    /// Work lost in the damping of the plate, of which the march keeps count.
+    pub damped: f64,
 }
 
 impl Energies {
     /// Sum; constant in an exact solution.
     pub fn total(&self) -> f64 {
-        self.impactor + self.kinetic + self.strain + self.stored + self.dissipated
+        self.impactor + self.kinetic + self.strain + self.stored + self.dissipated + self.damped
     }
 }
 
@@ -191,6 +195,21 @@ impl ImpactSystem {
         energies
     }
 
+    /// Power lost in the damping of the structure, u̇ᵀ C u̇, W.
+    pub fn damping_power(&self, state: &State, work: &mut Vec<f64>) -> f64 {
+        let n = self.structure.ndof();
+        work.clear();
+        work.resize(n, 0.0);
+        self.structure.add_damping(1.0, &state.v[..n], work);
+        dot(&state.v[..n], work)
+    }
+
+    /// Upper bound of |λ|, 1/s, of the roots of λ² M + λ C + K, where no circular frequency is above `omega`: a motion beyond
+    /// its critical damping decays by less than the eigenvalues of M⁻¹C.
+    pub fn root_bound(&self, omega: f64) -> f64 {
+        omega.max(self.structure.damping_rate(omega))
+    }
+
     /// Highest circular frequency of the structure alone, rad/s.
     ///
     /// # Errors
@@ -231,12 +250,13 @@ impl ImpactSystem {
         Ok(square.sqrt())
     }
 
-    fn prepare(&mut self, cm: f64) -> Result<(), StepError> {
-        if self.influence.cm == cm && !self.influence.x.is_empty() {
+    fn prepare(&mut self, cm: f64, cc: f64) -> Result<(), StepError> {
+        if self.influence.cm == cm && self.influence.cc == cc && !self.influence.x.is_empty() {
             return Ok(());
         }
         let Self { structure, impactors, influence, .. } = self;
-        influence.set(cm, structure.ndof(), impactors, |x, count| structure.solve_shifted(cm, x, count))
+        let n = structure.ndof();
+        influence.set(cm, cc, n, impactors, |x, count| structure.solve_damped(cm, cc, x, count))
     }
 }
 
@@ -265,7 +285,7 @@ impl SecondOrderSystem for ImpactSystem {
         self.structure.ndof() + self.impactors.len()
     }
 
-    fn force(&mut self, _: f64, u: &[f64], _: &[f64], h: &[ContactHistory], f: &mut [f64]) {
+    fn force(&mut self, _: f64, u: &[f64], v: &[f64], h: &[ContactHistory], f: &mut [f64]) {
         let n = self.structure.ndof();
         f.fill(0.0);
         match self.structure.nonlinear() {
@@ -276,6 +296,7 @@ impl SecondOrderSystem for ImpactSystem {
                 Err(_) => f.fill(f64::NAN),
             },
         }
+        self.structure.add_damping(-1.0, &v[..n], &mut f[..n]);
         for (i, impactor) in self.impactors.iter().enumerate() {
             let force = impactor.law.force(&h[i], self.approach(i, u)).force;
             self.contact_calls += 1;
@@ -297,9 +318,9 @@ impl SecondOrderSystem for ImpactSystem {
         self.structure.add_damping(scale, &x[..n], &mut y[..n]);
     }
 
-    fn solve_mass(&mut self, _: f64, x: &mut [f64]) -> Result<(), StepError> {
+    fn solve_mass(&mut self, cc: f64, x: &mut [f64]) -> Result<(), StepError> {
         let n = self.structure.ndof();
-        self.structure.solve_mass(&mut x[..n]).map_err(|e| StepError::SingularMass(e.0))?;
+        self.structure.solve_damped_mass(cc, &mut x[..n]).map_err(|e| StepError::SingularMass(e.0))?;
         for (x, impactor) in x[n..].iter_mut().zip(&self.impactors) {
             *x /= impactor.mass;
         }
@@ -318,11 +339,11 @@ impl SecondOrderSystem for ImpactSystem {
         if self.structure.nonlinear().is_some() {
             return self.iterate(cm, cc, t, h, from, d);
         }
-        self.prepare(cm)?;
+        self.prepare(cm, cc)?;
         let n = self.structure.ndof();
         let Self { structure, impactors, influence, contact_calls, .. } = self;
         structure.add_stiffness(-1.0, &from[..n], &mut d[..n]);
-        structure.solve_shifted(cm, &mut d[..n], 1).map_err(|e| StepError::Factorisation(e.0))?;
+        structure.solve_damped(cm, cc, &mut d[..n], 1).map_err(|e| StepError::Factorisation(e.0))?;
         for (d, impactor) in d[n..].iter_mut().zip(impactors.iter()) {
             *d /= cm * impactor.mass;
         }
@@ -349,10 +370,11 @@ impl SecondOrderSystem for ImpactSystem {
 }
 
 impl Influence {
-    /// The responses for `cm`, found by `solve`, of a structure of `n` unknowns.
+    /// The responses for `cm` and `cc`, found by `solve`, of a structure of `n` unknowns.
     fn set(
         &mut self,
         cm: f64,
+        cc: f64,
         n: usize,
         impactors: &[Impactor],
         solve: impl FnOnce(&mut [f64], usize) -> Result<(), SolveError>,
@@ -372,7 +394,7 @@ impl Influence {
         }
         free.resize(count, 0.0);
         forces.resize(count, 0.0);
-        self.cm = cm;
+        (self.cm, self.cc) = (cm, cc);
         Ok(())
     }
 

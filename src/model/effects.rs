@@ -1,19 +1,44 @@
 //! The effects that a model simulates.
 
 use super::builder::Builder;
+use crate::registry::NO_REDUCTION;
+use fem_core::damping::Damping;
 use fem_core::element::Element;
-use fem_io::scene::{Analysis, SceneError, Switch};
+use fem_io::scene::{self, Analysis, Located, SceneError, Switch};
 
 /// Effects beyond the linear elastic plate; each is chosen by the scene, or by the advisor where the scene leaves it to it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effects {
     /// Membrane stiffening: strains of large deflections.
     pub membrane: bool,
+    /// Damping of the plate.
+    pub damping: Option<Damping>,
 }
 
 impl Builder<'_> {
     pub(super) fn effects(&self, element: &dyn Element) -> Result<Effects, SceneError> {
-        Ok(Effects { membrane: self.membrane(element)? })
+        Ok(Effects { membrane: self.membrane(element)?, damping: self.damping()? })
+    }
+
+    /// The impact, which an effect of the scene needs.
+    fn in_time<T>(&self, effect: &Located<T>, name: &str, help: &str) -> Result<&scene::Impact, SceneError> {
+        let missing =
+            || self.error(effect, format!("`effects.{name}` needs an impact, and this analysis has none"), help);
+        self.scene.impact().ok_or_else(missing)
+    }
+
+    fn damping(&self) -> Result<Option<Damping>, SceneError> {
+        let Some(damping) = &self.scene.effects.damping else { return Ok(None) };
+        let impact = self.in_time(damping, "damping", "leave it out")?;
+        if matches!(damping.value, Damping::Ratio(_)) && impact.reduction.name.value == NO_REDUCTION {
+            return Err(self.error(
+                damping,
+                "the ratio is that of every mode, and the full plate has no modes",
+                "name a reduction, for example: reduction = { method = \"ritz\", vectors = 40 }; or give C = mass M + \
+                 stiffness K: damping = { mass = \"30 1/s\", stiffness = \"2e-8 s\" }",
+            ));
+        }
+        Ok(Some(damping.value))
     }
 
     fn membrane(&self, element: &dyn Element) -> Result<bool, SceneError> {

@@ -117,7 +117,11 @@ impl<'a> March<'a> {
             step: 0,
             dt,
             row_every,
-            ledger: Ledger::new(state.contacts.len(), model.threshold.map(|threshold| threshold.force)),
+            ledger: Ledger::new(
+                state.contacts.len(),
+                model.threshold.map(|threshold| threshold.force),
+                model.effects.damping.is_some(),
+            ),
             state,
             work: Work::default(),
             stopped: None,
@@ -239,6 +243,7 @@ impl<'a> March<'a> {
         // A sum of steps drifts; the product does not.
         state.t = *step as f64 * *dt;
         ledger.contacts(system, guard, state)?;
+        ledger.damping(system, state);
         let (row, scan) = (step.is_multiple_of(*row_every), step.is_multiple_of(self.scan_every));
         if row {
             self.row()?;

@@ -7,10 +7,11 @@ use crate::memory::{self, Estimate};
 use crate::model::{Impact, Model, Plan, Strike};
 use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, assemble, condense, pattern};
 use fem_core::counters::Counters;
+use fem_core::damping::Damping;
 use fem_core::prolongation::Prolongation;
 use fem_core::reduction::Functional;
 use fem_core::structure::Structure;
-use fem_core::time::{StepError, StepLimit};
+use fem_core::time::StepError;
 use fem_dynamics::impact::{ImpactSystem, Impactor};
 use fem_dynamics::limit::{self, TooLong};
 use fem_dynamics::reduce::Reduced;
@@ -161,7 +162,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     let (stiffness_entries, factor_entries) = (assembled.structure.entries(), assembled.factor_entries);
     let (substructures, memory) = (assembled.substructures(), assembled.memory);
     let contacts: Vec<Functional> = impact.strikes.iter().map(|s| assembled.functional(&s.contact)).collect();
-    let reduced = match &impact.reduction {
+    let mut reduced = match &impact.reduction {
         None => None,
         Some(reduction) => {
             let governors = assembled.own(model.governors(impact, GOVERNORS));
@@ -176,7 +177,13 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
             })?)
         }
     };
-    let Assembled { structure, condensation, .. } = assembled;
+    let Assembled { mut structure, condensation, .. } = assembled;
+    match (model.effects.damping, &mut reduced) {
+        (Some(damping), Some(reduced)) => reduced.modal.damp(damping),
+        (Some(Damping::Rayleigh(damping)), None) => structure.damp(damping),
+        // The scene is refused a ratio without modes.
+        (Some(Damping::Ratio(_)) | None, _) => {}
+    }
     (counters.factorisations, counters.solves) = structure.work();
     stopwatch.lap("reduce");
 
@@ -202,7 +209,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     let (longest_step, highest) =
         limit::longest_step(&mut system, limited).map_err(|e| unmarchable(model, impact, e))?;
     let hertz = |omega: f64| omega / std::f64::consts::TAU;
-    if let (StepLimit::OmegaDt(omega_dt), Some(omega)) = (limited, highest)
+    if let (Some(omega_dt), Some(omega)) = (limited.product(), highest)
         && !(march.step.value <= longest_step)
     {
         let frequency = hertz(omega_dt / longest_step);

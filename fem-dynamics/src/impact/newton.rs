@@ -52,7 +52,7 @@ impl ImpactSystem {
         let Some(large) = structure.nonlinear() else { return Ok(()) };
         newton.tangent = None;
         large.linearise(&tangent).map_err(unsolved)?;
-        influence.set(tangent.cm, n, impactors, |x, count| large.solve_linearised(x, count))?;
+        influence.set(tangent.cm, tangent.cc, n, impactors, |x, count| large.solve_linearised(x, count))?;
         newton.tangent = Some(tangent);
         newton.tangents += 1;
         Ok(())

@@ -1,0 +1,100 @@
+//! Effects of an impact that a scene switches on.
+
+mod damping;
+
+use crate::support::root;
+use fem::io::scene;
+use fem::io::tables::HistoryRow;
+use fem::run::{self, Outcome, Sizes};
+use fem::{Error, Model, Registry};
+use std::num::NonZeroUsize;
+
+/// A simply supported plate of 60 mm by 40 mm, 1 mm thick, struck in its middle.
+#[derive(Debug, Clone)]
+struct Struck {
+    effects: &'static str,
+    impactor: &'static str,
+    contact: &'static str,
+    reduction: &'static str,
+    march: String,
+    more: &'static str,
+}
+
+impl Struck {
+    fn new(effects: &'static str) -> Self {
+        Self {
+            effects,
+            impactor: "mass = '20 g', velocity = '2 m/s'",
+            contact: "law = 'hertz', k = '1e4 N/mm^1.5'",
+            reduction: "method = 'ritz', vectors = 30",
+            march: "integrator = 'newmark', step = '0.5 us', end = '400 us'".into(),
+            more: "",
+        }
+    }
+
+    fn march(self, march: &str) -> Self {
+        Self { march: march.to_owned(), ..self }
+    }
+
+    fn text(&self) -> String {
+        let Self { effects, impactor, contact, reduction, march, more } = self;
+        let edges = ["x-min", "x-max", "y-min", "y-max"]
+            .map(|edge| format!("[[support]]\ngroup = '{edge}'\nat = 'all'\nfix = ['U10', 'U20', 'U30']\n"));
+        format!(
+            "title = 'effects'\nmesh = {{ rectangle = ['60 mm', '40 mm'], cells = [12, 8] }}\n\
+             element = {{ kind = 'mitc4' }}\nmaterials.tape = {{ library = 'AS4/3502' }}\n\
+             impactor = {{ {impactor}, at = {{ x = '30 mm', y = '20 mm' }} }}\ncontact = {{ {contact} }}\n\
+             effects = {{ damage = 'off', {effects} }}\nreduction = {{ {reduction} }}\nmarch = {{ {march} }}\n\
+             laminate = {{ plies = '[0/90/90/0]', material = 'tape', ply_thickness = '0.25 mm', layers = 1 }}\n{}{more}",
+            edges.concat()
+        )
+    }
+
+    fn model(&self) -> Result<Model, Error> {
+        Model::new(scene::parse(&self.text(), &root().join("scene.toml"))?, &Registry::standard())
+    }
+
+    fn run(&self) -> Result<(Sizes, Outcome), Error> {
+        let model = self.model()?;
+        let prepared = run::prepare(&model, NonZeroUsize::MIN)?;
+        let sizes = prepared.sizes;
+        let outcome = run::march(prepared, |_| {})?;
+        assert_eq!(outcome.stopped, None);
+        Ok((sizes, outcome))
+    }
+
+    fn outcome(&self) -> Outcome {
+        self.run().unwrap().1
+    }
+
+    fn history(&self) -> Vec<HistoryRow> {
+        self.outcome().history
+    }
+
+    /// What it is refused with, and how that helps.
+    #[track_caller]
+    fn refused(&self, words: &[&str]) {
+        let error = self.run().expect_err("it is refused");
+        let report = miette::Report::new(error);
+        let said = format!("{report:?}").split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+        for words in words {
+            assert!(said.contains(words), "{words:?} is not in {said}");
+        }
+    }
+}
+
+/// Root of the sum of squared differences over that of squares.
+fn difference(a: &[HistoryRow], b: &[HistoryRow], value: impl Fn(&HistoryRow) -> f64) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let square = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>();
+    let apart = square(&mut a.iter().zip(b).map(|(a, b)| value(a) - value(b)));
+    (apart / square(&mut b.iter().map(&value))).sqrt()
+}
+
+fn force(row: &HistoryRow) -> f64 {
+    row.impactors[0].contact_force_n
+}
+
+fn deflection(row: &HistoryRow) -> f64 {
+    row.impactors[0].plate_displacement_m
+}
