@@ -26,6 +26,8 @@ pub struct HistoryRow {
     pub contact_dissipated_j: f64,
     /// Energy lost in the damping of the plate, J; a column where there is some.
     pub damping_dissipated_j: Option<f64>,
+    /// Potential energy of the weights, J, 0 where the impactors touch the plate at rest; a column where there is gravity.
+    pub gravity_potential_j: Option<f64>,
     /// Sum of the energies less that at the beginning, J; zero but for the integrator's error.
     pub energy_balance_j: f64,
 }
@@ -154,6 +156,7 @@ fn energies(row: &HistoryRow) -> impl Iterator<Item = (&'static str, f64)> + use
         ("contact_stored_J", Some(row.contact_stored_j)),
         ("contact_dissipated_J", Some(row.contact_dissipated_j)),
         ("damping_dissipated_J", row.damping_dissipated_j),
+        ("gravity_potential_J", row.gravity_potential_j),
         ("energy_balance_J", Some(row.energy_balance_j)),
     ];
     columns.into_iter().filter_map(|(name, energy)| Some((name, energy?)))
@@ -376,6 +379,7 @@ mod tests {
             contact_stored_j: v[8],
             contact_dissipated_j: v[9],
             damping_dissipated_j: None,
+            gravity_potential_j: None,
             energy_balance_j: v[10],
         }
     }

@@ -87,6 +87,7 @@ impl Ledger {
             contact_stored_j: e.stored,
             contact_dissipated_j: e.dissipated,
             damping_dissipated_j: self.damping.as_ref().map(|_| e.damped),
+            gravity_potential_j: system.weight().map(|_| e.weight),
             energy_balance_j: e.total() - guard.energy(),
         });
         balanced

@@ -48,6 +48,7 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
 pub struct March<'a> {
     model: &'a Model,
     system: ImpactSystem,
+    sag: Option<Vec<f64>>,
     guard: Guard,
     integrator: Box<dyn Integrator>,
     sizes: Sizes,
@@ -177,7 +178,7 @@ impl<'a> March<'a> {
     }
 
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
-        let Prepared { model, impact, mut system, reduced, full, condensation, sizes, counters, mut stopwatch } =
+        let Prepared { model, impact, mut system, sag, reduced, full, condensation, sizes, counters, mut stopwatch } =
             prepared;
         stopwatch.lap("reduce");
         let mut estimates = Estimates::default();
@@ -197,6 +198,7 @@ impl<'a> March<'a> {
             model,
             guard: Guard::new(&mut system),
             system,
+            sag,
             integrator,
             sizes,
             scan_every,
@@ -266,7 +268,11 @@ impl<'a> March<'a> {
         let Some(watch) = &mut self.watch else { return Ok(()) };
         self.stopwatch.lap("march");
         let State { t, u, .. } = &self.progress.state;
-        let sampled = watch.sample(*t, &u[..self.sizes.marched]);
+        let u = &u[..self.sizes.marched];
+        let sampled = match &self.sag {
+            None => watch.sample(*t, u),
+            Some(sag) => watch.sample(*t, &u.iter().zip(sag).map(|(u, sag)| u + sag).collect::<Vec<_>>()),
+        };
         self.stopwatch.lap("scan");
         sampled
     }

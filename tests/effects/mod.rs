@@ -1,6 +1,10 @@
 //! Effects of an impact that a scene switches on.
 
 mod damping;
+mod delamination;
+mod gravity;
+mod inertia;
+mod off;
 
 use crate::support::root;
 use fem::io::scene;
@@ -9,25 +13,37 @@ use fem::run::{self, Outcome, Sizes};
 use fem::{Error, Model, Registry};
 use std::num::NonZeroUsize;
 
+const EDGES: [&str; 4] = [
+    "[[support]]\ngroup = 'x-min'\nat = 'all'\nfix = ['U10', 'U20', 'U30']\n",
+    "[[support]]\ngroup = 'x-max'\nat = 'all'\nfix = ['U10', 'U20', 'U30']\n",
+    "[[support]]\ngroup = 'y-min'\nat = 'all'\nfix = ['U10', 'U20', 'U30']\n",
+    "[[support]]\ngroup = 'y-max'\nat = 'all'\nfix = ['U10', 'U20', 'U30']\n",
+];
+const TAPE: &str = "[materials.tape]\nlibrary = 'AS4/3502'\n";
+
 /// A simply supported plate of 60 mm by 40 mm, 1 mm thick, struck in its middle.
 #[derive(Debug, Clone)]
 struct Struck {
+    damage: &'static str,
     effects: &'static str,
     impactor: &'static str,
     contact: &'static str,
     reduction: &'static str,
     march: String,
+    material: &'static str,
     more: &'static str,
 }
 
 impl Struck {
     fn new(effects: &'static str) -> Self {
         Self {
+            damage: "off",
             effects,
             impactor: "mass = '20 g', velocity = '2 m/s'",
             contact: "law = 'hertz', k = '1e4 N/mm^1.5'",
             reduction: "method = 'ritz', vectors = 30",
             march: "integrator = 'newmark', step = '0.5 us', end = '400 us'".into(),
+            material: TAPE,
             more: "",
         }
     }
@@ -37,16 +53,14 @@ impl Struck {
     }
 
     fn text(&self) -> String {
-        let Self { effects, impactor, contact, reduction, march, more } = self;
-        let edges = ["x-min", "x-max", "y-min", "y-max"]
-            .map(|edge| format!("[[support]]\ngroup = '{edge}'\nat = 'all'\nfix = ['U10', 'U20', 'U30']\n"));
+        let Self { damage, effects, impactor, contact, reduction, march, material, more } = self;
         format!(
             "title = 'effects'\nmesh = {{ rectangle = ['60 mm', '40 mm'], cells = [12, 8] }}\n\
-             element = {{ kind = 'mitc4' }}\nmaterials.tape = {{ library = 'AS4/3502' }}\n\
+             element = {{ kind = 'mitc4' }}\n\
              impactor = {{ {impactor}, at = {{ x = '30 mm', y = '20 mm' }} }}\ncontact = {{ {contact} }}\n\
-             effects = {{ damage = 'off', {effects} }}\nreduction = {{ {reduction} }}\nmarch = {{ {march} }}\n\
-             laminate = {{ plies = '[0/90/90/0]', material = 'tape', ply_thickness = '0.25 mm', layers = 1 }}\n{}{more}",
-            edges.concat()
+             effects = {{ damage = '{damage}', {effects} }}\nreduction = {{ {reduction} }}\nmarch = {{ {march} }}\n\
+             laminate = {{ plies = '[0/90/90/0]', material = 'tape', ply_thickness = '0.25 mm', layers = 1 }}\n{material}{}{more}",
+            EDGES.concat()
         )
     }
 

@@ -85,7 +85,7 @@ impl ImpactSystem {
         // The size of the turn before, with the same tangent.
         let mut before = None;
         for _ in 0..MOST {
-            let Self { structure, impactors, influence, newton, contact_calls } = self;
+            let Self { structure, impactors, influence, newton, contact_calls, .. } = self;
             let Newton { load, at, residual, step, .. } = newton;
             newton.turns += 1;
             at.clear();
@@ -135,7 +135,7 @@ impl ImpactSystem {
     }
 }
 
-fn nonlinear<'a>(structure: Option<&'a mut dyn Nonlinear>) -> Result<&'a mut dyn Nonlinear, StepError> {
+fn nonlinear(structure: Option<&mut dyn Nonlinear>) -> Result<&mut dyn Nonlinear, StepError> {
     structure.ok_or_else(|| StepError::Factorisation("the structure has become linear".into()))
 }
 

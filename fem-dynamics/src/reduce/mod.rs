@@ -58,6 +58,11 @@ impl Modal {
         &self.damping
     }
 
+    /// Takes the inertia of all modes away; they keep their stiffness.
+    pub fn without_inertia(&mut self) {
+        self.mass.fill(0.0);
+    }
+
     /// Gives the structure viscous damping, which leaves its modes as they are.
     pub fn damp(&mut self, damping: Damping) {
         let each = self.stiffness.iter().zip(&self.mass);
@@ -237,8 +242,11 @@ fn refused(e: SolveError) -> ReductionError {
     ReductionError(e.0)
 }
 
-/// K⁻¹ P for the unit loads P of `functionals`, `n × functionals`.
-fn static_responses(structure: &mut dyn Structure, functionals: &[Functional]) -> Result<Vec<f64>, ReductionError> {
+/// K⁻¹ P for the unit loads P of `functionals`, `n × functionals`: all that a structure without inertia can do under them.
+///
+/// # Errors
+/// A structure that is not held.
+pub fn static_responses(structure: &mut dyn Structure, functionals: &[Functional]) -> Result<Vec<f64>, ReductionError> {
     let n = structure.ndof();
     let mut x = vec![0.0; n * functionals.len()];
     for (w, column) in functionals.iter().zip(x.chunks_exact_mut(n.max(1))) {

@@ -28,28 +28,106 @@ pub enum Damage {
     Onset,
 }
 
+/// What is done about delamination.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Delamination {
+    /// Nothing.
+    Off,
+    /// The contact force at which it begins is found, by energies; the plate stays as it is.
+    Threshold,
+}
+
 /// The effects of a scene.
 #[derive(Debug, Clone, Default)]
 pub struct Effects {
     /// Damage.
     pub damage: Damage,
+    /// Delamination; where the scene says nothing of it, its threshold as far as damage is looked for and the toughness is known.
+    pub delamination: Option<Located<Delamination>>,
     /// Membrane stiffening: strains of large deflections; off where the scene says nothing of it.
     pub membrane: Option<Located<Switch>>,
     /// Damping of the plate.
     pub damping: Option<Located<Damping>>,
+    /// Inertia of the plate; on where the scene says nothing of it.
+    pub inertia: Option<Located<Switch>>,
+    /// Gravity, which pulls impactors and plate along the way of the impactors, m/s².
+    pub gravity: Option<Located<f64>>,
 }
 
-const EFFECTS: Keys =
-    &[("damage", r#""onset""#), ("membrane", r#""auto""#), ("damping", r#"{ mass = "30 1/s", stiffness = "2e-8 s" }"#)];
+const KEYS: Keys = &[
+    ("damage", r#""onset""#),
+    ("delamination", r#""threshold""#),
+    ("membrane", r#""auto""#),
+    ("damping", r#"{ mass = "30 1/s", stiffness = "2e-8 s" }"#),
+    ("inertia", r#""off""#),
+    ("gravity", r#""9.81 m/s^2""#),
+];
+const DELAMINATIONS: [(&str, Delamination); 2] = [("off", Delamination::Off), ("threshold", Delamination::Threshold)];
 const DAMPING: Keys = &[("mass", r#""30 1/s""#), ("stiffness", r#""2e-8 s""#), ("ratio", "0.02")];
 
+/// An effect as lists show it.
+#[derive(Debug, Clone, Copy)]
+pub struct EffectInfo {
+    /// Its key in `effects`.
+    pub name: &'static str,
+    /// Its values; what holds where a scene says nothing comes first.
+    pub values: &'static str,
+    /// What it does.
+    pub summary: &'static str,
+    /// Where it comes from.
+    pub source: &'static str,
+}
+
+/// All effects.
+pub const EFFECTS: &[EffectInfo] = &[
+    EffectInfo {
+        name: "damage",
+        values: "\"onset\", \"off\"",
+        summary: "first failure of plies and interfaces by the criteria of the scene",
+        source: "AFWAL-TR-87-4117",
+    },
+    EffectInfo {
+        name: "delamination",
+        values: "\"threshold\", \"off\"",
+        summary: "the contact force at which the laminate delaminates; follows `damage` unless it is given",
+        source: "Davies and Zhang 1995; Olsson 2001",
+    },
+    EffectInfo {
+        name: "membrane",
+        values: "\"off\", \"on\", \"auto\"",
+        summary: "membrane stiffening: strains of large deflections",
+        source: "von Karman 1910",
+    },
+    EffectInfo {
+        name: "damping",
+        values: "\"off\", { mass, stiffness }, { ratio }",
+        summary: "viscous damping C = mass M + stiffness K, or the same ratio for every mode of a reduced plate",
+        source: "Rayleigh 1877",
+    },
+    EffectInfo {
+        name: "inertia",
+        values: "\"on\", \"off\", \"auto\"",
+        summary: "inertia of the plate; without it the plate is at rest under the contact forces at every instant",
+        source: "Shivakumar, Elber, Illg 1985",
+    },
+    EffectInfo {
+        name: "gravity",
+        values: "\"off\", an acceleration",
+        summary: "weight of impactors and plate along the way of the impactors",
+        source: "Newton 1687",
+    },
+];
+
 pub(super) fn read(field: &Field<'_>) -> Result<Effects, SceneError> {
-    let table = field.table(EFFECTS)?;
+    let table = field.table(KEYS)?;
     let damage = table.optional("damage").map(|f| f.choice(&[("onset", Damage::Onset), ("off", Damage::Off)]));
     Ok(Effects {
         damage: damage.transpose()?.unwrap_or_default(),
+        delamination: choice(&table, "delamination", &DELAMINATIONS)?,
         membrane: switch(&table, "membrane")?,
         damping: unless_off(&table, "damping", read_damping)?,
+        inertia: switch(&table, "inertia")?,
+        gravity: unless_off(&table, "gravity", |field| field.positive(Dimension::ACCELERATION))?,
     })
 }
 
@@ -90,6 +168,9 @@ fn read_damping(field: &Field<'_>) -> Result<Damping, SceneError> {
 }
 
 fn switch(table: &Reader<'_>, key: &str) -> Result<Option<Located<Switch>>, SceneError> {
-    let switches = [("off", Switch::Off), ("on", Switch::On), ("auto", Switch::Auto)];
-    table.optional(key).map(|field| Ok(field.at(field.choice(&switches)?))).transpose()
+    choice(table, key, &[("off", Switch::Off), ("on", Switch::On), ("auto", Switch::Auto)])
+}
+
+fn choice<T: Copy>(table: &Reader<'_>, key: &str, words: &[(&str, T)]) -> Result<Option<Located<T>>, SceneError> {
+    table.optional(key).map(|field| Ok(field.at(field.choice(words)?))).transpose()
 }
