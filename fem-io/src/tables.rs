@@ -399,6 +399,21 @@ mod tests {
     }
 
     #[test]
+    fn energies_of_effects_are_columns_where_they_are() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = OutputDir::create(folder.path()).unwrap();
+        let row = HistoryRow {
+            damping_dissipated_j: Some(0.5),
+            gravity_potential_j: Some(-0.25),
+            ..numbers([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0])
+        };
+        write_history(&dir, &["one"], &[row]).unwrap();
+        let text = read(&dir, "history.csv");
+        let want = "contact_dissipated_J,damping_dissipated_J,gravity_potential_J,energy_balance_J\n";
+        assert!(text.contains(want) && text.ends_with(",9.0,0.5,-0.25,10.0\n"), "{text}");
+    }
+
+    #[test]
     fn columns_of_several_impactors_bear_their_names() {
         let folder = tempfile::tempdir().unwrap();
         let dir = OutputDir::create(folder.path()).unwrap();

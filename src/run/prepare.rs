@@ -53,7 +53,7 @@ pub(super) struct Full {
 }
 
 /// A plate under its own weight.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 struct Sag {
     /// Forces, N.
     load: Vec<f64>,
@@ -74,8 +74,8 @@ impl Sag {
     }
 
     /// The same in the coordinates of a reduced plate that can sag.
-    fn within(&self, reduced: &Reduced) -> Self {
-        let load = reduced.restrict(&Functional(self.load.iter().copied().enumerate().collect()));
+    fn within(self, reduced: &Reduced) -> Self {
+        let load = reduced.restrict(&Functional(self.load.into_iter().enumerate().collect()));
         let u = load.iter().zip(reduced.modal.stiffnesses()).map(|(f, k)| f / k).collect();
         Self { load, u }
     }
@@ -259,7 +259,10 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         None => (Box::new(structure), None),
         Some(r) => (Box::new(r.modal.clone()), Some(Full { structure, contacts })),
     };
-    let sag = sag.map(|sag| reduced.as_ref().map_or_else(|| sag.clone(), |reduced| sag.within(reduced)));
+    let sag = sag.map(|sag| match &reduced {
+        None => sag,
+        Some(reduced) => sag.within(reduced),
+    });
     let weight = sag.as_ref().zip(effects.gravity).map(|(sag, acceleration)| sag.weight(acceleration));
     let mut system = ImpactSystem::new(structure, impactors).under(weight);
     let march = &impact.spec.march;

@@ -1,11 +1,11 @@
 //! Gravity on impactors and plate.
 
-use super::{EDGES, Struck, deflection, difference, force};
+use super::{EDGES, Struck, TAPE, deflection, difference, force, said};
 use crate::support::{root, strip};
 use fem::core::dof::Dof;
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
-use fem::{Model, Registry, statics};
+use fem::{Error, Model, Registry, statics};
 use std::num::NonZeroUsize;
 
 const LINEAR: &str = "law = 'linear', k = '2e3 N/mm'";
@@ -85,24 +85,24 @@ fn weight_adds_to_the_force_of_a_drop_weight() {
     }
 }
 
-/// A static scene of the same plate under its weight.
-fn at_rest() -> (Model, Vec<f64>, f64) {
+/// A static scene of the same plate under its weight, with more at its beginning.
+fn at_rest(more: &str) -> Result<Model, Error> {
     let text = format!(
-        "title = 'weight'\nanalysis = 'static'\nmesh = {{ rectangle = ['60 mm', '40 mm'], cells = [12, 8] }}\n\
-         element = {{ kind = 'mitc4' }}\nmaterials.tape = {{ library = 'AS4/3502' }}\n\
-         load = [{{ gravity = ['0 m/s^2', '0 m/s^2', '-1e6 m/s^2'] }}]\nfailure = {{ criteria = ['max-stress'] }}\n\
-         laminate = {{ plies = '[0/90/90/0]', material = 'tape', ply_thickness = '0.25 mm', layers = 1 }}\n{}",
+        "{more}\ntitle = 'weight'\nanalysis = 'static'\nmesh = {{ rectangle = ['60 mm', '40 mm'], cells = [12, 8] }}\n\
+         element = {{ kind = 'mitc4' }}\nload = [{{ gravity = ['0 m/s^2', '0 m/s^2', '-1e6 m/s^2'] }}]\n\
+         failure = {{ criteria = ['max-stress'] }}\n\
+         laminate = {{ plies = '[0/90/90/0]', material = 'tape', ply_thickness = '0.25 mm', layers = 1 }}\n{TAPE}{}",
         EDGES.concat()
     );
-    let model = Model::new(scene::parse(&text, &root().join("scene.toml")).unwrap(), &Registry::standard()).unwrap();
-    let solution = statics::solve(&model, NonZeroUsize::MIN).unwrap();
-    let reserve = solution.margins.iter().map(|margin| margin.reserve_factor).fold(f64::INFINITY, f64::min);
-    (model, solution.u, reserve)
+    Model::new(scene::parse(&text, &root().join("scene.toml"))?, &Registry::standard())
 }
 
 #[test]
 fn the_plate_sags_as_at_rest() {
-    let (model, u, reserve) = at_rest();
+    let model = at_rest("").unwrap();
+    let solution = statics::solve(&model, NonZeroUsize::MIN).unwrap();
+    let reserve = solution.margins.iter().map(|margin| margin.reserve_factor).fold(f64::INFINITY, f64::min);
+    let u = solution.u;
     let column = model.plate.columns.iter().position(|c| (c[0] - 0.03).hypot(c[1] - 0.02) < 1e-9).unwrap();
     let level = model.plate.mid_level().unwrap_or(0);
     let want = -u[model.plate.dofs_at(column, level, Dof::new(3, 0).unwrap()).next().unwrap()];
@@ -147,4 +147,12 @@ fn refusals_help() {
     Struck::new("gravity = '-9.81 m/s^2'").refused(&["must be positive"]);
     Struck { more: "[substructures]\ncells = [4, 4]\n", ..Struck::new("gravity = '9.81 m/s^2'") }
         .refused(&["does not sag", "leave one of `substructures`"]);
+    for effects in
+        ["gravity = '9.81 m/s^2'", "damping = { ratio = 0.02 }", "inertia = 'off'", "delamination = 'threshold'"]
+    {
+        let said = said(at_rest(&format!("effects = {{ {effects} }}")).expect_err(effects));
+        let expected =
+            if effects.starts_with("delamination") { "no material tells the toughness" } else { "needs an impact" };
+        assert!(said.contains(expected), "{said}");
+    }
 }

@@ -89,12 +89,17 @@ impl Struck {
     #[track_caller]
     fn refused(&self, words: &[&str]) {
         let error = self.run().expect_err("it is refused");
-        let report = miette::Report::new(error);
-        let said = format!("{report:?}").split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+        let said = said(error);
         for words in words {
             assert!(said.contains(words), "{words:?} is not in {said}");
         }
     }
+}
+
+/// An error with its help, on one line.
+fn said(error: Error) -> String {
+    let report = format!("{:?}", miette::Report::new(error));
+    report.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
 }
 
 /// Root of the sum of squared differences over that of squares.
