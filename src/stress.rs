@@ -11,7 +11,7 @@ use fem_core::recovery::{Recovery, Station};
 use fem_core::structure::Structure;
 use fem_core::tensor::{Ply, Stress6};
 use fem_core::window;
-use fem_dynamics::reduce::Reduced;
+use fem_dynamics::reduce::{Companions, Reduced};
 use fem_failure::scan::{self, Place, Probe, Scan, ScanSite};
 use fem_io::scene::Window;
 use serde::{Deserialize, Serialize};
@@ -54,6 +54,8 @@ impl IndexHistory {
 pub(crate) struct Watch<'a> {
     model: &'a Model,
     reduced: Option<Reduced>,
+    /// What large deflections add to the modes.
+    companions: Option<Companions>,
     condensation: Option<Condensation>,
     recovery: Recovery,
     /// 6·sites × modes: stresses per unit of each modal coordinate.
@@ -86,6 +88,7 @@ impl<'a> Watch<'a> {
     pub(crate) fn new(
         model: &'a Model,
         reduced: Option<Reduced>,
+        companions: Option<Companions>,
         condensation: Option<Condensation>,
     ) -> Result<Self, Error> {
         let recovery = recovery(model);
@@ -94,6 +97,7 @@ impl<'a> Watch<'a> {
         let mut watch = Self {
             model,
             reduced: None,
+            companions,
             condensation,
             operator: None,
             probes,
@@ -103,7 +107,8 @@ impl<'a> Watch<'a> {
             states: vec![Stress6::new([0.0; 6]); recovery.sites()],
             recovery,
         };
-        if let Some(reduced) = &reduced {
+        // Stresses of large displacements are no product with the coordinates.
+        if let Some(reduced) = reduced.as_ref().filter(|_| !model.effects.membrane) {
             let modes = reduced.modal.ndof();
             if 6 * watch.recovery.sites() * modes * size_of::<f64>() <= OPERATOR_LIMIT {
                 let mut operator = vec![0.0; 6 * watch.recovery.sites() * modes];
@@ -159,6 +164,7 @@ impl<'a> Watch<'a> {
                 let mut u = vec![0.0; n * count];
                 for (q, u) in waiting.chunks_exact(width).zip(u.chunks_exact_mut(n)) {
                     reduced.expand(q, u);
+                    self.companions.iter().for_each(|companions| companions.complete(q, u));
                 }
                 self.recover(&u, count, out)?;
             }
@@ -185,7 +191,13 @@ impl<'a> Watch<'a> {
         for (field, u) in fields.chunks_exact(model.constraints.ndof()).zip(u.chunks_exact_mut(model.plate.ndof())) {
             model.constraints.expand(field, u);
         }
-        Ok(self.recovery.stresses(&model.plate, &*model.element, &u, count, out)?)
+        let Some(large) = model.element.large_displacements().filter(|_| model.effects.membrane) else {
+            return Ok(self.recovery.stresses(&model.plate, &*model.element, &u, count, out)?);
+        };
+        for (u, out) in u.chunks_exact(model.plate.ndof()).zip(out.chunks_exact_mut(6 * self.recovery.sites())) {
+            self.recovery.large_stresses(&model.plate, large, u, out)?;
+        }
+        Ok(())
     }
 
     /// What the scan found.

@@ -7,7 +7,6 @@ use fem::Registry;
 use fem::core::dof::Dof;
 use fem::core::failure::Site;
 use fem::core::plugin::{Built, Kind, Params, PluginInfo};
-use fem::core::time::StepLimit;
 use std::fmt::Write;
 use std::fs;
 
@@ -89,9 +88,9 @@ fn integrators_table() -> String {
             Ok(Built::Integrator(integrator)) => integrator.limit(),
             other => panic!("{}: {other:?}", info.name),
         };
-        let limit = match limit {
-            StepLimit::None => "any".to_owned(),
-            StepLimit::OmegaDt(limit) => format!("{limit:.4}").trim_end_matches('0').to_owned(),
+        let limit = match limit.product() {
+            None => "any".to_owned(),
+            Some(limit) => format!("{limit:.4}").trim_end_matches('0').to_owned(),
         };
         let cells = [&format!("`{}`", info.name), info.summary, &limit, &parameters_of(info), info.source];
         writeln!(text, "| {} |", cells.join(" | ")).unwrap();

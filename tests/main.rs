@@ -6,6 +6,7 @@ mod bad_input;
 mod book;
 mod command_line;
 mod criteria;
+mod effects;
 mod envelope;
 mod impactors;
 mod indices;

@@ -7,7 +7,7 @@
 //! | contracts | [`element`], [`failure`], [`contact`], [`time`], [`reduction`]; [`plugin`] introduces an implementation |
 //! | materials and laminates | [`tensor`], [`material`], [`layup`], [`laminate`] |
 //! | the plate and its unknowns | [`mesh`], [`dof`], [`plate`], [`support`], [`symmetry`], [`constraint`], [`patch`], [`load`] |
-//! | matrices and stresses | [`quadrature`], [`structure`], [`recovery`], [`profile`], [`window`], [`counters`] |
+//! | matrices and stresses | [`quadrature`], [`structure`], [`damping`], [`recovery`], [`profile`], [`window`], [`counters`] |
 #![cfg_attr(feature = "assembly", doc = "| sparse matrices (feature `assembly`) | [`assembly`] |")]
 #![cfg_attr(feature = "formula", doc = "| formulas that people write (feature `formula`) | [`formula`] |")]
 #![cfg_attr(feature = "testkit", doc = "| checks of the contracts (feature `testkit`) | [`testkit`] |")]
@@ -42,6 +42,7 @@ pub mod assembly;
 pub mod constraint;
 pub mod contact;
 pub mod counters;
+pub mod damping;
 pub mod dof;
 pub mod element;
 pub mod estimate;

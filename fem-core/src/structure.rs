@@ -15,6 +15,9 @@ impl fmt::Display for SolveError {
 impl std::error::Error for SolveError {}
 
 /// A structure with stiffness K (symmetric, positive definite) and mass M (symmetric, semi-definite).
+///
+/// One with viscous damping C (symmetric, semi-definite) has an `add_damping`, `solve_damped`, `solve_damped_mass` and
+/// `damping_rate` of its own; as they are provided, C = 0.
 pub trait Structure: fmt::Debug + Send {
     /// Number of unknowns.
     fn ndof(&self) -> usize;
@@ -44,6 +47,27 @@ pub trait Structure: fmt::Debug + Send {
     /// # Errors
     /// A singular mass.
     fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), SolveError>;
+
+    /// `X ← (K + cm · M + cc · C)⁻¹ X`, X of `ndof × columns`, column-major. The last factorisation is kept.
+    ///
+    /// # Errors
+    /// As [`Self::solve_shifted`].
+    fn solve_damped(&mut self, cm: f64, _cc: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
+        self.solve_shifted(cm, x, columns)
+    }
+
+    /// `x ← (M + cc · C)⁻¹ x`.
+    ///
+    /// # Errors
+    /// A singular matrix.
+    fn solve_damped_mass(&mut self, _cc: f64, x: &mut [f64]) -> Result<(), SolveError> {
+        self.solve_mass(x)
+    }
+
+    /// Upper bound of the eigenvalues of M⁻¹C, 1/s, where no circular frequency is above `omega`.
+    fn damping_rate(&self, _omega: f64) -> f64 {
+        0.0
+    }
 
     /// Highest circular frequency, rad/s, never below the true one by more than a few per cent.
     ///

@@ -120,8 +120,21 @@ pub trait SecondOrderSystem {
 pub enum StepLimit {
     /// Stable for every step.
     None,
-    /// ω Δt must not exceed this, ω the highest frequency of plate and contact.
+    /// ω Δt must not exceed this, ω the highest frequency of plate and contact, however they are damped.
     OmegaDt(f64),
+    /// |λ| Δt must not exceed this, λ the roots of λ² M + λ C + K of plate and contact: ω without damping, more where a motion
+    /// is damped beyond its critical damping. The limit of schemes to which damping is a force like others.
+    RootDt(f64),
+}
+
+impl StepLimit {
+    /// The product that is limited, if there is one.
+    pub fn product(self) -> Option<f64> {
+        match self {
+            Self::None => None,
+            Self::OmegaDt(limit) | Self::RootDt(limit) => Some(limit),
+        }
+    }
 }
 
 /// A one-step time integrator.

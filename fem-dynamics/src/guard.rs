@@ -13,7 +13,8 @@ const GROSS: f64 = 1.5;
 /// What rounding may leave of an energy that cannot be negative, relative to that of the impact.
 const ROUNDING: f64 = 1e-6;
 
-/// Bounds that follow from the energy E₀ of an impact alone, whatever plate and contact do.
+/// Bounds that follow from the energy E₀ of an impact alone, whatever plate and contact do. Under gravity E₀ is the highest
+/// energy that weight can make of it.
 ///
 /// Of each impactor, at every step: indentation and force are numbers, the force does not pull, the indentation is not so
 /// deep that the contact alone would have taken 1.5 E₀, the speed not above that of a kinetic energy of 1.5 E₀. Of the
@@ -24,6 +25,8 @@ const ROUNDING: f64 = 1e-6;
 #[derive(Debug, Clone)]
 pub struct Guard {
     energy: f64,
+    /// E₀.
+    scale: f64,
     bounds: Vec<Bounds>,
 }
 
@@ -137,15 +140,18 @@ impl Guard {
     /// The bounds of `system` from its initial state.
     pub fn new(system: &mut ImpactSystem) -> Self {
         let energy = system.energies(&system.initial(), &mut Vec::new()).total();
-        let most = GROSS * energy;
+        // Bounds that cannot be found do not bind.
+        let highest = system.highest_energy(energy).unwrap_or(f64::INFINITY);
+        let most = GROSS * highest;
         let bounds = system.impactors().iter().map(|impactor| Bounds {
             indentation: impactor.indentation_of(most).unwrap_or(f64::INFINITY),
             speed: (2.0 * most / impactor.mass).sqrt(),
         });
-        Self { energy, bounds: bounds.collect() }
+        let scale = if highest.is_finite() { highest } else { energy };
+        Self { energy, scale, bounds: bounds.collect() }
     }
 
-    /// E₀, J.
+    /// Energy at the beginning, J.
     pub fn energy(&self) -> f64 {
         self.energy
     }
@@ -185,11 +191,11 @@ impl Guard {
     /// A bound that is broken.
     pub fn balance(&self, energies: &Energies) -> Result<f64, Alarm> {
         for (matrix, energy) in [("stiffness", energies.strain), ("mass", energies.kinetic)] {
-            if energy < -ROUNDING * self.energy {
-                return Err(Alarm::Indefinite { matrix, energy: energy / self.energy });
+            if energy < -ROUNDING * self.scale {
+                return Err(Alarm::Indefinite { matrix, energy: energy / self.scale });
             }
         }
-        let change = (energies.total() - self.energy) / self.energy;
+        let change = (energies.total() - self.energy) / self.scale;
         match change {
             c if c.abs() <= TOLERANCE => Ok(c),
             c if c.is_finite() => Err(Alarm::Energy(c)),

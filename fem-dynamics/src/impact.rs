@@ -3,6 +3,7 @@
 mod newton;
 
 use crate::guard::Touch;
+use crate::vector::dot;
 use fem_core::contact::{Branches, ContactEnergy, ContactHistory, ContactLaw, Indentation};
 use fem_core::structure::{SolveError, Structure};
 use fem_core::time::{SecondOrderSystem, State, StepError};
@@ -11,6 +12,9 @@ use newton::Newton;
 /// Change of an indentation by its own force, relative, at which several contacts count as solved: ten times the
 /// tolerance of one.
 const TOLERANCE: f64 = 1e-14;
+/// Sweeps of an upper bound of what weight adds to an energy, and the change, relative, at which it counts as found.
+const MOST_SINKING: usize = 200;
+const SUNK: f64 = 1e-3;
 /// Sweeps over several contacts before they count as unsolvable.
 const MOST_SWEEPS: usize = 20_000;
 
@@ -55,7 +59,7 @@ impl Impactor {
     }
 }
 
-/// `M ü + f(u) = Σ F p`, `m z̈ = −F` (report eqs 33-35), unknowns: those of the structure, then one z per impactor,
+/// `M ü + C u̇ + f(u) = Σ F p`, `m z̈ = m g − F` (report eqs 33-35), unknowns: those of the structure, then one z per impactor,
 /// positive towards the structure.
 ///
 /// Of a linear structure, f = K u, an implicit step needs the response to each contact load once per step length and then
@@ -65,15 +69,17 @@ impl Impactor {
 pub struct ImpactSystem {
     structure: Box<dyn Structure>,
     impactors: Vec<Impactor>,
+    weight: Option<Weight>,
     influence: Influence,
     newton: Newton,
     contact_calls: u64,
 }
 
-/// Responses X = (K + cm M)⁻¹ p to the contact loads, for one cm; of a structure that is not linear, to its tangent.
+/// Responses X = (K + cm M + cc C)⁻¹ p to the contact loads, for one (cm, cc); of a structure that is not linear, to its tangent.
 #[derive(Debug, Default)]
 struct Influence {
     cm: f64,
+    cc: f64,
     x: Vec<f64>,
     /// Approach at contact i per force at contact j, pᵢᵀ Xⱼ and 1/(cm m) on the diagonal, by rows.
     approach: Vec<f64>,
@@ -95,19 +101,66 @@ pub struct Energies {
     pub stored: f64,
     /// Work lost in the contacts.
     pub dissipated: f64,
+    /// Work lost in the damping of the plate, of which the march keeps count.
+    pub damped: f64,
+    /// Potential energy of the weights, 0 where the impactors touch the plate at rest.
+    pub weight: f64,
+}
+
+/// Gravity on a structure and its impactors.
+///
+/// The structure has sagged before t = 0: its unknowns count from there, where its internal forces and its weight cancel, and
+/// what is left of gravity is the pull at the impactors. In the energies the sag is seen.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Weight {
+    /// Acceleration towards the structure, m/s².
+    pub acceleration: f64,
+    /// Forces on the structure, N.
+    pub load: Vec<f64>,
+    /// Strain energy of the sag, J.
+    pub sag: f64,
 }
 
 impl Energies {
     /// Sum; constant in an exact solution.
     pub fn total(&self) -> f64 {
-        self.impactor + self.kinetic + self.strain + self.stored + self.dissipated
+        self.impactor + self.kinetic + self.strain + self.stored + self.dissipated + self.damped + self.weight
     }
 }
 
 impl ImpactSystem {
     /// Couples `impactors` to `structure`.
     pub fn new(structure: Box<dyn Structure>, impactors: Vec<Impactor>) -> Self {
-        Self { structure, impactors, influence: Influence::default(), newton: Newton::default(), contact_calls: 0 }
+        Self {
+            structure,
+            impactors,
+            weight: None,
+            influence: Influence::default(),
+            newton: Newton::default(),
+            contact_calls: 0,
+        }
+    }
+
+    /// The same under gravity, if there is some.
+    #[must_use]
+    pub fn under(self, weight: Option<Weight>) -> Self {
+        Self { weight, ..self }
+    }
+
+    /// Its gravity, if there is some.
+    pub fn weight(&self) -> Option<&Weight> {
+        self.weight.as_ref()
+    }
+
+    /// Adds the weights of the impactors.
+    fn pull(&self, f: &mut [f64]) {
+        if let Some(Weight { acceleration, .. }) = self.weight {
+            f.iter_mut().zip(&self.impactors).for_each(|(f, impactor)| *f += impactor.mass * acceleration);
+        }
+    }
+
+    fn gravity(&self) -> f64 {
+        self.weight.as_ref().map_or(0.0, |weight| weight.acceleration)
     }
 
     /// The state at t = 0: the structure at rest, the impactors on their way.
@@ -115,7 +168,8 @@ impl ImpactSystem {
         let n = self.structure.ndof();
         let mut state = State::at_rest(self.ndof(), self.impactors.len());
         for (i, impactor) in self.impactors.iter().enumerate() {
-            state.u[n + i] = 0.0 - impactor.velocity * impactor.start;
+            let mean = impactor.velocity + 0.5 * self.gravity() * impactor.start;
+            state.u[n + i] = 0.0 - mean * impactor.start;
             state.v[n + i] = impactor.velocity;
         }
         state
@@ -188,7 +242,28 @@ impl ImpactSystem {
             energies.stored += stored;
             energies.dissipated += dissipated;
         }
+        if let Some(Weight { acceleration, load, sag }) = &self.weight {
+            let sunk = dot(load, &state.u[..n]);
+            energies.strain += sag + sunk;
+            let fallen: f64 = self.impactors.iter().zip(&state.u[n..]).map(|(impactor, z)| impactor.mass * z).sum();
+            energies.weight = -(sunk + acceleration * fallen);
+        }
         energies
+    }
+
+    /// Power lost in the damping of the structure, u̇ᵀ C u̇, W.
+    pub fn damping_power(&self, state: &State, work: &mut Vec<f64>) -> f64 {
+        let n = self.structure.ndof();
+        work.clear();
+        work.resize(n, 0.0);
+        self.structure.add_damping(1.0, &state.v[..n], work);
+        dot(&state.v[..n], work)
+    }
+
+    /// Upper bound of |λ|, 1/s, of the roots of λ² M + λ C + K, where no circular frequency is above `omega`: a motion beyond
+    /// its critical damping decays by less than the eigenvalues of M⁻¹C.
+    pub fn root_bound(&self, omega: f64) -> f64 {
+        omega.max(self.structure.damping_rate(omega))
     }
 
     /// Highest circular frequency of the structure alone, rad/s.
@@ -211,6 +286,33 @@ impl ImpactSystem {
         Ok(value(load, &x))
     }
 
+    /// Upper bound of the energy (J) of an impact of `energy` that weight adds to: E = `energy` + Σ m g (α + w), the contact so
+    /// deep that it alone would have taken E and the plate so far down that it alone would.
+    ///
+    /// # Errors
+    /// A structure that is not held.
+    pub fn highest_energy(&mut self, energy: f64) -> Result<f64, StepError> {
+        let gravity = self.gravity();
+        if gravity == 0.0 {
+            return Ok(energy);
+        }
+        let flexibilities =
+            (0..self.impactors.len()).map(|i| self.static_flexibility(i)).collect::<Result<Vec<_>, _>>()?;
+        let mut highest = energy;
+        for _ in 0..MOST_SINKING {
+            let way = |(impactor, flexibility): (&Impactor, &f64)| {
+                let indentation = impactor.indentation_of(highest).unwrap_or(f64::INFINITY);
+                impactor.mass * gravity * (indentation + (2.0 * flexibility * highest).sqrt())
+            };
+            let next = energy + self.impactors.iter().zip(&flexibilities).map(way).sum::<f64>();
+            if next <= highest * (1.0 + SUNK) {
+                return Ok(next);
+            }
+            highest = next;
+        }
+        Ok(f64::INFINITY)
+    }
+
     /// Upper bound of the highest frequency (rad/s) of structure, impactors and contacts together: ω² ≤ ω_s² + Σ k_c
     /// (pᵀM⁻¹p + 1/m), with `omega` = ω_s of the structure and k_c the steepest tangent of a contact that took the energy of
     /// all impactors.
@@ -220,7 +322,9 @@ impl ImpactSystem {
     pub fn frequency_bound(&mut self, omega: f64) -> Result<f64, StepError> {
         let mut square = omega * omega;
         let mut x = vec![0.0; self.structure.ndof()];
-        let energy = self.impactors.iter().map(|i| 0.5 * i.mass * i.velocity.powi(2)).sum();
+        let fall = |i: &Impactor| self.gravity() * i.start * (i.velocity + 0.5 * self.gravity() * i.start);
+        let energy = self.impactors.iter().map(|i| 0.5 * i.mass * i.velocity.powi(2) + i.mass * fall(i)).sum();
+        let energy = self.highest_energy(energy)?;
         for impactor in &self.impactors {
             x.fill(0.0);
             add(&impactor.load, 1.0, &mut x);
@@ -231,12 +335,13 @@ impl ImpactSystem {
         Ok(square.sqrt())
     }
 
-    fn prepare(&mut self, cm: f64) -> Result<(), StepError> {
-        if self.influence.cm == cm && !self.influence.x.is_empty() {
+    fn prepare(&mut self, cm: f64, cc: f64) -> Result<(), StepError> {
+        if self.influence.cm == cm && self.influence.cc == cc && !self.influence.x.is_empty() {
             return Ok(());
         }
         let Self { structure, impactors, influence, .. } = self;
-        influence.set(cm, structure.ndof(), impactors, |x, count| structure.solve_shifted(cm, x, count))
+        let n = structure.ndof();
+        influence.set(cm, cc, n, impactors, |x, count| structure.solve_damped(cm, cc, x, count))
     }
 }
 
@@ -265,7 +370,7 @@ impl SecondOrderSystem for ImpactSystem {
         self.structure.ndof() + self.impactors.len()
     }
 
-    fn force(&mut self, _: f64, u: &[f64], _: &[f64], h: &[ContactHistory], f: &mut [f64]) {
+    fn force(&mut self, _: f64, u: &[f64], v: &[f64], h: &[ContactHistory], f: &mut [f64]) {
         let n = self.structure.ndof();
         f.fill(0.0);
         match self.structure.nonlinear() {
@@ -276,12 +381,14 @@ impl SecondOrderSystem for ImpactSystem {
                 Err(_) => f.fill(f64::NAN),
             },
         }
+        self.structure.add_damping(-1.0, &v[..n], &mut f[..n]);
         for (i, impactor) in self.impactors.iter().enumerate() {
             let force = impactor.law.force(&h[i], self.approach(i, u)).force;
             self.contact_calls += 1;
             add(&impactor.load, force, f);
             f[n + i] = -force;
         }
+        self.pull(&mut f[n..]);
     }
 
     fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
@@ -297,9 +404,12 @@ impl SecondOrderSystem for ImpactSystem {
         self.structure.add_damping(scale, &x[..n], &mut y[..n]);
     }
 
-    fn solve_mass(&mut self, _: f64, x: &mut [f64]) -> Result<(), StepError> {
+    fn solve_mass(&mut self, cc: f64, x: &mut [f64]) -> Result<(), StepError> {
         let n = self.structure.ndof();
-        self.structure.solve_mass(&mut x[..n]).map_err(|e| StepError::SingularMass(e.0))?;
+        // Weight pulls at impactors that do not touch yet; a plate without force may have no mass.
+        if self.weight.is_none() || x[..n].iter().any(|f| *f != 0.0) {
+            self.structure.solve_damped_mass(cc, &mut x[..n]).map_err(|e| StepError::SingularMass(e.0))?;
+        }
         for (x, impactor) in x[n..].iter_mut().zip(&self.impactors) {
             *x /= impactor.mass;
         }
@@ -315,14 +425,15 @@ impl SecondOrderSystem for ImpactSystem {
         from: &[f64],
         d: &mut [f64],
     ) -> Result<(), StepError> {
+        let n = self.structure.ndof();
+        self.pull(&mut d[n..]);
         if self.structure.nonlinear().is_some() {
             return self.iterate(cm, cc, t, h, from, d);
         }
-        self.prepare(cm)?;
-        let n = self.structure.ndof();
+        self.prepare(cm, cc)?;
         let Self { structure, impactors, influence, contact_calls, .. } = self;
         structure.add_stiffness(-1.0, &from[..n], &mut d[..n]);
-        structure.solve_shifted(cm, &mut d[..n], 1).map_err(|e| StepError::Factorisation(e.0))?;
+        structure.solve_damped(cm, cc, &mut d[..n], 1).map_err(|e| StepError::Factorisation(e.0))?;
         for (d, impactor) in d[n..].iter_mut().zip(impactors.iter()) {
             *d /= cm * impactor.mass;
         }
@@ -349,10 +460,11 @@ impl SecondOrderSystem for ImpactSystem {
 }
 
 impl Influence {
-    /// The responses for `cm`, found by `solve`, of a structure of `n` unknowns.
+    /// The responses for `cm` and `cc`, found by `solve`, of a structure of `n` unknowns.
     fn set(
         &mut self,
         cm: f64,
+        cc: f64,
         n: usize,
         impactors: &[Impactor],
         solve: impl FnOnce(&mut [f64], usize) -> Result<(), SolveError>,
@@ -372,7 +484,7 @@ impl Influence {
         }
         free.resize(count, 0.0);
         forces.resize(count, 0.0);
-        self.cm = cm;
+        (self.cm, self.cc) = (cm, cc);
         Ok(())
     }
 

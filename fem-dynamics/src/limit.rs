@@ -41,11 +41,11 @@ impl std::error::Error for TooLong {}
 /// # Errors
 /// A singular mass, for which no explicit step is stable.
 pub fn longest_step(system: &mut ImpactSystem, limit: StepLimit) -> Result<(f64, Option<f64>), StepError> {
-    match limit {
-        StepLimit::None => Ok((f64::INFINITY, None)),
-        StepLimit::OmegaDt(allowed) => {
-            let omega = system.highest_frequency()?;
-            Ok((allowed / system.frequency_bound(omega)?, Some(omega)))
-        }
+    let Some(allowed) = limit.product() else { return Ok((f64::INFINITY, None)) };
+    let omega = system.highest_frequency()?;
+    let mut bound = system.frequency_bound(omega)?;
+    if let StepLimit::RootDt(_) = limit {
+        bound = system.root_bound(omega).max(bound);
     }
+    Ok((allowed / bound, Some(omega)))
 }

@@ -24,7 +24,11 @@ pub struct HistoryRow {
     pub contact_stored_j: f64,
     /// Energy lost in the contacts, J.
     pub contact_dissipated_j: f64,
-    /// Sum of the energies less the initial kinetic energy, J; zero but for the integrator's error.
+    /// Energy lost in the damping of the plate, J; a column where there is some.
+    pub damping_dissipated_j: Option<f64>,
+    /// Potential energy of the weights, J, 0 where the impactors touch the plate at rest; a column where there is gravity.
+    pub gravity_potential_j: Option<f64>,
+    /// Sum of the energies less that at the beginning, J; zero but for the integrator's error.
     pub energy_balance_j: f64,
 }
 
@@ -114,27 +118,19 @@ pub struct EnvelopeRow {
     pub stresses_mpa: [f64; 2],
 }
 
-/// Writes `history.csv`; every row has as many impactors as `impactors` has names. Where there are several, their columns
-/// begin with the name and a point.
+/// Writes `history.csv`; every row has as many impactors as `impactors` has names, and the energies of the first. Where there
+/// are several impactors, their columns begin with the name and a point.
 ///
 /// # Errors
 /// A value that is not finite, and as [`OutputDir::write`].
 pub fn write_history(dir: &OutputDir, impactors: &[&str], rows: &[HistoryRow]) -> Result<(), FileError> {
     const OF_EACH: [&str; 4] =
         ["contact_force_N", "impactor_displacement_m", "impactor_velocity_m_s", "plate_displacement_m"];
-    const ENERGIES: [&str; 6] = [
-        "impactor_kinetic_J",
-        "plate_kinetic_J",
-        "plate_strain_J",
-        "contact_stored_J",
-        "contact_dissipated_J",
-        "energy_balance_J",
-    ];
     let of_each = impactors.iter().flat_map(|name| {
         OF_EACH.map(|column| if impactors.len() == 1 { column.to_owned() } else { format!("{name}.{column}") })
     });
-    let header: Vec<String> =
-        ["time_s".to_owned()].into_iter().chain(of_each).chain(ENERGIES.map(str::to_owned)).collect();
+    let names = energies(rows.first().unwrap_or(&HistoryRow::default())).map(|(name, _)| name.to_owned());
+    let header: Vec<String> = ["time_s".to_owned()].into_iter().chain(of_each).chain(names).collect();
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let values = |row: &HistoryRow| {
         let of_each = row.impactors.iter().flat_map(|impactor| {
@@ -145,17 +141,25 @@ pub fn write_history(dir: &OutputDir, impactors: &[&str], rows: &[HistoryRow]) -
                 impactor.plate_displacement_m,
             ]
         });
-        let energies = [
-            row.impactor_kinetic_j,
-            row.plate_kinetic_j,
-            row.plate_strain_j,
-            row.contact_stored_j,
-            row.contact_dissipated_j,
-            row.energy_balance_j,
-        ];
+        let energies = energies(row).map(|(_, energy)| energy);
         [row.time_s].into_iter().chain(of_each).chain(energies).map(Field::Number).collect()
     };
     write_columns(dir, "history.csv", &header, rows.iter().map(values))
+}
+
+/// Columns of the energies that a row has.
+fn energies(row: &HistoryRow) -> impl Iterator<Item = (&'static str, f64)> + use<> {
+    let columns = [
+        ("impactor_kinetic_J", Some(row.impactor_kinetic_j)),
+        ("plate_kinetic_J", Some(row.plate_kinetic_j)),
+        ("plate_strain_J", Some(row.plate_strain_j)),
+        ("contact_stored_J", Some(row.contact_stored_j)),
+        ("contact_dissipated_J", Some(row.contact_dissipated_j)),
+        ("damping_dissipated_J", row.damping_dissipated_j),
+        ("gravity_potential_J", row.gravity_potential_j),
+        ("energy_balance_J", Some(row.energy_balance_j)),
+    ];
+    columns.into_iter().filter_map(|(name, energy)| Some((name, energy?)))
 }
 
 /// Writes `events.csv`; without events it holds the header alone.
@@ -374,6 +378,8 @@ mod tests {
             plate_strain_j: v[7],
             contact_stored_j: v[8],
             contact_dissipated_j: v[9],
+            damping_dissipated_j: None,
+            gravity_potential_j: None,
             energy_balance_j: v[10],
         }
     }
@@ -390,6 +396,21 @@ mod tests {
              impactor_kinetic_J,plate_kinetic_J,plate_strain_J,contact_stored_J,contact_dissipated_J,energy_balance_J\n\
              5e-7,1.5,3.0,4.0,5.0,6.0,7.0,8.0,9.0,10.0,-1e-17\n"
         );
+    }
+
+    #[test]
+    fn energies_of_effects_are_columns_where_they_are() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = OutputDir::create(folder.path()).unwrap();
+        let row = HistoryRow {
+            damping_dissipated_j: Some(0.5),
+            gravity_potential_j: Some(-0.25),
+            ..numbers([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0])
+        };
+        write_history(&dir, &["one"], &[row]).unwrap();
+        let text = read(&dir, "history.csv");
+        let want = "contact_dissipated_J,damping_dissipated_J,gravity_potential_J,energy_balance_J\n";
+        assert!(text.contains(want) && text.ends_with(",9.0,0.5,-0.25,10.0\n"), "{text}");
     }
 
     #[test]

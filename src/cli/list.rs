@@ -5,6 +5,7 @@ use crate::registry::{NO_REDUCTION, Registry};
 use clap::{Args, ValueEnum};
 use fem_core::plugin::{Kind, PluginInfo};
 use fem_io::materials::{self, LibraryMaterial};
+use fem_io::scene::{self, EffectInfo};
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
@@ -25,6 +26,8 @@ enum What {
     Integrators,
     /// For `reduction.method`.
     Reductions,
+    /// For `effects`.
+    Effects,
     /// For `library` of a material.
     Materials,
 }
@@ -36,6 +39,10 @@ pub(super) fn list(registry: &Registry, arguments: &Arguments) -> miette::Result
         What::ContactLaws => Kind::Contact,
         What::Integrators => Kind::Integrator,
         What::Reductions => Kind::Reduction,
+        What::Effects => {
+            scene::EFFECTS.iter().for_each(|info| print(&effect(info)));
+            return Ok(ExitCode::SUCCESS);
+        }
         What::Materials => {
             materials::names().filter_map(materials::library).for_each(|m| print(&material(m)));
             return Ok(ExitCode::SUCCESS);
@@ -54,6 +61,10 @@ fn entry(info: &PluginInfo) -> String {
         text.push_str(&format!("{:<20}   {}: {}\n", "", p.name, p.doc));
     }
     text
+}
+
+fn effect(EffectInfo { name, values, summary, source }: &EffectInfo) -> String {
+    format!("{name:<20} {summary} [{source}]\n{:<20}   {values}\n", "")
 }
 
 fn material(material: &LibraryMaterial) -> String {

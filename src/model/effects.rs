@@ -1,19 +1,97 @@
 //! The effects that a model simulates.
 
 use super::builder::Builder;
+use crate::registry::NO_REDUCTION;
+use fem_core::damping::Damping;
 use fem_core::element::Element;
-use fem_io::scene::{Analysis, SceneError, Switch};
+use fem_failure::delamination::DelaminationThreshold;
+use fem_io::scene::{self, Analysis, Damage, Delamination, Located, SceneError, Switch};
 
 /// Effects beyond the linear elastic plate; each is chosen by the scene, or by the advisor where the scene leaves it to it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effects {
     /// Membrane stiffening: strains of large deflections.
     pub membrane: bool,
+    /// Damping of the plate.
+    pub damping: Option<Damping>,
+    /// Inertia of the plate; without it the plate is at rest under the contact forces at every instant.
+    pub inertia: bool,
+    /// Weight of plate and impactors, m/s².
+    pub gravity: Option<f64>,
 }
 
 impl Builder<'_> {
     pub(super) fn effects(&self, element: &dyn Element) -> Result<Effects, SceneError> {
-        Ok(Effects { membrane: self.membrane(element)? })
+        Ok(Effects {
+            membrane: self.membrane(element)?,
+            damping: self.damping()?,
+            inertia: self.inertia()?,
+            gravity: self.gravity()?,
+        })
+    }
+
+    /// `threshold` where the scene wants it.
+    pub(super) fn threshold(
+        &self,
+        threshold: Option<DelaminationThreshold>,
+    ) -> Result<Option<DelaminationThreshold>, SceneError> {
+        match &self.scene.effects.delamination {
+            None => Ok(threshold.filter(|_| self.scene.effects.damage == Damage::Onset)),
+            Some(wish) if wish.value == Delamination::Off => Ok(None),
+            Some(wish) if threshold.is_none() => Err(self.error(
+                wish,
+                "no material tells the toughness of the laminate between its plies",
+                "give the material of `laminate.interface`, or of the plies, its `GIIc`, for example: GIIc = \"0.6 kJ/m^2\"",
+            )),
+            Some(wish) => {
+                self.in_time(wish, "delamination", "leave it out")?;
+                Ok(threshold)
+            }
+        }
+    }
+
+    /// The impact, which an effect of the scene needs.
+    fn in_time<T>(&self, effect: &Located<T>, name: &str, help: &str) -> Result<&scene::Impact, SceneError> {
+        let missing =
+            || self.error(effect, format!("`effects.{name}` needs an impact, and this analysis has none"), help);
+        self.scene.impact().ok_or_else(missing)
+    }
+
+    fn damping(&self) -> Result<Option<Damping>, SceneError> {
+        let Some(damping) = &self.scene.effects.damping else { return Ok(None) };
+        let impact = self.in_time(damping, "damping", "leave it out")?;
+        if matches!(damping.value, Damping::Ratio(_)) && impact.reduction.name.value == NO_REDUCTION {
+            return Err(self.error(
+                damping,
+                "the ratio is that of every mode, and the full plate has no modes",
+                "name a reduction, for example: reduction = { method = \"ritz\", vectors = 40 }; or give C = mass M + \
+                 stiffness K: damping = { mass = \"30 1/s\", stiffness = \"2e-8 s\" }",
+            ));
+        }
+        Ok(Some(damping.value))
+    }
+
+    /// What the scene leaves to the advisor is simulated.
+    fn inertia(&self) -> Result<bool, SceneError> {
+        let Some(wish) = self.scene.effects.inertia.as_ref().filter(|wish| wish.value == Switch::Off) else {
+            return Ok(true);
+        };
+        self.in_time(wish, "inertia", "leave it out")?;
+        if let Some(modes) = &self.scene.output.modes {
+            let message = "`output.modes` follows vibrations, and a plate without inertia has none";
+            return Err(self.error(modes, message, "leave one of `output.modes` and `effects.inertia` out"));
+        }
+        Ok(false)
+    }
+
+    fn gravity(&self) -> Result<Option<f64>, SceneError> {
+        let Some(gravity) = &self.scene.effects.gravity else { return Ok(None) };
+        self.in_time(gravity, "gravity", "leave it out; at rest it is a load: load = [{ gravity = [...] }]")?;
+        if self.scene.substructures.is_some() {
+            let message = "the inside of condensed substructures does not sag";
+            return Err(self.error(gravity, message, "leave one of `substructures` and `effects.gravity` out"));
+        }
+        Ok(Some(gravity.value))
     }
 
     fn membrane(&self, element: &dyn Element) -> Result<bool, SceneError> {

@@ -58,7 +58,7 @@ pub struct Model {
     pub watched: Vec<usize>,
     /// Places whose indices are kept over time.
     pub gauges: Vec<Gauge>,
-    /// Force at which the laminate delaminates, where damage is looked for and a material gives the toughness.
+    /// Force at which the laminate delaminates, where that is looked for and a material gives the toughness.
     pub threshold: Option<DelaminationThreshold>,
     /// What is simulated beyond the linear elastic plate.
     pub effects: Effects,
@@ -141,10 +141,7 @@ impl Model {
         let watched = builder.watched(&plate, &centres)?;
         let gauges = builder.gauges(&plate, &watched, &criteria)?;
         let resin = scene.interface.as_ref().map(|resin| resin.value);
-        let threshold = match scene.effects.damage {
-            Damage::Off => None,
-            Damage::Onset => DelaminationThreshold::of(&laminate, &materials, resin),
-        };
+        let threshold = builder.threshold(DelaminationThreshold::of(&laminate, &materials, resin))?;
         let profiles = builder.profiles(&plate, effects)?;
         Ok(Self {
             materials,

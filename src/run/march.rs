@@ -48,6 +48,7 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
 pub struct March<'a> {
     model: &'a Model,
     system: ImpactSystem,
+    sag: Option<Vec<f64>>,
     guard: Guard,
     integrator: Box<dyn Integrator>,
     sizes: Sizes,
@@ -117,7 +118,11 @@ impl<'a> March<'a> {
             step: 0,
             dt,
             row_every,
-            ledger: Ledger::new(state.contacts.len(), model.threshold.map(|threshold| threshold.force)),
+            ledger: Ledger::new(
+                state.contacts.len(),
+                model.threshold.map(|threshold| threshold.force),
+                model.effects.damping.is_some(),
+            ),
             state,
             work: Work::default(),
             stopped: None,
@@ -173,8 +178,10 @@ impl<'a> March<'a> {
     }
 
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
-        let Prepared { model, impact, mut system, reduced, full, condensation, sizes, counters, mut stopwatch } =
-            prepared;
+        let Prepared {
+            model, impact, mut system, sag, reduced, companions, full, condensation, sizes, counters, ..
+        } = prepared;
+        let mut stopwatch = prepared.stopwatch;
         stopwatch.lap("reduce");
         let mut estimates = Estimates::default();
         // Here, where nothing else takes memory yet beside the full plate.
@@ -185,7 +192,8 @@ impl<'a> March<'a> {
         }
         let followed = model.scene.output.modes.as_ref().zip(reduced.as_ref());
         let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
-        let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, reduced, condensation)?) };
+        let watch =
+            if model.criteria.is_empty() { None } else { Some(Watch::new(model, reduced, companions, condensation)?) };
         stopwatch.lap("prepare stresses");
         let scan_every = steps_in(model.scene.failure.every, sizes.step);
         let (integrator, counted) = (impact.integrator.clone(), Work::default());
@@ -193,6 +201,7 @@ impl<'a> March<'a> {
             model,
             guard: Guard::new(&mut system),
             system,
+            sag,
             integrator,
             sizes,
             scan_every,
@@ -239,6 +248,7 @@ impl<'a> March<'a> {
         // A sum of steps drifts; the product does not.
         state.t = *step as f64 * *dt;
         ledger.contacts(system, guard, state)?;
+        ledger.damping(system, state);
         let (row, scan) = (step.is_multiple_of(*row_every), step.is_multiple_of(self.scan_every));
         if row {
             self.row()?;
@@ -261,7 +271,11 @@ impl<'a> March<'a> {
         let Some(watch) = &mut self.watch else { return Ok(()) };
         self.stopwatch.lap("march");
         let State { t, u, .. } = &self.progress.state;
-        let sampled = watch.sample(*t, &u[..self.sizes.marched]);
+        let u = &u[..self.sizes.marched];
+        let sampled = match &self.sag {
+            None => watch.sample(*t, u),
+            Some(sag) => watch.sample(*t, &u.iter().zip(sag).map(|(u, sag)| u + sag).collect::<Vec<_>>()),
+        };
         self.stopwatch.lap("scan");
         sampled
     }

@@ -42,6 +42,8 @@ pub struct Sizes {
     pub memory: Estimate,
     /// Contact force of the first impactor per deflection under it, N/m, of the plate as marched.
     pub static_stiffness: f64,
+    /// Deflection under the first impactor by the plate's own weight, m, where there is gravity.
+    pub sag: Option<f64>,
     /// Highest frequency of the plate as marched, Hz; `None` where no integrator limit asked for it.
     pub highest_frequency: Option<f64>,
     /// Lowest frequency of the reduced plate that the impact excites, Hz.

@@ -8,13 +8,15 @@ use crate::memory::{self, Estimate};
 use crate::model::{Impact, Model, Plan, Strike};
 use fem_core::assembly::{Condensation, Condensed, LargePlate, Matrix, SparseStructure, assemble, condense, pattern};
 use fem_core::counters::Counters;
+use fem_core::damping::Damping;
+use fem_core::load;
 use fem_core::prolongation::Prolongation;
-use fem_core::reduction::Functional;
+use fem_core::reduction::{Functional, ReductionError};
 use fem_core::structure::{SolveError, Structure};
-use fem_core::time::{StepError, StepLimit};
-use fem_dynamics::impact::{ImpactSystem, Impactor};
+use fem_core::time::{Integrator, StepError};
+use fem_dynamics::impact::{ImpactSystem, Impactor, Weight};
 use fem_dynamics::limit::{self, TooLong};
-use fem_dynamics::reduce::{Reduced, Stiffened};
+use fem_dynamics::reduce::{Companions, Reduced, Stiffened, static_responses};
 use fem_io::scene;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -22,13 +24,20 @@ use std::sync::Arc;
 /// Governors offered to a reduction.
 const GOVERNORS: usize = 2000;
 
+/// An indentation, m.
+const TOUCH: f64 = 1e-9;
+
 /// A model assembled, reduced and coupled to its impactors.
 #[derive(Debug)]
 pub struct Prepared<'a> {
     pub(super) model: &'a Model,
     pub(super) impact: &'a Impact,
     pub(super) system: ImpactSystem,
+    /// Displacements at rest under gravity, from which those of the system count.
+    pub(super) sag: Option<Vec<f64>>,
     pub(super) reduced: Option<Reduced>,
+    /// What the plate does beside the modes that stretch it.
+    pub(super) companions: Option<Companions>,
     /// What a reduced model was made from.
     pub(super) full: Option<Full>,
     pub(super) condensation: Option<Condensation>,
@@ -44,6 +53,40 @@ pub(super) struct Full {
     pub(super) structure: SparseStructure,
     /// Where each impactor strikes.
     pub(super) contacts: Vec<Functional>,
+}
+
+/// A plate under its own weight.
+#[derive(Debug)]
+struct Sag {
+    /// Forces, N.
+    load: Vec<f64>,
+    /// Displacements.
+    u: Vec<f64>,
+}
+
+impl Sag {
+    fn of(model: &Model, gravity: f64, assembled: &mut Assembled) -> Result<Self, Error> {
+        let mut forces = vec![0.0; model.plate.ndof()];
+        load::gravity(&model.plate, &*model.element, [0.0, 0.0, -gravity], &mut forces)?;
+        let forces: Vec<(usize, f64)> = forces.into_iter().enumerate().collect();
+        let mut load = vec![0.0; model.constraints.ndof()];
+        Functional(model.constraints.restrict(&forces)).add_to(1.0, &mut load);
+        let mut u = load.clone();
+        assembled.structure.solve_shifted(0.0, &mut u, 1)?;
+        Ok(Self { load, u })
+    }
+
+    /// The same in the coordinates of a reduced plate that can sag.
+    fn within(self, reduced: &Reduced) -> Self {
+        let load = reduced.restrict(&Functional(self.load.into_iter().enumerate().collect()));
+        let u = load.iter().zip(reduced.modal.stiffnesses()).map(|(f, k)| f / k).collect();
+        Self { load, u }
+    }
+
+    fn weight(&self, acceleration: f64) -> Weight {
+        let sag = 0.5 * self.load.iter().zip(&self.u).map(|(f, u)| f * u).sum::<f64>();
+        Weight { acceleration, load: self.load.clone(), sag }
+    }
 }
 
 /// K and M of a model, condensed on its masters where the scene divides the plate into substructures.
@@ -157,12 +200,17 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     let Plan::Impact(impact) = &model.plan else { return Err(Error::NoImpact) };
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
-    let mut assembled = structure(model, true, threads, &mut counters)?;
+    let effects = model.effects;
+    // Without inertia a linear plate is what its static responses are, and a reduction has nothing to add to them.
+    let at_rest = !effects.inertia && !effects.membrane;
+    let inertia = effects.inertia || (effects.membrane && impact.reduction.is_some());
+    let mut assembled = structure(model, inertia, threads, &mut counters)?;
     stopwatch.lap("assemble");
     let (stiffness_entries, factor_entries) = (assembled.structure.entries(), assembled.factor_entries);
     let (substructures, memory) = (assembled.substructures(), assembled.memory);
     let contacts: Vec<Functional> = impact.strikes.iter().map(|s| assembled.functional(&s.contact)).collect();
-    let reduced = match &impact.reduction {
+    let basis = match &impact.reduction {
+        _ if at_rest => Some(static_responses(&mut assembled.structure, &distinct(&contacts))),
         None => None,
         Some(reduction) => {
             let governors = assembled.own(model.governors(impact, GOVERNORS));
@@ -170,20 +218,37 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
             if assembled.condensation.is_none() {
                 structure.offer_coarse(Prolongation::linear_in_z(&model.plate, &model.constraints));
             }
-            let basis = reduction.basis(structure, &distinct(&contacts), &governors);
-            Some(basis.and_then(|basis| Reduced::project(structure, &basis)).map_err(|why| {
-                let name = &impact.spec.reduction.name;
-                model.scene.source.error_at(&name.place, format!("reduction `{}`: {why}", name.value), "")
-            })?)
+            Some(reduction.basis(structure, &distinct(&contacts), &governors))
         }
     };
+    let sag = effects.gravity.map(|gravity| Sag::of(model, gravity, &mut assembled)).transpose()?;
+    let project = |basis: Result<Vec<f64>, ReductionError>| {
+        let with_sag = |mut basis: Vec<f64>| {
+            basis.extend(sag.iter().flat_map(|sag| &sag.u));
+            Reduced::project(&assembled.structure, &basis)
+        };
+        basis.and_then(with_sag).map_err(|why| {
+            let name = &impact.spec.reduction.name;
+            model.scene.source.error_at(&name.place, format!("reduction `{}`: {why}", name.value), "")
+        })
+    };
+    let mut reduced = basis.map(project).transpose()?;
     let Assembled { mut structure, condensation, .. } = assembled;
+    if let (Some(reduced), false) = (&mut reduced, effects.inertia) {
+        reduced.modal.without_inertia();
+    }
+    match (effects.damping, &mut reduced) {
+        (Some(damping), Some(reduced)) => reduced.modal.damp(damping),
+        (Some(Damping::Rayleigh(damping)), None) => structure.damp(damping),
+        // The scene is refused a ratio without modes.
+        (Some(Damping::Ratio(_)) | None, _) => {}
+    }
     let stiffened = match &reduced {
-        Some(reduced) if model.effects.membrane => {
+        Some(reduced) if effects.membrane => {
             let stiffened = Stiffened::new(&mut structure, reduced, &distinct(&contacts), &StretchOf(model));
             Some(stiffened.map_err(|why| SolveError(why.0))?)
         }
-        None if model.effects.membrane => {
+        None if effects.membrane => {
             let pattern = structure.shared_pattern();
             structure.stiffen(LargePlate::new(&model.plate, model.element.clone(), &model.constraints, pattern));
             None
@@ -205,23 +270,33 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     };
     let impactors: Vec<Impactor> =
         impact.spec.impactors.iter().zip(&impact.strikes).zip(&contacts).map(impactor).collect();
+    let companions = stiffened.as_ref().map(|stiffened| stiffened.companions().clone());
     let (structure, full): (Box<dyn Structure>, _) = match &reduced {
         None => (Box::new(structure), None),
         Some(r) => {
-            let modal: Box<dyn Structure> = match &stiffened {
-                Some(stiffened) => Box::new(stiffened.clone()),
+            let modal: Box<dyn Structure> = match stiffened {
+                Some(stiffened) => Box::new(stiffened),
                 None => Box::new(r.modal.clone()),
             };
             (modal, Some(Full { structure, contacts }))
         }
     };
-    let mut system = ImpactSystem::new(structure, impactors);
+    let sag = sag.map(|sag| match &reduced {
+        None => sag,
+        Some(reduced) => sag.within(reduced),
+    });
+    let weight = sag.as_ref().zip(effects.gravity).map(|(sag, acceleration)| sag.weight(acceleration));
+    let mut system = ImpactSystem::new(structure, impactors).under(weight);
     let march = &impact.spec.march;
+    if let (Some(reduced), false) = (&reduced, effects.inertia) {
+        let trial = ImpactSystem::new(Box::new(reduced.modal.clone()), system.impactors().to_vec());
+        touched(trial, impact.integrator.clone(), march.step.value).map_err(|e| unmarchable(model, impact, e))?;
+    }
     let limited = impact.integrator.limit();
     let (longest_step, highest) =
         limit::longest_step(&mut system, limited).map_err(|e| unmarchable(model, impact, e))?;
     let hertz = |omega: f64| omega / std::f64::consts::TAU;
-    if let (StepLimit::OmegaDt(omega_dt), Some(omega)) = (limited, highest)
+    if let (Some(omega_dt), Some(omega)) = (limited.product(), highest)
         && !(march.step.value <= longest_step)
     {
         let frequency = hertz(omega_dt / longest_step);
@@ -232,6 +307,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     }
     let count = march.end.value / march.step.value;
     let steps = (count * (1.0 - 1e-12)).ceil().max(1.0) as u64;
+    let lowest = reduced.as_ref().and_then(|r| r.modal.frequencies().next());
     // As it is written where it fits the end: a later end then changes no bit of it.
     let whole = (count - steps as f64).abs() <= 1e-12 * count;
     let sizes = Sizes {
@@ -243,12 +319,28 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         memory,
         static_stiffness: 1.0 / system.static_flexibility(0)?,
         highest_frequency: highest.map(hertz),
-        lowest_frequency: reduced.as_ref().and_then(|r| r.modal.frequencies().next()).map(hertz),
+        sag: sag.as_ref().map(|sag| system.deflection(0, &sag.u)),
+        lowest_frequency: lowest.filter(|omega| omega.is_finite()).map(hertz),
         longest_step,
         steps,
         step: if whole { march.step.value } else { march.end.value / steps as f64 },
     };
-    Ok(Prepared { model, impact, system, reduced, full, condensation, sizes, counters, stopwatch })
+    let sag = sag.map(|sag| sag.u);
+    Ok(Prepared { model, impact, system, sag, reduced, companions, full, condensation, sizes, counters, stopwatch })
+}
+
+/// Makes a step with all impactors in contact, to see whether `integrator` needs the inverse of a mass that has none.
+///
+/// # Errors
+/// [`StepError::SingularMass`], then; what else a step may meet is for the march to tell.
+fn touched(mut system: ImpactSystem, mut integrator: Box<dyn Integrator>, dt: f64) -> Result<(), StepError> {
+    let mut state = system.initial();
+    state.u[system.structure().ndof()..].fill(TOUCH);
+    integrator.resume(&mut system);
+    match integrator.step(&mut system, &mut state, dt) {
+        Err(error @ StepError::SingularMass(_)) => Err(error),
+        _ => Ok(()),
+    }
 }
 
 /// Contacts in the very same place once.
@@ -267,7 +359,12 @@ pub(super) fn unmarchable(model: &Model, impact: &Impact, error: StepError) -> E
     let StepError::SingularMass(why) = error else { return error.into() };
     let name = &impact.spec.march.integrator.name;
     let message = format!("`{}` needs the inverse of the mass matrix, which is singular: {why}", name.value);
-    let help = "choose an implicit integrator such as `newmark`, a mass that is regular (`element.mass = \"cubic\"`), or \
-                another reduction";
+    let help = match model.effects.inertia {
+        true => {
+            "choose an implicit integrator such as `newmark`, a mass that is regular (`element.mass = \"cubic\"`), or \
+             another reduction"
+        }
+        false => "choose an implicit integrator such as `newmark`, or leave `effects.inertia` out",
+    };
     model.scene.source.error_at(&name.place, message, help).into()
 }

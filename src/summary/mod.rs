@@ -61,6 +61,8 @@ pub struct ModelSize {
     pub stress_sites: usize,
     pub static_stiffness_N_m: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
+    pub plate_sag_m: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub lowest_frequency_Hz: Option<f64>,
 }
 
@@ -286,6 +288,7 @@ impl Summary {
                 factor_entries: sizes.factor_entries,
                 stress_sites: outcome.sites,
                 static_stiffness_N_m: sizes.static_stiffness,
+                plate_sag_m: sizes.sag,
                 lowest_frequency_Hz: sizes.lowest_frequency,
             },
             impact: impactors(model).iter().enumerate().map(|(i, spec)| impact(model, outcome, i, spec)).collect(),
@@ -341,6 +344,7 @@ fn impact(model: &Model, outcome: &Outcome, i: usize, spec: &scene::Impactor) ->
     let (deflection, _) = peak(|r| r.plate_displacement_m);
     let last = outcome.history.last();
     let velocity = last.map_or(0.0, |r| r.impactors[i].impactor_velocity_m_s);
+    let (end, gravity) = (last.map_or(0.0, |r| r.time_s), model.effects.gravity.unwrap_or(0.0));
     let name = called(model, spec);
     Impact {
         name: name.map(str::to_owned),
@@ -348,13 +352,13 @@ fn impact(model: &Model, outcome: &Outcome, i: usize, spec: &scene::Impactor) ->
         velocity_m_s: spec.velocity,
         energy_J: 0.5 * spec.mass * spec.velocity.powi(2),
         start_time_s: name.map(|_| spec.start),
-        end_time_s: last.map_or(0.0, |r| r.time_s),
+        end_time_s: end,
         peak_force_N: peak_force,
         peak_force_time_s,
         peak_plate_displacement_m: deflection,
         peak_plate_displacement_over_thickness: deflection / model.laminate.thickness(),
         peak_indentation_m: outcome.contacts[i].deepest,
-        impulse_N_s: spec.mass * (spec.velocity - velocity),
+        impulse_N_s: spec.mass * (spec.velocity - velocity + gravity * end),
         final_impactor_velocity_m_s: velocity,
         contacts: outcome.contacts[i].count,
     }

@@ -10,7 +10,7 @@ use crate::case::Case;
 use fem::Registry;
 use fem::core::contact::ContactLaw;
 use fem::core::plugin::{Built, Dimension, Kind, Params, Value};
-use fem::core::time::{Integrator, State, StepError, StepLimit};
+use fem::core::time::{Integrator, State, StepError};
 use fem::dynamics::impact::{ImpactSystem, Impactor};
 use fem::dynamics::integrate::located;
 use plate::Navier;
@@ -69,10 +69,7 @@ fn sun_yang(k: f64, critical: f64) -> Box<dyn ContactLaw> {
 }
 
 fn limit(scheme: &dyn Integrator) -> Option<f64> {
-    match scheme.limit() {
-        StepLimit::OmegaDt(limit) => Some(limit),
-        StepLimit::None => None,
-    }
+    scheme.limit().product()
 }
 
 /// `plate` under masses that touch its middle at t = 0.

@@ -1,6 +1,7 @@
 //! A plate's K and M as a [`Structure`].
 
 use super::{Cholesky, FactorError, LargePlate, Pattern, Symbolic, coarse, condition};
+use crate::damping::Rayleigh;
 use crate::prolongation::{Coarse, Prolongation};
 use crate::structure::{Nonlinear, SolveError, Structure, Tangent};
 use std::fmt;
@@ -30,6 +31,7 @@ pub struct SparseStructure {
     force: Vec<f64>,
     prolongation: Option<Prolongation>,
     large: Option<LargePlate>,
+    damping: Option<Rayleigh>,
     threads: NonZeroUsize,
     name: Box<dyn Fn(usize) -> String + Send>,
     factorisations: u64,
@@ -58,6 +60,7 @@ impl SparseStructure {
             force: Vec::new(),
             prolongation: None,
             large: None,
+            damping: None,
             threads,
             factor: Cholesky::new(symbolic, threads),
             factored: Factored::Nothing,
@@ -83,6 +86,11 @@ impl SparseStructure {
     /// The pattern of K and M.
     pub fn shared_pattern(&self) -> &Arc<Pattern> {
         &self.pattern
+    }
+
+    /// Gives the structure viscous damping.
+    pub fn damp(&mut self, damping: Rayleigh) {
+        self.damping = Some(damping);
     }
 
     /// Entries of one triangle of K.
@@ -162,11 +170,47 @@ impl Structure for SparseStructure {
         self.inertia.0.add_product(&self.inertia.1, scale, x, y);
     }
 
+    fn add_damping(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        let Rayleigh { mass, stiffness } = self.damping.unwrap_or_default();
+        if mass != 0.0 {
+            self.add_mass(scale * mass, x, y);
+        }
+        if stiffness != 0.0 {
+            self.add_stiffness(scale * stiffness, x, y);
+        }
+    }
+
     fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
         self.factorise(Factored::Shifted(shift))?;
         self.factor.solve(x, columns);
         self.solves += columns as u64;
         Ok(())
+    }
+
+    fn solve_damped(&mut self, cm: f64, cc: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
+        let Some(damping) = self.damping else { return self.solve_shifted(cm, x, columns) };
+        let (scale, shift) = damping.with_stiffness(cm, cc);
+        self.solve_shifted(shift, x, columns)?;
+        x.iter_mut().for_each(|x| *x /= scale);
+        Ok(())
+    }
+
+    fn solve_damped_mass(&mut self, cc: f64, x: &mut [f64]) -> Result<(), SolveError> {
+        let Some(damping) = self.damping else { return self.solve_mass(x) };
+        let (mass, stiffness) = damping.with_mass(cc);
+        if stiffness == 0.0 {
+            self.solve_mass(x)?;
+            x.iter_mut().for_each(|x| *x /= mass);
+        } else {
+            self.solve_shifted(mass / stiffness, x, 1)?;
+            x.iter_mut().for_each(|x| *x /= stiffness);
+        }
+        Ok(())
+    }
+
+    fn damping_rate(&self, omega: f64) -> f64 {
+        let Rayleigh { mass, stiffness } = self.damping.unwrap_or_default();
+        mass + stiffness * omega * omega
     }
 
     fn nonlinear(&mut self) -> Option<&mut dyn Nonlinear> {
@@ -201,11 +245,17 @@ impl Nonlinear for SparseStructure {
         large.internal(u, force, None).map_err(|e| SolveError(e.to_string()))
     }
 
-    fn linearise(&mut self, Tangent { cm, cc: _, u }: &Tangent) -> Result<(), SolveError> {
+    fn linearise(&mut self, Tangent { cm, cc, u }: &Tangent) -> Result<(), SolveError> {
         let large = self.large.as_mut().ok_or_else(linear)?;
         self.force.resize(u.len(), 0.0);
         large.internal(u, &mut self.force, Some(&mut self.combined)).map_err(|e| SolveError(e.to_string()))?;
+        let damping = self.damping.unwrap_or_default();
+        let cm = cm + cc * damping.mass;
         self.combined.iter_mut().zip(&self.m).for_each(|(k, m)| *k += cm * m);
+        if damping.stiffness != 0.0 {
+            let ck = cc * damping.stiffness;
+            self.combined.iter_mut().zip(&self.k).for_each(|(tangent, k)| *tangent += ck * k);
+        }
         self.factored = Factored::Nothing;
         self.factorise(Factored::Tangent)
     }

@@ -52,7 +52,7 @@ impl ImpactSystem {
         let Some(large) = structure.nonlinear() else { return Ok(()) };
         newton.tangent = None;
         large.linearise(&tangent).map_err(unsolved)?;
-        influence.set(tangent.cm, n, impactors, |x, count| large.solve_linearised(x, count))?;
+        influence.set(tangent.cm, tangent.cc, n, impactors, |x, count| large.solve_linearised(x, count))?;
         newton.tangent = Some(tangent);
         newton.tangents += 1;
         Ok(())
@@ -85,7 +85,7 @@ impl ImpactSystem {
         // The size of the turn before, with the same tangent.
         let mut before = None;
         for _ in 0..MOST {
-            let Self { structure, impactors, influence, newton, contact_calls } = self;
+            let Self { structure, impactors, influence, newton, contact_calls, .. } = self;
             let Newton { load, at, residual, step, .. } = newton;
             newton.turns += 1;
             at.clear();
@@ -135,7 +135,7 @@ impl ImpactSystem {
     }
 }
 
-fn nonlinear<'a>(structure: Option<&'a mut dyn Nonlinear>) -> Result<&'a mut dyn Nonlinear, StepError> {
+fn nonlinear(structure: Option<&mut dyn Nonlinear>) -> Result<&mut dyn Nonlinear, StepError> {
     structure.ok_or_else(|| StepError::Factorisation("the structure has become linear".into()))
 }
 

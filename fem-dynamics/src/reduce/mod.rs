@@ -13,8 +13,9 @@ pub use guyan::Guyan;
 pub use irs::Irs;
 pub use modal::ModalTruncation;
 pub use ritz::Ritz;
-pub use stiffened::{Stiffened, Stretching};
+pub use stiffened::{Companions, Stiffened, Stretching};
 
+use fem_core::damping::{Damping, Rayleigh};
 use fem_core::reduction::{Functional, ReductionError};
 use fem_core::structure::{SolveError, Structure};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
@@ -39,6 +40,8 @@ const LARGEST: usize = 2000;
 pub struct Modal {
     stiffness: Vec<f64>,
     mass: Vec<f64>,
+    /// Empty without damping.
+    damping: Vec<f64>,
 }
 
 impl Modal {
@@ -50,6 +53,25 @@ impl Modal {
     /// Modal stiffnesses: ω², and 1 of modes without inertia.
     pub fn stiffnesses(&self) -> &[f64] {
         &self.stiffness
+    }
+
+    /// Modal dampings; none of a structure without.
+    pub fn dampings(&self) -> &[f64] {
+        &self.damping
+    }
+
+    /// Takes the inertia of all modes away; they keep their stiffness.
+    pub fn without_inertia(&mut self) {
+        self.mass.fill(0.0);
+    }
+
+    /// Gives the structure viscous damping, which leaves its modes as they are.
+    pub fn damp(&mut self, damping: Damping) {
+        let each = self.stiffness.iter().zip(&self.mass);
+        self.damping = match damping {
+            Damping::Rayleigh(Rayleigh { mass, stiffness }) => each.map(|(k, m)| mass * m + stiffness * k).collect(),
+            Damping::Ratio(ratio) => each.map(|(k, m)| 2.0 * ratio * (k * m).sqrt()).collect(),
+        };
     }
 }
 
@@ -72,6 +94,10 @@ impl Structure for Modal {
         }
     }
 
+    fn add_damping(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        y.iter_mut().zip(&self.damping).zip(x).for_each(|((y, c), x)| *y += scale * c * x);
+    }
+
     fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
         for column in x.chunks_exact_mut(self.stiffness.len()).take(columns) {
             for ((x, k), m) in column.iter_mut().zip(&self.stiffness).zip(&self.mass) {
@@ -89,6 +115,28 @@ impl Structure for Modal {
             *x /= m;
         }
         Ok(())
+    }
+
+    fn solve_damped(&mut self, cm: f64, cc: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
+        if self.damping.is_empty() {
+            return self.solve_shifted(cm, x, columns);
+        }
+        for column in x.chunks_exact_mut(self.stiffness.len()).take(columns) {
+            let matrices = self.stiffness.iter().zip(&self.mass).zip(&self.damping);
+            column.iter_mut().zip(matrices).for_each(|(x, ((k, m), c))| *x /= k + cm * m + cc * c);
+        }
+        Ok(())
+    }
+
+    fn solve_damped_mass(&mut self, cc: f64, x: &mut [f64]) -> Result<(), SolveError> {
+        self.solve_mass(x)?;
+        let matrices = self.mass.iter().zip(&self.damping);
+        x.iter_mut().zip(matrices).for_each(|(x, (m, c))| *x /= 1.0 + cc * c / m);
+        Ok(())
+    }
+
+    fn damping_rate(&self, _: f64) -> f64 {
+        self.damping.iter().zip(&self.mass).map(|(c, m)| c / m).fold(0.0, f64::max)
     }
 
     fn highest_frequency(&mut self) -> Result<f64, SolveError> {
@@ -147,7 +195,7 @@ impl Reduced {
         order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
         let largest = eigen.eigenvalues.iter().fold(0.0_f64, |a, b| a.max(*b));
         let mut vectors = DMatrix::zeros(m, m);
-        let mut modal = Modal { stiffness: Vec::with_capacity(m), mass: Vec::with_capacity(m) };
+        let mut modal = Modal { stiffness: Vec::with_capacity(m), mass: Vec::with_capacity(m), damping: Vec::new() };
         for (to, from) in order.into_iter().enumerate() {
             let inverse = eigen.eigenvalues[from];
             let mut column = eigen.eigenvectors.column(from).into_owned();
@@ -196,8 +244,11 @@ fn refused(e: SolveError) -> ReductionError {
     ReductionError(e.0)
 }
 
-/// K⁻¹ P for the unit loads P of `functionals`, `n × functionals`.
-fn static_responses(structure: &mut dyn Structure, functionals: &[Functional]) -> Result<Vec<f64>, ReductionError> {
+/// K⁻¹ P for the unit loads P of `functionals`, `n × functionals`: all that a structure without inertia can do under them.
+///
+/// # Errors
+/// A structure that is not held.
+pub fn static_responses(structure: &mut dyn Structure, functionals: &[Functional]) -> Result<Vec<f64>, ReductionError> {
     let n = structure.ndof();
     let mut x = vec![0.0; n * functionals.len()];
     for (w, column) in functionals.iter().zip(x.chunks_exact_mut(n.max(1))) {

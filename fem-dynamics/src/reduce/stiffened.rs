@@ -270,6 +270,18 @@ impl Structure for Stiffened {
         self.modal.solve_mass(x)
     }
 
+    fn solve_damped(&mut self, cm: f64, cc: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
+        self.modal.solve_damped(cm, cc, x, columns)
+    }
+
+    fn solve_damped_mass(&mut self, cc: f64, x: &mut [f64]) -> Result<(), SolveError> {
+        self.modal.solve_damped_mass(cc, x)
+    }
+
+    fn damping_rate(&self, omega: f64) -> f64 {
+        self.modal.damping_rate(omega)
+    }
+
     fn highest_frequency(&mut self) -> Result<f64, SolveError> {
         self.modal.highest_frequency()
     }
@@ -297,7 +309,7 @@ impl Nonlinear for Stiffened {
         Ok(energy)
     }
 
-    fn linearise(&mut self, Tangent { cm, cc: _, u: q }: &Tangent) -> Result<(), SolveError> {
+    fn linearise(&mut self, Tangent { cm, cc, u: q }: &Tangent) -> Result<(), SolveError> {
         self.stretch(q);
         let n = q.len();
         let mut tangent = DMatrix::zeros(n, n);
@@ -313,7 +325,7 @@ impl Nonlinear for Stiffened {
             }
         }
         for (i, (k, mass)) in self.modal.stiffness.iter().zip(&self.modal.mass).enumerate() {
-            tangent[(i, i)] += k + cm * mass;
+            tangent[(i, i)] += k + cm * mass + cc * self.modal.damping.get(i).unwrap_or(&0.0);
         }
         self.factor = None;
         let buckles =

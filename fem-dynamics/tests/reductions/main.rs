@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod bounds;
+mod damping;
 mod frequencies;
 mod governors;
 mod impact;

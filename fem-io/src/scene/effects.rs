@@ -2,6 +2,9 @@
 
 use super::reader::{Field, Keys, Reader};
 use super::source::{Located, SceneError};
+use super::tree::Node;
+use fem_core::damping::{Damping, Rayleigh};
+use fem_core::plugin::Dimension;
 
 /// Whether an effect is simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -25,27 +28,149 @@ pub enum Damage {
     Onset,
 }
 
+/// What is done about delamination.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Delamination {
+    /// Nothing.
+    Off,
+    /// The contact force at which it begins is found, by energies; the plate stays as it is.
+    Threshold,
+}
+
 /// The effects of a scene.
 #[derive(Debug, Clone, Default)]
 pub struct Effects {
     /// Damage.
     pub damage: Damage,
+    /// Delamination; where the scene says nothing of it, its threshold as far as damage is looked for and the toughness is known.
+    pub delamination: Option<Located<Delamination>>,
     /// Membrane stiffening: strains of large deflections; off where the scene says nothing of it.
     pub membrane: Option<Located<Switch>>,
+    /// Damping of the plate.
+    pub damping: Option<Located<Damping>>,
+    /// Inertia of the plate; on where the scene says nothing of it.
+    pub inertia: Option<Located<Switch>>,
+    /// Gravity, which pulls impactors and plate along the way of the impactors, m/s².
+    pub gravity: Option<Located<f64>>,
 }
 
-const EFFECTS: Keys = &[("damage", r#""onset""#), ("membrane", r#""auto""#), ("damping", r#""off""#)];
+const KEYS: Keys = &[
+    ("damage", r#""onset""#),
+    ("delamination", r#""threshold""#),
+    ("membrane", r#""auto""#),
+    ("damping", r#"{ mass = "30 1/s", stiffness = "2e-8 s" }"#),
+    ("inertia", r#""off""#),
+    ("gravity", r#""9.81 m/s^2""#),
+];
+const DELAMINATIONS: [(&str, Delamination); 2] = [("off", Delamination::Off), ("threshold", Delamination::Threshold)];
+const DAMPING: Keys = &[("mass", r#""30 1/s""#), ("stiffness", r#""2e-8 s""#), ("ratio", "0.02")];
+
+/// An effect as lists show it.
+#[derive(Debug, Clone, Copy)]
+pub struct EffectInfo {
+    /// Its key in `effects`.
+    pub name: &'static str,
+    /// Its values; what holds where a scene says nothing comes first.
+    pub values: &'static str,
+    /// What it does.
+    pub summary: &'static str,
+    /// Where it comes from.
+    pub source: &'static str,
+}
+
+/// All effects.
+pub const EFFECTS: &[EffectInfo] = &[
+    EffectInfo {
+        name: "damage",
+        values: "\"onset\", \"off\"",
+        summary: "first failure of plies and interfaces by the criteria of the scene",
+        source: "AFWAL-TR-87-4117",
+    },
+    EffectInfo {
+        name: "delamination",
+        values: "\"threshold\", \"off\"",
+        summary: "the contact force at which the laminate delaminates; follows `damage` unless it is given",
+        source: "Davies and Zhang 1995; Olsson 2001",
+    },
+    EffectInfo {
+        name: "membrane",
+        values: "\"off\", \"on\", \"auto\"",
+        summary: "membrane stiffening: strains of large deflections",
+        source: "von Karman 1910",
+    },
+    EffectInfo {
+        name: "damping",
+        values: "\"off\", { mass, stiffness }, { ratio }",
+        summary: "viscous damping C = mass M + stiffness K, or the same ratio for every mode of a reduced plate",
+        source: "Rayleigh 1877",
+    },
+    EffectInfo {
+        name: "inertia",
+        values: "\"on\", \"off\", \"auto\"",
+        summary: "inertia of the plate; without it the plate is at rest under the contact forces at every instant",
+        source: "Shivakumar, Elber, Illg 1985",
+    },
+    EffectInfo {
+        name: "gravity",
+        values: "\"off\", an acceleration",
+        summary: "weight of impactors and plate along the way of the impactors",
+        source: "Newton 1687",
+    },
+];
 
 pub(super) fn read(field: &Field<'_>) -> Result<Effects, SceneError> {
-    let table = field.table(EFFECTS)?;
-    if let Some(field) = table.optional("damping") {
+    let table = field.table(KEYS)?;
+    let damage = table.optional("damage").map(|f| f.choice(&[("onset", Damage::Onset), ("off", Damage::Off)]));
+    Ok(Effects {
+        damage: damage.transpose()?.unwrap_or_default(),
+        delamination: choice(&table, "delamination", &DELAMINATIONS)?,
+        membrane: switch(&table, "membrane")?,
+        damping: unless_off(&table, "damping", read_damping)?,
+        inertia: switch(&table, "inertia")?,
+        gravity: unless_off(&table, "gravity", |field| field.positive(Dimension::ACCELERATION))?,
+    })
+}
+
+/// What `read` makes of a value that is not `"off"`.
+fn unless_off<T>(
+    table: &Reader<'_>,
+    key: &str,
+    read: impl Fn(&Field<'_>) -> Result<T, SceneError>,
+) -> Result<Option<Located<T>>, SceneError> {
+    let field = table.optional(key).filter(|field| !matches!(field.node(), Node::Text(text) if text == "off"));
+    field.map(|field| Ok(field.at(read(&field)?))).transpose()
+}
+
+fn read_damping(field: &Field<'_>) -> Result<Damping, SceneError> {
+    if let Node::Text(_) = field.node() {
         field.choice(&[("off", ())])?;
     }
-    let damage = table.optional("damage").map(|f| f.choice(&[("onset", Damage::Onset), ("off", Damage::Off)]));
-    Ok(Effects { damage: damage.transpose()?.unwrap_or_default(), membrane: switch(&table, "membrane")? })
+    let table = field.table(DAMPING)?;
+    let [proportional, ratio] = match table.optional("mass") {
+        Some(_) => table.either(["mass", "ratio"])?,
+        None => table.either(["stiffness", "ratio"])?,
+    };
+    let factor = |key, dimension| table.optional(key).map_or(Ok(0.0), |field| field.positive(dimension));
+    match (ratio, proportional) {
+        (Some(ratio), _) => match ratio.number()? {
+            value if value > 0.0 && value <= 1.0 => Ok(Damping::Ratio(value)),
+            value => Err(ratio.error(format!("{value} is no ratio to critical damping"), "between 0 and 1: ratio = 0.02")),
+        },
+        (None, Some(_)) => Ok(Damping::Rayleigh(Rayleigh {
+            mass: factor("mass", Dimension::FREQUENCY)?,
+            stiffness: factor("stiffness", Dimension::TIME)?,
+        })),
+        (None, None) => Err(field.error(
+            "says not how much",
+            "give `mass`, `stiffness` or both, C = mass M + stiffness K, or the `ratio` of every mode: { ratio = 0.02 }",
+        )),
+    }
 }
 
 fn switch(table: &Reader<'_>, key: &str) -> Result<Option<Located<Switch>>, SceneError> {
-    let switches = [("off", Switch::Off), ("on", Switch::On), ("auto", Switch::Auto)];
-    table.optional(key).map(|field| Ok(field.at(field.choice(&switches)?))).transpose()
+    choice(table, key, &[("off", Switch::Off), ("on", Switch::On), ("auto", Switch::Auto)])
+}
+
+fn choice<T: Copy>(table: &Reader<'_>, key: &str, words: &[(&str, T)]) -> Result<Option<Located<T>>, SceneError> {
+    table.optional(key).map(|field| Ok(field.at(field.choice(words)?))).transpose()
 }

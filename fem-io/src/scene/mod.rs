@@ -19,7 +19,7 @@ mod support;
 mod tests;
 pub(crate) mod tree;
 
-pub use effects::{Damage, Effects, Switch};
+pub use effects::{Damage, Delamination, EFFECTS, EffectInfo, Effects, Switch};
 pub use load::{Load, LoadKind, Pressure, ProfileLine};
 pub use plugin::PluginSpec;
 pub use run::{

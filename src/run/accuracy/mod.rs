@@ -48,7 +48,8 @@ impl Estimates {
         sizes: &Sizes,
     ) -> Self {
         let copy = ImpactSystem::new(Box::new(reduced.modal.clone()), system.impactors().to_vec());
-        let (companion, instants) = step::march(copy, integrator, sizes, full.solves()).unzip();
+        let copy = copy.under(system.weight().cloned());
+        let (companion, instants) = step::march(copy, &reduced.modal, integrator, sizes, full.solves()).unzip();
         let reduction = reduction::estimate(full, reduced, &instants.unwrap_or_default());
         Self { companion, reduction, mesh: None }
     }

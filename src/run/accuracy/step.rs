@@ -3,6 +3,7 @@
 use super::super::Sizes;
 use fem_core::time::{Integrator, SecondOrderSystem, State, StepLimit};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
+use fem_dynamics::reduce::Modal;
 use fem_io::tables::HistoryRow;
 
 /// Entries of factors that solutions passed, for each unknown that the second march passes in a step: from here on it takes
@@ -49,7 +50,7 @@ pub struct StepError {
 /// The plate at an instant of the second march.
 #[derive(Debug, Clone)]
 pub(super) struct Instant {
-    /// Coordinates of the reduced plate.
+    /// Coordinates of the reduced plate; of a damped one q + (c/k) q̇, whose stiffness gives the forces of both.
     pub(super) q: Vec<f64>,
     /// Force of each impactor, N.
     pub(super) forces: Vec<f64>,
@@ -70,10 +71,11 @@ pub(super) struct Companion {
     forces: Vec<f64>,
 }
 
-/// Marches `system` with another step than that of the run. Returns the force and states in contact, or nothing where that is
+/// Marches `system`, the plate of which is `modal`, with another step than that of the run. Returns the force and states in contact, or nothing where that is
 /// not cheap beside `solves` solutions with the full plate, or fails.
 pub(super) fn march(
     mut system: ImpactSystem,
+    modal: &Modal,
     mut integrator: Box<dyn Integrator>,
     sizes: &Sizes,
     solves: u64,
@@ -101,7 +103,9 @@ pub(super) fn march(
         let each: Vec<f64> = (0..system.impactors().len()).map(|k| system.contact_force(k, &state)).collect();
         let all = each.iter().sum();
         if all > 0.0 && i.is_multiple_of(count.div_ceil(KEPT)) {
-            let q = state.u[..sizes.marched].to_vec();
+            let mut q = state.u[..sizes.marched].to_vec();
+            let rates = modal.dampings().iter().zip(modal.stiffnesses()).zip(&state.v);
+            q.iter_mut().zip(rates).for_each(|(q, ((c, k), v))| *q += c / k * v);
             instants.push(Instant { q, forces: each, stiffness: stiffness(&system, &state) });
         }
         forces.push(all);

@@ -1,0 +1,27 @@
+//! What is off costs nothing and changes nothing.
+
+use crate::support::{fem, watched};
+
+#[test]
+fn effects_that_are_off_change_no_bit() {
+    let written = "[effects]\ndamage = \"onset\"\ndelamination = \"off\"\nmembrane = \"off\"\ndamping = \"off\"\n\
+                   inertia = \"on\"\ngravity = \"off\"\n";
+    let case = watched();
+    case.fem("run", &["--out", "without"]).good();
+    let case = case.append(written);
+    case.fem("run", &["--out", "off"]).good();
+    // A checkpoint knows the keys of its scene.
+    assert_eq!(case.differing("without", "off"), ["checkpoint.bin"]);
+    for column in ["damping_dissipated_J", "gravity_potential_J"] {
+        assert!(!case.table("off/history.csv").0.contains(&column.to_owned()), "{column}");
+    }
+    assert!(!case.read("off/summary.json").contains("plate_sag_m"));
+}
+
+#[test]
+fn effects_are_listed() {
+    let listed = fem(&crate::support::root(), &["list", "effects"]).good().stdout;
+    for effect in ["damage", "delamination", "membrane", "damping", "inertia", "gravity"] {
+        assert!(listed.lines().any(|line| line.split_whitespace().next() == Some(effect)), "{effect}: {listed}");
+    }
+}
