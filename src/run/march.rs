@@ -12,9 +12,11 @@ use crate::error::Error;
 use crate::model::Model;
 use crate::stress::{self, Watch};
 use fem_core::counters::Counters;
+use fem_core::structure::Tangent;
 use fem_core::time::{Integrator, State};
 use fem_dynamics::guard::Guard;
 use fem_dynamics::impact::ImpactSystem;
+use fem_dynamics::reduce::Stiffened;
 use fem_failure::scan::{self, Scan};
 use fem_io::files::OutputDir;
 use miette::Diagnostic;
@@ -75,6 +77,8 @@ pub(super) struct Progress {
     state: State,
     ledger: Ledger,
     work: Work,
+    /// The tangent in use of a plate under large displacements.
+    tangent: Option<Tangent>,
     stopped: Option<String>,
 }
 
@@ -87,12 +91,13 @@ struct Work {
     factorisations: u64,
     solves: u64,
     contact_calls: u64,
+    iterations: u64,
 }
 
 impl Work {
     fn of(system: &ImpactSystem) -> Self {
         let (factorisations, solves) = system.structure().work();
-        Self { factorisations, solves, contact_calls: system.contact_calls() }
+        Self { factorisations, solves, contact_calls: system.contact_calls(), iterations: system.iterations() }
     }
 
     fn between(self, from: Self, to: Self) -> Self {
@@ -100,6 +105,7 @@ impl Work {
             factorisations: self.factorisations + to.factorisations - from.factorisations,
             solves: self.solves + to.solves - from.solves,
             contact_calls: self.contact_calls + to.contact_calls - from.contact_calls,
+            iterations: self.iterations + to.iterations - from.iterations,
         }
     }
 }
@@ -125,6 +131,7 @@ impl<'a> March<'a> {
             ),
             state,
             work: Work::default(),
+            tangent: None,
             stopped: None,
         };
         let mut march = Self::at(prepared, progress)?;
@@ -160,7 +167,10 @@ impl<'a> March<'a> {
             return Err(sizes());
         }
         integrator.resume(system);
-        if progress.step < steps && progress.stopped.is_none() {
+        if let Some(tangent) = progress.tangent.take() {
+            system.linearise(tangent)?;
+        }
+        if progress.step < steps && progress.stopped.is_none() && !system.is_nonlinear() {
             // A step in vain makes what is made once and kept, such as factors, so that the work of the others is what it
             // would be in one piece. What it may meet, the next step meets again.
             let _ = integrator.step(system, &mut progress.state.clone(), dt);
@@ -178,20 +188,19 @@ impl<'a> March<'a> {
     }
 
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
-        let Prepared {
-            model, impact, mut system, sag, reduced, companions, full, condensation, sizes, counters, ..
-        } = prepared;
-        let mut stopwatch = prepared.stopwatch;
+        let Prepared { model, impact, mut system, sag, reduced, stiffened, full, condensation, .. } = prepared;
+        let Prepared { sizes, counters, mut stopwatch, .. } = prepared;
         stopwatch.lap("reduce");
         let mut estimates = Estimates::default();
         // Here, where nothing else takes memory yet beside the full plate.
         if let (Some(reduced), Some(full)) = (&reduced, full) {
-            estimates = Estimates::new(&system, reduced, full, impact.integrator.clone(), &sizes);
+            estimates = Estimates::new(&system, (reduced, stiffened.as_ref()), full, impact.integrator.clone(), &sizes);
             estimates.mesh = accuracy::mesh::estimate(model, &system, reduced, condensation.as_ref())?;
             stopwatch.lap("accuracy");
         }
         let followed = model.scene.output.modes.as_ref().zip(reduced.as_ref());
         let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
+        let companions = stiffened.map(Stiffened::into_companions);
         let watch =
             if model.criteria.is_empty() { None } else { Some(Watch::new(model, reduced, companions, condensation)?) };
         stopwatch.lap("prepare stresses");
@@ -296,6 +305,7 @@ impl<'a> March<'a> {
     pub fn save(&mut self, dir: &OutputDir) -> Result<(), Error> {
         self.stopwatch.lap("march");
         self.count();
+        self.progress.tangent = self.system.tangent().cloned();
         let watched = self.watch.as_ref().map(Watch::record);
         let saved =
             checkpoint::write(dir, self.model, &(&self.progress, self.modal.as_ref().map(ModalView::record), watched));
@@ -337,6 +347,7 @@ impl<'a> March<'a> {
         let mut counters = self.counters;
         counters.steps = step;
         counters.contact_calls = work.contact_calls;
+        counters.iterations = work.iterations;
         // A full system has counted since it was assembled, a reduced one counts nothing.
         counters.factorisations = counters.factorisations.max(work.factorisations);
         counters.solves = counters.solves.max(work.solves);

@@ -16,7 +16,7 @@ use fem_core::structure::{SolveError, Structure};
 use fem_core::time::{Integrator, StepError};
 use fem_dynamics::impact::{ImpactSystem, Impactor, Weight};
 use fem_dynamics::limit::{self, TooLong};
-use fem_dynamics::reduce::{Companions, Reduced, Stiffened, static_responses};
+use fem_dynamics::reduce::{Reduced, Stiffened, static_responses};
 use fem_io::scene;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -36,8 +36,8 @@ pub struct Prepared<'a> {
     /// Displacements at rest under gravity, from which those of the system count.
     pub(super) sag: Option<Vec<f64>>,
     pub(super) reduced: Option<Reduced>,
-    /// What the plate does beside the modes that stretch it.
-    pub(super) companions: Option<Companions>,
+    /// A reduced plate that its deflections stretch.
+    pub(super) stiffened: Option<Stiffened>,
     /// What a reduced model was made from.
     pub(super) full: Option<Full>,
     pub(super) condensation: Option<Condensation>,
@@ -270,12 +270,11 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     };
     let impactors: Vec<Impactor> =
         impact.spec.impactors.iter().zip(&impact.strikes).zip(&contacts).map(impactor).collect();
-    let companions = stiffened.as_ref().map(|stiffened| stiffened.companions().clone());
     let (structure, full): (Box<dyn Structure>, _) = match &reduced {
         None => (Box::new(structure), None),
         Some(r) => {
-            let modal: Box<dyn Structure> = match stiffened {
-                Some(stiffened) => Box::new(stiffened),
+            let modal: Box<dyn Structure> = match &stiffened {
+                Some(stiffened) => Box::new(stiffened.clone()),
                 None => Box::new(r.modal.clone()),
             };
             (modal, Some(Full { structure, contacts }))
@@ -326,7 +325,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         step: if whole { march.step.value } else { march.end.value / steps as f64 },
     };
     let sag = sag.map(|sag| sag.u);
-    Ok(Prepared { model, impact, system, sag, reduced, companions, full, condensation, sizes, counters, stopwatch })
+    Ok(Prepared { model, impact, system, sag, reduced, stiffened, full, condensation, sizes, counters, stopwatch })
 }
 
 /// Makes a step with all impactors in contact, to see whether `integrator` needs the inverse of a mass that has none.

@@ -196,6 +196,8 @@ pub struct Work {
     pub solves: u64,
     pub steps: u64,
     pub contact_calls: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub newton_iterations: Option<u64>,
     pub criterion_calls: u64,
 }
 
@@ -207,6 +209,7 @@ impl From<Counters> for Work {
             solves: c.solves,
             steps: c.steps,
             contact_calls: c.contact_calls,
+            newton_iterations: Some(c.iterations).filter(|count| *count > 0),
             criterion_calls: c.criterion_calls,
         }
     }

@@ -148,8 +148,9 @@ impl Summary {
             line(format_args!("            {estimate}"));
         }
         let w = &self.work;
+        let newton = w.newton_iterations.map_or(String::new(), |count| format!(" of {count} Newton iterations"));
         line(format_args!(
-            "  work      {} element matrices, {} factorisations, {} solves, {} steps, {} contact calls, {} criterion calls",
+            "  work      {} element matrices, {} factorisations, {} solves, {} steps{newton}, {} contact calls, {} criterion calls",
             w.elements, w.factorisations, w.solves, w.steps, w.contact_calls, w.criterion_calls
         ));
         line(format_args!("  time      {cost}"));

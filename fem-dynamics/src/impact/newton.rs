@@ -6,13 +6,13 @@ use fem_core::structure::{Nonlinear, SolveError, Tangent};
 use fem_core::time::StepError;
 
 /// Error of the change of displacement at which an iteration ends, relative, in the energy norm of the tangent.
-const ENOUGH: f64 = 1e-9;
+const ENOUGH: f64 = 1e-6;
 
 /// The same relative to the displacement itself: what rounding leaves.
 const ROUNDING: f64 = 1e-11;
 
 /// Factor on the error per turn above which the tangent is renewed: a tangent costs some turns.
-const SLOW: f64 = 0.1;
+const SLOW: f64 = 0.03;
 
 /// Turns, and tangents among them, before a step counts as unsolvable.
 const MOST: usize = 60;
@@ -26,9 +26,8 @@ pub(super) struct Newton {
     at: Vec<f64>,
     residual: Vec<f64>,
     step: Vec<f64>,
-    /// Turns and tangents so far.
+    /// So far.
     turns: u64,
-    tangents: u64,
 }
 
 impl ImpactSystem {
@@ -37,9 +36,14 @@ impl ImpactSystem {
         self.newton.tangent.as_ref()
     }
 
-    /// Iterations of implicit steps so far, and the tangents that they took.
-    pub fn iterations(&self) -> (u64, u64) {
-        (self.newton.turns, self.newton.tangents)
+    /// Iterations of implicit steps so far; none of a linear structure.
+    pub fn iterations(&self) -> u64 {
+        self.newton.turns
+    }
+
+    /// Whether the internal force of the structure is not linear in its displacements.
+    pub fn is_nonlinear(&mut self) -> bool {
+        self.structure.nonlinear().is_some()
     }
 
     /// Takes the tangent of the structure.
@@ -54,7 +58,6 @@ impl ImpactSystem {
         large.linearise(&tangent).map_err(unsolved)?;
         influence.set(tangent.cm, tangent.cc, n, impactors, |x, count| large.solve_linearised(x, count))?;
         newton.tangent = Some(tangent);
-        newton.tangents += 1;
         Ok(())
     }
 

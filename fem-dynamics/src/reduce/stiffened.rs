@@ -168,8 +168,8 @@ impl Stiffened {
     }
 
     /// What the plate does beside its modes.
-    pub fn companions(&self) -> &Companions {
-        &self.companions
+    pub fn into_companions(self) -> Companions {
+        self.companions
     }
 
     /// Finds B_t q and b_t.

@@ -13,9 +13,10 @@ pub use step::StepError;
 
 use super::Sizes;
 use super::prepare::Full;
+use fem_core::structure::Structure;
 use fem_core::time::Integrator;
 use fem_dynamics::impact::ImpactSystem;
-use fem_dynamics::reduce::Reduced;
+use fem_dynamics::reduce::{Reduced, Stiffened};
 use fem_io::tables::HistoryRow;
 use step::Companion;
 
@@ -42,14 +43,19 @@ impl Estimates {
     /// Marches a copy of the reduced plate, and asks the full one what the reduction leaves out of that.
     pub(super) fn new(
         system: &ImpactSystem,
-        reduced: &Reduced,
+        (reduced, stiffened): (&Reduced, Option<&Stiffened>),
         full: Full,
         integrator: Box<dyn Integrator>,
         sizes: &Sizes,
     ) -> Self {
-        let copy = ImpactSystem::new(Box::new(reduced.modal.clone()), system.impactors().to_vec());
-        let copy = copy.under(system.weight().cloned());
+        let plate: Box<dyn Structure> = match stiffened {
+            Some(stiffened) => Box::new(stiffened.clone()),
+            None => Box::new(reduced.modal.clone()),
+        };
+        let copy = ImpactSystem::new(plate, system.impactors().to_vec()).under(system.weight().cloned());
         let (companion, instants) = step::march(copy, &reduced.modal, integrator, sizes, full.solves()).unzip();
+        // The residual is that of a linear plate.
+        let instants = instants.filter(|_| stiffened.is_none());
         let reduction = reduction::estimate(full, reduced, &instants.unwrap_or_default());
         Self { companion, reduction, mesh: None }
     }

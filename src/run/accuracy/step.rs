@@ -16,6 +16,9 @@ const STEP: u64 = 30;
 /// Evaluations of a contact law in a step, of the integrators that are most asked for.
 const CALLS: u64 = 4;
 
+/// Matrices that an iteration passes.
+const FORMS: u64 = 16;
+
 /// Power of the step with which the error falls, at most: forces have kinks where a contact begins, ends and turns.
 const ORDER: f64 = 1.5;
 
@@ -85,6 +88,9 @@ pub(super) fn march(
     let ratio = stride as f64 / parts as f64;
     let (dt, count) = (sizes.step * ratio, sizes.steps / stride);
     let budget = (sizes.factor_entries as u64).saturating_mul(solves) / CHEAP / (sizes.marched as u64 + STEP);
+    // Each iteration of a plate under large displacements passes some matrices.
+    let (unknowns, marched) = (sizes.marched as u64, sizes.marched as u64 + STEP);
+    let nonlinear = |system: &ImpactSystem| system.iterations() * FORMS * unknowns * unknowns / marched;
     if count.saturating_mul(parts) > budget {
         return None;
     }
@@ -97,7 +103,7 @@ pub(super) fn march(
             state.t = (i * parts + part) as f64 * dt;
         }
         // Stages and divided steps are not seen in the number of steps.
-        if system.contact_calls() / CALLS > budget {
+        if system.contact_calls() / CALLS + nonlinear(&system) > budget {
             return None;
         }
         let each: Vec<f64> = (0..system.impactors().len()).map(|k| system.contact_force(k, &state)).collect();
