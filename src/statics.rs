@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::model::{Model, NamedProfile, Plan};
 use crate::run::{self, Substructures};
 use crate::stress::{self, Margin};
-use crate::summary::{and, in_words};
+use crate::summary::{Advised, and, in_words};
 use fem_core::counters::Counters;
 use fem_core::dof::Dof;
 use fem_core::estimate::mesh_error;
@@ -66,6 +66,9 @@ pub struct Solution {
 /// result that is not finite, a criterion whose material lacks a constant.
 pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     let Plan::Static { forces } = &model.plan else { return Err(Error::NoLoads) };
+    if model.undecided() {
+        return Err(Error::Undecided);
+    }
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
     let mut assembled = run::structure(model, false, threads, &mut counters)?;
@@ -178,6 +181,8 @@ pub struct Summary {
     pub strain_energy_J: f64,
     pub largest_deflection: Deflection,
     pub margins: Vec<Margin>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub advised: Vec<Advised>,
     pub residual_relative: f64,
     pub condition_estimate: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -214,6 +219,7 @@ impl Summary {
             strain_energy_J: solution.strain_energy,
             largest_deflection: Deflection { w_m, x_m, y_m, z_m },
             margins: solution.margins.clone(),
+            advised: Advised::of(model, |_| None),
             residual_relative: solution.residual,
             condition_estimate: solution.condition,
             mesh_error_relative: solution.mesh_error,
@@ -258,6 +264,7 @@ impl Summary {
                 m.y_m * 1e3
             );
         }
+        self.advised.iter().for_each(|advised| t.push_str(&format!("  advised   {advised}\n")));
         let mesh = self.mesh_error_relative.map_or(String::new(), |error| {
             format!("; mesh about {:.2} % in the energy norm (strains against a smooth fit of them)", 100.0 * error)
         });
