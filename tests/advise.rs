@@ -215,7 +215,7 @@ fn the_reports_scenes_by_the_energy_balance() {
         let [bending, stiffness, mass_ratio] = ring.plate;
         near(plate.bending_stiffness, bending, 2e-3);
         let circle = LINEAR.circle_stiffness(plate.bending_stiffness, plate.poisson, ring.radius);
-        near(circle, 1e3 * stiffness, 5e-3);
+        assert!((1e-3 * circle - stiffness).abs() < 0.55, "{}: {circle}", ring.name);
         let area = std::f64::consts::PI * ring.radius * ring.radius;
         near(ring.mass / (plate.areal_mass * area), mass_ratio, 3e-3);
         let energy = 0.5 * ring.mass * 1.56 * 1.56;
@@ -453,9 +453,14 @@ fn a_laminate_that_delaminates() {
 
 #[test]
 fn a_section_is_refused() {
-    let text = karas().text().replace("mitc4", "webster-beam").replace("symmetry = 'quarter'\n", "");
-    let text = text.replace("cells = [40, 40]", "cells = [40, 1]").replace("patch_radius = '1 mm'", "patch_side = '1 mm'");
-    let text = text.replace("mid-plane", "all");
+    let text = format!(
+        "title = 'strip'\nmesh = {{ rectangle = ['40 mm', '1 mm'], cells = [20, 1] }}\nelement = {{ kind = 'webster-beam' }}\n\
+         effects = {{ damage = 'off' }}\n[materials.m]\n{}[laminate]\nplies = '[0]'\nmaterial = 'm'\nply_thickness = '1 mm'\n\
+         layers = 1\n[[support]]\ngroup = 'x-min'\nat = 'all'\nfix = ['U10', 'U30']\n[[support]]\ngroup = 'x-max'\nat = 'all'\n\
+         fix = ['U30']\n[impactor]\nmass = '1 g'\nvelocity = '1 m/s'\nat = {{ x = '20 mm', y = '0.5 mm' }}\npatch_side = '1 mm'\n\
+         [contact]\nlaw = 'hertz'\nk = '1e8 N/m^1.5'\n[march]\nend = '100 us'\n",
+        isotropic(206.0, 0.28, 7.833)
+    );
     match advise(&model(&text), NonZeroUsize::MIN) {
         Err(Error::NoPlate { element }) => assert_eq!(element, "webster-beam"),
         other => panic!("{other:?}"),

@@ -54,6 +54,9 @@ pub struct Wave {
 /// Steps of the integration within a time scale of the contact or of the plate, whichever is shorter.
 const STEPS: f64 = 400.0;
 
+/// Indentation at the beginning over that of the first step.
+const TOUCH: f64 = 1e-9;
+
 /// Steps after which the integration ends in any case.
 const MOST_STEPS: usize = 200_000;
 
@@ -71,7 +74,8 @@ pub fn infinite_plate(mass: f64, velocity: f64, impedance: f64, law: &dyn Contac
     let force = |alpha: f64| law.force(&ContactHistory::default(), alpha).force;
     let along = |s: [f64; 2], r: [f64; 2], h: f64| [s[0] + h * r[0], s[1] + h * r[1]];
     let dt = contact_time(mass, velocity, k) / (1.0 + inelasticity(mass, velocity, impedance, k)) / STEPS;
-    let (mut state, mut peak) = ([0.0, velocity], Wave { force: 0.0, time: 0.0, deflection: 0.0, indentation: 0.0 });
+    // Just touching: laws have no tangent before.
+    let (mut state, mut peak) = ([TOUCH * velocity * dt, velocity], Wave { force: 0.0, time: 0.0, deflection: 0.0, indentation: 0.0 });
     for step in 1..=MOST_STEPS {
         let a = rate(state);
         let b = rate(along(state, a, 0.5 * dt));
