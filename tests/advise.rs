@@ -377,13 +377,8 @@ fn a_heavy_impactor_on_a_thick_plate() {
 /// A pellet on a sheet as large as a table.
 #[test]
 fn a_tiny_ball_on_a_huge_plate() {
-    let sheet = Square {
-        side_mm: 1000.0,
-        ply_mm: 3.0,
-        impactor: "mass = '0.5 g'\nvelocity = '2 m/s'",
-        end: 100.0,
-        ..karas()
-    };
+    let sheet =
+        Square { side_mm: 1000.0, ply_mm: 3.0, impactor: "mass = '0.5 g'\nvelocity = '2 m/s'", end: 100.0, ..karas() };
     let advice = advice(&sheet.text());
     chooses(&advice, Regime::SmallMass, false, false);
     // Cells of 25 mm know nothing of its waves.
@@ -430,7 +425,8 @@ fn the_edge_is_found_in_the_supports() {
         near(plate.rim.area, 0.04, 1e-12);
     }
     let case = strip();
-    let cantilever = Model::new(scene::read(&case.folder().join(case.write())).unwrap(), &Registry::standard()).unwrap();
+    let cantilever =
+        Model::new(scene::read(&case.folder().join(case.write())).unwrap(), &Registry::standard()).unwrap();
     let advice = advise(&cantilever, NonZeroUsize::MIN).unwrap().remove(0);
     assert!(advice.plate.rim.held.is_none() && !advice.membrane(), "{advice}");
 }
@@ -440,7 +436,8 @@ fn a_laminate_that_delaminates() {
     let threshold = |giic: f64, velocity: f64| {
         let material = format!("{}GIIc = '{giic} J/m^2'\n", sun_and_chen().material);
         let impactor = format!("mass = '5 kg'\nvelocity = '{velocity} m/s'");
-        let square = Square { material, cells: 8, side_mm: 100.0, impactor: Box::leak(impactor.into()), ..sun_and_chen() };
+        let square =
+            Square { material, cells: 8, side_mm: 100.0, impactor: Box::leak(impactor.into()), ..sun_and_chen() };
         advice(&square.text()).delamination.unwrap()
     };
     let low = threshold(500.0, 0.1);

@@ -70,7 +70,8 @@ impl Contact {
             radius if radius > CELL * self.cell => "the patch spreads over cells",
             _ => "the patch lies within a cell: a node would do",
         };
-        let half_space = if self.radius > HALF_SPACE * plate.thickness { " and is wider than the plate is thick" } else { "" };
+        let half_space =
+            if self.radius > HALF_SPACE * plate.thickness { " and is wider than the plate is thick" } else { "" };
         Answer {
             question: "contact",
             numbers: vec![

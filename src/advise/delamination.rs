@@ -69,7 +69,9 @@ pub(super) fn answer(found: Option<&Delamination>) -> Answer {
     let choice = match found.verdict() {
         Delaminates::No => "an elastic run will do",
         Delaminates::Perhaps => "it may delaminate: look at when the threshold is reached",
-        Delaminates::Yes => "it will delaminate: trust the run up to the threshold, interfaces that open are not simulated",
+        Delaminates::Yes => {
+            "it will delaminate: trust the run up to the threshold, interfaces that open are not simulated"
+        }
     };
     let numbers = vec![
         Number::new("F / F_d", format!("{:.3}", found.ratio))

@@ -15,7 +15,7 @@ pub struct Held {
 
 impl Held {
     /// A of a circular plate under a central load: Km = A Kb/h², so that the force of a linear plate is wrong by A (w/h)²
-    /// (Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, table 82; ν = 0.3).
+    /// (Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells; ν = 0.3).
     pub const fn coefficient(self) -> f64 {
         match (self.slope, self.in_plane) {
             (true, true) => 0.443,

@@ -35,7 +35,7 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    pub(super) fn new(model: &Model, plate: &Plate, blow_step: f64, estimate: &Estimate) -> Self {
+    pub(super) fn new(model: &Model, plate: &Plate, step: f64, estimate: &Estimate) -> Self {
         // A rise to the peak is a quarter of a period on a half-space, less of one on a plate.
         let of_contact = 1.0 / (2.0 * estimate.wave.time);
         let third = plate.rim.held.unwrap_or(Held { slope: false, in_plane: false }).third_mode();
@@ -60,7 +60,7 @@ impl Resolution {
             wavelength,
             cells: wavelength / widest,
             needed,
-            step: blow_step,
+            step,
             longest_step: 1.0 / (STEPS * frequency),
         }
     }
@@ -81,7 +81,8 @@ impl Resolution {
     }
 
     pub(super) fn answer(&self, blow: &Blow<'_>, estimate: &Estimate, cost: f64) -> Answer {
-        let mesh = if self.fine_enough() { "the mesh is fine enough" } else { "the mesh is too coarse for these waves" };
+        let mesh =
+            if self.fine_enough() { "the mesh is fine enough" } else { "the mesh is too coarse for these waves" };
         let step = if self.short_enough() { "the step short enough" } else { "the step too long" };
         let end = if blow.time < estimate.time_of_peak { "; the march ends before the peak" } else { "" };
         let period = (TAU * self.frequency * self.step).powi(2) / 12.0;

@@ -91,12 +91,8 @@ pub fn advise(model: &Model, threads: NonZeroUsize) -> Result<Vec<Advice>, Error
     let mut each = |(spec, strike): (&scene::Impactor, &Strike)| {
         let plate = Plate::under(model, strike, at_rest.stiffness(model, &strike.contact)?)?;
         let march = &impact.spec.march;
-        let blow = Blow {
-            mass: spec.mass,
-            velocity: spec.velocity,
-            time: march.end.value - spec.start,
-            law: &*strike.law,
-        };
+        let blow =
+            Blow { mass: spec.mass, velocity: spec.velocity, time: march.end.value - spec.start, law: &*strike.law };
         let estimate = Estimate::new(&plate, &blow);
         let contact = Contact::new(&plate, &blow, &estimate, spec.load.value, cell_at(model, strike.centre));
         let shear = Shear::new(&plate, contact.radius, model.plate.info().is_shell());

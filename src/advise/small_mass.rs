@@ -75,7 +75,8 @@ pub fn infinite_plate(mass: f64, velocity: f64, impedance: f64, law: &dyn Contac
     let along = |s: [f64; 2], r: [f64; 2], h: f64| [s[0] + h * r[0], s[1] + h * r[1]];
     let dt = contact_time(mass, velocity, k) / (1.0 + inelasticity(mass, velocity, impedance, k)) / STEPS;
     // Just touching: laws have no tangent before.
-    let (mut state, mut peak) = ([TOUCH * velocity * dt, velocity], Wave { force: 0.0, time: 0.0, deflection: 0.0, indentation: 0.0 });
+    let (mut state, mut peak) =
+        ([TOUCH * velocity * dt, velocity], Wave { force: 0.0, time: 0.0, deflection: 0.0, indentation: 0.0 });
     for step in 1..=MOST_STEPS {
         let a = rate(state);
         let b = rate(along(state, a, 0.5 * dt));

@@ -9,13 +9,21 @@ impl fmt::Display for Advice {
         let name = self.impactor.as_ref().map_or(String::new(), |name| format!("{name}: "));
         let energy = 0.5 * mass * velocity * velocity;
         let (inside, a) = (plate.mass() * 1e3, plate.rim.radius());
-        writeln!(f, "  impact    {name}{mass:.4} kg at {velocity:.4} m/s = {energy:.4} J on {inside:.4} g inside the supports")?;
+        writeln!(
+            f,
+            "  impact    {name}{mass:.4} kg at {velocity:.4} m/s = {energy:.4} J on {inside:.4} g inside the supports"
+        )?;
         let held = plate.rim.held.map_or("does not surround the impact", |held| held.name());
         let circle = plate.rim.held.map_or(String::new(), |held| {
             let stiffness = held.circle_stiffness(plate.bending_stiffness, plate.poisson, a);
             format!(" (a circle of this area: {:.2} N/mm)", stiffness * 1e-3)
         });
-        writeln!(f, "  edge      {held}; radius of a circle as large a = {:.4} mm, {:.1} thicknesses", a * 1e3, a / plate.thickness)?;
+        writeln!(
+            f,
+            "  edge      {held}; radius of a circle as large a = {:.4} mm, {:.1} thicknesses",
+            a * 1e3,
+            a / plate.thickness
+        )?;
         writeln!(
             f,
             "  plate     stiffness at rest Kb = {:.2} N/mm{circle}, D* = {:.4} N m",

@@ -11,6 +11,7 @@ struct Run {
     deflection: f64,
 }
 
+/// Runs a plate as it is; `effects: ", membrane = 'on'"` has it stiffen as it deflects.
 fn run(plate: &Square) -> Run {
     let rows = computed(&plate.text()).2.history;
     let largest = |of: &dyn Fn(&fem::io::tables::HistoryRow) -> f64| rows.iter().map(of).fold(0.0, f64::max);
@@ -77,7 +78,10 @@ fn a_contact_twice_as_stiff_changes_the_force_as_expected() {
         let [once, twice] = [run(&plate), run(&Square { k: 2.0 * plate.k, ..plate })];
         let change = twice.force / once.force - 1.0;
         println!("{change} {expected:?}");
-        assert!((change - expected.sensitivity).abs() < 0.25 * expected.sensitivity.abs() + 0.005, "{change} {expected:?}");
+        assert!(
+            (change - expected.sensitivity).abs() < 0.25 * expected.sensitivity.abs() + 0.005,
+            "{change} {expected:?}"
+        );
     }
 }
 
@@ -86,5 +90,8 @@ fn a_contact_twice_as_stiff_changes_the_force_as_expected() {
 fn the_energy_balance_meets_a_run() {
     let large = heavy("mass = '10 kg'\nvelocity = '0.06 m/s'", 9000.0);
     let (estimate, run) = (advice(&large.text()).estimate, run(&large));
-    assert!((run.deflection / estimate.linear.deflection - 1.0).abs() < estimate.inertia_error(), "{run:?} {estimate:?}");
+    assert!(
+        (run.deflection / estimate.linear.deflection - 1.0).abs() < estimate.inertia_error(),
+        "{run:?} {estimate:?}"
+    );
 }
