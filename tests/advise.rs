@@ -288,8 +288,8 @@ fn the_reports_small_mass() {
 
 #[test]
 fn a_linear_contact_in_closed_form() {
-    let (mass, velocity, stiffness) = (0.01, 2.0, 1e7);
-    let root: f64 = (mass * stiffness as f64).sqrt();
+    let (mass, velocity, stiffness): (f64, f64, f64) = (0.01, 2.0, 1e7);
+    let root = (mass * stiffness).sqrt();
     let linear = law("linear", stiffness);
     for zeta in [0.1, 0.3, 0.5, 0.7, 0.9, 0.99999, 1.00001, 1.5, 4.0] {
         let c = root / (2.0 * zeta);
@@ -565,4 +565,18 @@ fn the_command_prints_the_answers_in_order() {
     let case = Case::example("as4-3502-8ply-25mm").append("\n[effects]\nmembrane = \"auto\"\n");
     let checked = case.fem("check", &[]).good().stdout;
     assert!(checked.contains("  advised   membrane on: A (w/h)^2 expected "), "{checked}");
+}
+
+#[test]
+fn the_summary_says_what_was_decided() {
+    let case = Case::example("as4-3502-8ply-25mm")
+        .scene("end = \"1 ms\"", "end = \"0.05 ms\"")
+        .append("\n[effects]\nmembrane = \"auto\"\n");
+    let printed = case.fem("run", &["--out", "out"]).good().stdout;
+    assert!(printed.contains("  advised   membrane off: A (w/h)^2 expected 0.00"), "{printed}");
+    let advised = &case.summary("out")["advised"][0];
+    assert_eq!((&advised["effect"], &advised["on"]), (&"membrane".into(), &false.into()));
+    // At first the contact takes up the way of the impactor.
+    let [expected, reached] = ["expected", "reached"].map(|key| advised[key].as_f64().unwrap());
+    assert!(0.0 < reached && reached < expected, "{advised}");
 }

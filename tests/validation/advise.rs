@@ -77,7 +77,6 @@ fn a_contact_twice_as_stiff_changes_the_force_as_expected() {
         let expected = advice(&plate.text()).contact;
         let [once, twice] = [run(&plate), run(&Square { k: 2.0 * plate.k, ..plate })];
         let change = twice.force / once.force - 1.0;
-        println!("{change} {expected:?}");
         assert!(
             (change - expected.sensitivity).abs() < 0.25 * expected.sensitivity.abs() + 0.005,
             "{change} {expected:?}"
