@@ -62,6 +62,15 @@ pub enum Error {
     #[error("the scene describes no impact")]
     #[diagnostic(help("set `analysis = \"impact\"` and describe impactor, contact and march"))]
     NoImpact,
+    #[error("`{element}` is a section, and the advisor's formulas are those of plates")]
+    #[diagnostic(help("take a plate and one of its elements, such as `mitc4`"))]
+    NoPlate {
+        /// Name of the element.
+        element: String,
+    },
+    #[error("the scene leaves `effects.membrane` to the advisor, who was not asked")]
+    #[diagnostic(help("pass the model through `fem::advise::decided`, or write \"on\" or \"off\""))]
+    Undecided,
     #[error("the scene does not run as it is, and there is nothing to study: {0}")]
     Study(String),
     #[error("there is no axis `{name}`")]

@@ -17,6 +17,7 @@
 //! }
 //! ```
 
+pub mod advise;
 pub mod cli;
 pub mod cost;
 mod error;
@@ -39,5 +40,5 @@ pub use fem_dynamics as dynamics;
 pub use fem_elements as elements;
 pub use fem_failure as failure;
 pub use fem_io as io;
-pub use model::{Effects, Gauge, Impact, Model, NamedCriterion, NamedProfile, Plan, Strike};
+pub use model::{Decision, Effects, Gauge, Impact, Model, NamedCriterion, NamedProfile, Plan, Strike};
 pub use registry::{NO_REDUCTION, Registry, RegistryError};

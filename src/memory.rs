@@ -52,7 +52,7 @@ impl Estimate {
         let (n, all) = (symbolic.pattern().ndof() as f64, model.plate.ndof() as f64);
         let entries = symbolic.pattern().rows.len() as f64;
         let vectors = match &model.plan {
-            Plan::Impact(impact) if impact.reduction.is_some() => most(&impact.spec.reduction.params),
+            Plan::Impact(impact) if impact.reduction.is_some() => vectors(&impact.spec.reduction.params),
             Plan::Modes { count } => 2 * count,
             _ => 2,
         };
@@ -84,8 +84,8 @@ pub(crate) fn analysed(model: &Model, pattern: Arc<Pattern>) -> Result<(Symbolic
     Ok((symbolic, estimate))
 }
 
-/// The largest count among the parameters of a reduction.
-fn most(params: &Params) -> usize {
+/// Vectors of a reduction: the largest count among its parameters.
+pub(crate) fn vectors(params: &Params) -> usize {
     let counts = params.keys().filter_map(|key| match params.get(key) {
         Some(Value::Number(n)) if *n >= 1.0 => Some(*n as usize),
         _ => None,

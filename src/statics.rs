@@ -6,7 +6,7 @@ use crate::memory;
 use crate::model::{Model, NamedProfile, Plan};
 use crate::run::{self, Substructures};
 use crate::stress::{self, Margin};
-use crate::summary::{and, in_words};
+use crate::summary::{Advised, and, in_words};
 use fem_core::assembly::{LargePlate, pattern};
 use fem_core::counters::Counters;
 use fem_core::dof::Dof;
@@ -88,6 +88,9 @@ struct Found {
 /// ill-conditioned, a result that is not finite, a criterion whose material lacks a constant.
 pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     let Plan::Static { forces } = &model.plan else { return Err(Error::NoLoads) };
+    if model.undecided() {
+        return Err(Error::Undecided);
+    }
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
     let constraints = &model.constraints;
@@ -255,6 +258,8 @@ pub struct Summary {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub profiles: Vec<ProfileResultants>,
     pub margins: Vec<Margin>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub advised: Vec<Advised>,
     pub residual_relative: f64,
     pub condition_estimate: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -317,6 +322,7 @@ impl Summary {
             }),
             profiles: model.profiles.iter().zip(&solution.resultants).map(in_summary).collect(),
             margins: solution.margins.clone(),
+            advised: Advised::of(model, |_| None),
             residual_relative: solution.residual,
             condition_estimate: solution.condition,
             mesh_error_relative: solution.mesh_error,
@@ -368,6 +374,7 @@ impl Summary {
                 m.y_m * 1e3
             );
         }
+        self.advised.iter().for_each(|advised| t.push_str(&format!("  advised   {advised}\n")));
         let mesh = self.mesh_error_relative.map_or(String::new(), |error| {
             format!("; mesh about {:.2} % in the energy norm (strains against a smooth fit of them)", 100.0 * error)
         });

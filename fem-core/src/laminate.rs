@@ -121,6 +121,16 @@ impl Laminate {
         d - b * a.try_inverse().unwrap_or_else(|| Matrix3::repeat(f64::NAN)) * b
     }
 
+    /// D* = √(D11 D22 (η + 1)/2) with η = (D12 + 2 D66)/√(D11 D22), N·m: bending stiffness of the isotropic plate that an
+    /// orthotropic one resembles under a force at a point (Olsson 2000). D is [`Laminate::bending_stiffness`], whose D16 and D26
+    /// do not count.
+    pub fn effective_bending_stiffness(&self, materials: &[Material]) -> f64 {
+        let d = self.bending_stiffness(materials);
+        let root = (d[(0, 0)] * d[(1, 1)]).sqrt();
+        let eta = (d[(0, 1)] + 2.0 * d[(2, 2)]) / root;
+        root * (0.5 * (eta + 1.0)).sqrt()
+    }
+
     /// Mass per area, kg/m².
     ///
     /// # Errors
@@ -159,6 +169,7 @@ mod tests {
         close(plate[(0, 0)], d);
         close(plate[(1, 0)], 0.3 * d);
         close(plate[(2, 2)], 0.35 * d);
+        close(laminate(&[0.0, 30.0]).effective_bending_stiffness(&[material(Elastic::isotropic(70e9, 0.3))]), d);
         // [0/90], Q11 = 16, Q22 = 1, Q12 = 0 in units of q: A = 17 t q, B11 = −B22 = −15 t² q/2, D = 17 t³ q/3.
         let (e, t): (f64, f64) = (160e9, 1e-3);
         let tape = Elastic::transversely_isotropic(e, e / 16.0, 0.0, 0.0, e / 32.0);

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 /// F = π √(32 D* GIIc / 3),  D* = √(D11 D22 (η + 1)/2),  η = (D12 + 2 D66)/√(D11 D22)
 /// ```
 ///
-/// D is [`Laminate::bending_stiffness`]; for an isotropic plate F = π √(8 GIIc E h³ / 9(1 − ν²)). It depends neither on the
+/// D* is [`Laminate::effective_bending_stiffness`]; for an isotropic plate F = π √(8 GIIc E h³ / 9(1 − ν²)). It depends neither on the
 /// span nor on the place. It is no stress criterion: it compares energies, for one crack under a quasi-static load. Under an
 /// impactor much lighter than the plate delamination starts at about 1.2 times this force (Olsson 2006).
 ///
@@ -32,10 +32,7 @@ impl DelaminationThreshold {
     pub fn of(laminate: &Laminate, materials: &[Material], resin: Option<usize>) -> Option<Self> {
         let of_plies = || laminate.plies.iter().filter_map(|ply| materials[ply.material].giic).min_by(f64::total_cmp);
         let giic = resin.and_then(|resin| materials[resin].giic).or_else(of_plies)?;
-        let d = laminate.bending_stiffness(materials);
-        let root = (d[(0, 0)] * d[(1, 1)]).sqrt();
-        let eta = (d[(0, 1)] + 2.0 * d[(2, 2)]) / root;
-        let bending_stiffness = root * (0.5 * (eta + 1.0)).sqrt();
+        let bending_stiffness = laminate.effective_bending_stiffness(materials);
         Some(Self { force: PI * (32.0 * bending_stiffness * giic / 3.0).sqrt(), bending_stiffness, giic })
     }
 }

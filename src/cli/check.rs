@@ -1,13 +1,14 @@
 //! `fem check`.
 
 use super::{print, warn};
+use crate::advise;
 use crate::error::Error;
 use crate::memory::Estimate;
 use crate::model::{Impact, Model, Plan};
 use crate::registry::Registry;
 use crate::run::{self, Sizes, Substructures};
 use crate::statics::{digits, few_digits};
-use crate::summary::in_words;
+use crate::summary::{Advised, in_words};
 use clap::Args;
 use fem_core::counters::Counters;
 use fem_io::scene;
@@ -27,7 +28,7 @@ pub(super) fn check(registry: &Registry, arguments: &Arguments) -> miette::Resul
 }
 
 fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
-    let model = Model::new(scene::read(&arguments.scene)?, registry)?;
+    let model = advise::decided(Model::new(scene::read(&arguments.scene)?, registry)?, NonZeroUsize::MIN)?;
     let mut lines = plate(&model);
     match &model.plan {
         Plan::Impact(impact) => {
@@ -55,6 +56,7 @@ fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
     }
     let criteria: Vec<_> = model.criteria.iter().map(|c| c.0.as_str()).collect();
     lines.push(("damage", if criteria.is_empty() { "off".into() } else { criteria.join(", ") }));
+    lines.extend(Advised::of(&model, |_| None).iter().map(|advised| ("advised", advised.to_string())));
     lines.extend(model.warnings.iter().map(|warning| ("warning", warning.clone())));
     let lines: String = lines.iter().map(|(what, text)| format!("  {what:<9} {text}\n")).collect();
     Ok(format!("{}\n{lines}  the scene is valid\n", model.scene.title))

@@ -1,5 +1,6 @@
 //! The command line, as a function of the registry.
 
+mod advise;
 mod check;
 mod envelope;
 mod list;
@@ -44,6 +45,11 @@ enum Command {
     Run(run::Arguments),
     /// Validates a scene with its mesh and prints sizes and the stable step; marches nothing.
     Check(check::Arguments),
+    /// Says which effects an impact calls for, before it is computed: regime, membrane, contact, shear, delamination, mesh.
+    ///
+    /// Each answer with its number, threshold and source, the error without the effect and the cost with it. Solves for the
+    /// plate at rest once, marches nothing, writes nothing.
+    Advise(advise::Arguments),
     /// Draws and tabulates failure envelopes of a material.
     Envelope(envelope::Arguments),
     /// Finds the lowest natural frequencies of a scene's plate and writes modes.csv.
@@ -82,6 +88,7 @@ pub fn run_with(registry: Registry, arguments: impl IntoIterator<Item = impl Int
         Command::Run(a) => run::run(&registry, &a),
         Command::Check(a) => check::check(&registry, &a),
         Command::Envelope(a) => envelope::envelope(&registry, &a),
+        Command::Advise(a) => advise::advise(&registry, &a),
         Command::Modes(a) => modes::modes(&registry, &a),
         Command::Study(a) => study::study(&registry, &a),
         Command::Matrices(a) => matrices::matrices(&registry, &a),

@@ -2,6 +2,7 @@
 
 use super::signals::Signals;
 use super::{print, progress, warn};
+use crate::advise;
 use crate::cost::Cost;
 use crate::error::Error;
 use crate::model::{Model, Plan};
@@ -40,7 +41,7 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments) -> miette::Result<
 }
 
 fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error> {
-    let model = Model::new(scene::read(&arguments.scene)?, registry)?;
+    let model = advise::decided(Model::new(scene::read(&arguments.scene)?, registry)?, arguments.threads)?;
     let folder = || arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene));
     match model.plan {
         Plan::Impact(_) => impact(&model, arguments, &folder()),

@@ -1,5 +1,6 @@
 //! The effects that a model simulates.
 
+use super::Model;
 use super::builder::Builder;
 use crate::registry::NO_REDUCTION;
 use fem_core::damping::Damping;
@@ -18,6 +19,33 @@ pub struct Effects {
     pub inertia: bool,
     /// Weight of plate and impactors, m/s².
     pub gravity: Option<f64>,
+}
+
+/// A decision about an effect that the scene leaves to the advisor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Decision {
+    /// The effect, as the scene calls it.
+    pub effect: &'static str,
+    /// Whether it is simulated.
+    pub on: bool,
+    /// What was asked, a formula.
+    pub formula: &'static str,
+    /// Its value as it is expected, beforehand.
+    pub expected: f64,
+    /// The value from which on the effect is needed.
+    pub threshold: f64,
+}
+
+/// What the scene calls membrane stiffening.
+pub(crate) const MEMBRANE: &str = "membrane";
+
+impl Model {
+    /// Whether the scene leaves an effect to the advisor who was not asked yet ([`crate::advise::decided`]). Until then it
+    /// is off.
+    pub fn undecided(&self) -> bool {
+        let auto = self.scene.effects.membrane.as_ref().is_some_and(|wish| wish.value == Switch::Auto);
+        auto && !self.decisions.iter().any(|decision| decision.effect == MEMBRANE)
+    }
 }
 
 impl Builder<'_> {

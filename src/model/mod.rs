@@ -7,7 +7,8 @@ mod plan;
 mod substructures;
 mod symmetry;
 
-pub use effects::Effects;
+pub(crate) use effects::MEMBRANE;
+pub use effects::{Decision, Effects};
 pub use gauge::Gauge;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 
@@ -62,6 +63,8 @@ pub struct Model {
     pub threshold: Option<DelaminationThreshold>,
     /// What is simulated beyond the linear elastic plate.
     pub effects: Effects,
+    /// What the advisor decided of that.
+    pub decisions: Vec<Decision>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
@@ -159,6 +162,7 @@ impl Model {
             gauges,
             threshold,
             effects,
+            decisions: Vec::new(),
             warnings,
             scene,
         })

@@ -198,6 +198,9 @@ pub fn structure(
 /// step beyond the stability limit.
 pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Error> {
     let Plan::Impact(impact) = &model.plan else { return Err(Error::NoImpact) };
+    if model.undecided() {
+        return Err(Error::Undecided);
+    }
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
     let effects = model.effects;

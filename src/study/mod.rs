@@ -31,6 +31,7 @@ pub use ladder::{Ladder, Limit};
 pub use picture::write_pictures;
 pub use plan::{Plan, Planned};
 pub use predict::one_level_better;
+pub(crate) use predict::{FILL, nominal};
 pub use quantity::{FORCE_HISTORY, Figure};
 pub use record::{PHASES, Record, Size, seconds as seconds_per_phase};
 pub use report::{Report, Row};

@@ -34,10 +34,10 @@ const MODE: f64 = 1.5e-8;
 const JUDGE: f64 = 8e-8;
 const COMBINE: f64 = 2e-9;
 /// Growth of the entries of a factor with the columns of nodes.
-const FILL: f64 = 1.2;
+pub(crate) const FILL: f64 = 1.2;
 
 /// Nominal seconds per phase.
-pub(super) fn nominal(size: &Size) -> [f64; PHASES.len()] {
+pub(crate) fn nominal(size: &Size) -> [f64; PHASES.len()] {
     let (entries, modes, n) = (size.factor_entries as f64, size.marched as f64, size.unknowns as f64);
     let factor = |entries: f64| GFLOP / FACTOR * (entries / ENTRIES).powf(GROWTH);
     let (sites, steps, samples) = (size.sites as f64, size.work.steps as f64, size.samples as f64);

@@ -2,6 +2,7 @@
 
 use super::force::Force;
 use super::quantity::{self, FORCE_HISTORY, Figure};
+use crate::advise;
 use crate::cost::{self, Phase};
 use crate::error::Error;
 use crate::model::{Model, Plan};
@@ -95,7 +96,7 @@ impl Record {
     /// Those of a run, and a march that stopped before its end.
     pub fn of(path: &Path, setting: &Setting, registry: &Registry) -> Result<Self, Error> {
         cost::forget_peak_memory();
-        let model = Model::new(scene::read_with(path, setting)?, registry)?;
+        let model = advise::decided(Model::new(scene::read_with(path, setting)?, registry)?, NonZeroUsize::MIN)?;
         let mut record = match &model.plan {
             Plan::Impact(_) => Self::of_impact(&model)?,
             Plan::Static { .. } => {
@@ -170,6 +171,6 @@ pub fn seconds(phases: &[Phase]) -> [f64; PHASES.len()] {
 /// # Errors
 /// Those of a preparation.
 pub(super) fn longest_step(path: &Path, setting: &Setting, registry: &Registry) -> Result<f64, Error> {
-    let model = Model::new(scene::read_with(path, setting)?, registry)?;
+    let model = advise::decided(Model::new(scene::read_with(path, setting)?, registry)?, NonZeroUsize::MIN)?;
     Ok(run::prepare(&model, NonZeroUsize::MIN)?.sizes.longest_step)
 }

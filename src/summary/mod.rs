@@ -5,7 +5,8 @@ mod text;
 
 pub use files::{write_plots, write_tables};
 
-use crate::model::Model;
+use crate::advise::Hindsight;
+use crate::model::{Decision, MEMBRANE, Model};
 use crate::run::{self, ModeShare, Outcome, Sizes, Substructures};
 use fem_core::counters::Counters;
 use fem_core::tensor::{Ply, Stress6};
@@ -13,7 +14,7 @@ use fem_failure::scan::{FailureEvent, Place, first_per_mode};
 use fem_io::scene;
 use fem_io::tables::{HistoryRow, ImpactorRow};
 use serde::{Serialize, Serializer};
-use std::fmt::Display;
+use std::fmt::{self, Display};
 
 /// All that is said of a run; units are in the key names.
 #[derive(Debug, Clone, Serialize)]
@@ -34,6 +35,8 @@ pub struct Summary {
     pub delamination_threshold: Option<Threshold>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub modes: Vec<ModeShare>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub advised: Vec<Advised>,
     pub accuracy: Accuracy,
     pub work: Work,
     pub warnings: Vec<String>,
@@ -149,6 +152,40 @@ pub struct Threshold {
     pub impactor: Option<String>,
 }
 
+/// A choice that the scene left to the advisor: what it asked before the run, and what came.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs)]
+pub struct Advised {
+    pub effect: &'static str,
+    pub on: bool,
+    pub number: &'static str,
+    pub threshold: f64,
+    pub expected: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reached: Option<f64>,
+}
+
+impl Advised {
+    /// As it was decided; `reached` says what came of an effect.
+    pub(crate) fn of(model: &Model, reached: impl Fn(&str) -> Option<f64>) -> Vec<Self> {
+        let each = model.decisions.iter().map(|decision| {
+            let Decision { effect, on, formula, expected, threshold } = *decision;
+            Self { effect, on, number: formula, threshold, expected, reached: reached(effect) }
+        });
+        each.collect()
+    }
+}
+
+/// As people read it.
+impl Display for Advised {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { effect, number, threshold, expected, .. } = self;
+        let choice = if self.on { "on" } else { "off" };
+        write!(f, "{effect} {choice}: {number} expected {expected:.4}, needed above {threshold}")?;
+        self.reached.map_or(Ok(()), |reached| write!(f, "; reached {reached:.4}"))
+    }
+}
+
 /// Largest index of a mode that did not reach 1.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs)]
@@ -248,6 +285,8 @@ impl Summary {
         let run::Accuracy { step, reduction, mesh } = outcome.accuracy;
         let residual = reduction.and_then(|error| error.residual);
         let thickness = model.laminate.thickness();
+        let hindsight = Hindsight::of(model, h);
+        let reached = |effect: &str| hindsight.filter(|_| effect == MEMBRANE).map(|h| h.reached);
         let damage = |e: &FailureEvent| Damage {
             criterion: e.criterion.clone(),
             mode: e.mode.to_owned(),
@@ -308,6 +347,7 @@ impl Summary {
                 }
             }),
             modes: outcome.modal.as_ref().map_or(Vec::new(), |modal| modal.modes.clone()),
+            advised: Advised::of(model, reached),
             accuracy: Accuracy {
                 energy_error_relative: outcome.energy_error,
                 step_s: sizes.step,
@@ -322,7 +362,10 @@ impl Summary {
                 mesh_error_relative: mesh,
             },
             work: outcome.counters.into(),
-            warnings: model.warnings.iter().cloned().chain(too_deep(model, outcome)).collect(),
+            warnings: {
+                let found = too_deep(model, outcome).chain(hindsight.and_then(|h| h.warning(model)));
+                model.warnings.iter().cloned().chain(found).collect()
+            },
         }
     }
 }

@@ -135,6 +135,7 @@ impl Summary {
                 d.force_N, d.bending_stiffness_N_m, d.toughness_GIIc_J_m2
             ));
         }
+        self.advised.iter().for_each(|advised| line(format_args!("  advised   {advised}")));
         line(format_args!(
             "  accuracy  energy error {:.1e} of the impact energy; step {:.4} us{}",
             self.accuracy.energy_error_relative,

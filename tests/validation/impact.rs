@@ -149,6 +149,12 @@ impl Strike {
         History { rows: outcome.history, parts: self.parts() }
     }
 
+    /// Largest force, N.
+    pub(super) fn peak(&self) -> f64 {
+        let History { rows, parts } = self.run();
+        rows.iter().fold(0.0, |m, row| m.max(parts * row.contact_force_n()))
+    }
+
     /// What sets its history apart from that of `table`.
     fn against(&self, table: &str) -> Difference {
         let (history, rows) = (self.run(), reference(table));

@@ -1,5 +1,6 @@
 //! Displacements, stresses and frequencies against solutions without finite elements.
 
+mod advise;
 mod command;
 mod estimate;
 mod impact;

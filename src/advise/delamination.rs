@@ -1,0 +1,84 @@
+//! Whether a laminate will delaminate.
+
+use super::answer::{Answer, Number};
+use super::estimate::Estimate;
+use super::regime::Regime;
+use crate::model::Model;
+use fem_failure::delamination::DelaminationThreshold;
+
+/// Force over threshold up to which a plate without delaminations will do, and from which on it will not: GIIc is known to
+/// about 50 %, which is 25 % of the force.
+const SAFE: f64 = 0.8;
+const BEYOND: f64 = 1.2;
+
+/// Threshold of a small mass over that of a large one (Olsson, Donadon and Falzon 2006).
+const DYNAMIC: f64 = 1.21;
+
+/// What an impact does to the interfaces of a laminate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Delamination {
+    /// The force at which it delaminates, N, and what it follows from.
+    pub threshold: DelaminationThreshold,
+    /// Largest force of the impact over the threshold, which counts 1.21 times for a small mass.
+    pub ratio: f64,
+}
+
+/// What the threshold says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Delaminates {
+    /// No: an elastic run will do.
+    No,
+    /// It may.
+    Perhaps,
+    /// Yes: what an elastic run finds after the threshold is not to be trusted.
+    Yes,
+}
+
+impl Delamination {
+    /// `None` where no material gives GIIc.
+    pub(super) fn new(model: &Model, estimate: &Estimate) -> Option<Self> {
+        let resin = model.scene.interface.as_ref().map(|resin| resin.value);
+        let threshold = DelaminationThreshold::of(&model.laminate, &model.materials, resin)?;
+        let dynamic = if estimate.regime == Regime::SmallMass { DYNAMIC } else { 1.0 };
+        Some(Self { threshold, ratio: estimate.force() / (dynamic * threshold.force) })
+    }
+
+    /// What that means.
+    pub fn verdict(&self) -> Delaminates {
+        match self.ratio {
+            ratio if ratio < SAFE => Delaminates::No,
+            ratio if ratio <= BEYOND => Delaminates::Perhaps,
+            _ => Delaminates::Yes,
+        }
+    }
+}
+
+pub(super) fn answer(found: Option<&Delamination>) -> Answer {
+    let answer = |numbers, choice: &str| Answer {
+        question: "delamination",
+        numbers,
+        choice: choice.into(),
+        effect: "delamination",
+        error: None,
+        cost: None,
+    };
+    let Some(found) = found else {
+        return answer(Vec::new(), "unknown: no material gives its toughness `GIIc`");
+    };
+    let DelaminationThreshold { force, giic, .. } = found.threshold;
+    let choice = match found.verdict() {
+        Delaminates::No => "an elastic run will do",
+        Delaminates::Perhaps => "it may delaminate: look at when the threshold is reached",
+        Delaminates::Yes => {
+            "it will delaminate: trust the run up to the threshold, interfaces that open are not simulated"
+        }
+    };
+    let numbers = vec![
+        Number::new("F / F_d", format!("{:.3}", found.ratio))
+            .threshold(format!("no below {SAFE}, yes above {BEYOND}"))
+            .source("Davies and Zhang 1995; small mass 1.21 F_d, Olsson 2006"),
+        Number::new("F_d = pi sqrt(32 D* GIIc/3)", format!("{force:.1} N at GIIc {giic:.0} J/m2"))
+            .source("half of GIIc more or less is a quarter of F_d"),
+    ];
+    answer(numbers, choice)
+}

@@ -1,0 +1,126 @@
+//! What an impact will do, before it is computed.
+
+use super::large_mass::{self, Peak, Spring, energy_balance, rigid_target};
+use super::plate::Plate;
+use super::regime::Regime;
+use super::small_mass::{self, Wave, infinite_plate};
+use fem_core::contact::ContactLaw;
+use std::f64::consts::FRAC_PI_2;
+
+/// An impactor as the advisor sees it.
+#[derive(Debug, Clone, Copy)]
+pub struct Blow<'a> {
+    /// Mass, kg.
+    pub mass: f64,
+    /// Velocity, m/s.
+    pub velocity: f64,
+    /// Time from its arrival to the end of the march, s.
+    pub time: f64,
+    /// Its contact law.
+    pub law: &'a dyn ContactLaw,
+}
+
+impl Blow<'_> {
+    /// ½ M V², J.
+    pub fn energy(&self) -> f64 {
+        0.5 * self.mass * self.velocity * self.velocity
+    }
+}
+
+/// What the formulas say of an impact, as if no other impactor struck.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// How the plate responds.
+    pub regime: Regime,
+    /// M over the mass of the plate inside the supports.
+    pub mass_ratio: f64,
+    /// L = Kb/K of Christoforou and Yigit, K the secant of the contact law at the force that is expected.
+    pub stiffness_ratio: f64,
+    /// Their ζ = √(K M)/(2 c).
+    pub damping: f64,
+    /// Zener's λ.
+    pub inelasticity: f64,
+    /// √(L/(1 + L)) over the force of the infinite plate at ζ: the peak at rest over that of the first wave.
+    pub static_over_wave: f64,
+    /// The peak without inertia of the plate, linear.
+    pub linear: Peak,
+    /// The same with membrane stiffening.
+    pub stiffened: Peak,
+    /// The first contact with an infinite plate.
+    pub wave: Wave,
+    /// Energy of the contact at the peak over that of the impact.
+    pub contact_share: f64,
+    /// Largest indentation, m.
+    pub indentation: f64,
+    /// When the force is largest, s after the impactor's arrival.
+    pub time_of_peak: f64,
+    /// Largest deflection under the impactor before the march ends, m.
+    pub deflection: f64,
+}
+
+impl Estimate {
+    /// Of `blow` on `plate`.
+    pub fn new(plate: &Plate, blow: &Blow<'_>) -> Self {
+        let Blow { mass, velocity, time, law } = *blow;
+        let energy = blow.energy();
+        let bending = Spring { bending: plate.stiffness, membrane: 0.0 };
+        let stiffer = plate.membrane_coefficient() * plate.stiffness / plate.thickness.powi(2);
+        let linear = energy_balance(energy, bending, law);
+        let stiffened = energy_balance(energy, Spring { membrane: stiffer, ..bending }, law);
+        let rigid = rigid_target(energy, law);
+        let k = rigid.force / rigid.indentation.powf(1.5);
+        let impedance = small_mass::impedance(plate.areal_mass, plate.bending_stiffness);
+        let wave = infinite_plate(mass, velocity, impedance, law, k);
+
+        let force = linear.force.max(wave.force);
+        let secant = force / large_mass::indentation(law, force);
+        let stiffness_ratio = plate.stiffness / secant;
+        let at_rest = (stiffness_ratio / (1.0 + stiffness_ratio)).sqrt();
+        let first_wave = small_mass::linear_contact_force(mass, velocity, impedance, secant);
+        let static_over_wave = at_rest * velocity * (secant * mass).sqrt() / first_wave;
+        let mass_ratio = mass / plate.mass();
+        let regime = Regime::of(mass_ratio, static_over_wave);
+
+        let quasi_static = regime != Regime::SmallMass && stiffened.force >= wave.force;
+        let at_peak = match quasi_static {
+            true => large_mass::time_of_peak(velocity, &stiffened),
+            false => wave.time,
+        };
+        let (indentation, contact_energy) = match quasi_static {
+            true => (stiffened.indentation, stiffened.contact_energy),
+            false => (wave.indentation, large_mass::work(law, wave.indentation)),
+        };
+        let deflection = match regime {
+            Regime::SmallMass => wave.deflection,
+            _ => {
+                let whole = large_mass::time_of_peak(velocity, &stiffened);
+                stiffened.deflection * (FRAC_PI_2 * (time / whole).min(1.0)).sin()
+            }
+        };
+        Self {
+            regime,
+            mass_ratio,
+            stiffness_ratio,
+            damping: small_mass::damping(mass, impedance, secant),
+            inelasticity: small_mass::inelasticity(mass, velocity, impedance, k),
+            static_over_wave,
+            linear,
+            stiffened,
+            wave,
+            contact_share: contact_energy / energy,
+            indentation,
+            time_of_peak: at_peak,
+            deflection,
+        }
+    }
+
+    /// Largest force of the whole impact, N: that of the first wave or, unless the mass is small, that of the plate at rest,
+    /// whichever is larger.
+    pub fn force(&self) -> f64 {
+        match self.regime {
+            Regime::SmallMass => self.wave.force,
+            Regime::QuasiStatic => self.stiffened.force,
+            Regime::Dynamic => self.stiffened.force.max(self.wave.force),
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! How much a plate stiffens as it deflects.
+
+use super::answer::{Answer, Number};
+use super::estimate::Estimate;
+use super::plate::Plate;
+
+/// How the edge of a plate is held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Held {
+    /// Its slope across the edge: clamped, else simply supported.
+    pub slope: bool,
+    /// Its displacement in the plane across the edge: immovable, else movable.
+    pub in_plane: bool,
+}
+
+impl Held {
+    /// A of a circular plate under a central load: Km = A Kb/h², so that the force of a linear plate is wrong by A (w/h)²
+    /// (Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells; ν = 0.3).
+    pub const fn coefficient(self) -> f64 {
+        match (self.slope, self.in_plane) {
+            (true, true) => 0.443,
+            (true, false) => 0.200,
+            (false, true) => 1.430,
+            (false, false) => 0.272,
+        }
+    }
+
+    /// Kb of a circle of radius a under a force in its middle, N/m: 16 π D/a², for a simple support times (1 + ν)/(3 + ν).
+    pub fn circle_stiffness(self, bending_stiffness: f64, poisson: f64, radius: f64) -> f64 {
+        let clamped = 16.0 * std::f64::consts::PI * bending_stiffness / (radius * radius);
+        if self.slope { clamped } else { clamped * (1.0 + poisson) / (3.0 + poisson) }
+    }
+
+    /// λ² of the third axisymmetric mode of a circle, ω = λ²/a² √(D/m) (Leissa, Vibration of Plates, 1969).
+    pub(super) const fn third_mode(self) -> f64 {
+        if self.slope { 89.10 } else { 74.20 }
+    }
+
+    /// In words.
+    pub const fn name(self) -> &'static str {
+        match (self.slope, self.in_plane) {
+            (true, true) => "clamped, immovable in plane",
+            (true, false) => "clamped, movable in plane",
+            (false, true) => "simply supported, immovable in plane",
+            (false, false) => "simply supported, movable in plane",
+        }
+    }
+}
+
+/// What decides.
+pub(super) const FORMULA: &str = "A (w/h)^2";
+
+/// A (w/h)², from which on a linear plate is wrong by more than 5 %.
+pub const THRESHOLD: f64 = 0.05;
+
+pub(super) fn answer(plate: &Plate, estimate: &Estimate, cost: f64) -> Answer {
+    let number = plate.stiffening(estimate.deflection);
+    let choice = match (plate.rim.held, number > THRESHOLD) {
+        (None, _) => "off: the supports do not surround the impact",
+        (_, true) => "on: effects.membrane = \"on\" or \"auto\"",
+        (_, false) => "off: the plate stays linear",
+    };
+    Answer {
+        question: "membrane",
+        numbers: vec![
+            Number::new(FORMULA, format!("{number:.4}"))
+                .threshold(format!("{THRESHOLD}: a linear force is wrong by more than that"))
+                .source("Timoshenko and Woinowsky-Krieger; w from the energy balance, Shivakumar 1985"),
+            Number::new("A", format!("{:.3}", plate.membrane_coefficient())).source("circle under a central load"),
+            Number::new("w/h", format!("{:.3}", estimate.deflection / plate.thickness)).source("until the march ends"),
+            Number::new("peak force, linear and not", {
+                format!("{:.1} N and {:.1} N", estimate.linear.force, estimate.stiffened.force)
+            })
+            .source("of the whole impact, without inertia"),
+        ],
+        choice: choice.into(),
+        effect: "membrane stiffening",
+        error: Some(format!("without it the force is wrong by about {:.1} %", 100.0 * number)),
+        cost: Some(cost),
+    }
+}

@@ -1,0 +1,122 @@
+//! The advisor: which effects an impact calls for, before it is computed and after.
+//!
+//! Formulas of the literature say how a plate will respond ([`small_mass`], [`large_mass`], [`membrane`]); what they need of
+//! the plate comes from its model: stiffness under the impactor by one static solution, mass and edge by its mesh and supports
+//! ([`Plate`], [`Rim`]). An [`Estimate`] puts them together; every question then has an [`Answer`] with its number, threshold
+//! and source, what goes wrong without the effect, and what it costs. `docs/advise.md` derives them.
+//!
+//! [`decided`] switches effects that a scene leaves to the advisor; [`Hindsight`] holds a choice against the run.
+
+mod answer;
+mod contact;
+mod cost;
+mod decide;
+mod delamination;
+mod estimate;
+mod hindsight;
+pub mod large_mass;
+pub mod membrane;
+mod mesh;
+mod plate;
+mod regime;
+mod rim;
+mod shear;
+pub mod small_mass;
+mod text;
+
+pub use answer::{Answer, Number};
+pub use contact::Contact;
+pub use decide::decided;
+pub use delamination::{Delaminates, Delamination};
+pub use estimate::{Blow, Estimate};
+pub use hindsight::Hindsight;
+pub use mesh::Resolution;
+pub use plate::Plate;
+pub use regime::Regime;
+pub use rim::Rim;
+pub use shear::Shear;
+
+use crate::error::Error;
+use crate::model::{Model, Plan, Strike};
+use cost::Work;
+use fem_io::scene;
+use plate::AtRest;
+use std::num::NonZeroUsize;
+
+/// What the advisor says of one impactor, as if no other struck.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Advice {
+    /// Name of the impactor, where there are several.
+    pub impactor: Option<String>,
+    /// Its mass, kg.
+    pub mass: f64,
+    /// Its velocity, m/s.
+    pub velocity: f64,
+    /// The plate under it.
+    pub plate: Plate,
+    /// What it will do.
+    pub estimate: Estimate,
+    /// What the contact does.
+    pub contact: Contact,
+    /// What shear does.
+    pub shear: Shear,
+    /// Whether the plate delaminates; `None` where no material gives GIIc.
+    pub delamination: Option<Delamination>,
+    /// Whether mesh and step will do.
+    pub resolution: Resolution,
+    /// The answers, in the order in which they should be read.
+    pub answers: Vec<Answer>,
+}
+
+impl Advice {
+    /// Whether membrane stiffening is needed.
+    pub fn membrane(&self) -> bool {
+        self.plate.stiffening(self.estimate.deflection) > membrane::THRESHOLD
+    }
+
+    /// Whether a plate without inertia gives the largest force to `tolerance`, relative.
+    pub fn quasi_static(&self, tolerance: f64) -> bool {
+        self.estimate.regime == Regime::QuasiStatic && self.estimate.inertia_error() <= tolerance
+    }
+}
+
+/// Advises on each impactor of `model`.
+///
+/// # Errors
+/// A scene without an impact, a section, a stiffness that cannot be assembled or factorised.
+pub fn advise(model: &Model, threads: NonZeroUsize) -> Result<Vec<Advice>, Error> {
+    let Plan::Impact(impact) = &model.plan else { return Err(Error::NoImpact) };
+    let mut at_rest = AtRest::of(model, threads)?;
+    let work = Work::of(model, impact, at_rest.factor_entries());
+    let mut each = |(spec, strike): (&scene::Impactor, &Strike)| {
+        let plate = Plate::under(model, strike, at_rest.stiffness(model, &strike.contact)?)?;
+        let march = &impact.spec.march;
+        let blow =
+            Blow { mass: spec.mass, velocity: spec.velocity, time: march.end.value - spec.start, law: &*strike.law };
+        let estimate = Estimate::new(&plate, &blow);
+        let contact = Contact::new(&plate, &blow, &estimate, spec.load.value, cell_at(model, strike.centre));
+        let shear = Shear::new(&plate, contact.radius, model.plate.info().is_shell());
+        let delamination = Delamination::new(model, &estimate);
+        let resolution = Resolution::new(model, &plate, march.step.value, &estimate);
+        let [cells, steps] = resolution.lacking();
+        let answers = vec![
+            estimate.regime_answer(work.inertia()),
+            membrane::answer(&plate, &estimate, work.membrane()),
+            contact.answer(&plate),
+            shear.answer(work.solid()),
+            delamination::answer(delamination.as_ref()),
+            resolution.answer(&blow, &estimate, work.finer(cells, steps)),
+        ];
+        let impactor = (impact.strikes.len() > 1).then(|| spec.name.clone());
+        let Blow { mass, velocity, .. } = blow;
+        Ok(Advice { impactor, mass, velocity, plate, estimate, contact, shear, delamination, resolution, answers })
+    };
+    impact.spec.impactors.iter().zip(&impact.strikes).map(&mut each).collect()
+}
+
+/// Edge of a square as large as the smallest cell around a place, m.
+fn cell_at(model: &Model, centre: [f64; 2]) -> f64 {
+    let mesh = &model.plate.plane;
+    let holds = |q: &usize| fem_core::patch::locate(&mesh.corners(*q), centre).is_some();
+    (0..mesh.quads.len()).filter(holds).map(|q| mesh.quality(q).area.sqrt()).fold(f64::INFINITY, f64::min)
+}

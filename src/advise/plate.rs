@@ -1,0 +1,104 @@
+//! What the advisor knows of a plate under an impactor.
+
+use super::membrane::Held;
+use super::rim::Rim;
+use crate::error::Error;
+use crate::model::{Model, Strike};
+use crate::run::{self, Assembled};
+use fem_core::counters::Counters;
+use fem_core::reduction::Functional;
+use fem_core::structure::Structure;
+use std::num::NonZeroUsize;
+
+/// Shear factor of a plate.
+const KAPPA: f64 = 5.0 / 6.0;
+
+/// A plate under an impactor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plate {
+    /// Thickness, m.
+    pub thickness: f64,
+    /// Mass per area, kg/m².
+    pub areal_mass: f64,
+    /// D*, N m ([`fem_core::laminate::Laminate::effective_bending_stiffness`]).
+    pub bending_stiffness: f64,
+    /// Poisson's ratio of D averaged over all directions.
+    pub poisson: f64,
+    /// κ G h, N/m: G the mean of G13 and G23 over the plies.
+    pub shear_stiffness: f64,
+    /// Kb: force over deflection under the impactor at rest, N/m, of the model itself.
+    pub stiffness: f64,
+    /// What supports it.
+    pub rim: Rim,
+}
+
+impl Plate {
+    /// Mass inside the supports, kg.
+    pub fn mass(&self) -> f64 {
+        self.areal_mass * self.rim.area
+    }
+
+    /// A of membrane stiffening; 0 where the supports do not surround the impact.
+    pub fn membrane_coefficient(&self) -> f64 {
+        self.rim.held.map_or(0.0, Held::coefficient)
+    }
+
+    /// A (w/h)² at a deflection w.
+    pub fn stiffening(&self, deflection: f64) -> f64 {
+        self.membrane_coefficient() * (deflection / self.thickness).powi(2)
+    }
+
+    pub(super) fn under(model: &Model, strike: &Strike, stiffness: f64) -> Result<Self, Error> {
+        let Model { laminate, materials, .. } = model;
+        let rim = Rim::around(model, strike.centre)
+            .ok_or_else(|| Error::NoPlate { element: model.scene.element.name.value.clone() })?;
+        let d = laminate.bending_stiffness(materials);
+        let (sum, mixed) = (d[(0, 0)] + d[(1, 1)], d[(0, 1)]);
+        let twist = d[(2, 2)];
+        let shear = laminate.plies.iter().map(|ply| {
+            let elastic = &materials[ply.material].elastic;
+            0.5 * (elastic.g13 + elastic.g23) * ply.thickness
+        });
+        Ok(Self {
+            thickness: laminate.thickness(),
+            areal_mass: model.areal_mass,
+            bending_stiffness: laminate.effective_bending_stiffness(materials),
+            poisson: (sum + 6.0 * mixed - 4.0 * twist) / (3.0 * sum + 2.0 * mixed + 4.0 * twist),
+            shear_stiffness: KAPPA * shear.sum::<f64>(),
+            stiffness,
+            rim,
+        })
+    }
+}
+
+/// A model at rest: its stiffness, factorised.
+pub(super) struct AtRest {
+    assembled: Assembled,
+}
+
+impl AtRest {
+    pub(super) fn of(model: &Model, threads: NonZeroUsize) -> Result<Self, Error> {
+        Ok(Self { assembled: run::structure(model, false, threads, &mut Counters::default())? })
+    }
+
+    /// Displacements of all independent unknowns under `load`.
+    pub(super) fn displacements(&mut self, load: &[f64]) -> Result<Vec<f64>, Error> {
+        let (mut on_masters, own) = self.assembled.load(load);
+        self.assembled.structure.solve_shifted(0.0, &mut on_masters, 1)?;
+        let mut u = self.assembled.expand(on_masters);
+        u.iter_mut().zip(own.iter().flatten()).for_each(|(u, own)| *u += own);
+        if u.iter().all(|u| u.is_finite()) { Ok(u) } else { Err(Error::NotFinite("displacement")) }
+    }
+
+    /// Force over deflection under a contact, N/m.
+    pub(super) fn stiffness(&mut self, model: &Model, contact: &Functional) -> Result<f64, Error> {
+        let mut load = vec![0.0; model.constraints.ndof()];
+        contact.add_to(1.0, &mut load);
+        let u = self.displacements(&load)?;
+        Ok(1.0 / load.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>())
+    }
+
+    pub(super) fn factor_entries(&self) -> usize {
+        self.assembled.factor_entries
+    }
+}
