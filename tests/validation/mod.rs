@@ -1,6 +1,7 @@
 //! Displacements, stresses and frequencies against solutions without finite elements.
 
 mod command;
+mod cure;
 mod estimate;
 mod impact;
 mod large;

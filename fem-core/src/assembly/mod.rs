@@ -5,6 +5,7 @@ mod coarse;
 mod condition;
 mod equilibrium;
 mod factor;
+mod free;
 mod large;
 mod ordering;
 mod pattern;
@@ -13,6 +14,7 @@ mod substructure;
 
 pub use equilibrium::{Equilibrium, EquilibriumError};
 pub use factor::{Cholesky, FactorError, Symbolic};
+pub use free::free_forces;
 pub use large::LargePlate;
 pub use ordering::nested_dissection;
 pub use pattern::{AssemblyError, Pattern, pattern};

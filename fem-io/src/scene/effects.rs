@@ -2,6 +2,7 @@
 
 use super::reader::{Field, Keys, Reader};
 use super::source::{Located, SceneError};
+use fem_core::plugin::Dimension;
 
 /// Whether an effect is simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -32,9 +33,12 @@ pub struct Effects {
     pub damage: Damage,
     /// Membrane stiffening: strains of large deflections; off where the scene says nothing of it.
     pub membrane: Option<Located<Switch>>,
+    /// Change of temperature since the plate was without stresses, K.
+    pub cure: Option<Located<f64>>,
 }
 
-const EFFECTS: Keys = &[("damage", r#""onset""#), ("membrane", r#""auto""#), ("damping", r#""off""#)];
+const EFFECTS: Keys =
+    &[("damage", r#""onset""#), ("membrane", r#""auto""#), ("damping", r#""off""#), ("cure", r#""-150 K""#)];
 
 pub(super) fn read(field: &Field<'_>) -> Result<Effects, SceneError> {
     let table = field.table(EFFECTS)?;
@@ -42,7 +46,12 @@ pub(super) fn read(field: &Field<'_>) -> Result<Effects, SceneError> {
         field.choice(&[("off", ())])?;
     }
     let damage = table.optional("damage").map(|f| f.choice(&[("onset", Damage::Onset), ("off", Damage::Off)]));
-    Ok(Effects { damage: damage.transpose()?.unwrap_or_default(), membrane: switch(&table, "membrane")? })
+    let cure = |field: Field<'_>| Ok(field.at(field.quantity(Dimension::TEMPERATURE)?));
+    Ok(Effects {
+        damage: damage.transpose()?.unwrap_or_default(),
+        membrane: switch(&table, "membrane")?,
+        cure: table.optional("cure").map(cure).transpose()?,
+    })
 }
 
 fn switch(table: &Reader<'_>, key: &str) -> Result<Option<Located<Switch>>, SceneError> {
