@@ -3,6 +3,7 @@
 use crate::run::CheckpointError;
 use fem_core::assembly::{AssemblyError, EquilibriumError, FactorError};
 use fem_core::element::ElementError;
+use fem_core::material::MaterialError;
 use fem_core::time::StepError;
 use fem_dynamics::guard::Alarm;
 use fem_failure::scan::ScanError;
@@ -92,6 +93,9 @@ pub enum Error {
     #[error("the scene describes no loads at rest")]
     #[diagnostic(help("set `analysis = \"static\"` and give a `[[load]]`"))]
     NoLoads,
+    #[error(transparent)]
+    #[diagnostic(help("give its `alpha1` and `alpha2`, or leave `effects.cure` out"))]
+    Material(#[from] MaterialError),
     #[error("the element knows no large displacements")]
     #[diagnostic(help(
         "choose an element that does, such as `hermite-prism` or `mitc4`, or leave `effects.membrane` out"

@@ -7,7 +7,7 @@ use crate::model::{Model, NamedProfile, Plan};
 use crate::run::{self, Substructures};
 use crate::stress::{self, Margin};
 use crate::summary::{Advised, and, in_words};
-use fem_core::assembly::{LargePlate, pattern};
+use fem_core::assembly::{LargePlate, free_forces, pattern};
 use fem_core::counters::Counters;
 use fem_core::dof::Dof;
 use fem_core::element::ElementError;
@@ -54,7 +54,8 @@ pub struct Solution {
     /// Under large displacements, the Newton decrement of each iteration
     /// ([`Equilibrium::decrements`](fem_core::assembly::Equilibrium::decrements)).
     pub decrements: Option<Vec<f64>>,
-    /// Error of the mesh in the energy norm, relative, where [`mesh_error`] can say; never under large displacements.
+    /// Error of the mesh in the energy norm, relative, where [`mesh_error`] can say; never under large
+    /// displacements or with free strains.
     pub mesh_error: Option<f64>,
     /// Sum of the loads along x, y, z, N.
     pub resultant: [f64; 3],
@@ -126,7 +127,12 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     let sampled: Vec<_> = model.profiles.iter().map(sample).collect::<Result<_, ElementError>>()?;
     let (profiles, resultants) = sampled.into_iter().unzip();
     stopwatch.lap("stresses");
-    let mesh_error = if model.effects.membrane { None } else { mesh_error(&model.plate, &*model.element, &u)? };
+    // The estimate knows no strains but those that stress.
+    let mesh_error = if model.effects.membrane || model.effects.cure.is_some() {
+        None
+    } else {
+        mesh_error(&model.plate, &*model.element, &u)?
+    };
     stopwatch.lap("mesh error");
     let phases = stopwatch.phases().to_vec();
     Ok(Solution {
@@ -158,7 +164,13 @@ fn straight(
 ) -> Result<Found, Error> {
     let mut assembled = run::structure(model, false, threads, counters)?;
     stopwatch.lap("assemble");
-    let (mut rest, own) = assembled.load(f);
+    let (mut f, mut thermal, mut at_rest) = (f.to_vec(), vec![0.0; f.len()], 0.0);
+    if model.effects.cure.is_some() {
+        let (forces, energy) = free_forces(&model.plate, &*model.element, &model.constraints)?;
+        f.iter_mut().zip(&forces).for_each(|(f, free)| *f += free);
+        (thermal, at_rest) = (forces, energy);
+    }
+    let (mut rest, own) = assembled.load(&f);
     let mut solved = rest.clone();
     assembled.structure.solve_shifted(0.0, &mut solved, 1)?;
     assembled.structure.add_stiffness(-1.0, &solved, &mut rest);
@@ -173,11 +185,13 @@ fn straight(
     let condition = assembled.structure.condition()?;
     (counters.factorisations, counters.solves) = assembled.structure.work();
     Ok(Found {
-        strain_energy: 0.5 * f.iter().zip(&independent).map(|(f, u)| f * u).sum::<f64>(),
+        // ½ uᵀ K u − uᵀ f₀ + ½ ∫ ε₀ C ε₀ dV with K u = f and f₀ that of the free strains.
+        strain_energy: at_rest
+            + f.iter().zip(&thermal).zip(&independent).map(|((f, free), u)| (0.5 * f - free) * u).sum::<f64>(),
         independent,
         substructures: assembled.substructures(),
         factor_entries: assembled.factor_entries,
-        residual: norm(&rest) / norm(f).max(f64::MIN_POSITIVE),
+        residual: norm(&rest) / norm(&f).max(f64::MIN_POSITIVE),
         condition,
         decrements: None,
     })
@@ -189,16 +203,22 @@ fn bent(
     f: &[f64],
     threads: NonZeroUsize,
     counters: &mut Counters,
-    _: &mut Stopwatch,
+    stopwatch: &mut Stopwatch,
 ) -> Result<Found, Error> {
     let Model { plate, element, constraints, .. } = model;
     let pattern = Arc::new(pattern(plate, constraints));
     let (symbolic, _) = memory::analysed(model, pattern.clone())?;
     let factor_entries = symbolic.entries();
     let mut large = LargePlate::new(plate, element.clone(), constraints, &pattern).ok_or(Error::SmallOnly)?;
-    let found = large.equilibrium(symbolic, f, vec![0.0; f.len()], threads)?;
-    counters.elements = large.integrated();
-    (counters.factorisations, counters.solves) = (found.decrements.len() as u64, found.solves);
+    // A plate that is hot and has not moved is pressed in its plane more than it bears.
+    let start = match model.effects.cure {
+        Some(_) => straight(model, f, threads, counters, stopwatch)?.independent,
+        None => vec![0.0; f.len()],
+    };
+    let found = large.equilibrium(symbolic, f, start, threads)?;
+    counters.elements += large.integrated();
+    counters.factorisations += found.decrements.len() as u64;
+    counters.solves += found.solves;
     Ok(Found {
         independent: found.u,
         substructures: None,

@@ -1,15 +1,16 @@
 //! Stresses along a march: sampled, recovered in batches, handed to the scan.
 
 use crate::error::Error;
-use crate::model::{Model, NamedCriterion};
+use crate::model::{Model, NamedCriterion, Plan};
 use crate::summary::ply_name;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::assembly::Condensation;
 use fem_core::failure::Site;
 use fem_core::recovery::{Recovery, Station};
+use fem_core::residual::Residual;
 use fem_core::structure::Structure;
-use fem_core::tensor::{Ply, Stress6};
+use fem_core::tensor::{Global, Ply, Stress6};
 use fem_core::window;
 use fem_dynamics::reduce::{Companions, Reduced};
 use fem_failure::scan::{self, Place, Probe, Scan, ScanSite};
@@ -58,6 +59,8 @@ pub(crate) struct Watch<'a> {
     companions: Option<Companions>,
     condensation: Option<Condensation>,
     recovery: Recovery,
+    /// Six per station, empty where there are none.
+    residual: Vec<f64>,
     /// 6·sites × modes: stresses per unit of each modal coordinate.
     operator: Option<Vec<f64>>,
     scan: Scan,
@@ -100,6 +103,7 @@ impl<'a> Watch<'a> {
             companions,
             condensation,
             operator: None,
+            residual: residual(model, &recovery)?,
             probes,
             scan,
             record: Record { histories, ..Record::default() },
@@ -170,6 +174,7 @@ impl<'a> Watch<'a> {
             }
             (None, None) => self.recover(waiting, count, out)?,
         }
+        add(out, &self.residual);
         for (t, stresses) in times.iter().zip(stresses.chunks_exact(rows)) {
             for (state, s) in self.states.iter_mut().zip(stresses.chunks_exact(6)) {
                 *state = Stress6::new([s[0], s[1], s[2], s[3], s[4], s[5]]);
@@ -260,6 +265,7 @@ pub(crate) fn margins(model: &Model, u: &[f64]) -> Result<Vec<Margin>, Error> {
         Some(large) => recovery.large_stresses(&model.plate, large, u, &mut stresses)?,
         None => recovery.stresses(&model.plate, &*model.element, u, 1, &mut stresses)?,
     }
+    add(&mut stresses, &residual(model, &recovery)?);
     if !stresses.iter().all(|s| s.is_finite()) {
         return Err(Error::NotFinite("stress"));
     }
@@ -286,6 +292,36 @@ pub(crate) fn margins(model: &Model, u: &[f64]) -> Result<Vec<Margin>, Error> {
         })
     };
     Ok(model.criteria.iter().filter_map(smallest).collect())
+}
+
+/// Residual stresses of the stations that do not follow from displacements, six each: under loads at rest those that free
+/// strains leave in a plate held in its shape, in an impact those of the free plate, which the march does not know. Empty
+/// where there are none.
+///
+/// # Errors
+/// A material without thermal expansion.
+fn residual(model: &Model, recovery: &Recovery) -> Result<Vec<f64>, Error> {
+    let Some(change) = model.effects.cure else { return Ok(Vec::new()) };
+    let cooled = Residual::new(&model.laminate, &model.materials, change)?;
+    let of_station = |station: &Station| match model.plan {
+        Plan::Impact(_) => cooled.stress(&model.materials[station.material], station.angle, station.z),
+        _ => {
+            let slice = station.ply - model.laminate.plies_of(station.layer).start;
+            let held = model.element.held_stress(&model.plate.stacks[station.layer].slices[slice]);
+            Ok(Stress6::<Global>::new(held).to_ply(station.angle))
+        }
+    };
+    let stations: Vec<Stress6<Ply>> = recovery.stations.iter().map(of_station).collect::<Result<_, _>>()?;
+    Ok(stations.iter().flat_map(|s| s.0).collect())
+}
+
+/// Adds the stresses of stations to those of all sites.
+fn add(stresses: &mut [f64], residual: &[f64]) {
+    if !residual.is_empty() {
+        for quad in stresses.chunks_exact_mut(residual.len()) {
+            quad.iter_mut().zip(residual).for_each(|(s, r)| *s += r);
+        }
+    }
 }
 
 fn recovery(model: &Model) -> Recovery {

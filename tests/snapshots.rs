@@ -23,7 +23,7 @@ fn stack() -> Stack {
     let c = Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9).stiffness();
     let slice = |k: usize, angle: f64| {
         let q = |k: usize| -1.0 + 0.5 * k as f64;
-        Slice { q: [q(k), q(k + 1)], c: rotate_stiffness(&c, angle.to_radians()), density: 1575.0 }
+        Slice { q: [q(k), q(k + 1)], c: rotate_stiffness(&c, angle.to_radians()), density: 1575.0, free: [0.0; 6] }
     };
     let angles = [0.0, 45.0, -45.0, 90.0];
     Stack::new(angles.iter().enumerate().map(|(k, a)| slice(k, *a)).collect())

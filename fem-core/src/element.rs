@@ -3,7 +3,7 @@
 use crate::dof::Dof;
 use crate::large::LargeDisplacement;
 use crate::quadrature::gauss_legendre;
-use crate::tensor::Matrix6;
+use crate::tensor::{Matrix6, apply};
 use dyn_clone::DynClone;
 use std::fmt::{self, Debug};
 
@@ -57,6 +57,8 @@ pub struct Slice {
     pub c: Matrix6,
     /// Density, kg/m³.
     pub density: f64,
+    /// Strain in the plate's frame that the ply has where nothing stresses it, engineering shears.
+    pub free: [f64; 6],
 }
 
 /// The plies of one layer of cells, with their thickness moments (computed once for all cells of the layer).
@@ -253,6 +255,34 @@ pub trait Element: DynClone + Debug + Send + Sync {
             add_product(me, shape, weighted, 3, n);
             Ok(())
         })
+    }
+
+    /// Stress of a ply in a cell at rest, plate's frame, Pa: −C ε₀ of its free strain; a theory that gives up a strain for a
+    /// stress that it knows to vanish lets that strain go. The stress of displacements u is C b u on top of it.
+    fn held_stress(&self, slice: &Slice) -> [f64; 6] {
+        apply(&slice.c, &slice.free).map(|s| -s)
+    }
+
+    /// Force `f` (ndof) = Σ over plies ∫ bᵀ C ε₀ dV by which free strains move the cell. Returns what energy the cell has when
+    /// it is held against them, Σ ∫ ½ ε₀ C ε₀ dV, J.
+    ///
+    /// # Errors
+    /// A Jacobian that is not positive at a Gauss point.
+    fn free_force(&self, cell: &Cell<'_>, scratch: &mut Scratch, f: &mut [f64]) -> Result<f64, ElementError> {
+        let [b] = scratch.arrays([6 * self.info().ndof()]);
+        let mut energy = 0.0;
+        f.fill(0.0);
+        integrate(self.info(), cell.stack, |slice, xi, w| {
+            let dv = positive(self.strain_operator(cell, slice, xi, b))? * w;
+            let ply = &cell.stack.slices[slice];
+            let held = self.held_stress(ply);
+            for (f, b) in f.iter_mut().zip(b.chunks_exact(6)) {
+                *f -= dv * b.iter().zip(held).map(|(b, s)| b * s).sum::<f64>();
+            }
+            energy -= 0.5 * dv * ply.free.iter().zip(held).map(|(e, s)| e * s).sum::<f64>();
+            Ok(())
+        })?;
+        Ok(energy)
     }
 
     /// Mean-strain operators `b` (6 × ndof each, one after the other) of parts of the cell: (1/V) ∫ B dV (report eq. 12),

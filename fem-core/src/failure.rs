@@ -269,6 +269,7 @@ mod tests {
             elastic: Elastic::isotropic(1e9, 0.3),
             density: None,
             giic: None,
+            expansion: None,
             strengths: Strengths::default().with(Strength::Xt, 100.0).with(Strength::Yt, 10.0),
         }
     }

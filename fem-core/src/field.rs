@@ -53,10 +53,12 @@ impl<'a> Field<'a> {
     }
 
     /// Stress in `ply` of a strain, both in the plate's frame, Pa. Under large displacements S = C E, on axes that turn with
-    /// the plate.
+    /// the plate. Free strains count.
     pub fn stress(&self, ply: usize, strain: &Strain6<Global>) -> Stress6<Global> {
         let (layer, slice) = self.slice(ply);
-        stress(&self.plate.stacks[layer].slices[slice].c, strain)
+        let slice = &self.plate.stacks[layer].slices[slice];
+        let (held, moved) = (self.element.held_stress(slice), stress(&slice.c, strain));
+        Stress6::new(std::array::from_fn(|k| moved.0[k] + held[k]))
     }
 
     /// Strain in the plate's frame and displacement, m.

@@ -2,7 +2,7 @@
 
 use crate::element::{Slice, Stack};
 use crate::material::{Material, MaterialError};
-use crate::tensor::rotate_stiffness;
+use crate::tensor::{apply, rotate_stiffness, strain_rotation};
 use nalgebra::Matrix3;
 
 /// One ply.
@@ -92,11 +92,26 @@ impl Laminate {
                         q: [q(i), q(i + 1)],
                         c: rotate_stiffness(&material.elastic.stiffness(), ply.angle),
                         density: material.mass_density()?,
+                        free: [0.0; 6],
                     })
                 };
                 Ok(Stack::new(range.map(slice).collect::<Result<_, _>>()?))
             })
             .collect()
+    }
+
+    /// Gives the plies in `stacks`, those of [`Laminate::stacks`], the free strains of a change of temperature, K.
+    ///
+    /// # Errors
+    /// A ply's material has no thermal expansion.
+    pub fn heat(&self, stacks: &mut [Stack], materials: &[Material], change: f64) -> Result<(), MaterialError> {
+        for (layer, stack) in stacks.iter_mut().enumerate() {
+            for (ply, slice) in self.plies[self.plies_of(layer)].iter().zip(&mut stack.slices) {
+                let [a1, a2, a3] = materials[ply.material].thermal_expansion()?.map(|a| a * change);
+                slice.free = apply(&strain_rotation(-ply.angle), &[a1, a2, a3, 0.0, 0.0, 0.0]);
+            }
+        }
+        Ok(())
     }
 
     /// Bending stiffness of classical laminate theory, N·m: moments 11, 22, 12 in the plate's axes per curvature, no force
@@ -147,7 +162,14 @@ mod tests {
     use crate::material::{Elastic, Strengths};
 
     fn material(elastic: Elastic) -> Material {
-        Material { name: "m".into(), elastic, density: None, strengths: Strengths::default(), giic: None }
+        Material {
+            name: "m".into(),
+            elastic,
+            density: None,
+            strengths: Strengths::default(),
+            giic: None,
+            expansion: None,
+        }
     }
 
     fn laminate(angles: &[f64]) -> Laminate {

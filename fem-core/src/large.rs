@@ -6,13 +6,14 @@ use std::fmt::Debug;
 /// What an element offers besides its linear matrices where membrane stiffening is asked for.
 ///
 /// Strains are Green and Lagrange's, E = ½ (H + Hᵀ + Hᵀ H) with H = ∂u/∂X in the plate's frame before deformation; stresses
-/// S = C E are the second ones of Piola and Kirchhoff, on the plies' axes as they turn with the cell. Strains are small,
+/// S = C (E − ε₀), ε₀ the free strains, are the second ones of Piola and Kirchhoff, on the plies' axes as they turn with the cell. Strains are small,
 /// displacements and rotations are not.
 ///
-/// At u = 0 the tangent is the stiffness of [`crate::element::Element::stiffness`] up to the quadrature through the plies.
+/// At u = 0 without free strains the tangent is the stiffness of [`crate::element::Element::stiffness`] up to the quadrature
+/// through the plies.
 pub trait LargeDisplacement: Debug {
     /// Internal force f = ∂W/∂u (N, conjugate to the unknowns) at the displacements `u` (both ndof), W = Σ over plies
-    /// ∫ ½ Eᵀ C E dV; and the tangent ∂f/∂u (ndof × ndof, symmetric) where it is asked for. Returns W, J.
+    /// ∫ ½ (E − ε₀)ᵀ C (E − ε₀) dV; and the tangent ∂f/∂u (ndof × ndof, symmetric) where it is asked for. Returns W, J.
     ///
     /// # Errors
     /// A Jacobian that is not positive at a Gauss point.

@@ -25,6 +25,7 @@
 //!     density: Some(1575.0),
 //!     strengths: Strengths::default(),
 //!     giic: None,
+//!     expansion: None,
 //! };
 //! tape.check()?;
 //! let ply = |angle_deg: f64| LaminaPly { angle_deg, angle: angle_deg.to_radians(), thickness: 1.3208e-4, material: 0 };
@@ -64,6 +65,7 @@ pub mod prolongation;
 pub mod quadrature;
 pub mod recovery;
 pub mod reduction;
+pub mod residual;
 pub mod structure;
 pub mod support;
 pub mod symmetry;

@@ -84,6 +84,16 @@ impl Elastic {
         c
     }
 
+    /// Stiffness 11 22 12 in the material's axes with σ33 = 0.
+    pub fn plane_stiffness(&self) -> nalgebra::Matrix3<f64> {
+        const PLANE: [usize; 3] = [0, 1, 3];
+        let c = self.stiffness();
+        nalgebra::Matrix3::from_fn(|i, j| {
+            let (i, j) = (PLANE[i], PLANE[j]);
+            c[i][j] - c[i][2] * c[2][j] / c[2][2]
+        })
+    }
+
     /// Positive definiteness of the stiffness, one named inequality at a time.
     ///
     /// # Errors
@@ -203,6 +213,8 @@ pub struct Material {
     pub strengths: Strengths,
     /// Toughness of the interfaces between plies in mode II, GIIc, J/m², if it was given.
     pub giic: Option<f64>,
+    /// Thermal expansion along 1, 2, 3, 1/K, if it was given.
+    pub expansion: Option<[f64; 3]>,
 }
 
 impl Material {
@@ -220,6 +232,9 @@ impl Material {
                 return refuse(format!("{name} must be positive and finite, got {v} {unit}"));
             }
         }
+        if let Some(v) = self.expansion.iter().flatten().find(|v| !v.is_finite()) {
+            return refuse(format!("thermal expansion must be finite, got {v} 1/K"));
+        }
         for &s in Strength::ALL {
             if let Some(v) = self.strengths.get(s).filter(|v| !(*v > 0.0 && v.is_finite())) {
                 return refuse(format!("strength {} must be positive and finite, got {v} Pa", s.name()));
@@ -236,6 +251,17 @@ impl Material {
         self.density.ok_or_else(|| MaterialError {
             material: self.name.clone(),
             why: "the mass of the plate needs a density, which the material does not give".into(),
+        })
+    }
+
+    /// The thermal expansion, for whoever needs it.
+    ///
+    /// # Errors
+    /// It was not given.
+    pub fn thermal_expansion(&self) -> Result<[f64; 3], MaterialError> {
+        self.expansion.ok_or_else(|| MaterialError {
+            material: self.name.clone(),
+            why: "a change of temperature needs the thermal expansion, which the material does not give".into(),
         })
     }
 
@@ -289,6 +315,7 @@ mod tests {
             density: Some(1260.0),
             strengths: Strengths::default().with(Strength::Xt, 38e6),
             giic: None,
+            expansion: None,
         };
         assert!(m.check().is_ok());
         let heavy = Material { density: Some(f64::INFINITY), ..m.clone() };

@@ -19,6 +19,7 @@ impl Dimension {
     pub const MASS: Self = Self([0.0, 1.0, 0.0, 0.0]);
     pub const TIME: Self = Self([0.0, 0.0, 1.0, 0.0]);
     pub const TEMPERATURE: Self = Self([0.0, 0.0, 0.0, 1.0]);
+    pub const EXPANSION: Self = Self([0.0, 0.0, 0.0, -1.0]);
     pub const VELOCITY: Self = Self([1.0, 0.0, -1.0, 0.0]);
     pub const ACCELERATION: Self = Self([1.0, 0.0, -2.0, 0.0]);
     pub const FREQUENCY: Self = Self([0.0, 0.0, -1.0, 0.0]);

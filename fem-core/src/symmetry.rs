@@ -346,7 +346,7 @@ mod tests {
         other.points = nodes.iter().map(|n| mesh.points[*n]).collect();
         other.quads = shuffled(mesh.quads.len()).iter().map(|q| mesh.quads[*q].map(number)).collect();
         other.quads.iter_mut().enumerate().for_each(|(i, quad)| quad.rotate_left(i * disorder % 4));
-        let stack = || Stack::new(vec![Slice { q: [-1.0, 1.0], c: tape(0.0), density: 1.0 }]);
+        let stack = || Stack::new(vec![Slice { q: [-1.0, 1.0], c: tape(0.0), density: 1.0, free: [0.0; 6] }]);
         Plate::new(other, vec![-1.0, 0.0, 1.0], vec![stack(), stack()], INFO, ZDerivatives::LayerWise).unwrap()
     }
 
@@ -413,7 +413,7 @@ mod tests {
         let mut mesh = plate([4, 4], 0).plane;
         mesh.points[6][0] += 1e-3;
         mesh.node_tags[6] = 4711;
-        let stack = Stack::new(vec![Slice { q: [-1.0, 1.0], c: tape(0.0), density: 1.0 }]);
+        let stack = Stack::new(vec![Slice { q: [-1.0, 1.0], c: tape(0.0), density: 1.0, free: [0.0; 6] }]);
         let fold = |mesh: &QuadMesh, group| {
             Plate::new(mesh.clone(), vec![0.0, 1.0], vec![stack.clone()], INFO, ZDerivatives::Shared)
                 .unwrap()

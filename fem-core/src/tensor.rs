@@ -92,8 +92,9 @@ pub fn stress<F: Frame>(c: &Matrix6, e: &Strain6<F>) -> Stress6<F> {
     Stress6::new(apply(c, &e.0))
 }
 
+/// m v
 #[inline]
-pub(crate) fn apply(m: &Matrix6, v: &[f64; 6]) -> [f64; 6] {
+pub fn apply(m: &Matrix6, v: &[f64; 6]) -> [f64; 6] {
     std::array::from_fn(|i| (0..6).map(|j| m[i][j] * v[j]).sum())
 }
 

@@ -70,7 +70,7 @@ fn eight_plies() -> Stack {
     let c = Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9).stiffness();
     let ply = |(i, angle): (usize, f64)| {
         let q = -1.0 + 0.25 * i as f64;
-        Slice { q: [q, q + 0.25], c: rotate_stiffness(&c, angle.to_radians()), density: 1575.0 }
+        Slice { q: [q, q + 0.25], c: rotate_stiffness(&c, angle.to_radians()), density: 1575.0, free: [0.0; 6] }
     };
     Stack::new([0.0, 45.0, -45.0, 90.0, 90.0, -45.0, 45.0, 0.0].into_iter().enumerate().map(ply).collect())
 }

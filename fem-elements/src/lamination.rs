@@ -2,8 +2,8 @@
 
 use fem_core::element::{ElementError, Slice, Stack};
 use fem_core::quadrature::gauss_legendre;
-use fem_core::tensor::Matrix6;
-use nalgebra::{Matrix2, Matrix3, Matrix3x2, Matrix6 as Square6, SMatrix};
+use fem_core::tensor::{Matrix6, apply};
+use nalgebra::{Matrix2, Matrix3, Matrix3x2, Matrix6 as Square6, SMatrix, SVector};
 
 /// Section stiffness: forces and moments per length from the section strains.
 pub(crate) type Section = SMatrix<f64, 8, 8>;
@@ -79,6 +79,23 @@ impl<'a> Lamination<'a> {
         section
     }
 
+    /// Section forces of the plies' free strains in a section at rest, and the energy per area of that.
+    pub(crate) fn held(&self, half_height: f64) -> (SVector<f64, 8>, f64) {
+        let (mut forces, mut energy) = (SVector::zeros(), 0.0);
+        for slice in &self.stack.slices {
+            let [low, high] = slice.q;
+            let held = held_stress(slice);
+            let powers = [high - low, 0.5 * (high * high - low * low) * half_height];
+            for (i, row) in PLANE.into_iter().enumerate() {
+                for (part, power) in powers.into_iter().enumerate() {
+                    forces[3 * part + i] += half_height * power * held[row];
+                }
+                energy -= 0.5 * half_height * powers[0] * slice.free[row] * held[row];
+            }
+        }
+        (forces, energy)
+    }
+
     /// Strains at q in the ply `slice`. A polynomial of second degree in q within the ply.
     pub(crate) fn strain(&self, slice: usize, q: f64, half_height: f64) -> PlyStrain {
         let c = &self.stack.slices[slice].c;
@@ -122,6 +139,13 @@ impl<'a> Lamination<'a> {
         let from = slice.q[0];
         reduced(&slice.c) * (e * (q - from) + k * (0.5 * (q * q - from * from)))
     }
+}
+
+/// Stress of a ply's free strain in a section at rest, σ₃₃ = 0.
+pub(crate) fn held_stress(slice: &Slice) -> [f64; 6] {
+    let stress = apply(&slice.c, &slice.free);
+    let let_go = stress[NORMAL] / slice.c[NORMAL][NORMAL];
+    std::array::from_fn(|k| if k == NORMAL { 0.0 } else { slice.c[k][NORMAL] * let_go - stress[k] })
 }
 
 /// f times the half height, from the membrane forces below: −F₁₁,₁ − F₁₂,₂ and −F₁₂,₁ − F₂₂,₂.

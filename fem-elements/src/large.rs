@@ -8,10 +8,10 @@
 //! K(n,n′) = Σ of w |J| G A(n,n′) Gᵀ, A(n,n′)\[(d,k),(d′,k′)\] = ∫ ∂P\[n\]\[d\]/∂H\[n′\]\[d′\] qᵏ⁺ᵏ′ dq.
 
 use crate::prism::{BLOCKS, STRAIN_ROW, matrix, multiply};
-use fem_core::element::{Cell, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
+use fem_core::element::{Cell, ElementError, ElementInfo, Part, PlaneMap, Scratch, Slice, positive};
 use fem_core::large::green_lagrange;
 use fem_core::quadrature::gauss_legendre;
-use fem_core::tensor::Matrix6;
+use fem_core::tensor::apply;
 
 /// Gradients [∂x, ∂y, ∂z] of `F` functions at an in-plane point, polynomials of `K` coefficients in q.
 pub(crate) type Gradients<const F: usize, const K: usize> = [[[f64; K]; 3]; F];
@@ -163,8 +163,10 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
         let mut sum = Through { energy: 0.0, stresses: [[[0.0; K]; 3]; 3], moduli: [[0.0; PAIRS]; POWERS] };
         for slice in &cell.stack.slices {
             let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
+            let held = apply(&slice.c, &slice.free).map(|s| -s);
             for &(t, wt) in gauss_legendre(self.info.ply_order) {
-                sum.add(&at(gradient, middle + half * t), &slice.c, middle + half * t, wt * half, tangent);
+                let q = middle + half * t;
+                sum.add(&at(gradient, q), slice, &held, q, wt * half, tangent);
             }
         }
         sum
@@ -173,7 +175,7 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
 
 /// Integrals through the plies at an in-plane point.
 struct Through<const K: usize> {
-    /// ∫ ½ Eᵀ C E dq
+    /// ∫ ½ (E − ε₀)ᵀ C (E − ε₀) dq
     energy: f64,
     /// ∫ P qᵏ dq
     stresses: Polynomial<K>,
@@ -182,10 +184,14 @@ struct Through<const K: usize> {
 }
 
 impl<const K: usize> Through<K> {
-    fn add(&mut self, h: &[[f64; 3]; 3], c: &Matrix6, q: f64, w: f64, tangent: bool) {
+    /// `held` is the stress without displacements.
+    fn add(&mut self, h: &[[f64; 3]; 3], slice: &Slice, held: &[f64; 6], q: f64, w: f64, tangent: bool) {
+        let c = &slice.c;
         let strain = green_lagrange(h);
-        let stress = c.map(|row| row.iter().zip(strain).map(|(c, e)| c * e).sum::<f64>());
-        self.energy += 0.5 * w * strain.iter().zip(stress).map(|(e, s)| e * s).sum::<f64>();
+        let moved = apply(c, &strain);
+        let stress: [f64; 6] = std::array::from_fn(|k| moved[k] + held[k]);
+        let elastic = strain.iter().zip(&slice.free).map(|(e, free)| e - free);
+        self.energy += 0.5 * w * elastic.zip(stress).map(|(e, s)| e * s).sum::<f64>();
         let mut f = *h;
         (0..3).for_each(|i| f[i][i] += 1.0);
         let s = |a: usize, b: usize| stress[STRAIN_ROW[a][b]];
@@ -208,7 +214,7 @@ impl<const K: usize> Through<K> {
                 column[STRAIN_ROW[at % 3][e]] += f[at / 3][e];
             }
         }
-        let cby = by.map(|column| c.map(|row| row.iter().zip(column).map(|(c, b)| c * b).sum::<f64>()));
+        let cby = by.map(|column| apply(c, &column));
         let mut pairs = [0.0; PAIRS];
         let mut at = 0;
         for (j, cb) in cby.iter().enumerate() {

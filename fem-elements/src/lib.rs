@@ -12,7 +12,7 @@
 //!
 //! let element = HermitePrism::new(Mass::Cubic, HermitePrism::IN_PLANE_ORDER)?;
 //! let c = Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9).stiffness();
-//! let slice = |q| Slice { q, c, density: 1575.0 };
+//! let slice = |q| Slice { q, c, density: 1575.0, free: [0.0; 6] };
 //! let stack = Stack::new(vec![slice([-1.0, 0.2]), slice([0.2, 1.0])]);
 //! // A cube of 1 mm.
 //! let corners = [[0.0, 0.0], [1e-3, 0.0], [1e-3, 1e-3], [0.0, 1e-3]];

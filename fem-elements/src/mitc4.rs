@@ -1,8 +1,8 @@
 //! The shell of Bathe and Dvorkin on a flat quadrilateral, laminated.
 
-use crate::lamination::{Lamination, PlyStrain};
+use crate::lamination::{self, Lamination, PlyStrain};
 use fem_core::dof::Dof;
-use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, Scratch, positive};
+use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, Scratch, Slice, positive};
 use fem_core::large::LargeDisplacement;
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
 use nalgebra::{Matrix2, Matrix4, Matrix5, SMatrix, SVector, Vector4};
@@ -162,6 +162,10 @@ impl Element for Mitc4 {
         Ok(())
     }
 
+    fn held_stress(&self, slice: &Slice) -> [f64; 6] {
+        lamination::held_stress(slice)
+    }
+
     fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
         Some(self)
     }
@@ -210,14 +214,18 @@ impl LargeDisplacement for Mitc4 {
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, ElementError> {
         let h = cell.half_height();
-        let section = Lamination::new(cell.stack)?.section(h) / h;
+        let lamination = Lamination::new(cell.stack)?;
+        let section = lamination.section(h) / h;
+        let (held, at_rest) = lamination.held(h);
+        let held = held / h;
         let u = SVector::<f64, N>::from_column_slice(u);
         let (mut sum, mut matrix, mut energy) = (SVector::<f64, N>::zeros(), SMatrix::<f64, N, N>::zeros(), 0.0);
         for (r, s, w) in self.info.plane_points() {
             let bent = Bent::new(cell, r, s, &u);
             let dv = positive(bent.jacobian)? * w;
-            let forces = section * bent.strain;
-            energy += 0.5 * dv * bent.strain.dot(&forces);
+            let moved = section * bent.strain;
+            let forces = moved + held;
+            energy += dv * (0.5 * bent.strain.dot(&moved) + bent.strain.dot(&held) + at_rest / h);
             sum += bent.operator.tr_mul(&forces) * dv;
             if tangent.is_some() {
                 let membrane = Matrix2::new(forces[0], forces[2], forces[2], forces[1]);

@@ -4,11 +4,11 @@ use crate::hermite::{self, NodeFunctions};
 use crate::hermite_prism::Mass;
 use crate::large::{Gradients, Solid};
 use fem_core::dof::Dof;
-use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, Stack};
+use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, Slice};
 use fem_core::large::LargeDisplacement;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::quadrature::MAX_POINTS;
-use fem_core::tensor::Matrix6;
+use fem_core::tensor::{Matrix6, apply};
 
 /// Anticlockwise in the section, from the left of the bottom face.
 const NODES: [[f64; 3]; 4] = [[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]];
@@ -143,6 +143,10 @@ impl Element for WebsterBeam {
         cell.plane(xi[0], 0.0).det * cell.half_height()
     }
 
+    fn held_stress(&self, slice: &Slice) -> [f64; 6] {
+        apply(&self.seen(slice.c), &slice.free).map(|s| -s)
+    }
+
     fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
         Some(self)
     }
@@ -173,17 +177,14 @@ impl WebsterBeam {
         with(&Solid { info: &self.info, gradients: &fill, unknown })
     }
 
-    /// The plies as the section sees them: under plane stress those strains across it that leave no stress are free.
-    fn seen(&self, stack: &Stack) -> Stack {
-        let mut stack = stack.clone();
-        if self.state == PlaneState::Stress {
-            for slice in &mut stack.slices {
-                slice.c = eliminate(slice.c);
-                ACROSS.into_iter().for_each(|k| slice.c[k] = [0.0; 6]);
-                slice.c.iter_mut().for_each(|row| ACROSS.into_iter().for_each(|k| row[k] = 0.0));
-            }
+    /// The stiffness that the section sees: under plane stress that of strains within it, those across it left free.
+    fn seen(&self, c: Matrix6) -> Matrix6 {
+        if self.state == PlaneState::Strain {
+            return c;
         }
-        stack
+        let condensed = eliminate(c);
+        let within = |i: usize, j: usize| WITHIN.contains(&i) && WITHIN.contains(&j);
+        std::array::from_fn(|i| std::array::from_fn(|j| if within(i, j) { condensed[i][j] } else { 0.0 }))
     }
 
     /// Fills in what plane stress in a ply of stiffness `c` makes of strains across the section.
@@ -208,7 +209,8 @@ impl LargeDisplacement for WebsterBeam {
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, ElementError> {
-        let stack = self.seen(cell.stack);
+        let mut stack = cell.stack.clone();
+        stack.slices.iter_mut().for_each(|slice| slice.c = self.seen(slice.c));
         let cell = Cell { stack: &stack, ..*cell };
         self.solid(&cell, |solid| solid.internal(&cell, u, scratch, force, tangent))
     }

@@ -17,6 +17,15 @@ fn plies() -> Stack {
     stack(&carbon(), &[(0.0, 1.0), (90.0, 2.0), (-45.0, 0.5), (20.0, 1.0)])
 }
 
+/// The same with free strains, as different from ply to ply as they can be.
+fn hot_plies() -> Stack {
+    let mut slices = plies().slices;
+    for (i, slice) in slices.iter_mut().enumerate() {
+        slice.free = std::array::from_fn(|k| if k == 4 || k == 5 { 0.0 } else { 0.01 * ((3 * i + k) as f64).cos() });
+    }
+    Stack::new(slices)
+}
+
 fn solids() -> [Box<dyn Element>; 3] {
     [
         Box::new(HermitePrism::new(Mass::Cubic, 4).unwrap()),
@@ -83,9 +92,9 @@ fn without_displacements_there_is_no_force_and_the_tangent_is_the_stiffness() {
 
 #[test]
 fn forces_are_derivatives_of_the_energy_and_tangents_of_the_forces() {
-    let stack = plies();
-    for element in all() {
-        let cell = cell(&*element, &stack);
+    let stacks = [plies(), hot_plies()];
+    for (element, stack) in all().flat_map(|element| stacks.iter().map(move |stack| (element.clone(), stack))) {
+        let cell = cell(&*element, stack);
         let u = motion(&*element, &cell, &Matrix3::new(0.02, 0.1, 0.0, -0.1, 0.01, 0.05, -0.2, 0.1, 0.03), 0.05);
         let (_, force, tangent) = internal(&*element, &cell, &u);
         for k in 0..u.len() {
@@ -107,6 +116,35 @@ fn forces_are_derivatives_of_the_energy_and_tangents_of_the_forces() {
                 assert!((got - want).abs() < 1e-7 * scale, "{element:?}, tangent {i} {k}: {got} {want}");
             }
         }
+    }
+}
+
+/// At rest large displacements have the force and the energy of small ones; a cell that is as its plies want to be has none.
+#[test]
+fn free_strains_push_a_cell_at_rest() {
+    let hot = hot_plies();
+    for element in all() {
+        let cell = cell(&*element, &hot);
+        let n = element.info().ndof();
+        let mut push = DVector::repeat(n, f64::NAN);
+        let held = element.free_force(&cell, &mut Scratch::default(), push.as_mut_slice()).unwrap();
+        let (energy, force, _) = internal(&*element, &cell, &DVector::zeros(n));
+        assert!((energy / held - 1.0).abs() < 1e-12, "{element:?}: {energy} {held}");
+        assert!((&force + &push).amax() < 1e-12 * push.amax(), "{element:?}");
+    }
+    let mut same = hot.slices;
+    let free = [0.01, -0.02, 0.0, 0.03, 0.0, 0.0];
+    same.iter_mut().for_each(|slice| slice.free = free);
+    let stack = Stack::new(same);
+    for element in solids() {
+        let cell = cell(&*element, &stack);
+        // Small displacements of that strain.
+        let u = motion(&*element, &cell, &Matrix3::new(0.01, 0.015, 0.0, 0.015, -0.02, 0.0, 0.0, 0.0, 0.0), 0.0);
+        let mut push = DVector::repeat(u.len(), f64::NAN);
+        let held = element.free_force(&cell, &mut Scratch::default(), push.as_mut_slice()).unwrap();
+        let k = stiffness(&*element, &cell);
+        assert!((&k * &u - &push).amax() < 1e-12 * push.amax(), "{element:?}");
+        assert!((0.5 * u.dot(&(&k * &u)) - u.dot(&push) + held).abs() < 1e-12 * held, "{element:?}");
     }
 }
 

@@ -50,7 +50,12 @@ fn cases() -> Vec<Case> {
         for ply in plies {
             let (t, angle) = (ply["t"].as_f64().unwrap(), ply["angle"].as_f64().unwrap().to_radians());
             let q = |z: f64| 2.0 * (z - z0) / (z1 - z0) - 1.0;
-            slices.push(Slice { q: [q(z), q(z + t)], c: rotate_stiffness(&c, angle), density: m("rho") });
+            slices.push(Slice {
+                q: [q(z), q(z + t)],
+                c: rotate_stiffness(&c, angle),
+                density: m("rho"),
+                free: [0.0; 6],
+            });
             angles.push(angle);
             z += t;
         }

@@ -43,7 +43,7 @@ fn the_independent_implementation_is_matched() {
             let low = z;
             z += ply["t"].as_f64().unwrap();
             let q = [low, z].map(|z| 2.0 * (z - z0) / (z1 - z0) - 1.0);
-            Slice { q, c: rotate_stiffness(&c, ply["angle"].as_f64().unwrap().to_radians()), density }
+            Slice { q, c: rotate_stiffness(&c, ply["angle"].as_f64().unwrap().to_radians()), density, free: [0.0; 6] }
         };
         let stack = Stack::new(reference["plies"].as_array().unwrap().iter().map(slice).collect());
         let state = match reference["mode"].as_str().unwrap() {

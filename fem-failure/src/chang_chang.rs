@@ -123,6 +123,7 @@ mod tests {
             elastic: Elastic::isotropic(2.0, 0.0),
             density: None,
             giic: None,
+            expansion: None,
             strengths: Strength::ALL.iter().fold(Strengths::default(), |s, which| s.with(*which, 2.0)),
         };
         // G = 1, S = 2, α = 1/3: T(1) = (1/2 + 1/4)/(2 + 4) = 1/8.

@@ -58,8 +58,14 @@ mod tests {
     #[test]
     fn hand_values() {
         let strengths = Strengths::default().with(Strength::Yt, 4.0).with(Strength::Yc, 8.0).with(Strength::S23, 5.0);
-        let m =
-            Material { name: "m".into(), elastic: Elastic::isotropic(1.0, 0.0), density: None, strengths, giic: None };
+        let m = Material {
+            name: "m".into(),
+            elastic: Elastic::isotropic(1.0, 0.0),
+            density: None,
+            strengths,
+            giic: None,
+            expansion: None,
+        };
         let index = |s22, s23| {
             let mut out = [f64::NAN];
             ChoiChang.indices(&Stress6::new([9.0, s22, 9.0, 9.0, s23, 9.0]), &m, &mut out);

@@ -45,7 +45,7 @@ mod tests {
     use fem_core::material::{Elastic, Strengths};
 
     fn material(elastic: Elastic, giic: Option<f64>) -> Material {
-        Material { name: "m".into(), elastic, density: None, strengths: Strengths::default(), giic }
+        Material { name: "m".into(), elastic, density: None, strengths: Strengths::default(), giic, expansion: None }
     }
 
     fn laminate(angles: &[f64], thickness: f64) -> Laminate {

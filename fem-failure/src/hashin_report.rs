@@ -121,6 +121,7 @@ mod tests {
             elastic: Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9),
             density: None,
             giic: None,
+            expansion: None,
             strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
         }
     }

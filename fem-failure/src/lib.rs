@@ -24,6 +24,7 @@
 //!         .with(Strength::S12, 109e6)
 //!         .with(Strength::S23, 69e6),
 //!     giic: None,
+//!     expansion: None,
 //! };
 //! // 32 MPa across the fibres, half of what the matrix bears; components are 11 22 33 12 23 31 in ply axes.
 //! let found = assess(&HashinReport::default(), "hashin-report", &Stress6::new([0.0, 32e6, 0.0, 0.0, 0.0, 0.0]), &tape)?;

@@ -64,6 +64,7 @@ mod tests {
             elastic: Elastic::isotropic(3.79e9, 0.36),
             density: None,
             giic: None,
+            expansion: None,
             strengths: Strengths::default().with(Strength::S12, 62e6),
         };
         let index = |s: [f64; 6]| {

@@ -272,6 +272,7 @@ mod tests {
             density: None,
             strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
             giic: None,
+            expansion: None,
         };
         let [s22, s33, s12, s23, s31]: [f64; 5] =
             [12795262.767671375, -75097312.64209768, -80818910.33112697, -38818093.091686025, 29823934.232466854];

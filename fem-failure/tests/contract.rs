@@ -18,6 +18,7 @@ fn material(name: &str, values: [f64; 9]) -> Material {
         elastic: Elastic::transversely_isotropic(138e9, 11e9, 0.28, 0.4, 5.5e9),
         density: None,
         giic: None,
+        expansion: None,
         strengths,
     }
 }

@@ -56,6 +56,7 @@ fn with_strengths(row: &Row, elastic: Elastic, strengths: &[(Strength, &str)]) -
         elastic,
         density: None,
         giic: None,
+        expansion: None,
         strengths: strengths.iter().fold(Strengths::default(), |s, (which, c)| s.with(*which, row.number(c))),
     }
 }

@@ -102,6 +102,7 @@ const NAMED: &[Named] = &[
     },
     Named { dimension: Dimension::TOUGHNESS, name: "an energy per area", units: &["kJ/m^2", "J/m^2", "N/mm", "N/m"] },
     Named { dimension: Dimension::TEMPERATURE, name: "a temperature", units: &["K"] },
+    Named { dimension: Dimension::EXPANSION, name: "a thermal expansion", units: &["1/K"] },
     Named { dimension: Dimension::NONE, name: "an angle", units: &["deg", "rad"] },
 ];
 

@@ -146,7 +146,7 @@ pub fn expression(data: &[u8]) {
 fn material() -> Material {
     let strengths = Strength::ALL.iter().fold(Strengths::default(), |all, which| all.with(*which, 1e7));
     let elastic = Elastic::transversely_isotropic(1.3e11, 1e10, 0.3, 0.4, 5e9);
-    Material { name: "tape".into(), elastic, density: None, strengths, giic: None }
+    Material { name: "tape".into(), elastic, density: None, strengths, giic: None, expansion: None }
 }
 
 /// A quantity that is read is finite, and 0 only where it is written so.

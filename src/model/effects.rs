@@ -1,10 +1,12 @@
 //! The effects that a model simulates.
 
 use super::Model;
+use super::NamedCriterion;
 use super::builder::Builder;
 use crate::registry::NO_REDUCTION;
 use fem_core::damping::Damping;
 use fem_core::element::Element;
+use fem_core::failure::Site;
 use fem_failure::delamination::DelaminationThreshold;
 use fem_io::scene::{self, Analysis, Damage, Delamination, Located, SceneError, Switch};
 
@@ -19,6 +21,8 @@ pub struct Effects {
     pub inertia: bool,
     /// Weight of plate and impactors, m/s².
     pub gravity: Option<f64>,
+    /// Change of temperature since the plate was without stresses, K: residual stresses.
+    pub cure: Option<f64>,
 }
 
 /// A decision about an effect that the scene leaves to the advisor.
@@ -49,12 +53,13 @@ impl Model {
 }
 
 impl Builder<'_> {
-    pub(super) fn effects(&self, element: &dyn Element) -> Result<Effects, SceneError> {
+    pub(super) fn effects(&self, element: &dyn Element, criteria: &[NamedCriterion]) -> Result<Effects, SceneError> {
         Ok(Effects {
             membrane: self.membrane(element)?,
             damping: self.damping()?,
             inertia: self.inertia()?,
             gravity: self.gravity()?,
+            cure: self.cure(criteria)?,
         })
     }
 
@@ -120,6 +125,29 @@ impl Builder<'_> {
             return Err(self.error(gravity, message, "leave one of `substructures` and `effects.gravity` out"));
         }
         Ok(Some(gravity.value))
+    }
+
+    fn cure(&self, criteria: &[NamedCriterion]) -> Result<Option<f64>, SceneError> {
+        let Some(change) = &self.scene.effects.cure else { return Ok(None) };
+        let refused = |message: &str, help: &str| Err(self.error(change, message, help));
+        if matches!(self.scene.analysis, Analysis::Modes { .. }) {
+            return refused("residual stresses of a free plate change none of its natural modes", "leave `cure` out");
+        }
+        let looks = criteria.iter().any(|(_, criterion)| criterion.info().site == Site::Interface);
+        let judged = self.scene.interface.as_ref().filter(|_| looks);
+        if let (Analysis::Static(_), Some(resin)) = (&self.scene.analysis, judged) {
+            let message = "the resin between plies has no thermal strain of its own in a static analysis";
+            return Err(self.error(resin, message, "leave the criteria that judge interfaces out, or `effects.cure`"));
+        }
+        let plies = self.scene.laminate.value.plies.iter().map(|ply| ply.material);
+        for material in plies.chain(judged.map(|resin| resin.value)).map(|m| &self.scene.materials[m]) {
+            if let Err(why) = material.value.thermal_expansion() {
+                let help =
+                    "give it, for example: alpha1 = \"-1e-6 1/K\", alpha2 = \"26e-6 1/K\"; or leave `effects.cure` out";
+                return Err(self.error(material, why.to_string(), help));
+            }
+        }
+        Ok(Some(change.value))
     }
 
     fn membrane(&self, element: &dyn Element) -> Result<bool, SceneError> {

@@ -109,11 +109,11 @@ impl Model {
         warnings.extend(implausible(&mesh, &laminate));
 
         let element = builder.element()?;
-        let effects = builder.effects(&*element)?;
         let criteria = match scene.effects.damage {
             Damage::Off => Vec::new(),
             Damage::Onset => builder.criteria()?,
         };
+        let effects = builder.effects(&*element, &criteria)?;
 
         let levels = laminate.levels();
         let lacks = |why: MaterialError| {
@@ -121,7 +121,10 @@ impl Model {
             builder.error(material, why.to_string(), "add its `density`, for example: density = \"1.58 g/cm^3\"")
         };
         let areal_mass = laminate.areal_mass(&materials).map_err(lacks)?;
-        let stacks = laminate.stacks(&materials).map_err(lacks)?;
+        let mut stacks = laminate.stacks(&materials).map_err(lacks)?;
+        if let (Some(change), Analysis::Static(_)) = (effects.cure, &scene.analysis) {
+            laminate.heat(&mut stacks, &materials, change).map_err(lacks)?;
+        }
         let mut plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
             .map_err(|why| builder.error(&scene.element.name, why, ""))?;
         builder.fold(&mut plate, &laminate, &materials, &criteria)?;

@@ -2,6 +2,7 @@
 
 mod advise;
 mod command;
+mod cure;
 mod estimate;
 mod impact;
 mod large;

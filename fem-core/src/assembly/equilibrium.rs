@@ -8,6 +8,9 @@ use std::num::NonZeroUsize;
 /// fifty.
 const MOST: usize = 200;
 
+/// Times that a step may lead to where the plate would buckle before the load counts as one that buckles it.
+const RETREATS: usize = 20;
+
 /// Newton decrement rᵀ K⁻¹ r over the work of the load at which an iteration ends: the error of the energy is half as large,
 /// that of displacements its root.
 const ENOUGH: f64 = 1e-22;
@@ -28,7 +31,7 @@ pub struct Equilibrium {
     /// Newton decrements rᵀ K⁻¹ r over the work of the load, one per iteration: the squared distance to the solution in the
     /// energy norm. Near the solution each is about the square of the one before.
     pub decrements: Vec<f64>,
-    /// ‖load − f‖ / ‖load‖
+    /// ‖load − f‖ over the larger of ‖load‖ and ‖K u‖ (free strains move a plate without a load).
     pub residual: f64,
     /// Condition number of the last tangent, estimated as in [`condition`](super::SparseStructure::condition).
     pub condition: f64,
@@ -85,17 +88,27 @@ impl LargePlate {
         let mut tangent = vec![0.0; pattern.rows.len()];
         let mut factor = Cholesky::new(symbolic, threads);
         let (mut force, mut step, mut tried) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        // Where the tangent was positive last, and how often a step may still be taken back halfway to there.
+        let (mut last, mut retreats) = (vec![0.0; n], RETREATS);
         let mut decrements: Vec<f64> = Vec::new();
         for _ in 0..MOST {
             let energy = self.internal(&u, &mut force, Some(&mut tangent)).map_err(EquilibriumError::Assembly)?;
-            factor.factorise(&tangent).map_err(EquilibriumError::Factor)?;
+            match factor.factorise(&tangent) {
+                Err(FactorError::NotPositive { .. }) if retreats > 0 && !decrements.is_empty() => {
+                    retreats -= 1;
+                    u.iter_mut().zip(&last).for_each(|(u, last)| *u = 0.5 * (*u + last));
+                    continue;
+                }
+                done => done.map_err(EquilibriumError::Factor)?,
+            }
+            last.copy_from_slice(&u);
             for ((step, load), force) in step.iter_mut().zip(load).zip(&force) {
                 *step = load - force;
             }
             let residual = step.clone();
             factor.solve(&mut step, 1);
-            // The work that the load would do on a linear plate, before there is any other.
-            let work = dot(load, &u).abs().max(dot(load, &step).abs()).max(f64::MIN_POSITIVE);
+            // The work that the load would do on a linear plate, before there is any other; free strains alone have energy.
+            let work = dot(load, &u).abs().max(dot(load, &step).abs()).max(energy).max(f64::MIN_POSITIVE);
             let decrement = dot(&residual, &step) / work;
             let stalled = decrements.last().is_some_and(|last| decrement <= ROUNDING && decrement > 0.1 * last);
             decrements.push(decrement);
@@ -105,7 +118,10 @@ impl LargePlate {
             if decrement <= ENOUGH || stalled {
                 let energy = self.internal(&u, &mut force, None).map_err(EquilibriumError::Assembly)?;
                 step.iter_mut().zip(load).zip(&force).for_each(|((rest, load), force)| *rest = load - force);
-                let residual = (dot(&step, &step) / dot(load, load).max(f64::MIN_POSITIVE)).sqrt();
+                force.fill(0.0);
+                pattern.add_product(&tangent, 1.0, &u, &mut force);
+                let scale = dot(load, load).max(dot(&force, &force)).max(f64::MIN_POSITIVE);
+                let residual = (dot(&step, &step) / scale).sqrt();
                 let mut solves = decrements.len() as u64;
                 let condition = condition::estimate(&pattern, &tangent, |x| {
                     factor.solve(x, 1);

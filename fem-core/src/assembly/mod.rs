@@ -5,6 +5,7 @@ mod coarse;
 mod condition;
 mod equilibrium;
 mod factor;
+mod free;
 mod large;
 mod ordering;
 mod pattern;
@@ -14,6 +15,7 @@ mod substructure;
 
 pub use equilibrium::{Equilibrium, EquilibriumError};
 pub use factor::{Cholesky, FactorError, Symbolic};
+pub use free::free_forces;
 pub use large::LargePlate;
 pub use ordering::nested_dissection;
 pub use pattern::{AssemblyError, Pattern, pattern};

@@ -276,6 +276,7 @@ mod tests {
             elastic: Elastic::isotropic(1e9, 0.3),
             density: None,
             giic: None,
+            expansion: None,
             strengths: Strengths::default().with(Strength::Xt, 1000.0).with(Strength::S12, 50.0),
         };
         let faults = [

@@ -68,7 +68,7 @@ fn cells(info: &ElementInfo) -> Vec<Shape> {
 
 fn tape(angle_deg: f64) -> Slice {
     let c = Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9).stiffness();
-    Slice { q: [-1.0, 1.0], c: rotate_stiffness(&c, f64::to_radians(angle_deg)), density: 1575.0 }
+    Slice { q: [-1.0, 1.0], c: rotate_stiffness(&c, f64::to_radians(angle_deg)), density: 1575.0, free: [0.0; 6] }
 }
 
 /// One ply, and an unsymmetric laminate with a soft layer.

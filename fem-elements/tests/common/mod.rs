@@ -11,7 +11,7 @@ pub(crate) fn eight_plies() -> Stack {
     let c = Elastic::transversely_isotropic(130_300.0, 9650.0, 0.35, 0.40, 5930.0).stiffness();
     let ply = |i: u32| {
         let q = |i: u32| -1.0 + 0.25 * f64::from(i);
-        Slice { q: [q(i), q(i + 1)], c: rotate_stiffness(&c, 0.37 * f64::from(i)), density: 1.575e-9 }
+        Slice { q: [q(i), q(i + 1)], c: rotate_stiffness(&c, 0.37 * f64::from(i)), density: 1.575e-9, free: [0.0; 6] }
     };
     Stack::new((0..8).map(ply).collect())
 }

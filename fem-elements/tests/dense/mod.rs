@@ -31,7 +31,7 @@ pub(crate) fn stack(elastic: &Elastic, plies: &[(f64, f64)]) -> Stack {
     let slices = plies.iter().enumerate().map(|(i, (angle, thickness))| {
         let q = [below, below + thickness].map(|t| 2.0 * t / total - 1.0);
         below += thickness;
-        Slice { q, c: rotate_stiffness(&c, angle.to_radians()), density: 1.0 + 0.5 * (i % 2) as f64 }
+        Slice { q, c: rotate_stiffness(&c, angle.to_radians()), density: 1.0 + 0.5 * (i % 2) as f64, free: [0.0; 6] }
     });
     Stack::new(slices.collect())
 }

@@ -106,6 +106,7 @@ mod tests {
             elastic: Elastic::transversely_isotropic(130.0, 10.0, 0.3, 0.4, 5.0),
             density: None,
             giic: None,
+            expansion: None,
             strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
         }
     }

@@ -9,6 +9,7 @@ fn material(name: &str, strengths: &[(Strength, f64)]) -> Material {
         elastic: Elastic::isotropic(1.0, 0.3),
         density: None,
         giic: None,
+        expansion: None,
         strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
     }
 }

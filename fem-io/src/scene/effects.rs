@@ -52,6 +52,8 @@ pub struct Effects {
     pub inertia: Option<Located<Switch>>,
     /// Gravity, which pulls impactors and plate along the way of the impactors, m/s².
     pub gravity: Option<Located<f64>>,
+    /// Change of temperature since the plate was without stresses, K.
+    pub cure: Option<Located<f64>>,
 }
 
 const KEYS: Keys = &[
@@ -61,6 +63,7 @@ const KEYS: Keys = &[
     ("damping", r#"{ mass = "30 1/s", stiffness = "2e-8 s" }"#),
     ("inertia", r#""off""#),
     ("gravity", r#""9.81 m/s^2""#),
+    ("cure", r#""-150 K""#),
 ];
 const DELAMINATIONS: [(&str, Delamination); 2] = [("off", Delamination::Off), ("threshold", Delamination::Threshold)];
 const DAMPING: Keys = &[("mass", r#""30 1/s""#), ("stiffness", r#""2e-8 s""#), ("ratio", "0.02")];
@@ -116,6 +119,12 @@ pub const EFFECTS: &[EffectInfo] = &[
         summary: "weight of impactors and plate along the way of the impactors",
         source: "Newton 1687",
     },
+    EffectInfo {
+        name: "cure",
+        values: "\"off\", a change of temperature",
+        summary: "residual stresses of the plies since the plate was without stresses",
+        source: "Tsai and Hahn 1980",
+    },
 ];
 
 pub(super) fn read(field: &Field<'_>) -> Result<Effects, SceneError> {
@@ -128,6 +137,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<Effects, SceneError> {
         damping: unless_off(&table, "damping", read_damping)?,
         inertia: switch(&table, "inertia")?,
         gravity: unless_off(&table, "gravity", |field| field.positive(Dimension::ACCELERATION))?,
+        cure: unless_off(&table, "cure", |field| field.quantity(Dimension::TEMPERATURE))?,
     })
 }
 

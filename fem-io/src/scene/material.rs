@@ -24,6 +24,10 @@ const KEYS: Keys = &[
     ("g12", r#""5.93 GPa""#),
     ("g13", r#""5.93 GPa""#),
     ("g23", r#""3.45 GPa""#),
+    ("alpha", r#""23e-6 1/K""#),
+    ("alpha1", r#""-1e-6 1/K""#),
+    ("alpha2", r#""26e-6 1/K""#),
+    ("alpha3", r#""26e-6 1/K""#),
     ("density", r#""1.575 g/cm^3""#),
     ("Xt", r#""1793 MPa""#),
     ("Xc", r#""1724 MPa""#),
@@ -92,10 +96,30 @@ pub(crate) fn from_constants(name: &str, table: &Reader<'_>) -> Result<Material,
     }
     let density = optional("density", Dimension::DENSITY)?;
     let giic = optional("GIIc", Dimension::TOUGHNESS)?;
-    let material = Material { name: name.to_owned(), elastic, density, strengths, giic };
+    let expansion = expansion(table)?;
+    let material = Material { name: name.to_owned(), elastic, density, strengths, giic, expansion };
     match material.check() {
         Ok(()) => Ok(material),
         Err(e) => Err(table.error(e.to_string(), "no solid has these constants: look for a slip in one of them")),
+    }
+}
+
+/// Thermal expansion: one for all axes, or one along and one across the fibres, and a third through the thickness where it
+/// differs.
+fn expansion(table: &Reader<'_>) -> Result<Option<[f64; 3]>, SceneError> {
+    const WANTED: &str =
+        "give alpha (the same along all axes), or alpha1, alpha2 and, where it differs from alpha2, alpha3";
+    let given = |key| table.optional(key).map(|field| Ok((field.quantity(Dimension::EXPANSION)?, field))).transpose();
+    match (given("alpha")?, given("alpha1")?, given("alpha2")?, given("alpha3")?) {
+        (None, None, None, None) => Ok(None),
+        (Some((all, _)), None, None, None) => Ok(Some([all; 3])),
+        (None, Some((along, _)), Some((across, _)), third) => Ok(Some([along, across, third.map_or(across, |t| t.0)])),
+        (Some((_, stray)), ..) => Err(stray.error("does not go with alpha1, alpha2, alpha3", WANTED)),
+        (None, Some((_, stray)), None, _)
+        | (None, None, Some((_, stray)), _)
+        | (None, None, None, Some((_, stray))) => {
+            Err(stray.error("says not how the material expands along its other axes", WANTED))
+        }
     }
 }
 

@@ -276,9 +276,9 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
     let materials = material::read_all(&root.required("materials")?, folder)?;
     let (laminate, interface) = laminate::read(&root.required("laminate")?, &materials)?;
     let element = root.required("element")?;
-    let analysis = read_analysis(&root)?;
-    let in_time = matches!(analysis, Analysis::Impact(_));
     let effects = root.optional("effects").map_or(Ok(Effects::default()), |field| effects::read(&field))?;
+    let analysis = read_analysis(&root, &effects)?;
+    let in_time = matches!(analysis, Analysis::Impact(_));
     let onset = effects.damage == Damage::Onset;
     Ok(Scene {
         title: root.required("title")?.text()?.to_owned(),
@@ -312,7 +312,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
     })
 }
 
-fn read_analysis(root: &Reader<'_>) -> Result<Analysis, SceneError> {
+fn read_analysis(root: &Reader<'_>, effects: &Effects) -> Result<Analysis, SceneError> {
     const IMPACT: &[&str] = &["impactor", "contact", "reduction", "march"];
     // Keys that the chosen analysis has no use for; those of a preset lie there for others.
     let unused = |analysis: &str, keys: &[&str]| {
@@ -329,7 +329,11 @@ fn read_analysis(root: &Reader<'_>) -> Result<Analysis, SceneError> {
     match which {
         1 => {
             unused("static", &[IMPACT, &["modes"]].concat())?;
-            Ok(Analysis::Static(load::read_all(&root.required("load")?)?))
+            Ok(Analysis::Static(match (&effects.cure, root.optional("load")) {
+                // A change of temperature loads a plate as well.
+                (Some(_), None) => Vec::new(),
+                _ => load::read_all(&root.required("load")?)?,
+            }))
         }
         2 => {
             unused("modes", &[IMPACT, &["load", "profile"]].concat())?;
