@@ -4,6 +4,7 @@ mod damping;
 mod delamination;
 mod gravity;
 mod inertia;
+mod membrane;
 mod off;
 
 use crate::support::root;

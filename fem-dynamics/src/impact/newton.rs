@@ -120,7 +120,9 @@ impl ImpactSystem {
                 Some(rate) if rate < 0.5 => size * rate / (1.0 - rate),
                 _ => size,
             };
-            if left <= ENOUGH * largest || size <= ROUNDING * energy.abs().sqrt() {
+            // A mode without inertia may ring, so that the way from ũ is longer than the whole displacement.
+            let displacement = energy.abs().sqrt();
+            if left <= ENOUGH * largest.min(displacement) || size <= ROUNDING * displacement {
                 return Ok(());
             }
             before = Some(size);
