@@ -103,7 +103,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
         let along = |(dof, f): (usize, &f64)| if model.plate.locate(dof).2 == dof_of(n) { *f } else { 0.0 };
         forces.iter().enumerate().map(along).sum()
     });
-    let solver = if model.effects.membrane { bent } else { straight };
+    let solver = if model.effects.membrane { nonlinear } else { linear };
     let found = solver(model, &f, threads, &mut counters, &mut stopwatch)?;
     if !found.strain_energy.is_finite() {
         return Err(Error::NotFinite("displacement"));
@@ -155,7 +155,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
 }
 
 /// Small displacements.
-fn straight(
+fn linear(
     model: &Model,
     f: &[f64],
     threads: NonZeroUsize,
@@ -198,7 +198,7 @@ fn straight(
 }
 
 /// Large displacements.
-fn bent(
+fn nonlinear(
     model: &Model,
     f: &[f64],
     threads: NonZeroUsize,
@@ -212,7 +212,7 @@ fn bent(
     let mut large = LargePlate::new(plate, element.clone(), constraints, &pattern).ok_or(Error::SmallOnly)?;
     // A plate that is hot and has not moved is pressed in its plane more than it bears.
     let start = match model.effects.cure {
-        Some(_) => straight(model, f, threads, counters, stopwatch)?.independent,
+        Some(_) => linear(model, f, threads, counters, stopwatch)?.independent,
         None => vec![0.0; f.len()],
     };
     let found = large.equilibrium(symbolic, f, start, threads)?;

@@ -70,6 +70,7 @@ pub struct ImpactSystem {
     structure: Box<dyn Structure>,
     impactors: Vec<Impactor>,
     weight: Option<Weight>,
+    inertia: bool,
     influence: Influence,
     newton: Newton,
     contact_calls: u64,
@@ -135,6 +136,7 @@ impl ImpactSystem {
             structure,
             impactors,
             weight: None,
+            inertia: true,
             influence: Influence::default(),
             newton: Newton::default(),
             contact_calls: 0,
@@ -161,6 +163,18 @@ impl ImpactSystem {
 
     fn gravity(&self) -> f64 {
         self.weight.as_ref().map_or(0.0, |weight| weight.acceleration)
+    }
+
+    /// The same impact on another `structure`, one with the same unknowns.
+    pub fn on(&self, structure: Box<dyn Structure>) -> Self {
+        let copy = Self::new(structure, self.impactors.clone()).under(self.weight.clone());
+        Self { inertia: self.inertia, ..copy }
+    }
+
+    /// The same with a structure that has no inertia.
+    pub fn without_inertia(mut self) -> Self {
+        self.inertia = false;
+        self
     }
 
     /// The state at t = 0: the structure at rest, the impactors on their way.
@@ -444,6 +458,10 @@ impl SecondOrderSystem for ImpactSystem {
     }
 
     fn commit(&self, state: &mut State) {
+        if !self.inertia {
+            // Newmark's accelerations of unknowns without mass ring, and grow from step to step: nothing needs them.
+            state.a[..self.structure.ndof()].fill(0.0);
+        }
         for (i, impactor) in self.impactors.iter().enumerate() {
             let alpha = self.approach(i, &state.u);
             impactor.law.commit(&mut state.contacts[i], alpha);

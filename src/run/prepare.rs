@@ -289,6 +289,9 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     });
     let weight = sag.as_ref().zip(effects.gravity).map(|(sag, acceleration)| sag.weight(acceleration));
     let mut system = ImpactSystem::new(structure, impactors).under(weight);
+    if !effects.inertia {
+        system = system.without_inertia();
+    }
     let march = &impact.spec.march;
     if let (Some(reduced), false) = (&reduced, effects.inertia) {
         let trial = ImpactSystem::new(Box::new(reduced.modal.clone()), system.impactors().to_vec());

@@ -224,25 +224,27 @@ pub(super) fn gmsh_grid(x: &[f64], y: &[f64], distortion: f64) -> MeshFile {
 pub(super) fn gmsh_file(nodes: &[[f64; 2]], groups: &[(&str, Vec<Vec<usize>>)]) -> MeshFile {
     let dim = |elements: &[Vec<usize>]| [0, 0, 1, 1, 2][elements[0].len()];
     let count = |wanted: usize| groups.iter().filter(|g| dim(&g.1) == wanted).count();
+    // Points, which come first, are numbered by themselves.
+    let tagged = || (1..=count(0)).chain(1..).zip(groups);
     let mut t = format!("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n{}\n", groups.len());
-    for (tag, (name, elements)) in (1..).zip(groups) {
+    for (tag, (name, elements)) in tagged() {
         let _ = writeln!(t, "{} {tag} \"{name}\"", dim(elements));
     }
     let _ = writeln!(t, "$EndPhysicalNames\n$Entities\n{} {} {} 0", count(0), count(1), count(2));
-    for (tag, (_, elements)) in (1..).zip(groups) {
+    for (tag, (_, elements)) in tagged() {
         let _ = match dim(elements) {
             0 => writeln!(t, "{tag} {} {} 0 1 {tag}", nodes[elements[0][0] - 1][0], nodes[elements[0][0] - 1][1]),
             _ => writeln!(t, "{tag} 0 0 0 0 0 0 1 {tag} 0"),
         };
     }
     let n = nodes.len();
-    let _ = writeln!(t, "$EndEntities\n$Nodes\n1 {n} 1 {n}\n2 {} 0 {n}", groups.len());
+    let _ = writeln!(t, "$EndEntities\n$Nodes\n1 {n} 1 {n}\n2 {} 0 {n}", groups.len() - count(0));
     (1..=n).for_each(|i| t += &format!("{i}\n"));
     nodes.iter().for_each(|[x, y]| t += &format!("{x} {y} 0\n"));
     let m: usize = groups.iter().map(|g| g.1.len()).sum();
     let _ = writeln!(t, "$EndNodes\n$Elements\n{} {m} 1 {m}", groups.len());
     let mut number = 0;
-    for (tag, (_, elements)) in (1..).zip(groups) {
+    for (tag, (_, elements)) in tagged() {
         let kind = [15, 15, 1, 1, 3][elements[0].len()];
         let _ = writeln!(t, "{} {tag} {kind} {}", dim(elements), elements.len());
         for nodes in elements {

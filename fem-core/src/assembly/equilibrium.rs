@@ -72,7 +72,8 @@ impl LargePlate {
     ///
     /// Far from the solution the step is the first minimum of the energy along it: the strain energy is a polynomial of the
     /// fourth degree in the displacements, so that five numbers give all of it along a line and the search is exact. A plate that
-    /// stiffens is never overshot and needs no load steps.
+    /// stiffens is never overshot and needs no load steps. A step to where the tangent is not positive definite is taken back
+    /// halfway, some times.
     ///
     /// # Errors
     /// See [`EquilibriumError`].

@@ -419,6 +419,7 @@ fn refusals() {
             spoilt("radius =", "watch = [{ criterion = \"puck\", ply = 1, at = { group = \"impact\" } }], radius ="),
         ),
         ("an effect that does not exist yet", format!("effects = {{ damage = \"progressive\" }}\n{GOOD}")),
+        ("an effect neither on nor off", format!("effects = {{ membrane = \"always\" }}\n{GOOD}")),
         ("a mesh refined by halves", spoilt("unit = \"mm\"", "unit = \"mm\", refine = 0.5")),
         ("a mesh refined backwards", spoilt("unit = \"mm\"", "unit = \"mm\", refine = -1")),
         ("a mesh refined without end", spoilt("unit = \"mm\"", "unit = \"mm\", refine = 1000000000")),

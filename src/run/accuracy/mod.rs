@@ -52,8 +52,8 @@ impl Estimates {
             Some(stiffened) => Box::new(stiffened.clone()),
             None => Box::new(reduced.modal.clone()),
         };
-        let copy = ImpactSystem::new(plate, system.impactors().to_vec()).under(system.weight().cloned());
-        let (companion, instants) = step::march(copy, &reduced.modal, integrator, sizes, full.solves()).unzip();
+        let (companion, instants) =
+            step::march(system.on(plate), &reduced.modal, integrator, sizes, full.solves()).unzip();
         // The residual is that of a linear plate.
         let instants = instants.filter(|_| stiffened.is_none());
         let reduction = reduction::estimate(full, reduced, &instants.unwrap_or_default());
