@@ -117,23 +117,21 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
         strains: &mut [f64],
     ) -> Result<(), ElementError> {
         let mut functions: Gradients<F, K> = [[[0.0; K]; 3]; F];
-        let mut volume = 0.0;
-        strains.fill(0.0);
+        let (mut volume, mut mean) = (0.0, [[0.0; POWERS]; 6]);
         for (r, s, w) in self.info.plane_points() {
             let dv = self.at(cell, r, s, &mut functions)? * w;
             volume += dv;
-            let gradient = self.gradient(&functions, u);
-            for (Part { q: [low, high], .. }, strains) in parts.iter().zip(strains.chunks_exact_mut(6)) {
-                let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-                for &(t, wt) in gauss_legendre(if half > 0.0 { self.info.ply_order } else { 1 }) {
-                    let strain = green_lagrange(&at(&gradient, middle + half * t));
-                    for (mean, e) in strains.iter_mut().zip(strain) {
-                        *mean += 0.5 * wt * dv * e;
-                    }
-                }
+            add_strains(&self.gradient(&functions, u), dv, &mut mean);
+        }
+        for (Part { q: [low, high], .. }, strains) in parts.iter().zip(strains.chunks_exact_mut(6)) {
+            let powers: [f64; POWERS] = std::array::from_fn(|k| {
+                let p = k as i32 + 1;
+                if high > low { (high.powi(p) - low.powi(p)) / (f64::from(p) * (high - low)) } else { low.powi(p - 1) }
+            });
+            for (strain, mean) in strains.iter_mut().zip(&mean) {
+                *strain = mean.iter().zip(powers).map(|(e, q)| e * q).sum::<f64>() / volume;
             }
         }
-        strains.iter_mut().for_each(|e| *e /= volume);
         Ok(())
     }
 
@@ -242,6 +240,27 @@ impl<const K: usize> Through<K> {
                     let (a, b) = (3 * n + i / K, 3 * n2 + j / K);
                     let (low, high) = (a.min(b), a.max(b));
                     *value = dv * self.moduli[i % K + j % K][high * (high + 1) / 2 + low];
+                }
+            }
+        }
+    }
+}
+
+/// Adds `dv` E of a displacement gradient, polynomials in q of twice the degree.
+fn add_strains<const K: usize>(h: &Polynomial<K>, dv: f64, strains: &mut [[f64; POWERS]; 6]) {
+    for (a, rows) in STRAIN_ROW.iter().enumerate() {
+        for (b, row) in rows.iter().enumerate().skip(a) {
+            // Normal strains have half of the sum, engineering shears all of it.
+            let dv = if a == b { 0.5 * dv } else { dv };
+            let strain = &mut strains[*row];
+            for (k, (x, y)) in h[a][b].iter().zip(&h[b][a]).enumerate() {
+                strain[k] += dv * (x + y);
+            }
+            for component in h {
+                for (i, x) in component[a].iter().enumerate() {
+                    for (j, y) in component[b].iter().enumerate() {
+                        strain[i + j] += dv * x * y;
+                    }
                 }
             }
         }

@@ -3,15 +3,21 @@
 use super::plate::AtRest;
 use super::{Rim, advise, membrane};
 use crate::error::Error;
-use crate::model::{Decision, MEMBRANE, Model, Plan};
+use crate::model::{Decision, INERTIA, MEMBRANE, Model, Plan};
 use fem_core::dof::Dof;
 use fem_core::reduction::Functional;
+use fem_core::time::StepLimit;
 use std::num::NonZeroUsize;
+
+/// Error of the largest force from which on a plate is not left without its inertia.
+const INERTIA_MATTERS: f64 = 0.05;
 
 /// `model` with all effects decided that its scene leaves to the advisor; one more factorisation of K where there are any.
 ///
 /// Membrane stiffening is switched on where A (w/h)² is expected to exceed 5 %: of an impact with the deflection of its energy
-/// balance before the march ends, of loads at rest with the largest deflection of the linear plate.
+/// balance before the march ends, of loads at rest with the largest deflection of the linear plate. The inertia of the plate is
+/// switched off where every impactor is so heavy that the force of the first wave is below 5 % of that at rest, unless modes
+/// are followed or the integrator needs inertia.
 ///
 /// # Errors
 /// As [`advise`].
@@ -19,19 +25,41 @@ pub fn decided(mut model: Model, threads: NonZeroUsize) -> Result<Model, Error> 
     if !model.undecided() {
         return Ok(model);
     }
-    let expected = match &model.plan {
-        Plan::Impact(_) => {
-            let each = advise(&model, threads)?.into_iter();
-            each.map(|advice| advice.plate.stiffening(advice.estimate.deflection)).fold(0.0, f64::max)
+    let (stiffening, inertia) = match &model.plan {
+        Plan::Impact(impact) => {
+            let (mut stiffening, mut inertia) = (0.0_f64, 0.0_f64);
+            for advice in advise(&model, threads)? {
+                stiffening = stiffening.max(advice.plate.stiffening(advice.estimate.deflection));
+                inertia = inertia.max(if advice.quasi_static(1.0) { advice.estimate.inertia_error() } else { 1.0 });
+            }
+            let implicit = impact.integrator.limit() == StepLimit::None && impact.integrator.order() <= 2;
+            let vibrates = model.scene.output.modes.is_some() || !implicit;
+            (stiffening, if vibrates { 1.0 } else { inertia })
         }
-        Plan::Static { forces } => at_rest(&model, forces, threads)?,
+        Plan::Static { forces } => (at_rest(&model, forces, threads)?, 0.0),
         // Refused before.
         Plan::Modes { .. } => return Ok(model),
     };
-    let on = expected > membrane::THRESHOLD;
-    model.effects.membrane = on;
-    let (formula, threshold) = (membrane::FORMULA, membrane::THRESHOLD);
-    model.decisions.push(Decision { effect: MEMBRANE, on, formula, expected, threshold });
+    if model.leaves(MEMBRANE) {
+        model.effects.membrane = stiffening > membrane::THRESHOLD;
+        model.decisions.push(Decision {
+            effect: MEMBRANE,
+            on: model.effects.membrane,
+            formula: membrane::FORMULA,
+            expected: stiffening,
+            threshold: membrane::THRESHOLD,
+        });
+    }
+    if model.leaves(INERTIA) {
+        model.effects.inertia = inertia > INERTIA_MATTERS;
+        model.decisions.push(Decision {
+            effect: INERTIA,
+            on: model.effects.inertia,
+            formula: "force of the first wave / static force",
+            expected: inertia,
+            threshold: INERTIA_MATTERS,
+        });
+    }
     Ok(model)
 }
 

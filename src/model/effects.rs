@@ -43,12 +43,22 @@ pub struct Decision {
 /// What the scene calls membrane stiffening.
 pub(crate) const MEMBRANE: &str = "membrane";
 
+/// What the scene calls the inertia of the plate.
+pub(crate) const INERTIA: &str = "inertia";
+
 impl Model {
-    /// Whether the scene leaves an effect to the advisor who was not asked yet ([`crate::advise::decided`]). Until then it
-    /// is off.
+    /// Whether the scene leaves an effect to the advisor who was not asked yet ([`crate::advise::decided`]). Until then
+    /// membrane stiffening is off, and inertia on.
     pub fn undecided(&self) -> bool {
-        let auto = self.scene.effects.membrane.as_ref().is_some_and(|wish| wish.value == Switch::Auto);
-        auto && !self.decisions.iter().any(|decision| decision.effect == MEMBRANE)
+        self.leaves(MEMBRANE) || self.leaves(INERTIA)
+    }
+
+    /// Whether the scene leaves this effect to the advisor, who has not decided yet.
+    pub(crate) fn leaves(&self, effect: &str) -> bool {
+        let wishes = &self.scene.effects;
+        let wish = if effect == MEMBRANE { &wishes.membrane } else { &wishes.inertia };
+        let auto = wish.as_ref().is_some_and(|wish| wish.value == Switch::Auto);
+        auto && !self.decisions.iter().any(|decision| decision.effect == effect)
     }
 }
 
@@ -104,12 +114,14 @@ impl Builder<'_> {
         Ok(Some(damping.value))
     }
 
-    /// What the scene leaves to the advisor is simulated.
     fn inertia(&self) -> Result<bool, SceneError> {
-        let Some(wish) = self.scene.effects.inertia.as_ref().filter(|wish| wish.value == Switch::Off) else {
+        let Some(wish) = self.scene.effects.inertia.as_ref().filter(|wish| wish.value != Switch::On) else {
             return Ok(true);
         };
         self.in_time(wish, "inertia", "leave it out")?;
+        if wish.value == Switch::Auto {
+            return Ok(true);
+        }
         if let Some(modes) = &self.scene.output.modes {
             let message = "`output.modes` follows vibrations, and a plate without inertia has none";
             return Err(self.error(modes, message, "leave one of `output.modes` and `effects.inertia` out"));

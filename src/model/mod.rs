@@ -7,8 +7,8 @@ mod plan;
 mod substructures;
 mod symmetry;
 
-pub(crate) use effects::MEMBRANE;
 pub use effects::{Decision, Effects};
+pub(crate) use effects::{INERTIA, MEMBRANE};
 pub use gauge::Gauge;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 

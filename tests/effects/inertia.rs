@@ -4,7 +4,7 @@ use super::{Struck, deflection, difference, force};
 use crate::support::root;
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
-use fem::{Model, Registry, run};
+use fem::{Model, Registry, advise, run};
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 
@@ -83,8 +83,27 @@ fn a_reduction_has_nothing_to_add() {
     assert_eq!((sizes.marched, sizes.lowest_frequency), (1, None));
     assert_eq!(ritz.history, full.history);
     let inert = heavy("inertia = 'on'").outcome();
-    assert_eq!(inert.history, heavy("inertia = 'auto'").outcome().history);
     assert!(full.counters.solves * 10 < inert.counters.solves, "{} solves", full.counters.solves);
+}
+
+#[test]
+fn the_advisor_leaves_it_out_where_the_mass_is_large() {
+    const AUTO: &str = "inertia = 'auto'";
+    let decided = |struck: Struck| {
+        let model = struck.model().unwrap();
+        assert!(model.undecided() && model.effects.inertia);
+        let model = advise::decided(model, NonZeroUsize::MIN).unwrap();
+        (model.effects.inertia, model.decisions[0].expected)
+    };
+    let (inertia, error) = decided(heavy(AUTO));
+    assert!(!inertia && error < 0.05, "{error}");
+    let (on, off) = (heavy("inertia = 'on'").history(), heavy(OFF).history());
+    let [on, off] = [on, off].map(|history| history.iter().map(force).fold(0.0, f64::max));
+    assert!((off / on - 1.0).abs() < error, "{on} {off} {error}");
+    assert!(decided(Struck::new(AUTO)).0);
+    assert!(decided(heavy(AUTO).march("integrator = 'rk4', step = '10 ns', end = '1 us'")).0);
+    let refused = run::prepare(&heavy(AUTO).model().unwrap(), NonZeroUsize::MIN).unwrap_err();
+    assert!(super::said(refused.into()).contains("decided"));
 }
 
 #[test]

@@ -44,6 +44,8 @@ struct OfCell {
     stresses: Vec<f64>,
     /// ∫ Bᵀ C dz at all in-plane points, weighted by the area, `ndof × 3 points`.
     operator: Vec<f64>,
+    /// C of the slices.
+    known: Vec<Matrix6>,
     b: Vec<f64>,
     shape: Vec<f64>,
     slopes: Vec<[f64; 2]>,
@@ -73,7 +75,7 @@ impl<'a> Stretch<'a> {
     pub fn gram(&self) -> Result<Vec<f64>, AssemblyError> {
         let pairs = self.pairs();
         let mut gram = vec![0.0; pairs * pairs];
-        self.each(|weight, _, _, of| {
+        self.each(false, |weight, _, _, of| {
             let rows = of.strains.len() / pairs;
             matmul(
                 MatMut::from_column_major_slice_mut(&mut gram, pairs, pairs),
@@ -98,7 +100,7 @@ impl<'a> Stretch<'a> {
         let (n, local) = (self.constraints.ndof(), self.element.info().ndof());
         let mut forces = vec![0.0; n * columns];
         let (mut combined, mut of_cell) = (Vec::new(), vec![0.0; local * columns]);
-        self.each(|weight, _, map, of| {
+        self.each(true, |weight, _, map, of| {
             let rows = of.strains.len() / pairs;
             combined.resize(rows * columns, 0.0);
             matmul(
@@ -144,7 +146,7 @@ impl<'a> Stretch<'a> {
         let mut forms = vec![0.0; terms * count * count];
         let (mut stress, mut u, mut slopes, mut shape) = (Vec::new(), vec![0.0; local], Vec::new(), Vec::new());
         let (mut x, mut y) = (Vec::new(), Vec::new());
-        self.each(|weight, cell, map, of| {
+        self.each(shapes.is_some(), |weight, cell, map, of| {
             let rows = of.strains.len() / pairs;
             let points = rows / 3;
             stress.resize(rows * terms, 0.0);
@@ -203,13 +205,13 @@ impl<'a> Stretch<'a> {
         }));
     }
 
-    /// Calls `take` with each cell that counts, and how much.
-    fn each(&self, mut take: impl FnMut(f64, &Cell<'_>, &CellMap, &OfCell)) -> Result<(), AssemblyError> {
+    /// Calls `take` with each cell that counts, and how much; the strain operator is integrated where `acts` wants it.
+    fn each(&self, acts: bool, mut take: impl FnMut(f64, &Cell<'_>, &CellMap, &OfCell)) -> Result<(), AssemblyError> {
         let (mut map, mut of) = (CellMap::default(), OfCell::default());
         for (cell, weight) in self.plate.kept_cells() {
             map.set(self.plate, self.constraints, cell);
             let view = self.plate.cell(cell);
-            self.integrate(&view, &map, &mut of).map_err(|error| {
+            self.integrate(&view, &map, acts, &mut of).map_err(|error| {
                 let (quad, layer) = self.plate.place(cell);
                 AssemblyError { quad_tag: self.plate.plane.quad_tags[quad], layer, error }
             })?;
@@ -218,36 +220,46 @@ impl<'a> Stretch<'a> {
         Ok(())
     }
 
-    fn integrate(&self, cell: &Cell<'_>, map: &CellMap, of: &mut OfCell) -> Result<(), ElementError> {
+    fn integrate(&self, cell: &Cell<'_>, map: &CellMap, acts: bool, of: &mut OfCell) -> Result<(), ElementError> {
         let info = self.element.info();
         let (local, pairs) = (info.ndof(), self.pairs());
         let rows = 3 * info.plane_points().count();
-        let OfCell { strains, stresses, operator, b, shape, slopes } = of;
+        let OfCell { strains, stresses, operator, known, b, shape, slopes } = of;
         strains.resize(rows * pairs, 0.0);
         stresses.resize(rows * pairs, 0.0);
         operator.clear();
         operator.resize(local * rows, 0.0);
         b.resize(6 * local, 0.0);
         let mut u = vec![0.0; local];
+        // ∫ C dq of the strains in the plane, where a theory takes stresses as zero without them.
+        known.clear();
+        let mut through = [[0.0; 3]; 3];
+        for (number, slice) in cell.stack.slices.iter().enumerate() {
+            self.element.strain_operator(cell, number, [0.0, 0.0, 0.5 * (slice.q[0] + slice.q[1])], b);
+            let c = reduced(&slice.c, b);
+            for (sum, i) in through.iter_mut().zip(PLANE) {
+                sum.iter_mut().zip(PLANE).for_each(|(sum, j)| *sum += (slice.q[1] - slice.q[0]) * c[i][j]);
+            }
+            known.push(c);
+        }
         for (point, (r, s, w)) in info.plane_points().enumerate() {
             let gradient = gradient(self.element, cell, [r, s], shape);
             self.slopes(map, &gradient, &mut u, slopes);
-            let mut stiffness = [[0.0; 3]; 3];
-            let columns = &mut operator[local * 3 * point..local * 3 * (point + 1)];
-            for (number, slice) in cell.stack.slices.iter().enumerate() {
-                let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
-                for &(t, wt) in gauss_legendre(info.ply_order) {
-                    let det = self.element.strain_operator(cell, number, [r, s, middle + half * t], b);
-                    let dv = positive(det)? * w * wt * half;
-                    let c = reduced(&slice.c, b);
-                    for (i, strain) in b.chunks_exact(6).enumerate() {
-                        for (k, row) in PLANE.iter().enumerate() {
-                            let stress = c[*row].iter().zip(strain).map(|(c, e)| c * e).sum::<f64>();
-                            columns[local * k + i] += dv * stress;
+            let area = positive(cell.plane(r, s).det * cell.half_height())? * w;
+            let stiffness = through.map(|row| row.map(|a| area * a));
+            if acts {
+                let columns = &mut operator[local * 3 * point..local * 3 * (point + 1)];
+                for (number, (slice, c)) in cell.stack.slices.iter().zip(&*known).enumerate() {
+                    let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
+                    for &(t, wt) in gauss_legendre(info.ply_order) {
+                        let det = self.element.strain_operator(cell, number, [r, s, middle + half * t], b);
+                        let dv = positive(det)? * w * wt * half;
+                        for (i, strain) in b.chunks_exact(6).enumerate() {
+                            for (k, row) in PLANE.iter().enumerate() {
+                                let stress = c[*row].iter().zip(strain).map(|(c, e)| c * e).sum::<f64>();
+                                columns[local * k + i] += dv * stress;
+                            }
                         }
-                    }
-                    for (sum, i) in stiffness.iter_mut().zip(PLANE) {
-                        sum.iter_mut().zip(PLANE).for_each(|(sum, j)| *sum += dv * c[i][j]);
                     }
                 }
             }
