@@ -47,6 +47,7 @@ pub trait LargeDisplacement: Debug {
 }
 
 /// E of a displacement gradient `h[i][j]` = ∂uᵢ/∂Xⱼ, in the order 11 22 33 12 23 31, engineering shears.
+#[inline]
 pub fn green_lagrange(h: &[[f64; 3]; 3]) -> [f64; 6] {
     let product = |a: usize, b: usize| (0..3).map(|i| h[i][a] * h[i][b]).sum::<f64>();
     let normal = |a: usize| h[a][a] + 0.5 * product(a, a);

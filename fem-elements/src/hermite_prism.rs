@@ -1,7 +1,9 @@
 //! The report's solid element: a quadrilateral prism with twelve unknowns a node (eqs 16-23).
 
+mod natural;
+
 use crate::hermite::{self, CORNERS, NodeFunctions, Quartet};
-use crate::large::{Gradients, Solid};
+use crate::large::{self, Gradients, Solid};
 use crate::prism::{BLOCKS, STRAIN_ROW, matrix, mean_powers, multiply};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
@@ -10,6 +12,7 @@ use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap
 use fem_core::large::LargeDisplacement;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::quadrature::{MAX_POINTS, gauss_legendre};
+use natural::{Natural, Table};
 use std::ops::Range;
 
 /// Functions of a cell per displacement component: 8 nodes × (value, ∂x, ∂y, ∂z).
@@ -78,6 +81,7 @@ impl Mass {
 pub struct HermitePrism {
     info: ElementInfo,
     mass: Mass,
+    table: Table,
 }
 
 impl HermitePrism {
@@ -97,7 +101,8 @@ impl HermitePrism {
     }
 
     pub(crate) fn of_order(mass: Mass, in_plane_order: usize) -> Self {
-        Self { info: ElementInfo { nodes: &CORNERS, dofs: &Dof::SOLID, in_plane_order, ply_order: 4 }, mass }
+        let info = ElementInfo { nodes: &CORNERS, dofs: &Dof::SOLID, in_plane_order, ply_order: 4 };
+        Self { table: Table::new(&info), info, mass }
     }
 }
 
@@ -360,7 +365,14 @@ impl LargeDisplacement for HermitePrism {
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, ElementError> {
-        self.solid(cell, |solid| solid.internal(cell, u, scratch, force, tangent))
+        let Some(tangent) = tangent else {
+            let jacobians = jacobians(cell);
+            let mut natural = Natural::new(&self.table, &jacobians, cell.half_height(), u);
+            let energy = large::energy(&self.info, cell, &mut natural)?;
+            natural.force(&jacobians, force);
+            return Ok(energy);
+        };
+        self.solid(cell, |solid| solid.internal(cell, u, scratch, force, Some(tangent)))
     }
 
     fn large_strain(&self, cell: &Cell<'_>, _slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError> {

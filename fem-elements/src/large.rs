@@ -11,13 +11,40 @@ use crate::prism::{BLOCKS, STRAIN_ROW, matrix, multiply};
 use fem_core::element::{Cell, ElementError, ElementInfo, Part, PlaneMap, Scratch, Slice, positive};
 use fem_core::large::green_lagrange;
 use fem_core::quadrature::gauss_legendre;
-use fem_core::tensor::apply;
+use fem_core::tensor::{Matrix6, apply};
 
 /// Gradients [∂x, ∂y, ∂z] of `F` functions at an in-plane point, polynomials of `K` coefficients in q.
 pub(crate) type Gradients<const F: usize, const K: usize> = [[[f64; K]; 3]; F];
 
 /// Displacement gradient at an in-plane point, polynomials in q.
-type Polynomial<const K: usize> = [[[f64; K]; 3]; 3];
+pub(crate) type Polynomial<const K: usize> = [[[f64; K]; 3]; 3];
+
+/// Displacements of a cell at its in-plane points, for elements that sum their functions faster than one by one.
+pub(crate) trait Displacements<const K: usize> {
+    /// H at an in-plane point, the plane's map there.
+    fn gradient(&self, point: usize, plane: &PlaneMap) -> Polynomial<K>;
+
+    /// Adds the forces that do the work of `stresses` on H there.
+    fn add(&mut self, point: usize, plane: &PlaneMap, stresses: &Polynomial<K>);
+}
+
+/// Strain energy of a cell, J; adds the forces to `displacements`.
+pub(crate) fn energy<const K: usize>(
+    info: &ElementInfo,
+    cell: &Cell<'_>,
+    displacements: &mut impl Displacements<K>,
+) -> Result<f64, ElementError> {
+    let mut energy = 0.0;
+    for (point, (r, s, w)) in info.plane_points().enumerate() {
+        let plane = cell.plane(r, s);
+        let dv = positive(plane.det * cell.half_height())? * w;
+        let Through { energy: one, mut stresses } = through(info, cell, &displacements.gradient(point, &plane), None);
+        energy += dv * one;
+        stresses.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|p| *p *= dv);
+        displacements.add(point, &plane, &stresses);
+    }
+    Ok(energy)
+}
 
 /// A solid with the same `F` scalar functions for each displacement component, polynomials of `K` ≤ 4 coefficients in q.
 pub(crate) struct Solid<'a, const F: usize, const K: usize> {
@@ -33,6 +60,9 @@ const POWERS: usize = 7;
 
 /// Pairs of components of H, each once.
 const PAIRS: usize = 45;
+
+/// ∫ A qᵏ dq, pairs of components of H by columns of the upper triangle.
+type Moduli = [[f64; PAIRS]; POWERS];
 
 impl<const F: usize, const K: usize> Solid<'_, F, K> {
     /// [`fem_core::large::LargeDisplacement::internal`]
@@ -57,7 +87,8 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
         force.fill(0.0);
         for (point, (r, s, w)) in self.info.plane_points().enumerate() {
             let dv = self.at(cell, r, s, &mut functions)? * w;
-            let through = self.through(cell, &self.gradient(&functions, u), wanted);
+            let mut moduli = wanted.then_some([[0.0; PAIRS]; POWERS]);
+            let through = through(self.info, cell, &self.gradient(&functions, u), moduli.as_mut());
             energy += dv * through.energy;
             for (f, gradient) in functions.iter().enumerate() {
                 for (n, stresses) in through.stresses.iter().enumerate() {
@@ -66,14 +97,14 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
                     force[unknown] += dv * work.map(|(g, p)| g * p).sum::<f64>();
                 }
             }
-            if wanted {
+            if let Some(moduli) = &moduli {
                 let part = &mut g[F * terms * point..F * terms * (point + 1)];
                 for (f, gradient) in functions.iter().enumerate() {
                     for (i, value) in gradient.as_flattened().iter().enumerate() {
                         part[F * i + f] = *value;
                     }
                 }
-                through.hankel(dv, hankel);
+                fill_hankel::<K>(moduli, dv, hankel);
                 for (b, hankel) in hankel.chunks_exact(terms * terms).enumerate() {
                     let at = F * terms * (points * b + point);
                     multiply(&mut p[at..at + F * terms], matrix(part, F), matrix(hankel, terms));
@@ -155,20 +186,36 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
         }
         h
     }
+}
 
-    /// Integrates through the plies.
-    fn through(&self, cell: &Cell<'_>, gradient: &Polynomial<K>, tangent: bool) -> Through<K> {
-        let mut sum = Through { energy: 0.0, stresses: [[[0.0; K]; 3]; 3], moduli: [[0.0; PAIRS]; POWERS] };
-        for slice in &cell.stack.slices {
-            let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
-            let held = apply(&slice.c, &slice.free).map(|s| -s);
-            for &(t, wt) in gauss_legendre(self.info.ply_order) {
-                let q = middle + half * t;
-                sum.add(&at(gradient, q), slice, &held, q, wt * half, tangent);
+/// Integrates through the plies; adds to `moduli` where they are asked for.
+fn through<const K: usize>(
+    info: &ElementInfo,
+    cell: &Cell<'_>,
+    gradient: &Polynomial<K>,
+    mut moduli: Option<&mut Moduli>,
+) -> Through<K> {
+    let mut sum = Through { energy: 0.0, stresses: [[[0.0; K]; 3]; 3] };
+    // Power by power, the nine components side by side: vector instructions take them together.
+    let coefficients: [[[f64; 3]; 3]; K] = std::array::from_fn(|k| gradient.map(|row| row.map(|p| p[k])));
+    for slice in &cell.stack.slices {
+        let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
+        let held = apply(&slice.c, &slice.free).map(|s| -s);
+        for &(t, wt) in gauss_legendre(info.ply_order) {
+            let (q, w) = (middle + half * t, wt * half);
+            let mut h = [[0.0; 3]; 3];
+            for c in coefficients.iter().rev() {
+                for (h, c) in h.as_flattened_mut().iter_mut().zip(c.as_flattened()) {
+                    *h = *h * q + c;
+                }
+            }
+            let stress = sum.add(&h, slice, &held, q, w);
+            if let Some(moduli) = &mut moduli {
+                add_moduli::<K>(moduli, &h, &slice.c, &stress, q, w);
             }
         }
-        sum
     }
+    sum
 }
 
 /// Integrals through the plies at an in-plane point.
@@ -177,70 +224,85 @@ struct Through<const K: usize> {
     energy: f64,
     /// ∫ P qᵏ dq
     stresses: Polynomial<K>,
-    /// ∫ A qᵏ dq, pairs of components of H by columns of the upper triangle.
-    moduli: [[f64; PAIRS]; POWERS],
 }
 
 impl<const K: usize> Through<K> {
-    /// `held` is the stress without displacements.
-    fn add(&mut self, h: &[[f64; 3]; 3], slice: &Slice, held: &[f64; 6], q: f64, w: f64, tangent: bool) {
-        let c = &slice.c;
+    /// Returns S. `held` is the stress without displacements.
+    #[inline]
+    fn add(&mut self, h: &[[f64; 3]; 3], slice: &Slice, held: &[f64; 6], q: f64, w: f64) -> [f64; 6] {
         let strain = green_lagrange(h);
-        let moved = apply(c, &strain);
-        let stress: [f64; 6] = std::array::from_fn(|k| moved[k] + held[k]);
-        let elastic = strain.iter().zip(&slice.free).map(|(e, free)| e - free);
-        self.energy += 0.5 * w * elastic.zip(stress).map(|(e, s)| e * s).sum::<f64>();
-        let mut f = *h;
-        (0..3).for_each(|i| f[i][i] += 1.0);
-        let s = |a: usize, b: usize| stress[STRAIN_ROW[a][b]];
+        // C is symmetric: its rows, which vector instructions take whole, serve as columns.
+        let mut stress = *held;
+        for (e, column) in strain.iter().zip(&slice.c) {
+            for (s, c) in stress.iter_mut().zip(column) {
+                *s += e * c;
+            }
+        }
+        for ((e, free), s) in strain.iter().zip(&slice.free).zip(&stress) {
+            self.energy += 0.5 * w * (e - free) * s;
+        }
+        let mut powers = [w; K];
+        for k in 1..K {
+            powers[k] = powers[k - 1] * q;
+        }
+        let f = deformation(h);
         for (row, stresses) in f.iter().zip(&mut self.stresses) {
-            for (d, sum) in stresses.iter_mut().enumerate() {
-                let mut power = w * (0..3).map(|e| row[e] * s(e, d)).sum::<f64>();
-                for sum in sum {
-                    *sum += power;
-                    power *= q;
+            for (rows, sum) in STRAIN_ROW.iter().zip(stresses) {
+                let p = row[0] * stress[rows[0]] + row[1] * stress[rows[1]] + row[2] * stress[rows[2]];
+                for (sum, power) in sum.iter_mut().zip(&powers) {
+                    *sum += p * power;
                 }
             }
         }
-        if !tangent {
-            return;
-        }
-        // ∂E/∂H: column 3 n + d has F[n][e] in the row of (d, e), once for normal strains as for engineering shears.
-        let mut by = [[0.0; 6]; 9];
-        for (at, column) in by.iter_mut().enumerate() {
-            for e in 0..3 {
-                column[STRAIN_ROW[at % 3][e]] += f[at / 3][e];
-            }
-        }
-        let cby = by.map(|column| apply(c, &column));
-        let mut pairs = [0.0; PAIRS];
-        let mut at = 0;
-        for (j, cb) in cby.iter().enumerate() {
-            for (i, b) in by[..=j].iter().enumerate() {
-                let geometric = if i / 3 == j / 3 { s(i % 3, j % 3) } else { 0.0 };
-                pairs[at] = w * (b.iter().zip(cb).map(|(b, c)| b * c).sum::<f64>() + geometric);
-                at += 1;
-            }
-        }
-        let mut power = 1.0;
-        for moduli in &mut self.moduli[..2 * K - 1] {
-            for (sum, pair) in moduli.iter_mut().zip(&pairs) {
-                *sum += power * pair;
-            }
-            power *= q;
+        stress
+    }
+}
+
+/// I + H
+fn deformation(h: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let mut f = *h;
+    (0..3).for_each(|i| f[i][i] += 1.0);
+    f
+}
+
+/// Adds w qᵏ ∂P/∂H.
+fn add_moduli<const K: usize>(moduli: &mut Moduli, h: &[[f64; 3]; 3], c: &Matrix6, stress: &[f64; 6], q: f64, w: f64) {
+    let f = deformation(h);
+    // ∂E/∂H: column 3 n + d has F[n][e] in the row of (d, e), once for normal strains as for engineering shears.
+    let mut by = [[0.0; 6]; 9];
+    for (at, column) in by.iter_mut().enumerate() {
+        for e in 0..3 {
+            column[STRAIN_ROW[at % 3][e]] += f[at / 3][e];
         }
     }
+    let cby = by.map(|column| apply(c, &column));
+    let mut pairs = [0.0; PAIRS];
+    let mut at = 0;
+    for (j, cb) in cby.iter().enumerate() {
+        for (i, b) in by[..=j].iter().enumerate() {
+            let geometric = if i / 3 == j / 3 { stress[STRAIN_ROW[i % 3][j % 3]] } else { 0.0 };
+            pairs[at] = w * (b.iter().zip(cb).map(|(b, c)| b * c).sum::<f64>() + geometric);
+            at += 1;
+        }
+    }
+    let mut power = 1.0;
+    for moduli in &mut moduli[..2 * K - 1] {
+        for (sum, pair) in moduli.iter_mut().zip(&pairs) {
+            *sum += power * pair;
+        }
+        power *= q;
+    }
+}
 
-    /// dv A(n,n′) of the blocks, each 3 K × 3 K.
-    fn hankel(&self, dv: f64, out: &mut [f64]) {
-        let terms = 3 * K;
-        for ((n, n2), block) in BLOCKS.iter().zip(out.chunks_exact_mut(terms * terms)) {
-            for (j, column) in block.chunks_exact_mut(terms).enumerate() {
-                for (i, value) in column.iter_mut().enumerate() {
-                    let (a, b) = (3 * n + i / K, 3 * n2 + j / K);
-                    let (low, high) = (a.min(b), a.max(b));
-                    *value = dv * self.moduli[i % K + j % K][high * (high + 1) / 2 + low];
-                }
+/// dv A(n,n′) of the blocks, each 3 K × 3 K.
+fn fill_hankel<const K: usize>(moduli: &Moduli, dv: f64, out: &mut [f64]) {
+    let terms = 3 * K;
+    for ((n, n2), block) in BLOCKS.iter().zip(out.chunks_exact_mut(terms * terms)) {
+        for (j, column) in block.chunks_exact_mut(terms).enumerate() {
+            for (i, value) in column.iter_mut().enumerate() {
+                let (a, b) = (3 * n + i / K, 3 * n2 + j / K);
+                let (low, high) = (a.min(b), a.max(b));
+                *value = dv * moduli[i % K + j % K][high * (high + 1) / 2 + low];
             }
         }
     }

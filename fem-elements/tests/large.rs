@@ -90,6 +90,31 @@ fn without_displacements_there_is_no_force_and_the_tangent_is_the_stiffness() {
     }
 }
 
+/// Elements may sum forces alone in another way than with the tangent.
+#[test]
+fn forces_are_the_same_without_the_tangent() {
+    let stack = hot_plies();
+    let quadrilateral = [[0.0, 0.0], [2.0e-3, 0.4e-3], [2.5e-3, 1.9e-3], [-0.3e-3, 1.2e-3]];
+    for element in all() {
+        let regular = cell(&*element, &stack);
+        let corners = if element.info().is_section() { regular.corners } else { quadrilateral };
+        let cell = Cell { corners, ..regular };
+        let u = motion(&*element, &cell, &Matrix3::new(0.02, 0.1, 0.0, -0.1, 0.01, 0.05, -0.2, 0.1, 0.03), 0.05);
+        let (energy, force, _) = internal(&*element, &cell, &u);
+        let large = element.large_displacements().unwrap();
+        let mut alone = DVector::repeat(u.len(), f64::NAN);
+        let got = large.internal(&cell, u.as_slice(), &mut Scratch::default(), alone.as_mut_slice(), None).unwrap();
+        assert!((got - energy).abs() < 1e-13 * energy, "{element:?}: {got} {energy}");
+        for (unknown, (a, b)) in alone.iter().zip(&force).enumerate() {
+            let dofs = element.info().dofs;
+            let like =
+                (0..u.len()).filter(|k| (dofs[k % dofs.len()].m() == 0) == (dofs[unknown % dofs.len()].m() == 0));
+            let scale = like.map(|k| force[k].abs()).fold(0.0, f64::max);
+            assert!((a - b).abs() < 1e-13 * scale, "{element:?}, force {unknown}: {a} {b}");
+        }
+    }
+}
+
 #[test]
 fn forces_are_derivatives_of_the_energy_and_tangents_of_the_forces() {
     let stacks = [plies(), hot_plies()];

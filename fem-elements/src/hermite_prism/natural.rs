@@ -1,0 +1,147 @@
+//! Displacements of a cell by natural coordinates, where all cells have the same functions.
+//!
+//! Once the derivatives at the nodes are natural ones, the functions' gradients are a table of the element; the shape of the
+//! cell enters in a 2 × 2 matrix per node and per in-plane point. As in the stiffness, the sums run over the even and the odd
+//! parts in q of the 16 functions of the upper face.
+
+use super::{BELOW, H, HALVES, Jacobians, TERMS, column};
+use crate::hermite::{self, CORNERS};
+use crate::large::{Displacements, Polynomial};
+use fem_core::element::{ElementInfo, PlaneMap};
+use std::fmt;
+
+/// Terms of a half; the even one leaves the last zero.
+const WIDTH: usize = 6;
+
+/// A number per displacement component; the fourth stays zero, for vector registers hold 2 or 4.
+type Components = [f64; 4];
+
+/// A number per component of the even and the odd parts of the functions.
+type Parts = [[Components; H]; 2];
+
+/// Natural gradients of the even and the odd parts at each in-plane point.
+#[derive(Clone)]
+pub(super) struct Table(Vec<[[[f64; WIDTH]; H]; 2]>);
+
+/// Thousands of numbers would hide what an element's message is about.
+impl fmt::Debug for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Table of {} points", self.0.len())
+    }
+}
+
+impl Table {
+    pub(super) fn new(info: &ElementInfo) -> Self {
+        let at = |(r, s, _)| {
+            let mut parts = [[[0.0; WIDTH]; H]; 2];
+            for f in 0..H {
+                let (functions, m) = (hermite::node_functions(CORNERS[4 + f / 4], r, s), f % 4);
+                let gradient = [functions.n_r[m], functions.n_s[m], hermite::derivative(&functions.n[m])];
+                for (half, part) in HALVES.into_iter().zip(&mut parts) {
+                    for ((d, k), value) in TERMS[half].iter().zip(&mut part[f]) {
+                        *value = gradient[*d][*k];
+                    }
+                }
+            }
+            parts
+        };
+        Self(info.plane_points().map(at).collect())
+    }
+}
+
+/// Displacements of a cell, and the forces conjugate to them.
+pub(super) struct Natural<'a> {
+    table: &'a Table,
+    half_height: f64,
+    u: Parts,
+    force: Parts,
+}
+
+impl<'a> Natural<'a> {
+    pub(super) fn new(table: &'a Table, jacobians: &Jacobians, half_height: f64, u: &[f64]) -> Self {
+        let mut parts = Parts::default();
+        for (below, jacobian) in jacobians[..4].iter().enumerate() {
+            for n in 0..3 {
+                // A node stands upright above the one below it: both have the same Jacobian.
+                let [low, high] = [4 * below, H + 4 * below].map(|f| {
+                    let [v, x, y, z] = std::array::from_fn(|m| u[column(n, f + m)]);
+                    let [[x_r, y_r], [x_s, y_s]] = jacobian;
+                    [v, x_r * x + y_r * y, x_s * x + y_s * y, half_height * z]
+                });
+                for m in 0..4 {
+                    parts[0][4 * below + m][n] = high[m] + BELOW[m] * low[m];
+                    parts[1][4 * below + m][n] = high[m] - BELOW[m] * low[m];
+                }
+            }
+        }
+        Self { table, half_height, u: parts, force: Parts::default() }
+    }
+
+    /// The transpose of what [`Self::new`] does to the displacements.
+    pub(super) fn force(&self, jacobians: &Jacobians, force: &mut [f64]) {
+        for (below, jacobian) in jacobians[..4].iter().enumerate() {
+            for n in 0..3 {
+                let [even, odd] =
+                    [0, 1].map(|half| -> [f64; 4] { std::array::from_fn(|m| self.force[half][4 * below + m][n]) });
+                let low = std::array::from_fn(|m| BELOW[m] * (even[m] - odd[m]));
+                let high = std::array::from_fn(|m| even[m] + odd[m]);
+                for (f, [v, r, s, q]) in [(4 * below, low), (H + 4 * below, high)] {
+                    let [[x_r, y_r], [x_s, y_s]] = jacobian;
+                    let global = [v, x_r * r + x_s * s, y_r * r + y_s * s, self.half_height * q];
+                    for (m, value) in global.into_iter().enumerate() {
+                        force[column(n, f + m)] = value;
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Displacements<4> for Natural<'_> {
+    fn gradient(&self, point: usize, plane: &PlaneMap) -> Polynomial<4> {
+        let mut natural = [[[0.0; 4]; 3]; 3];
+        for ((half, table), u) in HALVES.into_iter().zip(&self.table.0[point]).zip(&self.u) {
+            let mut sums = [Components::default(); WIDTH];
+            for (gradient, u) in table.iter().zip(u) {
+                for (sum, g) in sums.iter_mut().zip(gradient) {
+                    for (sum, u) in sum.iter_mut().zip(u) {
+                        *sum += g * u;
+                    }
+                }
+            }
+            for ((d, k), sum) in TERMS[half].iter().zip(&sums) {
+                for (natural, sum) in natural.iter_mut().zip(sum) {
+                    natural[*d][*k] = *sum;
+                }
+            }
+        }
+        let inverse = &plane.inverse;
+        natural.map(|[r, s, q]| {
+            let by = |d: usize| std::array::from_fn(|k| inverse[0][d] * r[k] + inverse[1][d] * s[k]);
+            [by(0), by(1), q.map(|c| c / self.half_height)]
+        })
+    }
+
+    fn add(&mut self, point: usize, plane: &PlaneMap, stresses: &Polynomial<4>) {
+        let inverse = &plane.inverse;
+        let natural: Polynomial<4> = stresses.map(|[x, y, z]| {
+            let along = |d: usize| std::array::from_fn(|k| inverse[d][0] * x[k] + inverse[d][1] * y[k]);
+            [along(0), along(1), z.map(|p| p / self.half_height)]
+        });
+        for ((half, table), force) in HALVES.into_iter().zip(&self.table.0[point]).zip(&mut self.force) {
+            let mut terms = [Components::default(); WIDTH];
+            for ((d, k), term) in TERMS[half].iter().zip(&mut terms) {
+                for (term, natural) in term.iter_mut().zip(&natural) {
+                    *term = natural[*d][*k];
+                }
+            }
+            for (gradient, force) in table.iter().zip(force) {
+                for (term, g) in terms.iter().zip(gradient) {
+                    for (force, p) in force.iter_mut().zip(term) {
+                        *force += g * p;
+                    }
+                }
+            }
+        }
+    }
+}
