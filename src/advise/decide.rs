@@ -16,8 +16,8 @@ const INERTIA_MATTERS: f64 = 0.05;
 ///
 /// Membrane stiffening is switched on where A (w/h)² is expected to exceed 5 %: of an impact with the deflection of its energy
 /// balance before the march ends, of loads at rest with the largest deflection of the linear plate. The inertia of the plate is
-/// switched off where every impactor is so heavy that the force of the first wave is below 5 % of that at rest, unless modes
-/// are followed or the integrator needs inertia.
+/// switched off where every impactor is so heavy that twice the force of the first wave, as edges send waves back, is below 5 % of
+/// the force at rest, unless modes are followed or the integrator needs inertia.
 ///
 /// # Errors
 /// As [`advise`].
@@ -30,7 +30,8 @@ pub fn decided(mut model: Model, threads: NonZeroUsize) -> Result<Model, Error> 
             let (mut stiffening, mut inertia) = (0.0_f64, 0.0_f64);
             for advice in advise(&model, threads)? {
                 stiffening = stiffening.max(advice.plate.stiffening(advice.estimate.deflection));
-                inertia = inertia.max(if advice.quasi_static(1.0) { advice.estimate.inertia_error() } else { 1.0 });
+                inertia =
+                    inertia.max(if advice.quasi_static(1.0) { 2.0 * advice.estimate.inertia_error() } else { 1.0 });
             }
             let implicit = impact.integrator.limit() == StepLimit::None && impact.integrator.order() <= 2;
             let vibrates = model.scene.output.modes.is_some() || !implicit;
@@ -55,7 +56,7 @@ pub fn decided(mut model: Model, threads: NonZeroUsize) -> Result<Model, Error> 
         model.decisions.push(Decision {
             effect: INERTIA,
             on: model.effects.inertia,
-            formula: "force of the first wave / static force",
+            formula: "2 x force of the first wave / static force",
             expected: inertia,
             threshold: INERTIA_MATTERS,
         });

@@ -43,7 +43,8 @@ impl Regime {
 }
 
 impl Estimate {
-    /// Error of the largest force without inertia of the plate, at most: the force of the first wave over that at rest.
+    /// Error of the largest force without inertia of the plate: the force of the first wave over that at rest. Waves that edges send
+    /// back may double it.
     pub fn inertia_error(&self) -> f64 {
         (self.wave.force / self.linear.force).min(1.0)
     }
@@ -71,7 +72,7 @@ impl Estimate {
             ],
             choice: choice.into(),
             effect: "inertia of the plate",
-            error: Some(format!("without it the force may be wrong by up to {:.1} %", 100.0 * self.inertia_error())),
+            error: Some(format!("without it the force is wrong by some {:.1} %", 100.0 * self.inertia_error())),
             cost: Some(cost),
         }
     }
