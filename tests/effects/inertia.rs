@@ -107,7 +107,7 @@ fn the_advisor_leaves_it_out_where_the_mass_is_large() {
     assert!(decided(Struck::new(AUTO)).0 && decided(heavy(AUTO)).0);
     assert!(decided(heavier(AUTO).march("integrator = 'rk4', step = '10 ns', end = '1 us'")).0);
     let refused = run::prepare(&heavy(AUTO).model().unwrap(), NonZeroUsize::MIN).unwrap_err();
-    assert!(super::said(refused.into()).contains("decided"));
+    assert!(super::said(refused).contains("decided"));
 }
 
 #[test]

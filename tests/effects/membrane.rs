@@ -120,13 +120,6 @@ fn the_reports_thin_plate_stiffens() {
         history.indices[history.times.iter().position(|at| *at >= t - 1e-9).unwrap()]
     };
     let [early, late] = [4e-5, 1e-3].map(|t| strain(&on, t) / strain(&off, t));
-    eprintln!(
-        "{linear} {movable} {immovable} {} {} strains {:e} {:e}, {early} {late}",
-        apart(0.05, 0.2),
-        apart(0.8, 1.2),
-        strain(&on, 1e-3),
-        strain(&off, 1e-3)
-    );
     assert!((early - 1.0).abs() < 0.03 && late > 1.1, "{early} {late}");
 }
 
@@ -147,7 +140,6 @@ fn the_reduced_plate_is_the_full_one() {
     assert!(difference(&full.history, &Struck { reduction: "method = 'none'", ..heavy(OFF) }.history(), force) > 0.3);
     for (value, most) in [(force as fn(&HistoryRow) -> f64, 1e-2), (super::deflection, 1e-3)] {
         let found = difference(&reduced.history, &full.history, value);
-        eprintln!("{found:e} {deepest}");
         assert!(found < most, "{found:e}");
     }
     for outcome in [full, reduced] {
