@@ -49,7 +49,7 @@ pub trait Stretching {
 /// W = ½ qᵀ Λ q + Σ_t (c_tᵀ q) b_t + ½ Σ_t σ_t b_t², b_t = qᵀ B_t q.
 ///
 /// The membrane stresses are combinations of few patterns, which the deflections under a static contact call for
-/// ([`Directions`]); σ_t b_t is how much of each there is, found from its work on the strains of all deflections. In its
+/// (under no membrane tension and more and more); σ_t b_t is how much of each there is, found from its work on the strains of all deflections. In its
 /// plane, and through its thickness, the plate follows those strains at once: u = Φ q + Σ a_t s_t, a_t = qᵀ A_t q, the s_t
 /// orthogonal to Φ in K. That is static condensation, exact to the fourth order of q. c vanishes for symmetric laminates,
 /// but for modes in the plane.
