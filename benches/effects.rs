@@ -24,10 +24,11 @@ const RATIO: (&str, &str) = ("effects.damping", "{ ratio = 0.02 }");
 const RAYLEIGH: (&str, &str) = ("effects.damping", "{ mass = \"30 1/s\", stiffness = \"2e-8 s\" }");
 const GRAVITY: (&str, &str) = ("effects.gravity", "\"9.81 m/s^2\"");
 const NO_INERTIA: (&str, &str) = ("effects.inertia", "\"off\"");
+const MEMBRANE: (&str, &str) = ("effects.membrane", "\"on\"");
 const NO_ONSET: (&str, &str) = ("effects.damage", "\"off\"");
 const NO_DELAMINATION: (&str, &str) = ("effects.delamination", "\"off\"");
 
-const VARIANTS: [(&str, Keys); 9] = [
+const VARIANTS: [(&str, Keys); 12] = [
     ("as shipped", &[]),
     ("damage off", &[NO_ONSET, NO_DELAMINATION]),
     ("delamination off", &[NO_DELAMINATION]),
@@ -37,6 +38,9 @@ const VARIANTS: [(&str, Keys); 9] = [
     ("damping and gravity", &[RATIO, GRAVITY]),
     ("inertia off", &[NO_INERTIA]),
     ("inertia and damage off", &[NO_INERTIA, NO_ONSET, NO_DELAMINATION]),
+    ("membrane", &[MEMBRANE]),
+    ("membrane, damage off", &[MEMBRANE, NO_ONSET, NO_DELAMINATION]),
+    ("membrane, damping and gravity", &[MEMBRANE, RATIO, GRAVITY]),
 ];
 
 fn main() {
