@@ -31,9 +31,10 @@ impl Held {
         if self.slope { clamped } else { clamped * (1.0 + poisson) / (3.0 + poisson) }
     }
 
-    /// λ² of the third axisymmetric mode of a circle, ω = λ²/a² √(D/m) (Leissa, Vibration of Plates, 1969).
+    /// λ² of the third axisymmetric mode of a circle, ω = λ²/a² √(D/m): the third root of J₀ I₁ + J₁ I₀ = 0 where the edge is
+    /// clamped, of J₁/J₀ + I₁/I₀ = 2 λ/(1 − ν) where it is supported, ν = 0.3.
     pub(super) const fn third_mode(self) -> f64 {
-        if self.slope { 89.10 } else { 74.20 }
+        if self.slope { 89.104 } else { 74.156 }
     }
 
     /// In words.

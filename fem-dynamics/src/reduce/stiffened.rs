@@ -48,11 +48,11 @@ pub trait Stretching {
 ///
 /// W = ½ qᵀ Λ q + Σ_t (c_tᵀ q) b_t + ½ Σ_t σ_t b_t², b_t = qᵀ B_t q.
 ///
-/// The membrane stresses are combinations of few patterns, which the deflections under a static contact call for
-/// (under no membrane tension and more and more); σ_t b_t is how much of each there is, found from its work on the strains of all deflections. In its
-/// plane, and through its thickness, the plate follows those strains at once: u = Φ q + Σ a_t s_t, a_t = qᵀ A_t q, the s_t
-/// orthogonal to Φ in K. That is static condensation, exact to the fourth order of q. c vanishes for symmetric laminates,
-/// but for modes in the plane.
+/// The membrane stresses are combinations of few patterns, which the deflections under a static contact call for, of a plate
+/// under no membrane tension and more and more; σ_t b_t is how much of each there is, found from its work on the strains of all
+/// deflections. In its plane, and through its thickness, the plate follows those strains at once: u = Φ q + Σ a_t s_t,
+/// a_t = qᵀ A_t q, the s_t orthogonal to Φ in K. That is static condensation, exact to the fourth order of q. c vanishes for
+/// symmetric laminates, but for modes in the plane.
 ///
 /// Of the strains of large deflections only von Kármán's are there; slopes are small beside 1.
 #[derive(Debug, Clone)]
@@ -117,7 +117,7 @@ impl Stiffened {
         let gram = stretching.gram(fields.as_slice()).map_err(failed)?;
         let p = scale.len();
         let scaled = DMatrix::from_fn(p, p, |i, j| 0.5 * (gram[i + p * j] + gram[j + p * i]) * scale[i] * scale[j]);
-        let (strains, energies) = largest(scaled, NEGLIGIBLE)?;
+        let (strains, energies) = largest(scaled)?;
         let terms = strains.ncols();
         let combinations = DMatrix::from_fn(p, terms, |i, t| scale[i] * strains[(i, t)]);
         let forces = stretching.forces(fields.as_slice(), combinations.as_slice()).map_err(failed)?;
@@ -130,7 +130,7 @@ impl Stiffened {
         shapes += basis * DMatrix::from_fn(rigid.len(), terms, |r, t| couplings[(r, t)] / rigid[r]);
         let released = forces.transpose() * &shapes;
         let left = DMatrix::from_diagonal(&energies) + (&released + released.transpose()) * 0.5;
-        let (turn, stiffness) = largest(left, NEGLIGIBLE)?;
+        let (turn, stiffness) = largest(left)?;
         let forms = |combinations: &DMatrix<f64>, shapes: Option<&DMatrix<f64>>| {
             let shapes = shapes.map(DMatrix::as_slice);
             stretching.forms(fields.as_slice(), combinations.as_slice(), shapes, &reduced.basis).map_err(failed)
@@ -143,10 +143,9 @@ impl Stiffened {
             forms
         };
         let couplings = couplings * &turn;
-        let top = stiffness.iter().fold(0.0, |a: f64, b| a.max(*b));
-        let taken =
-            couplings.column_iter().flat_map(|c| c.iter().zip(rigid).map(|(c, k)| c * c / k).collect::<Vec<_>>());
-        let coupled = taken.fold(0.0, f64::max) > NEGLIGIBLE * top;
+        // What the modes that a term is coupled to give way by.
+        let taken = couplings.column_iter().flat_map(|c| c.into_iter().zip(rigid).map(|(c, k)| c * c / k));
+        let coupled = taken.fold(0.0, f64::max) > NEGLIGIBLE * stiffness.max();
         Ok(Self {
             modal: reduced.modal.clone(),
             forms: counted(forms(&(&combinations * &turn), Some(&(&shapes * &turn)))?, &stiffness),
@@ -231,8 +230,8 @@ impl Directions {
     }
 }
 
-/// Eigenvectors and eigenvalues above `share` of the largest, descending.
-fn largest(matrix: DMatrix<f64>, share: f64) -> Result<(DMatrix<f64>, DVector<f64>), ReductionError> {
+/// Eigenvectors and eigenvalues that are not negligible beside the largest, descending.
+fn largest(matrix: DMatrix<f64>) -> Result<(DMatrix<f64>, DVector<f64>), ReductionError> {
     if !matrix.iter().all(|v| v.is_finite()) {
         return Err(ReductionError("the membrane energy of the modes is not finite".into()));
     }
@@ -240,7 +239,7 @@ fn largest(matrix: DMatrix<f64>, share: f64) -> Result<(DMatrix<f64>, DVector<f6
     let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
     order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
     let top = order.first().map_or(0.0, |i| eigen.eigenvalues[*i]);
-    order.retain(|i| share == 0.0 || eigen.eigenvalues[*i] > share * top);
+    order.retain(|i| eigen.eigenvalues[*i] > NEGLIGIBLE * top);
     let values = DVector::from_iterator(order.len(), order.iter().map(|i| eigen.eigenvalues[*i]));
     Ok((eigen.eigenvectors.select_columns(&order), values))
 }

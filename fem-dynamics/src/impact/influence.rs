@@ -1,0 +1,149 @@
+//! Contact forces of an implicit step, from how the structure responds to each.
+
+use super::{Impactor, add, value};
+use fem_core::contact::{ContactHistory, ContactLaw};
+use fem_core::structure::SolveError;
+use fem_core::time::StepError;
+
+/// Change of an indentation by its own force, relative, at which several contacts count as solved: ten times the
+/// tolerance of one.
+const TOLERANCE: f64 = 1e-14;
+/// Sweeps over several contacts before they count as unsolvable.
+const MOST_SWEEPS: usize = 20_000;
+
+/// Responses X = (K + cm M + cc C)⁻¹ p to the contact loads, for one (cm, cc); of a structure that is not linear, to its tangent.
+#[derive(Debug, Default)]
+pub(super) struct Influence {
+    pub(super) cm: f64,
+    pub(super) cc: f64,
+    pub(super) x: Vec<f64>,
+    /// Approach at contact i per force at contact j, pᵢᵀ Xⱼ and 1/(cm m) on the diagonal, by rows.
+    approach: Vec<f64>,
+    /// Approach at each contact without forces.
+    pub(super) free: Vec<f64>,
+    forces: Vec<f64>,
+}
+
+impl Influence {
+    /// The responses for `cm` and `cc`, found by `solve`, of a structure of `n` unknowns.
+    pub(super) fn set(
+        &mut self,
+        cm: f64,
+        cc: f64,
+        n: usize,
+        impactors: &[Impactor],
+        solve: impl FnOnce(&mut [f64], usize) -> Result<(), SolveError>,
+    ) -> Result<(), StepError> {
+        let count = impactors.len();
+        let Self { x, approach, free, forces, .. } = self;
+        x.clear();
+        x.resize(n * count, 0.0);
+        for (impactor, column) in impactors.iter().zip(x.chunks_exact_mut(n)) {
+            add(&impactor.load, 1.0, column);
+        }
+        solve(x, count).map_err(|e| StepError::Factorisation(e.0))?;
+        approach.clear();
+        for (i, impactor) in impactors.iter().enumerate() {
+            let own = |j| if i == j { 1.0 / (cm * impactor.mass) } else { 0.0 };
+            approach.extend(x.chunks_exact(n).enumerate().map(|(j, x)| value(&impactor.load, x) + own(j)));
+        }
+        free.resize(count, 0.0);
+        forces.resize(count, 0.0);
+        (self.cm, self.cc) = (cm, cc);
+        Ok(())
+    }
+
+    /// Adds what the displacements `x` add to the approaches without forces.
+    pub(super) fn approached(&mut self, impactors: &[Impactor], x: &[f64]) {
+        let n = x.len() - impactors.len();
+        for (i, (impactor, free)) in impactors.iter().zip(&mut self.free).enumerate() {
+            *free += x[n + i] - value(&impactor.load, x);
+        }
+    }
+
+    /// Work of the contact forces along `d`.
+    pub(super) fn work(&self, impactors: &[Impactor], d: &[f64]) -> f64 {
+        impactors.iter().zip(&self.forces).map(|(impactor, force)| force * value(&impactor.load, d)).sum()
+    }
+
+    /// Finds the contact forces for the response `d` without contact, and adds that to each, F (X, −1/(cm m)); returns the
+    /// evaluations of contact laws.
+    pub(super) fn touch(
+        &mut self,
+        impactors: &[Impactor],
+        t: f64,
+        h: &[ContactHistory],
+        d: &mut [f64],
+    ) -> Result<u64, StepError> {
+        self.approached(impactors, d);
+        let calls = self.balance(impactors, t, h)?;
+        let n = d.len() - impactors.len();
+        for (i, (impactor, force)) in impactors.iter().zip(&self.forces).enumerate() {
+            if *force != 0.0 {
+                for (d, x) in d.iter_mut().zip(&self.x[i * n..(i + 1) * n]) {
+                    *d += force * x;
+                }
+                d[n + i] -= force / (self.cm * impactor.mass);
+            }
+        }
+        Ok(calls)
+    }
+
+    /// Finds the contact forces, each in turn until none changes; returns the evaluations of contact laws.
+    ///
+    /// The approaches are symmetric and positive and no force falls with its indentation, so that this converges,
+    /// slowly where stiff contacts share a place.
+    fn balance(&mut self, impactors: &[Impactor], t: f64, h: &[ContactHistory]) -> Result<u64, StepError> {
+        let count = impactors.len();
+        let mut evaluations = 0;
+        self.forces.fill(0.0);
+        for _ in 0..MOST_SWEEPS {
+            let mut settled = true;
+            for (i, impactor) in impactors.iter().enumerate() {
+                let row = &self.approach[i * count..(i + 1) * count];
+                let others = (0..count).filter(|j| *j != i).map(|j| row[j] * self.forces[j]);
+                let free = self.free[i] - others.sum::<f64>();
+                let (force, calls) = contact(&*impactor.law, &h[i], free, row[i]);
+                evaluations += calls;
+                if !force.is_finite() {
+                    return Err(StepError::NotFinite { t });
+                }
+                settled &= row[i] * (force - self.forces[i]).abs() <= TOLERANCE * free.abs();
+                self.forces[i] = force;
+            }
+            if count < 2 || settled {
+                return Ok(evaluations);
+            }
+        }
+        Err(StepError::NoConvergence { t, what: "the contact forces of several impactors".into() })
+    }
+}
+
+/// Solves α + `soft` F(α) = `free` for the force: Newton's method kept inside a bracket, because F never falls.
+/// Returns the force and the number of evaluations.
+fn contact(law: &dyn ContactLaw, h: &ContactHistory, free: f64, soft: f64) -> (f64, u64) {
+    let at_free = law.force(h, free);
+    if at_free.force == 0.0 {
+        return (0.0, 1);
+    }
+    let (mut low, mut high) = (free - soft * at_free.force, free);
+    let mut alpha = free - soft * at_free.force / (1.0 + soft * at_free.tangent);
+    for calls in 2..100 {
+        let c = law.force(h, alpha);
+        let residual = alpha + soft * c.force - free;
+        if residual > 0.0 {
+            high = alpha
+        } else {
+            low = alpha
+        }
+        let correction = -residual / (1.0 + soft * c.tangent);
+        let next = alpha + correction;
+        // Before the bracket is asked: at the solution rounding decides on which side of it the next value lies.
+        if (next - alpha).abs() <= 1e-15 * (free.abs() + alpha.abs()) || !residual.is_finite() {
+            // Not (free - next)/soft, which has the error of α over that of a short step's small `soft`.
+            return (c.force + c.tangent * correction, calls);
+        }
+        alpha = if next > low && next < high { next } else { 0.5 * (low + high) };
+    }
+    ((free - alpha) / soft, 100)
+}
