@@ -22,6 +22,12 @@ const PER_ENTRY: f64 = 32.0;
 /// A basis, and what it is made from.
 const BASES: f64 = 3.0;
 
+/// Places of a cell's unknowns, kept under large displacements in lists that have grown, bytes per unknown of a cell.
+const PER_PLACE: f64 = 96.0;
+/// Of a reduced plate that stiffens, per contact: membrane strains, and forms of these and of its stresses.
+const STRAINS: usize = 25;
+const FORMS: usize = 40;
+
 /// What a computation holds at its peak, bytes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
@@ -33,15 +39,24 @@ pub struct Estimate {
     pub factor: f64,
     /// Vectors over all unknowns: the basis of a reduction, displacements.
     pub vectors: f64,
+    /// What large displacements need beside.
+    pub large: f64,
 }
 
 /// Sizes of the parts for people, largest first.
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { model, matrices, factor, vectors } = *self;
-        let mut parts = [("model", model), ("stiffness and mass", matrices), ("factor", factor), ("vectors", vectors)];
+        let Self { model, matrices, factor, vectors, large } = *self;
+        let mut parts = [
+            ("model", model),
+            ("stiffness and mass", matrices),
+            ("factor", factor),
+            ("vectors", vectors),
+            ("large displacements", large),
+        ];
         parts.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let parts = parts.map(|(name, bytes)| format!("{name} {}", size(bytes)));
+        let parts = parts.iter().filter(|(_, bytes)| *bytes > 0.0);
+        let parts: Vec<_> = parts.map(|(name, bytes)| format!("{name} {}", size(*bytes))).collect();
         f.write_str(&parts.join(", "))
     }
 }
@@ -61,12 +76,30 @@ impl Estimate {
             matrices: PER_ENTRY * entries,
             factor: symbolic.bytes(),
             vectors: 8.0 * BASES * vectors as f64 * n,
+            large: if model.effects.membrane { Self::large(model, n, vectors) } else { 0.0 },
+        }
+    }
+
+    fn large(model: &Model, n: f64, vectors: usize) -> f64 {
+        let plate = &model.plate;
+        match &model.plan {
+            Plan::Impact(impact) if impact.reduction.is_some() => {
+                let [strains, forms] = [STRAINS, FORMS].map(|count| (count * impact.strikes.len()) as f64);
+                // Forces and shapes of the strains; they and the modes before the elimination of constraints.
+                let fields = BASES * strains * n + (strains + vectors as f64) * plate.ndof() as f64;
+                8.0 * (fields + forms * (vectors * vectors) as f64)
+            }
+            // A copy of mesh and constraints as well.
+            _ => {
+                PER_PLACE * (plate.kept_cells().count() * plate.info().ndof()) as f64
+                    + PER_UNKNOWN * plate.ndof() as f64
+            }
         }
     }
 
     /// All of it.
     pub fn bytes(&self) -> f64 {
-        self.model + self.matrices + self.factor + self.vectors
+        self.model + self.matrices + self.factor + self.vectors + self.large
     }
 }
 

@@ -16,7 +16,6 @@ use fem_core::structure::Tangent;
 use fem_core::time::{Integrator, State};
 use fem_dynamics::guard::Guard;
 use fem_dynamics::impact::ImpactSystem;
-use fem_dynamics::reduce::Stiffened;
 use fem_failure::scan::{self, Scan};
 use fem_io::files::OutputDir;
 use miette::Diagnostic;
@@ -191,6 +190,7 @@ impl<'a> March<'a> {
         let Prepared { model, impact, mut system, sag, reduced, stiffened, full, condensation, .. } = prepared;
         let Prepared { sizes, counters, mut stopwatch, .. } = prepared;
         stopwatch.lap("reduce");
+        let (stiffened, companions) = stiffened.unzip();
         let mut estimates = Estimates::default();
         // Here, where nothing else takes memory yet beside the full plate.
         if let (Some(reduced), Some(full)) = (&reduced, full) {
@@ -200,7 +200,6 @@ impl<'a> March<'a> {
         }
         let followed = model.scene.output.modes.as_ref().zip(reduced.as_ref());
         let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
-        let companions = stiffened.map(Stiffened::into_companions);
         let watch =
             if model.criteria.is_empty() { None } else { Some(Watch::new(model, reduced, companions, condensation)?) };
         stopwatch.lap("prepare stresses");

@@ -16,7 +16,7 @@ use fem_core::structure::{SolveError, Structure};
 use fem_core::time::{Integrator, StepError};
 use fem_dynamics::impact::{ImpactSystem, Impactor, Weight};
 use fem_dynamics::limit::{self, TooLong};
-use fem_dynamics::reduce::{Reduced, Stiffened, static_responses};
+use fem_dynamics::reduce::{Companions, Reduced, Stiffened, static_responses};
 use fem_io::scene;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -36,8 +36,8 @@ pub struct Prepared<'a> {
     /// Displacements at rest under gravity, from which those of the system count.
     pub(super) sag: Option<Vec<f64>>,
     pub(super) reduced: Option<Reduced>,
-    /// A reduced plate that its deflections stretch.
-    pub(super) stiffened: Option<Stiffened>,
+    /// A reduced plate that its deflections stretch, and what it does beside its modes.
+    pub(super) stiffened: Option<(Stiffened, Companions)>,
     /// What a reduced model was made from.
     pub(super) full: Option<Full>,
     pub(super) condensation: Option<Condensation>,
@@ -277,7 +277,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         None => (Box::new(structure), None),
         Some(r) => {
             let modal: Box<dyn Structure> = match &stiffened {
-                Some(stiffened) => Box::new(stiffened.clone()),
+                Some((stiffened, _)) => Box::new(stiffened.clone()),
                 None => Box::new(r.modal.clone()),
             };
             (modal, Some(Full { structure, contacts }))

@@ -64,7 +64,6 @@ pub struct Stiffened {
     stiffness: Vec<f64>,
     /// c_t, one after the other; empty where none matters.
     couplings: Vec<f64>,
-    companions: Companions,
     factor: Option<Cholesky<f64, Dyn>>,
     /// B_t q.
     products: Vec<f64>,
@@ -93,7 +92,8 @@ impl Companions {
 }
 
 impl Stiffened {
-    /// Finds how the modes of `reduced` that the static response to `contacts` calls for stretch the plate `structure`.
+    /// Finds how the modes of `reduced` that the static response to `contacts` calls for stretch the plate `structure`, and what
+    /// it does beside them.
     ///
     /// # Errors
     /// A structure that is not held, a cell that cannot be integrated.
@@ -102,7 +102,7 @@ impl Stiffened {
         reduced: &Reduced,
         contacts: &[Functional],
         stretching: &dyn Stretching,
-    ) -> Result<Self, ReductionError> {
+    ) -> Result<(Self, Companions), ReductionError> {
         let failed = |e: SolveError| ReductionError(e.0);
         let (n, rigid) = (reduced.ndof, &reduced.modal.stiffness);
         let loads: Vec<Vec<f64>> = contacts.iter().map(|contact| reduced.restrict(contact)).collect();
@@ -146,29 +146,17 @@ impl Stiffened {
         // What the modes that a term is coupled to give way by.
         let taken = couplings.column_iter().flat_map(|c| c.into_iter().zip(rigid).map(|(c, k)| c * c / k));
         let coupled = taken.fold(0.0, f64::max) > NEGLIGIBLE * stiffness.max();
-        Ok(Self {
+        let stiffened = Self {
             modal: reduced.modal.clone(),
             forms: counted(forms(&(&combinations * &turn), Some(&(&shapes * &turn)))?, &stiffness),
             couplings: if coupled { couplings.as_slice().to_vec() } else { Vec::new() },
             products: vec![0.0; rigid.len() * stiffness.len()],
             values: vec![0.0; stiffness.len()],
             stiffness: stiffness.as_slice().to_vec(),
-            companions: Companions {
-                forms: counted(forms(&combinations, None)?, &energies),
-                shapes: shapes.as_slice().to_vec(),
-            },
             factor: None,
-        })
-    }
-
-    /// Patterns of membrane stress.
-    pub fn patterns(&self) -> usize {
-        self.stiffness.len()
-    }
-
-    /// What the plate does beside its modes.
-    pub fn into_companions(self) -> Companions {
-        self.companions
+        };
+        let forms = counted(forms(&combinations, None)?, &energies);
+        Ok((stiffened, Companions { forms, shapes: shapes.as_slice().to_vec() }))
     }
 
     /// Finds B_t q and b_t.
