@@ -203,14 +203,6 @@ impl Constraints {
         Ok(Self { starts, terms, offset, independent, redundant })
     }
 
-    /// No equations: all unknowns are independent, numbered in `order`.
-    pub(crate) fn none(order: &[usize]) -> Self {
-        let mut terms = vec![(0, 1.0); order.len()];
-        order.iter().enumerate().for_each(|(i, dof)| terms[*dof].0 = i);
-        let (starts, offset) = ((0..=order.len()).collect(), vec![0.0; order.len()]);
-        Self { starts, terms, offset, independent: order.to_vec(), redundant: Vec::new() }
-    }
-
     /// Number of independent unknowns.
     pub fn ndof(&self) -> usize {
         self.independent.len()
@@ -232,6 +224,37 @@ impl Constraints {
             [(i, _)] if self.independent[*i] == dof => Some(*i),
             _ => None,
         }
+    }
+
+    /// A functional of all unknowns as one of the independent ones: Cᵀ w.
+    pub fn restrict(&self, w: &[(usize, f64)]) -> Vec<(usize, f64)> {
+        let mut sum = BTreeMap::new();
+        for (dof, factor) in w {
+            for (i, c) in self.row(*dof).0 {
+                *sum.entry(*i).or_insert(0.0) += factor * c;
+            }
+        }
+        sum.into_iter().filter(|(_, w)| *w != 0.0).collect()
+    }
+
+    /// All unknowns from the independent ones.
+    pub fn expand(&self, independent: &[f64], all: &mut [f64]) {
+        for (dof, u) in all.iter_mut().enumerate() {
+            let (terms, offset) = self.row(dof);
+            *u = offset + terms.iter().map(|(i, c)| c * independent[*i]).sum::<f64>();
+        }
+    }
+}
+
+/// Parts of a plate, as substructures are.
+#[cfg(feature = "assembly")]
+impl Constraints {
+    /// No equations: all unknowns are independent, numbered in `order`.
+    pub(crate) fn none(order: &[usize]) -> Self {
+        let mut terms = vec![(0, 1.0); order.len()];
+        order.iter().enumerate().for_each(|(i, dof)| terms[*dof].0 = i);
+        let (starts, offset) = ((0..=order.len()).collect(), vec![0.0; order.len()]);
+        Self { starts, terms, offset, independent: order.to_vec(), redundant: Vec::new() }
     }
 
     /// The same with the independent unknowns `kept` alone, numbered in their order; the others count as zero.
@@ -260,25 +283,6 @@ impl Constraints {
         }
         let offset = unknowns.iter().map(|dof| self.offset[*dof]).collect();
         Self { starts, terms, offset, independent: Vec::new(), redundant: Vec::new() }
-    }
-
-    /// A functional of all unknowns as one of the independent ones: Cᵀ w.
-    pub fn restrict(&self, w: &[(usize, f64)]) -> Vec<(usize, f64)> {
-        let mut sum = BTreeMap::new();
-        for (dof, factor) in w {
-            for (i, c) in self.row(*dof).0 {
-                *sum.entry(*i).or_insert(0.0) += factor * c;
-            }
-        }
-        sum.into_iter().filter(|(_, w)| *w != 0.0).collect()
-    }
-
-    /// All unknowns from the independent ones.
-    pub fn expand(&self, independent: &[f64], all: &mut [f64]) {
-        for (dof, u) in all.iter_mut().enumerate() {
-            let (terms, offset) = self.row(dof);
-            *u = offset + terms.iter().map(|(i, c)| c * independent[*i]).sum::<f64>();
-        }
     }
 }
 
