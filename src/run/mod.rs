@@ -1,20 +1,23 @@
 //! The main job: assemble, reduce, march, scan.
 
 mod accuracy;
+mod assembled;
 mod checkpoint;
 mod ledger;
 mod march;
 mod membrane;
 mod modal;
 mod prepare;
+mod sag;
 pub(crate) mod saved;
 
 pub use crate::stress::IndexHistory;
 pub use accuracy::{Accuracy, ReductionError, Residual, StepError};
+pub use assembled::{Assembled, structure};
 pub use checkpoint::Checkpoint;
 pub use march::{BALANCE_EVERY, March, march};
 pub use modal::{ModalHistory, ModeShare};
-pub use prepare::{Assembled, Prepared, prepare, structure};
+pub use prepare::{Prepared, prepare};
 pub use saved::CheckpointError;
 
 use crate::cost::Phase;

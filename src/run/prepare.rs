@@ -1,25 +1,24 @@
 //! Assemble, reduce, couple to the impactors.
 
+use super::Sizes;
+use super::assembled::{Assembled, structure};
 use super::membrane::StretchOf;
-use super::{Sizes, Substructures};
+use super::sag::Sag;
 use crate::cost::Stopwatch;
 use crate::error::Error;
-use crate::memory::{self, Estimate};
 use crate::model::{Impact, Model, Plan, Strike};
-use fem_core::assembly::{Condensation, Condensed, LargePlate, Matrix, SparseStructure, assemble, condense, pattern};
+use fem_core::assembly::{Condensation, LargePlate, SparseStructure};
 use fem_core::counters::Counters;
 use fem_core::damping::Damping;
-use fem_core::load;
 use fem_core::prolongation::Prolongation;
 use fem_core::reduction::{Functional, ReductionError};
 use fem_core::structure::{SolveError, Structure};
 use fem_core::time::{Integrator, StepError};
-use fem_dynamics::impact::{ImpactSystem, Impactor, Weight};
+use fem_dynamics::impact::{ImpactSystem, Impactor};
 use fem_dynamics::limit::{self, TooLong};
 use fem_dynamics::reduce::{Companions, Reduced, Stiffened, static_responses};
 use fem_io::scene;
 use std::num::NonZeroUsize;
-use std::sync::Arc;
 
 /// Governors offered to a reduction.
 const GOVERNORS: usize = 2000;
@@ -55,140 +54,11 @@ pub(super) struct Full {
     pub(super) contacts: Vec<Functional>,
 }
 
-/// A plate under its own weight.
-#[derive(Debug)]
-struct Sag {
-    /// Forces, N.
-    load: Vec<f64>,
-    /// Displacements.
-    u: Vec<f64>,
-}
-
-impl Sag {
-    fn of(model: &Model, gravity: f64, assembled: &mut Assembled) -> Result<Self, Error> {
-        let mut forces = vec![0.0; model.plate.ndof()];
-        load::gravity(&model.plate, &*model.element, [0.0, 0.0, -gravity], &mut forces)?;
-        let forces: Vec<(usize, f64)> = forces.into_iter().enumerate().collect();
-        let mut load = vec![0.0; model.constraints.ndof()];
-        Functional(model.constraints.restrict(&forces)).add_to(1.0, &mut load);
-        let mut u = load.clone();
-        assembled.structure.solve_shifted(0.0, &mut u, 1)?;
-        Ok(Self { load, u })
-    }
-
-    /// The same in the coordinates of a reduced plate that can sag.
-    fn within(self, reduced: &Reduced) -> Self {
-        let load = reduced.restrict(&Functional(self.load.into_iter().enumerate().collect()));
-        let u = load.iter().zip(reduced.modal.stiffnesses()).map(|(f, k)| f / k).collect();
-        Self { load, u }
-    }
-
-    fn weight(&self, acceleration: f64) -> Weight {
-        let sag = 0.5 * self.load.iter().zip(&self.u).map(|(f, u)| f * u).sum::<f64>();
-        Weight { acceleration, load: self.load.clone(), sag }
-    }
-}
-
-/// K and M of a model, condensed on its masters where the scene divides the plate into substructures.
-#[derive(Debug)]
-pub struct Assembled {
-    /// Both matrices.
-    pub structure: SparseStructure,
-    /// Entries of the factor of K.
-    pub factor_entries: usize,
-    /// What the computation takes at its peak, as it is expected.
-    pub memory: Estimate,
-    /// From the masters to the independent unknowns of the model.
-    pub condensation: Option<Condensation>,
-}
-
 impl Full {
     /// Right-hand sides solved for so far.
     pub(super) fn solves(&self) -> u64 {
         self.structure.work().1
     }
-}
-
-impl Assembled {
-    /// A load on the independent unknowns as one on those of the structure, and the displacements that come on top of
-    /// what follows from these, if any.
-    pub fn load(&self, f: &[f64]) -> (Vec<f64>, Option<Vec<f64>>) {
-        match &self.condensation {
-            None => (f.to_vec(), None),
-            Some(condensation) => {
-                let (on_masters, own) = condensation.load(f);
-                (on_masters, Some(own))
-            }
-        }
-    }
-
-    /// Displacements of all independent unknowns.
-    pub fn expand(&self, u: Vec<f64>) -> Vec<f64> {
-        match &self.condensation {
-            None => u,
-            Some(condensation) => condensation.expand(&u),
-        }
-    }
-
-    /// Independent unknown that one of the structure stands for.
-    pub fn independent(&self, i: usize) -> usize {
-        self.condensation.as_ref().map_or(i, |condensation| condensation.independent(i))
-    }
-
-    /// How the plate is divided, if it is.
-    pub fn substructures(&self) -> Option<Substructures> {
-        let condensation = self.condensation.as_ref()?;
-        let (count, condensed) = condensation.counts();
-        Some(Substructures { count, condensed, masters: condensation.ndof() })
-    }
-
-    fn functional(&self, w: &Functional) -> Functional {
-        let Some(condensation) = &self.condensation else { return w.clone() };
-        let mut f = vec![0.0; condensation.independents()];
-        w.add_to(1.0, &mut f);
-        let on_masters = condensation.load(&f).0.into_iter().enumerate();
-        Functional(on_masters.filter(|(_, w)| *w != 0.0).collect())
-    }
-
-    /// Those of some independent unknowns that the structure has.
-    fn own(&self, unknowns: Vec<usize>) -> Vec<usize> {
-        match &self.condensation {
-            None => unknowns,
-            Some(condensation) => unknowns.into_iter().filter_map(|i| condensation.master(i)).collect(),
-        }
-    }
-}
-
-/// Assembles K and M of `model`. M is left zero where `inertia` is not wanted.
-///
-/// # Errors
-/// A cell that the element refuses, more memory than there is.
-pub fn structure(
-    model: &Model,
-    inertia: bool,
-    threads: NonZeroUsize,
-    counters: &mut Counters,
-) -> Result<Assembled, Error> {
-    let Model { plate, element, constraints, division, .. } = model;
-    let (described, originals) = (plate.clone(), constraints.clone());
-    let name = move |i: usize| described.describe(originals.original(i));
-    let Some(division) = division else {
-        let pattern = Arc::new(pattern(plate, constraints));
-        let (symbolic, memory) = memory::analysed(model, pattern.clone())?;
-        let mut matrix = |which| assemble(plate, &**element, constraints, &pattern, which, threads, counters);
-        let k = matrix(Matrix::Stiffness)?;
-        let m = if inertia { matrix(Matrix::Mass)? } else { vec![0.0; k.len()] };
-        let factor_entries = symbolic.entries();
-        let structure = SparseStructure::new(symbolic, k, m, threads, name);
-        return Ok(Assembled { structure, factor_entries, memory, condensation: None });
-    };
-    let Condensed { pattern, k, m, way } =
-        condense(plate, &**element, constraints, division, inertia, threads, counters)?;
-    let (symbolic, memory) = memory::analysed(model, Arc::new(pattern))?;
-    let factor_entries = symbolic.entries();
-    let masters: Vec<usize> = (0..way.ndof()).map(|i| way.independent(i)).collect();
-    let structure = SparseStructure::new(symbolic, k, m, threads, move |i| name(masters[i]));
-    Ok(Assembled { structure, factor_entries, memory, condensation: Some(way) })
 }
 
 /// Assembles and reduces `model` and checks the step.
