@@ -2,6 +2,7 @@
 
 mod chatter;
 mod contact;
+mod large;
 mod marches;
 mod plate;
 mod steps;
@@ -16,7 +17,10 @@ use fem::dynamics::integrate::located;
 use plate::Navier;
 
 pub(crate) fn cases() -> Vec<Case> {
-    [steps::cases(), contact::cases(), chatter::cases(), marches::cases()].into_iter().flatten().collect()
+    [steps::cases(), contact::cases(), chatter::cases(), marches::cases(), large::cases()]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// The energy error at which a run stops.
