@@ -81,10 +81,16 @@ impl Case {
         fem(self.folder(), &[&[command, scene], options].concat())
     }
 
-    /// Starts `fem run plate/scene.toml OPTIONS` and does not wait for it.
+    /// Starts `fem run plate/scene.toml OPTIONS` and does not wait for it. It hears all signals, also where the tests were
+    /// started in the background of a script, whose Ctrl-C is ignored by all that descends from it.
     pub(crate) fn spawn(&self, options: &[&str]) -> Child {
         let scene = self.write();
-        Command::new(env!("CARGO_BIN_EXE_fem"))
+        let fem = env!("CARGO_BIN_EXE_fem");
+        let mut command = Command::new(if cfg!(target_os = "linux") { "env" } else { fem });
+        if cfg!(target_os = "linux") {
+            command.args(["--default-signal=INT,TERM,HUP", fem]);
+        }
+        command
             .args([&["run", scene], options].concat())
             .current_dir(self.folder())
             .stdin(Stdio::null())
