@@ -5,6 +5,7 @@
 //! [`SceneError`] that shows the line.
 
 mod effects;
+pub(crate) mod keys;
 mod laminate;
 mod load;
 pub(crate) mod material;
@@ -20,6 +21,7 @@ mod tests;
 pub(crate) mod tree;
 
 pub use effects::{Damage, Delamination, EFFECTS, EffectInfo, Effects, Switch};
+pub use keys::Plugins;
 pub use load::{Load, LoadKind, Pressure, ProfileLine};
 pub use plugin::PluginSpec;
 pub use run::{
@@ -35,9 +37,10 @@ use fem_core::laminate::Laminate;
 use fem_core::material::Material;
 use fem_core::mesh::Curves;
 use fem_core::plate::ZDerivatives;
-use fem_core::plugin::Dimension;
+use fem_core::plugin::{Dimension, Kind};
 use fem_core::symmetry::Group;
-use reader::{Field, Keys, Reader};
+use keys::{Form, Key, Keys, key, words};
+use reader::{Field, Reader};
 use source::Origin;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -183,44 +186,157 @@ pub fn refined_cells(cells: usize, times: u32) -> Result<usize, String> {
         .ok_or_else(|| format!("refining {times} times makes more than {MAX_CELLS} cells of {cells}"))
 }
 
-const KEYS: Keys = &[
-    ("title", r#""16 plies, 2.49 kg at 1.56 m/s""#),
-    ("fidelity", r#""engineering""#),
-    ("analysis", r#""static""#),
-    ("mesh", r#"{ file = "plate.msh", unit = "mm" }"#),
-    ("symmetry", r#""half-turn""#),
-    ("materials", r#"{ as4-3502 = { library = "AS4/3502" } }"#),
-    ("laminate", r#"{ plies = "[0/45/-45/90]2s", material = "as4-3502", ply_thickness = "0.13208 mm" }"#),
-    ("element", r#"{ kind = "hermite-prism" }"#),
-    ("support", r#"[{ group = "support", at = "mid-plane", fix = ["U30"] }, { restrain = "rigid-motions" }]"#),
-    ("equation", r#"[{ terms = [{ group = "a", at = "top", dof = "U10", factor = 1.0 }] }]"#),
-    ("couple", r#"[{ group = "edge", at = "all", dofs = ["U30"] }]"#),
-    ("substructures", "{ cells = [5, 5] }"),
-    ("impactor", r#"{ mass = "2.49 kg", velocity = "1.56 m/s", at = { group = "impact" } }"#),
-    ("contact", r#"{ law = "sun-yang", k = "1.07e5 N/mm^1.5", n = 1.5, m = 2.5, critical = "0.08 mm", beta = 0.4 }"#),
-    ("effects", r#"{ damage = "onset" }"#),
-    ("load", r#"[{ pressure = "1 MPa", face = "top" }]"#),
-    ("modes", "{ count = 10 }"),
-    ("profile", r#"[{ name = "centre", at = { x = "50 mm", y = "50 mm" }, points = 5 }]"#),
-    ("reduction", r#"{ method = "craig-bampton", modes = 40 }"#),
-    ("march", r#"{ integrator = "newmark", step = "0.5 us", end = "1 ms" }"#),
-    ("failure", r#"{ criteria = ["hashin-report"] }"#),
-    ("output", "{ plots = true }"),
-    ("study", r#"{ quantities = ["peak-force"] }"#),
+const ANALYSES: [(&str, usize); 3] = [("impact", 0), ("static", 1), ("modes", 2)];
+const Z_DERIVATIVES: [(&str, ZDerivatives); 2] =
+    [("shared", ZDerivatives::Shared), ("layer-wise", ZDerivatives::LayerWise)];
+
+pub(crate) const KEYS: Keys = &[
+    key("title", Form::Text, r#""16 plies, 2.49 kg at 1.56 m/s""#, "what it is about; heads results and pictures")
+        .required(),
+    key("fidelity", Form::Words(&words(&Fidelity::ALL)), r#""engineering""#, "preset beneath the keys of the scene")
+        .default(r#""engineering""#),
+    key("analysis", Form::Words(&words(&ANALYSES)), r#""static""#, "what is computed").default(r#""impact""#),
+    key("mesh", Form::OneOf(MESHES), r#"{ file = "plate.msh", unit = "mm" }"#, "cells of the plate in its plane")
+        .required(),
+    key(
+        "symmetry",
+        Form::Words(&words(&Group::ALL)),
+        r#""half-turn""#,
+        "by what plate, supports and loads are symmetric: a part of the plate is computed",
+    ),
+    key(
+        "materials",
+        Form::Named(&Form::Table(material::KEYS)),
+        r#"{ as4-3502 = { library = "AS4/3502" } }"#,
+        "materials under names of your own",
+    )
+    .required(),
+    key(
+        "laminate",
+        Form::Table(laminate::KEYS),
+        r#"{ plies = "[0/45/-45/90]2s", material = "as4-3502", ply_thickness = "0.13208 mm" }"#,
+        "plies, and the layers of cells that hold them",
+    )
+    .required(),
+    key(
+        "element",
+        Form::Plugin(
+            Kind::Element,
+            "kind",
+            &[key(
+                "z_derivatives",
+                Form::Words(&words(&Z_DERIVATIVES)),
+                r#""layer-wise""#,
+                "whether layers of cells share their derivatives along z",
+            )
+            .default(r#""shared""#)],
+        ),
+        r#"{ kind = "hermite-prism" }"#,
+        "element of the cells: `fem list elements`",
+    )
+    .required(),
+    key(
+        "support",
+        Form::List(&Form::OneOf(support::SUPPORTS)),
+        r#"[{ group = "support", at = "mid-plane", fix = ["U30"] }, { restrain = "rigid-motions" }]"#,
+        "what holds the plate",
+    ),
+    key(
+        "equation",
+        Form::List(&Form::Table(support::EQUATION)),
+        r#"[{ terms = [{ group = "a", at = "top", dof = "U10", factor = 1.0 }] }]"#,
+        "linear equations between unknowns",
+    ),
+    key(
+        "couple",
+        Form::List(&Form::Table(support::COUPLE)),
+        r#"[{ group = "edge", at = "all", dofs = ["U30"] }]"#,
+        "sets of nodes that move together",
+    ),
+    key(
+        "substructures",
+        Form::Table(substructures::KEYS),
+        "{ cells = [5, 5] }",
+        "parts of the plate that are condensed on their outlines",
+    ),
+    key(
+        "impactor",
+        Form::OneOf(&[Form::Table(run::IMPACTOR), Form::List(&Form::Table(run::IMPACTOR))]),
+        r#"{ mass = "2.49 kg", velocity = "1.56 m/s", at = { group = "impact" } }"#,
+        "what strikes the plate from above; a list for several",
+    ),
+    key(
+        "contact",
+        Form::Plugin(Kind::Contact, "law", &[]),
+        r#"{ law = "sun-yang", k = "1.07e5 N/mm^1.5", n = 1.5, m = 2.5, critical = "0.08 mm", beta = 0.4 }"#,
+        "contact law: `fem list contact-laws`",
+    ),
+    key("effects", Form::Table(effects::KEYS), r#"{ damage = "onset" }"#, "what is simulated beyond the linear plate"),
+    key("load", Form::List(&Form::OneOf(load::LOADS)), r#"[{ pressure = "1 MPa", face = "top" }]"#, "loads at rest"),
+    key("modes", Form::Table(MODES), "{ count = 10 }", "natural modes that are found"),
+    key(
+        "profile",
+        Form::List(&Form::Table(load::PROFILE)),
+        r#"[{ name = "centre", at = { x = "50 mm", y = "50 mm" }, points = 5 }]"#,
+        "lines through the thickness along which stresses are written",
+    ),
+    key(
+        "reduction",
+        Form::Plugin(Kind::Reduction, "method", &[]),
+        r#"{ method = "craig-bampton", modes = 40 }"#,
+        "reduction of the plate to few unknowns: `fem list reductions`",
+    ),
+    key(
+        "march",
+        Form::Table(run::MARCH),
+        r#"{ integrator = "newmark", step = "0.5 us", end = "1 ms" }"#,
+        "the march in time",
+    ),
+    key(
+        "failure",
+        Form::Table(run::FAILURE),
+        r#"{ criteria = ["hashin-report"] }"#,
+        "where and when failure is looked for",
+    ),
+    key("output", Form::Table(run::OUTPUT), "{ plots = true }", "what is written"),
+    key(
+        "study",
+        Form::Table(study::KEYS),
+        r#"{ quantities = ["peak-force"] }"#,
+        "what `fem study` varies and looks at",
+    ),
 ];
-const MESH: Keys = &[
-    ("file", r#""plate.msh""#),
-    ("unit", r#""mm""#),
-    ("rectangle", r#"["100 mm", "50 mm"]"#),
-    ("cells", "[8, 4]"),
-    ("refine", "1"),
-    ("curves", r#""kept""#),
+
+/// Where a mesh may come from.
+const MESHES: &[Form] = &[Form::Table(FILE), Form::Table(RECTANGLE)];
+const FILE: Keys = &[
+    key("file", Form::Text, r#""plate.msh""#, "a mesh of gmsh, MSH 4.1; counts from the folder of the scene")
+        .required(),
+    key("unit", Form::Text, r#""mm""#, "unit of its coordinates").required(),
+    REFINE,
+    key(
+        "curves",
+        Form::Words(&words(&Curves::ALL)),
+        r#""kept""#,
+        "what becomes of curved edges when cells are divided",
+    )
+    .default(r#""kept""#),
 ];
-const FILE: Keys = &[("file", r#""plate.msh""#), ("unit", r#""mm""#), ("refine", "1"), ("curves", r#""kept""#)];
-const RECTANGLE: Keys = &[("rectangle", r#"["100 mm", "50 mm"]"#), ("cells", "[8, 4]"), ("refine", "1")];
+const RECTANGLE: Keys = &[
+    key(
+        "rectangle",
+        Form::Several(2, &Form::Quantity(Dimension::LENGTH)),
+        r#"["100 mm", "50 mm"]"#,
+        "edges along x and y, from the origin; its groups are x-min, x-max, y-min, y-max and plate",
+    )
+    .required(),
+    key("cells", Form::Several(2, &Form::Count(1)), "[8, 4]", "cells along x and y").required(),
+    REFINE,
+];
+const REFINE: Key = key("refine", Form::Count(0), "1", "how often every cell is divided into four").default("0");
 /// Natural frequencies unless a scene says how many.
 pub const DEFAULT_MODES: usize = 10;
-const MODES: Keys = &[("count", "10")];
+const MODES: Keys = &[key("count", Form::Count(1), "10", "how many of the lowest modes").default("10")];
 
 /// Most cells of a built-in or refined mesh: more is a slip.
 const MAX_CELLS: usize = 4_000_000;
@@ -323,7 +439,7 @@ fn read_analysis(root: &Reader<'_>, effects: &Effects) -> Result<Analysis, Scene
         })
     };
     let which = match root.optional("analysis") {
-        Some(field) => field.choice(&[("impact", 0), ("static", 1), ("modes", 2)])?,
+        Some(field) => field.choice(&ANALYSES)?,
         None => 0,
     };
     match which {
@@ -350,7 +466,7 @@ fn read_analysis(root: &Reader<'_>, effects: &Effects) -> Result<Analysis, Scene
 }
 
 fn read_mesh(field: &Field<'_>, scene: &Path) -> Result<MeshSource, SceneError> {
-    let any = field.table(MESH)?;
+    let any = field.table_of(MESHES)?;
     if any.optional("rectangle").is_some() {
         return read_rectangle(&field.table(RECTANGLE)?);
     }
@@ -399,10 +515,8 @@ fn pair<T>(field: &Field<'_>, read: impl Fn(&Field<'_>) -> Result<T, SceneError>
 
 /// `shared` where neither scene nor preset says.
 fn read_z_derivatives(element: &Field<'_>) -> Result<Located<ZDerivatives>, SceneError> {
-    const WORDS: [(&str, ZDerivatives); 2] =
-        [("shared", ZDerivatives::Shared), ("layer-wise", ZDerivatives::LayerWise)];
     match element.entries()?.iter().find(|(key, _)| *key == "z_derivatives") {
-        Some((_, field)) => Ok(field.at(field.choice(&WORDS)?)),
+        Some((_, field)) => Ok(field.at(field.choice(&Z_DERIVATIVES)?)),
         None => Ok(element.at(ZDerivatives::Shared)),
     }
 }
