@@ -72,16 +72,24 @@ pub(super) fn find(field: &Field<'_>, materials: &[Located<Material>]) -> Result
 
 fn read(name: &str, field: &Field<'_>, folder: &Path) -> Result<Material, SceneError> {
     let own = field.table(KEYS)?;
-    let over = |below: Table, source: &Arc<SceneSource>| {
-        let merged = field.any_table()?.clone().over(below);
-        from_constants(name, &own.of(&merged, KEYS, source)?)
-    };
+    match whole(field, folder)? {
+        None => from_constants(name, &own),
+        Some((merged, source)) => from_constants(name, &own.of(&merged, KEYS, &source)?),
+    }
+}
+
+/// A material with the constants of the library or of the file that it names beneath its own, if it names one, and the
+/// texts that they stand in.
+pub(super) fn whole(field: &Field<'_>, folder: &Path) -> Result<Option<(Table, Arc<SceneSource>)>, SceneError> {
+    let own = field.table(KEYS)?;
+    let over = |below: &Table| Ok::<_, SceneError>(field.any_table()?.clone().over(below.clone()));
     match (own.optional("library"), own.optional("file"), own.optional("name")) {
         (Some(_), Some(stray), _) => Err(stray.error("does not go with `library`", "leave one of the two out")),
         (_, None, Some(stray)) => Err(stray.error("means nothing without `file`", "add the file or leave it out")),
-        (None, None, None) => from_constants(name, &own),
+        (None, None, None) => Ok(None),
         (Some(library), None, None) => {
-            over(materials::all()[library.word(materials::names())?].table.clone(), field.source())
+            let known = &materials::all()[library.word(materials::names())?];
+            Ok(Some((over(&known.table)?, Arc::clone(field.source()))))
         }
         (None, Some(file), _) => {
             let path = folder.join(file.text()?);
@@ -92,7 +100,7 @@ fn read(name: &str, field: &Field<'_>, folder: &Path) -> Result<Material, SceneE
             let source = Arc::new(source);
             let given = materials::parse(&text, &source)?;
             let which = own.required("name")?.word(given.iter().map(|m| m.material.name.as_str()))?;
-            over(given[which].table.clone(), &source)
+            Ok(Some((over(&given[which].table)?, source)))
         }
     }
 }

@@ -4,14 +4,18 @@
 //! [`Fidelity`]; plug-ins are named with their parameters and checked by whoever knows them. Whatever is wrong becomes a
 //! [`SceneError`] that shows the line.
 
+mod annotate;
 mod effects;
+mod explain;
 pub(crate) mod keys;
 mod laminate;
 mod load;
 pub(crate) mod material;
 mod plugin;
 pub(crate) mod reader;
+mod root;
 mod run;
+mod schema;
 pub(crate) mod source;
 mod study;
 mod substructures;
@@ -20,13 +24,16 @@ mod support;
 mod tests;
 pub(crate) mod tree;
 
+pub use annotate::annotated;
 pub use effects::{Damage, Delamination, EFFECTS, EffectInfo, Effects, Switch};
+pub use explain::{Explained, explain};
 pub use keys::Plugins;
 pub use load::{Load, LoadKind, Pressure, ProfileLine};
 pub use plugin::PluginSpec;
 pub use run::{
     ContactLoad, CriterionSpec, Depth, Failure, Impact, ImpactPoint, Impactor, IndexWatch, March, Output, Window,
 };
+pub use schema::schema;
 pub use source::{Located, Place, SceneError, SceneSource};
 pub use study::{OwnAxis, Quantity, Setting, Study, rewrite};
 pub use substructures::{Masters, Parts, Substructures};
@@ -37,10 +44,11 @@ use fem_core::laminate::Laminate;
 use fem_core::material::Material;
 use fem_core::mesh::Curves;
 use fem_core::plate::ZDerivatives;
-use fem_core::plugin::{Dimension, Kind};
+use fem_core::plugin::Dimension;
 use fem_core::symmetry::Group;
 use keys::{Form, Key, Keys, key, words};
 use reader::{Field, Reader};
+use root::{ANALYSES, KEYS, Which, Z_DERIVATIVES};
 use source::Origin;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -186,127 +194,6 @@ pub fn refined_cells(cells: usize, times: u32) -> Result<usize, String> {
         .ok_or_else(|| format!("refining {times} times makes more than {MAX_CELLS} cells of {cells}"))
 }
 
-const ANALYSES: [(&str, usize); 3] = [("impact", 0), ("static", 1), ("modes", 2)];
-const Z_DERIVATIVES: [(&str, ZDerivatives); 2] =
-    [("shared", ZDerivatives::Shared), ("layer-wise", ZDerivatives::LayerWise)];
-
-pub(crate) const KEYS: Keys = &[
-    key("title", Form::Text, r#""16 plies, 2.49 kg at 1.56 m/s""#, "what it is about; heads results and pictures")
-        .required(),
-    key("fidelity", Form::Words(&words(&Fidelity::ALL)), r#""engineering""#, "preset beneath the keys of the scene")
-        .default(r#""engineering""#),
-    key("analysis", Form::Words(&words(&ANALYSES)), r#""static""#, "what is computed").default(r#""impact""#),
-    key("mesh", Form::OneOf(MESHES), r#"{ file = "plate.msh", unit = "mm" }"#, "cells of the plate in its plane")
-        .required(),
-    key(
-        "symmetry",
-        Form::Words(&words(&Group::ALL)),
-        r#""half-turn""#,
-        "by what plate, supports and loads are symmetric: a part of the plate is computed",
-    ),
-    key(
-        "materials",
-        Form::Named(&Form::Table(material::KEYS)),
-        r#"{ as4-3502 = { library = "AS4/3502" } }"#,
-        "materials under names of your own",
-    )
-    .required(),
-    key(
-        "laminate",
-        Form::Table(laminate::KEYS),
-        r#"{ plies = "[0/45/-45/90]2s", material = "as4-3502", ply_thickness = "0.13208 mm" }"#,
-        "plies, and the layers of cells that hold them",
-    )
-    .required(),
-    key(
-        "element",
-        Form::Plugin(
-            Kind::Element,
-            "kind",
-            &[key(
-                "z_derivatives",
-                Form::Words(&words(&Z_DERIVATIVES)),
-                r#""layer-wise""#,
-                "whether layers of cells share their derivatives along z",
-            )
-            .default(r#""shared""#)],
-        ),
-        r#"{ kind = "hermite-prism" }"#,
-        "element of the cells: `fem list elements`",
-    )
-    .required(),
-    key(
-        "support",
-        Form::List(&Form::OneOf(support::SUPPORTS)),
-        r#"[{ group = "support", at = "mid-plane", fix = ["U30"] }, { restrain = "rigid-motions" }]"#,
-        "what holds the plate",
-    ),
-    key(
-        "equation",
-        Form::List(&Form::Table(support::EQUATION)),
-        r#"[{ terms = [{ group = "a", at = "top", dof = "U10", factor = 1.0 }] }]"#,
-        "linear equations between unknowns",
-    ),
-    key(
-        "couple",
-        Form::List(&Form::Table(support::COUPLE)),
-        r#"[{ group = "edge", at = "all", dofs = ["U30"] }]"#,
-        "sets of nodes that move together",
-    ),
-    key(
-        "substructures",
-        Form::Table(substructures::KEYS),
-        "{ cells = [5, 5] }",
-        "parts of the plate that are condensed on their outlines",
-    ),
-    key(
-        "impactor",
-        Form::OneOf(&[Form::Table(run::IMPACTOR), Form::List(&Form::Table(run::IMPACTOR))]),
-        r#"{ mass = "2.49 kg", velocity = "1.56 m/s", at = { group = "impact" } }"#,
-        "what strikes the plate from above; a list for several",
-    ),
-    key(
-        "contact",
-        Form::Plugin(Kind::Contact, "law", &[]),
-        r#"{ law = "sun-yang", k = "1.07e5 N/mm^1.5", n = 1.5, m = 2.5, critical = "0.08 mm", beta = 0.4 }"#,
-        "contact law: `fem list contact-laws`",
-    ),
-    key("effects", Form::Table(effects::KEYS), r#"{ damage = "onset" }"#, "what is simulated beyond the linear plate"),
-    key("load", Form::List(&Form::OneOf(load::LOADS)), r#"[{ pressure = "1 MPa", face = "top" }]"#, "loads at rest"),
-    key("modes", Form::Table(MODES), "{ count = 10 }", "natural modes that are found"),
-    key(
-        "profile",
-        Form::List(&Form::Table(load::PROFILE)),
-        r#"[{ name = "centre", at = { x = "50 mm", y = "50 mm" }, points = 5 }]"#,
-        "lines through the thickness along which stresses are written",
-    ),
-    key(
-        "reduction",
-        Form::Plugin(Kind::Reduction, "method", &[]),
-        r#"{ method = "craig-bampton", modes = 40 }"#,
-        "reduction of the plate to few unknowns: `fem list reductions`",
-    ),
-    key(
-        "march",
-        Form::Table(run::MARCH),
-        r#"{ integrator = "newmark", step = "0.5 us", end = "1 ms" }"#,
-        "the march in time",
-    ),
-    key(
-        "failure",
-        Form::Table(run::FAILURE),
-        r#"{ criteria = ["hashin-report"] }"#,
-        "where and when failure is looked for",
-    ),
-    key("output", Form::Table(run::OUTPUT), "{ plots = true }", "what is written"),
-    key(
-        "study",
-        Form::Table(study::KEYS),
-        r#"{ quantities = ["peak-force"] }"#,
-        "what `fem study` varies and looks at",
-    ),
-];
-
 /// Where a mesh may come from.
 const MESHES: &[Form] = &[Form::Table(FILE), Form::Table(RECTANGLE)];
 const FILE: Keys = &[
@@ -373,17 +260,31 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
     })
 }
 
+/// A scene over its preset, its keys known and its values not read yet.
+struct Merged {
+    table: Table,
+    fidelity: Fidelity,
+    source: Arc<SceneSource>,
+}
+
+impl Merged {
+    fn new(text: &str, path: &Path, setting: &str) -> Result<Self, SceneError> {
+        let source = Arc::new(SceneSource::new(path, text).with(Origin::Setting, "setting of the study", setting));
+        let own = Table::parse(text, Origin::Scene, &source)?;
+        let own = Table::parse(setting, Origin::Setting, &source)?.over(own);
+        let fidelity = match Reader::root(&own, KEYS, &source)?.optional("fidelity") {
+            Some(field) => field.choice(&Fidelity::ALL)?,
+            None => Fidelity::Engineering,
+        };
+        let name = format!("preset `{}`", fidelity.name());
+        let source = Arc::new(SceneSource::clone(&source).with(Origin::Preset, name, fidelity.preset()));
+        let table = own.over(Table::parse(fidelity.preset(), Origin::Preset, &source)?);
+        Ok(Self { table, fidelity, source })
+    }
+}
+
 fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneError> {
-    let source = Arc::new(SceneSource::new(path, text).with(Origin::Setting, "setting of the study", setting));
-    let own = Table::parse(text, Origin::Scene, &source)?;
-    let own = Table::parse(setting, Origin::Setting, &source)?.over(own);
-    let fidelity = match Reader::root(&own, KEYS, &source)?.optional("fidelity") {
-        Some(field) => field.choice(&Fidelity::ALL)?,
-        None => Fidelity::Engineering,
-    };
-    let name = format!("preset `{}`", fidelity.name());
-    let source = Arc::new(SceneSource::clone(&source).with(Origin::Preset, name, fidelity.preset()));
-    let merged = own.over(Table::parse(fidelity.preset(), Origin::Preset, &source)?);
+    let Merged { table: merged, fidelity, source } = Merged::new(text, path, setting)?;
     let root = Reader::root(&merged, KEYS, &source)?;
     let mut keys = BTreeMap::new();
     merged.flatten("", &mut keys);
@@ -428,41 +329,37 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
     })
 }
 
+/// Keys that an analysis has no use for; those of a preset lie there for others.
+fn foreign(analysis: &str) -> &'static [&'static str] {
+    match analysis {
+        "static" => &["impactor", "contact", "reduction", "march", "modes"],
+        "modes" => &["impactor", "contact", "reduction", "march", "load", "profile"],
+        _ => &["load", "modes", "profile"],
+    }
+}
+
 fn read_analysis(root: &Reader<'_>, effects: &Effects) -> Result<Analysis, SceneError> {
-    const IMPACT: &[&str] = &["impactor", "contact", "reduction", "march"];
-    // Keys that the chosen analysis has no use for; those of a preset lie there for others.
-    let unused = |analysis: &str, keys: &[&str]| {
-        let stray = keys.iter().filter_map(|key| root.optional(key)).find(|f| f.place().origin != Origin::Preset);
-        stray.map_or(Ok(()), |field| {
-            let help = "leave it out, or choose another `analysis`: impact, static, modes";
-            Err(field.error(format!("means nothing in the analysis `{analysis}`"), help))
-        })
-    };
-    let which = match root.optional("analysis") {
-        Some(field) => field.choice(&ANALYSES)?,
-        None => 0,
-    };
-    match which {
-        1 => {
-            unused("static", &[IMPACT, &["modes"]].concat())?;
-            Ok(Analysis::Static(match (&effects.cure, root.optional("load")) {
-                // A change of temperature loads a plate as well.
-                (Some(_), None) => Vec::new(),
-                _ => load::read_all(&root.required("load")?)?,
-            }))
-        }
-        2 => {
-            unused("modes", &[IMPACT, &["load", "profile"]].concat())?;
+    let which = root.optional("analysis").map_or(Ok(Which::Impact), |field| field.choice(&ANALYSES))?;
+    let name = ANALYSES[which as usize].0;
+    let mut stray = foreign(name).iter().filter_map(|key| root.optional(key));
+    if let Some(field) = stray.find(|field| field.place().origin != Origin::Preset) {
+        let help = "leave it out, or choose another `analysis`: impact, static, modes";
+        return Err(field.error(format!("means nothing in the analysis `{name}`"), help));
+    }
+    Ok(match which {
+        Which::Static => Analysis::Static(match (&effects.cure, root.optional("load")) {
+            // A change of temperature loads a plate as well.
+            (Some(_), None) => Vec::new(),
+            _ => load::read_all(&root.required("load")?)?,
+        }),
+        Which::Modes => {
             let count = root.optional("modes").map_or(Ok(DEFAULT_MODES), |field| {
                 field.table(MODES)?.optional("count").map_or(Ok(DEFAULT_MODES), |field| field.count())
             })?;
-            Ok(Analysis::Modes { count })
+            Analysis::Modes { count }
         }
-        _ => {
-            unused("impact", &["load", "modes", "profile"])?;
-            Ok(Analysis::Impact(Box::new(run::read_impact(root)?)))
-        }
-    }
+        Which::Impact => Analysis::Impact(Box::new(run::read_impact(root)?)),
+    })
 }
 
 fn read_mesh(field: &Field<'_>, scene: &Path) -> Result<MeshSource, SceneError> {

@@ -325,6 +325,9 @@ pub(super) fn read_point(field: &Field<'_>) -> Result<Located<ImpactPoint>, Scen
     Ok(field.at(point))
 }
 
+/// Ways in which the force of an impactor enters the plate, of which one counts.
+pub(super) const LOADS: [&str; 3] = ["load", "patch_radius", "patch_side"];
+
 fn read_load(table: &Reader<'_>) -> Result<Located<ContactLoad>, SceneError> {
     let [round, square] = table.either(["patch_radius", "patch_side"])?;
     if let Some(square) = square {
