@@ -5,6 +5,7 @@ use serde::Serialize;
 use std::fmt;
 use std::num::NonZeroUsize;
 use std::time::Instant;
+use tracing::{debug, info};
 
 /// What a run cost on its machine, in the process that ended it: all that differs from run to run of one scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -21,6 +22,9 @@ pub struct Cost {
 impl Cost {
     /// The cost of `phases`, and of the memory so far.
     pub fn new(threads: NonZeroUsize, phases: Vec<Phase>) -> Self {
+        for Phase { name, wall_s, cpu_s } in &phases {
+            info!(phase = name, wall_s, cpu_s, "done");
+        }
         Self {
             threads: threads.get(),
             phases,
@@ -87,7 +91,10 @@ impl Stopwatch {
                 phase.wall_s += wall_s;
                 phase.cpu_s += cpu_s;
             }
-            None => self.phases.push(Phase { name, wall_s, cpu_s }),
+            None => {
+                debug!(phase = name, wall_s, cpu_s, "for the first time");
+                self.phases.push(Phase { name, wall_s, cpu_s });
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, unknown_key};
 use std::fmt;
+use tracing::debug;
 
 /// The name of no reduction: the full model is marched.
 pub const NO_REDUCTION: &str = "none";
@@ -140,8 +141,15 @@ impl Registry {
     }
 
     /// What a scene can name: the plug-ins of a kind and, instead of a reduction, [`NO_REDUCTION`].
-    fn names(&self, kind: Kind) -> impl Iterator<Item = &str> {
-        self.list(kind).map(|i| i.name).chain((kind == Kind::Reduction).then_some(NO_REDUCTION))
+    pub fn choices(&self, kind: Kind) -> Vec<PluginInfo> {
+        const FULL: PluginInfo = PluginInfo {
+            kind: Kind::Reduction,
+            name: NO_REDUCTION,
+            summary: "the full model",
+            source: "",
+            params: &[],
+        };
+        self.list(kind).copied().chain((kind == Kind::Reduction).then_some(FULL)).collect()
     }
 
     fn find(&self, kind: Kind, name: &str) -> Option<&Entry> {
@@ -159,9 +167,10 @@ impl Registry {
         let entry = self.find(kind, name).ok_or_else(|| RegistryError::Unknown {
             kind,
             name: name.to_owned(),
-            hint: format!("`{name}` {}", unknown_key(name, self.names(kind))),
+            hint: format!("`{name}` {}", unknown_key(name, self.choices(kind).iter().map(|info| info.name))),
         })?;
         params.only(entry.info.params).map_err(RegistryError::Param)?;
+        debug!(%kind, name, ?params, "plug-in");
         (entry.build)(params).map_err(RegistryError::Param)
     }
 }

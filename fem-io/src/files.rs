@@ -3,6 +3,7 @@
 use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use tracing::info;
 
 /// Why results cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -150,11 +151,14 @@ impl OutputDir {
         let whole = self.path.join(name);
         let partial = self.path.join(format!(".{name}{PARTIAL}"));
         let file = File::create_new(&partial).map_err(failed("write", &whole))?;
-        fill_and_sync(file, fill).and_then(|()| fs::rename(&partial, &whole)).map_err(|cause| {
+        let bytes = fill_and_sync(file, fill).and_then(|bytes| fs::rename(&partial, &whole).map(|()| bytes));
+        let bytes = bytes.map_err(|cause| {
             // The first error is the one to report; a partial file that cannot be removed goes at the next run.
             let _ = fs::remove_file(&partial);
             failed("write", &whole)(cause)
-        })
+        })?;
+        info!(file = %whole.display(), bytes, "written");
+        Ok(())
     }
 }
 
@@ -162,10 +166,12 @@ pub(crate) fn failed(action: &'static str, path: &Path) -> impl Fn(io::Error) ->
     move |cause| FileError::Io { action, path: path.to_owned(), cause }
 }
 
-fn fill_and_sync(file: File, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+fn fill_and_sync(file: File, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<u64> {
     let mut out = BufWriter::new(file);
     fill(&mut out)?;
-    out.into_inner()?.sync_all()
+    let file = out.into_inner()?;
+    file.sync_all()?;
+    Ok(file.metadata()?.len())
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! The materials library: constants as data, each with its source and its status.
 
 use crate::scene::SceneError;
+use crate::scene::keys::{Form, Keys, key, words};
 use crate::scene::material;
-use crate::scene::reader::{Field, Keys, Reader};
+use crate::scene::reader::{Field, Reader};
 use crate::scene::source::{Origin, Place, SceneSource};
 use crate::scene::tree::{Entry, Node, Table};
 use fem_core::material::Material;
@@ -83,13 +84,24 @@ pub(crate) fn all() -> &'static [LibraryMaterial] {
     &ALL
 }
 
-const MATERIAL: Keys = &[("summary", r#""carbon/epoxy tape""#), ("constants", "{ }")];
-const CONSTANT: Keys = &[("value", r#""130.3 GPa""#), ("status", r#""measured""#), ("source", r#""a data sheet""#)];
+const STATUS: [(&str, Status); 3] =
+    [("measured", Status::Measured), ("typical", Status::Typical), ("assumed", Status::Assumed)];
+const LIBRARY_KEYS: Keys =
+    &[key("materials", Form::Named(&Form::Table(MATERIAL)), "{ }", "materials by name").required()];
+const MATERIAL: Keys = &[
+    key("summary", Form::Text, r#""carbon/epoxy tape""#, "what it is, in a line").required(),
+    key("constants", Form::Named(&Form::Table(CONSTANT)), "{ }", "its constants by the keys of a scene").required(),
+];
+const CONSTANT: Keys = &[
+    key("value", Form::OneOf(&[Form::Number, Form::Text]), r#""130.3 GPa""#, "its value, with its unit").required(),
+    key("status", Form::Words(&words(&STATUS)), r#""measured""#, "how far it can be trusted").required(),
+    key("source", Form::Text, r#""a data sheet""#, "where it comes from").required(),
+];
 
 /// The materials of a text in the format of the library, which `source` holds as such.
 pub(crate) fn parse(text: &str, source: &Arc<SceneSource>) -> Result<Vec<LibraryMaterial>, SceneError> {
     let document = Table::parse(text, Origin::Library, source)?;
-    let root = Reader::root(&document, &[("materials", "{ }")], source)?;
+    let root = Reader::root(&document, LIBRARY_KEYS, source)?;
     let missing = || {
         let top = Place { origin: Origin::Library, span: 0..0 };
         source.error_at(&top, "`materials` is missing", "describe each material in a table [materials.\"its name\"]")
@@ -98,8 +110,6 @@ pub(crate) fn parse(text: &str, source: &Arc<SceneSource>) -> Result<Vec<Library
 }
 
 fn read(name: &str, field: &Field<'_>) -> Result<LibraryMaterial, SceneError> {
-    const STATUS: [(&str, Status); 3] =
-        [("measured", Status::Measured), ("typical", Status::Typical), ("assumed", Status::Assumed)];
     let own = field.table(MATERIAL)?;
     let mut constants = Vec::new();
     let mut table = Table::default();

@@ -4,7 +4,7 @@
 
 use crate::files::{FileError, OutputDir};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Map, Value};
 use std::io;
 
 /// One instant of an impact: a row of `history.csv`.
@@ -237,6 +237,25 @@ pub enum Field<'a> {
     Index(f64),
     Count(u64),
     Text(&'a str),
+}
+
+impl From<Field<'_>> for Value {
+    fn from(field: Field<'_>) -> Self {
+        match field {
+            Field::Number(value) => value.into(),
+            Field::Index(value) if value.is_finite() => value.into(),
+            Field::Index(_) => "inf".into(),
+            Field::Count(value) => value.into(),
+            Field::Text(text) => text.into(),
+        }
+    }
+}
+
+impl EnvelopeRow {
+    /// Its values by the names of their columns.
+    pub fn named(&self) -> Map<String, Value> {
+        self.fields().into_iter().map(|(name, field)| (name.to_owned(), field.into())).collect()
+    }
 }
 
 /// A row of a table: its columns with their values, in order.

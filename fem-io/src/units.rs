@@ -107,7 +107,7 @@ const NAMED: &[Named] = &[
 ];
 
 /// Units proposed for a dimension; empty for one without a name.
-fn accepted(dimension: Dimension) -> Vec<&'static str> {
+pub(crate) fn accepted(dimension: Dimension) -> Vec<&'static str> {
     NAMED.iter().filter(|n| n.dimension.matches(&dimension)).flat_map(|n| n.units).copied().collect()
 }
 

@@ -1,28 +1,66 @@
 //! `fem advise`.
 
-use super::{print, warn};
-use crate::advise;
+use super::{Console, Format, warn};
+use crate::advise::{self, Advice, Answer};
 use crate::model::Model;
 use crate::registry::Registry;
 use clap::Args;
 use fem_io::scene;
+use serde::Serialize;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Example: fem advise coupon/scene.toml")]
 pub(super) struct Arguments {
     /// Scene file (TOML) of an impact.
     scene: PathBuf,
     /// Threads for the integration of element matrices; results do not depend on it.
     #[arg(long, value_name = "N", default_value = "1")]
     threads: NonZeroUsize,
+    #[command(flatten)]
+    format: Format,
 }
 
-pub(super) fn advise(registry: &Registry, arguments: &Arguments) -> miette::Result<ExitCode> {
+/// What is said of an impactor; units are in the key names.
+#[derive(Serialize)]
+#[allow(non_snake_case)]
+struct Said<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    impactor: Option<&'a str>,
+    mass_kg: f64,
+    velocity_m_s: f64,
+    peak_force_N: f64,
+    answers: &'a [Answer],
+}
+
+impl<'a> From<&'a Advice> for Said<'a> {
+    fn from(advice: &'a Advice) -> Self {
+        Self {
+            impactor: advice.impactor.as_deref(),
+            mass_kg: advice.mass,
+            velocity_m_s: advice.velocity,
+            peak_force_N: advice.estimate.force(),
+            answers: &advice.answers,
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    title: &'a str,
+    impact: Vec<Said<'a>>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    warnings: &'a [String],
+}
+
+pub(super) fn advise(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let model = scene::read(&arguments.scene).map_err(Into::into).and_then(|scene| Model::new(scene, registry))?;
     let all = advise::advise(&model, arguments.threads).inspect_err(|_| warn(&model))?;
-    print(&format!("{}\n", model.scene.title));
-    all.iter().for_each(|advice| print(&advice.to_string()));
+    let title = &model.scene.title;
+    let data = Document { title, impact: all.iter().map(Said::from).collect(), warnings: &model.warnings };
+    let text = || format!("{title}\n{}", all.iter().map(ToString::to_string).collect::<String>());
+    console.show(arguments.format, &data, text)?;
     Ok(ExitCode::SUCCESS)
 }

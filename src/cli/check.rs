@@ -1,6 +1,6 @@
 //! `fem check`.
 
-use super::{print, warn};
+use super::{Console, Format, warn};
 use crate::advise;
 use crate::error::Error;
 use crate::memory::Estimate;
@@ -11,119 +11,224 @@ use crate::statics::{digits, few_digits};
 use crate::summary::{Advised, in_words};
 use clap::Args;
 use fem_core::counters::Counters;
-use fem_io::scene;
+use fem_io::scene::{self, Explained};
+use serde::Serialize;
+use std::fmt::Write as _;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  fem check coupon/scene.toml\n  fem check coupon/scene.toml --explain | less")]
 pub(super) struct Arguments {
     /// Scene file (TOML); its mesh is looked for beside it.
     scene: PathBuf,
+    /// Prints every key that holds: its value, where that comes from (a line of the scene, the preset, a library, a
+    /// default) and what it means.
+    #[arg(long)]
+    explain: bool,
+    #[command(flatten)]
+    format: Format,
 }
 
-pub(super) fn check(registry: &Registry, arguments: &Arguments) -> miette::Result<ExitCode> {
-    print(&report(registry, arguments)?);
+pub(super) fn check(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
+    let checked = sizes(registry, arguments)?;
+    console.show(arguments.format, &checked, || checked.text())?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
-    let model = advise::decided(Model::new(scene::read(&arguments.scene)?, registry)?, NonZeroUsize::MIN)?;
-    let mut lines = plate(&model);
-    match &model.plan {
+/// What a check finds; units are in the key names.
+#[derive(Serialize)]
+#[allow(non_snake_case)]
+struct Checked {
+    title: String,
+    quads: usize,
+    nodes: usize,
+    groups: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    symmetry: Option<&'static str>,
+    plies: usize,
+    thickness_mm: f64,
+    layers: usize,
+    unknowns: usize,
+    unknowns_before_constraints: usize,
+    redundant_equations: usize,
+    memory_MB: f64,
+    #[serde(skip)]
+    memory: Estimate,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    substructures: Option<Substructures>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    march: Option<March>,
+    /// Estimate of the condition of the stiffness, of a plate at rest that is held.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    condition: Option<f64>,
+    /// How many modes are found, where these are the analysis.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    modes: Option<usize>,
+    criteria: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    advised: Vec<Advised>,
+    warnings: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    keys: Vec<Explained>,
+}
+
+#[derive(Serialize)]
+#[allow(non_snake_case)]
+struct March {
+    static_stiffness_N_m: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lowest_frequency_Hz: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    highest_frequency_Hz: Option<f64>,
+    unknowns_marched: usize,
+    steps: u64,
+    step_s: f64,
+    end_s: f64,
+    integrator: String,
+    /// Longest stable step; absent where there is no limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    longest_step_s: Option<f64>,
+}
+
+impl March {
+    fn new(impact: &Impact, sizes: &Sizes) -> Self {
+        let spec = &impact.spec.march;
+        Self {
+            static_stiffness_N_m: sizes.static_stiffness,
+            lowest_frequency_Hz: sizes.lowest_frequency,
+            highest_frequency_Hz: sizes.highest_frequency,
+            unknowns_marched: sizes.marched,
+            steps: sizes.steps,
+            step_s: sizes.step,
+            end_s: spec.end.value,
+            integrator: spec.integrator.name.value.clone(),
+            longest_step_s: Some(sizes.longest_step).filter(|step| step.is_finite()),
+        }
+    }
+
+    fn lines(&self) -> [Line; 3] {
+        let known = [("lowest excited", self.lowest_frequency_Hz), ("highest", self.highest_frequency_Hz)];
+        let known: Vec<_> = known.iter().filter_map(|(name, f)| Some(format!("{name} {:.1} Hz", (*f)?))).collect();
+        let stable = match self.longest_step_s {
+            Some(step) => format!("stable up to {:.4} us", step * 1e6),
+            None => "no stability limit".to_owned(),
+        };
+        let Self { unknowns_marched, steps, integrator, .. } = self;
+        let (step, end) = (self.step_s * 1e6, self.end_s * 1e3);
+        [
+            ("contact", format!("static stiffness of the plate {:.2} N/mm", self.static_stiffness_N_m * 1e-3)),
+            ("frequency", if known.is_empty() { "the march needs none".into() } else { known.join(", ") }),
+            (
+                "march",
+                format!(
+                    "{unknowns_marched} unknowns, {steps} steps of {step:.4} us to {end:.4} ms with {integrator} ({stable})"
+                ),
+            ),
+        ]
+    }
+}
+
+fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
+    let scene = scene::read(&arguments.scene)?;
+    let keys =
+        if arguments.explain { scene::explain(&arguments.scene, &|kind| registry.choices(kind))? } else { vec![] };
+    let model = advise::decided(Model::new(scene, registry)?, NonZeroUsize::MIN)?;
+    let (mut march, mut condition, mut modes) = (None, None, None);
+    let (memory, substructures) = match &model.plan {
         Plan::Impact(impact) => {
             let sizes = run::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model))?.sizes;
-            lines.extend(unknowns(&model, &sizes.memory));
-            lines.extend(divided(sizes.substructures));
-            lines.extend(march(impact, &sizes));
+            march = Some(March::new(impact, &sizes));
+            (sizes.memory, sizes.substructures)
         }
         plan => {
             let counters = &mut Counters::default();
             let assembled = run::structure(&model, true, NonZeroUsize::MIN, counters);
             let mut assembled = assembled.inspect_err(|_| warn(&model))?;
-            lines.extend(unknowns(&model, &assembled.memory));
-            lines.extend(divided(assembled.substructures()));
             if model.held {
-                let condition = assembled.structure.condition().map_err(Error::from).inspect_err(|_| warn(&model))?;
-                lines.push(("stiffness", digits(condition)));
-                lines.extend(few_digits(condition).map(|warning| ("warning", warning)));
+                let found = assembled.structure.condition().map_err(Error::from);
+                condition = Some(found.inspect_err(|_| warn(&model))?);
             }
-            lines.push(match plan {
-                Plan::Modes { count } => ("analysis", format!("the {count} lowest modes")),
-                _ => ("analysis", "static".to_owned()),
-            });
+            if let Plan::Modes { count } = plan {
+                modes = Some(*count);
+            }
+            (assembled.memory, assembled.substructures())
         }
-    }
-    let criteria: Vec<_> = model.criteria.iter().map(|c| c.0.as_str()).collect();
-    lines.push(("damage", if criteria.is_empty() { "off".into() } else { criteria.join(", ") }));
-    lines.extend(Advised::of(&model, |_| None).iter().map(|advised| ("advised", advised.to_string())));
-    lines.extend(model.warnings.iter().map(|warning| ("warning", warning.clone())));
-    let lines: String = lines.iter().map(|(what, text)| format!("  {what:<9} {text}\n")).collect();
-    Ok(format!("{}\n{lines}  the scene is valid\n", model.scene.title))
+    };
+    let plane = &model.plate.plane;
+    Ok(Checked {
+        title: model.scene.title.clone(),
+        quads: plane.quads.len(),
+        nodes: plane.points.len(),
+        groups: plane.groups.keys().cloned().collect(),
+        symmetry: model.plate.symmetry().name(),
+        plies: model.laminate.plies.len(),
+        thickness_mm: model.laminate.thickness() * 1e3,
+        layers: model.plate.layers(),
+        unknowns: model.constraints.ndof(),
+        unknowns_before_constraints: model.plate.ndof(),
+        redundant_equations: model.constraints.redundant.len(),
+        memory_MB: memory.bytes() * 1e-6,
+        memory,
+        substructures,
+        march,
+        condition,
+        modes,
+        criteria: model.criteria.iter().map(|(name, _)| name.clone()).collect(),
+        advised: Advised::of(&model, |_| None),
+        warnings: condition.and_then(few_digits).into_iter().chain(model.warnings).collect(),
+        keys,
+    })
 }
 
 type Line = (&'static str, String);
 
-fn plate(model: &Model) -> Vec<Line> {
-    let plate = &model.plate;
-    vec![
-        (
-            "mesh",
-            format!(
-                "{} quads, {} nodes, groups {}{}",
-                plate.plane.quads.len(),
-                plate.plane.points.len(),
-                plate.plane.groups.keys().map(String::as_str).collect::<Vec<_>>().join(", "),
-                in_words(plate.symmetry().name())
+impl Checked {
+    fn text(&self) -> String {
+        let Self { quads, nodes, plies, thickness_mm, layers, unknowns, memory_MB, memory, .. } = self;
+        let redundant = match self.redundant_equations {
+            0 => String::new(),
+            n => format!(" ({n} redundant equations)"),
+        };
+        let mut lines: Vec<Line> = vec![
+            (
+                "mesh",
+                format!("{quads} quads, {nodes} nodes, groups {}{}", self.groups.join(", "), in_words(self.symmetry)),
             ),
-        ),
-        (
-            "plate",
-            format!(
-                "{} plies, {:.4} mm, {} layers of cells",
-                model.laminate.plies.len(),
-                model.laminate.thickness() * 1e3,
-                plate.layers()
-            ),
-        ),
-    ]
+            ("plate", format!("{plies} plies, {thickness_mm:.4} mm, {layers} layers of cells")),
+            ("unknowns", format!("{unknowns} of {} after constraints{redundant}", self.unknowns_before_constraints)),
+            ("memory", format!("about {memory_MB:.0} MB at the peak: {memory}")),
+        ];
+        lines.extend(self.substructures.map(|parts| ("divided", parts.to_string())));
+        lines.extend(self.march.iter().flat_map(March::lines));
+        lines.extend(self.condition.map(|condition| ("stiffness", digits(condition))));
+        if self.march.is_none() {
+            let analysis = self.modes.map_or("static".to_owned(), |count| format!("the {count} lowest modes"));
+            lines.push(("analysis", analysis));
+        }
+        lines.push(("damage", if self.criteria.is_empty() { "off".into() } else { self.criteria.join(", ") }));
+        lines.extend(self.advised.iter().map(|advised| ("advised", advised.to_string())));
+        lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
+        let lines: String = lines.iter().map(|(what, text)| format!("  {what:<9} {text}\n")).collect();
+        format!("{}\n{lines}  the scene is valid\n{}", self.title, explained(&self.keys))
+    }
 }
 
-fn unknowns(model: &Model, memory: &Estimate) -> [Line; 2] {
-    let redundant = match model.constraints.redundant.len() {
-        0 => String::new(),
-        n => format!(" ({n} redundant equations)"),
-    };
-    let (independent, all) = (model.constraints.ndof(), model.plate.ndof());
-    let memory = format!("about {:.0} MB at the peak: {memory}", memory.bytes() * 1e-6);
-    [("unknowns", format!("{independent} of {all} after constraints{redundant}")), ("memory", memory)]
-}
-
-fn divided(substructures: Option<Substructures>) -> Option<Line> {
-    substructures.map(|parts| ("divided", parts.to_string()))
-}
-
-fn march(impact: &Impact, sizes: &Sizes) -> [Line; 3] {
-    let known = [("lowest excited", sizes.lowest_frequency), ("highest", sizes.highest_frequency)];
-    let frequencies: Vec<_> = known.iter().filter_map(|(name, f)| Some(format!("{name} {:.1} Hz", (*f)?))).collect();
-    let stable = match sizes.longest_step {
-        s if s.is_finite() => format!("stable up to {:.4} us", s * 1e6),
-        _ => "no stability limit".to_owned(),
-    };
-    let spec = &impact.spec.march;
-    [
-        ("contact", format!("static stiffness of the plate {:.2} N/mm", sizes.static_stiffness * 1e-3)),
-        ("frequency", if frequencies.is_empty() { "the march needs none".into() } else { frequencies.join(", ") }),
-        (
-            "march",
-            format!(
-                "{} unknowns, {} steps of {:.4} us to {:.4} ms with {} ({stable})",
-                sizes.marched,
-                sizes.steps,
-                sizes.step * 1e6,
-                spec.end.value * 1e3,
-                spec.integrator.name.value
-            ),
-        ),
-    ]
+/// Keys under the tables that they stand in.
+fn explained(keys: &[Explained]) -> String {
+    let mut text = String::new();
+    let mut table = "";
+    for key in keys {
+        let (place, name) = key.key.rsplit_once('.').unwrap_or(("", &key.key));
+        if place != table {
+            table = place;
+            let _ = writeln!(text, "\n[{table}]");
+        } else if text.is_empty() {
+            text.push('\n');
+        }
+        let value = key.value.as_deref().map_or(name.to_owned(), |value| format!("{name} = {value}"));
+        let _ = writeln!(text, "{value:<44} {:<22} {}", key.from, key.about);
+    }
+    text
 }

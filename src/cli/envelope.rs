@@ -1,11 +1,11 @@
 //! `fem envelope`.
 
-use super::print;
+use super::{Console, Format};
 use crate::model::NamedCriterion;
 use crate::registry::{Registry, RegistryError};
 use clap::Args;
 use fem_core::material::Material;
-use fem_core::plugin::{Built, Kind, Params, Value, unknown_key};
+use fem_core::plugin::{self, Built, Kind, Params, unknown_key};
 use fem_failure::envelope::{self, EnvelopePoint, Envelopes, StressPlane};
 use fem_io::files::OutputDir;
 use fem_io::plot::{self, Axis, LinePlot, Series, Style};
@@ -13,7 +13,9 @@ use fem_io::scene::{self, CriterionSpec, Scene};
 use fem_io::tables::{self, EnvelopeRow};
 use fem_io::{materials, units};
 use miette::{IntoDiagnostic, miette};
-use std::path::PathBuf;
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
@@ -32,6 +34,17 @@ pub(super) struct Arguments {
     /// Folder of the results [default: results/envelope-<material>-<plane>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    format: Format,
+}
+
+/// What is found, as envelope.csv holds it, and where that lies.
+#[derive(Serialize)]
+struct Document<'a> {
+    material: &'a str,
+    plane: String,
+    envelope: Vec<Map<String, Value>>,
+    results: &'a Path,
 }
 
 /// Directions of an envelope, besides its corners.
@@ -40,7 +53,7 @@ const DIRECTIONS: usize = 360;
 /// Where the picture of an envelope that is open towards some stresses ends, over the largest strength of each axis.
 const FAR: f64 = 3.0;
 
-pub(super) fn envelope(registry: &Registry, arguments: &Arguments) -> miette::Result<ExitCode> {
+pub(super) fn envelope(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let scene = arguments.scene.as_deref().map(scene::read).transpose()?;
     let material = material(&arguments.material, scene.as_ref())?;
     let criteria = criteria(registry, &arguments.criteria, scene.as_ref())?;
@@ -50,12 +63,20 @@ pub(super) fn envelope(registry: &Registry, arguments: &Arguments) -> miette::Re
 
     let folder = || format!("results/envelope-{}-{plane}", file_name(&material.name)).into();
     let dir = OutputDir::create(arguments.out.clone().unwrap_or_else(folder)).into_diagnostic()?;
-    tables::write_envelopes(&dir, &rows(&criteria, &found, plane)).into_diagnostic()?;
+    let rows = rows(&criteria, &found, plane);
+    tables::write_envelopes(&dir, &rows).into_diagnostic()?;
     let picture = plot::line_plot(&picture(&criteria, &found, material, plane)).into_diagnostic()?;
     dir.write("envelope.svg", |w| w.write_all(picture.svg.as_bytes())).into_diagnostic()?;
     dir.write("envelope.png", |w| w.write_all(&picture.png)).into_diagnostic()?;
-    print(&summary(&criteria, &found, material, plane));
-    print(&format!("  results   {}\n", dir.path().display()));
+    let data = Document {
+        material: &material.name,
+        plane: plane.to_string(),
+        envelope: rows.iter().map(EnvelopeRow::named).collect(),
+        results: dir.path(),
+    };
+    console.show(arguments.format, &data, || {
+        format!("{}  results   {}\n", summary(&criteria, &found, material, plane), dir.path().display())
+    })?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -87,13 +108,13 @@ fn criteria(registry: &Registry, asked: &[String], scene: Option<&Scene>) -> mie
 }
 
 /// `key=value`, the value a number, a quantity or a word.
-fn parameter(text: &str) -> miette::Result<(&str, Value)> {
+fn parameter(text: &str) -> miette::Result<(&str, plugin::Value)> {
     let Some((key, value)) = text.split_once('=') else {
         return Err(miette!(help = "write, for example: tsai-wu:f12=-0.3", "`{text}` is no parameter"));
     };
-    let quantity = || units::parse_quantity(value).ok().map(|(v, dimension)| Value::Quantity(v, dimension));
-    let number = value.parse().ok().map(Value::Number);
-    Ok((key, number.or_else(quantity).unwrap_or_else(|| Value::Text(value.to_owned()))))
+    let quantity = || units::parse_quantity(value).ok().map(|(v, dimension)| plugin::Value::Quantity(v, dimension));
+    let number = value.parse().ok().map(plugin::Value::Number);
+    Ok((key, number.or_else(quantity).unwrap_or_else(|| plugin::Value::Text(value.to_owned()))))
 }
 
 /// A criterion of a scene under the name that it has there.

@@ -1,17 +1,20 @@
 //! `fem list`.
 
-use super::print;
-use crate::registry::{NO_REDUCTION, Registry};
+use super::{Console, Format};
+use crate::registry::Registry;
 use clap::{Args, ValueEnum};
-use fem_core::plugin::{Kind, PluginInfo};
+use fem_core::plugin::{Kind, ParamInfo, PluginInfo};
 use fem_io::materials::{self, LibraryMaterial};
 use fem_io::scene::{self, EffectInfo};
+use serde::Serialize;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// What to list.
     what: What,
+    #[command(flatten)]
+    format: Format,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -32,45 +35,90 @@ enum What {
     Materials,
 }
 
-pub(super) fn list(registry: &Registry, arguments: &Arguments) -> miette::Result<ExitCode> {
-    let kind = match arguments.what {
-        What::Elements => Kind::Element,
-        What::Criteria => Kind::Criterion,
-        What::ContactLaws => Kind::Contact,
-        What::Integrators => Kind::Integrator,
-        What::Reductions => Kind::Reduction,
-        What::Effects => {
-            scene::EFFECTS.iter().for_each(|info| print(&effect(info)));
-            return Ok(ExitCode::SUCCESS);
-        }
-        What::Materials => {
-            materials::names().filter_map(materials::library).for_each(|m| print(&material(m)));
-            return Ok(ExitCode::SUCCESS);
-        }
+/// A thing that a scene can name.
+#[derive(Serialize)]
+struct Entry {
+    name: &'static str,
+    summary: &'static str,
+    #[serde(skip_serializing_if = "str::is_empty")]
+    source: &'static str,
+    #[serde(skip_serializing_if = "str::is_empty")]
+    values: &'static str,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    parameters: Vec<Parameter>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    constants: Vec<Constant>,
+}
+
+#[derive(Serialize)]
+struct Parameter {
+    name: &'static str,
+    about: &'static str,
+}
+
+#[derive(Serialize)]
+struct Constant {
+    name: &'static str,
+    value: &'static str,
+    status: String,
+    source: &'static str,
+}
+
+pub(super) fn list(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
+    let kind = |kind| registry.choices(kind).iter().map(Entry::from).collect();
+    let entries: Vec<Entry> = match arguments.what {
+        What::Elements => kind(Kind::Element),
+        What::Criteria => kind(Kind::Criterion),
+        What::ContactLaws => kind(Kind::Contact),
+        What::Integrators => kind(Kind::Integrator),
+        What::Reductions => kind(Kind::Reduction),
+        What::Effects => scene::EFFECTS.iter().map(Entry::from).collect(),
+        What::Materials => materials::names().filter_map(materials::library).map(Entry::from).collect(),
     };
-    registry.list(kind).for_each(|info| print(&entry(info)));
-    if kind == Kind::Reduction {
-        print(&format!("{NO_REDUCTION:<20} the full model\n"));
-    }
+    console.show(arguments.format, &entries, || entries.iter().map(Entry::text).collect())?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn entry(info: &PluginInfo) -> String {
-    let mut text = format!("{:<20} {} [{}]\n", info.name, info.summary, info.source);
-    for p in info.params {
-        text.push_str(&format!("{:<20}   {}: {}\n", "", p.name, p.doc));
+impl Entry {
+    fn new(name: &'static str, summary: &'static str, source: &'static str) -> Self {
+        Self { name, summary, source, values: "", parameters: Vec::new(), constants: Vec::new() }
     }
-    text
+
+    fn text(&self) -> String {
+        let Self { name, summary, source, .. } = self;
+        let source = if source.is_empty() { String::new() } else { format!(" [{source}]") };
+        let mut lines = vec![format!("{name:<20} {summary}{source}")];
+        lines.extend(Some(self.values).filter(|v| !v.is_empty()).map(|values| format!("{:<20}   {values}", "")));
+        lines.extend(self.parameters.iter().map(|p| format!("{:<20}   {}: {}", "", p.name, p.about)));
+        let constant = |c: &Constant| format!("{:<20}   {}: {}, {} [{}]", "", c.name, c.value, c.status, c.source);
+        lines.extend(self.constants.iter().map(constant));
+        lines.join("\n") + "\n"
+    }
 }
 
-fn effect(EffectInfo { name, values, summary, source }: &EffectInfo) -> String {
-    format!("{name:<20} {summary} [{source}]\n{:<20}   {values}\n", "")
+impl From<&PluginInfo> for Entry {
+    fn from(info: &PluginInfo) -> Self {
+        let parameter = |p: &ParamInfo| Parameter { name: p.name, about: p.doc };
+        let parameters = info.params.iter().map(parameter).collect();
+        Self { parameters, ..Self::new(info.name, info.summary, info.source) }
+    }
 }
 
-fn material(material: &LibraryMaterial) -> String {
-    let mut text = format!("{:<20} {}\n", material.material.name, material.summary);
-    for c in &material.constants {
-        text.push_str(&format!("{:<20}   {}: {}, {} [{}]\n", "", c.key, c.value, c.status, c.source));
+impl From<&EffectInfo> for Entry {
+    fn from(info: &EffectInfo) -> Self {
+        Self { values: info.values, ..Self::new(info.name, info.summary, info.source) }
     }
-    text
+}
+
+impl From<&'static LibraryMaterial> for Entry {
+    fn from(material: &'static LibraryMaterial) -> Self {
+        let constant = |c: &'static materials::Constant| Constant {
+            name: &c.key,
+            value: &c.value,
+            status: c.status.to_string(),
+            source: &c.source,
+        };
+        let constants = material.constants.iter().map(constant).collect();
+        Self { constants, ..Self::new(&material.material.name, &material.summary, "") }
+    }
 }

@@ -1,7 +1,7 @@
 //! `fem matrices`.
 
-use super::print;
 use super::run::default_folder;
+use super::{Console, Format};
 use crate::error::Error;
 use crate::matrices;
 use crate::model::Model;
@@ -9,8 +9,9 @@ use crate::registry::Registry;
 use clap::Args;
 use fem_io::files::OutputDir;
 use fem_io::scene;
+use serde::Serialize;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
@@ -20,16 +21,27 @@ pub(super) struct Arguments {
     /// Folder of the results [default: results/<folder of the scene>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    format: Format,
 }
 
-pub(super) fn matrices(registry: &Registry, arguments: &Arguments) -> miette::Result<ExitCode> {
-    Ok(compute(registry, arguments)?)
+#[derive(Serialize)]
+struct Written<'a> {
+    unknowns: usize,
+    results: &'a Path,
 }
 
-fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error> {
+pub(super) fn matrices(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
+    let (unknowns, dir) = write(registry, arguments)?;
+    let written = Written { unknowns, results: dir.path() };
+    console
+        .show(arguments.format, &written, || format!("{unknowns} unknowns\n  results   {}\n", dir.path().display()))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn write(registry: &Registry, arguments: &Arguments) -> Result<(usize, OutputDir), Error> {
     let model = Model::new(scene::read(&arguments.scene)?, registry)?;
     let dir = OutputDir::create(arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene)))?;
     matrices::write(&dir, &model, NonZeroUsize::MIN)?;
-    print(&format!("{} unknowns\n  results   {}\n", model.constraints.ndof(), dir.path().display()));
-    Ok(ExitCode::SUCCESS)
+    Ok((model.constraints.ndof(), dir))
 }

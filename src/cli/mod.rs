@@ -2,23 +2,26 @@
 
 mod advise;
 mod check;
+mod console;
 mod envelope;
 mod list;
+mod manual;
 mod matrices;
 mod modes;
+mod new;
 mod run;
+mod schema;
 mod signals;
 mod study;
 
 use crate::model::Model;
 use crate::registry::Registry;
 use clap::{Parser, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
-use miette::{GraphicalReportHandler, GraphicalTheme, Report, miette};
+use console::{Console, Format, Voice};
+use miette::{GraphicalReportHandler, GraphicalTheme, Report};
 use std::ffi::OsString;
-use std::io::{self, IsTerminal, Write};
+use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
-use std::sync::OnceLock;
 use textwrap::WordSplitter;
 
 /// Low-velocity impact on laminated composites.
@@ -27,15 +30,22 @@ use textwrap::WordSplitter;
     name = "fem",
     version,
     arg_required_else_help = true,
-    after_help = "To begin with: fem run examples/as4-3502-16ply-50mm/scene.toml"
+    after_help = "To begin with:\n  fem new coupon && fem run coupon/scene.toml"
 )]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
+    #[command(flatten)]
+    voice: Voice,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Makes a folder with a scene to begin with, every key explained.
+    ///
+    /// The scene runs at once. Keys that it leaves out are there as comments, with the values that hold without them. Beside it
+    /// lies a JSON Schema, by which editors complete and check the scene.
+    New(new::Arguments),
     /// Computes a scene: force history, stresses, first damage.
     ///
     /// Prints a summary and writes summary.json, cost.json, history.csv, events.csv and the contact force as SVG and PNG;
@@ -65,6 +75,13 @@ enum Command {
     Matrices(matrices::Arguments),
     /// Lists what a scene can name, with parameters and sources.
     List(list::Arguments),
+    /// Prints the JSON Schema of scenes, for editors.
+    #[command(after_help = "In the first line of a scene: #:schema ./scene.schema.json")]
+    Schema,
+    /// Prints a script that completes this command line in a shell.
+    Completions(manual::CompletionsArguments),
+    /// Prints the manual page, or writes one per command.
+    Man(manual::ManArguments),
 }
 
 /// Runs the command line of this process with the plug-ins of `registry`.
@@ -74,7 +91,7 @@ pub fn main(registry: Registry) -> ExitCode {
 
 /// Runs the command line `arguments` (the first is the program's name).
 ///
-/// Results go to standard output, everything else to standard error; the exit status is 0 only when what was asked was
+/// Results go to standard output, with `--json` as one document; everything else to standard error. The exit status is 0 only when what was asked was
 /// done, 1 when it was not, 2 for a command line that makes no sense.
 pub fn run_with(registry: Registry, arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
@@ -84,23 +101,31 @@ pub fn run_with(registry: Registry, arguments: impl IntoIterator<Item = impl Int
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    let done = match arguments.command {
-        Command::Run(a) => run::run(&registry, &a),
-        Command::Check(a) => check::check(&registry, &a),
-        Command::Envelope(a) => envelope::envelope(&registry, &a),
-        Command::Advise(a) => advise::advise(&registry, &a),
-        Command::Modes(a) => modes::modes(&registry, &a),
-        Command::Study(a) => study::study(&registry, &a),
-        Command::Matrices(a) => matrices::matrices(&registry, &a),
-        Command::List(a) => list::list(&registry, &a),
-    };
-    let lost = || LOST.get().map_or(Ok(()), |why| Err(miette!("cannot write to standard output: {why}")));
-    match done.and_then(|code| lost().map(|()| code)) {
+    let console = Console::new(arguments.voice);
+    let done = arguments.voice.logging(|| dispatch(&registry, &arguments.command, &console));
+    match done.and_then(|code| console.close().map(|()| code)) {
         Ok(code) => code,
         Err(report) => {
             complain(&report);
             ExitCode::FAILURE
         }
+    }
+}
+
+fn dispatch(registry: &Registry, command: &Command, console: &Console) -> miette::Result<ExitCode> {
+    match command {
+        Command::New(a) => new::new(registry, a, console),
+        Command::Run(a) => run::run(registry, a, console),
+        Command::Check(a) => check::check(registry, a, console),
+        Command::Envelope(a) => envelope::envelope(registry, a, console),
+        Command::Advise(a) => advise::advise(registry, a, console),
+        Command::Modes(a) => modes::modes(registry, a, console),
+        Command::Study(a) => study::study(registry, a, console),
+        Command::Matrices(a) => matrices::matrices(registry, a, console),
+        Command::List(a) => list::list(registry, a, console),
+        Command::Schema => schema::schema(registry, console),
+        Command::Completions(a) => manual::completions(a, console),
+        Command::Man(a) => manual::man(a, console),
     }
 }
 
@@ -122,22 +147,4 @@ fn warn(model: &Model) {
     for warning in &model.warnings {
         let _ = writeln!(std::io::stderr(), "Warning: {warning}");
     }
-}
-
-/// Why standard output did not take all that was printed, if it did not.
-static LOST: OnceLock<io::Error> = OnceLock::new();
-
-/// Prints to standard output; a closed pipe ends quietly, a full disk at the end of the command.
-fn print(text: &str) {
-    if let Err(why) = io::stdout().write_all(text.as_bytes())
-        && why.kind() != io::ErrorKind::BrokenPipe
-    {
-        let _ = LOST.set(why);
-    }
-}
-
-/// A bar on a terminal, nothing elsewhere.
-fn progress(length: u64, template: &str) -> ProgressBar {
-    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(length).with_style(style)
 }

@@ -1,11 +1,11 @@
 //! `fem modes`.
 
-use super::run::default_folder;
-use super::{print, warn};
+use super::run::{Results, default_folder};
+use super::{Console, Format, warn};
 use crate::cost::Cost;
 use crate::error::Error;
 use crate::model::{Model, Plan};
-use crate::modes::{self, Summary};
+use crate::modes::{self, Solution, Summary};
 use crate::registry::Registry;
 use clap::Args;
 use fem_io::files::OutputDir;
@@ -28,9 +28,11 @@ pub(super) struct Arguments {
     /// Threads for the integration of element matrices; results do not depend on it.
     #[arg(long, value_name = "N", default_value = "1")]
     threads: NonZeroUsize,
+    #[command(flatten)]
+    format: Format,
 }
 
-pub(super) fn modes(registry: &Registry, arguments: &Arguments) -> miette::Result<ExitCode> {
+pub(super) fn modes(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let model = Model::new(scene::read(&arguments.scene)?, registry)?;
     let own = match model.plan {
         Plan::Modes { count } => count,
@@ -38,7 +40,7 @@ pub(super) fn modes(registry: &Registry, arguments: &Arguments) -> miette::Resul
     };
     let count = arguments.count.map_or(own, NonZeroUsize::get);
     let folder = || arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene));
-    Ok(compute(&model, count, arguments.threads, folder)?)
+    compute(&model, count, arguments.threads, folder, arguments.format, console)
 }
 
 pub(super) fn compute(
@@ -46,14 +48,21 @@ pub(super) fn compute(
     count: usize,
     threads: NonZeroUsize,
     folder: impl Fn() -> PathBuf,
-) -> Result<ExitCode, Error> {
+    format: Format,
+    console: &Console,
+) -> miette::Result<ExitCode> {
     let solution = modes::solve(model, count, threads).inspect_err(|_| warn(model))?;
     let summary = Summary::new(model, &solution);
     let cost = Cost::new(threads, solution.phases.clone());
-    print(&summary.text(&cost));
-    let dir = OutputDir::create(folder())?;
-    modes::write(&dir, &solution, &summary)?;
-    tables::write_json(&dir, "cost.json", &cost)?;
-    print(&format!("  results   {}\n", dir.path().display()));
+    console.say(format, || summary.text(&cost));
+    let dir = write(folder(), &solution, &summary, &cost)?;
+    Results { summary: &summary, cost: &cost, results: dir.path() }.show(format, console)?;
     Ok(ExitCode::SUCCESS)
+}
+
+fn write(folder: PathBuf, solution: &Solution, summary: &Summary, cost: &Cost) -> Result<OutputDir, Error> {
+    let dir = OutputDir::create(folder)?;
+    modes::write(&dir, solution, summary)?;
+    tables::write_json(&dir, "cost.json", cost)?;
+    Ok(dir)
 }

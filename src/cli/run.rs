@@ -1,19 +1,21 @@
 //! `fem run`.
 
 use super::signals::Signals;
-use super::{print, progress, warn};
+use super::{Console, Format, warn};
 use crate::advise;
 use crate::cost::Cost;
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::registry::Registry;
-use crate::run::{self, Checkpoint, March};
+use crate::run::{self, Checkpoint, March, Outcome};
 use crate::statics;
 use crate::study;
 use crate::summary::{self, Summary};
 use clap::Args;
 use fem_io::files::OutputDir;
 use fem_io::{scene, tables};
+use indicatif::ProgressBar;
+use serde::Serialize;
 use std::io::Write as _;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -34,34 +36,78 @@ pub(super) struct Arguments {
     /// Threads for the integration of element matrices; results do not depend on it.
     #[arg(long, value_name = "N", default_value = "1")]
     threads: NonZeroUsize,
+    #[command(flatten)]
+    format: Format,
 }
 
-pub(super) fn run(registry: &Registry, arguments: &Arguments) -> miette::Result<ExitCode> {
-    Ok(compute(registry, arguments)?)
+/// What a computation found, as `--json` prints it: the documents of its files, and where these lie.
+#[derive(Serialize)]
+pub(super) struct Results<'a, S> {
+    pub(super) summary: &'a S,
+    pub(super) cost: &'a Cost,
+    pub(super) results: &'a Path,
 }
 
-fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error> {
-    let model = advise::decided(Model::new(scene::read(&arguments.scene)?, registry)?, arguments.threads)?;
-    let folder = || arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene));
-    match model.plan {
-        Plan::Impact(_) => impact(&model, arguments, &folder()),
-        _ if arguments.resume => Err(Error::NotMarched),
-        Plan::Static { .. } => {
-            let solution = statics::solve(&model, arguments.threads).inspect_err(|_| warn(&model))?;
-            let summary = statics::Summary::new(&model, &solution);
-            let cost = Cost::new(arguments.threads, solution.phases.clone());
-            print(&summary.text(&cost));
-            let dir = OutputDir::create(folder())?;
-            statics::write(&dir, &model, &solution, &summary)?;
-            tables::write_json(&dir, "cost.json", &cost)?;
-            print(&format!("  results   {}\n", dir.path().display()));
-            Ok(ExitCode::SUCCESS)
-        }
-        Plan::Modes { count } => super::modes::compute(&model, count, arguments.threads, folder),
+impl<S: Serialize> Results<'_, S> {
+    pub(super) fn show(&self, format: Format, console: &Console) -> miette::Result<()> {
+        console.show(format, self, || format!("  results   {}\n", self.results.display()))
     }
 }
 
-fn impact(model: &Model, arguments: &Arguments, folder: &Path) -> Result<ExitCode, Error> {
+pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
+    let scene = scene::read(&arguments.scene)?;
+    let model = advise::decided(Model::new(scene, registry)?, arguments.threads)?;
+    let folder = || arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene));
+    match model.plan {
+        Plan::Impact(_) => impact(&model, arguments, &folder(), console),
+        _ if arguments.resume => Err(Error::NotMarched.into()),
+        Plan::Static { .. } => at_rest(&model, arguments, folder(), console),
+        Plan::Modes { count } => {
+            super::modes::compute(&model, count, arguments.threads, folder, arguments.format, console)
+        }
+    }
+}
+
+fn at_rest(model: &Model, arguments: &Arguments, folder: PathBuf, console: &Console) -> miette::Result<ExitCode> {
+    let solution = statics::solve(model, arguments.threads).inspect_err(|_| warn(model))?;
+    let summary = statics::Summary::new(model, &solution);
+    let cost = Cost::new(arguments.threads, solution.phases.clone());
+    console.say(arguments.format, || summary.text(&cost));
+    let write = || {
+        let dir = OutputDir::create(folder)?;
+        statics::write(&dir, model, &solution, &summary)?;
+        tables::write_json(&dir, "cost.json", &cost)?;
+        Ok::<_, Error>(dir)
+    };
+    let dir = write()?;
+    Results { summary: &summary, cost: &cost, results: dir.path() }.show(arguments.format, console)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn impact(model: &Model, arguments: &Arguments, folder: &Path, console: &Console) -> miette::Result<ExitCode> {
+    let bar = console.progress(1000, "march {bar:40} {percent:>3} %  {eta} left");
+    let (dir, found) = match march(model, arguments, folder, &bar)? {
+        Ended::Stopped(signal) => return Ok(ExitCode::from(128 + signal)),
+        Ended::Done(dir, found) => (dir, found),
+    };
+    let (summary, cost, outcome) = &*found;
+    console.say(arguments.format, || summary.text(cost));
+    if model.scene.output.plots {
+        summary::write_plots(&dir, model, outcome)?;
+    }
+    Results { summary, cost, results: dir.path() }.show(arguments.format, console)?;
+    Ok(if summary.completed { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// How a march ended.
+enum Ended {
+    /// By this signal.
+    Stopped(u8),
+    /// With tables in this folder.
+    Done(OutputDir, Box<(Summary, Cost, Outcome)>),
+}
+
+fn march(model: &Model, arguments: &Arguments, folder: &Path, bar: &ProgressBar) -> Result<Ended, Error> {
     let checkpoint = if arguments.resume { Some(Checkpoint::read(folder, model)?) } else { None };
     let prepared = run::prepare(model, arguments.threads).inspect_err(|_| warn(model))?;
     let sizes = prepared.sizes;
@@ -71,7 +117,7 @@ fn impact(model: &Model, arguments: &Arguments, folder: &Path) -> Result<ExitCod
     };
     // After all that can be refused, so that a refusal leaves no folder; before the march, so that none is in vain.
     let dir = OutputDir::create(folder)?;
-    if let Some(signal) = advance(&mut march, &dir, model.scene.output.checkpoint_every)? {
+    if let Some(signal) = advance(&mut march, &dir, model.scene.output.checkpoint_every, bar)? {
         let again = if arguments.resume { "" } else { " --resume" };
         let command: Vec<_> = std::env::args().collect();
         let (t, share) = (march.time() * 1e3, march.share() * 1e2);
@@ -80,7 +126,7 @@ fn impact(model: &Model, arguments: &Arguments, folder: &Path) -> Result<ExitCod
             std::io::stderr(),
             "Stopped by a signal at {t:.4} ms, {share:.0} % of the march. To go on: {command}{again}"
         );
-        return Ok(ExitCode::from(128 + signal));
+        return Ok(Ended::Stopped(signal));
     }
     let outcome = march.finish();
     let summary = Summary::new(model, &sizes, &outcome);
@@ -90,19 +136,13 @@ fn impact(model: &Model, arguments: &Arguments, folder: &Path) -> Result<ExitCod
     summary::write_tables(&dir, model, &outcome)?;
     tables::write_json(&dir, "summary.json", &summary)?;
     tables::write_json(&dir, "cost.json", &cost)?;
-    print(&summary.text(&cost));
-    if model.scene.output.plots {
-        summary::write_plots(&dir, model, &outcome)?;
-    }
-    print(&format!("  results   {}\n", dir.path().display()));
-    Ok(if summary.completed { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(Ended::Done(dir, Box::new((summary, cost, outcome))))
 }
 
 /// Marches to the end or to a signal, whose number it returns. A checkpoint is written there, and before whenever
 /// `interval` seconds have passed since the last one.
-fn advance(march: &mut March<'_>, dir: &OutputDir, interval: f64) -> Result<Option<u8>, Error> {
+fn advance(march: &mut March<'_>, dir: &OutputDir, interval: f64, bar: &ProgressBar) -> Result<Option<u8>, Error> {
     let signals = Signals::heed();
-    let bar = progress(1000, "march {bar:40} {percent:>3} %  {eta} left");
     // An interval beyond what a clock counts is never over.
     let interval = Duration::try_from_secs_f64(interval).unwrap_or(Duration::MAX);
     let (mut saved, mut signal) = (Instant::now(), None);

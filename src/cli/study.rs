@@ -1,15 +1,17 @@
 //! `fem study`.
 
 use super::run::default_folder;
-use super::{print, progress};
+use super::{Console, Format};
 use crate::error::Error;
 use crate::model::Model;
 use crate::registry::Registry;
 use crate::study::{self, Progress, Report, Session};
 use clap::Args;
 use fem_io::files::OutputDir;
-use fem_io::scene;
-use std::path::PathBuf;
+use fem_io::scene::{self, Setting};
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
@@ -33,6 +35,22 @@ pub(super) struct Arguments {
     /// Folder of the results [default: results/<folder of the scene>-study]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    format: Format,
+}
+
+/// What a study found, its runs as study.csv has them.
+#[derive(Serialize)]
+struct Document<'a> {
+    title: &'a str,
+    asked: &'a [String],
+    tolerance: f64,
+    runs: Vec<Map<String, Value>>,
+    notes: &'a [String],
+    /// Keys of the cheapest setting that keeps the tolerance of the command line.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kept_by: Option<&'a Setting>,
+    results: &'a Path,
 }
 
 /// A time above zero with its unit, s.
@@ -57,11 +75,8 @@ fn share(text: &str) -> Result<f64, String> {
     }
 }
 
-pub(super) fn study(registry: &Registry, arguments: &Arguments) -> miette::Result<ExitCode> {
-    Ok(compute(registry, arguments)?)
-}
-
-fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error> {
+pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
+    let format = arguments.format;
     let path = &arguments.scene;
     let model = Model::new(scene::read(path)?, registry)?;
     let folder = arguments.out.clone().unwrap_or_else(|| {
@@ -70,18 +85,19 @@ fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error
         folder.into()
     });
     let axes = study::axes(&model, registry, &arguments.axis)?;
-    let mut session = Session::open(path, &model, registry, OutputDir::create(folder)?, arguments.resume)?;
-    let bar = progress(1000, "study {bar:40} {percent:>3} %  {msg}");
+    let mut session =
+        Session::open(path, &model, registry, OutputDir::create(folder).map_err(Error::from)?, arguments.resume)?;
+    let bar = console.progress(1000, "study {bar:40} {percent:>3} %  {msg}");
     let found = session.found();
     if found > 0 {
-        print(&format!("  {found} runs are there already\n"));
+        console.say(format, || format!("  {found} runs are there already\n"));
     }
     let report = study::study(&mut session, &model, &axes, arguments.budget, &mut |told| match told {
-        Progress::Planned(plan) => bar.suspend(|| print(&format!("{plan}\n"))),
+        Progress::Planned(plan) => bar.suspend(|| console.say(format, || format!("{plan}\n"))),
         Progress::Together([]) => {}
         Progress::Together(runs) => {
             let each: String = runs.iter().map(|r| format!("\n    {} ({:.1} s)", r.level.label, r.seconds)).collect();
-            bar.suspend(|| print(&format!("  ladders climbed; now together:{each}\n\n")));
+            bar.suspend(|| console.say(format, || format!("  ladders climbed; now together:{each}\n\n")));
         }
         Progress::Runs { what, share } => {
             bar.set_position((share * 1000.0) as u64);
@@ -89,31 +105,61 @@ fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error
         }
     })?;
     bar.finish_and_clear();
-    study::write(session.dir(), &report)?;
-    study::write_pictures(session.dir(), &report)?;
-    let text = study::text(&report);
-    session.dir().write("study.md", |out| write!(out, "{text}{}", study::tables(&report)))?;
-    print(&text);
-    let promised =
-        arguments.tolerance.map_or(Ok(true), |tolerance| promise(&session, arguments, &report, tolerance))?;
-    print(&format!("\n  results   {}\n", session.dir().path().display()));
-    Ok(if promised { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    write(&session, &report)?;
+    console.say(format, || study::text(&report));
+    let cheapest = arguments.tolerance.and_then(|tolerance| cheapest(&report, tolerance));
+    if let Some(setting) = cheapest {
+        write_scene(&session, arguments, setting)?;
+    }
+    console.say(format, || promised(&session, arguments.tolerance, cheapest, &report));
+    let data = Document {
+        title: &report.title,
+        asked: &report.asked,
+        tolerance: report.tolerance,
+        runs: study::named(&report),
+        notes: &report.notes,
+        kept_by: cheapest,
+        results: session.dir().path(),
+    };
+    console.show(format, &data, || format!("\n  results   {}\n", session.dir().path().display()))?;
+    let kept = arguments.tolerance.is_none() || cheapest.is_some();
+    Ok(if kept { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Writes the scene with the cheapest setting that keeps `tolerance`; `false` where none does.
-fn promise(session: &Session<'_>, arguments: &Arguments, report: &Report, tolerance: f64) -> Result<bool, Error> {
+fn write(session: &Session<'_>, report: &Report) -> Result<(), Error> {
+    let dir = session.dir();
+    study::write(dir, report)?;
+    study::write_pictures(dir, report)?;
+    dir.write("study.md", |out| write!(out, "{}{}", study::text(report), study::tables(report)))?;
+    Ok(())
+}
+
+/// The cheapest setting that keeps `tolerance` in everything asked.
+fn cheapest(report: &Report, tolerance: f64) -> Option<&Setting> {
     let all: Vec<usize> = (0..report.asked.len()).collect();
-    let Some(row) = report.cheapest(&all, tolerance) else {
-        let best = report.rows.iter().filter_map(|row| row.worst()).reduce(f64::min);
-        let best = best.map_or(String::new(), |best| format!("; the best leaves {best:.1e}"));
-        print(&format!(
-            "\n  no run is certain to keep {tolerance} in everything asked{best}: give it more time, or ask less\n"
-        ));
-        return Ok(false);
-    };
-    let text = scene::rewrite(&arguments.scene, &row.level.setting)?;
-    session.dir().write("scene.toml", |out| out.write_all(text.as_bytes()))?;
-    let file = session.dir().path().join("scene.toml");
-    print(&format!("\n  {tolerance} in everything asked is kept by {}\n", file.display()));
-    Ok(true)
+    report.cheapest(&all, tolerance).map(|row| &row.level.setting)
+}
+
+/// Writes the scene with `setting`.
+fn write_scene(session: &Session<'_>, arguments: &Arguments, setting: &Setting) -> Result<(), Error> {
+    let text = scene::rewrite(&arguments.scene, setting)?;
+    Ok(session.dir().write("scene.toml", |out| out.write_all(text.as_bytes()))?)
+}
+
+/// Whether a tolerance, if one was asked for, is kept.
+fn promised(session: &Session<'_>, tolerance: Option<f64>, cheapest: Option<&Setting>, report: &Report) -> String {
+    match (tolerance, cheapest) {
+        (None, _) => String::new(),
+        (Some(tolerance), Some(_)) => {
+            let file = session.dir().path().join("scene.toml");
+            format!("\n  {tolerance} in everything asked is kept by {}\n", file.display())
+        }
+        (Some(tolerance), None) => {
+            let best = report.rows.iter().filter_map(|row| row.worst()).reduce(f64::min);
+            let best = best.map_or(String::new(), |best| format!("; the best leaves {best:.1e}"));
+            format!(
+                "\n  no run is certain to keep {tolerance} in everything asked{best}: give it more time, or ask less\n"
+            )
+        }
+    }
 }

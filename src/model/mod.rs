@@ -27,6 +27,7 @@ use fem_core::mesh::QuadMesh;
 use fem_core::plate::Plate;
 use fem_failure::delamination::DelaminationThreshold;
 use fem_io::scene::{Analysis, Damage, Scene};
+use tracing::info;
 
 /// A scene made concrete: mesh extruded, plug-ins built, supports turned into constraints, impact or loads placed.
 #[derive(Debug, Clone)]
@@ -104,6 +105,7 @@ impl Model {
         let read = builder.mesh()?;
         let mut warnings = read.warnings;
         let mesh = read.mesh;
+        info!(quads = mesh.quads.len(), nodes = mesh.points.len(), "mesh");
         let materials: Vec<Material> = scene.materials.iter().map(|m| m.value.clone()).collect();
         let laminate = scene.laminate.value.clone();
         warnings.extend(implausible(&mesh, &laminate));
@@ -149,6 +151,8 @@ impl Model {
         let resin = scene.interface.as_ref().map(|resin| resin.value);
         let threshold = builder.threshold(DelaminationThreshold::of(&laminate, &materials, resin))?;
         let profiles = builder.profiles(&plate, effects)?;
+        let names: Vec<_> = criteria.iter().map(|(name, _)| name.as_str()).collect();
+        info!(element = scene.element.name.value, criteria = names.join(", "), unknowns = constraints.ndof(), "model");
         Ok(Self {
             materials,
             laminate,

@@ -20,6 +20,7 @@ use fem_failure::scan::{self, Scan};
 use fem_io::files::OutputDir;
 use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
+use tracing::info;
 
 /// Steps between two looks of a march at its energies, which cost two products with matrices.
 pub const BALANCE_EVERY: u64 = 128;
@@ -342,6 +343,7 @@ impl<'a> March<'a> {
         }
         self.stopwatch.lap("scan");
         self.count();
+        info!(steps = self.progress.step, work = ?self.progress.work, "march");
         let Progress { step, ledger, work, stopped, .. } = self.progress;
         let mut counters = self.counters;
         counters.steps = step;

@@ -211,6 +211,7 @@ fn nonlinear(
         None => vec![0.0; f.len()],
     };
     let found = large.equilibrium(symbolic, f, start, threads)?;
+    tracing::info!(iterations = found.decrements.len(), "equilibrium");
     counters.elements += large.integrated();
     counters.factorisations += found.decrements.len() as u64;
     counters.solves += found.solves;

@@ -36,7 +36,7 @@ pub use quantity::{FORCE_HISTORY, Figure};
 pub use record::{PHASES, Record, Size, seconds as seconds_per_phase};
 pub use report::{Report, Row};
 pub use session::Session;
-pub use table::write;
+pub use table::{named, write};
 pub use text::{tables, text};
 
 use crate::error::Error;

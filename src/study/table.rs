@@ -6,6 +6,7 @@ use crate::error::Error;
 use fem_core::counters::Counters;
 use fem_io::files::OutputDir;
 use fem_io::tables::{self, Field};
+use serde_json::{Map, Value};
 
 const SIZES: [&str; 20] = [
     "axis",
@@ -36,18 +37,40 @@ const SIZES: [&str; 20] = [
 /// # Errors
 /// A folder that cannot be written, a number that is not finite.
 pub fn write(dir: &OutputDir, report: &Report) -> Result<(), Error> {
-    let figures = || report.base().result.iter().flat_map(|record| &record.figures).map(|f| f.name.as_str());
+    let header = header(report);
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let keys: Vec<String> = report.rows.iter().map(keys).collect();
+    Ok(tables::write_columns(dir, "study.csv", &header, lines(report, &keys))?)
+}
+
+/// The lines of study.csv by the names of its columns; what is empty there is left out.
+pub fn named(report: &Report) -> Vec<Map<String, Value>> {
+    let header = header(report);
+    let keys: Vec<String> = report.rows.iter().map(keys).collect();
+    let named = |line: Vec<Field<'_>>| {
+        let columns = header.iter().zip(line).filter(|(_, field)| !matches!(field, Field::Text("")));
+        columns.map(|(name, field)| (name.clone(), field.into())).collect()
+    };
+    lines(report, &keys).map(named).collect()
+}
+
+fn figures(report: &Report) -> Vec<&str> {
+    report.base().result.iter().flat_map(|record| &record.figures).map(|f| f.name.as_str()).collect()
+}
+
+fn header(report: &Report) -> Vec<String> {
     let mut header: Vec<String> = SIZES.map(str::to_owned).to_vec();
-    header.extend(figures().map(str::to_owned));
+    header.extend(figures(report).into_iter().map(str::to_owned));
     header.extend(report.asked.iter().map(|name| format!("{name} error")));
     header.extend(report.asked.iter().map(|name| format!("{name} of its axis")));
     header.extend(PHASES.map(|phase| format!("{phase}_cpu_s")));
     header.extend(["expected_cpu_s", "peak_memory_MB"].map(str::to_owned));
-    let names: Vec<&str> = figures().collect();
-    let keys: Vec<String> = report.rows.iter().map(keys).collect();
-    let rows = report.rows.iter().zip(&keys).map(|(row, keys)| line(row, keys, &names, report.asked.len()));
-    let header: Vec<&str> = header.iter().map(String::as_str).collect();
-    Ok(tables::write_columns(dir, "study.csv", &header, rows)?)
+    header
+}
+
+fn lines<'a>(report: &'a Report, keys: &'a [String]) -> impl Iterator<Item = Vec<Field<'a>>> + Clone {
+    let names = figures(report);
+    report.rows.iter().zip(keys).map(move |(row, keys)| line(row, keys, &names, report.asked.len()))
 }
 
 fn keys(row: &Row) -> String {

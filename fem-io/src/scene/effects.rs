@@ -1,6 +1,7 @@
 //! The effects that a scene calls for; what it does not name costs nothing.
 
-use super::reader::{Field, Keys, Reader};
+use super::keys::{Form, Keys, key, words};
+use super::reader::{Field, Reader};
 use super::source::{Located, SceneError};
 use super::tree::Node;
 use fem_core::damping::{Damping, Rayleigh};
@@ -56,17 +57,32 @@ pub struct Effects {
     pub cure: Option<Located<f64>>,
 }
 
-const KEYS: Keys = &[
-    ("damage", r#""onset""#),
-    ("delamination", r#""threshold""#),
-    ("membrane", r#""auto""#),
-    ("damping", r#"{ mass = "30 1/s", stiffness = "2e-8 s" }"#),
-    ("inertia", r#""off""#),
-    ("gravity", r#""9.81 m/s^2""#),
-    ("cure", r#""-150 K""#),
+pub(super) const KEYS: Keys = &[
+    key("damage", Form::Words(&words(&DAMAGES)), r#""onset""#, EFFECTS[0].summary).default(r#""onset""#),
+    key("delamination", Form::Words(&words(&DELAMINATIONS)), r#""threshold""#, EFFECTS[1].summary),
+    key("membrane", Form::Words(&words(&SWITCHES)), r#""auto""#, EFFECTS[2].summary).default(r#""off""#),
+    key(
+        "damping",
+        Form::OneOf(&[OFF, Form::Table(DAMPING)]),
+        r#"{ mass = "30 1/s", stiffness = "2e-8 s" }"#,
+        EFFECTS[3].summary,
+    )
+    .default(r#""off""#),
+    key("inertia", Form::Words(&words(&SWITCHES)), r#""off""#, EFFECTS[4].summary).default(r#""on""#),
+    key("gravity", Form::OneOf(&[OFF, Form::Quantity(Dimension::ACCELERATION)]), r#""9.81 m/s^2""#, EFFECTS[5].summary)
+        .default(r#""off""#),
+    key("cure", Form::OneOf(&[OFF, Form::Quantity(Dimension::TEMPERATURE)]), r#""-150 K""#, EFFECTS[6].summary)
+        .default(r#""off""#),
 ];
+const DAMAGES: [(&str, Damage); 2] = [("onset", Damage::Onset), ("off", Damage::Off)];
 const DELAMINATIONS: [(&str, Delamination); 2] = [("off", Delamination::Off), ("threshold", Delamination::Threshold)];
-const DAMPING: Keys = &[("mass", r#""30 1/s""#), ("stiffness", r#""2e-8 s""#), ("ratio", "0.02")];
+const SWITCHES: [(&str, Switch); 3] = [("off", Switch::Off), ("on", Switch::On), ("auto", Switch::Auto)];
+const OFF: Form = Form::Words(&["off"]);
+const DAMPING: Keys = &[
+    key("mass", Form::Quantity(Dimension::FREQUENCY), r#""30 1/s""#, "factor of the mass matrix"),
+    key("stiffness", Form::Quantity(Dimension::TIME), r#""2e-8 s""#, "factor of the stiffness matrix"),
+    key("ratio", Form::Number, "0.02", "of every mode to critical damping; needs a reduction to modes"),
+];
 
 /// An effect as lists show it.
 #[derive(Debug, Clone, Copy)]
@@ -129,7 +145,7 @@ pub const EFFECTS: &[EffectInfo] = &[
 
 pub(super) fn read(field: &Field<'_>) -> Result<Effects, SceneError> {
     let table = field.table(KEYS)?;
-    let damage = table.optional("damage").map(|f| f.choice(&[("onset", Damage::Onset), ("off", Damage::Off)]));
+    let damage = table.optional("damage").map(|f| f.choice(&DAMAGES));
     Ok(Effects {
         damage: damage.transpose()?.unwrap_or_default(),
         delamination: choice(&table, "delamination", &DELAMINATIONS)?,
@@ -178,7 +194,7 @@ fn read_damping(field: &Field<'_>) -> Result<Damping, SceneError> {
 }
 
 fn switch(table: &Reader<'_>, key: &str) -> Result<Option<Located<Switch>>, SceneError> {
-    choice(table, key, &[("off", Switch::Off), ("on", Switch::On), ("auto", Switch::Auto)])
+    choice(table, key, &SWITCHES)
 }
 
 fn choice<T: Copy>(table: &Reader<'_>, key: &str, words: &[(&str, T)]) -> Result<Option<Located<T>>, SceneError> {

@@ -1,7 +1,8 @@
 //! The laminate: plies from the bottom up and the element layers that hold them.
 
+use super::keys::{Form, Keys, key};
 use super::material;
-use super::reader::{Field, Keys, Reader};
+use super::reader::{Field, Reader};
 use super::source::{Located, SceneError};
 use super::tree::Node;
 use fem_core::laminate::{LaminaPly, Laminate};
@@ -9,15 +10,29 @@ use fem_core::layup::{self, LayupPly};
 use fem_core::material::Material;
 use fem_core::plugin::{Dimension, unknown_key};
 
-const KEYS: Keys = &[
-    ("plies", r#""[0/45/-45/90]2s""#),
-    ("material", r#""as4-3502""#),
-    ("ply_thickness", r#""0.13208 mm""#),
-    ("layers", "[8, 8]"),
-    ("ply", r#"{ core = { thickness = "5 mm" } }"#),
-    ("interface", r#""resin""#),
+pub(super) const KEYS: Keys = &[
+    key("plies", Form::Text, r#""[0/45/-45/90]2s""#, "angles from the bottom up, degrees from x towards y").required(),
+    key("material", Form::Text, r#""as4-3502""#, "of all plies without a type of their own: a name of `materials`")
+        .required(),
+    key("ply_thickness", Form::Quantity(Dimension::LENGTH), r#""0.13208 mm""#, "thickness of a ply").required(),
+    key(
+        "layers",
+        Form::OneOf(&[Form::Count(1), Form::List(&Form::Count(1))]),
+        "[8, 8]",
+        "layers of cells through the thickness, or how many plies each holds, from the bottom up; two where it is left out",
+    ),
+    key(
+        "ply",
+        Form::Named(&Form::Table(PLY_KEYS)),
+        r#"{ core = { thickness = "5 mm" } }"#,
+        "types of ply, for `plies` such as \"[0/90{core}]s\"",
+    ),
+    key("interface", Form::Text, r#""resin""#, "material between the plies, for criteria that look there"),
 ];
-const PLY_KEYS: Keys = &[("material", r#""foam""#), ("thickness", r#""5 mm""#)];
+const PLY_KEYS: Keys = &[
+    key("material", Form::Text, r#""foam""#, "a name of `materials`"),
+    key("thickness", Form::Quantity(Dimension::LENGTH), r#""5 mm""#, "thickness of such a ply"),
+];
 
 /// Material and thickness of a ply type.
 #[derive(Clone, Copy)]

@@ -1,6 +1,7 @@
 //! Loads of a static analysis.
 
-use super::reader::{Field, Keys, Reader};
+use super::keys::{Form, Key, Keys, key, words};
+use super::reader::{Field, Reader};
 use super::run::{self, ImpactPoint};
 use super::source::{Located, Place, SceneError};
 use super::support::{self, NodeSet};
@@ -103,24 +104,65 @@ pub struct ProfileLine {
     pub equilibrium: bool,
 }
 
-const KEYS: Keys = &[
-    ("pressure", r#""1 MPa""#),
-    ("face", r#""top""#),
-    ("group", r#""plate""#),
-    ("force", r#"["0 N", "0 N", "-5 N"]"#),
-    ("force_per_length", r#"["10 N/mm", "0 N/mm", "0 N/mm"]"#),
-    ("gravity", r#"["0 m/s^2", "0 m/s^2", "-9.81 m/s^2"]"#),
-    ("at", r#""top""#),
-    ("patch_radius", r#""3 mm""#),
+const FACES: [(&str, Face); 2] = [("top", Face::Top), ("bottom", Face::Bottom)];
+/// Force per length.
+const LINE: Dimension = Dimension([0.0, 1.0, -2.0, 0.0]);
+const FORCE: Form = Form::Several(3, &Form::Quantity(Dimension::FORCE));
+const LEVEL: Key = support::LEVEL;
+
+/// What a load may be: each kind has keys of its own.
+pub(super) const LOADS: &[Form] =
+    &[Form::Table(PRESSURE), Form::Table(PATCH), Form::Table(EDGE), Form::Table(GRAVITY), Form::Table(POINT)];
+const PRESSURE: Keys = &[
+    key(
+        "pressure",
+        Form::OneOf(&[Form::Quantity(Dimension::PRESSURE), Form::Table(FORMULA)]),
+        r#""1 MPa""#,
+        "presses on a face, or pulls where it is negative",
+    )
+    .required(),
+    key("face", Form::Words(&words(&FACES)), r#""top""#, "face that it acts on").default(r#""top""#),
+    key("group", Form::Text, r#""plate""#, "cells that it acts on, a group of the mesh; all where it is left out"),
 ];
-const PRESSURE: Keys = &[("face", r#""top""#), ("pressure", r#""1 MPa""#), ("group", r#""plate""#)];
-const FORMULA: Keys = &[("formula", r#""sin(3.14159*x/100)""#), ("unit", r#""MPa""#), ("length", r#""mm""#)];
-const PATCH: Keys = &[("patch_radius", r#""3 mm""#), ("force", r#""100 N""#), ("at", r#"{ x = "0 mm", y = "0 mm" }"#)];
-const EDGE: Keys = &[("force_per_length", r#"["10 N/mm", "0 N/mm", "0 N/mm"]"#), ("group", r#""x-max""#)];
-const POINT: Keys = &[("force", r#"["0 N", "0 N", "-5 N"]"#), ("group", r#""impact""#), ("at", r#""top""#)];
-const GRAVITY: Keys = &[("gravity", r#"["0 m/s^2", "0 m/s^2", "-9.81 m/s^2"]"#)];
-const PROFILE: Keys =
-    &[("name", r#""centre""#), ("at", r#"{ x = "50 mm", y = "50 mm" }"#), ("points", "5"), ("equilibrium", "true")];
+const FORMULA: Keys = &[
+    key("formula", Form::Text, r#""sin(3.14159*x/100)""#, "value of the pressure over x and y").required(),
+    key("unit", Form::Text, r#""MPa""#, "unit of its value").required(),
+    key("length", Form::Text, r#""mm""#, "unit of x and y").required(),
+];
+const PATCH: Keys = &[
+    key("patch_radius", Form::Quantity(Dimension::LENGTH), r#""3 mm""#, "radius of the circle that the force acts on")
+        .required(),
+    key("force", Form::Quantity(Dimension::FORCE), r#""100 N""#, "total, pressing down on the top face").required(),
+    key("at", Form::Table(run::AT), r#"{ x = "0 mm", y = "0 mm" }"#, "centre of the circle").required(),
+];
+const EDGE: Keys = &[
+    key(
+        "force_per_length",
+        Form::Several(3, &Form::Quantity(LINE)),
+        r#"["10 N/mm", "0 N/mm", "0 N/mm"]"#,
+        "along x, y and z, spread evenly through the thickness",
+    )
+    .required(),
+    key("group", Form::Text, r#""x-max""#, "a group of edges of the mesh").required(),
+];
+const POINT: Keys = &[
+    key("force", FORCE, r#"["0 N", "0 N", "-5 N"]"#, "at one node, along x, y and z").required(),
+    key("group", Form::Text, r#""impact""#, "the node, a group of the mesh").required(),
+    LEVEL,
+];
+const GRAVITY: Keys = &[key(
+    "gravity",
+    Form::Several(3, &Form::Quantity(Dimension::ACCELERATION)),
+    r#"["0 m/s^2", "0 m/s^2", "-9.81 m/s^2"]"#,
+    "acceleration of all masses along x, y and z",
+)
+.required()];
+pub(super) const PROFILE: Keys = &[
+    key("name", Form::Text, r#""centre""#, "part of the names of its files").required(),
+    key("at", Form::Table(run::AT), r#"{ x = "50 mm", y = "50 mm" }"#, "where it pierces the plate").required(),
+    key("points", Form::Count(2), "5", "heights per ply").default("5"),
+    key("equilibrium", Form::Flag, "true", "transverse stresses from equilibrium as well").default("false"),
+];
 
 /// Most heights of a profile per ply.
 const MAX_POINTS: usize = 1000;
@@ -130,7 +172,7 @@ pub(super) fn read_all(field: &Field<'_>) -> Result<Vec<Load>, SceneError> {
 }
 
 fn read(field: &Field<'_>) -> Result<Load, SceneError> {
-    let any = field.table(KEYS)?;
+    let any = field.table_of(LOADS)?;
     let has = |key| any.optional(key).is_some();
     let kind = if has("pressure") {
         pressure(&field.table(PRESSURE)?)?
@@ -143,10 +185,8 @@ fn read(field: &Field<'_>) -> Result<Load, SceneError> {
         }
     } else if has("force_per_length") {
         let table = field.table(EDGE)?;
-        let Dimension(mut per_length) = Dimension::FORCE;
-        per_length[0] -= 1.0;
         LoadKind::Edge {
-            force_per_length: vector(&table.required("force_per_length")?, Dimension(per_length))?,
+            force_per_length: vector(&table.required("force_per_length")?, LINE)?,
             group: group(&table.required("group")?)?,
         }
     } else if has("gravity") {
@@ -174,9 +214,7 @@ fn pressure(table: &Reader<'_>) -> Result<LoadKind, SceneError> {
         Node::Table(_) => formula(&field.table(FORMULA)?)?,
         _ => Pressure::Uniform(field.quantity(Dimension::PRESSURE)?),
     };
-    let face = table
-        .optional("face")
-        .map_or(Ok(Face::Top), |field| field.choice(&[("top", Face::Top), ("bottom", Face::Bottom)]))?;
+    let face = table.optional("face").map_or(Ok(Face::Top), |field| field.choice(&FACES))?;
     Ok(LoadKind::Pressure { pressure, face, group: table.optional("group").map(|f| group(&f)).transpose()? })
 }
 

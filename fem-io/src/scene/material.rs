@@ -1,6 +1,7 @@
 //! Materials of a scene: constants, over those of the library or of a file of the user's if one of them is named.
 
-use super::reader::{Field, Keys, Reader};
+use super::keys::{Form, Key, Keys, key};
+use super::reader::{Field, Reader};
 use super::source::{Located, Origin, SceneError, SceneSource, read_text};
 use super::tree::Table;
 use crate::materials;
@@ -9,37 +10,49 @@ use fem_core::plugin::Dimension;
 use std::path::Path;
 use std::sync::Arc;
 
-const KEYS: Keys = &[
-    ("library", r#""AS4/3502""#),
-    ("file", r#""materials.toml""#),
-    ("name", r#""my tape""#),
-    ("e", r#""70 GPa""#),
-    ("nu", "0.3"),
-    ("e1", r#""130.3 GPa""#),
-    ("e2", r#""9.65 GPa""#),
-    ("e3", r#""9.65 GPa""#),
-    ("nu12", "0.35"),
-    ("nu13", "0.35"),
-    ("nu23", "0.40"),
-    ("g12", r#""5.93 GPa""#),
-    ("g13", r#""5.93 GPa""#),
-    ("g23", r#""3.45 GPa""#),
-    ("alpha", r#""23e-6 1/K""#),
-    ("alpha1", r#""-1e-6 1/K""#),
-    ("alpha2", r#""26e-6 1/K""#),
-    ("alpha3", r#""26e-6 1/K""#),
-    ("density", r#""1.575 g/cm^3""#),
-    ("Xt", r#""1793 MPa""#),
-    ("Xc", r#""1724 MPa""#),
-    ("Yt", r#""64 MPa""#),
-    ("Yc", r#""138 MPa""#),
-    ("S12", r#""109 MPa""#),
-    ("S23", r#""69 MPa""#),
-    ("Zt", r#""60 MPa""#),
-    ("Zc", r#""138 MPa""#),
-    ("S13", r#""90 MPa""#),
-    ("GIIc", r#""0.8 N/mm""#),
+pub(super) const KEYS: Keys = &[
+    key("library", Form::Library, r#""AS4/3502""#, "a material of the library; constants given here override its own"),
+    key("file", Form::Text, r#""materials.toml""#, "a file of materials in the format of the library"),
+    key("name", Form::Text, r#""my tape""#, "which material of `file`"),
+    stress("e", r#""70 GPa""#, "Young's modulus of an isotropic material"),
+    key("nu", Form::Number, "0.3", "Poisson's ratio of an isotropic material"),
+    stress("e1", r#""130.3 GPa""#, "Young's modulus along the fibres"),
+    stress("e2", r#""9.65 GPa""#, "Young's modulus across the fibres, in the plane of the ply"),
+    stress("e3", r#""9.65 GPa""#, "Young's modulus through the thickness"),
+    key("nu12", Form::Number, "0.35", "Poisson's ratio: contraction along 2 under tension along 1"),
+    key("nu13", Form::Number, "0.35", "Poisson's ratio: contraction along 3 under tension along 1"),
+    key("nu23", Form::Number, "0.40", "Poisson's ratio: contraction along 3 under tension along 2"),
+    stress("g12", r#""5.93 GPa""#, "shear modulus in the plane of the ply"),
+    stress("g13", r#""5.93 GPa""#, "shear modulus 13"),
+    stress("g23", r#""3.45 GPa""#, "shear modulus 23"),
+    expansion_key("alpha", r#""23e-6 1/K""#, "thermal expansion, the same along all axes"),
+    expansion_key("alpha1", r#""-1e-6 1/K""#, "thermal expansion along the fibres"),
+    expansion_key("alpha2", r#""26e-6 1/K""#, "thermal expansion across the fibres"),
+    expansion_key(
+        "alpha3",
+        r#""26e-6 1/K""#,
+        "thermal expansion through the thickness; as alpha2 where it is left out",
+    ),
+    key("density", Form::Quantity(Dimension::DENSITY), r#""1.575 g/cm^3""#, "mass per volume"),
+    stress("Xt", r#""1793 MPa""#, "tensile strength along the fibres"),
+    stress("Xc", r#""1724 MPa""#, "compressive strength along the fibres"),
+    stress("Yt", r#""64 MPa""#, "tensile strength across the fibres"),
+    stress("Yc", r#""138 MPa""#, "compressive strength across the fibres"),
+    stress("S12", r#""109 MPa""#, "shear strength in the plane of the ply"),
+    stress("S23", r#""69 MPa""#, "shear strength 23"),
+    stress("Zt", r#""60 MPa""#, "tensile strength through the thickness"),
+    stress("Zc", r#""138 MPa""#, "compressive strength through the thickness"),
+    stress("S13", r#""90 MPa""#, "shear strength 13"),
+    key("GIIc", Form::Quantity(Dimension::TOUGHNESS), r#""0.8 N/mm""#, "toughness of the interfaces in mode II"),
 ];
+
+const fn stress(name: &'static str, example: &'static str, about: &'static str) -> Key {
+    key(name, Form::Quantity(Dimension::PRESSURE), example, about)
+}
+
+const fn expansion_key(name: &'static str, example: &'static str, about: &'static str) -> Key {
+    key(name, Form::Quantity(Dimension::EXPANSION), example, about)
+}
 
 /// The keys of constants.
 pub(crate) const CONSTANTS: Keys = KEYS.split_at(3).1;
@@ -59,16 +72,24 @@ pub(super) fn find(field: &Field<'_>, materials: &[Located<Material>]) -> Result
 
 fn read(name: &str, field: &Field<'_>, folder: &Path) -> Result<Material, SceneError> {
     let own = field.table(KEYS)?;
-    let over = |below: Table, source: &Arc<SceneSource>| {
-        let merged = field.any_table()?.clone().over(below);
-        from_constants(name, &own.of(&merged, KEYS, source)?)
-    };
+    match whole(field, folder)? {
+        None => from_constants(name, &own),
+        Some((merged, source)) => from_constants(name, &own.of(&merged, KEYS, &source)?),
+    }
+}
+
+/// A material with the constants of the library or of the file that it names beneath its own, if it names one, and the
+/// texts that they stand in.
+pub(super) fn whole(field: &Field<'_>, folder: &Path) -> Result<Option<(Table, Arc<SceneSource>)>, SceneError> {
+    let own = field.table(KEYS)?;
+    let over = |below: &Table| Ok::<_, SceneError>(field.any_table()?.clone().over(below.clone()));
     match (own.optional("library"), own.optional("file"), own.optional("name")) {
         (Some(_), Some(stray), _) => Err(stray.error("does not go with `library`", "leave one of the two out")),
         (_, None, Some(stray)) => Err(stray.error("means nothing without `file`", "add the file or leave it out")),
-        (None, None, None) => from_constants(name, &own),
+        (None, None, None) => Ok(None),
         (Some(library), None, None) => {
-            over(materials::all()[library.word(materials::names())?].table.clone(), field.source())
+            let known = &materials::all()[library.word(materials::names())?];
+            Ok(Some((over(&known.table)?, Arc::clone(field.source()))))
         }
         (None, Some(file), _) => {
             let path = folder.join(file.text()?);
@@ -79,7 +100,7 @@ fn read(name: &str, field: &Field<'_>, folder: &Path) -> Result<Material, SceneE
             let source = Arc::new(source);
             let given = materials::parse(&text, &source)?;
             let which = own.required("name")?.word(given.iter().map(|m| m.material.name.as_str()))?;
-            over(given[which].table.clone(), &source)
+            Ok(Some((over(&given[which].table)?, source)))
         }
     }
 }
@@ -150,7 +171,7 @@ mod tests {
     #[test]
     fn every_strength_that_a_criterion_may_ask_for_can_be_given() {
         for strength in Strength::ALL {
-            assert!(CONSTANTS.iter().any(|(key, _)| *key == strength.name()), "{}", strength.name());
+            assert!(CONSTANTS.iter().any(|key| key.name == strength.name()), "{}", strength.name());
         }
     }
 }

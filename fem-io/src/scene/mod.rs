@@ -4,13 +4,18 @@
 //! [`Fidelity`]; plug-ins are named with their parameters and checked by whoever knows them. Whatever is wrong becomes a
 //! [`SceneError`] that shows the line.
 
+mod annotate;
 mod effects;
+mod explain;
+pub(crate) mod keys;
 mod laminate;
 mod load;
 pub(crate) mod material;
 mod plugin;
 pub(crate) mod reader;
+mod root;
 mod run;
+mod schema;
 pub(crate) mod source;
 mod study;
 mod substructures;
@@ -19,12 +24,16 @@ mod support;
 mod tests;
 pub(crate) mod tree;
 
+pub use annotate::annotated;
 pub use effects::{Damage, Delamination, EFFECTS, EffectInfo, Effects, Switch};
+pub use explain::{Explained, explain};
+pub use keys::Plugins;
 pub use load::{Load, LoadKind, Pressure, ProfileLine};
 pub use plugin::PluginSpec;
 pub use run::{
     ContactLoad, CriterionSpec, Depth, Failure, Impact, ImpactPoint, Impactor, IndexWatch, March, Output, Window,
 };
+pub use schema::schema;
 pub use source::{Located, Place, SceneError, SceneSource};
 pub use study::{OwnAxis, Quantity, Setting, Study, rewrite};
 pub use substructures::{Masters, Parts, Substructures};
@@ -37,7 +46,9 @@ use fem_core::mesh::Curves;
 use fem_core::plate::ZDerivatives;
 use fem_core::plugin::Dimension;
 use fem_core::symmetry::Group;
-use reader::{Field, Keys, Reader};
+use keys::{Form, Key, Keys, key, words};
+use reader::{Field, Reader};
+use root::{ANALYSES, KEYS, Which, Z_DERIVATIVES};
 use source::Origin;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -183,44 +194,36 @@ pub fn refined_cells(cells: usize, times: u32) -> Result<usize, String> {
         .ok_or_else(|| format!("refining {times} times makes more than {MAX_CELLS} cells of {cells}"))
 }
 
-const KEYS: Keys = &[
-    ("title", r#""16 plies, 2.49 kg at 1.56 m/s""#),
-    ("fidelity", r#""engineering""#),
-    ("analysis", r#""static""#),
-    ("mesh", r#"{ file = "plate.msh", unit = "mm" }"#),
-    ("symmetry", r#""half-turn""#),
-    ("materials", r#"{ as4-3502 = { library = "AS4/3502" } }"#),
-    ("laminate", r#"{ plies = "[0/45/-45/90]2s", material = "as4-3502", ply_thickness = "0.13208 mm" }"#),
-    ("element", r#"{ kind = "hermite-prism" }"#),
-    ("support", r#"[{ group = "support", at = "mid-plane", fix = ["U30"] }, { restrain = "rigid-motions" }]"#),
-    ("equation", r#"[{ terms = [{ group = "a", at = "top", dof = "U10", factor = 1.0 }] }]"#),
-    ("couple", r#"[{ group = "edge", at = "all", dofs = ["U30"] }]"#),
-    ("substructures", "{ cells = [5, 5] }"),
-    ("impactor", r#"{ mass = "2.49 kg", velocity = "1.56 m/s", at = { group = "impact" } }"#),
-    ("contact", r#"{ law = "sun-yang", k = "1.07e5 N/mm^1.5", n = 1.5, m = 2.5, critical = "0.08 mm", beta = 0.4 }"#),
-    ("effects", r#"{ damage = "onset" }"#),
-    ("load", r#"[{ pressure = "1 MPa", face = "top" }]"#),
-    ("modes", "{ count = 10 }"),
-    ("profile", r#"[{ name = "centre", at = { x = "50 mm", y = "50 mm" }, points = 5 }]"#),
-    ("reduction", r#"{ method = "craig-bampton", modes = 40 }"#),
-    ("march", r#"{ integrator = "newmark", step = "0.5 us", end = "1 ms" }"#),
-    ("failure", r#"{ criteria = ["hashin-report"] }"#),
-    ("output", "{ plots = true }"),
-    ("study", r#"{ quantities = ["peak-force"] }"#),
+/// Where a mesh may come from.
+const MESHES: &[Form] = &[Form::Table(FILE), Form::Table(RECTANGLE)];
+const FILE: Keys = &[
+    key("file", Form::Text, r#""plate.msh""#, "a mesh of gmsh, MSH 4.1; counts from the folder of the scene")
+        .required(),
+    key("unit", Form::Text, r#""mm""#, "unit of its coordinates").required(),
+    REFINE,
+    key(
+        "curves",
+        Form::Words(&words(&Curves::ALL)),
+        r#""kept""#,
+        "what becomes of curved edges when cells are divided",
+    )
+    .default(r#""kept""#),
 ];
-const MESH: Keys = &[
-    ("file", r#""plate.msh""#),
-    ("unit", r#""mm""#),
-    ("rectangle", r#"["100 mm", "50 mm"]"#),
-    ("cells", "[8, 4]"),
-    ("refine", "1"),
-    ("curves", r#""kept""#),
+const RECTANGLE: Keys = &[
+    key(
+        "rectangle",
+        Form::Several(2, &Form::Quantity(Dimension::LENGTH)),
+        r#"["100 mm", "50 mm"]"#,
+        "edges along x and y, from the origin; its groups are x-min, x-max, y-min, y-max and plate",
+    )
+    .required(),
+    key("cells", Form::Several(2, &Form::Count(1)), "[8, 4]", "cells along x and y").required(),
+    REFINE,
 ];
-const FILE: Keys = &[("file", r#""plate.msh""#), ("unit", r#""mm""#), ("refine", "1"), ("curves", r#""kept""#)];
-const RECTANGLE: Keys = &[("rectangle", r#"["100 mm", "50 mm"]"#), ("cells", "[8, 4]"), ("refine", "1")];
+const REFINE: Key = key("refine", Form::Count(0), "1", "how often every cell is divided into four").default("0");
 /// Natural frequencies unless a scene says how many.
 pub const DEFAULT_MODES: usize = 10;
-const MODES: Keys = &[("count", "10")];
+const MODES: Keys = &[key("count", Form::Count(1), "10", "how many of the lowest modes").default("10")];
 
 /// Most cells of a built-in or refined mesh: more is a slip.
 const MAX_CELLS: usize = 4_000_000;
@@ -257,17 +260,31 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
     })
 }
 
+/// A scene over its preset, its keys known and its values not read yet.
+struct Merged {
+    table: Table,
+    fidelity: Fidelity,
+    source: Arc<SceneSource>,
+}
+
+impl Merged {
+    fn new(text: &str, path: &Path, setting: &str) -> Result<Self, SceneError> {
+        let source = Arc::new(SceneSource::new(path, text).with(Origin::Setting, "setting of the study", setting));
+        let own = Table::parse(text, Origin::Scene, &source)?;
+        let own = Table::parse(setting, Origin::Setting, &source)?.over(own);
+        let fidelity = match Reader::root(&own, KEYS, &source)?.optional("fidelity") {
+            Some(field) => field.choice(&Fidelity::ALL)?,
+            None => Fidelity::Engineering,
+        };
+        let name = format!("preset `{}`", fidelity.name());
+        let source = Arc::new(SceneSource::clone(&source).with(Origin::Preset, name, fidelity.preset()));
+        let table = own.over(Table::parse(fidelity.preset(), Origin::Preset, &source)?);
+        Ok(Self { table, fidelity, source })
+    }
+}
+
 fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneError> {
-    let source = Arc::new(SceneSource::new(path, text).with(Origin::Setting, "setting of the study", setting));
-    let own = Table::parse(text, Origin::Scene, &source)?;
-    let own = Table::parse(setting, Origin::Setting, &source)?.over(own);
-    let fidelity = match Reader::root(&own, KEYS, &source)?.optional("fidelity") {
-        Some(field) => field.choice(&Fidelity::ALL)?,
-        None => Fidelity::Engineering,
-    };
-    let name = format!("preset `{}`", fidelity.name());
-    let source = Arc::new(SceneSource::clone(&source).with(Origin::Preset, name, fidelity.preset()));
-    let merged = own.over(Table::parse(fidelity.preset(), Origin::Preset, &source)?);
+    let Merged { table: merged, fidelity, source } = Merged::new(text, path, setting)?;
     let root = Reader::root(&merged, KEYS, &source)?;
     let mut keys = BTreeMap::new();
     merged.flatten("", &mut keys);
@@ -312,45 +329,41 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
     })
 }
 
-fn read_analysis(root: &Reader<'_>, effects: &Effects) -> Result<Analysis, SceneError> {
-    const IMPACT: &[&str] = &["impactor", "contact", "reduction", "march"];
-    // Keys that the chosen analysis has no use for; those of a preset lie there for others.
-    let unused = |analysis: &str, keys: &[&str]| {
-        let stray = keys.iter().filter_map(|key| root.optional(key)).find(|f| f.place().origin != Origin::Preset);
-        stray.map_or(Ok(()), |field| {
-            let help = "leave it out, or choose another `analysis`: impact, static, modes";
-            Err(field.error(format!("means nothing in the analysis `{analysis}`"), help))
-        })
-    };
-    let which = match root.optional("analysis") {
-        Some(field) => field.choice(&[("impact", 0), ("static", 1), ("modes", 2)])?,
-        None => 0,
-    };
-    match which {
-        1 => {
-            unused("static", &[IMPACT, &["modes"]].concat())?;
-            Ok(Analysis::Static(match (&effects.cure, root.optional("load")) {
-                // A change of temperature loads a plate as well.
-                (Some(_), None) => Vec::new(),
-                _ => load::read_all(&root.required("load")?)?,
-            }))
-        }
-        2 => {
-            unused("modes", &[IMPACT, &["load", "profile"]].concat())?;
-            let count = root.optional("modes").map_or(Ok(DEFAULT_MODES), |field| {
-                field.table(MODES)?.optional("count").map_or(Ok(DEFAULT_MODES), |field| field.count())
-            })?;
-            Ok(Analysis::Modes { count })
-        }
-        _ => {
-            unused("impact", &["load", "modes", "profile"])?;
-            Ok(Analysis::Impact(Box::new(run::read_impact(root)?)))
-        }
+/// Keys that an analysis has no use for; those of a preset lie there for others.
+fn foreign(analysis: &str) -> &'static [&'static str] {
+    match analysis {
+        "static" => &["impactor", "contact", "reduction", "march", "modes"],
+        "modes" => &["impactor", "contact", "reduction", "march", "load", "profile"],
+        _ => &["load", "modes", "profile"],
     }
 }
 
+fn read_analysis(root: &Reader<'_>, effects: &Effects) -> Result<Analysis, SceneError> {
+    let which = root.optional("analysis").map_or(Ok(Which::Impact), |field| field.choice(&ANALYSES))?;
+    let name = ANALYSES[which as usize].0;
+    let mut stray = foreign(name).iter().filter_map(|key| root.optional(key));
+    if let Some(field) = stray.find(|field| field.place().origin != Origin::Preset) {
+        let help = "leave it out, or choose another `analysis`: impact, static, modes";
+        return Err(field.error(format!("means nothing in the analysis `{name}`"), help));
+    }
+    Ok(match which {
+        Which::Static => Analysis::Static(match (&effects.cure, root.optional("load")) {
+            // A change of temperature loads a plate as well.
+            (Some(_), None) => Vec::new(),
+            _ => load::read_all(&root.required("load")?)?,
+        }),
+        Which::Modes => {
+            let count = root.optional("modes").map_or(Ok(DEFAULT_MODES), |field| {
+                field.table(MODES)?.optional("count").map_or(Ok(DEFAULT_MODES), |field| field.count())
+            })?;
+            Analysis::Modes { count }
+        }
+        Which::Impact => Analysis::Impact(Box::new(run::read_impact(root)?)),
+    })
+}
+
 fn read_mesh(field: &Field<'_>, scene: &Path) -> Result<MeshSource, SceneError> {
-    let any = field.table(MESH)?;
+    let any = field.table_of(MESHES)?;
     if any.optional("rectangle").is_some() {
         return read_rectangle(&field.table(RECTANGLE)?);
     }
@@ -399,10 +412,8 @@ fn pair<T>(field: &Field<'_>, read: impl Fn(&Field<'_>) -> Result<T, SceneError>
 
 /// `shared` where neither scene nor preset says.
 fn read_z_derivatives(element: &Field<'_>) -> Result<Located<ZDerivatives>, SceneError> {
-    const WORDS: [(&str, ZDerivatives); 2] =
-        [("shared", ZDerivatives::Shared), ("layer-wise", ZDerivatives::LayerWise)];
     match element.entries()?.iter().find(|(key, _)| *key == "z_derivatives") {
-        Some((_, field)) => Ok(field.at(field.choice(&WORDS)?)),
+        Some((_, field)) => Ok(field.at(field.choice(&Z_DERIVATIVES)?)),
         None => Ok(element.at(ZDerivatives::Shared)),
     }
 }

@@ -1,36 +1,34 @@
 //! Typed reading of a table: every wrong value becomes an error at its place.
 
+use super::keys::{Form, Key, Keys};
 use super::source::{Located, Origin, Place, SceneError, SceneSource};
 use super::tree::{Item, Node, Table};
 use crate::units::{self, UnitError};
 use fem_core::plugin::{Dimension, unknown_key};
 use std::sync::Arc;
 
-/// The keys of a table, each with an example of its value in TOML.
-pub(crate) type Keys = &'static [(&'static str, &'static str)];
-
 /// A table whose keys are all known.
 pub(crate) struct Reader<'a> {
     table: &'a Table,
     path: String,
     place: Place,
-    keys: Keys,
+    keys: Vec<&'static Key>,
     source: &'a Arc<SceneSource>,
 }
 
 impl<'a> Reader<'a> {
     /// The outermost table of a document.
     pub(crate) fn root(table: &'a Table, keys: Keys, source: &'a Arc<SceneSource>) -> Result<Self, SceneError> {
-        Self { table, path: String::new(), place: Place::TOP, keys, source }.checked()
+        Self { table, path: String::new(), place: Place::TOP, keys: keys.iter().collect(), source }.checked()
     }
 
     /// Refuses unknown keys first of all: a misspelt key explains a missing one.
     fn checked(self) -> Result<Self, SceneError> {
-        match self.table.0.iter().find(|e| self.keys.iter().all(|(name, _)| *name != e.key)) {
+        match self.table.0.iter().find(|e| self.keys.iter().all(|key| key.name != e.key)) {
             None => Ok(self),
             Some(stray) => {
                 let path = self.path_of(&stray.key);
-                let help = format!("`{}` {}", stray.key, unknown_key(&stray.key, self.keys.iter().map(|k| k.0)));
+                let help = format!("`{}` {}", stray.key, unknown_key(&stray.key, self.keys.iter().map(|key| key.name)));
                 Err(self.source.error_at(&stray.place, format!("unknown key `{path}`"), help))
             }
         }
@@ -41,7 +39,7 @@ impl<'a> Reader<'a> {
     }
 
     fn example(&self, key: &str) -> &'static str {
-        self.keys.iter().find(|(name, _)| *name == key).map_or("", |(_, example)| example)
+        self.keys.iter().find(|known| known.name == key).map_or("", |known| known.example)
     }
 
     pub(crate) fn optional(&self, key: &str) -> Option<Field<'a>> {
@@ -66,7 +64,8 @@ impl<'a> Reader<'a> {
         keys: Keys,
         source: &'b Arc<SceneSource>,
     ) -> Result<Reader<'b>, SceneError> {
-        Reader { table, path: self.path.clone(), place: self.place.clone(), keys, source }.checked()
+        Reader { table, path: self.path.clone(), place: self.place.clone(), keys: keys.iter().collect(), source }
+            .checked()
     }
 
     /// Two keys that exclude each other: at most one of them remains, that of the text which counts more.
@@ -243,6 +242,21 @@ impl<'a> Field<'a> {
 
     /// A table with known keys.
     pub(crate) fn table(&self, keys: Keys) -> Result<Reader<'a>, SceneError> {
+        self.table_with(keys.iter().collect())
+    }
+
+    /// A table with the keys of any of `forms`.
+    pub(crate) fn table_of(&self, forms: &'static [Form]) -> Result<Reader<'a>, SceneError> {
+        let mut all: Vec<&'static Key> = Vec::new();
+        for key in forms.iter().filter_map(Form::keys).flatten() {
+            if all.iter().all(|known| known.name != key.name) {
+                all.push(key);
+            }
+        }
+        self.table_with(all)
+    }
+
+    fn table_with(&self, keys: Vec<&'static Key>) -> Result<Reader<'a>, SceneError> {
         let table = self.any_table()?;
         Reader { table, path: self.path.clone(), place: self.place().clone(), keys, source: self.source }.checked()
     }

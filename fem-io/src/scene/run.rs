@@ -1,11 +1,12 @@
 //! The impact and its computation: impactor, march, failure, effects, output.
 
+use super::keys::{Form, Keys, key};
 use super::plugin::PluginSpec;
-use super::reader::{Field, Keys, Reader};
+use super::reader::{Field, Reader};
 use super::source::{Located, Place, SceneError};
 use super::tree::Node;
 use crate::units;
-use fem_core::plugin::Dimension;
+use fem_core::plugin::{Dimension, Kind};
 
 /// A rigid mass that strikes the top face from above.
 #[derive(Debug, Clone)]
@@ -150,40 +151,101 @@ impl Default for Output {
     }
 }
 
-const IMPACTOR: Keys = &[
-    ("name", r#""first""#),
-    ("mass", r#""2.49 kg""#),
-    ("velocity", r#""1.56 m/s""#),
-    ("start", r#""50 us""#),
-    ("at", r#"{ group = "impact" }"#),
-    ("patch_radius", r#""3 mm""#),
-    ("patch_side", r#""2 mm""#),
-    ("load", r#""node""#),
-    ("contact", r#"{ law = "hertz", k = "1.07e5 N/mm^1.5" }"#),
+pub(super) const IMPACTOR: Keys = &[
+    key("name", Form::Text, r#""first""#, "what results call it where there are several"),
+    key("mass", Form::Quantity(Dimension::MASS), r#""2.49 kg""#, "mass of the rigid impactor").required(),
+    key("velocity", Form::Quantity(Dimension::VELOCITY), r#""1.56 m/s""#, "speed downwards at first touch").required(),
+    key("start", Form::Quantity(Dimension::TIME), r#""50 us""#, "when it would reach the plate at rest")
+        .default(r#""0 s""#),
+    key("at", Form::Table(AT), r#"{ group = "impact" }"#, "where it strikes the top face").required(),
+    key("patch_radius", Form::Quantity(Dimension::LENGTH), r#""3 mm""#, "its force is a Hertz pressure on this circle"),
+    key("patch_side", Form::Quantity(Dimension::LENGTH), r#""2 mm""#, "its force is a uniform pressure on this square"),
+    key("load", Form::Words(&["node"]), r#""node""#, "its force acts at one node"),
+    key(
+        "contact",
+        Form::Plugin(Kind::Contact, LAW, &[]),
+        r#"{ law = "hertz", k = "1.07e5 N/mm^1.5" }"#,
+        "contact law of this impactor; that of the scene where it is left out",
+    ),
 ];
-const AT: Keys = &[("group", r#""impact""#), ("x", r#""0 mm""#), ("y", r#""0 mm""#)];
-const MARCH: Keys = &[("integrator", r#""newmark""#), ("step", r#""0.5 us""#), ("end", r#""1 ms""#)];
-const FAILURE: Keys = &[
-    ("criteria", r#"["hashin-report", "octahedral"]"#),
-    ("every", r#""5 us""#),
-    ("window", r#""2.54 mm""#),
-    ("radius", r#""10 mm""#),
-    ("watch", r#"[{ at = { group = "impact" }, ply = 1 }]"#),
+pub(super) const AT: Keys = &[
+    key("group", Form::Text, r#""impact""#, "a group of the mesh with one node"),
+    key("x", Form::Quantity(Dimension::LENGTH), r#""0 mm""#, "x of the point, instead of a group"),
+    key("y", Form::Quantity(Dimension::LENGTH), r#""0 mm""#, "y of the point, instead of a group"),
+];
+pub(super) const MARCH: Keys = &[
+    key(
+        "integrator",
+        Form::OneOf(&[Form::PluginName(Kind::Integrator), Form::Plugin(Kind::Integrator, "name", &[])]),
+        r#""newmark""#,
+        "scheme in time: `fem list integrators`",
+    )
+    .required(),
+    key("step", Form::Quantity(Dimension::TIME), r#""0.5 us""#, "step in time").required(),
+    key("end", Form::Quantity(Dimension::TIME), r#""1 ms""#, "time at which the march ends").required(),
+];
+pub(super) const FAILURE: Keys = &[
+    key(
+        "criteria",
+        Form::List(&Form::OneOf(&[
+            Form::PluginName(Kind::Criterion),
+            Form::Plugin(
+                Kind::Criterion,
+                "name",
+                &[key(LABEL, Form::Text, r#""puck-2""#, "what results call it; the name where it is left out")],
+            ),
+        ])),
+        r#"["hashin-report", "octahedral"]"#,
+        "criteria by name: `fem list criteria`",
+    ),
+    key("every", Form::Quantity(Dimension::TIME), r#""5 us""#, "time between two looks at the stresses").required(),
+    key(
+        "window",
+        Form::OneOf(&[Form::Words(&["element"]), Form::Quantity(Dimension::LENGTH)]),
+        r#""2.54 mm""#,
+        "stresses are means over a square of this edge, or over an element",
+    )
+    .required(),
+    key(
+        "radius",
+        Form::Quantity(Dimension::LENGTH),
+        r#""10 mm""#,
+        "only cells this near to an impact are judged; all where it is left out",
+    ),
+    key(
+        "watch",
+        Form::List(&Form::Table(WATCH)),
+        r#"[{ at = { group = "impact" }, ply = 1 }]"#,
+        "places whose failure indices are written over time",
+    ),
 ];
 const WATCH: Keys = &[
-    ("at", r#"{ x = "0 mm", y = "0 mm" }"#),
-    ("ply", "1"),
-    ("interface", r#""1|2""#),
-    ("criterion", r#""hashin-report""#),
+    key("at", Form::Table(AT), r#"{ x = "0 mm", y = "0 mm" }"#, "where on the plate").required(),
+    key("ply", Form::Count(1), "1", "in this ply, counted from the bottom"),
+    key("interface", Form::Text, r#""1|2""#, "between these two plies"),
+    key(
+        "criterion",
+        Form::Text,
+        r#""hashin-report""#,
+        "of this criterion; of all that look there where it is left out",
+    ),
 ];
+/// Key under which a contact law is named.
+const LAW: &str = "law";
 /// Key by which a scene names a criterion of its own way.
 const LABEL: &str = "as";
-const OUTPUT: Keys = &[
-    ("history_every", r#""1 us""#),
-    ("checkpoint_every", r#""60 s""#),
-    ("modes", "6"),
-    ("plots", "true"),
-    ("maps", "true"),
+pub(super) const OUTPUT: Keys = &[
+    key(
+        "history_every",
+        Form::Quantity(Dimension::TIME),
+        r#""1 us""#,
+        "time between two lines of history.csv; some 2000 lines where it is left out",
+    ),
+    key("checkpoint_every", Form::Quantity(Dimension::TIME), r#""60 s""#, "time on the clock between two checkpoints")
+        .default(r#""60 s""#),
+    key("modes", Form::Count(1), "6", "modes of the reduced plate that are followed"),
+    key("plots", Form::Flag, "true", "pictures of the histories").default("true"),
+    key("maps", Form::Flag, "true", "a table of the largest indices over the plate").default("false"),
 ];
 
 /// Time between two checkpoints unless the scene says otherwise, s.
@@ -243,7 +305,7 @@ fn read_impactor(root: &Reader<'_>, field: &Field<'_>, number: usize, end: f64) 
         start,
         at: read_point(&table.required("at")?)?,
         load: read_load(&table)?,
-        contact: PluginSpec::read(&contact, "law", &[])?,
+        contact: PluginSpec::read(&contact, LAW, &[])?,
     })
 }
 
@@ -262,6 +324,9 @@ pub(super) fn read_point(field: &Field<'_>) -> Result<Located<ImpactPoint>, Scen
     };
     Ok(field.at(point))
 }
+
+/// Ways in which the force of an impactor enters the plate, of which one counts.
+pub(super) const LOADS: [&str; 3] = ["load", "patch_radius", "patch_side"];
 
 fn read_load(table: &Reader<'_>) -> Result<Located<ContactLoad>, SceneError> {
     let [round, square] = table.either(["patch_radius", "patch_side"])?;

@@ -98,6 +98,13 @@ impl SceneSource {
         &self.documents[place.origin as usize]
     }
 
+    /// Name of the text and line (from 1) of a place.
+    pub(crate) fn line(&self, place: &Place) -> Option<(&str, usize)> {
+        let document = self.document(place);
+        let before = document.inner().get(..place.span.start)?;
+        Some((document.name(), 1 + before.matches('\n').count()))
+    }
+
     /// The part of `place` that holds `text` from byte `at` on, where the text stands there as it is read: a caret
     /// inside a string. The whole place where escapes make the two differ.
     pub(crate) fn within(&self, place: &Place, text: &str, at: usize) -> Place {
@@ -127,10 +134,7 @@ pub struct SceneError {
 impl SceneError {
     /// Name of the text and line (from 1) of the trouble; `None` if it is about no line.
     pub fn location(&self) -> Option<(&str, usize)> {
-        let place = self.place.as_ref()?;
-        let document = self.source.document(place);
-        let before = document.inner().get(..place.span.start)?;
-        Some((document.name(), 1 + before.matches('\n').count()))
+        self.source.line(self.place.as_ref()?)
     }
 
     /// What to do about it.

@@ -1,6 +1,7 @@
 //! What a study of the scene varies and looks at, and the settings that it lays over the scene.
 
-use super::reader::{Field, Keys};
+use super::keys::{Form, Keys, key};
+use super::reader::Field;
 use super::source::{Located, SceneError, SceneSource};
 use fem_core::plugin::Dimension;
 use std::collections::BTreeMap;
@@ -53,19 +54,44 @@ pub enum Quantity {
     },
 }
 
-const KEYS: Keys = &[
-    ("axes", r#"["mesh", "layers", "reduction", "step"]"#),
-    ("axis", r#"[{ name = "patch", levels = [{ impactor.patch_radius = "2 mm" }] }]"#),
-    ("quantities", r#"["peak-force", "first-damage"]"#),
-    ("tolerance", "1e-3"),
+pub(super) const KEYS: Keys = &[
+    key(
+        "axes",
+        Form::List(&Form::Text),
+        r#"["mesh", "layers", "reduction", "step"]"#,
+        "what is varied, see `fem study --help`; all that fits the scene where it is left out",
+    ),
+    key(
+        "axis",
+        Form::List(&Form::Table(AXIS)),
+        r#"[{ name = "patch", levels = [{ impactor.patch_radius = "2 mm" }] }]"#,
+        "axes of the scene's own",
+    ),
+    key(
+        "quantities",
+        Form::List(&Form::OneOf(&[Form::Text, Form::Table(STRESS)])),
+        r#"["peak-force", "first-damage"]"#,
+        "what accuracy is asked of; what fits the analysis where it is left out",
+    ),
+    key("tolerance", Form::Number, "1e-3", "relative error to which the reference must have converged"),
 ];
 const AXIS: Keys = &[
-    ("name", r#""patch""#),
-    ("ladder", "true"),
-    ("levels", r#"[{ impactor.patch_radius = "2 mm" }, { impactor.patch_radius = "1 mm" }]"#),
+    key("name", Form::Text, r#""patch""#, "what results call it").required(),
+    key("ladder", Form::Flag, "true", "whether its levels grow finer; otherwise they are alternatives").default("true"),
+    key(
+        "levels",
+        Form::List(&Form::Setting),
+        r#"[{ impactor.patch_radius = "2 mm" }, { impactor.patch_radius = "1 mm" }]"#,
+        "keys of the scene with their values, a table per level",
+    )
+    .required(),
 ];
-const STRESS: Keys =
-    &[("name", r#""sxx-top""#), ("profile", r#""centre""#), ("component", r#""sxx""#), ("height", r#""0.5 mm""#)];
+const STRESS: Keys = &[
+    key("name", Form::Text, r#""sxx-top""#, "what results call it").required(),
+    key("profile", Form::Text, r#""centre""#, "name of the profile that it lies on").required(),
+    key("component", Form::Text, r#""sxx""#, "column of the profile's table, without its unit").required(),
+    key("height", Form::Quantity(Dimension::LENGTH), r#""0.5 mm""#, "height above the mid-plane").required(),
+];
 
 pub(super) fn read(field: &Field<'_>) -> Result<Study, SceneError> {
     let table = field.table(KEYS)?;

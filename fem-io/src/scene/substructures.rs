@@ -1,6 +1,7 @@
 //! How the plate is divided into substructures.
 
-use super::reader::{Field, Keys, Reader};
+use super::keys::{Form, Keys, key};
+use super::reader::{Field, Reader};
 use super::source::{Located, SceneError};
 use super::support::{self, NodeSet};
 use fem_core::dof::Dof;
@@ -32,12 +33,21 @@ pub struct Masters {
     pub dofs: Vec<Dof>,
 }
 
-const KEYS: Keys = &[
-    ("groups", r#"["left", "right"]"#),
-    ("cells", "[5, 5]"),
-    ("masters", r#"[{ group = "line", at = "mid-plane", dofs = ["U30"] }]"#),
+pub(super) const KEYS: Keys = &[
+    key("groups", Form::List(&Form::Text), r#"["left", "right"]"#, "groups of cells of the mesh, one per substructure"),
+    key(
+        "cells",
+        Form::Several(2, &Form::Count(1)),
+        "[5, 5]",
+        "cells of a substructure along x and y of a built-in mesh",
+    ),
+    key(
+        "masters",
+        Form::List(&Form::Table(support::COUPLE)),
+        r#"[{ group = "line", at = "mid-plane", dofs = ["U30"] }]"#,
+        "unknowns that stay beside those on the outlines",
+    ),
 ];
-const MASTERS: Keys = &[("group", r#""line""#), ("at", r#""mid-plane""#), ("dofs", r#"["U30"]"#)];
 
 pub(super) fn read(field: &Field<'_>) -> Result<Substructures, SceneError> {
     let table = field.table(KEYS)?;
@@ -59,6 +69,6 @@ pub(super) fn read(field: &Field<'_>) -> Result<Substructures, SceneError> {
 }
 
 fn masters(field: &Field<'_>) -> Result<Masters, SceneError> {
-    let table: Reader<'_> = field.table(MASTERS)?;
+    let table: Reader<'_> = field.table(support::COUPLE)?;
     Ok(Masters { nodes: support::nodes(&table)?, dofs: support::dofs(&table.required("dofs")?)? })
 }

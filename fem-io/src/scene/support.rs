@@ -1,6 +1,7 @@
 //! What holds the plate: fixed unknowns, linear equations between unknowns, coupled sets.
 
-use super::reader::{Field, Keys, Reader};
+use super::keys::{Form, Key, Keys, key, words};
+use super::reader::{Field, Reader};
 use super::source::{Located, Place, SceneError};
 use super::tree::Node;
 use fem_core::dof::Dof;
@@ -77,24 +78,60 @@ pub struct Couple {
     pub place: Place,
 }
 
+const LEVELS: [(&str, Levels); 4] =
+    [("mid-plane", Levels::MidPlane), ("bottom", Levels::Bottom), ("top", Levels::Top), ("all", Levels::All)];
+
+/// A group of the mesh, and which of its nodes above each other.
+const GROUP: Key = key("group", Form::Text, r#""edge""#, "a group of the mesh").required();
+pub(super) const LEVEL: Key =
+    key("at", Form::Words(&words(&LEVELS)), r#""mid-plane""#, "which of the nodes above each other").required();
+const DOFS: Form = Form::List(&Form::Text);
+
+/// What a support may be.
+pub(super) const SUPPORTS: &[Form] = &[Form::Table(FIX), Form::Table(RESTRAIN)];
 const FIX: Keys = &[
-    ("group", r#""support""#),
-    ("at", r#""mid-plane""#),
-    ("fix", r#"["U30"]"#),
-    ("axes", r#""30 deg""#),
-    ("restrain", r#""rigid-motions""#),
+    GROUP,
+    LEVEL,
+    key("fix", DOFS, r#"["U30"]"#, "unknowns that stay zero: Unm is displacement n, derived along m (0: not derived)")
+        .required(),
+    key("axes", Form::Quantity(Dimension::NONE), r#""30 deg""#, "turn about z of the axes that the unknowns refer to")
+        .default(r#""0 deg""#),
 ];
-const RESTRAIN: Keys = &[("restrain", r#""rigid-motions""#)];
-const EQUATION: Keys = &[("terms", r#"[{ group = "a", at = "top", dof = "U10", factor = 1.0 }]"#)];
-const TERM: Keys = &[("group", r#""a""#), ("at", r#""top""#), ("dof", r#""U10""#), ("factor", "1.0")];
-const COUPLE: Keys = &[("group", r#""edge""#), ("at", r#""all""#), ("dofs", r#"["U30"]"#)];
+const RESTRAIN: Keys = &[key(
+    "restrain",
+    Form::Words(&["rigid-motions"]),
+    r#""rigid-motions""#,
+    "holds what other supports leave free, without straining the plate",
+)
+.required()];
+pub(super) const EQUATION: Keys = &[key(
+    "terms",
+    Form::List(&Form::Table(TERM)),
+    r#"[{ group = "a", at = "top", dof = "U10", factor = 1.0 }]"#,
+    "the sum of factor times unknown that is zero",
+)
+.required()];
+const TERM: Keys = &[
+    GROUP,
+    LEVEL,
+    key("dof", Form::Text, r#""U10""#, "the unknown").required(),
+    key(
+        "factor",
+        Form::OneOf(&[Form::Number, Form::Text]),
+        "1.0",
+        "its factor: a number, or one with a unit where displacements and slopes meet",
+    )
+    .required(),
+];
+pub(super) const COUPLE: Keys =
+    &[GROUP, LEVEL, key("dofs", DOFS, r#"["U30"]"#, "unknowns that all these nodes share").required()];
 
 pub(super) fn read_all(field: &Field<'_>) -> Result<Vec<Support>, SceneError> {
     field.list()?.iter().map(read).collect()
 }
 
 fn read(field: &Field<'_>) -> Result<Support, SceneError> {
-    let table = field.table(FIX)?;
+    let table = field.table_of(SUPPORTS)?;
     let place = table.place().clone();
     if table.optional("restrain").is_some() {
         field.table(RESTRAIN)?.required("restrain")?.choice(&[("rigid-motions", ())])?;
@@ -121,8 +158,6 @@ pub(super) fn read_couples(field: &Field<'_>) -> Result<Vec<Couple>, SceneError>
 }
 
 pub(super) fn nodes(table: &Reader<'_>) -> Result<NodeSet, SceneError> {
-    const LEVELS: [(&str, Levels); 4] =
-        [("mid-plane", Levels::MidPlane), ("bottom", Levels::Bottom), ("top", Levels::Top), ("all", Levels::All)];
     let group = table.required("group")?;
     Ok(NodeSet { group: group.at(group.text()?.to_owned()), levels: table.required("at")?.choice(&LEVELS)? })
 }

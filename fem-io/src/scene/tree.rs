@@ -38,15 +38,37 @@ impl Node {
 }
 
 impl Node {
-    fn table_mut(&mut self) -> Option<&mut Table> {
+    pub(crate) fn table(&self) -> Option<&Table> {
         match self {
             Self::Table(table) => Some(table),
             _ => None,
         }
     }
 
+    pub(crate) fn table_mut(&mut self) -> Option<&mut Table> {
+        match self {
+            Self::Table(table) => Some(table),
+            _ => None,
+        }
+    }
+
+    /// As JSON; nothing for a date, which no key of a scene takes.
+    pub(crate) fn to_json(&self) -> serde_json::Value {
+        match self {
+            Self::Text(text) => text.as_str().into(),
+            Self::Number(value) if value.fract() == 0.0 && value.abs() < 1e15 => (*value as i64).into(),
+            Self::Number(value) => (*value).into(),
+            Self::Flag(flag) => (*flag).into(),
+            Self::List(items) => items.iter().map(|item| item.node.to_json()).collect(),
+            Self::Table(Table(entries)) => {
+                serde_json::Value::Object(entries.iter().map(|e| (e.key.clone(), e.item.node.to_json())).collect())
+            }
+            Self::Date => serde_json::Value::Null,
+        }
+    }
+
     /// As a value in a line of TOML; `None` for a date, which no key of a scene takes.
-    fn to_toml(&self) -> Option<toml_edit::Value> {
+    pub(crate) fn to_toml(&self) -> Option<toml_edit::Value> {
         Some(match self {
             Self::Text(text) => text.as_str().into(),
             Self::Number(value) if value.fract() == 0.0 && value.abs() < 1e15 => (*value as i64).into(),

@@ -1,0 +1,143 @@
+//! Every key that holds in a scene: its value, where that comes from, and what it means.
+
+use super::keys::{Absent, Form, Keys, Plugins};
+use super::reader::Reader;
+use super::root::KEYS;
+use super::source::{Origin, Place, SceneError, SceneSource};
+use super::tree::{Item, Node, Table};
+use super::{Merged, foreign, material, run};
+use fem_core::plugin::Kind;
+use serde::Serialize;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A key that holds.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Explained {
+    /// Its path, `laminate.plies` or `support[0].at`.
+    pub key: String,
+    /// Its value in TOML; nothing for a parameter whose default only its plug-in knows, see `about`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub value: Option<String>,
+    /// Where the value comes from: `line 12`, a preset, a library, or `default`.
+    pub from: String,
+    /// What it means.
+    pub about: String,
+}
+
+/// The keys that hold in the scene file `path`, in the order of the tables of a scene, with the parameters of `plugins`.
+///
+/// # Errors
+/// As [`super::read`].
+pub fn explain(path: &Path, plugins: Plugins<'_>) -> Result<Vec<Explained>, SceneError> {
+    super::read(path)?;
+    let Merged { mut table, source, .. } = Merged::new(&super::read_text(path)?, path, "")?;
+    let analysis = match table.get("analysis").map(|entry| &entry.item.node) {
+        Some(Node::Text(text)) => text.clone(),
+        _ => "impact".to_owned(),
+    };
+    table.0.retain(|entry| !foreign(&analysis).contains(&entry.key.as_str()));
+    for entry in table.0.iter_mut().filter(|entry| entry.key == "impactor") {
+        match &mut entry.item.node {
+            Node::List(items) => items.iter_mut().filter_map(|item| item.node.table_mut()).for_each(one_load),
+            node => node.table_mut().into_iter().for_each(one_load),
+        }
+    }
+    let mut walk = Walk { plugins, source: Arc::clone(&source), found: Vec::new() };
+    for key in KEYS.iter().filter(|key| !foreign(&analysis).contains(&key.name)) {
+        if key.name == "materials" {
+            let materials = Reader::root(&table, KEYS, &source)?.required("materials")?;
+            for (name, field) in materials.entries()? {
+                let whole = material::whole(&field, path.parent().unwrap_or(Path::new("")))?;
+                let (constants, texts) = match whole {
+                    Some(whole) => whole,
+                    None => (field.any_table()?.clone(), Arc::clone(&source)),
+                };
+                walk.source = texts;
+                walk.table(material::KEYS, &constants, &format!("materials.{name}"));
+            }
+            walk.source = Arc::clone(&source);
+        } else {
+            walk.table(std::slice::from_ref(key), &table, "");
+        }
+    }
+    Ok(walk.found)
+}
+
+struct Walk<'a> {
+    plugins: Plugins<'a>,
+    source: Arc<SceneSource>,
+    found: Vec<Explained>,
+}
+
+impl Walk<'_> {
+    fn table(&mut self, keys: &[super::keys::Key], table: &Table, path: &str) {
+        for key in keys {
+            let path = if path.is_empty() { key.name.to_owned() } else { format!("{path}.{}", key.name) };
+            match (table.get(key.name), key.absent, &key.form) {
+                (Some(entry), ..) => self.value(&key.form, &entry.item, &path, key.about),
+                // A table of which nothing is said holds defaults.
+                (None, Absent::Default("{}"), Form::Table(keys)) => self.table(keys, &Table::default(), &path),
+                (None, Absent::Default(value), _) => self.add(path, Some(value.to_owned()), "default", key.about),
+                (None, Absent::Nothing | Absent::Refused, _) => {}
+            }
+        }
+    }
+
+    fn value(&mut self, form: &Form, item: &Item, path: &str, about: &str) {
+        match (form.meant_by(&item.node), &item.node) {
+            (Form::Table(keys), Node::Table(table)) => self.table(keys, table, path),
+            (Form::Named(form), Node::Table(table)) => {
+                table.0.iter().for_each(|e| self.value(form, &e.item, &format!("{path}.{}", e.key), about));
+            }
+            (Form::Plugin(kind, name, others), Node::Table(table)) => {
+                self.plugin((*kind, name, others), table, path, about);
+            }
+            (Form::List(form), Node::List(items)) => {
+                let each = items.iter().enumerate();
+                each.for_each(|(i, item)| self.value(form, item, &format!("{path}[{i}]"), about));
+            }
+            (_, node) => {
+                let from = self.origin(&item.place);
+                self.add(path.to_owned(), node.to_toml().map(|value| value.to_string()), &from, about);
+            }
+        }
+    }
+
+    fn plugin(&mut self, (kind, name, others): (Kind, &str, Keys), table: &Table, path: &str, about: &str) {
+        let named = table.get(name).map(|entry| &entry.item);
+        let plugin = named.and_then(|item| match &item.node {
+            Node::Text(text) => (self.plugins)(kind).into_iter().find(|plugin| plugin.name == text),
+            _ => None,
+        });
+        let about = plugin.map_or(about, |plugin| plugin.summary);
+        named.into_iter().for_each(|item| self.value(&Form::Text, item, &format!("{path}.{name}"), about));
+        for param in plugin.into_iter().flat_map(|plugin| plugin.params) {
+            let path = format!("{path}.{}", param.name);
+            match table.get(param.name) {
+                Some(entry) => self.value(&Form::Text, &entry.item, &path, param.doc),
+                None => self.add(path, None, "default", param.doc),
+            }
+        }
+        self.table(others, table, path);
+    }
+
+    fn add(&mut self, key: String, value: Option<String>, from: &str, about: &str) {
+        self.found.push(Explained { key, value, from: from.to_owned(), about: about.to_owned() });
+    }
+
+    fn origin(&self, place: &Place) -> String {
+        match (place.origin, self.source.line(place)) {
+            (Origin::Scene, Some((_, line))) => format!("line {line}"),
+            (_, Some((name, _))) => name.to_owned(),
+            (_, None) => String::new(),
+        }
+    }
+}
+
+/// Leaves an impactor one way in which its force enters the plate: that of the text that counts more.
+fn one_load(impactor: &mut Table) {
+    let is_load = |key: &str| run::LOADS.contains(&key);
+    let counts = impactor.0.iter().filter(|e| is_load(&e.key)).map(|e| e.item.place.origin).max();
+    impactor.0.retain(|e| !is_load(&e.key) || Some(e.item.place.origin) == counts);
+}

@@ -1,0 +1,133 @@
+//! `fem new`.
+
+use super::{Console, Format};
+use crate::registry::Registry;
+use clap::Args;
+use fem_core::plugin::unknown_key;
+use fem_io::scene;
+use miette::{Context as _, IntoDiagnostic, miette};
+use serde::Serialize;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example: fem new coupon --template drop-weight && fem run coupon/scene.toml")]
+pub(super) struct Arguments {
+    /// Folder to be made; one that exists is left alone.
+    #[arg(value_name = "NAME", required_unless_present = "list")]
+    folder: Option<PathBuf>,
+    /// What the scene begins with, see --list.
+    #[arg(long, value_name = "TEMPLATE", default_value = "drop-weight")]
+    template: String,
+    /// Lists the templates.
+    #[arg(long, conflicts_with = "folder")]
+    list: bool,
+    #[command(flatten)]
+    format: Format,
+}
+
+/// A scene to begin with.
+#[derive(Debug, Serialize)]
+struct Template {
+    name: &'static str,
+    summary: &'static str,
+    #[serde(skip)]
+    scene: &'static str,
+    #[serde(skip)]
+    mesh: Option<&'static [u8]>,
+}
+
+const TEMPLATES: &[Template] = &[
+    Template {
+        name: "drop-weight",
+        summary: "a falling mass of some kilograms on a supported rectangle: low velocity, long contact",
+        scene: include_str!("templates/drop-weight.toml"),
+        mesh: None,
+    },
+    Template {
+        name: "ball",
+        summary: "a small steel ball on a clamped plate: over before waves come back from the edge",
+        scene: include_str!("templates/ball.toml"),
+        mesh: None,
+    },
+    Template {
+        name: "ring",
+        summary: "a mass on a plate that lies on a ring, with a mesh of gmsh: a case of AFWAL-TR-87-4117",
+        scene: include_str!("templates/ring.toml"),
+        mesh: Some(include_bytes!("../../examples/as4-3502-16ply-50mm/plate.msh")),
+    },
+    Template {
+        name: "pagano",
+        summary: "a thick laminate under a sinusoidal pressure at rest: stresses through the thickness",
+        scene: include_str!("templates/pagano.toml"),
+        mesh: None,
+    },
+    Template {
+        name: "modes",
+        summary: "the lowest natural frequencies of a clamped plate",
+        scene: include_str!("templates/modes.toml"),
+        mesh: None,
+    },
+];
+
+/// What is written, and where.
+#[derive(Debug, Serialize)]
+struct Written<'a> {
+    template: &'static str,
+    folder: &'a Path,
+    files: Vec<&'static str>,
+}
+
+pub(super) fn new(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
+    let Some(folder) = &arguments.folder else {
+        let line = |t: &Template| format!("{:<20} {}\n", t.name, t.summary);
+        console.show(arguments.format, &TEMPLATES, || TEMPLATES.iter().map(line).collect())?;
+        return Ok(ExitCode::SUCCESS);
+    };
+    let asked = &arguments.template;
+    let template = TEMPLATES.iter().find(|template| template.name == *asked).ok_or_else(|| {
+        let hint = unknown_key(asked, TEMPLATES.iter().map(|template| template.name));
+        miette!(help = format!("`{asked}` {hint}"), "there is no template `{asked}`")
+    })?;
+    let written = Written { template: template.name, folder, files: write(registry, template, folder)? };
+    console.show(arguments.format, &written, || {
+        let scene = folder.join(SCENE);
+        format!("{}: {}\n  to run it: fem run {}\n", template.name, written.files.join(", "), scene.display())
+    })?;
+    Ok(ExitCode::SUCCESS)
+}
+
+const SCENE: &str = "scene.toml";
+const SCHEMA: &str = "scene.schema.json";
+const MESH: &str = "plate.msh";
+
+/// Writes the folder, whole or not at all.
+fn write(registry: &Registry, template: &Template, folder: &Path) -> miette::Result<Vec<&'static str>> {
+    if folder.symlink_metadata().is_ok() {
+        let help = "choose another name, or remove it yourself";
+        return Err(miette!(help = help, "`{}` exists and is left alone", folder.display()));
+    }
+    let plugins = |kind| registry.choices(kind);
+    let scene = format!("#:schema ./{SCHEMA}\n{}", scene::annotated(template.scene, &plugins)?);
+    let schema = serde_json::to_string_pretty(&scene::schema(&plugins)).into_diagnostic()? + "\n";
+    let mut files = vec![(SCENE, scene.as_bytes()), (SCHEMA, schema.as_bytes())];
+    files.extend(template.mesh.map(|mesh| (MESH, mesh)));
+
+    let name = folder.file_name().ok_or_else(|| miette!("`{}` is no name for a folder", folder.display()))?;
+    let mut partial = std::ffi::OsString::from(".");
+    partial.push(name);
+    partial.push(format!(".{}.partial", std::process::id()));
+    let partial = folder.with_file_name(partial);
+    let put = || {
+        fs::create_dir_all(&partial)?;
+        files.iter().try_for_each(|(name, bytes)| fs::write(partial.join(name), bytes))?;
+        fs::rename(&partial, folder)
+    };
+    let made = put().into_diagnostic().wrap_err_with(|| format!("cannot write the folder `{}`", folder.display()));
+    if made.is_err() {
+        // What is left of a failure is of no use to anyone.
+        let _ = fs::remove_dir_all(&partial);
+    }
+    made.map(|()| files.iter().map(|(name, _)| *name).collect())
+}
