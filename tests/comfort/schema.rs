@@ -28,7 +28,7 @@ fn misfit(schema: &Value, value: &Value, whole: &Value) -> Option<String> {
                 "integer" => value.as_f64().is_some_and(|n| n.fract() == 0.0),
                 other => panic!("{other}"),
             };
-            let any = rule.as_array().map_or(is(rule), |names| names.iter().any(is));
+            let any = rule.as_array().map_or_else(|| is(rule), |names| names.iter().any(is));
             if any { None } else { no(&format!("is no {rule}")) }
         }
         "enum" => {
@@ -208,4 +208,78 @@ fn wrong_scenes_are_refused_by_schema_and_program() {
         let scene = case.read("plate/scene.toml");
         assert!(refused(&schema, &scene).is_some(), "{what} fits the schema");
     }
+}
+
+/// The head of what the tests write.
+const WRITTEN: &str = "<!-- Written by `UPDATE_BOOK=1 cargo test --test all schema`. -->\n";
+
+/// Every key of a scene, in Markdown: those at the top, then a table per table.
+fn keys_table(schema: &Value) -> String {
+    let (mut top, mut below) = (Vec::new(), String::new());
+    for (name, property) in schema["properties"].as_object().unwrap() {
+        let mut rows = Vec::new();
+        collect("", property, &mut rows);
+        top.push(row(name, property, schema));
+        if !rows.is_empty() {
+            below += &format!("\n### `{name}`\n\n{HEAD}{}", rows.concat());
+        }
+    }
+    format!("{WRITTEN}\n{HEAD}{}{below}", top.concat())
+}
+
+const HEAD: &str = "| key | what it means | without it | example |\n| --- | --- | --- | --- |\n";
+
+/// Rows of the keys within `schema`, whose path is `path`.
+fn collect(path: &str, schema: &Value, rows: &mut Vec<String>) {
+    for (name, property) in schema.get("properties").and_then(Value::as_object).into_iter().flatten() {
+        let path = format!("{path}{name}");
+        let row = row(&path, property, schema);
+        if !rows.contains(&row) {
+            rows.push(row);
+        }
+        collect(&format!("{path}."), property, rows);
+    }
+    let alternatives = schema.get("anyOf").and_then(Value::as_array).into_iter().flatten();
+    for inner in alternatives.chain(schema.get("items")) {
+        collect(path, inner, rows);
+    }
+    if let Some(inner) = schema.get("additionalProperties").filter(|inner| inner.is_object()) {
+        collect(&format!("{path}NAME."), inner, rows);
+    }
+}
+
+fn row(path: &str, property: &Value, within: &Value) -> String {
+    let name = path.rsplit('.').next().unwrap();
+    let required = within["required"].as_array().is_some_and(|keys| keys.iter().any(|key| key == name));
+    let without = match property.get("default") {
+        _ if required => "refused".to_owned(),
+        Some(value) if value != &serde_json::json!({}) => format!("`{value}`"),
+        _ => String::new(),
+    };
+    let example = toml(&property["examples"][0]);
+    let cells =
+        [format!("`{path}`"), property["description"].as_str().unwrap().to_owned(), without, format!("`{example}`")];
+    format!("| {} |\n", cells.map(|cell| cell.replace('|', "\\|")).join(" | "))
+}
+
+fn toml(value: &Value) -> String {
+    match value {
+        Value::Object(entries) => {
+            let entries: Vec<_> = entries.iter().map(|(key, value)| format!("{key} = {}", toml(value))).collect();
+            format!("{{ {} }}", entries.join(", "))
+        }
+        Value::Array(items) => format!("[{}]", items.iter().map(toml).collect::<Vec<_>>().join(", ")),
+        other => other.to_string(),
+    }
+}
+
+#[test]
+fn the_book_has_every_key() {
+    let schema: Value = serde_json::from_str(&printed()).unwrap();
+    let file = root().join("docs/book/src/scene-keys.md");
+    if std::env::var_os("UPDATE_BOOK").is_some() {
+        fs::write(&file, keys_table(&schema)).unwrap();
+    }
+    let written = fs::read_to_string(&file).unwrap().replace("\r\n", "\n");
+    assert_eq!(written, keys_table(&schema), "write the table anew: UPDATE_BOOK=1 cargo test --test all schema");
 }
