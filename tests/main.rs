@@ -5,6 +5,7 @@ mod accuracy;
 mod advise;
 mod bad_input;
 mod book;
+mod comfort;
 mod command_line;
 mod criteria;
 mod effects;

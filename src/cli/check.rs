@@ -215,14 +215,19 @@ impl Checked {
     }
 }
 
-/// Keys under the tables that they stand in.
+/// Keys under the outermost tables that they stand in, each material on its own.
 fn explained(keys: &[Explained]) -> String {
     let mut text = String::new();
-    let mut table = "";
+    let mut heading = "";
     for key in keys {
-        let (place, name) = key.key.rsplit_once('.').unwrap_or(("", &key.key));
-        if place != table {
-            table = place;
+        let own = |rest: &str| rest.find('.').map(|at| key.key.len() - rest.len() + at);
+        let end = match key.key.strip_prefix("materials.") {
+            Some(rest) => own(rest),
+            None => own(&key.key),
+        };
+        let (table, name) = end.map_or(("", key.key.as_str()), |at| (&key.key[..at], &key.key[at + 1..]));
+        if table != heading {
+            heading = table;
             let _ = writeln!(text, "\n[{table}]");
         } else if text.is_empty() {
             text.push('\n');

@@ -19,10 +19,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Example: fem envelope AS4/3502 --criteria puck,tsai-wu:f12=-0.3 --plane s2-s12")]
 pub(super) struct Arguments {
     /// The material: a name of the library or, with --scene, of the scene.
     material: String,
-    /// Criteria by name, parameters after colons, for example: puck,tsai-wu:f12=-0.3 [default: those of the scene]
+    /// Criteria by name, parameters after colons [default: those of the scene]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', required_unless_present = "scene")]
     criteria: Vec<String>,
     /// Two of s1, s2, s3, s12, s23, s13; the other stresses are zero.

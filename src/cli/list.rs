@@ -10,6 +10,7 @@ use serde::Serialize;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Example: fem list contact-laws")]
 pub(super) struct Arguments {
     /// What to list.
     what: What,

@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Example: fem matrices coupon/scene.toml --out matrices")]
 pub(super) struct Arguments {
     /// Scene file (TOML) of any analysis.
     scene: PathBuf,

@@ -16,6 +16,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Example: fem modes coupon/scene.toml --count 20")]
 pub(super) struct Arguments {
     /// Scene file (TOML) of any analysis.
     scene: PathBuf,

@@ -23,6 +23,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 #[derive(Debug, Args)]
+#[command(after_help = "Example: fem run coupon/scene.toml --threads 4")]
 pub(super) struct Arguments {
     /// Scene file (TOML); its mesh is looked for beside it.
     scene: PathBuf,

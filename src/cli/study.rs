@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Example: fem study coupon/scene.toml --axis mesh,step --budget 60s --tolerance 1%")]
 pub(super) struct Arguments {
     /// Scene file (TOML)
     scene: PathBuf,

@@ -62,7 +62,12 @@ impl Writer<'_> {
 
     /// A key with what it means; commented out where `own` leaves it out.
     fn line(&mut self, key: &Key, own: &Table, preset: Option<&Table>) {
-        self.put(format_args!("# {}", key.about));
+        match key.form {
+            Form::Words(words) if words.len() > 1 => {
+                self.put(format_args!("# {}: {}", key.about, words.join(", ")));
+            }
+            _ => self.put(format_args!("# {}", key.about)),
+        }
         let given = |table: &Table| Some(table.get(key.name)?.item.node.to_toml()?.to_string());
         match (given(own), preset.and_then(given), key.absent) {
             (Some(value), ..) => self.put(format_args!("{} = {}", key.name, value.trim())),

@@ -93,7 +93,7 @@ impl Walk<'_> {
             (Form::Plugin(kind, name, others), Node::Table(table)) => {
                 self.plugin((*kind, name, others), table, path, about);
             }
-            (Form::List(form), Node::List(items)) => {
+            (Form::List(form), Node::List(items)) if items.iter().any(|item| item.node.table().is_some()) => {
                 let each = items.iter().enumerate();
                 each.for_each(|(i, item)| self.value(form, item, &format!("{path}[{i}]"), about));
             }

@@ -26,14 +26,14 @@ pub(super) const KEYS: Keys = &[
     key("fidelity", Form::Words(&words(&Fidelity::ALL)), r#""engineering""#, "preset beneath the keys of the scene")
         .default(r#""engineering""#),
     key("analysis", Form::Words(&words(&ANALYSES)), r#""static""#, "what is computed").default(r#""impact""#),
-    key("mesh", Form::OneOf(MESHES), r#"{ file = "plate.msh", unit = "mm" }"#, "cells of the plate in its plane")
-        .required(),
     key(
         "symmetry",
         Form::Words(&words(&Group::ALL)),
         r#""half-turn""#,
         "by what plate, supports and loads are symmetric: a part of the plate is computed",
     ),
+    key("mesh", Form::OneOf(MESHES), r#"{ file = "plate.msh", unit = "mm" }"#, "cells of the plate in its plane")
+        .required(),
     key(
         "materials",
         Form::Named(&Form::Table(material::KEYS)),

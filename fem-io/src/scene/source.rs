@@ -12,13 +12,20 @@ const MAX_BYTES: u64 = 1 << 22;
 
 /// The text of a file, or why there is none.
 pub(crate) fn read_text(path: &Path) -> Result<String, String> {
-    let mut text = String::new();
+    let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(|e| e.to_string())?;
-    file.take(MAX_BYTES + 1).read_to_string(&mut text).map_err(|e| e.to_string())?;
-    match text.len() as u64 {
-        0..=MAX_BYTES => Ok(text),
-        _ => Err(format!("it is longer than {MAX_BYTES} bytes, which no such file is")),
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| e.to_string())?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(format!("it is longer than {MAX_BYTES} bytes, which no such file is"));
     }
+    String::from_utf8(bytes).map_err(|e| match e.as_bytes() {
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "it is a text in UTF-16; save it as UTF-8".to_owned(),
+        before => {
+            let valid = &before[..e.utf8_error().valid_up_to()];
+            let line = 1 + valid.iter().filter(|byte| **byte == b'\n').count();
+            format!("it is no text in UTF-8 from line {line} on; save it as UTF-8")
+        }
+    })
 }
 
 /// The text that a value comes from; of two that exclude each other the later one counts.

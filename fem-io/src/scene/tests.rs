@@ -518,3 +518,71 @@ proptest! {
         if let Err(error) = parse(&text, Path::new("scene.toml")) { rendered(&error); }
     }
 }
+
+/// What the tables of keys call a default is what the reader takes.
+#[test]
+fn defaults_are_those_of_the_reader() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, GOOD).unwrap();
+    let given: Setting = explain(&path, &|_| Vec::new())
+        .unwrap()
+        .into_iter()
+        .filter(|key| key.from == "default" && !key.key.contains('['))
+        .filter_map(|key| Some((key.key, key.value?)))
+        .collect();
+    let keys: Vec<&str> = given.keys().map(String::as_str).collect();
+    for key in ["analysis", "effects.membrane", "impactor.start", "mesh.curves", "output.checkpoint_every"] {
+        assert!(keys.contains(&key), "{key} is none of {keys:?}");
+    }
+    // An effect that is off may be said or not; everything else is the same but for where it stands.
+    let shown = |setting: &Setting| {
+        let scene = read_with(&path, setting).unwrap();
+        let Effects { damage, delamination, membrane, damping, inertia, gravity, cure } = &scene.effects;
+        let switches =
+            [membrane.as_ref().map_or(Switch::Off, |s| s.value), inertia.as_ref().map_or(Switch::On, |s| s.value)];
+        let others =
+            (damage, delamination.as_ref().map(|d| d.value), damping.is_some(), gravity.is_some(), cure.is_some());
+        let effects = format!("{switches:?} {others:?}");
+        let bare = Scene { effects: Effects::default(), keys: BTreeMap::new(), source: Arc::default(), ..scene };
+        let text = format!("{bare:?}");
+        let mut pieces = text.split("Place {");
+        let first = pieces.next().unwrap().to_owned();
+        pieces.fold(first + &effects, |all, piece| all + piece.split_once('}').unwrap().1)
+    };
+    assert_eq!(shown(&given), shown(&Setting::new()));
+}
+
+#[test]
+fn every_effect_is_described_once() {
+    let keys: Vec<_> = effects::KEYS.iter().map(|key| (key.name, key.about)).collect();
+    let listed: Vec<_> = EFFECTS.iter().map(|effect| (effect.name, effect.summary)).collect();
+    assert_eq!(keys, listed);
+}
+
+/// Every key says in a line what it means, and its example is what it takes.
+#[test]
+fn keys_are_described() {
+    fn visit(keys: keys::Keys, path: &str) {
+        for key in keys {
+            let path = format!("{path}.{}", key.name);
+            assert!(
+                !key.about.is_empty() && key.about.len() < 118 && !key.about.contains('\n'),
+                "{path}: {}",
+                key.about
+            );
+            let node = schema::value_of(key.example).unwrap_or_else(|| panic!("{path}: {}", key.example));
+            assert!(key.form.meant_by(&node).fits(&node), "{path} = {}", key.example);
+            within(&key.form, &path);
+        }
+    }
+    fn within(form: &keys::Form, path: &str) {
+        match form {
+            keys::Form::Table(keys) | keys::Form::Plugin(_, _, keys) => visit(keys, path),
+            keys::Form::List(form) | keys::Form::Named(form) | keys::Form::Several(_, form) => within(form, path),
+            keys::Form::OneOf(forms) => forms.iter().for_each(|form| within(form, path)),
+            _ => {}
+        }
+    }
+    visit(KEYS, "");
+}
