@@ -38,6 +38,7 @@ impl std::fmt::Display for ReductionError {
 }
 impl std::error::Error for ReductionError {}
 
+// ANCHOR: contract
 /// A reduction u ≈ T q: it chooses the columns of T; projection and expansion are common to all.
 pub trait Reduction: DynClone + Debug + Send + Sync {
     /// The basis T, `ndof × m` column-major, columns linearly independent.
@@ -54,4 +55,5 @@ pub trait Reduction: DynClone + Debug + Send + Sync {
         candidates: &[usize],
     ) -> Result<Vec<f64>, ReductionError>;
 }
+// ANCHOR_END: contract
 dyn_clone::clone_trait_object!(Reduction);

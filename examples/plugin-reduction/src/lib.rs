@@ -1,47 +1,34 @@
-//! A rational Krylov space as reduction: a plug-in in one file.
+//! A Krylov space about a frequency as reduction: a plug-in in one file.
 //!
 //! What to look at: a reduction only chooses the columns of a basis. It sees the structure through products and solves, and the
 //! contacts as functionals; projection, modes and the way back are common to all reductions.
 use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::reduction::{Functional, Reduction, ReductionError};
-use fem_core::structure::Structure;
+use fem_core::structure::{SolveError, Structure};
 use std::f64::consts::TAU;
-use std::iter::once;
 
-/// Responses to contact forces that grow as e^(st) at several rates s, and to those at rest.
+/// {X, A X, A² X, …} with X = K⁻¹ P, the response at rest to the contact forces, and A = (K + s² M)⁻¹ M, s = 2π `about`.
 ///
-/// ```text
-/// T = [(K + s₁² M)⁻¹ P, (K + s₂² M)⁻¹ P, …, K⁻¹ P]      s = 2π f, f from `fastest` down to `slowest`, evenly by ratio
-/// ```
+/// The dynamic flexibility Pᵀ (K + s² M)⁻¹ P is exact for forces at rest, and for those that grow as e^(st), with its
+/// derivatives along s² up to the order 2m − 3, m blocks of vectors. `ritz` has s = 0, which spends its vectors on what is slow.
 ///
-/// The dynamic flexibility Pᵀ (K + s² M)⁻¹ P of the reduced structure is then exact at every s of these, its derivative too, and
-/// with s = 0 the static flexibility at the contacts. A fast rate sees what is near the contact, a slow one the whole plate.
-///
-/// Every rate costs a factorisation, where Krylov vectors cost a solve, and none waits for the one before it.
+/// It takes two factorisations, and one solve a block.
 #[derive(Debug, Clone)]
-pub struct RationalKrylov {
-    /// Vectors per contact.
+pub struct ShiftedKrylov {
+    /// In all, but never fewer than contacts.
     vectors: usize,
-    /// Frequencies that stand for the slowest and the fastest rate, Hz.
-    slowest: f64,
-    fastest: f64,
+    /// Hz.
+    about: f64,
 }
 
-/// Each is a factorisation.
-const MOST: usize = 200;
+/// Dense matrices of that size cost no more than the sparse ones they replace.
+const MOST: usize = 1000;
+
+/// A direction of which less than this is left beside the others is none.
+const EXHAUSTED: f64 = 1e-10;
 
 // ANCHOR: basis
-impl RationalKrylov {
-    /// Squares of the rates, the fastest first.
-    fn squares(&self) -> impl Iterator<Item = f64> + '_ {
-        let rates = self.vectors - 1;
-        let ratio = self.slowest / self.fastest;
-        let share = move |i: usize| i as f64 / rates.saturating_sub(1).max(1) as f64;
-        (0..rates).map(move |i| (TAU * self.fastest * ratio.powf(share(i))).powi(2))
-    }
-}
-
-impl Reduction for RationalKrylov {
+impl Reduction for ShiftedKrylov {
     fn basis(
         &self,
         structure: &mut dyn Structure,
@@ -49,47 +36,89 @@ impl Reduction for RationalKrylov {
         _candidates: &[usize],
     ) -> Result<Vec<f64>, ReductionError> {
         let n = structure.ndof();
-        let mut loads = vec![0.0; n * keep.len()];
-        for (contact, load) in keep.iter().zip(loads.chunks_exact_mut(n.max(1))) {
+        let refused = |e: SolveError| ReductionError(e.0);
+        let mut block = vec![0.0; n * keep.len()];
+        for (contact, load) in keep.iter().zip(block.chunks_exact_mut(n.max(1))) {
             contact.add_to(1.0, load);
         }
-        let mut basis = Vec::new();
-        // Rest comes last: its factor is kept, and others ask for it.
-        for square in self.squares().chain(once(0.0)) {
-            let mut responses = loads.clone();
-            structure.solve_shifted(square, &mut responses, keep.len()).map_err(|e| ReductionError(e.0))?;
-            basis.extend(responses);
+        structure.solve_shifted(0.0, &mut block, keep.len()).map_err(refused)?;
+        let mut space = Space::default();
+        loop {
+            let first = space.basis.len();
+            block.chunks_exact(n.max(1)).for_each(|x| space.join(structure, x));
+            let joined = &space.basis[first..];
+            if joined.is_empty() || space.basis.len() >= n * self.vectors {
+                return Ok(space.basis);
+            }
+            block = vec![0.0; joined.len()];
+            structure.add_mass(1.0, joined, &mut block);
+            let columns = block.len() / n;
+            structure.solve_shifted((TAU * self.about).powi(2), &mut block, columns).map_err(refused)?;
         }
-        Ok(basis)
     }
 }
 // ANCHOR_END: basis
 
+// ANCHOR: space
+/// Vectors that are orthonormal in the metric of K, with K times each.
+#[derive(Default)]
+struct Space {
+    basis: Vec<f64>,
+    images: Vec<f64>,
+}
+
+impl Space {
+    /// Takes what `x` has beside the others, if that is more than rounding.
+    fn join(&mut self, structure: &dyn Structure, x: &[f64]) {
+        let n = x.len();
+        let mut x = x.to_vec();
+        let size = |x: &[f64], image: &mut Vec<f64>| {
+            *image = vec![0.0; n];
+            structure.add_stiffness(1.0, x, image);
+            dot(x, image).max(0.0).sqrt()
+        };
+        let mut image = Vec::new();
+        let before = size(&x, &mut image);
+        // Once leaves what rounding made of the first sum.
+        for _ in 0..2 {
+            for (v, kv) in self.basis.chunks_exact(n).zip(self.images.chunks_exact(n)) {
+                let share = dot(kv, &x);
+                x.iter_mut().zip(v).for_each(|(x, v)| *x -= share * v);
+            }
+        }
+        let left = size(&x, &mut image);
+        if left > EXHAUSTED * before {
+            self.basis.extend(x.iter().map(|x| x / left));
+            self.images.extend(image.iter().map(|y| y / left));
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+// ANCHOR_END: space
+
 // ANCHOR: plugin
-impl Plugin for RationalKrylov {
+impl Plugin for ShiftedKrylov {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Reduction,
-        name: "rational-krylov",
-        summary: "responses to contact forces that grow at several rates; exact static flexibility at the contact",
-        source: "Gallivan, Grimme and Van Dooren, Numer. Algorithms 12 (1996) 33",
+        name: "shifted-krylov",
+        summary: "Krylov vectors of the contact loads about a frequency; exact static flexibility at the contact",
+        source: "Ruhe, Linear Algebra Appl. 58 (1984) 391; Gallivan, Grimme and Van Dooren, Numer. Algorithms 12 (1996) 33",
         params: &[
-            ParamInfo { name: "vectors", doc: "vectors per contact, 1 to 200, default 16" },
-            ParamInfo { name: "slowest", doc: "frequency that stands for the slowest rate, Hz" },
-            ParamInfo { name: "fastest", doc: "frequency that stands for the fastest rate, Hz" },
+            ParamInfo { name: "vectors", doc: "vectors in all, up to 1000; default 30" },
+            ParamInfo { name: "about", doc: "frequency about which the plate is described best, Hz" },
         ],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let vectors = params.count("vectors", 1, Some(16))?;
+        let vectors = params.count("vectors", 1, Some(30))?;
         if vectors > MOST {
             return Err(ParamError::new("vectors", format!("must not exceed {MOST}, got {vectors}")));
         }
-        let slowest = params.positive("slowest", Dimension::FREQUENCY, None)?;
-        let fastest = params.positive("fastest", Dimension::FREQUENCY, None)?;
-        if fastest <= slowest {
-            return Err(ParamError::new("fastest", format!("must lie above `slowest`, {slowest} Hz, got {fastest} Hz")));
-        }
-        Ok(Built::Reduction(Box::new(Self { vectors, slowest, fastest })))
+        let about = params.positive("about", Dimension::FREQUENCY, None)?;
+        Ok(Built::Reduction(Box::new(Self { vectors, about })))
     }
 }
 // ANCHOR_END: plugin
