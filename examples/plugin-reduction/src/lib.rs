@@ -12,7 +12,8 @@ use std::f64::consts::TAU;
 /// The dynamic flexibility Pᵀ (K + s² M)⁻¹ P is exact for forces at rest, and for those that grow as e^(st), with its
 /// derivatives along s² up to the order 2m − 3, m blocks of vectors. `ritz` has s = 0, which spends its vectors on what is slow.
 ///
-/// It takes two factorisations, and one solve a block.
+/// It takes two factorisations, and one solve a block. In the scene beside, 16 vectors about 50 kHz leave 0.8 % of the contact
+/// force, where as many of `ritz` leave 1.8 %.
 #[derive(Debug, Clone)]
 pub struct ShiftedKrylov {
     /// In all, but never fewer than contacts.
