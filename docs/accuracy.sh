@@ -33,7 +33,7 @@ page() {
     # The heading is in the page, and the tables of all runs are too long for it.
     sed -e '1,2d' -e '/^Ladders$/,$d' "$out/$name/study.md" | put "$name" docs/accuracy.md
     for picture in $pictures; do
-        cp "$out/$name/$picture.svg" "docs/images/accuracy/$name-$picture.svg"
+        cp "$out/$name/$picture.svg" "docs/book/src/images/accuracy/$name-$picture.svg"
     done
 }
 

@@ -16,6 +16,29 @@
 //!     fem::cli::main(fem::Registry::standard().with::<Mine>())
 //! }
 //! ```
+//!
+//! Every command is a function as well. The lowest frequency of a clamped square of aluminium, against theory of thin plates:
+//!
+//! ```
+//! use fem::{Model, Registry, io::scene, modes};
+//! use std::num::NonZeroUsize;
+//!
+//! let edges = ["x-min", "x-max", "y-min", "y-max"];
+//! let clamped = edges.map(|edge| format!("[[support]]\ngroup = '{edge}'\nat = 'all'\nfix = ['U10', 'U20', 'U30', 'U13', 'U23']\n"));
+//! let text = format!(
+//!     "title = 'clamped square'\nanalysis = 'modes'\nmesh = {{ rectangle = ['100 mm', '100 mm'], cells = [16, 16] }}\n\
+//!      laminate = {{ plies = '[0]', material = 'sheet', ply_thickness = '1 mm', layers = [1] }}\nelement = {{ kind = 'mitc4' }}\n\
+//!      materials.sheet = {{ e = '70 GPa', nu = 0.3, density = '2700 kg/m^3' }}\n{}",
+//!     clamped.concat()
+//! );
+//! let model = Model::new(scene::parse(&text, "scene.toml".as_ref())?, &Registry::standard())?;
+//! let found = modes::solve(&model, 1, NonZeroUsize::MIN)?;
+//! // ω = 35.985 √(D/(ρ h))/a²
+//! let (d, areal_mass) = (70e9 * 1e-9 / 12.0 / 0.91, 2.7_f64);
+//! let theory = 35.985 * (d / areal_mass).sqrt() / 0.01;
+//! assert!((found.modes.omega[0] / theory - 1.0_f64).abs() < 2e-2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod advise;
 pub mod cli;

@@ -1,5 +1,7 @@
 //! The book says what the program does.
 
+mod links;
+
 use crate::registry::criteria;
 use crate::snapshots::element;
 use crate::support::{Case, root, strip};
@@ -66,11 +68,11 @@ fn elements_table() -> String {
     text
 }
 
-/// Every contact law of the registry, in Markdown.
-fn contact_laws_table() -> String {
+/// Every plug-in of a kind in the registry, in Markdown.
+fn plain_table(kind: Kind, called: &str) -> String {
     let mut text = WRITTEN.to_owned();
-    text.push_str("| law | what it is | parameters | source |\n| --- | --- | --- | --- |\n");
-    for info in Registry::standard().list(Kind::Contact) {
+    writeln!(text, "| {called} | what it is | parameters | source |\n| --- | --- | --- | --- |").unwrap();
+    for info in Registry::standard().list(kind) {
         writeln!(text, "| `{}` | {} | {} | {} |", info.name, info.summary, parameters_of(info), info.source).unwrap();
     }
     text
@@ -108,7 +110,8 @@ fn the_tables_are_those_of_the_registry() {
     for (file, table) in [
         ("criteria-table.md", criteria_table()),
         ("elements-table.md", elements_table()),
-        ("contact-laws-table.md", contact_laws_table()),
+        ("contact-laws-table.md", plain_table(Kind::Contact, "law")),
+        ("reductions-table.md", plain_table(Kind::Reduction, "reduction")),
         ("integrators-table.md", integrators_table()),
     ] {
         let file = root().join("docs/book/src").join(file);
@@ -186,6 +189,13 @@ fn the_contact_of_the_book_is_taken() {
 }
 
 #[test]
+fn the_reduction_of_the_book_is_taken() {
+    let reduction = fs::read_to_string(root().join("docs/book/src/reduction.toml")).unwrap().replace("\r\n", "\n");
+    let done = Case::example("as4-3502-8ply-25mm").append(&format!("\n{reduction}")).fem("check", &[]).good();
+    assert!(done.stdout.contains("  march     80 unknowns"), "{}", done.stdout);
+}
+
+#[test]
 fn the_mesh_of_the_book_is_refined() {
     let mesh = fs::read_to_string(root().join("docs/book/src/mesh.toml")).unwrap();
     let quads = |case: Case| {
@@ -227,44 +237,6 @@ fn the_studies_of_the_book_are_made() {
     plate.fem("study", &["--axis", "mesh", "--budget", "1s", "--out", "study"]).good();
     let (header, _) = plate.table("study/study.csv");
     assert!(header.iter().any(|column| column == "sxx at the top error"), "{header:?}");
-}
-
-#[test]
-fn what_the_book_includes_and_links_to_is_there() {
-    let book = root().join("docs/book/src");
-    let mut included = 0;
-    let (mut linked, mut chapters) = (0, vec!["SUMMARY.md".to_owned()]);
-    while let Some(chapter) = chapters.pop() {
-        let text = fs::read_to_string(book.join(&chapter)).unwrap_or_else(|e| panic!("{chapter}: {e}"));
-        for link in text.split("](").skip(1).map(|rest| rest.split(')').next().unwrap()) {
-            let (file, heading) = link.split_once('#').unwrap_or((link, ""));
-            let target = if file.is_empty() { chapter.clone() } else { file.to_owned() };
-            let content = fs::read_to_string(book.join(&target)).unwrap_or_else(|e| panic!("{chapter}: {link}: {e}"));
-            let headings = content.lines().filter_map(|line| line.strip_prefix("## ")).map(slug);
-            assert!(heading.is_empty() || headings.into_iter().any(|h| h == heading), "{chapter}: {link}");
-            if chapter == "SUMMARY.md" {
-                chapters.push(target);
-            }
-            linked += 1;
-        }
-        for path in text.split("{{#include ").skip(1).map(|rest| rest.split("}}").next().unwrap()) {
-            let (file, anchor) = path.split_once(':').unwrap_or((path, ""));
-            let content = fs::read_to_string(book.join(file)).unwrap_or_else(|e| panic!("{chapter}: {file}: {e}"));
-            assert!(anchor.is_empty() || content.contains(&format!("ANCHOR: {anchor}")), "{chapter}: {path}");
-            included += 1;
-        }
-    }
-    assert!(included >= 33 && linked >= 14, "{included} {linked}");
-}
-
-/// The anchor of a heading.
-fn slug(heading: &str) -> String {
-    let kept = |c: char| match c {
-        ' ' => Some('-'),
-        c if c.is_alphanumeric() || c == '-' => Some(c.to_ascii_lowercase()),
-        _ => None,
-    };
-    heading.chars().filter_map(kept).collect()
 }
 
 /// The example of the book of what may be watched, with a material of the book's own file.

@@ -3,7 +3,7 @@
 //! The report prints no force history; its two onset times of case 1 hang on the size of its elements, which the preset
 //! `report` repeats. Case histories of an independent model are in tests/data/report-cases (its README says how made).
 
-use crate::support::root;
+use crate::support::{draw, root};
 use fem::io::scene;
 use fem::run::{self, Outcome, Sizes};
 use fem::{Model, Registry};
@@ -231,6 +231,9 @@ fn agrees_with_the_independent_model(case: u8, step: &str, end: &str, end_s: f64
     };
     let (ours, theirs): (Vec<f64>, Vec<f64>) = reference.iter().map(|(t, f)| (force(*t), *f)).unzip();
     let error = l2(&ours, &theirs);
+    let curve: Vec<_> = reference.iter().map(|(t, _)| *t).zip(ours).collect();
+    let title = format!("Table 1 of the report, case {case}, to {end}: no reduction");
+    draw(&format!("case-{case}"), &title, &curve, ("independent model", &reference));
     assert!(error <= 0.01, "case {case}: force history {error}");
     let file = root().join(format!("tests/data/report-cases/case{case}.json"));
     let json: serde_json::Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();

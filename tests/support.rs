@@ -1,5 +1,6 @@
 //! Runs the command on variations of the examples.
 
+use fem::io::plot::{self, Style};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -219,6 +220,22 @@ pub(crate) fn fem(folder: &Path, arguments: &[&str]) -> Done {
         stdout: String::from_utf8(output.stdout).unwrap(),
         stderr: String::from_utf8(output.stderr).unwrap(),
     }
+}
+
+/// Draws contact forces (s, N) of a test for the book, before the reference they are held against, where `UPDATE_BOOK` is set.
+pub(crate) fn draw(name: &str, title: &str, ours: &[(f64, f64)], reference: (&str, &[(f64, f64)])) {
+    if std::env::var_os("UPDATE_BOOK").is_none() {
+        return;
+    }
+    let (times, forces): (Vec<_>, Vec<_>) = ours.iter().copied().unzip();
+    let mut plot = plot::force_history(title, &times, &[("fem", forces)], &[]).unwrap();
+    let (times, forces): (Vec<_>, Vec<_>) = reference.1.iter().copied().unzip();
+    let theirs = plot::force_history(title, &times, &[(reference.0, forces)], &[]).unwrap();
+    assert_eq!((&theirs.x, &theirs.y), (&plot.x, &plot.y), "one unit for both");
+    plot.series.extend(theirs.series.into_iter().map(|curve| plot::Series { style: Style::Guide, ..curve }));
+    let folder = root().join("docs/book/src/images/validation");
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join(format!("{name}.svg")), plot::line_plot(&plot).unwrap().svg).unwrap();
 }
 
 /// The repository.

@@ -1,4 +1,17 @@
 //! Linear constraints, eliminated exactly.
+//!
+//! ```
+//! use fem_core::constraint::{Constraints, Equation};
+//!
+//! // Of three unknowns the first is held, and the last is twice the second.
+//! let tie = Equation { terms: vec![(2, 1.0), (1, -2.0)], value: 0.0, origin: "tie".into(), holds: false };
+//! let constraints = Constraints::eliminate(&[0, 1, 2], &[Equation::fix(0, "support"), tie])?;
+//! assert_eq!(constraints.ndof(), 1);
+//! let mut u = [0.0; 3];
+//! constraints.expand(&[5.0], &mut u);
+//! assert!(u[0] == 0.0 && (u[2] - 2.0 * u[1]).abs() < 1e-12 && u[1] != 0.0);
+//! # Ok::<(), fem_core::constraint::ConstraintError>(())
+//! ```
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;

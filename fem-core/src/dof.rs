@@ -1,4 +1,14 @@
 //! The report's nodal unknowns `Unm`.
+//!
+//! ```
+//! use fem_core::dof::Dof;
+//!
+//! let slope: Dof = "U31".parse()?; // ∂w/∂x
+//! assert_eq!((slope.n(), slope.m()), (3, 1));
+//! assert_eq!(Dof::SOLID.iter().position(|dof| *dof == slope), Some(9));
+//! assert!("U41".parse::<Dof>().is_err());
+//! # Ok::<(), String>(())
+//! ```
 
 use std::fmt;
 

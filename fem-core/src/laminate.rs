@@ -119,6 +119,25 @@ impl Laminate {
     ///
     /// D − B A⁻¹ B with (A, B, D) = Σ Q ∫ (1, z, z²) dz, where Q is a ply's stiffness without σ33 and B vanishes for
     /// symmetric laminates. Meaningful for materials that pass [`Material::check`].
+    ///
+    /// ```
+    /// use fem_core::laminate::{LaminaPly, Laminate};
+    /// use fem_core::material::{Elastic, Material, Strengths};
+    ///
+    /// // One isotropic ply: E h³/12 (1 − ν²).
+    /// let (e, nu, h) = (70e9, 0.3, 2e-3);
+    /// let sheet = Material {
+    ///     name: "sheet".into(),
+    ///     elastic: Elastic::isotropic(e, nu),
+    ///     density: None,
+    ///     strengths: Strengths::default(),
+    ///     giic: None,
+    ///     expansion: None,
+    /// };
+    /// let ply = LaminaPly { angle: 0.0, angle_deg: 0.0, thickness: h, material: 0 };
+    /// let d = Laminate { plies: vec![ply], layers: vec![1] }.bending_stiffness(&[sheet]);
+    /// assert!((d[(0, 0)] / (e * h.powi(3) / 12.0 / (1.0 - nu * nu)) - 1.0).abs() < 1e-12);
+    /// ```
     pub fn bending_stiffness(&self, materials: &[Material]) -> Matrix3<f64> {
         const PLANE: [usize; 3] = [0, 1, 3];
         let z = self.boundaries();

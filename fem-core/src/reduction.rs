@@ -5,6 +5,17 @@ use dyn_clone::DynClone;
 use std::fmt::Debug;
 
 /// A linear functional of the displacements, `d = Σ wᵢ uᵢ`: one dof, or the weighted mean over a contact patch.
+///
+/// ```
+/// use fem_core::reduction::Functional;
+///
+/// // The deflection under a patch that covers two unknowns, and the load of 10 N on that patch: their work agrees.
+/// let patch = Functional(vec![(1, 0.25), (2, 0.75)]);
+/// let (u, mut load) = ([0.0, 4e-3, 8e-3], [0.0; 3]);
+/// patch.add_to(10.0, &mut load);
+/// let work: f64 = load.iter().zip(&u).map(|(f, u)| f * u).sum();
+/// assert!((patch.of(&u) - 7e-3).abs() < 1e-15 && (work - 10.0 * patch.of(&u)).abs() < 1e-15);
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Functional(pub Vec<(usize, f64)>);
 
@@ -38,6 +49,7 @@ impl std::fmt::Display for ReductionError {
 }
 impl std::error::Error for ReductionError {}
 
+// ANCHOR: contract
 /// A reduction u ≈ T q: it chooses the columns of T; projection and expansion are common to all.
 pub trait Reduction: DynClone + Debug + Send + Sync {
     /// The basis T, `ndof × m` column-major, columns linearly independent.
@@ -54,4 +66,5 @@ pub trait Reduction: DynClone + Debug + Send + Sync {
         candidates: &[usize],
     ) -> Result<Vec<f64>, ReductionError>;
 }
+// ANCHOR_END: contract
 dyn_clone::clone_trait_object!(Reduction);

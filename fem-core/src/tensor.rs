@@ -1,6 +1,17 @@
 //! Symmetric tensors with their frame in the type.
 //!
 //! Component order, here and nowhere else: **11 22 33 12 23 31** (report eq. 22), shear strains engineering.
+//!
+//! ```
+//! use fem_core::tensor::{Global, Stress6};
+//!
+//! // Tension along x meets a ply at 45 degrees as tension along and across its fibres, and as shear.
+//! let pull = Stress6::<Global>::new([100e6, 0.0, 0.0, 0.0, 0.0, 0.0]);
+//! let ply = pull.to_ply(45.0_f64.to_radians());
+//! for (stress, expected) in [(ply.s11(), 50e6), (ply.s22(), 50e6), (ply.s12(), -50e6), (ply.s33(), 0.0)] {
+//!     assert!((stress - expected).abs() < 1e-6);
+//! }
+//! ```
 
 use std::fmt::Debug;
 use std::marker::PhantomData;

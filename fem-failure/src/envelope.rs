@@ -1,4 +1,13 @@
 //! Failure envelopes: the stresses of a plane that bring a material to failure.
+//!
+//! ```
+//! use fem_failure::envelope::StressPlane;
+//!
+//! let plane: StressPlane = "s2-s12".parse()?; // across the fibres, and shear along them
+//! assert_eq!(plane.names(), ["s2", "s12"]);
+//! assert!("s2-s2".parse::<StressPlane>().is_err());
+//! # Ok::<(), String>(())
+//! ```
 
 use fem_core::failure::{FailureCriterion, check_material};
 use fem_core::material::{Material, MaterialError};

@@ -5,6 +5,7 @@
 //! what first-order theory has, and its histories meet the series.
 
 use super::scene::{AS4, MeshFile, Plate, Side, gmsh_grid, isotropic, order, reference};
+use crate::support::draw;
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
 use fem::{Model, Registry, run};
@@ -18,6 +19,14 @@ const IMPULSE: f64 = 5e-3;
 const CURVE: f64 = 2e-2;
 /// Deflection under the impactor, as L2 difference over the whole history.
 const DEFLECTION: f64 = 1e-2;
+
+/// Series that the book shows: table, picture, heading.
+const DRAWN: [(&str, &str, &str); 4] = [
+    (KARAS, "karas", "Karas: a steel ball on a steel plate"),
+    (SUN_AND_CHEN, "sun-and-chen", "Sun and Chen: a steel ball on ten plies"),
+    (LARGE_MASS, "large-mass", "2.49 kg on sixteen plies, law of Sun and Yang"),
+    (SMALL_MASS, "small-mass", "16 g on sixteen plies, law of Sun and Yang"),
+];
 
 /// Separations up to this, us, count as one contact. Two of the series of repeated contacts, of eight contacts each, graze so at
 /// 3.01 ms: force is zero for one or two rows of their tables, and below 6 % of its largest around them. Such separations
@@ -167,6 +176,10 @@ impl Strike {
         let column = |upto: usize, name: &str| -> Vec<f64> { rows[..upto].iter().map(|r| r[name]).collect() };
         let (forces, deflections) =
             (sampled(first, &force), sampled(all, &|r| 1e3 * r.impactors[0].plate_displacement_m));
+        if let Some((_, name, title)) = DRAWN.iter().find(|drawn| drawn.0 == table) {
+            let curve = |forces: Vec<f64>| -> Vec<_> { rows.iter().map(|r| r["t_us"] * 1e-6).zip(forces).collect() };
+            draw(name, title, &curve(sampled(all, &force)), ("series", &curve(column(all, "F_N"))));
+        }
         let velocities = sampled(all, &|r| r.impactors[0].impactor_velocity_m_s);
         let impulse =
             |row: usize| (self.velocity - velocities[row]) / (self.velocity - rows[row]["v_impactor_m_s"]) - 1.0;
@@ -283,6 +296,8 @@ fn agrees(strike: &Strike, table: &str, contacts: usize) {
 
 pub(super) const KARAS: &str = "impact_karas_fsdtri_patch2.csv";
 pub(super) const SUN_AND_CHEN: &str = "impact_sunchenA_fsdtri_patch2_hertz.csv";
+const LARGE_MASS: &str = "impact_as4x16_largemass_fsdtri_patch2_sunyang.csv";
+const SMALL_MASS: &str = "impact_as4x16_smallmass_fsdtri_patch2_sunyang.csv";
 
 /// A steel ball on a steel plate.
 pub(super) fn on_steel() -> Strike {
@@ -348,14 +363,14 @@ fn small_mass() -> Strike {
 fn a_large_mass_on_sixteen_plies() {
     let strike = as4x16().stiff_across();
     agrees(&strike, "impact_as4x16_largemass_fsdtri_patch2_hertz.csv", 3);
-    agrees(&strike.law(SUN_YANG), "impact_as4x16_largemass_fsdtri_patch2_sunyang.csv", 2);
+    agrees(&strike.law(SUN_YANG), LARGE_MASS, 2);
 }
 
 #[test]
 fn a_small_mass_on_sixteen_plies() {
     let strike = small_mass().stiff_across();
     agrees(&strike, "impact_as4x16_smallmass_fsdtri_patch2_hertz.csv", 3);
-    agrees(&strike.law(SUN_YANG), "impact_as4x16_smallmass_fsdtri_patch2_sunyang.csv", 3);
+    agrees(&strike.law(SUN_YANG), SMALL_MASS, 3);
 }
 
 /// With the modulus that the plies have across the laminate, the squeeze under the patch makes the contact softer than that

@@ -3,6 +3,16 @@
 //! A plot is laid out once, as a list of shapes in pixels, and drawn twice, so that both pictures look alike. The PNG
 //! carries its own font; the SVG keeps its words as text. Neither needs a font or a library of the system, and equal
 //! plots give equal bytes.
+//!
+//! ```
+//! use fem_io::plot::{force_history, line_plot};
+//!
+//! let times = [0.0, 20e-6, 40e-6]; // s
+//! let plot = force_history("A hat", &times, &[("impactor", vec![0.0, 900.0, 0.0])], &[(20e-6, "peak".into())])?;
+//! assert_eq!((&*plot.x.unit, &*plot.y.unit), ("µs", "N"));
+//! assert!(line_plot(&plot)?.svg.contains("peak, 20.0 µs"));
+//! # Ok::<(), fem_io::plot::PlotError>(())
+//! ```
 
 mod flags;
 mod layout;
