@@ -143,6 +143,28 @@ impl OutputDir {
     /// A name with a folder in it or a leading dot; whatever `fill` or the system reports, e.g. a full disk. The
     /// partial file is removed and an older file of that name is untouched.
     pub fn write(&self, name: &str, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+        self.place(name, fill, File::sync_all)
+    }
+
+    /// As [`OutputDir::write`], without waiting for the disk: a process that is killed leaves the file whole or not at all, a
+    /// machine that loses its power may not. For files of which there are many.
+    ///
+    /// # Errors
+    /// As [`OutputDir::write`].
+    pub fn write_unsynced(
+        &self,
+        name: &str,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), FileError> {
+        self.place(name, fill, |_| Ok(()))
+    }
+
+    fn place(
+        &self,
+        name: &str,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+        settle: impl FnOnce(&File) -> io::Result<()>,
+    ) -> Result<(), FileError> {
         let plain = Path::new(name).file_name().is_some_and(|n| n == name);
         if !plain || name.starts_with('.') {
             return Err(FileError::Name { name: name.to_owned() });
@@ -150,7 +172,9 @@ impl OutputDir {
         let whole = self.path.join(name);
         let partial = self.path.join(format!(".{name}{PARTIAL}"));
         let file = File::create_new(&partial).map_err(failed("write", &whole))?;
-        fill_and_sync(file, fill).and_then(|()| fs::rename(&partial, &whole)).map_err(|cause| {
+        let mut out = BufWriter::new(file);
+        let filled = fill(&mut out).and_then(|()| settle(&out.into_inner()?));
+        filled.and_then(|()| fs::rename(&partial, &whole)).map_err(|cause| {
             // The first error is the one to report; a partial file that cannot be removed goes at the next run.
             let _ = fs::remove_file(&partial);
             failed("write", &whole)(cause)
@@ -160,12 +184,6 @@ impl OutputDir {
 
 pub(crate) fn failed(action: &'static str, path: &Path) -> impl Fn(io::Error) -> FileError {
     move |cause| FileError::Io { action, path: path.to_owned(), cause }
-}
-
-fn fill_and_sync(file: File, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let mut out = BufWriter::new(file);
-    fill(&mut out)?;
-    out.into_inner()?.sync_all()
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::{print, warn};
 use crate::advise;
 use crate::error::Error;
+use crate::fields;
 use crate::memory::Estimate;
 use crate::model::{Impact, Model, Plan};
 use crate::registry::Registry;
@@ -29,13 +30,14 @@ pub(super) fn check(registry: &Registry, arguments: &Arguments) -> miette::Resul
 
 fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
     let model = advise::decided(Model::new(scene::read(&arguments.scene)?, registry)?, NonZeroUsize::MIN)?;
-    let mut lines = plate(&model);
+    let (mut lines, mut frames) = (plate(&model), 1);
     match &model.plan {
         Plan::Impact(impact) => {
             let sizes = run::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model))?.sizes;
             lines.extend(unknowns(&model, &sizes.memory));
             lines.extend(divided(sizes.substructures));
             lines.extend(march(impact, &sizes));
+            frames = frames_of(&model, &sizes);
         }
         plan => {
             let counters = &mut Counters::default();
@@ -49,13 +51,17 @@ fn report(registry: &Registry, arguments: &Arguments) -> Result<String, Error> {
                 lines.extend(few_digits(condition).map(|warning| ("warning", warning)));
             }
             lines.push(match plan {
-                Plan::Modes { count } => ("analysis", format!("the {count} lowest modes")),
+                Plan::Modes { count } => {
+                    frames = *count;
+                    ("analysis", format!("the {count} lowest modes"))
+                }
                 _ => ("analysis", "static".to_owned()),
             });
         }
     }
     let criteria: Vec<_> = model.criteria.iter().map(|c| c.0.as_str()).collect();
     lines.push(("damage", if criteria.is_empty() { "off".into() } else { criteria.join(", ") }));
+    lines.extend(fields::expected(&model, frames)?.map(|fields| ("fields", fields)));
     lines.extend(Advised::of(&model, |_| None).iter().map(|advised| ("advised", advised.to_string())));
     lines.extend(model.warnings.iter().map(|warning| ("warning", warning.clone())));
     let lines: String = lines.iter().map(|(what, text)| format!("  {what:<9} {text}\n")).collect();
@@ -101,6 +107,12 @@ fn unknowns(model: &Model, memory: &Estimate) -> [Line; 2] {
 
 fn divided(substructures: Option<Substructures>) -> Option<Line> {
     substructures.map(|parts| ("divided", parts.to_string()))
+}
+
+/// Frames of the fields of a march.
+fn frames_of(model: &Model, sizes: &Sizes) -> usize {
+    let fields = model.scene.output.fields.as_ref();
+    fields::frames(fields, fields.and_then(|fields| fields.every), sizes).len()
 }
 
 fn march(impact: &Impact, sizes: &Sizes) -> [Line; 3] {

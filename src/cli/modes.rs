@@ -4,6 +4,7 @@ use super::run::default_folder;
 use super::{print, warn};
 use crate::cost::Cost;
 use crate::error::Error;
+use crate::fields;
 use crate::model::{Model, Plan};
 use crate::modes::{self, Summary};
 use crate::registry::Registry;
@@ -49,10 +50,11 @@ pub(super) fn compute(
 ) -> Result<ExitCode, Error> {
     let solution = modes::solve(model, count, threads).inspect_err(|_| warn(model))?;
     let summary = Summary::new(model, &solution);
-    let cost = Cost::new(threads, solution.phases.clone());
+    let mut cost = Cost::new(threads, solution.phases.clone());
     print(&summary.text(&cost));
     let dir = OutputDir::create(folder())?;
     modes::write(&dir, &solution, &summary)?;
+    cost.phases.extend(fields::write_modes(&dir, model, &solution)?);
     tables::write_json(&dir, "cost.json", &cost)?;
     print(&format!("  results   {}\n", dir.path().display()));
     Ok(ExitCode::SUCCESS)

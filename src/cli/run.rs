@@ -5,6 +5,7 @@ use super::{print, progress, warn};
 use crate::advise;
 use crate::cost::Cost;
 use crate::error::Error;
+use crate::fields;
 use crate::model::{Model, Plan};
 use crate::registry::Registry;
 use crate::run::{self, Checkpoint, March};
@@ -49,10 +50,11 @@ fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error
         Plan::Static { .. } => {
             let solution = statics::solve(&model, arguments.threads).inspect_err(|_| warn(&model))?;
             let summary = statics::Summary::new(&model, &solution);
-            let cost = Cost::new(arguments.threads, solution.phases.clone());
+            let mut cost = Cost::new(arguments.threads, solution.phases.clone());
             print(&summary.text(&cost));
             let dir = OutputDir::create(folder())?;
             statics::write(&dir, &model, &solution, &summary)?;
+            cost.phases.extend(fields::write_static(&dir, &model, &solution)?);
             tables::write_json(&dir, "cost.json", &cost)?;
             print(&format!("  results   {}\n", dir.path().display()));
             Ok(ExitCode::SUCCESS)
@@ -106,8 +108,10 @@ fn advance(march: &mut March<'_>, dir: &OutputDir, interval: f64) -> Result<Opti
     // An interval beyond what a clock counts is never over.
     let interval = Duration::try_from_secs_f64(interval).unwrap_or(Duration::MAX);
     let (mut saved, mut signal) = (Instant::now(), None);
+    march.write_fields(dir)?;
     while !march.done() && signal.is_none() {
         march.advance();
+        march.write_fields(dir)?;
         if saved.elapsed() >= interval {
             march.save(dir)?;
             saved = Instant::now();
