@@ -1,21 +1,20 @@
 //! Stresses along a march: sampled, recovered in batches, handed to the scan.
 
 use crate::error::Error;
+use crate::expansion::Expansion;
 use crate::model::{Model, NamedCriterion, Plan};
 use crate::summary::ply_name;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
-use fem_core::assembly::Condensation;
 use fem_core::failure::Site;
 use fem_core::recovery::{Recovery, Station};
 use fem_core::residual::Residual;
-use fem_core::structure::Structure;
 use fem_core::tensor::{Global, Ply, Stress6};
 use fem_core::window;
-use fem_dynamics::reduce::{Companions, Reduced};
 use fem_failure::scan::{self, Place, Probe, Scan, ScanSite};
 use fem_io::scene::Window;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Samples recovered together.
 const BATCH: usize = 16;
@@ -54,10 +53,7 @@ impl IndexHistory {
 #[derive(Debug)]
 pub(crate) struct Watch<'a> {
     model: &'a Model,
-    reduced: Option<Reduced>,
-    /// What large deflections add to the modes.
-    companions: Option<Companions>,
-    condensation: Option<Condensation>,
+    expansion: Arc<Expansion<'a>>,
     recovery: Recovery,
     /// Six per station, empty where there are none.
     residual: Vec<f64>,
@@ -83,25 +79,17 @@ pub(crate) struct Record {
 }
 
 impl<'a> Watch<'a> {
-    /// Prepares the scan of `model`; with `reduced`, the march runs in its coordinates, and with `condensation` these are of
-    /// masters alone.
+    /// Prepares the scan of `model`, which is marched in the coordinates of `expansion`.
     ///
     /// # Errors
     /// A criterion whose material lacks a constant, or a cell that the element refuses.
-    pub(crate) fn new(
-        model: &'a Model,
-        reduced: Option<Reduced>,
-        companions: Option<Companions>,
-        condensation: Option<Condensation>,
-    ) -> Result<Self, Error> {
-        let recovery = recovery(model);
+    pub(crate) fn new(model: &'a Model, expansion: Arc<Expansion<'a>>) -> Result<Self, Error> {
+        let recovery = watched(model);
         let scan = Scan::new(model.criteria.clone(), sites(model, &recovery), model.materials.clone())?;
         let (probes, histories) = gauges(model, &scan).into_iter().unzip();
         let mut watch = Self {
             model,
-            reduced: None,
-            companions,
-            condensation,
+            expansion,
             operator: None,
             residual: residual(model, &recovery)?,
             probes,
@@ -112,15 +100,13 @@ impl<'a> Watch<'a> {
             recovery,
         };
         // Stresses of large displacements are no product with the coordinates.
-        if let Some(reduced) = reduced.as_ref().filter(|_| !model.effects.membrane) {
-            let modes = reduced.modal.ndof();
+        if let Some((basis, modes)) = watch.expansion.basis().filter(|_| !model.effects.membrane) {
             if 6 * watch.recovery.sites() * modes * size_of::<f64>() <= OPERATOR_LIMIT {
                 let mut operator = vec![0.0; 6 * watch.recovery.sites() * modes];
-                watch.recover(&reduced.basis, modes, &mut operator)?;
+                watch.recover(&watch.expansion.nodal(basis), modes, &mut operator)?;
                 watch.operator = Some(operator);
             }
         }
-        watch.reduced = reduced;
         Ok(watch)
     }
 
@@ -154,8 +140,8 @@ impl<'a> Watch<'a> {
         let rows = 6 * self.recovery.sites();
         let width = waiting.len() / count;
         let out = &mut stresses[..rows * count];
-        match (&self.operator, &self.reduced) {
-            (Some(operator), _) => matmul(
+        match &self.operator {
+            Some(operator) => matmul(
                 MatMut::from_column_major_slice_mut(out, rows, count),
                 Accum::Replace,
                 MatRef::from_column_major_slice(operator, rows, width),
@@ -163,16 +149,7 @@ impl<'a> Watch<'a> {
                 1.0,
                 Par::Seq,
             ),
-            (None, Some(reduced)) => {
-                let n = reduced.basis.len() / width;
-                let mut u = vec![0.0; n * count];
-                for (q, u) in waiting.chunks_exact(width).zip(u.chunks_exact_mut(n)) {
-                    reduced.expand(q, u);
-                    self.companions.iter().for_each(|companions| companions.complete(q, u));
-                }
-                self.recover(&u, count, out)?;
-            }
-            (None, None) => self.recover(waiting, count, out)?,
+            None => self.recover(&self.expansion.displacements(waiting, count), count, out)?,
         }
         add(out, &self.residual);
         for (t, stresses) in times.iter().zip(stresses.chunks_exact(rows)) {
@@ -187,22 +164,9 @@ impl<'a> Watch<'a> {
         Ok(())
     }
 
-    /// Stresses of `count` displacement fields given in the unknowns of the structure, one after the other.
-    fn recover(&self, fields: &[f64], count: usize, out: &mut [f64]) -> Result<(), Error> {
-        let model = self.model;
-        let expanded = self.condensation.as_ref().map(|condensation| condensation.expand(fields));
-        let fields = expanded.as_deref().unwrap_or(fields);
-        let mut u = vec![0.0; model.plate.ndof() * count];
-        for (field, u) in fields.chunks_exact(model.constraints.ndof()).zip(u.chunks_exact_mut(model.plate.ndof())) {
-            model.constraints.expand(field, u);
-        }
-        let Some(large) = model.element.large_displacements().filter(|_| model.effects.membrane) else {
-            return Ok(self.recovery.stresses(&model.plate, &*model.element, &u, count, out)?);
-        };
-        for (u, out) in u.chunks_exact(model.plate.ndof()).zip(out.chunks_exact_mut(6 * self.recovery.sites())) {
-            self.recovery.large_stresses(&model.plate, large, u, out)?;
-        }
-        Ok(())
+    /// Stresses of `count` displacement fields, one after the other, without those that do not follow from them.
+    fn recover(&self, u: &[f64], count: usize, out: &mut [f64]) -> Result<(), Error> {
+        recover(self.model, &self.recovery, u, count, out)
     }
 
     /// What the scan found.
@@ -259,12 +223,9 @@ pub(crate) fn margins(model: &Model, u: &[f64]) -> Result<Vec<Margin>, Error> {
     if model.criteria.is_empty() {
         return Ok(Vec::new());
     }
-    let recovery = recovery(model);
+    let recovery = watched(model);
     let mut stresses = vec![0.0; 6 * recovery.sites()];
-    match model.element.large_displacements().filter(|_| model.effects.membrane) {
-        Some(large) => recovery.large_stresses(&model.plate, large, u, &mut stresses)?,
-        None => recovery.stresses(&model.plate, &*model.element, u, 1, &mut stresses)?,
-    }
+    recover(model, &recovery, u, 1, &mut stresses)?;
     add(&mut stresses, &residual(model, &recovery)?);
     if !stresses.iter().all(|s| s.is_finite()) {
         return Err(Error::NotFinite("stress"));
@@ -300,7 +261,7 @@ pub(crate) fn margins(model: &Model, u: &[f64]) -> Result<Vec<Margin>, Error> {
 ///
 /// # Errors
 /// A material without thermal expansion.
-fn residual(model: &Model, recovery: &Recovery) -> Result<Vec<f64>, Error> {
+pub(crate) fn residual(model: &Model, recovery: &Recovery) -> Result<Vec<f64>, Error> {
     let Some(change) = model.effects.cure else { return Ok(Vec::new()) };
     let cooled = Residual::new(&model.laminate, &model.materials, change)?;
     let of_station = |station: &Station| match model.plan {
@@ -316,7 +277,7 @@ fn residual(model: &Model, recovery: &Recovery) -> Result<Vec<f64>, Error> {
 }
 
 /// Adds the stresses of stations to those of all sites.
-fn add(stresses: &mut [f64], residual: &[f64]) {
+pub(crate) fn add(stresses: &mut [f64], residual: &[f64]) {
     if !residual.is_empty() {
         for quad in stresses.chunks_exact_mut(residual.len()) {
             quad.iter_mut().zip(residual).for_each(|(s, r)| *s += r);
@@ -324,19 +285,46 @@ fn add(stresses: &mut [f64], residual: &[f64]) {
     }
 }
 
-fn recovery(model: &Model) -> Recovery {
+/// Stresses of `count` displacement fields (before elimination of constraints), one after the other, without those that do
+/// not follow from displacements.
+///
+/// # Errors
+/// A cell that the element refuses.
+pub(crate) fn recover(
+    model: &Model,
+    recovery: &Recovery,
+    u: &[f64],
+    count: usize,
+    out: &mut [f64],
+) -> Result<(), Error> {
+    let Some(large) = model.element.large_displacements().filter(|_| model.effects.membrane) else {
+        return Ok(recovery.stresses(&model.plate, &*model.element, u, count, out)?);
+    };
+    for (u, out) in u.chunks_exact(model.plate.ndof()).zip(out.chunks_exact_mut(6 * recovery.sites())) {
+        recovery.large_stresses(&model.plate, large, u, out)?;
+    }
+    Ok(())
+}
+
+/// Where the criteria look.
+fn watched(model: &Model) -> Recovery {
+    // Where nobody looks there is nothing to recover.
+    let looks = model.criteria.iter().any(|(_, criterion)| criterion.info().site == Site::Interface);
+    recovery(model, model.watched.clone(), looks)
+}
+
+/// The stresses of `quads` as the criteria see them, those of interfaces where these are wanted and the scene has some.
+pub(crate) fn recovery(model: &Model, quads: Vec<usize>, interfaces: bool) -> Recovery {
     let mesh = &model.plate.plane;
     let windows = match model.scene.failure.window {
         Window::Element => window::own(mesh),
         Window::Square(side) => window::square(mesh, side),
     };
-    // Where nobody looks there is nothing to recover.
-    let looks = model.criteria.iter().any(|(_, criterion)| criterion.info().site == Site::Interface);
-    let resin = model.scene.interface.as_ref().map(|i| i.value).filter(|_| looks);
-    Recovery::new(&model.plate, &model.laminate, &model.materials, resin, model.watched.clone(), &windows)
+    let resin = model.scene.interface.as_ref().map(|i| i.value).filter(|_| interfaces);
+    Recovery::new(&model.plate, &model.laminate, &model.materials, resin, quads, &windows)
 }
 
-fn sites(model: &Model, recovery: &Recovery) -> Vec<ScanSite> {
+pub(crate) fn sites(model: &Model, recovery: &Recovery) -> Vec<ScanSite> {
     let mesh = &model.plate.plane;
     let site = |q: usize, s: &Station| {
         let [x, y] = window::centroid(&mesh.corners(q));

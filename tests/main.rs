@@ -10,6 +10,7 @@ mod command_line;
 mod criteria;
 mod effects;
 mod envelope;
+mod fields;
 mod impactors;
 mod indices;
 mod modal;

@@ -105,6 +105,10 @@ impl Recovery {
                 let (here, rest) = strains.split_at_mut(6 * fields * stations.len());
                 strains = rest;
                 for (operator, here) in operators.chunks_exact(6 * n).zip(here.chunks_exact_mut(6 * fields)) {
+                    if let Ok(strain) = <&mut [f64; 6]>::try_from(&mut *here) {
+                        add_product(operator, &local, strain);
+                        continue;
+                    }
                     for (column, local) in operator.chunks_exact(6).zip(local.chunks_exact(fields)) {
                         for (b, strain) in column.iter().zip(here.chunks_exact_mut(fields)) {
                             if *b != 0.0 {
@@ -169,6 +173,13 @@ impl Recovery {
                 }
             }
         }
+    }
+}
+
+/// What a strain operator makes of one field.
+fn add_product(operator: &[f64], u: &[f64], strain: &mut [f64; 6]) {
+    for (column, u) in operator.as_chunks::<6>().0.iter().zip(u) {
+        strain.iter_mut().zip(column).for_each(|(e, b)| *e += b * u);
     }
 }
 

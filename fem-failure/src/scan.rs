@@ -438,6 +438,16 @@ impl Scan {
         sites.zip(self.record.seen[criterion].maxima.chunks_exact(watch.modes.len()))
     }
 
+    /// For fields: every site, by its number, that criterion number `criterion` looks at, with its indices of the last sample.
+    ///
+    /// # Panics
+    /// There is no criterion of that number.
+    pub fn latest(&self, criterion: usize) -> impl Iterator<Item = (usize, &[f64])> {
+        let watch = &self.watches[criterion];
+        let sites = self.order[watch.span.clone()].iter().map(|&i| i as usize);
+        sites.zip(self.record.seen[criterion].last.chunks_exact(watch.modes.len()))
+    }
+
     /// For histories: where criterion number `criterion` leaves its indices of site number `site`; `None` if there is no
     /// such criterion or it does not look there.
     pub fn probe(&self, criterion: usize, site: usize) -> Option<Probe> {

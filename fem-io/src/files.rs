@@ -144,6 +144,28 @@ impl OutputDir {
     /// A name with a folder in it or a leading dot; whatever `fill` or the system reports, e.g. a full disk. The
     /// partial file is removed and an older file of that name is untouched.
     pub fn write(&self, name: &str, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+        self.place(name, fill, File::sync_all)
+    }
+
+    /// As [`OutputDir::write`], without waiting for the disk: a process that is killed leaves the file whole or not at all, a
+    /// machine that loses its power may not. For files of which there are many.
+    ///
+    /// # Errors
+    /// As [`OutputDir::write`].
+    pub fn write_unsynced(
+        &self,
+        name: &str,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), FileError> {
+        self.place(name, fill, |_| Ok(()))
+    }
+
+    fn place(
+        &self,
+        name: &str,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+        settle: impl FnOnce(&File) -> io::Result<()>,
+    ) -> Result<(), FileError> {
         let plain = Path::new(name).file_name().is_some_and(|n| n == name);
         if !plain || name.starts_with('.') {
             return Err(FileError::Name { name: name.to_owned() });
@@ -151,7 +173,14 @@ impl OutputDir {
         let whole = self.path.join(name);
         let partial = self.path.join(format!(".{name}{PARTIAL}"));
         let file = File::create_new(&partial).map_err(failed("write", &whole))?;
-        let bytes = fill_and_sync(file, fill).and_then(|bytes| fs::rename(&partial, &whole).map(|()| bytes));
+        let mut out = BufWriter::new(file);
+        let settled = || {
+            fill(&mut out)?;
+            out.flush()?;
+            settle(out.get_ref())?;
+            out.get_ref().metadata().map(|about| about.len())
+        };
+        let bytes = settled().and_then(|bytes| fs::rename(&partial, &whole).map(|()| bytes));
         let bytes = bytes.map_err(|cause| {
             // The first error is the one to report; a partial file that cannot be removed goes at the next run.
             let _ = fs::remove_file(&partial);
@@ -164,14 +193,6 @@ impl OutputDir {
 
 pub(crate) fn failed(action: &'static str, path: &Path) -> impl Fn(io::Error) -> FileError {
     move |cause| FileError::Io { action, path: path.to_owned(), cause }
-}
-
-fn fill_and_sync(file: File, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<u64> {
-    let mut out = BufWriter::new(file);
-    fill(&mut out)?;
-    let file = out.into_inner()?;
-    file.sync_all()?;
-    Ok(file.metadata()?.len())
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 //! | the folder of results: files that appear whole or not at all | [`files`] |
 //! | what a later run goes on from | [`checkpoint`] |
 //! | CSV and JSON, line plots as SVG and PNG | [`tables`], [`plot`] |
+//! | fields for ParaView and PyVista | [`vtu`] |
 //!
 //! Beyond this crate there are only SI units; whatever is refused is refused here, with its file, its line and a remedy:
 //!
@@ -28,3 +29,4 @@ pub mod plot;
 pub mod scene;
 pub mod tables;
 pub mod units;
+pub mod vtu;

@@ -3,6 +3,7 @@
 use super::{Console, Format, warn};
 use crate::advise;
 use crate::error::Error;
+use crate::fields;
 use crate::memory::Estimate;
 use crate::model::{Impact, Model, Plan};
 use crate::registry::Registry;
@@ -67,6 +68,8 @@ struct Checked {
     #[serde(skip_serializing_if = "Option::is_none")]
     modes: Option<usize>,
     criteria: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fields: Option<fields::Expected>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     advised: Vec<Advised>,
     warnings: Vec<String>,
@@ -135,11 +138,13 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
     let keys =
         if arguments.explain { scene::explain(&arguments.scene, &|kind| registry.choices(kind))? } else { vec![] };
     let model = advise::decided(Model::new(scene, registry)?, NonZeroUsize::MIN)?;
-    let (mut march, mut condition, mut modes) = (None, None, None);
+    let (mut march, mut condition, mut modes, mut frames) = (None, None, None, 1);
     let (memory, substructures) = match &model.plan {
         Plan::Impact(impact) => {
             let sizes = run::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model))?.sizes;
             march = Some(March::new(impact, &sizes));
+            let asked = model.scene.output.fields.as_ref();
+            frames = fields::frames(asked, asked.and_then(|asked| asked.every), &sizes).len();
             (sizes.memory, sizes.substructures)
         }
         plan => {
@@ -152,6 +157,7 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
             }
             if let Plan::Modes { count } = plan {
                 modes = Some(*count);
+                frames = *count;
             }
             (assembled.memory, assembled.substructures())
         }
@@ -176,6 +182,7 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
         condition,
         modes,
         criteria: model.criteria.iter().map(|(name, _)| name.clone()).collect(),
+        fields: fields::expected(&model, frames)?,
         advised: Advised::of(&model, |_| None),
         warnings: condition.and_then(few_digits).into_iter().chain(model.warnings).collect(),
         keys,
@@ -208,6 +215,7 @@ impl Checked {
             lines.push(("analysis", analysis));
         }
         lines.push(("damage", if self.criteria.is_empty() { "off".into() } else { self.criteria.join(", ") }));
+        lines.extend(self.fields.map(|fields| ("fields", fields.to_string())));
         lines.extend(self.advised.iter().map(|advised| ("advised", advised.to_string())));
         lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
         let lines: String = lines.iter().map(|(what, text)| format!("  {what:<9} {text}\n")).collect();

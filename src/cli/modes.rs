@@ -4,6 +4,7 @@ use super::run::{Results, default_folder};
 use super::{Console, Format, warn};
 use crate::cost::Cost;
 use crate::error::Error;
+use crate::fields;
 use crate::model::{Model, Plan};
 use crate::modes::{self, Solution, Summary};
 use crate::registry::Registry;
@@ -54,16 +55,23 @@ pub(super) fn compute(
 ) -> miette::Result<ExitCode> {
     let solution = modes::solve(model, count, threads).inspect_err(|_| warn(model))?;
     let summary = Summary::new(model, &solution);
-    let cost = Cost::new(threads, solution.phases.clone());
+    let mut cost = Cost::new(threads, solution.phases.clone());
     console.say(format, || summary.text(&cost));
-    let dir = write(folder(), &solution, &summary, &cost)?;
+    let dir = write(model, folder(), &solution, &summary, &mut cost)?;
     Results { summary: &summary, cost: &cost, results: dir.path() }.show(format, console)?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn write(folder: PathBuf, solution: &Solution, summary: &Summary, cost: &Cost) -> Result<OutputDir, Error> {
+fn write(
+    model: &Model,
+    folder: PathBuf,
+    solution: &Solution,
+    summary: &Summary,
+    cost: &mut Cost,
+) -> Result<OutputDir, Error> {
     let dir = OutputDir::create(folder)?;
     modes::write(&dir, solution, summary)?;
+    cost.phases.extend(fields::write_modes(&dir, model, solution)?);
     tables::write_json(&dir, "cost.json", cost)?;
     Ok(dir)
 }

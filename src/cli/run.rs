@@ -5,6 +5,7 @@ use super::{Console, Format, warn};
 use crate::advise;
 use crate::cost::Cost;
 use crate::error::Error;
+use crate::fields;
 use crate::model::{Model, Plan};
 use crate::registry::Registry;
 use crate::run::{self, Checkpoint, March, Outcome};
@@ -72,11 +73,12 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console)
 fn at_rest(model: &Model, arguments: &Arguments, folder: PathBuf, console: &Console) -> miette::Result<ExitCode> {
     let solution = statics::solve(model, arguments.threads).inspect_err(|_| warn(model))?;
     let summary = statics::Summary::new(model, &solution);
-    let cost = Cost::new(arguments.threads, solution.phases.clone());
+    let mut cost = Cost::new(arguments.threads, solution.phases.clone());
     console.say(arguments.format, || summary.text(&cost));
-    let write = || {
-        let dir = OutputDir::create(folder)?;
+    let mut write = || {
+        let dir = OutputDir::create(&folder)?;
         statics::write(&dir, model, &solution, &summary)?;
+        cost.phases.extend(fields::write_static(&dir, model, &solution)?);
         tables::write_json(&dir, "cost.json", &cost)?;
         Ok::<_, Error>(dir)
     };
@@ -147,8 +149,10 @@ fn advance(march: &mut March<'_>, dir: &OutputDir, interval: f64, bar: &Progress
     // An interval beyond what a clock counts is never over.
     let interval = Duration::try_from_secs_f64(interval).unwrap_or(Duration::MAX);
     let (mut saved, mut signal) = (Instant::now(), None);
+    march.write_fields(dir)?;
     while !march.done() && signal.is_none() {
         march.advance();
+        march.write_fields(dir)?;
         if saved.elapsed() >= interval {
             march.save(dir)?;
             saved = Instant::now();

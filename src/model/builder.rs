@@ -131,11 +131,7 @@ impl Builder<'_> {
             let message = "`failure.radius` counts from the impact, and here is none";
             return Err(self.scene.source.error_at(&failure.place, message, "leave it out"));
         }
-        let near = |q: &usize| {
-            let c = window::centroid(&plate.plane.corners(*q));
-            centres.iter().any(|centre| (c[0] - centre[0]).hypot(c[1] - centre[1]) <= radius)
-        };
-        let watched: Vec<usize> = kept.filter(near).collect();
+        let watched: Vec<usize> = kept.filter(near(plate, centres, radius)).collect();
         if watched.is_empty() {
             let message = "no cell has its centre within `failure.radius` of the impact";
             return Err(self.scene.source.error_at(&failure.place, message, "enlarge the radius or leave it out"));
@@ -275,5 +271,13 @@ impl Builder<'_> {
             terms.push((dof, term.factor));
         }
         Ok(Equation { terms, value: 0.0, origin: format!("equation {}", number + 1), holds: false })
+    }
+}
+
+/// Whether the centre of a quad is within `radius` of one of `centres`.
+pub(super) fn near(plate: &Plate, centres: &[[f64; 2]], radius: f64) -> impl Fn(&usize) -> bool {
+    move |quad| {
+        let c = window::centroid(&plate.plane.corners(*quad));
+        centres.iter().any(|centre| (c[0] - centre[0]).hypot(c[1] - centre[1]) <= radius)
     }
 }

@@ -2,6 +2,7 @@
 
 mod builder;
 mod effects;
+mod fields;
 mod gauge;
 mod plan;
 mod substructures;
@@ -9,6 +10,7 @@ mod symmetry;
 
 pub use effects::{Decision, Effects};
 pub(crate) use effects::{INERTIA, MEMBRANE};
+pub use fields::FieldPlan;
 pub use gauge::Gauge;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 
@@ -60,6 +62,8 @@ pub struct Model {
     pub watched: Vec<usize>,
     /// Places whose indices are kept over time.
     pub gauges: Vec<Gauge>,
+    /// Fields that are written.
+    pub fields: Option<FieldPlan>,
     /// Force at which the laminate delaminates, where that is looked for and a material gives the toughness.
     pub threshold: Option<DelaminationThreshold>,
     /// What is simulated beyond the linear elastic plate.
@@ -148,6 +152,7 @@ impl Model {
         let division = builder.division(&plate, &constraints, &plan)?;
         let watched = builder.watched(&plate, &centres)?;
         let gauges = builder.gauges(&plate, &watched, &criteria)?;
+        let fields = builder.fields(&plate, &centres)?;
         let resin = scene.interface.as_ref().map(|resin| resin.value);
         let threshold = builder.threshold(DelaminationThreshold::of(&laminate, &materials, resin))?;
         let profiles = builder.profiles(&plate, effects)?;
@@ -167,12 +172,18 @@ impl Model {
             criteria,
             watched,
             gauges,
+            fields,
             threshold,
             effects,
             decisions: Vec::new(),
             warnings,
             scene,
         })
+    }
+
+    /// Whether the plate has velocities: in an impact, unless it follows the force at rest.
+    pub fn moves(&self) -> bool {
+        matches!(self.plan, Plan::Impact(_)) && self.effects.inertia
     }
 
     /// Governors that a reduction may choose from, best first: deflections (U30 at the mid-plane or the lowest level),

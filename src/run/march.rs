@@ -9,6 +9,8 @@ use super::saved::CheckpointError;
 use super::{Maximum, Outcome, Sizes};
 use crate::cost::Stopwatch;
 use crate::error::Error;
+use crate::expansion::Expansion;
+use crate::fields;
 use crate::model::Model;
 use crate::stress::{self, Watch};
 use fem_core::counters::Counters;
@@ -17,9 +19,10 @@ use fem_core::time::{Integrator, State};
 use fem_dynamics::guard::Guard;
 use fem_dynamics::impact::ImpactSystem;
 use fem_failure::scan::{self, Scan};
-use fem_io::files::OutputDir;
+use fem_io::files::{FileError, OutputDir};
 use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use tracing::info;
 
 /// Steps between two looks of a march at its energies, which cost two products with matrices.
@@ -57,6 +60,11 @@ pub struct March<'a> {
     scan_every: u64,
     watch: Option<Watch<'a>>,
     modal: Option<ModalView>,
+    expansion: Arc<Expansion<'a>>,
+    /// Steps at which fields are written.
+    frames: Vec<u64>,
+    /// From the first of them on.
+    fields: Option<fields::Writer<'a>>,
     estimates: Estimates,
     /// Work of the preparation.
     counters: Counters,
@@ -74,6 +82,8 @@ pub(super) struct Progress {
     dt: f64,
     /// Steps between two rows of the history.
     row_every: u64,
+    /// Time between two frames of the fields, s.
+    frame_every: Option<f64>,
     state: State,
     ledger: Ledger,
     work: Work,
@@ -124,6 +134,7 @@ impl<'a> March<'a> {
             step: 0,
             dt,
             row_every,
+            frame_every: model.scene.output.fields.as_ref().and_then(|fields| fields.every),
             ledger: Ledger::new(
                 state.contacts.len(),
                 model.threshold.map(|threshold| threshold.force),
@@ -201,8 +212,8 @@ impl<'a> March<'a> {
         }
         let followed = model.scene.output.modes.as_ref().zip(reduced.as_ref());
         let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
-        let watch =
-            if model.criteria.is_empty() { None } else { Some(Watch::new(model, reduced, companions, condensation)?) };
+        let expansion = Arc::new(Expansion { model, reduced, companions, condensation });
+        let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, expansion.clone())?) };
         stopwatch.lap("prepare stresses");
         let scan_every = steps_in(model.scene.failure.every, sizes.step);
         let (integrator, counted) = (impact.integrator.clone(), Work::default());
@@ -216,6 +227,9 @@ impl<'a> March<'a> {
             scan_every,
             watch,
             modal,
+            expansion,
+            frames: fields::frames(model.scene.output.fields.as_ref(), progress.frame_every, &sizes),
+            fields: None,
             estimates,
             counters,
             counted,
@@ -277,16 +291,54 @@ impl<'a> March<'a> {
     }
 
     fn sample(&mut self) -> Result<(), Error> {
+        let u = self.coordinates();
         let Some(watch) = &mut self.watch else { return Ok(()) };
         self.stopwatch.lap("march");
-        let State { t, u, .. } = &self.progress.state;
-        let u = &u[..self.sizes.marched];
-        let sampled = match &self.sag {
-            None => watch.sample(*t, u),
-            Some(sag) => watch.sample(*t, &u.iter().zip(sag).map(|(u, sag)| u + sag).collect::<Vec<_>>()),
-        };
+        let sampled = watch.sample(self.progress.state.t, &u);
         self.stopwatch.lap("scan");
         sampled
+    }
+
+    /// Displacements from the plate without weight, in coordinates of the march.
+    fn coordinates(&self) -> Vec<f64> {
+        let mut u = self.progress.state.u[..self.sizes.marched].to_vec();
+        u.iter_mut().zip(self.sag.iter().flatten()).for_each(|(u, sag)| *u += sag);
+        u
+    }
+
+    /// Writes the fields of the present step below `dir`, where it is a frame.
+    ///
+    /// # Errors
+    /// A folder that cannot be written. A frame that makes no sense stops the march.
+    pub fn write_fields(&mut self, dir: &OutputDir) -> Result<(), Error> {
+        let Ok(number) = self.frames.binary_search(&self.progress.step) else { return Ok(()) };
+        if self.progress.stopped.is_some() {
+            return Ok(());
+        }
+        self.stopwatch.lap("march");
+        let written = self.write_frame(number, dir);
+        self.stopwatch.lap(fields::PHASE);
+        match written {
+            Err(error @ Error::File(FileError::Io { .. } | FileError::Locked { .. })) => Err(error),
+            stopped => {
+                self.judge(self.progress.step, stopped);
+                Ok(())
+            }
+        }
+    }
+
+    fn write_frame(&mut self, number: usize, dir: &OutputDir) -> Result<(), Error> {
+        let (model, expansion) = (self.model, self.expansion.clone());
+        let q = self.coordinates();
+        let u = expansion.displacements(&q, 1);
+        let rates = &self.progress.state.v[..self.sizes.marched];
+        let v = model.moves().then(|| expansion.velocities(&q, rates));
+        if self.fields.is_none() {
+            let times = self.frames.iter().map(|step| *step as f64 * self.progress.dt);
+            self.fields = fields::Writer::new(model, dir, times.collect())?;
+        }
+        let Some(fields) = &mut self.fields else { return Ok(()) };
+        fields.write(number, fields::State { velocities: v.as_deref(), ..fields::State::at_rest(&u) })
     }
 
     /// Stops a march that met an error in `step`.

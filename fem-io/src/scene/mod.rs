@@ -7,6 +7,7 @@
 mod annotate;
 mod effects;
 mod explain;
+mod fields;
 pub(crate) mod keys;
 mod laminate;
 mod load;
@@ -27,6 +28,7 @@ pub(crate) mod tree;
 pub use annotate::annotated;
 pub use effects::{Damage, Delamination, EFFECTS, EffectInfo, Effects, Switch};
 pub use explain::{Explained, explain};
+pub use fields::{FieldCells, Fields, Region, Series};
 pub use keys::Plugins;
 pub use load::{Load, LoadKind, Pressure, ProfileLine};
 pub use plugin::PluginSpec;
@@ -296,6 +298,10 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
     let effects = root.optional("effects").map_or(Ok(Effects::default()), |field| effects::read(&field))?;
     let analysis = read_analysis(&root, &effects)?;
     let in_time = matches!(analysis, Analysis::Impact(_));
+    let march = match &analysis {
+        Analysis::Impact(impact) => Some(&impact.march),
+        _ => None,
+    };
     let onset = effects.damage == Damage::Onset;
     Ok(Scene {
         title: root.required("title")?.text()?.to_owned(),
@@ -319,10 +325,10 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
         couples: root.optional("couple").map_or(Ok(Vec::new()), |field| support::read_couples(&field))?,
         substructures: root.optional("substructures").map(|field| substructures::read(&field)).transpose()?,
         failure: run::read_failure(&root.required("failure")?, onset && in_time, in_time)?,
+        output: root.optional("output").map_or(Ok(Output::default()), |field| run::read_output(&field, march))?,
         analysis,
         effects,
         profiles: root.optional("profile").map_or(Ok(Vec::new()), |field| load::read_profiles(&field))?,
-        output: root.optional("output").map_or(Ok(Output::default()), |field| run::read_output(&field))?,
         study: root.optional("study").map_or(Ok(Study::default()), |field| study::read(&field))?,
         keys,
         source,

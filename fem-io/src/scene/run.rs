@@ -1,5 +1,6 @@
 //! The impact and its computation: impactor, march, failure, effects, output.
 
+use super::fields::{self, Fields};
 use super::keys::{Form, Keys, key};
 use super::plugin::PluginSpec;
 use super::reader::{Field, Reader};
@@ -143,11 +144,20 @@ pub struct Output {
     pub plots: bool,
     /// A table of the largest indices over the plate.
     pub maps: bool,
+    /// Fields over the plate, as files of VTK.
+    pub fields: Option<Fields>,
 }
 
 impl Default for Output {
     fn default() -> Self {
-        Self { history_every: None, checkpoint_every: CHECKPOINT_EVERY, modes: None, plots: true, maps: false }
+        Self {
+            history_every: None,
+            checkpoint_every: CHECKPOINT_EVERY,
+            modes: None,
+            plots: true,
+            maps: false,
+            fields: None,
+        }
     }
 }
 
@@ -246,6 +256,13 @@ pub(super) const OUTPUT: Keys = &[
     key("modes", Form::Count(1), "6", "modes of the reduced plate that are followed"),
     key("plots", Form::Flag, "true", "pictures of the histories").default("true"),
     key("maps", Form::Flag, "true", "a table of the largest indices over the plate").default("false"),
+    key(
+        "fields",
+        Form::OneOf(&[Form::Flag, Form::Table(fields::KEYS)]),
+        "true",
+        "displacements, stresses and indices over the plate as files of VTK",
+    )
+    .default("false"),
 ];
 
 /// Time between two checkpoints unless the scene says otherwise, s.
@@ -440,7 +457,8 @@ fn read_interface(field: &Field<'_>) -> Result<Depth, SceneError> {
     }
 }
 
-pub(super) fn read_output(field: &Field<'_>) -> Result<Output, SceneError> {
+/// The keys of the output; `march` is that of an impact.
+pub(super) fn read_output(field: &Field<'_>, march: Option<&March>) -> Result<Output, SceneError> {
     let table = field.table(OUTPUT)?;
     let modes = table.optional("modes").map(|field| match field.count()? {
         count @ 1..=MOST_MODES => Ok(field.at(count)),
@@ -453,5 +471,6 @@ pub(super) fn read_output(field: &Field<'_>) -> Result<Output, SceneError> {
         history_every: table.optional("history_every").map(|field| field.positive(Dimension::TIME)).transpose()?,
         plots: table.optional("plots").map_or(Ok(true), |field| field.flag())?,
         maps: table.optional("maps").map_or(Ok(false), |field| field.flag())?,
+        fields: table.optional("fields").map_or(Ok(None), |field| fields::read(&field, march))?,
     })
 }

@@ -138,7 +138,7 @@ fn a_scene_in_full() {
     assert_eq!(scene.output, output);
     assert_eq!(
         Output::default(),
-        Output { history_every: None, checkpoint_every: 60.0, modes: None, plots: true, maps: false }
+        Output { history_every: None, checkpoint_every: 60.0, modes: None, plots: true, maps: false, fields: None }
     );
     assert_eq!(
         (scene.element.name.value.as_str(), scene.z_derivatives.value),

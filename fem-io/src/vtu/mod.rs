@@ -1,0 +1,184 @@
+//! Unstructured grids as VTK reads them: one `.vtu` file per time, and a `.pvd` file that puts them in order.
+//!
+//! | part of a `.vtu` file | how it is written |
+//! | --- | --- |
+//! | numbers | appended raw behind the XML, little-endian, in blocks of 64 KiB that are zlib streams each |
+//! | headers of the blocks | `UInt64`: number of blocks, size of a block, size of the last one if it is shorter, compressed sizes |
+//! | coordinates | `Float64`, because plies are thin and a plate may lie far from its origin |
+//! | other reals | `Float32`: seven digits, half the size; stored as they are, because their digits hardly compress (a tenth) |
+//! | whole numbers | `Int32` where all fit, `Int64` otherwise |
+//!
+//! Files of Lagrange cells are of version 2.2, in which the edges of these cells have their present order; all others are of
+//! version 1.0, which every reader knows. Equal contents make equal bytes.
+
+mod array;
+mod collection;
+mod lagrange;
+
+pub use array::Array;
+pub use collection::{Member, write_collection};
+pub use lagrange::lagrange_hexahedron;
+
+use crate::files::{FileError, OutputDir};
+use std::io::{self, Write};
+
+/// What the cells of a grid are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// Four points, anticlockwise.
+    Quad,
+    /// Four points anticlockwise seen from above, and the four above them.
+    Hexahedron,
+    /// (n + 1)³ points in the order of [`lagrange_hexahedron`], n the order.
+    Lagrange(usize),
+}
+
+impl Shape {
+    const fn points(self) -> usize {
+        match self {
+            Self::Quad => 4,
+            Self::Hexahedron => 8,
+            Self::Lagrange(order) => (order + 1).pow(3),
+        }
+    }
+
+    /// Its number in VTK.
+    const fn id(self) -> u8 {
+        match self {
+            Self::Quad => 9,
+            Self::Hexahedron => 12,
+            Self::Lagrange(_) => 72,
+        }
+    }
+
+    const fn version(self) -> &'static str {
+        match self {
+            Self::Lagrange(_) => "2.2",
+            _ => "1.0",
+        }
+    }
+}
+
+/// Points and cells of one shape, compressed once for all files that they appear in.
+#[derive(Debug, Clone)]
+pub struct Grid {
+    shape: Shape,
+    points: usize,
+    cells: usize,
+    positions: Array,
+    topology: [Array; 3],
+}
+
+/// What a file says beside its grid.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Contents<'a> {
+    /// Of the file as a whole.
+    pub field: &'a [Array],
+    /// At the points.
+    pub points: &'a [Array],
+    /// In the cells.
+    pub cells: &'a [Array],
+    /// In the cells as well: what does not change from file to file.
+    pub fixed: &'a [Array],
+}
+
+impl Grid {
+    /// A grid of points, m, and cells, the numbers of whose points follow each other.
+    pub fn new(points: &[[f64; 3]], shape: Shape, cells: &[u32]) -> Self {
+        let count = cells.len() / shape.points();
+        let offsets = (1..=count).map(|cell| (cell * shape.points()) as i64);
+        Self {
+            shape,
+            points: points.len(),
+            cells: count,
+            positions: Array::precise("Points", 3, points.as_flattened()),
+            topology: [
+                Array::integers("connectivity", cells.iter().map(|point| i64::from(*point))),
+                Array::integers("offsets", offsets),
+                Array::bytes("types", &vec![shape.id(); count]),
+            ],
+        }
+    }
+
+    /// Number of points.
+    pub fn points(&self) -> usize {
+        self.points
+    }
+
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.cells
+    }
+
+    /// What the grid takes in a file, bytes.
+    pub fn size(&self) -> usize {
+        self.positions.size() + self.topology.iter().map(Array::size).sum::<usize>()
+    }
+
+    /// Writes the file `name`, which ends in `.vtu`.
+    ///
+    /// # Errors
+    /// A value that is not finite in single precision, and as [`OutputDir::write_unsynced`].
+    pub fn write(&self, dir: &OutputDir, name: &str, contents: Contents<'_>) -> Result<(), FileError> {
+        let Contents { field, points, cells, fixed } = contents;
+        let written = || [field, points, cells, fixed].into_iter().flatten();
+        for array in written().chain([&self.positions]) {
+            array.check(name)?;
+        }
+        dir.write_unsynced(name, |out| {
+            let mut appended = Appended::default();
+            let version = self.shape.version();
+            writeln!(out, r#"<?xml version="1.0"?>"#)?;
+            writeln!(
+                out,
+                r#"<VTKFile type="UnstructuredGrid" version="{version}" byte_order="LittleEndian" header_type="UInt64" compressor="vtkZLibDataCompressor">"#
+            )?;
+            writeln!(out, "<UnstructuredGrid>")?;
+            appended.section(out, "FieldData", field.iter())?;
+            writeln!(out, r#"<Piece NumberOfPoints="{}" NumberOfCells="{}">"#, self.points, self.cells)?;
+            appended.section(out, "PointData", points.iter())?;
+            appended.section(out, "CellData", fixed.iter().chain(cells))?;
+            appended.section(out, "Points", [&self.positions].into_iter())?;
+            appended.section(out, "Cells", self.topology.iter())?;
+            writeln!(out, "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">")?;
+            out.write_all(b"_")?;
+            appended.arrays.iter().try_for_each(|array| array.write(out))?;
+            writeln!(out, "\n</AppendedData>\n</VTKFile>")
+        })
+    }
+}
+
+/// Arrays in the order of their bytes behind the XML.
+#[derive(Default)]
+struct Appended<'a> {
+    arrays: Vec<&'a Array>,
+    offset: usize,
+}
+
+impl<'a> Appended<'a> {
+    fn section(&mut self, out: &mut dyn Write, tag: &str, arrays: impl Iterator<Item = &'a Array>) -> io::Result<()> {
+        writeln!(out, "<{tag}>")?;
+        for array in arrays {
+            writeln!(out, "{}", array.element(self.offset, tag == "FieldData"))?;
+            self.offset += array.size();
+            self.arrays.push(array);
+        }
+        writeln!(out, "</{tag}>")
+    }
+}
+
+/// `text` as the value of an attribute; characters that XML does not have become spaces.
+fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => escaped.push(' '),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}

@@ -1,0 +1,160 @@
+//! Points of a plate, and displacements there.
+
+use crate::model::Model;
+use std::collections::HashMap;
+
+/// A height in the thickness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Height {
+    pub(super) layer: usize,
+    /// Natural coordinate in its cells.
+    pub(super) q: f64,
+}
+
+/// Points over quads, `columns × heights`; quads that meet share theirs.
+#[derive(Debug)]
+pub(super) struct Lattice<'a> {
+    model: &'a Model,
+    intervals: usize,
+    /// A quad and the place in it.
+    columns: Vec<(usize, [f64; 2])>,
+    heights: Vec<Height>,
+    /// Columns of each quad, (intervals + 1)², along r first.
+    of_quads: Vec<u32>,
+    /// Shape functions at all points, unless there are too many.
+    kept: Option<Rows>,
+}
+
+/// Most bytes of shape functions that are kept; beyond it they are found anew for every frame.
+const LIMIT: usize = 128 << 20;
+
+/// Three rows for each of some points: the unknowns of the plate that a component of the displacement hangs on, with their
+/// factors.
+#[derive(Debug, Default)]
+struct Rows {
+    entries: Vec<(u32, f64)>,
+    ends: Vec<usize>,
+}
+
+impl Rows {
+    fn clear(&mut self) {
+        self.entries.clear();
+        self.ends.clear();
+    }
+
+    fn apply(&self, field: &[f64], out: &mut Vec<f64>) {
+        let mut start = 0;
+        for end in &self.ends {
+            out.push(self.entries[start..*end].iter().map(|(dof, n)| n * field[*dof as usize]).sum());
+            start = *end;
+        }
+    }
+}
+
+impl<'a> Lattice<'a> {
+    /// The points at the ends of `intervals` equal parts of the sides of `quads`.
+    pub(super) fn new(model: &'a Model, quads: &[usize], intervals: usize, heights: Vec<Height>) -> Self {
+        let (n, plane) = (intervals, &model.plate.plane);
+        let mut numbers: HashMap<[u32; 3], u32> = HashMap::new();
+        let (mut columns, mut of_quads) = (Vec::new(), Vec::with_capacity(quads.len() * (n + 1).pow(2)));
+        for quad in quads {
+            for (j, i) in (0..=n).flat_map(|j| (0..=n).map(move |i| (j, i))) {
+                let place = [i, j].map(|i| 2.0 * i as f64 / n as f64 - 1.0);
+                let new = |columns: &mut Vec<_>| {
+                    columns.push((*quad, place));
+                    columns.len() as u32 - 1
+                };
+                of_quads.push(match shared(&plane.quads[*quad], [i, j], n) {
+                    Some(key) => *numbers.entry(key).or_insert_with(|| new(&mut columns)),
+                    None => new(&mut columns),
+                });
+            }
+        }
+        let mut lattice = Self { model, intervals, columns, heights, of_quads, kept: None };
+        if lattice.len() * model.plate.info().ndof() * size_of::<(u32, f64)>() <= LIMIT {
+            let mut rows = Rows::default();
+            (0..lattice.columns.len()).for_each(|column| lattice.shapes(column, &mut rows));
+            lattice.kept = Some(rows);
+        }
+        lattice
+    }
+
+    /// Number of points.
+    pub(super) fn len(&self) -> usize {
+        self.columns.len() * self.heights.len()
+    }
+
+    /// The point at (i, j) of the `quad`-th quad and at a height.
+    pub(super) fn point(&self, quad: usize, [i, j]: [usize; 2], height: usize) -> u32 {
+        let n = self.intervals + 1;
+        let column = self.of_quads[quad * n * n + j * n + i] as usize;
+        (column * self.heights.len() + height) as u32
+    }
+
+    /// Positions, m.
+    pub(super) fn positions(&self) -> Vec<[f64; 3]> {
+        let plate = &self.model.plate;
+        let at = |&(quad, [r, s]): &(usize, [f64; 2]), height: &Height| {
+            plate.cell(quad * plate.layers() + height.layer).position([r, s, height.q])
+        };
+        self.columns.iter().flat_map(|column| self.heights.iter().map(move |height| at(column, height))).collect()
+    }
+
+    /// Three components of each of `fields`, given in the unknowns of the plate, at every point.
+    pub(super) fn values(&self, fields: &[&[f64]]) -> Vec<Vec<f64>> {
+        let mut all: Vec<Vec<f64>> = fields.iter().map(|_| Vec::with_capacity(3 * self.len())).collect();
+        let mut take = |rows: &Rows| fields.iter().zip(&mut all).for_each(|(field, all)| rows.apply(field, all));
+        match &self.kept {
+            Some(rows) => take(rows),
+            None => {
+                let mut rows = Rows::default();
+                for column in 0..self.columns.len() {
+                    rows.clear();
+                    self.shapes(column, &mut rows);
+                    take(&rows);
+                }
+            }
+        }
+        all
+    }
+
+    /// Adds the rows of the points of a column.
+    fn shapes(&self, column: usize, rows: &mut Rows) {
+        let Model { plate, element, .. } = self.model;
+        let (quad, [r, s]) = self.columns[column];
+        let (mut dofs, mut shape) = (Vec::new(), vec![0.0; 3 * plate.info().ndof()]);
+        for of_layer in self.heights.chunk_by(|a, b| a.layer == b.layer) {
+            let number = quad * plate.layers() + of_layer[0].layer;
+            let cell = plate.cell(number);
+            plate.cell_dofs(number, &mut dofs);
+            for height in of_layer {
+                element.shape(&cell, [r, s, height.q], &mut shape);
+                for component in 0..3 {
+                    let row = dofs.iter().zip(shape.chunks_exact(3)).map(|(dof, n)| (*dof as u32, n[component]));
+                    rows.entries.extend(row.filter(|(_, n)| *n != 0.0));
+                    rows.ends.push(rows.entries.len());
+                }
+            }
+        }
+    }
+}
+
+/// What names a point that a quad shares with others: its vertex, or the ends of its side and how far it is from the first.
+fn shared(quad: &[u32; 4], [i, j]: [usize; 2], n: usize) -> Option<[u32; 3]> {
+    let ends = |a: usize, b: usize, from_a: usize| {
+        let (a, b, from_a, from_b) = (quad[a], quad[b], from_a as u32, (n - from_a) as u32);
+        match (from_a, from_b) {
+            (0, _) => [a, a, 0],
+            (_, 0) => [b, b, 0],
+            _ if a < b => [a, b, from_a],
+            _ => [b, a, from_b],
+        }
+    };
+    match (i, j) {
+        (i, 0) => Some(ends(0, 1, i)),
+        (i, j) if j == n => Some(ends(3, 2, i)),
+        (0, j) => Some(ends(0, 3, j)),
+        (i, j) if i == n => Some(ends(1, 2, j)),
+        _ => None,
+    }
+}

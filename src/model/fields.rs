@@ -1,0 +1,64 @@
+//! Which fields of a plate are written, and over which of its cells.
+
+use super::builder::{Builder, near};
+use fem_core::plate::Plate;
+use fem_io::scene::{FieldCells, Region, SceneError, Series};
+
+/// Fields that are written, made concrete.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FieldPlan {
+    /// Quads of the whole plate, ascending.
+    pub quads: Vec<usize>,
+    /// The series, each once.
+    pub series: Vec<Series>,
+    /// What the cells of the plate become.
+    pub cells: FieldCells,
+}
+
+impl Builder<'_> {
+    /// What `output.fields` asks for.
+    pub(super) fn fields(&self, plate: &Plate, centres: &[[f64; 2]]) -> Result<Option<FieldPlan>, SceneError> {
+        let Some(fields) = &self.scene.output.fields else { return Ok(None) };
+        let all = 0..plate.plane.quads.len();
+        let quads: Vec<usize> = match &fields.region {
+            None => all.collect(),
+            Some(Region::Group(group)) => {
+                let own = &self.group(plate, group)?.quads;
+                let quads: Vec<usize> = all.filter(|quad| own.contains(&(*quad as u32))).collect();
+                if quads.is_empty() {
+                    let message = format!("group `{}` has no cells", group.value);
+                    return Err(self.error(group, message, "name a group of cells"));
+                }
+                quads
+            }
+            Some(Region::Radius(radius)) if centres.is_empty() => {
+                let message = "a radius counts from the impact, and here is none";
+                return Err(self.error(radius, message, "name a `group` of cells, or leave `region` out"));
+            }
+            Some(Region::Radius(radius)) => {
+                let quads: Vec<usize> = all.filter(near(plate, centres, radius.value)).collect();
+                if quads.is_empty() {
+                    let message = "no cell has its centre within this radius of the impact";
+                    return Err(self.error(radius, message, "enlarge it, or leave `region` out"));
+                }
+                quads
+            }
+        };
+        let interfaces = self.scene.interface.is_some() && self.scene.laminate.value.plies.len() > 1;
+        let mut series = Vec::new();
+        for part in fields.parts.iter().flatten() {
+            if part.value == Series::Interfaces && !interfaces {
+                let message = "the scene has no interfaces between plies";
+                return Err(self.error(part, message, "give `laminate.interface`, or leave \"interfaces\" out"));
+            }
+            if !series.contains(&part.value) {
+                series.push(part.value);
+            }
+        }
+        if fields.parts.is_none() {
+            series.extend([Series::Plate, Series::Plies]);
+            series.extend(interfaces.then_some(Series::Interfaces));
+        }
+        Ok(Some(FieldPlan { quads, series, cells: fields.cells }))
+    }
+}
