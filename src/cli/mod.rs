@@ -5,6 +5,7 @@ mod check;
 mod envelope;
 mod list;
 mod matrices;
+mod mesh;
 mod modes;
 mod run;
 mod signals;
@@ -63,6 +64,10 @@ enum Command {
     Study(study::Arguments),
     /// Writes stiffness and mass (Matrix Market) with the names of their unknowns.
     Matrices(matrices::Arguments),
+    /// Shows a mesh: sizes, groups, quality; writes it for gmsh.
+    ///
+    /// Of a mesh file or of a scene, with what the scene makes of it. Lengths are printed in `--unit`, JSON is in SI units.
+    Mesh(mesh::Arguments),
     /// Lists what a scene can name, with parameters and sources.
     List(list::Arguments),
 }
@@ -92,6 +97,7 @@ pub fn run_with(registry: Registry, arguments: impl IntoIterator<Item = impl Int
         Command::Modes(a) => modes::modes(&registry, &a),
         Command::Study(a) => study::study(&registry, &a),
         Command::Matrices(a) => matrices::matrices(&registry, &a),
+        Command::Mesh(a) => mesh::mesh(&a),
         Command::List(a) => list::list(&registry, &a),
     };
     let lost = || LOST.get().map_or(Ok(()), |why| Err(miette!("cannot write to standard output: {why}")));

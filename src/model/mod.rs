@@ -3,6 +3,7 @@
 mod builder;
 mod effects;
 mod gauge;
+mod mesh;
 mod plan;
 mod substructures;
 mod symmetry;
@@ -10,6 +11,7 @@ mod symmetry;
 pub use effects::{Decision, Effects};
 pub(crate) use effects::{INERTIA, MEMBRANE};
 pub use gauge::Gauge;
+pub use mesh::mesh;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 
 use crate::error::Error;
@@ -101,7 +103,7 @@ impl Model {
     /// leave a rigid motion.
     pub fn new(scene: Scene, registry: &Registry) -> Result<Self, Error> {
         let builder = Builder { scene: &scene, registry };
-        let read = builder.mesh()?;
+        let read = mesh(&scene)?;
         let mut warnings = read.warnings;
         let mesh = read.mesh;
         let materials: Vec<Material> = scene.materials.iter().map(|m| m.value.clone()).collect();

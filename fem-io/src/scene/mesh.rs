@@ -168,7 +168,10 @@ fn refine(table: &Reader<'_>, cells: usize) -> Result<Located<u32>, SceneError> 
 }
 
 /// Two values: along x and along y.
-fn pair<T>(field: &Field<'_>, read: impl Fn(&Field<'_>) -> Result<T, SceneError>) -> Result<[T; 2], SceneError> {
+pub(super) fn pair<T>(
+    field: &Field<'_>,
+    read: impl Fn(&Field<'_>) -> Result<T, SceneError>,
+) -> Result<[T; 2], SceneError> {
     let parts = field.list()?;
     match &parts[..] {
         [x, y] => Ok([read(x)?, read(y)?]),

@@ -102,7 +102,7 @@ impl Rings {
             };
             outer = surround(&mut mesh, circle, edge, [self.circle, radius], self.rings[1]);
         }
-        let edge = closed(&outer);
+        let mut edge = closed(&outer);
         if let Some(corners) = corners {
             groups.extend(
                 SIDES
@@ -110,6 +110,8 @@ impl Rings {
                     .zip(parts(corners, edge.len()))
                     .map(|(name, part)| (name, edges(part.map(|k| edge[k]).collect()))),
             );
+            // Side by side, as the groups of the sides have them.
+            edge.rotate_left(corners[0]);
         }
         groups.push(("edge", edges(edge)));
         groups.push((
