@@ -11,6 +11,7 @@ mod effects;
 mod envelope;
 mod impactors;
 mod indices;
+mod mesh;
 mod modal;
 mod model;
 mod registry;
