@@ -7,7 +7,9 @@ use std::fs;
 /// A scene on a built-in disc instead of the mesh of gmsh.
 fn on_a_disc(keys: &str) -> Case {
     let disc = format!("mesh = {{ disc = {{ radius = \"25 mm\", {keys} }} }}");
-    plate().scene("mesh = { file = \"plate.msh\", unit = \"mm\" }", &disc).scene("group = \"support\"", "group = \"edge\"")
+    plate()
+        .scene("mesh = { file = \"plate.msh\", unit = \"mm\" }", &disc)
+        .scene("group = \"support\"", "group = \"edge\"")
 }
 
 fn json(case: &Case, arguments: &[&str]) -> Value {
@@ -36,7 +38,8 @@ fn a_mesh_is_written_and_read_again() {
     case.write();
     let built = json(&case, &["plate/scene.toml"]);
     for binary in [&[][..], &["--binary"]] {
-        let written = fem(case.folder(), &[&["mesh", "plate/scene.toml", "--out", "made/disc.msh"], binary].concat()).good();
+        let written =
+            fem(case.folder(), &[&["mesh", "plate/scene.toml", "--out", "made/disc.msh"], binary].concat()).good();
         assert!(written.stdout.ends_with("written   made/disc.msh\n"), "{}", written.stdout);
         let again = json(&case, &["made/disc.msh"]);
         assert_eq!([&built["quads"], &built["nodes"]], [&again["quads"], &again["nodes"]]);

@@ -151,8 +151,8 @@ pub enum MeshFault {
     /// An element that has no place in a flat mesh of quadrilaterals.
     #[error(
         "element {element} of group {group:?} has the type {kind}; only flat meshes of quadrilaterals up to second \
-         order are read: set Mesh.ElementOrder = 1, and save no volumes: name the surface of the plate, whose plies come \
-         from the scene"
+         order are read: set Mesh.ElementOrder = 1, and save no volumes: name the surface of the plate, whose plies \
+         come from the scene"
     )]
     Kind {
         /// Element.

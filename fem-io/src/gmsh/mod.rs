@@ -1,9 +1,9 @@
 //! Reads plate meshes that gmsh wrote (format MSH 4.1, ASCII or binary), and writes such files.
 //!
-//! Cells are the quadrilaterals of all physical surfaces; physical curves become groups of edges, physical points groups
-//! of nodes. Node and cell numbers of the result follow the numbers in the file, not the order in it. Everything that
-//! would make the mesh another one than it seems (triangles, cells that overlap or are not joined, edges that belong to
-//! no cell, numbers given twice) is refused with place and remedy.
+//! Cells are the quadrilaterals of all physical surfaces; physical curves become groups of edges, physical points
+//! groups of nodes. Node and cell numbers of the result follow the numbers in the file, not the order in it. Everything
+//! that would make the mesh another one than it seems (triangles, cells that overlap or are not joined, edges that
+//! belong to no cell, numbers given twice) is refused with place and remedy.
 //!
 //! ```
 //! let square = "$MeshFormat\n4.1 0 8\n$EndMeshFormat

@@ -48,8 +48,8 @@ impl<'a> Source<'a> {
         Cursor::new(self.bytes, at, self.binary)
     }
 
-    /// The numbers at the beginning of `$Nodes` or `$Elements`, blocks of `what`, all of them, their least and largest tag,
-    /// and what follows.
+    /// The numbers at the beginning of `$Nodes` or `$Elements`, blocks of `what`, all of them, their least and largest
+    /// tag, and what follows.
     pub(super) fn begin(&self, section: &'static str, what: &str) -> Result<(Cursor<'a>, [u64; 4]), MeshError> {
         let start = self.section(section).ok_or_else(|| self.error(Place::File, MeshFault::Missing(section)))?;
         let mut cursor = self.cursor(start);

@@ -14,13 +14,13 @@ pub enum Encoding {
     Binary,
 }
 
-/// Writes a mesh in the format MSH 4.1, which gmsh and [`super::read`] take; `unit_metres` is the length of the file's unit
-/// (0.001 for mm).
+/// Writes a mesh in the format MSH 4.1, which gmsh and [`super::read`] take; `unit_metres` is the length of the file's
+/// unit (0.001 for mm).
 ///
-/// Groups become physical groups, numbered from 1 in the order of their names. Cells, edges and nodes that belong to the
-/// same groups are gathered in an entity. Nodes and cells keep their numbers, edges and points are numbered after the
-/// cells. Reading the file gives the mesh again, coordinates to the last bit where the unit has a number for them, if every
-/// cell belongs to a group and groups that share edges have them in one order.
+/// Groups become physical groups, numbered from 1 in the order of their names. Cells, edges and nodes that belong to
+/// the same groups are gathered in an entity. Nodes and cells keep their numbers, edges and points are numbered after
+/// the cells. Reading the file gives the mesh again, coordinates to the last bit where the unit has a number for them,
+/// if every cell belongs to a group and groups that share edges have them in one order.
 ///
 /// # Errors
 /// Whatever `out` reports; numbers of nodes or cells that are 0 or occur twice.

@@ -38,19 +38,21 @@ pub enum Outline {
 
 /// A plate about the origin with a node at the place of the impact, around which its cells are smallest. Lengths in m.
 ///
-/// A disc, and a plate on a circular support, are an O-grid: a square core of n x n cells about the impact, then rings of
-/// 4 n cells out to the support and on to the edge. Three cells meet at 120 degrees in each corner of the core, whose
-/// sides bulge for that. n is even, at least 12 (48 straight edges are 0.3 % short of a circle's area) and as large as
-/// `edge_size` asks for; rings are about as thick as their cells are wide. An impact off the middle is reached by a map of
-/// the circle onto itself that keeps angles; as edges opposite to it become longer, n is larger. A rectangle without
-/// circular support is a grid of lines along the axes, whose distances grow by a fifth from cell to cell up to `edge_size`.
+/// A disc, and a plate on a circular support, are an O-grid: a square core of n x n cells about the impact, then rings
+/// of 4 n cells out to the support and on to the edge. Three cells meet at 120 degrees in each corner of the core,
+/// whose sides bulge for that. n is even, at least 12 (48 straight edges are 0.3 % short of a circle's area) and as
+/// large as `edge_size` asks for; rings are about as thick as their cells are wide. An impact off the middle is reached
+/// by a map of the circle onto itself that keeps angles; as edges opposite to it become longer, n is larger. A
+/// rectangle without circular support is a grid of lines along the axes, whose distances grow by a fifth from cell to
+/// cell up to `edge_size`.
 ///
 /// With the impact at the middle the mesh is its own image in both mirrors, and in quarter turns where the edge is. The
-/// scaled Jacobian, the smallest sine of an inner angle of a cell, is at least 0.84 in a disc, 0.5 in a square over a ring
-/// (0.7 with the impact at the middle and a ring of up to 0.8 of half the side), 0.35 in a rectangle over a ring, 1 in a grid.
+/// scaled Jacobian, the smallest sine of an inner angle of a cell, is at least 0.84 in a disc, 0.5 in a square over a
+/// ring (0.7 with the impact at the middle and a ring of up to 0.8 of half the side), 0.35 in a rectangle over a ring,
+/// 1 in a grid.
 ///
-/// Groups: `plate` (cells), `edge` and, where there is one, `support` (edges), `impact` (a node); of a rectangle also its
-/// sides `x-min`, `x-max`, `y-min`, `y-max`.
+/// Groups: `plate` (cells), `edge` and, where there is one, `support` (edges), `impact` (a node); of a rectangle also
+/// its sides `x-min`, `x-max`, `y-min`, `y-max`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Graded {
     /// The edge.
@@ -59,9 +61,9 @@ pub struct Graded {
     pub support: Option<f64>,
     /// Place of the impact.
     pub impact: [f64; 2],
-    /// Largest edge of the cells at the impact.
+    /// Largest edge of the cells at the impact; those beside an impact off the middle may differ by a sixth.
     pub size: f64,
-    /// Largest edge of the cells along the edge of the plate.
+    /// Largest edge of the cells along the edge of the plate; the mean one of a rectangle over a ring.
     pub edge_size: f64,
 }
 
@@ -129,8 +131,8 @@ impl Graded {
         if self.support.is_some_and(|radius| radius > WIDEST_SUPPORT * inner) {
             let limit = WIDEST_SUPPORT * inner * 1e3;
             let why = format!(
-                "a circular support lies inside the edge, with a radius of at most {limit} mm here; where it is the edge \
-                 itself, leave it out and hold the group `edge`"
+                "a circular support lies inside the edge, with a radius of at most {limit} mm here; where it is the \
+                 edge itself, leave it out and hold the group `edge`"
             );
             return Err(ParamError::new("support", why));
         }
@@ -138,8 +140,8 @@ impl Graded {
             (Outline::Rectangle { sides }, None) => {
                 let inside = |d: usize| self.impact[d].abs() <= 0.5 * sides[d] - 0.5 * self.size.min(sides[d]);
                 if !(inside(0) && inside(1)) {
-                    let why = "lies on the edge, off the plate or within half of `size` of the edge: x and y count from the \
-                               middle of the plate";
+                    let why = "lies on the edge, off the plate or within half of `size` of the edge: x and y count from \
+                               the middle of the plate";
                     return Err(ParamError::new("impact", why));
                 }
             }
@@ -155,8 +157,8 @@ impl Graded {
                 let off = self.impact[0].hypot(self.impact[1]);
                 if !(off <= OFF_CENTRE * radius) {
                     let why = format!(
-                        "lies {} mm from the middle, and cells stay good up to {} mm, {OFF_CENTRE} of the circle's radius: \
-                         x and y count from the middle",
+                        "lies {} mm from the middle, and cells stay good up to {} mm, {OFF_CENTRE} of the circle's \
+                         radius: x and y count from the middle",
                         off * 1e3,
                         OFF_CENTRE * radius * 1e3
                     );

@@ -13,9 +13,9 @@ const WIDEST_CORE: f64 = 0.5;
 /// 90° + 2 atan(2 BULGE) = 120°.
 const BULGE: f64 = 0.133_974_596_215_561_35;
 
-/// Core and rings. They are laid out in a circle about their middle, and then mapped by
-/// w = (z + a)/(1 + a* z), z and w complex places over its radius, a that of the impact: the circle stays what it is, its
-/// middle goes to the impact, angles are kept. Cells become smaller on the near side and larger on the far side.
+/// Core and rings. They are laid out in a circle about their middle, and then mapped by w = (z + a)/(1 + a* z), z and w
+/// complex places over its radius, a that of the impact: the circle stays what it is, its middle goes to the impact,
+/// angles are kept. Cells become smaller on the near side and larger on the far side.
 pub(super) struct Rings {
     outline: Outline,
     /// Radius of the support or of the edge, and whether the plate goes on outside.
