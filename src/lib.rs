@@ -49,6 +49,7 @@ mod fields;
 mod indices;
 pub mod matrices;
 pub mod memory;
+pub mod mesh;
 mod modal;
 mod model;
 pub mod modes;
@@ -65,5 +66,7 @@ pub use fem_dynamics as dynamics;
 pub use fem_elements as elements;
 pub use fem_failure as failure;
 pub use fem_io as io;
-pub use model::{Decision, Effects, FieldPlan, Gauge, Impact, Model, NamedCriterion, NamedProfile, Plan, Strike};
+pub use model::{
+    Decision, Effects, FieldPlan, Gauge, Impact, Model, NamedCriterion, NamedProfile, Plan, Strike, mesh as scene_mesh,
+};
 pub use registry::{NO_REDUCTION, Registry, RegistryError};

@@ -13,6 +13,7 @@ mod envelope;
 mod fields;
 mod impactors;
 mod indices;
+mod mesh;
 mod modal;
 mod model;
 mod registry;

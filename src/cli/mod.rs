@@ -7,6 +7,7 @@ mod envelope;
 mod list;
 mod manual;
 mod matrices;
+mod mesh;
 mod modes;
 mod new;
 mod run;
@@ -73,6 +74,10 @@ enum Command {
     Study(study::Arguments),
     /// Writes stiffness and mass (Matrix Market) with the names of their unknowns.
     Matrices(matrices::Arguments),
+    /// Shows a mesh: sizes, groups, quality; writes it for gmsh.
+    ///
+    /// Of a mesh file or of a scene, with what the scene makes of it. Lengths are printed in `--unit`, JSON is in SI units.
+    Mesh(mesh::Arguments),
     /// Lists what a scene can name, with parameters and sources.
     List(list::Arguments),
     /// Prints the JSON Schema of scenes, for editors.
@@ -121,6 +126,7 @@ fn dispatch(registry: &Registry, command: &Command, console: &Console) -> miette
         Command::Advise(a) => advise::advise(registry, a, console),
         Command::Modes(a) => modes::modes(registry, a, console),
         Command::Study(a) => study::study(registry, a, console),
+        Command::Mesh(a) => mesh::mesh(a, console),
         Command::Matrices(a) => matrices::matrices(registry, a, console),
         Command::List(a) => list::list(registry, a, console),
         Command::Schema => schema::schema(registry, console),

@@ -1,14 +1,13 @@
 //! Looks up what a scene names: mesh, plug-ins, groups, supports.
 
 use super::NamedCriterion;
-use crate::error::Error;
 use crate::registry::{NO_REDUCTION, Registry, RegistryError};
 use fem_core::assembly::elimination_order;
 use fem_core::constraint::{Constraints, Equation};
 use fem_core::contact::ContactLaw;
 use fem_core::element::Element;
 use fem_core::failure::{FailureCriterion, Site, check_material};
-use fem_core::mesh::{Group, QuadMesh};
+use fem_core::mesh::Group;
 use fem_core::plate::Plate;
 use fem_core::plugin::{Built, Kind, unknown_key};
 use fem_core::reduction::Reduction;
@@ -16,10 +15,7 @@ use fem_core::support::{self, FreeMotions};
 use fem_core::time::Integrator;
 use fem_core::window;
 use fem_dynamics::integrate::located;
-use fem_io::gmsh::{self, GmshMesh, MeshFault};
-use fem_io::scene::{
-    self, Analysis, CriterionSpec, Located, MeshSource, NodeSet, Place, PluginSpec, Scene, SceneError, Support,
-};
+use fem_io::scene::{self, Analysis, CriterionSpec, Located, NodeSet, Place, PluginSpec, Scene, SceneError, Support};
 use std::collections::BTreeSet;
 
 /// Looks things up for a scene and turns what is missing into errors that show the scene.
@@ -137,31 +133,6 @@ impl Builder<'_> {
             return Err(self.scene.source.error_at(&failure.place, message, "enlarge the radius or leave it out"));
         }
         Ok(watched)
-    }
-
-    pub(super) fn mesh(&self) -> Result<GmshMesh, Error> {
-        match &self.scene.mesh {
-            MeshSource::File { file, metres_per_unit, refine, curves } => {
-                let mut read = gmsh::read(&file.value, *metres_per_unit).map_err(|error| match error.fault {
-                    MeshFault::Unreadable(_) => {
-                        let message = error.to_string();
-                        Error::from(self.error(file, message, "`mesh.file` counts from the folder of the scene"))
-                    }
-                    _ => error.into(),
-                })?;
-                scene::refined_cells(read.mesh.quads.len(), refine.value)
-                    .map_err(|why| self.error(refine, format!("`mesh.refine`: {why}"), "refine less often"))?;
-                for _ in 0..refine.value {
-                    read.mesh = read.mesh.refined(*curves);
-                }
-                Ok(read)
-            }
-            MeshSource::Rectangle { size, cells } => {
-                let [x, y] = [0, 1]
-                    .map(|d| -> Vec<f64> { (0..=cells[d]).map(|i| size[d] * i as f64 / cells[d] as f64).collect() });
-                Ok(GmshMesh { mesh: QuadMesh::rectangle(&x, &y), warnings: Vec::new() })
-            }
-        }
     }
 
     pub(super) fn group<'p>(&self, plate: &'p Plate, group: &Located<String>) -> Result<&'p Group, SceneError> {

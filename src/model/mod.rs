@@ -4,6 +4,7 @@ mod builder;
 mod effects;
 mod fields;
 mod gauge;
+mod mesh;
 mod plan;
 mod substructures;
 mod symmetry;
@@ -12,6 +13,7 @@ pub use effects::{Decision, Effects};
 pub(crate) use effects::{INERTIA, MEMBRANE};
 pub use fields::FieldPlan;
 pub use gauge::Gauge;
+pub use mesh::mesh;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 
 use crate::error::Error;
@@ -106,7 +108,7 @@ impl Model {
     /// leave a rigid motion.
     pub fn new(scene: Scene, registry: &Registry) -> Result<Self, Error> {
         let builder = Builder { scene: &scene, registry };
-        let read = builder.mesh()?;
+        let read = mesh(&scene)?;
         let mut warnings = read.warnings;
         let mesh = read.mesh;
         info!(quads = mesh.quads.len(), nodes = mesh.points.len(), "mesh");

@@ -48,7 +48,7 @@ impl Solved {
             MeshSource::Rectangle { cells: [nx, _], .. } => {
                 ((quad / (nx << times)) >> times) * nx + ((quad % (nx << times)) >> times)
             }
-            MeshSource::File { .. } => quad >> (2 * times),
+            MeshSource::File { .. } | MeshSource::Graded { .. } => quad >> (2 * times),
         };
         let (mut all, mut between) = (0.0, 0.0);
         for cell in 0..fine.model.plate.cells() {

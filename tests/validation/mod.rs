@@ -1,6 +1,7 @@
 //! Displacements, stresses and frequencies against solutions without finite elements.
 
 mod advise;
+mod built_in;
 mod command;
 mod cure;
 mod estimate;

@@ -1,10 +1,12 @@
 //! Plane meshes of quadrilaterals with named groups.
 
 mod curve;
+mod graded;
 mod refine;
 #[cfg(test)]
 mod tests;
 
+pub use graded::{Graded, MAX_CELLS, Outline};
 pub use refine::Curves;
 
 use curve::Chains;
@@ -48,6 +50,8 @@ pub struct QuadQuality {
     pub largest_angle: f64,
     /// Longest over shortest edge.
     pub aspect: f64,
+    /// Smallest sine of an inner angle: 1 for a rectangle, not positive where a cell is not convex.
+    pub scaled_jacobian: f64,
 }
 
 impl QuadMesh {
@@ -138,17 +142,19 @@ impl QuadMesh {
 }
 
 fn quality(p: [[f64; 2]; 4]) -> QuadQuality {
-    let mut largest_angle = 0.0_f64;
+    let (mut largest_angle, mut scaled_jacobian) = (0.0_f64, 1.0_f64);
     let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
     for i in 0..4 {
         let [a, b, c] = [p[(i + 3) % 4], p[i], p[(i + 1) % 4]];
         let (u, v) = ([c[0] - b[0], c[1] - b[1]], [a[0] - b[0], a[1] - b[1]]);
-        let angle = (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]);
+        let cross = u[0] * v[1] - u[1] * v[0];
+        let angle = cross.atan2(u[0] * v[0] + u[1] * v[1]);
+        scaled_jacobian = scaled_jacobian.min(cross / (u[0].hypot(u[1]) * v[0].hypot(v[1])));
         largest_angle = largest_angle.max(angle.rem_euclid(std::f64::consts::TAU));
         let edge = u[0].hypot(u[1]);
         shortest = shortest.min(edge);
         longest = longest.max(edge);
     }
     let area = 0.5 * ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1]));
-    QuadQuality { area, largest_angle, aspect: longest / shortest }
+    QuadQuality { area, largest_angle, aspect: longest / shortest, scaled_jacobian }
 }

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use fem_core::mesh::{Group, QuadMesh};
 
 use super::checks::{Edges, flat_and_joined};
-use super::elements::{Grouped, NodeTable};
+use super::elements::Grouped;
 use super::error::{MeshError, MeshFault, Place};
+use super::nodes::NodeTable;
 use super::source::{Item, Source};
 
 /// Stands for the number of a node that no cell uses.

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::elements::{Element, Node, NodeTable};
+use super::elements::Element;
 use super::error::{MeshError, MeshFault};
+use super::nodes::{Node, NodeTable};
 use super::source::{Item, Source};
 
 /// Largest inner angle of a cell, degrees. Beyond, a cell is all but a triangle: the map onto it is nearly singular at the

@@ -1,78 +1,52 @@
-//! Nodes, and the elements of physical groups.
+//! `$Elements`, as far as they belong to physical groups.
 
-use mshio::{ElementBlock, ElementType, Elements, Nodes};
+use std::collections::BTreeSet;
 
+use super::cursor::Cursor;
 use super::error::{MeshError, MeshFault, Place};
 use super::groups::Groups;
+use super::nodes::NodeTable;
 use super::source::{Item, Source};
 
-/// A node of the file.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Node {
-    pub(super) tag: u64,
-    pub(super) x: [f64; 3],
-}
-
-/// Nodes in ascending order of their tags.
-#[derive(Debug)]
-pub(super) struct NodeTable(pub(super) Vec<Node>);
-
-impl NodeTable {
-    pub(super) fn new(source: &Source<'_>, nodes: Nodes<u64, i32, f64>) -> Result<Self, MeshError> {
-        let found = nodes.node_blocks.iter().map(|b| b.nodes.len()).sum();
-        if u64::try_from(found) != Ok(source.announced_nodes) {
-            let fault = MeshFault::Count { section: "Nodes", announced: source.announced_nodes, found };
-            return Err(source.error(Place::File, fault));
-        }
-        if u32::try_from(found).is_err() {
-            return Err(source.error(Place::File, MeshFault::TooManyNodes(found)));
-        }
-        let mut table = Vec::with_capacity(found);
-        for block in nodes.node_blocks {
-            let Some(tags) = block.node_tags else {
-                let why = "the range of node numbers in the header of $Nodes is too small for its nodes".to_owned();
-                return Err(source.error(Place::File, MeshFault::Syntax(why)));
-            };
-            if tags.len() < block.nodes.len() {
-                let what = format!("entity {} of dimension {} has a node", block.entity_tag, block.entity_dim);
-                return Err(source.error(Place::File, MeshFault::RepeatedTag(what)));
-            }
-            table.extend(tags.into_iter().map(|(tag, i)| {
-                let node = &block.nodes[i];
-                Node { tag, x: [node.x, node.y, node.z] }
-            }));
-        }
-        table.sort_unstable_by_key(|node| node.tag);
-        if let Some(pair) = table.windows(2).find(|pair| pair[0].tag == pair[1].tag) {
-            let fault = MeshFault::RepeatedTag(format!("the file has node {}", pair[0].tag));
-            return Err(source.error(source.find(Item::Node(pair[0].tag)), fault));
-        }
-        for node in &table {
-            if let Some(value) = node.x.into_iter().find(|x| !x.is_finite()) {
-                let fault = MeshFault::Coordinate { node: node.tag, value };
-                return Err(source.error(source.find(Item::Coordinates(node.tag)), fault));
-            }
-        }
-        Ok(Self(table))
-    }
-
-    fn index(&self, tag: u64) -> Option<u32> {
-        let (first, last) = (self.0.first()?.tag, self.0.last()?.tag);
-        let near = usize::try_from(tag.checked_sub(first)?).ok()?;
-        let contiguous = last - first == self.0.len() as u64 - 1;
-        let index = if contiguous { near } else { self.0.binary_search_by_key(&tag, |node| node.tag).ok()? };
-        (index < self.0.len()).then_some(index as u32)
-    }
-
-    pub(super) fn tag(&self, index: u32) -> u64 {
-        self.0[index as usize].tag
-    }
-
-    pub(super) fn plane(&self, index: u32) -> [f64; 2] {
-        let [x, y, _] = self.0[index as usize].x;
-        [x, y]
-    }
-}
+/// Shapes of elements: number in the file, name, nodes.
+const KINDS: [(i32, &str, usize); 36] = [
+    (1, "Lin2", 2),
+    (2, "Tri3", 3),
+    (3, "Qua4", 4),
+    (4, "Tet4", 4),
+    (5, "Hex8", 8),
+    (6, "Pri6", 6),
+    (7, "Pyr5", 5),
+    (8, "Lin3", 3),
+    (9, "Tri6", 6),
+    (10, "Qua9", 9),
+    (11, "Tet10", 10),
+    (12, "Hex27", 27),
+    (13, "Pri18", 18),
+    (14, "Pyr14", 14),
+    (15, "Pnt", 1),
+    (16, "Qua8", 8),
+    (17, "Hex20", 20),
+    (18, "Pri15", 15),
+    (19, "Pyr13", 13),
+    (20, "Tri9", 9),
+    (21, "Tri10", 10),
+    (22, "Tri12", 12),
+    (23, "Tri15", 15),
+    (24, "Tri15", 15),
+    (25, "Tri21", 21),
+    (26, "Lin4", 4),
+    (27, "Lin5", 5),
+    (28, "Lin6", 6),
+    (29, "Tet20", 20),
+    (30, "Tet35", 35),
+    (31, "Tet56", 56),
+    (36, "Qua16", 16),
+    (37, "Qua25", 25),
+    (38, "Qua36", 36),
+    (39, "Qua12", 12),
+    (92, "Hex64", 64),
+];
 
 /// An element with `N` corners, numbered as in the node table, and the groups it belongs to.
 #[derive(Debug, Clone, Copy)]
@@ -88,6 +62,8 @@ pub(super) struct Grouped<'g> {
     pub(super) points: Vec<Element<'g, 1>>,
     pub(super) edges: Vec<Element<'g, 2>>,
     pub(super) cells: Vec<Element<'g, 4>>,
+    /// Surfaces that hold elements.
+    surfaces: BTreeSet<i32>,
     /// Number of surface elements in no group.
     pub(super) left_out: usize,
     /// Number of cells of second order, and how far their mid-side nodes lie off the middle of the straight edge at
@@ -95,17 +71,31 @@ pub(super) struct Grouped<'g> {
     pub(super) second_order: (usize, f64),
 }
 
+/// Elements of one shape on one entity, being read.
+struct Block<'s> {
+    source: &'s Source<'s>,
+    nodes: &'s NodeTable,
+    /// Its number, and how many there are.
+    number: [u64; 2],
+    count: u64,
+    /// Nodes of an element.
+    each: usize,
+}
+
 impl<'g> Grouped<'g> {
-    pub(super) fn new(
-        source: &Source<'_>,
-        nodes: &NodeTable,
-        groups: &'g Groups,
-        elements: &Elements<u64, i32>,
-    ) -> Result<Self, MeshError> {
-        let all = || elements.element_blocks.iter().flat_map(|block| &block.elements);
-        let mut tags: Vec<u64> = all().map(|e| e.element_tag).collect();
-        if u64::try_from(tags.len()) != Ok(elements.num_elements) {
-            let fault = MeshFault::Count { section: "Elements", announced: elements.num_elements, found: tags.len() };
+    pub(super) fn read(source: &Source<'_>, nodes: &NodeTable, groups: &'g Groups) -> Result<Self, MeshError> {
+        let (mut cursor, [blocks, announced, low, _]) = source.begin("Elements", "element")?;
+        let mut grouped = Self::default();
+        let mut tags = Vec::with_capacity(source.at_most(announced));
+        for block in 1..=blocks {
+            grouped.take(source, nodes, groups, [block, blocks], &mut cursor, &mut tags)?;
+        }
+        cursor.end("$EndElements").map_err(|at| source.syntax(at, "$EndElements should stand here"))?;
+        if low == 0 {
+            return Err(source.error(Place::File, MeshFault::Syntax("element number 0 is reserved".to_owned())));
+        }
+        if tags.len() as u64 != announced {
+            let fault = MeshFault::Count { section: "Elements", announced, found: tags.len() };
             return Err(source.error(Place::File, fault));
         }
         tags.sort_unstable();
@@ -113,9 +103,8 @@ impl<'g> Grouped<'g> {
             let fault = MeshFault::RepeatedTag(format!("the file has element {}", pair[0]));
             return Err(source.error(source.find(Item::Element(pair[0])), fault));
         }
-        let mut grouped = Self::default();
-        for block in &elements.element_blocks {
-            grouped.take(nodes, groups, block).map_err(|(element, fault)| source.error(source.find(element), fault))?;
+        if let Some(part) = groups.parts.iter().find(|part| !grouped.surfaces.contains(part)) {
+            return Err(source.error(Place::File, MeshFault::Split { surface: *part }));
         }
         grouped.points.sort_unstable_by_key(|e| e.tag);
         grouped.edges.sort_unstable_by_key(|e| e.tag);
@@ -125,72 +114,120 @@ impl<'g> Grouped<'g> {
 
     fn take(
         &mut self,
+        source: &Source<'_>,
         nodes: &NodeTable,
         groups: &'g Groups,
-        block: &ElementBlock<u64, i32>,
-    ) -> Result<(), (Item, MeshFault)> {
-        let Some(first) = block.elements.first() else {
-            return Ok(());
+        number: [u64; 2],
+        cursor: &mut Cursor<'_>,
+        tags: &mut Vec<u64>,
+    ) -> Result<(), MeshError> {
+        let wrong = |what: &'static str| {
+            move |at| source.syntax(at, &format!("{what}, in element entity block ({} of {})", number[0], number[1]))
         };
-        let (dim, entity, element) = (block.entity_dim, block.entity_tag, first.element_tag);
-        let groups = groups
-            .of(dim, entity)
-            .ok_or((Item::Element(element), MeshFault::UnknownEntity { element, dim, entity }))?;
-        let Some(group) = groups.first() else {
-            self.left_out += if dim == 2 { block.elements.len() } else { 0 };
-            return Ok(());
+        let dim = cursor.int().map_err(wrong("entity dimension"))?;
+        let entity = cursor.int().map_err(wrong("entity tag"))?;
+        let kind = cursor.int().map_err(wrong("element type"))?;
+        let Some(kind) = KINDS.iter().find(|known| known.0 == kind) else {
+            return Err(wrong("an element type that is not known")(cursor.at()));
         };
-        match (dim, block.element_type) {
-            (0, ElementType::Pnt) => self.points.append(&mut corners(nodes, groups, block)?),
-            (1, ElementType::Lin2 | ElementType::Lin3) => self.edges.append(&mut corners(nodes, groups, block)?),
-            (2, ElementType::Qua4) => self.cells.append(&mut corners(nodes, groups, block)?),
-            (2, ElementType::Qua8 | ElementType::Qua9) => {
-                self.cells.append(&mut corners(nodes, groups, block)?);
-                self.second_order.0 += block.elements.len();
-                self.second_order.1 = self.second_order.1.max(bulge(nodes, block)?);
-            }
-            (2, ElementType::Tri3 | ElementType::Tri6) => {
-                let group = group.clone();
-                return Err((Item::Element(element), MeshFault::Triangle { element, group }));
-            }
-            (_, kind) => {
-                let (group, kind) = (group.clone(), format!("{kind:?}"));
-                return Err((Item::Element(element), MeshFault::Kind { element, group, kind }));
-            }
+        let count = cursor.size().map_err(wrong("number of elements"))?;
+        if count == 0 {
+            return Ok(());
         }
-        Ok(())
+        let block = Block { source, nodes, number, count, each: kind.2 };
+        let mut ahead = *cursor;
+        let element = ahead.size().map_err(|at| block.wrong(1, at))?;
+        let fail = |fault| Err(source.error(source.find(Item::Element(element)), fault));
+        let Some(groups) = groups.of(dim, entity) else {
+            return fail(MeshFault::UnknownEntity { element, dim, entity });
+        };
+        if dim == 2 {
+            self.surfaces.insert(entity);
+        }
+        let Some(group) = groups.first() else {
+            self.left_out += if dim == 2 { count as usize } else { 0 };
+            return block.each(cursor, tags, |_, _| Ok(()));
+        };
+        match (dim, kind.1) {
+            (0, "Pnt") => block.each(cursor, tags, |tag, nodes| {
+                self.points.push(block.element(tag, nodes, groups)?);
+                Ok(())
+            }),
+            (1, "Lin2" | "Lin3") => block.each(cursor, tags, |tag, nodes| {
+                self.edges.push(block.element(tag, nodes, groups)?);
+                Ok(())
+            }),
+            (2, "Qua4" | "Qua8" | "Qua9") => block.each(cursor, tags, |tag, nodes| {
+                self.cells.push(block.element(tag, nodes, groups)?);
+                if nodes.len() > 4 {
+                    self.second_order.0 += 1;
+                    self.second_order.1 = self.second_order.1.max(block.bulge(tag, nodes)?);
+                }
+                Ok(())
+            }),
+            (2, "Tri3" | "Tri6") => fail(MeshFault::Triangle { element, group: group.clone() }),
+            (_, kind) => fail(MeshFault::Kind { element, group: group.clone(), kind: kind.to_owned() }),
+        }
     }
 }
 
-fn lookup(nodes: &NodeTable, element: u64, node: u64) -> Result<u32, (Item, MeshFault)> {
-    nodes.index(node).ok_or((Item::Element(element), MeshFault::UnknownNode { element, node }))
-}
-
-fn corners<'g, const N: usize>(
-    nodes: &NodeTable,
-    groups: &'g [String],
-    block: &ElementBlock<u64, i32>,
-) -> Result<Vec<Element<'g, N>>, (Item, MeshFault)> {
-    let corner = |e: &mshio::Element<u64>| {
-        let mut found = [0; N];
-        for (index, node) in found.iter_mut().zip(&e.nodes) {
-            *index = lookup(nodes, e.element_tag, *node)?;
+impl Block<'_> {
+    /// Passes number and nodes of each element to `take`.
+    fn each(
+        &self,
+        cursor: &mut Cursor<'_>,
+        tags: &mut Vec<u64>,
+        mut take: impl FnMut(u64, &[u64]) -> Result<(), MeshError>,
+    ) -> Result<(), MeshError> {
+        let mut nodes = vec![0; self.each];
+        for i in 1..=self.count {
+            let tag = cursor.size().map_err(|at| self.wrong(i, at))?;
+            for node in &mut nodes {
+                *node = cursor.size().map_err(|at| self.wrong(i, at))?;
+            }
+            tags.push(tag);
+            take(tag, &nodes)?;
         }
-        Ok(Element { tag: e.element_tag, nodes: found, groups })
-    };
-    block.elements.iter().map(corner).collect()
-}
+        Ok(())
+    }
 
-/// Largest distance of a mid-side node from the middle of its edge, as a fraction of the edge.
-fn bulge(nodes: &NodeTable, block: &ElementBlock<u64, i32>) -> Result<f64, (Item, MeshFault)> {
-    let mut largest = 0.0_f64;
-    for e in &block.elements {
+    fn wrong(&self, element: u64, at: usize) -> MeshError {
+        let [block, blocks] = self.number;
+        let what =
+            format!("element definition ({element} of {}), in element entity block ({block} of {blocks})", self.count);
+        self.source.syntax(at, &what)
+    }
+
+    fn element<'g, const N: usize>(
+        &self,
+        tag: u64,
+        nodes: &[u64],
+        groups: &'g [String],
+    ) -> Result<Element<'g, N>, MeshError> {
+        let mut found = [0; N];
+        for (index, node) in found.iter_mut().zip(nodes) {
+            *index = self.lookup(tag, *node)?;
+        }
+        Ok(Element { tag, nodes: found, groups })
+    }
+
+    fn lookup(&self, element: u64, node: u64) -> Result<u32, MeshError> {
+        let unknown = || {
+            let place = self.source.find(Item::Element(element));
+            self.source.error(place, MeshFault::UnknownNode { element, node })
+        };
+        self.nodes.index(node).ok_or_else(unknown)
+    }
+
+    /// Largest distance of a mid-side node from the middle of its edge, as a fraction of the edge.
+    fn bulge(&self, tag: u64, nodes: &[u64]) -> Result<f64, MeshError> {
+        let at = |i: usize| self.lookup(tag, nodes[i]).map(|n| self.nodes.plane(n));
+        let mut largest = 0.0_f64;
         for side in 0..4 {
-            let at = |i: usize| lookup(nodes, e.element_tag, e.nodes[i]).map(|n| nodes.plane(n));
             let (a, b, middle) = (at(side)?, at((side + 1) % 4)?, at(side + 4)?);
             let off = (middle[0] - 0.5 * (a[0] + b[0])).hypot(middle[1] - 0.5 * (a[1] + b[1]));
             largest = largest.max(off / (b[0] - a[0]).hypot(b[1] - a[1]));
         }
+        Ok(largest)
     }
-    Ok(largest)
 }

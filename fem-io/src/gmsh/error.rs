@@ -76,12 +76,15 @@ pub enum MeshFault {
         /// Number found.
         found: usize,
     },
-    /// A mesh cut into partitions.
-    #[error("the mesh is partitioned: save it unpartitioned (no option -part, or gmsh.model.mesh.unpartition())")]
-    Partitioned,
-    /// Nodes with parametric coordinates.
-    #[error("nodes carry parametric coordinates: set Mesh.SaveParametric = 0 and save again")]
-    Parametric,
+    /// One of the files of a mesh whose partitions were saved in a file each.
+    #[error(
+        "surface {surface} of the partitioned mesh has no elements: this is one of several files; set \
+         Mesh.PartitionSplitMeshFiles = 0 and save again"
+    )]
+    Split {
+        /// Number of the surface.
+        surface: i32,
+    },
     /// More nodes than the numbering can hold.
     #[error("{0} nodes are more than can be numbered: coarsen the mesh")]
     TooManyNodes(usize),
@@ -148,7 +151,8 @@ pub enum MeshFault {
     /// An element that has no place in a flat mesh of quadrilaterals.
     #[error(
         "element {element} of group {group:?} has the type {kind}; only flat meshes of quadrilaterals up to second \
-         order are read: set Mesh.ElementOrder = 1, and save no volumes"
+         order are read: set Mesh.ElementOrder = 1, and save no volumes: name the surface of the plate, whose plies \
+         come from the scene"
     )]
     Kind {
         /// Element.

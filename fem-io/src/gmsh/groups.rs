@@ -1,9 +1,8 @@
 //! Physical groups: names, and the entities that belong to them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use mshio::Entities;
-
+use super::entities::Entity;
 use super::error::{MeshError, MeshFault, Place};
 use super::source::Source;
 
@@ -14,21 +13,19 @@ pub(super) struct Groups {
     dims: BTreeMap<String, i32>,
     /// Names of the groups that each entity, by dimension and number, belongs to.
     entities: BTreeMap<(i32, i32), Vec<String>>,
+    /// Surfaces that are parts of a partition and belong to groups.
+    pub(super) parts: BTreeSet<i32>,
 }
 
 impl Groups {
     /// A group without a name is called by its number.
-    pub(super) fn new(source: &Source<'_>, entities: Entities<i32, f64>) -> Result<Self, MeshError> {
+    pub(super) fn new(source: &Source<'_>, entities: Vec<Entity>) -> Result<Self, MeshError> {
         let names = physical_names(source)?;
-        let mut groups = Self { dims: BTreeMap::new(), entities: BTreeMap::new() };
+        let mut groups = Self { dims: BTreeMap::new(), entities: BTreeMap::new(), parts: BTreeSet::new() };
         for ((dim, _), (place, name)) in &names {
             groups.declare(name, *dim).map_err(|fault| source.error(*place, fault))?;
         }
-        let points = entities.points.into_iter().map(|e| ((0, e.tag), e.physical_tags));
-        let curves = entities.curves.into_iter().map(|e| ((1, e.tag), e.physical_tags));
-        let surfaces = entities.surfaces.into_iter().map(|e| ((2, e.tag), e.physical_tags));
-        let volumes = entities.volumes.into_iter().map(|e| ((3, e.tag), e.physical_tags));
-        for ((dim, entity), tags) in points.chain(curves).chain(surfaces).chain(volumes) {
+        for Entity { dim, tag: entity, physical: tags, part } in entities {
             let mut of_entity = Vec::with_capacity(tags.len());
             for tag in tags {
                 // A negative number means reversed orientation, which the mesh itself already shows.
@@ -39,7 +36,11 @@ impl Groups {
             }
             of_entity.sort_unstable();
             of_entity.dedup();
-            if groups.entities.insert((dim, entity), of_entity).is_some() {
+            if part && dim == 2 && !of_entity.is_empty() {
+                groups.parts.insert(entity);
+            }
+            // The elements of a partitioned mesh lie on parts, some of which have the number of a whole.
+            if groups.entities.insert((dim, entity), of_entity).is_some() && !part {
                 let what = format!("$Entities holds the entity {entity} of dimension {dim}");
                 return Err(source.error(Place::File, MeshFault::RepeatedTag(what)));
             }

@@ -1,9 +1,9 @@
-//! Reads plate meshes that gmsh wrote (format MSH 4.1, ASCII or binary).
+//! Reads plate meshes that gmsh wrote (format MSH 4.1, ASCII or binary), and writes such files.
 //!
-//! Cells are the quadrilaterals of all physical surfaces; physical curves become groups of edges, physical points groups
-//! of nodes. Node and cell numbers of the result follow the numbers in the file, not the order in it. Everything that
-//! would make the mesh another one than it seems (triangles, cells that overlap or are not joined, edges that belong to
-//! no cell, numbers given twice) is refused with place and remedy.
+//! Cells are the quadrilaterals of all physical surfaces; physical curves become groups of edges, physical points
+//! groups of nodes. Node and cell numbers of the result follow the numbers in the file, not the order in it. Everything
+//! that would make the mesh another one than it seems (triangles, cells that overlap or are not joined, edges that
+//! belong to no cell, numbers given twice) is refused with place and remedy.
 //!
 //! ```
 //! let square = "$MeshFormat\n4.1 0 8\n$EndMeshFormat
@@ -19,23 +19,27 @@
 
 mod assemble;
 mod checks;
+mod cursor;
 mod elements;
+mod entities;
 mod error;
 mod groups;
+mod nodes;
 mod source;
 #[cfg(test)]
 mod tests;
+mod write;
 
 use std::path::Path;
 
 use fem_core::mesh::QuadMesh;
-use mshio::MshData;
-use mshio::error::MshParserErrorKind;
 
 pub use error::{MeshError, MeshFault, Place};
+pub use write::{Encoding, write};
 
-use elements::{Grouped, NodeTable};
+use elements::Grouped;
 use groups::Groups;
+use nodes::NodeTable;
 use source::Source;
 
 /// A mesh and what its reader thinks the user should know.
@@ -72,12 +76,9 @@ pub fn parse(bytes: &[u8], name: &str, unit_metres: f64) -> Result<GmshMesh, Mes
     if !(unit_metres > 0.0 && unit_metres.is_finite()) {
         return Err(source.error(Place::File, MeshFault::Unit(unit_metres)));
     }
-    let data = sections(&source)?;
-    let missing = |section| source.error(Place::File, MeshFault::Missing(section));
-    let groups = Groups::new(&source, data.entities.ok_or_else(|| missing("Entities"))?)?;
-    let nodes = NodeTable::new(&source, data.nodes.ok_or_else(|| missing("Nodes"))?)?;
-    let elements = data.elements.ok_or_else(|| missing("Elements"))?;
-    let mut grouped = Grouped::new(&source, &nodes, &groups, &elements)?;
+    let groups = Groups::new(&source, entities::read(&source)?)?;
+    let nodes = NodeTable::read(&source)?;
+    let mut grouped = Grouped::read(&source, &nodes, &groups)?;
     if grouped.cells.is_empty() {
         return Err(source.error(Place::File, MeshFault::NoCells));
     }
@@ -85,24 +86,6 @@ pub fn parse(bytes: &[u8], name: &str, unit_metres: f64) -> Result<GmshMesh, Mes
     let mesh = assemble::mesh(&source, &nodes, &grouped, unit_metres)?;
     let warnings = warnings(&mesh, &groups, &grouped, &turned);
     Ok(GmshMesh { mesh, warnings })
-}
-
-/// What mshio makes of the file.
-fn sections(source: &Source<'_>) -> Result<MshData<u64, i32, f64>, MeshError> {
-    mshio::parse_msh_bytes(&source.bytes).map(|file| file.data).map_err(|error| {
-        let rest = error.backtrace.first().map_or(0, |(rest, _)| rest.len());
-        let context: Vec<_> = error
-            .filter_msh_errors()
-            .map(|(_, kind)| match kind {
-                MshParserErrorKind::Context(what) => what.to_string(),
-                kind => kind.to_string(),
-            })
-            .collect();
-        if context.iter().any(|what| what.contains("parametric nodes")) {
-            return source.error(Place::File, MeshFault::Parametric);
-        }
-        source.error(source.place(source.bytes.len() - rest), MeshFault::Syntax(context.join(", in ")))
-    })
 }
 
 /// What the user should know of a mesh that was accepted.

@@ -1,5 +1,6 @@
 //! The bytes of a mesh file: header, sections and places.
 
+use super::cursor::Cursor;
 use super::error::{MeshError, MeshFault, Place};
 
 /// Sections that concern us. Others are skipped.
@@ -13,50 +14,77 @@ pub(super) enum Item {
     Element(u64),
 }
 
-/// A file whose header and sections are known to be ones that mshio can be given.
+/// A file whose header is that of MSH 4.1 and whose sections are known.
 #[derive(Debug)]
 pub(super) struct Source<'a> {
     name: &'a str,
-    pub(super) bytes: Vec<u8>,
+    bytes: &'a [u8],
     pub(super) binary: bool,
     /// Sections and the offset at which each begins behind its marker.
     sections: Vec<(&'static str, usize)>,
-    /// Number of nodes that the file announces.
-    pub(super) announced_nodes: u64,
 }
 
 impl<'a> Source<'a> {
-    /// Checks what mshio 0.4.2 takes on trust (it panics on some headers), and changes one number for it: where
-    /// `max tag - min tag < number of nodes` it drops the node tags and takes the nodes in the order of the file, which
-    /// is wrong for every renumbered mesh. With 1 for the number of nodes it keeps them.
-    pub(super) fn open(name: &'a str, bytes: &[u8]) -> Result<Self, MeshError> {
+    pub(super) fn open(name: &'a str, bytes: &'a [u8]) -> Result<Self, MeshError> {
         let binary = header(bytes).map_err(|(place, fault)| MeshError { file: name.to_owned(), place, fault })?;
-        let mut source = Self {
-            name,
-            bytes: bytes.to_vec(),
-            binary,
-            sections: Vec::with_capacity(SECTIONS.len()),
-            announced_nodes: 0,
-        };
+        let mut source = Self { name, bytes, binary, sections: Vec::with_capacity(SECTIONS.len()) };
         source.find_sections()?;
-        if source.section("PartitionedEntities").is_some() {
-            return Err(source.error(Place::File, MeshFault::Partitioned));
-        }
-        source.count("Elements")?;
-        let (nodes, digits) = source.count("Nodes")?;
-        source.announced_nodes = nodes;
-        let number = &mut source.bytes[digits];
-        if binary {
-            number.copy_from_slice(&1_u64.to_le_bytes());
-        } else {
-            number.fill(b'0');
-            number[number.len() - 1] = b'1';
+        for (section, what) in [("Elements", "element"), ("Nodes", "node")] {
+            source.begin(section, what)?;
         }
         Ok(source)
     }
 
     pub(super) fn error(&self, place: Place, fault: MeshFault) -> MeshError {
         MeshError { file: self.name.to_owned(), place, fault }
+    }
+
+    /// An error of the format at an offset.
+    pub(super) fn syntax(&self, at: usize, what: &str) -> MeshError {
+        self.error(self.place(at), MeshFault::Syntax(what.to_owned()))
+    }
+
+    pub(super) fn cursor(&self, at: usize) -> Cursor<'a> {
+        Cursor::new(self.bytes, at, self.binary)
+    }
+
+    /// The numbers at the beginning of `$Nodes` or `$Elements`, blocks of `what`, all of them, their least and largest
+    /// tag, and what follows.
+    pub(super) fn begin(&self, section: &'static str, what: &str) -> Result<(Cursor<'a>, [u64; 4]), MeshError> {
+        let start = self.section(section).ok_or_else(|| self.error(Place::File, MeshFault::Missing(section)))?;
+        let mut cursor = self.cursor(start);
+        let mut head = [0; 4];
+        for (number, name) in head.iter_mut().zip(["entity blocks", "entries", "least tag", "largest tag"]) {
+            *number = cursor.size().map_err(|at| {
+                self.syntax(
+                    at,
+                    &format!("the section ${section} does not begin with four whole numbers: number of {what} {name}"),
+                )
+            })?;
+        }
+        if head[1] == 0 { Err(self.error(self.place(start), MeshFault::Missing(section))) } else { Ok((cursor, head)) }
+    }
+
+    /// No more than so many of `announced` things fit into the file.
+    pub(super) fn at_most(&self, announced: u64) -> usize {
+        usize::try_from(announced).map_or(self.bytes.len() / 8, |n| n.min(self.bytes.len() / 8))
+    }
+
+    /// The section `$MeshFormat`.
+    pub(super) fn header(&self) -> &'a [u8] {
+        let end = b"$EndMeshFormat";
+        let length = self.until(0, end).len() + end.len();
+        // With the end of its line.
+        let rest = self.bytes.get(length..).unwrap_or_default();
+        let line = rest.iter().position(|b| *b == b'\n').map_or(rest.len(), |n| n + 1);
+        self.bytes.get(..length + line).unwrap_or_default()
+    }
+
+    /// What stands between an offset and a marker, or the end of the file.
+    pub(super) fn until(&self, from: usize, marker: &[u8]) -> &'a [u8] {
+        let rest = &self.bytes[from..];
+        let found = rest.windows(marker.len()).position(|window| window == marker);
+        &rest[..found.unwrap_or(rest.len())]
     }
 
     /// Offset behind the marker of a section.
@@ -106,9 +134,18 @@ impl<'a> Source<'a> {
         1 + self.bytes[..offset].iter().filter(|b| **b == b'\n').count()
     }
 
-    /// A marker may occur once in a file, so that mshio and we cannot mean different sections.
+    /// A marker stands at the beginning of a line, and occurs once in a file outside of comments.
     fn find_sections(&mut self) -> Result<(), MeshError> {
-        for at in (0..self.bytes.len()).filter(|i| self.bytes[*i] == b'$') {
+        let begins = |at: usize| self.bytes[at] == b'$' && (at == 0 || self.bytes[at - 1] == b'\n');
+        let mut skipped = 0;
+        for at in (0..self.bytes.len()).filter(|at| begins(*at)) {
+            if at < skipped {
+                continue;
+            }
+            if self.bytes[at..].starts_with(b"$Comments") {
+                skipped = at + self.until(at, b"$EndComments").len();
+                continue;
+            }
             let rest = &self.bytes[at + 1..];
             let marker = SECTIONS.iter().find_map(|name| {
                 let tail = rest.strip_prefix(name.as_bytes())?;
@@ -123,28 +160,6 @@ impl<'a> Source<'a> {
             }
         }
         Ok(())
-    }
-
-    /// The second number of a section, which is how much it holds, and where it stands.
-    fn count(&self, section: &'static str) -> Result<(u64, std::ops::Range<usize>), MeshError> {
-        let start = self.section(section).ok_or_else(|| self.error(Place::File, MeshFault::Missing(section)))?;
-        let bad = || {
-            let why = format!("the section ${section} does not begin with four whole numbers");
-            self.error(self.place(start), MeshFault::Syntax(why))
-        };
-        let (count, digits) = if self.binary {
-            let digits = start + 8..start + 16;
-            let count = self.bytes.get(digits.clone()).and_then(|b| b.try_into().ok()).map(u64::from_le_bytes);
-            (count, digits)
-        } else {
-            let digits = token(&self.bytes, token(&self.bytes, start).end);
-            (number(&self.bytes[digits.clone()]), digits)
-        };
-        match count {
-            None => Err(bad()),
-            Some(0) => Err(self.error(self.place(start), MeshFault::Missing(section))),
-            Some(count) => Ok((count, digits)),
-        }
     }
 }
 
@@ -175,13 +190,6 @@ fn header(bytes: &[u8]) -> Result<bool, (Place, MeshFault)> {
         (Some(b"1"), Some(b"8"), None) if lines.next().is_some_and(|r| r.starts_with(&1_u32.to_le_bytes())) => Ok(true),
         _ => at_line_2(MeshFault::Header(shown())),
     }
-}
-
-/// The next word from an offset on; empty at the end.
-fn token(bytes: &[u8], from: usize) -> std::ops::Range<usize> {
-    let start = bytes[from..].iter().position(|b| !b.is_ascii_whitespace()).map_or(bytes.len(), |n| from + n);
-    let end = bytes[start..].iter().position(u8::is_ascii_whitespace).map_or(bytes.len(), |n| start + n);
-    start..end
 }
 
 fn number<T: std::str::FromStr>(digits: &[u8]) -> Option<T> {

@@ -12,6 +12,7 @@ pub(crate) mod keys;
 mod laminate;
 mod load;
 pub(crate) mod material;
+mod mesh;
 mod plugin;
 pub(crate) mod reader;
 mod root;
@@ -31,6 +32,7 @@ pub use explain::{Explained, explain};
 pub use fields::{FieldCells, Fields, Region, Series};
 pub use keys::Plugins;
 pub use load::{Load, LoadKind, Pressure, ProfileLine};
+pub use mesh::{MeshSource, refined_cells};
 pub use plugin::PluginSpec;
 pub use run::{
     ContactLoad, CriterionSpec, Depth, Failure, Impact, ImpactPoint, Impactor, IndexWatch, March, Output, Window,
@@ -41,19 +43,16 @@ pub use study::{OwnAxis, Quantity, Setting, Study, rewrite};
 pub use substructures::{Masters, Parts, Substructures};
 pub use support::{Couple, Equation, NodeSet, Support, Term};
 
-use crate::units;
 use fem_core::laminate::Laminate;
 use fem_core::material::Material;
-use fem_core::mesh::Curves;
 use fem_core::plate::ZDerivatives;
-use fem_core::plugin::Dimension;
 use fem_core::symmetry::Group;
-use keys::{Form, Key, Keys, key, words};
+use keys::{Form, Keys, key};
 use reader::{Field, Reader};
 use root::{ANALYSES, KEYS, Which, Z_DERIVATIVES};
 use source::Origin;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use tree::Table;
 
@@ -162,73 +161,9 @@ pub enum Analysis {
     },
 }
 
-/// Where the mesh comes from.
-#[derive(Debug, Clone, PartialEq)]
-pub enum MeshSource {
-    /// A file of gmsh.
-    File {
-        /// Its path, resolved against the folder of the scene.
-        file: Located<PathBuf>,
-        /// Size of the file's unit of length, m.
-        metres_per_unit: f64,
-        /// How often every cell is divided into four; [`refined_cells`] says whether that is too often.
-        refine: Located<u32>,
-        /// What becomes of curved edges then.
-        curves: Curves,
-    },
-    /// A rectangle from the origin with equal cells.
-    Rectangle {
-        /// Edges along x and y, m.
-        size: [f64; 2],
-        /// Cells along x and y, refined as the scene asks for.
-        cells: [usize; 2],
-    },
-}
-
-/// Cells that become of `cells` when each is divided into four, `times` in a row.
-///
-/// # Errors
-/// More than four million, in words.
-pub fn refined_cells(cells: usize, times: u32) -> Result<usize, String> {
-    let refined = 4_usize.checked_pow(times).and_then(|parts| cells.checked_mul(parts));
-    refined
-        .filter(|n| *n <= MAX_CELLS)
-        .ok_or_else(|| format!("refining {times} times makes more than {MAX_CELLS} cells of {cells}"))
-}
-
-/// Where a mesh may come from.
-const MESHES: &[Form] = &[Form::Table(FILE), Form::Table(RECTANGLE)];
-const FILE: Keys = &[
-    key("file", Form::Text, r#""plate.msh""#, "a mesh of gmsh, MSH 4.1; counts from the folder of the scene")
-        .required(),
-    key("unit", Form::Text, r#""mm""#, "unit of its coordinates").required(),
-    REFINE,
-    key(
-        "curves",
-        Form::Words(&words(&Curves::ALL)),
-        r#""kept""#,
-        "what becomes of curved edges when cells are divided",
-    )
-    .default(r#""kept""#),
-];
-const RECTANGLE: Keys = &[
-    key(
-        "rectangle",
-        Form::Several(2, &Form::Quantity(Dimension::LENGTH)),
-        r#"["100 mm", "50 mm"]"#,
-        "edges along x and y, from the origin; its groups are x-min, x-max, y-min, y-max and plate",
-    )
-    .required(),
-    key("cells", Form::Several(2, &Form::Count(1)), "[8, 4]", "cells along x and y").required(),
-    REFINE,
-];
-const REFINE: Key = key("refine", Form::Count(0), "1", "how often every cell is divided into four").default("0");
 /// Natural frequencies unless a scene says how many.
 pub const DEFAULT_MODES: usize = 10;
 const MODES: Keys = &[key("count", Form::Count(1), "10", "how many of the lowest modes").default("10")];
-
-/// Most cells of a built-in or refined mesh: more is a slip.
-const MAX_CELLS: usize = 4_000_000;
 
 /// Reads the scene file `path`.
 ///
@@ -306,7 +241,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
     Ok(Scene {
         title: root.required("title")?.text()?.to_owned(),
         fidelity,
-        mesh: read_mesh(&root.required("mesh")?, path)?,
+        mesh: mesh::read(&root.required("mesh")?, path)?,
         symmetry: match root.optional("symmetry") {
             Some(field) => Some(field.at(field.choice(&Group::ALL)?)),
             None => None,
@@ -366,54 +301,6 @@ fn read_analysis(root: &Reader<'_>, effects: &Effects) -> Result<Analysis, Scene
         }
         Which::Impact => Analysis::Impact(Box::new(run::read_impact(root)?)),
     })
-}
-
-fn read_mesh(field: &Field<'_>, scene: &Path) -> Result<MeshSource, SceneError> {
-    let any = field.table_of(MESHES)?;
-    if any.optional("rectangle").is_some() {
-        return read_rectangle(&field.table(RECTANGLE)?);
-    }
-    let table = field.table(FILE)?;
-    let file = table.required("file")?;
-    let path = scene.parent().unwrap_or(Path::new("")).join(file.text()?);
-    let unit = table.required("unit")?;
-    let metres_per_unit = units::parse_as(&format!("1 {}", unit.text()?), Dimension::LENGTH)
-        .map_err(|_| unit.error("must be a unit of length", "write the unit of the file's coordinates: mm, m, in"))?;
-    let curves = table.optional("curves").map_or(Ok(Curves::Kept), |field| field.choice(&Curves::ALL))?;
-    Ok(MeshSource::File { file: file.at(path), metres_per_unit, refine: read_refine(&table, 1)?, curves })
-}
-
-fn read_rectangle(table: &Reader<'_>) -> Result<MeshSource, SceneError> {
-    let size = pair(&table.required("rectangle")?, |field| field.positive(Dimension::LENGTH))?;
-    let field = table.required("cells")?;
-    let cells = pair(&field, |field| field.count())?;
-    let all = match cells[0].checked_mul(cells[1]) {
-        Some(n) if n <= MAX_CELLS => n,
-        _ => {
-            return Err(
-                field.error(format!("{} x {} cells", cells[0], cells[1]), format!("at most {MAX_CELLS} in all"))
-            );
-        }
-    };
-    let refine = read_refine(table, all)?;
-    Ok(MeshSource::Rectangle { size, cells: cells.map(|n| n << refine.value) })
-}
-
-/// How often a mesh of at least `cells` cells is refined.
-fn read_refine(table: &Reader<'_>, cells: usize) -> Result<Located<u32>, SceneError> {
-    let Some(field) = table.optional("refine") else { return Ok(Located { value: 0, place: table.place().clone() }) };
-    let times = field.at_least(0)? as u32;
-    refined_cells(cells, times).map_err(|why| field.error(why, "refine less often"))?;
-    Ok(field.at(times))
-}
-
-/// Two values: along x and along y.
-fn pair<T>(field: &Field<'_>, read: impl Fn(&Field<'_>) -> Result<T, SceneError>) -> Result<[T; 2], SceneError> {
-    let parts = field.list()?;
-    match &parts[..] {
-        [x, y] => Ok([read(x)?, read(y)?]),
-        _ => Err(field.error(format!("has {} values", parts.len()), "give two: along x and y")),
-    }
 }
 
 /// `shared` where neither scene nor preset says.

@@ -1,7 +1,8 @@
 //! The outermost table of a scene.
 
 use super::keys::{Form, Keys, key, words};
-use super::{Fidelity, MESHES, MODES, effects, laminate, load, material, run, study, substructures, support};
+use super::mesh::MESHES;
+use super::{Fidelity, MODES, effects, laminate, load, material, run, study, substructures, support};
 use fem_core::plate::ZDerivatives;
 use fem_core::plugin::Kind;
 use fem_core::symmetry::Group;

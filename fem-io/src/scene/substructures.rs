@@ -56,7 +56,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<Substructures, SceneError> {
             let group = |field: &Field<'_>| Ok(field.at(field.text()?.to_owned()));
             Parts::Groups(groups.list()?.iter().map(group).collect::<Result<_, SceneError>>()?)
         }
-        [None, Some(cells)] => Parts::Cells(cells.at(super::pair(&cells, |field| field.count())?)),
+        [None, Some(cells)] => Parts::Cells(cells.at(super::mesh::pair(&cells, |field| field.count())?)),
         [None, None] => {
             return Err(
                 table.error("the substructures are not named", "give `groups` of the mesh, or `cells` of a block")

@@ -1,6 +1,8 @@
 use super::*;
 use fem_core::laminate::LaminaPly;
 use fem_core::material::Strength;
+use fem_core::mesh::{Curves, Graded, Outline};
+use fem_core::plugin::Dimension;
 use fem_core::plugin::Value;
 use fem_core::support::Levels;
 use miette::{GraphicalReportHandler, GraphicalTheme};
@@ -272,6 +274,51 @@ fn a_mesh_may_be_refined() {
     for (cells, times) in [(16, 9), (1, 11), (1, 31), (1, 32), (1, u32::MAX), (usize::MAX, 0), (usize::MAX, 1)] {
         assert!(refined_cells(cells, times).unwrap_err().contains("more than 4000000"), "{cells} {times}");
     }
+}
+
+#[test]
+fn a_mesh_may_be_built_in() {
+    let mesh = |keys: &str| spoilt(r#"file = "plate.msh", unit = "mm""#, keys);
+    let built = |keys: &str| match read_good(&mesh(keys)).mesh {
+        MeshSource::Graded { plate, refine, curves } => (plate.value, refine, curves),
+        other => panic!("{other:?}"),
+    };
+    let disc = Graded {
+        outline: Outline::Disc { radius: 0.025 },
+        support: None,
+        impact: [0.0; 2],
+        size: 1e-3,
+        edge_size: 3e-3,
+    };
+    assert_eq!(built(r#"disc = { radius = "25 mm", size = "1 mm" }"#), (disc, 0, Curves::Kept));
+    let ringed = r#"{ sides = ["6 cm", "50 mm"], support = "20 mm", impact = ["1 mm", "-2 mm"], size = "1 mm", edge_size = "2 mm" }"#;
+    let plate = Graded {
+        outline: Outline::Rectangle { sides: [0.06, 0.05] },
+        support: Some(0.02),
+        impact: [1e-3, -2e-3],
+        edge_size: 2e-3,
+        ..disc
+    };
+    let keys = format!("plate = {ringed}, refine = 1, curves = \"straight\"");
+    assert_eq!(built(&keys), (plate, 1, Curves::Straight));
+
+    let refused = |keys: &str, words: &[&str]| {
+        let error = parse(&mesh(keys), Path::new("scene.toml")).unwrap_err();
+        let message = format!("{error}; {}", error.remedy());
+        assert!(words.iter().all(|word| message.contains(word)), "{keys}: {message}");
+    };
+    refused(r#"disc = { radius = "25 mm" }"#, &["`mesh.disc.size` is missing", "size = \"1 mm\""]);
+    refused(r#"disc = { radius = "25 mm", size = "1 mm", sides = "1 mm" }"#, &["unknown key `mesh.disc.sides`"]);
+    refused(r#"disc = { radius = "25 mm", size = "1 mm" }, unit = "mm""#, &["unknown key `mesh.unit`"]);
+    refused(r#"disc = { radius = "25 mm", size = "1" }"#, &["`mesh.disc.size`", "unit"]);
+    refused(r#"disc = { radius = "25 mm", size = "-1 mm" }"#, &["`mesh.disc.size`: must be positive"]);
+    let far = r#"disc = { radius = "25 mm", size = "1 mm", impact = ["20 mm", "0 mm"] }"#;
+    refused(far, &["`mesh.disc.impact`: lies 20 mm from the middle", "15 mm", "fem mesh"]);
+    let wide = r#"plate = { sides = ["50 mm", "50 mm"], size = "1 mm", support = "25 mm" }"#;
+    refused(wide, &["`mesh.plate.support`", "leave it out"]);
+    let fine = r#"disc = { radius = "25 mm", size = "1 um", edge_size = "1 um" }"#;
+    refused(fine, &["`mesh.disc.size`", "more than 4000000"]);
+    refused(r#"disc = { radius = "25 mm", size = "1 mm" }, refine = 9"#, &["`mesh.refine`", "4000000"]);
 }
 
 /// [`GOOD`] with several impactors.

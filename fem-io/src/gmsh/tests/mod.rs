@@ -1,5 +1,7 @@
+mod odd;
 mod plates;
 mod refusals;
+mod written;
 
 use std::path::PathBuf;
 
@@ -99,6 +101,18 @@ fn nodes_are_numbered_by_tag_and_not_by_file_order() {
     assert_eq!(middles(&renumbered), middles(&strip));
     for group in ["clamped", "tip", "plate"] {
         assert_eq!(points_of(&renumbered, group), points_of(&strip, group));
+    }
+}
+
+#[test]
+fn partitions_are_joined_and_parametric_coordinates_skipped() {
+    let strip = mesh("ascii.msh");
+    assert_eq!(mesh("parametric.msh"), strip);
+    let GmshMesh { mesh: joined, warnings } = mesh("partitioned.msh");
+    assert_eq!((joined.points.len(), joined.quads.len(), warnings), (15, 8, vec![]));
+    assert_eq!(middles(&joined), middles(&strip.mesh));
+    for group in ["clamped", "tip", "plate"] {
+        assert_eq!(points_of(&joined, group), points_of(&strip.mesh, group));
     }
 }
 

@@ -3,11 +3,9 @@ use super::*;
 /// Every file of the list must be refused at the place given with a message that holds the words given.
 #[test]
 fn files_of_gmsh_that_cannot_be_used() {
-    let cases: [(&str, Place, &[&str]); 9] = [
+    let cases: [(&str, Place, &[&str]); 7] = [
         ("msh22.msh", Place::Line(2), &["MSH version 2.2", "Mesh.MshFileVersion = 4.1"]),
         ("msh40.msh", Place::Line(2), &["MSH version 4", "Mesh.MshFileVersion = 4.1"]),
-        ("partitioned.msh", Place::File, &["partitioned"]),
-        ("parametric.msh", Place::File, &["Mesh.SaveParametric = 0"]),
         ("triangles.msh", Place::Line(72), &["element 4 of group \"plate\" is a triangle", "Recombine"]),
         ("third-order.msh", Place::Line(311), &["group \"rim\"", "Lin4", "Mesh.ElementOrder = 1"]),
         ("hexahedra.msh", Place::Line(69), &["element 1 of group \"block\"", "Hex8", "volumes"]),
@@ -77,7 +75,7 @@ fn damaged_files() {
         (&[("$EndElements", "")], Place::Line(81), &["not valid"]),
         (&[("\n$Nodes", "\nnodes")], Place::File, &["$Nodes is missing"]),
         // Tags.
-        (&[("5\n6\n7\n", "5\n6\n6\n")], Place::File, &["entity 1 of dimension 1 has a node twice"]),
+        (&[("5\n6\n7\n", "5\n6\n6\n")], Place::Line(38), &["the file has node 6 twice"]),
         (&[("5\n6\n7\n", "5\n6\n3\n")], Place::Line(31), &["node 3 twice"]),
         (&[("5 12 13 11 4 ", "4 12 13 11 4 ")], Place::Line(72), &["element 4 twice"]),
         (&[("4 1 5 13 12 ", "4 1 5 13 16 ")], Place::Line(72), &["element 4 refers to node 16"]),
