@@ -678,7 +678,7 @@ mod arguments {
         let case = strip();
         let scene = case.write();
         for (arguments, words) in [
-            (&[][..], "Usage: fem <COMMAND>"),
+            (&[][..], "Usage: fem [OPTIONS] <COMMAND>"),
             (&["rnu", scene], "unrecognized subcommand 'rnu'"),
             (&["run"], "<SCENE>"),
             (&["run", scene, "--thread", "2"], "'--threads'"),
