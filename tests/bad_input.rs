@@ -13,8 +13,6 @@ enum At<'a> {
     Mesh(&'a str),
     /// To the mesh as a whole.
     MeshFile,
-    /// To the preset `engineering`.
-    Preset,
 }
 
 /// The refusal of `case`, which must point to `at` and hold `words`.
@@ -26,7 +24,6 @@ fn refusal(case: &Case, at: At<'_>, words: &[&str]) -> String {
         At::Scene(start) => format!("[plate/scene.toml:{}:", line(&case.read("plate/scene.toml"), start)),
         At::Mesh(start) => format!("plate/plate.msh:{}: ", line(&case.read("plate/plate.msh"), start)),
         At::MeshFile => "plate/plate.msh: ".to_owned(),
-        At::Preset => "[preset `engineering`:".to_owned(),
     };
     for words in words.iter().chain([&place.as_str()]) {
         assert!(flat.contains(words), "{words:?} is not in {complaint}");
@@ -185,7 +182,8 @@ mod groups {
     #[test]
     fn impact_beside_the_plate() {
         let case = strip().scene("x = \"15 mm\"", "x = \"15 in\"");
-        refusal(&case, At::Preset, &["around (381.0000, 5.0000) mm leaves the plate"]);
+        let words = ["(381.0000, 5.0000) mm is beside the plate", "x runs from 0.0000 to 30.0000 mm"];
+        refusal(&case, At::Scene("at = { x"), &words);
     }
 
     #[test]
@@ -627,7 +625,7 @@ mod contact {
     #[test]
     fn mesh_in_metres_read_as_millimetres() {
         let case = strip().scene("unit = \"mm\"", "unit = \"um\"");
-        refusal(&case, At::Preset, &["leaves the plate", "if `mesh.unit` is right"]);
+        refusal(&case, At::Scene("at = { x"), &["is beside the plate", "if `mesh.unit` is right"]);
     }
 }
 
@@ -680,7 +678,7 @@ mod arguments {
         let case = strip();
         let scene = case.write();
         for (arguments, words) in [
-            (&[][..], "Usage: fem <COMMAND>"),
+            (&[][..], "Usage: fem [OPTIONS] <COMMAND>"),
             (&["rnu", scene], "unrecognized subcommand 'rnu'"),
             (&["run"], "<SCENE>"),
             (&["run", scene, "--thread", "2"], "'--threads'"),

@@ -18,7 +18,7 @@ fn quick() -> Case {
 fn help_and_version() {
     let folder = root();
     for (arguments, words) in [
-        (&["--help"][..], "Usage: fem <COMMAND>"),
+        (&["--help"][..], "Usage: fem [OPTIONS] <COMMAND>"),
         (&["run", "--help"], "[default: results/<folder of the scene>]"),
         (&["check", "--help"], "<SCENE>"),
         (&["list", "--help"], "contact-laws"),

@@ -60,6 +60,7 @@ impl UnitError {
         let units = wanted.map_or_else(symbols, accepted);
         match self {
             Self::Unknown { symbol } => format!("`{symbol}` {}", unknown_key(symbol, units.iter().copied())),
+            Self::Syntax { unit, .. } if unit.starts_with(',') => "write 2.49, not 2,49".to_owned(),
             Self::Syntax { .. } => "write units such as N/mm^1.5, kg/m^3, J/(kg K), m^(3/2)".to_owned(),
             Self::BareNumber(number) if !units.is_empty() => {
                 format!("write its unit, for example \"{number} {}\"; accepted: {}", units[0], units.join(", "))
@@ -467,7 +468,7 @@ mod tests {
             ("nan kg", Dimension::MASS, ["does not begin with a number", "accepted: kg"]),
             ("1e999 kg", Dimension::MASS, ["out of the range", "accepted: kg"]),
             ("1e-320 mg", Dimension::MASS, ["out of the range", "accepted: kg"]),
-            ("2,49 kg", Dimension::MASS, ["a point, not a comma", "N/mm^1.5"]),
+            ("2,49 kg", Dimension::MASS, ["a point, not a comma", "write 2.49, not 2,49"]),
             ("2 kg/", Dimension::MASS, ["missing at the end", "N/mm^1.5"]),
             ("2 kg^", Dimension::MASS, ["expected an exponent", "N/mm^1.5"]),
             ("2 kg^1e9", Dimension::MASS, ["within ±12", "N/mm^1.5"]),

@@ -118,7 +118,7 @@ impl March {
             Some(step) => format!("stable up to {:.4} us", step * 1e6),
             None => "no stability limit".to_owned(),
         };
-        let Self { unknowns_marched, steps, integrator, .. } = self;
+        let Self { unknowns_marched: unknowns, steps, integrator, .. } = self;
         let (step, end) = (self.step_s * 1e6, self.end_s * 1e3);
         [
             ("contact", format!("static stiffness of the plate {:.2} N/mm", self.static_stiffness_N_m * 1e-3)),
@@ -126,7 +126,7 @@ impl March {
             (
                 "march",
                 format!(
-                    "{unknowns_marched} unknowns, {steps} steps of {step:.4} us to {end:.4} ms with {integrator} ({stable})"
+                    "{unknowns} unknowns, {steps} steps of {step:.4} us to {end:.4} ms with {integrator} ({stable})"
                 ),
             ),
         ]

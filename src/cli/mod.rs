@@ -44,8 +44,8 @@ struct Arguments {
 enum Command {
     /// Makes a folder with a scene to begin with, every key explained.
     ///
-    /// The scene runs at once. Keys that it leaves out are there as comments, with the values that hold without them. Beside it
-    /// lies a JSON Schema, by which editors complete and check the scene.
+    /// The scene runs at once. Keys that it leaves out are there as comments, with the values that hold without them.
+    /// Beside it lies a JSON Schema, by which editors complete and check the scene.
     New(new::Arguments),
     /// Computes a scene: force history, stresses, first damage.
     ///

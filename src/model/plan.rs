@@ -249,6 +249,15 @@ impl Builder<'_> {
         let (centre, column) = self.point(plate, at)?;
         let too_large = |why: String, key: &str| {
             let (low, high) = plate.plane.bounds();
+            if (0..2).any(|d| !(low[d]..=high[d]).contains(&centre[d])) {
+                let [from, to] = [low, high].map(|corner| corner.map(|x| x * 1e3));
+                let message = format!("({:.4}, {:.4}) mm is beside the plate", centre[0] * 1e3, centre[1] * 1e3);
+                let help = format!(
+                    "x runs from {:.4} to {:.4} mm and y from {:.4} to {:.4} mm, if `mesh.unit` is right",
+                    from[0], to[0], from[1], to[1]
+                );
+                return self.error(at, message, help);
+            }
             let [width, depth] = [0, 1].map(|d| (high[d] - low[d]) * 1e3);
             let size = format!("the plate is {width:.4} mm by {depth:.4} mm, if `mesh.unit` is right");
             self.error(&impactor.load, why, format!("choose a smaller `impactor.{key}`; {size}"))

@@ -9,8 +9,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The scene `text` with comments: what every key means, and, commented out, those that it leaves out, with the values that
-/// hold without them or with an example. Parameters of plug-ins are looked up in `plugins`.
+/// The scene `text` with comments: what every key means, and, commented out, those that it leaves out, with the values
+/// that hold without them or with an example. Parameters of plug-ins are looked up in `plugins`.
 ///
 /// # Errors
 /// As [`super::parse`].

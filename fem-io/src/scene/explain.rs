@@ -25,7 +25,8 @@ pub struct Explained {
     pub about: String,
 }
 
-/// The keys that hold in the scene file `path`, in the order of the tables of a scene, with the parameters of `plugins`.
+/// The keys that hold in the scene file `path`, in the order of the tables of a scene, with the parameters of
+/// `plugins`.
 ///
 /// # Errors
 /// As [`super::read`].

@@ -1,4 +1,4 @@
-//! What a table of a scene may hold: one list for the reader, the schema, new scenes and what `fem check --explain` prints.
+//! What a table of a scene may hold: one list for the reader, the schema, new scenes and `fem check --explain`.
 
 use super::tree::{Node, Table};
 use fem_core::plugin::{Dimension, Kind, PluginInfo};

@@ -212,7 +212,9 @@ impl<'a> Field<'a> {
 
     /// Position of this text among `known` words.
     pub(crate) fn word<'b>(&self, known: impl Iterator<Item = &'b str> + Clone) -> Result<usize, SceneError> {
-        let text = self.text()?;
+        let Node::Text(text) = self.node() else {
+            return Err(self.wrong(&format!("one of the words {}", known.collect::<Vec<_>>().join(", "))));
+        };
         known.clone().position(|k| k == text).ok_or_else(|| {
             self.error(
                 format!("`{text}` is none of the words known here"),

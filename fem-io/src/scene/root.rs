@@ -127,7 +127,7 @@ pub(super) const KEYS: Keys = &[
     key(
         "failure",
         Form::Table(run::FAILURE),
-        r#"{ criteria = ["hashin-report"] }"#,
+        r#"{ criteria = ["hashin-report"], every = "5 us", window = "2.54 mm" }"#,
         "where and when failure is looked for",
     ),
     key("output", Form::Table(run::OUTPUT), "{ plots = true }", "what is written").default("{}"),

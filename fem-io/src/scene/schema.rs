@@ -15,8 +15,8 @@ const QUANTITY: &str = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(\s+\S|[^\d\s.
 
 /// The JSON Schema (draft 7, which editors know) of a scene whose plug-ins are `plugins`.
 ///
-/// It knows keys, kinds of values, words, plug-ins with their parameters and materials of the library. What hangs on the
-/// mesh, on units or on other keys [`super::read`] alone finds out: it refuses all that the schema refuses, and more.
+/// It knows keys, kinds of values, words, plug-ins with their parameters and materials of the library. What hangs on
+/// the mesh, on units or on other keys [`super::read`] alone finds out.
 pub fn schema(plugins: Plugins<'_>) -> Value {
     let presets = Fidelity::ALL.map(|(_, fidelity)| parsed(fidelity.preset()));
     let below: Vec<&Table> = presets.iter().collect();
