@@ -58,7 +58,7 @@ fn wrong_parameters_are_shown_in_the_scene() {
     for (from, to, words) in [
         ("shifted-krylov", "shifted-kyrlov", "did you mean `shifted-krylov`"),
         ("about", "around", "`around`: is not known"),
-        ("50 kHz", "50 mm", "a frequency"),
+        ("50 kHz", "50 mm", "wrong dimension"),
         ("vectors = 16", "vectors = 1000000000", "must not exceed 1000"),
     ] {
         let check = fem("check", &REDUCTION.replace(from, to), folder.path(), &[]);
