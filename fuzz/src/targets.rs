@@ -70,7 +70,7 @@ pub fn scene(data: &[u8]) {
                     assert!(cells.iter().all(|n| *n > 0));
                 }
                 MeshSource::File { metres_per_unit, .. } => positive(metres_per_unit),
-                MeshSource::Graded { plate, .. } => assert!(plate.value.cells().is_ok_and(|n| n > 0)),
+                MeshSource::Graded { ref plate, .. } => assert!(plate.value.cells().is_ok_and(|n| n > 0)),
             }
             if let Some(impact) = scene.impact() {
                 for impactor in &impact.impactors {
