@@ -14,7 +14,7 @@ use fem_core::window;
 use fem_failure::scan::{self, Place, Probe, Scan, ScanSite};
 use fem_io::scene::Window;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
+use std::rc::Rc;
 
 /// Samples recovered together.
 const BATCH: usize = 16;
@@ -53,7 +53,7 @@ impl IndexHistory {
 #[derive(Debug)]
 pub(crate) struct Watch<'a> {
     model: &'a Model,
-    expansion: Arc<Expansion<'a>>,
+    expansion: Rc<Expansion<'a>>,
     recovery: Recovery,
     /// Six per station, empty where there are none.
     residual: Vec<f64>,
@@ -83,7 +83,7 @@ impl<'a> Watch<'a> {
     ///
     /// # Errors
     /// A criterion whose material lacks a constant, or a cell that the element refuses.
-    pub(crate) fn new(model: &'a Model, expansion: Arc<Expansion<'a>>) -> Result<Self, Error> {
+    pub(crate) fn new(model: &'a Model, expansion: Rc<Expansion<'a>>) -> Result<Self, Error> {
         let recovery = watched(model);
         let scan = Scan::new(model.criteria.clone(), sites(model, &recovery), model.materials.clone())?;
         let (probes, histories) = gauges(model, &scan).into_iter().unzip();
@@ -100,12 +100,12 @@ impl<'a> Watch<'a> {
             recovery,
         };
         // Stresses of large displacements are no product with the coordinates.
-        if let Some((basis, modes)) = watch.expansion.basis().filter(|_| !model.effects.membrane) {
-            if 6 * watch.recovery.sites() * modes * size_of::<f64>() <= OPERATOR_LIMIT {
-                let mut operator = vec![0.0; 6 * watch.recovery.sites() * modes];
-                watch.recover(&watch.expansion.nodal(basis), modes, &mut operator)?;
-                watch.operator = Some(operator);
-            }
+        if let Some((basis, modes)) = watch.expansion.basis().filter(|_| !model.effects.membrane)
+            && 6 * watch.recovery.sites() * modes * size_of::<f64>() <= OPERATOR_LIMIT
+        {
+            let mut operator = vec![0.0; 6 * watch.recovery.sites() * modes];
+            watch.recover(&watch.expansion.nodal(basis), modes, &mut operator)?;
+            watch.operator = Some(operator);
         }
         Ok(watch)
     }

@@ -22,7 +22,7 @@ use fem_failure::scan::{self, Scan};
 use fem_io::files::{FileError, OutputDir};
 use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
+use std::rc::Rc;
 use tracing::info;
 
 /// Steps between two looks of a march at its energies, which cost two products with matrices.
@@ -60,7 +60,7 @@ pub struct March<'a> {
     scan_every: u64,
     watch: Option<Watch<'a>>,
     modal: Option<ModalView>,
-    expansion: Arc<Expansion<'a>>,
+    expansion: Rc<Expansion<'a>>,
     /// Steps at which fields are written.
     frames: Vec<u64>,
     /// From the first of them on.
@@ -212,7 +212,7 @@ impl<'a> March<'a> {
         }
         let followed = model.scene.output.modes.as_ref().zip(reduced.as_ref());
         let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
-        let expansion = Arc::new(Expansion { model, reduced, companions, condensation });
+        let expansion = Rc::new(Expansion { model, reduced, companions, condensation });
         let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, expansion.clone())?) };
         stopwatch.lap("prepare stresses");
         let scan_every = steps_in(model.scene.failure.every, sizes.step);

@@ -176,7 +176,7 @@ fn a_linear_displacement_comes_back_exactly() {
     let scene = PLATE
         .replace(
             "materials.tape = { library = \"AS4/3502\" }",
-            "materials.tape = { E = \"70 GPa\", nu = 0.3, density = \"2.7 g/cm^3\" }",
+            "materials.tape = { e = \"70 GPa\", nu = 0.3, density = \"2.7 g/cm^3\" }",
         )
         .replace("[0/45/90]", "[0]3")
         .replace("fix = [\"U10\", \"U20\", \"U30\"]", "fix = [\"U10\", \"U12\", \"U13\"]")

@@ -35,7 +35,7 @@ impl Array {
     pub fn precise(name: impl Into<String>, components: usize, values: &[f64]) -> Self {
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
         let refused = values.iter().position(|value| !value.is_finite()).map(|at| (at, values[at]));
-        Self { refused, ..Self::new(name, "Float64", components, values.len(), encode(&bytes, Compression::default())) }
+        Self { refused, ..Self::new(name, "Float64", components, values.len(), encode(&bytes, Compression::fast())) }
     }
 
     /// Whole numbers.
