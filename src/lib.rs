@@ -20,6 +20,7 @@
 pub mod advise;
 pub mod cli;
 pub mod cost;
+pub mod damage;
 mod error;
 mod indices;
 pub mod matrices;
@@ -27,7 +28,9 @@ pub mod memory;
 mod modal;
 mod model;
 pub mod modes;
+pub mod pictures;
 mod registry;
+pub mod report;
 pub mod run;
 pub mod statics;
 mod stress;

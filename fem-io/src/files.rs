@@ -32,6 +32,12 @@ pub enum FileError {
         /// What was seen.
         why: String,
     },
+    /// A file of the user's where one of a run's would go.
+    #[error("`{}` is not of a run into this folder and would be lost: choose another folder", path.display())]
+    Taken {
+        /// The file.
+        path: PathBuf,
+    },
     /// A name that leads out of the folder or clashes with its bookkeeping.
     #[error("`{name}` is no name for a result file: use a plain file name that does not begin with a dot")]
     Name {

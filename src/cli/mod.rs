@@ -6,6 +6,7 @@ mod envelope;
 mod list;
 mod matrices;
 mod modes;
+mod report;
 mod run;
 mod signals;
 mod study;
@@ -61,6 +62,11 @@ enum Command {
     /// will run, prints tables, writes study.csv, study.md and pictures of errors over time; every run is kept at once in
     /// study.bin, from which `--resume` goes on.
     Study(study::Arguments),
+    /// Makes a page of a folder of results: report.html, which opens from disk.
+    ///
+    /// One file with everything in it: summary, pictures, curves and damage to move through, events, errors, costs, the scene.
+    /// Reads the files of the folder alone.
+    Report(report::Arguments),
     /// Writes stiffness and mass (Matrix Market) with the names of their unknowns.
     Matrices(matrices::Arguments),
     /// Lists what a scene can name, with parameters and sources.
@@ -91,6 +97,7 @@ pub fn run_with(registry: Registry, arguments: impl IntoIterator<Item = impl Int
         Command::Advise(a) => advise::advise(&registry, &a),
         Command::Modes(a) => modes::modes(&registry, &a),
         Command::Study(a) => study::study(&registry, &a),
+        Command::Report(a) => report::report(&a),
         Command::Matrices(a) => matrices::matrices(&registry, &a),
         Command::List(a) => list::list(&registry, &a),
     };

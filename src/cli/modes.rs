@@ -1,8 +1,7 @@
 //! `fem modes`.
 
-use super::run::default_folder;
+use super::run::{cost_of, default_folder, keep_scene};
 use super::{print, warn};
-use crate::cost::Cost;
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::modes::{self, Summary};
@@ -49,9 +48,10 @@ pub(super) fn compute(
 ) -> Result<ExitCode, Error> {
     let solution = modes::solve(model, count, threads).inspect_err(|_| warn(model))?;
     let summary = Summary::new(model, &solution);
-    let cost = Cost::new(threads, solution.phases.clone());
+    let cost = cost_of(model, threads, &solution.phases);
     print(&summary.text(&cost));
     let dir = OutputDir::create(folder())?;
+    keep_scene(&dir, model)?;
     modes::write(&dir, &solution, &summary)?;
     tables::write_json(&dir, "cost.json", &cost)?;
     print(&format!("  results   {}\n", dir.path().display()));

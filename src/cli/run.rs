@@ -3,16 +3,17 @@
 use super::signals::Signals;
 use super::{print, progress, warn};
 use crate::advise;
-use crate::cost::Cost;
+use crate::cost::{Cost, Phase, Provenance};
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::registry::Registry;
+use crate::report;
 use crate::run::{self, Checkpoint, March};
 use crate::statics;
 use crate::study;
 use crate::summary::{self, Summary};
 use clap::Args;
-use fem_io::files::OutputDir;
+use fem_io::files::{FileError, OutputDir};
 use fem_io::{scene, tables};
 use std::io::Write as _;
 use std::num::NonZeroUsize;
@@ -49,9 +50,10 @@ fn compute(registry: &Registry, arguments: &Arguments) -> Result<ExitCode, Error
         Plan::Static { .. } => {
             let solution = statics::solve(&model, arguments.threads).inspect_err(|_| warn(&model))?;
             let summary = statics::Summary::new(&model, &solution);
-            let cost = Cost::new(arguments.threads, solution.phases.clone());
+            let cost = cost_of(&model, arguments.threads, &solution.phases);
             print(&summary.text(&cost));
             let dir = OutputDir::create(folder())?;
+            keep_scene(&dir, &model)?;
             statics::write(&dir, &model, &solution, &summary)?;
             tables::write_json(&dir, "cost.json", &cost)?;
             print(&format!("  results   {}\n", dir.path().display()));
@@ -71,6 +73,7 @@ fn impact(model: &Model, arguments: &Arguments, folder: &Path) -> Result<ExitCod
     };
     // After all that can be refused, so that a refusal leaves no folder; before the march, so that none is in vain.
     let dir = OutputDir::create(folder)?;
+    keep_scene(&dir, model)?;
     if let Some(signal) = advance(&mut march, &dir, model.scene.output.checkpoint_every)? {
         let again = if arguments.resume { "" } else { " --resume" };
         let command: Vec<_> = std::env::args().collect();
@@ -84,7 +87,7 @@ fn impact(model: &Model, arguments: &Arguments, folder: &Path) -> Result<ExitCod
     }
     let outcome = march.finish();
     let summary = Summary::new(model, &sizes, &outcome);
-    let mut cost = Cost::new(arguments.threads, outcome.phases.clone());
+    let mut cost = cost_of(model, arguments.threads, &outcome.phases);
     let size = study::Size::of_impact(model, &sizes, &outcome);
     cost.one_level_better = study::one_level_better(&size, study::seconds_per_phase(&outcome.phases));
     summary::write_tables(&dir, model, &outcome)?;
@@ -96,6 +99,28 @@ fn impact(model: &Model, arguments: &Arguments, folder: &Path) -> Result<ExitCod
     }
     print(&format!("  results   {}\n", dir.path().display()));
     Ok(if summary.completed { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// What `phases` cost, with what it takes to make the run again.
+pub(super) fn cost_of(model: &Model, threads: NonZeroUsize, phases: &[Phase]) -> Cost {
+    let provenance = Some(Provenance::of(model.scene.source.name()));
+    Cost { provenance, ..Cost::new(threads, phases.to_vec()) }
+}
+
+/// Leaves a copy of the scene with its results, from which `fem report` shows it.
+///
+/// # Errors
+/// Another `scene.toml` that no run has left there.
+pub(super) fn keep_scene(dir: &OutputDir, model: &Model) -> Result<(), Error> {
+    let (copy, source) = (dir.path().join(report::SCENE), &model.scene.source);
+    let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    if same(&copy, Path::new(source.name())) {
+        return Ok(());
+    }
+    if copy.exists() && !["cost.json", "checkpoint.bin"].iter().any(|file| dir.path().join(file).exists()) {
+        return Err(FileError::Taken { path: copy }.into());
+    }
+    Ok(dir.write(report::SCENE, |out| out.write_all(source.text().as_bytes()))?)
 }
 
 /// Marches to the end or to a signal, whose number it returns. A checkpoint is written there, and before whenever
