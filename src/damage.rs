@@ -90,8 +90,9 @@ impl DamageMap {
         let mut kept: Vec<u32> = outcome.maxima.iter().map(|m| m.site.cell).collect();
         kept.sort_unstable();
         kept.dedup();
-        let judged: Vec<u32> =
-            (0..mesh.quads.len() as u32).filter(|q| kept.binary_search(&(symmetry.quad(*q as usize) as u32)).is_ok()).collect();
+        let judged: Vec<u32> = (0..mesh.quads.len() as u32)
+            .filter(|q| kept.binary_search(&(symmetry.quad(*q as usize) as u32)).is_ok())
+            .collect();
         if judged.is_empty() {
             return None;
         }
@@ -107,7 +108,8 @@ impl DamageMap {
                 Place::Ply(k) => (k, false),
                 Place::Interface(k) => (k, true),
             };
-            let empty = || PlaceDamage { ply: ply_name(m.site.place), index: vec![0.0; judged.len()], failed: Vec::new() };
+            let empty =
+                || PlaceDamage { ply: ply_name(m.site.place), index: vec![0.0; judged.len()], failed: Vec::new() };
             let (place, failed) = places.entry(key).or_insert_with(|| (empty(), BTreeMap::new()));
             for &i in &stands_for[m.site.cell as usize] {
                 place.index[i] = place.index[i].max(m.index);
@@ -158,18 +160,17 @@ impl DamageMap {
     /// A file that was cut or changed.
     pub fn check(&self) -> Result<(), String> {
         let good = |fits: bool, what: &str| if fits { Ok(()) } else { Err(what.to_owned()) };
-        let finite = |values: &mut dyn Iterator<Item = f64>| values.all(f64::is_finite);
         good(self.cells.len() == self.quads.len(), "`cells` and `quads` differ in length")?;
         let points = self.points_m.len();
         good(self.quads.iter().flatten().all(|n| (*n as usize) < points), "`quads` names a node that is not there")?;
         good(self.judged.iter().all(|q| (*q as usize) < self.quads.len()), "`judged` names a cell that is not there")?;
         let places = self.points_m.iter().chain(&self.impacts_m).flatten().copied();
         let heights = self.plies.iter().flat_map(|ply| [ply.angle_deg, ply.z_m[0], ply.z_m[1]]);
-        good(finite(&mut places.chain(heights).chain([self.end_s])), "a coordinate is not finite")?;
+        good(places.chain(heights).chain([self.end_s]).all(f64::is_finite), "a coordinate is not finite")?;
         for place in &self.places {
             let ply = &place.ply;
             good(place.index.len() == self.judged.len(), &format!("`index` of ply {ply} is not as long as `judged`"))?;
-            good(finite(&mut place.index.iter().copied()), &format!("an index of ply {ply} is not finite"))?;
+            good(place.index.iter().all(|v| v.is_finite()), &format!("an index of ply {ply} is not finite"))?;
             let known = |f: &Failed| (f.0 as usize) < self.judged.len() && (f.1 as usize) < self.modes.len();
             good(place.failed.iter().all(|f| known(f) && f.2.is_finite()), &format!("`failed` of ply {ply} is wrong"))?;
         }
@@ -212,7 +213,10 @@ mod tests {
     fn map() -> DamageMap {
         DamageMap {
             end_s: 1e-3,
-            modes: vec![ModeName { criterion: "c".into(), mode: "m".into() }, ModeName { criterion: "c".into(), mode: "n".into() }],
+            modes: vec![
+                ModeName { criterion: "c".into(), mode: "m".into() },
+                ModeName { criterion: "c".into(), mode: "n".into() },
+            ],
             plies: vec![PlyBand { angle_deg: 0.0, z_m: [0.0, 1e-3] }],
             impacts_m: vec![[0.0, 0.0]],
             points_m: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],

@@ -13,6 +13,7 @@ mod impactors;
 mod indices;
 mod modal;
 mod model;
+mod page;
 mod registry;
 mod report;
 mod restart;

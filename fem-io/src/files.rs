@@ -24,7 +24,7 @@ pub enum FileError {
         /// The folder.
         path: PathBuf,
     },
-    /// A checkpoint that is not as it was written.
+    /// A file that is not as it was written.
     #[error("`{}` is damaged: {why}", path.display())]
     Damaged {
         /// The file.

@@ -73,7 +73,7 @@ fn impact(model: &Model, arguments: &Arguments, folder: &Path) -> Result<ExitCod
     };
     // After all that can be refused, so that a refusal leaves no folder; before the march, so that none is in vain.
     let dir = OutputDir::create(folder)?;
-    keep_scene(&dir, model)?;
+    own_scene(&dir, model)?;
     if let Some(signal) = advance(&mut march, &dir, model.scene.output.checkpoint_every)? {
         let again = if arguments.resume { "" } else { " --resume" };
         let command: Vec<_> = std::env::args().collect();
@@ -90,6 +90,7 @@ fn impact(model: &Model, arguments: &Arguments, folder: &Path) -> Result<ExitCod
     let mut cost = cost_of(model, arguments.threads, &outcome.phases);
     let size = study::Size::of_impact(model, &sizes, &outcome);
     cost.one_level_better = study::one_level_better(&size, study::seconds_per_phase(&outcome.phases));
+    keep_scene(&dir, model)?;
     summary::write_tables(&dir, model, &outcome)?;
     tables::write_json(&dir, "summary.json", &summary)?;
     tables::write_json(&dir, "cost.json", &cost)?;
@@ -108,19 +109,27 @@ pub(super) fn cost_of(model: &Model, threads: NonZeroUsize, phases: &[Phase]) ->
 }
 
 /// Leaves a copy of the scene with its results, from which `fem report` shows it.
-///
-/// # Errors
-/// Another `scene.toml` that no run has left there.
 pub(super) fn keep_scene(dir: &OutputDir, model: &Model) -> Result<(), Error> {
-    let (copy, source) = (dir.path().join(report::SCENE), &model.scene.source);
-    let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
-    if same(&copy, Path::new(source.name())) {
+    if own_scene(dir, model)? {
         return Ok(());
     }
-    if copy.exists() && !["cost.json", "checkpoint.bin"].iter().any(|file| dir.path().join(file).exists()) {
+    Ok(dir.write(report::SCENE, |out| out.write_all(model.scene.source.text().as_bytes()))?)
+}
+
+/// Whether the folder of the results is that of the scene, which then needs no copy.
+///
+/// # Errors
+/// Another `scene.toml`, which no run has left there.
+pub(super) fn own_scene(dir: &OutputDir, model: &Model) -> Result<bool, Error> {
+    let copy = dir.path().join(report::SCENE);
+    let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    if same(&copy, Path::new(model.scene.source.name())) {
+        return Ok(true);
+    }
+    if copy.exists() && !dir.path().join("cost.json").exists() {
         return Err(FileError::Taken { path: copy }.into());
     }
-    Ok(dir.write(report::SCENE, |out| out.write_all(source.text().as_bytes()))?)
+    Ok(false)
 }
 
 /// Marches to the end or to a signal, whose number it returns. A checkpoint is written there, and before whenever

@@ -27,10 +27,10 @@ pub fn plan(title: &str, damage: &DamageMap) -> MapPlot {
     }
     shown.truncate(SHEET);
     let more = count.saturating_sub(SHEET);
-    let more = if more > 0 { format!(", first {SHEET} of {count} places") } else { String::new() };
+    let first = if more > 0 { format!("First {SHEET} of {count} places: ") } else { String::new() };
     let near = near(damage);
     MapPlot {
-        title: format!("{title}: damage in plan{more}"),
+        title: format!("{first}{title}"),
         x: Axis::linear("x", "mm"),
         y: Axis::linear("y", "mm"),
         equal_aspect: true,
@@ -92,12 +92,15 @@ fn near(damage: &DamageMap) -> Vec<bool> {
 /// All plies, and the interfaces as thin bands, along x through the first impact; `None` where no judged cell is cut.
 pub fn section(title: &str, damage: &DamageMap) -> Option<MapPlot> {
     let y = damage.impacts_m.first()?[1];
-    let cut = damage.judged.iter().enumerate().filter_map(|(i, q)| Some((i, crossing(&damage.corners(*q), y)?)));
+    let near = near(damage);
+    let seen = damage.judged.iter().enumerate().filter(|(_, q)| near[**q as usize]);
+    let cut = seen.filter_map(|(i, q)| Some((i, crossing(&damage.corners(*q), y)?)));
     let cut: Vec<(usize, [f64; 2])> = cut.collect();
     if cut.is_empty() {
         return None;
     }
-    let mut panel = Panel { title: format!("y = {:.2} mm", y * 1e3), ..Panel::default() };
+    let mut panel =
+        Panel { title: format!("section at y = {:.2} mm, interfaces as thin bands", y * 1e3), ..Panel::default() };
     // Interfaces last: their bands lie above the plies.
     let (interfaces, plies): (Vec<_>, Vec<_>) = damage.places.iter().partition(|place| place.ply.contains('|'));
     for place in plies.into_iter().chain(interfaces) {
@@ -111,11 +114,11 @@ pub fn section(title: &str, damage: &DamageMap) -> Option<MapPlot> {
     }
     let every = damage.plies.len().div_ceil(ANGLES);
     let note = |(k, ply): (usize, &crate::damage::PlyBand)| {
-        (0.5e3 * (ply.z_m[0] + ply.z_m[1]), format!("{}: {}\u{b0}", k + 1, ply.angle_deg))
+        (0.5e3 * (ply.z_m[0] + ply.z_m[1]), format!("{}: {}", k + 1, degrees(ply.angle_deg)))
     };
     panel.notes = damage.plies.iter().enumerate().step_by(every).map(note).collect();
     Some(MapPlot {
-        title: format!("{title}: damage in a section"),
+        title: title.to_owned(),
         x: Axis::linear("x", "mm"),
         y: Axis::linear("z", "mm"),
         equal_aspect: false,
@@ -167,9 +170,13 @@ fn classes(damage: &DamageMap) -> Vec<String> {
 /// `ply 1 (45°)`, `interface 1|2`.
 fn called(damage: &DamageMap, place: &PlaceDamage) -> String {
     match place.ply.parse::<usize>().ok().and_then(|k| damage.plies.get(k.wrapping_sub(1))) {
-        Some(ply) => format!("ply {} ({}\u{b0})", place.ply, ply.angle_deg),
+        Some(ply) => format!("ply {} ({})", place.ply, degrees(ply.angle_deg)),
         None => format!("interface {}", place.ply),
     }
+}
+
+fn degrees(angle: f64) -> String {
+    format!("{angle}\u{b0}").replace('-', "\u{2212}")
 }
 
 #[cfg(test)]
@@ -181,14 +188,15 @@ mod tests {
     /// Four cells of 1 mm in a row, two plies and their interface; the second cell of ply 2 fails.
     fn damage() -> DamageMap {
         let points = (0..2).flat_map(|j| (0..5).map(move |i| [f64::from(i) * 1e-3, f64::from(j) * 1e-3]));
-        let place = |ply: &str, index: [f64; 4], failed: Vec<Failed>| PlaceDamage { ply: ply.into(), index: index.to_vec(), failed };
+        let place = |ply: &str, index: [f64; 4], failed: Vec<Failed>| PlaceDamage {
+            ply: ply.into(),
+            index: index.to_vec(),
+            failed,
+        };
         DamageMap {
             end_s: 1e-3,
             modes: ["fibre", "matrix"].map(|mode| ModeName { criterion: "c".into(), mode: mode.into() }).to_vec(),
-            plies: vec![
-                PlyBand { angle_deg: 0.0, z_m: [-1e-4, 0.0] },
-                PlyBand { angle_deg: 90.0, z_m: [0.0, 1e-4] },
-            ],
+            plies: vec![PlyBand { angle_deg: 0.0, z_m: [-1e-4, 0.0] }, PlyBand { angle_deg: 90.0, z_m: [0.0, 1e-4] }],
             impacts_m: vec![[2e-3, 0.5e-3]],
             points_m: points.collect(),
             quads: (0..4).map(|i| [i, i + 1, i + 6, i + 5]).collect(),
@@ -220,11 +228,13 @@ mod tests {
     fn a_section_has_every_ply_and_the_interface_between() {
         let map = section("t", &damage()).unwrap();
         let panel = &map.panels[0];
-        assert_eq!(panel.cells.len(), 12);
-        let spans = |k: usize| [panel.cells[k].corners[0], panel.cells[k].corners[2]].map(|p| p.map(|v| (v * 1e6).round() / 1e6));
+        assert_eq!(panel.cells.len(), 9, "the cell at the right is out of view");
+        let spans = |k: usize| {
+            [panel.cells[k].corners[0], panel.cells[k].corners[2]].map(|p| p.map(|v| (v * 1e6).round() / 1e6))
+        };
         assert_eq!(spans(0), [[0.0, -0.1], [1.0, 0.0]]);
-        assert_eq!((spans(5), panel.cells[5].fill), ([[1.0, 0.0], [2.0, 0.1]], Fill::Class(1)));
-        assert_eq!(spans(8), [[0.0, -0.015], [1.0, 0.015]]);
+        assert_eq!((spans(4), panel.cells[4].fill), ([[1.0, 0.0], [2.0, 0.1]], Fill::Class(1)));
+        assert_eq!(spans(6), [[0.0, -0.015], [1.0, 0.015]]);
         assert_eq!(panel.notes, [(-0.05, "1: 0\u{b0}".to_owned()), (0.05, "2: 90\u{b0}".to_owned())]);
         let mut aside = damage();
         aside.impacts_m[0][1] = 2e-3;

@@ -139,7 +139,9 @@ fn check(plot: &MapPlot) -> Result<(), PlotError> {
         }
         let lines = panel.lines.iter().map(|line| line.class);
         let filled = cells.clone().filter_map(|cell| if let Fill::Class(k) = cell.fill { Some(k) } else { None });
-        if let Some(k) = lines.chain(panel.dots.iter().map(|dot| dot.1)).chain(filled).find(|k| *k >= plot.classes.len()) {
+        if let Some(k) =
+            lines.chain(panel.dots.iter().map(|dot| dot.1)).chain(filled).find(|k| *k >= plot.classes.len())
+        {
             return Err(PlotError::Empty { title: title(), what: format!("class {k} of {}", what()) });
         }
         let shares = cells.clone().filter_map(|cell| if let Fill::Share(v) = cell.fill { Some([v, v]) } else { None });

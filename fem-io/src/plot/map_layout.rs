@@ -49,7 +49,7 @@ pub(super) fn lay_out(plot: &MapPlot) -> Result<Drawing, PlotError> {
     let x_ticks = (2..=10).rev().map(|most| x.ticks(most)).find(|ticks| fits(ticks)).unwrap_or_else(|| x.ticks(1));
 
     let mut canvas = Canvas(Vec::new());
-    canvas.text([left, EDGE + 0.8 * TITLE], &clean(&plot.title, TITLE, right - left), TITLE, INK, Anchor::Start);
+    canvas.text([left, EDGE + 0.8 * TITLE], &clean(&plot.title, TITLE, WIDTH - EDGE - left), TITLE, INK, Anchor::Start);
     let top = canvas.map_legend(plot, left, WIDTH - EDGE, EDGE + 1.4 * TITLE);
     let pitch = height + ROW + GAP;
     for (i, panel) in plot.panels.iter().enumerate() {

@@ -17,7 +17,9 @@ pub fn mesh_map(title: &str, mesh: &QuadMesh, impacts: &[[f64; 2]]) -> MapPlot {
         let k = classes.len();
         match group.dim {
             0 => panel.dots.extend(group.nodes.iter().map(|n| (place(*n), k))),
-            1 => panel.lines.extend(group.edges.iter().map(|edge| Stroke { points: edge.map(place).to_vec(), class: k })),
+            1 => {
+                panel.lines.extend(group.edges.iter().map(|edge| Stroke { points: edge.map(place).to_vec(), class: k }))
+            }
             _ if group.quads.len() == mesh.quads.len() => continue,
             _ => group.quads.iter().for_each(|q| fills[*q as usize] = Fill::Class(k)),
         }

@@ -61,7 +61,8 @@ mod tests {
     #[test]
     fn units_suit_the_values() {
         let shown = |kind, value| {
-            let plot = over_time("title", "quantity", kind, vec![Series::solid("one", vec![(0.0, 0.0), (2e-3, value)])]);
+            let plot =
+                over_time("title", "quantity", kind, vec![Series::solid("one", vec![(0.0, 0.0), (2e-3, value)])]);
             (plot.x.unit, plot.y.unit, plot.series[0].points[1])
         };
         assert_eq!(shown(Physical::Length, -5e-5), ("ms".into(), "µm".into(), (2.0, -50.0)));
