@@ -17,6 +17,36 @@ pub struct Cost {
     pub peak_memory_MB: Option<f64>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub one_level_better: Vec<Better>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub provenance: Option<Provenance>,
+}
+
+/// What it takes to make the run again: the command line, quoted for a shell, the folder it was given in, and the scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct Provenance {
+    pub command: String,
+    pub folder: String,
+    pub scene: String,
+}
+
+impl Provenance {
+    /// Of this process, which computes the scene in the file `scene`.
+    pub fn of(scene: &str) -> Self {
+        let command: Vec<_> = std::env::args_os().map(|word| quoted(&word.to_string_lossy())).collect();
+        let folder = std::env::current_dir().map_or_else(|_| String::new(), |folder| folder.display().to_string());
+        Self { command: command.join(" "), folder, scene: scene.to_owned() }
+    }
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=,:+@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
 }
 
 impl Cost {
@@ -30,6 +60,7 @@ impl Cost {
             phases,
             peak_memory_MB: peak_memory().map(|b| b as f64 / 1e6),
             one_level_better: Vec::new(),
+            provenance: None,
         }
     }
 }
@@ -126,4 +157,16 @@ pub(crate) fn status(key: &str) -> Option<u64> {
     let line = status.lines().find_map(|l| l.strip_prefix(key)?.strip_prefix(':'))?;
     let kib: u64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
     Some(kib * 1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_quoted_where_a_shell_would_split_or_read_them() {
+        let words = ["fem", "--out=a/b.c", "two words", "it's", "$HOME", ""];
+        let want = ["fem", "--out=a/b.c", "'two words'", r"'it'\''s'", "'$HOME'", "''"];
+        assert_eq!(words.map(quoted), want);
+    }
 }

@@ -12,6 +12,7 @@ use fem_io::gmsh::MeshError;
 use fem_io::plot::PlotError;
 use fem_io::scene::SceneError;
 use miette::Diagnostic;
+use std::path::PathBuf;
 
 /// An error of the framework; those about the scene show its line.
 #[derive(Debug, thiserror::Error, Diagnostic)]
@@ -119,6 +120,14 @@ pub enum Error {
     },
     #[error(transparent)]
     File(#[from] FileError),
+    #[error("`{}` holds no results of `fem run`: there is no `summary.json` in it", folder.display())]
+    #[diagnostic(help("name the folder that `fem run` printed after `results`"))]
+    NoResults {
+        /// The folder.
+        folder: PathBuf,
+    },
+    #[error("the page cannot be made")]
+    Page(#[from] minijinja::Error),
     #[error("the plot failed")]
     Plot(#[from] PlotError),
 }

@@ -43,6 +43,7 @@
 pub mod advise;
 pub mod cli;
 pub mod cost;
+pub mod damage;
 mod error;
 mod expansion;
 mod fields;
@@ -53,7 +54,9 @@ pub mod mesh;
 mod modal;
 mod model;
 pub mod modes;
+pub mod pictures;
 mod registry;
+pub mod report;
 pub mod run;
 pub mod statics;
 mod stress;

@@ -117,8 +117,20 @@ fn run_writes_its_results_to_a_folder_named_like_that_of_the_scene() {
         "contact_force.png",
         "contact_force.svg",
         "cost.json",
+        "damage.json",
+        "damage_map.png",
+        "damage_map.svg",
+        "damage_section.png",
+        "damage_section.svg",
+        "displacement.png",
+        "displacement.svg",
+        "energy.png",
+        "energy.svg",
         "events.csv",
+        "force_displacement.png",
+        "force_displacement.svg",
         "history.csv",
+        "scene.toml",
         "summary.json",
     ];
     assert_eq!(case.names("results/plate"), files);
@@ -223,7 +235,7 @@ fn check_summary(summary: &Value) {
 fn without_plots_there_are_tables_alone() {
     let case = strip().append("[output]\nplots = false\n");
     case.fem("run", &["--out", "out"]).good();
-    let files = [".lock", "checkpoint.bin", "cost.json", "events.csv", "history.csv", "summary.json"];
+    let files = [".lock", "checkpoint.bin", "cost.json", "events.csv", "history.csv", "scene.toml", "summary.json"];
     assert_eq!(case.names("out"), files);
 }
 

@@ -76,8 +76,16 @@ fn nothing_of_it_is_written_unless_asked_for() {
     assert!(!case.names("out").iter().any(|name| name.starts_with("index")), "{:?}", case.names("out"));
     let case = watching(r#"{ at = { x = "15 mm", y = "5 mm" }, ply = 1 }"#, "plots = false");
     case.fem("run", &["--out", "out"]).good();
-    let files =
-        [".lock", "checkpoint.bin", "cost.json", "events.csv", "history.csv", "index_history.csv", "summary.json"];
+    let files = [
+        ".lock",
+        "checkpoint.bin",
+        "cost.json",
+        "events.csv",
+        "history.csv",
+        "index_history.csv",
+        "scene.toml",
+        "summary.json",
+    ];
     assert_eq!(case.names("out"), files);
 }
 

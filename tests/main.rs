@@ -16,6 +16,7 @@ mod indices;
 mod mesh;
 mod modal;
 mod model;
+mod page;
 mod registry;
 mod report;
 mod restart;

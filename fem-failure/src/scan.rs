@@ -223,6 +223,8 @@ struct Seen {
     /// Indices of the last sample.
     last: Vec<f64>,
     maxima: Vec<f64>,
+    /// When each index first reached 1, s; infinite where it did not.
+    reached: Vec<f64>,
     peaks: Vec<Option<Reading>>,
     /// Row per place.
     first: Vec<Option<(Reading, Stress6<Ply>)>>,
@@ -320,6 +322,7 @@ impl Scan {
             seen.push(Seen {
                 last: vec![0.0; size],
                 maxima: vec![0.0; size],
+                reached: vec![f64::INFINITY; size],
                 peaks: vec![None; modes.len()],
                 first: vec![None; places.len() * modes.len()],
             });
@@ -428,14 +431,16 @@ impl Scan {
     }
 
     /// For maps: every site that criterion number `criterion` looks at, with its largest index over all samples per
-    /// mode. A mode that never applied has 0.
+    /// mode, and the time (s) at which each first reached 1. A mode that never applied has 0, one that never reached 1
+    /// an infinite time.
     ///
     /// # Panics
     /// There is no criterion of that number.
-    pub fn maxima(&self, criterion: usize) -> impl Iterator<Item = (&ScanSite, &[f64])> {
-        let watch = &self.watches[criterion];
+    pub fn maxima(&self, criterion: usize) -> impl Iterator<Item = (&ScanSite, &[f64], &[f64])> {
+        let (watch, seen) = (&self.watches[criterion], &self.record.seen[criterion]);
         let sites = self.order[watch.span.clone()].iter().map(|&i| &self.sites[i as usize]);
-        sites.zip(self.record.seen[criterion].maxima.chunks_exact(watch.modes.len()))
+        let [maxima, reached] = [&seen.maxima, &seen.reached].map(|table| table.chunks_exact(watch.modes.len()));
+        sites.zip(maxima).zip(reached).map(|((site, maxima), reached)| (site, maxima, reached))
     }
 
     /// For fields: every site, by its number, that criterion number `criterion` looks at, with its indices of the last sample.
@@ -476,7 +481,7 @@ impl Scan {
     /// another size.
     #[must_use]
     pub fn resume(&mut self, record: Record) -> bool {
-        let size = |s: &Seen| [s.last.len(), s.maxima.len(), s.peaks.len(), s.first.len()];
+        let size = |s: &Seen| [s.last.len(), s.maxima.len(), s.reached.len(), s.peaks.len(), s.first.len()];
         let fits = record.stress.len() == self.sites.len()
             && record.seen.iter().map(size).eq(self.record.seen.iter().map(size));
         if fits {
@@ -534,6 +539,8 @@ impl Watch {
                     let share = if last.is_some() { (1.0 - before) / (index - before) } else { 1.0 };
                     let time = last.map_or(t, |last| (last + (t - last) * share).min(t));
                     let here = Reading { time, ..here };
+                    let reached = &mut seen.reached[row * modes + mode];
+                    *reached = reached.min(time);
                     if first.is_none_or(|(f, _)| here.precedes(&f)) {
                         let between = |i| (1.0 - share) * stress[0][row].0[i] + share * stress[1][row].0[i];
                         *first = Some((here, Stress6::new(std::array::from_fn(between))));

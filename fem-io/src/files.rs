@@ -25,13 +25,19 @@ pub enum FileError {
         /// The folder.
         path: PathBuf,
     },
-    /// A checkpoint that is not as it was written.
+    /// A file that is not as it was written.
     #[error("`{}` is damaged: {why}", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
         /// What was seen.
         why: String,
+    },
+    /// A file of the user's where one of a run's would go.
+    #[error("`{}` is not of a run into this folder and would be lost: choose another folder", path.display())]
+    Taken {
+        /// The file.
+        path: PathBuf,
     },
     /// A name that leads out of the folder or clashes with its bookkeeping.
     #[error("`{name}` is no name for a result file: use a plain file name that does not begin with a dot")]

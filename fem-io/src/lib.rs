@@ -26,6 +26,7 @@ pub mod files;
 pub mod gmsh;
 pub mod materials;
 pub mod plot;
+pub mod results;
 pub mod scene;
 pub mod tables;
 pub mod units;

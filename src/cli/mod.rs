@@ -10,6 +10,7 @@ mod matrices;
 mod mesh;
 mod modes;
 mod new;
+mod report;
 mod run;
 mod schema;
 mod signals;
@@ -72,6 +73,11 @@ enum Command {
     /// will run, prints tables, writes study.csv, study.md and pictures of errors over time; every run is kept at once in
     /// study.bin, from which `--resume` goes on.
     Study(study::Arguments),
+    /// Makes a page of a folder of results: report.html, which opens from disk.
+    ///
+    /// One file with everything in it: summary, pictures, curves and damage to move through, events, errors, costs, the scene.
+    /// Reads the files of the folder alone.
+    Report(report::Arguments),
     /// Writes stiffness and mass (Matrix Market) with the names of their unknowns.
     Matrices(matrices::Arguments),
     /// Shows a mesh: sizes, groups, quality; writes it for gmsh.
@@ -126,6 +132,7 @@ fn dispatch(registry: &Registry, command: &Command, console: &Console) -> miette
         Command::Advise(a) => advise::advise(registry, a, console),
         Command::Modes(a) => modes::modes(registry, a, console),
         Command::Study(a) => study::study(registry, a, console),
+        Command::Report(a) => report::report(a, console),
         Command::Mesh(a) => mesh::mesh(a, console),
         Command::Matrices(a) => matrices::matrices(registry, a, console),
         Command::List(a) => list::list(registry, a, console),

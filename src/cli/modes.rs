@@ -1,6 +1,6 @@
 //! `fem modes`.
 
-use super::run::{Results, default_folder};
+use super::run::{Results, cost_of, default_folder, keep_scene};
 use super::{Console, Format, warn};
 use crate::cost::Cost;
 use crate::error::Error;
@@ -55,7 +55,7 @@ pub(super) fn compute(
 ) -> miette::Result<ExitCode> {
     let solution = modes::solve(model, count, threads).inspect_err(|_| warn(model))?;
     let summary = Summary::new(model, &solution);
-    let mut cost = Cost::new(threads, solution.phases.clone());
+    let mut cost = cost_of(model, threads, &solution.phases);
     console.say(format, || summary.text(&cost));
     let dir = write(model, folder(), &solution, &summary, &mut cost)?;
     Results { summary: &summary, cost: &cost, results: dir.path() }.show(format, console)?;
@@ -70,6 +70,7 @@ fn write(
     cost: &mut Cost,
 ) -> Result<OutputDir, Error> {
     let dir = OutputDir::create(folder)?;
+    keep_scene(&dir, model)?;
     modes::write(&dir, solution, summary)?;
     cost.phases.extend(fields::write_modes(&dir, model, solution)?);
     tables::write_json(&dir, "cost.json", cost)?;

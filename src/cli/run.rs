@@ -3,17 +3,18 @@
 use super::signals::Signals;
 use super::{Console, Format, warn};
 use crate::advise;
-use crate::cost::Cost;
+use crate::cost::{Cost, Phase, Provenance};
 use crate::error::Error;
 use crate::fields;
 use crate::model::{Model, Plan};
 use crate::registry::Registry;
+use crate::report;
 use crate::run::{self, Checkpoint, March, Outcome};
 use crate::statics;
 use crate::study;
 use crate::summary::{self, Summary};
 use clap::Args;
-use fem_io::files::OutputDir;
+use fem_io::files::{FileError, OutputDir};
 use fem_io::{scene, tables};
 use indicatif::ProgressBar;
 use serde::Serialize;
@@ -73,10 +74,11 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console)
 fn at_rest(model: &Model, arguments: &Arguments, folder: PathBuf, console: &Console) -> miette::Result<ExitCode> {
     let solution = statics::solve(model, arguments.threads).inspect_err(|_| warn(model))?;
     let summary = statics::Summary::new(model, &solution);
-    let mut cost = Cost::new(arguments.threads, solution.phases.clone());
+    let mut cost = cost_of(model, arguments.threads, &solution.phases);
     console.say(arguments.format, || summary.text(&cost));
     let mut write = || {
         let dir = OutputDir::create(&folder)?;
+        keep_scene(&dir, model)?;
         statics::write(&dir, model, &solution, &summary)?;
         cost.phases.extend(fields::write_static(&dir, model, &solution)?);
         tables::write_json(&dir, "cost.json", &cost)?;
@@ -120,6 +122,7 @@ fn march(model: &Model, arguments: &Arguments, folder: &Path, bar: &ProgressBar)
     };
     // After all that can be refused, so that a refusal leaves no folder; before the march, so that none is in vain.
     let dir = OutputDir::create(folder)?;
+    own_scene(&dir, model)?;
     if let Some(signal) = advance(&mut march, &dir, model.scene.output.checkpoint_every, bar)? {
         let again = if arguments.resume { "" } else { " --resume" };
         let command: Vec<_> = std::env::args().collect();
@@ -133,13 +136,44 @@ fn march(model: &Model, arguments: &Arguments, folder: &Path, bar: &ProgressBar)
     }
     let outcome = march.finish();
     let summary = Summary::new(model, &sizes, &outcome);
-    let mut cost = Cost::new(arguments.threads, outcome.phases.clone());
+    let mut cost = cost_of(model, arguments.threads, &outcome.phases);
     let size = study::Size::of_impact(model, &sizes, &outcome);
     cost.one_level_better = study::one_level_better(&size, study::seconds_per_phase(&outcome.phases));
+    keep_scene(&dir, model)?;
     summary::write_tables(&dir, model, &outcome)?;
     tables::write_json(&dir, "summary.json", &summary)?;
     tables::write_json(&dir, "cost.json", &cost)?;
     Ok(Ended::Done(dir, Box::new((summary, cost, outcome))))
+}
+
+/// What `phases` cost, with what it takes to make the run again.
+pub(super) fn cost_of(model: &Model, threads: NonZeroUsize, phases: &[Phase]) -> Cost {
+    let provenance = Some(Provenance::of(model.scene.source.name()));
+    Cost { provenance, ..Cost::new(threads, phases.to_vec()) }
+}
+
+/// Leaves a copy of the scene with its results, from which `fem report` shows it.
+pub(super) fn keep_scene(dir: &OutputDir, model: &Model) -> Result<(), Error> {
+    if own_scene(dir, model)? {
+        return Ok(());
+    }
+    Ok(dir.write(report::SCENE, |out| out.write_all(model.scene.source.text().as_bytes()))?)
+}
+
+/// Whether the folder of the results is that of the scene, which then needs no copy.
+///
+/// # Errors
+/// Another `scene.toml`, which no run has left there.
+pub(super) fn own_scene(dir: &OutputDir, model: &Model) -> Result<bool, Error> {
+    let copy = dir.path().join(report::SCENE);
+    let same = |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    if same(&copy, Path::new(model.scene.source.name())) {
+        return Ok(true);
+    }
+    if copy.exists() && !dir.path().join("cost.json").exists() {
+        return Err(FileError::Taken { path: copy }.into());
+    }
+    Ok(false)
 }
 
 /// Marches to the end or to a signal, whose number it returns. A checkpoint is written there, and before whenever

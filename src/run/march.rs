@@ -388,7 +388,8 @@ impl<'a> March<'a> {
             peaks = watch.scan().peaks();
             sites = watch.sites();
             histories = watch.histories().to_vec();
-            if self.model.scene.output.maps {
+            let output = &self.model.scene.output;
+            if output.maps || output.plots {
                 maxima = (0..self.model.criteria.len()).flat_map(|k| largest(watch.scan(), k)).collect();
             }
             self.counters.criterion_calls = watch.scan().evaluations();
@@ -441,10 +442,11 @@ fn steps_in(interval: f64, dt: f64) -> u64 {
 
 /// Largest index of a criterion at each of its sites.
 fn largest(scan: &Scan, criterion: usize) -> impl Iterator<Item = Maximum> {
-    scan.maxima(criterion).map(move |(site, maxima)| {
+    scan.maxima(criterion).map(move |(site, maxima, reached)| {
         let (mode, index) =
             maxima.iter().enumerate().fold((None, 0.0), |m, (k, &v)| if v > m.1 { (Some(k), v) } else { m });
-        Maximum { criterion, mode, index, site: *site }
+        let reached = reached.iter().copied().enumerate().filter(|(_, time)| time.is_finite()).collect();
+        Maximum { criterion, mode, index, reached, site: *site }
     })
 }
 

@@ -90,7 +90,7 @@ pub struct Outcome {
     pub peaks: Vec<Peak>,
     /// Indices over time at the gauges of the model.
     pub histories: Vec<IndexHistory>,
-    /// Largest index per criterion and site, if the scene asks for maps.
+    /// Largest index per criterion and site, if the scene asks for maps or plots.
     pub maxima: Vec<Maximum>,
     /// What the lowest modes do, if the scene asks for it.
     pub modal: Option<ModalHistory>,
@@ -128,6 +128,8 @@ pub struct Maximum {
     pub mode: Option<usize>,
     /// The index.
     pub index: f64,
+    /// Every mode that reached 1 there, and when it first did, s.
+    pub reached: Vec<(usize, f64)>,
     /// Where.
     pub site: ScanSite,
 }

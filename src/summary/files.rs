@@ -4,7 +4,7 @@ use super::{angle_deg, called, impactors, ply_name, threshold_reached};
 use crate::error::Error;
 use crate::model::Model;
 use crate::run::Outcome;
-use crate::{indices, modal};
+use crate::{indices, modal, pictures};
 use fem_failure::scan::FailureEvent;
 use fem_io::files::OutputDir;
 use fem_io::plot;
@@ -34,7 +34,7 @@ pub fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result
     indices::write_tables(dir, model, outcome)
 }
 
-/// Draws the contact forces over time with the first event of each mode, and the indices at the gauges.
+/// Draws the contact forces over time with the first event of each mode, the indices at the gauges, and [`pictures`].
 ///
 /// # Errors
 /// As [`write_tables`], and numbers that no plot can show.
@@ -58,5 +58,6 @@ pub fn write_plots(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<
     dir.write("contact_force.svg", |w| w.write_all(picture.svg.as_bytes()))?;
     dir.write("contact_force.png", |w| w.write_all(&picture.png))?;
     modal::write_plot(dir, model, outcome)?;
-    indices::write_plots(dir, model, outcome)
+    indices::write_plots(dir, model, outcome)?;
+    pictures::write(dir, model, outcome)
 }

@@ -371,12 +371,12 @@ impl Summary {
 }
 
 /// The impactors of the scene of `model`.
-fn impactors(model: &Model) -> &[scene::Impactor] {
+pub(crate) fn impactors(model: &Model) -> &[scene::Impactor] {
     model.scene.impact().map_or(&[], |impact| &impact.impactors)
 }
 
 /// What results call an impactor: nothing where it is the only one.
-fn called<'a>(model: &Model, impactor: &'a scene::Impactor) -> Option<&'a str> {
+pub(crate) fn called<'a>(model: &Model, impactor: &'a scene::Impactor) -> Option<&'a str> {
     (impactors(model).len() > 1).then_some(impactor.name.as_str())
 }
 

@@ -74,7 +74,12 @@ fn the_crossing_is_interpolated_at_its_own_site() {
     let peak = &scan.peaks()[0];
     assert_eq!((peak.index, peak.time, peak.site.cell), (9.0, 3.0, 0));
     assert_eq!(scan.evaluations(), 6);
-    assert_eq!(scan.maxima(0).map(|(s, m)| (s.cell, m[0])).collect::<Vec<_>>(), [(0, 9.0), (1, 2.0)]);
+    assert_eq!(scan.maxima(0).map(|(s, m, _)| (s.cell, m[0])).collect::<Vec<_>>(), [(0, 9.0), (1, 2.0)]);
+    // Every site has its own time, and going below 1 and above again does not change it.
+    scan.sample(4.0, &[along(0.0), along(8.0)]).unwrap();
+    let reached: Vec<f64> = scan.maxima(0).map(|(_, _, reached)| reached[0]).collect();
+    assert!((reached[0] - 0.5).abs() < 1e-15 && (reached[1] - 2.0 * (0.1 / 1.1)).abs() < 1e-15, "{reached:?}");
+    assert_eq!(plain(1).maxima(0).map(|(_, _, reached)| reached[0]).collect::<Vec<_>>(), [f64::INFINITY]);
 }
 
 #[test]
@@ -155,7 +160,7 @@ fn sites_of_mixed_materials_keep_their_own_strength() {
     let mut scan = octahedral(sites, vec![resin(1.0), resin(2.0)]);
     let stress: Vec<_> = (0..n).map(|c| shear(f64::from(c))).collect();
     scan.sample(0.0, &stress).unwrap();
-    for (site, maxima) in scan.maxima(0) {
+    for (site, maxima, _) in scan.maxima(0) {
         let strength = if site.cell % 2 == 0 { 1.0 } else { 2.0 };
         assert_eq!(maxima[0], (f64::from(site.cell) / strength).powi(2));
     }

@@ -9,16 +9,16 @@ use super::{Axis, LinePlot, Mark, PlotError, Scale, Series, Style};
 pub(super) const WIDTH: f64 = 1600.0;
 /// Height of the area of the curves.
 const AREA: f64 = 760.0;
-const EDGE: f64 = 40.0;
-const TITLE: f64 = 36.0;
-const LABEL: f64 = 32.0;
+pub(super) const EDGE: f64 = 40.0;
+pub(super) const TITLE: f64 = 36.0;
+pub(super) const LABEL: f64 = 32.0;
 pub(super) const SMALL: f64 = 27.0;
 /// Height of a row of the legend or of the marks' labels.
 pub(super) const ROW: f64 = 40.0;
 
-const WHITE: Color = [0xff; 3];
-const INK: Color = [0x22, 0x22, 0x22];
-const FAINT: Color = [0x66, 0x66, 0x66];
+pub(super) const WHITE: Color = [0xff; 3];
+pub(super) const INK: Color = [0x22, 0x22, 0x22];
+pub(super) const FAINT: Color = [0x66, 0x66, 0x66];
 const GRID: Color = [0xe3, 0xe3, 0xe3];
 const MINOR_GRID: Color = [0xf0, 0xf0, 0xf0];
 /// Okabe and Ito (2008), without the yellow, which is lost on white, and the vermilion, which is for marks.
@@ -187,14 +187,21 @@ impl Area {
     }
 }
 
-struct Canvas(Vec<Shape>);
+/// What an axis shows, in its unit.
+pub(super) fn axis_name(axis: &Axis, most: f64) -> String {
+    let unit = if axis.unit.is_empty() { String::new() } else { format!(" ({})", axis.unit) };
+    clean(&format!("{}{unit}", axis.label), LABEL, most)
+}
+
+/// The shapes so far.
+pub(super) struct Canvas(pub(super) Vec<Shape>);
 
 impl Canvas {
-    fn line(&mut self, points: Vec<[f64; 2]>, width: f64, color: Color, dashed: bool) {
+    pub(super) fn line(&mut self, points: Vec<[f64; 2]>, width: f64, color: Color, dashed: bool) {
         self.0.push(Shape::Line { points, color, width, dashed });
     }
 
-    fn text(&mut self, at: [f64; 2], text: &str, size: f64, color: Color, anchor: Anchor) {
+    pub(super) fn text(&mut self, at: [f64; 2], text: &str, size: f64, color: Color, anchor: Anchor) {
         self.0.push(Shape::Text(Text { at, text: text.to_owned(), size, color, anchor, upwards: false }));
     }
 
@@ -225,15 +232,11 @@ impl Canvas {
             self.line(vec![[area.across(0.0), bottom], [area.across(0.0), top]], 1.5, FAINT, false);
         }
         self.line(vec![[left, top], [left, bottom], [right, bottom]], 2.0, INK, false);
-        let name = |axis: &Axis, most| {
-            let unit = if axis.unit.is_empty() { String::new() } else { format!(" ({})", axis.unit) };
-            clean(&format!("{}{unit}", axis.label), LABEL, most)
-        };
         let middle = 0.5 * (left + right);
-        self.text([middle, bottom + 30.0 + 2.0 * LABEL], &name(&plot.x, right - left), LABEL, INK, Anchor::Middle);
+        self.text([middle, bottom + 30.0 + 2.0 * LABEL], &axis_name(&plot.x, right - left), LABEL, INK, Anchor::Middle);
         self.0.push(Shape::Text(Text {
             at: [EDGE + 0.6 * LABEL, 0.5 * (top + bottom)],
-            text: name(&plot.y, AREA),
+            text: axis_name(&plot.y, AREA),
             size: LABEL,
             color: INK,
             anchor: Anchor::Middle,

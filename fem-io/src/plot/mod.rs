@@ -1,4 +1,4 @@
-//! Line plots as SVG and PNG.
+//! Line plots and maps as SVG and PNG.
 //!
 //! A plot is laid out once, as a list of shapes in pixels, and drawn twice, so that both pictures look alike. The PNG
 //! carries its own font; the SVG keeps its words as text. Neither needs a font or a library of the system, and equal
@@ -16,6 +16,10 @@
 
 mod flags;
 mod layout;
+mod map;
+mod map_layout;
+mod mesh;
+mod over_time;
 mod png;
 mod scale;
 mod shapes;
@@ -23,6 +27,9 @@ mod svg;
 mod words;
 mod work_precision;
 
+pub use map::{Cell, Fill, MapPlot, Panel, Stroke, class_color, map_plot};
+pub use mesh::mesh_map;
+pub use over_time::{Physical, over_time, unit_of_time};
 pub use work_precision::work_precision;
 
 /// Curves over a common axis.

@@ -29,6 +29,13 @@ pub(super) fn render(drawing: &Drawing) -> Result<Vec<u8>, String> {
                     fill(&mut pixels, &path, *color, Transform::identity());
                 }
             }
+            Shape::Polygons { rings, fill: inside, edge } => {
+                let outlines = rings.iter().filter_map(|ring| polyline(&[&ring[..], &ring[..1]].concat()));
+                for outline in outlines {
+                    fill(&mut pixels, &outline, *inside, Transform::identity());
+                    pixels.stroke_path(&outline, &paint(*edge), &Stroke::default(), Transform::identity(), None);
+                }
+            }
             Shape::Text(text) => draw_text(&mut pixels, &face, text),
         }
     }

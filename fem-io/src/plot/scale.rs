@@ -57,6 +57,11 @@ impl Range {
         Self { scale, lo: if from_zero { lo } else { lo - air }, hi: if to_zero { hi } else { hi + air } }
     }
 
+    /// Distance of the ends, of their logarithms on a logarithmic scale.
+    pub(super) fn length(self) -> f64 {
+        self.hi - self.lo
+    }
+
     /// Whether zero lies between the ends.
     pub(super) fn crosses_zero(self) -> bool {
         self.scale == Scale::Linear && self.lo < 0.0 && self.hi > 0.0

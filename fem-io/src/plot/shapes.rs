@@ -14,8 +14,23 @@ pub(super) struct Drawing {
 
 #[derive(Debug)]
 pub(super) enum Shape {
-    Line { points: Vec<[f64; 2]>, color: Color, width: f64, dashed: bool },
-    Dot { centre: [f64; 2], radius: f64, color: Color },
+    Line {
+        points: Vec<[f64; 2]>,
+        color: Color,
+        width: f64,
+        dashed: bool,
+    },
+    Dot {
+        centre: [f64; 2],
+        radius: f64,
+        color: Color,
+    },
+    /// Convex polygons of one look, with lines of 1 pixel along their edges.
+    Polygons {
+        rings: Vec<Vec<[f64; 2]>>,
+        fill: Color,
+        edge: Color,
+    },
     Text(Text),
 }
 

@@ -37,6 +37,16 @@ fn write_document(out: &mut String, drawing: &Drawing) -> fmt::Result {
                 let (x, y, r, color) = (Px(*x), Px(*y), Px(*radius), Hex(*color));
                 writeln!(out, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"{color}\"/>")?;
             }
+            Shape::Polygons { rings, fill, edge } => {
+                write!(out, "<path fill=\"{}\" stroke=\"{}\" d=\"", Hex(*fill), Hex(*edge))?;
+                for ring in rings {
+                    for (i, p) in ring.iter().enumerate() {
+                        write!(out, "{}{},{}", if i == 0 { 'M' } else { 'L' }, Px(p[0]), Px(p[1]))?;
+                    }
+                    out.push('Z');
+                }
+                out.push_str("\"/>\n");
+            }
             Shape::Text(text) => write_text(out, text)?,
         }
     }

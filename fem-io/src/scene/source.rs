@@ -78,6 +78,16 @@ impl SceneSource {
         Self::default().with(Origin::Scene, path.display(), text).with(Origin::Library, "materials library", library)
     }
 
+    /// The file of the scene, as it was named.
+    pub fn name(&self) -> &str {
+        self.documents[Origin::Scene as usize].name()
+    }
+
+    /// The text of the scene.
+    pub fn text(&self) -> &str {
+        self.documents[Origin::Scene as usize].inner()
+    }
+
     /// The same with another text.
     pub(crate) fn with(mut self, origin: Origin, name: impl fmt::Display, text: &str) -> Self {
         self.documents[origin as usize] = NamedSource::new(name.to_string(), text.to_owned());

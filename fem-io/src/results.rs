@@ -1,0 +1,111 @@
+//! Results that an earlier run has left, read back.
+
+use crate::files::{FileError, failed};
+use serde::de::DeserializeOwned;
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+/// Largest file that is read: more is no result of a run.
+const MAX_BYTES: u64 = 1 << 28;
+
+/// A table as it stands in its file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Table {
+    /// Names of the columns.
+    pub header: Vec<String>,
+    /// Rows of as many fields.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// The values of a column, if all of them are finite numbers; else number (from 1) and text of the row that is none.
+    ///
+    /// # Errors
+    /// A field that is no finite number.
+    pub fn numbers(&self, column: usize) -> Result<Vec<f64>, (usize, String)> {
+        let number = |(i, row): (usize, &Vec<String>)| {
+            let value = row[column].parse::<f64>().ok().filter(|v| v.is_finite());
+            value.ok_or_else(|| (i + 1, row[column].clone()))
+        };
+        self.rows.iter().enumerate().map(number).collect()
+    }
+}
+
+/// The text of a file; `None` where there is none.
+///
+/// # Errors
+/// A file that cannot be read or is too long, text that is not UTF-8.
+pub fn read_text(path: &Path) -> Result<Option<String>, FileError> {
+    let file = match File::open(path) {
+        Ok(file) => file,
+        Err(cause) if cause.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(cause) => return Err(failed("read", path)(cause)),
+    };
+    let mut text = String::new();
+    match file.take(MAX_BYTES + 1).read_to_string(&mut text) {
+        Ok(bytes) if bytes as u64 > MAX_BYTES => Err(damaged(path, format!("it is longer than {MAX_BYTES} bytes"))),
+        Ok(_) => Ok(Some(text)),
+        Err(cause) if cause.kind() == ErrorKind::InvalidData => Err(damaged(path, "it is no text".into())),
+        Err(cause) => Err(failed("read", path)(cause)),
+    }
+}
+
+/// The content of a JSON file; `None` where there is none.
+///
+/// # Errors
+/// As [`read_text`], and JSON that is cut off or not of this kind.
+pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, FileError> {
+    let Some(text) = read_text(path)? else { return Ok(None) };
+    serde_json::from_str(&text).map(Some).map_err(|why| damaged(path, why.to_string()))
+}
+
+/// A CSV table; `None` where there is none.
+///
+/// # Errors
+/// As [`read_text`], and rows that are not as long as the header.
+pub fn read_table(path: &Path) -> Result<Option<Table>, FileError> {
+    let Some(text) = read_text(path)? else { return Ok(None) };
+    let no_table = |why: csv::Error| damaged(path, why.to_string());
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let fields = |record: &csv::StringRecord| record.iter().map(str::to_owned).collect::<Vec<_>>();
+    let header = fields(reader.headers().map_err(no_table)?);
+    if header.is_empty() || !text.ends_with('\n') {
+        return Err(damaged(path, "it ends before its last line does".into()));
+    }
+    let rows = reader.records().map(|record| record.map(|record| fields(&record))).collect::<Result<_, _>>();
+    Ok(Some(Table { header, rows: rows.map_err(no_table)? }))
+}
+
+/// The error that says what is wrong with a file.
+pub fn damaged(path: &Path, why: String) -> FileError {
+    FileError::Damaged { path: path.to_owned(), why }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_cut_off_is_refused_and_what_is_not_there_is_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.csv");
+        assert_eq!(read_table(&path).unwrap(), None);
+        std::fs::write(&path, "a,b\n1,x\n2.5,y\n").unwrap();
+        let table = read_table(&path).unwrap().unwrap();
+        assert_eq!((table.header.join(" "), table.numbers(0)), ("a b".into(), Ok(vec![1.0, 2.5])));
+        assert_eq!(table.numbers(1), Err((1, "x".to_owned())));
+        for (text, words) in
+            [("a,b\n1\n", "record 1"), ("a,b\n1,2", "before its last line"), ("", "before its last line")]
+        {
+            std::fs::write(&path, text).unwrap();
+            let error = read_table(&path).unwrap_err().to_string();
+            assert!(error.contains("t.csv` is damaged") && error.contains(words), "{error}");
+        }
+        std::fs::write(&path, "{\"a\": 1").unwrap();
+        let error = read_json::<serde_json::Value>(&path).unwrap_err().to_string();
+        assert!(error.contains("damaged") && error.contains("EOF"), "{error}");
+        std::fs::write(&path, [0xff, 0xfe]).unwrap();
+        assert!(read_text(&path).unwrap_err().to_string().contains("it is no text"));
+    }
+}

@@ -1,0 +1,140 @@
+//! Curves of an impact.
+
+use fem_io::plot::{Axis, LinePlot, Physical, Series, Style, over_time};
+use fem_io::tables::{HistoryRow, ImpactorRow};
+
+/// Share of the largest energy below which a curve would lie on the axis.
+const VISIBLE: f64 = 1e-3;
+
+/// "plate under the impactor" of the only impactor, "plate, first" of the one called `first`.
+fn label(what: &str, of: &str, name: &str) -> String {
+    if name.is_empty() { format!("{what}{of}") } else { format!("{what}, {name}") }
+}
+
+/// Displacement of each impactor and of the plate under it; `names` are empty for an only one. `None` where nothing moves.
+pub(super) fn displacement(title: &str, names: &[&str], rows: &[HistoryRow]) -> Option<LinePlot> {
+    let curve = |i: usize, value: fn(&ImpactorRow) -> f64| -> Vec<_> {
+        rows.iter().map(|row| (row.time_s, value(&row.impactors[i]))).collect()
+    };
+    let curves = names.iter().enumerate().flat_map(|(i, name)| {
+        [
+            Series::solid(label("impactor", "", name), curve(i, |r| r.impactor_displacement_m)),
+            Series::solid(label("plate", " under the impactor", name), curve(i, |r| r.plate_displacement_m)),
+        ]
+    });
+    shown(over_time(title, "Displacement", Physical::Length, curves.collect()))
+}
+
+/// Where the energy is, and its sum; what is lost counts. Parts too small to be seen are left out.
+pub(super) fn energy(title: &str, rows: &[HistoryRow]) -> Option<LinePlot> {
+    let curve = |label: &str, value: fn(&HistoryRow) -> f64| {
+        Series::solid(label, rows.iter().map(|row| (row.time_s, value(row))).collect())
+    };
+    let parts = [
+        curve("impactor", |r| r.impactor_kinetic_j),
+        curve("plate, strain", |r| r.plate_strain_j),
+        curve("plate, kinetic", |r| r.plate_kinetic_j),
+        curve("contact", |r| r.contact_stored_j),
+        curve("lost in the contact", |r| r.contact_dissipated_j),
+        curve("lost in damping", |r| r.damping_dissipated_j.unwrap_or(0.0)),
+        curve("weight", |r| r.gravity_potential_j.unwrap_or(0.0)),
+    ];
+    let size = |curve: &Series| curve.points.iter().fold(0.0_f64, |m, p| m.max(p.1.abs()));
+    let largest = parts.iter().map(size).fold(0.0, f64::max);
+    let sum = |i: usize| parts.iter().map(|part| part.points[i].1).sum();
+    let total = rows.iter().enumerate().map(|(i, row)| (row.time_s, sum(i))).collect();
+    let total = Series { label: "sum".into(), points: total, style: Style::Guide };
+    let seen = parts.into_iter().filter(|part| size(part) > VISIBLE * largest);
+    shown(over_time(title, "Energy", Physical::Energy, seen.chain([total]).collect()))
+}
+
+/// Contact force over the displacement of the plate, of the impactor and over the indentation, their difference.
+pub(super) fn force_displacement(title: &str, names: &[&str], rows: &[HistoryRow]) -> Option<LinePlot> {
+    let lengths: [(&str, &str, fn(&ImpactorRow) -> f64); 3] = [
+        ("plate", " under the impactor", |r| r.plate_displacement_m),
+        ("impactor", "", |r| r.impactor_displacement_m),
+        ("indentation", "", |r| r.impactor_displacement_m - r.plate_displacement_m),
+    ];
+    // Out of contact there is no force to show; the ends of a contact are.
+    let touches = |i: usize, k: usize| rows.get(k).is_some_and(|row| row.impactors[i].contact_force_n != 0.0);
+    let near = |i: usize, k: usize| touches(i, k) || touches(i, k + 1) || k > 0 && touches(i, k - 1);
+    let mut series = Vec::new();
+    for (i, name) in names.iter().enumerate() {
+        for (what, of, length) in lengths {
+            let points = rows.iter().enumerate().filter(|(k, _)| near(i, *k)).map(|(_, row)| &row.impactors[i]);
+            let points: Vec<_> = points.map(|r| (length(r), r.contact_force_n)).collect();
+            if !points.is_empty() {
+                series.push(Series::solid(label(what, of, name), points));
+            }
+        }
+    }
+    let largest =
+        |d: fn(&(f64, f64)) -> f64| series.iter().flat_map(|s| &s.points).map(|p| d(p).abs()).fold(0.0, f64::max);
+    let (length_unit, per_m) = Physical::Length.unit(largest(|p| p.0));
+    let (force_unit, per_n) = if largest(|p| p.1) < 1e3 { ("N", 1.0) } else { ("kN", 1e-3) };
+    for p in series.iter_mut().flat_map(|s| &mut s.points) {
+        *p = (p.0 * per_m, p.1 * per_n);
+    }
+    shown(LinePlot {
+        title: title.to_owned(),
+        x: Axis::linear("Displacement", length_unit),
+        y: Axis::linear("Contact force", force_unit),
+        series,
+        marks: Vec::new(),
+    })
+}
+
+/// The plot if something of it differs from zero.
+fn shown(plot: LinePlot) -> Option<LinePlot> {
+    let something = plot.series.iter().flat_map(|s| &s.points).any(|p| p.1 != 0.0);
+    something.then_some(plot)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// Row `k` of five: no contact at the ends, energies that sum to 4 J.
+    fn row(k: u32) -> HistoryRow {
+        let force = [0.0, 10.0, 20.0, 0.0, 0.0][k as usize];
+        let t = f64::from(k) * 1e-4;
+        HistoryRow {
+            time_s: t,
+            impactors: vec![ImpactorRow {
+                contact_force_n: force,
+                impactor_displacement_m: 3e-4 + t,
+                impactor_velocity_m_s: 1.0,
+                plate_displacement_m: t,
+            }],
+            impactor_kinetic_j: 4.0 - f64::from(k),
+            plate_strain_j: f64::from(k) - 1e-5,
+            contact_stored_j: 1e-5,
+            ..HistoryRow::default()
+        }
+    }
+
+    #[test]
+    fn curves_are_what_their_names_say() {
+        let rows: Vec<_> = (0..5).map(row).collect();
+        let names = |plot: &LinePlot| plot.series.iter().map(|s| s.label.clone()).collect::<Vec<_>>();
+        let plot = displacement("t", &[""], &rows).unwrap();
+        assert_eq!(names(&plot), ["impactor", "plate under the impactor"]);
+        assert_eq!(names(&displacement("t", &["a"], &rows).unwrap()), ["impactor, a", "plate, a"]);
+        let plot = energy("t", &rows).unwrap();
+        assert_eq!(names(&plot), ["impactor", "plate, strain", "sum"], "what cannot be seen is left out");
+        assert!(plot.series[2].points.iter().all(|p| (p.1 - 4.0).abs() < 1e-12), "but it counts: {plot:?}");
+        let plot = force_displacement("t", &[""], &rows).unwrap();
+        assert_eq!(names(&plot), ["plate under the impactor", "impactor", "indentation"]);
+        let indentation: Vec<_> = plot.series[2].points.iter().map(|p| ((p.0 * 1e9).round() / 1e9, p.1)).collect();
+        assert_eq!(indentation, [(0.3, 0.0), (0.3, 10.0), (0.3, 20.0), (0.3, 0.0)]);
+    }
+
+    #[test]
+    fn nothing_to_show_is_not_shown() {
+        let mut rows: Vec<_> = (0..5).map(row).collect();
+        rows.iter_mut().for_each(|r| r.impactors[0].contact_force_n = 0.0);
+        assert_eq!(force_displacement("t", &[""], &rows), None);
+        assert_eq!(displacement("t", &[""], &[HistoryRow { impactors: vec![ImpactorRow::default()], ..row(0) }]), None);
+    }
+}

@@ -1,0 +1,46 @@
+//! Pictures of an impact: what moves, where the energy is, what failed.
+
+mod histories;
+mod maps;
+
+pub use maps::{plan, section};
+
+use crate::damage::DamageMap;
+use crate::error::Error;
+use crate::model::Model;
+use crate::run::Outcome;
+use crate::summary::{called, impactors};
+use fem_io::files::OutputDir;
+use fem_io::plot::{self, Picture};
+
+/// Writes `displacement`, `energy`, `force_displacement`, `damage_map` and `damage_section`, each as SVG and PNG, and
+/// `damage.json`. A picture that would have nothing to show is left out.
+///
+/// # Errors
+/// As [`OutputDir::write`], and numbers that no plot can show.
+pub fn write(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
+    let (title, rows) = (&model.scene.title, &outcome.history);
+    let names: Vec<_> = impactors(model).iter().map(|impactor| called(model, impactor).unwrap_or("")).collect();
+    let lines = [
+        ("displacement", histories::displacement(title, &names, rows)),
+        ("energy", histories::energy(title, rows)),
+        ("force_displacement", histories::force_displacement(title, &names, rows)),
+    ];
+    for (name, picture) in lines {
+        if let Some(picture) = picture {
+            save(dir, name, &plot::line_plot(&picture)?)?;
+        }
+    }
+    let Some(damage) = DamageMap::new(model, outcome) else { return Ok(()) };
+    damage.write(dir)?;
+    save(dir, "damage_map", &plot::map_plot(&plan(title, &damage))?)?;
+    if let Some(section) = section(title, &damage) {
+        save(dir, "damage_section", &plot::map_plot(&section)?)?;
+    }
+    Ok(())
+}
+
+fn save(dir: &OutputDir, name: &str, picture: &Picture) -> Result<(), Error> {
+    dir.write(&format!("{name}.svg"), |w| w.write_all(picture.svg.as_bytes()))?;
+    Ok(dir.write(&format!("{name}.png"), |w| w.write_all(&picture.png))?)
+}

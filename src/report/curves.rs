@@ -1,0 +1,155 @@
+//! The history as curves to move through.
+
+use fem_io::plot::unit_of_time;
+use fem_io::results::Table;
+use serde::Serialize;
+
+/// Rows that a page keeps at most, but for the extremes of every curve, which it keeps all.
+const ROWS: usize = 1200;
+
+/// Curves over a common time.
+#[derive(Debug, Serialize)]
+pub(super) struct Curves {
+    pub(super) time_unit: &'static str,
+    /// How many of that unit are a second.
+    pub(super) per_s: f64,
+    pub(super) times: Vec<f64>,
+    pub(super) charts: Vec<Chart>,
+}
+
+/// Curves of one quantity.
+#[derive(Debug, Serialize)]
+pub(super) struct Chart {
+    /// Name of the picture that shows the same.
+    pub(super) id: &'static str,
+    pub(super) quantity: &'static str,
+    pub(super) unit: &'static str,
+    pub(super) series: Vec<Series>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct Series {
+    pub(super) name: String,
+    pub(super) values: Vec<f64>,
+}
+
+/// A chart by its columns: which they are, what they show, and its unit with how many of it are an SI unit.
+struct Kind {
+    id: &'static str,
+    quantity: &'static str,
+    endings: &'static [(&'static str, &'static str)],
+    unit: (&'static str, f64),
+}
+
+const KINDS: [Kind; 4] = [
+    Kind {
+        id: "contact_force",
+        quantity: "Contact force",
+        endings: &[("contact_force_N", "contact force")],
+        unit: ("N", 1.0),
+    },
+    Kind {
+        id: "displacement",
+        quantity: "Displacement",
+        endings: &[("impactor_displacement_m", "impactor"), ("plate_displacement_m", "plate under the impactor")],
+        unit: ("mm", 1e3),
+    },
+    Kind {
+        id: "velocity",
+        quantity: "Velocity",
+        endings: &[("impactor_velocity_m_s", "impactor")],
+        unit: ("m/s", 1.0),
+    },
+    Kind {
+        id: "energy",
+        quantity: "Energy",
+        endings: &[
+            ("impactor_kinetic_J", "impactor"),
+            ("plate_strain_J", "plate, strain"),
+            ("plate_kinetic_J", "plate, kinetic"),
+            ("contact_stored_J", "contact"),
+            ("contact_dissipated_J", "lost in the contact"),
+            ("damping_dissipated_J", "lost in damping"),
+            ("gravity_potential_J", "weight"),
+        ],
+        unit: ("J", 1.0),
+    },
+];
+
+/// The curves of `history.csv`; the error is the column, row (from 1) and text that is no finite number.
+pub(super) fn curves(history: &Table) -> Result<Option<Curves>, (String, usize, String)> {
+    let columns = 0..history.header.len();
+    let numbers = |k: usize| history.numbers(k).map_err(|(row, text)| (history.header[k].clone(), row, text));
+    let values: Vec<Vec<f64>> = columns.map(numbers).collect::<Result<_, _>>()?;
+    let Some(times) = history.header.iter().position(|name| name == "time_s").map(|k| &values[k]) else {
+        return Ok(None);
+    };
+    let (time_unit, per_s) = unit_of_time(times.iter().fold(0.0, |m, t| m.max(*t)));
+    let kept = kept(&values, times.len());
+    let pick = |values: &[f64], factor: f64| kept.iter().map(|i| six_digits(values[*i] * factor)).collect::<Vec<_>>();
+    let chart = |kind: &Kind| {
+        let mut series = Vec::new();
+        for (ending, name) in kind.endings {
+            for (column, values) in history.header.iter().zip(&values) {
+                let Some(impactor) = column.strip_suffix(ending) else { continue };
+                let of = impactor.strip_suffix('.').map_or(String::new(), |impactor| format!(", {impactor}"));
+                series.push(Series { name: format!("{name}{of}"), values: pick(values, kind.unit.1) });
+            }
+        }
+        Chart { id: kind.id, quantity: kind.quantity, unit: kind.unit.0, series }
+    };
+    let charts = KINDS.iter().map(chart).filter(|chart| !chart.series.is_empty()).collect();
+    Ok(Some(Curves { time_unit, per_s, times: pick(times, per_s), charts }))
+}
+
+/// Rows at equal distances, and those of the lowest and the highest value of every column, ascending.
+fn kept(columns: &[Vec<f64>], rows: usize) -> Vec<usize> {
+    let stride = rows.div_ceil(ROWS).max(1);
+    let extreme = |values: &Vec<f64>| {
+        let better =
+            |sign: f64| values.iter().enumerate().max_by(|a, b| (sign * a.1).total_cmp(&(sign * b.1))).map(|(i, _)| i);
+        [better(1.0), better(-1.0)]
+    };
+    let extremes = columns.iter().flat_map(extreme).flatten();
+    let mut kept: Vec<usize> = (0..rows).step_by(stride).chain(rows.checked_sub(1)).chain(extremes).collect();
+    kept.sort_unstable();
+    kept.dedup();
+    kept
+}
+
+fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn table(rows: usize) -> Table {
+        let header = ["time_s", "a.contact_force_N", "a.plate_displacement_m", "energy_balance_J"];
+        let row = |i: usize| {
+            let force = if i == 4321 { 99.0 } else { 1.0 };
+            [i as f64 * 1e-6, force, 1e-3, 0.0].map(|v| v.to_string()).to_vec()
+        };
+        Table { header: header.map(str::to_owned).to_vec(), rows: (0..rows).map(row).collect() }
+    }
+
+    #[test]
+    fn a_long_history_is_thinned_but_for_its_peak() {
+        let curves = curves(&table(10_000)).unwrap().unwrap();
+        assert!((ROWS / 2..ROWS + 8).contains(&curves.times.len()), "{}", curves.times.len());
+        assert_eq!((curves.time_unit, curves.times.last()), ("ms", Some(&9.999)));
+        let names: Vec<_> = curves.charts.iter().map(|c| (c.id, c.series[0].name.as_str())).collect();
+        assert_eq!(names, [("contact_force", "contact force, a"), ("displacement", "plate under the impactor, a")]);
+        let peak = curves.charts[0].series[0].values.iter().position(|v| *v == 99.0).unwrap();
+        assert_eq!((curves.times[peak], curves.charts[1].series[0].values[0]), (4.321, 1.0));
+    }
+
+    #[test]
+    fn what_is_no_number_is_named() {
+        let mut table = table(3);
+        table.rows[1][2] = "NaN".into();
+        assert_eq!(curves(&table).unwrap_err(), ("a.plate_displacement_m".to_owned(), 2, "NaN".to_owned()));
+    }
+}

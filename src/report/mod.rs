@@ -1,0 +1,34 @@
+//! A page of results: one HTML file that opens from disk.
+//!
+//! It is made of the files of a folder of results alone, so any run can have one at any time later. What a run did not
+//! write is not on it. The page loads nothing, and forbids itself to: its scripts are part of it, its pictures as well.
+
+mod curves;
+mod facts;
+mod folder;
+mod page;
+
+use crate::error::Error;
+use fem_io::files::OutputDir;
+use folder::Folder;
+use std::path::{Path, PathBuf};
+
+/// Copy of the scene in a folder of results.
+pub const SCENE: &str = "scene.toml";
+
+/// The page.
+pub const PAGE: &str = "report.html";
+
+/// Reads the folder of results `path`, writes [`PAGE`] into it, and says where that is.
+///
+/// A march that was stopped by a signal has left a checkpoint alone: the page says so.
+///
+/// # Errors
+/// A folder that no run wrote into, a file in it that is cut off or changed, a run that is still writing there.
+pub fn write(path: &Path) -> Result<PathBuf, Error> {
+    let folder = Folder::read(path)?;
+    let page = page::render(&folder)?;
+    let dir = OutputDir::create(path)?;
+    dir.write(PAGE, |out| out.write_all(page.as_bytes()))?;
+    Ok(path.join(PAGE))
+}

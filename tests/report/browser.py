@@ -1,0 +1,210 @@
+#!/usr/bin/env python3
+"""Opens a page of `fem report` in Chromium and uses it: python3 tests/report/browser.py PAGE [SCREENSHOT]
+
+Speaks the DevTools protocol over two pipes, so that Python and Chromium are all it needs. Fails when the page logs an
+error, asks for anything but itself, has no heading, or when its parts do not answer.
+"""
+
+import base64
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+BROWSERS = ["chromium", "chromium-browser", "google-chrome"]
+PATIENCE = 60
+
+
+class Browser:
+    """A headless Chromium with one tab."""
+
+    def __init__(self, program, profile):
+        # The browser reads commands from descriptor 3 and answers on descriptor 4.
+        to_browser, from_browser = os.pipe(), os.pipe()
+        for descriptor in (to_browser[0], from_browser[1]):
+            os.set_inheritable(descriptor, True)
+
+        flags = ["--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe", "--hide-scrollbars"]
+        shell = f"exec \"$0\" \"$@\" 3<&{to_browser[0]} 4>&{from_browser[1]}"
+        self.process = subprocess.Popen(
+            ["bash", "-c", shell, program, *flags, f"--user-data-dir={profile}", "--window-size=1280,900", "about:blank"],
+            pass_fds=(to_browser[0], from_browser[1]),
+            stderr=subprocess.DEVNULL,
+        )
+        os.close(to_browser[0])
+        os.close(from_browser[1])
+        self.out, self.back = to_browser[1], from_browser[0]
+        os.set_blocking(self.back, False)
+        self.buffer, self.number, self.session, self.events = b"", 0, None, []
+
+    def receive(self):
+        until = time.monotonic() + PATIENCE
+        while b"\0" not in self.buffer:
+            if time.monotonic() > until or self.process.poll() is not None:
+                raise SystemExit("the browser does not answer")
+            try:
+                self.buffer += os.read(self.back, 1 << 20)
+            except BlockingIOError:
+                time.sleep(0.01)
+        message, self.buffer = self.buffer.split(b"\0", 1)
+        return json.loads(message)
+
+    def call(self, method, **params):
+        self.number += 1
+        message = {"id": self.number, "method": method, "params": params}
+        if self.session:
+            message["sessionId"] = self.session
+        os.write(self.out, json.dumps(message).encode() + b"\0")
+        while True:
+            answer = self.receive()
+            if answer.get("id") == self.number:
+                if "error" in answer:
+                    raise SystemExit(f"{method}: {answer['error']}")
+                return answer["result"]
+            self.events.append(answer)
+
+    def open(self, address):
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.call(f"{domain}.enable")
+        self.call("Page.navigate", url=address)
+        until = time.monotonic() + PATIENCE
+        while self.ask("document.readyState") != "complete" or self.ask("location.href") == "about:blank":
+            if time.monotonic() > until:
+                raise SystemExit("the page does not load")
+            time.sleep(0.05)
+
+    def ask(self, expression):
+        answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in answer:
+            raise SystemExit(f"{expression}: {answer['exceptionDetails']}")
+        return answer["result"].get("value")
+
+    def mouse(self, kind, x, y, **params):
+        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **params)
+
+    def screenshot(self, path):
+        height = self.ask("document.documentElement.scrollHeight")
+        clip = {"x": 0, "y": 0, "width": 1280, "height": min(height, 9000), "scale": 1}
+        shot = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=True, clip=clip)
+        pathlib.Path(path).write_bytes(base64.b64decode(shot["data"]))
+
+    def complaints(self):
+        """Errors, exceptions, and requests for anything but the page."""
+        found = []
+        for event in self.events:
+            method, params = event.get("method"), event.get("params", {})
+            if method == "Runtime.exceptionThrown":
+                found.append(params["exceptionDetails"].get("exception", params).get("description", str(params)))
+            elif method == "Runtime.consoleAPICalled" and params["type"] in ("error", "warning", "assert"):
+                found.append(f"console: {params['args']}")
+            elif method == "Log.entryAdded" and params["entry"]["level"] in ("error", "warning"):
+                found.append(f"log: {params['entry']['text']}")
+            elif method == "Network.requestWillBeSent" and not params["request"]["url"].startswith(("file:", "data:", "about:")):
+                found.append(f"request: {params['request']['url']}")
+        return found
+
+
+def expect(condition, what):
+    if not condition:
+        raise SystemExit(f"FAILED: {what}")
+    print(f"ok: {what}")
+
+
+def use_damage(browser):
+    slide = "(() => { const t = document.getElementById('time'); t.value = %s; t.dispatchEvent(new Event('input')); })()"
+    coloured = "document.querySelectorAll('#map [data-failed]').length"
+    counts = []
+    for share in (0, 500, 1000):
+        browser.ask(slide % share)
+        counts.append(browser.ask(coloured))
+    events = browser.ask("JSON.parse(document.getElementById('data').textContent).damage.places.some(p => p.failed.length)")
+    expect(counts == sorted(counts) and (counts[0] < counts[2]) == events, f"coloured cells grow with time: {counts}")
+    colours = "new Set([...document.querySelectorAll('#map polygon[data-failed]')].map(p => p.getAttribute('fill'))).size"
+    expect(not events or browser.ask(colours) >= 1, "failed cells have the colours of modes")
+    browser.ask("document.getElementById('time').focus()")
+    before = browser.ask("document.getElementById('time').value")
+    browser.call("Input.dispatchKeyEvent", type="rawKeyDown", key="ArrowLeft", code="ArrowLeft", windowsVirtualKeyCode=37)
+    expect(browser.ask("document.getElementById('time').value") != before, "the keyboard moves the slider")
+    browser.ask(slide % 1000)
+    choose = "(() => { const p = document.getElementById('place'); p.value = '%s'; p.dispatchEvent(new Event('change')); })()"
+    places = browser.ask("document.getElementById('place').options.length")
+    each = []
+    for place in range(places - 1):
+        browser.ask(choose % place)
+        each.append(browser.ask(coloured))
+    expect(max(each) <= counts[2] <= sum(each), f"all places hold what each of them holds: {each}")
+    browser.ask(choose % "")
+
+
+def use_chart(browser):
+    browser.ask("document.querySelector('svg.chart').scrollIntoView({ block: 'center', behavior: 'instant' })")
+    box = browser.ask("(() => { const b = document.querySelector('svg.chart').getBoundingClientRect();"
+                      " return [b.x, b.y, b.width, b.height]; })()")
+    x, y = box[0] + 0.6 * box[2], box[1] + 0.5 * box[3]
+    browser.mouse("mouseMoved", x, y)
+    reading = browser.ask("document.querySelector('.chart-key').textContent")
+    expect("s" in reading and any(c.isdigit() for c in reading), f"a curve is read: {reading}")
+    curve = "document.querySelector('svg.chart polyline').getAttribute('points')"
+    whole = browser.ask(curve)
+    browser.mouse("mousePressed", x, y, button="left", clickCount=1)
+    browser.mouse("mouseMoved", x - 150, y, button="left")
+    browser.mouse("mouseReleased", x - 150, y, button="left", clickCount=1)
+    zoomed = browser.ask(curve)
+    expect(zoomed != whole, "dragging zooms")
+    browser.mouse("mouseWheel", x, y, deltaX=0, deltaY=-120)
+    expect(browser.ask(curve) != zoomed, "the wheel zooms")
+    browser.ask("document.querySelector('.chart-bar button').click()")
+    browser.mouse("mouseMoved", 1, 1)
+    expect(browser.ask(curve) == whole, "the button shows the whole")
+
+
+def use_events(browser):
+    column = "[...document.querySelectorAll('#events-table tbody tr:not([hidden]) td:first-child')].map(c => Number(c.textContent))"
+    times = browser.ask(column)
+    browser.ask("document.querySelector('#events-table th button').click()")
+    expect(browser.ask(column) == sorted(times), "events sort by time")
+    browser.ask("document.querySelector('#events-table th button').click()")
+    expect(browser.ask(column) == sorted(times, reverse=True), "and backwards")
+    browser.ask("document.querySelector('#events-table th button').click()")
+    browser.ask("(() => { const f = document.querySelector('.filter input'); f.value = 'no such thing';"
+                " f.dispatchEvent(new Event('input')); })()")
+    expect(browser.ask(column) == [], "a filter hides what does not match")
+    browser.ask("(() => { const f = document.querySelector('.filter input'); f.value = ''; f.dispatchEvent(new Event('input')); })()")
+
+
+def main(page, screenshot=None):
+    program = next((found for name in BROWSERS if (found := shutil.which(name))), None)
+    if program is None:
+        raise SystemExit(f"none of {', '.join(BROWSERS)} is installed")
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        browser = Browser(program, profile)
+        try:
+            browser.open(pathlib.Path(page).resolve().as_uri())
+            expect(browser.ask("document.querySelectorAll('h1').length") == 1, "one heading of the page")
+            has = lambda selector: browser.ask(f"document.querySelector({json.dumps(selector)}) !== null")
+            nameless = ("[...document.querySelectorAll('button, input, select, svg[role=img], img')].filter(e =>"
+                        " !(e.textContent.trim() || e.getAttribute('aria-label') || e.getAttribute('alt') || e.closest('label'))).length")
+            expect(browser.ask(nameless) == 0, "everything to use has a name")
+            expect(browser.ask("document.documentElement.scrollWidth <= 1280"), "nothing is wider than the window")
+            for selector, use in (("svg.chart", use_chart), ("#map", use_damage), ("#events-table", use_events)):
+                if has(selector):
+                    use(browser)
+            if screenshot:
+                browser.ask("scrollTo(0, 0)")
+                browser.screenshot(screenshot)
+            complaints = browser.complaints()
+            expect(not complaints, f"no errors, no requests {complaints or ''}")
+            browser.call("Browser.close")
+        finally:
+            browser.process.kill()
+            browser.process.wait()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
