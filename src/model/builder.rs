@@ -1,7 +1,6 @@
 //! Looks up what a scene names: mesh, plug-ins, groups, supports.
 
 use super::NamedCriterion;
-use crate::error::Error;
 use crate::registry::{NO_REDUCTION, Registry, RegistryError};
 use fem_core::assembly::elimination_order;
 use fem_core::constraint::{Constraints, Equation};
