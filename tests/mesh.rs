@@ -82,7 +82,7 @@ fn what_makes_no_sense_is_refused() {
     assert!(done.status == 1 && done.stderr.contains("`mesh.disc.impact`: lies 20 mm from"), "{done:?}");
 }
 
-/// The report's case 1, by the mesh of gmsh and by a built-in one of the same size of cells.
+/// The report's case 1, by the mesh of gmsh and by a built-in one: 1.3e-3 apart.
 #[test]
 fn the_force_on_a_built_in_disc_is_that_on_a_mesh_of_gmsh() {
     let force = |case: &Case| -> Vec<f64> {
@@ -95,5 +95,5 @@ fn the_force_on_a_built_in_disc_is_that_on_a_mesh_of_gmsh() {
     assert_eq!(gmsh.len(), built.len());
     let off: f64 = gmsh.iter().zip(&built).map(|(a, b)| (a - b).powi(2)).sum();
     let relative = (off / gmsh.iter().map(|f| f * f).sum::<f64>()).sqrt();
-    assert!(relative < 0.01, "{relative:.2e}");
+    assert!(relative < 3e-3, "{relative:.2e}");
 }
