@@ -122,6 +122,7 @@ impl Summary {
             let _ = match (group.edges.zip(group.length_m), group.quads.zip(group.area_m2)) {
                 (Some((n, l)), _) => write!(line, "{n} edges, {} nodes, length {} {unit}", group.nodes, short(l)),
                 (_, Some((n, a))) => write!(line, "{n} quads, {} nodes, area {}", group.nodes, area(a)),
+                _ if group.nodes == 1 => write!(line, "1 node"),
                 _ => write!(line, "{} nodes", group.nodes),
             };
             lines.push((if k == 0 { "groups" } else { "" }, line));

@@ -21,7 +21,18 @@ fn a_mesh_is_shown() {
     let case = plate();
     let folder = root().join("examples/as4-3502-16ply-50mm");
     let done = fem(&folder, &["mesh", "plate.msh"]).good();
-    insta::assert_snapshot!(done.stdout, @"");
+    insta::assert_snapshot!(done.stdout, @r"
+    plate.msh
+      mesh      288 quads, 313 nodes, area 1957.9 mm2
+      bounds    x -25 to 25, y -25 to 25 mm
+      cells     edges 2.0112 to 3.2702 mm
+      quality   scaled Jacobian       0.85928 at worst (cell 248 at -14.534, 13.004 mm), 0.97824 in the mean
+                inner angle, degrees  120.76 at worst (cell 248 at -14.534, 13.004 mm), 99.268 in the mean
+                aspect                1.6259 at worst (cell 224 at 15.759, 17.911 mm), 1.1678 in the mean
+      groups    impact   1 node
+                plate    288 quads, 313 nodes, area 1957.9 mm2
+                support  48 edges, 48 nodes, length 156.97 mm
+    ");
     case.write();
     let of_file = json(&case, &["plate/plate.msh"]);
     assert_eq!(of_file, json(&case, &["plate/scene.toml"]));
@@ -71,7 +82,7 @@ fn what_makes_no_sense_is_refused() {
     assert!(done.status == 1 && done.stderr.contains("`mesh.disc.impact`: lies 20 mm from"), "{done:?}");
 }
 
-/// The report's case 1, by the mesh of gmsh and by a built-in one of the same size of cells.
+/// The report's case 1, by the mesh of gmsh and by a built-in one: 1.3e-3 apart.
 #[test]
 fn the_force_on_a_built_in_disc_is_that_on_a_mesh_of_gmsh() {
     let force = |case: &Case| -> Vec<f64> {
@@ -84,5 +95,5 @@ fn the_force_on_a_built_in_disc_is_that_on_a_mesh_of_gmsh() {
     assert_eq!(gmsh.len(), built.len());
     let off: f64 = gmsh.iter().zip(&built).map(|(a, b)| (a - b).powi(2)).sum();
     let relative = (off / gmsh.iter().map(|f| f * f).sum::<f64>()).sqrt();
-    assert!(relative < 0.01, "{relative:.2e}");
+    assert!(relative < 3e-3, "{relative:.2e}");
 }

@@ -197,9 +197,9 @@ plate()
 view = gmsh.view.add("temperature")
 gmsh.model.mesh.generate(2)
 nodes = gmsh.model.mesh.getNodes()[0]
-write("node-data.msh", mesh=False)
+write("appended.msh", mesh=False)
 gmsh.view.addModelData(view, 0, gmsh.model.getCurrent(), "NodeData", nodes, [[float(n)] for n in nodes])
-gmsh.view.write(view, "node-data.msh", append=True)
+gmsh.view.write(view, "appended.msh", append=True)
 
 # Other formats under the name of this one.
 plate()
@@ -215,6 +215,8 @@ binary = Path("binary.msh").read_bytes()
 Path("crlf.msh").write_bytes(plain.replace(b"\n", b"\r\n"))
 Path("comments.msh").write_bytes(plain.replace(b"$Nodes", b"$Comments\nby hand\n$Nodes\nare below\n$EndComments\n$Nodes", 1))
 Path("trailing.msh").write_bytes(plain + b"\n// the end\n$Comments\nlater\n$EndComments\n")
+data = b'$NodeData\n1\n"temperature"\n1\n0.0\n3\n0\n1\n2\n1 20.0\n2 21.5\n$EndNodeData\n'
+Path("node-data.msh").write_bytes(plain + data)
 Path("empty.msh").write_bytes(b"")
 Path("size-4.msh").write_bytes(binary.replace(b"4.1 1 8", b"4.1 1 4", 1))
 Path("big-endian.msh").write_bytes(binary.replace(b"4.1 1 8\n\1\0\0\0", b"4.1 1 8\n\0\0\0\1", 1))

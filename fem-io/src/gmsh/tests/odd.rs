@@ -8,19 +8,19 @@ use super::*;
 enum Want {
     /// Cells, and whether groups are `plate` of all of them, `clamped` of 2 edges and `tip` of a node; part of the one
     /// warning, or "" for none.
-    Read(usize, Groups, &'static str),
+    Read(usize, Have, &'static str),
     /// What the message holds.
     Refused(&'static [&'static str]),
 }
 use Want::{Read, Refused};
 
 #[derive(PartialEq)]
-enum Groups {
+enum Have {
     Usual,
     /// These names.
     Named(&'static [&'static str]),
 }
-use Groups::{Named, Usual};
+use Have::{Named, Usual};
 
 const PLAIN: Want = Read(8, Usual, "");
 
@@ -70,9 +70,11 @@ const FILES: &[(&str, Want)] = &[
     ("overlapping-groups", Read(8, Named(&["clamped", "left half", "plate", "tip"]), "")),
     ("names", Read(8, Named(&["a \"quoted\" Pläte, 板 ", "clamped", "tip"]), "")),
     ("one-name-two-dimensions", Refused(&["\"plate\" occurs with dimension 1 and 2", "its own name"])),
-    ("one-name-twice", Read(8, Named(&["clamped", "plate", "tip"]), "")),
+    // gmsh gives a name to one group of a dimension; the other one is called by its number.
+    ("one-name-twice", Read(8, Named(&["9", "clamped", "plate", "tip"]), "")),
     ("no-groups", Refused(&["no physical group holds a cell"])),
     ("node-data", PLAIN),
+    ("appended", Refused(&["a second section $PhysicalNames", "save once"])),
     ("other-stl", Refused(&["not a gmsh mesh"])),
     ("other-vtk", Refused(&["not a gmsh mesh"])),
     ("other-unv", Refused(&["not a gmsh mesh"])),
