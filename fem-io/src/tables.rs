@@ -196,12 +196,21 @@ pub fn write_envelopes(dir: &OutputDir, rows: &[EnvelopeRow]) -> Result<(), File
 
 /// Writes `value` as indented JSON to the file `name`.
 ///
+/// # Errors
+/// As [`json_text`] and [`OutputDir::write`].
+pub fn write_json<T: Serialize>(dir: &OutputDir, name: &str, value: &T) -> Result<(), FileError> {
+    let text = json_text(name, value)?;
+    dir.write(name, |out| out.write_all(text.as_bytes()))
+}
+
+/// `value` as indented JSON, which errors call `name`.
+///
 /// JSON has no NaN and no infinity, and serde_json writes null for them: null is refused altogether, so optional
 /// values need `#[serde(skip_serializing_if = "Option::is_none")]`.
 ///
 /// # Errors
-/// A value that is not finite, and as [`OutputDir::write`].
-pub fn write_json<T: Serialize>(dir: &OutputDir, name: &str, value: &T) -> Result<(), FileError> {
+/// A value that is not finite, or of a type that JSON cannot hold.
+pub fn json_text<T: Serialize>(name: &str, value: &T) -> Result<String, FileError> {
     let json_error = |cause| FileError::Json { file: name.to_owned(), cause };
     let value = serde_json::to_value(value).map_err(json_error)?;
     if let Some(key) = null_in(&value) {
@@ -209,7 +218,7 @@ pub fn write_json<T: Serialize>(dir: &OutputDir, name: &str, value: &T) -> Resul
     }
     let mut text = serde_json::to_string_pretty(&value).map_err(json_error)?;
     text.push('\n');
-    dir.write(name, |out| out.write_all(text.as_bytes()))
+    Ok(text)
 }
 
 /// Keys and indices that lead to the first null, if there is one.

@@ -1,6 +1,7 @@
 //! What the command says: results on standard output, everything else on standard error.
 
 use clap::Args;
+use fem_io::tables;
 use indicatif::{ProgressBar, ProgressStyle};
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
@@ -85,8 +86,7 @@ impl Console {
 
     /// Prints one JSON document.
     pub(super) fn document(&self, data: &impl Serialize) -> miette::Result<()> {
-        let mut text = serde_json::to_string_pretty(data).into_diagnostic()?;
-        text.push('\n');
+        let text = tables::json_text("standard output", data).into_diagnostic()?;
         self.put(text.as_bytes());
         Ok(())
     }

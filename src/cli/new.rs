@@ -4,7 +4,7 @@ use super::{Console, Format};
 use crate::registry::Registry;
 use clap::Args;
 use fem_core::plugin::unknown_key;
-use fem_io::scene;
+use fem_io::{scene, tables};
 use miette::{Context as _, IntoDiagnostic, miette};
 use serde::Serialize;
 use std::fs;
@@ -110,7 +110,7 @@ fn write(registry: &Registry, template: &Template, folder: &Path) -> miette::Res
     }
     let plugins = |kind| registry.choices(kind);
     let scene = format!("#:schema ./{SCHEMA}\n{}", scene::annotated(template.scene, &plugins)?);
-    let schema = serde_json::to_string_pretty(&scene::schema(&plugins)).into_diagnostic()? + "\n";
+    let schema = tables::json_text(SCHEMA, &scene::schema(&plugins)).into_diagnostic()?;
     let mut files = vec![(SCENE, scene.as_bytes()), (SCHEMA, schema.as_bytes())];
     files.extend(template.mesh.map(|mesh| (MESH, mesh)));
 
