@@ -50,10 +50,11 @@ enum Command {
     New(new::Arguments),
     /// Computes a scene: force history, stresses, first damage.
     ///
-    /// Prints a summary and writes summary.json, cost.json, history.csv, events.csv and the contact force as SVG and PNG;
-    /// modes, and failure indices over time and over the plate, where the scene asks for them. Fails, and keeps what it had,
-    /// when the march meets a number that is not finite or loses its energy balance. Writes a checkpoint now and then, at
-    /// the end and when it is stopped (Ctrl-C, SIGTERM, SIGHUP: exit status 130, 143, 129), from which `--resume` goes on.
+    /// Prints a summary and writes summary.json, cost.json, history.csv, events.csv, scene.toml, damage.json, and pictures of
+    /// forces, displacements, energies and damage as SVG and PNG; modes, and failure indices over time and over the plate,
+    /// where the scene asks for them. Fails, and keeps what it had, when the march meets a number that is not finite or loses
+    /// its energy balance. Writes a checkpoint now and then, at the end and when it is stopped (Ctrl-C, SIGTERM, SIGHUP: exit
+    /// status 130, 143, 129), from which `--resume` goes on.
     Run(run::Arguments),
     /// Validates a scene with its mesh and prints sizes and the stable step; marches nothing.
     Check(check::Arguments),

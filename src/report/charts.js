@@ -1,6 +1,6 @@
 // Colours of curves: Okabe and Ito (2008), as in the pictures.
 const PENS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#000000", "#d55e00"];
-const WIDTH = 800, HEIGHT = 430, LEFT = 74, RIGHT = 14, TOP = 12, BOTTOM = 52;
+const WIDTH = 800, HEIGHT = 470, LEFT = 92, RIGHT = 30, TOP = 12, BOTTOM = 64;
 
 /** The first index whose time is not before `t`. */
 function atTime(times, t) {
@@ -23,7 +23,7 @@ function makeChart(figure, curves, chart, marks) {
   const key = add(bar, "div", { class: "chart-key", "aria-live": "off" });
   const reset = add(bar, "button", { type: "button", disabled: "" }, "Whole");
   const svg = add(null, "svg", {
-    class: "chart", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, tabindex: "0", role: "img", "font-size": "15",
+    class: "chart", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, tabindex: "0", role: "img", "font-size": "19",
     "aria-label": `${chart.quantity} over time: ${chart.series.map((s) => s.name).join(", ")}. Arrow keys read values.`,
   });
   figure.insertBefore(bar, caption);
@@ -63,17 +63,17 @@ function makeChart(figure, curves, chart, marks) {
     const clip = `clip-${chart.id}`;
     add(add(add(svg, "defs"), "clipPath", { id: clip }), "rect",
       { x: LEFT, y: TOP, width: WIDTH - LEFT - RIGHT, height: HEIGHT - TOP - BOTTOM });
-    for (const [value, label] of ticks(view[0], view[1], 8)) {
+    for (const [value, label] of ticks(view[0], view[1], 7)) {
       add(svg, "line", { x1: x(value), x2: x(value), y1: TOP, y2: HEIGHT - BOTTOM, stroke: "#e3e3e3" });
-      add(svg, "text", { x: x(value), y: HEIGHT - BOTTOM + 20, "text-anchor": "middle", fill: "#222" }, label);
+      add(svg, "text", { x: x(value), y: HEIGHT - BOTTOM + 24, "text-anchor": "middle", fill: "#222" }, label);
     }
     for (const [value, label] of ticks(low, high, 6)) {
       add(svg, "line", { x1: LEFT, x2: WIDTH - RIGHT, y1: y(value), y2: y(value), stroke: value === 0 ? "#666" : "#e3e3e3" });
-      add(svg, "text", { x: LEFT - 8, y: y(value) + 5, "text-anchor": "end", fill: "#222" }, label);
+      add(svg, "text", { x: LEFT - 8, y: y(value) + 6, "text-anchor": "end", fill: "#222" }, label);
     }
     add(svg, "text", { x: (LEFT + WIDTH - RIGHT) / 2, y: HEIGHT - 8, "text-anchor": "middle", fill: "#222" }, `Time (${unit})`);
     const middle = (TOP + HEIGHT - BOTTOM) / 2;
-    add(svg, "text", { x: 16, y: middle, "text-anchor": "middle", fill: "#222", transform: `rotate(-90 16 ${middle})` },
+    add(svg, "text", { x: 20, y: middle, "text-anchor": "middle", fill: "#222", transform: `rotate(-90 20 ${middle})` },
       `${chart.quantity} (${chart.unit})`);
     const plot = add(svg, "g", { "clip-path": `url(#${clip})` });
     for (const [time, name] of marks) {
@@ -85,7 +85,7 @@ function makeChart(figure, curves, chart, marks) {
     chart.series.forEach(({ values }, k) => {
       let points = "";
       for (let i = first; i <= last; i += 1) points += `${x(times[i]).toFixed(1)},${y(values[i]).toFixed(1)} `;
-      add(plot, "polyline", { points, fill: "none", stroke: PENS[k % PENS.length], "stroke-width": "2" });
+      add(plot, "polyline", { points, fill: "none", stroke: PENS[k % PENS.length], "stroke-width": "2.5" });
     });
     add(svg, "g", { class: "cursor" });
     reset.disabled = view[0] === whole[0] && view[1] === whole[1];

@@ -69,20 +69,30 @@ const HEADINGS: [(&str, &str); 8] = [
     ("margins", "Reserve factors"),
 ];
 
-/// A key's name for people, and its unit.
-pub(super) fn named(key: &str) -> (String, String) {
+/// A key's name for people, the unit to show it in, and how many of that are one of the key's own: millimetres for metres,
+/// milliseconds for times, microseconds for steps.
+pub(super) fn named(key: &str) -> (String, &'static str, f64) {
     let (stem, unit) = UNITS.iter().find_map(|(end, unit)| Some((key.strip_suffix(end)?, *unit))).unwrap_or((key, ""));
+    let (unit, factor) = match unit {
+        "m" => ("mm", 1e3),
+        "s" if stem.ends_with("time") => ("ms", 1e3),
+        "s" if stem.ends_with("step") => ("µs", 1e6),
+        unit => (unit, 1.0),
+    };
     let relative = if key.ends_with("_relative") { ", relative" } else { "" };
-    (format!("{}{relative}", stem.replace('_', " ")), unit.to_owned())
+    (format!("{}{relative}", stem.replace('_', " ")), unit, factor)
 }
 
-/// A number with six digits at most, as text; other values as they are.
-pub(super) fn shown(value: &Value) -> String {
+/// A number, `factor` times, with six digits at most, as text; other values as they are.
+pub(super) fn shown(value: &Value, factor: f64) -> String {
     match value {
         Value::String(text) => text.clone(),
         Value::Bool(yes) => if *yes { "yes" } else { "no" }.to_owned(),
-        Value::Number(number) => number.as_f64().filter(|_| number.is_f64()).map_or(number.to_string(), digits),
-        Value::Array(values) => values.iter().map(shown).collect::<Vec<_>>().join(", "),
+        Value::Number(number) => {
+            let scaled = number.as_f64().filter(|_| number.is_f64()).map(|value| digits(value * factor));
+            scaled.unwrap_or_else(|| number.to_string())
+        }
+        Value::Array(values) => values.iter().map(|value| shown(value, factor)).collect::<Vec<_>>().join(", "),
         Value::Null | Value::Object(_) => String::new(),
     }
 }
@@ -118,8 +128,8 @@ pub(super) fn sections(summary: &Map<String, Value>, rest: &str) -> Vec<Section>
 }
 
 fn fact(key: &str, value: &Value) -> Fact {
-    let (label, unit) = named(key);
-    Fact { label, value: shown(value), unit }
+    let (label, unit, factor) = named(key);
+    Fact { label, value: shown(value, factor), unit: unit.to_owned() }
 }
 
 /// Fields by name, those of a field within among them.
@@ -151,15 +161,15 @@ fn grid(rows: &[Value]) -> Grid {
         row.iter().find(|(name, _)| name == key).map(|(_, value)| (*value).clone())
     };
     let column = |key: &&String| {
-        let (label, unit) = named(key);
+        let (label, unit, _) = named(key);
         let numeric = rows.iter().filter_map(|row| of(row, key)).all(|value| value.is_number());
-        Column { label, unit, numeric }
+        Column { label, unit: unit.to_owned(), numeric }
     };
     Grid {
         columns: keys.iter().map(column).collect(),
         rows: rows
             .iter()
-            .map(|row| keys.iter().map(|key| of(row, key).map_or(String::new(), |v| shown(&v))).collect())
+            .map(|row| keys.iter().map(|key| of(row, key).map_or(String::new(), |v| shown(&v, named(key).2))).collect())
             .collect(),
     }
 }
@@ -173,7 +183,7 @@ mod tests {
     #[test]
     fn keys_tell_their_units() {
         let both = |key: &str| {
-            let (label, unit) = named(key);
+            let (label, unit, _) = named(key);
             format!("{label} [{unit}]")
         };
         let keys =
@@ -186,6 +196,7 @@ mod tests {
             "layers []",
         ];
         assert_eq!(keys.map(both), want);
+        assert_eq!(["w_m", "end_time_s", "wall_s", "step_s"].map(|key| named(key).2), [1e3, 1e3, 1.0, 1e6]);
         assert_eq!(
             [0.1 + 0.2, 1913.2097520488533, 7.633260460168094e-9, 0.0].map(digits),
             ["0.3", "1913.21", "7.63326e-9", "0"]
@@ -200,7 +211,7 @@ mod tests {
         let headings: Vec<_> = sections.iter().map(|s| s.heading.as_str()).collect();
         assert_eq!(headings, ["Rest", "Model", "First damage of each mode, and its stress"]);
         assert_eq!(sections[0].facts[1].value, "1.5, 2");
-        assert_eq!((sections[1].facts[1].label.as_str(), sections[1].facts[1].unit.as_str()), ("x", "m"));
+        assert_eq!((sections[1].facts[1].value.as_str(), sections[1].facts[1].unit.as_str()), ("500", "mm"));
         let grid = sections[2].table.as_ref().unwrap();
         let labels: Vec<_> = grid.columns.iter().map(|c| (c.label.as_str(), c.numeric)).collect();
         assert_eq!(labels, [("mode", false), ("s11", true), ("reserve factor", true)]);

@@ -72,6 +72,7 @@ pub(super) fn render(folder: &Folder) -> Result<String, Error> {
         warnings => any(warnings),
         sections => any(facts::sections(summary, "General")),
         figures => any(figures),
+        curves => curves.is_some(),
         charts => others,
         damage => !damage.is_null(),
         least => least,
@@ -111,7 +112,7 @@ fn figure(picture: &Picture, interactive: bool) -> Figure {
 fn tiles(summary: &Map<String, Value>) -> Vec<Fact> {
     let mut tiles = Vec::new();
     let mut tile = |label: &str, value: Option<f64>, factor: f64, unit: &str| {
-        let shown = |v: f64| facts::shown(&json!(four(v * factor)));
+        let shown = |v: f64| facts::digits(four(v * factor));
         tiles.extend(value.map(|v| Fact { label: label.into(), value: shown(v), unit: unit.into() }));
     };
     let impacts: Vec<&Value> = match summary.get("impact") {
@@ -141,12 +142,15 @@ fn four(value: f64) -> f64 {
 fn table(table: &Table) -> Grid {
     let number = |text: &str| text.parse::<f64>().ok();
     let column = |(k, key): (usize, &String)| {
-        let (label, unit) = facts::named(key);
-        Column { label, unit, numeric: table.rows.iter().all(|row| number(&row[k]).is_some()) }
+        let (label, unit, _) = facts::named(key);
+        Column { label, unit: unit.to_owned(), numeric: table.rows.iter().all(|row| number(&row[k]).is_some()) }
     };
     let columns: Vec<_> = table.header.iter().enumerate().map(column).collect();
-    let field = |text: &String| number(text).map_or_else(|| text.clone(), facts::digits);
-    let rows = table.rows.iter().map(|row| row.iter().map(field).collect()).collect();
+    let factors: Vec<f64> = table.header.iter().map(|key| facts::named(key).2).collect();
+    let field = |(text, factor): (&String, &f64)| {
+        number(text).map_or_else(|| text.clone(), |value| facts::digits(value * factor))
+    };
+    let rows = table.rows.iter().map(|row| row.iter().zip(&factors).map(field).collect()).collect();
     Grid { columns, rows }
 }
 
