@@ -438,7 +438,8 @@ impl Scan {
         sites.zip(self.record.seen[criterion].maxima.chunks_exact(watch.modes.len()))
     }
 
-    /// For fields: every site, by its number, that criterion number `criterion` looks at, with its indices of the last sample.
+    /// For fields: every site, by its number, that criterion number `criterion` looks at, with its indices of the
+    /// last sample.
     ///
     /// # Panics
     /// There is no criterion of that number.
