@@ -285,8 +285,8 @@ pub(crate) fn add(stresses: &mut [f64], residual: &[f64]) {
     }
 }
 
-/// Stresses of `count` displacement fields (before elimination of constraints), one after the other, without those that do
-/// not follow from displacements.
+/// Stresses of `count` displacement fields (before elimination of constraints), one after the other, without those
+/// that do not follow from displacements.
 ///
 /// # Errors
 /// A cell that the element refuses.

@@ -443,7 +443,8 @@ impl Scan {
         sites.zip(maxima).zip(reached).map(|((site, maxima), reached)| (site, maxima, reached))
     }
 
-    /// For fields: every site, by its number, that criterion number `criterion` looks at, with its indices of the last sample.
+    /// For fields: every site, by its number, that criterion number `criterion` looks at, with its indices of the
+    /// last sample.
     ///
     /// # Panics
     /// There is no criterion of that number.

@@ -153,8 +153,8 @@ impl OutputDir {
         self.place(name, fill, File::sync_all)
     }
 
-    /// As [`OutputDir::write`], without waiting for the disk: a process that is killed leaves the file whole or not at all, a
-    /// machine that loses its power may not. For files of which there are many.
+    /// As [`OutputDir::write`], without waiting for the disk: a process that is killed leaves the file whole or not
+    /// at all, a machine that loses its power may not. For files of which there are many.
     ///
     /// # Errors
     /// As [`OutputDir::write`].

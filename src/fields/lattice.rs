@@ -28,8 +28,8 @@ pub(super) struct Lattice<'a> {
 /// Most bytes of shape functions that are kept; beyond it they are found anew for every frame.
 const LIMIT: usize = 128 << 20;
 
-/// Three rows for each of some points: the unknowns of the plate that a component of the displacement hangs on, with their
-/// factors.
+/// Three rows for each of some points: the unknowns of the plate that a component of the displacement hangs on, with
+/// their factors.
 #[derive(Debug, Default)]
 struct Rows {
     entries: Vec<(u32, f64)>,
@@ -139,7 +139,8 @@ impl<'a> Lattice<'a> {
     }
 }
 
-/// What names a point that a quad shares with others: its vertex, or the ends of its side and how far it is from the first.
+/// What names a point that a quad shares with others: its vertex, or the ends of its side and how far it is from the
+/// first.
 fn shared(quad: &[u32; 4], [i, j]: [usize; 2], n: usize) -> Option<[u32; 3]> {
     let ends = |a: usize, b: usize, from_a: usize| {
         let (a, b, from_a, from_b) = (quad[a], quad[b], from_a as u32, (n - from_a) as u32);

@@ -6,8 +6,8 @@
 //! | `plies` | one per ply and quad | stress in the axes of the ply and indices, as the criteria see them |
 //! | `interfaces` | one per interface and quad | tractions and indices |
 //!
-//! A frame is a state of the whole plate, also where a symmetry computes a part of it. Files depend on nothing but the state, so
-//! that a resumed march writes what one in one piece writes.
+//! A frame is a state of the whole plate, also where a symmetry computes a part of it. Files depend on nothing but
+//! the state, so that a resumed march writes what one in one piece writes.
 
 mod lattice;
 mod plate;
@@ -79,8 +79,8 @@ pub(crate) struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    /// Makes the folder below `results` for frames at `times`, s, or whatever numbers them; `None` where the scene asks for no
-    /// fields.
+    /// Makes the folder below `results` for frames at `times`, s, or whatever numbers them; `None` where the scene
+    /// asks for no fields.
     ///
     /// # Errors
     /// A folder that cannot be made, a criterion whose material lacks a constant.
@@ -92,8 +92,8 @@ impl<'a> Writer<'a> {
     /// Writes frame `number`, counted from 0, and the series up to it.
     ///
     /// # Errors
-    /// A cell that the element refuses, a number that is not finite, a stress that a criterion does not take, a folder that cannot
-    /// be written.
+    /// A cell that the element refuses, a number that is not finite, a stress that a criterion does not take, a
+    /// folder that cannot be written.
     pub(crate) fn write(&mut self, number: usize, state: State<'_>) -> Result<(), Error> {
         let Self { layout: Layout { plate, plies }, dir, times } = self;
         let frame = Frame { dir, times: &times[..=number], state };
@@ -123,8 +123,8 @@ pub(crate) fn write_static(
     Ok(stopwatch.phases().first().cloned())
 }
 
-/// Writes a frame for each natural mode below `dir`, where the scene asks for fields; what it took. The time of a frame is the
-/// number of its mode.
+/// Writes a frame for each natural mode below `dir`, where the scene asks for fields; what it took. The time of a
+/// frame is the number of its mode.
 ///
 /// # Errors
 /// As [`Writer::new`] and [`Writer::write`].

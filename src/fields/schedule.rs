@@ -3,8 +3,8 @@
 use crate::run::Sizes;
 use fem_io::scene::Fields;
 
-/// Steps of a march that are frames, ascending: those nearest to the multiples of `every`, s, if there is one, and to the
-/// times of `fields`.
+/// Steps of a march that are frames, ascending: those nearest to the multiples of `every`, s, if there is one, and to
+/// the times of `fields`.
 pub(crate) fn frames(fields: Option<&Fields>, every: Option<f64>, sizes: &Sizes) -> Vec<u64> {
     let Sizes { steps, step: dt, .. } = *sizes;
     let nearest = |t: f64| (t / dt).round() as u64;

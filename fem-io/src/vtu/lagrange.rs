@@ -1,11 +1,11 @@
 //! The order of the points of a Lagrange hexahedron.
 
-/// Points (i, j, k) of a hexahedron of order `n`, each 0 to n along x, y and z, as VTK counts them from files of version 2.2
-/// on: corners, edges, faces, inside.
+/// Points (i, j, k) of a hexahedron of order `n`, each 0 to n along x, y and z, as VTK counts them from files of
+/// version 2.2 on: corners, edges, faces, inside.
 ///
-/// Corners and the four upright edges go round: (0, 0), (n, 0), (n, n), (0, n). Edges of a face begin at its corner (0, 0):
-/// along x, y at x = n, x at y = n, y at x = 0. Faces are those of x, of y and of z, the lower one of each first; what lies inside
-/// an edge, a face or the cell counts x first, then y, then z.
+/// Corners and the four upright edges go round: (0, 0), (n, 0), (n, n), (0, n). Edges of a face begin at its corner
+/// (0, 0): along x, y at x = n, x at y = n, y at x = 0. Faces are those of x, of y and of z, the lower one of each
+/// first; what lies inside an edge, a face or the cell counts x first, then y, then z.
 pub fn lagrange_hexahedron(n: usize) -> Vec<[usize; 3]> {
     const ROUND: [[bool; 2]; 4] = [[false, false], [true, false], [true, true], [false, true]];
     let end = |far: bool| if far { n } else { 0 };
@@ -51,8 +51,8 @@ mod tests {
         }
     }
 
-    /// Of order 1 it is the linear hexahedron; of order 2 the points that VTK gives for its triquadratic one, in whose numbering
-    /// the faces are those of x, y and z as well.
+    /// Of order 1 it is the linear hexahedron; of order 2 the points that VTK gives for its triquadratic one, in
+    /// whose numbering the faces are those of x, y and z as well.
     #[test]
     fn low_orders_are_the_hexahedra_that_everyone_knows() {
         let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];

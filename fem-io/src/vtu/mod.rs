@@ -3,13 +3,13 @@
 //! | part of a `.vtu` file | how it is written |
 //! | --- | --- |
 //! | numbers | appended raw behind the XML, little-endian, in blocks of 64 KiB that are zlib streams each |
-//! | headers of the blocks | `UInt64`: number of blocks, size of a block, size of the last one if it is shorter, compressed sizes |
+//! | headers | `UInt64`: number of blocks, size of a block, size of the last one if it is shorter, compressed sizes |
 //! | coordinates | `Float64`, because plies are thin and a plate may lie far from its origin |
-//! | other reals | `Float32`: seven digits, half the size; stored as they are, because their digits hardly compress (a tenth) |
+//! | other reals | `Float32`: seven digits, half the size; stored, because they hardly compress (a tenth) |
 //! | whole numbers | `Int32` where all fit, `Int64` otherwise |
 //!
-//! Files of Lagrange cells are of version 2.2, in which the edges of these cells have their present order; all others are of
-//! version 1.0, which every reader knows. Equal contents make equal bytes.
+//! Files of Lagrange cells are of version 2.2, in which the edges of these cells have their present order; all others
+//! are of version 1.0, which every reader knows. Equal contents make equal bytes.
 
 mod array;
 mod collection;
@@ -21,6 +21,8 @@ pub use lagrange::lagrange_hexahedron;
 
 use crate::files::{FileError, OutputDir};
 use std::io::{self, Write};
+
+const ENCODING: &str = r#"header_type="UInt64" compressor="vtkZLibDataCompressor""#;
 
 /// What the cells of a grid are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -131,7 +133,7 @@ impl Grid {
             writeln!(out, r#"<?xml version="1.0"?>"#)?;
             writeln!(
                 out,
-                r#"<VTKFile type="UnstructuredGrid" version="{version}" byte_order="LittleEndian" header_type="UInt64" compressor="vtkZLibDataCompressor">"#
+                r#"<VTKFile type="UnstructuredGrid" version="{version}" byte_order="LittleEndian" {ENCODING}>"#
             )?;
             writeln!(out, "<UnstructuredGrid>")?;
             appended.section(out, "FieldData", field.iter())?;
