@@ -47,7 +47,7 @@ fn converges(mesh: &str, support: &str, exact: f64, last: f64) {
 #[test]
 fn a_clamped_disc() {
     let exact = PRESSURE * RADIUS.powi(4) / (64.0 * flexural_rigidity()) + shear(RADIUS);
-    converges("size = '4 mm'", "group = 'edge'\nfix = ['U10', 'U20', 'U30', 'U13', 'U23']", exact, 2e-3);
+    converges("size = '4 mm'", "group = 'edge'\nfix = ['U10', 'U20', 'U30', 'U13', 'U23']", exact, 5e-4);
 }
 
 /// Simply supported on a ring of radius a inside its edge R. Inside w = q r⁴/(64 D) + B r² + const., outside also
@@ -62,7 +62,7 @@ fn a_disc_on_a_ring() {
     let inside = outside + c * (1.0 + RING.ln());
     // Upwards positive at the ring, so that the middle lies below it.
     let exact = (PRESSURE * RING.powi(4) / (64.0 * d) + inside * RING.powi(2)).abs() + shear(RING);
-    converges("support = '20 mm', size = '4 mm'", "group = 'support'\nfix = ['U30']", exact, 2e-3);
+    converges("support = '20 mm', size = '4 mm'", "group = 'support'\nfix = ['U30']", exact, 5e-4);
 }
 
 /// The same place off the middle, whatever the mesh: by the deflection there of the clamped disc, w ~ (1 - r²/R²)².
@@ -72,5 +72,5 @@ fn a_disc_struck_off_its_middle() {
     let bending = PRESSURE * RADIUS.powi(4) / (64.0 * flexural_rigidity()) * at * at;
     let exact = bending + shear(RADIUS) * at;
     let clamped = "group = 'edge'\nfix = ['U10', 'U20', 'U30', 'U13', 'U23']";
-    converges("size = '4 mm', impact = ['8 mm', '-6 mm']", clamped, exact, 2e-3);
+    converges("size = '4 mm', impact = ['8 mm', '-6 mm']", clamped, exact, 5e-4);
 }
