@@ -243,10 +243,12 @@ mod tests {
         assert_eq!([1.23456, f64::INFINITY, 0.0].map(four_digits), [1.235, 1e9, 0.0]);
     }
 
+    type Spoil = fn(&mut DamageMap);
+
     #[test]
     fn what_points_nowhere_is_refused() {
         assert_eq!(map().check(), Ok(()));
-        let wrong: [(&str, fn(&mut DamageMap)); 6] = [
+        let wrong: [(&str, Spoil); 6] = [
             ("`cells`", |m| m.cells.clear()),
             ("`quads`", |m| m.quads[0][2] = 4),
             ("`judged`", |m| m.judged[0] = 1),
