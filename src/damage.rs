@@ -69,6 +69,9 @@ pub struct PlaceDamage {
     pub failed: Vec<Failed>,
 }
 
+/// By position in `judged` and number in `modes`, s.
+type FirstTimes = BTreeMap<(u32, u32), f64>;
+
 /// A mode that reached 1 in a cell: position in `judged`, number in `modes`, first time (s).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Failed(pub u32, pub u32, pub f64);
@@ -102,7 +105,7 @@ impl DamageMap {
         for (i, q) in judged.iter().enumerate() {
             stands_for[symmetry.quad(*q as usize)].push(i);
         }
-        let mut places: BTreeMap<(u16, bool), (PlaceDamage, BTreeMap<(u32, u32), f64>)> = BTreeMap::new();
+        let mut places: BTreeMap<(u16, bool), (PlaceDamage, FirstTimes)> = BTreeMap::new();
         for m in &outcome.maxima {
             let key = match m.site.place {
                 Place::Ply(k) => (k, false),
@@ -110,7 +113,7 @@ impl DamageMap {
             };
             let empty =
                 || PlaceDamage { ply: ply_name(m.site.place), index: vec![0.0; judged.len()], failed: Vec::new() };
-            let (place, failed) = places.entry(key).or_insert_with(|| (empty(), BTreeMap::new()));
+            let (place, failed) = places.entry(key).or_insert_with(|| (empty(), FirstTimes::new()));
             for &i in &stands_for[m.site.cell as usize] {
                 place.index[i] = place.index[i].max(m.index);
                 for &(mode, time) in &m.reached {
@@ -240,10 +243,12 @@ mod tests {
         assert_eq!([1.23456, f64::INFINITY, 0.0].map(four_digits), [1.235, 1e9, 0.0]);
     }
 
+    type Spoil = fn(&mut DamageMap);
+
     #[test]
     fn what_points_nowhere_is_refused() {
         assert_eq!(map().check(), Ok(()));
-        let wrong: [(&str, fn(&mut DamageMap)); 6] = [
+        let wrong: [(&str, Spoil); 6] = [
             ("`cells`", |m| m.cells.clear()),
             ("`quads`", |m| m.quads[0][2] = 4),
             ("`judged`", |m| m.judged[0] = 1),

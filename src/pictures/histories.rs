@@ -48,9 +48,11 @@ pub(super) fn energy(title: &str, rows: &[HistoryRow]) -> Option<LinePlot> {
     shown(over_time(title, "Energy", Physical::Energy, seen.chain([total]).collect()))
 }
 
+type Length = fn(&ImpactorRow) -> f64;
+
 /// Contact force over the displacement of the plate, of the impactor and over the indentation, their difference.
 pub(super) fn force_displacement(title: &str, names: &[&str], rows: &[HistoryRow]) -> Option<LinePlot> {
-    let lengths: [(&str, &str, fn(&ImpactorRow) -> f64); 3] = [
+    let lengths: [(&str, &str, Length); 3] = [
         ("plate", " under the impactor", |r| r.plate_displacement_m),
         ("impactor", "", |r| r.impactor_displacement_m),
         ("indentation", "", |r| r.impactor_displacement_m - r.plate_displacement_m),

@@ -107,8 +107,8 @@ pub fn section(title: &str, damage: &DamageMap) -> Option<MapPlot> {
         let [low, high] = heights(damage, place)?;
         let fills = fills(place);
         let band = |(i, [a, b]): &(usize, [f64; 2])| {
-            let corners = vec![[*a, low], [*b, low], [*b, high], [*a, high]];
-            Cell { corners: corners.iter().map(|p| p.map(|v| v * 1e3)).collect(), fill: fills[*i] }
+            let corners = [[*a, low], [*b, low], [*b, high], [*a, high]];
+            Cell { corners: corners.map(|p| p.map(|v| v * 1e3)).to_vec(), fill: fills[*i] }
         };
         panel.cells.extend(cut.iter().map(band));
     }

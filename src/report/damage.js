@@ -71,7 +71,8 @@ if (data.damage) {
     });
     $("time-out").textContent = ms(now());
     time.setAttribute("aria-valuetext", ms(now()));
-    $("count").textContent = `${count} of ${cells.length} cells have failed in ${place.options[place.selectedIndex].text.replace(", intact", "")}.`;
+    const where = place.options[place.selectedIndex].text.replace(", intact", "");
+    $("count").textContent = `${count} of ${cells.length} cells have failed in ${where}.`;
     rows.forEach(({ row, cells: shown, k }) => {
       shown.textContent = new Set(places[k].failed.filter((f) => f[2] <= now()).map((f) => f[0])).size;
       row.setAttribute("aria-current", String(place.value === String(k)));
@@ -93,7 +94,8 @@ if (data.damage) {
   map.addEventListener("pointerover", (event) => {
     const i = polygons.indexOf(event.target);
     if (i < 0) return;
-    const found = seen.flatMap((p) => p.failed.filter((f) => f[0] === i).map((f) => [f[2], `${ms(f[2])}: ${modeName(f[1])}, ${called(p)}`]));
+    const said = (p, f) => [f[2], `${ms(f[2])}: ${modeName(f[1])}, ${called(p)}`];
+    const found = seen.flatMap((p) => p.failed.filter((f) => f[0] === i).map((f) => said(p, f)));
     const largest = seen.reduce((m, p) => p.index[i] > m.index[i] ? p : m, seen[0]);
     const lines = found.sort((a, b) => a[0] - b[0]).slice(0, 6).map((f) => f[1]);
     $("cell").textContent = [`cell ${tags[i]}, largest index ${digits(largest.index[i])} in ${called(largest)}`, ...lines].join("\n");
