@@ -5,10 +5,12 @@ use crate::error::Error;
 use crate::mesh::Summary;
 use crate::model;
 use clap::Args;
+use fem_core::mesh::QuadMesh;
 use fem_core::plugin::Dimension;
 use fem_io::files::OutputDir;
 use fem_io::gmsh::{self, Encoding, GmshMesh};
-use fem_io::{scene, units};
+use fem_io::scene::{self, ImpactPoint};
+use fem_io::{plot, units};
 use miette::miette;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -27,6 +29,9 @@ pub(super) struct Arguments {
     /// Writes it binary instead of as text.
     #[arg(long, requires = "out")]
     binary: bool,
+    /// Draws the cells, the groups and where a scene's impactors strike, as SVG and PNG in this folder [default: .]
+    #[arg(long, value_name = "DIR", num_args = 0..=1, default_missing_value = ".")]
+    picture: Option<PathBuf>,
     #[command(flatten)]
     format: Format,
 }
@@ -34,8 +39,12 @@ pub(super) struct Arguments {
 pub(super) fn mesh(arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let metres = units::parse_as(&format!("1 {}", arguments.unit), Dimension::LENGTH)
         .map_err(|_| miette!(help = "write --unit mm, m or in", "`{}` is no unit of length", arguments.unit))?;
-    let GmshMesh { mesh, warnings } = read(&arguments.file, metres)?;
+    let (GmshMesh { mesh, warnings }, impacts) = read(&arguments.file, metres)?;
     let summary = Summary::new(&mesh, warnings);
+    let pictures = match &arguments.picture {
+        Some(folder) => draw(&arguments.file, folder, &mesh, &impacts)?,
+        None => Vec::new(),
+    };
     if let Some(out) = &arguments.out {
         let encoding = if arguments.binary { Encoding::Binary } else { Encoding::Ascii };
         let name = out.file_name().and_then(|name| name.to_str());
@@ -46,17 +55,41 @@ pub(super) fn mesh(arguments: &Arguments, console: &Console) -> miette::Result<E
     }
     console.show(arguments.format, &summary, || {
         let mut text = format!("{}\n{}", arguments.file.display(), summary.text(&arguments.unit, metres));
-        if let Some(out) = &arguments.out {
-            let _ = writeln!(text, "  written   {}", out.display());
+        for file in arguments.out.iter().chain(&pictures) {
+            let _ = writeln!(text, "  written   {}", file.display());
         }
         text
     })?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn read(file: &Path, metres: f64) -> Result<GmshMesh, Error> {
-    if file.extension().is_some_and(|extension| extension == "toml") {
-        return model::mesh(&scene::read(file)?);
+/// The mesh, and the points that impactors of a scene strike, m.
+fn read(file: &Path, metres: f64) -> Result<(GmshMesh, Vec<[f64; 2]>), Error> {
+    if file.extension().is_none_or(|extension| extension != "toml") {
+        return Ok((gmsh::read(file, metres)?, Vec::new()));
     }
-    Ok(gmsh::read(file, metres)?)
+    let scene = scene::read(file)?;
+    let read = model::mesh(&scene)?;
+    let impactors = scene.impact().map_or(&[][..], |impact| &impact.impactors);
+    let struck = impactors.iter().filter_map(|impactor| match &impactor.at.value {
+        ImpactPoint::Point(point) => Some(*point),
+        ImpactPoint::Group(name) => {
+            let node = read.mesh.groups.get(name)?.nodes.first()?;
+            Some(read.mesh.points[*node as usize])
+        }
+    });
+    let struck = struck.collect();
+    Ok((read, struck))
+}
+
+/// Draws `mesh`, which is that of `file`, into `folder`; the files.
+fn draw(file: &Path, folder: &Path, mesh: &QuadMesh, impacts: &[[f64; 2]]) -> Result<Vec<PathBuf>, Error> {
+    let name = file.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy());
+    let picture = plot::map_plot(&plot::mesh_map(&file.display().to_string(), mesh, impacts))?;
+    let dir = OutputDir::create(folder)?;
+    let files = [(format!("{name}.svg"), picture.svg.as_bytes()), (format!("{name}.png"), &picture.png)];
+    files
+        .into_iter()
+        .map(|(name, bytes)| Ok(dir.write(&name, |out| out.write_all(bytes)).map(|()| folder.join(name))?))
+        .collect()
 }

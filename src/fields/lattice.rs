@@ -42,10 +42,14 @@ impl Rows {
         self.ends.clear();
     }
 
-    fn apply(&self, field: &[f64], out: &mut Vec<f64>) {
+    /// Row by row for all fields, because the rows are what memory is slow to give.
+    fn apply(&self, fields: &[&[f64]], all: &mut [Vec<f64>]) {
         let mut start = 0;
         for end in &self.ends {
-            out.push(self.entries[start..*end].iter().map(|(dof, n)| n * field[*dof as usize]).sum());
+            let row = &self.entries[start..*end];
+            for (field, out) in fields.iter().zip(&mut *all) {
+                out.push(row.iter().map(|(dof, n)| n * field[*dof as usize]).sum());
+            }
             start = *end;
         }
     }
@@ -103,15 +107,14 @@ impl<'a> Lattice<'a> {
     /// Three components of each of `fields`, given in the unknowns of the plate, at every point.
     pub(super) fn values(&self, fields: &[&[f64]]) -> Vec<Vec<f64>> {
         let mut all: Vec<Vec<f64>> = fields.iter().map(|_| Vec::with_capacity(3 * self.len())).collect();
-        let mut take = |rows: &Rows| fields.iter().zip(&mut all).for_each(|(field, all)| rows.apply(field, all));
         match &self.kept {
-            Some(rows) => take(rows),
+            Some(rows) => rows.apply(fields, &mut all),
             None => {
                 let mut rows = Rows::default();
                 for column in 0..self.columns.len() {
                     rows.clear();
                     self.shapes(column, &mut rows);
-                    take(&rows);
+                    rows.apply(fields, &mut all);
                 }
             }
         }

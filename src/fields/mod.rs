@@ -69,6 +69,12 @@ impl<'a> Layout<'a> {
     }
 }
 
+/// Most frames that wait to be written together: strain operators are made once for all of them.
+const BATCH: usize = 16;
+
+/// Most bytes of values that are found together; fewer frames wait where points are many.
+const STORE: usize = 64 << 20;
+
 /// The files of a run.
 #[derive(Debug)]
 pub(crate) struct Writer<'a> {
@@ -76,6 +82,16 @@ pub(crate) struct Writer<'a> {
     dir: OutputDir,
     /// Times of all frames.
     times: Vec<f64>,
+    waiting: Vec<Waiting>,
+}
+
+/// A frame that waits to be written.
+#[derive(Debug)]
+struct Waiting {
+    number: usize,
+    displacements: Vec<f64>,
+    velocities: Option<Vec<f64>>,
+    frequency: Option<f64>,
 }
 
 impl<'a> Writer<'a> {
@@ -86,31 +102,52 @@ impl<'a> Writer<'a> {
     /// A folder that cannot be made, a criterion whose material lacks a constant.
     pub(crate) fn new(model: &'a Model, results: &OutputDir, times: Vec<f64>) -> Result<Option<Self>, Error> {
         let Some(layout) = Layout::new(model)? else { return Ok(None) };
-        Ok(Some(Self { layout, dir: OutputDir::create(results.path().join(FOLDER))?, times }))
+        let dir = OutputDir::create(results.path().join(FOLDER))?;
+        Ok(Some(Self { layout, dir, times, waiting: Vec::new() }))
     }
 
-    /// Writes frame `number`, counted from 0, and the series up to it.
+    /// Takes frame `number`, counted from 0; it may wait for others, until [`Writer::flush`] at the latest.
+    ///
+    /// # Errors
+    /// As [`Writer::flush`].
+    pub(crate) fn take(&mut self, number: usize, state: State<'_>) -> Result<(), Error> {
+        let State { displacements, velocities, frequency } = state;
+        let (displacements, velocities) = (displacements.to_vec(), velocities.map(<[f64]>::to_vec));
+        self.waiting.push(Waiting { number, displacements, velocities, frequency });
+        let Layout { plate, plies } = &self.layout;
+        let of_frame =
+            plate.as_ref().map_or(0, Plate::bytes_of_frame) + plies.as_ref().map_or(0, Plies::bytes_of_frame);
+        let most = (STORE / of_frame.max(1)).clamp(1, BATCH);
+        if self.waiting.len() < most { Ok(()) } else { self.flush() }
+    }
+
+    /// Writes the frames that wait, and the series up to them.
     ///
     /// # Errors
     /// A cell that the element refuses, a number that is not finite, a stress that a criterion does not take, a
     /// folder that cannot be written.
-    pub(crate) fn write(&mut self, number: usize, state: State<'_>) -> Result<(), Error> {
-        let Self { layout: Layout { plate, plies }, dir, times } = self;
-        let frame = Frame { dir, times: &times[..=number], state };
+    pub(crate) fn flush(&mut self) -> Result<(), Error> {
+        let waiting = std::mem::take(&mut self.waiting);
+        let Self { layout: Layout { plate, plies }, dir, times, .. } = self;
+        let frames = waiting.iter().map(|Waiting { number, displacements, velocities, frequency }| {
+            let state = State { displacements, velocities: velocities.as_deref(), frequency: *frequency };
+            Frame { dir, times: &times[..=*number], state }
+        });
+        let frames: Vec<Frame<'_>> = frames.collect();
         if let Some(plate) = plate {
-            plate.write(&frame)?;
+            plate.write(&frames)?;
         }
-        if let Some(plies) = plies {
-            plies.write(&frame)?;
+        match plies {
+            Some(plies) if !frames.is_empty() => plies.write(&frames),
+            _ => Ok(()),
         }
-        Ok(())
     }
 }
 
 /// Writes the one frame of a static analysis below `dir`, where the scene asks for fields; what it took.
 ///
 /// # Errors
-/// As [`Writer::new`] and [`Writer::write`].
+/// As [`Writer::new`] and [`Writer::flush`].
 pub(crate) fn write_static(
     dir: &OutputDir,
     model: &Model,
@@ -118,7 +155,8 @@ pub(crate) fn write_static(
 ) -> Result<Option<Phase>, Error> {
     let mut stopwatch = Stopwatch::default();
     let Some(mut writer) = Writer::new(model, dir, vec![0.0])? else { return Ok(None) };
-    writer.write(0, State::at_rest(&solution.u))?;
+    writer.take(0, State::at_rest(&solution.u))?;
+    writer.flush()?;
     stopwatch.lap(PHASE);
     Ok(stopwatch.phases().first().cloned())
 }
@@ -127,7 +165,7 @@ pub(crate) fn write_static(
 /// frame is the number of its mode.
 ///
 /// # Errors
-/// As [`Writer::new`] and [`Writer::write`].
+/// As [`Writer::new`] and [`Writer::flush`].
 pub(crate) fn write_modes(dir: &OutputDir, model: &Model, solution: &modes::Solution) -> Result<Option<Phase>, Error> {
     let mut stopwatch = Stopwatch::default();
     let found = &solution.modes;
@@ -137,8 +175,9 @@ pub(crate) fn write_modes(dir: &OutputDir, model: &Model, solution: &modes::Solu
     let shapes = found.shapes.chunks_exact(model.constraints.ndof().max(1));
     for (number, (shape, omega)) in shapes.zip(&found.omega).enumerate() {
         model.constraints.expand(shape, &mut u);
-        writer.write(number, State { frequency: Some(omega / TAU), ..State::at_rest(&u) })?;
+        writer.take(number, State { frequency: Some(omega / TAU), ..State::at_rest(&u) })?;
     }
+    writer.flush()?;
     stopwatch.lap(PHASE);
     Ok(stopwatch.phases().first().cloned())
 }

@@ -52,13 +52,28 @@ impl<'a> Plate<'a> {
         Self { grid: Grid::new(&lattice.positions(), shape, &points), lattice, fixed }
     }
 
-    pub(super) fn write(&self, frame: &Frame<'_>) -> Result<(), Error> {
-        let State { displacements, velocities, .. } = frame.state;
-        let fields: Vec<&[f64]> = [displacements].into_iter().chain(velocities).collect();
+    /// What the values of a frame take, bytes.
+    pub(super) fn bytes_of_frame(&self) -> usize {
+        2 * 3 * self.lattice.len() * size_of::<f64>()
+    }
+
+    pub(super) fn write(&self, frames: &[Frame<'_>]) -> Result<(), Error> {
+        let fields_of = |frame: &Frame<'_>| frame.state.velocities.map_or(1, |_| 2);
+        let fields: Vec<&[f64]> = frames
+            .iter()
+            .flat_map(|Frame { state: State { displacements, velocities, .. }, .. }| {
+                [*displacements].into_iter().chain(*velocities)
+            })
+            .collect();
         let values = self.lattice.values(&fields);
-        let named = ["displacement", "velocity"].into_iter().zip(&values);
-        let points: Vec<Array> = named.map(|(name, values)| Array::reals(name, 3, values)).collect();
-        frame.write(Series::Plate, &self.grid, Contents { points: &points, fixed: &self.fixed, ..Contents::default() })
+        let mut values = values.iter();
+        for frame in frames {
+            let named = ["displacement", "velocity"].into_iter().zip(values.by_ref().take(fields_of(frame)));
+            let points: Vec<Array> = named.map(|(name, values)| Array::reals(name, 3, values)).collect();
+            let contents = Contents { points: &points, fixed: &self.fixed, ..Contents::default() };
+            frame.write(Series::Plate, &self.grid, contents)?;
+        }
+        Ok(())
     }
 }
 

@@ -28,7 +28,6 @@ pub(super) struct Plies<'a> {
     /// Finds indices; a natural mode has none.
     scan: Option<Scan>,
     pub(super) sheets: Vec<Sheets>,
-    stresses: Vec<f64>,
     states: Vec<Stress6<Ply>>,
 }
 
@@ -62,7 +61,6 @@ impl<'a> Plies<'a> {
         sheets.extend(interfaces.then(|| Sheets::interfaces(model, plan, &lattice, &recovery)));
         Ok(Self {
             scan: if judged { Some(scan()?) } else { None },
-            stresses: vec![0.0; 6 * recovery.sites()],
             states: vec![Stress6::new([0.0; 6]); recovery.sites()],
             model,
             lattice,
@@ -72,17 +70,31 @@ impl<'a> Plies<'a> {
         })
     }
 
-    pub(super) fn write(&mut self, frame: &Frame<'_>) -> Result<(), Error> {
-        let Self { model, lattice, recovery, stresses, states, .. } = self;
-        stress::recover(model, recovery, frame.state.displacements, 1, stresses)?;
-        stress::add(stresses, &self.residual);
+    /// What the stresses and displacements of a frame take, bytes.
+    pub(super) fn bytes_of_frame(&self) -> usize {
+        (6 * self.recovery.sites() + 3 * self.lattice.len()) * size_of::<f64>()
+    }
+
+    pub(super) fn write(&mut self, frames: &[Frame<'_>]) -> Result<(), Error> {
+        let rows = 6 * self.recovery.sites();
+        let mut stresses = vec![0.0; rows * frames.len()];
+        let fields: Vec<&[f64]> = frames.iter().map(|frame| frame.state.displacements).collect();
+        stress::recover(self.model, &self.recovery, &fields.concat(), frames.len(), &mut stresses)?;
+        stress::add(&mut stresses, &self.residual);
+        let displacements = self.lattice.values(&fields);
+        let each = frames.iter().zip(&displacements).zip(stresses.chunks_exact(rows));
+        each.into_iter()
+            .try_for_each(|((frame, displacements), stresses)| self.write_one(frame, displacements, stresses))
+    }
+
+    fn write_one(&mut self, frame: &Frame<'_>, displacements: &[f64], stresses: &[f64]) -> Result<(), Error> {
+        let Self { model, recovery, states, .. } = self;
         for (state, s) in states.iter_mut().zip(stresses.chunks_exact(6)) {
             *state = Stress6::new([s[0], s[1], s[2], s[3], s[4], s[5]]);
         }
         if let Some(scan) = &mut self.scan {
             scan.sample(frame.time(), states)?;
         }
-        let displacements = lattice.values(&[frame.state.displacements]).remove(0);
         for sheets in &self.sheets {
             let of_points = sheets.points.iter().flat_map(|p| &displacements[3 * *p as usize..][..3]);
             let points = [Array::reals("displacement", 3, &of_points.copied().collect::<Vec<_>>())];

@@ -306,7 +306,8 @@ impl<'a> March<'a> {
         u
     }
 
-    /// Writes the fields of the present step below `dir`, where it is a frame.
+    /// Writes the fields of the present step below `dir`, where it is a frame; several frames may wait to be written
+    /// together, until [`March::save`] at the latest.
     ///
     /// # Errors
     /// A folder that cannot be written. A frame that makes no sense stops the march.
@@ -316,7 +317,12 @@ impl<'a> March<'a> {
             return Ok(());
         }
         self.stopwatch.lap("march");
-        let written = self.write_frame(number, dir);
+        let taken = self.take_frame(number, dir);
+        self.heed(taken)
+    }
+
+    /// A frame that makes no sense stops the march, a folder that cannot be written fails it.
+    fn heed(&mut self, written: Result<(), Error>) -> Result<(), Error> {
         self.stopwatch.lap(fields::PHASE);
         match written {
             Err(error @ Error::File(FileError::Io { .. } | FileError::Locked { .. })) => Err(error),
@@ -327,7 +333,7 @@ impl<'a> March<'a> {
         }
     }
 
-    fn write_frame(&mut self, number: usize, dir: &OutputDir) -> Result<(), Error> {
+    fn take_frame(&mut self, number: usize, dir: &OutputDir) -> Result<(), Error> {
         let (model, expansion) = (self.model, self.expansion.clone());
         let q = self.coordinates();
         let u = expansion.displacements(&q, 1);
@@ -338,7 +344,7 @@ impl<'a> March<'a> {
             self.fields = fields::Writer::new(model, dir, times.collect())?;
         }
         let Some(fields) = &mut self.fields else { return Ok(()) };
-        fields.write(number, fields::State { velocities: v.as_deref(), ..fields::State::at_rest(&u) })
+        fields.take(number, fields::State { velocities: v.as_deref(), ..fields::State::at_rest(&u) })
     }
 
     /// Stops a march that met an error in `step`.
@@ -356,6 +362,10 @@ impl<'a> March<'a> {
     /// A folder that cannot be written, a mesh that cannot be read any more.
     pub fn save(&mut self, dir: &OutputDir) -> Result<(), Error> {
         self.stopwatch.lap("march");
+        if let Some(fields) = &mut self.fields {
+            let written = fields.flush();
+            self.heed(written)?;
+        }
         self.count();
         self.progress.tangent = self.system.tangent().cloned();
         let watched = self.watch.as_ref().map(Watch::record);

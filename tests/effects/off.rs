@@ -10,8 +10,8 @@ fn effects_that_are_off_change_no_bit() {
     case.fem("run", &["--out", "without"]).good();
     let case = case.append(written);
     case.fem("run", &["--out", "off"]).good();
-    // A checkpoint knows the keys of its scene.
-    assert_eq!(case.differing("without", "off"), ["checkpoint.bin"]);
+    // A checkpoint knows the keys of its scene, of which a copy lies beside.
+    assert_eq!(case.differing("without", "off"), ["checkpoint.bin", "scene.toml"]);
     for column in ["damping_dissipated_J", "gravity_potential_J"] {
         assert!(!case.table("off/history.csv").0.contains(&column.to_owned()), "{column}");
     }

@@ -66,7 +66,7 @@ const BUILT_DISC: Keys = &[
         "disc",
         Form::Table(DISC),
         r#"{ radius = "25 mm", size = "1 mm" }"#,
-        "a disc about the origin whose cells grow from the impact; its groups are plate, edge, impact and support",
+        "a disc about the origin, its cells growing from the impact; groups plate, edge, impact, support",
     )
     .required(),
     REFINE,
@@ -77,7 +77,7 @@ const BUILT_PLATE: Keys = &[
         "plate",
         Form::Table(PLATE),
         r#"{ sides = ["100 mm", "100 mm"], support = "25 mm", size = "1 mm" }"#,
-        "a rectangle about the origin whose cells grow from the impact; its groups are plate, x-min and so on, impact and support",
+        "a rectangle about the origin, its cells growing from the impact; groups plate, x-min …, impact, support",
     )
     .required(),
     REFINE,
