@@ -203,8 +203,8 @@ mod tests {
 
     #[test]
     fn aspect_is_equal_where_asked_for() {
-        // A square of 2 mm beside one of 1 mm: paths in pixels have the same ratio of sides.
-        let mut plot = map(vec![square(0.0, Fill::Class(0)), square(1.0, Fill::Share(0.5))]);
+        // Four times as wide as high, which fills the width only where the aspect is free.
+        let mut plot = map(vec![square(0.0, Fill::Class(0)), square(3.0, Fill::Share(0.5))]);
         let sides = |plot: &MapPlot| {
             let svg = map_plot(plot).unwrap().svg;
             // The first such path is the sample in the legend.
