@@ -4,6 +4,7 @@ use super::escaped;
 use crate::files::FileError;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
+use simd_adler32::adler32;
 use std::io::{self, Write};
 
 /// Bytes that are compressed together.
@@ -28,14 +29,14 @@ impl Array {
         let mut bytes = Vec::with_capacity(size_of::<f32>() * values.len());
         values.iter().for_each(|value| bytes.extend_from_slice(&(*value as f32).to_le_bytes()));
         let refused = values.iter().position(|value| !(*value as f32).is_finite()).map(|at| (at, values[at]));
-        Self { refused, ..Self::new(name, "Float32", components, values.len(), encode(&bytes, Compression::none())) }
+        Self { refused, ..Self::new(name, "Float32", components, values.len(), encode(&bytes, stored)) }
     }
 
     /// Real numbers in double precision.
     pub fn precise(name: impl Into<String>, components: usize, values: &[f64]) -> Self {
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
         let refused = values.iter().position(|value| !value.is_finite()).map(|at| (at, values[at]));
-        Self { refused, ..Self::new(name, "Float64", components, values.len(), encode(&bytes, Compression::fast())) }
+        Self { refused, ..Self::new(name, "Float64", components, values.len(), encode(&bytes, deflated)) }
     }
 
     /// Whole numbers.
@@ -46,11 +47,11 @@ impl Array {
             false => ("Int64", values.flat_map(i64::to_le_bytes).collect()),
         };
         let count = bytes.len() / if narrow { size_of::<i32>() } else { size_of::<i64>() };
-        Self::new(name, kind, 1, count, encode(&bytes, Compression::fast()))
+        Self::new(name, kind, 1, count, encode(&bytes, deflated))
     }
 
     pub(super) fn bytes(name: &str, values: &[u8]) -> Self {
-        Self::new(name, "UInt8", 1, values.len(), encode(values, Compression::fast()))
+        Self::new(name, "UInt8", 1, values.len(), encode(values, deflated))
     }
 
     fn new(name: impl Into<String>, kind: &'static str, components: usize, values: usize, encoded: Vec<u8>) -> Self {
@@ -99,30 +100,51 @@ impl Array {
 }
 
 /// Header and compressed blocks of `bytes`.
-fn encode(bytes: &[u8], level: Compression) -> Vec<u8> {
-    let blocks = bytes.chunks(BLOCK).map(|block| deflated(block, level));
-    let blocks: Vec<Vec<u8>> = blocks.collect();
+fn encode(bytes: &[u8], compressed: fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
+    let blocks: Vec<Vec<u8>> = bytes.chunks(BLOCK).map(compressed).collect();
     let sizes = blocks.iter().map(Vec::len);
     let header = [blocks.len(), BLOCK, bytes.len() % BLOCK].into_iter().chain(sizes);
     let header: Vec<u8> = header.flat_map(|number| (number as u64).to_le_bytes()).collect();
     [header].into_iter().chain(blocks).collect::<Vec<_>>().concat()
 }
 
-fn deflated(bytes: &[u8], level: Compression) -> Vec<u8> {
-    let mut encoder = ZlibEncoder::new(Vec::with_capacity(bytes.len() + 64), level);
+fn deflated(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = ZlibEncoder::new(Vec::with_capacity(bytes.len() + 64), Compression::fast());
     // A vector takes all that it is given.
     let _ = encoder.write_all(bytes);
     encoder.finish().unwrap_or_default()
 }
 
+/// A stream of zlib (RFC 1950) whose blocks hold the bytes as they are (RFC 1951, 3.2.4): the compressor would clear half a
+/// megabyte of its own for each.
+fn stored(bytes: &[u8]) -> Vec<u8> {
+    let mut stream = Vec::with_capacity(bytes.len() + 16);
+    stream.extend_from_slice(&[0x78, 0x01]);
+    let mut rest = bytes;
+    loop {
+        let (block, after) = rest.split_at(rest.len().min(usize::from(u16::MAX)));
+        let length = block.len() as u16;
+        stream.push(u8::from(after.is_empty()));
+        stream.extend_from_slice(&length.to_le_bytes());
+        stream.extend_from_slice(&(!length).to_le_bytes());
+        stream.extend_from_slice(block);
+        if after.is_empty() {
+            stream.extend_from_slice(&adler32(&bytes).to_be_bytes());
+            return stream;
+        }
+        rest = after;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Read as _;
 
     #[test]
     fn blocks_are_counted_as_the_format_says() {
         let header = |bytes: usize| {
-            let encoded = encode(&vec![7; bytes], Compression::fast());
+            let encoded = encode(&vec![7; bytes], deflated);
             let number = |at: usize| u64::from_le_bytes(std::array::from_fn(|k| encoded[8 * at + k]));
             [number(0), number(1), number(2)]
         };
@@ -130,6 +152,16 @@ mod tests {
         assert_eq!(header(1), [1, 65536, 1]);
         assert_eq!(header(65536), [1, 65536, 0]);
         assert_eq!(header(65537), [2, 65536, 1]);
+    }
+
+    #[test]
+    fn stored_bytes_are_a_stream_of_zlib() {
+        for count in [0, 1, 65_534, 65_535, 65_536] {
+            let bytes: Vec<u8> = (0..count).map(|k: u32| (k % 251) as u8).collect();
+            let mut read = Vec::new();
+            flate2::read::ZlibDecoder::new(&stored(&bytes)[..]).read_to_end(&mut read).unwrap();
+            assert_eq!(read, bytes);
+        }
     }
 
     #[test]
