@@ -47,6 +47,20 @@ fn check_html(page: &str) {
     assert_eq!(open, [""; 0]);
 }
 
+/// What a run does not write would be taken for its own.
+#[test]
+fn a_later_run_leaves_nothing_of_an_earlier_one() {
+    let case = failing();
+    case.fem("run", &["--out", "out"]).good();
+    page(&case);
+    let before = case.names("out");
+    assert!(["damage.json", "energy.svg", "report.html"].iter().all(|name| before.iter().any(|n| n == name)));
+    let case = case.append("[output]\nplots = false\n");
+    case.fem("run", &["--out", "out"]).good();
+    let left = [".lock", "checkpoint.bin", "cost.json", "events.csv", "history.csv", "scene.toml", "summary.json"];
+    assert_eq!(case.names("out"), left);
+}
+
 /// All parts of a finished impact, in a page that is whole and asks for nothing but itself.
 #[test]
 fn a_page_has_all_parts_and_needs_nothing_else() {

@@ -1,7 +1,9 @@
 //! The folder of a run's results.
 
+use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use tracing::info;
 
@@ -92,12 +94,17 @@ const PARTIAL: &str = ".partial";
 
 /// A folder that one run at a time writes into; every file in it appears whole or not at all.
 ///
-/// The folder is locked until the value is dropped or the process ends, however it ends. The empty file `.lock`
-/// that carries the lock stays behind: removing it could free the folder for two later runs at once.
+/// The folder is locked until the value is dropped or the process ends, however it ends. The file `.lock` that carries the
+/// lock stays behind: removing it could free the folder for two later runs at once. It holds the names of what runs have
+/// left in the folder, so that a later one can take away what it replaces ([`OutputDir::supersede`]) and nothing else.
 #[derive(Debug)]
 pub struct OutputDir {
     path: PathBuf,
-    _lock: File,
+    lock: File,
+    /// What earlier runs have left.
+    earlier: BTreeSet<String>,
+    /// What was written since.
+    written: RefCell<BTreeSet<String>>,
 }
 
 impl OutputDir {
@@ -118,6 +125,7 @@ impl OutputDir {
         let lock = File::options()
             .create(true)
             .truncate(false)
+            .read(true)
             .write(true)
             .open(&lock_path)
             .map_err(failed("create", &lock_path))?;
@@ -134,7 +142,44 @@ impl OutputDir {
                 fs::remove_file(entry.path()).map_err(failed("remove", &entry.path()))?;
             }
         }
-        Ok(Self { path, _lock: lock })
+        // What is no list of names tells of no files.
+        let names = io::read_to_string(&lock).unwrap_or_default();
+        let earlier = names.lines().filter(|name| is_plain(name)).map(str::to_owned).collect();
+        Ok(Self { path, lock, earlier, written: RefCell::default() })
+    }
+
+    /// Removes what earlier runs have left and this one has not written again: it would be taken for a result of this one.
+    ///
+    /// # Errors
+    /// A file that cannot be removed, a full disk.
+    pub fn supersede(&self) -> Result<(), FileError> {
+        let written = self.written.borrow();
+        for name in self.earlier.difference(&written) {
+            let path = self.path.join(name);
+            match fs::remove_file(&path) {
+                Err(cause) if cause.kind() != io::ErrorKind::NotFound => return Err(failed("remove", &path)(cause)),
+                _ => {}
+            }
+        }
+        self.remember(&written)
+    }
+
+    /// Leaves word of what was written, for a run that supersedes it.
+    ///
+    /// # Errors
+    /// A full disk.
+    pub fn add(&self) -> Result<(), FileError> {
+        self.remember(&(&self.earlier | &*self.written.borrow()))
+    }
+
+    fn remember(&self, names: &BTreeSet<String>) -> Result<(), FileError> {
+        let text: String = names.iter().flat_map(|name| [name, "\n"]).collect();
+        let write = |mut lock: &File| {
+            lock.rewind()?;
+            lock.set_len(0)?;
+            lock.write_all(text.as_bytes())
+        };
+        write(&self.lock).map_err(failed("write", &self.path.join(LOCK)))
     }
 
     /// The folder.
@@ -172,8 +217,7 @@ impl OutputDir {
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
         settle: impl FnOnce(&File) -> io::Result<()>,
     ) -> Result<(), FileError> {
-        let plain = Path::new(name).file_name().is_some_and(|n| n == name);
-        if !plain || name.starts_with('.') {
+        if !is_plain(name) {
             return Err(FileError::Name { name: name.to_owned() });
         }
         let whole = self.path.join(name);
@@ -192,9 +236,15 @@ impl OutputDir {
             let _ = fs::remove_file(&partial);
             failed("write", &whole)(cause)
         })?;
+        self.written.borrow_mut().insert(name.to_owned());
         info!(file = %whole.display(), bytes, "written");
         Ok(())
     }
+}
+
+/// Whether a name has no folder in it and no leading dot.
+fn is_plain(name: &str) -> bool {
+    Path::new(name).file_name().is_some_and(|n| n == name) && !name.starts_with('.')
 }
 
 pub(crate) fn failed(action: &'static str, path: &Path) -> impl Fn(io::Error) -> FileError {
@@ -262,6 +312,30 @@ mod tests {
         }
         let _out = OutputDir::create(folder.path()).unwrap();
         assert_eq!(names(folder.path()), [".lock", "history.csv", "mine.partial"]);
+    }
+
+    #[test]
+    fn a_run_supersedes_what_earlier_ones_have_left_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let run = |files: &[&str]| {
+            let out = OutputDir::create(folder.path()).unwrap();
+            files.iter().for_each(|name| out.write(name, |_| Ok(())).unwrap());
+            out
+        };
+        fs::write(folder.path().join("mine.txt"), "x").unwrap();
+        run(&["a.csv", "b.svg"]).supersede().unwrap();
+        run(&["page.html"]).add().unwrap();
+        assert_eq!(names(folder.path()), [".lock", "a.csv", "b.svg", "mine.txt", "page.html"]);
+        // One that is stopped takes nothing away.
+        drop(run(&["c.bin"]));
+        assert_eq!(names(folder.path()).len(), 6);
+        run(&["a.csv", "c.bin"]).supersede().unwrap();
+        assert_eq!(names(folder.path()), [".lock", "a.csv", "c.bin", "mine.txt"]);
+        // Names that lead elsewhere are none.
+        let outside = tempfile::NamedTempFile::new().unwrap();
+        fs::write(folder.path().join(".lock"), format!("{}\n../x\n", outside.path().display())).unwrap();
+        run(&["a.csv"]).supersede().unwrap();
+        assert!(outside.path().exists());
     }
 
     #[test]

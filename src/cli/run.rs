@@ -82,6 +82,7 @@ fn at_rest(model: &Model, arguments: &Arguments, folder: PathBuf, console: &Cons
         statics::write(&dir, model, &solution, &summary)?;
         cost.phases.extend(fields::write_static(&dir, model, &solution)?);
         tables::write_json(&dir, "cost.json", &cost)?;
+        dir.supersede()?;
         Ok::<_, Error>(dir)
     };
     let dir = write()?;
@@ -100,6 +101,7 @@ fn impact(model: &Model, arguments: &Arguments, folder: &Path, console: &Console
     if model.scene.output.plots {
         summary::write_plots(&dir, model, outcome)?;
     }
+    dir.supersede().map_err(Error::from)?;
     Results { summary, cost, results: dir.path() }.show(arguments.format, console)?;
     Ok(if summary.completed { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

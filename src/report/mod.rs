@@ -30,5 +30,6 @@ pub fn write(path: &Path) -> Result<PathBuf, Error> {
     let page = page::render(&folder)?;
     let dir = OutputDir::create(path)?;
     dir.write(PAGE, |out| out.write_all(page.as_bytes()))?;
+    dir.add()?;
     Ok(path.join(PAGE))
 }
