@@ -69,9 +69,7 @@ pub(crate) fn write_plots(dir: &OutputDir, model: &Model, outcome: &Outcome) -> 
     }
     let curves: Vec<_> = outcome.histories.iter().map(|history| curve(model, history)).collect();
     let picture = plot::line_plot(&plot::index_history(&model.scene.title, &curves))?;
-    dir.write("index_history.svg", |w| w.write_all(picture.svg.as_bytes()))?;
-    dir.write("index_history.png", |w| w.write_all(&picture.png))?;
-    Ok(())
+    Ok(picture.write(dir, "index_history")?)
 }
 
 fn curve(model: &Model, history: &IndexHistory) -> (String, Vec<(f64, f64)>) {

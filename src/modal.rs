@@ -42,7 +42,5 @@ pub(crate) fn write_plot(dir: &OutputDir, model: &Model, outcome: &Outcome) -> R
     let mut parts: Vec<_> = modal.modes.iter().enumerate().map(part).collect();
     parts.push(("the other modes".to_owned(), over_time(&above)));
     let picture = plot::line_plot(&plot::modal_history(&model.scene.title, sum, parts))?;
-    dir.write("modal_coordinates.svg", |w| w.write_all(picture.svg.as_bytes()))?;
-    dir.write("modal_coordinates.png", |w| w.write_all(&picture.png))?;
-    Ok(())
+    Ok(picture.write(dir, "modal_coordinates")?)
 }

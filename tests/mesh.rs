@@ -97,3 +97,22 @@ fn the_force_on_a_built_in_disc_is_that_on_a_mesh_of_gmsh() {
     let relative = (off / gmsh.iter().map(|f| f * f).sum::<f64>()).sqrt();
     assert!(relative < 3e-3, "{relative:.2e}");
 }
+
+/// Cells, groups and the point that is struck, whatever the mesh comes from; nothing but the two files is written.
+#[test]
+fn a_mesh_is_drawn() {
+    let case = on_a_disc("size = \"4 mm\", support = \"20 mm\"");
+    case.write();
+    let done = fem(case.folder(), &["mesh", "plate/scene.toml", "--picture", "drawn"]).good();
+    assert!(done.stdout.ends_with("  written   drawn/scene.svg\n  written   drawn/scene.png\n"), "{}", done.stdout);
+    assert_eq!(case.names("drawn"), [".lock", "scene.png", "scene.svg"]);
+    let svg = case.read("drawn/scene.svg");
+    for words in [">x (mm)<", ">edge<", ">support<", ">impact<", "plate/scene.toml"] {
+        assert!(svg.contains(words), "{words}");
+    }
+    // A file says nothing of what strikes it: all but the cross is the same.
+    fem(case.folder(), &["mesh", "plate/scene.toml", "--out", "disc.msh"]).good();
+    fem(case.folder(), &["mesh", "disc.msh", "--picture", "drawn"]).good();
+    let bare = case.read("drawn/disc.svg");
+    assert!(svg.matches("<polyline").count() > bare.matches("<polyline").count(), "no cross");
+}

@@ -67,8 +67,7 @@ pub(super) fn envelope(registry: &Registry, arguments: &Arguments, console: &Con
     let rows = rows(&criteria, &found, plane);
     tables::write_envelopes(&dir, &rows).into_diagnostic()?;
     let picture = plot::line_plot(&picture(&criteria, &found, material, plane)).into_diagnostic()?;
-    dir.write("envelope.svg", |w| w.write_all(picture.svg.as_bytes())).into_diagnostic()?;
-    dir.write("envelope.png", |w| w.write_all(&picture.png)).into_diagnostic()?;
+    picture.write(&dir, "envelope").into_diagnostic()?;
     let data = Document {
         material: &material.name,
         plane: plane.to_string(),

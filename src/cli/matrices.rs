@@ -42,7 +42,7 @@ pub(super) fn matrices(registry: &Registry, arguments: &Arguments, console: &Con
 
 fn write(registry: &Registry, arguments: &Arguments) -> Result<(usize, OutputDir), Error> {
     let model = Model::new(scene::read(&arguments.scene)?, registry)?;
-    let dir = OutputDir::create(arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene)))?;
+    let dir = OutputDir::create(arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, "")))?;
     matrices::write(&dir, &model, NonZeroUsize::MIN)?;
     Ok((model.constraints.ndof(), dir))
 }

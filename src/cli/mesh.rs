@@ -41,10 +41,8 @@ pub(super) fn mesh(arguments: &Arguments, console: &Console) -> miette::Result<E
         .map_err(|_| miette!(help = "write --unit mm, m or in", "`{}` is no unit of length", arguments.unit))?;
     let (GmshMesh { mesh, warnings }, impacts) = read(&arguments.file, metres)?;
     let summary = Summary::new(&mesh, warnings);
-    let pictures = match &arguments.picture {
-        Some(folder) => draw(&arguments.file, folder, &mesh, &impacts)?,
-        None => Vec::new(),
-    };
+    let picture =
+        arguments.picture.as_ref().map(|folder| draw(&arguments.file, folder, &mesh, &impacts)).transpose()?;
     if let Some(out) = &arguments.out {
         let encoding = if arguments.binary { Encoding::Binary } else { Encoding::Ascii };
         let name = out.file_name().and_then(|name| name.to_str());
@@ -55,7 +53,7 @@ pub(super) fn mesh(arguments: &Arguments, console: &Console) -> miette::Result<E
     }
     console.show(arguments.format, &summary, || {
         let mut text = format!("{}\n{}", arguments.file.display(), summary.text(&arguments.unit, metres));
-        for file in arguments.out.iter().chain(&pictures) {
+        for file in arguments.out.iter().chain(picture.iter().flatten()) {
             let _ = writeln!(text, "  written   {}", file.display());
         }
         text
@@ -83,13 +81,9 @@ fn read(file: &Path, metres: f64) -> Result<(GmshMesh, Vec<[f64; 2]>), Error> {
 }
 
 /// Draws `mesh`, which is that of `file`, into `folder`; the files.
-fn draw(file: &Path, folder: &Path, mesh: &QuadMesh, impacts: &[[f64; 2]]) -> Result<Vec<PathBuf>, Error> {
+fn draw(file: &Path, folder: &Path, mesh: &QuadMesh, impacts: &[[f64; 2]]) -> Result<[PathBuf; 2], Error> {
     let name = file.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy());
     let picture = plot::map_plot(&plot::mesh_map(&file.display().to_string(), mesh, impacts))?;
-    let dir = OutputDir::create(folder)?;
-    let files = [(format!("{name}.svg"), picture.svg.as_bytes()), (format!("{name}.png"), &picture.png)];
-    files
-        .into_iter()
-        .map(|(name, bytes)| Ok(dir.write(&name, |out| out.write_all(bytes)).map(|()| folder.join(name))?))
-        .collect()
+    picture.write(&OutputDir::create(folder)?, &name)?;
+    Ok(["svg", "png"].map(|ending| folder.join(format!("{name}.{ending}"))))
 }

@@ -24,7 +24,7 @@ pub(super) struct Arguments {
     /// How many modes [default: what the scene says, or 10]
     #[arg(long, value_name = "N")]
     count: Option<NonZeroUsize>,
-    /// Folder of the results [default: results/<folder of the scene>]
+    /// Folder of the results [default: results/<folder of the scene>-modes]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Threads for the integration of element matrices; results do not depend on it.
@@ -41,7 +41,7 @@ pub(super) fn modes(registry: &Registry, arguments: &Arguments, console: &Consol
         _ => DEFAULT_MODES,
     };
     let count = arguments.count.map_or(own, NonZeroUsize::get);
-    let folder = || arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene));
+    let folder = || arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, "-modes"));
     compute(&model, count, arguments.threads, folder, arguments.format, console)
 }
 
@@ -74,5 +74,6 @@ fn write(
     modes::write(&dir, solution, summary)?;
     cost.phases.extend(fields::write_modes(&dir, model, solution)?);
     tables::write_json(&dir, "cost.json", cost)?;
+    dir.supersede()?;
     Ok(dir)
 }

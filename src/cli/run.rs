@@ -60,7 +60,7 @@ impl<S: Serialize> Results<'_, S> {
 pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let scene = scene::read(&arguments.scene)?;
     let model = advise::decided(Model::new(scene, registry)?, arguments.threads)?;
-    let folder = || arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene));
+    let folder = || arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, ""));
     match model.plan {
         Plan::Impact(_) => impact(&model, arguments, &folder(), console),
         _ if arguments.resume => Err(Error::NotMarched.into()),
@@ -201,10 +201,13 @@ fn advance(march: &mut March<'_>, dir: &OutputDir, interval: f64, bar: &Progress
     Ok(signal.filter(|_| !march.done()))
 }
 
-/// `results/<folder of the scene>`; for a scene in the working folder the name of that folder.
-pub(super) fn default_folder(scene: &Path) -> PathBuf {
+/// `results/<folder of the scene>` with an ending that keeps what other commands find apart from what `fem run` does; for a
+/// scene in the working folder the name of that folder.
+pub(super) fn default_folder(scene: &Path, ending: &str) -> PathBuf {
     let folder = scene.parent().filter(|p| p.file_name().is_some()).map(Path::to_owned);
     let folder = folder.or_else(|| std::path::absolute(scene).ok()?.parent().map(Path::to_owned));
     let name = folder.as_deref().and_then(Path::file_name).map(PathBuf::from);
-    Path::new("results").join(name.unwrap_or_else(|| PathBuf::from("scene")))
+    let mut name = name.unwrap_or_else(|| PathBuf::from("scene")).into_os_string();
+    name.push(ending);
+    Path::new("results").join(name)
 }

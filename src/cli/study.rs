@@ -80,11 +80,7 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Consol
     let format = arguments.format;
     let path = &arguments.scene;
     let model = Model::new(scene::read(path)?, registry)?;
-    let folder = arguments.out.clone().unwrap_or_else(|| {
-        let mut folder = default_folder(path).into_os_string();
-        folder.push("-study");
-        folder.into()
-    });
+    let folder = arguments.out.clone().unwrap_or_else(|| default_folder(path, "-study"));
     let axes = study::axes(&model, registry, &arguments.axis)?;
     let mut session =
         Session::open(path, &model, registry, OutputDir::create(folder).map_err(Error::from)?, arguments.resume)?;

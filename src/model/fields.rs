@@ -3,6 +3,7 @@
 use super::builder::{Builder, near};
 use fem_core::plate::Plate;
 use fem_io::scene::{FieldCells, Region, SceneError, Series};
+use std::collections::BTreeSet;
 
 /// Fields that are written, made concrete.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,8 +24,8 @@ impl Builder<'_> {
         let quads: Vec<usize> = match &fields.region {
             None => all.collect(),
             Some(Region::Group(group)) => {
-                let own = &self.group(plate, group)?.quads;
-                let quads: Vec<usize> = all.filter(|quad| own.contains(&(*quad as u32))).collect();
+                let own: BTreeSet<u32> = self.group(plate, group)?.quads.iter().copied().collect();
+                let quads: Vec<usize> = own.into_iter().map(|quad| quad as usize).collect();
                 if quads.is_empty() {
                     let message = format!("group `{}` has no cells", group.value);
                     return Err(self.error(group, message, "name a group of cells"));

@@ -73,7 +73,7 @@ pub(super) fn force_displacement(title: &str, names: &[&str], rows: &[HistoryRow
     let largest =
         |d: fn(&(f64, f64)) -> f64| series.iter().flat_map(|s| &s.points).map(|p| d(p).abs()).fold(0.0, f64::max);
     let (length_unit, per_m) = Physical::Length.unit(largest(|p| p.0));
-    let (force_unit, per_n) = if largest(|p| p.1) < 1e3 { ("N", 1.0) } else { ("kN", 1e-3) };
+    let (force_unit, per_n) = Physical::Force.unit(largest(|p| p.1));
     for p in series.iter_mut().flat_map(|s| &mut s.points) {
         *p = (p.0 * per_m, p.1 * per_n);
     }

@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::run::Outcome;
 use crate::summary::{called, impactors};
 use fem_io::files::OutputDir;
-use fem_io::plot::{self, Picture};
+use fem_io::plot;
 
 /// Writes `displacement`, `energy`, `force_displacement`, `damage_map` and `damage_section`, each as SVG and PNG, and
 /// `damage.json`. A picture that would have nothing to show is left out.
@@ -28,19 +28,14 @@ pub fn write(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Er
     ];
     for (name, picture) in lines {
         if let Some(picture) = picture {
-            save(dir, name, &plot::line_plot(&picture)?)?;
+            plot::line_plot(&picture)?.write(dir, name)?;
         }
     }
     let Some(damage) = DamageMap::new(model, outcome) else { return Ok(()) };
     damage.write(dir)?;
-    save(dir, "damage_map", &plot::map_plot(&plan(title, &damage))?)?;
+    plot::map_plot(&plan(title, &damage))?.write(dir, "damage_map")?;
     if let Some(section) = section(title, &damage) {
-        save(dir, "damage_section", &plot::map_plot(&section)?)?;
+        plot::map_plot(&section)?.write(dir, "damage_section")?;
     }
     Ok(())
-}
-
-fn save(dir: &OutputDir, name: &str, picture: &Picture) -> Result<(), Error> {
-    dir.write(&format!("{name}.svg"), |w| w.write_all(picture.svg.as_bytes()))?;
-    Ok(dir.write(&format!("{name}.png"), |w| w.write_all(&picture.png))?)
 }

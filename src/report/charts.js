@@ -132,7 +132,9 @@ function makeChart(figure, curves, chart, marks) {
   });
   svg.addEventListener("pointerleave", () => { if (drag === null) read(null, false); });
   svg.addEventListener("dblclick", () => show(...whole));
+  // The wheel alone moves the page.
   svg.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey) return;
     event.preventDefault();
     zoom(timeAt(event), event.deltaY < 0 ? 0.8 : 1.25);
   }, { passive: false });

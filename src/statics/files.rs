@@ -86,8 +86,7 @@ fn write_profile(dir: &OutputDir, model: &Model, named: &NamedProfile, points: &
             series: components.map(series).to_vec(),
             marks: Vec::new(),
         })?;
-        dir.write(&format!("profile-{name}-{suffix}.svg"), |w| w.write_all(picture.svg.as_bytes()))?;
-        dir.write(&format!("profile-{name}-{suffix}.png"), |w| w.write_all(&picture.png))?;
+        picture.write(dir, &format!("profile-{name}-{suffix}"))?;
     }
     Ok(())
 }

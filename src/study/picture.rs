@@ -38,9 +38,7 @@ fn draw(dir: &OutputDir, name: &str, plot: &LinePlot) -> Result<(), Error> {
         Err(PlotError::Empty { .. }) => return Ok(()),
         drawn => drawn?,
     };
-    dir.write(&format!("{name}.svg"), |w| w.write_all(picture.svg.as_bytes()))?;
-    dir.write(&format!("{name}.png"), |w| w.write_all(&picture.png))?;
-    Ok(())
+    Ok(picture.write(dir, name)?)
 }
 
 /// The largest error of `quantities` over time: ladders and joint runs as lines, other ways as dots.

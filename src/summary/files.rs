@@ -55,8 +55,7 @@ pub fn write_plots(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<
         (t, format!("delamination threshold{by}"))
     }));
     let picture = plot::line_plot(&plot::force_history(&model.scene.title, &times, &forces, &marks)?)?;
-    dir.write("contact_force.svg", |w| w.write_all(picture.svg.as_bytes()))?;
-    dir.write("contact_force.png", |w| w.write_all(&picture.png))?;
+    picture.write(dir, "contact_force")?;
     modal::write_plot(dir, model, outcome)?;
     indices::write_plots(dir, model, outcome)?;
     pictures::write(dir, model, outcome)

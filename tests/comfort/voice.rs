@@ -2,8 +2,22 @@
 
 use crate::support::{fem, root, strip};
 
-const COMMANDS: [&str; 12] =
-    ["new", "run", "check", "advise", "envelope", "modes", "study", "matrices", "list", "schema", "completions", "man"];
+const COMMANDS: [&str; 14] = [
+    "new",
+    "run",
+    "check",
+    "advise",
+    "envelope",
+    "modes",
+    "study",
+    "report",
+    "matrices",
+    "mesh",
+    "list",
+    "schema",
+    "completions",
+    "man",
+];
 
 #[test]
 fn quiet_says_nothing_but_errors() {

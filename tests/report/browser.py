@@ -17,6 +17,8 @@ import time
 
 BROWSERS = ["chromium", "chromium-browser", "google-chrome"]
 PATIENCE = 60
+# Ctrl among the modifiers of a mouse event.
+CONTROL = 2
 
 
 class Browser:
@@ -157,8 +159,10 @@ def use_chart(browser):
     browser.mouse("mouseReleased", x - 150, y, button="left", clickCount=1)
     zoomed = browser.ask(curve)
     expect(zoomed != whole, "dragging zooms")
-    browser.mouse("mouseWheel", x, y, deltaX=0, deltaY=-120)
-    expect(browser.ask(curve) != zoomed, "the wheel zooms")
+    browser.mouse("mouseWheel", x, y, deltaX=0, deltaY=-1)
+    expect(browser.ask(curve) == zoomed, "the wheel alone does not zoom")
+    browser.mouse("mouseWheel", x, y, deltaX=0, deltaY=-120, modifiers=CONTROL)
+    expect(browser.ask(curve) != zoomed, "the wheel zooms with Ctrl")
     browser.ask("document.querySelector('.chart-bar button').click()")
     browser.mouse("mouseMoved", 1, 1)
     expect(browser.ask(curve) == whole, "the button shows the whole")

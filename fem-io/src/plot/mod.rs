@@ -29,8 +29,10 @@ mod work_precision;
 
 pub use map::{Cell, Fill, MapPlot, Panel, Stroke, class_color, map_plot};
 pub use mesh::mesh_map;
-pub use over_time::{Physical, over_time, unit_of_time};
+pub use over_time::{Physical, force_history, index_history, modal_history, over_time, unit_of_time};
 pub use work_precision::work_precision;
+
+use crate::files::{FileError, OutputDir};
 
 /// Curves over a common axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -124,6 +126,17 @@ pub struct Picture {
     pub svg: String,
     /// PNG file, 1600 pixels wide.
     pub png: Vec<u8>,
+}
+
+impl Picture {
+    /// Writes `NAME.svg` and `NAME.png`.
+    ///
+    /// # Errors
+    /// As [`OutputDir::write`].
+    pub fn write(&self, dir: &OutputDir, name: &str) -> Result<(), FileError> {
+        dir.write(&format!("{name}.svg"), |out| out.write_all(self.svg.as_bytes()))?;
+        dir.write(&format!("{name}.png"), |out| out.write_all(&self.png))
+    }
 }
 
 /// Why a plot cannot be drawn.
@@ -252,130 +265,6 @@ fn check(plot: &LinePlot) -> Result<(), PlotError> {
         }
     }
     plot.marks.iter().try_for_each(|m| drawable(m.x, m.y, &|| format!("mark `{}`", m.label)))
-}
-
-/// Events that [`force_history`] names; a last mark counts those after them.
-const NAMED_EVENTS: usize = 12;
-
-/// Contact forces over time under the heading `title`, by name, with `events` (time in s, name) marked on the highest.
-///
-/// Times in s are shown in µs up to one millisecond, else in ms; forces in N are shown in kN from one kilonewton on.
-///
-/// # Errors
-/// Unequal numbers of times and forces.
-pub fn force_history(
-    title: &str,
-    times_s: &[f64],
-    forces_n: &[(&str, Vec<f64>)],
-    events: &[(f64, String)],
-) -> Result<LinePlot, PlotError> {
-    if let Some((_, forces)) = forces_n.iter().find(|(_, forces)| forces.len() != times_s.len()) {
-        return Err(PlotError::Lengths { times: times_s.len(), forces: forces.len() });
-    }
-    let (time_unit, per_s) = time_unit(times_s.iter().copied());
-    let highest = largest(forces_n.iter().flat_map(|(_, forces)| forces.iter().copied()));
-    let (force_unit, per_n) = if highest < 1e3 { ("N", 1.0) } else { ("kN", 1e-3) };
-    let curve = |(label, forces): &(&str, Vec<f64>)| Series {
-        label: (*label).to_owned(),
-        points: times_s.iter().zip(forces).map(|(t, f)| (t * per_s, f * per_n)).collect(),
-        style: Style::Solid,
-    };
-    let series: Vec<_> = forces_n.iter().map(curve).collect();
-
-    let mut events: Vec<_> = events.iter().map(|(t, name)| (t * per_s, name)).collect();
-    events.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let height = |x: f64| series.iter().map(|curve| height_at(&curve.points, x)).reduce(f64::max).unwrap_or(0.0);
-    let mark = |x: f64, name: &str| Mark { x, y: height(x), label: name.to_owned() };
-    let mut marks: Vec<_> = events
-        .iter()
-        .take(NAMED_EVENTS)
-        .map(|(x, name)| mark(*x, &format!("{name}, {} {time_unit}", three_digits(*x))))
-        .collect();
-    if let Some((x, _)) = events.get(NAMED_EVENTS) {
-        marks.push(mark(*x, &format!("{} later events", events.len() - NAMED_EVENTS)));
-    }
-    Ok(LinePlot {
-        title: title.to_owned(),
-        x: Axis::linear("Time", time_unit),
-        y: Axis::linear("Contact force", force_unit),
-        series,
-        marks,
-    })
-}
-
-/// Indices from here on are not drawn.
-const INDEX_DRAWN: f64 = 1e100;
-
-/// Failure indices over time under the heading `title`: for every name its points (time in s, index), and a dashed line at 1.
-///
-/// Times are shown as by [`force_history`]. A point whose index is infinite is left out.
-pub fn index_history(title: &str, curves: &[(String, Vec<(f64, f64)>)]) -> LinePlot {
-    let times = || curves.iter().flat_map(|(_, points)| points.iter().map(|p| p.0));
-    let (time_unit, per_s) = time_unit(times());
-    let curve = |(label, points): &(String, Vec<(f64, f64)>)| Series {
-        label: label.clone(),
-        points: points.iter().filter(|p| p.1 < INDEX_DRAWN).map(|p| (p.0 * per_s, p.1)).collect(),
-        style: Style::Solid,
-    };
-    let failure = Series {
-        label: "failure".into(),
-        points: vec![(0.0, 1.0), (largest(times()) * per_s, 1.0)],
-        style: Style::Dashed,
-    };
-    let curves = curves.iter().map(curve).filter(|series| !series.points.is_empty());
-    LinePlot {
-        title: title.to_owned(),
-        x: Axis::linear("Time", time_unit),
-        y: Axis::linear("Failure index", ""),
-        series: curves.chain([failure]).collect(),
-        marks: Vec::new(),
-    }
-}
-
-/// A deflection over time under the heading `title` with its parts by mode: names and points (time in s, deflection in m).
-///
-/// Times are shown as by [`force_history`], deflections in µm up to a tenth of a millimetre, else in mm.
-pub fn modal_history(title: &str, sum: Vec<(f64, f64)>, parts: Vec<(String, Vec<(f64, f64)>)>) -> LinePlot {
-    let (time_unit, per_s) = time_unit(sum.iter().map(|p| p.0));
-    let (unit, per_m) = if largest(sum.iter().map(|p| p.1)) < 1e-4 { ("µm", 1e6) } else { ("mm", 1e3) };
-    let series = |label: String, points: Vec<(f64, f64)>, style: Style| Series {
-        label,
-        points: points.into_iter().map(|(t, w)| (t * per_s, w * per_m)).collect(),
-        style,
-    };
-    let parts = parts.into_iter().map(|(label, points)| series(label, points, Style::Solid));
-    LinePlot {
-        title: title.to_owned(),
-        x: Axis::linear("Time", time_unit),
-        y: Axis::linear("Deflection under the impactor", unit),
-        series: [series("all modes".into(), sum, Style::Dashed)].into_iter().chain(parts).collect(),
-        marks: Vec::new(),
-    }
-}
-
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(0.0, |m, v| m.max(v.abs()))
-}
-
-/// Unit for times up to the largest of `times`, s, and how many of it are a second.
-fn time_unit(times: impl Iterator<Item = f64>) -> (&'static str, f64) {
-    if largest(times) <= 1.000_001e-3 { ("µs", 1e6) } else { ("ms", 1e3) }
-}
-
-/// Height of the curve at `x`, between its points by a straight line; the end's height beyond an end.
-fn height_at(points: &[(f64, f64)], x: f64) -> f64 {
-    let next = points.partition_point(|p| p.0 < x);
-    match (next.checked_sub(1).map(|i| points[i]), points.get(next).copied()) {
-        (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0),
-        (Some(end), None) | (None, Some(end)) => end.1,
-        (None, None) => 0.0,
-    }
-}
-
-/// `x` to three significant digits, never fewer than its whole ones.
-fn three_digits(x: f64) -> String {
-    let whole = if x == 0.0 { 1.0 } else { x.abs().log10().floor() + 1.0 };
-    format!("{x:.*}", (3.0 - whole).clamp(0.0, 12.0) as usize)
 }
 
 #[cfg(test)]
@@ -529,77 +418,5 @@ mod tests {
         bare.series.clear();
         bare.marks.clear();
         assert!(refusal(&bare).contains("no points to draw in the whole plot"));
-    }
-
-    #[test]
-    fn a_force_history_chooses_its_units_and_puts_events_on_the_curve() {
-        let small =
-            force_history("title", &[0.0, 1e-3], &[("force", vec![0.0, 900.0])], &[(2.5e-4, "shear".into())]).unwrap();
-        assert_eq!((small.x.unit.as_str(), small.y.unit.as_str()), ("µs", "N"));
-        assert_eq!(small.marks, [Mark { x: 250.0, y: 225.0, label: "shear, 250 µs".into() }]);
-
-        let large = force_history(
-            "title",
-            &[0.0, 2e-3],
-            &[("force", vec![0.0, 4000.0])],
-            &[(1.5e-3, "b".into()), (5e-5, "a".into())],
-        )
-        .unwrap();
-        assert_eq!((large.x.unit.as_str(), large.y.unit.as_str()), ("ms", "kN"));
-        let labels: Vec<_> = large.marks.iter().map(|m| m.label.as_str()).collect();
-        assert_eq!(labels, ["a, 0.0500 ms", "b, 1.50 ms"]);
-        assert!((large.marks[1].y - 3.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn an_index_history_shows_every_curve_and_where_failure_is() {
-        let curves = [
-            ("a".to_owned(), vec![(0.0, 0.0), (1e-3, 4.0)]),
-            ("b".to_owned(), vec![(0.0, 0.5), (5e-4, f64::INFINITY), (1e-3, 2.0)]),
-            ("c".to_owned(), vec![(0.0, f64::INFINITY)]),
-        ];
-        let plot = index_history("title", &curves);
-        assert_eq!((plot.x.unit.as_str(), plot.y.label.as_str()), ("µs", "Failure index"));
-        let drawn: Vec<_> = plot.series.iter().map(|s| (s.label.as_str(), s.points.clone(), s.style)).collect();
-        let line = |points: [(f64, f64); 2]| points.to_vec();
-        let want = [
-            ("a", line([(0.0, 0.0), (1e3, 4.0)]), Style::Solid),
-            ("b", line([(0.0, 0.5), (1e3, 2.0)]), Style::Solid),
-            ("failure", line([(0.0, 1.0), (1e3, 1.0)]), Style::Dashed),
-        ];
-        assert_eq!(drawn, want);
-        assert!(line_plot(&plot).unwrap().svg.contains(">failure</text>"));
-    }
-
-    #[test]
-    fn a_modal_history_shows_the_sum_dashed_and_the_parts_solid() {
-        let points = |w: f64| vec![(0.0, 0.0), (2e-3, w)];
-        let plot = modal_history("title", points(1e-3), vec![("mode 1".into(), points(5e-4))]);
-        assert_eq!((plot.x.unit.as_str(), plot.y.unit.as_str()), ("ms", "mm"));
-        let drawn: Vec<_> = plot.series.iter().map(|s| (s.label.as_str(), s.points[1], s.style)).collect();
-        assert_eq!(drawn, [("all modes", (2.0, 1.0), Style::Dashed), ("mode 1", (2.0, 0.5), Style::Solid)]);
-        assert_eq!(modal_history("title", points(5e-5), Vec::new()).y.unit, "µm");
-    }
-
-    #[test]
-    fn events_beyond_the_first_dozen_are_counted() {
-        let events: Vec<_> = (0..30).map(|i| (f64::from(i) * 1e-5, "x".to_owned())).collect();
-        let marks = force_history("title", &[0.0, 1e-3], &[("force", vec![0.0, 1.0])], &events).unwrap().marks;
-        assert_eq!((marks.len(), marks[12].label.as_str()), (13, "18 later events"));
-        assert!(
-            line_plot(&force_history("title", &[0.0, 1e-3], &[("force", vec![0.0, 1.0])], &events).unwrap()).is_ok()
-        );
-    }
-
-    #[test]
-    fn a_force_history_refuses_what_does_not_fit() {
-        assert_eq!(
-            force_history("title", &[0.0], &[("force", vec![])], &[]),
-            Err(PlotError::Lengths { times: 1, forces: 0 })
-        );
-        for (t, f, event) in [(f64::NAN, 1.0, 0.0), (1.0, f64::INFINITY, 0.0), (1.0, 1.0, f64::NAN)] {
-            let plot = force_history("title", &[0.0, t], &[("force", vec![0.0, f])], &[(event, "x".into())]).unwrap();
-            assert!(matches!(line_plot(&plot), Err(PlotError::NonFinite { .. })));
-        }
     }
 }
