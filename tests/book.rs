@@ -127,7 +127,7 @@ fn the_tables_are_those_of_the_registry() {
 #[test]
 fn the_messages_about_elements_are_explained() {
     let read = |file: &str| fs::read_to_string(root().join(file)).unwrap().replace("\r\n", "\n");
-    let source = read("fem-core/src/testkit/element.rs") + &read("fem-core/src/element.rs");
+    let source = read("fem-core/src/testkit/element.rs") + &read("fem-core/src/contracts/element.rs");
     let pieces: Vec<&str> = source.split('"').collect();
     let messages: Vec<&str> = pieces
         .windows(2)

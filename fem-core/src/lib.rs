@@ -38,39 +38,22 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+// Rooms, lowest first: each imports from those above it here.
+mod words;
+
+mod contracts;
+
+mod plates;
+
 #[cfg(feature = "assembly")]
 pub mod assembly;
-pub mod constraint;
-pub mod contact;
-pub mod counters;
-pub mod damping;
-pub mod dof;
-pub mod element;
-pub mod estimate;
-pub mod failure;
-pub mod field;
-#[cfg(feature = "formula")]
-pub mod formula;
-pub mod laminate;
-pub mod large;
-pub mod layup;
-pub mod load;
-pub mod material;
-pub mod mesh;
-pub mod patch;
-pub mod plate;
-pub mod plugin;
-pub mod profile;
-pub mod prolongation;
-pub mod quadrature;
-pub mod recovery;
-pub mod reduction;
-pub mod residual;
-pub mod structure;
-pub mod support;
-pub mod symmetry;
-pub mod tensor;
+mod stresses;
 #[cfg(feature = "testkit")]
 pub mod testkit;
-pub mod time;
-pub mod window;
+
+pub use contracts::{contact, element, failure, large, plugin, reduction, structure, time};
+pub use plates::{constraint, laminate, load, mesh, patch, plate, support, symmetry, window};
+pub use stresses::{estimate, field, profile, recovery, residual};
+#[cfg(feature = "formula")]
+pub use words::formula;
+pub use words::{counters, damping, dof, functional, layup, material, prolongation, quadrature, tensor};

@@ -5,7 +5,7 @@ use super::{Rim, advise, membrane};
 use crate::error::Error;
 use crate::model::{Decision, INERTIA, MEMBRANE, Model, Plan};
 use fem_core::dof::Dof;
-use fem_core::reduction::Functional;
+use fem_core::functional::Functional;
 use fem_core::time::StepLimit;
 use std::num::NonZeroUsize;
 

@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::model::{Model, Strike};
 use crate::run::{self, Assembled};
 use fem_core::counters::Counters;
-use fem_core::reduction::Functional;
+use fem_core::functional::Functional;
 use fem_core::structure::Structure;
 use std::num::NonZeroUsize;
 

@@ -6,11 +6,12 @@ use crate::error::Error;
 use fem_core::constraint::Constraints;
 use fem_core::contact::ContactLaw;
 use fem_core::element::Element;
+use fem_core::functional::Functional;
 use fem_core::load::{self, Face};
 use fem_core::patch;
 use fem_core::plate::Plate;
 use fem_core::profile::Profile;
-use fem_core::reduction::{Functional, Reduction};
+use fem_core::reduction::Reduction;
 use fem_core::time::Integrator;
 use fem_io::scene::{self, Analysis, ContactLoad, ImpactPoint, Load, LoadKind, Located, ProfileLine, SceneError};
 

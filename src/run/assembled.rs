@@ -6,7 +6,7 @@ use crate::memory::{self, Estimate};
 use crate::model::Model;
 use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, assemble, condense, pattern};
 use fem_core::counters::Counters;
-use fem_core::reduction::Functional;
+use fem_core::functional::Functional;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 

@@ -3,8 +3,8 @@
 use super::assembled::Assembled;
 use crate::error::Error;
 use crate::model::Model;
+use fem_core::functional::Functional;
 use fem_core::load;
-use fem_core::reduction::Functional;
 use fem_core::structure::Structure;
 use fem_dynamics::impact::Weight;
 use fem_dynamics::reduce::Reduced;

@@ -2,7 +2,8 @@
 
 use fem::dynamics::reduce::Reduced;
 use fem_core::plugin::{Built, Dimension, Params, Plugin, Value};
-use fem_core::reduction::{Functional, Reduction};
+use fem_core::functional::Functional;
+use fem_core::reduction::Reduction;
 use fem_core::structure::{SolveError, Structure};
 use plugin_reduction::ShiftedKrylov;
 use std::f64::consts::TAU;

@@ -1,6 +1,6 @@
 //! Cells that share one matrix (the report's LAMCEL: a repeated cell is integrated once).
 
-use crate::plate::Plate;
+use crate::plates::plate::Plate;
 use std::collections::HashMap;
 
 /// Classes of cells of equal shape, orientation and plies.

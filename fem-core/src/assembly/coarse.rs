@@ -1,7 +1,7 @@
 //! PᵀAP of sparse matrices.
 
 use super::Pattern;
-use crate::prolongation::Prolongation;
+use crate::words::prolongation::Prolongation;
 
 /// The pattern of PᵀAP for matrices A of the pattern `fine`: all unknowns of a node column have the same rows.
 pub(super) fn pattern(fine: &Pattern, p: &Prolongation) -> Pattern {

@@ -2,12 +2,12 @@
 
 use super::AssemblyError;
 use super::pattern::CellMap;
-use crate::constraint::Constraints;
-use crate::element::{Element, Scratch};
-use crate::plate::Plate;
+use crate::contracts::element::{Element, Scratch};
+use crate::plates::constraint::Constraints;
+use crate::plates::plate::Plate;
 
 /// The forces on the independent unknowns by which the free strains of the plies
-/// ([`Slice::free`](crate::element::Slice::free)) move the plate, and the strain energy, J, of the plate held against them.
+/// ([`Slice::free`](crate::contracts::element::Slice::free)) move the plate, and the strain energy, J, of the plate held against them.
 ///
 /// # Errors
 /// A cell that the element refuses.

@@ -2,10 +2,10 @@
 
 use super::pattern::CellMap;
 use super::{AssemblyError, Pattern};
-use crate::constraint::Constraints;
-use crate::element::{Element, ElementError, Scratch};
-use crate::large::LargeDisplacement;
-use crate::plate::Plate;
+use crate::contracts::element::{Element, ElementError, Scratch};
+use crate::contracts::large::LargeDisplacement;
+use crate::plates::constraint::Constraints;
+use crate::plates::plate::Plate;
 use std::sync::Arc;
 
 /// A plate whose cells take large displacements: f(ũ) = Cᵀ f(C ũ) and its derivative on the pattern of K.

@@ -23,10 +23,10 @@ pub use sparse::SparseStructure;
 pub use stretch::Stretch;
 pub use substructure::{Condensation, CondensationError, Condensed, Division, condense};
 
-use crate::constraint::Constraints;
-use crate::counters::Counters;
-use crate::element::{Element, ElementError, Scratch};
-use crate::plate::Plate;
+use crate::contracts::element::{Element, ElementError, Scratch};
+use crate::plates::constraint::Constraints;
+use crate::plates::plate::Plate;
+use crate::words::counters::Counters;
 use alike::Alike;
 use pattern::CellMap;
 use std::num::NonZeroUsize;

@@ -1,6 +1,6 @@
 //! Geometric nested dissection of the node columns of a plate.
 
-use crate::plate::Plate;
+use crate::plates::plate::Plate;
 
 /// Columns at which dissection stops.
 const LEAF: usize = 6;

@@ -1,8 +1,8 @@
 //! The sparsity pattern of a plate, built once, and its values, filled as often as needed.
 
-use crate::constraint::Constraints;
-use crate::element::ElementError;
-use crate::plate::Plate;
+use crate::contracts::element::ElementError;
+use crate::plates::constraint::Constraints;
+use crate::plates::plate::Plate;
 use std::fmt;
 
 /// Lower triangle of a symmetric matrix, compressed columns, rows ascending, the diagonal in every column.

@@ -1,9 +1,10 @@
 //! A plate's K and M as a [`Structure`].
 
 use super::{Cholesky, FactorError, LargePlate, Pattern, Symbolic, coarse, condition};
-use crate::damping::Rayleigh;
-use crate::prolongation::{Coarse, Prolongation};
-use crate::structure::{Nonlinear, SolveError, Structure, Tangent};
+use crate::contracts::structure::Coarse;
+use crate::contracts::structure::{Nonlinear, SolveError, Structure, Tangent};
+use crate::words::damping::Rayleigh;
+use crate::words::prolongation::Prolongation;
 use std::fmt;
 use std::num::NonZeroUsize;
 use std::sync::Arc;

@@ -2,11 +2,11 @@
 
 use super::AssemblyError;
 use super::pattern::CellMap;
-use crate::constraint::Constraints;
-use crate::element::{Cell, Element, ElementError, positive};
-use crate::plate::Plate;
-use crate::quadrature::gauss_legendre;
-use crate::tensor::Matrix6;
+use crate::contracts::element::{Cell, Element, ElementError, positive};
+use crate::plates::constraint::Constraints;
+use crate::plates::plate::Plate;
+use crate::words::quadrature::gauss_legendre;
+use crate::words::tensor::Matrix6;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 

@@ -5,10 +5,10 @@ use super::pattern::{CellMap, Cliques};
 use super::{
     AssemblyError, Cholesky, FactorError, Matrix, Pattern, Symbolic, assemble, elimination_order, ordering, pattern,
 };
-use crate::constraint::Constraints;
-use crate::counters::Counters;
-use crate::element::Element;
-use crate::plate::Plate;
+use crate::contracts::element::Element;
+use crate::plates::constraint::Constraints;
+use crate::plates::plate::Plate;
+use crate::words::counters::Counters;
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 use std::num::NonZeroUsize;

@@ -1,6 +1,6 @@
 //! A matrix as a card of invariants that people can read and text snapshots can hold.
 
-use crate::dof::Dof;
+use crate::words::dof::Dof;
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::fmt::Write;
 

@@ -1,6 +1,6 @@
 //! The contract of a contact law.
 
-use crate::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use crate::contracts::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw};
 
 /// Checks `law` on a path of loading, unloading, reloading and separation up to the indentation `largest` (m).
 ///

@@ -1,8 +1,8 @@
 //! The contract of a failure criterion.
 
-use crate::failure::{FailureCriterion, Reserve, check_material};
-use crate::material::{Material, Strength};
-use crate::tensor::{Ply, Stress6};
+use crate::contracts::failure::{FailureCriterion, Reserve, check_material};
+use crate::words::material::{Material, Strength};
+use crate::words::tensor::{Ply, Stress6};
 
 /// Checks `criterion` on a material that it admits, over a few hundred stresses about the size of the strengths.
 ///
@@ -202,8 +202,8 @@ impl Kit<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::failure::{CriterionInfo, Site};
-    use crate::material::{Elastic, Strengths};
+    use crate::contracts::failure::{CriterionInfo, Site};
+    use crate::words::material::{Elastic, Strengths};
 
     /// (σ11/Xt)² and a shear mode, with a fault.
     #[derive(Debug, Clone, Copy, PartialEq)]
@@ -256,7 +256,7 @@ mod tests {
 
         fn reserve_factor(&self, s: &Stress6<Ply>, m: &Material) -> Reserve {
             let mut out = [0.0; 2];
-            let (moderate, k) = crate::failure::moderate(s);
+            let (moderate, k) = crate::contracts::failure::moderate(s);
             let (s, k) = if *self == Self::OverflowsTheReserve { (*s, 1.0) } else { (moderate, k) };
             self.indices(&s, m, &mut out);
             let mode = usize::from(out[1] > out[0]);

@@ -1,10 +1,10 @@
 //! The contract of an element.
 
-use crate::element::{Cell, Element, ElementError, ElementInfo, Part, Scratch, Slice, Stack};
-use crate::material::Elastic;
-use crate::mesh::QuadMesh;
-use crate::plate::{Plate, ZDerivatives};
-use crate::tensor::rotate_stiffness;
+use crate::contracts::element::{Cell, Element, ElementError, ElementInfo, Part, Scratch, Slice, Stack};
+use crate::plates::mesh::QuadMesh;
+use crate::plates::plate::{Plate, ZDerivatives};
+use crate::words::material::Elastic;
+use crate::words::tensor::rotate_stiffness;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Agreement asked for, relative to √(kᵢᵢ kⱼⱼ) or the largest of what is compared.

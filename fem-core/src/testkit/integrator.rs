@@ -1,7 +1,7 @@
 //! The contract of a time integrator, and a system with known solutions.
 
-use crate::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw, Indentation};
-use crate::time::{Integrator, SecondOrderSystem, State, StepError};
+use crate::contracts::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw, Indentation};
+use crate::contracts::time::{Integrator, SecondOrderSystem, State, StepError};
 use std::error::Error;
 
 /// One oscillator `m a + c v + k u = p(t)`.

@@ -2,8 +2,9 @@
 
 use super::{EXCITED, StaticShapes, columns, refused, solve};
 use crate::lanczos::Lanczos;
+use fem_core::functional::Functional;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
-use fem_core::reduction::{Functional, Reduction, ReductionError};
+use fem_core::reduction::{Reduction, ReductionError};
 use fem_core::structure::{SolveError, Structure};
 
 /// Static shapes of the contacts plus the lowest modes with the contacts held: exact static flexibility at the contact,

@@ -1,8 +1,9 @@
 //! The choice of governors.
 
 use super::StaticShapes;
+use fem_core::functional::Functional;
 use fem_core::plugin::{ParamError, ParamInfo, Params};
-use fem_core::reduction::{Functional, ReductionError};
+use fem_core::reduction::ReductionError;
 use fem_core::structure::Structure;
 use nalgebra::DMatrix;
 

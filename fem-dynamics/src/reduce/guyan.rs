@@ -1,8 +1,9 @@
 //! Guyan reduction.
 
 use super::governors::Governors;
+use fem_core::functional::Functional;
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
-use fem_core::reduction::{Functional, Reduction, ReductionError};
+use fem_core::reduction::{Reduction, ReductionError};
 use fem_core::structure::Structure;
 
 /// Static condensation on the contacts and a number of governors (report eqs 27-32): u = T u_g with the static shapes T,

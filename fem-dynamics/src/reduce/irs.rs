@@ -2,8 +2,9 @@
 
 use super::governors::Governors;
 use super::{Reduced, refused, solve};
+use fem_core::functional::Functional;
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
-use fem_core::reduction::{Functional, Reduction, ReductionError};
+use fem_core::reduction::{Reduction, ReductionError};
 use fem_core::structure::Structure;
 use nalgebra::{Cholesky, DMatrix};
 

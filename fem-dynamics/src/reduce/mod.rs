@@ -16,7 +16,8 @@ pub use ritz::Ritz;
 pub use stiffened::{Companions, Stiffened, Stretching};
 
 use fem_core::damping::{Damping, Rayleigh};
-use fem_core::reduction::{Functional, ReductionError};
+use fem_core::functional::Functional;
+use fem_core::reduction::ReductionError;
 use fem_core::structure::{SolveError, Structure};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
 

@@ -3,8 +3,9 @@
 use super::{EXCITED, columns, refused, solve, static_responses};
 use crate::lanczos::Lanczos;
 use crate::vector::{axpy, dot};
+use fem_core::functional::Functional;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
-use fem_core::reduction::{Functional, Reduction, ReductionError};
+use fem_core::reduction::{Reduction, ReductionError};
 use fem_core::structure::Structure;
 
 /// A static response counts as contained in the modes when this fraction of it (in the norm of K) is left; the

@@ -2,9 +2,10 @@
 
 use super::{columns, refused, solve, static_responses};
 use crate::lanczos::Lanczos;
+use fem_core::functional::Functional;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
-use fem_core::prolongation::Coarse;
-use fem_core::reduction::{Functional, Reduction, ReductionError};
+use fem_core::reduction::{Reduction, ReductionError};
+use fem_core::structure::Coarse;
 use fem_core::structure::Structure;
 
 /// Fine unknowns per coarse one, and coarse ones per vector, at least, for a coarse model to be worth its while.

@@ -1,7 +1,8 @@
 //! A reduced plate whose deflections stretch it.
 
 use super::{Modal, Reduced};
-use fem_core::reduction::{Functional, ReductionError};
+use fem_core::functional::Functional;
+use fem_core::reduction::ReductionError;
 use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent};
 use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, DVectorView, DVectorViewMut, Dyn, SymmetricEigen};
 

@@ -1,7 +1,7 @@
 //! More vectors than there are unknowns.
 
 use crate::{Dense, basis, reduction};
-use fem_core::reduction::Functional;
+use fem_core::functional::Functional;
 use fem_core::structure::Structure;
 use fem_dynamics::reduce::Reduced;
 

@@ -1,7 +1,7 @@
 //! Frequencies of a uniform chain, one end held: ω_j = 2 √(k/m) sin((2j − 1)π/(4n + 2)).
 
 use crate::{Dense, basis, reduction, spread};
-use fem_core::reduction::Functional;
+use fem_core::functional::Functional;
 use fem_dynamics::modes;
 use fem_dynamics::reduce::Reduced;
 use std::f64::consts::PI;

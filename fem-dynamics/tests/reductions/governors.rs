@@ -1,7 +1,7 @@
 //! The choice of governors by their ratio of stiffness to mass.
 
 use crate::{Dense, basis, random_definite, reduction};
-use fem_core::reduction::Functional;
+use fem_core::functional::Functional;
 use nalgebra::DMatrix;
 
 /// The governors that `guyan` with `select = "ratio"` chooses: the rows in which T has a lone one.

@@ -1,8 +1,8 @@
 //! The force of an impact on a chain, against the unreduced chain at the same step.
 
 use crate::{Dense, basis, reduction, spread};
+use fem_core::functional::Functional;
 use fem_core::plugin::{Built, Dimension, Params, Plugin, Value};
-use fem_core::reduction::Functional;
 use fem_core::structure::Structure;
 use fem_dynamics::contact::Hertz;
 use fem_dynamics::impact::{ImpactSystem, Impactor};

@@ -9,8 +9,9 @@ mod impact;
 mod stages;
 mod statics;
 
+use fem_core::functional::Functional;
 use fem_core::plugin::{Built, Params, Plugin, Value};
-use fem_core::reduction::{Functional, Reduction, ReductionError};
+use fem_core::reduction::{Reduction, ReductionError};
 use fem_core::structure::{SolveError, Structure};
 use fem_dynamics::reduce::{CraigBampton, Guyan, Irs, ModalTruncation, Ritz};
 use nalgebra::{Cholesky, DMatrix, DVectorView, DVectorViewMut, Dyn};

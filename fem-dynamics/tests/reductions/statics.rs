@@ -1,7 +1,7 @@
 //! What a reduction keeps of the static flexibility at the contacts.
 
 use crate::{Dense, basis, reduction, spread};
-use fem_core::reduction::Functional;
+use fem_core::functional::Functional;
 use fem_dynamics::reduce::Reduced;
 
 /// Relative error of pᵢᵀ K⁻¹ pⱼ on a uniform chain of 60, where a unit force at mass j moves mass i by (min(i, j) + 1)/k.

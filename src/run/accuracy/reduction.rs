@@ -2,7 +2,7 @@
 
 use super::super::prepare::Full;
 use super::step::Instant;
-use fem_core::reduction::Functional;
+use fem_core::functional::Functional;
 use fem_core::structure::Structure;
 use fem_dynamics::reduce::Reduced;
 

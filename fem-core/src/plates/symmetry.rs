@@ -5,10 +5,10 @@
 //! ([`Symmetry::quads`]). K and M then are those of the whole plate, restricted to symmetric motions; forces, masses and
 //! energies are those of the whole.
 
-use crate::constraint::Equation;
-use crate::dof::Dof;
-use crate::plate::Plate;
-use crate::tensor::{Global, Matrix6, Stress6};
+use crate::plates::constraint::Equation;
+use crate::plates::plate::Plate;
+use crate::words::dof::Dof;
+use crate::words::tensor::{Global, Matrix6, Stress6};
 use std::collections::HashMap;
 
 /// What maps a plate onto itself, about the middle of its bounds.
@@ -25,7 +25,7 @@ pub enum Group {
 }
 
 /// Distance between a node and the image of another, over the plate's size, at which they are one: above the rounding of
-/// coordinates, and below what [`crate::support::FreeMotions`] takes for a hold.
+/// coordinates, and below what [`crate::plates::support::FreeMotions`] takes for a hold.
 const SAME: f64 = 1e-8;
 
 /// Couplings of a stiffness below this fraction of its largest entry are rounding.
@@ -151,8 +151,9 @@ impl Symmetry {
         // The part that is kept lies at large y, and at large x: as compact as it can be.
         let rank = |p: [f64; 2]| [1, 0].map(|d| ((p[d] - centre[d]) / reach).round() as i64);
         let column_ranks: Vec<_> = plate.columns.iter().map(|p| rank(*p)).collect();
-        let quad_ranks: Vec<_> =
-            (0..plate.plane.quads.len()).map(|q| rank(crate::window::centroid(&plate.plane.corners(q)))).collect();
+        let quad_ranks: Vec<_> = (0..plate.plane.quads.len())
+            .map(|q| rank(crate::plates::window::centroid(&plate.plane.corners(q))))
+            .collect();
         let columns = representatives(&column_ranks, images.iter().map(|(_, i)| &i[..]));
         let quads = representatives(&quad_ranks, cells.iter().map(|i| &i[..]));
         let mut sizes = vec![0; quads.len()];
@@ -295,7 +296,7 @@ fn quad_images(plate: &Plate, images: &[u32]) -> Result<Vec<u32>, String> {
     let numbers: HashMap<[u32; 4], u32> = quads.iter().map(|q| sorted(*q)).zip(0..).collect();
     let image = |(quad, vertices): (usize, &[u32; 4])| {
         numbers.get(&sorted(vertices.map(|v| images[v as usize]))).copied().ok_or_else(|| {
-            let [x, y] = crate::window::centroid(&plate.plane.corners(quad)).map(|x| x * 1e3);
+            let [x, y] = crate::plates::window::centroid(&plate.plane.corners(quad)).map(|x| x * 1e3);
             format!("cell {} at ({x:.6}, {y:.6}) mm has no image", plate.plane.quad_tags[quad])
         })
     };
@@ -306,11 +307,11 @@ fn quad_images(plate: &Plate, images: &[u32]) -> Result<Vec<u32>, String> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::element::{ElementInfo, Slice, Stack};
-    use crate::material::Elastic;
-    use crate::mesh::QuadMesh;
-    use crate::plate::ZDerivatives;
-    use crate::tensor::rotate_stiffness;
+    use crate::contracts::element::{ElementInfo, Slice, Stack};
+    use crate::plates::mesh::QuadMesh;
+    use crate::plates::plate::ZDerivatives;
+    use crate::words::material::Elastic;
+    use crate::words::tensor::rotate_stiffness;
 
     const NODES: [[f64; 3]; 8] = [
         [-1.0, -1.0, -1.0],

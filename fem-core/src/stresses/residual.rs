@@ -1,8 +1,8 @@
 //! Residual stresses of a laminate that has cooled down from its cure.
 
-use crate::laminate::Laminate;
-use crate::material::{Material, MaterialError};
-use crate::tensor::{Ply, Stress6, strain_rotation};
+use crate::plates::laminate::Laminate;
+use crate::words::material::{Material, MaterialError};
+use crate::words::tensor::{Ply, Stress6, strain_rotation};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// Rows of the tensor order that lie in the plane: 11 22 12.
@@ -80,8 +80,8 @@ fn free(material: &Material, change: f64) -> Result<Vector3<f64>, MaterialError>
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::laminate::LaminaPly;
-    use crate::material::{Elastic, Strengths};
+    use crate::plates::laminate::LaminaPly;
+    use crate::words::material::{Elastic, Strengths};
 
     fn material(elastic: Elastic, expansion: [f64; 3]) -> Material {
         let (strengths, expansion) = (Strengths::default(), Some(expansion));

@@ -1,6 +1,6 @@
 //! The contract of a time integrator and of the second-order systems it marches.
 
-use crate::contact::{Branches, ContactHistory, Indentation};
+use crate::contracts::contact::{Branches, ContactHistory, Indentation};
 use dyn_clone::DynClone;
 use std::fmt::{self, Debug};
 

@@ -1,6 +1,6 @@
 //! Materials: orthotropic elasticity with its validity checks, density, strengths.
 
-use crate::tensor::Matrix6;
+use crate::words::tensor::Matrix6;
 use std::fmt;
 
 /// Elastic constants of an orthotropic solid in its own axes; Pa and dimensionless.

@@ -1,8 +1,8 @@
 //! Laminates: plies from the bottom up, grouped into layers of cells.
 
-use crate::element::{Slice, Stack};
-use crate::material::{Material, MaterialError};
-use crate::tensor::{apply, rotate_stiffness, strain_rotation};
+use crate::contracts::element::{Slice, Stack};
+use crate::words::material::{Material, MaterialError};
+use crate::words::tensor::{apply, rotate_stiffness, strain_rotation};
 use nalgebra::Matrix3;
 
 /// One ply.
@@ -178,7 +178,7 @@ impl Laminate {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::material::{Elastic, Strengths};
+    use crate::words::material::{Elastic, Strengths};
 
     fn material(elastic: Elastic) -> Material {
         Material {

@@ -1,9 +1,9 @@
 //! The contract of an element, and the kernels that any element gets for free.
 
-use crate::dof::Dof;
-use crate::large::LargeDisplacement;
-use crate::quadrature::gauss_legendre;
-use crate::tensor::{Matrix6, apply};
+use crate::contracts::large::LargeDisplacement;
+use crate::words::dof::Dof;
+use crate::words::quadrature::gauss_legendre;
+use crate::words::tensor::{Matrix6, apply};
 use dyn_clone::DynClone;
 use std::fmt::{self, Debug};
 

@@ -1,8 +1,8 @@
 //! Some of the cells of a plate as a plate of their own.
 
 use super::{Plate, columns, ordered};
-use crate::mesh::{Group, QuadMesh};
-use crate::symmetry::Symmetry;
+use crate::plates::mesh::{Group, QuadMesh};
+use crate::plates::symmetry::Symmetry;
 use std::collections::BTreeMap;
 
 impl Plate {

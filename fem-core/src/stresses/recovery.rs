@@ -1,11 +1,11 @@
 //! Stresses of plies and interfaces from displacements.
 
-use crate::element::{Element, ElementError, Part, Scratch};
-use crate::laminate::Laminate;
-use crate::large::LargeDisplacement;
-use crate::material::Material;
-use crate::plate::Plate;
-use crate::tensor::{Matrix6, strain_rotation};
+use crate::contracts::element::{Element, ElementError, Part, Scratch};
+use crate::contracts::large::LargeDisplacement;
+use crate::plates::laminate::Laminate;
+use crate::plates::plate::Plate;
+use crate::words::material::Material;
+use crate::words::tensor::{Matrix6, strain_rotation};
 
 /// Where in the thickness a stress is taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -169,7 +169,7 @@ impl Recovery {
                 for field in 0..fields {
                     let strain = std::array::from_fn(|c| mean[c * fields + field]);
                     let at = field * 6 * self.sites() + i * per_quad + 6 * s;
-                    out[at..at + 6].copy_from_slice(&crate::tensor::apply(&station.to_stress, &strain));
+                    out[at..at + 6].copy_from_slice(&crate::words::tensor::apply(&station.to_stress, &strain));
                 }
             }
         }

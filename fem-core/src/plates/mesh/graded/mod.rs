@@ -6,7 +6,7 @@ mod rings;
 mod tests;
 
 use super::{Group, QuadMesh};
-use crate::plugin::ParamError;
+use crate::contracts::plugin::ParamError;
 use rings::Rings;
 
 /// Cells that a generated mesh may have: more is a slip.

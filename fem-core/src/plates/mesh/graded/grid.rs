@@ -1,7 +1,7 @@
 //! Rectangles as grids of lines along the axes.
 
 use super::{MAX_CELLS, QuadMesh, edges, node};
-use crate::plugin::ParamError;
+use crate::contracts::plugin::ParamError;
 
 /// Length of a cell over that of its neighbour nearer to the impact.
 const GROWTH: f64 = 1.2;

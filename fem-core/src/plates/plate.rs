@@ -2,10 +2,10 @@
 
 mod part;
 
-use crate::dof::Dof;
-use crate::element::{Cell, ElementInfo, Stack};
-use crate::mesh::{Group, QuadMesh};
-use crate::symmetry::{self, Symmetry};
+use crate::contracts::element::{Cell, ElementInfo, Stack};
+use crate::plates::mesh::{Group, QuadMesh};
+use crate::plates::symmetry::{self, Symmetry};
+use crate::words::dof::Dof;
 use std::collections::HashMap;
 use std::fmt::Write;
 

@@ -1,6 +1,6 @@
 //! The contract of an element under large displacements.
 
-use crate::element::{Cell, ElementError, Part, Scratch};
+use crate::contracts::element::{Cell, ElementError, Part, Scratch};
 use std::fmt::Debug;
 
 /// What an element offers besides its linear matrices where membrane stiffening is asked for.
@@ -9,7 +9,7 @@ use std::fmt::Debug;
 /// S = C (E − ε₀), ε₀ the free strains, are the second ones of Piola and Kirchhoff, on the plies' axes as they turn with the cell. Strains are small,
 /// displacements and rotations are not.
 ///
-/// At u = 0 without free strains the tangent is the stiffness of [`crate::element::Element::stiffness`] up to the quadrature
+/// At u = 0 without free strains the tangent is the stiffness of [`crate::contracts::element::Element::stiffness`] up to the quadrature
 /// through the plies.
 pub trait LargeDisplacement: Debug {
     /// Internal force f = ∂W/∂u (N, conjugate to the unknowns) at the displacements `u` (both ndof), W = Σ over plies

@@ -1,10 +1,10 @@
 //! Where a contact acts: one node, the Hertz pressure on a circle of the top face, or a uniform pressure on a square.
 
-use crate::dof::Dof;
-use crate::element::Element;
-use crate::plate::Plate;
-use crate::quadrature::gauss_legendre;
-use crate::reduction::Functional;
+use crate::contracts::element::Element;
+use crate::plates::plate::Plate;
+use crate::words::dof::Dof;
+use crate::words::functional::Functional;
+use crate::words::quadrature::gauss_legendre;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 

@@ -1,10 +1,10 @@
 //! A displacement field of a plate, evaluated in its plies.
 
-use crate::element::{Element, ElementError};
-use crate::laminate::Laminate;
-use crate::large::LargeDisplacement;
-use crate::plate::Plate;
-use crate::tensor::{Global, Strain6, Stress6, stress};
+use crate::contracts::element::{Element, ElementError};
+use crate::contracts::large::LargeDisplacement;
+use crate::plates::laminate::Laminate;
+use crate::plates::plate::Plate;
+use crate::words::tensor::{Global, Strain6, Stress6, stress};
 
 /// A displacement field.
 #[derive(Debug, Clone, Copy)]

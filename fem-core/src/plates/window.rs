@@ -3,7 +3,7 @@
 //! A mean over the cell itself falls with the cell, and with it every onset time; over a window of fixed size it does
 //! not.
 
-use crate::mesh::QuadMesh;
+use crate::plates::mesh::QuadMesh;
 
 /// The cells that a square window of side `side`, centred on each cell and parallel to the axes, overlaps, with their
 /// shares of the overlapped area. At an edge the window is cut off with the plate.

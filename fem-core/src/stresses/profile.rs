@@ -1,11 +1,11 @@
 //! Stresses along a line through the thickness.
 
-use crate::element::ElementError;
-use crate::field::{Field, Spot};
-use crate::patch::locate;
-use crate::plate::Plate;
-use crate::quadrature::gauss_legendre;
-use crate::tensor::{Global, Ply, Strain6, Stress6};
+use crate::contracts::element::ElementError;
+use crate::plates::patch::locate;
+use crate::plates::plate::Plate;
+use crate::stresses::field::{Field, Spot};
+use crate::words::quadrature::gauss_legendre;
+use crate::words::tensor::{Global, Ply, Strain6, Stress6};
 use nalgebra::{DMatrix, SVector};
 use std::collections::HashSet;
 

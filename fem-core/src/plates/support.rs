@@ -1,8 +1,8 @@
 //! Supports as equations, and the rigid motions that they leave.
 
-use crate::constraint::Equation;
-use crate::dof::Dof;
-use crate::plate::Plate;
+use crate::plates::constraint::Equation;
+use crate::plates::plate::Plate;
+use crate::words::dof::Dof;
 use nalgebra::{Matrix6, SymmetricEigen, Vector6};
 
 /// Levels of a plate that a support acts on.

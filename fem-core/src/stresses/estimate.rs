@@ -1,10 +1,10 @@
 //! How far a solution is from that of an infinitely fine mesh, judged by itself.
 
-use crate::element::{Element, ElementError, Stack, positive};
-use crate::plate::Plate;
-use crate::quadrature::gauss_legendre;
-use crate::tensor::apply;
-use crate::window::centroid;
+use crate::contracts::element::{Element, ElementError, Stack, positive};
+use crate::plates::plate::Plate;
+use crate::plates::window::centroid;
+use crate::words::quadrature::gauss_legendre;
+use crate::words::tensor::apply;
 use nalgebra::{SMatrix, SVector};
 
 /// Where a cell is sampled, ± √(2/3) along its axes: a rule of third degree with equal weights. The error of strains that

@@ -1,6 +1,6 @@
 //! What the dynamic half may ask of a structure, sparse or reduced, linear or not.
 
-use crate::prolongation::Coarse;
+use crate::words::prolongation::Prolongation;
 use std::fmt;
 
 /// A matrix that could not be factorised.
@@ -119,6 +119,15 @@ pub trait Structure: fmt::Debug + Send {
     fn work(&self) -> (u64, u64) {
         (0, 0)
     }
+}
+
+/// A structure on fewer unknowns, u = P y: PᵀKP and PᵀMP.
+#[derive(Debug)]
+pub struct Coarse {
+    /// The coarse structure.
+    pub structure: Box<dyn Structure>,
+    /// P.
+    pub prolongation: Prolongation,
 }
 
 /// Internal forces that are not linear in the displacements: f(u) = ∂W/∂u with f(0) = 0 and ∂f/∂u = K at u = 0.

@@ -1,9 +1,9 @@
 //! Loads as consistent nodal forces, f = ∫ Nᵀ p dA: one per unknown, before elimination of constraints.
 
-use crate::dof::Dof;
-use crate::element::{Element, ElementError, Scratch};
-use crate::plate::Plate;
-use crate::quadrature::gauss_legendre;
+use crate::contracts::element::{Element, ElementError, Scratch};
+use crate::plates::plate::Plate;
+use crate::words::dof::Dof;
+use crate::words::quadrature::gauss_legendre;
 use std::collections::HashSet;
 
 /// Gauss points per direction: exact for cubic functions under a pressure of degree 12.

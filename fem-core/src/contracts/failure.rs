@@ -1,7 +1,7 @@
 //! The contract of a failure criterion.
 
-use crate::material::{Material, MaterialError, Strength};
-use crate::tensor::{Ply, Stress6};
+use crate::words::material::{Material, MaterialError, Strength};
+use crate::words::tensor::{Ply, Stress6};
 use dyn_clone::DynClone;
 use std::fmt::{self, Debug};
 
@@ -261,7 +261,7 @@ pub fn search_reserve(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::{Elastic, Strengths};
+    use crate::words::material::{Elastic, Strengths};
 
     fn material() -> Material {
         Material {

@@ -1,10 +1,10 @@
 //! How a plug-in introduces itself and receives its parameters.
 
-use crate::contact::ContactLaw;
-use crate::element::Element;
-use crate::failure::FailureCriterion;
-use crate::reduction::Reduction;
-use crate::time::Integrator;
+use crate::contracts::contact::ContactLaw;
+use crate::contracts::element::Element;
+use crate::contracts::failure::FailureCriterion;
+use crate::contracts::reduction::Reduction;
+use crate::contracts::time::Integrator;
 use std::collections::BTreeMap;
 use std::fmt;
 

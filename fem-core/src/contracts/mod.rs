@@ -1,0 +1,10 @@
+//! What a plug-in promises, and what it may ask of a structure.
+
+pub mod contact;
+pub mod element;
+pub mod failure;
+pub mod large;
+pub mod plugin;
+pub mod reduction;
+pub mod structure;
+pub mod time;

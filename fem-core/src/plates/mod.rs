@@ -1,0 +1,12 @@
+//! A plate of cells: mesh, plies, unknowns, and what holds, loads and strikes it.
+
+pub mod constraint;
+pub mod laminate;
+pub mod load;
+pub mod mesh;
+pub mod patch;
+pub mod plate;
+mod prolongation;
+pub mod support;
+pub mod symmetry;
+pub mod window;

@@ -1,0 +1,8 @@
+//! What the displacements of a plate mean: stresses at places and along lines, of large displacements and of cure, and the error
+//! of a mesh.
+
+pub mod estimate;
+pub mod field;
+pub mod profile;
+pub mod recovery;
+pub mod residual;

@@ -1,0 +1,13 @@
+//! Small types that everything speaks: tensors, unknowns, materials, plies, counts. They know nothing of elements or plates.
+
+pub mod counters;
+pub mod damping;
+pub mod dof;
+#[cfg(feature = "formula")]
+pub mod formula;
+pub mod functional;
+pub mod layup;
+pub mod material;
+pub mod prolongation;
+pub mod quadrature;
+pub mod tensor;
