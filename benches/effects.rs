@@ -6,8 +6,9 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
 use cpu_time::ProcessTime;
+use fem::analyses::impact;
 use fem::io::scene;
-use fem::{Model, Registry, run};
+use fem::{Model, Registry};
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::process::Command;
@@ -80,7 +81,7 @@ fn measure(example: &str, keys: Keys) {
     let setting = keys.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
     let started = ProcessTime::now();
     let model = Model::new(scene::read_with(&path, &setting).unwrap(), &Registry::standard()).unwrap();
-    let outcome = run::march(run::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
+    let outcome = impact::march(impact::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
     let seconds = started.elapsed().as_secs_f64();
     assert_eq!(outcome.stopped, None);
     println!("{seconds} {}", peak_memory());

@@ -7,6 +7,7 @@
 use cpu_time::ThreadTime;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
+use fem::analyses::impact;
 use fem::core::assembly::{Cholesky, Matrix, SparseStructure, Symbolic, assemble, elimination_order, pattern};
 use fem::core::constraint::Constraints;
 use fem::core::counters::Counters;
@@ -28,7 +29,6 @@ use fem::dynamics::integrate::Newmark;
 use fem::dynamics::reduce::{Reduced, Ritz};
 use fem::elements::{HermitePrism, Mass};
 use fem::io::materials;
-use fem::run;
 use std::hint::black_box;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -226,5 +226,5 @@ fn step(structure: Box<dyn Structure>, load: Vec<(usize, f64)>, steps: usize) ->
     let touches = seconds(3, || (0..STEPS).for_each(look)) / STEPS as f64;
     let mut balance = || guard.balance(&system.energies(&state, &mut work)).unwrap();
     let balances = seconds(3, || (0..20).for_each(|_| _ = balance())) / 20.0;
-    [march, touches + balances / run::BALANCE_EVERY as f64]
+    [march, touches + balances / impact::BALANCE_EVERY as f64]
 }

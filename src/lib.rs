@@ -1,7 +1,7 @@
 //! Low-velocity impact on laminated composites: a gmsh plate and a scene go in; force history, ply and interface stresses
 //! and the time, place and mode of first damage come out.
 //!
-//! This crate is the facade: [`Registry`] gathers the plug-ins, [`Model`] makes a scene concrete, [`run`] does the main job,
+//! This crate is the facade: [`Registry`] gathers the plug-ins, [`Model`] makes a scene concrete, [`analyses`] answer what it is asked,
 //! [`cli`] is the command line as a function, so that a crate with plug-ins of its own needs a main of five lines:
 //!
 //! ```no_run
@@ -20,7 +20,7 @@
 //! Every command is a function as well. The lowest frequency of a clamped square of aluminium, against theory of thin plates:
 //!
 //! ```
-//! use fem::{Model, Registry, io::scene, modes};
+//! use fem::{Model, Registry, analyses::modes, io::scene};
 //! use std::num::NonZeroUsize;
 //!
 //! let edges = ["x-min", "x-max", "y-min", "y-max"];
@@ -41,29 +41,18 @@
 //! ```
 
 pub mod advise;
+pub mod analyses;
 pub mod cli;
 pub mod cost;
-pub mod damage;
 mod error;
-mod expansion;
-mod fields;
-mod indices;
-pub mod matrices;
-pub mod memory;
-pub mod mesh;
-mod modal;
+pub mod forecast;
 mod model;
-pub mod modes;
-pub mod pictures;
+pub mod output;
 mod registry;
-pub mod report;
-pub mod run;
-pub mod statics;
-mod stress;
 pub mod study;
-pub mod summary;
+mod words;
 
-pub use error::Error;
+pub use error::{CheckpointError, Error};
 pub use fem_core as core;
 pub use fem_dynamics as dynamics;
 pub use fem_elements as elements;

@@ -2,9 +2,9 @@
 
 use crate::report::Computed;
 use crate::support::{Case, root, strip};
+use fem::analyses::impact::{self, Accuracy, Checkpoint, March};
 use fem::io::files::OutputDir;
 use fem::io::scene;
-use fem::run::{self, Accuracy, Checkpoint, March};
 use fem::{Model, Registry};
 use serde_json::Value;
 use std::num::NonZeroUsize;
@@ -98,8 +98,8 @@ fn the_error_of_a_reduction_is_found_within_a_factor_of_six() {
 fn a_resumed_run_says_the_same() {
     let path = root().join("examples").join(PLATE).join("scene.toml");
     let model = Model::new(scene::read(&path).unwrap(), &Registry::standard()).unwrap();
-    let prepared = || run::prepare(&model, NonZeroUsize::MIN).unwrap();
-    let straight = run::march(run::prepare(&model, NonZeroUsize::new(2).unwrap()).unwrap(), |_| {}).unwrap();
+    let prepared = || impact::prepare(&model, NonZeroUsize::MIN).unwrap();
+    let straight = impact::march(impact::prepare(&model, NonZeroUsize::new(2).unwrap()).unwrap(), |_| {}).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let dir = OutputDir::create(folder.path().join("out")).unwrap();
     let mut march = March::start(prepared()).unwrap();

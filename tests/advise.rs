@@ -6,12 +6,13 @@ use fem::advise::large_mass::{Peak, Spring, energy_balance, rigid_target};
 use fem::advise::membrane::{Held, THRESHOLD};
 use fem::advise::small_mass::{self, infinite_plate, linear_contact_force};
 use fem::advise::{Advice, Delaminates, Regime, advise, decided};
+use fem::analyses::impact::{self, Outcome, Sizes};
+use fem::analyses::statics;
 use fem::core::contact::ContactLaw;
 use fem::core::plugin::{Built, Dimension, Kind, Params, Value};
 use fem::io::scene;
-use fem::run::{self, Outcome, Sizes};
-use fem::summary::Summary;
-use fem::{Error, Model, Registry, statics};
+use fem::output::summary::Summary;
+use fem::{Error, Model, Registry, output};
 use std::num::NonZeroUsize;
 
 const CLAMPED: [Held; 2] = [Held { slope: true, in_plane: true }, Held { slope: true, in_plane: false }];
@@ -45,9 +46,9 @@ fn model(text: &str) -> Model {
 /// A scene as it is run.
 pub(crate) fn computed(text: &str) -> (Model, Sizes, Outcome) {
     let model = decided(model(text), NonZeroUsize::MIN).unwrap();
-    let prepared = run::prepare(&model, NonZeroUsize::MIN).unwrap();
+    let prepared = impact::prepare(&model, NonZeroUsize::MIN).unwrap();
     let sizes = prepared.sizes;
-    let outcome = run::march(prepared, |_| {}).unwrap();
+    let outcome = impact::march(prepared, |_| {}).unwrap();
     assert_eq!(outcome.stopped, None);
     (model, sizes, outcome)
 }
@@ -510,7 +511,7 @@ fn the_advisor_decides_what_a_scene_leaves_to_it() {
     let auto = sheet(", membrane = 'auto'");
     let undecided = model(&auto.text());
     assert!(undecided.undecided());
-    assert!(matches!(run::prepare(&undecided, NonZeroUsize::MIN), Err(Error::Undecided)));
+    assert!(matches!(impact::prepare(&undecided, NonZeroUsize::MIN), Err(Error::Undecided)));
     let [decision] = decided(undecided, NonZeroUsize::MIN).unwrap().decisions[..] else { panic!() };
     assert!(decision.on && decision.expected > decision.threshold, "{decision:?}");
 
@@ -544,7 +545,7 @@ fn loads_at_rest_are_decided_by_the_linear_deflection() {
     let (model, slight) = at_rest("1 kPa");
     assert!(!slight.on && !model.effects.membrane);
     let solution = statics::solve(&model, NonZeroUsize::MIN).unwrap();
-    let summary = statics::Summary::new(&model, &solution);
+    let summary = output::statics::Summary::new(&model, &solution);
     near(slight.expected, 0.443 * (summary.largest_deflection.w_m / 1e-3).powi(2), 1e-9);
     assert_eq!(summary.advised.len(), 1);
     let (_, heavy) = at_rest("100 kPa");

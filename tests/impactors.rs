@@ -1,8 +1,8 @@
 //! Several impactors in one scene.
 
 use crate::support::{root, strip};
+use fem::analyses::impact::{self, Outcome};
 use fem::io::scene;
-use fem::run::{self, Outcome};
 use fem::{Error, Model, Registry};
 use std::num::NonZeroUsize;
 
@@ -20,7 +20,7 @@ fn outcome(impactors: &str, reduction: &str, march: &str) -> Result<Outcome, Err
         edges.concat()
     );
     let model = Model::new(scene::parse(&text, &root().join("scene.toml"))?, &Registry::standard())?;
-    let outcome = run::march(run::prepare(&model, NonZeroUsize::MIN)?, |_| {})?;
+    let outcome = impact::march(impact::prepare(&model, NonZeroUsize::MIN)?, |_| {})?;
     assert_eq!(outcome.stopped, None);
     Ok(outcome)
 }

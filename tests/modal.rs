@@ -1,15 +1,16 @@
 //! The modal view of an impact.
 
 use crate::support::{Case, strip};
+use fem::analyses::{impact, modes};
 use fem::io::scene;
-use fem::{Model, Registry, modes, run};
+use fem::{Model, Registry};
 use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
 
-fn followed(case: &Case) -> (Model, run::Outcome) {
+fn followed(case: &Case) -> (Model, impact::Outcome) {
     let path = case.folder().join(case.write());
     let model = Model::new(scene::read(&path).unwrap(), &Registry::standard()).unwrap();
-    let outcome = run::march(run::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
+    let outcome = impact::march(impact::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
     (model, outcome)
 }
 
@@ -27,7 +28,7 @@ fn parts_of_all_modes_are_the_deflection_and_their_energies_the_plates() {
             "{row:?} {parts:?}"
         );
     }
-    let shares: [fn(&run::ModeShare) -> f64; 3] = [|m| m.static_share, |m| m.strain_share, |m| m.kinetic_share];
+    let shares: [fn(&impact::ModeShare) -> f64; 3] = [|m| m.static_share, |m| m.strain_share, |m| m.kinetic_share];
     for share in shares {
         let sum: f64 = modal.modes.iter().map(share).sum();
         assert!((sum - 1.0).abs() < 1e-9, "{sum}");

@@ -1,11 +1,12 @@
 //! The model between scene and march: assembly, constraints, contact patch, reductions.
 
 use crate::support::{root, whole};
+use fem::analyses::impact;
 use fem::core::assembly::{Matrix, Pattern, assemble, elimination_order, pattern};
 use fem::core::constraint::Constraints;
 use fem::core::counters::Counters;
 use fem::io::scene;
-use fem::{Error, Model, Registry, run};
+use fem::{Error, Model, Registry};
 use std::num::NonZeroUsize;
 
 const EXAMPLE: &str = "as4-3502-16ply-50mm";
@@ -21,7 +22,7 @@ fn model_of(edits: &[(&str, &str)]) -> Result<Model, Error> {
 }
 
 fn stiffness_at_contact(edits: &[(&str, &str)]) -> f64 {
-    run::prepare(&model_of(edits).unwrap(), NonZeroUsize::MIN).unwrap().sizes.static_stiffness
+    impact::prepare(&model_of(edits).unwrap(), NonZeroUsize::MIN).unwrap().sizes.static_stiffness
 }
 
 /// The matrices of the example without any constraint.

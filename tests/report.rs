@@ -4,8 +4,8 @@
 //! `report` repeats. Case histories of an independent model are in tests/data/report-cases (its README says how made).
 
 use crate::support::{draw, root};
+use fem::analyses::impact::{self, Outcome, Sizes};
 use fem::io::scene;
-use fem::run::{self, Outcome, Sizes};
 use fem::{Model, Registry};
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
@@ -22,9 +22,9 @@ impl Computed {
     pub(crate) fn of(text: &str, path: &Path) -> Self {
         let scene = scene::parse(text, path).unwrap();
         let model = Model::new(scene, &Registry::standard()).unwrap();
-        let prepared = run::prepare(&model, NonZeroUsize::MIN).unwrap();
+        let prepared = impact::prepare(&model, NonZeroUsize::MIN).unwrap();
         let sizes = prepared.sizes;
-        let outcome = run::march(prepared, |_| {}).unwrap();
+        let outcome = impact::march(prepared, |_| {}).unwrap();
         assert_eq!(outcome.stopped, None);
         Self { model, sizes, outcome }
     }

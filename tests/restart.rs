@@ -1,8 +1,8 @@
 //! A march that is stopped and resumed finds what it finds in one piece.
 
 use crate::support::{Case, Done, OFTEN, fem, strip, watched};
+use fem::analyses::impact::{self, Checkpoint, March, Outcome, Prepared};
 use fem::io::{checkpoint, files::OutputDir, scene};
-use fem::run::{self, Checkpoint, March, Outcome, Prepared};
 use fem::{Model, Registry};
 use std::fs;
 use std::num::NonZeroUsize;
@@ -202,8 +202,8 @@ fn every_integrator_goes_on_as_if_nothing_had_been() {
             .scene("end = \"20 us\"", &format!("step = \"{step}\"\nend = \"{steps} us\""));
         let path = case.folder().join(case.write());
         let model = Model::new(scene::read(&path).unwrap(), &Registry::standard()).unwrap();
-        let prepared = || -> Prepared<'_> { run::prepare(&model, NonZeroUsize::MIN).unwrap() };
-        let straight = run::march(prepared(), |_| {}).unwrap();
+        let prepared = || -> Prepared<'_> { impact::prepare(&model, NonZeroUsize::MIN).unwrap() };
+        let straight = impact::march(prepared(), |_| {}).unwrap();
         assert!(straight.counters.steps == 37 && straight.stopped.is_none(), "{integrator}: {:?}", straight.stopped);
 
         let dir = OutputDir::create(case.folder().join("out")).unwrap();

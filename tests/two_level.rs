@@ -2,11 +2,12 @@
 
 use crate::report::Computed;
 use crate::support::root;
+use fem::analyses::assembled;
 use fem::core::counters::Counters;
 use fem::core::prolongation::Prolongation;
 use fem::core::structure::Structure;
 use fem::io::scene;
-use fem::{Model, Registry, run};
+use fem::{Model, Registry};
 use std::num::NonZeroUsize;
 
 /// K and M of the coarse model are PᵀKP and PᵀMP, folded or not.
@@ -17,7 +18,7 @@ fn coarse_matrices_are_projections() {
     for text in [crate::support::whole(&folded), folded] {
         let model = Model::new(scene::parse(&text, &path).unwrap(), &Registry::standard()).unwrap();
         let mut structure =
-            run::structure(&model, true, NonZeroUsize::MIN, &mut Counters::default()).unwrap().structure;
+            assembled::structure(&model, true, NonZeroUsize::MIN, &mut Counters::default()).unwrap().structure;
         let p = Prolongation::linear_in_z(&model.plate, &model.constraints);
         structure.offer_coarse(p.clone());
         let coarse = structure.coarse().unwrap().unwrap().structure;

@@ -9,7 +9,6 @@
 
 mod answer;
 mod contact;
-mod cost;
 mod decide;
 mod delamination;
 mod estimate;
@@ -37,8 +36,8 @@ pub use rim::Rim;
 pub use shear::Shear;
 
 use crate::error::Error;
+use crate::forecast::Work;
 use crate::model::{Model, Plan, Strike};
-use cost::Work;
 use fem_io::scene;
 use plate::AtRest;
 use std::num::NonZeroUsize;

@@ -2,9 +2,9 @@
 
 use super::membrane::Held;
 use super::rim::Rim;
+use crate::analyses::assembled::{self, Assembled};
 use crate::error::Error;
 use crate::model::{Model, Strike};
-use crate::run::{self, Assembled};
 use fem_core::counters::Counters;
 use fem_core::functional::Functional;
 use fem_core::structure::Structure;
@@ -78,7 +78,7 @@ pub(super) struct AtRest {
 
 impl AtRest {
     pub(super) fn of(model: &Model, threads: NonZeroUsize) -> Result<Self, Error> {
-        Ok(Self { assembled: run::structure(model, false, threads, &mut Counters::default())? })
+        Ok(Self { assembled: assembled::structure(model, false, threads, &mut Counters::default())? })
     }
 
     /// Displacements of all independent unknowns under `load`.

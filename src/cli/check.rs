@@ -2,14 +2,15 @@
 
 use super::{Console, Format, warn};
 use crate::advise;
+use crate::analyses::assembled::{self, Substructures};
+use crate::analyses::impact::{self, Sizes};
 use crate::error::Error;
-use crate::fields;
-use crate::memory::Estimate;
+use crate::forecast::Estimate;
 use crate::model::{Impact, Model, Plan};
+use crate::output::fields;
+use crate::output::summary::Advised;
 use crate::registry::Registry;
-use crate::run::{self, Sizes, Substructures};
-use crate::statics::{digits, few_digits};
-use crate::summary::{Advised, in_words};
+use crate::words::{append_symmetry, describe_condition, warn_of_condition};
 use clap::Args;
 use fem_core::counters::Counters;
 use fem_io::scene::{self, Explained};
@@ -141,15 +142,15 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
     let (mut march, mut condition, mut modes, mut frames) = (None, None, None, 1);
     let (memory, substructures) = match &model.plan {
         Plan::Impact(impact) => {
-            let sizes = run::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model))?.sizes;
+            let sizes = impact::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model))?.sizes;
             march = Some(March::new(impact, &sizes));
             let asked = model.scene.output.fields.as_ref();
-            frames = fields::frames(asked, asked.and_then(|asked| asked.every), &sizes).len();
+            frames = impact::frames(asked, asked.and_then(|asked| asked.every), &sizes).len();
             (sizes.memory, sizes.substructures)
         }
         plan => {
             let counters = &mut Counters::default();
-            let assembled = run::structure(&model, true, NonZeroUsize::MIN, counters);
+            let assembled = assembled::structure(&model, true, NonZeroUsize::MIN, counters);
             let mut assembled = assembled.inspect_err(|_| warn(&model))?;
             if model.held {
                 let found = assembled.structure.condition().map_err(Error::from);
@@ -184,7 +185,7 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
         criteria: model.criteria.iter().map(|(name, _)| name.clone()).collect(),
         fields: fields::expected(&model, frames)?,
         advised: Advised::of(&model, |_| None),
-        warnings: condition.and_then(few_digits).into_iter().chain(model.warnings).collect(),
+        warnings: condition.and_then(warn_of_condition).into_iter().chain(model.warnings).collect(),
         keys,
     })
 }
@@ -201,7 +202,11 @@ impl Checked {
         let mut lines: Vec<Line> = vec![
             (
                 "mesh",
-                format!("{quads} quads, {nodes} nodes, groups {}{}", self.groups.join(", "), in_words(self.symmetry)),
+                format!(
+                    "{quads} quads, {nodes} nodes, groups {}{}",
+                    self.groups.join(", "),
+                    append_symmetry(self.symmetry)
+                ),
             ),
             ("plate", format!("{plies} plies, {thickness_mm:.4} mm, {layers} layers of cells")),
             ("unknowns", format!("{unknowns} of {} after constraints{redundant}", self.unknowns_before_constraints)),
@@ -209,7 +214,7 @@ impl Checked {
         ];
         lines.extend(self.substructures.map(|parts| ("divided", parts.to_string())));
         lines.extend(self.march.iter().flat_map(March::lines));
-        lines.extend(self.condition.map(|condition| ("stiffness", digits(condition))));
+        lines.extend(self.condition.map(|condition| ("stiffness", describe_condition(condition))));
         if self.march.is_none() {
             let analysis = self.modes.map_or("static".to_owned(), |count| format!("the {count} lowest modes"));
             lines.push(("analysis", analysis));

@@ -2,8 +2,8 @@
 
 use super::run::default_folder;
 use super::{Console, Format};
+use crate::analyses::matrices;
 use crate::error::Error;
-use crate::matrices;
 use crate::model::Model;
 use crate::registry::Registry;
 use clap::Args;

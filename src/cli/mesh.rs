@@ -2,8 +2,8 @@
 
 use super::{Console, Format};
 use crate::error::Error;
-use crate::mesh::Summary;
 use crate::model;
+use crate::output::mesh::Summary;
 use clap::Args;
 use fem_core::mesh::QuadMesh;
 use fem_core::plugin::Dimension;

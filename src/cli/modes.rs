@@ -2,11 +2,13 @@
 
 use super::run::{Results, cost_of, default_folder, keep_scene};
 use super::{Console, Format, warn};
+use crate::analyses::modes::{self, Solution};
 use crate::cost::Cost;
 use crate::error::Error;
-use crate::fields;
 use crate::model::{Model, Plan};
-use crate::modes::{self, Solution, Summary};
+use crate::output;
+use crate::output::fields;
+use crate::output::modes::Summary;
 use crate::registry::Registry;
 use clap::Args;
 use fem_io::files::OutputDir;
@@ -71,7 +73,7 @@ fn write(
 ) -> Result<OutputDir, Error> {
     let dir = OutputDir::create(folder)?;
     keep_scene(&dir, model)?;
-    modes::write(&dir, solution, summary)?;
+    output::modes::write(&dir, solution, summary)?;
     cost.phases.extend(fields::write_modes(&dir, model, solution)?);
     tables::write_json(&dir, "cost.json", cost)?;
     dir.supersede()?;

@@ -1,7 +1,7 @@
 //! `fem report`.
 
 use super::{Console, Format};
-use crate::report;
+use crate::output::report;
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;

@@ -3,16 +3,17 @@
 use super::signals::Signals;
 use super::{Console, Format, warn};
 use crate::advise;
+use crate::analyses::impact::{self, Checkpoint, March, Outcome};
+use crate::analyses::statics;
 use crate::cost::{Cost, Phase, Provenance};
 use crate::error::Error;
-use crate::fields;
+use crate::forecast::{one_level_better, seconds_per_phase};
 use crate::model::{Model, Plan};
+use crate::output;
+use crate::output::fields::{self, MarchFields};
+use crate::output::report;
+use crate::output::summary::Summary;
 use crate::registry::Registry;
-use crate::report;
-use crate::run::{self, Checkpoint, March, Outcome};
-use crate::statics;
-use crate::study;
-use crate::summary::{self, Summary};
 use clap::Args;
 use fem_io::files::{FileError, OutputDir};
 use fem_io::{scene, tables};
@@ -73,13 +74,13 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console)
 
 fn at_rest(model: &Model, arguments: &Arguments, folder: PathBuf, console: &Console) -> miette::Result<ExitCode> {
     let solution = statics::solve(model, arguments.threads).inspect_err(|_| warn(model))?;
-    let summary = statics::Summary::new(model, &solution);
+    let summary = output::statics::Summary::new(model, &solution);
     let mut cost = cost_of(model, arguments.threads, &solution.phases);
     console.say(arguments.format, || summary.text(&cost));
     let mut write = || {
         let dir = OutputDir::create(&folder)?;
         keep_scene(&dir, model)?;
-        statics::write(&dir, model, &solution, &summary)?;
+        output::statics::write(&dir, model, &solution, &summary)?;
         cost.phases.extend(fields::write_static(&dir, model, &solution)?);
         tables::write_json(&dir, "cost.json", &cost)?;
         dir.supersede()?;
@@ -99,7 +100,7 @@ fn impact(model: &Model, arguments: &Arguments, folder: &Path, console: &Console
     let (summary, cost, outcome) = &*found;
     console.say(arguments.format, || summary.text(cost));
     if model.scene.output.plots {
-        summary::write_plots(&dir, model, outcome)?;
+        output::write_plots(&dir, model, outcome)?;
     }
     dir.supersede().map_err(Error::from)?;
     Results { summary, cost, results: dir.path() }.show(arguments.format, console)?;
@@ -116,7 +117,7 @@ enum Ended {
 
 fn march(model: &Model, arguments: &Arguments, folder: &Path, bar: &ProgressBar) -> Result<Ended, Error> {
     let checkpoint = if arguments.resume { Some(Checkpoint::read(folder, model)?) } else { None };
-    let prepared = run::prepare(model, arguments.threads).inspect_err(|_| warn(model))?;
+    let prepared = impact::prepare(model, arguments.threads).inspect_err(|_| warn(model))?;
     let sizes = prepared.sizes;
     let mut march = match checkpoint {
         None => March::start(prepared)?,
@@ -125,7 +126,7 @@ fn march(model: &Model, arguments: &Arguments, folder: &Path, bar: &ProgressBar)
     // After all that can be refused, so that a refusal leaves no folder; before the march, so that none is in vain.
     let dir = OutputDir::create(folder)?;
     own_scene(&dir, model)?;
-    if let Some(signal) = advance(&mut march, &dir, model.scene.output.checkpoint_every, bar)? {
+    if let Some(signal) = advance(model, &mut march, &dir, bar)? {
         let again = if arguments.resume { "" } else { " --resume" };
         let command: Vec<_> = std::env::args().collect();
         let (t, share) = (march.time() * 1e3, march.share() * 1e2);
@@ -139,10 +140,10 @@ fn march(model: &Model, arguments: &Arguments, folder: &Path, bar: &ProgressBar)
     let outcome = march.finish();
     let summary = Summary::new(model, &sizes, &outcome);
     let mut cost = cost_of(model, arguments.threads, &outcome.phases);
-    let size = study::Size::of_impact(model, &sizes, &outcome);
-    cost.one_level_better = study::one_level_better(&size, study::seconds_per_phase(&outcome.phases));
+    let size = outcome.size(model, &sizes);
+    cost.one_level_better = one_level_better(&size, seconds_per_phase(&outcome.phases));
     keep_scene(&dir, model)?;
-    summary::write_tables(&dir, model, &outcome)?;
+    output::write_tables(&dir, model, &outcome)?;
     tables::write_json(&dir, "summary.json", &summary)?;
     tables::write_json(&dir, "cost.json", &cost)?;
     Ok(Ended::Done(dir, Box::new((summary, cost, outcome))))
@@ -179,23 +180,26 @@ pub(super) fn own_scene(dir: &OutputDir, model: &Model) -> Result<bool, Error> {
 }
 
 /// Marches to the end or to a signal, whose number it returns. A checkpoint is written there, and before whenever
-/// `interval` seconds have passed since the last one.
-fn advance(march: &mut March<'_>, dir: &OutputDir, interval: f64, bar: &ProgressBar) -> Result<Option<u8>, Error> {
+/// the interval of the scene has passed since the last one.
+fn advance(model: &Model, march: &mut March<'_>, dir: &OutputDir, bar: &ProgressBar) -> Result<Option<u8>, Error> {
     let signals = Signals::heed();
     // An interval beyond what a clock counts is never over.
-    let interval = Duration::try_from_secs_f64(interval).unwrap_or(Duration::MAX);
+    let interval = Duration::try_from_secs_f64(model.scene.output.checkpoint_every).unwrap_or(Duration::MAX);
     let (mut saved, mut signal) = (Instant::now(), None);
-    march.write_fields(dir)?;
+    let mut fields = MarchFields::new(model, dir);
+    fields.take(march)?;
     while !march.done() && signal.is_none() {
         march.advance();
-        march.write_fields(dir)?;
+        fields.take(march)?;
         if saved.elapsed() >= interval {
+            fields.flush(march)?;
             march.save(dir)?;
             saved = Instant::now();
         }
         bar.set_position((march.share() * 1000.0) as u64);
         signal = signals.received();
     }
+    fields.flush(march)?;
     march.save(dir)?;
     bar.finish_and_clear();
     Ok(signal.filter(|_| !march.done()))

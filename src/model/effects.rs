@@ -47,7 +47,7 @@ pub(crate) const MEMBRANE: &str = "membrane";
 pub(crate) const INERTIA: &str = "inertia";
 
 impl Model {
-    /// Whether the scene leaves an effect to the advisor who was not asked yet ([`crate::advise::decided`]). Until then
+    /// Whether the scene leaves an effect to the advisor who was not asked yet (`fem::advise::decided`). Until then
     /// membrane stiffening is off, and inertia on.
     pub fn undecided(&self) -> bool {
         self.leaves(MEMBRANE) || self.leaves(INERTIA)

@@ -4,6 +4,7 @@ mod builder;
 mod effects;
 mod fields;
 mod gauge;
+mod memory;
 mod mesh;
 mod plan;
 mod substructures;
@@ -17,7 +18,6 @@ pub use mesh::mesh;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 
 use crate::error::Error;
-use crate::memory;
 use crate::registry::Registry;
 use builder::Builder;
 use fem_core::assembly::Division;
@@ -30,7 +30,7 @@ use fem_core::material::{Material, MaterialError};
 use fem_core::mesh::QuadMesh;
 use fem_core::plate::Plate;
 use fem_failure::delamination::DelaminationThreshold;
-use fem_io::scene::{Analysis, Damage, Scene};
+use fem_io::scene::{self, Analysis, Damage, Scene};
 use tracing::info;
 
 /// A scene made concrete: mesh extruded, plug-ins built, supports turned into constraints, impact or loads placed.
@@ -136,7 +136,7 @@ impl Model {
         let mut plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
             .map_err(|why| builder.error(&scene.element.name, why, ""))?;
         builder.fold(&mut plate, &laminate, &materials, &criteria)?;
-        memory::check_plate(&plate)?;
+        memory::check(&plate)?;
         warnings.extend(polygon(&plate));
         warnings.extend(flat(&plate));
         warnings.extend(incompressible(&plate, &laminate, &materials));
@@ -186,6 +186,16 @@ impl Model {
     /// Whether the plate has velocities: in an impact, unless it follows the force at rest.
     pub fn moves(&self) -> bool {
         matches!(self.plan, Plan::Impact(_)) && self.effects.inertia
+    }
+
+    /// The impactors of the scene.
+    pub fn impactors(&self) -> &[scene::Impactor] {
+        self.scene.impact().map_or(&[], |impact| &impact.impactors)
+    }
+
+    /// What results call an impactor: nothing where it is the only one.
+    pub fn label<'a>(&self, impactor: &'a scene::Impactor) -> Option<&'a str> {
+        (self.impactors().len() > 1).then_some(impactor.name.as_str())
     }
 
     /// Governors that a reduction may choose from, best first: deflections (U30 at the mid-plane or the lowest level),

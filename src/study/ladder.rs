@@ -3,7 +3,8 @@
 use super::axes::Level;
 use super::converge::{Convergence, limit};
 use super::quantity::FORCE_HISTORY;
-use super::record::{Record, Size};
+use super::record::Record;
+use crate::forecast::Size;
 
 /// An axis of finer and finer levels after its runs.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,11 +2,12 @@
 
 use super::axes::{Axis, AxisKind, Level};
 use super::predict::{self, Rates};
-use super::record::{Record, Size};
+use super::record::Record;
 use super::report::Report;
 use super::session::Session;
 use crate::cost::processor_time;
 use crate::error::Error;
+use crate::forecast::Size;
 use crate::model::Model;
 use fem_io::scene;
 

@@ -1,9 +1,10 @@
 //! What accuracy is asked of.
 
+use crate::analyses::impact::{Outcome, Sizes};
+use crate::analyses::statics::Solution;
 use crate::model::Model;
-use crate::run::{Outcome, Sizes};
-use crate::statics::Solution;
-use crate::summary::{Summary, ply_name};
+use crate::output::{statics, summary};
+use crate::words::name_ply;
 use fem_core::plugin::unknown_key;
 use fem_core::profile::ProfilePoint;
 use fem_failure::scan::first_per_mode;
@@ -32,7 +33,7 @@ impl Figure {
 
 /// Of an impact.
 pub(super) fn of_impact(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Vec<Figure> {
-    let summary = Summary::new(model, sizes, outcome);
+    let summary = summary::Summary::new(model, sizes, outcome);
     let mut figures = Vec::new();
     for impact in &summary.impact {
         let name = |what: &str| impact.name.as_ref().map_or(what.to_owned(), |name| format!("{name} {what}"));
@@ -49,7 +50,7 @@ pub(super) fn of_impact(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Vec<
     }
     for history in &outcome.histories {
         let [x, y, _] = history.site.position;
-        let place = format!("{} at ({:.2}, {:.2}) mm", ply_name(history.site.place), x * 1e3, y * 1e3);
+        let place = format!("{} at ({:.2}, {:.2}) mm", name_ply(history.site.place), x * 1e3, y * 1e3);
         let name = format!("index {} {place}", model.criteria[history.criterion].0);
         figures.push(Figure::new(name, history.indices.iter().fold(0.0, |m: f64, i| m.max(*i)), false));
     }
@@ -66,7 +67,7 @@ const COMPONENTS: [&str; 12] = ["sxx", "syy", "szz", "sxy", "syz", "szx", "s1", 
 /// # Errors
 /// A stress that the scene asks for at a place that no profile has.
 pub(super) fn of_statics(model: &Model, solution: &Solution) -> Result<Vec<Figure>, SceneError> {
-    let summary = crate::statics::Summary::new(model, solution);
+    let summary = statics::Summary::new(model, solution);
     let mut figures = vec![
         Figure::new("deflection", summary.largest_deflection.w_m, true),
         Figure::new("energy", solution.strain_energy, true),

@@ -3,13 +3,12 @@
 use super::force::Force;
 use super::quantity::{self, FORCE_HISTORY, Figure};
 use crate::advise;
+use crate::analyses::{impact, modes, statics};
 use crate::cost::{self, Phase};
 use crate::error::Error;
+use crate::forecast::{PHASES, Size, seconds_per_phase};
 use crate::model::{Model, Plan};
 use crate::registry::Registry;
-use crate::run::{self, Outcome, Sizes};
-use crate::{modes, statics};
-use fem_core::counters::Counters;
 use fem_io::scene::{self, Setting};
 use serde::{Deserialize, Serialize};
 use std::num::NonZeroUsize;
@@ -27,66 +26,6 @@ pub struct Record {
     pub seconds: [f64; PHASES.len()],
     /// Largest memory of the process during the run, bytes; `None` where the system does not tell.
     pub memory: Option<u64>,
-}
-
-/// Parts of a run: their times grow with different work.
-pub const PHASES: [&str; 5] = ["assemble", "solve", "stresses", "march", "scan"];
-
-/// Sizes of a model and the work that it takes.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Size {
-    /// Cells.
-    pub cells: usize,
-    /// Layers of cells.
-    pub layers: usize,
-    /// Edge of a square as large as a cell is on average, m.
-    pub cell_m: f64,
-    /// Columns of nodes.
-    pub columns: usize,
-    /// Independent unknowns.
-    pub unknowns: usize,
-    /// Unknowns of the march.
-    pub marched: usize,
-    /// Whether the march is that of a reduced model.
-    pub reduced: bool,
-    /// Entries of the factor of K.
-    pub factor_entries: usize,
-    /// Places whose stresses are judged.
-    pub sites: usize,
-    /// Step, s; zero where nothing is marched.
-    pub step_s: f64,
-    /// Samples of the stresses.
-    pub samples: u64,
-    /// Work done.
-    pub work: Counters,
-}
-
-impl Size {
-    fn of(model: &Model, counters: &Counters) -> Self {
-        let plane = &model.plate.plane;
-        Self {
-            cells: model.plate.cells(),
-            layers: model.plate.layers(),
-            cell_m: (plane.area() / plane.quads.len() as f64).sqrt(),
-            columns: model.plate.columns.len(),
-            unknowns: model.constraints.ndof(),
-            work: *counters,
-            ..Self::default()
-        }
-    }
-
-    /// Of an impact.
-    pub fn of_impact(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Self {
-        Self {
-            marched: sizes.marched,
-            reduced: sizes.marched < sizes.unknowns,
-            factor_entries: sizes.factor_entries,
-            sites: outcome.sites,
-            step_s: sizes.step,
-            samples: (sizes.steps as f64 * sizes.step / model.scene.failure.every) as u64,
-            ..Self::of(model, &outcome.counters)
-        }
-    }
 }
 
 impl Record {
@@ -115,17 +54,17 @@ impl Record {
     }
 
     fn new(size: Size, figures: Vec<Figure>, force: Option<Force>, phases: &[Phase]) -> Self {
-        Self { size, figures, force, seconds: seconds(phases), memory: None }
+        Self { size, figures, force, seconds: seconds_per_phase(phases), memory: None }
     }
 
     fn of_impact(model: &Model) -> Result<Self, Error> {
-        let prepared = run::prepare(model, NonZeroUsize::MIN)?;
+        let prepared = impact::prepare(model, NonZeroUsize::MIN)?;
         let sizes = prepared.sizes;
-        let outcome = run::march(prepared, |_| ())?;
+        let outcome = impact::march(prepared, |_| ())?;
         if let Some(why) = outcome.stopped {
             return Err(Error::Stopped(why));
         }
-        let size = Size::of_impact(model, &sizes, &outcome);
+        let size = outcome.size(model, &sizes);
         let force = Force::of(&outcome.history);
         Ok(Self::new(size, quantity::of_impact(model, &sizes, &outcome), Some(force), &outcome.phases))
     }
@@ -150,27 +89,11 @@ impl Record {
     }
 }
 
-/// Seconds per [`PHASES`] of what a run calls its phases.
-pub fn seconds(phases: &[Phase]) -> [f64; PHASES.len()] {
-    let mut seconds = [0.0; PHASES.len()];
-    for phase in phases {
-        let place = match phase.name {
-            "assemble" => 0,
-            "reduce" | "solve" | "modes" | "accuracy" => 1,
-            "prepare stresses" | "stresses" => 2,
-            "march" => 3,
-            _ => 4,
-        };
-        seconds[place] += phase.cpu_s;
-    }
-    seconds
-}
-
 /// The longest step that is stable under `setting`, s.
 ///
 /// # Errors
 /// Those of a preparation.
 pub(super) fn longest_step(path: &Path, setting: &Setting, registry: &Registry) -> Result<f64, Error> {
     let model = advise::decided(Model::new(scene::read_with(path, setting)?, registry)?, NonZeroUsize::MIN)?;
-    Ok(run::prepare(&model, NonZeroUsize::MIN)?.sizes.longest_step)
+    Ok(impact::prepare(&model, NonZeroUsize::MIN)?.sizes.longest_step)
 }

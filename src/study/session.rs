@@ -1,10 +1,10 @@
 //! The runs of a study, kept from process to process.
 
 use super::record::Record;
-use crate::error::Error;
+use crate::analyses::saved::{self, Keys};
+use crate::error::{CheckpointError, Error};
 use crate::model::Model;
 use crate::registry::Registry;
-use crate::run::saved::{self, CheckpointError, Keys};
 use fem_io::files::OutputDir;
 use fem_io::scene::Setting;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,9 @@
 //! A study as a table for machines.
 
-use super::record::{PHASES, Record};
+use super::record::Record;
 use super::report::{Report, Row};
 use crate::error::Error;
+use crate::forecast::PHASES;
 use fem_core::counters::Counters;
 use fem_io::files::OutputDir;
 use fem_io::tables::{self, Field};

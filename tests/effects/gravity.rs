@@ -2,10 +2,11 @@
 
 use super::{EDGES, Struck, TAPE, deflection, difference, force, said};
 use crate::support::{root, strip};
+use fem::analyses::statics;
 use fem::core::dof::Dof;
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
-use fem::{Error, Model, Registry, statics};
+use fem::{Error, Model, Registry};
 use std::num::NonZeroUsize;
 
 const LINEAR: &str = "law = 'linear', k = '2e3 N/mm'";

@@ -2,9 +2,10 @@
 
 use super::{Struck, deflection, difference, force};
 use crate::support::root;
+use fem::analyses::impact;
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
-use fem::{Model, Registry, advise, run};
+use fem::{Model, Registry, advise};
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 
@@ -106,7 +107,7 @@ fn the_advisor_leaves_it_out_where_the_mass_is_large() {
     assert!((off / on - 1.0).abs() < error, "{on} {off} {error}");
     assert!(decided(Struck::new(AUTO)).0 && decided(heavy(AUTO)).0);
     assert!(decided(heavier(AUTO).march("integrator = 'rk4', step = '10 ns', end = '1 us'")).0);
-    let refused = run::prepare(&heavy(AUTO).model().unwrap(), NonZeroUsize::MIN).unwrap_err();
+    let refused = impact::prepare(&heavy(AUTO).model().unwrap(), NonZeroUsize::MIN).unwrap_err();
     assert!(super::said(refused).contains("decided"));
 }
 
@@ -139,9 +140,9 @@ fn several_impactors_bend_one_plate() {
          { mass = '1 kg', velocity = '0.5 m/s', start = '1 ms', at = { x = '40 mm', y = '20 mm' } }]",
     );
     let model = Model::new(scene::parse(&several, &root().join("scene.toml")).unwrap(), &Registry::standard()).unwrap();
-    let prepared = run::prepare(&model, NonZeroUsize::MIN).unwrap();
+    let prepared = impact::prepare(&model, NonZeroUsize::MIN).unwrap();
     assert_eq!(prepared.sizes.marched, 2);
-    let outcome = run::march(prepared, |_| {}).unwrap();
+    let outcome = impact::march(prepared, |_| {}).unwrap();
     assert!(outcome.stopped.is_none() && outcome.energy_error < 1e-3, "{:e}", outcome.energy_error);
     assert!((0..2).all(|i| outcome.contacts[i].count > 0));
 }
@@ -165,7 +166,7 @@ fn a_large_mass_needs_no_inertia_of_the_plate() {
         let setting = setting.into_iter().map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
         let path = root().join("examples/as4-3502-16ply-50mm/scene.toml");
         let model = Model::new(scene::read_with(&path, &setting).unwrap(), &Registry::standard()).unwrap();
-        let outcome = run::march(run::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
+        let outcome = impact::march(impact::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
         assert_eq!(outcome.stopped, None);
         outcome.history
     };

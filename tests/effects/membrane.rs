@@ -2,9 +2,9 @@
 
 use super::{Struck, difference, force};
 use crate::support::{Case, root, strip};
+use fem::analyses::impact::{self, Outcome};
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
-use fem::run::{self, Outcome};
 use fem::{Model, Registry};
 use serde_json::Value;
 use std::fs;
@@ -16,7 +16,7 @@ const ON: &str = "membrane = 'on'";
 fn run(scene: &str, folder: &str) -> Outcome {
     let scene = scene::parse(scene, &root().join(folder).join("scene.toml")).unwrap();
     let model = Model::new(scene, &Registry::standard()).unwrap();
-    let outcome = run::march(run::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
+    let outcome = impact::march(impact::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
     assert_eq!(outcome.stopped, None);
     outcome
 }

@@ -8,9 +8,9 @@ mod membrane;
 mod off;
 
 use crate::support::root;
+use fem::analyses::impact::{self, Outcome, Sizes};
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
-use fem::run::{self, Outcome, Sizes};
 use fem::{Error, Model, Registry};
 use std::num::NonZeroUsize;
 
@@ -71,9 +71,9 @@ impl Struck {
 
     fn run(&self) -> Result<(Sizes, Outcome), Error> {
         let model = self.model()?;
-        let prepared = run::prepare(&model, NonZeroUsize::MIN)?;
+        let prepared = impact::prepare(&model, NonZeroUsize::MIN)?;
         let sizes = prepared.sizes;
-        let outcome = run::march(prepared, |_| {})?;
+        let outcome = impact::march(prepared, |_| {})?;
         assert_eq!(outcome.stopped, None);
         Ok((sizes, outcome))
     }

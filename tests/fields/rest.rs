@@ -2,12 +2,12 @@
 
 use super::{close, series, volume};
 use crate::support::{Case, plate};
+use fem::analyses::statics::{self, Solution};
 use fem::core::field::{Field, Spot};
 use fem::core::patch;
 use fem::core::quadrature::gauss_legendre;
 use fem::core::window;
 use fem::io::scene;
-use fem::statics::{self, Solution};
 use fem::{Model, Registry};
 use std::num::NonZeroUsize;
 

@@ -2,13 +2,13 @@
 
 use crate::case::{Case, Room};
 use crate::support;
+use fem::analyses::impact::{self, Outcome};
 use fem::core::contact::{ContactEnergy, ContactForce, ContactHistory, ContactLaw};
 use fem::core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Value};
 use fem::core::structure::{SolveError, Structure};
 use fem::core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit};
 use fem::dynamics::guard::{Alarm, Guard};
 use fem::dynamics::impact::{ImpactSystem, Impactor};
-use fem::run::{self, Outcome};
 use fem::{Model, Registry, io::scene};
 use std::num::NonZeroUsize;
 
@@ -33,7 +33,7 @@ pub(crate) fn cases() -> Vec<Case> {
             "steps until a fault is seen",
             "all of the above whose fault shows at once",
             "steps from the fault to the stop",
-            run::BALANCE_EVERY as f64,
+            impact::BALANCE_EVERY as f64,
             delay,
         ),
         Room::Guards.case(
@@ -198,9 +198,9 @@ fn march(from: &str, to: &str, step: f64) -> (Outcome, f64) {
     let path = case.folder().join(case.write());
     let registry = Registry::standard().with::<Faulty>().with::<Spoilt>();
     let model = Model::new(scene::read(&path).unwrap(), &registry).unwrap();
-    let prepared = run::prepare(&model, NonZeroUsize::MIN).unwrap();
+    let prepared = impact::prepare(&model, NonZeroUsize::MIN).unwrap();
     let longest = prepared.sizes.longest_step;
-    (run::march(prepared, |_| {}).unwrap(), longest)
+    (impact::march(prepared, |_| {}).unwrap(), longest)
 }
 
 const SUN_YANG: &str =

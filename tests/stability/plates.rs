@@ -1,9 +1,9 @@
 //! Plates on meshes of any shape.
 
 use crate::scene::Plate;
+use fem::analyses::statics::{self, Solution};
 use fem::core::mesh::{Group, QuadMesh};
 use fem::io::scene;
-use fem::statics::{self, Solution};
 use fem::{Error, Model, Registry};
 use std::fmt::Write as _;
 use std::num::NonZeroUsize;

@@ -24,7 +24,7 @@ fn middle(mesh: &str, refine: usize, support: &str) -> f64 {
     let node = model.plate.plane.groups["impact"].nodes[0] as usize;
     let [level, _] = model.plate.outer_levels();
     let dof = model.plate.dofs_at(node, level, Dof::new(3, 0).unwrap()).next().unwrap();
-    -fem::statics::solve(&model, std::num::NonZeroUsize::MIN).unwrap().u[dof]
+    -fem::analyses::statics::solve(&model, std::num::NonZeroUsize::MIN).unwrap().u[dof]
 }
 
 fn flexural_rigidity() -> f64 {

@@ -2,11 +2,12 @@
 
 use super::scene::{AS4, PAGANO, Plate, QUARTER, Side};
 use crate::support::{fem, root};
+use fem::analyses::statics;
 use fem::core::estimate::mesh_error;
 use fem::core::patch::locate;
 use fem::core::quadrature::gauss_legendre;
 use fem::io::scene::{self, MeshSource};
-use fem::{Model, Registry, statics};
+use fem::{Model, Registry};
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 use std::ops::Range;

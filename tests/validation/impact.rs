@@ -6,9 +6,10 @@
 
 use super::scene::{AS4, MeshFile, Plate, Side, gmsh_grid, isotropic, order, reference};
 use crate::support::draw;
+use fem::analyses::impact;
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
-use fem::{Model, Registry, run};
+use fem::{Model, Registry};
 use std::num::NonZeroUsize;
 
 /// Largest force of the first contact, relative.
@@ -152,7 +153,7 @@ impl Strike {
         let mesh = self.mesh();
         let scene = scene::parse(&self.text(&mesh), "scene.toml".as_ref()).unwrap();
         let model = Model::new(scene, &Registry::standard()).unwrap();
-        let outcome = run::march(run::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
+        let outcome = impact::march(impact::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
         assert_eq!(outcome.stopped, None);
         assert!(outcome.energy_error < 1e-4, "{}", outcome.energy_error);
         History { rows: outcome.history, parts: self.parts() }

@@ -3,8 +3,8 @@
 use super::scene::Side::{Clamped, Free, Supported, Symmetric};
 use super::scene::{AS4, MeshFile, Plate, Row, Side, gmsh_file, gmsh_grid, isotropic, reference};
 use fem::Error;
+use fem::analyses::statics::{self, Solution};
 use fem::io::scene;
-use fem::statics::{self, Solution};
 use fem::{Model, Registry};
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_4, PI};

@@ -1,10 +1,11 @@
 //! Scenes of rectangular plates, and tables to hold their results against.
 
 use crate::support::root;
+use fem::analyses::modes;
+use fem::analyses::statics::{self, Solution};
 use fem::core::profile::ProfilePoint;
 use fem::io::scene;
-use fem::statics::{self, Solution};
-use fem::{Model, Registry, modes};
+use fem::{Model, Registry};
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::num::NonZeroUsize;

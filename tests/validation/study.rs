@@ -5,11 +5,12 @@ use super::pagano::{Mesh, THREE};
 use super::patch;
 use super::scene::{Plate, Row as Exact, isotropic, reference};
 use crate::support::{Case, fem, root};
+use fem::analyses::impact;
 use fem::io::files::OutputDir;
 use fem::io::scene::{self, Setting};
 use fem::io::tables::HistoryRow;
 use fem::study::{Convergence, Limit, Report, Row, Session, study};
-use fem::{Model, Registry, run};
+use fem::{Model, Registry};
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -43,7 +44,7 @@ impl Studied {
     /// The history of a run.
     fn history(&self, setting: &Setting) -> Vec<HistoryRow> {
         let model = Model::new(scene::read_with(&self.path(), setting).unwrap(), &Registry::standard()).unwrap();
-        run::march(run::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap().history
+        impact::march(impact::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap().history
     }
 
     /// Holds what the study says of `quantity` against the errors of its runs: down to twice `floor`, by which the

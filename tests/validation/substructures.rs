@@ -3,13 +3,15 @@
 use super::scene::Side::{Clamped, Free, Supported};
 use super::scene::{AS4, Plate, gmsh_grid};
 use crate::support::strip;
+use fem::analyses::assembled::{self, Assembled, Substructures};
+use fem::analyses::impact::Outcome;
+use fem::analyses::{impact, modes, statics};
 use fem::core::dof::Dof;
 use fem::core::functional::Functional;
 use fem::core::plugin::{Built, Kind, Params, Value};
 use fem::core::structure::Structure;
 use fem::io::scene;
-use fem::run::{Assembled, Outcome, Substructures};
-use fem::{Model, Registry, modes, run, statics};
+use fem::{Model, Registry};
 use std::num::NonZeroUsize;
 
 /// Agreement of divided and undivided, relative to the largest of what is compared.
@@ -24,7 +26,7 @@ fn divided(plate: &Plate, substructures: &str) -> Plate {
 }
 
 fn assembled(model: &Model) -> Assembled {
-    run::structure(model, true, ONE, &mut Default::default()).unwrap()
+    assembled::structure(model, true, ONE, &mut Default::default()).unwrap()
 }
 
 fn largest(x: &[f64]) -> f64 {
@@ -241,7 +243,7 @@ fn struck(more: &str) -> Model {
 
 fn march(more: &str) -> Outcome {
     let model = struck(more);
-    let outcome = run::march(run::prepare(&model, ONE).unwrap(), |_| {}).unwrap();
+    let outcome = impact::march(impact::prepare(&model, ONE).unwrap(), |_| {}).unwrap();
     assert_eq!(outcome.stopped, None);
     outcome
 }

@@ -3,10 +3,11 @@
 use super::scene::Side::{Clamped, Free, Supported};
 use super::scene::{AS4, Plate, gmsh_grid};
 use crate::support::{root, whole};
+use fem::analyses::impact::Outcome;
+use fem::analyses::{impact, modes, statics};
 use fem::core::dof::Dof;
 use fem::io::scene;
-use fem::run::Outcome;
-use fem::{Model, Registry, modes, run, statics};
+use fem::{Model, Registry};
 use std::num::NonZeroUsize;
 
 /// Agreement of folded and whole, relative to the largest of what is compared.
@@ -175,7 +176,7 @@ fn impact(edits: &[(&str, &str)]) -> (Model, Outcome) {
         text = text.replace(from, to);
     }
     let model = Model::new(scene::parse(&text, &path).unwrap(), &Registry::standard()).unwrap();
-    let outcome = run::march(run::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
+    let outcome = impact::march(impact::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
     assert_eq!(outcome.stopped, None);
     (model, outcome)
 }

@@ -5,9 +5,9 @@ use crate::plates::{SHELL, SOLIDS, jiggled, on, probe, rectangle, shuffled, solv
 use crate::scene::{AS4, Plate, Side, isotropic};
 use faer::Mat;
 use faer::prelude::Solve;
+use fem::analyses::assembled;
 use fem::core::assembly::{Pattern, SparseStructure, Symbolic};
 use fem::core::counters::Counters;
-use fem::run;
 use std::fmt::Write as _;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -87,7 +87,7 @@ fn plates() -> f64 {
             let plate = plate.sides([Side::Clamped, Side::Free, Side::Free, Side::Free]).rectangle([20.0; 2], [2; 2]);
             let model = plate.model("static");
             let counters = &mut Counters::default();
-            let mut structure = run::structure(&model, false, NonZeroUsize::MIN, counters).unwrap().structure;
+            let mut structure = assembled::structure(&model, false, NonZeroUsize::MIN, counters).unwrap().structure;
             let (pattern, k, _) = structure.matrices();
             let n = pattern.ndof();
             let mut a = Mat::<f64>::zeros(n, n);

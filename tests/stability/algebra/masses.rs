@@ -3,12 +3,13 @@
 use crate::case::{Case, Room};
 use crate::plates::{SOLIDS, model, nearest, on, said, with_nodes, worst};
 use crate::scene::{AS4, Plate, Side, isotropic};
+use fem::analyses::{assembled, impact, modes};
 use fem::core::counters::Counters;
 use fem::core::mesh::QuadMesh;
 use fem::core::plugin::{Built, Kind, Params, Value};
 use fem::core::structure::Structure;
 use fem::dynamics::reduce::Reduced;
-use fem::{Model, NO_REDUCTION, Registry, modes, run};
+use fem::{Model, NO_REDUCTION, Registry};
 use std::fmt::Write as _;
 use std::num::NonZeroUsize;
 
@@ -60,8 +61,8 @@ fn impulse(reduction: &str, integrator: &str) -> Result<f64, String> {
          [march]\nintegrator = '{integrator}'\nstep = '0.5 us'\nend = '60 us'"
     );
     let model = model(&plate.text("impact")).unwrap();
-    let prepared = run::prepare(&model, NonZeroUsize::MIN).map_err(|e| said(&e))?;
-    let outcome = run::march(prepared, |_| {}).map_err(|e| said(&e))?;
+    let prepared = impact::prepare(&model, NonZeroUsize::MIN).map_err(|e| said(&e))?;
+    let outcome = impact::march(prepared, |_| {}).map_err(|e| said(&e))?;
     match outcome.stopped {
         Some(why) => Err(why),
         None => Ok(2.0 - outcome.history[outcome.history.len() - 1].impactors[0].impactor_velocity_m_s),
@@ -123,7 +124,7 @@ fn lowest(model: &Model, method: &str, select: &str, candidates: &[usize]) -> Re
     let Ok(Built::Reduction(reduction)) = Registry::standard().build(Kind::Reduction, method, &params) else {
         panic!("{method}")
     };
-    let mut assembled = run::structure(model, true, NonZeroUsize::MIN, &mut Counters::default()).unwrap();
+    let mut assembled = assembled::structure(model, true, NonZeroUsize::MIN, &mut Counters::default()).unwrap();
     let structure: &mut dyn Structure = &mut assembled.structure;
     let basis = reduction.basis(structure, &[], candidates).map_err(|e| e.to_string())?;
     let reduced = Reduced::project(structure, &basis).map_err(|e| e.to_string())?;

@@ -5,7 +5,7 @@ use crate::plates::{SHELL, SOLIDS, middles, model, nearest, on, probe, rectangle
 use crate::scene::{AS4, Plate, Side};
 use fem::core::constraint::{ConstraintError, Constraints, Equation};
 use fem::core::mesh::QuadMesh;
-use fem::{Error, statics};
+use fem::{Error, output};
 use std::fmt::Write as _;
 
 pub(super) fn cases() -> Vec<Case> {
@@ -126,7 +126,8 @@ fn near_hinges() -> f64 {
             let meshed = on(wide.fold(plate, probe), &mesh);
             silent += usize::from(match solve(&unrestrained(&meshed.plate)) {
                 Ok((model, solution)) => {
-                    let warned = statics::Summary::new(&model, &solution).warnings.join("; ").contains("condition");
+                    let warned =
+                        output::statics::Summary::new(&model, &solution).warnings.join("; ").contains("condition");
                     let right = |p: &fem::core::profile::ProfilePoint| (p.global.0[0] * 1e-6 / 10.0 - 1.0).abs() < 1e-3;
                     !warned && !solution.profiles.iter().flatten().all(right)
                 }

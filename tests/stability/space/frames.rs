@@ -3,8 +3,8 @@
 use crate::case::{Case, Room};
 use crate::plates::{SHELL, SOLIDS, jiggled, model, moved, nearest, on, rectangle, shuffled, solve, with_nodes, worst};
 use crate::scene::{AS4, Plate, Side};
+use fem::analyses::impact;
 use fem::core::mesh::QuadMesh;
-use fem::run;
 use std::fmt::Write as _;
 use std::num::NonZeroUsize;
 
@@ -149,7 +149,7 @@ impl Frame {
         let more = self.impact("at = { group = 'struck' }", "load = 'node'");
         let meshed = on(self.plate(element, &more), &self.mesh());
         let model = model(&meshed.plate.text("impact")).unwrap();
-        let outcome = run::march(run::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
+        let outcome = impact::march(impact::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
         assert_eq!(outcome.stopped, None);
         outcome.history.iter().map(|row| row.contact_force_n()).collect()
     }
@@ -171,7 +171,7 @@ fn round_patch() -> f64 {
         let more = frame.impact(&frame.place([17.0, 12.0]), "patch_radius = '3 mm'");
         let meshed = on(frame.plate(SOLIDS[0], &more), &frame.mesh());
         let model = model(&meshed.plate.text("impact")).unwrap();
-        run::prepare(&model, NonZeroUsize::MIN).unwrap().sizes.static_stiffness
+        impact::prepare(&model, NonZeroUsize::MIN).unwrap().sizes.static_stiffness
     };
     let plain = stiffness(&Frame::default());
     worst(turned().iter().map(|frame| (stiffness(frame) / plain - 1.0).abs()))

@@ -5,7 +5,7 @@ use crate::case::{Case, Room};
 use crate::plates::{HEX, SECTION, SHELL, SOLIDS, probe, solve, worst};
 use crate::scene::{Plate, Side, reference};
 use fem::core::material::Elastic;
-use fem::{Error, statics};
+use fem::{Error, output};
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 
@@ -61,7 +61,7 @@ impl Strip {
     /// Largest error of w and of σx at the faces of plies, each relative to the largest; of a shell, of w in the middle.
     fn errors_and_warnings(&self, element: &str) -> Result<([f64; 2], String), Error> {
         let (model, solution) = solve(&self.text(element))?;
-        let warnings = statics::Summary::new(&model, &solution).warnings.join("; ");
+        let warnings = output::statics::Summary::new(&model, &solution).warnings.join("; ");
         let points = &solution.profiles[0];
         let layers: Vec<Layer> = self.plies.iter().map(|(t, e, turned)| Layer::new(*t, e, *turned)).collect();
         let exact = bending(&layers, self.span());

@@ -3,9 +3,9 @@
 use super::TOLERANCE;
 use crate::case::{Case, Room};
 use crate::support::root;
+use fem::analyses::impact::{self, Outcome, Prepared};
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
-use fem::run::{self, Outcome, Prepared};
 use fem::{Model, Registry};
 use std::num::NonZeroUsize;
 
@@ -98,11 +98,11 @@ impl Plate {
         );
         let model =
             Model::new(scene::parse(&text, &root().join("scene.toml")).unwrap(), &Registry::standard()).unwrap();
-        look(run::prepare(&model, NonZeroUsize::MIN).unwrap())
+        look(impact::prepare(&model, NonZeroUsize::MIN).unwrap())
     }
 
     fn march(&self) -> Outcome {
-        self.with(|prepared| run::march(prepared, |_| {}).unwrap())
+        self.with(|prepared| impact::march(prepared, |_| {}).unwrap())
     }
 
     /// Error of the energy of a march that gets to its end.

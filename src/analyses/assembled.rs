@@ -1,0 +1,125 @@
+//! K and M of a model.
+
+use crate::error::Error;
+use crate::forecast::{Estimate, analysed};
+use crate::model::Model;
+use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, assemble, condense, pattern};
+use fem_core::counters::Counters;
+use fem_core::functional::Functional;
+use serde::Serialize;
+use std::fmt;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+
+/// K and M of a model, condensed on its masters where the scene divides the plate into substructures.
+#[derive(Debug)]
+pub struct Assembled {
+    /// Both matrices.
+    pub structure: SparseStructure,
+    /// Entries of the factor of K.
+    pub factor_entries: usize,
+    /// What the computation takes at its peak, as it is expected.
+    pub memory: Estimate,
+    /// From the masters to the independent unknowns of the model.
+    pub condensation: Option<Condensation>,
+}
+
+impl Assembled {
+    /// A load on the independent unknowns as one on those of the structure, and the displacements that come on top of
+    /// what follows from these, if any.
+    pub fn load(&self, f: &[f64]) -> (Vec<f64>, Option<Vec<f64>>) {
+        match &self.condensation {
+            None => (f.to_vec(), None),
+            Some(condensation) => {
+                let (on_masters, own) = condensation.load(f);
+                (on_masters, Some(own))
+            }
+        }
+    }
+
+    /// Displacements of all independent unknowns.
+    pub fn expand(&self, u: Vec<f64>) -> Vec<f64> {
+        match &self.condensation {
+            None => u,
+            Some(condensation) => condensation.expand(&u),
+        }
+    }
+
+    /// Independent unknown that one of the structure stands for.
+    pub fn independent(&self, i: usize) -> usize {
+        self.condensation.as_ref().map_or(i, |condensation| condensation.independent(i))
+    }
+
+    /// How the plate is divided, if it is.
+    pub fn substructures(&self) -> Option<Substructures> {
+        let condensation = self.condensation.as_ref()?;
+        let (count, condensed) = condensation.counts();
+        Some(Substructures { count, condensed, masters: condensation.ndof() })
+    }
+
+    pub(super) fn functional(&self, w: &Functional) -> Functional {
+        let Some(condensation) = &self.condensation else { return w.clone() };
+        let mut f = vec![0.0; condensation.independents()];
+        w.add_to(1.0, &mut f);
+        let on_masters = condensation.load(&f).0.into_iter().enumerate();
+        Functional(on_masters.filter(|(_, w)| *w != 0.0).collect())
+    }
+
+    /// Those of some independent unknowns that the structure has.
+    pub(super) fn own(&self, unknowns: Vec<usize>) -> Vec<usize> {
+        match &self.condensation {
+            None => unknowns,
+            Some(condensation) => unknowns.into_iter().filter_map(|i| condensation.master(i)).collect(),
+        }
+    }
+}
+
+/// A plate that is divided into substructures.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Substructures {
+    /// Those that have an inside.
+    pub count: usize,
+    /// How many of them were condensed; the others are equal to one of these.
+    pub condensed: usize,
+    /// Unknowns that are left.
+    pub masters: usize,
+}
+
+impl fmt::Display for Substructures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { count, condensed, masters } = self;
+        write!(f, "{masters} masters of {count} substructures, {condensed} condensed and {} reused", count - condensed)
+    }
+}
+
+/// Assembles K and M of `model`. M is left zero where `inertia` is not wanted.
+///
+/// # Errors
+/// A cell that the element refuses, more memory than there is.
+pub fn structure(
+    model: &Model,
+    inertia: bool,
+    threads: NonZeroUsize,
+    counters: &mut Counters,
+) -> Result<Assembled, Error> {
+    let Model { plate, element, constraints, division, .. } = model;
+    let (described, originals) = (plate.clone(), constraints.clone());
+    let name = move |i: usize| described.describe(originals.original(i));
+    let Some(division) = division else {
+        let pattern = Arc::new(pattern(plate, constraints));
+        let (symbolic, memory) = analysed(model, pattern.clone())?;
+        let mut matrix = |which| assemble(plate, &**element, constraints, &pattern, which, threads, counters);
+        let k = matrix(Matrix::Stiffness)?;
+        let m = if inertia { matrix(Matrix::Mass)? } else { vec![0.0; k.len()] };
+        let factor_entries = symbolic.entries();
+        let structure = SparseStructure::new(symbolic, k, m, threads, name);
+        return Ok(Assembled { structure, factor_entries, memory, condensation: None });
+    };
+    let Condensed { pattern, k, m, way } =
+        condense(plate, &**element, constraints, division, inertia, threads, counters)?;
+    let (symbolic, memory) = analysed(model, Arc::new(pattern))?;
+    let factor_entries = symbolic.entries();
+    let masters: Vec<usize> = (0..way.ndof()).map(|i| way.independent(i)).collect();
+    let structure = SparseStructure::new(symbolic, k, m, threads, move |i| name(masters[i]));
+    Ok(Assembled { structure, factor_entries, memory, condensation: Some(way) })
+}

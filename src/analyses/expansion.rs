@@ -1,0 +1,60 @@
+//! The way back from what is marched or solved for to the displacements of the plate.
+
+use crate::model::Model;
+use fem_core::assembly::Condensation;
+use fem_core::structure::Structure;
+use fem_dynamics::reduce::{Companions, Reduced};
+
+/// From the coordinates of a march to the unknowns of the plate, before elimination of constraints.
+#[derive(Debug)]
+pub(super) struct Expansion<'a> {
+    pub(super) model: &'a Model,
+    /// The coordinates of a reduced plate; those of the structure where there is none.
+    pub(super) reduced: Option<Reduced>,
+    /// What large deflections add to the modes.
+    pub(super) companions: Option<Companions>,
+    /// Where the unknowns of the structure are masters alone.
+    pub(super) condensation: Option<Condensation>,
+}
+
+impl Expansion<'_> {
+    /// The vectors of a reduction over the unknowns of the structure, and how many they are.
+    pub(super) fn basis(&self) -> Option<(&[f64], usize)> {
+        self.reduced.as_ref().map(|reduced| (reduced.basis.as_slice(), reduced.modal.ndof()))
+    }
+
+    /// `count` fields in the unknowns of the plate, of as many in coordinates of the march.
+    pub(super) fn displacements(&self, coordinates: &[f64], count: usize) -> Vec<f64> {
+        let Some(reduced) = &self.reduced else { return self.nodal(coordinates) };
+        let width = coordinates.len() / count;
+        let n = reduced.basis.len() / width;
+        let mut u = vec![0.0; n * count];
+        for (q, u) in coordinates.chunks_exact(width).zip(u.chunks_exact_mut(n)) {
+            reduced.expand(q, u);
+            self.companions.iter().for_each(|companions| companions.complete(q, u));
+        }
+        self.nodal(&u)
+    }
+
+    /// Velocities in the unknowns of the plate, of coordinates and their rates.
+    pub(super) fn velocities(&self, coordinates: &[f64], rates: &[f64]) -> Vec<f64> {
+        // With u(q) linear or quadratic, ∂u/∂q q̇ = ½ (u(q + q̇) − u(q − q̇)).
+        let moved = |sign: f64| coordinates.iter().zip(rates).map(move |(q, rate)| q + sign * rate);
+        let both: Vec<f64> = moved(1.0).chain(moved(-1.0)).collect();
+        let both = self.displacements(&both, 2);
+        let (ahead, behind) = both.split_at(both.len() / 2);
+        ahead.iter().zip(behind).map(|(a, b)| 0.5 * (a - b)).collect()
+    }
+
+    /// Fields in the unknowns of the plate, of as many in those of the structure.
+    pub(super) fn nodal(&self, fields: &[f64]) -> Vec<f64> {
+        let Model { plate, constraints, .. } = self.model;
+        let expanded = self.condensation.as_ref().map(|condensation| condensation.expand(fields));
+        let fields = expanded.as_deref().unwrap_or(fields);
+        let mut u = vec![0.0; plate.ndof() * fields.len() / constraints.ndof()];
+        for (field, u) in fields.chunks_exact(constraints.ndof()).zip(u.chunks_exact_mut(plate.ndof())) {
+            constraints.expand(field, u);
+        }
+        u
+    }
+}

@@ -1,0 +1,464 @@
+//! The march in time, watched; it can be saved and gone on with.
+
+use super::accuracy::{self, Accuracy, Estimates};
+use super::checkpoint::{self, Checkpoint};
+use super::frames::frames;
+use super::ledger::Ledger;
+use super::modal::{self, ModalView};
+use super::prepare::{Prepared, unmarchable};
+use super::{Maximum, Outcome, Sizes};
+use crate::analyses::expansion::Expansion;
+use crate::analyses::stress::{self, Watch};
+use crate::cost::Stopwatch;
+use crate::error::{CheckpointError, Error};
+use crate::model::Model;
+use fem_core::counters::Counters;
+use fem_core::structure::Tangent;
+use fem_core::time::{Integrator, State};
+use fem_dynamics::guard::Guard;
+use fem_dynamics::impact::ImpactSystem;
+use fem_failure::scan::{self, Scan};
+use fem_io::files::{FileError, OutputDir};
+use miette::Diagnostic;
+use serde::{Deserialize, Serialize};
+use std::rc::Rc;
+use tracing::info;
+
+/// Steps between two looks of a march at its energies, which cost two products with matrices.
+pub const BALANCE_EVERY: u64 = 128;
+
+/// Rows of the history unless the scene says otherwise.
+const HISTORY_ROWS: u64 = 2000;
+
+/// Marches a prepared model to its end; `progress` hears the share of the steps done.
+///
+/// # Errors
+/// As [`March::start`].
+pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Outcome, Error> {
+    let mut march = March::start(prepared)?;
+    while !march.done() {
+        march.advance();
+        progress(march.share());
+    }
+    Ok(march.finish())
+}
+
+/// A march in time.
+///
+/// One that meets what no impact can do ([`Guard`]), or an error, stops and keeps what it had ([`Outcome::stopped`]). One
+/// that is saved, and resumed by another process, finds bit for bit what it would have found
+/// in one piece, whenever and however often it was saved.
+#[derive(Debug)]
+pub struct March<'a> {
+    model: &'a Model,
+    system: ImpactSystem,
+    sag: Option<Vec<f64>>,
+    guard: Guard,
+    integrator: Box<dyn Integrator>,
+    sizes: Sizes,
+    scan_every: u64,
+    watch: Option<Watch<'a>>,
+    modal: Option<ModalView>,
+    expansion: Rc<Expansion<'a>>,
+    /// Steps at which fields are written.
+    frames: Vec<u64>,
+    estimates: Estimates,
+    /// Work of the preparation.
+    counters: Counters,
+    /// What the system had counted when `Progress::work` was.
+    counted: Work,
+    stopwatch: Stopwatch,
+    progress: Progress,
+}
+
+/// How far a march is: with the scene, what it watches and the modes that it follows, all that it takes to go on.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Progress {
+    /// Steps done, and their length, s.
+    step: u64,
+    dt: f64,
+    /// Steps between two rows of the history.
+    row_every: u64,
+    /// Time between two frames of the fields, s.
+    frame_every: Option<f64>,
+    state: State,
+    ledger: Ledger,
+    work: Work,
+    /// The tangent in use of a plate under large displacements.
+    tangent: Option<Tangent>,
+    stopped: Option<String>,
+}
+
+/// A march as it is saved.
+pub(super) type Saved = (Progress, Option<modal::Record>, Option<(scan::Record, stress::Record)>);
+
+/// Counts of the system that is marched.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+struct Work {
+    factorisations: u64,
+    solves: u64,
+    contact_calls: u64,
+    iterations: u64,
+}
+
+impl Work {
+    fn of(system: &ImpactSystem) -> Self {
+        let (factorisations, solves) = system.structure().work();
+        Self { factorisations, solves, contact_calls: system.contact_calls(), iterations: system.iterations() }
+    }
+
+    fn between(self, from: Self, to: Self) -> Self {
+        Self {
+            factorisations: self.factorisations + to.factorisations - from.factorisations,
+            solves: self.solves + to.solves - from.solves,
+            contact_calls: self.contact_calls + to.contact_calls - from.contact_calls,
+            iterations: self.iterations + to.iterations - from.iterations,
+        }
+    }
+}
+
+impl<'a> March<'a> {
+    /// A march at its beginning.
+    ///
+    /// # Errors
+    /// A criterion whose material lacks a constant, a singular mass.
+    pub fn start(prepared: Prepared<'a>) -> Result<Self, Error> {
+        let (model, impact) = (prepared.model, prepared.impact);
+        let state = prepared.system.initial();
+        let Sizes { steps, step: dt, .. } = prepared.sizes;
+        let row_every = model.scene.output.history_every.map_or(steps.div_ceil(HISTORY_ROWS), |t| steps_in(t, dt));
+        let progress = Progress {
+            step: 0,
+            dt,
+            row_every,
+            frame_every: model.scene.output.fields.as_ref().and_then(|fields| fields.every),
+            ledger: Ledger::new(
+                state.contacts.len(),
+                model.threshold.map(|threshold| threshold.force),
+                model.effects.damping.is_some(),
+            ),
+            state,
+            work: Work::default(),
+            tangent: None,
+            stopped: None,
+        };
+        let mut march = Self::at(prepared, progress)?;
+        let Self { integrator, system, progress: Progress { state, .. }, .. } = &mut march;
+        integrator.start(system, state).map_err(|e| unmarchable(model, impact, e))?;
+        march.row()?;
+        march.sample()?;
+        Ok(march)
+    }
+
+    /// A march that goes on from `checkpoint`.
+    ///
+    /// # Errors
+    /// A checkpoint of another step, beyond the end, or of another size than the model; as [`March::start`].
+    pub fn resume(prepared: Prepared<'a>, checkpoint: Checkpoint) -> Result<Self, Error> {
+        let Checkpoint { folder, saved: (progress, modal, watched) } = checkpoint;
+        let Sizes { steps, step: dt, .. } = prepared.sizes;
+        let differs =
+            |what: String| Error::from(CheckpointError::Differs { folder: folder.clone(), differences: vec![what] });
+        if progress.dt != dt {
+            return Err(differs(format!(
+                "its step was {:e} s and would be {dt:e} s: `march.end` must be a whole number of steps",
+                progress.dt
+            )));
+        }
+        if progress.step > steps {
+            return Err(CheckpointError::Beyond { folder, at: progress.state.t }.into());
+        }
+        let (mut march, sizes) = (Self::at(prepared, progress)?, || differs("its sizes are others".to_owned()));
+        let Self { system, integrator, progress, .. } = &mut march;
+        let fresh = system.initial();
+        if progress.state.u.len() != fresh.u.len() || progress.state.contacts.len() != fresh.contacts.len() {
+            return Err(sizes());
+        }
+        integrator.resume(system);
+        if let Some(tangent) = progress.tangent.take() {
+            system.linearise(tangent)?;
+        }
+        if progress.step < steps && progress.stopped.is_none() && !system.is_nonlinear() {
+            // A step in vain makes what is made once and kept, such as factors, so that the work of the others is what it
+            // would be in one piece. What it may meet, the next step meets again.
+            let _ = integrator.step(system, &mut progress.state.clone(), dt);
+        }
+        march.counted = Work::of(&march.system);
+        let fits = match (&mut march.modal, modal) {
+            (Some(view), Some(record)) => view.resume(record),
+            (view, record) => view.is_none() && record.is_none(),
+        };
+        let watch_fits = match (&mut march.watch, watched) {
+            (Some(watch), Some((scan, record))) => watch.resume(scan, record),
+            (watch, record) => watch.is_none() && record.is_none(),
+        };
+        if fits && watch_fits { Ok(march) } else { Err(sizes()) }
+    }
+
+    fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
+        let Prepared { model, impact, mut system, sag, reduced, stiffened, full, condensation, .. } = prepared;
+        let Prepared { sizes, counters, mut stopwatch, .. } = prepared;
+        stopwatch.lap("reduce");
+        let (stiffened, companions) = stiffened.unzip();
+        let mut estimates = Estimates::default();
+        // Here, where nothing else takes memory yet beside the full plate.
+        if let (Some(reduced), Some(full)) = (&reduced, full) {
+            estimates = Estimates::new(&system, (reduced, stiffened.as_ref()), full, impact.integrator.clone(), &sizes);
+            estimates.mesh = accuracy::mesh::estimate(model, &system, reduced, condensation.as_ref())?;
+            stopwatch.lap("accuracy");
+        }
+        let followed = model.scene.output.modes.as_ref().zip(reduced.as_ref());
+        let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
+        let expansion = Rc::new(Expansion { model, reduced, companions, condensation });
+        let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, expansion.clone())?) };
+        stopwatch.lap("prepare stresses");
+        let scan_every = steps_in(model.scene.failure.every, sizes.step);
+        let (integrator, counted) = (impact.integrator.clone(), Work::default());
+        Ok(Self {
+            model,
+            guard: Guard::new(&mut system),
+            system,
+            sag,
+            integrator,
+            sizes,
+            scan_every,
+            watch,
+            modal,
+            expansion,
+            frames: frames(model.scene.output.fields.as_ref(), progress.frame_every, &sizes),
+            estimates,
+            counters,
+            counted,
+            stopwatch,
+            progress,
+        })
+    }
+
+    /// Whether there is nothing more to march: the end is reached, or the march has stopped.
+    pub fn done(&self) -> bool {
+        self.progress.stopped.is_some() || self.progress.step >= self.sizes.steps
+    }
+
+    /// Share of the steps done.
+    pub fn share(&self) -> f64 {
+        self.progress.step as f64 / self.sizes.steps as f64
+    }
+
+    /// Time reached, s.
+    pub fn time(&self) -> f64 {
+        self.progress.state.t
+    }
+
+    /// Makes one step; a march that is done stays as it is.
+    pub fn advance(&mut self) {
+        if self.done() {
+            return;
+        }
+        let step = self.progress.step + 1;
+        let stepped = self.step();
+        self.judge(step, stepped);
+    }
+
+    fn step(&mut self) -> Result<(), Error> {
+        let Self { system, guard, .. } = self;
+        let Progress { step, dt, row_every, state, ledger, .. } = &mut self.progress;
+        self.integrator.step(system, state, *dt)?;
+        *step += 1;
+        // A sum of steps drifts; the product does not.
+        state.t = *step as f64 * *dt;
+        ledger.contacts(system, guard, state)?;
+        ledger.damping(system, state);
+        let (row, scan) = (step.is_multiple_of(*row_every), step.is_multiple_of(self.scan_every));
+        if row {
+            self.row()?;
+        } else if step.is_multiple_of(BALANCE_EVERY) {
+            ledger.balance(system, guard, state).1?;
+        }
+        if scan { self.sample() } else { Ok(()) }
+    }
+
+    fn row(&mut self) -> Result<(), Error> {
+        let Progress { ledger, state, .. } = &mut self.progress;
+        ledger.row(&mut self.system, &self.guard, state)?;
+        if let Some(modal) = &mut self.modal {
+            modal.row(state);
+        }
+        Ok(())
+    }
+
+    fn sample(&mut self) -> Result<(), Error> {
+        let u = self.coordinates();
+        let Some(watch) = &mut self.watch else { return Ok(()) };
+        self.stopwatch.lap("march");
+        let sampled = watch.sample(self.progress.state.t, &u);
+        self.stopwatch.lap("scan");
+        sampled
+    }
+
+    /// Displacements from the plate without weight, in coordinates of the march.
+    fn coordinates(&self) -> Vec<f64> {
+        let mut u = self.progress.state.u[..self.sizes.marched].to_vec();
+        u.iter_mut().zip(self.sag.iter().flatten()).for_each(|(u, sag)| *u += sag);
+        u
+    }
+
+    /// Times of all frames of the fields, s.
+    pub fn frame_times(&self) -> Vec<f64> {
+        self.frames.iter().map(|step| *step as f64 * self.progress.dt).collect()
+    }
+
+    /// Number of the frame, counted from 0, that the present step is; none in a march that has stopped.
+    pub fn frame(&self) -> Option<usize> {
+        let goes_on = self.progress.stopped.is_none();
+        self.frames.binary_search(&self.progress.step).ok().filter(|_| goes_on)
+    }
+
+    /// Displacements at present, m, in the unknowns of the plate before elimination of constraints.
+    pub fn displacements(&self) -> Vec<f64> {
+        self.expansion.displacements(&self.coordinates(), 1)
+    }
+
+    /// Velocities of these, m/s; `None` where the plate has no inertia.
+    pub fn velocities(&self) -> Option<Vec<f64>> {
+        let rates = &self.progress.state.v[..self.sizes.marched];
+        self.model.moves().then(|| self.expansion.velocities(&self.coordinates(), rates))
+    }
+
+    /// Does `work` between two steps, whose time is that of `phase`. A file that cannot be written fails it, any other error
+    /// stops the march.
+    ///
+    /// # Errors
+    /// A folder that cannot be written.
+    pub fn beside(&mut self, phase: &'static str, work: impl FnOnce(&Self) -> Result<(), Error>) -> Result<(), Error> {
+        self.stopwatch.lap("march");
+        let done = work(self);
+        self.stopwatch.lap(phase);
+        match done {
+            Err(error @ Error::File(FileError::Io { .. } | FileError::Locked { .. })) => Err(error),
+            stopped => {
+                self.judge(self.progress.step, stopped);
+                Ok(())
+            }
+        }
+    }
+
+    /// Stops a march that met an error in `step`.
+    fn judge(&mut self, step: u64, done: Result<(), Error>) {
+        let Progress { state, stopped, .. } = &mut self.progress;
+        if let Err(error) = done {
+            let remedy = error.help().map_or_else(String::new, |help| format!("; {help}"));
+            *stopped = Some(format!("step {step} (t = {:.6e} s): {}{remedy}", state.t, chain(&error)));
+        }
+    }
+
+    /// Writes a checkpoint into `dir`: after it the march goes on, here or in another process.
+    ///
+    /// # Errors
+    /// A folder that cannot be written, a mesh that cannot be read any more.
+    pub fn save(&mut self, dir: &OutputDir) -> Result<(), Error> {
+        self.stopwatch.lap("march");
+        self.count();
+        self.progress.tangent = self.system.tangent().cloned();
+        let watched = self.watch.as_ref().map(Watch::record);
+        let saved =
+            checkpoint::write(dir, self.model, &(&self.progress, self.modal.as_ref().map(ModalView::record), watched));
+        self.stopwatch.lap("checkpoint");
+        saved
+    }
+
+    fn count(&mut self) {
+        let now = Work::of(&self.system);
+        self.progress.work = self.progress.work.between(self.counted, now);
+        self.counted = now;
+    }
+
+    /// What the march found. Its end is a row of the history and a sample of the stresses.
+    pub fn finish(mut self) -> Outcome {
+        self.stopwatch.lap("march");
+        if self.progress.stopped.is_none() {
+            let closed = self.close();
+            self.judge(self.progress.step, closed);
+        }
+        let (mut events, mut peaks, mut sites) = (Vec::new(), Vec::new(), 0);
+        let (mut histories, mut maxima) = (Vec::new(), Vec::new());
+        if let Some(watch) = &mut self.watch {
+            if let (Err(error), None) = (watch.flush(), &self.progress.stopped) {
+                self.progress.stopped = Some(chain(&error));
+            }
+            events = watch.scan().events();
+            peaks = watch.scan().peaks();
+            sites = watch.sites();
+            histories = watch.histories().to_vec();
+            let output = &self.model.scene.output;
+            if output.maps || output.plots {
+                maxima = (0..self.model.criteria.len()).flat_map(|k| largest(watch.scan(), k)).collect();
+            }
+            self.counters.criterion_calls = watch.scan().evaluations();
+        }
+        self.stopwatch.lap("scan");
+        self.count();
+        info!(steps = self.progress.step, work = ?self.progress.work, "march");
+        let Progress { step, ledger, work, stopped, .. } = self.progress;
+        let mut counters = self.counters;
+        counters.steps = step;
+        counters.contact_calls = work.contact_calls;
+        counters.iterations = work.iterations;
+        // A full system has counted since it was assembled, a reduced one counts nothing.
+        counters.factorisations = counters.factorisations.max(work.factorisations);
+        counters.solves = counters.solves.max(work.solves);
+        let energy = |of: fn(&fem_io::tables::HistoryRow) -> f64| ledger.rows.iter().map(of).sum();
+        let ended = stopped.is_none() && step == self.sizes.steps;
+        let accuracy = if ended { self.estimates.finish(&ledger.rows, self.sizes.step) } else { Accuracy::default() };
+        Outcome {
+            accuracy,
+            contacts: ledger.records().collect(),
+            modal: self.modal.map(|modal| modal.finish(energy(|r| r.plate_strain_j), energy(|r| r.plate_kinetic_j))),
+            history: ledger.rows,
+            events,
+            peaks,
+            histories,
+            maxima,
+            sites,
+            energy_error: ledger.error,
+            counters,
+            phases: self.stopwatch.phases().to_vec(),
+            stopped,
+        }
+    }
+
+    /// Row and sample at the end, where they do not stand there yet.
+    fn close(&mut self) -> Result<(), Error> {
+        let Progress { step, row_every, .. } = self.progress;
+        if !step.is_multiple_of(row_every) {
+            self.row()?;
+        }
+        if step.is_multiple_of(self.scan_every) { Ok(()) } else { self.sample() }
+    }
+}
+
+/// Steps of `dt` in an interval, at least one.
+fn steps_in(interval: f64, dt: f64) -> u64 {
+    ((interval / dt).round() as u64).max(1)
+}
+
+/// Largest index of a criterion at each of its sites.
+fn largest(scan: &Scan, criterion: usize) -> impl Iterator<Item = Maximum> {
+    scan.maxima(criterion).map(move |(site, maxima, reached)| {
+        let (mode, index) =
+            maxima.iter().enumerate().fold((None, 0.0), |m, (k, &v)| if v > m.1 { (Some(k), v) } else { m });
+        let reached = reached.iter().copied().enumerate().filter(|(_, time)| time.is_finite()).collect();
+        Maximum { criterion, mode, index, reached, site: *site }
+    })
+}
+
+/// An error with its causes, on one line.
+fn chain(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut source = error.source();
+    while let Some(cause) = source {
+        text.push_str(": ");
+        text.push_str(&cause.to_string());
+        source = cause.source();
+    }
+    text
+}

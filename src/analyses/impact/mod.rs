@@ -1,0 +1,131 @@
+//! The response to an impact: assemble, reduce, march, scan.
+
+mod accuracy;
+mod checkpoint;
+mod frames;
+mod ledger;
+mod march;
+mod membrane;
+mod modal;
+mod prepare;
+mod sag;
+
+pub use accuracy::{Accuracy, ReductionError, Residual, StepError};
+pub use checkpoint::Checkpoint;
+pub(crate) use frames::frames;
+pub use march::{BALANCE_EVERY, March, march};
+pub use modal::{ModalHistory, ModeShare};
+pub use prepare::{Prepared, prepare};
+
+use super::assembled::Substructures;
+use super::stress::IndexHistory;
+use crate::cost::Phase;
+use crate::forecast::{Estimate, Size};
+use crate::model::Model;
+use fem_core::counters::Counters;
+use fem_failure::scan::{FailureEvent, Peak, ScanSite};
+use fem_io::tables::HistoryRow;
+use serde::{Deserialize, Serialize};
+
+/// Sizes and limits of a model that is ready to march.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sizes {
+    /// Independent unknowns of the full model.
+    pub unknowns: usize,
+    /// How the plate is divided, if it is.
+    pub substructures: Option<Substructures>,
+    /// Unknowns of the march: modes of the reduced model, or those of the full one.
+    pub marched: usize,
+    /// Entries of one triangle of the stiffness.
+    pub stiffness_entries: usize,
+    /// Entries of its Cholesky factor.
+    pub factor_entries: usize,
+    /// What the run takes at its peak, as it is expected.
+    pub memory: Estimate,
+    /// Contact force of the first impactor per deflection under it, N/m, of the plate as marched.
+    pub static_stiffness: f64,
+    /// Deflection under the first impactor by the plate's own weight, m, where there is gravity.
+    pub sag: Option<f64>,
+    /// Highest frequency of the plate as marched, Hz; `None` where no integrator limit asked for it.
+    pub highest_frequency: Option<f64>,
+    /// Lowest frequency of the reduced plate that the impact excites, Hz.
+    pub lowest_frequency: Option<f64>,
+    /// Longest stable step, s; infinite for unconditionally stable integrators.
+    pub longest_step: f64,
+    /// Number of steps.
+    pub steps: u64,
+    /// The step, s: the scene's, shortened so that a whole number of steps reaches the end.
+    pub step: f64,
+}
+
+/// What a run found.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// Of each impactor of the scene, what is seen between two rows of the history.
+    pub contacts: Vec<ContactRecord>,
+    /// Force, motion and energies over time.
+    pub history: Vec<HistoryRow>,
+    /// First reaching of index 1 per criterion, mode and place, by time.
+    pub events: Vec<FailureEvent>,
+    /// Largest index per criterion and mode.
+    pub peaks: Vec<Peak>,
+    /// Indices over time at the gauges of the model.
+    pub histories: Vec<IndexHistory>,
+    /// Largest index per criterion and site, if the scene asks for maps or plots.
+    pub maxima: Vec<Maximum>,
+    /// What the lowest modes do, if the scene asks for it.
+    pub modal: Option<ModalHistory>,
+    /// Sites watched.
+    pub sites: usize,
+    /// Largest deviation of the total energy from the energy of the impact, relative to it.
+    pub energy_error: f64,
+    /// Estimates of other errors.
+    pub accuracy: Accuracy,
+    /// Work done.
+    pub counters: Counters,
+    /// Time per phase.
+    pub phases: Vec<Phase>,
+    /// Why the run ended before its time, if it did; everything above holds up to then.
+    pub stopped: Option<String>,
+}
+
+impl Outcome {
+    /// Sizes of the run, from which its time follows.
+    pub fn size(&self, model: &Model, sizes: &Sizes) -> Size {
+        Size {
+            marched: sizes.marched,
+            reduced: sizes.marched < sizes.unknowns,
+            factor_entries: sizes.factor_entries,
+            sites: self.sites,
+            step_s: sizes.step,
+            samples: (sizes.steps as f64 * sizes.step / model.scene.failure.every) as u64,
+            ..Size::of(model, &self.counters)
+        }
+    }
+}
+
+/// What is seen of a contact at every step.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct ContactRecord {
+    /// Number of separate contacts.
+    pub count: u32,
+    /// Largest indentation, m.
+    pub deepest: f64,
+    /// When the force first reached the delamination threshold of the model, s.
+    pub threshold_time: Option<f64>,
+}
+
+/// The largest index of a criterion at a site over all samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Maximum {
+    /// Number of the criterion in the model.
+    pub criterion: usize,
+    /// Its mode; `None` where no mode ever applied.
+    pub mode: Option<usize>,
+    /// The index.
+    pub index: f64,
+    /// Every mode that reached 1 there, and when it first did, s.
+    pub reached: Vec<(usize, f64)>,
+    /// Where.
+    pub site: ScanSite,
+}

@@ -1,0 +1,10 @@
+//! What a model can be asked: the response to an impact, loads at rest, natural modes, its matrices.
+
+pub mod assembled;
+mod expansion;
+pub mod impact;
+pub mod matrices;
+pub mod modes;
+pub(crate) mod saved;
+pub mod statics;
+pub mod stress;

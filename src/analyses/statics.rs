@@ -1,0 +1,225 @@
+//! Displacements, stresses and margins under loads at rest.
+
+use super::assembled::{self, Substructures};
+use super::stress::{self, Margin};
+use crate::cost::{Phase, Stopwatch};
+use crate::error::Error;
+use crate::forecast::analysed;
+use crate::model::{Model, NamedProfile, Plan};
+use fem_core::assembly::{LargePlate, free_forces, pattern};
+use fem_core::counters::Counters;
+use fem_core::dof::Dof;
+use fem_core::element::ElementError;
+use fem_core::estimate::mesh_error;
+use fem_core::field::Field as Displacements;
+use fem_core::functional::Functional;
+use fem_core::profile::{ProfilePoint, Resultants};
+use fem_core::structure::Structure;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+
+/// Residual of the loads beyond which displacements are no result: they are about as wrong, for rounding in K alone.
+const MOST_RESIDUAL: f64 = 1e-2;
+
+/// What a static analysis found.
+#[derive(Debug, Clone)]
+pub struct Solution {
+    /// Displacements, before elimination of constraints; one per unknown.
+    pub u: Vec<f64>,
+    /// Independent unknowns.
+    pub unknowns: usize,
+    /// How the plate is divided, if it is.
+    pub substructures: Option<Substructures>,
+    /// Entries of the factor of K.
+    pub factor_entries: usize,
+    /// ½ uᵀ K u, J, or ½ ∫ Eᵀ C E dV.
+    pub strain_energy: f64,
+    /// ‖f − K u‖ / ‖f‖ of the independent unknowns, K u being the internal force.
+    pub residual: f64,
+    /// Condition number of K, or of its tangent at the end, estimated
+    /// ([`condition`](fem_core::assembly::SparseStructure::condition)).
+    pub condition: f64,
+    /// Under large displacements, the Newton decrement of each iteration
+    /// ([`Equilibrium::decrements`](fem_core::assembly::Equilibrium::decrements)).
+    pub decrements: Option<Vec<f64>>,
+    /// Error of the mesh in the energy norm, relative, where [`mesh_error`] can say; never under large
+    /// displacements or with free strains.
+    pub mesh_error: Option<f64>,
+    /// Sum of the loads along x, y, z, N.
+    pub resultant: [f64; 3],
+    /// Per criterion, the smallest reserve factor and where.
+    pub margins: Vec<Margin>,
+    /// The states along the profiles of the model.
+    pub profiles: Vec<Vec<ProfilePoint>>,
+    /// Forces and moments per length at each of them.
+    pub resultants: Vec<Resultants>,
+    /// Work done.
+    pub counters: Counters,
+    /// Time per phase.
+    pub phases: Vec<Phase>,
+}
+
+/// Displacements of the independent unknowns, and how they were found.
+struct Found {
+    independent: Vec<f64>,
+    substructures: Option<Substructures>,
+    factor_entries: usize,
+    strain_energy: f64,
+    residual: f64,
+    condition: f64,
+    decrements: Option<Vec<f64>>,
+}
+
+/// Solves K u = f, or f(u) = f where the model has large displacements.
+///
+/// # Errors
+/// A scene without loads at rest, a cell that the element refuses, a structure that is not held, buckles or is too
+/// ill-conditioned, a result that is not finite, a criterion whose material lacks a constant.
+pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
+    let Plan::Static { forces } = &model.plan else { return Err(Error::NoLoads) };
+    if model.undecided() {
+        return Err(Error::Undecided);
+    }
+    let mut stopwatch = Stopwatch::default();
+    let mut counters = Counters::default();
+    let constraints = &model.constraints;
+    // u = C ũ + g, so that Cᵀ K C ũ = Cᵀ f; supports hold at zero, g = 0.
+    let nodal: Vec<(usize, f64)> = forces.iter().copied().enumerate().filter(|(_, force)| *force != 0.0).collect();
+    let mut f = vec![0.0; constraints.ndof()];
+    Functional(constraints.restrict(&nodal)).add_to(1.0, &mut f);
+    let resultant = [1, 2, 3].map(|n| {
+        let along = |(dof, f): (usize, &f64)| if model.plate.locate(dof).2 == dof_of(n) { *f } else { 0.0 };
+        forces.iter().enumerate().map(along).sum()
+    });
+    let solver = if model.effects.membrane { nonlinear } else { linear };
+    let found = solver(model, &f, threads, &mut counters, &mut stopwatch)?;
+    if !found.strain_energy.is_finite() {
+        return Err(Error::NotFinite("displacement"));
+    }
+    if !(found.residual <= MOST_RESIDUAL) {
+        return Err(Error::IllConditioned { residual: found.residual });
+    }
+    let mut u = vec![0.0; model.plate.ndof()];
+    constraints.expand(&found.independent, &mut u);
+    stopwatch.lap("solve");
+    let margins = stress::margins(model, &u)?;
+    let mut field = Displacements::new(&model.plate, &model.laminate, &*model.element, &u);
+    if model.effects.membrane {
+        field = field.with_large_strains();
+    }
+    let sample = |named: &NamedProfile| {
+        let line = &named.line;
+        let bottom = line.equilibrium.then_some(named.bottom);
+        Ok((named.profile.sample(&field, line.points, bottom)?, named.profile.resultants(&field)?))
+    };
+    let sampled: Vec<_> = model.profiles.iter().map(sample).collect::<Result<_, ElementError>>()?;
+    let (profiles, resultants) = sampled.into_iter().unzip();
+    stopwatch.lap("stresses");
+    // The estimate knows no strains but those that stress.
+    let mesh_error = if model.effects.membrane || model.effects.cure.is_some() {
+        None
+    } else {
+        mesh_error(&model.plate, &*model.element, &u)?
+    };
+    stopwatch.lap("mesh error");
+    let phases = stopwatch.phases().to_vec();
+    Ok(Solution {
+        unknowns: constraints.ndof(),
+        substructures: found.substructures,
+        factor_entries: found.factor_entries,
+        strain_energy: found.strain_energy,
+        residual: found.residual,
+        condition: found.condition,
+        decrements: found.decrements,
+        u,
+        mesh_error,
+        resultant,
+        margins,
+        profiles,
+        resultants,
+        counters,
+        phases,
+    })
+}
+
+/// Small displacements.
+fn linear(
+    model: &Model,
+    f: &[f64],
+    threads: NonZeroUsize,
+    counters: &mut Counters,
+    stopwatch: &mut Stopwatch,
+) -> Result<Found, Error> {
+    let mut assembled = assembled::structure(model, false, threads, counters)?;
+    stopwatch.lap("assemble");
+    let (mut f, mut thermal, mut at_rest) = (f.to_vec(), vec![0.0; f.len()], 0.0);
+    if model.effects.cure.is_some() {
+        let (forces, energy) = free_forces(&model.plate, &*model.element, &model.constraints)?;
+        f.iter_mut().zip(&forces).for_each(|(f, free)| *f += free);
+        (thermal, at_rest) = (forces, energy);
+    }
+    let (mut rest, own) = assembled.load(&f);
+    let mut solved = rest.clone();
+    assembled.structure.solve_shifted(0.0, &mut solved, 1)?;
+    assembled.structure.add_stiffness(-1.0, &solved, &mut rest);
+    // One step of iterative refinement, for a solve beside the factor.
+    let mut more = rest.clone();
+    assembled.structure.solve_shifted(0.0, &mut more, 1)?;
+    assembled.structure.add_stiffness(-1.0, &more, &mut rest);
+    solved.iter_mut().zip(&more).for_each(|(u, more)| *u += more);
+    let mut independent = assembled.expand(solved);
+    independent.iter_mut().zip(own.iter().flatten()).for_each(|(u, own)| *u += own);
+    let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let condition = assembled.structure.condition()?;
+    (counters.factorisations, counters.solves) = assembled.structure.work();
+    Ok(Found {
+        // ½ uᵀ K u − uᵀ f₀ + ½ ∫ ε₀ C ε₀ dV with K u = f and f₀ that of the free strains.
+        strain_energy: at_rest
+            + f.iter().zip(&thermal).zip(&independent).map(|((f, free), u)| (0.5 * f - free) * u).sum::<f64>(),
+        independent,
+        substructures: assembled.substructures(),
+        factor_entries: assembled.factor_entries,
+        residual: norm(&rest) / norm(&f).max(f64::MIN_POSITIVE),
+        condition,
+        decrements: None,
+    })
+}
+
+/// Large displacements.
+fn nonlinear(
+    model: &Model,
+    f: &[f64],
+    threads: NonZeroUsize,
+    counters: &mut Counters,
+    stopwatch: &mut Stopwatch,
+) -> Result<Found, Error> {
+    let Model { plate, element, constraints, .. } = model;
+    let pattern = Arc::new(pattern(plate, constraints));
+    let (symbolic, _) = analysed(model, pattern.clone())?;
+    let factor_entries = symbolic.entries();
+    let mut large = LargePlate::new(plate, element.clone(), constraints, &pattern).ok_or(Error::SmallOnly)?;
+    // A plate that is hot and has not moved is pressed in its plane more than it bears.
+    let start = match model.effects.cure {
+        Some(_) => linear(model, f, threads, counters, stopwatch)?.independent,
+        None => vec![0.0; f.len()],
+    };
+    let found = large.equilibrium(symbolic, f, start, threads)?;
+    tracing::info!(iterations = found.decrements.len(), "equilibrium");
+    counters.elements += large.integrated();
+    counters.factorisations += found.decrements.len() as u64;
+    counters.solves += found.solves;
+    Ok(Found {
+        independent: found.u,
+        substructures: None,
+        factor_entries,
+        strain_energy: found.energy,
+        residual: found.residual,
+        condition: found.condition,
+        decrements: Some(found.decrements),
+    })
+}
+
+/// The unknown of a translation along axis `n`, counted from 1.
+pub(crate) fn dof_of(n: u8) -> Dof {
+    Dof::SOLID[4 * (usize::from(n) - 1)]
+}

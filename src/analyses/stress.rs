@@ -1,0 +1,359 @@
+//! Stresses along a march: sampled, recovered in batches, handed to the scan.
+
+use super::expansion::Expansion;
+use crate::error::Error;
+use crate::model::{Model, NamedCriterion, Plan};
+use crate::words::name_ply;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+use fem_core::failure::Site;
+use fem_core::recovery::{Recovery, Station};
+use fem_core::residual::Residual;
+use fem_core::tensor::{Global, Ply, Stress6};
+use fem_core::window;
+use fem_failure::scan::{self, Place, Probe, Scan, ScanSite};
+use fem_io::scene::Window;
+use serde::{Deserialize, Serialize};
+use std::rc::Rc;
+
+/// Samples recovered together.
+const BATCH: usize = 16;
+
+/// Largest stress operator that is kept, bytes; beyond it stresses are recovered from expanded displacements.
+const OPERATOR_LIMIT: usize = 256 << 20;
+
+/// Indices of one criterion at one place over time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct IndexHistory {
+    /// Number of the criterion in the model.
+    pub criterion: usize,
+    /// The place.
+    pub site: ScanSite,
+    /// Times of the samples, s.
+    pub times: Vec<f64>,
+    /// One index per mode for each of them; where two layers of cells meet, the larger of the two sides.
+    pub indices: Vec<f64>,
+}
+
+impl IndexHistory {
+    /// Takes the indices at time `t` from every side of the place: the largest of each mode.
+    fn take<'a>(&mut self, t: f64, sides: impl Iterator<Item = &'a [f64]>) {
+        self.times.push(t);
+        let start = self.indices.len();
+        for side in sides {
+            self.indices.resize(start + side.len(), f64::NEG_INFINITY);
+            for (largest, index) in self.indices[start..].iter_mut().zip(side) {
+                *largest = largest.max(*index);
+            }
+        }
+    }
+}
+
+/// Watches the stresses of a march with the criteria of a model.
+#[derive(Debug)]
+pub(super) struct Watch<'a> {
+    model: &'a Model,
+    expansion: Rc<Expansion<'a>>,
+    recovery: Recovery,
+    /// Six per station, empty where there are none.
+    residual: Vec<f64>,
+    /// 6·sites × modes: stresses per unit of each modal coordinate.
+    operator: Option<Vec<f64>>,
+    scan: Scan,
+    /// Where the scan keeps the indices of each history.
+    probes: Vec<Vec<Probe>>,
+    stresses: Vec<f64>,
+    states: Vec<Stress6<Ply>>,
+    record: Record,
+}
+
+/// What a watch keeps beside its scan.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(super) struct Record {
+    /// What the gauges saw.
+    histories: Vec<IndexHistory>,
+    /// Times of the samples waiting, and their coordinates. They are saved as they are, because a sum in another batch may
+    /// differ in its last bit.
+    times: Vec<f64>,
+    waiting: Vec<f64>,
+}
+
+impl<'a> Watch<'a> {
+    /// Prepares the scan of `model`, which is marched in the coordinates of `expansion`.
+    ///
+    /// # Errors
+    /// A criterion whose material lacks a constant, or a cell that the element refuses.
+    pub(super) fn new(model: &'a Model, expansion: Rc<Expansion<'a>>) -> Result<Self, Error> {
+        let recovery = watched(model);
+        let scan = Scan::new(model.criteria.clone(), sites(model, &recovery), model.materials.clone())?;
+        let (probes, histories) = gauges(model, &scan).into_iter().unzip();
+        let mut watch = Self {
+            model,
+            expansion,
+            operator: None,
+            residual: residual(model, &recovery)?,
+            probes,
+            scan,
+            record: Record { histories, ..Record::default() },
+            stresses: vec![0.0; 6 * recovery.sites() * BATCH],
+            states: vec![Stress6::new([0.0; 6]); recovery.sites()],
+            recovery,
+        };
+        // Stresses of large displacements are no product with the coordinates.
+        if let Some((basis, modes)) = watch.expansion.basis().filter(|_| !model.effects.membrane)
+            && 6 * watch.recovery.sites() * modes * size_of::<f64>() <= OPERATOR_LIMIT
+        {
+            let mut operator = vec![0.0; 6 * watch.recovery.sites() * modes];
+            watch.recover(&watch.expansion.nodal(basis), modes, &mut operator)?;
+            watch.operator = Some(operator);
+        }
+        Ok(watch)
+    }
+
+    /// Takes a sample: coordinates of the march at time `t`.
+    ///
+    /// # Errors
+    /// A stress or an index that is not finite.
+    pub(super) fn sample(&mut self, t: f64, coordinates: &[f64]) -> Result<(), Error> {
+        self.record.times.push(t);
+        self.record.waiting.extend_from_slice(coordinates);
+        if self.record.times.len() == BATCH { self.flush() } else { Ok(()) }
+    }
+
+    /// Scans the samples still waiting.
+    ///
+    /// # Errors
+    /// As [`Watch::sample`].
+    pub(super) fn flush(&mut self) -> Result<(), Error> {
+        let (times, waiting) = (std::mem::take(&mut self.record.times), std::mem::take(&mut self.record.waiting));
+        let mut stresses = std::mem::take(&mut self.stresses);
+        let done = self.judge(&times, &waiting, &mut stresses);
+        self.stresses = stresses;
+        done
+    }
+
+    fn judge(&mut self, times: &[f64], waiting: &[f64], stresses: &mut [f64]) -> Result<(), Error> {
+        let count = times.len();
+        if count == 0 {
+            return Ok(());
+        }
+        let rows = 6 * self.recovery.sites();
+        let width = waiting.len() / count;
+        let out = &mut stresses[..rows * count];
+        match &self.operator {
+            Some(operator) => matmul(
+                MatMut::from_column_major_slice_mut(out, rows, count),
+                Accum::Replace,
+                MatRef::from_column_major_slice(operator, rows, width),
+                MatRef::from_column_major_slice(waiting, width, count),
+                1.0,
+                Par::Seq,
+            ),
+            None => self.recover(&self.expansion.displacements(waiting, count), count, out)?,
+        }
+        add(out, &self.residual);
+        for (t, stresses) in times.iter().zip(stresses.chunks_exact(rows)) {
+            for (state, s) in self.states.iter_mut().zip(stresses.chunks_exact(6)) {
+                *state = Stress6::new([s[0], s[1], s[2], s[3], s[4], s[5]]);
+            }
+            self.scan.sample(*t, &self.states)?;
+            for (probes, history) in self.probes.iter().zip(&mut self.record.histories) {
+                history.take(*t, probes.iter().map(|probe| self.scan.read(*probe)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Stresses of `count` displacement fields, one after the other, without those that do not follow from them.
+    fn recover(&self, u: &[f64], count: usize, out: &mut [f64]) -> Result<(), Error> {
+        recover(self.model, &self.recovery, u, count, out)
+    }
+
+    /// What the scan found.
+    pub(super) fn scan(&self) -> &Scan {
+        &self.scan
+    }
+
+    /// What the gauges saw.
+    pub(super) fn histories(&self) -> &[IndexHistory] {
+        &self.record.histories
+    }
+
+    /// What scan and watch have seen, to be kept.
+    pub(super) fn record(&self) -> (&scan::Record, &Record) {
+        (self.scan.record(), &self.record)
+    }
+
+    /// Goes on from what a watch of the same model has seen; `false` where the records are of another size.
+    pub(super) fn resume(&mut self, scan: scan::Record, record: Record) -> bool {
+        let fits = record.histories.len() == self.probes.len() && self.scan.resume(scan);
+        if fits {
+            self.record = record;
+        }
+        fits
+    }
+
+    /// Number of sites watched.
+    pub(super) fn sites(&self) -> usize {
+        self.recovery.sites()
+    }
+}
+
+/// The smallest factor on the stresses that brings a criterion to failure, and where; without large displacements it is a
+/// factor on the loads as well.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct Margin {
+    pub criterion: String,
+    pub mode: String,
+    pub reserve_factor: f64,
+    pub cell: u64,
+    pub ply: String,
+    pub x_m: f64,
+    pub y_m: f64,
+    pub z_m: f64,
+}
+
+/// The margin of each criterion for displacements `u` (before elimination of constraints); none for a criterion that no
+/// multiple of the stresses brings to failure.
+///
+/// # Errors
+/// A cell that the element refuses, a stress that is not finite.
+pub(crate) fn margins(model: &Model, u: &[f64]) -> Result<Vec<Margin>, Error> {
+    if model.criteria.is_empty() {
+        return Ok(Vec::new());
+    }
+    let recovery = watched(model);
+    let mut stresses = vec![0.0; 6 * recovery.sites()];
+    recover(model, &recovery, u, 1, &mut stresses)?;
+    add(&mut stresses, &residual(model, &recovery)?);
+    if !stresses.iter().all(|s| s.is_finite()) {
+        return Err(Error::NotFinite("stress"));
+    }
+    let sites = sites(model, &recovery);
+    let smallest = |(name, criterion): &NamedCriterion| {
+        let states = sites.iter().zip(stresses.chunks_exact(6));
+        let judged = states.filter(|(site, _)| site.place.site() == criterion.info().site);
+        let reserves = judged.filter_map(|(site, s)| {
+            let state = Stress6::new([s[0], s[1], s[2], s[3], s[4], s[5]]);
+            let reserve = criterion.reserve_factor(&state, &model.materials[usize::from(site.material)]);
+            let mode = reserve.mode.filter(|_| reserve.factor.is_finite())?;
+            Some((site, reserve.factor, mode))
+        });
+        let (site, reserve_factor, mode) = reserves.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(Margin {
+            criterion: name.clone(),
+            mode: criterion.info().modes[mode].to_owned(),
+            reserve_factor,
+            cell: model.plate.plane.quad_tags[site.cell as usize],
+            ply: name_ply(site.place),
+            x_m: site.position[0],
+            y_m: site.position[1],
+            z_m: site.position[2],
+        })
+    };
+    Ok(model.criteria.iter().filter_map(smallest).collect())
+}
+
+/// Residual stresses of the stations that do not follow from displacements, six each: under loads at rest those that free
+/// strains leave in a plate held in its shape, in an impact those of the free plate, which the march does not know. Empty
+/// where there are none.
+///
+/// # Errors
+/// A material without thermal expansion.
+pub(crate) fn residual(model: &Model, recovery: &Recovery) -> Result<Vec<f64>, Error> {
+    let Some(change) = model.effects.cure else { return Ok(Vec::new()) };
+    let cooled = Residual::new(&model.laminate, &model.materials, change)?;
+    let of_station = |station: &Station| match model.plan {
+        Plan::Impact(_) => cooled.stress(&model.materials[station.material], station.angle, station.z),
+        _ => {
+            let slice = station.ply - model.laminate.plies_of(station.layer).start;
+            let held = model.element.held_stress(&model.plate.stacks[station.layer].slices[slice]);
+            Ok(Stress6::<Global>::new(held).to_ply(station.angle))
+        }
+    };
+    let stations: Vec<Stress6<Ply>> = recovery.stations.iter().map(of_station).collect::<Result<_, _>>()?;
+    Ok(stations.iter().flat_map(|s| s.0).collect())
+}
+
+/// Adds the stresses of stations to those of all sites.
+pub(crate) fn add(stresses: &mut [f64], residual: &[f64]) {
+    if !residual.is_empty() {
+        for quad in stresses.chunks_exact_mut(residual.len()) {
+            quad.iter_mut().zip(residual).for_each(|(s, r)| *s += r);
+        }
+    }
+}
+
+/// Stresses of `count` displacement fields (before elimination of constraints), one after the other, without those
+/// that do not follow from displacements.
+///
+/// # Errors
+/// A cell that the element refuses.
+pub(crate) fn recover(
+    model: &Model,
+    recovery: &Recovery,
+    u: &[f64],
+    count: usize,
+    out: &mut [f64],
+) -> Result<(), Error> {
+    let Some(large) = model.element.large_displacements().filter(|_| model.effects.membrane) else {
+        return Ok(recovery.stresses(&model.plate, &*model.element, u, count, out)?);
+    };
+    for (u, out) in u.chunks_exact(model.plate.ndof()).zip(out.chunks_exact_mut(6 * recovery.sites())) {
+        recovery.large_stresses(&model.plate, large, u, out)?;
+    }
+    Ok(())
+}
+
+/// Where the criteria look.
+fn watched(model: &Model) -> Recovery {
+    // Where nobody looks there is nothing to recover.
+    let looks = model.criteria.iter().any(|(_, criterion)| criterion.info().site == Site::Interface);
+    recovery(model, model.watched.clone(), looks)
+}
+
+/// The stresses of `quads` as the criteria see them, those of interfaces where these are wanted and the scene has some.
+pub(crate) fn recovery(model: &Model, quads: Vec<usize>, interfaces: bool) -> Recovery {
+    let mesh = &model.plate.plane;
+    let windows = match model.scene.failure.window {
+        Window::Element => window::own(mesh),
+        Window::Square(side) => window::square(mesh, side),
+    };
+    let resin = model.scene.interface.as_ref().map(|i| i.value).filter(|_| interfaces);
+    Recovery::new(&model.plate, &model.laminate, &model.materials, resin, quads, &windows)
+}
+
+pub(crate) fn sites(model: &Model, recovery: &Recovery) -> Vec<ScanSite> {
+    let mesh = &model.plate.plane;
+    let site = |q: usize, s: &Station| {
+        let [x, y] = window::centroid(&mesh.corners(q));
+        ScanSite {
+            cell: q as u32,
+            place: if s.interface { Place::Interface(s.ply as u16) } else { Place::Ply(s.ply as u16) },
+            position: [x, y, s.z],
+            angle: s.angle,
+            material: s.material as u16,
+        }
+    };
+    recovery.quads.iter().flat_map(|q| recovery.stations.iter().map(move |s| site(*q, s))).collect()
+}
+
+/// An empty history for every criterion of every gauge, and where the scan keeps its indices: an interface between two layers
+/// of cells has a stress from either side.
+fn gauges(model: &Model, scan: &Scan) -> Vec<(Vec<Probe>, IndexHistory)> {
+    let mut all = Vec::new();
+    for gauge in &model.gauges {
+        let sides: Vec<usize> = (0..scan.sites().len())
+            .filter(|s| scan.sites()[*s].cell as usize == gauge.quad && scan.sites()[*s].place == gauge.place)
+            .collect();
+        let Some(first) = sides.first() else { continue };
+        for &criterion in &gauge.criteria {
+            let probes = sides.iter().filter_map(|side| scan.probe(criterion, *side)).collect();
+            let history =
+                IndexHistory { criterion, site: scan.sites()[*first], times: Vec::new(), indices: Vec::new() };
+            all.push((probes, history));
+        }
+    }
+    all
+}

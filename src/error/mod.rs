@@ -1,0 +1,165 @@
+//! What can go wrong between a scene and its results.
+
+mod checkpoint;
+
+pub use checkpoint::CheckpointError;
+
+use fem_core::assembly::{AssemblyError, EquilibriumError, FactorError};
+use fem_core::element::ElementError;
+use fem_core::material::MaterialError;
+use fem_core::time::StepError;
+use fem_dynamics::guard::Alarm;
+use fem_failure::scan::ScanError;
+use fem_io::files::FileError;
+use fem_io::gmsh::MeshError;
+use fem_io::plot::PlotError;
+use fem_io::scene::SceneError;
+use miette::Diagnostic;
+use std::path::PathBuf;
+
+/// An error of the framework; those about the scene show its line.
+#[derive(Debug, thiserror::Error, Diagnostic)]
+#[non_exhaustive]
+#[allow(missing_docs)]
+pub enum Error {
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    #[error("the matrices cannot be assembled")]
+    Assembly(#[from] AssemblyError),
+    #[error("the substructures cannot be condensed")]
+    Condensation(#[from] fem_core::assembly::CondensationError),
+    #[error("the stresses cannot be recovered")]
+    Element(#[from] ElementError),
+    #[error("the model cannot be solved")]
+    Solve(#[from] fem_core::structure::SolveError),
+    #[error("the matrices cannot be analysed")]
+    Factor(#[from] fem_core::assembly::FactorError),
+    #[error("this takes about {needed} of memory, and {available} are free: {parts}")]
+    #[diagnostic(help(
+        "take fewer cells (a coarser mesh, a smaller `mesh.refine`), fewer `laminate.layers`, a `symmetry` of the plate, \
+         `substructures`, or a machine with more memory"
+    ))]
+    Memory {
+        /// What it takes.
+        needed: String,
+        /// What there is.
+        available: String,
+        /// What takes it.
+        parts: String,
+    },
+    #[error("the march failed")]
+    #[diagnostic(help("{}", if matches!(.0, StepError::Factorisation(_)) { MATRIX } else { STEP }))]
+    Step(#[from] StepError),
+    #[error(transparent)]
+    #[diagnostic(help("{}", remedy(.0)))]
+    Guard(#[from] Alarm),
+    #[error("the failure scan failed")]
+    Scan(#[from] ScanError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    #[error("there is nothing to resume: only an impact is marched in time")]
+    #[diagnostic(help("run without `--resume`"))]
+    NotMarched,
+    #[error("the scene describes no impact")]
+    #[diagnostic(help("set `analysis = \"impact\"` and describe impactor, contact and march"))]
+    NoImpact,
+    #[error("`{element}` is a section, and the advisor's formulas are those of plates")]
+    #[diagnostic(help("take a plate and one of its elements, such as `mitc4`"))]
+    NoPlate {
+        /// Name of the element.
+        element: String,
+    },
+    #[error("the scene leaves `effects.membrane` to the advisor, who was not asked")]
+    #[diagnostic(help("pass the model through `fem::advise::decided`, or write \"on\" or \"off\""))]
+    Undecided,
+    #[error("the scene does not run as it is, and there is nothing to study: {0}")]
+    Study(String),
+    #[error("there is no axis `{name}`")]
+    #[diagnostic(help("{help}"))]
+    Axis {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        help: String,
+    },
+    #[error("the ladders of the study have {together:.0} combinations of levels, too many to choose from")]
+    #[diagnostic(help("name fewer of them with `--axis`, or give the scene's own axes fewer levels"))]
+    TooManyLevels {
+        /// How many.
+        together: f64,
+    },
+    #[error("the march stopped: {0}")]
+    Stopped(String),
+    #[error("the scene describes no loads at rest")]
+    #[diagnostic(help("set `analysis = \"static\"` and give a `[[load]]`"))]
+    NoLoads,
+    #[error(transparent)]
+    #[diagnostic(help("give its `alpha1` and `alpha2`, or leave `effects.cure` out"))]
+    Material(#[from] MaterialError),
+    #[error("the element knows no large displacements")]
+    #[diagnostic(help(
+        "choose an element that does, such as `hermite-prism` or `mitc4`, or leave `effects.membrane` out"
+    ))]
+    SmallOnly,
+    #[error("there is no equilibrium under large displacements")]
+    #[diagnostic(help("{}", at_rest(.0)))]
+    Equilibrium(#[from] EquilibriumError),
+    #[error("a {0} is not finite: the structure is singular, or a load out of the range of numbers")]
+    NotFinite(&'static str),
+    #[error(
+        "the loads are met to {residual:.1e} of their size only: the stiffness is too ill-conditioned for 16 digits"
+    )]
+    #[diagnostic(help(
+        "cells much wider than thick are stiff through their thickness and soft in bending: take the shell \
+                       `mitc4`, or fewer layers of narrower cells"
+    ))]
+    IllConditioned {
+        /// ‖f − K u‖ / ‖f‖
+        residual: f64,
+    },
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error("`{}` holds no results of `fem run`: there is no `summary.json` in it", folder.display())]
+    #[diagnostic(help("name the folder that `fem run` printed after `results`"))]
+    NoResults {
+        /// The folder.
+        folder: PathBuf,
+    },
+    #[error("the page cannot be made")]
+    Page(#[from] minijinja::Error),
+    #[error("the plot failed")]
+    Plot(#[from] PlotError),
+}
+
+const STEP: &str = "shorten `march.step`";
+const STEP_OR_LAW: &str = "shorten `march.step`; where that changes nothing, look at the contact law: \
+                           `fem_core::testkit::check_contact_law` finds what is wrong with it";
+const MATRIX: &str =
+    "look at the supports, at the constants of the materials, and at the element where it is not a shipped one";
+const LAW: &str = "look at the contact law: `fem_core::testkit::check_contact_law` finds what is wrong with it";
+
+/// What helps where there is no equilibrium.
+fn at_rest(error: &EquilibriumError) -> &'static str {
+    match error {
+        EquilibriumError::Factor(FactorError::NotPositive { .. }) => {
+            "lower the load below the one that buckles the plate; where there is none in the plane, look at the supports: \
+             they must stop every rigid motion"
+        }
+        EquilibriumError::NoConvergence(_) => "lower the load, or refine the mesh where the plate bends most",
+        _ => MATRIX,
+    }
+}
+
+/// What helps against an alarm.
+fn remedy(alarm: &Alarm) -> &'static str {
+    match alarm {
+        Alarm::Pull { .. } => LAW,
+        Alarm::NotFinite(_) | Alarm::Energy(0.0..) => STEP_OR_LAW,
+        Alarm::Indefinite { .. } => MATRIX,
+        _ => STEP,
+    }
+}

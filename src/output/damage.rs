@@ -1,0 +1,266 @@
+//! Where and when the criteria reached 1: `damage.json`, from which damage is drawn.
+
+use crate::analyses::impact::Outcome;
+use crate::error::Error;
+use crate::model::{Model, Plan};
+use crate::words::name_ply;
+use fem_failure::scan::Place;
+use fem_io::files::{FileError, OutputDir};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Name of the file.
+pub const FILE: &str = "damage.json";
+
+/// Indices beyond are written as this, since JSON has no infinity.
+const LARGEST: f64 = 1e9;
+
+/// Largest failure indices over the plate, place by place, and when each cell failed; the content of `damage.json`.
+///
+/// Where a symmetry was computed it is unfolded: every cell of the mesh stands for itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DamageMap {
+    /// End of the march, s.
+    pub end_s: f64,
+    /// Modes of all criteria, what `places` count in.
+    pub modes: Vec<ModeName>,
+    /// Plies from the bottom up.
+    pub plies: Vec<PlyBand>,
+    /// Where impactors strike, m.
+    pub impacts_m: Vec<[f64; 2]>,
+    /// Nodes of the mesh, m.
+    pub points_m: Vec<[f64; 2]>,
+    /// Corners of the cells, anticlockwise, numbers in `points_m`.
+    pub quads: Vec<[u32; 4]>,
+    /// Number of each cell in the mesh file.
+    pub cells: Vec<u64>,
+    /// Cells that the criteria judged, ascending, numbers in `quads`.
+    pub judged: Vec<u32>,
+    /// Plies and interfaces from the bottom up.
+    pub places: Vec<PlaceDamage>,
+}
+
+/// A mode of a criterion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ModeName {
+    /// Name of the criterion in the scene.
+    pub criterion: String,
+    /// Its mode.
+    pub mode: String,
+}
+
+/// A ply.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlyBand {
+    /// Angle of its fibres from x towards y, degrees.
+    pub angle_deg: f64,
+    /// Its lower and upper face, m.
+    pub z_m: [f64; 2],
+}
+
+/// What the criteria found in a ply or in an interface.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlaceDamage {
+    /// `3`, or `3|4` for an interface.
+    pub ply: String,
+    /// Largest index of all modes in each of the judged cells, four digits; at most 1e9.
+    pub index: Vec<f64>,
+    /// What reached 1, by time.
+    pub failed: Vec<Failed>,
+}
+
+/// By position in `judged` and number in `modes`, s.
+type FirstTimes = BTreeMap<(u32, u32), f64>;
+
+/// A mode that reached 1 in a cell: position in `judged`, number in `modes`, first time (s).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Failed(pub u32, pub u32, pub f64);
+
+impl DamageMap {
+    /// The damage of an impact; `None` where no criterion judged anything, or no largest indices were kept.
+    pub fn new(model: &Model, outcome: &Outcome) -> Option<Self> {
+        let Plan::Impact(impact) = &model.plan else { return None };
+        let (mesh, symmetry) = (&model.plate.plane, model.plate.symmetry());
+        let first_mode: Vec<usize> = model
+            .criteria
+            .iter()
+            .scan(0, |next, (_, criterion)| {
+                let first = *next;
+                *next += criterion.info().modes.len();
+                Some(first)
+            })
+            .collect();
+        let mut kept: Vec<u32> = outcome.maxima.iter().map(|m| m.site.cell).collect();
+        kept.sort_unstable();
+        kept.dedup();
+        let judged: Vec<u32> = (0..mesh.quads.len() as u32)
+            .filter(|q| kept.binary_search(&(symmetry.quad(*q as usize) as u32)).is_ok())
+            .collect();
+        if judged.is_empty() {
+            return None;
+        }
+
+        // Of each computed cell the positions in `judged` that it stands for.
+        let mut stands_for = vec![Vec::new(); mesh.quads.len()];
+        for (i, q) in judged.iter().enumerate() {
+            stands_for[symmetry.quad(*q as usize)].push(i);
+        }
+        let mut places: BTreeMap<(u16, bool), (PlaceDamage, FirstTimes)> = BTreeMap::new();
+        for m in &outcome.maxima {
+            let key = match m.site.place {
+                Place::Ply(k) => (k, false),
+                Place::Interface(k) => (k, true),
+            };
+            let empty =
+                || PlaceDamage { ply: name_ply(m.site.place), index: vec![0.0; judged.len()], failed: Vec::new() };
+            let (place, failed) = places.entry(key).or_insert_with(|| (empty(), FirstTimes::new()));
+            for &i in &stands_for[m.site.cell as usize] {
+                place.index[i] = place.index[i].max(m.index);
+                for &(mode, time) in &m.reached {
+                    let first = failed.entry((i as u32, (first_mode[m.criterion] + mode) as u32)).or_insert(time);
+                    *first = first.min(time);
+                }
+            }
+        }
+        let places = places.into_values().map(|(mut place, failed)| {
+            place.index.iter_mut().for_each(|index| *index = four_digits(*index));
+            place.failed = failed.into_iter().map(|((i, mode), time)| Failed(i, mode, time)).collect();
+            place.failed.sort_by(|a, b| a.2.total_cmp(&b.2).then((a.0, a.1).cmp(&(b.0, b.1))));
+            place
+        });
+        let places = places.collect();
+        let modes = model.criteria.iter().flat_map(|(name, criterion)| {
+            let named = |mode: &&str| ModeName { criterion: name.clone(), mode: (*mode).to_owned() };
+            criterion.info().modes.iter().map(named).collect::<Vec<_>>()
+        });
+        let z = model.laminate.boundaries();
+        let plies = model.laminate.plies.iter().zip(z.windows(2));
+        Some(Self {
+            end_s: outcome.history.last().map_or(0.0, |row| row.time_s),
+            modes: modes.collect(),
+            plies: plies.map(|(ply, z)| PlyBand { angle_deg: ply.angle_deg, z_m: [z[0], z[1]] }).collect(),
+            impacts_m: impact.strikes.iter().map(|strike| strike.centre).collect(),
+            points_m: mesh.points.clone(),
+            quads: mesh.quads.clone(),
+            cells: mesh.quad_tags.clone(),
+            judged,
+            places,
+        })
+    }
+
+    /// Writes it to [`FILE`], on one line.
+    ///
+    /// # Errors
+    /// As [`OutputDir::write`].
+    pub fn write(&self, dir: &OutputDir) -> Result<(), Error> {
+        let text = serde_json::to_string(self).map_err(|cause| FileError::Json { file: FILE.into(), cause })?;
+        Ok(dir.write(FILE, |out| writeln!(out, "{text}"))?)
+    }
+
+    /// Whether all numbers that point somewhere do, and all others are finite; the error says what is wrong.
+    ///
+    /// # Errors
+    /// A file that was cut or changed.
+    pub fn check(&self) -> Result<(), String> {
+        let good = |fits: bool, what: &str| if fits { Ok(()) } else { Err(what.to_owned()) };
+        good(self.cells.len() == self.quads.len(), "`cells` and `quads` differ in length")?;
+        let points = self.points_m.len();
+        good(self.quads.iter().flatten().all(|n| (*n as usize) < points), "`quads` names a node that is not there")?;
+        good(self.judged.iter().all(|q| (*q as usize) < self.quads.len()), "`judged` names a cell that is not there")?;
+        let places = self.points_m.iter().chain(&self.impacts_m).flatten().copied();
+        let heights = self.plies.iter().flat_map(|ply| [ply.angle_deg, ply.z_m[0], ply.z_m[1]]);
+        good(places.chain(heights).chain([self.end_s]).all(f64::is_finite), "a coordinate is not finite")?;
+        for place in &self.places {
+            let ply = &place.ply;
+            good(place.index.len() == self.judged.len(), &format!("`index` of ply {ply} is not as long as `judged`"))?;
+            good(place.index.iter().all(|v| v.is_finite()), &format!("an index of ply {ply} is not finite"))?;
+            let known = |f: &Failed| (f.0 as usize) < self.judged.len() && (f.1 as usize) < self.modes.len();
+            good(place.failed.iter().all(|f| known(f) && f.2.is_finite()), &format!("`failed` of ply {ply} is wrong"))?;
+        }
+        Ok(())
+    }
+
+    /// Corners of a cell, m.
+    pub fn corners(&self, quad: u32) -> [[f64; 2]; 4] {
+        self.quads[quad as usize].map(|n| self.points_m[n as usize])
+    }
+}
+
+impl PlaceDamage {
+    /// First mode that reached 1 in each judged cell.
+    pub fn first_modes(&self) -> Vec<Option<usize>> {
+        let mut first = vec![None; self.index.len()];
+        for Failed(i, mode, _) in self.failed.iter().rev() {
+            first[*i as usize] = Some(*mode as usize);
+        }
+        first
+    }
+
+    /// Largest of its indices.
+    pub fn largest(&self) -> f64 {
+        self.index.iter().fold(0.0, |m, v| m.max(*v))
+    }
+}
+
+/// Four digits are more than a colour shows, and a third of the bytes.
+fn four_digits(index: f64) -> f64 {
+    let index = index.min(LARGEST);
+    format!("{index:.3e}").parse().unwrap_or(index)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn map() -> DamageMap {
+        DamageMap {
+            end_s: 1e-3,
+            modes: vec![
+                ModeName { criterion: "c".into(), mode: "m".into() },
+                ModeName { criterion: "c".into(), mode: "n".into() },
+            ],
+            plies: vec![PlyBand { angle_deg: 0.0, z_m: [0.0, 1e-3] }],
+            impacts_m: vec![[0.0, 0.0]],
+            points_m: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+            quads: vec![[0, 1, 2, 3]],
+            cells: vec![7],
+            judged: vec![0],
+            places: vec![PlaceDamage {
+                ply: "1".into(),
+                index: vec![1.5],
+                failed: vec![Failed(0, 1, 1e-4), Failed(0, 0, 2e-4)],
+            }],
+        }
+    }
+
+    #[test]
+    fn it_reads_back_and_the_first_mode_is_the_earliest() {
+        let text = serde_json::to_string(&map()).unwrap();
+        assert!(text.contains("\"failed\":[[0,1,0.0001],[0,0,0.0002]]"), "{text}");
+        assert_eq!(serde_json::from_str::<DamageMap>(&text).unwrap(), map());
+        assert_eq!(map().places[0].first_modes(), [Some(1)]);
+        assert_eq!([1.23456, f64::INFINITY, 0.0].map(four_digits), [1.235, 1e9, 0.0]);
+    }
+
+    type Spoil = fn(&mut DamageMap);
+
+    #[test]
+    fn what_points_nowhere_is_refused() {
+        assert_eq!(map().check(), Ok(()));
+        let wrong: [(&str, Spoil); 6] = [
+            ("`cells`", |m| m.cells.clear()),
+            ("`quads`", |m| m.quads[0][2] = 4),
+            ("`judged`", |m| m.judged[0] = 1),
+            ("coordinate", |m| m.points_m[0][0] = f64::NAN),
+            ("`index` of ply 1", |m| m.places[0].index.clear()),
+            ("`failed` of ply 1", |m| m.places[0].failed[0].1 = 2),
+        ];
+        for (word, spoil) in wrong {
+            let mut map = map();
+            spoil(&mut map);
+            let why = map.check().unwrap_err();
+            assert!(why.contains(word), "{why}");
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! Fields over the plate as files of VTK, frame by frame: `fields/` in the folder of the results.
+//!
+//! | series | cells | what they tell |
+//! | --- | --- | --- |
+//! | `plate` | those of the elements | displacement and, in a march, velocity |
+//! | `plies` | one per ply and quad | stress in the axes of the ply and indices, as the criteria see them |
+//! | `interfaces` | one per interface and quad | tractions and indices |
+//!
+//! A frame is a state of the whole plate, also where a symmetry computes a part of it. Files depend on nothing but
+//! the state, so that a resumed march writes what one in one piece writes.
+
+mod lattice;
+mod march;
+mod plate;
+mod plies;
+mod size;
+
+pub(crate) use march::MarchFields;
+pub(crate) use size::{Expected, expected};
+
+use crate::analyses::{modes, statics};
+use crate::cost::{Phase, Stopwatch};
+use crate::error::Error;
+use crate::model::Model;
+use fem_io::files::OutputDir;
+use fem_io::scene::Series;
+use fem_io::vtu::{Array, Contents, Grid, Member, write_collection};
+use plate::Plate;
+use plies::Plies;
+use std::f64::consts::TAU;
+
+/// Folder of the files.
+const FOLDER: &str = "fields";
+
+/// Name of the time that writing takes.
+const PHASE: &str = "fields";
+
+/// A state of the plate, in its unknowns before elimination of constraints.
+#[derive(Debug, Clone, Copy)]
+struct State<'a> {
+    displacements: &'a [f64],
+    velocities: Option<&'a [f64]>,
+    /// Of a natural mode, Hz.
+    frequency: Option<f64>,
+}
+
+impl<'a> State<'a> {
+    /// A state at rest.
+    fn at_rest(displacements: &'a [f64]) -> Self {
+        Self { displacements, velocities: None, frequency: None }
+    }
+}
+
+/// Grids of all series and what is needed to fill them, made once.
+#[derive(Debug)]
+struct Layout<'a> {
+    plate: Option<Plate<'a>>,
+    plies: Option<Plies<'a>>,
+}
+
+impl<'a> Layout<'a> {
+    /// `None` where the scene asks for no fields.
+    fn new(model: &'a Model) -> Result<Option<Self>, Error> {
+        let Some(plan) = &model.fields else { return Ok(None) };
+        let plate = plan.series.contains(&Series::Plate).then(|| Plate::new(model, plan));
+        let [plies, interfaces] = [Series::Plies, Series::Interfaces].map(|series| plan.series.contains(&series));
+        let plies = if plies || interfaces { Some(Plies::new(model, plan, plies, interfaces)?) } else { None };
+        Ok(Some(Self { plate, plies }))
+    }
+}
+
+/// Most frames that wait to be written together: strain operators are made once for all of them.
+const BATCH: usize = 16;
+
+/// Most bytes of values that are found together; fewer frames wait where points are many.
+const STORE: usize = 64 << 20;
+
+/// The files of a run.
+#[derive(Debug)]
+struct Writer<'a> {
+    layout: Layout<'a>,
+    dir: OutputDir,
+    /// Times of all frames.
+    times: Vec<f64>,
+    waiting: Vec<Waiting>,
+}
+
+/// A frame that waits to be written.
+#[derive(Debug)]
+struct Waiting {
+    number: usize,
+    displacements: Vec<f64>,
+    velocities: Option<Vec<f64>>,
+    frequency: Option<f64>,
+}
+
+impl<'a> Writer<'a> {
+    /// Makes the folder below `results` for frames at `times`, s, or whatever numbers them; `None` where the scene
+    /// asks for no fields.
+    ///
+    /// # Errors
+    /// A folder that cannot be made, a criterion whose material lacks a constant.
+    fn new(model: &'a Model, results: &OutputDir, times: Vec<f64>) -> Result<Option<Self>, Error> {
+        let Some(layout) = Layout::new(model)? else { return Ok(None) };
+        let dir = OutputDir::create(results.path().join(FOLDER))?;
+        Ok(Some(Self { layout, dir, times, waiting: Vec::new() }))
+    }
+
+    /// Takes frame `number`, counted from 0; it may wait for others, until [`Writer::flush`] at the latest.
+    ///
+    /// # Errors
+    /// As [`Writer::flush`].
+    fn take(&mut self, number: usize, state: State<'_>) -> Result<(), Error> {
+        let State { displacements, velocities, frequency } = state;
+        let (displacements, velocities) = (displacements.to_vec(), velocities.map(<[f64]>::to_vec));
+        self.waiting.push(Waiting { number, displacements, velocities, frequency });
+        let Layout { plate, plies } = &self.layout;
+        let of_frame =
+            plate.as_ref().map_or(0, Plate::bytes_of_frame) + plies.as_ref().map_or(0, Plies::bytes_of_frame);
+        let most = (STORE / of_frame.max(1)).clamp(1, BATCH);
+        if self.waiting.len() < most { Ok(()) } else { self.flush() }
+    }
+
+    /// Writes the frames that wait, and the series up to them.
+    ///
+    /// # Errors
+    /// A cell that the element refuses, a number that is not finite, a stress that a criterion does not take, a
+    /// folder that cannot be written.
+    fn flush(&mut self) -> Result<(), Error> {
+        let waiting = std::mem::take(&mut self.waiting);
+        let Self { layout: Layout { plate, plies }, dir, times, .. } = self;
+        let frames = waiting.iter().map(|Waiting { number, displacements, velocities, frequency }| {
+            let state = State { displacements, velocities: velocities.as_deref(), frequency: *frequency };
+            Frame { dir, times: &times[..=*number], state }
+        });
+        let frames: Vec<Frame<'_>> = frames.collect();
+        if let Some(plate) = plate {
+            plate.write(&frames)?;
+        }
+        match plies {
+            Some(plies) if !frames.is_empty() => plies.write(&frames),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Writes the one frame of a static analysis below `dir`, where the scene asks for fields; what it took.
+///
+/// # Errors
+/// As [`Writer::new`] and [`Writer::flush`].
+pub(crate) fn write_static(
+    dir: &OutputDir,
+    model: &Model,
+    solution: &statics::Solution,
+) -> Result<Option<Phase>, Error> {
+    let mut stopwatch = Stopwatch::default();
+    let Some(mut writer) = Writer::new(model, dir, vec![0.0])? else { return Ok(None) };
+    writer.take(0, State::at_rest(&solution.u))?;
+    writer.flush()?;
+    stopwatch.lap(PHASE);
+    Ok(stopwatch.phases().first().cloned())
+}
+
+/// Writes a frame for each natural mode below `dir`, where the scene asks for fields; what it took. The time of a
+/// frame is the number of its mode.
+///
+/// # Errors
+/// As [`Writer::new`] and [`Writer::flush`].
+pub(crate) fn write_modes(dir: &OutputDir, model: &Model, solution: &modes::Solution) -> Result<Option<Phase>, Error> {
+    let mut stopwatch = Stopwatch::default();
+    let found = &solution.modes;
+    let numbers = (1..=found.omega.len()).map(|number| number as f64).collect();
+    let Some(mut writer) = Writer::new(model, dir, numbers)? else { return Ok(None) };
+    let mut u = vec![0.0; model.plate.ndof()];
+    let shapes = found.shapes.chunks_exact(model.constraints.ndof().max(1));
+    for (number, (shape, omega)) in shapes.zip(&found.omega).enumerate() {
+        model.constraints.expand(shape, &mut u);
+        writer.take(number, State { frequency: Some(omega / TAU), ..State::at_rest(&u) })?;
+    }
+    writer.flush()?;
+    stopwatch.lap(PHASE);
+    Ok(stopwatch.phases().first().cloned())
+}
+
+/// A frame that is written.
+struct Frame<'a> {
+    dir: &'a OutputDir,
+    /// Times of all frames up to this one.
+    times: &'a [f64],
+    state: State<'a>,
+}
+
+impl Frame<'_> {
+    fn time(&self) -> f64 {
+        self.times.last().copied().unwrap_or(0.0)
+    }
+
+    /// Writes the file of a series, and the list of its files.
+    fn write(&self, series: Series, grid: &Grid, contents: Contents<'_>) -> Result<(), Error> {
+        let name = series.name();
+        let file = |number: usize| format!("{name}-{number:04}.vtu");
+        let mut field = vec![Array::precise("TimeValue", 1, &[self.time()])];
+        field.extend(self.state.frequency.map(|frequency| Array::precise("frequency_Hz", 1, &[frequency])));
+        grid.write(self.dir, &file(self.times.len()), Contents { field: &field, ..contents })?;
+        let members = (1..).zip(self.times).map(|(number, time)| Member { time: *time, file: file(number) });
+        write_collection(self.dir, &format!("{name}.pvd"), &members.collect::<Vec<_>>())?;
+        Ok(())
+    }
+}

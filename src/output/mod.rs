@@ -1,0 +1,15 @@
+//! What an analysis found, for people and machines: summaries, tables, fields, pictures, the page of a folder of results.
+
+pub mod damage;
+pub(crate) mod fields;
+mod files;
+mod indices;
+pub mod mesh;
+mod modal;
+pub mod modes;
+pub mod pictures;
+pub mod report;
+pub mod statics;
+pub mod summary;
+
+pub use files::{write_plots, write_tables};

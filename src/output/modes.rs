@@ -1,0 +1,88 @@
+//! What a modal analysis says and writes.
+
+use crate::analyses::assembled::Substructures;
+use crate::analyses::modes::Solution;
+use crate::cost::Cost;
+use crate::error::Error;
+use crate::model::Model;
+use crate::words::{append, append_symmetry};
+use fem_io::files::OutputDir;
+use fem_io::tables::{self, Field};
+use serde::Serialize;
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+
+/// The summary of a modal analysis; units are in the key names.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Summary {
+    pub title: String,
+    pub version: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub symmetry: Option<&'static str>,
+    pub unknowns: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub substructures: Option<Substructures>,
+    pub held: bool,
+    pub frequencies_Hz: Vec<f64>,
+    pub effective_masses_kg: Vec<[f64; 3]>,
+    pub elements: u64,
+    pub elements_reused: u64,
+    pub solves: u64,
+    pub warnings: Vec<String>,
+}
+
+impl Summary {
+    /// Sums up a modal analysis.
+    pub fn new(model: &Model, solution: &Solution) -> Self {
+        Self {
+            title: model.scene.title.clone(),
+            version: env!("CARGO_PKG_VERSION"),
+            symmetry: model.plate.symmetry().name(),
+            unknowns: solution.unknowns,
+            substructures: solution.substructures,
+            held: model.held,
+            frequencies_Hz: solution.modes.omega.iter().map(|w| w / TAU).collect(),
+            effective_masses_kg: solution.effective_masses.clone(),
+            elements: solution.counters.elements,
+            elements_reused: solution.counters.elements_reused,
+            solves: solution.counters.solves,
+            warnings: model.warnings.clone(),
+        }
+    }
+
+    /// The summary as people read it.
+    pub fn text(&self, cost: &Cost) -> String {
+        let alone = if self.symmetry.is_some() { ": its symmetric modes alone" } else { "" };
+        let symmetry = append_symmetry(self.symmetry);
+        let divided = append(self.substructures);
+        let mut t = format!("{}\n  model     {} unknowns{divided}{symmetry}{alone}\n", self.title, self.unknowns);
+        t.push_str("  mode   frequency (Hz)   mass along x, y, z (g)\n");
+        for (i, (f, m)) in self.frequencies_Hz.iter().zip(&self.effective_masses_kg).enumerate() {
+            let [x, y, z] = m.map(|m| m * 1e3);
+            let _ = writeln!(t, "  {:>4}   {f:>14.4}   {x:.4}, {y:.4}, {z:.4}", i + 1);
+        }
+        let Self { elements, elements_reused, solves, .. } = self;
+        let _ = writeln!(t, "  work      {elements} element matrices, {elements_reused} reused, {solves} solves");
+        let _ = writeln!(t, "  time      {cost}");
+        self.warnings.iter().for_each(|w| t.push_str(&format!("  warning   {w}\n")));
+        t
+    }
+}
+
+/// Writes `summary.json` and `modes.csv`.
+///
+/// # Errors
+/// A folder that cannot be written, a number that is not finite.
+pub fn write(dir: &OutputDir, solution: &Solution, summary: &Summary) -> Result<(), Error> {
+    tables::write_json(dir, "summary.json", summary)?;
+    let header =
+        ["mode", "frequency_Hz", "omega_rad_s", "effective_mass_x_kg", "effective_mass_y_kg", "effective_mass_z_kg"];
+    let row = |(i, (omega, mass)): (usize, (&f64, &[f64; 3]))| {
+        let numbers = [omega / TAU, *omega].into_iter().chain(*mass).map(Field::Number);
+        [Field::Count(i as u64 + 1)].into_iter().chain(numbers).collect()
+    };
+    let each = solution.modes.omega.iter().zip(&solution.effective_masses).enumerate();
+    tables::write_columns(dir, "modes.csv", &header, each.map(row))?;
+    Ok(())
+}

@@ -1,0 +1,190 @@
+//! What is on the page.
+
+use super::curves::{Curves, curves};
+use super::facts::{self, Column, Fact, Grid, Section};
+use super::folder::{Folder, Picture};
+use crate::error::Error;
+use crate::output::damage::DamageMap;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use fem_io::plot::class_color;
+use fem_io::results::{Table, damaged};
+use minijinja::value::Serde;
+use minijinja::{Environment, Value as Any, context};
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+const TEMPLATE: &str = include_str!("page.html");
+const STYLE: &str = include_str!("page.css");
+/// One after the other in a scope of their own; the first is what the others share.
+const SCRIPTS: [&str; 4] =
+    [include_str!("common.js"), include_str!("charts.js"), include_str!("damage.js"), include_str!("table.js")];
+
+/// A picture with more than this many bytes of SVG is shown by its PNG where that is smaller.
+const LARGE_SVG: usize = 200_000;
+/// Most bytes of the damage map; beyond, cells with small indices are left out.
+const LARGE_MAP: usize = 900_000;
+/// Indices below which cells are left out, one after the other, until the map is small enough.
+const LEAST: [f64; 5] = [0.0, 0.1, 0.3, 0.6, 1.0];
+
+#[derive(Serialize)]
+struct Figure {
+    name: String,
+    caption: String,
+    svg: Option<Any>,
+    png: Option<String>,
+    interactive: bool,
+}
+
+/// The page of a folder of results.
+pub(super) fn render(folder: &Folder) -> Result<String, Error> {
+    let none = Map::new();
+    let summary = folder.summary.as_ref().and_then(Value::as_object).unwrap_or(&none);
+    let text = |key: &str| summary.get(key).and_then(Value::as_str);
+    let history = folder.path.join("history.csv");
+    let curves = folder.history.as_ref().map_or(Ok(None), curves);
+    let curves = curves.map_err(|(column, row, text)| {
+        damaged(&history, format!("row {row}, column {column}: `{text}` is no finite number"))
+    })?;
+    let (damage, least) = folder.damage.as_ref().map_or((Value::Null, 0.0), damage);
+    let colors: Vec<String> = (0..7).map(class_color).collect();
+    let marks = list(summary, "first_damage").filter_map(|d| Some(json!([d.get("time_s")?, d.get("mode")?])));
+    let data = json!({ "curves": curves, "damage": damage, "colors": colors, "marks": marks.collect::<Vec<_>>() });
+    let warnings: Vec<&str> = list(summary, "warnings").filter_map(Value::as_str).collect();
+    let interactive = |name: &str| curves.iter().any(|c: &Curves| c.charts.iter().any(|chart| chart.id == name));
+    let figures: Vec<_> = folder.pictures.iter().map(|picture| figure(picture, interactive(&picture.name))).collect();
+    let others: Vec<&str> = match &curves {
+        Some(curves) => {
+            let drawn = |id: &&str| !folder.pictures.iter().any(|picture| picture.name == *id);
+            curves.charts.iter().map(|chart| chart.id).filter(drawn).collect()
+        }
+        None => Vec::new(),
+    };
+
+    let mut environment = Environment::new();
+    environment.add_template("page.html", TEMPLATE)?;
+    let page = environment.get_template("page.html")?.render(context! {
+        title => text("title").unwrap_or("A run that was stopped"),
+        version => text("version"),
+        finished => folder.summary.is_some(),
+        stopped => text("stopped"),
+        tiles => any(tiles(summary)),
+        warnings => any(warnings),
+        sections => any(facts::sections(summary, "General")),
+        figures => any(figures),
+        curves => curves.is_some(),
+        charts => others,
+        damage => !damage.is_null(),
+        least => least,
+        events => any(folder.events.as_ref().map(table)),
+        modes => any(folder.modes.as_ref().map(table)),
+        cost => any(folder.cost.as_ref().map(cost)),
+        provenance => any(folder.cost.as_ref().and_then(|cost| cost.get("provenance"))),
+        scene => folder.scene.as_deref(),
+        style => Any::from_safe_string(STYLE.to_owned()),
+        data => Any::from_safe_string(harmless(&data)),
+        scripts => SCRIPTS.map(|script| Any::from_safe_string(script.to_owned())).to_vec(),
+    })?;
+    Ok(page)
+}
+
+fn any(value: impl Serialize) -> Any {
+    Any::from(Serde(value))
+}
+
+fn list<'a>(summary: &'a Map<String, Value>, key: &str) -> impl Iterator<Item = &'a Value> + use<'a> {
+    summary.get(key).and_then(Value::as_array).into_iter().flatten()
+}
+
+/// JSON that cannot end the element that it stands in.
+fn harmless(data: &Value) -> String {
+    data.to_string().replace('<', "\\u003c")
+}
+
+fn figure(picture: &Picture, interactive: bool) -> Figure {
+    let png = picture.png.as_ref().filter(|png| picture.svg.len() > LARGE_SVG && 4 * png.len() / 3 < picture.svg.len());
+    let png = png.map(|png| format!("data:image/png;base64,{}", STANDARD.encode(png)));
+    let svg = if png.is_some() { None } else { Some(Any::from_safe_string(picture.svg.clone())) };
+    Figure { name: picture.name.clone(), caption: picture.caption.clone(), svg, png, interactive }
+}
+
+/// What is asked first of an impact.
+fn tiles(summary: &Map<String, Value>) -> Vec<Fact> {
+    let mut tiles = Vec::new();
+    let mut tile = |label: &str, value: Option<f64>, factor: f64, unit: &str| {
+        let shown = |v: f64| facts::digits(four(v * factor));
+        tiles.extend(value.map(|v| Fact { label: label.into(), value: shown(v), unit: unit.into() }));
+    };
+    let impacts: Vec<&Value> = match summary.get("impact") {
+        Some(Value::Array(several)) => several.iter().collect(),
+        one => one.into_iter().collect(),
+    };
+    for impact in impacts {
+        let of = impact.get("name").and_then(Value::as_str).map_or(String::new(), |name| format!(", {name}"));
+        let number = |key: &str| impact.get(key).and_then(Value::as_f64);
+        tile(&format!("impact energy{of}"), number("energy_J"), 1.0, "J");
+        tile(&format!("peak force{of}"), number("peak_force_N"), 1.0, "N");
+        tile(&format!("peak deflection{of}"), number("peak_plate_displacement_m"), 1e3, "mm");
+    }
+    let first = list(summary, "first_damage").filter_map(|d| d.get("time_s")?.as_f64()).reduce(f64::min);
+    tile("first damage", first, 1e3, "ms");
+    if summary.get("first_damage").is_some() && first.is_none() {
+        tiles.push(Fact { label: "first damage".into(), value: "none".into(), unit: String::new() });
+    }
+    tiles
+}
+
+fn four(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+/// A CSV table; numbers have six digits.
+fn table(table: &Table) -> Grid {
+    let number = |text: &str| text.parse::<f64>().ok();
+    let column = |(k, key): (usize, &String)| {
+        let (label, unit, _) = facts::named(key);
+        Column { label, unit: unit.to_owned(), numeric: table.rows.iter().all(|row| number(&row[k]).is_some()) }
+    };
+    let columns: Vec<_> = table.header.iter().enumerate().map(column).collect();
+    let factors: Vec<f64> = table.header.iter().map(|key| facts::named(key).2).collect();
+    let field = |(text, factor): (&String, &f64)| {
+        number(text).map_or_else(|| text.clone(), |value| facts::digits(value * factor))
+    };
+    let rows = table.rows.iter().map(|row| row.iter().zip(&factors).map(field).collect()).collect();
+    Grid { columns, rows }
+}
+
+/// Costs as facts and tables; what says how to run again stands elsewhere.
+fn cost(cost: &Value) -> Vec<Section> {
+    let mut fields = cost.as_object().cloned().unwrap_or_default();
+    fields.remove("provenance");
+    facts::sections(&fields, "")
+}
+
+/// The map for the page, and the index below which cells are left out of it.
+fn damage(map: &DamageMap) -> (Value, f64) {
+    let size = |value: &Value| value.to_string().len();
+    let tries = LEAST.iter().map(|least| (compact(map, *least), *least));
+    tries.reduce(|a, b| if size(&a.0) <= LARGE_MAP { a } else { b }).unwrap_or((Value::Null, 0.0))
+}
+
+/// The cells whose index reaches `least` somewhere, places in mm, the rest as in the file.
+fn compact(map: &DamageMap, least: f64) -> Value {
+    let reaches = |i: &usize| map.places.iter().any(|place| place.index[*i] >= least);
+    let kept: Vec<usize> = (0..map.judged.len()).filter(reaches).collect();
+    let mut position = vec![None; map.judged.len()];
+    kept.iter().enumerate().for_each(|(new, old)| position[*old] = Some(new));
+    let um = |v: f64| (v * 1e6).round() / 1e3;
+    let cells = kept.iter().map(|i| map.corners(map.judged[*i]).map(|p| p.map(um))).collect::<Vec<_>>();
+    let tags = kept.iter().map(|i| map.cells[map.judged[*i] as usize]).collect::<Vec<_>>();
+    let places = map.places.iter().map(|place| {
+        let index: Vec<f64> = kept.iter().map(|i| four(place.index[*i]).min(1e9)).collect();
+        let failed = place.failed.iter().filter_map(|f| Some(json!([position[f.0 as usize]?, f.1, f.2])));
+        json!({ "ply": place.ply, "index": index, "failed": failed.collect::<Vec<_>>() })
+    });
+    json!({
+        "end_s": map.end_s, "modes": map.modes, "plies": map.plies, "cells": cells, "tags": tags,
+        "impacts": map.impacts_m.iter().map(|p| p.map(um)).collect::<Vec<_>>(),
+        "places": places.collect::<Vec<_>>(),
+    })
+}

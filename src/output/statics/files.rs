@@ -1,0 +1,92 @@
+//! What a static analysis writes.
+
+use super::{Node, Summary, nodes};
+use crate::analyses::statics::Solution;
+use crate::error::Error;
+use crate::model::{Model, NamedProfile};
+use fem_core::profile::ProfilePoint;
+use fem_io::files::OutputDir;
+use fem_io::plot::{self, Axis, LinePlot, Series, Style};
+use fem_io::tables::{self, Field};
+
+/// Writes `summary.json`, `displacements.csv` and, per profile, `profile-<name>.csv` with pictures.
+///
+/// # Errors
+/// A folder that cannot be written, a number that is not finite.
+pub fn write(dir: &OutputDir, model: &Model, solution: &Solution, summary: &Summary) -> Result<(), Error> {
+    tables::write_json(dir, "summary.json", summary)?;
+    let nodes = nodes(model, &solution.u);
+    let row = |n: &Node| {
+        let numbers = n.x.into_iter().chain(n.u).map(Field::Number);
+        [Field::Count(n.tag)].into_iter().chain(numbers).collect()
+    };
+    let header = ["node", "x_m", "y_m", "z_m", "u_m", "v_m", "w_m"];
+    tables::write_columns(dir, "displacements.csv", &header, nodes.iter().map(row))?;
+    for (named, points) in model.profiles.iter().zip(&solution.profiles) {
+        write_profile(dir, model, named, points)?;
+    }
+    Ok(())
+}
+
+const PROFILE: [&str; 18] = [
+    "z_m",
+    "ply",
+    "angle_deg",
+    "u_m",
+    "v_m",
+    "w_m",
+    "sxx_Pa",
+    "syy_Pa",
+    "szz_Pa",
+    "sxy_Pa",
+    "syz_Pa",
+    "szx_Pa",
+    "s1_Pa",
+    "s2_Pa",
+    "s3_Pa",
+    "s12_Pa",
+    "s23_Pa",
+    "s13_Pa",
+];
+const EQUILIBRIUM: [&str; 3] = ["szz_equilibrium_Pa", "syz_equilibrium_Pa", "szx_equilibrium_Pa"];
+
+fn write_profile(dir: &OutputDir, model: &Model, named: &NamedProfile, points: &[ProfilePoint]) -> Result<(), Error> {
+    let name = &named.line.name.value;
+    let mut header = PROFILE.to_vec();
+    if named.line.equilibrium {
+        header.extend(EQUILIBRIUM);
+    }
+    let row = |p: &ProfilePoint| {
+        let mut row = vec![
+            Field::Number(p.z),
+            Field::Count(p.ply as u64 + 1),
+            Field::Number(model.laminate.plies[p.ply].angle_deg),
+        ];
+        let numbers = p.displacement.into_iter().chain(p.global.0).chain(p.in_ply.0);
+        row.extend(numbers.chain(p.equilibrium.into_iter().flatten()).map(Field::Number));
+        row
+    };
+    tables::write_columns(dir, &format!("profile-{name}.csv"), &header, points.iter().map(row))?;
+    if !model.scene.output.plots {
+        return Ok(());
+    }
+    // In-plane and transverse stresses differ by orders of magnitude: a picture each.
+    let in_plane = [("\u{3c3}xx", 0), ("\u{3c3}yy", 1), ("\u{3c4}xy", 3)];
+    let transverse = [("\u{3c4}zx", 5), ("\u{3c4}yz", 4), ("\u{3c3}zz", 2)];
+    for (suffix, components) in [("in-plane", in_plane), ("transverse", transverse)] {
+        let series = |(label, k): (&str, usize)| Series {
+            label: label.into(),
+            points: points.iter().map(|p| (p.global.0[k] * 1e-6, p.z * 1e3)).collect(),
+            style: Style::Solid,
+        };
+        let picture = plot::line_plot(&LinePlot {
+            title: format!("{}: {name}", model.scene.title),
+            x: Axis::linear(format!("Stress, {suffix}"), "MPa"),
+            y: Axis::linear("Height", "mm"),
+            series: components.map(series).to_vec(),
+            marks: Vec::new(),
+        })?;
+        picture.write(dir, &format!("profile-{name}-{suffix}"))?;
+    }
+    Ok(())
+}

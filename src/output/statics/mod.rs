@@ -1,0 +1,212 @@
+//! What a static analysis says and writes.
+
+mod files;
+
+pub use files::write;
+
+use crate::analyses::assembled::Substructures;
+use crate::analyses::statics::{Solution, dof_of};
+use crate::analyses::stress::Margin;
+use crate::cost::Cost;
+use crate::model::{Model, NamedProfile};
+use crate::output::summary::Advised;
+use crate::words::{append, append_symmetry, describe_condition, warn_of_condition};
+use fem_core::profile::Resultants;
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// Residual beyond which it is worth a warning.
+const NOTABLE_RESIDUAL: f64 = 1e-4;
+
+fn notable(residual: f64) -> Option<String> {
+    (residual > NOTABLE_RESIDUAL).then(|| {
+        format!("the stiffness is ill-conditioned: the loads are met to {residual:.1e} of their size, displacements hardly better")
+    })
+}
+
+/// The summary of a static analysis; units are in the key names.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Summary {
+    pub title: String,
+    pub version: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub symmetry: Option<&'static str>,
+    pub unknowns: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub substructures: Option<Substructures>,
+    pub factor_entries: usize,
+    pub resultant_N: [f64; 3],
+    pub strain_energy_J: f64,
+    pub largest_deflection: Deflection,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub large_displacements: Option<Newton>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub profiles: Vec<ProfileResultants>,
+    pub margins: Vec<Margin>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub advised: Vec<Advised>,
+    pub residual_relative: f64,
+    pub condition_estimate: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh_error_relative: Option<f64>,
+    pub elements: u64,
+    pub elements_reused: u64,
+    pub warnings: Vec<String>,
+}
+
+/// Largest deflection of a node, and where.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[allow(missing_docs)]
+pub struct Deflection {
+    pub w_m: f64,
+    pub x_m: f64,
+    pub y_m: f64,
+    pub z_m: f64,
+}
+
+/// How large displacements were found.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[allow(missing_docs)]
+pub struct Newton {
+    pub iterations: usize,
+    /// Newton decrement over the work of the load: twice the relative error of the energy before the last step.
+    pub last_decrement: f64,
+}
+
+/// Forces and moments per length at a profile: components 11, 22, 12, and 31, 23 of the shear force.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct ProfileResultants {
+    pub name: String,
+    pub x_m: f64,
+    pub y_m: f64,
+    pub N_N_per_m: [f64; 3],
+    pub M_N: [f64; 3],
+    pub Q_N_per_m: [f64; 2],
+}
+
+impl Summary {
+    /// Sums up a static analysis.
+    pub fn new(model: &Model, solution: &Solution) -> Self {
+        let nodes = nodes(model, &solution.u);
+        let largest = nodes.iter().max_by(|a, b| a.u[2].abs().total_cmp(&b.u[2].abs()));
+        let [w_m, x_m, y_m, z_m] = largest.map_or([0.0; 4], |n| [n.u[2], n.x[0], n.x[1], n.x[2]]);
+        Self {
+            title: model.scene.title.clone(),
+            version: env!("CARGO_PKG_VERSION"),
+            symmetry: model.plate.symmetry().name(),
+            unknowns: solution.unknowns,
+            substructures: solution.substructures,
+            factor_entries: solution.factor_entries,
+            resultant_N: solution.resultant,
+            strain_energy_J: solution.strain_energy,
+            largest_deflection: Deflection { w_m, x_m, y_m, z_m },
+            large_displacements: solution.decrements.as_ref().map(|decrements| Newton {
+                iterations: decrements.len(),
+                last_decrement: decrements.last().copied().unwrap_or(0.0),
+            }),
+            profiles: model.profiles.iter().zip(&solution.resultants).map(in_summary).collect(),
+            margins: solution.margins.clone(),
+            advised: Advised::of(model, |_| None),
+            residual_relative: solution.residual,
+            condition_estimate: solution.condition,
+            mesh_error_relative: solution.mesh_error,
+            elements: solution.counters.elements,
+            elements_reused: solution.counters.elements_reused,
+            warnings: model
+                .warnings
+                .iter()
+                .cloned()
+                .chain(notable(solution.residual))
+                .chain(warn_of_condition(solution.condition))
+                .collect(),
+        }
+    }
+
+    /// The summary as people read it.
+    pub fn text(&self, cost: &Cost) -> String {
+        let d = &self.largest_deflection;
+        let [fx, fy, fz] = self.resultant_N;
+        let mut t = format!(
+            "{}\n  model     {} unknowns{}{}\n  loads     {fx:.4}, {fy:.4}, {fz:.4} N along x, y, z\n  \
+             response  largest deflection {:.6} mm at ({:.4}, {:.4}, {:.4}) mm; strain energy {:.6e} J\n",
+            self.title,
+            self.unknowns,
+            append_symmetry(self.symmetry),
+            append(self.substructures),
+            d.w_m * 1e3,
+            d.x_m * 1e3,
+            d.y_m * 1e3,
+            d.z_m * 1e3,
+            self.strain_energy_J
+        );
+        if let Some(Newton { iterations, last_decrement }) = self.large_displacements {
+            let _ = writeln!(
+                t,
+                "  membrane  large displacements, found in {iterations} Newton iterations (last decrement {last_decrement:.1e} of \
+                 the work of the loads); reserve factors are those of the stresses, not of the loads"
+            );
+        }
+        for m in &self.margins {
+            let _ = writeln!(
+                t,
+                "  margin    {} {}: reserve factor {:.4} in ply {} at ({:.3}, {:.3}) mm",
+                m.criterion,
+                m.mode,
+                m.reserve_factor,
+                m.ply,
+                m.x_m * 1e3,
+                m.y_m * 1e3
+            );
+        }
+        self.advised.iter().for_each(|advised| t.push_str(&format!("  advised   {advised}\n")));
+        let mesh = self.mesh_error_relative.map_or(String::new(), |error| {
+            format!("; mesh about {:.2} % in the energy norm (strains against a smooth fit of them)", 100.0 * error)
+        });
+        let (residual, condition) = (self.residual_relative, describe_condition(self.condition_estimate));
+        let _ = writeln!(t, "  accuracy  residual {residual:.1e} of the loads; {condition}{mesh}");
+        let what = if self.large_displacements.is_some() { "integrations of cells" } else { "element matrices" };
+        let _ = writeln!(t, "  work      {} {what}, {} reused", self.elements, self.elements_reused);
+        let _ = writeln!(t, "  time      {cost}");
+        self.warnings.iter().for_each(|w| t.push_str(&format!("  warning   {w}\n")));
+        t
+    }
+}
+
+fn in_summary((named, resultants): (&NamedProfile, &Resultants)) -> ProfileResultants {
+    ProfileResultants {
+        name: named.line.name.value.clone(),
+        x_m: named.point[0],
+        y_m: named.point[1],
+        N_N_per_m: resultants.membrane,
+        M_N: resultants.bending,
+        Q_N_per_m: resultants.shear,
+    }
+}
+
+/// A node with its displacement.
+struct Node {
+    tag: u64,
+    x: [f64; 3],
+    u: [f64; 3],
+}
+
+/// The nodes above and below each other at the vertices of the mesh, at the outermost levels and the mid-plane.
+fn nodes(model: &Model, u: &[f64]) -> Vec<Node> {
+    let plate = &model.plate;
+    let mut levels = plate.outer_levels().to_vec();
+    levels.extend(plate.mid_level());
+    levels.sort_unstable();
+    levels.dedup();
+    let at = |column: usize, level: usize| -> Option<Node> {
+        let value = |n: u8| plate.dofs_at(column, level, dof_of(n)).next().map(|d| u[d]);
+        let all = [1, 2, 3].map(value);
+        all.iter().any(Option::is_some).then(|| Node {
+            tag: plate.plane.node_tags.get(column).copied().unwrap_or(0),
+            x: [plate.columns[column][0], plate.columns[column][1], plate.levels[level]],
+            u: all.map(|v| v.unwrap_or(0.0)),
+        })
+    };
+    (0..plate.columns.len()).flat_map(|c| levels.iter().filter_map(move |l| at(c, *l))).collect()
+}

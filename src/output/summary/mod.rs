@@ -1,0 +1,422 @@
+//! The summary of a run: for machines (`summary.json`) and for people.
+
+mod text;
+
+use crate::advise::Hindsight;
+use crate::analyses::assembled::Substructures;
+use crate::analyses::impact::{self, ModeShare, Outcome, Sizes};
+use crate::model::{Decision, MEMBRANE, Model};
+use crate::words::name_ply;
+use fem_core::counters::Counters;
+use fem_core::tensor::{Ply, Stress6};
+use fem_failure::scan::{FailureEvent, Place, first_per_mode};
+use fem_io::scene;
+use fem_io::tables::{HistoryRow, ImpactorRow};
+use serde::{Serialize, Serializer};
+use std::fmt::{self, Display};
+
+/// All that is said of a run; units are in the key names.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Summary {
+    pub title: String,
+    pub version: &'static str,
+    pub fidelity: &'static str,
+    pub completed: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stopped: Option<String>,
+    pub model: ModelSize,
+    #[serde(serialize_with = "one_or_list")]
+    pub impact: Vec<Impact>,
+    pub first_damage: Vec<Damage>,
+    pub not_reached: Vec<Margin>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub delamination_threshold: Option<Threshold>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub modes: Vec<ModeShare>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub advised: Vec<Advised>,
+    pub accuracy: Accuracy,
+    pub work: Work,
+    pub warnings: Vec<String>,
+}
+
+/// Sizes.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct ModelSize {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub symmetry: Option<&'static str>,
+    pub quads: usize,
+    pub layers: usize,
+    pub cells: usize,
+    pub nodes: usize,
+    pub plies: usize,
+    pub thickness_mm: f64,
+    pub plate_mass_g: f64,
+    pub unknowns: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub substructures: Option<Substructures>,
+    pub unknowns_marched: usize,
+    pub stiffness_entries: usize,
+    pub factor_entries: usize,
+    pub stress_sites: usize,
+    pub static_stiffness_N_m: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plate_sag_m: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lowest_frequency_Hz: Option<f64>,
+}
+
+/// The response to an impactor; `name` and `start_time_s` where there are several.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Impact {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    pub mass_kg: f64,
+    pub velocity_m_s: f64,
+    pub energy_J: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start_time_s: Option<f64>,
+    pub end_time_s: f64,
+    pub peak_force_N: f64,
+    pub peak_force_time_s: f64,
+    pub peak_plate_displacement_m: f64,
+    pub peak_plate_displacement_over_thickness: f64,
+    pub peak_indentation_m: f64,
+    pub impulse_N_s: f64,
+    pub final_impactor_velocity_m_s: f64,
+    pub contacts: u32,
+}
+
+/// As a scene has it: a single impactor as a table, several as a list.
+fn one_or_list<S: Serializer>(impact: &[Impact], serializer: S) -> Result<S::Ok, S::Error> {
+    match impact {
+        [one] => one.serialize(serializer),
+        several => several.serialize(serializer),
+    }
+}
+
+/// First event of a criterion's mode, with the stress there at that time and how much of it the criterion would bear: 1 where
+/// this mode is what fails first, less where another mode of the criterion failed before.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Damage {
+    pub criterion: String,
+    pub mode: String,
+    pub time_s: f64,
+    pub cell: u64,
+    pub ply: String,
+    pub angle_deg: f64,
+    pub x_m: f64,
+    pub y_m: f64,
+    pub z_m: f64,
+    pub contact_force_N: f64,
+    pub stress: PlyStress,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reserve_factor: Option<f64>,
+}
+
+/// Stress in a ply's axes; of an interface in the plate's.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct PlyStress {
+    pub s11_MPa: f64,
+    pub s22_MPa: f64,
+    pub s33_MPa: f64,
+    pub s12_MPa: f64,
+    pub s23_MPa: f64,
+    pub s13_MPa: f64,
+}
+
+impl From<&Stress6<Ply>> for PlyStress {
+    fn from(s: &Stress6<Ply>) -> Self {
+        let [a, b, c, d, e, f] = s.0.map(|v| v * 1e-6);
+        Self { s11_MPa: a, s22_MPa: b, s33_MPa: c, s12_MPa: d, s23_MPa: e, s13_MPa: f }
+    }
+}
+
+/// The contact force at which the laminate delaminates, by energies and not by stresses, and when it was first reached; by
+/// which impactor, where there are several.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Threshold {
+    pub force_N: f64,
+    pub bending_stiffness_N_m: f64,
+    pub toughness_GIIc_J_m2: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub impactor: Option<String>,
+}
+
+/// A choice that the scene left to the advisor: what it asked before the run, and what came.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs)]
+pub struct Advised {
+    pub effect: &'static str,
+    pub on: bool,
+    pub number: &'static str,
+    pub threshold: f64,
+    pub expected: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reached: Option<f64>,
+}
+
+impl Advised {
+    /// As it was decided; `reached` says what came of an effect.
+    pub(crate) fn of(model: &Model, reached: impl Fn(&str) -> Option<f64>) -> Vec<Self> {
+        let each = model.decisions.iter().map(|decision| {
+            let Decision { effect, on, formula, expected, threshold } = *decision;
+            Self { effect, on, number: formula, threshold, expected, reached: reached(effect) }
+        });
+        each.collect()
+    }
+}
+
+/// As people read it.
+impl Display for Advised {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { effect, number, threshold, expected, .. } = self;
+        let choice = if self.on { "on" } else { "off" };
+        write!(f, "{effect} {choice}: {number} expected {expected:.4}, needed above {threshold}")?;
+        self.reached.map_or(Ok(()), |reached| write!(f, "; reached {reached:.4}"))
+    }
+}
+
+/// Largest index of a mode that did not reach 1.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs)]
+pub struct Margin {
+    pub criterion: String,
+    pub mode: String,
+    pub largest_index: f64,
+    pub time_s: f64,
+    pub ply: String,
+}
+
+/// What is known of the error: where the estimates come from and what they are worth, say [`impact::StepError`] and
+/// [`impact::Residual`]. The step compared with is that of the second march, its force the difference from that of the run.
+#[derive(Debug, Clone, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct Accuracy {
+    pub energy_error_relative: f64,
+    pub step_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stable_step_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step_error_force_L2_relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step_error_peak_force_relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compared_step_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compared_force_L2_relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reduction_error_force_L2_relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reduction_residual_energy_relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reduction_flexibility_error_relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh_error_relative: Option<f64>,
+}
+
+/// Work counters.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[allow(missing_docs)]
+pub struct Work {
+    pub elements: u64,
+    pub factorisations: u64,
+    pub solves: u64,
+    pub steps: u64,
+    pub contact_calls: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub newton_iterations: Option<u64>,
+    pub criterion_calls: u64,
+}
+
+impl From<Counters> for Work {
+    fn from(c: Counters) -> Self {
+        Self {
+            elements: c.elements,
+            factorisations: c.factorisations,
+            solves: c.solves,
+            steps: c.steps,
+            contact_calls: c.contact_calls,
+            newton_iterations: Some(c.iterations).filter(|count| *count > 0),
+            criterion_calls: c.criterion_calls,
+        }
+    }
+}
+
+/// All contact forces together.
+fn force_at(history: &[HistoryRow], t: f64) -> f64 {
+    let after = history.partition_point(|r| r.time_s < t).clamp(1, history.len().max(2) - 1);
+    let (a, b) = (&history[after - 1], &history[after.min(history.len() - 1)]);
+    let share = if b.time_s > a.time_s { (t - a.time_s) / (b.time_s - a.time_s) } else { 0.0 };
+    a.contact_force_n() + share * (b.contact_force_n() - a.contact_force_n())
+}
+
+impl Summary {
+    /// Sums up a run.
+    pub fn new(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Self {
+        let h = &outcome.history;
+        let impact::Accuracy { step, reduction, mesh } = outcome.accuracy;
+        let residual = reduction.and_then(|error| error.residual);
+        let thickness = model.laminate.thickness();
+        let hindsight = Hindsight::of(model, h);
+        let reached = |effect: &str| hindsight.filter(|_| effect == MEMBRANE).map(|h| h.reached);
+        let damage = |e: &FailureEvent| Damage {
+            criterion: e.criterion.clone(),
+            mode: e.mode.to_owned(),
+            time_s: e.time,
+            cell: model.plate.plane.quad_tags[e.cell as usize],
+            ply: name_ply(e.place),
+            angle_deg: angle_deg(model, e),
+            x_m: e.position[0],
+            y_m: e.position[1],
+            z_m: e.position[2],
+            contact_force_N: force_at(h, e.time),
+            stress: (&e.stress).into(),
+            reserve_factor: reserve(model, e),
+        };
+        let margins = outcome.peaks.iter().filter(|p| p.index < 1.0).map(|p| Margin {
+            criterion: p.criterion.clone(),
+            mode: p.mode.to_owned(),
+            largest_index: p.index,
+            time_s: p.time,
+            ply: name_ply(p.site.place),
+        });
+        Self {
+            title: model.scene.title.clone(),
+            version: env!("CARGO_PKG_VERSION"),
+            fidelity: model.scene.fidelity.name(),
+            completed: outcome.stopped.is_none(),
+            stopped: outcome.stopped.clone(),
+            model: ModelSize {
+                symmetry: model.plate.symmetry().name(),
+                quads: model.plate.plane.quads.len(),
+                layers: model.plate.layers(),
+                cells: model.plate.cells(),
+                nodes: model.plate.nodes(),
+                plies: model.laminate.plies.len(),
+                thickness_mm: thickness * 1e3,
+                plate_mass_g: model.areal_mass * model.plate.plane.area() * 1e3,
+                unknowns: sizes.unknowns,
+                substructures: sizes.substructures,
+                unknowns_marched: sizes.marched,
+                stiffness_entries: sizes.stiffness_entries,
+                factor_entries: sizes.factor_entries,
+                stress_sites: outcome.sites,
+                static_stiffness_N_m: sizes.static_stiffness,
+                plate_sag_m: sizes.sag,
+                lowest_frequency_Hz: sizes.lowest_frequency,
+            },
+            impact: model.impactors().iter().enumerate().map(|(i, spec)| impact(model, outcome, i, spec)).collect(),
+            first_damage: first_per_mode(&outcome.events).into_iter().map(damage).collect(),
+            not_reached: margins.collect(),
+            delamination_threshold: model.threshold.map(|threshold| {
+                let first = threshold_reached(model, outcome).min_by(|a, b| a.0.total_cmp(&b.0));
+                Threshold {
+                    force_N: threshold.force,
+                    bending_stiffness_N_m: threshold.bending_stiffness,
+                    toughness_GIIc_J_m2: threshold.giic,
+                    time_s: first.map(|first| first.0),
+                    impactor: first.and_then(|first| first.1.map(str::to_owned)),
+                }
+            }),
+            modes: outcome.modal.as_ref().map_or(Vec::new(), |modal| modal.modes.clone()),
+            advised: Advised::of(model, reached),
+            accuracy: Accuracy {
+                energy_error_relative: outcome.energy_error,
+                step_s: sizes.step,
+                stable_step_s: Some(sizes.longest_step).filter(|s| s.is_finite()),
+                step_error_force_L2_relative: step.map(|e| e.force),
+                step_error_peak_force_relative: step.map(|e| e.peak),
+                compared_step_s: step.map(|e| e.compared),
+                compared_force_L2_relative: step.map(|e| e.difference),
+                reduction_error_force_L2_relative: residual.and_then(|r| r.force),
+                reduction_residual_energy_relative: residual.map(|r| r.energy),
+                reduction_flexibility_error_relative: reduction.map(|e| e.flexibility),
+                mesh_error_relative: mesh,
+            },
+            work: outcome.counters.into(),
+            warnings: {
+                let found = too_deep(model, outcome).chain(hindsight.and_then(|h| h.warning(model)));
+                model.warnings.iter().cloned().chain(found).collect()
+            },
+        }
+    }
+}
+
+/// The response to impactor `i`, which is `spec`.
+fn impact(model: &Model, outcome: &Outcome, i: usize, spec: &scene::Impactor) -> Impact {
+    let peak = |value: fn(&ImpactorRow) -> f64| {
+        let values = outcome.history.iter().map(|r| (value(&r.impactors[i]), r.time_s));
+        values.fold((0.0_f64, 0.0), |m, v| if v.0 > m.0 { v } else { m })
+    };
+    let (peak_force, peak_force_time_s) = peak(|r| r.contact_force_n);
+    let (deflection, _) = peak(|r| r.plate_displacement_m);
+    let last = outcome.history.last();
+    let velocity = last.map_or(0.0, |r| r.impactors[i].impactor_velocity_m_s);
+    let (end, gravity) = (last.map_or(0.0, |r| r.time_s), model.effects.gravity.unwrap_or(0.0));
+    let name = model.label(spec);
+    Impact {
+        name: name.map(str::to_owned),
+        mass_kg: spec.mass,
+        velocity_m_s: spec.velocity,
+        energy_J: 0.5 * spec.mass * spec.velocity.powi(2),
+        start_time_s: name.map(|_| spec.start),
+        end_time_s: end,
+        peak_force_N: peak_force,
+        peak_force_time_s,
+        peak_plate_displacement_m: deflection,
+        peak_plate_displacement_over_thickness: deflection / model.laminate.thickness(),
+        peak_indentation_m: outcome.contacts[i].deepest,
+        impulse_N_s: spec.mass * (spec.velocity - velocity + gravity * end),
+        final_impactor_velocity_m_s: velocity,
+        contacts: outcome.contacts[i].count,
+    }
+}
+
+/// Indentation over thickness above which a plate is no half-space to an impactor; the shipped examples reach 0.05.
+const DEEP: f64 = 0.25;
+
+/// A warning of each contact that went deeper than contact laws are made for.
+fn too_deep(model: &Model, outcome: &Outcome) -> impl Iterator<Item = String> {
+    let thickness = model.laminate.thickness();
+    let deep = outcome.contacts.iter().filter(move |contact| contact.deepest > DEEP * thickness);
+    deep.map(move |contact| {
+        format!(
+            "the impactor is pressed {:.4} mm deep into a plate of {:.4} mm: contact laws hold for indentations that are small \
+             beside the thickness, unless it is the impactor that yields",
+            contact.deepest * 1e3,
+            thickness * 1e3
+        )
+    })
+}
+
+/// When each force that did reach the threshold first did, and whose it is.
+pub(super) fn threshold_reached<'a>(
+    model: &'a Model,
+    outcome: &'a Outcome,
+) -> impl Iterator<Item = (f64, Option<&'a str>)> + use<'a> {
+    let each = model.impactors().iter().zip(&outcome.contacts);
+    each.filter_map(|(impactor, contact)| Some((contact.threshold_time?, model.label(impactor))))
+}
+
+/// Reserve factor of the stress of an event by its criterion, unless that has none.
+fn reserve(model: &Model, event: &FailureEvent) -> Option<f64> {
+    let (_, criterion) = model.criteria.iter().find(|(name, _)| *name == event.criterion)?;
+    let material = &model.materials[usize::from(event.material)];
+    Some(criterion.reserve_factor(&event.stress, material).factor).filter(|factor| factor.is_finite())
+}
+
+pub(super) fn angle_deg(model: &Model, event: &FailureEvent) -> f64 {
+    match event.place {
+        Place::Ply(k) => model.laminate.plies[usize::from(k)].angle_deg,
+        Place::Interface(_) => 0.0,
+    }
+}

@@ -1,0 +1,204 @@
+//! The summary as people read it.
+
+use super::Summary;
+use crate::cost::Cost;
+use crate::words::{append, append_symmetry};
+use std::fmt::Write as _;
+
+/// Errors that are nothing but rounding.
+const EXACT: f64 = 1e-9;
+
+impl Summary {
+    /// The summary as people read it, with what it cost.
+    pub fn text(&self, cost: &Cost) -> String {
+        let mut t = String::new();
+        let mut line = |text: std::fmt::Arguments<'_>| {
+            let _ = t.write_fmt(text);
+            t.push('\n');
+        };
+        let m = &self.model;
+        line(format_args!("{}", self.title));
+        line(format_args!(
+            "  model     {} quads x {} layers, {} plies, {:.4} mm; {} unknowns{}, {} marched ({}){}",
+            m.quads,
+            m.layers,
+            m.plies,
+            m.thickness_mm,
+            m.unknowns,
+            append(m.substructures),
+            m.unknowns_marched,
+            self.fidelity,
+            append_symmetry(m.symmetry)
+        ));
+        for i in &self.impact {
+            let name = i.name.as_ref().map_or(String::new(), |name| format!("{name}: "));
+            let start = i.start_time_s.map_or(String::new(), |t| format!(", there at {:.4} ms", t * 1e3));
+            line(format_args!(
+                "  impact    {name}{:.4} kg at {:.4} m/s = {:.4} J on a plate of {:.4} g{start}",
+                i.mass_kg, i.velocity_m_s, i.energy_J, m.plate_mass_g
+            ));
+            line(format_args!(
+                "  force     {name}peak {:.1} N at {:.4} ms; deflection {:.4} mm = {:.2} thicknesses; {} contact{}",
+                i.peak_force_N,
+                i.peak_force_time_s * 1e3,
+                i.peak_plate_displacement_m * 1e3,
+                i.peak_plate_displacement_over_thickness,
+                i.contacts,
+                if i.contacts == 1 { "" } else { "s" }
+            ));
+        }
+        if self.first_damage.is_empty() {
+            let end = self.impact.first().map_or(0.0, |i| i.end_time_s);
+            line(format_args!("  damage    none until {:.4} ms", end * 1e3));
+        } else {
+            line(format_args!("  damage    first reaching of each mode (plies count from the bottom)"));
+            line(format_args!(
+                "            {:>9}  {:<15} {:<19} {:>7} {:>7}  {:>17}  {:>8}",
+                "time", "criterion", "mode", "ply", "angle", "x, y", "force"
+            ));
+            for d in &self.first_damage {
+                line(format_args!(
+                    "            {:>6.4} ms  {:<15} {:<19} {:>7} {:>5.0}°  {:>7.3}, {:>7.3} mm {:>7.1} N",
+                    d.time_s * 1e3,
+                    d.criterion,
+                    d.mode,
+                    d.ply,
+                    d.angle_deg,
+                    d.x_m * 1e3,
+                    d.y_m * 1e3,
+                    d.contact_force_N
+                ));
+            }
+        }
+        for n in &self.not_reached {
+            line(format_args!(
+                "            not reached: {} {}, largest index {:.3} at {:.4} ms, ply {}",
+                n.criterion,
+                n.mode,
+                n.largest_index,
+                n.time_s * 1e3,
+                n.ply
+            ));
+        }
+        if !self.first_damage.is_empty() {
+            line(format_args!(
+                "  why       stress there at that time, MPa (plies: 1 along the fibres), and what it may grow by"
+            ));
+            line(format_args!(
+                "            {:>9}  {:<15} {:<19} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7}  {:>7}",
+                "time", "criterion", "mode", "11", "22", "33", "12", "23", "13", "reserve"
+            ));
+            for d in &self.first_damage {
+                let s = &d.stress;
+                line(format_args!(
+                    "            {:>6.4} ms  {:<15} {:<19} {:>7.1} {:>7.1} {:>7.1} {:>7.1} {:>7.1} {:>7.1}  {}",
+                    d.time_s * 1e3,
+                    d.criterion,
+                    d.mode,
+                    s.s11_MPa,
+                    s.s22_MPa,
+                    s.s33_MPa,
+                    s.s12_MPa,
+                    s.s23_MPa,
+                    s.s13_MPa,
+                    d.reserve_factor.map_or_else(|| "      -".to_owned(), |r| format!("{r:>7.4}"))
+                ));
+            }
+        }
+        if !self.modes.is_empty() {
+            line(format_args!("  modes     shares of each mode in the deflection at rest and in the plate's energies"));
+            line(format_args!(
+                "            {:>4} {:>12} {:>8} {:>8} {:>8}  {:>17}",
+                "mode", "frequency", "at rest", "strain", "kinetic", "largest part"
+            ));
+            for (k, m) in self.modes.iter().enumerate() {
+                line(format_args!(
+                    "            {:>4} {:>9.1} Hz {:>6.1} % {:>6.1} % {:>6.1} %  {:>14.6} mm",
+                    k + 1,
+                    m.frequency_Hz,
+                    m.static_share * 1e2,
+                    m.strain_share * 1e2,
+                    m.kinetic_share * 1e2,
+                    m.largest_m * 1e3
+                ));
+            }
+        }
+        if let Some(d) = &self.delamination_threshold {
+            let peak = self.impact.iter().map(|i| i.peak_force_N).fold(0.0, f64::max);
+            let by = d.impactor.as_ref().map_or(String::new(), |name| format!(" by {name}"));
+            let reached = match d.time_s {
+                Some(t) => format!("first reached at {:.4} ms{by}", t * 1e3),
+                None => format!("not reached: the peak is {:.2} of it", peak / d.force_N),
+            };
+            line(format_args!(
+                "  delam.    threshold of the contact force {:.1} N (Davies-Olsson, D* {:.4} N m, GIIc {:.1} J/m2), {reached}; \
+                 a threshold, not a stress criterion",
+                d.force_N, d.bending_stiffness_N_m, d.toughness_GIIc_J_m2
+            ));
+        }
+        self.advised.iter().for_each(|advised| line(format_args!("  advised   {advised}")));
+        line(format_args!(
+            "  accuracy  energy error {:.1e} of the impact energy; step {:.4} us{}",
+            self.accuracy.energy_error_relative,
+            self.accuracy.step_s * 1e6,
+            match self.accuracy.stable_step_s {
+                Some(s) => format!(" (stable up to {:.4} us)", s * 1e6),
+                None => " (no stability limit)".to_owned(),
+            }
+        ));
+        for estimate in self.estimates() {
+            line(format_args!("            {estimate}"));
+        }
+        let w = &self.work;
+        let newton = w.newton_iterations.map_or(String::new(), |count| format!(" of {count} Newton iterations"));
+        line(format_args!(
+            "  work      {} element matrices, {} factorisations, {} solves, {} steps{newton}, {} contact calls, {} criterion calls",
+            w.elements, w.factorisations, w.solves, w.steps, w.contact_calls, w.criterion_calls
+        ));
+        line(format_args!("  time      {cost}"));
+        for warning in &self.warnings {
+            line(format_args!("  warning   {warning}"));
+        }
+        if let Some(why) = &self.stopped {
+            line(format_args!("  STOPPED   {why}"));
+        }
+        t
+    }
+
+    /// What is known of the errors of step, reduction and mesh, each in a line.
+    fn estimates(&self) -> Vec<String> {
+        let (a, m) = (&self.accuracy, &self.model);
+        if !self.completed {
+            return vec!["errors of step, reduction and mesh are not estimated: the march has stopped".to_owned()];
+        }
+        let compared = a.compared_step_s.zip(a.compared_force_L2_relative);
+        let step = match (a.step_error_force_L2_relative, compared) {
+            (Some(error), Some((step, change))) => format!(
+                "step: force within about {error:.1e} ({} the step changes it by {change:.1e})",
+                if step > a.step_s { "twice" } else { "half" }
+            ),
+            _ => "step: error not estimated; half the step would show it".to_owned(),
+        };
+        let reduction = if m.unknowns_marched == m.substructures.map_or(m.unknowns, |s| s.masters) {
+            "reduction: none, all unknowns are marched".to_owned()
+        } else {
+            let force = a.reduction_error_force_L2_relative.map_or_else(
+                || "error of the force not estimated".to_owned(),
+                |error| format!("force within about {error:.1e}"),
+            );
+            let energy = a.reduction_residual_energy_relative;
+            let energy = energy.map_or(String::new(), |error| format!(", displacements within {error:.1e} in energy"));
+            let stiffness = a.reduction_flexibility_error_relative;
+            let stiffness = stiffness.map_or(String::new(), |error| match error {
+                rounding if rounding < EXACT => "; stiffness at the contact exact".to_owned(),
+                error => format!("; stiffness at the contact within {error:.1e}"),
+            });
+            format!("reduction: {force}{energy}{stiffness}")
+        };
+        let mesh = a.mesh_error_relative.map_or_else(
+            || "mesh: error not estimated; `fem study` shows it".to_owned(),
+            |error| format!("mesh: at rest under the contact within {error:.1e} in energy norm; layers are not judged"),
+        );
+        vec![step, reduction, mesh]
+    }
+}

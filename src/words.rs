@@ -1,0 +1,48 @@
+//! Words for people that several results share.
+
+use fem_failure::scan::Place;
+use std::fmt::Display;
+
+/// Condition of the stiffness beyond which its digits are worth a warning: six of 16 are left.
+const NOTABLE_CONDITION: f64 = 1e10;
+
+/// "3" for a ply, "3|4" for an interface, counted from 1 at the bottom.
+pub(crate) fn name_ply(place: Place) -> String {
+    match place {
+        Place::Ply(k) => format!("{}", k + 1),
+        Place::Interface(k) => format!("{}|{}", k + 1, k + 2),
+    }
+}
+
+/// ", symmetry quarter", or nothing.
+pub(crate) fn append_symmetry(symmetry: Option<&str>) -> String {
+    append(symmetry.map(|name| format!("symmetry {name}")))
+}
+
+/// ", 12 masters of 4 substructures", or nothing.
+pub(crate) fn append(what: Option<impl Display>) -> String {
+    what.map_or_else(String::new, |what| format!(", {what}"))
+}
+
+/// What the condition of the stiffness costs, in words.
+pub(crate) fn describe_condition(condition: f64) -> String {
+    let lost = condition.log10().clamp(0.0, 16.0);
+    format!("condition {condition:.1e}: rounding costs up to {lost:.0} of 16 digits")
+}
+
+/// A warning of a condition that leaves few digits.
+pub(crate) fn warn_of_condition(condition: f64) -> Option<String> {
+    let enough = condition <= NOTABLE_CONDITION;
+    (!enough).then(|| {
+        format!(
+            "the stiffness has the {}: supports that all but leave a motion free, cells much wider than thick and moduli far \
+             apart do that",
+            describe_condition(condition)
+        )
+    })
+}
+
+/// `bytes` for people.
+pub(crate) fn describe_bytes(bytes: f64) -> String {
+    if bytes < 1e9 { format!("{:.0} MB", bytes * 1e-6) } else { format!("{:.1} GB", bytes * 1e-9) }
+}
