@@ -1,6 +1,6 @@
 //! What no impact can do: seen while it is marched, at next to no cost.
 
-use crate::impact::{Energies, ImpactSystem};
+use crate::impact::{Energies, ImpactSystem, Touch};
 use std::fmt;
 
 /// Change of the total energy, relative to that of the impact, that counts as wrong.
@@ -34,17 +34,6 @@ pub struct Guard {
 struct Bounds {
     indentation: f64,
     speed: f64,
-}
-
-/// One impactor at the end of a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch {
-    /// Indentation, m.
-    pub indentation: f64,
-    /// Contact force, N.
-    pub force: f64,
-    /// Velocity of the impactor, m/s.
-    pub velocity: f64,
 }
 
 /// A bound that is broken. Impactors are counted from 0.

@@ -3,7 +3,6 @@
 mod influence;
 mod newton;
 
-use crate::guard::Touch;
 use crate::vector::dot;
 use fem_core::contact::{Branches, ContactEnergy, ContactHistory, ContactLaw, Indentation};
 use fem_core::structure::Structure;
@@ -71,6 +70,17 @@ pub struct ImpactSystem {
     influence: Influence,
     newton: Newton,
     contact_calls: u64,
+}
+
+/// One impactor at the end of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch {
+    /// Indentation, m.
+    pub indentation: f64,
+    /// Contact force, N.
+    pub force: f64,
+    /// Velocity of the impactor, m/s.
+    pub velocity: f64,
 }
 
 /// Energies of an impact, J.

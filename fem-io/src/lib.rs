@@ -22,6 +22,7 @@
 //! ```
 
 pub mod checkpoint;
+mod document;
 pub mod files;
 pub mod gmsh;
 pub mod materials;

@@ -1,11 +1,11 @@
 //! The materials library: constants as data, each with its source and its status.
 
-use crate::scene::SceneError;
-use crate::scene::keys::{Form, Keys, key, words};
-use crate::scene::material;
-use crate::scene::reader::{Field, Reader};
-use crate::scene::source::{Origin, Place, SceneSource};
-use crate::scene::tree::{Entry, Node, Table};
+pub(crate) mod constants;
+
+use crate::document::keys::{Form, Keys, key, words};
+use crate::document::reader::{Field, Reader};
+use crate::document::source::{Origin, Place, SceneError, SceneSource};
+use crate::document::tree::{Entry, Node, Table};
 use fem_core::material::Material;
 use std::fmt;
 use std::sync::{Arc, LazyLock};
@@ -130,7 +130,7 @@ fn read(name: &str, field: &Field<'_>) -> Result<LibraryMaterial, SceneError> {
     Ok(LibraryMaterial {
         summary: own.required("summary")?.text()?.to_owned(),
         constants,
-        material: material::from_constants(name, &own.of(&table, material::CONSTANTS, field.source())?)?,
+        material: constants::from_constants(name, &own.of(&table, constants::CONSTANTS, field.source())?)?,
         table,
     })
 }

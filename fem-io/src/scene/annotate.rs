@@ -1,10 +1,11 @@
 //! A scene with every key it may have: those that it gives, the others commented out, each with what it means.
 
-use super::keys::{Absent, Form, Key, Plugins};
 use super::root::KEYS;
-use super::source::{Origin, SceneError, SceneSource};
-use super::tree::{Node, Table};
 use super::{Fidelity, foreign, schema};
+use crate::document::keys::{Absent, Form, Key, Plugins};
+use crate::document::source::{Origin, SceneError, SceneSource};
+use crate::document::tree::{Node, Table};
+use crate::materials::LIBRARY;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Arc;
@@ -16,7 +17,7 @@ use std::sync::Arc;
 /// As [`super::parse`].
 pub fn annotated(text: &str, plugins: Plugins<'_>) -> Result<String, SceneError> {
     super::parse(text, Path::new("scene.toml"))?;
-    let source = Arc::new(SceneSource::new(Path::new("scene.toml"), text));
+    let source = Arc::new(SceneSource::new(Path::new("scene.toml"), text, LIBRARY));
     let own = Table::parse(text, Origin::Scene, &source)?;
     let word = |key: &str| match own.get(key).map(|entry| &entry.item.node) {
         Some(Node::Text(text)) => Some(text.as_str()),
@@ -130,7 +131,8 @@ impl Writer<'_> {
                 let Some(plugin) = plugin else { return };
                 // Parameters of the preset belong to the plug-in that it names.
                 let preset = preset.filter(|_| called.is_some() && own.get(name).is_none());
-                let key = |name, about, example| Key { about, ..super::keys::key(name, Form::Text, example, "") };
+                let key =
+                    |name, about, example| Key { about, ..crate::document::keys::key(name, Form::Text, example, "") };
                 self.line(&key(name, plugin.summary, "\"\""), own, preset);
                 for param in plugin.params {
                     self.line(&key(param.name, param.doc, "..."), own, preset);

@@ -1,9 +1,9 @@
 //! The effects that a scene calls for; what it does not name costs nothing.
 
-use super::keys::{Form, Keys, key, words};
-use super::reader::{Field, Reader};
-use super::source::{Located, SceneError};
-use super::tree::Node;
+use crate::document::keys::{Form, Keys, key, words};
+use crate::document::reader::{Field, Reader};
+use crate::document::source::{Located, SceneError};
+use crate::document::tree::Node;
 use fem_core::damping::{Damping, Rayleigh};
 use fem_core::plugin::Dimension;
 

@@ -1,11 +1,12 @@
 //! Every key that holds in a scene: its value, where that comes from, and what it means.
 
-use super::keys::{Absent, Form, Keys, Plugins};
-use super::reader::Reader;
 use super::root::KEYS;
-use super::source::{Origin, Place, SceneError, SceneSource};
-use super::tree::{Item, Node, Table};
 use super::{Merged, foreign, material, run};
+use crate::document::keys::{Absent, Form, Keys, Plugins};
+use crate::document::reader::Reader;
+use crate::document::source::{Origin, Place, SceneError, SceneSource};
+use crate::document::tree::{Item, Node, Table};
+use crate::materials::constants;
 use fem_core::plugin::Kind;
 use serde::Serialize;
 use std::path::Path;
@@ -55,7 +56,7 @@ pub fn explain(path: &Path, plugins: Plugins<'_>) -> Result<Vec<Explained>, Scen
                     None => (field.any_table()?.clone(), Arc::clone(&source)),
                 };
                 walk.source = texts;
-                walk.table(material::KEYS, &constants, &format!("materials.{name}"));
+                walk.table(constants::KEYS, &constants, &format!("materials.{name}"));
             }
             walk.source = Arc::clone(&source);
         } else {
@@ -72,7 +73,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn table(&mut self, keys: &[super::keys::Key], table: &Table, path: &str) {
+    fn table(&mut self, keys: &[crate::document::keys::Key], table: &Table, path: &str) {
         for key in keys {
             let path = if path.is_empty() { key.name.to_owned() } else { format!("{path}.{}", key.name) };
             match (table.get(key.name), key.absent, &key.form) {

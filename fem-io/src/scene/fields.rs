@@ -1,10 +1,10 @@
 //! Fields over the plate: which are written, when, and over which part of it.
 
-use super::keys::{Form, Keys, key, words};
-use super::reader::Field;
 use super::run::March;
-use super::source::{Located, SceneError};
-use super::tree::Node;
+use crate::document::keys::{Form, Keys, key, words};
+use crate::document::reader::Field;
+use crate::document::source::{Located, SceneError};
+use crate::document::tree::Node;
 use fem_core::plugin::Dimension;
 
 /// Fields that are written as files of VTK.

@@ -1,10 +1,10 @@
 //! The laminate: plies from the bottom up and the element layers that hold them.
 
-use super::keys::{Form, Keys, key};
 use super::material;
-use super::reader::{Field, Reader};
-use super::source::{Located, SceneError};
-use super::tree::Node;
+use crate::document::keys::{Form, Keys, key};
+use crate::document::reader::{Field, Reader};
+use crate::document::source::{Located, SceneError};
+use crate::document::tree::Node;
 use fem_core::laminate::{LaminaPly, Laminate};
 use fem_core::layup::{self, LayupPly};
 use fem_core::material::Material;

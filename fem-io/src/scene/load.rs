@@ -1,11 +1,11 @@
 //! Loads of a static analysis.
 
-use super::keys::{Form, Key, Keys, key, words};
-use super::reader::{Field, Reader};
 use super::run::{self, ImpactPoint};
-use super::source::{Located, Place, SceneError};
 use super::support::{self, NodeSet};
-use super::tree::Node;
+use crate::document::keys::{Form, Key, Keys, key, words};
+use crate::document::reader::{Field, Reader};
+use crate::document::source::{Located, Place, SceneError};
+use crate::document::tree::Node;
 use crate::units;
 use fem_core::formula::Formula;
 use fem_core::load::Face;

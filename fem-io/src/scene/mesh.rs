@@ -1,8 +1,8 @@
 //! Where the mesh comes from: a file of gmsh, or a plate that is built in.
 
-use super::keys::{Form, Key, Keys, key, words};
-use super::reader::{Field, Reader};
-use super::source::{Located, SceneError};
+use crate::document::keys::{Form, Key, Keys, key, words};
+use crate::document::reader::{Field, Reader};
+use crate::document::source::{Located, SceneError};
 use crate::units;
 use fem_core::mesh::{Curves, Graded, MAX_CELLS, Outline};
 use fem_core::plugin::Dimension;

@@ -8,29 +8,26 @@ mod annotate;
 mod effects;
 mod explain;
 mod fields;
-pub(crate) mod keys;
 mod laminate;
 mod load;
-pub(crate) mod material;
+mod material;
 mod mesh;
 mod plugin;
-pub(crate) mod reader;
 mod root;
 mod run;
 mod schema;
-pub(crate) mod source;
 mod study;
 mod substructures;
 mod support;
 #[cfg(test)]
 mod tests;
-pub(crate) mod tree;
 
+pub use crate::document::keys::Plugins;
+pub use crate::document::source::{Located, Place, SceneError, SceneSource};
 pub use annotate::annotated;
 pub use effects::{Damage, Delamination, EFFECTS, EffectInfo, Effects, Switch};
 pub use explain::{Explained, explain};
 pub use fields::{FieldCells, Fields, Region, Series};
-pub use keys::Plugins;
 pub use load::{Load, LoadKind, Pressure, ProfileLine};
 pub use mesh::{MeshSource, refined_cells};
 pub use plugin::PluginSpec;
@@ -38,23 +35,23 @@ pub use run::{
     ContactLoad, CriterionSpec, Depth, Failure, Impact, ImpactPoint, Impactor, IndexWatch, March, Output, Window,
 };
 pub use schema::schema;
-pub use source::{Located, Place, SceneError, SceneSource};
 pub use study::{OwnAxis, Quantity, Setting, Study, rewrite};
 pub use substructures::{Masters, Parts, Substructures};
 pub use support::{Couple, Equation, NodeSet, Support, Term};
 
+use crate::document::keys::{Form, Keys, key};
+use crate::document::reader::{Field, Reader};
+use crate::document::source::Origin;
+use crate::document::tree::Table;
+use crate::materials::LIBRARY;
 use fem_core::laminate::Laminate;
 use fem_core::material::Material;
 use fem_core::plate::ZDerivatives;
 use fem_core::symmetry::Group;
-use keys::{Form, Keys, key};
-use reader::{Field, Reader};
 use root::{ANALYSES, KEYS, Which, Z_DERIVATIVES};
-use source::Origin;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
-use tree::Table;
 
 /// A scene, read and checked as far as that is possible without its mesh and its plug-ins. SI units.
 #[derive(Debug, Clone)]
@@ -191,9 +188,9 @@ pub fn read_with(path: &Path, setting: &Setting) -> Result<Scene, SceneError> {
 }
 
 fn read_text(path: &Path) -> Result<String, SceneError> {
-    source::read_text(path).map_err(|why| {
+    crate::document::source::read_text(path).map_err(|why| {
         let message = format!("cannot read the scene `{}`: {why}", path.display());
-        Arc::new(SceneSource::new(path, "")).error(message, "")
+        Arc::new(SceneSource::new(path, "", LIBRARY)).error(message, "")
     })
 }
 
@@ -206,7 +203,8 @@ struct Merged {
 
 impl Merged {
     fn new(text: &str, path: &Path, setting: &str) -> Result<Self, SceneError> {
-        let source = Arc::new(SceneSource::new(path, text).with(Origin::Setting, "setting of the study", setting));
+        let source =
+            Arc::new(SceneSource::new(path, text, LIBRARY).with(Origin::Setting, "setting of the study", setting));
         let own = Table::parse(text, Origin::Scene, &source)?;
         let own = Table::parse(setting, Origin::Setting, &source)?.over(own);
         let fidelity = match Reader::root(&own, KEYS, &source)?.optional("fidelity") {

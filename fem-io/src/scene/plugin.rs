@@ -1,8 +1,8 @@
 //! A plug-in as a scene names it, with its parameters.
 
-use super::reader::Field;
-use super::source::{Located, Place, SceneError};
-use super::tree::Node;
+use crate::document::reader::Field;
+use crate::document::source::{Located, Place, SceneError};
+use crate::document::tree::Node;
 use crate::units;
 use fem_core::plugin::{Params, Value};
 use std::collections::BTreeMap;

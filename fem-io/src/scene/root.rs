@@ -1,8 +1,9 @@
 //! The outermost table of a scene.
 
-use super::keys::{Form, Keys, key, words};
 use super::mesh::MESHES;
-use super::{Fidelity, MODES, effects, laminate, load, material, run, study, substructures, support};
+use super::{Fidelity, MODES, effects, laminate, load, run, study, substructures, support};
+use crate::document::keys::{Form, Keys, key, words};
+use crate::materials::constants;
 use fem_core::plate::ZDerivatives;
 use fem_core::plugin::Kind;
 use fem_core::symmetry::Group;
@@ -37,7 +38,7 @@ pub(super) const KEYS: Keys = &[
         .required(),
     key(
         "materials",
-        Form::Named(&Form::Table(material::KEYS)),
+        Form::Named(&Form::Table(constants::KEYS)),
         r#"{ as4-3502 = { library = "AS4/3502" } }"#,
         "materials under names of your own",
     )

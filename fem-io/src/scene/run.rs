@@ -1,11 +1,11 @@
 //! The impact and its computation: impactor, march, failure, effects, output.
 
 use super::fields::{self, Fields};
-use super::keys::{Form, Keys, key};
 use super::plugin::PluginSpec;
-use super::reader::{Field, Reader};
-use super::source::{Located, Place, SceneError};
-use super::tree::Node;
+use crate::document::keys::{Form, Keys, key};
+use crate::document::reader::{Field, Reader};
+use crate::document::source::{Located, Place, SceneError};
+use crate::document::tree::Node;
 use crate::units;
 use fem_core::plugin::{Dimension, Kind};
 

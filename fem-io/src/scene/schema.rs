@@ -1,10 +1,10 @@
 //! The JSON Schema of a scene, for editors.
 
 use super::Fidelity;
-use super::keys::{Absent, Form, Key, Keys, Plugins};
 use super::root::KEYS;
-use super::source::{Origin, SceneSource};
-use super::tree::{Node, Table};
+use crate::document::keys::{Absent, Form, Key, Keys, Plugins};
+use crate::document::source::{Origin, SceneSource};
+use crate::document::tree::{Node, Table};
 use crate::{materials, units};
 use fem_core::plugin::{Kind, ParamInfo};
 use serde_json::{Map, Value, json};

@@ -1,8 +1,9 @@
 //! What a study of the scene varies and looks at, and the settings that it lays over the scene.
 
-use super::keys::{Form, Keys, key};
-use super::reader::Field;
-use super::source::{Located, SceneError, SceneSource};
+use crate::document::keys::{Form, Keys, key};
+use crate::document::reader::Field;
+use crate::document::source::{Located, SceneError, SceneSource};
+use crate::materials::LIBRARY;
 use fem_core::plugin::Dimension;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -130,7 +131,7 @@ fn axis(field: &Field<'_>) -> Result<OwnAxis, SceneError> {
 }
 
 fn quantity(field: &Field<'_>) -> Result<Located<Quantity>, SceneError> {
-    if let super::tree::Node::Text(_) = field.node() {
+    if let crate::document::tree::Node::Text(_) = field.node() {
         return Ok(field.at(Quantity::Named(field.text()?.to_owned())));
     }
     let table = field.table(STRESS)?;
@@ -155,7 +156,7 @@ pub(super) fn text(setting: &Setting) -> String {
 /// A scene that cannot be read, or a setting that does not fit its keys.
 pub fn rewrite(path: &Path, setting: &Setting) -> Result<String, SceneError> {
     let text = super::read_text(path)?;
-    let source = Arc::new(SceneSource::new(path, &text));
+    let source = Arc::new(SceneSource::new(path, &text, LIBRARY));
     let wrong = |why: String| source.error(why, "");
     let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| wrong(e.to_string()))?;
     for (keys, value) in setting {

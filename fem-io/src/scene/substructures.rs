@@ -1,9 +1,9 @@
 //! How the plate is divided into substructures.
 
-use super::keys::{Form, Keys, key};
-use super::reader::{Field, Reader};
-use super::source::{Located, SceneError};
 use super::support::{self, NodeSet};
+use crate::document::keys::{Form, Keys, key};
+use crate::document::reader::{Field, Reader};
+use crate::document::source::{Located, SceneError};
 use fem_core::dof::Dof;
 
 /// Parts of the plate that are condensed on their outlines before anything else is done with them.

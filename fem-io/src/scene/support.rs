@@ -1,9 +1,9 @@
 //! What holds the plate: fixed unknowns, linear equations between unknowns, coupled sets.
 
-use super::keys::{Form, Key, Keys, key, words};
-use super::reader::{Field, Reader};
-use super::source::{Located, Place, SceneError};
-use super::tree::Node;
+use crate::document::keys::{Form, Key, Keys, key, words};
+use crate::document::reader::{Field, Reader};
+use crate::document::source::{Located, Place, SceneError};
+use crate::document::tree::Node;
 use fem_core::dof::Dof;
 use fem_core::plugin::Dimension;
 use fem_core::support::Levels;

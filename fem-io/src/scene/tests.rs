@@ -1,4 +1,5 @@
 use super::*;
+use crate::document::keys;
 use fem_core::laminate::LaminaPly;
 use fem_core::material::Strength;
 use fem_core::mesh::{Curves, Graded, Outline};

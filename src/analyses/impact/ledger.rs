@@ -2,8 +2,8 @@
 
 use super::ContactRecord;
 use fem_core::time::State;
-use fem_dynamics::guard::{Alarm, Guard, Touch};
-use fem_dynamics::impact::{Energies, ImpactSystem};
+use fem_dynamics::guard::{Alarm, Guard};
+use fem_dynamics::impact::{Energies, ImpactSystem, Touch};
 use fem_io::tables::{HistoryRow, ImpactorRow};
 use serde::{Deserialize, Serialize};
 

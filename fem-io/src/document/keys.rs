@@ -106,7 +106,7 @@ impl Form {
         }
     }
 
-    pub(super) fn fits(&self, node: &Node) -> bool {
+    pub(crate) fn fits(&self, node: &Node) -> bool {
         let holds = |table: &Table, keys: Keys| table.0.iter().all(|e| keys.iter().any(|key| key.name == e.key));
         match (self, node) {
             (Self::Table(keys), Node::Table(table)) => {

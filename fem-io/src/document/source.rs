@@ -73,8 +73,8 @@ impl Default for SceneSource {
 }
 
 impl SceneSource {
-    pub(crate) fn new(path: &Path, text: &str) -> Self {
-        let library = crate::materials::LIBRARY;
+    /// Of the scene `text` in the file `path`, over the materials `library`.
+    pub(crate) fn new(path: &Path, text: &str, library: &str) -> Self {
         Self::default().with(Origin::Scene, path.display(), text).with(Origin::Library, "materials library", library)
     }
 
