@@ -13,6 +13,7 @@ use fem::core::plate::{Plate, ZDerivatives};
 use fem::elements::{HermitePrism, Mass};
 use fem::io::materials;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 fn main() {
     divan::main();
@@ -23,7 +24,7 @@ struct Subject {
     plate: Plate,
     element: HermitePrism,
     constraints: Constraints,
-    pattern: Pattern,
+    pattern: Arc<Pattern>,
 }
 
 fn subject() -> Subject {
@@ -43,7 +44,7 @@ fn subject() -> Subject {
     let stacks = laminate.stacks(&[material]).unwrap();
     let plate = Plate::new(mesh, laminate.levels(), stacks, *element.info(), ZDerivatives::LayerWise).unwrap();
     let constraints = Constraints::eliminate(&elimination_order(&plate), &[]).unwrap();
-    let pattern = pattern(&plate, &constraints);
+    let pattern = Arc::new(pattern(&plate, &constraints));
     Subject { plate, element, constraints, pattern }
 }
 

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::forecast::{Estimate, analysed};
 use crate::model::Model;
-use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, assemble, condense, pattern};
+use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, Symmetric, assemble, condense, pattern};
 use fem_core::counters::Counters;
 use fem_core::functional::Functional;
 use serde::Serialize;
@@ -110,14 +110,13 @@ pub fn structure(
         let (symbolic, memory) = analysed(model, pattern.clone())?;
         let mut matrix = |which| assemble(plate, &**element, constraints, &pattern, which, threads, counters);
         let k = matrix(Matrix::Stiffness)?;
-        let m = if inertia { matrix(Matrix::Mass)? } else { vec![0.0; k.len()] };
+        let m = if inertia { matrix(Matrix::Mass)? } else { Symmetric::zero(pattern.clone()) };
         let factor_entries = symbolic.entries();
         let structure = SparseStructure::new(symbolic, k, m, threads, name);
         return Ok(Assembled { structure, factor_entries, memory, condensation: None });
     };
-    let Condensed { pattern, k, m, way } =
-        condense(plate, &**element, constraints, division, inertia, threads, counters)?;
-    let (symbolic, memory) = analysed(model, Arc::new(pattern))?;
+    let Condensed { k, m, way } = condense(plate, &**element, constraints, division, inertia, threads, counters)?;
+    let (symbolic, memory) = analysed(model, k.pattern().clone())?;
     let factor_entries = symbolic.entries();
     let masters: Vec<usize> = (0..way.ndof()).map(|i| way.independent(i)).collect();
     let structure = SparseStructure::new(symbolic, k, m, threads, move |i| name(masters[i]));

@@ -2,13 +2,14 @@
 
 use crate::error::Error;
 use crate::model::Model;
-use fem_core::assembly::{Matrix, Pattern, assemble, pattern};
+use fem_core::assembly::{Matrix, Symmetric, assemble, pattern};
 use fem_core::counters::Counters;
 use fem_io::files::OutputDir;
 use fem_io::tables::{self, Field};
+use sprs::CsMatView;
 use sprs::io::write_matrix_market_to_bufwrite;
-use sprs::{CsMat, TriMat};
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 /// Writes `stiffness.mtx` and `mass.mtx` (Matrix Market, both triangles; N/m and kg for translations) and
 /// `unknowns.csv`, which names row and column of each. Supports and other equations are eliminated.
@@ -16,12 +17,12 @@ use std::num::NonZeroUsize;
 /// # Errors
 /// A cell that the element refuses, a folder that cannot be written.
 pub fn write(dir: &OutputDir, model: &Model, threads: NonZeroUsize) -> Result<(), Error> {
-    let pattern = pattern(&model.plate, &model.constraints);
+    let pattern = Arc::new(pattern(&model.plate, &model.constraints));
     let mut counters = Counters::default();
     for (matrix, name) in [(Matrix::Stiffness, "stiffness.mtx"), (Matrix::Mass, "mass.mtx")] {
-        let values =
+        let matrix =
             assemble(&model.plate, &*model.element, &model.constraints, &pattern, matrix, threads, &mut counters)?;
-        write_matrix(dir, name, &pattern, &values)?;
+        write_matrix(dir, name, &matrix)?;
     }
     let header = ["row", "unknown", "node", "x_m", "y_m", "z_m"];
     let named: Vec<_> = (0..pattern.ndof()).map(|i| model.plate.locate(model.constraints.original(i))).collect();
@@ -36,20 +37,11 @@ pub fn write(dir: &OutputDir, model: &Model, threads: NonZeroUsize) -> Result<()
     Ok(())
 }
 
-fn write_matrix(dir: &OutputDir, name: &str, pattern: &Pattern, values: &[f64]) -> Result<(), Error> {
-    let n = pattern.ndof();
+fn write_matrix(dir: &OutputDir, name: &str, matrix: &Symmetric) -> Result<(), Error> {
     // Both triangles: readers disagree on which one a symmetric file holds, and sprs writes the other one.
-    let mut full = TriMat::with_capacity((n, n), 2 * values.len());
-    for column in 0..n {
-        let entries = pattern.starts[column]..pattern.starts[column + 1];
-        for (row, value) in pattern.rows[entries.clone()].iter().zip(&values[entries]) {
-            full.add_triplet(*row, column, *value);
-            if *row != column {
-                full.add_triplet(column, *row, *value);
-            }
-        }
-    }
-    let full: CsMat<f64> = full.to_csc();
+    let full = matrix.full()?;
+    let (symbolic, values) = full.parts();
+    let full = CsMatView::new_csc(full.shape(), symbolic.col_ptr(), symbolic.row_idx(), values);
     dir.write(name, |out| write_matrix_market_to_bufwrite(out, &full))?;
     Ok(())
 }

@@ -9,6 +9,7 @@ use fem_core::counters::Counters;
 use fem_core::structure::Structure;
 use fem_dynamics::modes::{self, Modes};
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 /// The lowest modes of a model and what finding them cost.
 #[derive(Debug, Clone)]
@@ -47,9 +48,8 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Solut
         None => None,
         Some(_) => {
             let Model { plate, element, constraints, .. } = model;
-            let pattern = pattern(plate, constraints);
-            let m = assemble(plate, &**element, constraints, &pattern, Matrix::Mass, threads, &mut counters)?;
-            Some((pattern, m))
+            let pattern = Arc::new(pattern(plate, constraints));
+            Some(assemble(plate, &**element, constraints, &pattern, Matrix::Mass, threads, &mut counters)?)
         }
     };
     let mut momenta = [0, 1, 2].map(|_| vec![0.0; n]);
@@ -63,7 +63,7 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Solut
         let moves: Vec<f64> = (0..n).map(moves).collect();
         match &whole {
             None => assembled.structure.add_mass(1.0, &moves, momentum),
-            Some((pattern, m)) => pattern.add_product(m, 1.0, &moves, momentum),
+            Some(m) => m.add_product(1.0, &moves, momentum),
         }
     }
     let mass = |shape: &[f64], m: &[f64]| shape.iter().zip(m).map(|(a, b)| a * b).sum::<f64>().powi(2);

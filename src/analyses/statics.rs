@@ -194,10 +194,9 @@ fn nonlinear(
     stopwatch: &mut Stopwatch,
 ) -> Result<Found, Error> {
     let Model { plate, element, constraints, .. } = model;
-    let pattern = Arc::new(pattern(plate, constraints));
-    let (symbolic, _) = analysed(model, pattern.clone())?;
+    let (symbolic, _) = analysed(model, Arc::new(pattern(plate, constraints)))?;
     let factor_entries = symbolic.entries();
-    let mut large = LargePlate::new(plate, element.clone(), constraints, &pattern).ok_or(Error::SmallOnly)?;
+    let mut large = LargePlate::new(plate, element.clone(), constraints).ok_or(Error::SmallOnly)?;
     // A plate that is hot and has not moved is pressed in its plane more than it bears.
     let start = match model.effects.cure {
         Some(_) => linear(model, f, threads, counters, stopwatch)?.independent,

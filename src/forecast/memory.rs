@@ -65,7 +65,7 @@ impl Estimate {
     /// Of `model`, whose matrices have this pattern; from counts alone.
     fn new(model: &Model, symbolic: &Symbolic) -> Self {
         let (n, all) = (symbolic.pattern().ndof() as f64, model.plate.ndof() as f64);
-        let entries = symbolic.pattern().rows.len() as f64;
+        let entries = symbolic.pattern().entries() as f64;
         let vectors = match &model.plan {
             Plan::Impact(impact) if impact.reduction.is_some() => vectors(&impact.spec.reduction.params),
             Plan::Modes { count } => 2 * count,

@@ -1,7 +1,8 @@
 //! PᵀAP of sparse matrices.
 
-use super::Pattern;
+use super::{Pattern, Symmetric};
 use crate::words::prolongation::Prolongation;
+use std::sync::Arc;
 
 /// The pattern of PᵀAP for matrices A of the pattern `fine`: all unknowns of a node column have the same rows.
 pub(super) fn pattern(fine: &Pattern, p: &Prolongation) -> Pattern {
@@ -17,7 +18,7 @@ pub(super) fn pattern(fine: &Pattern, p: &Prolongation) -> Pattern {
     let mut seen = vec![usize::MAX; count];
     for j in 0..fine.ndof() {
         let Some(at) = block(j) else { continue };
-        for i in &fine.rows[fine.starts[j]..fine.starts[j + 1]] {
+        for i in &fine.rows()[fine.starts()[j]..fine.starts()[j + 1]] {
             match block(*i) {
                 Some(other) if other > at && seen[other] != at => {
                     seen[other] = at;
@@ -42,32 +43,35 @@ pub(super) fn pattern(fine: &Pattern, p: &Prolongation) -> Pattern {
 }
 
 /// PᵀAP on its pattern `coarse`.
-pub(super) fn product(fine: &Pattern, values: &[f64], p: &Prolongation, coarse: &Pattern) -> Vec<f64> {
-    let mut out = vec![0.0; coarse.rows.len()];
+pub(super) fn product(fine: &Symmetric, p: &Prolongation, coarse: &Arc<Pattern>) -> Symmetric {
+    let mut sum = Symmetric::zero(coarse.clone());
+    let out = sum.lower_mut().val_mut();
+    let (starts, coarse_rows) = (coarse.starts(), coarse.rows());
+    let fine = fine.lower();
     // Where the rows of a block's first column lie; those of its k-th column lie k places before.
     let mut place = vec![0; p.columns()];
     let mut blocks = p.blocks().windows(2);
     let mut block = 0..0;
     let mut add = |row: usize, column: usize, value: f64, block: &std::ops::Range<usize>, place: &[usize]| {
-        let start = coarse.starts[column];
+        let start = starts[column];
         let at = match block.contains(&column) {
             true => start + place[row] - (column - block.start),
-            false => start + coarse.rows[start..coarse.starts[column + 1]].partition_point(|r| *r < row),
+            false => start + coarse_rows[start..starts[column + 1]].partition_point(|r| *r < row),
         };
         out[at] += value;
     };
-    for j in 0..fine.ndof() {
+    for j in 0..fine.ncols() {
         let Some((first, _)) = p.row(j).first() else { continue };
         while *first >= block.end {
             let Some(next) = blocks.next() else { break };
             block = next[0]..next[1];
             if !block.is_empty() {
-                let rows = &coarse.rows[coarse.starts[block.start]..coarse.starts[block.start + 1]];
+                let rows = &coarse_rows[starts[block.start]..starts[block.start + 1]];
                 rows.iter().enumerate().for_each(|(at, row)| place[*row] = at);
             }
         }
-        let range = fine.starts[j]..fine.starts[j + 1];
-        for (i, a) in fine.rows[range.clone()].iter().zip(&values[range]).filter(|(_, a)| **a != 0.0) {
+        let range = fine.col_range(j);
+        for (i, a) in fine.row_idx()[range.clone()].iter().zip(&fine.val()[range]).filter(|(_, a)| **a != 0.0) {
             for (row, pi) in p.row(*i) {
                 for (column, pj) in p.row(j) {
                     let value = pi * a * pj;
@@ -81,5 +85,5 @@ pub(super) fn product(fine: &Pattern, values: &[f64], p: &Prolongation, coarse: 
             }
         }
     }
-    out
+    sum
 }

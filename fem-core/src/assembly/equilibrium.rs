@@ -1,6 +1,6 @@
 //! Equilibrium of a plate under large displacements and loads at rest.
 
-use super::{AssemblyError, Cholesky, FactorError, LargePlate, Symbolic, condition};
+use super::{AssemblyError, Cholesky, FactorError, LargePlate, Symbolic, Symmetric, condition};
 use std::fmt;
 use std::num::NonZeroUsize;
 
@@ -85,8 +85,7 @@ impl LargePlate {
         threads: NonZeroUsize,
     ) -> Result<Equilibrium, EquilibriumError> {
         let n = self.ndof();
-        let pattern = symbolic.pattern().clone();
-        let mut tangent = vec![0.0; pattern.rows.len()];
+        let mut tangent = Symmetric::zero(symbolic.pattern().clone());
         let mut factor = Cholesky::new(symbolic, threads);
         let (mut force, mut step, mut tried) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         // Where the tangent was positive last, and how often a step may still be taken back halfway to there.
@@ -94,7 +93,7 @@ impl LargePlate {
         let mut decrements: Vec<f64> = Vec::new();
         for _ in 0..MOST {
             let energy = self.internal(&u, &mut force, Some(&mut tangent)).map_err(EquilibriumError::Assembly)?;
-            match factor.factorise(&tangent) {
+            match factor.factorise(tangent.lower()) {
                 Err(FactorError::NotPositive { .. }) if retreats > 0 && !decrements.is_empty() => {
                     retreats -= 1;
                     u.iter_mut().zip(&last).for_each(|(u, last)| *u = 0.5 * (*u + last));
@@ -120,11 +119,11 @@ impl LargePlate {
                 let energy = self.internal(&u, &mut force, None).map_err(EquilibriumError::Assembly)?;
                 step.iter_mut().zip(load).zip(&force).for_each(|((rest, load), force)| *rest = load - force);
                 force.fill(0.0);
-                pattern.add_product(&tangent, 1.0, &u, &mut force);
+                tangent.add_product(1.0, &u, &mut force);
                 let scale = dot(load, load).max(dot(&force, &force)).max(f64::MIN_POSITIVE);
                 let residual = (dot(&step, &step) / scale).sqrt();
                 let mut solves = decrements.len() as u64;
-                let condition = condition::estimate(&pattern, &tangent, |x| {
+                let condition = condition::estimate(&tangent, |x| {
                     factor.solve(x, 1);
                     solves += 1;
                 });

@@ -1,7 +1,7 @@
 //! Forces of free strains, such as those of a change of temperature.
 
 use super::AssemblyError;
-use super::pattern::CellMap;
+use super::cell_map::CellMap;
 use crate::contracts::element::{Element, Scratch};
 use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;

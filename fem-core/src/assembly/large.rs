@@ -1,12 +1,11 @@
 //! Internal forces and tangents of a plate under large displacements.
 
-use super::pattern::CellMap;
-use super::{AssemblyError, Pattern};
+use super::cell_map::CellMap;
+use super::{AssemblyError, Symmetric};
 use crate::contracts::element::{Element, ElementError, Scratch};
 use crate::contracts::large::LargeDisplacement;
 use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;
-use std::sync::Arc;
 
 /// A plate whose cells take large displacements: f(ũ) = Cᵀ f(C ũ) and its derivative on the pattern of K.
 ///
@@ -17,7 +16,6 @@ pub struct LargePlate {
     plate: Plate,
     element: Box<dyn Element>,
     constraints: Constraints,
-    pattern: Arc<Pattern>,
     /// Cells, and how many each stands for, with their unknowns.
     cells: Vec<(usize, f64, CellMap)>,
     /// Displacements before elimination.
@@ -36,13 +34,8 @@ struct Work {
 }
 
 impl LargePlate {
-    /// `pattern` is that of K of the same plate; `None` where the element knows no large displacements.
-    pub fn new(
-        plate: &Plate,
-        element: Box<dyn Element>,
-        constraints: &Constraints,
-        pattern: &Arc<Pattern>,
-    ) -> Option<Self> {
+    /// `None` where the element knows no large displacements.
+    pub fn new(plate: &Plate, element: Box<dyn Element>, constraints: &Constraints) -> Option<Self> {
         element.large_displacements()?;
         let cells = plate.kept_cells().map(|(cell, weight)| {
             let mut map = CellMap::default();
@@ -55,7 +48,6 @@ impl LargePlate {
             plate: plate.clone(),
             element,
             constraints: constraints.clone(),
-            pattern: pattern.clone(),
             all: vec![0.0; plate.ndof()],
             integrated: 0,
             work: Work { u: vec![0.0; n], force: vec![0.0; n], tangent: vec![0.0; n * n], ..Work::default() },
@@ -77,7 +69,8 @@ impl LargePlate {
         self.integrated
     }
 
-    /// Internal force at the independent displacements `u`, and the tangent where it is asked for; returns the strain energy, J.
+    /// Internal force at the independent displacements `u`, and the tangent on the pattern of K where it is asked for; returns
+    /// the strain energy, J.
     ///
     /// # Errors
     /// A cell that the element refuses, displacements that are not finite.
@@ -85,14 +78,14 @@ impl LargePlate {
         &mut self,
         u: &[f64],
         force: &mut [f64],
-        mut tangent: Option<&mut [f64]>,
+        mut tangent: Option<&mut Symmetric>,
     ) -> Result<f64, AssemblyError> {
-        let Self { plate, element, constraints, pattern, cells, all, work, integrated } = self;
+        let Self { plate, element, constraints, cells, all, work, integrated } = self;
         *integrated += cells.len() as u64;
         constraints.expand(u, all);
         force.fill(0.0);
         if let Some(tangent) = &mut tangent {
-            tangent.fill(0.0);
+            tangent.lower_mut().val_mut().fill(0.0);
         }
         let mut energy = 0.0;
         for (cell, weight, map) in cells {
@@ -108,7 +101,7 @@ impl LargePlate {
             energy += *weight * one;
             map.scatter_vector(&work.force, *weight, force);
             if let Some(tangent) = &mut tangent {
-                map.scatter(pattern, &work.tangent, *weight, tangent);
+                map.scatter(&work.tangent, *weight, tangent);
             }
         }
         Ok(energy)

@@ -1,6 +1,10 @@
 //! Sparse matrices of a plate: pattern once, values many times, Cholesky with its storage reused (feature `assembly`).
+//!
+//! faer carries them: a [`Pattern`] is its symbolic matrix, [`Symmetric::lower`] its matrix, and whatever it offers goes on from
+//! there. Threads, equal cells, substructures and the factorisation are ours.
 
 mod alike;
+mod cell_map;
 mod coarse;
 mod condition;
 mod equilibrium;
@@ -12,24 +16,28 @@ mod pattern;
 mod sparse;
 mod stretch;
 mod substructure;
+mod symmetric;
 
 pub use equilibrium::{Equilibrium, EquilibriumError};
 pub use factor::{Cholesky, FactorError, Symbolic};
 pub use free::free_forces;
 pub use large::LargePlate;
 pub use ordering::nested_dissection;
-pub use pattern::{AssemblyError, Pattern, pattern};
+pub use pattern::{Pattern, PatternError, pattern};
 pub use sparse::SparseStructure;
 pub use stretch::Stretch;
 pub use substructure::{Condensation, CondensationError, Condensed, Division, condense};
+pub use symmetric::Symmetric;
 
 use crate::contracts::element::{Element, ElementError, Scratch};
 use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;
 use crate::words::counters::Counters;
 use alike::Alike;
-use pattern::CellMap;
+use cell_map::CellMap;
+use std::fmt;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 /// Which matrix to assemble.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,6 +46,24 @@ pub enum Matrix {
     Stiffness,
     Mass,
 }
+
+/// An element matrix that could not be made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AssemblyError {
+    /// Number of the quad in the file.
+    pub quad_tag: u64,
+    /// Layer of cells from the bottom.
+    pub layer: usize,
+    /// What the element said.
+    pub error: ElementError,
+}
+
+impl fmt::Display for AssemblyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "cell {} of the mesh, layer {}: {}", self.quad_tag, self.layer + 1, self.error)
+    }
+}
+impl std::error::Error for AssemblyError {}
 
 /// Matrices made side by side before they are added.
 const BATCH: usize = 64;
@@ -51,7 +77,7 @@ pub fn elimination_order(plate: &Plate) -> Vec<usize> {
     order
 }
 
-/// Values of K or M on `pattern`.
+/// K or M of `plate` on its [`pattern()`].
 ///
 /// Cells of equal shape and plies share one matrix; of those that a symmetry maps onto each other one counts for all.
 /// Threads share the integration only; matrices are added in one order,
@@ -63,13 +89,13 @@ pub fn assemble(
     plate: &Plate,
     element: &dyn Element,
     constraints: &Constraints,
-    pattern: &Pattern,
+    pattern: &Arc<Pattern>,
     matrix: Matrix,
     threads: NonZeroUsize,
     counters: &mut Counters,
-) -> Result<Vec<f64>, AssemblyError> {
+) -> Result<Symmetric, AssemblyError> {
     let size = element.info().ndof().pow(2);
-    let mut values = vec![0.0; pattern.rows.len()];
+    let mut sum = Symmetric::zero(pattern.clone());
     let mut map = CellMap::default();
     let alike = Alike::of(plate);
     let mut batch = vec![0.0; size * BATCH.min(alike.len())];
@@ -121,10 +147,10 @@ pub fn assemble(
         for (i, a) in batch.chunks_exact(size).enumerate() {
             for (cell, weight) in alike.cells(first + i) {
                 map.set(plate, constraints, *cell as usize);
-                map.scatter(pattern, a, *weight, &mut values);
+                map.scatter(a, *weight, &mut sum);
             }
         }
     }
     counters.elements_reused += (alike.total() - alike.len()) as u64;
-    Ok(values)
+    Ok(sum)
 }

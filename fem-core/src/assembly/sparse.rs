@@ -1,6 +1,6 @@
 //! A plate's K and M as a [`Structure`].
 
-use super::{Cholesky, FactorError, LargePlate, Pattern, Symbolic, coarse, condition};
+use super::{Cholesky, FactorError, LargePlate, Symbolic, Symmetric, coarse, condition};
 use crate::contracts::structure::Coarse;
 use crate::contracts::structure::{Nonlinear, SolveError, Structure, Tangent};
 use crate::words::damping::Rayleigh;
@@ -20,14 +20,13 @@ enum Factored {
 
 /// Sparse stiffness and mass on one pattern, with one factorisation kept.
 pub struct SparseStructure {
-    pattern: Arc<Pattern>,
-    k: Vec<f64>,
-    m: Vec<f64>,
+    k: Symmetric,
+    m: Symmetric,
     /// M without its zeros: the components of a displacement have no inertia in common.
-    inertia: (Pattern, Vec<f64>),
+    inertia: Symmetric,
     factor: Cholesky,
     factored: Factored,
-    combined: Vec<f64>,
+    combined: Symmetric,
     /// Of a tangent, which comes with its force.
     force: Vec<f64>,
     prolongation: Option<Prolongation>,
@@ -41,23 +40,22 @@ pub struct SparseStructure {
 
 impl fmt::Debug for SparseStructure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("SparseStructure").field("ndof", &self.pattern.ndof()).field("entries", &self.k.len()).finish()
+        f.debug_struct("SparseStructure").field("ndof", &self.k.ndof()).field("entries", &self.entries()).finish()
     }
 }
 
 impl SparseStructure {
-    /// `k` and `m` on the pattern of `symbolic`, factorised by `threads`; `name(column)` describes an unknown in messages.
+    /// `k` and `m`, both on the pattern of `symbolic`, factorised by `threads`; `name(column)` describes an unknown in messages.
     pub fn new(
         symbolic: Symbolic,
-        k: Vec<f64>,
-        m: Vec<f64>,
+        k: Symmetric,
+        m: Symmetric,
         threads: NonZeroUsize,
         name: impl Fn(usize) -> String + Send + 'static,
     ) -> Self {
-        let pattern = symbolic.pattern().clone();
         Self {
             name: Box::new(name),
-            combined: vec![0.0; k.len()],
+            combined: Symmetric::zero(symbolic.pattern().clone()),
             force: Vec::new(),
             prolongation: None,
             large: None,
@@ -65,8 +63,7 @@ impl SparseStructure {
             threads,
             factor: Cholesky::new(symbolic, threads),
             factored: Factored::Nothing,
-            inertia: pattern.compact(&m),
-            pattern,
+            inertia: m.compact(),
             k,
             m,
             factorisations: 0,
@@ -84,11 +81,6 @@ impl SparseStructure {
         self.large = large;
     }
 
-    /// The pattern of K and M.
-    pub fn shared_pattern(&self) -> &Arc<Pattern> {
-        &self.pattern
-    }
-
     /// Gives the structure viscous damping.
     pub fn damp(&mut self, damping: Rayleigh) {
         self.damping = Some(damping);
@@ -96,12 +88,12 @@ impl SparseStructure {
 
     /// Entries of one triangle of K.
     pub fn entries(&self) -> usize {
-        self.k.len()
+        self.k.pattern().entries()
     }
 
-    /// The pattern with the values of K and M.
-    pub fn matrices(&self) -> (&Pattern, &[f64], &[f64]) {
-        (&self.pattern, &self.k, &self.m)
+    /// K and M.
+    pub fn matrices(&self) -> (&Symmetric, &Symmetric) {
+        (&self.k, &self.m)
     }
 
     /// Condition number of K with its unknowns in units that make its diagonal 1, estimated: displacements under loads at
@@ -112,7 +104,7 @@ impl SparseStructure {
     pub fn condition(&mut self) -> Result<f64, SolveError> {
         self.factorise(Factored::Shifted(0.0))?;
         let (factor, solves) = (&mut self.factor, &mut self.solves);
-        Ok(condition::estimate(&self.pattern, &self.k, |x| {
+        Ok(condition::estimate(&self.k, |x| {
             factor.solve(x, 1);
             *solves += 1;
         }))
@@ -122,12 +114,13 @@ impl SparseStructure {
         if self.factored == what {
             return Ok(());
         }
-        let values = match what {
+        let matrix = match what {
             Factored::Mass => &self.m,
             Factored::Shifted(0.0) | Factored::Nothing => &self.k,
             Factored::Tangent => &self.combined,
             Factored::Shifted(shift) => {
-                for ((c, k), m) in self.combined.iter_mut().zip(&self.k).zip(&self.m) {
+                let combined = self.combined.lower_mut().val_mut().iter_mut();
+                for ((c, k), m) in combined.zip(self.k.lower().val()).zip(self.m.lower().val()) {
                     *c = k + shift * m;
                 }
                 &self.combined
@@ -135,7 +128,7 @@ impl SparseStructure {
         };
         self.factored = Factored::Nothing;
         self.factorisations += 1;
-        self.factor.factorise(values).map_err(|e| match e {
+        self.factor.factorise(matrix.lower()).map_err(|e| match e {
             FactorError::NotPositive { column } if what == Factored::Mass => {
                 SolveError(format!("{} has no inertia", (self.name)(column)))
             }
@@ -156,7 +149,7 @@ impl SparseStructure {
 
 impl Structure for SparseStructure {
     fn ndof(&self) -> usize {
-        self.pattern.ndof()
+        self.k.ndof()
     }
 
     fn name(&self, i: usize) -> String {
@@ -164,11 +157,11 @@ impl Structure for SparseStructure {
     }
 
     fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {
-        self.pattern.add_product(&self.k, scale, x, y);
+        self.k.add_product(scale, x, y);
     }
 
     fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
-        self.inertia.0.add_product(&self.inertia.1, scale, x, y);
+        self.inertia.add_product(scale, x, y);
     }
 
     fn add_damping(&self, scale: f64, x: &[f64], y: &mut [f64]) {
@@ -227,9 +220,9 @@ impl Structure for SparseStructure {
 
     fn coarse(&self) -> Result<Option<Coarse>, SolveError> {
         let Some(p) = &self.prolongation else { return Ok(None) };
-        let pattern = Arc::new(coarse::pattern(&self.pattern, p));
-        let k = coarse::product(&self.pattern, &self.k, p, &pattern);
-        let m = coarse::product(&self.inertia.0, &self.inertia.1, p, &pattern);
+        let pattern = Arc::new(coarse::pattern(self.k.pattern(), p));
+        let k = coarse::product(&self.k, p, &pattern);
+        let m = coarse::product(&self.inertia, p, &pattern);
         let symbolic = Symbolic::new(pattern).map_err(|e| SolveError(e.to_string()))?;
         let structure = Self::new(symbolic, k, m, self.threads, |i| format!("coarse unknown {}", i + 1));
         Ok(Some(Coarse { structure: Box::new(structure), prolongation: p.clone() }))
@@ -252,10 +245,11 @@ impl Nonlinear for SparseStructure {
         large.internal(u, &mut self.force, Some(&mut self.combined)).map_err(|e| SolveError(e.to_string()))?;
         let damping = self.damping.unwrap_or_default();
         let cm = cm + cc * damping.mass;
-        self.combined.iter_mut().zip(&self.m).for_each(|(k, m)| *k += cm * m);
+        let combined = self.combined.lower_mut().val_mut();
+        combined.iter_mut().zip(self.m.lower().val()).for_each(|(k, m)| *k += cm * m);
         if damping.stiffness != 0.0 {
             let ck = cc * damping.stiffness;
-            self.combined.iter_mut().zip(&self.k).for_each(|(tangent, k)| *tangent += ck * k);
+            combined.iter_mut().zip(self.k.lower().val()).for_each(|(tangent, k)| *tangent += ck * k);
         }
         self.factored = Factored::Nothing;
         self.factorise(Factored::Tangent)

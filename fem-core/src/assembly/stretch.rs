@@ -1,7 +1,7 @@
 //! How deflections stretch a plate: von Kármán's quadratic strains of given displacement fields.
 
 use super::AssemblyError;
-use super::pattern::CellMap;
+use super::cell_map::CellMap;
 use crate::contracts::element::{Cell, Element, ElementError, positive};
 use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;

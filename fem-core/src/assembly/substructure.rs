@@ -1,9 +1,10 @@
 //! Substructures: parts of a plate condensed on their outlines, equal parts once (AFWAL-TR-87-4117, eqs 27-30).
 
 use super::alike::GRAIN;
-use super::pattern::{CellMap, Cliques};
+use super::cell_map::CellMap;
+use super::pattern::Cliques;
 use super::{
-    AssemblyError, Cholesky, FactorError, Matrix, Pattern, Symbolic, assemble, elimination_order, ordering, pattern,
+    AssemblyError, Cholesky, FactorError, Matrix, Symbolic, Symmetric, assemble, elimination_order, ordering, pattern,
 };
 use crate::contracts::element::Element;
 use crate::plates::constraint::Constraints;
@@ -29,12 +30,10 @@ pub struct Division {
 /// K* = TᵀKT and M* = TᵀMT of a plate on its masters, and the way back.
 #[derive(Debug)]
 pub struct Condensed {
-    /// Pattern of both.
-    pub pattern: Pattern,
-    /// Values of K*.
-    pub k: Vec<f64>,
-    /// Values of M*; zero where inertia was not wanted.
-    pub m: Vec<f64>,
+    /// K*.
+    pub k: Symmetric,
+    /// M* on the same pattern; zero where inertia was not wanted.
+    pub m: Symmetric,
     /// From the masters to all unknowns.
     pub way: Condensation,
 }
@@ -155,10 +154,10 @@ pub fn condense(
         cliques.push(&map.reduced);
         outlines[part.class].push(outline);
     }
-    let pattern = cliques.pattern(masters.len());
+    let pattern = Arc::new(cliques.pattern(masters.len()));
     let mut matrix = |which| assemble(&beside, element, &beside_on_masters, &pattern, which, threads, counters);
     let mut k = matrix(Matrix::Stiffness)?;
-    let mut m = if inertia { matrix(Matrix::Mass)? } else { vec![0.0; k.len()] };
+    let mut m = if inertia { matrix(Matrix::Mass)? } else { Symmetric::zero(pattern.clone()) };
     let mut insides = Vec::with_capacity(classes.len());
     for (class, outlines) in classes.iter().zip(&outlines) {
         let (inside, [stiffness, mass]) = class.condense(element, inertia, threads, counters)?;
@@ -166,20 +165,15 @@ pub fn condense(
         counters.elements_reused += ((outlines.len() - 1) * class.plate.cells()) as u64;
         for outline in outlines {
             map.set_unknowns(outline, &on_masters);
-            map.scatter(&pattern, &stiffness, 1.0, &mut k);
+            map.scatter(&stiffness, 1.0, &mut k);
             if inertia {
-                map.scatter(&pattern, &mass, 1.0, &mut m);
+                map.scatter(&mass, 1.0, &mut m);
             }
         }
     }
     let mut numbers = vec![INSIDE; constraints.ndof()];
     masters.iter().enumerate().for_each(|(number, i)| numbers[*i] = number);
-    Ok(Condensed {
-        pattern,
-        k,
-        m,
-        way: Condensation { constraints: constraints.clone(), masters, numbers, parts, insides },
-    })
+    Ok(Condensed { k, m, way: Condensation { constraints: constraints.clone(), masters, numbers, parts, insides } })
 }
 
 /// Refuses dense matrices of outlines that this machine could not hold beside their sum.
@@ -295,15 +289,15 @@ impl Class {
         counters: &mut Counters,
     ) -> Result<(Inside, [Vec<f64>; 2]), CondensationError> {
         let free = Constraints::none(&self.order);
-        let pattern = pattern(&self.plate, &free);
+        let pattern = Arc::new(pattern(&self.plate, &free));
         let mut matrix = |which| assemble(&self.plate, element, &free, &pattern, which, threads, counters);
         let k = matrix(Matrix::Stiffness)?;
-        let m = if inertia { matrix(Matrix::Mass)? } else { vec![0.0; k.len()] };
-        let (leading, values) = pattern.leading(&k, self.inside);
+        let m = if inertia { matrix(Matrix::Mass)? } else { Symmetric::zero(pattern.clone()) };
+        let leading = k.leading(self.inside);
         let refused = |why| CondensationError::Factor { quad_tag: self.plate.plane.quad_tags[0], why };
-        let mut factor = Cholesky::new(Symbolic::new(Arc::new(leading)).map_err(refused)?, threads);
-        factor.factorise(&values).map_err(refused)?;
-        let inside = Inside { count: self.inside, pattern, k, factor };
+        let mut factor = Cholesky::new(Symbolic::new(leading.pattern().clone()).map_err(refused)?, threads);
+        factor.factorise(leading.lower()).map_err(refused)?;
+        let inside = Inside { count: self.inside, k, factor };
 
         let (n, outline) = (self.order.len(), self.order.len() - self.inside);
         let mut condensed = [vec![0.0; outline * outline], vec![0.0; outline * outline]];
@@ -317,12 +311,12 @@ impl Class {
                 columns.zip(forces.chunks_exact(n)).for_each(|(to, from)| to.copy_from_slice(&from[self.inside..]));
             };
             let mut forces = vec![0.0; n * count];
-            inside.pattern.add_product(&inside.k, 1.0, &shapes, &mut forces);
+            inside.k.add_product(1.0, &shapes, &mut forces);
             take(0, &forces);
             if inertia {
                 // TᵀMT = (M T)_b − K_bi K_ii⁻¹ (M T)_i
                 forces.fill(0.0);
-                inside.pattern.add_product(&m, 1.0, &shapes, &mut forces);
+                m.add_product(1.0, &shapes, &mut forces);
                 inside.hand_over(&mut forces);
                 take(1, &forces);
             }
@@ -346,15 +340,14 @@ fn symmetrise(a: &mut [f64], n: usize) {
 #[derive(Debug)]
 struct Inside {
     count: usize,
-    pattern: Pattern,
-    k: Vec<f64>,
+    k: Symmetric,
     factor: Cholesky,
 }
 
 impl Inside {
     /// `X_i ← K_ii⁻¹ X_i`, column by column.
     fn solve(&self, x: &mut [f64]) {
-        let n = self.pattern.ndof();
+        let n = self.k.ndof();
         let mut inner: Vec<f64> = x.chunks_exact(n).flat_map(|x| &x[..self.count]).copied().collect();
         self.factor.solve_in(&mut inner, x.len() / n, &mut Vec::new());
         for (x, inner) in x.chunks_exact_mut(n).zip(inner.chunks_exact(self.count.max(1))) {
@@ -365,9 +358,9 @@ impl Inside {
     /// `X_i ← −K_ii⁻¹ K_ib X_b`, column by column, where X_i = 0.
     fn follow(&self, x: &mut [f64]) {
         let mut forces = vec![0.0; x.len()];
-        self.pattern.add_product(&self.k, -1.0, x, &mut forces);
+        self.k.add_product(-1.0, x, &mut forces);
         self.solve(&mut forces);
-        let n = self.pattern.ndof();
+        let n = self.k.ndof();
         for (x, response) in x.chunks_exact_mut(n).zip(forces.chunks_exact(n)) {
             x[..self.count].copy_from_slice(&response[..self.count]);
         }
@@ -377,8 +370,8 @@ impl Inside {
     fn hand_over(&self, f: &mut [f64]) -> Vec<f64> {
         let mut x = f.to_vec();
         self.solve(&mut x);
-        x.chunks_exact_mut(self.pattern.ndof()).for_each(|x| x[self.count..].fill(0.0));
-        self.pattern.add_product(&self.k, -1.0, &x, f);
+        x.chunks_exact_mut(self.k.ndof()).for_each(|x| x[self.count..].fill(0.0));
+        self.k.add_product(-1.0, &x, f);
         x
     }
 }

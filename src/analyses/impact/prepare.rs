@@ -123,8 +123,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
             Some(stiffened.map_err(|why| SolveError(why.0))?)
         }
         None if effects.membrane => {
-            let pattern = structure.shared_pattern();
-            structure.stiffen(LargePlate::new(&model.plate, model.element.clone(), &model.constraints, pattern));
+            structure.stiffen(LargePlate::new(&model.plate, model.element.clone(), &model.constraints));
             None
         }
         _ => None,

@@ -5,8 +5,9 @@ use crate::plates::{SHELL, SOLIDS, jiggled, on, probe, rectangle, shuffled, solv
 use crate::scene::{AS4, Plate, Side, isotropic};
 use faer::Mat;
 use faer::prelude::Solve;
+use faer::sparse::SymbolicSparseColMat;
 use fem::analyses::assembled;
-use fem::core::assembly::{Pattern, SparseStructure, Symbolic};
+use fem::core::assembly::{Pattern, SparseStructure, Symbolic, Symmetric};
 use fem::core::counters::Counters;
 use std::fmt::Write as _;
 use std::num::NonZeroUsize;
@@ -53,13 +54,15 @@ fn hilbert() -> f64 {
             let scale = |i: usize| f64::powf(unit, (i * 7 % n) as f64 / n as f64);
             let entry = |i: usize, j: usize| 1.0 / (i + j + 1) as f64;
             let starts = (0..=n).map(|j| (0..j).map(|j| n - j).sum()).collect();
-            let pattern = Arc::new(Pattern::new(starts, (0..n).flat_map(|j| j..n).collect()));
-            let values: Vec<f64> = (0..n)
-                .flat_map(|j| (j..n).map(move |i| entry(i, j) * scale(i) * scale(j)).collect::<Vec<_>>())
-                .collect();
-            let m = vec![0.0; values.len()];
-            let symbolic = Symbolic::new(pattern).unwrap();
-            let mut structure = SparseStructure::new(symbolic, values, m, NonZeroUsize::MIN, |i| i.to_string());
+            let rows = (0..n).flat_map(|j| j..n).collect();
+            let lower = SymbolicSparseColMat::new_checked(n, n, starts, None, rows);
+            let m = Symmetric::zero(Arc::new(Pattern::try_from(lower).unwrap()));
+            let mut k = m.clone();
+            let places = (0..n).flat_map(|j| (j..n).map(move |i| (i, j)));
+            let values = k.lower_mut().val_mut().iter_mut();
+            values.zip(places).for_each(|(k, (i, j))| *k = entry(i, j) * scale(i) * scale(j));
+            let symbolic = Symbolic::new(k.pattern().clone()).unwrap();
+            let mut structure = SparseStructure::new(symbolic, k, m, NonZeroUsize::MIN, |i| i.to_string());
             let inverse = |i: usize, j: usize| {
                 let sign = if (i + j).is_multiple_of(2) { 1.0 } else { -1.0 };
                 sign * (i + j + 1) as f64
@@ -88,15 +91,8 @@ fn plates() -> f64 {
             let model = plate.model("static");
             let counters = &mut Counters::default();
             let mut structure = assembled::structure(&model, false, NonZeroUsize::MIN, counters).unwrap().structure;
-            let (pattern, k, _) = structure.matrices();
-            let n = pattern.ndof();
-            let mut a = Mat::<f64>::zeros(n, n);
-            for j in 0..n {
-                for at in pattern.starts[j]..pattern.starts[j + 1] {
-                    a[(pattern.rows[at], j)] = k[at];
-                    a[(j, pattern.rows[at])] = k[at];
-                }
-            }
+            let a = structure.matrices().0.full().unwrap().to_dense();
+            let n = a.ncols();
             let root: Vec<f64> = (0..n).map(|i| a[(i, i)].sqrt()).collect();
             let scaled = Mat::from_fn(n, n, |i, j| a[(i, j)] / root[i] / root[j]);
             let inverse = scaled.partial_piv_lu().solve(Mat::<f64>::identity(n, n));

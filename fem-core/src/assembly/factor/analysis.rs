@@ -118,7 +118,9 @@ impl Tree {
                     rows.push(row);
                 }
             };
-            pattern.rows[pattern.starts[column]..pattern.starts[column + 1]].iter().for_each(|i| take(group_of[*i]));
+            pattern.rows()[pattern.starts()[column]..pattern.starts()[column + 1]]
+                .iter()
+                .for_each(|i| take(group_of[*i]));
             for child in &children {
                 nodes[*child as usize].rows.iter().for_each(|row| take(*row));
             }

@@ -16,6 +16,7 @@ mod tests;
 
 use super::Pattern;
 use analysis::Tree;
+use faer::sparse::SparseColMatRef;
 use schedule::Schedule;
 use std::fmt;
 use std::num::NonZeroUsize;
@@ -35,6 +36,8 @@ pub enum FactorError {
         /// The column.
         column: usize,
     },
+    /// The matrix has another pattern than was analysed.
+    OtherPattern,
     /// More unknowns than can be numbered.
     TooLarge(usize),
     /// This machine could not hold the factor and what its making needs.
@@ -49,6 +52,7 @@ impl fmt::Display for FactorError {
         match self {
             Self::NotFinite { column } => write!(f, "column {column} holds a number that is not finite"),
             Self::NotPositive { column } => write!(f, "the pivot of column {column} is not positive"),
+            Self::OtherPattern => f.write_str("the matrix has another pattern than was analysed"),
             Self::TooLarge(unknowns) => write!(f, "{unknowns} unknowns are more than can be numbered"),
             Self::NoRoom { bytes } => write!(f, "the factor needs {:.1} GB or more, which there are not", bytes * 1e-9),
         }
@@ -120,16 +124,19 @@ impl Cholesky {
         Self { panels: vec![0.0; symbolic.entries()], schedule, symbolic, local: Vec::new() }
     }
 
-    /// Factorises the matrix of the analysed pattern with these `values`.
+    /// Factorises the symmetric matrix whose lower triangle is `matrix`, of the pattern analysed.
     ///
     /// # Errors
-    /// A number that is not finite, or a pivot that is not positive.
-    pub fn factorise(&mut self, values: &[f64]) -> Result<(), FactorError> {
-        let pattern = &*self.symbolic.pattern;
-        if let Some(bad) = values.iter().position(|v| !v.is_finite()) {
-            return Err(FactorError::NotFinite { column: pattern.starts.partition_point(|s| *s <= bad) - 1 });
+    /// Another pattern, a number that is not finite, or a pivot that is not positive.
+    pub fn factorise(&mut self, matrix: SparseColMatRef<'_, usize, f64>) -> Result<(), FactorError> {
+        let (found, analysed) = (matrix.symbolic(), self.symbolic.pattern.symbolic());
+        let same = |found: &[usize], analysed: &[usize]| std::ptr::eq(found, analysed) || found == analysed;
+        if !same(found.col_ptr(), analysed.col_ptr()) || !same(found.row_idx(), analysed.row_idx()) {
+            return Err(FactorError::OtherPattern);
         }
-        let matrix = numeric::Matrix { pattern, values };
+        if let Some(bad) = matrix.val().iter().position(|v| !v.is_finite()) {
+            return Err(FactorError::NotFinite { column: found.col_ptr().partition_point(|s| *s <= bad) - 1 });
+        }
         numeric::factorise(&self.symbolic.tree, &self.schedule, matrix, &mut self.panels)
             .map_err(|bad| FactorError::NotPositive { column: bad.column })
     }

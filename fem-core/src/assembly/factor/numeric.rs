@@ -2,21 +2,17 @@
 
 use super::analysis::{Front, Tree};
 use super::schedule::{Item, Schedule};
-use crate::assembly::Pattern;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::prelude::{Reborrow, ReborrowMut};
+use faer::sparse::SparseColMatRef;
 use faer::{Accum, MatMut, Par};
 use std::ops::Range;
 
 /// The matrix to factorise.
-#[derive(Clone, Copy)]
-pub(super) struct Matrix<'a> {
-    pub pattern: &'a Pattern,
-    pub values: &'a [f64],
-}
+type Matrix<'a> = SparseColMatRef<'a, usize, f64>;
 
 /// A pivot that is not positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -163,8 +159,8 @@ impl Worker {
         }
         panel.fill(0.0);
         for (u, column) in unknowns.iter().zip(panel.chunks_exact_mut(size)) {
-            let entries = matrix.pattern.starts[*u as usize]..matrix.pattern.starts[*u as usize + 1];
-            for (row, value) in matrix.pattern.rows[entries.clone()].iter().zip(&matrix.values[entries]) {
+            let entries = matrix.col_range(*u as usize);
+            for (row, value) in matrix.row_idx()[entries.clone()].iter().zip(&matrix.val()[entries]) {
                 column[self.place[*row] as usize] = *value;
             }
         }

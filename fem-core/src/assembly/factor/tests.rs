@@ -3,6 +3,7 @@
 use super::analysis::Tree;
 use super::schedule::Item;
 use super::*;
+use crate::assembly::Symmetric;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 
@@ -31,7 +32,7 @@ fn blocks(blocks: usize, width: usize, links: &[(usize, usize)]) -> DMatrix<f64>
     a
 }
 
-fn sparse(a: &DMatrix<f64>) -> (Arc<Pattern>, Vec<f64>) {
+fn sparse(a: &DMatrix<f64>) -> Symmetric {
     let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
     for j in 0..a.ncols() {
         for i in j..a.nrows() {
@@ -42,11 +43,13 @@ fn sparse(a: &DMatrix<f64>) -> (Arc<Pattern>, Vec<f64>) {
         }
         starts.push(rows.len());
     }
-    (Arc::new(Pattern::new(starts, rows)), values)
+    let mut sparse = Symmetric::zero(Arc::new(Pattern::new(starts, rows)));
+    sparse.lower_mut().val_mut().copy_from_slice(&values);
+    sparse
 }
 
-fn cholesky(pattern: &Arc<Pattern>, threads: usize) -> Cholesky {
-    Cholesky::new(Symbolic::new(pattern.clone()).unwrap(), NonZeroUsize::new(threads).unwrap())
+fn cholesky(a: &Symmetric, threads: usize) -> Cholesky {
+    Cholesky::new(Symbolic::new(a.pattern().clone()).unwrap(), NonZeroUsize::new(threads).unwrap())
 }
 
 /// A grid of `side × side` blocks, numbered by halves with their separator last.
@@ -80,10 +83,10 @@ fn grid(side: usize, width: usize) -> DMatrix<f64> {
 }
 
 fn check_against_dense(a: &DMatrix<f64>) {
-    let (pattern, values) = sparse(a);
+    let sparse = sparse(a);
     let n = a.ncols();
-    let mut factor = cholesky(&pattern, 2);
-    factor.factorise(&values).unwrap();
+    let mut factor = cholesky(&sparse, 2);
+    factor.factorise(sparse.lower()).unwrap();
     let dense = a.clone().cholesky().unwrap();
     for columns in [1, 2, 5, 70] {
         let b = DMatrix::from_fn(n, columns, |i, j| ((i * 7 + j * 3) % 11) as f64 - 4.0);
@@ -94,7 +97,7 @@ fn check_against_dense(a: &DMatrix<f64>) {
     }
     let x = DVector::from_fn(n, |i, _| (i % 5) as f64 - 1.5);
     let mut y = DVector::from_element(n, 0.25);
-    pattern.add_product(&values, -2.0, x.as_slice(), y.as_mut_slice());
+    sparse.add_product(-2.0, x.as_slice(), y.as_mut_slice());
     let expected = DVector::from_element(n, 0.25) - a * &x * 2.0;
     assert!((y - &expected).amax() <= 1e-13 * expected.amax());
 }
@@ -127,22 +130,22 @@ fn chains_stars_and_separate_parts_give_the_dense_solution() {
 
 #[test]
 fn the_factor_does_not_depend_on_the_threads() {
-    let (pattern, mut values) = sparse(&grid(17, 6));
-    let mut one = cholesky(&pattern, 1);
-    one.factorise(&values).unwrap();
+    let mut sparse = sparse(&grid(17, 6));
+    let mut one = cholesky(&sparse, 1);
+    one.factorise(sparse.lower()).unwrap();
     let first = one.panels.clone();
     for threads in [2, 3, 4, 50] {
-        let mut many = cholesky(&pattern, threads);
+        let mut many = cholesky(&sparse, threads);
         let second = |i: &Item| matches!(i, Item::Subtree { worker: 1, .. });
         assert!(many.schedule.items.iter().any(second), "the work is divided");
-        many.factorise(&values).unwrap();
+        many.factorise(sparse.lower()).unwrap();
         assert_eq!(first, many.panels, "{threads} threads");
     }
     // Nothing of an earlier matrix stays in the storage.
-    values.iter_mut().for_each(|v| *v *= 3.0);
-    one.factorise(&values).unwrap();
-    let mut fresh = cholesky(&pattern, 1);
-    fresh.factorise(&values).unwrap();
+    sparse.lower_mut().val_mut().iter_mut().for_each(|v| *v *= 3.0);
+    one.factorise(sparse.lower()).unwrap();
+    let mut fresh = cholesky(&sparse, 1);
+    fresh.factorise(sparse.lower()).unwrap();
     assert_eq!(one.panels, fresh.panels);
 }
 
@@ -154,9 +157,9 @@ fn a_pivot_that_is_not_positive_is_named() {
         for bad in [-1e3, 0.0] {
             let mut a = a.clone();
             a[(column, column)] = bad;
-            let (pattern, values) = sparse(&a);
+            let sparse = sparse(&a);
             for threads in [1, 2, 4] {
-                let found = cholesky(&pattern, threads).factorise(&values);
+                let found = cholesky(&sparse, threads).factorise(sparse.lower());
                 assert_eq!(found, Err(FactorError::NotPositive { column }), "{threads} threads");
             }
         }
@@ -172,27 +175,28 @@ fn of_several_bad_pivots_one_is_named_for_any_number_of_threads() {
         for column in (first..n).step_by(n / 7) {
             a[(column, column)] = -1e3;
         }
-        let (pattern, values) = sparse(&a);
-        let one = cholesky(&pattern, 1).factorise(&values);
+        let sparse = sparse(&a);
+        let one = cholesky(&sparse, 1).factorise(sparse.lower());
         assert!(matches!(one, Err(FactorError::NotPositive { .. })));
         for threads in 2..5 {
-            assert_eq!(one, cholesky(&pattern, threads).factorise(&values));
+            assert_eq!(one, cholesky(&sparse, threads).factorise(sparse.lower()));
         }
     }
 }
 
 #[test]
 fn numbers_that_are_not_finite_are_named() {
-    let (pattern, mut values) = sparse(&grid(5, 2));
-    let mut factor = cholesky(&pattern, 1);
+    let mut a = sparse(&grid(5, 2));
+    let mut factor = cholesky(&a, 1);
     for bad in [f64::NAN, f64::INFINITY] {
-        values[pattern.starts[7] + 1] = bad;
-        assert_eq!(factor.factorise(&values), Err(FactorError::NotFinite { column: 7 }));
+        let at = a.pattern().starts()[7] + 1;
+        a.lower_mut().val_mut()[at] = bad;
+        assert_eq!(factor.factorise(a.lower()), Err(FactorError::NotFinite { column: 7 }));
     }
     // Finite numbers whose pivots overflow.
-    let (pattern, mut values) = sparse(&grid(5, 2));
-    values.iter_mut().for_each(|v| *v = f64::MAX);
-    assert!(matches!(cholesky(&pattern, 2).factorise(&values), Err(FactorError::NotPositive { .. })));
+    let mut a = sparse(&grid(5, 2));
+    a.lower_mut().val_mut().iter_mut().for_each(|v| *v = f64::MAX);
+    assert!(matches!(cholesky(&a, 2).factorise(a.lower()), Err(FactorError::NotPositive { .. })));
 }
 
 #[test]
@@ -207,7 +211,17 @@ fn fill_that_does_not_fit_is_refused_before_it_is_counted_out() {
 
 #[test]
 fn an_empty_matrix_has_a_factor() {
-    let mut factor = cholesky(&Arc::new(Pattern::new(vec![0], Vec::new())), 2);
-    factor.factorise(&[]).unwrap();
+    let empty = Symmetric::zero(Arc::new(Pattern::new(vec![0], Vec::new())));
+    let mut factor = cholesky(&empty, 2);
+    factor.factorise(empty.lower()).unwrap();
     factor.solve(&mut [], 3);
+}
+
+#[test]
+fn another_pattern_than_was_analysed_is_refused() {
+    let (one, other) = (sparse(&grid(3, 2)), sparse(&grid(4, 2)));
+    let mut factor = cholesky(&one, 1);
+    assert_eq!(factor.factorise(other.lower()), Err(FactorError::OtherPattern));
+    // An equal pattern elsewhere is none other.
+    assert_eq!(factor.factorise(sparse(&grid(3, 2)).lower()), Ok(()));
 }
