@@ -5,11 +5,11 @@
 //! | what | where |
 //! | --- | --- |
 //! | contracts | [`element`], [`failure`], [`contact`], [`time`], [`reduction`]; [`plugin`] introduces an implementation |
+//! | formulas that people write | [`formula`] |
 //! | materials and laminates | [`tensor`], [`material`], [`layup`], [`laminate`] |
 //! | the plate and its unknowns | [`mesh`], [`dof`], [`plate`], [`support`], [`symmetry`], [`constraint`], [`patch`], [`load`] |
 //! | matrices and stresses | [`quadrature`], [`structure`], [`damping`], [`recovery`], [`profile`], [`window`], [`counters`] |
 #![cfg_attr(feature = "assembly", doc = "| sparse matrices (feature `assembly`) | [`assembly`] |")]
-#![cfg_attr(feature = "formula", doc = "| formulas that people write (feature `formula`) | [`formula`] |")]
 #![cfg_attr(feature = "testkit", doc = "| checks of the contracts (feature `testkit`) | [`testkit`] |")]
 //!
 //! A plug-in crate depends on this crate alone, without its default feature `assembly`, which brings the sparse solver.
@@ -54,6 +54,4 @@ pub mod testkit;
 pub use contracts::{contact, element, failure, large, plugin, reduction, structure, time};
 pub use plates::{constraint, laminate, load, mesh, patch, plate, support, symmetry, window};
 pub use stresses::{estimate, field, profile, recovery, residual};
-#[cfg(feature = "formula")]
-pub use words::formula;
-pub use words::{counters, damping, dof, functional, layup, material, prolongation, quadrature, tensor};
+pub use words::{counters, damping, dof, formula, functional, layup, material, prolongation, quadrature, tensor};

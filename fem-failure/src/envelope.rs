@@ -6,7 +6,7 @@
 //! let plane: StressPlane = "s2-s12".parse()?; // across the fibres, and shear along them
 //! assert_eq!(plane.names(), ["s2", "s12"]);
 //! assert!("s2-s2".parse::<StressPlane>().is_err());
-//! # Ok::<(), String>(())
+//! # Ok::<(), fem_failure::envelope::StressPlaneError>(())
 //! ```
 
 use fem_core::failure::{FailureCriterion, check_material};
@@ -35,18 +35,21 @@ impl StressPlane {
     }
 }
 
+/// A text that does not name two components of the stress.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is not a plane: write two different ones of {components} with a dash", components = COMPONENTS.join(", "))]
+pub struct StressPlaneError(pub String);
+
 impl FromStr for StressPlane {
-    type Err = String;
+    type Err = StressPlaneError;
 
     /// Reads `s2-s12`.
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, StressPlaneError> {
         let component = |name: &str| COMPONENTS.iter().position(|c| *c == name);
         let read = |(a, b)| Some([component(a)?, component(b)?]);
         match text.split_once('-').and_then(read) {
             Some([a, b]) if a != b => Ok(Self([a, b])),
-            _ => {
-                Err(format!("`{text}` is no plane: write two different ones of {} with a dash", COMPONENTS.join(", ")))
-            }
+            _ => Err(StressPlaneError(text.to_owned())),
         }
     }
 }
@@ -57,7 +60,7 @@ impl fmt::Display for StressPlane {
     }
 }
 
-/// A criterion under the name by which errors call it.
+/// A criterion with the name that errors give it.
 pub type Named<'a> = (&'a str, &'a dyn FailureCriterion);
 
 /// The envelopes of several criteria over the same directions.
@@ -127,7 +130,7 @@ pub fn envelopes(
             for sense in [1.0, -1.0] {
                 let mut unit = [0.0; 2];
                 unit[axis] = sense;
-                let bears = Ray { name, criterion: *criterion, m, plane, scale: [1.0; 2] }.reach(unit)?.0;
+                let bears = Ray { name, criterion: *criterion, m, plane, scale: [1.0; 2] }.find_failure(unit)?.0;
                 *scale = if bears.is_finite() { scale.max(bears) } else { *scale };
             }
         }
@@ -139,9 +142,9 @@ pub fn envelopes(
         let ray = Ray { name, criterion: *criterion, m, plane, scale };
         let mut points: Vec<EnvelopePoint> = Vec::new();
         for k in 0..=directions {
-            let next = ray.at(k as f64 / directions as f64)?;
+            let next = ray.point(k as f64 / directions as f64)?;
             if let Some(last) = points.last().copied() {
-                points.extend(ray.switch(last, next)?);
+                points.extend(ray.find_switch(last, next)?);
             }
             points.push(next);
         }
@@ -164,7 +167,7 @@ struct Ray<'a> {
 
 impl Ray<'_> {
     /// Reserve factor and mode of a stress in units of the scale.
-    fn reach(&self, values: [f64; 2]) -> Result<(f64, Option<usize>), EnvelopeError> {
+    fn find_failure(&self, values: [f64; 2]) -> Result<(f64, Option<usize>), EnvelopeError> {
         let s = self.plane.stress([values[0] * self.scale[0], values[1] * self.scale[1]]);
         let reserve = self.criterion.reserve_factor(&s, self.m);
         if reserve.factor.is_nan() {
@@ -175,7 +178,7 @@ impl Ray<'_> {
     }
 
     /// The point in the direction after `turn` of a whole turn; quarter turns lie exactly on the axes.
-    fn at(&self, turn: f64) -> Result<EnvelopePoint, EnvelopeError> {
+    fn point(&self, turn: f64) -> Result<EnvelopePoint, EnvelopeError> {
         let angle = turn * std::f64::consts::TAU;
         let quarter = (4.0 * turn).round();
         let along = match (4.0 * turn == quarter, quarter as u8 % 4) {
@@ -185,7 +188,7 @@ impl Ray<'_> {
             (true, _) => [0.0, -1.0],
             _ => [angle.cos(), angle.sin()],
         };
-        let (radius, mode) = match self.reach(along)? {
+        let (radius, mode) = match self.find_failure(along)? {
             (radius, _) if radius > OPEN => (f64::INFINITY, None),
             bounded => bounded,
         };
@@ -193,13 +196,13 @@ impl Ray<'_> {
     }
 
     /// Both sides of the switch between `a` and `b`; nothing if their modes are the same.
-    fn switch(&self, mut a: EnvelopePoint, mut b: EnvelopePoint) -> Result<Vec<EnvelopePoint>, EnvelopeError> {
+    fn find_switch(&self, mut a: EnvelopePoint, mut b: EnvelopePoint) -> Result<Vec<EnvelopePoint>, EnvelopeError> {
         let ends = [a.angle, b.angle];
         if a.mode == b.mode {
             return Ok(Vec::new());
         }
         for _ in 0..40 {
-            let middle = self.at(0.5 * (a.angle + b.angle) / std::f64::consts::TAU)?;
+            let middle = self.point(0.5 * (a.angle + b.angle) / std::f64::consts::TAU)?;
             if middle.mode == a.mode { a = middle } else { b = middle }
         }
         Ok([a, b].into_iter().filter(|p| !ends.contains(&p.angle)).collect())
@@ -225,13 +228,13 @@ mod tests {
         }
     }
 
-    fn draw(criterion: &dyn FailureCriterion, plane: &str, directions: usize) -> Result<Envelopes, EnvelopeError> {
+    fn compute(criterion: &dyn FailureCriterion, plane: &str, directions: usize) -> Result<Envelopes, EnvelopeError> {
         envelopes(&[("c", criterion)], &material(), plane.parse().unwrap(), directions)
     }
 
     #[test]
     fn limits_of_stress_make_a_box_with_its_corners() {
-        let found = draw(&MaxStress, "s2-s12", 30).unwrap();
+        let found = compute(&MaxStress, "s2-s12", 30).unwrap();
         assert_eq!(found.scale, [138e6, 109e6]);
         let corner =
             |p: &&EnvelopePoint| (p.stress[0] / 64e6 - 1.0).abs() < 1e-9 && (p.stress[1] / 109e6 - 1.0).abs() < 1e-9;
@@ -249,7 +252,7 @@ mod tests {
         let criteria: [&dyn FailureCriterion; 4] =
             [&HashinReport::default(), &Hashin1980, &TsaiWu::default(), &Puck::default()];
         for criterion in criteria {
-            for p in draw(criterion, "s2-s12", 48).unwrap().curves.remove(0) {
+            for p in compute(criterion, "s2-s12", 48).unwrap().curves.remove(0) {
                 let s = StressPlane([1, 3]).stress(p.stress);
                 let reserve = criterion.reserve_factor(&s, &material());
                 assert!((reserve.factor - 1.0).abs() < 1e-12 && p.mode.is_some(), "{criterion:?} {p:?} {reserve:?}");
@@ -259,14 +262,14 @@ mod tests {
 
     #[test]
     fn an_envelope_may_be_open() {
-        let found = draw(&Hashin1980, "s2-s3", 64).unwrap();
+        let found = compute(&Hashin1980, "s2-s3", 64).unwrap();
         let open: Vec<_> = found.curves[0].iter().filter(|p| p.mode.is_none()).map(|p| p.angle.to_degrees()).collect();
         assert!(open.contains(&225.0) && open.iter().all(|a| (180.0..270.0).contains(a)), "{open:?}");
     }
 
     #[test]
     fn what_has_no_envelope_is_refused_by_name() {
-        let why = |criterion: &dyn FailureCriterion, plane| draw(criterion, plane, 8).unwrap_err().to_string();
+        let why = |criterion: &dyn FailureCriterion, plane| compute(criterion, plane, 8).unwrap_err().to_string();
         assert!(why(&TsaiHill::default(), "s1-s13").contains("criterion `c` refuses stresses of the plane s1-s13"));
         assert!(
             why(&crate::Puck2d { out_of_plane: crate::OutOfPlane::Ignore, ..Default::default() }, "s1-s3")
@@ -276,7 +279,7 @@ mod tests {
         let error = envelopes(&[("o", &Octahedral)], &bare, StressPlane([0, 1]), 8).unwrap_err().to_string();
         assert!(error.contains("`o` needs the strength S12"), "{error}");
         for plane in ["s2", "s2-s2", "s2-t12", "s2-s12-s1", ""] {
-            assert!(plane.parse::<StressPlane>().unwrap_err().contains("is no plane"), "{plane}");
+            assert!(plane.parse::<StressPlane>().unwrap_err().to_string().contains("is not a plane"), "{plane}");
         }
         assert_eq!("s1-s13".parse::<StressPlane>().unwrap().to_string(), "s1-s13");
     }

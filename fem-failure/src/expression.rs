@@ -3,8 +3,9 @@
 mod formula;
 
 use crate::prelude::*;
+use fem_core::formula::FormulaError;
 use fem_core::plugin::Value;
-use formula::Formula;
+use formula::IndexFormula;
 use std::sync::{Mutex, PoisonError};
 
 /// One formula per mode, each giving the mode's index.
@@ -34,8 +35,33 @@ use std::sync::{Mutex, PoisonError};
 /// [`search_reserve`](fem_core::failure::search_reserve).
 #[derive(Debug, Clone)]
 pub struct Expression {
-    formulas: Vec<Formula>,
+    formulas: Vec<IndexFormula>,
     info: &'static CriterionInfo,
+}
+
+/// Why formulas do not make a criterion.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExpressionError {
+    /// There is no formula.
+    #[error("needs at least one formula")]
+    NoModes,
+    /// Two formulas have the same mode.
+    #[error("two modes are called `{0}`")]
+    RepeatedMode(String),
+    /// The formula of a mode cannot be read.
+    #[error("mode `{mode}`, `{formula}`: {why}")]
+    Formula {
+        /// The mode.
+        mode: String,
+        /// Its formula.
+        formula: String,
+        /// What is wrong with it.
+        why: FormulaError,
+    },
+    /// An element of the list that does not give a mode its formula.
+    #[error("each element of the list must be a text \"mode: formula\", got {0}")]
+    NotNamed(String),
 }
 
 impl Expression {
@@ -43,26 +69,28 @@ impl Expression {
     ///
     /// # Errors
     /// No mode, two of one name, or a formula that cannot be read: which, where and why.
-    pub fn new(site: Site, modes: &[(&str, &str)]) -> Result<Self, String> {
+    pub fn new(site: Site, modes: &[(&str, &str)]) -> Result<Self, ExpressionError> {
         if modes.is_empty() {
-            return Err("needs at least one formula".into());
+            return Err(ExpressionError::NoModes);
         }
         let mut formulas = Vec::new();
         for (k, (mode, text)) in modes.iter().enumerate() {
             if modes[..k].iter().any(|(other, _)| other == mode) {
-                return Err(format!("two modes are called `{mode}`"));
+                return Err(ExpressionError::RepeatedMode((*mode).into()));
             }
-            formulas.push(Formula::parse(text).map_err(|why| format!("mode `{mode}`, `{text}`: {why}"))?);
+            let formula = IndexFormula::parse(text);
+            let refused = |why| ExpressionError::Formula { mode: (*mode).into(), formula: (*text).into(), why };
+            formulas.push(formula.map_err(refused)?);
         }
         let needed = |s: &Strength| formulas.iter().any(|f| f.strengths().any(|used| used == *s));
         let strengths = Strength::ALL.iter().copied().filter(needed).collect();
-        Ok(Self { info: described(site, modes, strengths), formulas })
+        Ok(Self { info: describe(site, modes, strengths), formulas })
     }
 }
 
 /// The description of such a criterion. Each lives until the program ends, once however often it is asked for: events
 /// carry the names of modes freely, which for every other criterion are part of the program.
-fn described(site: Site, modes: &[(&str, &str)], strengths: Vec<Strength>) -> &'static CriterionInfo {
+fn describe(site: Site, modes: &[(&str, &str)], strengths: Vec<Strength>) -> &'static CriterionInfo {
     static KNOWN: Mutex<Vec<&'static CriterionInfo>> = Mutex::new(Vec::new());
     let names = || modes.iter().map(|m| m.0);
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
@@ -92,12 +120,16 @@ impl FailureCriterion for Expression {
         }
     }
 
-    fn check(&self, m: &Material) -> Result<(), String> {
+    fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
         let rest = Stress6::new([0.0; 6]);
         for (formula, mode) in self.formulas.iter().zip(self.info.modes) {
             let index = formula.value(&rest, m);
             if !(index < 1.0 && index.is_finite()) {
-                return Err(format!("without stress the index of mode `{mode}` is {index}, not a number below 1"));
+                return Err(UnmetCondition {
+                    condition: "an index below 1 without stress",
+                    reason: "otherwise everything fails before it is loaded",
+                    values: vec![(format!("index of mode `{mode}`"), index, "")],
+                });
             }
         }
         Ok(())
@@ -125,28 +157,28 @@ impl Plugin for Expression {
 
     fn build(params: &Params) -> Result<Built, ParamError> {
         let refuse = |why: String| ParamError::new("expression", why);
+        let refused = |error: ExpressionError| refuse(error.to_string());
         let site = match params.choice("site", &["ply", "interface"])? {
             "interface" => Site::Interface,
             _ => Site::Ply,
         };
         let modes = match params.get("expression") {
             Some(Value::Text(formula)) => vec![("failure", formula.as_str())],
-            Some(Value::List(items)) => items.iter().map(named).collect::<Result<_, _>>().map_err(refuse)?,
+            Some(Value::List(items)) => items.iter().map(split_mode).collect::<Result<_, _>>().map_err(refused)?,
             Some(other) => return Err(refuse(format!("must be a formula or a list of them, got {other}"))),
             None => return Err(refuse("is missing (a formula such as \"(s2/Yt)^2 + (s12/S12)^2\")".into())),
         };
-        Ok(Built::Criterion(Box::new(Self::new(site, &modes).map_err(refuse)?)))
+        Ok(Built::Criterion(Box::new(Self::new(site, &modes).map_err(refused)?)))
     }
 }
 
-fn named(item: &Value) -> Result<(&str, &str), String> {
+/// Mode and formula of "mode: formula".
+fn split_mode(item: &Value) -> Result<(&str, &str), ExpressionError> {
     let parts = match item {
         Value::Text(text) => text.split_once(':').map(|(mode, formula)| (mode.trim(), formula.trim())),
         _ => None,
     };
-    parts
-        .filter(|(mode, _)| !mode.is_empty())
-        .ok_or_else(|| format!("each element of the list must be a text \"mode: formula\", got {item}"))
+    parts.filter(|(mode, _)| !mode.is_empty()).ok_or_else(|| ExpressionError::NotNamed(item.to_string()))
 }
 
 #[cfg(test)]
@@ -177,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_list_of_formulas_is_refused() {
+    fn other_values_than_lists_of_formulas_are_refused() {
         let why = |value| build(value).unwrap_err().to_string();
         assert!(why(list(&["(s2/Yt)^2"])).contains("mode: formula"));
         assert!(why(list(&[": s1/Xt"])).contains("mode: formula"));

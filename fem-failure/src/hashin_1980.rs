@@ -41,14 +41,16 @@ impl Hashin1980 {
 }
 
 /// Without it equal tension across the fibre never fails.
-pub(crate) fn transverse_tension_is_bounded(m: &Material) -> Result<(), String> {
+pub(crate) fn check_transverse_tension(m: &Material) -> Result<(), UnmetCondition> {
     let (s23, yt) = (m.strengths.s23(), m.strengths.yt());
     if s23 > 0.5 * yt {
         return Ok(());
     }
-    Err(format!(
-        "S23 > Yt/2 is required, else equal tension across the fibre never fails; S23 = {s23} Pa, Yt = {yt} Pa"
-    ))
+    Err(UnmetCondition {
+        condition: "S23 > Yt/2",
+        reason: "otherwise equal tension across the fibre never fails",
+        values: vec![("S23".into(), s23, "Pa"), ("Yt".into(), yt, "Pa")],
+    })
 }
 
 impl FailureCriterion for Hashin1980 {
@@ -64,8 +66,8 @@ impl FailureCriterion for Hashin1980 {
 
     from_terms!();
 
-    fn check(&self, m: &Material) -> Result<(), String> {
-        transverse_tension_is_bounded(m)
+    fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
+        check_transverse_tension(m)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Hashin's criterion as AFWAL-TR-87-4117 uses it.
 
-use crate::hashin_1980::transverse_tension_is_bounded;
+use crate::hashin_1980::check_transverse_tension;
 use crate::prelude::*;
 
 /// Sign of σ22 σ33 in the tensile matrix mode.
@@ -73,9 +73,9 @@ impl FailureCriterion for HashinReport {
 
     from_terms!();
 
-    fn check(&self, m: &Material) -> Result<(), String> {
+    fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
         match self.product {
-            Product::Minus => transverse_tension_is_bounded(m),
+            Product::Minus => check_transverse_tension(m),
             Product::Plus => Ok(()),
         }
     }

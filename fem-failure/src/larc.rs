@@ -42,12 +42,16 @@ impl Friction {
     }
 
     /// Without a root for φc fibres kink under no compression at all.
-    pub(crate) fn check(&self, m: &Material) -> Result<(), String> {
+    pub(crate) fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
         if self.phi_c.is_finite() {
             return Ok(());
         }
         let (s12, xc) = (m.strengths.s12(), m.strengths.xc());
-        Err(format!("4 (q + etaL) q <= 1 with q = S12/Xc is required for a kink angle; S12 = {s12} Pa, Xc = {xc} Pa"))
+        Err(UnmetCondition {
+            condition: "4 (q + etaL) q <= 1 with q = S12/Xc",
+            reason: "otherwise there is no kink angle",
+            values: vec![("S12".into(), s12, "Pa"), ("Xc".into(), xc, "Pa")],
+        })
     }
 
     /// Sine and cosine of the angle by which fibres under σ11, σ22 and |σ12| have turned; none when they are unstable.

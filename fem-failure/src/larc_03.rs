@@ -99,7 +99,7 @@ impl FailureCriterion for Larc03 {
         }
     }
 
-    fn check(&self, m: &Material) -> Result<(), String> {
+    fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
         Friction::new(self.alpha0, m).check(m)
     }
 

@@ -99,7 +99,7 @@ impl FailureCriterion for Larc05 {
         out[3] = Self::matrix(s, &f, m);
     }
 
-    fn check(&self, m: &Material) -> Result<(), String> {
+    fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
         Friction::new(self.alpha0, m).check(m)
     }
 }

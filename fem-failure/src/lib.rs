@@ -68,7 +68,7 @@ pub use chang_lessard::ChangLessard;
 pub use choi_chang::ChoiChang;
 pub use christensen::Christensen;
 pub use cuntze::{Cuntze, Cuntze2d};
-pub use expression::Expression;
+pub use expression::{Expression, ExpressionError};
 pub use hashin_1980::Hashin1980;
 pub use hashin_report::{HashinReport, Product};
 pub use hashin_rotem::HashinRotem;

@@ -1,7 +1,7 @@
 //! What every criterion's file needs.
 
 pub(crate) use crate::terms::{Terms, from_terms};
-pub(crate) use fem_core::failure::{CriterionInfo, FailureCriterion, Site};
+pub(crate) use fem_core::failure::{CriterionInfo, FailureCriterion, Site, UnmetCondition};
 pub(crate) use fem_core::material::{Material, Strength};
 pub(crate) use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 pub(crate) use fem_core::tensor::{Ply, Stress6};

@@ -202,16 +202,21 @@ impl FailureCriterion for Puck {
 
     from_terms!();
 
-    fn check(&self, m: &Material) -> Result<(), String> {
+    fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
         let r = &m.strengths;
         let ra = r.yc() / (2.0 * (1.0 + self.p23c));
-        for (name, slope) in [("p12t Yt/S12", self.p12t * r.yt() / r.s12()), ("p23t Yt/RA", self.p23t * r.yt() / ra)] {
-            if slope >= 1.0 {
-                return Err(format!("{name} < 1 is required for a convex fracture surface, got {slope:.6}"));
-            }
-        }
-        Ok(())
+        check_slope("p12t Yt/S12 < 1", self.p12t * r.yt() / r.s12())?;
+        check_slope("p23t Yt/RA < 1", self.p23t * r.yt() / ra)
     }
+}
+
+/// Refuses a fracture surface whose slope makes it concave.
+pub(crate) fn check_slope(condition: &'static str, slope: f64) -> Result<(), UnmetCondition> {
+    if slope < 1.0 {
+        return Ok(());
+    }
+    let reason = "otherwise the fracture surface is not convex";
+    Err(UnmetCondition { condition, reason, values: vec![(condition.trim_end_matches(" < 1").into(), slope, "")] })
 }
 
 pub(crate) const WEAKENING: ParamInfo = ParamInfo {

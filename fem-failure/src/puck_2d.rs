@@ -2,7 +2,7 @@
 
 use crate::plane_stress::OutOfPlane;
 use crate::prelude::*;
-use crate::puck::{FibreFailure, WEAKENING, common_params, weakening};
+use crate::puck::{FibreFailure, WEAKENING, check_slope, common_params, weakening};
 
 /// Puck's closed form for plane stress, with the plane's own inclination p23 = p12c RA/S12.
 ///
@@ -95,13 +95,8 @@ impl FailureCriterion for Puck2d {
 
     from_terms!();
 
-    fn check(&self, m: &Material) -> Result<(), String> {
-        let slope = self.p12t * m.strengths.yt() / m.strengths.s12();
-        if slope < 1.0 {
-            Ok(())
-        } else {
-            Err(format!("p12t Yt/S12 < 1 is required for a convex surface, got {slope:.6}"))
-        }
+    fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
+        check_slope("p12t Yt/S12 < 1", self.p12t * m.strengths.yt() / m.strengths.s12())
     }
 
     fn scope(&self) -> &'static str {

@@ -104,21 +104,23 @@ impl FailureCriterion for TsaiWu {
 
     from_terms!();
 
-    fn check(&self, m: &Material) -> Result<(), String> {
+    fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
         let f = self.coefficients(m);
-        let closed = |holds: bool, condition: &str| match holds {
+        let require = |holds: bool, condition| match holds {
             true => Ok(()),
-            false => Err(format!(
-                "its failure surface is open: {condition} is required, \
-                 F11 = {:.6e}, F22 = {:.6e}, F12 = {:.6e}, F23 = {:.6e} (1/Pa^2)",
-                f.f11, f.f22, f.f12, f.f23
-            )),
+            false => Err(UnmetCondition {
+                condition,
+                reason: "otherwise the failure surface is open",
+                values: [("F11", f.f11), ("F22", f.f22), ("F12", f.f12), ("F23", f.f23)]
+                    .map(|(name, value)| (name.into(), value, "1/Pa^2"))
+                    .into(),
+            }),
         };
         // The default choice meets the last condition with equality: a paraboloid.
         let rounding = 1.0 - 1e-12;
-        closed(f.f11 * f.f22 >= rounding * f.f12 * f.f12, "F11 F22 >= F12^2")?;
-        closed(f.f22 >= rounding * f.f23.abs(), "|F23| <= F22")?;
-        closed(f.f22 + f.f23 >= rounding * 2.0 * f.f12 * f.f12 / f.f11, "F22 + F23 >= 2 F12^2/F11")
+        require(f.f11 * f.f22 >= rounding * f.f12 * f.f12, "F11 F22 >= F12^2")?;
+        require(f.f22 >= rounding * f.f23.abs(), "|F23| <= F22")?;
+        require(f.f22 + f.f23 >= rounding * 2.0 * f.f12 * f.f12 / f.f11, "F22 + F23 >= 2 F12^2/F11")
     }
 }
 

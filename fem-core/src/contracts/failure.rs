@@ -96,8 +96,8 @@ pub trait FailureCriterion: DynClone + Debug + Send + Sync {
     /// open. That the required strengths are there is [`check_material`]'s business.
     ///
     /// # Errors
-    /// The condition, with its numbers.
-    fn check(&self, m: &Material) -> Result<(), String> {
+    /// The condition that the constants do not meet, with its numbers.
+    fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
         let _ = m;
         Ok(())
     }
@@ -121,6 +121,29 @@ pub fn check_material(criterion: &dyn FailureCriterion, name: &str, m: &Material
         .check(m)
         .map_err(|why| MaterialError { material: m.name.clone(), why: format!("{user} cannot judge it: {why}") })
 }
+
+/// A condition that a criterion sets on a material's constants and that they do not meet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UnmetCondition {
+    /// What is required, `S23 > Yt/2`.
+    pub condition: &'static str,
+    /// What is wrong without it.
+    pub reason: &'static str,
+    /// The numbers in it: name, value, unit.
+    pub values: Vec<(String, f64, &'static str)>,
+}
+
+impl fmt::Display for UnmetCondition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} is required: {}", self.condition, self.reason)?;
+        for (k, (name, value, unit)) in self.values.iter().enumerate() {
+            let (before, blank) = (if k == 0 { "; " } else { ", " }, if unit.is_empty() { "" } else { " " });
+            write!(f, "{before}{name} = {value:.6e}{blank}{unit}")?;
+        }
+        Ok(())
+    }
+}
+impl std::error::Error for UnmetCondition {}
 
 /// What a criterion says of one stress.
 #[derive(Debug, Clone, PartialEq)]
@@ -292,8 +315,10 @@ mod tests {
             out[0] = refused + (s.s11() / m.strengths.xt()).powi(2);
             out[1] = if s.s22() >= 0.1 * m.strengths.yt() { 5.0 } else { 0.0 };
         }
-        fn check(&self, m: &Material) -> Result<(), String> {
-            if m.strengths.yt() < 1.0 { Err("Yt is below 1".into()) } else { Ok(()) }
+        fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
+            let yt = m.strengths.yt();
+            let unmet = UnmetCondition { condition: "Yt >= 1", reason: "odd", values: vec![("Yt".into(), yt, "Pa")] };
+            if yt < 1.0 { Err(unmet) } else { Ok(()) }
         }
         fn scope(&self) -> &'static str {
             "stresses without shear"
@@ -345,7 +370,7 @@ mod tests {
         let mut weak = material();
         weak.strengths = weak.strengths.with(Strength::Yt, 0.5);
         let error = assess([0.0; 6], &weak).unwrap_err().to_string();
-        assert!(error.contains("`odd`") && error.contains("Yt is below 1"), "{error}");
+        assert!(error.contains("`odd`") && error.contains("Yt >= 1 is required: odd; Yt = 5.000000e-1 Pa"), "{error}");
         weak.strengths = Strengths::default();
         assert!(assess([0.0; 6], &weak).unwrap_err().to_string().contains("Xt, Yt"));
     }

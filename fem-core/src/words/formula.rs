@@ -1,9 +1,9 @@
-//! Formulas that people write: checked, compiled, evaluated (feature `formula`).
+//! Formulas that people write: checked, compiled, evaluated.
 //!
-//! `exmex` compiles and evaluates. It reads generously (`2 s1 -` loses an operator, `-s1^2` is (−s1)², a comparison may
-//! stand anywhere), so that only texts in which every symbol and bracket has its place reach it.
+//! What could be read in two ways (`2 s1`, `a^b^c`, a comparison without brackets) is refused. `-s1^2` is −(s1²).
 
-use exmex::{BinOp, Express, FlatEx, MakeOperators, MatchLiteral, Operator, literal_matcher_from_pattern};
+use crate::words::spelling::unknown_key;
+use std::fmt;
 
 type Function = fn(f64) -> f64;
 type Binary = fn(f64, f64) -> f64;
@@ -19,12 +19,12 @@ const FUNCTIONS: [(&str, Function); 8] = [
     ("pos", positive_part),
 ];
 
-/// Longest formula, bytes, and deepest brackets: more is a slip, and would take long to compile.
+/// Longest formula, bytes, and deepest brackets: more is a mistake, and would take long to compile.
 const MAX_LENGTH: usize = 4096;
 const MAX_DEPTH: usize = 64;
 
 /// Operators with their priority: the higher, the tighter they bind.
-const OPERATORS: [(&str, i64, Binary); 9] = [
+const OPERATORS: [(&str, u8, Binary); 9] = [
     ("<", 0, |a, b| truth(a, b, a < b)),
     ("<=", 0, |a, b| truth(a, b, a <= b)),
     (">", 0, |a, b| truth(a, b, a > b)),
@@ -41,7 +41,7 @@ fn positive_part(x: f64) -> f64 {
     if x < 0.0 { 0.0 } else { x }
 }
 
-/// a to the power of b; NaN where one of the two is none, also for b = 0 and a = 1.
+/// a to the power of b; NaN where one of the two is NaN, also for b = 0 and a = 1.
 fn power(a: f64, b: f64) -> f64 {
     match b {
         2.0 => a * a,
@@ -50,150 +50,282 @@ fn power(a: f64, b: f64) -> f64 {
     }
 }
 
-/// 1 or 0; NaN where one of the two is none.
+/// 1 or 0; NaN where one of the two is NaN.
 fn truth(a: f64, b: f64, holds: bool) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { f64::from(u8::from(holds)) }
 }
 
-#[derive(Debug, Clone)]
-struct Language;
-
-impl MakeOperators<f64> for Language {
-    fn make<'a>() -> Vec<Operator<'a, f64>> {
-        let binary = OPERATORS
-            .iter()
-            .map(|&(name, prio, apply)| Operator::make_bin(name, BinOp { apply, prio, is_commutative: false }));
-        binary.chain(FUNCTIONS.iter().map(|&(name, apply)| Operator::make_unary(name, apply))).collect()
-    }
+/// Why a text is not a formula.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FormulaError {
+    /// There is nothing in it.
+    Empty,
+    /// It is longer than a formula may be.
+    TooLong,
+    /// Its brackets nest deeper than a formula's may.
+    TooDeep,
+    /// Two values follow each other; the second begins with this.
+    MissingOperator(String),
+    /// A value should stand before this, or at the end.
+    MissingValue(Option<String>),
+    /// A function without brackets.
+    MissingBrackets(String),
+    /// A number that cannot be read or is not finite.
+    Number(String),
+    /// A name that stands for nothing, with the names that do.
+    Name(String),
+    /// A symbol that formulas do not have.
+    Symbol(String),
+    /// `)` without `(`.
+    Unopened,
+    /// `(` without `)`.
+    Unclosed,
+    /// `a^b^c`.
+    TwoPowers,
+    /// A comparison with this that does not stand in brackets of its own.
+    Comparison(String),
 }
 
-literal_matcher_from_pattern!(Numbers, r"^([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?");
+impl fmt::Display for FormulaError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => write!(f, "it is empty"),
+            Self::TooLong => write!(f, "it has more than {MAX_LENGTH} characters"),
+            Self::TooDeep => write!(f, "brackets nest at most {MAX_DEPTH} deep"),
+            Self::MissingOperator(token) => write!(f, "an operator is missing before `{token}`"),
+            Self::MissingValue(None) => write!(f, "a value is missing at the end"),
+            Self::MissingValue(Some(token)) => {
+                let signed = matches!(token.as_str(), "+" | "-");
+                let help = if signed { ": put the signed value in brackets" } else { "" };
+                write!(f, "a value is missing before `{token}`{help}")
+            }
+            Self::MissingBrackets(function) => write!(f, "`{function}` needs its argument in brackets"),
+            Self::Number(token) => write!(f, "`{token}` is not a number"),
+            Self::Name(unknown) => write!(f, "{unknown}"),
+            Self::Symbol(token) => write!(f, "`{token}` means nothing in a formula"),
+            Self::Unopened => write!(f, "a bracket is closed that was not opened"),
+            Self::Unclosed => write!(f, "a bracket is not closed"),
+            Self::TwoPowers => write!(f, "`a^b^c` can be read in two ways: use brackets"),
+            Self::Comparison(operator) => write!(f, "the comparison with `{operator}` needs brackets of its own"),
+        }
+    }
+}
+impl std::error::Error for FormulaError {}
+
+/// A step of a formula on a stack of values.
+#[derive(Debug, Clone, Copy)]
+enum Step {
+    Number(f64),
+    /// Counts in [`Formula::names`].
+    Value(usize),
+    Apply(Function),
+    Combine(Binary),
+}
 
 /// A formula over named values.
 ///
-/// Numbers, names, `+ - * / ^`, comparisons in brackets (1 or 0), and the functions of [`Formula::functions`]; `pos(x)` is x
-/// where it is positive, else 0. NaN in, NaN out.
+/// Numbers, names, `+ - * / ^`, comparisons in brackets (1 or 0), and the functions `abs sqrt exp ln sin cos tan` and
+/// `pos`; `pos(x)` is x where it is positive, else 0. NaN in, NaN out.
+///
+/// ```
+/// use fem_core::formula::Formula;
+///
+/// let formula = Formula::parse("(b/2)^2 + pos(-b)", &["a", "b"])?;
+/// assert_eq!(formula.names(), [1]); // of the two names it holds the second
+/// assert_eq!(formula.value(&[-4.0]), 8.0);
+/// assert!(Formula::parse("2 b", &["a", "b"]).is_err());
+/// # Ok::<(), fem_core::formula::FormulaError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Formula {
-    compiled: FlatEx<f64, Language, Numbers>,
+    /// In the order in which they are carried out.
+    steps: Vec<Step>,
+    names: Vec<usize>,
+    /// Values that the stack holds at most.
+    depth: usize,
 }
 
 impl Formula {
-    /// Reads a formula; `name` says why a name is unknown.
+    /// Reads a formula over values of these names.
     ///
     /// # Errors
-    /// What is no formula, or could be read in two ways, with the reason.
-    pub fn parse(text: &str, name: impl Fn(&str) -> Result<(), String>) -> Result<Self, String> {
-        let text = checked(text, &name)?;
-        let compiled = FlatEx::<f64, Language, Numbers>::parse(&text).map_err(|e| e.to_string())?;
-        Ok(Self { compiled })
+    /// A text that is not a formula or can be read in two ways, and a name that is not among `names`.
+    pub fn parse(text: &str, names: &[&str]) -> Result<Self, FormulaError> {
+        Compiler::default().compile(text, names)
     }
 
-    /// Names of the functions that a formula may call.
-    pub fn functions() -> impl Iterator<Item = &'static str> {
-        FUNCTIONS.iter().map(|f| f.0)
-    }
-
-    /// The names in it, in the order in which [`Formula::value`] wants their values.
-    pub fn names(&self) -> &[String] {
-        self.compiled.var_names()
+    /// The names in it by their place in the list given to [`Formula::parse`], in the order in which [`Formula::value`]
+    /// wants their values.
+    pub fn names(&self) -> &[usize] {
+        &self.names
     }
 
     /// Its value; NaN unless there is one value for each name.
     pub fn value(&self, values: &[f64]) -> f64 {
-        self.compiled.eval(values).unwrap_or(f64::NAN)
+        if values.len() != self.names.len() {
+            return f64::NAN;
+        }
+        let (mut few, mut many) = ([0.0; 16], Vec::new());
+        let stack = if self.depth <= few.len() {
+            &mut few[..]
+        } else {
+            many.resize(self.depth, 0.0);
+            &mut many[..]
+        };
+        let mut top = 0;
+        for step in &self.steps {
+            match *step {
+                Step::Number(number) => stack[top] = number,
+                Step::Value(k) => stack[top] = values[k],
+                Step::Apply(function) => {
+                    top -= 1;
+                    stack[top] = function(stack[top]);
+                }
+                Step::Combine(operator) => {
+                    top -= 2;
+                    stack[top] = operator(stack[top], stack[top + 1]);
+                }
+            }
+            top += 1;
+        }
+        stack[0]
     }
 }
 
 /// A bracket, or the whole text.
 #[derive(Default)]
 struct Level {
+    /// Operators that wait for their second value, each of higher priority than the one before.
+    waiting: Vec<(u8, Binary)>,
     /// The operator before the last value.
     operator: &'static str,
     compared: bool,
+    /// What the value of the bracket goes into.
+    function: Option<Function>,
 }
 
-/// The text with a 0 before every sign, so that the sign is a subtraction: −x² then is −(x²).
-///
-/// Refuses what is no formula or could be read in two ways.
-fn checked(text: &str, name: &dyn Fn(&str) -> Result<(), String>) -> Result<String, String> {
-    if text.len() > MAX_LENGTH {
-        return Err(format!("it has more than {MAX_LENGTH} characters"));
-    }
-    let mut out = String::new();
-    let mut levels = vec![Level::default()];
-    // A value must come next, else an operator or a closing bracket.
-    let mut value_next = true;
-    // Nothing stands yet in this bracket or on this side of the comparison.
-    let mut opened = true;
-    let mut rest = text.trim_start();
-    while let Some(first) = rest.chars().next() {
-        let (token, after) = rest.split_at(token_length(rest));
-        let inner = levels.len() > 1;
-        let Some(level) = levels.last_mut() else { break };
-        if first.is_ascii_alphanumeric() || matches!(first, '_' | '.' | '(') {
-            if !value_next {
-                return Err(format!("an operator is missing before `{token}`"));
-            }
-            opened = false;
-            value_next = false;
-            let function = FUNCTIONS.iter().any(|f| f.0 == token);
-            if first == '(' {
-                if levels.len() > MAX_DEPTH {
-                    return Err(format!("brackets nest at most {MAX_DEPTH} deep"));
-                }
-                levels.push(Level::default());
-                (value_next, opened) = (true, true);
-            } else if function {
-                if !after.trim_start().starts_with('(') {
-                    return Err(format!("`{token}` needs its argument in brackets"));
-                }
-                value_next = true;
-            } else if first.is_ascii_alphabetic() || first == '_' {
-                name(token)?;
-            } else if !token.parse::<f64>().is_ok_and(f64::is_finite) {
-                return Err(format!("`{token}` is no number"));
-            }
-        } else if first == ')' {
-            if value_next {
-                return Err("a value is missing before `)`".into());
-            }
-            levels.pop();
-            if levels.is_empty() {
-                return Err("a bracket is closed that was not opened".into());
-            }
-        } else if let Some((operator, priority, _)) = OPERATORS.iter().find(|o| o.0 == token) {
-            let sign = opened && matches!(first, '+' | '-');
-            if value_next && !sign {
-                let help = if matches!(first, '+' | '-') { ": put the signed value in brackets" } else { "" };
-                return Err(format!("a value is missing before `{token}`{help}"));
-            }
-            if sign {
-                out.push('0');
-            }
-            if *operator == "^" && level.operator == "^" {
-                return Err("`a^b^c` can be read in two ways: use brackets".into());
-            }
-            let comparison = *priority == 0;
-            if comparison && (!inner || std::mem::replace(&mut level.compared, true)) {
-                return Err(format!("the comparison with `{token}` needs brackets of its own"));
-            }
-            level.operator = operator;
-            (value_next, opened) = (true, comparison);
-        } else {
-            return Err(format!("`{token}` means nothing in a formula"));
+#[derive(Default)]
+struct Compiler {
+    steps: Vec<Step>,
+    names: Vec<usize>,
+    held: usize,
+    depth: usize,
+}
+
+impl Compiler {
+    fn push(&mut self, step: Step) {
+        match step {
+            Step::Number(_) | Step::Value(_) => self.held += 1,
+            Step::Apply(_) => {}
+            Step::Combine(_) => self.held -= 1,
         }
-        out.push_str(token);
-        out.push(' ');
-        rest = after.trim_start();
+        self.depth = self.depth.max(self.held);
+        self.steps.push(step);
     }
-    if levels.len() > 1 {
-        return Err("a bracket is not closed".into());
+
+    /// Carries out what waits in `level` and binds at least as tightly as `priority`.
+    fn combine(&mut self, level: &mut Level, priority: u8) {
+        while let Some((_, operator)) = level.waiting.pop_if(|(waiting, _)| *waiting >= priority) {
+            self.push(Step::Combine(operator));
+        }
     }
-    if value_next {
-        return Err(if out.is_empty() { "it is empty".into() } else { "a value is missing at the end".into() });
+
+    fn compile(mut self, text: &str, known: &[&str]) -> Result<Formula, FormulaError> {
+        if text.len() > MAX_LENGTH {
+            return Err(FormulaError::TooLong);
+        }
+        let mut outer: Vec<Level> = Vec::new();
+        let mut level = Level::default();
+        let mut function = None;
+        // A value must come next, else an operator or a closing bracket.
+        let mut value_next = true;
+        // Nothing stands yet in this bracket or on this side of the comparison.
+        let mut opened = true;
+        let mut rest = text.trim_start();
+        while let Some(first) = rest.chars().next() {
+            let (token, after) = rest.split_at(token_length(rest));
+            if first.is_ascii_alphanumeric() || matches!(first, '_' | '.' | '(') {
+                if !value_next {
+                    return Err(FormulaError::MissingOperator(token.into()));
+                }
+                opened = false;
+                value_next = false;
+                if first == '(' {
+                    if outer.len() == MAX_DEPTH {
+                        return Err(FormulaError::TooDeep);
+                    }
+                    let inner = Level { function: function.take(), ..Level::default() };
+                    outer.push(std::mem::replace(&mut level, inner));
+                    (value_next, opened) = (true, true);
+                } else if let Some((_, apply)) = FUNCTIONS.iter().find(|f| f.0 == token) {
+                    if !after.trim_start().starts_with('(') {
+                        return Err(FormulaError::MissingBrackets(token.into()));
+                    }
+                    function = Some(*apply);
+                    value_next = true;
+                } else if first.is_ascii_alphabetic() || first == '_' {
+                    self.push_name(token, known)?;
+                } else {
+                    let number = token.parse().ok().filter(|number: &f64| number.is_finite());
+                    self.push(Step::Number(number.ok_or_else(|| FormulaError::Number(token.into()))?));
+                }
+            } else if first == ')' {
+                if value_next {
+                    return Err(FormulaError::MissingValue(Some(token.into())));
+                }
+                let mut inner = std::mem::replace(&mut level, outer.pop().ok_or(FormulaError::Unopened)?);
+                self.combine(&mut inner, 0);
+                if let Some(function) = inner.function {
+                    self.push(Step::Apply(function));
+                }
+            } else if let Some((operator, priority, combine)) = OPERATORS.iter().find(|o| o.0 == token) {
+                let sign = opened && matches!(first, '+' | '-');
+                if value_next && !sign {
+                    return Err(FormulaError::MissingValue(Some(token.into())));
+                }
+                if *operator == "^" && level.operator == "^" {
+                    return Err(FormulaError::TwoPowers);
+                }
+                let comparison = *priority == 0;
+                if comparison && (outer.is_empty() || std::mem::replace(&mut level.compared, true)) {
+                    return Err(FormulaError::Comparison(token.into()));
+                }
+                if sign {
+                    // A sign is a subtraction from 0, so that −x² is −(x²).
+                    self.push(Step::Number(0.0));
+                }
+                self.combine(&mut level, *priority);
+                level.waiting.push((*priority, *combine));
+                level.operator = operator;
+                (value_next, opened) = (true, comparison);
+            } else {
+                return Err(FormulaError::Symbol(token.into()));
+            }
+            rest = after.trim_start();
+        }
+        if !outer.is_empty() {
+            return Err(FormulaError::Unclosed);
+        }
+        if value_next {
+            return Err(if text.trim().is_empty() { FormulaError::Empty } else { FormulaError::MissingValue(None) });
+        }
+        self.combine(&mut level, 0);
+        Ok(Formula { steps: self.steps, names: self.names, depth: self.depth })
     }
-    Ok(out)
+
+    fn push_name(&mut self, name: &str, known: &[&str]) -> Result<(), FormulaError> {
+        let Some(place) = known.iter().position(|k| *k == name) else {
+            let names = known.iter().copied().chain(FUNCTIONS.iter().map(|f| f.0));
+            return Err(FormulaError::Name(format!("`{name}` {}", unknown_key(name, names))));
+        };
+        let k = self.names.iter().position(|k| *k == place).unwrap_or_else(|| {
+            self.names.push(place);
+            self.names.len() - 1
+        });
+        self.push(Step::Value(k));
+        Ok(())
+    }
 }
 
 /// Bytes of the number, word, operator or other character at the beginning of `text`.

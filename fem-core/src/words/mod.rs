@@ -3,11 +3,11 @@
 pub mod counters;
 pub mod damping;
 pub mod dof;
-#[cfg(feature = "formula")]
 pub mod formula;
 pub mod functional;
 pub mod layup;
 pub mod material;
 pub mod prolongation;
 pub mod quadrature;
+pub(crate) mod spelling;
 pub mod tensor;

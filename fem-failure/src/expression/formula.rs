@@ -1,11 +1,8 @@
 //! A formula over the stress and the constants of a material.
 
-use fem_core::formula;
+use fem_core::formula::{Formula, FormulaError};
 use fem_core::material::{Elastic, Material, Strength};
-use fem_core::plugin::unknown_key;
 use fem_core::tensor::{Ply, Stress6};
-
-type Constant = fn(&Elastic) -> f64;
 
 /// What a symbol stands for.
 #[derive(Debug, Clone, Copy)]
@@ -13,7 +10,7 @@ enum Symbol {
     /// A component, by its place in [`Stress6`].
     Stress(usize),
     Strength(Strength),
-    Elastic(Constant),
+    Elastic(fn(&Elastic) -> f64),
 }
 
 const STRESSES: [(&str, usize); 12] = [
@@ -31,7 +28,7 @@ const STRESSES: [(&str, usize); 12] = [
     ("s31", 5),
 ];
 
-const ELASTIC: [(&str, Constant); 9] = [
+const ELASTIC: [(&str, fn(&Elastic) -> f64); 9] = [
     ("E1", |e| e.e1),
     ("E2", |e| e.e2),
     ("E3", |e| e.e3),
@@ -43,18 +40,26 @@ const ELASTIC: [(&str, Constant); 9] = [
     ("G23", |e| e.g23),
 ];
 
-/// A formula over the stress and the constants of a material.
+/// Every symbol with its name.
+fn symbols() -> impl Iterator<Item = (&'static str, Symbol)> {
+    let stresses = STRESSES.iter().map(|(name, i)| (*name, Symbol::Stress(*i)));
+    let strengths = Strength::ALL.iter().map(|s| (s.name(), Symbol::Strength(*s)));
+    stresses.chain(strengths).chain(ELASTIC.iter().map(|(name, constant)| (*name, Symbol::Elastic(*constant))))
+}
+
+/// The index of a mode: a formula over the stress and the constants of a material.
 #[derive(Debug, Clone)]
-pub(super) struct Formula {
-    formula: formula::Formula,
+pub(super) struct IndexFormula {
+    formula: Formula,
     /// What to hand over, in the order that `formula` wants.
     symbols: Vec<Symbol>,
 }
 
-impl Formula {
-    pub(super) fn parse(text: &str) -> Result<Self, String> {
-        let formula = formula::Formula::parse(text, |name| symbol(name).map(drop))?;
-        let symbols = formula.names().iter().map(|name| symbol(name)).collect::<Result<_, _>>()?;
+impl IndexFormula {
+    pub(super) fn parse(text: &str) -> Result<Self, FormulaError> {
+        let (names, known): (Vec<_>, Vec<_>) = symbols().unzip();
+        let formula = Formula::parse(text, &names)?;
+        let symbols = formula.names().iter().map(|k| known[*k]).collect();
         Ok(Self { formula, symbols })
     }
 
@@ -80,18 +85,6 @@ impl Formula {
     }
 }
 
-fn symbol(name: &str) -> Result<Symbol, String> {
-    let stress = STRESSES.iter().find(|(n, _)| *n == name).map(|(_, i)| Symbol::Stress(*i));
-    let strength = || Strength::ALL.iter().find(|s| s.name() == name).map(|s| Symbol::Strength(*s));
-    let elastic = || ELASTIC.iter().find(|(n, _)| *n == name).map(|(_, f)| Symbol::Elastic(*f));
-    stress.or_else(strength).or_else(elastic).ok_or_else(|| {
-        let stresses = STRESSES[..6].iter().map(|s| s.0);
-        let constants = Strength::ALL.iter().map(|s| s.name()).chain(ELASTIC.iter().map(|e| e.0));
-        let known = stresses.chain(constants).chain(formula::Formula::functions());
-        format!("`{name}` {}", unknown_key(name, known))
-    })
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
@@ -113,7 +106,7 @@ mod tests {
 
     fn value(text: &str) -> f64 {
         let s = Stress6::new([2.0, 3.0, 5.0, 7.0, 11.0, 13.0]);
-        Formula::parse(text).unwrap().value(&s, &material())
+        IndexFormula::parse(text).unwrap().value(&s, &material())
     }
 
     #[test]
@@ -148,13 +141,13 @@ mod tests {
     fn nan_is_never_lost() {
         let nan = Stress6::new([f64::NAN; 6]);
         for text in ["pos(s1)", "(s1 < 1)", "abs(s2)", "(s1 >= 0)*0", "s1^0", "1^s1", "s1^2"] {
-            assert!(Formula::parse(text).unwrap().value(&nan, &material()).is_nan(), "{text}");
+            assert!(IndexFormula::parse(text).unwrap().value(&nan, &material()).is_nan(), "{text}");
         }
         assert!(value("s1/Zt").is_nan(), "a strength that is missing");
     }
 
     #[test]
-    fn what_is_no_formula_is_refused_with_the_reason() {
+    fn texts_that_are_not_formulas_are_refused_with_the_reason() {
         for (text, words) in [
             ("", "empty"),
             ("  ", "empty"),
@@ -179,32 +172,32 @@ mod tests {
             ("s1 < 2", "brackets of its own"),
             ("(0 < s1 < 2)", "brackets of its own"),
             ("s1^2^3", "two ways"),
-            ("1..2", "`1..2` is no number"),
-            ("1e999", "no number"),
+            ("1..2", "`1..2` is not a number"),
+            ("1e999", "not a number"),
             ("1e", "an operator is missing before `e`"),
             ("{s1}", "`{` means nothing"),
             ("s1 = 2", "`=` means nothing"),
             ("max(s1, s2)", "`max` is not known"),
             ("σ1", "`σ` means nothing"),
         ] {
-            let why = Formula::parse(text).err().unwrap_or_default();
+            let why = IndexFormula::parse(text).unwrap_err().to_string();
             assert!(why.contains(words), "{text:?}: {why:?}");
         }
     }
 
     #[test]
     fn no_text_takes_long() {
-        let refused = |text: &str| Formula::parse(text).err().unwrap_or_default();
+        let refused = |text: &str| IndexFormula::parse(text).unwrap_err().to_string();
         assert!(refused(&["(".repeat(65), "s1".into(), ")".repeat(65)].concat()).contains("64 deep"));
         assert!(refused(&"s1+".repeat(1400)).contains("more than 4096"));
-        assert!(Formula::parse(&["(".repeat(64), "s1".into(), ")".repeat(64)].concat()).is_ok());
+        assert!(IndexFormula::parse(&["(".repeat(64), "s1".into(), ")".repeat(64)].concat()).is_ok());
     }
 
     proptest! {
         /// Whatever stands in a scene is a formula or an error, never a panic.
         #[test]
         fn any_text_is_read_or_refused(text in "[ s1-3XtY()<>=.+*/^eabs{},σ\\n-]{0,40}") {
-            if let Ok(formula) = Formula::parse(&text) {
+            if let Ok(formula) = IndexFormula::parse(&text) {
                 let _ = formula.value(&Stress6::new([1.0; 6]), &material());
             }
         }

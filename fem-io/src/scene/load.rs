@@ -9,7 +9,7 @@ use crate::document::tree::Node;
 use crate::units;
 use fem_core::formula::Formula;
 use fem_core::load::Face;
-use fem_core::plugin::{Dimension, unknown_key};
+use fem_core::plugin::Dimension;
 
 /// A load.
 #[derive(Debug, Clone)]
@@ -84,8 +84,8 @@ impl Pressure {
         match self {
             Self::Uniform(p) => *p,
             Self::Formula { formula, pascals, metres } => {
-                let value = |name: &String| if name == "x" { x / metres } else { y / metres };
-                pascals * formula.value(&formula.names().iter().map(value).collect::<Vec<_>>())
+                let coordinates = [x / metres, y / metres];
+                pascals * formula.value(&formula.names().iter().map(|k| coordinates[*k]).collect::<Vec<_>>())
             }
         }
     }
@@ -220,12 +220,8 @@ fn pressure(table: &Reader<'_>) -> Result<LoadKind, SceneError> {
 
 fn formula(table: &Reader<'_>) -> Result<Pressure, SceneError> {
     let field = table.required("formula")?;
-    let known = |name: &str| match name {
-        "x" | "y" => Ok(()),
-        _ => Err(format!("`{name}` {}", unknown_key(name, ["x", "y"].into_iter().chain(Formula::functions())))),
-    };
-    let formula = Formula::parse(field.text()?, known)
-        .map_err(|why| field.error(why, "a formula of x and y, the coordinates in the unit `length`"))?;
+    let help = "a formula of x and y, the coordinates in the unit `length`";
+    let formula = Formula::parse(field.text()?, &["x", "y"]).map_err(|why| field.error(why.to_string(), help))?;
     let unit = |key, dimension| {
         let field = table.required(key)?;
         units::parse_as(&format!("1 {}", field.text()?), dimension)
