@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod advise;
+mod architecture;
 mod bad_input;
 mod book;
 mod comfort;

@@ -1,6 +1,6 @@
 //! Cuntze's failure mode concept, three-dimensional and plane.
 
-use crate::plane_stress::OutOfPlane;
+use super::plane_stress::OutOfPlane;
 use crate::prelude::*;
 
 /// Efforts of the five modes and their interaction.

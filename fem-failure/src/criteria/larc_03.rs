@@ -1,8 +1,8 @@
 //! LaRC03, plane stress.
 
-use crate::action_plane::{Angles, maximise};
-use crate::larc::{ALPHA0, Friction, alpha0_from, turned};
-use crate::plane_stress::OutOfPlane;
+use super::action_plane::{Angles, maximise};
+use super::larc::{ALPHA0, Friction, alpha0_from, turned};
+use super::plane_stress::OutOfPlane;
 use crate::prelude::*;
 
 /// LaRC03 for a ply in plane stress, with σ22m, σ12m in the frame of the misaligned fibres.

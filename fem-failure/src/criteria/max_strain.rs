@@ -1,6 +1,6 @@
 //! Maximum strain.
 
-use crate::max_stress::{LIMIT_MODES, limits};
+use super::max_stress::{LIMIT_MODES, limits};
 use crate::prelude::*;
 
 /// Every component of ε = S σ over an allowable strain.

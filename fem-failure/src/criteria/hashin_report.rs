@@ -1,6 +1,6 @@
 //! Hashin's criterion as AFWAL-TR-87-4117 uses it.
 
-use crate::hashin_1980::check_transverse_tension;
+use super::hashin_1980::check_transverse_tension;
 use crate::prelude::*;
 
 /// Sign of σ22 σ33 in the tensile matrix mode.

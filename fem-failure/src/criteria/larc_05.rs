@@ -1,9 +1,9 @@
 //! LaRC05, three-dimensional.
 
-use crate::action_plane::{Angles, maximise};
-use crate::larc::{ALPHA0, Friction, alpha0_from, turned};
+use super::action_plane::{Angles, maximise};
+use super::larc::{ALPHA0, Friction, alpha0_from, turned};
+use super::puck::tractions;
 use crate::prelude::*;
-use crate::puck::tractions;
 use std::f64::consts::PI;
 
 /// LaRC05: matrix failure on the worst plane, kinking and splitting of misaligned fibres in the worst plane about them.

@@ -1,6 +1,6 @@
 //! Tsai-Hill and Azzi-Tsai, plane stress.
 
-use crate::plane_stress::OutOfPlane;
+use super::plane_stress::OutOfPlane;
 use crate::prelude::*;
 
 /// Interaction term of the plane Hill form.

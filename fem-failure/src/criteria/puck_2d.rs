@@ -1,8 +1,8 @@
 //! Puck's criterion in plane stress.
 
-use crate::plane_stress::OutOfPlane;
+use super::plane_stress::OutOfPlane;
+use super::puck::{FibreFailure, WEAKENING, check_slope, common_params, weakening};
 use crate::prelude::*;
-use crate::puck::{FibreFailure, WEAKENING, check_slope, common_params, weakening};
 
 /// Puck's closed form for plane stress, with the plane's own inclination p23 = p12c RA/S12.
 ///

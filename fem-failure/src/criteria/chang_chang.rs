@@ -1,6 +1,6 @@
 //! Chang and Chang, plane stress.
 
-use crate::plane_stress::OutOfPlane;
+use super::plane_stress::OutOfPlane;
 use crate::prelude::*;
 use crate::terms;
 use fem_core::failure::{Reserve, search_reserve};

@@ -1,6 +1,6 @@
 //! Puck's action-plane criterion, three-dimensional, and what its plane form shares with it.
 
-use crate::action_plane::{Angles, maximise};
+use super::action_plane::{Angles, maximise};
 use crate::prelude::*;
 use fem_core::plugin::Dimension;
 use std::f64::consts::{FRAC_PI_2, PI};

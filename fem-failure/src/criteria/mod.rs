@@ -1,0 +1,47 @@
+//! The criteria, one file each, and what some of them share.
+
+mod action_plane;
+mod chang_chang;
+mod chang_lessard;
+mod choi_chang;
+mod christensen;
+mod cuntze;
+mod expression;
+mod hashin_1980;
+mod hashin_report;
+mod hashin_rotem;
+mod hoffman;
+mod interface;
+mod larc;
+mod larc_03;
+mod larc_05;
+mod max_strain;
+mod max_stress;
+mod octahedral;
+mod plane_stress;
+mod puck;
+mod puck_2d;
+mod tsai_hill;
+mod tsai_wu;
+
+pub use chang_chang::ChangChang;
+pub use chang_lessard::ChangLessard;
+pub use choi_chang::ChoiChang;
+pub use christensen::Christensen;
+pub use cuntze::{Cuntze, Cuntze2d};
+pub use expression::{Expression, ExpressionError};
+pub use hashin_1980::Hashin1980;
+pub use hashin_report::{HashinReport, Product};
+pub use hashin_rotem::HashinRotem;
+pub use hoffman::Hoffman;
+pub use interface::{BrewerLagace, MaxStressInterface, QuadraticStress};
+pub use larc_03::Larc03;
+pub use larc_05::Larc05;
+pub use max_strain::MaxStrain;
+pub use max_stress::MaxStress;
+pub use octahedral::Octahedral;
+pub use plane_stress::OutOfPlane;
+pub use puck::{FibreFailure, Puck};
+pub use puck_2d::Puck2d;
+pub use tsai_hill::{Interaction, TsaiHill};
+pub use tsai_wu::{Transverse, TsaiWu};
