@@ -1,16 +1,16 @@
 //! Words for people that several results share.
 
-use fem_failure::scan::Place;
+use fem_failure::scan::PlyOrInterface;
 use std::fmt::Display;
 
 /// Condition of the stiffness beyond which its digits are worth a warning: six of 16 are left.
 const NOTABLE_CONDITION: f64 = 1e10;
 
 /// "3" for a ply, "3|4" for an interface, counted from 1 at the bottom.
-pub(crate) fn name_ply(place: Place) -> String {
+pub(crate) fn name_ply(place: PlyOrInterface) -> String {
     match place {
-        Place::Ply(k) => format!("{}", k + 1),
-        Place::Interface(k) => format!("{}|{}", k + 1, k + 2),
+        PlyOrInterface::Ply(k) => format!("{}", k + 1),
+        PlyOrInterface::Interface(k) => format!("{}|{}", k + 1, k + 2),
     }
 }
 

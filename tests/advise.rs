@@ -2,7 +2,7 @@
 
 use crate::support::{Case, root, strip};
 use fem::advise::Hindsight;
-use fem::advise::large_mass::{Peak, Spring, energy_balance, rigid_target};
+use fem::advise::large_mass::{ImpactPeak, Spring, energy_balance, rigid_target};
 use fem::advise::membrane::{Held, THRESHOLD};
 use fem::advise::small_mass::{self, infinite_plate, linear_contact_force};
 use fem::advise::{Advice, Delaminates, Regime, advise, decided};
@@ -11,7 +11,7 @@ use fem::analyses::statics;
 use fem::core::contact::ContactLaw;
 use fem::core::plugin::{Built, Dimension, Kind, Params, Value};
 use fem::io::scene;
-use fem::output::summary::Summary;
+use fem::output::summary::ImpactSummary;
 use fem::{Error, Model, Registry, output};
 use std::num::NonZeroUsize;
 
@@ -225,7 +225,7 @@ fn the_reports_scenes_by_the_energy_balance() {
             energy_balance(energy, Spring { bending: circle, membrane }, &*hertz)
         };
         let peaks = [peak(0.0), peak(SUPPORTED[1].coefficient()), peak(SUPPORTED[0].coefficient())];
-        for (Peak { force, deflection, .. }, [want, over]) in peaks.iter().zip(ring.peaks) {
+        for (ImpactPeak { force, deflection, .. }, [want, over]) in peaks.iter().zip(ring.peaks) {
             near(*force, want, 4e-3);
             assert!((deflection / plate.thickness - over).abs() < 0.011, "{}: {deflection}", ring.name);
         }
@@ -482,14 +482,14 @@ fn sheet(effects: &'static str) -> Square {
 }
 
 /// The first of the warnings that names what can be done about the membrane.
-fn warned(summary: &Summary) -> Option<&String> {
+fn warned(summary: &ImpactSummary) -> Option<&String> {
     summary.warnings.iter().find(|warning| warning.contains("effects.membrane"))
 }
 
 #[test]
 fn a_linear_run_says_when_it_left_its_limits() {
     let (model, sizes, outcome) = computed(&sheet("").text());
-    let summary = Summary::new(&model, &sizes, &outcome);
+    let summary = ImpactSummary::new(&model, &sizes, &outcome);
     let warning = warned(&summary).unwrap();
     assert!(warning.contains("A = 0.443") && warning.contains("membrane = \"on\""), "{warning}");
     assert!(summary.advised.is_empty());
@@ -503,7 +503,7 @@ fn a_linear_run_says_when_it_left_its_limits() {
 
     let slow = Square { impactor: "mass = '100 g'\nvelocity = '0.2 m/s'", ..sheet("") };
     let (model, sizes, outcome) = computed(&slow.text());
-    assert_eq!(warned(&Summary::new(&model, &sizes, &outcome)), None);
+    assert_eq!(warned(&ImpactSummary::new(&model, &sizes, &outcome)), None);
 }
 
 #[test]
@@ -518,7 +518,7 @@ fn the_advisor_decides_what_a_scene_leaves_to_it() {
     let slow = Square { impactor: "mass = '100 g'\nvelocity = '0.2 m/s'", ..auto };
     let (model, sizes, outcome) = computed(&slow.text());
     assert!(!model.effects.membrane);
-    let summary = Summary::new(&model, &sizes, &outcome);
+    let summary = ImpactSummary::new(&model, &sizes, &outcome);
     let [advised] = &summary.advised[..] else { panic!() };
     assert!(!advised.on && advised.expected < THRESHOLD && warned(&summary).is_none());
     // The plate reaches what was expected of it.
@@ -545,7 +545,7 @@ fn loads_at_rest_are_decided_by_the_linear_deflection() {
     let (model, slight) = at_rest("1 kPa");
     assert!(!slight.on && !model.effects.membrane);
     let solution = statics::solve(&model, NonZeroUsize::MIN).unwrap();
-    let summary = output::statics::Summary::new(&model, &solution);
+    let summary = output::statics::StaticSummary::new(&model, &solution);
     near(slight.expected, 0.443 * (summary.largest_deflection.w_m / 1e-3).powi(2), 1e-9);
     assert_eq!(summary.advised.len(), 1);
     let (_, heavy) = at_rest("100 kPa");

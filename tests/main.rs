@@ -26,3 +26,4 @@ mod study;
 mod support;
 mod two_level;
 mod validation;
+mod words;

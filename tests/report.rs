@@ -42,7 +42,7 @@ impl Computed {
 
     /// Time of the first event of a mode, in any ply or in one (counted from 1 at the bottom), s.
     pub(crate) fn onset(&self, mode: &str, ply: Option<u16>) -> Option<f64> {
-        let here = |place| ply.is_none_or(|k| place == fem::failure::scan::Place::Ply(k - 1));
+        let here = |place| ply.is_none_or(|k| place == fem::failure::scan::PlyOrInterface::Ply(k - 1));
         self.outcome.events.iter().find(|e| e.mode == mode && here(e.place)).map(|e| e.time)
     }
 
@@ -87,7 +87,7 @@ fn as_reported(case: &str, end: &str) -> Computed {
 fn case_1_fails_where_and_when_the_report_says() {
     let c = as_reported("as4-3502-16ply-50mm", "1.1 ms");
     let tension = c.event(TENSION);
-    assert_eq!(tension.place, fem::failure::scan::Place::Ply(0));
+    assert_eq!(tension.place, fem::failure::scan::PlyOrInterface::Ply(0));
     // The innermost element: its centre is half a cell of 2.54 mm from the impact in x and y.
     assert!(tension.position[0].abs() < 1.4e-3 && tension.position[1].abs() < 1.4e-3, "{:?}", tension.position);
     within(tension.time, 0.41e-3, 0.03, "tensile matrix failure of the bottom ply");
@@ -153,7 +153,7 @@ fn bottom_tension_precedes_top_shear_in_all_cases() {
     let prototype = [(410.0, 1006.0), (790.0, 1802.0), (252.0, 588.0), (700.0, 1700.0), (1212.0, 3118.0)];
     for ((case, end), (tension, shear)) in CASES.into_iter().zip(prototype) {
         let c = as_reported(case, end);
-        assert_eq!(c.event(TENSION).place, fem::failure::scan::Place::Ply(0), "{case}");
+        assert_eq!(c.event(TENSION).place, fem::failure::scan::PlyOrInterface::Ply(0), "{case}");
         let found = (c.onset(TENSION, Some(1)).unwrap(), c.onset(SHEAR, Some(c.plies())).unwrap());
         assert!(found.0 < found.1, "{case}: {found:?}");
         // The meshes differ and the shear onset rides on the force ripple.
@@ -171,7 +171,7 @@ fn tension_stays_near_the_report_across_defensible_settings() {
     for edits in [vec![short], vec![short, at], vec![short, two], vec![short, layers]] {
         let c = Computed::example("as4-3502-16ply-50mm", "", &edits);
         let tension = c.event(TENSION);
-        assert_eq!(tension.place, fem::failure::scan::Place::Ply(0));
+        assert_eq!(tension.place, fem::failure::scan::PlyOrInterface::Ply(0));
         assert!((0.30e-3..0.50e-3).contains(&tension.time), "{edits:?}: {}", tension.time);
     }
 }
@@ -304,7 +304,7 @@ fn the_same_energy_breaks_sooner_in_a_small_mass() {
     let large = Computed::example("im6-934-32ply-large-mass", "", &[]);
     let small = Computed::example("im6-934-32ply-small-mass", "", &[]);
     for c in [&large, &small] {
-        assert_eq!(c.event(TENSION).place, fem::failure::scan::Place::Ply(0));
+        assert_eq!(c.event(TENSION).place, fem::failure::scan::PlyOrInterface::Ply(0));
         assert!(c.outcome.energy_error <= 1e-4, "{}", c.outcome.energy_error);
     }
     let ratio = large.onset(TENSION, None).unwrap() / small.onset(TENSION, None).unwrap();
@@ -324,7 +324,7 @@ fn the_same_energy_breaks_sooner_in_a_small_mass() {
     let shares = [(&large, 0.812e-3), (&small, 19.3e-6)].map(|(c, t)| first_share(c, t));
     assert!(shares[0] > 0.75 && shares[1] < 0.15, "{shares:?}");
     let drop = Computed::example("im6-934-32ply-drop-weight", "", &[]);
-    assert_eq!(drop.event(TENSION).place, fem::failure::scan::Place::Ply(0));
+    assert_eq!(drop.event(TENSION).place, fem::failure::scan::PlyOrInterface::Ply(0));
     within(drop.onset(TENSION, None).unwrap(), 1.454e-3, 0.02, "drop weight, tension");
     within(drop.peak_force(), 3728.0, 0.01, "drop weight, force");
 }

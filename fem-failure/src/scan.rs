@@ -9,29 +9,29 @@ use std::ops::Range;
 
 /// A ply or the resin between two plies, counted from 0 at the bottom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Place {
+pub enum PlyOrInterface {
     /// Ply `k`.
     Ply(u16),
     /// Between ply `k` and the ply above it.
     Interface(u16),
 }
 
-impl Place {
+impl PlyOrInterface {
     /// What kind of criterion looks here.
     pub fn site(self) -> Site {
         match self {
-            Place::Ply(_) => Site::Ply,
-            Place::Interface(_) => Site::Interface,
+            PlyOrInterface::Ply(_) => Site::Ply,
+            PlyOrInterface::Interface(_) => Site::Interface,
         }
     }
 }
 
 /// For people, who count plies from 1.
-impl fmt::Display for Place {
+impl fmt::Display for PlyOrInterface {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Place::Ply(k) => write!(f, "ply {} from the bottom", u32::from(k) + 1),
-            Place::Interface(k) => {
+            PlyOrInterface::Ply(k) => write!(f, "ply {} from the bottom", u32::from(k) + 1),
+            PlyOrInterface::Interface(k) => {
                 write!(f, "the interface of plies {} and {} from the bottom", u32::from(k) + 1, u32::from(k) + 2)
             }
         }
@@ -44,7 +44,7 @@ pub struct ScanSite {
     /// Cell of the mesh.
     pub cell: u32,
     /// Ply or interface.
-    pub place: Place,
+    pub place: PlyOrInterface,
     /// Centre, m, in the plate's frame.
     pub position: [f64; 3],
     /// Angle of the axes in which the stress is given, radians from x towards y.
@@ -65,7 +65,7 @@ pub struct FailureEvent {
     /// Cell of the mesh.
     pub cell: u32,
     /// Ply or interface.
-    pub place: Place,
+    pub place: PlyOrInterface,
     /// Angle of the ply, radians.
     pub angle: f64,
     /// Centre of the site, m.
@@ -116,7 +116,7 @@ pub enum ScanError {
         /// First cell with that material.
         cell: u32,
         /// Its place.
-        place: Place,
+        place: PlyOrInterface,
         /// What is missing or wrong.
         source: MaterialError,
     },
@@ -126,7 +126,7 @@ pub enum ScanError {
         /// Cell.
         cell: u32,
         /// Place.
-        place: Place,
+        place: PlyOrInterface,
         /// The index it names.
         material: u16,
         /// How many there are.
@@ -156,7 +156,7 @@ pub enum ScanError {
         /// Cell.
         cell: u32,
         /// Place.
-        place: Place,
+        place: PlyOrInterface,
         /// The components.
         stress: Stress6<Ply>,
     },
@@ -175,7 +175,7 @@ pub enum ScanError {
         /// Cell.
         cell: u32,
         /// Place.
-        place: Place,
+        place: PlyOrInterface,
         /// Of this stress.
         stress: Stress6<Ply>,
         /// [`FailureCriterion::scope`].
@@ -202,12 +202,12 @@ pub struct Scan {
     stress: Vec<Stress6<Ply>>,
     /// Number of each site's place, in that order.
     slots: Vec<u32>,
-    record: Record,
+    record: ScanRecord,
 }
 
 /// What a scan has seen: with its sites, criteria and materials all that it takes to go on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Record {
+pub struct ScanRecord {
     /// Time of the last sample.
     time: Option<f64>,
     /// Its stresses, in the order of `Scan::order`.
@@ -286,7 +286,7 @@ impl Scan {
                 });
             }
         }
-        let mut places: Vec<Place> = sites.iter().map(|s| s.place).collect();
+        let mut places: Vec<PlyOrInterface> = sites.iter().map(|s| s.place).collect();
         places.sort_unstable();
         places.dedup();
 
@@ -328,7 +328,7 @@ impl Scan {
             });
         }
         let stress = vec![Stress6::new([0.0; 6]); sites.len()];
-        let record = Record { time: None, stress: stress.clone(), evaluations: 0, seen };
+        let record = ScanRecord { time: None, stress: stress.clone(), evaluations: 0, seen };
         Ok(Self { sites, materials, watches, order, stress, slots, record })
     }
 
@@ -474,14 +474,14 @@ impl Scan {
     }
 
     /// What the scan has seen, to be kept.
-    pub fn record(&self) -> &Record {
+    pub fn record(&self) -> &ScanRecord {
         &self.record
     }
 
     /// Goes on from what a scan of the same sites and criteria had seen; `false`, and nothing changes, where `record` is of
     /// another size.
     #[must_use]
-    pub fn resume(&mut self, record: Record) -> bool {
+    pub fn resume(&mut self, record: ScanRecord) -> bool {
         let size = |s: &Seen| [s.last.len(), s.maxima.len(), s.reached.len(), s.peaks.len(), s.first.len()];
         let fits = record.stress.len() == self.sites.len()
             && record.seen.iter().map(size).eq(self.record.seen.iter().map(size));

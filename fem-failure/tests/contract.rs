@@ -189,7 +189,8 @@ fn plane_criteria_refuse_spatial_stress_unless_told_to_ignore_it() {
     }
     assert_eq!(refusing, 8);
     // The scan says so too, with the place.
-    let site = scan::ScanSite { cell: 5, place: scan::Place::Ply(2), position: [0.0; 3], angle: 0.0, material: 0 };
+    let site =
+        scan::ScanSite { cell: 5, place: scan::PlyOrInterface::Ply(2), position: [0.0; 3], angle: 0.0, material: 0 };
     let criteria: Vec<(String, Box<dyn FailureCriterion>)> = vec![("hill".into(), Box::new(TsaiHill::default()))];
     let mut scan = scan::Scan::new(criteria, vec![site], vec![m.clone()]).unwrap();
     let error = scan.sample(0.0, &[spatial]).unwrap_err().to_string();

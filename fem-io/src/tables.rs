@@ -142,7 +142,7 @@ pub fn write_history(dir: &OutputDir, impactors: &[&str], rows: &[HistoryRow]) -
             ]
         });
         let energies = energies(row).map(|(_, energy)| energy);
-        [row.time_s].into_iter().chain(of_each).chain(energies).map(Field::Number).collect()
+        [row.time_s].into_iter().chain(of_each).chain(energies).map(TableValue::Number).collect()
     };
     write_columns(dir, "history.csv", &header, rows.iter().map(values))
 }
@@ -240,7 +240,7 @@ fn null_in(value: &Value) -> Option<Vec<String>> {
 #[derive(Debug, Clone, Copy, Serialize)]
 #[serde(untagged)]
 #[allow(missing_docs)]
-pub enum Field<'a> {
+pub enum TableValue<'a> {
     Number(f64),
     /// A number that may be infinite, written `inf`.
     Index(f64),
@@ -248,14 +248,14 @@ pub enum Field<'a> {
     Text(&'a str),
 }
 
-impl From<Field<'_>> for Value {
-    fn from(field: Field<'_>) -> Self {
+impl From<TableValue<'_>> for Value {
+    fn from(field: TableValue<'_>) -> Self {
         match field {
-            Field::Number(value) => value.into(),
-            Field::Index(value) if value.is_finite() => value.into(),
-            Field::Index(_) => "inf".into(),
-            Field::Count(value) => value.into(),
-            Field::Text(text) => text.into(),
+            TableValue::Number(value) => value.into(),
+            TableValue::Index(value) if value.is_finite() => value.into(),
+            TableValue::Index(_) => "inf".into(),
+            TableValue::Count(value) => value.into(),
+            TableValue::Text(text) => text.into(),
         }
     }
 }
@@ -269,52 +269,52 @@ impl EnvelopeRow {
 
 /// A row of a table: its columns with their values, in order.
 trait Row: Default {
-    fn fields(&self) -> Vec<(&'static str, Field<'_>)>;
+    fn fields(&self) -> Vec<(&'static str, TableValue<'_>)>;
 }
 
 impl Row for EventRow {
-    fn fields(&self) -> Vec<(&'static str, Field<'_>)> {
+    fn fields(&self) -> Vec<(&'static str, TableValue<'_>)> {
         vec![
-            ("time_s", Field::Number(self.time_s)),
-            ("criterion", Field::Text(&self.criterion)),
-            ("mode", Field::Text(&self.mode)),
-            ("cell", Field::Count(self.cell)),
-            ("ply", Field::Text(&self.ply)),
-            ("angle_deg", Field::Number(self.angle_deg)),
-            ("x_m", Field::Number(self.x_m)),
-            ("y_m", Field::Number(self.y_m)),
-            ("z_m", Field::Number(self.z_m)),
-            ("index", Field::Index(self.index)),
+            ("time_s", TableValue::Number(self.time_s)),
+            ("criterion", TableValue::Text(&self.criterion)),
+            ("mode", TableValue::Text(&self.mode)),
+            ("cell", TableValue::Count(self.cell)),
+            ("ply", TableValue::Text(&self.ply)),
+            ("angle_deg", TableValue::Number(self.angle_deg)),
+            ("x_m", TableValue::Number(self.x_m)),
+            ("y_m", TableValue::Number(self.y_m)),
+            ("z_m", TableValue::Number(self.z_m)),
+            ("index", TableValue::Index(self.index)),
         ]
     }
 }
 
 impl Row for IndexRow {
-    fn fields(&self) -> Vec<(&'static str, Field<'_>)> {
+    fn fields(&self) -> Vec<(&'static str, TableValue<'_>)> {
         let [x, y, z] = self.position_m;
         vec![
-            ("criterion", Field::Text(&self.criterion)),
-            ("mode", Field::Text(&self.mode)),
-            ("cell", Field::Count(self.cell)),
-            ("ply", Field::Text(&self.ply)),
-            ("x_m", Field::Number(x)),
-            ("y_m", Field::Number(y)),
-            ("z_m", Field::Number(z)),
-            ("index", Field::Index(self.index)),
+            ("criterion", TableValue::Text(&self.criterion)),
+            ("mode", TableValue::Text(&self.mode)),
+            ("cell", TableValue::Count(self.cell)),
+            ("ply", TableValue::Text(&self.ply)),
+            ("x_m", TableValue::Number(x)),
+            ("y_m", TableValue::Number(y)),
+            ("z_m", TableValue::Number(z)),
+            ("index", TableValue::Index(self.index)),
         ]
     }
 }
 
 impl Row for IndexHistoryRow {
-    fn fields(&self) -> Vec<(&'static str, Field<'_>)> {
-        let mut fields = vec![("time_s", Field::Number(self.time_s))];
+    fn fields(&self) -> Vec<(&'static str, TableValue<'_>)> {
+        let mut fields = vec![("time_s", TableValue::Number(self.time_s))];
         fields.extend(self.index.fields());
         fields
     }
 }
 
 impl Row for EnvelopeRow {
-    fn fields(&self) -> Vec<(&'static str, Field<'_>)> {
+    fn fields(&self) -> Vec<(&'static str, TableValue<'_>)> {
         let column = |name| match name {
             "s1" => "s1_MPa",
             "s2" => "s2_MPa",
@@ -324,11 +324,11 @@ impl Row for EnvelopeRow {
             _ => "s13_MPa",
         };
         vec![
-            ("criterion", Field::Text(&self.criterion)),
-            ("mode", Field::Text(&self.mode)),
-            ("angle_deg", Field::Number(self.angle_deg)),
-            (column(self.components[0]), Field::Number(self.stresses_mpa[0])),
-            (column(self.components[1]), Field::Number(self.stresses_mpa[1])),
+            ("criterion", TableValue::Text(&self.criterion)),
+            ("mode", TableValue::Text(&self.mode)),
+            ("angle_deg", TableValue::Number(self.angle_deg)),
+            (column(self.components[0]), TableValue::Number(self.stresses_mpa[0])),
+            (column(self.components[1]), TableValue::Number(self.stresses_mpa[1])),
         ]
     }
 }
@@ -348,13 +348,13 @@ pub fn write_columns<'a>(
     dir: &OutputDir,
     file: &str,
     header: &[&str],
-    rows: impl Iterator<Item = Vec<Field<'a>>> + Clone,
+    rows: impl Iterator<Item = Vec<TableValue<'a>>> + Clone,
 ) -> Result<(), FileError> {
     for (row, values) in rows.clone().enumerate() {
         for (column, value) in header.iter().zip(values) {
             let refused = match value {
-                Field::Number(value) => (!value.is_finite()).then_some(value),
-                Field::Index(value) => (!(value > f64::NEG_INFINITY)).then_some(value),
+                TableValue::Number(value) => (!value.is_finite()).then_some(value),
+                TableValue::Index(value) => (!(value > f64::NEG_INFINITY)).then_some(value),
                 _ => None,
             };
             if let Some(value) = refused {

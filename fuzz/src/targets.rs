@@ -27,9 +27,9 @@ pub fn mesh(data: &[u8]) {
         Err(error) => {
             assert!(!error.fault.to_string().is_empty());
             match error.place {
-                gmsh::Place::File => {}
-                gmsh::Place::Line(line) => assert!((1..=1 + newlines(data)).contains(&line), "{error}"),
-                gmsh::Place::Byte(byte) => assert!(byte <= data.len(), "{error}"),
+                gmsh::FilePlace::File => {}
+                gmsh::FilePlace::Line(line) => assert!((1..=1 + newlines(data)).contains(&line), "{error}"),
+                gmsh::FilePlace::Byte(byte) => assert!(byte <= data.len(), "{error}"),
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::answer::{Answer, Number};
 use super::estimate::{Blow, Estimate};
-use super::plate::Plate;
+use super::plate::PlateConstants;
 use fem_core::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw};
 use fem_io::scene::ContactLoad;
 use std::f64::consts::PI;
@@ -36,7 +36,13 @@ pub struct Contact {
 }
 
 impl Contact {
-    pub(super) fn new(plate: &Plate, blow: &Blow<'_>, estimate: &Estimate, load: ContactLoad, cell: f64) -> Self {
+    pub(super) fn new(
+        plate: &PlateConstants,
+        blow: &Blow<'_>,
+        estimate: &Estimate,
+        load: ContactLoad,
+        cell: f64,
+    ) -> Self {
         let stiffer = Twice(blow.law);
         let again = Estimate::new(plate, &Blow { law: &stiffer, ..*blow });
         // In the same regime: a law twice as stiff may lie beyond a border of it.
@@ -58,7 +64,7 @@ impl Contact {
         }
     }
 
-    pub(super) fn answer(&self, plate: &Plate) -> Answer {
+    pub(super) fn answer(&self, plate: &PlateConstants) -> Answer {
         let law = match self.share {
             share if share < LITTLE => "any stiffness within a factor of two will do",
             share if share <= MUCH => "the contact stiffness matters",

@@ -16,7 +16,7 @@ const DYNAMIC: f64 = 1.21;
 
 /// What an impact does to the interfaces of a laminate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Delamination {
+pub struct DelaminationAdvice {
     /// The force at which it delaminates, N, and what it follows from.
     pub threshold: DelaminationThreshold,
     /// Largest force of the impact over the threshold, which counts 1.21 times for a small mass.
@@ -34,7 +34,7 @@ pub enum Delaminates {
     Yes,
 }
 
-impl Delamination {
+impl DelaminationAdvice {
     /// `None` where no material gives GIIc.
     pub(super) fn new(model: &Model, estimate: &Estimate) -> Option<Self> {
         let resin = model.scene.interface.as_ref().map(|resin| resin.value);
@@ -53,7 +53,7 @@ impl Delamination {
     }
 }
 
-pub(super) fn answer(found: Option<&Delamination>) -> Answer {
+pub(super) fn answer(found: Option<&DelaminationAdvice>) -> Answer {
     let answer = |numbers, choice: &str| Answer {
         question: "delamination",
         numbers,

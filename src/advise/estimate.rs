@@ -1,7 +1,7 @@
 //! What an impact will do, before it is computed.
 
-use super::large_mass::{self, Peak, Spring, energy_balance, rigid_target};
-use super::plate::Plate;
+use super::large_mass::{self, ImpactPeak, Spring, energy_balance, rigid_target};
+use super::plate::PlateConstants;
 use super::regime::Regime;
 use super::small_mass::{self, Wave, infinite_plate};
 use fem_core::contact::ContactLaw;
@@ -43,9 +43,9 @@ pub struct Estimate {
     /// √(L/(1 + L)) over the force of the infinite plate at ζ: the peak at rest over that of the first wave.
     pub static_over_wave: f64,
     /// The peak without inertia of the plate, linear.
-    pub linear: Peak,
+    pub linear: ImpactPeak,
     /// The same with membrane stiffening.
-    pub stiffened: Peak,
+    pub stiffened: ImpactPeak,
     /// The first contact with an infinite plate.
     pub wave: Wave,
     /// Energy of the contact at the peak over that of the impact.
@@ -60,7 +60,7 @@ pub struct Estimate {
 
 impl Estimate {
     /// Of `blow` on `plate`.
-    pub fn new(plate: &Plate, blow: &Blow<'_>) -> Self {
+    pub fn new(plate: &PlateConstants, blow: &Blow<'_>) -> Self {
         let Blow { mass, velocity, time, law } = *blow;
         let energy = blow.energy();
         let bending = Spring { bending: plate.stiffness, membrane: 0.0 };

@@ -28,7 +28,7 @@ impl Spring {
 
 /// The moment at which an impactor stands still on a plate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Peak {
+pub struct ImpactPeak {
     /// Contact force, N.
     pub force: f64,
     /// Deflection of the plate under the impactor, m.
@@ -50,11 +50,11 @@ const DEEPEST: f64 = 1e3;
 /// ½ M V² = ½ Kb w² + ¼ Km w⁴ + ∫₀^α F dα,  F(α) = Kb w + Km w³,
 ///
 /// the last term (2/5) F^(5/3)/k^(2/3) for Hertz's law. Exact where the plate has no inertia; any contact law will do.
-pub fn energy_balance(energy: f64, spring: Spring, law: &dyn ContactLaw) -> Peak {
+pub fn energy_balance(energy: f64, spring: Spring, law: &dyn ContactLaw) -> ImpactPeak {
     let at = |w: f64| {
         let force = spring.force(w);
         let indentation = indentation(law, force);
-        Peak { force, deflection: w, indentation, contact_energy: work(law, indentation) }
+        ImpactPeak { force, deflection: w, indentation, contact_energy: work(law, indentation) }
     };
     // All of the energy in bending is more than the plate will get.
     let most = (2.0 * energy / spring.bending).sqrt();
@@ -63,15 +63,15 @@ pub fn energy_balance(energy: f64, spring: Spring, law: &dyn ContactLaw) -> Peak
 
 /// The peak of an impact that leaves the plate at rest, all of `energy` in the contact: for Hertz's law
 /// F = k^(2/5) (5 M V²/4)^(3/5).
-pub fn rigid_target(energy: f64, law: &dyn ContactLaw) -> Peak {
+pub fn rigid_target(energy: f64, law: &dyn ContactLaw) -> ImpactPeak {
     let indentation = halve(deep(|alpha| work(law, alpha) >= energy), |alpha| work(law, alpha) < energy);
     let force = law.force(&ContactHistory::default(), indentation).force;
-    Peak { force, deflection: 0.0, indentation, contact_energy: work(law, indentation) }
+    ImpactPeak { force, deflection: 0.0, indentation, contact_energy: work(law, indentation) }
 }
 
 /// Time from first touch to the peak, a quarter of a period of the mass on a linear spring that takes the energy at the same
 /// travel: (π/2) √(M/K), K = M V²/(w + α)². Without contact and membrane this is exact.
-pub fn time_of_peak(velocity: f64, peak: &Peak) -> f64 {
+pub fn time_of_peak(velocity: f64, peak: &ImpactPeak) -> f64 {
     0.5 * PI * (peak.deflection + peak.indentation) / velocity
 }
 

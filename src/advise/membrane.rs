@@ -2,7 +2,7 @@
 
 use super::answer::{Answer, Number};
 use super::estimate::Estimate;
-use super::plate::Plate;
+use super::plate::PlateConstants;
 
 /// How the edge of a plate is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,7 +54,7 @@ pub(super) const FORMULA: &str = "A (w/h)^2";
 /// A (w/h)², from which on a linear plate is wrong by more than 5 %.
 pub const THRESHOLD: f64 = 0.05;
 
-pub(super) fn answer(plate: &Plate, estimate: &Estimate, cost: f64) -> Answer {
+pub(super) fn answer(plate: &PlateConstants, estimate: &Estimate, cost: f64) -> Answer {
     let number = plate.stiffening(estimate.deflection);
     let choice = match (plate.rim.held, number > THRESHOLD) {
         (None, _) => "off: the supports do not surround the impact",

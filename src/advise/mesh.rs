@@ -3,7 +3,7 @@
 use super::answer::{Answer, Number};
 use super::estimate::{Blow, Estimate};
 use super::membrane::Held;
-use super::plate::Plate;
+use super::plate::PlateConstants;
 use super::regime::Regime;
 use crate::model::Model;
 use fem_core::dof::Dof;
@@ -35,7 +35,7 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    pub(super) fn new(model: &Model, plate: &Plate, step: f64, estimate: &Estimate) -> Self {
+    pub(super) fn new(model: &Model, plate: &PlateConstants, step: f64, estimate: &Estimate) -> Self {
         // A rise to the peak is a quarter of a period on a half-space, less of one on a plate.
         let of_contact = 1.0 / (2.0 * estimate.wave.time);
         let third = plate.rim.held.unwrap_or(Held { slope: false, in_plane: false }).third_mode();

@@ -2,7 +2,7 @@
 //!
 //! Formulas of the literature say how a plate will respond ([`small_mass`], [`large_mass`], [`membrane`]); what they need of
 //! the plate comes from its model: stiffness under the impactor by one static solution, mass and edge by its mesh and supports
-//! ([`Plate`], [`Rim`]). An [`Estimate`] puts them together; every question then has an [`Answer`] with its number, threshold
+//! ([`PlateConstants`], [`Rim`]). An [`Estimate`] puts them together; every question then has an [`Answer`] with its number, threshold
 //! and source, what goes wrong without the effect, and what it costs. `docs/advise.md` derives them.
 //!
 //! [`decided`] switches effects that a scene leaves to the advisor; [`Hindsight`] holds a choice against the run.
@@ -26,11 +26,11 @@ mod text;
 pub use answer::{Answer, Number};
 pub use contact::Contact;
 pub use decide::decided;
-pub use delamination::{Delaminates, Delamination};
+pub use delamination::{Delaminates, DelaminationAdvice};
 pub use estimate::{Blow, Estimate};
 pub use hindsight::Hindsight;
 pub use mesh::Resolution;
-pub use plate::Plate;
+pub use plate::PlateConstants;
 pub use regime::Regime;
 pub use rim::Rim;
 pub use shear::Shear;
@@ -52,7 +52,7 @@ pub struct Advice {
     /// Its velocity, m/s.
     pub velocity: f64,
     /// The plate under it.
-    pub plate: Plate,
+    pub plate: PlateConstants,
     /// What it will do.
     pub estimate: Estimate,
     /// What the contact does.
@@ -60,7 +60,7 @@ pub struct Advice {
     /// What shear does.
     pub shear: Shear,
     /// Whether the plate delaminates; `None` where no material gives GIIc.
-    pub delamination: Option<Delamination>,
+    pub delamination: Option<DelaminationAdvice>,
     /// Whether mesh and step will do.
     pub resolution: Resolution,
     /// The answers, in the order in which they should be read.
@@ -87,15 +87,15 @@ pub fn advise(model: &Model, threads: NonZeroUsize) -> Result<Vec<Advice>, Error
     let Plan::Impact(impact) = &model.plan else { return Err(Error::NoImpact) };
     let mut at_rest = AtRest::of(model, threads)?;
     let work = Work::of(model, impact, at_rest.factor_entries());
-    let mut each = |(spec, strike): (&scene::Impactor, &Strike)| {
-        let plate = Plate::under(model, strike, at_rest.stiffness(model, &strike.contact)?)?;
+    let mut each = |(spec, strike): (&scene::ImpactorSpec, &Strike)| {
+        let plate = PlateConstants::under(model, strike, at_rest.stiffness(model, &strike.contact)?)?;
         let march = &impact.spec.march;
         let blow =
             Blow { mass: spec.mass, velocity: spec.velocity, time: march.end.value - spec.start, law: &*strike.law };
         let estimate = Estimate::new(&plate, &blow);
         let contact = Contact::new(&plate, &blow, &estimate, spec.load.value, cell_at(model, strike.centre));
         let shear = Shear::new(&plate, contact.radius, model.plate.info().is_shell());
-        let delamination = Delamination::new(model, &estimate);
+        let delamination = DelaminationAdvice::new(model, &estimate);
         let resolution = Resolution::new(model, &plate, march.step.value, &estimate);
         let [cells, steps] = resolution.lacking();
         let answers = vec![

@@ -15,7 +15,7 @@ const KAPPA: f64 = 5.0 / 6.0;
 
 /// A plate under an impactor.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plate {
+pub struct PlateConstants {
     /// Thickness, m.
     pub thickness: f64,
     /// Mass per area, kg/m².
@@ -32,7 +32,7 @@ pub struct Plate {
     pub rim: Rim,
 }
 
-impl Plate {
+impl PlateConstants {
     /// Mass inside the supports, kg.
     pub fn mass(&self) -> f64 {
         self.areal_mass * self.rim.area

@@ -1,7 +1,7 @@
 //! Whether a plate shears, and whether its thickness must be resolved.
 
 use super::answer::{Answer, Number};
-use super::plate::Plate;
+use super::plate::PlateConstants;
 use std::f64::consts::PI;
 
 /// D*/(κ G h a²) from which on elements must be flexible in shear.
@@ -29,7 +29,7 @@ pub struct Shear {
 impl Shear {
     /// w_s = F/(4 π κ G h) (1 + 2 ln(a/a_c)) is the deflection by shear of a circle of radius a under a uniform pressure
     /// within a_c.
-    pub(super) fn new(plate: &Plate, contact_radius: f64, shell: bool) -> Self {
+    pub(super) fn new(plate: &PlateConstants, contact_radius: f64, shell: bool) -> Self {
         let (h, a) = (plate.thickness, plate.rim.radius());
         // At a point the deflection by shear has no limit; a force at a node spreads over about a thickness in a real plate.
         let spread = if contact_radius > 0.0 { contact_radius.min(a) } else { h.min(a) };

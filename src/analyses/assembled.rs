@@ -1,7 +1,7 @@
 //! K and M of a model.
 
 use crate::error::Error;
-use crate::forecast::{Estimate, analysed};
+use crate::forecast::{MemoryEstimate, analysed};
 use crate::model::Model;
 use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, Symmetric, assemble, condense, pattern};
 use fem_core::counters::Counters;
@@ -19,7 +19,7 @@ pub struct Assembled {
     /// Entries of the factor of K.
     pub factor_entries: usize,
     /// What the computation takes at its peak, as it is expected.
-    pub memory: Estimate,
+    pub memory: MemoryEstimate,
     /// From the masters to the independent unknowns of the model.
     pub condensation: Option<Condensation>,
 }

@@ -5,7 +5,7 @@ use crate::model::Model;
 use fem_core::assembly::{Matrix, Symmetric, assemble, pattern};
 use fem_core::counters::Counters;
 use fem_io::files::OutputDir;
-use fem_io::tables::{self, Field};
+use fem_io::tables::{self, TableValue};
 use sprs::CsMatView;
 use sprs::io::write_matrix_market_to_bufwrite;
 use std::num::NonZeroUsize;
@@ -30,8 +30,11 @@ pub fn write(dir: &OutputDir, model: &Model, threads: NonZeroUsize) -> Result<()
     let row = |(i, name): (usize, &(usize, usize, _))| {
         let [x, y] = model.plate.columns[name.0];
         let tag = model.plate.plane.node_tags.get(name.0).copied().unwrap_or(0);
-        let place = [x, y, model.plate.levels[name.1]].map(Field::Number);
-        [Field::Count(i as u64 + 1), Field::Text(&names[i]), Field::Count(tag)].into_iter().chain(place).collect()
+        let place = [x, y, model.plate.levels[name.1]].map(TableValue::Number);
+        [TableValue::Count(i as u64 + 1), TableValue::Text(&names[i]), TableValue::Count(tag)]
+            .into_iter()
+            .chain(place)
+            .collect()
     };
     tables::write_columns(dir, "unknowns.csv", &header, named.iter().enumerate().map(row))?;
     Ok(())

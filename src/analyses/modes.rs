@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 /// The lowest modes of a model and what finding them cost.
 #[derive(Debug, Clone)]
-pub struct Solution {
+pub struct ModesSolution {
     /// Frequencies, and shapes over the independent unknowns.
     pub modes: Modes,
     /// Mass that moves with each mode along x, y and z, kg: (φᵀ M r)² for unit modal mass.
@@ -34,7 +34,7 @@ pub struct Solution {
 ///
 /// # Errors
 /// A cell that the element refuses, a matrix that cannot be factorised, modes that do not converge.
-pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Solution, Error> {
+pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<ModesSolution, Error> {
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
     let mut assembled = assembled::structure(model, true, threads, &mut counters)?;
@@ -72,5 +72,5 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Solut
     stopwatch.lap("modes");
     let (substructures, phases) = (assembled.substructures(), stopwatch.phases().to_vec());
     let factor_entries = assembled.factor_entries;
-    Ok(Solution { modes, effective_masses, unknowns: n, factor_entries, substructures, counters, phases })
+    Ok(ModesSolution { modes, effective_masses, unknowns: n, factor_entries, substructures, counters, phases })
 }

@@ -23,7 +23,7 @@ const MOST_RESIDUAL: f64 = 1e-2;
 
 /// What a static analysis found.
 #[derive(Debug, Clone)]
-pub struct Solution {
+pub struct StaticSolution {
     /// Displacements, before elimination of constraints; one per unknown.
     pub u: Vec<f64>,
     /// Independent unknowns.
@@ -75,7 +75,7 @@ struct Found {
 /// # Errors
 /// A scene without loads at rest, a cell that the element refuses, a structure that is not held, buckles or is too
 /// ill-conditioned, a result that is not finite, a criterion whose material lacks a constant.
-pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
+pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Error> {
     let Plan::Static { forces } = &model.plan else { return Err(Error::NoLoads) };
     if model.undecided() {
         return Err(Error::Undecided);
@@ -123,7 +123,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<Solution, Error> {
     };
     stopwatch.lap("mesh error");
     let phases = stopwatch.phases().to_vec();
-    Ok(Solution {
+    Ok(StaticSolution {
         unknowns: constraints.ndof(),
         substructures: found.substructures,
         factor_entries: found.factor_entries,

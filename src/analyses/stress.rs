@@ -11,7 +11,7 @@ use fem_core::recovery::{Recovery, Station};
 use fem_core::residual::Residual;
 use fem_core::tensor::{Global, Ply, Stress6};
 use fem_core::window;
-use fem_failure::scan::{self, Place, Probe, Scan, ScanSite};
+use fem_failure::scan::{self, PlyOrInterface, Probe, Scan, ScanSite};
 use fem_io::scene::Window;
 use serde::{Deserialize, Serialize};
 use std::rc::Rc;
@@ -180,12 +180,12 @@ impl<'a> Watch<'a> {
     }
 
     /// What scan and watch have seen, to be kept.
-    pub(super) fn record(&self) -> (&scan::Record, &Record) {
+    pub(super) fn record(&self) -> (&scan::ScanRecord, &Record) {
         (self.scan.record(), &self.record)
     }
 
     /// Goes on from what a watch of the same model has seen; `false` where the records are of another size.
-    pub(super) fn resume(&mut self, scan: scan::Record, record: Record) -> bool {
+    pub(super) fn resume(&mut self, scan: scan::ScanRecord, record: Record) -> bool {
         let fits = record.histories.len() == self.probes.len() && self.scan.resume(scan);
         if fits {
             self.record = record;
@@ -330,7 +330,11 @@ pub(crate) fn sites(model: &Model, recovery: &Recovery) -> Vec<ScanSite> {
         let [x, y] = window::centroid(&mesh.corners(q));
         ScanSite {
             cell: q as u32,
-            place: if s.interface { Place::Interface(s.ply as u16) } else { Place::Ply(s.ply as u16) },
+            place: if s.interface {
+                PlyOrInterface::Interface(s.ply as u16)
+            } else {
+                PlyOrInterface::Ply(s.ply as u16)
+            },
             position: [x, y, s.z],
             angle: s.angle,
             material: s.material as u16,

@@ -5,7 +5,7 @@ use crate::advise;
 use crate::analyses::assembled::{self, Substructures};
 use crate::analyses::impact::{self, Sizes};
 use crate::error::Error;
-use crate::forecast::Estimate;
+use crate::forecast::MemoryEstimate;
 use crate::model::{Impact, Model, Plan};
 use crate::output::fields;
 use crate::output::summary::Advised;
@@ -57,7 +57,7 @@ struct Checked {
     redundant_equations: usize,
     memory_MB: f64,
     #[serde(skip)]
-    memory: Estimate,
+    memory: MemoryEstimate,
     #[serde(skip_serializing_if = "Option::is_none")]
     substructures: Option<Substructures>,
     #[serde(skip_serializing_if = "Option::is_none")]

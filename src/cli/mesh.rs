@@ -3,7 +3,7 @@
 use super::{Console, Format};
 use crate::error::Error;
 use crate::model;
-use crate::output::mesh::Summary;
+use crate::output::mesh::MeshSummary;
 use clap::Args;
 use fem_core::mesh::QuadMesh;
 use fem_core::plugin::Dimension;
@@ -40,7 +40,7 @@ pub(super) fn mesh(arguments: &Arguments, console: &Console) -> miette::Result<E
     let metres = units::parse_as(&format!("1 {}", arguments.unit), Dimension::LENGTH)
         .map_err(|_| miette!(help = "write --unit mm, m or in", "`{}` is no unit of length", arguments.unit))?;
     let (GmshMesh { mesh, warnings }, impacts) = read(&arguments.file, metres)?;
-    let summary = Summary::new(&mesh, warnings);
+    let summary = MeshSummary::new(&mesh, warnings);
     let picture =
         arguments.picture.as_ref().map(|folder| draw(&arguments.file, folder, &mesh, &impacts)).transpose()?;
     if let Some(out) = &arguments.out {

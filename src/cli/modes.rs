@@ -2,13 +2,13 @@
 
 use super::run::{Results, cost_of, default_folder, keep_scene};
 use super::{Console, Format, warn};
-use crate::analyses::modes::{self, Solution};
+use crate::analyses::modes::{self, ModesSolution};
 use crate::cost::Cost;
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::output;
 use crate::output::fields;
-use crate::output::modes::Summary;
+use crate::output::modes::ModesSummary;
 use crate::registry::Registry;
 use clap::Args;
 use fem_io::files::OutputDir;
@@ -56,7 +56,7 @@ pub(super) fn compute(
     console: &Console,
 ) -> miette::Result<ExitCode> {
     let solution = modes::solve(model, count, threads).inspect_err(|_| warn(model))?;
-    let summary = Summary::new(model, &solution);
+    let summary = ModesSummary::new(model, &solution);
     let mut cost = cost_of(model, threads, &solution.phases);
     console.say(format, || summary.text(&cost));
     let dir = write(model, folder(), &solution, &summary, &mut cost)?;
@@ -67,8 +67,8 @@ pub(super) fn compute(
 fn write(
     model: &Model,
     folder: PathBuf,
-    solution: &Solution,
-    summary: &Summary,
+    solution: &ModesSolution,
+    summary: &ModesSummary,
     cost: &mut Cost,
 ) -> Result<OutputDir, Error> {
     let dir = OutputDir::create(folder)?;

@@ -12,7 +12,7 @@ use crate::model::{Model, Plan};
 use crate::output;
 use crate::output::fields::{self, MarchFields};
 use crate::output::report;
-use crate::output::summary::Summary;
+use crate::output::summary::ImpactSummary;
 use crate::registry::Registry;
 use clap::Args;
 use fem_io::files::{FileError, OutputDir};
@@ -74,7 +74,7 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console)
 
 fn at_rest(model: &Model, arguments: &Arguments, folder: PathBuf, console: &Console) -> miette::Result<ExitCode> {
     let solution = statics::solve(model, arguments.threads).inspect_err(|_| warn(model))?;
-    let summary = output::statics::Summary::new(model, &solution);
+    let summary = output::statics::StaticSummary::new(model, &solution);
     let mut cost = cost_of(model, arguments.threads, &solution.phases);
     console.say(arguments.format, || summary.text(&cost));
     let mut write = || {
@@ -112,7 +112,7 @@ enum Ended {
     /// By this signal.
     Stopped(u8),
     /// With tables in this folder.
-    Done(OutputDir, Box<(Summary, Cost, Outcome)>),
+    Done(OutputDir, Box<(ImpactSummary, Cost, Outcome)>),
 }
 
 fn march(model: &Model, arguments: &Arguments, folder: &Path, bar: &ProgressBar) -> Result<Ended, Error> {
@@ -138,7 +138,7 @@ fn march(model: &Model, arguments: &Arguments, folder: &Path, bar: &ProgressBar)
         return Ok(Ended::Stopped(signal));
     }
     let outcome = march.finish();
-    let summary = Summary::new(model, &sizes, &outcome);
+    let summary = ImpactSummary::new(model, &sizes, &outcome);
     let mut cost = cost_of(model, arguments.threads, &outcome.phases);
     let size = outcome.size(model, &sizes);
     cost.one_level_better = one_level_better(&size, seconds_per_phase(&outcome.phases));

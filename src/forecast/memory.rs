@@ -30,7 +30,7 @@ const FORMS: usize = 40;
 
 /// What a computation holds at its peak, bytes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
+pub struct MemoryEstimate {
     /// Mesh, constraints, and the program.
     pub model: f64,
     /// Stiffness and mass with their pattern.
@@ -44,7 +44,7 @@ pub struct Estimate {
 }
 
 /// Sizes of the parts for people, largest first.
-impl fmt::Display for Estimate {
+impl fmt::Display for MemoryEstimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { model, matrices, factor, vectors, large } = *self;
         let mut parts = [
@@ -61,7 +61,7 @@ impl fmt::Display for Estimate {
     }
 }
 
-impl Estimate {
+impl MemoryEstimate {
     /// Of `model`, whose matrices have this pattern; from counts alone.
     fn new(model: &Model, symbolic: &Symbolic) -> Self {
         let (n, all) = (symbolic.pattern().ndof() as f64, model.plate.ndof() as f64);
@@ -107,12 +107,12 @@ impl Estimate {
 ///
 /// # Errors
 /// More memory than there is.
-pub(crate) fn analysed(model: &Model, pattern: Arc<Pattern>) -> Result<(Symbolic, Estimate), Error> {
+pub(crate) fn analysed(model: &Model, pattern: Arc<Pattern>) -> Result<(Symbolic, MemoryEstimate), Error> {
     let symbolic = Symbolic::new(pattern).map_err(|error| match error {
         FactorError::NoRoom { bytes } => refuse(bytes, "the factor alone, of which this is a part".into()),
         other => other.into(),
     })?;
-    let estimate = Estimate::new(model, &symbolic);
+    let estimate = MemoryEstimate::new(model, &symbolic);
     require(estimate.bytes(), || estimate.to_string())?;
     Ok((symbolic, estimate))
 }

@@ -6,7 +6,7 @@ mod size;
 mod time;
 
 pub(crate) use effects::Work;
-pub use memory::Estimate;
+pub use memory::MemoryEstimate;
 pub(crate) use memory::analysed;
 pub use size::Size;
 pub(crate) use time::{FILL, nominal};

@@ -60,15 +60,15 @@ impl Builder<'_> {
         build!(self, &self.scene.element, Element)
     }
 
-    pub(super) fn law(&self, impactor: &scene::Impactor) -> Result<Box<dyn ContactLaw>, SceneError> {
+    pub(super) fn law(&self, impactor: &scene::ImpactorSpec) -> Result<Box<dyn ContactLaw>, SceneError> {
         build!(self, &impactor.contact, Contact)
     }
 
-    pub(super) fn integrator(&self, impact: &scene::Impact) -> Result<Box<dyn Integrator>, SceneError> {
+    pub(super) fn integrator(&self, impact: &scene::ImpactSpec) -> Result<Box<dyn Integrator>, SceneError> {
         build!(self, &impact.march.integrator, Integrator).map(located)
     }
 
-    pub(super) fn reduction(&self, impact: &scene::Impact) -> Result<Option<Box<dyn Reduction>>, SceneError> {
+    pub(super) fn reduction(&self, impact: &scene::ImpactSpec) -> Result<Option<Box<dyn Reduction>>, SceneError> {
         let spec = &impact.reduction;
         if spec.name.value == NO_REDUCTION {
             return match spec.params.keys().next() {
@@ -225,7 +225,7 @@ impl Builder<'_> {
         })
     }
 
-    fn equation(&self, plate: &Plate, equation: &scene::Equation, number: usize) -> Result<Equation, SceneError> {
+    fn equation(&self, plate: &Plate, equation: &scene::EquationSpec, number: usize) -> Result<Equation, SceneError> {
         let mut terms = Vec::new();
         for term in &equation.terms {
             let (columns, levels) = self.nodes(plate, &term.node)?;

@@ -94,7 +94,7 @@ impl Builder<'_> {
     }
 
     /// The impact, which an effect of the scene needs.
-    fn in_time<T>(&self, effect: &Located<T>, name: &str, help: &str) -> Result<&scene::Impact, SceneError> {
+    fn in_time<T>(&self, effect: &Located<T>, name: &str, help: &str) -> Result<&scene::ImpactSpec, SceneError> {
         let missing =
             || self.error(effect, format!("`effects.{name}` needs an impact, and this analysis has none"), help);
         self.scene.impact().ok_or_else(missing)

@@ -2,7 +2,7 @@
 
 use super::builder::{Builder, near};
 use fem_core::plate::Plate;
-use fem_io::scene::{FieldCells, Region, SceneError, Series};
+use fem_io::scene::{FieldCells, FieldSeries, Region, SceneError};
 use std::collections::BTreeSet;
 
 /// Fields that are written, made concrete.
@@ -11,7 +11,7 @@ pub struct FieldPlan {
     /// Quads of the whole plate, ascending.
     pub quads: Vec<usize>,
     /// The series, each once.
-    pub series: Vec<Series>,
+    pub series: Vec<FieldSeries>,
     /// What the cells of the plate become.
     pub cells: FieldCells,
 }
@@ -48,7 +48,7 @@ impl Builder<'_> {
         let interfaces = self.scene.interface.is_some() && self.scene.laminate.value.plies.len() > 1;
         let mut series = Vec::new();
         for part in fields.parts.iter().flatten() {
-            if part.value == Series::Interfaces && !interfaces {
+            if part.value == FieldSeries::Interfaces && !interfaces {
                 let message = "the scene has no interfaces between plies";
                 return Err(self.error(part, message, "give `laminate.interface`, or leave \"interfaces\" out"));
             }
@@ -57,8 +57,8 @@ impl Builder<'_> {
             }
         }
         if fields.parts.is_none() {
-            series.extend([Series::Plate, Series::Plies]);
-            series.extend(interfaces.then_some(Series::Interfaces));
+            series.extend([FieldSeries::Plate, FieldSeries::Plies]);
+            series.extend(interfaces.then_some(FieldSeries::Interfaces));
         }
         Ok(Some(FieldPlan { quads, series, cells: fields.cells }))
     }

@@ -5,7 +5,7 @@ use fem_core::failure::Site;
 use fem_core::patch;
 use fem_core::plate::Plate;
 use fem_core::window;
-use fem_failure::scan::Place;
+use fem_failure::scan::PlyOrInterface;
 use fem_io::scene::{Depth, IndexWatch, SceneError};
 
 /// A place whose indices are kept over time: one cell at one depth.
@@ -15,7 +15,7 @@ pub struct Gauge {
     /// represents it in a symmetric plate.
     pub quad: usize,
     /// Ply or interface.
-    pub place: Place,
+    pub place: PlyOrInterface,
     /// The criteria, by their numbers in the model.
     pub criteria: Vec<usize>,
 }
@@ -71,8 +71,8 @@ impl Builder<'_> {
 
         let plies = self.scene.laminate.value.plies.len();
         let (place, fits) = match watch.depth.value {
-            Depth::Ply(k) => (Place::Ply(k as u16), k < plies),
-            Depth::Interface(k) => (Place::Interface(k as u16), k + 1 < plies),
+            Depth::Ply(k) => (PlyOrInterface::Ply(k as u16), k < plies),
+            Depth::Interface(k) => (PlyOrInterface::Interface(k as u16), k + 1 < plies),
         };
         if !fits {
             let message = format!("the laminate has {plies} plies");

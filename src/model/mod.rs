@@ -189,12 +189,12 @@ impl Model {
     }
 
     /// The impactors of the scene.
-    pub fn impactors(&self) -> &[scene::Impactor] {
+    pub fn impactors(&self) -> &[scene::ImpactorSpec] {
         self.scene.impact().map_or(&[], |impact| &impact.impactors)
     }
 
     /// What results call an impactor: nothing where it is the only one.
-    pub fn label<'a>(&self, impactor: &'a scene::Impactor) -> Option<&'a str> {
+    pub fn label<'a>(&self, impactor: &'a scene::ImpactorSpec) -> Option<&'a str> {
         (self.impactors().len() > 1).then_some(impactor.name.as_str())
     }
 

@@ -39,7 +39,7 @@ pub enum Plan {
 #[derive(Debug, Clone)]
 pub struct Impact {
     /// What the scene says of it.
-    pub spec: scene::Impact,
+    pub spec: scene::ImpactSpec,
     /// The contact of each impactor of the scene.
     pub strikes: Vec<Strike>,
     /// The reduction, if any.
@@ -75,12 +75,12 @@ pub struct NamedProfile {
 impl Builder<'_> {
     pub(super) fn impact(
         &self,
-        spec: &scene::Impact,
+        spec: &scene::ImpactSpec,
         plate: &Plate,
         element: &dyn Element,
         constraints: &Constraints,
     ) -> Result<Impact, SceneError> {
-        let strike = |impactor: &scene::Impactor| {
+        let strike = |impactor: &scene::ImpactorSpec| {
             let (centre, contact) = self.contact_place(impactor, plate, element)?;
             self.symmetric_impact(plate, &impactor.at, centre)?;
             let contact = Functional(constraints.restrict(&contact.0));
@@ -242,7 +242,7 @@ impl Builder<'_> {
     /// Where the impactor strikes, and the deflection there as weights of the unknowns.
     fn contact_place(
         &self,
-        impactor: &scene::Impactor,
+        impactor: &scene::ImpactorSpec,
         plate: &Plate,
         element: &dyn Element,
     ) -> Result<([f64; 2], Functional), SceneError> {

@@ -7,7 +7,7 @@ use fem_core::failure::{FailureCriterion, Site};
 use fem_core::laminate::Laminate;
 use fem_core::material::Material;
 use fem_core::plate::Plate;
-use fem_core::symmetry::{Group, Operation};
+use fem_core::symmetry::{Operation, SymmetryGroup};
 use fem_core::tensor::{Ply, Stress6};
 use fem_io::scene::{ImpactPoint, Located, Place, SceneError};
 
@@ -49,7 +49,7 @@ impl Builder<'_> {
                     let angle = laminate.plies[ply].angle_deg;
                     let message = format!("ply {} at {angle} degrees breaks the symmetry `{name}`", ply + 1);
                     let help = match symmetry.value {
-                        Group::HalfTurn => "leave `symmetry` out",
+                        SymmetryGroup::HalfTurn => "leave `symmetry` out",
                         _ => "a mirror needs plies at 0 and 90 degrees; the half-turn takes any",
                     };
                     return Err(self.error(symmetry, message, help));

@@ -4,7 +4,7 @@ use crate::analyses::impact::Outcome;
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::words::name_ply;
-use fem_failure::scan::Place;
+use fem_failure::scan::PlyOrInterface;
 use fem_io::files::{FileError, OutputDir};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -108,8 +108,8 @@ impl DamageMap {
         let mut places: BTreeMap<(u16, bool), (PlaceDamage, FirstTimes)> = BTreeMap::new();
         for m in &outcome.maxima {
             let key = match m.site.place {
-                Place::Ply(k) => (k, false),
-                Place::Interface(k) => (k, true),
+                PlyOrInterface::Ply(k) => (k, false),
+                PlyOrInterface::Interface(k) => (k, true),
             };
             let empty =
                 || PlaceDamage { ply: name_ply(m.site.place), index: vec![0.0; judged.len()], failed: Vec::new() };

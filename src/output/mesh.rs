@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 /// A mesh in numbers.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Summary {
+pub struct MeshSummary {
     /// Number of nodes.
     pub nodes: usize,
     /// Number of cells.
@@ -72,7 +72,7 @@ pub struct GroupSummary {
     pub area_m2: Option<f64>,
 }
 
-impl Summary {
+impl MeshSummary {
     /// Of a mesh with at least one cell.
     pub fn new(mesh: &QuadMesh, warnings: Vec<String>) -> Self {
         let qualities: Vec<QuadQuality> = (0..mesh.quads.len()).map(|q| mesh.quality(q)).collect();

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::model::Model;
 use fem_io::files::OutputDir;
 use fem_io::plot;
-use fem_io::tables::{self, Field};
+use fem_io::tables::{self, TableValue};
 
 /// Writes `modal_coordinates.csv` where the scene follows modes.
 ///
@@ -18,7 +18,7 @@ pub(crate) fn write_table(dir: &OutputDir, outcome: &Outcome) -> Result<(), Erro
     let header: Vec<&str> = ["time_s"].into_iter().chain(names.iter().map(String::as_str)).collect();
     let rows = outcome.history.iter().zip(modal.coordinates.chunks_exact(n));
     let row = |(h, c): (&tables::HistoryRow, &[f64])| {
-        [h.time_s].into_iter().chain(c.iter().copied()).map(Field::Number).collect()
+        [h.time_s].into_iter().chain(c.iter().copied()).map(TableValue::Number).collect()
     };
     Ok(tables::write_columns(dir, "modal_coordinates.csv", &header, rows.map(row))?)
 }

@@ -1,13 +1,13 @@
 //! What a modal analysis says and writes.
 
 use crate::analyses::assembled::Substructures;
-use crate::analyses::modes::Solution;
+use crate::analyses::modes::ModesSolution;
 use crate::cost::Cost;
 use crate::error::Error;
 use crate::model::Model;
 use crate::words::{append, append_symmetry};
 use fem_io::files::OutputDir;
-use fem_io::tables::{self, Field};
+use fem_io::tables::{self, TableValue};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 /// The summary of a modal analysis; units are in the key names.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
-pub struct Summary {
+pub struct ModesSummary {
     pub title: String,
     pub version: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -32,9 +32,9 @@ pub struct Summary {
     pub warnings: Vec<String>,
 }
 
-impl Summary {
+impl ModesSummary {
     /// Sums up a modal analysis.
-    pub fn new(model: &Model, solution: &Solution) -> Self {
+    pub fn new(model: &Model, solution: &ModesSolution) -> Self {
         Self {
             title: model.scene.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
@@ -74,13 +74,13 @@ impl Summary {
 ///
 /// # Errors
 /// A folder that cannot be written, a number that is not finite.
-pub fn write(dir: &OutputDir, solution: &Solution, summary: &Summary) -> Result<(), Error> {
+pub fn write(dir: &OutputDir, solution: &ModesSolution, summary: &ModesSummary) -> Result<(), Error> {
     tables::write_json(dir, "summary.json", summary)?;
     let header =
         ["mode", "frequency_Hz", "omega_rad_s", "effective_mass_x_kg", "effective_mass_y_kg", "effective_mass_z_kg"];
     let row = |(i, (omega, mass)): (usize, (&f64, &[f64; 3]))| {
-        let numbers = [omega / TAU, *omega].into_iter().chain(*mass).map(Field::Number);
-        [Field::Count(i as u64 + 1)].into_iter().chain(numbers).collect()
+        let numbers = [omega / TAU, *omega].into_iter().chain(*mass).map(TableValue::Number);
+        [TableValue::Count(i as u64 + 1)].into_iter().chain(numbers).collect()
     };
     let each = solution.modes.omega.iter().zip(&solution.effective_masses).enumerate();
     tables::write_columns(dir, "modes.csv", &header, each.map(row))?;

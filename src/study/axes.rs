@@ -11,7 +11,7 @@ use fem_io::scene::{Analysis, ContactLoad, MeshSource, Scene, Setting, Window};
 
 /// A part of the settings that is varied while the others stay as the scene has them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
+pub struct StudyAxis {
     /// Its name in tables and on the command line.
     pub name: String,
     /// What its levels are.
@@ -105,7 +105,7 @@ const MOST_TOGETHER: f64 = 1e5;
 ///
 /// # Errors
 /// A name that no axis has, ladders of too many levels to be combined.
-pub fn axes(model: &Model, registry: &Registry, names: &[String]) -> Result<Vec<Axis>, Error> {
+pub fn axes(model: &Model, registry: &Registry, names: &[String]) -> Result<Vec<StudyAxis>, Error> {
     let study = &model.scene.study;
     let own = || study.own.iter().map(|own| own.name.value.as_str());
     let known = || NAMES.into_iter().chain(own());
@@ -127,7 +127,7 @@ pub fn axes(model: &Model, registry: &Registry, names: &[String]) -> Result<Vec<
         (names, _) => names.iter().map(String::as_str).collect(),
     };
     let wanted = |name: &str| asked.contains(&name) || asked.iter().any(|axis| judges(axis).contains(&name));
-    let mut axes: Vec<Axis> =
+    let mut axes: Vec<StudyAxis> =
         NAMES.into_iter().filter(|name| wanted(name)).filter_map(|name| standard(name, model, registry)).collect();
     for axis in study.own.iter().filter(|axis| asked.contains(&axis.name.value.as_str())) {
         let label =
@@ -135,7 +135,7 @@ pub fn axes(model: &Model, registry: &Registry, names: &[String]) -> Result<Vec<
         let levels =
             axis.levels.iter().map(|keys| Level { label: label(keys), setting: keys.clone(), at_limit: false });
         let kind = if axis.ladder { AxisKind::Ladder } else { AxisKind::Problems };
-        axes.push(Axis { name: axis.name.value.clone(), kind, levels: levels.collect() });
+        axes.push(StudyAxis { name: axis.name.value.clone(), kind, levels: levels.collect() });
     }
     let ladders = axes.iter().filter(|axis| axis.kind == AxisKind::Ladder);
     let together = ladders.map(|axis| axis.levels.len() as f64).product();
@@ -153,7 +153,7 @@ pub(super) fn judges(axis: &str) -> &'static [&'static str] {
 }
 
 /// The axis `name` of `model`, if it has at least one level beside the scene's own.
-fn standard(name: &str, model: &Model, registry: &Registry) -> Option<Axis> {
+fn standard(name: &str, model: &Model, registry: &Registry) -> Option<StudyAxis> {
     let scene = &model.scene;
     let (kind, levels) = match name {
         "mesh" => (AxisKind::Ladder, mesh(scene)),
@@ -172,7 +172,7 @@ fn standard(name: &str, model: &Model, registry: &Registry) -> Option<Axis> {
         _ => return None,
     };
     let varies = levels.iter().any(|level| !level.setting.is_empty());
-    varies.then(|| Axis { name: name.to_owned(), kind, levels })
+    varies.then(|| StudyAxis { name: name.to_owned(), kind, levels })
 }
 
 fn quoted(text: impl std::fmt::Display) -> String {

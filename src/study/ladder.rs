@@ -3,7 +3,7 @@
 use super::axes::Level;
 use super::converge::{Convergence, limit};
 use super::quantity::FORCE_HISTORY;
-use super::record::Record;
+use super::record::RunRecord;
 use crate::forecast::Size;
 
 /// An axis of finer and finer levels after its runs.
@@ -50,7 +50,7 @@ impl Rung {
 
 impl Ladder {
     /// From the runs of an axis, coarse to fine; differences below `matters` are of no interest.
-    pub(super) fn new(axis: &str, runs: &[(Level, Record)], quantities: &[String], matters: f64) -> Self {
+    pub(super) fn new(axis: &str, runs: &[(Level, RunRecord)], quantities: &[String], matters: f64) -> Self {
         let mut ladder = Self { axis: axis.to_owned(), levels: Vec::new(), limits: Vec::new() };
         let Some((_, finest)) = runs.last() else { return ladder };
         ladder.levels = runs
@@ -64,7 +64,7 @@ impl Ladder {
             .collect();
         for quantity in quantities {
             let values: Vec<Option<f64>> = runs.iter().map(|(_, record)| record.value(quantity)).collect();
-            let difference = |a: &Record, b: &Record| a.difference(b, quantity).map_or(f64::NAN, f64::abs);
+            let difference = |a: &RunRecord, b: &RunRecord| a.difference(b, quantity).map_or(f64::NAN, f64::abs);
             let pairs = runs.windows(2).map(|pair| difference(&pair[0].1, &pair[1].1));
             let convergence = Convergence::of(&pairs.collect::<Vec<_>>(), matters);
             let known: Option<Vec<f64>> = values.iter().copied().collect();

@@ -1,7 +1,7 @@
 //! What accuracy costs in time: a scene run under many settings, against a reference that the study proves.
 //!
 //! 1. The scene runs as it is.
-//! 2. Every [`Axis`] varies one part of the settings. A ladder of finer and finer levels shows its order of convergence and
+//! 2. Every [`StudyAxis`] varies one part of the settings. A ladder of finer and finer levels shows its order of convergence and
 //!    what error each level leaves ([`Convergence`]).
 //! 3. Levels of all ladders together, the cheapest whose errors add up to a tenth, a hundredth, ..., run jointly. The finest
 //!    of them that the limit allows is the reference: it is proven where the run a level coarser on
@@ -25,13 +25,13 @@ mod session;
 mod table;
 mod text;
 
-pub use axes::{Axis, AxisKind, Level, NAMES, axes};
+pub use axes::{AxisKind, Level, NAMES, StudyAxis, axes};
 pub use converge::{Convergence, limit};
 pub use ladder::{Ladder, Limit};
 pub use picture::write_pictures;
-pub use plan::{Plan, Planned};
+pub use plan::{Planned, StudyPlan};
 pub use quantity::{FORCE_HISTORY, Figure};
-pub use record::Record;
+pub use record::RunRecord;
 pub use report::{Report, Row};
 pub use session::Session;
 pub use table::{named, write};
@@ -59,7 +59,7 @@ const TINY: f64 = 1e-11;
 #[derive(Debug)]
 pub enum Progress<'a> {
     /// What will be run.
-    Planned(&'a Plan),
+    Planned(&'a StudyPlan),
     /// The levels of all ladders together that will be run.
     Together(&'a [Planned]),
     /// What runs now, and how much of the plan is done.
@@ -82,7 +82,7 @@ pub type Tell<'a> = &'a mut dyn FnMut(Progress<'_>);
 pub fn study(
     session: &mut Session<'_>,
     model: &Model,
-    axes: &[Axis],
+    axes: &[StudyAxis],
     budget: Option<f64>,
     tell: Tell<'_>,
 ) -> Result<Report, Error> {

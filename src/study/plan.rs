@@ -1,8 +1,8 @@
 //! What a study runs within its limits.
 
-use super::axes::{Axis, AxisKind, Level};
+use super::axes::{AxisKind, Level, StudyAxis};
 use super::predict::{self, Rates};
-use super::record::Record;
+use super::record::RunRecord;
 use super::report::Report;
 use super::session::Session;
 use crate::cost::processor_time;
@@ -60,7 +60,7 @@ pub(super) const TOGETHER: &str = "joint";
 
 /// What a study is going to run.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Plan {
+pub struct StudyPlan {
     /// The runs along single axes, in order.
     pub runs: Vec<Planned>,
     /// Runs beside the ladders for which time may be left.
@@ -71,7 +71,7 @@ pub struct Plan {
     pub joint: f64,
 }
 
-impl Plan {
+impl StudyPlan {
     /// Processor time of all, s, as it is expected.
     pub fn seconds(&self) -> f64 {
         self.runs.iter().map(|run| run.seconds).sum::<f64>() + self.joint
@@ -90,9 +90,9 @@ pub(super) struct Planner {
 }
 
 impl Planner {
-    pub(super) fn new(session: &Session<'_>, base: &Record, budget: Option<f64>) -> Self {
+    pub(super) fn new(session: &Session<'_>, base: &RunRecord, budget: Option<f64>) -> Self {
         // What another process has run counts, too.
-        let before: f64 = session.records().map(Record::total).sum();
+        let before: f64 = session.records().map(RunRecord::total).sum();
         let mut planner = Self { base: base.size, budget, began: processor_time() - before, spent: 0.0 };
         planner.spent = planner.rates(session).seconds(&base.size);
         planner
@@ -120,10 +120,10 @@ impl Planner {
     }
 
     /// The levels of `axes` that fit the time: of the ladders those next to the scene first, of the rest the cheapest.
-    pub(super) fn plan(&mut self, session: &Session<'_>, axes: &[Axis]) -> Plan {
+    pub(super) fn plan(&mut self, session: &Session<'_>, axes: &[StudyAxis]) -> StudyPlan {
         let rates = self.rates(session);
-        let mut plan = Plan { joint: JOINT * self.whole(), ..Plan::default() };
-        let ladders: Vec<&Axis> = axes.iter().filter(|axis| axis.kind == AxisKind::Ladder).collect();
+        let mut plan = StudyPlan { joint: JOINT * self.whole(), ..StudyPlan::default() };
+        let ladders: Vec<&StudyAxis> = axes.iter().filter(|axis| axis.kind == AxisKind::Ladder).collect();
         // Without ladders to combine, their time is for the rest.
         let share = |kind| match (kind, ladders.is_empty()) {
             (AxisKind::Ladder, _) => LADDERS,
@@ -168,7 +168,7 @@ impl Planner {
         plan
     }
 
-    fn expect(&self, session: &Session<'_>, axis: &Axis, level: &Level, rates: Rates) -> Result<Planned, String> {
+    fn expect(&self, session: &Session<'_>, axis: &StudyAxis, level: &Level, rates: Rates) -> Result<Planned, String> {
         let size = if level.setting.is_empty() { self.base } else { self.size(session, level)? };
         if size.factor_entries > MOST_ENTRIES {
             return Err(format!("about {} unknowns are more than a study makes", size.unknowns));

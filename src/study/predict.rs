@@ -1,7 +1,7 @@
 //! What a run of a study will cost: nominal seconds at rates that the runs before it have shown.
 
 use super::axes::{SIZES, value};
-use super::record::Record;
+use super::record::RunRecord;
 use crate::forecast::{FILL, PHASES, Size, nominal};
 use crate::model::{Model, Plan};
 use fem_core::counters::Counters;
@@ -15,7 +15,7 @@ impl Rates {
     pub(super) const NOMINAL: Self = Self([1.0; PHASES.len()]);
 
     /// Each from the run in which its phase had most to do.
-    pub(super) fn of<'a>(records: impl Iterator<Item = &'a Record> + Clone) -> Self {
+    pub(super) fn of<'a>(records: impl Iterator<Item = &'a RunRecord> + Clone) -> Self {
         let rate = |phase: usize| {
             let each = records.clone().map(|r| (nominal(&r.size)[phase], r.seconds[phase]));
             let largest = each.filter(|(nominal, _)| *nominal > 0.0).max_by(|a, b| a.0.total_cmp(&b.0));

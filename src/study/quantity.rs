@@ -1,7 +1,7 @@
 //! What accuracy is asked of.
 
 use crate::analyses::impact::{Outcome, Sizes};
-use crate::analyses::statics::Solution;
+use crate::analyses::statics::StaticSolution;
 use crate::model::Model;
 use crate::output::{statics, summary};
 use crate::words::name_ply;
@@ -33,7 +33,7 @@ impl Figure {
 
 /// Of an impact.
 pub(super) fn of_impact(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Vec<Figure> {
-    let summary = summary::Summary::new(model, sizes, outcome);
+    let summary = summary::ImpactSummary::new(model, sizes, outcome);
     let mut figures = Vec::new();
     for impact in &summary.impact {
         let name = |what: &str| impact.name.as_ref().map_or(what.to_owned(), |name| format!("{name} {what}"));
@@ -66,8 +66,8 @@ const COMPONENTS: [&str; 12] = ["sxx", "syy", "szz", "sxy", "syz", "szx", "s1", 
 ///
 /// # Errors
 /// A stress that the scene asks for at a place that no profile has.
-pub(super) fn of_statics(model: &Model, solution: &Solution) -> Result<Vec<Figure>, SceneError> {
-    let summary = statics::Summary::new(model, solution);
+pub(super) fn of_statics(model: &Model, solution: &StaticSolution) -> Result<Vec<Figure>, SceneError> {
+    let summary = statics::StaticSummary::new(model, solution);
     let mut figures = vec![
         Figure::new("deflection", summary.largest_deflection.w_m, true),
         Figure::new("energy", solution.strain_energy, true),

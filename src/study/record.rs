@@ -16,7 +16,7 @@ use std::path::Path;
 
 /// What a run gave and what it cost.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Record {
+pub struct RunRecord {
     /// Sizes and work: equal from run to run.
     pub size: Size,
     /// What it found.
@@ -28,7 +28,7 @@ pub struct Record {
     pub memory: Option<u64>,
 }
 
-impl Record {
+impl RunRecord {
     /// Runs `path` with `setting` over its keys.
     ///
     /// # Errors

@@ -1,11 +1,11 @@
 //! What a study found.
 
-use super::axes::{Axis, AxisKind, LADDERS, Level, judges};
+use super::axes::{AxisKind, LADDERS, Level, StudyAxis, judges};
 use super::converge::Convergence;
 use super::ladder::Ladder;
 use super::plan::{Planned, SPENT, TOGETHER, below};
 use super::quantity::FORCE_HISTORY;
-use super::record::Record;
+use super::record::RunRecord;
 use crate::forecast::nominal;
 use crate::model::Model;
 use fem_io::scene::{ContactLoad, Setting};
@@ -46,7 +46,7 @@ pub struct Row {
     /// Its place on every ladder, if it is of levels of all ladders together.
     pub rungs: Vec<usize>,
     /// What it gave, or why it gave nothing.
-    pub result: Result<Record, String>,
+    pub result: Result<RunRecord, String>,
     /// Processor time as it was expected, s.
     pub expected_s: f64,
     /// Relative error of each quantity that its axis alone leaves, or changes.
@@ -71,7 +71,7 @@ pub struct Reference {
 }
 
 impl Row {
-    fn new(axis: &str, kind: AxisKind, level: Level, result: Result<Record, String>, expected_s: f64) -> Self {
+    fn new(axis: &str, kind: AxisKind, level: Level, result: Result<RunRecord, String>, expected_s: f64) -> Self {
         let (rungs, own, errors) = (Vec::new(), Vec::new(), Vec::new());
         Self { axis: axis.to_owned(), kind, level, rungs, result, expected_s, own, errors, front: false }
     }
@@ -99,9 +99,10 @@ impl Row {
 }
 
 impl Report {
-    pub(super) fn new(model: &Model, base: Record, asked: Vec<String>, tolerance: f64) -> Self {
+    pub(super) fn new(model: &Model, base: RunRecord, asked: Vec<String>, tolerance: f64) -> Self {
         let scene = &model.scene;
-        let node = |impact: &fem_io::scene::Impact| impact.impactors.iter().any(|i| i.load.value == ContactLoad::Node);
+        let node =
+            |impact: &fem_io::scene::ImpactSpec| impact.impactors.iter().any(|i| i.load.value == ContactLoad::Node);
         let level = Level { label: "as it is".into(), setting: Setting::new(), at_limit: false };
         Self {
             title: scene.title.clone(),
@@ -122,7 +123,7 @@ impl Report {
         &self.rows[0]
     }
 
-    pub(super) fn add(&mut self, planned: &Planned, result: Result<Record, String>) {
+    pub(super) fn add(&mut self, planned: &Planned, result: Result<RunRecord, String>) {
         // The scene's own level is there already.
         if planned.level.setting.is_empty() && planned.axis != TOGETHER {
             return;
@@ -140,7 +141,7 @@ impl Report {
     }
 
     /// The runs of an axis of which there are results, in the order of its levels.
-    fn runs(&self, axis: &Axis) -> Vec<(Level, Record)> {
+    fn runs(&self, axis: &StudyAxis) -> Vec<(Level, RunRecord)> {
         let run = |level: &Level| {
             let row = self.row_of(&axis.name, level)?;
             Some((level.clone(), row.result.as_ref().ok()?.clone()))
@@ -149,7 +150,7 @@ impl Report {
     }
 
     /// Sees what the ladders among `axes` say; differences below `matters` are of no interest.
-    pub(super) fn climb(&mut self, axes: &[Axis], matters: f64) {
+    pub(super) fn climb(&mut self, axes: &[StudyAxis], matters: f64) {
         let ladders = axes.iter().filter(|axis| axis.kind == AxisKind::Ladder);
         let climbed = ladders.map(|axis| Ladder::new(&axis.name, &self.runs(axis), &self.asked, matters));
         self.ladders = climbed.filter(|ladder| ladder.levels.len() > 1).collect();
@@ -166,7 +167,7 @@ impl Report {
     }
 
     /// Counts errors from the reference, and what each axis changes from its judge.
-    pub(super) fn judge(&mut self, axes: &[Axis]) {
+    pub(super) fn judge(&mut self, axes: &[StudyAxis]) {
         self.refer();
         let finest = |axis: &str| {
             let axis = axes.iter().find(|a| a.name == axis)?;
@@ -179,7 +180,7 @@ impl Report {
             self.rows.iter().find(|other| other.level.setting == setting)?.result.clone().ok()
         };
         let finest = |row: &Row| judges(&row.axis).first().and_then(|name| finest(name));
-        let judge: Vec<Option<Record>> = self.rows.iter().map(|row| twin(row).or_else(|| finest(row))).collect();
+        let judge: Vec<Option<RunRecord>> = self.rows.iter().map(|row| twin(row).or_else(|| finest(row))).collect();
         let (asked, reference) = (self.asked.clone(), self.reference.clone());
         let exact = self.rows[reference.row].result.clone();
         let base = self.rows[0].result.clone();

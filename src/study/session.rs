@@ -1,6 +1,6 @@
 //! The runs of a study, kept from process to process.
 
-use super::record::Record;
+use super::record::RunRecord;
 use crate::analyses::saved::{self, Keys};
 use crate::error::{CheckpointError, Error};
 use crate::model::Model;
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 const FILE: &str = "study.bin";
 
 /// A run, or why there is none.
-type Kept = (Setting, Result<Record, String>);
+type Kept = (Setting, Result<RunRecord, String>);
 
 /// The runs of a study of one scene; each is saved as soon as it is done, none is made twice.
 #[derive(Debug)]
@@ -69,7 +69,7 @@ impl<'a> Session<'a> {
     }
 
     /// All that ran.
-    pub(super) fn records(&self) -> impl Iterator<Item = &Record> + Clone {
+    pub(super) fn records(&self) -> impl Iterator<Item = &RunRecord> + Clone {
         self.runs.iter().filter_map(|(_, run)| run.as_ref().ok())
     }
 
@@ -77,11 +77,11 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// A folder that cannot be written. What is wrong with the run itself is its result.
-    pub(super) fn run(&mut self, setting: &Setting) -> Result<Result<Record, String>, Error> {
+    pub(super) fn run(&mut self, setting: &Setting) -> Result<Result<RunRecord, String>, Error> {
         if let Some((_, run)) = self.runs.iter().find(|run| run.0 == *setting) {
             return Ok(run.clone());
         }
-        let run = Record::of(&self.path, setting, self.registry).map_err(|why| why.to_string());
+        let run = RunRecord::of(&self.path, setting, self.registry).map_err(|why| why.to_string());
         self.runs.push((setting.clone(), run.clone()));
         saved::write(&self.dir, FILE, &self.identity, &self.runs)?;
         Ok(run)

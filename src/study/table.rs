@@ -1,12 +1,12 @@
 //! A study as a table for machines.
 
-use super::record::Record;
+use super::record::RunRecord;
 use super::report::{Report, Row};
 use crate::error::Error;
 use crate::forecast::PHASES;
 use fem_core::counters::Counters;
 use fem_io::files::OutputDir;
-use fem_io::tables::{self, Field};
+use fem_io::tables::{self, TableValue};
 use serde_json::{Map, Value};
 
 const SIZES: [&str; 20] = [
@@ -48,8 +48,8 @@ pub fn write(dir: &OutputDir, report: &Report) -> Result<(), Error> {
 pub fn named(report: &Report) -> Vec<Map<String, Value>> {
     let header = header(report);
     let keys: Vec<String> = report.rows.iter().map(keys).collect();
-    let named = |line: Vec<Field<'_>>| {
-        let columns = header.iter().zip(line).filter(|(_, field)| !matches!(field, Field::Text("")));
+    let named = |line: Vec<TableValue<'_>>| {
+        let columns = header.iter().zip(line).filter(|(_, field)| !matches!(field, TableValue::Text("")));
         columns.map(|(name, field)| (name.clone(), field.into())).collect()
     };
     lines(report, &keys).map(named).collect()
@@ -69,7 +69,7 @@ fn header(report: &Report) -> Vec<String> {
     header
 }
 
-fn lines<'a>(report: &'a Report, keys: &'a [String]) -> impl Iterator<Item = Vec<Field<'a>>> + Clone {
+fn lines<'a>(report: &'a Report, keys: &'a [String]) -> impl Iterator<Item = Vec<TableValue<'a>>> + Clone {
     let names = figures(report);
     report.rows.iter().zip(keys).map(move |(row, keys)| line(row, keys, &names, report.asked.len()))
 }
@@ -78,24 +78,24 @@ fn keys(row: &Row) -> String {
     row.level.setting.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join("; ")
 }
 
-const NONE: Field<'_> = Field::Text("");
+const NONE: TableValue<'_> = TableValue::Text("");
 
-fn number(value: Option<f64>) -> Field<'static> {
-    value.filter(|value| value.is_finite()).map_or(NONE, Field::Number)
+fn number(value: Option<f64>) -> TableValue<'static> {
+    value.filter(|value| value.is_finite()).map_or(NONE, TableValue::Number)
 }
 
-fn line<'a>(row: &'a Row, keys: &'a str, names: &[&str], asked: usize) -> Vec<Field<'a>> {
+fn line<'a>(row: &'a Row, keys: &'a str, names: &[&str], asked: usize) -> Vec<TableValue<'a>> {
     let (record, why) = match &row.result {
         Ok(record) => (Some(record), ""),
         Err(why) => (None, why.as_str()),
     };
-    let count = |of: fn(&Record) -> u64| record.map_or(NONE, |r| Field::Count(of(r)));
+    let count = |of: fn(&RunRecord) -> u64| record.map_or(NONE, |r| TableValue::Count(of(r)));
     let mut line = vec![
-        Field::Text(&row.axis),
-        Field::Text(&row.level.label),
-        Field::Text(keys),
-        Field::Text(why),
-        Field::Text(if row.front { "yes" } else { "" }),
+        TableValue::Text(&row.axis),
+        TableValue::Text(&row.level.label),
+        TableValue::Text(keys),
+        TableValue::Text(why),
+        TableValue::Text(if row.front { "yes" } else { "" }),
         count(|r| r.size.cells as u64),
         count(|r| r.size.layers as u64),
         number(record.map(|r| r.size.cell_m)),
@@ -106,7 +106,7 @@ fn line<'a>(row: &'a Row, keys: &'a str, names: &[&str], asked: usize) -> Vec<Fi
     ];
     let work: [fn(&Counters) -> u64; 6] =
         [|w| w.elements, |w| w.factorisations, |w| w.solves, |w| w.steps, |w| w.contact_calls, |w| w.criterion_calls];
-    line.extend(work.map(|of| record.map_or(NONE, |r| Field::Count(of(&r.size.work)))));
+    line.extend(work.map(|of| record.map_or(NONE, |r| TableValue::Count(of(&r.size.work)))));
     line.push(number(Some(row.work())));
     line.push(number(row.worst()));
     line.extend(names.iter().map(|name| number(record.and_then(|r| r.value(name)))));

@@ -3,7 +3,7 @@
 use super::axes::AxisKind;
 use super::converge::Convergence;
 use super::ladder::Ladder;
-use super::plan::{Plan, TOGETHER};
+use super::plan::{StudyPlan, TOGETHER};
 use super::report::{Report, Row};
 use std::fmt::{self, Write as _};
 
@@ -17,7 +17,7 @@ const MANY: usize = 8;
 const TARGETS: [f64; 4] = [0.1, 0.01, 1e-3, 1e-4];
 
 /// What will be run, before it is run.
-impl fmt::Display for Plan {
+impl fmt::Display for StudyPlan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "  will run, about {:.0} s of processor time:", self.seconds())?;
         let mut axes: Vec<&str> = self.runs.iter().map(|run| run.axis.as_str()).collect();

@@ -2,7 +2,7 @@
 
 use super::{close, series, volume};
 use crate::support::{Case, plate};
-use fem::analyses::statics::{self, Solution};
+use fem::analyses::statics::{self, StaticSolution};
 use fem::core::field::{Field, Spot};
 use fem::core::patch;
 use fem::core::quadrature::gauss_legendre;
@@ -30,7 +30,7 @@ face = "top"
 "#;
 
 /// The plate at rest with fields as `fields` says.
-fn at_rest(fields: &str) -> (Case, Model, Solution) {
+fn at_rest(fields: &str) -> (Case, Model, StaticSolution) {
     let case = plate().text(&format!("{PLATE}[output]\nfields = {fields}\n"));
     case.fem("run", &["--out", "out"]).good();
     let path = case.folder().join("plate/scene.toml");

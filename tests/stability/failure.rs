@@ -5,7 +5,7 @@ use crate::registry::{criteria, tapes};
 use fem::core::failure::{AssessError, FailureCriterion, assess, check_material};
 use fem::core::material::{Material, Strength};
 use fem::core::tensor::{Ply, Stress6};
-use fem::failure::scan::{Place, Scan, ScanSite};
+use fem::failure::scan::{PlyOrInterface, Scan, ScanSite};
 use fem::io::scene;
 use std::path::Path;
 
@@ -203,7 +203,7 @@ fn ends_of_the_numbers() -> f64 {
 }
 
 fn no_numbers() -> f64 {
-    let site = ScanSite { cell: 0, place: Place::Ply(0), position: [0.0; 3], angle: 0.0, material: 0 };
+    let site = ScanSite { cell: 0, place: PlyOrInterface::Ply(0), position: [0.0; 3], angle: 0.0, material: 0 };
     let mut judged = 0;
     for judge in judges() {
         let assessed = |s: &Stress6<Ply>| {
@@ -211,7 +211,7 @@ fn no_numbers() -> f64 {
         };
         let place = match judge.criterion.info().site {
             fem::core::failure::Site::Ply => site.place,
-            fem::core::failure::Site::Interface => Place::Interface(0),
+            fem::core::failure::Site::Interface => PlyOrInterface::Interface(0),
         };
         let scanned = |s: &Stress6<Ply>| {
             let criteria = vec![(judge.name.to_owned(), judge.criterion.clone())];

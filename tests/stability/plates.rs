@@ -1,7 +1,7 @@
 //! Plates on meshes of any shape.
 
 use crate::scene::Plate;
-use fem::analyses::statics::{self, Solution};
+use fem::analyses::statics::{self, StaticSolution};
 use fem::core::mesh::{Group, QuadMesh};
 use fem::io::scene;
 use fem::{Error, Model, Registry};
@@ -148,7 +148,7 @@ pub(crate) fn model(text: &str) -> Result<Model, Error> {
     Model::new(scene::parse(text, "scene.toml".as_ref())?, &Registry::standard())
 }
 
-pub(crate) fn solve(text: &str) -> Result<(Model, Solution), Error> {
+pub(crate) fn solve(text: &str) -> Result<(Model, StaticSolution), Error> {
     let model = model(text)?;
     let solution = statics::solve(&model, NonZeroUsize::MIN)?;
     Ok((model, solution))

@@ -3,7 +3,7 @@
 use super::scene::Side::{Clamped, Free, Supported, Symmetric};
 use super::scene::{AS4, MeshFile, Plate, Row, Side, gmsh_file, gmsh_grid, isotropic, reference};
 use fem::Error;
-use fem::analyses::statics::{self, Solution};
+use fem::analyses::statics::{self, StaticSolution};
 use fem::io::scene;
 use fem::{Model, Registry};
 use std::collections::HashMap;
@@ -205,7 +205,7 @@ fn circle(file: &'static str, fixed: &'static [&'static str], n: usize) -> Case 
 
 impl Case {
     /// The plate under the load of a row.
-    fn solve(&self, row: &Row) -> Solution {
+    fn solve(&self, row: &Row) -> StaticSolution {
         (self.plate)(row[self.load]).solve()
     }
 

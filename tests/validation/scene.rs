@@ -2,7 +2,7 @@
 
 use crate::support::root;
 use fem::analyses::modes;
-use fem::analyses::statics::{self, Solution};
+use fem::analyses::statics::{self, StaticSolution};
 use fem::core::profile::ProfilePoint;
 use fem::io::scene;
 use fem::{Model, Registry};
@@ -171,7 +171,7 @@ impl Plate {
         Model::new(scene, &Registry::standard()).unwrap()
     }
 
-    pub(super) fn solve(&self) -> Solution {
+    pub(super) fn solve(&self) -> StaticSolution {
         statics::solve(&self.model("static"), NonZeroUsize::MIN).unwrap()
     }
 

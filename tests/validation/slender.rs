@@ -79,7 +79,7 @@ fn a_plate_too_thin_for_solids_is_refused_or_warned_of() {
                 Err(Error::IllConditioned { .. }) => {}
                 Ok(solution) => {
                     let ratio = solution.profiles[0][0].displacement[2] / navier(side, sheet_bending());
-                    let warnings = output::statics::Summary::new(&model, &solution).warnings.join("; ");
+                    let warnings = output::statics::StaticSummary::new(&model, &solution).warnings.join("; ");
                     let said = warnings.contains("bend too stiffly") || warnings.contains("ill-conditioned");
                     assert!(said || (ratio - 1.0).abs() < KIRCHHOFF, "{element}, {side} mm, {cells} cells: {ratio}");
                 }

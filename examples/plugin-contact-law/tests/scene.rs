@@ -3,7 +3,7 @@
 use fem::dynamics::integrate::Newmark;
 use fem_core::contact::ContactLaw;
 use fem_core::plugin::{Built, Params, Plugin};
-use fem_core::testkit::Modes;
+use fem_core::testkit::Oscillators;
 use plugin_contact_law::ElasticPlastic;
 use std::path::Path;
 use std::process::{Command, Output};

@@ -1,6 +1,6 @@
 //! The integrator fulfils the contract of all integrators, and damps what is too fast for its step.
 
-use fem_core::testkit::{Mode, Modes, check_integrator};
+use fem_core::testkit::{Mode, Oscillators, check_integrator};
 use fem_core::time::{Integrator, State};
 use plugin_integrator::TrBdf2;
 
@@ -14,7 +14,7 @@ fn it_fulfils_the_contract() {
 /// Part of a unit amplitude that is left after a tenth of a second in steps of 10 ms.
 fn left(omega: f64) -> f64 {
     let mut scheme = TrBdf2::default();
-    let mut sys = Modes::free([Mode::new(omega, 0.0)]);
+    let mut sys = Oscillators::free([Mode::new(omega, 0.0)]);
     let mut s = State { u: vec![1.0], ..sys.state() };
     scheme.start(&mut sys, &mut s).unwrap();
     for _ in 0..10 {

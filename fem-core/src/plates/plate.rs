@@ -142,7 +142,7 @@ impl Plate {
     ///
     /// # Errors
     /// A mesh that is not symmetric.
-    pub fn fold(&mut self, group: symmetry::Group) -> Result<(), String> {
+    pub fn fold(&mut self, group: symmetry::SymmetryGroup) -> Result<(), String> {
         self.symmetry = Symmetry::of(group, self)?;
         Ok(())
     }

@@ -13,7 +13,7 @@ use std::collections::HashMap;
 
 /// What maps a plate onto itself, about the middle of its bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Group {
+pub enum SymmetryGroup {
     /// A turn by 180 degrees about z.
     HalfTurn,
     /// A mirror on a plane x = const.
@@ -31,7 +31,7 @@ const SAME: f64 = 1e-8;
 /// Couplings of a stiffness below this fraction of its largest entry are rounding.
 const NO_COUPLING: f64 = 1e-9;
 
-impl Group {
+impl SymmetryGroup {
     /// All of them by name.
     pub const ALL: [(&'static str, Self); 4] = [
         ("half-turn", Self::HalfTurn),
@@ -104,7 +104,7 @@ impl Operation {
 /// How a plate is folded onto a part of itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Symmetry {
-    group: Option<Group>,
+    group: Option<SymmetryGroup>,
     centre: [f64; 2],
     /// Nodes nearer to each other than this are one, m.
     reach: f64,
@@ -136,7 +136,7 @@ impl Symmetry {
     ///
     /// # Errors
     /// A node or a cell without an image.
-    pub(crate) fn of(group: Group, plate: &Plate) -> Result<Self, String> {
+    pub(crate) fn of(group: SymmetryGroup, plate: &Plate) -> Result<Self, String> {
         let (low, high) = plate.plane.bounds();
         let centre = [0, 1].map(|d| 0.5 * (low[d] + high[d]));
         let reach = SAME * (high[0] - low[0]).hypot(high[1] - low[1]);
@@ -164,7 +164,7 @@ impl Symmetry {
 
     /// Name of the symmetry, if there is one.
     pub fn name(&self) -> Option<&'static str> {
-        self.group.map(Group::name)
+        self.group.map(SymmetryGroup::name)
     }
 
     /// Its operations but for the one that changes nothing.
@@ -228,7 +228,7 @@ impl Symmetry {
     }
 }
 
-fn refusal(group: Group, centre: [f64; 2], why: &str) -> String {
+fn refusal(group: SymmetryGroup, centre: [f64; 2], why: &str) -> String {
     let [x, y] = centre.map(|c| c * 1e3);
     format!("the mesh has no symmetry `{}` about ({x:.6}, {y:.6}) mm: {why}", group.name())
 }
@@ -352,7 +352,7 @@ mod tests {
     }
 
     /// Unknowns of a motion that is its own image under all operations of `group`, and of one that is not.
-    fn motion(plate: &Plate, group: Group, symmetric: bool) -> Vec<f64> {
+    fn motion(plate: &Plate, group: SymmetryGroup, symmetric: bool) -> Vec<f64> {
         // Monomials xᵃ yᵇ z of each displacement; those whose sign an operation changes are left out.
         let value = |dof: usize| {
             let (column, level, name) = plate.locate(dof);
@@ -380,7 +380,7 @@ mod tests {
 
     #[test]
     fn equations_hold_for_symmetric_motions_in_any_numbering() {
-        for (name, group) in Group::ALL {
+        for (name, group) in SymmetryGroup::ALL {
             for cells in [[4, 4], [5, 3], [4, 3]] {
                 let mut free = Vec::new();
                 for disorder in [0, 1, 5] {
@@ -405,7 +405,7 @@ mod tests {
         }
         // Of a quarter of 4 x 4 cells 3 x 3 columns; the inner ones have all unknowns, those on the planes fewer.
         let mut quarter = plate([4, 4], 5);
-        quarter.fold(Group::Quarter).unwrap();
+        quarter.fold(SymmetryGroup::Quarter).unwrap();
         assert_eq!(quarter.symmetry().quads().map(|(_, weight)| weight).collect::<Vec<_>>(), [4.0; 4]);
     }
 
@@ -420,26 +420,32 @@ mod tests {
                 .unwrap()
                 .fold(group)
         };
-        let why = fold(&mesh, Group::HalfTurn).unwrap_err();
+        let why = fold(&mesh, SymmetryGroup::HalfTurn).unwrap_err();
         assert!(why.contains("node 4711 at (2501.000000, 3000.000000) mm has no image"), "{why}");
         mesh.points[6][0] -= 1e-3;
-        fold(&mesh, Group::Quarter).unwrap();
+        fold(&mesh, SymmetryGroup::Quarter).unwrap();
         // A hole on one side.
         mesh.quads.swap_remove(5);
         mesh.quad_tags.swap_remove(5);
-        let why = fold(&mesh, Group::MirrorY).unwrap_err();
+        let why = fold(&mesh, SymmetryGroup::MirrorY).unwrap_err();
         assert!(why.contains("cell 10 at (3250.000000, 4500.000000) mm has no image"), "{why}");
     }
 
     #[test]
     fn mirrors_need_plies_along_the_axes_and_half_turns_do_not() {
-        let keeps = |group: Group, c: &Matrix6| group.operations().iter().all(|o| o.keeps_stiffness(c));
+        let keeps = |group: SymmetryGroup, c: &Matrix6| group.operations().iter().all(|o| o.keeps_stiffness(c));
         for angle in [0.0, 90.0, -90.0, 180.0] {
-            assert!(Group::ALL.iter().all(|(_, group)| keeps(*group, &tape(angle))), "{angle}");
+            assert!(SymmetryGroup::ALL.iter().all(|(_, group)| keeps(*group, &tape(angle))), "{angle}");
         }
         for angle in [45.0, 0.001, 89.9] {
-            assert!(keeps(Group::HalfTurn, &tape(angle)) && !keeps(Group::MirrorX, &tape(angle)), "{angle}");
-            assert!(!keeps(Group::MirrorY, &tape(angle)) && !keeps(Group::Quarter, &tape(angle)), "{angle}");
+            assert!(
+                keeps(SymmetryGroup::HalfTurn, &tape(angle)) && !keeps(SymmetryGroup::MirrorX, &tape(angle)),
+                "{angle}"
+            );
+            assert!(
+                !keeps(SymmetryGroup::MirrorY, &tape(angle)) && !keeps(SymmetryGroup::Quarter, &tape(angle)),
+                "{angle}"
+            );
         }
     }
 }

@@ -24,7 +24,7 @@ impl Mode {
 
 /// Uncoupled oscillators; the first may push a contact whose indentation is its displacement.
 #[derive(Debug, Clone)]
-pub struct Modes {
+pub struct Oscillators {
     /// One per unknown.
     pub modes: Vec<Mode>,
     /// Load p of oscillator i at time t.
@@ -33,7 +33,7 @@ pub struct Modes {
     pub contact: Option<Box<dyn ContactLaw>>,
 }
 
-impl Modes {
+impl Oscillators {
     /// Without load and contact.
     pub fn free(modes: impl Into<Vec<Mode>>) -> Self {
         Self { modes: modes.into(), load: |_, _| 0.0, contact: None }
@@ -57,7 +57,7 @@ impl Modes {
     }
 }
 
-impl SecondOrderSystem for Modes {
+impl SecondOrderSystem for Oscillators {
     fn ndof(&self) -> usize {
         self.modes.len()
     }
@@ -161,12 +161,12 @@ type Checked<T> = Result<T, Box<dyn Error>>;
 
 struct March<'a> {
     integrator: Box<dyn Integrator + 'a>,
-    sys: Modes,
+    sys: Oscillators,
     s: State,
 }
 
 impl<'a> March<'a> {
-    fn start(like: &'a dyn Integrator, mut sys: Modes, mut s: State) -> Result<Self, StepError> {
+    fn start(like: &'a dyn Integrator, mut sys: Oscillators, mut s: State) -> Result<Self, StepError> {
         let mut integrator = dyn_clone::clone_box(like);
         integrator.start(&mut sys, &mut s)?;
         Ok(Self { integrator, sys, s })
@@ -189,7 +189,8 @@ fn check_order(integrator: &dyn Integrator) -> Checked<()> {
     // Steps of h (1 + uneven) and h (1 - uneven) in turn.
     let error = |steps: u32, uneven: f64| -> Checked<f64> {
         let s = State { u: vec![0.0, 1.0_f64.sin()], v: vec![1.0, 1.0_f64.cos()], ..State::at_rest(2, 0) };
-        let mut march = March::start(integrator, Modes { modes: DRIVEN.to_vec(), load: driving, contact: None }, s)?;
+        let mut march =
+            March::start(integrator, Oscillators { modes: DRIVEN.to_vec(), load: driving, contact: None }, s)?;
         for step in 0..steps {
             let part = if step % 2 == 0 { 1.0 + uneven } else { 1.0 - uneven };
             march.run(2.0 / f64::from(steps) * part, 1)?;
@@ -243,7 +244,7 @@ impl ContactLaw for Stop {
 
 /// A mass that meets [`Stop`] at unit speed, and a damped oscillator beside it.
 fn bounce(integrator: &dyn Integrator) -> Result<March<'_>, StepError> {
-    let mut sys = Modes::sphere(1.0, Box::new(Stop));
+    let mut sys = Oscillators::sphere(1.0, Box::new(Stop));
     sys.modes.push(Mode::new(2.0, 0.05));
     let mut s = sys.state();
     s.v = vec![1.0, 1.0];
@@ -272,7 +273,7 @@ fn check_limit(integrator: &dyn Integrator) -> Checked<()> {
         None => [100.0, 10.0, 5.0, 2.5, 1.0],
     };
     for dt in steps {
-        let sys = Modes::free([Mode::new(1.0, 0.0)]);
+        let sys = Oscillators::free([Mode::new(1.0, 0.0)]);
         let mut march = March::start(integrator, sys, State { u: vec![1.0], ..State::at_rest(1, 0) })?;
         for step in 1..=1000 {
             march.run(dt, 1)?;
@@ -306,7 +307,7 @@ fn check_contact(integrator: &dyn Integrator) -> Checked<()> {
 }
 
 fn check_nan(integrator: &dyn Integrator) -> Checked<()> {
-    let sys = Modes::free([Mode::new(1.0, 0.0)]);
+    let sys = Oscillators::free([Mode::new(1.0, 0.0)]);
     let s = State { u: vec![f64::NAN], ..sys.state() };
     match March::start(integrator, sys, s).and_then(|mut march| march.run(0.1, 1)) {
         Err(StepError::NotFinite { .. }) => Ok(()),

@@ -10,4 +10,4 @@ pub use card::card;
 pub use contact::check_contact_law;
 pub use criterion::check_criterion;
 pub use element::{Provided, check_element};
-pub use integrator::{Mode, Modes, check_integrator};
+pub use integrator::{Mode, Oscillators, check_integrator};

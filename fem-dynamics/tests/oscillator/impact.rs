@@ -2,7 +2,7 @@
 
 use crate::{SCHEMES, dormand_prince, hertz, march, scheme, sun_yang, table};
 use fem_core::contact::ContactLaw;
-use fem_core::testkit::Modes;
+use fem_core::testkit::Oscillators;
 use fem_core::time::{Integrator, State};
 
 /// Highest force and indentation, time of contact, and the state after it.
@@ -17,7 +17,7 @@ struct Impact {
 
 /// `steps` steps of `dt`, which should hold the whole contact.
 fn impact(scheme: Box<dyn Integrator>, m: f64, v: f64, law: Box<dyn ContactLaw>, dt: f64, steps: usize) -> Impact {
-    let mut sys = Modes::sphere(m, law.clone());
+    let mut sys = Oscillators::sphere(m, law.clone());
     let s = State { v: vec![v], ..sys.state() };
     let start = 0.5 * m * v * v;
     let mut seen = Impact { force: 0.0, alpha: 0.0, time: 0.0, imbalance: 0.0, end: s.clone() };
@@ -69,7 +69,7 @@ fn hertz_history_agrees_with_the_reference() {
     let rows = table("hertz_mass");
     for (name, order) in SCHEMES {
         let error = |steps: usize| {
-            let mut sys = Modes::sphere(1.0, hertz(1.0, 1.5));
+            let mut sys = Oscillators::sphere(1.0, hertz(1.0, 1.5));
             let s = State { v: vec![1.0], ..sys.state() };
             let (mut error, mut step): (f64, _) = (0.0, 0);
             march(scheme(name), &mut sys, s, 0.05 / steps as f64, steps * (rows.len() - 1), |s| {
@@ -116,7 +116,7 @@ fn sun_yang_on_the_ground_meets_closed_forms() {
 #[test]
 fn a_restart_within_the_contact_changes_no_bit() {
     for (name, _) in SCHEMES {
-        let mut sys = Modes::sphere(1.0, sun_yang(1.0, 0.5, "loading-exponent"));
+        let mut sys = Oscillators::sphere(1.0, sun_yang(1.0, 0.5, "loading-exponent"));
         let mut straight = State { v: vec![1.0], ..sys.state() };
         let mut own = scheme(name);
         own.start(&mut sys, &mut straight).unwrap();
@@ -146,7 +146,7 @@ fn dormand_prince_finds_a_contact_inside_one_step() {
 #[test]
 fn free_flight_keeps_the_speed_to_the_last_bit() {
     for (name, _) in SCHEMES {
-        let mut sys = Modes::sphere(3.7, hertz(1.0, 1.5));
+        let mut sys = Oscillators::sphere(3.7, hertz(1.0, 1.5));
         let s = State { u: vec![-1.0], v: vec![-0.3], ..sys.state() };
         march(scheme(name), &mut sys, s, 1e-3, 10_000, |s| assert_eq!(s.v, [-0.3], "{name} at {}", s.t));
     }

@@ -4,7 +4,7 @@ use crate::{SCHEMES, dormand_prince, law, length, scheme, stiffness};
 use fem_core::contact::ContactLaw;
 use fem_core::plugin::Value;
 use fem_core::structure::{SolveError, Structure};
-use fem_core::testkit::{Modes, check_integrator};
+use fem_core::testkit::{Oscillators, check_integrator};
 use fem_core::time::{Integrator, SecondOrderSystem, State};
 use fem_dynamics::contact::SunYang;
 use fem_dynamics::impact::{ImpactSystem, Impactor};
@@ -44,7 +44,7 @@ fn ground(scheme: Box<dyn Integrator>, n: f64, steps: u32) -> f64 {
     let depth = peak * (critical / peak).powf(0.4);
     let away = (2.0 * peak.powf(n) * depth / (n + 2.0)).sqrt();
     let apart = before + peak * loading + depth / away * unloading;
-    let mut sys = Modes::sphere(1.0, sun_yang(1.0, n, critical));
+    let mut sys = Oscillators::sphere(1.0, sun_yang(1.0, n, critical));
     let s = State { u: vec![-before], v: vec![1.0], ..sys.state() };
     let s = end(scheme, &mut sys, s, 5.0, steps);
     (s.u[0] - (peak - depth - away * (5.0 - apart))).abs().max((s.v[0] + away).abs())

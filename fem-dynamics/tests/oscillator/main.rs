@@ -11,7 +11,7 @@ mod spectrum;
 
 use fem_core::contact::ContactLaw;
 use fem_core::plugin::{Built, Dimension, Params, Plugin, Value};
-use fem_core::testkit::Modes;
+use fem_core::testkit::Oscillators;
 use fem_core::time::{Integrator, State};
 use fem_dynamics::contact::{Hertz, SunYang};
 use fem_dynamics::integrate::{
@@ -93,7 +93,7 @@ fn sun_yang(k: f64, critical: f64, reloading: &str) -> Box<dyn ContactLaw> {
 /// Starts `s` and makes `steps` steps, handing each state to `see`.
 fn march(
     mut scheme: Box<dyn Integrator>,
-    sys: &mut Modes,
+    sys: &mut Oscillators,
     mut s: State,
     dt: f64,
     steps: usize,

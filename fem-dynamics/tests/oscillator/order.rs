@@ -1,7 +1,7 @@
 //! Orders of convergence.
 
 use crate::{SCHEMES, dormand_prince, march, scheme, table};
-use fem_core::testkit::{Mode, Modes, check_integrator};
+use fem_core::testkit::{Mode, Oscillators, check_integrator};
 use fem_core::time::{Integrator, State, StepError};
 use std::f64::consts::PI;
 
@@ -29,7 +29,7 @@ fn errors_agree_with_the_reference() {
             let (sin, cos) = (damped * t).sin_cos();
             (-zeta * OMEGA * t).exp() * (cos + zeta * OMEGA / damped * sin)
         };
-        let mut sys = Modes::free([Mode::new(OMEGA, zeta)]);
+        let mut sys = Oscillators::free([Mode::new(OMEGA, zeta)]);
         let mut error: f64 = 0.0;
         let s = State { u: vec![1.0], ..sys.state() };
         march(scheme(name), &mut sys, s, 2.0 / steps, steps as usize, |s| {
@@ -60,7 +60,7 @@ fn loaded_oscillators_converge_in_order() {
             ("harmonic", 0.0, 0.0, harmonic),
         ] {
             let error = |steps: usize| {
-                let mut sys = Modes { load, ..Modes::free([Mode::new(OMEGA, zeta)]) };
+                let mut sys = Oscillators { load, ..Oscillators::free([Mode::new(OMEGA, zeta)]) };
                 let s = State { u: vec![u], ..sys.state() };
                 let (mut error, mut step): (f64, _) = (0.0, 0);
                 march(scheme.clone(), &mut sys, s, 0.05 / steps as f64, steps * (rows.len() - 1), |s| {
@@ -80,7 +80,7 @@ fn loaded_oscillators_converge_in_order() {
 
 #[test]
 fn a_step_of_endless_parts_is_refused() {
-    let mut sys = Modes::free([Mode::new(OMEGA, 0.0)]);
+    let mut sys = Oscillators::free([Mode::new(OMEGA, 0.0)]);
     let mut s = State { u: vec![1.0], ..sys.state() };
     let mut scheme = dormand_prince(1e-6, 1e-12);
     scheme.start(&mut sys, &mut s).unwrap();

@@ -1,14 +1,14 @@
 //! Amplification of one step of the oscillator.
 
 use crate::{SCHEMES, scheme, table};
-use fem_core::testkit::{Mode, Modes};
+use fem_core::testkit::{Mode, Oscillators};
 use fem_core::time::{Integrator, SecondOrderSystem, State, StepLimit};
 use nalgebra::Matrix3;
 use std::f64::consts::PI;
 
 /// Spectral radius and relative period error of a unit step, from the matrix that takes (u, v, a) to the next step.
 fn spectrum(mut scheme: Box<dyn Integrator>, omega: f64, zeta: f64) -> (f64, Option<f64>) {
-    let mut sys = Modes::free([Mode::new(omega, zeta)]);
+    let mut sys = Oscillators::free([Mode::new(omega, zeta)]);
     let mut amplification = Matrix3::zeros();
     for (column, [u, v, a]) in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].into_iter().enumerate() {
         let mut s = State { u: vec![u], v: vec![v], a: vec![a], ..sys.state() };
@@ -71,7 +71,7 @@ fn limits_agree_with_theory() {
 
 #[test]
 fn massless_dofs_at_rest_need_no_inverse_of_the_mass() {
-    let mut sys = Modes::free([Mode::new(1.0, 0.0), Mode { m: 0.0, c: 0.0, k: 1.0 }]);
+    let mut sys = Oscillators::free([Mode::new(1.0, 0.0), Mode { m: 0.0, c: 0.0, k: 1.0 }]);
     let mut newmark = scheme("newmark-average");
     let mut moving = State { v: vec![1.0, 0.0], ..sys.state() };
     newmark.start(&mut sys, &mut moving).unwrap();

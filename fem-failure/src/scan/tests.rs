@@ -23,7 +23,7 @@ fn resin(shear: f64) -> Material {
     material("resin", &[(Strength::S12, shear)])
 }
 
-fn site(cell: u32, place: Place, material: u16) -> ScanSite {
+fn site(cell: u32, place: PlyOrInterface, material: u16) -> ScanSite {
     ScanSite { cell, place, position: [f64::from(cell), 0.0, 0.0], angle: 0.1, material }
 }
 
@@ -50,7 +50,7 @@ impl FailureCriterion for Plain {
 }
 
 fn plain(cells: u32) -> Scan {
-    let sites = (0..cells).map(|c| site(c, Place::Ply(0), 0)).collect();
+    let sites = (0..cells).map(|c| site(c, PlyOrInterface::Ply(0), 0)).collect();
     Scan::new(vec![("plain".into(), Box::new(Plain))], sites, vec![ply()]).unwrap()
 }
 
@@ -108,10 +108,10 @@ fn ties_go_to_the_larger_index_then_to_the_first_site() {
 #[test]
 fn each_place_and_mode_has_its_own_event() {
     let sites = vec![
-        site(0, Place::Interface(0), 1),
-        site(0, Place::Ply(1), 0),
-        site(1, Place::Ply(0), 0),
-        site(1, Place::Interface(0), 2),
+        site(0, PlyOrInterface::Interface(0), 1),
+        site(0, PlyOrInterface::Ply(1), 0),
+        site(1, PlyOrInterface::Ply(0), 0),
+        site(1, PlyOrInterface::Interface(0), 2),
     ];
     let criteria: Vec<(String, Box<dyn FailureCriterion>)> =
         vec![("h".into(), Box::new(HashinReport::default())), ("o".into(), Box::new(Octahedral))];
@@ -124,10 +124,10 @@ fn each_place_and_mode_has_its_own_event() {
     let got: Vec<_> = scan.events().into_iter().map(|e| (e.time, e.criterion, e.mode, e.cell, e.place)).collect();
     // Indices 4, 4, 4 and 6.25 (site 3; site 0 has 1.5625) grow from 0 in one second.
     let want = [
-        (0.16, "o", "interface shear", 1, Place::Interface(0)),
-        (0.25, "h", "fibre compression", 1, Place::Ply(0)),
-        (0.25, "h", "matrix tension", 0, Place::Ply(1)),
-        (0.25, "h", "matrix compression", 1, Place::Ply(0)),
+        (0.16, "o", "interface shear", 1, PlyOrInterface::Interface(0)),
+        (0.25, "h", "fibre compression", 1, PlyOrInterface::Ply(0)),
+        (0.25, "h", "matrix tension", 0, PlyOrInterface::Ply(1)),
+        (0.25, "h", "matrix compression", 1, PlyOrInterface::Ply(0)),
     ];
     assert_eq!(got, want.map(|(t, c, m, cell, p)| (t, c.to_owned(), m, cell, p)));
     assert_eq!(first_per_mode(&scan.events()).len(), 4);
@@ -138,7 +138,11 @@ fn each_place_and_mode_has_its_own_event() {
 
 #[test]
 fn a_probe_reads_the_indices_of_its_site() {
-    let sites = vec![site(0, Place::Interface(0), 1), site(0, Place::Ply(0), 0), site(1, Place::Ply(0), 0)];
+    let sites = vec![
+        site(0, PlyOrInterface::Interface(0), 1),
+        site(0, PlyOrInterface::Ply(0), 0),
+        site(1, PlyOrInterface::Ply(0), 0),
+    ];
     let criteria: Vec<(String, Box<dyn FailureCriterion>)> =
         vec![("p".into(), Box::new(Plain)), ("o".into(), Box::new(Octahedral))];
     let mut scan = Scan::new(criteria, sites, vec![ply(), resin(10.0)]).unwrap();
@@ -156,7 +160,7 @@ fn a_probe_reads_the_indices_of_its_site() {
 #[test]
 fn sites_of_mixed_materials_keep_their_own_strength() {
     let n = 50;
-    let sites: Vec<_> = (0..n).map(|c| site(c, Place::Interface(0), (c % 2) as u16)).collect();
+    let sites: Vec<_> = (0..n).map(|c| site(c, PlyOrInterface::Interface(0), (c % 2) as u16)).collect();
     let mut scan = octahedral(sites, vec![resin(1.0), resin(2.0)]);
     let stress: Vec<_> = (0..n).map(|c| shear(f64::from(c))).collect();
     scan.sample(0.0, &stress).unwrap();
@@ -175,7 +179,7 @@ fn bad_samples_are_refused_and_leave_the_scan_as_it_was() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let error = scan.sample(1.0, &[along(2.0), Stress6::new([0.0, 0.0, 0.0, 0.0, bad, 0.0])]).unwrap_err();
         let text = error.to_string();
-        assert!(matches!(error, ScanError::Stress { time: 1.0, cell: 1, place: Place::Ply(0), .. }), "{text}");
+        assert!(matches!(error, ScanError::Stress { time: 1.0, cell: 1, place: PlyOrInterface::Ply(0), .. }), "{text}");
         assert!(text.contains("ply 1 from the bottom of cell 1") && text.contains("at 1 s"), "{text}");
         assert!(scan.sample(bad, &[along(2.0), along(2.0)]).is_err());
     }
@@ -203,25 +207,25 @@ fn an_index_that_is_no_number_is_an_error() {
             }
         }
     }
-    let sites = vec![site(0, Place::Ply(0), 0), site(7, Place::Ply(3), 0)];
+    let sites = vec![site(0, PlyOrInterface::Ply(0), 0), site(7, PlyOrInterface::Ply(3), 0)];
     let mut scan = Scan::new(vec![("f".into(), Box::new(Forgetful))], sites, vec![ply()]).unwrap();
     scan.sample(0.0, &[along(0.0), along(0.5)]).unwrap();
     let error = scan.sample(1.0, &[along(0.0), along(1.5)]).unwrap_err();
-    assert!(matches!(error, ScanError::Index { mode: "b", cell: 7, place: Place::Ply(3), .. }), "{error}");
+    assert!(matches!(error, ScanError::Index { mode: "b", cell: 7, place: PlyOrInterface::Ply(3), .. }), "{error}");
     // An overflow of the stress itself is caught as well: ∞ − ∞.
-    let mut scan = octahedral(vec![site(0, Place::Interface(2), 0)], vec![resin(1.0)]);
+    let mut scan = octahedral(vec![site(0, PlyOrInterface::Interface(2), 0)], vec![resin(1.0)]);
     assert!(scan.sample(0.0, &[Stress6::new([1e308, -1e308, 0.0, 0.0, 0.0, 0.0])]).is_ok());
     assert_eq!(scan.peaks()[0].index, f64::INFINITY);
 }
 
 #[test]
 fn missing_constants_are_named_before_the_march() {
-    let sites = vec![site(3, Place::Ply(0), 0), site(4, Place::Interface(1), 1)];
+    let sites = vec![site(3, PlyOrInterface::Ply(0), 0), site(4, PlyOrInterface::Interface(1), 1)];
     let criteria = || -> Vec<(String, Box<dyn FailureCriterion>)> { vec![("oct".into(), Box::new(Octahedral))] };
     // The ply has no business with the interface's criterion.
     assert!(Scan::new(criteria(), sites.clone(), vec![material("bare", &[]), resin(1.0)]).is_ok());
     let error = Scan::new(criteria(), sites.clone(), vec![ply(), material("bare", &[])]).unwrap_err();
-    assert!(matches!(error, ScanError::Material { cell: 4, place: Place::Interface(1), .. }));
+    assert!(matches!(error, ScanError::Material { cell: 4, place: PlyOrInterface::Interface(1), .. }));
     let source = std::error::Error::source(&error).unwrap().to_string();
     assert!(source.contains("`bare`") && source.contains("`oct`") && source.contains("S12"), "{source}");
     assert!(matches!(

@@ -6,7 +6,7 @@ use fem_core::mesh::{Group, QuadMesh};
 
 use super::checks::{Edges, flat_and_joined};
 use super::elements::Grouped;
-use super::error::{MeshError, MeshFault, Place};
+use super::error::{FilePlace, MeshError, MeshFault};
 use super::nodes::NodeTable;
 use super::source::{Item, Source};
 
@@ -35,7 +35,7 @@ pub(super) fn mesh(
         let point = nodes.plane(*old).map(|x| x * unit_metres);
         if let Some(value) = point.into_iter().find(|x| !x.is_finite()) {
             let fault = MeshFault::Coordinate { node: nodes.tag(*old), value };
-            return Err(source.error(Place::File, fault));
+            return Err(source.error(FilePlace::File, fault));
         }
         mesh.points.push(point);
         mesh.node_tags.push(nodes.tag(*old));

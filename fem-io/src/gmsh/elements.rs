@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::cursor::Cursor;
-use super::error::{MeshError, MeshFault, Place};
+use super::error::{FilePlace, MeshError, MeshFault};
 use super::groups::Groups;
 use super::nodes::NodeTable;
 use super::source::{Item, Source};
@@ -92,11 +92,11 @@ impl<'g> Grouped<'g> {
         }
         cursor.end("$EndElements").map_err(|at| source.syntax(at, "$EndElements should stand here"))?;
         if low == 0 {
-            return Err(source.error(Place::File, MeshFault::Syntax("element number 0 is reserved".to_owned())));
+            return Err(source.error(FilePlace::File, MeshFault::Syntax("element number 0 is reserved".to_owned())));
         }
         if tags.len() as u64 != announced {
             let fault = MeshFault::Count { section: "Elements", announced, found: tags.len() };
-            return Err(source.error(Place::File, fault));
+            return Err(source.error(FilePlace::File, fault));
         }
         tags.sort_unstable();
         if let Some(pair) = tags.windows(2).find(|pair| pair[0] == pair[1]) {
@@ -104,7 +104,7 @@ impl<'g> Grouped<'g> {
             return Err(source.error(source.find(Item::Element(pair[0])), fault));
         }
         if let Some(part) = groups.parts.iter().find(|part| !grouped.surfaces.contains(part)) {
-            return Err(source.error(Place::File, MeshFault::Split { surface: *part }));
+            return Err(source.error(FilePlace::File, MeshFault::Split { surface: *part }));
         }
         grouped.points.sort_unstable_by_key(|e| e.tag);
         grouped.edges.sort_unstable_by_key(|e| e.tag);

@@ -3,7 +3,7 @@
 use mshio::error::MshParserErrorKind;
 
 use super::cursor::Cursor;
-use super::error::{MeshError, MeshFault, Place};
+use super::error::{FilePlace, MeshError, MeshFault};
 use super::source::Source;
 
 /// A point, curve, surface or volume.
@@ -31,7 +31,8 @@ pub(super) fn read(source: &Source<'_>) -> Result<Vec<Entity>, MeshError> {
 
 /// `$Entities`, which mshio reads from a file that holds nothing else.
 fn whole(source: &Source<'_>) -> Result<Vec<Entity>, MeshError> {
-    let start = source.section("Entities").ok_or_else(|| source.error(Place::File, MeshFault::Missing("Entities")))?;
+    let start =
+        source.section("Entities").ok_or_else(|| source.error(FilePlace::File, MeshFault::Missing("Entities")))?;
     let mut file = source.header().to_vec();
     file.extend(b"$Entities\n");
     let before = file.len();
@@ -48,7 +49,8 @@ fn whole(source: &Source<'_>) -> Result<Vec<Entity>, MeshError> {
             .collect();
         source.syntax(start + (file.len() - rest).saturating_sub(before), &context.join(", in "))
     })?;
-    let entities = entities.data.entities.ok_or_else(|| source.error(Place::File, MeshFault::Missing("Entities")))?;
+    let entities =
+        entities.data.entities.ok_or_else(|| source.error(FilePlace::File, MeshFault::Missing("Entities")))?;
     let entity = |dim, tag, physical| Entity { dim, tag, physical, part: false };
     let points = entities.points.into_iter().map(|e| entity(0, e.tag, e.physical_tags));
     let curves = entities.curves.into_iter().map(|e| entity(1, e.tag, e.physical_tags));

@@ -10,14 +10,14 @@ pub struct MeshError {
     /// Name of the file.
     pub file: String,
     /// Where in the file.
-    pub place: Place,
+    pub place: FilePlace,
     /// What is wrong there.
     pub fault: MeshFault,
 }
 
 /// A place in a mesh file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePlace {
     /// The file as a whole, or no place that can be told.
     File,
     /// A line of an ASCII file, counted from 1.
@@ -26,7 +26,7 @@ pub enum Place {
     Byte(usize),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File => Ok(()),

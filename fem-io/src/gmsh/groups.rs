@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::entities::Entity;
-use super::error::{MeshError, MeshFault, Place};
+use super::error::{FilePlace, MeshError, MeshFault};
 use super::source::Source;
 
 /// Physical groups of a file.
@@ -31,7 +31,7 @@ impl Groups {
                 // A negative number means reversed orientation, which the mesh itself already shows.
                 let tag = tag.unsigned_abs();
                 let name = names.get(&(dim, tag)).map_or_else(|| tag.to_string(), |(_, name)| name.clone());
-                groups.declare(&name, dim).map_err(|fault| source.error(Place::File, fault))?;
+                groups.declare(&name, dim).map_err(|fault| source.error(FilePlace::File, fault))?;
                 of_entity.push(name);
             }
             of_entity.sort_unstable();
@@ -42,7 +42,7 @@ impl Groups {
             // The elements of a partitioned mesh lie on parts, some of which have the number of a whole.
             if groups.entities.insert((dim, entity), of_entity).is_some() && !part {
                 let what = format!("$Entities holds the entity {entity} of dimension {dim}");
-                return Err(source.error(Place::File, MeshFault::RepeatedTag(what)));
+                return Err(source.error(FilePlace::File, MeshFault::RepeatedTag(what)));
             }
         }
         Ok(groups)
@@ -67,7 +67,7 @@ impl Groups {
     }
 }
 
-type Names = BTreeMap<(i32, u32), (Place, String)>;
+type Names = BTreeMap<(i32, u32), (FilePlace, String)>;
 
 /// `$PhysicalNames`, which mshio skips: text in binary files, too.
 fn physical_names(source: &Source<'_>) -> Result<Names, MeshError> {
@@ -75,7 +75,7 @@ fn physical_names(source: &Source<'_>) -> Result<Names, MeshError> {
     let Some(start) = source.section("PhysicalNames") else {
         return Ok(names);
     };
-    let syntax = |line, why: &str| source.error(Place::Line(line), MeshFault::Syntax(why.to_owned()));
+    let syntax = |line, why: &str| source.error(FilePlace::Line(line), MeshFault::Syntax(why.to_owned()));
     let mut lines = source.lines(start);
     let (first, text) = lines.next().unwrap_or_default();
     let count: u64 = std::str::from_utf8(text)
@@ -89,9 +89,9 @@ fn physical_names(source: &Source<'_>) -> Result<Names, MeshError> {
         if name.is_empty() {
             continue;
         }
-        if names.insert(key, (Place::Line(line), name)).is_some() {
+        if names.insert(key, (FilePlace::Line(line), name)).is_some() {
             let what = format!("the physical group {} of dimension {} is named", key.1, key.0);
-            return Err(source.error(Place::Line(line), MeshFault::RepeatedTag(what)));
+            return Err(source.error(FilePlace::Line(line), MeshFault::RepeatedTag(what)));
         }
     }
     match lines.next() {

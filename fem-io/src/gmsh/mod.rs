@@ -34,7 +34,7 @@ use std::path::Path;
 
 use fem_core::mesh::QuadMesh;
 
-pub use error::{MeshError, MeshFault, Place};
+pub use error::{FilePlace, MeshError, MeshFault};
 pub use write::{Encoding, write};
 
 use elements::Grouped;
@@ -61,7 +61,7 @@ pub fn read(path: &Path, unit_metres: f64) -> Result<GmshMesh, MeshError> {
     let name = path.display().to_string();
     let bytes = std::fs::read(path).map_err(|e| MeshError {
         file: name.clone(),
-        place: Place::File,
+        place: FilePlace::File,
         fault: MeshFault::Unreadable(e.to_string()),
     })?;
     parse(&bytes, &name, unit_metres)
@@ -74,13 +74,13 @@ pub fn read(path: &Path, unit_metres: f64) -> Result<GmshMesh, MeshError> {
 pub fn parse(bytes: &[u8], name: &str, unit_metres: f64) -> Result<GmshMesh, MeshError> {
     let source = Source::open(name, bytes)?;
     if !(unit_metres > 0.0 && unit_metres.is_finite()) {
-        return Err(source.error(Place::File, MeshFault::Unit(unit_metres)));
+        return Err(source.error(FilePlace::File, MeshFault::Unit(unit_metres)));
     }
     let groups = Groups::new(&source, entities::read(&source)?)?;
     let nodes = NodeTable::read(&source)?;
     let mut grouped = Grouped::read(&source, &nodes, &groups)?;
     if grouped.cells.is_empty() {
-        return Err(source.error(Place::File, MeshFault::NoCells));
+        return Err(source.error(FilePlace::File, MeshFault::NoCells));
     }
     let turned = checks::orient(&source, &nodes, &mut grouped.cells)?;
     let mesh = assemble::mesh(&source, &nodes, &grouped, unit_metres)?;

@@ -1,6 +1,6 @@
 //! `$Nodes`.
 
-use super::error::{MeshError, MeshFault, Place};
+use super::error::{FilePlace, MeshError, MeshFault};
 use super::source::{Item, Source};
 
 /// A node of the file.
@@ -49,7 +49,7 @@ impl NodeTable {
         if low == 0 || range < announced {
             let why =
                 "the range of node numbers in the header of $Nodes is too small for its nodes, or holds 0".to_owned();
-            return Err(source.error(Place::File, MeshFault::Syntax(why)));
+            return Err(source.error(FilePlace::File, MeshFault::Syntax(why)));
         }
         Ok(table)
     }
@@ -57,10 +57,10 @@ impl NodeTable {
     fn checked(source: &Source<'_>, mut table: Vec<Node>, announced: u64) -> Result<Self, MeshError> {
         let found = table.len();
         if found as u64 != announced {
-            return Err(source.error(Place::File, MeshFault::Count { section: "Nodes", announced, found }));
+            return Err(source.error(FilePlace::File, MeshFault::Count { section: "Nodes", announced, found }));
         }
         if u32::try_from(found).is_err() {
-            return Err(source.error(Place::File, MeshFault::TooManyNodes(found)));
+            return Err(source.error(FilePlace::File, MeshFault::TooManyNodes(found)));
         }
         table.sort_unstable_by_key(|node| node.tag);
         if let Some(pair) = table.windows(2).find(|pair| pair[0].tag == pair[1].tag) {

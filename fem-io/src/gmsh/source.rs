@@ -1,7 +1,7 @@
 //! The bytes of a mesh file: header, sections and places.
 
 use super::cursor::Cursor;
-use super::error::{MeshError, MeshFault, Place};
+use super::error::{FilePlace, MeshError, MeshFault};
 
 /// Sections that concern us. Others are skipped.
 const SECTIONS: [&str; 5] = ["PhysicalNames", "Entities", "PartitionedEntities", "Nodes", "Elements"];
@@ -35,7 +35,7 @@ impl<'a> Source<'a> {
         Ok(source)
     }
 
-    pub(super) fn error(&self, place: Place, fault: MeshFault) -> MeshError {
+    pub(super) fn error(&self, place: FilePlace, fault: MeshFault) -> MeshError {
         MeshError { file: self.name.to_owned(), place, fault }
     }
 
@@ -51,7 +51,7 @@ impl<'a> Source<'a> {
     /// The numbers at the beginning of `$Nodes` or `$Elements`, blocks of `what`, all of them, their least and largest
     /// tag, and what follows.
     pub(super) fn begin(&self, section: &'static str, what: &str) -> Result<(Cursor<'a>, [u64; 4]), MeshError> {
-        let start = self.section(section).ok_or_else(|| self.error(Place::File, MeshFault::Missing(section)))?;
+        let start = self.section(section).ok_or_else(|| self.error(FilePlace::File, MeshFault::Missing(section)))?;
         let mut cursor = self.cursor(start);
         let mut head = [0; 4];
         for (number, name) in head.iter_mut().zip(["entity blocks", "entries", "least tag", "largest tag"]) {
@@ -97,13 +97,13 @@ impl<'a> Source<'a> {
         (self.line(from)..).zip(self.bytes[from..].split(|b| *b == b'\n').map(<[u8]>::trim_ascii))
     }
 
-    pub(super) fn place(&self, offset: usize) -> Place {
-        if self.binary { Place::Byte(offset) } else { Place::Line(self.line(offset)) }
+    pub(super) fn place(&self, offset: usize) -> FilePlace {
+        if self.binary { FilePlace::Byte(offset) } else { FilePlace::Line(self.line(offset)) }
     }
 
     /// Where a thing is described, in files with one thing on a line, as gmsh writes them.
-    pub(super) fn find(&self, item: Item) -> Place {
-        self.search(item).map_or(Place::File, Place::Line)
+    pub(super) fn find(&self, item: Item) -> FilePlace {
+        self.search(item).map_or(FilePlace::File, FilePlace::Line)
     }
 
     fn search(&self, item: Item) -> Option<usize> {
@@ -164,14 +164,14 @@ impl<'a> Source<'a> {
 }
 
 /// Whether the file is binary.
-fn header(bytes: &[u8]) -> Result<bool, (Place, MeshFault)> {
-    let at_line_2 = |fault| Err((Place::Line(2), fault));
+fn header(bytes: &[u8]) -> Result<bool, (FilePlace, MeshFault)> {
+    let at_line_2 = |fault| Err((FilePlace::Line(2), fault));
     let Some(rest) = bytes.strip_prefix(b"$MeshFormat") else {
-        return Err((Place::File, MeshFault::NotMsh));
+        return Err((FilePlace::File, MeshFault::NotMsh));
     };
     let mut lines = rest.splitn(3, |b| *b == b'\n');
     let (Some(b"" | b"\r"), Some(text)) = (lines.next(), lines.next()) else {
-        return Err((Place::File, MeshFault::NotMsh));
+        return Err((FilePlace::File, MeshFault::NotMsh));
     };
     let text = text.trim_ascii();
     let shown = || String::from_utf8_lossy(&text[..text.len().min(40)]).into_owned();

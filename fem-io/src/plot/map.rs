@@ -28,7 +28,7 @@ pub struct Panel {
     /// Heading.
     pub title: String,
     /// Cells, the later above the earlier.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<MapCell>,
     /// Lines above the cells.
     pub lines: Vec<Stroke>,
     /// Points of a class, as dots.
@@ -41,7 +41,7 @@ pub struct Panel {
 
 /// A convex polygon.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cell {
+pub struct MapCell {
     /// Corners in the units of the axes, at least three.
     pub corners: Vec<[f64; 2]>,
     /// Its colour.
@@ -165,11 +165,11 @@ mod tests {
     use super::*;
     use tiny_skia::Pixmap;
 
-    fn square(x: f64, fill: Fill) -> Cell {
-        Cell { corners: vec![[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]], fill }
+    fn square(x: f64, fill: Fill) -> MapCell {
+        MapCell { corners: vec![[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]], fill }
     }
 
-    fn map(cells: Vec<Cell>) -> MapPlot {
+    fn map(cells: Vec<MapCell>) -> MapPlot {
         MapPlot {
             title: "Test".into(),
             x: Axis::linear("x", "mm"),

@@ -1,6 +1,6 @@
 //! A mesh with its groups.
 
-use super::{Axis, Cell, Fill, MapPlot, Panel, Stroke};
+use super::{Axis, Fill, MapCell, MapPlot, Panel, Stroke};
 use fem_core::mesh::QuadMesh;
 
 /// The cells of `mesh` in mm with its groups in colours: edges as lines, nodes as dots, cells filled, unless they are all
@@ -25,7 +25,7 @@ pub fn mesh_map(title: &str, mesh: &QuadMesh, impacts: &[[f64; 2]]) -> MapPlot {
         }
         classes.push(name.clone());
     }
-    let cell = |(q, fill): (usize, Fill)| Cell { corners: mesh.corners(q).map(mm).to_vec(), fill };
+    let cell = |(q, fill): (usize, Fill)| MapCell { corners: mesh.corners(q).map(mm).to_vec(), fill };
     panel.cells = fills.into_iter().enumerate().map(cell).collect();
     panel.crosses = impacts.iter().map(|p| mm(*p)).collect();
     let axis = |label: &str| Axis::linear(label, "mm");

@@ -27,7 +27,7 @@ mod svg;
 mod words;
 mod work_precision;
 
-pub use map::{Cell, Fill, MapPlot, Panel, Stroke, class_color, map_plot};
+pub use map::{Fill, MapCell, MapPlot, Panel, Stroke, class_color, map_plot};
 pub use mesh::mesh_map;
 pub use over_time::{Physical, force_history, index_history, modal_history, over_time, unit_of_time};
 pub use work_precision::work_precision;

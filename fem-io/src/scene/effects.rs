@@ -40,7 +40,7 @@ pub enum Delamination {
 
 /// The effects of a scene.
 #[derive(Debug, Clone, Default)]
-pub struct Effects {
+pub struct EffectsSpec {
     /// Damage.
     pub damage: Damage,
     /// Delamination; where the scene says nothing of it, its threshold as far as damage is looked for and the toughness is known.
@@ -143,10 +143,10 @@ pub const EFFECTS: &[EffectInfo] = &[
     },
 ];
 
-pub(super) fn read(field: &Field<'_>) -> Result<Effects, SceneError> {
+pub(super) fn read(field: &Field<'_>) -> Result<EffectsSpec, SceneError> {
     let table = field.table(KEYS)?;
     let damage = table.optional("damage").map(|f| f.choice(&DAMAGES));
-    Ok(Effects {
+    Ok(EffectsSpec {
         damage: damage.transpose()?.unwrap_or_default(),
         delamination: choice(&table, "delamination", &DELAMINATIONS)?,
         membrane: switch(&table, "membrane")?,

@@ -1,6 +1,6 @@
 //! Fields over the plate: which are written, when, and over which part of it.
 
-use super::run::March;
+use super::run::MarchSpec;
 use crate::document::keys::{Form, Keys, key, words};
 use crate::document::reader::Field;
 use crate::document::source::{Located, SceneError};
@@ -17,7 +17,7 @@ pub struct Fields {
     /// The part of the plate; all of it if `None`.
     pub region: Option<Region>,
     /// The series; all that the scene has if `None`.
-    pub parts: Option<Vec<Located<Series>>>,
+    pub parts: Option<Vec<Located<FieldSeries>>>,
     /// What the cells of the plate become.
     pub cells: FieldCells,
 }
@@ -33,7 +33,7 @@ pub enum Region {
 
 /// A series of files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Series {
+pub enum FieldSeries {
     /// Cells of the elements with displacements.
     Plate,
     /// Plies with stresses.
@@ -42,7 +42,7 @@ pub enum Series {
     Interfaces,
 }
 
-impl Series {
+impl FieldSeries {
     const ALL: [(&'static str, Self); 3] =
         [("plate", Self::Plate), ("plies", Self::Plies), ("interfaces", Self::Interfaces)];
 
@@ -72,7 +72,7 @@ pub(super) const KEYS: Keys = &[
     key("region", Form::Table(REGION), r#"{ radius = "10 mm" }"#, "part of the plate; all where it is left out"),
     key(
         "parts",
-        Form::List(&Form::Words(&words(&Series::ALL))),
+        Form::List(&Form::Words(&words(&FieldSeries::ALL))),
         r#"["plate", "plies", "interfaces"]"#,
         "the series; all that the scene has where it is left out",
     ),
@@ -92,7 +92,7 @@ const INTERVALS: f64 = 10.0;
 const MOST_FRAMES: f64 = 1e4;
 
 /// Reads `output.fields`: `None` for `false`. `march` is that of an impact.
-pub(super) fn read(field: &Field<'_>, march: Option<&March>) -> Result<Option<Fields>, SceneError> {
+pub(super) fn read(field: &Field<'_>, march: Option<&MarchSpec>) -> Result<Option<Fields>, SceneError> {
     let cells = FieldCells::Lagrange;
     let every = march.map(|march| march.end.value / INTERVALS);
     let mut fields = Fields { every, times: Vec::new(), region: None, parts: None, cells };
@@ -118,7 +118,7 @@ pub(super) fn read(field: &Field<'_>, march: Option<&March>) -> Result<Option<Fi
     fields.region = table.optional("region").map(|field| read_region(&field)).transpose()?;
     if let Some(field) = table.optional("parts") {
         let series = field.list()?;
-        let series = series.iter().map(|field| Ok(field.at(field.choice(&Series::ALL)?)));
+        let series = series.iter().map(|field| Ok(field.at(field.choice(&FieldSeries::ALL)?)));
         fields.parts = Some(series.collect::<Result<_, _>>()?);
     }
     if let Some(field) = table.optional("cells") {
@@ -127,7 +127,7 @@ pub(super) fn read(field: &Field<'_>, march: Option<&March>) -> Result<Option<Fi
     Ok(Some(fields))
 }
 
-fn read_interval(field: &Field<'_>, march: &March) -> Result<f64, SceneError> {
+fn read_interval(field: &Field<'_>, march: &MarchSpec) -> Result<f64, SceneError> {
     let every = field.positive(Dimension::TIME)?;
     let frames = march.end.value / every.max(march.step.value);
     if frames > MOST_FRAMES {
@@ -137,7 +137,7 @@ fn read_interval(field: &Field<'_>, march: &March) -> Result<f64, SceneError> {
     Ok(every)
 }
 
-fn read_time(field: &Field<'_>, march: &March) -> Result<f64, SceneError> {
+fn read_time(field: &Field<'_>, march: &MarchSpec) -> Result<f64, SceneError> {
     let (time, end) = (field.quantity(Dimension::TIME)?, march.end.value);
     if !(0.0..=end).contains(&time) {
         let message = format!("{time:e} s is not within the march, which ends at {end:e} s");

@@ -25,19 +25,20 @@ mod tests;
 pub use crate::document::keys::Plugins;
 pub use crate::document::source::{Located, Place, SceneError, SceneSource};
 pub use annotate::annotated;
-pub use effects::{Damage, Delamination, EFFECTS, EffectInfo, Effects, Switch};
+pub use effects::{Damage, Delamination, EFFECTS, EffectInfo, EffectsSpec, Switch};
 pub use explain::{Explained, explain};
-pub use fields::{FieldCells, Fields, Region, Series};
+pub use fields::{FieldCells, FieldSeries, Fields, Region};
 pub use load::{Load, LoadKind, Pressure, ProfileLine};
 pub use mesh::{MeshSource, refined_cells};
 pub use plugin::PluginSpec;
 pub use run::{
-    ContactLoad, CriterionSpec, Depth, Failure, Impact, ImpactPoint, Impactor, IndexWatch, March, Output, Window,
+    ContactLoad, CriterionSpec, Depth, Failure, ImpactPoint, ImpactSpec, ImpactorSpec, IndexWatch, MarchSpec, Output,
+    Window,
 };
 pub use schema::schema;
 pub use study::{OwnAxis, Quantity, Setting, Study, rewrite};
-pub use substructures::{Masters, Parts, Substructures};
-pub use support::{Couple, Equation, NodeSet, Support, Term};
+pub use substructures::{Masters, Parts, SubstructuresSpec};
+pub use support::{Couple, EquationSpec, NodeSet, Support, Term};
 
 use crate::document::keys::{Form, Keys, key};
 use crate::document::reader::{Field, Reader};
@@ -47,7 +48,7 @@ use crate::materials::LIBRARY;
 use fem_core::laminate::Laminate;
 use fem_core::material::Material;
 use fem_core::plate::ZDerivatives;
-use fem_core::symmetry::Group;
+use fem_core::symmetry::SymmetryGroup;
 use root::{ANALYSES, KEYS, Which, Z_DERIVATIVES};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -65,7 +66,7 @@ pub struct Scene {
     /// The mesh.
     pub mesh: MeshSource,
     /// By what plate, supports and loads are symmetric, where only symmetric motions are wanted.
-    pub symmetry: Option<Located<Group>>,
+    pub symmetry: Option<Located<SymmetryGroup>>,
     /// Its materials.
     pub materials: Vec<Located<Material>>,
     /// The laminate; its materials count in `materials`.
@@ -79,13 +80,13 @@ pub struct Scene {
     /// Supports.
     pub supports: Vec<Support>,
     /// Linear equations between unknowns.
-    pub equations: Vec<Equation>,
+    pub equations: Vec<EquationSpec>,
     /// Sets of nodes that move together.
     pub couples: Vec<Couple>,
     /// The substructures that the plate is divided into, if it is.
-    pub substructures: Option<Substructures>,
+    pub substructures: Option<SubstructuresSpec>,
     /// The effects that are simulated.
-    pub effects: Effects,
+    pub effects: EffectsSpec,
     /// Lines through the thickness along which stresses are written.
     pub profiles: Vec<ProfileLine>,
     /// Where and when failure is looked for.
@@ -113,7 +114,7 @@ pub enum Fidelity {
 
 impl Scene {
     /// The impact, if it describes one.
-    pub fn impact(&self) -> Option<&Impact> {
+    pub fn impact(&self) -> Option<&ImpactSpec> {
         match &self.analysis {
             Analysis::Impact(impact) => Some(impact),
             _ => None,
@@ -148,7 +149,7 @@ impl Fidelity {
 #[derive(Debug, Clone)]
 pub enum Analysis {
     /// The response to an impact.
-    Impact(Box<Impact>),
+    Impact(Box<ImpactSpec>),
     /// Displacements and stresses under loads at rest.
     Static(Vec<Load>),
     /// The lowest natural frequencies.
@@ -228,7 +229,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
     let materials = material::read_all(&root.required("materials")?, folder)?;
     let (laminate, interface) = laminate::read(&root.required("laminate")?, &materials)?;
     let element = root.required("element")?;
-    let effects = root.optional("effects").map_or(Ok(Effects::default()), |field| effects::read(&field))?;
+    let effects = root.optional("effects").map_or(Ok(EffectsSpec::default()), |field| effects::read(&field))?;
     let analysis = read_analysis(&root, &effects)?;
     let in_time = matches!(analysis, Analysis::Impact(_));
     let march = match &analysis {
@@ -241,7 +242,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
         fidelity,
         mesh: mesh::read(&root.required("mesh")?, path)?,
         symmetry: match root.optional("symmetry") {
-            Some(field) => Some(field.at(field.choice(&Group::ALL)?)),
+            Some(field) => Some(field.at(field.choice(&SymmetryGroup::ALL)?)),
             None => None,
         },
         materials,
@@ -277,7 +278,7 @@ fn foreign(analysis: &str) -> &'static [&'static str] {
     }
 }
 
-fn read_analysis(root: &Reader<'_>, effects: &Effects) -> Result<Analysis, SceneError> {
+fn read_analysis(root: &Reader<'_>, effects: &EffectsSpec) -> Result<Analysis, SceneError> {
     let which = root.optional("analysis").map_or(Ok(Which::Impact), |field| field.choice(&ANALYSES))?;
     let name = ANALYSES[which as usize].0;
     let mut stray = foreign(name).iter().filter_map(|key| root.optional(key));

@@ -6,7 +6,7 @@ use crate::document::keys::{Form, Keys, key, words};
 use crate::materials::constants;
 use fem_core::plate::ZDerivatives;
 use fem_core::plugin::Kind;
-use fem_core::symmetry::Group;
+use fem_core::symmetry::SymmetryGroup;
 
 /// Which analysis a scene asks for.
 #[derive(Clone, Copy)]
@@ -30,7 +30,7 @@ pub(super) const KEYS: Keys = &[
     key("analysis", Form::Words(&words(&ANALYSES)), r#""static""#, "what is computed").default(r#""impact""#),
     key(
         "symmetry",
-        Form::Words(&words(&Group::ALL)),
+        Form::Words(&words(&SymmetryGroup::ALL)),
         r#""half-turn""#,
         "by what plate, supports and loads are symmetric: a part of the plate is computed",
     ),

@@ -11,7 +11,7 @@ use fem_core::plugin::{Dimension, Kind};
 
 /// A rigid mass that strikes the top face from above.
 #[derive(Debug, Clone)]
-pub struct Impactor {
+pub struct ImpactorSpec {
     /// What results call it where there are several; no two are called alike.
     pub name: String,
     /// Mass, kg.
@@ -56,18 +56,18 @@ pub enum ContactLoad {
 
 /// An impact and how it is computed.
 #[derive(Debug, Clone)]
-pub struct Impact {
+pub struct ImpactSpec {
     /// The impactors, at least one.
-    pub impactors: Vec<Impactor>,
+    pub impactors: Vec<ImpactorSpec>,
     /// The reduction; `none` for the full system.
     pub reduction: PluginSpec,
     /// The march in time.
-    pub march: March,
+    pub march: MarchSpec,
 }
 
 /// The march in time.
 #[derive(Debug, Clone)]
-pub struct March {
+pub struct MarchSpec {
     /// The integrator.
     pub integrator: PluginSpec,
     /// Step, s.
@@ -275,11 +275,11 @@ const MOST_MODES: usize = 38;
 const MAX_STEPS: f64 = 1e9;
 
 /// The keys of an impact: one table of an impactor or a list of them, a contact law for those without their own.
-pub(super) fn read_impact(root: &Reader<'_>) -> Result<Impact, SceneError> {
+pub(super) fn read_impact(root: &Reader<'_>) -> Result<ImpactSpec, SceneError> {
     let march = read_march(&root.required("march")?)?;
     let field = root.required("impactor")?;
     let fields = if matches!(field.node(), Node::List(_)) { field.list()? } else { vec![field] };
-    let mut impactors: Vec<Impactor> = Vec::new();
+    let mut impactors: Vec<ImpactorSpec> = Vec::new();
     for (number, field) in (1..).zip(&fields) {
         let impactor = read_impactor(root, field, number, march.end.value)?;
         if impactors.iter().any(|other| other.name == impactor.name) {
@@ -289,10 +289,10 @@ pub(super) fn read_impact(root: &Reader<'_>) -> Result<Impact, SceneError> {
         }
         impactors.push(impactor);
     }
-    Ok(Impact { impactors, reduction: PluginSpec::read(&root.required("reduction")?, "method", &[])?, march })
+    Ok(ImpactSpec { impactors, reduction: PluginSpec::read(&root.required("reduction")?, "method", &[])?, march })
 }
 
-fn read_impactor(root: &Reader<'_>, field: &Field<'_>, number: usize, end: f64) -> Result<Impactor, SceneError> {
+fn read_impactor(root: &Reader<'_>, field: &Field<'_>, number: usize, end: f64) -> Result<ImpactorSpec, SceneError> {
     let table = field.table(IMPACTOR)?;
     let name =
         table.optional("name").map_or(Ok(format!("impactor-{number}")), |field| field.text().map(str::to_owned))?;
@@ -315,7 +315,7 @@ fn read_impactor(root: &Reader<'_>, field: &Field<'_>, number: usize, end: f64) 
         },
     };
     let contact = table.optional("contact").map_or_else(|| root.required("contact"), Ok)?;
-    Ok(Impactor {
+    Ok(ImpactorSpec {
         name,
         mass,
         velocity,
@@ -362,7 +362,7 @@ fn read_load(table: &Reader<'_>) -> Result<Located<ContactLoad>, SceneError> {
     Ok(patch.at(ContactLoad::Patch { radius: patch.positive(Dimension::LENGTH)? }))
 }
 
-pub(super) fn read_march(field: &Field<'_>) -> Result<March, SceneError> {
+pub(super) fn read_march(field: &Field<'_>) -> Result<MarchSpec, SceneError> {
     let table = field.table(MARCH)?;
     let integrator = PluginSpec::read_or_name(&table.required("integrator")?, &[])?;
     let (step_field, end_field) = (table.required("step")?, table.required("end")?);
@@ -374,7 +374,7 @@ pub(super) fn read_march(field: &Field<'_>) -> Result<March, SceneError> {
             format!("between 1 and {MAX_STEPS:e} steps can be marched"),
         ));
     }
-    Ok(March { integrator, step: step_field.at(step), end: end_field.at(end) })
+    Ok(MarchSpec { integrator, step: step_field.at(step), end: end_field.at(end) })
 }
 
 pub(super) fn read_failure(field: &Field<'_>, wanted: bool, in_time: bool) -> Result<Failure, SceneError> {
@@ -458,7 +458,7 @@ fn read_interface(field: &Field<'_>) -> Result<Depth, SceneError> {
 }
 
 /// The keys of the output; `march` is that of an impact.
-pub(super) fn read_output(field: &Field<'_>, march: Option<&March>) -> Result<Output, SceneError> {
+pub(super) fn read_output(field: &Field<'_>, march: Option<&MarchSpec>) -> Result<Output, SceneError> {
     let table = field.table(OUTPUT)?;
     let modes = table.optional("modes").map(|field| match field.count()? {
         count @ 1..=MOST_MODES => Ok(field.at(count)),

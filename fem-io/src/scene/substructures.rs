@@ -8,7 +8,7 @@ use fem_core::dof::Dof;
 
 /// Parts of the plate that are condensed on their outlines before anything else is done with them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Substructures {
+pub struct SubstructuresSpec {
     /// Which parts.
     pub parts: Parts,
     /// Unknowns that stay beside those on the outlines.
@@ -49,7 +49,7 @@ pub(super) const KEYS: Keys = &[
     ),
 ];
 
-pub(super) fn read(field: &Field<'_>) -> Result<Substructures, SceneError> {
+pub(super) fn read(field: &Field<'_>) -> Result<SubstructuresSpec, SceneError> {
     let table = field.table(KEYS)?;
     let parts = match table.either(["groups", "cells"])? {
         [Some(groups), _] => {
@@ -65,7 +65,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<Substructures, SceneError> {
     };
     let masters =
         table.optional("masters").map_or(Ok(Vec::new()), |field| field.list()?.iter().map(masters).collect())?;
-    Ok(Substructures { parts, masters })
+    Ok(SubstructuresSpec { parts, masters })
 }
 
 fn masters(field: &Field<'_>) -> Result<Masters, SceneError> {

@@ -49,7 +49,7 @@ impl Support {
 
 /// Σ factor · unknown = 0.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Equation {
+pub struct EquationSpec {
     /// Its terms, each at a single node.
     pub terms: Vec<Term>,
     /// Where it stands.
@@ -141,10 +141,10 @@ fn read(field: &Field<'_>) -> Result<Support, SceneError> {
     Ok(Support::Fix { nodes: nodes(&table)?, dofs: dofs(&table.required("fix")?)?, axes, place })
 }
 
-pub(super) fn read_equations(field: &Field<'_>) -> Result<Vec<Equation>, SceneError> {
+pub(super) fn read_equations(field: &Field<'_>) -> Result<Vec<EquationSpec>, SceneError> {
     let read = |field: &Field<'_>| {
         let table = field.table(EQUATION)?;
-        Ok(Equation { terms: terms(&table.required("terms")?)?, place: table.place().clone() })
+        Ok(EquationSpec { terms: terms(&table.required("terms")?)?, place: table.place().clone() })
     };
     field.list()?.iter().map(read).collect()
 }

@@ -586,13 +586,13 @@ fn defaults_are_those_of_the_reader() {
     // An effect that is off may be said or not; everything else is the same but for where it stands.
     let shown = |setting: &Setting| {
         let scene = read_with(&path, setting).unwrap();
-        let Effects { damage, delamination, membrane, damping, inertia, gravity, cure } = &scene.effects;
+        let EffectsSpec { damage, delamination, membrane, damping, inertia, gravity, cure } = &scene.effects;
         let switches =
             [membrane.as_ref().map_or(Switch::Off, |s| s.value), inertia.as_ref().map_or(Switch::On, |s| s.value)];
         let others =
             (damage, delamination.as_ref().map(|d| d.value), damping.is_some(), gravity.is_some(), cure.is_some());
         let effects = format!("{switches:?} {others:?}");
-        let bare = Scene { effects: Effects::default(), keys: BTreeMap::new(), source: Arc::default(), ..scene };
+        let bare = Scene { effects: EffectsSpec::default(), keys: BTreeMap::new(), source: Arc::default(), ..scene };
         let text = format!("{bare:?}");
         let mut pieces = text.split("Place {");
         let first = pieces.next().unwrap().to_owned();

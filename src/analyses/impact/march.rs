@@ -90,7 +90,7 @@ pub(super) struct Progress {
 }
 
 /// A march as it is saved.
-pub(super) type Saved = (Progress, Option<modal::Record>, Option<(scan::Record, stress::Record)>);
+pub(super) type Saved = (Progress, Option<modal::Record>, Option<(scan::ScanRecord, stress::Record)>);
 
 /// Counts of the system that is marched.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]

@@ -10,7 +10,7 @@ mod modal;
 mod prepare;
 mod sag;
 
-pub use accuracy::{Accuracy, ReductionError, Residual, StepError};
+pub use accuracy::{Accuracy, ReductionAccuracy, ReductionResidual, StepAccuracy};
 pub use checkpoint::Checkpoint;
 pub(crate) use frames::frames;
 pub use march::{BALANCE_EVERY, March, march};
@@ -20,7 +20,7 @@ pub use prepare::{Prepared, prepare};
 use super::assembled::Substructures;
 use super::stress::IndexHistory;
 use crate::cost::Phase;
-use crate::forecast::{Estimate, Size};
+use crate::forecast::{MemoryEstimate, Size};
 use crate::model::Model;
 use fem_core::counters::Counters;
 use fem_failure::scan::{FailureEvent, Peak, ScanSite};
@@ -41,7 +41,7 @@ pub struct Sizes {
     /// Entries of its Cholesky factor.
     pub factor_entries: usize,
     /// What the run takes at its peak, as it is expected.
-    pub memory: Estimate,
+    pub memory: MemoryEstimate,
     /// Contact force of the first impactor per deflection under it, N/m, of the plate as marched.
     pub static_stiffness: f64,
     /// Deflection under the first impactor by the plate's own weight, m, where there is gravity.

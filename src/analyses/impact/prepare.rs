@@ -131,7 +131,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     (counters.factorisations, counters.solves) = structure.work();
     stopwatch.lap("reduce");
 
-    let impactor = |((spec, strike), contact): ((&scene::Impactor, &Strike), &Functional)| Impactor {
+    let impactor = |((spec, strike), contact): ((&scene::ImpactorSpec, &Strike), &Functional)| Impactor {
         mass: spec.mass,
         velocity: spec.velocity,
         start: spec.start,

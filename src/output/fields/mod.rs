@@ -23,7 +23,7 @@ use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::Model;
 use fem_io::files::OutputDir;
-use fem_io::scene::Series;
+use fem_io::scene::FieldSeries;
 use fem_io::vtu::{Array, Contents, Grid, Member, write_collection};
 use plate::Plate;
 use plies::Plies;
@@ -62,8 +62,9 @@ impl<'a> Layout<'a> {
     /// `None` where the scene asks for no fields.
     fn new(model: &'a Model) -> Result<Option<Self>, Error> {
         let Some(plan) = &model.fields else { return Ok(None) };
-        let plate = plan.series.contains(&Series::Plate).then(|| Plate::new(model, plan));
-        let [plies, interfaces] = [Series::Plies, Series::Interfaces].map(|series| plan.series.contains(&series));
+        let plate = plan.series.contains(&FieldSeries::Plate).then(|| Plate::new(model, plan));
+        let [plies, interfaces] =
+            [FieldSeries::Plies, FieldSeries::Interfaces].map(|series| plan.series.contains(&series));
         let plies = if plies || interfaces { Some(Plies::new(model, plan, plies, interfaces)?) } else { None };
         Ok(Some(Self { plate, plies }))
     }
@@ -151,7 +152,7 @@ impl<'a> Writer<'a> {
 pub(crate) fn write_static(
     dir: &OutputDir,
     model: &Model,
-    solution: &statics::Solution,
+    solution: &statics::StaticSolution,
 ) -> Result<Option<Phase>, Error> {
     let mut stopwatch = Stopwatch::default();
     let Some(mut writer) = Writer::new(model, dir, vec![0.0])? else { return Ok(None) };
@@ -166,7 +167,11 @@ pub(crate) fn write_static(
 ///
 /// # Errors
 /// As [`Writer::new`] and [`Writer::flush`].
-pub(crate) fn write_modes(dir: &OutputDir, model: &Model, solution: &modes::Solution) -> Result<Option<Phase>, Error> {
+pub(crate) fn write_modes(
+    dir: &OutputDir,
+    model: &Model,
+    solution: &modes::ModesSolution,
+) -> Result<Option<Phase>, Error> {
     let mut stopwatch = Stopwatch::default();
     let found = &solution.modes;
     let numbers = (1..=found.omega.len()).map(|number| number as f64).collect();
@@ -196,7 +201,7 @@ impl Frame<'_> {
     }
 
     /// Writes the file of a series, and the list of its files.
-    fn write(&self, series: Series, grid: &Grid, contents: Contents<'_>) -> Result<(), Error> {
+    fn write(&self, series: FieldSeries, grid: &Grid, contents: Contents<'_>) -> Result<(), Error> {
         let name = series.name();
         let file = |number: usize| format!("{name}-{number:04}.vtu");
         let mut field = vec![Array::precise("TimeValue", 1, &[self.time()])];

@@ -4,7 +4,7 @@ use super::lattice::{Height, Lattice};
 use super::{Frame, State};
 use crate::error::Error;
 use crate::model::{FieldPlan, Model};
-use fem_io::scene::{FieldCells, Series};
+use fem_io::scene::{FieldCells, FieldSeries};
 use fem_io::vtu::{Array, Contents, Grid, Shape, lagrange_hexahedron};
 
 /// Order of the cells: displacements of no element are of a higher degree in a natural coordinate.
@@ -71,7 +71,7 @@ impl<'a> Plate<'a> {
             let named = ["displacement", "velocity"].into_iter().zip(values.by_ref().take(fields_of(frame)));
             let points: Vec<Array> = named.map(|(name, values)| Array::reals(name, 3, values)).collect();
             let contents = Contents { points: &points, fixed: &self.fixed, ..Contents::default() };
-            frame.write(Series::Plate, &self.grid, contents)?;
+            frame.write(FieldSeries::Plate, &self.grid, contents)?;
         }
         Ok(())
     }

@@ -9,7 +9,7 @@ use fem_core::failure::Site;
 use fem_core::recovery::{Recovery, Station};
 use fem_core::tensor::{Ply, Stress6};
 use fem_failure::scan::Scan;
-use fem_io::scene::Series;
+use fem_io::scene::FieldSeries;
 use fem_io::vtu::{Array, Contents, Grid, Shape};
 
 const CORNERS: [[usize; 2]; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]];
@@ -34,7 +34,7 @@ pub(super) struct Plies<'a> {
 /// One of the two series: cells over the quads, one above the other.
 #[derive(Debug)]
 pub(super) struct Sheets {
-    series: Series,
+    series: FieldSeries,
     site: Site,
     pub(super) grid: Grid,
     pub(super) fixed: Vec<Array>,
@@ -125,7 +125,7 @@ impl Sheets {
         let angles: Vec<f64> = plan.quads.iter().flat_map(|_| plies.iter().map(|ply| ply.angle_deg)).collect();
         let materials: Vec<i64> = plan.quads.iter().flat_map(|_| plies.iter().map(|ply| ply.material as i64)).collect();
         Self {
-            series: Series::Plies,
+            series: FieldSeries::Plies,
             site: Site::Ply,
             grid: Grid::new(&lattice.positions(), Shape::Hexahedron, &cells),
             fixed: vec![
@@ -151,7 +151,7 @@ impl Sheets {
         let all = lattice.positions();
         let positions: Vec<[f64; 3]> = points.iter().map(|point| all[*point as usize]).collect();
         Self {
-            series: Series::Interfaces,
+            series: FieldSeries::Interfaces,
             site: Site::Interface,
             grid: Grid::new(&positions, Shape::Quad, &cells),
             fixed: vec![tags(model, plan, count), numbers("ply_below", plan, count)],

@@ -1,7 +1,7 @@
 //! Damage in plan and in a section.
 
 use crate::output::damage::{DamageMap, ModeName, PlaceDamage};
-use fem_io::plot::{Axis, Cell, Fill, MapPlot, Panel, unit_of_time};
+use fem_io::plot::{Axis, Fill, MapCell, MapPlot, Panel, unit_of_time};
 
 /// Most plies and interfaces of a sheet.
 const SHEET: usize = 12;
@@ -51,7 +51,7 @@ fn plan_of(damage: &DamageMap, place: &PlaceDamage, near: &[bool]) -> Panel {
     };
     let fills = fills(place);
     let judged = damage.judged.iter().zip(fills).filter(|(q, _)| near[**q as usize]);
-    let cell = |q: u32, fill: Fill| Cell { corners: damage.corners(q).map(|p| p.map(|v| v * 1e3)).to_vec(), fill };
+    let cell = |q: u32, fill: Fill| MapCell { corners: damage.corners(q).map(|p| p.map(|v| v * 1e3)).to_vec(), fill };
     Panel {
         title: heading,
         cells: judged.map(|(q, fill)| cell(*q, fill)).collect(),
@@ -108,7 +108,7 @@ pub fn section(title: &str, damage: &DamageMap) -> Option<MapPlot> {
         let fills = fills(place);
         let band = |(i, [a, b]): &(usize, [f64; 2])| {
             let corners = [[*a, low], [*b, low], [*b, high], [*a, high]];
-            Cell { corners: corners.map(|p| p.map(|v| v * 1e3)).to_vec(), fill: fills[*i] }
+            MapCell { corners: corners.map(|p| p.map(|v| v * 1e3)).to_vec(), fill: fills[*i] }
         };
         panel.cells.extend(cut.iter().map(band));
     }

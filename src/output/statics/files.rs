@@ -1,24 +1,24 @@
 //! What a static analysis writes.
 
-use super::{Node, Summary, nodes};
-use crate::analyses::statics::Solution;
+use super::{Node, StaticSummary, nodes};
+use crate::analyses::statics::StaticSolution;
 use crate::error::Error;
 use crate::model::{Model, NamedProfile};
 use fem_core::profile::ProfilePoint;
 use fem_io::files::OutputDir;
 use fem_io::plot::{self, Axis, LinePlot, Series, Style};
-use fem_io::tables::{self, Field};
+use fem_io::tables::{self, TableValue};
 
 /// Writes `summary.json`, `displacements.csv` and, per profile, `profile-<name>.csv` with pictures.
 ///
 /// # Errors
 /// A folder that cannot be written, a number that is not finite.
-pub fn write(dir: &OutputDir, model: &Model, solution: &Solution, summary: &Summary) -> Result<(), Error> {
+pub fn write(dir: &OutputDir, model: &Model, solution: &StaticSolution, summary: &StaticSummary) -> Result<(), Error> {
     tables::write_json(dir, "summary.json", summary)?;
     let nodes = nodes(model, &solution.u);
     let row = |n: &Node| {
-        let numbers = n.x.into_iter().chain(n.u).map(Field::Number);
-        [Field::Count(n.tag)].into_iter().chain(numbers).collect()
+        let numbers = n.x.into_iter().chain(n.u).map(TableValue::Number);
+        [TableValue::Count(n.tag)].into_iter().chain(numbers).collect()
     };
     let header = ["node", "x_m", "y_m", "z_m", "u_m", "v_m", "w_m"];
     tables::write_columns(dir, "displacements.csv", &header, nodes.iter().map(row))?;
@@ -58,12 +58,12 @@ fn write_profile(dir: &OutputDir, model: &Model, named: &NamedProfile, points: &
     }
     let row = |p: &ProfilePoint| {
         let mut row = vec![
-            Field::Number(p.z),
-            Field::Count(p.ply as u64 + 1),
-            Field::Number(model.laminate.plies[p.ply].angle_deg),
+            TableValue::Number(p.z),
+            TableValue::Count(p.ply as u64 + 1),
+            TableValue::Number(model.laminate.plies[p.ply].angle_deg),
         ];
         let numbers = p.displacement.into_iter().chain(p.global.0).chain(p.in_ply.0);
-        row.extend(numbers.chain(p.equilibrium.into_iter().flatten()).map(Field::Number));
+        row.extend(numbers.chain(p.equilibrium.into_iter().flatten()).map(TableValue::Number));
         row
     };
     tables::write_columns(dir, &format!("profile-{name}.csv"), &header, points.iter().map(row))?;

@@ -5,7 +5,7 @@ mod files;
 pub use files::write;
 
 use crate::analyses::assembled::Substructures;
-use crate::analyses::statics::{Solution, dof_of};
+use crate::analyses::statics::{StaticSolution, dof_of};
 use crate::analyses::stress::Margin;
 use crate::cost::Cost;
 use crate::model::{Model, NamedProfile};
@@ -27,7 +27,7 @@ fn notable(residual: f64) -> Option<String> {
 /// The summary of a static analysis; units are in the key names.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
-pub struct Summary {
+pub struct StaticSummary {
     pub title: String,
     pub version: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -86,9 +86,9 @@ pub struct ProfileResultants {
     pub Q_N_per_m: [f64; 2],
 }
 
-impl Summary {
+impl StaticSummary {
     /// Sums up a static analysis.
-    pub fn new(model: &Model, solution: &Solution) -> Self {
+    pub fn new(model: &Model, solution: &StaticSolution) -> Self {
         let nodes = nodes(model, &solution.u);
         let largest = nodes.iter().max_by(|a, b| a.u[2].abs().total_cmp(&b.u[2].abs()));
         let [w_m, x_m, y_m, z_m] = largest.map_or([0.0; 4], |n| [n.u[2], n.x[0], n.x[1], n.x[2]]);

@@ -9,7 +9,7 @@ use crate::model::{Decision, MEMBRANE, Model};
 use crate::words::name_ply;
 use fem_core::counters::Counters;
 use fem_core::tensor::{Ply, Stress6};
-use fem_failure::scan::{FailureEvent, Place, first_per_mode};
+use fem_failure::scan::{FailureEvent, PlyOrInterface, first_per_mode};
 use fem_io::scene;
 use fem_io::tables::{HistoryRow, ImpactorRow};
 use serde::{Serialize, Serializer};
@@ -18,7 +18,7 @@ use std::fmt::{self, Display};
 /// All that is said of a run; units are in the key names.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
-pub struct Summary {
+pub struct ImpactSummary {
     pub title: String,
     pub version: &'static str,
     pub fidelity: &'static str,
@@ -27,16 +27,16 @@ pub struct Summary {
     pub stopped: Option<String>,
     pub model: ModelSize,
     #[serde(serialize_with = "one_or_list")]
-    pub impact: Vec<Impact>,
-    pub first_damage: Vec<Damage>,
-    pub not_reached: Vec<Margin>,
+    pub impact: Vec<ImpactFigures>,
+    pub first_damage: Vec<DamageSummary>,
+    pub not_reached: Vec<MarginSummary>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delamination_threshold: Option<Threshold>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub modes: Vec<ModeShare>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub advised: Vec<Advised>,
-    pub accuracy: Accuracy,
+    pub accuracy: AccuracySummary,
     pub work: Work,
     pub warnings: Vec<String>,
 }
@@ -71,7 +71,7 @@ pub struct ModelSize {
 /// The response to an impactor; `name` and `start_time_s` where there are several.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
-pub struct Impact {
+pub struct ImpactFigures {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     pub mass_kg: f64,
@@ -91,7 +91,7 @@ pub struct Impact {
 }
 
 /// As a scene has it: a single impactor as a table, several as a list.
-fn one_or_list<S: Serializer>(impact: &[Impact], serializer: S) -> Result<S::Ok, S::Error> {
+fn one_or_list<S: Serializer>(impact: &[ImpactFigures], serializer: S) -> Result<S::Ok, S::Error> {
     match impact {
         [one] => one.serialize(serializer),
         several => several.serialize(serializer),
@@ -102,7 +102,7 @@ fn one_or_list<S: Serializer>(impact: &[Impact], serializer: S) -> Result<S::Ok,
 /// this mode is what fails first, less where another mode of the criterion failed before.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
-pub struct Damage {
+pub struct DamageSummary {
     pub criterion: String,
     pub mode: String,
     pub time_s: f64,
@@ -188,7 +188,7 @@ impl Display for Advised {
 /// Largest index of a mode that did not reach 1.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs)]
-pub struct Margin {
+pub struct MarginSummary {
     pub criterion: String,
     pub mode: String,
     pub largest_index: f64,
@@ -196,11 +196,11 @@ pub struct Margin {
     pub ply: String,
 }
 
-/// What is known of the error: where the estimates come from and what they are worth, say [`impact::StepError`] and
-/// [`impact::Residual`]. The step compared with is that of the second march, its force the difference from that of the run.
+/// What is known of the error: where the estimates come from and what they are worth, say [`impact::StepAccuracy`] and
+/// [`impact::ReductionResidual`]. The step compared with is that of the second march, its force the difference from that of the run.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
-pub struct Accuracy {
+pub struct AccuracySummary {
     pub energy_error_relative: f64,
     pub step_s: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -259,7 +259,7 @@ fn force_at(history: &[HistoryRow], t: f64) -> f64 {
     a.contact_force_n() + share * (b.contact_force_n() - a.contact_force_n())
 }
 
-impl Summary {
+impl ImpactSummary {
     /// Sums up a run.
     pub fn new(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Self {
         let h = &outcome.history;
@@ -268,7 +268,7 @@ impl Summary {
         let thickness = model.laminate.thickness();
         let hindsight = Hindsight::of(model, h);
         let reached = |effect: &str| hindsight.filter(|_| effect == MEMBRANE).map(|h| h.reached);
-        let damage = |e: &FailureEvent| Damage {
+        let damage = |e: &FailureEvent| DamageSummary {
             criterion: e.criterion.clone(),
             mode: e.mode.to_owned(),
             time_s: e.time,
@@ -282,7 +282,7 @@ impl Summary {
             stress: (&e.stress).into(),
             reserve_factor: reserve(model, e),
         };
-        let margins = outcome.peaks.iter().filter(|p| p.index < 1.0).map(|p| Margin {
+        let margins = outcome.peaks.iter().filter(|p| p.index < 1.0).map(|p| MarginSummary {
             criterion: p.criterion.clone(),
             mode: p.mode.to_owned(),
             largest_index: p.index,
@@ -329,7 +329,7 @@ impl Summary {
             }),
             modes: outcome.modal.as_ref().map_or(Vec::new(), |modal| modal.modes.clone()),
             advised: Advised::of(model, reached),
-            accuracy: Accuracy {
+            accuracy: AccuracySummary {
                 energy_error_relative: outcome.energy_error,
                 step_s: sizes.step,
                 stable_step_s: Some(sizes.longest_step).filter(|s| s.is_finite()),
@@ -352,7 +352,7 @@ impl Summary {
 }
 
 /// The response to impactor `i`, which is `spec`.
-fn impact(model: &Model, outcome: &Outcome, i: usize, spec: &scene::Impactor) -> Impact {
+fn impact(model: &Model, outcome: &Outcome, i: usize, spec: &scene::ImpactorSpec) -> ImpactFigures {
     let peak = |value: fn(&ImpactorRow) -> f64| {
         let values = outcome.history.iter().map(|r| (value(&r.impactors[i]), r.time_s));
         values.fold((0.0_f64, 0.0), |m, v| if v.0 > m.0 { v } else { m })
@@ -363,7 +363,7 @@ fn impact(model: &Model, outcome: &Outcome, i: usize, spec: &scene::Impactor) ->
     let velocity = last.map_or(0.0, |r| r.impactors[i].impactor_velocity_m_s);
     let (end, gravity) = (last.map_or(0.0, |r| r.time_s), model.effects.gravity.unwrap_or(0.0));
     let name = model.label(spec);
-    Impact {
+    ImpactFigures {
         name: name.map(str::to_owned),
         mass_kg: spec.mass,
         velocity_m_s: spec.velocity,
@@ -416,7 +416,7 @@ fn reserve(model: &Model, event: &FailureEvent) -> Option<f64> {
 
 pub(super) fn angle_deg(model: &Model, event: &FailureEvent) -> f64 {
     match event.place {
-        Place::Ply(k) => model.laminate.plies[usize::from(k)].angle_deg,
-        Place::Interface(_) => 0.0,
+        PlyOrInterface::Ply(k) => model.laminate.plies[usize::from(k)].angle_deg,
+        PlyOrInterface::Interface(_) => 0.0,
     }
 }

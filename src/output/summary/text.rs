@@ -1,6 +1,6 @@
 //! The summary as people read it.
 
-use super::Summary;
+use super::ImpactSummary;
 use crate::cost::Cost;
 use crate::words::{append, append_symmetry};
 use std::fmt::Write as _;
@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 /// Errors that are nothing but rounding.
 const EXACT: f64 = 1e-9;
 
-impl Summary {
+impl ImpactSummary {
     /// The summary as people read it, with what it cost.
     pub fn text(&self, cost: &Cost) -> String {
         let mut t = String::new();

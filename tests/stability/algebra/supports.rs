@@ -126,8 +126,10 @@ fn near_hinges() -> f64 {
             let meshed = on(wide.fold(plate, probe), &mesh);
             silent += usize::from(match solve(&unrestrained(&meshed.plate)) {
                 Ok((model, solution)) => {
-                    let warned =
-                        output::statics::Summary::new(&model, &solution).warnings.join("; ").contains("condition");
+                    let warned = output::statics::StaticSummary::new(&model, &solution)
+                        .warnings
+                        .join("; ")
+                        .contains("condition");
                     let right = |p: &fem::core::profile::ProfilePoint| (p.global.0[0] * 1e-6 / 10.0 - 1.0).abs() < 1e-3;
                     !warned && !solution.profiles.iter().flatten().all(right)
                 }

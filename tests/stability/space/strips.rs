@@ -61,7 +61,7 @@ impl Strip {
     /// Largest error of w and of σx at the faces of plies, each relative to the largest; of a shell, of w in the middle.
     fn errors_and_warnings(&self, element: &str) -> Result<([f64; 2], String), Error> {
         let (model, solution) = solve(&self.text(element))?;
-        let warnings = output::statics::Summary::new(&model, &solution).warnings.join("; ");
+        let warnings = output::statics::StaticSummary::new(&model, &solution).warnings.join("; ");
         let points = &solution.profiles[0];
         let layers: Vec<Layer> = self.plies.iter().map(|(t, e, turned)| Layer::new(*t, e, *turned)).collect();
         let exact = bending(&layers, self.span());

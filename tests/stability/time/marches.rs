@@ -5,7 +5,7 @@ use super::{hertz, integrator, integrator_with, largest, march, spring, struck, 
 use crate::case::{Case, Room};
 use crate::support::strip;
 use fem::core::plugin::{Dimension, Params, Value};
-use fem::core::testkit::{Mode, Modes};
+use fem::core::testkit::{Mode, Oscillators};
 use fem::core::time::{State, StepLimit};
 use fem::dynamics::limit::longest_step;
 use std::f64::consts::PI;
@@ -120,7 +120,7 @@ fn pressed() -> f64 {
         for name in ["newmark", "hht-alpha", "generalized-alpha"] {
             for omega_dt in [0.5, 1.0, 3.0, 7.3, 30.0, 73.0] {
                 let contact = Some(spring(kappa));
-                let mut system = Modes { contact, load: |_, _| 1.0, modes: vec![Mode::new(1.0, 0.0)] };
+                let mut system = Oscillators { contact, load: |_, _| 1.0, modes: vec![Mode::new(1.0, 0.0)] };
                 let rest = 1.0 / (1.0 + kappa);
                 let mut state = State { u: vec![0.9 * rest], ..system.state() };
                 let mut scheme = integrator(name);
@@ -146,7 +146,8 @@ fn bouncing() -> f64 {
         for kappa in [0.01, 0.1, 1.0, 10.0, 100.0_f64] {
             for part in 1..=40 {
                 let dt = 0.0025 * f64::from(part) / (1.0 + kappa).sqrt();
-                let mut system = Modes { contact: Some(spring(kappa)), ..Modes::free([Mode::new(1.0, 0.0)]) };
+                let mut system =
+                    Oscillators { contact: Some(spring(kappa)), ..Oscillators::free([Mode::new(1.0, 0.0)]) };
                 let mut state = system.state();
                 state.v[0] = 1.0;
                 let mut scheme = integrator(name);

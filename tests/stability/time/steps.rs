@@ -4,7 +4,7 @@ use super::plate::{MASS, Navier, Units};
 use super::{TOLERANCE, hertz, integrator, integrators, largest, limit, march, struck, sun_yang};
 use crate::case::{Case, Room};
 use crate::support::strip;
-use fem::core::testkit::{Mode, Modes};
+use fem::core::testkit::{Mode, Oscillators};
 use fem::core::time::{Integrator, StepError};
 use fem::dynamics::limit::longest_step;
 
@@ -84,7 +84,7 @@ fn limited() -> impl Iterator<Item = (String, Box<dyn Integrator>, f64)> {
 
 /// Largest energies of the two halves of 2 `half` steps of an oscillator that starts at unit energy.
 fn halves(mut scheme: Box<dyn Integrator>, omega_dt: f64, half: usize) -> Result<[f64; 2], StepError> {
-    let mut system = Modes::free([Mode::new(1.0, 0.0)]);
+    let mut system = Oscillators::free([Mode::new(1.0, 0.0)]);
     let mut state = system.state();
     state.v[0] = 1.0;
     scheme.start(&mut system, &mut state)?;
@@ -133,7 +133,7 @@ fn without_a_limit() -> f64 {
 fn amplitude(name: &str, steps: usize) -> [f64; 2] {
     let mut scheme = integrator(name);
     let x = 0.999 * limit(&*scheme).unwrap();
-    let mut system = Modes::free([Mode::new(1.0, 0.0)]);
+    let mut system = Oscillators::free([Mode::new(1.0, 0.0)]);
     let mut state = system.state();
     state.v[0] = 1.0;
     scheme.start(&mut system, &mut state).unwrap();

@@ -8,8 +8,8 @@ pub(super) mod mesh;
 mod reduction;
 mod step;
 
-pub use reduction::{ReductionError, Residual};
-pub use step::StepError;
+pub use reduction::{ReductionAccuracy, ReductionResidual};
+pub use step::StepAccuracy;
 
 use super::Sizes;
 use super::prepare::Full;
@@ -24,9 +24,9 @@ use step::Companion;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Accuracy {
     /// Of the time step.
-    pub step: Option<StepError>,
+    pub step: Option<StepAccuracy>,
     /// Of the reduction.
-    pub reduction: Option<ReductionError>,
+    pub reduction: Option<ReductionAccuracy>,
     /// Of the mesh, relative, in the energy norm of the deflection under a contact at rest; layers are not judged.
     pub mesh: Option<f64>,
 }
@@ -35,7 +35,7 @@ pub struct Accuracy {
 #[derive(Debug, Default)]
 pub(super) struct Estimates {
     companion: Option<Companion>,
-    reduction: Option<ReductionError>,
+    reduction: Option<ReductionAccuracy>,
     pub(super) mesh: Option<f64>,
 }
 

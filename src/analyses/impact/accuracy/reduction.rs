@@ -18,11 +18,11 @@ const HELD: f64 = 1e-6;
 
 /// What a reduction leaves out, relative.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ReductionError {
+pub struct ReductionAccuracy {
     /// Largest error of the static deflection under a force at a contact.
     pub flexibility: f64,
     /// What is left in the full model.
-    pub residual: Option<Residual>,
+    pub residual: Option<ReductionResidual>,
 }
 
 /// The residual of the reduced solution u = Φ q in the full model, at some instants of the contact.
@@ -40,7 +40,7 @@ pub struct ReductionError {
 /// the estimate of the force was 0.2 to 5 times its error, and 0.9 to 10 times with `guyan`; the error in energy was 0.03 to 1.6
 /// times that of the force.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Residual {
+pub struct ReductionResidual {
     /// Largest of √ε over the largest √(uᵀ K u): error of the displacements in the norm of the energy.
     pub energy: f64,
     /// Root of the sum of k ε over that of F², an estimate of the error of the contact force; nothing where the static
@@ -49,7 +49,7 @@ pub struct Residual {
 }
 
 /// Asks the full plate; nothing where it gives no finite answer.
-pub(super) fn estimate(mut full: Full, reduced: &Reduced, instants: &[Instant]) -> Option<ReductionError> {
+pub(super) fn estimate(mut full: Full, reduced: &Reduced, instants: &[Instant]) -> Option<ReductionAccuracy> {
     let most = full.solves() / SOLVES;
     let chosen = spread(instants, usize::try_from(most).map_or(INSTANTS, |most| most.clamp(1, INSTANTS)));
     let n = full.structure.ndof();
@@ -83,8 +83,8 @@ pub(super) fn estimate(mut full: Full, reduced: &Reduced, instants: &[Instant]) 
     let (energy, force) = ((left / energy).sqrt(), (change / size).sqrt());
     let force = Some(force).filter(|force| force.is_finite() && flexibility < HELD);
     // There is no energy without an instant in contact.
-    let residual = energy.is_finite().then_some(Residual { energy, force });
-    flexibility.is_finite().then_some(ReductionError { flexibility, residual })
+    let residual = energy.is_finite().then_some(ReductionResidual { energy, force });
+    flexibility.is_finite().then_some(ReductionAccuracy { flexibility, residual })
 }
 
 /// Σ F w − M Φ q̈.

@@ -39,7 +39,7 @@ const KEPT: u64 = 64;
 /// was 0.6 to 1.7 there, 0.8 to 1.5 with `central-difference` and 1.5 to 6 with `rk4`. The peak of the force is a single value,
 /// whose error passes through zero between two steps: its estimate was 0.1 to 26 times its error.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StepError {
+pub struct StepAccuracy {
     /// Step of the second march, s.
     pub compared: f64,
     /// Difference of the contact forces of both marches.
@@ -132,7 +132,7 @@ fn stiffness(system: &ImpactSystem, state: &State) -> f64 {
 
 impl Companion {
     /// Compares with the history of a run with steps of `dt`.
-    pub(super) fn compare(&self, history: &[HistoryRow], dt: f64) -> Option<StepError> {
+    pub(super) fn compare(&self, history: &[HistoryRow], dt: f64) -> Option<StepAccuracy> {
         let change = self.change?;
         let pair = |row: &HistoryRow| {
             let step = (row.time_s / dt).round() as u64;
@@ -148,7 +148,7 @@ impl Companion {
         let difference = (difference / size).sqrt();
         let peak = (other_peak / peak - 1.0).abs() / change;
         // Neither exists without a contact at these times.
-        (difference.is_finite() && peak.is_finite()).then_some(StepError {
+        (difference.is_finite() && peak.is_finite()).then_some(StepAccuracy {
             compared: self.dt,
             difference,
             force: difference / change,
@@ -187,7 +187,7 @@ mod tests {
         for (ratio, stride) in [(2.0, 2), (0.5, 1)] {
             let found =
                 companion(ratio, stride, marched(ratio)).compare(&history(&[0, 1, 2, 6, 9, 10], marched(1.0)), 1.0);
-            let StepError { compared, force, peak, .. } = found.unwrap();
+            let StepAccuracy { compared, force, peak, .. } = found.unwrap();
             assert!(
                 compared == ratio && (force - 1e-3).abs() < 2e-6 && (peak - 1e-3).abs() < 2e-6,
                 "{force:e} {peak:e}"
