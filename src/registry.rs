@@ -118,6 +118,7 @@ impl Registry {
             .with::<failure::MaxStressInterface>()
             .with::<failure::BrewerLagace>()
             .with::<failure::Expression>()
+            .with::<failure::laws::HahnTsai>()
     }
 
     /// The registry with one plug-in more.

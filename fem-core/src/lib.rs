@@ -51,7 +51,9 @@ mod stresses;
 #[cfg(feature = "testkit")]
 pub mod testkit;
 
-pub use contracts::{contact, element, failure, large, plugin, reduction, structure, time};
+pub use contracts::{contact, element, failure, interface_law, large, plugin, ply_law, reduction, structure, time};
 pub use plates::{constraint, laminate, load, mesh, patch, plate, support, symmetry, window};
 pub use stresses::{estimate, field, profile, recovery, residual};
-pub use words::{counters, damping, dof, formula, functional, layup, material, prolongation, quadrature, tensor};
+pub use words::{
+    counters, damping, dof, energy, formula, functional, layup, material, prolongation, quadrature, tensor,
+};

@@ -4,7 +4,8 @@ mod influence;
 mod newton;
 
 use crate::vector::dot;
-use fem_core::contact::{Branches, ContactEnergy, ContactHistory, ContactLaw, Indentation};
+use fem_core::contact::{Branches, ContactHistory, ContactLaw, Indentation};
+use fem_core::energy::Energy;
 use fem_core::structure::Structure;
 use fem_core::time::{SecondOrderSystem, State, StepError};
 use influence::Influence;
@@ -33,7 +34,7 @@ impl Impactor {
     /// Indentation (m) at which the contact has taken `energy` (J) on first loading; `None` where it never does.
     pub fn indentation_of(&self, energy: f64) -> Option<f64> {
         let work = |alpha: f64| {
-            let ContactEnergy { stored, dissipated } = self.law.energy(&ContactHistory::default(), alpha);
+            let Energy { stored, dissipated } = self.law.energy(&ContactHistory::default(), alpha);
             stored + dissipated
         };
         let mut high = 1.0;
@@ -246,7 +247,7 @@ impl ImpactSystem {
         for (i, impactor) in self.impactors.iter().enumerate() {
             energies.impactor += 0.5 * impactor.mass * state.v[n + i].powi(2);
             let alpha = self.approach(i, &state.u);
-            let ContactEnergy { stored, dissipated } = impactor.law.energy(&state.contacts[i], alpha);
+            let Energy { stored, dissipated } = impactor.law.energy(&state.contacts[i], alpha);
             energies.stored += stored;
             energies.dissipated += dissipated;
         }

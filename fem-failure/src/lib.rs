@@ -36,6 +36,7 @@
 mod criteria;
 pub mod delamination;
 pub mod envelope;
+pub mod laws;
 mod prelude;
 pub mod scan;
 mod terms;

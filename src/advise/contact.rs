@@ -3,7 +3,8 @@
 use super::answer::{Answer, Number};
 use super::estimate::{Blow, Estimate};
 use super::plate::PlateConstants;
-use fem_core::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use fem_core::contact::{Branches, ContactForce, ContactHistory, ContactLaw};
+use fem_core::energy::Energy;
 use fem_io::scene::ContactLoad;
 use std::f64::consts::PI;
 
@@ -116,9 +117,9 @@ impl ContactLaw for Twice<'_> {
         self.0.commit(history, alpha);
     }
 
-    fn energy(&self, history: &ContactHistory, alpha: f64) -> ContactEnergy {
-        let ContactEnergy { stored, dissipated } = self.0.energy(history, alpha);
-        ContactEnergy { stored: 2.0 * stored, dissipated: 2.0 * dissipated }
+    fn energy(&self, history: &ContactHistory, alpha: f64) -> Energy {
+        let Energy { stored, dissipated } = self.0.energy(history, alpha);
+        Energy { stored: 2.0 * stored, dissipated: 2.0 * dissipated }
     }
 
     fn branches(&self, history: &ContactHistory) -> Branches {

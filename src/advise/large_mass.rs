@@ -1,6 +1,7 @@
 //! A mass much larger than the plate's: the peak of an impact without inertia of the plate.
 
-use fem_core::contact::{ContactEnergy, ContactHistory, ContactLaw};
+use fem_core::contact::{ContactHistory, ContactLaw};
+use fem_core::energy::Energy;
 use std::f64::consts::PI;
 
 /// Force at a deflection w under the impactor: F = Kb w + Km w³.
@@ -83,7 +84,7 @@ pub(super) fn indentation(law: &dyn ContactLaw, force: f64) -> f64 {
 
 /// Work of first loading up to `alpha`, J.
 pub(super) fn work(law: &dyn ContactLaw, alpha: f64) -> f64 {
-    let ContactEnergy { stored, dissipated } = law.energy(&ContactHistory::default(), alpha);
+    let Energy { stored, dissipated } = law.energy(&ContactHistory::default(), alpha);
     stored + dissipated
 }
 

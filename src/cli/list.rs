@@ -30,6 +30,10 @@ enum What {
     Integrators,
     /// For `reduction.method`.
     Reductions,
+    /// For `law` of a material.
+    PlyLaws,
+    /// For the interfaces between plies.
+    InterfaceLaws,
     /// For `effects`.
     Effects,
     /// For `library` of a material.
@@ -73,6 +77,8 @@ pub(super) fn list(registry: &Registry, arguments: &Arguments, console: &Console
         What::ContactLaws => kind(Kind::Contact),
         What::Integrators => kind(Kind::Integrator),
         What::Reductions => kind(Kind::Reduction),
+        What::PlyLaws => kind(Kind::PlyLaw),
+        What::InterfaceLaws => kind(Kind::InterfaceLaw),
         What::Effects => scene::EFFECTS.iter().map(Entry::from).collect(),
         What::Materials => materials::names().filter_map(materials::library).map(Entry::from).collect(),
     };

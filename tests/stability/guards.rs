@@ -3,7 +3,8 @@
 use crate::case::{Case, Room};
 use crate::support;
 use fem::analyses::impact::{self, Outcome};
-use fem::core::contact::{ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use fem::core::contact::{ContactForce, ContactHistory, ContactLaw};
+use fem::core::energy::Energy;
 use fem::core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Value};
 use fem::core::structure::{SolveError, Structure};
 use fem::core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit};
@@ -122,7 +123,7 @@ impl ContactLaw for Faulty {
         h[7] = h[7].max(alpha);
     }
 
-    fn energy(&self, h: &ContactHistory, alpha: f64) -> ContactEnergy {
+    fn energy(&self, h: &ContactHistory, alpha: f64) -> Energy {
         self.sound.energy(h, alpha)
     }
 }

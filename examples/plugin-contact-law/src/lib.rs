@@ -2,7 +2,8 @@
 //!
 //! What to look at: all functions ask one curve, that of unloading from the largest indentation so far. It is all that the
 //! law remembers, so that force and energy follow from it and from the present indentation alone.
-use fem_core::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use fem_core::contact::{Branches, ContactForce, ContactHistory, ContactLaw};
+use fem_core::energy::Energy;
 use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 
 /// A sphere on a half-space that yields where the pressure reaches its limit.
@@ -85,10 +86,10 @@ impl ContactLaw for ElasticPlastic {
         history[0] = history[0].max(alpha);
     }
 
-    fn energy(&self, history: &ContactHistory, alpha: f64) -> ContactEnergy {
+    fn energy(&self, history: &ContactHistory, alpha: f64) -> Energy {
         let largest = history[0].max(alpha);
         let unloading = self.unloading(largest);
-        ContactEnergy {
+        Energy {
             stored: unloading.work(alpha),
             dissipated: (self.work(largest) - unloading.work(largest)).max(0.0),
         }

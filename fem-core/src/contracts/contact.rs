@@ -1,5 +1,6 @@
 //! The contract of a contact law.
 
+use crate::words::energy::Energy;
 use dyn_clone::DynClone;
 use std::fmt::Debug;
 
@@ -33,15 +34,6 @@ pub struct Indentation {
     pub rate: f64,
 }
 
-/// Work done on a contact since it began.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ContactEnergy {
-    /// Recoverable part, J.
-    pub stored: f64,
-    /// Lost part, J.
-    pub dissipated: f64,
-}
-
 /// A contact law F(α): α is the indentation, positive when the bodies overlap.
 ///
 /// The force is a pure function of the committed history and the present indentation, so that an integrator may try
@@ -54,8 +46,8 @@ pub trait ContactLaw: DynClone + Debug + Send + Sync {
     /// Takes `alpha` into the history.
     fn commit(&self, history: &mut ContactHistory, alpha: f64);
 
-    /// Work done on the contact up to `alpha`.
-    fn energy(&self, history: &ContactHistory, alpha: f64) -> ContactEnergy;
+    /// Work done on the contact up to `alpha`, J.
+    fn energy(&self, history: &ContactHistory, alpha: f64) -> Energy;
 
     /// Where the force is not smooth, given the committed history; a march of high order ends a step there.
     fn branches(&self, _history: &ContactHistory) -> Branches {

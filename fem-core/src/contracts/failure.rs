@@ -122,7 +122,7 @@ pub fn check_material(criterion: &dyn FailureCriterion, name: &str, m: &Material
         .map_err(|why| MaterialError { material: m.name.clone(), why: format!("{user} cannot judge it: {why}") })
 }
 
-/// A condition that a criterion sets on a material's constants and that they do not meet.
+/// A condition that a criterion or a law sets on constants and that they do not meet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UnmetCondition {
     /// What is required, `S23 > Yt/2`.

@@ -3,8 +3,10 @@
 pub mod contact;
 pub mod element;
 pub mod failure;
+pub mod interface_law;
 pub mod large;
 pub mod plugin;
+pub mod ply_law;
 pub mod reduction;
 pub mod structure;
 pub mod time;

@@ -3,6 +3,8 @@
 use crate::contracts::contact::ContactLaw;
 use crate::contracts::element::Element;
 use crate::contracts::failure::FailureCriterion;
+use crate::contracts::interface_law::InterfaceLaw;
+use crate::contracts::ply_law::PlyLaw;
 use crate::contracts::reduction::Reduction;
 use crate::contracts::time::Integrator;
 use std::collections::BTreeMap;
@@ -241,6 +243,10 @@ pub enum Built {
     Integrator(Box<dyn Integrator>),
     /// A reduction.
     Reduction(Box<dyn Reduction>),
+    /// A law of a ply.
+    PlyLaw(Box<dyn PlyLaw>),
+    /// A law of an interface.
+    InterfaceLaw(Box<dyn InterfaceLaw>),
 }
 
 /// Kind of a plug-in; a name is unique within its kind.
@@ -253,6 +259,8 @@ pub enum Kind {
     Contact,
     Integrator,
     Reduction,
+    PlyLaw,
+    InterfaceLaw,
 }
 
 impl fmt::Display for Kind {
@@ -263,6 +271,8 @@ impl fmt::Display for Kind {
             Kind::Contact => "contact law",
             Kind::Integrator => "integrator",
             Kind::Reduction => "reduction",
+            Kind::PlyLaw => "ply law",
+            Kind::InterfaceLaw => "interface law",
         })
     }
 }
@@ -286,12 +296,13 @@ pub struct PluginInfo {
 ///
 /// ```
 /// use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
-/// # use fem_core::contact::{ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+/// # use fem_core::contact::{ContactForce, ContactHistory, ContactLaw};
+/// # use fem_core::energy::Energy;
 /// # #[derive(Debug, Clone)] struct Spring;
 /// # impl ContactLaw for Spring {
 /// #   fn force(&self, _: &ContactHistory, a: f64) -> ContactForce { ContactForce { force: a.max(0.0), tangent: 1.0 } }
 /// #   fn commit(&self, _: &mut ContactHistory, _: f64) {}
-/// #   fn energy(&self, _: &ContactHistory, _: f64) -> ContactEnergy { ContactEnergy::default() }
+/// #   fn energy(&self, _: &ContactHistory, _: f64) -> Energy { Energy::default() }
 /// # }
 /// impl Plugin for Spring {
 ///     const INFO: PluginInfo = PluginInfo {

@@ -1,6 +1,7 @@
 //! The contract of a contact law.
 
-use crate::contracts::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use crate::contracts::contact::{Branches, ContactForce, ContactHistory, ContactLaw};
+use crate::words::energy::Energy;
 
 /// Checks `law` on a path of loading, unloading, reloading and separation up to the indentation `largest` (m).
 ///
@@ -15,7 +16,7 @@ use crate::contracts::contact::{Branches, ContactEnergy, ContactForce, ContactHi
 pub fn check_contact_law(law: &dyn ContactLaw, largest: f64) -> Result<(), String> {
     let turns = [0.1, -0.1, 0.5, 0.3, 0.4, 0.05, 0.7, -0.2, 0.3, 0.1, 0.75, 0.6, 1.0, -0.1, 0.9, -0.1, 0.2, 1.0, 0.0];
     let mut h = ContactHistory::default();
-    if law.energy(&h, 0.0) != ContactEnergy::default() {
+    if law.energy(&h, 0.0) != Energy::default() {
         return Err("energy before the first contact is not zero".into());
     }
     if !law.force(&h, f64::NAN).force.is_nan() {

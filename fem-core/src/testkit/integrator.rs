@@ -1,7 +1,8 @@
 //! The contract of a time integrator, and a system with known solutions.
 
-use crate::contracts::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw, Indentation};
+use crate::contracts::contact::{Branches, ContactForce, ContactHistory, ContactLaw, Indentation};
 use crate::contracts::time::{Integrator, SecondOrderSystem, State, StepError};
+use crate::words::energy::Energy;
 use std::error::Error;
 
 /// One oscillator `m a + c v + k u = p(t)`.
@@ -237,8 +238,8 @@ impl ContactLaw for Stop {
         *h = [h[0] + 1.0, alpha, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     }
 
-    fn energy(&self, _: &ContactHistory, alpha: f64) -> ContactEnergy {
-        ContactEnergy { stored: alpha.max(0.0).powi(3) / 3.0, dissipated: 0.0 }
+    fn energy(&self, _: &ContactHistory, alpha: f64) -> Energy {
+        Energy { stored: alpha.max(0.0).powi(3) / 3.0, dissipated: 0.0 }
     }
 }
 

@@ -3,6 +3,7 @@
 pub mod counters;
 pub mod damping;
 pub mod dof;
+pub mod energy;
 pub mod formula;
 pub mod functional;
 pub mod layup;

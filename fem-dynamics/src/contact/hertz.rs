@@ -1,6 +1,7 @@
 //! The elastic power law.
 
-use fem_core::contact::{ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use fem_core::contact::{ContactForce, ContactHistory, ContactLaw};
+use fem_core::energy::Energy;
 use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 
 /// `F = k αⁿ` for α > 0, no force otherwise; elastic, so it remembers nothing.
@@ -74,8 +75,8 @@ impl ContactLaw for Hertz {
 
     fn commit(&self, _: &mut ContactHistory, _: f64) {}
 
-    fn energy(&self, _: &ContactHistory, alpha: f64) -> ContactEnergy {
-        ContactEnergy { stored: self.work(alpha), dissipated: 0.0 }
+    fn energy(&self, _: &ContactHistory, alpha: f64) -> Energy {
+        Energy { stored: self.work(alpha), dissipated: 0.0 }
     }
 }
 

@@ -1,7 +1,8 @@
 //! The indentation law of Sun and Yang.
 
 use super::Hertz;
-use fem_core::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use fem_core::contact::{Branches, ContactForce, ContactHistory, ContactLaw};
+use fem_core::energy::Energy;
 use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 
 /// Loading along a power law, unloading along a steeper one to a permanent dent (report eqs 24-26).
@@ -77,15 +78,15 @@ impl ContactLaw for SunYang {
         }
     }
 
-    fn energy(&self, history: &ContactHistory, alpha: f64) -> ContactEnergy {
+    fn energy(&self, history: &ContactHistory, alpha: f64) -> Energy {
         let [alpha_max, _, dissipated, ..] = *history;
         let before = self.present(history);
         if alpha <= alpha_max {
-            return ContactEnergy { stored: before.work(alpha), dissipated };
+            return Energy { stored: before.work(alpha), dissipated };
         }
         let work = before.work(alpha_max) + self.loading.work(alpha) - self.loading.work(alpha_max);
         let stored = self.curve(alpha, self.m).work(alpha);
-        ContactEnergy { stored, dissipated: dissipated + work - stored }
+        Energy { stored, dissipated: dissipated + work - stored }
     }
 
     fn branches(&self, history: &ContactHistory) -> Branches {

@@ -1,7 +1,8 @@
 //! Contact laws.
 
 use crate::{hertz, law, length, stiffness, sun_yang, table};
-use fem_core::contact::{ContactEnergy, ContactHistory, ContactLaw};
+use fem_core::contact::{ContactHistory, ContactLaw};
+use fem_core::energy::Energy;
 use fem_core::plugin::{Dimension, Params, Value};
 use fem_core::testkit::check_contact_law;
 use fem_dynamics::contact::{Hertz, Linear, SunYang};
@@ -74,7 +75,7 @@ fn a_cycle_dissipates_what_the_formulas_say() {
     for (rule, second) in RULES.into_iter().zip([first, first + again]) {
         let law = sun_yang(k, critical, rule);
         let apart = |path: &[f64]| law.energy(&committed(&*law, path), -1.0);
-        let close = |energy: ContactEnergy, dissipated: f64| {
+        let close = |energy: Energy, dissipated: f64| {
             assert_eq!(energy.stored, 0.0, "{rule}");
             assert!((energy.dissipated - dissipated).abs() < 1e-14, "{rule}: {energy:?} {dissipated}");
         };

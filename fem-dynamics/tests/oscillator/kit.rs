@@ -1,7 +1,8 @@
 //! The kit notices broken plug-ins.
 
 use crate::{hertz, scheme, sun_yang};
-use fem_core::contact::{Branches, ContactEnergy, ContactForce, ContactHistory, ContactLaw};
+use fem_core::contact::{Branches, ContactForce, ContactHistory, ContactLaw};
+use fem_core::energy::Energy;
 use fem_core::testkit::{check_contact_law, check_integrator};
 use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit};
 use std::sync::{Arc, Mutex};
@@ -12,13 +13,13 @@ struct Spoiled {
     sound: Box<dyn ContactLaw>,
     force: Force,
     commit: Commit,
-    energy: Energy,
+    energy: Falsify,
     branches: Branches,
 }
 
 type Force = fn(ContactForce, &ContactHistory, f64) -> ContactForce;
 type Commit = fn(&mut ContactHistory, f64);
-type Energy = fn(ContactEnergy, &ContactHistory) -> ContactEnergy;
+type Falsify = fn(Energy, &ContactHistory) -> Energy;
 
 impl ContactLaw for Spoiled {
     fn force(&self, h: &ContactHistory, alpha: f64) -> ContactForce {
@@ -29,7 +30,7 @@ impl ContactLaw for Spoiled {
         (self.commit)(h, alpha);
     }
 
-    fn energy(&self, h: &ContactHistory, alpha: f64) -> ContactEnergy {
+    fn energy(&self, h: &ContactHistory, alpha: f64) -> Energy {
         (self.energy)(self.sound.energy(h, alpha), h)
     }
 
@@ -45,12 +46,12 @@ fn of_contact_laws() {
     check_contact_law(&sound, 1.0).unwrap();
 
     let force = |force: Force| Spoiled { force, ..sound.clone() };
-    let energy = |commit: Commit, energy: Energy| Spoiled { commit, energy, ..sound.clone() };
+    let energy = |commit: Commit, energy: Falsify| Spoiled { commit, energy, ..sound.clone() };
     let stiffer: Force = |f, h, _| ContactForce { force: f.force * (1.0 + h[0]), tangent: f.tangent * (1.0 + h[0]) };
     let sticky: Force = |f, h, a| ContactForce { force: if a == h[0] { 1.1 * f.force } else { f.force }, ..f };
     let largest: Commit = |h, alpha| h[0] = alpha.max(0.0);
-    let lost: Energy = |e, h| ContactEnergy { dissipated: h[0], ..e };
-    let lent: Energy = |e, h| ContactEnergy { stored: e.stored - 1e-3 * h[0], dissipated: 1e-3 * h[0] };
+    let lost: Falsify = |e, h| Energy { dissipated: h[0], ..e };
+    let lent: Falsify = |e, h| Energy { stored: e.stored - 1e-3 * h[0], dissipated: 1e-3 * h[0] };
     for (says, law) in [
         ("without indentation", force(|f, _, a| ContactForce { force: if a < 0.0 { 1.0 } else { f.force }, ..f })),
         ("negative", force(|f, _, _| ContactForce { force: -f.force, ..f })),
@@ -60,7 +61,7 @@ fn of_contact_laws() {
         ("largest indentation so far", Spoiled { branches: Branches { peak: Some(0.0), ..branches }, ..sound.clone() }),
         ("names no peak", Spoiled { commit: largest, ..force(stiffer) }),
         ("commit changes the force", Spoiled { commit: largest, ..force(sticky) }),
-        ("but the work is", energy(|_, _| (), |e, _| ContactEnergy { stored: 1.001 * e.stored, ..e })),
+        ("but the work is", energy(|_, _| (), |e, _| Energy { stored: 1.001 * e.stored, ..e })),
         ("commit changes the energy", energy(|h, _| h[0] += 1e-8, lost)),
         ("fallen", energy(largest, lent)),
         ("jumps", force(|f, _, a| ContactForce { force: f.force + if a > 0.37 { 1e-3 } else { 0.0 }, ..f })),
@@ -90,12 +91,12 @@ impl ContactLaw for Secretive {
         }
     }
 
-    fn energy(&self, h: &ContactHistory, alpha: f64) -> ContactEnergy {
+    fn energy(&self, h: &ContactHistory, alpha: f64) -> Energy {
         if let Some(own) = &self.own {
             return self.sound.energy(&own.lock().unwrap(), alpha);
         }
-        let ContactEnergy { stored, dissipated } = self.sound.energy(h, alpha);
-        ContactEnergy { stored: stored + dissipated, dissipated: 0.0 }
+        let Energy { stored, dissipated } = self.sound.energy(h, alpha);
+        Energy { stored: stored + dissipated, dissipated: 0.0 }
     }
 
     fn branches(&self, h: &ContactHistory) -> Branches {

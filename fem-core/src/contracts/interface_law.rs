@@ -1,0 +1,53 @@
+//! The contract of a law of an interface: from the opening between two faces to tractions, with a memory.
+
+use crate::contracts::failure::UnmetCondition;
+use crate::contracts::ply_law::{LawError, LawInfo, LawPoint};
+use crate::words::energy::Energy;
+use dyn_clone::DynClone;
+use std::fmt::Debug;
+
+/// Components across an interface: along its normal (positive where it opens), and the two shears in its plane.
+pub type Jump = [f64; 3];
+
+/// Tractions of an interface and where their work has gone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InterfaceResponse {
+    /// Tractions, Pa.
+    pub traction: Jump,
+    /// Work done per area since the beginning, J/m².
+    pub energy: Energy,
+}
+
+/// A law of an interface, t(δ) with a memory; δ is the jump of the displacement from the lower face to the upper one.
+///
+/// The answer is a pure function of the point, the jump and the state that the last accepted step has left, as that of a
+/// [`PlyLaw`](crate::contracts::ply_law::PlyLaw); states are kept and taken over alike. A closed virgin interface carries nothing.
+pub trait InterfaceLaw: DynClone + Debug + Send + Sync {
+    /// State variables and required strengths.
+    fn info(&self) -> &LawInfo;
+
+    /// Refuses a point whose constants the law cannot use.
+    ///
+    /// # Errors
+    /// The condition that the point does not meet, with its numbers.
+    fn check(&self, _point: &LawPoint<'_>) -> Result<(), UnmetCondition> {
+        Ok(())
+    }
+
+    /// The answer to `jump`, m, of an interface with the state `old`; all of the state that the jump leaves goes into `new`.
+    ///
+    /// The tangent, where it is asked for, is ∂t/∂δ of this very answer, `old` held, Pa/m, `tangent[row][column]`; it need not be
+    /// symmetric.
+    ///
+    /// # Errors
+    /// A jump for which the law finds no traction.
+    fn respond(
+        &self,
+        point: &LawPoint<'_>,
+        jump: &Jump,
+        old: &[f64],
+        new: &mut [f64],
+        tangent: Option<&mut [Jump; 3]>,
+    ) -> Result<InterfaceResponse, LawError>;
+}
+dyn_clone::clone_trait_object!(InterfaceLaw);

@@ -1,0 +1,139 @@
+//! The contract of a law of a ply: from strains to stresses, with a memory.
+
+use crate::contracts::failure::UnmetCondition;
+use crate::words::energy::Energy;
+use crate::words::material::{Material, MaterialError, Strength};
+use crate::words::tensor::{Matrix6, Ply, Strain6, Stress6};
+use dyn_clone::DynClone;
+use std::fmt::{self, Debug};
+
+/// What a law of a ply or an interface says of itself.
+#[derive(Debug, Clone, Copy)]
+pub struct LawInfo {
+    /// Names of its state variables, in their order; all are 0 before anything has happened.
+    pub state: &'static [&'static str],
+    /// Strengths that it requires of the material.
+    pub strengths: &'static [Strength],
+}
+
+/// What a law may know of the point that it is asked about.
+#[derive(Debug, Clone, Copy)]
+pub struct LawPoint<'a> {
+    /// The material, which has passed [`check_law`].
+    pub material: &'a Material,
+    /// Its stiffness in its own axes, Pa: [`Elastic::stiffness`](crate::words::material::Elastic::stiffness).
+    pub stiffness: &'a Matrix6,
+    /// Length over which a crack through the point is smeared, m: the width of its cell. An energy per area over this length
+    /// is what the crack takes per volume.
+    pub length: f64,
+}
+
+/// Stress of a ply and where its work has gone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlyResponse {
+    /// Stress, Pa.
+    pub stress: Stress6<Ply>,
+    /// Work done per volume since the beginning, J/m³.
+    pub energy: Energy,
+}
+
+/// A point at which a law finds no answer; whoever asked may try a smaller step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LawError(pub String);
+
+impl fmt::Display for LawError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+impl std::error::Error for LawError {}
+
+/// A law of a ply, σ(ε) with a memory, in the axes of the ply.
+///
+/// The answer is a pure function of the point, the strain and the state that the last accepted step has left, so that any
+/// number of strains may be tried within a step. The state is plain numbers, as many as [`LawInfo::state`] names; whoever
+/// marches keeps it, beside the histories of contacts. A state that was taken over at a strain gives the same answer there again.
+///
+/// In a virgin point (all states 0) the law is linear elasticity for vanishing strains: no stress without strain, and the
+/// stiffness of the material as tangent.
+///
+/// ```
+/// use fem_core::energy::Energy;
+/// use fem_core::ply_law::{LawError, LawInfo, LawPoint, PlyLaw, PlyResponse};
+/// use fem_core::tensor::{Matrix6, Ply, Strain6, stress};
+///
+/// #[derive(Debug, Clone)]
+/// struct LinearElastic;
+///
+/// impl PlyLaw for LinearElastic {
+///     fn info(&self) -> &LawInfo {
+///         const INFO: LawInfo = LawInfo { state: &[], strengths: &[] };
+///         &INFO
+///     }
+///     fn respond(
+///         &self,
+///         point: &LawPoint<'_>,
+///         strain: &Strain6<Ply>,
+///         _old: &[f64],
+///         _new: &mut [f64],
+///         tangent: Option<&mut Matrix6>,
+///     ) -> Result<PlyResponse, LawError> {
+///         if let Some(tangent) = tangent {
+///             *tangent = *point.stiffness;
+///         }
+///         let stress = stress(point.stiffness, strain);
+///         let stored = 0.5 * stress.0.iter().zip(strain.0).map(|(s, e)| s * e).sum::<f64>();
+///         Ok(PlyResponse { stress, energy: Energy { stored, dissipated: 0.0 } })
+///     }
+/// }
+/// ```
+pub trait PlyLaw: DynClone + Debug + Send + Sync {
+    /// State variables and required strengths.
+    fn info(&self) -> &LawInfo;
+
+    /// Refuses a point whose constants the law cannot use, such as a cell too wide for the energy of a crack. That the
+    /// required strengths are there is [`check_law`]'s business.
+    ///
+    /// # Errors
+    /// The condition that the point does not meet, with its numbers.
+    fn check(&self, _point: &LawPoint<'_>) -> Result<(), UnmetCondition> {
+        Ok(())
+    }
+
+    /// The answer to `strain` (engineering shears) of a ply with the state `old`; all of the state that the strain leaves goes
+    /// into `new`.
+    ///
+    /// The tangent, where it is asked for, is ∂σ/∂ε of this very answer, `old` held, Pa, `tangent[row][column]`; it need not be symmetric.
+    ///
+    /// # Errors
+    /// A strain for which the law finds no stress.
+    fn respond(
+        &self,
+        point: &LawPoint<'_>,
+        strain: &Strain6<Ply>,
+        old: &[f64],
+        new: &mut [f64],
+        tangent: Option<&mut Matrix6>,
+    ) -> Result<PlyResponse, LawError>;
+}
+dyn_clone::clone_trait_object!(PlyLaw);
+
+/// Whether the law called `name`, which says `info` of itself, can stand at `point`; `check` is its own opinion.
+///
+/// # Errors
+/// Constants that no solid has, a required strength that is missing, a point that the law refuses.
+pub fn check_law(
+    info: &LawInfo,
+    name: &str,
+    point: &LawPoint<'_>,
+    check: Result<(), UnmetCondition>,
+) -> Result<(), MaterialError> {
+    let material = point.material;
+    material.check()?;
+    let user = format!("law `{name}`");
+    material.require(info.strengths, &user)?;
+    check.map_err(|why| MaterialError {
+        material: material.name.clone(),
+        why: format!("{user} cannot follow it: {why}"),
+    })
+}

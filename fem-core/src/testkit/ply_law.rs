@@ -1,0 +1,56 @@
+//! The contract of a law of a ply.
+
+use super::law::{Subject, Units, same_in};
+use crate::contracts::plugin::Dimension;
+use crate::contracts::ply_law::{LawPoint, PlyLaw, PlyResponse, check_law};
+use crate::words::material::Material;
+use crate::words::tensor::{Matrix6, Strain6};
+
+/// Components that change their sign in a mirror image along 1, 2 and 3.
+const MIRRORS: [[f64; 6]; 3] =
+    [[1.0, 1.0, 1.0, -1.0, 1.0, -1.0], [1.0, 1.0, 1.0, -1.0, -1.0, 1.0], [1.0, 1.0, 1.0, 1.0, -1.0, -1.0]];
+
+/// Checks the law that `make` builds, its constants in the units that it is given, on `material` and in a cell of width
+/// `length` (m), along a dozen of paths whose strains reach `largest` in each component.
+///
+/// Demanded along the paths: answers that are finite, and the same bit for bit when asked again; every state variable written;
+/// a tangent that agrees with differences on one side at least; stored energy that is not negative, dissipated energy
+/// that never falls, the sum of both equal to ∫ σ dε within 10⁻³ of the largest work; the same answer at the same strain once its state is taken over.
+///
+/// Demanded besides: in a virgin point no stress, energy or state without strain, and the stiffness of the material
+/// as tangent; NaN that comes back as no number or as an error; stresses and energies that follow a mirror image of the path
+/// in each plane of symmetry of the ply; the same answers in other units; a virgin point that answers as at first, whatever
+/// the law has seen before.
+///
+/// # Errors
+/// The first violation, with the place on the path.
+pub fn check_ply_law(
+    make: impl Fn(&Units) -> Box<dyn PlyLaw>,
+    material: &Material,
+    length: f64,
+    largest: &[f64; 6],
+) -> Result<(), String> {
+    let answers = |units: &Units| {
+        let (law, material) = (make(units), units.material(material));
+        let stiffness = material.elastic.stiffness();
+        let length = units.number(length, Dimension::LENGTH);
+        let point = LawPoint { material: &material, stiffness: &stiffness, length };
+        check_law(law.info(), "under test", &point, law.check(&point)).map_err(|e| e.to_string())?;
+        let respond = |strain: &[f64; 6], old: &[f64], new: &mut [f64], tangent: Option<&mut Matrix6>| {
+            let PlyResponse { stress, energy } = law.respond(&point, &Strain6::new(*strain), old, new, tangent)?;
+            Ok((stress.0, energy))
+        };
+        let subject = Subject { info: law.info(), largest: *largest, respond: &respond };
+        let tangent = subject.virgin_tangent()?;
+        let scale = stiffness.as_flattened().iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+        let differ = |(a, b): (&f64, &f64)| !((a - b).abs() <= 1e-9 * scale);
+        if tangent.as_flattened().iter().zip(stiffness.as_flattened()).any(differ) {
+            return Err(format!("the tangent of a virgin ply is {tangent:?}, its stiffness {stiffness:?}"));
+        }
+        subject.check(&MIRRORS)
+    };
+    same_in(&Units::ODD, &answers(&Units::SI)?, &answers(&Units::ODD)?, Dimension::PRESSURE)
+}
+
+#[cfg(test)]
+mod tests;
