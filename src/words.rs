@@ -1,4 +1,4 @@
-//! Words for people that several results share.
+//! Numbers, units and names as several results print them.
 
 use fem_failure::scan::PlyOrInterface;
 use std::fmt::Display;

@@ -124,7 +124,7 @@ fn nothing_is_said_that_is_not_known() {
     // Every unknown is marched, by a march that is all the run.
     let full = strip().append("[reduction]\nmethod = \"none\"\n").fem("run", &["--out", "out"]).good();
     assert!(full.stdout.contains("reduction: none, all unknowns are marched"), "{full:#?}");
-    assert!(full.stdout.contains("step: error not estimated; half the step would show it"), "{full:#?}");
+    assert!(full.stdout.contains("step: error not estimated; a run with half the step would show it"), "{full:#?}");
 
     // So small a plate, marched for so long, that a second march would take as long as all the rest.
     let small = strip().scene("end = \"20 us\"", "end = \"1 ms\"");

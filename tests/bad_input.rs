@@ -182,7 +182,7 @@ mod groups {
     #[test]
     fn impact_beside_the_plate() {
         let case = strip().scene("x = \"15 mm\"", "x = \"15 in\"");
-        let words = ["(381.0000, 5.0000) mm is beside the plate", "x runs from 0.0000 to 30.0000 mm"];
+        let words = ["(381.0000, 5.0000) mm lies outside the plate", "x runs from 0.0000 to 30.0000 mm"];
         refusal(&case, At::Scene("at = { x"), &words);
     }
 
@@ -373,7 +373,7 @@ mod supports {
     fn equation_at_several_nodes() {
         let terms = "terms = [{ group = \"clamped\", at = \"top\", dof = \"U30\", factor = 1 }]\n";
         let case = strip().append("[[equation]]\n").append(terms);
-        refusal(&case, At::Scene("terms ="), &["a term of an equation stands at one node, but `clamped` has more"]);
+        refusal(&case, At::Scene("terms ="), &["a term of an equation takes a single node, but `clamped` has more"]);
     }
 }
 
@@ -615,7 +615,7 @@ mod contact {
     fn patch_that_leaves_the_plate() {
         let case = strip().scene("velocity", "patch_radius = \"6 mm\"\nvelocity");
         let words = [
-            "the contact patch of radius 6.0000 mm around (15.0000, 5.0000) mm leaves the plate",
+            "the contact patch of radius 6.0000 mm around (15.0000, 5.0000) mm extends beyond the plate",
             "choose a smaller `impactor.patch_radius`",
             "the plate is 30.0000 mm by 10.0000 mm",
         ];

@@ -68,10 +68,10 @@ fn what_makes_no_sense_is_refused() {
     let case = plate();
     case.write();
     for (arguments, status, words) in [
-        (&["mesh", "plate/plate.msh", "--unit", "kg"][..], 1, "`kg` is no unit of length"),
+        (&["mesh", "plate/plate.msh", "--unit", "kg"][..], 1, "`kg` is not a unit of length"),
         (&["mesh", "plate/absent.msh"], 1, "plate/absent.msh: cannot read the file"),
         (&["mesh", "plate/plate.msh", "--binary"], 2, "--out"),
-        (&["mesh", "plate/plate.msh", "--out", "plate/.."], 1, "is no name of a file"),
+        (&["mesh", "plate/plate.msh", "--out", "plate/.."], 1, "cannot name a file"),
         (&["mesh", "plate/absent.toml"], 1, "cannot read the scene"),
     ] {
         let done = fem(case.folder(), arguments);

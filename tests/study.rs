@@ -76,7 +76,7 @@ fn studies_of_one_scene_are_equal() {
     let (one, two) = (stable("one"), stable("two"));
     assert_eq!(one.0, two.0);
     let again = case.fem("study", &[&arguments("one")[..], &["--resume"]].concat()).good();
-    assert!(again.stdout.contains("runs are there already"), "{again:#?}");
+    assert!(again.stdout.contains("runs are there from before"), "{again:#?}");
     assert_eq!(stable("one").1, one.1, "a run was made again");
     // Of another scene there is nothing to go on with.
     let other = case.scene("end = \"4 us\"", "end = \"5 us\"");

@@ -1,6 +1,6 @@
 //! The words of the framework and the contracts of its plug-ins.
 //!
-//! Everything here speaks SI units, `f64` and slices, opens no file and knows no concrete plug-in.
+//! Everything here speaks SI units, `f64` and slices, opens no file and depends on no concrete plug-in.
 //!
 //! | what | where |
 //! | --- | --- |

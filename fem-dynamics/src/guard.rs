@@ -1,4 +1,4 @@
-//! What no impact can do: seen while it is marched, at next to no cost.
+//! Guards that stop a march which does what no impact can do, at almost no cost.
 
 use crate::impact::{Energies, ImpactSystem, Touch};
 use std::fmt;
@@ -83,8 +83,8 @@ impl fmt::Display for Alarm {
         match *self {
             Self::NotFinite(what) => write!(
                 f,
-                "{what} is not a finite number: a step beyond the limit of stability, or a contact law or element that \
-                 gives none"
+                "{what} is not a finite number: a step beyond the limit of stability, or a contact law or element \
+                 whose answer is not finite"
             ),
             Self::Energy(change) if change > 0.0 => write!(
                 f,
@@ -100,14 +100,14 @@ impl fmt::Display for Alarm {
             ),
             Self::Speed { impactor, speed, bound } => write!(
                 f,
-                "impactor {} moves at {speed:.4e} m/s, half as much energy again could give it {bound:.4e} m/s: the step is too \
-                 long for its contact",
+                "impactor {} moves at {speed:.4e} m/s, 1.5 times the energy of the impact could give it {bound:.4e} \
+                 m/s: the step is too long for its contact",
                 impactor + 1
             ),
             Self::Penetration { impactor, indentation, bound } => write!(
                 f,
-                "the contact of impactor {} is {indentation:.4e} m deep, half as much energy again could press it {bound:.4e} m: \
-                 the step is too long for its contact, which was passed in one leap",
+                "the contact of impactor {} is {indentation:.4e} m deep, 1.5 times the energy of the impact could \
+                 press it {bound:.4e} m: the step is too long for its contact, which was crossed in a single step",
                 impactor + 1
             ),
             Self::Pull { impactor, force } => write!(

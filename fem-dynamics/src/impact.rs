@@ -231,7 +231,7 @@ impl ImpactSystem {
         let n = self.structure.ndof();
         work.clear();
         work.resize(n, 0.0);
-        // What cannot be integrated is no number, which the guard sees.
+        // What cannot be integrated is not a number, which the guard sees.
         let large = self.structure.nonlinear().map(|f| f.internal(&state.u[..n], work).unwrap_or(f64::NAN));
         let mut product = |x: &[f64], add: &dyn Fn(&[f64], &mut [f64])| {
             work.clear();
@@ -384,7 +384,7 @@ impl SecondOrderSystem for ImpactSystem {
         f.fill(0.0);
         match self.structure.nonlinear() {
             None => self.structure.add_stiffness(-1.0, &u[..n], &mut f[..n]),
-            // What cannot be integrated is no number, which the guard sees.
+            // What cannot be integrated is not a number, which the guard sees.
             Some(structure) => match structure.internal(&u[..n], &mut f[..n]) {
                 Ok(_) => f[..n].iter_mut().for_each(|f| *f = -*f),
                 Err(_) => f.fill(f64::NAN),

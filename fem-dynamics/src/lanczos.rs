@@ -8,10 +8,10 @@ use std::collections::VecDeque;
 /// Relative residual at which a mode counts as found; its frequency is then good to about the square of it.
 const TOLERANCE: f64 = 1e-7;
 
-/// A direction shorter than this fraction of what it was before orthogonalisation is none.
+/// A direction shorter than this fraction of what it was before orthogonalisation counts as zero.
 const EXHAUSTED: f64 = 1e-10;
 
-/// Sweeps after which a direction that is still not orthogonal is nothing but rounding.
+/// Sweeps after which a direction that is still not orthogonal is rounding alone.
 const SWEEPS: usize = 4;
 
 /// Vectors between two looks at the convergence.

@@ -24,8 +24,8 @@ pub struct Modes {
 ///
 /// Block Lanczos on (K + σM)⁻¹ M with full reorthogonalisation in the metric of M. σ = 0 for a structure that is `held`;
 /// else it follows from K and M themselves, so that the answer does not depend on units, and rigid motions come out with
-/// frequencies of zero (to rounding). A singular M is no trouble: vectors are kept free of what it cannot see by one more
-/// application of the operator at the end (purification).
+/// frequencies of zero (to rounding). A singular M is not a problem: vectors are kept free of what it cannot see by one
+/// more application of the operator at the end (purification).
 ///
 /// # Errors
 /// A matrix that cannot be factorised, or no convergence in a space of 5 `count` + 80 vectors.

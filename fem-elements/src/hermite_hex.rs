@@ -50,7 +50,7 @@ fn constant_map(cell: &Cell<'_>) -> Result<PlaneMap, ElementError> {
         Ok(cell.plane(0.0, 0.0))
     } else {
         Err(ElementError(
-            "the quadrilateral is no parallelogram: take the element `hermite-prism` for this mesh".into(),
+            "the quadrilateral is not a parallelogram: use the element `hermite-prism` for this mesh".into(),
         ))
     }
 }

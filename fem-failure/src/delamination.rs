@@ -11,8 +11,8 @@ use std::f64::consts::PI;
 /// ```
 ///
 /// D* is [`Laminate::effective_bending_stiffness`]; for an isotropic plate F = π √(8 GIIc E h³ / 9(1 − ν²)). It depends neither on the
-/// span nor on the place. It is no stress criterion: it compares energies, for one crack under a quasi-static load. Under an
-/// impactor much lighter than the plate delamination starts at about 1.2 times this force (Olsson 2006).
+/// span nor on the place. It is not a stress criterion: it compares energies, for one crack under a quasi-static load.
+/// Under an impactor much lighter than the plate delamination starts at about 1.2 times this force (Olsson 2006).
 ///
 /// Sources: Davies and Zhang, Int. J. Impact Eng. 16 (1995) 149; Olsson, Compos. Part A 32 (2001) 1207.
 #[derive(Debug, Clone, Copy, PartialEq)]

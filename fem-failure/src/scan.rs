@@ -104,7 +104,7 @@ pub struct Peak {
     pub site: ScanSite,
 }
 
-/// Why a scan cannot start or go on.
+/// Why a scan cannot start or continue.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ScanError {
@@ -140,7 +140,7 @@ pub enum ScanError {
         /// Sites.
         want: usize,
     },
-    /// A time that is no number or does not follow the last one.
+    /// A time that is not a number or does not follow the last one.
     #[error("a sample at {time} s cannot follow one at {last:?} s: times must be finite and grow")]
     Time {
         /// The time.
@@ -205,7 +205,7 @@ pub struct Scan {
     record: ScanRecord,
 }
 
-/// What a scan has seen: with its sites, criteria and materials all that it takes to go on.
+/// What a scan has seen: with its sites, criteria and materials all that a later process needs to continue.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ScanRecord {
     /// Time of the last sample.
@@ -478,8 +478,8 @@ impl Scan {
         &self.record
     }
 
-    /// Goes on from what a scan of the same sites and criteria had seen; `false`, and nothing changes, where `record` is of
-    /// another size.
+    /// Continues from what a scan of the same sites and criteria had seen; `false`, and nothing changes, where `record`
+    /// is of another size.
     #[must_use]
     pub fn resume(&mut self, record: ScanRecord) -> bool {
         let size = |s: &Seen| [s.last.len(), s.maxima.len(), s.reached.len(), s.peaks.len(), s.first.len()];

@@ -197,7 +197,7 @@ fn plane_criteria_refuse_spatial_stress_unless_told_to_ignore_it() {
     assert!(error.contains("ply 3 from the bottom of cell 5") && error.contains("three-dimensional"), "{error}");
 }
 
-/// What no table holds: every criterion under stresses at the ends of the numbers, and what is no stress.
+/// What no table holds: every criterion under stresses at the ends of the numbers, and what is not a stress.
 #[test]
 fn the_ends_of_the_numbers_are_judged_or_refused_by_every_criterion() {
     let (tiny, huge) = (5e-324, f64::MAX);

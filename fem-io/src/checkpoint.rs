@@ -1,4 +1,4 @@
-//! Files that are read whole or not at all: a frame with a checksum about bytes that a later run goes on from.
+//! Files that are read whole or not at all: a frame with a checksum about bytes that a later run continues from.
 //!
 //! | bytes | what |
 //! | --- | --- |
@@ -41,14 +41,14 @@ pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     let damaged = |why: String| FileError::Damaged { path: path.to_owned(), why };
     let part = |from: usize, to: usize| bytes.get(from..to).map(<[u8]>::to_vec).unwrap_or_default();
     if part(0, 8) != MAGIC {
-        return Err(damaged("it does not begin as a checkpoint does".into()));
+        return Err(damaged("it does not begin with the header of a checkpoint".into()));
     }
     if part(8, 12) != VERSION.to_le_bytes() {
         return Err(damaged(format!("its format is not version {VERSION}, which this program reads")));
     }
     let length = bytes.len().saturating_sub(HEADER);
     if bytes.len() < HEADER || part(12, 20) != (length as u64).to_le_bytes() {
-        return Err(damaged(format!("its length is not the one that it names; {length} bytes follow its header")));
+        return Err(damaged(format!("its length is not the one in its header, which {length} bytes follow")));
     }
     let payload = bytes.split_off(HEADER);
     if bytes[20..] != crc32fast::hash(&payload).to_le_bytes() {

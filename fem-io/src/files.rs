@@ -36,13 +36,16 @@ pub enum FileError {
         why: String,
     },
     /// A file of the user's where one of a run's would go.
-    #[error("`{}` is not of a run into this folder and would be lost: choose another folder", path.display())]
+    #[error(
+        "`{}` was not written by a run into this folder and would be overwritten: choose another folder",
+        path.display()
+    )]
     Taken {
         /// The file.
         path: PathBuf,
     },
     /// A name that leads out of the folder or clashes with its bookkeeping.
-    #[error("`{name}` is no name for a result file: use a plain file name that does not begin with a dot")]
+    #[error("`{name}` cannot name a result file: use a plain file name that does not begin with a dot")]
     Name {
         /// The name.
         name: String,
@@ -142,7 +145,7 @@ impl OutputDir {
                 fs::remove_file(entry.path()).map_err(failed("remove", &entry.path()))?;
             }
         }
-        // What is no list of names tells of no files.
+        // What is not a list of names tells of no files.
         let names = io::read_to_string(&lock).unwrap_or_default();
         let earlier = names.lines().filter(|name| is_plain(name)).map(str::to_owned).collect();
         Ok(Self { path, lock, earlier, written: RefCell::default() })

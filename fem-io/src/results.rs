@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-/// Largest file that is read: more is no result of a run.
+/// Largest file that is read: more is not a result of a run.
 const MAX_BYTES: u64 = 1 << 28;
 
 /// A table as it stands in its file.
@@ -22,7 +22,7 @@ impl Table {
     /// The values of a column, if all of them are finite numbers; else number (from 1) and text of the row that is none.
     ///
     /// # Errors
-    /// A field that is no finite number.
+    /// A field that is not a finite number.
     pub fn numbers(&self, column: usize) -> Result<Vec<f64>, (usize, String)> {
         let number = |(i, row): (usize, &Vec<String>)| {
             let value = row[column].parse::<f64>().ok().filter(|v| v.is_finite());
@@ -46,7 +46,7 @@ pub fn read_text(path: &Path) -> Result<Option<String>, FileError> {
     match file.take(MAX_BYTES + 1).read_to_string(&mut text) {
         Ok(bytes) if bytes as u64 > MAX_BYTES => Err(damaged(path, format!("it is longer than {MAX_BYTES} bytes"))),
         Ok(_) => Ok(Some(text)),
-        Err(cause) if cause.kind() == ErrorKind::InvalidData => Err(damaged(path, "it is no text".into())),
+        Err(cause) if cause.kind() == ErrorKind::InvalidData => Err(damaged(path, "it is not text".into())),
         Err(cause) => Err(failed("read", path)(cause)),
     }
 }

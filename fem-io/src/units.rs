@@ -15,7 +15,7 @@ use fem_core::plugin::{Dimension, unknown_key};
 use thiserror::Error;
 use uom::si::f64 as si;
 
-/// A text that is no quantity.
+/// A text that is not a quantity.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum UnitError {
@@ -42,7 +42,7 @@ pub enum UnitError {
     /// Too large or too small for a number of 64 bits.
     #[error("`{0}` is out of the range of numbers")]
     OutOfRange(String),
-    /// A unit of another dimension than the one wanted.
+    /// A unit of the wrong dimension.
     #[error("`{text}` is {found}, not {wanted}")]
     WrongDimension {
         /// The quantity.
@@ -180,7 +180,7 @@ pub fn parse_as(text: &str, wanted: Dimension) -> Result<f64, UnitError> {
     Err(UnitError::WrongDimension { text: text.to_owned(), found: in_words(found), wanted: in_words(wanted) })
 }
 
-/// True for a text that sets out as a number: it must then be a quantity, and is no word.
+/// True for a text that begins as a number: it must then be a quantity, and is not a word.
 pub(crate) fn begins_with_number(text: &str) -> bool {
     !split_number(text.trim()).0.is_empty()
 }
@@ -232,7 +232,7 @@ impl Scale {
     }
 }
 
-/// Largest exponent of a unit: what is beyond is a slip of the pen, and would only overflow.
+/// Largest exponent of a unit: a larger one is a typing error, and would only overflow.
 const MAX_EXPONENT: f64 = 12.0;
 const MAX_DEPTH: usize = 8;
 
@@ -342,7 +342,7 @@ impl Parser<'_> {
                 simple(symbol).ok_or_else(|| UnitError::Unknown { symbol: symbol.to_owned() })
             }
             ',' => Err(self.syntax("decimals take a point, not a comma")),
-            other => Err(self.syntax(format!("`{other}` belongs to no unit"))),
+            other => Err(self.syntax(format!("`{other}` is not part of a unit"))),
         }
     }
 }
@@ -476,7 +476,7 @@ mod tests {
             ("2 (kg", Dimension::MASS, ["`)` is missing", "N/mm^1.5"]),
             ("2 kg)", Dimension::MASS, ["`)` without `(`", "N/mm^1.5"]),
             ("2 J/kg K", Dimension::MASS, ["needs parentheses", "J/(kg K)"]),
-            ("2 %", Dimension::MASS, ["`%` belongs to no unit", "N/mm^1.5"]),
+            ("2 %", Dimension::MASS, ["`%` is not part of a unit", "N/mm^1.5"]),
             ("20 °C", Dimension::TEMPERATURE, ["unknown unit `C`", "known: K"]),
             ("3", Dimension::contact_stiffness(1.5), ["bare number", "N/mm^1.5"]),
             ("3 N", Dimension::contact_stiffness(1.5), ["is a force, not a quantity in m^-0.5 kg s^-2", "N/mm^1.5"]),

@@ -124,7 +124,7 @@ fn written(ply: &LayupPly) -> String {
     format!("{}{label}", ply.angle_deg)
 }
 
-/// A formula that is read has a value, and none for a stress that is no number.
+/// A formula that is read has a value, and none for a stress that is not a number.
 pub fn expression(data: &[u8]) {
     let text = text(data);
     match Expression::new(Site::Ply, &[("failure", text)]) {

@@ -13,7 +13,7 @@ const LITTLE: f64 = 0.05;
 const MUCH: f64 = 0.20;
 
 /// Contact radius over the edge of a cell beyond which the force spreads over several of them, and over the thickness beyond
-/// which a plate is no half-space.
+/// which a plate is not a half-space.
 const CELL: f64 = 0.5;
 const HALF_SPACE: f64 = 1.0;
 
@@ -69,11 +69,11 @@ impl Contact {
         let law = match self.share {
             share if share < LITTLE => "any stiffness within a factor of two will do",
             share if share <= MUCH => "the contact stiffness matters",
-            _ => "the contact law rules: calibrate it",
+            _ => "the contact law governs the force: calibrate it",
         };
         let unloading = if self.dent > 0.0 { "a dent remains: unloading matters after the peak" } else { "no dent" };
         let place = match self.radius {
-            0.0 => "at a node the force is singular: name a patch",
+            0.0 => "at a node the force is singular: use a patch",
             radius if radius > CELL * self.cell => "the patch spreads over cells",
             _ => "the patch lies within a cell: a node would do",
         };
@@ -93,7 +93,7 @@ impl Contact {
                     .threshold(format!("{CELL}: node or patch"))
                     .source("radius of the scene's patch; sqrt(R a) of a sphere"),
                 Number::new("radius / h", format!("{:.2}", self.radius / plate.thickness))
-                    .threshold(format!("{HALF_SPACE}: a plate is no half-space for Hertz' law")),
+                    .threshold(format!("{HALF_SPACE}: beyond it a plate is not the half-space of Hertz's law")),
             ],
             choice: format!("{law}; {unloading}; {place}{half_space}"),
             effect: "contact law",

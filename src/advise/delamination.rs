@@ -26,7 +26,7 @@ pub struct DelaminationAdvice {
 /// What the threshold says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Delaminates {
-    /// No: an elastic run will do.
+    /// No: an elastic run is enough.
     No,
     /// It may.
     Perhaps,
@@ -67,7 +67,7 @@ pub(super) fn answer(found: Option<&DelaminationAdvice>) -> Answer {
     };
     let DelaminationThreshold { force, giic, .. } = found.threshold;
     let choice = match found.verdict() {
-        Delaminates::No => "an elastic run will do",
+        Delaminates::No => "an elastic run is enough",
         Delaminates::Perhaps => "it may delaminate: look at when the threshold is reached",
         Delaminates::Yes => {
             "it will delaminate: trust the run up to the threshold, interfaces that open are not simulated"
@@ -78,7 +78,7 @@ pub(super) fn answer(found: Option<&DelaminationAdvice>) -> Answer {
             .threshold(format!("no below {SAFE}, yes above {BEYOND}"))
             .source("Davies and Zhang 1995; small mass 1.21 F_d, Olsson 2006"),
         Number::new("F_d = pi sqrt(32 D* GIIc/3)", format!("{force:.1} N at GIIc {giic:.0} J/m2"))
-            .source("half of GIIc more or less is a quarter of F_d"),
+            .source("50 % more or less GIIc changes F_d by about 25 %"),
     ];
     answer(numbers, choice)
 }

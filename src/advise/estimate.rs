@@ -27,7 +27,7 @@ impl Blow<'_> {
     }
 }
 
-/// What the formulas say of an impact, as if no other impactor struck.
+/// The estimates for an impact, as if its impactor struck alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// How the plate responds.

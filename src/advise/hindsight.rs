@@ -56,8 +56,8 @@ impl Hindsight {
                 at * 1e3
             )),
             (None, true) if model.decisions.iter().any(|decision| decision.effect == MEMBRANE) => Some(format!(
-                "the advisor switched membrane stiffening on, and A (w/h)^2 came to {reached:.4} only: `effects.membrane = \
-                 \"off\"` leaves the force right to {:.0} %",
+                "the advisor switched membrane stiffening on, and A (w/h)^2 came to {reached:.4} only: \
+                 `effects.membrane = \"off\"` keeps the force right within {:.0} %",
                 100.0 * THRESHOLD
             )),
             _ => None,

@@ -42,7 +42,7 @@ use fem_io::scene;
 use plate::AtRest;
 use std::num::NonZeroUsize;
 
-/// What the advisor says of one impactor, as if no other struck.
+/// The advisor's answers for one impactor, as if it struck alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
     /// Name of the impactor, where there are several.

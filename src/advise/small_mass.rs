@@ -1,4 +1,4 @@
-//! A mass much smaller than the plate's: an impact that is over before the edges are heard of.
+//! A mass much smaller than the plate's: the impact is over before waves return from the edges.
 
 use fem_core::contact::{ContactHistory, ContactLaw};
 

@@ -18,7 +18,7 @@ pub struct Assembled {
     pub structure: SparseStructure,
     /// Entries of the factor of K.
     pub factor_entries: usize,
-    /// What the computation takes at its peak, as it is expected.
+    /// Memory that the computation is expected to take at its peak.
     pub memory: MemoryEstimate,
     /// From the masters to the independent unknowns of the model.
     pub condensation: Option<Condensation>,

@@ -1,4 +1,4 @@
-//! Files that a later process goes on from, and what must agree with them for that.
+//! Files that a later process continues from, and what must agree with them for that.
 
 use crate::error::CheckpointError;
 use crate::model::Model;
@@ -83,7 +83,7 @@ fn differences(then: &Keys, now: &Keys) -> Vec<String> {
     let all: BTreeSet<_> = then.keys().chain(now.keys()).collect();
     let words = |key: &String| match (then.get(key), now.get(key)) {
         (then, now) if then == now => None,
-        (Some(_), Some(_)) if key.starts_with(MATERIALS) => Some(format!("`{key}` had other constants")),
+        (Some(_), Some(_)) if key.starts_with(MATERIALS) => Some(format!("`{key}` had different constants")),
         (Some(then), Some(now)) => Some(format!("`{key}` was {then} and is {now}")),
         (Some(then), None) => Some(format!("`{key}` was {then} and is left out")),
         (None, _) => Some(format!("`{key}` was left out")),
@@ -113,7 +113,7 @@ mod tests {
             "`a` was 1 and is 3",
             "`b` was 2 and is left out",
             "`c` was left out",
-            "`materials.m` had other constants",
+            "`materials.m` had different constants",
         ];
         assert_eq!(differences(&then, &now), want);
         let more = keys(&[("d", "1"), ("e", "1"), ("f", "1"), ("g", "1"), ("h", "1"), ("i", "1")]);

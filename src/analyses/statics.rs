@@ -18,7 +18,7 @@ use fem_core::structure::Structure;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
-/// Residual of the loads beyond which displacements are no result: they are about as wrong, for rounding in K alone.
+/// Residual of the loads beyond which displacements are not a result: they are about as wrong, for rounding in K alone.
 const MOST_RESIDUAL: f64 = 1e-2;
 
 /// What a static analysis found.
@@ -115,7 +115,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
     let sampled: Vec<_> = model.profiles.iter().map(sample).collect::<Result<_, ElementError>>()?;
     let (profiles, resultants) = sampled.into_iter().unzip();
     stopwatch.lap("stresses");
-    // The estimate knows no strains but those that stress.
+    // The estimate sees only strains that cause stress.
     let mesh_error = if model.effects.membrane || model.effects.cure.is_some() {
         None
     } else {

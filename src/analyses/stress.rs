@@ -99,7 +99,7 @@ impl<'a> Watch<'a> {
             states: vec![Stress6::new([0.0; 6]); recovery.sites()],
             recovery,
         };
-        // Stresses of large displacements are no product with the coordinates.
+        // Stresses of large deflections are not products with the coordinates.
         if let Some((basis, modes)) = watch.expansion.basis().filter(|_| !model.effects.membrane)
             && 6 * watch.recovery.sites() * modes * size_of::<f64>() <= OPERATOR_LIMIT
         {
@@ -184,7 +184,7 @@ impl<'a> Watch<'a> {
         (self.scan.record(), &self.record)
     }
 
-    /// Goes on from what a watch of the same model has seen; `false` where the records are of another size.
+    /// Continues from what a watch of the same model has seen; `false` where the records are of another size.
     pub(super) fn resume(&mut self, scan: scan::ScanRecord, record: Record) -> bool {
         let fits = record.histories.len() == self.probes.len() && self.scan.resume(scan);
         if fits {

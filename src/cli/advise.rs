@@ -23,7 +23,7 @@ pub(super) struct Arguments {
     format: Format,
 }
 
-/// What is said of an impactor; units are in the key names.
+/// The summary of an impactor; units are in the key names.
 #[derive(Serialize)]
 #[allow(non_snake_case)]
 struct Said<'a> {

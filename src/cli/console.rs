@@ -56,7 +56,7 @@ impl Console {
         Self { voice, lost: OnceCell::new() }
     }
 
-    /// Prints for people.
+    /// Prints text.
     pub(super) fn print(&self, text: &str) {
         if !self.voice.quiet {
             self.put(text.as_bytes());

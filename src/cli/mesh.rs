@@ -38,7 +38,7 @@ pub(super) struct Arguments {
 
 pub(super) fn mesh(arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let metres = units::parse_as(&format!("1 {}", arguments.unit), Dimension::LENGTH)
-        .map_err(|_| miette!(help = "write --unit mm, m or in", "`{}` is no unit of length", arguments.unit))?;
+        .map_err(|_| miette!(help = "write --unit mm, m or in", "`{}` is not a unit of length", arguments.unit))?;
     let (GmshMesh { mesh, warnings }, impacts) = read(&arguments.file, metres)?;
     let summary = MeshSummary::new(&mesh, warnings);
     let picture =
@@ -46,7 +46,7 @@ pub(super) fn mesh(arguments: &Arguments, console: &Console) -> miette::Result<E
     if let Some(out) = &arguments.out {
         let encoding = if arguments.binary { Encoding::Binary } else { Encoding::Ascii };
         let name = out.file_name().and_then(|name| name.to_str());
-        let name = name.ok_or_else(|| miette!("`{}` is no name of a file", out.display()))?;
+        let name = name.ok_or_else(|| miette!("`{}` cannot name a file", out.display()))?;
         let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let write = |dir: OutputDir| dir.write(name, |file| gmsh::write(file, &mesh, metres, encoding));
         OutputDir::create(folder).and_then(write).map_err(Error::from)?;

@@ -43,7 +43,7 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Makes a folder with a scene to begin with, every key explained.
+    /// Creates a folder with a first scene, every key explained.
     ///
     /// The scene runs at once. Keys that it leaves out are there as comments, with the values that hold without them.
     /// Beside it lies a JSON Schema, by which editors complete and check the scene.
@@ -74,7 +74,7 @@ enum Command {
     /// will run, prints tables, writes study.csv, study.md and pictures of errors over time; every run is kept at once in
     /// study.bin, from which `--resume` goes on.
     Study(study::Arguments),
-    /// Makes a page of a folder of results: report.html, which opens from disk.
+    /// Makes a page from a folder of results: report.html, which opens from disk.
     ///
     /// One file with everything in it: summary, pictures, curves and damage to move through, events, errors, costs, the scene.
     /// Reads the files of the folder alone.

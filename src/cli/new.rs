@@ -14,7 +14,7 @@ use std::process::ExitCode;
 #[derive(Debug, Args)]
 #[command(after_help = "Example: fem new coupon --template drop-weight && fem run coupon/scene.toml")]
 pub(super) struct Arguments {
-    /// Folder to be made; one that exists is left alone.
+    /// Folder to create; it must not exist yet.
     #[arg(value_name = "NAME", required_unless_present = "list")]
     folder: Option<PathBuf>,
     /// What the scene begins with, see --list.
@@ -106,7 +106,7 @@ const MESH: &str = "plate.msh";
 fn write(registry: &Registry, template: &Template, folder: &Path) -> miette::Result<Vec<&'static str>> {
     if folder.symlink_metadata().is_ok() {
         let help = "choose another name, or remove it yourself";
-        return Err(miette!(help = help, "`{}` exists and is left alone", folder.display()));
+        return Err(miette!(help = help, "`{}` exists already and is not overwritten", folder.display()));
     }
     let plugins = |kind| registry.choices(kind);
     let scene = format!("#:schema ./{SCHEMA}\n{}", scene::annotated(template.scene, &plugins)?);
@@ -114,7 +114,7 @@ fn write(registry: &Registry, template: &Template, folder: &Path) -> miette::Res
     let mut files = vec![(SCENE, scene.as_bytes()), (SCHEMA, schema.as_bytes())];
     files.extend(template.mesh.map(|mesh| (MESH, mesh)));
 
-    let name = folder.file_name().ok_or_else(|| miette!("`{}` is no name for a folder", folder.display()))?;
+    let name = folder.file_name().ok_or_else(|| miette!("`{}` cannot name a folder", folder.display()))?;
     let mut partial = std::ffi::OsString::from(".");
     partial.push(name);
     partial.push(format!(".{}.partial", std::process::id()));

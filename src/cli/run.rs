@@ -33,7 +33,8 @@ pub(super) struct Arguments {
     /// Folder of the results [default: results/<folder of the scene>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Go on from the checkpoint in the folder of the results: a march that was stopped or killed, or one with a later
+    /// Continue from the checkpoint in the folder of the results: a march that was stopped or killed, or one with a
+    /// later
     /// `march.end`. The files are those of a run in one piece.
     #[arg(long)]
     resume: bool,
@@ -133,7 +134,7 @@ fn march(model: &Model, arguments: &Arguments, folder: &Path, bar: &ProgressBar)
         let command = command.join(" ");
         let _ = writeln!(
             std::io::stderr(),
-            "Stopped by a signal at {t:.4} ms, {share:.0} % of the march. To go on: {command}{again}"
+            "Stopped by a signal at {t:.4} ms, {share:.0} % of the march. To continue: {command}{again}"
         );
         return Ok(Ended::Stopped(signal));
     }

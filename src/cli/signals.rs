@@ -5,14 +5,14 @@ use signal_hook::flag;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Signals that are heard. SIGHUP where the system tells whether it is to be ignored.
+/// Signals that are caught. SIGHUP where the system tells whether it is to be ignored.
 #[cfg(target_os = "linux")]
 const HEARD: [i32; 3] = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
 #[cfg(not(target_os = "linux"))]
 const HEARD: [i32; 2] = [SIGINT, SIGTERM];
 
-/// Hears the first Ctrl-C, SIGTERM or SIGHUP (a terminal that closes); a second one ends the process as if nobody listened.
-/// What the process was told to ignore, as `nohup` does, stays ignored.
+/// Catches the first Ctrl-C, SIGTERM or SIGHUP (a terminal that closes); a second one ends the process as if nobody
+/// listened. What the process was told to ignore, as `nohup` does, stays ignored.
 #[derive(Debug, Default)]
 pub(super) struct Signals {
     received: Arc<AtomicUsize>,

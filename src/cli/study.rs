@@ -30,7 +30,7 @@ pub(super) struct Arguments {
     /// Writes scene.toml, the scene with the cheapest setting whose error is within this, for example 1% or 0.003
     #[arg(long, value_name = "ERROR", value_parser = share)]
     tolerance: Option<f64>,
-    /// Go on with the study in the folder of the results; what has run there is not run again
+    /// Continue the study in the folder of the results; what has run there is not run again
     #[arg(long)]
     resume: bool,
     /// Folder of the results [default: results/<folder of the scene>-study]
@@ -62,7 +62,7 @@ fn time(text: &str) -> Result<f64, String> {
     });
     match fem_io::units::parse_as(&spaced, fem_core::plugin::Dimension::TIME) {
         Ok(seconds) if seconds > 0.0 => Ok(seconds),
-        Ok(_) => Err("must be longer than nothing".into()),
+        Ok(_) => Err("must be longer than zero".into()),
         Err(why) => Err(why.to_string()),
     }
 }
@@ -87,7 +87,7 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Consol
     let bar = console.progress(1000, "study {bar:40} {percent:>3} %  {msg}");
     let found = session.found();
     if found > 0 {
-        console.say(format, || format!("  {found} runs are there already\n"));
+        console.say(format, || format!("  {found} runs are there from before\n"));
     }
     let report = study::study(&mut session, &model, &axes, arguments.budget, &mut |told| match told {
         Progress::Planned(plan) => bar.suspend(|| console.say(format, || format!("{plan}\n"))),
@@ -131,7 +131,7 @@ fn write(session: &Session<'_>, report: &Report) -> Result<(), Error> {
     Ok(())
 }
 
-/// The cheapest setting that keeps `tolerance` in everything asked.
+/// The cheapest setting that keeps `tolerance` in all quantities.
 fn cheapest(report: &Report, tolerance: f64) -> Option<&Setting> {
     let all: Vec<usize> = (0..report.asked.len()).collect();
     report.cheapest(&all, tolerance).map(|row| &row.level.setting)
@@ -149,13 +149,13 @@ fn promised(session: &Session<'_>, tolerance: Option<f64>, cheapest: Option<&Set
         (None, _) => String::new(),
         (Some(tolerance), Some(_)) => {
             let file = session.dir().path().join("scene.toml");
-            format!("\n  {tolerance} in everything asked is kept by {}\n", file.display())
+            format!("\n  {tolerance} in all quantities is met by {}\n", file.display())
         }
         (Some(tolerance), None) => {
             let best = report.rows.iter().filter_map(|row| row.worst()).reduce(f64::min);
-            let best = best.map_or(String::new(), |best| format!("; the best leaves {best:.1e}"));
+            let best = best.map_or(String::new(), |best| format!("; the best run reaches {best:.1e}"));
             format!(
-                "\n  no run is certain to keep {tolerance} in everything asked{best}: give it more time, or ask less\n"
+                "\n  no run is certain to meet {tolerance} in all quantities{best}: allow more time or a larger error\n"
             )
         }
     }

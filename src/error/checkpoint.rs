@@ -1,14 +1,14 @@
-//! Why a march or a study cannot go on from what an earlier process has saved.
+//! Why a march or a study cannot continue from what an earlier process has saved.
 
 use fem_io::files::FileError;
 use miette::Diagnostic;
 use std::path::PathBuf;
 
-/// Why a march cannot go on from a checkpoint.
+/// Why a march cannot continue from a checkpoint.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 #[non_exhaustive]
 pub enum CheckpointError {
-    /// There is none.
+    /// There is no checkpoint.
     #[error("there is no checkpoint in `{}`", folder.display())]
     #[diagnostic(help("run without `--resume` first, or name the folder of the run with `--out`"))]
     Missing {
@@ -17,11 +17,11 @@ pub enum CheckpointError {
     },
     /// It cannot be read, or is not as it was written.
     #[error(transparent)]
-    #[diagnostic(help("run without `--resume`: that starts anew and replaces the checkpoint"))]
+    #[diagnostic(help("run without `--resume`: that starts over and replaces the checkpoint"))]
     File(#[from] FileError),
     /// Another version wrote it.
     #[error("the checkpoint in `{}` was written by version {theirs}, this is version {}", folder.display(), env!("CARGO_PKG_VERSION"))]
-    #[diagnostic(help("go on with version {theirs}, or run without `--resume` to start anew"))]
+    #[diagnostic(help("continue with version {theirs}, or run without `--resume` to start over"))]
     Version {
         /// The folder.
         folder: PathBuf,
@@ -31,7 +31,8 @@ pub enum CheckpointError {
     /// It belongs to another run.
     #[error("the checkpoint in `{}` belongs to another run: {}", folder.display(), differences.join("; "))]
     #[diagnostic(help(
-        "restore what differs, or run without `--resume` to start anew; the title, the plots and the end of a march may differ"
+        "restore what differs, or run without `--resume` to start over; the title, the plots and the end of a march \
+         may differ"
     ))]
     Differs {
         /// The folder.
@@ -41,7 +42,7 @@ pub enum CheckpointError {
     },
     /// It lies beyond the end.
     #[error("the checkpoint in `{}` is at {at:e} s, beyond `march.end`", folder.display())]
-    #[diagnostic(help("set `march.end` to that time or a later one, or run without `--resume` to start anew"))]
+    #[diagnostic(help("set `march.end` to that time or a later one, or run without `--resume` to start over"))]
     Beyond {
         /// The folder.
         folder: PathBuf,

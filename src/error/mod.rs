@@ -41,8 +41,8 @@ pub enum Error {
     BothTriangles(#[from] faer::sparse::FaerError),
     #[error("this takes about {needed} of memory, and {available} are free: {parts}")]
     #[diagnostic(help(
-        "take fewer cells (a coarser mesh, a smaller `mesh.refine`), fewer `laminate.layers`, a `symmetry` of the plate, \
-         `substructures`, or a machine with more memory"
+        "use fewer cells (a coarser mesh, a smaller `mesh.refine`), fewer `laminate.layers`, a `symmetry` of the \
+         plate, `substructures`, or a machine with more memory"
     ))]
     Memory {
         /// What it takes.
@@ -69,16 +69,16 @@ pub enum Error {
     #[error("the scene describes no impact")]
     #[diagnostic(help("set `analysis = \"impact\"` and describe impactor, contact and march"))]
     NoImpact,
-    #[error("`{element}` is a section, and the advisor's formulas are those of plates")]
-    #[diagnostic(help("take a plate and one of its elements, such as `mitc4`"))]
+    #[error("`{element}` is a section, and the advisor's formulas hold for plates only")]
+    #[diagnostic(help("use a plate and one of its elements, such as `mitc4`"))]
     NoPlate {
         /// Name of the element.
         element: String,
     },
-    #[error("the scene leaves `effects.membrane` to the advisor, who was not asked")]
+    #[error("the scene leaves `effects.membrane` to the advisor, which was not asked")]
     #[diagnostic(help("pass the model through `fem::advise::decided`, or write \"on\" or \"off\""))]
     Undecided,
-    #[error("the scene does not run as it is, and there is nothing to study: {0}")]
+    #[error("the scene itself does not run, so that there is nothing to study: {0}")]
     Study(String),
     #[error("there is no axis `{name}`")]
     #[diagnostic(help("{help}"))]
@@ -96,28 +96,29 @@ pub enum Error {
     },
     #[error("the march stopped: {0}")]
     Stopped(String),
-    #[error("the scene describes no loads at rest")]
+    #[error("the scene describes no static loads")]
     #[diagnostic(help("set `analysis = \"static\"` and give a `[[load]]`"))]
     NoLoads,
     #[error(transparent)]
     #[diagnostic(help("give its `alpha1` and `alpha2`, or leave `effects.cure` out"))]
     Material(#[from] MaterialError),
-    #[error("the element knows no large displacements")]
+    #[error("the element does not support large deflections")]
     #[diagnostic(help(
-        "choose an element that does, such as `hermite-prism` or `mitc4`, or leave `effects.membrane` out"
+        "use an element that does, such as `hermite-prism` or `mitc4`, or leave `effects.membrane` out"
     ))]
     SmallOnly,
-    #[error("there is no equilibrium under large displacements")]
+    #[error("no equilibrium was found with large deflections")]
     #[diagnostic(help("{}", at_rest(.0)))]
     Equilibrium(#[from] EquilibriumError),
-    #[error("a {0} is not finite: the structure is singular, or a load out of the range of numbers")]
+    #[error("a {0} is not finite: the structure is singular, or a load is too large for floating-point numbers")]
     NotFinite(&'static str),
     #[error(
-        "the loads are met to {residual:.1e} of their size only: the stiffness is too ill-conditioned for 16 digits"
+        "the loads are balanced to {residual:.1e} of their size only: the stiffness is too ill-conditioned for 16 \
+         digits"
     )]
     #[diagnostic(help(
-        "cells much wider than thick are stiff through their thickness and soft in bending: take the shell \
-                       `mitc4`, or fewer layers of narrower cells"
+        "cells much wider than thick are stiff through their thickness and soft in bending: use the shell `mitc4`, or \
+         fewer layers of narrower cells"
     ))]
     IllConditioned {
         /// ‖f − K u‖ / ‖f‖
@@ -138,17 +139,17 @@ pub enum Error {
 }
 
 const STEP: &str = "shorten `march.step`";
-const STEP_OR_LAW: &str = "shorten `march.step`; where that changes nothing, look at the contact law: \
-                           `fem_core::testkit::check_contact_law` finds what is wrong with it";
+const STEP_OR_LAW: &str = "shorten `march.step`; if that changes nothing, look at the contact law: \
+    `fem_core::testkit::check_contact_law` finds what is wrong with it";
 const MATRIX: &str =
-    "look at the supports, at the constants of the materials, and at the element where it is not a shipped one";
+    "look at the supports, at the constants of the materials, and at the element if it is one of your own";
 const LAW: &str = "look at the contact law: `fem_core::testkit::check_contact_law` finds what is wrong with it";
 
 /// What helps where there is no equilibrium.
 fn at_rest(error: &EquilibriumError) -> &'static str {
     match error {
         EquilibriumError::Factor(FactorError::NotPositive { .. }) => {
-            "lower the load below the one that buckles the plate; where there is none in the plane, look at the supports: \
+            "lower the load below the one that buckles the plate; if there is none in the plane, look at the supports: \
              they must stop every rigid motion"
         }
         EquilibriumError::NoConvergence(_) => "lower the load, or refine the mesh where the plate bends most",

@@ -32,7 +32,7 @@ macro_rules! build {
             Ok(_) => Err($self.error(
                 &spec.name,
                 format!("the plug-in registered as {} `{}` builds something else", Kind::$kind, spec.name.value),
-                "mend the plug-in",
+                "correct the plug-in",
             )),
             Err(RegistryError::Param(e)) => {
                 let known = $self.registry.param(Kind::$kind, &spec.name.value, &e.key);
@@ -101,7 +101,9 @@ impl Builder<'_> {
             (Site::Interface, None) => {
                 return Err(self.error(
                     &spec.name,
-                    format!("criterion `{name}` judges the resin between plies, and the laminate names none"),
+                    format!(
+                        "criterion `{name}` judges the resin between plies, and the laminate names no material for it"
+                    ),
                     "give `laminate.interface` the name of a material",
                 ));
             }
@@ -124,7 +126,7 @@ impl Builder<'_> {
         let kept = plate.symmetry().quads().map(|(quad, _)| quad);
         let Some(radius) = failure.radius else { return Ok(kept.collect()) };
         if centres.is_empty() {
-            let message = "`failure.radius` counts from the impact, and here is none";
+            let message = "`failure.radius` is measured from the impact, and this analysis has none";
             return Err(self.scene.source.error_at(&failure.place, message, "leave it out"));
         }
         let watched: Vec<usize> = kept.filter(near(plate, centres, radius)).collect();
@@ -232,7 +234,7 @@ impl Builder<'_> {
             let ([column], [level]) = (&columns[..], &levels[..]) else {
                 return Err(self.error(
                     &term.node.group,
-                    format!("a term of an equation stands at one node, but `{}` has more", term.node.group.value),
+                    format!("a term of an equation takes a single node, but `{}` has more", term.node.group.value),
                     "name a group of one node and one level",
                 ));
             };

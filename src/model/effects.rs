@@ -21,7 +21,7 @@ pub struct Effects {
     pub inertia: bool,
     /// Weight of plate and impactors, m/s².
     pub gravity: Option<f64>,
-    /// Change of temperature since the plate was without stresses, K: residual stresses.
+    /// Change of temperature since the plate was free of stress, K: residual stresses.
     pub cure: Option<f64>,
 }
 
@@ -34,7 +34,7 @@ pub struct Decision {
     pub on: bool,
     /// What was asked, a formula.
     pub formula: &'static str,
-    /// Its value as it is expected, beforehand.
+    /// Its value as expected before the run.
     pub expected: f64,
     /// The value from which on the effect is needed.
     pub threshold: f64,
@@ -83,7 +83,7 @@ impl Builder<'_> {
             Some(wish) if wish.value == Delamination::Off => Ok(None),
             Some(wish) if threshold.is_none() => Err(self.error(
                 wish,
-                "no material tells the toughness of the laminate between its plies",
+                "no material gives the toughness between the plies",
                 "give the material of `laminate.interface`, or of the plies, its `GIIc`, for example: GIIc = \"0.6 kJ/m^2\"",
             )),
             Some(wish) => {
@@ -106,7 +106,7 @@ impl Builder<'_> {
         if matches!(damping.value, Damping::Ratio(_)) && impact.reduction.name.value == NO_REDUCTION {
             return Err(self.error(
                 damping,
-                "the ratio is that of every mode, and the full plate has no modes",
+                "the ratio damps the modes of a reduced plate, and this plate is not reduced",
                 "name a reduction, for example: reduction = { method = \"ritz\", vectors = 40 }; or give C = mass M + \
                  stiffness K: damping = { mass = \"30 1/s\", stiffness = \"2e-8 s\" }",
             ));
@@ -133,7 +133,7 @@ impl Builder<'_> {
         let Some(gravity) = &self.scene.effects.gravity else { return Ok(None) };
         self.in_time(gravity, "gravity", "leave it out; at rest it is a load: load = [{ gravity = [...] }]")?;
         if self.scene.substructures.is_some() {
-            let message = "the inside of condensed substructures does not sag";
+            let message = "gravity is not carried inside condensed substructures";
             return Err(self.error(gravity, message, "leave one of `substructures` and `effects.gravity` out"));
         }
         Ok(Some(gravity.value))
@@ -143,7 +143,7 @@ impl Builder<'_> {
         let Some(change) = &self.scene.effects.cure else { return Ok(None) };
         let refused = |message: &str, help: &str| Err(self.error(change, message, help));
         if matches!(self.scene.analysis, Analysis::Modes { .. }) {
-            return refused("residual stresses of a free plate change none of its natural modes", "leave `cure` out");
+            return refused("residual stresses do not change the natural modes of a free plate", "leave `cure` out");
         }
         let looks = criteria.iter().any(|(_, criterion)| criterion.info().site == Site::Interface);
         let judged = self.scene.interface.as_ref().filter(|_| looks);
@@ -173,10 +173,10 @@ impl Builder<'_> {
         }
         if element.large_displacements().is_none() {
             let name = &self.scene.element.name.value;
-            let message = format!("the element `{name}` knows no large displacements");
+            let message = format!("the element `{name}` does not support large deflections");
             return refused(
                 message,
-                "choose an element that does, such as `hermite-prism` or `mitc4`, or leave `membrane` out",
+                "use an element that does, such as `hermite-prism` or `mitc4`, or leave `membrane` out",
             );
         }
         if self.scene.substructures.is_some() {

@@ -33,7 +33,7 @@ impl Builder<'_> {
                 quads
             }
             Some(Region::Radius(radius)) if centres.is_empty() => {
-                let message = "a radius counts from the impact, and here is none";
+                let message = "a radius is measured from the impact, and this analysis has none";
                 return Err(self.error(radius, message, "name a `group` of cells, or leave `region` out"));
             }
             Some(Region::Radius(radius)) => {

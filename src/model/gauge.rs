@@ -65,7 +65,7 @@ impl Builder<'_> {
         // At a node of a symmetric mesh several are equally near: the first of them, whatever the last bit says.
         let quad = holding().find(|q| from_centre(*q) <= nearest * (1.0 + 1e-9)).ok_or_else(|| {
             let [x, y] = point.map(|v| v * 1e3);
-            let message = format!("no cell whose stresses are watched holds ({x:.4}, {y:.4}) mm");
+            let message = format!("({x:.4}, {y:.4}) mm lies in no cell whose stresses are computed");
             self.error(&watch.at, message, "choose a place on the plate and within `failure.radius` of the impact")
         })?;
 

@@ -8,7 +8,7 @@ use fem_io::scene::{self, Located, MeshSource, Scene, SceneError};
 /// The mesh of `scene`, read or built, and refined as the scene says.
 ///
 /// # Errors
-/// A file that cannot be read or is no sound mesh; too many cells.
+/// A file that cannot be read or is not a sound mesh; too many cells.
 pub fn mesh(scene: &Scene) -> Result<GmshMesh, Error> {
     let built = |mesh| GmshMesh { mesh, warnings: Vec::new() };
     match &scene.mesh {

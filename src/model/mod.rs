@@ -251,15 +251,15 @@ fn flat(plate: &Plate) -> Option<String> {
     let error = FLAT * over_thickness.powi(2) * (widest / side).powi(4);
     (!plate.info().is_shell() && error > FLAT_ERROR).then(|| {
         format!(
-            "cells up to {over_thickness:.0} times as wide as the plate is thick bend too stiffly, by up to {:.1} %: make them \
-             narrower or take the shell `mitc4`",
+            "cells up to {over_thickness:.0} times as wide as the plate is thick bend too stiffly, by up to {:.1} %: \
+             make them narrower or use the shell `mitc4`",
             error.min(1.0) * 100.0
         )
     })
 }
 
-/// The pressure in a material that hardly changes its volume is no function of the strains of a solid cell: deflections are
-/// right, stresses swing about the right ones from point to point.
+/// The pressure in a material that hardly changes its volume is not a function of the strains of a solid cell:
+/// deflections are right, stresses swing about the right ones from point to point.
 fn incompressible(plate: &Plate, laminate: &Laminate, materials: &[Material]) -> Option<String> {
     let yields = |material: &&Material| {
         let s = material.elastic.compliance();
@@ -270,8 +270,8 @@ fn incompressible(plate: &Plate, laminate: &Laminate, materials: &[Material]) ->
     let worst = used.min_by(|a, b| yields(a).total_cmp(&yields(b))).filter(|m| yields(m) < INCOMPRESSIBLE)?;
     (!plate.info().is_shell()).then(|| {
         format!(
-            "material `{}` is nearly incompressible: stresses in its cells may be far off; lower its Poisson's ratios (those of \
-             an isotropic material below 0.45) or take the shell `mitc4`",
+            "material `{}` is nearly incompressible: stresses in its cells may be far off; lower its Poisson's ratios \
+             (those of an isotropic material below 0.45) or use the shell `mitc4`",
             worst.name
         )
     })

@@ -180,7 +180,7 @@ impl Builder<'_> {
             }
             if line.equilibrium && cells < LEAST_CELLS {
                 let message = format!("the stresses of {cells} cells cannot be differentiated for `equilibrium`");
-                let help = format!("take at least {LEAST_CELLS} cells, or leave `equilibrium` out");
+                let help = format!("use at least {LEAST_CELLS} cells, or leave `equilibrium` out");
                 return Err(self.error(&line.name, message, help));
             }
             let bottom = self.bottom_pressure(plate, &profile, point)?;
@@ -252,7 +252,7 @@ impl Builder<'_> {
             let (low, high) = plate.plane.bounds();
             if (0..2).any(|d| !(low[d]..=high[d]).contains(&centre[d])) {
                 let [from, to] = [low, high].map(|corner| corner.map(|x| x * 1e3));
-                let message = format!("({:.4}, {:.4}) mm is beside the plate", centre[0] * 1e3, centre[1] * 1e3);
+                let message = format!("({:.4}, {:.4}) mm lies outside the plate", centre[0] * 1e3, centre[1] * 1e3);
                 let help = format!(
                     "x runs from {:.4} to {:.4} mm and y from {:.4} to {:.4} mm, if `mesh.unit` is right",
                     from[0], to[0], from[1], to[1]

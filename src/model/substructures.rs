@@ -79,7 +79,7 @@ impl Builder<'_> {
             kept.extend(masters.dofs.iter().flat_map(|dof| plate.dofs_at(column as usize, level, *dof)));
         }
         if kept.is_empty() {
-            let message = format!("the masters of `{}` are none", masters.nodes.group.value);
+            let message = format!("`{}` adds no masters", masters.nodes.group.value);
             return Err(self.error(&masters.nodes.group, message, "the element has none of the unknowns of `dofs`"));
         }
         Ok(kept)

@@ -116,7 +116,7 @@ impl Builder<'_> {
                 if alone.restrict(&image).iter().any(|(_, factor)| factor.abs() > ROUNDING * largest) {
                     let missing = image.first().map_or_else(String::new, |(dof, _)| plate.describe(*dof));
                     let message = format!(
-                        "{} breaks the symmetry `{name}`: nothing of the kind holds its image, {missing}",
+                        "{} breaks the symmetry `{name}`: nothing of that kind holds its image, {missing}",
                         equation.origin
                     );
                     return Err(self.scene.source.error_at(place, message, "support both, or leave `symmetry` out"));

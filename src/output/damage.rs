@@ -165,8 +165,11 @@ impl DamageMap {
         let good = |fits: bool, what: &str| if fits { Ok(()) } else { Err(what.to_owned()) };
         good(self.cells.len() == self.quads.len(), "`cells` and `quads` differ in length")?;
         let points = self.points_m.len();
-        good(self.quads.iter().flatten().all(|n| (*n as usize) < points), "`quads` names a node that is not there")?;
-        good(self.judged.iter().all(|q| (*q as usize) < self.quads.len()), "`judged` names a cell that is not there")?;
+        good(self.quads.iter().flatten().all(|n| (*n as usize) < points), "`quads` names a node that does not exist")?;
+        good(
+            self.judged.iter().all(|q| (*q as usize) < self.quads.len()),
+            "`judged` names a cell that does not exist",
+        )?;
         let places = self.points_m.iter().chain(&self.impacts_m).flatten().copied();
         let heights = self.plies.iter().flat_map(|ply| [ply.angle_deg, ply.z_m[0], ply.z_m[1]]);
         good(places.chain(heights).chain([self.end_s]).all(f64::is_finite), "a coordinate is not finite")?;

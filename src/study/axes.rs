@@ -27,7 +27,7 @@ pub enum AxisKind {
     Ladder,
     /// Other ways to the same answer.
     Ways,
-    /// Other problems: what they change is no error.
+    /// Other problems: what they change is not an error.
     Problems,
 }
 
@@ -36,9 +36,9 @@ pub enum AxisKind {
 pub struct Level {
     /// Its name in tables.
     pub label: String,
-    /// What it lays over the scene; nothing where it is the scene's own.
+    /// What it sets in the scene; empty for the scene's own level.
     pub setting: Setting,
-    /// Whether the step is to be the longest that is stable, which takes a look at the model.
+    /// Whether to take the longest stable step, which depends on the model.
     pub at_limit: bool,
 }
 
@@ -48,7 +48,7 @@ impl Level {
         Self { label: label.into(), setting, at_limit: false }
     }
 
-    /// The scene as it is.
+    /// The scene itself.
     fn own(label: impl Into<String>) -> Self {
         Self::new(label, [])
     }

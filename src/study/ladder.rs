@@ -13,7 +13,7 @@ pub struct Ladder {
     pub axis: String,
     /// The levels that ran, coarse to fine.
     pub levels: Vec<Rung>,
-    /// Per quantity: what its sequence says, and what is to be added to the finest level's value to reach the limit.
+    /// Per quantity: what its sequence says, and what to add to the finest level's value to reach the limit.
     pub limits: Vec<Limit>,
 }
 
@@ -89,7 +89,7 @@ impl Ladder {
         ladder
     }
 
-    /// What is to be added to the value of `quantity` at level `rung` to reach the limit, and its uncertainty,
+    /// What to add to the value of `quantity` at level `rung` to reach the limit, and its uncertainty,
     /// both relative; `None` where there is no limit.
     pub(super) fn correction(&self, quantity: &str, rung: usize) -> Option<(f64, f64)> {
         let k = self.limits.iter().position(|limit| limit.quantity == quantity)?;

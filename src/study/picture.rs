@@ -15,14 +15,14 @@ const NAMED: [f64; 3] = [0.1, 0.01, 1e-3];
 const OF_THEIR_OWN: [&str; 2] = ["reductions", "integrators"];
 const OTHERS: &str = "other ways";
 
-/// Draws errors over processor time: `work-precision` of everything asked, `work-precision-QUANTITY` of each, and `ladders`,
-/// what each ladder alone leaves; as SVG and PNG. A picture that would show nothing is left out.
+/// Draws errors over processor time: `work-precision` of all quantities, `work-precision-QUANTITY` of each, and
+/// `ladders`, what each ladder alone leaves; as SVG and PNG. A picture that would show nothing is left out.
 ///
 /// # Errors
 /// A folder that cannot be written.
 pub fn write_pictures(dir: &OutputDir, report: &Report) -> Result<(), Error> {
     let all: Vec<usize> = (0..report.asked.len()).collect();
-    let what = if all.len() == 1 { report.asked[0].as_str() } else { "everything asked" };
+    let what = if all.len() == 1 { report.asked[0].as_str() } else { "all quantities" };
     draw(dir, "work-precision", &work_precision(report, what, &all))?;
     if all.len() > 1 {
         for (q, quantity) in report.asked.iter().enumerate() {
@@ -83,13 +83,13 @@ fn work_precision(report: &Report, what: &str, quantities: &[usize]) -> LinePlot
     plot::work_precision(&report.title, what, all, &front, &named)
 }
 
-/// What each ladder alone leaves of everything asked that converges, over time.
+/// What each ladder alone leaves of all quantities that converge, over time.
 fn ladders(report: &Report) -> LinePlot {
     let sure = report.convergent();
     let what = match &sure[..] {
         [one] => one.as_str(),
         some if some.len() < report.asked.len() => "what converges",
-        _ => "everything asked",
+        _ => "all quantities",
     };
     let point = |axis: &str, rung: &Rung| {
         let record = report.row_of(axis, &rung.level)?.result.as_ref().ok()?;

@@ -47,9 +47,9 @@ pub struct Planned {
     pub kind: AxisKind,
     /// The level.
     pub level: Level,
-    /// Sizes as they are expected.
+    /// Expected sizes.
     pub size: Size,
-    /// Processor time as it is expected, s.
+    /// Expected processor time, s.
     pub seconds: f64,
     /// Its place on every ladder, if it is of levels of all ladders together.
     pub rungs: Vec<usize>,
@@ -72,7 +72,7 @@ pub struct StudyPlan {
 }
 
 impl StudyPlan {
-    /// Processor time of all, s, as it is expected.
+    /// Expected processor time of all, s.
     pub fn seconds(&self) -> f64 {
         self.runs.iter().map(|run| run.seconds).sum::<f64>() + self.joint
     }
@@ -171,7 +171,7 @@ impl Planner {
     fn expect(&self, session: &Session<'_>, axis: &StudyAxis, level: &Level, rates: Rates) -> Result<Planned, String> {
         let size = if level.setting.is_empty() { self.base } else { self.size(session, level)? };
         if size.factor_entries > MOST_ENTRIES {
-            return Err(format!("about {} unknowns are more than a study makes", size.unknowns));
+            return Err(format!("about {} unknowns are more than a study runs", size.unknowns));
         }
         let seconds = rates.seconds(&size);
         let (axis, kind, level) = (axis.name.clone(), axis.kind, level.clone());
@@ -186,7 +186,7 @@ impl Planner {
         };
         let refined = level.setting.get("mesh.refine").and_then(|n| n.parse::<i32>().ok()).unwrap_or(0);
         if self.base.cells as f64 * 4.0_f64.powi(refined) > MOST_CELLS {
-            return Err("more cells than a study makes".into());
+            return Err("more cells than a study runs".into());
         }
         size().map_err(|why| why.to_string())
     }

@@ -97,8 +97,8 @@ pub(super) fn of_statics(model: &Model, solution: &StaticSolution) -> Result<Vec
         let value = at(&solution.profiles[p], k, *height);
         let outside = || {
             wrong(
-                format!("the plate has nothing at a height of {height:e} m"),
-                "heights count from the mid-plane".into(),
+                format!("a height of {height:e} m lies outside the plate"),
+                "heights are measured from the mid-plane".into(),
             )
         };
         figures.push(Figure::new(name, value.ok_or_else(outside)?, true));

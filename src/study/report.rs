@@ -47,7 +47,7 @@ pub struct Row {
     pub rungs: Vec<usize>,
     /// What it gave, or why it gave nothing.
     pub result: Result<RunRecord, String>,
-    /// Processor time as it was expected, s.
+    /// Expected processor time, s.
     pub expected_s: f64,
     /// Relative error of each quantity that its axis alone leaves, or changes.
     pub own: Vec<Option<f64>>,
@@ -118,7 +118,7 @@ impl Report {
         }
     }
 
-    /// The scene as it is.
+    /// The scene itself.
     pub fn base(&self) -> &Row {
         &self.rows[0]
     }
@@ -311,8 +311,9 @@ impl Report {
             let error = row.own_worst().unwrap_or(0.0);
             notes.push(match self.straight {
                 true => format!(
-                    "geometry: the mesh keeps straight edges along a curve, and refinement leads to the polygon's answer; the \
-                     curve's is {error:.1e} away. This error is in no other figure: set `mesh.curves = \"kept\"`"
+                    "geometry: the mesh keeps straight edges along a curve, and refinement leads to the polygon's \
+                     answer; the curve's is {error:.1e} away. None of the other figures holds this error: set \
+                     `mesh.curves = \"kept\"`"
                 ),
                 false => format!(
                     "geometry: edges that stay straight along the curve would leave {error:.1e} on the next finer mesh; \
@@ -328,7 +329,7 @@ impl Report {
             .filter(|axis| self.ladders.iter().all(|ladder| ladder.axis != *axis))
             .collect();
         for axis in unclimbed {
-            notes.push(format!("there was no time for the ladder `{axis}`: what it leaves is in no figure"));
+            notes.push(format!("there was no time for the ladder `{axis}`: its error is in none of the figures"));
         }
         self.notes = notes;
     }

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// Name of the file in the folder of the study.
 const FILE: &str = "study.bin";
 
-/// A run, or why there is none.
+/// A run, or why it failed.
 type Kept = (Setting, Result<RunRecord, String>);
 
 /// The runs of a study of one scene; each is saved as soon as it is done, none is made twice.
@@ -28,7 +28,7 @@ pub struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// A session on the scene `path`, whose model is `model`, in `dir`; with `resume` it goes on from one that lies there.
+    /// A session on the scene `path`, whose model is `model`, in `dir`; with `resume` it continues one that lies there.
     ///
     /// # Errors
     /// With `resume`, no study in the folder, a damaged one or one of another scene.

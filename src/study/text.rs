@@ -109,7 +109,7 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
         seconds(base.total())
     )?;
     if report.reference.row > 0 {
-        writeln!(t, "* errors count from: {}, extrapolated along each ladder", described(reference))?;
+        writeln!(t, "* errors are measured against: {}, extrapolated along each ladder", described(reference))?;
         let agreement = report.reference.agreement.iter().flatten().copied().reduce(f64::max);
         let verdict = if report.proven() { "proven" } else { "NOT proven" };
         match agreement {
@@ -162,7 +162,7 @@ fn goals(report: &Report) -> Vec<(Vec<usize>, &str)> {
     let mut goals: Vec<(Vec<usize>, &str)> =
         report.asked.iter().enumerate().map(|(q, name)| (vec![q], name.as_str())).collect();
     if report.asked.len() > 1 {
-        goals.push(((0..report.asked.len()).collect(), "everything asked"));
+        goals.push(((0..report.asked.len()).collect(), "all quantities"));
     }
     goals
 }
@@ -209,7 +209,7 @@ fn table(report: &Report, kind: AxisKind, t: &mut String) -> fmt::Result {
     let (heading, own) = match kind {
         AxisKind::Ladder => ("Ladders", "of its axis"),
         AxisKind::Ways => ("Other ways", "against its judge"),
-        AxisKind::Problems => ("Other problems: what they change is no error", "change"),
+        AxisKind::Problems => ("Other problems: what they change is not an error", "change"),
     };
     let each: Vec<&str> = report.asked.iter().map(String::as_str).collect();
     writeln!(t, "\n{heading}\n")?;

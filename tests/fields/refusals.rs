@@ -35,9 +35,9 @@ fn of_an_impact() {
         ("{ region = { radius = \"1 um\" } }", &["no cell has its centre within this radius", "enlarge it"]),
         ("{ region = { group = \"core\" } }", &["the mesh has no group `core`", "plate"]),
         ("{ region = { group = \"tip\" } }", &["group `tip` has no cells", "name a group of cells"]),
-        ("{ parts = [\"ply\"] }", &["`ply` is none of the words known here", "plies"]),
+        ("{ parts = [\"ply\"] }", &["`ply` is not one of the known words", "plies"]),
         ("{ parts = [] }", &["the list is empty"]),
-        ("{ cells = \"cubic\" }", &["`cubic` is none of the words known here", "lagrange"]),
+        ("{ cells = \"cubic\" }", &["`cubic` is not one of the known words", "lagrange"]),
     ] {
         refused(&struck(fields), words);
     }

@@ -1,4 +1,4 @@
-//! Every criterion of the registry where stresses are no ordinary ones, and strengths none at all.
+//! Every criterion of the registry where stresses are not ordinary ones, and strengths none at all.
 
 use crate::case::{Case, Room};
 use crate::registry::{criteria, tapes};

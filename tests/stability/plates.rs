@@ -159,7 +159,7 @@ pub(crate) fn said(error: &dyn std::error::Error) -> String {
     std::iter::successors(Some(error), |e| e.source()).map(|e| e.to_string()).collect::<Vec<_>>().join(": ")
 }
 
-/// The largest of all; what is no number is larger than all.
+/// The largest of all; what is not a number is larger than all.
 pub(crate) fn worst(all: impl IntoIterator<Item = f64>) -> f64 {
     all.into_iter().fold(0.0, |worst: f64, e| if e <= worst || worst.is_nan() { worst } else { e })
 }

@@ -307,7 +307,7 @@ fn case_1(end: &str) -> Case {
 #[track_caller]
 fn keeps_a_percent(case: &Case, axes: &str, layers: &str) {
     let done = case.fem("study", &["--axis", axes, "--tolerance", "1%", "--out", "study"]).good();
-    assert!(done.stdout.contains("0.01 in everything asked is kept by"), "{done:#?}");
+    assert!(done.stdout.contains("0.01 in all quantities is met by"), "{done:#?}");
     fem(case.folder(), &["run", "study/scene.toml", "--out", "promised"]).good();
     let finer = [
         ("laminate.layers", layers),

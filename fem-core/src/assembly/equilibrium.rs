@@ -60,7 +60,8 @@ impl fmt::Display for EquilibriumError {
             Self::Factor(error) => error.fmt(f),
             Self::NoConvergence(decrement) => write!(
                 f,
-                "Newton's method did not end in {MOST} iterations (decrement {decrement:.1e} of the work of the load)"
+                "Newton's method did not converge in {MOST} iterations (decrement {decrement:.1e} of the work of the \
+                 load)"
             ),
         }
     }

@@ -34,7 +34,7 @@ struct Work {
 }
 
 impl LargePlate {
-    /// `None` where the element knows no large displacements.
+    /// `None` where the element does not support large deflections.
     pub fn new(plate: &Plate, element: Box<dyn Element>, constraints: &Constraints) -> Option<Self> {
         element.large_displacements()?;
         let cells = plate.kept_cells().map(|(cell, weight)| {

@@ -266,5 +266,5 @@ impl Nonlinear for SparseStructure {
 }
 
 fn linear() -> SolveError {
-    SolveError("the structure knows no large displacements".into())
+    SolveError("the structure does not support large deflections".into())
 }

@@ -7,7 +7,7 @@ use crate::words::tensor::{Matrix6, apply};
 use dyn_clone::DynClone;
 use std::fmt::{self, Debug};
 
-/// What an element says of itself.
+/// How an element describes itself.
 #[derive(Debug, Clone, Copy)]
 pub struct ElementInfo {
     /// Natural coordinates (r, s, q) of the nodes, each −1, 0 or 1; q runs through the thickness.

@@ -14,7 +14,7 @@ pub enum Site {
     Interface,
 }
 
-/// What a criterion says of itself.
+/// How a criterion describes itself.
 #[derive(Debug, Clone, Copy)]
 pub struct CriterionInfo {
     /// Where it looks.
@@ -32,7 +32,7 @@ pub struct CriterionInfo {
 /// Unlike an index it means the same for every criterion, whatever the degree of its formula.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reserve {
-    /// Smallest R > 0 at which some index of R σ reaches 1; +∞ where there is none, NaN for a refused stress.
+    /// Smallest R > 0 at which some index of R σ reaches 1; +∞ without such R, NaN for a refused stress.
     pub factor: f64,
     /// The mode that governs: the one that reaches 1 there.
     pub mode: Option<usize>,

@@ -68,7 +68,7 @@ pub enum Value {
     Number(f64),
     /// A number with its unit, in SI.
     Quantity(f64, Dimension),
-    /// A text that is no quantity.
+    /// A text that is not a quantity.
     Text(String),
     /// `true` or `false`.
     Flag(bool),

@@ -60,7 +60,7 @@ pub fn square(plate: &Plate, element: &dyn Element, centre: [f64; 2], side: f64)
 }
 
 fn leaves(patch: &str, centre: [f64; 2]) -> String {
-    format!("{patch} around ({:.4}, {:.4}) mm leaves the plate", centre[0] * 1e3, centre[1] * 1e3)
+    format!("{patch} around ({:.4}, {:.4}) mm extends beyond the plate", centre[0] * 1e3, centre[1] * 1e3)
 }
 
 /// Weighted mean of −u₃ over points of the top face no farther than `reach` from `centre` along each axis.

@@ -58,7 +58,7 @@ impl Plate {
     /// Extrudes `plane` through the faces at heights `faces`, one stack of plies between two of them.
     ///
     /// # Errors
-    /// A mesh or layers that the element does not go with.
+    /// A mesh or layers that do not fit the element.
     pub fn new(
         mut plane: QuadMesh,
         faces: Vec<f64>,
@@ -395,7 +395,7 @@ fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
 /// Turns the quads of a strip so that their r runs along x.
 ///
 /// # Errors
-/// A mesh that is no strip of rectangles along x, one cell across.
+/// A mesh that is not a strip of rectangles along x, one cell across.
 fn along_x(plane: &mut QuadMesh) -> Result<(), String> {
     let (low, high) = plane.bounds();
     let width = high[1] - low[1];

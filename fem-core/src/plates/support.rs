@@ -113,7 +113,7 @@ impl FreeMotions {
         let centre = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.0];
         let length = 0.5 * (high[0] - low[0]).hypot(high[1] - low[1]);
         let mut free = Self { centre, length, basis: Vec::new() };
-        // What moves no unknown is no motion: a section knows nothing of y.
+        // What moves no unknown is not a motion: a section knows nothing of y.
         let mut moves = Vector6::<f64>::zeros();
         for dof in 0..plate.ndof() {
             moves += Vector6::from(plate.rigid_motions(dof, centre, length)).abs();

@@ -55,7 +55,7 @@ pub fn card(matrix: &[f64], dofs: &[Dof], h: f64) -> String {
     text
 }
 
-/// Seven significant digits; what is nothing but rounding prints 0.
+/// Seven significant digits; rounding alone prints 0.
 fn rounded(v: f64) -> String {
     if v.abs() < 1e-11 { "0".into() } else { format!("{v:.6e}") }
 }

@@ -65,7 +65,10 @@ impl std::str::FromStr for Dof {
             _ => None,
         }
         .ok_or_else(|| {
-            format!("`{s}` is no degree of freedom: write Unm with n = 1, 2, 3 (x, y, z) and m = 0 (value), 1, 2, 3 (derivative)")
+            format!(
+                "`{s}` is not a degree of freedom: write Unm with n = 1, 2, 3 (x, y, z) and m = 0 (value), 1, 2, 3 \
+                 (derivative)"
+            )
         })
     }
 }

@@ -243,7 +243,7 @@ impl Material {
         Ok(())
     }
 
-    /// The density, for whoever needs a mass.
+    /// The density, where a mass is needed.
     ///
     /// # Errors
     /// It was not given.
@@ -254,7 +254,7 @@ impl Material {
         })
     }
 
-    /// The thermal expansion, for whoever needs it.
+    /// The thermal expansion, where it is needed.
     ///
     /// # Errors
     /// It was not given.

@@ -1,4 +1,5 @@
-//! Small types that everything speaks: tensors, unknowns, materials, plies, counts. They know nothing of elements or plates.
+//! Small types that everything speaks: tensors, unknowns, materials, plies, counts. They do not depend on elements or
+//! plates.
 
 pub mod counters;
 pub mod damping;

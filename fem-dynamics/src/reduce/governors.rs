@@ -38,10 +38,10 @@ impl Governors {
     ///
     /// `spread` takes the first candidates. `ratio` condenses on the first 4 candidates per governor and then eliminates
     /// one after the other the unknown with the largest kᵢᵢ/mᵢᵢ of the matrices condensed so far (Henshell, Ong 1975;
-    /// Shah, Raymond 1982): what is left is held least stiffly and carries most. Unknowns without mass are no candidates,
-    /// which is to eliminate them first. The published procedure starts from all unknowns; since elimination in stages
-    /// gives the same matrices, this is the same procedure after a first stage, which costs a solve and a product with M
-    /// per candidate instead of per unknown.
+    /// Shah, Raymond 1982): what is left is held least stiffly and carries most. Unknowns without mass are not
+    /// candidates, which is to eliminate them first. The published procedure starts from all unknowns; since
+    /// elimination in stages gives the same matrices, this is the same procedure after a first stage, which costs a
+    /// solve and a product with M per candidate instead of per unknown.
     ///
     /// # Errors
     /// Fewer candidates than governors, or candidates that depend on each other.

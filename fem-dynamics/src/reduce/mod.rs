@@ -302,7 +302,7 @@ fn shares(gram: &DMatrix<f64>) -> Vec<f64> {
     (0..gram.ncols()).map(column).collect()
 }
 
-/// Functionals whose values follow from those before them, to rounding; none where there is none at all.
+/// Functionals whose values follow from those before them, to rounding; empty where there are none at all.
 #[derive(Debug)]
 struct Dependent {
     functionals: Vec<Functional>,

@@ -8,7 +8,7 @@ use fem_core::reduction::{Reduction, ReductionError};
 use fem_core::structure::Coarse;
 use fem_core::structure::Structure;
 
-/// Fine unknowns per coarse one, and coarse ones per vector, at least, for a coarse model to be worth its while.
+/// Fine unknowns per coarse one, and coarse ones per vector, at least, for a coarse model to pay.
 const COARSENING: usize = 2;
 const ROOM: usize = 4;
 

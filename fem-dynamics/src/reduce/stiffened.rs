@@ -10,7 +10,7 @@ use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, DVectorView, DVectorView
 /// bending stiffness, of the lowest mode, 0 for none. That of tension grows with k², that of bending with k⁴.
 const TENSIONS: [f64; 7] = [0.0, 1.0, 4.0, 16.0, 64.0, 256.0, 1024.0];
 
-/// Share of a direction beside those before it below which it is none of its own.
+/// Share of a direction beside those before it below which it does not count as one of its own.
 const SAME: f64 = 1e-8;
 
 /// Membrane strains below this share of the largest (of the energy, at deflections of a static contact) are left out.

@@ -9,7 +9,7 @@ use crate::prelude::*;
 /// ```
 ///
 /// Strengths are meant in situ. The model's delamination index combines stresses of the two plies beside an interface,
-/// each in its own axes, and is checked only after a crack: it is no function of one stress and not part of this.
+/// each in its own axes, and is checked only after a crack: it is not a function of one stress and not part of this.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ChoiChang;
 

@@ -24,7 +24,7 @@ pub(crate) struct Key {
 /// What holds where neither scene nor preset has a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Absent {
-    /// Nothing is said of it.
+    /// The scene does not mention it.
     Nothing,
     /// The scene is refused.
     Refused,

@@ -72,7 +72,7 @@ impl<'a> Reader<'a> {
     pub(crate) fn either(&self, keys: [&str; 2]) -> Result<[Option<Field<'a>>; 2], SceneError> {
         match keys.map(|key| self.optional(key)) {
             [Some(a), Some(b)] if a.place().origin == b.place().origin => {
-                Err(b.error(format!("excludes `{}`", keys[0]), "leave one of the two out"))
+                Err(b.error(format!("cannot be combined with `{}`", keys[0]), "leave one of the two out"))
             }
             [Some(a), Some(b)] if a.place().origin > b.place().origin => Ok([Some(a), None]),
             [Some(_), Some(b)] => Ok([None, Some(b)]),
@@ -217,7 +217,7 @@ impl<'a> Field<'a> {
         };
         known.clone().position(|k| k == text).ok_or_else(|| {
             self.error(
-                format!("`{text}` is none of the words known here"),
+                format!("`{text}` is not one of the known words"),
                 format!("`{text}` {}", unknown_key(text, known)),
             )
         })

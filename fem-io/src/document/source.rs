@@ -7,23 +7,23 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Largest file of text that is read: more is some other file, given by mistake.
+/// Largest text file that is read: a larger one was given by mistake.
 const MAX_BYTES: u64 = 1 << 22;
 
-/// The text of a file, or why there is none.
+/// The text of a file, or why it cannot be read.
 pub(crate) fn read_text(path: &Path) -> Result<String, String> {
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(|e| e.to_string())?;
     file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| e.to_string())?;
     if bytes.len() as u64 > MAX_BYTES {
-        return Err(format!("it is longer than {MAX_BYTES} bytes, which no such file is"));
+        return Err(format!("it is longer than {MAX_BYTES} bytes, more than such a file ever needs"));
     }
     String::from_utf8(bytes).map_err(|e| match e.as_bytes() {
-        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "it is a text in UTF-16; save it as UTF-8".to_owned(),
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "it is in UTF-16; save it as UTF-8".to_owned(),
         before => {
             let valid = &before[..e.utf8_error().valid_up_to()];
             let line = 1 + valid.iter().filter(|byte| **byte == b'\n').count();
-            format!("it is no text in UTF-8 from line {line} on; save it as UTF-8")
+            format!("it is not UTF-8 from line {line} on; save it as UTF-8")
         }
     })
 }

@@ -118,7 +118,7 @@ impl Table {
         let document = DeTable::parse(text).map_err(|e| {
             let place = Place { origin, span: e.span().unwrap_or(0..0) };
             let help = "write key = value, texts in double quotes, each key once";
-            source.error_at(&place, format!("this is no TOML: {}", e.message()), help)
+            source.error_at(&place, format!("this is not valid TOML: {}", e.message()), help)
         })?;
         Ok(table(document.into_inner(), origin))
     }

@@ -88,7 +88,7 @@ impl Edges {
         [directed(a, b), directed(b, a)].iter().any(|edge| self.0.binary_search_by_key(edge, |e| e.0).is_ok())
     }
 
-    /// Refuses elements of edge groups that are no edge of a cell, or the same edge as another of the group.
+    /// Refuses elements of edge groups that are not an edge of a cell, or the same edge as another of the group.
     pub(super) fn check_groups(
         &self,
         source: &Source<'_>,

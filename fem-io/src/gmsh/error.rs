@@ -36,14 +36,14 @@ impl fmt::Display for FilePlace {
     }
 }
 
-/// What can be wrong with a mesh file. Nodes, elements and entities are called by their numbers in the file.
+/// What can be wrong with a mesh file. Nodes, elements and entities have their numbers in the file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshFault {
     /// The operating system refused.
     #[error("cannot read the file: {0}")]
     Unreadable(String),
-    /// The caller's unit makes no sense.
+    /// The unit that the caller gave is not a length.
     #[error("the length unit of the file is given as {0} m; it must be positive and finite, 0.001 for mm")]
     Unit(f64),
     /// Not a mesh of gmsh at all.
@@ -54,7 +54,7 @@ pub enum MeshFault {
     /// Another version of the format.
     #[error("MSH version {0}; only 4.1 is read: set Mesh.MshFileVersion = 4.1 and save again")]
     Version(String),
-    /// A header line that is no header of MSH 4.1.
+    /// A header line that is not a header of MSH 4.1.
     #[error("unusable header {0:?}: expected `4.1 0 8` (ASCII) or `4.1 1 8` with little-endian numbers (binary)")]
     Header(String),
     /// Not readable as MSH 4.1.
@@ -88,7 +88,7 @@ pub enum MeshFault {
     /// More nodes than the numbering can hold.
     #[error("{0} nodes are more than can be numbered: coarsen the mesh")]
     TooManyNodes(usize),
-    /// A coordinate that is no number.
+    /// A coordinate that is not a number.
     #[error("node {node} has the coordinate {value}: coordinates must be finite; save the file again from gmsh")]
     Coordinate {
         /// Node.
@@ -228,10 +228,10 @@ pub enum MeshFault {
         /// Group.
         group: String,
     },
-    /// A group of edges with something that is no edge of a cell.
+    /// A group of edges with something that is not an edge of a cell.
     #[error(
-        "element {element} of group {group:?}, from node {} to node {}, is no edge of a cell: \
-         mesh curve and surface together and put the surface into a physical group", nodes[0], nodes[1]
+        "element {element} of group {group:?}, from node {} to node {}, is not an edge of a cell: mesh curve and \
+         surface together and put the surface into a physical group", nodes[0], nodes[1]
     )]
     NotAnEdge {
         /// Element.
@@ -243,8 +243,8 @@ pub enum MeshFault {
     },
     /// A group of nodes with a node that no cell has.
     #[error(
-        "node {node} of group {group:?} is no corner of a cell: embed the point (Point {{1}} In Surface {{1}};) \
-         or make it a corner of the surfaces"
+        "node {node} of group {group:?} is not a corner of a cell: embed the point (Point {{1}} In Surface {{1}};) or \
+         make it a corner of the surfaces"
     )]
     NotACorner {
         /// Node.

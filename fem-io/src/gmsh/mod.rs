@@ -56,7 +56,7 @@ pub struct GmshMesh {
 /// Second-order quadrilaterals are read by their corners, with a warning.
 ///
 /// # Errors
-/// When the file cannot be read, is not MSH 4.1 or is no sound flat mesh of convex quadrilaterals.
+/// When the file cannot be read, is not MSH 4.1 or is not a sound flat mesh of convex quadrilaterals.
 pub fn read(path: &Path, unit_metres: f64) -> Result<GmshMesh, MeshError> {
     let name = path.display().to_string();
     let bytes = std::fs::read(path).map_err(|e| MeshError {

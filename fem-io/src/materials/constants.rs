@@ -25,11 +25,7 @@ pub(crate) const KEYS: Keys = &[
     expansion_key("alpha", r#""23e-6 1/K""#, "thermal expansion, the same along all axes"),
     expansion_key("alpha1", r#""-1e-6 1/K""#, "thermal expansion along the fibres"),
     expansion_key("alpha2", r#""26e-6 1/K""#, "thermal expansion across the fibres"),
-    expansion_key(
-        "alpha3",
-        r#""26e-6 1/K""#,
-        "thermal expansion through the thickness; as alpha2 where it is left out",
-    ),
+    expansion_key("alpha3", r#""26e-6 1/K""#, "thermal expansion through the thickness; as alpha2 if left out"),
     key("density", Form::Quantity(Dimension::DENSITY), r#""1.575 g/cm^3""#, "mass per volume"),
     stress("Xt", r#""1793 MPa""#, "tensile strength along the fibres"),
     stress("Xc", r#""1724 MPa""#, "compressive strength along the fibres"),
@@ -73,7 +69,9 @@ pub(crate) fn from_constants(name: &str, table: &Reader<'_>) -> Result<Material,
     let material = Material { name: name.to_owned(), elastic, density, strengths, giic, expansion };
     match material.check() {
         Ok(()) => Ok(material),
-        Err(e) => Err(table.error(e.to_string(), "no solid has these constants: look for a slip in one of them")),
+        Err(e) => {
+            Err(table.error(e.to_string(), "no solid has these constants: look for a typing error in one of them"))
+        }
     }
 }
 
@@ -87,11 +85,11 @@ fn expansion(table: &Reader<'_>) -> Result<Option<[f64; 3]>, SceneError> {
         (None, None, None, None) => Ok(None),
         (Some((all, _)), None, None, None) => Ok(Some([all; 3])),
         (None, Some((along, _)), Some((across, _)), third) => Ok(Some([along, across, third.map_or(across, |t| t.0)])),
-        (Some((_, stray)), ..) => Err(stray.error("does not go with alpha1, alpha2, alpha3", WANTED)),
+        (Some((_, stray)), ..) => Err(stray.error("cannot be combined with alpha1, alpha2, alpha3", WANTED)),
         (None, Some((_, stray)), None, _)
         | (None, None, Some((_, stray)), _)
         | (None, None, None, Some((_, stray))) => {
-            Err(stray.error("says not how the material expands along its other axes", WANTED))
+            Err(stray.error("does not say how the material expands along its other axes", WANTED))
         }
     }
 }
@@ -104,7 +102,7 @@ fn elastic(table: &Reader<'_>) -> Result<Elastic, SceneError> {
     if given(&["e", "nu"]).is_some() {
         return match given(&["e1", "e2", "e3", "nu12", "nu13", "nu23", "g12", "g13", "g23"]) {
             None => Ok(Elastic::isotropic(modulus("e")?, ratio("nu")?)),
-            Some(stray) => Err(constant(stray)?.error("does not go with e and nu", ELASTIC)),
+            Some(stray) => Err(constant(stray)?.error("cannot be combined with e and nu", ELASTIC)),
         };
     }
     let (e1, e2, nu12) = (modulus("e1")?, modulus("e2")?, ratio("nu12")?);

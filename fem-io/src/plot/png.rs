@@ -8,7 +8,7 @@ use ttf_parser::{Face, OutlineBuilder};
 pub(super) fn render(drawing: &Drawing) -> Result<Vec<u8>, String> {
     let face = face()?;
     let mut pixels = Pixmap::new(drawing.width.ceil() as u32, drawing.height.ceil() as u32)
-        .ok_or_else(|| format!("{} x {} pixels is no size", drawing.width, drawing.height))?;
+        .ok_or_else(|| format!("{} x {} pixels is not a size", drawing.width, drawing.height))?;
     pixels.fill(tiny_skia::Color::WHITE);
     for shape in &drawing.shapes {
         match shape {

@@ -1,4 +1,4 @@
-//! The effects that a scene calls for; what it does not name costs nothing.
+//! The effects that a scene asks for; others cost nothing.
 
 use crate::document::keys::{Form, Keys, key, words};
 use crate::document::reader::{Field, Reader};
@@ -43,17 +43,17 @@ pub enum Delamination {
 pub struct EffectsSpec {
     /// Damage.
     pub damage: Damage,
-    /// Delamination; where the scene says nothing of it, its threshold as far as damage is looked for and the toughness is known.
+    /// Delamination; by default its threshold as far as damage is looked for and the toughness is known.
     pub delamination: Option<Located<Delamination>>,
-    /// Membrane stiffening: strains of large deflections; off where the scene says nothing of it.
+    /// Membrane stiffening: strains of large deflections; off unless the scene asks for it.
     pub membrane: Option<Located<Switch>>,
     /// Damping of the plate.
     pub damping: Option<Located<Damping>>,
-    /// Inertia of the plate; on where the scene says nothing of it.
+    /// Inertia of the plate; on unless the scene switches it off.
     pub inertia: Option<Located<Switch>>,
     /// Gravity, which pulls impactors and plate along the way of the impactors, m/s².
     pub gravity: Option<Located<f64>>,
-    /// Change of temperature since the plate was without stresses, K.
+    /// Change of temperature since the plate was free of stress, K.
     pub cure: Option<Located<f64>>,
 }
 
@@ -89,7 +89,7 @@ const DAMPING: Keys = &[
 pub struct EffectInfo {
     /// Its key in `effects`.
     pub name: &'static str,
-    /// Its values; what holds where a scene says nothing comes first.
+    /// Its values, the default first.
     pub values: &'static str,
     /// What it does.
     pub summary: &'static str,
@@ -132,13 +132,14 @@ pub const EFFECTS: &[EffectInfo] = &[
     EffectInfo {
         name: "gravity",
         values: "\"off\", an acceleration",
-        summary: "weight of impactors and plate along the way of the impactors",
+        summary: "weight of impactors and plate along the direction of impact",
         source: "Newton 1687",
     },
     EffectInfo {
         name: "cure",
         values: "\"off\", a change of temperature",
-        summary: "residual stresses of the plies since the plate was without stresses",
+        summary: "residual stresses of the plies; the change counts from the temperature at which the plate is free of \
+            stress",
         source: "Tsai and Hahn 1980",
     },
 ];
@@ -180,14 +181,17 @@ fn read_damping(field: &Field<'_>) -> Result<Damping, SceneError> {
     match (ratio, proportional) {
         (Some(ratio), _) => match ratio.number()? {
             value if value > 0.0 && value <= 1.0 => Ok(Damping::Ratio(value)),
-            value => Err(ratio.error(format!("{value} is no ratio to critical damping"), "between 0 and 1: ratio = 0.02")),
+            value => {
+                let message = format!("{value} is not a ratio to critical damping");
+                Err(ratio.error(message, "give a number between 0 and 1: ratio = 0.02"))
+            }
         },
         (None, Some(_)) => Ok(Damping::Rayleigh(Rayleigh {
             mass: factor("mass", Dimension::FREQUENCY)?,
             stiffness: factor("stiffness", Dimension::TIME)?,
         })),
         (None, None) => Err(field.error(
-            "says not how much",
+            "does not say how much",
             "give `mass`, `stiffness` or both, C = mass M + stiffness K, or the `ratio` of every mode: { ratio = 0.02 }",
         )),
     }

@@ -66,21 +66,21 @@ pub(super) const KEYS: Keys = &[
         "every",
         Form::Quantity(Dimension::TIME),
         r#""50 us""#,
-        "time between two frames; a tenth of the march where `times` is left out too",
+        "time between two frames; a tenth of the march if `times` is left out too",
     ),
     key("times", Form::List(&Form::Quantity(Dimension::TIME)), r#"["0.1 ms", "0.45 ms"]"#, "times of further frames"),
-    key("region", Form::Table(REGION), r#"{ radius = "10 mm" }"#, "part of the plate; all where it is left out"),
+    key("region", Form::Table(REGION), r#"{ radius = "10 mm" }"#, "part of the plate; all if left out"),
     key(
         "parts",
         Form::List(&Form::Words(&words(&FieldSeries::ALL))),
         r#"["plate", "plies", "interfaces"]"#,
-        "the series; all that the scene has where it is left out",
+        "the series; all that the scene has if left out",
     ),
     key("cells", Form::Words(&words(&CELLS)), r#""lagrange""#, "what cells of the plate become")
         .default(r#""lagrange""#),
 ];
 const REGION: Keys = &[
-    key("radius", Form::Quantity(Dimension::LENGTH), r#""10 mm""#, "cells this near to an impact"),
+    key("radius", Form::Quantity(Dimension::LENGTH), r#""10 mm""#, "cells within this distance of an impact"),
     key("group", Form::Text, r#""core""#, "cells of a group of the mesh"),
 ];
 const CELLS: [(&str, FieldCells); 2] = [("lagrange", FieldCells::Lagrange), ("subdivided", FieldCells::Subdivided)];
@@ -88,7 +88,7 @@ const CELLS: [(&str, FieldCells); 2] = [("lagrange", FieldCells::Lagrange), ("su
 /// Intervals unless the scene says otherwise.
 const INTERVALS: f64 = 10.0;
 
-/// Most frames: more is a slip, and would fill the disk.
+/// Most frames: more is a mistake, and would fill the disk.
 const MOST_FRAMES: f64 = 1e4;
 
 /// Reads `output.fields`: `None` for `false`. `march` is that of an impact.

@@ -19,7 +19,7 @@ pub(super) const KEYS: Keys = &[
         "layers",
         Form::OneOf(&[Form::Count(1), Form::List(&Form::Count(1))]),
         "[8, 8]",
-        "layers of cells, or how many plies each holds, from the bottom up; two where it is left out",
+        "layers of cells, or how many plies each holds, from the bottom up; two if left out",
     ),
     key(
         "ply",

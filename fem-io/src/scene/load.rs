@@ -122,7 +122,7 @@ const PRESSURE: Keys = &[
     )
     .required(),
     key("face", Form::Words(&words(&FACES)), r#""top""#, "face that it acts on").default(r#""top""#),
-    key("group", Form::Text, r#""plate""#, "cells that it acts on, a group of the mesh; all where it is left out"),
+    key("group", Form::Text, r#""plate""#, "cells that it acts on, a group of the mesh; all if left out"),
 ];
 const FORMULA: Keys = &[
     key("formula", Form::Text, r#""sin(3.14159*x/100)""#, "value of the pressure over x and y").required(),
@@ -197,7 +197,7 @@ fn read(field: &Field<'_>) -> Result<Load, SceneError> {
         LoadKind::Point { force: vector(&table.required("force")?, Dimension::FORCE)?, node: support::nodes(&table)? }
     } else {
         return Err(field.error(
-            "says not what acts",
+            "does not say what acts",
             "a load has `pressure`, `force`, `patch_radius` with `force`, `force_per_length` or `gravity`",
         ));
     };
@@ -249,7 +249,7 @@ pub(super) fn read_profiles(field: &Field<'_>) -> Result<Vec<ProfileLine>, Scene
         let name = table.required("name")?;
         let text = name.text()?;
         if !text.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_')) {
-            return Err(name.error(format!("`{text}` is to be part of a file name"), "use letters, digits, - and _"));
+            return Err(name.error(format!("`{text}` becomes part of a file name"), "use letters, digits, - and _"));
         }
         if all.iter().any(|p| p.name.value == text) {
             return Err(name.error(format!("two profiles are called `{text}`"), "give each a name of its own"));

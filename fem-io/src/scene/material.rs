@@ -33,7 +33,7 @@ pub(super) fn whole(field: &Field<'_>, folder: &Path) -> Result<Option<(Table, A
     let own = field.table(KEYS)?;
     let over = |below: &Table| Ok::<_, SceneError>(field.any_table()?.clone().over(below.clone()));
     match (own.optional("library"), own.optional("file"), own.optional("name")) {
-        (Some(_), Some(stray), _) => Err(stray.error("does not go with `library`", "leave one of the two out")),
+        (Some(_), Some(stray), _) => Err(stray.error("cannot be combined with `library`", "leave one of the two out")),
         (_, None, Some(stray)) => Err(stray.error("means nothing without `file`", "add the file or leave it out")),
         (None, None, None) => Ok(None),
         (Some(library), None, None) => {

@@ -121,7 +121,7 @@ const EDGE_SIZE: Key = key(
     "edge_size",
     Form::Quantity(Dimension::LENGTH),
     r#""3 mm""#,
-    "size of the cells at the edge; three times `size` where it is left out",
+    "size of the cells at the edge; three times `size` if left out",
 );
 const REFINE: Key = key("refine", Form::Count(0), "1", "how often every cell is divided into four").default("0");
 const CURVES: Key = key(

@@ -1,7 +1,7 @@
 //! The scene: a TOML file that says what is struck, by what, and how to compute it.
 //!
 //! Every physical number is a text with its unit, [`crate::units`]. The keys of the scene lie over those of a preset,
-//! [`Fidelity`]; plug-ins are named with their parameters and checked by whoever knows them. Whatever is wrong becomes a
+//! [`Fidelity`]; plug-ins are named with their parameters and checked by the registry. Whatever is wrong becomes a
 //! [`SceneError`] that shows the line.
 
 mod annotate;
@@ -174,8 +174,8 @@ pub fn read(path: &Path) -> Result<Scene, SceneError> {
 /// Reads a scene from its text; `path` names it in errors, and its folder is where the mesh file is looked for.
 ///
 /// # Errors
-/// Anything that is no scene: TOML at fault, unknown, missing or contradicting keys, values without unit, of the wrong
-/// dimension or out of range. The first of these, with its place.
+/// Anything that is not a scene: TOML at fault, unknown, missing or contradicting keys, values without unit, of the
+/// wrong dimension or out of range. The first of these, with its place.
 pub fn parse(text: &str, path: &Path) -> Result<Scene, SceneError> {
     parse_with(text, path, "")
 }
@@ -269,7 +269,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
     })
 }
 
-/// Keys that an analysis has no use for; those of a preset lie there for others.
+/// Keys that an analysis does not use; presets hold them for others.
 fn foreign(analysis: &str) -> &'static [&'static str] {
     match analysis {
         "static" => &["impactor", "contact", "reduction", "march", "modes"],

@@ -7,7 +7,7 @@ use crate::units;
 use fem_core::plugin::{Params, Value};
 use std::collections::BTreeMap;
 
-/// A plug-in and its parameters; whoever knows the plug-ins checks both.
+/// A plug-in and its parameters, checked by the registry.
 #[derive(Debug, Clone)]
 pub struct PluginSpec {
     /// Its name and where it stands.

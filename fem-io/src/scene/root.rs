@@ -40,7 +40,7 @@ pub(super) const KEYS: Keys = &[
         "materials",
         Form::Named(&Form::Table(constants::KEYS)),
         r#"{ as4-3502 = { library = "AS4/3502" } }"#,
-        "materials under names of your own",
+        "materials by names of your own",
     )
     .required(),
     key(

@@ -12,7 +12,7 @@ use fem_core::plugin::{Dimension, Kind};
 /// A rigid mass that strikes the top face from above.
 #[derive(Debug, Clone)]
 pub struct ImpactorSpec {
-    /// What results call it where there are several; no two are called alike.
+    /// What results call it where there are several; their names differ.
     pub name: String,
     /// Mass, kg.
     pub mass: f64,
@@ -79,7 +79,7 @@ pub struct MarchSpec {
 /// Where and when failure is looked for.
 #[derive(Debug, Clone)]
 pub struct Failure {
-    /// The criteria; no two are called alike.
+    /// The criteria; their names differ.
     pub criteria: Vec<CriterionSpec>,
     /// Time between two scans, s.
     pub every: f64,
@@ -136,7 +136,7 @@ pub enum Window {
 pub struct Output {
     /// Time between two lines of the history, s; as few as 2000 lines need if `None`.
     pub history_every: Option<f64>,
-    /// Time on the clock between two checkpoints of a march, s.
+    /// Wall-clock time between two checkpoints of a march, s.
     pub checkpoint_every: f64,
     /// How many modes of the reduced plate are followed, if any.
     pub modes: Option<Located<usize>>,
@@ -175,7 +175,7 @@ pub(super) const IMPACTOR: Keys = &[
         "contact",
         Form::Plugin(Kind::Contact, LAW, &[]),
         r#"{ law = "hertz", k = "1.07e5 N/mm^1.5" }"#,
-        "contact law of this impactor; that of the scene where it is left out",
+        "contact law of this impactor; that of the scene if left out",
     ),
 ];
 pub(super) const AT: Keys = &[
@@ -202,7 +202,7 @@ pub(super) const FAILURE: Keys = &[
             Form::Plugin(
                 Kind::Criterion,
                 "name",
-                &[key(LABEL, Form::Text, r#""puck-2""#, "what results call it; the name where it is left out")],
+                &[key(LABEL, Form::Text, r#""puck-2""#, "what results call it; the name if left out")],
             ),
         ])),
         r#"["hashin-report", "octahedral"]"#,
@@ -220,7 +220,7 @@ pub(super) const FAILURE: Keys = &[
         "radius",
         Form::Quantity(Dimension::LENGTH),
         r#""10 mm""#,
-        "only cells this near to an impact are judged; all where it is left out",
+        "only cells within this distance of an impact are judged; all if left out",
     ),
     key(
         "watch",
@@ -233,12 +233,7 @@ const WATCH: Keys = &[
     key("at", Form::Table(AT), r#"{ x = "0 mm", y = "0 mm" }"#, "where on the plate").required(),
     key("ply", Form::Count(1), "1", "in this ply, counted from the bottom"),
     key("interface", Form::Text, r#""1|2""#, "between these two plies"),
-    key(
-        "criterion",
-        Form::Text,
-        r#""hashin-report""#,
-        "of this criterion; of all that look there where it is left out",
-    ),
+    key("criterion", Form::Text, r#""hashin-report""#, "of this criterion; of all that look there if left out"),
 ];
 /// Key under which a contact law is named.
 const LAW: &str = "law";
@@ -249,9 +244,9 @@ pub(super) const OUTPUT: Keys = &[
         "history_every",
         Form::Quantity(Dimension::TIME),
         r#""1 us""#,
-        "time between two lines of history.csv; some 2000 lines where it is left out",
+        "time between two lines of history.csv; about 2000 lines if left out",
     ),
-    key("checkpoint_every", Form::Quantity(Dimension::TIME), r#""60 s""#, "time on the clock between two checkpoints")
+    key("checkpoint_every", Form::Quantity(Dimension::TIME), r#""60 s""#, "wall-clock time between two checkpoints")
         .default(r#""60 s""#),
     key("modes", Form::Count(1), "6", "modes of the reduced plate that are followed"),
     key("plots", Form::Flag, "true", "pictures of the histories").default("true"),
@@ -271,7 +266,7 @@ const CHECKPOINT_EVERY: f64 = 60.0;
 /// Most modes that are followed: one picture shows them all beside the others and the sum.
 const MOST_MODES: usize = 38;
 
-/// Most steps of a march: more is a slip in step or end, and would seem to hang.
+/// Most steps of a march: more is a mistake in step or end, and would seem to hang.
 const MAX_STEPS: f64 = 1e9;
 
 /// The keys of an impact: one table of an impactor or a list of them, a contact law for those without their own.
@@ -301,8 +296,10 @@ fn read_impactor(root: &Reader<'_>, field: &Field<'_>, number: usize, end: f64) 
         (table.required("mass")?.positive(Dimension::MASS)?, velocity_field.positive(Dimension::VELOCITY)?);
     // Energies are compared with it.
     if !(0.5 * mass * velocity * velocity).is_normal() {
-        return Err(velocity_field
-            .error("the energy of the impact is out of the range of numbers", "look for a slip in mass or velocity"));
+        return Err(velocity_field.error(
+            "the energy of the impact is too large for floating-point numbers",
+            "look for a typing error in mass or velocity",
+        ));
     }
     let start = match table.optional("start") {
         None => 0.0,
@@ -331,7 +328,7 @@ pub(super) fn read_point(field: &Field<'_>) -> Result<Located<ImpactPoint>, Scen
     let [x, y] = ["x", "y"].map(|key| table.optional(key));
     let point = match (table.optional("group"), x.or(y)) {
         (Some(_), Some(stray)) => {
-            return Err(stray.error("does not go with `group`", "give a group of the mesh, or x and y"));
+            return Err(stray.error("cannot be combined with `group`", "give a group of the mesh, or x and y"));
         }
         (None, Some(_)) => {
             let coordinate = |key| table.required(key)?.quantity(Dimension::LENGTH);
@@ -394,7 +391,7 @@ pub(super) fn read_failure(field: &Field<'_>, wanted: bool, in_time: bool) -> Re
     let window = match window.node() {
         Node::Text(text) if text == "element" => Window::Element,
         Node::Text(text) if !units::begins_with_number(text) => {
-            return Err(window.error(format!("`{text}` is no window"), "write \"element\" or a length, \"2.54 mm\""));
+            return Err(window.error(format!("`{text}` is not a window"), "write \"element\" or a length, \"2.54 mm\""));
         }
         _ => Window::Square(window.positive(Dimension::LENGTH)?),
     };
@@ -451,7 +448,7 @@ fn read_interface(field: &Field<'_>) -> Result<Depth, SceneError> {
             Ok(Depth::Interface(below - 1))
         }
         _ => Err(field.error(
-            format!("`{}` is no interface", field.text()?),
+            format!("`{}` is not an interface", field.text()?),
             "write the two plies that meet there, counted from 1 at the bottom: \"1|2\"",
         )),
     }

@@ -1,4 +1,4 @@
-//! What a study of the scene varies and looks at, and the settings that it lays over the scene.
+//! What a study of the scene varies and looks at, and the settings that it puts over those of the scene.
 
 use crate::document::keys::{Form, Keys, key};
 use crate::document::reader::Field;
@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 use toml_edit::{DocumentMut, InlineTable, Item, Key, Table, TableLike, Value};
 
-/// Keys that lie over those of a scene: values by the paths of their keys, both as TOML writes them.
+/// Keys that replace those of a scene: values by the paths of their keys, both as TOML writes them.
 pub type Setting = BTreeMap<String, String>;
 
 /// What a scene says of studies of it.
@@ -33,7 +33,7 @@ pub struct OwnAxis {
     pub name: Located<String>,
     /// Whether its levels grow finer, so that errors count from the last one; otherwise they are alternatives to the scene.
     pub ladder: bool,
-    /// What each level lays over the scene.
+    /// What each level sets in the scene.
     pub levels: Vec<Setting>,
 }
 
@@ -60,19 +60,19 @@ pub(super) const KEYS: Keys = &[
         "axes",
         Form::List(&Form::Text),
         r#"["mesh", "layers", "reduction", "step"]"#,
-        "what is varied, see `fem study --help`; all that fits the scene where it is left out",
+        "what is varied, see `fem study --help`; all that fits the scene if left out",
     ),
     key(
         "axis",
         Form::List(&Form::Table(AXIS)),
         r#"[{ name = "patch", levels = [{ impactor.patch_radius = "2 mm" }] }]"#,
-        "axes of the scene's own",
+        "axes of your own",
     ),
     key(
         "quantities",
         Form::List(&Form::OneOf(&[Form::Text, Form::Table(STRESS)])),
         r#"["peak-force", "first-damage"]"#,
-        "what accuracy is asked of; what fits the analysis where it is left out",
+        "what accuracy is asked of; what fits the analysis if left out",
     ),
     key("tolerance", Form::Number, "1e-3", "relative error to which the reference must have converged"),
 ];
@@ -102,7 +102,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<Study, SceneError> {
     let tolerance = |field: Field<'_>| match field.number()? {
         tolerance if tolerance > 0.0 && tolerance < 1.0 => Ok(tolerance),
         tolerance => {
-            Err(field.error(format!("{tolerance} is no relative error"), "give a number between 0 and 1: 1e-3"))
+            Err(field.error(format!("{tolerance} is not a relative error"), "give a number between 0 and 1: 1e-3"))
         }
     };
     Ok(Study {
@@ -121,7 +121,7 @@ fn axis(field: &Field<'_>) -> Result<OwnAxis, SceneError> {
     let table = field.table(AXIS)?;
     let level = |field: &Field<'_>| {
         let help = "write keys of the scene with their values: { impactor.patch_radius = \"2 mm\" }";
-        field.any_table()?.setting().filter(|keys| !keys.is_empty()).ok_or_else(|| field.error("lays nothing", help))
+        field.any_table()?.setting().filter(|keys| !keys.is_empty()).ok_or_else(|| field.error("sets nothing", help))
     };
     Ok(OwnAxis {
         name: name(&table.required("name")?)?,

@@ -180,16 +180,16 @@ fn a_material_comes_from_a_file_of_ones_own() {
     for (constants, file, line, words) in [
         (r#"{ file = "none.toml", name = "x" }"#, "scene.toml", scene, "cannot read"),
         (r#"{ file = "mine.toml" }"#, "scene.toml", scene, "`materials.as4-3502.name` is missing"),
-        (r#"{ file = "mine.toml", name = "AS4/3503" }"#, "scene.toml", scene, "`AS4/3503` is none of the words"),
+        (r#"{ file = "mine.toml", name = "AS4/3503" }"#, "scene.toml", scene, "`AS4/3503` is not one of the"),
         (r#"{ name = "AS4/3502" }"#, "scene.toml", scene, "means nothing without `file`"),
-        (r#"{ library = "AS4/3502", file = "mine.toml" }"#, "scene.toml", scene, "does not go with `library`"),
+        (r#"{ library = "AS4/3502", file = "mine.toml" }"#, "scene.toml", scene, "cannot be combined with `library`"),
         (r#"{ file = "mine.toml", name = "AS4/3502", nu12 = 9 }"#, "scene.toml", scene, "|nu12| < sqrt(E1/E2)"),
         (r#"{ file = "broken.toml", name = "3502 resin" }"#, "broken.toml", line(&broken, "9.65 mm"), "is a length"),
         (
             r#"{ file = "mine.toml", name = "AS4/3502", e = "1 GPa" }"#,
             "mine.toml",
             line(&broken, "130.3"),
-            "does not go with e",
+            "cannot be combined with e",
         ),
     ] {
         let error = with(constants).expect_err(constants);
@@ -410,7 +410,7 @@ fn refusals() {
         ("a quantity in quotes where a pure number belongs", spoilt("nu = 0.3", "nu = \"0.3\"")),
         ("a study to a tolerance that is no error", format!("study = {{ tolerance = 2 }}\n{GOOD}")),
         ("an axis without levels", format!("study = {{ axis = [{{ name = \"n\", levels = [] }}] }}\n{GOOD}")),
-        ("a level that lays nothing", format!("study = {{ axis = [{{ name = \"n\", levels = [{{}}] }}] }}\n{GOOD}")),
+        ("a level that sets nothing", format!("study = {{ axis = [{{ name = \"n\", levels = [{{}}] }}] }}\n{GOOD}")),
         (
             "a stress without its height",
             format!("study = {{ quantities = [{{ name = \"s\", profile = \"c\", component = \"sxx\" }}] }}\n{GOOD}"),

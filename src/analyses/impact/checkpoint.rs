@@ -1,4 +1,4 @@
-//! What a march is saved as, and what a checkpoint must agree with to be gone on from.
+//! What a march is saved as, and what must agree for a checkpoint to be continued.
 
 use super::march::Saved;
 use crate::analyses::saved::{self, Keys};
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// Name of the file in the folder of the results.
 const FILE: &str = "checkpoint.bin";
 
-/// The key up to which a march goes on.
+/// The key of the time at which a march ends.
 const END: &str = "march.end";
 
 /// A checkpoint that belongs to the scene of a model.

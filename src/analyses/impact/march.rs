@@ -1,4 +1,4 @@
-//! The march in time, watched; it can be saved and gone on with.
+//! The march in time, with what is watched of it; a saved march can be continued.
 
 use super::accuracy::{self, Accuracy, Estimates};
 use super::checkpoint::{self, Checkpoint};
@@ -71,7 +71,8 @@ pub struct March<'a> {
     progress: Progress,
 }
 
-/// How far a march is: with the scene, what it watches and the modes that it follows, all that it takes to go on.
+/// How far a march is: with the scene, what it watches and the modes that it follows, all that a later process needs to
+/// continue.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Progress {
     /// Steps done, and their length, s.
@@ -150,7 +151,7 @@ impl<'a> March<'a> {
         Ok(march)
     }
 
-    /// A march that goes on from `checkpoint`.
+    /// A march that continues from `checkpoint`.
     ///
     /// # Errors
     /// A checkpoint of another step, beyond the end, or of another size than the model; as [`March::start`].
@@ -168,7 +169,7 @@ impl<'a> March<'a> {
         if progress.step > steps {
             return Err(CheckpointError::Beyond { folder, at: progress.state.t }.into());
         }
-        let (mut march, sizes) = (Self::at(prepared, progress)?, || differs("its sizes are others".to_owned()));
+        let (mut march, sizes) = (Self::at(prepared, progress)?, || differs("its sizes differ".to_owned()));
         let Self { system, integrator, progress, .. } = &mut march;
         let fresh = system.initial();
         if progress.state.u.len() != fresh.u.len() || progress.state.contacts.len() != fresh.contacts.len() {
@@ -234,7 +235,7 @@ impl<'a> March<'a> {
         })
     }
 
-    /// Whether there is nothing more to march: the end is reached, or the march has stopped.
+    /// Whether the march has ended or stopped.
     pub fn done(&self) -> bool {
         self.progress.stopped.is_some() || self.progress.step >= self.sizes.steps
     }
@@ -249,7 +250,7 @@ impl<'a> March<'a> {
         self.progress.state.t
     }
 
-    /// Makes one step; a march that is done stays as it is.
+    /// Makes one step; does nothing when the march has ended.
     pub fn advance(&mut self) {
         if self.done() {
             return;
@@ -351,7 +352,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Writes a checkpoint into `dir`: after it the march goes on, here or in another process.
+    /// Writes a checkpoint into `dir`, from which the march can be continued here or in another process.
     ///
     /// # Errors
     /// A folder that cannot be written, a mesh that cannot be read any more.

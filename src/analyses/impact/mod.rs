@@ -40,7 +40,7 @@ pub struct Sizes {
     pub stiffness_entries: usize,
     /// Entries of its Cholesky factor.
     pub factor_entries: usize,
-    /// What the run takes at its peak, as it is expected.
+    /// Memory that the run is expected to take at its peak.
     pub memory: MemoryEstimate,
     /// Contact force of the first impactor per deflection under it, N/m, of the plate as marched.
     pub static_stiffness: f64,

@@ -95,7 +95,7 @@ impl ModalView {
         &self.record
     }
 
-    /// Goes on from what a view of the same modes has seen; `false` where `record` is of another size.
+    /// Continues from what a view of the same modes has seen; `false` where `record` is of another size.
     pub(super) fn resume(&mut self, record: Record) -> bool {
         let n = self.modes.len();
         let fits = record.strain.len() == n && record.kinetic.len() == n;

@@ -144,7 +144,7 @@ impl Sheets {
         let face = |quad: usize, height: usize| CORNERS.map(|corner| lattice.point(quad, corner, height));
         let cells = (0..plan.quads.len()).flat_map(|quad| (1..=count).map(move |height| (quad, height)));
         let mut cells: Vec<u32> = cells.flat_map(|(quad, height)| face(quad, height)).collect();
-        // The two faces of the plate are no interfaces.
+        // The two faces of the plate are not interfaces.
         let inside = |point: &u32| (1..=count).contains(&(*point as usize % (count + 2)));
         let points: Vec<u32> = (0..lattice.len() as u32).filter(inside).collect();
         cells.iter_mut().for_each(|point| *point = points.partition_point(|p| p < point) as u32);

@@ -76,7 +76,7 @@ const KINDS: [Kind; 4] = [
     },
 ];
 
-/// The curves of `history.csv`; the error is the column, row (from 1) and text that is no finite number.
+/// The curves of `history.csv`; the error is the column, row (from 1) and text that is not a finite number.
 pub(super) fn curves(history: &Table) -> Result<Option<Curves>, (String, usize, String)> {
     let columns = 0..history.header.len();
     let numbers = |k: usize| history.numbers(k).map_err(|(row, text)| (history.header[k].clone(), row, text));

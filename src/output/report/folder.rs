@@ -91,7 +91,7 @@ fn pictures(path: &Path) -> Result<Vec<Picture>, Error> {
         let svg_path = path.join(format!("{name}.svg"));
         let Some(svg) = read_text(&svg_path)? else { continue };
         if !is_drawing(&svg) {
-            return Err(damaged(&svg_path, "it is no picture that `fem run` has drawn".into()).into());
+            return Err(damaged(&svg_path, "it was not drawn by `fem run`".into()).into());
         }
         let png = std::fs::read(path.join(format!("{name}.png"))).ok();
         pictures.push(Picture { name, caption, svg, png });

@@ -44,7 +44,7 @@ pub(super) fn render(folder: &Folder) -> Result<String, Error> {
     let history = folder.path.join("history.csv");
     let curves = folder.history.as_ref().map_or(Ok(None), curves);
     let curves = curves.map_err(|(column, row, text)| {
-        damaged(&history, format!("row {row}, column {column}: `{text}` is no finite number"))
+        damaged(&history, format!("row {row}, column {column}: `{text}` is not a finite number"))
     })?;
     let (damage, least) = folder.damage.as_ref().map_or((Value::Null, 0.0), damage);
     let colors: Vec<String> = (0..7).map(class_color).collect();

@@ -20,7 +20,10 @@ const NOTABLE_RESIDUAL: f64 = 1e-4;
 
 fn notable(residual: f64) -> Option<String> {
     (residual > NOTABLE_RESIDUAL).then(|| {
-        format!("the stiffness is ill-conditioned: the loads are met to {residual:.1e} of their size, displacements hardly better")
+        format!(
+            "the stiffness is ill-conditioned: the loads are balanced to {residual:.1e} of their size, and the \
+             displacements are hardly better"
+        )
     })
 }
 

@@ -15,7 +15,7 @@ use fem_io::tables::{HistoryRow, ImpactorRow};
 use serde::{Serialize, Serializer};
 use std::fmt::{self, Display};
 
-/// All that is said of a run; units are in the key names.
+/// The summary of a run; units are in the key names.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
 pub struct ImpactSummary {
@@ -381,7 +381,7 @@ fn impact(model: &Model, outcome: &Outcome, i: usize, spec: &scene::ImpactorSpec
     }
 }
 
-/// Indentation over thickness above which a plate is no half-space to an impactor; the shipped examples reach 0.05.
+/// Indentation over thickness above which a plate is not a half-space to an impactor; the shipped examples reach 0.05.
 const DEEP: f64 = 0.25;
 
 /// A warning of each contact that went deeper than contact laws are made for.
@@ -390,8 +390,8 @@ fn too_deep(model: &Model, outcome: &Outcome) -> impl Iterator<Item = String> {
     let deep = outcome.contacts.iter().filter(move |contact| contact.deepest > DEEP * thickness);
     deep.map(move |contact| {
         format!(
-            "the impactor is pressed {:.4} mm deep into a plate of {:.4} mm: contact laws hold for indentations that are small \
-             beside the thickness, unless it is the impactor that yields",
+            "the impactor is pressed {:.4} mm deep into a plate of {:.4} mm: contact laws hold for indentations that \
+             are small compared with the thickness, unless it is the impactor that yields",
             contact.deepest * 1e3,
             thickness * 1e3
         )

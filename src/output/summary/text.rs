@@ -51,7 +51,7 @@ impl ImpactSummary {
             let end = self.impact.first().map_or(0.0, |i| i.end_time_s);
             line(format_args!("  damage    none until {:.4} ms", end * 1e3));
         } else {
-            line(format_args!("  damage    first reaching of each mode (plies count from the bottom)"));
+            line(format_args!("  damage    first onset of each mode (plies are counted from the bottom)"));
             line(format_args!(
                 "            {:>9}  {:<15} {:<19} {:>7} {:>7}  {:>17}  {:>8}",
                 "time", "criterion", "mode", "ply", "angle", "x, y", "force"
@@ -177,7 +177,7 @@ impl ImpactSummary {
                 "step: force within about {error:.1e} ({} the step changes it by {change:.1e})",
                 if step > a.step_s { "twice" } else { "half" }
             ),
-            _ => "step: error not estimated; half the step would show it".to_owned(),
+            _ => "step: error not estimated; a run with half the step would show it".to_owned(),
         };
         let reduction = if m.unknowns_marched == m.substructures.map_or(m.unknowns, |s| s.masters) {
             "reduction: none, all unknowns are marched".to_owned()

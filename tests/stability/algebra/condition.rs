@@ -50,7 +50,7 @@ fn hilbert() -> f64 {
     let mut all = Vec::new();
     for n in 2..10 {
         for unit in [1.0, 1e3, 1e9] {
-            // Units of the unknowns that are no powers of one number.
+            // Units of the unknowns that are not powers of one number.
             let scale = |i: usize| f64::powf(unit, (i * 7 % n) as f64 / n as f64);
             let entry = |i: usize, j: usize| 1.0 / (i + j + 1) as f64;
             let starts = (0..=n).map(|j| (0..j).map(|j| n - j).sum()).collect();

@@ -1,4 +1,4 @@
-//! Cells that are no squares.
+//! Cells that are not squares.
 
 use crate::case::{Case, Room};
 use crate::plates::{HEX, SHELL, SOLIDS, jiggled, middles, model, moved, on, probe, rectangle, said, solve, worst};

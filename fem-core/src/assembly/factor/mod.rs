@@ -52,9 +52,11 @@ impl fmt::Display for FactorError {
         match self {
             Self::NotFinite { column } => write!(f, "column {column} holds a number that is not finite"),
             Self::NotPositive { column } => write!(f, "the pivot of column {column} is not positive"),
-            Self::OtherPattern => f.write_str("the matrix has another pattern than was analysed"),
+            Self::OtherPattern => f.write_str("the pattern of the matrix is not the one that was analysed"),
             Self::TooLarge(unknowns) => write!(f, "{unknowns} unknowns are more than can be numbered"),
-            Self::NoRoom { bytes } => write!(f, "the factor needs {:.1} GB or more, which there are not", bytes * 1e-9),
+            Self::NoRoom { bytes } => {
+                write!(f, "the factor needs {:.1} GB or more, which is not available", bytes * 1e-9)
+            }
         }
     }
 }

@@ -139,7 +139,7 @@ fn a_group_of_a_node_that_no_cell_has() {
         "middle",
         file.as_bytes(),
         FilePlace::Line(120),
-        &["node 25 of group \"rim\" is no corner of a cell", "In Surface"],
+        &["node 25 of group \"rim\" is not a corner of a cell", "In Surface"],
     );
 }
 

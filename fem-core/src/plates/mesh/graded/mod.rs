@@ -9,7 +9,7 @@ use super::{Group, QuadMesh};
 use crate::contracts::plugin::ParamError;
 use rings::Rings;
 
-/// Cells that a generated mesh may have: more is a slip.
+/// Cells that a generated mesh may have: more is a mistake.
 pub const MAX_CELLS: usize = 4_000_000;
 
 /// The impact's largest distance from the middle over the radius of the circle around it.
@@ -121,7 +121,7 @@ impl Graded {
         let support = self.support.map(|radius| ("support", radius));
         for (key, length) in lengths.into_iter().chain(sizes).chain(support) {
             if !(length > 0.0 && length.is_finite()) {
-                return Err(ParamError::new(key, format!("{length} m is no length: it must be positive")));
+                return Err(ParamError::new(key, format!("{length} m is not a length: it must be positive")));
             }
         }
         if self.edge_size < self.size {
