@@ -1,6 +1,7 @@
 //! The registry of plug-ins: one table that scenes, lists and documentation read.
 
-use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, unknown_key};
+use fem_core::plugin::{Built, Kind, ParamError, ParamForm, ParamInfo, Params, Plugin, PluginInfo, Value, unknown_key};
+use fem_io::units::{self, UnitError};
 use std::fmt;
 use tracing::debug;
 
@@ -43,6 +44,15 @@ pub enum RegistryError {
     },
     /// It does not take these parameters.
     Param(ParamError),
+    /// A quantity of its parameters cannot be read.
+    Unit {
+        /// The parameter.
+        key: String,
+        /// What is wrong.
+        error: UnitError,
+        /// What to write instead.
+        help: String,
+    },
     /// Two plug-ins of one kind share the name.
     Clash {
         /// The kind.
@@ -57,6 +67,7 @@ impl fmt::Display for RegistryError {
         match self {
             Self::Unknown { kind, name, .. } => write!(f, "there is no {kind} `{name}`"),
             Self::Param(e) => e.fmt(f),
+            Self::Unit { key, error, .. } => write!(f, "`{key}`: {error}"),
             Self::Clash { kind, name } => write!(f, "two plug-ins are registered as the {kind} `{name}`"),
         }
     }
@@ -157,10 +168,10 @@ impl Registry {
         self.entries.iter().find(|e| e.info.kind == kind && e.info.name == name)
     }
 
-    /// Builds the plug-in `name` of `kind`.
+    /// Builds the plug-in `name` of `kind`; quantities among its parameters may be texts with a unit.
     ///
     /// # Errors
-    /// An unknown name, two plug-ins of that name, an unknown or bad parameter.
+    /// An unknown name, two plug-ins of that name, an unknown parameter, a value that is not allowed.
     pub fn build(&self, kind: Kind, name: &str, params: &Params) -> Result<Built, RegistryError> {
         if self.clashes.contains(&(kind, name)) {
             return Err(RegistryError::Clash { kind, name: name.to_owned() });
@@ -170,8 +181,24 @@ impl Registry {
             name: name.to_owned(),
             hint: format!("`{name}` {}", unknown_key(name, self.choices(kind).iter().map(|info| info.name))),
         })?;
-        params.only(entry.info.params).map_err(RegistryError::Param)?;
+        let params = in_si(params, entry.info.params)?;
+        params.check(entry.info.params).map_err(RegistryError::Param)?;
         debug!(%kind, name, ?params, "plug-in");
-        (entry.build)(params).map_err(RegistryError::Param)
+        (entry.build)(&params).map_err(RegistryError::Param)
     }
+}
+
+/// The parameters with the quantities among them, by their rows, in SI.
+fn in_si(params: &Params, rows: &[ParamInfo]) -> Result<Params, RegistryError> {
+    let mut read = params.clone();
+    for row in rows.iter().filter(|row| matches!(row.form, ParamForm::Quantity(_))) {
+        if let Some(Value::Text(text)) = params.get(row.name) {
+            let (value, dimension) = units::parse_quantity(text).map_err(|error| {
+                let help = error.remedy(row.dimension());
+                RegistryError::Unit { key: row.name.to_owned(), error, help }
+            })?;
+            read.insert(row.name, Value::Quantity(value, dimension));
+        }
+    }
+    Ok(read)
 }

@@ -602,6 +602,13 @@ mod plugins {
     }
 
     #[test]
+    fn parameter_of_an_unknown_unit() {
+        let case = plate().scene("N/mm^1.5", "N/mn^1.5");
+        let words = ["contact law `sun-yang`: `k`: unknown unit `mn`", "`mn` is not known"];
+        refusal(&case, At::Scene("k ="), &words);
+    }
+
+    #[test]
     fn parameter_of_no_reduction() {
         let case = with_keys(plate(), "reduction = { method = \"none\", modes = 3 }");
         refusal(&case, At::Scene("reduction ="), &["`modes` means nothing without a reduction"]);

@@ -40,7 +40,7 @@ fn criteria_table() -> String {
         let scope = criterion.scope();
         write!(text, "\n## {name}\n\n{summary}\n\nSource: {source}. It takes {scope}.\n").unwrap();
         for (k, p) in info.params.iter().enumerate() {
-            writeln!(text, "{}* `{}`: {}", if k == 0 { "\n" } else { "" }, p.name, p.doc).unwrap();
+            writeln!(text, "{}* `{}`: {}", if k == 0 { "\n" } else { "" }, p.name, p).unwrap();
         }
     }
     text
@@ -101,7 +101,7 @@ fn integrators_table() -> String {
 }
 
 fn parameters_of(info: &PluginInfo) -> String {
-    let params: Vec<_> = info.params.iter().map(|p| format!("`{}`: {}", p.name, p.doc)).collect();
+    let params: Vec<_> = info.params.iter().map(|p| format!("`{}`: {p}", p.name)).collect();
     if params.is_empty() { "none".to_owned() } else { params.join("<br>") }
 }
 

@@ -48,7 +48,7 @@ fn list_shows_the_registry() {
             }
             assert!(line.starts_with(&format!("{} ", info.name)), "{line}");
             for parameter in info.params {
-                assert_eq!(lines.next().unwrap().trim(), format!("{}: {}", parameter.name, parameter.doc));
+                assert_eq!(lines.next().unwrap().trim(), format!("{}: {parameter}", parameter.name));
             }
         }
         if kind == Kind::Reduction {
@@ -274,17 +274,19 @@ impl FailureCriterion for FibreLimit {
     }
 }
 
+const LIMIT: ParamInfo = ParamInfo::quantity("limit", "stress at failure", Dimension::PRESSURE).above(0.0);
+
 impl Plugin for FibreLimit {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Criterion,
         name: "fibre-limit",
         summary: "stress along the fibres",
         source: "a test",
-        params: &[ParamInfo { name: "limit", doc: "stress at failure" }],
+        params: &[LIMIT],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        Ok(Built::Criterion(Box::new(Self { limit: params.positive("limit", Dimension::PRESSURE, None)? })))
+        Ok(Built::Criterion(Box::new(Self { limit: params.number(&LIMIT)? })))
     }
 }
 

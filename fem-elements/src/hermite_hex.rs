@@ -5,7 +5,7 @@ use crate::hermite_prism::{F, HermitePrism, Mass, N, column, to_global};
 use crate::prism::{BLOCKS, STRAIN_ROW, matrix, multiply};
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
 use fem_core::large::LargeDisplacement;
-use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
 use fem_core::quadrature::gauss_legendre;
 use std::sync::LazyLock;
 
@@ -206,10 +206,7 @@ impl Plugin for HermiteHex {
         name: "hermite-hex",
         summary: "hermite-prism on rectangles and parallelograms only; refuses other quadrilaterals",
         source: "AFWAL-TR-87-4117, eqs 16-23",
-        params: &[ParamInfo {
-            name: "mass",
-            doc: "`cubic` (default): consistent; `linear`: the report's, translations only",
-        }],
+        params: &[Mass::PARAM],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {

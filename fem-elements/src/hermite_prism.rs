@@ -10,7 +10,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::dof::Dof;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
 use fem_core::large::LargeDisplacement;
-use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::quadrature::{MAX_POINTS, gauss_legendre};
 use natural::{Natural, Table};
 use std::ops::Range;
@@ -47,9 +47,16 @@ pub enum Mass {
 }
 
 impl Mass {
+    pub(crate) const PARAM: ParamInfo = ParamInfo::word(
+        "mass",
+        "functions that carry the inertia",
+        &[("cubic", "consistent"), ("linear", "the report's, translations only")],
+    )
+    .role(Role::Inertia);
+
     /// The choice in a scene.
     pub(crate) fn of(params: &Params) -> Result<Self, ParamError> {
-        Ok(match params.choice("mass", &["cubic", "linear"])? {
+        Ok(match params.word(&Self::PARAM)? {
             "linear" => Self::Linear,
             _ => Self::Cubic,
         })
@@ -402,22 +409,23 @@ fn for_each_point(
     Ok(())
 }
 
+const ORDER: ParamInfo = ParamInfo::count("in_plane_order", "Gauss points per in-plane direction")
+    .at_least(3.0)
+    .at_most(MAX_POINTS as f64)
+    .default(HermitePrism::IN_PLANE_ORDER as f64)
+    .role(Role::Quadrature);
+
 impl Plugin for HermitePrism {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Element,
         name: "hermite-prism",
         summary: "quadrilateral prism, 12 unknowns a node, any number of plies through one cell",
         source: "AFWAL-TR-87-4117, eqs 16-23",
-        params: &[
-            ParamInfo { name: "mass", doc: "`cubic` (default): consistent; `linear`: the report's, translations only" },
-            ParamInfo { name: "in_plane_order", doc: "Gauss points per in-plane direction, at least 3; default 4" },
-        ],
+        params: &[Mass::PARAM, ORDER],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let order = params.count("in_plane_order", 3, Some(Self::IN_PLANE_ORDER))?;
-        Self::new(Mass::of(params)?, order)
-            .map(|e| Built::Element(Box::new(e)))
-            .map_err(|e| ParamError::new("in_plane_order", e.to_string()))
+        let built = Self::new(Mass::of(params)?, params.count(&ORDER)?);
+        Ok(Built::Element(Box::new(built.map_err(|e| ParamError::new(ORDER.name, e.to_string()))?)))
     }
 }

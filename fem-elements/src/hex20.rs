@@ -5,7 +5,7 @@ use crate::prism::{self, Prism};
 use fem_core::dof::Dof;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch};
 use fem_core::large::LargeDisplacement;
-use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::quadrature::MAX_POINTS;
 
 /// Corners, bottom face first and anticlockwise; middles of the edges of the bottom face, of the top face, and of the
@@ -190,23 +190,25 @@ impl LargeDisplacement for Hex20 {
     }
 }
 
+const ORDER: ParamInfo =
+    ParamInfo::count("in_plane_order", "Gauss points per in-plane direction; the default is exact on parallelograms")
+        .at_least(3.0)
+        .at_most(MAX_POINTS as f64)
+        .default(Hex20::IN_PLANE_ORDER as f64)
+        .role(Role::Quadrature);
+
 impl Plugin for Hex20 {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Element,
         name: "hex20",
         summary: "20-node serendipity hexahedron, 3 unknowns a node, any number of plies through one cell",
         source: "Zienkiewicz and Taylor, The Finite Element Method, vol. 1, 5th ed. (2000), ch. 8",
-        params: &[ParamInfo {
-            name: "in_plane_order",
-            doc: "Gauss points per in-plane direction, at least 3; default 3, exact on parallelograms",
-        }],
+        params: &[ORDER],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let order = params.count("in_plane_order", 1, Some(Self::IN_PLANE_ORDER))?;
-        Self::new(order)
-            .map(|e| Built::Element(Box::new(e)))
-            .map_err(|e| ParamError::new("in_plane_order", e.to_string()))
+        let built = Self::new(params.count(&ORDER)?).map_err(|e| ParamError::new(ORDER.name, e.to_string()))?;
+        Ok(Built::Element(Box::new(built)))
     }
 }
 

@@ -6,7 +6,7 @@ use crate::large::{Gradients, Solid};
 use fem_core::dof::Dof;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, Slice};
 use fem_core::large::LargeDisplacement;
-use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::quadrature::MAX_POINTS;
 use fem_core::tensor::{Matrix6, apply};
 
@@ -236,30 +236,32 @@ impl LargeDisplacement for WebsterBeam {
     }
 }
 
+const STATE: ParamInfo = ParamInfo::word(
+    "state",
+    "across the strip",
+    &[("plane-stress", "its sides are free"), ("plane-strain", "no strain")],
+);
+const ORDER: ParamInfo = ParamInfo::count("in_plane_order", "Gauss points along x")
+    .at_least(3.0)
+    .at_most(MAX_POINTS as f64)
+    .default(WebsterBeam::IN_PLANE_ORDER as f64)
+    .role(Role::Quadrature);
+
 impl Plugin for WebsterBeam {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Element,
         name: "webster-beam",
         summary: "section of a strip along x, 6 unknowns a node, any number of plies through one cell",
         source: "Webster, in AFWAL-TR-87-4117, eqs 1-15",
-        params: &[
-            ParamInfo {
-                name: "state",
-                doc: "`plane-stress` (default): sides free; `plane-strain`: no strain across the strip",
-            },
-            ParamInfo { name: "mass", doc: "`cubic` (default): consistent; `linear`: the report's, translations only" },
-            ParamInfo { name: "in_plane_order", doc: "Gauss points along x, at least 3; default 4" },
-        ],
+        params: &[STATE, Mass::PARAM, ORDER],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let state = match params.choice("state", &["plane-stress", "plane-strain"])? {
+        let state = match params.word(&STATE)? {
             "plane-strain" => PlaneState::Strain,
             _ => PlaneState::Stress,
         };
-        let order = params.count("in_plane_order", 3, Some(Self::IN_PLANE_ORDER))?;
-        Self::new(state, Mass::of(params)?, order)
-            .map(|e| Built::Element(Box::new(e)))
-            .map_err(|e| ParamError::new("in_plane_order", e.to_string()))
+        let built = Self::new(state, Mass::of(params)?, params.count(&ORDER)?);
+        Ok(Built::Element(Box::new(built.map_err(|e| ParamError::new(ORDER.name, e.to_string()))?)))
     }
 }

@@ -11,17 +11,3 @@ pub(crate) use fem_core::tensor::{Ply, Stress6};
 pub(crate) fn macaulay(v: f64) -> f64 {
     if v < 0.0 { 0.0 } else { v }
 }
-
-/// A number within `range`, which `default` must not leave.
-pub(crate) fn number_in(
-    params: &Params,
-    key: &str,
-    range: std::ops::RangeInclusive<f64>,
-    default: f64,
-) -> Result<f64, ParamError> {
-    let v = params.number(key, Some(default))?;
-    if range.contains(&v) {
-        return Ok(v);
-    }
-    Err(ParamError::new(key, format!("must lie between {} and {}, got {v}", range.start(), range.end())))
-}

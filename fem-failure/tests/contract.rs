@@ -37,8 +37,8 @@ fn text(v: &str) -> Value {
 
 fn build<P: Plugin>(params: &[(&str, Value)]) -> (PluginInfo, Result<Box<dyn FailureCriterion>, ParamError>) {
     let params = params.iter().fold(Params::default(), |p, (key, value)| p.with(key, value.clone()));
-    params.only(P::INFO.params).unwrap();
-    let built = P::build(&params).map(|built| match built {
+    let checked = params.check(P::INFO.params);
+    let built = checked.and_then(|()| P::build(&params)).map(|built| match built {
         Built::Criterion(c) => c,
         other => panic!("{} builds {other:?}", P::INFO.name),
     });

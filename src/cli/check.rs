@@ -245,7 +245,7 @@ fn explained(keys: &[Explained]) -> String {
         } else if text.is_empty() {
             text.push('\n');
         }
-        let value = key.value.as_deref().map_or(name.to_owned(), |value| format!("{name} = {value}"));
+        let value = format!("{name} = {}", key.value);
         let _ = writeln!(text, "{value:<44} {:<22} {}", key.from, key.about);
     }
     text

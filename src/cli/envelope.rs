@@ -8,10 +8,10 @@ use fem_core::material::Material;
 use fem_core::plugin::{self, Built, Kind, Params, unknown_key};
 use fem_failure::envelope::{self, EnvelopePoint, Envelopes, StressPlane};
 use fem_io::files::OutputDir;
+use fem_io::materials;
 use fem_io::plot::{self, Axis, LinePlot, Series, Style};
 use fem_io::scene::{self, CriterionSpec, Scene};
 use fem_io::tables::{self, EnvelopeRow};
-use fem_io::{materials, units};
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -107,14 +107,14 @@ fn criteria(registry: &Registry, asked: &[String], scene: Option<&Scene>) -> mie
     asked.iter().map(each).collect()
 }
 
-/// `key=value`, the value a number, a quantity or a word.
+/// `key=value`, the value a number, a flag or a text.
 fn parameter(text: &str) -> miette::Result<(&str, plugin::Value)> {
     let Some((key, value)) = text.split_once('=') else {
         return Err(miette!(help = "write, for example: tsai-wu:f12=-0.3", "`{text}` is no parameter"));
     };
-    let quantity = || units::parse_quantity(value).ok().map(|(v, dimension)| plugin::Value::Quantity(v, dimension));
     let number = value.parse().ok().map(plugin::Value::Number);
-    Ok((key, number.or_else(quantity).unwrap_or_else(|| plugin::Value::Text(value.to_owned()))))
+    let flag = || value.parse().ok().map(plugin::Value::Flag);
+    Ok((key, number.or_else(flag).unwrap_or_else(|| plugin::Value::Text(value.to_owned()))))
 }
 
 /// A criterion of a scene under the name that it has there.

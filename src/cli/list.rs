@@ -2,42 +2,35 @@
 
 use super::{Console, Format};
 use crate::registry::Registry;
-use clap::{Args, ValueEnum};
-use fem_core::plugin::{Kind, ParamInfo, PluginInfo};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use fem_core::plugin::{Kind, ParamDefault, ParamForm, ParamInfo, PluginInfo};
 use fem_io::materials::{self, LibraryMaterial};
 use fem_io::scene::{self, EffectInfo};
 use serde::Serialize;
+use std::collections::BTreeMap;
+use std::ops::Bound;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 #[command(after_help = "Example: fem list contact-laws")]
 pub(super) struct Arguments {
     /// What to list.
-    what: What,
+    #[arg(value_parser = topics())]
+    what: String,
     #[command(flatten)]
     format: Format,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum What {
-    /// For `element.kind`.
-    Elements,
-    /// For `failure.criteria`.
-    Criteria,
-    /// For `contact.law`.
-    ContactLaws,
-    /// For `march.integrator`.
-    Integrators,
-    /// For `reduction.method`.
-    Reductions,
-    /// For `law` of a material.
-    PlyLaws,
-    /// For the interfaces between plies.
-    InterfaceLaws,
-    /// For `effects`.
-    Effects,
-    /// For `library` of a material.
-    Materials,
+const EFFECTS: &str = "effects";
+const MATERIALS: &str = "materials";
+
+/// The kinds of plug-ins, effects and materials, each with where a scene names one.
+fn topics() -> PossibleValuesParser {
+    let kinds = Kind::ALL.iter().map(|kind| (kind.plural(), kind.purpose()));
+    let others = [(EFFECTS, "`effects`"), (MATERIALS, "`library` of a material")];
+    let topic = |(name, purpose)| PossibleValue::new(name).help(format!("For {purpose}"));
+    kinds.chain(others).map(topic).collect::<Vec<_>>().into()
 }
 
 /// A thing that a scene can name.
@@ -59,6 +52,21 @@ struct Entry {
 struct Parameter {
     name: &'static str,
     about: &'static str,
+    #[serde(rename = "type")]
+    form: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit: Option<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    choices: Vec<&'static str>,
+    #[serde(flatten)]
+    range: BTreeMap<&'static str, f64>,
+    required: bool,
+    /// As a scene writes it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    default: Option<String>,
+    /// For people.
+    #[serde(skip)]
+    text: String,
 }
 
 #[derive(Serialize)]
@@ -70,17 +78,13 @@ struct Constant {
 }
 
 pub(super) fn list(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
-    let kind = |kind| registry.choices(kind).iter().map(Entry::from).collect();
-    let entries: Vec<Entry> = match arguments.what {
-        What::Elements => kind(Kind::Element),
-        What::Criteria => kind(Kind::Criterion),
-        What::ContactLaws => kind(Kind::Contact),
-        What::Integrators => kind(Kind::Integrator),
-        What::Reductions => kind(Kind::Reduction),
-        What::PlyLaws => kind(Kind::PlyLaw),
-        What::InterfaceLaws => kind(Kind::InterfaceLaw),
-        What::Effects => scene::EFFECTS.iter().map(Entry::from).collect(),
-        What::Materials => materials::names().filter_map(materials::library).map(Entry::from).collect(),
+    let entries: Vec<Entry> = match arguments.what.as_str() {
+        EFFECTS => scene::EFFECTS.iter().map(Entry::from).collect(),
+        MATERIALS => materials::names().filter_map(materials::library).map(Entry::from).collect(),
+        plural => {
+            let kinds = Kind::ALL.iter().filter(|kind| kind.plural() == plural);
+            kinds.flat_map(|kind| registry.choices(*kind)).map(|info| Entry::from(&info)).collect()
+        }
     };
     console.show(arguments.format, &entries, || entries.iter().map(Entry::text).collect())?;
     Ok(ExitCode::SUCCESS)
@@ -96,7 +100,7 @@ impl Entry {
         let source = if source.is_empty() { String::new() } else { format!(" [{source}]") };
         let mut lines = vec![format!("{name:<20} {summary}{source}")];
         lines.extend(Some(self.values).filter(|v| !v.is_empty()).map(|values| format!("{:<20}   {values}", "")));
-        lines.extend(self.parameters.iter().map(|p| format!("{:<20}   {}: {}", "", p.name, p.about)));
+        lines.extend(self.parameters.iter().map(|p| format!("{:<20}   {}: {}", "", p.name, p.text)));
         let constant = |c: &Constant| format!("{:<20}   {}: {}, {} [{}]", "", c.name, c.value, c.status, c.source);
         lines.extend(self.constants.iter().map(constant));
         lines.join("\n") + "\n"
@@ -105,9 +109,42 @@ impl Entry {
 
 impl From<&PluginInfo> for Entry {
     fn from(info: &PluginInfo) -> Self {
-        let parameter = |p: &ParamInfo| Parameter { name: p.name, about: p.doc };
-        let parameters = info.params.iter().map(parameter).collect();
+        let parameters = info.params.iter().map(Parameter::from).collect();
         Self { parameters, ..Self::new(info.name, info.summary, info.source) }
+    }
+}
+
+impl From<&ParamInfo> for Parameter {
+    fn from(row: &ParamInfo) -> Self {
+        let (form, choices) = match row.form {
+            ParamForm::Number => ("number", Vec::new()),
+            ParamForm::Count => ("count", Vec::new()),
+            ParamForm::Quantity(_) => ("quantity", Vec::new()),
+            ParamForm::Word(words) => ("word", words.iter().map(|(word, _)| *word).collect()),
+            ParamForm::Flag => ("flag", Vec::new()),
+            ParamForm::Texts => ("texts", Vec::new()),
+        };
+        let least = match row.range.0 {
+            Bound::Included(v) => Some(("at_least", v)),
+            Bound::Excluded(v) => Some(("above", v)),
+            Bound::Unbounded => None,
+        };
+        let most = match row.range.1 {
+            Bound::Included(v) => Some(("at_most", v)),
+            Bound::Excluded(v) => Some(("below", v)),
+            Bound::Unbounded => None,
+        };
+        Self {
+            name: row.name,
+            about: row.about,
+            form,
+            unit: row.dimension().map(|dimension| dimension.to_string()),
+            choices,
+            range: least.into_iter().chain(most).collect(),
+            required: row.default == ParamDefault::Required,
+            default: row.default_value().map(|value| value.in_scene()),
+            text: row.to_string(),
+        }
     }
 }
 

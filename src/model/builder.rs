@@ -36,9 +36,13 @@ macro_rules! build {
             )),
             Err(RegistryError::Param(e)) => {
                 let known = $self.registry.param(Kind::$kind, &spec.name.value, &e.key);
-                let help = known.map_or(String::new(), |p| format!("`{}`: {}", p.name, p.doc));
+                let help = known.map_or(String::new(), |row| format!("`{}`: {row}", row.name));
                 let message = format!("{} `{}`: {e}", Kind::$kind, spec.name.value);
                 Err($self.scene.source.error_at(spec.place_of(&e.key), message, help))
+            }
+            Err(RegistryError::Unit { key, error, help }) => {
+                let message = format!("{} `{}`: `{key}`: {error}", Kind::$kind, spec.name.value);
+                Err($self.scene.source.error_at(spec.place_of(&key), message, help))
             }
             Err(error) => {
                 let hint = match &error {

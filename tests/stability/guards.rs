@@ -89,17 +89,15 @@ struct Faulty {
     fault: String,
 }
 
+const FAULTS: ParamInfo =
+    ParamInfo::word("fault", "what goes wrong", &[("nan", ""), ("infinity", ""), ("pull", ""), ("gain", "")]);
+
 impl Plugin for Faulty {
-    const INFO: PluginInfo = PluginInfo {
-        kind: Kind::Contact,
-        name: "faulty",
-        summary: "",
-        source: "",
-        params: &[ParamInfo { name: "fault", doc: "" }],
-    };
+    const INFO: PluginInfo =
+        PluginInfo { kind: Kind::Contact, name: "faulty", summary: "", source: "", params: &[FAULTS] };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let fault = params.choice("fault", &["nan", "infinity", "pull", "gain"])?.to_owned();
+        let fault = params.word(&FAULTS)?.to_owned();
         Ok(Built::Contact(Box::new(Self { sound: hertz(3e9), fault })))
     }
 }
@@ -136,17 +134,18 @@ struct Spoilt {
     step: u32,
 }
 
+const SPOILS: ParamInfo = ParamInfo::word(
+    "fault",
+    "what goes wrong",
+    &[("nan", ""), ("gain", ""), ("loss", ""), ("deep", ""), ("fast", ""), ("no limit", "")],
+);
+
 impl Plugin for Spoilt {
-    const INFO: PluginInfo = PluginInfo {
-        kind: Kind::Integrator,
-        name: "spoilt",
-        summary: "",
-        source: "",
-        params: &[ParamInfo { name: "fault", doc: "" }],
-    };
+    const INFO: PluginInfo =
+        PluginInfo { kind: Kind::Integrator, name: "spoilt", summary: "", source: "", params: &[SPOILS] };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let fault = params.choice("fault", &["nan", "gain", "loss", "deep", "fast", "no limit"])?.to_owned();
+        let fault = params.word(&SPOILS)?.to_owned();
         let sound: Box<dyn Integrator> = match fault.as_str() {
             "no limit" => integrator("rk4"),
             _ => integrator("newmark"),

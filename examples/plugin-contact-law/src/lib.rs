@@ -102,23 +102,22 @@ impl ContactLaw for ElasticPlastic {
 // ANCHOR_END: law
 
 // ANCHOR: plugin
+const K: ParamInfo = ParamInfo::quantity("k", "contact stiffness", Dimension::contact_stiffness(1.5)).above(0.0);
+const YIELD: ParamInfo =
+    ParamInfo::quantity("yield", "indentation at which it yields", Dimension::LENGTH).above(0.0);
+
 impl Plugin for ElasticPlastic {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Contact,
         name: "elastic-plastic",
         summary: "Hertz up to yield, linear beyond it, Hertzian unloading to a permanent dent",
         source: "Thornton, J. Appl. Mech. 64 (1997) 383",
-        params: &[
-            ParamInfo { name: "k", doc: "contact stiffness, N/m^1.5" },
-            ParamInfo { name: "yield", doc: "indentation at which it yields, m" },
-        ],
+        params: &[K, YIELD],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        Ok(Built::Contact(Box::new(Self {
-            k: params.positive("k", Dimension::contact_stiffness(1.5), None)?,
-            yields: params.positive("yield", Dimension::LENGTH, None)?,
-        })))
+        let (k, yields) = (params.number(&K)?, params.number(&YIELD)?);
+        Ok(Built::Contact(Box::new(Self { k, yields })))
     }
 }
 // ANCHOR_END: plugin

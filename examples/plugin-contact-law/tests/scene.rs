@@ -78,8 +78,8 @@ fn wrong_parameters_are_shown_in_the_scene() {
     let folder = tempfile::tempdir().unwrap();
     for (line, words) in [
         ("", "`yield`: is missing"),
-        ("yield = \"5 MPa\"", "wrong dimension"),
-        ("yield = \"-5 um\"", "must be positive"),
+        ("yield = \"5 MPa\"", "must be a quantity in m, above 0, got 5e6 Pa"),
+        ("yield = \"-5 um\"", "must be a quantity in m, above 0, got -5e-6 m"),
         ("yields = \"5 um\"", "did you mean `yield`"),
     ] {
         let check = fem("check", line, folder.path(), &[]);

@@ -27,17 +27,19 @@ impl FailureCriterion for YamadaSun {
     }
 }
 
+const SHEAR: ParamInfo =
+    ParamInfo::quantity("shear", "shear strength of a ply within its laminate", Dimension::PRESSURE).above(0.0);
+
 impl Plugin for YamadaSun {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Criterion,
         name: "yamada-sun",
         summary: "failure of the last ply: its fibres under stress and shear",
         source: "Yamada and Sun, J. Compos. Mater. 12 (1978) 275",
-        params: &[ParamInfo { name: "shear", doc: "shear strength of a ply within its laminate, e.g. \"160 MPa\"" }],
+        params: &[SHEAR],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let shear = params.positive("shear", Dimension::PRESSURE, None)?;
-        Ok(Built::Criterion(Box::new(Self { shear })))
+        Ok(Built::Criterion(Box::new(Self { shear: params.number(&SHEAR)? })))
     }
 }

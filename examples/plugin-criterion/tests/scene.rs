@@ -31,9 +31,9 @@ fn a_scene_uses_it_beside_the_others() {
 fn wrong_parameters_are_shown_in_the_scene() {
     for (line, words) in [
         ("", "`shear`: is missing"),
-        ("shear = 160e6", "needs a number with a unit"),
-        ("shear = \"160 mm\"", "wrong dimension"),
-        ("shear = \"-160 MPa\"", "must be positive"),
+        ("shear = 160e6", "must be a quantity in Pa, above 0, got the bare number 1.6e8"),
+        ("shear = \"160 mm\"", "must be a quantity in Pa, above 0, got 0.16 m"),
+        ("shear = \"-160 MPa\"", "must be a quantity in Pa, above 0, got -1.6e8 Pa"),
         ("sheer = \"160 MPa\"", "did you mean `shear`"),
     ] {
         let (status, _, stderr) = check(SHEAR, line);

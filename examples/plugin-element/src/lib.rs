@@ -86,17 +86,23 @@ impl Element for Hex8 {
 }
 
 // ANCHOR: plugin
+const SHEAR: ParamInfo = ParamInfo::word(
+    "shear",
+    "transverse shear strains",
+    &[("assumed", "thin cells bend"), ("full", "they lock")],
+);
+
 impl Plugin for Hex8 {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Element,
         name: "hex8",
         summary: "8-node brick, 3 unknowns a node, any number of plies through one cell",
         source: "transverse shears: Bathe and Dvorkin, Int. J. Numer. Meth. Eng. 21 (1985) 367",
-        params: &[ParamInfo { name: "shear", doc: "`assumed` (default): thin cells bend; `full`: they lock" }],
+        params: &[SHEAR],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let assumed_shear = params.choice("shear", &["assumed", "full"])? == "assumed";
+        let assumed_shear = params.word(&SHEAR)? == "assumed";
         Ok(Built::Element(Box::new(Self { assumed_shear })))
     }
 }

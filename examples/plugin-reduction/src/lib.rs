@@ -2,7 +2,7 @@
 //!
 //! What to look at: a reduction only chooses the columns of a basis. It sees the structure through products and solves, and the
 //! contacts as functionals; projection, modes and the way back are common to all reductions.
-use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::functional::Functional;
 use fem_core::reduction::{Reduction, ReductionError};
 use fem_core::structure::{SolveError, Structure};
@@ -102,24 +102,22 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 // ANCHOR_END: space
 
 // ANCHOR: plugin
+const VECTORS: ParamInfo =
+    ParamInfo::count("vectors", "vectors in all").at_least(1.0).at_most(MOST as f64).default(30.0).role(Role::Size);
+const ABOUT: ParamInfo =
+    ParamInfo::quantity("about", "frequency about which the plate is described best", Dimension::FREQUENCY).above(0.0);
+
 impl Plugin for ShiftedKrylov {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Reduction,
         name: "shifted-krylov",
         summary: "Krylov vectors of the contact loads about a frequency; exact static flexibility at the contact",
         source: "Ruhe, Linear Algebra Appl. 58 (1984) 391; Gallivan, Grimme and Van Dooren, Numer. Algorithms 12 (1996) 33",
-        params: &[
-            ParamInfo { name: "vectors", doc: "vectors in all, up to 1000; default 30" },
-            ParamInfo { name: "about", doc: "frequency about which the plate is described best, Hz" },
-        ],
+        params: &[VECTORS, ABOUT],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let vectors = params.count("vectors", 1, Some(30))?;
-        if vectors > MOST {
-            return Err(ParamError::new("vectors", format!("must not exceed {MOST}, got {vectors}")));
-        }
-        let about = params.positive("about", Dimension::FREQUENCY, None)?;
+        let (vectors, about) = (params.count(&VECTORS)?, params.number(&ABOUT)?);
         Ok(Built::Reduction(Box::new(Self { vectors, about })))
     }
 }

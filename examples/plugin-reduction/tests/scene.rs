@@ -58,8 +58,8 @@ fn wrong_parameters_are_shown_in_the_scene() {
     for (from, to, words) in [
         ("shifted-krylov", "shifted-kyrlov", "did you mean `shifted-krylov`"),
         ("about", "around", "`around`: is not known"),
-        ("50 kHz", "50 mm", "wrong dimension"),
-        ("vectors = 16", "vectors = 1000000000", "must not exceed 1000"),
+        ("50 kHz", "50 mm", "must be a quantity in 1/s, above 0, got 0.05 m"),
+        ("vectors = 16", "vectors = 1000000000", "must be a whole number from 1 to 1000"),
     ] {
         let check = fem("check", &REDUCTION.replace(from, to), folder.path(), &[]);
         let stderr = String::from_utf8(check.stderr).unwrap();

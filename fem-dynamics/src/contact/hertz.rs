@@ -14,11 +14,23 @@ pub struct Hertz {
     n: f64,
 }
 
-const FROM_BODIES: [&str; 4] = ["radius", "e_tip", "nu_tip", "e_plate"];
+const RADIUS: ParamInfo =
+    ParamInfo::quantity("radius", "tip radius; with the three below instead of k and n", Dimension::LENGTH)
+        .above(0.0)
+        .optional();
+const E_TIP: ParamInfo =
+    ParamInfo::quantity("e_tip", "Young's modulus of the tip", Dimension::PRESSURE).above(0.0).optional();
+const NU_TIP: ParamInfo =
+    ParamInfo::number("nu_tip", "Poisson's ratio of the tip").at_least(0.0).at_most(0.5).optional();
+const E_PLATE: ParamInfo =
+    ParamInfo::quantity("e_plate", "modulus of the plate across its plane", Dimension::PRESSURE).above(0.0).optional();
+const OF_BODIES: [ParamInfo; 4] = [RADIUS, E_TIP, NU_TIP, E_PLATE];
 
 impl Hertz {
-    pub(super) const K: ParamInfo = ParamInfo { name: "k", doc: "contact stiffness, N/m^n" };
-    pub(super) const N: ParamInfo = ParamInfo { name: "n", doc: "exponent of loading, 1 to 4, default 1.5" };
+    pub(super) const K: ParamInfo =
+        ParamInfo::quantity_by("k", "contact stiffness", &Self::N, Dimension::contact_stiffness).above(0.0);
+    pub(super) const N: ParamInfo =
+        ParamInfo::number("n", "exponent of loading").at_least(1.0).at_most(4.0).default(1.5);
 
     pub(super) fn new(k: f64, n: f64) -> Self {
         Self { k, n }
@@ -26,24 +38,16 @@ impl Hertz {
 
     /// The power law of the parameters `k` and `n`.
     pub(super) fn power(params: &Params) -> Result<Self, ParamError> {
-        let n = params.number("n", Some(1.5))?;
-        if !(1.0..=4.0).contains(&n) {
-            return Err(ParamError::new("n", format!("must lie between 1 and 4, got {n}")));
-        }
-        Ok(Self::new(params.positive("k", Dimension::contact_stiffness(n), None)?, n))
+        Ok(Self::new(params.number(&Self::K)?, params.number(&Self::N)?))
     }
 
     fn of_bodies(params: &Params) -> Result<Self, ParamError> {
-        if let Some(key) = ["k", "n"].into_iter().find(|key| params.get(key).is_some()) {
-            return Err(ParamError::new(key, format!("and {} exclude each other", FROM_BODIES.join(", "))));
+        if let Some(row) = [Self::K, Self::N].iter().find(|row| params.has(row)) {
+            let others = OF_BODIES.map(|row| row.name).join(", ");
+            return Err(ParamError::new(row.name, format!("and {others} exclude each other")));
         }
-        let radius = params.positive("radius", Dimension::LENGTH, None)?;
-        let e_tip = params.positive("e_tip", Dimension::PRESSURE, None)?;
-        let nu_tip = params.number("nu_tip", None)?;
-        let e_plate = params.positive("e_plate", Dimension::PRESSURE, None)?;
-        if !(0.0..=0.5).contains(&nu_tip) {
-            return Err(ParamError::new("nu_tip", format!("must lie between 0 and 0.5, got {nu_tip}")));
-        }
+        let (radius, e_tip) = (params.number(&RADIUS)?, params.number(&E_TIP)?);
+        let (nu_tip, e_plate) = (params.number(&NU_TIP)?, params.number(&E_PLATE)?);
         let compliance = (1.0 - nu_tip * nu_tip) / e_tip + 1.0 / e_plate;
         Ok(Self::new(4.0 / 3.0 * radius.sqrt() / compliance, 1.5))
     }
@@ -86,18 +90,11 @@ impl Plugin for Hertz {
         name: "hertz",
         summary: "elastic power law F = k a^n, from k or from tip and plate",
         source: "Hertz 1882; modulus across the plate after Yang and Sun 1982",
-        params: &[
-            Self::K,
-            Self::N,
-            ParamInfo { name: "radius", doc: "tip radius, m; with the three below instead of k and n" },
-            ParamInfo { name: "e_tip", doc: "Young's modulus of the tip, Pa" },
-            ParamInfo { name: "nu_tip", doc: "Poisson's ratio of the tip, 0 to 0.5" },
-            ParamInfo { name: "e_plate", doc: "modulus of the plate across its plane, Pa" },
-        ],
+        params: &[Self::K.optional(), Self::N, RADIUS, E_TIP, NU_TIP, E_PLATE],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let of_bodies = FROM_BODIES.iter().any(|key| params.get(key).is_some());
+        let of_bodies = OF_BODIES.iter().any(|row| params.has(row));
         let law = if of_bodies { Self::of_bodies(params)? } else { Self::power(params)? };
         Ok(Built::Contact(Box::new(law)))
     }

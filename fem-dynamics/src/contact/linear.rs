@@ -7,17 +7,18 @@ use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Pl
 #[derive(Debug, Clone, Copy)]
 pub struct Linear;
 
+const K: ParamInfo = ParamInfo::quantity("k", "contact stiffness", Dimension::contact_stiffness(1.0)).above(0.0);
+
 impl Plugin for Linear {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Contact,
         name: "linear",
         summary: "one-sided linear spring F = k a",
         source: "Hooke",
-        params: &[ParamInfo { name: "k", doc: "contact stiffness, N/m" }],
+        params: &[K],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let k = params.positive("k", Dimension::contact_stiffness(1.0), None)?;
-        Ok(Built::Contact(Box::new(Hertz::new(k, 1.0))))
+        Ok(Built::Contact(Box::new(Hertz::new(params.number(&K)?, 1.0))))
     }
 }

@@ -94,34 +94,34 @@ impl ContactLaw for SunYang {
     }
 }
 
+const M: ParamInfo =
+    ParamInfo::number("m", "exponent of unloading, not below n").at_least(1.0).at_most(10.0).default(2.5);
+const CRITICAL: ParamInfo =
+    ParamInfo::quantity("critical", "indentation from which on a dent remains", Dimension::LENGTH).above(0.0);
+const BETA: ParamInfo = ParamInfo::number("beta", "exponent of the dent").above(0.0).at_most(1.0).default(0.4);
+const RELOADING: ParamInfo = ParamInfo::word(
+    "reloading",
+    "curve of a second contact",
+    &[("unloading-curve", "that of unloading"), ("loading-exponent", "from the dent, with the exponent n")],
+);
+
 impl Plugin for SunYang {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Contact,
         name: "sun-yang",
         summary: "power law with steeper unloading and a permanent dent",
         source: "Yang and Sun 1982; AFWAL-TR-87-4117 eqs 24-26",
-        params: &[
-            Hertz::K,
-            Hertz::N,
-            ParamInfo { name: "m", doc: "exponent of unloading, n to 10, default 2.5" },
-            ParamInfo { name: "critical", doc: "indentation from which on a dent remains, m" },
-            ParamInfo { name: "beta", doc: "exponent of the dent, 0 to 1, default 0.4" },
-            ParamInfo { name: "reloading", doc: "unloading-curve (default) or loading-exponent" },
-        ],
+        params: &[Hertz::K, Hertz::N, M, CRITICAL, BETA, RELOADING],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
         let loading = Hertz::power(params)?;
-        let m = params.number("m", Some(2.5))?;
-        if !(loading.n()..=10.0).contains(&m) {
-            return Err(ParamError::new("m", format!("must lie between n = {} and 10, got {m}", loading.n())));
+        let m = params.number(&M)?;
+        if m < loading.n() {
+            return Err(ParamError::new(M.name, format!("must not be below n = {}, got {m}", loading.n())));
         }
-        let beta = params.number("beta", Some(0.4))?;
-        if !(beta > 0.0 && beta <= 1.0) {
-            return Err(ParamError::new("beta", format!("must lie above 0 and not above 1, got {beta}")));
-        }
-        let critical = params.positive("critical", Dimension::LENGTH, None)?;
-        let reload_by_n = params.choice("reloading", &["unloading-curve", "loading-exponent"])? == "loading-exponent";
+        let (critical, beta) = (params.number(&CRITICAL)?, params.number(&BETA)?);
+        let reload_by_n = params.word(&RELOADING)? == "loading-exponent";
         Ok(Built::Contact(Box::new(Self { loading, m, critical, beta, reload_by_n })))
     }
 }

@@ -90,24 +90,22 @@ impl Integrator for DormandPrince {
     }
 }
 
+const RTOL: ParamInfo =
+    ParamInfo::number("rtol", "relative tolerance of a part of a step").above(0.0).at_most(0.1).default(1e-6);
+const ATOL: ParamInfo =
+    ParamInfo::quantity("atol", "absolute tolerance of displacements", Dimension::LENGTH).above(0.0).default(1e-12);
+
 impl Plugin for DormandPrince {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Integrator,
         name: "dormand-prince",
         summary: "Runge-Kutta pair 5(4) that divides its steps by error control",
         source: "Dormand and Prince 1980",
-        params: &[
-            ParamInfo { name: "rtol", doc: "relative tolerance of a part of a step, up to 0.1, default 1e-6" },
-            ParamInfo { name: "atol", doc: "absolute tolerance of displacements, m, default 1e-12 m" },
-        ],
+        params: &[RTOL, ATOL],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let rtol = params.number("rtol", Some(1e-6))?;
-        if !(rtol > 0.0 && rtol <= 0.1) {
-            return Err(ParamError::new("rtol", format!("must lie above 0 and not above 0.1, got {rtol}")));
-        }
-        let atol = params.positive("atol", Dimension::LENGTH, Some(1e-12))?;
+        let (rtol, atol) = (params.number(&RTOL)?, params.number(&ATOL)?);
         Ok(Built::Integrator(Box::new(Self { rtol, atol, stages: Stages::default() })))
     }
 }

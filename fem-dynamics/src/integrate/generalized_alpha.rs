@@ -97,20 +97,22 @@ impl Integrator for GeneralizedAlpha {
     }
 }
 
+const RHO: ParamInfo = ParamInfo::number("rho", "spectral radius for long steps: 0 damps them all, 1 none")
+    .at_least(0.0)
+    .at_most(1.0)
+    .default(0.9);
+
 impl Plugin for GeneralizedAlpha {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Integrator,
         name: "generalized-alpha",
         summary: "implicit, second order; damps high modes as chosen, low ones least",
         source: "Chung and Hulbert 1993",
-        params: &[ParamInfo { name: "rho", doc: "spectral radius for long steps, 0 (damps all) to 1, default 0.9" }],
+        params: &[RHO],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let rho = params.number("rho", Some(0.9))?;
-        if !(0.0..=1.0).contains(&rho) {
-            return Err(ParamError::new("rho", format!("must lie between 0 and 1, got {rho}")));
-        }
+        let rho = params.number(&RHO)?;
         let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
         let shift = alpha_f - alpha_m;
         let scheme = Self::new(alpha_m, alpha_f, 0.25 * (1.0 + shift) * (1.0 + shift), 0.5 + shift);

@@ -9,20 +9,22 @@ use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, Plugi
 #[derive(Debug, Clone, Copy)]
 pub struct HhtAlpha;
 
+const ALPHA: ParamInfo = ParamInfo::number("alpha", "numerical damping: the least value damps most, 0 not at all")
+    .at_least(-1.0 / 3.0)
+    .at_most(0.0)
+    .default(-0.1);
+
 impl Plugin for HhtAlpha {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Integrator,
         name: "hht-alpha",
         summary: "implicit, second order; damps high modes",
         source: "Hilber, Hughes and Taylor 1977",
-        params: &[ParamInfo { name: "alpha", doc: "-1/3 (most damping) to 0 (none), default -0.1" }],
+        params: &[ALPHA],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let alpha = params.number("alpha", Some(-0.1))?;
-        if !(-1.0 / 3.0..=0.0).contains(&alpha) {
-            return Err(ParamError::new("alpha", format!("must lie between -1/3 and 0, got {alpha}")));
-        }
+        let alpha = params.number(&ALPHA)?;
         let scheme = GeneralizedAlpha::new(0.0, -alpha, 0.25 * (1.0 - alpha) * (1.0 - alpha), 0.5 - alpha);
         Ok(Built::Integrator(Box::new(scheme)))
     }

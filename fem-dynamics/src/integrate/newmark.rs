@@ -11,28 +11,24 @@ use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, Plugi
 #[derive(Debug, Clone, Copy)]
 pub struct Newmark;
 
+const BETA: ParamInfo = ParamInfo::number("beta", "weight of the new acceleration in u; `central-difference` has 0")
+    .above(0.0)
+    .at_most(1.0)
+    .default(0.25);
+const GAMMA: ParamInfo =
+    ParamInfo::number("gamma", "weight of the new acceleration in v").at_least(0.5).at_most(1.0).default(0.5);
+
 impl Plugin for Newmark {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Integrator,
         name: "newmark",
         summary: "implicit; average acceleration by default, without numerical damping",
         source: "Newmark 1959",
-        params: &[
-            ParamInfo { name: "beta", doc: "weight of the new acceleration in u, above 0 to 1, default 0.25" },
-            ParamInfo { name: "gamma", doc: "weight of the new acceleration in v, 0.5 to 1, default 0.5" },
-        ],
+        params: &[BETA, GAMMA],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let beta = params.number("beta", Some(0.25))?;
-        if !(beta > 0.0 && beta <= 1.0) {
-            let why = format!("must lie above 0 and not above 1, got {beta}; for 0 take `central-difference`");
-            return Err(ParamError::new("beta", why));
-        }
-        let gamma = params.number("gamma", Some(0.5))?;
-        if !(0.5..=1.0).contains(&gamma) {
-            return Err(ParamError::new("gamma", format!("must lie between 0.5 and 1, got {gamma}")));
-        }
+        let (beta, gamma) = (params.number(&BETA)?, params.number(&GAMMA)?);
         Ok(Built::Integrator(Box::new(GeneralizedAlpha::new(0.0, 0.0, beta, gamma))))
     }
 }

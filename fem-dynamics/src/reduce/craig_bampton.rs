@@ -3,7 +3,7 @@
 use super::{EXCITED, StaticShapes, columns, refused, solve};
 use crate::lanczos::Lanczos;
 use fem_core::functional::Functional;
-use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::reduction::{Reduction, ReductionError};
 use fem_core::structure::{SolveError, Structure};
 
@@ -43,16 +43,18 @@ impl Reduction for CraigBampton {
     }
 }
 
+const MODES: ParamInfo = ParamInfo::count("modes", "modes with the contact held").default(40.0).role(Role::Size);
+
 impl Plugin for CraigBampton {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Reduction,
         name: "craig-bampton",
         summary: "contact shapes plus modes with the contact held; exact static flexibility at the contact",
         source: "Craig, Bampton 1968",
-        params: &[ParamInfo { name: "modes", doc: "modes with the contact held; default 40" }],
+        params: &[MODES],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        Ok(Built::Reduction(Box::new(Self { modes: params.count("modes", 0, Some(40))? })))
+        Ok(Built::Reduction(Box::new(Self { modes: params.count(&MODES)? })))
     }
 }

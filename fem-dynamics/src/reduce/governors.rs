@@ -2,7 +2,7 @@
 
 use super::StaticShapes;
 use fem_core::functional::Functional;
-use fem_core::plugin::{ParamError, ParamInfo, Params};
+use fem_core::plugin::{ParamError, ParamInfo, Params, Role};
 use fem_core::reduction::ReductionError;
 use fem_core::structure::Structure;
 use nalgebra::DMatrix;
@@ -13,6 +13,15 @@ const POOL: usize = 4;
 /// Ratios that differ by less than this fraction are equal, whatever the last bits say.
 const EQUAL: f64 = 1e-9;
 
+const COUNT: ParamInfo =
+    ParamInfo::count("governors", "deflections kept beside the contacts").default(38.0).role(Role::Size);
+const SELECT: ParamInfo = ParamInfo::word(
+    "select",
+    "which deflections are kept",
+    &[("spread", "evenly over the plate"), ("ratio", "those left when the largest k/m are eliminated")],
+)
+.role(Role::Way);
+
 /// How many governors are kept beside the contacts, and which.
 #[derive(Debug, Clone)]
 pub(super) struct Governors {
@@ -21,17 +30,10 @@ pub(super) struct Governors {
 }
 
 impl Governors {
-    pub(super) const PARAMS: [ParamInfo; 2] = [
-        ParamInfo { name: "governors", doc: "deflections kept beside the contacts; default 38" },
-        ParamInfo {
-            name: "select",
-            doc: "`spread` evenly over the plate (default), or those left when the largest k/m are eliminated: `ratio`",
-        },
-    ];
+    pub(super) const PARAMS: [ParamInfo; 2] = [COUNT, SELECT];
 
     pub(super) fn of(params: &Params) -> Result<Self, ParamError> {
-        let ratio = params.choice("select", &["spread", "ratio"])? == "ratio";
-        Ok(Self { count: params.count("governors", 0, Some(38))?, ratio })
+        Ok(Self { count: params.count(&COUNT)?, ratio: params.word(&SELECT)? == "ratio" })
     }
 
     /// Condenses the structure on the contacts and the governors.

@@ -4,7 +4,7 @@ use super::{EXCITED, columns, refused, solve, static_responses};
 use crate::lanczos::Lanczos;
 use crate::vector::{axpy, dot};
 use fem_core::functional::Functional;
-use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::reduction::{Reduction, ReductionError};
 use fem_core::structure::Structure;
 
@@ -71,16 +71,18 @@ fn orthonormal(structure: &dyn Structure, x: &[f64]) -> Vec<f64> {
     basis
 }
 
+const MODES: ParamInfo = ParamInfo::count("modes", "modes beside the static residual").default(40.0).role(Role::Size);
+
 impl Plugin for ModalTruncation {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Reduction,
         name: "modal",
         summary: "lowest modes that the contact excites plus their static residual; exact static flexibility there",
         source: "Maddox 1975; Hansteen, Bell 1979",
-        params: &[ParamInfo { name: "modes", doc: "modes beside the static residual; default 40" }],
+        params: &[MODES],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        Ok(Built::Reduction(Box::new(Self { modes: params.count("modes", 0, Some(40))? })))
+        Ok(Built::Reduction(Box::new(Self { modes: params.count(&MODES)? })))
     }
 }

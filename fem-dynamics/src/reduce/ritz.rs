@@ -3,7 +3,7 @@
 use super::{columns, refused, solve, static_responses};
 use crate::lanczos::Lanczos;
 use fem_core::functional::Functional;
-use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::reduction::{Reduction, ReductionError};
 use fem_core::structure::Coarse;
 use fem_core::structure::Structure;
@@ -84,20 +84,25 @@ fn two_level(
     Ok(basis)
 }
 
+const VECTORS: ParamInfo = ParamInfo::count("vectors", "vectors in all").at_least(1.0).default(60.0).role(Role::Size);
+const SPACE: ParamInfo = ParamInfo::word(
+    "space",
+    "how they are found",
+    &[("two-level", "by way of a coarse model"), ("krylov", "exactly, a solve each")],
+)
+.role(Role::Way);
+
 impl Plugin for Ritz {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Reduction,
         name: "ritz",
         summary: "Krylov vectors of the contact loads; exact static flexibility at the contact, few solves",
         source: "Wilson, Yuan, Dickens 1982",
-        params: &[
-            ParamInfo { name: "vectors", doc: "vectors in all; default 60" },
-            ParamInfo { name: "space", doc: "`two-level` (default): by way of a coarse model; or `krylov`" },
-        ],
+        params: &[VECTORS, SPACE],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let two_level = params.choice("space", &["two-level", "krylov"])? == "two-level";
-        Ok(Built::Reduction(Box::new(Self { vectors: params.count("vectors", 1, Some(60))?, two_level })))
+        let two_level = params.word(&SPACE)? == "two-level";
+        Ok(Built::Reduction(Box::new(Self { vectors: params.count(&VECTORS)?, two_level })))
     }
 }

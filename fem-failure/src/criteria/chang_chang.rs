@@ -30,7 +30,7 @@ pub struct ChangChang {
 
 impl Default for ChangChang {
     fn default() -> Self {
-        Self { beta: 1.0, alpha: 0.0, out_of_plane: OutOfPlane::default() }
+        Self { beta: BETA.default_number(), alpha: ALPHA.default_number(), out_of_plane: OutOfPlane::default() }
     }
 }
 
@@ -88,25 +88,27 @@ impl FailureCriterion for ChangChang {
     }
 }
 
+const BETA: ParamInfo = ParamInfo::number("beta", "share of the shear in fibre tension; published is 1")
+    .at_least(0.0)
+    .at_most(1.0)
+    .default(1.0);
+const PER_PRESSURE_CUBED: Dimension = Dimension([3.0, -3.0, 6.0, 0.0]);
+const ALPHA: ParamInfo =
+    ParamInfo::quantity("alpha", "in g12 = s12/G12 + alpha s12^3; 0 is linear shear", PER_PRESSURE_CUBED)
+        .at_least(0.0)
+        .default(0.0);
+
 impl Plugin for ChangChang {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Criterion,
         name: "chang-chang",
         summary: "fibre and matrix in plane stress, with nonlinear shear on request",
         source: "Chang and Chang, J. Compos. Mater. 21 (1987) 834",
-        params: &[
-            ParamInfo { name: "beta", doc: "share of the shear in fibre tension, 0 to 1; 1 by default, as published" },
-            ParamInfo { name: "alpha", doc: "in g12 = s12/G12 + alpha s12^3, 1/pressure^3; 0 (linear) by default" },
-            OutOfPlane::PARAM,
-        ],
+        params: &[BETA, ALPHA, OutOfPlane::PARAM],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let alpha = params.quantity("alpha", Dimension(Dimension::PRESSURE.0.map(|e| -3.0 * e)), Some(0.0))?;
-        if alpha < 0.0 {
-            return Err(ParamError::new("alpha", format!("must not be negative, got {alpha} 1/Pa^3")));
-        }
-        let beta = number_in(params, "beta", 0.0..=1.0, 1.0)?;
+        let (beta, alpha) = (params.number(&BETA)?, params.number(&ALPHA)?);
         Ok(Built::Criterion(Box::new(Self { beta, alpha, out_of_plane: OutOfPlane::from_params(params)? })))
     }
 }

@@ -47,7 +47,7 @@ pub struct Cuntze {
 
 impl Default for Cuntze {
     fn default() -> Self {
-        Self { m: 3.1, b12: 0.1, b23: 1.09 }
+        Self { m: M.default_number(), b12: B12.default_number(), b23: B23.default_number() }
     }
 }
 
@@ -85,24 +85,33 @@ impl FailureCriterion for Cuntze {
     from_terms!();
 }
 
+const M: ParamInfo =
+    ParamInfo::number("m", "interaction exponent; the default is typical").at_least(1.0).at_most(10.0).default(3.1);
+const B12: ParamInfo = ParamInfo::number("b12", "friction in matrix shear; the default is typical")
+    .at_least(0.05)
+    .at_most(0.3)
+    .default(0.1);
+const B23: ParamInfo = ParamInfo::number("b23", "friction in matrix compression; the default is typical")
+    .at_least(1.0)
+    .at_most(1.6)
+    .default(1.09);
+const MU: ParamInfo =
+    ParamInfo::number("mu", "friction in matrix shear; the default is typical").at_least(0.0).at_most(0.5).default(0.1);
+
 impl Plugin for Cuntze {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Criterion,
         name: "cuntze",
         summary: "failure mode concept: five invariant modes and their interaction, three-dimensional",
         source: "Cuntze, Compos. Sci. Technol. 66 (2006) 1081",
-        params: &[
-            ParamInfo { name: "m", doc: "interaction exponent, 1 to 10; 3.1 (typical) by default" },
-            ParamInfo { name: "b12", doc: "friction in matrix shear, 0.05 to 0.3; 0.1 (typical) by default" },
-            ParamInfo { name: "b23", doc: "friction in matrix compression, 1 to 1.6; 1.09 (typical) by default" },
-        ],
+        params: &[M, B12, B23],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
         Ok(Built::Criterion(Box::new(Self {
-            m: number_in(params, "m", 1.0..=10.0, 3.1)?,
-            b12: number_in(params, "b12", 0.05..=0.3, 0.1)?,
-            b23: number_in(params, "b23", 1.0..=1.6, 1.09)?,
+            m: params.number(&M)?,
+            b12: params.number(&B12)?,
+            b23: params.number(&B23)?,
         })))
     }
 }
@@ -127,7 +136,7 @@ pub struct Cuntze2d {
 
 impl Default for Cuntze2d {
     fn default() -> Self {
-        Self { m: 3.1, mu: 0.1, out_of_plane: OutOfPlane::default() }
+        Self { m: M.default_number(), mu: MU.default_number(), out_of_plane: OutOfPlane::default() }
     }
 }
 
@@ -167,17 +176,13 @@ impl Plugin for Cuntze2d {
         name: "cuntze-2d",
         summary: "failure mode concept in plane stress: five modes and their interaction",
         source: "Cuntze and Freund, Compos. Sci. Technol. 64 (2004) 343",
-        params: &[
-            ParamInfo { name: "m", doc: "interaction exponent, 1 to 10; 3.1 (typical) by default" },
-            ParamInfo { name: "mu", doc: "friction in matrix shear, 0 to 0.5; 0.1 (typical) by default" },
-            OutOfPlane::PARAM,
-        ],
+        params: &[M, MU, OutOfPlane::PARAM],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
         Ok(Built::Criterion(Box::new(Self {
-            m: number_in(params, "m", 1.0..=10.0, 3.1)?,
-            mu: number_in(params, "mu", 0.0..=0.5, 0.1)?,
+            m: params.number(&M)?,
+            mu: params.number(&MU)?,
             out_of_plane: OutOfPlane::from_params(params)?,
         })))
     }

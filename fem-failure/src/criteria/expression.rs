@@ -140,33 +140,31 @@ impl FailureCriterion for Expression {
     }
 }
 
+const SITE: ParamInfo = ParamInfo::word("site", "where it looks", &[("ply", ""), ("interface", "")]);
+const FORMULAS: ParamInfo =
+    ParamInfo::texts("expression", "a formula such as \"(s2/Yt)^2 + (s12/S12)^2\", or several as \"mode: formula\"");
+
 impl Plugin for Expression {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Criterion,
         name: "expression",
         summary: "formulas of your own, one per mode",
         source: "the scene",
-        params: &[
-            ParamInfo { name: "site", doc: "where it looks: \"ply\" (default) or \"interface\"" },
-            ParamInfo {
-                name: "expression",
-                doc: "a formula such as \"(s2/Yt)^2 + (s12/S12)^2\", or a list of \"mode: formula\"",
-            },
-        ],
+        params: &[SITE, FORMULAS],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let refuse = |why: String| ParamError::new("expression", why);
+        let refuse = |why: String| ParamError::new(FORMULAS.name, why);
         let refused = |error: ExpressionError| refuse(error.to_string());
-        let site = match params.choice("site", &["ply", "interface"])? {
+        let site = match params.word(&SITE)? {
             "interface" => Site::Interface,
             _ => Site::Ply,
         };
-        let modes = match params.get("expression") {
+        let formulas = params.value(&FORMULAS)?;
+        let modes = match &formulas {
             Some(Value::Text(formula)) => vec![("failure", formula.as_str())],
             Some(Value::List(items)) => items.iter().map(split_mode).collect::<Result<_, _>>().map_err(refused)?,
-            Some(other) => return Err(refuse(format!("must be a formula or a list of them, got {other}"))),
-            None => return Err(refuse("is missing (a formula such as \"(s2/Yt)^2 + (s12/S12)^2\")".into())),
+            _ => Vec::new(),
         };
         Ok(Built::Criterion(Box::new(Self::new(site, &modes).map_err(refused)?)))
     }

@@ -81,20 +81,23 @@ impl FailureCriterion for HashinReport {
     }
 }
 
+const PRODUCT: ParamInfo = ParamInfo::word(
+    "product",
+    "sign of s22 s33 in the tensile matrix mode",
+    &[("minus", "Hashin's"), ("plus", "as the report prints it")],
+);
+
 impl Plugin for HashinReport {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Criterion,
         name: "hashin-report",
         summary: "fibre and matrix, tension and compression, without the transverse compressive strength",
         source: "AFWAL-TR-87-4117, eqs. (38)-(41); after Hashin, J. Appl. Mech. 47 (1980) 329",
-        params: &[ParamInfo {
-            name: "product",
-            doc: "sign of s22 s33 in the tensile matrix mode: \"minus\" (Hashin's, default) or \"plus\" (as printed)",
-        }],
+        params: &[PRODUCT],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let product = match params.choice("product", &["minus", "plus"])? {
+        let product = match params.word(&PRODUCT)? {
             "plus" => Product::Plus,
             _ => Product::Minus,
         };

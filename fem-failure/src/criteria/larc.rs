@@ -18,10 +18,13 @@ pub(crate) struct Friction {
 }
 
 pub(crate) const ALPHA0: ParamInfo =
-    ParamInfo { name: "alpha0", doc: "fracture angle under transverse compression, degrees, 46 to 60; 53 by default" };
+    ParamInfo::number("alpha0", "fracture angle under transverse compression, degrees")
+        .at_least(46.0)
+        .at_most(60.0)
+        .default(53.0);
 
 pub(crate) fn alpha0_from(params: &Params) -> Result<f64, ParamError> {
-    Ok(number_in(params, ALPHA0.name, 46.0..=60.0, 53.0)?.to_radians())
+    Ok(params.number(&ALPHA0)?.to_radians())
 }
 
 impl Friction {

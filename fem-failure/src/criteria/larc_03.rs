@@ -33,7 +33,11 @@ pub struct Larc03 {
 
 impl Default for Larc03 {
     fn default() -> Self {
-        Self { alpha0: 53f64.to_radians(), toughness_ratio: None, out_of_plane: OutOfPlane::default() }
+        Self {
+            alpha0: ALPHA0.default_number().to_radians(),
+            toughness_ratio: None,
+            out_of_plane: OutOfPlane::default(),
+        }
     }
 }
 
@@ -108,24 +112,23 @@ impl FailureCriterion for Larc03 {
     }
 }
 
+const TOUGHNESS_RATIO: ParamInfo =
+    ParamInfo::number("toughness_ratio", "GIc/GIIc; where it is left out, estimated from moduli and strengths")
+        .at_least(0.0)
+        .at_most(1.0)
+        .optional();
+
 impl Plugin for Larc03 {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Criterion,
         name: "larc03",
         summary: "fibre kinking, matrix cracking on a plane and by toughness, in plane stress",
         source: "Davila and Camanho, NASA/TM-2003-212663",
-        params: &[
-            ALPHA0,
-            ParamInfo { name: "toughness_ratio", doc: "GIc/GIIc; estimated from moduli and strengths by default" },
-            OutOfPlane::PARAM,
-        ],
+        params: &[ALPHA0, TOUGHNESS_RATIO, OutOfPlane::PARAM],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let toughness_ratio = match params.get("toughness_ratio") {
-            Some(_) => Some(number_in(params, "toughness_ratio", 0.0..=1.0, 0.0)?),
-            None => None,
-        };
+        let toughness_ratio = params.has(&TOUGHNESS_RATIO).then(|| params.number(&TOUGHNESS_RATIO)).transpose()?;
         let alpha0 = alpha0_from(params)?;
         Ok(Built::Criterion(Box::new(Self { alpha0, toughness_ratio, out_of_plane: OutOfPlane::from_params(params)? })))
     }

@@ -29,7 +29,7 @@ pub struct Larc05 {
 
 impl Default for Larc05 {
     fn default() -> Self {
-        Self { alpha0: 53f64.to_radians() }
+        Self { alpha0: ALPHA0.default_number().to_radians() }
     }
 }
 

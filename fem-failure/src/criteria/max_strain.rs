@@ -50,34 +50,30 @@ impl FailureCriterion for MaxStrain {
     from_terms!();
 }
 
+const fn allowable(name: &'static str, about: &'static str) -> ParamInfo {
+    ParamInfo::number(name, about).above(0.0)
+}
+
+const ALLOWABLES: [ParamInfo; 6] = [
+    allowable("e1t", "allowable tensile strain along the fibres"),
+    allowable("e1c", "allowable compressive strain along the fibres"),
+    allowable("e2t", "allowable tensile strain across the fibres"),
+    allowable("e2c", "allowable compressive strain across the fibres"),
+    allowable("g12", "allowable engineering shear strain 12 and 31"),
+    allowable("g23", "allowable engineering shear strain 23"),
+];
+
 impl Plugin for MaxStrain {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Criterion,
         name: "max-strain",
         summary: "each strain component against its allowable, no interaction",
         source: "common practice",
-        params: &[
-            ParamInfo { name: "e1t", doc: "allowable tensile strain along the fibres; required" },
-            ParamInfo { name: "e1c", doc: "allowable compressive strain along the fibres, positive; required" },
-            ParamInfo { name: "e2t", doc: "allowable tensile strain across the fibres; required" },
-            ParamInfo { name: "e2c", doc: "allowable compressive strain across the fibres, positive; required" },
-            ParamInfo { name: "g12", doc: "allowable engineering shear strain 12 and 31; required" },
-            ParamInfo { name: "g23", doc: "allowable engineering shear strain 23; required" },
-        ],
+        params: &ALLOWABLES,
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let allowable = |key: &str| match params.number(key, None)? {
-            v if v > 0.0 => Ok(v),
-            v => Err(ParamError::new(key, format!("must be positive, got {v}"))),
-        };
-        Ok(Built::Criterion(Box::new(Self {
-            e1t: allowable("e1t")?,
-            e1c: allowable("e1c")?,
-            e2t: allowable("e2t")?,
-            e2c: allowable("e2c")?,
-            g12: allowable("g12")?,
-            g23: allowable("g23")?,
-        })))
+        let [e1t, e1c, e2t, e2c, g12, g23] = ALLOWABLES.each_ref().map(|row| params.number(row));
+        Ok(Built::Criterion(Box::new(Self { e1t: e1t?, e1c: e1c?, e2t: e2t?, e2c: e2c?, g12: g12?, g23: g23? })))
     }
 }

@@ -13,13 +13,14 @@ pub enum OutOfPlane {
 }
 
 impl OutOfPlane {
-    pub(crate) const PARAM: ParamInfo = ParamInfo {
-        name: "out_of_plane",
-        doc: "stresses 33, 23, 31 above 1 % of the largest of 11, 22, 12: \"refuse\" (default) or \"ignore\" them",
-    };
+    pub(crate) const PARAM: ParamInfo = ParamInfo::word(
+        "out_of_plane",
+        "what becomes of stresses 33, 23, 31 above 1 % of the largest of 11, 22, 12",
+        &[("refuse", "the run stops"), ("ignore", "they are not looked at")],
+    );
 
     pub(crate) fn from_params(params: &Params) -> Result<Self, ParamError> {
-        Ok(match params.choice("out_of_plane", &["refuse", "ignore"])? {
+        Ok(match params.word(&Self::PARAM)? {
             "ignore" => Self::Ignore,
             _ => Self::Refuse,
         })

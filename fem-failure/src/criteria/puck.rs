@@ -23,20 +23,24 @@ pub enum FibreFailure {
     },
 }
 
-impl FibreFailure {
-    pub(crate) const PARAMS: [ParamInfo; 4] = [
-        ParamInfo { name: "fibre", doc: "fibre failure by s11 alone, \"simple\" (default), or \"extended\"" },
-        ParamInfo { name: "e1f", doc: "Young's modulus of the fibres, pressure; required by \"extended\"" },
-        ParamInfo { name: "nu12f", doc: "Poisson's ratio of the fibres; required by \"extended\"" },
-        ParamInfo { name: "msf", doc: "stress magnification, 1.1 carbon, 1.3 glass; required by \"extended\"" },
-    ];
+pub(crate) const FIBRE: ParamInfo = ParamInfo::word(
+    "fibre",
+    "stress by which the fibres fail",
+    &[("simple", "s11 alone"), ("extended", "that in the fibres, which takes the three constants below")],
+);
+pub(crate) const E1F: ParamInfo =
+    ParamInfo::quantity("e1f", "Young's modulus of the fibres", Dimension::PRESSURE).above(0.0).optional();
+pub(crate) const NU12F: ParamInfo = ParamInfo::number("nu12f", "Poisson's ratio of the fibres").optional();
+pub(crate) const MSF: ParamInfo =
+    ParamInfo::number("msf", "stress magnification, 1.1 for carbon, 1.3 for glass").optional();
 
+impl FibreFailure {
     fn from_params(params: &Params) -> Result<Self, ParamError> {
-        match params.choice("fibre", &["simple", "extended"])? {
+        match params.word(&FIBRE)? {
             "extended" => Ok(Self::Extended {
-                e1f: params.positive("e1f", Dimension::PRESSURE, None)?,
-                nu12f: params.number("nu12f", None)?,
-                msf: params.number("msf", None)?,
+                e1f: params.number(&E1F)?,
+                nu12f: params.number(&NU12F)?,
+                msf: params.number(&MSF)?,
             }),
             _ => Ok(Self::Simple),
         }
@@ -103,7 +107,14 @@ pub struct Puck {
 
 impl Default for Puck {
     fn default() -> Self {
-        Self { p12t: 0.35, p12c: 0.30, p23t: 0.25, p23c: 0.25, fibre: FibreFailure::Simple, weakening: false }
+        Self {
+            p12t: P12T.default_number(),
+            p12c: P12C.default_number(),
+            p23t: P23T.default_number(),
+            p23c: P23C.default_number(),
+            fibre: FibreFailure::Simple,
+            weakening: false,
+        }
     }
 }
 
@@ -219,15 +230,27 @@ pub(crate) fn check_slope(condition: &'static str, slope: f64) -> Result<(), Unm
     Err(UnmetCondition { condition, reason, values: vec![(condition.trim_end_matches(" < 1").into(), slope, "")] })
 }
 
-pub(crate) const WEAKENING: ParamInfo = ParamInfo {
-    name: "weakening",
-    doc: "whether stress along the fibres weakens the matrix: \"off\" (default) or \"on\"",
-};
+pub(crate) const WEAKENING: ParamInfo = ParamInfo::word(
+    "weakening",
+    "whether fibre stress above half of their failure weakens the matrix",
+    &[("off", ""), ("on", "")],
+);
 
 /// `fibre` and `weakening` of either form.
 pub(crate) fn common_params(params: &Params) -> Result<(FibreFailure, bool), ParamError> {
-    Ok((FibreFailure::from_params(params)?, params.choice("weakening", &["off", "on"])? == "on"))
+    Ok((FibreFailure::from_params(params)?, params.word(&WEAKENING)? == "on"))
 }
+
+const P12T: ParamInfo = ParamInfo::number("p12t", "inclination, tension, shear 12; recommended for carbon")
+    .at_least(0.0)
+    .at_most(1.0)
+    .default(0.35);
+const P12C: ParamInfo =
+    ParamInfo::number("p12c", "inclination, compression, shear 12").at_least(0.0).at_most(1.0).default(0.30);
+const P23T: ParamInfo =
+    ParamInfo::number("p23t", "inclination, tension, shear 23").at_least(0.0).at_most(1.0).default(0.25);
+const P23C: ParamInfo =
+    ParamInfo::number("p23c", "inclination, compression, shear 23").at_least(0.0).at_most(1.0).default(0.25);
 
 impl Plugin for Puck {
     const INFO: PluginInfo = PluginInfo {
@@ -235,26 +258,16 @@ impl Plugin for Puck {
         name: "puck",
         summary: "inter-fibre failure on the action plane, fibre failure, three-dimensional",
         source: "Puck and Schuermann, Compos. Sci. Technol. 58 (1998) 1045 and 62 (2002) 1633; VDI 2014 Part 3",
-        params: &[
-            ParamInfo { name: "p12t", doc: "inclination, tension, shear 12; 0.35 (carbon, recommended) by default" },
-            ParamInfo { name: "p12c", doc: "inclination, compression, shear 12; 0.30 by default" },
-            ParamInfo { name: "p23t", doc: "inclination, tension, shear 23; 0.25 by default" },
-            ParamInfo { name: "p23c", doc: "inclination, compression, shear 23; 0.25 by default" },
-            FibreFailure::PARAMS[0],
-            FibreFailure::PARAMS[1],
-            FibreFailure::PARAMS[2],
-            FibreFailure::PARAMS[3],
-            WEAKENING,
-        ],
+        params: &[P12T, P12C, P23T, P23C, FIBRE, E1F, NU12F, MSF, WEAKENING],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
         let (fibre, weakening) = common_params(params)?;
         Ok(Built::Criterion(Box::new(Self {
-            p12t: number_in(params, "p12t", 0.0..=1.0, 0.35)?,
-            p12c: number_in(params, "p12c", 0.0..=1.0, 0.30)?,
-            p23t: number_in(params, "p23t", 0.0..=1.0, 0.25)?,
-            p23c: number_in(params, "p23c", 0.0..=1.0, 0.25)?,
+            p12t: params.number(&P12T)?,
+            p12c: params.number(&P12C)?,
+            p23t: params.number(&P23T)?,
+            p23c: params.number(&P23C)?,
             fibre,
             weakening,
         })))

@@ -1,7 +1,7 @@
 //! Puck's criterion in plane stress.
 
 use super::plane_stress::OutOfPlane;
-use super::puck::{FibreFailure, WEAKENING, check_slope, common_params, weakening};
+use super::puck::{E1F, FIBRE, FibreFailure, MSF, NU12F, WEAKENING, check_slope, common_params, weakening};
 use crate::prelude::*;
 
 /// Puck's closed form for plane stress, with the plane's own inclination p23 = p12c RA/S12.
@@ -31,8 +31,8 @@ pub struct Puck2d {
 impl Default for Puck2d {
     fn default() -> Self {
         Self {
-            p12t: 0.35,
-            p12c: 0.30,
+            p12t: P12T.default_number(),
+            p12c: P12C.default_number(),
             fibre: FibreFailure::Simple,
             weakening: false,
             out_of_plane: OutOfPlane::default(),
@@ -104,29 +104,27 @@ impl FailureCriterion for Puck2d {
     }
 }
 
+const P12T: ParamInfo = ParamInfo::number("p12t", "inclination towards tension; recommended for carbon")
+    .at_least(0.0)
+    .at_most(1.0)
+    .default(0.35);
+const P12C: ParamInfo =
+    ParamInfo::number("p12c", "inclination towards compression").at_least(0.01).at_most(1.0).default(0.30);
+
 impl Plugin for Puck2d {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Criterion,
         name: "puck-2d",
         summary: "inter-fibre modes A, B, C and fibre failure in plane stress",
         source: "Puck and Schuermann, Compos. Sci. Technol. 58 (1998) 1045; VDI 2014 Part 3",
-        params: &[
-            ParamInfo { name: "p12t", doc: "inclination towards tension; 0.35 (carbon, recommended) by default" },
-            ParamInfo { name: "p12c", doc: "inclination towards compression; 0.30 by default" },
-            FibreFailure::PARAMS[0],
-            FibreFailure::PARAMS[1],
-            FibreFailure::PARAMS[2],
-            FibreFailure::PARAMS[3],
-            WEAKENING,
-            OutOfPlane::PARAM,
-        ],
+        params: &[P12T, P12C, FIBRE, E1F, NU12F, MSF, WEAKENING, OutOfPlane::PARAM],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
         let (fibre, weakening) = common_params(params)?;
         Ok(Built::Criterion(Box::new(Self {
-            p12t: number_in(params, "p12t", 0.0..=1.0, 0.35)?,
-            p12c: number_in(params, "p12c", 0.01..=1.0, 0.30)?,
+            p12t: params.number(&P12T)?,
+            p12c: params.number(&P12C)?,
             fibre,
             weakening,
             out_of_plane: OutOfPlane::from_params(params)?,

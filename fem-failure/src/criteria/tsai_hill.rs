@@ -66,23 +66,23 @@ impl FailureCriterion for TsaiHill {
     }
 }
 
+const INTERACTION: ParamInfo = ParamInfo::word(
+    "interaction",
+    "product of s11 and s22",
+    &[("tsai-hill", "-s11 s22/X^2"), ("azzi-tsai", "-|s11 s22|/X^2")],
+);
+
 impl Plugin for TsaiHill {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Criterion,
         name: "tsai-hill",
         summary: "Hill's quadratic form in plane stress, one index for the ply",
         source: "Azzi and Tsai, Exp. Mech. 5 (1965) 283; Hill (1950)",
-        params: &[
-            ParamInfo {
-                name: "interaction",
-                doc: "\"tsai-hill\": -s11 s22/X^2 (default); \"azzi-tsai\": -|s11 s22|/X^2",
-            },
-            OutOfPlane::PARAM,
-        ],
+        params: &[INTERACTION, OutOfPlane::PARAM],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let interaction = match params.choice("interaction", &["tsai-hill", "azzi-tsai"])? {
+        let interaction = match params.word(&INTERACTION)? {
             "azzi-tsai" => Interaction::AzziTsai,
             _ => Interaction::TsaiHill,
         };

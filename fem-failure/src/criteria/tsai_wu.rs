@@ -32,7 +32,7 @@ pub struct TsaiWu {
 
 impl Default for TsaiWu {
     fn default() -> Self {
-        Self { f12: -0.5, transverse: Transverse::Half }
+        Self { f12: F12.default_number(), transverse: Transverse::Half }
     }
 }
 
@@ -124,26 +124,27 @@ impl FailureCriterion for TsaiWu {
     }
 }
 
+const F12: ParamInfo = ParamInfo::number("f12", "F12/sqrt(F11 F22)").at_least(-1.0).at_most(1.0).default(-0.5);
+const F23: ParamInfo = ParamInfo::word(
+    "f23",
+    "interaction of s22 and s33",
+    &[("half", "F23 = -F22/2"), ("isotropic", "F23 = F22 - F44/2, invariant about the fibre")],
+);
+
 impl Plugin for TsaiWu {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Criterion,
         name: "tsai-wu",
         summary: "tensor polynomial, one index for the ply",
         source: "Tsai and Wu, J. Compos. Mater. 5 (1971) 58",
-        params: &[
-            ParamInfo { name: "f12", doc: "F12/sqrt(F11 F22), between -1 and 1; -0.5 by default" },
-            ParamInfo {
-                name: "f23",
-                doc: "\"half\": F23 = -F22/2 (default); \"isotropic\": F23 = F22 - F44/2, invariant about the fibre",
-            },
-        ],
+        params: &[F12, F23],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let transverse = match params.choice("f23", &["half", "isotropic"])? {
+        let transverse = match params.word(&F23)? {
             "isotropic" => Transverse::Isotropic,
             _ => Transverse::Half,
         };
-        Ok(Built::Criterion(Box::new(Self { f12: number_in(params, "f12", -1.0..=1.0, -0.5)?, transverse })))
+        Ok(Built::Criterion(Box::new(Self { f12: params.number(&F12)?, transverse })))
     }
 }

@@ -109,24 +109,26 @@ impl PlyLaw for HahnTsai {
     }
 }
 
+const ALPHA: ParamInfo =
+    ParamInfo::quantity("alpha", "alpha of the curve, such as \"2.4e-8 1/MPa^3\"", HahnTsai::ALPHA).above(0.0);
+const UNLOADING: ParamInfo = ParamInfo::word(
+    "unloading",
+    "way back",
+    &[("permanent", "with G12, a strain alpha tau^3 is left"), ("elastic", "along the curve")],
+);
+
 impl Plugin for HahnTsai {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::PlyLaw,
         name: "hahn-tsai",
         summary: "nonlinear shear in the plane of the ply, gamma12 = tau/G12 + alpha tau^3",
         source: "Hahn and Tsai 1973",
-        params: &[
-            ParamInfo { name: "alpha", doc: "alpha of the curve, such as \"2.4e-8 1/MPa^3\"; positive" },
-            ParamInfo {
-                name: "unloading",
-                doc: "`permanent` (default): with G12, a strain alpha tau^3 is left; `elastic`: along the curve",
-            },
-        ],
+        params: &[ALPHA, UNLOADING],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let alpha = params.positive("alpha", Self::ALPHA, None)?;
-        let unloading = match params.choice("unloading", &["permanent", "elastic"])? {
+        let alpha = params.number(&ALPHA)?;
+        let unloading = match params.word(&UNLOADING)? {
             "elastic" => Unloading::Elastic,
             _ => Unloading::Permanent,
         };

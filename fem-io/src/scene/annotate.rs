@@ -63,18 +63,25 @@ impl Writer<'_> {
 
     /// A key with what it means; commented out where `own` leaves it out.
     fn line(&mut self, key: &Key, own: &Table, preset: Option<&Table>) {
-        match key.form {
-            Form::Words(words) if words.len() > 1 => {
-                self.put(format_args!("# {}: {}", key.about, words.join(", ")));
-            }
-            _ => self.put(format_args!("# {}", key.about)),
-        }
-        let given = |table: &Table| Some(table.get(key.name)?.item.node.to_toml()?.to_string());
-        match (given(own), preset.and_then(given), key.absent) {
-            (Some(value), ..) => self.put(format_args!("{} = {}", key.name, value.trim())),
-            (None, Some(value), _) => self.put(format_args!("#{} = {}", key.name, value.trim())),
-            (None, None, Absent::Default(value)) if value != "{}" => self.put(format_args!("#{} = {value}", key.name)),
-            (None, None, _) => self.put(format_args!("#{} = {}", key.name, key.example)),
+        let about = match key.form {
+            Form::Words(words) if words.len() > 1 => format!("{}: {}", key.about, words.join(", ")),
+            _ => key.about.to_owned(),
+        };
+        let otherwise = match key.absent {
+            Absent::Default(value) if value != "{}" => value,
+            _ => key.example,
+        };
+        self.entry((key.name, &about, otherwise), own, preset);
+    }
+
+    /// Name, meaning, and the value that is shown where nobody gives one.
+    fn entry(&mut self, (name, about, otherwise): (&str, &str, &str), own: &Table, preset: Option<&Table>) {
+        let given = |table: &Table| Some(table.get(name)?.item.node.to_toml()?.to_string());
+        self.put(format_args!("# {about}"));
+        match (given(own), preset.and_then(given)) {
+            (Some(value), _) => self.put(format_args!("{name} = {}", value.trim())),
+            (None, Some(value)) => self.put(format_args!("#{name} = {}", value.trim())),
+            (None, None) => self.put(format_args!("#{name} = {otherwise}")),
         }
     }
 
@@ -131,11 +138,10 @@ impl Writer<'_> {
                 let Some(plugin) = plugin else { return };
                 // Parameters of the preset belong to the plug-in that it names.
                 let preset = preset.filter(|_| called.is_some() && own.get(name).is_none());
-                let key =
-                    |name, about, example| Key { about, ..crate::document::keys::key(name, Form::Text, example, "") };
-                self.line(&key(name, plugin.summary, "\"\""), own, preset);
-                for param in plugin.params {
-                    self.line(&key(param.name, param.doc, "..."), own, preset);
+                self.entry((name, plugin.summary, ""), own, preset);
+                for row in plugin.params {
+                    let default = row.default_value().map_or("...".to_owned(), |value| value.in_scene());
+                    self.entry((row.name, &row.to_string(), &default), own, preset);
                 }
                 others.iter().filter(shown).for_each(|key| self.line(key, own, preset));
             }

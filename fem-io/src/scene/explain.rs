@@ -17,9 +17,8 @@ use std::sync::Arc;
 pub struct Explained {
     /// Its path, `laminate.plies` or `support[0].at`.
     pub key: String,
-    /// Its value in TOML; nothing for a parameter whose default only its plug-in knows, see `about`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub value: Option<String>,
+    /// Its value in TOML.
+    pub value: String,
     /// Where the value comes from: `line 12`, a preset, a library, or `default`.
     pub from: String,
     /// What it means.
@@ -80,7 +79,7 @@ impl Walk<'_> {
                 (Some(entry), ..) => self.value(&key.form, &entry.item, &path, key.about),
                 // A table of which nothing is said holds defaults.
                 (None, Absent::Default("{}"), Form::Table(keys)) => self.table(keys, &Table::default(), &path),
-                (None, Absent::Default(value), _) => self.add(path, Some(value.to_owned()), "default", key.about),
+                (None, Absent::Default(value), _) => self.add(path, value.to_owned(), "default", key.about),
                 (None, Absent::Nothing | Absent::Refused, _) => {}
             }
         }
@@ -101,7 +100,8 @@ impl Walk<'_> {
             }
             (_, node) => {
                 let from = self.origin(&item.place);
-                self.add(path.to_owned(), node.to_toml().map(|value| value.to_string()), &from, about);
+                let value = node.to_toml().map_or(String::new(), |value| value.to_string());
+                self.add(path.to_owned(), value, &from, about);
             }
         }
     }
@@ -116,15 +116,16 @@ impl Walk<'_> {
         named.into_iter().for_each(|item| self.value(&Form::Text, item, &format!("{path}.{name}"), about));
         for param in plugin.into_iter().flat_map(|plugin| plugin.params) {
             let path = format!("{path}.{}", param.name);
-            match table.get(param.name) {
-                Some(entry) => self.value(&Form::Text, &entry.item, &path, param.doc),
-                None => self.add(path, None, "default", param.doc),
+            match (table.get(param.name), param.default_value()) {
+                (Some(entry), _) => self.value(&Form::Text, &entry.item, &path, param.about),
+                (None, Some(value)) => self.add(path, value.in_scene(), "default", param.about),
+                (None, None) => {}
             }
         }
         self.table(others, table, path);
     }
 
-    fn add(&mut self, key: String, value: Option<String>, from: &str, about: &str) {
+    fn add(&mut self, key: String, value: String, from: &str, about: &str) {
         self.found.push(Explained { key, value, from: from.to_owned(), about: about.to_owned() });
     }
 

@@ -3,7 +3,6 @@
 use crate::document::reader::Field;
 use crate::document::source::{Located, Place, SceneError};
 use crate::document::tree::Node;
-use crate::units;
 use fem_core::plugin::{Params, Value};
 use std::collections::BTreeMap;
 
@@ -12,7 +11,7 @@ use std::collections::BTreeMap;
 pub struct PluginSpec {
     /// Its name and where it stands.
     pub name: Located<String>,
-    /// Its parameters, SI units.
+    /// Its parameters as the scene gives them, quantities as texts.
     pub params: Params,
     places: BTreeMap<String, Place>,
 }
@@ -43,7 +42,7 @@ impl PluginSpec {
             if key == name_key {
                 name = Some(value.at(value.text()?.to_owned()));
             } else if !others.contains(&key) {
-                params.insert(key, read_value(key, &value)?);
+                params.insert(key, read_value(&value)?);
                 places.insert(key.to_owned(), value.entry_place());
             }
         }
@@ -54,20 +53,14 @@ impl PluginSpec {
     }
 }
 
-/// Parameter whose text is a formula, no quantity, although it may begin with a number.
-const FORMULA: &str = "expression";
-
-fn read_value(key: &str, field: &Field<'_>) -> Result<Value, SceneError> {
+/// A value as it stands there: whether a text is a quantity, only the plug-in's row of the parameter tells.
+fn read_value(field: &Field<'_>) -> Result<Value, SceneError> {
     Ok(match field.node() {
-        Node::Text(text) if key != FORMULA && units::begins_with_number(text) => {
-            let (value, dimension) = field.any_quantity(text)?;
-            Value::Quantity(value, dimension)
-        }
         Node::Text(text) => Value::Text(text.clone()),
         Node::Number(_) => Value::Number(field.number()?),
         Node::Flag(flag) => Value::Flag(*flag),
         Node::List(items) if items.is_empty() => Value::List(Vec::new()),
-        Node::List(_) => Value::List(field.list()?.iter().map(|item| read_value(key, item)).collect::<Result<_, _>>()?),
+        Node::List(_) => Value::List(field.list()?.iter().map(read_value).collect::<Result<_, _>>()?),
         Node::Table(_) | Node::Date => {
             return Err(field.error(
                 format!("a parameter cannot be {}", field.node().in_words()),

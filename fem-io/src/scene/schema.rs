@@ -6,8 +6,9 @@ use crate::document::keys::{Absent, Form, Key, Keys, Plugins};
 use crate::document::source::{Origin, SceneSource};
 use crate::document::tree::{Node, Table};
 use crate::{materials, units};
-use fem_core::plugin::{Kind, ParamInfo};
+use fem_core::plugin::{Kind, ParamDefault, ParamForm, ParamInfo};
 use serde_json::{Map, Value, json};
+use std::ops::Bound::{Excluded, Included, Unbounded};
 use std::sync::Arc;
 
 /// A number, and behind it what begins no longer number.
@@ -21,8 +22,7 @@ pub fn schema(plugins: Plugins<'_>) -> Value {
     let presets = Fidelity::ALL.map(|(_, fidelity)| parsed(fidelity.preset()));
     let below: Vec<&Table> = presets.iter().collect();
     let Value::Object(mut root) = table(KEYS, &below) else { return Value::Null };
-    let kinds = [Kind::Element, Kind::Criterion, Kind::Contact, Kind::Integrator, Kind::Reduction];
-    let definitions = kinds.iter().map(|kind| (definition(*kind), names(*kind, plugins)));
+    let definitions = Kind::ALL.iter().map(|kind| (definition(*kind), names(*kind, plugins)));
     let mut definitions: Map<String, Value> = definitions.collect();
     for (kind, name, others) in tables_of_plugins(KEYS) {
         let of_kind: Vec<Value> =
@@ -139,9 +139,47 @@ fn plugin(key: &str, name: &str, summary: &str, params: &[ParamInfo], others: Ke
     for key in others {
         properties.insert(key.name.into(), property(key, &[]));
     }
-    for param in params {
-        let types = ["number", "string", "boolean", "array"];
-        properties.insert(param.name.into(), json!({ "type": types, "description": param.doc }));
+    properties.extend(params.iter().map(|row| (row.name.into(), parameter(row))));
+    let required = params.iter().filter(|row| row.default == ParamDefault::Required);
+    let required: Vec<&str> = required.map(|row| row.name).collect();
+    json!({ "title": name, "properties": properties, "required": required, "additionalProperties": false })
+}
+
+/// A parameter by its row.
+fn parameter(row: &ParamInfo) -> Value {
+    let mut about = row.to_string();
+    let mut it = match row.form {
+        ParamForm::Number => json!({ "type": "number" }),
+        ParamForm::Count => json!({ "type": "integer" }),
+        ParamForm::Quantity(_) => json!({ "type": "string", "pattern": QUANTITY }),
+        ParamForm::Word(words) => json!({ "enum": words.iter().map(|(word, _)| word).collect::<Vec<_>>() }),
+        ParamForm::Flag => json!({ "type": "boolean" }),
+        ParamForm::Texts => json!({ "anyOf": [form(&Form::Text, &[]), form(&Form::List(&Form::Text), &[])] }),
+    };
+    if matches!(row.form, ParamForm::Number | ParamForm::Count) {
+        match row.range.0 {
+            Included(least) => it["minimum"] = number(least),
+            Excluded(least) => it["exclusiveMinimum"] = number(least),
+            Unbounded => {}
+        }
+        match row.range.1 {
+            Included(most) => it["maximum"] = number(most),
+            Excluded(most) => it["exclusiveMaximum"] = number(most),
+            Unbounded => {}
+        }
     }
-    json!({ "title": name, "properties": properties, "additionalProperties": false })
+    let units = row.dimension().map_or(Vec::new(), units::accepted);
+    if !units.is_empty() {
+        about.push_str(&format!(" (in {})", units.join(", ")));
+    }
+    it["description"] = about.into();
+    if let Some(default) = row.default_value().and_then(|value| value_of(&value.in_scene())) {
+        it["default"] = default.to_json();
+    }
+    it
+}
+
+/// Whole numbers without a point, as people write them.
+fn number(value: f64) -> Value {
+    if value.fract() == 0.0 { json!(value as i64) } else { json!(value) }
 }
