@@ -8,7 +8,7 @@ use fem::core::constraint::Constraints;
 use fem::core::counters::Counters;
 use fem::core::element::{Element, Scratch};
 use fem::core::laminate::{LaminaPly, Laminate};
-use fem::core::mesh::QuadMesh;
+use fem::core::mesh::PlaneMesh;
 use fem::core::plate::{Plate, ZDerivatives};
 use fem::elements::{HermitePrism, Mass};
 use fem::io::materials;
@@ -29,7 +29,7 @@ struct Subject {
 
 fn subject() -> Subject {
     let line: Vec<f64> = (0..=50).map(|i| f64::from(i) * 2e-3).collect();
-    let mut mesh = QuadMesh::rectangle(&line, &line);
+    let mut mesh = PlaneMesh::rectangle(&line, &line);
     for (i, p) in mesh.points.iter_mut().enumerate() {
         let i = i as f64;
         *p = [p[0] + 2e-4 * (1.7 * i).sin(), p[1] + 2e-4 * (2.9 * i).cos()];

@@ -15,7 +15,7 @@ use fem::core::dof::Dof;
 use fem::core::element::Element;
 use fem::core::functional::Functional;
 use fem::core::laminate::{LaminaPly, Laminate};
-use fem::core::mesh::QuadMesh;
+use fem::core::mesh::PlaneMesh;
 use fem::core::patch;
 use fem::core::plate::{Plate, ZDerivatives};
 use fem::core::plugin::{Built, Params, Plugin, Value};
@@ -111,7 +111,7 @@ struct Subject {
 
 fn subject(side: usize) -> Subject {
     let line: Vec<f64> = (0..=side).map(|i| i as f64 * 2e-3).collect();
-    let mut mesh = QuadMesh::rectangle(&line, &line);
+    let mut mesh = PlaneMesh::rectangle(&line, &line);
     for (i, p) in mesh.points.iter_mut().enumerate() {
         let i = i as f64;
         *p = [p[0] + 2e-4 * (1.7 * i).sin(), p[1] + 2e-4 * (2.9 * i).cos()];

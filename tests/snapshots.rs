@@ -61,7 +61,7 @@ fn matrix(element: &dyn Element, integrate: Integrate) -> Vec<f64> {
     let stack = stack();
     let on = |corners: [[f64; 2]; 4]| {
         let mut out = vec![f64::NAN; n * n];
-        integrate(element, &Cell { corners, z: [0.0, 0.5e-3], stack: &stack }, &mut out).map(|()| out)
+        integrate(element, &Cell { corners: corners.into(), z: [0.0, 0.5e-3], stack: &stack }, &mut out).map(|()| out)
     };
     let general = if element.info().is_section() { None } else { on(QUADRILATERAL).ok() };
     general.unwrap_or_else(|| on(RECTANGLE).unwrap())

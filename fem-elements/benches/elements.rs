@@ -92,7 +92,7 @@ fn stiffness(bencher: Bencher, name: &str) {
     }
     bencher.bench_local(|| {
         let corners = *black_box(next.next().unwrap_or(&cells[0]));
-        let cell = Cell { corners, z: [0.0, 1e-3], stack: &stack };
+        let cell = Cell { corners: corners.into(), z: [0.0, 1e-3], stack: &stack };
         element.stiffness(&cell, &mut scratch, &mut ke).unwrap();
         black_box(ke[0])
     });

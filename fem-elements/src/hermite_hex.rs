@@ -44,7 +44,7 @@ impl HermiteHex {
 /// # Errors
 /// Another shape.
 fn constant_map(cell: &Cell<'_>) -> Result<PlaneMap, ElementError> {
-    let [a, b, c, d] = cell.corners;
+    let [a, b, c, d] = cell.corners.four();
     let size = (0..2).map(|k| (c[k] - a[k]).abs().max((d[k] - b[k]).abs())).fold(0.0, f64::max);
     if (0..2).all(|k| (a[k] - b[k] + c[k] - d[k]).abs() <= 1e-12 * size) {
         Ok(cell.plane(0.0, 0.0))

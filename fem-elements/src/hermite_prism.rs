@@ -8,6 +8,7 @@ use crate::prism::{BLOCKS, STRAIN_ROW, matrix, mean_powers, multiply};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::dof::Dof;
+use fem_core::domain::Domain;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
 use fem_core::large::LargeDisplacement;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
@@ -108,7 +109,13 @@ impl HermitePrism {
     }
 
     pub(crate) fn of_order(mass: Mass, in_plane_order: usize) -> Self {
-        let info = ElementInfo { nodes: &CORNERS, dofs: &Dof::SOLID, in_plane_order, ply_order: 4 };
+        let info = ElementInfo {
+            domain: Domain::Quadrilateral,
+            nodes: &CORNERS,
+            dofs: &Dof::SOLID,
+            in_plane_order,
+            ply_order: 4,
+        };
         Self { table: Table::new(&info), info, mass }
     }
 }

@@ -3,6 +3,7 @@
 use crate::large::{Gradients, Solid};
 use crate::prism::{self, Prism};
 use fem_core::dof::Dof;
+use fem_core::domain::Domain;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch};
 use fem_core::large::LargeDisplacement;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
@@ -95,7 +96,15 @@ impl Hex20 {
             )));
         }
         // Three points through a ply are exact: strains are quadratic in q.
-        Ok(Self { info: ElementInfo { nodes: &NODES, dofs: &DOFS, in_plane_order, ply_order: 3 } })
+        Ok(Self {
+            info: ElementInfo {
+                domain: Domain::Quadrilateral,
+                nodes: &NODES,
+                dofs: &DOFS,
+                in_plane_order,
+                ply_order: 3,
+            },
+        })
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::lamination::{self, Lamination, PlyStrain};
 use fem_core::dof::Dof;
+use fem_core::domain::Domain;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, Scratch, Slice, positive};
 use fem_core::large::LargeDisplacement;
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
@@ -37,7 +38,15 @@ pub struct Mitc4 {
 impl Default for Mitc4 {
     fn default() -> Self {
         // Three points through a ply are exact: shear strains are quadratic in z.
-        Self { info: ElementInfo { nodes: &NODES, dofs: &DOFS, in_plane_order: 2, ply_order: 3 } }
+        Self {
+            info: ElementInfo {
+                domain: Domain::Quadrilateral,
+                nodes: &NODES,
+                dofs: &DOFS,
+                in_plane_order: 2,
+                ply_order: 3,
+            },
+        }
     }
 }
 

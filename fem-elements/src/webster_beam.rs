@@ -4,6 +4,7 @@ use crate::hermite::{self, NodeFunctions};
 use crate::hermite_prism::Mass;
 use crate::large::{Gradients, Solid};
 use fem_core::dof::Dof;
+use fem_core::domain::Domain;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, Slice};
 use fem_core::large::LargeDisplacement;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
@@ -66,7 +67,17 @@ impl WebsterBeam {
                  modes), at most {MAX_POINTS} are offered"
             )));
         }
-        Ok(Self { info: ElementInfo { nodes: &NODES, dofs: &DOFS, in_plane_order, ply_order: 4 }, state, mass })
+        Ok(Self {
+            info: ElementInfo {
+                domain: Domain::Quadrilateral,
+                nodes: &NODES,
+                dofs: &DOFS,
+                in_plane_order,
+                ply_order: 4,
+            },
+            state,
+            mass,
+        })
     }
 }
 

@@ -13,7 +13,7 @@ const PARALLELOGRAM: [[f64; 2]; 4] = [[0.1, -0.3], [1.2, 0.1], [1.7, 1.3], [0.6,
 const QUADRILATERAL: [[f64; 2]; 4] = [[0.1, -0.3], [1.2, 0.1], [1.6, 1.5], [0.3, 0.8]];
 
 fn cell(corners: [[f64; 2]; 4], stack: &Stack) -> Cell<'_> {
-    Cell { corners, z: [-0.3, 0.5], stack }
+    Cell { corners: corners.into(), z: [-0.3, 0.5], stack }
 }
 
 fn prism() -> HermitePrism {
@@ -66,7 +66,7 @@ fn other_quadrilaterals_and_folded_cells_are_refused() {
     let stack = eight_plies();
     let hex = HermiteHex::new(Mass::Cubic);
     let refused = |corners: [[f64; 2]; 4], z: [f64; 2], why: &str| {
-        let (cell, scratch) = (Cell { corners, z, stack: &stack }, &mut Scratch::default());
+        let (cell, scratch) = (Cell { corners: corners.into(), z, stack: &stack }, &mut Scratch::default());
         let part = Part { slice: 0, q: stack.slices[0].q };
         let errors = [
             hex.stiffness(&cell, scratch, &mut [0.0; 96 * 96]),

@@ -21,7 +21,7 @@ fn hex20() -> Hex20 {
 fn overrides_agree_with_the_provided_methods() {
     for plies in [vec![(30.0, 1.0)], vec![(0.0, 1.0), (90.0, 2.0), (-45.0, 0.5), (20.0, 1.0)]] {
         let stack = stack(&carbon(), &plies);
-        check_overrides(&hex20(), &Cell { corners: CROOKED, z: [-0.4e-3, 0.9e-3], stack: &stack });
+        check_overrides(&hex20(), &Cell { corners: CROOKED.into(), z: [-0.4e-3, 0.9e-3], stack: &stack });
     }
 }
 
@@ -29,7 +29,7 @@ fn overrides_agree_with_the_provided_methods() {
 fn only_rigid_motions_are_without_energy() {
     for plies in [vec![(30.0, 1.0)], vec![(0.0, 1.0), (90.0, 2.0), (-45.0, 0.5)]] {
         let stack = stack(&carbon(), &plies);
-        check_rigid_motions(&hex20(), &Cell { corners: CROOKED, z: [-0.4e-3, 0.9e-3], stack: &stack });
+        check_rigid_motions(&hex20(), &Cell { corners: CROOKED.into(), z: [-0.4e-3, 0.9e-3], stack: &stack });
     }
 }
 
@@ -52,7 +52,7 @@ impl Element for Coarse {
 fn order_two_would_leave_two_zero_energy_modes() {
     let coarse = Coarse(hex20(), ElementInfo { in_plane_order: 2, ..*hex20().info() });
     let stack = even(&carbon(), &[30.0, 0.0]);
-    let k = stiffness(&coarse, &Cell { corners: CROOKED, z: [-0.4e-3, 0.9e-3], stack: &stack });
+    let k = stiffness(&coarse, &Cell { corners: CROOKED.into(), z: [-0.4e-3, 0.9e-3], stack: &stack });
     let spectrum = scaled_spectrum(&k);
     assert!(spectrum[7] < 1e-12 && spectrum[8] > 1e-3, "{:?}", &spectrum[..9]);
 }
@@ -72,7 +72,7 @@ fn order_two_and_other_nonsense_are_refused_with_the_reason() {
         ([CROOKED[0], CROOKED[2], CROOKED[1], CROOKED[3]], [0.0, 1e-3]),
         ([CROOKED[0], [f64::NAN, 0.0], CROOKED[2], CROOKED[3]], [0.0, 1e-3]),
     ] {
-        let cell = Cell { corners, z, stack: &stack };
+        let cell = Cell { corners: corners.into(), z, stack: &stack };
         let (mut scratch, mut k) = (Default::default(), vec![0.0; 3600]);
         assert!(hex20().stiffness(&cell, &mut scratch, &mut k).is_err());
         assert!(hex20().mass(&cell, &mut scratch, &mut k).is_err());
@@ -113,7 +113,7 @@ fn polynomials_of_the_promised_space_have_their_exact_strains() {
     let stack = even(&carbon(), &[0.0]);
     let element = hex20();
     let error = |corners: [[f64; 2]; 4], terms: &[[i32; 3]]| {
-        let cell = Cell { corners, z: [-0.3, 0.6], stack: &stack };
+        let cell = Cell { corners: corners.into(), z: [-0.3, 0.6], stack: &stack };
         let nodes = element.info().nodes.iter();
         let u = DVector::from_vec(nodes.flat_map(|n| polynomial(terms, cell.position(*n)).0).collect());
         let mut worst = 0.0_f64;
@@ -227,9 +227,10 @@ fn frequencies_of_a_thick_laminate_are_those_of_exact_elasticity() {
 #[test]
 fn mass_is_the_cells_in_every_direction() {
     let stack = stack(&carbon(), &[(0.0, 1.0), (90.0, 2.0)]);
-    let cell = Cell { corners: CROOKED, z: [-0.4e-3, 0.9e-3], stack: &stack };
+    let cell = Cell { corners: CROOKED.into(), z: [-0.4e-3, 0.9e-3], stack: &stack };
     let m = mass(&hex20(), &cell);
-    let quad = fem_core::mesh::QuadMesh { points: CROOKED.to_vec(), quads: vec![[0, 1, 2, 3]], ..Default::default() };
+    let quad =
+        fem_core::mesh::PlaneMesh { points: CROOKED.to_vec(), quads: vec![[0, 1, 2, 3].into()], ..Default::default() };
     // Densities 1 and 1.5 in a third and two thirds of the height.
     let total = quad.area() * 1.3e-3 * (1.0 + 3.0) / 3.0;
     for n in 0..3 {
@@ -250,7 +251,7 @@ fn stiffness_turns_with_the_cell_and_with_its_numbering() {
         let (s, c) = angle.to_radians().sin_cos();
         let stack = stack(&carbon(), &plies.map(|(a, t)| (a + angle, t)));
         let corners = CROOKED.map(|[x, y]| [c * x - s * y, s * x + c * y]);
-        stiffness(&hex20(), &Cell { corners, z: [0.0, 1e-3], stack: &stack })
+        stiffness(&hex20(), &Cell { corners: corners.into(), z: [0.0, 1e-3], stack: &stack })
     };
     let angle = 37.0_f64;
     let (s, c) = angle.to_radians().sin_cos();
@@ -268,7 +269,7 @@ fn stiffness_turns_with_the_cell_and_with_its_numbering() {
 
     let stack = stack(&carbon(), &plies);
     let corners = [1, 2, 3, 0].map(|i| CROOKED[i]);
-    let renumbered = stiffness(&hex20(), &Cell { corners, z: [0.0, 1e-3], stack: &stack });
+    let renumbered = stiffness(&hex20(), &Cell { corners: corners.into(), z: [0.0, 1e-3], stack: &stack });
     // The point (r, s) of the new numbering is (−s, r) of the old.
     let element = hex20();
     let nodes = element.info().nodes;

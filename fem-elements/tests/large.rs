@@ -50,7 +50,7 @@ fn cell<'a>(element: &dyn Element, stack: &'a Stack) -> Cell<'a> {
     } else {
         PARALLELOGRAM
     };
-    Cell { corners, z: [-0.3e-3, 0.5e-3], stack }
+    Cell { corners: corners.into(), z: [-0.3e-3, 0.5e-3], stack }
 }
 
 /// Energy, force and tangent at `u`.
@@ -97,7 +97,7 @@ fn forces_are_the_same_without_the_tangent() {
     let quadrilateral = [[0.0, 0.0], [2.0e-3, 0.4e-3], [2.5e-3, 1.9e-3], [-0.3e-3, 1.2e-3]];
     for element in all() {
         let regular = cell(&*element, &stack);
-        let corners = if element.info().is_section() { regular.corners } else { quadrilateral };
+        let corners = if element.info().is_section() { regular.corners } else { quadrilateral.into() };
         let cell = Cell { corners, ..regular };
         let u = motion(&*element, &cell, &Matrix3::new(0.02, 0.1, 0.0, -0.1, 0.01, 0.05, -0.2, 0.1, 0.03), 0.05);
         let (energy, force, _) = internal(&*element, &cell, &u);
@@ -302,7 +302,7 @@ fn a_folded_cell_is_refused() {
     for element in solids() {
         let n = element.info().ndof();
         let (u, mut force) = (vec![0.0; n], vec![0.0; n]);
-        let folded = Cell { corners: [a, c, b, d], ..cell(&*element, &stack) };
+        let folded = Cell { corners: [a, c, b, d].into(), ..cell(&*element, &stack) };
         let large = element.large_displacements().unwrap();
         let refused = large.internal(&folded, &u, &mut Scratch::default(), &mut force, None).unwrap_err();
         assert!(refused.0.contains("Jacobian"), "{refused}");

@@ -7,7 +7,7 @@ use dense::*;
 use fem_core::dof::Dof;
 use fem_core::element::{Cell, Element, Stack};
 use fem_core::material::Elastic;
-use fem_core::mesh::QuadMesh;
+use fem_core::mesh::PlaneMesh;
 use fem_core::tensor::Matrix6;
 use fem_core::testkit::Provided;
 use fem_elements::Mitc4;
@@ -50,12 +50,12 @@ fn cell_state(cell: &Cell<'_>, e: &[f64; 8]) -> DVector<f64> {
 }
 
 fn area(corners: [[f64; 2]; 4]) -> f64 {
-    QuadMesh { points: corners.to_vec(), quads: vec![[0, 1, 2, 3]], ..Default::default() }.area()
+    PlaneMesh { points: corners.to_vec(), quads: vec![[0, 1, 2, 3].into()], ..Default::default() }.area()
 }
 
 /// Twice the energy of two states per area: a term of the section stiffness.
 fn section(stack: &Stack, z: [f64; 2], i: usize, j: usize) -> f64 {
-    let cell = Cell { corners: CROOKED, z, stack };
+    let cell = Cell { corners: CROOKED.into(), z, stack };
     let unit = |k: usize| cell_state(&cell, &std::array::from_fn(|l| f64::from(u8::from(k == l))));
     unit(i).dot(&(stiffness(&mitc4(), &cell) * unit(j))) / area(CROOKED)
 }
@@ -66,7 +66,7 @@ fn shear_stiffness(stack: &Stack, z: [f64; 2]) -> Matrix2<f64> {
 
 /// Stress in the ply `slice` at q under the mean transverse shears `gamma`.
 fn shear_state(stack: &Stack, z: [f64; 2], gamma: [f64; 2], slice: usize, q: f64) -> Vector6<f64> {
-    let cell = Cell { corners: CROOKED, z, stack };
+    let cell = Cell { corners: CROOKED.into(), z, stack };
     let mut b = SMatrix::<f64, 6, N>::zeros();
     mitc4().strain_operator(&cell, slice, [0.3, -0.6, q], b.as_mut_slice());
     let c = SMatrix::<f64, 6, 6>::from_fn(|i, j| stack.slices[slice].c[i][j]);
@@ -78,7 +78,7 @@ fn shear_state(stack: &Stack, z: [f64; 2], gamma: [f64; 2], slice: usize, q: f64
 fn overrides_agree_with_the_provided_methods() {
     for plies in [vec![(30.0, 1.0)], vec![(0.0, 1.0), (90.0, 2.0), (-45.0, 0.5), (20.0, 1.0)]] {
         let stack = stack(&carbon(), &plies);
-        check_overrides(&mitc4(), &Cell { corners: CROOKED, z: [-0.4e-3, 0.9e-3], stack: &stack });
+        check_overrides(&mitc4(), &Cell { corners: CROOKED.into(), z: [-0.4e-3, 0.9e-3], stack: &stack });
     }
 }
 
@@ -86,7 +86,7 @@ fn overrides_agree_with_the_provided_methods() {
 fn only_rigid_motions_are_without_energy() {
     for plies in [vec![(30.0, 1.0)], vec![(0.0, 1.0), (90.0, 2.0), (-45.0, 0.5)]] {
         let stack = stack(&carbon(), &plies);
-        check_rigid_motions(&mitc4(), &Cell { corners: CROOKED, z: [-0.4e-3, 0.9e-3], stack: &stack });
+        check_rigid_motions(&mitc4(), &Cell { corners: CROOKED.into(), z: [-0.4e-3, 0.9e-3], stack: &stack });
     }
 }
 
@@ -103,7 +103,7 @@ fn bad_cells_are_refused() {
         ([CROOKED[0], [f64::NAN, 0.0], CROOKED[2], CROOKED[3]], [0.0, 1e-3], &good),
         (CROOKED, [0.0, 1e-3], &slack),
     ] {
-        let cell = Cell { corners, z, stack };
+        let cell = Cell { corners: corners.into(), z, stack };
         let (mut scratch, mut k) = (Default::default(), vec![0.0; N * N]);
         assert!(mitc4().stiffness(&cell, &mut scratch, &mut k).is_err());
         assert!(Provided(&mitc4()).stiffness(&cell, &mut scratch, &mut k).is_err());
@@ -287,7 +287,7 @@ fn patches_keep_constant_section_strains() {
 fn mass_has_the_inertia_of_translation_and_rotation() {
     let stack = stack(&carbon(), &[(0.0, 1.0), (90.0, 2.0)]);
     let height = 1.3e-3;
-    let m = mass(&mitc4(), &Cell { corners: CROOKED, z: [-0.4e-3, 0.9e-3], stack: &stack });
+    let m = mass(&mitc4(), &Cell { corners: CROOKED.into(), z: [-0.4e-3, 0.9e-3], stack: &stack });
     // Densities 1 and 1.5 below and above z = −h/6.
     let moment = |p: i32| {
         let primitive = |z: f64| (z * height).powi(p) / f64::from(p);
@@ -316,7 +316,7 @@ fn stiffness_turns_with_the_cell_and_with_its_numbering() {
         let (s, c) = angle.to_radians().sin_cos();
         let stack = even(&carbon(), &plies.iter().map(|a| a + angle).collect::<Vec<_>>());
         let corners = CROOKED.map(|[x, y]| [c * x - s * y, s * x + c * y]);
-        stiffness(&mitc4(), &Cell { corners, z: [0.0, 1e-3], stack: &stack })
+        stiffness(&mitc4(), &Cell { corners: corners.into(), z: [0.0, 1e-3], stack: &stack })
     };
     // Laminates turn by right angles, plates of one material by any.
     for (angle, plies) in [(37.0, vec![20.0; 3]), (90.0, vec![0.0, 90.0, -45.0])] {
@@ -336,7 +336,7 @@ fn stiffness_turns_with_the_cell_and_with_its_numbering() {
     let plies = [0.0, 90.0, -45.0];
     let stack = even(&carbon(), &plies);
     let corners = [1, 2, 3, 0].map(|i| CROOKED[i]);
-    let renumbered = stiffness(&mitc4(), &Cell { corners, z: [0.0, 1e-3], stack: &stack });
+    let renumbered = stiffness(&mitc4(), &Cell { corners: corners.into(), z: [0.0, 1e-3], stack: &stack });
     let unknowns: Vec<usize> = (0..N).map(|i| (i + 5) % N).collect();
     let expected = turned_by(0.0, &plies).select_rows(&unknowns).select_columns(&unknowns);
     assert!(difference(&renumbered, &expected) < 1e-12);

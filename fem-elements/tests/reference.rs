@@ -24,7 +24,7 @@ struct Case {
 
 impl Case {
     fn cell(&self) -> Cell<'_> {
-        Cell { corners: self.corners, z: self.z, stack: &self.stack }
+        Cell { corners: self.corners.into(), z: self.z, stack: &self.stack }
     }
 }
 
@@ -152,7 +152,7 @@ fn bad_cells_and_orders_are_refused() {
     let element = HermitePrism::new(Mass::Cubic, 4).unwrap();
     let mut ke = vec![0.0; 96 * 96];
     let mut refused = |corners: [[f64; 2]; 4], z: [f64; 2]| {
-        let cell = Cell { corners, z, stack: &case.stack };
+        let cell = Cell { corners: corners.into(), z, stack: &case.stack };
         element.stiffness(&cell, &mut Scratch::default(), &mut ke).is_err()
     };
     let mut folded = case.corners;

@@ -51,7 +51,7 @@ fn the_independent_implementation_is_matched() {
             _ => PlaneState::Stress,
         };
         let width = 2.5;
-        let cell = Cell { corners: strip(length, width), z: [z0, z1], stack: &stack };
+        let cell = Cell { corners: strip(length, width).into(), z: [z0, z1], stack: &stack };
         let element = WebsterBeam::new(state, Mass::Cubic, 4).unwrap();
 
         let upper = numbers(&reference["K_upper"]);
@@ -107,7 +107,7 @@ fn the_independent_implementation_is_matched() {
 #[test]
 fn complete_cubics_are_reproduced() {
     let stack = eight_plies();
-    let cell = Cell { corners: strip(1.3, 0.9), z: [-0.3, 0.5], stack: &stack };
+    let cell = Cell { corners: strip(1.3, 0.9).into(), z: [-0.3, 0.5], stack: &stack };
     let element = WebsterBeam::new(PlaneState::Strain, Mass::Cubic, 4).unwrap();
     for component in [0, 2] {
         for powers in monomials([3, 0, 3], 3) {
@@ -121,7 +121,7 @@ fn complete_cubics_are_reproduced() {
 #[test]
 fn only_rigid_motions_are_free_of_energy() {
     let stack = eight_plies();
-    let cell = Cell { corners: strip(1.3, 0.9), z: [-0.3, 0.5], stack: &stack };
+    let cell = Cell { corners: strip(1.3, 0.9).into(), z: [-0.3, 0.5], stack: &stack };
     for state in [PlaneState::Stress, PlaneState::Strain] {
         for order in [3, 4] {
             assert_eq!(zero_modes(&WebsterBeam::new(state, Mass::Cubic, order).unwrap(), &cell), 3);
@@ -133,7 +133,7 @@ fn only_rigid_motions_are_free_of_energy() {
 fn the_choices_of_a_scene_are_taken_and_checked() {
     let text = |t: &str| ParamValue::Text(t.into());
     let stack = eight_plies();
-    let cell = Cell { corners: strip(1.3, 0.9), z: [-0.3, 0.5], stack: &stack };
+    let cell = Cell { corners: strip(1.3, 0.9).into(), z: [-0.3, 0.5], stack: &stack };
     let build = |params: Params| match WebsterBeam::build(&params).unwrap() {
         Built::Element(element) => element,
         other => panic!("{other:?}"),

@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
 use cpu_time::ProcessTime;
-use fem_core::mesh::QuadMesh;
+use fem_core::mesh::PlaneMesh;
 use fem_io::gmsh::{self, Encoding};
 use std::hint::black_box;
 use std::path::Path;
@@ -23,7 +23,7 @@ fn main() {
             let line: Vec<f64> = (0..=448).map(|i| f64::from(i) / 4480.0).collect();
             for (name, encoding) in [("ascii.msh", Encoding::Ascii), ("binary.msh", Encoding::Binary)] {
                 let mut bytes = Vec::new();
-                gmsh::write(&mut bytes, &QuadMesh::rectangle(&line, &line), 1e-3, encoding).unwrap();
+                gmsh::write(&mut bytes, &PlaneMesh::rectangle(&line, &line), 1e-3, encoding).unwrap();
                 std::fs::write(folder.path().join(name), bytes).unwrap();
                 alone(&folder.path().join(name));
             }

@@ -4,7 +4,7 @@
 use fem_core::failure::{FailureCriterion as _, Site};
 use fem_core::layup::{self, LayupPly};
 use fem_core::material::{Elastic, Material, Strength, Strengths};
-use fem_core::mesh::{Curves, QuadMesh};
+use fem_core::mesh::{Curves, PlaneMesh};
 use fem_core::tensor::Stress6;
 use fem_failure::Expression;
 use fem_io::scene::{self, ContactLoad, MeshSource};
@@ -35,7 +35,7 @@ pub fn mesh(data: &[u8]) {
     }
 }
 
-fn sound(mesh: &QuadMesh) {
+fn sound(mesh: &PlaneMesh) {
     assert!(mesh.points.iter().flatten().all(|x| x.is_finite()));
     assert!(!mesh.quads.is_empty() && mesh.quads.len() == mesh.quad_tags.len());
     assert!((0..mesh.quads.len()).all(|q| mesh.quality(q).area > 0.0), "a cell without area");

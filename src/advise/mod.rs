@@ -116,6 +116,6 @@ pub fn advise(model: &Model, threads: NonZeroUsize) -> Result<Vec<Advice>, Error
 /// Edge of a square as large as the smallest cell around a place, m.
 fn cell_at(model: &Model, centre: [f64; 2]) -> f64 {
     let mesh = &model.plate.plane;
-    let holds = |q: &usize| fem_core::patch::locate(&mesh.corners(*q), centre).is_some();
+    let holds = |q: &usize| mesh.corners(*q).locate(centre).is_some();
     (0..mesh.quads.len()).filter(holds).map(|q| mesh.quality(q).area.sqrt()).fold(f64::INFINITY, f64::min)
 }

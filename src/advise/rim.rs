@@ -3,7 +3,6 @@
 use super::membrane::Held;
 use crate::model::Model;
 use fem_core::dof::Dof;
-use fem_core::patch;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{PI, TAU};
 
@@ -31,7 +30,7 @@ impl Rim {
         if plate.info().is_section() {
             return None;
         }
-        let start = (0..mesh.quads.len()).find(|q| patch::locate(&mesh.corners(*q), centre).is_some())?;
+        let start = (0..mesh.quads.len()).find(|q| mesh.corners(*q).locate(centre).is_some())?;
         let is_held: Vec<bool> = (0..mesh.points.len()).map(|column| deflection_held(model, column)).collect();
         let edges_of = |quad: usize| {
             let q = mesh.quads[quad];

@@ -327,7 +327,7 @@ pub(crate) fn recovery(model: &Model, quads: Vec<usize>, interfaces: bool) -> Re
 pub(crate) fn sites(model: &Model, recovery: &Recovery) -> Vec<ScanSite> {
     let mesh = &model.plate.plane;
     let site = |q: usize, s: &Station| {
-        let [x, y] = window::centroid(&mesh.corners(q));
+        let [x, y] = mesh.corners(q).centroid();
         ScanSite {
             cell: q as u32,
             place: if s.interface {

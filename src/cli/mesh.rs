@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::model;
 use crate::output::mesh::MeshSummary;
 use clap::Args;
-use fem_core::mesh::QuadMesh;
+use fem_core::mesh::PlaneMesh;
 use fem_core::plugin::Dimension;
 use fem_io::files::OutputDir;
 use fem_io::gmsh::{self, Encoding, GmshMesh};
@@ -81,7 +81,7 @@ fn read(file: &Path, metres: f64) -> Result<(GmshMesh, Vec<[f64; 2]>), Error> {
 }
 
 /// Draws `mesh`, which is that of `file`, into `folder`; the files.
-fn draw(file: &Path, folder: &Path, mesh: &QuadMesh, impacts: &[[f64; 2]]) -> Result<[PathBuf; 2], Error> {
+fn draw(file: &Path, folder: &Path, mesh: &PlaneMesh, impacts: &[[f64; 2]]) -> Result<[PathBuf; 2], Error> {
     let name = file.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy());
     let picture = plot::map_plot(&plot::mesh_map(&file.display().to_string(), mesh, impacts))?;
     picture.write(&OutputDir::create(folder)?, &name)?;

@@ -13,7 +13,6 @@ use fem_core::plugin::{Built, Kind, unknown_key};
 use fem_core::reduction::Reduction;
 use fem_core::support::{self, FreeMotions};
 use fem_core::time::Integrator;
-use fem_core::window;
 use fem_dynamics::integrate::located;
 use fem_io::scene::{self, Analysis, CriterionSpec, Located, NodeSet, Place, PluginSpec, Scene, SceneError, Support};
 use std::collections::BTreeSet;
@@ -254,7 +253,7 @@ impl Builder<'_> {
 /// Whether the centre of a quad is within `radius` of one of `centres`.
 pub(super) fn near(plate: &Plate, centres: &[[f64; 2]], radius: f64) -> impl Fn(&usize) -> bool {
     move |quad| {
-        let c = window::centroid(&plate.plane.corners(*quad));
+        let c = plate.plane.corners(*quad).centroid();
         centres.iter().any(|centre| (c[0] - centre[0]).hypot(c[1] - centre[1]) <= radius)
     }
 }

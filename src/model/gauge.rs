@@ -2,9 +2,7 @@
 
 use super::{Builder, NamedCriterion};
 use fem_core::failure::Site;
-use fem_core::patch;
 use fem_core::plate::Plate;
-use fem_core::window;
 use fem_failure::scan::PlyOrInterface;
 use fem_io::scene::{Depth, IndexWatch, SceneError};
 
@@ -55,11 +53,11 @@ impl Builder<'_> {
         let (point, _) = self.point(plate, &watch.at)?;
         let mesh = &plate.plane;
         let from_centre = |quad: usize| {
-            let c = window::centroid(&mesh.corners(quad));
+            let c = mesh.corners(quad).centroid();
             (c[0] - point[0]).hypot(c[1] - point[1])
         };
         let is_watched = |q: &usize| watched.binary_search(&plate.symmetry().quad(*q)).is_ok();
-        let holds = |q: &usize| patch::locate(&mesh.corners(*q), point).is_some();
+        let holds = |q: &usize| mesh.corners(*q).locate(point).is_some();
         let holding = || (0..mesh.quads.len()).filter(is_watched).filter(holds);
         let nearest = holding().map(from_centre).fold(f64::INFINITY, f64::min);
         // At a node of a symmetric mesh several are equally near: the first of them, whatever the last bit says.

@@ -1,7 +1,7 @@
 //! The mesh of a scene.
 
 use crate::error::Error;
-use fem_core::mesh::QuadMesh;
+use fem_core::mesh::PlaneMesh;
 use fem_io::gmsh::{self, GmshMesh, MeshFault};
 use fem_io::scene::{self, Located, MeshSource, Scene, SceneError};
 
@@ -28,7 +28,7 @@ pub fn mesh(scene: &Scene) -> Result<GmshMesh, Error> {
         MeshSource::Rectangle { size, cells } => {
             let [x, y] =
                 [0, 1].map(|d| -> Vec<f64> { (0..=cells[d]).map(|i| size[d] * i as f64 / cells[d] as f64).collect() });
-            Ok(built(QuadMesh::rectangle(&x, &y)))
+            Ok(built(PlaneMesh::rectangle(&x, &y)))
         }
         MeshSource::Graded { plate, refine, curves } => {
             let mesh = plate.value.mesh().map_err(|wrong| error(scene, plate, wrong.to_string(), ""))?;

@@ -27,7 +27,7 @@ use fem_core::element::Element;
 use fem_core::failure::FailureCriterion;
 use fem_core::laminate::Laminate;
 use fem_core::material::{Material, MaterialError};
-use fem_core::mesh::QuadMesh;
+use fem_core::mesh::PlaneMesh;
 use fem_core::plate::Plate;
 use fem_failure::delamination::DelaminationThreshold;
 use fem_io::scene::{self, Analysis, Damage, Scene};
@@ -277,7 +277,7 @@ fn incompressible(plate: &Plate, laminate: &Laminate, materials: &[Material]) ->
     })
 }
 
-fn implausible(mesh: &QuadMesh, laminate: &Laminate) -> Vec<String> {
+fn implausible(mesh: &PlaneMesh, laminate: &Laminate) -> Vec<String> {
     let mut warnings = Vec::new();
     let (low, high) = mesh.bounds();
     let size = (high[0] - low[0]).max(high[1] - low[1]);

@@ -31,7 +31,7 @@ pub struct DamageMap {
     /// Nodes of the mesh, m.
     pub points_m: Vec<[f64; 2]>,
     /// Corners of the cells, anticlockwise, numbers in `points_m`.
-    pub quads: Vec<[u32; 4]>,
+    pub quads: Vec<Vec<u32>>,
     /// Number of each cell in the mesh file.
     pub cells: Vec<u64>,
     /// Cells that the criteria judged, ascending, numbers in `quads`.
@@ -141,7 +141,7 @@ impl DamageMap {
             plies: plies.map(|(ply, z)| PlyBand { angle_deg: ply.angle_deg, z_m: [z[0], z[1]] }).collect(),
             impacts_m: impact.strikes.iter().map(|strike| strike.centre).collect(),
             points_m: mesh.points.clone(),
-            quads: mesh.quads.clone(),
+            quads: mesh.quads.iter().map(|corners| corners.to_vec()).collect(),
             cells: mesh.quad_tags.clone(),
             judged,
             places,
@@ -165,6 +165,7 @@ impl DamageMap {
         let good = |fits: bool, what: &str| if fits { Ok(()) } else { Err(what.to_owned()) };
         good(self.cells.len() == self.quads.len(), "`cells` and `quads` differ in length")?;
         let points = self.points_m.len();
+        good(self.quads.iter().all(|corners| corners.len() > 2), "a cell of `quads` has fewer than three corners")?;
         good(self.quads.iter().flatten().all(|n| (*n as usize) < points), "`quads` names a node that does not exist")?;
         good(
             self.judged.iter().all(|q| (*q as usize) < self.quads.len()),
@@ -184,8 +185,8 @@ impl DamageMap {
     }
 
     /// Corners of a cell, m.
-    pub fn corners(&self, quad: u32) -> [[f64; 2]; 4] {
-        self.quads[quad as usize].map(|n| self.points_m[n as usize])
+    pub fn corners(&self, quad: u32) -> Vec<[f64; 2]> {
+        self.quads[quad as usize].iter().map(|n| self.points_m[*n as usize]).collect()
     }
 }
 
@@ -226,7 +227,7 @@ mod tests {
             plies: vec![PlyBand { angle_deg: 0.0, z_m: [0.0, 1e-3] }],
             impacts_m: vec![[0.0, 0.0]],
             points_m: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
-            quads: vec![[0, 1, 2, 3]],
+            quads: vec![vec![0, 1, 2, 3]],
             cells: vec![7],
             judged: vec![0],
             places: vec![PlaceDamage {

@@ -5,7 +5,6 @@ use crate::analyses::stress::IndexHistory;
 use crate::error::Error;
 use crate::model::Model;
 use crate::words::name_ply;
-use fem_core::window;
 use fem_failure::scan::ScanSite;
 use fem_io::files::OutputDir;
 use fem_io::plot;
@@ -38,7 +37,7 @@ pub(crate) fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) ->
         (0..mesh.quads.len()).for_each(|quad| represented[symmetry.quad(quad)].push(quad));
         let rows = outcome.maxima.iter().flat_map(|m| {
             represented[m.site.cell as usize].iter().map(|quad| {
-                let [x, y] = window::centroid(&mesh.corners(*quad));
+                let [x, y] = mesh.corners(*quad).centroid();
                 let site = ScanSite { cell: *quad as u32, position: [x, y, m.site.position[2]], ..m.site };
                 row(model, m.criterion, m.mode, &site, m.index)
             })

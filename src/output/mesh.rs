@@ -1,6 +1,7 @@
 //! What a mesh holds and how good its cells are.
 
-use fem_core::mesh::{Group, QuadMesh, QuadQuality};
+use fem_core::domain;
+use fem_core::mesh::{Group, PlaneMesh};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -74,11 +75,11 @@ pub struct GroupSummary {
 
 impl MeshSummary {
     /// Of a mesh with at least one cell.
-    pub fn new(mesh: &QuadMesh, warnings: Vec<String>) -> Self {
-        let qualities: Vec<QuadQuality> = (0..mesh.quads.len()).map(|q| mesh.quality(q)).collect();
-        let measure = |value: fn(&QuadQuality) -> f64, sense: f64| Measure::new(mesh, &qualities, value, sense);
+    pub fn new(mesh: &PlaneMesh, warnings: Vec<String>) -> Self {
+        let qualities: Vec<domain::CellQuality> = (0..mesh.quads.len()).map(|q| mesh.quality(q)).collect();
+        let measure = |value: fn(&domain::CellQuality) -> f64, sense: f64| Measure::new(mesh, &qualities, value, sense);
         let (low, high) = mesh.bounds();
-        let edges = mesh.quads.iter().flat_map(|q| (0..4).map(move |i| length(mesh, [q[i], q[(i + 1) % 4]])));
+        let edges = mesh.quads.iter().flat_map(|q| q.sides().map(|side| length(mesh, side)));
         Self {
             nodes: mesh.points.len(),
             quads: mesh.quads.len(),
@@ -134,7 +135,12 @@ impl MeshSummary {
 
 impl Measure {
     /// The worst is the largest of `sense` times the values.
-    fn new(mesh: &QuadMesh, qualities: &[QuadQuality], value: fn(&QuadQuality) -> f64, sense: f64) -> Self {
+    fn new(
+        mesh: &PlaneMesh,
+        qualities: &[domain::CellQuality],
+        value: fn(&domain::CellQuality) -> f64,
+        sense: f64,
+    ) -> Self {
         let values = || qualities.iter().map(value);
         let (mut worst, mut quad) = (f64::NAN, 0);
         for (i, value) in values().enumerate() {
@@ -153,7 +159,7 @@ impl Measure {
 }
 
 impl GroupSummary {
-    fn new(mesh: &QuadMesh, name: &str, group: &Group) -> Self {
+    fn new(mesh: &PlaneMesh, name: &str, group: &Group) -> Self {
         let (edges, quads) = (group.dim == 1, group.dim == 2);
         let area = || group.quads.iter().map(|q| mesh.quality(*q as usize).area).sum();
         Self {
@@ -168,7 +174,7 @@ impl GroupSummary {
     }
 }
 
-fn length(mesh: &QuadMesh, edge: [u32; 2]) -> f64 {
+fn length(mesh: &PlaneMesh, edge: [u32; 2]) -> f64 {
     let [a, b] = edge.map(|n| mesh.points[n as usize]);
     (b[0] - a[0]).hypot(b[1] - a[1])
 }

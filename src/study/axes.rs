@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::registry::{NO_REDUCTION, Registry};
-use fem_core::mesh::QuadMesh;
+use fem_core::mesh::PlaneMesh;
 use fem_core::plate::ZDerivatives;
 use fem_core::plugin::{Built, Kind, Params, unknown_key};
 use fem_core::time::StepLimit;
@@ -202,7 +202,7 @@ fn mesh(scene: &Scene) -> Vec<Level> {
 }
 
 /// The mesh refined without regard to the curves that its boundary follows, or with regard where the scene has none.
-fn geometry(scene: &Scene, plane: &QuadMesh) -> Vec<Level> {
+fn geometry(scene: &Scene, plane: &PlaneMesh) -> Vec<Level> {
     if plane.curved_turn() == 0.0 {
         return Vec::new();
     }

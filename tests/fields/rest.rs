@@ -4,9 +4,7 @@ use super::{close, series, volume};
 use crate::support::{Case, plate};
 use fem::analyses::statics::{self, StaticSolution};
 use fem::core::field::{Field, Spot};
-use fem::core::patch;
 use fem::core::quadrature::gauss_legendre;
-use fem::core::window;
 use fem::io::scene;
 use fem::{Model, Registry};
 use std::num::NonZeroUsize;
@@ -42,7 +40,7 @@ fn at_rest(fields: &str) -> (Case, Model, StaticSolution) {
 /// A quad that holds a point, and the place in it.
 fn locate(model: &Model, x: f64, y: f64) -> (usize, [f64; 2]) {
     let plane = &model.plate.plane;
-    (0..plane.quads.len()).find_map(|q| Some((q, patch::locate(&plane.corners(q), [x, y])?))).unwrap()
+    (0..plane.quads.len()).find_map(|q| Some((q, plane.corners(q).locate([x, y])?))).unwrap()
 }
 
 fn ply_at(model: &Model, z: f64) -> usize {
@@ -118,7 +116,7 @@ fn stresses_are_means_over_plies_and_interfaces() {
         let same = stress.iter().zip(want).all(|(s, want)| close(*s, want, want.abs() + 1e-6 * largest));
         assert!(same, "{cell}: {stress:?}, not {want:?}");
         // The cell lies where the quad and the ply do.
-        let centre = window::centroid(&model.plate.plane.corners(quad));
+        let centre = model.plate.plane.corners(quad).centroid();
         let points = plies.connectivity()[cell].iter().map(|p| plies.positions()[*p]).collect::<Vec<_>>();
         let at = |d: usize| points.iter().map(|p| p[d]).sum::<f64>() / 8.0;
         assert!((at(0) - centre[0]).abs() + (at(1) - centre[1]).abs() + (at(2) - middle).abs() < 1e-12);

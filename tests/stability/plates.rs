@@ -2,7 +2,7 @@
 
 use crate::scene::Plate;
 use fem::analyses::statics::{self, StaticSolution};
-use fem::core::mesh::{Group, QuadMesh};
+use fem::core::mesh::{Group, PlaneMesh};
 use fem::io::scene;
 use fem::{Error, Model, Registry};
 use std::fmt::Write as _;
@@ -19,19 +19,19 @@ pub(crate) const SHELL: &str = "kind = 'mitc4'";
 pub(crate) const SECTION: &str = "kind = 'webster-beam', state = 'plane-strain', z_derivatives = 'layer-wise'";
 
 /// A rectangle of equal cells.
-pub(crate) fn rectangle([x, y]: [f64; 2], [nx, ny]: [usize; 2]) -> QuadMesh {
+pub(crate) fn rectangle([x, y]: [f64; 2], [nx, ny]: [usize; 2]) -> PlaneMesh {
     let line = |length: f64, n: usize| -> Vec<f64> { (0..=n).map(|i| length * i as f64 / n as f64).collect() };
-    QuadMesh::rectangle(&line(x, nx), &line(y, ny))
+    PlaneMesh::rectangle(&line(x, nx), &line(y, ny))
 }
 
 /// The mesh with its points moved.
-pub(crate) fn moved(mut mesh: QuadMesh, to: impl Fn([f64; 2]) -> [f64; 2]) -> QuadMesh {
+pub(crate) fn moved(mut mesh: PlaneMesh, to: impl Fn([f64; 2]) -> [f64; 2]) -> PlaneMesh {
     mesh.points.iter_mut().for_each(|p| *p = to(*p));
     mesh
 }
 
 /// Its inner nodes moved by up to `share` of the distance to the nearest other node, without order.
-pub(crate) fn jiggled(mut mesh: QuadMesh, share: f64) -> QuadMesh {
+pub(crate) fn jiggled(mut mesh: PlaneMesh, share: f64) -> PlaneMesh {
     let (low, high) = mesh.bounds();
     let old = mesh.points.clone();
     let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
@@ -49,7 +49,7 @@ pub(crate) fn jiggled(mut mesh: QuadMesh, share: f64) -> QuadMesh {
 }
 
 /// Nodes and cells in another order, cells from another corner.
-pub(crate) fn shuffled(mesh: &QuadMesh, seed: usize) -> QuadMesh {
+pub(crate) fn shuffled(mesh: &PlaneMesh, seed: usize) -> PlaneMesh {
     let order = |n: usize| -> Vec<usize> {
         let mut all: Vec<usize> = (0..n).collect();
         all.sort_by_key(|i| (i * 7919 + 13) * (104_729 + 2 * seed) % 1_000_003);
@@ -61,7 +61,10 @@ pub(crate) fn shuffled(mesh: &QuadMesh, seed: usize) -> QuadMesh {
     let of = |n: &u32| number[*n as usize];
     let mut other = mesh.clone();
     other.points = nodes.iter().map(|old| mesh.points[*old]).collect();
-    other.quads = cells.iter().map(|old| std::array::from_fn(|k| of(&mesh.quads[*old][(k + seed) % 4]))).collect();
+    other.quads = cells
+        .iter()
+        .map(|old| std::array::from_fn::<_, 4, _>(|k| of(&mesh.quads[*old][(k + seed) % 4])).into())
+        .collect();
     for group in other.groups.values_mut() {
         group.nodes.iter_mut().for_each(|n| *n = of(n));
         group.edges.iter_mut().for_each(|e| *e = [of(&e[0]), of(&e[1])]);
@@ -70,25 +73,25 @@ pub(crate) fn shuffled(mesh: &QuadMesh, seed: usize) -> QuadMesh {
 }
 
 /// A group of single nodes.
-pub(crate) fn with_nodes(mut mesh: QuadMesh, name: &str, nodes: &[u32]) -> QuadMesh {
+pub(crate) fn with_nodes(mut mesh: PlaneMesh, name: &str, nodes: &[u32]) -> PlaneMesh {
     mesh.groups.insert(name.to_owned(), Group { dim: 0, nodes: nodes.to_vec(), ..Group::default() });
     mesh
 }
 
 /// The node of the mesh nearest to a point.
-pub(crate) fn nearest(mesh: &QuadMesh, at: [f64; 2]) -> u32 {
+pub(crate) fn nearest(mesh: &PlaneMesh, at: [f64; 2]) -> u32 {
     let distance = |n: &usize| (mesh.points[*n][0] - at[0]).hypot(mesh.points[*n][1] - at[1]);
     (0..mesh.points.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap() as u32
 }
 
 /// Middles of its cells.
-pub(crate) fn middles(mesh: &QuadMesh) -> Vec<[f64; 2]> {
+pub(crate) fn middles(mesh: &PlaneMesh) -> Vec<[f64; 2]> {
     let middle = |q| [0, 1].map(|d| mesh.corners(q).iter().map(|p| p[d]).sum::<f64>() / 4.0);
     (0..mesh.quads.len()).map(middle).collect()
 }
 
 /// The mesh as a file of gmsh; cells belong to all their groups.
-pub(crate) fn gmsh(mesh: &QuadMesh) -> String {
+pub(crate) fn gmsh(mesh: &PlaneMesh) -> String {
     let groups: Vec<_> = mesh.groups.iter().filter(|(name, _)| *name != "plate").collect();
     let of = |dim: u8| groups.iter().enumerate().filter(move |(_, (_, g))| g.dim == dim);
     let mut t = format!("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n{}\n", groups.len() + 1);
@@ -128,7 +131,7 @@ pub(crate) struct Meshed {
     _folder: TempDir,
 }
 
-pub(crate) fn on(mut plate: Plate, mesh: &QuadMesh) -> Meshed {
+pub(crate) fn on(mut plate: Plate, mesh: &PlaneMesh) -> Meshed {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("plate.msh");
     std::fs::write(&file, gmsh(mesh)).unwrap();

@@ -4,7 +4,6 @@ use super::scene::{AS4, PAGANO, Plate, QUARTER, Side};
 use crate::support::{fem, root};
 use fem::analyses::statics;
 use fem::core::estimate::mesh_error;
-use fem::core::patch::locate;
 use fem::core::quadrature::gauss_legendre;
 use fem::io::scene::{self, MeshSource};
 use fem::{Model, Registry};
@@ -58,7 +57,7 @@ impl Solved {
             for &(r, wr) in gauss_legendre(3) {
                 for &(s, ws) in gauss_legendre(3) {
                     let [x, y, _] = fine.model.plate.cell(cell).position([r, s, 0.0]);
-                    let [cr, cs] = locate(&plate.plane.corners(coarse), [x, y]).unwrap();
+                    let [cr, cs] = plate.plane.corners(coarse).locate([x, y]).unwrap();
                     for (number, slice) in plate.stacks[layer].slices.iter().enumerate() {
                         let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
                         for &(t, wt) in gauss_legendre(if half < 0.2 { 1 } else { 2 }) {

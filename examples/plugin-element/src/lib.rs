@@ -4,6 +4,7 @@
 //! element; [`Element::strain_operator`] is its theory, and [`Element::shape`] its displacements. Stiffness, mass and
 //! mean strains are provided. [`Plugin`] gives it a name and a parameter in scenes.
 use fem_core::dof::Dof;
+use fem_core::domain::Domain;
 use fem_core::element::{Cell, Element, ElementInfo};
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 
@@ -47,7 +48,7 @@ pub struct Hex8 {
 impl Element for Hex8 {
     // ANCHOR: info
     fn info(&self) -> &ElementInfo {
-        &ElementInfo { nodes: &NODES, dofs: &DOFS, in_plane_order: 2, ply_order: 2 }
+        &ElementInfo { domain: Domain::Quadrilateral, nodes: &NODES, dofs: &DOFS, in_plane_order: 2, ply_order: 2 }
     }
     // ANCHOR_END: info
 

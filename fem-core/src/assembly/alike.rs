@@ -11,7 +11,7 @@ pub(super) struct Alike {
     cells: Vec<(u32, f64)>,
 }
 
-/// Edges of the quadrilateral as seen from its first corner, and the height, in units of `GRAIN` of the cell's size; which
+/// Corners of the plane cell as seen from its first corner, and the height, in units of `GRAIN` of the cell's size; which
 /// stack; and the size itself, as an exponent of 2.
 type Shape = ([i64; 7], usize, i32);
 
@@ -67,7 +67,7 @@ impl Alike {
 
 fn shape(plate: &Plate, number: usize, stacks: &[usize]) -> Shape {
     let cell = plate.cell(number);
-    let p = cell.corners;
+    let p = cell.corners.four();
     let edges: [f64; 6] = std::array::from_fn(|i| p[1 + i / 2][i % 2] - p[0][i % 2]);
     let size = edges.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
     let exponent = size.log2().floor() as i32;

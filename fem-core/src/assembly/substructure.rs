@@ -10,6 +10,7 @@ use crate::contracts::element::Element;
 use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;
 use crate::words::counters::Counters;
+use crate::words::domain::Corners;
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 use std::num::NonZeroUsize;
@@ -117,7 +118,7 @@ struct Class {
 
 /// What equal substructures have in common: quads and vertices from the first one, in units of `GRAIN` of their size, that size
 /// as an exponent of 2, and the unknowns inside.
-type Shape = (Vec<[u32; 4]>, Vec<[i64; 2]>, i32, Vec<usize>);
+type Shape = (Vec<Corners<u32>>, Vec<[i64; 2]>, i32, Vec<usize>);
 
 /// Assembles K and M of `plate` substructure by substructure, each condensed on its masters; equal ones once.
 ///

@@ -2,23 +2,28 @@
 
 use crate::contracts::large::LargeDisplacement;
 use crate::words::dof::Dof;
+use crate::words::domain::{Corners, Domain};
 use crate::words::quadrature::gauss_legendre;
 use crate::words::tensor::{Matrix6, apply};
 use dyn_clone::DynClone;
 use std::fmt::{self, Debug};
 
+pub use crate::words::domain::PlaneMap;
+
 /// How an element describes itself.
 #[derive(Debug, Clone, Copy)]
 pub struct ElementInfo {
+    /// Shape of the plane cells that it stands on.
+    pub domain: Domain,
     /// Natural coordinates (r, s, q) of the nodes, each −1, 0 or 1; q runs through the thickness.
     ///
     /// Nodes at the same place of neighbouring cells are one node, so that the table alone says how cells connect: corners
-    /// at (±1, ±1), middles of edges at (0, ±1) and (±1, 0). An element all of whose nodes have s = 0 is the section of a
+    /// at (±1, ±1), middles of edges at (0, ±1) and (±1, 0), or (0, 0) on a triangle's hypotenuse. An element all of whose nodes have s = 0 is the section of a
     /// strip that runs along x, one cell across; its width is that of the strip.
     pub nodes: &'static [[f64; 3]],
     /// Unknowns of every node, in element order.
     pub dofs: &'static [Dof],
-    /// Gauss points per in-plane direction that integrate the element well.
+    /// In-plane order of quadrature ([`Domain::points`]) that integrates the element well: Gauss points per direction.
     pub in_plane_order: usize,
     /// Gauss points through each ply.
     pub ply_order: usize,
@@ -40,11 +45,17 @@ impl ElementInfo {
         self.nodes.iter().all(|n| n[2] == 0.0)
     }
 
-    /// In-plane Gauss points (r, s, weight).
+    /// Natural coordinates of the middle of a cell.
+    pub fn centre(&self) -> [f64; 3] {
+        let [r, s] = self.domain.centre();
+        [r, s, 0.0]
+    }
+
+    /// In-plane quadrature points (r, s, weight).
     pub fn plane_points(&self) -> impl Iterator<Item = (f64, f64, f64)> + use<> {
-        let along = gauss_legendre(self.in_plane_order);
-        let across = if self.is_section() { gauss_legendre(1) } else { along };
-        along.iter().flat_map(move |&(r, wr)| across.iter().map(move |&(s, ws)| (r, s, wr * ws)))
+        let order = self.in_plane_order;
+        let points = if self.is_section() { Domain::section_points(order) } else { self.domain.points(order) };
+        points.iter().map(|point| (point.at[0], point.at[1], point.weight()))
     }
 }
 
@@ -93,44 +104,21 @@ impl Stack {
     }
 }
 
-/// A cell: an upright prism over a quadrilateral, and its plies.
+/// A cell: an upright prism over a plane cell, and its plies.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell<'a> {
-    /// Corners of the quadrilateral, m, anticlockwise from (r, s) = (−1, −1).
-    pub corners: [[f64; 2]; 4],
+    /// Corners of the plane cell, m, anticlockwise from (r, s) = (−1, −1).
+    pub corners: Corners<[f64; 2]>,
     /// Heights of the lower and upper face, m.
     pub z: [f64; 2],
     /// Its plies.
     pub stack: &'a Stack,
 }
 
-/// Natural coordinates of the corners of a quadrilateral.
-const QUAD: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-
-/// The map from (r, s) to (x, y) at a point of a quadrilateral.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlaneMap {
-    /// `[[x,r  y,r], [x,s  y,s]]`
-    pub jacobian: [[f64; 2]; 2],
-    /// Its determinant.
-    pub det: f64,
-    /// `[[r,x  r,y], [s,x  s,y]]`
-    pub inverse: [[f64; 2]; 2],
-}
-
 impl Cell<'_> {
-    /// The bilinear map of the quadrilateral at (r, s).
+    /// The map of the plane cell at (r, s).
     pub fn plane(&self, r: f64, s: f64) -> PlaneMap {
-        let mut j = [[0.0; 2]; 2];
-        for ([ri, si], p) in QUAD.iter().zip(&self.corners) {
-            let (by_r, by_s) = (0.25 * ri * (1.0 + s * si), 0.25 * si * (1.0 + r * ri));
-            for d in 0..2 {
-                j[0][d] += by_r * p[d];
-                j[1][d] += by_s * p[d];
-            }
-        }
-        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-        PlaneMap { jacobian: j, det, inverse: [[j[1][1] / det, -j[1][0] / det], [-j[0][1] / det, j[0][0] / det]] }
+        self.corners.plane_map(r, s)
     }
 
     /// Half the height, ∂z/∂q, m.
@@ -140,11 +128,8 @@ impl Cell<'_> {
 
     /// Position of a natural point, m.
     pub fn position(&self, [r, s, q]: [f64; 3]) -> [f64; 3] {
-        let plane = |d: usize| -> f64 {
-            let each = QUAD.iter().zip(&self.corners);
-            each.map(|([ri, si], p)| 0.25 * (1.0 + r * ri) * (1.0 + s * si) * p[d]).sum()
-        };
-        [plane(0), plane(1), 0.5 * (self.z[0] + self.z[1]) + q * self.half_height()]
+        let [x, y] = self.corners.position([r, s]);
+        [x, y, 0.5 * (self.z[0] + self.z[1]) + q * self.half_height()]
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::contracts::element::{Element, ElementError, Scratch};
 use crate::plates::plate::Plate;
 use crate::words::dof::Dof;
+use crate::words::domain::Point;
 use crate::words::quadrature::gauss_legendre;
 use std::collections::HashSet;
 
@@ -33,19 +34,17 @@ pub fn pressure(
     };
     let mut shape = vec![0.0; 3 * element.info().ndof()];
     let mut dofs = Vec::new();
-    let rule = gauss_legendre(ORDER);
+    let rule = element.info().domain.points(ORDER);
     for quad in quads {
         let number = quad * plate.layers() + layer;
         let cell = plate.cell(number);
         plate.cell_dofs(number, &mut dofs);
-        for &(r, wr) in rule {
-            for &(s, ws) in rule {
-                element.shape(&cell, [r, s, q], &mut shape);
-                let [x, y, _] = cell.position([r, s, q]);
-                let force = sign * p([x, y]) * cell.plane(r, s).det * wr * ws;
-                for (dof, n) in dofs.iter().zip(shape.chunks_exact(3)) {
-                    f[*dof] += force * n[2];
-                }
+        for &Point { at: [r, s], factors } in rule {
+            element.shape(&cell, [r, s, q], &mut shape);
+            let [x, y, _] = cell.position([r, s, q]);
+            let force = sign * p([x, y]) * cell.plane(r, s).det * factors[0] * factors[1];
+            for (dof, n) in dofs.iter().zip(shape.chunks_exact(3)) {
+                f[*dof] += force * n[2];
             }
         }
     }
@@ -59,8 +58,7 @@ pub fn edge(plate: &Plate, element: &dyn Element, edges: &[[u32; 2]], per_length
     let mut dofs = Vec::new();
     let rule = gauss_legendre(ORDER);
     for (quad, corners) in plate.plane.quads.iter().enumerate() {
-        for side in 0..4 {
-            let (a, b) = (corners[side], corners[(side + 1) % 4]);
+        for (side, [a, b]) in corners.sides().enumerate() {
             if !open.remove(&[a.min(b), a.max(b)]) {
                 continue;
             }
@@ -71,7 +69,7 @@ pub fn edge(plate: &Plate, element: &dyn Element, edges: &[[u32; 2]], per_length
                 let cell = plate.cell(number);
                 plate.cell_dofs(number, &mut dofs);
                 for &(t, wt) in rule {
-                    let [r, s] = [[t, -1.0], [1.0, t], [-t, 1.0], [-1.0, -t]][side];
+                    let [r, s] = corners.domain().on_side(side, t);
                     for &(q, wq) in rule {
                         element.shape(&cell, [r, s, q], &mut shape);
                         let share = 0.5 * length * wt * wq * cell.half_height() / thickness;

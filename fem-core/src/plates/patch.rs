@@ -86,7 +86,7 @@ fn mean(
         })
         .collect();
     for (p, weight) in points {
-        let (quad, [r, s]) = near.iter().find_map(|q| Some((*q, locate(&plate.plane.corners(*q), p)?)))?;
+        let (quad, [r, s]) = near.iter().find_map(|q| Some((*q, plate.plane.corners(*q).locate(p)?)))?;
         let cell = quad * plate.layers() + top;
         element.shape(&plate.cell(cell), [r, s, 1.0], &mut shape);
         plate.cell_dofs(cell, &mut dofs);
@@ -97,31 +97,4 @@ fn mean(
         }
     }
     Some(Functional(sum.into_iter().collect()))
-}
-
-/// Natural coordinates of `p` in a convex quadrilateral, if it lies inside (to 1e-9 of its size).
-pub fn locate(corners: &[[f64; 2]; 4], p: [f64; 2]) -> Option<[f64; 2]> {
-    const SIGN: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    let (mut r, mut s) = (0.0, 0.0);
-    for _ in 0..50 {
-        let (mut f, mut j) = ([-p[0], -p[1]], [[0.0; 2]; 2]);
-        for (c, x) in SIGN.iter().zip(corners) {
-            let (a, b) = (1.0 + r * c[0], 1.0 + s * c[1]);
-            for d in 0..2 {
-                f[d] += 0.25 * a * b * x[d];
-                j[d][0] += 0.25 * c[0] * b * x[d];
-                j[d][1] += 0.25 * c[1] * a * x[d];
-            }
-        }
-        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-        let (dr, ds) = ((j[1][1] * f[0] - j[0][1] * f[1]) / det, (j[0][0] * f[1] - j[1][0] * f[0]) / det);
-        // Far outside, the bilinear map need not be invertible: stay near the cell.
-        r = (r - dr).clamp(-3.0, 3.0);
-        s = (s - ds).clamp(-3.0, 3.0);
-        if dr.abs().max(ds.abs()) < 1e-14 {
-            break;
-        }
-    }
-    let inside = r.abs() <= 1.0 + 1e-9 && s.abs() <= 1.0 + 1e-9;
-    inside.then(|| [r.clamp(-1.0, 1.0), s.clamp(-1.0, 1.0)])
 }

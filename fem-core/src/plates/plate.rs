@@ -3,9 +3,10 @@
 mod part;
 
 use crate::contracts::element::{Cell, ElementInfo, Stack};
-use crate::plates::mesh::{Group, QuadMesh};
+use crate::plates::mesh::{Group, PlaneMesh};
 use crate::plates::symmetry::{self, Symmetry};
 use crate::words::dof::Dof;
+use crate::words::domain::Domain;
 use std::collections::HashMap;
 use std::fmt::Write;
 
@@ -30,7 +31,7 @@ pub enum ZDerivatives {
 #[derive(Debug, Clone)]
 pub struct Plate {
     /// The plane mesh.
-    pub plane: QuadMesh,
+    pub plane: PlaneMesh,
     /// Positions of the columns, m.
     pub columns: Vec<[f64; 2]>,
     /// z of the levels, m.
@@ -60,7 +61,7 @@ impl Plate {
     /// # Errors
     /// A mesh or layers that do not fit the element.
     pub fn new(
-        mut plane: QuadMesh,
+        mut plane: PlaneMesh,
         faces: Vec<f64>,
         stacks: Vec<Stack>,
         info: ElementInfo,
@@ -72,6 +73,7 @@ impl Plate {
         if info.is_shell() && stacks.len() != 1 {
             return Err("a shell holds the whole laminate in one layer of cells: give `layers = 1`".into());
         }
+        one_shape(&plane, info.domain)?;
         if info.is_section() {
             along_x(&mut plane)?;
         }
@@ -85,7 +87,7 @@ impl Plate {
             (place, ((q + 1.0) * 0.5 * pitch as f64) as usize)
         });
         let slots: Vec<_> = slots.collect();
-        let (columns, quad_columns, edges) = columns(&plane, &places);
+        let (columns, quad_columns, edges) = columns(&plane, info.domain, &places);
         let levels = match pitch {
             1 => faces,
             _ => {
@@ -343,46 +345,34 @@ impl Plate {
 }
 
 /// Columns over the places (r, s) of each quad: their positions, those of each quad, and the vertex pairs of edge columns.
-fn columns(plane: &QuadMesh, places: &[[f64; 2]]) -> (Vec<[f64; 2]>, Vec<u32>, Vec<[u32; 2]>) {
+fn columns(plane: &PlaneMesh, domain: Domain, places: &[[f64; 2]]) -> (Vec<[f64; 2]>, Vec<u32>, Vec<[u32; 2]>) {
     let mut positions = plane.points.clone();
     let mut edges: Vec<[u32; 2]> = Vec::new();
     let mut numbers = HashMap::new();
     let middle = |of: &[u32]| -> [f64; 2] {
         std::array::from_fn(|d| of.iter().map(|v| plane.points[*v as usize][d]).sum::<f64>() / of.len() as f64)
     };
-    // The ends of the edge that a place is the middle of.
-    let ends = |quad: &[u32; 4], [r, s]: [f64; 2]| match (r, s) {
-        (0.0, 0.0) => None,
-        (0.0, s) => Some(if s < 0.0 { [quad[0], quad[1]] } else { [quad[2], quad[3]] }),
-        (r, 0.0) => Some(if r < 0.0 { [quad[3], quad[0]] } else { [quad[1], quad[2]] }),
-        _ => None,
-    };
+    let around: Vec<Vec<usize>> = places.iter().map(|place| domain.corners_around(*place)).collect();
     for quad in &plane.quads {
-        for ends in places.iter().filter_map(|p| ends(quad, *p)) {
-            numbers.entry(ordered(ends)).or_insert_with(|| {
-                edges.push(ordered(ends));
+        for ends in around.iter().filter_map(|around| <[usize; 2]>::try_from(&around[..]).ok()) {
+            let ends = ordered(ends.map(|i| quad[i]));
+            numbers.entry(ends).or_insert_with(|| {
+                edges.push(ends);
                 positions.push(middle(&ends));
                 positions.len() as u32 - 1
             });
         }
     }
     let first_centre = positions.len() as u32;
-    if places.contains(&[0.0, 0.0]) {
+    if around.iter().any(|around| around.len() > 2) {
         positions.extend(plane.quads.iter().map(|quad| middle(quad)));
     }
     let mut of_quads = Vec::with_capacity(plane.quads.len() * places.len());
     for (q, quad) in plane.quads.iter().enumerate() {
-        of_quads.extend(places.iter().map(|&place| match (ends(quad, place), place) {
-            (Some(ends), _) => numbers[&ordered(ends)],
-            (None, [0.0, 0.0]) => first_centre + q as u32,
-            (None, [r, s]) => {
-                quad[match (r < 0.0, s < 0.0) {
-                    (true, true) => 0,
-                    (false, true) => 1,
-                    (false, false) => 2,
-                    (true, false) => 3,
-                }]
-            }
+        of_quads.extend(around.iter().map(|around| match around[..] {
+            [corner] => quad[corner],
+            [a, b] => numbers[&ordered([quad[a], quad[b]])],
+            _ => first_centre + q as u32,
         }));
     }
     (positions, of_quads, edges)
@@ -392,15 +382,31 @@ fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
+/// All cells are of the shape that the element stands on.
+///
+/// # Errors
+/// A cell that is not.
+fn one_shape(plane: &PlaneMesh, domain: Domain) -> Result<(), String> {
+    match plane.quads.iter().position(|corners| corners.domain() != domain) {
+        None => Ok(()),
+        Some(other) => Err(format!(
+            "the element is for {}s, and cell {} is a {}",
+            domain.name(),
+            plane.quad_tags[other],
+            plane.quads[other].domain().name(),
+        )),
+    }
+}
+
 /// Turns the quads of a strip so that their r runs along x.
 ///
 /// # Errors
 /// A mesh that is not a strip of rectangles along x, one cell across.
-fn along_x(plane: &mut QuadMesh) -> Result<(), String> {
+fn along_x(plane: &mut PlaneMesh) -> Result<(), String> {
     let (low, high) = plane.bounds();
     let width = high[1] - low[1];
     for q in 0..plane.quads.len() {
-        let p = plane.corners(q);
+        let p = plane.corners(q).four();
         let turn = (0..4).find(|i| {
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| p[(i + k) % 4]);
             let near = |u: f64, v: f64| (u - v).abs() <= 1e-9 * width;

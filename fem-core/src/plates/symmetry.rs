@@ -8,6 +8,7 @@
 use crate::plates::constraint::Equation;
 use crate::plates::plate::Plate;
 use crate::words::dof::Dof;
+use crate::words::domain::Corners;
 use crate::words::tensor::{Global, Matrix6, Stress6};
 use std::collections::HashMap;
 
@@ -151,9 +152,8 @@ impl Symmetry {
         // The part that is kept lies at large y, and at large x: as compact as it can be.
         let rank = |p: [f64; 2]| [1, 0].map(|d| ((p[d] - centre[d]) / reach).round() as i64);
         let column_ranks: Vec<_> = plate.columns.iter().map(|p| rank(*p)).collect();
-        let quad_ranks: Vec<_> = (0..plate.plane.quads.len())
-            .map(|q| rank(crate::plates::window::centroid(&plate.plane.corners(q))))
-            .collect();
+        let quad_ranks: Vec<_> =
+            (0..plate.plane.quads.len()).map(|q| rank(plate.plane.corners(q).centroid())).collect();
         let columns = representatives(&column_ranks, images.iter().map(|(_, i)| &i[..]));
         let quads = representatives(&quad_ranks, cells.iter().map(|i| &i[..]));
         let mut sizes = vec![0; quads.len()];
@@ -289,14 +289,14 @@ impl<'a> Places<'a> {
 /// Image of each quad, by those of its columns.
 fn quad_images(plate: &Plate, images: &[u32]) -> Result<Vec<u32>, String> {
     let quads = &plate.plane.quads;
-    let sorted = |mut vertices: [u32; 4]| {
+    let sorted = |mut vertices: Corners<u32>| {
         vertices.sort_unstable();
         vertices
     };
-    let numbers: HashMap<[u32; 4], u32> = quads.iter().map(|q| sorted(*q)).zip(0..).collect();
-    let image = |(quad, vertices): (usize, &[u32; 4])| {
+    let numbers: HashMap<Corners<u32>, u32> = quads.iter().map(|q| sorted(*q)).zip(0..).collect();
+    let image = |(quad, vertices): (usize, &Corners<u32>)| {
         numbers.get(&sorted(vertices.map(|v| images[v as usize]))).copied().ok_or_else(|| {
-            let [x, y] = crate::plates::window::centroid(&plate.plane.corners(quad)).map(|x| x * 1e3);
+            let [x, y] = plate.plane.corners(quad).centroid().map(|x| x * 1e3);
             format!("cell {} at ({x:.6}, {y:.6}) mm has no image", plate.plane.quad_tags[quad])
         })
     };
@@ -308,8 +308,9 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::contracts::element::{ElementInfo, Slice, Stack};
-    use crate::plates::mesh::QuadMesh;
+    use crate::plates::mesh::PlaneMesh;
     use crate::plates::plate::ZDerivatives;
+    use crate::words::domain::Domain;
     use crate::words::material::Elastic;
     use crate::words::tensor::rotate_stiffness;
 
@@ -323,7 +324,13 @@ mod tests {
         [1.0, 1.0, 1.0],
         [-1.0, 1.0, 1.0],
     ];
-    const INFO: ElementInfo = ElementInfo { nodes: &NODES, dofs: &Dof::SOLID, in_plane_order: 2, ply_order: 2 };
+    const INFO: ElementInfo = ElementInfo {
+        domain: Domain::Quadrilateral,
+        nodes: &NODES,
+        dofs: &Dof::SOLID,
+        in_plane_order: 2,
+        ply_order: 2,
+    };
 
     fn tape(angle: f64) -> Matrix6 {
         let tape = Elastic::transversely_isotropic(130e9, 9.6e9, 0.35, 0.4, 5.9e9);
@@ -335,7 +342,7 @@ mod tests {
         let lines = |n: usize, low: f64, high: f64| -> Vec<f64> {
             (0..=n).map(|i| low + (high - low) * i as f64 / n as f64).collect()
         };
-        let mesh = QuadMesh::rectangle(&lines(cells[0], 1.0, 7.0), &lines(cells[1], 2.0, 6.0));
+        let mesh = PlaneMesh::rectangle(&lines(cells[0], 1.0, 7.0), &lines(cells[1], 2.0, 6.0));
         let shuffled = |n: usize| -> Vec<usize> {
             let mut all: Vec<usize> = (0..n).collect();
             all.sort_by_key(|i| (i * 7919 * disorder) % 1009);
@@ -415,7 +422,7 @@ mod tests {
         mesh.points[6][0] += 1e-3;
         mesh.node_tags[6] = 4711;
         let stack = Stack::new(vec![Slice { q: [-1.0, 1.0], c: tape(0.0), density: 1.0, free: [0.0; 6] }]);
-        let fold = |mesh: &QuadMesh, group| {
+        let fold = |mesh: &PlaneMesh, group| {
             Plate::new(mesh.clone(), vec![0.0, 1.0], vec![stack.clone()], INFO, ZDerivatives::Shared)
                 .unwrap()
                 .fold(group)

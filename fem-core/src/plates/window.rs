@@ -3,15 +3,15 @@
 //! A mean over the cell itself falls with the cell, and with it every onset time; over a window of fixed size it does
 //! not.
 
-use crate::plates::mesh::QuadMesh;
+use crate::plates::mesh::PlaneMesh;
 
 /// The cells that a square window of side `side`, centred on each cell and parallel to the axes, overlaps, with their
 /// shares of the overlapped area. At an edge the window is cut off with the plate.
 ///
 /// A cell larger than the window is its own mean.
-pub fn square(mesh: &QuadMesh, side: f64) -> Vec<Vec<(usize, f64)>> {
+pub fn square(mesh: &PlaneMesh, side: f64) -> Vec<Vec<(usize, f64)>> {
     let n = mesh.quads.len();
-    let centres: Vec<[f64; 2]> = (0..n).map(|q| centroid(&mesh.corners(q))).collect();
+    let centres: Vec<[f64; 2]> = (0..n).map(|q| mesh.corners(q).centroid()).collect();
     let (low, _) = mesh.bounds();
     // Bins about as large as window or cell, whichever is larger, so that either touches few of them.
     let pitch = side.max((mesh.area() / n as f64).sqrt());
@@ -49,8 +49,7 @@ pub fn square(mesh: &QuadMesh, side: f64) -> Vec<Vec<(usize, f64)>> {
             }
             near.sort_unstable();
             near.dedup();
-            let mut shares: Vec<(usize, f64)> =
-                near.iter().map(|o| (*o, overlap(&mesh.corners(*o), c, half))).collect();
+            let mut shares: Vec<(usize, f64)> = near.iter().map(|o| (*o, mesh.corners(*o).overlap(c, half))).collect();
             let total: f64 = shares.iter().map(|s| s.1).sum();
             shares.retain(|s| s.1 > 1e-12 * total);
             shares.iter_mut().for_each(|s| s.1 /= total);
@@ -60,70 +59,16 @@ pub fn square(mesh: &QuadMesh, side: f64) -> Vec<Vec<(usize, f64)>> {
 }
 
 /// Each cell is its own mean.
-pub fn own(mesh: &QuadMesh) -> Vec<Vec<(usize, f64)>> {
+pub fn own(mesh: &PlaneMesh) -> Vec<Vec<(usize, f64)>> {
     (0..mesh.quads.len()).map(|q| vec![(q, 1.0)]).collect()
-}
-
-/// Centroid of a quadrilateral.
-pub fn centroid(p: &[[f64; 2]; 4]) -> [f64; 2] {
-    // Relative to a corner, so that a plate far from the origin loses nothing.
-    let (mut area, mut sum) = (0.0, [0.0; 2]);
-    for i in 1..3 {
-        let (a, b) = ([p[i][0] - p[0][0], p[i][1] - p[0][1]], [p[i + 1][0] - p[0][0], p[i + 1][1] - p[0][1]]);
-        let cross = a[0] * b[1] - a[1] * b[0];
-        area += cross;
-        for d in 0..2 {
-            sum[d] += cross * (a[d] + b[d]) / 3.0;
-        }
-    }
-    std::array::from_fn(|d| p[0][d] + sum[d] / area)
-}
-
-/// Area of a convex quadrilateral within the square |x − c| ≤ half (Sutherland, Hodgman 1974).
-fn overlap(p: &[[f64; 2]; 4], c: [f64; 2], half: f64) -> f64 {
-    // Four cuts add at most four corners.
-    let mut polygon = [[0.0; 2]; 9];
-    let mut n = 4;
-    for (to, from) in polygon.iter_mut().zip(p) {
-        *to = [from[0] - c[0], from[1] - c[1]];
-    }
-    for (d, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
-        let inside = |p: &[f64; 2]| half - sign * p[d];
-        let mut cut = [[0.0; 2]; 9];
-        let mut m = 0;
-        for i in 0..n {
-            let (a, b) = (polygon[i], polygon[(i + 1) % n]);
-            let (da, db) = (inside(&a), inside(&b));
-            if da >= 0.0 {
-                cut[m] = a;
-                m += 1;
-            }
-            if (da >= 0.0) != (db >= 0.0) && m < 9 {
-                let t = da / (da - db);
-                cut[m] = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
-                m += 1;
-            }
-        }
-        polygon = cut;
-        n = m;
-        if n < 3 {
-            return 0.0;
-        }
-    }
-    0.5 * (0..n)
-        .map(|i| {
-            let (a, b) = (polygon[i], polygon[(i + 1) % n]);
-            a[0] * b[1] - a[1] * b[0]
-        })
-        .sum::<f64>()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn grid(n: usize, h: f64) -> QuadMesh {
-        let mut mesh = QuadMesh::default();
+    fn grid(n: usize, h: f64) -> PlaneMesh {
+        let mut mesh = PlaneMesh::default();
         for j in 0..=n {
             for i in 0..=n {
                 mesh.points.push([i as f64 * h, j as f64 * h]);
@@ -132,7 +77,7 @@ mod tests {
         for j in 0..n {
             for i in 0..n {
                 let a = (j * (n + 1) + i) as u32;
-                mesh.quads.push([a, a + 1, a + n as u32 + 2, a + n as u32 + 1]);
+                mesh.quads.push([a, a + 1, a + n as u32 + 2, a + n as u32 + 1].into());
             }
         }
         mesh

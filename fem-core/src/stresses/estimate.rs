@@ -2,7 +2,7 @@
 
 use crate::contracts::element::{Element, ElementError, Stack, positive};
 use crate::plates::plate::Plate;
-use crate::plates::window::centroid;
+use crate::words::domain::Domain;
 use crate::words::quadrature::gauss_legendre;
 use crate::words::tensor::apply;
 use nalgebra::{SMatrix, SVector};
@@ -43,7 +43,8 @@ const TERMS: usize = 10;
 /// On these the jumps of strain between cells say 0.6 to 2.7 and strains averaged at nodes 0.9 to 5.3, because both depend on
 /// the degree of an element and on which derivatives it shares at nodes.
 ///
-/// `None` where nothing honest can be said: a section of a strip, a cell none of whose nodes is inside the plate (fewer
+/// `None` where nothing honest can be said: a section of a strip, triangles (the points at which cells are sampled are those
+/// of quadrilaterals), a cell none of whose nodes is inside the plate (fewer
 /// than two cells across), no strain at all. What it does not see: edges that should be curved, supports at too few
 /// nodes, and that a point force or a sharp corner spoils cells around it as well.
 ///
@@ -53,7 +54,10 @@ pub fn mesh_error(plate: &Plate, element: &dyn Element, u: &[f64]) -> Result<Opt
     let quads = &plate.plane.quads;
     let mut inside = vec![true; plate.plane.points.len()];
     plate.plane.boundary().iter().flatten().for_each(|node| inside[*node as usize] = false);
-    if plate.info().is_section() || !quads.iter().all(|quad| quad.iter().any(|node| inside[*node as usize])) {
+    if plate.info().is_section()
+        || plate.info().domain != Domain::Quadrilateral
+        || !quads.iter().all(|quad| quad.iter().any(|node| inside[*node as usize]))
+    {
         return Ok(None);
     }
     let mut touching: Vec<Vec<usize>> = vec![Vec::new(); plate.plane.points.len()];
@@ -72,7 +76,7 @@ pub fn mesh_error(plate: &Plate, element: &dyn Element, u: &[f64]) -> Result<Opt
                 samples[*other] = strains.of(*other)?;
             }
         }
-        let Some(smooth) = Fit::of(centroid(&plate.plane.corners(quad)), || around.iter().flat_map(|q| &samples[*q]))
+        let Some(smooth) = Fit::of(plate.plane.corners(quad).centroid(), || around.iter().flat_map(|q| &samples[*q]))
         else {
             return Ok(None);
         };

@@ -1,7 +1,6 @@
 //! Stresses along a line through the thickness.
 
 use crate::contracts::element::ElementError;
-use crate::plates::patch::locate;
 use crate::plates::plate::Plate;
 use crate::stresses::field::{Field, Spot};
 use crate::words::quadrature::gauss_legendre;
@@ -64,7 +63,7 @@ impl Profile {
     /// The line at `point`; `None` outside the plate.
     pub fn at(plate: &Plate, point: [f64; 2]) -> Option<Self> {
         let quads = &plate.plane.quads;
-        let place = |q: usize| Some((q, locate(&plate.plane.corners(q), point)?));
+        let place = |q: usize| Some((q, plate.plane.corners(q).locate(point)?));
         let places: Vec<(usize, [f64; 2])> = (0..quads.len()).filter_map(place).collect();
         let mut around: Vec<usize> = places.iter().map(|p| p.0).collect();
         let wanted = if plate.info().is_section() { AROUND_SECTION } else { AROUND };
@@ -197,7 +196,7 @@ impl Profile {
     fn fit(&self, plate: &Plate) -> Fit {
         let section = plate.info().is_section();
         let centre = |quad: &usize| {
-            let [x, y, _] = plate.cell(quad * plate.layers()).position([0.0; 3]);
+            let [x, y, _] = plate.cell(quad * plate.layers()).position(plate.info().centre());
             [x - self.point[0], y - self.point[1]]
         };
         let samples: Vec<[f64; 2]> = self.around.iter().map(centre).collect();
@@ -216,7 +215,7 @@ impl Profile {
     fn derivatives(&self, field: &Field<'_>, fit: &Fit, ply: usize, z: f64) -> Result<[f64; 3], ElementError> {
         let mut coefficients = SVector::<[f64; 3], TERMS>::from_element([0.0; 3]);
         for (i, &quad) in self.around.iter().enumerate() {
-            let (e, _) = field.at(Spot { quad, at: [0.0; 2], ply, z })?;
+            let (e, _) = field.at(Spot { quad, at: field.plate().info().domain.centre(), ply, z })?;
             let s = field.stress(ply, &e);
             for (c, row) in coefficients.iter_mut().zip(fit.inverse.column(i).iter()) {
                 for (c, s) in c.iter_mut().zip([s.0[0], s.0[1], s.0[3]]) {

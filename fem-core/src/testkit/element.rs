@@ -1,8 +1,9 @@
 //! The contract of an element.
 
 use crate::contracts::element::{Cell, Element, ElementError, ElementInfo, Part, Scratch, Slice, Stack};
-use crate::plates::mesh::QuadMesh;
+use crate::plates::mesh::PlaneMesh;
 use crate::plates::plate::{Plate, ZDerivatives};
+use crate::words::domain::{Corners, Domain};
 use crate::words::material::Elastic;
 use crate::words::tensor::rotate_stiffness;
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -49,7 +50,7 @@ pub fn check_element(element: &dyn Element) -> Result<(), String> {
     refusals(element)
 }
 
-type Shape = (&'static str, [[f64; 2]; 4], [f64; 2]);
+type Shape = (&'static str, Corners<[f64; 2]>, [f64; 2]);
 
 /// Cells to look at, m; a section knows rectangles along x only.
 fn cells(info: &ElementInfo) -> Vec<Shape> {
@@ -63,7 +64,21 @@ fn cells(info: &ElementInfo) -> Vec<Shape> {
     if !info.is_section() {
         all.push(("distorted", [[1e-3, 1e-3], [3e-3, 1.2e-3], [3.4e-3, 2.9e-3], [0.8e-3, 2.6e-3]], [0.0, 0.7e-3]));
     }
-    all
+    all.into_iter().map(|(name, corners, z)| (name, part_of(info, corners), z)).collect()
+}
+
+/// A cell of the element's domain in a quadrilateral: all of it, or the triangle at its first corner.
+fn part_of(info: &ElementInfo, corners: [[f64; 2]; 4]) -> Corners<[f64; 2]> {
+    match info.domain {
+        Domain::Quadrilateral => corners.into(),
+        Domain::Triangle => [corners[0], corners[1], corners[3]].into(),
+    }
+}
+
+/// Largest distance of a corner from the first, m.
+fn extent(cell: &Cell<'_>) -> f64 {
+    let [x, y] = cell.corners[0];
+    cell.corners.iter().map(|p| (p[0] - x).hypot(p[1] - y)).fold(0.0, f64::max)
 }
 
 fn tape(angle_deg: f64) -> Slice {
@@ -144,8 +159,8 @@ impl Matrices {
     fn rigid_motions(&self, element: &dyn Element, cell: &Cell<'_>, regular: bool) -> Result<(), String> {
         let (info, n) = (element.info(), self.n);
         let plate = single(cell, *info)?;
-        let size = (cell.corners[2][0] - cell.corners[0][0]).hypot(cell.corners[2][1] - cell.corners[0][1]);
-        let centre = cell.position([0.0; 3]);
+        let size = extent(cell);
+        let centre = cell.position(info.centre());
         let mut dofs = Vec::new();
         plate.cell_dofs(0, &mut dofs);
         let motions: Vec<[f64; 6]> = dofs.iter().map(|d| plate.rigid_motions(*d, centre, size)).collect();
@@ -201,20 +216,12 @@ fn parts(stack: &Stack) -> Vec<Part> {
 }
 
 fn mass_of(cell: &Cell<'_>) -> f64 {
-    let p = cell.corners;
-    let area = 0.5 * ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1]));
-    area * cell.half_height() * cell.stack.density_moments[0]
+    cell.corners.area() * cell.half_height() * cell.stack.density_moments[0]
 }
 
 /// A plate of this one cell.
 fn single(cell: &Cell<'_>, info: ElementInfo) -> Result<Plate, String> {
-    let mesh = QuadMesh {
-        points: cell.corners.to_vec(),
-        quads: vec![[0, 1, 2, 3]],
-        node_tags: vec![1, 2, 3, 4],
-        quad_tags: vec![1],
-        ..QuadMesh::default()
-    };
+    let mesh = PlaneMesh::single(cell.corners);
     Plate::new(mesh, cell.z.to_vec(), vec![cell.stack.clone()], info, ZDerivatives::Shared)
 }
 
@@ -260,7 +267,7 @@ fn linear_fields(element: &dyn Element, cell: &Cell<'_>) -> Result<(), String> {
     };
     let fits = |n: usize, m: usize| !(section && (n == 1 || m == 1)) && !(shell && (n == 2 || m == 2));
     let (mut b, mut shape) = (vec![0.0; 6 * info.ndof()], vec![0.0; 3 * info.ndof()]);
-    let origin = cell.position([0.0; 3]);
+    let origin = cell.position(info.centre());
     for n in 0..3 {
         for m in 0..3 {
             if !fits(n, m) {
@@ -288,7 +295,7 @@ fn linear_fields(element: &dyn Element, cell: &Cell<'_>) -> Result<(), String> {
                     }
                 }
                 let (value, _) = field(cell.position(xi));
-                let size = cell.half_height().max((cell.corners[2][0] - cell.corners[0][0]).abs());
+                let size = cell.half_height().max(extent(cell));
                 if (0..3).any(|d| (sum(&shape, 3, d) - value[d]).abs() > 1e-9 * size) {
                     return Err(format!("u{} = x{} is not reproduced", n + 1, m + 1));
                 }
@@ -338,6 +345,7 @@ fn frames(element: &dyn Element) -> Result<(), String> {
     } else {
         [[0.0, 0.0], [2e-3, 0.1e-3], [2.3e-3, 2.0e-3], [0.3e-3, 1.9e-3]]
     };
+    let corners = part_of(element.info(), corners);
     let z = [-0.3e-3, 0.3e-3];
     let stack = Stack::new(vec![tape(20.0)]);
     let reference = energy(element, &Cell { corners, z, stack: &stack }, wave(0.0, 1.0))?;
@@ -352,7 +360,7 @@ fn frames(element: &dyn Element) -> Result<(), String> {
     if section {
         return Ok(());
     }
-    for turn in 1..4 {
+    for turn in 1..corners.len() {
         let mut corners = corners;
         corners.rotate_left(turn);
         agree("the corner counted first", energy(element, &Cell { corners, z, stack: &stack }, wave(0.0, 1.0))?)?;
@@ -371,8 +379,10 @@ fn frames(element: &dyn Element) -> Result<(), String> {
 fn refusals(element: &dyn Element) -> Result<(), String> {
     let stack = Stack::new(vec![tape(0.0)]);
     let (good, z) = ([[0.0, 0.0], [1e-3, 0.0], [1e-3, 1e-3], [0.0, 1e-3]], [0.0, 1e-3]);
-    let folded = [good[0], good[3], good[2], good[1]];
-    let undefined = [[f64::NAN, 0.0], good[1], good[2], good[3]];
+    let good = part_of(element.info(), good);
+    let (mut folded, mut undefined) = (good, good);
+    folded[1..].reverse();
+    undefined[0][0] = f64::NAN;
     for (what, corners, z) in [("folded", folded, z), ("undefined", undefined, z), ("flat", good, [0.0, 0.0])] {
         if Matrices::of(element, &Cell { corners, z, stack: &stack }).is_ok() {
             return Err(format!("a cell that is {what} is not refused"));

@@ -4,6 +4,7 @@
 pub mod counters;
 pub mod damping;
 pub mod dof;
+pub mod domain;
 pub mod energy;
 pub mod formula;
 pub mod functional;

@@ -1,9 +1,10 @@
 //! Small models with dense matrices, for the tests of elements.
 
 use fem_core::dof::Dof;
+use fem_core::domain::Corners;
 use fem_core::element::{Cell, Element, Part, Scratch, Slice, Stack};
 use fem_core::material::Elastic;
-use fem_core::mesh::QuadMesh;
+use fem_core::mesh::PlaneMesh;
 use fem_core::plate::{Plate, ZDerivatives};
 use fem_core::tensor::rotate_stiffness;
 use fem_core::testkit::Provided;
@@ -96,7 +97,7 @@ pub(crate) fn check_rigid_motions(element: &dyn Element, cell: &Cell<'_>) {
     let spectrum = scaled_spectrum(&stiffness(element, cell));
     assert!(spectrum[0] > -1e-12 && spectrum[5] < 1e-12, "{:?}", &spectrum[..7]);
     assert!(spectrum[6] > 1e-6, "{:?}", &spectrum[..7]);
-    let quad = QuadMesh { points: cell.corners.to_vec(), quads: vec![[0, 1, 2, 3]], ..Default::default() };
+    let quad = PlaneMesh { points: cell.corners.to_vec(), quads: vec![[0, 1, 2, 3].into()], ..Default::default() };
     let model = Model::new(element, quad, cell.z.to_vec(), vec![cell.stack.clone()]);
     let length = cell.corners[2][0] - cell.corners[0][0];
     let scale = model.k.diagonal().map(f64::sqrt);
@@ -117,7 +118,7 @@ pub(crate) struct Model {
 }
 
 impl Model {
-    pub(crate) fn new(element: &dyn Element, plane: QuadMesh, faces: Vec<f64>, stacks: Vec<Stack>) -> Self {
+    pub(crate) fn new(element: &dyn Element, plane: PlaneMesh, faces: Vec<f64>, stacks: Vec<Stack>) -> Self {
         let plate = Plate::new(plane, faces, stacks, *element.info(), ZDerivatives::Shared).unwrap();
         let n = plate.ndof();
         let mut model = Self { plate, k: DMatrix::zeros(n, n), m: DMatrix::zeros(n, n) };
@@ -182,23 +183,23 @@ impl Model {
 }
 
 /// `nx` × `ny` cells on (0, 1) × (0, 1), mapped.
-pub(crate) fn grid(nx: usize, ny: usize, map: impl Fn(f64, f64) -> [f64; 2]) -> QuadMesh {
-    let mut mesh = QuadMesh::default();
+pub(crate) fn grid(nx: usize, ny: usize, map: impl Fn(f64, f64) -> [f64; 2]) -> PlaneMesh {
+    let mut mesh = PlaneMesh::default();
     for j in 0..=ny {
         mesh.points.extend((0..=nx).map(|i| map(i as f64 / nx as f64, j as f64 / ny as f64)));
     }
     for j in 0..ny {
         mesh.quads.extend((0..nx).map(|i| {
             let first = j * (nx + 1) + i;
-            [first, first + 1, first + nx + 2, first + nx + 1].map(|v| v as u32)
+            Corners::from([first, first + 1, first + nx + 2, first + nx + 1].map(|v| v as u32))
         }));
     }
     mesh
 }
 
 /// Five quadrilaterals: a crooked one inside the unit square.
-pub(crate) fn patch() -> QuadMesh {
-    QuadMesh {
+pub(crate) fn patch() -> PlaneMesh {
+    PlaneMesh {
         points: vec![
             [0.0, 0.0],
             [1.0, 0.0],
@@ -209,7 +210,13 @@ pub(crate) fn patch() -> QuadMesh {
             [0.67, 0.72],
             [0.31, 0.63],
         ],
-        quads: vec![[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7], [4, 5, 6, 7]],
+        quads: vec![
+            [0, 1, 5, 4].into(),
+            [1, 2, 6, 5].into(),
+            [2, 3, 7, 6].into(),
+            [3, 0, 4, 7].into(),
+            [4, 5, 6, 7].into(),
+        ],
         ..Default::default()
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use fem_core::mesh::{Group, QuadMesh};
+use fem_core::mesh::{Group, PlaneMesh};
 
 use super::checks::{Edges, flat_and_joined};
 use super::elements::Grouped;
@@ -19,7 +19,7 @@ pub(super) fn mesh(
     nodes: &NodeTable,
     grouped: &Grouped<'_>,
     unit_metres: f64,
-) -> Result<QuadMesh, MeshError> {
+) -> Result<PlaneMesh, MeshError> {
     // 0 marks a node as used until the numbers are given out.
     let mut number = vec![UNUSED; nodes.0.len()];
     for node in grouped.cells.iter().flat_map(|cell| cell.nodes) {
@@ -29,7 +29,7 @@ pub(super) fn mesh(
     flat_and_joined(source, nodes, &used)?;
     Edges::new(source, nodes, &grouped.cells)?.check_groups(source, nodes, &grouped.edges)?;
 
-    let mut mesh = QuadMesh::default();
+    let mut mesh = PlaneMesh::default();
     for (new, old) in (0..).zip(&used) {
         number[*old as usize] = new;
         let point = nodes.plane(*old).map(|x| x * unit_metres);

@@ -1,5 +1,6 @@
 //! What must hold of cells and nodes before they are a mesh.
 
+use fem_core::domain::Corners;
 use std::collections::BTreeMap;
 
 use super::elements::Element;
@@ -18,18 +19,18 @@ const NOTHING: f64 = 1e-9;
 pub(super) fn orient(
     source: &Source<'_>,
     nodes: &NodeTable,
-    cells: &mut [Element<'_, 4>],
+    cells: &mut [Element<'_, Corners<u32>>],
 ) -> Result<Vec<u64>, MeshError> {
     let mut turned = Vec::new();
     for cell in cells {
         let sines = sines(cell.nodes.map(|n| nodes.plane(n)));
         if sines.iter().all(|s| *s < -NOTHING) {
-            cell.nodes.swap(1, 3);
+            cell.nodes[1..].reverse();
             turned.push(cell.tag);
         } else if !sines.iter().all(|s| *s > NOTHING) {
             let sense = if sines.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
             let badness = |i: &usize| if sines[*i].is_nan() { f64::INFINITY } else { -sense * sines[*i] };
-            let worst = (0..4).max_by(|i, j| badness(i).total_cmp(&badness(j))).unwrap_or_default();
+            let worst = (0..sines.len()).max_by(|i, j| badness(i).total_cmp(&badness(j))).unwrap_or_default();
             let fault = MeshFault::Folded { cell: cell.tag, node: nodes.tag(cell.nodes[worst]) };
             return Err(source.error(source.find(Item::Element(cell.tag)), fault));
         }
@@ -43,20 +44,24 @@ pub(super) fn orient(
     Ok(turned)
 }
 
-/// Sines of the inner angles; all positive only for an anticlockwise convex quadrilateral, not a number where an edge
+/// Sines of the inner angles; all positive only for an anticlockwise convex cell, not a number where an edge
 /// has no length.
-fn sines(p: [[f64; 2]; 4]) -> [f64; 4] {
+fn sines(p: Corners<[f64; 2]>) -> Corners<f64> {
     edges(p).map(|[u, v]| cross(u, v) / (u[0].hypot(u[1]) * v[0].hypot(v[1])))
 }
 
-/// Inner angles of a convex quadrilateral, degrees.
-fn angles(p: [[f64; 2]; 4]) -> [f64; 4] {
+/// Inner angles of a convex cell, degrees.
+fn angles(p: Corners<[f64; 2]>) -> Corners<f64> {
     edges(p).map(|[u, v]| cross(u, v).atan2(u[0] * v[0] + u[1] * v[1]).abs().to_degrees())
 }
 
 /// At each corner the edges to the next one and to the one before.
-fn edges(p: [[f64; 2]; 4]) -> [[[f64; 2]; 2]; 4] {
-    [0, 1, 2, 3].map(|i| [p[(i + 1) % 4], p[(i + 3) % 4]].map(|end| [end[0] - p[i][0], end[1] - p[i][1]]))
+fn edges(p: Corners<[f64; 2]>) -> Corners<[[f64; 2]; 2]> {
+    let (n, mut i) = (p.len(), 0..);
+    p.map(|at| {
+        let i = i.next().unwrap_or_default();
+        [p[(i + 1) % n], p[(i + n - 1) % n]].map(|end| [end[0] - at[0], end[1] - at[1]])
+    })
 }
 
 fn cross(u: [f64; 2], v: [f64; 2]) -> f64 {
@@ -69,10 +74,14 @@ fn cross(u: [f64; 2], v: [f64; 2]) -> f64 {
 pub(super) struct Edges(Vec<(u64, u32)>);
 
 impl Edges {
-    pub(super) fn new(source: &Source<'_>, nodes: &NodeTable, cells: &[Element<'_, 4>]) -> Result<Self, MeshError> {
+    pub(super) fn new(
+        source: &Source<'_>,
+        nodes: &NodeTable,
+        cells: &[Element<'_, Corners<u32>>],
+    ) -> Result<Self, MeshError> {
         let mut edges = Vec::with_capacity(4 * cells.len());
         for (i, cell) in (0_u32..).zip(cells) {
-            edges.extend((0..4).map(|k| (directed(cell.nodes[k], cell.nodes[(k + 1) % 4]), i)));
+            edges.extend(cell.nodes.sides().map(|[a, b]| (directed(a, b), i)));
         }
         edges.sort_unstable();
         if let Some(pair) = edges.windows(2).find(|pair| pair[0].0 == pair[1].0) {
@@ -93,7 +102,7 @@ impl Edges {
         &self,
         source: &Source<'_>,
         nodes: &NodeTable,
-        elements: &[Element<'_, 2>],
+        elements: &[Element<'_, [u32; 2]>],
     ) -> Result<(), MeshError> {
         let mut seen = BTreeMap::new();
         for element in elements {

@@ -1,5 +1,6 @@
 //! `$Elements`, as far as they belong to physical groups.
 
+use fem_core::domain::Corners;
 use std::collections::BTreeSet;
 
 use super::cursor::Cursor;
@@ -48,20 +49,20 @@ const KINDS: [(i32, &str, usize); 36] = [
     (92, "Hex64", 64),
 ];
 
-/// An element with `N` corners, numbered as in the node table, and the groups it belongs to.
+/// An element with its corners, numbered as in the node table, and the groups it belongs to.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Element<'g, const N: usize> {
+pub(super) struct Element<'g, N> {
     pub(super) tag: u64,
-    pub(super) nodes: [u32; N],
+    pub(super) nodes: N,
     pub(super) groups: &'g [String],
 }
 
 /// Elements that belong to a group, in ascending order of their tags.
 #[derive(Debug, Default)]
 pub(super) struct Grouped<'g> {
-    pub(super) points: Vec<Element<'g, 1>>,
-    pub(super) edges: Vec<Element<'g, 2>>,
-    pub(super) cells: Vec<Element<'g, 4>>,
+    pub(super) points: Vec<Element<'g, [u32; 1]>>,
+    pub(super) edges: Vec<Element<'g, [u32; 2]>>,
+    pub(super) cells: Vec<Element<'g, Corners<u32>>>,
     /// Surfaces that hold elements.
     surfaces: BTreeSet<i32>,
     /// Number of surface elements in no group.
@@ -150,22 +151,25 @@ impl<'g> Grouped<'g> {
         };
         match (dim, kind.1) {
             (0, "Pnt") => block.each(cursor, tags, |tag, nodes| {
-                self.points.push(block.element(tag, nodes, groups)?);
+                self.points.push(Element { tag, nodes: block.corners(tag, nodes)?, groups });
                 Ok(())
             }),
             (1, "Lin2" | "Lin3") => block.each(cursor, tags, |tag, nodes| {
-                self.edges.push(block.element(tag, nodes, groups)?);
+                self.edges.push(Element { tag, nodes: block.corners(tag, nodes)?, groups });
                 Ok(())
             }),
-            (2, "Qua4" | "Qua8" | "Qua9") => block.each(cursor, tags, |tag, nodes| {
-                self.cells.push(block.element(tag, nodes, groups)?);
-                if nodes.len() > 4 {
+            (2, "Qua4" | "Qua8" | "Qua9" | "Tri3" | "Tri6") => block.each(cursor, tags, |tag, nodes| {
+                let corners: Corners<u32> = match kind.1 {
+                    "Tri3" | "Tri6" => block.corners::<3>(tag, nodes)?.into(),
+                    _ => block.corners::<4>(tag, nodes)?.into(),
+                };
+                self.cells.push(Element { tag, nodes: corners, groups });
+                if nodes.len() > corners.len() {
                     self.second_order.0 += 1;
-                    self.second_order.1 = self.second_order.1.max(block.bulge(tag, nodes)?);
+                    self.second_order.1 = self.second_order.1.max(block.bulge(tag, corners, nodes)?);
                 }
                 Ok(())
             }),
-            (2, "Tri3" | "Tri6") => fail(MeshFault::Triangle { element, group: group.clone() }),
             (_, kind) => fail(MeshFault::Kind { element, group: group.clone(), kind: kind.to_owned() }),
         }
     }
@@ -198,17 +202,13 @@ impl Block<'_> {
         self.source.syntax(at, &what)
     }
 
-    fn element<'g, const N: usize>(
-        &self,
-        tag: u64,
-        nodes: &[u64],
-        groups: &'g [String],
-    ) -> Result<Element<'g, N>, MeshError> {
+    /// The first `N` nodes of an element.
+    fn corners<const N: usize>(&self, tag: u64, nodes: &[u64]) -> Result<[u32; N], MeshError> {
         let mut found = [0; N];
         for (index, node) in found.iter_mut().zip(nodes) {
             *index = self.lookup(tag, *node)?;
         }
-        Ok(Element { tag, nodes: found, groups })
+        Ok(found)
     }
 
     fn lookup(&self, element: u64, node: u64) -> Result<u32, MeshError> {
@@ -220,11 +220,10 @@ impl Block<'_> {
     }
 
     /// Largest distance of a mid-side node from the middle of its edge, as a fraction of the edge.
-    fn bulge(&self, tag: u64, nodes: &[u64]) -> Result<f64, MeshError> {
-        let at = |i: usize| self.lookup(tag, nodes[i]).map(|n| self.nodes.plane(n));
+    fn bulge(&self, tag: u64, corners: Corners<u32>, nodes: &[u64]) -> Result<f64, MeshError> {
         let mut largest = 0.0_f64;
-        for side in 0..4 {
-            let (a, b, middle) = (at(side)?, at((side + 1) % 4)?, at(side + 4)?);
+        for (side, middle) in corners.sides().zip(&nodes[corners.len()..]) {
+            let ([a, b], middle) = (side.map(|n| self.nodes.plane(n)), self.nodes.plane(self.lookup(tag, *middle)?));
             let off = (middle[0] - 0.5 * (a[0] + b[0])).hypot(middle[1] - 0.5 * (a[1] + b[1]));
             largest = largest.max(off / (b[0] - a[0]).hypot(b[1] - a[1]));
         }

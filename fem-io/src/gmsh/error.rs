@@ -137,21 +137,10 @@ pub enum MeshFault {
          and mesh it before saving"
     )]
     NoCells,
-    /// A triangle among the cells.
+    /// An element that has no place in a flat mesh.
     #[error(
-        "element {element} of group {group:?} is a triangle; cells must be quadrilaterals: use Recombine Surface or \
-         Mesh.RecombineAll = 1, and Mesh.SubdivisionAlgorithm = 1 where triangles are left"
-    )]
-    Triangle {
-        /// Element.
-        element: u64,
-        /// Group.
-        group: String,
-    },
-    /// An element that has no place in a flat mesh of quadrilaterals.
-    #[error(
-        "element {element} of group {group:?} has the type {kind}; only flat meshes of quadrilaterals up to second \
-         order are read: set Mesh.ElementOrder = 1, and save no volumes: name the surface of the plate, whose plies \
+        "element {element} of group {group:?} has the type {kind}; only flat meshes of quadrilaterals and triangles up to \
+         second order are read: set Mesh.ElementOrder = 1, and save no volumes: name the surface of the plate, whose plies \
          come from the scene"
     )]
     Kind {

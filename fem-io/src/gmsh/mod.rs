@@ -32,7 +32,7 @@ mod write;
 
 use std::path::Path;
 
-use fem_core::mesh::QuadMesh;
+use fem_core::mesh::PlaneMesh;
 
 pub use error::{FilePlace, MeshError, MeshFault};
 pub use write::{Encoding, write};
@@ -46,17 +46,17 @@ use source::Source;
 #[derive(Debug, Clone, PartialEq)]
 pub struct GmshMesh {
     /// The mesh, metres.
-    pub mesh: QuadMesh,
+    pub mesh: PlaneMesh,
     /// One sentence each.
     pub warnings: Vec<String>,
 }
 
 /// Reads a mesh file; `unit_metres` is the length of the file's unit (0.001 for mm).
 ///
-/// Second-order quadrilaterals are read by their corners, with a warning.
+/// Cells are quadrilaterals and triangles; those of second order are read by their corners, with a warning.
 ///
 /// # Errors
-/// When the file cannot be read, is not MSH 4.1 or is not a sound flat mesh of convex quadrilaterals.
+/// When the file cannot be read, is not MSH 4.1 or is not a sound flat mesh of convex cells.
 pub fn read(path: &Path, unit_metres: f64) -> Result<GmshMesh, MeshError> {
     let name = path.display().to_string();
     let bytes = std::fs::read(path).map_err(|e| MeshError {
@@ -89,7 +89,7 @@ pub fn parse(bytes: &[u8], name: &str, unit_metres: f64) -> Result<GmshMesh, Mes
 }
 
 /// What the user should know of a mesh that was accepted.
-fn warnings(mesh: &QuadMesh, groups: &Groups, grouped: &Grouped<'_>, turned: &[u64]) -> Vec<String> {
+fn warnings(mesh: &PlaneMesh, groups: &Groups, grouped: &Grouped<'_>, turned: &[u64]) -> Vec<String> {
     let mut warnings = Vec::new();
     let cells = mesh.quads.len();
     if let Some(first) = turned.first() {

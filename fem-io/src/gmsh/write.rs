@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use fem_core::mesh::QuadMesh;
+use fem_core::domain::Corners;
+use fem_core::mesh::PlaneMesh;
 
 /// How numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,7 +25,7 @@ pub enum Encoding {
 ///
 /// # Errors
 /// Whatever `out` reports; numbers of nodes or cells that are 0 or occur twice.
-pub fn write(out: &mut dyn Write, mesh: &QuadMesh, unit_metres: f64, encoding: Encoding) -> io::Result<()> {
+pub fn write(out: &mut dyn Write, mesh: &PlaneMesh, unit_metres: f64, encoding: Encoding) -> io::Result<()> {
     for tags in [&mesh.node_tags, &mesh.quad_tags] {
         let mut sorted = tags.clone();
         sorted.sort_unstable();
@@ -69,10 +70,11 @@ struct Entity {
 }
 
 /// All elements of a dimension; points and edges in the order in which groups name them, numbered from `next` on.
-fn elements(mesh: &QuadMesh, dim: u8, next: &mut u64) -> Vec<Element> {
+fn elements(mesh: &PlaneMesh, dim: u8, next: &mut u64) -> Vec<Element> {
     let mut all: Vec<Element> = Vec::new();
     if dim == 2 {
-        let cell = |(quad, tag): (&[u32; 4], &u64)| Element { tag: *tag, nodes: quad.to_vec(), physical: Vec::new() };
+        let cell =
+            |(quad, tag): (&Corners<u32>, &u64)| Element { tag: *tag, nodes: quad.to_vec(), physical: Vec::new() };
         all.extend(mesh.quads.iter().zip(&mesh.quad_tags).map(cell));
     }
     let mut known = BTreeMap::new();
@@ -98,15 +100,15 @@ fn elements(mesh: &QuadMesh, dim: u8, next: &mut u64) -> Vec<Element> {
 fn entities(dim: u8, elements: Vec<Element>) -> Vec<Entity> {
     let mut alike: BTreeMap<(Vec<i32>, u64), Vec<Element>> = BTreeMap::new();
     for element in elements {
-        // A point of the format has one node.
-        let apart = if dim == 0 { element.tag } else { 0 };
+        // A point of the format has one node, a block of elements one shape.
+        let apart = if dim == 0 { element.tag } else { u64::from(element.nodes.len() == 3) };
         alike.entry((element.physical.clone(), apart)).or_default().push(element);
     }
     let entity = |(tag, ((physical, _), elements))| Entity { dim, tag, physical, elements };
     (1..).zip(alike).map(entity).collect()
 }
 
-fn write_entities(out: &mut Numbers<'_>, mesh: &QuadMesh, entities: &[Entity], unit_metres: f64) -> io::Result<()> {
+fn write_entities(out: &mut Numbers<'_>, mesh: &PlaneMesh, entities: &[Entity], unit_metres: f64) -> io::Result<()> {
     out.text("$Entities\n")?;
     let count = |dim| entities.iter().filter(|entity| entity.dim == dim).count() as u64;
     out.sizes(&[count(0), count(1), count(2), 0])?;
@@ -132,7 +134,7 @@ fn write_entities(out: &mut Numbers<'_>, mesh: &QuadMesh, entities: &[Entity], u
     out.text("$EndEntities\n")
 }
 
-fn write_nodes(out: &mut Numbers<'_>, mesh: &QuadMesh, unit_metres: f64) -> io::Result<()> {
+fn write_nodes(out: &mut Numbers<'_>, mesh: &PlaneMesh, unit_metres: f64) -> io::Result<()> {
     out.text("$Nodes\n")?;
     let count = mesh.points.len() as u64;
     let [low, high] = range(mesh.node_tags.iter());
@@ -154,15 +156,16 @@ fn write_nodes(out: &mut Numbers<'_>, mesh: &QuadMesh, unit_metres: f64) -> io::
     out.text("$EndNodes\n")
 }
 
-fn write_elements(out: &mut Numbers<'_>, mesh: &QuadMesh, entities: &[Entity]) -> io::Result<()> {
+fn write_elements(out: &mut Numbers<'_>, mesh: &PlaneMesh, entities: &[Entity]) -> io::Result<()> {
     out.text("$Elements\n")?;
     let all = || entities.iter().flat_map(|entity| &entity.elements);
     let [low, high] = range(all().map(|element| &element.tag));
     out.sizes(&[entities.len() as u64, all().count() as u64, low, high])?;
     out.end_line()?;
     for entity in entities {
-        // Numbers of the shapes of a point, an edge and a quadrilateral.
-        out.ints(&[i32::from(entity.dim), entity.tag, [15, 1, 3][usize::from(entity.dim)]])?;
+        // Numbers of the shapes of a point, an edge, a triangle and a quadrilateral.
+        let shape = [15, 1, 2, 3][entity.elements.first().map_or(0, |element| element.nodes.len() - 1)];
+        out.ints(&[i32::from(entity.dim), entity.tag, shape])?;
         out.sizes(&[entity.elements.len() as u64])?;
         out.end_line()?;
         for element in &entity.elements {

@@ -1,13 +1,13 @@
 //! A mesh with its groups.
 
 use super::{Axis, Fill, MapCell, MapPlot, Panel, Stroke};
-use fem_core::mesh::QuadMesh;
+use fem_core::mesh::PlaneMesh;
 
 /// The cells of `mesh` in mm with its groups in colours: edges as lines, nodes as dots, cells filled, unless they are all
 /// there are. Crosses mark `impacts`, m.
 ///
 /// Groups have their colours in the order of their names; those without anything in them are left out.
-pub fn mesh_map(title: &str, mesh: &QuadMesh, impacts: &[[f64; 2]]) -> MapPlot {
+pub fn mesh_map(title: &str, mesh: &PlaneMesh, impacts: &[[f64; 2]]) -> MapPlot {
     let mm = |p: [f64; 2]| p.map(|v| v * 1e3);
     let place = |n: u32| mm(mesh.points[n as usize]);
     let mut fills = vec![Fill::Blank; mesh.quads.len()];
@@ -48,7 +48,7 @@ mod tests {
 
     #[test]
     fn groups_are_drawn_by_their_kind() {
-        let mut mesh = QuadMesh::rectangle(&[0.0, 1e-3, 2e-3], &[0.0, 1e-3]);
+        let mut mesh = PlaneMesh::rectangle(&[0.0, 1e-3, 2e-3], &[0.0, 1e-3]);
         mesh.groups.insert("patch".into(), Group { dim: 2, quads: vec![1], ..Group::default() });
         mesh.groups.insert("point".into(), Group { nodes: vec![4], ..Group::default() });
         let map = mesh_map("plate", &mesh, &[[0.5e-3, 0.5e-3]]);

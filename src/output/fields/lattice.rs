@@ -68,7 +68,7 @@ impl<'a> Lattice<'a> {
                     columns.push((*quad, place));
                     columns.len() as u32 - 1
                 };
-                of_quads.push(match shared(&plane.quads[*quad], [i, j], n) {
+                of_quads.push(match shared(plane.quads[*quad].four(), [i, j], n) {
                     Some(key) => *numbers.entry(key).or_insert_with(|| new(&mut columns)),
                     None => new(&mut columns),
                 });
@@ -144,7 +144,7 @@ impl<'a> Lattice<'a> {
 
 /// What names a point that a quad shares with others: its vertex, or the ends of its side and how far it is from the
 /// first.
-fn shared(quad: &[u32; 4], [i, j]: [usize; 2], n: usize) -> Option<[u32; 3]> {
+fn shared(quad: [u32; 4], [i, j]: [usize; 2], n: usize) -> Option<[u32; 3]> {
     let ends = |a: usize, b: usize, from_a: usize| {
         let (a, b, from_a, from_b) = (quad[a], quad[b], from_a as u32, (n - from_a) as u32);
         match (from_a, from_b) {

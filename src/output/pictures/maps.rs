@@ -51,7 +51,10 @@ fn plan_of(damage: &DamageMap, place: &PlaceDamage, near: &[bool]) -> Panel {
     };
     let fills = fills(place);
     let judged = damage.judged.iter().zip(fills).filter(|(q, _)| near[**q as usize]);
-    let cell = |q: u32, fill: Fill| MapCell { corners: damage.corners(q).map(|p| p.map(|v| v * 1e3)).to_vec(), fill };
+    let cell = |q: u32, fill: Fill| MapCell {
+        corners: damage.corners(q).into_iter().map(|p| p.map(|v| v * 1e3)).collect(),
+        fill,
+    };
     Panel {
         title: heading,
         cells: judged.map(|(q, fill)| cell(*q, fill)).collect(),
@@ -143,10 +146,10 @@ fn heights(damage: &DamageMap, place: &PlaceDamage) -> Option<[f64; 2]> {
 }
 
 /// From which x to which the line at `y` runs through a convex cell; along an edge it counts as just above it.
-fn crossing(corners: &[[f64; 2]; 4], y: f64) -> Option<[f64; 2]> {
+fn crossing(corners: &[[f64; 2]], y: f64) -> Option<[f64; 2]> {
     let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
-    for i in 0..4 {
-        let (a, b) = (corners[i], corners[(i + 1) % 4]);
+    for (i, a) in corners.iter().enumerate() {
+        let b = corners[(i + 1) % corners.len()];
         if (a[1] <= y) != (b[1] <= y) {
             let x = a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]);
             ends = [ends[0].min(x), ends[1].max(x)];
@@ -199,7 +202,7 @@ mod tests {
             plies: vec![PlyBand { angle_deg: 0.0, z_m: [-1e-4, 0.0] }, PlyBand { angle_deg: 90.0, z_m: [0.0, 1e-4] }],
             impacts_m: vec![[2e-3, 0.5e-3]],
             points_m: points.collect(),
-            quads: (0..4).map(|i| [i, i + 1, i + 6, i + 5]).collect(),
+            quads: (0..4).map(|i| vec![i, i + 1, i + 6, i + 5]).collect(),
             cells: vec![1, 2, 3, 4],
             judged: vec![0, 1, 2, 3],
             places: vec![

@@ -175,7 +175,10 @@ fn compact(map: &DamageMap, least: f64) -> Value {
     let mut position = vec![None; map.judged.len()];
     kept.iter().enumerate().for_each(|(new, old)| position[*old] = Some(new));
     let um = |v: f64| (v * 1e6).round() / 1e3;
-    let cells = kept.iter().map(|i| map.corners(map.judged[*i]).map(|p| p.map(um))).collect::<Vec<_>>();
+    let cells = kept
+        .iter()
+        .map(|i| map.corners(map.judged[*i]).into_iter().map(|p| p.map(um)).collect::<Vec<_>>())
+        .collect::<Vec<_>>();
     let tags = kept.iter().map(|i| map.cells[map.judged[*i] as usize]).collect::<Vec<_>>();
     let places = map.places.iter().map(|place| {
         let index: Vec<f64> = kept.iter().map(|i| four(place.index[*i]).min(1e9)).collect();

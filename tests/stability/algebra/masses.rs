@@ -5,7 +5,7 @@ use crate::plates::{SOLIDS, model, nearest, on, said, with_nodes, worst};
 use crate::scene::{AS4, Plate, Side, isotropic};
 use fem::analyses::{assembled, impact, modes};
 use fem::core::counters::Counters;
-use fem::core::mesh::QuadMesh;
+use fem::core::mesh::PlaneMesh;
 use fem::core::plugin::{Built, Kind, Params, Value};
 use fem::core::structure::Structure;
 use fem::dynamics::reduce::Reduced;
@@ -135,7 +135,7 @@ fn governors() -> f64 {
     let mut wrong = 0;
     for apart in [0.0, 1e-3, 1e-5, 1e-7, 1e-8] {
         let lines = [0.0, 0.25, 0.5, 0.5 + if apart > 0.0 { apart } else { 0.1 }, 0.75, 1.0].map(|x| x * SIDE);
-        let mesh = with_nodes(QuadMesh::rectangle(&lines, &lines), "o", &[0]);
+        let mesh = with_nodes(PlaneMesh::rectangle(&lines, &lines), "o", &[0]);
         let meshed = on(clamped(SOLIDS[0]), &mesh);
         let model = model(&meshed.plate.text("modes")).unwrap();
         let exact = modes::solve(&model, 1, NonZeroUsize::MIN).unwrap().modes.omega[0];

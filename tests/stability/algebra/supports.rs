@@ -4,7 +4,7 @@ use crate::case::{Case, Room};
 use crate::plates::{SHELL, SOLIDS, middles, model, nearest, on, probe, rectangle, said, solve, with_nodes};
 use crate::scene::{AS4, Plate, Side};
 use fem::core::constraint::{ConstraintError, Constraints, Equation};
-use fem::core::mesh::QuadMesh;
+use fem::core::mesh::PlaneMesh;
 use fem::{Error, output};
 use std::fmt::Write as _;
 
@@ -110,7 +110,7 @@ fn near_hinges() -> f64 {
     let mut silent = 0;
     for apart in [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 3e-9, 1e-9, 1e-10] {
         let line = [0.0, 0.5, 0.5 + apart, 1.0].map(|x| x * SIDE);
-        let mut mesh = QuadMesh::rectangle(&line, &[0.0, 0.5 * SIDE, SIDE]);
+        let mut mesh = PlaneMesh::rectangle(&line, &[0.0, 0.5 * SIDE, SIDE]);
         for (name, node) in [("o", 5), ("a", 6), ("b", 9)] {
             mesh = with_nodes(mesh, name, &[node]);
         }

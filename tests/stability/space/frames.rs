@@ -4,7 +4,7 @@ use crate::case::{Case, Room};
 use crate::plates::{SHELL, SOLIDS, jiggled, model, moved, nearest, on, rectangle, shuffled, solve, with_nodes, worst};
 use crate::scene::{AS4, Plate, Side};
 use fem::analyses::impact;
-use fem::core::mesh::QuadMesh;
+use fem::core::mesh::PlaneMesh;
 use std::fmt::Write as _;
 use std::num::NonZeroUsize;
 
@@ -92,7 +92,7 @@ impl Frame {
         [self.scale * (c * x - s * y) + self.shift, self.scale * (s * x + c * y) - 0.5 * self.shift]
     }
 
-    fn mesh(&self) -> QuadMesh {
+    fn mesh(&self) -> PlaneMesh {
         let mesh = moved(jiggled(rectangle(SIZE, [6, 5]), 0.2), |p| self.to(p));
         let struck = nearest(&mesh, self.to([17.0, 12.0]));
         let mesh = with_nodes(mesh, "struck", &[struck]);

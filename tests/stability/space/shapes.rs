@@ -3,7 +3,7 @@
 use crate::case::{Case, Room};
 use crate::plates::{HEX, SHELL, SOLIDS, jiggled, middles, model, moved, on, probe, rectangle, said, solve, worst};
 use crate::scene::{AS4, PAGANO, Plate, QUARTER, Side};
-use fem::core::mesh::QuadMesh;
+use fem::core::mesh::PlaneMesh;
 use std::f64::consts::PI;
 
 pub(super) fn cases() -> Vec<Case> {
@@ -67,20 +67,20 @@ const ANGLES: [f64; 6] = [90.0, 120.0, 150.0, 165.0, 172.0, 174.9];
 /// mm.
 const SIDE: f64 = 20.0;
 
-fn square(cells: usize) -> QuadMesh {
+fn square(cells: usize) -> PlaneMesh {
     rectangle([SIDE; 2], [cells; 2])
 }
 
 /// Lines of which some are close together.
-fn slender() -> QuadMesh {
+fn slender() -> PlaneMesh {
     let mut line: Vec<f64> = (0..=8).map(|i| SIDE * f64::from(i) / 8.0).collect();
     line.extend([0.0, 3.0, 5.0].map(|i| SIDE * (i + 1e-3) / 8.0));
     line.sort_by(f64::total_cmp);
-    QuadMesh::rectangle(&line, &line)
+    PlaneMesh::rectangle(&line, &line)
 }
 
 /// Every second node along x and y drawn towards the origin, so that an angle of its lower left cell has so many degrees.
-fn pinched(mesh: QuadMesh, degrees: f64) -> QuadMesh {
+fn pinched(mesh: PlaneMesh, degrees: f64) -> PlaneMesh {
     let cell = mesh.points[1][0];
     // The corner (s, s) of a unit square: the smaller s, the larger its angle.
     let angle = |s: f64| 2.0 * ((2.0 * s - 1.0) / (2.0 * ((1.0 - s).powi(2) + s * s)).sqrt()).acos().to_degrees();
@@ -96,7 +96,7 @@ fn pinched(mesh: QuadMesh, degrees: f64) -> QuadMesh {
 }
 
 /// Largest error of the stresses of a plate pulled along x, relative.
-fn stretched(mesh: &QuadMesh, elements: &[&str]) -> f64 {
+fn stretched(mesh: &PlaneMesh, elements: &[&str]) -> f64 {
     let of = |element: &&str| {
         let layers = if *element == SHELL { vec![2] } else { vec![1, 1] };
         let pull =
@@ -114,11 +114,11 @@ fn stretched(mesh: &QuadMesh, elements: &[&str]) -> f64 {
 }
 
 /// Change of the deflection in the middle of a quarter of a laminate under a sine pressure, against square cells.
-fn bent(mesh: &QuadMesh, elements: &[&str]) -> f64 {
+fn bent(mesh: &PlaneMesh, elements: &[&str]) -> f64 {
     let of = |element: &&str| {
         let layers = if *element == SHELL { vec![3] } else { vec![1; 3] };
         let wave = PI / (2.0 * SIDE);
-        let deflection = |mesh: &QuadMesh| {
+        let deflection = |mesh: &PlaneMesh| {
             let plate = Plate::new(PAGANO, "[0/90/0]", 2.0 * SIDE / 60.0, layers.clone())
                 .element(element)
                 .sides(QUARTER)
@@ -135,19 +135,19 @@ fn degenerate() -> f64 {
     let one =
         |corner: [f64; 2]| moved(square(2), |p| if p == [0.5 * SIDE; 2] { corner.map(|x| x * 0.5 * SIDE) } else { p });
     let angles = [176.0, 178.0, 179.0, 179.99, 180.0, 190.0, 225.0, 250.0];
-    let mut meshes: Vec<QuadMesh> = angles.map(|degrees| pinched(square(2), degrees)).to_vec();
+    let mut meshes: Vec<PlaneMesh> = angles.map(|degrees| pinched(square(2), degrees)).to_vec();
     // A cell without area, edges that cross.
     meshes.extend([one([0.0, 0.5]), one([0.5, 0.0]), one([-0.5, -0.5]), one([2.5, 1.0])]);
     // Two nodes in one place, or nearly so.
     let together = [one([0.0, 0.0]), one([1e-12, 1.0])];
-    let refused = |mesh: &QuadMesh, words: &str| {
+    let refused = |mesh: &PlaneMesh, words: &str| {
         let meshed = on(Plate::new(AS4, "[0]", 1.0, vec![1]).pressure("1"), mesh);
         match model(&meshed.plate.text("static")) {
             Ok(_) => false,
             Err(error) => [words, "plate.msh", "mesh"].iter().all(|words| said(&error).contains(words)),
         }
     };
-    let cell = |mesh: &&QuadMesh| !refused(mesh, "cell ");
-    let nodes = |mesh: &&QuadMesh| !refused(mesh, "nodes ") && !refused(mesh, "cell ");
+    let cell = |mesh: &&PlaneMesh| !refused(mesh, "cell ");
+    let nodes = |mesh: &&PlaneMesh| !refused(mesh, "nodes ") && !refused(mesh, "cell ");
     (meshes.iter().filter(cell).count() + together.iter().filter(nodes).count()) as f64
 }

@@ -1,4 +1,4 @@
-//! Plane meshes of quadrilaterals with named groups.
+//! Plane meshes of quadrilaterals and triangles with named groups.
 
 mod curve;
 mod graded;
@@ -9,6 +9,7 @@ mod tests;
 pub use graded::{Graded, MAX_CELLS, Outline};
 pub use refine::Curves;
 
+use crate::words::domain::{CellQuality, Corners};
 use curve::Chains;
 use std::collections::{BTreeMap, HashSet};
 
@@ -25,14 +26,14 @@ pub struct Group {
     pub quads: Vec<u32>,
 }
 
-/// A flat mesh of quadrilaterals in the x-y plane, metres. Node and cell numbers are indices; `*_tags` keep the
+/// A flat mesh of quadrilaterals and triangles in the x-y plane, metres. Node and cell numbers are indices; `*_tags` keep the
 /// numbers of the file for messages.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct QuadMesh {
+pub struct PlaneMesh {
     /// Node positions.
     pub points: Vec<[f64; 2]>,
     /// Corner nodes of each cell, anticlockwise.
-    pub quads: Vec<[u32; 4]>,
+    pub quads: Vec<Corners<u32>>,
     /// Groups by physical name.
     pub groups: BTreeMap<String, Group>,
     /// Number of each node in the file.
@@ -41,20 +42,7 @@ pub struct QuadMesh {
     pub quad_tags: Vec<u64>,
 }
 
-/// Shape measures of a quadrilateral.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct QuadQuality {
-    /// Area, m².
-    pub area: f64,
-    /// Largest inner angle, radians.
-    pub largest_angle: f64,
-    /// Longest over shortest edge.
-    pub aspect: f64,
-    /// Smallest sine of an inner angle: 1 for a rectangle, not positive where a cell is not convex.
-    pub scaled_jacobian: f64,
-}
-
-impl QuadMesh {
+impl PlaneMesh {
     /// A rectangle with nodes at all pairs of the ascending `x` and `y`, m. Groups: the edges `x-min`, `x-max`, `y-min`,
     /// `y-max`, the cells `plate`; nodes and cells count along x first.
     pub fn rectangle(x: &[f64], y: &[f64]) -> Self {
@@ -67,7 +55,7 @@ impl QuadMesh {
         };
         for j in 1..ny {
             for i in 1..nx {
-                mesh.quads.push([node(i - 1, j - 1), node(i, j - 1), node(i, j), node(i - 1, j)]);
+                mesh.quads.push([node(i - 1, j - 1), node(i, j - 1), node(i, j), node(i - 1, j)].into());
             }
         }
         mesh.quad_tags = (1..=mesh.quads.len() as u64).collect();
@@ -97,19 +85,31 @@ impl QuadMesh {
         mesh
     }
 
+    /// One cell alone.
+    pub fn single(corners: Corners<[f64; 2]>) -> Self {
+        let mut next = 0..;
+        Self {
+            points: corners.to_vec(),
+            quads: vec![corners.map(|_| next.next().unwrap_or_default())],
+            groups: BTreeMap::new(),
+            node_tags: (1..=corners.len() as u64).collect(),
+            quad_tags: vec![1],
+        }
+    }
+
     /// Corner positions of a cell.
-    pub fn corners(&self, quad: usize) -> [[f64; 2]; 4] {
+    pub fn corners(&self, quad: usize) -> Corners<[f64; 2]> {
         self.quads[quad].map(|n| self.points[n as usize])
     }
 
-    /// Quality of a cell.
-    pub fn quality(&self, quad: usize) -> QuadQuality {
-        quality(self.corners(quad))
+    /// CellQuality of a cell.
+    pub fn quality(&self, quad: usize) -> CellQuality {
+        self.corners(quad).quality()
     }
 
     /// Edges of one cell alone, which lies to their left.
     pub(crate) fn boundary(&self) -> Vec<[u32; 2]> {
-        let edges = || self.quads.iter().flat_map(|q| (0..4).map(move |i| [q[i], q[(i + 1) % 4]]));
+        let edges = || self.quads.iter().flat_map(|q| q.sides());
         let all: HashSet<[u32; 2]> = edges().collect();
         edges().filter(|[a, b]| !all.contains(&[*b, *a])).collect()
     }
@@ -139,22 +139,4 @@ impl QuadMesh {
     pub fn area(&self) -> f64 {
         (0..self.quads.len()).map(|q| self.quality(q).area).sum()
     }
-}
-
-fn quality(p: [[f64; 2]; 4]) -> QuadQuality {
-    let (mut largest_angle, mut scaled_jacobian) = (0.0_f64, 1.0_f64);
-    let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
-    for i in 0..4 {
-        let [a, b, c] = [p[(i + 3) % 4], p[i], p[(i + 1) % 4]];
-        let (u, v) = ([c[0] - b[0], c[1] - b[1]], [a[0] - b[0], a[1] - b[1]]);
-        let cross = u[0] * v[1] - u[1] * v[0];
-        let angle = cross.atan2(u[0] * v[0] + u[1] * v[1]);
-        scaled_jacobian = scaled_jacobian.min(cross / (u[0].hypot(u[1]) * v[0].hypot(v[1])));
-        largest_angle = largest_angle.max(angle.rem_euclid(std::f64::consts::TAU));
-        let edge = u[0].hypot(u[1]);
-        shortest = shortest.min(edge);
-        longest = longest.max(edge);
-    }
-    let area = 0.5 * ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[3][0] - p[1][0]) * (p[2][1] - p[0][1]));
-    QuadQuality { area, largest_angle, aspect: longest / shortest, scaled_jacobian }
 }

@@ -1,7 +1,8 @@
 //! Uniform refinement.
 
 use super::curve::Chains;
-use super::{Group, QuadMesh};
+use super::{Group, PlaneMesh};
+use crate::words::domain::Corners;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
@@ -27,18 +28,15 @@ fn key([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-fn edges_of(quad: [u32; 4]) -> [[u32; 2]; 4] {
-    [0, 1, 2, 3].map(|i| [quad[i], quad[(i + 1) % 4]])
-}
-
 fn mean(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|d| 0.5 * (p[d] + q[d]))
 }
 
-impl QuadMesh {
-    /// The mesh with every cell divided into four by the middles of its edges and its own.
+impl PlaneMesh {
+    /// The mesh with every cell divided into four: a quadrilateral by the middles of its edges and its own, a triangle by those
+    /// of its edges alone.
     ///
-    /// With [`Curves::Kept`] the middle of an edge that follows a curve (see [`QuadMesh::curved_turn`]), on the boundary
+    /// With [`Curves::Kept`] the middle of an edge that follows a curve (see [`PlaneMesh::curved_turn`]), on the boundary
     /// or in a group of edges, is put on it, at the height s = κ (c/2)² / (1 + √(1 − (κ c/2)²)) above the chord c. The
     /// curvature κ is that of the circle through three nodes in a row, the mean over both ends of the edge, or over the
     /// one whose neighbours go on with the curve: exact for circles, of fourth order in c for evenly divided curves. The
@@ -63,9 +61,13 @@ impl QuadMesh {
                     fine.points.len() as u32 - 1
                 })
             };
-            let middle = edges_of(*quad).map(middle);
-            fine.points.push(centre(quad.map(|n| self.points[n as usize]), middle.map(|n| fine.points[n as usize])));
-            fine.quads.extend(quarters(*quad, middle, fine.points.len() as u32 - 1));
+            let middles = quad.map_sides(middle);
+            let quarters = quad.quarters(middles, || {
+                let corners = quad.map(|n| self.points[n as usize]);
+                fine.points.push(corners.coons_centre(middles.map(|n| fine.points[n as usize])));
+                fine.points.len() as u32 - 1
+            });
+            fine.quads.extend(quarters);
             fine.quad_tags.extend((1..=4).map(|k| tag.saturating_mul(10).saturating_add(k)));
         }
         let largest = self.node_tags.iter().copied().max().unwrap_or(0);
@@ -96,19 +98,18 @@ impl QuadMesh {
             }
         }
         loop {
-            let bent = |quad: &&[u32; 4]| edges_of(**quad).iter().any(|edge| bends.contains_key(&key(*edge)));
-            let flat = |quad: &&[u32; 4]| {
+            let bent = |quad: &&Corners<u32>| quad.sides().any(|edge| bends.contains_key(&key(edge)));
+            let flat = |quad: &&Corners<u32>| {
                 let corners = quad.map(|n| self.points[n as usize]);
-                let middles = edges_of(**quad).map(|edge| self.middle(edge, &bends));
-                let p: Vec<_> = corners.into_iter().chain(middles).chain([centre(corners, middles)]).collect();
-                let quarters = quarters([0, 1, 2, 3], [4, 5, 6, 7], 8);
-                !quarters.iter().all(|quarter| super::quality(quarter.map(|n| p[n as usize])).largest_angle < FLATTEST)
+                let middles = quad.map_sides(|edge| self.middle(edge, &bends));
+                let quarters = corners.quarters(middles, || corners.coons_centre(middles));
+                !quarters.iter().all(|quarter| quarter.quality().largest_angle < FLATTEST)
             };
             let flat: Vec<_> = self.quads.iter().filter(bent).filter(flat).collect();
             if flat.is_empty() {
                 return bends;
             }
-            flat.into_iter().flat_map(|quad| edges_of(*quad)).for_each(|edge| {
+            flat.into_iter().flat_map(|quad| quad.sides()).for_each(|edge| {
                 bends.remove(&key(edge));
             });
         }
@@ -116,7 +117,7 @@ impl QuadMesh {
 }
 
 impl Group {
-    fn refined(&self, middles: &HashMap<[u32; 2], u32>, quads: &[[u32; 4]]) -> Self {
+    fn refined(&self, middles: &HashMap<[u32; 2], u32>, quads: &[Corners<u32>]) -> Self {
         let halves = |[a, b]: &[u32; 2]| match middles.get(&key([*a, *b])) {
             Some(middle) => vec![[*a, *middle], [*middle, *b]],
             None => vec![[*a, *b]],
@@ -130,17 +131,4 @@ impl Group {
         nodes.dedup();
         Self { dim: self.dim, nodes, edges, quads: own }
     }
-}
-
-/// Centre of the Coons patch of a cell.
-fn centre(corners: [[f64; 2]; 4], middles: [[f64; 2]; 4]) -> [f64; 2] {
-    [0, 1].map(|d| {
-        let sum = |p: [[f64; 2]; 4]| p.iter().map(|p| p[d]).sum::<f64>();
-        0.5 * sum(middles) - 0.25 * sum(corners)
-    })
-}
-
-/// The quarters of a cell, each with its corners in the places of the cell's own.
-fn quarters([a, b, c, d]: [u32; 4], [ab, bc, cd, da]: [u32; 4], m: u32) -> [[u32; 4]; 4] {
-    [[a, ab, m, da], [ab, b, bc, m], [m, bc, c, cd], [da, m, cd, d]]
 }

@@ -1,10 +1,11 @@
-use super::{Curves, Group, QuadMesh};
+use super::{Curves, Group, PlaneMesh};
+use crate::words::domain::Corners;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 
 /// Cells between two rings of as many nodes, each closed, the inner ring first; groups `inner` and `outer` of edges.
-fn ring(inner: &[[f64; 2]], outer: &[[f64; 2]]) -> QuadMesh {
+fn ring(inner: &[[f64; 2]], outer: &[[f64; 2]]) -> PlaneMesh {
     let n = inner.len() as u32;
     let next = |i: u32| (i + 1) % n;
     let edges = |from: u32| Group {
@@ -13,9 +14,9 @@ fn ring(inner: &[[f64; 2]], outer: &[[f64; 2]]) -> QuadMesh {
         edges: (0..n).map(|i| [from + i, from + next(i)]).collect(),
         ..Group::default()
     };
-    QuadMesh {
+    PlaneMesh {
         points: [inner, outer].concat(),
-        quads: (0..n).map(|i| [i, n + i, n + next(i), next(i)]).collect(),
+        quads: (0..n).map(|i| [i, n + i, n + next(i), next(i)].into()).collect(),
         groups: [("inner".to_owned(), edges(0)), ("outer".to_owned(), edges(n))].into(),
         node_tags: (1..=2 * u64::from(n)).collect(),
         quad_tags: (1..=u64::from(n)).collect(),
@@ -31,14 +32,14 @@ fn even(n: usize) -> Vec<f64> {
 }
 
 /// A disc of radius 1: a square of 3 x 3 cells in a ring, whose inner nodes lie nowhere special.
-fn disc() -> QuadMesh {
+fn disc() -> PlaneMesh {
     let square = [-0.4, -0.15, 0.15, 0.4];
-    let mut mesh = QuadMesh::rectangle(&square, &square);
+    let mut mesh = PlaneMesh::rectangle(&square, &square);
     let rim: Vec<u32> = vec![0, 1, 2, 3, 7, 11, 15, 14, 13, 12, 8, 4];
     let angles: Vec<f64> = even(12).iter().map(|t| t - 0.75 * PI).collect();
     mesh.points.extend(on_ellipse([1.0; 2], &angles));
     let outer = |i: usize| 16 + (i % 12) as u32;
-    mesh.quads.extend((0..12).map(|i| [rim[i], outer(i), outer(i + 1), rim[(i + 1) % 12]]));
+    mesh.quads.extend((0..12).map(|i| [rim[i], outer(i), outer(i + 1), rim[(i + 1) % 12]]).map(Corners::from));
     mesh.node_tags = (1..=28).collect();
     mesh.quad_tags = (1..=21).collect();
     mesh
@@ -48,11 +49,11 @@ fn radius(p: &[f64; 2]) -> f64 {
     p[0].hypot(p[1])
 }
 
-fn times(mesh: QuadMesh, curves: Curves, times: usize) -> QuadMesh {
+fn times(mesh: PlaneMesh, curves: Curves, times: usize) -> PlaneMesh {
     (0..times).fold(mesh, |mesh, _| mesh.refined(curves))
 }
 
-fn boundary_nodes(mesh: &QuadMesh) -> BTreeSet<u32> {
+fn boundary_nodes(mesh: &PlaneMesh) -> BTreeSet<u32> {
     mesh.boundary().into_iter().flatten().collect()
 }
 
@@ -156,7 +157,7 @@ fn curves_inside_are_those_of_groups_of_edges() {
         mesh.refined(Curves::Kept)
     };
     let radii =
-        |mesh: &QuadMesh| -> BTreeSet<i64> { mesh.points.iter().map(|p| (radius(p) * 1e9).round() as i64).collect() };
+        |mesh: &PlaneMesh| -> BTreeSet<i64> { mesh.points.iter().map(|p| (radius(p) * 1e9).round() as i64).collect() };
     let (with, without) = (radii(&rings(&["outer"])), radii(&rings(&[])));
     let chord = ((TAU / 32.0).cos() * 1e9).round() as i64;
     assert!(with.contains(&1_000_000_000) && !with.contains(&chord), "{with:?}");
@@ -197,22 +198,22 @@ fn cells_stay_convex_where_a_curve_is_coarse() {
 #[test]
 fn groups_and_tags_keep_their_meaning() {
     let lines = |n: u32| -> Vec<f64> { (0..=n).map(f64::from).map(|i| 6.0 * i / f64::from(n)).collect() };
-    let mut mesh = QuadMesh::rectangle(&lines(3), &lines(2));
+    let mut mesh = PlaneMesh::rectangle(&lines(3), &lines(2));
     let corner = Group { dim: 0, nodes: vec![5], ..Group::default() };
     mesh.groups.insert("point".into(), corner.clone());
     let left = Group { dim: 2, nodes: vec![0, 1, 4, 5], quads: vec![0], ..Group::default() };
     mesh.groups.insert("left".into(), left);
     mesh.node_tags[3] = 700;
     let fine = mesh.refined(Curves::Kept);
-    let want = QuadMesh::rectangle(&lines(6), &lines(4));
+    let want = PlaneMesh::rectangle(&lines(6), &lines(4));
     let place = |p: [f64; 2]| p.map(|x| (x * 1e6).round() as i64);
-    let places = |mesh: &QuadMesh, nodes: &[u32]| -> BTreeSet<_> {
+    let places = |mesh: &PlaneMesh, nodes: &[u32]| -> BTreeSet<_> {
         nodes.iter().map(|n| place(mesh.points[*n as usize])).collect()
     };
-    let cells = |mesh: &QuadMesh, quads: &[u32]| -> BTreeSet<_> {
-        quads.iter().map(|q| mesh.corners(*q as usize).map(place)).collect()
+    let cells = |mesh: &PlaneMesh, quads: &[u32]| -> BTreeSet<_> {
+        quads.iter().map(|q| mesh.corners(*q as usize).map(place).to_vec()).collect()
     };
-    let edges = |mesh: &QuadMesh, group: &Group| -> BTreeSet<_> {
+    let edges = |mesh: &PlaneMesh, group: &Group| -> BTreeSet<_> {
         group.edges.iter().map(|e| e.map(|n| place(mesh.points[n as usize]))).collect()
     };
     for (name, group) in &want.groups {
@@ -240,7 +241,7 @@ fn groups_and_tags_keep_their_meaning() {
 proptest! {
     #[test]
     fn any_convex_mesh_is_divided_without_gap(jiggle in prop::collection::vec((-0.24..0.24_f64, -0.24..0.24_f64), 20), kept: bool) {
-        let mut mesh = QuadMesh::rectangle(&[0.0, 1.0, 2.0, 3.0, 4.0], &[0.0, 1.0, 2.0, 3.0]);
+        let mut mesh = PlaneMesh::rectangle(&[0.0, 1.0, 2.0, 3.0, 4.0], &[0.0, 1.0, 2.0, 3.0]);
         for (p, (dx, dy)) in mesh.points.iter_mut().zip(&jiggle) {
             *p = [p[0] + dx, p[1] + dy];
         }

@@ -1,7 +1,7 @@
 //! Some of the cells of a plate as a plate of their own.
 
 use super::{Plate, columns, ordered};
-use crate::plates::mesh::{Group, QuadMesh};
+use crate::plates::mesh::{Group, PlaneMesh};
 use crate::plates::symmetry::Symmetry;
 use std::collections::BTreeMap;
 
@@ -14,14 +14,14 @@ impl Plate {
         vertices.sort_unstable();
         vertices.dedup();
         let number = |vertex: u32| vertices.partition_point(|v| *v < vertex) as u32;
-        let plane = QuadMesh {
+        let plane = PlaneMesh {
             points: vertices.iter().map(|v| whole.points[*v as usize]).collect(),
             quads: quads.iter().map(|q| whole.quads[*q as usize].map(number)).collect(),
             groups: BTreeMap::new(),
             node_tags: vertices.iter().map(|v| whole.node_tags[*v as usize]).collect(),
             quad_tags: quads.iter().map(|q| whole.quad_tags[*q as usize]).collect(),
         };
-        let (columns, quad_columns, edges) = columns(&plane, &self.places);
+        let (columns, quad_columns, edges) = columns(&plane, self.info.domain, &self.places);
         let mut part = Self {
             symmetry: Symmetry::none(columns.len(), quads.len()),
             plane,
@@ -53,8 +53,8 @@ impl Plate {
     pub fn outline(&self) -> Vec<u32> {
         let mut sides: BTreeMap<[u32; 2], u32> = BTreeMap::new();
         for quad in &self.plane.quads {
-            for i in 0..4 {
-                *sides.entry(ordered([quad[i], quad[(i + 1) % 4]])).or_insert(0) += 1;
+            for side in quad.sides() {
+                *sides.entry(ordered(side)).or_insert(0) += 1;
             }
         }
         let edges: Vec<[u32; 2]> = sides.into_iter().filter(|side| side.1 == 1).map(|side| side.0).collect();

@@ -33,14 +33,14 @@ fn edited(text: &str, edits: &[(&str, &str)]) -> String {
 }
 
 /// Middles of the cells in micrometres, sorted: what a mesh covers, whatever its numbering.
-fn middles(mesh: &QuadMesh) -> Vec<[i64; 2]> {
+fn middles(mesh: &PlaneMesh) -> Vec<[i64; 2]> {
     let middle = |q: usize| [0, 1].map(|d| (mesh.corners(q).iter().map(|p| p[d]).sum::<f64>() * 0.25e6).round() as i64);
     let mut all: Vec<_> = (0..mesh.quads.len()).map(middle).collect();
     all.sort_unstable();
     all
 }
 
-fn points_of(mesh: &QuadMesh, group: &str) -> Vec<[i64; 2]> {
+fn points_of(mesh: &PlaneMesh, group: &str) -> Vec<[i64; 2]> {
     let mut all: Vec<_> =
         mesh.groups[group].nodes.iter().map(|n| mesh.points[*n as usize].map(|x| (x * 1e6).round() as i64)).collect();
     all.sort_unstable();
@@ -54,7 +54,7 @@ fn a_strip_is_read() {
     assert_eq!((mesh.points.len(), mesh.quads.len()), (15, 8));
     assert_eq!(mesh.node_tags, (1..=15).collect::<Vec<u64>>());
     assert_eq!(mesh.quad_tags, (4..=11).collect::<Vec<u64>>());
-    assert_eq!(mesh.quads[0], [0, 4, 12, 11]);
+    assert_eq!(mesh.quads[0], [0, 4, 12, 11].into());
     assert_eq!(mesh.points[2], [0.03, 0.01]);
     assert!((mesh.area() - 3e-4).abs() < 1e-15);
     let x = [3750, 3750, 11250, 11250, 18750, 18750, 26250, 26250];

@@ -30,7 +30,7 @@ fn rectangle(name: &str) {
     }
 }
 
-fn plate(name: &str, cells: usize, edges: usize) -> QuadMesh {
+fn plate(name: &str, cells: usize, edges: usize) -> PlaneMesh {
     let file = if name.ends_with(".msh") { path(name) } else { path("../../../examples").join(name).join("plate.msh") };
     let GmshMesh { mesh, warnings } = read(&file, 1e-3).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(warnings, [""; 0]);
@@ -47,7 +47,7 @@ fn plate(name: &str, cells: usize, edges: usize) -> QuadMesh {
 }
 
 /// Longest and shortest edge of the cells at the impact point.
-fn at_impact(mesh: &QuadMesh) -> [f64; 2] {
+fn at_impact(mesh: &PlaneMesh) -> [f64; 2] {
     let node = mesh.groups["impact"].nodes[0];
     let mut range = [f64::INFINITY, 0.0];
     for q in (0..mesh.quads.len()).filter(|q| mesh.quads[*q].contains(&node)) {

@@ -3,17 +3,17 @@
 use super::*;
 use fem_core::mesh::{Graded, Outline};
 
-fn read_again(mesh: &QuadMesh, unit: f64, encoding: Encoding) -> GmshMesh {
+fn read_again(mesh: &PlaneMesh, unit: f64, encoding: Encoding) -> GmshMesh {
     let mut bytes = Vec::new();
     write(&mut bytes, mesh, unit, encoding).unwrap();
     parse(&bytes, "written.msh", unit).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Coordinates may differ in the last bit where no number in the unit is read as that length.
-fn same(a: &QuadMesh, b: &QuadMesh) -> bool {
+fn same(a: &PlaneMesh, b: &PlaneMesh) -> bool {
     let near = |(p, q): (&[f64; 2], &[f64; 2])| (0..2).all(|d| (p[d] - q[d]).abs() <= f64::EPSILON * p[d].abs());
     let points = a.points.len() == b.points.len() && a.points.iter().zip(&b.points).all(near);
-    points && QuadMesh { points: b.points.clone(), ..a.clone() } == *b
+    points && PlaneMesh { points: b.points.clone(), ..a.clone() } == *b
 }
 
 #[test]
@@ -47,7 +47,7 @@ fn built_in_meshes() {
 #[test]
 fn groups_that_share_cells_edges_and_nodes() {
     let line: Vec<f64> = (0..4).map(f64::from).collect();
-    let mut plate = QuadMesh::rectangle(&line, &line);
+    let mut plate = PlaneMesh::rectangle(&line, &line);
     let group = |dim, nodes: &[u32]| fem_core::mesh::Group { dim, nodes: nodes.to_vec(), ..Default::default() };
     let left = fem_core::mesh::Group { quads: vec![0, 3], ..group(2, &[0, 1, 4, 5, 8, 9]) };
     let corner = fem_core::mesh::Group { edges: vec![[0, 1], [0, 4]], ..group(1, &[0, 1, 4]) };

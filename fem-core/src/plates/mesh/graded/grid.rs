@@ -1,6 +1,6 @@
 //! Rectangles as grids of lines along the axes.
 
-use super::{MAX_CELLS, QuadMesh, edges, node};
+use super::{MAX_CELLS, PlaneMesh, edges, node};
 use crate::contracts::plugin::ParamError;
 
 /// Length of a cell over that of its neighbour nearer to the impact.
@@ -38,8 +38,8 @@ fn parts(length: f64, size: f64, edge_size: f64) -> Result<Vec<f64>, ParamError>
     Ok(distances)
 }
 
-pub(super) fn mesh(x: &[f64], y: &[f64], impact: [f64; 2]) -> QuadMesh {
-    let mut mesh = QuadMesh::rectangle(x, y);
+pub(super) fn mesh(x: &[f64], y: &[f64], impact: [f64; 2]) -> PlaneMesh {
+    let mut mesh = PlaneMesh::rectangle(x, y);
     let sides = ["x-min", "x-max", "y-min", "y-max"].iter().filter_map(|side| mesh.groups.get(*side));
     let edge = edges(sides.flat_map(|group| group.edges.iter().copied()).collect());
     let at = |lines: &[f64], value: f64| lines.partition_point(|line| *line < value);

@@ -5,7 +5,7 @@ mod rings;
 #[cfg(test)]
 mod tests;
 
-use super::{Group, QuadMesh};
+use super::{Group, PlaneMesh};
 use crate::contracts::plugin::ParamError;
 use rings::Rings;
 
@@ -88,7 +88,7 @@ impl Graded {
     /// Lengths that are not positive and finite, an impact too far from the middle or off the plate, a support that does
     /// not lie inside the edge, a strip over a circular support, more than [`MAX_CELLS`] cells. The key of the error is
     /// `radius`, `sides`, `support`, `impact`, `size` or `edge_size`.
-    pub fn mesh(&self) -> Result<QuadMesh, ParamError> {
+    pub fn mesh(&self) -> Result<PlaneMesh, ParamError> {
         Ok(match self.divide()? {
             Division::Rings(rings) => rings.mesh(),
             Division::Grid([x, y]) => grid::mesh(&x, &y, self.impact),

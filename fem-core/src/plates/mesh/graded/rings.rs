@@ -1,6 +1,7 @@
 //! O-grids: a square core about the impact in rings of cells.
 
-use super::{Graded, Group, Outline, QuadMesh, edges, node};
+use super::{Graded, Group, Outline, PlaneMesh, edges, node};
+use crate::words::domain::Corners;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Fewest cells along a side of the core.
@@ -65,14 +66,16 @@ impl Rings {
         self.side.saturating_add(rings).saturating_mul(self.side)
     }
 
-    pub(super) fn mesh(&self) -> QuadMesh {
+    pub(super) fn mesh(&self) -> PlaneMesh {
         let n = self.side;
         let core = |i: usize, j: usize| (j * (n + 1) + i) as u32;
         let cells = (0..n * n).map(|k| (k % n, k / n));
-        let mut mesh = QuadMesh {
+        let mut mesh = PlaneMesh {
             points: self.core(),
-            quads: cells.map(|(i, j)| [core(i, j), core(i + 1, j), core(i + 1, j + 1), core(i, j + 1)]).collect(),
-            ..QuadMesh::default()
+            quads: cells
+                .map(|(i, j)| [core(i, j), core(i + 1, j), core(i + 1, j + 1), core(i, j + 1)].into())
+                .collect(),
+            ..PlaneMesh::default()
         };
         let rim = (0..4 * n).map(|k| match (k / n, k % n) {
             (0, i) => core(i, 0),
@@ -150,7 +153,7 @@ impl Rings {
 /// Lays rings around the closed line of nodes `inner`, out to `target`, as many places, and gives the outermost nodes.
 /// The thickness of rings grows as between circles of the two `radii`.
 fn surround(
-    mesh: &mut QuadMesh,
+    mesh: &mut PlaneMesh,
     mut inner: Vec<u32>,
     target: Vec<[f64; 2]>,
     [from, to]: [f64; 2],
@@ -165,7 +168,7 @@ fn surround(
         mesh.points.extend(start.iter().zip(&target).map(between));
         let outer: Vec<u32> = (first..).take(target.len()).collect();
         let sides = closed(&inner).into_iter().zip(closed(&outer));
-        mesh.quads.extend(sides.map(|([a, b], [c, d])| [a, c, d, b]));
+        mesh.quads.extend(sides.map(|([a, b], [c, d])| Corners::from([a, c, d, b])));
         inner = outer;
     }
     inner

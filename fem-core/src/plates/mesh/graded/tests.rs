@@ -13,18 +13,18 @@ fn radius(p: [f64; 2]) -> f64 {
     p[0].hypot(p[1])
 }
 
-fn lengths(mesh: &QuadMesh, edges: &[[u32; 2]]) -> Vec<f64> {
+fn lengths(mesh: &PlaneMesh, edges: &[[u32; 2]]) -> Vec<f64> {
     let at = |n: u32| mesh.points[n as usize];
     edges.iter().map(|[a, b]| (at(*a)[0] - at(*b)[0]).hypot(at(*a)[1] - at(*b)[1])).collect()
 }
 
 /// Smallest sine of an inner angle.
-fn worst(mesh: &QuadMesh) -> f64 {
+fn worst(mesh: &PlaneMesh) -> f64 {
     (0..mesh.quads.len()).map(|q| mesh.quality(q).scaled_jacobian).fold(1.0, f64::min)
 }
 
 /// What holds of every plate.
-fn sound(plate: Graded) -> QuadMesh {
+fn sound(plate: Graded) -> PlaneMesh {
     let mesh = plate.mesh().unwrap();
     assert_eq!(plate.cells(), Ok(mesh.quads.len()));
     assert_eq!(mesh.groups["plate"].quads.len(), mesh.quads.len());
@@ -119,9 +119,9 @@ fn grids_grow_from_the_impact() {
 /// Places of nodes and corners of cells in nanometres.
 type Places = (BTreeSet<[i64; 2]>, BTreeSet<BTreeSet<[i64; 2]>>);
 
-fn places(mesh: &QuadMesh, map: impl Fn([f64; 2]) -> [f64; 2]) -> Places {
+fn places(mesh: &PlaneMesh, map: impl Fn([f64; 2]) -> [f64; 2]) -> Places {
     let place = |p: [f64; 2]| map(p).map(|x| (x * 1e9).round() as i64);
-    let cells = (0..mesh.quads.len()).map(|q| mesh.corners(q).map(place).into());
+    let cells = (0..mesh.quads.len()).map(|q| mesh.corners(q).map(place).into_iter().collect());
     (mesh.points.iter().map(|p| place(*p)).collect(), cells.collect())
 }
 

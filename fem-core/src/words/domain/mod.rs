@@ -1,0 +1,125 @@
+//! Shapes of plane cells: the reference domain, and all that follows from the number of corners.
+//!
+//! This is the only place that counts corners. An element names its [`Domain`]; a cell's [`Corners`], of node numbers or of
+//! positions, know theirs. Map, quadrature, sides, area, quality, division and search for a point follow.
+
+mod corners;
+mod geometry;
+mod rule;
+
+pub use corners::Corners;
+pub use geometry::{CellQuality, PlaneMap};
+
+/// Reference domain of a plane cell, in the natural coordinates (r, s).
+///
+/// ```text
+///     3---------2          2
+///     |    s    |          | \          corners (±1, ±1), anticlockwise from (−1, −1);
+///     |    |    |          |   \        a triangle has no corner at (1, 1), its hypotenuse
+///     |    o--r |          |  o  \      has its middle at (0, 0)
+///     0---------1          0-------1
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum Domain {
+    /// −1 ≤ r, s ≤ 1, mapped bilinearly.
+    #[default]
+    Quadrilateral,
+    /// −1 ≤ r, s and r + s ≤ 0, mapped linearly.
+    Triangle,
+}
+
+/// A quadrature point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// Natural coordinates.
+    pub at: [f64; 2],
+    /// Factors of its weight: one of each coordinate on a quadrilateral.
+    pub factors: [f64; 2],
+}
+
+impl Point {
+    /// Its weight; all add up to the area of the domain, 4 or 2.
+    pub fn weight(&self) -> f64 {
+        self.factors[0] * self.factors[1]
+    }
+}
+
+const QUADRILATERAL: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+const TRIANGLE: [[f64; 2]; 3] = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]];
+
+impl Domain {
+    /// "quadrilateral", "triangle".
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Quadrilateral => "quadrilateral",
+            Self::Triangle => "triangle",
+        }
+    }
+
+    /// Natural coordinates of the corners, anticlockwise.
+    pub fn corners(self) -> &'static [[f64; 2]] {
+        match self {
+            Self::Quadrilateral => &QUADRILATERAL,
+            Self::Triangle => &TRIANGLE,
+        }
+    }
+
+    /// Natural coordinates of the centroid.
+    pub fn centre(self) -> [f64; 2] {
+        match self {
+            Self::Quadrilateral => [0.0; 2],
+            Self::Triangle => [-1.0 / 3.0; 2],
+        }
+    }
+
+    /// Vertex functions: 1 at their corner, 0 at the others, linear along each side.
+    pub fn vertex_functions(self, [r, s]: [f64; 2]) -> Corners<f64> {
+        match self {
+            Self::Quadrilateral => QUADRILATERAL.map(|[ri, si]| 0.25 * (1.0 + r * ri) * (1.0 + s * si)).into(),
+            Self::Triangle => [-0.5 * (r + s), 0.5 * (1.0 + r), 0.5 * (1.0 + s)].into(),
+        }
+    }
+
+    /// The corners whose mean a place of a node table is: one for a corner, two for the middle of a side, all for the middle
+    /// of a quadrilateral.
+    pub fn corners_around(self, place: [f64; 2]) -> Vec<usize> {
+        let functions = self.vertex_functions(place);
+        (0..functions.len()).filter(|i| functions[*i] != 0.0).collect()
+    }
+
+    /// The point of a side, from corner `side` to the next, at −1 ≤ t ≤ 1.
+    pub fn on_side(self, side: usize, t: f64) -> [f64; 2] {
+        match (self, side) {
+            (_, 0) => [t, -1.0],
+            (Self::Quadrilateral, 1) => [1.0, t],
+            (Self::Quadrilateral, 2) => [-t, 1.0],
+            (Self::Triangle, 1) => [-t, t],
+            _ => [-1.0, -t],
+        }
+    }
+
+    /// Quadrature points: symmetric under the domain's own symmetries, exact to degree 2 `order` − 1 (of each
+    /// coordinate on the quadrilateral, of both together on the triangle).
+    pub fn points(self, order: usize) -> &'static [Point] {
+        rule::points(self, order)
+    }
+
+    /// Quadrature points of the section of a strip, which varies along r alone.
+    pub fn section_points(order: usize) -> &'static [Point] {
+        rule::section_points(order)
+    }
+
+    /// Points that divide every side into `n` equal parts, by their numbers along r and s from the first corner; r runs
+    /// fastest.
+    pub fn lattice(self, n: usize) -> Vec<[usize; 2]> {
+        let width = |j: usize| match self {
+            Self::Quadrilateral => n,
+            Self::Triangle => n - j,
+        };
+        (0..=n).flat_map(|j| (0..=width(j)).map(move |i| [i, j])).collect()
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;
