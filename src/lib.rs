@@ -46,6 +46,7 @@ pub mod cli;
 pub mod cost;
 mod error;
 pub mod forecast;
+pub mod job;
 mod model;
 pub mod output;
 mod registry;

@@ -142,7 +142,7 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
     let (mut march, mut condition, mut modes, mut frames) = (None, None, None, 1);
     let (memory, substructures) = match &model.plan {
         Plan::Impact(impact) => {
-            let sizes = impact::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model))?.sizes;
+            let sizes = impact::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model.warnings))?.sizes;
             march = Some(March::new(impact, &sizes));
             let asked = model.scene.output.fields.as_ref();
             frames = impact::frames(asked, asked.and_then(|asked| asked.every), &sizes).len();
@@ -151,10 +151,10 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
         plan => {
             let counters = &mut Counters::default();
             let assembled = assembled::structure(&model, true, NonZeroUsize::MIN, counters);
-            let mut assembled = assembled.inspect_err(|_| warn(&model))?;
+            let mut assembled = assembled.inspect_err(|_| warn(&model.warnings))?;
             if model.held {
                 let found = assembled.structure.condition().map_err(Error::from);
-                condition = Some(found.inspect_err(|_| warn(&model))?);
+                condition = Some(found.inspect_err(|_| warn(&model.warnings))?);
             }
             if let Plan::Modes { count } = plan {
                 modes = Some(*count);

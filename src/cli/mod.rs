@@ -16,7 +16,6 @@ mod schema;
 mod signals;
 mod study;
 
-use crate::model::Model;
 use crate::registry::Registry;
 use clap::{Parser, Subcommand};
 use console::{Console, Format, Voice};
@@ -156,9 +155,9 @@ fn complain(report: &Report) {
     let _ = write!(std::io::stderr(), "Error:{text}");
 }
 
-/// Says on standard error what may explain why `model` cannot be computed.
-fn warn(model: &Model) {
-    for warning in &model.warnings {
+/// Says on standard error what may explain why a model cannot be computed.
+fn warn(warnings: &[String]) {
+    for warning in warnings {
         let _ = writeln!(std::io::stderr(), "Warning: {warning}");
     }
 }

@@ -66,6 +66,14 @@ pub enum Error {
     #[error("there is nothing to resume: only an impact is marched in time")]
     #[diagnostic(help("run without `--resume`"))]
     NotMarched,
+    #[error("the march was broken off at {:.4} ms, {:.0} % of it", time * 1e3, share * 1e2)]
+    #[diagnostic(help("go on from the checkpoint in its folder, if it has one"))]
+    Cancelled {
+        /// Time reached, s.
+        time: f64,
+        /// Share of the steps done.
+        share: f64,
+    },
     #[error("the scene describes no impact")]
     #[diagnostic(help("set `analysis = \"impact\"` and describe impactor, contact and march"))]
     NoImpact,

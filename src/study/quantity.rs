@@ -1,9 +1,7 @@
 //! What accuracy is asked of.
 
-use crate::analyses::impact::{Outcome, Sizes};
-use crate::analyses::statics::StaticSolution;
+use crate::job::{ImpactFound, StaticFound};
 use crate::model::Model;
-use crate::output::{statics, summary};
 use crate::words::name_ply;
 use fem_core::plugin::unknown_key;
 use fem_core::profile::ProfilePoint;
@@ -32,8 +30,8 @@ impl Figure {
 }
 
 /// Of an impact.
-pub(super) fn of_impact(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Vec<Figure> {
-    let summary = summary::ImpactSummary::new(model, sizes, outcome);
+pub(super) fn of_impact(model: &Model, found: &ImpactFound) -> Vec<Figure> {
+    let ImpactFound { sizes, outcome, summary } = found;
     let mut figures = Vec::new();
     for impact in &summary.impact {
         let name = |what: &str| impact.name.as_ref().map_or(what.to_owned(), |name| format!("{name} {what}"));
@@ -66,8 +64,8 @@ const COMPONENTS: [&str; 12] = ["sxx", "syy", "szz", "sxy", "syz", "szx", "s1", 
 ///
 /// # Errors
 /// A stress that the scene asks for at a place that no profile has.
-pub(super) fn of_statics(model: &Model, solution: &StaticSolution) -> Result<Vec<Figure>, SceneError> {
-    let summary = statics::StaticSummary::new(model, solution);
+pub(super) fn of_statics(model: &Model, found: &StaticFound) -> Result<Vec<Figure>, SceneError> {
+    let StaticFound { solution, summary } = found;
     let mut figures = vec![
         Figure::new("deflection", summary.largest_deflection.w_m, true),
         Figure::new("energy", solution.strain_energy, true),

@@ -3,11 +3,12 @@
 use super::force::Force;
 use super::quantity::{self, FORCE_HISTORY, Figure};
 use crate::advise;
-use crate::analyses::{impact, modes, statics};
-use crate::cost::{self, Phase};
+use crate::analyses::impact;
+use crate::cost;
 use crate::error::Error;
 use crate::forecast::{PHASES, Size, seconds_per_phase};
-use crate::model::{Model, Plan};
+use crate::job::{self, Finished, Found, Options};
+use crate::model::Model;
 use crate::registry::Registry;
 use fem_io::scene::{self, Setting};
 use serde::{Deserialize, Serialize};
@@ -35,38 +36,29 @@ impl RunRecord {
     /// Those of a run, and a march that stopped before its end.
     pub fn of(path: &Path, setting: &Setting, registry: &Registry) -> Result<Self, Error> {
         cost::forget_peak_memory();
-        let model = advise::decided(Model::new(scene::read_with(path, setting)?, registry)?, NonZeroUsize::MIN)?;
-        let mut record = match &model.plan {
-            Plan::Impact(_) => Self::of_impact(&model)?,
-            Plan::Static { .. } => {
-                let solution = statics::solve(&model, NonZeroUsize::MIN)?;
-                let size = Size { factor_entries: solution.factor_entries, ..Size::of(&model, &solution.counters) };
-                Self::new(size, quantity::of_statics(&model, &solution)?, None, &solution.phases)
+        let Finished { model, found, cost, .. } =
+            job::run(scene::read_with(path, setting)?, registry, &Options::default(), &mut ())?;
+        let (size, figures, force) = match &found {
+            Found::Impact(own) => {
+                if let Some(why) = &own.outcome.stopped {
+                    return Err(Error::Stopped(why.clone()));
+                }
+                let size = own.outcome.size(&model, &own.sizes);
+                (size, quantity::of_impact(&model, own), Some(Force::of(&own.outcome.history)))
             }
-            Plan::Modes { count } => {
-                let solution = modes::solve(&model, *count, NonZeroUsize::MIN)?;
+            Found::Static(own) => {
+                let solution = &own.solution;
                 let size = Size { factor_entries: solution.factor_entries, ..Size::of(&model, &solution.counters) };
-                Self::new(size, quantity::of_modes(&solution.modes.omega), None, &solution.phases)
+                (size, quantity::of_statics(&model, own)?, None)
+            }
+            Found::Modes(own) => {
+                let solution = &own.solution;
+                let size = Size { factor_entries: solution.factor_entries, ..Size::of(&model, &solution.counters) };
+                (size, quantity::of_modes(&solution.modes.omega), None)
             }
         };
-        record.memory = cost::peak_memory();
-        Ok(record)
-    }
-
-    fn new(size: Size, figures: Vec<Figure>, force: Option<Force>, phases: &[Phase]) -> Self {
-        Self { size, figures, force, seconds: seconds_per_phase(phases), memory: None }
-    }
-
-    fn of_impact(model: &Model) -> Result<Self, Error> {
-        let prepared = impact::prepare(model, NonZeroUsize::MIN)?;
-        let sizes = prepared.sizes;
-        let outcome = impact::march(prepared, |_| ())?;
-        if let Some(why) = outcome.stopped {
-            return Err(Error::Stopped(why));
-        }
-        let size = outcome.size(model, &sizes);
-        let force = Force::of(&outcome.history);
-        Ok(Self::new(size, quantity::of_impact(model, &sizes, &outcome), Some(force), &outcome.phases))
+        let (seconds, memory) = (seconds_per_phase(&cost.phases), cost::peak_memory());
+        Ok(Self { size, figures, force, seconds, memory })
     }
 
     /// Value of the figure `name`.
