@@ -1,7 +1,7 @@
 //! Low-velocity impact on laminated composites: a gmsh plate and a scene go in; force history, ply and interface stresses
 //! and the time, place and mode of first damage come out.
 //!
-//! This crate is the facade: [`Registry`] gathers the plug-ins, [`Model`] makes a scene concrete, [`analyses`] answer what it is asked,
+//! This crate is the program as a library: [`Registry`] gathers the plug-ins, [`job::run`] takes a scene to its results,
 //! [`cli`] is the command line as a function, so that a crate with plug-ins of its own needs a main of five lines:
 //!
 //! ```no_run
@@ -17,11 +17,11 @@
 //! }
 //! ```
 //!
-//! Every command is a function as well. The lowest frequency of a clamped square of aluminium, against theory of thin plates:
+//! A program of one's own calls a job. The lowest frequency of a clamped square of aluminium, against theory of thin plates:
 //!
 //! ```
-//! use fem::{Model, Registry, analyses::modes, io::scene};
-//! use std::num::NonZeroUsize;
+//! use fem::job::{self, Found, Options};
+//! use fem::{Registry, io::scene};
 //!
 //! let edges = ["x-min", "x-max", "y-min", "y-max"];
 //! let clamped = edges.map(|edge| format!("[[support]]\ngroup = '{edge}'\nat = 'all'\nfix = ['U10', 'U20', 'U30', 'U13', 'U23']\n"));
@@ -31,14 +31,18 @@
 //!      materials.sheet = {{ e = '70 GPa', nu = 0.3, density = '2700 kg/m^3' }}\n{}",
 //!     clamped.concat()
 //! );
-//! let model = Model::new(scene::parse(&text, "scene.toml".as_ref())?, &Registry::standard())?;
-//! let found = modes::solve(&model, 1, NonZeroUsize::MIN)?;
+//! let scene = scene::parse(&text, "scene.toml".as_ref())?;
+//! let done = job::run(scene, &Registry::standard(), &Options::default(), &mut ())?;
+//! let Found::Modes(found) = done.found else { unreachable!("the scene asks for modes") };
 //! // ω = 35.985 √(D/(ρ h))/a²
 //! let (d, areal_mass) = (70e9 * 1e-9 / 12.0 / 0.91, 2.7_f64);
 //! let theory = 35.985 * (d / areal_mass).sqrt() / 0.01;
-//! assert!((found.modes.omega[0] / theory - 1.0_f64).abs() < 2e-2);
+//! assert!((found.solution.modes.omega[0] / theory - 1.0_f64).abs() < 2e-2);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! [`job::Options`] name a folder for the files that `fem run` writes, and whoever implements [`job::Follow`] hears of progress
+//! and may break a march off.
 
 pub mod advise;
 pub mod analyses;

@@ -1,6 +1,6 @@
 //! The advisor: its formulas against figures worked out apart from this program, and its choices.
 
-use crate::support::{Case, root, strip};
+use crate::support::{Case, impact_of, root, strip};
 use fem::advise::Hindsight;
 use fem::advise::large_mass::{ImpactPeak, Spring, energy_balance, rigid_target};
 use fem::advise::membrane::{Held, THRESHOLD};
@@ -45,12 +45,8 @@ fn model(text: &str) -> Model {
 
 /// A scene as it is run.
 pub(crate) fn computed(text: &str) -> (Model, Sizes, Outcome) {
-    let model = decided(model(text), NonZeroUsize::MIN).unwrap();
-    let prepared = impact::prepare(&model, NonZeroUsize::MIN).unwrap();
-    let sizes = prepared.sizes;
-    let outcome = impact::march(prepared, |_| {}).unwrap();
-    assert_eq!(outcome.stopped, None);
-    (model, sizes, outcome)
+    let (model, found) = impact_of(scene::parse(text, &root().join("scene.toml")).unwrap()).unwrap();
+    (model, found.sizes, found.outcome)
 }
 
 fn example(name: &str) -> Advice {

@@ -1,10 +1,9 @@
 //! Several impactors in one scene.
 
-use crate::support::{root, strip};
-use fem::analyses::impact::{self, Outcome};
+use crate::support::{impact_of, root, strip};
+use fem::Error;
+use fem::analyses::impact::Outcome;
 use fem::io::scene;
-use fem::{Error, Model, Registry};
-use std::num::NonZeroUsize;
 
 const LAW: &str = "{ law = 'hertz', k = '1e4 N/mm^1.5' }";
 
@@ -19,10 +18,7 @@ fn outcome(impactors: &str, reduction: &str, march: &str) -> Result<Outcome, Err
          [laminate]\nplies = '[0/90/90/0]'\nmaterial = 'tape'\nply_thickness = '0.25 mm'\nlayers = 1\n{}{impactors}",
         edges.concat()
     );
-    let model = Model::new(scene::parse(&text, &root().join("scene.toml"))?, &Registry::standard())?;
-    let outcome = impact::march(impact::prepare(&model, NonZeroUsize::MIN)?, |_| {})?;
-    assert_eq!(outcome.stopped, None);
-    Ok(outcome)
+    Ok(impact_of(scene::parse(&text, &root().join("scene.toml"))?)?.1.outcome)
 }
 
 fn impactor(mass: &str, x: u32, more: &str) -> String {

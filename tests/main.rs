@@ -14,6 +14,7 @@ mod envelope;
 mod fields;
 mod impactors;
 mod indices;
+mod job;
 mod mesh;
 mod modal;
 mod model;

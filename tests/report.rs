@@ -3,12 +3,11 @@
 //! The report prints no force history; its two onset times of case 1 hang on the size of its elements, which the preset
 //! `report` repeats. Case histories of an independent model are in tests/data/report-cases (its README says how made).
 
-use crate::support::{draw, root};
-use fem::analyses::impact::{self, Outcome, Sizes};
+use crate::support::{draw, impact_of, root};
+use fem::Model;
+use fem::analyses::impact::{Outcome, Sizes};
 use fem::io::scene;
-use fem::{Model, Registry};
 use std::collections::BTreeMap;
-use std::num::NonZeroUsize;
 use std::path::Path;
 
 /// A scene computed without the command line.
@@ -20,13 +19,8 @@ pub(crate) struct Computed {
 
 impl Computed {
     pub(crate) fn of(text: &str, path: &Path) -> Self {
-        let scene = scene::parse(text, path).unwrap();
-        let model = Model::new(scene, &Registry::standard()).unwrap();
-        let prepared = impact::prepare(&model, NonZeroUsize::MIN).unwrap();
-        let sizes = prepared.sizes;
-        let outcome = impact::march(prepared, |_| {}).unwrap();
-        assert_eq!(outcome.stopped, None);
-        Self { model, sizes, outcome }
+        let (model, found) = impact_of(scene::parse(text, path).unwrap()).unwrap();
+        Self { model, sizes: found.sizes, outcome: found.outcome }
     }
 
     /// An example; `edits` replace texts of its scene, `top` is put before it.

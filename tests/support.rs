@@ -1,6 +1,9 @@
 //! Runs the command on variations of the examples.
 
 use fem::io::plot::{self, Style};
+use fem::io::scene::Scene;
+use fem::job::{self, Finished, Found, ImpactFound, Options};
+use fem::{Error, Model, Registry};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -188,6 +191,14 @@ pub(crate) fn watched() -> Case {
     let watch = "watch = [{ at = { x = \"15 mm\", y = \"5 mm\" }, ply = 1 }]\nevery = \"1.5 us\"";
     let output = "[output]\nmaps = true\nmodes = 3\nhistory_every = \"1 us\"\n";
     strip().scene(criteria, &format!("{criteria}\n{watch}")).append(output)
+}
+
+/// The model of a scene with an impact, and what was found of it.
+pub(crate) fn impact_of(scene: Scene) -> Result<(Model, ImpactFound), Error> {
+    let Finished { model, found, .. } = job::run(scene, &Registry::standard(), &Options::default(), &mut ())?;
+    let Found::Impact(found) = found else { panic!("the scene has no impact") };
+    assert_eq!(found.outcome.stopped, None);
+    Ok((model, *found))
 }
 
 /// What a command left.

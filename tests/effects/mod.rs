@@ -7,12 +7,11 @@ mod inertia;
 mod membrane;
 mod off;
 
-use crate::support::root;
-use fem::analyses::impact::{self, Outcome, Sizes};
+use crate::support::{impact_of, root};
+use fem::analyses::impact::{Outcome, Sizes};
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
 use fem::{Error, Model, Registry};
-use std::num::NonZeroUsize;
 
 const EDGES: [&str; 4] = [
     "[[support]]\ngroup = 'x-min'\nat = 'all'\nfix = ['U10', 'U20', 'U30']\n",
@@ -70,12 +69,8 @@ impl Struck {
     }
 
     fn run(&self) -> Result<(Sizes, Outcome), Error> {
-        let model = self.model()?;
-        let prepared = impact::prepare(&model, NonZeroUsize::MIN)?;
-        let sizes = prepared.sizes;
-        let outcome = impact::march(prepared, |_| {})?;
-        assert_eq!(outcome.stopped, None);
-        Ok((sizes, outcome))
+        let (_, found) = impact_of(scene::parse(&self.text(), &root().join("scene.toml"))?)?;
+        Ok((found.sizes, found.outcome))
     }
 
     fn outcome(&self) -> Outcome {
