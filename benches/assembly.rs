@@ -1,56 +1,39 @@
-//! Assembly against the integration of its element matrices, one thread, all cells distinct:
-//! `cargo bench --bench assembly`.
+//! What making and multiplying K costs, one thread, all cells distinct: `cargo bench --bench assembly`.
+//!
+//! Assembly beside the integration of its element matrices; the sum of these beside faer's, from triplets that it has sorted
+//! once; products with K beside faer's, which wants both triangles.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+mod plate;
+
 use divan::Bencher;
-use fem::core::assembly::{Matrix, Pattern, assemble, elimination_order, pattern};
-use fem::core::constraint::Constraints;
+use faer::sparse::linalg::matmul::sparse_dense_matmul;
+use faer::sparse::{Pair, SparseColMat, SymbolicSparseColMat};
+use faer::{Accum, MatMut, MatRef, Par};
+use fem::core::assembly::{Matrix, Symmetric, assemble, pattern};
 use fem::core::counters::Counters;
 use fem::core::element::{Element, Scratch};
-use fem::core::laminate::{LaminaPly, Laminate};
-use fem::core::mesh::PlaneMesh;
-use fem::core::plate::{Plate, ZDerivatives};
-use fem::elements::{HermitePrism, Mass};
-use fem::io::materials;
+use plate::{Subject, subject};
 use std::num::NonZeroUsize;
 use std::sync::Arc;
+
+/// Cells a side: 100 839 unknowns.
+const SIDE: usize = 50;
 
 fn main() {
     divan::main();
 }
 
-/// Two layers of eight plies on 50 x 50 cells with their nodes moved about: 101 439 unknowns.
-struct Subject {
-    plate: Plate,
-    element: HermitePrism,
-    constraints: Constraints,
-    pattern: Arc<Pattern>,
-}
-
-fn subject() -> Subject {
-    let line: Vec<f64> = (0..=50).map(|i| f64::from(i) * 2e-3).collect();
-    let mut mesh = PlaneMesh::rectangle(&line, &line);
-    for (i, p) in mesh.points.iter_mut().enumerate() {
-        let i = i as f64;
-        *p = [p[0] + 2e-4 * (1.7 * i).sin(), p[1] + 2e-4 * (2.9 * i).cos()];
-    }
-    let material = materials::library("AS4/3502").unwrap().material.clone();
-    let ply = |k: usize| {
-        let angle_deg = [0.0, 45.0, -45.0, 90.0][k % 4];
-        LaminaPly { angle: f64::to_radians(angle_deg), angle_deg, thickness: 0.13e-3, material: 0 }
-    };
-    let laminate = Laminate { plies: (0..16).map(ply).collect(), layers: vec![8, 8] };
-    let element = HermitePrism::new(Mass::Cubic, HermitePrism::IN_PLANE_ORDER).unwrap();
-    let stacks = laminate.stacks(&[material]).unwrap();
-    let plate = Plate::new(mesh, laminate.levels(), stacks, *element.info(), ZDerivatives::LayerWise).unwrap();
-    let constraints = Constraints::eliminate(&elimination_order(&plate), &[]).unwrap();
+fn stiffness() -> Symmetric {
+    let Subject { plate, element, constraints } = subject(SIDE);
     let pattern = Arc::new(pattern(&plate, &constraints));
-    Subject { plate, element, constraints, pattern }
+    let counters = &mut Counters::default();
+    assemble(&plate, &element, &constraints, &pattern, Matrix::Stiffness, NonZeroUsize::MIN, counters).unwrap()
 }
 
-#[divan::bench(sample_count = 5)]
+#[divan::bench(sample_count = 3)]
 fn element_matrices(bencher: Bencher<'_, '_>) {
-    let s = subject();
+    let s = subject(SIDE);
     let mut ke = vec![0.0; s.element.info().ndof().pow(2)];
     let mut scratch = Scratch::default();
     bencher.bench_local(|| {
@@ -61,12 +44,67 @@ fn element_matrices(bencher: Bencher<'_, '_>) {
     });
 }
 
-#[divan::bench(sample_count = 5)]
+#[divan::bench(sample_count = 3)]
 fn assembly_on_a_known_pattern(bencher: Bencher<'_, '_>) {
-    let s = subject();
-    let one = NonZeroUsize::MIN;
+    let s = subject(SIDE);
+    let (pattern, one) = (Arc::new(pattern(&s.plate, &s.constraints)), NonZeroUsize::MIN);
     bencher.bench_local(|| {
         let counters = &mut Counters::default();
-        assemble(&s.plate, &s.element, &s.constraints, &s.pattern, Matrix::Stiffness, one, counters).unwrap()
+        assemble(&s.plate, &s.element, &s.constraints, &pattern, Matrix::Stiffness, one, counters).unwrap()
+    });
+}
+
+#[divan::bench(sample_count = 3)]
+fn pattern_of_cells(bencher: Bencher<'_, '_>) {
+    let s = subject(SIDE);
+    bencher.bench_local(|| pattern(&s.plate, &s.constraints));
+}
+
+/// Lower triangles of all cells as triplets.
+fn triplets() -> (usize, Vec<Pair<usize, usize>>) {
+    let Subject { plate, constraints, .. } = subject(SIDE);
+    let (mut dofs, mut triplets) = (Vec::new(), Vec::new());
+    for (cell, _) in plate.kept_cells() {
+        plate.cell_dofs(cell, &mut dofs);
+        let free: Vec<usize> = dofs.iter().filter_map(|dof| constraints.position(*dof)).collect();
+        for j in &free {
+            triplets.extend(free.iter().filter(|i| *i >= j).map(|i| Pair::new(*i, *j)));
+        }
+    }
+    (constraints.ndof(), triplets)
+}
+
+#[divan::bench(sample_count = 3)]
+fn pattern_of_triplets_by_faer(bencher: Bencher<'_, '_>) {
+    let (n, triplets) = triplets();
+    bencher.bench_local(|| SymbolicSparseColMat::try_new_from_indices(n, n, &triplets).unwrap());
+}
+
+/// Without the integration of cells, which [`assembly_on_a_known_pattern`] holds.
+#[divan::bench(sample_count = 3)]
+fn sum_of_sorted_triplets_by_faer(bencher: Bencher<'_, '_>) {
+    let (n, triplets) = triplets();
+    let (symbolic, order) = SymbolicSparseColMat::try_new_from_indices(n, n, &triplets).unwrap();
+    let values = vec![1.0; triplets.len()];
+    let symbolic = || symbolic.clone();
+    bencher.with_inputs(symbolic).bench_local_values(|s| SparseColMat::new_from_argsort(s, &order, &values).unwrap());
+}
+
+#[divan::bench(sample_count = 10, args = [1, 40])]
+fn product(bencher: Bencher<'_, '_>, columns: usize) {
+    let k = stiffness();
+    let (x, mut y) = (vec![1.0; k.ndof() * columns], vec![0.0; k.ndof() * columns]);
+    bencher.bench_local(|| k.add_product(1.0, &x, &mut y));
+}
+
+#[divan::bench(sample_count = 10, args = [1, 40])]
+fn product_by_faer(bencher: Bencher<'_, '_>, columns: usize) {
+    let k = stiffness().full().unwrap();
+    let n = k.ncols();
+    let (x, mut y) = (vec![1.0; n * columns], vec![0.0; n * columns]);
+    bencher.bench_local(|| {
+        let x = MatRef::from_column_major_slice(&x, n, columns);
+        let y = MatMut::from_column_major_slice_mut(&mut y, n, columns);
+        sparse_dense_matmul(y, Accum::Add, k.as_ref(), x, 1.0, Par::Seq);
     });
 }

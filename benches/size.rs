@@ -4,31 +4,25 @@
 //! of one thread, except where the factor is shared by two: that is wall time. The fastest of several samples counts.
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
+mod plate;
+
 use cpu_time::ThreadTime;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 use fem::analyses::impact;
-use fem::core::assembly::{Cholesky, Matrix, SparseStructure, Symbolic, assemble, elimination_order, pattern};
-use fem::core::constraint::Constraints;
+use fem::core::assembly::{Cholesky, Matrix, SparseStructure, Symbolic, assemble, pattern};
 use fem::core::counters::Counters;
-use fem::core::dof::Dof;
-use fem::core::element::Element;
 use fem::core::functional::Functional;
-use fem::core::laminate::{LaminaPly, Laminate};
-use fem::core::mesh::PlaneMesh;
 use fem::core::patch;
-use fem::core::plate::{Plate, ZDerivatives};
 use fem::core::plugin::{Built, Params, Plugin, Value};
 use fem::core::prolongation::Prolongation;
 use fem::core::structure::Structure;
-use fem::core::support;
 use fem::dynamics::contact::Hertz;
 use fem::dynamics::guard::Guard;
 use fem::dynamics::impact::{ImpactSystem, Impactor};
 use fem::dynamics::integrate::Newmark;
 use fem::dynamics::reduce::{Reduced, Ritz};
-use fem::elements::{HermitePrism, Mass};
-use fem::io::materials;
+use plate::{Subject, subject};
 use std::hint::black_box;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -101,38 +95,6 @@ fn peak_memory() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:")).unwrap_or_default();
     line.split_whitespace().next().and_then(|kb| kb.parse().ok()).map_or(f64::NAN, |kb: f64| kb * 1024.0 / 1e9)
-}
-
-struct Subject {
-    plate: Plate,
-    element: HermitePrism,
-    constraints: Constraints,
-}
-
-fn subject(side: usize) -> Subject {
-    let line: Vec<f64> = (0..=side).map(|i| i as f64 * 2e-3).collect();
-    let mut mesh = PlaneMesh::rectangle(&line, &line);
-    for (i, p) in mesh.points.iter_mut().enumerate() {
-        let i = i as f64;
-        *p = [p[0] + 2e-4 * (1.7 * i).sin(), p[1] + 2e-4 * (2.9 * i).cos()];
-    }
-    let material = materials::library("AS4/3502").unwrap().material.clone();
-    let ply = |k: usize| {
-        let angle_deg = [0.0, 45.0, -45.0, 90.0][k % 4];
-        LaminaPly { angle: f64::to_radians(angle_deg), angle_deg, thickness: 0.13e-3, material: 0 }
-    };
-    let laminate = Laminate { plies: (0..16).map(ply).collect(), layers: vec![8, 8] };
-    let element = HermitePrism::new(Mass::Cubic, HermitePrism::IN_PLANE_ORDER).unwrap();
-    let stacks = laminate.stacks(&[material]).unwrap();
-    let plate = Plate::new(mesh, laminate.levels(), stacks, *element.info(), ZDerivatives::LayerWise).unwrap();
-    let held: Vec<Dof> = (1..=3).filter_map(|n| Dof::new(n, 0)).collect();
-    let edges = ["x-min", "x-max", "y-min", "y-max"];
-    let mut columns: Vec<u32> = edges.iter().flat_map(|e| plate.columns_of_group(&plate.plane.groups[*e])).collect();
-    columns.sort_unstable();
-    columns.dedup();
-    let supports = support::fix(&plate, &columns, &[1], &held, 0.0, "edges");
-    let constraints = Constraints::eliminate(&elimination_order(&plate), &supports).unwrap();
-    Subject { plate, element, constraints }
 }
 
 fn measure(side: usize) -> Vec<(&'static str, f64)> {

@@ -157,7 +157,7 @@ impl Builder<'_> {
     }
 
     pub(super) fn nodes(&self, plate: &Plate, set: &NodeSet) -> Result<(Vec<u32>, Vec<usize>), SceneError> {
-        let levels = set.levels.of(plate).map_err(|why| self.error(&set.group, why, ""))?;
+        let levels = set.levels.of(plate).map_err(|why| self.error(&set.group, why.to_string(), ""))?;
         Ok((self.columns(plate, &set.group)?, levels))
     }
 
@@ -203,7 +203,7 @@ impl Builder<'_> {
             // Rigid motions are modes like others.
             None if matches!(self.scene.analysis, Analysis::Modes { .. }) => held = false,
             Some(place) => {
-                equations.extend(free.restrain(plate).map_err(|why| source.error_at(place, why, ""))?);
+                equations.extend(free.restrain(plate).map_err(|why| source.error_at(place, why.to_string(), ""))?);
                 places.resize(equations.len(), place);
             }
             None => {

@@ -134,7 +134,7 @@ impl Model {
             laminate.heat(&mut stacks, &materials, change).map_err(lacks)?;
         }
         let mut plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
-            .map_err(|why| builder.error(&scene.element.name, why, ""))?;
+            .map_err(|why| builder.error(&scene.element.name, why.to_string(), ""))?;
         builder.fold(&mut plate, &laminate, &materials, &criteria)?;
         memory::check(&plate)?;
         warnings.extend(polygon(&plate));

@@ -9,7 +9,7 @@ use fem_core::element::Element;
 use fem_core::functional::Functional;
 use fem_core::load::{self, Face};
 use fem_core::patch;
-use fem_core::plate::Plate;
+use fem_core::plate::{Plate, PlateError};
 use fem_core::profile::Profile;
 use fem_core::reduction::Reduction;
 use fem_core::time::Integrator;
@@ -130,8 +130,9 @@ impl Builder<'_> {
                 }
                 LoadKind::Patch { force, at, radius } => {
                     let (centre, _) = self.point(plate, at)?;
-                    let patch = patch::hertz(plate, element, centre, *radius)
-                        .map_err(|why| self.scene.source.error_at(place, why, "choose a smaller `patch_radius`"))?;
+                    let patch = patch::hertz(plate, element, centre, *radius).map_err(|why| {
+                        self.scene.source.error_at(place, why.to_string(), "choose a smaller `patch_radius`")
+                    })?;
                     patch.add_to(*force, &mut forces);
                 }
                 LoadKind::Edge { force_per_length, group } => {
@@ -148,7 +149,7 @@ impl Builder<'_> {
                         return Err(self.error(&node.group, message, "name a group of one node and one level").into());
                     };
                     load::point(plate, *column as usize, *level, *force, &mut forces)
-                        .map_err(|why| self.error(&node.group, why, ""))?;
+                        .map_err(|why| self.error(&node.group, why.to_string(), ""))?;
                 }
                 LoadKind::Gravity { acceleration } => {
                     load::gravity(plate, element, *acceleration, &mut forces)?;
@@ -248,7 +249,7 @@ impl Builder<'_> {
     ) -> Result<([f64; 2], Functional), SceneError> {
         let at = &impactor.at;
         let (centre, column) = self.point(plate, at)?;
-        let too_large = |why: String, key: &str| {
+        let too_large = |why: PlateError, key: &str| {
             let (low, high) = plate.plane.bounds();
             if (0..2).any(|d| !(low[d]..=high[d]).contains(&centre[d])) {
                 let [from, to] = [low, high].map(|corner| corner.map(|x| x * 1e3));
@@ -261,7 +262,7 @@ impl Builder<'_> {
             }
             let [width, depth] = [0, 1].map(|d| (high[d] - low[d]) * 1e3);
             let size = format!("the plate is {width:.4} mm by {depth:.4} mm, if `mesh.unit` is right");
-            self.error(&impactor.load, why, format!("choose a smaller `impactor.{key}`; {size}"))
+            self.error(&impactor.load, why.to_string(), format!("choose a smaller `impactor.{key}`; {size}"))
         };
         let contact = match (impactor.load.value, column) {
             (ContactLoad::Patch { radius }, _) => {

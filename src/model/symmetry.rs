@@ -40,7 +40,7 @@ impl Builder<'_> {
         let Some(symmetry) = &self.scene.symmetry else { return Ok(()) };
         let name = symmetry.value.name();
         plate.fold(symmetry.value).map_err(|why| {
-            self.error(symmetry, why, "make the mesh symmetric, node by node, or leave `symmetry` out")
+            self.error(symmetry, why.to_string(), "make the mesh symmetric, node by node, or leave `symmetry` out")
         })?;
         let operations = symmetry.value.operations();
         for layer in 0..plate.layers() {

@@ -1,6 +1,7 @@
 //! Loads as consistent nodal forces, f = ∫ Nᵀ p dA: one per unknown, before elimination of constraints.
 
 use crate::contracts::element::{Element, ElementError, Scratch};
+use crate::plates::error::PlateError;
 use crate::plates::plate::Plate;
 use crate::words::dof::Dof;
 use crate::words::domain::Point;
@@ -89,12 +90,13 @@ pub fn edge(plate: &Plate, element: &dyn Element, edges: &[[u32; 2]], per_length
 ///
 /// # Errors
 /// A component along which the node cannot move.
-pub fn point(plate: &Plate, column: usize, level: usize, force: [f64; 3], f: &mut [f64]) -> Result<(), String> {
+pub fn point(plate: &Plate, column: usize, level: usize, force: [f64; 3], f: &mut [f64]) -> Result<(), PlateError> {
     for (n, force) in force.into_iter().enumerate().filter(|(_, force)| *force != 0.0) {
         let dof = Dof::new(n as u8 + 1, 0).and_then(|dof| plate.dofs_at(column, level, dof).next());
-        let axis = ["x", "y", "z"][n];
-        *dof.map(|dof| &mut f[dof])
-            .ok_or_else(|| format!("{} has no displacement along {axis}", plate.describe_column(column)))? += force;
+        *dof.map(|dof| &mut f[dof]).ok_or_else(|| PlateError::NoDisplacement {
+            node: plate.describe_column(column),
+            axis: ['x', 'y', 'z'][n],
+        })? += force;
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! Where a contact acts: one node, the Hertz pressure on a circle of the top face, or a uniform pressure on a square.
 
 use crate::contracts::element::Element;
+use crate::plates::error::PlateError;
 use crate::plates::plate::Plate;
 use crate::words::dof::Dof;
 use crate::words::functional::Functional;
@@ -29,7 +30,7 @@ pub fn node(plate: &Plate, column: usize) -> Option<Functional> {
 ///
 /// # Errors
 /// A circle that leaves the plate.
-pub fn hertz(plate: &Plate, element: &dyn Element, centre: [f64; 2], a: f64) -> Result<Functional, String> {
+pub fn hertz(plate: &Plate, element: &dyn Element, centre: [f64; 2], a: f64) -> Result<Functional, PlateError> {
     let points = gauss_legendre(RINGS).iter().flat_map(|&(g, w)| {
         let c = 0.5 * (1.0 + g);
         let rho = a * (1.0 - c * c).sqrt();
@@ -38,15 +39,14 @@ pub fn hertz(plate: &Plate, element: &dyn Element, centre: [f64; 2], a: f64) -> 
             ([centre[0] + rho * cos, centre[1] + rho * sin], 3.0 * c * c * 0.5 * w / SPOKES as f64)
         })
     });
-    mean(plate, element, centre, a, points)
-        .ok_or_else(|| leaves(&format!("the contact patch of radius {:.4} mm", a * 1e3), centre))
+    mean(plate, element, centre, a, points).ok_or(PlateError::PatchOverEdge { of: "radius", size: a, centre })
 }
 
 /// Mean deflection under a uniform pressure on the square of side `side` around `centre`, parallel to the axes.
 ///
 /// # Errors
 /// A square that leaves the plate.
-pub fn square(plate: &Plate, element: &dyn Element, centre: [f64; 2], side: f64) -> Result<Functional, String> {
+pub fn square(plate: &Plate, element: &dyn Element, centre: [f64; 2], side: f64) -> Result<Functional, PlateError> {
     let half = 0.5 * side / PANELS as f64;
     let along = |d: usize| {
         (0..PANELS).flat_map(move |i| {
@@ -55,12 +55,7 @@ pub fn square(plate: &Plate, element: &dyn Element, centre: [f64; 2], side: f64)
         })
     };
     let points = along(0).flat_map(|(x, wx)| along(1).map(move |(y, wy)| ([x, y], wx * wy)));
-    mean(plate, element, centre, 0.5 * side, points)
-        .ok_or_else(|| leaves(&format!("the contact patch of side {:.4} mm", side * 1e3), centre))
-}
-
-fn leaves(patch: &str, centre: [f64; 2]) -> String {
-    format!("{patch} around ({:.4}, {:.4}) mm extends beyond the plate", centre[0] * 1e3, centre[1] * 1e3)
+    mean(plate, element, centre, 0.5 * side, points).ok_or(PlateError::PatchOverEdge { of: "side", size: side, centre })
 }
 
 /// Weighted mean of −u₃ over points of the top face no farther than `reach` from `centre` along each axis.

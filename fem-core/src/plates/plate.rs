@@ -10,6 +10,8 @@ use crate::words::domain::Domain;
 use std::collections::HashMap;
 use std::fmt::Write;
 
+pub use crate::plates::error::{Asymmetry, PlateError};
+
 /// How the layers of cells share the derivatives along z at the faces between them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ZDerivatives {
@@ -66,12 +68,12 @@ impl Plate {
         stacks: Vec<Stack>,
         info: ElementInfo,
         z_derivatives: ZDerivatives,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, PlateError> {
         if !info.nodes.iter().flatten().all(|c| [-1.0, 0.0, 1.0].contains(c)) {
-            return Err("the natural coordinates of an element's nodes are -1, 0 or 1".into());
+            return Err(PlateError::NodeOffGrid);
         }
         if info.is_shell() && stacks.len() != 1 {
-            return Err("a shell holds the whole laminate in one layer of cells: give `layers = 1`".into());
+            return Err(PlateError::LayersOfShell);
         }
         one_shape(&plane, info.domain)?;
         if info.is_section() {
@@ -144,7 +146,7 @@ impl Plate {
     ///
     /// # Errors
     /// A mesh that is not symmetric.
-    pub fn fold(&mut self, group: symmetry::SymmetryGroup) -> Result<(), String> {
+    pub fn fold(&mut self, group: symmetry::SymmetryGroup) -> Result<(), PlateError> {
         self.symmetry = Symmetry::of(group, self)?;
         Ok(())
     }
@@ -386,15 +388,14 @@ fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
 ///
 /// # Errors
 /// A cell that is not.
-fn one_shape(plane: &PlaneMesh, domain: Domain) -> Result<(), String> {
+fn one_shape(plane: &PlaneMesh, domain: Domain) -> Result<(), PlateError> {
     match plane.quads.iter().position(|corners| corners.domain() != domain) {
         None => Ok(()),
-        Some(other) => Err(format!(
-            "the element is for {}s, and cell {} is a {}",
-            domain.name(),
-            plane.quad_tags[other],
-            plane.quads[other].domain().name(),
-        )),
+        Some(other) => Err(PlateError::OtherShape {
+            of_element: domain.name(),
+            quad_tag: plane.quad_tags[other],
+            of_cell: plane.quads[other].domain().name(),
+        }),
     }
 }
 
@@ -402,7 +403,7 @@ fn one_shape(plane: &PlaneMesh, domain: Domain) -> Result<(), String> {
 ///
 /// # Errors
 /// A mesh that is not a strip of rectangles along x, one cell across.
-fn along_x(plane: &mut PlaneMesh) -> Result<(), String> {
+fn along_x(plane: &mut PlaneMesh) -> Result<(), PlateError> {
     let (low, high) = plane.bounds();
     let width = high[1] - low[1];
     for q in 0..plane.quads.len() {
@@ -420,12 +421,7 @@ fn along_x(plane: &mut PlaneMesh) -> Result<(), String> {
         });
         match turn {
             Some(turn) => plane.quads[q].rotate_left(turn),
-            None => {
-                return Err(format!(
-                    "a section needs a strip of rectangles along x, one cell across: cell {} is not part of one",
-                    plane.quad_tags[q]
-                ));
-            }
+            None => return Err(PlateError::NoStrip { quad_tag: plane.quad_tags[q] }),
         }
     }
     Ok(())

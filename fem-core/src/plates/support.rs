@@ -1,6 +1,7 @@
 //! Supports as equations, and the rigid motions that they leave.
 
 use crate::plates::constraint::Equation;
+use crate::plates::error::PlateError;
 use crate::plates::plate::Plate;
 use crate::words::dof::Dof;
 use nalgebra::{Matrix6, SymmetricEigen, Vector6};
@@ -20,15 +21,13 @@ impl Levels {
     ///
     /// # Errors
     /// No level at the mid-plane.
-    pub fn of(self, plate: &Plate) -> Result<Vec<usize>, String> {
+    pub fn of(self, plate: &Plate) -> Result<Vec<usize>, PlateError> {
         let [bottom, top] = plate.outer_levels();
         match self {
             Self::Bottom => Ok(vec![bottom]),
             Self::Top => Ok(vec![top]),
             Self::All => Ok((bottom..=top).collect()),
-            Self::MidPlane => plate.mid_level().map(|l| vec![l]).ok_or_else(|| {
-                "no face between layers lies at the mid-plane: choose `layers` that meet there, or another `at`".into()
-            }),
+            Self::MidPlane => plate.mid_level().map(|l| vec![l]).ok_or(PlateError::NoMidPlane),
         }
     }
 }
@@ -181,7 +180,7 @@ impl FreeMotions {
     ///
     /// # Errors
     /// An element whose unknowns do not stop them at these three nodes.
-    pub fn restrain(&self, plate: &Plate) -> Result<Vec<Equation>, String> {
+    pub fn restrain(&self, plate: &Plate) -> Result<Vec<Equation>, PlateError> {
         let distance = |c: &usize| (0..2).map(|d| (plate.columns[*c][d] - self.centre[d]).powi(2)).sum::<f64>();
         let column = (0..plate.columns.len())
             .filter(|c| !plate.dofs_of_column(*c).is_empty())
@@ -225,14 +224,7 @@ impl FreeMotions {
             }
             chosen.push(equation);
         }
-        if left.is_empty() {
-            Ok(chosen)
-        } else {
-            Err(format!(
-                "the unknowns of this element cannot restrain {}: fix unknowns at nodes of your choice",
-                self.names()
-            ))
-        }
+        if left.is_empty() { Ok(chosen) } else { Err(PlateError::Unrestrained { motions: self.names() }) }
     }
 }
 

@@ -6,6 +6,7 @@
 //! energies are those of the whole.
 
 use crate::plates::constraint::Equation;
+use crate::plates::error::{Asymmetry, PlateError};
 use crate::plates::plate::Plate;
 use crate::words::dof::Dof;
 use crate::words::domain::Corners;
@@ -137,17 +138,17 @@ impl Symmetry {
     ///
     /// # Errors
     /// A node or a cell without an image.
-    pub(crate) fn of(group: SymmetryGroup, plate: &Plate) -> Result<Self, String> {
+    pub(crate) fn of(group: SymmetryGroup, plate: &Plate) -> Result<Self, PlateError> {
         let (low, high) = plate.plane.bounds();
         let centre = [0, 1].map(|d| 0.5 * (low[d] + high[d]));
         let reach = SAME * (high[0] - low[0]).hypot(high[1] - low[1]);
         let operations = || group.operations().iter().copied();
         let places = Places::of(plate, reach);
-        let images: Vec<_> = operations()
-            .map(|o| Ok((o, places.images(o, centre).map_err(|why| refusal(group, centre, &why))?)))
-            .collect::<Result<_, String>>()?;
+        let refused = |at: Asymmetry| PlateError::Asymmetric { symmetry: group.name(), centre, at };
+        let images: Vec<_> =
+            operations().map(|o| Ok((o, places.images(o, centre)?))).collect::<Result<_, _>>().map_err(refused)?;
         let cells = images.iter().map(|(_, images)| quad_images(plate, images));
-        let cells: Vec<_> = cells.collect::<Result<_, _>>().map_err(|why: String| refusal(group, centre, &why))?;
+        let cells: Vec<_> = cells.collect::<Result<_, _>>().map_err(refused)?;
 
         // The part that is kept lies at large y, and at large x: as compact as it can be.
         let rank = |p: [f64; 2]| [1, 0].map(|d| ((p[d] - centre[d]) / reach).round() as i64);
@@ -228,11 +229,6 @@ impl Symmetry {
     }
 }
 
-fn refusal(group: SymmetryGroup, centre: [f64; 2], why: &str) -> String {
-    let [x, y] = centre.map(|c| c * 1e3);
-    format!("the mesh has no symmetry `{}` about ({x:.6}, {y:.6}) mm: {why}", group.name())
-}
-
 /// Of each thing, of rank `ranks`, the one of highest rank among itself and its images, the first of equals.
 fn representatives<'a>(ranks: &[[i64; 2]], images: impl Iterator<Item = &'a [u32]> + Clone) -> Vec<u32> {
     let orbit = |i: u32| std::iter::once(i).chain(images.clone().map(move |images| images[i as usize]));
@@ -269,25 +265,25 @@ impl<'a> Places<'a> {
     }
 
     /// Image of each column with unknowns; the others, where nothing is their image, are their own.
-    fn images(&self, operation: Operation, centre: [f64; 2]) -> Result<Vec<u32>, String> {
+    fn images(&self, operation: Operation, centre: [f64; 2]) -> Result<Vec<u32>, Asymmetry> {
         let plate = self.plate;
-        let place = |c: usize| {
-            let [x, y] = plate.columns[c].map(|x| x * 1e3);
-            format!("{} at ({x:.6}, {y:.6}) mm", plate.describe_column(c))
-        };
+        let (name, at) = (|c: usize| plate.describe_column(c), |c: usize| plate.columns[c]);
         let unknowns = |c: usize| plate.dofs_of_column(c).len();
         let image = |c: usize| match self.at(operation.point(centre, plate.columns[c])) {
             Some(image) if unknowns(image as usize) == unknowns(c) => Ok(image),
-            Some(image) => Err(format!("{} has other unknowns than {}", place(image as usize), place(c))),
+            Some(image) => {
+                let (image, image_at) = (name(image as usize), at(image as usize));
+                Err(Asymmetry::Unknowns { image, image_at, name: name(c), at: at(c) })
+            }
             None if unknowns(c) == 0 => Ok(c as u32),
-            None => Err(format!("{} has no image", place(c))),
+            None => Err(Asymmetry::Node { name: name(c), at: at(c) }),
         };
         (0..plate.columns.len()).map(image).collect()
     }
 }
 
 /// Image of each quad, by those of its columns.
-fn quad_images(plate: &Plate, images: &[u32]) -> Result<Vec<u32>, String> {
+fn quad_images(plate: &Plate, images: &[u32]) -> Result<Vec<u32>, Asymmetry> {
     let quads = &plate.plane.quads;
     let sorted = |mut vertices: Corners<u32>| {
         vertices.sort_unstable();
@@ -296,8 +292,8 @@ fn quad_images(plate: &Plate, images: &[u32]) -> Result<Vec<u32>, String> {
     let numbers: HashMap<Corners<u32>, u32> = quads.iter().map(|q| sorted(*q)).zip(0..).collect();
     let image = |(quad, vertices): (usize, &Corners<u32>)| {
         numbers.get(&sorted(vertices.map(|v| images[v as usize]))).copied().ok_or_else(|| {
-            let [x, y] = plate.plane.corners(quad).centroid().map(|x| x * 1e3);
-            format!("cell {} at ({x:.6}, {y:.6}) mm has no image", plate.plane.quad_tags[quad])
+            let at = plate.plane.corners(quad).centroid();
+            Asymmetry::Cell { quad_tag: plate.plane.quad_tags[quad], at }
         })
     };
     quads.iter().enumerate().map(image).collect()
@@ -427,14 +423,14 @@ mod tests {
                 .unwrap()
                 .fold(group)
         };
-        let why = fold(&mesh, SymmetryGroup::HalfTurn).unwrap_err();
+        let why = fold(&mesh, SymmetryGroup::HalfTurn).unwrap_err().to_string();
         assert!(why.contains("node 4711 at (2501.000000, 3000.000000) mm has no image"), "{why}");
         mesh.points[6][0] -= 1e-3;
         fold(&mesh, SymmetryGroup::Quarter).unwrap();
         // A hole on one side.
         mesh.quads.swap_remove(5);
         mesh.quad_tags.swap_remove(5);
-        let why = fold(&mesh, SymmetryGroup::MirrorY).unwrap_err();
+        let why = fold(&mesh, SymmetryGroup::MirrorY).unwrap_err().to_string();
         assert!(why.contains("cell 10 at (3250.000000, 4500.000000) mm has no image"), "{why}");
     }
 

@@ -221,8 +221,8 @@ fn mass_of(cell: &Cell<'_>) -> f64 {
 
 /// A plate of this one cell.
 fn single(cell: &Cell<'_>, info: ElementInfo) -> Result<Plate, String> {
-    let mesh = PlaneMesh::single(cell.corners);
-    Plate::new(mesh, cell.z.to_vec(), vec![cell.stack.clone()], info, ZDerivatives::Shared)
+    let (mesh, stacks) = (PlaneMesh::single(cell.corners), vec![cell.stack.clone()]);
+    Plate::new(mesh, cell.z.to_vec(), stacks, info, ZDerivatives::Shared).map_err(|why| why.to_string())
 }
 
 /// The largest difference of two matrices, where it exceeds the tolerance.

@@ -1,0 +1,119 @@
+//! What a plate refuses.
+
+use std::fmt;
+
+/// Why a plate cannot be made, folded, held or loaded as asked.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum PlateError {
+    /// An element with a node off the corners, edges and middles of its cell.
+    NodeOffGrid,
+    /// A shell in several layers of cells.
+    LayersOfShell,
+    /// A cell of another shape than the element stands on.
+    OtherShape {
+        /// What the element stands on.
+        of_element: &'static str,
+        /// The cell.
+        quad_tag: u64,
+        /// What it is.
+        of_cell: &'static str,
+    },
+    /// A section on a mesh that is not a strip of rectangles along x.
+    NoStrip {
+        /// A cell that is not part of one.
+        quad_tag: u64,
+    },
+    /// A mesh that a symmetry does not map onto itself.
+    Asymmetric {
+        /// Name of the symmetry.
+        symmetry: &'static str,
+        /// Its centre, m.
+        centre: [f64; 2],
+        /// Where it fails.
+        at: Asymmetry,
+    },
+    /// No level at the mid-plane.
+    NoMidPlane,
+    /// Rigid motions that the unknowns of the element cannot stop.
+    Unrestrained {
+        /// The motions.
+        motions: String,
+    },
+    /// A contact patch that reaches over the edge.
+    PatchOverEdge {
+        /// `radius` or `side`.
+        of: &'static str,
+        /// Its length, m.
+        size: f64,
+        /// Centre of the patch, m.
+        centre: [f64; 2],
+    },
+    /// A force along an axis along which the node cannot move.
+    NoDisplacement {
+        /// The node.
+        node: String,
+        /// x, y or z.
+        axis: char,
+    },
+}
+
+/// What has no image under a symmetry; places in m.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)]
+pub enum Asymmetry {
+    /// No node lies where that of a node would be.
+    Node { name: String, at: [f64; 2] },
+    /// The node there has other unknowns.
+    Unknowns { image: String, image_at: [f64; 2], name: String, at: [f64; 2] },
+    /// No cell lies where that of a cell would be.
+    Cell { quad_tag: u64, at: [f64; 2] },
+}
+
+impl fmt::Display for PlateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NodeOffGrid => f.write_str("the natural coordinates of an element's nodes are -1, 0 or 1"),
+            Self::LayersOfShell => {
+                f.write_str("a shell holds the whole laminate in one layer of cells: give `layers = 1`")
+            }
+            Self::OtherShape { of_element, quad_tag, of_cell } => {
+                write!(f, "the element is for {of_element}s, and cell {quad_tag} is a {of_cell}")
+            }
+            Self::NoStrip { quad_tag } => write!(
+                f,
+                "a section needs a strip of rectangles along x, one cell across: cell {quad_tag} is not part of one"
+            ),
+            Self::Asymmetric { symmetry, centre, at } => {
+                let [x, y] = centre.map(|c| c * 1e3);
+                write!(f, "the mesh has no symmetry `{symmetry}` about ({x:.6}, {y:.6}) mm: {at}")
+            }
+            Self::NoMidPlane => f.write_str(
+                "no face between layers lies at the mid-plane: choose `layers` that meet there, or another `at`",
+            ),
+            Self::Unrestrained { motions } => write!(
+                f,
+                "the unknowns of this element cannot restrain {motions}: fix unknowns at nodes of your choice"
+            ),
+            Self::PatchOverEdge { of, size, centre } => {
+                let [size, x, y] = [*size, centre[0], centre[1]].map(|x| x * 1e3);
+                write!(f, "the contact patch of {of} {size:.4} mm around ({x:.4}, {y:.4}) mm extends beyond the plate")
+            }
+            Self::NoDisplacement { node, axis } => write!(f, "{node} has no displacement along {axis}"),
+        }
+    }
+}
+impl std::error::Error for PlateError {}
+
+impl fmt::Display for Asymmetry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = |[x, y]: [f64; 2]| format!("at ({:.6}, {:.6}) mm", x * 1e3, y * 1e3);
+        match self {
+            Self::Node { name, at } => write!(f, "{name} {} has no image", place(*at)),
+            Self::Unknowns { image, image_at, name, at } => {
+                write!(f, "{image} {} has other unknowns than {name} {}", place(*image_at), place(*at))
+            }
+            Self::Cell { quad_tag, at } => write!(f, "cell {quad_tag} {} has no image", place(*at)),
+        }
+    }
+}
