@@ -97,6 +97,7 @@ fn mean(history: &[HistoryRow], from: f64, to: f64) -> f64 {
 }
 
 #[test]
+#[ignore = "half a minute"]
 fn the_reports_thin_plate_stiffens() {
     let on = case_5(MOVABLE, "membrane = 'on'", [5.0, 1.0], STRAIN);
     let off = case_5(MOVABLE, "membrane = 'off'", [10.0, 1.0], STRAIN);
