@@ -48,6 +48,8 @@ pub mod advise;
 pub mod analyses;
 pub mod cli;
 pub mod cost;
+pub mod effect;
+pub mod effects;
 mod error;
 pub mod forecast;
 pub mod job;
@@ -57,13 +59,12 @@ mod registry;
 pub mod study;
 mod words;
 
+pub use effect::{Decision, Effects};
 pub use error::{CheckpointError, Error};
 pub use fem_core as core;
 pub use fem_dynamics as dynamics;
 pub use fem_elements as elements;
 pub use fem_failure as failure;
 pub use fem_io as io;
-pub use model::{
-    Decision, Effects, FieldPlan, Gauge, Impact, Model, NamedCriterion, NamedProfile, Plan, Strike, mesh as scene_mesh,
-};
+pub use model::{FieldPlan, Gauge, Impact, Model, NamedCriterion, NamedProfile, Plan, Strike, mesh as scene_mesh};
 pub use registry::{NO_REDUCTION, Registry, RegistryError};

@@ -1,6 +1,9 @@
 //! The registry of plug-ins: one table that scenes, lists and documentation read.
 
+use crate::effect::{EffectInfo, EffectPlugin, LedgerColumn, Wish};
+use crate::effects;
 use fem_core::plugin::{Built, Kind, ParamError, ParamForm, ParamInfo, Params, Plugin, PluginInfo, Value, unknown_key};
+use fem_io::scene::{EFFECT_SETTINGS, EffectSpec, Key, SceneError, SceneValue};
 use fem_io::units::{self, UnitError};
 use std::fmt;
 use tracing::debug;
@@ -20,6 +23,7 @@ pub const NO_REDUCTION: &str = "none";
 #[derive(Debug, Clone, Default)]
 pub struct Registry {
     entries: Vec<Entry>,
+    effects: Vec<EffectEntry>,
     clashes: Vec<(Kind, &'static str)>,
 }
 
@@ -27,6 +31,12 @@ pub struct Registry {
 struct Entry {
     info: PluginInfo,
     build: fn(&Params) -> Result<Built, ParamError>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct EffectEntry {
+    info: &'static EffectInfo,
+    read: fn(&SceneValue<'_>) -> Result<Wish, SceneError>,
 }
 
 /// Why a plug-in was not built.
@@ -130,6 +140,11 @@ impl Registry {
             .with::<failure::BrewerLagace>()
             .with::<failure::Expression>()
             .with::<failure::laws::HahnTsai>()
+            .with_effect::<effects::Membrane>()
+            .with_effect::<effects::NoInertia>()
+            .with_effect::<effects::ViscousDamping>()
+            .with_effect::<effects::Gravity>()
+            .with_effect::<effects::Cure>()
     }
 
     /// The registry with one plug-in more.
@@ -140,6 +155,47 @@ impl Registry {
         }
         self.entries.push(Entry { info: P::INFO, build: P::build });
         self
+    }
+
+    /// The registry with one effect more.
+    #[must_use]
+    pub fn with_effect<E: EffectPlugin>(mut self) -> Self {
+        self.effects.push(EffectEntry { info: &E::INFO, read: E::read });
+        self
+    }
+
+    /// The effects, in the order in which they act.
+    pub fn effects(&self) -> impl Iterator<Item = &'static EffectInfo> + '_ {
+        self.effects.iter().map(|entry| entry.info)
+    }
+
+    /// Their columns in `history.csv`.
+    pub fn columns(&self) -> Vec<&'static LedgerColumn> {
+        self.effects().flat_map(|info| info.columns).collect()
+    }
+
+    /// Their keys.
+    pub fn effect_keys(&self) -> Vec<Key> {
+        self.effects().map(|info| info.key).collect()
+    }
+
+    /// Reads an effect that a scene names.
+    ///
+    /// # Errors
+    /// An unknown name, two effects of that name, a value that the effect does not take.
+    pub(crate) fn read_effect(&self, spec: &EffectSpec) -> Result<Wish, SceneError> {
+        let mut entries = self.effects.iter().filter(|entry| entry.info.key.name == spec.name());
+        let Some(entry) = entries.next() else {
+            let settings = EFFECT_SETTINGS.iter().map(|setting| setting.key.name);
+            return Err(spec.unknown(settings.chain(self.effects().map(|info| info.key.name))));
+        };
+        let value = spec.value(&entry.info.key);
+        match entries.next() {
+            None => (entry.read)(&value),
+            Some(_) => {
+                Err(value.error("two effects are registered under this name", "rename or remove one of the two"))
+            }
+        }
     }
 
     /// Plug-ins of a kind.

@@ -3,7 +3,7 @@
 pub(crate) mod constants;
 
 use crate::document::keys::{Form, Keys, key, words};
-use crate::document::reader::{Field, Reader};
+use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Origin, Place, SceneError, SceneSource};
 use crate::document::tree::{Entry, Node, Table};
 use fem_core::material::Material;
@@ -109,7 +109,7 @@ pub(crate) fn parse(text: &str, source: &Arc<SceneSource>) -> Result<Vec<Library
     root.optional("materials").ok_or_else(missing)?.entries()?.iter().map(|(name, field)| read(name, field)).collect()
 }
 
-fn read(name: &str, field: &Field<'_>) -> Result<LibraryMaterial, SceneError> {
+fn read(name: &str, field: &SceneValue<'_>) -> Result<LibraryMaterial, SceneError> {
     let own = field.table(MATERIAL)?;
     let mut constants = Vec::new();
     let mut table = Table::default();

@@ -24,10 +24,8 @@ pub struct HistoryRow {
     pub contact_stored_j: f64,
     /// Energy lost in the contacts, J.
     pub contact_dissipated_j: f64,
-    /// Energy lost in the damping of the plate, J; a column where there is some.
-    pub damping_dissipated_j: Option<f64>,
-    /// Potential energy of the weights, J, 0 where the impactors touch the plate at rest; a column where there is gravity.
-    pub gravity_potential_j: Option<f64>,
+    /// What effects keep account of, one value per column of theirs.
+    pub effects: Vec<f64>,
     /// Sum of the energies less that at the beginning, J; zero but for the integrator's error.
     pub energy_balance_j: f64,
 }
@@ -118,19 +116,26 @@ pub struct EnvelopeRow {
     pub stresses_mpa: [f64; 2],
 }
 
-/// Writes `history.csv`; every row has as many impactors as `impactors` has names, and the energies of the first. Where there
-/// are several impactors, their columns begin with the name and a point.
+/// Writes `history.csv`; every row has as many impactors as `impactors` has names, and as many values of effects as `effects`
+/// has. Where there are several impactors, their columns begin with the name and a point.
 ///
 /// # Errors
 /// A value that is not finite, and as [`OutputDir::write`].
-pub fn write_history(dir: &OutputDir, impactors: &[&str], rows: &[HistoryRow]) -> Result<(), FileError> {
+pub fn write_history(
+    dir: &OutputDir,
+    impactors: &[&str],
+    effects: &[&str],
+    rows: &[HistoryRow],
+) -> Result<(), FileError> {
     const OF_EACH: [&str; 4] =
         ["contact_force_N", "impactor_displacement_m", "impactor_velocity_m_s", "plate_displacement_m"];
     let of_each = impactors.iter().flat_map(|name| {
         OF_EACH.map(|column| if impactors.len() == 1 { column.to_owned() } else { format!("{name}.{column}") })
     });
-    let names = energies(rows.first().unwrap_or(&HistoryRow::default())).map(|(name, _)| name.to_owned());
-    let header: Vec<String> = ["time_s".to_owned()].into_iter().chain(of_each).chain(names).collect();
+    const ENERGIES: [&str; 5] =
+        ["impactor_kinetic_J", "plate_kinetic_J", "plate_strain_J", "contact_stored_J", "contact_dissipated_J"];
+    let energies = ENERGIES.iter().chain(effects).chain(&["energy_balance_J"]).map(|name| (*name).to_owned());
+    let header: Vec<String> = ["time_s".to_owned()].into_iter().chain(of_each).chain(energies).collect();
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let values = |row: &HistoryRow| {
         let of_each = row.impactors.iter().flat_map(|impactor| {
@@ -141,25 +146,17 @@ pub fn write_history(dir: &OutputDir, impactors: &[&str], rows: &[HistoryRow]) -
                 impactor.plate_displacement_m,
             ]
         });
-        let energies = energies(row).map(|(_, energy)| energy);
-        [row.time_s].into_iter().chain(of_each).chain(energies).map(TableValue::Number).collect()
+        let energies = [
+            row.impactor_kinetic_j,
+            row.plate_kinetic_j,
+            row.plate_strain_j,
+            row.contact_stored_j,
+            row.contact_dissipated_j,
+        ];
+        let effects = row.effects.iter().copied().chain([row.energy_balance_j]);
+        [row.time_s].into_iter().chain(of_each).chain(energies).chain(effects).map(TableValue::Number).collect()
     };
     write_columns(dir, "history.csv", &header, rows.iter().map(values))
-}
-
-/// Columns of the energies that a row has.
-fn energies(row: &HistoryRow) -> impl Iterator<Item = (&'static str, f64)> + use<> {
-    let columns = [
-        ("impactor_kinetic_J", Some(row.impactor_kinetic_j)),
-        ("plate_kinetic_J", Some(row.plate_kinetic_j)),
-        ("plate_strain_J", Some(row.plate_strain_j)),
-        ("contact_stored_J", Some(row.contact_stored_j)),
-        ("contact_dissipated_J", Some(row.contact_dissipated_j)),
-        ("damping_dissipated_J", row.damping_dissipated_j),
-        ("gravity_potential_J", row.gravity_potential_j),
-        ("energy_balance_J", Some(row.energy_balance_j)),
-    ];
-    columns.into_iter().filter_map(|(name, energy)| Some((name, energy?)))
 }
 
 /// Writes `events.csv`; without events it holds the header alone.
@@ -406,8 +403,7 @@ mod tests {
             plate_strain_j: v[7],
             contact_stored_j: v[8],
             contact_dissipated_j: v[9],
-            damping_dissipated_j: None,
-            gravity_potential_j: None,
+            effects: Vec::new(),
             energy_balance_j: v[10],
         }
     }
@@ -416,7 +412,7 @@ mod tests {
     fn history_has_its_columns_in_order() {
         let folder = tempfile::tempdir().unwrap();
         let dir = OutputDir::create(folder.path()).unwrap();
-        write_history(&dir, &["one"], &[numbers([5e-7, 1.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, -1e-17])])
+        write_history(&dir, &["one"], &[], &[numbers([5e-7, 1.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, -1e-17])])
             .unwrap();
         assert_eq!(
             read(&dir, "history.csv"),
@@ -427,15 +423,14 @@ mod tests {
     }
 
     #[test]
-    fn energies_of_effects_are_columns_where_they_are() {
+    fn effects_have_columns_of_their_own() {
         let folder = tempfile::tempdir().unwrap();
         let dir = OutputDir::create(folder.path()).unwrap();
         let row = HistoryRow {
-            damping_dissipated_j: Some(0.5),
-            gravity_potential_j: Some(-0.25),
+            effects: vec![0.5, -0.25],
             ..numbers([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0])
         };
-        write_history(&dir, &["one"], &[row]).unwrap();
+        write_history(&dir, &["one"], &["damping_dissipated_J", "gravity_potential_J"], &[row]).unwrap();
         let text = read(&dir, "history.csv");
         let want = "contact_dissipated_J,damping_dissipated_J,gravity_potential_J,energy_balance_J\n";
         assert!(text.contains(want) && text.ends_with(",9.0,0.5,-0.25,10.0\n"), "{text}");
@@ -448,7 +443,7 @@ mod tests {
         let mut row = numbers([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0]);
         row.impactors.push(ImpactorRow { contact_force_n: 12.0, ..row.impactors[0] });
         assert_eq!(row.contact_force_n(), 14.0);
-        write_history(&dir, &["one", "two, late"], &[row]).unwrap();
+        write_history(&dir, &["one", "two, late"], &[], &[row]).unwrap();
         assert_eq!(
             read(&dir, "history.csv"),
             "time_s,one.contact_force_N,one.impactor_displacement_m,one.impactor_velocity_m_s,one.plate_displacement_m,\
@@ -504,7 +499,7 @@ mod tests {
         fn numbers_read_back_exactly(v in proptest::array::uniform11(POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO)) {
             let folder = tempfile::tempdir().unwrap();
             let dir = OutputDir::create(folder.path()).unwrap();
-            write_history(&dir, &["one"], &[numbers(v)]).unwrap();
+            write_history(&dir, &["one"], &[], &[numbers(v)]).unwrap();
             let text = read(&dir, "history.csv");
             let back = text.lines().nth(1).unwrap().split(',').map(|x| x.parse::<f64>().unwrap().to_bits());
             prop_assert_eq!(back.collect::<Vec<_>>(), v.map(f64::to_bits));
@@ -516,7 +511,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let dir = OutputDir::create(folder.path()).unwrap();
         let rows = [numbers([0.0; 11]), HistoryRow { plate_strain_j: f64::NAN, ..numbers([0.0; 11]) }];
-        let error = write_history(&dir, &["one"], &rows).unwrap_err().to_string();
+        let error = write_history(&dir, &["one"], &[], &rows).unwrap_err().to_string();
         assert_eq!(error, "history.csv, row 2, column plate_strain_J: NaN is not a finite number");
         assert!(!folder.path().join("history.csv").exists());
     }

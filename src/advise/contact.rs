@@ -1,8 +1,8 @@
 //! What the contact does to an impact.
 
-use super::answer::{Answer, Number};
 use super::estimate::{Blow, Estimate};
 use super::plate::PlateConstants;
+use crate::effect::{Answer, Number};
 use fem_core::contact::{Branches, ContactForce, ContactHistory, ContactLaw};
 use fem_core::energy::Energy;
 use fem_io::scene::ContactLoad;

@@ -1,71 +1,46 @@
 //! Effects that a scene leaves to the advisor.
 
 use super::plate::AtRest;
-use super::{Rim, advise, membrane};
+use super::{Rim, advise};
+use crate::effect::Expected;
 use crate::error::Error;
-use crate::model::{Decision, INERTIA, MEMBRANE, Model, Plan};
+use crate::model::{Model, Plan};
 use fem_core::dof::Dof;
 use fem_core::functional::Functional;
 use fem_core::time::StepLimit;
 use std::num::NonZeroUsize;
 
-/// Error of the largest force from which on a plate is not left without its inertia.
-const INERTIA_MATTERS: f64 = 0.05;
-
 /// `model` with all effects decided that its scene leaves to the advisor; one more factorisation of K where there are any.
 ///
-/// Membrane stiffening is switched on where A (w/h)² is expected to exceed 5 %: of an impact with the deflection of its energy
-/// balance before the march ends, of loads at rest with the largest deflection of the linear plate. The inertia of the plate is
-/// switched off where every impactor is so heavy that twice the force of the first wave, as edges send waves back, is below 5 % of
-/// the force at rest, unless modes are followed or the integrator needs inertia.
+/// Each effect has a number of its own for what is expected of an impactor, or of loads at rest, and a threshold; the largest
+/// number counts.
 ///
 /// # Errors
 /// As [`advise`].
 pub fn decided(mut model: Model, threads: NonZeroUsize) -> Result<Model, Error> {
-    if !model.undecided() {
+    if !model.effects.undecided() {
         return Ok(model);
     }
-    let (stiffening, inertia) = match &model.plan {
-        Plan::Impact(impact) => {
-            let (mut stiffening, mut inertia) = (0.0_f64, 0.0_f64);
-            for advice in advise(&model, threads)? {
-                stiffening = stiffening.max(advice.plate.stiffening(advice.estimate.deflection));
-                inertia =
-                    inertia.max(if advice.quasi_static(1.0) { 2.0 * advice.estimate.inertia_error() } else { 1.0 });
-            }
-            let implicit = impact.integrator.limit() == StepLimit::None && impact.integrator.order() <= 2;
-            let vibrates = model.scene.output.modes.is_some() || !implicit;
-            (stiffening, if vibrates { 1.0 } else { inertia })
-        }
-        Plan::Static { forces } => (at_rest(&model, forces, threads)?, 0.0),
+    let expected = match &model.plan {
+        Plan::Impact(_) => advise(&model, threads)?.iter().map(|advice| advice.expected).collect(),
+        Plan::Static { forces } => vec![at_rest(&model, forces, threads)?],
         // Refused before.
         Plan::Modes { .. } => return Ok(model),
     };
-    if model.leaves(MEMBRANE) {
-        model.effects.membrane = stiffening > membrane::THRESHOLD;
-        model.decisions.push(Decision {
-            effect: MEMBRANE,
-            on: model.effects.membrane,
-            formula: membrane::FORMULA,
-            expected: stiffening,
-            threshold: membrane::THRESHOLD,
-        });
-    }
-    if model.leaves(INERTIA) {
-        model.effects.inertia = inertia > INERTIA_MATTERS;
-        model.decisions.push(Decision {
-            effect: INERTIA,
-            on: model.effects.inertia,
-            formula: "2 x force of the first wave / static force",
-            expected: inertia,
-            threshold: INERTIA_MATTERS,
-        });
-    }
+    let decisions = model.effects.decide(|advice| expected.iter().map(advice.number).fold(0.0, f64::max));
+    model.decisions = decisions;
     Ok(model)
 }
 
-/// A (w/h)² of the linear plate under `forces`.
-fn at_rest(model: &Model, forces: &[f64], threads: NonZeroUsize) -> Result<f64, Error> {
+/// Whether modes are followed, or the integrator needs the inertia of the plate.
+pub(super) fn vibrates(model: &Model) -> bool {
+    let Plan::Impact(impact) = &model.plan else { return false };
+    let implicit = impact.integrator.limit() == StepLimit::None && impact.integrator.order() <= 2;
+    model.scene.output.modes.is_some() || !implicit
+}
+
+/// The linear plate under `forces`.
+fn at_rest(model: &Model, forces: &[f64], threads: NonZeroUsize) -> Result<Expected, Error> {
     let nodal: Vec<(usize, f64)> = forces.iter().copied().enumerate().filter(|(_, force)| *force != 0.0).collect();
     let mut load = vec![0.0; model.constraints.ndof()];
     Functional(model.constraints.restrict(&nodal)).add_to(1.0, &mut load);
@@ -83,6 +58,14 @@ fn at_rest(model: &Model, forces: &[f64], threads: NonZeroUsize) -> Result<f64, 
         let held = Rim::around(model, plate.columns[column])?.held?;
         Some(held.coefficient())
     };
-    let number = |(column, w): (usize, f64)| Some(coefficient(column)? * (w / model.laminate.thickness()).powi(2));
-    Ok(largest.and_then(number).unwrap_or(0.0))
+    let thickness = model.laminate.thickness();
+    let Some((column, deflection)) = largest else { return Ok(Expected { thickness, ..Expected::default() }) };
+    let held = coefficient(column);
+    Ok(Expected {
+        thickness,
+        deflection,
+        coefficient: held.unwrap_or(0.0),
+        surrounded: held.is_some(),
+        ..Expected::default()
+    })
 }

@@ -1,8 +1,8 @@
 //! Whether a laminate will delaminate.
 
-use super::answer::{Answer, Number};
 use super::estimate::Estimate;
 use super::regime::Regime;
+use crate::effect::{Answer, Number};
 use crate::model::Model;
 use fem_failure::delamination::DelaminationThreshold;
 

@@ -1,10 +1,10 @@
 //! What mesh and step an impact asks for.
 
-use super::answer::{Answer, Number};
 use super::estimate::{Blow, Estimate};
-use super::membrane::Held;
+use super::held::Held;
 use super::plate::PlateConstants;
 use super::regime::Regime;
+use crate::effect::{Answer, Number};
 use crate::model::Model;
 use fem_core::dof::Dof;
 use std::f64::consts::TAU;

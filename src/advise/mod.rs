@@ -1,20 +1,19 @@
 //! The advisor: which effects an impact calls for, before it is computed and after.
 //!
-//! Formulas of the literature say how a plate will respond ([`small_mass`], [`large_mass`], [`membrane`]); what they need of
+//! Formulas of the literature say how a plate will respond ([`small_mass`], [`large_mass`], [`Held`]); what they need of
 //! the plate comes from its model: stiffness under the impactor by one static solution, mass and edge by its mesh and supports
 //! ([`PlateConstants`], [`Rim`]). An [`Estimate`] puts them together; every question then has an [`Answer`] with its number, threshold
 //! and source, what goes wrong without the effect, and what it costs. `docs/advise.md` derives them.
 //!
-//! [`decided`] switches effects that a scene leaves to the advisor; [`Hindsight`] holds a choice against the run.
+//! [`decided`] switches effects that a scene leaves to the advisor; [`hindsight()`] holds a choice against the run.
 
-mod answer;
 mod contact;
 mod decide;
 mod delamination;
 mod estimate;
+mod held;
 mod hindsight;
 pub mod large_mass;
-pub mod membrane;
 mod mesh;
 mod plate;
 mod regime;
@@ -22,25 +21,27 @@ mod rim;
 mod shear;
 pub mod small_mass;
 mod text;
+mod work;
 
-pub use answer::{Answer, Number};
 pub use contact::Contact;
 pub use decide::decided;
 pub use delamination::{Delaminates, DelaminationAdvice};
 pub use estimate::{Blow, Estimate};
-pub use hindsight::Hindsight;
+pub use held::Held;
+pub use hindsight::hindsight;
 pub use mesh::Resolution;
 pub use plate::PlateConstants;
 pub use regime::Regime;
 pub use rim::Rim;
 pub use shear::Shear;
 
+use crate::effect::{Answer, Expected};
 use crate::error::Error;
-use crate::forecast::Work;
 use crate::model::{Model, Plan, Strike};
 use fem_io::scene;
 use plate::AtRest;
 use std::num::NonZeroUsize;
+use work::Work;
 
 /// The advisor's answers for one impactor, as if it struck alone.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +56,8 @@ pub struct Advice {
     pub plate: PlateConstants,
     /// What it will do.
     pub estimate: Estimate,
+    /// Of that, what effects ask for.
+    pub expected: Expected,
     /// What the contact does.
     pub contact: Contact,
     /// What shear does.
@@ -68,11 +71,6 @@ pub struct Advice {
 }
 
 impl Advice {
-    /// Whether membrane stiffening is needed.
-    pub fn membrane(&self) -> bool {
-        self.plate.stiffening(self.estimate.deflection) > membrane::THRESHOLD
-    }
-
     /// Whether a plate without inertia gives the largest force to `tolerance`, relative.
     pub fn quasi_static(&self, tolerance: f64) -> bool {
         self.estimate.regime == Regime::QuasiStatic && self.estimate.inertia_error() <= tolerance
@@ -98,17 +96,43 @@ pub fn advise(model: &Model, threads: NonZeroUsize) -> Result<Vec<Advice>, Error
         let delamination = DelaminationAdvice::new(model, &estimate);
         let resolution = Resolution::new(model, &plate, march.step.value, &estimate);
         let [cells, steps] = resolution.lacking();
-        let answers = vec![
-            estimate.regime_answer(work.inertia()),
-            membrane::answer(&plate, &estimate, work.membrane()),
+        let expected = Expected {
+            thickness: plate.thickness,
+            deflection: estimate.deflection,
+            coefficient: plate.membrane_coefficient(),
+            surrounded: plate.rim.held.is_some(),
+            forces: [estimate.linear.force, estimate.stiffened.force],
+            first_wave: estimate.inertia_error(),
+            quasi_static: estimate.regime == Regime::QuasiStatic,
+            vibrates: decide::vibrates(model),
+        };
+        let of_effects = model.effects.known().iter().filter_map(|info| {
+            let answer = info.advice.as_ref()?.answer?;
+            Some(answer(&expected, &work.0))
+        });
+        let mut answers = vec![estimate.regime_answer(work.march())];
+        answers.extend(of_effects);
+        answers.extend([
             contact.answer(&plate),
             shear.answer(work.solid()),
             delamination::answer(delamination.as_ref()),
             resolution.answer(&blow, &estimate, work.finer(cells, steps)),
-        ];
+        ]);
         let impactor = (impact.strikes.len() > 1).then(|| spec.name.clone());
         let Blow { mass, velocity, .. } = blow;
-        Ok(Advice { impactor, mass, velocity, plate, estimate, contact, shear, delamination, resolution, answers })
+        Ok(Advice {
+            impactor,
+            mass,
+            velocity,
+            plate,
+            estimate,
+            expected,
+            contact,
+            shear,
+            delamination,
+            resolution,
+            answers,
+        })
     };
     impact.spec.impactors.iter().zip(&impact.strikes).map(&mut each).collect()
 }

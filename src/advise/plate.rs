@@ -1,6 +1,6 @@
 //! What the advisor knows of a plate under an impactor.
 
-use super::membrane::Held;
+use super::held::Held;
 use super::rim::Rim;
 use crate::analyses::assembled::{self, Assembled};
 use crate::error::Error;

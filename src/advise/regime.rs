@@ -1,7 +1,7 @@
 //! How a plate responds: with its waves, with its lowest modes, or as if at rest.
 
-use super::answer::{Answer, Number};
 use super::estimate::Estimate;
+use crate::effect::{Answer, Number};
 
 /// How a plate responds to an impact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

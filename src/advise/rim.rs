@@ -1,6 +1,6 @@
 //! The edge that supports a plate around an impact.
 
-use super::membrane::Held;
+use super::held::Held;
 use crate::model::Model;
 use fem_core::dof::Dof;
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,7 +1,7 @@
 //! Whether a plate shears, and whether its thickness must be resolved.
 
-use super::answer::{Answer, Number};
 use super::plate::PlateConstants;
+use crate::effect::{Answer, Number};
 use std::f64::consts::PI;
 
 /// D*/(κ G h a²) from which on elements must be flexible in shear.

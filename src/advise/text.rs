@@ -1,6 +1,7 @@
 //! Advice as people read it.
 
-use super::{Advice, Answer, Number};
+use super::Advice;
+use crate::effect::{Answer, Number};
 use std::fmt;
 
 impl fmt::Display for Advice {

@@ -1,7 +1,7 @@
 //! K and M of a model.
 
 use crate::error::Error;
-use crate::forecast::{MemoryEstimate, analysed};
+use crate::forecast::MemoryEstimate;
 use crate::model::Model;
 use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, Symmetric, assemble, condense, pattern};
 use fem_core::counters::Counters;
@@ -92,7 +92,7 @@ impl fmt::Display for Substructures {
     }
 }
 
-/// Assembles K and M of `model`. M is left zero where `inertia` is not wanted.
+/// Assembles K and M of `model`, and what effects add to K. M is left zero where `inertia` is not wanted.
 ///
 /// # Errors
 /// A cell that the element refuses, more memory than there is.
@@ -107,16 +107,17 @@ pub fn structure(
     let name = move |i: usize| described.describe(originals.original(i));
     let Some(division) = division else {
         let pattern = Arc::new(pattern(plate, constraints));
-        let (symbolic, memory) = analysed(model, pattern.clone())?;
+        let (symbolic, memory) = model.analyse(pattern.clone())?;
         let mut matrix = |which| assemble(plate, &**element, constraints, &pattern, which, threads, counters);
-        let k = matrix(Matrix::Stiffness)?;
+        let mut k = matrix(Matrix::Stiffness)?;
         let m = if inertia { matrix(Matrix::Mass)? } else { Symmetric::zero(pattern.clone()) };
+        model.effects.on_stiffness(&model.body(), &mut k)?;
         let factor_entries = symbolic.entries();
         let structure = SparseStructure::new(symbolic, k, m, threads, name);
         return Ok(Assembled { structure, factor_entries, memory, condensation: None });
     };
     let Condensed { k, m, way } = condense(plate, &**element, constraints, division, inertia, threads, counters)?;
-    let (symbolic, memory) = analysed(model, k.pattern().clone())?;
+    let (symbolic, memory) = model.analyse(k.pattern().clone())?;
     let factor_entries = symbolic.entries();
     let masters: Vec<usize> = (0..way.ndof()).map(|i| way.independent(i)).collect();
     let structure = SparseStructure::new(symbolic, k, m, threads, move |i| name(masters[i]));

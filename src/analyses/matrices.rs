@@ -20,9 +20,12 @@ pub fn write(dir: &OutputDir, model: &Model, threads: NonZeroUsize) -> Result<()
     let pattern = Arc::new(pattern(&model.plate, &model.constraints));
     let mut counters = Counters::default();
     for (matrix, name) in [(Matrix::Stiffness, "stiffness.mtx"), (Matrix::Mass, "mass.mtx")] {
-        let matrix =
+        let mut values =
             assemble(&model.plate, &*model.element, &model.constraints, &pattern, matrix, threads, &mut counters)?;
-        write_matrix(dir, name, &matrix)?;
+        if matrix == Matrix::Stiffness {
+            model.effects.on_stiffness(&model.body(), &mut values)?;
+        }
+        write_matrix(dir, name, &values)?;
     }
     let header = ["row", "unknown", "node", "x_m", "y_m", "z_m"];
     let named: Vec<_> = (0..pattern.ndof()).map(|i| model.plate.locate(model.constraints.original(i))).collect();

@@ -4,9 +4,8 @@ use super::assembled::{self, Substructures};
 use super::stress::{self, Margin};
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
-use crate::forecast::analysed;
 use crate::model::{Model, NamedProfile, Plan};
-use fem_core::assembly::{LargePlate, free_forces, pattern};
+use fem_core::assembly::{LargePlate, pattern};
 use fem_core::counters::Counters;
 use fem_core::dof::Dof;
 use fem_core::element::ElementError;
@@ -77,7 +76,7 @@ struct Found {
 /// ill-conditioned, a result that is not finite, a criterion whose material lacks a constant.
 pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Error> {
     let Plan::Static { forces } = &model.plan else { return Err(Error::NoLoads) };
-    if model.undecided() {
+    if model.effects.undecided() {
         return Err(Error::Undecided);
     }
     let mut stopwatch = Stopwatch::default();
@@ -91,7 +90,8 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
         let along = |(dof, f): (usize, &f64)| if model.plate.locate(dof).2 == dof_of(n) { *f } else { 0.0 };
         forces.iter().enumerate().map(along).sum()
     });
-    let solver = if model.effects.membrane { nonlinear } else { linear };
+    let nature = model.effects.nature();
+    let solver = if nature.large { nonlinear } else { linear };
     let found = solver(model, &f, threads, &mut counters, &mut stopwatch)?;
     if !found.strain_energy.is_finite() {
         return Err(Error::NotFinite("displacement"));
@@ -104,7 +104,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
     stopwatch.lap("solve");
     let margins = stress::margins(model, &u)?;
     let mut field = Displacements::new(&model.plate, &model.laminate, &*model.element, &u);
-    if model.effects.membrane {
+    if nature.large {
         field = field.with_large_strains();
     }
     let sample = |named: &NamedProfile| {
@@ -116,11 +116,8 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
     let (profiles, resultants) = sampled.into_iter().unzip();
     stopwatch.lap("stresses");
     // The estimate sees only strains that cause stress.
-    let mesh_error = if model.effects.membrane || model.effects.cure.is_some() {
-        None
-    } else {
-        mesh_error(&model.plate, &*model.element, &u)?
-    };
+    let mesh_error =
+        if nature.large || nature.strained { None } else { mesh_error(&model.plate, &*model.element, &u)? };
     stopwatch.lap("mesh error");
     let phases = stopwatch.phases().to_vec();
     Ok(StaticSolution {
@@ -152,11 +149,12 @@ fn linear(
 ) -> Result<Found, Error> {
     let mut assembled = assembled::structure(model, false, threads, counters)?;
     stopwatch.lap("assemble");
-    let (mut f, mut thermal, mut at_rest) = (f.to_vec(), vec![0.0; f.len()], 0.0);
-    if model.effects.cure.is_some() {
-        let (forces, energy) = free_forces(&model.plate, &*model.element, &model.constraints)?;
-        f.iter_mut().zip(&forces).for_each(|(f, free)| *f += free);
-        (thermal, at_rest) = (forces, energy);
+    let (mut f, mut own_forces, mut held) = (f.to_vec(), vec![0.0; f.len()], 0.0);
+    for effect in model.effects.acting() {
+        let Some((forces, energy)) = effect.forces(&model.body())? else { continue };
+        f.iter_mut().zip(&forces).for_each(|(f, force)| *f += force);
+        own_forces.iter_mut().zip(&forces).for_each(|(sum, force)| *sum += force);
+        held += energy;
     }
     let (mut rest, own) = assembled.load(&f);
     let mut solved = rest.clone();
@@ -173,9 +171,9 @@ fn linear(
     let condition = assembled.structure.condition()?;
     (counters.factorisations, counters.solves) = assembled.structure.work();
     Ok(Found {
-        // ½ uᵀ K u − uᵀ f₀ + ½ ∫ ε₀ C ε₀ dV with K u = f and f₀ that of the free strains.
-        strain_energy: at_rest
-            + f.iter().zip(&thermal).zip(&independent).map(|((f, free), u)| (0.5 * f - free) * u).sum::<f64>(),
+        // ½ uᵀ K u − uᵀ f₀ + ½ ∫ ε₀ C ε₀ dV with K u = f and f₀ that of free strains.
+        strain_energy: held
+            + f.iter().zip(&own_forces).zip(&independent).map(|((f, free), u)| (0.5 * f - free) * u).sum::<f64>(),
         independent,
         substructures: assembled.substructures(),
         factor_entries: assembled.factor_entries,
@@ -194,13 +192,13 @@ fn nonlinear(
     stopwatch: &mut Stopwatch,
 ) -> Result<Found, Error> {
     let Model { plate, element, constraints, .. } = model;
-    let (symbolic, _) = analysed(model, Arc::new(pattern(plate, constraints)))?;
+    let (symbolic, _) = model.analyse(Arc::new(pattern(plate, constraints)))?;
     let factor_entries = symbolic.entries();
     let mut large = LargePlate::new(plate, element.clone(), constraints).ok_or(Error::SmallOnly)?;
     // A plate that is hot and has not moved is pressed in its plane more than it bears.
-    let start = match model.effects.cure {
-        Some(_) => linear(model, f, threads, counters, stopwatch)?.independent,
-        None => vec![0.0; f.len()],
+    let start = match model.effects.nature().strained {
+        true => linear(model, f, threads, counters, stopwatch)?.independent,
+        false => vec![0.0; f.len()],
     };
     let found = large.equilibrium(symbolic, f, start, threads)?;
     tracing::info!(iterations = found.decrements.len(), "equilibrium");

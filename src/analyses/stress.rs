@@ -2,14 +2,13 @@
 
 use super::expansion::Expansion;
 use crate::error::Error;
-use crate::model::{Model, NamedCriterion, Plan};
+use crate::model::{Model, NamedCriterion};
 use crate::words::name_ply;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::failure::Site;
 use fem_core::recovery::{Recovery, Station};
-use fem_core::residual::Residual;
-use fem_core::tensor::{Global, Ply, Stress6};
+use fem_core::tensor::{Ply, Stress6};
 use fem_core::window;
 use fem_failure::scan::{self, PlyOrInterface, Probe, Scan, ScanSite};
 use fem_io::scene::Window;
@@ -100,7 +99,7 @@ impl<'a> Watch<'a> {
             recovery,
         };
         // Stresses of large deflections are not products with the coordinates.
-        if let Some((basis, modes)) = watch.expansion.basis().filter(|_| !model.effects.membrane)
+        if let Some((basis, modes)) = watch.expansion.basis().filter(|_| !model.effects.nature().large)
             && 6 * watch.recovery.sites() * modes * size_of::<f64>() <= OPERATOR_LIMIT
         {
             let mut operator = vec![0.0; 6 * watch.recovery.sites() * modes];
@@ -255,25 +254,12 @@ pub(crate) fn margins(model: &Model, u: &[f64]) -> Result<Vec<Margin>, Error> {
     Ok(model.criteria.iter().filter_map(smallest).collect())
 }
 
-/// Residual stresses of the stations that do not follow from displacements, six each: under loads at rest those that free
-/// strains leave in a plate held in its shape, in an impact those of the free plate, which the march does not know. Empty
-/// where there are none.
+/// Stresses of the stations that do not follow from displacements, six each; empty where there are none.
 ///
 /// # Errors
-/// A material without thermal expansion.
+/// A material that lacks a constant.
 pub(crate) fn residual(model: &Model, recovery: &Recovery) -> Result<Vec<f64>, Error> {
-    let Some(change) = model.effects.cure else { return Ok(Vec::new()) };
-    let cooled = Residual::new(&model.laminate, &model.materials, change)?;
-    let of_station = |station: &Station| match model.plan {
-        Plan::Impact(_) => cooled.stress(&model.materials[station.material], station.angle, station.z),
-        _ => {
-            let slice = station.ply - model.laminate.plies_of(station.layer).start;
-            let held = model.element.held_stress(&model.plate.stacks[station.layer].slices[slice]);
-            Ok(Stress6::<Global>::new(held).to_ply(station.angle))
-        }
-    };
-    let stations: Vec<Stress6<Ply>> = recovery.stations.iter().map(of_station).collect::<Result<_, _>>()?;
-    Ok(stations.iter().flat_map(|s| s.0).collect())
+    model.effects.stresses(&model.body(), recovery)
 }
 
 /// Adds the stresses of stations to those of all sites.
@@ -297,7 +283,7 @@ pub(crate) fn recover(
     count: usize,
     out: &mut [f64],
 ) -> Result<(), Error> {
-    let Some(large) = model.element.large_displacements().filter(|_| model.effects.membrane) else {
+    let Some(large) = model.element.large_displacements().filter(|_| model.effects.nature().large) else {
         return Ok(recovery.stresses(&model.plate, &*model.element, u, count, out)?);
     };
     for (u, out) in u.chunks_exact(model.plate.ndof()).zip(out.chunks_exact_mut(6 * recovery.sites())) {

@@ -1,7 +1,8 @@
 //! `fem advise`.
 
 use super::{Console, Format, warn};
-use crate::advise::{self, Advice, Answer};
+use crate::advise::{self, Advice};
+use crate::effect::Answer;
 use crate::model::Model;
 use crate::registry::Registry;
 use clap::Args;

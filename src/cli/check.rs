@@ -136,8 +136,11 @@ impl March {
 
 fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
     let scene = scene::read(&arguments.scene)?;
-    let keys =
-        if arguments.explain { scene::explain(&arguments.scene, &|kind| registry.choices(kind))? } else { vec![] };
+    let keys = if arguments.explain {
+        scene::explain(&arguments.scene, &|kind| registry.choices(kind), &registry.effect_keys())?
+    } else {
+        vec![]
+    };
     let model = advise::decided(Model::new(scene, registry)?, NonZeroUsize::MIN)?;
     let (mut march, mut condition, mut modes, mut frames) = (None, None, None, 1);
     let (memory, substructures) = match &model.plan {

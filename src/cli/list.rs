@@ -6,7 +6,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use fem_core::plugin::{Kind, ParamDefault, ParamForm, ParamInfo, PluginInfo};
 use fem_io::materials::{self, LibraryMaterial};
-use fem_io::scene::{self, EffectInfo};
+use fem_io::scene::{Absent, EFFECT_SETTINGS, Form, Key};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::ops::Bound;
@@ -40,8 +40,8 @@ struct Entry {
     summary: &'static str,
     #[serde(skip_serializing_if = "str::is_empty")]
     source: &'static str,
-    #[serde(skip_serializing_if = "str::is_empty")]
-    values: &'static str,
+    #[serde(skip_serializing_if = "String::is_empty")]
+    values: String,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     parameters: Vec<Parameter>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -79,7 +79,10 @@ struct Constant {
 
 pub(super) fn list(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let entries: Vec<Entry> = match arguments.what.as_str() {
-        EFFECTS => scene::EFFECTS.iter().map(Entry::from).collect(),
+        EFFECTS => {
+            let settings = EFFECT_SETTINGS.iter().map(|setting| Entry::effect(&setting.key, setting.source));
+            settings.chain(registry.effects().map(|info| Entry::effect(&info.key, info.source))).collect()
+        }
         MATERIALS => materials::names().filter_map(materials::library).map(Entry::from).collect(),
         plural => {
             let kinds = Kind::ALL.iter().filter(|kind| kind.plural() == plural);
@@ -92,14 +95,14 @@ pub(super) fn list(registry: &Registry, arguments: &Arguments, console: &Console
 
 impl Entry {
     fn new(name: &'static str, summary: &'static str, source: &'static str) -> Self {
-        Self { name, summary, source, values: "", parameters: Vec::new(), constants: Vec::new() }
+        Self { name, summary, source, values: String::new(), parameters: Vec::new(), constants: Vec::new() }
     }
 
     fn text(&self) -> String {
         let Self { name, summary, source, .. } = self;
         let source = if source.is_empty() { String::new() } else { format!(" [{source}]") };
         let mut lines = vec![format!("{name:<20} {summary}{source}")];
-        lines.extend(Some(self.values).filter(|v| !v.is_empty()).map(|values| format!("{:<20}   {values}", "")));
+        lines.extend(Some(&self.values).filter(|v| !v.is_empty()).map(|values| format!("{:<20}   {values}", "")));
         lines.extend(self.parameters.iter().map(|p| format!("{:<20}   {}: {}", "", p.name, p.text)));
         let constant = |c: &Constant| format!("{:<20}   {}: {}, {} [{}]", "", c.name, c.value, c.status, c.source);
         lines.extend(self.constants.iter().map(constant));
@@ -148,9 +151,30 @@ impl From<&ParamInfo> for Parameter {
     }
 }
 
-impl From<&EffectInfo> for Entry {
-    fn from(info: &EffectInfo) -> Self {
-        Self { values: info.values, ..Self::new(info.name, info.summary, info.source) }
+impl Entry {
+    fn effect(key: &Key, source: &'static str) -> Self {
+        Self { values: values(key), ..Self::new(key.name, key.about, source) }
+    }
+}
+
+/// What a key may be set to; what holds without it comes first.
+fn values(key: &Key) -> String {
+    let mut values = values_of(&key.form, key.example);
+    if let Absent::Default(default) = key.absent {
+        values.sort_by_key(|value| value != default);
+    }
+    values.join(", ")
+}
+
+fn values_of(form: &Form, example: &str) -> Vec<String> {
+    match form {
+        Form::Words(words) => words.iter().map(|word| format!("\"{word}\"")).collect(),
+        Form::OneOf(forms) => forms.iter().flat_map(|form| values_of(form, example)).collect(),
+        Form::Table(keys) => {
+            let names: Vec<_> = keys.iter().map(|key| key.name).collect();
+            vec![format!("{{ {} }}", names.join(", "))]
+        }
+        _ => vec![format!("such as {example}")],
     }
 }
 

@@ -132,7 +132,7 @@ fn dispatch(registry: &Registry, command: &Command, console: &Console) -> miette
         Command::Advise(a) => advise::advise(registry, a, console),
         Command::Modes(a) => modes::modes(registry, a, console),
         Command::Study(a) => study::study(registry, a, console),
-        Command::Report(a) => report::report(a, console),
+        Command::Report(a) => report::report(registry, a, console),
         Command::Mesh(a) => mesh::mesh(a, console),
         Command::Matrices(a) => matrices::matrices(registry, a, console),
         Command::List(a) => list::list(registry, a, console),

@@ -2,6 +2,7 @@
 
 use super::{Console, Format};
 use crate::output::report;
+use crate::registry::Registry;
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -21,8 +22,8 @@ struct Written {
     report: PathBuf,
 }
 
-pub(super) fn report(arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
-    let written = Written { report: report::write(&arguments.folder)? };
+pub(super) fn report(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
+    let written = Written { report: report::write(&arguments.folder, &registry.columns())? };
     console.show(arguments.format, &written, || format!("  report    {}\n", written.report.display()))?;
     Ok(ExitCode::SUCCESS)
 }

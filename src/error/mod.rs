@@ -83,7 +83,7 @@ pub enum Error {
         /// Name of the element.
         element: String,
     },
-    #[error("the scene leaves `effects.membrane` to the advisor, which was not asked")]
+    #[error("the scene leaves effects to the advisor, which was not asked")]
     #[diagnostic(help("pass the model through `fem::advise::decided`, or write \"on\" or \"off\""))]
     Undecided,
     #[error("the scene itself does not run, so that there is nothing to study: {0}")]
@@ -108,12 +108,10 @@ pub enum Error {
     #[diagnostic(help("set `analysis = \"static\"` and give a `[[load]]`"))]
     NoLoads,
     #[error(transparent)]
-    #[diagnostic(help("give its `alpha1` and `alpha2`, or leave `effects.cure` out"))]
+    #[diagnostic(help("give it, or leave the effect out that needs it"))]
     Material(#[from] MaterialError),
     #[error("the element does not support large deflections")]
-    #[diagnostic(help(
-        "use an element that does, such as `hermite-prism` or `mitc4`, or leave `effects.membrane` out"
-    ))]
+    #[diagnostic(help("use an element that does, such as `hermite-prism` or `mitc4`"))]
     SmallOnly,
     #[error("no equilibrium was found with large deflections")]
     #[diagnostic(help("{}", at_rest(.0)))]

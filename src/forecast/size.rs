@@ -1,6 +1,5 @@
 //! Sizes from which the time of a run follows.
 
-use crate::model::Model;
 use fem_core::counters::Counters;
 use serde::{Deserialize, Serialize};
 
@@ -31,20 +30,4 @@ pub struct Size {
     pub samples: u64,
     /// Work done.
     pub work: Counters,
-}
-
-impl Size {
-    /// Of `model`, and of the work that was done on it; what is marched and judged is left at zero.
-    pub fn of(model: &Model, counters: &Counters) -> Self {
-        let plane = &model.plate.plane;
-        Self {
-            cells: model.plate.cells(),
-            layers: model.plate.layers(),
-            cell_m: (plane.area() / plane.quads.len() as f64).sqrt(),
-            columns: model.plate.columns.len(),
-            unknowns: model.constraints.ndof(),
-            work: *counters,
-            ..Self::default()
-        }
-    }
 }

@@ -37,7 +37,7 @@ const COMBINE: f64 = 2e-9;
 pub(crate) const FILL: f64 = 1.2;
 
 /// Nominal seconds per phase.
-pub(crate) fn nominal(size: &Size) -> [f64; PHASES.len()] {
+pub fn nominal(size: &Size) -> [f64; PHASES.len()] {
     let (entries, modes, n) = (size.factor_entries as f64, size.marched as f64, size.unknowns as f64);
     let factor = |entries: f64| GFLOP / FACTOR * (entries / ENTRIES).powf(GROWTH);
     let (sites, steps, samples) = (size.sites as f64, size.work.steps as f64, size.samples as f64);

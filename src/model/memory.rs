@@ -1,8 +1,13 @@
-//! A plate that is too large is refused before anything is made that grows with it.
+//! What a model takes: a plate that is too large is refused before anything is made that grows with it.
 
+use super::{Model, Plan};
 use crate::cost::require;
 use crate::error::Error;
+use crate::forecast::{Demand, MemoryEstimate, Size, analyse, vectors};
+use fem_core::assembly::{Pattern, Symbolic};
+use fem_core::counters::Counters;
 use fem_core::plate::Plate;
+use std::sync::Arc;
 
 /// Refuses a plate of which the matrices alone would be more than there is: before anything is made that grows with them.
 pub(super) fn check(plate: &Plate) -> Result<(), Error> {
@@ -14,4 +19,36 @@ pub(super) fn check(plate: &Plate) -> Result<(), Error> {
     let levels = (3.0 * layers + 1.0) / (layers + 1.0);
     let entries = unknowns * plate.info().ndof() as f64 * 9.0 / 4.0 * levels / 2.0 / 2.0;
     require(24.0 * entries, || format!("its stiffness has about {entries:.1e} entries"))
+}
+
+impl Model {
+    /// The analysis of `pattern`, and what a computation of the model with it takes.
+    ///
+    /// # Errors
+    /// More memory than there is.
+    pub(crate) fn analyse(&self, pattern: Arc<Pattern>) -> Result<(Symbolic, MemoryEstimate), Error> {
+        let (vectors, contacts) = match &self.plan {
+            Plan::Impact(impact) if impact.reduction.is_some() => {
+                (vectors(&impact.spec.reduction.params), Some(impact.strikes.len()))
+            }
+            Plan::Modes { count } => (2 * count, None),
+            _ => (2, None),
+        };
+        let demand = Demand { all: self.plate.ndof(), unknowns: pattern.ndof(), vectors, contacts };
+        analyse(pattern, &demand, self.effects.memory(&self.body(), &demand))
+    }
+
+    /// Its sizes, and the work that was done on it; what is marched and judged is left at zero.
+    pub(crate) fn size(&self, counters: &Counters) -> Size {
+        let plane = &self.plate.plane;
+        Size {
+            cells: self.plate.cells(),
+            layers: self.plate.layers(),
+            cell_m: (plane.area() / plane.quads.len() as f64).sqrt(),
+            columns: self.plate.columns.len(),
+            unknowns: self.constraints.ndof(),
+            work: *counters,
+            ..Size::default()
+        }
+    }
 }

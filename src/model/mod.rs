@@ -10,13 +10,12 @@ mod plan;
 mod substructures;
 mod symmetry;
 
-pub use effects::{Decision, Effects};
-pub(crate) use effects::{INERTIA, MEMBRANE};
 pub use fields::FieldPlan;
 pub use gauge::Gauge;
 pub use mesh::mesh;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 
+use crate::effect::{Decision, Effects};
 use crate::error::Error;
 use crate::registry::Registry;
 use builder::Builder;
@@ -130,8 +129,9 @@ impl Model {
         };
         let areal_mass = laminate.areal_mass(&materials).map_err(lacks)?;
         let mut stacks = laminate.stacks(&materials).map_err(lacks)?;
-        if let (Some(change), Analysis::Static(_)) = (effects.cure, &scene.analysis) {
-            laminate.heat(&mut stacks, &materials, change).map_err(lacks)?;
+        let at_rest = matches!(scene.analysis, Analysis::Static(_));
+        for effect in effects.acting() {
+            effect.on_stacks(at_rest, &laminate, &materials, &mut stacks).map_err(lacks)?;
         }
         let mut plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
             .map_err(|why| builder.error(&scene.element.name, why.to_string(), ""))?;
@@ -143,7 +143,7 @@ impl Model {
         let (constraints, held) = builder.constraints(&plate)?;
         let plan = match &scene.analysis {
             Analysis::Impact(spec) => Plan::Impact(Box::new(builder.impact(spec, &plate, &*element, &constraints)?)),
-            Analysis::Static(loads) => Plan::Static { forces: builder.forces(loads, &plate, &*element)? },
+            Analysis::Static(loads) => Plan::Static { forces: builder.forces(loads, &effects, &plate, &*element)? },
             Analysis::Modes { count } => Plan::Modes { count: *count },
         };
         let centres: Vec<_> = match &plan {
@@ -157,7 +157,7 @@ impl Model {
         let fields = builder.fields(&plate, &centres)?;
         let resin = scene.interface.as_ref().map(|resin| resin.value);
         let threshold = builder.threshold(DelaminationThreshold::of(&laminate, &materials, resin))?;
-        let profiles = builder.profiles(&plate, effects)?;
+        let profiles = builder.profiles(&plate)?;
         let names: Vec<_> = criteria.iter().map(|(name, _)| name.as_str()).collect();
         info!(element = scene.element.name.value, criteria = names.join(", "), unknowns = constraints.ndof(), "model");
         Ok(Self {
@@ -185,7 +185,7 @@ impl Model {
 
     /// Whether the plate has velocities: in an impact, unless it follows the force at rest.
     pub fn moves(&self) -> bool {
-        matches!(self.plan, Plan::Impact(_)) && self.effects.inertia
+        matches!(self.plan, Plan::Impact(_)) && self.effects.nature().inertia
     }
 
     /// The impactors of the scene.

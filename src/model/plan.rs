@@ -1,7 +1,7 @@
 //! What a model is for: an impact, loads at rest, natural modes.
 
-use super::Effects;
 use super::builder::Builder;
+use crate::effect::Effects;
 use crate::error::Error;
 use fem_core::constraint::Constraints;
 use fem_core::contact::ContactLaw;
@@ -13,7 +13,9 @@ use fem_core::plate::{Plate, PlateError};
 use fem_core::profile::Profile;
 use fem_core::reduction::Reduction;
 use fem_core::time::Integrator;
-use fem_io::scene::{self, Analysis, ContactLoad, ImpactPoint, Load, LoadKind, Located, ProfileLine, SceneError};
+use fem_io::scene::{
+    self, Analysis, ContactLoad, ImpactPoint, Load, LoadKind, Located, Place, ProfileLine, SceneError,
+};
 
 /// Fewest cells whose stresses can be differentiated.
 const LEAST_CELLS: usize = 4;
@@ -114,7 +116,17 @@ impl Builder<'_> {
         }
     }
 
-    pub(super) fn forces(&self, loads: &[Load], plate: &Plate, element: &dyn Element) -> Result<Vec<f64>, Error> {
+    pub(super) fn forces(
+        &self,
+        loads: &[Load],
+        effects: &Effects,
+        plate: &Plate,
+        element: &dyn Element,
+    ) -> Result<Vec<f64>, Error> {
+        if loads.is_empty() && !effects.nature().strained {
+            let help = "write, for example: load = [{ pressure = \"1 MPa\", face = \"top\" }]";
+            return Err(self.scene.source.error_at(&Place::TOP, "`load` is missing", help).into());
+        }
         let mut forces = vec![0.0; plate.ndof()];
         for Load { kind, place } in loads {
             match kind {
@@ -168,17 +180,13 @@ impl Builder<'_> {
         Ok(forces)
     }
 
-    pub(super) fn profiles(&self, plate: &Plate, effects: Effects) -> Result<Vec<NamedProfile>, SceneError> {
+    pub(super) fn profiles(&self, plate: &Plate) -> Result<Vec<NamedProfile>, SceneError> {
         let cells = plate.plane.quads.len();
         let each = |line: &ProfileLine| {
             let (point, _) = self.point(plate, &line.at)?;
             let Some(profile) = Profile::at(plate, point) else {
                 return Err(self.error(&line.at, "the point lies outside the plate", "move it"));
             };
-            if line.equilibrium && effects.membrane {
-                let message = "`equilibrium` integrates stresses of small displacements";
-                return Err(self.error(&line.name, message, "leave `equilibrium` out, or `effects.membrane`"));
-            }
             if line.equilibrium && cells < LEAST_CELLS {
                 let message = format!("the stresses of {cells} cells cannot be differentiated for `equilibrium`");
                 let help = format!("use at least {LEAST_CELLS} cells, or leave `equilibrium` out");

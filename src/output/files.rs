@@ -17,7 +17,8 @@ use fem_io::tables::{self, EventRow};
 /// A folder that cannot be written, a number that is not finite.
 pub fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
     let names: Vec<_> = model.impactors().iter().map(|impactor| impactor.name.as_str()).collect();
-    tables::write_history(dir, &names, &outcome.history)?;
+    let columns: Vec<_> = model.effects.columns().map(|column| column.name).collect();
+    tables::write_history(dir, &names, &columns, &outcome.history)?;
     let row = |e: &FailureEvent| EventRow {
         time_s: e.time,
         criterion: e.criterion.clone(),

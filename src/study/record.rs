@@ -48,12 +48,12 @@ impl RunRecord {
             }
             Found::Static(own) => {
                 let solution = &own.solution;
-                let size = Size { factor_entries: solution.factor_entries, ..Size::of(&model, &solution.counters) };
+                let size = Size { factor_entries: solution.factor_entries, ..model.size(&solution.counters) };
                 (size, quantity::of_statics(&model, own)?, None)
             }
             Found::Modes(own) => {
                 let solution = &own.solution;
-                let size = Size { factor_entries: solution.factor_entries, ..Size::of(&model, &solution.counters) };
+                let size = Size { factor_entries: solution.factor_entries, ..model.size(&solution.counters) };
                 (size, quantity::of_modes(&solution.modes.omega), None)
             }
         };

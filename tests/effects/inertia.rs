@@ -92,9 +92,9 @@ fn the_advisor_leaves_it_out_where_the_mass_is_large() {
     const AUTO: &str = "inertia = 'auto'";
     let decided = |struck: Struck| {
         let model = struck.model().unwrap();
-        assert!(model.undecided() && model.effects.inertia);
+        assert!(model.effects.undecided() && model.effects.nature().inertia);
         let model = advise::decided(model, NonZeroUsize::MIN).unwrap();
-        (model.effects.inertia, model.decisions[0].expected)
+        (model.effects.nature().inertia, model.decisions[0].expected)
     };
     let heavier = |effects| Struck {
         impactor: "mass = '20 kg', velocity = '0.5 m/s'",

@@ -31,6 +31,13 @@ pub enum PatternError {
     NotCompressed,
     /// A column does not hold its diagonal and then rows below, ascending.
     Column(usize),
+    /// It has no entry in this place.
+    Missing {
+        /// The row.
+        row: usize,
+        /// The column.
+        column: usize,
+    },
 }
 
 impl fmt::Display for PatternError {
@@ -38,6 +45,7 @@ impl fmt::Display for PatternError {
         match self {
             Self::NotSquare { rows, columns } => write!(f, "a matrix of {rows} x {columns} is not square"),
             Self::NotCompressed => f.write_str("there is room between the columns of the matrix"),
+            Self::Missing { row, column } => write!(f, "the pattern couples no unknowns {row} and {column}"),
             Self::Column(j) => write!(f, "column {j} does not hold its diagonal and then rows below it, ascending"),
         }
     }

@@ -1,6 +1,7 @@
 //! A symmetric sparse matrix on a pattern that others share.
 
-use super::Pattern;
+use super::{Pattern, PatternError};
+use crate::words::functional::Functional;
 use faer::sparse::ops::binary_op;
 use faer::sparse::{FaerError, SparseColMat, SparseColMatMut, SparseColMatRef};
 use std::sync::Arc;
@@ -48,6 +49,23 @@ impl Symmetric {
     pub fn full(&self) -> Result<SparseColMat<usize, f64>, FaerError> {
         let upper = self.lower().transpose().to_col_major()?;
         binary_op(self.lower(), upper.as_ref(), |lower, upper| lower.or(upper).copied().unwrap_or(0.0))
+    }
+
+    /// `A ← A + scale · w wᵀ`: of a stiffness, a spring that holds the displacement w.
+    ///
+    /// # Errors
+    /// Unknowns of which the pattern couples no two, as those of cells that do not touch; some entries may have been added.
+    pub fn add_spring(&mut self, scale: f64, w: &Functional) -> Result<(), PatternError> {
+        let Self { pattern, values } = self;
+        for (j, b) in &w.0 {
+            let start = pattern.starts()[*j];
+            let column = &pattern.rows()[start..pattern.starts()[*j + 1]];
+            for (i, a) in w.0.iter().filter(|(i, _)| i >= j) {
+                let missing = |_| PatternError::Missing { row: *i, column: *j };
+                values[start + column.binary_search(i).map_err(missing)?] += scale * a * b;
+            }
+        }
+        Ok(())
     }
 
     /// `Y ← Y + scale · A X`, both `n × columns`, column-major; columns go together in fours, which reads the matrix once.

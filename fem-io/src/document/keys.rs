@@ -4,26 +4,29 @@ use super::tree::{Node, Table};
 use fem_core::plugin::{Dimension, Kind, PluginInfo};
 
 /// The keys of a table.
-pub(crate) type Keys = &'static [Key];
+pub type Keys = &'static [Key];
 
 /// The plug-ins of a kind that a scene can name.
 pub type Plugins<'a> = &'a dyn Fn(Kind) -> Vec<PluginInfo>;
 
 /// A key of a table.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Key {
-    pub(crate) name: &'static str,
-    pub(crate) form: Form,
+pub struct Key {
+    /// The key.
+    pub name: &'static str,
+    /// What its value may be.
+    pub form: Form,
     /// A value in TOML.
-    pub(crate) example: &'static str,
+    pub example: &'static str,
     /// What it means, in a line.
-    pub(crate) about: &'static str,
-    pub(crate) absent: Absent,
+    pub about: &'static str,
+    /// What holds without it.
+    pub absent: Absent,
 }
 
 /// What holds where neither scene nor preset has a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Absent {
+pub enum Absent {
     /// The scene does not mention it.
     Nothing,
     /// The scene is refused.
@@ -34,9 +37,12 @@ pub(crate) enum Absent {
 
 /// What the value of a key may be.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Form {
+pub enum Form {
+    /// A text.
     Text,
+    /// `true` or `false`.
     Flag,
+    /// A number without unit.
     Number,
     /// A whole number of at least this.
     Count(u32),
@@ -46,13 +52,17 @@ pub(crate) enum Form {
     Words(&'static [&'static str]),
     /// A material of the library.
     Library,
+    /// A table with these keys.
     Table(Keys),
+    /// The table of effects: the keys that every scene may have, and those of registered effects.
+    Effects,
     /// A table whose keys are the scene's own names.
     Named(&'static Form),
     /// A list that is not empty.
     List(&'static Form),
     /// A list of so many values.
     Several(usize, &'static Form),
+    /// Any of these.
     OneOf(&'static [Form]),
     /// A table that names a plug-in under this key beside its parameters and keys of others.
     Plugin(Kind, &'static str, Keys),
@@ -62,22 +72,27 @@ pub(crate) enum Form {
     Setting,
 }
 
-pub(crate) const fn key(name: &'static str, form: Form, example: &'static str, about: &'static str) -> Key {
+/// A key whose absence says nothing.
+pub const fn key(name: &'static str, form: Form, example: &'static str, about: &'static str) -> Key {
     Key { name, form, example, about, absent: Absent::Nothing }
 }
 
 impl Key {
-    pub(crate) const fn required(self) -> Self {
+    /// The same key; a scene without it is refused.
+    #[must_use]
+    pub const fn required(self) -> Self {
         Self { absent: Absent::Refused, ..self }
     }
 
-    pub(crate) const fn default(self, value: &'static str) -> Self {
+    /// The same key; without it this value in TOML holds.
+    #[must_use]
+    pub const fn default(self, value: &'static str) -> Self {
         Self { absent: Absent::Default(value), ..self }
     }
 }
 
 /// The words of `choices`, for [`Form::Words`].
-pub(crate) const fn words<T, const N: usize>(choices: &[(&'static str, T); N]) -> [&'static str; N] {
+pub const fn words<T, const N: usize>(choices: &[(&'static str, T); N]) -> [&'static str; N] {
     let mut words = [""; N];
     let mut i = 0;
     while i < N {
@@ -113,7 +128,8 @@ impl Form {
                 let wanted = |key: &&Key| key.absent == Absent::Refused;
                 holds(table, keys) && keys.iter().filter(wanted).all(|key| table.get(key.name).is_some())
             }
-            (Self::Named(_) | Self::Plugin(..) | Self::Setting, Node::Table(_)) | (Self::Flag, Node::Flag(_)) => true,
+            (Self::Named(_) | Self::Plugin(..) | Self::Effects | Self::Setting, Node::Table(_))
+            | (Self::Flag, Node::Flag(_)) => true,
             (Self::Words(words), Node::Text(text)) => words.contains(&text.as_str()),
             (Self::Text | Self::Quantity(_) | Self::Library | Self::PluginName(_), Node::Text(_)) => true,
             (Self::Number | Self::Count(_), Node::Number(_)) => true,

@@ -8,7 +8,7 @@ use fem_core::plugin::{Dimension, unknown_key};
 use std::sync::Arc;
 
 /// A table whose keys are all known.
-pub(crate) struct Reader<'a> {
+pub struct Reader<'a> {
     table: &'a Table,
     path: String,
     place: Place,
@@ -42,13 +42,14 @@ impl<'a> Reader<'a> {
         self.keys.iter().find(|known| known.name == key).map_or("", |known| known.example)
     }
 
-    pub(crate) fn optional(&self, key: &str) -> Option<Field<'a>> {
+    /// The value of `key`, where the table has it.
+    pub fn optional(&self, key: &str) -> Option<SceneValue<'a>> {
         let entry = self.table.get(key)?;
         let (path, example) = (self.path_of(key), self.example(key));
-        Some(Field { item: &entry.item, key_place: &entry.place, path, example, source: self.source })
+        Some(SceneValue { item: &entry.item, key_place: &entry.place, path, example, source: self.source })
     }
 
-    pub(crate) fn required(&self, key: &str) -> Result<Field<'a>, SceneError> {
+    pub(crate) fn required(&self, key: &str) -> Result<SceneValue<'a>, SceneError> {
         let example = || format!("write, for example: {} = {}", self.path_of(key), self.example(key));
         self.optional(key).ok_or_else(|| self.missing(key, example()))
     }
@@ -69,7 +70,10 @@ impl<'a> Reader<'a> {
     }
 
     /// Two keys that exclude each other: at most one of them remains, that of the text which counts more.
-    pub(crate) fn either(&self, keys: [&str; 2]) -> Result<[Option<Field<'a>>; 2], SceneError> {
+    ///
+    /// # Errors
+    /// Both keys in one text.
+    pub fn either(&self, keys: [&str; 2]) -> Result<[Option<SceneValue<'a>>; 2], SceneError> {
         match keys.map(|key| self.optional(key)) {
             [Some(a), Some(b)] if a.place().origin == b.place().origin => {
                 Err(b.error(format!("cannot be combined with `{}`", keys[0]), "leave one of the two out"))
@@ -93,7 +97,7 @@ impl<'a> Reader<'a> {
 }
 
 /// A value being read, with its path for messages and an example of what would be right.
-pub(crate) struct Field<'a> {
+pub struct SceneValue<'a> {
     item: &'a Item,
     key_place: &'a Place,
     path: String,
@@ -101,7 +105,37 @@ pub(crate) struct Field<'a> {
     source: &'a Arc<SceneSource>,
 }
 
-impl<'a> Field<'a> {
+impl<'a> SceneValue<'a> {
+    /// The value `item` of the key at `path`.
+    pub(crate) fn new(
+        item: &'a Item,
+        key_place: &'a Place,
+        path: String,
+        example: &'static str,
+        source: &'a Arc<SceneSource>,
+    ) -> Self {
+        Self { item, key_place, path, example, source }
+    }
+
+    /// Whether the value is the word `word`.
+    pub fn is_word(&self, word: &str) -> bool {
+        matches!(self.node(), Node::Text(text) if text == word)
+    }
+
+    /// Whether the value is a text.
+    pub fn is_text(&self) -> bool {
+        matches!(self.node(), Node::Text(_))
+    }
+
+    /// The same value with another example for its messages.
+    pub(crate) fn with_example(self, example: &'static str) -> Self {
+        Self { example, ..self }
+    }
+
+    pub(crate) fn key_place(&self) -> &'a Place {
+        self.key_place
+    }
+
     pub(crate) fn item(&self) -> &'a Item {
         self.item
     }
@@ -128,7 +162,7 @@ impl<'a> Field<'a> {
     }
 
     /// An error about this value; `message` follows the path of its key.
-    pub(crate) fn error(&self, message: impl AsRef<str>, help: impl Into<String>) -> SceneError {
+    pub fn error(&self, message: impl AsRef<str>, help: impl Into<String>) -> SceneError {
         self.source.error_at(self.place(), format!("`{}`: {}", self.path, message.as_ref()), help)
     }
 
@@ -150,7 +184,11 @@ impl<'a> Field<'a> {
         self.error(error.to_string(), error.remedy(wanted))
     }
 
-    pub(crate) fn quantity(&self, wanted: Dimension) -> Result<f64, SceneError> {
+    /// A finite quantity of dimension `wanted`, in SI units.
+    ///
+    /// # Errors
+    /// A value without unit, or of another dimension.
+    pub fn quantity(&self, wanted: Dimension) -> Result<f64, SceneError> {
         match self.node() {
             Node::Text(text) => units::parse_as(text, wanted).map_err(|e| self.unit_error(&e, Some(wanted))),
             Node::Number(value) => Err(self.unit_error(&UnitError::BareNumber(value.to_string()), Some(wanted))),
@@ -159,7 +197,10 @@ impl<'a> Field<'a> {
     }
 
     /// A quantity above zero.
-    pub(crate) fn positive(&self, wanted: Dimension) -> Result<f64, SceneError> {
+    ///
+    /// # Errors
+    /// As [`SceneValue::quantity`], and any other value.
+    pub fn positive(&self, wanted: Dimension) -> Result<f64, SceneError> {
         let value = self.quantity(wanted)?;
         if value > 0.0 { Ok(value) } else { Err(self.wrong("positive")) }
     }
@@ -183,7 +224,10 @@ impl<'a> Field<'a> {
     }
 
     /// A finite pure number.
-    pub(crate) fn number(&self) -> Result<f64, SceneError> {
+    ///
+    /// # Errors
+    /// Anything else.
+    pub fn number(&self) -> Result<f64, SceneError> {
         match self.node() {
             Node::Number(value) if value.is_finite() => Ok(*value),
             _ => Err(self.wrong("a finite number without unit")),
@@ -206,7 +250,10 @@ impl<'a> Field<'a> {
     }
 
     /// One word out of `choices`.
-    pub(crate) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T, SceneError> {
+    ///
+    /// # Errors
+    /// Any other value.
+    pub fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T, SceneError> {
         self.word(choices.iter().map(|c| c.0)).map(|i| choices[i].1)
     }
 
@@ -224,12 +271,12 @@ impl<'a> Field<'a> {
     }
 
     /// The elements of a list that is not empty.
-    pub(crate) fn list(&self) -> Result<Vec<Field<'a>>, SceneError> {
+    pub(crate) fn list(&self) -> Result<Vec<SceneValue<'a>>, SceneError> {
         match self.node() {
             Node::List(items) if !items.is_empty() => Ok(items
                 .iter()
                 .enumerate()
-                .map(|(i, item)| Field {
+                .map(|(i, item)| SceneValue {
                     item,
                     key_place: self.key_place,
                     path: format!("{}[{i}]", self.path),
@@ -243,7 +290,10 @@ impl<'a> Field<'a> {
     }
 
     /// A table with known keys.
-    pub(crate) fn table(&self, keys: Keys) -> Result<Reader<'a>, SceneError> {
+    ///
+    /// # Errors
+    /// No table, or one with another key.
+    pub fn table(&self, keys: Keys) -> Result<Reader<'a>, SceneError> {
         self.table_with(keys.iter().collect())
     }
 
@@ -264,11 +314,16 @@ impl<'a> Field<'a> {
     }
 
     /// A table whose keys are the scene's own names.
-    pub(crate) fn entries(&self) -> Result<Vec<(&'a str, Field<'a>)>, SceneError> {
+    pub(crate) fn entries(&self) -> Result<Vec<(&'a str, SceneValue<'a>)>, SceneError> {
         let field = |entry: &'a super::tree::Entry| {
             let path = format!("{}.{}", self.path, entry.key);
-            let field =
-                Field { item: &entry.item, key_place: &entry.place, path, example: self.example, source: self.source };
+            let field = SceneValue {
+                item: &entry.item,
+                key_place: &entry.place,
+                path,
+                example: self.example,
+                source: self.source,
+            };
             (entry.key.as_str(), field)
         };
         Ok(self.any_table()?.0.iter().map(field).collect())

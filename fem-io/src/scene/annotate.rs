@@ -1,7 +1,7 @@
 //! A scene with every key it may have: those that it gives, the others commented out, each with what it means.
 
 use super::root::KEYS;
-use super::{Fidelity, foreign, schema};
+use super::{Fidelity, effects, foreign, schema};
 use crate::document::keys::{Absent, Form, Key, Plugins};
 use crate::document::source::{Origin, SceneError, SceneSource};
 use crate::document::tree::{Node, Table};
@@ -11,11 +11,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// The scene `text` with comments: what every key means, and, commented out, those that it leaves out, with the values
-/// that hold without them or with an example. Parameters of plug-ins are looked up in `plugins`.
+/// that hold without them or with an example. Parameters of plug-ins are looked up in `plugins`, keys of effects are `effects`.
 ///
 /// # Errors
 /// As [`super::parse`].
-pub fn annotated(text: &str, plugins: Plugins<'_>) -> Result<String, SceneError> {
+pub fn annotated(text: &str, plugins: Plugins<'_>, effects: &[Key]) -> Result<String, SceneError> {
     super::parse(text, Path::new("scene.toml"))?;
     let source = Arc::new(SceneSource::new(Path::new("scene.toml"), text, LIBRARY));
     let own = Table::parse(text, Origin::Scene, &source)?;
@@ -27,7 +27,7 @@ pub fn annotated(text: &str, plugins: Plugins<'_>) -> Result<String, SceneError>
     let preset = schema::parsed(named.map_or(Fidelity::Engineering, |(_, fidelity)| *fidelity).preset());
     let foreign = foreign(word("analysis").unwrap_or("impact"));
     let keys = || KEYS.iter().filter(|key| !foreign.contains(&key.name));
-    let mut writer = Writer { plugins, text: String::new() };
+    let mut writer = Writer { plugins, effects, text: String::new() };
     let (sections, lines): (Vec<&Key>, Vec<&Key>) = keys().partition(|key| is_section(key, &own));
     lines.iter().for_each(|key| writer.line(key, &own, Some(&preset)));
     for key in sections {
@@ -44,7 +44,7 @@ fn is_section(key: &Key, own: &Table) -> bool {
         (Some(Node::Table(_)), _) => true,
         (Some(Node::List(items)), _) => items.iter().all(|item| item.node.table().is_some()),
         // What a preset gives, or what may be left empty, is shown as a table; else an example in one line.
-        (None, Form::Table(_)) => key.absent == Absent::Default("{}"),
+        (None, Form::Table(_) | Form::Effects) => key.absent == Absent::Default("{}"),
         (None, Form::Plugin(..)) => ["element", "reduction"].contains(&key.name),
         _ => false,
     }
@@ -52,6 +52,7 @@ fn is_section(key: &Key, own: &Table) -> bool {
 
 struct Writer<'a> {
     plugins: Plugins<'a>,
+    effects: &'a [Key],
     text: String,
 }
 
@@ -128,6 +129,10 @@ impl Writer<'_> {
         let shown = |key: &&Key| whole || own.get(key.name).is_some();
         match meant {
             Form::Table(keys) => keys.iter().filter(shown).for_each(|key| self.line(key, own, preset)),
+            Form::Effects => {
+                let all = effects::KEYS.iter().chain(self.effects);
+                all.filter(shown).for_each(|key| self.line(key, own, preset));
+            }
             Form::Plugin(kind, name, others) => {
                 let plugins = (self.plugins)(*kind);
                 let called = [Some(own), preset].into_iter().flatten().find_map(|table| table.get(name));

@@ -1,8 +1,8 @@
 //! Every key that holds in a scene: its value, where that comes from, and what it means.
 
 use super::root::KEYS;
-use super::{Merged, foreign, material, run};
-use crate::document::keys::{Absent, Form, Keys, Plugins};
+use super::{Merged, effects, foreign, material, run};
+use crate::document::keys::{Absent, Form, Key, Keys, Plugins};
 use crate::document::reader::Reader;
 use crate::document::source::{Origin, Place, SceneError, SceneSource};
 use crate::document::tree::{Item, Node, Table};
@@ -26,11 +26,11 @@ pub struct Explained {
 }
 
 /// The keys that hold in the scene file `path`, in the order of the tables of a scene, with the parameters of
-/// `plugins`.
+/// `plugins` and the keys of `effects`.
 ///
 /// # Errors
 /// As [`super::read`].
-pub fn explain(path: &Path, plugins: Plugins<'_>) -> Result<Vec<Explained>, SceneError> {
+pub fn explain(path: &Path, plugins: Plugins<'_>, effects: &[Key]) -> Result<Vec<Explained>, SceneError> {
     super::read(path)?;
     let Merged { mut table, source, .. } = Merged::new(&super::read_text(path)?, path, "")?;
     let analysis = match table.get("analysis").map(|entry| &entry.item.node) {
@@ -44,7 +44,7 @@ pub fn explain(path: &Path, plugins: Plugins<'_>) -> Result<Vec<Explained>, Scen
             node => node.table_mut().into_iter().for_each(one_load),
         }
     }
-    let mut walk = Walk { plugins, source: Arc::clone(&source), found: Vec::new() };
+    let mut walk = Walk { plugins, effects, source: Arc::clone(&source), found: Vec::new() };
     for key in KEYS.iter().filter(|key| !foreign(&analysis).contains(&key.name)) {
         if key.name == "materials" {
             let materials = Reader::root(&table, KEYS, &source)?.required("materials")?;
@@ -67,27 +67,35 @@ pub fn explain(path: &Path, plugins: Plugins<'_>) -> Result<Vec<Explained>, Scen
 
 struct Walk<'a> {
     plugins: Plugins<'a>,
+    effects: &'a [Key],
     source: Arc<SceneSource>,
     found: Vec<Explained>,
 }
 
 impl Walk<'_> {
-    fn table(&mut self, keys: &[crate::document::keys::Key], table: &Table, path: &str) {
+    fn table(&mut self, keys: &[Key], table: &Table, path: &str) {
         for key in keys {
             let path = if path.is_empty() { key.name.to_owned() } else { format!("{path}.{}", key.name) };
             match (table.get(key.name), key.absent, &key.form) {
                 (Some(entry), ..) => self.value(&key.form, &entry.item, &path, key.about),
                 // A table of which nothing is said holds defaults.
                 (None, Absent::Default("{}"), Form::Table(keys)) => self.table(keys, &Table::default(), &path),
+                (None, Absent::Default("{}"), Form::Effects) => self.effects(&Table::default(), &path),
                 (None, Absent::Default(value), _) => self.add(path, value.to_owned(), "default", key.about),
                 (None, Absent::Nothing | Absent::Refused, _) => {}
             }
         }
     }
 
+    fn effects(&mut self, table: &Table, path: &str) {
+        self.table(effects::KEYS, table, path);
+        self.table(self.effects, table, path);
+    }
+
     fn value(&mut self, form: &Form, item: &Item, path: &str, about: &str) {
         match (form.meant_by(&item.node), &item.node) {
             (Form::Table(keys), Node::Table(table)) => self.table(keys, table, path),
+            (Form::Effects, Node::Table(table)) => self.effects(table, path),
             (Form::Named(form), Node::Table(table)) => {
                 table.0.iter().for_each(|e| self.value(form, &e.item, &format!("{path}.{}", e.key), about));
             }

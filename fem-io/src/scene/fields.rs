@@ -2,7 +2,7 @@
 
 use super::run::MarchSpec;
 use crate::document::keys::{Form, Keys, key, words};
-use crate::document::reader::Field;
+use crate::document::reader::SceneValue;
 use crate::document::source::{Located, SceneError};
 use crate::document::tree::Node;
 use fem_core::plugin::Dimension;
@@ -92,7 +92,7 @@ const INTERVALS: f64 = 10.0;
 const MOST_FRAMES: f64 = 1e4;
 
 /// Reads `output.fields`: `None` for `false`. `march` is that of an impact.
-pub(super) fn read(field: &Field<'_>, march: Option<&MarchSpec>) -> Result<Option<Fields>, SceneError> {
+pub(super) fn read(field: &SceneValue<'_>, march: Option<&MarchSpec>) -> Result<Option<Fields>, SceneError> {
     let cells = FieldCells::Lagrange;
     let every = march.map(|march| march.end.value / INTERVALS);
     let mut fields = Fields { every, times: Vec::new(), region: None, parts: None, cells };
@@ -127,7 +127,7 @@ pub(super) fn read(field: &Field<'_>, march: Option<&MarchSpec>) -> Result<Optio
     Ok(Some(fields))
 }
 
-fn read_interval(field: &Field<'_>, march: &MarchSpec) -> Result<f64, SceneError> {
+fn read_interval(field: &SceneValue<'_>, march: &MarchSpec) -> Result<f64, SceneError> {
     let every = field.positive(Dimension::TIME)?;
     let frames = march.end.value / every.max(march.step.value);
     if frames > MOST_FRAMES {
@@ -137,7 +137,7 @@ fn read_interval(field: &Field<'_>, march: &MarchSpec) -> Result<f64, SceneError
     Ok(every)
 }
 
-fn read_time(field: &Field<'_>, march: &MarchSpec) -> Result<f64, SceneError> {
+fn read_time(field: &SceneValue<'_>, march: &MarchSpec) -> Result<f64, SceneError> {
     let (time, end) = (field.quantity(Dimension::TIME)?, march.end.value);
     if !(0.0..=end).contains(&time) {
         let message = format!("{time:e} s is not within the march, which ends at {end:e} s");
@@ -146,7 +146,7 @@ fn read_time(field: &Field<'_>, march: &MarchSpec) -> Result<f64, SceneError> {
     Ok(time)
 }
 
-fn read_region(field: &Field<'_>) -> Result<Region, SceneError> {
+fn read_region(field: &SceneValue<'_>) -> Result<Region, SceneError> {
     let table = field.table(REGION)?;
     match table.either(["radius", "group"])? {
         [Some(radius), None] => Ok(Region::Radius(radius.at(radius.positive(Dimension::LENGTH)?))),

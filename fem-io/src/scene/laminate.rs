@@ -2,7 +2,7 @@
 
 use super::material;
 use crate::document::keys::{Form, Keys, key};
-use crate::document::reader::{Field, Reader};
+use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, SceneError};
 use crate::document::tree::Node;
 use fem_core::laminate::{LaminaPly, Laminate};
@@ -43,7 +43,7 @@ struct PlyType {
 
 /// The laminate, and the material of the resin between its plies if one is named.
 pub(super) fn read(
-    field: &Field<'_>,
+    field: &SceneValue<'_>,
     materials: &[Located<Material>],
 ) -> Result<(Located<Laminate>, Option<Located<usize>>), SceneError> {
     let table = field.table(KEYS)?;
@@ -67,7 +67,7 @@ pub(super) fn read(
     Ok((field.at(Laminate { plies, layers }), interface))
 }
 
-fn read_layup(field: &Field<'_>) -> Result<Vec<LayupPly>, SceneError> {
+fn read_layup(field: &SceneValue<'_>) -> Result<Vec<LayupPly>, SceneError> {
     let text = field.text()?;
     layup::parse(text)
         .map_err(|e| field.error_within(text, e.at, &e.why, "plies run from the bottom up: [0/45/-45/90]2s"))
@@ -79,7 +79,7 @@ fn ply_types(
     materials: &[Located<Material>],
 ) -> Result<Vec<(String, PlyType)>, SceneError> {
     let Some(field) = table.optional("ply") else { return Ok(Vec::new()) };
-    let read = |(label, field): &(&str, Field<'_>)| {
+    let read = |(label, field): &(&str, SceneValue<'_>)| {
         let table = field.table(PLY_KEYS)?;
         let mut ply = common;
         if let Some(field) = table.optional("material") {
@@ -97,7 +97,7 @@ fn read_ply(
     ply: &LayupPly,
     common: PlyType,
     types: &[(String, PlyType)],
-    field: &Field<'_>,
+    field: &SceneValue<'_>,
 ) -> Result<LaminaPly, SceneError> {
     let PlyType { material, thickness } = match &ply.label {
         None => common,
@@ -114,7 +114,7 @@ fn read_ply(
     Ok(LaminaPly { angle_deg: ply.angle_deg, angle: ply.angle_deg.to_radians(), material, thickness })
 }
 
-fn read_layers(field: &Field<'_>, plies: usize) -> Result<Vec<usize>, SceneError> {
+fn read_layers(field: &SceneValue<'_>, plies: usize) -> Result<Vec<usize>, SceneError> {
     if let Node::Number(_) = field.node() {
         let layers = field.count()?;
         if layers > plies {

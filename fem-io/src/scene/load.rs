@@ -3,7 +3,7 @@
 use super::run::{self, ImpactPoint};
 use super::support::{self, NodeSet};
 use crate::document::keys::{Form, Key, Keys, key, words};
-use crate::document::reader::{Field, Reader};
+use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, Place, SceneError};
 use crate::document::tree::Node;
 use crate::units;
@@ -167,11 +167,11 @@ pub(super) const PROFILE: Keys = &[
 /// Most heights of a profile per ply.
 const MAX_POINTS: usize = 1000;
 
-pub(super) fn read_all(field: &Field<'_>) -> Result<Vec<Load>, SceneError> {
+pub(super) fn read_all(field: &SceneValue<'_>) -> Result<Vec<Load>, SceneError> {
     field.list()?.iter().map(read).collect()
 }
 
-fn read(field: &Field<'_>) -> Result<Load, SceneError> {
+fn read(field: &SceneValue<'_>) -> Result<Load, SceneError> {
     let any = field.table_of(LOADS)?;
     let has = |key| any.optional(key).is_some();
     let kind = if has("pressure") {
@@ -204,7 +204,7 @@ fn read(field: &Field<'_>) -> Result<Load, SceneError> {
     Ok(Load { kind, place: any.place().clone() })
 }
 
-fn group(field: &Field<'_>) -> Result<Located<String>, SceneError> {
+fn group(field: &SceneValue<'_>) -> Result<Located<String>, SceneError> {
     Ok(field.at(field.text()?.to_owned()))
 }
 
@@ -234,7 +234,7 @@ fn formula(table: &Reader<'_>) -> Result<Pressure, SceneError> {
     })
 }
 
-fn vector(field: &Field<'_>, dimension: Dimension) -> Result<[f64; 3], SceneError> {
+fn vector(field: &SceneValue<'_>, dimension: Dimension) -> Result<[f64; 3], SceneError> {
     let parts = field.list()?;
     let [x, y, z] = &parts[..] else {
         return Err(field.error(format!("has {} components", parts.len()), "give three: along x, y and z"));
@@ -242,7 +242,7 @@ fn vector(field: &Field<'_>, dimension: Dimension) -> Result<[f64; 3], SceneErro
     Ok([x.quantity(dimension)?, y.quantity(dimension)?, z.quantity(dimension)?])
 }
 
-pub(super) fn read_profiles(field: &Field<'_>) -> Result<Vec<ProfileLine>, SceneError> {
+pub(super) fn read_profiles(field: &SceneValue<'_>) -> Result<Vec<ProfileLine>, SceneError> {
     let mut all: Vec<ProfileLine> = Vec::new();
     for field in field.list()? {
         let table = field.table(PROFILE)?;

@@ -1,6 +1,6 @@
 //! Materials of a scene: constants, over those of the library or of a file of the user's if one of them is named.
 
-use crate::document::reader::Field;
+use crate::document::reader::SceneValue;
 use crate::document::source::{Located, Origin, SceneError, SceneSource, read_text};
 use crate::document::tree::Table;
 use crate::materials;
@@ -10,16 +10,16 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// All materials of the table `materials`; files are looked for from `folder`.
-pub(super) fn read_all(field: &Field<'_>, folder: &Path) -> Result<Vec<Located<Material>>, SceneError> {
+pub(super) fn read_all(field: &SceneValue<'_>, folder: &Path) -> Result<Vec<Located<Material>>, SceneError> {
     field.entries()?.iter().map(|(name, field)| Ok(field.at(read(name, field, folder)?))).collect()
 }
 
 /// Position of the material that `field` names.
-pub(super) fn find(field: &Field<'_>, materials: &[Located<Material>]) -> Result<usize, SceneError> {
+pub(super) fn find(field: &SceneValue<'_>, materials: &[Located<Material>]) -> Result<usize, SceneError> {
     field.word(materials.iter().map(|m| m.value.name.as_str()))
 }
 
-fn read(name: &str, field: &Field<'_>, folder: &Path) -> Result<Material, SceneError> {
+fn read(name: &str, field: &SceneValue<'_>, folder: &Path) -> Result<Material, SceneError> {
     let own = field.table(KEYS)?;
     match whole(field, folder)? {
         None => from_constants(name, &own),
@@ -29,7 +29,7 @@ fn read(name: &str, field: &Field<'_>, folder: &Path) -> Result<Material, SceneE
 
 /// A material with the constants of the library or of the file that it names beneath its own, if it names one, and the
 /// texts that they stand in.
-pub(super) fn whole(field: &Field<'_>, folder: &Path) -> Result<Option<(Table, Arc<SceneSource>)>, SceneError> {
+pub(super) fn whole(field: &SceneValue<'_>, folder: &Path) -> Result<Option<(Table, Arc<SceneSource>)>, SceneError> {
     let own = field.table(KEYS)?;
     let over = |below: &Table| Ok::<_, SceneError>(field.any_table()?.clone().over(below.clone()));
     match (own.optional("library"), own.optional("file"), own.optional("name")) {

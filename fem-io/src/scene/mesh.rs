@@ -1,7 +1,7 @@
 //! Where the mesh comes from: a file of gmsh, or a plate that is built in.
 
 use crate::document::keys::{Form, Key, Keys, key, words};
-use crate::document::reader::{Field, Reader};
+use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, SceneError};
 use crate::units;
 use fem_core::mesh::{Curves, Graded, MAX_CELLS, Outline};
@@ -146,7 +146,7 @@ pub fn refined_cells(cells: usize, times: u32) -> Result<usize, String> {
         .ok_or_else(|| format!("refining {times} times makes more than {MAX_CELLS} cells of {cells}"))
 }
 
-pub(super) fn read(field: &Field<'_>, scene: &Path) -> Result<MeshSource, SceneError> {
+pub(super) fn read(field: &SceneValue<'_>, scene: &Path) -> Result<MeshSource, SceneError> {
     let any = field.table_of(MESHES)?;
     let has = |key| any.optional(key).is_some();
     if has("rectangle") {
@@ -195,13 +195,13 @@ fn rectangle(table: &Reader<'_>) -> Result<MeshSource, SceneError> {
 /// A plate of the mesh `table`, described by `keys`, the value of `field`.
 fn graded(
     table: &Reader<'_>,
-    field: &Field<'_>,
+    field: &SceneValue<'_>,
     keys: &Reader<'_>,
     outline: Outline,
 ) -> Result<MeshSource, SceneError> {
-    let length = |field: Field<'_>| field.positive(Dimension::LENGTH);
+    let length = |field: SceneValue<'_>| field.positive(Dimension::LENGTH);
     let size = length(keys.required("size")?)?;
-    let at_impact = |field: Field<'_>| pair(&field, |field| field.quantity(Dimension::LENGTH));
+    let at_impact = |field: SceneValue<'_>| pair(&field, |field| field.quantity(Dimension::LENGTH));
     let plate = Graded {
         outline,
         support: keys.optional("support").map(length).transpose()?,
@@ -231,8 +231,8 @@ fn refine(table: &Reader<'_>, cells: usize) -> Result<Located<u32>, SceneError> 
 
 /// Two values: along x and along y.
 pub(super) fn pair<T>(
-    field: &Field<'_>,
-    read: impl Fn(&Field<'_>) -> Result<T, SceneError>,
+    field: &SceneValue<'_>,
+    read: impl Fn(&SceneValue<'_>) -> Result<T, SceneError>,
 ) -> Result<[T; 2], SceneError> {
     let parts = field.list()?;
     match &parts[..] {

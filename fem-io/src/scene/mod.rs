@@ -22,10 +22,11 @@ mod support;
 #[cfg(test)]
 mod tests;
 
-pub use crate::document::keys::Plugins;
+pub use crate::document::keys::{Absent, Form, Key, Keys, Plugins, key, words};
+pub use crate::document::reader::{Reader, SceneValue};
 pub use crate::document::source::{Located, Place, SceneError, SceneSource};
 pub use annotate::annotated;
-pub use effects::{Damage, Delamination, EFFECTS, EffectInfo, EffectsSpec, Switch};
+pub use effects::{Damage, Delamination, EFFECT_SETTINGS, EffectSetting, EffectSpec, EffectsSpec};
 pub use explain::{Explained, explain};
 pub use fields::{FieldCells, FieldSeries, Fields, Region};
 pub use load::{Load, LoadKind, Pressure, ProfileLine};
@@ -40,8 +41,6 @@ pub use study::{OwnAxis, Quantity, Setting, Study, rewrite};
 pub use substructures::{Masters, Parts, SubstructuresSpec};
 pub use support::{Couple, EquationSpec, NodeSet, Support, Term};
 
-use crate::document::keys::{Form, Keys, key};
-use crate::document::reader::{Field, Reader};
 use crate::document::source::Origin;
 use crate::document::tree::Table;
 use crate::materials::LIBRARY;
@@ -230,7 +229,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
     let (laminate, interface) = laminate::read(&root.required("laminate")?, &materials)?;
     let element = root.required("element")?;
     let effects = root.optional("effects").map_or(Ok(EffectsSpec::default()), |field| effects::read(&field))?;
-    let analysis = read_analysis(&root, &effects)?;
+    let analysis = read_analysis(&root)?;
     let in_time = matches!(analysis, Analysis::Impact(_));
     let march = match &analysis {
         Analysis::Impact(impact) => Some(&impact.march),
@@ -278,7 +277,7 @@ fn foreign(analysis: &str) -> &'static [&'static str] {
     }
 }
 
-fn read_analysis(root: &Reader<'_>, effects: &EffectsSpec) -> Result<Analysis, SceneError> {
+fn read_analysis(root: &Reader<'_>) -> Result<Analysis, SceneError> {
     let which = root.optional("analysis").map_or(Ok(Which::Impact), |field| field.choice(&ANALYSES))?;
     let name = ANALYSES[which as usize].0;
     let mut stray = foreign(name).iter().filter_map(|key| root.optional(key));
@@ -287,11 +286,10 @@ fn read_analysis(root: &Reader<'_>, effects: &EffectsSpec) -> Result<Analysis, S
         return Err(field.error(format!("means nothing in the analysis `{name}`"), help));
     }
     Ok(match which {
-        Which::Static => Analysis::Static(match (&effects.cure, root.optional("load")) {
-            // A change of temperature loads a plate as well.
-            (Some(_), None) => Vec::new(),
-            _ => load::read_all(&root.required("load")?)?,
-        }),
+        // Whether anything else loads the plate is for others to say.
+        Which::Static => {
+            Analysis::Static(root.optional("load").map_or(Ok(Vec::new()), |field| load::read_all(&field))?)
+        }
         Which::Modes => {
             let count = root.optional("modes").map_or(Ok(DEFAULT_MODES), |field| {
                 field.table(MODES)?.optional("count").map_or(Ok(DEFAULT_MODES), |field| field.count())
@@ -303,7 +301,7 @@ fn read_analysis(root: &Reader<'_>, effects: &EffectsSpec) -> Result<Analysis, S
 }
 
 /// `shared` where neither scene nor preset says.
-fn read_z_derivatives(element: &Field<'_>) -> Result<Located<ZDerivatives>, SceneError> {
+fn read_z_derivatives(element: &SceneValue<'_>) -> Result<Located<ZDerivatives>, SceneError> {
     match element.entries()?.iter().find(|(key, _)| *key == "z_derivatives") {
         Some((_, field)) => Ok(field.at(field.choice(&Z_DERIVATIVES)?)),
         None => Ok(element.at(ZDerivatives::Shared)),

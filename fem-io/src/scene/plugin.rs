@@ -1,6 +1,6 @@
 //! A plug-in as a scene names it, with its parameters.
 
-use crate::document::reader::Field;
+use crate::document::reader::SceneValue;
 use crate::document::source::{Located, Place, SceneError};
 use crate::document::tree::Node;
 use fem_core::plugin::{Params, Value};
@@ -23,7 +23,7 @@ impl PluginSpec {
     }
 
     /// Reads a bare name, or a table with the key `name`; keys of `others` belong to somebody else.
-    pub(super) fn read_or_name(field: &Field<'_>, others: &[&str]) -> Result<Self, SceneError> {
+    pub(super) fn read_or_name(field: &SceneValue<'_>, others: &[&str]) -> Result<Self, SceneError> {
         match field.node() {
             Node::Text(_) => {
                 let name = field.at(field.text()?.to_owned());
@@ -34,7 +34,7 @@ impl PluginSpec {
     }
 
     /// Reads a table with the name under `name_key`; keys of `others` belong to somebody else.
-    pub(super) fn read(field: &Field<'_>, name_key: &str, others: &[&str]) -> Result<Self, SceneError> {
+    pub(super) fn read(field: &SceneValue<'_>, name_key: &str, others: &[&str]) -> Result<Self, SceneError> {
         let mut name = None;
         let mut params = Params::default();
         let mut places = BTreeMap::new();
@@ -54,7 +54,7 @@ impl PluginSpec {
 }
 
 /// A value as it stands there: whether a text is a quantity, only the plug-in's row of the parameter tells.
-fn read_value(field: &Field<'_>) -> Result<Value, SceneError> {
+fn read_value(field: &SceneValue<'_>) -> Result<Value, SceneError> {
     Ok(match field.node() {
         Node::Text(text) => Value::Text(text.clone()),
         Node::Number(_) => Value::Number(field.number()?),

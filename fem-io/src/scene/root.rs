@@ -1,7 +1,7 @@
 //! The outermost table of a scene.
 
 use super::mesh::MESHES;
-use super::{Fidelity, MODES, effects, laminate, load, run, study, substructures, support};
+use super::{Fidelity, MODES, laminate, load, run, study, substructures, support};
 use crate::document::keys::{Form, Keys, key, words};
 use crate::materials::constants;
 use fem_core::plate::ZDerivatives;
@@ -103,8 +103,7 @@ pub(super) const KEYS: Keys = &[
         r#"{ law = "sun-yang", k = "1.07e5 N/mm^1.5", n = 1.5, m = 2.5, critical = "0.08 mm", beta = 0.4 }"#,
         "contact law: `fem list contact-laws`",
     ),
-    key("effects", Form::Table(effects::KEYS), r#"{ damage = "onset" }"#, "what is simulated beyond the linear plate")
-        .default("{}"),
+    key("effects", Form::Effects, r#"{ damage = "onset" }"#, "what is simulated beyond the linear plate").default("{}"),
     key("load", Form::List(&Form::OneOf(load::LOADS)), r#"[{ pressure = "1 MPa", face = "top" }]"#, "loads at rest"),
     key("modes", Form::Table(MODES), "{ count = 10 }", "natural modes that are found").default("{}"),
     key(

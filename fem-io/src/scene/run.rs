@@ -3,7 +3,7 @@
 use super::fields::{self, Fields};
 use super::plugin::PluginSpec;
 use crate::document::keys::{Form, Keys, key};
-use crate::document::reader::{Field, Reader};
+use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, Place, SceneError};
 use crate::document::tree::Node;
 use crate::units;
@@ -287,7 +287,12 @@ pub(super) fn read_impact(root: &Reader<'_>) -> Result<ImpactSpec, SceneError> {
     Ok(ImpactSpec { impactors, reduction: PluginSpec::read(&root.required("reduction")?, "method", &[])?, march })
 }
 
-fn read_impactor(root: &Reader<'_>, field: &Field<'_>, number: usize, end: f64) -> Result<ImpactorSpec, SceneError> {
+fn read_impactor(
+    root: &Reader<'_>,
+    field: &SceneValue<'_>,
+    number: usize,
+    end: f64,
+) -> Result<ImpactorSpec, SceneError> {
     let table = field.table(IMPACTOR)?;
     let name =
         table.optional("name").map_or(Ok(format!("impactor-{number}")), |field| field.text().map(str::to_owned))?;
@@ -323,7 +328,7 @@ fn read_impactor(root: &Reader<'_>, field: &Field<'_>, number: usize, end: f64) 
     })
 }
 
-pub(super) fn read_point(field: &Field<'_>) -> Result<Located<ImpactPoint>, SceneError> {
+pub(super) fn read_point(field: &SceneValue<'_>) -> Result<Located<ImpactPoint>, SceneError> {
     let table = field.table(AT)?;
     let [x, y] = ["x", "y"].map(|key| table.optional(key));
     let point = match (table.optional("group"), x.or(y)) {
@@ -359,7 +364,7 @@ fn read_load(table: &Reader<'_>) -> Result<Located<ContactLoad>, SceneError> {
     Ok(patch.at(ContactLoad::Patch { radius: patch.positive(Dimension::LENGTH)? }))
 }
 
-pub(super) fn read_march(field: &Field<'_>) -> Result<MarchSpec, SceneError> {
+pub(super) fn read_march(field: &SceneValue<'_>) -> Result<MarchSpec, SceneError> {
     let table = field.table(MARCH)?;
     let integrator = PluginSpec::read_or_name(&table.required("integrator")?, &[])?;
     let (step_field, end_field) = (table.required("step")?, table.required("end")?);
@@ -374,7 +379,7 @@ pub(super) fn read_march(field: &Field<'_>) -> Result<MarchSpec, SceneError> {
     Ok(MarchSpec { integrator, step: step_field.at(step), end: end_field.at(end) })
 }
 
-pub(super) fn read_failure(field: &Field<'_>, wanted: bool, in_time: bool) -> Result<Failure, SceneError> {
+pub(super) fn read_failure(field: &SceneValue<'_>, wanted: bool, in_time: bool) -> Result<Failure, SceneError> {
     let table = field.table(FAILURE)?;
     let criteria = match (table.optional("criteria"), wanted) {
         (None, false) => Vec::new(),
@@ -405,7 +410,7 @@ pub(super) fn read_failure(field: &Field<'_>, wanted: bool, in_time: bool) -> Re
     })
 }
 
-fn read_criteria(field: &Field<'_>) -> Result<Vec<CriterionSpec>, SceneError> {
+fn read_criteria(field: &SceneValue<'_>) -> Result<Vec<CriterionSpec>, SceneError> {
     let mut criteria: Vec<CriterionSpec> = Vec::new();
     for field in field.list()? {
         let plugin = PluginSpec::read_or_name(&field, &[LABEL])?;
@@ -426,7 +431,7 @@ fn read_criteria(field: &Field<'_>) -> Result<Vec<CriterionSpec>, SceneError> {
     Ok(criteria)
 }
 
-fn read_watch(field: &Field<'_>, criteria: &[CriterionSpec]) -> Result<IndexWatch, SceneError> {
+fn read_watch(field: &SceneValue<'_>, criteria: &[CriterionSpec]) -> Result<IndexWatch, SceneError> {
     let table = field.table(WATCH)?;
     let depth = match table.either(["ply", "interface"])? {
         [_, Some(interface)] => interface.at(read_interface(&interface)?),
@@ -441,7 +446,7 @@ fn read_watch(field: &Field<'_>, criteria: &[CriterionSpec]) -> Result<IndexWatc
 }
 
 /// `"3|4"`, as results write it.
-fn read_interface(field: &Field<'_>) -> Result<Depth, SceneError> {
+fn read_interface(field: &SceneValue<'_>) -> Result<Depth, SceneError> {
     let plies = field.text()?.split_once('|').and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
     match plies {
         Some((below, above)) if 0_usize < below && below.checked_add(1) == Some(above) => {
@@ -455,7 +460,7 @@ fn read_interface(field: &Field<'_>) -> Result<Depth, SceneError> {
 }
 
 /// The keys of the output; `march` is that of an impact.
-pub(super) fn read_output(field: &Field<'_>, march: Option<&MarchSpec>) -> Result<Output, SceneError> {
+pub(super) fn read_output(field: &SceneValue<'_>, march: Option<&MarchSpec>) -> Result<Output, SceneError> {
     let table = field.table(OUTPUT)?;
     let modes = table.optional("modes").map(|field| match field.count()? {
         count @ 1..=MOST_MODES => Ok(field.at(count)),

@@ -1,7 +1,7 @@
 //! The JSON Schema of a scene, for editors.
 
-use super::Fidelity;
 use super::root::KEYS;
+use super::{Fidelity, effects};
 use crate::document::keys::{Absent, Form, Key, Keys, Plugins};
 use crate::document::source::{Origin, SceneSource};
 use crate::document::tree::{Node, Table};
@@ -14,14 +14,20 @@ use std::sync::Arc;
 /// A number, and behind it what begins no longer number.
 const QUANTITY: &str = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(\s+\S|[^\d\s.eE+-])";
 
-/// The JSON Schema (draft 7, which editors know) of a scene whose plug-ins are `plugins`.
+/// The JSON Schema (draft 7, which editors know) of a scene whose plug-ins are `plugins`, and whose effects have the keys
+/// `effects`.
 ///
 /// It knows keys, kinds of values, words, plug-ins with their parameters and materials of the library. What hangs on
 /// the mesh, on units or on other keys [`super::read`] alone finds out.
-pub fn schema(plugins: Plugins<'_>) -> Value {
+pub fn schema(plugins: Plugins<'_>, effects: &[Key]) -> Value {
     let presets = Fidelity::ALL.map(|(_, fidelity)| parsed(fidelity.preset()));
     let below: Vec<&Table> = presets.iter().collect();
     let Value::Object(mut root) = table(KEYS, &below) else { return Value::Null };
+    if let Some(Value::Object(known)) =
+        root.get_mut("properties").and_then(|all| all.pointer_mut("/effects/properties"))
+    {
+        known.extend(effects.iter().map(|key| (key.name.to_owned(), property(key, &[]))));
+    }
     let definitions = Kind::ALL.iter().map(|kind| (definition(*kind), names(*kind, plugins)));
     let mut definitions: Map<String, Value> = definitions.collect();
     for (kind, name, others) in tables_of_plugins(KEYS) {
@@ -113,6 +119,7 @@ fn form(form: &Form, below: &[&Table]) -> Value {
         Form::Words(words) => json!({ "enum": words }),
         Form::Library => json!({ "enum": materials::names().collect::<Vec<_>>() }),
         Form::Table(keys) => table(keys, below),
+        Form::Effects => table(effects::KEYS, below),
         Form::Named(form) => json!({ "type": "object", "additionalProperties": inner(form) }),
         Form::List(form) => json!({ "type": "array", "items": inner(form), "minItems": 1 }),
         Form::Several(count, form) => {

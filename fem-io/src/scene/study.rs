@@ -1,7 +1,7 @@
 //! What a study of the scene varies and looks at, and the settings that it puts over those of the scene.
 
 use crate::document::keys::{Form, Keys, key};
-use crate::document::reader::Field;
+use crate::document::reader::SceneValue;
 use crate::document::source::{Located, SceneError, SceneSource};
 use crate::materials::LIBRARY;
 use fem_core::plugin::Dimension;
@@ -94,12 +94,12 @@ const STRESS: Keys = &[
     key("height", Form::Quantity(Dimension::LENGTH), r#""0.5 mm""#, "height above the mid-plane").required(),
 ];
 
-pub(super) fn read(field: &Field<'_>) -> Result<Study, SceneError> {
+pub(super) fn read(field: &SceneValue<'_>) -> Result<Study, SceneError> {
     let table = field.table(KEYS)?;
-    let names = |field: Field<'_>| field.list()?.iter().map(name).collect::<Result<Vec<_>, _>>();
-    let quantities = |field: Field<'_>| field.list()?.iter().map(quantity).collect::<Result<Vec<_>, _>>();
-    let own = |field: Field<'_>| field.list()?.iter().map(axis).collect::<Result<Vec<_>, _>>();
-    let tolerance = |field: Field<'_>| match field.number()? {
+    let names = |field: SceneValue<'_>| field.list()?.iter().map(name).collect::<Result<Vec<_>, _>>();
+    let quantities = |field: SceneValue<'_>| field.list()?.iter().map(quantity).collect::<Result<Vec<_>, _>>();
+    let own = |field: SceneValue<'_>| field.list()?.iter().map(axis).collect::<Result<Vec<_>, _>>();
+    let tolerance = |field: SceneValue<'_>| match field.number()? {
         tolerance if tolerance > 0.0 && tolerance < 1.0 => Ok(tolerance),
         tolerance => {
             Err(field.error(format!("{tolerance} is not a relative error"), "give a number between 0 and 1: 1e-3"))
@@ -113,13 +113,13 @@ pub(super) fn read(field: &Field<'_>) -> Result<Study, SceneError> {
     })
 }
 
-fn name(field: &Field<'_>) -> Result<Located<String>, SceneError> {
+fn name(field: &SceneValue<'_>) -> Result<Located<String>, SceneError> {
     Ok(field.at(field.text()?.to_owned()))
 }
 
-fn axis(field: &Field<'_>) -> Result<OwnAxis, SceneError> {
+fn axis(field: &SceneValue<'_>) -> Result<OwnAxis, SceneError> {
     let table = field.table(AXIS)?;
-    let level = |field: &Field<'_>| {
+    let level = |field: &SceneValue<'_>| {
         let help = "write keys of the scene with their values: { impactor.patch_radius = \"2 mm\" }";
         field.any_table()?.setting().filter(|keys| !keys.is_empty()).ok_or_else(|| field.error("sets nothing", help))
     };
@@ -130,7 +130,7 @@ fn axis(field: &Field<'_>) -> Result<OwnAxis, SceneError> {
     })
 }
 
-fn quantity(field: &Field<'_>) -> Result<Located<Quantity>, SceneError> {
+fn quantity(field: &SceneValue<'_>) -> Result<Located<Quantity>, SceneError> {
     if let crate::document::tree::Node::Text(_) = field.node() {
         return Ok(field.at(Quantity::Named(field.text()?.to_owned())));
     }

@@ -2,7 +2,7 @@
 
 use super::support::{self, NodeSet};
 use crate::document::keys::{Form, Keys, key};
-use crate::document::reader::{Field, Reader};
+use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, SceneError};
 use fem_core::dof::Dof;
 
@@ -49,11 +49,11 @@ pub(super) const KEYS: Keys = &[
     ),
 ];
 
-pub(super) fn read(field: &Field<'_>) -> Result<SubstructuresSpec, SceneError> {
+pub(super) fn read(field: &SceneValue<'_>) -> Result<SubstructuresSpec, SceneError> {
     let table = field.table(KEYS)?;
     let parts = match table.either(["groups", "cells"])? {
         [Some(groups), _] => {
-            let group = |field: &Field<'_>| Ok(field.at(field.text()?.to_owned()));
+            let group = |field: &SceneValue<'_>| Ok(field.at(field.text()?.to_owned()));
             Parts::Groups(groups.list()?.iter().map(group).collect::<Result<_, SceneError>>()?)
         }
         [None, Some(cells)] => Parts::Cells(cells.at(super::mesh::pair(&cells, |field| field.count())?)),
@@ -68,7 +68,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<SubstructuresSpec, SceneError> {
     Ok(SubstructuresSpec { parts, masters })
 }
 
-fn masters(field: &Field<'_>) -> Result<Masters, SceneError> {
+fn masters(field: &SceneValue<'_>) -> Result<Masters, SceneError> {
     let table: Reader<'_> = field.table(support::COUPLE)?;
     Ok(Masters { nodes: support::nodes(&table)?, dofs: support::dofs(&table.required("dofs")?)? })
 }

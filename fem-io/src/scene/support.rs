@@ -1,7 +1,7 @@
 //! What holds the plate: fixed unknowns, linear equations between unknowns, coupled sets.
 
 use crate::document::keys::{Form, Key, Keys, key, words};
-use crate::document::reader::{Field, Reader};
+use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, Place, SceneError};
 use crate::document::tree::Node;
 use fem_core::dof::Dof;
@@ -126,11 +126,11 @@ const TERM: Keys = &[
 pub(super) const COUPLE: Keys =
     &[GROUP, LEVEL, key("dofs", DOFS, r#"["U30"]"#, "unknowns that all these nodes share").required()];
 
-pub(super) fn read_all(field: &Field<'_>) -> Result<Vec<Support>, SceneError> {
+pub(super) fn read_all(field: &SceneValue<'_>) -> Result<Vec<Support>, SceneError> {
     field.list()?.iter().map(read).collect()
 }
 
-fn read(field: &Field<'_>) -> Result<Support, SceneError> {
+fn read(field: &SceneValue<'_>) -> Result<Support, SceneError> {
     let table = field.table_of(SUPPORTS)?;
     let place = table.place().clone();
     if table.optional("restrain").is_some() {
@@ -141,16 +141,16 @@ fn read(field: &Field<'_>) -> Result<Support, SceneError> {
     Ok(Support::Fix { nodes: nodes(&table)?, dofs: dofs(&table.required("fix")?)?, axes, place })
 }
 
-pub(super) fn read_equations(field: &Field<'_>) -> Result<Vec<EquationSpec>, SceneError> {
-    let read = |field: &Field<'_>| {
+pub(super) fn read_equations(field: &SceneValue<'_>) -> Result<Vec<EquationSpec>, SceneError> {
+    let read = |field: &SceneValue<'_>| {
         let table = field.table(EQUATION)?;
         Ok(EquationSpec { terms: terms(&table.required("terms")?)?, place: table.place().clone() })
     };
     field.list()?.iter().map(read).collect()
 }
 
-pub(super) fn read_couples(field: &Field<'_>) -> Result<Vec<Couple>, SceneError> {
-    let read = |field: &Field<'_>| {
+pub(super) fn read_couples(field: &SceneValue<'_>) -> Result<Vec<Couple>, SceneError> {
+    let read = |field: &SceneValue<'_>| {
         let table = field.table(COUPLE)?;
         Ok(Couple { nodes: nodes(&table)?, dofs: dofs(&table.required("dofs")?)?, place: table.place().clone() })
     };
@@ -162,20 +162,20 @@ pub(super) fn nodes(table: &Reader<'_>) -> Result<NodeSet, SceneError> {
     Ok(NodeSet { group: group.at(group.text()?.to_owned()), levels: table.required("at")?.choice(&LEVELS)? })
 }
 
-pub(super) fn dofs(field: &Field<'_>) -> Result<Vec<Dof>, SceneError> {
+pub(super) fn dofs(field: &SceneValue<'_>) -> Result<Vec<Dof>, SceneError> {
     field.list()?.iter().map(dof).collect()
 }
 
-fn dof(field: &Field<'_>) -> Result<Dof, SceneError> {
+fn dof(field: &SceneValue<'_>) -> Result<Dof, SceneError> {
     field
         .text()?
         .parse()
         .map_err(|why: String| field.error(why, "U30 is the deflection along z, U31 its slope along x"))
 }
 
-fn terms(field: &Field<'_>) -> Result<Vec<Term>, SceneError> {
+fn terms(field: &SceneValue<'_>) -> Result<Vec<Term>, SceneError> {
     let mut product = None;
-    let mut read = |field: &Field<'_>| {
+    let mut read = |field: &SceneValue<'_>| {
         let table = field.table(TERM)?;
         let dof = dof(&table.required("dof")?)?;
         let factor_field = table.required("factor")?;
@@ -194,7 +194,7 @@ fn terms(field: &Field<'_>) -> Result<Vec<Term>, SceneError> {
 }
 
 /// A factor and its dimension: a bare number is a pure one.
-fn factor(field: &Field<'_>) -> Result<(f64, Dimension), SceneError> {
+fn factor(field: &SceneValue<'_>) -> Result<(f64, Dimension), SceneError> {
     let (value, dimension) = match field.node() {
         Node::Text(text) => field.any_quantity(text)?,
         _ => (field.number()?, Dimension::NONE),

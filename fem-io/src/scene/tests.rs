@@ -465,7 +465,6 @@ fn refusals() {
             spoilt("radius =", "watch = [{ criterion = \"puck\", ply = 1, at = { group = \"impact\" } }], radius ="),
         ),
         ("an effect that does not exist yet", format!("effects = {{ damage = \"progressive\" }}\n{GOOD}")),
-        ("an effect neither on nor off", format!("effects = {{ membrane = \"always\" }}\n{GOOD}")),
         ("a mesh refined by halves", spoilt("unit = \"mm\"", "unit = \"mm\", refine = 0.5")),
         ("a mesh refined backwards", spoilt("unit = \"mm\"", "unit = \"mm\", refine = -1")),
         ("a mesh refined without end", spoilt("unit = \"mm\"", "unit = \"mm\", refine = 1000000000")),
@@ -571,25 +570,21 @@ fn defaults_are_those_of_the_reader() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, GOOD).unwrap();
-    let given: Setting = explain(&path, &|_| Vec::new())
+    let given: Setting = explain(&path, &|_| Vec::new(), &[])
         .unwrap()
         .into_iter()
         .filter(|key| key.from == "default" && !key.key.contains('['))
         .map(|key| (key.key, key.value))
         .collect();
     let keys: Vec<&str> = given.keys().map(String::as_str).collect();
-    for key in ["analysis", "effects.membrane", "impactor.start", "mesh.curves", "output.checkpoint_every"] {
+    for key in ["analysis", "effects.damage", "impactor.start", "mesh.curves", "output.checkpoint_every"] {
         assert!(keys.contains(&key), "{key} is none of {keys:?}");
     }
-    // An effect that is off may be said or not; everything else is the same but for where it stands.
+    // Everything is the same but for where it stands.
     let shown = |setting: &Setting| {
         let scene = read_with(&path, setting).unwrap();
-        let EffectsSpec { damage, delamination, membrane, damping, inertia, gravity, cure } = &scene.effects;
-        let switches =
-            [membrane.as_ref().map_or(Switch::Off, |s| s.value), inertia.as_ref().map_or(Switch::On, |s| s.value)];
-        let others =
-            (damage, delamination.as_ref().map(|d| d.value), damping.is_some(), gravity.is_some(), cure.is_some());
-        let effects = format!("{switches:?} {others:?}");
+        let EffectsSpec { damage, delamination, named } = &scene.effects;
+        let effects = format!("{damage:?} {:?} {}", delamination.as_ref().map(|d| d.value), named.len());
         let bare = Scene { effects: EffectsSpec::default(), keys: BTreeMap::new(), source: Arc::default(), ..scene };
         let text = format!("{bare:?}");
         let mut pieces = text.split("Place {");
@@ -597,13 +592,6 @@ fn defaults_are_those_of_the_reader() {
         pieces.fold(first + &effects, |all, piece| all + piece.split_once('}').unwrap().1)
     };
     assert_eq!(shown(&given), shown(&Setting::new()));
-}
-
-#[test]
-fn every_effect_is_described_once() {
-    let keys: Vec<_> = effects::KEYS.iter().map(|key| (key.name, key.about)).collect();
-    let listed: Vec<_> = EFFECTS.iter().map(|effect| (effect.name, effect.summary)).collect();
-    assert_eq!(keys, listed);
 }
 
 /// Every key says in a line what it means, and its example is what it takes.

@@ -1,6 +1,7 @@
 //! The history as it grows, with its energies.
 
 use super::ContactRecord;
+use crate::effect::Effect;
 use fem_core::time::State;
 use fem_dynamics::guard::{Alarm, Guard};
 use fem_dynamics::impact::{Energies, ImpactSystem, Touch};
@@ -14,23 +15,20 @@ pub(super) struct Ledger {
     /// Largest change of the total energy, relative.
     pub(super) error: f64,
     contacts: Vec<Contact>,
-    damping: Option<Damping>,
     #[serde(skip)]
     work: Vec<f64>,
 }
 
 impl Ledger {
-    /// `threshold`: a force whose first reaching is noted, N; `damped`: whether the plate is.
-    pub(super) fn new(contacts: usize, threshold: Option<f64>, damped: bool) -> Self {
+    /// `threshold`: a force whose first reaching is noted, N.
+    pub(super) fn new(contacts: usize, threshold: Option<f64>) -> Self {
         let contacts = vec![Contact { threshold, ..Contact::default() }; contacts];
-        Self { rows: Vec::new(), error: 0.0, contacts, damping: damped.then(Damping::default), work: Vec::new() }
+        Self { rows: Vec::new(), error: 0.0, contacts, work: Vec::new() }
     }
 
-    /// Takes the power lost in damping at the end of a step.
-    pub(super) fn damping(&mut self, system: &ImpactSystem, state: &State) {
-        if let Some(damping) = &mut self.damping {
-            damping.sample(state.t, system.damping_power(state, &mut self.work));
-        }
+    /// Shows effects the end of a step.
+    pub(super) fn step(&mut self, effects: &mut [Box<dyn Effect>], system: &ImpactSystem, state: &State) {
+        effects.iter_mut().for_each(|effect| effect.on_step(system, state, &mut self.work));
     }
 
     /// Takes the contact forces of a step.
@@ -46,12 +44,13 @@ impl Ledger {
     /// Adds up the energies; they are returned as well where an alarm is.
     pub(super) fn balance(
         &mut self,
+        effects: &[Box<dyn Effect>],
         system: &mut ImpactSystem,
         guard: &Guard,
         state: &State,
     ) -> (Energies, Result<(), Alarm>) {
         let mut energies = system.energies(state, &mut self.work);
-        energies.damped = self.damping.as_ref().map_or(0.0, |damping| damping.work);
+        energies.damped = effects.iter().fold(0.0, |sum, effect| sum + effect.lost());
         let balanced = guard.balance(&energies);
         if let Ok(change) | Err(Alarm::Energy(change)) = balanced {
             self.error = self.error.max(change.abs());
@@ -64,8 +63,14 @@ impl Ledger {
     }
 
     /// Writes a row, also the last one of a march that leaks; none of numbers that are not finite.
-    pub(super) fn row(&mut self, system: &mut ImpactSystem, guard: &Guard, state: &State) -> Result<(), Alarm> {
-        let (e, balanced) = self.balance(system, guard, state);
+    pub(super) fn row(
+        &mut self,
+        effects: &[Box<dyn Effect>],
+        system: &mut ImpactSystem,
+        guard: &Guard,
+        state: &State,
+    ) -> Result<(), Alarm> {
+        let (e, balanced) = self.balance(effects, system, guard, state);
         if let Err(Alarm::NotFinite(_)) = balanced {
             return balanced;
         }
@@ -86,28 +91,10 @@ impl Ledger {
             plate_strain_j: e.strain,
             contact_stored_j: e.stored,
             contact_dissipated_j: e.dissipated,
-            damping_dissipated_j: self.damping.as_ref().map(|_| e.damped),
-            gravity_potential_j: system.weight().map(|_| e.weight),
+            effects: effects.iter().flat_map(|effect| effect.values(system, state, &e)).collect(),
             energy_balance_j: e.total() - guard.energy(),
         });
         balanced
-    }
-}
-
-/// Work lost in damping, ∫ u̇ᵀ C u̇ dt by the trapezoidal rule; none before t = 0, when the plate rests.
-#[derive(Debug, Default, Serialize, Deserialize)]
-struct Damping {
-    /// Time and power before.
-    last: (f64, f64),
-    /// J.
-    work: f64,
-}
-
-impl Damping {
-    fn sample(&mut self, t: f64, power: f64) {
-        let (before, lost) = self.last;
-        self.work += 0.5 * (t - before) * (lost + power);
-        self.last = (t, power);
     }
 }
 

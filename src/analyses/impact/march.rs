@@ -10,6 +10,7 @@ use super::{Maximum, Outcome, Sizes};
 use crate::analyses::expansion::Expansion;
 use crate::analyses::stress::{self, Watch};
 use crate::cost::Stopwatch;
+use crate::effect::Effect;
 use crate::error::{CheckpointError, Error};
 use crate::model::Model;
 use fem_core::counters::Counters;
@@ -52,7 +53,7 @@ pub fn march(prepared: Prepared<'_>, mut progress: impl FnMut(f64)) -> Result<Ou
 pub struct March<'a> {
     model: &'a Model,
     system: ImpactSystem,
-    sag: Option<Vec<f64>>,
+    effects: Vec<Box<dyn Effect>>,
     guard: Guard,
     integrator: Box<dyn Integrator>,
     sizes: Sizes,
@@ -84,6 +85,8 @@ pub(super) struct Progress {
     frame_every: Option<f64>,
     state: State,
     ledger: Ledger,
+    /// Of each effect, what it needs to go on.
+    effects: Vec<Vec<f64>>,
     work: Work,
     /// The tangent in use of a plate under large displacements.
     tangent: Option<Tangent>,
@@ -133,11 +136,8 @@ impl<'a> March<'a> {
             dt,
             row_every,
             frame_every: model.scene.output.fields.as_ref().and_then(|fields| fields.every),
-            ledger: Ledger::new(
-                state.contacts.len(),
-                model.threshold.map(|threshold| threshold.force),
-                model.effects.damping.is_some(),
-            ),
+            ledger: Ledger::new(state.contacts.len(), model.threshold.map(|threshold| threshold.force)),
+            effects: Vec::new(),
             state,
             work: Work::default(),
             tangent: None,
@@ -193,11 +193,14 @@ impl<'a> March<'a> {
             (Some(watch), Some((scan, record))) => watch.resume(scan, record),
             (watch, record) => watch.is_none() && record.is_none(),
         };
-        if fits && watch_fits { Ok(march) } else { Err(sizes()) }
+        let kept = std::mem::take(&mut march.progress.effects);
+        let effects_fit = kept.len() == march.effects.len()
+            && march.effects.iter_mut().zip(&kept).all(|(effect, kept)| effect.resume(kept));
+        if fits && watch_fits && effects_fit { Ok(march) } else { Err(sizes()) }
     }
 
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
-        let Prepared { model, impact, mut system, sag, reduced, stiffened, full, condensation, .. } = prepared;
+        let Prepared { model, impact, mut system, effects, reduced, stiffened, full, condensation, .. } = prepared;
         let Prepared { sizes, counters, mut stopwatch, .. } = prepared;
         stopwatch.lap("reduce");
         let (stiffened, companions) = stiffened.unzip();
@@ -219,7 +222,7 @@ impl<'a> March<'a> {
             model,
             guard: Guard::new(&mut system),
             system,
-            sag,
+            effects,
             integrator,
             sizes,
             scan_every,
@@ -261,26 +264,26 @@ impl<'a> March<'a> {
     }
 
     fn step(&mut self) -> Result<(), Error> {
-        let Self { system, guard, .. } = self;
+        let Self { system, guard, effects, .. } = self;
         let Progress { step, dt, row_every, state, ledger, .. } = &mut self.progress;
         self.integrator.step(system, state, *dt)?;
         *step += 1;
         // A sum of steps drifts; the product does not.
         state.t = *step as f64 * *dt;
         ledger.contacts(system, guard, state)?;
-        ledger.damping(system, state);
+        ledger.step(effects, system, state);
         let (row, scan) = (step.is_multiple_of(*row_every), step.is_multiple_of(self.scan_every));
         if row {
             self.row()?;
         } else if step.is_multiple_of(BALANCE_EVERY) {
-            ledger.balance(system, guard, state).1?;
+            ledger.balance(effects, system, guard, state).1?;
         }
         if scan { self.sample() } else { Ok(()) }
     }
 
     fn row(&mut self) -> Result<(), Error> {
         let Progress { ledger, state, .. } = &mut self.progress;
-        ledger.row(&mut self.system, &self.guard, state)?;
+        ledger.row(&self.effects, &mut self.system, &self.guard, state)?;
         if let Some(modal) = &mut self.modal {
             modal.row(state);
         }
@@ -296,10 +299,12 @@ impl<'a> March<'a> {
         sampled
     }
 
-    /// Displacements from the plate without weight, in coordinates of the march.
+    /// Displacements from the plate without loads, in coordinates of the march.
     fn coordinates(&self) -> Vec<f64> {
         let mut u = self.progress.state.u[..self.sizes.marched].to_vec();
-        u.iter_mut().zip(self.sag.iter().flatten()).for_each(|(u, sag)| *u += sag);
+        for offset in self.effects.iter().filter_map(|effect| effect.offset()) {
+            u.iter_mut().zip(offset).for_each(|(u, offset)| *u += offset);
+        }
         u
     }
 
@@ -360,6 +365,7 @@ impl<'a> March<'a> {
         self.stopwatch.lap("march");
         self.count();
         self.progress.tangent = self.system.tangent().cloned();
+        self.progress.effects = self.effects.iter().map(|effect| effect.saved()).collect();
         let watched = self.watch.as_ref().map(Watch::record);
         let saved =
             checkpoint::write(dir, self.model, &(&self.progress, self.modal.as_ref().map(ModalView::record), watched));
@@ -412,6 +418,7 @@ impl<'a> March<'a> {
         let accuracy = if ended { self.estimates.finish(&ledger.rows, self.sizes.step) } else { Accuracy::default() };
         Outcome {
             accuracy,
+            quantities: self.effects.iter().flat_map(|effect| effect.quantities(&self.system)).collect(),
             contacts: ledger.records().collect(),
             modal: self.modal.map(|modal| modal.finish(energy(|r| r.plate_strain_j), energy(|r| r.plate_kinetic_j))),
             history: ledger.rows,

@@ -5,10 +5,8 @@ mod checkpoint;
 mod frames;
 mod ledger;
 mod march;
-mod membrane;
 mod modal;
 mod prepare;
-mod sag;
 
 pub use accuracy::{Accuracy, ReductionAccuracy, ReductionResidual, StepAccuracy};
 pub use checkpoint::Checkpoint;
@@ -44,8 +42,6 @@ pub struct Sizes {
     pub memory: MemoryEstimate,
     /// Contact force of the first impactor per deflection under it, N/m, of the plate as marched.
     pub static_stiffness: f64,
-    /// Deflection under the first impactor by the plate's own weight, m, where there is gravity.
-    pub sag: Option<f64>,
     /// Highest frequency of the plate as marched, Hz; `None` where no integrator limit asked for it.
     pub highest_frequency: Option<f64>,
     /// Lowest frequency of the reduced plate that the impact excites, Hz.
@@ -61,6 +57,8 @@ pub struct Sizes {
 /// What a run found.
 #[derive(Debug, Clone)]
 pub struct Outcome {
+    /// What effects say of the model, by the key of the summary.
+    pub quantities: Vec<(&'static str, f64)>,
     /// Of each impactor of the scene, what is seen between two rows of the history.
     pub contacts: Vec<ContactRecord>,
     /// Force, motion and energies over time.
@@ -99,7 +97,7 @@ impl Outcome {
             sites: self.sites,
             step_s: sizes.step,
             samples: (sizes.steps as f64 * sizes.step / model.scene.failure.every) as u64,
-            ..Size::of(model, &self.counters)
+            ..model.size(&self.counters)
         }
     }
 }

@@ -1,19 +1,18 @@
 //! Assemble, reduce, couple to the impactors.
 
 use super::Sizes;
-use super::membrane::StretchOf;
-use super::sag::Sag;
-use crate::analyses::assembled::{Assembled, structure};
+use crate::analyses::assembled::{Assembled, Substructures, structure};
 use crate::cost::Stopwatch;
+use crate::effect::{Effect, Feature, Marched};
 use crate::error::Error;
+use crate::forecast::MemoryEstimate;
 use crate::model::{Impact, Model, Plan, Strike};
-use fem_core::assembly::{Condensation, LargePlate, SparseStructure};
+use fem_core::assembly::{Condensation, SparseStructure};
 use fem_core::counters::Counters;
-use fem_core::damping::Damping;
 use fem_core::functional::Functional;
 use fem_core::prolongation::Prolongation;
 use fem_core::reduction::ReductionError;
-use fem_core::structure::{SolveError, Structure};
+use fem_core::structure::Structure;
 use fem_core::time::{Integrator, StepError};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
 use fem_dynamics::limit::{self, TooLong};
@@ -33,8 +32,7 @@ pub struct Prepared<'a> {
     pub(super) model: &'a Model,
     pub(super) impact: &'a Impact,
     pub(super) system: ImpactSystem,
-    /// Displacements at rest under gravity, from which those of the system count.
-    pub(super) sag: Option<Vec<f64>>,
+    pub(super) effects: Vec<Box<dyn Effect>>,
     pub(super) reduced: Option<Reduced>,
     /// A reduced plate that its deflections stretch, and what it does beside its modes.
     pub(super) stiffened: Option<(Stiffened, Companions)>,
@@ -62,29 +60,103 @@ impl Full {
     }
 }
 
-/// Assembles and reduces `model` and checks the step.
+/// Assembles and reduces `model`, couples it to its impactors and checks the step.
 ///
 /// # Errors
 /// A scene without an impact, a cell that the element refuses, a structure that is not held, a reduction that fails, a
 /// step beyond the stability limit.
 pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Error> {
     let Plan::Impact(impact) = &model.plan else { return Err(Error::NoImpact) };
-    if model.undecided() {
+    if model.effects.undecided() {
         return Err(Error::Undecided);
     }
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
-    let effects = model.effects;
-    // Without inertia a linear plate is what its static responses are, and a reduction has nothing to add to them.
-    let at_rest = !effects.inertia && !effects.membrane;
-    let inertia = effects.inertia || (effects.membrane && impact.reduction.is_some());
-    let mut assembled = structure(model, inertia, threads, &mut counters)?;
+    let mut effects = model.effects.acting().to_vec();
+
+    let mut assembled = assemble(model, impact, threads, &mut counters)?;
     stopwatch.lap("assemble");
-    let (stiffness_entries, factor_entries) = (assembled.structure.entries(), assembled.factor_entries);
-    let (substructures, memory) = (assembled.substructures(), assembled.memory);
+    let before = Before::of(&assembled);
     let contacts: Vec<Functional> = impact.strikes.iter().map(|s| assembled.functional(&s.contact)).collect();
-    let basis = match &impact.reduction {
-        _ if at_rest => Some(static_responses(&mut assembled.structure, &distinct(&contacts))),
+    let basis = choose_basis(model, impact, &mut assembled, &contacts);
+    let reduced = reduce(model, impact, &mut assembled, basis, &mut effects)?;
+    let Assembled { structure, condensation, .. } = assembled;
+    let plate = Marched { full: structure, reduced, stretched: None, contacts: distinct(&contacts) };
+    let plate = change_structure(model, plate, &mut effects)?;
+    (counters.factorisations, counters.solves) = plate.full.work();
+    stopwatch.lap("reduce");
+
+    let Marched { full, reduced, stretched, .. } = plate;
+    let impactors = place_impactors(impact, &contacts, reduced.as_ref());
+    let (structure, full): (Box<dyn Structure>, _) = match (&reduced, &stretched) {
+        (None, _) => (Box::new(full), None),
+        (Some(reduced), None) => (Box::new(reduced.modal.clone()), Some(Full { structure: full, contacts })),
+        (Some(_), Some((stretched, _))) => (Box::new(stretched.clone()), Some(Full { structure: full, contacts })),
+    };
+    let mut system = couple(model, ImpactSystem::new(structure, impactors), reduced.as_ref(), &mut effects);
+    try_inertia(model, impact, &system, reduced.as_ref())?;
+    let sizes = check_step(model, impact, &mut system, reduced.as_ref(), before)?;
+    Ok(Prepared {
+        model,
+        impact,
+        system,
+        effects,
+        reduced,
+        stiffened: stretched,
+        full,
+        condensation,
+        sizes,
+        counters,
+        stopwatch,
+    })
+}
+
+/// What is known of a plate once it is assembled.
+#[derive(Debug, Clone, Copy)]
+struct Before {
+    stiffness_entries: usize,
+    factor_entries: usize,
+    substructures: Option<Substructures>,
+    memory: MemoryEstimate,
+}
+
+impl Before {
+    fn of(assembled: &Assembled) -> Self {
+        Self {
+            stiffness_entries: assembled.structure.entries(),
+            factor_entries: assembled.factor_entries,
+            substructures: assembled.substructures(),
+            memory: assembled.memory,
+        }
+    }
+}
+
+/// Whether the plate is what its static responses are: linear, and without inertia.
+fn rests(model: &Model) -> bool {
+    let nature = model.effects.nature();
+    !nature.inertia && !nature.large
+}
+
+/// K, and M where something asks for it: without inertia the basis of a reduced plate that is stretched.
+fn assemble(
+    model: &Model,
+    impact: &Impact,
+    threads: NonZeroUsize,
+    counters: &mut Counters,
+) -> Result<Assembled, Error> {
+    let nature = model.effects.nature();
+    structure(model, nature.inertia || (nature.large && impact.reduction.is_some()), threads, counters)
+}
+
+/// The basis of the plate, if it is reduced: to a plate that rests a reduction has nothing to add.
+fn choose_basis(
+    model: &Model,
+    impact: &Impact,
+    assembled: &mut Assembled,
+    contacts: &[Functional],
+) -> Option<Result<Vec<f64>, ReductionError>> {
+    match &impact.reduction {
+        _ if rests(model) => Some(static_responses(&mut assembled.structure, &distinct(contacts))),
         None => None,
         Some(reduction) => {
             let governors = assembled.own(model.governors(impact, GOVERNORS));
@@ -92,84 +164,88 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
             if assembled.condensation.is_none() {
                 structure.offer_coarse(Prolongation::linear_in_z(&model.plate, &model.constraints));
             }
-            Some(reduction.basis(structure, &distinct(&contacts), &governors))
+            Some(reduction.basis(structure, &distinct(contacts), &governors))
         }
-    };
-    let sag = effects.gravity.map(|gravity| Sag::of(model, gravity, &mut assembled)).transpose()?;
-    let project = |basis: Result<Vec<f64>, ReductionError>| {
-        let with_sag = |mut basis: Vec<f64>| {
-            basis.extend(sag.iter().flat_map(|sag| &sag.u));
-            Reduced::project(&assembled.structure, &basis)
-        };
-        basis.and_then(with_sag).map_err(|why| {
-            let name = &impact.spec.reduction.name;
-            model.scene.source.error_at(&name.place, format!("reduction `{}`: {why}", name.value), "")
-        })
-    };
-    let mut reduced = basis.map(project).transpose()?;
-    let Assembled { mut structure, condensation, .. } = assembled;
-    if let (Some(reduced), false) = (&mut reduced, effects.inertia) {
-        reduced.modal.without_inertia();
     }
-    match (effects.damping, &mut reduced) {
-        (Some(damping), Some(reduced)) => reduced.modal.damp(damping),
-        (Some(Damping::Rayleigh(damping)), None) => structure.damp(damping),
-        // The scene is refused a ratio without modes.
-        (Some(Damping::Ratio(_)) | None, _) => {}
-    }
-    let stiffened = match &reduced {
-        Some(reduced) if effects.membrane => {
-            let stiffened = Stiffened::new(&mut structure, reduced, &distinct(&contacts), &StretchOf(model));
-            Some(stiffened.map_err(|why| SolveError(why.0))?)
-        }
-        None if effects.membrane => {
-            structure.stiffen(LargePlate::new(&model.plate, model.element.clone(), &model.constraints));
-            None
-        }
-        _ => None,
-    };
-    (counters.factorisations, counters.solves) = structure.work();
-    stopwatch.lap("reduce");
+}
 
+/// The plate in the coordinates of `basis` and of what effects add to it.
+fn reduce(
+    model: &Model,
+    impact: &Impact,
+    assembled: &mut Assembled,
+    basis: Option<Result<Vec<f64>, ReductionError>>,
+    effects: &mut [Box<dyn Effect>],
+) -> Result<Option<Reduced>, Error> {
+    let mut more = Vec::new();
+    for effect in &mut *effects {
+        more.extend(effect.vectors(&model.body(), &mut assembled.structure)?);
+    }
+    let Some(basis) = basis else { return Ok(None) };
+    let project = |mut basis: Vec<f64>| {
+        basis.extend(more);
+        Reduced::project(&assembled.structure, &basis)
+    };
+    let mut reduced = basis.and_then(project).map_err(|why| {
+        let name = &impact.spec.reduction.name;
+        model.scene.source.error_at(&name.place, format!("reduction `{}`: {why}", name.value), "")
+    })?;
+    effects.iter_mut().for_each(|effect| effect.on_reduced(&mut reduced));
+    Ok(Some(reduced))
+}
+
+/// What effects make of the plate before it is coupled.
+fn change_structure(model: &Model, mut plate: Marched, effects: &mut [Box<dyn Effect>]) -> Result<Marched, Error> {
+    for effect in effects {
+        effect.on_structure(&model.body(), &mut plate)?;
+    }
+    Ok(plate)
+}
+
+/// The impactors of the scene, each with the load of its contact in coordinates of the march.
+fn place_impactors(impact: &Impact, contacts: &[Functional], reduced: Option<&Reduced>) -> Vec<Impactor> {
     let impactor = |((spec, strike), contact): ((&scene::ImpactorSpec, &Strike), &Functional)| Impactor {
         mass: spec.mass,
         velocity: spec.velocity,
         start: spec.start,
-        load: match &reduced {
+        load: match reduced {
             None => contact.0.clone(),
             Some(r) => r.restrict(contact).into_iter().enumerate().collect(),
         },
         law: strike.law.clone(),
     };
-    let impactors: Vec<Impactor> =
-        impact.spec.impactors.iter().zip(&impact.strikes).zip(&contacts).map(impactor).collect();
-    let (structure, full): (Box<dyn Structure>, _) = match &reduced {
-        None => (Box::new(structure), None),
-        Some(r) => {
-            let modal: Box<dyn Structure> = match &stiffened {
-                Some((stiffened, _)) => Box::new(stiffened.clone()),
-                None => Box::new(r.modal.clone()),
-            };
-            (modal, Some(Full { structure, contacts }))
-        }
-    };
-    let sag = sag.map(|sag| match &reduced {
-        None => sag,
-        Some(reduced) => sag.within(reduced),
-    });
-    let weight = sag.as_ref().zip(effects.gravity).map(|(sag, acceleration)| sag.weight(acceleration));
-    let mut system = ImpactSystem::new(structure, impactors).under(weight);
-    if !effects.inertia {
-        system = system.without_inertia();
-    }
+    impact.spec.impactors.iter().zip(&impact.strikes).zip(contacts).map(impactor).collect()
+}
+
+/// Plate and impactors as effects make one system of them.
+fn couple(
+    model: &Model,
+    system: ImpactSystem,
+    reduced: Option<&Reduced>,
+    effects: &mut [Box<dyn Effect>],
+) -> ImpactSystem {
+    effects.iter_mut().fold(system, |system, effect| effect.on_system(&model.body(), reduced, system))
+}
+
+/// Makes a step of a plate without inertia, to see whether the integrator can do without.
+fn try_inertia(model: &Model, impact: &Impact, system: &ImpactSystem, reduced: Option<&Reduced>) -> Result<(), Error> {
+    let (Some(reduced), false) = (reduced, model.effects.nature().inertia) else { return Ok(()) };
+    let trial = ImpactSystem::new(Box::new(reduced.modal.clone()), system.impactors().to_vec());
+    let step = impact.spec.march.step.value;
+    touched(trial, impact.integrator.clone(), step).map_err(|e| unmarchable(model, impact, e))
+}
+
+/// Refuses a step beyond the stability limit; sizes of the march otherwise.
+fn check_step(
+    model: &Model,
+    impact: &Impact,
+    system: &mut ImpactSystem,
+    reduced: Option<&Reduced>,
+    before: Before,
+) -> Result<Sizes, Error> {
     let march = &impact.spec.march;
-    if let (Some(reduced), false) = (&reduced, effects.inertia) {
-        let trial = ImpactSystem::new(Box::new(reduced.modal.clone()), system.impactors().to_vec());
-        touched(trial, impact.integrator.clone(), march.step.value).map_err(|e| unmarchable(model, impact, e))?;
-    }
     let limited = impact.integrator.limit();
-    let (longest_step, highest) =
-        limit::longest_step(&mut system, limited).map_err(|e| unmarchable(model, impact, e))?;
+    let (longest_step, highest) = limit::longest_step(system, limited).map_err(|e| unmarchable(model, impact, e))?;
     let hertz = |omega: f64| omega / std::f64::consts::TAU;
     if let (Some(omega_dt), Some(omega)) = (limited.product(), highest)
         && !(march.step.value <= longest_step)
@@ -182,10 +258,11 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     }
     let count = march.end.value / march.step.value;
     let steps = (count * (1.0 - 1e-12)).ceil().max(1.0) as u64;
-    let lowest = reduced.as_ref().and_then(|r| r.modal.frequencies().next());
+    let lowest = reduced.and_then(|r| r.modal.frequencies().next());
     // As it is written where it fits the end: a later end then changes no bit of it.
     let whole = (count - steps as f64).abs() <= 1e-12 * count;
-    let sizes = Sizes {
+    let Before { stiffness_entries, factor_entries, substructures, memory } = before;
+    Ok(Sizes {
         unknowns: model.constraints.ndof(),
         substructures,
         marched: system.structure().ndof(),
@@ -194,14 +271,11 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         memory,
         static_stiffness: 1.0 / system.static_flexibility(0)?,
         highest_frequency: highest.map(hertz),
-        sag: sag.as_ref().map(|sag| system.deflection(0, &sag.u)),
         lowest_frequency: lowest.filter(|omega| omega.is_finite()).map(hertz),
         longest_step,
         steps,
         step: if whole { march.step.value } else { march.end.value / steps as f64 },
-    };
-    let sag = sag.map(|sag| sag.u);
-    Ok(Prepared { model, impact, system, sag, reduced, stiffened, full, condensation, sizes, counters, stopwatch })
+    })
 }
 
 /// Makes a step with all impactors in contact, to see whether `integrator` needs the inverse of a mass that has none.
@@ -234,12 +308,9 @@ pub(super) fn unmarchable(model: &Model, impact: &Impact, error: StepError) -> E
     let StepError::SingularMass(why) = error else { return error.into() };
     let name = &impact.spec.march.integrator.name;
     let message = format!("`{}` needs the inverse of the mass matrix, which is singular: {why}", name.value);
-    let help = match model.effects.inertia {
-        true => {
-            "choose an implicit integrator such as `newmark`, a mass that is regular (`element.mass = \"cubic\"`), or \
-             another reduction"
-        }
-        false => "choose an implicit integrator such as `newmark`, or leave `effects.inertia` out",
-    };
+    let help = model.effects.way_out(Feature::ExplicitIntegrator).unwrap_or(
+        "choose an implicit integrator such as `newmark`, a mass that is regular (`element.mass = \"cubic\"`), or another \
+         reduction",
+    );
     model.scene.source.error_at(&name.place, message, help).into()
 }

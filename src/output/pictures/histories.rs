@@ -1,5 +1,6 @@
 //! Curves of an impact.
 
+use crate::effect::LedgerColumn;
 use fem_io::plot::{Axis, LinePlot, Physical, Series, Style, over_time};
 use fem_io::tables::{HistoryRow, ImpactorRow};
 
@@ -25,26 +26,32 @@ pub(super) fn displacement(title: &str, names: &[&str], rows: &[HistoryRow]) -> 
     shown(over_time(title, "Displacement", Physical::Length, curves.collect()))
 }
 
-/// Where the energy is, and its sum; what is lost counts. Parts too small to be seen are left out.
-pub(super) fn energy(title: &str, rows: &[HistoryRow]) -> Option<LinePlot> {
+/// Where the energy is, and its sum; what is lost counts. Parts too small to be seen are left out. `columns` are those of
+/// effects.
+pub(super) fn energy(title: &str, columns: &[&LedgerColumn], rows: &[HistoryRow]) -> Option<LinePlot> {
     let curve = |label: &str, value: fn(&HistoryRow) -> f64| {
         Series::solid(label, rows.iter().map(|row| (row.time_s, value(row))).collect())
     };
-    let parts = [
+    let parts = vec![
         curve("impactor", |r| r.impactor_kinetic_j),
         curve("plate, strain", |r| r.plate_strain_j),
         curve("plate, kinetic", |r| r.plate_kinetic_j),
         curve("contact", |r| r.contact_stored_j),
         curve("lost in the contact", |r| r.contact_dissipated_j),
-        curve("lost in damping", |r| r.damping_dissipated_j.unwrap_or(0.0)),
-        curve("weight", |r| r.gravity_potential_j.unwrap_or(0.0)),
     ];
+    let of_effects = columns.iter().enumerate().filter(|(_, column)| column.unit == "J").map(|(k, column)| {
+        let points = rows.iter().map(|row| (row.time_s, row.effects[k])).collect();
+        (column.counts, Series::solid(column.label.to_owned(), points))
+    });
+    let (counted, shares): (Vec<_>, Vec<_>) = of_effects.partition(|(counts, _)| *counts);
+    let [counted, shares] = [counted, shares].map(|all| all.into_iter().map(|(_, curve)| curve));
+    let parts: Vec<_> = parts.into_iter().chain(counted).collect();
     let size = |curve: &Series| curve.points.iter().fold(0.0_f64, |m, p| m.max(p.1.abs()));
     let largest = parts.iter().map(size).fold(0.0, f64::max);
     let sum = |i: usize| parts.iter().map(|part| part.points[i].1).sum();
     let total = rows.iter().enumerate().map(|(i, row)| (row.time_s, sum(i))).collect();
     let total = Series { label: "sum".into(), points: total, style: Style::Guide };
-    let seen = parts.into_iter().filter(|part| size(part) > VISIBLE * largest);
+    let seen = parts.into_iter().chain(shares).filter(|part| size(part) > VISIBLE * largest);
     shown(over_time(title, "Energy", Physical::Energy, seen.chain([total]).collect()))
 }
 
@@ -123,7 +130,7 @@ mod tests {
         let plot = displacement("t", &[""], &rows).unwrap();
         assert_eq!(names(&plot), ["impactor", "plate under the impactor"]);
         assert_eq!(names(&displacement("t", &["a"], &rows).unwrap()), ["impactor, a", "plate, a"]);
-        let plot = energy("t", &rows).unwrap();
+        let plot = energy("t", &[], &rows).unwrap();
         assert_eq!(names(&plot), ["impactor", "plate, strain", "sum"], "what cannot be seen is left out");
         assert!(plot.series[2].points.iter().all(|p| (p.1 - 4.0).abs() < 1e-12), "but it counts: {plot:?}");
         let plot = force_displacement("t", &[""], &rows).unwrap();

@@ -20,9 +20,10 @@ use fem_io::plot;
 pub fn write(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
     let (title, rows) = (&model.scene.title, &outcome.history);
     let names: Vec<_> = model.impactors().iter().map(|impactor| model.label(impactor).unwrap_or("")).collect();
+    let columns: Vec<_> = model.effects.columns().collect();
     let lines = [
         ("displacement", histories::displacement(title, &names, rows)),
-        ("energy", histories::energy(title, rows)),
+        ("energy", histories::energy(title, &columns, rows)),
         ("force_displacement", histories::force_displacement(title, &names, rows)),
     ];
     for (name, picture) in lines {

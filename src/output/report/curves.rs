@@ -1,5 +1,6 @@
 //! The history as curves to move through.
 
+use crate::effect::LedgerColumn;
 use fem_io::plot::unit_of_time;
 use fem_io::results::Table;
 use serde::Serialize;
@@ -69,15 +70,13 @@ const KINDS: [Kind; 4] = [
             ("plate_kinetic_J", "plate, kinetic"),
             ("contact_stored_J", "contact"),
             ("contact_dissipated_J", "lost in the contact"),
-            ("damping_dissipated_J", "lost in damping"),
-            ("gravity_potential_J", "weight"),
         ],
         unit: ("J", 1.0),
     },
 ];
 
-/// The curves of `history.csv`; the error is the column, row (from 1) and text that is not a finite number.
-pub(super) fn curves(history: &Table) -> Result<Option<Curves>, (String, usize, String)> {
+/// The curves of `history.csv`, of which `effects` have these columns; the error is the column, row (from 1) and text that is not a finite number.
+pub(super) fn curves(history: &Table, effects: &[&LedgerColumn]) -> Result<Option<Curves>, (String, usize, String)> {
     let columns = 0..history.header.len();
     let numbers = |k: usize| history.numbers(k).map_err(|(row, text)| (history.header[k].clone(), row, text));
     let values: Vec<Vec<f64>> = columns.map(numbers).collect::<Result<_, _>>()?;
@@ -89,7 +88,9 @@ pub(super) fn curves(history: &Table) -> Result<Option<Curves>, (String, usize, 
     let pick = |values: &[f64], factor: f64| kept.iter().map(|i| six_digits(values[*i] * factor)).collect::<Vec<_>>();
     let chart = |kind: &Kind| {
         let mut series = Vec::new();
-        for (ending, name) in kind.endings {
+        let of_effects = effects.iter().filter(|column| kind.id == "energy" && column.unit == kind.unit.0);
+        let of_effects = of_effects.map(|column| (column.name, column.label));
+        for (ending, name) in kind.endings.iter().copied().chain(of_effects) {
             for (column, values) in history.header.iter().zip(&values) {
                 let Some(impactor) = column.strip_suffix(ending) else { continue };
                 let of = impactor.strip_suffix('.').map_or(String::new(), |impactor| format!(", {impactor}"));
@@ -137,7 +138,7 @@ mod tests {
 
     #[test]
     fn a_long_history_is_thinned_but_for_its_peak() {
-        let curves = curves(&table(10_000)).unwrap().unwrap();
+        let curves = curves(&table(10_000), &[]).unwrap().unwrap();
         assert!((ROWS / 2..ROWS + 8).contains(&curves.times.len()), "{}", curves.times.len());
         assert_eq!((curves.time_unit, curves.times.last()), ("ms", Some(&9.999)));
         let names: Vec<_> = curves.charts.iter().map(|c| (c.id, c.series[0].name.as_str())).collect();
@@ -150,6 +151,6 @@ mod tests {
     fn what_is_no_number_is_named() {
         let mut table = table(3);
         table.rows[1][2] = "NaN".into();
-        assert_eq!(curves(&table).unwrap_err(), ("a.plate_displacement_m".to_owned(), 2, "NaN".to_owned()));
+        assert_eq!(curves(&table, &[]).unwrap_err(), ("a.plate_displacement_m".to_owned(), 2, "NaN".to_owned()));
     }
 }

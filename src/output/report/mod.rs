@@ -8,6 +8,7 @@ mod facts;
 mod folder;
 mod page;
 
+use crate::effect::LedgerColumn;
 use crate::error::Error;
 use fem_io::files::OutputDir;
 use folder::Folder;
@@ -19,15 +20,15 @@ pub const SCENE: &str = "scene.toml";
 /// The page.
 pub const PAGE: &str = "report.html";
 
-/// Reads the folder of results `path`, writes [`PAGE`] into it, and says where that is.
+/// Reads the folder of results `path`, writes [`PAGE`] into it, and says where that is. `columns` are those of effects.
 ///
 /// A march that was stopped by a signal has left a checkpoint alone: the page says so.
 ///
 /// # Errors
 /// A folder that no run wrote into, a file in it that is cut off or changed, a run that is still writing there.
-pub fn write(path: &Path) -> Result<PathBuf, Error> {
+pub fn write(path: &Path, columns: &[&LedgerColumn]) -> Result<PathBuf, Error> {
     let folder = Folder::read(path)?;
-    let page = page::render(&folder)?;
+    let page = page::render(&folder, columns)?;
     let dir = OutputDir::create(path)?;
     dir.write(PAGE, |out| out.write_all(page.as_bytes()))?;
     dir.add()?;

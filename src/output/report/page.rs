@@ -3,6 +3,7 @@
 use super::curves::{Curves, curves};
 use super::facts::{self, Column, Fact, Grid, Section};
 use super::folder::{Folder, Picture};
+use crate::effect::LedgerColumn;
 use crate::error::Error;
 use crate::output::damage::DamageMap;
 use base64::Engine as _;
@@ -37,12 +38,12 @@ struct Figure {
 }
 
 /// The page of a folder of results.
-pub(super) fn render(folder: &Folder) -> Result<String, Error> {
+pub(super) fn render(folder: &Folder, columns: &[&LedgerColumn]) -> Result<String, Error> {
     let none = Map::new();
     let summary = folder.summary.as_ref().and_then(Value::as_object).unwrap_or(&none);
     let text = |key: &str| summary.get(key).and_then(Value::as_str);
     let history = folder.path.join("history.csv");
-    let curves = folder.history.as_ref().map_or(Ok(None), curves);
+    let curves = folder.history.as_ref().map_or(Ok(None), |history| curves(history, columns));
     let curves = curves.map_err(|(column, row, text)| {
         damaged(&history, format!("row {row}, column {column}: `{text}` is not a finite number"))
     })?;

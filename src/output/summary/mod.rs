@@ -2,10 +2,11 @@
 
 mod text;
 
-use crate::advise::Hindsight;
+use crate::advise::hindsight;
 use crate::analyses::assembled::Substructures;
 use crate::analyses::impact::{self, ModeShare, Outcome, Sizes};
-use crate::model::{Decision, MEMBRANE, Model};
+use crate::effect::{AdviceRule, Decision, Hindsight};
+use crate::model::Model;
 use crate::words::name_ply;
 use fem_core::counters::Counters;
 use fem_core::tensor::{Ply, Stress6};
@@ -13,6 +14,7 @@ use fem_failure::scan::{FailureEvent, PlyOrInterface, first_per_mode};
 use fem_io::scene;
 use fem_io::tables::{HistoryRow, ImpactorRow};
 use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
 /// The summary of a run; units are in the key names.
@@ -62,8 +64,9 @@ pub struct ModelSize {
     pub factor_entries: usize,
     pub stress_sites: usize,
     pub static_stiffness_N_m: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub plate_sag_m: Option<f64>,
+    /// What effects say of it.
+    #[serde(flatten)]
+    pub of_effects: BTreeMap<&'static str, f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lowest_frequency_Hz: Option<f64>,
 }
@@ -251,6 +254,29 @@ impl From<Counters> for Work {
     }
 }
 
+/// What a run says of an effect that the advisor knows.
+struct Seen {
+    effect: &'static str,
+    advice: &'static AdviceRule,
+    run: Hindsight,
+}
+
+fn hindsights(model: &Model, history: &[HistoryRow]) -> Vec<Seen> {
+    let each = model.effects.known().iter().filter_map(|info| {
+        let advice = info.advice.as_ref().filter(|advice| advice.hindsight.is_some())?;
+        Some(Seen { effect: info.key.name, advice, run: hindsight(model, history, advice.threshold)? })
+    });
+    each.collect()
+}
+
+impl Seen {
+    /// What the user should know where the choice was wrong.
+    fn warning(&self, model: &Model) -> Option<String> {
+        let decided = model.decisions.iter().any(|decision| decision.effect == self.effect);
+        self.advice.hindsight?(&self.run, model.effects.has(self.effect), decided)
+    }
+}
+
 /// All contact forces together.
 fn force_at(history: &[HistoryRow], t: f64) -> f64 {
     let after = history.partition_point(|r| r.time_s < t).clamp(1, history.len().max(2) - 1);
@@ -266,8 +292,8 @@ impl ImpactSummary {
         let impact::Accuracy { step, reduction, mesh } = outcome.accuracy;
         let residual = reduction.and_then(|error| error.residual);
         let thickness = model.laminate.thickness();
-        let hindsight = Hindsight::of(model, h);
-        let reached = |effect: &str| hindsight.filter(|_| effect == MEMBRANE).map(|h| h.reached);
+        let seen = hindsights(model, h);
+        let reached = |effect: &str| Some(seen.iter().find(|seen| seen.effect == effect)?.run.reached);
         let damage = |e: &FailureEvent| DamageSummary {
             criterion: e.criterion.clone(),
             mode: e.mode.to_owned(),
@@ -311,7 +337,7 @@ impl ImpactSummary {
                 factor_entries: sizes.factor_entries,
                 stress_sites: outcome.sites,
                 static_stiffness_N_m: sizes.static_stiffness,
-                plate_sag_m: sizes.sag,
+                of_effects: outcome.quantities.iter().copied().collect(),
                 lowest_frequency_Hz: sizes.lowest_frequency,
             },
             impact: model.impactors().iter().enumerate().map(|(i, spec)| impact(model, outcome, i, spec)).collect(),
@@ -344,7 +370,7 @@ impl ImpactSummary {
             },
             work: outcome.counters.into(),
             warnings: {
-                let found = too_deep(model, outcome).chain(hindsight.and_then(|h| h.warning(model)));
+                let found = too_deep(model, outcome).chain(seen.iter().filter_map(|seen| seen.warning(model)));
                 model.warnings.iter().cloned().chain(found).collect()
             },
         }
@@ -361,7 +387,7 @@ fn impact(model: &Model, outcome: &Outcome, i: usize, spec: &scene::ImpactorSpec
     let (deflection, _) = peak(|r| r.plate_displacement_m);
     let last = outcome.history.last();
     let velocity = last.map_or(0.0, |r| r.impactors[i].impactor_velocity_m_s);
-    let (end, gravity) = (last.map_or(0.0, |r| r.time_s), model.effects.gravity.unwrap_or(0.0));
+    let (end, pull) = (last.map_or(0.0, |r| r.time_s), model.effects.nature().pull);
     let name = model.label(spec);
     ImpactFigures {
         name: name.map(str::to_owned),
@@ -375,7 +401,7 @@ fn impact(model: &Model, outcome: &Outcome, i: usize, spec: &scene::ImpactorSpec
         peak_plate_displacement_m: deflection,
         peak_plate_displacement_over_thickness: deflection / model.laminate.thickness(),
         peak_indentation_m: outcome.contacts[i].deepest,
-        impulse_N_s: spec.mass * (spec.velocity - velocity + gravity * end),
+        impulse_N_s: spec.mass * (spec.velocity - velocity + pull * end),
         final_impactor_velocity_m_s: velocity,
         contacts: outcome.contacts[i].count,
     }

@@ -1,8 +1,4 @@
-//! How much a plate stiffens as it deflects.
-
-use super::answer::{Answer, Number};
-use super::estimate::Estimate;
-use super::plate::PlateConstants;
+//! How the edge of a plate is held, and what follows from that.
 
 /// How the edge of a plate is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,38 +41,5 @@ impl Held {
             (false, true) => "simply supported, immovable in plane",
             (false, false) => "simply supported, movable in plane",
         }
-    }
-}
-
-/// What decides.
-pub(super) const FORMULA: &str = "A (w/h)^2";
-
-/// A (w/h)², from which on a linear plate is wrong by more than 5 %.
-pub const THRESHOLD: f64 = 0.05;
-
-pub(super) fn answer(plate: &PlateConstants, estimate: &Estimate, cost: f64) -> Answer {
-    let number = plate.stiffening(estimate.deflection);
-    let choice = match (plate.rim.held, number > THRESHOLD) {
-        (None, _) => "off: the supports do not surround the impact",
-        (_, true) => "on: effects.membrane = \"on\" or \"auto\"",
-        (_, false) => "off: the plate stays linear",
-    };
-    Answer {
-        question: "membrane",
-        numbers: vec![
-            Number::new(FORMULA, format!("{number:.4}"))
-                .threshold(format!("{THRESHOLD}: a linear force is wrong by more than that"))
-                .source("Timoshenko and Woinowsky-Krieger; w from the energy balance, Shivakumar 1985"),
-            Number::new("A", format!("{:.3}", plate.membrane_coefficient())).source("circle under a central load"),
-            Number::new("w/h", format!("{:.3}", estimate.deflection / plate.thickness)).source("until the march ends"),
-            Number::new("peak force, linear and not", {
-                format!("{:.1} N and {:.1} N", estimate.linear.force, estimate.stiffened.force)
-            })
-            .source("of the whole impact, without inertia"),
-        ],
-        choice: choice.into(),
-        effect: "membrane stiffening",
-        error: Some(format!("without it the force is wrong by about {:.1} %", 100.0 * number)),
-        cost: Some(cost),
     }
 }

@@ -1,0 +1,128 @@
+//! The effects of a model.
+
+use super::{Body, Decision, Effect, EffectInfo, Facts, Feature, LedgerColumn, Nature, Wish};
+use crate::error::Error;
+use crate::forecast::Demand;
+use fem_core::assembly::Symmetric;
+use fem_core::recovery::Recovery;
+use fem_io::scene::SceneError;
+
+/// The effects that act on a model, those that are left to the advisor, and all that could.
+#[derive(Debug, Clone, Default)]
+pub struct Effects {
+    known: Vec<&'static EffectInfo>,
+    acting: Vec<Box<dyn Effect>>,
+    left: Vec<Box<dyn Effect>>,
+}
+
+impl Effects {
+    /// No effects, of those that are `known`.
+    pub(crate) fn new(known: Vec<&'static EffectInfo>) -> Self {
+        Self { known, ..Self::default() }
+    }
+
+    /// Takes an effect as the scene wants it.
+    ///
+    /// # Errors
+    /// One that the scene does not suit.
+    pub(crate) fn add(&mut self, wish: Wish, facts: &Facts<'_>) -> Result<(), SceneError> {
+        let auto = matches!(wish, Wish::Auto(_));
+        let (Wish::On(effect) | Wish::Auto(effect)) = wish else { return Ok(()) };
+        facts.exclude(effect.excludes(), auto)?;
+        effect.check(facts)?;
+        if auto {
+            self.left.push(effect)
+        } else {
+            self.acting.push(effect)
+        }
+        self.sort();
+        Ok(())
+    }
+
+    /// In the order of the registry, whatever that of the scene.
+    fn sort(&mut self) {
+        let Self { known, acting, left } = self;
+        let number = |effect: &Box<dyn Effect>| known.iter().position(|info| info.key.name == effect.info().key.name);
+        acting.sort_by_key(number);
+        left.sort_by_key(number);
+    }
+
+    /// Every effect of the registry.
+    pub fn known(&self) -> &[&'static EffectInfo] {
+        &self.known
+    }
+
+    /// Those that act, in the order of the registry.
+    pub fn acting(&self) -> &[Box<dyn Effect>] {
+        &self.acting
+    }
+
+    /// Whether the effect `name` acts.
+    pub fn has(&self, name: &str) -> bool {
+        self.acting.iter().any(|effect| effect.info().key.name == name)
+    }
+
+    /// Whether some are left to the advisor, who has not decided yet. Until then they do not act.
+    pub fn undecided(&self) -> bool {
+        !self.left.is_empty()
+    }
+
+    /// Decides those that are left to the advisor by the number that each asks for.
+    pub(crate) fn decide(&mut self, number: impl Fn(&super::AdviceRule) -> f64) -> Vec<Decision> {
+        let mut decisions = Vec::new();
+        for effect in std::mem::take(&mut self.left) {
+            let Some(advice) = &effect.info().advice else { continue };
+            let expected = number(advice);
+            let on = expected > advice.threshold;
+            let (formula, threshold) = (advice.formula, advice.threshold);
+            decisions.push(Decision { effect: effect.info().key.name, on, formula, expected, threshold });
+            if on == advice.acts_above {
+                self.acting.push(effect);
+            }
+        }
+        self.sort();
+        decisions
+    }
+
+    /// What is computed of the plate.
+    pub fn nature(&self) -> Nature {
+        let mut nature = Nature::default();
+        self.acting.iter().for_each(|effect| effect.alter(&mut nature));
+        nature
+    }
+
+    /// The columns of those that act.
+    pub fn columns(&self) -> impl Iterator<Item = &'static LedgerColumn> + '_ {
+        self.acting.iter().flat_map(|effect| effect.info().columns)
+    }
+
+    /// The way out for an effect that acts where the scene turns out to have `feature`.
+    pub(crate) fn way_out(&self, feature: Feature) -> Option<&'static str> {
+        let mut all = self.acting.iter().flat_map(|effect| effect.excludes());
+        all.find(|exclusion| exclusion.with == feature).map(|exclusion| exclusion.instead)
+    }
+
+    /// What they take beside a computation without them, bytes.
+    pub(crate) fn memory(&self, body: &Body<'_>, demand: &Demand) -> f64 {
+        self.acting.iter().fold(0.0, |sum, effect| sum + effect.memory(body, demand))
+    }
+
+    /// Adds what they add to the stiffness.
+    pub(crate) fn on_stiffness(&self, body: &Body<'_>, stiffness: &mut Symmetric) -> Result<(), Error> {
+        self.acting.iter().try_for_each(|effect| effect.on_stiffness(body, stiffness))
+    }
+
+    /// Stresses that do not follow from displacements, six per station; empty without.
+    pub(crate) fn stresses(&self, body: &Body<'_>, recovery: &Recovery) -> Result<Vec<f64>, Error> {
+        let mut sum: Vec<f64> = Vec::new();
+        for effect in &self.acting {
+            let Some(stresses) = effect.stresses(body, recovery)? else { continue };
+            if sum.is_empty() {
+                sum = stresses;
+            } else {
+                sum.iter_mut().zip(stresses).for_each(|(sum, stress)| *sum += stress);
+            }
+        }
+        Ok(sum)
+    }
+}

@@ -1,0 +1,116 @@
+//! Residual stresses of the plies since the plate was free of stress.
+
+use super::OFF;
+use crate::effect::{Body, Effect, EffectInfo, EffectPlugin, Exclusion, Facts, Feature, Nature, Wish};
+use crate::error::Error;
+use fem_core::assembly::free_forces;
+use fem_core::element::Stack;
+use fem_core::failure::Site;
+use fem_core::laminate::Laminate;
+use fem_core::material::{Material, MaterialError};
+use fem_core::plugin::Dimension;
+use fem_core::recovery::{Recovery, Station};
+use fem_core::residual::Residual;
+use fem_core::tensor::{Global, Ply, Stress6};
+use fem_io::scene::{Analysis, Form, SceneError, SceneValue, key};
+
+/// A change of temperature since the plate was free of stress.
+///
+/// Under loads at rest it strains the plies; in an impact their stresses are those of the free plate, which the march does not
+/// know.
+#[derive(Debug, Clone, Copy)]
+pub struct Cure {
+    /// K.
+    change: f64,
+}
+
+impl EffectPlugin for Cure {
+    const INFO: EffectInfo = EffectInfo {
+        key: key(
+            "cure",
+            Form::OneOf(&[OFF, Form::Quantity(Dimension::TEMPERATURE)]),
+            r#""-150 K""#,
+            "residual stresses of the plies; the change counts from the temperature at which the plate is free of stress",
+        )
+        .default(r#""off""#),
+        source: "Tsai and Hahn 1980",
+        columns: &[],
+        advice: None,
+    };
+
+    fn read(value: &SceneValue<'_>) -> Result<Wish, SceneError> {
+        if value.is_word("off") {
+            return Ok(Wish::Off);
+        }
+        Ok(Wish::On(Box::new(Self { change: value.quantity(Dimension::TEMPERATURE)? })))
+    }
+}
+
+impl Effect for Cure {
+    fn info(&self) -> &'static EffectInfo {
+        &Self::INFO
+    }
+
+    fn excludes(&self) -> &'static [Exclusion] {
+        const EXCLUDED: &[Exclusion] = &[Exclusion::new(
+            Feature::Modes,
+            "residual stresses do not change the natural modes of a free plate",
+            "leave `cure` out",
+        )];
+        EXCLUDED
+    }
+
+    fn check(&self, facts: &Facts<'_>) -> Result<(), SceneError> {
+        let (scene, source) = (facts.scene, &facts.scene.source);
+        let looks = facts.criteria.iter().any(|(_, criterion)| criterion.info().site == Site::Interface);
+        let judged = scene.interface.as_ref().filter(|_| looks);
+        if let (Analysis::Static(_), Some(resin)) = (&scene.analysis, judged) {
+            let message = "the resin between plies has no thermal strain of its own in a static analysis";
+            let help = "leave the criteria that judge interfaces out, or `effects.cure`";
+            return Err(source.error_at(&resin.place, message, help));
+        }
+        let plies = scene.laminate.value.plies.iter().map(|ply| ply.material);
+        for material in plies.chain(judged.map(|resin| resin.value)).map(|m| &scene.materials[m]) {
+            if let Err(why) = material.value.thermal_expansion() {
+                let help =
+                    "give it, for example: alpha1 = \"-1e-6 1/K\", alpha2 = \"26e-6 1/K\"; or leave `effects.cure` out";
+                return Err(source.error_at(&material.place, why.to_string(), help));
+            }
+        }
+        Ok(())
+    }
+
+    fn alter(&self, nature: &mut Nature) {
+        nature.strained = true;
+    }
+
+    fn on_stacks(
+        &self,
+        at_rest: bool,
+        laminate: &Laminate,
+        materials: &[Material],
+        stacks: &mut [Stack],
+    ) -> Result<(), MaterialError> {
+        if at_rest { laminate.heat(stacks, materials, self.change) } else { Ok(()) }
+    }
+
+    fn forces(&self, body: &Body<'_>) -> Result<Option<(Vec<f64>, f64)>, Error> {
+        Ok(Some(free_forces(body.plate, body.element, body.constraints)?))
+    }
+
+    /// Under loads at rest those that free strains leave in a plate held in its shape, in an impact those of the free plate.
+    fn stresses(&self, body: &Body<'_>, recovery: &Recovery) -> Result<Option<Vec<f64>>, Error> {
+        let Body { plate, element, laminate, materials, at_rest, .. } = *body;
+        let cooled = Residual::new(laminate, materials, self.change)?;
+        let of_station = |station: &Station| match at_rest {
+            false => cooled.stress(&materials[station.material], station.angle, station.z),
+            true => {
+                let slice = station.ply - laminate.plies_of(station.layer).start;
+                let held = element.held_stress(&plate.stacks[station.layer].slices[slice]);
+                Ok(Stress6::<Global>::new(held).to_ply(station.angle))
+            }
+        };
+        let stations: Vec<Stress6<Ply>> = recovery.stations.iter().map(of_station).collect::<Result<_, _>>()?;
+        Ok(Some(stations.iter().flat_map(|s| s.0).collect()))
+    }
+}

@@ -1,0 +1,247 @@
+//! Membrane stiffening: the plate is stretched as it deflects.
+
+use super::{SWITCHES, Switch};
+use crate::effect::{
+    AdviceRule, Answer, Body, Effect, EffectInfo, EffectPlugin, Exclusion, Expected, Facts, Feature, Hindsight,
+    Marched, Nature, Number, Wish,
+};
+use crate::error::Error;
+use crate::forecast::{Demand, Size, nominal};
+use fem_core::assembly::{AssemblyError, LargePlate, Stretch};
+use fem_core::structure::SolveError;
+use fem_dynamics::reduce::{Stiffened, Stretching};
+use fem_io::scene::{Form, SceneError, SceneValue, key, words};
+
+/// Strains are those of large deflections: of the element in a full plate, of a few patterns of membrane stress in a reduced one.
+#[derive(Debug, Clone, Copy)]
+pub struct Membrane;
+
+/// A (w/h)², from which on a linear plate is wrong by more than 5 %.
+const THRESHOLD: f64 = 0.05;
+
+/// What decides.
+const FORMULA: &str = "A (w/h)^2";
+
+impl EffectPlugin for Membrane {
+    const INFO: EffectInfo = EffectInfo {
+        key: key(
+            "membrane",
+            Form::Words(&words(&SWITCHES)),
+            r#""auto""#,
+            "membrane stiffening: strains of large deflections",
+        )
+        .default(r#""off""#),
+        source: "von Karman 1910",
+        columns: &[],
+        advice: Some(AdviceRule {
+            formula: FORMULA,
+            number: stiffening,
+            threshold: THRESHOLD,
+            acts_above: true,
+            answer: Some(answer),
+            hindsight: Some(hindsight),
+        }),
+    };
+
+    fn read(value: &SceneValue<'_>) -> Result<Wish, SceneError> {
+        Ok(match value.choice(&SWITCHES)? {
+            Switch::Off => Wish::Off,
+            Switch::On => Wish::On(Box::new(Self)),
+            Switch::Auto => Wish::Auto(Box::new(Self)),
+        })
+    }
+}
+
+impl Effect for Membrane {
+    fn info(&self) -> &'static EffectInfo {
+        &Self::INFO
+    }
+
+    fn excludes(&self) -> &'static [Exclusion] {
+        const EXCLUDED: &[Exclusion] = &[
+            Exclusion::new(Feature::Modes, "natural modes are those of small vibrations", "leave `membrane` out"),
+            Exclusion::new(
+                Feature::Substructures,
+                "condensed substructures are linear",
+                "leave `substructures` out and name a reduction, for example: reduction = { method = \"ritz\", vectors = 40 }",
+            ),
+            Exclusion::new(
+                Feature::EquilibriumProfile,
+                "`equilibrium` integrates stresses of small displacements",
+                "leave `equilibrium` out, or `effects.membrane`",
+            )
+            .unless_auto(),
+        ];
+        EXCLUDED
+    }
+
+    fn check(&self, facts: &Facts<'_>) -> Result<(), SceneError> {
+        if facts.element.large_displacements().is_some() {
+            return Ok(());
+        }
+        Err(facts.refuse(
+            format!("the element `{}` does not support large deflections", facts.scene.element.name.value),
+            "use an element that does, such as `hermite-prism` or `mitc4`, or leave `membrane` out",
+        ))
+    }
+
+    fn alter(&self, nature: &mut Nature) {
+        nature.large = true;
+    }
+
+    fn memory(&self, body: &Body<'_>, demand: &Demand) -> f64 {
+        let all = body.plate.ndof() as f64;
+        match demand.contacts {
+            Some(contacts) => {
+                let [strains, forms] = [STRAINS, FORMS].map(|count| (count * contacts) as f64);
+                let (n, vectors) = (demand.unknowns as f64, demand.vectors);
+                // Forces and shapes of the strains; they and the modes before the elimination of constraints.
+                let fields = Demand::BASES * strains * n + (strains + vectors as f64) * all;
+                8.0 * (fields + forms * (vectors * vectors) as f64)
+            }
+            // A copy of mesh and constraints as well.
+            None => {
+                PER_PLACE * (body.plate.kept_cells().count() * body.plate.info().ndof()) as f64
+                    + Demand::PER_UNKNOWN * all
+            }
+        }
+    }
+
+    fn on_structure(&mut self, body: &Body<'_>, plate: &mut Marched) -> Result<(), Error> {
+        let Marched { full, reduced, stretched, contacts } = plate;
+        match reduced {
+            Some(reduced) => {
+                let stiffened = Stiffened::new(full, reduced, contacts, &StretchOf(*body));
+                *stretched = Some(stiffened.map_err(|why| SolveError(why.0))?);
+            }
+            None => {
+                let element = dyn_clone::clone_box(body.element);
+                let large = LargePlate::new(body.plate, element, body.constraints);
+                full.stiffen(large);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The quadratic strains of a plate.
+struct StretchOf<'a>(Body<'a>);
+
+impl StretchOf<'_> {
+    fn of(&self, fields: &[f64]) -> Stretch<'_> {
+        let Body { plate, element, constraints, .. } = self.0;
+        Stretch::new(plate, element, constraints, fields)
+    }
+}
+
+impl Stretching for StretchOf<'_> {
+    fn gram(&self, fields: &[f64]) -> Result<Vec<f64>, SolveError> {
+        self.of(fields).gram().map_err(refused)
+    }
+
+    fn forces(&self, fields: &[f64], combinations: &[f64]) -> Result<Vec<f64>, SolveError> {
+        self.of(fields).forces(combinations).map_err(refused)
+    }
+
+    fn forms(
+        &self,
+        fields: &[f64],
+        combinations: &[f64],
+        shapes: Option<&[f64]>,
+        modes: &[f64],
+    ) -> Result<Vec<f64>, SolveError> {
+        self.of(fields).forms(combinations, shapes, modes).map_err(refused)
+    }
+}
+
+fn refused(e: AssemblyError) -> SolveError {
+    SolveError(e.to_string())
+}
+
+/// Places of a cell's unknowns, kept in lists that have grown, bytes per unknown of a cell.
+const PER_PLACE: f64 = 96.0;
+/// Of a reduced plate, per contact: membrane strains, and forms of these and of its stresses.
+const STRAINS: usize = 25;
+const FORMS: usize = 40;
+
+fn stiffening(expected: &Expected) -> f64 {
+    expected.coefficient * (expected.deflection / expected.thickness).powi(2)
+}
+
+fn answer(expected: &Expected, size: &Size) -> Answer {
+    let number = stiffening(expected);
+    let choice = match (expected.surrounded, number > THRESHOLD) {
+        (false, _) => "off: the supports do not surround the impact",
+        (_, true) => "on: effects.membrane = \"on\" or \"auto\"",
+        (_, false) => "off: the plate stays linear",
+    };
+    let [linear, stretched] = expected.forces;
+    Answer {
+        question: "membrane",
+        numbers: vec![
+            Number::new(FORMULA, format!("{number:.4}"))
+                .threshold(format!("{THRESHOLD}: a linear force is wrong by more than that"))
+                .source("Timoshenko and Woinowsky-Krieger; w from the energy balance, Shivakumar 1985"),
+            Number::new("A", format!("{:.3}", expected.coefficient)).source("circle under a central load"),
+            Number::new("w/h", format!("{:.3}", expected.deflection / expected.thickness))
+                .source("until the march ends"),
+            Number::new("peak force, linear and not", format!("{linear:.1} N and {stretched:.1} N"))
+                .source("of the whole impact, without inertia"),
+        ],
+        choice: choice.into(),
+        effect: "membrane stiffening",
+        error: Some(format!("without it the force is wrong by about {:.1} %", 100.0 * number)),
+        cost: Some(cost(size)),
+    }
+}
+
+/// Turns of Newton's method in an implicit step, and steps that one tangent serves.
+const TURNS: f64 = 3.0;
+const KEPT: f64 = 20.0;
+/// Time of an internal force over that of a stiffness.
+const FORCE: f64 = 1.0 / 3.0;
+/// Of a reduced plate: seconds per cell of the strains of its modes and of their work, directions of these that are solved
+/// for, patterns of stress, and seconds per entry of their forms and turn (case 5 of the report's table 1, 60 vectors).
+const CELL: f64 = 2e-3;
+const DIRECTIONS: u64 = 20;
+const PATTERNS: f64 = 13.0;
+const ENTRY: f64 = 8e-10;
+
+/// A march by Newton's method over the linear one: [`TURNS`] internal forces and solves a step, of a full plate a new
+/// tangent every [`KEPT`] steps, of a reduced one the patterns of its membrane stresses before.
+fn cost(size: &Size) -> f64 {
+    let seconds = |size: &Size| nominal(size).iter().sum::<f64>();
+    let steps = size.work.steps as f64;
+    if size.reduced {
+        let mut more = *size;
+        more.work.solves += DIRECTIONS;
+        let modes = size.marched as f64;
+        let turns = TURNS * steps * PATTERNS * modes * modes * ENTRY;
+        return 1.0 + (seconds(&more) - seconds(size) + size.cells as f64 * CELL + turns) / seconds(size);
+    }
+    let [assemble, factor, stresses, solves, judge] = nominal(size);
+    let turns = TURNS * (solves + steps * FORCE * assemble);
+    let tangents = steps / KEPT * (assemble + factor);
+    (assemble + factor + stresses + turns + tangents + judge) / seconds(size)
+}
+
+fn hindsight(run: &Hindsight, acted: bool, decided: bool) -> Option<String> {
+    let Hindsight { reached, coefficient, held, deflection, at, since } = *run;
+    match (since, acted) {
+        (Some(since), false) => Some(format!(
+            "without membrane stiffening the force is wrong by more than {:.0} % from {:.4} ms on and by about {:.0} % at \
+             {:.4} ms, when the plate deflects by {deflection:.2} thicknesses (A (w/h)^2, A = {coefficient} for an edge \
+             {held}): switch it on with `effects.membrane = \"on\"`, or \"auto\"",
+            100.0 * THRESHOLD,
+            since * 1e3,
+            100.0 * reached,
+            at * 1e3
+        )),
+        (None, true) if decided => Some(format!(
+            "the advisor switched membrane stiffening on, and A (w/h)^2 came to {reached:.4} only: `effects.membrane = \
+             \"off\"` keeps the force right within {:.0} %",
+            100.0 * THRESHOLD
+        )),
+        _ => None,
+    }
+}
