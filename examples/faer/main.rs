@@ -66,6 +66,7 @@ impl LinOp<f64> for Flexibility {
     }
 }
 
+// ANCHOR: compare
 fn compare() -> Result<Vec<Pair>, Box<dyn Error>> {
     let model = Model::new(scene::parse(PLATE, "plate.toml".as_ref())?, &Registry::standard())?;
     let one = NonZeroUsize::MIN;
@@ -99,6 +100,7 @@ fn compare() -> Result<Vec<Pair>, Box<dyn Error>> {
         Pair { name: "lowest frequency, Hz", faer: found[0].re.sqrt().recip() / TAU, fem: lowest / TAU },
     ])
 }
+// ANCHOR_END: compare
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("{:<32} {:>16} {:>16}", "", "faer", "fem");
