@@ -768,7 +768,7 @@ mod substructures {
     #[test]
     fn parts_of_no_kind_and_of_two() {
         refused(&divided("masters = []"), &["the substructures are not named", "give `groups`"]);
-        refused(&divided("cells = [2, 2], groups = [\"plate\"]"), &["excludes `groups`"]);
+        refused(&divided("cells = [2, 2], groups = [\"plate\"]"), &["cannot be combined with `groups`"]);
     }
 
     #[test]
@@ -777,7 +777,7 @@ mod substructures {
         refused(&divided(&masters.replace("plate", "plat")), &["the mesh has no group `plat`"]);
         refused(&divided(&masters.replace("U30", "W")), &["`W`"]);
         let shell = divided(&masters.replace("U30", "U31")).scene("mesh =", "element = { kind = \"hex20\" }\nmesh =");
-        refused(&shell, &["the masters of `plate` are none", "the element has none of the unknowns"]);
+        refused(&shell, &["`plate` adds no masters", "the element has none of the unknowns"]);
     }
 
     #[test]

@@ -98,7 +98,7 @@ fn what_cannot_be_drawn_is_refused_with_the_reason() {
         ("AS4/3502 --criteria pukc", "did you mean `puck`"),
         ("AS4/3502 --criteria tsai-wu:f12=2", "`f12`"),
         ("AS4/3502 --criteria tsai-wu:g12=0", "did you mean `f12`"),
-        ("AS4/3502 --criteria tsai-wu:f12", "is no parameter"),
+        ("AS4/3502 --criteria tsai-wu:f12", "is not a parameter"),
         ("AS4/3502 --criteria tsai-hill --plane s1-s13", "refuses stresses of the plane s1-s13"),
         ("AS4/3502 --criteria max-stress-interface", "needs the strength Zt"),
         ("AS4/3502 --criteria octahedral,puck --scene none.toml", "none.toml"),
@@ -110,7 +110,7 @@ fn what_cannot_be_drawn_is_refused_with_the_reason() {
     }
     let done = draw(folder.path(), "AS4/3502 --criteria puck --plane s1-t2");
     assert_eq!(done.status, 2);
-    assert!(done.stderr.contains("is no plane"), "{done:#?}");
+    assert!(done.stderr.contains("is not a plane"), "{done:#?}");
     assert_eq!(draw(folder.path(), "AS4/3502").status, 2);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "a refusal leaves nothing");
 }

@@ -168,7 +168,7 @@ fn what_does_not_fit_is_refused() {
     other[1] = b'9';
     checkpoint::write(&OutputDir::create(case.folder().join("out")).unwrap(), "checkpoint.bin", &other).unwrap();
     let theirs = format!("was written by version 9{}", &env!("CARGO_PKG_VERSION")[1..]);
-    refused(&case.fem("run", &["--out", "out", "--resume"]), &[&theirs, "start anew"]);
+    refused(&case.fem("run", &["--out", "out", "--resume"]), &[&theirs, "start over"]);
 }
 
 #[test]

@@ -140,7 +140,7 @@ impl ImpactSystem {
 
     /// The same under gravity, if there is some.
     #[must_use]
-    pub fn under(self, weight: Option<Weight>) -> Self {
+    pub fn with_weight(self, weight: Option<Weight>) -> Self {
         Self { weight, ..self }
     }
 
@@ -162,7 +162,7 @@ impl ImpactSystem {
 
     /// The same impact on another `structure`, one with the same unknowns.
     pub fn on(&self, structure: Box<dyn Structure>) -> Self {
-        let copy = Self::new(structure, self.impactors.clone()).under(self.weight.clone());
+        let copy = Self::new(structure, self.impactors.clone()).with_weight(self.weight.clone());
         Self { inertia: self.inertia, ..copy }
     }
 
@@ -447,7 +447,7 @@ impl SecondOrderSystem for ImpactSystem {
             *d /= cm * impactor.mass;
         }
         influence.free.fill(0.0);
-        influence.approached(impactors, from);
+        influence.set_approaches(impactors, from);
         *contact_calls += influence.touch(impactors, t, h, d)?;
         Ok(())
     }

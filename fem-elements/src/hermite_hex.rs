@@ -90,7 +90,7 @@ fn mass_table(mass: Mass) -> Vec<f64> {
 }
 
 /// Turns products of functions with natural derivatives as unknowns into those with global ones, node pair by node pair.
-fn spread(map: &PlaneMap, h: f64, product: impl Fn(usize) -> f64, mut put: impl FnMut(usize, usize, f64)) {
+fn scatter(map: &PlaneMap, h: f64, product: impl Fn(usize) -> f64, mut put: impl FnMut(usize, usize, f64)) {
     let transposed = |a: [Quartet; 4]| -> [Quartet; 4] { std::array::from_fn(|i| a.map(|row| row[i])) };
     for (f, f2) in (0..F).step_by(4).flat_map(|f2| (0..F).step_by(4).map(move |f| (f, f2))) {
         let natural = std::array::from_fn(|m2| std::array::from_fn(|m| product(f + m + F * (f2 + m2))));
@@ -144,7 +144,7 @@ impl Element for HermiteHex {
         }
         multiply(products, matrix(geometry, BLOCKS.len()), matrix(&STIFFNESS[..], TERMS));
         for (b, (n, n2)) in BLOCKS.iter().enumerate() {
-            spread(
+            scatter(
                 &map,
                 h,
                 |i| products[BLOCKS.len() * i + b],
@@ -170,7 +170,7 @@ impl Element for HermiteHex {
             *product = volume * column.iter().zip(&cell.stack.density_moments).map(|(t, m)| t * m).sum::<f64>();
         }
         me.fill(0.0);
-        spread(
+        scatter(
             &map,
             h,
             |i| products[i],

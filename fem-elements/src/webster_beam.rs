@@ -155,7 +155,7 @@ impl Element for WebsterBeam {
     }
 
     fn held_stress(&self, slice: &Slice) -> [f64; 6] {
-        apply(&self.seen(slice.c), &slice.free).map(|s| -s)
+        apply(&self.condense(slice.c), &slice.free).map(|s| -s)
     }
 
     fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
@@ -189,7 +189,7 @@ impl WebsterBeam {
     }
 
     /// The stiffness that the section sees: under plane stress that of strains within it, those across it left free.
-    fn seen(&self, c: Matrix6) -> Matrix6 {
+    fn condense(&self, c: Matrix6) -> Matrix6 {
         if self.state == PlaneState::Strain {
             return c;
         }
@@ -221,7 +221,7 @@ impl LargeDisplacement for WebsterBeam {
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, ElementError> {
         let mut stack = cell.stack.clone();
-        stack.slices.iter_mut().for_each(|slice| slice.c = self.seen(slice.c));
+        stack.slices.iter_mut().for_each(|slice| slice.c = self.condense(slice.c));
         let cell = Cell { stack: &stack, ..*cell };
         self.solid(&cell, |solid| solid.internal(&cell, u, scratch, force, tangent))
     }

@@ -374,7 +374,7 @@ impl Scan {
             }
         }
         for (watch, seen) in self.watches.iter_mut().zip(&mut self.record.seen) {
-            watch.keep(seen, last, t, &self.order, &self.slots, [&self.record.stress, &self.stress]);
+            watch.record(seen, last, t, &self.order, &self.slots, [&self.record.stress, &self.stress]);
             self.record.evaluations += watch.span.len() as u64;
         }
         std::mem::swap(&mut self.record.stress, &mut self.stress);
@@ -511,7 +511,7 @@ impl Watch {
 
     /// Takes `now`, the indices at time `t`, into `seen`, whose last are those of the time `last`. `stress` are those of the
     /// two.
-    fn keep(
+    fn record(
         &mut self,
         seen: &mut Seen,
         last: Option<f64>,

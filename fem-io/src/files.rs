@@ -99,7 +99,7 @@ const PARTIAL: &str = ".partial";
 ///
 /// The folder is locked until the value is dropped or the process ends, however it ends. The file `.lock` that carries the
 /// lock stays behind: removing it could free the folder for two later runs at once. It holds the names of what runs have
-/// left in the folder, so that a later one can take away what it replaces ([`OutputDir::supersede`]) and nothing else.
+/// left in the folder, so that a later one can take away what it replaces ([`OutputDir::remove_older`]) and nothing else.
 #[derive(Debug)]
 pub struct OutputDir {
     path: PathBuf,
@@ -155,7 +155,7 @@ impl OutputDir {
     ///
     /// # Errors
     /// A file that cannot be removed, a full disk.
-    pub fn supersede(&self) -> Result<(), FileError> {
+    pub fn remove_older(&self) -> Result<(), FileError> {
         let written = self.written.borrow();
         for name in self.earlier.difference(&written) {
             let path = self.path.join(name);
@@ -164,7 +164,7 @@ impl OutputDir {
                 _ => {}
             }
         }
-        self.remember(&written)
+        self.write_names(&written)
     }
 
     /// Leaves word of what was written, for a run that supersedes it.
@@ -172,10 +172,10 @@ impl OutputDir {
     /// # Errors
     /// A full disk.
     pub fn add(&self) -> Result<(), FileError> {
-        self.remember(&(&self.earlier | &*self.written.borrow()))
+        self.write_names(&(&self.earlier | &*self.written.borrow()))
     }
 
-    fn remember(&self, names: &BTreeSet<String>) -> Result<(), FileError> {
+    fn write_names(&self, names: &BTreeSet<String>) -> Result<(), FileError> {
         let text: String = names.iter().flat_map(|name| [name, "\n"]).collect();
         let write = |mut lock: &File| {
             lock.rewind()?;
@@ -326,18 +326,18 @@ mod tests {
             out
         };
         fs::write(folder.path().join("mine.txt"), "x").unwrap();
-        run(&["a.csv", "b.svg"]).supersede().unwrap();
+        run(&["a.csv", "b.svg"]).remove_older().unwrap();
         run(&["page.html"]).add().unwrap();
         assert_eq!(names(folder.path()), [".lock", "a.csv", "b.svg", "mine.txt", "page.html"]);
         // One that is stopped takes nothing away.
         drop(run(&["c.bin"]));
         assert_eq!(names(folder.path()).len(), 6);
-        run(&["a.csv", "c.bin"]).supersede().unwrap();
+        run(&["a.csv", "c.bin"]).remove_older().unwrap();
         assert_eq!(names(folder.path()), [".lock", "a.csv", "c.bin", "mine.txt"]);
         // Names that lead elsewhere are none.
         let outside = tempfile::NamedTempFile::new().unwrap();
         fs::write(folder.path().join(".lock"), format!("{}\n../x\n", outside.path().display())).unwrap();
-        run(&["a.csv"]).supersede().unwrap();
+        run(&["a.csv"]).remove_older().unwrap();
         assert!(outside.path().exists());
     }
 

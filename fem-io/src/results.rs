@@ -106,6 +106,6 @@ mod tests {
         let error = read_json::<serde_json::Value>(&path).unwrap_err().to_string();
         assert!(error.contains("damaged") && error.contains("EOF"), "{error}");
         std::fs::write(&path, [0xff, 0xfe]).unwrap();
-        assert!(read_text(&path).unwrap_err().to_string().contains("it is no text"));
+        assert!(read_text(&path).unwrap_err().to_string().contains("it is not text"));
     }
 }

@@ -50,15 +50,15 @@ pub struct ImpactorRow {
     pub plate_displacement_m: f64,
 }
 
-/// First damage by one criterion and mode: a row of `events.csv`.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// First damage by one criterion and mode: a row of `events.csv`, and part of a summary's `first_damage`.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct EventRow {
-    /// Time, s.
-    pub time_s: f64,
-    /// Id of the criterion.
+    /// Name of the criterion.
     pub criterion: String,
     /// Failure mode.
     pub mode: String,
+    /// Time, s.
+    pub time_s: f64,
     /// Cell, by its number in the mesh file.
     pub cell: u64,
     /// Ply counted from the bottom, such as `3`, or the two plies of an interface, `3|4`.
@@ -71,7 +71,8 @@ pub struct EventRow {
     pub y_m: f64,
     /// Place, m.
     pub z_m: f64,
-    /// Failure index, 1 at failure; it may be infinite.
+    /// Failure index, 1 at failure; it may be infinite, which JSON cannot hold.
+    #[serde(skip)]
     pub index: f64,
 }
 
@@ -210,7 +211,7 @@ pub fn write_json<T: Serialize>(dir: &OutputDir, name: &str, value: &T) -> Resul
 pub fn json_text<T: Serialize>(name: &str, value: &T) -> Result<String, FileError> {
     let json_error = |cause| FileError::Json { file: name.to_owned(), cause };
     let value = serde_json::to_value(value).map_err(json_error)?;
-    if let Some(key) = null_in(&value) {
+    if let Some(key) = find_null(&value) {
         return Err(FileError::Null { file: name.to_owned(), key: key.join(".") });
     }
     let mut text = serde_json::to_string_pretty(&value).map_err(json_error)?;
@@ -219,9 +220,9 @@ pub fn json_text<T: Serialize>(name: &str, value: &T) -> Result<String, FileErro
 }
 
 /// Keys and indices that lead to the first null, if there is one.
-fn null_in(value: &Value) -> Option<Vec<String>> {
+fn find_null(value: &Value) -> Option<Vec<String>> {
     let within = |key: String, value| {
-        let mut path = null_in(value)?;
+        let mut path = find_null(value)?;
         path.insert(0, key);
         Some(path)
     };

@@ -118,7 +118,7 @@ fn symbols() -> Vec<&'static str> {
 }
 
 /// A dimension in words: "a length", or its SI units where it has no name.
-fn in_words(dimension: Dimension) -> String {
+fn describe(dimension: Dimension) -> String {
     NAMED
         .iter()
         .find(|n| n.dimension.matches(&dimension))
@@ -177,7 +177,7 @@ pub fn parse_as(text: &str, wanted: Dimension) -> Result<f64, UnitError> {
     if found.matches(&wanted) {
         return Ok(value);
     }
-    Err(UnitError::WrongDimension { text: text.to_owned(), found: in_words(found), wanted: in_words(wanted) })
+    Err(UnitError::WrongDimension { text: text.to_owned(), found: describe(found), wanted: describe(wanted) })
 }
 
 /// True for a text that begins as a number: it must then be a quantity, and is not a word.
@@ -252,7 +252,7 @@ impl Parser<'_> {
         rest.chars().next()
     }
 
-    fn eats(&mut self, tokens: &[char]) -> bool {
+    fn accept(&mut self, tokens: &[char]) -> bool {
         match self.peek().filter(|c| tokens.contains(c)) {
             Some(c) => {
                 self.at += c.len_utf8();
@@ -266,13 +266,13 @@ impl Parser<'_> {
         let mut scale = self.factor(depth)?;
         let mut divided = false;
         while self.peek().is_some_and(|c| c != ')') {
-            if self.eats(&['/']) {
+            if self.accept(&['/']) {
                 divided = true;
                 scale = scale.times(self.factor(depth)?.power(-1.0));
             } else if divided {
                 return Err(self.syntax("a product after `/` needs parentheses"));
             } else {
-                self.eats(&['*', '·', '⋅']);
+                self.accept(&['*', '·', '⋅']);
                 scale = scale.times(self.factor(depth)?);
             }
         }
@@ -280,24 +280,24 @@ impl Parser<'_> {
     }
 
     fn factor(&mut self, depth: usize) -> Result<Scale, UnitError> {
-        let base = if self.eats(&['(']) {
+        let base = if self.accept(&['(']) {
             if depth == MAX_DEPTH {
                 return Err(self.syntax(format!("parentheses nest at most {MAX_DEPTH} deep")));
             }
             let inner = self.product(depth + 1)?;
             self.close()?;
             inner
-        } else if self.eats(&['1']) {
+        } else if self.accept(&['1']) {
             Scale::ONE
         } else {
             self.symbol()?
         };
-        if self.eats(&['^']) {
+        if self.accept(&['^']) {
             let p = self.exponent()?;
             Ok(base.power(p))
-        } else if self.eats(&['²']) {
+        } else if self.accept(&['²']) {
             Ok(base.power(2.0))
-        } else if self.eats(&['³']) {
+        } else if self.accept(&['³']) {
             Ok(base.power(3.0))
         } else {
             Ok(base)
@@ -305,13 +305,13 @@ impl Parser<'_> {
     }
 
     fn close(&mut self) -> Result<(), UnitError> {
-        if self.eats(&[')']) { Ok(()) } else { Err(self.syntax("`)` is missing")) }
+        if self.accept(&[')']) { Ok(()) } else { Err(self.syntax("`)` is missing")) }
     }
 
     fn exponent(&mut self) -> Result<f64, UnitError> {
-        let p = if self.eats(&['(']) {
+        let p = if self.accept(&['(']) {
             let numerator = self.number()?;
-            let p = if self.eats(&['/']) { numerator / self.number()? } else { numerator };
+            let p = if self.accept(&['/']) { numerator / self.number()? } else { numerator };
             self.close()?;
             p
         } else {

@@ -83,7 +83,7 @@ impl<'a> Watch<'a> {
     /// # Errors
     /// A criterion whose material lacks a constant, or a cell that the element refuses.
     pub(super) fn new(model: &'a Model, expansion: Rc<Expansion<'a>>) -> Result<Self, Error> {
-        let recovery = watched(model);
+        let recovery = build_recovery(model);
         let scan = Scan::new(model.criteria.clone(), sites(model, &recovery), model.materials.clone())?;
         let (probes, histories) = gauges(model, &scan).into_iter().unzip();
         let mut watch = Self {
@@ -126,12 +126,12 @@ impl<'a> Watch<'a> {
     pub(super) fn flush(&mut self) -> Result<(), Error> {
         let (times, waiting) = (std::mem::take(&mut self.record.times), std::mem::take(&mut self.record.waiting));
         let mut stresses = std::mem::take(&mut self.stresses);
-        let done = self.judge(&times, &waiting, &mut stresses);
+        let done = self.scan_batch(&times, &waiting, &mut stresses);
         self.stresses = stresses;
         done
     }
 
-    fn judge(&mut self, times: &[f64], waiting: &[f64], stresses: &mut [f64]) -> Result<(), Error> {
+    fn scan_batch(&mut self, times: &[f64], waiting: &[f64], stresses: &mut [f64]) -> Result<(), Error> {
         let count = times.len();
         if count == 0 {
             return Ok(());
@@ -222,7 +222,7 @@ pub(crate) fn margins(model: &Model, u: &[f64]) -> Result<Vec<Margin>, Error> {
     if model.criteria.is_empty() {
         return Ok(Vec::new());
     }
-    let recovery = watched(model);
+    let recovery = build_recovery(model);
     let mut stresses = vec![0.0; 6 * recovery.sites()];
     recover(model, &recovery, u, 1, &mut stresses)?;
     add(&mut stresses, &residual(model, &recovery)?);
@@ -293,7 +293,7 @@ pub(crate) fn recover(
 }
 
 /// Where the criteria look.
-fn watched(model: &Model) -> Recovery {
+fn build_recovery(model: &Model) -> Recovery {
     // Where nobody looks there is nothing to recover.
     let looks = model.criteria.iter().any(|(_, criterion)| criterion.info().site == Site::Interface);
     recovery(model, model.watched.clone(), looks)

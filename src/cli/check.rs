@@ -227,12 +227,12 @@ impl Checked {
         lines.extend(self.advised.iter().map(|advised| ("advised", advised.to_string())));
         lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
         let lines: String = lines.iter().map(|(what, text)| format!("  {what:<9} {text}\n")).collect();
-        format!("{}\n{lines}  the scene is valid\n{}", self.title, explained(&self.keys))
+        format!("{}\n{lines}  the scene is valid\n{}", self.title, format_explained(&self.keys))
     }
 }
 
 /// Keys under the outermost tables that they stand in, each material on its own.
-fn explained(keys: &[Explained]) -> String {
+fn format_explained(keys: &[Explained]) -> String {
     let mut text = String::new();
     let mut heading = "";
     for key in keys {

@@ -59,7 +59,7 @@ impl Console {
     /// Prints text.
     pub(super) fn print(&self, text: &str) {
         if !self.voice.quiet {
-            self.put(text.as_bytes());
+            self.write_bytes(text.as_bytes());
         }
     }
 
@@ -87,12 +87,12 @@ impl Console {
     /// Prints one JSON document.
     pub(super) fn document(&self, data: &impl Serialize) -> miette::Result<()> {
         let text = tables::json_text("standard output", data).into_diagnostic()?;
-        self.put(text.as_bytes());
+        self.write_bytes(text.as_bytes());
         Ok(())
     }
 
     /// Writes to standard output; a closed pipe ends quietly, a full disk at the end of the command.
-    pub(super) fn put(&self, bytes: &[u8]) {
+    pub(super) fn write_bytes(&self, bytes: &[u8]) {
         if let Err(why) = io::stdout().write_all(bytes)
             && why.kind() != io::ErrorKind::BrokenPipe
         {

@@ -110,7 +110,7 @@ fn criteria(registry: &Registry, asked: &[String], scene: Option<&Scene>) -> mie
 /// `key=value`, the value a number, a flag or a text.
 fn parameter(text: &str) -> miette::Result<(&str, plugin::Value)> {
     let Some((key, value)) = text.split_once('=') else {
-        return Err(miette!(help = "write, for example: tsai-wu:f12=-0.3", "`{text}` is no parameter"));
+        return Err(miette!(help = "write, for example: tsai-wu:f12=-0.3", "`{text}` is not a parameter"));
     };
     let number = value.parse().ok().map(plugin::Value::Number);
     let flag = || value.parse().ok().map(plugin::Value::Flag);

@@ -19,7 +19,7 @@ pub(super) struct CompletionsArguments {
 pub(super) fn completions(arguments: &CompletionsArguments, console: &Console) -> miette::Result<ExitCode> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut CommandLine::command(), "fem", &mut script);
-    console.put(&script);
+    console.write_bytes(&script);
     Ok(ExitCode::SUCCESS)
 }
 
@@ -36,7 +36,7 @@ pub(super) fn man(arguments: &ManArguments, console: &Console) -> miette::Result
     let mut command = CommandLine::command();
     command.build();
     match &arguments.out {
-        None => console.put(&page(&command)?),
+        None => console.write_bytes(&page(&command)?),
         Some(folder) => {
             let dir = OutputDir::create(folder).into_diagnostic()?;
             let own = command.get_subcommands().filter(|command| command.get_name() != "help");

@@ -117,7 +117,7 @@ pub fn run_with(registry: Registry, arguments: impl IntoIterator<Item = impl Int
     match done.and_then(|code| console.close().map(|()| code)) {
         Ok(code) => code,
         Err(report) => {
-            complain(&report);
+            print_report(&report);
             ExitCode::FAILURE
         }
     }
@@ -143,7 +143,7 @@ fn dispatch(registry: &Registry, command: &Command, console: &Console) -> miette
 }
 
 /// Shows an error with its causes, the place in the scene, and what to do.
-fn complain(report: &Report) {
+fn print_report(report: &Report) {
     let theme =
         if std::io::stderr().is_terminal() { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
     let mut text = String::new();

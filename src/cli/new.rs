@@ -109,7 +109,7 @@ fn write(registry: &Registry, template: &Template, folder: &Path) -> miette::Res
         return Err(miette!(help = help, "`{}` exists already and is not overwritten", folder.display()));
     }
     let (plugins, effects) = (|kind| registry.choices(kind), registry.effect_keys());
-    let scene = format!("#:schema ./{SCHEMA}\n{}", scene::annotated(template.scene, &plugins, &effects)?);
+    let scene = format!("#:schema ./{SCHEMA}\n{}", scene::annotate(template.scene, &plugins, &effects)?);
     let schema = tables::json_text(SCHEMA, &scene::schema(&plugins, &effects)).into_diagnostic()?;
     let mut files = vec![(SCENE, scene.as_bytes()), (SCHEMA, schema.as_bytes())];
     files.extend(template.mesh.map(|mesh| (MESH, mesh)));

@@ -99,7 +99,7 @@ impl Terminal<'_> {
 
 impl Follow for Terminal<'_> {
     fn marched(&mut self, share: f64) -> ControlFlow<()> {
-        let signals = self.signals.get_or_insert_with(Signals::heed);
+        let signals = self.signals.get_or_insert_with(Signals::listen);
         self.bar.set_position((share * 1000.0) as u64);
         match signals.received() {
             Some(_) => ControlFlow::Break(()),

@@ -20,7 +20,7 @@ pub(super) struct Signals {
 
 impl Signals {
     /// Listens from now on. Where the system refuses, a signal does what it does by default.
-    pub(super) fn heed() -> Self {
+    pub(super) fn listen() -> Self {
         let signals = Self::default();
         let heard = Arc::new(AtomicBool::new(false));
         for signal in HEARD.into_iter().filter(|signal| !ignored(*signal)) {

@@ -108,7 +108,7 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Consol
     if let Some(setting) = cheapest {
         write_scene(&session, arguments, setting)?;
     }
-    console.say(format, || promised(&session, arguments.tolerance, cheapest, &report));
+    console.say(format, || describe_cheapest(&session, arguments.tolerance, cheapest, &report));
     let data = Document {
         title: &report.title,
         asked: &report.asked,
@@ -144,7 +144,12 @@ fn write_scene(session: &Session<'_>, arguments: &Arguments, setting: &Setting) 
 }
 
 /// Whether a tolerance, if one was asked for, is kept.
-fn promised(session: &Session<'_>, tolerance: Option<f64>, cheapest: Option<&Setting>, report: &Report) -> String {
+fn describe_cheapest(
+    session: &Session<'_>,
+    tolerance: Option<f64>,
+    cheapest: Option<&Setting>,
+    report: &Report,
+) -> String {
     match (tolerance, cheapest) {
         (None, _) => String::new(),
         (Some(tolerance), Some(_)) => {

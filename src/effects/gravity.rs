@@ -90,7 +90,7 @@ impl Effect for Gravity {
             self.sag = self.load.iter().zip(reduced.modal.stiffnesses()).map(|(f, k)| f / k).collect();
         }
         let sag = 0.5 * self.load.iter().zip(&self.sag).map(|(f, u)| f * u).sum::<f64>();
-        system.under(Some(Weight { acceleration: self.acceleration, load: self.load.clone(), sag }))
+        system.with_weight(Some(Weight { acceleration: self.acceleration, load: self.load.clone(), sag }))
     }
 
     fn offset(&self) -> Option<&[f64]> {

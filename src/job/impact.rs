@@ -47,7 +47,7 @@ pub(super) fn run(model: &Model, options: &Options, follow: &mut dyn Follow) -> 
         if model.scene.output.plots {
             write_plots(dir, model, &own.outcome)?;
         }
-        dir.supersede()?;
+        dir.remove_older()?;
     }
     Ok((found, cost, dir.map(|dir| dir.path().to_owned())))
 }

@@ -36,7 +36,7 @@ fn hand_over(
     keep_scene(&dir, &model.scene.source)?;
     cost.phases.extend(write(&dir, model, &found)?);
     write_json(&dir, "cost.json", &cost)?;
-    dir.supersede()?;
+    dir.remove_older()?;
     Ok((found, cost, Some(dir.path().to_owned())))
 }
 

@@ -124,7 +124,7 @@ impl Builder<'_> {
     }
 
     /// Quads near one of `centres` that the symmetry keeps; all of these where the scene gives no radius.
-    pub(super) fn watched(&self, plate: &Plate, centres: &[[f64; 2]]) -> Result<Vec<usize>, SceneError> {
+    pub(super) fn find_watched(&self, plate: &Plate, centres: &[[f64; 2]]) -> Result<Vec<usize>, SceneError> {
         let failure = &self.scene.failure;
         let kept = plate.symmetry().quads().map(|(quad, _)| quad);
         let Some(radius) = failure.radius else { return Ok(kept.collect()) };
@@ -132,7 +132,7 @@ impl Builder<'_> {
             let message = "`failure.radius` is measured from the impact, and this analysis has none";
             return Err(self.scene.source.error_at(&failure.place, message, "leave it out"));
         }
-        let watched: Vec<usize> = kept.filter(near(plate, centres, radius)).collect();
+        let watched: Vec<usize> = kept.filter(is_within(plate, centres, radius)).collect();
         if watched.is_empty() {
             let message = "no cell has its centre within `failure.radius` of the impact";
             return Err(self.scene.source.error_at(&failure.place, message, "enlarge the radius or leave it out"));
@@ -251,7 +251,7 @@ impl Builder<'_> {
 }
 
 /// Whether the centre of a quad is within `radius` of one of `centres`.
-pub(super) fn near(plate: &Plate, centres: &[[f64; 2]], radius: f64) -> impl Fn(&usize) -> bool {
+pub(super) fn is_within(plate: &Plate, centres: &[[f64; 2]], radius: f64) -> impl Fn(&usize) -> bool {
     move |quad| {
         let c = plate.plane.corners(*quad).centroid();
         centres.iter().any(|centre| (c[0] - centre[0]).hypot(c[1] - centre[1]) <= radius)

@@ -1,6 +1,6 @@
 //! Which fields of a plate are written, and over which of its cells.
 
-use super::builder::{Builder, near};
+use super::builder::{Builder, is_within};
 use fem_core::plate::Plate;
 use fem_io::scene::{FieldCells, FieldSeries, Region, SceneError};
 use std::collections::BTreeSet;
@@ -37,7 +37,7 @@ impl Builder<'_> {
                 return Err(self.error(radius, message, "name a `group` of cells, or leave `region` out"));
             }
             Some(Region::Radius(radius)) => {
-                let quads: Vec<usize> = all.filter(near(plate, centres, radius.value)).collect();
+                let quads: Vec<usize> = all.filter(is_within(plate, centres, radius.value)).collect();
                 if quads.is_empty() {
                     let message = "no cell has its centre within this radius of the impact";
                     return Err(self.error(radius, message, "enlarge it, or leave `region` out"));

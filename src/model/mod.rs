@@ -113,7 +113,7 @@ impl Model {
         info!(quads = mesh.quads.len(), nodes = mesh.points.len(), "mesh");
         let materials: Vec<Material> = scene.materials.iter().map(|m| m.value.clone()).collect();
         let laminate = scene.laminate.value.clone();
-        warnings.extend(implausible(&mesh, &laminate));
+        warnings.extend(check_sizes(&mesh, &laminate));
 
         let element = builder.element()?;
         let criteria = match scene.effects.damage {
@@ -138,7 +138,7 @@ impl Model {
         builder.fold(&mut plate, &laminate, &materials, &criteria)?;
         memory::check(&plate)?;
         warnings.extend(polygon(&plate));
-        warnings.extend(flat(&plate));
+        warnings.extend(warn_of_flat_cells(&plate));
         warnings.extend(incompressible(&plate, &laminate, &materials));
         let (constraints, held) = builder.constraints(&plate)?;
         let plan = match &scene.analysis {
@@ -152,7 +152,7 @@ impl Model {
         };
         builder.modes(&plan)?;
         let division = builder.division(&plate, &constraints, &plan)?;
-        let watched = builder.watched(&plate, &centres)?;
+        let watched = builder.find_watched(&plate, &centres)?;
         let gauges = builder.gauges(&plate, &watched, &criteria)?;
         let fields = builder.fields(&plate, &centres)?;
         let resin = scene.interface.as_ref().map(|resin| resin.value);
@@ -242,7 +242,7 @@ fn polygon(plate: &Plate) -> Option<String> {
 }
 
 /// Solids bend too stiffly where cells are much wider than the plate is thick.
-fn flat(plate: &Plate) -> Option<String> {
+fn warn_of_flat_cells(plate: &Plate) -> Option<String> {
     let mesh = &plate.plane;
     let widest = (0..mesh.quads.len()).map(|q| mesh.quality(q).area.sqrt()).fold(0.0, f64::max);
     let (low, high) = mesh.bounds();
@@ -277,7 +277,7 @@ fn incompressible(plate: &Plate, laminate: &Laminate, materials: &[Material]) ->
     })
 }
 
-fn implausible(mesh: &PlaneMesh, laminate: &Laminate) -> Vec<String> {
+fn check_sizes(mesh: &PlaneMesh, laminate: &Laminate) -> Vec<String> {
     let mut warnings = Vec::new();
     let (low, high) = mesh.bounds();
     let size = (high[0] - low[0]).max(high[1] - low[1]);

@@ -57,7 +57,7 @@ impl Builder<'_> {
             }
         }
         for (label, criterion) in criteria {
-            if !operations.iter().all(|o| self.sees_no_difference(&**criterion, *o, laminate, materials)) {
+            if !operations.iter().all(|o| self.is_symmetric(&**criterion, *o, laminate, materials)) {
                 let message = format!("criterion `{label}` breaks the symmetry `{name}`");
                 let help = "it tells a stress from its image, by the sign of a shear stress; leave `symmetry` out";
                 return Err(self.error(symmetry, message, help));
@@ -67,7 +67,7 @@ impl Builder<'_> {
     }
 
     /// Whether a criterion has one index for a stress and its image, wherever it looks.
-    fn sees_no_difference(
+    fn is_symmetric(
         &self,
         criterion: &dyn FailureCriterion,
         operation: Operation,

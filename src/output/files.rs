@@ -1,15 +1,13 @@
 //! Tables and pictures of an impact.
 
-use super::summary::{angle_deg, threshold_reached};
+use super::summary::{event_row, threshold_reached};
 use super::{indices, modal, pictures};
 use crate::analyses::impact::Outcome;
 use crate::error::Error;
 use crate::model::Model;
-use crate::words::name_ply;
-use fem_failure::scan::FailureEvent;
 use fem_io::files::OutputDir;
 use fem_io::plot;
-use fem_io::tables::{self, EventRow};
+use fem_io::tables;
 
 /// Writes the tables of a run; each file appears whole or not at all.
 ///
@@ -19,19 +17,8 @@ pub fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result
     let names: Vec<_> = model.impactors().iter().map(|impactor| impactor.name.as_str()).collect();
     let columns: Vec<_> = model.effects.columns().map(|column| column.name).collect();
     tables::write_history(dir, &names, &columns, &outcome.history)?;
-    let row = |e: &FailureEvent| EventRow {
-        time_s: e.time,
-        criterion: e.criterion.clone(),
-        mode: e.mode.to_owned(),
-        cell: model.plate.plane.quad_tags[e.cell as usize],
-        ply: name_ply(e.place),
-        angle_deg: angle_deg(model, e),
-        x_m: e.position[0],
-        y_m: e.position[1],
-        z_m: e.position[2],
-        index: e.index,
-    };
-    tables::write_events(dir, &outcome.events.iter().map(row).collect::<Vec<_>>())?;
+    let events: Vec<_> = outcome.events.iter().map(|event| event_row(model, event)).collect();
+    tables::write_events(dir, &events)?;
     modal::write_table(dir, outcome)?;
     indices::write_tables(dir, model, outcome)
 }

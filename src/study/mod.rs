@@ -88,7 +88,7 @@ pub fn study(
 ) -> Result<Report, Error> {
     tell(Progress::Runs { what: "the scene as it is".into(), share: 0.0 });
     let base = session.run(&Setting::new())?.map_err(Error::Study)?;
-    let asked = quantity::asked(model, &base.figures, base.force.is_some())?;
+    let asked = quantity::choose_quantities(model, &base.figures, base.force.is_some())?;
     let tolerance = model.scene.study.tolerance.unwrap_or(TOLERANCE);
 
     let mut planner = Planner::new(session, &base, budget);
@@ -125,12 +125,12 @@ pub fn study(
     }
     let beside = plan.runs.iter().filter(|planned| planned.kind != AxisKind::Ladder);
     for planned in beside.chain(&plan.spare) {
-        match planner.affords(session, planned) {
+        match planner.grant(session, planned) {
             true => run(session, &mut report, tell, planned)?,
             false => report.left_out.push((planned.axis.clone(), planned.level.label.clone(), plan::SPENT.into())),
         }
     }
-    report.judge(axes);
+    report.compare(axes);
     Ok(report)
 }
 

@@ -66,7 +66,7 @@ fn work_precision(report: &Report, what: &str, quantities: &[usize]) -> LinePlot
     all.push(series(OTHERS, Style::Dots, &|row| other(row) && !row.level.setting.is_empty()));
 
     // By seconds, as the picture shows them.
-    let mut front: Vec<(f64, f64)> = report.rows.iter().filter(|row| row.competes()).filter_map(point).collect();
+    let mut front: Vec<(f64, f64)> = report.rows.iter().filter(|row| row.is_candidate()).filter_map(point).collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut best = f64::INFINITY;
     front.retain(|point| {

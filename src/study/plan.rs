@@ -192,7 +192,7 @@ impl Planner {
     }
 
     /// Whether there is time for a run beside the ladders.
-    pub(super) fn affords(&mut self, session: &Session<'_>, planned: &Planned) -> bool {
+    pub(super) fn grant(&mut self, session: &Session<'_>, planned: &Planned) -> bool {
         if planned.level.setting.is_empty() || session.has(&planned.level.setting) {
             return true;
         }

@@ -130,7 +130,7 @@ pub(super) fn of_modes(omega: &[f64]) -> Vec<Figure> {
 ///
 /// # Errors
 /// A name that none has.
-pub(super) fn asked(model: &Model, figures: &[Figure], forced: bool) -> Result<Vec<String>, SceneError> {
+pub(super) fn choose_quantities(model: &Model, figures: &[Figure], forced: bool) -> Result<Vec<String>, SceneError> {
     let force = forced.then_some(FORCE_HISTORY);
     let known = || force.into_iter().chain(figures.iter().map(|f| f.name.as_str()));
     if model.scene.study.quantities.is_empty() {

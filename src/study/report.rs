@@ -93,7 +93,7 @@ impl Row {
     }
 
     /// Whether it solves the problem of the scene, and not another one.
-    pub(super) fn competes(&self) -> bool {
+    pub(super) fn is_candidate(&self) -> bool {
         self.kind != AxisKind::Problems
     }
 }
@@ -167,8 +167,8 @@ impl Report {
     }
 
     /// Counts errors from the reference, and what each axis changes from its judge.
-    pub(super) fn judge(&mut self, axes: &[StudyAxis]) {
-        self.refer();
+    pub(super) fn compare(&mut self, axes: &[StudyAxis]) {
+        self.count_errors();
         let finest = |axis: &str| {
             let axis = axes.iter().find(|a| a.name == axis)?;
             self.runs(axis).pop().map(|run| run.1)
@@ -208,11 +208,11 @@ impl Report {
             };
         }
         self.mark_front();
-        self.take_notes();
+        self.add_notes();
     }
 
     /// The finest joint run is the reference; the scene itself, where there is none.
-    fn refer(&mut self) {
+    fn count_errors(&mut self) {
         let sure = self.convergent();
         let total = |row: &Row| -> f64 {
             self.ladders.iter().zip(&row.rungs).map(|(ladder, k)| ladder.levels[*k].worst(&sure)).sum()
@@ -246,21 +246,21 @@ impl Report {
     }
 
     /// Whether it agrees to the tolerance, in all that is asked, with the run a level coarser along every ladder.
-    pub fn proven(&self) -> bool {
+    pub fn is_proven(&self) -> bool {
         let agrees = |difference: &Option<f64>| difference.is_some_and(|d| d <= self.tolerance);
         !self.reference.agreement.is_empty() && self.reference.agreement.iter().all(agrees)
     }
 
     /// Rows that compete, by work, cheapest first.
-    fn by_work(&self) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..self.rows.len()).filter(|k| self.rows[*k].competes()).collect();
+    fn sort_by_work(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.rows.len()).filter(|k| self.rows[*k].is_candidate()).collect();
         order.sort_by(|a, b| self.rows[*a].work().total_cmp(&self.rows[*b].work()));
         order
     }
 
     fn mark_front(&mut self) {
         let mut best = f64::INFINITY;
-        for k in self.by_work() {
+        for k in self.sort_by_work() {
             let row = &mut self.rows[k];
             row.front = row.worst().is_some_and(|worst| worst < best);
             if row.front {
@@ -276,10 +276,10 @@ impl Report {
             let error = |q: &usize| row.errors.get(*q).copied().flatten().map(|e| e + self.reference.bars[*q]);
             quantities.iter().all(|q| error(q).is_some_and(|error| error <= tolerance))
         };
-        self.by_work().into_iter().map(|k| &self.rows[k]).find(within)
+        self.sort_by_work().into_iter().map(|k| &self.rows[k]).find(within)
     }
 
-    fn take_notes(&mut self) {
+    fn add_notes(&mut self) {
         let mut notes = Vec::new();
         for ladder in &self.ladders {
             let stalls = ladder.limits.iter().filter_map(|limit| match limit.convergence {

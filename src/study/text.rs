@@ -37,10 +37,10 @@ impl fmt::Display for StudyPlan {
         }
         let spare: Vec<_> =
             self.spare.iter().map(|run| (run.axis.clone(), run.level.label.clone(), String::new())).collect();
-        for (axis, labels, _) in grouped(&spare) {
+        for (axis, labels, _) in group_by_axis(&spare) {
             writeln!(f, "    if time allows {axis}: {labels}")?;
         }
-        for (axis, labels, why) in grouped(&self.left_out) {
+        for (axis, labels, why) in group_by_axis(&self.left_out) {
             writeln!(f, "    left out       {axis}: {labels}: {why}")?;
         }
         Ok(())
@@ -48,7 +48,7 @@ impl fmt::Display for StudyPlan {
 }
 
 /// What was left out, the levels of an axis for one reason together.
-fn grouped(left_out: &[(String, String, String)]) -> Vec<(&str, String, String)> {
+fn group_by_axis(left_out: &[(String, String, String)]) -> Vec<(&str, String, String)> {
     let mut groups: Vec<(&str, Vec<&str>, &str)> = Vec::new();
     for (axis, label, why) in left_out {
         match groups.iter_mut().find(|group| group.0 == axis && group.2 == why) {
@@ -109,9 +109,9 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
         seconds(base.total())
     )?;
     if report.reference.row > 0 {
-        writeln!(t, "* errors are measured against: {}, extrapolated along each ladder", described(reference))?;
+        writeln!(t, "* errors are measured against: {}, extrapolated along each ladder", describe(reference))?;
         let agreement = report.reference.agreement.iter().flatten().copied().reduce(f64::max);
-        let verdict = if report.proven() { "proven" } else { "NOT proven" };
+        let verdict = if report.is_proven() { "proven" } else { "NOT proven" };
         match agreement {
             Some(worst) => writeln!(
                 t,
@@ -130,7 +130,7 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
     writeln!(t, "| --- | --- | --- |{}", " --- |".repeat(names.len()))?;
     for (q, quantity) in report.asked.iter().enumerate() {
         let error = report.base().errors.get(q).copied().flatten();
-        let parts: Vec<String> = report.ladders.iter().map(|ladder| part(ladder, quantity)).collect();
+        let parts: Vec<String> = report.ladders.iter().map(|ladder| format_share(ladder, quantity)).collect();
         let bar = report.reference.bars.get(q).copied().filter(|bar| bar.is_finite());
         writeln!(t, "| {quantity} | {} | {} | {} |", figure(error), figure(bar), parts.join(" | "))?;
     }
@@ -143,7 +143,7 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
             let Ok(record) = &row.result else { continue };
             let error = quantities.iter().filter_map(|q| row.errors[*q]).reduce(f64::max).unwrap_or(0.0);
             let bar = quantities.iter().map(|q| report.reference.bars[*q]).fold(0.0, f64::max);
-            let line = format!("{}: {} ({error:.1e} +- {bar:.0e})", described(row), seconds(record.total()));
+            let line = format!("{}: {} ({error:.1e} +- {bar:.0e})", describe(row), seconds(record.total()));
             if line != previous {
                 writeln!(t, "* {} of {name}: {line}", percent(target))?;
             }
@@ -168,7 +168,7 @@ fn goals(report: &Report) -> Vec<(Vec<usize>, &str)> {
 }
 
 /// What a ladder leaves of a quantity at the scene's own level, with its order.
-fn part(ladder: &Ladder, quantity: &str) -> String {
+fn format_share(ladder: &Ladder, quantity: &str) -> String {
     let own = ladder.levels.iter().find(|rung| rung.level.setting.is_empty());
     let error = own.and_then(|rung| rung.errors.iter().find(|e| e.0 == quantity)).map(|e| e.1);
     let convergence = ladder.limits.iter().find(|limit| limit.quantity == quantity).map(|limit| limit.convergence);
@@ -186,7 +186,7 @@ fn figure(error: Option<f64>) -> String {
 }
 
 /// The settings of a run that cost.
-fn described(row: &Row) -> String {
+fn describe(row: &Row) -> String {
     let Ok(record) = &row.result else { return row.level.label.clone() };
     let size = &record.size;
     let mut words = vec![format!("cells {:.3} mm", size.cell_m * 1e3)];

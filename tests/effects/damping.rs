@@ -139,8 +139,8 @@ fn refusals_help() {
         "name a reduction",
         "stiffness",
     ]);
-    of("damping = { ratio = 2 }").refused(&["`effects.damping.ratio`: 2 is no ratio", "ratio = 0.02"]);
-    of("damping = { ratio = 0.02, mass = '30 1/s' }").refused(&["excludes `mass`"]);
+    of("damping = { ratio = 2 }").refused(&["`effects.damping.ratio`: 2 is not a ratio", "ratio = 0.02"]);
+    of("damping = { ratio = 0.02, mass = '30 1/s' }").refused(&["cannot be combined with `mass`"]);
     of("damping = {}").refused(&["does not say how much", "C = mass M + stiffness K"]);
     of("damping = { mass = '-3 1/s' }").refused(&["must be positive"]);
     of("damping = { mass = '3 s' }").refused(&["is a time, not a frequency"]);

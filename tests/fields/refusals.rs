@@ -31,7 +31,7 @@ fn of_an_impact() {
         ),
         ("{ times = [\"-1 us\"] }", &["is not within the march"]),
         ("{ region = {} }", &["`output.fields.region.radius` is missing", "a group of cells"]),
-        ("{ region = { radius = \"1 mm\", group = \"plate\" } }", &["excludes `radius`"]),
+        ("{ region = { radius = \"1 mm\", group = \"plate\" } }", &["cannot be combined with `radius`"]),
         ("{ region = { radius = \"1 um\" } }", &["no cell has its centre within this radius", "enlarge it"]),
         ("{ region = { group = \"core\" } }", &["the mesh has no group `core`", "plate"]),
         ("{ region = { group = \"tip\" } }", &["group `tip` has no cells", "name a group of cells"]),

@@ -185,7 +185,7 @@ fn full_disk() -> f64 {
                     |case: &support::Case, folder: &str| fs::read(case.folder().join(folder).join(name)).unwrap();
                 let found = read(&now, "out");
                 let whole = found == read(&before, "out") || found == read(&now, "whole");
-                wrong.unless(whole, || format!("{command}, {kilobytes} kB: {name} is no whole file"));
+                wrong.unless(whole, || format!("{command}, {kilobytes} kB: {name} is not a whole file"));
             }
         }
         fs::remove_dir_all(before.folder().join("out")).unwrap();

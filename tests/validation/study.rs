@@ -218,7 +218,7 @@ fn a_force_at_a_node_of_a_solid_has_no_limit() {
             report.reference
         );
     }
-    assert!(!report.proven());
+    assert!(!report.is_proven());
 }
 
 #[test]
@@ -226,7 +226,7 @@ fn over_a_patch_it_has() {
     let report = block("at = { x = '1.5 mm', y = '1.5 mm' }\npatch_side = '1 mm'").report;
     let converges = |limit: &Limit| matches!(limit.convergence, Convergence::Converges { .. });
     assert!(report.ladders[0].limits.iter().all(converges), "{:?}", report.ladders);
-    assert!(report.notes.is_empty() && report.proven(), "{:?} {:?}", report.notes, report.reference);
+    assert!(report.notes.is_empty() && report.is_proven(), "{:?} {:?}", report.notes, report.reference);
 }
 
 /// A disc of radius 10 mm: 4 x 4 cells, and a ring of 16 out to the circle.

@@ -199,7 +199,7 @@ struct Divided {
 }
 
 fn divide(plate: &Plate, constraints: &Constraints, division: &Division) -> Divided {
-    let stays = stays(plate, constraints, &division.kept);
+    let stays = find_kept(plate, constraints, &division.kept);
     let (mut groups, mut loose): (BTreeMap<u32, Vec<u32>>, Vec<u32>) = (BTreeMap::new(), Vec::new());
     for (quad, group) in (0..).zip(&division.quads) {
         group.map_or(&mut loose, |group| groups.entry(group).or_default()).push(quad);
@@ -226,7 +226,7 @@ fn divide(plate: &Plate, constraints: &Constraints, division: &Division) -> Divi
 }
 
 /// Whether an unknown of the plate is a master by itself: `kept`, held, or in an equation with others.
-fn stays(plate: &Plate, constraints: &Constraints, kept: &[usize]) -> Vec<bool> {
+fn find_kept(plate: &Plate, constraints: &Constraints, kept: &[usize]) -> Vec<bool> {
     let mut stays = vec![false; plate.ndof()];
     kept.iter().for_each(|dof| stays[*dof] = true);
     for dof in (0..plate.ndof()).filter(|dof| constraints.position(*dof).is_none()) {
@@ -306,7 +306,7 @@ impl Class {
             let count = BLOCK.min(outline - first);
             let mut shapes = vec![0.0; n * count];
             (0..count).for_each(|c| shapes[c * n + self.inside + first + c] = 1.0);
-            inside.follow(&mut shapes);
+            inside.follow_outline(&mut shapes);
             let mut take = |which: usize, forces: &[f64]| {
                 let columns = condensed[which][first * outline..].chunks_exact_mut(outline);
                 columns.zip(forces.chunks_exact(n)).for_each(|(to, from)| to.copy_from_slice(&from[self.inside..]));
@@ -318,7 +318,7 @@ impl Class {
                 // TᵀMT = (M T)_b − K_bi K_ii⁻¹ (M T)_i
                 forces.fill(0.0);
                 m.add_product(1.0, &shapes, &mut forces);
-                inside.hand_over(&mut forces);
+                inside.condense_load(&mut forces);
                 take(1, &forces);
             }
         }
@@ -357,7 +357,7 @@ impl Inside {
     }
 
     /// `X_i ← −K_ii⁻¹ K_ib X_b`, column by column, where X_i = 0.
-    fn follow(&self, x: &mut [f64]) {
+    fn follow_outline(&self, x: &mut [f64]) {
         let mut forces = vec![0.0; x.len()];
         self.k.add_product(-1.0, x, &mut forces);
         self.solve(&mut forces);
@@ -368,7 +368,7 @@ impl Inside {
     }
 
     /// `F_b ← F_b − K_bi K_ii⁻¹ F_i`, column by column; returns `[K_ii⁻¹ F_i; 0]`.
-    fn hand_over(&self, f: &mut [f64]) -> Vec<f64> {
+    fn condense_load(&self, f: &mut [f64]) -> Vec<f64> {
         let mut x = f.to_vec();
         self.solve(&mut x);
         x.chunks_exact_mut(self.k.ndof()).for_each(|x| x[self.count..].fill(0.0));
@@ -419,7 +419,7 @@ impl Condensation {
                 local.resize(local.len() + inside.count, 0.0);
                 local.extend(part.unknowns[inside.count..].iter().map(|dof| -> f64 { value(all, *dof) }));
             }
-            inside.follow(&mut local);
+            inside.follow_outline(&mut local);
             for (all, local) in all.chunks_exact_mut(n).zip(local.chunks_exact(part.unknowns.len())) {
                 self.add_inside(part, local, all);
             }
@@ -439,7 +439,7 @@ impl Condensation {
                 continue;
             }
             local.resize(part.unknowns.len(), 0.0);
-            let response = inside.hand_over(&mut local);
+            let response = inside.condense_load(&mut local);
             self.add_inside(part, &response, &mut own);
             for (dof, force) in part.unknowns.iter().zip(&local).skip(inside.count) {
                 self.constraints.row(*dof).0.iter().for_each(|(i, c)| on_masters[*i] += c * force);

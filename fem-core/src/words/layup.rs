@@ -67,7 +67,7 @@ const OVERLINE: char = '\u{305}';
 /// ```
 pub fn parse(text: &str) -> Result<Vec<LayupPly>, LayupError> {
     let mut parser = Parser { text, at: 0 };
-    if !parser.eats("[") {
+    if !parser.accept("[") {
         return Err(parser.error("a layup begins with `[`, for example [0/45/-45/90]s"));
     }
     let plies = parser.group("]", 1)?;
@@ -108,7 +108,7 @@ impl<'a> Parser<'a> {
         self.rest().chars().next()
     }
 
-    fn eats(&mut self, token: &str) -> bool {
+    fn accept(&mut self, token: &str) -> bool {
         let found = self.rest().starts_with(token);
         if found {
             self.at += token.len();
@@ -130,10 +130,10 @@ impl<'a> Parser<'a> {
             self.check_count(sequence.plies.len() + item.plies.len())?;
             sequence.plies.extend(item.plies);
             sequence.bar = item.bar;
-            if self.eats(close) {
+            if self.accept(close) {
                 break;
             }
-            if !(self.eats("/") || self.eats(",")) {
+            if !(self.accept("/") || self.accept(",")) {
                 return Err(self.error(format!("expected `/` and the next ply, or `{close}`")));
             }
         }
@@ -142,7 +142,7 @@ impl<'a> Parser<'a> {
 
     fn item(&mut self, depth: usize) -> Result<Sequence, LayupError> {
         for (open, close) in [("(", ")"), ("[", "]")] {
-            if self.eats(open) {
+            if self.accept(open) {
                 return Ok(Sequence { plies: self.group(close, depth + 1)?, bar: None });
             }
         }
@@ -160,11 +160,11 @@ impl<'a> Parser<'a> {
         ];
         self.rest();
         let start = self.at;
-        let signs = SIGNS.iter().find(|(token, _)| self.eats(token)).map_or(&[1.0][..], |(_, signs)| signs);
+        let signs = SIGNS.iter().find(|(token, _)| self.accept(token)).map_or(&[1.0][..], |(_, signs)| signs);
         let (angle, overlined) = self.angle(start)?;
-        self.eats("°");
+        self.accept("°");
         let bar_at = self.at;
-        let barred = self.eats("bar") || self.eats("|") || overlined;
+        let barred = self.accept("bar") || self.accept("|") || overlined;
         let label = self.label()?;
         let repeat = self.repeat()?;
         if barred && (signs.len() > 1 || repeat != 1) {
@@ -193,7 +193,7 @@ impl<'a> Parser<'a> {
     }
 
     fn label(&mut self) -> Result<Option<String>, LayupError> {
-        if !self.eats("{") {
+        if !self.accept("{") {
             return Ok(None);
         }
         let Some((label, _)) = self.text[self.at..].split_once('}') else {
@@ -210,11 +210,11 @@ impl<'a> Parser<'a> {
 
     /// `_2` or `_{2}`; 1 if there is none.
     fn repeat(&mut self) -> Result<usize, LayupError> {
-        if self.eats("_{") {
+        if self.accept("_{") {
             let n = self.count()?;
-            return if self.eats("}") { Ok(n) } else { Err(self.error("a repeat in braces ends with `}`")) };
+            return if self.accept("}") { Ok(n) } else { Err(self.error("a repeat in braces ends with `}`")) };
         }
-        if self.eats("_") { self.count() } else { Ok(1) }
+        if self.accept("_") { self.count() } else { Ok(1) }
     }
 
     fn count(&mut self) -> Result<usize, LayupError> {
@@ -234,13 +234,13 @@ impl<'a> Parser<'a> {
 
     fn suffix(&mut self, sequence: Sequence) -> Result<Vec<LayupPly>, LayupError> {
         let Sequence { mut plies, bar } = sequence;
-        let braced = self.eats("_{");
+        let braced = self.accept("_{");
         if !braced {
-            self.eats("_");
+            self.accept("_");
         }
         let repeat = if self.peek().is_some_and(|c| c.is_ascii_digit()) { self.count()? } else { 1 };
-        let mirrored = self.eats("s");
-        if braced && !self.eats("}") {
+        let mirrored = self.accept("s");
+        if braced && !self.accept("}") {
             return Err(self.error("a suffix in braces ends with `}`, as in [0/90]_{2s}"));
         }
         if let Some(at) = bar.filter(|_| !mirrored || repeat > 1) {

@@ -54,7 +54,7 @@ impl Influence {
     }
 
     /// Adds what the displacements `x` add to the approaches without forces.
-    pub(super) fn approached(&mut self, impactors: &[Impactor], x: &[f64]) {
+    pub(super) fn set_approaches(&mut self, impactors: &[Impactor], x: &[f64]) {
         let n = x.len() - impactors.len();
         for (i, (impactor, free)) in impactors.iter().zip(&mut self.free).enumerate() {
             *free += x[n + i] - value(&impactor.load, x);
@@ -75,7 +75,7 @@ impl Influence {
         h: &[ContactHistory],
         d: &mut [f64],
     ) -> Result<u64, StepError> {
-        self.approached(impactors, d);
+        self.set_approaches(impactors, d);
         let calls = self.balance(impactors, t, h)?;
         let n = d.len() - impactors.len();
         for (i, (impactor, force)) in impactors.iter().zip(&self.forces).enumerate() {

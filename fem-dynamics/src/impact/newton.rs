@@ -104,8 +104,8 @@ impl ImpactSystem {
             let free = impactors.iter().zip(&load[n..]).zip(&d[n..]);
             step.extend(free.map(|((impactor, r), d)| r / (cm * impactor.mass) - d));
             influence.free.fill(0.0);
-            influence.approached(impactors, from);
-            influence.approached(impactors, d);
+            influence.set_approaches(impactors, from);
+            influence.set_approaches(impactors, d);
             *contact_calls += influence.touch(impactors, t, h, step)?;
             d.iter_mut().zip(&*step).for_each(|(d, step)| *d += step);
             let work: f64 = residual.iter().zip(&*step).map(|(r, d)| r * d).sum();

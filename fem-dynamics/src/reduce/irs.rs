@@ -35,7 +35,7 @@ impl Reduction for Irs {
     ) -> Result<Vec<f64>, ReductionError> {
         let shapes = self.governors.condense(structure, keep, candidates)?;
         let (k, m) = shapes.condensed(structure);
-        shapes.tell_apart(&m).map_err(|dependent| dependent.named(structure))?;
+        shapes.check_independence(&m).map_err(|dependent| dependent.named(structure))?;
         let mut basis = shapes.shapes();
         let n = structure.ndof();
         let singular = || ReductionError("the mass condensed on the governors is singular: ask for fewer".into());

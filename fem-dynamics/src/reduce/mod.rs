@@ -309,7 +309,7 @@ struct Dependent {
 }
 
 impl Dependent {
-    fn among(functionals: &[Functional], gram: &DMatrix<f64>) -> Self {
+    fn find(functionals: &[Functional], gram: &DMatrix<f64>) -> Self {
         let kept = independent(gram);
         let dependent = functionals.iter().enumerate().filter(|(i, _)| !kept.contains(i));
         Self { functionals: dependent.map(|(_, w)| w.clone()).collect() }
@@ -360,7 +360,7 @@ impl StaticShapes {
     fn of(functionals: Vec<Functional>, x: Vec<f64>) -> Result<Self, Dependent> {
         let s = flexibility(&functionals, &x);
         // Where S is that near to singular, its inverse, K* and M* hold no digit.
-        let dependent = Dependent::among(&functionals, &s);
+        let dependent = Dependent::find(&functionals, &s);
         match Cholesky::new(s).filter(|_| !functionals.is_empty() && dependent.functionals.is_empty()) {
             Some(factor) => Ok(Self { functionals, flexibility: x, factor }),
             None => Err(dependent),
@@ -386,8 +386,8 @@ impl StaticShapes {
     }
 
     /// Refuses functionals that follow from those before them in `gram`, a matrix condensed on them.
-    fn tell_apart(&self, gram: &DMatrix<f64>) -> Result<(), Dependent> {
-        let dependent = Dependent::among(&self.functionals, gram);
+    fn check_independence(&self, gram: &DMatrix<f64>) -> Result<(), Dependent> {
+        let dependent = Dependent::find(&self.functionals, gram);
         if dependent.functionals.is_empty() { Ok(()) } else { Err(dependent) }
     }
 

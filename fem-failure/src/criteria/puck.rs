@@ -237,7 +237,7 @@ pub(crate) const WEAKENING: ParamInfo = ParamInfo::word(
 );
 
 /// `fibre` and `weakening` of either form.
-pub(crate) fn common_params(params: &Params) -> Result<(FibreFailure, bool), ParamError> {
+pub(crate) fn read_common_params(params: &Params) -> Result<(FibreFailure, bool), ParamError> {
     Ok((FibreFailure::from_params(params)?, params.word(&WEAKENING)? == "on"))
 }
 
@@ -262,7 +262,7 @@ impl Plugin for Puck {
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let (fibre, weakening) = common_params(params)?;
+        let (fibre, weakening) = read_common_params(params)?;
         Ok(Built::Criterion(Box::new(Self {
             p12t: params.number(&P12T)?,
             p12c: params.number(&P12C)?,

@@ -1,7 +1,7 @@
 //! Puck's criterion in plane stress.
 
 use super::plane_stress::OutOfPlane;
-use super::puck::{E1F, FIBRE, FibreFailure, MSF, NU12F, WEAKENING, check_slope, common_params, weakening};
+use super::puck::{E1F, FIBRE, FibreFailure, MSF, NU12F, WEAKENING, check_slope, read_common_params, weakening};
 use crate::prelude::*;
 
 /// Puck's closed form for plane stress, with the plane's own inclination p23 = p12c RA/S12.
@@ -121,7 +121,7 @@ impl Plugin for Puck2d {
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let (fibre, weakening) = common_params(params)?;
+        let (fibre, weakening) = read_common_params(params)?;
         Ok(Built::Criterion(Box::new(Self {
             p12t: params.number(&P12T)?,
             p12c: params.number(&P12C)?,

@@ -112,10 +112,10 @@ impl Form {
     }
 
     /// Of several forms the one that `node` is meant to have.
-    pub(crate) fn meant_by(&self, node: &Node) -> &Form {
+    pub(crate) fn form_of(&self, node: &Node) -> &Form {
         match self {
             Self::OneOf(forms) => {
-                forms.iter().map(|form| form.meant_by(node)).find(|form| form.fits(node)).unwrap_or(&forms[0])
+                forms.iter().map(|form| form.form_of(node)).find(|form| form.fits(node)).unwrap_or(&forms[0])
             }
             form => form,
         }
@@ -133,11 +133,9 @@ impl Form {
             (Self::Words(words), Node::Text(text)) => words.contains(&text.as_str()),
             (Self::Text | Self::Quantity(_) | Self::Library | Self::PluginName(_), Node::Text(_)) => true,
             (Self::Number | Self::Count(_), Node::Number(_)) => true,
-            (Self::List(form), Node::List(items)) => {
-                items.iter().all(|item| form.meant_by(&item.node).fits(&item.node))
-            }
+            (Self::List(form), Node::List(items)) => items.iter().all(|item| form.form_of(&item.node).fits(&item.node)),
             (Self::Several(count, form), Node::List(items)) => {
-                items.len() == *count && items.iter().all(|item| form.meant_by(&item.node).fits(&item.node))
+                items.len() == *count && items.iter().all(|item| form.form_of(&item.node).fits(&item.node))
             }
             _ => false,
         }

@@ -173,7 +173,7 @@ impl<'a> SceneValue<'a> {
     }
 
     fn wrong(&self, wanted: &str) -> SceneError {
-        self.error(format!("must be {wanted}, got {}", self.node().in_words()), self.by_example())
+        self.error(format!("must be {wanted}, got {}", self.node().describe()), self.by_example())
     }
 
     fn by_example(&self) -> String {

@@ -10,20 +10,31 @@ use std::sync::Arc;
 /// Largest text file that is read: a larger one was given by mistake.
 const MAX_BYTES: u64 = 1 << 22;
 
-/// The text of a file, or why it cannot be read.
-pub(crate) fn read_text(path: &Path) -> Result<String, String> {
+/// Why a file of text cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum TextError {
+    #[error(transparent)]
+    Unreadable(#[from] std::io::Error),
+    #[error("it is longer than {MAX_BYTES} bytes, more than such a file ever needs")]
+    TooLong,
+    #[error("it is in UTF-16; save it as UTF-8")]
+    Utf16,
+    #[error("it is not UTF-8 from line {line} on; save it as UTF-8")]
+    NotUtf8 { line: usize },
+}
+
+/// The text of a file.
+pub(crate) fn read_text(path: &Path) -> Result<String, TextError> {
     let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(|e| e.to_string())?;
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| e.to_string())?;
+    std::fs::File::open(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > MAX_BYTES {
-        return Err(format!("it is longer than {MAX_BYTES} bytes, more than such a file ever needs"));
+        return Err(TextError::TooLong);
     }
     String::from_utf8(bytes).map_err(|e| match e.as_bytes() {
-        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "it is in UTF-16; save it as UTF-8".to_owned(),
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => TextError::Utf16,
         before => {
             let valid = &before[..e.utf8_error().valid_up_to()];
-            let line = 1 + valid.iter().filter(|byte| **byte == b'\n').count();
-            format!("it is not UTF-8 from line {line} on; save it as UTF-8")
+            TextError::NotUtf8 { line: 1 + valid.iter().filter(|byte| **byte == b'\n').count() }
         }
     })
 }

@@ -25,7 +25,7 @@ pub(crate) enum Node {
 
 impl Node {
     /// What it is, in words.
-    pub(crate) fn in_words(&self) -> String {
+    pub(crate) fn describe(&self) -> String {
         match self {
             Self::Text(text) => format!("the text \"{text}\""),
             Self::Number(value) => format!("the number {value}"),
@@ -96,7 +96,7 @@ impl Node {
             Self::Text(text) => format!("\"{text}\""),
             Self::Number(value) => value.to_string(),
             Self::Flag(flag) => flag.to_string(),
-            Self::Date => self.in_words(),
+            Self::Date => self.describe(),
         };
         into.insert(path, text);
     }
@@ -137,16 +137,16 @@ impl Table {
                 continue;
             };
             match (&mut above.item.node, below.item.node) {
-                (Node::Table(over), Node::Table(under)) => over.lie_over(under),
+                (Node::Table(over), Node::Table(under)) => over.merge(under),
                 (Node::List(items), Node::Table(under)) => {
                     let tables = items.iter_mut().filter_map(|item| item.node.table_mut());
-                    tables.for_each(|over| over.lie_over(under.clone()));
+                    tables.for_each(|over| over.merge(under.clone()));
                 }
                 (Node::Table(over), Node::List(mut items)) if !items.is_empty() => {
                     for item in &mut items {
                         let mut over = over.clone();
                         if let Some(under) = item.node.table_mut() {
-                            over.lie_over(std::mem::take(under));
+                            over.merge(std::mem::take(under));
                         }
                         item.node = Node::Table(over);
                     }
@@ -158,7 +158,7 @@ impl Table {
         self
     }
 
-    fn lie_over(&mut self, under: Table) {
+    fn merge(&mut self, under: Table) {
         if !self.names_another_plugin(&under) {
             *self = std::mem::take(self).over(under);
         }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use fem_core::mesh::{Group, PlaneMesh};
 
-use super::checks::{Edges, flat_and_joined};
+use super::checks::{Edges, check_flat_and_joined};
 use super::elements::Grouped;
 use super::error::{FilePlace, MeshError, MeshFault};
 use super::nodes::NodeTable;
@@ -26,7 +26,7 @@ pub(super) fn mesh(
         number[node as usize] = 0;
     }
     let used: Vec<u32> = (0..).zip(&number).filter(|(_, n)| **n != UNUSED).map(|(old, _)| old).collect();
-    flat_and_joined(source, nodes, &used)?;
+    check_flat_and_joined(source, nodes, &used)?;
     Edges::new(source, nodes, &grouped.cells)?.check_groups(source, nodes, &grouped.edges)?;
 
     let mut mesh = PlaneMesh::default();

@@ -81,7 +81,7 @@ impl Edges {
     ) -> Result<Self, MeshError> {
         let mut edges = Vec::with_capacity(4 * cells.len());
         for (i, cell) in (0_u32..).zip(cells) {
-            edges.extend(cell.nodes.sides().map(|[a, b]| (directed(a, b), i)));
+            edges.extend(cell.nodes.sides().map(|[a, b]| (direct_edge(a, b), i)));
         }
         edges.sort_unstable();
         if let Some(pair) = edges.windows(2).find(|pair| pair[0].0 == pair[1].0) {
@@ -94,7 +94,7 @@ impl Edges {
     }
 
     fn contains(&self, [a, b]: [u32; 2]) -> bool {
-        [directed(a, b), directed(b, a)].iter().any(|edge| self.0.binary_search_by_key(edge, |e| e.0).is_ok())
+        [direct_edge(a, b), direct_edge(b, a)].iter().any(|edge| self.0.binary_search_by_key(edge, |e| e.0).is_ok())
     }
 
     /// Refuses elements of edge groups that are not an edge of a cell, or the same edge as another of the group.
@@ -126,7 +126,7 @@ impl Edges {
 }
 
 /// Refuses nodes off the plane of the first, and pairs of nodes at one place.
-pub(super) fn flat_and_joined(source: &Source<'_>, nodes: &NodeTable, used: &[u32]) -> Result<(), MeshError> {
+pub(super) fn check_flat_and_joined(source: &Source<'_>, nodes: &NodeTable, used: &[u32]) -> Result<(), MeshError> {
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];
     for p in used.iter().map(|n| nodes.plane(*n)) {
@@ -161,6 +161,6 @@ pub(super) fn flat_and_joined(source: &Source<'_>, nodes: &NodeTable, used: &[u3
 }
 
 /// An edge as one number, which sorts faster than a pair.
-fn directed(from: u32, to: u32) -> u64 {
+fn direct_edge(from: u32, to: u32) -> u64 {
     u64::from(from) << 32 | u64::from(to)
 }

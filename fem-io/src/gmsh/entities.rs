@@ -19,10 +19,10 @@ pub(super) struct Entity {
 
 /// All entities of a file; parts come after the wholes.
 pub(super) fn read(source: &Source<'_>) -> Result<Vec<Entity>, MeshError> {
-    let mut all = whole(source)?;
+    let mut all = read_whole(source)?;
     if let Some(start) = source.section("PartitionedEntities") {
         let mut cursor = source.cursor(start);
-        parts(&mut cursor, &mut all)
+        read_parts(&mut cursor, &mut all)
             .and_then(|()| cursor.end("$EndPartitionedEntities"))
             .map_err(|at| source.syntax(at, "a partitioned entity"))?;
     }
@@ -30,7 +30,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Vec<Entity>, MeshError> {
 }
 
 /// `$Entities`, which mshio reads from a file that holds nothing else.
-fn whole(source: &Source<'_>) -> Result<Vec<Entity>, MeshError> {
+fn read_whole(source: &Source<'_>) -> Result<Vec<Entity>, MeshError> {
     let start =
         source.section("Entities").ok_or_else(|| source.error(FilePlace::File, MeshFault::Missing("Entities")))?;
     let mut file = source.header().to_vec();
@@ -60,7 +60,7 @@ fn whole(source: &Source<'_>) -> Result<Vec<Entity>, MeshError> {
 }
 
 /// `$PartitionedEntities`, which mshio skips.
-fn parts(cursor: &mut Cursor<'_>, all: &mut Vec<Entity>) -> Result<(), usize> {
+fn read_parts(cursor: &mut Cursor<'_>, all: &mut Vec<Entity>) -> Result<(), usize> {
     let _partitions = cursor.size()?;
     for _ in 0..cursor.size()? {
         let _ghost = [cursor.int()?, cursor.int()?];

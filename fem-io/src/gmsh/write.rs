@@ -116,14 +116,14 @@ fn write_entities(out: &mut Numbers<'_>, mesh: &PlaneMesh, entities: &[Entity], 
     for entity in entities {
         let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for node in entity.elements.iter().flat_map(|element| &element.nodes) {
-            let [x, y] = mesh.points[*node as usize].map(|x| in_unit(x, unit_metres));
+            let [x, y] = mesh.points[*node as usize].map(|x| convert(x, unit_metres));
             for (d, x) in [x, y, 0.0].into_iter().enumerate() {
                 bounds[0][d] = bounds[0][d].min(x);
                 bounds[1][d] = bounds[1][d].max(x);
             }
         }
         out.ints(&[entity.tag])?;
-        out.doubles(&bounds.as_flattened()[..if entity.dim == 0 { 3 } else { 6 }])?;
+        out.write_doubles(&bounds.as_flattened()[..if entity.dim == 0 { 3 } else { 6 }])?;
         out.sizes(&[entity.physical.len() as u64])?;
         out.ints(&entity.physical)?;
         // Curves and surfaces do not say what bounds them.
@@ -149,7 +149,7 @@ fn write_nodes(out: &mut Numbers<'_>, mesh: &PlaneMesh, unit_metres: f64) -> io:
         out.end_line()?;
     }
     for [x, y] in &mesh.points {
-        out.doubles(&[in_unit(*x, unit_metres), in_unit(*y, unit_metres), 0.0])?;
+        out.write_doubles(&[convert(*x, unit_metres), convert(*y, unit_metres), 0.0])?;
         out.end_line()?;
     }
     out.end()?;
@@ -185,7 +185,7 @@ fn range<'t>(tags: impl Iterator<Item = &'t u64> + Clone) -> [u64; 2] {
 }
 
 /// A length in the file's unit: the number that is read as that length again, if one of the three nearest is.
-fn in_unit(metres: f64, unit_metres: f64) -> f64 {
+fn convert(metres: f64, unit_metres: f64) -> f64 {
     let near = metres / unit_metres;
     [near, near.next_down(), near.next_up()].into_iter().find(|x| x * unit_metres == metres).unwrap_or(near)
 }
@@ -213,7 +213,7 @@ impl Numbers<'_> {
             .try_for_each(|n| if self.binary { self.out.write_all(&n.to_le_bytes()) } else { write!(self.out, "{n} ") })
     }
 
-    fn doubles(&mut self, numbers: &[f64]) -> io::Result<()> {
+    fn write_doubles(&mut self, numbers: &[f64]) -> io::Result<()> {
         numbers.iter().try_for_each(|x| {
             if self.binary { self.out.write_all(&x.to_le_bytes()) } else { write!(self.out, "{x:?} ") }
         })

@@ -2,7 +2,7 @@
 
 use super::Mark;
 use super::layout::{ROW, SMALL, WIDTH};
-use super::words::{clean, room};
+use super::words::{estimate_width, shorten};
 
 /// Where a mark's label stands: in a row counted from the curves upwards, to the right or the left of its line.
 pub(super) struct Flag {
@@ -45,8 +45,8 @@ impl Flag {
 /// A label stands to the right of its line, to the left where it would leave the picture or run into such a pair.
 pub(super) fn flags(marks: &[Mark], place: impl Fn(&Mark) -> f64, left: f64, right: f64) -> Vec<Flag> {
     let flag = |mark: &Mark| {
-        let text = clean(&mark.label, SMALL, 0.45 * (right - left));
-        Flag { x: place(mark), row: 0, to_left: false, width: 2.0 * GAP + room(&text, SMALL), text }
+        let text = shorten(&mark.label, SMALL, 0.45 * (right - left));
+        Flag { x: place(mark), row: 0, to_left: false, width: 2.0 * GAP + estimate_width(&text, SMALL), text }
     };
     let mut flags: Vec<Flag> = marks.iter().map(flag).collect();
     let mut waiting: Vec<usize> = (0..flags.len()).collect();

@@ -3,7 +3,7 @@
 use super::flags::{Flag, GAP, flags};
 use super::scale::Range;
 use super::shapes::{Anchor, Color, Drawing, Shape, Text};
-use super::words::{clean, room};
+use super::words::{estimate_width, shorten};
 use super::{Axis, LinePlot, Mark, PlotError, Scale, Series, Style};
 
 pub(super) const WIDTH: f64 = 1600.0;
@@ -42,11 +42,11 @@ pub(super) fn lay_out(plot: &LinePlot) -> Result<Drawing, PlotError> {
         |axis: &Axis, largest| PlotError::Range { title: plot.title.clone(), axis: axis.label.clone(), largest };
     let x = Range::of(plot.x.scale, values().map(|p| p.0)).map_err(|largest| range(&plot.x, largest))?;
     // Curves over time fill the width; one around zero, or without a zero, is a figure of its own and stands free.
-    let x = if x.crosses_zero() || plot.x.scale == Scale::Logarithmic { x.with_air() } else { x };
-    let y = Range::of(plot.y.scale, values().map(|p| p.1)).map_err(|largest| range(&plot.y, largest))?.with_air();
+    let x = if x.crosses_zero() || plot.x.scale == Scale::Logarithmic { x.with_margins() } else { x };
+    let y = Range::of(plot.y.scale, values().map(|p| p.1)).map_err(|largest| range(&plot.y, largest))?.with_margins();
 
     let y_ticks = y.ticks(9);
-    let widest = |ticks: &[(f64, String)]| ticks.iter().map(|t| room(&t.1, SMALL)).fold(0.0, f64::max);
+    let widest = |ticks: &[(f64, String)]| ticks.iter().map(|t| estimate_width(&t.1, SMALL)).fold(0.0, f64::max);
     let left = EDGE + LABEL + 30.0 + widest(&y_ticks);
     let right = WIDTH - EDGE - 20.0;
     let fits = |ticks: &[(f64, String)]| widest(ticks) * 1.3 * ticks.len() as f64 <= right - left;
@@ -68,7 +68,7 @@ pub(super) fn lay_out(plot: &LinePlot) -> Result<Drawing, PlotError> {
 
     let area = Area { x, y, left, right, top, bottom: top + AREA };
     let mut canvas = Canvas(Vec::new());
-    canvas.text([left, EDGE + 0.8 * TITLE], &clean(&plot.title, TITLE, right - left), TITLE, INK, Anchor::Start);
+    canvas.text([left, EDGE + 0.8 * TITLE], &shorten(&plot.title, TITLE, right - left), TITLE, INK, Anchor::Start);
     canvas.axes(&area, &x_ticks, &y_ticks, plot);
     for flag in &flags {
         canvas.line(vec![[flag.x, flag.baseline(top) - 0.75 * SMALL], [flag.x, area.bottom]], 2.0, FAINT, true);
@@ -83,7 +83,7 @@ pub(super) fn lay_out(plot: &LinePlot) -> Result<Drawing, PlotError> {
         canvas.legend(entry, &pen(series), legend_top);
     }
     let height = (area.bottom + 2.0 * LABEL + EDGE + 30.0).ceil();
-    Ok(Drawing { title: clean(&plot.title, TITLE, WIDTH), width: WIDTH, height, shapes: canvas.0 })
+    Ok(Drawing { title: shorten(&plot.title, TITLE, WIDTH), width: WIDTH, height, shapes: canvas.0 })
 }
 
 /// What a curve is drawn with: a line, dots or both.
@@ -151,8 +151,8 @@ fn legend(series: &[&Series], left: f64, right: f64) -> Vec<Entry> {
     series
         .iter()
         .map(|s| {
-            let text = clean(&s.label, SMALL, 0.5 * (right - left));
-            let width = SAMPLE + 14.0 + room(&text, SMALL);
+            let text = shorten(&s.label, SMALL, 0.5 * (right - left));
+            let width = SAMPLE + 14.0 + estimate_width(&text, SMALL);
             if x + width > right && x > left {
                 (row, x) = (row + 1, left);
             }
@@ -190,7 +190,7 @@ impl Area {
 /// What an axis shows, in its unit.
 pub(super) fn axis_name(axis: &Axis, most: f64) -> String {
     let unit = if axis.unit.is_empty() { String::new() } else { format!(" ({})", axis.unit) };
-    clean(&format!("{}{unit}", axis.label), LABEL, most)
+    shorten(&format!("{}{unit}", axis.label), LABEL, most)
 }
 
 /// The shapes so far.

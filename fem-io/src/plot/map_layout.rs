@@ -4,7 +4,7 @@ use super::layout::{Canvas, EDGE, FAINT, INK, LABEL, ROW, SMALL, TITLE, WHITE, W
 use super::map::{Fill, MapPlot, Panel, STEPS, class, places, share};
 use super::scale::Range;
 use super::shapes::{Anchor, Color, Drawing, Shape, Text};
-use super::words::{clean, room};
+use super::words::{estimate_width, shorten};
 use super::{Axis, PlotError, Scale};
 use std::collections::BTreeMap;
 
@@ -25,7 +25,8 @@ const CELL_EDGE: Color = [0xcf; 3];
 pub(super) fn lay_out(plot: &MapPlot) -> Result<Drawing, PlotError> {
     let x = range(plot, &plot.x, 0)?;
     let y = range(plot, &plot.y, 1)?;
-    let notes = plot.panels.iter().flat_map(|p| &p.notes).map(|note| room(&note.1, SMALL)).fold(0.0, f64::max);
+    let notes =
+        plot.panels.iter().flat_map(|p| &p.notes).map(|note| estimate_width(&note.1, SMALL)).fold(0.0, f64::max);
     let columns = match plot.panels.len() {
         1 => 1,
         2..=4 => 2,
@@ -34,7 +35,7 @@ pub(super) fn lay_out(plot: &MapPlot) -> Result<Drawing, PlotError> {
     };
     let rows = plot.panels.len().div_ceil(columns);
     let y_ticks = y.ticks(if rows > 2 { 4 } else { 8 });
-    let widest = |ticks: &[(f64, String)]| ticks.iter().map(|t| room(&t.1, SMALL)).fold(0.0, f64::max);
+    let widest = |ticks: &[(f64, String)]| ticks.iter().map(|t| estimate_width(&t.1, SMALL)).fold(0.0, f64::max);
     let left = EDGE + LABEL + 30.0 + widest(&y_ticks);
     let right = WIDTH - EDGE - 20.0 - if notes > 0.0 { notes + 20.0 } else { 0.0 };
     let mut width = (right - left - (columns - 1) as f64 * GAP) / columns as f64;
@@ -49,7 +50,13 @@ pub(super) fn lay_out(plot: &MapPlot) -> Result<Drawing, PlotError> {
     let x_ticks = (2..=10).rev().map(|most| x.ticks(most)).find(|ticks| fits(ticks)).unwrap_or_else(|| x.ticks(1));
 
     let mut canvas = Canvas(Vec::new());
-    canvas.text([left, EDGE + 0.8 * TITLE], &clean(&plot.title, TITLE, WIDTH - EDGE - left), TITLE, INK, Anchor::Start);
+    canvas.text(
+        [left, EDGE + 0.8 * TITLE],
+        &shorten(&plot.title, TITLE, WIDTH - EDGE - left),
+        TITLE,
+        INK,
+        Anchor::Start,
+    );
     let top = canvas.map_legend(plot, left, WIDTH - EDGE, EDGE + 1.4 * TITLE);
     let pitch = height + ROW + GAP;
     for (i, panel) in plot.panels.iter().enumerate() {
@@ -73,7 +80,7 @@ pub(super) fn lay_out(plot: &MapPlot) -> Result<Drawing, PlotError> {
         upwards: true,
     }));
     let height = (bottom + 2.0 * LABEL + EDGE + 30.0).ceil();
-    Ok(Drawing { title: clean(&plot.title, TITLE, WIDTH), width: WIDTH, height, shapes: canvas.0 })
+    Ok(Drawing { title: shorten(&plot.title, TITLE, WIDTH), width: WIDTH, height, shapes: canvas.0 })
 }
 
 /// What an axis reaches over: all places, with some air.
@@ -118,13 +125,13 @@ impl Canvas {
         let (mut x, mut middle) = (left, top + 0.5 * ROW);
         if let Some(name) = &plot.scale {
             self.bar([x, middle - 0.5 * BAR[1]]);
-            let name = clean(name, SMALL, 500.0);
+            let name = shorten(name, SMALL, 500.0);
             self.text([x + BAR[0] + 14.0, middle + 0.35 * SMALL], &name, SMALL, INK, Anchor::Start);
-            x += BAR[0] + 14.0 + room(&name, SMALL) + 40.0;
+            x += BAR[0] + 14.0 + estimate_width(&name, SMALL) + 40.0;
         }
         for k in used {
-            let name = clean(&plot.classes[k], SMALL, 0.6 * (right - left));
-            let width = SAMPLE + 12.0 + room(&name, SMALL);
+            let name = shorten(&plot.classes[k], SMALL, 0.6 * (right - left));
+            let width = SAMPLE + 12.0 + estimate_width(&name, SMALL);
             if x + width > right && x > left {
                 (x, middle) = (left, middle + if middle < top + ROW { 1.6 * ROW } else { ROW });
             }
@@ -157,8 +164,8 @@ impl Canvas {
 
     fn panel(&mut self, area: &Area, panel: &Panel) {
         let most = if panel.notes.is_empty() { area.width } else { WIDTH };
-        let size = if room(&panel.title, SMALL) > most { 0.85 * SMALL } else { SMALL };
-        self.text([area.left, area.top - 12.0], &clean(&panel.title, size, most), size, INK, Anchor::Start);
+        let size = if estimate_width(&panel.title, SMALL) > most { 0.85 * SMALL } else { SMALL };
+        self.text([area.left, area.top - 12.0], &shorten(&panel.title, size, most), size, INK, Anchor::Start);
         let mut paths: BTreeMap<Color, Vec<Vec<[f64; 2]>>> = BTreeMap::new();
         for cell in &panel.cells {
             let ring = cell.corners.iter().map(|p| area.place(*p)).collect();

@@ -30,6 +30,7 @@ mod work_precision;
 pub use map::{Fill, MapCell, MapPlot, Panel, Stroke, class_color, map_plot};
 pub use mesh::mesh_map;
 pub use over_time::{Physical, force_history, index_history, modal_history, over_time, unit_of_time};
+pub use png::PngError;
 pub use work_precision::work_precision;
 
 use crate::files::{FileError, OutputDir};
@@ -213,7 +214,7 @@ pub enum PlotError {
         /// Title of the plot.
         title: String,
         /// The cause.
-        why: String,
+        why: PngError,
     },
 }
 

@@ -4,11 +4,27 @@ use super::shapes::{Anchor, Color, DASH, Drawing, Shape, Text};
 use tiny_skia::{FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, StrokeDash, Transform};
 use ttf_parser::{Face, OutlineBuilder};
 
-/// The file; the error is the reason.
-pub(super) fn render(drawing: &Drawing) -> Result<Vec<u8>, String> {
+/// Why a drawing does not become a PNG file.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PngError {
+    /// The size of the drawing is not one of a picture.
+    #[error("{width} x {height} pixels is not a size")]
+    #[allow(missing_docs)]
+    Size { width: u32, height: u32 },
+    /// The font of the program cannot be read.
+    #[error("the font cannot be read: {0}")]
+    Font(#[from] ttf_parser::FaceParsingError),
+    /// The pixels cannot be encoded.
+    #[error("the pixels cannot be encoded: {0}")]
+    Encoding(String),
+}
+
+/// The file.
+pub(super) fn render(drawing: &Drawing) -> Result<Vec<u8>, PngError> {
     let face = face()?;
-    let mut pixels = Pixmap::new(drawing.width.ceil() as u32, drawing.height.ceil() as u32)
-        .ok_or_else(|| format!("{} x {} pixels is not a size", drawing.width, drawing.height))?;
+    let (width, height) = (drawing.width.ceil() as u32, drawing.height.ceil() as u32);
+    let mut pixels = Pixmap::new(width, height).ok_or(PngError::Size { width, height })?;
     pixels.fill(tiny_skia::Color::WHITE);
     for shape in &drawing.shapes {
         match shape {
@@ -39,7 +55,7 @@ pub(super) fn render(drawing: &Drawing) -> Result<Vec<u8>, String> {
             Shape::Text(text) => draw_text(&mut pixels, &face, text),
         }
     }
-    encode(&pixels).map_err(|e| e.to_string())
+    encode(&pixels).map_err(|e| PngError::Encoding(e.to_string()))
 }
 
 /// As RGB, all of it being opaque, and compressed fast: tiny-skia's own way takes several times as long as to draw.
@@ -60,8 +76,8 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
     face().map_or(0.0, |face| text.chars().map(|c| f64::from(advance(&face, c))).sum::<f64>() * size / em(&face))
 }
 
-fn face() -> Result<Face<'static>, String> {
-    Face::parse(epaint_default_fonts::UBUNTU_LIGHT, 0).map_err(|e| e.to_string())
+fn face() -> Result<Face<'static>, ttf_parser::FaceParsingError> {
+    Face::parse(epaint_default_fonts::UBUNTU_LIGHT, 0)
 }
 
 fn em(face: &Face<'_>) -> f64 {

@@ -48,7 +48,7 @@ impl Range {
     }
 
     /// Leaves some air at both ends; a linear range takes in zero instead where that is near.
-    pub(super) fn with_air(self) -> Self {
+    pub(super) fn with_margins(self) -> Self {
         let Self { scale, lo, hi } = self;
         let near = |distance: f64| scale == Scale::Linear && (0.0..0.5 * (hi - lo)).contains(&distance);
         let (from_zero, to_zero) = (near(lo), near(-hi));
@@ -187,7 +187,7 @@ mod tests {
         for lo in [-1e249, -1e6, -3.3, -1e-200, 0.0, 1e-240, 7.7, 1e12] {
             for span in [1e-248, 1e-12, 0.3, 1.0, 9.99, 1e5, 1e249] {
                 let Ok(range) = Range::of(Scale::Linear, [lo, lo + span].into_iter()) else { continue };
-                for range in [range, range.with_air()] {
+                for range in [range, range.with_margins()] {
                     for most in 3..=10 {
                         let ticks = range.ticks(most);
                         assert!((1..=most + 1).contains(&ticks.len()), "{range:?} {most} {ticks:?}");
@@ -209,10 +209,10 @@ mod tests {
 
     #[test]
     fn zero_is_taken_in_when_near() {
-        assert_eq!(linear(1.0, 21.0).with_air(), linear(0.0, 22.05));
-        assert_eq!(linear(-21.0, -1.0).with_air(), linear(-22.05, 0.0));
-        assert_eq!(linear(100.0, 120.0).with_air(), linear(99.0, 121.0));
-        assert_eq!(linear(-10.0, 10.0).with_air(), linear(-11.0, 11.0));
+        assert_eq!(linear(1.0, 21.0).with_margins(), linear(0.0, 22.05));
+        assert_eq!(linear(-21.0, -1.0).with_margins(), linear(-22.05, 0.0));
+        assert_eq!(linear(100.0, 120.0).with_margins(), linear(99.0, 121.0));
+        assert_eq!(linear(-10.0, 10.0).with_margins(), linear(-11.0, 11.0));
     }
 
     #[test]
@@ -241,7 +241,7 @@ mod tests {
     fn a_logarithmic_range_has_its_geometric_mean_in_the_middle_and_air_at_both_ends() {
         let range = logarithmic(1.0, 100.0);
         assert_eq!([1.0, 10.0, 100.0].map(|v| range.fraction(v)), [0.0, 0.5, 1.0]);
-        let airy = range.with_air();
+        let airy = range.with_margins();
         assert!(
             (airy.fraction(10_f64.powf(-0.1))).abs() < 1e-12 && (airy.fraction(10_f64.powf(2.1)) - 1.0).abs() < 1e-12
         );
@@ -257,7 +257,7 @@ mod tests {
         ) {
             let lo = 10_f64.powf(exponent);
             let hi = 10_f64.powf((exponent + 10_f64.powf(span)).min(250.0));
-            for range in [logarithmic(lo, hi), logarithmic(lo, hi).with_air()] {
+            for range in [logarithmic(lo, hi), logarithmic(lo, hi).with_margins()] {
                 let ticks = range.ticks(most);
                 prop_assert!((1..=most + 1).contains(&ticks.len()), "{:?} {:?}", range, ticks);
                 prop_assert!(ticks.iter().all(|t| (-1e-6..=1.0 + 1e-6).contains(&range.fraction(t.0))), "{:?}", ticks);

@@ -8,16 +8,16 @@ const SLACK: f64 = 1.2;
 const LONGEST: usize = 400;
 
 /// Width to keep free for `text`.
-pub(super) fn room(text: &str, size: f64) -> f64 {
+pub(super) fn estimate_width(text: &str, size: f64) -> f64 {
     SLACK * text_width(text, size)
 }
 
 /// `text` without control characters, cut with an ellipsis where it would be wider than `most` pixels.
-pub(super) fn clean(text: &str, size: f64, most: f64) -> String {
+pub(super) fn shorten(text: &str, size: f64, most: f64) -> String {
     let unprintable = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
     let mut kept: String = text.chars().take(LONGEST).map(|c| if unprintable(c) { ' ' } else { c }).collect();
-    if room(&kept, size) > most || text.chars().nth(LONGEST).is_some() {
-        while room(&kept, size) > most - room("…", size) && kept.pop().is_some() {}
+    if estimate_width(&kept, size) > most || text.chars().nth(LONGEST).is_some() {
+        while estimate_width(&kept, size) > most - estimate_width("…", size) && kept.pop().is_some() {}
         kept.truncate(kept.trim_end().len());
         kept.push('…');
     }
@@ -30,11 +30,11 @@ mod tests {
 
     #[test]
     fn words_fit() {
-        assert_eq!(clean("matrix tension", 20.0, 500.0), "matrix tension");
-        assert_eq!(clean("a\nb\u{0}c", 20.0, 500.0), "a b c");
+        assert_eq!(shorten("matrix tension", 20.0, 500.0), "matrix tension");
+        assert_eq!(shorten("a\nb\u{0}c", 20.0, 500.0), "a b c");
         for text in ["matrix tension and a lot more of it", &"x".repeat(100_000)] {
-            let cut = clean(text, 20.0, 150.0);
-            assert!(room(&cut, 20.0) <= 150.0 && cut.ends_with('…') && cut.len() > 10, "{cut}");
+            let cut = shorten(text, 20.0, 150.0);
+            assert!(estimate_width(&cut, 20.0) <= 150.0 && cut.ends_with('…') && cut.len() > 10, "{cut}");
         }
     }
 }

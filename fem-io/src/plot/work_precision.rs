@@ -24,7 +24,7 @@ pub fn work_precision(
     if !points.is_empty() {
         curves.push(Series { label: "best for its time".into(), points, style: Style::Guide });
     }
-    let marks = named.iter().filter(|(x, y, _)| on_axes(*x, *y));
+    let marks = named.iter().filter(|(x, y, _)| fits_axes(*x, *y));
     LinePlot {
         title: title.to_owned(),
         x: Axis::logarithmic("Processor time", "s"),
@@ -34,12 +34,12 @@ pub fn work_precision(
     }
 }
 
-fn on_axes(time: f64, error: f64) -> bool {
+fn fits_axes(time: f64, error: f64) -> bool {
     [time, error].iter().all(|v| v.is_finite() && *v > 0.0)
 }
 
 fn drawable(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    points.iter().copied().filter(|p| on_axes(p.0, p.1)).collect()
+    points.iter().copied().filter(|p| fits_axes(p.0, p.1)).collect()
 }
 
 /// Each error of `front` from its time until the next one's, the last until `longest`.

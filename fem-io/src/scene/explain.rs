@@ -1,7 +1,7 @@
 //! Every key that holds in a scene: its value, where that comes from, and what it means.
 
 use super::root::KEYS;
-use super::{Merged, effects, foreign, material, run};
+use super::{Merged, effects, list_unused_keys, material, run};
 use crate::document::keys::{Absent, Form, Key, Keys, Plugins};
 use crate::document::reader::Reader;
 use crate::document::source::{Origin, Place, SceneError, SceneSource};
@@ -37,15 +37,15 @@ pub fn explain(path: &Path, plugins: Plugins<'_>, effects: &[Key]) -> Result<Vec
         Some(Node::Text(text)) => text.clone(),
         _ => "impact".to_owned(),
     };
-    table.0.retain(|entry| !foreign(&analysis).contains(&entry.key.as_str()));
+    table.0.retain(|entry| !list_unused_keys(&analysis).contains(&entry.key.as_str()));
     for entry in table.0.iter_mut().filter(|entry| entry.key == "impactor") {
         match &mut entry.item.node {
-            Node::List(items) => items.iter_mut().filter_map(|item| item.node.table_mut()).for_each(one_load),
-            node => node.table_mut().into_iter().for_each(one_load),
+            Node::List(items) => items.iter_mut().filter_map(|item| item.node.table_mut()).for_each(keep_one_load),
+            node => node.table_mut().into_iter().for_each(keep_one_load),
         }
     }
     let mut walk = Walk { plugins, effects, source: Arc::clone(&source), found: Vec::new() };
-    for key in KEYS.iter().filter(|key| !foreign(&analysis).contains(&key.name)) {
+    for key in KEYS.iter().filter(|key| !list_unused_keys(&analysis).contains(&key.name)) {
         if key.name == "materials" {
             let materials = Reader::root(&table, KEYS, &source)?.required("materials")?;
             for (name, field) in materials.entries()? {
@@ -93,7 +93,7 @@ impl Walk<'_> {
     }
 
     fn value(&mut self, form: &Form, item: &Item, path: &str, about: &str) {
-        match (form.meant_by(&item.node), &item.node) {
+        match (form.form_of(&item.node), &item.node) {
             (Form::Table(keys), Node::Table(table)) => self.table(keys, table, path),
             (Form::Effects, Node::Table(table)) => self.effects(table, path),
             (Form::Named(form), Node::Table(table)) => {
@@ -147,7 +147,7 @@ impl Walk<'_> {
 }
 
 /// Leaves an impactor one way in which its force enters the plate: that of the text that counts more.
-fn one_load(impactor: &mut Table) {
+fn keep_one_load(impactor: &mut Table) {
     let is_load = |key: &str| run::LOADS.contains(&key);
     let counts = impactor.0.iter().filter(|e| is_load(&e.key)).map(|e| e.item.place.origin).max();
     impactor.0.retain(|e| !is_load(&e.key) || Some(e.item.place.origin) == counts);

@@ -135,15 +135,23 @@ const CURVES: Key = key(
 /// `edge_size` over `size` unless a scene says otherwise.
 const COARSENING: f64 = 3.0;
 
-/// Cells that become of `cells` when each is divided into four, `times` in a row.
+/// A mesh that would have too many cells when refined.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("refining {times} times makes more than {MAX_CELLS} cells of {cells}")]
+pub struct TooManyCells {
+    /// Cells of the mesh.
+    pub cells: usize,
+    /// How often each is to be divided into four.
+    pub times: u32,
+}
+
+/// Number of cells when each of `cells` is divided into four, `times` in a row.
 ///
 /// # Errors
-/// More than four million, in words.
-pub fn refined_cells(cells: usize, times: u32) -> Result<usize, String> {
+/// More than four million.
+pub fn refined_cells(cells: usize, times: u32) -> Result<usize, TooManyCells> {
     let refined = 4_usize.checked_pow(times).and_then(|parts| cells.checked_mul(parts));
-    refined
-        .filter(|n| *n <= MAX_CELLS)
-        .ok_or_else(|| format!("refining {times} times makes more than {MAX_CELLS} cells of {cells}"))
+    refined.filter(|n| *n <= MAX_CELLS).ok_or(TooManyCells { cells, times })
 }
 
 pub(super) fn read(field: &SceneValue<'_>, scene: &Path) -> Result<MeshSource, SceneError> {
@@ -225,7 +233,7 @@ fn curves(table: &Reader<'_>) -> Result<Curves, SceneError> {
 fn refine(table: &Reader<'_>, cells: usize) -> Result<Located<u32>, SceneError> {
     let Some(field) = table.optional("refine") else { return Ok(Located { value: 0, place: table.place().clone() }) };
     let times = field.at_least(0)? as u32;
-    refined_cells(cells, times).map_err(|why| field.error(why, "refine less often"))?;
+    refined_cells(cells, times).map_err(|why| field.error(why.to_string(), "refine less often"))?;
     Ok(field.at(times))
 }
 

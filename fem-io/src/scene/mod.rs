@@ -25,7 +25,7 @@ mod tests;
 pub use crate::document::keys::{Absent, Form, Key, Keys, Plugins, key, words};
 pub use crate::document::reader::{Reader, SceneValue};
 pub use crate::document::source::{Located, Place, SceneError, SceneSource};
-pub use annotate::annotated;
+pub use annotate::annotate;
 pub use effects::{Damage, Delamination, EFFECT_SETTINGS, EffectSetting, EffectSpec, EffectsSpec};
 pub use explain::{Explained, explain};
 pub use fields::{FieldCells, FieldSeries, Fields, Region};
@@ -269,7 +269,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
 }
 
 /// Keys that an analysis does not use; presets hold them for others.
-fn foreign(analysis: &str) -> &'static [&'static str] {
+fn list_unused_keys(analysis: &str) -> &'static [&'static str] {
     match analysis {
         "static" => &["impactor", "contact", "reduction", "march", "modes"],
         "modes" => &["impactor", "contact", "reduction", "march", "load", "profile"],
@@ -280,7 +280,7 @@ fn foreign(analysis: &str) -> &'static [&'static str] {
 fn read_analysis(root: &Reader<'_>) -> Result<Analysis, SceneError> {
     let which = root.optional("analysis").map_or(Ok(Which::Impact), |field| field.choice(&ANALYSES))?;
     let name = ANALYSES[which as usize].0;
-    let mut stray = foreign(name).iter().filter_map(|key| root.optional(key));
+    let mut stray = list_unused_keys(name).iter().filter_map(|key| root.optional(key));
     if let Some(field) = stray.find(|field| field.place().origin != Origin::Preset) {
         let help = "leave it out, or choose another `analysis`: impact, static, modes";
         return Err(field.error(format!("means nothing in the analysis `{name}`"), help));

@@ -63,7 +63,7 @@ fn read_value(field: &SceneValue<'_>) -> Result<Value, SceneError> {
         Node::List(_) => Value::List(field.list()?.iter().map(read_value).collect::<Result<_, _>>()?),
         Node::Table(_) | Node::Date => {
             return Err(field.error(
-                format!("a parameter cannot be {}", field.node().in_words()),
+                format!("a parameter cannot be {}", field.node().describe()),
                 "write a number, a quantity in quotes, a word, true, false or a list of these",
             ));
         }

@@ -162,7 +162,7 @@ pub fn rewrite(path: &Path, setting: &Setting) -> Result<String, SceneError> {
     for (keys, value) in setting {
         let keys = Key::parse(keys).map_err(|e| wrong(e.to_string()))?;
         let value: Value = value.parse().map_err(|e: toml_edit::TomlError| wrong(e.to_string()))?;
-        put(document.as_table_mut(), &keys, &value);
+        set_path(document.as_table_mut(), &keys, &value);
     }
     let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned)).unwrap_or_default();
     let rooted = |item: Option<&mut Item>| {
@@ -183,7 +183,7 @@ pub fn rewrite(path: &Path, setting: &Setting) -> Result<String, SceneError> {
 /// Names of plug-ins: a table that names another one is made anew.
 const NAMES: [&str; 4] = ["kind", "law", "method", "name"];
 
-fn put(table: &mut dyn TableLike, keys: &[Key], value: &Value) {
+fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) {
     match keys {
         [] => {}
         [key] => drop(table.insert(key, Item::Value(value.clone()))),
@@ -195,8 +195,8 @@ fn put(table: &mut dyn TableLike, keys: &[Key], value: &Value) {
                 *old = if old.is_table() { Item::Table(Table::new()) } else { Item::Value(InlineTable::new().into()) };
             }
             match table.entry(key).or_insert_with(|| Item::Table(Table::new())) {
-                Item::ArrayOfTables(tables) => tables.iter_mut().for_each(|table| put(table, rest, value)),
-                item => item.as_table_like_mut().into_iter().for_each(|table| put(table, rest, value)),
+                Item::ArrayOfTables(tables) => tables.iter_mut().for_each(|table| set_path(table, rest, value)),
+                item => item.as_table_like_mut().into_iter().for_each(|table| set_path(table, rest, value)),
             }
         }
     }

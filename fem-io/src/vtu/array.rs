@@ -1,6 +1,6 @@
 //! An array of a file, compressed.
 
-use super::escaped;
+use super::escape;
 use crate::files::FileError;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
@@ -36,7 +36,7 @@ impl Array {
     pub fn precise(name: impl Into<String>, components: usize, values: &[f64]) -> Self {
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
         let refused = values.iter().position(|value| !value.is_finite()).map(|at| (at, values[at]));
-        Self { refused, ..Self::new(name, "Float64", components, values.len(), encode(&bytes, deflated)) }
+        Self { refused, ..Self::new(name, "Float64", components, values.len(), encode(&bytes, deflate)) }
     }
 
     /// Whole numbers.
@@ -47,11 +47,11 @@ impl Array {
             false => ("Int64", values.flat_map(i64::to_le_bytes).collect()),
         };
         let count = bytes.len() / if narrow { size_of::<i32>() } else { size_of::<i64>() };
-        Self::new(name, kind, 1, count, encode(&bytes, deflated))
+        Self::new(name, kind, 1, count, encode(&bytes, deflate))
     }
 
     pub(super) fn bytes(name: &str, values: &[u8]) -> Self {
-        Self::new(name, "UInt8", 1, values.len(), encode(values, deflated))
+        Self::new(name, "UInt8", 1, values.len(), encode(values, deflate))
     }
 
     fn new(name: impl Into<String>, kind: &'static str, components: usize, values: usize, encoded: Vec<u8>) -> Self {
@@ -81,12 +81,12 @@ impl Array {
 
     /// The XML element that says where its bytes are.
     pub(super) fn element(&self, offset: usize, counted: bool) -> String {
-        let mut text = format!(r#"<DataArray type="{}" Name="{}""#, self.kind, escaped(&self.name));
+        let mut text = format!(r#"<DataArray type="{}" Name="{}""#, self.kind, escape(&self.name));
         if self.components.len() > 1 {
             text += &format!(r#" NumberOfComponents="{}""#, self.components.len());
         }
         for (number, name) in self.components.iter().enumerate().filter(|(_, name)| !name.is_empty()) {
-            text += &format!(r#" ComponentName{number}="{}""#, escaped(name));
+            text += &format!(r#" ComponentName{number}="{}""#, escape(name));
         }
         if counted {
             text += &format!(r#" NumberOfTuples="{}""#, self.tuples);
@@ -108,7 +108,7 @@ fn encode(bytes: &[u8], compressed: fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
     [header].into_iter().chain(blocks).collect::<Vec<_>>().concat()
 }
 
-fn deflated(bytes: &[u8]) -> Vec<u8> {
+fn deflate(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::with_capacity(bytes.len() + 64), Compression::fast());
     // A vector takes all that it is given.
     let _ = encoder.write_all(bytes);
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn blocks_are_counted_as_the_format_says() {
         let header = |bytes: usize| {
-            let encoded = encode(&vec![7; bytes], deflated);
+            let encoded = encode(&vec![7; bytes], deflate);
             let number = |at: usize| u64::from_le_bytes(std::array::from_fn(|k| encoded[8 * at + k]));
             [number(0), number(1), number(2)]
         };

@@ -1,6 +1,6 @@
 //! A series of files in order of time.
 
-use super::escaped;
+use super::escape;
 use crate::files::{FileError, OutputDir};
 
 /// A file of a series.
@@ -22,7 +22,7 @@ pub fn write_collection(dir: &OutputDir, name: &str, members: &[Member]) -> Resu
         writeln!(out, r#"<VTKFile type="Collection" version="1.0" byte_order="LittleEndian">"#)?;
         writeln!(out, "<Collection>")?;
         for Member { time, file } in members {
-            writeln!(out, r#"<DataSet timestep="{time}" part="0" file="{}"/>"#, escaped(file))?;
+            writeln!(out, r#"<DataSet timestep="{time}" part="0" file="{}"/>"#, escape(file))?;
         }
         writeln!(out, "</Collection>\n</VTKFile>")
     })

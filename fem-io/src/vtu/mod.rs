@@ -170,7 +170,7 @@ impl<'a> Appended<'a> {
 }
 
 /// `text` as the value of an attribute; characters that XML does not have become spaces.
-fn escaped(text: &str) -> String {
+fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

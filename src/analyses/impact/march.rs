@@ -5,7 +5,7 @@ use super::checkpoint::{self, Checkpoint};
 use super::frames::frames;
 use super::ledger::Ledger;
 use super::modal::{self, ModalView};
-use super::prepare::{Prepared, unmarchable};
+use super::prepare::{Prepared, describe_failure};
 use super::{Maximum, Outcome, Sizes};
 use crate::analyses::expansion::Expansion;
 use crate::analyses::stress::{self, Watch};
@@ -130,7 +130,7 @@ impl<'a> March<'a> {
         let (model, impact) = (prepared.model, prepared.impact);
         let state = prepared.system.initial();
         let Sizes { steps, step: dt, .. } = prepared.sizes;
-        let row_every = model.scene.output.history_every.map_or(steps.div_ceil(HISTORY_ROWS), |t| steps_in(t, dt));
+        let row_every = model.scene.output.history_every.map_or(steps.div_ceil(HISTORY_ROWS), |t| count_steps(t, dt));
         let progress = Progress {
             step: 0,
             dt,
@@ -145,7 +145,7 @@ impl<'a> March<'a> {
         };
         let mut march = Self::at(prepared, progress)?;
         let Self { integrator, system, progress: Progress { state, .. }, .. } = &mut march;
-        integrator.start(system, state).map_err(|e| unmarchable(model, impact, e))?;
+        integrator.start(system, state).map_err(|e| describe_failure(model, impact, e))?;
         march.row()?;
         march.sample()?;
         Ok(march)
@@ -216,7 +216,7 @@ impl<'a> March<'a> {
         let expansion = Rc::new(Expansion { model, reduced, companions, condensation });
         let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, expansion.clone())?) };
         stopwatch.lap("prepare stresses");
-        let scan_every = steps_in(model.scene.failure.every, sizes.step);
+        let scan_every = count_steps(model.scene.failure.every, sizes.step);
         let (integrator, counted) = (impact.integrator.clone(), Work::default());
         Ok(Self {
             model,
@@ -260,7 +260,7 @@ impl<'a> March<'a> {
         }
         let step = self.progress.step + 1;
         let stepped = self.step();
-        self.judge(step, stepped);
+        self.stop_on_error(step, stepped);
     }
 
     fn step(&mut self) -> Result<(), Error> {
@@ -342,14 +342,14 @@ impl<'a> March<'a> {
         match done {
             Err(error @ Error::File(FileError::Io { .. } | FileError::Locked { .. })) => Err(error),
             stopped => {
-                self.judge(self.progress.step, stopped);
+                self.stop_on_error(self.progress.step, stopped);
                 Ok(())
             }
         }
     }
 
     /// Stops a march that met an error in `step`.
-    fn judge(&mut self, step: u64, done: Result<(), Error>) {
+    fn stop_on_error(&mut self, step: u64, done: Result<(), Error>) {
         let Progress { state, stopped, .. } = &mut self.progress;
         if let Err(error) = done {
             let remedy = error.help().map_or_else(String::new, |help| format!("; {help}"));
@@ -384,7 +384,7 @@ impl<'a> March<'a> {
         self.stopwatch.lap("march");
         if self.progress.stopped.is_none() {
             let closed = self.close();
-            self.judge(self.progress.step, closed);
+            self.stop_on_error(self.progress.step, closed);
         }
         let (mut events, mut peaks, mut sites) = (Vec::new(), Vec::new(), 0);
         let (mut histories, mut maxima) = (Vec::new(), Vec::new());
@@ -445,7 +445,7 @@ impl<'a> March<'a> {
 }
 
 /// Steps of `dt` in an interval, at least one.
-fn steps_in(interval: f64, dt: f64) -> u64 {
+fn count_steps(interval: f64, dt: f64) -> u64 {
     ((interval / dt).round() as u64).max(1)
 }
 

@@ -232,7 +232,7 @@ fn try_inertia(model: &Model, impact: &Impact, system: &ImpactSystem, reduced: O
     let (Some(reduced), false) = (reduced, model.effects.nature().inertia) else { return Ok(()) };
     let trial = ImpactSystem::new(Box::new(reduced.modal.clone()), system.impactors().to_vec());
     let step = impact.spec.march.step.value;
-    touched(trial, impact.integrator.clone(), step).map_err(|e| unmarchable(model, impact, e))
+    try_step_in_contact(trial, impact.integrator.clone(), step).map_err(|e| describe_failure(model, impact, e))
 }
 
 /// Refuses a step beyond the stability limit; sizes of the march otherwise.
@@ -245,7 +245,8 @@ fn check_step(
 ) -> Result<Sizes, Error> {
     let march = &impact.spec.march;
     let limited = impact.integrator.limit();
-    let (longest_step, highest) = limit::longest_step(system, limited).map_err(|e| unmarchable(model, impact, e))?;
+    let (longest_step, highest) =
+        limit::longest_step(system, limited).map_err(|e| describe_failure(model, impact, e))?;
     let hertz = |omega: f64| omega / std::f64::consts::TAU;
     if let (Some(omega_dt), Some(omega)) = (limited.product(), highest)
         && !(march.step.value <= longest_step)
@@ -282,7 +283,11 @@ fn check_step(
 ///
 /// # Errors
 /// [`StepError::SingularMass`], then; what else a step may meet is for the march to tell.
-fn touched(mut system: ImpactSystem, mut integrator: Box<dyn Integrator>, dt: f64) -> Result<(), StepError> {
+fn try_step_in_contact(
+    mut system: ImpactSystem,
+    mut integrator: Box<dyn Integrator>,
+    dt: f64,
+) -> Result<(), StepError> {
     let mut state = system.initial();
     state.u[system.structure().ndof()..].fill(TOUCH);
     integrator.resume(&mut system);
@@ -304,7 +309,7 @@ fn distinct(contacts: &[Functional]) -> Vec<Functional> {
 }
 
 /// The error of an integrator that cannot march `model`; one that needs M⁻¹ where M has none is shown in the scene.
-pub(super) fn unmarchable(model: &Model, impact: &Impact, error: StepError) -> Error {
+pub(super) fn describe_failure(model: &Model, impact: &Impact, error: StepError) -> Error {
     let StepError::SingularMass(why) = error else { return error.into() };
     let name = &impact.spec.march.integrator.name;
     let message = format!("`{}` needs the inverse of the mass matrix, which is singular: {why}", name.value);

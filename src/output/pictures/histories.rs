@@ -23,7 +23,7 @@ pub(super) fn displacement(title: &str, names: &[&str], rows: &[HistoryRow]) -> 
             Series::solid(label("plate", " under the impactor", name), curve(i, |r| r.plate_displacement_m)),
         ]
     });
-    shown(over_time(title, "Displacement", Physical::Length, curves.collect()))
+    unless_zero(over_time(title, "Displacement", Physical::Length, curves.collect()))
 }
 
 /// Where the energy is, and its sum; what is lost counts. Parts too small to be seen are left out. `columns` are those of
@@ -52,7 +52,7 @@ pub(super) fn energy(title: &str, columns: &[&LedgerColumn], rows: &[HistoryRow]
     let total = rows.iter().enumerate().map(|(i, row)| (row.time_s, sum(i))).collect();
     let total = Series { label: "sum".into(), points: total, style: Style::Guide };
     let seen = parts.into_iter().chain(shares).filter(|part| size(part) > VISIBLE * largest);
-    shown(over_time(title, "Energy", Physical::Energy, seen.chain([total]).collect()))
+    unless_zero(over_time(title, "Energy", Physical::Energy, seen.chain([total]).collect()))
 }
 
 type Length = fn(&ImpactorRow) -> f64;
@@ -84,7 +84,7 @@ pub(super) fn force_displacement(title: &str, names: &[&str], rows: &[HistoryRow
     for p in series.iter_mut().flat_map(|s| &mut s.points) {
         *p = (p.0 * per_m, p.1 * per_n);
     }
-    shown(LinePlot {
+    unless_zero(LinePlot {
         title: title.to_owned(),
         x: Axis::linear("Displacement", length_unit),
         y: Axis::linear("Contact force", force_unit),
@@ -94,7 +94,7 @@ pub(super) fn force_displacement(title: &str, names: &[&str], rows: &[HistoryRow
 }
 
 /// The plot if something of it differs from zero.
-fn shown(plot: LinePlot) -> Option<LinePlot> {
+fn unless_zero(plot: LinePlot) -> Option<LinePlot> {
     let something = plot.series.iter().flat_map(|s| &s.points).any(|p| p.1 != 0.0);
     something.then_some(plot)
 }

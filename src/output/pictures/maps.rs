@@ -28,7 +28,7 @@ pub fn plan(title: &str, damage: &DamageMap) -> MapPlot {
     shown.truncate(SHEET);
     let more = count.saturating_sub(SHEET);
     let first = if more > 0 { format!("First {SHEET} of {count} places: ") } else { String::new() };
-    let near = near(damage);
+    let near = find_view(damage);
     MapPlot {
         title: format!("{first}{title}"),
         x: Axis::linear("x", "mm"),
@@ -45,9 +45,9 @@ fn plan_of(damage: &DamageMap, place: &PlaceDamage, near: &[bool]) -> Panel {
         Some(first) => {
             let (unit, per_s) = unit_of_time(damage.end_s);
             let digits = if unit == "ms" { 4 } else { 1 };
-            format!("{}: from {:.digits$} {unit}", called(damage, place), first.2 * per_s)
+            format!("{}: from {:.digits$} {unit}", name_place(damage, place), first.2 * per_s)
         }
-        None => format!("{}: up to {:.2}", called(damage, place), place.largest()),
+        None => format!("{}: up to {:.2}", name_place(damage, place), place.largest()),
     };
     let fills = fills(place);
     let judged = damage.judged.iter().zip(fills).filter(|(q, _)| near[**q as usize]);
@@ -65,7 +65,7 @@ fn plan_of(damage: &DamageMap, place: &PlaceDamage, near: &[bool]) -> Panel {
 
 /// Cells of the view: those within a box round all that failed and all impacts, half as large again on every side, which
 /// is at least a quarter of the plate; all where nothing failed.
-fn near(damage: &DamageMap) -> Vec<bool> {
+fn find_view(damage: &DamageMap) -> Vec<bool> {
     let corners = |q: u32| damage.corners(q).into_iter();
     let failed = damage.places.iter().flat_map(|place| &place.failed).map(|f| damage.judged[f.0 as usize]);
     let mut failed: Vec<u32> = failed.collect();
@@ -95,7 +95,7 @@ fn near(damage: &DamageMap) -> Vec<bool> {
 /// All plies, and the interfaces as thin bands, along x through the first impact; `None` where no judged cell is cut.
 pub fn section(title: &str, damage: &DamageMap) -> Option<MapPlot> {
     let y = damage.impacts_m.first()?[1];
-    let near = near(damage);
+    let near = find_view(damage);
     let seen = damage.judged.iter().enumerate().filter(|(_, q)| near[**q as usize]);
     let cut = seen.filter_map(|(i, q)| Some((i, crossing(&damage.corners(*q), y)?)));
     let cut: Vec<(usize, [f64; 2])> = cut.collect();
@@ -171,7 +171,7 @@ fn classes(damage: &DamageMap) -> Vec<String> {
 }
 
 /// `ply 1 (45°)`, `interface 1|2`.
-fn called(damage: &DamageMap, place: &PlaceDamage) -> String {
+fn name_place(damage: &DamageMap, place: &PlaceDamage) -> String {
     match place.ply.parse::<usize>().ok().and_then(|k| damage.plies.get(k.wrapping_sub(1))) {
         Some(ply) => format!("ply {} ({})", place.ply, degrees(ply.angle_deg)),
         None => format!("interface {}", place.ply),

@@ -84,7 +84,7 @@ pub(super) fn curves(history: &Table, effects: &[&LedgerColumn]) -> Result<Optio
         return Ok(None);
     };
     let (time_unit, per_s) = unit_of_time(times.iter().fold(0.0, |m, t| m.max(*t)));
-    let kept = kept(&values, times.len());
+    let kept = choose_rows(&values, times.len());
     let pick = |values: &[f64], factor: f64| kept.iter().map(|i| six_digits(values[*i] * factor)).collect::<Vec<_>>();
     let chart = |kind: &Kind| {
         let mut series = Vec::new();
@@ -104,7 +104,7 @@ pub(super) fn curves(history: &Table, effects: &[&LedgerColumn]) -> Result<Optio
 }
 
 /// Rows at equal distances, and those of the lowest and the highest value of every column, ascending.
-fn kept(columns: &[Vec<f64>], rows: usize) -> Vec<usize> {
+fn choose_rows(columns: &[Vec<f64>], rows: usize) -> Vec<usize> {
     let stride = rows.div_ceil(ROWS).max(1);
     let extreme = |values: &Vec<f64>| {
         let better =

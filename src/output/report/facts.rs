@@ -71,7 +71,7 @@ const HEADINGS: [(&str, &str); 8] = [
 
 /// A key's name for people, the unit to show it in, and how many of that are one of the key's own: millimetres for metres,
 /// milliseconds for times, microseconds for steps.
-pub(super) fn named(key: &str) -> (String, &'static str, f64) {
+pub(super) fn split_unit(key: &str) -> (String, &'static str, f64) {
     let (stem, unit) = UNITS.iter().find_map(|(end, unit)| Some((key.strip_suffix(end)?, *unit))).unwrap_or((key, ""));
     let (unit, factor) = match unit {
         "m" => ("mm", 1e3),
@@ -84,7 +84,7 @@ pub(super) fn named(key: &str) -> (String, &'static str, f64) {
 }
 
 /// A number, `factor` times, with six digits at most, as text; other values as they are.
-pub(super) fn shown(value: &Value, factor: f64) -> String {
+pub(super) fn format_value(value: &Value, factor: f64) -> String {
     match value {
         Value::String(text) => text.clone(),
         Value::Bool(yes) => if *yes { "yes" } else { "no" }.to_owned(),
@@ -92,7 +92,7 @@ pub(super) fn shown(value: &Value, factor: f64) -> String {
             let scaled = number.as_f64().filter(|_| number.is_f64()).map(|value| digits(value * factor));
             scaled.unwrap_or_else(|| number.to_string())
         }
-        Value::Array(values) => values.iter().map(|value| shown(value, factor)).collect::<Vec<_>>().join(", "),
+        Value::Array(values) => values.iter().map(|value| format_value(value, factor)).collect::<Vec<_>>().join(", "),
         Value::Null | Value::Object(_) => String::new(),
     }
 }
@@ -128,8 +128,8 @@ pub(super) fn sections(summary: &Map<String, Value>, rest: &str) -> Vec<Section>
 }
 
 fn fact(key: &str, value: &Value) -> Fact {
-    let (label, unit, factor) = named(key);
-    Fact { label, value: shown(value, factor), unit: unit.to_owned() }
+    let (label, unit, factor) = split_unit(key);
+    Fact { label, value: format_value(value, factor), unit: unit.to_owned() }
 }
 
 /// Fields by name, those of a field within among them.
@@ -161,7 +161,7 @@ fn grid(rows: &[Value]) -> Grid {
         row.iter().find(|(name, _)| name == key).map(|(_, value)| (*value).clone())
     };
     let column = |key: &&String| {
-        let (label, unit, _) = named(key);
+        let (label, unit, _) = split_unit(key);
         let numeric = rows.iter().filter_map(|row| of(row, key)).all(|value| value.is_number());
         Column { label, unit: unit.to_owned(), numeric }
     };
@@ -169,7 +169,11 @@ fn grid(rows: &[Value]) -> Grid {
         columns: keys.iter().map(column).collect(),
         rows: rows
             .iter()
-            .map(|row| keys.iter().map(|key| of(row, key).map_or(String::new(), |v| shown(&v, named(key).2))).collect())
+            .map(|row| {
+                keys.iter()
+                    .map(|key| of(row, key).map_or(String::new(), |v| format_value(&v, split_unit(key).2)))
+                    .collect()
+            })
             .collect(),
     }
 }
@@ -183,7 +187,7 @@ mod tests {
     #[test]
     fn keys_tell_their_units() {
         let both = |key: &str| {
-            let (label, unit, _) = named(key);
+            let (label, unit, _) = split_unit(key);
             format!("{label} [{unit}]")
         };
         let keys =
@@ -196,7 +200,7 @@ mod tests {
             "layers []",
         ];
         assert_eq!(keys.map(both), want);
-        assert_eq!(["w_m", "end_time_s", "wall_s", "step_s"].map(|key| named(key).2), [1e3, 1e3, 1.0, 1e6]);
+        assert_eq!(["w_m", "end_time_s", "wall_s", "step_s"].map(|key| split_unit(key).2), [1e3, 1e3, 1.0, 1e6]);
         assert_eq!(
             [0.1 + 0.2, 1913.2097520488533, 7.633260460168094e-9, 0.0].map(digits),
             ["0.3", "1913.21", "7.63326e-9", "0"]

@@ -77,9 +77,9 @@ impl Folder {
 
 fn pictures(path: &Path) -> Result<Vec<Picture>, Error> {
     let known = PICTURES.iter().chain([&SECTION]).map(|(name, caption)| ((*name).to_owned(), (*caption).to_owned()));
-    let names = std::fs::read_dir(path).map_err(|cause| unreadable(path, cause))?;
+    let names = std::fs::read_dir(path).map_err(|cause| read_error(path, cause))?;
     let names: Result<Vec<_>, _> = names.map(|entry| entry.map(|entry| entry.file_name())).collect();
-    let names = names.map_err(|cause| unreadable(path, cause))?;
+    let names = names.map_err(|cause| read_error(path, cause))?;
     let profile = |name: &std::ffi::OsString| {
         let name = name.to_str()?.strip_suffix(".svg")?;
         Some((name.to_owned(), format!("Through the thickness: {}", name.strip_prefix("profile-")?)))
@@ -99,7 +99,7 @@ fn pictures(path: &Path) -> Result<Vec<Picture>, Error> {
     Ok(pictures)
 }
 
-fn unreadable(path: &Path, cause: std::io::Error) -> Error {
+fn read_error(path: &Path, cause: std::io::Error) -> Error {
     FileError::Io { action: "read the folder", path: path.to_owned(), cause }.into()
 }
 

@@ -10,9 +10,10 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use fem_io::plot::class_color;
 use fem_io::results::{Table, damaged};
+use fem_io::tables::EventRow;
 use minijinja::value::Serde;
 use minijinja::{Environment, Value as Any, context};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -49,7 +50,7 @@ pub(super) fn render(folder: &Folder, columns: &[&LedgerColumn]) -> Result<Strin
     })?;
     let (damage, least) = folder.damage.as_ref().map_or((Value::Null, 0.0), damage);
     let colors: Vec<String> = (0..7).map(class_color).collect();
-    let marks = list(summary, "first_damage").filter_map(|d| Some(json!([d.get("time_s")?, d.get("mode")?])));
+    let marks = first_damage(summary).map(|event| json!([event.time_s, event.mode]));
     let data = json!({ "curves": curves, "damage": damage, "colors": colors, "marks": marks.collect::<Vec<_>>() });
     let warnings: Vec<&str> = list(summary, "warnings").filter_map(Value::as_str).collect();
     let interactive = |name: &str| curves.iter().any(|c: &Curves| c.charts.iter().any(|chart| chart.id == name));
@@ -83,7 +84,7 @@ pub(super) fn render(folder: &Folder, columns: &[&LedgerColumn]) -> Result<Strin
         provenance => any(folder.cost.as_ref().and_then(|cost| cost.get("provenance"))),
         scene => folder.scene.as_deref(),
         style => Any::from_safe_string(STYLE.to_owned()),
-        data => Any::from_safe_string(harmless(&data)),
+        data => Any::from_safe_string(escape_json(&data)),
         scripts => SCRIPTS.map(|script| Any::from_safe_string(script.to_owned())).to_vec(),
     })?;
     Ok(page)
@@ -97,8 +98,13 @@ fn list<'a>(summary: &'a Map<String, Value>, key: &str) -> impl Iterator<Item = 
     summary.get(key).and_then(Value::as_array).into_iter().flatten()
 }
 
+/// The first events of a summary.
+fn first_damage(summary: &Map<String, Value>) -> impl Iterator<Item = EventRow> + use<'_> {
+    list(summary, "first_damage").filter_map(|event| EventRow::deserialize(event).ok())
+}
+
 /// JSON that cannot end the element that it stands in.
-fn harmless(data: &Value) -> String {
+fn escape_json(data: &Value) -> String {
     data.to_string().replace('<', "\\u003c")
 }
 
@@ -127,7 +133,7 @@ fn tiles(summary: &Map<String, Value>) -> Vec<Fact> {
         tile(&format!("peak force{of}"), number("peak_force_N"), 1.0, "N");
         tile(&format!("peak deflection{of}"), number("peak_plate_displacement_m"), 1e3, "mm");
     }
-    let first = list(summary, "first_damage").filter_map(|d| d.get("time_s")?.as_f64()).reduce(f64::min);
+    let first = first_damage(summary).map(|event| event.time_s).reduce(f64::min);
     tile("first damage", first, 1e3, "ms");
     if summary.get("first_damage").is_some() && first.is_none() {
         tiles.push(Fact { label: "first damage".into(), value: "none".into(), unit: String::new() });
@@ -143,11 +149,11 @@ fn four(value: f64) -> f64 {
 fn table(table: &Table) -> Grid {
     let number = |text: &str| text.parse::<f64>().ok();
     let column = |(k, key): (usize, &String)| {
-        let (label, unit, _) = facts::named(key);
+        let (label, unit, _) = facts::split_unit(key);
         Column { label, unit: unit.to_owned(), numeric: table.rows.iter().all(|row| number(&row[k]).is_some()) }
     };
     let columns: Vec<_> = table.header.iter().enumerate().map(column).collect();
-    let factors: Vec<f64> = table.header.iter().map(|key| facts::named(key).2).collect();
+    let factors: Vec<f64> = table.header.iter().map(|key| facts::split_unit(key).2).collect();
     let field = |(text, factor): (&String, &f64)| {
         number(text).map_or_else(|| text.clone(), |value| facts::digits(value * factor))
     };

@@ -18,7 +18,7 @@ use std::fmt::Write as _;
 /// Residual beyond which it is worth a warning.
 const NOTABLE_RESIDUAL: f64 = 1e-4;
 
-fn notable(residual: f64) -> Option<String> {
+fn warn_of_residual(residual: f64) -> Option<String> {
     (residual > NOTABLE_RESIDUAL).then(|| {
         format!(
             "the stiffness is ill-conditioned: the loads are balanced to {residual:.1e} of their size, and the \
@@ -121,7 +121,7 @@ impl StaticSummary {
                 .warnings
                 .iter()
                 .cloned()
-                .chain(notable(solution.residual))
+                .chain(warn_of_residual(solution.residual))
                 .chain(warn_of_condition(solution.condition))
                 .collect(),
         }

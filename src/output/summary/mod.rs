@@ -12,7 +12,7 @@ use fem_core::counters::Counters;
 use fem_core::tensor::{Ply, Stress6};
 use fem_failure::scan::{FailureEvent, PlyOrInterface, first_per_mode};
 use fem_io::scene;
-use fem_io::tables::{HistoryRow, ImpactorRow};
+use fem_io::tables::{EventRow, HistoryRow, ImpactorRow};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -106,15 +106,8 @@ fn one_or_list<S: Serializer>(impact: &[ImpactFigures], serializer: S) -> Result
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
 pub struct DamageSummary {
-    pub criterion: String,
-    pub mode: String,
-    pub time_s: f64,
-    pub cell: u64,
-    pub ply: String,
-    pub angle_deg: f64,
-    pub x_m: f64,
-    pub y_m: f64,
-    pub z_m: f64,
+    #[serde(flatten)]
+    pub event: EventRow,
     pub contact_force_N: f64,
     pub stress: PlyStress,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -295,15 +288,7 @@ impl ImpactSummary {
         let seen = hindsights(model, h);
         let reached = |effect: &str| Some(seen.iter().find(|seen| seen.effect == effect)?.run.reached);
         let damage = |e: &FailureEvent| DamageSummary {
-            criterion: e.criterion.clone(),
-            mode: e.mode.to_owned(),
-            time_s: e.time,
-            cell: model.plate.plane.quad_tags[e.cell as usize],
-            ply: name_ply(e.place),
-            angle_deg: angle_deg(model, e),
-            x_m: e.position[0],
-            y_m: e.position[1],
-            z_m: e.position[2],
+            event: event_row(model, e),
             contact_force_N: force_at(h, e.time),
             stress: (&e.stress).into(),
             reserve_factor: reserve(model, e),
@@ -370,7 +355,8 @@ impl ImpactSummary {
             },
             work: outcome.counters.into(),
             warnings: {
-                let found = too_deep(model, outcome).chain(seen.iter().filter_map(|seen| seen.warning(model)));
+                let found =
+                    warn_of_deep_contacts(model, outcome).chain(seen.iter().filter_map(|seen| seen.warning(model)));
                 model.warnings.iter().cloned().chain(found).collect()
             },
         }
@@ -411,7 +397,7 @@ fn impact(model: &Model, outcome: &Outcome, i: usize, spec: &scene::ImpactorSpec
 const DEEP: f64 = 0.25;
 
 /// A warning of each contact that went deeper than contact laws are made for.
-fn too_deep(model: &Model, outcome: &Outcome) -> impl Iterator<Item = String> {
+fn warn_of_deep_contacts(model: &Model, outcome: &Outcome) -> impl Iterator<Item = String> {
     let thickness = model.laminate.thickness();
     let deep = outcome.contacts.iter().filter(move |contact| contact.deepest > DEEP * thickness);
     deep.map(move |contact| {
@@ -440,9 +426,23 @@ fn reserve(model: &Model, event: &FailureEvent) -> Option<f64> {
     Some(criterion.reserve_factor(&event.stress, material).factor).filter(|factor| factor.is_finite())
 }
 
-pub(super) fn angle_deg(model: &Model, event: &FailureEvent) -> f64 {
-    match event.place {
+/// An event as tables and summaries hold it.
+pub(super) fn event_row(model: &Model, event: &FailureEvent) -> EventRow {
+    let angle_deg = match event.place {
         PlyOrInterface::Ply(k) => model.laminate.plies[usize::from(k)].angle_deg,
         PlyOrInterface::Interface(_) => 0.0,
+    };
+    let [x_m, y_m, z_m] = event.position;
+    EventRow {
+        criterion: event.criterion.clone(),
+        mode: event.mode.to_owned(),
+        time_s: event.time,
+        cell: model.plate.plane.quad_tags[event.cell as usize],
+        ply: name_ply(event.place),
+        angle_deg,
+        x_m,
+        y_m,
+        z_m,
+        index: event.index,
     }
 }

@@ -59,13 +59,13 @@ impl ImpactSummary {
             for d in &self.first_damage {
                 line(format_args!(
                     "            {:>6.4} ms  {:<15} {:<19} {:>7} {:>5.0}°  {:>7.3}, {:>7.3} mm {:>7.1} N",
-                    d.time_s * 1e3,
-                    d.criterion,
-                    d.mode,
-                    d.ply,
-                    d.angle_deg,
-                    d.x_m * 1e3,
-                    d.y_m * 1e3,
+                    d.event.time_s * 1e3,
+                    d.event.criterion,
+                    d.event.mode,
+                    d.event.ply,
+                    d.event.angle_deg,
+                    d.event.x_m * 1e3,
+                    d.event.y_m * 1e3,
                     d.contact_force_N
                 ));
             }
@@ -92,9 +92,9 @@ impl ImpactSummary {
                 let s = &d.stress;
                 line(format_args!(
                     "            {:>6.4} ms  {:<15} {:<19} {:>7.1} {:>7.1} {:>7.1} {:>7.1} {:>7.1} {:>7.1}  {}",
-                    d.time_s * 1e3,
-                    d.criterion,
-                    d.mode,
+                    d.event.time_s * 1e3,
+                    d.event.criterion,
+                    d.event.mode,
                     s.s11_MPa,
                     s.s22_MPa,
                     s.s33_MPa,

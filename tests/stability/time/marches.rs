@@ -54,7 +54,7 @@ pub(super) fn cases() -> Vec<Case> {
             units,
         ),
         Room::Time.case(
-            "impacts that are none",
+            "impacts without an impact",
             "`fem check` and `fem run` of a clamped strip; mass, velocity, start, step and end that are zero, negative, not \
              finite, denormal or out of the march",
             "scenes that are not refused with their line and a remedy",

@@ -51,7 +51,7 @@ pub struct ReductionResidual {
 /// Asks the full plate; nothing where it gives no finite answer.
 pub(super) fn estimate(mut full: Full, reduced: &Reduced, instants: &[Instant]) -> Option<ReductionAccuracy> {
     let most = full.solves() / SOLVES;
-    let chosen = spread(instants, usize::try_from(most).map_or(INSTANTS, |most| most.clamp(1, INSTANTS)));
+    let chosen = choose_evenly(instants, usize::try_from(most).map_or(INSTANTS, |most| most.clamp(1, INSTANTS)));
     let n = full.structure.ndof();
     let modes: Vec<Vec<f64>> = full.contacts.iter().map(|w| reduced.restrict(w)).collect();
     // w, then Σ F w − M Φ q̈ of each instant; K⁻¹ of the latter is u + K⁻¹ r.
@@ -115,7 +115,7 @@ fn flexibility(contacts: &[Functional], reduced: &Reduced, modes: &[Vec<f64>], s
 }
 
 /// At most `count` of some, evenly but without rhythm.
-fn spread<T>(all: &[T], count: usize) -> Vec<&T> {
+fn choose_evenly<T>(all: &[T], count: usize) -> Vec<&T> {
     let number = |i: usize| (((i as f64 + 0.5) * GOLDEN).fract() * all.len() as f64) as usize;
     (0..count.min(all.len())).filter_map(|i| all.get(number(i))).collect()
 }
@@ -127,12 +127,12 @@ mod tests {
     #[test]
     fn instants_lie_all_over_the_contact() {
         let all: Vec<usize> = (0..60).collect();
-        let mut chosen: Vec<usize> = spread(&all, INSTANTS).into_iter().copied().collect();
+        let mut chosen: Vec<usize> = choose_evenly(&all, INSTANTS).into_iter().copied().collect();
         chosen.sort_unstable();
         assert!(chosen.len() == INSTANTS && chosen[0] < 20 && chosen[INSTANTS - 1] >= 40, "{chosen:?}");
         let gaps: Vec<usize> = chosen.windows(2).map(|w| w[1] - w[0]).collect();
         assert!(gaps.iter().all(|g| *g >= 5) && gaps.iter().any(|g| *g != gaps[0]), "{gaps:?}");
-        assert_eq!(spread(&all[..2], INSTANTS).len(), 2);
-        assert!(spread::<usize>(&[], INSTANTS).is_empty());
+        assert_eq!(choose_evenly(&all[..2], INSTANTS).len(), 2);
+        assert!(choose_evenly::<usize>(&[], INSTANTS).is_empty());
     }
 }

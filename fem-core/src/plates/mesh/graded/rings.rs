@@ -86,7 +86,7 @@ impl Rings {
         let angle = |k: usize| FRAC_PI_2 * (k as f64 / n as f64 - 1.5);
         let circle = (0..4 * n).map(|k| [self.circle * angle(k).cos(), self.circle * angle(k).sin()]);
         let circle =
-            surround(&mut mesh, rim.collect(), circle.collect(), [core_radius(self.half), self.circle], self.rings[0]);
+            lay_rings(&mut mesh, rim.collect(), circle.collect(), [core_radius(self.half), self.circle], self.rings[0]);
         mesh.points.iter_mut().for_each(|p| *p = self.mapped(*p));
         let mut groups = vec![("impact", node(core(n / 2, n / 2)))];
         let mut outer = circle.clone();
@@ -103,7 +103,7 @@ impl Rings {
                     (along(&from, *at, sides), 0.25 * (sides[0] + sides[1]))
                 }
             };
-            outer = surround(&mut mesh, circle, edge, [self.circle, radius], self.rings[1]);
+            outer = lay_rings(&mut mesh, circle, edge, [self.circle, radius], self.rings[1]);
         }
         let mut edge = closed(&outer);
         if let Some(corners) = corners {
@@ -152,7 +152,7 @@ impl Rings {
 
 /// Lays rings around the closed line of nodes `inner`, out to `target`, as many places, and gives the outermost nodes.
 /// The thickness of rings grows as between circles of the two `radii`.
-fn surround(
+fn lay_rings(
     mesh: &mut PlaneMesh,
     mut inner: Vec<u32>,
     target: Vec<[f64; 2]>,
