@@ -203,9 +203,14 @@ impl Registry {
         self.entries.iter().map(|e| &e.info).filter(move |i| i.kind == kind)
     }
 
+    /// The entry of the plug-in `name` of `kind`.
+    pub fn info(&self, kind: Kind, name: &str) -> Option<&PluginInfo> {
+        self.find(kind, name).map(|entry| &entry.info)
+    }
+
     /// What the plug-in `name` of `kind` says of its parameter `key`.
     pub fn param(&self, kind: Kind, name: &str, key: &str) -> Option<&ParamInfo> {
-        self.find(kind, name)?.info.params.iter().find(|p| p.name == key)
+        self.info(kind, name)?.params.iter().find(|p| p.name == key)
     }
 
     /// What a scene can name: the plug-ins of a kind and, instead of a reduction, [`NO_REDUCTION`].

@@ -62,7 +62,7 @@ fn order_two_and_other_nonsense_are_refused_with_the_reason() {
     assert!(Hex20::new(2).unwrap_err().0.contains("zero-energy"));
     assert!(Hex20::new(33).is_err());
     let built = |order: f64| Hex20::build(&Params::default().with("in_plane_order", Value::Number(order)));
-    assert!(built(2.0).unwrap_err().to_string().contains("zero-energy"));
+    assert!(built(2.0).unwrap_err().to_string().contains("a whole number from 3 to 32"));
     assert!(built(2.5).is_err());
     assert!(built(4.0).is_ok());
     let stack = even(&carbon(), &[0.0]);

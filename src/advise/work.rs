@@ -1,6 +1,6 @@
 //! What a choice costs, by counts of work: nominal seconds of a run with it over those of one without.
 
-use crate::forecast::{FILL, Size, nominal, vectors};
+use crate::forecast::{FILL, Size, nominal};
 use crate::model::{Impact, Model};
 use fem_core::counters::Counters;
 use fem_core::failure::Site;
@@ -16,7 +16,7 @@ impl Work {
     pub(super) fn of(model: &Model, impact: &Impact, factor_entries: usize) -> Self {
         let (plate, march) = (&model.plate, &impact.spec.march);
         let cells = plate.kept_cells().count();
-        let solves = impact.reduction.as_ref().map(|_| vectors(&impact.spec.reduction.params));
+        let solves = impact.vectors;
         let plies = model.laminate.plies.len();
         let judged = |site| model.criteria.iter().any(|(_, criterion)| criterion.info().site == site);
         let places = [(Site::Ply, plies), (Site::Interface, plies - 1)].map(|(s, n)| if judged(s) { n } else { 0 });

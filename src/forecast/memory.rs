@@ -4,12 +4,8 @@ use crate::cost::{refuse, require};
 use crate::error::Error;
 use crate::words::describe_bytes;
 use fem_core::assembly::{FactorError, Pattern, Symbolic};
-use fem_core::plugin::{Params, Value};
 use std::fmt;
 use std::sync::Arc;
-
-/// Vectors of a reduction that does not say how many.
-const VECTORS: usize = 60;
 
 // Measured on plates of 6000 to 47 000 unknowns; a row of `docs/stability.md` holds them against what runs take.
 /// The program and the smallest of models, bytes.
@@ -104,13 +100,4 @@ pub(crate) fn analyse(
     let estimate = MemoryEstimate::new(demand, &symbolic, effects);
     require(estimate.bytes(), || estimate.to_string())?;
     Ok((symbolic, estimate))
-}
-
-/// Vectors of a reduction: the largest count among its parameters.
-pub(crate) fn vectors(params: &Params) -> usize {
-    let counts = params.keys().filter_map(|key| match params.get(key) {
-        Some(Value::Number(n)) if *n >= 1.0 => Some(*n as usize),
-        _ => None,
-    });
-    counts.max().unwrap_or(VECTORS)
 }

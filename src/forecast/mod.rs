@@ -5,7 +5,7 @@ mod size;
 mod time;
 
 pub use memory::{Demand, MemoryEstimate};
-pub(crate) use memory::{analyse, vectors};
+pub(crate) use memory::{analyse};
 pub use size::Size;
 pub(crate) use time::FILL;
 pub use time::{PHASES, nominal, one_level_better, seconds_per_phase};

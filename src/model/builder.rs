@@ -9,13 +9,16 @@ use fem_core::element::Element;
 use fem_core::failure::{FailureCriterion, Site, check_material};
 use fem_core::mesh::Group;
 use fem_core::plate::Plate;
-use fem_core::plugin::{Built, Kind, unknown_key};
+use fem_core::plugin::{Built, Kind, Role, unknown_key};
 use fem_core::reduction::Reduction;
 use fem_core::support::{self, FreeMotions};
 use fem_core::time::Integrator;
 use fem_dynamics::integrate::located;
 use fem_io::scene::{self, Analysis, CriterionSpec, Located, NodeSet, Place, PluginSpec, Scene, SceneError, Support};
 use std::collections::BTreeSet;
+
+/// Vectors of a reduction that does not declare how many.
+const VECTORS: usize = 60;
 
 /// Looks things up for a scene and turns what is missing into errors that show the scene.
 pub(super) struct Builder<'a> {
@@ -84,6 +87,12 @@ impl Builder<'_> {
             };
         }
         build!(self, spec, Reduction).map(Some)
+    }
+
+    /// How many vectors a reduction makes, by its parameter that says so; none without a reduction.
+    pub(super) fn vectors(&self, spec: &PluginSpec) -> Option<usize> {
+        let size = self.registry.info(Kind::Reduction, &spec.name.value)?.params_of(Role::Size).next();
+        Some(size.and_then(|row| spec.params.count(row).ok()).unwrap_or(VECTORS).max(1))
     }
 
     pub(super) fn criteria(&self) -> Result<Vec<NamedCriterion>, SceneError> {

@@ -3,7 +3,7 @@
 use super::{Model, Plan};
 use crate::cost::require;
 use crate::error::Error;
-use crate::forecast::{Demand, MemoryEstimate, Size, analyse, vectors};
+use crate::forecast::{Demand, MemoryEstimate, Size, analyse};
 use fem_core::assembly::{Pattern, Symbolic};
 use fem_core::counters::Counters;
 use fem_core::plate::Plate;
@@ -28,11 +28,12 @@ impl Model {
     /// More memory than there is.
     pub(crate) fn analyse(&self, pattern: Arc<Pattern>) -> Result<(Symbolic, MemoryEstimate), Error> {
         let (vectors, contacts) = match &self.plan {
-            Plan::Impact(impact) if impact.reduction.is_some() => {
-                (vectors(&impact.spec.reduction.params), Some(impact.strikes.len()))
-            }
+            Plan::Impact(impact) => match impact.vectors {
+                Some(vectors) => (vectors, Some(impact.strikes.len())),
+                None => (2, None),
+            },
             Plan::Modes { count } => (2 * count, None),
-            _ => (2, None),
+            Plan::Static { .. } => (2, None),
         };
         let demand = Demand { all: self.plate.ndof(), unknowns: pattern.ndof(), vectors, contacts };
         analyse(pattern, &demand, self.effects.memory(&self.body(), &demand))

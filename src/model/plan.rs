@@ -46,6 +46,8 @@ pub struct Impact {
     pub strikes: Vec<Strike>,
     /// The reduction, if any.
     pub reduction: Option<Box<dyn Reduction>>,
+    /// How many vectors the reduction makes, about, if any.
+    pub vectors: Option<usize>,
     /// The integrator.
     pub integrator: Box<dyn Integrator>,
 }
@@ -98,6 +100,7 @@ impl Builder<'_> {
         Ok(Impact {
             strikes: spec.impactors.iter().map(strike).collect::<Result<_, _>>()?,
             reduction: self.reduction(spec)?,
+            vectors: self.vectors(&spec.reduction),
             integrator: self.integrator(spec)?,
             spec: spec.clone(),
         })

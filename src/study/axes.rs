@@ -5,8 +5,11 @@ use crate::model::{Model, Plan};
 use crate::registry::{NO_REDUCTION, Registry};
 use fem_core::mesh::PlaneMesh;
 use fem_core::plate::ZDerivatives;
-use fem_core::plugin::{Built, Kind, Params, unknown_key};
+use fem_core::plugin::{
+    Built, Kind, ParamDefault, ParamForm, ParamInfo, Params, Plugin as _, PluginInfo, Role, unknown_key,
+};
 use fem_core::time::StepLimit;
+use fem_dynamics::reduce::Ritz;
 use fem_io::scene::{Analysis, ContactLoad, MeshSource, Scene, Setting, Window};
 
 /// A part of the settings that is varied while the others stay as the scene has them.
@@ -54,18 +57,8 @@ impl Level {
     }
 }
 
-/// Parameters by which reductions call their size.
-pub(super) const SIZES: [&str; 3] = ["vectors", "modes", "governors"];
-
-/// Size of a reduction that leaves it to a default.
-const SIZE: usize = 40;
-
 /// Sizes of reductions that are alternatives.
 const LADDER: [usize; 4] = [20, 40, 80, 160];
-
-/// Reductions that have another way: parameter and value of it.
-const OTHER_WAYS: [(&str, &str, &str); 3] =
-    [("guyan", "select", "ratio"), ("irs", "select", "ratio"), ("ritz", "space", "krylov")];
 
 /// Steps that are tried, over that of the scene.
 const STEPS: [f64; 6] = [8.0, 4.0, 2.0, 1.0, 0.5, 0.25];
@@ -180,7 +173,7 @@ fn quoted(text: impl std::fmt::Display) -> String {
 }
 
 /// A whole number of the scene.
-pub(super) fn value(scene: &Scene, key: &str) -> Option<usize> {
+fn value(scene: &Scene, key: &str) -> Option<usize> {
     scene.keys.get(key)?.parse().ok()
 }
 
@@ -236,12 +229,17 @@ fn reduction(model: &Model, registry: &Registry) -> Option<Vec<Level>> {
     let scene = &model.scene;
     let name = &scene.impact()?.reduction.name.value;
     if name == NO_REDUCTION {
-        let ritz = |n: usize| Level::new(format!("ritz {n}"), reduced("ritz", Some(("vectors", n)), ""));
-        return Some(LADDER.map(ritz).into_iter().chain([Level::own(NO_REDUCTION)]).collect());
+        // What a scene without a reduction would take instead.
+        let usual = Ritz::INFO;
+        let size = usual.params_of(Role::Size).next()?;
+        let level = |n: usize| Level::new(format!("{} {n}", usual.name), reduced(usual.name, Some((size.name, n)), ""));
+        return Some(LADDER.map(level).into_iter().chain([Level::own(NO_REDUCTION)]).collect());
     }
-    let info = registry.list(Kind::Reduction).find(|info| info.name == name)?;
-    let size = info.params.iter().map(|p| p.name).find(|param| SIZES.contains(param))?;
-    let own = value(scene, &format!("reduction.{size}")).unwrap_or(SIZE);
+    let size = registry.info(Kind::Reduction, name)?.params_of(Role::Size).next()?.name;
+    let own = match &model.plan {
+        Plan::Impact(impact) => impact.vectors?,
+        _ => return None,
+    };
     let key = format!("reduction.{size}");
     let level = |n: usize| Level::new(format!("{n} {size}"), [(key.as_str(), n.to_string())]);
     let coarser = [4, 2].map(|by| own / by).into_iter().filter(|n| *n > 0).map(level);
@@ -257,13 +255,14 @@ fn reduced(name: &str, size: Option<(&str, usize)>, choice: &str) -> [(&'static 
 
 fn reductions(registry: &Registry) -> Vec<Level> {
     let mut all = vec![Level::new(NO_REDUCTION, reduced(NO_REDUCTION, None, ""))];
-    for info in registry.list(Kind::Reduction) {
+    let complete = |info: &&PluginInfo| info.params.iter().all(|row| row.default != ParamDefault::Required);
+    for info in registry.list(Kind::Reduction).filter(complete) {
         let name = info.name;
-        let size = info.params.iter().map(|p| p.name).find(|param| SIZES.contains(param));
-        let other = OTHER_WAYS.iter().find(|way| way.0 == name);
-        for way in [None].into_iter().chain(other.map(Some)) {
-            let label = way.map_or(name.to_owned(), |(_, _, value)| format!("{name} {value}"));
-            let choice = way.map_or(String::new(), |(_, key, value)| format!(", {key} = \"{value}\""));
+        let size = info.params_of(Role::Size).next().map(|row| row.name);
+        let others = info.params_of(Role::Way).flat_map(|row| other_words(row).map(|word| (row.name, word)));
+        for way in [None].into_iter().chain(others.map(Some)) {
+            let label = way.map_or(name.to_owned(), |(_, word)| format!("{name} {word}"));
+            let choice = way.map_or(String::new(), |(key, word)| format!(", {key} = \"{word}\""));
             match size {
                 None => all.push(Level::new(label, reduced(name, None, &choice))),
                 Some(size) => all.extend(
@@ -273,6 +272,15 @@ fn reductions(registry: &Registry) -> Vec<Level> {
         }
     }
     all
+}
+
+/// The words of a parameter but its default.
+fn other_words(row: &ParamInfo) -> impl Iterator<Item = &'static str> + use<> {
+    let (words, default) = match row.form {
+        ParamForm::Word(words) => (words, row.default),
+        _ => (&[][..], row.default),
+    };
+    words.iter().map(|(word, _)| *word).filter(move |word| default != ParamDefault::Word(word))
 }
 
 pub(super) fn seconds(step: f64) -> String {
@@ -315,19 +323,22 @@ fn z_derivatives(model: &Model) -> Vec<Level> {
 
 fn quadrature(scene: &Scene, registry: &Registry) -> Vec<Level> {
     const ORDERS: [usize; 4] = [3, 4, 5, 6];
-    const KEY: &str = "in_plane_order";
-    let kind = &scene.element.name.value;
-    let orders = ORDERS.into_iter().filter(|_| registry.param(Kind::Element, kind, KEY).is_some());
-    orders.map(|n| Level::new(format!("{n} Gauss points"), [("element.in_plane_order", n.to_string())])).collect()
+    let info = registry.info(Kind::Element, &scene.element.name.value);
+    let Some(row) = info.and_then(|info| info.params_of(Role::Quadrature).next()) else { return Vec::new() };
+    let key = format!("element.{}", row.name);
+    ORDERS.map(|n| Level::new(format!("{n} Gauss points"), [(key.as_str(), n.to_string())])).to_vec()
 }
 
 fn mass(scene: &Scene, registry: &Registry) -> Vec<Level> {
-    let kind = &scene.element.name.value;
     let inert = !matches!(scene.analysis, Analysis::Static(_));
-    let words =
-        ["linear", "cubic"].into_iter().filter(|_| inert && registry.param(Kind::Element, kind, "mass").is_some());
-    let others = words.filter(|word| scene.keys.get("element.mass").is_none_or(|own| *own != quoted(word)));
-    others.map(|word| Level::new(word, [("element.mass", quoted(word))])).collect()
+    let info = registry.info(Kind::Element, &scene.element.name.value).filter(|_| inert);
+    let Some(row) = info.and_then(|info| info.params_of(Role::Inertia).next()) else { return Vec::new() };
+    let ParamForm::Word(words) = row.form else { return Vec::new() };
+    let key = format!("element.{}", row.name);
+    let own = scene.keys.get(&key);
+    let differs = |word: &&'static str| own.map_or(row.default != ParamDefault::Word(word), |own| *own != quoted(word));
+    let others = words.iter().map(|(word, _)| *word).filter(differs);
+    others.map(|word| Level::new(word, [(key.as_str(), quoted(word))])).collect()
 }
 
 fn elements(scene: &Scene, registry: &Registry) -> Vec<Level> {

@@ -1,6 +1,5 @@
 //! What a run of a study will cost: nominal seconds at rates that the runs before it have shown.
 
-use super::axes::{SIZES, value};
 use super::record::RunRecord;
 use crate::forecast::{FILL, PHASES, Size, nominal};
 use crate::model::{Model, Plan};
@@ -52,9 +51,8 @@ pub(super) fn size(model: &Model, base: &Size) -> Size {
     size.work.elements = scaled(base.work.elements as f64, ratio(cells, base.cells)) as u64;
     if let Plan::Impact(impact) = &model.plan {
         let (spec, before) = (&impact.spec, base.marched);
-        let asked = SIZES.iter().find_map(|size| value(&model.scene, &format!("reduction.{size}")));
         size.reduced = impact.reduction.is_some();
-        size.marched = if size.reduced { asked.unwrap_or(before).min(unknowns) } else { unknowns };
+        size.marched = if size.reduced { impact.vectors.unwrap_or(before).min(unknowns) } else { unknowns };
         if size.reduced && base.reduced {
             size.work.solves = scaled(base.work.solves as f64, ratio(size.marched, before)) as u64;
         }

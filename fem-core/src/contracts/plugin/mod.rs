@@ -93,6 +93,13 @@ pub struct PluginInfo {
     pub params: &'static [ParamInfo],
 }
 
+impl PluginInfo {
+    /// Its parameters of a role.
+    pub fn params_of(&self, role: Role) -> impl Iterator<Item = &'static ParamInfo> {
+        self.params.iter().filter(move |row| row.role == role)
+    }
+}
+
 /// A plug-in: an entry for the registry and a constructor from parameters.
 ///
 /// ```
