@@ -4,8 +4,8 @@ mod memory;
 mod size;
 mod time;
 
+pub(crate) use memory::analyse;
 pub use memory::{Demand, MemoryEstimate};
-pub(crate) use memory::{analyse};
 pub use size::Size;
 pub(crate) use time::FILL;
 pub use time::{PHASES, nominal, one_level_better, seconds_per_phase};

@@ -51,6 +51,8 @@ fn misfit(schema: &Value, value: &Value, whole: &Value) -> Option<String> {
         }
         "minimum" => value.as_f64().filter(|n| *n < rule.as_f64().unwrap()).and_then(|_| no("is too small")),
         "maximum" => value.as_f64().filter(|n| *n > rule.as_f64().unwrap()).and_then(|_| no("is too large")),
+        "exclusiveMinimum" => value.as_f64().filter(|n| *n <= rule.as_f64().unwrap()).and_then(|_| no("is too small")),
+        "exclusiveMaximum" => value.as_f64().filter(|n| *n >= rule.as_f64().unwrap()).and_then(|_| no("is too large")),
         "minItems" => {
             if !value.is_array() || items.len() as u64 >= rule.as_u64().unwrap() {
                 None
@@ -191,6 +193,9 @@ fn wrong_scenes_are_refused_by_schema_and_program() {
         ("a flag for a quantity", "\"1.56 m/s\"", "true"),
         ("an unknown contact law", "law = \"sun-yang\"", "law = \"sun-young\""),
         ("a parameter of another law", "beta = 0.4", "radius = \"6 mm\""),
+        ("a parameter out of range", "beta = 0.4", "beta = 1.4"),
+        ("a parameter without its unit", "k = \"1.07e5 N/mm^1.5\"", "k = 1.07e5"),
+        ("a missing parameter", "k = \"1.07e5 N/mm^1.5\"\n", ""),
         ("an unknown criterion", "\"octahedral\"", "\"octohedral\""),
         ("an unknown material", "\"AS4/3502\"", "\"AS4\""),
         ("an unknown level", "at = \"all\"", "at = \"middle\""),

@@ -28,7 +28,10 @@ pub fn schema(plugins: Plugins<'_>, effects: &[Key]) -> Value {
     {
         known.extend(effects.iter().map(|key| (key.name.to_owned(), property(key, &[]))));
     }
-    let definitions = Kind::ALL.iter().map(|kind| (definition(*kind), names(*kind, plugins)));
+    let definitions = Kind::ALL
+        .iter()
+        .filter(|kind| !plugins(**kind).is_empty())
+        .map(|kind| (definition(*kind), names(*kind, plugins)));
     let mut definitions: Map<String, Value> = definitions.collect();
     for (kind, name, others) in tables_of_plugins(KEYS) {
         let of_kind: Vec<Value> =

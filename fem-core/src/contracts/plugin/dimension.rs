@@ -41,7 +41,7 @@ impl fmt::Display for Dimension {
         let [m, kg, s, kelvin] = self.0;
         let factors = match (m, kg, s) {
             (2.0, 1.0, -2.0) => vec![("J", 1.0), ("K", kelvin)],
-            (-1.0, 1.0, -2.0) => vec![("Pa", 1.0), ("K", kelvin)],
+            (m, kg, s) if kg != 0.0 && m == -kg && s == -2.0 * kg => vec![("Pa", kg), ("K", kelvin)],
             (_, 1.0, -2.0) => vec![("N", 1.0), ("m", m - 1.0), ("K", kelvin)],
             _ => vec![("kg", kg), ("m", m), ("s", s), ("K", kelvin)],
         };
@@ -79,7 +79,7 @@ mod tests {
             (Dimension::TOUGHNESS, "N/m"),
             (Dimension::DENSITY, "kg/m^3"),
             (Dimension::contact_stiffness(1.5), "N/m^1.5"),
-            (Dimension([3.0, -3.0, 6.0, 0.0]), "m^3 s^6/kg^3"),
+            (Dimension([3.0, -3.0, 6.0, 0.0]), "1/Pa^3"),
             (Dimension([-1.0, 0.0, -2.0, 0.0]), "1/(m s^2)"),
             (Dimension::NONE, "a pure number"),
         ];

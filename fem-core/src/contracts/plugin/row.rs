@@ -291,8 +291,11 @@ impl ParamInfo {
             ParamForm::Texts => return "a text or a list of texts".to_owned(),
         };
         let number = |v: f64| if v == 0.0 { "0".to_owned() } else { format!("{}{unit}", short(v)) };
+        // The bounds that every count has need no words.
+        let count = matches!(self.form, ParamForm::Count);
         let (least, most) = match self.range {
-            (least, Included(MOST_COUNT)) if matches!(self.form, ParamForm::Count) => (least, Unbounded),
+            (Included(0.0), Included(MOST_COUNT)) if count => (Unbounded, Unbounded),
+            (least, Included(MOST_COUNT)) if count => (least, Unbounded),
             range => range,
         };
         let range = match (least, most) {
