@@ -19,6 +19,7 @@ mod mesh;
 mod modal;
 mod model;
 mod page;
+mod parameters;
 mod registry;
 mod report;
 mod restart;
