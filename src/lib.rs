@@ -32,7 +32,7 @@
 //!     clamped.concat()
 //! );
 //! let scene = scene::parse(&text, "scene.toml".as_ref())?;
-//! let done = job::run(scene, &Registry::standard(), &Options::default(), &mut ())?;
+//! let done = job::run(&scene, &Registry::standard(), &Options::default(), &mut ())?;
 //! let Found::Modes(found) = done.found else { unreachable!("the scene asks for modes") };
 //! // ω = 35.985 √(D/(ρ h))/a²
 //! let (d, areal_mass) = (70e9 * 1e-9 / 12.0 / 0.91, 2.7_f64);
@@ -66,5 +66,7 @@ pub use fem_dynamics as dynamics;
 pub use fem_elements as elements;
 pub use fem_failure as failure;
 pub use fem_io as io;
-pub use model::{FieldPlan, Gauge, Impact, Model, NamedCriterion, NamedProfile, Plan, Strike, mesh as scene_mesh};
+pub use model::{
+    FieldPlan, Gauge, Impact, Model, NamedCriterion, NamedProfile, Origin, Plan, Strike, mesh as scene_mesh,
+};
 pub use registry::{NO_REDUCTION, Registry, RegistryError};

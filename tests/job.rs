@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 
 fn done(case: &Case, options: &Options, follow: &mut dyn Follow) -> Result<Finished, Error> {
     case.write();
-    job::run(scene::read(&case.folder().join("plate/scene.toml"))?, &Registry::standard(), options, follow)
+    job::run(&scene::read(&case.folder().join("plate/scene.toml"))?, &Registry::standard(), options, follow)
 }
 
 fn into(results: Results) -> Options {

@@ -195,7 +195,7 @@ pub(crate) fn watched() -> Case {
 
 /// The model of a scene with an impact, and what was found of it.
 pub(crate) fn impact_of(scene: Scene) -> Result<(Model, ImpactFound), Error> {
-    let Finished { model, found, .. } = job::run(scene, &Registry::standard(), &Options::default(), &mut ())?;
+    let Finished { model, found, .. } = job::run(&scene, &Registry::standard(), &Options::default(), &mut ())?;
     let Found::Impact(found) = found else { panic!("the scene has no impact") };
     assert_eq!(found.outcome.stopped, None);
     Ok((model, *found))

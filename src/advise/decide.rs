@@ -36,7 +36,7 @@ pub fn decided(mut model: Model, threads: NonZeroUsize) -> Result<Model, Error> 
 pub(super) fn vibrates(model: &Model) -> bool {
     let Plan::Impact(impact) = &model.plan else { return false };
     let implicit = impact.integrator.limit() == StepLimit::None && impact.integrator.order() <= 2;
-    model.scene.output.modes.is_some() || !implicit
+    model.output.modes.is_some() || !implicit
 }
 
 /// The linear plate under `forces`.

@@ -37,7 +37,7 @@ pub enum Delaminates {
 impl DelaminationAdvice {
     /// `None` where no material gives GIIc.
     pub(super) fn new(model: &Model, estimate: &Estimate) -> Option<Self> {
-        let resin = model.scene.interface.as_ref().map(|resin| resin.value);
+        let resin = model.interface;
         let threshold = DelaminationThreshold::of(&model.laminate, &model.materials, resin)?;
         let dynamic = if estimate.regime == Regime::SmallMass { DYNAMIC } else { 1.0 };
         Some(Self { threshold, ratio: estimate.force() / (dynamic * threshold.force) })

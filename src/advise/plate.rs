@@ -51,7 +51,7 @@ impl PlateConstants {
     pub(super) fn under(model: &Model, strike: &Strike, stiffness: f64) -> Result<Self, Error> {
         let Model { laminate, materials, .. } = model;
         let rim = Rim::around(model, strike.centre)
-            .ok_or_else(|| Error::NoPlate { element: model.scene.element.name.value.clone() })?;
+            .ok_or_else(|| Error::NoPlate { element: model.origin.element.clone() })?;
         let d = laminate.bending_stiffness(materials);
         let (sum, mixed) = (d[(0, 0)] + d[(1, 1)], d[(0, 1)]);
         let twist = d[(2, 2)];

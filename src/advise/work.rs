@@ -31,7 +31,7 @@ impl Work {
             factor_entries,
             sites: model.watched.len() * places.iter().sum::<usize>(),
             step_s: march.step.value,
-            samples: (march.end.value / model.scene.failure.every) as u64,
+            samples: (march.end.value / model.sample_every) as u64,
             work: Counters {
                 elements: cells as u64,
                 solves: solves.unwrap_or(0) as u64,

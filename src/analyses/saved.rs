@@ -4,7 +4,6 @@ use crate::error::CheckpointError;
 use crate::model::Model;
 use fem_io::checkpoint;
 use fem_io::files::{FileError, OutputDir};
-use fem_io::scene::MeshSource;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::{BTreeMap, BTreeSet};
@@ -66,14 +65,13 @@ pub(crate) type Keys = BTreeMap<String, String>;
 /// # Errors
 /// A mesh that cannot be read any more.
 pub(crate) fn identity(model: &Model) -> Result<Keys, FileError> {
-    let scene = &model.scene;
+    let mut keys = model.origin.keys.clone();
     let depends =
         |key: &str| !FREE.iter().any(|free| key.starts_with(free)) && !key.starts_with(MATERIALS) && key != MESH;
-    let mut keys = scene.keys.clone();
     keys.retain(|key, _| depends(key));
     keys.extend(model.materials.iter().map(|m| (format!("{MATERIALS}{}", m.name), format!("{m:?}"))));
-    if let MeshSource::File { file, .. } = &scene.mesh {
-        keys.insert(MESH.to_owned(), checkpoint::digest(&file.value)?);
+    if let Some(file) = &model.origin.mesh {
+        keys.insert(MESH.to_owned(), checkpoint::digest(file)?);
     }
     Ok(keys)
 }

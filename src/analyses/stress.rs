@@ -302,11 +302,11 @@ fn build_recovery(model: &Model) -> Recovery {
 /// The stresses of `quads` as the criteria see them, those of interfaces where these are wanted and the scene has some.
 pub(crate) fn recovery(model: &Model, quads: Vec<usize>, interfaces: bool) -> Recovery {
     let mesh = &model.plate.plane;
-    let windows = match model.scene.failure.window {
+    let windows = match model.window {
         Window::Element => window::own(mesh),
         Window::Square(side) => window::square(mesh, side),
     };
-    let resin = model.scene.interface.as_ref().map(|i| i.value).filter(|_| interfaces);
+    let resin = model.interface.filter(|_| interfaces);
     Recovery::new(&model.plate, &model.laminate, &model.materials, resin, quads, &windows)
 }
 

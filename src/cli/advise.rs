@@ -59,7 +59,7 @@ struct Document<'a> {
 pub(super) fn advise(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let model = scene::read(&arguments.scene).map_err(Into::into).and_then(|scene| Model::new(scene, registry))?;
     let all = advise::advise(&model, arguments.threads).inspect_err(|_| warn(&model.warnings))?;
-    let title = &model.scene.title;
+    let title = &model.origin.title;
     let data = Document { title, impact: all.iter().map(Said::from).collect(), warnings: &model.warnings };
     let text = || format!("{title}\n{}", all.iter().map(ToString::to_string).collect::<String>());
     console.show(arguments.format, &data, text)?;

@@ -147,7 +147,7 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
         Plan::Impact(impact) => {
             let sizes = impact::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model.warnings))?.sizes;
             march = Some(March::new(impact, &sizes));
-            let asked = model.scene.output.fields.as_ref();
+            let asked = model.output.fields.as_ref();
             frames = impact::frames(asked, asked.and_then(|asked| asked.every), &sizes).len();
             (sizes.memory, sizes.substructures)
         }
@@ -168,7 +168,7 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
     };
     let plane = &model.plate.plane;
     Ok(Checked {
-        title: model.scene.title.clone(),
+        title: model.origin.title.clone(),
         quads: plane.quads.len(),
         nodes: plane.points.len(),
         groups: plane.groups.keys().cloned().collect(),

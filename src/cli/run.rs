@@ -65,7 +65,7 @@ pub(super) fn compute(
     options.provenance = Some(Provenance::of(scene.source.name()));
     let bar = console.progress(1000, "march {bar:40} {percent:>3} %  {eta} left");
     let mut terminal = Terminal { console, format, bar, signals: None };
-    let done = job::run(scene, registry, &options, &mut terminal);
+    let done = job::run(&scene, registry, &options, &mut terminal);
     if let (Err(Error::Cancelled { time, share }), Some(signal)) = (&done, terminal.signal()) {
         let command: Vec<_> = std::env::args().collect();
         let (t, share, command) = (time * 1e3, share * 1e2, command.join(" "));

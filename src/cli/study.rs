@@ -79,9 +79,10 @@ fn share(text: &str) -> Result<f64, String> {
 pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let format = arguments.format;
     let path = &arguments.scene;
-    let model = Model::new(scene::read(path)?, registry)?;
+    let scene = scene::read(path)?;
+    let model = Model::new(&scene, registry)?;
     let folder = arguments.out.clone().unwrap_or_else(|| default_folder(path, "-study"));
-    let axes = study::axes(&model, registry, &arguments.axis)?;
+    let axes = study::axes(&scene, &model, registry, &arguments.axis)?;
     let mut session =
         Session::open(path, &model, registry, OutputDir::create(folder).map_err(Error::from)?, arguments.resume)?;
     let bar = console.progress(1000, "study {bar:40} {percent:>3} %  {msg}");
@@ -89,7 +90,7 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Consol
     if found > 0 {
         console.say(format, || format!("  {found} runs are there from before\n"));
     }
-    let report = study::study(&mut session, &model, &axes, arguments.budget, &mut |told| match told {
+    let report = study::study(&mut session, &scene, &model, &axes, arguments.budget, &mut |told| match told {
         Progress::Planned(plan) => bar.suspend(|| console.say(format, || format!("{plan}\n"))),
         Progress::Together([]) => {}
         Progress::Together(runs) => {

@@ -27,7 +27,7 @@ pub(super) fn run(model: &Model, options: &Options, follow: &mut dyn Follow) -> 
     // After all that can be refused, so that a refusal leaves no folder; before the march, so that none is in vain.
     let dir = options.folder().map(OutputDir::create).transpose()?;
     if let Some(dir) = &dir {
-        owns_scene(dir, &model.scene.source)?;
+        owns_scene(dir, &model.origin.source)?;
     }
     advance(model, &mut march, dir.as_ref(), follow)?;
     let outcome = march.finish();
@@ -36,7 +36,7 @@ pub(super) fn run(model: &Model, options: &Options, follow: &mut dyn Follow) -> 
     let size = outcome.size(model, &sizes);
     cost.one_level_better = one_level_better(&size, seconds_per_phase(&outcome.phases));
     if let Some(dir) = &dir {
-        keep_scene(dir, &model.scene.source)?;
+        keep_scene(dir, &model.origin.source)?;
         write_tables(dir, model, &outcome)?;
         write_json(dir, "summary.json", &summary)?;
         write_json(dir, "cost.json", &cost)?;
@@ -44,7 +44,7 @@ pub(super) fn run(model: &Model, options: &Options, follow: &mut dyn Follow) -> 
     let found = Found::Impact(Box::new(ImpactFound { sizes, outcome, summary }));
     follow.found(&found, &cost);
     if let (Some(dir), Found::Impact(own)) = (&dir, &found) {
-        if model.scene.output.plots {
+        if model.output.plots {
             write_plots(dir, model, &own.outcome)?;
         }
         dir.remove_older()?;
@@ -77,7 +77,7 @@ fn advance(
     follow: &mut dyn Follow,
 ) -> Result<(), Error> {
     // An interval beyond what a clock counts is never over.
-    let interval = Duration::try_from_secs_f64(model.scene.output.checkpoint_every).unwrap_or(Duration::MAX);
+    let interval = Duration::try_from_secs_f64(model.output.checkpoint_every).unwrap_or(Duration::MAX);
     let mut files = dir.map(|dir| Files { dir, fields: MarchFields::new(model, dir) });
     let mut saved = Instant::now();
     let mut goes_on = follow.marched(march.share()).is_continue();

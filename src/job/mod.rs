@@ -161,7 +161,7 @@ impl Serialize for Found {
 /// # Errors
 /// What the scene, its mesh or its plug-ins are refused for; a computation that fails; a folder that cannot be written;
 /// [`Error::Cancelled`] where `follow` broke a march off.
-pub fn run(scene: Scene, registry: &Registry, options: &Options, follow: &mut dyn Follow) -> Result<Finished, Error> {
+pub fn run(scene: &Scene, registry: &Registry, options: &Options, follow: &mut dyn Follow) -> Result<Finished, Error> {
     let mut model = Model::new(scene, registry)?;
     let asked = match options.task {
         Task::Modes(count) => Some(count),

@@ -33,7 +33,7 @@ fn hand_over(
     follow.found(&found, &cost);
     let Some(folder) = options.folder() else { return Ok((found, cost, None)) };
     let dir = OutputDir::create(folder)?;
-    keep_scene(&dir, &model.scene.source)?;
+    keep_scene(&dir, &model.origin.source)?;
     cost.phases.extend(write(&dir, model, &found)?);
     write_json(&dir, "cost.json", &cost)?;
     dir.remove_older()?;

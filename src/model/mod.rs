@@ -6,6 +6,7 @@ mod fields;
 mod gauge;
 mod memory;
 mod mesh;
+mod origin;
 mod plan;
 mod substructures;
 mod symmetry;
@@ -13,6 +14,7 @@ mod symmetry;
 pub use fields::FieldPlan;
 pub use gauge::Gauge;
 pub use mesh::mesh;
+pub use origin::Origin;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 
 use crate::effect::{Decision, Effects};
@@ -29,14 +31,15 @@ use fem_core::material::{Material, MaterialError};
 use fem_core::mesh::PlaneMesh;
 use fem_core::plate::Plate;
 use fem_failure::delamination::DelaminationThreshold;
-use fem_io::scene::{self, Analysis, Damage, Scene};
+use fem_io::scene::{self, Analysis, Damage, Output, Scene, Window};
+use std::borrow::Borrow;
 use tracing::info;
 
 /// A scene made concrete: mesh extruded, plug-ins built, supports turned into constraints, impact or loads placed.
 #[derive(Debug, Clone)]
 pub struct Model {
-    /// The scene it was made from.
-    pub scene: Scene,
+    /// Where it comes from.
+    pub origin: Origin,
     /// Materials; layups and stations refer to them by index.
     pub materials: Vec<Material>,
     /// The laminate.
@@ -59,10 +62,18 @@ pub struct Model {
     pub profiles: Vec<NamedProfile>,
     /// Criteria by name; none when damage is off.
     pub criteria: Vec<NamedCriterion>,
+    /// What stresses are averaged over in the plane.
+    pub window: Window,
+    /// Time between two scans of a march, s.
+    pub sample_every: f64,
+    /// Material of the resin between plies, for criteria that look there; counts in `materials`.
+    pub interface: Option<usize>,
     /// Quads whose stresses the criteria judge; of those that a symmetry maps onto each other one.
     pub watched: Vec<usize>,
     /// Places whose indices are kept over time.
     pub gauges: Vec<Gauge>,
+    /// What is written.
+    pub output: Output,
     /// Fields that are written.
     pub fields: Option<FieldPlan>,
     /// Force at which the laminate delaminates, where that is looked for and a material gives the toughness.
@@ -105,9 +116,10 @@ impl Model {
     /// # Errors
     /// Whatever the scene names and the mesh or the registry does not have, and supports that do not fit together or
     /// leave a rigid motion.
-    pub fn new(scene: Scene, registry: &Registry) -> Result<Self, Error> {
-        let builder = Builder { scene: &scene, registry };
-        let read = mesh(&scene)?;
+    pub fn new(scene: impl Borrow<Scene>, registry: &Registry) -> Result<Self, Error> {
+        let scene = scene.borrow();
+        let builder = Builder { scene, registry };
+        let read = mesh(scene)?;
         let mut warnings = read.warnings;
         let mesh = read.mesh;
         info!(quads = mesh.quads.len(), nodes = mesh.points.len(), "mesh");
@@ -161,6 +173,7 @@ impl Model {
         let names: Vec<_> = criteria.iter().map(|(name, _)| name.as_str()).collect();
         info!(element = scene.element.name.value, criteria = names.join(", "), unknowns = constraints.ndof(), "model");
         Ok(Self {
+            origin: Origin::of(scene),
             materials,
             laminate,
             areal_mass,
@@ -172,14 +185,17 @@ impl Model {
             plan,
             profiles,
             criteria,
+            window: scene.failure.window,
+            sample_every: scene.failure.every,
+            interface: resin,
             watched,
             gauges,
+            output: scene.output.clone(),
             fields,
             threshold,
             effects,
             decisions: Vec::new(),
             warnings,
-            scene,
         })
     }
 
@@ -190,7 +206,10 @@ impl Model {
 
     /// The impactors of the scene.
     pub fn impactors(&self) -> &[scene::ImpactorSpec] {
-        self.scene.impact().map_or(&[], |impact| &impact.impactors)
+        match &self.plan {
+            Plan::Impact(impact) => &impact.spec.impactors,
+            Plan::Static { .. } | Plan::Modes { .. } => &[],
+        }
     }
 
     /// What results call an impactor: nothing where it is the only one.

@@ -43,7 +43,7 @@ pub fn write_plots(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<
         let by = name.map_or(String::new(), |name| format!(" by {name}"));
         (t, format!("delamination threshold{by}"))
     }));
-    let picture = plot::line_plot(&plot::force_history(&model.scene.title, &times, &forces, &marks)?)?;
+    let picture = plot::line_plot(&plot::force_history(&model.origin.title, &times, &forces, &marks)?)?;
     picture.write(dir, "contact_force")?;
     modal::write_plot(dir, model, outcome)?;
     indices::write_plots(dir, model, outcome)?;

@@ -31,7 +31,7 @@ pub(crate) fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) ->
         let rows: Vec<_> = outcome.histories.iter().flat_map(|history| history_rows(model, history)).collect();
         tables::write_index_history(dir, &rows)?;
     }
-    if model.scene.output.maps {
+    if model.output.maps {
         let (mesh, symmetry) = (&model.plate.plane, model.plate.symmetry());
         let mut represented = vec![Vec::new(); mesh.quads.len()];
         (0..mesh.quads.len()).for_each(|quad| represented[symmetry.quad(quad)].push(quad));
@@ -68,7 +68,7 @@ pub(crate) fn write_plots(dir: &OutputDir, model: &Model, outcome: &Outcome) -> 
         return Ok(());
     }
     let curves: Vec<_> = outcome.histories.iter().map(|history| curve(model, history)).collect();
-    let picture = plot::line_plot(&plot::index_history(&model.scene.title, &curves))?;
+    let picture = plot::line_plot(&plot::index_history(&model.origin.title, &curves))?;
     Ok(picture.write(dir, "index_history")?)
 }
 

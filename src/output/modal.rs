@@ -41,6 +41,6 @@ pub(crate) fn write_plot(dir: &OutputDir, model: &Model, outcome: &Outcome) -> R
     let above = |i: usize| sum[i].1 - modal.coordinates[i * n..(i + 1) * n].iter().sum::<f64>();
     let mut parts: Vec<_> = modal.modes.iter().enumerate().map(part).collect();
     parts.push(("the other modes".to_owned(), over_time(&above)));
-    let picture = plot::line_plot(&plot::modal_history(&model.scene.title, sum, parts))?;
+    let picture = plot::line_plot(&plot::modal_history(&model.origin.title, sum, parts))?;
     Ok(picture.write(dir, "modal_coordinates")?)
 }

@@ -36,7 +36,7 @@ impl ModesSummary {
     /// Sums up a modal analysis.
     pub fn new(model: &Model, solution: &ModesSolution) -> Self {
         Self {
-            title: model.scene.title.clone(),
+            title: model.origin.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
             symmetry: model.plate.symmetry().name(),
             unknowns: solution.unknowns,

@@ -93,13 +93,13 @@ pub(super) const LADDERS: [&str; 4] = ["mesh", "layers", "reduction", "step"];
 /// Most combinations of levels of all ladders.
 const MOST_TOGETHER: f64 = 1e5;
 
-/// The axes of `model`: those of `names`, or else those that its scene asks for, or else all that fit it, and the scene's
+/// The axes of `scene`, whose model is `model`: those of `names`, or else those that its scene asks for, or else all that fit it, and the scene's
 /// own. An axis of other ways brings the ladders that they are judged by.
 ///
 /// # Errors
 /// A name that no axis has, ladders of too many levels to be combined.
-pub fn axes(model: &Model, registry: &Registry, names: &[String]) -> Result<Vec<StudyAxis>, Error> {
-    let study = &model.scene.study;
+pub fn axes(scene: &Scene, model: &Model, registry: &Registry, names: &[String]) -> Result<Vec<StudyAxis>, Error> {
+    let study = &scene.study;
     let own = || study.own.iter().map(|own| own.name.value.as_str());
     let known = || NAMES.into_iter().chain(own());
     if let Some(name) = names.iter().find(|name| known().all(|known| known != name.as_str())) {
@@ -108,11 +108,7 @@ pub fn axes(model: &Model, registry: &Registry, names: &[String]) -> Result<Vec<
     }
     if let Some(name) = study.axes.iter().flatten().find(|name| !NAMES.contains(&name.value.as_str())) {
         let help = format!("`{}` {}", name.value, unknown_key(&name.value, known()));
-        return Err(model
-            .scene
-            .source
-            .error_at(&name.place, format!("there is no axis `{}`", name.value), help)
-            .into());
+        return Err(scene.source.error_at(&name.place, format!("there is no axis `{}`", name.value), help).into());
     }
     let asked: Vec<&str> = match (names, &study.axes) {
         ([], None) => known().collect(),
@@ -120,8 +116,11 @@ pub fn axes(model: &Model, registry: &Registry, names: &[String]) -> Result<Vec<
         (names, _) => names.iter().map(String::as_str).collect(),
     };
     let wanted = |name: &str| asked.contains(&name) || asked.iter().any(|axis| judges(axis).contains(&name));
-    let mut axes: Vec<StudyAxis> =
-        NAMES.into_iter().filter(|name| wanted(name)).filter_map(|name| standard(name, model, registry)).collect();
+    let mut axes: Vec<StudyAxis> = NAMES
+        .into_iter()
+        .filter(|name| wanted(name))
+        .filter_map(|name| standard(name, scene, model, registry))
+        .collect();
     for axis in study.own.iter().filter(|axis| asked.contains(&axis.name.value.as_str())) {
         let label =
             |keys: &Setting| keys.iter().map(|(key, value)| format!("{key} {value}")).collect::<Vec<_>>().join(", ");
@@ -145,16 +144,15 @@ pub(super) fn judges(axis: &str) -> &'static [&'static str] {
     }
 }
 
-/// The axis `name` of `model`, if it has at least one level beside the scene's own.
-fn standard(name: &str, model: &Model, registry: &Registry) -> Option<StudyAxis> {
-    let scene = &model.scene;
+/// The axis `name` of `scene`, whose model is `model`, if it has at least one level beside the scene's own.
+fn standard(name: &str, scene: &Scene, model: &Model, registry: &Registry) -> Option<StudyAxis> {
     let (kind, levels) = match name {
         "mesh" => (AxisKind::Ladder, mesh(scene)),
         "layers" => (AxisKind::Ladder, layers(model)),
-        "reduction" => (AxisKind::Ladder, reduction(model, registry)?),
+        "reduction" => (AxisKind::Ladder, reduction(scene, model, registry)?),
         "step" => (AxisKind::Ladder, steps(scene)?),
         "geometry" => (AxisKind::Ways, geometry(scene, &model.plate.plane)),
-        "z-derivatives" => (AxisKind::Ways, z_derivatives(model)),
+        "z-derivatives" => (AxisKind::Ways, z_derivatives(scene, model)),
         "quadrature" => (AxisKind::Ways, quadrature(scene, registry)),
         "reductions" => (AxisKind::Ways, scene.impact().map(|_| reductions(registry))?),
         "integrators" => (AxisKind::Ways, integrators(scene, registry)?),
@@ -225,8 +223,7 @@ fn in_layers(n: usize) -> String {
     if n == 1 { "1 layer".to_owned() } else { format!("{n} layers") }
 }
 
-fn reduction(model: &Model, registry: &Registry) -> Option<Vec<Level>> {
-    let scene = &model.scene;
+fn reduction(scene: &Scene, model: &Model, registry: &Registry) -> Option<Vec<Level>> {
     let name = &scene.impact()?.reduction.name.value;
     if name == NO_REDUCTION {
         // What a scene without a reduction would take instead.
@@ -312,8 +309,8 @@ fn integrators(scene: &Scene, registry: &Registry) -> Option<Vec<Level>> {
     Some(registry.list(Kind::Integrator).flat_map(|info| each(info.name)).collect())
 }
 
-fn z_derivatives(model: &Model) -> Vec<Level> {
-    let other = match model.scene.z_derivatives.value {
+fn z_derivatives(scene: &Scene, model: &Model) -> Vec<Level> {
+    let other = match scene.z_derivatives.value {
         ZDerivatives::Shared => "layer-wise",
         ZDerivatives::LayerWise => "shared",
     };
@@ -382,7 +379,7 @@ fn window(model: &Model) -> Vec<Level> {
     }
     let side =
         |side: f64| Level::new(format!("{:.3} mm", side * 1e3), [("failure.window", quoted(format!("{side:e} m")))]);
-    match model.scene.failure.window {
+    match model.window {
         Window::Element => [1e-3, 2e-3, 4e-3].map(side).to_vec(),
         Window::Square(own) => {
             vec![Level::new("element", [("failure.window", quoted("element"))]), side(0.5 * own), side(2.0 * own)]

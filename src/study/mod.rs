@@ -40,7 +40,7 @@ pub use text::{tables, text};
 use crate::error::Error;
 use crate::model::Model;
 use axes::{STEP, seconds};
-use fem_io::scene::Setting;
+use fem_io::scene::{Scene, Setting};
 use plan::Planner;
 
 /// Relative error to which a reference must have converged unless the scene says otherwise.
@@ -74,13 +74,14 @@ pub enum Progress<'a> {
 /// Whom a study tells of its progress.
 pub type Tell<'a> = &'a mut dyn FnMut(Progress<'_>);
 
-/// Studies the scene of `session`, whose model is `model`, along `axes`, in `budget` seconds of processor time if given.
+/// Studies `scene`, that of `session`, whose model is `model`, along `axes`, in `budget` seconds of processor time if given.
 ///
 /// # Errors
 /// A quantity that the scene does not have, a scene that does not run as it is, a folder that cannot be
 /// written. A level that does not run is a row of the report.
 pub fn study(
     session: &mut Session<'_>,
+    scene: &Scene,
     model: &Model,
     axes: &[StudyAxis],
     budget: Option<f64>,
@@ -88,14 +89,14 @@ pub fn study(
 ) -> Result<Report, Error> {
     tell(Progress::Runs { what: "the scene as it is".into(), share: 0.0 });
     let base = session.run(&Setting::new())?.map_err(Error::Study)?;
-    let asked = quantity::choose_quantities(model, &base.figures, base.force.is_some())?;
-    let tolerance = model.scene.study.tolerance.unwrap_or(TOLERANCE);
+    let asked = quantity::choose_quantities(scene, &base.figures, base.force.is_some())?;
+    let tolerance = scene.study.tolerance.unwrap_or(TOLERANCE);
 
     let mut planner = Planner::new(session, &base, budget);
     let plan = planner.plan(session, axes);
     tell(Progress::Planned(&plan));
     let whole = plan.seconds();
-    let mut report = Report::new(model, base, asked, tolerance);
+    let mut report = Report::new(scene, model, base, asked, tolerance);
     report.left_out.extend(plan.left_out.iter().cloned());
 
     let mut done = 0.0;

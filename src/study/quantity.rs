@@ -6,7 +6,7 @@ use crate::words::name_ply;
 use fem_core::plugin::unknown_key;
 use fem_core::profile::ProfilePoint;
 use fem_failure::scan::first_per_mode;
-use fem_io::scene::{Quantity, SceneError};
+use fem_io::scene::{Quantity, Scene, SceneError};
 use serde::{Deserialize, Serialize};
 
 /// The force over time, whose error is the L2 norm of a difference.
@@ -64,7 +64,7 @@ const COMPONENTS: [&str; 12] = ["sxx", "syy", "szz", "sxy", "syz", "szx", "s1", 
 ///
 /// # Errors
 /// A stress that the scene asks for at a place that no profile has.
-pub(super) fn of_statics(model: &Model, found: &StaticFound) -> Result<Vec<Figure>, SceneError> {
+pub(super) fn of_statics(scene: &Scene, model: &Model, found: &StaticFound) -> Result<Vec<Figure>, SceneError> {
     let StaticFound { solution, summary } = found;
     let mut figures = vec![
         Figure::new("deflection", summary.largest_deflection.w_m, true),
@@ -80,9 +80,9 @@ pub(super) fn of_statics(model: &Model, found: &StaticFound) -> Result<Vec<Figur
             figures.push(Figure::new(name, value, value.abs() > NOTABLE * largest));
         }
     }
-    for quantity in &model.scene.study.quantities {
+    for quantity in &scene.study.quantities {
         let Quantity::Stress { name, profile, component, height } = &quantity.value else { continue };
-        let wrong = |message: String, help: String| model.scene.source.error_at(&quantity.place, message, help);
+        let wrong = |message: String, help: String| scene.source.error_at(&quantity.place, message, help);
         let names = || model.profiles.iter().map(|p| p.line.name.value.as_str());
         let Some(p) = names().position(|p| p == profile) else {
             let help = format!("`{profile}` {}", unknown_key(profile, names()));
@@ -130,21 +130,21 @@ pub(super) fn of_modes(omega: &[f64]) -> Vec<Figure> {
 ///
 /// # Errors
 /// A name that none has.
-pub(super) fn choose_quantities(model: &Model, figures: &[Figure], forced: bool) -> Result<Vec<String>, SceneError> {
+pub(super) fn choose_quantities(scene: &Scene, figures: &[Figure], forced: bool) -> Result<Vec<String>, SceneError> {
     let force = forced.then_some(FORCE_HISTORY);
     let known = || force.into_iter().chain(figures.iter().map(|f| f.name.as_str()));
-    if model.scene.study.quantities.is_empty() {
+    if scene.study.quantities.is_empty() {
         let by_default = figures.iter().filter(|f| f.asked).map(|f| f.name.as_str());
         return Ok(force.into_iter().chain(by_default).map(str::to_owned).collect());
     }
     let mut names: Vec<String> = Vec::new();
-    for quantity in &model.scene.study.quantities {
+    for quantity in &scene.study.quantities {
         let (Quantity::Named(word) | Quantity::Stress { name: word, .. }) = &quantity.value;
         let mut found = known().filter(|name| *name == word || name.starts_with(&format!("{word} "))).peekable();
         if found.peek().is_none() {
             let message = format!("the scene has no `{word}`");
             let help = format!("`{word}` {}", unknown_key(word, known()));
-            return Err(model.scene.source.error_at(&quantity.place, message, help));
+            return Err(scene.source.error_at(&quantity.place, message, help));
         }
         for name in found.map(str::to_owned) {
             if !names.contains(&name) {

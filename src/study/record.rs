@@ -36,8 +36,8 @@ impl RunRecord {
     /// Those of a run, and a march that stopped before its end.
     pub fn of(path: &Path, setting: &Setting, registry: &Registry) -> Result<Self, Error> {
         cost::forget_peak_memory();
-        let Finished { model, found, cost, .. } =
-            job::run(scene::read_with(path, setting)?, registry, &Options::default(), &mut ())?;
+        let scene = scene::read_with(path, setting)?;
+        let Finished { model, found, cost, .. } = job::run(&scene, registry, &Options::default(), &mut ())?;
         let (size, figures, force) = match &found {
             Found::Impact(own) => {
                 if let Some(why) = &own.outcome.stopped {
@@ -49,7 +49,7 @@ impl RunRecord {
             Found::Static(own) => {
                 let solution = &own.solution;
                 let size = Size { factor_entries: solution.factor_entries, ..model.size(&solution.counters) };
-                (size, quantity::of_statics(&model, own)?, None)
+                (size, quantity::of_statics(&scene, &model, own)?, None)
             }
             Found::Modes(own) => {
                 let solution = &own.solution;

@@ -8,7 +8,7 @@ use super::quantity::FORCE_HISTORY;
 use super::record::RunRecord;
 use crate::forecast::nominal;
 use crate::model::Model;
-use fem_io::scene::{ContactLoad, Setting};
+use fem_io::scene::{ContactLoad, Scene, Setting};
 use std::collections::BTreeSet;
 
 /// What a study found.
@@ -99,8 +99,7 @@ impl Row {
 }
 
 impl Report {
-    pub(super) fn new(model: &Model, base: RunRecord, asked: Vec<String>, tolerance: f64) -> Self {
-        let scene = &model.scene;
+    pub(super) fn new(scene: &Scene, model: &Model, base: RunRecord, asked: Vec<String>, tolerance: f64) -> Self {
         let node =
             |impact: &fem_io::scene::ImpactSpec| impact.impactors.iter().any(|i| i.load.value == ContactLoad::Node);
         let level = Level { label: "as it is".into(), setting: Setting::new(), at_limit: false };

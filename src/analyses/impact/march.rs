@@ -130,12 +130,12 @@ impl<'a> March<'a> {
         let (model, impact) = (prepared.model, prepared.impact);
         let state = prepared.system.initial();
         let Sizes { steps, step: dt, .. } = prepared.sizes;
-        let row_every = model.scene.output.history_every.map_or(steps.div_ceil(HISTORY_ROWS), |t| count_steps(t, dt));
+        let row_every = model.output.history_every.map_or(steps.div_ceil(HISTORY_ROWS), |t| count_steps(t, dt));
         let progress = Progress {
             step: 0,
             dt,
             row_every,
-            frame_every: model.scene.output.fields.as_ref().and_then(|fields| fields.every),
+            frame_every: model.output.fields.as_ref().and_then(|fields| fields.every),
             ledger: Ledger::new(state.contacts.len(), model.threshold.map(|threshold| threshold.force)),
             effects: Vec::new(),
             state,
@@ -211,12 +211,12 @@ impl<'a> March<'a> {
             estimates.mesh = accuracy::mesh::estimate(model, &system, reduced, condensation.as_ref())?;
             stopwatch.lap("accuracy");
         }
-        let followed = model.scene.output.modes.as_ref().zip(reduced.as_ref());
+        let followed = model.output.modes.as_ref().zip(reduced.as_ref());
         let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
         let expansion = Rc::new(Expansion { model, reduced, companions, condensation });
         let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, expansion.clone())?) };
         stopwatch.lap("prepare stresses");
-        let scan_every = count_steps(model.scene.failure.every, sizes.step);
+        let scan_every = count_steps(model.sample_every, sizes.step);
         let (integrator, counted) = (impact.integrator.clone(), Work::default());
         Ok(Self {
             model,
@@ -229,7 +229,7 @@ impl<'a> March<'a> {
             watch,
             modal,
             expansion,
-            frames: frames(model.scene.output.fields.as_ref(), progress.frame_every, &sizes),
+            frames: frames(model.output.fields.as_ref(), progress.frame_every, &sizes),
             estimates,
             counters,
             counted,
@@ -396,7 +396,7 @@ impl<'a> March<'a> {
             peaks = watch.scan().peaks();
             sites = watch.sites();
             histories = watch.histories().to_vec();
-            let output = &self.model.scene.output;
+            let output = &self.model.output;
             if output.maps || output.plots {
                 maxima = (0..self.model.criteria.len()).flat_map(|k| largest(watch.scan(), k)).collect();
             }

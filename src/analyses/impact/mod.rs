@@ -96,7 +96,7 @@ impl Outcome {
             factor_entries: sizes.factor_entries,
             sites: self.sites,
             step_s: sizes.step,
-            samples: (sizes.steps as f64 * sizes.step / model.scene.failure.every) as u64,
+            samples: (sizes.steps as f64 * sizes.step / model.sample_every) as u64,
             ..model.size(&self.counters)
         }
     }

@@ -188,7 +188,7 @@ fn reduce(
     };
     let mut reduced = basis.and_then(project).map_err(|why| {
         let name = &impact.spec.reduction.name;
-        model.scene.source.error_at(&name.place, format!("reduction `{}`: {why}", name.value), "")
+        model.origin.source.error_at(&name.place, format!("reduction `{}`: {why}", name.value), "")
     })?;
     effects.iter_mut().for_each(|effect| effect.on_reduced(&mut reduced));
     Ok(Some(reduced))
@@ -255,7 +255,7 @@ fn check_step(
         let (step, limit, plate) = (march.step.value, longest_step, hertz(omega));
         let why = TooLong { step, limit, omega_dt, frequency, plate }.to_string();
         let help = "shorten `march.step`, reduce the model, or choose an implicit integrator such as `newmark`";
-        return Err(model.scene.source.error_at(&march.step.place, why, help).into());
+        return Err(model.origin.source.error_at(&march.step.place, why, help).into());
     }
     let count = march.end.value / march.step.value;
     let steps = (count * (1.0 - 1e-12)).ceil().max(1.0) as u64;
@@ -317,5 +317,5 @@ pub(super) fn describe_failure(model: &Model, impact: &Impact, error: StepError)
         "choose an implicit integrator such as `newmark`, a mass that is regular (`element.mass = \"cubic\"`), or another \
          reduction",
     );
-    model.scene.source.error_at(&name.place, message, help).into()
+    model.origin.source.error_at(&name.place, message, help).into()
 }

@@ -18,7 +18,7 @@ use fem_io::plot;
 /// # Errors
 /// As [`OutputDir::write`], and numbers that no plot can show.
 pub fn write(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
-    let (title, rows) = (&model.scene.title, &outcome.history);
+    let (title, rows) = (&model.origin.title, &outcome.history);
     let names: Vec<_> = model.impactors().iter().map(|impactor| model.label(impactor).unwrap_or("")).collect();
     let columns: Vec<_> = model.effects.columns().collect();
     let lines = [

@@ -67,7 +67,7 @@ fn write_profile(dir: &OutputDir, model: &Model, named: &NamedProfile, points: &
         row
     };
     tables::write_columns(dir, &format!("profile-{name}.csv"), &header, points.iter().map(row))?;
-    if !model.scene.output.plots {
+    if !model.output.plots {
         return Ok(());
     }
     // In-plane and transverse stresses differ by orders of magnitude: a picture each.
@@ -80,7 +80,7 @@ fn write_profile(dir: &OutputDir, model: &Model, named: &NamedProfile, points: &
             style: Style::Solid,
         };
         let picture = plot::line_plot(&LinePlot {
-            title: format!("{}: {name}", model.scene.title),
+            title: format!("{}: {name}", model.origin.title),
             x: Axis::linear(format!("Stress, {suffix}"), "MPa"),
             y: Axis::linear("Height", "mm"),
             series: components.map(series).to_vec(),

@@ -96,7 +96,7 @@ impl StaticSummary {
         let largest = nodes.iter().max_by(|a, b| a.u[2].abs().total_cmp(&b.u[2].abs()));
         let [w_m, x_m, y_m, z_m] = largest.map_or([0.0; 4], |n| [n.u[2], n.x[0], n.x[1], n.x[2]]);
         Self {
-            title: model.scene.title.clone(),
+            title: model.origin.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
             symmetry: model.plate.symmetry().name(),
             unknowns: solution.unknowns,

@@ -301,9 +301,9 @@ impl ImpactSummary {
             ply: name_ply(p.site.place),
         });
         Self {
-            title: model.scene.title.clone(),
+            title: model.origin.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
-            fidelity: model.scene.fidelity.name(),
+            fidelity: model.origin.fidelity.name(),
             completed: outcome.stopped.is_none(),
             stopped: outcome.stopped.clone(),
             model: ModelSize {

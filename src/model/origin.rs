@@ -1,0 +1,39 @@
+//! What a model keeps of its scene.
+
+use fem_io::scene::{Fidelity, MeshSource, Scene, SceneSource};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Where a model comes from: what heads its results, shows places in messages, and tells one scene from another.
+#[derive(Debug, Clone)]
+pub struct Origin {
+    /// What the scene is about.
+    pub title: String,
+    /// The preset beneath its keys.
+    pub fidelity: Fidelity,
+    /// The name of the element.
+    pub element: String,
+    /// Its text, for errors that show a place.
+    pub source: Arc<SceneSource>,
+    /// Every value of the scene and its preset by the path of its key, as it is written.
+    pub keys: BTreeMap<String, String>,
+    /// The file of the mesh, if there is one.
+    pub mesh: Option<PathBuf>,
+}
+
+impl Origin {
+    pub(super) fn of(scene: &Scene) -> Self {
+        Self {
+            title: scene.title.clone(),
+            fidelity: scene.fidelity,
+            element: scene.element.name.value.clone(),
+            source: Arc::clone(&scene.source),
+            keys: scene.keys.clone(),
+            mesh: match &scene.mesh {
+                MeshSource::File { file, .. } => Some(file.value.clone()),
+                _ => None,
+            },
+        }
+    }
+}
