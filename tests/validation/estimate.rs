@@ -5,7 +5,7 @@ use crate::support::{fem, root};
 use fem::analyses::statics;
 use fem::core::estimate::mesh_error;
 use fem::core::quadrature::gauss_legendre;
-use fem::io::scene::{self, MeshSource};
+use fem::io::scene;
 use fem::{Model, Registry};
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
@@ -44,11 +44,11 @@ impl Solved {
     /// that one.
     fn distance(&self, fine: &Self, times: usize) -> f64 {
         let plate = &self.model.plate;
-        let parent = |quad: usize| match &self.model.scene.mesh {
-            MeshSource::Rectangle { cells: [nx, _], .. } => {
-                ((quad / (nx << times)) >> times) * nx + ((quad % (nx << times)) >> times)
-            }
-            MeshSource::File { .. } | MeshSource::Graded { .. } => quad >> (2 * times),
+        // A built-in square of cells row by row, or a file whose cells are divided.
+        let nx = plate.plane.quads.len().isqrt();
+        let parent = |quad: usize| match &self.model.origin.mesh {
+            None => ((quad / (nx << times)) >> times) * nx + ((quad % (nx << times)) >> times),
+            Some(_) => quad >> (2 * times),
         };
         let (mut all, mut between) = (0.0, 0.0);
         for cell in 0..fine.model.plate.cells() {

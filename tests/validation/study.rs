@@ -28,12 +28,13 @@ impl Studied {
         let path = folder.path().join("scene.toml");
         std::fs::write(&path, text).unwrap();
         let registry = Registry::standard();
-        let model = Model::new(scene::read(&path).unwrap(), &registry).unwrap();
+        let scene = scene::read(&path).unwrap();
+        let model = Model::new(&scene, &registry).unwrap();
         let out = OutputDir::create(folder.path().join("study")).unwrap();
         let mut session = Session::open(&path, &model, &registry, out, false).unwrap();
         let names: Vec<String> = axes.iter().map(|&axis| axis.to_owned()).collect();
-        let axes = fem::study::axes(&model, &registry, &names).unwrap();
-        let report = study(&mut session, &model, &axes, None, &mut |_| ()).unwrap();
+        let axes = fem::study::axes(&scene, &model, &registry, &names).unwrap();
+        let report = study(&mut session, &scene, &model, &axes, None, &mut |_| ()).unwrap();
         Self { folder, report }
     }
 
