@@ -411,7 +411,7 @@ fn a_foil_is_a_membrane() {
     let advice = advice(&foil.text());
     chooses(&advice, Regime::QuasiStatic, true, false);
     assert_eq!(advice.plate.rim.held, Some(CLAMPED[0]));
-    assert!(advice.estimate.stiffened.force > 2.0 * advice.estimate.linear.force, "{advice}");
+    assert!(advice.estimate.with_membrane.force > 2.0 * advice.estimate.linear.force, "{advice}");
 }
 
 /// The mesh of a plate larger than its support, a side held in every way, and one that nothing holds.

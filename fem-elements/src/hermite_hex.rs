@@ -4,7 +4,7 @@ use crate::hermite::{self, CORNERS, Quartet};
 use crate::hermite_prism::{F, HermitePrism, Mass, N, column, to_global};
 use crate::prism::{BLOCKS, STRAIN_ROW, matrix, multiply};
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
-use fem_core::large::LargeDisplacement;
+use fem_core::large::LargeDeflection;
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
 use fem_core::quadrature::gauss_legendre;
 use std::sync::LazyLock;
@@ -195,7 +195,7 @@ impl Element for HermiteHex {
         self.prism.mean_strains(cell, parts, scratch, b)
     }
 
-    fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
+    fn large_deflections(&self) -> Option<&dyn LargeDeflection> {
         Some(&self.prism)
     }
 }

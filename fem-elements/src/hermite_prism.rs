@@ -10,7 +10,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::dof::Dof;
 use fem_core::domain::Domain;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
-use fem_core::large::LargeDisplacement;
+use fem_core::large::LargeDeflection;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::quadrature::{MAX_POINTS, gauss_legendre};
 use natural::{Natural, Table};
@@ -355,7 +355,7 @@ impl Element for HermitePrism {
         Ok(())
     }
 
-    fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
+    fn large_deflections(&self) -> Option<&dyn LargeDeflection> {
         Some(self)
     }
 }
@@ -370,7 +370,7 @@ impl HermitePrism {
     }
 }
 
-impl LargeDisplacement for HermitePrism {
+impl LargeDeflection for HermitePrism {
     fn internal(
         &self,
         cell: &Cell<'_>,

@@ -5,7 +5,7 @@ use crate::prism::{self, Prism};
 use fem_core::dof::Dof;
 use fem_core::domain::Domain;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch};
-use fem_core::large::LargeDisplacement;
+use fem_core::large::LargeDeflection;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::quadrature::MAX_POINTS;
 
@@ -158,7 +158,7 @@ impl Element for Hex20 {
         prism::mean_strains(self, cell, parts, b)
     }
 
-    fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
+    fn large_deflections(&self) -> Option<&dyn LargeDeflection> {
         Some(self)
     }
 }
@@ -172,7 +172,7 @@ impl Hex20 {
     }
 }
 
-impl LargeDisplacement for Hex20 {
+impl LargeDeflection for Hex20 {
     fn internal(
         &self,
         cell: &Cell<'_>,

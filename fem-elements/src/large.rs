@@ -1,4 +1,4 @@
-//! Solids whose functions are polynomials in q, under large displacements.
+//! Solids whose functions are polynomials in q, under large deflections.
 //!
 //! At an in-plane point the displacement gradient H is a polynomial in q, so is every function's. What is integrated through
 //! the plies are 9 stresses and, for the tangent, 45 moduli A = ∂P/∂H, each times powers of q; the functions come in once per
@@ -65,7 +65,7 @@ const PAIRS: usize = 45;
 type Moduli = [[f64; PAIRS]; POWERS];
 
 impl<const F: usize, const K: usize> Solid<'_, F, K> {
-    /// [`fem_core::large::LargeDisplacement::internal`]
+    /// [`fem_core::large::LargeDeflection::internal`]
     pub(crate) fn internal(
         &self,
         cell: &Cell<'_>,
@@ -132,14 +132,14 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
         }
     }
 
-    /// [`fem_core::large::LargeDisplacement::large_strain`]
+    /// [`fem_core::large::LargeDeflection::large_strain`]
     pub(crate) fn strain(&self, cell: &Cell<'_>, [r, s, q]: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError> {
         let mut functions: Gradients<F, K> = [[[0.0; K]; 3]; F];
         self.at(cell, r, s, &mut functions)?;
         Ok(green_lagrange(&at(&self.gradient(&functions, u), q)))
     }
 
-    /// [`fem_core::large::LargeDisplacement::mean_large_strains`]
+    /// [`fem_core::large::LargeDeflection::mean_large_strains`]
     pub(crate) fn mean_strains(
         &self,
         cell: &Cell<'_>,

@@ -4,7 +4,7 @@ use crate::lamination::{self, Lamination, PlyStrain};
 use fem_core::dof::Dof;
 use fem_core::domain::Domain;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, Scratch, Slice, positive};
-use fem_core::large::LargeDisplacement;
+use fem_core::large::LargeDeflection;
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
 use nalgebra::{Matrix2, Matrix4, Matrix5, SMatrix, SVector, Vector4};
 
@@ -175,7 +175,7 @@ impl Element for Mitc4 {
         lamination::held_stress(slice)
     }
 
-    fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
+    fn large_deflections(&self) -> Option<&dyn LargeDeflection> {
         Some(self)
     }
 }
@@ -213,7 +213,7 @@ impl Bent {
 
 /// Von Kármán's strains: slopes of the deflection enter squared, the rotations of normals do not. Right for rotations up to
 /// some 0.2; Green and Lagrange's other terms are of the fourth order.
-impl LargeDisplacement for Mitc4 {
+impl LargeDeflection for Mitc4 {
     fn internal(
         &self,
         cell: &Cell<'_>,

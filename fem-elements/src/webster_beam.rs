@@ -6,7 +6,7 @@ use crate::large::{Gradients, Solid};
 use fem_core::dof::Dof;
 use fem_core::domain::Domain;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, Slice};
-use fem_core::large::LargeDisplacement;
+use fem_core::large::LargeDeflection;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::quadrature::MAX_POINTS;
 use fem_core::tensor::{Matrix6, apply};
@@ -158,7 +158,7 @@ impl Element for WebsterBeam {
         apply(&self.condense(slice.c), &slice.free).map(|s| -s)
     }
 
-    fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
+    fn large_deflections(&self) -> Option<&dyn LargeDeflection> {
         Some(self)
     }
 }
@@ -211,7 +211,7 @@ impl WebsterBeam {
     }
 }
 
-impl LargeDisplacement for WebsterBeam {
+impl LargeDeflection for WebsterBeam {
     fn internal(
         &self,
         cell: &Cell<'_>,

@@ -1,4 +1,4 @@
-//! Large displacements: forces and tangents against differences, motions whose strains are known.
+//! Large deflections: forces and tangents against differences, motions whose strains are known.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 #[allow(dead_code, reason = "other tests need the rest")]
@@ -6,7 +6,7 @@ mod dense;
 
 use dense::*;
 use fem_core::element::{Cell, Element, Part, Scratch, Slice, Stack};
-use fem_core::large::{LargeDisplacement, green_lagrange};
+use fem_core::large::{LargeDeflection, green_lagrange};
 use fem_core::quadrature::gauss_legendre;
 use fem_elements::{HermiteHex, HermitePrism, Hex20, Mass, Mitc4, PlaneState, WebsterBeam};
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3, Vector6};
@@ -57,7 +57,7 @@ fn cell<'a>(element: &dyn Element, stack: &'a Stack) -> Cell<'a> {
 fn internal(element: &dyn Element, cell: &Cell<'_>, u: &DVector<f64>) -> (f64, DVector<f64>, DMatrix<f64>) {
     let n = u.len();
     let (mut force, mut tangent) = (DVector::repeat(n, f64::NAN), DMatrix::repeat(n, n, f64::NAN));
-    let large = element.large_displacements().unwrap();
+    let large = element.large_deflections().unwrap();
     let energy =
         large.internal(cell, u.as_slice(), &mut Scratch::default(), force.as_mut_slice(), Some(tangent.as_mut_slice()));
     (energy.unwrap(), force, tangent)
@@ -101,7 +101,7 @@ fn forces_are_the_same_without_the_tangent() {
         let cell = Cell { corners, ..regular };
         let u = motion(&*element, &cell, &Matrix3::new(0.02, 0.1, 0.0, -0.1, 0.01, 0.05, -0.2, 0.1, 0.03), 0.05);
         let (energy, force, _) = internal(&*element, &cell, &u);
-        let large = element.large_displacements().unwrap();
+        let large = element.large_deflections().unwrap();
         let mut alone = DVector::repeat(u.len(), f64::NAN);
         let got = large.internal(&cell, u.as_slice(), &mut Scratch::default(), alone.as_mut_slice(), None).unwrap();
         assert!((got - energy).abs() < 1e-13 * energy, "{element:?}: {got} {energy}");
@@ -144,7 +144,7 @@ fn forces_are_derivatives_of_the_energy_and_tangents_of_the_forces() {
     }
 }
 
-/// At rest large displacements have the force and the energy of small ones; a cell that is as its plies want to be has none.
+/// At rest large deflections have the force and the energy of small ones; a cell that is as its plies want to be has none.
 #[test]
 fn free_strains_push_a_cell_at_rest() {
     let hot = hot_plies();
@@ -210,7 +210,7 @@ fn parts(stack: &Stack) -> Vec<Part> {
 fn mean_strains(element: &dyn Element, cell: &Cell<'_>, u: &DVector<f64>) -> Vec<f64> {
     let parts = parts(cell.stack);
     let mut strains = vec![f64::NAN; 6 * parts.len()];
-    element.large_displacements().unwrap().mean_large_strains(cell, &parts, u.as_slice(), &mut strains).unwrap();
+    element.large_deflections().unwrap().mean_large_strains(cell, &parts, u.as_slice(), &mut strains).unwrap();
     strains
 }
 
@@ -236,7 +236,7 @@ fn means_are_those_of_the_strains_at_points() {
     for element in all() {
         let cell = cell(&*element, &stack);
         let u = motion(&*element, &cell, &Matrix3::new(0.02, 0.1, 0.0, -0.1, 0.01, 0.05, -0.2, 0.1, 0.03), 0.05);
-        let large = element.large_displacements().unwrap();
+        let large = element.large_deflections().unwrap();
         let strains = mean_strains(&*element, &cell, &u);
         for (Part { slice, q: [low, high] }, mean) in parts(&stack).into_iter().zip(strains.chunks_exact(6)) {
             let (mut sum, mut volume) = ([0.0; 6], 0.0);
@@ -303,7 +303,7 @@ fn a_folded_cell_is_refused() {
         let n = element.info().ndof();
         let (u, mut force) = (vec![0.0; n], vec![0.0; n]);
         let folded = Cell { corners: [a, c, b, d].into(), ..cell(&*element, &stack) };
-        let large = element.large_displacements().unwrap();
+        let large = element.large_deflections().unwrap();
         let refused = large.internal(&folded, &u, &mut Scratch::default(), &mut force, None).unwrap_err();
         assert!(refused.0.contains("Jacobian"), "{refused}");
     }

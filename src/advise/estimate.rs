@@ -45,7 +45,7 @@ pub struct Estimate {
     /// The peak without inertia of the plate, linear.
     pub linear: ImpactPeak,
     /// The same with membrane stiffening.
-    pub stiffened: ImpactPeak,
+    pub with_membrane: ImpactPeak,
     /// The first contact with an infinite plate.
     pub wave: Wave,
     /// Energy of the contact at the peak over that of the impact.
@@ -66,7 +66,7 @@ impl Estimate {
         let bending = Spring { bending: plate.stiffness, membrane: 0.0 };
         let stiffer = plate.membrane_coefficient() * plate.stiffness / plate.thickness.powi(2);
         let linear = energy_balance(energy, bending, law);
-        let stiffened = energy_balance(energy, Spring { membrane: stiffer, ..bending }, law);
+        let with_membrane = energy_balance(energy, Spring { membrane: stiffer, ..bending }, law);
         let rigid = rigid_target(energy, law);
         let k = rigid.force / rigid.indentation.powf(1.5);
         let impedance = small_mass::impedance(plate.areal_mass, plate.bending_stiffness);
@@ -81,20 +81,20 @@ impl Estimate {
         let mass_ratio = mass / plate.mass();
         let regime = Regime::of(mass_ratio, static_over_wave);
 
-        let quasi_static = regime != Regime::SmallMass && stiffened.force >= wave.force;
+        let quasi_static = regime != Regime::SmallMass && with_membrane.force >= wave.force;
         let at_peak = match quasi_static {
-            true => large_mass::time_of_peak(velocity, &stiffened),
+            true => large_mass::time_of_peak(velocity, &with_membrane),
             false => wave.time,
         };
         let (indentation, contact_energy) = match quasi_static {
-            true => (stiffened.indentation, stiffened.contact_energy),
+            true => (with_membrane.indentation, with_membrane.contact_energy),
             false => (wave.indentation, large_mass::work(law, wave.indentation)),
         };
         let deflection = match regime {
             Regime::SmallMass => wave.deflection,
             _ => {
-                let whole = large_mass::time_of_peak(velocity, &stiffened);
-                stiffened.deflection * (FRAC_PI_2 * (time / whole).min(1.0)).sin()
+                let whole = large_mass::time_of_peak(velocity, &with_membrane);
+                with_membrane.deflection * (FRAC_PI_2 * (time / whole).min(1.0)).sin()
             }
         };
         Self {
@@ -105,7 +105,7 @@ impl Estimate {
             inelasticity: small_mass::inelasticity(mass, velocity, impedance, k),
             static_over_wave,
             linear,
-            stiffened,
+            with_membrane,
             wave,
             contact_share: contact_energy / energy,
             indentation,
@@ -119,8 +119,8 @@ impl Estimate {
     pub fn force(&self) -> f64 {
         match self.regime {
             Regime::SmallMass => self.wave.force,
-            Regime::QuasiStatic => self.stiffened.force,
-            Regime::Dynamic => self.stiffened.force.max(self.wave.force),
+            Regime::QuasiStatic => self.with_membrane.force,
+            Regime::Dynamic => self.with_membrane.force.max(self.wave.force),
         }
     }
 }

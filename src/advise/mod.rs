@@ -101,7 +101,7 @@ pub fn advise(model: &Model, threads: NonZeroUsize) -> Result<Vec<Advice>, Error
             deflection: estimate.deflection,
             coefficient: plate.membrane_coefficient(),
             surrounded: plate.rim.held.is_some(),
-            forces: [estimate.linear.force, estimate.stiffened.force],
+            forces: [estimate.linear.force, estimate.with_membrane.force],
             first_wave: estimate.inertia_error(),
             quasi_static: estimate.regime == Regime::QuasiStatic,
             vibrates: decide::vibrates(model),

@@ -72,7 +72,7 @@ impl Estimate {
             ],
             choice: choice.into(),
             effect: "inertia of the plate",
-            error: Some(format!("without it the force is wrong by some {:.1} %", 100.0 * self.inertia_error())),
+            error: Some(format!("without it the force is wrong by about {:.1} %", 100.0 * self.inertia_error())),
             cost: Some(cost),
         }
     }

@@ -38,7 +38,7 @@ pub struct StaticSolution {
     /// Condition number of K, or of its tangent at the end, estimated
     /// ([`condition`](fem_core::assembly::SparseStructure::condition)).
     pub condition: f64,
-    /// Under large displacements, the Newton decrement of each iteration
+    /// Under large deflections, the Newton decrement of each iteration
     /// ([`Equilibrium::decrements`](fem_core::assembly::Equilibrium::decrements)).
     pub decrements: Option<Vec<f64>>,
     /// Error of the mesh in the energy norm, relative, where [`mesh_error`] can say; never under large
@@ -69,7 +69,7 @@ struct Found {
     decrements: Option<Vec<f64>>,
 }
 
-/// Solves K u = f, or f(u) = f where the model has large displacements.
+/// Solves K u = f, or f(u) = f where the model has large deflections.
 ///
 /// # Errors
 /// A scene without loads at rest, a cell that the element refuses, a structure that is not held, buckles or is too
@@ -183,7 +183,7 @@ fn linear(
     })
 }
 
-/// Large displacements.
+/// Large deflections.
 fn nonlinear(
     model: &Model,
     f: &[f64],

@@ -198,7 +198,7 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// The smallest factor on the stresses that brings a criterion to failure, and where; without large displacements it is a
+/// The smallest factor on the stresses that brings a criterion to failure, and where; without large deflections it is a
 /// factor on the loads as well.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[allow(missing_docs)]
@@ -283,7 +283,7 @@ pub(crate) fn recover(
     count: usize,
     out: &mut [f64],
 ) -> Result<(), Error> {
-    let Some(large) = model.element.large_displacements().filter(|_| model.effects.nature().large) else {
+    let Some(large) = model.element.large_deflections().filter(|_| model.effects.nature().large) else {
         return Ok(recovery.stresses(&model.plate, &*model.element, u, count, out)?);
     };
     for (u, out) in u.chunks_exact(model.plate.ndof()).zip(out.chunks_exact_mut(6 * recovery.sites())) {

@@ -2,7 +2,7 @@
 
 use fem_core::assembly::SparseStructure;
 use fem_core::functional::Functional;
-use fem_dynamics::reduce::{Companions, Reduced, Stiffened};
+use fem_dynamics::reduce::{Companions, MembranePlate, Reduced};
 
 /// What is computed of a plate: linear and with inertia, unless effects change it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +31,7 @@ pub struct Marched {
     /// In fewer coordinates, where it is reduced.
     pub reduced: Option<Reduced>,
     /// The reduced plate as its deflections stretch it, and what it does beside its modes.
-    pub stretched: Option<(Stiffened, Companions)>,
+    pub stretched: Option<(MembranePlate, Companions)>,
     /// Where impactors strike, each place once.
     pub contacts: Vec<Functional>,
 }

@@ -7,9 +7,9 @@ use crate::effect::{
 };
 use crate::error::Error;
 use crate::forecast::{Demand, Size, nominal};
-use fem_core::assembly::{AssemblyError, LargePlate, Stretch};
+use fem_core::assembly::{AssemblyError, LargePlate, MembraneStrains};
 use fem_core::structure::SolveError;
-use fem_dynamics::reduce::{Stiffened, Stretching};
+use fem_dynamics::reduce::{MembraneForms, MembranePlate};
 use fem_io::scene::{Form, SceneError, SceneValue, key, words};
 
 /// Strains are those of large deflections: of the element in a full plate, of a few patterns of membrane stress in a reduced one.
@@ -76,7 +76,7 @@ impl Effect for Membrane {
     }
 
     fn check(&self, facts: &Facts<'_>) -> Result<(), SceneError> {
-        if facts.element.large_displacements().is_some() {
+        if facts.element.large_deflections().is_some() {
             return Ok(());
         }
         Err(facts.refuse(
@@ -111,7 +111,7 @@ impl Effect for Membrane {
         let Marched { full, reduced, stretched, contacts } = plate;
         match reduced {
             Some(reduced) => {
-                let stiffened = Stiffened::new(full, reduced, contacts, &StretchOf(*body));
+                let stiffened = MembranePlate::new(full, reduced, contacts, &MembraneOf(*body));
                 *stretched = Some(stiffened.map_err(|why| SolveError(why.0))?);
             }
             None => {
@@ -125,16 +125,16 @@ impl Effect for Membrane {
 }
 
 /// The quadratic strains of a plate.
-struct StretchOf<'a>(Body<'a>);
+struct MembraneOf<'a>(Body<'a>);
 
-impl StretchOf<'_> {
-    fn of(&self, fields: &[f64]) -> Stretch<'_> {
+impl MembraneOf<'_> {
+    fn of(&self, fields: &[f64]) -> MembraneStrains<'_> {
         let Body { plate, element, constraints, .. } = self.0;
-        Stretch::new(plate, element, constraints, fields)
+        MembraneStrains::new(plate, element, constraints, fields)
     }
 }
 
-impl Stretching for StretchOf<'_> {
+impl MembraneForms for MembraneOf<'_> {
     fn gram(&self, fields: &[f64]) -> Result<Vec<f64>, SolveError> {
         self.of(fields).gram().map_err(refused)
     }

@@ -88,7 +88,7 @@ fn cross_plies_under_mirrors() {
 
 /// Deflections beyond the thickness.
 #[test]
-fn large_displacements() {
+fn large_deflections() {
     let on = "[effects]\nmembrane = 'on'";
     for element in ["kind = 'hermite-prism'", "kind = 'mitc4'"] {
         let layers = if element.contains("mitc4") { vec![4] } else { vec![1, 3] };

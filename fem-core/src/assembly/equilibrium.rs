@@ -1,4 +1,4 @@
-//! Equilibrium of a plate under large displacements and loads at rest.
+//! Equilibrium of a plate under large deflections and loads at rest.
 
 use super::{AssemblyError, Cholesky, FactorError, LargePlate, Symbolic, Symmetric, condition};
 use std::fmt;

@@ -1,13 +1,13 @@
-//! Internal forces and tangents of a plate under large displacements.
+//! Internal forces and tangents of a plate under large deflections.
 
 use super::cell_map::CellMap;
 use super::{AssemblyError, Symmetric};
 use crate::contracts::element::{Element, ElementError, Scratch};
-use crate::contracts::large::LargeDisplacement;
+use crate::contracts::large::LargeDeflection;
 use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;
 
-/// A plate whose cells take large displacements: f(ũ) = Cᵀ f(C ũ) and its derivative on the pattern of K.
+/// A plate whose cells take large deflections: f(ũ) = Cᵀ f(C ũ) and its derivative on the pattern of K.
 ///
 /// Cells differ by their displacements, so that none is alike another; of those that a symmetry maps onto each other one
 /// counts for all. Nothing is allocated after the first call.
@@ -36,7 +36,7 @@ struct Work {
 impl LargePlate {
     /// `None` where the element does not support large deflections.
     pub fn new(plate: &Plate, element: Box<dyn Element>, constraints: &Constraints) -> Option<Self> {
-        element.large_displacements()?;
+        element.large_deflections()?;
         let cells = plate.kept_cells().map(|(cell, weight)| {
             let mut map = CellMap::default();
             map.set(plate, constraints, cell);
@@ -93,7 +93,7 @@ impl LargePlate {
                 let (quad, layer) = plate.place(*cell);
                 AssemblyError { quad_tag: plate.plane.quad_tags[quad], layer, error }
             };
-            let Some(large) = element.large_displacements() else { continue };
+            let Some(large) = element.large_deflections() else { continue };
             let one = work.integrate(large, plate, *cell, map, all, tangent.is_some()).map_err(failed)?;
             if !one.is_finite() {
                 return Err(failed(ElementError("its strain energy is not finite".into())));
@@ -111,7 +111,7 @@ impl LargePlate {
 impl Work {
     fn integrate(
         &mut self,
-        large: &dyn LargeDisplacement,
+        large: &dyn LargeDeflection,
         plate: &Plate,
         cell: usize,
         map: &CellMap,

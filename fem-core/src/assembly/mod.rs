@@ -11,10 +11,10 @@ mod equilibrium;
 mod factor;
 mod free;
 mod large;
+mod membrane;
 mod ordering;
 mod pattern;
 mod sparse;
-mod stretch;
 mod substructure;
 mod symmetric;
 
@@ -22,10 +22,10 @@ pub use equilibrium::{Equilibrium, EquilibriumError};
 pub use factor::{Cholesky, FactorError, Symbolic};
 pub use free::free_forces;
 pub use large::LargePlate;
+pub use membrane::MembraneStrains;
 pub use ordering::nested_dissection;
 pub use pattern::{Pattern, PatternError, pattern};
 pub use sparse::SparseStructure;
-pub use stretch::Stretch;
 pub use substructure::{Condensation, CondensationError, Condensed, Division, condense};
 pub use symmetric::Symmetric;
 

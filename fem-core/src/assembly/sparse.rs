@@ -76,7 +76,7 @@ impl SparseStructure {
         self.prolongation = Some(prolongation);
     }
 
-    /// Gives the structure the internal forces of large displacements; its K is their tangent at rest.
+    /// Gives the structure the internal forces of large deflections; its K is their tangent at rest.
     pub fn stiffen(&mut self, large: Option<LargePlate>) {
         self.large = large;
     }

@@ -1,6 +1,6 @@
 //! The contract of an element, and the kernels that any element gets for free.
 
-use crate::contracts::large::LargeDisplacement;
+use crate::contracts::large::LargeDeflection;
 use crate::words::dof::Dof;
 use crate::words::domain::{Corners, Domain};
 use crate::words::quadrature::gauss_legendre;
@@ -306,8 +306,8 @@ pub trait Element: DynClone + Debug + Send + Sync {
         Ok(())
     }
 
-    /// The element under large displacements, where it knows them.
-    fn large_displacements(&self) -> Option<&dyn LargeDisplacement> {
+    /// The element under large deflections, where it knows them.
+    fn large_deflections(&self) -> Option<&dyn LargeDeflection> {
         None
     }
 }

@@ -1,4 +1,4 @@
-//! The contract of an element under large displacements.
+//! The contract of an element under large deflections.
 
 use crate::contracts::element::{Cell, ElementError, Part, Scratch};
 use std::fmt::Debug;
@@ -11,7 +11,7 @@ use std::fmt::Debug;
 ///
 /// At u = 0 without free strains the tangent is the stiffness of [`crate::contracts::element::Element::stiffness`] up to the quadrature
 /// through the plies.
-pub trait LargeDisplacement: Debug {
+pub trait LargeDeflection: Debug {
     /// Internal force f = ∂W/∂u (N, conjugate to the unknowns) at the displacements `u` (both ndof), W = Σ over plies
     /// ∫ ½ (E − ε₀)ᵀ C (E − ε₀) dV; and the tangent ∂f/∂u (ndof × ndof, symmetric) where it is asked for. Returns W, J.
     ///
@@ -29,14 +29,14 @@ pub trait LargeDisplacement: Debug {
     /// E in the ply `slice` at natural point `xi`, engineering shears.
     ///
     /// # Errors
-    /// As [`LargeDisplacement::internal`].
+    /// As [`LargeDeflection::internal`].
     fn large_strain(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError>;
 
     /// Means of E over parts of the cell (report eqs 12, 14), engineering shears, one after the other: `strains` holds
     /// six per part.
     ///
     /// # Errors
-    /// As [`LargeDisplacement::internal`].
+    /// As [`LargeDeflection::internal`].
     fn mean_large_strains(
         &self,
         cell: &Cell<'_>,

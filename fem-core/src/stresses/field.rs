@@ -1,7 +1,7 @@
 //! A displacement field of a plate, evaluated in its plies.
 
 use crate::contracts::element::{Element, ElementError};
-use crate::contracts::large::LargeDisplacement;
+use crate::contracts::large::LargeDeflection;
 use crate::plates::laminate::Laminate;
 use crate::plates::plate::Plate;
 use crate::words::tensor::{Global, Strain6, Stress6, stress};
@@ -14,7 +14,7 @@ pub struct Field<'a> {
     element: &'a dyn Element,
     /// Unknowns, before elimination of constraints.
     u: &'a [f64],
-    large: Option<&'a dyn LargeDisplacement>,
+    large: Option<&'a dyn LargeDeflection>,
 }
 
 /// Where a field is looked at.
@@ -36,10 +36,10 @@ impl<'a> Field<'a> {
         Self { plate, laminate, element, u, large: None }
     }
 
-    /// The same with the strains of large displacements, where the element knows them.
+    /// The same with the strains of large deflections, where the element knows them.
     #[must_use]
     pub fn with_large_strains(self) -> Self {
-        Self { large: self.element.large_displacements(), ..self }
+        Self { large: self.element.large_deflections(), ..self }
     }
 
     /// The plate.
@@ -52,7 +52,7 @@ impl<'a> Field<'a> {
         self.laminate
     }
 
-    /// Stress in `ply` of a strain, both in the plate's frame, Pa. Under large displacements S = C E, on axes that turn with
+    /// Stress in `ply` of a strain, both in the plate's frame, Pa. Under large deflections S = C E, on axes that turn with
     /// the plate. Free strains count.
     pub fn stress(&self, ply: usize, strain: &Strain6<Global>) -> Stress6<Global> {
         let (layer, slice) = self.slice(ply);
@@ -64,7 +64,7 @@ impl<'a> Field<'a> {
     /// Strain in the plate's frame and displacement, m.
     ///
     /// # Errors
-    /// Under large displacements, a cell that the element refuses.
+    /// Under large deflections, a cell that the element refuses.
     pub fn at(&self, spot: Spot) -> Result<(Strain6<Global>, [f64; 3]), ElementError> {
         let Spot { quad, at: [r, s], ply, z } = spot;
         let (layer, slice) = self.slice(ply);

@@ -1,4 +1,4 @@
-//! What the displacements of a plate mean: stresses at places and along lines, of large displacements and of cure, and the error
+//! What the displacements of a plate mean: stresses at places and along lines, of large deflections and of cure, and the error
 //! of a mesh.
 
 pub mod estimate;

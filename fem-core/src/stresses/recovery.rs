@@ -1,7 +1,7 @@
 //! Stresses of plies and interfaces from displacements.
 
 use crate::contracts::element::{Element, ElementError, Part, Scratch};
-use crate::contracts::large::LargeDisplacement;
+use crate::contracts::large::LargeDeflection;
 use crate::plates::laminate::Laminate;
 use crate::plates::plate::Plate;
 use crate::words::material::Material;
@@ -123,7 +123,7 @@ impl Recovery {
         Ok(())
     }
 
-    /// Stresses S = C E of large displacements `u` (one field, before elimination of constraints), on the axes of the sites as
+    /// Stresses S = C E of large deflections `u` (one field, before elimination of constraints), on the axes of the sites as
     /// they turn with the plate: six components per site, `out` is 6·sites.
     ///
     /// # Errors
@@ -131,7 +131,7 @@ impl Recovery {
     pub fn large_stresses(
         &self,
         plate: &Plate,
-        element: &dyn LargeDisplacement,
+        element: &dyn LargeDeflection,
         u: &[f64],
         out: &mut [f64],
     ) -> Result<(), ElementError> {

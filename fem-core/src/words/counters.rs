@@ -16,7 +16,7 @@ pub struct Counters {
     pub steps: u64,
     /// Evaluations of contact laws.
     pub contact_calls: u64,
-    /// Iterations of Newton's method in time steps: internal forces of large displacements.
+    /// Iterations of Newton's method in time steps: internal forces of large deflections.
     pub iterations: u64,
     /// Evaluations of criteria, one per stress state and criterion.
     pub criterion_calls: u64,

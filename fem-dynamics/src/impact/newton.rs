@@ -136,7 +136,7 @@ impl ImpactSystem {
                 before = None;
             }
         }
-        Err(StepError::NoConvergence { t, what: "Newton's method for the large displacements of the plate".into() })
+        Err(StepError::NoConvergence { t, what: "Newton's method for the large deflections of the plate".into() })
     }
 }
 

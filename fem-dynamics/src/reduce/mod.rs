@@ -4,16 +4,16 @@ mod craig_bampton;
 mod governors;
 mod guyan;
 mod irs;
+mod membrane;
 mod modal;
 mod ritz;
-mod stiffened;
 
 pub use craig_bampton::CraigBampton;
 pub use guyan::Guyan;
 pub use irs::Irs;
+pub use membrane::{Companions, MembraneForms, MembranePlate};
 pub use modal::ModalTruncation;
 pub use ritz::Ritz;
-pub use stiffened::{Companions, Stiffened, Stretching};
 
 use fem_core::damping::{Damping, Rayleigh};
 use fem_core::functional::Functional;

@@ -88,7 +88,7 @@ pub(super) struct Progress {
     /// Of each effect, what it needs to go on.
     effects: Vec<Vec<f64>>,
     work: Work,
-    /// The tangent in use of a plate under large displacements.
+    /// The tangent in use of a plate under large deflections.
     tangent: Option<Tangent>,
     stopped: Option<String>,
 }
@@ -200,14 +200,14 @@ impl<'a> March<'a> {
     }
 
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
-        let Prepared { model, impact, mut system, effects, reduced, stiffened, full, condensation, .. } = prepared;
+        let Prepared { model, impact, mut system, effects, reduced, membrane, full, condensation, .. } = prepared;
         let Prepared { sizes, counters, mut stopwatch, .. } = prepared;
         stopwatch.lap("reduce");
-        let (stiffened, companions) = stiffened.unzip();
+        let (membrane, companions) = membrane.unzip();
         let mut estimates = Estimates::default();
         // Here, where nothing else takes memory yet beside the full plate.
         if let (Some(reduced), Some(full)) = (&reduced, full) {
-            estimates = Estimates::new(&system, (reduced, stiffened.as_ref()), full, impact.integrator.clone(), &sizes);
+            estimates = Estimates::new(&system, (reduced, membrane.as_ref()), full, impact.integrator.clone(), &sizes);
             estimates.mesh = accuracy::mesh::estimate(model, &system, reduced, condensation.as_ref())?;
             stopwatch.lap("accuracy");
         }

@@ -16,7 +16,7 @@ use fem_core::structure::Structure;
 use fem_core::time::{Integrator, StepError};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
 use fem_dynamics::limit::{self, TooLong};
-use fem_dynamics::reduce::{Companions, Reduced, Stiffened, static_responses};
+use fem_dynamics::reduce::{Companions, MembranePlate, Reduced, static_responses};
 use fem_io::scene;
 use std::num::NonZeroUsize;
 
@@ -35,7 +35,7 @@ pub struct Prepared<'a> {
     pub(super) effects: Vec<Box<dyn Effect>>,
     pub(super) reduced: Option<Reduced>,
     /// A reduced plate that its deflections stretch, and what it does beside its modes.
-    pub(super) stiffened: Option<(Stiffened, Companions)>,
+    pub(super) membrane: Option<(MembranePlate, Companions)>,
     /// What a reduced model was made from.
     pub(super) full: Option<Full>,
     pub(super) condensation: Option<Condensation>,
@@ -102,7 +102,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         system,
         effects,
         reduced,
-        stiffened: stretched,
+        membrane: stretched,
         full,
         condensation,
         sizes,

@@ -43,7 +43,7 @@ pub struct StaticSummary {
     pub strain_energy_J: f64,
     pub largest_deflection: Deflection,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub large_displacements: Option<Newton>,
+    pub large_deflections: Option<Newton>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub profiles: Vec<ProfileResultants>,
     pub margins: Vec<Margin>,
@@ -68,7 +68,7 @@ pub struct Deflection {
     pub z_m: f64,
 }
 
-/// How large displacements were found.
+/// How large deflections were found.
 #[derive(Debug, Clone, Copy, Serialize)]
 #[allow(missing_docs)]
 pub struct Newton {
@@ -105,7 +105,7 @@ impl StaticSummary {
             resultant_N: solution.resultant,
             strain_energy_J: solution.strain_energy,
             largest_deflection: Deflection { w_m, x_m, y_m, z_m },
-            large_displacements: solution.decrements.as_ref().map(|decrements| Newton {
+            large_deflections: solution.decrements.as_ref().map(|decrements| Newton {
                 iterations: decrements.len(),
                 last_decrement: decrements.last().copied().unwrap_or(0.0),
             }),
@@ -144,10 +144,10 @@ impl StaticSummary {
             d.z_m * 1e3,
             self.strain_energy_J
         );
-        if let Some(Newton { iterations, last_decrement }) = self.large_displacements {
+        if let Some(Newton { iterations, last_decrement }) = self.large_deflections {
             let _ = writeln!(
                 t,
-                "  membrane  large displacements, found in {iterations} Newton iterations (last decrement {last_decrement:.1e} of \
+                "  membrane  large deflections, found in {iterations} Newton iterations (last decrement {last_decrement:.1e} of \
                  the work of the loads); reserve factors are those of the stresses, not of the loads"
             );
         }
@@ -169,7 +169,7 @@ impl StaticSummary {
         });
         let (residual, condition) = (self.residual_relative, describe_condition(self.condition_estimate));
         let _ = writeln!(t, "  accuracy  residual {residual:.1e} of the loads; {condition}{mesh}");
-        let what = if self.large_displacements.is_some() { "integrations of cells" } else { "element matrices" };
+        let what = if self.large_deflections.is_some() { "integrations of cells" } else { "element matrices" };
         let _ = writeln!(t, "  work      {} {what}, {} reused", self.elements, self.elements_reused);
         let _ = writeln!(t, "  time      {cost}");
         self.warnings.iter().for_each(|w| t.push_str(&format!("  warning   {w}\n")));

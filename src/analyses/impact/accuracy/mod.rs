@@ -16,7 +16,7 @@ use super::prepare::Full;
 use fem_core::structure::Structure;
 use fem_core::time::Integrator;
 use fem_dynamics::impact::ImpactSystem;
-use fem_dynamics::reduce::{Reduced, Stiffened};
+use fem_dynamics::reduce::{MembranePlate, Reduced};
 use fem_io::tables::HistoryRow;
 use step::Companion;
 
@@ -43,19 +43,19 @@ impl Estimates {
     /// Marches a copy of the reduced plate, and asks the full one what the reduction leaves out of that.
     pub(super) fn new(
         system: &ImpactSystem,
-        (reduced, stiffened): (&Reduced, Option<&Stiffened>),
+        (reduced, membrane): (&Reduced, Option<&MembranePlate>),
         full: Full,
         integrator: Box<dyn Integrator>,
         sizes: &Sizes,
     ) -> Self {
-        let plate: Box<dyn Structure> = match stiffened {
-            Some(stiffened) => Box::new(stiffened.clone()),
+        let plate: Box<dyn Structure> = match membrane {
+            Some(membrane) => Box::new(membrane.clone()),
             None => Box::new(reduced.modal.clone()),
         };
         let (companion, instants) =
             step::march(system.on(plate), &reduced.modal, integrator, sizes, full.solves()).unzip();
         // The residual is that of a linear plate.
-        let instants = instants.filter(|_| stiffened.is_none());
+        let instants = instants.filter(|_| membrane.is_none());
         let reduction = reduction::estimate(full, reduced, &instants.unwrap_or_default());
         Self { companion, reduction, mesh: None }
     }

@@ -88,7 +88,7 @@ pub(super) fn march(
     let ratio = stride as f64 / parts as f64;
     let (dt, count) = (sizes.step * ratio, sizes.steps / stride);
     let budget = (sizes.factor_entries as u64).saturating_mul(solves) / CHEAP / (sizes.marched as u64 + STEP);
-    // Each iteration of a plate under large displacements passes some matrices.
+    // Each iteration of a plate under large deflections passes some matrices.
     let (unknowns, marched) = (sizes.marched as u64, sizes.marched as u64 + STEP);
     let nonlinear = |system: &ImpactSystem| system.iterations() * FORMS * unknowns * unknowns / marched;
     if count.saturating_mul(parts) > budget {

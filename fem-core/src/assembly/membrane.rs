@@ -26,7 +26,7 @@ const ABSENT: f64 = 1e-12;
 /// w taken in the middle of each cell; for any element, from its shape functions and its strain operator. Pairs count by rows
 /// of the upper triangle.
 #[derive(Debug)]
-pub struct Stretch<'a> {
+pub struct MembraneStrains<'a> {
     plate: &'a Plate,
     element: &'a dyn Element,
     constraints: &'a Constraints,
@@ -51,7 +51,7 @@ struct OfCell {
     slopes: Vec<[f64; 2]>,
 }
 
-impl<'a> Stretch<'a> {
+impl<'a> MembraneStrains<'a> {
     /// `fields`: independent displacements, one after the other.
     pub fn new(plate: &'a Plate, element: &'a dyn Element, constraints: &'a Constraints, fields: &[f64]) -> Self {
         let (n, all) = (constraints.ndof(), plate.ndof());
@@ -93,7 +93,7 @@ impl<'a> Stretch<'a> {
     /// of `combinations` (`pairs × columns`); `ndof × columns`, N.
     ///
     /// # Errors
-    /// As [`Stretch::gram`].
+    /// As [`MembraneStrains::gram`].
     pub fn forces(&self, combinations: &[f64]) -> Result<Vec<f64>, AssemblyError> {
         let pairs = self.pairs();
         let columns = combinations.len() / pairs;
@@ -131,7 +131,7 @@ impl<'a> Stretch<'a> {
     /// ε = Σ c_p ε_p (`pairs × terms`) and of the displacements s (`ndof × terms`; none are zero). J.
     ///
     /// # Errors
-    /// As [`Stretch::gram`].
+    /// As [`MembraneStrains::gram`].
     pub fn forms(
         &self,
         combinations: &[f64],

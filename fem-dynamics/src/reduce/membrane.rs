@@ -18,7 +18,7 @@ const NEGLIGIBLE: f64 = 1e-10;
 
 /// Quadratic strains of deflections, ε(q) = Σ over pairs i ≤ j of qᵢ qⱼ ε_ij for some displacement fields, and what they do.
 /// Pairs count by rows of the upper triangle, fields are columns of independent displacements.
-pub trait Stretching {
+pub trait MembraneForms {
     /// ∫ ε_pᵀ C ε_p′ dV of all pairs of `fields`; `pairs × pairs`.
     ///
     /// # Errors
@@ -28,14 +28,14 @@ pub trait Stretching {
     /// Forces ∫ Bᵀ C ε dV of ε = Σ over pairs of c_p ε_p, per column c of `combinations`; `ndof × columns`.
     ///
     /// # Errors
-    /// As [`Stretching::gram`].
+    /// As [`MembraneForms::gram`].
     fn forces(&self, fields: &[f64], combinations: &[f64]) -> Result<Vec<f64>, SolveError>;
 
     /// B_t, per column c of `combinations`: qᵀ B_t q is the work of the stress C (ε + B s) on the quadratic strains of the
     /// deflections Σ qᵢ `modes`ᵢ, s a column of `shapes` or nothing; `modes × modes`, one after the other.
     ///
     /// # Errors
-    /// As [`Stretching::gram`].
+    /// As [`MembraneForms::gram`].
     fn forms(
         &self,
         fields: &[f64],
@@ -57,7 +57,7 @@ pub trait Stretching {
 ///
 /// Of the strains of large deflections only von Kármán's are there; slopes are small beside 1.
 #[derive(Debug, Clone)]
-pub struct Stiffened {
+pub struct MembranePlate {
     modal: Modal,
     /// B_t, one after the other.
     forms: Vec<f64>,
@@ -92,7 +92,7 @@ impl Companions {
     }
 }
 
-impl Stiffened {
+impl MembranePlate {
     /// Finds how the modes of `reduced` that the static response to `contacts` calls for stretch the plate `structure`, and what
     /// it does beside them.
     ///
@@ -102,7 +102,7 @@ impl Stiffened {
         structure: &mut dyn Structure,
         reduced: &Reduced,
         contacts: &[Functional],
-        stretching: &dyn Stretching,
+        stretching: &dyn MembraneForms,
     ) -> Result<(Self, Companions), ReductionError> {
         let failed = |e: SolveError| ReductionError(e.0);
         let (n, rigid) = (reduced.ndof, &reduced.modal.stiffness);
@@ -147,7 +147,7 @@ impl Stiffened {
         // What the modes that a term is coupled to give way by.
         let taken = couplings.column_iter().flat_map(|c| c.into_iter().zip(rigid).map(|(c, k)| c * c / k));
         let coupled = taken.fold(0.0, f64::max) > NEGLIGIBLE * stiffness.max();
-        let stiffened = Self {
+        let plate = Self {
             modal: reduced.modal.clone(),
             forms: counted(forms(&(&combinations * &turn), Some(&(&shapes * &turn)))?, &stiffness),
             couplings: if coupled { couplings.as_slice().to_vec() } else { Vec::new() },
@@ -157,7 +157,7 @@ impl Stiffened {
             factor: None,
         };
         let forms = counted(forms(&combinations, None)?, &energies);
-        Ok((stiffened, Companions { forms, shapes: shapes.as_slice().to_vec() }))
+        Ok((plate, Companions { forms, shapes: shapes.as_slice().to_vec() }))
     }
 
     /// Finds B_t q and b_t.
@@ -233,7 +233,7 @@ fn largest(matrix: DMatrix<f64>) -> Result<(DMatrix<f64>, DVector<f64>), Reducti
     Ok((eigen.eigenvectors.select_columns(&order), values))
 }
 
-impl Structure for Stiffened {
+impl Structure for MembranePlate {
     fn ndof(&self) -> usize {
         self.modal.ndof()
     }
@@ -279,7 +279,7 @@ impl Structure for Stiffened {
     }
 }
 
-impl Nonlinear for Stiffened {
+impl Nonlinear for MembranePlate {
     fn internal(&mut self, q: &[f64], force: &mut [f64]) -> Result<f64, SolveError> {
         self.stretch(q);
         let mut energy = 0.0;
