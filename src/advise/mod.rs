@@ -41,7 +41,7 @@ use crate::model::{Model, Plan, Strike};
 use fem_io::scene;
 use plate::AtRest;
 use std::num::NonZeroUsize;
-use work::Work;
+use work::MarchSize;
 
 /// The advisor's answers for one impactor, as if it struck alone.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,7 +84,7 @@ impl Advice {
 pub fn advise(model: &Model, threads: NonZeroUsize) -> Result<Vec<Advice>, Error> {
     let Plan::Impact(impact) = &model.plan else { return Err(Error::NoImpact) };
     let mut at_rest = AtRest::of(model, threads)?;
-    let work = Work::of(model, impact, at_rest.factor_entries());
+    let work = MarchSize::of(model, impact, at_rest.factor_entries());
     let mut each = |(spec, strike): (&scene::ImpactorSpec, &Strike)| {
         let plate = PlateConstants::under(model, strike, at_rest.stiffness(model, &strike.contact)?)?;
         let march = &impact.spec.march;

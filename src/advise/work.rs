@@ -10,9 +10,9 @@ const SHELL: f64 = 5.0;
 
 /// Sizes of the march of a model, before it is run.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Work(pub(super) Size);
+pub(super) struct MarchSize(pub(super) Size);
 
-impl Work {
+impl MarchSize {
     pub(super) fn of(model: &Model, impact: &Impact, factor_entries: usize) -> Self {
         let (plate, march) = (&model.plate, &impact.spec.march);
         let cells = plate.kept_cells().count();

@@ -61,7 +61,7 @@ struct Checked {
     #[serde(skip_serializing_if = "Option::is_none")]
     substructures: Option<Substructures>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    march: Option<March>,
+    march: Option<MarchDocument>,
     /// Estimate of the condition of the stiffness, of a plate at rest that is held.
     #[serde(skip_serializing_if = "Option::is_none")]
     condition: Option<f64>,
@@ -80,7 +80,7 @@ struct Checked {
 
 #[derive(Serialize)]
 #[allow(non_snake_case)]
-struct March {
+struct MarchDocument {
     static_stiffness_N_m: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     lowest_frequency_Hz: Option<f64>,
@@ -96,7 +96,7 @@ struct March {
     longest_step_s: Option<f64>,
 }
 
-impl March {
+impl MarchDocument {
     fn new(impact: &Impact, sizes: &Sizes) -> Self {
         let spec = &impact.spec.march;
         Self {
@@ -146,7 +146,7 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
     let (memory, substructures) = match &model.plan {
         Plan::Impact(impact) => {
             let sizes = impact::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model.warnings))?.sizes;
-            march = Some(March::new(impact, &sizes));
+            march = Some(MarchDocument::new(impact, &sizes));
             let asked = model.output.fields.as_ref();
             frames = impact::frames(asked, asked.and_then(|asked| asked.every), &sizes).len();
             (sizes.memory, sizes.substructures)
@@ -216,7 +216,7 @@ impl Checked {
             ("memory", format!("about {memory_MB:.0} MB at the peak: {memory}")),
         ];
         lines.extend(self.substructures.map(|parts| ("divided", parts.to_string())));
-        lines.extend(self.march.iter().flat_map(March::lines));
+        lines.extend(self.march.iter().flat_map(MarchDocument::lines));
         lines.extend(self.condition.map(|condition| ("stiffness", describe_condition(condition))));
         if self.march.is_none() {
             let analysis = self.modes.map_or("static".to_owned(), |count| format!("the {count} lowest modes"));

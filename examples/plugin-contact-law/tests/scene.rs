@@ -60,7 +60,7 @@ fn the_restitution_is_thorntons() {
         let Ok(Built::Integrator(mut scheme)) = Newmark::build(&Params::default()) else { panic!() };
         // Of unit mass it yields from v_y²/2 = 2/5.
         let rho = 0.8_f64.sqrt() / speed;
-        let mut sys = Modes::sphere(1.0, Box::new(law));
+        let mut sys = Oscillators::sphere(1.0, Box::new(law));
         let mut s = sys.state();
         s.v[0] = speed;
         scheme.start(&mut sys, &mut s).unwrap();

@@ -20,13 +20,13 @@ pub struct LargePlate {
     cells: Vec<(usize, f64, CellMap)>,
     /// Displacements before elimination.
     all: Vec<f64>,
-    work: Work,
+    work: CellArrays,
     integrated: u64,
 }
 
 /// Arrays of a cell.
 #[derive(Debug, Clone, Default)]
-struct Work {
+struct CellArrays {
     u: Vec<f64>,
     force: Vec<f64>,
     tangent: Vec<f64>,
@@ -50,7 +50,12 @@ impl LargePlate {
             constraints: constraints.clone(),
             all: vec![0.0; plate.ndof()],
             integrated: 0,
-            work: Work { u: vec![0.0; n], force: vec![0.0; n], tangent: vec![0.0; n * n], ..Work::default() },
+            work: CellArrays {
+                u: vec![0.0; n],
+                force: vec![0.0; n],
+                tangent: vec![0.0; n * n],
+                ..CellArrays::default()
+            },
         })
     }
 
@@ -108,7 +113,7 @@ impl LargePlate {
     }
 }
 
-impl Work {
+impl CellArrays {
     fn integrate(
         &mut self,
         large: &dyn LargeDeflection,

@@ -36,12 +36,12 @@ pub(super) fn dissect(places: &[[f64; 2]], cliques: impl Iterator<Item = Vec<u32
         list.dedup();
     }
     let mut work =
-        Work { places, neighbours, side: vec![0; places.len()], cut: 0, order: Vec::with_capacity(set.len()) };
+        Dissection { places, neighbours, side: vec![0; places.len()], cut: 0, order: Vec::with_capacity(set.len()) };
     work.dissect(set);
     work.order
 }
 
-struct Work<'a> {
+struct Dissection<'a> {
     places: &'a [[f64; 2]],
     neighbours: Vec<Vec<u32>>,
     /// Twice the number of the cut that a column took part in last, plus one on its right.
@@ -50,7 +50,7 @@ struct Work<'a> {
     order: Vec<u32>,
 }
 
-impl Work<'_> {
+impl Dissection<'_> {
     fn dissect(&mut self, mut set: Vec<u32>) {
         if set.len() <= LEAF {
             self.order.extend(set);

@@ -160,13 +160,13 @@ pub fn check_integrator(integrator: &dyn Integrator) -> Result<(), String> {
 
 type Checked<T> = Result<T, Box<dyn Error>>;
 
-struct March<'a> {
+struct Trial<'a> {
     integrator: Box<dyn Integrator + 'a>,
     sys: Oscillators,
     s: State,
 }
 
-impl<'a> March<'a> {
+impl<'a> Trial<'a> {
     fn start(like: &'a dyn Integrator, mut sys: Oscillators, mut s: State) -> Result<Self, StepError> {
         let mut integrator = dyn_clone::clone_box(like);
         integrator.start(&mut sys, &mut s)?;
@@ -191,7 +191,7 @@ fn check_order(integrator: &dyn Integrator) -> Checked<()> {
     let error = |steps: u32, uneven: f64| -> Checked<f64> {
         let s = State { u: vec![0.0, 1.0_f64.sin()], v: vec![1.0, 1.0_f64.cos()], ..State::at_rest(2, 0) };
         let mut march =
-            March::start(integrator, Oscillators { modes: DRIVEN.to_vec(), load: driving, contact: None }, s)?;
+            Trial::start(integrator, Oscillators { modes: DRIVEN.to_vec(), load: driving, contact: None }, s)?;
         for step in 0..steps {
             let part = if step % 2 == 0 { 1.0 + uneven } else { 1.0 - uneven };
             march.run(2.0 / f64::from(steps) * part, 1)?;
@@ -244,19 +244,19 @@ impl ContactLaw for Stop {
 }
 
 /// A mass that meets [`Stop`] at unit speed, and a damped oscillator beside it.
-fn bounce(integrator: &dyn Integrator) -> Result<March<'_>, StepError> {
+fn bounce(integrator: &dyn Integrator) -> Result<Trial<'_>, StepError> {
     let mut sys = Oscillators::sphere(1.0, Box::new(Stop));
     sys.modes.push(Mode::new(2.0, 0.05));
     let mut s = sys.state();
     s.v = vec![1.0, 1.0];
-    March::start(integrator, sys, s)
+    Trial::start(integrator, sys, s)
 }
 
 fn check_restart(integrator: &dyn Integrator) -> Checked<()> {
     let mut straight = bounce(integrator)?;
     straight.run(0.05, 20)?;
     let mut restarted =
-        March { integrator: dyn_clone::clone_box(integrator), sys: straight.sys.clone(), s: straight.s.clone() };
+        Trial { integrator: dyn_clone::clone_box(integrator), sys: straight.sys.clone(), s: straight.s.clone() };
     restarted.integrator.resume(&mut restarted.sys);
     for march in [&mut straight, &mut restarted] {
         march.run(0.05, 20)?;
@@ -275,7 +275,7 @@ fn check_limit(integrator: &dyn Integrator) -> Checked<()> {
     };
     for dt in steps {
         let sys = Oscillators::free([Mode::new(1.0, 0.0)]);
-        let mut march = March::start(integrator, sys, State { u: vec![1.0], ..State::at_rest(1, 0) })?;
+        let mut march = Trial::start(integrator, sys, State { u: vec![1.0], ..State::at_rest(1, 0) })?;
         for step in 1..=1000 {
             march.run(dt, 1)?;
             let u = march.s.u[0].abs();
@@ -310,7 +310,7 @@ fn check_contact(integrator: &dyn Integrator) -> Checked<()> {
 fn check_nan(integrator: &dyn Integrator) -> Checked<()> {
     let sys = Oscillators::free([Mode::new(1.0, 0.0)]);
     let s = State { u: vec![f64::NAN], ..sys.state() };
-    match March::start(integrator, sys, s).and_then(|mut march| march.run(0.1, 1)) {
+    match Trial::start(integrator, sys, s).and_then(|mut march| march.run(0.1, 1)) {
         Err(StepError::NotFinite { .. }) => Ok(()),
         other => Err(format!("a displacement of NaN gives {other:?}").into()),
     }

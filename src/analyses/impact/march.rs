@@ -67,7 +67,7 @@ pub struct March<'a> {
     /// Work of the preparation.
     counters: Counters,
     /// What the system had counted when `Progress::work` was.
-    counted: Work,
+    counted: SystemCounts,
     stopwatch: Stopwatch,
     progress: Progress,
 }
@@ -87,7 +87,7 @@ pub(super) struct Progress {
     ledger: Ledger,
     /// Of each effect, what it needs to go on.
     effects: Vec<Vec<f64>>,
-    work: Work,
+    work: SystemCounts,
     /// The tangent in use of a plate under large deflections.
     tangent: Option<Tangent>,
     stopped: Option<String>,
@@ -98,14 +98,14 @@ pub(super) type Saved = (Progress, Option<modal::Record>, Option<(scan::ScanReco
 
 /// Counts of the system that is marched.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
-struct Work {
+struct SystemCounts {
     factorisations: u64,
     solves: u64,
     contact_calls: u64,
     iterations: u64,
 }
 
-impl Work {
+impl SystemCounts {
     fn of(system: &ImpactSystem) -> Self {
         let (factorisations, solves) = system.structure().work();
         Self { factorisations, solves, contact_calls: system.contact_calls(), iterations: system.iterations() }
@@ -139,7 +139,7 @@ impl<'a> March<'a> {
             ledger: Ledger::new(state.contacts.len(), model.threshold.map(|threshold| threshold.force)),
             effects: Vec::new(),
             state,
-            work: Work::default(),
+            work: SystemCounts::default(),
             tangent: None,
             stopped: None,
         };
@@ -184,7 +184,7 @@ impl<'a> March<'a> {
             // would be in one piece. What it may meet, the next step meets again.
             let _ = integrator.step(system, &mut progress.state.clone(), dt);
         }
-        march.counted = Work::of(&march.system);
+        march.counted = SystemCounts::of(&march.system);
         let fits = match (&mut march.modal, modal) {
             (Some(view), Some(record)) => view.resume(record),
             (view, record) => view.is_none() && record.is_none(),
@@ -217,7 +217,7 @@ impl<'a> March<'a> {
         let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, expansion.clone())?) };
         stopwatch.lap("prepare stresses");
         let scan_every = count_steps(model.sample_every, sizes.step);
-        let (integrator, counted) = (impact.integrator.clone(), Work::default());
+        let (integrator, counted) = (impact.integrator.clone(), SystemCounts::default());
         Ok(Self {
             model,
             guard: Guard::new(&mut system),
@@ -374,7 +374,7 @@ impl<'a> March<'a> {
     }
 
     fn count(&mut self) {
-        let now = Work::of(&self.system);
+        let now = SystemCounts::of(&self.system);
         self.progress.work = self.progress.work.between(self.counted, now);
         self.counted = now;
     }
