@@ -171,7 +171,7 @@ impl Registry {
 
     /// Their columns in `history.csv`.
     pub fn columns(&self) -> Vec<&'static LedgerColumn> {
-        self.effects().flat_map(|info| info.columns).collect()
+        self.effects().chain([&effects::NonlinearPlies::INFO]).flat_map(|info| info.columns).collect()
     }
 
     /// Their keys.

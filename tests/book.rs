@@ -111,6 +111,7 @@ fn the_tables_are_those_of_the_registry() {
         ("criteria-table.md", criteria_table()),
         ("elements-table.md", elements_table()),
         ("contact-laws-table.md", plain_table(Kind::Contact, "law")),
+        ("ply-laws-table.md", plain_table(Kind::PlyLaw, "law")),
         ("reductions-table.md", plain_table(Kind::Reduction, "reduction")),
         ("integrators-table.md", integrators_table()),
     ] {

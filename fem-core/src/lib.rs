@@ -52,7 +52,7 @@ mod stresses;
 pub mod testkit;
 
 pub use contracts::{contact, element, failure, interface_law, large, plugin, ply_law, reduction, structure, time};
-pub use plates::{constraint, laminate, load, mesh, patch, plate, support, symmetry, window};
+pub use plates::{constraint, laminate, laws, load, mesh, patch, plate, support, symmetry, window};
 pub use stresses::{estimate, field, profile, recovery, residual};
 pub use words::{
     counters, damping, dof, domain, energy, formula, functional, layup, material, prolongation, quadrature, tensor,

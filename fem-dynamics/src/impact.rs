@@ -7,7 +7,7 @@ use crate::vector::dot;
 use fem_core::contact::{Branches, ContactHistory, ContactLaw, Indentation};
 use fem_core::energy::Energy;
 use fem_core::structure::Structure;
-use fem_core::time::{SecondOrderSystem, State, StepError};
+use fem_core::time::{Histories, SecondOrderSystem, State, StepError};
 use influence::Influence;
 use newton::Newton;
 
@@ -97,6 +97,8 @@ pub struct Energies {
     pub stored: f64,
     /// Work lost in the contacts.
     pub dissipated: f64,
+    /// Work lost in the plies, where they follow laws that lose some.
+    pub plies: f64,
     /// Work lost in the damping of the plate, of which the march keeps count.
     pub damped: f64,
     /// Potential energy of the weights, 0 where the impactors touch the plate at rest.
@@ -120,7 +122,14 @@ pub struct Weight {
 impl Energies {
     /// Sum; constant in an exact solution.
     pub fn total(&self) -> f64 {
-        self.impactor + self.kinetic + self.strain + self.stored + self.dissipated + self.damped + self.weight
+        self.impactor
+            + self.kinetic
+            + self.strain
+            + self.stored
+            + self.dissipated
+            + self.plies
+            + self.damped
+            + self.weight
     }
 }
 
@@ -176,6 +185,7 @@ impl ImpactSystem {
     pub fn initial(&self) -> State {
         let n = self.structure.ndof();
         let mut state = State::at_rest(self.ndof(), self.impactors.len());
+        state.histories.points = vec![0.0; self.structure.states()];
         for (i, impactor) in self.impactors.iter().enumerate() {
             let mean = impactor.velocity + 0.5 * self.gravity() * impactor.start;
             state.u[n + i] = 0.0 - mean * impactor.start;
@@ -222,7 +232,7 @@ impl ImpactSystem {
     /// Indentation, force and velocity of impactor `i` in an accepted state.
     pub fn touch(&self, i: usize, state: &State) -> Touch {
         let indentation = self.approach(i, &state.u);
-        let force = self.impactors[i].law.force(&state.contacts[i], indentation).force;
+        let force = self.impactors[i].law.force(&state.histories.contacts[i], indentation).force;
         Touch { indentation, force, velocity: state.v[self.structure.ndof() + i] }
     }
 
@@ -232,7 +242,9 @@ impl ImpactSystem {
         work.clear();
         work.resize(n, 0.0);
         // What cannot be integrated is not a number, which the guard sees.
-        let large = self.structure.nonlinear().map(|f| f.internal(&state.u[..n], work).unwrap_or(f64::NAN));
+        let missing = Energy { stored: f64::NAN, dissipated: f64::NAN };
+        let points = &state.histories.points;
+        let nonlinear = self.structure.nonlinear().map(|f| f.internal(&state.u[..n], points, work).unwrap_or(missing));
         let mut product = |x: &[f64], add: &dyn Fn(&[f64], &mut [f64])| {
             work.clear();
             work.resize(n, 0.0);
@@ -241,13 +253,17 @@ impl ImpactSystem {
         };
         let mut energies = Energies {
             kinetic: product(&state.v[..n], &|x, y| self.structure.add_mass(1.0, x, y)),
-            strain: large.unwrap_or_else(|| product(&state.u[..n], &|x, y| self.structure.add_stiffness(1.0, x, y))),
+            strain: match nonlinear {
+                Some(energy) => energy.stored,
+                None => product(&state.u[..n], &|x, y| self.structure.add_stiffness(1.0, x, y)),
+            },
+            plies: nonlinear.map_or(0.0, |energy| energy.dissipated),
             ..Energies::default()
         };
         for (i, impactor) in self.impactors.iter().enumerate() {
             energies.impactor += 0.5 * impactor.mass * state.v[n + i].powi(2);
             let alpha = self.approach(i, &state.u);
-            let Energy { stored, dissipated } = impactor.law.energy(&state.contacts[i], alpha);
+            let Energy { stored, dissipated } = impactor.law.energy(&state.histories.contacts[i], alpha);
             energies.stored += stored;
             energies.dissipated += dissipated;
         }
@@ -379,20 +395,20 @@ impl SecondOrderSystem for ImpactSystem {
         self.structure.ndof() + self.impactors.len()
     }
 
-    fn force(&mut self, _: f64, u: &[f64], v: &[f64], h: &[ContactHistory], f: &mut [f64]) {
+    fn force(&mut self, _: f64, u: &[f64], v: &[f64], h: &Histories, f: &mut [f64]) {
         let n = self.structure.ndof();
         f.fill(0.0);
         match self.structure.nonlinear() {
             None => self.structure.add_stiffness(-1.0, &u[..n], &mut f[..n]),
             // What cannot be integrated is not a number, which the guard sees.
-            Some(structure) => match structure.internal(&u[..n], &mut f[..n]) {
+            Some(structure) => match structure.internal(&u[..n], &h.points, &mut f[..n]) {
                 Ok(_) => f[..n].iter_mut().for_each(|f| *f = -*f),
                 Err(_) => f.fill(f64::NAN),
             },
         }
         self.structure.add_damping(-1.0, &v[..n], &mut f[..n]);
         for (i, impactor) in self.impactors.iter().enumerate() {
-            let force = impactor.law.force(&h[i], self.approach(i, u)).force;
+            let force = impactor.law.force(&h.contacts[i], self.approach(i, u)).force;
             self.contact_calls += 1;
             add(&impactor.load, force, f);
             f[n + i] = -force;
@@ -430,7 +446,7 @@ impl SecondOrderSystem for ImpactSystem {
         cm: f64,
         cc: f64,
         t: f64,
-        h: &[ContactHistory],
+        h: &Histories,
         from: &[f64],
         d: &mut [f64],
     ) -> Result<(), StepError> {
@@ -448,18 +464,23 @@ impl SecondOrderSystem for ImpactSystem {
         }
         influence.free.fill(0.0);
         influence.set_approaches(impactors, from);
-        *contact_calls += influence.touch(impactors, t, h, d)?;
+        *contact_calls += influence.touch(impactors, t, &h.contacts, d)?;
         Ok(())
     }
 
-    fn commit(&self, state: &mut State) {
+    fn commit(&mut self, state: &mut State) -> Result<(), StepError> {
         if !self.inertia {
             // Newmark's accelerations of unknowns without mass ring, and grow from step to step: nothing needs them.
             state.a[..self.structure.ndof()].fill(0.0);
         }
         for (i, impactor) in self.impactors.iter().enumerate() {
             let alpha = self.approach(i, &state.u);
-            impactor.law.commit(&mut state.contacts[i], alpha);
+            impactor.law.commit(&mut state.histories.contacts[i], alpha);
+        }
+        let n = self.structure.ndof();
+        match self.structure.nonlinear() {
+            Some(plate) => plate.commit(&state.u[..n], &mut state.histories.points).map_err(newton::unsolved),
+            None => Ok(()),
         }
     }
 

@@ -14,6 +14,7 @@ use std::path::Path;
 const FREE: &[&str] = &["title", "study.", "output.plots", "output.maps", "output.checkpoint_every"];
 
 const MATERIALS: &str = "materials.";
+const LAW: &str = ".law";
 const MESH: &str = "mesh.file";
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -66,8 +67,11 @@ pub(crate) type Keys = BTreeMap<String, String>;
 /// A mesh that cannot be read any more.
 pub(crate) fn identity(model: &Model) -> Result<Keys, FileError> {
     let mut keys = model.origin.keys.clone();
-    let depends =
-        |key: &str| !FREE.iter().any(|free| key.starts_with(free)) && !key.starts_with(MATERIALS) && key != MESH;
+    let depends = |key: &str| {
+        !FREE.iter().any(|free| key.starts_with(free))
+            && (!key.starts_with(MATERIALS) || key.contains(LAW))
+            && key != MESH
+    };
     keys.retain(|key, _| depends(key));
     keys.extend(model.materials.iter().map(|m| (format!("{MATERIALS}{}", m.name), format!("{m:?}"))));
     if let Some(file) = &model.origin.mesh {

@@ -5,10 +5,11 @@ use super::stress::{self, Margin};
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::{Model, NamedProfile, Plan};
-use fem_core::assembly::{LargePlate, pattern};
+use fem_core::assembly::{Equilibrium, LargePlate, LawPlate, equilibrium, pattern};
 use fem_core::counters::Counters;
 use fem_core::dof::Dof;
 use fem_core::element::ElementError;
+use fem_core::energy::Energy;
 use fem_core::estimate::mesh_error;
 use fem_core::field::Field as Displacements;
 use fem_core::functional::Functional;
@@ -33,6 +34,8 @@ pub struct StaticSolution {
     pub factor_entries: usize,
     /// ½ uᵀ K u, J, or ½ ∫ Eᵀ C E dV.
     pub strain_energy: f64,
+    /// Work lost in the plies, J, where some follow a law.
+    pub dissipated: Option<f64>,
     /// ‖f − K u‖ / ‖f‖ of the independent unknowns, K u being the internal force.
     pub residual: f64,
     /// Condition number of K, or of its tangent at the end, estimated
@@ -63,13 +66,32 @@ struct Found {
     independent: Vec<f64>,
     substructures: Option<Substructures>,
     factor_entries: usize,
-    strain_energy: f64,
+    energy: Energy,
     residual: f64,
     condition: f64,
     decrements: Option<Vec<f64>>,
 }
 
-/// Solves K u = f, or f(u) = f where the model has large deflections.
+impl Found {
+    /// By Newton's method, for which so many cells were `integrated`.
+    fn of(found: Equilibrium, integrated: u64, counters: &mut Counters) -> Self {
+        tracing::info!(iterations = found.decrements.len(), "equilibrium");
+        counters.elements += integrated;
+        counters.factorisations += found.decrements.len() as u64;
+        counters.solves += found.solves;
+        Self {
+            independent: found.u,
+            substructures: None,
+            factor_entries: 0,
+            energy: found.energy,
+            residual: found.residual,
+            condition: found.condition,
+            decrements: Some(found.decrements),
+        }
+    }
+}
+
+/// Solves K u = f, or f(u) = f where deflections are large or plies follow laws.
 ///
 /// # Errors
 /// A scene without loads at rest, a cell that the element refuses, a structure that is not held, buckles or is too
@@ -91,9 +113,13 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
         forces.iter().enumerate().map(along).sum()
     });
     let nature = model.effects.nature();
-    let solver = if nature.large { nonlinear } else { linear };
+    let solver = match &model.laws {
+        Some(_) => lawful,
+        None if nature.large => nonlinear,
+        None => linear,
+    };
     let found = solver(model, &f, threads, &mut counters, &mut stopwatch)?;
-    if !found.strain_energy.is_finite() {
+    if !found.energy.total().is_finite() {
         return Err(Error::NotFinite("displacement"));
     }
     if !(found.residual <= MOST_RESIDUAL) {
@@ -116,15 +142,19 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
     let (profiles, resultants) = sampled.into_iter().unzip();
     stopwatch.lap("stresses");
     // The estimate sees only strains that cause stress.
-    let mesh_error =
-        if nature.large || nature.strained { None } else { mesh_error(&model.plate, &*model.element, &u)? };
+    let mesh_error = if nature.large || nature.strained || model.laws.is_some() {
+        None
+    } else {
+        mesh_error(&model.plate, &*model.element, &u)?
+    };
     stopwatch.lap("mesh error");
     let phases = stopwatch.phases().to_vec();
     Ok(StaticSolution {
         unknowns: constraints.ndof(),
         substructures: found.substructures,
         factor_entries: found.factor_entries,
-        strain_energy: found.strain_energy,
+        strain_energy: found.energy.stored,
+        dissipated: model.laws.as_ref().map(|_| found.energy.dissipated),
         residual: found.residual,
         condition: found.condition,
         decrements: found.decrements,
@@ -170,10 +200,11 @@ fn linear(
     let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
     let condition = assembled.structure.condition()?;
     (counters.factorisations, counters.solves) = assembled.structure.work();
+    // ½ uᵀ K u − uᵀ f₀ + ½ ∫ ε₀ C ε₀ dV with K u = f and f₀ that of free strains.
+    let stored =
+        held + f.iter().zip(&own_forces).zip(&independent).map(|((f, free), u)| (0.5 * f - free) * u).sum::<f64>();
     Ok(Found {
-        // ½ uᵀ K u − uᵀ f₀ + ½ ∫ ε₀ C ε₀ dV with K u = f and f₀ that of free strains.
-        strain_energy: held
-            + f.iter().zip(&own_forces).zip(&independent).map(|((f, free), u)| (0.5 * f - free) * u).sum::<f64>(),
+        energy: Energy { stored, dissipated: 0.0 },
         independent,
         substructures: assembled.substructures(),
         factor_entries: assembled.factor_entries,
@@ -200,20 +231,34 @@ fn nonlinear(
         true => linear(model, f, threads, counters, stopwatch)?.independent,
         false => vec![0.0; f.len()],
     };
-    let found = large.equilibrium(symbolic, f, start, threads)?;
-    tracing::info!(iterations = found.decrements.len(), "equilibrium");
-    counters.elements += large.integrated();
-    counters.factorisations += found.decrements.len() as u64;
-    counters.solves += found.solves;
-    Ok(Found {
-        independent: found.u,
-        substructures: None,
-        factor_entries,
-        strain_energy: found.energy,
-        residual: found.residual,
-        condition: found.condition,
-        decrements: Some(found.decrements),
-    })
+    let found = equilibrium(&mut large, symbolic, f, start, threads)?;
+    Ok(Found { factor_entries, ..Found::of(found, large.integrated(), counters) })
+}
+
+/// Plies that follow laws: all of the load at once, on a plate to which nothing has happened.
+fn lawful(
+    model: &Model,
+    f: &[f64],
+    threads: NonZeroUsize,
+    counters: &mut Counters,
+    stopwatch: &mut Stopwatch,
+) -> Result<Found, Error> {
+    let Model { plate, element, constraints, laws, .. } = model;
+    let Some(laws) = laws else { return linear(model, f, threads, counters, stopwatch) };
+    let mut f = f.to_vec();
+    for effect in model.effects.acting() {
+        let Some((forces, _)) = effect.forces(&model.body())? else { continue };
+        f.iter_mut().zip(&forces).for_each(|(f, force)| *f += force);
+    }
+    let assembled = assembled::structure(model, false, threads, counters)?;
+    stopwatch.lap("assemble");
+    let (k, _) = assembled.structure.matrices();
+    let (symbolic, _) = model.analyse(k.pattern().clone())?;
+    let virgin = vec![0.0; laws.states()];
+    let mut laws = LawPlate::new(plate, element.clone(), constraints, laws.clone());
+    let found = equilibrium(&mut laws.on(k, &virgin), symbolic, &f, vec![0.0; f.len()], threads)?;
+    let factor_entries = assembled.factor_entries;
+    Ok(Found { factor_entries, ..Found::of(found, laws.integrated(), counters) })
 }
 
 /// The unknown of a translation along axis `n`, counted from 1.

@@ -7,6 +7,7 @@ use crate::words::name_ply;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::failure::Site;
+use fem_core::laws::PlyLaws;
 use fem_core::recovery::{Recovery, Station};
 use fem_core::tensor::{Ply, Stress6};
 use fem_core::window;
@@ -75,6 +76,8 @@ pub(super) struct Record {
     /// differ in its last bit.
     times: Vec<f64>,
     waiting: Vec<f64>,
+    /// Their states of plies that follow laws.
+    points: Vec<f64>,
 }
 
 impl<'a> Watch<'a> {
@@ -103,17 +106,18 @@ impl<'a> Watch<'a> {
             && 6 * watch.recovery.sites() * modes * size_of::<f64>() <= OPERATOR_LIMIT
         {
             let mut operator = vec![0.0; 6 * watch.recovery.sites() * modes];
-            watch.recover(&watch.expansion.nodal(basis), modes, &mut operator)?;
+            watch.recover(&watch.expansion.nodal(basis), modes, None, &mut operator)?;
             watch.operator = Some(operator);
         }
         Ok(watch)
     }
 
-    /// Takes a sample: coordinates of the march at time `t`.
+    /// Takes a sample: coordinates of the march at time `t`, states of plies that follow laws.
     ///
     /// # Errors
     /// A stress or an index that is not finite.
-    pub(super) fn sample(&mut self, t: f64, coordinates: &[f64]) -> Result<(), Error> {
+    pub(super) fn sample(&mut self, t: f64, coordinates: &[f64], points: &[f64]) -> Result<(), Error> {
+        self.record.points.extend_from_slice(points);
         self.record.times.push(t);
         self.record.waiting.extend_from_slice(coordinates);
         if self.record.times.len() == BATCH { self.flush() } else { Ok(()) }
@@ -124,14 +128,21 @@ impl<'a> Watch<'a> {
     /// # Errors
     /// As [`Watch::sample`].
     pub(super) fn flush(&mut self) -> Result<(), Error> {
-        let (times, waiting) = (std::mem::take(&mut self.record.times), std::mem::take(&mut self.record.waiting));
+        let [times, waiting, points] =
+            [&mut self.record.times, &mut self.record.waiting, &mut self.record.points].map(std::mem::take);
         let mut stresses = std::mem::take(&mut self.stresses);
-        let done = self.scan_batch(&times, &waiting, &mut stresses);
+        let done = self.scan_batch(&times, &waiting, &points, &mut stresses);
         self.stresses = stresses;
         done
     }
 
-    fn scan_batch(&mut self, times: &[f64], waiting: &[f64], stresses: &mut [f64]) -> Result<(), Error> {
+    fn scan_batch(
+        &mut self,
+        times: &[f64],
+        waiting: &[f64],
+        points: &[f64],
+        stresses: &mut [f64],
+    ) -> Result<(), Error> {
         let count = times.len();
         if count == 0 {
             return Ok(());
@@ -148,7 +159,7 @@ impl<'a> Watch<'a> {
                 1.0,
                 Par::Seq,
             ),
-            None => self.recover(&self.expansion.displacements(waiting, count), count, out)?,
+            None => self.recover(&self.expansion.displacements(waiting, count), count, Some(points), out)?,
         }
         add(out, &self.residual);
         for (t, stresses) in times.iter().zip(stresses.chunks_exact(rows)) {
@@ -164,8 +175,8 @@ impl<'a> Watch<'a> {
     }
 
     /// Stresses of `count` displacement fields, one after the other, without those that do not follow from them.
-    fn recover(&self, u: &[f64], count: usize, out: &mut [f64]) -> Result<(), Error> {
-        recover(self.model, &self.recovery, u, count, out)
+    fn recover(&self, u: &[f64], count: usize, points: Option<&[f64]>, out: &mut [f64]) -> Result<(), Error> {
+        recover(self.model, &self.recovery, u, count, points, out)
     }
 
     /// What the scan found.
@@ -224,7 +235,7 @@ pub(crate) fn margins(model: &Model, u: &[f64]) -> Result<Vec<Margin>, Error> {
     }
     let recovery = build_recovery(model);
     let mut stresses = vec![0.0; 6 * recovery.sites()];
-    recover(model, &recovery, u, 1, &mut stresses)?;
+    recover(model, &recovery, u, 1, Some(&virgin(model)), &mut stresses)?;
     add(&mut stresses, &residual(model, &recovery)?);
     if !stresses.iter().all(|s| s.is_finite()) {
         return Err(Error::NotFinite("stress"));
@@ -271,8 +282,14 @@ pub(crate) fn add(stresses: &mut [f64], residual: &[f64]) {
     }
 }
 
+/// States of plies to which nothing has happened.
+pub(crate) fn virgin(model: &Model) -> Vec<f64> {
+    vec![0.0; model.laws.as_ref().map_or(0, PlyLaws::states)]
+}
+
 /// Stresses of `count` displacement fields (before elimination of constraints), one after the other, without those
-/// that do not follow from displacements.
+/// that do not follow from displacements. `points` are the states of plies that follow laws, field by field; without them
+/// stresses are those of linear elasticity.
 ///
 /// # Errors
 /// A cell that the element refuses.
@@ -281,10 +298,18 @@ pub(crate) fn recover(
     recovery: &Recovery,
     u: &[f64],
     count: usize,
+    points: Option<&[f64]>,
     out: &mut [f64],
 ) -> Result<(), Error> {
     let Some(large) = model.element.large_deflections().filter(|_| model.effects.nature().large) else {
-        return Ok(recovery.stresses(&model.plate, &*model.element, u, count, out)?);
+        recovery.stresses(&model.plate, &*model.element, u, count, out)?;
+        let Some((laws, points)) = model.laws.as_ref().zip(points) else { return Ok(()) };
+        let fields = u.chunks_exact(model.plate.ndof()).zip(out.chunks_exact_mut(6 * recovery.sites()));
+        for (field, (u, out)) in fields.enumerate() {
+            let points = &points[field * laws.states()..(field + 1) * laws.states()];
+            recovery.put_lawful(&model.plate, &*model.element, laws, (u, points), out)?;
+        }
+        return Ok(());
     };
     for (u, out) in u.chunks_exact(model.plate.ndof()).zip(out.chunks_exact_mut(6 * recovery.sites())) {
         recovery.large_stresses(&model.plate, large, u, out)?;

@@ -59,6 +59,8 @@ pub enum Feature {
     EquilibriumProfile,
     /// An integrator that needs the inverse of the mass matrix, which the first step finds out.
     ExplicitIntegrator,
+    /// Plies that follow laws.
+    PlyLaws,
     /// Another effect.
     Effect(&'static str),
 }
@@ -119,6 +121,7 @@ impl<'a> Facts<'a> {
                 scene.profiles.iter().find(|line| line.equilibrium).map(|line| &line.name.place)
             }
             Feature::ExplicitIntegrator => None,
+            Feature::PlyLaws => own(scene.laminate.value.plies.iter().any(|ply| scene.laws[ply.material].is_some())),
             Feature::Effect(name) => own(self.effects.contains(&name)),
         }
     }

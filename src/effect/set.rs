@@ -39,6 +39,12 @@ impl Effects {
         Ok(())
     }
 
+    /// Takes an effect that a scene asks for elsewhere than under `effects`.
+    pub(crate) fn act(&mut self, effect: Box<dyn Effect>) {
+        self.acting.push(effect);
+        self.sort();
+    }
+
     /// In the order of the registry, whatever that of the scene.
     fn sort(&mut self) {
         let Self { known, acting, left } = self;

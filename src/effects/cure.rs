@@ -52,11 +52,18 @@ impl Effect for Cure {
     }
 
     fn excludes(&self) -> &'static [Exclusion] {
-        const EXCLUDED: &[Exclusion] = &[Exclusion::new(
-            Feature::Modes,
-            "residual stresses do not change the natural modes of a free plate",
-            "leave `cure` out",
-        )];
+        const EXCLUDED: &[Exclusion] = &[
+            Exclusion::new(
+                Feature::Modes,
+                "residual stresses do not change the natural modes of a free plate",
+                "leave `cure` out",
+            ),
+            Exclusion::new(
+                Feature::PlyLaws,
+                "residual stresses are those of linear elastic plies, but plies follow a law",
+                "leave it out, or the `law` of the material",
+            ),
+        ];
         EXCLUDED
     }
 

@@ -55,6 +55,11 @@ impl Effect for Gravity {
     fn excludes(&self) -> &'static [Exclusion] {
         const EXCLUDED: &[Exclusion] = &[
             Exclusion::new(
+                Feature::PlyLaws,
+                "the sag is that of linear elastic plies, but plies follow a law",
+                "leave it out, or the `law` of the material",
+            ),
+            Exclusion::new(
                 Feature::NoImpact,
                 "`effects.gravity` needs an impact, and this analysis has none",
                 "leave it out; at rest it is a load: load = [{ gravity = [...] }]",

@@ -54,6 +54,11 @@ impl Effect for NoInertia {
     fn excludes(&self) -> &'static [Exclusion] {
         const EXCLUDED: &[Exclusion] = &[
             Exclusion::new(
+                Feature::PlyLaws,
+                "a plate without inertia is what its static responses are, but plies follow a law",
+                "leave it out, or the `law` of the material",
+            ),
+            Exclusion::new(
                 Feature::NoImpact,
                 "`effects.inertia` needs an impact, and this analysis has none",
                 "leave it out",

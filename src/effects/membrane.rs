@@ -59,6 +59,11 @@ impl Effect for Membrane {
 
     fn excludes(&self) -> &'static [Exclusion] {
         const EXCLUDED: &[Exclusion] = &[
+            Exclusion::new(
+                Feature::PlyLaws,
+                "membrane stiffening is that of linear elastic plies, but plies follow a law",
+                "leave it out, or the `law` of the material",
+            ),
             Exclusion::new(Feature::Modes, "natural modes are those of small vibrations", "leave `membrane` out"),
             Exclusion::new(
                 Feature::Substructures,

@@ -5,12 +5,14 @@ mod damping;
 mod gravity;
 mod inertia;
 mod membrane;
+mod plies;
 
 pub use cure::Cure;
 pub use damping::ViscousDamping;
 pub use gravity::Gravity;
 pub use inertia::NoInertia;
 pub use membrane::Membrane;
+pub use plies::NonlinearPlies;
 
 use fem_io::scene::Form;
 

@@ -57,6 +57,8 @@ macro_rules! build {
     }};
 }
 
+pub(super) use build;
+
 impl Builder<'_> {
     pub(super) fn error<T>(&self, at: &Located<T>, message: impl Into<String>, help: impl Into<String>) -> SceneError {
         self.scene.source.error_at(&at.place, message, help)

@@ -4,6 +4,7 @@ mod builder;
 mod effects;
 mod fields;
 mod gauge;
+mod laws;
 mod memory;
 mod mesh;
 mod origin;
@@ -18,6 +19,7 @@ pub use origin::Origin;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 
 use crate::effect::{Decision, Effects};
+use crate::effects::NonlinearPlies;
 use crate::error::Error;
 use crate::registry::Registry;
 use builder::Builder;
@@ -27,6 +29,7 @@ use fem_core::dof::Dof;
 use fem_core::element::Element;
 use fem_core::failure::FailureCriterion;
 use fem_core::laminate::Laminate;
+use fem_core::laws::PlyLaws;
 use fem_core::material::{Material, MaterialError};
 use fem_core::mesh::PlaneMesh;
 use fem_core::plate::Plate;
@@ -50,6 +53,8 @@ pub struct Model {
     pub plate: Plate,
     /// The element of all cells.
     pub element: Box<dyn Element>,
+    /// The laws that plies follow, if some are not linear elastic.
+    pub laws: Option<PlyLaws>,
     /// Supports and other equations, eliminated.
     pub constraints: Constraints,
     /// Whether the supports stop all rigid motions.
@@ -132,7 +137,7 @@ impl Model {
             Damage::Off => Vec::new(),
             Damage::Onset => builder.criteria()?,
         };
-        let effects = builder.effects(&*element, &criteria)?;
+        let mut effects = builder.effects(&*element, &criteria)?;
 
         let levels = laminate.levels();
         let lacks = |why: MaterialError| {
@@ -170,6 +175,10 @@ impl Model {
         let resin = scene.interface.as_ref().map(|resin| resin.value);
         let threshold = builder.threshold(DelaminationThreshold::of(&laminate, &materials, resin))?;
         let profiles = builder.profiles(&plate)?;
+        let laws = builder.laws(&plate, &laminate, &materials, &*element)?;
+        if let Some(laws) = &laws {
+            effects.act(Box::new(NonlinearPlies(laws.clone())));
+        }
         let names: Vec<_> = criteria.iter().map(|(name, _)| name.as_str()).collect();
         info!(element = scene.element.name.value, criteria = names.join(", "), unknowns = constraints.ndof(), "model");
         Ok(Self {
@@ -179,6 +188,7 @@ impl Model {
             areal_mass,
             plate,
             element,
+            laws,
             constraints,
             held,
             division,

@@ -4,6 +4,7 @@ mod damping;
 mod delamination;
 mod gravity;
 mod inertia;
+mod laws;
 mod membrane;
 mod off;
 

@@ -64,7 +64,7 @@ fn the_restitution_is_thorntons() {
         let mut s = sys.state();
         s.v[0] = speed;
         scheme.start(&mut sys, &mut s).unwrap();
-        while s.t < 0.01 || law.force(&s.contacts[0], s.u[0]).force > 0.0 {
+        while s.t < 0.01 || law.force(&s.histories.contacts[0], s.u[0]).force > 0.0 {
             scheme.step(&mut sys, &mut s, 1e-3).unwrap();
         }
         let square = 1.2 * 3.0_f64.sqrt() * (1.0 - rho * rho / 6.0);

@@ -43,7 +43,7 @@ impl TrBdf2 {
         x.iter_mut().enumerate().for_each(|(i, x)| *x = given(i));
         sys.add_mass(1.0, x, d);
         sys.add_damping(damped, &s.v, d);
-        sys.solve_implicit(c * c, c, t, &s.contacts, &s.u, d)
+        sys.solve_implicit(c * c, c, t, &s.histories, &s.u, d)
     }
 }
 // ANCHOR_END: solve
@@ -60,7 +60,7 @@ impl Integrator for TrBdf2 {
 
     fn start(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError> {
         self.resume(sys);
-        sys.force(s.t, &s.u, &s.v, &s.contacts, &mut s.a);
+        sys.force(s.t, &s.u, &s.v, &s.histories, &mut s.a);
         // A structure at rest may have unknowns without mass.
         if s.a.iter().any(|a| *a != 0.0) { sys.solve_mass(0.0, &mut s.a) } else { Ok(()) }
     }
@@ -90,8 +90,7 @@ impl Integrator for TrBdf2 {
         if [&s.u, &s.v, &s.a].into_iter().flatten().any(|x| !x.is_finite()) {
             return Err(StepError::NotFinite { t: s.t });
         }
-        sys.commit(s);
-        Ok(())
+        sys.commit(s)
     }
     // ANCHOR_END: step
 }

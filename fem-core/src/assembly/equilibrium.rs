@@ -1,6 +1,7 @@
 //! Equilibrium of a plate under large deflections and loads at rest.
 
 use super::{AssemblyError, Cholesky, FactorError, LargePlate, Symbolic, Symmetric, condition};
+use crate::words::energy::Energy;
 use std::fmt;
 use std::num::NonZeroUsize;
 
@@ -26,8 +27,8 @@ const NEAR: f64 = 1e-6;
 pub struct Equilibrium {
     /// Independent displacements.
     pub u: Vec<f64>,
-    /// Strain energy, J.
-    pub energy: f64,
+    /// Work done on the plate, J.
+    pub energy: Energy,
     /// Newton decrements rᵀ K⁻¹ r over the work of the load, one per iteration: the squared distance to the solution in the
     /// energy norm. Near the solution each is about the square of the one before.
     pub decrements: Vec<f64>,
@@ -68,74 +69,112 @@ impl fmt::Display for EquilibriumError {
 }
 impl std::error::Error for EquilibriumError {}
 
-impl LargePlate {
-    /// Solves f(ũ) = `load` by Newton's method from `u`.
-    ///
-    /// Far from the solution the step is the first minimum of the energy along it: the strain energy is a polynomial of the
-    /// fourth degree in the displacements, so that five numbers give all of it along a line and the search is exact. A plate that
-    /// stiffens is never overshot and needs no load steps. A step to where the tangent is not positive definite is taken back
-    /// halfway, some times.
+/// An internal force whose equilibrium with a load is sought.
+pub trait InternalForce {
+    /// Internal force at the independent displacements `u`, and the tangent on the pattern of K where it is asked for; returns
+    /// the work done, J.
     ///
     /// # Errors
-    /// See [`EquilibriumError`].
-    pub fn equilibrium(
+    /// A cell that cannot be integrated, displacements that are not finite.
+    fn internal(
         &mut self,
-        symbolic: Symbolic,
+        u: &[f64],
+        force: &mut [f64],
+        tangent: Option<&mut Symmetric>,
+    ) -> Result<Energy, AssemblyError>;
+
+    /// How much of the step `d` from `u` is taken, where the work done is `energy`, J, and the internal force `force`; `tried` is
+    /// a work array.
+    ///
+    /// # Errors
+    /// As [`InternalForce::internal`].
+    fn length(
+        &mut self,
+        energy: f64,
+        force: &[f64],
         load: &[f64],
-        mut u: Vec<f64>,
-        threads: NonZeroUsize,
-    ) -> Result<Equilibrium, EquilibriumError> {
-        let n = self.ndof();
-        let mut tangent = Symmetric::zero(symbolic.pattern().clone());
-        let mut factor = Cholesky::new(symbolic, threads);
-        let (mut force, mut step, mut tried) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-        // Where the tangent was positive last, and how often a step may still be taken back halfway to there.
-        let (mut last, mut retreats) = (vec![0.0; n], RETREATS);
-        let mut decrements: Vec<f64> = Vec::new();
-        for _ in 0..MOST {
-            let energy = self.internal(&u, &mut force, Some(&mut tangent)).map_err(EquilibriumError::Assembly)?;
-            match factor.factorise(tangent.lower()) {
-                Err(FactorError::NotPositive { .. }) if retreats > 0 && !decrements.is_empty() => {
-                    retreats -= 1;
-                    u.iter_mut().zip(&last).for_each(|(u, last)| *u = 0.5 * (*u + last));
-                    continue;
-                }
-                done => done.map_err(EquilibriumError::Factor)?,
+        u: &[f64],
+        d: &[f64],
+        tried: &mut [f64],
+    ) -> Result<f64, EquilibriumError>;
+}
+
+/// Solves f(ũ) = `load` by Newton's method from `u`.
+///
+/// A step to where the tangent is not positive definite is taken back halfway, some times.
+///
+/// # Errors
+/// See [`EquilibriumError`].
+pub fn equilibrium(
+    plate: &mut dyn InternalForce,
+    symbolic: Symbolic,
+    load: &[f64],
+    mut u: Vec<f64>,
+    threads: NonZeroUsize,
+) -> Result<Equilibrium, EquilibriumError> {
+    let n = u.len();
+    let mut tangent = Symmetric::zero(symbolic.pattern().clone());
+    let mut factor = Cholesky::new(symbolic, threads);
+    let (mut force, mut step, mut tried) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+    // Where the tangent was positive last, and how often a step may still be taken back halfway to there.
+    let (mut last, mut retreats) = (vec![0.0; n], RETREATS);
+    let mut decrements: Vec<f64> = Vec::new();
+    for _ in 0..MOST {
+        let energy = plate.internal(&u, &mut force, Some(&mut tangent)).map_err(EquilibriumError::Assembly)?.total();
+        match factor.factorise(tangent.lower()) {
+            Err(FactorError::NotPositive { .. }) if retreats > 0 && !decrements.is_empty() => {
+                retreats -= 1;
+                u.iter_mut().zip(&last).for_each(|(u, last)| *u = 0.5 * (*u + last));
+                continue;
             }
-            last.copy_from_slice(&u);
-            for ((step, load), force) in step.iter_mut().zip(load).zip(&force) {
-                *step = load - force;
-            }
-            let residual = step.clone();
-            factor.solve(&mut step, 1);
-            // The work that the load would do on a linear plate, before there is any other; free strains alone have energy.
-            let work = dot(load, &u).abs().max(dot(load, &step).abs()).max(energy).max(f64::MIN_POSITIVE);
-            let decrement = dot(&residual, &step) / work;
-            let stalled = decrements.last().is_some_and(|last| decrement <= ROUNDING && decrement > 0.1 * last);
-            decrements.push(decrement);
-            let near = decrement <= NEAR;
-            let length = if near { 1.0 } else { self.minimum(energy, &force, load, &u, &step, &mut tried)? };
-            u.iter_mut().zip(&step).for_each(|(u, d)| *u += length * d);
-            if decrement <= ENOUGH || stalled {
-                let energy = self.internal(&u, &mut force, None).map_err(EquilibriumError::Assembly)?;
-                step.iter_mut().zip(load).zip(&force).for_each(|((rest, load), force)| *rest = load - force);
-                force.fill(0.0);
-                tangent.add_product(1.0, &u, &mut force);
-                let scale = dot(load, load).max(dot(&force, &force)).max(f64::MIN_POSITIVE);
-                let residual = (dot(&step, &step) / scale).sqrt();
-                let mut solves = decrements.len() as u64;
-                let condition = condition::estimate(&tangent, |x| {
-                    factor.solve(x, 1);
-                    solves += 1;
-                });
-                return Ok(Equilibrium { u, energy, decrements, residual, condition, solves });
-            }
+            done => done.map_err(EquilibriumError::Factor)?,
         }
-        Err(EquilibriumError::NoConvergence(decrements.last().copied().unwrap_or(f64::NAN)))
+        last.copy_from_slice(&u);
+        for ((step, load), force) in step.iter_mut().zip(load).zip(&force) {
+            *step = load - force;
+        }
+        let residual = step.clone();
+        factor.solve(&mut step, 1);
+        // The work that the load would do on a linear plate, before there is any other; free strains alone have energy.
+        let work = dot(load, &u).abs().max(dot(load, &step).abs()).max(energy).max(f64::MIN_POSITIVE);
+        let decrement = dot(&residual, &step) / work;
+        let stalled = decrements.last().is_some_and(|last| decrement <= ROUNDING && decrement > 0.1 * last);
+        decrements.push(decrement);
+        let near = decrement <= NEAR;
+        let length = if near { 1.0 } else { plate.length(energy, &force, load, &u, &step, &mut tried)? };
+        u.iter_mut().zip(&step).for_each(|(u, d)| *u += length * d);
+        if decrement <= ENOUGH || stalled {
+            let energy = plate.internal(&u, &mut force, None).map_err(EquilibriumError::Assembly)?;
+            step.iter_mut().zip(load).zip(&force).for_each(|((rest, load), force)| *rest = load - force);
+            force.fill(0.0);
+            tangent.add_product(1.0, &u, &mut force);
+            let scale = dot(load, load).max(dot(&force, &force)).max(f64::MIN_POSITIVE);
+            let residual = (dot(&step, &step) / scale).sqrt();
+            let mut solves = decrements.len() as u64;
+            let condition = condition::estimate(&tangent, |x| {
+                factor.solve(x, 1);
+                solves += 1;
+            });
+            return Ok(Equilibrium { u, energy, decrements, residual, condition, solves });
+        }
+    }
+    Err(EquilibriumError::NoConvergence(decrements.last().copied().unwrap_or(f64::NAN)))
+}
+
+impl InternalForce for LargePlate {
+    fn internal(
+        &mut self,
+        u: &[f64],
+        force: &mut [f64],
+        tangent: Option<&mut Symmetric>,
+    ) -> Result<Energy, AssemblyError> {
+        Ok(Energy { stored: LargePlate::internal(self, u, force, tangent)?, dissipated: 0.0 })
     }
 
-    /// First minimum of W(u + s d) − s loadᵀ d beyond s = 0.
-    fn minimum(
+    /// First minimum of W(u + s d) − s loadᵀ d beyond s = 0: the strain energy is a polynomial of the fourth degree in the
+    /// displacements, so that five numbers give all of it along a line and the search is exact. A plate that stiffens is never
+    /// overshot and needs no load steps.
+    fn length(
         &mut self,
         energy: f64,
         force: &[f64],
@@ -147,7 +186,7 @@ impl LargePlate {
         let mut scrap = vec![0.0; u.len()];
         let mut at = |s: f64| {
             tried.iter_mut().zip(u).zip(d).for_each(|((t, u), d)| *t = u + s * d);
-            self.internal(tried, &mut scrap, None).map_err(EquilibriumError::Assembly)
+            LargePlate::internal(self, tried, &mut scrap, None).map_err(EquilibriumError::Assembly)
         };
         // W = energy + a s + s² (b + c s + e s²)
         let a = dot(force, d);
@@ -174,6 +213,6 @@ impl LargePlate {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

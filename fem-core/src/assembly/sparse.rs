@@ -1,9 +1,10 @@
 //! A plate's K and M as a [`Structure`].
 
-use super::{Cholesky, FactorError, LargePlate, Symbolic, Symmetric, coarse, condition};
+use super::{Cholesky, FactorError, InternalForce, LargePlate, LawPlate, Symbolic, Symmetric, coarse, condition};
 use crate::contracts::structure::Coarse;
 use crate::contracts::structure::{Nonlinear, SolveError, Structure, Tangent};
 use crate::words::damping::Rayleigh;
+use crate::words::energy::Energy;
 use crate::words::prolongation::Prolongation;
 use std::fmt;
 use std::num::NonZeroUsize;
@@ -18,6 +19,30 @@ enum Factored {
     Tangent,
 }
 
+/// Internal forces other than K u.
+#[derive(Debug)]
+enum Beyond {
+    Large(LargePlate),
+    Laws(LawPlate),
+}
+
+impl Beyond {
+    fn internal(
+        &mut self,
+        k: &Symmetric,
+        u: &[f64],
+        points: &[f64],
+        force: &mut [f64],
+        tangent: Option<&mut Symmetric>,
+    ) -> Result<Energy, SolveError> {
+        let done = match self {
+            Self::Large(large) => InternalForce::internal(large, u, force, tangent),
+            Self::Laws(laws) => laws.on(k, points).internal(u, force, tangent),
+        };
+        done.map_err(|e| SolveError(e.to_string()))
+    }
+}
+
 /// Sparse stiffness and mass on one pattern, with one factorisation kept.
 pub struct SparseStructure {
     k: Symmetric,
@@ -30,7 +55,7 @@ pub struct SparseStructure {
     /// Of a tangent, which comes with its force.
     force: Vec<f64>,
     prolongation: Option<Prolongation>,
-    large: Option<LargePlate>,
+    beyond: Option<Beyond>,
     damping: Option<Rayleigh>,
     threads: NonZeroUsize,
     name: Box<dyn Fn(usize) -> String + Send>,
@@ -58,7 +83,7 @@ impl SparseStructure {
             combined: Symmetric::zero(symbolic.pattern().clone()),
             force: Vec::new(),
             prolongation: None,
-            large: None,
+            beyond: None,
             damping: None,
             threads,
             factor: Cholesky::new(symbolic, threads),
@@ -78,7 +103,12 @@ impl SparseStructure {
 
     /// Gives the structure the internal forces of large deflections; its K is their tangent at rest.
     pub fn stiffen(&mut self, large: Option<LargePlate>) {
-        self.large = large;
+        self.beyond = large.map(Beyond::Large);
+    }
+
+    /// Gives the structure the internal forces of plies that follow laws; its K is their tangent before anything has happened.
+    pub fn follow(&mut self, laws: LawPlate) {
+        self.beyond = Some(Beyond::Laws(laws));
     }
 
     /// Gives the structure viscous damping.
@@ -207,8 +237,15 @@ impl Structure for SparseStructure {
         mass + stiffness * omega * omega
     }
 
+    fn states(&self) -> usize {
+        match &self.beyond {
+            Some(Beyond::Laws(laws)) => laws.states(),
+            _ => 0,
+        }
+    }
+
     fn nonlinear(&mut self) -> Option<&mut dyn Nonlinear> {
-        self.large.is_some().then_some(self as _)
+        self.beyond.is_some().then_some(self as _)
     }
 
     fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
@@ -234,15 +271,21 @@ impl Structure for SparseStructure {
 }
 
 impl Nonlinear for SparseStructure {
-    fn internal(&mut self, u: &[f64], force: &mut [f64]) -> Result<f64, SolveError> {
-        let large = self.large.as_mut().ok_or_else(linear)?;
-        large.internal(u, force, None).map_err(|e| SolveError(e.to_string()))
+    fn internal(&mut self, u: &[f64], points: &[f64], force: &mut [f64]) -> Result<Energy, SolveError> {
+        self.beyond.as_mut().ok_or_else(linear)?.internal(&self.k, u, points, force, None)
     }
 
-    fn linearise(&mut self, Tangent { cm, cc, u }: &Tangent) -> Result<(), SolveError> {
-        let large = self.large.as_mut().ok_or_else(linear)?;
+    fn commit(&mut self, u: &[f64], points: &mut [f64]) -> Result<(), SolveError> {
+        match &mut self.beyond {
+            Some(Beyond::Laws(laws)) => laws.commit(u, points).map_err(|e| SolveError(e.to_string())),
+            _ => Ok(()),
+        }
+    }
+
+    fn linearise(&mut self, Tangent { cm, cc, u, points }: &Tangent) -> Result<(), SolveError> {
+        let beyond = self.beyond.as_mut().ok_or_else(linear)?;
         self.force.resize(u.len(), 0.0);
-        large.internal(u, &mut self.force, Some(&mut self.combined)).map_err(|e| SolveError(e.to_string()))?;
+        beyond.internal(&self.k, u, points, &mut self.force, Some(&mut self.combined))?;
         let damping = self.damping.unwrap_or_default();
         let cm = cm + cc * damping.mass;
         let combined = self.combined.lower_mut().val_mut();
@@ -266,5 +309,5 @@ impl Nonlinear for SparseStructure {
 }
 
 fn linear() -> SolveError {
-    SolveError("the structure does not support large deflections".into())
+    SolveError("the structure is linear".into())
 }

@@ -343,7 +343,7 @@ pub fn positive(jacobian: f64) -> Result<f64, ElementError> {
 }
 
 /// `k ← k + aᵀ b`, a and b of `rows × n`, column-major.
-fn add_product(k: &mut [f64], a: &[f64], b: &[f64], rows: usize, n: usize) {
+pub(crate) fn add_product(k: &mut [f64], a: &[f64], b: &[f64], rows: usize, n: usize) {
     for (j, bj) in b.chunks_exact(rows).enumerate() {
         let column = &mut k[j * n..(j + 1) * n];
         for (k, ai) in column.iter_mut().zip(a.chunks_exact(rows)) {

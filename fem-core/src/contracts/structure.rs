@@ -1,5 +1,6 @@
 //! What the dynamic half may ask of a structure, sparse or reduced, linear or not.
 
+use crate::words::energy::Energy;
 use crate::words::prolongation::Prolongation;
 use std::fmt;
 
@@ -102,6 +103,11 @@ pub trait Structure: fmt::Debug + Send {
         Ok(1.02 * square.sqrt())
     }
 
+    /// Number of state variables of all points, where plies follow laws with a memory; those of a virgin structure are 0.
+    fn states(&self) -> usize {
+        0
+    }
+
     /// Its internal force, where that is not K u.
     fn nonlinear(&mut self) -> Option<&mut dyn Nonlinear> {
         None
@@ -130,13 +136,23 @@ pub struct Coarse {
     pub prolongation: Prolongation,
 }
 
-/// Internal forces that are not linear in the displacements: f(u) = ∂W/∂u with f(0) = 0 and ∂f/∂u = K at u = 0.
+/// Internal forces that are not linear in the displacements, with f(0) = 0 and ∂f/∂u = K at u = 0 before anything has happened.
+///
+/// Where plies follow laws with a memory, f depends on the states `points` that the last accepted step has left.
 pub trait Nonlinear {
-    /// Internal force at `u`; returns the strain energy W, J.
+    /// Internal force at `u`; returns the work done on the structure, J.
     ///
     /// # Errors
     /// A cell that cannot be integrated, displacements that are not finite.
-    fn internal(&mut self, u: &[f64], force: &mut [f64]) -> Result<f64, SolveError>;
+    fn internal(&mut self, u: &[f64], points: &[f64], force: &mut [f64]) -> Result<Energy, SolveError>;
+
+    /// Takes `u` into the states.
+    ///
+    /// # Errors
+    /// As [`Nonlinear::internal`].
+    fn commit(&mut self, _u: &[f64], _points: &mut [f64]) -> Result<(), SolveError> {
+        Ok(())
+    }
 
     /// Factorises a tangent and keeps it.
     ///
@@ -161,4 +177,6 @@ pub struct Tangent {
     pub cc: f64,
     /// Displacements at which the internal force is derived.
     pub u: Vec<f64>,
+    /// States of the points there.
+    pub points: Vec<f64>,
 }

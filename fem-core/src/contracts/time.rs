@@ -16,14 +16,26 @@ pub struct State {
     pub v: Vec<f64>,
     /// Accelerations.
     pub a: Vec<f64>,
+    /// What laws remember.
+    pub histories: Histories,
+}
+
+/// What the laws of a system remember of its accepted steps.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Histories {
     /// One history per contact.
     pub contacts: Vec<ContactHistory>,
+    /// State variables of the laws of plies, point by point as the structure keeps them
+    /// ([`Nonlinear::states`](crate::contracts::structure::Structure::states)).
+    pub points: Vec<f64>,
 }
 
 impl State {
     /// At rest at t = 0.
     pub fn at_rest(ndof: usize, contacts: usize) -> Self {
-        Self { t: 0.0, u: vec![0.0; ndof], v: vec![0.0; ndof], a: vec![0.0; ndof], contacts: vec![[0.0; 8]; contacts] }
+        let histories = Histories { contacts: vec![[0.0; 8]; contacts], points: Vec::new() };
+        Self { t: 0.0, u: vec![0.0; ndof], v: vec![0.0; ndof], a: vec![0.0; ndof], histories }
     }
 }
 
@@ -63,7 +75,7 @@ impl std::error::Error for StepError {}
 
 /// The system M a = p(t) − C v − K u + contact(u; h): what an integrator may ask of it.
 ///
-/// `h` is the committed history of each contact. An implementation solves its own implicit equation, because it alone
+/// `h` is what laws have committed. An implementation solves its own implicit equation, because it alone
 /// knows its structure: a linear plate under one contact force needs one back-substitution and a scalar equation, a
 /// geometrically nonlinear one a Newton iteration.
 pub trait SecondOrderSystem {
@@ -71,7 +83,7 @@ pub trait SecondOrderSystem {
     fn ndof(&self) -> usize;
 
     /// `f ← p(t) − C v − K u + contact(u; h)`.
-    fn force(&mut self, t: f64, u: &[f64], v: &[f64], h: &[ContactHistory], f: &mut [f64]);
+    fn force(&mut self, t: f64, u: &[f64], v: &[f64], h: &Histories, f: &mut [f64]);
 
     /// `y ← y + scale · M x`.
     fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]);
@@ -100,13 +112,16 @@ pub trait SecondOrderSystem {
         cm: f64,
         cc: f64,
         t: f64,
-        h: &[ContactHistory],
+        h: &Histories,
         from: &[f64],
         d: &mut [f64],
     ) -> Result<(), StepError>;
 
-    /// Commits the contact indentations of the accepted state into its histories.
-    fn commit(&self, state: &mut State);
+    /// Takes the accepted state into its histories.
+    ///
+    /// # Errors
+    /// A point at which a law finds no answer.
+    fn commit(&mut self, state: &mut State) -> Result<(), StepError>;
 
     /// Indentation of contact `i` and its rate.
     fn indentation(&self, i: usize, state: &State) -> Indentation;
@@ -156,7 +171,7 @@ pub trait Integrator: DynClone + Debug + Send {
     /// Sizes work arrays for a state that another march left.
     fn resume(&mut self, sys: &mut dyn SecondOrderSystem);
 
-    /// Advances `s` by `dt` and commits the contacts.
+    /// Advances `s` by `dt` and commits its histories.
     ///
     /// # Errors
     /// Those of the system; `s` is then not to be used.

@@ -3,6 +3,7 @@
 pub mod constraint;
 mod error;
 pub mod laminate;
+pub mod laws;
 pub mod load;
 pub mod mesh;
 pub mod patch;

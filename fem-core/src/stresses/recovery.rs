@@ -3,6 +3,7 @@
 use crate::contracts::element::{Element, ElementError, Part, Scratch};
 use crate::contracts::large::LargeDeflection;
 use crate::plates::laminate::Laminate;
+use crate::plates::laws::{Asked, CellAnswer, PlyLaws};
 use crate::plates::plate::Plate;
 use crate::words::material::Material;
 use crate::words::tensor::{Matrix6, strain_rotation};
@@ -152,6 +153,46 @@ impl Recovery {
             }
         }
         self.averaged(&strains, 1, out);
+        Ok(())
+    }
+
+    /// Puts the stresses of plies that follow `laws` in place of those of linear elasticity: means over the Gauss points of
+    /// their cells at the displacements `u` (one field, before elimination of constraints) and the states `points`.
+    ///
+    /// # Errors
+    /// A cell that the element refuses, a law that finds no stress.
+    pub fn put_lawful(
+        &self,
+        plate: &Plate,
+        element: &dyn Element,
+        laws: &PlyLaws,
+        (u, points): (&[f64], &[f64]),
+        out: &mut [f64],
+    ) -> Result<(), ElementError> {
+        let mut means = Vec::with_capacity(self.sources.len() * plate.layers());
+        let (mut answer, mut dofs) = (CellAnswer::default(), Vec::new());
+        for quad in &self.sources {
+            for layer in 0..plate.layers() {
+                let cell = quad * plate.layers() + layer;
+                plate.cell_dofs(cell, &mut dofs);
+                let local: Vec<f64> = dofs.iter().map(|dof| u[*dof]).collect();
+                let states = &points[laws.states_of(cell)];
+                laws.respond(Asked { plate, element, cell, u: &local, states }, None, false, &mut answer)?;
+                means.push(answer.means.clone());
+            }
+        }
+        for (window, out) in self.windows.iter().zip(out.chunks_exact_mut(6 * self.stations.len())) {
+            for (station, out) in self.stations.iter().zip(out.chunks_exact_mut(6)) {
+                let of = |source: &usize| means[source * plate.layers() + station.layer][station.part.slice];
+                let lawful = !station.interface && window.iter().any(|(source, _)| of(source).1 > 0.0);
+                if lawful {
+                    out.fill(0.0);
+                    for (source, share) in window {
+                        out.iter_mut().zip(of(source).0).for_each(|(s, mean)| *s += share * mean);
+                    }
+                }
+            }
+        }
         Ok(())
     }
 

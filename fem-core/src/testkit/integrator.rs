@@ -1,7 +1,7 @@
 //! The contract of a time integrator, and a system with known solutions.
 
 use crate::contracts::contact::{Branches, ContactForce, ContactHistory, ContactLaw, Indentation};
-use crate::contracts::time::{Integrator, SecondOrderSystem, State, StepError};
+use crate::contracts::time::{Histories, Integrator, SecondOrderSystem, State, StepError};
 use crate::words::energy::Energy;
 use std::error::Error;
 
@@ -50,9 +50,9 @@ impl Oscillators {
         State::at_rest(self.modes.len(), usize::from(self.contact.is_some()))
     }
 
-    fn contact(&self, h: &[ContactHistory], i: usize, u: f64) -> ContactForce {
+    fn contact(&self, h: &Histories, i: usize, u: f64) -> ContactForce {
         match &self.contact {
-            Some(law) if i == 0 => law.force(&h[0], u),
+            Some(law) if i == 0 => law.force(&h.contacts[0], u),
             _ => ContactForce::default(),
         }
     }
@@ -63,7 +63,7 @@ impl SecondOrderSystem for Oscillators {
         self.modes.len()
     }
 
-    fn force(&mut self, t: f64, u: &[f64], v: &[f64], h: &[ContactHistory], f: &mut [f64]) {
+    fn force(&mut self, t: f64, u: &[f64], v: &[f64], h: &Histories, f: &mut [f64]) {
         for (i, mode) in self.modes.iter().enumerate() {
             f[i] = (self.load)(i, t) - mode.c * v[i] - mode.k * u[i] - self.contact(h, i, u[i]).force;
         }
@@ -96,7 +96,7 @@ impl SecondOrderSystem for Oscillators {
         cm: f64,
         cc: f64,
         t: f64,
-        h: &[ContactHistory],
+        h: &Histories,
         from: &[f64],
         d: &mut [f64],
     ) -> Result<(), StepError> {
@@ -122,10 +122,11 @@ impl SecondOrderSystem for Oscillators {
         Ok(())
     }
 
-    fn commit(&self, s: &mut State) {
+    fn commit(&mut self, s: &mut State) -> Result<(), StepError> {
         if let Some(law) = &self.contact {
-            law.commit(&mut s.contacts[0], s.u[0]);
+            law.commit(&mut s.histories.contacts[0], s.u[0]);
         }
+        Ok(())
     }
 
     fn indentation(&self, _: usize, s: &State) -> Indentation {
@@ -292,7 +293,7 @@ fn check_contact(integrator: &dyn Integrator) -> Checked<()> {
         let mut march = bounce(integrator)?;
         for step in 1..=steps {
             march.run(8.0 / f64::from(steps), 1)?;
-            let [commits, last, ..] = march.s.contacts[0];
+            let [commits, last, ..] = march.s.histories.contacts[0];
             if commits < f64::from(step) || last != march.s.u[0] {
                 return Err(format!("step {step} does not end with a commit of its state").into());
             }

@@ -109,11 +109,11 @@ pub fn apply(m: &Matrix6, v: &[f64; 6]) -> [f64; 6] {
     std::array::from_fn(|i| (0..6).map(|j| m[i][j] * v[j]).sum())
 }
 
-fn transpose(m: &Matrix6) -> Matrix6 {
+pub(crate) fn transpose(m: &Matrix6) -> Matrix6 {
     std::array::from_fn(|i| std::array::from_fn(|j| m[j][i]))
 }
 
-fn multiply(a: &Matrix6, b: &Matrix6) -> Matrix6 {
+pub(crate) fn multiply(a: &Matrix6, b: &Matrix6) -> Matrix6 {
     std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| a[i][k] * b[k][j]).sum()))
 }
 

@@ -1,9 +1,8 @@
 //! Implicit steps of a structure whose internal force is not linear.
 
 use super::ImpactSystem;
-use fem_core::contact::ContactHistory;
 use fem_core::structure::{Nonlinear, SolveError, Tangent};
-use fem_core::time::StepError;
+use fem_core::time::{Histories, StepError};
 
 /// Error of the change of displacement at which an iteration ends, relative, in the energy norm of the tangent.
 const ENOUGH: f64 = 1e-6;
@@ -72,12 +71,12 @@ impl ImpactSystem {
         cm: f64,
         cc: f64,
         t: f64,
-        h: &[ContactHistory],
+        h: &Histories,
         from: &[f64],
         d: &mut [f64],
     ) -> Result<(), StepError> {
         let n = self.structure.ndof();
-        let take = |u: &[f64]| Tangent { cm, cc, u: u.to_vec() };
+        let take = |u: &[f64]| Tangent { cm, cc, u: u.to_vec(), points: h.points.clone() };
         if !self.newton.tangent.as_ref().is_some_and(|tangent| tangent.cm == cm && tangent.cc == cc) {
             self.linearise(take(&from[..n]))?;
         }
@@ -94,7 +93,7 @@ impl ImpactSystem {
             at.clear();
             at.extend(from[..n].iter().zip(&*d).map(|(u, d)| u + d));
             residual.resize(n, 0.0);
-            let energy = nonlinear(structure.nonlinear())?.internal(at, residual).map_err(unsolved)?;
+            let energy = nonlinear(structure.nonlinear())?.internal(at, &h.points, residual).map_err(unsolved)?;
             residual.iter_mut().zip(&*load).for_each(|(f, r)| *f = r - *f);
             structure.add_mass(-cm, &d[..n], residual);
             structure.add_damping(-cc, &d[..n], residual);
@@ -106,7 +105,7 @@ impl ImpactSystem {
             influence.free.fill(0.0);
             influence.set_approaches(impactors, from);
             influence.set_approaches(impactors, d);
-            *contact_calls += influence.touch(impactors, t, h, step)?;
+            *contact_calls += influence.touch(impactors, t, &h.contacts, step)?;
             d.iter_mut().zip(&*step).for_each(|(d, step)| *d += step);
             let work: f64 = residual.iter().zip(&*step).map(|(r, d)| r * d).sum();
             let square = work + influence.work(impactors, step);
@@ -121,7 +120,7 @@ impl ImpactSystem {
                 _ => size,
             };
             // A mode without inertia may ring, so that the way from ũ is longer than the whole displacement.
-            let displacement = energy.abs().sqrt();
+            let displacement = energy.total().abs().sqrt();
             if left <= ENOUGH * largest.min(displacement) || size <= ROUNDING * displacement {
                 return Ok(());
             }
@@ -136,7 +135,7 @@ impl ImpactSystem {
                 before = None;
             }
         }
-        Err(StepError::NoConvergence { t, what: "Newton's method for the large deflections of the plate".into() })
+        Err(StepError::NoConvergence { t, what: "Newton's method for the plate".into() })
     }
 }
 
@@ -144,6 +143,6 @@ fn nonlinear(structure: Option<&mut dyn Nonlinear>) -> Result<&mut dyn Nonlinear
     structure.ok_or_else(|| StepError::Factorisation("the structure has become linear".into()))
 }
 
-fn unsolved(e: SolveError) -> StepError {
+pub(super) fn unsolved(e: SolveError) -> StepError {
     StepError::Factorisation(e.0)
 }

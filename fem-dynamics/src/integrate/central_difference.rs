@@ -37,7 +37,7 @@ impl Integrator for CentralDifference {
             s.u[i] += dt * s.v[i];
         }
         s.t += dt;
-        sys.force(s.t, &s.u, &s.v, &s.contacts, &mut s.a);
+        sys.force(s.t, &s.u, &s.v, &s.histories, &mut s.a);
         sys.solve_mass(half, &mut s.a)?;
         for (v, a) in s.v.iter_mut().zip(&s.a) {
             *v += half * a;

@@ -75,7 +75,7 @@ impl Integrator for GeneralizedAlpha {
 
         d.fill(0.0);
         if *alpha_f != 0.0 {
-            sys.force(s.t, &s.u, &s.v, &s.contacts, d);
+            sys.force(s.t, &s.u, &s.v, &s.histories, d);
             d.iter_mut().for_each(|f| *f *= *alpha_f * weight);
         }
         if *alpha_m != 0.0 {
@@ -87,7 +87,7 @@ impl Integrator for GeneralizedAlpha {
         }
         sys.add_damping(-1.0, &s.v, d);
         s.t += dt;
-        sys.solve_implicit(cm, cc, s.t, &s.contacts, predicted, d)?;
+        sys.solve_implicit(cm, cc, s.t, &s.histories, predicted, d)?;
         for (i, (predicted, d)) in predicted.iter().zip(d).enumerate() {
             s.u[i] = predicted + *d;
             s.a[i] = *d / (*beta * dt * dt);

@@ -1,7 +1,7 @@
 //! Steps that end where a contact law changes its branch.
 
 use fem_core::contact::{Branches, Indentation};
-use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit};
+use fem_core::time::{Histories, Integrator, SecondOrderSystem, State, StepError, StepLimit};
 
 /// Length of the bracket around a switch, over that of the step. The error that it leaves is of its square.
 const PRECISION: f64 = 1e-9;
@@ -93,10 +93,10 @@ impl Located {
     fn first(&self, sys: &dyn SecondOrderSystem, s: &State, span: f64) -> Option<Found> {
         let each = |contact: usize| {
             let path = self.path(sys, contact, s, [0.0, span]);
-            let kind = path.switch(sys.branches(contact, &self.before.contacts[contact]))?;
+            let kind = path.switch(sys.branches(contact, &self.before.histories.contacts[contact]))?;
             Some(Found { switch: Switch { contact, kind }, at: path.meets(kind) })
         };
-        (0..s.contacts.len()).filter_map(each).min_by(|a, b| a.at.total_cmp(&b.at))
+        (0..s.histories.contacts.len()).filter_map(each).min_by(|a, b| a.at.total_cmp(&b.at))
     }
 
     fn path(&self, sys: &dyn SecondOrderSystem, contact: usize, s: &State, times: [f64; 2]) -> Path {
@@ -144,12 +144,13 @@ impl Located {
 
 /// Copies without allocating, once the lengths agree.
 fn copy(from: &State, to: &mut State) {
-    let State { t, u, v, a, contacts } = to;
+    let State { t, u, v, a, histories: Histories { contacts, points } } = to;
     *t = from.t;
     u.clone_from(&from.u);
     v.clone_from(&from.v);
     a.clone_from(&from.a);
-    contacts.clone_from(&from.contacts);
+    contacts.clone_from(&from.histories.contacts);
+    points.clone_from(&from.histories.points);
 }
 
 /// A change of branch.

@@ -36,15 +36,14 @@ const MARGIN: f64 = 0.9;
 
 /// Acceleration of equilibrium. No force asks nothing of M, so that a structure at rest may have massless dofs.
 fn accelerate(sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError> {
-    sys.force(s.t, &s.u, &s.v, &s.contacts, &mut s.a);
+    sys.force(s.t, &s.u, &s.v, &s.histories, &mut s.a);
     if s.a.iter().any(|a| *a != 0.0) { sys.solve_mass(0.0, &mut s.a) } else { Ok(()) }
 }
 
 /// Ends a step: the contacts take the new state, unless it is not finite.
-fn accept(sys: &dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError> {
+fn accept(sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError> {
     if !s.t.is_finite() || [&s.u, &s.v, &s.a].into_iter().flatten().any(|x| !x.is_finite()) {
         return Err(StepError::NotFinite { t: s.t });
     }
-    sys.commit(s);
-    Ok(())
+    sys.commit(s)
 }

@@ -39,7 +39,7 @@ impl Stages {
             let (earlier_a, a) = self.a.split_at_mut(stage);
             advance(&mut self.u, &s.u, h, row, earlier_v);
             advance(&mut v[0], &s.v, h, row, earlier_a);
-            sys.force(s.t + h * row.iter().sum::<f64>(), &self.u, &v[0], &s.contacts, &mut a[0]);
+            sys.force(s.t + h * row.iter().sum::<f64>(), &self.u, &v[0], &s.histories, &mut a[0]);
             sys.solve_mass(0.0, &mut a[0])?;
         }
         Ok(())

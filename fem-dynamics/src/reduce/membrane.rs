@@ -1,6 +1,7 @@
 //! A reduced plate whose deflections stretch it.
 
 use super::{Modal, Reduced};
+use fem_core::energy::Energy;
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
 use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent};
@@ -280,7 +281,7 @@ impl Structure for MembranePlate {
 }
 
 impl Nonlinear for MembranePlate {
-    fn internal(&mut self, q: &[f64], force: &mut [f64]) -> Result<f64, SolveError> {
+    fn internal(&mut self, q: &[f64], _points: &[f64], force: &mut [f64]) -> Result<Energy, SolveError> {
         self.stretch(q);
         let mut energy = 0.0;
         for ((f, k), q) in force.iter_mut().zip(&self.modal.stiffness).zip(q) {
@@ -294,10 +295,10 @@ impl Nonlinear for MembranePlate {
             force.iter_mut().zip(product).for_each(|(f, p)| *f += 2.0 * tension * p);
             force.iter_mut().zip(self.coupling(t)).for_each(|(f, c)| *f += value * c);
         }
-        Ok(energy)
+        Ok(Energy { stored: energy, dissipated: 0.0 })
     }
 
-    fn linearise(&mut self, Tangent { cm, cc, u: q }: &Tangent) -> Result<(), SolveError> {
+    fn linearise(&mut self, Tangent { cm, cc, u: q, .. }: &Tangent) -> Result<(), SolveError> {
         self.stretch(q);
         let n = q.len();
         let mut tangent = DMatrix::zeros(n, n);

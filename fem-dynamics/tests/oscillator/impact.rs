@@ -22,7 +22,7 @@ fn impact(scheme: Box<dyn Integrator>, m: f64, v: f64, law: Box<dyn ContactLaw>,
     let start = 0.5 * m * v * v;
     let mut seen = Impact { force: 0.0, alpha: 0.0, time: 0.0, imbalance: 0.0, end: s.clone() };
     march(scheme, &mut sys, s, dt, steps, |s| {
-        let h = &s.contacts[0];
+        let h = &s.histories.contacts[0];
         let energy = law.energy(h, s.u[0]);
         let total = 0.5 * m * s.v[0] * s.v[0] + energy.stored + energy.dissipated;
         seen.imbalance = seen.imbalance.max((total / start - 1.0).abs());
@@ -107,7 +107,7 @@ fn sun_yang_on_the_ground_meets_closed_forms() {
             assert!(seen.imbalance <= of_order(order, [4e-3, 2e-6, 2e-9]), "{name}: energy {:e}", seen.imbalance);
 
             let touch = dent + 1e-2 * (alpha - dent) * [-1.0, 1.0][usize::from(dent == 0.0)];
-            let force = law.force(&seen.end.contacts[0], touch).force;
+            let force = law.force(&seen.end.histories.contacts[0], touch).force;
             assert_eq!(force == 0.0, dent > 0.0, "{name}: force {force} at {touch}");
         }
     }

@@ -183,8 +183,8 @@ fn of_integrators() {
         ("unequal ones", Careless { step: |dt, last| if last > 0.0 { last } else { dt }, ..sound.clone() }),
         ("end at t", after(|_, s| s.t += 1e-6)),
         ("restarted", after(|step, s| s.v[0] += 1e-9 * step)),
-        ("commit", after(|_, s| s.contacts.iter_mut().for_each(|h| h[1] = 0.0))),
-        ("elastic stop", after(|_, s| s.v[0] *= 1.0 - 1e-4 * s.contacts.len() as f64)),
+        ("commit", after(|_, s| s.histories.contacts.iter_mut().for_each(|h| h[1] = 0.0))),
+        ("elastic stop", after(|_, s| s.v[0] *= 1.0 - 1e-4 * s.histories.contacts.len() as f64)),
         ("NaN gives Ok", Careless { deaf: true, ..sound.clone() }),
     ] {
         let why = check_integrator(&scheme).unwrap_err();

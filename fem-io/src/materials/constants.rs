@@ -4,13 +4,19 @@ use crate::document::keys::{Form, Key, Keys, key};
 use crate::document::reader::Reader;
 use crate::document::source::SceneError;
 use fem_core::material::{Elastic, Material, Strength, Strengths};
-use fem_core::plugin::Dimension;
+use fem_core::plugin::{Dimension, Kind};
 
 /// The keys of a material: where its constants come from, then the constants themselves.
 pub(crate) const KEYS: Keys = &[
     key("library", Form::Library, r#""AS4/3502""#, "a material of the library; constants given here override its own"),
     key("file", Form::Text, r#""materials.toml""#, "a file of materials in the format of the library"),
     key("name", Form::Text, r#""my tape""#, "which material of `file`"),
+    key(
+        "law",
+        Form::OneOf(&[Form::PluginName(Kind::PlyLaw), Form::Plugin(Kind::PlyLaw, "name", &[])]),
+        r#"{ name = "hahn-tsai", alpha = "2.4e-8 1/MPa^3" }"#,
+        "law that its plies follow beyond linear elasticity; without one they are linear elastic",
+    ),
     stress("e", r#""70 GPa""#, "Young's modulus of an isotropic material"),
     key("nu", Form::Number, "0.3", "Poisson's ratio of an isotropic material"),
     stress("e1", r#""130.3 GPa""#, "Young's modulus along the fibres"),
@@ -40,7 +46,7 @@ pub(crate) const KEYS: Keys = &[
 ];
 
 /// The keys of constants.
-pub(crate) const CONSTANTS: Keys = KEYS.split_at(3).1;
+pub(crate) const CONSTANTS: Keys = KEYS.split_at(4).1;
 
 const fn stress(name: &'static str, example: &'static str, about: &'static str) -> Key {
     key(name, Form::Quantity(Dimension::PRESSURE), example, about)

@@ -1,5 +1,6 @@
 //! Materials of a scene: constants, over those of the library or of a file of the user's if one of them is named.
 
+use super::plugin::PluginSpec;
 use crate::document::reader::SceneValue;
 use crate::document::source::{Located, Origin, SceneError, SceneSource, read_text};
 use crate::document::tree::Table;
@@ -12,6 +13,14 @@ use std::sync::Arc;
 /// All materials of the table `materials`; files are looked for from `folder`.
 pub(super) fn read_all(field: &SceneValue<'_>, folder: &Path) -> Result<Vec<Located<Material>>, SceneError> {
     field.entries()?.iter().map(|(name, field)| Ok(field.at(read(name, field, folder)?))).collect()
+}
+
+/// The laws that they name, material by material.
+pub(super) fn read_laws(field: &SceneValue<'_>) -> Result<Vec<Option<PluginSpec>>, SceneError> {
+    let law = |(_, field): &(&str, SceneValue<'_>)| {
+        field.table(KEYS)?.optional("law").map(|law| PluginSpec::read_or_name(&law, &[])).transpose()
+    };
+    field.entries()?.iter().map(law).collect()
 }
 
 /// Position of the material that `field` names.

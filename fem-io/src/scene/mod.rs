@@ -68,6 +68,8 @@ pub struct Scene {
     pub symmetry: Option<Located<SymmetryGroup>>,
     /// Its materials.
     pub materials: Vec<Located<Material>>,
+    /// Of each of them, the law that its plies follow, if it is not linear elasticity.
+    pub laws: Vec<Option<PluginSpec>>,
     /// The laminate; its materials count in `materials`.
     pub laminate: Located<Laminate>,
     /// Material of the resin between plies, for criteria that look there; counts in `materials`.
@@ -245,6 +247,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
             None => None,
         },
         materials,
+        laws: material::read_laws(&root.required("materials")?)?,
         laminate,
         interface,
         z_derivatives: read_z_derivatives(&element)?,

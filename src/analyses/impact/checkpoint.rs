@@ -46,15 +46,26 @@ fn keys(model: &Model) -> Result<Keys, FileError> {
 mod tests {
     #![allow(clippy::unwrap_used)]
 
-    use fem_core::time::State;
+    use fem_core::time::{Histories, State};
 
     #[test]
     fn every_bit_of_a_state_comes_back() {
         let odd = [f64::NAN, -f64::NAN, f64::from_bits(0x7ff0_0000_dead_beef), f64::INFINITY, -0.0, 5e-324, 0.1];
-        let state = State { t: f64::NAN, u: odd.to_vec(), v: Vec::new(), a: vec![1.0], contacts: vec![[-0.0; 8]] };
+        let state = State {
+            t: f64::NAN,
+            u: odd.to_vec(),
+            v: Vec::new(),
+            a: vec![1.0],
+            histories: Histories { contacts: vec![[-0.0; 8]], points: vec![5e-324] },
+        };
         let back: State = postcard::from_bytes(&postcard::to_stdvec(&state).unwrap()).unwrap();
         let bits = |s: &State| {
-            let numbers = [&s.u, &s.v, &s.a].into_iter().flatten().chain(s.contacts.as_flattened()).chain([&s.t]);
+            let numbers = [&s.u, &s.v, &s.a]
+                .into_iter()
+                .flatten()
+                .chain(s.histories.contacts.as_flattened())
+                .chain(&s.histories.points)
+                .chain([&s.t]);
             numbers.map(|x| x.to_bits()).collect::<Vec<_>>()
         };
         assert_eq!(bits(&back), bits(&state));

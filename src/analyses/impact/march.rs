@@ -15,7 +15,7 @@ use crate::error::{CheckpointError, Error};
 use crate::model::Model;
 use fem_core::counters::Counters;
 use fem_core::structure::Tangent;
-use fem_core::time::{Integrator, State};
+use fem_core::time::{Histories, Integrator, State};
 use fem_dynamics::guard::Guard;
 use fem_dynamics::impact::ImpactSystem;
 use fem_failure::scan::{self, Scan};
@@ -136,7 +136,7 @@ impl<'a> March<'a> {
             dt,
             row_every,
             frame_every: model.output.fields.as_ref().and_then(|fields| fields.every),
-            ledger: Ledger::new(state.contacts.len(), model.threshold.map(|threshold| threshold.force)),
+            ledger: Ledger::new(state.histories.contacts.len(), model.threshold.map(|threshold| threshold.force)),
             effects: Vec::new(),
             state,
             work: SystemCounts::default(),
@@ -172,7 +172,11 @@ impl<'a> March<'a> {
         let (mut march, sizes) = (Self::at(prepared, progress)?, || differs("its sizes differ".to_owned()));
         let Self { system, integrator, progress, .. } = &mut march;
         let fresh = system.initial();
-        if progress.state.u.len() != fresh.u.len() || progress.state.contacts.len() != fresh.contacts.len() {
+        let sizes_of = |state: &State| {
+            let Histories { contacts, points } = &state.histories;
+            [state.u.len(), contacts.len(), points.len()]
+        };
+        if sizes_of(&progress.state) != sizes_of(&fresh) {
             return Err(sizes());
         }
         integrator.resume(system);
@@ -294,7 +298,7 @@ impl<'a> March<'a> {
         let u = self.coordinates();
         let Some(watch) = &mut self.watch else { return Ok(()) };
         self.stopwatch.lap("march");
-        let sampled = watch.sample(self.progress.state.t, &u);
+        let sampled = watch.sample(self.progress.state.t, &u, &self.progress.state.histories.points);
         self.stopwatch.lap("scan");
         sampled
     }
@@ -322,6 +326,11 @@ impl<'a> March<'a> {
     /// Displacements at present, m, in the unknowns of the plate before elimination of constraints.
     pub fn displacements(&self) -> Vec<f64> {
         self.expansion.displacements(&self.coordinates(), 1)
+    }
+
+    /// States of plies that follow laws, at present.
+    pub fn points(&self) -> &[f64] {
+        &self.progress.state.histories.points
     }
 
     /// Velocities of these, m/s; `None` where the plate has no inertia.

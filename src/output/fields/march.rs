@@ -29,12 +29,12 @@ impl<'a> MarchFields<'a> {
     pub(crate) fn take(&mut self, march: &mut March<'_>) -> Result<(), Error> {
         let Some(number) = march.frame() else { return Ok(()) };
         march.beside(PHASE, |march| {
-            let (u, v) = (march.displacements(), march.velocities());
+            let (u, v, points) = (march.displacements(), march.velocities(), march.points().to_vec());
             if self.writer.is_none() {
                 self.writer = Writer::new(self.model, self.dir, march.frame_times())?;
             }
             let Some(writer) = &mut self.writer else { return Ok(()) };
-            writer.take(number, State { velocities: v.as_deref(), ..State::at_rest(&u) })
+            writer.take(number, State { velocities: v.as_deref(), points: Some(&points), ..State::of(&u) })
         })
     }
 

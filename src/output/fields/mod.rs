@@ -18,7 +18,7 @@ mod size;
 pub(crate) use march::MarchFields;
 pub(crate) use size::{Expected, expected};
 
-use crate::analyses::{modes, statics};
+use crate::analyses::{modes, statics, stress};
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::Model;
@@ -40,14 +40,16 @@ const PHASE: &str = "fields";
 struct State<'a> {
     displacements: &'a [f64],
     velocities: Option<&'a [f64]>,
+    /// States of plies that follow laws; without them plies are linear elastic.
+    points: Option<&'a [f64]>,
     /// Of a natural mode, Hz.
     frequency: Option<f64>,
 }
 
 impl<'a> State<'a> {
-    /// A state at rest.
-    fn at_rest(displacements: &'a [f64]) -> Self {
-        Self { displacements, velocities: None, frequency: None }
+    /// Displacements alone.
+    fn of(displacements: &'a [f64]) -> Self {
+        Self { displacements, velocities: None, points: None, frequency: None }
     }
 }
 
@@ -92,6 +94,7 @@ struct Waiting {
     number: usize,
     displacements: Vec<f64>,
     velocities: Option<Vec<f64>>,
+    points: Option<Vec<f64>>,
     frequency: Option<f64>,
 }
 
@@ -112,9 +115,9 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// As [`Writer::flush`].
     fn take(&mut self, number: usize, state: State<'_>) -> Result<(), Error> {
-        let State { displacements, velocities, frequency } = state;
-        let (displacements, velocities) = (displacements.to_vec(), velocities.map(<[f64]>::to_vec));
-        self.waiting.push(Waiting { number, displacements, velocities, frequency });
+        let State { displacements, frequency, .. } = state;
+        let [velocities, points] = [state.velocities, state.points].map(|values| values.map(<[f64]>::to_vec));
+        self.waiting.push(Waiting { number, displacements: displacements.to_vec(), velocities, points, frequency });
         let Layout { plate, plies } = &self.layout;
         let of_frame =
             plate.as_ref().map_or(0, Plate::bytes_of_frame) + plies.as_ref().map_or(0, Plies::bytes_of_frame);
@@ -130,8 +133,9 @@ impl<'a> Writer<'a> {
     fn flush(&mut self) -> Result<(), Error> {
         let waiting = std::mem::take(&mut self.waiting);
         let Self { layout: Layout { plate, plies }, dir, times, .. } = self;
-        let frames = waiting.iter().map(|Waiting { number, displacements, velocities, frequency }| {
-            let state = State { displacements, velocities: velocities.as_deref(), frequency: *frequency };
+        let frames = waiting.iter().map(|Waiting { number, displacements, velocities, points, frequency }| {
+            let [velocities, points] = [velocities, points].map(Option::as_deref);
+            let state = State { displacements, velocities, points, frequency: *frequency };
             Frame { dir, times: &times[..=*number], state }
         });
         let frames: Vec<Frame<'_>> = frames.collect();
@@ -156,7 +160,7 @@ pub(crate) fn write_static(
 ) -> Result<Option<Phase>, Error> {
     let mut stopwatch = Stopwatch::default();
     let Some(mut writer) = Writer::new(model, dir, vec![0.0])? else { return Ok(None) };
-    writer.take(0, State::at_rest(&solution.u))?;
+    writer.take(0, State { points: Some(&stress::virgin(model)), ..State::of(&solution.u) })?;
     writer.flush()?;
     stopwatch.lap(PHASE);
     Ok(stopwatch.phases().first().cloned())
@@ -180,7 +184,7 @@ pub(crate) fn write_modes(
     let shapes = found.shapes.chunks_exact(model.constraints.ndof().max(1));
     for (number, (shape, omega)) in shapes.zip(&found.omega).enumerate() {
         model.constraints.expand(shape, &mut u);
-        writer.take(number, State { frequency: Some(omega / TAU), ..State::at_rest(&u) })?;
+        writer.take(number, State { frequency: Some(omega / TAU), ..State::of(&u) })?;
     }
     writer.flush()?;
     stopwatch.lap(PHASE);

@@ -79,7 +79,10 @@ impl<'a> Plies<'a> {
         let rows = 6 * self.recovery.sites();
         let mut stresses = vec![0.0; rows * frames.len()];
         let fields: Vec<&[f64]> = frames.iter().map(|frame| frame.state.displacements).collect();
-        stress::recover(self.model, &self.recovery, &fields.concat(), frames.len(), &mut stresses)?;
+        let points: Option<Vec<&[f64]>> = frames.iter().map(|frame| frame.state.points).collect();
+        let points = points.map(|points| points.concat());
+        let (model, count) = (self.model, frames.len());
+        stress::recover(model, &self.recovery, &fields.concat(), count, points.as_deref(), &mut stresses)?;
         stress::add(&mut stresses, &self.residual);
         let displacements = self.lattice.values(&fields);
         let each = frames.iter().zip(&displacements).zip(stresses.chunks_exact(rows));

@@ -44,6 +44,8 @@ pub struct StaticSummary {
     pub largest_deflection: Deflection,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub large_deflections: Option<Newton>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ply_laws: Option<LawsSummary>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub profiles: Vec<ProfileResultants>,
     pub margins: Vec<Margin>,
@@ -68,13 +70,22 @@ pub struct Deflection {
     pub z_m: f64,
 }
 
-/// How large deflections were found.
+/// How Newton's method ended.
 #[derive(Debug, Clone, Copy, Serialize)]
 #[allow(missing_docs)]
 pub struct Newton {
     pub iterations: usize,
     /// Newton decrement over the work of the load: twice the relative error of the energy before the last step.
     pub last_decrement: f64,
+}
+
+/// How plies that follow laws were found, and what is lost in them.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct LawsSummary {
+    #[serde(flatten)]
+    pub newton: Newton,
+    pub dissipated_J: f64,
 }
 
 /// Forces and moments per length at a profile: components 11, 22, 12, and 31, 23 of the shear force.
@@ -95,6 +106,10 @@ impl StaticSummary {
         let nodes = nodes(model, &solution.u);
         let largest = nodes.iter().max_by(|a, b| a.u[2].abs().total_cmp(&b.u[2].abs()));
         let [w_m, x_m, y_m, z_m] = largest.map_or([0.0; 4], |n| [n.u[2], n.x[0], n.x[1], n.x[2]]);
+        let newton = solution.decrements.as_ref().map(|decrements| Newton {
+            iterations: decrements.len(),
+            last_decrement: decrements.last().copied().unwrap_or(0.0),
+        });
         Self {
             title: model.origin.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
@@ -105,10 +120,8 @@ impl StaticSummary {
             resultant_N: solution.resultant,
             strain_energy_J: solution.strain_energy,
             largest_deflection: Deflection { w_m, x_m, y_m, z_m },
-            large_deflections: solution.decrements.as_ref().map(|decrements| Newton {
-                iterations: decrements.len(),
-                last_decrement: decrements.last().copied().unwrap_or(0.0),
-            }),
+            large_deflections: newton.filter(|_| model.effects.nature().large),
+            ply_laws: newton.zip(solution.dissipated).map(|(newton, lost)| LawsSummary { newton, dissipated_J: lost }),
             profiles: model.profiles.iter().zip(&solution.resultants).map(in_summary).collect(),
             margins: solution.margins.clone(),
             advised: Advised::of(model, |_| None),
@@ -149,6 +162,13 @@ impl StaticSummary {
                 t,
                 "  membrane  large deflections, found in {iterations} Newton iterations (last decrement {last_decrement:.1e} of \
                  the work of the loads); reserve factors are those of the stresses, not of the loads"
+            );
+        }
+        if let Some(LawsSummary { newton: Newton { iterations, last_decrement }, dissipated_J: lost }) = self.ply_laws {
+            let _ = writeln!(
+                t,
+                "  plies     follow laws, found in {iterations} Newton iterations (last decrement {last_decrement:.1e} of the work \
+                 of the loads); {lost:.6e} J lost in them; reserve factors are those of the stresses, not of the loads"
             );
         }
         for m in &self.margins {

@@ -125,7 +125,7 @@ pub(super) fn march(
 /// Of the stiffest contact.
 fn stiffness(system: &ImpactSystem, state: &State) -> f64 {
     let tangent = |(i, impactor): (usize, &Impactor)| {
-        impactor.law.force(&state.contacts[i], system.indentation(i, state).alpha).tangent
+        impactor.law.force(&state.histories.contacts[i], system.indentation(i, state).alpha).tangent
     };
     system.impactors().iter().enumerate().map(tangent).fold(0.0, f64::max)
 }

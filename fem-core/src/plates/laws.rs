@@ -1,0 +1,400 @@
+//! Plies of a plate that follow laws: what their stresses differ from those of linear elasticity.
+
+use crate::contracts::element::{Cell, Element, ElementError, ElementInfo, Slice, add_product, positive};
+use crate::contracts::ply_law::{LawPoint, PlyLaw, PlyResponse, check_law};
+use crate::plates::laminate::Laminate;
+use crate::plates::plate::Plate;
+use crate::words::energy::Energy;
+use crate::words::material::{Material, MaterialError};
+use crate::words::quadrature::gauss_legendre;
+use crate::words::tensor::{Matrix6, Strain6, apply, multiply, strain_rotation, transpose};
+use std::fmt;
+
+/// Where strains of a cell are compared with the polynomials through the levels, in natural coordinates.
+const TRIED: [[f64; 3]; 3] = [[0.3, -0.7, -0.95], [-0.6, 0.2, 0.1], [0.9, 0.8, 0.6]];
+
+/// Levels that an element may have.
+const MOST_LEVELS: usize = 8;
+
+/// Deviation from them, relative, that is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// A ply that follows a law.
+#[derive(Debug, Clone)]
+struct LawfulPly {
+    name: String,
+    law: Box<dyn PlyLaw>,
+    material: Material,
+    stiffness: Matrix6,
+    /// Strain in the plate's frame to strain in the ply's.
+    rotation: Matrix6,
+}
+
+/// The plies of a plate that follow laws.
+///
+/// A cell's strains are those of its element at Gauss points, as those of its stiffness are. They are polynomials in q of a
+/// degree below [`ElementInfo::ply_order`], so that as many levels tell them in all plies: what a cell costs beside its
+/// laws does not depend on how many plies it has.
+///
+/// Forces and energies are those beyond linear elasticity, σ − C ε, which K has already.
+#[derive(Debug, Clone)]
+pub struct PlyLaws {
+    /// By layer of cells and slice of its stack.
+    plies: Vec<Vec<Option<LawfulPly>>>,
+    /// First state variable of each cell, and their number at the end.
+    first: Vec<usize>,
+}
+
+/// Why plies of a plate cannot follow their laws.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum LawsError {
+    /// The element is a plate theory or a section, whose strains through the thickness follow from linear elasticity.
+    Theory,
+    /// The strains of the element are no polynomials of the degree that its Gauss points through a ply integrate.
+    Strains,
+    /// A law does not take its material, or the size of a cell.
+    Material(MaterialError),
+}
+
+impl fmt::Display for LawsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Theory => f.write_str(
+                "the element is a plate theory or a section: some of its strains follow from linear elasticity and not from \
+                 displacements",
+            ),
+            Self::Strains => f.write_str(
+                "the strains of the element are not polynomials through the thickness of the degree that its Gauss points \
+                 integrate",
+            ),
+            Self::Material(error) => error.fmt(f),
+        }
+    }
+}
+impl std::error::Error for LawsError {}
+
+/// A cell's forces beyond linear elasticity, and work arrays.
+#[derive(Debug, Clone, Default)]
+pub struct CellAnswer {
+    /// ∫ Bᵀ (σ − C ε) dV, N, conjugate to the unknowns.
+    pub force: Vec<f64>,
+    /// Its derivative, symmetric part, where it is asked for; column-major.
+    pub tangent: Vec<f64>,
+    /// What is stored beyond linear elasticity, which may be negative, and what is dissipated, J.
+    pub energy: Energy,
+    /// Mean stress of each ply that follows a law, its own axes, Pa, and the volume, m³; by slice.
+    pub means: Vec<([f64; 6], f64)>,
+    new: Vec<f64>,
+    /// Of all levels at an in-plane point, `6 levels × ndof`, and of one.
+    operators: Vec<f64>,
+    operator: Vec<f64>,
+    product: Vec<f64>,
+    /// Of the levels, six each; stresses weighted, moduli between all pairs.
+    strains: Vec<f64>,
+    stresses: Vec<f64>,
+    moduli: Vec<f64>,
+    through: Vec<Through>,
+}
+
+/// What a cell is asked about.
+#[derive(Debug, Clone, Copy)]
+pub struct Asked<'a> {
+    /// The plate.
+    pub plate: &'a Plate,
+    /// Its element.
+    pub element: &'a dyn Element,
+    /// Number of the cell.
+    pub cell: usize,
+    /// Displacements of the cell.
+    pub u: &'a [f64],
+    /// States of the cell ([`PlyLaws::states_of`]).
+    pub states: &'a [f64],
+}
+
+impl PlyLaws {
+    /// The plies of `laminate` whose material has one of `laws`, by material; `None` where there is none.
+    ///
+    /// # Errors
+    /// An element that gives up strains, a law that refuses its material.
+    pub fn new(
+        plate: &Plate,
+        laminate: &Laminate,
+        materials: &[Material],
+        laws: &[Option<(String, Box<dyn PlyLaw>)>],
+        element: &dyn Element,
+    ) -> Result<Option<Self>, LawsError> {
+        let lawful = |ply: usize| {
+            let ply = &laminate.plies[ply];
+            let (name, law) = laws.get(ply.material)?.clone()?;
+            let material = materials[ply.material].clone();
+            let (stiffness, rotation) = (material.elastic.stiffness(), strain_rotation(ply.angle));
+            Some(LawfulPly { name, law, material, stiffness, rotation })
+        };
+        let plies: Vec<Vec<_>> =
+            (0..plate.layers()).map(|layer| laminate.plies_of(layer).map(lawful).collect()).collect();
+        if plies.iter().flatten().all(Option::is_none) {
+            return Ok(None);
+        }
+        let info = element.info();
+        if info.is_shell() || info.is_section() {
+            return Err(LawsError::Theory);
+        }
+        let points = info.plane_points().count() * info.ply_order;
+        let mut all = Self { plies, first: Vec::with_capacity(plate.cells() + 1) };
+        let mut next = 0;
+        for cell in 0..plate.cells() {
+            all.first.push(next);
+            let view = plate.cell(cell);
+            let length = width(info, &view);
+            for ply in all.of(plate, cell).iter().flatten() {
+                next += points * ply.law.info().state.len();
+                let point = LawPoint { material: &ply.material, stiffness: &ply.stiffness, length };
+                check_law(ply.law.info(), &ply.name, &point, ply.law.check(&point)).map_err(LawsError::Material)?;
+            }
+            if info.ply_order > MOST_LEVELS || !polynomial(element, &view) {
+                return Err(LawsError::Strains);
+            }
+        }
+        all.first.push(next);
+        Ok(Some(all))
+    }
+
+    /// State variables of all cells.
+    pub fn states(&self) -> usize {
+        self.first[self.first.len() - 1]
+    }
+
+    /// The state variables of a cell among those of all.
+    pub fn states_of(&self, cell: usize) -> std::ops::Range<usize> {
+        self.first[cell]..self.first[cell + 1]
+    }
+
+    /// Whether a ply of the cell follows a law.
+    pub fn concern(&self, plate: &Plate, cell: usize) -> bool {
+        self.of(plate, cell).iter().any(Option::is_some)
+    }
+
+    fn of(&self, plate: &Plate, cell: usize) -> &[Option<LawfulPly>] {
+        &self.plies[plate.place(cell).1]
+    }
+
+    /// The answer of a cell; with its tangent where that is wanted, with the states that are left where `new` has room for them.
+    ///
+    /// # Errors
+    /// A folded cell, a law that finds no stress.
+    pub fn respond(
+        &self,
+        asked: Asked<'_>,
+        new: Option<&mut [f64]>,
+        tangent: bool,
+        answer: &mut CellAnswer,
+    ) -> Result<(), ElementError> {
+        let Asked { plate, element, cell, u, states } = asked;
+        let (info, view, plies) = (element.info(), plate.cell(cell), self.of(plate, cell));
+        let (levels, n) = (gauss_legendre(info.ply_order), info.ndof());
+        let rows = 6 * levels.len();
+        answer.clear(n, rows, plies.len(), states.len(), tangent);
+        answer.through = through(levels, &view.stack.slices, plies);
+        let (length, mut at) = (width(info, &view), 0);
+        for (r, s, w) in info.plane_points() {
+            let dv = answer.strain(element, &view, [r, s], u)? * w;
+            for k in 0..answer.through.len() {
+                let Some(ply) = &plies[answer.through[k].slice] else { continue };
+                let point = LawPoint { material: &ply.material, stiffness: &ply.stiffness, length };
+                let count = ply.law.info().state.len();
+                answer.ask(ply, &point, k, dv, (&states[at..at + count], at))?;
+                at += count;
+            }
+            answer.add(n, rows);
+        }
+        for (mean, volume) in answer.means.iter_mut().filter(|(_, volume)| *volume > 0.0) {
+            mean.iter_mut().for_each(|s| *s /= *volume);
+        }
+        if let Some(new) = new {
+            new.copy_from_slice(&answer.new);
+        }
+        Ok(())
+    }
+}
+
+impl CellAnswer {
+    fn clear(&mut self, n: usize, rows: usize, slices: usize, states: usize, tangent: bool) {
+        let moduli = if tangent { rows * rows } else { 0 };
+        for (all, size) in [
+            (&mut self.force, n),
+            (&mut self.tangent, if tangent { n * n } else { 0 }),
+            (&mut self.new, states),
+            (&mut self.operators, rows * n),
+            (&mut self.operator, 6 * n),
+            (&mut self.product, rows * n),
+            (&mut self.strains, rows),
+            (&mut self.stresses, rows),
+            (&mut self.moduli, moduli),
+        ] {
+            all.clear();
+            all.resize(size, 0.0);
+        }
+        self.energy = Energy::default();
+        self.means.clear();
+        self.means.resize(slices, ([0.0; 6], 0.0));
+    }
+
+    /// Takes operators and strains of the levels at an in-plane point; returns the Jacobian there.
+    fn strain(
+        &mut self,
+        element: &dyn Element,
+        cell: &Cell<'_>,
+        [r, s]: [f64; 2],
+        u: &[f64],
+    ) -> Result<f64, ElementError> {
+        let Self { operators, operator, strains, stresses, moduli, .. } = self;
+        let rows = strains.len();
+        strains.fill(0.0);
+        stresses.fill(0.0);
+        moduli.fill(0.0);
+        let mut jacobian = 0.0;
+        for (k, (q, _)) in gauss_legendre(element.info().ply_order).iter().enumerate() {
+            jacobian = positive(element.strain_operator(cell, 0, [r, s, *q], operator))?;
+            let level = 6 * k..6 * k + 6;
+            for ((b, u), all) in operator.chunks_exact(6).zip(u).zip(operators.chunks_exact_mut(rows)) {
+                all[level.clone()].copy_from_slice(b);
+                strains[level.clone()].iter_mut().zip(b).for_each(|(e, b)| *e += b * u);
+            }
+        }
+        Ok(jacobian)
+    }
+
+    /// Asks the law of a ply at a point through the thickness; `old` are its states, from the place `at` on.
+    fn ask(
+        &mut self,
+        ply: &LawfulPly,
+        point: &LawPoint<'_>,
+        k: usize,
+        dv: f64,
+        (old, at): (&[f64], usize),
+    ) -> Result<(), ElementError> {
+        let Through { slice, weight, shares } = self.through[k];
+        let weight = dv * weight;
+        let mut strain = [0.0; 6];
+        for (level, share) in self.strains.chunks_exact(6).zip(shares) {
+            strain.iter_mut().zip(level).for_each(|(sum, e)| *sum += share * e);
+        }
+        let strain = apply(&ply.rotation, &strain);
+        let mut modulus = [[0.0; 6]; 6];
+        let wanted = (!self.moduli.is_empty()).then_some(&mut modulus);
+        let new = &mut self.new[at..at + old.len()];
+        let PlyResponse { stress, energy } = ply
+            .law
+            .respond(point, &Strain6::new(strain), old, new, wanted)
+            .map_err(|why| ElementError(format!("ply {} of the layer: {why}", slice + 1)))?;
+        let linear = apply(&ply.stiffness, &strain);
+        let elastic: f64 = linear.iter().zip(strain).map(|(s, e)| 0.5 * s * e).sum();
+        self.energy.stored += weight * (energy.stored - elastic);
+        self.energy.dissipated += weight * energy.dissipated;
+        let (mean, volume) = &mut self.means[slice];
+        *volume += weight;
+        mean.iter_mut().zip(stress.0).for_each(|(m, s)| *m += weight * s);
+        let back = transpose(&ply.rotation);
+        let beyond = apply(&back, &std::array::from_fn(|i| stress.0[i] - linear[i]));
+        for (share, level) in shares.iter().zip(self.stresses.chunks_exact_mut(6)) {
+            level.iter_mut().zip(beyond).for_each(|(s, b)| *s += weight * share * b);
+        }
+        if !self.moduli.is_empty() {
+            let beyond = std::array::from_fn(|i| std::array::from_fn(|j| modulus[i][j] - ply.stiffness[i][j]));
+            self.add_modulus(&multiply(&back, &multiply(&beyond, &ply.rotation)), &shares, weight);
+        }
+        Ok(())
+    }
+
+    /// Adds the symmetric part of a modulus between all pairs of levels.
+    fn add_modulus(&mut self, modulus: &Matrix6, shares: &[f64], weight: f64) {
+        let rows = self.strains.len();
+        for (k, a) in shares.iter().take(rows / 6).enumerate() {
+            for (l, b) in shares.iter().take(rows / 6).enumerate() {
+                for i in 0..6 {
+                    for j in 0..6 {
+                        let symmetric = 0.5 * (modulus[i][j] + modulus[j][i]);
+                        self.moduli[(6 * k + i) * rows + 6 * l + j] += weight * a * b * symmetric;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds what stresses and moduli of the levels are worth to force and tangent.
+    fn add(&mut self, n: usize, rows: usize) {
+        let Self { force, tangent, operators, product, stresses, moduli, .. } = self;
+        for (f, b) in force.iter_mut().zip(operators.chunks_exact(rows)) {
+            *f += b.iter().zip(&*stresses).map(|(b, s)| b * s).sum::<f64>();
+        }
+        if !moduli.is_empty() {
+            for (product, b) in product.chunks_exact_mut(rows).zip(operators.chunks_exact(rows)) {
+                for (p, row) in product.iter_mut().zip(moduli.chunks_exact(rows)) {
+                    *p = row.iter().zip(b).map(|(m, b)| m * b).sum();
+                }
+            }
+            add_product(tangent, operators, product, rows, n);
+        }
+    }
+}
+
+/// A Gauss point through a ply.
+#[derive(Debug, Clone, Copy)]
+struct Through {
+    slice: usize,
+    /// Without the Jacobian and the weight in the plane.
+    weight: f64,
+    /// What each level has in a polynomial there.
+    shares: [f64; MOST_LEVELS],
+}
+
+/// The Gauss points through the plies that follow laws.
+fn through(levels: &[(f64, f64)], slices: &[Slice], plies: &[Option<LawfulPly>]) -> Vec<Through> {
+    let lawful = slices.iter().enumerate().filter(|(slice, _)| plies[*slice].is_some());
+    let points = lawful.flat_map(|(slice, ply)| {
+        let (middle, half) = (0.5 * (ply.q[0] + ply.q[1]), 0.5 * (ply.q[1] - ply.q[0]));
+        levels.iter().map(move |(t, w)| Through {
+            slice,
+            weight: w * half,
+            shares: lagrange(levels, middle + half * t),
+        })
+    });
+    points.collect()
+}
+
+/// Width of a cell, m: the side of the square of its area.
+fn width(info: &ElementInfo, cell: &Cell<'_>) -> f64 {
+    info.plane_points().map(|(r, s, w)| w * cell.plane(r, s).det).sum::<f64>().sqrt()
+}
+
+/// Whether the strains of an element are those between its levels, in every ply.
+fn polynomial(element: &dyn Element, cell: &Cell<'_>) -> bool {
+    let info = element.info();
+    let (levels, n) = (gauss_legendre(info.ply_order), info.ndof());
+    let operator = |slice: usize, xi: [f64; 3]| {
+        let mut b = vec![0.0; 6 * n];
+        element.strain_operator(cell, slice, xi, &mut b);
+        b
+    };
+    TRIED.iter().enumerate().all(|(k, [r, s, q])| {
+        let mut between = vec![0.0; 6 * n];
+        for ((level, _), share) in levels.iter().zip(lagrange(levels, *q)) {
+            between.iter_mut().zip(operator(0, [*r, *s, *level])).for_each(|(sum, b)| *sum += share * b);
+        }
+        let there = operator(k % cell.stack.slices.len(), [*r, *s, *q]);
+        let size = there.iter().fold(0.0_f64, |m, b| m.max(b.abs()));
+        there.iter().zip(between).all(|(a, b)| (a - b).abs() <= ROUNDING * size)
+    })
+}
+
+/// Lagrange's polynomials of the levels at q.
+fn lagrange(levels: &[(f64, f64)], q: f64) -> [f64; MOST_LEVELS] {
+    std::array::from_fn(|k| match levels.get(k) {
+        None => 0.0,
+        Some((own, _)) => {
+            let others = levels.iter().enumerate().filter(|(other, _)| *other != k);
+            others.map(|(_, (p, _))| (q - p) / (own - p)).product()
+        }
+    })
+}
