@@ -296,7 +296,7 @@ impl ImpactSystem {
     /// # Errors
     /// A singular mass.
     pub fn highest_frequency(&mut self) -> Result<f64, StepError> {
-        self.structure.highest_frequency().map_err(|e| StepError::SingularMass(e.0))
+        self.structure.highest_frequency().map_err(StepError::SingularMass)
     }
 
     /// Static deflection per force of impactor `i`, m/N: pᵀ K⁻¹ p.
@@ -307,7 +307,7 @@ impl ImpactSystem {
         let load = &self.impactors[i].load;
         let mut x = vec![0.0; self.structure.ndof()];
         add(load, 1.0, &mut x);
-        self.structure.solve_shifted(0.0, &mut x, 1).map_err(|e| StepError::Factorisation(e.0))?;
+        self.structure.solve_shifted(0.0, &mut x, 1).map_err(StepError::Factorisation)?;
         Ok(value(load, &x))
     }
 
@@ -353,7 +353,7 @@ impl ImpactSystem {
         for impactor in &self.impactors {
             x.fill(0.0);
             add(&impactor.load, 1.0, &mut x);
-            self.structure.solve_mass(&mut x).map_err(|e| StepError::SingularMass(e.0))?;
+            self.structure.solve_mass(&mut x).map_err(StepError::SingularMass)?;
             let mobility = value(&impactor.load, &x) + 1.0 / impactor.mass;
             square += mobility * steepest(impactor, energy);
         }
@@ -433,7 +433,7 @@ impl SecondOrderSystem for ImpactSystem {
         let n = self.structure.ndof();
         // Weight pulls at impactors that do not touch yet; a plate without force may have no mass.
         if self.weight.is_none() || x[..n].iter().any(|f| *f != 0.0) {
-            self.structure.solve_damped_mass(cc, &mut x[..n]).map_err(|e| StepError::SingularMass(e.0))?;
+            self.structure.solve_damped_mass(cc, &mut x[..n]).map_err(StepError::SingularMass)?;
         }
         for (x, impactor) in x[n..].iter_mut().zip(&self.impactors) {
             *x /= impactor.mass;
@@ -458,7 +458,7 @@ impl SecondOrderSystem for ImpactSystem {
         self.prepare(cm, cc)?;
         let Self { structure, impactors, influence, contact_calls, .. } = self;
         structure.add_stiffness(-1.0, &from[..n], &mut d[..n]);
-        structure.solve_damped(cm, cc, &mut d[..n], 1).map_err(|e| StepError::Factorisation(e.0))?;
+        structure.solve_damped(cm, cc, &mut d[..n], 1).map_err(StepError::Factorisation)?;
         for (d, impactor) in d[n..].iter_mut().zip(impactors.iter()) {
             *d /= cm * impactor.mass;
         }
@@ -479,7 +479,7 @@ impl SecondOrderSystem for ImpactSystem {
         }
         let n = self.structure.ndof();
         match self.structure.nonlinear() {
-            Some(plate) => plate.commit(&state.u[..n], &mut state.histories.points).map_err(newton::unsolved),
+            Some(plate) => plate.commit(&state.u[..n], &mut state.histories.points).map_err(StepError::Factorisation),
             None => Ok(()),
         }
     }

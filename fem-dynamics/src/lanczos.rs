@@ -105,7 +105,7 @@ where
             self.structure.add_mass(1.0, &direction.x, &mut image);
             let square = dot(&direction.x, &image);
             if !square.is_finite() {
-                return Err(SolveError("the Lanczos iteration met a number that is not finite".into()));
+                return Err(SolveError::ModesNotFinite);
             }
             if square <= EXHAUSTED * EXHAUSTED * direction.taken {
                 break;
@@ -186,9 +186,7 @@ where
                 return Ok((theta, shapes));
             }
             if !grown {
-                return Err(SolveError(format!(
-                    "{count} modes did not converge in a space of {size} vectors: ask for fewer"
-                )));
+                return Err(SolveError::ModesNotConverged { count, vectors: size });
             }
         }
     }

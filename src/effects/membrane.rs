@@ -7,7 +7,7 @@ use crate::effect::{
 };
 use crate::error::Error;
 use crate::forecast::{Demand, Size, nominal};
-use fem_core::assembly::{AssemblyError, LargePlate, MembraneStrains};
+use fem_core::assembly::{LargePlate, MembraneStrains};
 use fem_core::structure::SolveError;
 use fem_dynamics::reduce::{MembraneForms, MembranePlate};
 use fem_io::scene::{Form, SceneError, SceneValue, key, words};
@@ -117,7 +117,7 @@ impl Effect for Membrane {
         match reduced {
             Some(reduced) => {
                 let stiffened = MembranePlate::new(full, reduced, contacts, &MembraneOf(*body));
-                *stretched = Some(stiffened.map_err(|why| SolveError(why.0))?);
+                *stretched = Some(stiffened.map_err(SolveError::other)?);
             }
             None => {
                 let element = dyn_clone::clone_box(body.element);
@@ -141,11 +141,11 @@ impl MembraneOf<'_> {
 
 impl MembraneForms for MembraneOf<'_> {
     fn gram(&self, fields: &[f64]) -> Result<Vec<f64>, SolveError> {
-        self.of(fields).gram().map_err(refused)
+        self.of(fields).gram().map_err(SolveError::other)
     }
 
     fn forces(&self, fields: &[f64], combinations: &[f64]) -> Result<Vec<f64>, SolveError> {
-        self.of(fields).forces(combinations).map_err(refused)
+        self.of(fields).forces(combinations).map_err(SolveError::other)
     }
 
     fn forms(
@@ -155,12 +155,8 @@ impl MembraneForms for MembraneOf<'_> {
         shapes: Option<&[f64]>,
         modes: &[f64],
     ) -> Result<Vec<f64>, SolveError> {
-        self.of(fields).forms(combinations, shapes, modes).map_err(refused)
+        self.of(fields).forms(combinations, shapes, modes).map_err(SolveError::other)
     }
-}
-
-fn refused(e: AssemblyError) -> SolveError {
-    SolveError(e.to_string())
 }
 
 /// Places of a cell's unknowns, kept in lists that have grown, bytes per unknown of a cell.

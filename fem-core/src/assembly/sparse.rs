@@ -39,7 +39,7 @@ impl Beyond {
             Self::Large(large) => InternalForce::internal(large, u, force, tangent),
             Self::Laws(laws) => laws.on(k, points).internal(u, force, tangent),
         };
-        done.map_err(|e| SolveError(e.to_string()))
+        done.map_err(SolveError::other)
     }
 }
 
@@ -160,17 +160,11 @@ impl SparseStructure {
         self.factorisations += 1;
         self.factor.factorise(matrix.lower()).map_err(|e| match e {
             FactorError::NotPositive { column } if what == Factored::Mass => {
-                SolveError(format!("{} has no inertia", (self.name)(column)))
+                SolveError::NoInertia { unknown: (self.name)(column) }
             }
-            FactorError::NotPositive { column } => SolveError(format!(
-                "the stiffness is not positive definite, seen at {}: the structure is not held there, or its sizes or \
-                 moduli lie too far apart for the arithmetic",
-                (self.name)(column)
-            )),
-            FactorError::NotFinite { column } => {
-                SolveError(format!("the matrix is not finite at {}", (self.name)(column)))
-            }
-            other => SolveError(other.to_string()),
+            FactorError::NotPositive { column } => SolveError::NotPositive { unknown: (self.name)(column) },
+            FactorError::NotFinite { column } => SolveError::NotFinite { unknown: (self.name)(column) },
+            other => SolveError::other(other),
         })?;
         self.factored = what;
         Ok(())
@@ -260,7 +254,7 @@ impl Structure for SparseStructure {
         let pattern = Arc::new(coarse::pattern(self.k.pattern(), p));
         let k = coarse::product(&self.k, p, &pattern);
         let m = coarse::product(&self.inertia, p, &pattern);
-        let symbolic = Symbolic::new(pattern).map_err(|e| SolveError(e.to_string()))?;
+        let symbolic = Symbolic::new(pattern).map_err(SolveError::other)?;
         let structure = Self::new(symbolic, k, m, self.threads, |i| format!("coarse unknown {}", i + 1));
         Ok(Some(Coarse { structure: Box::new(structure), prolongation: p.clone() }))
     }
@@ -272,18 +266,18 @@ impl Structure for SparseStructure {
 
 impl Nonlinear for SparseStructure {
     fn internal(&mut self, u: &[f64], points: &[f64], force: &mut [f64]) -> Result<Energy, SolveError> {
-        self.beyond.as_mut().ok_or_else(linear)?.internal(&self.k, u, points, force, None)
+        self.beyond.as_mut().ok_or(SolveError::Linear)?.internal(&self.k, u, points, force, None)
     }
 
     fn commit(&mut self, u: &[f64], points: &mut [f64]) -> Result<(), SolveError> {
         match &mut self.beyond {
-            Some(Beyond::Laws(laws)) => laws.commit(u, points).map_err(|e| SolveError(e.to_string())),
+            Some(Beyond::Laws(laws)) => laws.commit(u, points).map_err(SolveError::other),
             _ => Ok(()),
         }
     }
 
     fn linearise(&mut self, Tangent { cm, cc, u, points }: &Tangent) -> Result<(), SolveError> {
-        let beyond = self.beyond.as_mut().ok_or_else(linear)?;
+        let beyond = self.beyond.as_mut().ok_or(SolveError::Linear)?;
         self.force.resize(u.len(), 0.0);
         beyond.internal(&self.k, u, points, &mut self.force, Some(&mut self.combined))?;
         let damping = self.damping.unwrap_or_default();
@@ -300,14 +294,10 @@ impl Nonlinear for SparseStructure {
 
     fn solve_linearised(&mut self, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
         if self.factored != Factored::Tangent {
-            return Err(SolveError("no tangent has been factorised".into()));
+            return Err(SolveError::NotLinearised);
         }
         self.factor.solve(x, columns);
         self.solves += columns as u64;
         Ok(())
     }
-}
-
-fn linear() -> SolveError {
-    SolveError("the structure is linear".into())
 }

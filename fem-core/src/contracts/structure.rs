@@ -3,17 +3,92 @@
 use crate::words::energy::Energy;
 use crate::words::prolongation::Prolongation;
 use std::fmt;
+use std::sync::Arc;
 
-/// A matrix that could not be factorised.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SolveError(pub String);
+/// Why a structure has no answer.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// The inverse of the mass was asked for.
+    NoInertia {
+        /// An unknown without any.
+        unknown: String,
+    },
+    /// The stiffness is not positive definite.
+    NotPositive {
+        /// The unknown at which that shows.
+        unknown: String,
+    },
+    /// A matrix holds a number that is not finite.
+    NotFinite {
+        /// Its unknown.
+        unknown: String,
+    },
+    /// The tangent stiffness of a reduced plate is not positive definite.
+    Buckled,
+    /// A solution with a tangent was asked for before there was one.
+    NotLinearised,
+    /// The structure is linear, and was asked for forces that are not.
+    Linear,
+    /// An iteration for modes met a number that is not finite.
+    ModesNotFinite,
+    /// An iteration for modes did not end.
+    ModesNotConverged {
+        /// Modes asked for.
+        count: usize,
+        /// Vectors of the space searched.
+        vectors: usize,
+    },
+    /// What else was in the way, such as a cell that cannot be integrated.
+    Other(Arc<dyn std::error::Error + Send + Sync>),
+}
+
+impl SolveError {
+    /// `why`, an error or a text, as an error of a structure.
+    pub fn other(why: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
+        Self::Other(why.into().into())
+    }
+}
+
+/// Errors are equal where they say the same.
+impl PartialEq for SolveError {
+    fn eq(&self, other: &Self) -> bool {
+        self.to_string() == other.to_string()
+    }
+}
 
 impl fmt::Display for SolveError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+        match self {
+            Self::NoInertia { unknown } => write!(f, "{unknown} has no inertia"),
+            Self::NotPositive { unknown } => write!(
+                f,
+                "the stiffness is not positive definite, seen at {unknown}: the structure is not held there, or its sizes or \
+                 moduli lie too far apart for the arithmetic"
+            ),
+            Self::NotFinite { unknown } => write!(f, "the matrix is not finite at {unknown}"),
+            Self::Buckled => {
+                f.write_str("the tangent stiffness of the reduced plate is not positive definite: it buckles")
+            }
+            Self::NotLinearised => f.write_str("no tangent has been factorised"),
+            Self::Linear => f.write_str("the structure is linear"),
+            Self::ModesNotFinite => f.write_str("the Lanczos iteration met a number that is not finite"),
+            Self::ModesNotConverged { count, vectors } => {
+                write!(f, "{count} modes did not converge in a space of {vectors} vectors: ask for fewer")
+            }
+            Self::Other(why) => why.fmt(f),
+        }
     }
 }
-impl std::error::Error for SolveError {}
+
+impl std::error::Error for SolveError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Other(why) => why.source(),
+            _ => None,
+        }
+    }
+}
 
 /// A structure with stiffness K (symmetric, positive definite) and mass M (symmetric, semi-definite).
 ///

@@ -1,6 +1,7 @@
 //! The contract of a time integrator and of the second-order systems it marches.
 
 use crate::contracts::contact::{Branches, ContactHistory, Indentation};
+use crate::contracts::structure::SolveError;
 use dyn_clone::DynClone;
 use std::fmt::{self, Debug};
 
@@ -44,7 +45,7 @@ impl State {
 #[non_exhaustive]
 pub enum StepError {
     /// The mass matrix is singular and the integrator needs its inverse.
-    SingularMass(String),
+    SingularMass(SolveError),
     /// The equations of an implicit step found no solution.
     NoConvergence {
         /// Time at the end of the step, s.
@@ -58,7 +59,7 @@ pub enum StepError {
         t: f64,
     },
     /// A factorisation failed.
-    Factorisation(String),
+    Factorisation(SolveError),
 }
 
 impl fmt::Display for StepError {

@@ -1,6 +1,7 @@
 //! The contract of a time integrator, and a system with known solutions.
 
 use crate::contracts::contact::{Branches, ContactForce, ContactHistory, ContactLaw, Indentation};
+use crate::contracts::structure::SolveError;
 use crate::contracts::time::{Histories, Integrator, SecondOrderSystem, State, StepError};
 use crate::words::energy::Energy;
 use std::error::Error;
@@ -84,7 +85,7 @@ impl SecondOrderSystem for Oscillators {
     fn solve_mass(&mut self, cc: f64, x: &mut [f64]) -> Result<(), StepError> {
         for (mode, x) in self.modes.iter().zip(x) {
             if mode.m == 0.0 {
-                return Err(StepError::SingularMass("an oscillator without mass".into()));
+                return Err(StepError::SingularMass(SolveError::NoInertia { unknown: "the oscillator".into() }));
             }
             *x /= mode.m + cc * mode.c;
         }

@@ -56,20 +56,31 @@ impl fmt::Display for Dof {
     }
 }
 
+/// A text that names no degree of freedom.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DofError(pub String);
+
+impl fmt::Display for DofError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "`{}` is not a degree of freedom: write Unm with n = 1, 2, 3 (x, y, z) and m = 0 (value), 1, 2, 3 \
+                 (derivative)",
+            self.0
+        )
+    }
+}
+impl std::error::Error for DofError {}
+
 impl std::str::FromStr for Dof {
-    type Err = String;
-    fn from_str(s: &str) -> Result<Self, String> {
+    type Err = DofError;
+    fn from_str(s: &str) -> Result<Self, DofError> {
         let digit = |i: usize| s.as_bytes().get(i).map(|b| b.wrapping_sub(b'0'));
         match (s.len(), s.as_bytes().first(), digit(1), digit(2)) {
             (3, Some(b'U' | b'u'), Some(n), Some(m)) => Dof::new(n, m),
             _ => None,
         }
-        .ok_or_else(|| {
-            format!(
-                "`{s}` is not a degree of freedom: write Unm with n = 1, 2, 3 (x, y, z) and m = 0 (value), 1, 2, 3 \
-                 (derivative)"
-            )
-        })
+        .ok_or_else(|| DofError(s.to_owned()))
     }
 }
 

@@ -41,7 +41,7 @@ impl Influence {
         for (impactor, column) in impactors.iter().zip(x.chunks_exact_mut(n)) {
             add(&impactor.load, 1.0, column);
         }
-        solve(x, count).map_err(|e| StepError::Factorisation(e.0))?;
+        solve(x, count).map_err(StepError::Factorisation)?;
         approach.clear();
         for (i, impactor) in impactors.iter().enumerate() {
             let own = |j| if i == j { 1.0 / (cm * impactor.mass) } else { 0.0 };

@@ -54,7 +54,7 @@ impl ImpactSystem {
         let n = structure.ndof();
         let Some(large) = structure.nonlinear() else { return Ok(()) };
         newton.tangent = None;
-        large.linearise(&tangent).map_err(unsolved)?;
+        large.linearise(&tangent).map_err(StepError::Factorisation)?;
         influence.set(tangent.cm, tangent.cc, n, impactors, |x, count| large.solve_linearised(x, count))?;
         newton.tangent = Some(tangent);
         Ok(())
@@ -93,13 +93,15 @@ impl ImpactSystem {
             at.clear();
             at.extend(from[..n].iter().zip(&*d).map(|(u, d)| u + d));
             residual.resize(n, 0.0);
-            let energy = nonlinear(structure.nonlinear())?.internal(at, &h.points, residual).map_err(unsolved)?;
+            let energy = nonlinear(structure.nonlinear())?
+                .internal(at, &h.points, residual)
+                .map_err(StepError::Factorisation)?;
             residual.iter_mut().zip(&*load).for_each(|(f, r)| *f = r - *f);
             structure.add_mass(-cm, &d[..n], residual);
             structure.add_damping(-cc, &d[..n], residual);
             step.clear();
             step.extend_from_slice(residual);
-            nonlinear(structure.nonlinear())?.solve_linearised(step, 1).map_err(unsolved)?;
+            nonlinear(structure.nonlinear())?.solve_linearised(step, 1).map_err(StepError::Factorisation)?;
             let free = impactors.iter().zip(&load[n..]).zip(&d[n..]);
             step.extend(free.map(|((impactor, r), d)| r / (cm * impactor.mass) - d));
             influence.free.fill(0.0);
@@ -140,9 +142,5 @@ impl ImpactSystem {
 }
 
 fn nonlinear(structure: Option<&mut dyn Nonlinear>) -> Result<&mut dyn Nonlinear, StepError> {
-    structure.ok_or_else(|| StepError::Factorisation("the structure has become linear".into()))
-}
-
-pub(super) fn unsolved(e: SolveError) -> StepError {
-    StepError::Factorisation(e.0)
+    structure.ok_or(StepError::Factorisation(SolveError::Linear))
 }

@@ -1,6 +1,6 @@
 //! Craig-Bampton reduction.
 
-use super::{EXCITED, StaticShapes, columns, refused, solve};
+use super::{EXCITED, StaticShapes, columns, solve};
 use crate::lanczos::Lanczos;
 use fem_core::functional::Functional;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
@@ -36,8 +36,8 @@ impl Reduction for CraigBampton {
             Ok(())
         };
         if modes > 0 {
-            let space = Lanczos::excited(structure, held, &basis).map_err(refused)?;
-            basis.extend(space.lowest(modes, EXCITED).map_err(refused)?.1);
+            let space = Lanczos::excited(structure, held, &basis)?;
+            basis.extend(space.lowest(modes, EXCITED)?.1);
         }
         Ok(basis)
     }

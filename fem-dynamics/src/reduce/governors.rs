@@ -60,12 +60,8 @@ impl Governors {
             free.retain(|d| inertia[*d] != 0.0);
         }
         if free.len() < self.count {
-            let offered = free.len();
-            let with = if self.ratio { " with inertia" } else { "" };
-            return Err(ReductionError(format!(
-                "{} governors are asked for, but the model offers only {offered}{with}",
-                self.count
-            )));
+            let (asked, offered, with_inertia) = (self.count, free.len(), self.ratio);
+            return Err(ReductionError::FewGovernors { asked, offered, with_inertia });
         }
         free.truncate(if self.ratio { POOL * self.count } else { self.count });
         let functionals = keep.iter().cloned().chain(free.into_iter().map(Functional::dof)).collect();

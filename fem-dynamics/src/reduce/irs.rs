@@ -1,7 +1,7 @@
 //! The improved reduced system.
 
 use super::governors::Governors;
-use super::{Reduced, refused, solve};
+use super::{Reduced, solve};
 use fem_core::functional::Functional;
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
 use fem_core::reduction::{Reduction, ReductionError};
@@ -38,12 +38,11 @@ impl Reduction for Irs {
         shapes.check_independence(&m).map_err(|dependent| dependent.named(structure))?;
         let mut basis = shapes.shapes();
         let n = structure.ndof();
-        let singular = || ReductionError("the mass condensed on the governors is singular: ask for fewer".into());
-        let accelerations = Cholesky::new(m).ok_or_else(singular)?.solve(&k);
+        let accelerations = Cholesky::new(m).ok_or(ReductionError::SingularMass)?.solve(&k);
         let moved = DMatrix::from_column_slice(n, k.nrows(), &basis) * accelerations;
         let mut correction = vec![0.0; basis.len()];
         structure.add_mass(1.0, moved.as_slice(), &mut correction);
-        solve(structure, &mut correction).map_err(refused)?;
+        solve(structure, &mut correction)?;
         for (t, x) in basis.chunks_exact_mut(n).zip(correction.chunks_exact_mut(n)) {
             shapes.hold(x);
             t.iter_mut().zip(x).for_each(|(t, x)| *t += *x);

@@ -105,7 +105,6 @@ impl MembranePlate {
         contacts: &[Functional],
         stretching: &dyn MembraneForms,
     ) -> Result<(Self, Companions), ReductionError> {
-        let failed = |e: SolveError| ReductionError(e.0);
         let (n, rigid) = (reduced.ndof, &reduced.modal.stiffness);
         let loads: Vec<Vec<f64>> = contacts.iter().map(|contact| reduced.restrict(contact)).collect();
         let Directions { vectors, reach } = Directions::new(rigid, &loads);
@@ -116,18 +115,18 @@ impl MembranePlate {
         // In units of the deflections of a static contact all pairs are comparable.
         let scale: Vec<f64> = pairs.map(|(i, j)| reach[i] * reach[j]).collect();
 
-        let gram = stretching.gram(fields.as_slice()).map_err(failed)?;
+        let gram = stretching.gram(fields.as_slice())?;
         let p = scale.len();
         let scaled = DMatrix::from_fn(p, p, |i, j| 0.5 * (gram[i + p * j] + gram[j + p * i]) * scale[i] * scale[j]);
         let (strains, energies) = largest(scaled)?;
         let terms = strains.ncols();
         let combinations = DMatrix::from_fn(p, terms, |i, t| scale[i] * strains[(i, t)]);
-        let forces = stretching.forces(fields.as_slice(), combinations.as_slice()).map_err(failed)?;
+        let forces = stretching.forces(fields.as_slice(), combinations.as_slice())?;
         let forces = DMatrix::from_vec(n, terms, forces);
 
         // K⁻¹ beside Φ: what the modes themselves would do is theirs.
         let mut shapes = -forces.clone();
-        structure.solve_shifted(0.0, shapes.as_mut_slice(), terms).map_err(failed)?;
+        structure.solve_shifted(0.0, shapes.as_mut_slice(), terms)?;
         let couplings = basis.transpose() * &forces;
         shapes += basis * DMatrix::from_fn(rigid.len(), terms, |r, t| couplings[(r, t)] / rigid[r]);
         let released = forces.transpose() * &shapes;
@@ -135,7 +134,9 @@ impl MembranePlate {
         let (turn, stiffness) = largest(left)?;
         let forms = |combinations: &DMatrix<f64>, shapes: Option<&DMatrix<f64>>| {
             let shapes = shapes.map(DMatrix::as_slice);
-            stretching.forms(fields.as_slice(), combinations.as_slice(), shapes, &reduced.basis).map_err(failed)
+            stretching
+                .forms(fields.as_slice(), combinations.as_slice(), shapes, &reduced.basis)
+                .map_err(ReductionError::from)
         };
         // The work of a stress on its own strains is σ_t, respectively the energy: per that, it counts how much there is.
         let counted = |mut forms: Vec<f64>, of: &DVector<f64>| {
@@ -223,7 +224,7 @@ impl Directions {
 /// Eigenvectors and eigenvalues that are not negligible beside the largest, descending.
 fn largest(matrix: DMatrix<f64>) -> Result<(DMatrix<f64>, DVector<f64>), ReductionError> {
     if !matrix.iter().all(|v| v.is_finite()) {
-        return Err(ReductionError("the membrane energy of the modes is not finite".into()));
+        return Err(ReductionError::NotFinite("the membrane energy of the modes"));
     }
     let eigen = SymmetricEigen::new(matrix);
     let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
@@ -317,14 +318,12 @@ impl Nonlinear for MembranePlate {
             tangent[(i, i)] += k + cm * mass + cc * self.modal.damping.get(i).unwrap_or(&0.0);
         }
         self.factor = None;
-        let buckles =
-            || SolveError("the tangent stiffness of the reduced plate is not positive definite: it buckles".into());
-        self.factor = Some(Cholesky::new(tangent).ok_or_else(buckles)?);
+        self.factor = Some(Cholesky::new(tangent).ok_or(SolveError::Buckled)?);
         Ok(())
     }
 
     fn solve_linearised(&mut self, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
-        let factor = self.factor.as_ref().ok_or_else(|| SolveError("no tangent has been factorised".into()))?;
+        let factor = self.factor.as_ref().ok_or(SolveError::NotLinearised)?;
         for column in x.chunks_exact_mut(self.modal.ndof()).take(columns) {
             let n = column.len();
             factor.solve_mut(&mut DVectorViewMut::from_slice(column, n));

@@ -111,7 +111,7 @@ impl Structure for Modal {
     fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
         for (i, (x, m)) in x.iter_mut().zip(&self.mass).enumerate() {
             if *m == 0.0 {
-                return Err(SolveError(format!("mode {} of the reduced structure has no inertia", i + 1)));
+                return Err(SolveError::NoInertia { unknown: format!("mode {} of the reduced structure", i + 1) });
             }
             *x /= m;
         }
@@ -167,7 +167,7 @@ impl Reduced {
         let n = structure.ndof();
         let m = basis.len() / n.max(1);
         if m == 0 {
-            return Err(ReductionError("the basis has no vectors".into()));
+            return Err(ReductionError::NoVectors);
         }
         let t = DMatrix::from_column_slice(n, m, basis);
         let product = |add: &dyn Fn(&[f64], &mut [f64])| {
@@ -179,17 +179,16 @@ impl Reduced {
         let k = product(&|x, y| structure.add_stiffness(1.0, x, y));
         let mass = product(&|x, y| structure.add_mass(1.0, x, y));
         if !k.iter().chain(mass.iter()).all(|v| v.is_finite()) {
-            return Err(ReductionError("the reduced matrices are not finite".into()));
+            return Err(ReductionError::NotFinite("a reduced matrix"));
         }
         let kept = independent(&k);
         let m = kept.len();
         let all = m == t.ncols();
         let only = |a: DMatrix<f64>| if all { a } else { a.select_rows(&kept).select_columns(&kept) };
         let (k, mass, t) = (only(k), only(mass), if all { t } else { t.select_columns(&kept) });
-        let singular = || ReductionError("the reduced stiffness is singular".into());
-        let l = Cholesky::new(k).ok_or_else(singular)?.unpack();
-        let half = l.solve_lower_triangular(&mass).ok_or_else(singular)?;
-        let inner = l.solve_lower_triangular(&half.transpose()).ok_or_else(singular)?;
+        let l = Cholesky::new(k).ok_or(ReductionError::SingularStiffness)?.unpack();
+        let half = l.solve_lower_triangular(&mass).ok_or(ReductionError::SingularStiffness)?;
+        let inner = l.solve_lower_triangular(&half.transpose()).ok_or(ReductionError::SingularStiffness)?;
         // 1/ω² and the modes in the metric of K.
         let eigen = SymmetricEigen::new((&inner + inner.transpose()) * 0.5);
         let mut order: Vec<usize> = (0..m).collect();
@@ -214,7 +213,7 @@ impl Reduced {
             column *= scale;
             vectors.set_column(to, &column);
         }
-        let back = l.transpose().solve_upper_triangular(&vectors).ok_or_else(singular)?;
+        let back = l.transpose().solve_upper_triangular(&vectors).ok_or(ReductionError::SingularStiffness)?;
         let basis = (t * back).as_slice().to_vec();
         Ok(Self { modal, basis, ndof: n })
     }
@@ -241,10 +240,6 @@ fn solve(structure: &mut dyn Structure, x: &mut [f64]) -> Result<(), SolveError>
     structure.solve_shifted(0.0, x, columns)
 }
 
-fn refused(e: SolveError) -> ReductionError {
-    ReductionError(e.0)
-}
-
 /// K⁻¹ P for the unit loads P of `functionals`, `n × functionals`: all that a structure without inertia can do under them.
 ///
 /// # Errors
@@ -255,7 +250,7 @@ pub fn static_responses(structure: &mut dyn Structure, functionals: &[Functional
     for (w, column) in functionals.iter().zip(x.chunks_exact_mut(n.max(1))) {
         w.add_to(1.0, column);
     }
-    solve(structure, &mut x).map_err(refused)?;
+    solve(structure, &mut x)?;
     Ok(x)
 }
 
@@ -267,10 +262,7 @@ fn columns(structure: &dyn Structure, asked: usize, others: usize) -> Result<usi
     let n = structure.ndof();
     let columns = asked.min(n.saturating_sub(others));
     if columns > LARGEST {
-        return Err(ReductionError(format!(
-            "{asked} vectors are asked for, more than {LARGEST}: dense matrices of that size cost more than the {n} \
-             unknowns do; ask for fewer, or for no reduction"
-        )));
+        return Err(ReductionError::TooManyVectors { asked, largest: LARGEST, unknowns: n });
     }
     Ok(columns)
 }
@@ -321,13 +313,10 @@ impl Dependent {
             _ => "the deflection under a contact".into(),
         };
         let names: Vec<String> = self.functionals.iter().map(name).collect();
-        ReductionError(match &names[..] {
-            [] => "there is neither a contact nor a governor to condense on".into(),
-            names => format!(
-                "some governors follow from those before them, whatever the load: {}; leave them out, or ask for fewer",
-                names.join(", ")
-            ),
-        })
+        match names.is_empty() {
+            true => ReductionError::NoGovernors,
+            false => ReductionError::DependentGovernors { names },
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Modal truncation with static correction.
 
-use super::{EXCITED, columns, refused, solve, static_responses};
+use super::{EXCITED, columns, solve, static_responses};
 use crate::lanczos::Lanczos;
 use crate::vector::{axpy, dot};
 use fem_core::functional::Functional;
@@ -37,7 +37,7 @@ impl Reduction for ModalTruncation {
         let modes = columns(structure, self.modes, keep.len())?;
         let responses = static_responses(structure, keep)?;
         let space = Lanczos::new(structure, solve, &responses);
-        let (_, mut basis) = space.lowest(modes, EXCITED).map_err(refused)?;
+        let (_, mut basis) = space.lowest(modes, EXCITED)?;
         basis.extend(responses);
         Ok(orthonormal(structure, &basis))
     }

@@ -1,6 +1,6 @@
 //! Load-dependent Ritz vectors.
 
-use super::{columns, refused, solve, static_responses};
+use super::{columns, solve, static_responses};
 use crate::lanczos::Lanczos;
 use fem_core::functional::Functional;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
@@ -42,7 +42,7 @@ impl Reduction for Ritz {
     ) -> Result<Vec<f64>, ReductionError> {
         let vectors = columns(structure, self.vectors.max(keep.len()), 0)?;
         if self.two_level
-            && let Some(coarse) = structure.coarse().map_err(refused)?
+            && let Some(coarse) = structure.coarse()?
             && (ROOM * vectors..=structure.ndof() / COARSENING).contains(&coarse.prolongation.columns())
         {
             return two_level(structure, coarse, keep, vectors);
@@ -55,7 +55,7 @@ impl Reduction for Ritz {
 fn krylov(structure: &mut dyn Structure, start: &[f64], vectors: usize) -> Result<Vec<f64>, ReductionError> {
     let mut space = Lanczos::new(structure, solve, start);
     for _ in 0..vectors {
-        if !space.grow().map_err(refused)? {
+        if !space.grow()? {
             break;
         }
     }
@@ -75,12 +75,12 @@ fn two_level(
         w.add_to(1.0, column);
     }
     let mut start = prolongation.restrict(&basis);
-    solve(&mut *small, &mut start).map_err(refused)?;
+    solve(&mut *small, &mut start)?;
     let rough = prolongation.expand(&krylov(&mut *small, &start, vectors - keep.len())?);
     let contacts = basis.len();
     basis.resize(contacts + rough.len(), 0.0);
     structure.add_mass(1.0, &rough, &mut basis[contacts..]);
-    solve(structure, &mut basis).map_err(refused)?;
+    solve(structure, &mut basis)?;
     Ok(basis)
 }
 

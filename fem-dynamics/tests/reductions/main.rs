@@ -71,7 +71,7 @@ impl Structure for Dense {
 
     fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
         if self.factor.as_ref().is_none_or(|(s, _)| *s != shift) {
-            let factor = Cholesky::new(&self.k + &self.m * shift).ok_or(SolveError("not held".into()))?;
+            let factor = Cholesky::new(&self.k + &self.m * shift).ok_or(SolveError::other("not held"))?;
             self.factor = Some((shift, factor));
         }
         let (_, factor) = self.factor.as_ref().unwrap();
@@ -84,7 +84,7 @@ impl Structure for Dense {
     }
 
     fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
-        let factor = Cholesky::new(self.m.clone()).ok_or(SolveError("no inertia".into()))?;
+        let factor = Cholesky::new(self.m.clone()).ok_or(SolveError::other("no inertia"))?;
         let n = x.len();
         factor.solve_mut(&mut DVectorViewMut::from_slice(x, n));
         Ok(())

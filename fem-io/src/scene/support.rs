@@ -4,7 +4,7 @@ use crate::document::keys::{Form, Key, Keys, key, words};
 use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, Place, SceneError};
 use crate::document::tree::Node;
-use fem_core::dof::Dof;
+use fem_core::dof::{Dof, DofError};
 use fem_core::plugin::Dimension;
 use fem_core::support::Levels;
 
@@ -170,7 +170,7 @@ fn dof(field: &SceneValue<'_>) -> Result<Dof, SceneError> {
     field
         .text()?
         .parse()
-        .map_err(|why: String| field.error(why, "U30 is the deflection along z, U31 its slope along x"))
+        .map_err(|why: DofError| field.error(why.to_string(), "U30 is the deflection along z, U31 its slope along x"))
 }
 
 fn terms(field: &SceneValue<'_>) -> Result<Vec<Term>, SceneError> {
