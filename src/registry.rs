@@ -96,6 +96,7 @@ impl Registry {
         Self::empty()
             .with::<fem_elements::HermitePrism>()
             .with::<fem_elements::Hex20>()
+            .with::<fem_elements::Wedge15>()
             .with::<fem_elements::Mitc4>()
             .with::<fem_elements::HermiteHex>()
             .with::<fem_elements::WebsterBeam>()

@@ -241,8 +241,9 @@ mod mesh {
 
     #[test]
     fn triangles() {
-        let words = ["cell 4 is a triangle", "Recombine Surface"];
-        insta::assert_snapshot!(refusal(&strip().mesh_file("triangles.msh"), At::Scene("hermite-prism"), &words));
+        let case = with_keys(strip().mesh_file("triangles.msh"), "element.kind = \"hex20\"");
+        let words = ["is a triangle", "wedge15", "Recombine Surface"];
+        insta::assert_snapshot!(refusal(&case, At::Scene("element."), &words));
     }
 
     #[test]

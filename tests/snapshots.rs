@@ -2,6 +2,7 @@
 
 use fem::Registry;
 use fem::core::dof::Dof;
+use fem::core::domain::Domain;
 use fem::core::element::{Cell, Element, ElementError, Scratch, Slice, Stack};
 use fem::core::material::Elastic;
 use fem::core::plugin::{Built, Kind, Params, Value};
@@ -55,13 +56,17 @@ fn elements() -> Vec<(&'static str, String, Box<dyn Element>)> {
 
 type Integrate = fn(&dyn Element, &Cell<'_>, &mut [f64]) -> Result<(), ElementError>;
 
-/// The matrix on a quadrilateral, or on a rectangle where the element takes no other shape.
+/// The matrix on a quadrilateral or the triangle at its first corner, or on a rectangle where the element takes no other shape.
 fn matrix(element: &dyn Element, integrate: Integrate) -> Vec<f64> {
     let n = element.info().ndof();
     let stack = stack();
-    let on = |corners: [[f64; 2]; 4]| {
+    let on = |[a, b, c, d]: [[f64; 2]; 4]| {
+        let corners = match element.info().domain {
+            Domain::Quadrilateral => [a, b, c, d].into(),
+            Domain::Triangle => [a, b, d].into(),
+        };
         let mut out = vec![f64::NAN; n * n];
-        integrate(element, &Cell { corners: corners.into(), z: [0.0, 0.5e-3], stack: &stack }, &mut out).map(|()| out)
+        integrate(element, &Cell { corners, z: [0.0, 0.5e-3], stack: &stack }, &mut out).map(|()| out)
     };
     let general = if element.info().is_section() { None } else { on(QUADRILATERAL).ok() };
     general.unwrap_or_else(|| on(RECTANGLE).unwrap())

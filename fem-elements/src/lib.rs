@@ -43,9 +43,11 @@ mod large;
 mod mitc4;
 mod prism;
 mod webster_beam;
+mod wedge15;
 
 pub use hermite_hex::HermiteHex;
 pub use hermite_prism::{HermitePrism, Mass};
 pub use hex20::Hex20;
 pub use mitc4::Mitc4;
 pub use webster_beam::{PlaneState, WebsterBeam};
+pub use wedge15::Wedge15;

@@ -3,11 +3,12 @@
 
 use fem_core::element::{Cell, Element, ElementInfo};
 use fem_core::testkit::check_element;
-use fem_elements::{HermiteHex, HermitePrism, Hex20, Mass, Mitc4, PlaneState, WebsterBeam};
+use fem_elements::{HermiteHex, HermitePrism, Hex20, Mass, Mitc4, PlaneState, WebsterBeam, Wedge15};
 
 #[test]
 fn all_elements() {
-    let mut all: Vec<Box<dyn Element>> = vec![Box::new(Hex20::new(3).unwrap()), Box::new(Mitc4::default())];
+    let mut all: Vec<Box<dyn Element>> =
+        vec![Box::new(Hex20::new(3).unwrap()), Box::new(Mitc4::default()), Box::new(Wedge15::default())];
     for mass in [Mass::Cubic, Mass::Linear] {
         all.push(Box::new(HermiteHex::new(mass)));
         for order in [3, 4, 7] {

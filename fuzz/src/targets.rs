@@ -56,10 +56,10 @@ pub fn scene(data: &[u8]) {
     match scene::parse(text(data), Path::new("no-such-folder/scene.toml")) {
         Ok(scene) => {
             let positive = |x: f64| assert!(x > 0.0 && x.is_finite(), "{x}");
-            let plies = &scene.laminate.value.plies;
-            assert_eq!(plies.len(), scene.laminate.value.layers.iter().sum::<usize>());
+            let plies = &scene.laminates[0].laminate.value.plies;
+            assert_eq!(plies.len(), scene.laminates[0].laminate.value.layers.iter().sum::<usize>());
             plies.iter().for_each(|ply| positive(ply.thickness));
-            positive(scene.laminate.value.thickness());
+            positive(scene.laminates[0].laminate.value.thickness());
             assert!(plies.iter().all(|ply| ply.angle.is_finite() && ply.material < scene.materials.len()));
             for material in &scene.materials {
                 assert_eq!(material.value.check(), Ok(()));

@@ -32,10 +32,7 @@ impl Rim {
         }
         let start = (0..mesh.quads.len()).find(|q| mesh.corners(*q).locate(centre).is_some())?;
         let is_held: Vec<bool> = (0..mesh.points.len()).map(|column| deflection_held(model, column)).collect();
-        let edges_of = |quad: usize| {
-            let q = mesh.quads[quad];
-            (0..4).map(move |i| [q[i].min(q[(i + 1) % 4]), q[i].max(q[(i + 1) % 4])])
-        };
+        let edges_of = |quad: usize| mesh.quads[quad].sides().map(|[a, b]| [a.min(b), a.max(b)]);
         let mut beside: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
         for quad in 0..mesh.quads.len() {
             edges_of(quad).for_each(|edge| beside.entry(edge).or_default().push(quad));

@@ -129,7 +129,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
     constraints.expand(&found.independent, &mut u);
     stopwatch.lap("solve");
     let margins = stress::margins(model, &u)?;
-    let mut field = Displacements::new(&model.plate, &model.laminate, &*model.element, &u);
+    let mut field = Displacements::new(&model.plate, &model.laminates, &*model.element, &u);
     if nature.large {
         field = field.with_large_strains();
     }

@@ -265,7 +265,7 @@ pub(crate) fn margins(model: &Model, u: &[f64]) -> Result<Vec<Margin>, Error> {
     Ok(model.criteria.iter().filter_map(smallest).collect())
 }
 
-/// Stresses of the stations that do not follow from displacements, six each; empty where there are none.
+/// Stresses of all sites that do not follow from displacements, six each; empty where there are none.
 ///
 /// # Errors
 /// A material that lacks a constant.
@@ -273,11 +273,11 @@ pub(crate) fn residual(model: &Model, recovery: &Recovery) -> Result<Vec<f64>, E
     model.effects.stresses(&model.body(), recovery)
 }
 
-/// Adds the stresses of stations to those of all sites.
+/// Adds the residual stresses of all sites to those of one field or several.
 pub(crate) fn add(stresses: &mut [f64], residual: &[f64]) {
     if !residual.is_empty() {
-        for quad in stresses.chunks_exact_mut(residual.len()) {
-            quad.iter_mut().zip(residual).for_each(|(s, r)| *s += r);
+        for field in stresses.chunks_exact_mut(residual.len()) {
+            field.iter_mut().zip(residual).for_each(|(s, r)| *s += r);
         }
     }
 }
@@ -329,10 +329,10 @@ pub(crate) fn recovery(model: &Model, quads: Vec<usize>, interfaces: bool) -> Re
     let mesh = &model.plate.plane;
     let windows = match model.window {
         Window::Element => window::own(mesh),
-        Window::Square(side) => window::square(mesh, side),
+        Window::Square(side) => window::square(mesh, side, |quad| model.plate.region(quad)),
     };
     let resin = model.interface.filter(|_| interfaces);
-    Recovery::new(&model.plate, &model.laminate, &model.materials, resin, quads, &windows)
+    Recovery::new(&model.plate, &model.laminates, &model.materials, resin, quads, &windows)
 }
 
 pub(crate) fn sites(model: &Model, recovery: &Recovery) -> Vec<ScanSite> {
@@ -351,7 +351,8 @@ pub(crate) fn sites(model: &Model, recovery: &Recovery) -> Vec<ScanSite> {
             material: s.material as u16,
         }
     };
-    recovery.quads.iter().flat_map(|q| recovery.stations.iter().map(move |s| site(*q, s))).collect()
+    let over = |(i, q): (usize, &usize)| recovery.stations_over(i).iter().map(|s| site(*q, s)).collect::<Vec<_>>();
+    recovery.quads.iter().enumerate().flat_map(over).collect()
 }
 
 /// An empty history for every criterion of every gauge, and where the scan keeps its indices: an interface between two layers

@@ -44,6 +44,8 @@ pub(super) fn check(registry: &Registry, arguments: &Arguments, console: &Consol
 #[allow(non_snake_case)]
 struct Checked {
     title: String,
+    #[serde(skip)]
+    shape: &'static str,
     quads: usize,
     nodes: usize,
     groups: Vec<String>,
@@ -169,6 +171,7 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
     let plane = &model.plate.plane;
     Ok(Checked {
         title: model.origin.title.clone(),
+        shape: plane.name_of_cells(),
         quads: plane.quads.len(),
         nodes: plane.points.len(),
         groups: plane.groups.keys().cloned().collect(),
@@ -197,7 +200,7 @@ type Line = (&'static str, String);
 
 impl Checked {
     fn text(&self) -> String {
-        let Self { quads, nodes, plies, thickness_mm, layers, unknowns, memory_MB, memory, .. } = self;
+        let Self { shape, quads, nodes, plies, thickness_mm, layers, unknowns, memory_MB, memory, .. } = self;
         let redundant = match self.redundant_equations {
             0 => String::new(),
             n => format!(" ({n} redundant equations)"),
@@ -206,7 +209,7 @@ impl Checked {
             (
                 "mesh",
                 format!(
-                    "{quads} quads, {nodes} nodes, groups {}{}",
+                    "{quads} {shape}, {nodes} nodes, groups {}{}",
                     self.groups.join(", "),
                     append_symmetry(self.symmetry)
                 ),

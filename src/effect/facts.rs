@@ -15,8 +15,8 @@ pub struct Body<'a> {
     pub plate: &'a Plate,
     /// The element of all cells.
     pub element: &'a (dyn Element + 'static),
-    /// The laminate.
-    pub laminate: &'a Laminate,
+    /// The laminates of its regions.
+    pub laminates: &'a [Laminate],
     /// Its materials.
     pub materials: &'a [Material],
     /// Supports and other equations, eliminated.
@@ -121,7 +121,7 @@ impl<'a> Facts<'a> {
                 scene.profiles.iter().find(|line| line.equilibrium).map(|line| &line.name.place)
             }
             Feature::ExplicitIntegrator => None,
-            Feature::PlyLaws => own(scene.laminate.value.plies.iter().any(|ply| scene.laws[ply.material].is_some())),
+            Feature::PlyLaws => own(scene.plies().any(|ply| scene.laws[ply.material].is_some())),
             Feature::Effect(name) => own(self.effects.contains(&name)),
         }
     }

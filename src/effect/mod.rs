@@ -191,7 +191,7 @@ pub trait Effect: DynClone + Debug + Send + Sync {
         saved.is_empty()
     }
 
-    /// Stresses that do not follow from displacements, six per station of `recovery`; `None` without.
+    /// Stresses that do not follow from displacements, six per site of `recovery`; `None` without.
     ///
     /// # Errors
     /// A material that lacks a constant.

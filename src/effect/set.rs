@@ -118,7 +118,7 @@ impl Effects {
         self.acting.iter().try_for_each(|effect| effect.on_stiffness(body, stiffness))
     }
 
-    /// Stresses that do not follow from displacements, six per station; empty without.
+    /// Stresses that do not follow from displacements, six per site; empty without.
     pub(crate) fn stresses(&self, body: &Body<'_>, recovery: &Recovery) -> Result<Vec<f64>, Error> {
         let mut sum: Vec<f64> = Vec::new();
         for effect in &self.acting {

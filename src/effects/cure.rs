@@ -76,7 +76,7 @@ impl Effect for Cure {
             let help = "leave the criteria that judge interfaces out, or `effects.cure`";
             return Err(source.error_at(&resin.place, message, help));
         }
-        let plies = scene.laminate.value.plies.iter().map(|ply| ply.material);
+        let plies = scene.plies().map(|ply| ply.material);
         for material in plies.chain(judged.map(|resin| resin.value)).map(|m| &scene.materials[m]) {
             if let Err(why) = material.value.thermal_expansion() {
                 let help =
@@ -107,17 +107,24 @@ impl Effect for Cure {
 
     /// Under loads at rest those that free strains leave in a plate held in its shape, in an impact those of the free plate.
     fn stresses(&self, body: &Body<'_>, recovery: &Recovery) -> Result<Option<Vec<f64>>, Error> {
-        let Body { plate, element, laminate, materials, at_rest, .. } = *body;
-        let cooled = Residual::new(laminate, materials, self.change)?;
-        let of_station = |station: &Station| match at_rest {
-            false => cooled.stress(&materials[station.material], station.angle, station.z),
+        let Body { plate, element, laminates, materials, at_rest, .. } = *body;
+        let cooled = laminates.iter().map(|laminate| Residual::new(laminate, materials, self.change));
+        let cooled: Vec<Residual> = cooled.collect::<Result<_, _>>()?;
+        let of_station = |region: usize, station: &Station| match at_rest {
+            false => cooled[region].stress(&materials[station.material], station.angle, station.z),
             true => {
-                let slice = station.ply - laminate.plies_of(station.layer).start;
-                let held = element.held_stress(&plate.stacks[station.layer].slices[slice]);
+                let slice = station.ply - laminates[region].plies_of(station.layer).start;
+                let held = element.held_stress(&plate.stacks(region)[station.layer].slices[slice]);
                 Ok(Stress6::<Global>::new(held).to_ply(station.angle))
             }
         };
-        let stations: Vec<Stress6<Ply>> = recovery.stations.iter().map(of_station).collect::<Result<_, _>>()?;
-        Ok(Some(stations.iter().flat_map(|s| s.0).collect()))
+        let mut stresses = Vec::with_capacity(6 * recovery.sites());
+        for (i, quad) in recovery.quads.iter().enumerate() {
+            for station in recovery.stations_over(i) {
+                let stress: Stress6<Ply> = of_station(plate.region(*quad), station)?;
+                stresses.extend(stress.0);
+            }
+        }
+        Ok(Some(stresses))
     }
 }

@@ -110,7 +110,7 @@ impl Builder<'_> {
     fn check_criterion(&self, spec: &PluginSpec, criterion: &dyn FailureCriterion) -> Result<(), SceneError> {
         let name = &spec.name.value;
         let judged: BTreeSet<usize> = match (criterion.info().site, &self.scene.interface) {
-            (Site::Ply, _) => self.scene.laminate.value.plies.iter().map(|ply| ply.material).collect(),
+            (Site::Ply, _) => self.scene.plies().map(|ply| ply.material).collect(),
             (Site::Interface, Some(resin)) => BTreeSet::from([resin.value]),
             (Site::Interface, None) => {
                 return Err(self.error(

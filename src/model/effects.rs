@@ -11,9 +11,9 @@ use fem_io::scene::{Damage, Delamination, EffectSpec, SceneError};
 impl Model {
     /// The plate on which effects act.
     pub fn body(&self) -> Body<'_> {
-        let Self { plate, element, laminate, materials, constraints, .. } = self;
+        let Self { plate, element, laminates, materials, constraints, .. } = self;
         let at_rest = !matches!(self.plan, Plan::Impact(_));
-        Body { plate, element: &**element, laminate, materials, constraints, at_rest }
+        Body { plate, element: &**element, laminates, materials, constraints, at_rest }
     }
 }
 

@@ -45,7 +45,7 @@ impl Builder<'_> {
                 quads
             }
         };
-        let interfaces = self.scene.interface.is_some() && self.scene.laminate.value.plies.len() > 1;
+        let interfaces = self.scene.interface.is_some() && self.scene.laminates[0].laminate.value.plies.len() > 1;
         let mut series = Vec::new();
         for part in fields.parts.iter().flatten() {
             if part.value == FieldSeries::Interfaces && !interfaces {

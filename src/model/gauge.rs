@@ -67,7 +67,7 @@ impl Builder<'_> {
             self.error(&watch.at, message, "choose a place on the plate and within `failure.radius` of the impact")
         })?;
 
-        let plies = self.scene.laminate.value.plies.len();
+        let plies = self.scene.laminates[0].laminate.value.plies.len();
         let (place, fits) = match watch.depth.value {
             Depth::Ply(k) => (PlyOrInterface::Ply(k as u16), k < plies),
             Depth::Interface(k) => (PlyOrInterface::Interface(k as u16), k + 1 < plies),

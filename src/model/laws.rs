@@ -16,10 +16,19 @@ impl Builder<'_> {
     pub(super) fn laws(
         &self,
         plate: &Plate,
-        laminate: &Laminate,
+        laminates: &[Laminate],
         materials: &[Material],
         element: &dyn Element,
     ) -> Result<Option<PlyLaws>, SceneError> {
+        let lawful = self.scene.plies().find_map(|ply| self.scene.laws[ply.material].as_ref());
+        let laminate = match (laminates, lawful) {
+            ([_, _, ..], Some(spec)) => {
+                let message = "plies that follow a law are not supported yet in a plate of several laminates";
+                let help = "give the plate one laminate, or leave the `law` of the material out";
+                return Err(self.error(&spec.name, message, help));
+            }
+            _ => &laminates[0],
+        };
         let built = |spec: &Option<PluginSpec>| {
             let named = |spec: &PluginSpec| Ok((spec.name.value.clone(), self.ply_law(spec)?));
             spec.as_ref().map(named).transpose()

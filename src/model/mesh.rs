@@ -1,6 +1,7 @@
 //! The mesh of a scene.
 
 use crate::error::Error;
+use fem_core::domain::Domain;
 use fem_core::mesh::PlaneMesh;
 use fem_io::gmsh::{self, GmshMesh, MeshFault};
 use fem_io::scene::{self, Located, MeshSource, Scene, SceneError};
@@ -34,6 +35,25 @@ pub fn mesh(scene: &Scene) -> Result<GmshMesh, Error> {
             let mesh = plate.value.mesh().map_err(|wrong| error(scene, plate, wrong.to_string(), ""))?;
             Ok(built((0..*refine).fold(mesh, |mesh, _| mesh.refined(*curves))))
         }
+    }
+}
+
+/// What helps where a mesh has cells of another shape than the element's; nothing where it has not.
+pub(super) fn other_shape(mesh: &PlaneMesh, domain: Domain) -> &'static str {
+    match (mesh.name_of_cells(), domain) {
+        ("triangles", Domain::Quadrilateral) => {
+            "give an element for triangles, for example element = { kind = \"wedge15\" }, or let Gmsh make quadrilaterals: \
+             Recombine Surface or Mesh.RecombineAll = 1, and Mesh.SubdivisionAlgorithm = 1 where triangles are left"
+        }
+        ("quads", Domain::Triangle) => {
+            "give an element for quadrilaterals, for example element = { kind = \"hex20\" }, or a mesh of triangles, which \
+             Gmsh makes without Recombine Surface"
+        }
+        ("cells", _) => {
+            "meshes of quadrilaterals and triangles are not supported yet: use Recombine Surface or Mesh.RecombineAll = 1, \
+             and Mesh.SubdivisionAlgorithm = 1 where triangles are left"
+        }
+        _ => "",
     }
 }
 

@@ -9,6 +9,7 @@ mod memory;
 mod mesh;
 mod origin;
 mod plan;
+mod regions;
 mod substructures;
 mod symmetry;
 
@@ -45,9 +46,11 @@ pub struct Model {
     pub origin: Origin,
     /// Materials; layups and stations refer to them by index.
     pub materials: Vec<Material>,
-    /// The laminate.
+    /// The laminate under the first impactor, or the first where nothing strikes.
     pub laminate: Laminate,
-    /// Mass per area, kg/m².
+    /// The laminates of the plate's regions.
+    pub laminates: Vec<Laminate>,
+    /// Mass per area of that laminate, kg/m².
     pub areal_mass: f64,
     /// Cells and unknowns.
     pub plate: Plate,
@@ -129,8 +132,8 @@ impl Model {
         let mesh = read.mesh;
         info!(quads = mesh.quads.len(), nodes = mesh.points.len(), "mesh");
         let materials: Vec<Material> = scene.materials.iter().map(|m| m.value.clone()).collect();
-        let laminate = scene.laminate.value.clone();
-        warnings.extend(check_sizes(&mesh, &laminate));
+        let (laminates, of_specs) = regions::distinct(&scene.laminates);
+        warnings.extend(check_sizes(&mesh, &laminates[0]));
 
         let element = builder.element()?;
         let criteria = match scene.effects.damage {
@@ -139,24 +142,32 @@ impl Model {
         };
         let mut effects = builder.effects(&*element, &criteria)?;
 
-        let levels = laminate.levels();
+        let levels = laminates[0].levels();
         let lacks = |why: MaterialError| {
             let material = scene.materials.iter().find(|m| m.value.name == why.material).unwrap_or(&scene.materials[0]);
             builder.error(material, why.to_string(), "add its `density`, for example: density = \"1.58 g/cm^3\"")
         };
-        let areal_mass = laminate.areal_mass(&materials).map_err(lacks)?;
-        let mut stacks = laminate.stacks(&materials).map_err(lacks)?;
         let at_rest = matches!(scene.analysis, Analysis::Static(_));
-        for effect in effects.acting() {
-            effect.on_stacks(at_rest, &laminate, &materials, &mut stacks).map_err(lacks)?;
+        let stacks = |laminate: &Laminate| {
+            let mut stacks = laminate.stacks(&materials).map_err(lacks)?;
+            for effect in effects.acting() {
+                effect.on_stacks(at_rest, laminate, &materials, &mut stacks).map_err(lacks)?;
+            }
+            Ok::<_, Error>(stacks)
+        };
+        let help = mesh::other_shape(&mesh, element.info().domain);
+        let mut plate = Plate::new(mesh, levels, stacks(&laminates[0])?, *element.info(), scene.z_derivatives.value)
+            .map_err(|why| builder.error(&scene.element.name, why.to_string(), help))?;
+        for (quads, laminate) in builder.regions(&plate, &of_specs)?.iter().zip(&laminates).skip(1) {
+            plate
+                .assign(quads, stacks(laminate)?)
+                .map_err(|why| builder.error(&scene.laminates[0].laminate, why.to_string(), ""))?;
         }
-        let mut plate = Plate::new(mesh, levels, stacks, *element.info(), scene.z_derivatives.value)
-            .map_err(|why| builder.error(&scene.element.name, why.to_string(), ""))?;
-        builder.fold(&mut plate, &laminate, &materials, &criteria)?;
+        builder.fold(&mut plate, &laminates, &materials, &criteria)?;
         memory::check(&plate)?;
         warnings.extend(polygon(&plate));
         warnings.extend(warn_of_flat_cells(&plate));
-        warnings.extend(incompressible(&plate, &laminate, &materials));
+        warnings.extend(incompressible(&plate, &laminates, &materials));
         let (constraints, held) = builder.constraints(&plate)?;
         let plan = match &scene.analysis {
             Analysis::Impact(spec) => Plan::Impact(Box::new(builder.impact(spec, &plate, &*element, &constraints)?)),
@@ -167,6 +178,11 @@ impl Model {
             Plan::Impact(impact) => impact.strikes.iter().map(|strike| strike.centre).collect(),
             _ => Vec::new(),
         };
+        let struck =
+            |centre: [f64; 2]| (0..plate.plane.quads.len()).find(|q| plate.plane.corners(*q).locate(centre).is_some());
+        let region = centres.first().and_then(|centre| struck(*centre)).map_or(0, |quad| plate.region(quad));
+        let laminate = laminates[region].clone();
+        let areal_mass = laminate.areal_mass(&materials).map_err(lacks)?;
         builder.modes(&plan)?;
         let division = builder.division(&plate, &constraints, &plan)?;
         let watched = builder.find_watched(&plate, &centres)?;
@@ -175,7 +191,7 @@ impl Model {
         let resin = scene.interface.as_ref().map(|resin| resin.value);
         let threshold = builder.threshold(DelaminationThreshold::of(&laminate, &materials, resin))?;
         let profiles = builder.profiles(&plate)?;
-        let laws = builder.laws(&plate, &laminate, &materials, &*element)?;
+        let laws = builder.laws(&plate, &laminates, &materials, &*element)?;
         if let Some(laws) = &laws {
             effects.act(Box::new(NonlinearPlies(laws.clone())));
         }
@@ -185,6 +201,7 @@ impl Model {
             origin: Origin::of(scene),
             materials,
             laminate,
+            laminates,
             areal_mass,
             plate,
             element,
@@ -289,13 +306,13 @@ fn warn_of_flat_cells(plate: &Plate) -> Option<String> {
 
 /// The pressure in a material that hardly changes its volume is not a function of the strains of a solid cell:
 /// deflections are right, stresses swing about the right ones from point to point.
-fn incompressible(plate: &Plate, laminate: &Laminate, materials: &[Material]) -> Option<String> {
+fn incompressible(plate: &Plate, laminates: &[Laminate], materials: &[Material]) -> Option<String> {
     let yields = |material: &&Material| {
         let s = material.elastic.compliance();
         let sum: f64 = s[..3].iter().flat_map(|row| &row[..3]).sum();
         sum / (s[0][0] + s[1][1] + s[2][2])
     };
-    let used = laminate.plies.iter().map(|ply| &materials[ply.material]);
+    let used = laminates.iter().flat_map(|laminate| &laminate.plies).map(|ply| &materials[ply.material]);
     let worst = used.min_by(|a, b| yields(a).total_cmp(&yields(b))).filter(|m| yields(m) < INCOMPRESSIBLE)?;
     (!plate.info().is_shell()).then(|| {
         format!(

@@ -33,7 +33,7 @@ impl Builder<'_> {
     pub(super) fn fold(
         &self,
         plate: &mut Plate,
-        laminate: &Laminate,
+        laminates: &[Laminate],
         materials: &[Material],
         criteria: &[NamedCriterion],
     ) -> Result<(), SceneError> {
@@ -43,8 +43,14 @@ impl Builder<'_> {
             self.error(symmetry, why.to_string(), "make the mesh symmetric, node by node, or leave `symmetry` out")
         })?;
         let operations = symmetry.value.operations();
-        for layer in 0..plate.layers() {
-            for (ply, slice) in laminate.plies_of(layer).zip(&plate.stacks[layer].slices) {
+        let layers = || {
+            laminates.iter().enumerate().flat_map(|(region, laminate)| {
+                let layers = plate.stacks(region).iter().enumerate();
+                layers.map(move |(layer, stack)| (laminate, layer, stack))
+            })
+        };
+        for (laminate, layer, stack) in layers() {
+            for (ply, slice) in laminate.plies_of(layer).zip(&stack.slices) {
                 if !operations.iter().all(|o| o.keeps_stiffness(&slice.c)) {
                     let angle = laminate.plies[ply].angle_deg;
                     let message = format!("ply {} at {angle} degrees breaks the symmetry `{name}`", ply + 1);
@@ -57,7 +63,7 @@ impl Builder<'_> {
             }
         }
         for (label, criterion) in criteria {
-            if !operations.iter().all(|o| self.is_symmetric(&**criterion, *o, laminate, materials)) {
+            if !operations.iter().all(|o| self.is_symmetric(&**criterion, *o, laminates, materials)) {
                 let message = format!("criterion `{label}` breaks the symmetry `{name}`");
                 let help = "it tells a stress from its image, by the sign of a shear stress; leave `symmetry` out";
                 return Err(self.error(symmetry, message, help));
@@ -71,7 +77,7 @@ impl Builder<'_> {
         &self,
         criterion: &dyn FailureCriterion,
         operation: Operation,
-        laminate: &Laminate,
+        laminates: &[Laminate],
         materials: &[Material],
     ) -> bool {
         let modes = criterion.info().modes.len();
@@ -91,7 +97,9 @@ impl Builder<'_> {
             })
         };
         match (criterion.info().site, &self.scene.interface) {
-            (Site::Ply, _) => laminate.plies.iter().all(|ply| same(ply.angle, ply.material)),
+            (Site::Ply, _) => {
+                laminates.iter().flat_map(|laminate| &laminate.plies).all(|ply| same(ply.angle, ply.material))
+            }
             (Site::Interface, resin) => resin.iter().all(|resin| same(0.0, resin.value)),
         }
     }

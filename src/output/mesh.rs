@@ -10,6 +10,9 @@ use std::fmt::Write as _;
 pub struct MeshSummary {
     /// Number of nodes.
     pub nodes: usize,
+    /// What the cells are called.
+    #[serde(skip)]
+    pub shape: &'static str,
     /// Number of cells.
     pub quads: usize,
     /// Sum of the areas of cells, m².
@@ -82,6 +85,7 @@ impl MeshSummary {
         let edges = mesh.quads.iter().flat_map(|q| q.sides().map(|side| length(mesh, side)));
         Self {
             nodes: mesh.points.len(),
+            shape: mesh.name_of_cells(),
             quads: mesh.quads.len(),
             area_m2: mesh.area(),
             bounds_m: [low, high],
@@ -103,7 +107,7 @@ impl MeshSummary {
         let [[x0, y0], [x1, y1]] = self.bounds_m.map(|corner| corner.map(short));
         let [shortest, longest] = self.edges_m.map(short);
         let mut lines = vec![
-            ("mesh", format!("{} quads, {} nodes, area {}", self.quads, self.nodes, area(self.area_m2))),
+            ("mesh", format!("{} {}, {} nodes, area {}", self.quads, self.shape, self.nodes, area(self.area_m2))),
             ("bounds", format!("x {x0} to {x1}, y {y0} to {y1} {unit}")),
             ("cells", format!("edges {shortest} to {longest} {unit}")),
         ];
@@ -122,7 +126,7 @@ impl MeshSummary {
             // Nothing is lost: a text takes whatever is written.
             let _ = match (group.edges.zip(group.length_m), group.quads.zip(group.area_m2)) {
                 (Some((n, l)), _) => write!(line, "{n} edges, {} nodes, length {} {unit}", group.nodes, short(l)),
-                (_, Some((n, a))) => write!(line, "{n} quads, {} nodes, area {}", group.nodes, area(a)),
+                (_, Some((n, a))) => write!(line, "{n} {}, {} nodes, area {}", self.shape, group.nodes, area(a)),
                 _ if group.nodes == 1 => write!(line, "1 node"),
                 _ => write!(line, "{} nodes", group.nodes),
             };
@@ -153,7 +157,7 @@ impl Measure {
             worst,
             mean: values().sum::<f64>() / qualities.len() as f64,
             cell: mesh.quad_tags[quad],
-            at_m: [0, 1].map(|d| 0.25 * corners.iter().map(|p| p[d]).sum::<f64>()),
+            at_m: [0, 1].map(|d| corners.iter().map(|p| p[d]).sum::<f64>() / corners.len() as f64),
         }
     }
 }

@@ -148,7 +148,7 @@ pub(super) fn judges(axis: &str) -> &'static [&'static str] {
 fn standard(name: &str, scene: &Scene, model: &Model, registry: &Registry) -> Option<StudyAxis> {
     let (kind, levels) = match name {
         "mesh" => (AxisKind::Ladder, mesh(scene)),
-        "layers" => (AxisKind::Ladder, layers(model)),
+        "layers" => (AxisKind::Ladder, layers(scene, model)),
         "reduction" => (AxisKind::Ladder, reduction(scene, model, registry)?),
         "step" => (AxisKind::Ladder, steps(scene)?),
         "geometry" => (AxisKind::Ways, geometry(scene, &model.plate.plane)),
@@ -204,8 +204,9 @@ fn geometry(scene: &Scene, plane: &PlaneMesh) -> Vec<Level> {
     vec![Level::new(format!("refine {refined}, curves {other}"), keys)]
 }
 
-fn layers(model: &Model) -> Vec<Level> {
-    if model.plate.info().is_shell() {
+fn layers(scene: &Scene, model: &Model) -> Vec<Level> {
+    // Laminates in a list have no single key that divides them anew.
+    if model.plate.info().is_shell() || !scene.keys.contains_key("laminate.plies") {
         return Vec::new();
     }
     let (plies, own) = (model.laminate.plies.len(), model.laminate.layers.len());

@@ -52,7 +52,7 @@ fn ply_at(model: &Model, z: f64) -> usize {
 fn displacements_are_those_of_the_model_at_every_point() {
     for cells in ["lagrange", "subdivided"] {
         let (case, model, solution) = at_rest(&format!("{{ cells = \"{cells}\" }}"));
-        let field = Field::new(&model.plate, &model.laminate, &*model.element, &solution.u);
+        let field = Field::new(&model.plate, &model.laminates, &*model.element, &solution.u);
         let largest = solution.u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         for name in ["plate", "plies", "interfaces"] {
             let frames = series(&case, "out", name);
@@ -83,7 +83,7 @@ fn displacements_are_those_of_the_model_at_every_point() {
 #[test]
 fn stresses_are_means_over_plies_and_interfaces() {
     let (case, model, solution) = at_rest("true");
-    let field = Field::new(&model.plate, &model.laminate, &*model.element, &solution.u);
+    let field = Field::new(&model.plate, &model.laminates, &*model.element, &solution.u);
     let plies = &series(&case, "out", "plies")[0].1;
     assert_eq!(plies.array("CellData", "stress").component_names, ["11", "22", "33", "12", "23", "31"]);
     assert!((volume(plies) / (12e-3 * 6e-3 * 0.6e-3) - 1.0).abs() < 1e-12);
@@ -95,7 +95,7 @@ fn stresses_are_means_over_plies_and_interfaces() {
         for (&(r, wr), &(s, ws)) in rule.iter().flat_map(|r| rule.iter().map(move |s| (r, s))) {
             for (z, wz) in z {
                 let (strain, _) = field.at(Spot { quad, at: [r, s], ply, z: *z }).unwrap();
-                let stress = field.stress(ply, &strain).to_ply(model.laminate.plies[ply].angle);
+                let stress = field.stress(quad, ply, &strain).to_ply(model.laminate.plies[ply].angle);
                 sum.iter_mut().zip(stress.0).for_each(|(sum, s)| *sum += wr * ws * wz / 8.0 * s);
             }
         }

@@ -58,7 +58,7 @@ impl Solved {
                 for &(s, ws) in gauss_legendre(3) {
                     let [x, y, _] = fine.model.plate.cell(cell).position([r, s, 0.0]);
                     let [cr, cs] = plate.plane.corners(coarse).locate([x, y]).unwrap();
-                    for (number, slice) in plate.stacks[layer].slices.iter().enumerate() {
+                    for (number, slice) in plate.stacks(0)[layer].slices.iter().enumerate() {
                         let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
                         for &(t, wt) in gauss_legendre(if half < 0.2 { 1 } else { 2 }) {
                             let q = middle + half * t;

@@ -1,5 +1,6 @@
 //! Cells that share one matrix (the report's LAMCEL: a repeated cell is integrated once).
 
+use crate::contracts::element::Stack;
 use crate::plates::plate::Plate;
 use std::collections::HashMap;
 
@@ -20,8 +21,8 @@ pub(super) const GRAIN: f64 = 1e-11;
 
 impl Alike {
     pub(super) fn of(plate: &Plate) -> Self {
-        let stacks: Vec<usize> =
-            plate.stacks.iter().map(|s| plate.stacks.iter().position(|t| t == s).unwrap_or(0)).collect();
+        let all: Vec<&Stack> = (0..plate.regions()).flat_map(|region| plate.stacks(region)).collect();
+        let stacks: Vec<usize> = all.iter().map(|s| all.iter().position(|t| t == s).unwrap_or(0)).collect();
         let mut numbers: HashMap<Shape, u32> = HashMap::new();
         let mut starts = vec![0];
         let kept = plate.kept_cells();
@@ -66,7 +67,7 @@ impl Alike {
 }
 
 fn shape(plate: &Plate, number: usize, stacks: &[usize]) -> Shape {
-    let cell = plate.cell(number);
+    let (cell, (quad, layer)) = (plate.cell(number), plate.place(number));
     let p = cell.corners.four();
     let edges: [f64; 6] = std::array::from_fn(|i| p[1 + i / 2][i % 2] - p[0][i % 2]);
     let size = edges.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
@@ -74,5 +75,5 @@ fn shape(plate: &Plate, number: usize, stacks: &[usize]) -> Shape {
     let grain = f64::from(exponent).exp2() * GRAIN;
     let height = 2.0 * cell.half_height();
     let grains = |i: usize| (edges.get(i).copied().unwrap_or(height) / grain).round() as i64;
-    (std::array::from_fn(grains), stacks[plate.place(number).1], exponent)
+    (std::array::from_fn(grains), stacks[plate.region(quad) * plate.layers() + layer], exponent)
 }

@@ -116,9 +116,9 @@ struct Class {
     inside: usize,
 }
 
-/// What equal substructures have in common: quads and vertices from the first one, in units of `GRAIN` of their size, that size
+/// What equal substructures have in common: quads, their regions, and vertices from the first one, in units of `GRAIN` of their size, that size
 /// as an exponent of 2, and the unknowns inside.
-type Shape = (Vec<Corners<u32>>, Vec<[i64; 2]>, i32, Vec<usize>);
+type Shape = (Vec<Corners<u32>>, Vec<usize>, Vec<[i64; 2]>, i32, Vec<usize>);
 
 /// Assembles K and M of `plate` substructure by substructure, each condensed on its masters; equal ones once.
 ///
@@ -244,7 +244,8 @@ fn shape(part: &Plate, inside: &[bool]) -> Shape {
     let grain = f64::from(exponent).exp2() * GRAIN;
     let places = points.iter().map(|p| from_first(p).map(|x| (x / grain).round() as i64)).collect();
     let inside = (0..inside.len()).filter(|dof| inside[*dof]).collect();
-    (part.plane.quads.clone(), places, exponent, inside)
+    let regions = (0..part.plane.quads.len()).map(|quad| part.region(quad)).collect();
+    (part.plane.quads.clone(), regions, places, exponent, inside)
 }
 
 /// The independent unknowns that are masters, in an order that is good to eliminate them in.

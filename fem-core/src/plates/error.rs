@@ -10,6 +10,13 @@ pub enum PlateError {
     NodeOffGrid,
     /// A shell in several layers of cells.
     LayersOfShell,
+    /// A region with other layers than the plate.
+    LayersOfRegion {
+        /// Layers of the plate.
+        layers: usize,
+        /// Those of the region.
+        of_region: usize,
+    },
     /// A cell of another shape than the element stands on.
     OtherShape {
         /// What the element stands on.
@@ -77,8 +84,11 @@ impl fmt::Display for PlateError {
             Self::LayersOfShell => {
                 f.write_str("a shell holds the whole laminate in one layer of cells: give `layers = 1`")
             }
+            Self::LayersOfRegion { layers, of_region } => {
+                write!(f, "a region has {of_region} layers of cells, the plate {layers}")
+            }
             Self::OtherShape { of_element, quad_tag, of_cell } => {
-                write!(f, "the element is for {of_element}s, and cell {quad_tag} is a {of_cell}")
+                write!(f, "the element stands on {of_element}s, and cell {quad_tag} is a {of_cell}")
             }
             Self::NoStrip { quad_tag } => write!(
                 f,

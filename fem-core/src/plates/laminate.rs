@@ -165,6 +165,27 @@ impl Laminate {
         root * (0.5 * (eta + 1.0)).sqrt()
     }
 
+    /// Why a plate cannot have regions of this laminate and of `other`; nothing where it can. All faces of plies and layers must
+    /// lie at the same heights, to 1e-9 of the thickness.
+    pub fn disagreement(&self, other: &Self) -> Option<String> {
+        let [mm, other_mm] = [self, other].map(|laminate| laminate.thickness() * 1e3);
+        if (mm - other_mm).abs() > 1e-9 * mm {
+            return Some(format!(
+                "they are {mm:.6} and {other_mm:.6} mm thick; steps in thickness are not supported yet"
+            ));
+        }
+        let (plies, others) = (self.plies.len(), other.plies.len());
+        if plies != others {
+            return Some(format!("they have {plies} and {others} plies"));
+        }
+        if self.layers != other.layers {
+            return Some(format!("their layers of cells hold {:?} and {:?} plies", self.layers, other.layers));
+        }
+        let (z, others) = (self.boundaries(), other.boundaries());
+        let apart = (1..z.len()).find(|k| (z[*k] - others[*k]).abs() * 1e3 > 1e-9 * mm)?;
+        Some(format!("ply {apart} ends at {:.6} and {:.6} mm above the mid-plane", z[apart] * 1e3, others[apart] * 1e3))
+    }
+
     /// Mass per area, kg/m².
     ///
     /// # Errors

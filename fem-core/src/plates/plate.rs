@@ -38,8 +38,10 @@ pub struct Plate {
     pub columns: Vec<[f64; 2]>,
     /// z of the levels, m.
     pub levels: Vec<f64>,
-    /// Plies of each layer.
-    pub stacks: Vec<Stack>,
+    /// Plies of each layer, region after region.
+    stacks: Vec<Stack>,
+    /// Region of each quad.
+    regions: Vec<u16>,
     info: ElementInfo,
     z_derivatives: ZDerivatives,
     /// Columns of each quad, `places.len()` a quad.
@@ -99,6 +101,7 @@ impl Plate {
         };
         let mut plate = Self {
             symmetry: Symmetry::none(columns.len(), plane.quads.len()),
+            regions: vec![0; plane.quads.len()],
             plane,
             columns,
             levels,
@@ -114,6 +117,20 @@ impl Plate {
         };
         plate.number();
         Ok(plate)
+    }
+
+    /// Gives the cells over `quads` plies of their own, one stack per layer: a region of the plate, whose layers lie at the
+    /// same heights as those of all others. To be done before the plate is folded.
+    ///
+    /// # Errors
+    /// Another number of layers; more regions than can be counted.
+    pub fn assign(&mut self, quads: &[u32], stacks: Vec<Stack>) -> Result<(), PlateError> {
+        let layers = self.layers();
+        let number = u16::try_from(self.regions()).ok().filter(|_| stacks.len() == layers);
+        let number = number.ok_or(PlateError::LayersOfRegion { layers, of_region: stacks.len() })?;
+        self.stacks.extend(stacks);
+        quads.iter().for_each(|quad| self.regions[*quad as usize] = number);
+        Ok(())
     }
 
     fn number(&mut self) {
@@ -176,7 +193,23 @@ impl Plate {
 
     /// Number of layers of cells.
     pub fn layers(&self) -> usize {
-        self.stacks.len()
+        (self.levels.len() - 1) / self.pitch
+    }
+
+    /// Number of regions, which differ by their plies.
+    pub fn regions(&self) -> usize {
+        self.stacks.len() / self.layers()
+    }
+
+    /// Region of a quad: 0 unless [`Plate::assign`] gave it another one.
+    pub fn region(&self, quad: usize) -> usize {
+        usize::from(self.regions[quad])
+    }
+
+    /// Plies of the layers of a region.
+    pub fn stacks(&self, region: usize) -> &[Stack] {
+        let layers = self.layers();
+        &self.stacks[region * layers..(region + 1) * layers]
     }
 
     /// Number of nodes.
@@ -231,7 +264,7 @@ impl Plate {
     pub fn cell(&self, cell: usize) -> Cell<'_> {
         let (quad, layer) = self.place(cell);
         let z = [layer, layer + 1].map(|face| self.levels[face * self.pitch]);
-        Cell { corners: self.plane.corners(quad), z, stack: &self.stacks[layer] }
+        Cell { corners: self.plane.corners(quad), z, stack: &self.stacks(self.region(quad))[layer] }
     }
 
     /// Unknowns of a cell, in element order.

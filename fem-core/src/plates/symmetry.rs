@@ -291,7 +291,8 @@ fn quad_images(plate: &Plate, images: &[u32]) -> Result<Vec<u32>, Asymmetry> {
     };
     let numbers: HashMap<Corners<u32>, u32> = quads.iter().map(|q| sorted(*q)).zip(0..).collect();
     let image = |(quad, vertices): (usize, &Corners<u32>)| {
-        numbers.get(&sorted(vertices.map(|v| images[v as usize]))).copied().ok_or_else(|| {
+        let found = numbers.get(&sorted(vertices.map(|v| images[v as usize]))).copied();
+        found.filter(|image| plate.region(*image as usize) == plate.region(quad)).ok_or_else(|| {
             let at = plate.plane.corners(quad).centroid();
             Asymmetry::Cell { quad_tag: plate.plane.quad_tags[quad], at }
         })

@@ -6,10 +6,11 @@
 use crate::plates::mesh::PlaneMesh;
 
 /// The cells that a square window of side `side`, centred on each cell and parallel to the axes, overlaps, with their
-/// shares of the overlapped area. At an edge the window is cut off with the plate.
+/// shares of the overlapped area. At an edge the window is cut off with the plate, where regions of different plies meet with
+/// the cell's own `region`.
 ///
 /// A cell larger than the window is its own mean.
-pub fn square(mesh: &PlaneMesh, side: f64) -> Vec<Vec<(usize, f64)>> {
+pub fn square(mesh: &PlaneMesh, side: f64, region: impl Fn(usize) -> usize) -> Vec<Vec<(usize, f64)>> {
     let n = mesh.quads.len();
     let centres: Vec<[f64; 2]> = (0..n).map(|q| mesh.corners(q).centroid()).collect();
     let (low, _) = mesh.bounds();
@@ -47,6 +48,7 @@ pub fn square(mesh: &PlaneMesh, side: f64) -> Vec<Vec<(usize, f64)>> {
                     near.extend(bins[first..].iter().take_while(|b| b.0 == [i, j]).map(|b| b.1));
                 }
             }
+            near.retain(|other| region(*other) == region(q));
             near.sort_unstable();
             near.dedup();
             let mut shares: Vec<(usize, f64)> = near.iter().map(|o| (*o, mesh.corners(*o).overlap(c, half))).collect();
@@ -85,7 +87,7 @@ mod tests {
 
     #[test]
     fn shares_are_areas() {
-        let windows = square(&grid(9, 1.0), 2.0);
+        let windows = square(&grid(9, 1.0), 2.0, |_| 0);
         // Centre cell whole, four sides half, four corners a quarter, of four.
         let middle = &windows[4 * 9 + 4];
         assert_eq!(middle.len(), 9);
@@ -97,17 +99,26 @@ mod tests {
         // A corner cell: the window is cut off with the plate.
         assert_eq!(windows[0].len(), 4);
         assert!((windows[0].iter().map(|s| s.1).sum::<f64>() - 1.0).abs() < 1e-14);
-        assert_eq!(square(&grid(3, 1.0), 0.5)[4], vec![(4, 1.0)]);
+        assert_eq!(square(&grid(3, 1.0), 0.5, |_| 0)[4], vec![(4, 1.0)]);
+    }
+
+    #[test]
+    fn windows_end_where_regions_meet() {
+        // Two columns of cells on the left are a region: of the cell beside the border the window keeps its own side.
+        let windows = square(&grid(4, 1.0), 3.0, |q| usize::from(q % 4 < 2));
+        let cells: Vec<usize> = windows[5].iter().map(|share| share.0).collect();
+        assert_eq!(cells, [0, 1, 4, 5, 8, 9]);
+        assert!(windows[5].iter().all(|(_, share)| (share - 1.0 / 6.0).abs() < 1e-14));
     }
 
     #[test]
     fn windows_of_any_size() {
         let mesh = grid(9, 1.0);
         for side in [1e-300, 1e-9, 0.01] {
-            assert_eq!(square(&mesh, side), own(&mesh), "{side}");
+            assert_eq!(square(&mesh, side, |_| 0), own(&mesh), "{side}");
         }
         for side in [20.0, 1e7, 1e300] {
-            let windows = square(&mesh, side);
+            let windows = square(&mesh, side, |_| 0);
             for window in windows {
                 assert_eq!(window.len(), 81, "{side}");
                 assert!(window.iter().all(|(_, share)| (share - 1.0 / 81.0).abs() < 1e-12), "{side}: {window:?}");

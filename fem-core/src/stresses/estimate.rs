@@ -69,6 +69,8 @@ pub fn mesh_error(plate: &Plate, element: &dyn Element, u: &[f64]) -> Result<Opt
     let (mut energy, mut error) = (0.0, 0.0);
     for (quad, weight) in plate.symmetry().quads() {
         let mut around: Vec<usize> = quads[quad].iter().flat_map(|node| &touching[*node as usize]).copied().collect();
+        // Strains jump where regions meet.
+        around.retain(|other| plate.region(*other) == plate.region(quad));
         around.sort_unstable();
         around.dedup();
         for other in &around {
@@ -81,8 +83,8 @@ pub fn mesh_error(plate: &Plate, element: &dyn Element, u: &[f64]) -> Result<Opt
             return Ok(None);
         };
         for sample in &samples[quad] {
-            energy += weight * sample.area * energy_density(plate, &sample.strains);
-            error += weight * sample.area * energy_density(plate, &smooth.less(sample));
+            energy += weight * sample.area * energy_density(plate, quad, &sample.strains);
+            error += weight * sample.area * energy_density(plate, quad, &smooth.less(sample));
         }
     }
     let relative = (error / (energy + error)).sqrt();
@@ -140,9 +142,9 @@ fn slice_at(stack: &Stack, q: f64) -> usize {
 }
 
 /// ½ ∫ ε·C ε dz through the plies, J/m², of strains that are linear in z in each layer.
-fn energy_density(plate: &Plate, strains: &[[f64; 6]]) -> f64 {
+fn energy_density(plate: &Plate, quad: usize, strains: &[[f64; 6]]) -> f64 {
     let of_layer = |(layer, pair): (usize, &[[f64; 6]])| {
-        let cell = plate.cell(layer);
+        let cell = plate.cell(quad * plate.layers() + layer);
         let q = gauss_legendre(HEIGHTS)[1].0;
         let mean: [f64; 6] = std::array::from_fn(|c| 0.5 * (pair[1][c] + pair[0][c]));
         let slope: [f64; 6] = std::array::from_fn(|c| 0.5 * (pair[1][c] - pair[0][c]) / q);

@@ -10,7 +10,7 @@ use crate::words::tensor::{Global, Strain6, Stress6, stress};
 #[derive(Debug, Clone, Copy)]
 pub struct Field<'a> {
     plate: &'a Plate,
-    laminate: &'a Laminate,
+    laminates: &'a [Laminate],
     element: &'a dyn Element,
     /// Unknowns, before elimination of constraints.
     u: &'a [f64],
@@ -31,9 +31,9 @@ pub struct Spot {
 }
 
 impl<'a> Field<'a> {
-    /// The field of the unknowns `u`, with small strains.
-    pub fn new(plate: &'a Plate, laminate: &'a Laminate, element: &'a dyn Element, u: &'a [f64]) -> Self {
-        Self { plate, laminate, element, u, large: None }
+    /// The field of the unknowns `u`, with small strains; one laminate for each region of the plate.
+    pub fn new(plate: &'a Plate, laminates: &'a [Laminate], element: &'a dyn Element, u: &'a [f64]) -> Self {
+        Self { plate, laminates, element, u, large: None }
     }
 
     /// The same with the strains of large deflections, where the element knows them.
@@ -47,16 +47,16 @@ impl<'a> Field<'a> {
         self.plate
     }
 
-    /// The laminate.
-    pub fn laminate(&self) -> &'a Laminate {
-        self.laminate
+    /// The laminate over a quad.
+    pub fn laminate(&self, quad: usize) -> &'a Laminate {
+        &self.laminates[self.plate.region(quad)]
     }
 
-    /// Stress in `ply` of a strain, both in the plate's frame, Pa. Under large deflections S = C E, on axes that turn with
+    /// Stress in `ply` over `quad` of a strain, both in the plate's frame, Pa. Under large deflections S = C E, on axes that turn with
     /// the plate. Free strains count.
-    pub fn stress(&self, ply: usize, strain: &Strain6<Global>) -> Stress6<Global> {
-        let (layer, slice) = self.slice(ply);
-        let slice = &self.plate.stacks[layer].slices[slice];
+    pub fn stress(&self, quad: usize, ply: usize, strain: &Strain6<Global>) -> Stress6<Global> {
+        let (layer, slice) = self.slice(quad, ply);
+        let slice = &self.plate.stacks(self.plate.region(quad))[layer].slices[slice];
         let (held, moved) = (self.element.held_stress(slice), stress(&slice.c, strain));
         Stress6::new(std::array::from_fn(|k| moved.0[k] + held[k]))
     }
@@ -67,7 +67,7 @@ impl<'a> Field<'a> {
     /// Under large deflections, a cell that the element refuses.
     pub fn at(&self, spot: Spot) -> Result<(Strain6<Global>, [f64; 3]), ElementError> {
         let Spot { quad, at: [r, s], ply, z } = spot;
-        let (layer, slice) = self.slice(ply);
+        let (layer, slice) = self.slice(quad, ply);
         let number = quad * self.plate.layers() + layer;
         let cell = self.plate.cell(number);
         let xi = [r, s, ((z - 0.5 * (cell.z[0] + cell.z[1])) / cell.half_height()).clamp(-1.0, 1.0)];
@@ -91,10 +91,11 @@ impl<'a> Field<'a> {
     }
 
     /// The layer of cells that holds a ply, and its number there.
-    fn slice(&self, ply: usize) -> (usize, usize) {
-        let mut layers = 0..self.laminate.layers.len();
-        let layer = layers.find(|l| self.laminate.plies_of(*l).contains(&ply)).unwrap_or(0);
-        (layer, ply - self.laminate.plies_of(layer).start)
+    fn slice(&self, quad: usize, ply: usize) -> (usize, usize) {
+        let laminate = self.laminate(quad);
+        let mut layers = 0..laminate.layers.len();
+        let layer = layers.find(|l| laminate.plies_of(*l).contains(&ply)).unwrap_or(0);
+        (layer, ply - laminate.plies_of(layer).start)
     }
 
     /// What an operator of `N` rows makes of the unknowns of a cell.

@@ -60,23 +60,26 @@ const BETWEEN: usize = 3;
 const PLY_POINTS: usize = 4;
 
 impl Profile {
-    /// The line at `point`; `None` outside the plate.
+    /// The line at `point`; `None` outside the plate. Where regions of different plies meet it is in the one of the first cell
+    /// that holds the point.
     pub fn at(plate: &Plate, point: [f64; 2]) -> Option<Self> {
         let quads = &plate.plane.quads;
         let place = |q: usize| Some((q, plate.plane.corners(q).locate(point)?));
-        let places: Vec<(usize, [f64; 2])> = (0..quads.len()).filter_map(place).collect();
+        let mut places: Vec<(usize, [f64; 2])> = (0..quads.len()).filter_map(place).collect();
+        let region = plate.region(places.first()?.0);
+        places.retain(|(quad, _)| plate.region(*quad) == region);
         let mut around: Vec<usize> = places.iter().map(|p| p.0).collect();
         let wanted = if plate.info().is_section() { AROUND_SECTION } else { AROUND };
+        let own = || (0..quads.len()).filter(|q| plate.region(*q) == region);
         while around.len() < wanted {
             let vertices: HashSet<u32> = around.iter().flat_map(|q| quads[*q]).collect();
-            let ring: Vec<usize> =
-                (0..quads.len()).filter(|q| quads[*q].iter().any(|v| vertices.contains(v))).collect();
+            let ring: Vec<usize> = own().filter(|q| quads[*q].iter().any(|v| vertices.contains(v))).collect();
             if ring.len() == around.len() {
                 break;
             }
             around = ring;
         }
-        (!places.is_empty()).then_some(Self { places, around, point })
+        Some(Self { places, around, point })
     }
 
     /// The quads that meet at the point.
@@ -104,9 +107,10 @@ impl Profile {
         points: usize,
         equilibrium: Option<f64>,
     ) -> Result<Vec<ProfilePoint>, ElementError> {
-        let z = field.laminate().boundaries();
+        let laminate = field.laminate(self.places[0].0);
+        let z = laminate.boundaries();
         let mut all = Vec::new();
-        for (ply, lamina) in field.laminate().plies.iter().enumerate() {
+        for (ply, lamina) in laminate.plies.iter().enumerate() {
             for i in 0..points.max(2) {
                 let share = i as f64 / (points.max(2) - 1) as f64;
                 let height = z[ply] + share * (z[ply + 1] - z[ply]);
@@ -127,7 +131,7 @@ impl Profile {
     /// A cell that the element refuses.
     pub fn resultants(&self, field: &Field<'_>) -> Result<Resultants, ElementError> {
         let mut sum = Resultants { membrane: [0.0; 3], bending: [0.0; 3], shear: [0.0; 2] };
-        for (ply, z) in field.laminate().boundaries().windows(2).enumerate() {
+        for (ply, z) in field.laminate(self.places[0].0).boundaries().windows(2).enumerate() {
             let half = 0.5 * (z[1] - z[0]);
             for &(t, w) in gauss_legendre(PLY_POINTS) {
                 let height = z[0] + half * (1.0 + t);
@@ -152,7 +156,7 @@ impl Profile {
             strain.iter_mut().zip(e.0).for_each(|(m, e)| *m += e / n);
             displacement.iter_mut().zip(d).for_each(|(m, d)| *m += d / n);
         }
-        Ok((field.stress(ply, &Strain6::new(strain)), displacement))
+        Ok((field.stress(self.places[0].0, ply, &Strain6::new(strain)), displacement))
     }
 
     /// Fills in the transverse stresses from equilibrium.
@@ -216,7 +220,7 @@ impl Profile {
         let mut coefficients = SVector::<[f64; 3], TERMS>::from_element([0.0; 3]);
         for (i, &quad) in self.around.iter().enumerate() {
             let (e, _) = field.at(Spot { quad, at: field.plate().info().domain.centre(), ply, z })?;
-            let s = field.stress(ply, &e);
+            let s = field.stress(quad, ply, &e);
             for (c, row) in coefficients.iter_mut().zip(fit.inverse.column(i).iter()) {
                 for (c, s) in c.iter_mut().zip([s.0[0], s.0[1], s.0[3]]) {
                     *c += row * s;

@@ -1,6 +1,6 @@
 //! Stresses of plies and interfaces from displacements.
 
-use crate::contracts::element::{Element, ElementError, Part, Scratch};
+use crate::contracts::element::{Element, ElementError, Part, Scratch, Stack};
 use crate::contracts::large::LargeDeflection;
 use crate::plates::laminate::Laminate;
 use crate::plates::laws::{Asked, CellAnswer, PlyLaws};
@@ -34,8 +34,13 @@ pub struct Station {
 /// from both sides, because derivatives may jump there.
 #[derive(Debug, Clone)]
 pub struct Recovery {
-    /// Stations through the thickness, the same for every quad.
+    /// Stations through the thickness of the first region. Those of the others lie at the same heights in the same plies; angle
+    /// and material are their own.
     pub stations: Vec<Station>,
+    /// Stations of every region.
+    regions: Vec<Vec<Station>>,
+    /// Region of each watched quad.
+    region_of: Vec<usize>,
     /// The quads watched.
     pub quads: Vec<usize>,
     /// Mean over the quads (positions in `sources`) that make up the window of each watched quad.
@@ -46,10 +51,10 @@ pub struct Recovery {
 
 impl Recovery {
     /// Watches `quads`; `windows[q]` are the quads whose strains are averaged at quad q. Interfaces are watched when the
-    /// resin between plies is given.
+    /// resin between plies is given. `laminates` are those of the regions of the plate, alike but for angles and materials.
     pub fn new(
         plate: &Plate,
-        laminate: &Laminate,
+        laminates: &[Laminate],
         materials: &[Material],
         resin: Option<usize>,
         quads: Vec<usize>,
@@ -60,7 +65,15 @@ impl Recovery {
         sources.dedup();
         let position = |q: usize| sources.partition_point(|s| *s < q);
         let windows = quads.iter().map(|q| windows[*q].iter().map(|(q, w)| (position(*q), *w)).collect()).collect();
-        Self { stations: stations(plate, laminate, materials, resin), quads, windows, sources }
+        let of_region = |(region, laminate)| stations(plate.stacks(region), laminate, materials, resin);
+        let regions: Vec<Vec<Station>> = laminates.iter().enumerate().map(of_region).collect();
+        let region_of = quads.iter().map(|quad| plate.region(*quad)).collect();
+        Self { stations: regions.first().cloned().unwrap_or_default(), regions, region_of, quads, windows, sources }
+    }
+
+    /// Stations over the `i`-th watched quad.
+    pub fn stations_over(&self, i: usize) -> &[Station] {
+        &self.regions[self.region_of[i]]
     }
 
     /// Number of sites.
@@ -201,7 +214,7 @@ impl Recovery {
         let per_quad = 6 * self.stations.len();
         let mut mean = vec![0.0; 6 * fields];
         for (i, window) in self.windows.iter().enumerate() {
-            for (s, station) in self.stations.iter().enumerate() {
+            for (s, station) in self.stations_over(i).iter().enumerate() {
                 mean.fill(0.0);
                 for (source, share) in window {
                     let at = (source * self.stations.len() + s) * 6 * fields;
@@ -224,17 +237,16 @@ fn add_product(operator: &[f64], u: &[f64], strain: &mut [f64; 6]) {
     }
 }
 
-fn stations(plate: &Plate, laminate: &Laminate, materials: &[Material], resin: Option<usize>) -> Vec<Station> {
+fn stations(stacks: &[Stack], laminate: &Laminate, materials: &[Material], resin: Option<usize>) -> Vec<Station> {
     let z = laminate.boundaries();
     let product = |c: &Matrix6, angle: f64| -> Matrix6 {
         let r = strain_rotation(angle);
         std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| c[i][k] * r[k][j]).sum()))
     };
     let mut all = Vec::new();
-    for layer in 0..plate.layers() {
+    for (layer, Stack { slices, .. }) in stacks.iter().enumerate() {
         let range = laminate.plies_of(layer);
         let (first, end) = (range.start, range.end);
-        let slices = &plate.stacks[layer].slices;
         let interface = |below: usize, slice: usize, q: f64| {
             resin.map(|material| Station {
                 layer,

@@ -11,6 +11,12 @@ use fem_core::material::Material;
 use fem_core::plugin::{Dimension, unknown_key};
 
 pub(super) const KEYS: Keys = &[
+    key(
+        "group",
+        Form::Text,
+        r#""reinforced""#,
+        "a physical surface that has these plies; the rest of the plate if left out",
+    ),
     key("plies", Form::Text, r#""[0/45/-45/90]2s""#, "angles from the bottom up, degrees from x towards y").required(),
     key("material", Form::Text, r#""as4-3502""#, "of all plies without a type of their own: a name of `materials`")
         .required(),
@@ -41,12 +47,52 @@ struct PlyType {
     thickness: f64,
 }
 
-/// The laminate, and the material of the resin between its plies if one is named.
-pub(super) fn read(
+/// The plies of a plate or of a part of it.
+#[derive(Debug, Clone)]
+pub struct LaminateSpec {
+    /// Physical surface; the rest of the plate if there is none.
+    pub group: Option<Located<String>>,
+    /// The plies; their materials count in those of the scene.
+    pub laminate: Located<Laminate>,
+}
+
+/// The laminates, one table or a list of them, and the material of the resin between plies if one is named.
+pub(super) fn read_all(
     field: &SceneValue<'_>,
     materials: &[Located<Material>],
-) -> Result<(Located<Laminate>, Option<Located<usize>>), SceneError> {
+) -> Result<(Vec<LaminateSpec>, Option<Located<usize>>), SceneError> {
+    let list = if matches!(field.node(), Node::List(_)) { field.list()? } else { Vec::new() };
+    let fields: Vec<&SceneValue<'_>> = if list.is_empty() { vec![field] } else { list.iter().collect() };
+    let (mut all, mut interface): (Vec<LaminateSpec>, Option<Located<usize>>) = (Vec::new(), None);
+    for (number, field) in fields.iter().enumerate() {
+        let (spec, resin) = read(field, materials)?;
+        if let Some(first) = all.first() {
+            if let Some(why) = first.laminate.value.disagreement(&spec.laminate.value) {
+                let message = format!("laminates 1 and {} do not fit together: {why}", number + 1);
+                let help = "the faces of all plies must lie at the same heights in all laminates of a plate";
+                return Err(field.error(message, help));
+            }
+            if resin.as_ref().map(|resin| resin.value) != interface.as_ref().map(|resin| resin.value) {
+                let message = format!("laminates 1 and {} have different materials between their plies", number + 1);
+                return Err(field.error(message, "give all laminates of a plate the same `interface`"));
+            }
+        }
+        if spec.group.is_none() && all.iter().any(|other| other.group.is_none()) {
+            let help = "give all but one a `group`, the name of the physical surface that has these plies";
+            return Err(field.error("a second laminate has no `group`", help));
+        }
+        interface = resin;
+        all.push(spec);
+    }
+    Ok((all, interface))
+}
+
+fn read(
+    field: &SceneValue<'_>,
+    materials: &[Located<Material>],
+) -> Result<(LaminateSpec, Option<Located<usize>>), SceneError> {
     let table = field.table(KEYS)?;
+    let group = table.optional("group").map(|field| Ok(field.at(field.text()?.to_owned()))).transpose()?;
     let common = PlyType {
         material: material::find(&table.required("material")?, materials)?,
         thickness: table.required("ply_thickness")?.positive(Dimension::LENGTH)?,
@@ -64,7 +110,7 @@ pub(super) fn read(
         Some(field) => Some(field.at(material::find(&field, materials)?)),
         None => None,
     };
-    Ok((field.at(Laminate { plies, layers }), interface))
+    Ok((LaminateSpec { group, laminate: field.at(Laminate { plies, layers }) }, interface))
 }
 
 fn read_layup(field: &SceneValue<'_>) -> Result<Vec<LayupPly>, SceneError> {

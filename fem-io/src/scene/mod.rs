@@ -29,6 +29,7 @@ pub use annotate::annotate;
 pub use effects::{Damage, Delamination, EFFECT_SETTINGS, EffectSetting, EffectSpec, EffectsSpec};
 pub use explain::{Explained, explain};
 pub use fields::{FieldCells, FieldSeries, Fields, Region};
+pub use laminate::LaminateSpec;
 pub use load::{Load, LoadKind, Pressure, ProfileLine};
 pub use mesh::{MeshSource, refined_cells};
 pub use plugin::PluginSpec;
@@ -44,7 +45,7 @@ pub use support::{Couple, EquationSpec, NodeSet, Support, Term};
 use crate::document::source::Origin;
 use crate::document::tree::Table;
 use crate::materials::LIBRARY;
-use fem_core::laminate::Laminate;
+use fem_core::laminate::LaminaPly;
 use fem_core::material::Material;
 use fem_core::plate::ZDerivatives;
 use fem_core::symmetry::SymmetryGroup;
@@ -70,8 +71,8 @@ pub struct Scene {
     pub materials: Vec<Located<Material>>,
     /// Of each of them, the law that its plies follow, if it is not linear elasticity.
     pub laws: Vec<Option<PluginSpec>>,
-    /// The laminate; its materials count in `materials`.
-    pub laminate: Located<Laminate>,
+    /// The laminates, at least one; all have their layers and plies at the same heights.
+    pub laminates: Vec<LaminateSpec>,
     /// Material of the resin between plies, for criteria that look there; counts in `materials`.
     pub interface: Option<Located<usize>>,
     /// The element.
@@ -114,6 +115,11 @@ pub enum Fidelity {
 }
 
 impl Scene {
+    /// The plies of all laminates.
+    pub fn plies(&self) -> impl Iterator<Item = &LaminaPly> {
+        self.laminates.iter().flat_map(|spec| &spec.laminate.value.plies)
+    }
+
     /// The impact, if it describes one.
     pub fn impact(&self) -> Option<&ImpactSpec> {
         match &self.analysis {
@@ -228,7 +234,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
 
     let folder = path.parent().unwrap_or(Path::new(""));
     let materials = material::read_all(&root.required("materials")?, folder)?;
-    let (laminate, interface) = laminate::read(&root.required("laminate")?, &materials)?;
+    let (laminates, interface) = laminate::read_all(&root.required("laminate")?, &materials)?;
     let element = root.required("element")?;
     let effects = root.optional("effects").map_or(Ok(EffectsSpec::default()), |field| effects::read(&field))?;
     let analysis = read_analysis(&root)?;
@@ -248,7 +254,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
         },
         materials,
         laws: material::read_laws(&root.required("materials")?)?,
-        laminate,
+        laminates,
         interface,
         z_derivatives: read_z_derivatives(&element)?,
         element: PluginSpec::read(&element, "kind", &["z_derivatives"])?,

@@ -45,9 +45,9 @@ pub(super) const KEYS: Keys = &[
     .required(),
     key(
         "laminate",
-        Form::Table(laminate::KEYS),
+        Form::OneOf(&[Form::Table(laminate::KEYS), Form::List(&Form::Table(laminate::KEYS))]),
         r#"{ plies = "[0/45/-45/90]2s", material = "as4-3502", ply_thickness = "0.13208 mm" }"#,
-        "plies, and the layers of cells that hold them",
+        "plies, and the layers of cells that hold them; a list for several parts of the plate",
     )
     .required(),
     key(

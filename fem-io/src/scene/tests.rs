@@ -89,7 +89,7 @@ fn a_scene_in_full() {
     assert_eq!(resin.strengths.get(Strength::Xt), Some(38e6));
     assert_eq!(foam.strengths.get(Strength::Xt), None);
 
-    let laminate = &scene.laminate.value;
+    let laminate = &scene.laminates[0].laminate.value;
     assert_eq!((laminate.plies.len(), &laminate.layers[..]), (16, &[8, 8][..]));
     assert_eq!(scene.interface.as_ref().map(|i| i.value), Some(1));
     assert_eq!(laminate.plies[0], LaminaPly { angle_deg: 0.0, angle: 0.0, material: 0, thickness: 0.13208e-3 });
@@ -357,7 +357,7 @@ fn impactors_may_be_several() {
 
 #[test]
 fn layers_share_the_plies() {
-    let layers = |value: &str| read_good(&spoilt("layers = [8, 8]", value)).laminate.value.layers;
+    let layers = |value: &str| read_good(&spoilt("layers = [8, 8]", value)).laminates[0].laminate.value.layers.clone();
     assert_eq!(layers(""), [8, 8]);
     assert_eq!(layers("layers = 1"), [16]);
     assert_eq!(layers("layers = 3"), [5, 5, 6]);
@@ -528,7 +528,7 @@ fn the_examples_are_the_cases_of_the_report() {
         ("im6-934-32ply-small-mass", 32, 4.1453, 3.79),
     ] {
         let scene = read(&examples.join(case).join("scene.toml")).unwrap_or_else(|e| panic!("{}", rendered(&e)));
-        let laminate = &scene.laminate.value;
+        let laminate = &scene.laminates[0].laminate.value;
         let thickness = laminate.thickness();
         let energy =
             0.5 * scene.impact().unwrap().impactors[0].mass * scene.impact().unwrap().impactors[0].velocity.powi(2);

@@ -1,4 +1,4 @@
-//! The order of the points of a Lagrange hexahedron.
+//! The order of the points of cells of higher order.
 
 /// Points (i, j, k) of a hexahedron of order `n`, each 0 to n along x, y and z, as VTK counts them from files of
 /// version 2.2 on: corners, edges, faces, inside.
@@ -37,6 +37,14 @@ pub fn lagrange_hexahedron(n: usize) -> Vec<[usize; 3]> {
     points
 }
 
+/// Points (i, j, k) of a quadratic wedge, each 0 to 2 along x, y and z, as VTK counts them: corners of the lower face
+/// anticlockwise, of the upper face; middles of the sides of the lower face, of the upper face, of the upright edges.
+pub fn quadratic_wedge() -> Vec<[usize; 3]> {
+    let (corners, middles) = ([[0, 0], [2, 0], [0, 2]], [[1, 0], [1, 1], [0, 1]]);
+    let places = [(corners, [0, 2]), (middles, [0, 2])].into_iter().flat_map(|(at, heights)| heights.map(|k| (at, k)));
+    places.chain([(corners, 1)]).flat_map(|(at, k)| at.map(|[i, j]| [i, j, k])).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -48,6 +56,17 @@ mod tests {
             let points = lagrange_hexahedron(n);
             assert_eq!(points.len(), (n + 1).pow(3));
             assert_eq!(points.iter().collect::<BTreeSet<_>>().len(), points.len());
+        }
+    }
+
+    #[test]
+    fn a_quadratic_wedge_has_its_corners_first_and_no_middles_of_faces() {
+        let points = quadratic_wedge();
+        assert_eq!(points[..6], [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2], [2, 0, 2], [0, 2, 2]]);
+        // Every other point is the middle of two corners: 6-7, 7-8 and 8-6 of the VTK documentation, above them, upright.
+        let ends = [[0, 1], [1, 2], [2, 0], [3, 4], [4, 5], [5, 3], [0, 3], [1, 4], [2, 5]];
+        for (point, [a, b]) in points[6..].iter().zip(ends) {
+            assert_eq!([0, 1, 2].map(|d| 2 * point[d]), [0, 1, 2].map(|d| points[a][d] + points[b][d]));
         }
     }
 

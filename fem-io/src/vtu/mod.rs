@@ -17,7 +17,7 @@ mod lagrange;
 
 pub use array::Array;
 pub use collection::{Member, write_collection};
-pub use lagrange::lagrange_hexahedron;
+pub use lagrange::{lagrange_hexahedron, quadratic_wedge};
 
 use crate::files::{FileError, OutputDir};
 use std::io::{self, Write};
@@ -31,6 +31,12 @@ pub enum Shape {
     Quad,
     /// Four points anticlockwise seen from above, and the four above them.
     Hexahedron,
+    /// Three points, anticlockwise.
+    Triangle,
+    /// Three points anticlockwise seen from above, and the three above them.
+    Wedge,
+    /// 15 points in the order of [`quadratic_wedge`].
+    QuadraticWedge,
     /// (n + 1)³ points in the order of [`lagrange_hexahedron`], n the order.
     Lagrange(usize),
 }
@@ -40,6 +46,9 @@ impl Shape {
         match self {
             Self::Quad => 4,
             Self::Hexahedron => 8,
+            Self::Triangle => 3,
+            Self::Wedge => 6,
+            Self::QuadraticWedge => 15,
             Self::Lagrange(order) => (order + 1).pow(3),
         }
     }
@@ -49,6 +58,9 @@ impl Shape {
         match self {
             Self::Quad => 9,
             Self::Hexahedron => 12,
+            Self::Triangle => 5,
+            Self::Wedge => 13,
+            Self::QuadraticWedge => 26,
             Self::Lagrange(_) => 72,
         }
     }

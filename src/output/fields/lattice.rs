@@ -1,6 +1,7 @@
 //! Points of a plate, and displacements there.
 
 use crate::model::Model;
+use fem_core::domain::Corners;
 use std::collections::HashMap;
 
 /// A height in the thickness.
@@ -19,7 +20,7 @@ pub(super) struct Lattice<'a> {
     /// A quad and the place in it.
     columns: Vec<(usize, [f64; 2])>,
     heights: Vec<Height>,
-    /// Columns of each quad, (intervals + 1)², along r first.
+    /// Columns of each quad, one after the other, in the order of the domain's lattice.
     of_quads: Vec<u32>,
     /// Shape functions at all points, unless there are too many.
     kept: Option<Rows>,
@@ -58,17 +59,18 @@ impl Rows {
 impl<'a> Lattice<'a> {
     /// The points at the ends of `intervals` equal parts of the sides of `quads`.
     pub(super) fn new(model: &'a Model, quads: &[usize], intervals: usize, heights: Vec<Height>) -> Self {
-        let (n, plane) = (intervals, &model.plate.plane);
+        let (n, plane, domain) = (intervals, &model.plate.plane, model.plate.info().domain);
+        let points = domain.lattice(n);
         let mut numbers: HashMap<[u32; 3], u32> = HashMap::new();
-        let (mut columns, mut of_quads) = (Vec::new(), Vec::with_capacity(quads.len() * (n + 1).pow(2)));
+        let (mut columns, mut of_quads) = (Vec::new(), Vec::with_capacity(quads.len() * points.len()));
         for quad in quads {
-            for (j, i) in (0..=n).flat_map(|j| (0..=n).map(move |i| (j, i))) {
-                let place = [i, j].map(|i| 2.0 * i as f64 / n as f64 - 1.0);
+            for point in &points {
+                let place = point.map(|i| 2.0 * i as f64 / n as f64 - 1.0);
                 let new = |columns: &mut Vec<_>| {
                     columns.push((*quad, place));
                     columns.len() as u32 - 1
                 };
-                of_quads.push(match shared(plane.quads[*quad].four(), [i, j], n) {
+                of_quads.push(match shared(plane.quads[*quad], *point, n) {
                     Some(key) => *numbers.entry(key).or_insert_with(|| new(&mut columns)),
                     None => new(&mut columns),
                 });
@@ -88,10 +90,10 @@ impl<'a> Lattice<'a> {
         self.columns.len() * self.heights.len()
     }
 
-    /// The point at (i, j) of the `quad`-th quad and at a height.
-    pub(super) fn point(&self, quad: usize, [i, j]: [usize; 2], height: usize) -> u32 {
-        let n = self.intervals + 1;
-        let column = self.of_quads[quad * n * n + j * n + i] as usize;
+    /// The point of the lattice on the `quad`-th quad and at a height.
+    pub(super) fn point(&self, quad: usize, point: [usize; 2], height: usize) -> u32 {
+        let (n, domain) = (self.intervals, self.model.plate.info().domain);
+        let column = self.of_quads[quad * domain.lattice_count(n) + domain.lattice_number(n, point)] as usize;
         (column * self.heights.len() + height) as u32
     }
 
@@ -144,21 +146,13 @@ impl<'a> Lattice<'a> {
 
 /// What names a point that a quad shares with others: its vertex, or the ends of its side and how far it is from the
 /// first.
-fn shared(quad: [u32; 4], [i, j]: [usize; 2], n: usize) -> Option<[u32; 3]> {
-    let ends = |a: usize, b: usize, from_a: usize| {
-        let (a, b, from_a, from_b) = (quad[a], quad[b], from_a as u32, (n - from_a) as u32);
-        match (from_a, from_b) {
-            (0, _) => [a, a, 0],
-            (_, 0) => [b, b, 0],
-            _ if a < b => [a, b, from_a],
-            _ => [b, a, from_b],
-        }
-    };
-    match (i, j) {
-        (i, 0) => Some(ends(0, 1, i)),
-        (i, j) if j == n => Some(ends(3, 2, i)),
-        (0, j) => Some(ends(0, 3, j)),
-        (i, j) if i == n => Some(ends(1, 2, j)),
-        _ => None,
-    }
+fn shared(quad: Corners<u32>, point: [usize; 2], n: usize) -> Option<[u32; 3]> {
+    let ([a, b], from_a) = quad.domain().lattice_side(n, point)?;
+    let (a, b, from_a, from_b) = (quad[a], quad[b], from_a as u32, (n - from_a) as u32);
+    Some(match (from_a, from_b) {
+        (0, _) => [a, a, 0],
+        (_, 0) => [b, b, 0],
+        _ if a < b => [a, b, from_a],
+        _ => [b, a, from_b],
+    })
 }

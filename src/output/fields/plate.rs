@@ -4,13 +4,20 @@ use super::lattice::{Height, Lattice};
 use super::{Frame, State};
 use crate::error::Error;
 use crate::model::{FieldPlan, Model};
+use fem_core::domain::Domain;
 use fem_io::scene::{FieldCells, FieldSeries};
-use fem_io::vtu::{Array, Contents, Grid, Shape, lagrange_hexahedron};
+use fem_io::vtu::{Array, Contents, Grid, Shape, lagrange_hexahedron, quadratic_wedge};
 
-/// Order of the cells: displacements of no element are of a higher degree in a natural coordinate.
-const ORDER: usize = 3;
-
-const CORNERS: [[usize; 2]; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]];
+/// Cells of a file over one of the plate: their order, which no element's displacements exceed in a natural coordinate, and
+/// the points (i, j, k) of each.
+fn cells_of(domain: Domain, cells: FieldCells) -> (usize, Shape, Vec<Vec<[usize; 3]>>) {
+    match (domain, cells) {
+        (Domain::Quadrilateral, FieldCells::Lagrange) => (3, Shape::Lagrange(3), vec![lagrange_hexahedron(3)]),
+        (Domain::Quadrilateral, FieldCells::Subdivided) => (3, Shape::Hexahedron, linear(domain, 3)),
+        (Domain::Triangle, FieldCells::Lagrange) => (2, Shape::QuadraticWedge, vec![quadratic_wedge()]),
+        (Domain::Triangle, FieldCells::Subdivided) => (2, Shape::Wedge, linear(domain, 2)),
+    }
+}
 
 /// The series `plate`.
 #[derive(Debug)]
@@ -23,18 +30,14 @@ pub(super) struct Plate<'a> {
 impl<'a> Plate<'a> {
     pub(super) fn new(model: &'a Model, plan: &FieldPlan) -> Self {
         let layers = model.plate.layers();
-        let heights = (0..=ORDER * layers).map(|level| {
-            let layer = level.saturating_sub(1) / ORDER;
-            Height { layer, q: 2.0 * (level - ORDER * layer) as f64 / ORDER as f64 - 1.0 }
+        let (order, shape, cells) = cells_of(model.plate.info().domain, plan.cells);
+        let heights = (0..=order * layers).map(|level| {
+            let layer = level.saturating_sub(1) / order;
+            Height { layer, q: 2.0 * (level - order * layer) as f64 / order as f64 - 1.0 }
         });
-        let lattice = Lattice::new(model, &plan.quads, ORDER, heights.collect());
-        // Points (i, j, k) of each cell of the file within one of the plate.
-        let (shape, cells) = match plan.cells {
-            FieldCells::Lagrange => (Shape::Lagrange(ORDER), vec![lagrange_hexahedron(ORDER)]),
-            FieldCells::Subdivided => (Shape::Hexahedron, hexahedra()),
-        };
+        let lattice = Lattice::new(model, &plan.quads, order, heights.collect());
         let of_plate = || (0..plan.quads.len()).flat_map(|quad| (0..layers).map(move |layer| (quad, layer)));
-        let point = |quad: usize, layer: usize, [i, j, k]: [usize; 3]| lattice.point(quad, [i, j], ORDER * layer + k);
+        let point = |quad: usize, layer: usize, [i, j, k]: [usize; 3]| lattice.point(quad, [i, j], order * layer + k);
         let mut points = Vec::new();
         for (quad, layer) in of_plate() {
             points.extend(cells.iter().flatten().map(|ijk| point(quad, layer, *ijk)));
@@ -77,15 +80,13 @@ impl<'a> Plate<'a> {
     }
 }
 
-/// Linear hexahedra between the points of a cell.
-fn hexahedra() -> Vec<Vec<[usize; 3]>> {
+/// Linear cells between the points of a cell.
+fn linear(domain: Domain, order: usize) -> Vec<Vec<[usize; 3]>> {
     let mut all = Vec::new();
-    for k in 0..ORDER {
-        for j in 0..ORDER {
-            for i in 0..ORDER {
-                let face = |k: usize| CORNERS.map(|[a, b]| [i + a, j + b, k]);
-                all.push([face(k), face(k + 1)].concat());
-            }
+    for k in 0..order {
+        for cell in domain.lattice_cells(order) {
+            let face = |k: usize| cell.into_iter().map(move |[i, j]| [i, j, k]);
+            all.push(face(k).chain(face(k + 1)).collect());
         }
     }
     all

@@ -5,6 +5,7 @@ use super::lattice::{Height, Lattice};
 use crate::analyses::stress;
 use crate::error::Error;
 use crate::model::{FieldPlan, Model, Plan};
+use fem_core::domain::Domain;
 use fem_core::failure::Site;
 use fem_core::recovery::{Recovery, Station};
 use fem_core::tensor::{Ply, Stress6};
@@ -12,7 +13,19 @@ use fem_failure::scan::Scan;
 use fem_io::scene::FieldSeries;
 use fem_io::vtu::{Array, Contents, Grid, Shape};
 
-const CORNERS: [[usize; 2]; 4] = [[0, 0], [1, 0], [1, 1], [0, 1]];
+/// Points over the corners of a quad at a height of a lattice of one interval.
+fn face(lattice: &Lattice<'_>, domain: Domain, quad: usize, height: usize) -> Vec<u32> {
+    let corners = domain.lattice_cells(1)[0];
+    corners.into_iter().map(|corner| lattice.point(quad, corner, height)).collect()
+}
+
+/// Linear cells of a domain, as prisms and as faces.
+fn shapes(domain: Domain) -> [Shape; 2] {
+    match domain {
+        Domain::Quadrilateral => [Shape::Hexahedron, Shape::Quad],
+        Domain::Triangle => [Shape::Wedge, Shape::Triangle],
+    }
+}
 const COMPONENTS: [&str; 6] = ["11", "22", "33", "12", "23", "31"];
 /// Positions of the shear tractions (31, 23) of an interface among the components.
 const SHEAR: [usize; 2] = [5, 4];
@@ -49,7 +62,7 @@ impl<'a> Plies<'a> {
     /// A criterion whose material lacks a constant.
     pub(super) fn new(model: &'a Model, plan: &FieldPlan, plies: bool, interfaces: bool) -> Result<Self, Error> {
         let recovery = stress::recovery(model, plan.quads.clone(), interfaces);
-        let stacks = model.plate.stacks.iter().enumerate();
+        let stacks = model.plate.stacks(0).iter().enumerate();
         let tops = stacks.flat_map(|(layer, stack)| stack.slices.iter().map(move |s| Height { layer, q: s.q[1] }));
         let heights = [Height { layer: 0, q: -1.0 }].into_iter().chain(tops).collect();
         let lattice = Lattice::new(model, &plan.quads, 1, heights);
@@ -122,15 +135,18 @@ impl<'a> Plies<'a> {
 impl Sheets {
     fn plies(model: &Model, plan: &FieldPlan, lattice: &Lattice<'_>, recovery: &Recovery) -> Self {
         let plies = &model.laminate.plies;
-        let face = |quad: usize, height: usize| CORNERS.map(|corner| lattice.point(quad, corner, height));
+        let over = |quad: &usize| model.laminates[model.plate.region(*quad)].plies.iter();
+        let domain = model.plate.info().domain;
+        let face = |quad: usize, height: usize| face(lattice, domain, quad, height);
         let cells = (0..plan.quads.len()).flat_map(|quad| (0..plies.len()).map(move |ply| (quad, ply)));
         let cells: Vec<u32> = cells.flat_map(|(quad, ply)| [face(quad, ply), face(quad, ply + 1)].concat()).collect();
-        let angles: Vec<f64> = plan.quads.iter().flat_map(|_| plies.iter().map(|ply| ply.angle_deg)).collect();
-        let materials: Vec<i64> = plan.quads.iter().flat_map(|_| plies.iter().map(|ply| ply.material as i64)).collect();
+        let angles: Vec<f64> = plan.quads.iter().flat_map(|quad| over(quad).map(|ply| ply.angle_deg)).collect();
+        let materials: Vec<i64> =
+            plan.quads.iter().flat_map(|quad| over(quad).map(|ply| ply.material as i64)).collect();
         Self {
             series: FieldSeries::Plies,
             site: Site::Ply,
-            grid: Grid::new(&lattice.positions(), Shape::Hexahedron, &cells),
+            grid: Grid::new(&lattice.positions(), shapes(domain)[0], &cells),
             fixed: vec![
                 tags(model, plan, plies.len()),
                 numbers("ply", plan, plies.len()),
@@ -144,7 +160,8 @@ impl Sheets {
 
     fn interfaces(model: &Model, plan: &FieldPlan, lattice: &Lattice<'_>, recovery: &Recovery) -> Self {
         let count = model.laminate.plies.len() - 1;
-        let face = |quad: usize, height: usize| CORNERS.map(|corner| lattice.point(quad, corner, height));
+        let domain = model.plate.info().domain;
+        let face = |quad: usize, height: usize| face(lattice, domain, quad, height);
         let cells = (0..plan.quads.len()).flat_map(|quad| (1..=count).map(move |height| (quad, height)));
         let mut cells: Vec<u32> = cells.flat_map(|(quad, height)| face(quad, height)).collect();
         // The two faces of the plate are not interfaces.
@@ -156,7 +173,7 @@ impl Sheets {
         Self {
             series: FieldSeries::Interfaces,
             site: Site::Interface,
-            grid: Grid::new(&positions, Shape::Quad, &cells),
+            grid: Grid::new(&positions, shapes(domain)[1], &cells),
             fixed: vec![tags(model, plan, count), numbers("ply_below", plan, count)],
             points,
             stations: stations(recovery, count, true),

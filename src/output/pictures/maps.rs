@@ -85,7 +85,7 @@ fn find_view(damage: &DamageMap) -> Vec<bool> {
     let inside = |q: u32| {
         let p = damage.corners(q);
         (0..2).all(|d| {
-            let centre = 0.25 * p.iter().map(|p| p[d]).sum::<f64>();
+            let centre = p.iter().map(|p| p[d]).sum::<f64>() / p.len() as f64;
             (centre - 0.5 * (lo[d] + hi[d])).abs() <= half * (1.0 + 1e-9)
         })
     };

@@ -56,11 +56,12 @@ fn write_profile(dir: &OutputDir, model: &Model, named: &NamedProfile, points: &
     if named.line.equilibrium {
         header.extend(EQUILIBRIUM);
     }
+    let region = named.profile.quads().next().map_or(0, |quad| model.plate.region(quad));
     let row = |p: &ProfilePoint| {
         let mut row = vec![
             TableValue::Number(p.z),
             TableValue::Count(p.ply as u64 + 1),
-            TableValue::Number(model.laminate.plies[p.ply].angle_deg),
+            TableValue::Number(model.laminates[region].plies[p.ply].angle_deg),
         ];
         let numbers = p.displacement.into_iter().chain(p.global.0).chain(p.in_ply.0);
         row.extend(numbers.chain(p.equilibrium.into_iter().flatten()).map(TableValue::Number));

@@ -49,6 +49,9 @@ pub struct ImpactSummary {
 pub struct ModelSize {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub symmetry: Option<&'static str>,
+    /// What the cells of the plane mesh are called.
+    #[serde(skip)]
+    pub shape: &'static str,
     pub quads: usize,
     pub layers: usize,
     pub cells: usize,
@@ -308,6 +311,7 @@ impl ImpactSummary {
             stopped: outcome.stopped.clone(),
             model: ModelSize {
                 symmetry: model.plate.symmetry().name(),
+                shape: model.plate.plane.name_of_cells(),
                 quads: model.plate.plane.quads.len(),
                 layers: model.plate.layers(),
                 cells: model.plate.cells(),
@@ -429,7 +433,9 @@ fn reserve(model: &Model, event: &FailureEvent) -> Option<f64> {
 /// An event as tables and summaries hold it.
 pub(super) fn event_row(model: &Model, event: &FailureEvent) -> EventRow {
     let angle_deg = match event.place {
-        PlyOrInterface::Ply(k) => model.laminate.plies[usize::from(k)].angle_deg,
+        PlyOrInterface::Ply(k) => {
+            model.laminates[model.plate.region(event.cell as usize)].plies[usize::from(k)].angle_deg
+        }
         PlyOrInterface::Interface(_) => 0.0,
     };
     let [x_m, y_m, z_m] = event.position;

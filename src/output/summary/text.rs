@@ -19,8 +19,9 @@ impl ImpactSummary {
         let m = &self.model;
         line(format_args!("{}", self.title));
         line(format_args!(
-            "  model     {} quads x {} layers, {} plies, {:.4} mm; {} unknowns{}, {} marched ({}){}",
+            "  model     {} {} x {} layers, {} plies, {:.4} mm; {} unknowns{}, {} marched ({}){}",
             m.quads,
+            m.shape,
             m.layers,
             m.plies,
             m.thickness_mm,

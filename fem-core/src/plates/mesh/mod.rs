@@ -9,7 +9,7 @@ mod tests;
 pub use graded::{Graded, MAX_CELLS, Outline};
 pub use refine::Curves;
 
-use crate::words::domain::{CellQuality, Corners};
+use crate::words::domain::{CellQuality, Corners, Domain};
 use curve::Chains;
 use std::collections::{BTreeMap, HashSet};
 
@@ -94,6 +94,16 @@ impl PlaneMesh {
             groups: BTreeMap::new(),
             node_tags: (1..=corners.len() as u64).collect(),
             quad_tags: vec![1],
+        }
+    }
+
+    /// What its cells are called: "quads", "triangles", or "cells" where there are both.
+    pub fn name_of_cells(&self) -> &'static str {
+        let has = |domain| self.quads.iter().any(|corners| corners.domain() == domain);
+        match (has(Domain::Quadrilateral), has(Domain::Triangle)) {
+            (_, false) => "quads",
+            (false, true) => "triangles",
+            (true, true) => "cells",
         }
     }
 

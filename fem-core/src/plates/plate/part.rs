@@ -28,6 +28,7 @@ impl Plate {
             columns,
             levels: self.levels.clone(),
             stacks: self.stacks.clone(),
+            regions: quads.iter().map(|q| self.regions[*q as usize]).collect(),
             info: self.info,
             z_derivatives: self.z_derivatives,
             quad_columns,

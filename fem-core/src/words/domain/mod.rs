@@ -112,11 +112,51 @@ impl Domain {
     /// Points that divide every side into `n` equal parts, by their numbers along r and s from the first corner; r runs
     /// fastest.
     pub fn lattice(self, n: usize) -> Vec<[usize; 2]> {
-        let width = |j: usize| match self {
+        (0..=n).flat_map(|j| (0..=self.row(n, j)).map(move |i| [i, j])).collect()
+    }
+
+    /// How many points [`Domain::lattice`] has.
+    pub fn lattice_count(self, n: usize) -> usize {
+        self.lattice_number(n, [0, n]) + self.row(n, n) + 1
+    }
+
+    /// Where a point is in [`Domain::lattice`].
+    pub fn lattice_number(self, n: usize, [i, j]: [usize; 2]) -> usize {
+        (0..j).map(|below| self.row(n, below) + 1).sum::<usize>() + i
+    }
+
+    /// The cells between the points of [`Domain::lattice`], all of the domain's own shape.
+    pub fn lattice_cells(self, n: usize) -> Vec<Corners<[usize; 2]>> {
+        let upright = |[i, j]: [usize; 2]| match self {
+            Self::Quadrilateral => [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].into(),
+            Self::Triangle => [[i, j], [i + 1, j], [i, j + 1]].into(),
+        };
+        let turned = |[i, j]: [usize; 2]| {
+            (self == Self::Triangle && i + j + 1 < n).then(|| [[i + 1, j], [i + 1, j + 1], [i, j + 1]].into())
+        };
+        let first = self.lattice(n).into_iter().filter(|[i, j]| *j < n && *i < self.row(n, *j));
+        first.flat_map(|at| [Some(upright(at)), turned(at)]).flatten().collect()
+    }
+
+    /// The two corners of a side that a point of [`Domain::lattice`] lies on, and how many parts it is from the first.
+    pub fn lattice_side(self, n: usize, point: [usize; 2]) -> Option<([usize; 2], usize)> {
+        match (self, point) {
+            (_, [i, 0]) => Some(([0, 1], i)),
+            (Self::Quadrilateral, [i, j]) if j == n => Some(([3, 2], i)),
+            (Self::Quadrilateral, [0, j]) => Some(([0, 3], j)),
+            (Self::Quadrilateral, [i, j]) if i == n => Some(([1, 2], j)),
+            (Self::Triangle, [0, j]) => Some(([0, 2], j)),
+            (Self::Triangle, [i, j]) if i + j == n => Some(([1, 2], j)),
+            _ => None,
+        }
+    }
+
+    /// Parts of the row of a lattice at height `j`.
+    fn row(self, n: usize, j: usize) -> usize {
+        match self {
             Self::Quadrilateral => n,
             Self::Triangle => n - j,
-        };
-        (0..=n).flat_map(|j| (0..=width(j)).map(move |i| [i, j])).collect()
+        }
     }
 }
 

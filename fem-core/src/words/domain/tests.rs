@@ -39,7 +39,9 @@ fn rules_are_exact_to_their_degree() {
         let inside = |p: [f64; 2]| p[0] > -1.0 && p[1] > -1.0 && p[0] + p[1] < 0.0;
         assert!(Domain::Triangle.points(order as usize).iter().all(|p| inside(p.at) && p.weight() > 0.0));
     }
-    // The rule of order 3 is of degree 5 and no more.
+    // The rule of order 2 is of degree 4, that of order 3 of degree 5 and no more.
+    let fourth: f64 = Domain::Triangle.points(2).iter().map(|p| p.weight() * (p.at[0] * p.at[1]).powi(2)).sum();
+    assert!((fourth - on_triangle(2, 2)).abs() < 1e-14);
     let sixth: f64 = Domain::Triangle.points(3).iter().map(|p| p.weight() * p.at[0].powi(6)).sum();
     assert!((sixth - on_triangle(6, 0)).abs() > 1e-6);
 }
@@ -61,6 +63,26 @@ fn vertex_functions_and_sides_agree_with_the_corners() {
         let mean = |d: usize| corners.iter().map(|c| c[d]).sum::<f64>() / corners.len() as f64;
         assert_eq!(domain.centre(), [mean(0), mean(1)]);
         assert_eq!(domain.lattice(1).len(), corners.len());
+    }
+    for (domain, n) in [(Domain::Quadrilateral, 3), (Domain::Triangle, 3), (Domain::Triangle, 1)] {
+        let lattice = domain.lattice(n);
+        assert!(lattice.iter().enumerate().all(|(k, point)| domain.lattice_number(n, *point) == k));
+        // The cells fill the domain, whose own corners are those of the lattice with n = 1.
+        let cells = domain.lattice_cells(n);
+        let area = |cell: &Corners<[usize; 2]>| cell.map(|p| p.map(|k| k as f64)).area();
+        assert!(cells.iter().all(|cell| cell.domain() == domain && area(cell) > 0.0));
+        let whole = domain.lattice_cells(1)[0];
+        assert!((cells.iter().map(area).sum::<f64>() - area(&whole) * (n * n) as f64).abs() < 1e-12);
+        let natural = |point: [usize; 2]| point.map(|k| 2.0 * k as f64 / n as f64 - 1.0);
+        for point in lattice {
+            let around = domain.vertex_functions(natural(point)).iter().filter(|v| v.abs() > 1e-12).count();
+            assert_eq!(domain.lattice_side(n, point).is_some(), around < 3);
+            if let Some((ends, from_first)) = domain.lattice_side(n, point) {
+                let at = domain.vertex_functions(natural(point));
+                assert!((at[ends[1]] - from_first as f64 / n as f64).abs() < 1e-12);
+                assert!((at[ends[0]] + at[ends[1]] - 1.0).abs() < 1e-12);
+            }
+        }
     }
     assert_eq!(Domain::Triangle.lattice(2), [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [0, 2]]);
 }

@@ -1,0 +1,123 @@
+//! Plates of several laminates.
+
+use crate::support::{Case, plate, root};
+use fem::core::mesh::{Group, PlaneMesh};
+use fem::io::gmsh::{self, Encoding};
+use std::collections::BTreeSet;
+use std::fs;
+
+/// A rectangle of `sides`, m, with the group `left` of its cells in the half at small x.
+fn halves(sides: [f64; 2], cells: [usize; 2]) -> Vec<u8> {
+    let lines = |d: usize| -> Vec<f64> { (0..=cells[d]).map(|i| sides[d] * i as f64 / cells[d] as f64).collect() };
+    let mut mesh = PlaneMesh::rectangle(&lines(0), &lines(1));
+    let quads: Vec<u32> =
+        (0..mesh.quads.len() as u32).filter(|quad| 2 * (*quad as usize % cells[0]) < cells[0]).collect();
+    let nodes: BTreeSet<u32> = quads.iter().flat_map(|quad| mesh.quads[*quad as usize]).collect();
+    let left = Group { dim: 2, nodes: nodes.into_iter().collect(), quads, ..Group::default() };
+    mesh.groups.insert("left".into(), left);
+    let mut file = Vec::new();
+    gmsh::write(&mut file, &mesh, 1e-3, Encoding::Ascii).unwrap();
+    file
+}
+
+/// A scene of `tests/data/scenes` on halves of a plate, with these laminates.
+fn scene(name: &str, laminate: &str) -> Case {
+    let text = fs::read_to_string(root().join("tests/data/scenes").join(name)).unwrap();
+    let line = |line: &str| match line.split(' ').next() {
+        Some("mesh") => "mesh = { file = \"plate.msh\", unit = \"mm\" }".to_owned(),
+        Some("laminate") => format!("laminate = {laminate}"),
+        _ => line.to_owned(),
+    };
+    let lines: Vec<String> = text.lines().map(line).collect();
+    plate().text(&lines.join("\n")).mesh_bytes(halves([60e-3, 40e-3], [8, 6]))
+}
+
+const PLIES: &str = "plies = \"[0/45/-45/90]s\", material = \"tape\", ply_thickness = \"0.13208 mm\", layers = [4, 4], \
+                     interface = \"resin\"";
+
+#[test]
+fn two_regions_of_one_laminate_are_the_undivided_plate_bit_for_bit() {
+    let name = "impact-everything-written.toml";
+    let [whole, divided] = [format!("{{ {PLIES} }}"), format!("[{{ group = \"left\", {PLIES} }}, {{ {PLIES} }}]")]
+        .map(|laminate| scene(name, &laminate));
+    for case in [&whole, &divided] {
+        case.fem("run", &["--out", "out"]).good();
+    }
+    assert_eq!(whole.names("out"), divided.names("out"));
+    let mut compared = 0;
+    for file in whole.names("out").iter().filter(|file| !["cost.json", "scene.toml"].contains(&file.as_str())) {
+        let read = |case: &Case| fs::read(case.folder().join("out").join(file)).ok();
+        assert!(read(&whole) == read(&divided), "{file}");
+        compared += 1;
+    }
+    assert!(compared > 8, "{compared}");
+}
+
+/// Two bars in series: a cantilever of length L under a force F at its end, the clamped half of modulus E₁, the other of
+/// E₂, w = F/(3 I) ((L³ − c³)/E₁ + c³/E₂) + F (a/G₁ + c/G₂)/(5/6 A), with a = c = L/2.
+#[test]
+fn a_cantilever_of_two_materials_bends_as_bars_in_series() {
+    let (length, width, height, force) = (80.0_f64, 4.0_f64, 2.0_f64, 1.0);
+    let (e1, e2) = (200e3, 70e3);
+    let text = r#"
+title = "two bars in series"
+analysis = "static"
+mesh = { file = "plate.msh", unit = "mm" }
+element = { kind = "hex20" }
+materials.stiff = { e = "200 GPa", nu = 0.0, density = "1 g/cm^3" }
+materials.soft = { e = "70 GPa", nu = 0.0, density = "1 g/cm^3" }
+
+[[laminate]]
+plies = "[0_2]"
+material = "soft"
+ply_thickness = "1 mm"
+layers = 1
+
+[[laminate]]
+group = "left"
+plies = "[0_2]"
+material = "stiff"
+ply_thickness = "1 mm"
+layers = 1
+
+[[support]]
+group = "x-min"
+at = "all"
+fix = ["U10", "U20", "U30"]
+
+[[load]]
+force_per_length = ["0 N/mm", "0 N/mm", "-0.25 N/mm"]
+group = "x-max"
+
+[failure]
+criteria = []
+"#;
+    let case = plate().text(text).mesh_bytes(halves([80e-3, 4e-3], [40, 2]));
+    case.fem("run", &["--out", "out"]).good();
+    let got = case.summary("out")["largest_deflection"]["w_m"].as_f64().unwrap().abs() * 1e3;
+    let (inertia, c) = (width * height.powi(3) / 12.0, 0.5 * length);
+    let bending = force / (3.0 * inertia) * ((length.powi(3) - c.powi(3)) / e1 + c.powi(3) / e2);
+    let shear = force * (c / (0.5 * e1) + c / (0.5 * e2)) / (5.0 / 6.0 * width * height);
+    assert!((got / (bending + shear) - 1.0).abs() < 2e-3, "{got} mm, not {}", bending + shear);
+}
+
+#[test]
+fn laminates_that_do_not_fit_are_refused() {
+    let name = "impact-everything-written.toml";
+    let refused = |laminates: &str, words: &[&str]| {
+        let said = scene(name, laminates).fem("check", &[]);
+        let text = said.stderr.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+        assert_eq!(said.status, 1, "{said:#?}");
+        words.iter().for_each(|words| assert!(text.contains(words), "{words:?}: {text}"));
+    };
+    let other = |from: &str, to: &str| format!("[{{ {PLIES} }}, {{ group = \"left\", {} }}]", PLIES.replace(from, to));
+    refused(&other("0.13208", "0.2"), &["laminates 1 and 2", "1.056640 and 1.600000 mm thick", "steps in thickness"]);
+    refused(&other("[4, 4]", "[3, 5]"), &["layers of cells hold [4, 4] and [3, 5] plies"]);
+    refused(&other("45/-45", "45"), &["mm thick"]);
+    refused(&other(", interface = \"resin\"", ""), &["different materials between their plies"]);
+    refused(&format!("[{{ {PLIES} }}, {{ {PLIES} }}]"), &["a second laminate has no `group`"]);
+    refused(&format!("[{{ group = \"left\", {PLIES} }}]"), &["24 cells, among them cell 5, have no laminate"]);
+    refused(&other("plies", "plies").replace("left", "lift"), &["no group `lift`", "left"]);
+    let twice = format!("[{{ group = \"left\", {PLIES} }}, {{ group = \"plate\", {PLIES} }}]");
+    refused(&twice, &["cell 1 has two laminates, those of `left` and `plate`"]);
+}

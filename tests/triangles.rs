@@ -1,0 +1,107 @@
+//! Plates of triangles: the wedge on every path, held against the hexahedron of as many nodes along each side.
+
+use crate::support::{Case, plate, root, strip};
+use fem::core::domain::Corners;
+use fem::core::mesh::PlaneMesh;
+use fem::io::gmsh::{self, Encoding};
+use serde_json::Value;
+use std::fs;
+
+/// A rectangle of 60 x 40 mm, m, whose cells are cut along diagonals that are mirror images of each other.
+fn triangles(nx: usize, ny: usize) -> Vec<u8> {
+    let lines = |n: usize, side: f64| -> Vec<f64> { (0..=n).map(|i| side * i as f64 / n as f64).collect() };
+    let mut mesh = PlaneMesh::rectangle(&lines(nx, 60e-3), &lines(ny, 40e-3));
+    let halves = |(k, quad): (usize, &Corners<u32>)| {
+        let [a, b, c, d] = quad.four();
+        let rising = (2 * (k % nx) < nx) == (2 * (k / nx) < ny);
+        let pair = if rising { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+        pair.map(Corners::from)
+    };
+    mesh.quads = mesh.quads.iter().enumerate().flat_map(halves).collect();
+    mesh.quad_tags = (1..=mesh.quads.len() as u64).collect();
+    mesh.groups.values_mut().filter(|group| group.dim == 2).for_each(|group| {
+        group.quads = (0..mesh.quads.len() as u32).collect();
+    });
+    let mut file = Vec::new();
+    gmsh::write(&mut file, &mesh, 1e-3, Encoding::Ascii).unwrap();
+    file
+}
+
+/// A scene of `tests/data/scenes` with hexahedra on its own mesh of `nx` x `ny` cells, and with wedges on triangles.
+fn both(name: &str, [nx, ny]: [usize; 2], edits: &[(&str, &str)]) -> [Case; 2] {
+    let text = fs::read_to_string(root().join("tests/data/scenes").join(name)).unwrap();
+    let text = edits.iter().fold(text, |text, (from, to)| {
+        assert_eq!(text.matches(from).count(), 1, "{from:?}");
+        text.replace(from, to)
+    });
+    let lines = |mesh: &str, element: &str| -> String {
+        let keep = text.lines().filter(|line| !line.starts_with("mesh = ") && !line.starts_with("element = "));
+        let mut lines: Vec<&str> = keep.collect();
+        lines.splice(1..1, [mesh, element]);
+        lines.join("\n")
+    };
+    let quads = format!("mesh = {{ rectangle = [\"60 mm\", \"40 mm\"], cells = [{nx}, {ny}] }}");
+    let of_file = "mesh = { file = \"plate.msh\", unit = \"mm\" }";
+    let hexahedra = plate().text(&lines(&quads, "element = { kind = \"hex20\" }"));
+    let wedges = plate().text(&lines(of_file, "element = { kind = \"wedge15\" }")).mesh_bytes(triangles(nx, ny));
+    [hexahedra, wedges]
+}
+
+/// The number of a key, wherever it stands in a summary.
+fn number(value: &Value, key: &str) -> Option<f64> {
+    let object = value.as_object()?;
+    object.get(key).and_then(Value::as_f64).or_else(|| object.values().find_map(|inner| number(inner, key)))
+}
+
+/// Runs both and holds numbers of their summaries against each other.
+#[track_caller]
+fn agree(cases: &[Case; 2], keys: &[&str], tolerance: f64) {
+    let [hexahedra, wedges] = cases.each_ref().map(|case| {
+        case.fem("run", &["--out", "out"]).good();
+        case.summary("out")
+    });
+    for key in keys {
+        let [a, b] = [&hexahedra, &wedges].map(|summary| number(summary, key).unwrap());
+        assert!((b / a - 1.0).abs() < tolerance, "{key}: {a} of hexahedra, {b} of wedges");
+    }
+}
+
+#[test]
+fn an_impact_with_everything_that_is_written() {
+    let cases = both("impact-everything-written.toml", [8, 6], &[]);
+    agree(&cases, &["peak_force_N"], 0.03);
+    let [hexahedra, wedges] = cases;
+    assert_eq!(wedges.names("out"), hexahedra.names("out"));
+    let count = |case: &Case| case.read("out/fields/plate.pvd").matches("DataSet ").count();
+    assert_eq!(count(&wedges), count(&hexahedra));
+    let said = wedges.fem("check", &[]).good().stdout;
+    assert!(said.contains("96 triangles, 63 nodes"), "{said}");
+}
+
+#[test]
+fn large_deflections_of_the_full_plate_and_reduced() {
+    for name in ["impact-membrane-full.toml", "impact-membrane-reduced.toml"] {
+        agree(&both(name, [6, 4], &[]), &["peak_force_N"], 0.03);
+    }
+}
+
+#[test]
+fn a_plate_at_rest_folded_by_half_a_turn() {
+    let cases = both("static-hex20-half-turn.toml", [6, 4], &[]);
+    agree(&cases, &["w_m"], 0.02);
+}
+
+#[test]
+fn elements_and_meshes_that_do_not_fit_are_refused_with_what_helps() {
+    let refused = |case: Case, words: &[&str]| {
+        let said = case.fem("check", &[]);
+        let text = said.stderr.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+        assert_eq!(said.status, 1, "{said:#?}");
+        words.iter().for_each(|words| assert!(text.contains(words), "{words:?}: {text}"));
+    };
+    let [quads, wedges] = both("modes-mirror.toml", [4, 4], &[("symmetry = \"mirror-x\"\n", "")]);
+    refused(wedges.scene("wedge15", "hex20"), &["stands on quadrilaterals", "wedge15", "Recombine Surface"]);
+    refused(quads.scene("hex20", "wedge15"), &["stands on triangles", "hex20"]);
+    let mixed = strip().mesh_bytes(fs::read(root().join("tests/data/odd-meshes/mixed.msh")).unwrap());
+    refused(mixed, &["is a triangle", "Mesh.RecombineAll = 1"]);
+}
