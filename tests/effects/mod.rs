@@ -2,6 +2,7 @@
 
 mod damping;
 mod delamination;
+mod foundation;
 mod gravity;
 mod inertia;
 mod laws;

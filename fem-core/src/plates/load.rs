@@ -5,6 +5,7 @@ use crate::plates::error::PlateError;
 use crate::plates::plate::Plate;
 use crate::words::dof::Dof;
 use crate::words::domain::Point;
+use crate::words::functional::Functional;
 use crate::words::quadrature::gauss_legendre;
 use std::collections::HashSet;
 
@@ -49,6 +50,27 @@ pub fn pressure(
             }
         }
     }
+}
+
+/// The deflection u₃ at the points of the integration over `face`, and the area that each stands for, m²: what springs under a
+/// plate are pressed by. Of cells that a symmetry maps onto each other one stands for all.
+pub fn deflections(plate: &Plate, element: &dyn Element, face: Face) -> Vec<(Functional, f64)> {
+    let (layer, q) = match face {
+        Face::Bottom => (0, -1.0),
+        Face::Top => (plate.layers() - 1, 1.0),
+    };
+    let mut shape = vec![0.0; 3 * element.info().ndof()];
+    let (mut dofs, mut found) = (Vec::new(), Vec::new());
+    for (number, weight) in plate.kept_cells().filter(|(cell, _)| plate.place(*cell).1 == layer) {
+        let cell = plate.cell(number);
+        plate.cell_dofs(number, &mut dofs);
+        for &Point { at: [r, s], factors } in element.info().domain.points(ORDER) {
+            element.shape(&cell, [r, s, q], &mut shape);
+            let along = dofs.iter().zip(shape.chunks_exact(3)).map(|(dof, n)| (*dof, n[2])).filter(|(_, n)| *n != 0.0);
+            found.push((Functional(along.collect()), weight * cell.plane(r, s).det * factors[0] * factors[1]));
+        }
+    }
+    found
 }
 
 /// Adds the forces of `per_length` (x, y, z), N/m, along `edges` of the plane mesh, spread evenly through the thickness.
