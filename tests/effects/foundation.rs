@@ -1,5 +1,7 @@
 //! An effect that the program does not know, in the one file of an example: an elastic foundation.
 
+// Public there, for its own main.
+#[allow(unreachable_pub)]
 #[path = "../../examples/plugin-effect/src/lib.rs"]
 mod plugin;
 
@@ -24,7 +26,7 @@ fn deflection_of(side: f64, cells: usize, load: &str, effects: &str) -> f64 {
     let text = format!(
         "title = 'foundation'\nanalysis = 'static'\nmesh = {{ rectangle = ['{side} mm', '{side} mm'], cells = [{cells}, {cells}] }}\n\
          laminate = {{ plies = '[0]', material = 'm', ply_thickness = '1 mm', layers = 1 }}\nelement = {{ kind = 'mitc4' }}\n\
-         materials.m = {{ e = '70 GPa', nu = 0.3 }}\neffects = {{ damage = 'off', {effects} }}\nload = [{{ {load} }}]\n\
+         materials.m = {{ e = '70 GPa', nu = 0.3, density = '2700 kg/m^3' }}\neffects = {{ damage = 'off', {effects} }}\nload = [{{ {load} }}]\n\
          support = [{{ restrain = 'rigid-motions' }}]\n"
     );
     let text = text.replace("support = [{ restrain = 'rigid-motions' }]\n", &supports.concat());
