@@ -135,7 +135,7 @@ fn resumed_it_loses_the_same() {
 fn refusals_help() {
     let of = |effects| Struck::new(effects);
     Struck { reduction: "method = 'none'", ..of(RATIO) }.refused(&[
-        "full plate has no modes",
+        "this plate is not reduced",
         "name a reduction",
         "stiffness",
     ]);

@@ -37,6 +37,6 @@ fn it_is_found_without_criteria() {
 
 #[test]
 fn refusals_help() {
-    struck("off", "delamination = 'threshold'", false).refused(&["no material tells the toughness", "GIIc"]);
+    struck("off", "delamination = 'threshold'", false).refused(&["no material gives the toughness", "GIIc"]);
     struck("off", "delamination = 'progressive'", true).refused(&["none of the words", "threshold"]);
 }

@@ -147,13 +147,13 @@ fn refusals_help() {
     Struck::new("gravity = '9.81 m/s'").refused(&["is a velocity, not an acceleration"]);
     Struck::new("gravity = '-9.81 m/s^2'").refused(&["must be positive"]);
     Struck { more: "[substructures]\ncells = [4, 4]\n", ..Struck::new("gravity = '9.81 m/s^2'") }
-        .refused(&["does not sag", "leave one of `substructures`"]);
+        .refused(&["is not carried inside condensed substructures", "leave one of `substructures`"]);
     for effects in
         ["gravity = '9.81 m/s^2'", "damping = { ratio = 0.02 }", "inertia = 'off'", "delamination = 'threshold'"]
     {
         let said = said(at_rest(&format!("effects = {{ {effects} }}")).expect_err(effects));
         let expected =
-            if effects.starts_with("delamination") { "no material tells the toughness" } else { "needs an impact" };
+            if effects.starts_with("delamination") { "no material gives the toughness" } else { "needs an impact" };
         assert!(said.contains(expected), "{said}");
     }
 }

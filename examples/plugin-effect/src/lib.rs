@@ -89,7 +89,7 @@ impl Effect for Foundation {
 
     fn on_stiffness(&self, body: &Body<'_>, stiffness: &mut Symmetric) -> Result<(), Error> {
         for (w, k) in self.springs(body) {
-            stiffness.add_spring(k, &w).map_err(|why| SolveError(why.to_string()))?;
+            stiffness.add_spring(k, &w).map_err(SolveError::other)?;
         }
         Ok(())
     }
