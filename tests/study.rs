@@ -97,7 +97,7 @@ fn a_scene_names_its_own_axes_and_quantities() {
     let columns =
         rows.values().next().map(|row| row.keys().filter(|c| c.ends_with(" error")).cloned().collect::<Vec<_>>());
     assert_eq!(columns.unwrap(), ["impulse error"]);
-    assert!(done.stdout.contains("is kept by"), "{done:#?}");
+    assert!(done.stdout.contains("is met by"), "{done:#?}");
     // The scene that it wrote keeps what it promises.
     fem(case.folder(), &["run", "study/scene.toml", "--out", "promised"]).good();
     let impulse = |out: &str| case.summary(out)["impact"]["impulse_N_s"].as_f64().unwrap();
