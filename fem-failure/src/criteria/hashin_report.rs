@@ -158,7 +158,8 @@ mod tests {
         near(indices(Product::Plus, s), [0.0, 0.0, square + product, 0.0]);
         let built = |value: &str| HashinReport::build(&Params::default().with("product", Value::Text(value.into())));
         assert!(matches!(built("plus"), Ok(Built::Criterion(c)) if !c.info().invariant_about_fibre));
-        assert!(built("sideways").unwrap_err().why.contains("minus, plus"));
+        let why = built("sideways").unwrap_err().why;
+        assert!(why.contains("`minus`") && why.contains("or `plus`"), "{why}");
     }
 
     #[test]
