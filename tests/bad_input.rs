@@ -538,7 +538,7 @@ mod failure {
             (r#"{ at = { group = "impact" }, ply = 17 }"#, "the laminate has 16 plies"),
             (r#"{ at = { group = "impact" }, interface = "16|17" }"#, "the laminate has 16 plies"),
             (r#"{ at = { group = "impct" }, ply = 1 }"#, "did you mean `impact`?"),
-            (r#"{ at = { x = "1 m", y = "0 mm" }, ply = 1 }"#, "no cell whose stresses are watched holds (1000.0000,"),
+            (r#"{ at = { x = "1 m", y = "0 mm" }, ply = 1 }"#, "(1000.0000, 0.0000) mm lies in no cell"),
             (r#"{ at = { group = "support" }, ply = 1 }"#, "a point has one"),
             (
                 r#"{ at = { group = "impact" }, ply = 1, criterion = "octahedral" }"#,
@@ -633,7 +633,7 @@ mod contact {
     #[test]
     fn mesh_in_metres_read_as_millimetres() {
         let case = strip().scene("unit = \"mm\"", "unit = \"um\"");
-        refusal(&case, At::Scene("at = { x"), &["is beside the plate", "if `mesh.unit` is right"]);
+        refusal(&case, At::Scene("at = { x"), &["lies outside the plate", "if `mesh.unit` is right"]);
     }
 }
 

@@ -222,7 +222,7 @@ fn what_is_no_folder_of_results_or_is_damaged_is_refused_by_name() {
         ("history.csv", "time_s,contact_force_N\n0.0,inf\n", "row 1, column contact_force_N"),
         ("events.csv", "time_s,criterion\n0.0\n", "record 1"),
         ("damage.json", "{}", "missing field"),
-        ("energy.svg", "<svg xmlns=\"\"><script>1</script></svg>", "no picture"),
+        ("energy.svg", "<svg xmlns=\"\"><script>1</script></svg>", "was not drawn by"),
     ];
     for (file, text, words) in spoilt {
         let path = case.folder().join("out").join(file);
@@ -244,7 +244,7 @@ fn a_scene_of_somebody_else_is_not_overwritten() {
     fs::write(mine.join("scene.toml"), "mine").unwrap();
     let done = fem(case.folder(), &["run", scene.to_str().unwrap(), "--out", "mine"]);
     assert_eq!(done.status, 1);
-    assert!(done.stderr.contains("would be lost"), "{done:?}");
+    assert!(done.stderr.contains("would be overwritten"), "{done:?}");
     assert_eq!(fs::read_to_string(mine.join("scene.toml")).unwrap(), "mine");
     // Results beside the scene that they are of leave it alone.
     let before = fs::read(&scene).unwrap();

@@ -57,7 +57,7 @@ fn line_ends_tabs_and_encodings() {
     }
     let utf16 = |text: &str| [0xff, 0xfe].into_iter().chain(text.encode_utf16().flat_map(u16::to_le_bytes)).collect();
     let latin = |text: &str| text.replace("title = \"", "title = \"\u{e9}").chars().map(|c| c as u8).collect();
-    let bytes: [(&str, Vec<u8>); 2] = [("UTF-16", utf16(&scene)), ("no text in UTF-8 from line 1 on", latin(&scene))];
+    let bytes: [(&str, Vec<u8>); 2] = [("UTF-16", utf16(&scene)), ("not UTF-8 from line 1 on", latin(&scene))];
     for (words, bytes) in bytes {
         let case = strip();
         case.write();

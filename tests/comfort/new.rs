@@ -65,7 +65,7 @@ fn what_exists_is_left_alone() {
     fs::create_dir(folder.path().join("empty")).unwrap();
     for name in ["taken", "empty", "."] {
         let done = fem(folder.path(), &["new", name]);
-        assert!(done.status == 1 && done.stdout.is_empty() && done.stderr.contains("is left alone"), "{done:#?}");
+        assert!(done.status == 1 && done.stdout.is_empty() && done.stderr.contains("is not overwritten"), "{done:#?}");
     }
     assert_eq!(fs::read(folder.path().join("taken")).unwrap(), b"mine");
     let done = fem(folder.path(), &["new", "plate", "--template", "drop-wait"]);

@@ -135,7 +135,7 @@ fn resumed_it_loses_the_same() {
 fn refusals_help() {
     let of = |effects| Struck::new(effects);
     Struck { reduction: "method = 'none'", ..of(RATIO) }.refused(&[
-        "this plate is not reduced",
+        "damps the modes of a reduced plate",
         "name a reduction",
         "stiffness",
     ]);

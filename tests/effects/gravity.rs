@@ -147,7 +147,7 @@ fn refusals_help() {
     Struck::new("gravity = '9.81 m/s'").refused(&["is a velocity, not an acceleration"]);
     Struck::new("gravity = '-9.81 m/s^2'").refused(&["must be positive"]);
     Struck { more: "[substructures]\ncells = [4, 4]\n", ..Struck::new("gravity = '9.81 m/s^2'") }
-        .refused(&["is not carried inside condensed substructures", "leave one of `substructures`"]);
+        .refused(&["gravity is not carried", "leave one of `substructures`"]);
     for effects in
         ["gravity = '9.81 m/s^2'", "damping = { ratio = 0.02 }", "inertia = 'off'", "delamination = 'threshold'"]
     {
