@@ -45,7 +45,7 @@ fn two_regions_of_one_laminate_are_the_undivided_plate_bit_for_bit() {
     }
     assert_eq!(whole.names("out"), divided.names("out"));
     let mut compared = 0;
-    for file in whole.names("out").iter().filter(|file| !["cost.json", "scene.toml"].contains(&file.as_str())) {
+    for file in whole.names("out").iter().filter(|file| !["checkpoint.bin", "cost.json", "scene.toml"].contains(&file.as_str())) {
         let read = |case: &Case| fs::read(case.folder().join("out").join(file)).ok();
         assert!(read(&whole) == read(&divided), "{file}");
         compared += 1;
@@ -64,6 +64,7 @@ title = "two bars in series"
 analysis = "static"
 mesh = { file = "plate.msh", unit = "mm" }
 element = { kind = "hex20" }
+effects = { damage = "off" }
 materials.stiff = { e = "200 GPa", nu = 0.0, density = "1 g/cm^3" }
 materials.soft = { e = "70 GPa", nu = 0.0, density = "1 g/cm^3" }
 
@@ -88,9 +89,6 @@ fix = ["U10", "U20", "U30"]
 [[load]]
 force_per_length = ["0 N/mm", "0 N/mm", "-0.25 N/mm"]
 group = "x-max"
-
-[failure]
-criteria = []
 "#;
     let case = plate().text(text).mesh_bytes(halves([80e-3, 4e-3], [40, 2]));
     case.fem("run", &["--out", "out"]).good();
@@ -113,7 +111,7 @@ fn laminates_that_do_not_fit_are_refused() {
     let other = |from: &str, to: &str| format!("[{{ {PLIES} }}, {{ group = \"left\", {} }}]", PLIES.replace(from, to));
     refused(&other("0.13208", "0.2"), &["laminates 1 and 2", "1.056640 and 1.600000 mm thick", "steps in thickness"]);
     refused(&other("[4, 4]", "[3, 5]"), &["layers of cells hold [4, 4] and [3, 5] plies"]);
-    refused(&other("45/-45", "45"), &["mm thick"]);
+    refused(&other("45/-45", "45"), &["the layers hold 8 plies, the laminate has 6"]);
     refused(&other(", interface = \"resin\"", ""), &["different materials between their plies"]);
     refused(&format!("[{{ {PLIES} }}, {{ {PLIES} }}]"), &["a second laminate has no `group`"]);
     refused(&format!("[{{ group = \"left\", {PLIES} }}]"), &["24 cells, among them cell 5, have no laminate"]);

@@ -16,7 +16,7 @@
 //! let stack = Stack::new(vec![slice([-1.0, 0.2]), slice([0.2, 1.0])]);
 //! // A cube of 1 mm.
 //! let corners = [[0.0, 0.0], [1e-3, 0.0], [1e-3, 1e-3], [0.0, 1e-3]];
-//! let cell = Cell { corners, z: [0.0, 1e-3], stack: &stack };
+//! let cell = Cell { corners: corners.into(), z: [0.0, 1e-3], stack: &stack };
 //!
 //! let n = element.info().ndof();
 //! let mut k = vec![0.0; n * n];

@@ -7,7 +7,7 @@
 //! assert_eq!((slope.n(), slope.m()), (3, 1));
 //! assert_eq!(Dof::SOLID.iter().position(|dof| *dof == slope), Some(9));
 //! assert!("U41".parse::<Dof>().is_err());
-//! # Ok::<(), String>(())
+//! # Ok::<(), fem_core::dof::DofError>(())
 //! ```
 
 use std::fmt;

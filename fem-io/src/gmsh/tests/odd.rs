@@ -64,7 +64,7 @@ const FILES: &[(&str, Want)] = &[
     ("two-surfaces", PLAIN),
     ("doubled-nodes", Refused(&["lie at the same point", "removeDuplicateNodes()"])),
     ("joined-nodes", Read(8, Named(&["plate"]), "")),
-    ("mixed", Read(0, Named(&["plate"]), "")),
+    ("mixed", Read(12, Named(&["clamped", "plate", "tip"]), "")),
     ("extruded", Refused(&["has the type Hex8", "save no volumes", "plies come from the scene"])),
     ("extruded-bottom", Read(8, Named(&["plate"]), "surface elements belong to no physical group")),
     ("overlapping-groups", Read(8, Named(&["clamped", "left half", "plate", "tip"]), "")),
