@@ -322,7 +322,7 @@ fn deflections_that_membrane_forces_change_by_five_per_cent() {
 /// Regime, membrane stiffening within the march, verdict on shear, edge in the plane.
 #[track_caller]
 fn chooses(advice: &Advice, regime: Regime, membrane: bool, flexible: bool) {
-    let found = (advice.estimate.regime, stretches(&advice), advice.shear.flexible());
+    let found = (advice.estimate.regime, stretches(advice), advice.shear.flexible());
     assert_eq!(found, (regime, membrane, flexible), "{advice}");
 }
 

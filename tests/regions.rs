@@ -45,7 +45,9 @@ fn two_regions_of_one_laminate_are_the_undivided_plate_bit_for_bit() {
     }
     assert_eq!(whole.names("out"), divided.names("out"));
     let mut compared = 0;
-    for file in whole.names("out").iter().filter(|file| !["checkpoint.bin", "cost.json", "scene.toml"].contains(&file.as_str())) {
+    for file in
+        whole.names("out").iter().filter(|file| !["checkpoint.bin", "cost.json", "scene.toml"].contains(&file.as_str()))
+    {
         let read = |case: &Case| fs::read(case.folder().join("out").join(file)).ok();
         assert!(read(&whole) == read(&divided), "{file}");
         compared += 1;

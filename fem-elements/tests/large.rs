@@ -1,7 +1,6 @@
 //! Large deflections: forces and tangents against differences, motions whose strains are known.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-#[allow(dead_code, reason = "other tests need the rest")]
 mod dense;
 
 use dense::*;

@@ -48,6 +48,6 @@ fn write_matrix(dir: &OutputDir, name: &str, matrix: &Symmetric) -> Result<(), E
     let full = matrix.full()?;
     let (symbolic, values) = full.parts();
     let full = CsMatView::new_csc(full.shape(), symbolic.col_ptr(), symbolic.row_idx(), values);
-    dir.write(name, |out| write_matrix_market_to_bufwrite(out, &full))?;
+    dir.write(name, |out| write_matrix_market_to_bufwrite(out, full))?;
     Ok(())
 }

@@ -3,6 +3,9 @@
 use crate::forecast::Size;
 use serde::Serialize;
 
+/// What the user should know after a run, from what it reached, whether the effect acted, and whether the advisor had decided.
+pub type Judgement = fn(&Hindsight, bool, bool) -> Option<String>;
+
 /// How the advisor decides about an effect: a number, beforehand, against a threshold.
 #[derive(Debug, Clone, Copy)]
 pub struct AdviceRule {
@@ -17,8 +20,8 @@ pub struct AdviceRule {
     /// The answer of `fem advise`, where it has a question of its own; with the time of a run with it over that of one without,
     /// of the sizes of a run without.
     pub answer: Option<fn(&Expected, &Size) -> Answer>,
-    /// What the user should know after a run, by whether the effect acted and whether the advisor had decided.
-    pub hindsight: Option<fn(&Hindsight, bool, bool) -> Option<String>>,
+    /// What the user should know after a run.
+    pub hindsight: Option<Judgement>,
 }
 
 /// What is expected of a plate under an impactor, or under loads at rest, before it is computed.

@@ -9,7 +9,7 @@ mod facts;
 mod set;
 mod stages;
 
-pub use advice::{AdviceRule, Answer, Decision, Expected, Hindsight, Number};
+pub use advice::{AdviceRule, Answer, Decision, Expected, Hindsight, Judgement, Number};
 pub use facts::{Body, Exclusion, Facts, Feature};
 pub use set::Effects;
 pub use stages::{Marched, Nature};

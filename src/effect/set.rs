@@ -48,9 +48,9 @@ impl Effects {
     /// In the order of the registry, whatever that of the scene.
     fn sort(&mut self) {
         let Self { known, acting, left } = self;
-        let number = |effect: &Box<dyn Effect>| known.iter().position(|info| info.key.name == effect.info().key.name);
-        acting.sort_by_key(number);
-        left.sort_by_key(number);
+        let number = |effect: &dyn Effect| known.iter().position(|info| info.key.name == effect.info().key.name);
+        acting.sort_by_key(|effect| number(&**effect));
+        left.sort_by_key(|effect| number(&**effect));
     }
 
     /// Every effect of the registry.

@@ -22,7 +22,8 @@ fn registry() -> Registry {
 /// A square of aluminium, simply supported, 1 mm thick; side in mm, `load` and `effects` of a scene.
 fn deflection_of(side: f64, cells: usize, load: &str, effects: &str) -> f64 {
     let edges = [("x-min", "U20"), ("x-max", "U20"), ("y-min", "U10"), ("y-max", "U10")];
-    let supports = edges.map(|(group, along)| format!("[[support]]\ngroup = '{group}'\nat = 'all'\nfix = ['{along}', 'U30']\n"));
+    let supports =
+        edges.map(|(group, along)| format!("[[support]]\ngroup = '{group}'\nat = 'all'\nfix = ['{along}', 'U30']\n"));
     let text = format!(
         "title = 'foundation'\nanalysis = 'static'\nmesh = {{ rectangle = ['{side} mm', '{side} mm'], cells = [{cells}, {cells}] }}\n\
          laminate = {{ plies = '[0]', material = 'm', ply_thickness = '1 mm', layers = 1 }}\nelement = {{ kind = 'mitc4' }}\n\
@@ -104,7 +105,10 @@ fn what_it_excludes_is_refused_at_its_key() {
     let membrane = refused("membrane = 'on'");
     assert!(membrane.contains("forces of large deflections") && membrane.contains("leave one of"), "{membrane}");
     let unknown = refused("fundation = '1 N/mm^3'");
-    assert!(unknown.contains("unknown key `effects.fundation`") && unknown.contains("did you mean `foundation`"), "{unknown}");
+    assert!(
+        unknown.contains("unknown key `effects.fundation`") && unknown.contains("did you mean `foundation`"),
+        "{unknown}"
+    );
     let unit = refused("gravity = '1 N/mm^3'");
     assert!(unit.contains("effects.gravity"), "{unit}");
 }

@@ -57,7 +57,10 @@ fn of_a_state_at_rest() {
     for key in ["every = \"1 us\"", "times = [\"0 us\"]"] {
         refused(&example(&format!("{{ {key} }}")), &["only an impact is marched in time", "leave it out"]);
     }
-    refused(&example("{ region = { radius = \"1 mm\" } }"), &["is measured from the impact, and this analysis has none", "`group`"]);
+    refused(
+        &example("{ region = { radius = \"1 mm\" } }"),
+        &["is measured from the impact, and this analysis has none", "`group`"],
+    );
 }
 
 #[test]

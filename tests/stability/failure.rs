@@ -47,7 +47,7 @@ pub(crate) fn cases() -> Vec<Case> {
             ends_of_the_numbers,
         ),
         Room::Failure.case(
-            "stresses that are no numbers",
+            "stresses that are not numbers",
             "every criterion; NaN and infinity in each component, beside zeros and beside stresses",
             "stresses that are judged or scanned, or whose NaN leaves all indices below 1",
             0.0,

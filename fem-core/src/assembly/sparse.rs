@@ -22,8 +22,8 @@ enum Factored {
 /// Internal forces other than K u.
 #[derive(Debug)]
 enum Beyond {
-    Large(LargePlate),
-    Laws(LawPlate),
+    Large(Box<LargePlate>),
+    Laws(Box<LawPlate>),
 }
 
 impl Beyond {
@@ -36,7 +36,7 @@ impl Beyond {
         tangent: Option<&mut Symmetric>,
     ) -> Result<Energy, SolveError> {
         let done = match self {
-            Self::Large(large) => InternalForce::internal(large, u, force, tangent),
+            Self::Large(large) => InternalForce::internal(&mut **large, u, force, tangent),
             Self::Laws(laws) => laws.on(k, points).internal(u, force, tangent),
         };
         done.map_err(SolveError::other)
@@ -103,12 +103,12 @@ impl SparseStructure {
 
     /// Gives the structure the internal forces of large deflections; its K is their tangent at rest.
     pub fn stiffen(&mut self, large: Option<LargePlate>) {
-        self.beyond = large.map(Beyond::Large);
+        self.beyond = large.map(|large| Beyond::Large(Box::new(large)));
     }
 
     /// Gives the structure the internal forces of plies that follow laws; its K is their tangent before anything has happened.
     pub fn follow(&mut self, laws: LawPlate) {
-        self.beyond = Some(Beyond::Laws(laws));
+        self.beyond = Some(Beyond::Laws(Box::new(laws)));
     }
 
     /// Gives the structure viscous damping.

@@ -312,9 +312,9 @@ impl CellAnswer {
         let rows = self.strains.len();
         for (k, a) in shares.iter().take(rows / 6).enumerate() {
             for (l, b) in shares.iter().take(rows / 6).enumerate() {
-                for i in 0..6 {
-                    for j in 0..6 {
-                        let symmetric = 0.5 * (modulus[i][j] + modulus[j][i]);
+                for (i, row) in modulus.iter().enumerate() {
+                    for (j, entry) in row.iter().enumerate() {
+                        let symmetric = 0.5 * (entry + modulus[j][i]);
                         self.moduli[(6 * k + i) * rows + 6 * l + j] += weight * a * b * symmetric;
                     }
                 }

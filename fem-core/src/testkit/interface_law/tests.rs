@@ -40,8 +40,7 @@ impl InterfaceLaw for Softening {
             |norm: f64| if norm > onset { (end * (norm - onset) / (norm * (end - onset))).min(1.0) } else { 0.0 };
         new[0] = if damage(norm).is_nan() { f64::NAN } else { damage(norm).max(self.heal * old[0]) };
         // ∫ ½ k λ² dd with λ = f o / (f − d (f − o)).
-        let lost = |d: f64| 0.5 * k * onset * end * (d * onset / (end - d * (end - onset)));
-        new[1] = lost(new[0]);
+        new[1] = 0.5 * k * onset * end * (new[0] * onset / (end - new[0] * (end - onset)));
         let sound = 1.0 - new[0];
         let mut traction = opening.map(|v| sound * k * v);
         traction[0] += k * n.min(0.0) * self.pull;

@@ -104,17 +104,17 @@ fn faults_are_found() {
             }
         }),
         ("differences give", |a| {
-            if let Some(t) = &mut a.tangent {
-                if a.new[1] > 0.0 {
-                    t[3][3] *= 1.01
-                }
+            if let Some(t) = &mut a.tangent
+                && a.new[1] > 0.0
+            {
+                t[3][3] *= 1.01
             }
         }),
         ("stiffness", |a| {
-            if let Some(t) = &mut a.tangent {
-                if a.new[1] == 0.0 {
-                    t[3][3] *= 1.01
-                }
+            if let Some(t) = &mut a.tangent
+                && a.new[1] == 0.0
+            {
+                t[3][3] *= 1.01
             }
         }),
         ("is not the work", |a| a.response.energy.stored *= 1.01),

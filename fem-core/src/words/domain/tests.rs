@@ -10,7 +10,7 @@ fn on_triangle(a: u32, b: u32) -> f64 {
     let mut sum = 0.0;
     for i in 0..=a {
         for j in 0..=b {
-            let sign = if (a - i + b - j) % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if (a - i + b - j).is_multiple_of(2) { 1.0 } else { -1.0 };
             let moment = factorial(i) * factorial(j) / factorial(i + j + 2);
             sum += sign * binomial(a, i) * binomial(b, j) * f64::from(2_u32.pow(i + j)) * moment;
         }
@@ -27,7 +27,7 @@ fn rules_are_exact_to_their_degree() {
         };
         for a in 0..2 * order {
             for b in 0..2 * order {
-                let along = |n: u32| if n % 2 == 0 { 2.0 / f64::from(n + 1) } else { 0.0 };
+                let along = |n: u32| if n.is_multiple_of(2) { 2.0 / f64::from(n + 1) } else { 0.0 };
                 let error = integral(Domain::Quadrilateral, a, b) - along(a) * along(b);
                 assert!(error.abs() < 1e-14, "order {order}, r^{a} s^{b}: {error:e}");
                 if a + b < 2 * order {

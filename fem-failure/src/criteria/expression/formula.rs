@@ -28,7 +28,10 @@ const STRESSES: [(&str, usize); 12] = [
     ("s31", 5),
 ];
 
-const ELASTIC: [(&str, fn(&Elastic) -> f64); 9] = [
+/// One of the elastic constants.
+type Constant = fn(&Elastic) -> f64;
+
+const ELASTIC: [(&str, Constant); 9] = [
     ("E1", |e| e.e1),
     ("E2", |e| e.e2),
     ("E3", |e| e.e3),
