@@ -1,5 +1,6 @@
 //! A plate's K and M in the hands of faer: its sparse LU and Cholesky for a load at rest, its Arnoldi iteration for the lowest
 //! frequency, each beside what `fem` finds. `cargo run --release --example faer`
+#![allow(clippy::print_stdout, reason = "a program prints")]
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::solvers::Solve;
