@@ -43,6 +43,7 @@ pub struct StaticSummary {
     pub strain_energy_J: f64,
     pub largest_deflection: Deflection,
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "large_displacements")]
     pub large_deflections: Option<Newton>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ply_laws: Option<LawsSummary>,
