@@ -103,8 +103,9 @@ impl CellMap {
     ///
     /// Runs of consecutive unknowns are consecutive in every column that holds them: one search per run.
     ///
-    /// faer's once-sorted order of triplets would keep 24 bytes per entry of every cell matrix and read them all, and its sums
-    /// come in another order; it takes longer (`cargo bench --bench assembly`).
+    /// Why not through faer's once-sorted order of triplets: it keeps 24 bytes for each entry of each cell, sorting it
+    /// takes ten times as long as the pattern does here, and its sums come in another order, so that results would
+    /// differ in their last bits. The sum itself is no slower there (`cargo bench --bench assembly`).
     fn add_plain(&self, a: &[f64], weight: f64, sum: &mut Symmetric) {
         let (symbolic, values) = sum.lower_mut().parts_mut();
         let (n, m) = (self.reduced.len(), a.len().isqrt());
