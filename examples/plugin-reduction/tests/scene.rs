@@ -59,7 +59,7 @@ fn wrong_parameters_are_shown_in_the_scene() {
         ("shifted-krylov", "shifted-kyrlov", "did you mean `shifted-krylov`"),
         ("about", "around", "`around`: is not known"),
         ("50 kHz", "50 mm", "must be a quantity in 1/s, above 0, got 0.05 m"),
-        ("vectors = 16", "vectors = 1000000000", "must be a whole number from 1 to 1000"),
+        ("vectors = 16", "vectors = 1000000000", "must be a whole number from 1 to 1e3"),
     ] {
         let check = fem("check", &REDUCTION.replace(from, to), folder.path(), &[]);
         let stderr = String::from_utf8(check.stderr).unwrap();
