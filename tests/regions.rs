@@ -121,3 +121,17 @@ fn laminates_that_do_not_fit_are_refused() {
     let twice = format!("[{{ group = \"left\", {PLIES} }}, {{ group = \"plate\", {PLIES} }}]");
     refused(&twice, &["cell 1 has two laminates, those of `left` and `plate`"]);
 }
+
+#[test]
+fn a_symmetry_that_the_regions_break_is_refused() {
+    let text = |laminate: String| {
+        let case = scene("impact-everything-written.toml", &laminate);
+        let folded = format!("symmetry = \"half-turn\"\n{}", case.read(case.write()));
+        let said = case.text(&folded).fem("check", &[]);
+        said.stderr.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
+    };
+    let broken = text(format!("[{{ {PLIES} }}, {{ group = \"left\", {} }}]", PLIES.replace("45/-45", "-45/45")));
+    assert!(broken.contains("make the mesh symmetric"), "{broken}");
+    let kept = text(format!("{{ {PLIES} }}"));
+    assert!(!kept.contains("make the mesh symmetric"), "{kept}");
+}

@@ -89,10 +89,7 @@ impl ContactLaw for ElasticPlastic {
     fn energy(&self, history: &ContactHistory, alpha: f64) -> Energy {
         let largest = history[0].max(alpha);
         let unloading = self.unloading(largest);
-        Energy {
-            stored: unloading.work(alpha),
-            dissipated: (self.work(largest) - unloading.work(largest)).max(0.0),
-        }
+        Energy { stored: unloading.work(alpha), dissipated: (self.work(largest) - unloading.work(largest)).max(0.0) }
     }
 
     fn branches(&self, history: &ContactHistory) -> Branches {
@@ -103,8 +100,7 @@ impl ContactLaw for ElasticPlastic {
 
 // ANCHOR: plugin
 const K: ParamInfo = ParamInfo::quantity("k", "contact stiffness", Dimension::contact_stiffness(1.5)).above(0.0);
-const YIELD: ParamInfo =
-    ParamInfo::quantity("yield", "indentation at which it yields", Dimension::LENGTH).above(0.0);
+const YIELD: ParamInfo = ParamInfo::quantity("yield", "indentation at which it yields", Dimension::LENGTH).above(0.0);
 
 impl Plugin for ElasticPlastic {
     const INFO: PluginInfo = PluginInfo {

@@ -87,11 +87,8 @@ impl Element for Hex8 {
 }
 
 // ANCHOR: plugin
-const SHEAR: ParamInfo = ParamInfo::word(
-    "shear",
-    "transverse shear strains",
-    &[("assumed", "thin cells bend"), ("full", "they lock")],
-);
+const SHEAR: ParamInfo =
+    ParamInfo::word("shear", "transverse shear strains", &[("assumed", "thin cells bend"), ("full", "they lock")]);
 
 impl Plugin for Hex8 {
     const INFO: PluginInfo = PluginInfo {

@@ -71,7 +71,10 @@ fn a_thin_plate_bends_and_locks_only_with_full_shears() {
 fn wrong_parameters_are_shown_in_the_scene() {
     let folder = tempfile::tempdir().unwrap();
     for (element, words) in [
-        ("element = { kind = \"hex8\", shear = \"reduced\" }", "must be `assumed`: thin cells bend, or `full`: they lock, got `reduced`"),
+        (
+            "element = { kind = \"hex8\", shear = \"reduced\" }",
+            "must be `assumed`: thin cells bend, or `full`: they lock, got `reduced`",
+        ),
         ("element = { kind = \"hex8\", sheer = \"full\" }", "did you mean `shear`"),
         ("element = { kind = \"hex9\" }", "did you mean `hex8`"),
     ] {

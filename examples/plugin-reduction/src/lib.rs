@@ -2,8 +2,8 @@
 //!
 //! What to look at: a reduction only chooses the columns of a basis. It sees the structure through products and solves, and the
 //! contacts as functionals; projection, modes and the way back are common to all reductions.
-use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::functional::Functional;
+use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::reduction::{Reduction, ReductionError};
 use fem_core::structure::Structure;
 use std::f64::consts::TAU;

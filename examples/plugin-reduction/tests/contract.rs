@@ -1,8 +1,8 @@
 //! What the reduction promises, on a chain of masses: dynamic flexibilities at rest and about its frequency.
 
 use fem::dynamics::reduce::Reduced;
-use fem_core::plugin::{Built, Dimension, Params, Plugin, Value};
 use fem_core::functional::Functional;
+use fem_core::plugin::{Built, Dimension, Params, Plugin, Value};
 use fem_core::reduction::Reduction;
 use fem_core::structure::{SolveError, Structure};
 use plugin_reduction::ShiftedKrylov;
