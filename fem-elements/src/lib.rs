@@ -42,6 +42,7 @@ mod lamination;
 mod large;
 mod mitc4;
 mod prism;
+mod serendipity;
 mod webster_beam;
 mod wedge15;
 

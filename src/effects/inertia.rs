@@ -1,6 +1,6 @@
 //! A plate without inertia.
 
-use super::{SWITCHES, Switch};
+use super::{SWITCHES, Switch, read_switch};
 use crate::effect::{AdviceRule, Body, Effect, EffectInfo, EffectPlugin, Exclusion, Expected, Feature, Nature, Wish};
 use fem_dynamics::impact::ImpactSystem;
 use fem_dynamics::reduce::Reduced;
@@ -38,11 +38,7 @@ impl EffectPlugin for NoInertia {
     };
 
     fn read(value: &SceneValue<'_>) -> Result<Wish, SceneError> {
-        Ok(match value.choice(&SWITCHES)? {
-            Switch::On => Wish::Off,
-            Switch::Off => Wish::On(Box::new(Self)),
-            Switch::Auto => Wish::Auto(Box::new(Self)),
-        })
+        read_switch(value, Switch::Off, Self)
     }
 }
 

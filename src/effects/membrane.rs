@@ -1,6 +1,6 @@
 //! Membrane stiffening: the plate is stretched as it deflects.
 
-use super::{SWITCHES, Switch};
+use super::{SWITCHES, Switch, read_switch};
 use crate::effect::{
     AdviceRule, Answer, Body, Effect, EffectInfo, EffectPlugin, Exclusion, Expected, Facts, Feature, Hindsight,
     Marched, Nature, Number, Wish,
@@ -44,11 +44,7 @@ impl EffectPlugin for Membrane {
     };
 
     fn read(value: &SceneValue<'_>) -> Result<Wish, SceneError> {
-        Ok(match value.choice(&SWITCHES)? {
-            Switch::Off => Wish::Off,
-            Switch::On => Wish::On(Box::new(Self)),
-            Switch::Auto => Wish::Auto(Box::new(Self)),
-        })
+        read_switch(value, Switch::On, Self)
     }
 }
 
