@@ -11,6 +11,7 @@ mod command_line;
 mod criteria;
 mod effects;
 mod envelope;
+mod extremes;
 mod fields;
 mod impactors;
 mod indices;

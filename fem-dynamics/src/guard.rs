@@ -151,7 +151,7 @@ impl Guard {
     /// A bound that is broken.
     #[inline]
     pub fn touch(&self, i: usize, touch: Touch) -> Result<(), Alarm> {
-        let Touch { indentation, force, velocity } = touch;
+        let Touch { indentation, force, velocity, .. } = touch;
         let Bounds { indentation: deepest, speed } = self.bounds[i];
         // Comparisons that NaN fails, and one branch.
         if (indentation <= deepest) & (0.0..f64::INFINITY).contains(&force) & (velocity.abs() <= speed) {
@@ -161,7 +161,7 @@ impl Guard {
     }
 
     #[cold]
-    fn broken(&self, impactor: usize, Touch { indentation, force, velocity }: Touch) -> Alarm {
+    fn broken(&self, impactor: usize, Touch { indentation, force, velocity, .. }: Touch) -> Alarm {
         let bounds = self.bounds[impactor];
         if ![indentation, force, velocity].iter().all(|v| v.is_finite()) {
             Alarm::NotFinite("the contact")

@@ -82,6 +82,8 @@ pub struct Touch {
     pub force: f64,
     /// Velocity of the impactor, m/s.
     pub velocity: f64,
+    /// Deflection of the structure under it, m.
+    pub deflection: f64,
 }
 
 /// Energies of an impact, J.
@@ -229,11 +231,12 @@ impl ImpactSystem {
         self.touch(i, state).force
     }
 
-    /// Indentation, force and velocity of impactor `i` in an accepted state.
+    /// Impactor `i` in an accepted state.
     pub fn touch(&self, i: usize, state: &State) -> Touch {
-        let indentation = self.approach(i, &state.u);
+        let deflection = self.deflection(i, &state.u);
+        let indentation = self.position(i, &state.u) - deflection;
         let force = self.impactors[i].law.force(&state.histories.contacts[i], indentation).force;
-        Touch { indentation, force, velocity: state.v[self.structure.ndof() + i] }
+        Touch { indentation, force, velocity: state.v[self.structure.ndof() + i], deflection }
     }
 
     /// The energy ledger of an accepted state.

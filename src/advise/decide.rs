@@ -1,6 +1,7 @@
 //! Effects that a scene leaves to the advisor.
 
 use super::plate::AtRest;
+use super::sampling::look_often;
 use super::{Rim, advise};
 use crate::effect::Expected;
 use crate::error::Error;
@@ -10,14 +11,16 @@ use fem_core::functional::Functional;
 use fem_core::time::StepLimit;
 use std::num::NonZeroUsize;
 
-/// `model` with all effects decided that its scene leaves to the advisor; one more factorisation of K where there are any.
+/// `model` with all effects decided that its scene leaves to the advisor, one more factorisation of K where there are any, and
+/// with stresses that are judged often enough.
 ///
 /// Each effect has a number of its own for what is expected of an impactor, or of loads at rest, and a threshold; the largest
 /// number counts.
 ///
 /// # Errors
 /// As [`advise`].
-pub fn decided(mut model: Model, threads: NonZeroUsize) -> Result<Model, Error> {
+pub fn decided(model: Model, threads: NonZeroUsize) -> Result<Model, Error> {
+    let mut model = look_often(model);
     if !model.effects.undecided() {
         return Ok(model);
     }

@@ -27,6 +27,15 @@ impl Blow<'_> {
     }
 }
 
+/// The first contact of `blow` with an infinite plate of this mass per area, kg/m², and bending stiffness, N m; and the constant of
+/// Hertz's law that is as stiff where the blow is spent, N/m^1.5.
+pub(super) fn first_wave(areal_mass: f64, bending_stiffness: f64, blow: &Blow<'_>) -> (Wave, f64) {
+    let rigid = rigid_target(blow.energy(), blow.law);
+    let k = rigid.force / rigid.indentation.powf(1.5);
+    let impedance = small_mass::impedance(areal_mass, bending_stiffness);
+    (infinite_plate(blow.mass, blow.velocity, impedance, blow.law, k), k)
+}
+
 /// The estimates for an impact, as if its impactor struck alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
@@ -67,10 +76,8 @@ impl Estimate {
         let stiffer = plate.membrane_coefficient() * plate.stiffness / plate.thickness.powi(2);
         let linear = energy_balance(energy, bending, law);
         let with_membrane = energy_balance(energy, Spring { membrane: stiffer, ..bending }, law);
-        let rigid = rigid_target(energy, law);
-        let k = rigid.force / rigid.indentation.powf(1.5);
         let impedance = small_mass::impedance(plate.areal_mass, plate.bending_stiffness);
-        let wave = infinite_plate(mass, velocity, impedance, law, k);
+        let (wave, k) = first_wave(plate.areal_mass, plate.bending_stiffness, blow);
 
         let force = linear.force.max(wave.force);
         let secant = force / large_mass::indentation(law, force);

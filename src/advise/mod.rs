@@ -18,6 +18,7 @@ mod mesh;
 mod plate;
 mod regime;
 mod rim;
+mod sampling;
 mod shear;
 pub mod small_mass;
 mod text;

@@ -86,7 +86,7 @@ pub enum Error {
     #[error("the scene leaves effects to the advisor, which was not asked")]
     #[diagnostic(help("pass the model through `fem::advise::decided`, or write \"on\" or \"off\""))]
     Undecided,
-    #[error("the scene itself does not run, so that there is nothing to study: {0}")]
+    #[error("there is nothing to study: {0}")]
     Study(String),
     #[error("there is no axis `{name}`")]
     #[diagnostic(help("{help}"))]

@@ -41,6 +41,7 @@ use crate::error::Error;
 use crate::model::Model;
 use axes::{STEP, seconds};
 use fem_io::scene::{Scene, Setting};
+use force::Force;
 use plan::Planner;
 
 /// Relative error to which a reference must have converged unless the scene says otherwise.
@@ -51,6 +52,10 @@ const MATTERS: f64 = 0.03;
 
 /// Share of its limit at which an integrator is tried.
 const AT_LIMIT: f64 = 0.99;
+
+/// Why there is nothing of which an error would be a part.
+const NOTHING: &str = "all that accuracy could be asked of is 0: an impactor that does not reach the plate before `march.end`, or \
+     loads that do nothing";
 
 /// A step that no limit forbids, s.
 const TINY: f64 = 1e-11;
@@ -88,8 +93,12 @@ pub fn study(
     tell: Tell<'_>,
 ) -> Result<Report, Error> {
     tell(Progress::Runs { what: "the scene as it is".into(), share: 0.0 });
-    let base = session.run(&Setting::new())?.map_err(Error::Study)?;
-    let asked = quantity::choose_quantities(scene, &base.figures, base.force.is_some())?;
+    let base = session.run(&Setting::new())?;
+    let base = base.map_err(|why| Error::Study(format!("the scene itself does not run: {why}")))?;
+    let asked = quantity::choose_quantities(scene, &base.figures, base.force.as_ref().is_some_and(Force::acts))?;
+    if asked.is_empty() {
+        return Err(Error::Study(NOTHING.to_owned()));
+    }
     let tolerance = scene.study.tolerance.unwrap_or(TOLERANCE);
 
     let mut planner = Planner::new(session, &base, budget);

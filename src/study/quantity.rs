@@ -126,15 +126,16 @@ pub(super) fn of_modes(omega: &[f64]) -> Vec<Figure> {
     omega.iter().enumerate().map(frequency).collect()
 }
 
-/// Names of what accuracy is asked of, among those that the scene as it is has found.
+/// Names of what accuracy is asked of, among those that the scene as it is has found: of what is 0 there, no error is a
+/// part.
 ///
 /// # Errors
-/// A name that none has.
+/// A name that none has, or whose value is 0.
 pub(super) fn choose_quantities(scene: &Scene, figures: &[Figure], forced: bool) -> Result<Vec<String>, SceneError> {
     let force = forced.then_some(FORCE_HISTORY);
     let known = || force.into_iter().chain(figures.iter().map(|f| f.name.as_str()));
     if scene.study.quantities.is_empty() {
-        let by_default = figures.iter().filter(|f| f.asked).map(|f| f.name.as_str());
+        let by_default = figures.iter().filter(|f| f.asked && f.value != 0.0).map(|f| f.name.as_str());
         return Ok(force.into_iter().chain(by_default).map(str::to_owned).collect());
     }
     let mut names: Vec<String> = Vec::new();
@@ -147,6 +148,11 @@ pub(super) fn choose_quantities(scene: &Scene, figures: &[Figure], forced: bool)
             return Err(scene.source.error_at(&quantity.place, message, help));
         }
         for name in found.map(str::to_owned) {
+            if figures.iter().any(|f| f.name == name && f.value == 0.0) {
+                let message = format!("`{name}` is 0 in the scene as it is");
+                let help = "errors are parts of a value: ask for others, or change the scene until there is something";
+                return Err(scene.source.error_at(&quantity.place, message, help));
+            }
             if !names.contains(&name) {
                 names.push(name);
             }

@@ -44,7 +44,7 @@ impl RunRecord {
                     return Err(Error::Stopped(why.clone()));
                 }
                 let size = own.outcome.size(&model, &own.sizes);
-                (size, quantity::of_impact(&model, own), Some(Force::of(&own.outcome.history)))
+                (size, quantity::of_impact(&model, own), Some(Force::of(&own.outcome.forces, own.sizes.steps as usize)))
             }
             Found::Static(own) => {
                 let solution = &own.solution;
@@ -66,13 +66,15 @@ impl RunRecord {
         self.figures.iter().find(|f| f.name == name).map(|f| f.value)
     }
 
-    /// Relative difference of the quantity `name` to `reference`; `None` where one of the two lacks it.
+    /// Relative difference of the quantity `name` to `reference`; `None` where one of the two lacks it, or where it is none
+    /// there.
     pub fn difference(&self, reference: &Self, name: &str) -> Option<f64> {
         if name == FORCE_HISTORY {
-            return Some(self.force.as_ref()?.difference(reference.force.as_ref()?));
+            let difference = self.force.as_ref()?.difference(reference.force.as_ref()?);
+            return Some(difference).filter(|difference| difference.is_finite());
         }
         let (value, exact) = (self.value(name)?, reference.value(name)?);
-        Some((value - exact) / exact.abs())
+        Some((value - exact) / exact.abs()).filter(|difference| difference.is_finite())
     }
 
     /// Processor time, s.

@@ -191,7 +191,9 @@ impl Report {
                 .zip(reference.values.iter().zip(&reference.bars))
                 .map(|(quantity, (value, bar))| {
                     let error = match (value, record.value(quantity)) {
-                        (Some(value), Some(own)) if quantity != FORCE_HISTORY => ((own - value) / value).abs(),
+                        (Some(value), Some(own)) if quantity != FORCE_HISTORY && *value != 0.0 => {
+                            ((own - value) / value).abs()
+                        }
                         _ => record.difference(exact.as_ref().ok()?, quantity)?.abs(),
                     };
                     // An error below what is left of the reference is not known to be smaller.

@@ -182,7 +182,7 @@ fn format_share(ladder: &Ladder, quantity: &str) -> String {
 }
 
 fn figure(error: Option<f64>) -> String {
-    error.map_or_else(|| "-".to_owned(), |error| format!("{error:.1e}"))
+    error.filter(|error| error.is_finite()).map_or_else(|| "-".to_owned(), |error| format!("{error:.1e}"))
 }
 
 /// The settings of a run that cost.

@@ -1,29 +1,59 @@
-//! The history as it grows, with its energies.
+//! What every step of a march adds to: extremes of the contacts, the force, rows of the history, the balance of energy.
 
-use super::ContactRecord;
+use super::contact::{ContactRecord, Follower, StepForces};
+use super::modal::ModalView;
 use crate::effect::Effect;
 use fem_core::time::State;
 use fem_dynamics::guard::{Alarm, Guard};
-use fem_dynamics::impact::{Energies, ImpactSystem, Touch};
+use fem_dynamics::impact::{ImpactSystem, Touch};
 use fem_io::tables::{HistoryRow, ImpactorRow};
 use serde::{Deserialize, Serialize};
 
-/// The history as it grows, with the energy ledger.
+/// Steps between two looks at the energies, at most: a look costs two products with matrices.
+pub const BALANCE_EVERY: u64 = 128;
+
+/// Of the first 2048 steps each is looked at, of as many after them every second, and so on: the looks are those of their
+/// steps, whatever the end of the march and the rows of its history.
+const DENSE: u32 = 10;
+
+/// What every step adds to.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Ledger {
     pub(super) rows: Vec<HistoryRow>,
     /// Largest change of the total energy, relative.
     pub(super) error: f64,
-    contacts: Vec<Contact>,
+    pub(super) forces: StepForces,
+    contacts: Vec<Follower>,
     #[serde(skip)]
     work: Vec<f64>,
 }
 
+/// What is done with the energies at the end of a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Look {
+    /// Steps that the look stands for; none of a row beside.
+    steps: u64,
+    /// Whether they are a row of the history.
+    row: bool,
+}
+
+impl Look {
+    /// After `step` steps, which may be a `row` of the history; `None` where nothing is due.
+    pub(super) fn due(step: u64, row: bool) -> Option<Self> {
+        let every = (1 << step.max(1).ilog2().saturating_sub(DENSE)).min(BALANCE_EVERY);
+        let steps = if step.is_multiple_of(every) { every } else { 0 };
+        (row || steps > 0).then_some(Self { steps, row })
+    }
+
+    /// A row beside the steps.
+    pub(super) const ROW: Self = Self { steps: 0, row: true };
+}
+
 impl Ledger {
-    /// `threshold`: a force whose first reaching is noted, N.
-    pub(super) fn new(contacts: usize, threshold: Option<f64>) -> Self {
-        let contacts = vec![Contact { threshold, ..Contact::default() }; contacts];
-        Self { rows: Vec::new(), error: 0.0, contacts, work: Vec::new() }
+    /// Of a march with steps of `dt`, of so many `contacts`; `threshold`: a force whose first reaching is noted, N.
+    pub(super) fn new(dt: f64, contacts: usize, threshold: Option<f64>) -> Self {
+        let contacts = (0..contacts).map(|_| Follower::new(threshold)).collect();
+        Self { rows: Vec::new(), error: 0.0, forces: StepForces::new(dt), contacts, work: Vec::new() }
     }
 
     /// Shows effects the end of a step.
@@ -31,93 +61,95 @@ impl Ledger {
         effects.iter_mut().for_each(|effect| effect.on_step(system, state, &mut self.work));
     }
 
-    /// Takes the contact forces of a step.
-    pub(super) fn contacts(&mut self, system: &ImpactSystem, guard: &Guard, state: &State) -> Result<(), Alarm> {
-        for (i, contact) in self.contacts.iter_mut().enumerate() {
-            let touch = system.touch(i, state);
-            guard.touch(i, touch)?;
-            contact.sample(state.t, touch);
-        }
-        Ok(())
-    }
-
-    /// Adds up the energies; they are returned as well where an alarm is.
-    pub(super) fn balance(
+    /// Takes the contacts at the end of step number `step`.
+    pub(super) fn contacts(
         &mut self,
-        effects: &[Box<dyn Effect>],
-        system: &mut ImpactSystem,
-        guard: &Guard,
-        state: &State,
-    ) -> (Energies, Result<(), Alarm>) {
-        let mut energies = system.energies(state, &mut self.work);
-        energies.damped = effects.iter().fold(0.0, |sum, effect| sum + effect.lost());
-        let balanced = guard.balance(&energies);
-        if let Ok(change) | Err(Alarm::Energy(change)) = balanced {
-            self.error = self.error.max(change.abs());
-        }
-        (energies, balanced.map(|_| ()))
-    }
-
-    pub(super) fn records(&self) -> impl Iterator<Item = ContactRecord> {
-        self.contacts.iter().map(|contact| contact.record)
-    }
-
-    /// Writes a row, also the last one of a march that leaks; none of numbers that are not finite.
-    pub(super) fn row(
-        &mut self,
-        effects: &[Box<dyn Effect>],
-        system: &mut ImpactSystem,
+        step: u64,
+        system: &ImpactSystem,
         guard: &Guard,
         state: &State,
     ) -> Result<(), Alarm> {
-        let (e, balanced) = self.balance(effects, system, guard, state);
-        if let Err(Alarm::NotFinite(_)) = balanced {
-            return balanced;
+        let mut all = 0.0;
+        for (i, contact) in self.contacts.iter_mut().enumerate() {
+            let touch = system.touch(i, state);
+            guard.touch(i, touch)?;
+            contact.take(state.t, touch);
+            all += touch.force;
         }
-        let impactor = |i: usize| {
-            let Touch { force, velocity, .. } = system.touch(i, state);
-            ImpactorRow {
-                contact_force_n: force,
-                impactor_displacement_m: system.position(i, &state.u),
-                impactor_velocity_m_s: velocity,
-                plate_displacement_m: system.deflection(i, &state.u),
+        self.forces.take(step, all);
+        Ok(())
+    }
+
+    /// What the contacts were.
+    pub(super) fn records(self) -> (Vec<ContactRecord>, StepForces, Vec<HistoryRow>) {
+        (self.contacts.into_iter().map(Follower::finish).collect(), self.forces, self.rows)
+    }
+
+    /// Adds up the energies. A row is written also where a march leaks, none of numbers that are not finite.
+    pub(super) fn look(
+        &mut self,
+        look: Look,
+        effects: &[Box<dyn Effect>],
+        system: &mut ImpactSystem,
+        guard: &Guard,
+        state: &State,
+        modal: Option<&mut ModalView>,
+    ) -> Result<(), Alarm> {
+        let mut e = system.energies(state, &mut self.work);
+        e.damped = effects.iter().fold(0.0, |sum, effect| sum + effect.lost());
+        let balanced = guard.balance(&e);
+        match balanced {
+            Ok(change) if look.steps > 0 => self.error = self.error.max(change.abs()),
+            Err(Alarm::Energy(change)) => self.error = self.error.max(change.abs()),
+            Err(Alarm::NotFinite(_)) => return balanced.map(|_| ()),
+            _ => {}
+        }
+        if look.row {
+            let impactor = |i: usize| {
+                let Touch { force, velocity, deflection, .. } = system.touch(i, state);
+                ImpactorRow {
+                    contact_force_n: force,
+                    impactor_displacement_m: system.position(i, &state.u),
+                    impactor_velocity_m_s: velocity,
+                    plate_displacement_m: deflection,
+                }
+            };
+            self.rows.push(HistoryRow {
+                time_s: state.t,
+                impactors: (0..self.contacts.len()).map(impactor).collect(),
+                impactor_kinetic_j: e.impactor,
+                plate_kinetic_j: e.kinetic,
+                plate_strain_j: e.strain,
+                contact_stored_j: e.stored,
+                contact_dissipated_j: e.dissipated,
+                effects: effects.iter().flat_map(|effect| effect.values(system, state, &e)).collect(),
+                energy_balance_j: e.total() - guard.energy(),
+            });
+        }
+        balanced?;
+        if let Some(modal) = modal {
+            if look.row {
+                modal.row(state);
             }
-        };
-        self.rows.push(HistoryRow {
-            time_s: state.t,
-            impactors: (0..self.contacts.len()).map(impactor).collect(),
-            impactor_kinetic_j: e.impactor,
-            plate_kinetic_j: e.kinetic,
-            plate_strain_j: e.strain,
-            contact_stored_j: e.stored,
-            contact_dissipated_j: e.dissipated,
-            effects: effects.iter().flat_map(|effect| effect.values(system, state, &e)).collect(),
-            energy_balance_j: e.total() - guard.energy(),
-        });
-        balanced
+            modal.weigh(state, look.steps as f64, [e.strain, e.kinetic]);
+        }
+        Ok(())
     }
 }
 
-/// A contact as seen at every step.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-struct Contact {
-    threshold: Option<f64>,
-    /// Time and force before; the force is 0 at the time 0.
-    last: (f64, f64),
-    record: ContactRecord,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-impl Contact {
-    /// The threshold's time comes by linear interpolation between samples.
-    fn sample(&mut self, t: f64, Touch { indentation, force, .. }: Touch) {
-        let (before, low) = self.last;
-        self.record.deepest = self.record.deepest.max(indentation);
-        self.record.count += u32::from(force > 0.0 && low <= 0.0);
-        if let (None, Some(level)) = (self.record.threshold_time, self.threshold)
-            && force >= level
-        {
-            self.record.threshold_time = Some(before + (t - before) * ((level - low) / (force - low)));
+    #[test]
+    fn looks_stand_for_all_steps_and_grow_rare() {
+        let looks = |end: u64| (1..=end).filter_map(|step| Some(Look::due(step, false)?.steps));
+        assert_eq!(looks(2047).collect::<Vec<_>>(), [1; 2047]);
+        for end in [4096, 65_536, 1 << 20] {
+            assert_eq!(looks(end).sum::<u64>() / 1000, end / 1000, "{end}");
+            assert!(looks(end).count() as u64 <= 2048 + 1024 * 7 + end / BALANCE_EVERY, "{end}");
         }
-        self.last = (t, force);
+        assert_eq!(looks(1 << 18).max(), Some(BALANCE_EVERY));
+        assert!(Look::due(4097, true).is_some_and(|look| look.steps == 0 && look.row));
     }
 }

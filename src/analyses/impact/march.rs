@@ -3,7 +3,7 @@
 use super::accuracy::{self, Accuracy, Estimates};
 use super::checkpoint::{self, Checkpoint};
 use super::frames::frames;
-use super::ledger::Ledger;
+use super::ledger::{Ledger, Look};
 use super::modal::{self, ModalView};
 use super::prepare::{Prepared, describe_failure};
 use super::{Maximum, Outcome, Sizes};
@@ -24,9 +24,6 @@ use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
 use std::rc::Rc;
 use tracing::info;
-
-/// Steps between two looks of a march at its energies, which cost two products with matrices.
-pub const BALANCE_EVERY: u64 = 128;
 
 /// Rows of the history unless the scene says otherwise.
 const HISTORY_ROWS: u64 = 2000;
@@ -136,7 +133,7 @@ impl<'a> March<'a> {
             dt,
             row_every,
             frame_every: model.output.fields.as_ref().and_then(|fields| fields.every),
-            ledger: Ledger::new(state.histories.contacts.len(), model.threshold.map(|threshold| threshold.force)),
+            ledger: Ledger::new(dt, state.histories.contacts.len(), model.threshold.map(|threshold| threshold.force)),
             effects: Vec::new(),
             state,
             work: SystemCounts::default(),
@@ -146,7 +143,7 @@ impl<'a> March<'a> {
         let mut march = Self::at(prepared, progress)?;
         let Self { integrator, system, progress: Progress { state, .. }, .. } = &mut march;
         integrator.start(system, state).map_err(|e| describe_failure(model, impact, e))?;
-        march.row()?;
+        march.look(Look::due(0, true))?;
         march.sample()?;
         Ok(march)
     }
@@ -274,24 +271,20 @@ impl<'a> March<'a> {
         *step += 1;
         // A sum of steps drifts; the product does not.
         state.t = *step as f64 * *dt;
-        ledger.contacts(system, guard, state)?;
+        ledger.contacts(*step, system, guard, state)?;
         ledger.step(effects, system, state);
-        let (row, scan) = (step.is_multiple_of(*row_every), step.is_multiple_of(self.scan_every));
-        if row {
-            self.row()?;
-        } else if step.is_multiple_of(BALANCE_EVERY) {
-            ledger.balance(effects, system, guard, state).1?;
+        if let Some(modal) = &mut self.modal {
+            modal.step(state);
         }
+        let (look, scan) = (Look::due(*step, step.is_multiple_of(*row_every)), step.is_multiple_of(self.scan_every));
+        self.look(look)?;
         if scan { self.sample() } else { Ok(()) }
     }
 
-    fn row(&mut self) -> Result<(), Error> {
-        let Progress { ledger, state, .. } = &mut self.progress;
-        ledger.row(&self.effects, &mut self.system, &self.guard, state)?;
-        if let Some(modal) = &mut self.modal {
-            modal.row(state);
-        }
-        Ok(())
+    fn look(&mut self, look: Option<Look>) -> Result<(), Error> {
+        let Self { effects, system, guard, modal, progress: Progress { ledger, state, .. }, .. } = self;
+        let Some(look) = look else { return Ok(()) };
+        Ok(ledger.look(look, effects, system, guard, state, modal.as_mut())?)
     }
 
     fn sample(&mut self) -> Result<(), Error> {
@@ -422,21 +415,23 @@ impl<'a> March<'a> {
         // A full system has counted since it was assembled, a reduced one counts nothing.
         counters.factorisations = counters.factorisations.max(work.factorisations);
         counters.solves = counters.solves.max(work.solves);
-        let energy = |of: fn(&fem_io::tables::HistoryRow) -> f64| ledger.rows.iter().map(of).sum();
         let ended = stopped.is_none() && step == self.sizes.steps;
-        let accuracy = if ended { self.estimates.finish(&ledger.rows, self.sizes.step) } else { Accuracy::default() };
+        let accuracy = if ended { self.estimates.finish(&ledger.forces) } else { Accuracy::default() };
+        let energy_error = ledger.error;
+        let (contacts, forces, history) = ledger.records();
         Outcome {
             accuracy,
             quantities: self.effects.iter().flat_map(|effect| effect.quantities(&self.system)).collect(),
-            contacts: ledger.records().collect(),
-            modal: self.modal.map(|modal| modal.finish(energy(|r| r.plate_strain_j), energy(|r| r.plate_kinetic_j))),
-            history: ledger.rows,
+            contacts,
+            forces,
+            modal: self.modal.map(ModalView::finish),
+            history,
             events,
             peaks,
             histories,
             maxima,
             sites,
-            energy_error: ledger.error,
+            energy_error,
             counters,
             phases: self.stopwatch.phases().to_vec(),
             stopped,
@@ -447,7 +442,7 @@ impl<'a> March<'a> {
     fn close(&mut self) -> Result<(), Error> {
         let Progress { step, row_every, .. } = self.progress;
         if !step.is_multiple_of(row_every) {
-            self.row()?;
+            self.look(Some(Look::ROW))?;
         }
         if step.is_multiple_of(self.scan_every) { Ok(()) } else { self.sample() }
     }

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod checkpoint;
+mod contact;
 mod frames;
 mod ledger;
 mod march;
@@ -10,8 +11,10 @@ mod prepare;
 
 pub use accuracy::{Accuracy, ReductionAccuracy, ReductionResidual, StepAccuracy};
 pub use checkpoint::Checkpoint;
+pub use contact::{ContactRecord, StepForces};
 pub(crate) use frames::frames;
-pub use march::{BALANCE_EVERY, March, march};
+pub use ledger::BALANCE_EVERY;
+pub use march::{March, march};
 pub use modal::{ModalHistory, ModeShare};
 pub use prepare::{Prepared, prepare};
 
@@ -23,7 +26,6 @@ use crate::model::Model;
 use fem_core::counters::Counters;
 use fem_failure::scan::{FailureEvent, Peak, ScanSite};
 use fem_io::tables::HistoryRow;
-use serde::{Deserialize, Serialize};
 
 /// Sizes and limits of a model that is ready to march.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,9 +61,11 @@ pub struct Sizes {
 pub struct Outcome {
     /// What effects say of the model, by the key of the summary.
     pub quantities: Vec<(&'static str, f64)>,
-    /// Of each impactor of the scene, what is seen between two rows of the history.
+    /// Of each impactor of the scene, what its contact was.
     pub contacts: Vec<ContactRecord>,
-    /// Force, motion and energies over time.
+    /// The force of all impactors at every step.
+    pub forces: StepForces,
+    /// Force, motion and energies over time, as rows.
     pub history: Vec<HistoryRow>,
     /// First reaching of index 1 per criterion, mode and place, by time.
     pub events: Vec<FailureEvent>,
@@ -100,17 +104,6 @@ impl Outcome {
             ..model.size(&self.counters)
         }
     }
-}
-
-/// What is seen of a contact at every step.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct ContactRecord {
-    /// Number of separate contacts.
-    pub count: u32,
-    /// Largest indentation, m.
-    pub deepest: f64,
-    /// When the force first reached the delamination threshold of the model, s.
-    pub threshold_time: Option<f64>,
 }
 
 /// The largest index of a criterion at a site over all samples.

@@ -28,11 +28,11 @@ pub struct ModeShare {
     pub frequency_Hz: f64,
     /// Its part of the deflection under a force at rest, φᵢ²/ωᵢ² of the sum over all modes.
     pub static_share: f64,
-    /// Its part of the plate's strain energy, both averaged over the rows of the history.
+    /// Its part of the plate's strain energy, both averaged over time.
     pub strain_share: f64,
     /// The same of the kinetic energy.
     pub kinetic_share: f64,
-    /// Largest |Cᵢ| of the rows.
+    /// Largest |Cᵢ| of all steps.
     pub largest_m: f64,
 }
 
@@ -57,9 +57,13 @@ struct Mode {
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Record {
     coordinates: Vec<f64>,
-    /// Sums over the rows of twice the strain and the kinetic energy of each mode, J.
+    /// Largest |Cᵢ|, m.
+    largest: Vec<f64>,
+    /// Sums over the steps of twice the strain and the kinetic energy of each mode, J.
     strain: Vec<f64>,
     kinetic: Vec<f64>,
+    /// The same, once, of the plate.
+    plate: [f64; 2],
 }
 
 impl ModalView {
@@ -76,19 +80,31 @@ impl ModalView {
         };
         let modes: Vec<Mode> = all().map(mode).filter(|mode| mode.static_share >= EXCITED).take(count).collect();
         let zeros = vec![0.0; modes.len()];
-        let record = Record { coordinates: Vec::new(), strain: zeros.clone(), kinetic: zeros };
+        let record = Record { largest: zeros.clone(), strain: zeros.clone(), kinetic: zeros, ..Record::default() };
         (!modes.is_empty()).then_some(Self { modes, record })
+    }
+
+    /// Takes a step.
+    pub(super) fn step(&mut self, state: &State) {
+        for (mode, largest) in self.modes.iter().zip(&mut self.record.largest) {
+            *largest = largest.max((mode.phi * state.u[mode.number]).abs());
+        }
     }
 
     /// Takes a row.
     pub(super) fn row(&mut self, state: &State) {
-        let Record { coordinates, strain, kinetic } = &mut self.record;
+        self.record.coordinates.extend(self.modes.iter().map(|mode| mode.phi * state.u[mode.number]));
+    }
+
+    /// Takes the energies of the modes beside strain and kinetic energy of the `plate`, J, with a weight.
+    pub(super) fn weigh(&mut self, state: &State, weight: f64, plate: [f64; 2]) {
+        let Record { strain, kinetic, plate: sums, .. } = &mut self.record;
         for ((mode, strain), kinetic) in self.modes.iter().zip(strain).zip(kinetic) {
             let (q, rate) = (state.u[mode.number], state.v[mode.number]);
-            coordinates.push(mode.phi * q);
-            *strain += (mode.omega * q).powi(2);
-            *kinetic += rate * rate;
+            *strain += weight * (mode.omega * q).powi(2);
+            *kinetic += weight * (rate * rate);
         }
+        sums.iter_mut().zip(plate).for_each(|(sum, energy)| *sum += weight * energy);
     }
 
     pub(super) fn record(&self) -> &Record {
@@ -98,25 +114,25 @@ impl ModalView {
     /// Continues from what a view of the same modes has seen; `false` where `record` is of another size.
     pub(super) fn resume(&mut self, record: Record) -> bool {
         let n = self.modes.len();
-        let fits = record.strain.len() == n && record.kinetic.len() == n;
+        let fits = [&record.largest, &record.strain, &record.kinetic].iter().all(|each| each.len() == n);
         if fits {
             self.record = record;
         }
         fits
     }
 
-    /// What was seen; `strain` and `kinetic` are the sums over the rows of the energies of the plate, J.
-    pub(super) fn finish(self, strain: f64, kinetic: f64) -> ModalHistory {
-        let Record { coordinates, strain: of_strain, kinetic: of_kinetic } = self.record;
+    /// What was seen.
+    pub(super) fn finish(self) -> ModalHistory {
+        let Record { coordinates, largest, strain: of_strain, kinetic: of_kinetic, plate: [strain, kinetic] } =
+            self.record;
         // Where a quotient of sums has no meaning, nothing has moved.
         let share = |twice: f64, total: f64| if total > 0.0 { 0.5 * twice / total } else { 0.0 };
-        let n = self.modes.len();
         let modes = self.modes.iter().enumerate().map(|(i, mode)| ModeShare {
             frequency_Hz: mode.omega / TAU,
             static_share: mode.static_share,
             strain_share: share(of_strain[i], strain),
             kinetic_share: share(of_kinetic[i], kinetic),
-            largest_m: coordinates.iter().skip(i).step_by(n).fold(0.0, |m: f64, c| m.max(c.abs())),
+            largest_m: largest[i],
         });
         ModalHistory { modes: modes.collect(), coordinates }
     }

@@ -1,10 +1,11 @@
 //! The summary of a run: for machines (`summary.json`) and for people.
 
 mod text;
+mod warnings;
 
 use crate::advise::hindsight;
 use crate::analyses::assembled::Substructures;
-use crate::analyses::impact::{self, ModeShare, Outcome, Sizes};
+use crate::analyses::impact::{self, ContactRecord, ModeShare, Outcome, Sizes};
 use crate::effect::{AdviceRule, Decision, Hindsight};
 use crate::model::Model;
 use crate::words::name_ply;
@@ -12,7 +13,7 @@ use fem_core::counters::Counters;
 use fem_core::tensor::{Ply, Stress6};
 use fem_failure::scan::{FailureEvent, PlyOrInterface, first_per_mode};
 use fem_io::scene;
-use fem_io::tables::{EventRow, HistoryRow, ImpactorRow};
+use fem_io::tables::EventRow;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -94,6 +95,7 @@ pub struct ImpactFigures {
     pub impulse_N_s: f64,
     pub final_impactor_velocity_m_s: f64,
     pub contacts: u32,
+    pub contact_time_s: f64,
 }
 
 /// As a scene has it: a single impactor as a table, several as a list.
@@ -257,10 +259,10 @@ struct Seen {
     run: Hindsight,
 }
 
-fn hindsights(model: &Model, history: &[HistoryRow]) -> Vec<Seen> {
+fn hindsights(model: &Model, contacts: &[ContactRecord]) -> Vec<Seen> {
     let each = model.effects.known().iter().filter_map(|info| {
         let advice = info.advice.as_ref().filter(|advice| advice.hindsight.is_some())?;
-        Some(Seen { effect: info.key.name, advice, run: hindsight(model, history, advice.threshold)? })
+        Some(Seen { effect: info.key.name, advice, run: hindsight(model, contacts, advice.threshold)? })
     });
     each.collect()
 }
@@ -273,26 +275,17 @@ impl Seen {
     }
 }
 
-/// All contact forces together.
-fn force_at(history: &[HistoryRow], t: f64) -> f64 {
-    let after = history.partition_point(|r| r.time_s < t).clamp(1, history.len().max(2) - 1);
-    let (a, b) = (&history[after - 1], &history[after.min(history.len() - 1)]);
-    let share = if b.time_s > a.time_s { (t - a.time_s) / (b.time_s - a.time_s) } else { 0.0 };
-    a.contact_force_n() + share * (b.contact_force_n() - a.contact_force_n())
-}
-
 impl ImpactSummary {
     /// Sums up a run.
     pub fn new(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Self {
-        let h = &outcome.history;
         let impact::Accuracy { step, reduction, mesh } = outcome.accuracy;
         let residual = reduction.and_then(|error| error.residual);
         let thickness = model.laminate.thickness();
-        let seen = hindsights(model, h);
+        let seen = hindsights(model, &outcome.contacts);
         let reached = |effect: &str| Some(seen.iter().find(|seen| seen.effect == effect)?.run.reached);
         let damage = |e: &FailureEvent| DamageSummary {
             event: event_row(model, e),
-            contact_force_N: force_at(h, e.time),
+            contact_force_N: outcome.forces.at(e.time),
             stress: (&e.stress).into(),
             reserve_factor: reserve(model, e),
         };
@@ -359,8 +352,8 @@ impl ImpactSummary {
             },
             work: outcome.counters.into(),
             warnings: {
-                let found =
-                    warn_of_deep_contacts(model, outcome).chain(seen.iter().filter_map(|seen| seen.warning(model)));
+                let found = warnings::of_contacts(model, sizes, outcome)
+                    .chain(seen.iter().filter_map(|seen| seen.warning(model)));
                 model.warnings.iter().cloned().chain(found).collect()
             },
         }
@@ -368,13 +361,10 @@ impl ImpactSummary {
 }
 
 /// The response to impactor `i`, which is `spec`.
+#[allow(non_snake_case)]
 fn impact(model: &Model, outcome: &Outcome, i: usize, spec: &scene::ImpactorSpec) -> ImpactFigures {
-    let peak = |value: fn(&ImpactorRow) -> f64| {
-        let values = outcome.history.iter().map(|r| (value(&r.impactors[i]), r.time_s));
-        values.fold((0.0_f64, 0.0), |m, v| if v.0 > m.0 { v } else { m })
-    };
-    let (peak_force, peak_force_time_s) = peak(|r| r.contact_force_n);
-    let (deflection, _) = peak(|r| r.plate_displacement_m);
+    let ContactRecord { force: (peak_force_N, peak_force_time_s), deflection, deepest, count, duration, .. } =
+        outcome.contacts[i];
     let last = outcome.history.last();
     let velocity = last.map_or(0.0, |r| r.impactors[i].impactor_velocity_m_s);
     let (end, pull) = (last.map_or(0.0, |r| r.time_s), model.effects.nature().pull);
@@ -386,32 +376,16 @@ fn impact(model: &Model, outcome: &Outcome, i: usize, spec: &scene::ImpactorSpec
         energy_J: 0.5 * spec.mass * spec.velocity.powi(2),
         start_time_s: name.map(|_| spec.start),
         end_time_s: end,
-        peak_force_N: peak_force,
+        peak_force_N,
         peak_force_time_s,
         peak_plate_displacement_m: deflection,
         peak_plate_displacement_over_thickness: deflection / model.laminate.thickness(),
-        peak_indentation_m: outcome.contacts[i].deepest,
+        peak_indentation_m: deepest,
         impulse_N_s: spec.mass * (spec.velocity - velocity + pull * end),
         final_impactor_velocity_m_s: velocity,
-        contacts: outcome.contacts[i].count,
+        contacts: count,
+        contact_time_s: duration,
     }
-}
-
-/// Indentation over thickness above which a plate is not a half-space to an impactor; the shipped examples reach 0.05.
-const DEEP: f64 = 0.25;
-
-/// A warning of each contact that went deeper than contact laws are made for.
-fn warn_of_deep_contacts(model: &Model, outcome: &Outcome) -> impl Iterator<Item = String> {
-    let thickness = model.laminate.thickness();
-    let deep = outcome.contacts.iter().filter(move |contact| contact.deepest > DEEP * thickness);
-    deep.map(move |contact| {
-        format!(
-            "the impactor is pressed {:.4} mm deep into a plate of {:.4} mm: contact laws hold for indentations that \
-             are small compared with the thickness, unless it is the impactor that yields",
-            contact.deepest * 1e3,
-            thickness * 1e3
-        )
-    })
 }
 
 /// When each force that did reach the threshold first did, and whose it is.

@@ -11,13 +11,12 @@ mod step;
 pub use reduction::{ReductionAccuracy, ReductionResidual};
 pub use step::StepAccuracy;
 
-use super::Sizes;
 use super::prepare::Full;
+use super::{Sizes, StepForces};
 use fem_core::structure::Structure;
 use fem_core::time::Integrator;
 use fem_dynamics::impact::ImpactSystem;
 use fem_dynamics::reduce::{MembranePlate, Reduced};
-use fem_io::tables::HistoryRow;
 use step::Companion;
 
 /// Estimated errors of a run; nothing where no honest estimate is cheap.
@@ -60,9 +59,9 @@ impl Estimates {
         Self { companion, reduction, mesh: None }
     }
 
-    /// The estimates for a march with steps of `dt` that reached its end.
-    pub(super) fn finish(self, history: &[HistoryRow], dt: f64) -> Accuracy {
-        let step = self.companion.and_then(|companion| companion.compare(history, dt));
+    /// The estimates for a march with these forces that reached its end.
+    pub(super) fn finish(self, forces: &StepForces) -> Accuracy {
+        let step = self.companion.and_then(|companion| companion.compare(forces));
         Accuracy { step, reduction: self.reduction, mesh: self.mesh }
     }
 }

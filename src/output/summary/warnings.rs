@@ -1,0 +1,65 @@
+//! What the user should know of the contacts of an impact.
+
+use crate::analyses::impact::{ContactRecord, Outcome, Sizes};
+use crate::model::Model;
+
+/// All of it.
+pub(super) fn of_contacts(model: &Model, sizes: &Sizes, outcome: &Outcome) -> impl Iterator<Item = String> {
+    deep(model, outcome).chain(few_looks(model, sizes, outcome)).chain(rare_rows(outcome))
+}
+
+/// Indentation over thickness above which a plate is not a half-space to an impactor; the shipped examples reach 0.05.
+const DEEP: f64 = 0.25;
+
+/// A warning of each contact that went deeper than contact laws are made for.
+fn deep(model: &Model, outcome: &Outcome) -> impl Iterator<Item = String> {
+    let thickness = model.laminate.thickness();
+    let deep = outcome.contacts.iter().filter(move |contact| contact.deepest > DEEP * thickness);
+    deep.map(move |contact| {
+        format!(
+            "the impactor is pressed {:.4} mm deep into a plate of {:.4} mm: contact laws hold for indentations that \
+             are small compared with the thickness, unless it is the impactor that yields",
+            contact.deepest * 1e3,
+            thickness * 1e3
+        )
+    })
+}
+
+/// Looks at a contact below which its stresses may have been missed.
+const LOOKS: f64 = 4.0;
+
+/// A warning where the criteria looked at a contact too seldom, although steps are short enough.
+fn few_looks(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Option<String> {
+    let ends = |(i, contact): (usize, &ContactRecord)| {
+        let touches = outcome.history.last().is_some_and(|row| row.impactors[i].contact_force_n > 0.0);
+        (contact.count > 0 && !touches).then_some(contact.duration)
+    };
+    let shortest = outcome.contacts.iter().enumerate().filter_map(ends).fold(f64::INFINITY, f64::min);
+    let seldom = shortest < LOOKS * model.sample_every && model.sample_every > sizes.step;
+    (seldom && !model.criteria.is_empty()).then(|| {
+        format!(
+            "a contact lasted {:.4} us in all, and the criteria looked every {:.4} us: damage may have come and gone between two              looks; set `failure.every` to {:.4} us",
+            shortest * 1e6,
+            model.sample_every * 1e6,
+            (shortest / LOOKS).max(sizes.step) * 1e6
+        )
+    })
+}
+
+/// Share of a peak that the rows of a history may miss without a word.
+const MISSED: f64 = 0.01;
+
+/// A warning where the rows of the history, and with them its pictures, do not show the largest force.
+fn rare_rows(outcome: &Outcome) -> Option<String> {
+    let shown = |i: usize| outcome.history.iter().map(|row| row.impactors[i].contact_force_n).fold(0.0, f64::max);
+    let each = outcome.contacts.iter().enumerate().map(|(i, contact)| (contact, shown(i)));
+    let (contact, shown) = each.filter(|(contact, shown)| *shown < (1.0 - MISSED) * contact.force.0).next()?;
+    Some(format!(
+        "the rows of history.csv, and pictures of them, show a largest force of {shown:.1} N, and it was {:.1} N: set          `output.history_every` to {:.4} us or less",
+        contact.force.0,
+        contact.duration / f64::from(contact.count) / ROWS * 1e6
+    ))
+}
+
+/// Rows that show a contact.
+const ROWS: f64 = 20.0;
