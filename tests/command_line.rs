@@ -156,7 +156,8 @@ fn run_writes_its_results_to_a_folder_named_like_that_of_the_scene() {
 
     let summary = case.summary("results/plate");
     let peak = numbers.iter().fold(0.0_f64, |m, r| m.max(r[1]));
-    assert_eq!(summary["impact"]["peak_force_N"].as_f64(), Some(peak));
+    let found = summary["impact"]["peak_force_N"].as_f64().unwrap();
+    assert!((peak..1.001 * peak).contains(&found), "a row is every other step: {found}, {peak}");
     assert_eq!(summary["completed"], true);
     assert_eq!(summary["work"]["steps"], 4000);
     check_summary(&summary);
