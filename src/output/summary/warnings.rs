@@ -52,8 +52,8 @@ const MISSED: f64 = 0.01;
 /// A warning where the rows of the history, and with them its pictures, do not show the largest force.
 fn rare_rows(outcome: &Outcome) -> Option<String> {
     let shown = |i: usize| outcome.history.iter().map(|row| row.impactors[i].contact_force_n).fold(0.0, f64::max);
-    let each = outcome.contacts.iter().enumerate().map(|(i, contact)| (contact, shown(i)));
-    let (contact, shown) = each.filter(|(contact, shown)| *shown < (1.0 - MISSED) * contact.force.0).next()?;
+    let mut each = outcome.contacts.iter().enumerate().map(|(i, contact)| (contact, shown(i)));
+    let (contact, shown) = each.find(|(contact, shown)| *shown < (1.0 - MISSED) * contact.force.0)?;
     Some(format!(
         "the rows of history.csv, and pictures of them, show a largest force of {shown:.1} N, and it was {:.1} N: set          `output.history_every` to {:.4} us or less",
         contact.force.0,
