@@ -672,7 +672,7 @@ mod results {
         let done = case.fem("run", &["--out", "out"]);
         assert_eq!((done.status, done.stdout.as_str()), (1, ""), "{done:#?}");
         assert!(flat(&done.stderr).contains("another run is writing into `out`: wait for it to end"), "{done:#?}");
-        assert_eq!(case.names("out"), [".lock"]);
+        assert_eq!(case.names("out"), [".fem"]);
         drop(held);
         case.fem("run", &["--out", "out"]).good();
     }

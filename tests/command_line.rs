@@ -112,7 +112,7 @@ fn run_writes_its_results_to_a_folder_named_like_that_of_the_scene() {
     assert_eq!(case.names("."), ["plate", "results"]);
     assert_eq!(case.names("results"), ["plate"]);
     let files = [
-        ".lock",
+        ".fem",
         "checkpoint.bin",
         "contact_force.png",
         "contact_force.svg",
@@ -236,7 +236,7 @@ fn check_summary(summary: &Value) {
 fn without_plots_there_are_tables_alone() {
     let case = strip().append("[output]\nplots = false\n");
     case.fem("run", &["--out", "out"]).good();
-    let files = [".lock", "checkpoint.bin", "cost.json", "events.csv", "history.csv", "scene.toml", "summary.json"];
+    let files = [".fem", "checkpoint.bin", "cost.json", "events.csv", "history.csv", "scene.toml", "summary.json"];
     assert_eq!(case.names("out"), files);
 }
 

@@ -77,7 +77,7 @@ fn nothing_of_it_is_written_unless_asked_for() {
     let case = watching(r#"{ at = { x = "15 mm", y = "5 mm" }, ply = 1 }"#, "plots = false");
     case.fem("run", &["--out", "out"]).good();
     let files = [
-        ".lock",
+        ".fem",
         "checkpoint.bin",
         "cost.json",
         "events.csv",

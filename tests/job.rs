@@ -54,7 +54,7 @@ fn broken_off_and_gone_on_with_it_leaves_the_files_of_one_piece() {
     let error = done(&case, &into(Results::Folder(folder("out"))), &mut follow).unwrap_err();
     let Error::Cancelled { time, share } = error else { panic!("{error}") };
     assert!((share - 0.5).abs() < 0.1 && (time / 20e-6 - share).abs() < 1e-9, "{time} {share}");
-    assert_eq!((follow.found, case.names("out")), (0, vec![".lock".to_owned(), "checkpoint.bin".to_owned()]));
+    assert_eq!((follow.found, case.names("out")), (0, vec![".fem".to_owned(), "checkpoint.bin".to_owned()]));
     let mut follow = Until::default();
     let finished = done(&case, &into(Results::Resumed(folder("out"))), &mut follow).unwrap();
     assert_eq!((follow.found, finished.folder), (1, Some(folder("out"))));

@@ -105,7 +105,7 @@ fn a_mesh_is_drawn() {
     case.write();
     let done = fem(case.folder(), &["mesh", "plate/scene.toml", "--picture", "drawn"]).good();
     assert!(done.stdout.ends_with("  written   drawn/scene.svg\n  written   drawn/scene.png\n"), "{}", done.stdout);
-    assert_eq!(case.names("drawn"), [".lock", "scene.png", "scene.svg"]);
+    assert_eq!(case.names("drawn"), [".fem", "scene.png", "scene.svg"]);
     let svg = case.read("drawn/scene.svg");
     for words in [">x (mm)<", ">edge<", ">support<", ">impact<", "plate/scene.toml"] {
         assert!(svg.contains(words), "{words}");

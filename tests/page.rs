@@ -1,16 +1,9 @@
 //! The page that `fem report` makes of a folder of results, and what a run leaves for it.
 
-use crate::support::{Case, fem, plate, root, strip, watched};
+use crate::support::{Case, failing, fem, plate, root, strip, watched};
 use serde_json::Value;
 use std::fs;
 use std::process::Command;
-
-/// A strip whose plies fail.
-fn failing() -> Case {
-    strip()
-        .scene("end = \"20 us\"", "end = \"100 us\"")
-        .scene("library = \"AS4/3502\"", "library = \"AS4/3502\", Yt = \"2 MPa\"")
-}
 
 /// The page of the results in `out`.
 fn page(case: &Case) -> String {
@@ -57,7 +50,7 @@ fn a_later_run_leaves_nothing_of_an_earlier_one() {
     assert!(["damage.json", "energy.svg", "report.html"].iter().all(|name| before.iter().any(|n| n == name)));
     let case = case.append("[output]\nplots = false\n");
     case.fem("run", &["--out", "out"]).good();
-    let left = [".lock", "checkpoint.bin", "cost.json", "events.csv", "history.csv", "scene.toml", "summary.json"];
+    let left = [".fem", "checkpoint.bin", "cost.json", "events.csv", "history.csv", "scene.toml", "summary.json"];
     assert_eq!(case.names("out"), left);
 }
 
@@ -184,7 +177,7 @@ fn stopped_runs_have_pages_that_say_so() {
     let case = strip();
     case.fem("run", &["--out", "out"]).good();
     for name in case.names("out") {
-        if !["checkpoint.bin", ".lock"].contains(&name.as_str()) {
+        if !["checkpoint.bin", ".fem"].contains(&name.as_str()) {
             fs::remove_file(case.folder().join("out").join(name)).unwrap();
         }
     }

@@ -63,7 +63,7 @@ fn signals_stop_a_march_after_a_checkpoint() {
         assert_eq!(done.status.code(), Some(status));
         let said = String::from_utf8(done.stderr).unwrap();
         assert!(said.contains("Stopped by a signal at") && said.trim_end().ends_with("--out out --resume"), "{said}");
-        assert_eq!(case.names("out"), [".lock", "checkpoint.bin"]);
+        assert_eq!(case.names("out"), [".fem", "checkpoint.bin"]);
         before = Some(fs::read(case.folder().join("out/checkpoint.bin")).unwrap());
         arguments = vec!["--out", "out", "--resume"];
     }

@@ -193,6 +193,13 @@ pub(crate) fn watched() -> Case {
     strip().scene(criteria, &format!("{criteria}\n{watch}")).append(output)
 }
 
+/// A strip whose plies fail.
+pub(crate) fn failing() -> Case {
+    strip()
+        .scene("end = \"20 us\"", "end = \"100 us\"")
+        .scene("library = \"AS4/3502\"", "library = \"AS4/3502\", Yt = \"2 MPa\"")
+}
+
 /// The model of a scene with an impact, and what was found of it.
 pub(crate) fn impact_of(scene: Scene) -> Result<(Model, ImpactFound), Error> {
     let Finished { model, found, .. } = job::run(&scene, &Registry::standard(), &Options::default(), &mut ())?;

@@ -10,13 +10,16 @@
 //!
 //! Numbers are little-endian.
 
-use crate::files::{FileError, OutputDir, failed};
-use std::fs;
+use crate::bytes::{self, Links};
+use crate::files::{FileError, OutputDir, unread};
 use std::path::Path;
 
 const MAGIC: &[u8; 8] = b"fem-ckpt";
 const VERSION: u32 = 1;
 const HEADER: usize = 24;
+
+/// Longest file that is read.
+const MAX_BYTES: u64 = 1 << 34;
 
 /// Writes `payload` in its frame to the file `name`.
 ///
@@ -37,7 +40,7 @@ pub fn write(dir: &OutputDir, name: &str, payload: &[u8]) -> Result<(), FileErro
 /// # Errors
 /// A file that cannot be read, [`FileError::Damaged`] for one that is not as it was written.
 pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
-    let mut bytes = fs::read(path).map_err(failed("read", path))?;
+    let mut bytes = bytes::read(path, MAX_BYTES, Links::Refuse).map_err(unread(path))?;
     let damaged = |why: String| FileError::Damaged { path: path.to_owned(), why };
     let part = |from: usize, to: usize| bytes.get(from..to).map(<[u8]>::to_vec).unwrap_or_default();
     if part(0, 8) != MAGIC {
@@ -62,13 +65,14 @@ pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
 /// # Errors
 /// A file that cannot be read.
 pub fn digest(path: &Path) -> Result<String, FileError> {
-    let bytes = fs::read(path).map_err(failed("read", path))?;
+    let bytes = bytes::read(path, MAX_BYTES, Links::Follow).map_err(unread(path))?;
     Ok(format!("{} bytes, CRC-32 {:08x}", bytes.len(), crc32fast::hash(&bytes)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn a_payload_comes_back_and_any_damage_is_seen() {
@@ -76,6 +80,7 @@ mod tests {
         let dir = OutputDir::create(folder.path()).unwrap();
         let path = dir.path().join("c.bin");
         for payload in [&b""[..], b"some bytes"] {
+            let _ = fs::remove_file(&path);
             write(&dir, "c.bin", payload).unwrap();
             assert_eq!(read(&path).unwrap(), payload);
             let whole = fs::read(&path).unwrap();

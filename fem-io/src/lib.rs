@@ -21,6 +21,7 @@
 //! # Ok::<(), fem_io::units::UnitError>(())
 //! ```
 
+mod bytes;
 pub mod checkpoint;
 mod document;
 pub mod files;

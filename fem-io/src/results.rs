@@ -1,9 +1,9 @@
 //! Results that an earlier run has left, read back.
 
-use crate::files::{FileError, failed};
+use crate::bytes::{self, Links, ReadError};
+use crate::files::{FileError, unread};
 use serde::de::DeserializeOwned;
-use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// Largest file that is read: more is not a result of a run.
@@ -32,23 +32,25 @@ impl Table {
     }
 }
 
+/// The bytes of a file; `None` where there is none. No link is followed: results may come from anyone.
+///
+/// # Errors
+/// A file that cannot be read, is none or is too long.
+pub fn read_bytes(path: &Path) -> Result<Option<Vec<u8>>, FileError> {
+    match bytes::read(path, MAX_BYTES, Links::Refuse) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(ReadError::Io(cause)) if cause.kind() == ErrorKind::NotFound => Ok(None),
+        Err(why) => Err(unread(path)(why)),
+    }
+}
+
 /// The text of a file; `None` where there is none.
 ///
 /// # Errors
-/// A file that cannot be read or is too long, text that is not UTF-8.
+/// As [`read_bytes`], and text that is not UTF-8.
 pub fn read_text(path: &Path) -> Result<Option<String>, FileError> {
-    let file = match File::open(path) {
-        Ok(file) => file,
-        Err(cause) if cause.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(cause) => return Err(failed("read", path)(cause)),
-    };
-    let mut text = String::new();
-    match file.take(MAX_BYTES + 1).read_to_string(&mut text) {
-        Ok(bytes) if bytes as u64 > MAX_BYTES => Err(damaged(path, format!("it is longer than {MAX_BYTES} bytes"))),
-        Ok(_) => Ok(Some(text)),
-        Err(cause) if cause.kind() == ErrorKind::InvalidData => Err(damaged(path, "it is not text".into())),
-        Err(cause) => Err(failed("read", path)(cause)),
-    }
+    let Some(bytes) = read_bytes(path)? else { return Ok(None) };
+    String::from_utf8(bytes).map(Some).map_err(|_| damaged(path, "it is not text".into()))
 }
 
 /// The content of a JSON file; `None` where there is none.

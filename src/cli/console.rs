@@ -5,8 +5,9 @@ use fem_io::tables;
 use indicatif::{ProgressBar, ProgressStyle};
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
+use std::borrow::Cow;
 use std::cell::OnceCell;
-use std::io::{self, Write as _};
+use std::io::{self, Write};
 use tracing::level_filters::LevelFilter;
 
 /// How much is said.
@@ -29,7 +30,7 @@ impl Voice {
             1 => LevelFilter::INFO,
             _ => LevelFilter::DEBUG,
         };
-        let log = tracing_subscriber::fmt().with_max_level(level).with_writer(io::stderr).with_target(false);
+        let log = tracing_subscriber::fmt().with_max_level(level).with_writer(|| Stderr).with_target(false);
         let log = log.with_timer(tracing_subscriber::fmt::time::uptime()).with_ansi(false).finish();
         tracing::subscriber::with_default(log, work)
     }
@@ -59,7 +60,7 @@ impl Console {
     /// Prints text.
     pub(super) fn print(&self, text: &str) {
         if !self.voice.quiet {
-            self.write_bytes(text.as_bytes());
+            self.write_bytes(printable(text).as_bytes());
         }
     }
 
@@ -87,11 +88,11 @@ impl Console {
     /// Prints one JSON document.
     pub(super) fn document(&self, data: &impl Serialize) -> miette::Result<()> {
         let text = tables::json_text("standard output", data).into_diagnostic()?;
-        self.write_bytes(text.as_bytes());
+        self.write_bytes(escape_json(&text).as_bytes());
         Ok(())
     }
 
-    /// Writes to standard output; a closed pipe ends quietly, a full disk at the end of the command.
+    /// Writes what is our own to standard output as it is; a closed pipe ends quietly, a full disk at the end of the command.
     pub(super) fn write_bytes(&self, bytes: &[u8]) {
         if let Err(why) = io::stdout().write_all(bytes)
             && why.kind() != io::ErrorKind::BrokenPipe
@@ -112,5 +113,76 @@ impl Console {
         }
         let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
         ProgressBar::new(length).with_style(style)
+    }
+}
+
+/// Says something on standard error.
+pub(super) fn tell(text: &str) {
+    let _ = io::stderr().write_all(printable(text).as_bytes());
+}
+
+/// Standard error for a log.
+struct Stderr;
+
+impl Write for Stderr {
+    fn write(&mut self, line: &[u8]) -> io::Result<usize> {
+        tell(&String::from_utf8_lossy(line));
+        Ok(line.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// A text with a mark for every character that would do something to a terminal: names and messages come from files that may
+/// be anyone's.
+pub(super) fn printable(text: &str) -> Cow<'_, str> {
+    if !text.contains(steers) {
+        return Cow::Borrowed(text);
+    }
+    let lines = text.replace("\r\n", "\n");
+    Cow::Owned(lines.chars().map(|c| if steers(c) { char::REPLACEMENT_CHARACTER } else { c }).collect())
+}
+
+/// The same of a JSON document, whose texts keep what they are. It has such characters in texts alone.
+fn escape_json(text: &str) -> Cow<'_, str> {
+    if !text.contains(steers) {
+        return Cow::Borrowed(text);
+    }
+    let escape = |c: char| -> String {
+        let mut units = [0; 2];
+        if !steers(c) {
+            return c.to_string();
+        }
+        c.encode_utf16(&mut units).iter().map(|unit| format!("\\u{unit:04x}")).collect()
+    };
+    Cow::Owned(text.chars().map(escape).collect())
+}
+
+/// Whether a character moves the cursor, colours, rings, turns the direction of writing or hides itself.
+fn steers(c: char) -> bool {
+    match c {
+        '\n' | '\t' => false,
+        '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' => true,
+        '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}' => true,
+        c => c.is_control(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn nothing_but_text_reaches_a_terminal() {
+        let plain = "names of 16 plies: [0₂/±45]s, µs, 積層板\n\tand a tab\n";
+        assert!(matches!(printable(plain), Cow::Borrowed(_)) && matches!(escape_json(plain), Cow::Borrowed(_)));
+        assert_eq!(printable("a\r\nb\x1b[2Jc\x07\u{9b}31md\u{202e}e\rf\x7f"), "a\nb�[2Jc��31md�e�f�");
+        let odd = "\x7f\u{9b}\u{202e}\u{e0041}\x1b";
+        let text = escape_json(&serde_json::to_string(odd).unwrap()).into_owned();
+        assert!(text.is_ascii() && !text.contains(steers), "{text}");
+        assert_eq!(serde_json::from_str::<String>(&text).unwrap(), odd);
     }
 }

@@ -38,7 +38,7 @@ pub(super) fn man(arguments: &ManArguments, console: &Console) -> miette::Result
     match &arguments.out {
         None => console.write_bytes(&page(&command)?),
         Some(folder) => {
-            let dir = OutputDir::create(folder).into_diagnostic()?;
+            let dir = OutputDir::open(folder).into_diagnostic()?;
             let own = command.get_subcommands().filter(|command| command.get_name() != "help");
             for command in std::iter::once(&command).chain(own) {
                 // `fem run` has the page fem-run.1.

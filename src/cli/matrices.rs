@@ -4,6 +4,7 @@ use super::run::default_folder;
 use super::{Console, Format};
 use crate::analyses::matrices;
 use crate::error::Error;
+use crate::job;
 use crate::model::Model;
 use crate::registry::Registry;
 use clap::Args;
@@ -42,7 +43,8 @@ pub(super) fn matrices(registry: &Registry, arguments: &Arguments, console: &Con
 
 fn write(registry: &Registry, arguments: &Arguments) -> Result<(usize, OutputDir), Error> {
     let model = Model::new(scene::read(&arguments.scene)?, registry)?;
-    let dir = OutputDir::create(arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, "")))?;
+    let dir = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, ""));
+    let dir = job::folder::results(&dir, &model.origin.source)?;
     matrices::write(&dir, &model, NonZeroUsize::MIN)?;
     Ok((model.constraints.ndof(), dir))
 }

@@ -49,7 +49,7 @@ pub(super) fn mesh(arguments: &Arguments, console: &Console) -> miette::Result<E
         let name = name.ok_or_else(|| miette!("`{}` cannot name a file", out.display()))?;
         let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let write = |dir: OutputDir| dir.write(name, |file| gmsh::write(file, &mesh, metres, encoding));
-        OutputDir::create(folder).and_then(write).map_err(Error::from)?;
+        OutputDir::open(folder).and_then(write).map_err(Error::from)?;
     }
     console.show(arguments.format, &summary, || {
         let mut text = format!("{}\n{}", arguments.file.display(), summary.text(&arguments.unit, metres));
@@ -84,6 +84,6 @@ fn read(file: &Path, metres: f64) -> Result<(GmshMesh, Vec<[f64; 2]>), Error> {
 fn draw(file: &Path, folder: &Path, mesh: &PlaneMesh, impacts: &[[f64; 2]]) -> Result<[PathBuf; 2], Error> {
     let name = file.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy());
     let picture = plot::map_plot(&plot::mesh_map(&file.display().to_string(), mesh, impacts))?;
-    picture.write(&OutputDir::create(folder)?, &name)?;
+    picture.write(&OutputDir::open(folder)?, &name)?;
     Ok(["svg", "png"].map(|ending| folder.join(format!("{name}.{ending}"))))
 }

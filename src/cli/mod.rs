@@ -18,7 +18,7 @@ mod study;
 
 use crate::registry::Registry;
 use clap::{Parser, Subcommand};
-use console::{Console, Format, Voice};
+use console::{Console, Format, Voice, printable, tell};
 use miette::{GraphicalReportHandler, GraphicalTheme, Report};
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
@@ -144,20 +144,28 @@ fn dispatch(registry: &Registry, command: &Command, console: &Console) -> miette
 
 /// Shows an error with its causes, the place in the scene, and what to do.
 fn print_report(report: &Report) {
-    let theme =
-        if std::io::stderr().is_terminal() { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
+    let mut text = render(report, GraphicalTheme::unicode_nocolor());
+    // Colours are what else a terminal is steered by: they are left out where the texts have something of the kind.
+    if std::io::stderr().is_terminal() && printable(&text) == text {
+        text = render(report, GraphicalTheme::unicode());
+        let _ = write!(std::io::stderr(), "Error:{text}");
+    } else {
+        tell(&format!("Error:{text}"));
+    }
+}
+
+fn render(report: &Report, theme: GraphicalTheme) -> String {
     let mut text = String::new();
     // Names with hyphens stay whole, to be copied.
     let handler =
         GraphicalReportHandler::new_themed(theme).with_width(110).with_word_splitter(WordSplitter::NoHyphenation);
     let shown = handler.render_report(&mut text, report.as_ref());
-    let text = if shown.is_ok() { text } else { format!("{report:?}") };
-    let _ = write!(std::io::stderr(), "Error:{text}");
+    if shown.is_ok() { text } else { format!("{report:?}") }
 }
 
 /// Says on standard error what may explain why a model cannot be computed.
 fn warn(warnings: &[String]) {
     for warning in warnings {
-        let _ = writeln!(std::io::stderr(), "Warning: {warning}");
+        tell(&format!("Warning: {warning}\n"));
     }
 }

@@ -1,7 +1,7 @@
 //! `fem run`.
 
 use super::signals::Signals;
-use super::{Console, Format, warn};
+use super::{Console, Format, console, warn};
 use crate::cost::{Cost, Provenance};
 use crate::error::Error;
 use crate::job::{self, Finished, Follow, Found, Options, Results, Task};
@@ -10,7 +10,6 @@ use clap::Args;
 use fem_io::scene;
 use indicatif::ProgressBar;
 use serde::Serialize;
-use std::io::Write as _;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -67,12 +66,11 @@ pub(super) fn compute(
     let mut terminal = Terminal { console, format, bar, signals: None };
     let done = job::run(&scene, registry, &options, &mut terminal);
     if let (Err(Error::Cancelled { time, share }), Some(signal)) = (&done, terminal.signal()) {
-        let command: Vec<_> = std::env::args().collect();
-        let (t, share, command) = (time * 1e3, share * 1e2, command.join(" "));
-        let _ = writeln!(
-            std::io::stderr(),
-            "Stopped by a signal at {t:.4} ms, {share:.0} % of the march. To continue: {command}{again}"
-        );
+        let (t, share) = (time * 1e3, share * 1e2);
+        let command = options.provenance.map_or_else(String::new, |provenance| provenance.command);
+        console::tell(&format!(
+            "Stopped by a signal at {t:.4} ms, {share:.0} % of the march. To continue: {command}{again}\n"
+        ));
         return Ok(ExitCode::from(128 + signal));
     }
     let Finished { found, cost, folder, .. } = done?;

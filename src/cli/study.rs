@@ -1,13 +1,14 @@
 //! `fem study`.
 
+use super::console::printable;
 use super::run::default_folder;
 use super::{Console, Format};
 use crate::error::Error;
+use crate::job;
 use crate::model::Model;
 use crate::registry::Registry;
 use crate::study::{self, Progress, Report, Session};
 use clap::Args;
-use fem_io::files::OutputDir;
 use fem_io::scene::{self, Setting};
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -83,8 +84,8 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Consol
     let model = Model::new(&scene, registry)?;
     let folder = arguments.out.clone().unwrap_or_else(|| default_folder(path, "-study"));
     let axes = study::axes(&scene, &model, registry, &arguments.axis)?;
-    let mut session =
-        Session::open(path, &model, registry, OutputDir::create(folder).map_err(Error::from)?, arguments.resume)?;
+    let dir = job::folder::results(&folder, &model.origin.source).map_err(Error::from)?;
+    let mut session = Session::open(path, &model, registry, dir, arguments.resume)?;
     let bar = console.progress(1000, "study {bar:40} {percent:>3} %  {msg}");
     let found = session.found();
     if found > 0 {
@@ -99,7 +100,7 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Consol
         }
         Progress::Runs { what, share } => {
             bar.set_position((share * 1000.0) as u64);
-            bar.set_message(what);
+            bar.set_message(printable(&what).into_owned());
         }
     })?;
     bar.finish_and_clear();
@@ -109,6 +110,7 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Consol
     if let Some(setting) = cheapest {
         write_scene(&session, arguments, setting)?;
     }
+    session.dir().remove_older().map_err(Error::from)?;
     console.say(format, || describe_cheapest(&session, arguments.tolerance, cheapest, &report));
     let data = Document {
         title: &report.title,

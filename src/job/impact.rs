@@ -1,6 +1,6 @@
 //! An impact: prepare, march, sum up, write.
 
-use super::folder::{keep_scene, owns_scene};
+use super::folder::{begin_run, keep_scene, saved};
 use super::{Follow, Found, ImpactFound, Options, Part, Results};
 use crate::analyses::impact::{self, Checkpoint, March};
 use crate::error::Error;
@@ -11,24 +11,25 @@ use crate::output::summary::ImpactSummary;
 use crate::output::{write_plots, write_tables};
 use fem_io::files::OutputDir;
 use fem_io::tables::write_json;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 pub(super) fn run(model: &Model, options: &Options, follow: &mut dyn Follow) -> Result<Part, Error> {
     let checkpoint = match &options.results {
-        Results::Resumed(folder) => Some(Checkpoint::read(folder, model)?),
+        Results::Resumed(folder) => saved(folder, Checkpoint::read(folder, model))?,
         _ => None,
     };
     let prepared = impact::prepare(model, options.threads).inspect_err(|_| follow.failed(&model.warnings))?;
     let sizes = prepared.sizes;
+    let goes_on = checkpoint.is_some();
     let mut march = match checkpoint {
         None => March::start(prepared)?,
         Some(checkpoint) => March::resume(prepared, checkpoint)?,
     };
     // After all that can be refused, so that a refusal leaves no folder; before the march, so that none is in vain.
-    let dir = options.folder().map(OutputDir::create).transpose()?;
-    if let Some(dir) = &dir {
-        owns_scene(dir, &model.origin.source)?;
-    }
+    let source = &model.origin.source;
+    let begin = |folder: &PathBuf| begin_run(folder, source, goes_on.then_some(impact::CHECKPOINT));
+    let dir = options.folder().map(begin).transpose()?;
     advance(model, &mut march, dir.as_ref(), follow)?;
     let outcome = march.finish();
     let summary = ImpactSummary::new(model, &sizes, &outcome);
@@ -36,7 +37,7 @@ pub(super) fn run(model: &Model, options: &Options, follow: &mut dyn Follow) -> 
     let size = outcome.size(model, &sizes);
     cost.one_level_better = one_level_better(&size, seconds_per_phase(&outcome.phases));
     if let Some(dir) = &dir {
-        keep_scene(dir, &model.origin.source)?;
+        keep_scene(dir, source)?;
         write_tables(dir, model, &outcome)?;
         write_json(dir, "summary.json", &summary)?;
         write_json(dir, "cost.json", &cost)?;

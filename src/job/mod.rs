@@ -2,7 +2,7 @@
 //!
 //! [`run`] is what the command, a study and any other program call; nothing else knows the steps from a scene to its results.
 
-mod folder;
+pub(crate) mod folder;
 mod impact;
 mod rest;
 

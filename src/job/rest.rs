@@ -1,6 +1,6 @@
 //! Loads at rest and natural modes: solve, sum up, write.
 
-use super::folder::keep_scene;
+use super::folder::{begin_run, keep_scene};
 use super::{Follow, Found, ModesFound, Options, Part, StaticFound};
 use crate::analyses::{modes, statics};
 use crate::cost::Phase;
@@ -32,7 +32,7 @@ fn hand_over(
     let mut cost = options.cost(phases);
     follow.found(&found, &cost);
     let Some(folder) = options.folder() else { return Ok((found, cost, None)) };
-    let dir = OutputDir::create(folder)?;
+    let dir = begin_run(folder, &model.origin.source, None)?;
     keep_scene(&dir, &model.origin.source)?;
     cost.phases.extend(write(&dir, model, &found)?);
     write_json(&dir, "cost.json", &cost)?;

@@ -3,6 +3,7 @@
 use super::record::RunRecord;
 use crate::analyses::saved::{self, Keys};
 use crate::error::{CheckpointError, Error};
+use crate::job::folder;
 use crate::model::Model;
 use crate::registry::Registry;
 use fem_io::files::OutputDir;
@@ -40,7 +41,14 @@ impl<'a> Session<'a> {
         resume: bool,
     ) -> Result<Self, CheckpointError> {
         let identity = saved::identity(model)?;
-        let runs: Vec<Kept> = if resume { saved::read(dir.path(), FILE, &identity)? } else { Vec::new() };
+        let kept = || folder::saved(dir.path(), saved::read(dir.path(), FILE, &identity));
+        let kept: Option<Vec<Kept>> = if resume { kept()? } else { None };
+        dir.begin_run();
+        if kept.is_some() {
+            // Where all runs are there, none will write it again.
+            dir.adopt(FILE)?;
+        }
+        let runs = kept.unwrap_or_default();
         let found = runs.len();
         Ok(Self { path: path.to_owned(), registry, dir, identity, runs, found })
     }

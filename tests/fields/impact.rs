@@ -85,7 +85,7 @@ fn the_scene_says_when_where_and_what() {
         struck(r#"{ every = "7 us", times = ["2.04 us", "20 us"], parts = ["plies"], region = { radius = "6 mm" } }"#);
     case.fem("run", &["--out", "out"]).good();
     at(&times(&case, "plies"), &[0.0, 2.0, 7.0, 14.0, 20.0]);
-    assert!(case.names("out/fields").iter().all(|name| name.starts_with("plies") || name == ".lock"));
+    assert!(case.names("out/fields").iter().all(|name| name.starts_with("plies") || name == ".fem"));
     let (_, grid) = series(&case, "out", "plies").remove(0);
     // Of 4 x 2 cells of 7.5 mm by 5 mm the four around the middle.
     assert_eq!(grid.cells, 4 * 16);

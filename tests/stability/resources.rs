@@ -165,22 +165,29 @@ fn full_disk() -> f64 {
         let names = before.names("out");
         for kilobytes in [0, 1, 4, 32] {
             let out = now.folder().join("out");
-            fs::create_dir_all(&out).unwrap();
-            for name in &names {
-                fs::copy(before.folder().join("out").join(name), out.join(name)).unwrap();
+            let _ = fs::remove_dir_all(&out);
+            for part in ["", ".fem"] {
+                fs::create_dir(out.join(part)).unwrap();
+                for name in before.names(&format!("out/{part}")).iter().filter(|name| *name != ".fem") {
+                    let name = Path::new(part).join(name);
+                    fs::copy(before.folder().join("out").join(&name), out.join(&name)).unwrap();
+                }
             }
             let scene = now.write();
             let cut = format!("trap '' XFSZ; ulimit -f {kilobytes}");
             let done = done(shell(now.folder(), &cut, &[command, scene, "--out", "out"]).output().unwrap());
-            let fits = names
-                .iter()
-                .all(|n| fs::metadata(now.folder().join("whole").join(n)).unwrap().len() <= kilobytes << 10);
+            let lists = ["whole/.fem/manifest", "out/.fem/manifest"].map(str::to_owned);
+            let files = names.iter().map(|name| format!("whole/{name}")).filter(|name| !name.ends_with(".fem"));
+            let fits = lists
+                .into_iter()
+                .chain(files)
+                .all(|file| fs::metadata(now.folder().join(file)).unwrap().len() <= kilobytes << 10);
             let says =
                 done.status == 1 && flat(&done.stderr).contains("cannot write `out/") && done.stderr.contains("limit");
             wrong
                 .unless(if fits { done.status == 0 } else { says }, || format!("{command}, {kilobytes} kB: {done:#?}"));
             wrong.unless(now.names("out") == names, || format!("{command}, {kilobytes} kB: {:?}", now.names("out")));
-            for name in names.iter().filter(|name| *name != "cost.json") {
+            for name in names.iter().filter(|name| ![".fem", "cost.json"].contains(&name.as_str())) {
                 let read =
                     |case: &support::Case, folder: &str| fs::read(case.folder().join(folder).join(name)).unwrap();
                 let found = read(&now, "out");
@@ -214,7 +221,7 @@ fn folders() -> f64 {
             wrong.unless(refused, || format!("{command} into {folder}: {done:#?}"));
         }
     }
-    wrong.unless(case.names("held") == [".lock"], || format!("{:?}", case.names("held")));
+    wrong.unless(case.names("held") == [".fem"], || format!("{:?}", case.names("held")));
     wrong.count()
 }
 
@@ -237,7 +244,7 @@ fn signals() -> f64 {
         let done = done(run.wait_with_output().unwrap());
         let said = done.stderr.contains("Stopped by a signal at") && done.stderr.trim_end().ends_with("--resume");
         wrong.unless(done.status == status && said, || format!("{signal}: {done:#?}"));
-        wrong.unless(case.names("out") == [".lock", "checkpoint.bin"], || format!("{:?}", case.names("out")));
+        wrong.unless(case.names("out") == [".fem", "checkpoint.bin"], || format!("{:?}", case.names("out")));
     }
     // Twice: at once, whatever the first one has begun.
     let case = lasting(1000);

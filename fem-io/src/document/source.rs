@@ -1,8 +1,8 @@
 //! Texts that a scene is made of, places in them, and errors that show the place.
 
+use crate::bytes::{self, Links, ReadError};
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 use std::fmt;
-use std::io::Read as _;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
@@ -14,9 +14,7 @@ const MAX_BYTES: u64 = 1 << 22;
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum TextError {
     #[error(transparent)]
-    Unreadable(#[from] std::io::Error),
-    #[error("it is longer than {MAX_BYTES} bytes, more than such a file ever needs")]
-    TooLong,
+    Unreadable(#[from] ReadError),
     #[error("it is in UTF-16; save it as UTF-8")]
     Utf16,
     #[error("it is not UTF-8 from line {line} on; save it as UTF-8")]
@@ -25,11 +23,7 @@ pub(crate) enum TextError {
 
 /// The text of a file.
 pub(crate) fn read_text(path: &Path) -> Result<String, TextError> {
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(TextError::TooLong);
-    }
+    let bytes = bytes::read(path, MAX_BYTES, Links::Follow)?;
     String::from_utf8(bytes).map_err(|e| match e.as_bytes() {
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => TextError::Utf16,
         before => {

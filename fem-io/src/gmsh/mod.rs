@@ -32,6 +32,7 @@ mod write;
 
 use std::path::Path;
 
+use crate::bytes::{self, Links};
 use fem_core::mesh::PlaneMesh;
 
 pub use error::{FilePlace, MeshError, MeshFault};
@@ -41,6 +42,9 @@ use elements::Grouped;
 use groups::Groups;
 use nodes::NodeTable;
 use source::Source;
+
+/// Longest file that is read: far more than the memory of a plate's matrices allows for.
+const MAX_BYTES: u64 = 1 << 32;
 
 /// A mesh and what its reader thinks the user should know.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +63,7 @@ pub struct GmshMesh {
 /// When the file cannot be read, is not MSH 4.1 or is not a sound flat mesh of convex cells.
 pub fn read(path: &Path, unit_metres: f64) -> Result<GmshMesh, MeshError> {
     let name = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|e| MeshError {
+    let bytes = bytes::read(path, MAX_BYTES, Links::Follow).map_err(|e| MeshError {
         file: name.clone(),
         place: FilePlace::File,
         fault: MeshFault::Unreadable(e.to_string()),

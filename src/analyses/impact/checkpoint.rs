@@ -9,7 +9,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// Name of the file in the folder of the results.
-const FILE: &str = "checkpoint.bin";
+pub(crate) const FILE: &str = "checkpoint.bin";
 
 /// The key of the time at which a march ends.
 const END: &str = "march.end";

@@ -11,6 +11,7 @@ mod prepare;
 
 pub use accuracy::{Accuracy, ReductionAccuracy, ReductionResidual, StepAccuracy};
 pub use checkpoint::Checkpoint;
+pub(crate) use checkpoint::FILE as CHECKPOINT;
 pub use contact::{ContactRecord, StepForces};
 pub(crate) use frames::frames;
 pub use ledger::BALANCE_EVERY;

@@ -106,7 +106,7 @@ impl<'a> Writer<'a> {
     /// A folder that cannot be made, a criterion whose material lacks a constant.
     fn new(model: &'a Model, results: &OutputDir, times: Vec<f64>) -> Result<Option<Self>, Error> {
         let Some(layout) = Layout::new(model)? else { return Ok(None) };
-        let dir = OutputDir::create(results.path().join(FOLDER))?;
+        let dir = results.folder(FOLDER)?;
         Ok(Some(Self { layout, dir, times, waiting: Vec::new() }))
     }
 

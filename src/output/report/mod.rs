@@ -4,6 +4,7 @@
 //! write is not on it. The page loads nothing, and forbids itself to: its scripts are part of it, its pictures as well.
 
 mod curves;
+mod drawing;
 mod facts;
 mod folder;
 mod page;
@@ -27,10 +28,10 @@ pub const PAGE: &str = "report.html";
 /// # Errors
 /// A folder that no run wrote into, a file in it that is cut off or changed, a run that is still writing there.
 pub fn write(path: &Path, columns: &[&LedgerColumn]) -> Result<PathBuf, Error> {
-    let folder = Folder::read(path)?;
-    let page = page::render(&folder, columns)?;
-    let dir = OutputDir::create(path)?;
+    Folder::check(path)?;
+    // Before the files are read, so that no run changes them meanwhile.
+    let dir = OutputDir::open(path)?;
+    let page = page::render(&Folder::read(path)?, columns)?;
     dir.write(PAGE, |out| out.write_all(page.as_bytes()))?;
-    dir.add()?;
     Ok(path.join(PAGE))
 }

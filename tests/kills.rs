@@ -1,0 +1,215 @@
+//! Runs, studies and pages that are killed at any moment, or for which there is no room: whatever lies there afterwards is
+//! whole, of one run, and goes on to what an undisturbed one leaves.
+#![cfg(unix)]
+
+use crate::study::rows;
+use crate::support::{Case, failing, fem, watched};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// `fem ARGUMENTS` of a case, which may write files of so many kilobytes.
+fn start(case: &Case, arguments: &[&str], kilobytes: Option<u32>) -> Child {
+    let limit = kilobytes.map_or("unlimited".to_owned(), |most| most.to_string());
+    let mut command = Command::new("bash");
+    command.args(["-c", &format!("trap '' XFSZ; ulimit -f {limit}; exec \"$0\" \"$@\""), env!("CARGO_BIN_EXE_fem")]);
+    command.args(arguments).current_dir(case.folder());
+    command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+}
+
+/// Numbers that look as if they had no order, the same at every call.
+struct Random(u64);
+
+impl Random {
+    /// Below 1.
+    fn share(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as f64 / f64::from(1_u32 << 31)
+    }
+}
+
+/// What is killed: a command, the folder that it fills, what it is repeated with, and what is compared of the folder.
+struct Victim<'a> {
+    case: &'a Case,
+    first: Vec<&'a str>,
+    again: Vec<&'a str>,
+    /// Makes the folder ready.
+    before: &'a dyn Fn(),
+    found: &'a dyn Fn(&str) -> BTreeMap<String, Vec<u8>>,
+}
+
+impl Victim<'_> {
+    /// Ends the command by a full disk or a kill, `times` times, at moments between the first file that it writes and its
+    /// end; each time it is repeated to its end. How many were ended before it.
+    fn kill(&self, times: usize, random: &mut Random) -> usize {
+        let out = self.case.folder().join("out");
+        let run = |arguments: &[&str]| fem(self.case.folder(), arguments);
+        let clear = || {
+            let _ = fs::remove_dir_all(&out);
+            (self.before)();
+        };
+        clear();
+        let (lasts, want) = {
+            let mut child = start(self.case, &self.first, None);
+            let started = self.begins(&mut child, &out);
+            assert!(child.wait().unwrap().success(), "{:?}", self.first);
+            (started.elapsed(), (self.found)("out"))
+        };
+        assert!(!want.is_empty());
+        let mut ended = 0;
+        for k in 0..times {
+            clear();
+            let full = k % 8 == 7;
+            let kilobytes = full.then(|| (random.share() * 160.0) as u32);
+            let mut child = start(self.case, &self.first, kilobytes);
+            if !full {
+                self.begins(&mut child, &out);
+                std::thread::sleep(lasts.mul_f64(random.share()));
+                child.kill().unwrap();
+            }
+            ended += usize::from(!child.wait().unwrap().success());
+            let left = tell(&out);
+            // A page of what is there is of one run; none where there is nothing.
+            let page = run(&["report", "out"]);
+            let none = page.stderr.contains("holds no results");
+            assert!(page.status == 0 || none, "{:?}, {k}: {page:#?}\n{left:?}", self.first);
+            let arguments = if fem::io::files::is_own(&out) { &self.again } else { &self.first };
+            run(arguments).good();
+            let found = (self.found)("out");
+            let other: Vec<_> =
+                want.keys().chain(found.keys()).filter(|name| want.get(*name) != found.get(*name)).collect();
+            assert!(other.is_empty(), "{:?}, {k}: {other:?} differ; there was {left:?}", self.first);
+        }
+        ended
+    }
+
+    /// Waits for the first trace of the command in its folder, a new list.
+    fn begins(&self, child: &mut Child, out: &Path) -> Instant {
+        let trace = out.join(".fem/manifest");
+        let seen = || trace.metadata().and_then(|is| is.modified()).ok();
+        let before = seen();
+        while child.try_wait().unwrap().is_none() && seen() == before {
+            std::thread::sleep(Duration::from_micros(200));
+        }
+        Instant::now()
+    }
+}
+
+/// Names of what lies in a folder.
+fn tell(folder: &Path) -> Vec<String> {
+    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
+    entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect()
+}
+
+/// The files of a folder but for the list and what the machine has to say.
+fn files(case: &Case, folder: &str) -> BTreeMap<String, Vec<u8>> {
+    let names =
+        case.names(folder).into_iter().filter(|name| ![".fem", "cost.json", "report.html"].contains(&name.as_str()));
+    names.map(|name| (name.clone(), fs::read(case.folder().join(folder).join(name)).unwrap())).collect()
+}
+
+/// The table of a study but for its seconds, and the names of all files.
+fn studied(case: &Case, folder: &str) -> BTreeMap<String, Vec<u8>> {
+    let mut found: BTreeMap<String, Vec<u8>> = case.names(folder).into_iter().map(|name| (name, Vec::new())).collect();
+    for (key, mut row) in rows(case, folder) {
+        row.retain(|column, _| !column.ends_with("_cpu_s") && column != "peak_memory_MB");
+        found.insert(format!("{key:?}"), format!("{row:?}").into_bytes());
+    }
+    found.remove("report.html");
+    found
+}
+
+/// Kills so many runs, runs into the folder of another one, studies and reports; how many of them did not end by themselves.
+fn kill(runs: usize, others: usize, studies: usize, reports: usize) -> usize {
+    let mut random = Random(1);
+    let case = watched();
+    let scene = case.write();
+    let (first, again) = (vec!["run", scene, "--out", "out"], vec!["run", scene, "--out", "out", "--resume"]);
+    let found = |folder: &str| files(&case, folder);
+    let own = Victim { case: &case, first: first.clone(), again, before: &|| (), found: &found };
+    let mut ended = own.kill(runs, &mut random);
+
+    // Over the results of another scene; what it has left would be refused by `--resume`, and is superseded without.
+    let other = failing();
+    other.fem("run", &["--out", "out"]).good();
+    fem(other.folder(), &["report", "out"]).good();
+    let copy = || {
+        let copied = Command::new("cp").args(["-a", "out"]).arg(case.folder()).current_dir(other.folder()).status();
+        assert!(copied.unwrap().success());
+    };
+    let over = Victim { case: &case, first: first.clone(), again: first.clone(), before: &copy, found: &found };
+    ended += over.kill(others, &mut random);
+
+    let report = vec!["report", "out"];
+    let page = |folder: &str| {
+        let mut found = files(&case, folder);
+        found.insert("report.html".into(), fs::read(case.folder().join(folder).join("report.html")).unwrap());
+        found
+    };
+    case.fem("run", &["--out", "whole"]).good();
+    let whole = || {
+        let copied = Command::new("cp").args(["-a", "whole", "out"]).current_dir(case.folder()).status();
+        assert!(copied.unwrap().success());
+    };
+    let reported = Victim { case: &case, first: report.clone(), again: report, before: &whole, found: &page };
+    ended += reported.kill(reports, &mut random);
+
+    let arguments = ["study", case.write(), "--axis", "step", "--out", "out"];
+    let resumed = [&arguments[..], &["--resume"]].concat();
+    let found = |folder: &str| studied(&case, folder);
+    let study = Victim { case: &case, first: arguments.to_vec(), again: resumed, before: &|| (), found: &found };
+    ended + study.kill(studies, &mut random)
+}
+
+#[test]
+fn at_any_moment() {
+    let ended = kill(20, 8, 2, 8);
+    assert!(ended >= 10, "{ended} of 38 kills met something that was running");
+}
+
+#[test]
+#[ignore = "a thousand kills take minutes"]
+fn a_thousand_times() {
+    let ended = kill(640, 160, 40, 160);
+    assert!(ended >= 500, "{ended} of 1000 kills met something that was running");
+}
+
+/// A page never shows pictures of one run beside the numbers of another.
+#[test]
+fn a_page_is_of_one_run() {
+    let short = || failing().append("[output]\nhistory_every = \"1 us\"\n");
+    let before = short();
+    before.fem("run", &["--out", "out"]).good();
+    let case = short().scene("mass = \"2.49 kg\"", "mass = \"2 kg\"").scene("title = \"", "title = \"Later: ");
+    let scene = case.write();
+    let out = case.folder().join("out");
+    let whole = start(&case, &["run", scene, "--out", "whole"], None).wait().unwrap();
+    assert!(whole.success());
+    let mut seen = 0;
+    for kilobytes in [48, 88, 120, 132, 134] {
+        let _ = fs::remove_dir_all(&out);
+        fs::rename(before.folder().join("out"), &out).unwrap();
+        let copied = Command::new("cp").args(["-a", "out"]).arg(before.folder()).current_dir(case.folder()).status();
+        assert!(copied.unwrap().success());
+        let _ = start(&case, &["run", scene, "--out", "out"], Some(kilobytes)).wait().unwrap();
+        let page = fem(case.folder(), &["report", "out"]).good();
+        assert!(page.stdout.contains("report.html"));
+        let page = case.read("out/report.html");
+        let shown = |name: &str| page.contains(&format!("id=\"picture-{name}\""));
+        let same = |name: &str| {
+            let read = |folder: &str| fs::read(case.folder().join(folder).join(name)).ok();
+            read("out") == read("whole")
+        };
+        // `--resume` and the state of the march are the new run's from its first checkpoint on.
+        if same("checkpoint.bin") {
+            seen += 1;
+            for name in ["contact_force", "displacement", "energy", "force_displacement", "damage_map"] {
+                assert!(!shown(name) || same(&format!("{name}.svg")), "{kilobytes} kB: an older picture {name}");
+            }
+            assert!(!page.contains("peak force") || page.contains("<h1>Later: "), "{kilobytes} kB");
+        }
+    }
+    assert!(seen >= 2, "{seen}");
+}
