@@ -7,7 +7,7 @@
 //! | contracts | [`element`], [`failure`], [`contact`], [`time`], [`reduction`]; [`plugin`] introduces an implementation |
 //! | formulas that people write | [`formula`] |
 //! | materials and laminates | [`tensor`], [`material`], [`layup`], [`laminate`] |
-//! | the plate and its unknowns | [`domain`], [`mesh`], [`dof`], [`plate`], [`support`], [`symmetry`], [`constraint`], [`patch`], [`load`] |
+//! | the plate and its unknowns | [`domain`], [`mesh`], [`dof`], [`plate`], [`support`], [`axes`], [`symmetry`], [`constraint`], [`pieces`], [`patch`], [`load`] |
 //! | matrices and stresses | [`quadrature`], [`structure`], [`damping`], [`recovery`], [`profile`], [`window`], [`counters`] |
 #![cfg_attr(feature = "assembly", doc = "| sparse matrices (feature `assembly`) | [`assembly`] |")]
 #![cfg_attr(feature = "testkit", doc = "| checks of the contracts (feature `testkit`) | [`testkit`] |")]
@@ -52,7 +52,7 @@ mod stresses;
 pub mod testkit;
 
 pub use contracts::{contact, element, failure, interface_law, large, plugin, ply_law, reduction, structure, time};
-pub use plates::{constraint, laminate, laws, load, mesh, patch, plate, support, symmetry, window};
+pub use plates::{axes, constraint, laminate, laws, load, mesh, patch, pieces, plate, support, symmetry, window};
 pub use stresses::{estimate, field, profile, recovery, residual};
 pub use words::{
     counters, damping, dof, domain, energy, formula, functional, layup, material, prolongation, quadrature, tensor,

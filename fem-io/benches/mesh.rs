@@ -1,6 +1,6 @@
-//! Time and memory of reading a mesh: `cargo bench -p fem-io --bench mesh [-- FILE.msh ...]`.
+//! Time and memory of reading a mesh, and the time to see that its cells tile a plate: `cargo bench -p fem-io --bench mesh [-- FILE.msh ...]`.
 //!
-//! Without a file, a square of 448 x 448 cells, ASCII and binary. Each file is read in a process of its own, because
+//! Without a file, a square of 448 x 448 cells, ASCII and binary, and a strip of as many. Each file is read in a process of its own, because
 //! the peak of memory is that of a process; the fastest of seven samples counts.
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
@@ -20,10 +20,16 @@ fn main() {
         [mode, file] if mode == ALONE => measure(Path::new(file)),
         [] => {
             let folder = tempfile::tempdir().unwrap();
-            let line: Vec<f64> = (0..=448).map(|i| f64::from(i) / 4480.0).collect();
-            for (name, encoding) in [("ascii.msh", Encoding::Ascii), ("binary.msh", Encoding::Binary)] {
+            let line = |cells: u32| -> Vec<f64> { (0..=cells).map(|i| f64::from(i) / 4480.0).collect() };
+            let square = PlaneMesh::rectangle(&line(448), &line(448));
+            let strip = PlaneMesh::rectangle(&line(448 * 448), &line(1));
+            for (name, mesh, encoding) in [
+                ("ascii.msh", &square, Encoding::Ascii),
+                ("binary.msh", &square, Encoding::Binary),
+                ("strip.msh", &strip, Encoding::Binary),
+            ] {
                 let mut bytes = Vec::new();
-                gmsh::write(&mut bytes, &PlaneMesh::rectangle(&line, &line), 1e-3, encoding).unwrap();
+                gmsh::write(&mut bytes, mesh, 1e-3, encoding).unwrap();
                 std::fs::write(folder.path().join(name), bytes).unwrap();
                 alone(&folder.path().join(name));
             }
@@ -39,16 +45,23 @@ fn alone(file: &Path) {
 }
 
 fn measure(file: &Path) {
-    let mut least = [Duration::MAX; 2];
+    let mut least = [Duration::MAX; 3];
     let mut cells = 0;
     for _ in 0..7 {
         let (processor, wall) = (ProcessTime::now(), Instant::now());
-        cells = black_box(gmsh::read(file, 1e-3).unwrap()).mesh.quads.len();
-        least = [least[0].min(processor.elapsed()), least[1].min(wall.elapsed())];
+        let mesh = black_box(gmsh::read(file, 1e-3).unwrap()).mesh;
+        let read = [processor.elapsed(), wall.elapsed()];
+        let tiling = ProcessTime::now();
+        assert_eq!(black_box(mesh.flaws(&[])), []);
+        cells = mesh.quads.len();
+        least = [least[0].min(read[0]), least[1].min(read[1]), least[2].min(tiling.elapsed())];
     }
-    let [processor, wall] = least.map(|t| t.as_secs_f64());
+    let [processor, wall, tiling] = least.map(|t| t.as_secs_f64());
     let memory = peak_memory();
-    println!("{cells} cells: {processor:.3} s of processor time, {wall:.3} s, {memory:.0} MB; {}", file.display());
+    println!(
+        "{cells} cells: {processor:.3} s of processor time (tiling {tiling:.3} s), {wall:.3} s, {memory:.0} MB; {}",
+        file.display()
+    );
 }
 
 /// Largest memory that the process has held so far, MB.

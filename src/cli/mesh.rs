@@ -5,10 +5,9 @@ use crate::error::Error;
 use crate::model;
 use crate::output::mesh::MeshSummary;
 use clap::Args;
-use fem_core::mesh::PlaneMesh;
 use fem_core::plugin::Dimension;
 use fem_io::files::OutputDir;
-use fem_io::gmsh::{self, Encoding, GmshMesh};
+use fem_io::gmsh::{self, Encoding, Examined, GmshMesh};
 use fem_io::scene::{self, ImpactPoint};
 use fem_io::{plot, units};
 use miette::miette;
@@ -29,7 +28,7 @@ pub(super) struct Arguments {
     /// Writes it binary instead of as text.
     #[arg(long, requires = "out")]
     binary: bool,
-    /// Draws the cells, the groups and where a scene's impactors strike, as SVG and PNG in this folder [default: .]
+    /// Draws the cells, the groups, where a scene's impactors strike and where cells do not meet as they should, as SVG and PNG in this folder [default: .]
     #[arg(long, value_name = "DIR", num_args = 0..=1, default_missing_value = ".")]
     picture: Option<PathBuf>,
     #[command(flatten)]
@@ -39,10 +38,19 @@ pub(super) struct Arguments {
 pub(super) fn mesh(arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let metres = units::parse_as(&format!("1 {}", arguments.unit), Dimension::LENGTH)
         .map_err(|_| miette!(help = "write --unit mm, m or in", "`{}` is not a unit of length", arguments.unit))?;
-    let (GmshMesh { mesh, warnings }, impacts) = read(&arguments.file, metres)?;
+    let (examined, impacts) = read(&arguments.file, metres)?;
+    let draw = |folder: &PathBuf| draw(&arguments.file, folder, &examined, &impacts);
+    let picture = arguments.picture.as_ref().map(draw).transpose()?;
+    let GmshMesh { mesh, warnings } = match examined.sound() {
+        Ok(read) => read,
+        Err(refusal) => {
+            for file in picture.iter().flatten() {
+                console.say(arguments.format, || format!("  written   {}\n", file.display()));
+            }
+            return Err(Error::from(refusal).into());
+        }
+    };
     let summary = MeshSummary::new(&mesh, warnings);
-    let picture =
-        arguments.picture.as_ref().map(|folder| draw(&arguments.file, folder, &mesh, &impacts)).transpose()?;
     if let Some(out) = &arguments.out {
         let encoding = if arguments.binary { Encoding::Binary } else { Encoding::Ascii };
         let name = out.file_name().and_then(|name| name.to_str());
@@ -62,28 +70,30 @@ pub(super) fn mesh(arguments: &Arguments, console: &Console) -> miette::Result<E
 }
 
 /// The mesh, and the points that impactors of a scene strike, m.
-fn read(file: &Path, metres: f64) -> Result<(GmshMesh, Vec<[f64; 2]>), Error> {
+fn read(file: &Path, metres: f64) -> Result<(Examined, Vec<[f64; 2]>), Error> {
     if file.extension().is_none_or(|extension| extension != "toml") {
-        return Ok((gmsh::read(file, metres)?, Vec::new()));
+        return Ok((gmsh::examine(file, metres, &[])?, Vec::new()));
     }
     let scene = scene::read(file)?;
-    let read = model::mesh(&scene)?;
+    let examined = model::examined_mesh(&scene)?;
+    let mesh = &examined.read.mesh;
     let impactors = scene.impact().map_or(&[][..], |impact| &impact.impactors);
     let struck = impactors.iter().filter_map(|impactor| match &impactor.at.value {
         ImpactPoint::Point(point) => Some(*point),
         ImpactPoint::Group(name) => {
-            let node = read.mesh.groups.get(name)?.nodes.first()?;
-            Some(read.mesh.points[*node as usize])
+            let node = mesh.groups.get(name)?.nodes.first()?;
+            Some(mesh.points[*node as usize])
         }
     });
     let struck = struck.collect();
-    Ok((read, struck))
+    Ok((examined, struck))
 }
 
-/// Draws `mesh`, which is that of `file`, into `folder`; the files.
-fn draw(file: &Path, folder: &Path, mesh: &PlaneMesh, impacts: &[[f64; 2]]) -> Result<[PathBuf; 2], Error> {
+/// Draws the mesh of `file` into `folder`, and what is wrong with it; the files.
+fn draw(file: &Path, folder: &Path, examined: &Examined, impacts: &[[f64; 2]]) -> Result<[PathBuf; 2], Error> {
     let name = file.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy());
-    let picture = plot::map_plot(&plot::mesh_map(&file.display().to_string(), mesh, impacts))?;
+    let map = plot::mesh_map(&file.display().to_string(), &examined.read.mesh, impacts, &examined.flaws);
+    let picture = plot::map_plot(&map)?;
     picture.write(&OutputDir::open(folder)?, &name)?;
     Ok(["svg", "png"].map(|ending| folder.join(format!("{name}.{ending}"))))
 }

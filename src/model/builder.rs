@@ -3,11 +3,14 @@
 use super::NamedCriterion;
 use crate::registry::{NO_REDUCTION, Registry, RegistryError};
 use fem_core::assembly::elimination_order;
+use fem_core::axes::Turns;
 use fem_core::constraint::{Constraints, Equation};
 use fem_core::contact::ContactLaw;
+use fem_core::dof::Dof;
 use fem_core::element::Element;
 use fem_core::failure::{FailureCriterion, Site, check_material};
 use fem_core::mesh::Group;
+use fem_core::pieces;
 use fem_core::plate::Plate;
 use fem_core::plugin::{Built, Kind, Role, unknown_key};
 use fem_core::reduction::Reduction;
@@ -178,12 +181,13 @@ impl Builder<'_> {
         // Of each equation, where it stands in the scene.
         let mut places = Vec::new();
         let mut restraint = None;
+        let mut turns = Turns::default();
         for entry in &self.scene.supports {
             match entry {
                 Support::Fix { nodes, dofs, axes, place } => {
                     let (columns, levels) = self.nodes(plate, nodes)?;
                     let origin = format!("support of `{}`", nodes.group.value);
-                    let fixed = support::fix(plate, &columns, &levels, dofs, *axes, &origin);
+                    let fixed = support::fix(plate, &columns, &levels, dofs, turns.settle(*axes), &origin);
                     if fixed.is_empty() {
                         let message = format!("the support of `{}` fixes nothing", nodes.group.value);
                         return Err(source.error_at(place, message, "the element has none of the unknowns of `fix`"));
@@ -197,7 +201,13 @@ impl Builder<'_> {
         for couple in &self.scene.couples {
             let (columns, levels) = self.nodes(plate, &couple.nodes)?;
             let origin = format!("couple of `{}`", couple.nodes.group.value);
-            equations.extend(support::couple(plate, &columns, &levels, &couple.dofs, &origin));
+            let coupled = support::couple(plate, &columns, &levels, &couple.dofs, &origin);
+            if coupled.is_empty() {
+                let message = format!("the {origin} ties nothing");
+                let help = "a couple needs two nodes or more, and unknowns that the element has";
+                return Err(source.error_at(&couple.place, message, help));
+            }
+            equations.extend(coupled);
             places.resize(equations.len(), &couple.place);
         }
         for (number, equation) in self.scene.equations.iter().enumerate() {
@@ -207,6 +217,7 @@ impl Builder<'_> {
         self.symmetric_supports(plate, &equations, &places)?;
         equations.extend(plate.symmetry().equations(plate));
         places.resize(equations.len(), self.scene.symmetry.as_ref().map_or(&Place::TOP, |symmetry| &symmetry.place));
+        self.hold_pieces(plate, &equations)?;
         let free = FreeMotions::of(plate, &equations);
         let mut held = true;
         match restraint {
@@ -226,6 +237,49 @@ impl Builder<'_> {
             }
         }
         Ok((self.eliminate(plate, &equations, &places)?, held))
+    }
+
+    /// What the user should know of unknowns that supports and couples name and the element lacks.
+    pub(super) fn lacking(&self, plate: &Plate) -> Result<Vec<String>, SceneError> {
+        let fixed = self.scene.supports.iter().filter_map(|support| match support {
+            // In turned axes an unknown is a sum of several.
+            Support::Fix { nodes, dofs, axes, .. } if *axes == 0.0 => Some(("support", nodes, dofs)),
+            _ => None,
+        });
+        let coupled = self.scene.couples.iter().map(|couple| ("couple", &couple.nodes, &couple.dofs));
+        let mut warnings = Vec::new();
+        for (what, nodes, dofs) in fixed.chain(coupled) {
+            let (columns, levels) = self.nodes(plate, nodes)?;
+            let has = |dof: &Dof| {
+                columns.iter().any(|c| levels.iter().any(|l| plate.dofs_at(*c as usize, *l, *dof).next().is_some()))
+            };
+            let names: Vec<_> = dofs.iter().filter(|dof| !has(dof)).map(Dof::to_string).collect();
+            if !names.is_empty() {
+                warnings.push(format!(
+                    "{} of {} unknowns in the {what} of `{}` are not of this element, and nothing holds them: {}; take them \
+                     out, or choose an element that has them",
+                    names.len(),
+                    dofs.len(),
+                    nodes.group.value,
+                    names.join(", ")
+                ));
+            }
+        }
+        Ok(warnings)
+    }
+
+    /// Refuses a plate of pieces that move against each other.
+    fn hold_pieces(&self, plate: &Plate, equations: &[Equation]) -> Result<(), SceneError> {
+        let Some(piece) = pieces::loose(plate, equations) else { return Ok(()) };
+        let [x, y] = piece.centre.map(|x| x * 1e3);
+        let message = format!(
+            "a piece of the plate ({} of its cells, about ({x:.4}, {y:.4}) mm) can move against the rest: neither cells nor \
+             supports hold it",
+            piece.cells
+        );
+        let help = "let its surface share curves with the others in gmsh (Coherence; or BooleanFragments), support it, or \
+                    leave it out of the physical groups";
+        Err(self.scene.source.error_at(self.scene.supports.first().map_or(&Place::TOP, Support::place), message, help))
     }
 
     /// Eliminates `equations`, which stand at `places`.

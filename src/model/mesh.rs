@@ -3,37 +3,63 @@
 use crate::error::Error;
 use fem_core::domain::Domain;
 use fem_core::mesh::PlaneMesh;
-use fem_io::gmsh::{self, GmshMesh, MeshFault};
+use fem_core::plugin::unknown_key;
+use fem_io::gmsh::{self, Examined, GmshMesh, MeshError, MeshFault};
 use fem_io::scene::{self, Located, MeshSource, Scene, SceneError};
 
 /// The mesh of `scene`, read or built, and refined as the scene says.
 ///
 /// # Errors
-/// A file that cannot be read or is not a sound mesh; too many cells.
+/// A file that cannot be read or is not a sound mesh; too many cells; a group to cut along that there is not.
 pub fn mesh(scene: &Scene) -> Result<GmshMesh, Error> {
-    let built = |mesh| GmshMesh { mesh, warnings: Vec::new() };
+    Ok(examined_mesh(scene)?.sound()?)
+}
+
+/// As [`mesh`], of cells that need not tile a plate: what is wrong with them comes along.
+///
+/// # Errors
+/// As [`mesh`], but for flaws of the tiling.
+pub(crate) fn examined_mesh(scene: &Scene) -> Result<Examined, Error> {
     match &scene.mesh {
-        MeshSource::File { file, metres_per_unit, refine, curves } => {
-            let mut read = gmsh::read(&file.value, *metres_per_unit).map_err(|wrong| match wrong.fault {
+        MeshSource::File { file, metres_per_unit, refine, curves, cuts } => {
+            let names: Vec<String> = cuts.iter().map(|cut| cut.value.clone()).collect();
+            let unreadable = |wrong: MeshError| match wrong.fault {
                 MeshFault::Unreadable(_) => {
                     let message = wrong.to_string();
                     Error::from(error(scene, file, message, "`mesh.file` counts from the folder of the scene"))
                 }
                 _ => wrong.into(),
-            })?;
-            scene::refined_cells(read.mesh.quads.len(), refine.value)
+            };
+            let mut examined = gmsh::examine(&file.value, *metres_per_unit, &names).map_err(unreadable)?;
+            let mesh = &mut examined.read.mesh;
+            let edges = || mesh.groups.iter().filter(|(_, group)| group.dim == 1).map(|(name, _)| name.as_str());
+            if let Some(cut) = cuts.iter().find(|cut| edges().all(|name| name != cut.value)) {
+                let message = format!("the mesh has no group of edges `{}`", cut.value);
+                let help = format!("`{}` {}", cut.value, unknown_key(&cut.value, edges()));
+                return Err(error(scene, cut, message, &help).into());
+            }
+            scene::refined_cells(mesh.quads.len(), refine.value)
                 .map_err(|why| error(scene, refine, format!("`mesh.refine`: {why}"), "refine less often"))?;
-            read.mesh = (0..refine.value).fold(read.mesh, |mesh, _| mesh.refined(*curves));
-            Ok(read)
+            for _ in 0..refine.value {
+                *mesh = mesh.refined(*curves);
+            }
+            let sound_before = examined.flaws.is_empty() && refine.value > 0;
+            if let Some(flaw) = examined.read.mesh.flaws(&names).first().filter(|_| sound_before) {
+                let [x, y] = flaw.at.map(|x| x * 1e3);
+                let message = format!("curved edges meet others at ({x:.4}, {y:.4}) mm when the mesh is refined");
+                let help = "divide the curves there more finely, or write `curves = \"straight\"`";
+                return Err(error(scene, refine, message, help).into());
+            }
+            Ok(examined)
         }
         MeshSource::Rectangle { size, cells } => {
             let [x, y] =
                 [0, 1].map(|d| -> Vec<f64> { (0..=cells[d]).map(|i| size[d] * i as f64 / cells[d] as f64).collect() });
-            Ok(built(PlaneMesh::rectangle(&x, &y)))
+            Ok(Examined::built(PlaneMesh::rectangle(&x, &y)))
         }
         MeshSource::Graded { plate, refine, curves } => {
             let mesh = plate.value.mesh().map_err(|wrong| error(scene, plate, wrong.to_string(), ""))?;
-            Ok(built((0..*refine).fold(mesh, |mesh, _| mesh.refined(*curves))))
+            Ok(Examined::built((0..*refine).fold(mesh, |mesh, _| mesh.refined(*curves))))
         }
     }
 }

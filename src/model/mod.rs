@@ -15,6 +15,7 @@ mod symmetry;
 
 pub use fields::FieldPlan;
 pub use gauge::Gauge;
+pub(crate) use mesh::examined_mesh;
 pub use mesh::mesh;
 pub use origin::Origin;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
@@ -33,6 +34,7 @@ use fem_core::laminate::Laminate;
 use fem_core::laws::PlyLaws;
 use fem_core::material::{Material, MaterialError};
 use fem_core::mesh::PlaneMesh;
+use fem_core::pieces;
 use fem_core::plate::Plate;
 use fem_failure::delamination::DelaminationThreshold;
 use fem_io::scene::{self, Analysis, Damage, Output, Scene, Window};
@@ -165,19 +167,26 @@ impl Model {
         }
         builder.fold(&mut plate, &laminates, &materials, &criteria)?;
         memory::check(&plate)?;
+        warnings.extend(warn_of_pieces(&plate));
         warnings.extend(polygon(&plate));
         warnings.extend(warn_of_flat_cells(&plate));
         warnings.extend(incompressible(&plate, &laminates, &materials));
         let (constraints, held) = builder.constraints(&plate)?;
+        warnings.extend(builder.lacking(&plate)?);
         let plan = match &scene.analysis {
             Analysis::Impact(spec) => Plan::Impact(Box::new(builder.impact(spec, &plate, &*element, &constraints)?)),
-            Analysis::Static(loads) => Plan::Static { forces: builder.forces(loads, &effects, &plate, &*element)? },
+            Analysis::Static(loads) => {
+                Plan::Static { forces: builder.forces(loads, &effects, &plate, &*element, &constraints)? }
+            }
             Analysis::Modes { count } => Plan::Modes { count: *count },
         };
         let centres: Vec<_> = match &plan {
             Plan::Impact(impact) => impact.strikes.iter().map(|strike| strike.centre).collect(),
             _ => Vec::new(),
         };
+        if let Plan::Impact(impact) = &plan {
+            warnings.extend(plan::warn_of_parts(&impact.strikes, &plate, &constraints));
+        }
         let struck =
             |centre: [f64; 2]| (0..plate.plane.quads.len()).find(|q| plate.plane.corners(*q).locate(centre).is_some());
         let region = centres.first().and_then(|centre| struck(*centre)).map_or(0, |quad| plate.region(quad));
@@ -271,6 +280,19 @@ impl Model {
         }
         chosen
     }
+}
+
+/// Pieces that are held each on their own are a plate each.
+fn warn_of_pieces(plate: &Plate) -> Option<String> {
+    let pieces = pieces::pieces(plate);
+    let smallest = pieces.iter().min_by_key(|piece| piece.cells).filter(|_| pieces.len() > 1)?;
+    let [x, y] = smallest.centre.map(|x| x * 1e3);
+    Some(format!(
+        "the mesh is {} pieces that no side joins, the smallest of {} cells about ({x:.4}, {y:.4}) mm: if they should be one \
+         plate, let their surfaces share curves in gmsh (Coherence; or BooleanFragments)",
+        pieces.len(),
+        smallest.cells
+    ))
 }
 
 fn polygon(plate: &Plate) -> Option<String> {

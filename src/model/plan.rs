@@ -5,6 +5,7 @@ use crate::effect::Effects;
 use crate::error::Error;
 use fem_core::constraint::Constraints;
 use fem_core::contact::ContactLaw;
+use fem_core::dof::Dof;
 use fem_core::element::Element;
 use fem_core::functional::Functional;
 use fem_core::load::{self, Face};
@@ -76,6 +77,28 @@ pub struct NamedProfile {
     pub bottom: f64,
 }
 
+/// An impact on a node at the edge, where supports are those of a plane of symmetry: on a part of a plate, as it is made by hand.
+pub(super) fn warn_of_parts(strikes: &[Strike], plate: &Plate, constraints: &Constraints) -> Vec<String> {
+    let outline = plate.outline();
+    let level = plate.mid_level().unwrap_or(0);
+    let part = |strike: &Strike| {
+        let column = *outline.iter().find(|column| plate.columns[**column as usize] == strike.centre)? as usize;
+        let held = |n: u8| {
+            let dof = Dof::new(n, 0).and_then(|dof| plate.dofs_at(column, level, dof).next())?;
+            constraints.implies(&[(dof, 1.0)]).then(|| format!("U{n}0"))
+        };
+        let held: Vec<String> = [1, 2].into_iter().filter_map(held).collect();
+        let share = ["a half", "a quarter"].get(held.len().checked_sub(1)?)?;
+        let [x, y] = strike.centre.map(|x| x * 1e3);
+        Some(format!(
+            "the impact at ({x:.4}, {y:.4}) mm is on the edge, where supports hold {} as in {share} of a symmetric plate: if the \
+             mesh is that, its impactor must have {share} of the mass; or give the whole plate and a `symmetry`",
+            held.join(" and ")
+        ))
+    };
+    strikes.iter().filter_map(part).collect()
+}
+
 impl Builder<'_> {
     pub(super) fn impact(
         &self,
@@ -125,6 +148,7 @@ impl Builder<'_> {
         effects: &Effects,
         plate: &Plate,
         element: &dyn Element,
+        constraints: &Constraints,
     ) -> Result<Vec<f64>, Error> {
         if loads.is_empty() && !effects.nature().strained {
             let help = "write, for example: load = [{ pressure = \"1 MPa\", face = \"top\" }]";
@@ -180,7 +204,15 @@ impl Builder<'_> {
             }
             self.symmetric_load(plate, &forces, place)?;
         }
-        Ok(forces)
+        let loaded: Vec<_> = forces.iter().copied().enumerate().filter(|(_, force)| *force != 0.0).collect();
+        match loads.last() {
+            Some(Load { place, .. }) if !loaded.is_empty() && constraints.implies(&loaded) => {
+                let message = "the supports take all of the load: it moves nothing";
+                let help = "load nodes that the supports do not hold in the direction of the load";
+                Err(self.scene.source.error_at(place, message, help).into())
+            }
+            _ => Ok(forces),
+        }
     }
 
     pub(super) fn profiles(&self, plate: &Plate) -> Result<Vec<NamedProfile>, SceneError> {
@@ -243,8 +275,7 @@ impl Builder<'_> {
                 (plate.columns[column as usize], Some(column as usize))
             }
             ImpactPoint::Point(p) => {
-                let (low, high) = plate.plane.bounds();
-                let reach = 1e-9 * (high[0] - low[0]).hypot(high[1] - low[1]);
+                let reach = plate.plane.reach();
                 let near = |q: &[f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]) <= reach;
                 (*p, plate.columns.iter().position(near))
             }

@@ -9,9 +9,9 @@ use fem_core::material::Material;
 use fem_core::plate::Plate;
 use fem_core::symmetry::{Operation, SymmetryGroup};
 use fem_core::tensor::{Ply, Stress6};
-use fem_io::scene::{ImpactPoint, Located, Place, SceneError};
+use fem_io::scene::{ImpactPoint, Located, MeshSource, Place, SceneError};
 
-/// What supports and loads may lack of their symmetry, relative to the largest of their kind: rounding, and points of
+/// What loads may lack of their symmetry, relative to the largest of their kind: rounding, and points of
 /// quadrature on the border of two cells.
 const ROUNDING: f64 = 1e-7;
 
@@ -39,6 +39,12 @@ impl Builder<'_> {
     ) -> Result<(), SceneError> {
         let Some(symmetry) = &self.scene.symmetry else { return Ok(()) };
         let name = symmetry.value.name();
+        if let MeshSource::File { cuts, .. } = &self.scene.mesh
+            && let Some(cut) = cuts.first()
+        {
+            let message = "a plate with cuts cannot be folded: the nodes on both faces have one place";
+            return Err(self.error(cut, message, "leave `symmetry` out"));
+        }
         plate.fold(symmetry.value).map_err(|why| {
             self.error(symmetry, why.to_string(), "make the mesh symmetric, node by node, or leave `symmetry` out")
         })?;
@@ -114,14 +120,13 @@ impl Builder<'_> {
         let Some(name) = plate.symmetry().name() else { return Ok(()) };
         let alone = self.eliminate(plate, equations, places)?;
         for (equation, place) in equations.iter().zip(places) {
-            let largest = equation.terms.iter().fold(0.0_f64, |m, (_, factor)| m.max(factor.abs()));
             let images = equation.terms.iter().map(|(dof, factor)| {
                 plate.symmetry().images(plate, *dof).map(|(image, sign)| (image, sign * factor)).collect::<Vec<_>>()
             });
             let images: Vec<_> = images.collect();
             for operation in 0..plate.symmetry().operations().count() {
                 let image: Vec<_> = images.iter().map(|images| images[operation]).collect();
-                if alone.restrict(&image).iter().any(|(_, factor)| factor.abs() > ROUNDING * largest) {
+                if !alone.implies(&image) {
                     let missing = image.first().map_or_else(String::new, |(dof, _)| plate.describe(*dof));
                     let message = format!(
                         "{} breaks the symmetry `{name}`: nothing of that kind holds its image, {missing}",

@@ -250,6 +250,20 @@ impl Constraints {
         sum.into_iter().filter(|(_, w)| *w != 0.0).collect()
     }
 
+    /// Whether the equations make Σ cᵢ uᵢ zero: what is left of each sum is nothing beside its parts, as
+    /// [`Constraints::eliminate`] judges it.
+    pub fn implies(&self, terms: &[(usize, f64)]) -> bool {
+        let mut sums: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+        for (dof, factor) in terms {
+            for (i, c) in self.row(*dof).0 {
+                let [sum, size] = sums.entry(*i).or_default();
+                *sum += factor * c;
+                *size = size.max((factor * c).abs());
+            }
+        }
+        sums.values().all(|[sum, size]| sum.abs() <= NOTHING * size)
+    }
+
     /// All unknowns from the independent ones.
     pub fn expand(&self, independent: &[f64], all: &mut [f64]) {
         for (dof, u) in all.iter_mut().enumerate() {

@@ -27,6 +27,9 @@ pub struct Laminate {
     pub layers: Vec<usize>,
 }
 
+/// Heights that differ by less than this fraction of the thickness are one.
+pub(crate) const SAME_HEIGHT: f64 = 1e-9;
+
 impl Laminate {
     /// Total thickness, m.
     pub fn thickness(&self) -> f64 {
@@ -42,7 +45,7 @@ impl Laminate {
         for ply in &self.plies {
             z += ply.thickness;
             // A boundary that is the mid-plane but for rounding is the mid-plane.
-            all.push(if z.abs() < 1e-12 * h { 0.0 } else { z });
+            all.push(if z.abs() < SAME_HEIGHT * h { 0.0 } else { z });
         }
         if let Some(top) = all.last_mut() {
             *top = 0.5 * h;
@@ -169,7 +172,7 @@ impl Laminate {
     /// lie at the same heights, to 1e-9 of the thickness.
     pub fn disagreement(&self, other: &Self) -> Option<String> {
         let [mm, other_mm] = [self, other].map(|laminate| laminate.thickness() * 1e3);
-        if (mm - other_mm).abs() > 1e-9 * mm {
+        if (mm - other_mm).abs() > SAME_HEIGHT * mm {
             return Some(format!(
                 "they are {mm:.6} and {other_mm:.6} mm thick; steps in thickness are not supported yet"
             ));
@@ -182,7 +185,7 @@ impl Laminate {
             return Some(format!("their layers of cells hold {:?} and {:?} plies", self.layers, other.layers));
         }
         let (z, others) = (self.boundaries(), other.boundaries());
-        let apart = (1..z.len()).find(|k| (z[*k] - others[*k]).abs() * 1e3 > 1e-9 * mm)?;
+        let apart = (1..z.len()).find(|k| (z[*k] - others[*k]).abs() * 1e3 > SAME_HEIGHT * mm)?;
         Some(format!("ply {apart} ends at {:.6} and {:.6} mm above the mid-plane", z[apart] * 1e3, others[apart] * 1e3))
     }
 

@@ -1,5 +1,6 @@
 //! A plate of cells: mesh, plies, unknowns, and what holds, loads and strikes it.
 
+pub mod axes;
 pub mod constraint;
 mod error;
 pub mod laminate;
@@ -7,6 +8,7 @@ pub mod laws;
 pub mod load;
 pub mod mesh;
 pub mod patch;
+pub mod pieces;
 pub mod plate;
 mod prolongation;
 pub mod support;

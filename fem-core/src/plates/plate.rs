@@ -3,6 +3,7 @@
 mod part;
 
 use crate::contracts::element::{Cell, ElementInfo, Stack};
+use crate::plates::laminate::SAME_HEIGHT;
 use crate::plates::mesh::{Group, PlaneMesh};
 use crate::plates::symmetry::{self, Symmetry};
 use crate::words::dof::Dof;
@@ -312,7 +313,7 @@ impl Plate {
     /// Level whose z is the mid-plane of the laminate, if there is one.
     pub fn mid_level(&self) -> Option<usize> {
         let h = self.levels[self.levels.len() - 1] - self.levels[0];
-        self.levels.iter().position(|z| z.abs() < 1e-9 * h)
+        self.levels.iter().position(|z| z.abs() < SAME_HEIGHT * h)
     }
 
     /// Column, level and name of an unknown.

@@ -103,7 +103,7 @@ pub struct FreeMotions {
 }
 
 /// Singular values of the supports below this fraction of the largest count as zero.
-const RANK: f64 = 1e-7;
+pub(super) const RANK: f64 = 1e-7;
 
 impl FreeMotions {
     /// Finds them.

@@ -26,10 +26,6 @@ pub enum SymmetryGroup {
     Quarter,
 }
 
-/// Distance between a node and the image of another, over the plate's size, at which they are one: above the rounding of
-/// coordinates, and below what [`crate::plates::support::FreeMotions`] takes for a hold.
-const SAME: f64 = 1e-8;
-
 /// Couplings of a stiffness below this fraction of its largest entry are rounding.
 const NO_COUPLING: f64 = 1e-9;
 
@@ -141,7 +137,7 @@ impl Symmetry {
     pub(crate) fn of(group: SymmetryGroup, plate: &Plate) -> Result<Self, PlateError> {
         let (low, high) = plate.plane.bounds();
         let centre = [0, 1].map(|d| 0.5 * (low[d] + high[d]));
-        let reach = SAME * (high[0] - low[0]).hypot(high[1] - low[1]);
+        let reach = plate.plane.reach();
         let operations = || group.operations().iter().copied();
         let places = Places::of(plate, reach);
         let refused = |at: Asymmetry| PlateError::Asymmetric { symmetry: group.name(), centre, at };

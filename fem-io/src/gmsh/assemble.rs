@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use fem_core::mesh::{Group, PlaneMesh};
 
-use super::checks::{Edges, check_flat_and_joined};
+use super::checks::check_flat;
 use super::elements::Grouped;
 use super::error::{FilePlace, MeshError, MeshFault};
 use super::nodes::NodeTable;
@@ -13,7 +13,8 @@ use super::source::{Item, Source};
 /// Stands for the number of a node that no cell uses.
 const UNUSED: u32 = u32::MAX;
 
-/// Numbers nodes and cells and fills the groups. Cells must be anticlockwise.
+/// Numbers nodes and cells and fills the groups. Cells must be anticlockwise; elements of edges that no cell has both nodes of
+/// are left for [`check_edges`](super::checks::check_edges) to refuse.
 pub(super) fn mesh(
     source: &Source<'_>,
     nodes: &NodeTable,
@@ -26,8 +27,7 @@ pub(super) fn mesh(
         number[node as usize] = 0;
     }
     let used: Vec<u32> = (0..).zip(&number).filter(|(_, n)| **n != UNUSED).map(|(old, _)| old).collect();
-    check_flat_and_joined(source, nodes, &used)?;
-    Edges::new(source, nodes, &grouped.cells)?.check_groups(source, nodes, &grouped.edges)?;
+    check_flat(source, nodes, &used)?;
 
     let mut mesh = PlaneMesh::default();
     for (new, old) in (0..).zip(&used) {
@@ -54,7 +54,7 @@ pub(super) fn mesh(
     }
     for edge in &grouped.edges {
         let ends = edge.nodes.map(number);
-        for name in edge.groups {
+        for name in edge.groups.iter().filter(|_| !ends.contains(&UNUSED)) {
             let group = member(&mut groups, name, 1);
             group.edges.push(ends);
             group.nodes.extend(ends);

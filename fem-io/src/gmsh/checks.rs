@@ -1,6 +1,7 @@
 //! What must hold of cells and nodes before they are a mesh.
 
 use fem_core::domain::Corners;
+use fem_core::mesh::{PlaneMesh, Sides};
 use std::collections::BTreeMap;
 
 use super::elements::Element;
@@ -68,65 +69,37 @@ fn cross(u: [f64; 2], v: [f64; 2]) -> f64 {
     u[0] * v[1] - u[1] * v[0]
 }
 
-/// Directed edges of anticlockwise cells, each with its cell, sorted. In a sound mesh each occurs once, since a second
-/// cell runs along the edge the other way.
-#[derive(Debug)]
-pub(super) struct Edges(Vec<(u64, u32)>);
-
-impl Edges {
-    pub(super) fn new(
-        source: &Source<'_>,
-        nodes: &NodeTable,
-        cells: &[Element<'_, Corners<u32>>],
-    ) -> Result<Self, MeshError> {
-        let mut edges = Vec::with_capacity(4 * cells.len());
-        for (i, cell) in (0_u32..).zip(cells) {
-            edges.extend(cell.nodes.sides().map(|[a, b]| (direct_edge(a, b), i)));
+/// Refuses elements of edge groups that are not a side of a cell, or the same side as another of the group.
+pub(super) fn check_edges(
+    source: &Source<'_>,
+    nodes: &NodeTable,
+    elements: &[Element<'_, [u32; 2]>],
+    mesh: &PlaneMesh,
+) -> Result<(), MeshError> {
+    let sides = Sides::of(mesh);
+    let number = |tag: u64| mesh.node_tags.binary_search(&tag).ok().map(|n| n as u32);
+    let mut seen = BTreeMap::new();
+    for element in elements {
+        let tags = element.nodes.map(|n| nodes.tag(n));
+        let ends = number(tags[0]).zip(number(tags[1]));
+        let is_side = ends.is_some_and(|(a, b)| sides.find([a, b]).or(sides.find([b, a])).is_some());
+        for group in element.groups {
+            let first = *seen.entry((group, [tags[0].min(tags[1]), tags[0].max(tags[1])])).or_insert(element.tag);
+            let fault = if !is_side {
+                MeshFault::NotAnEdge { element: element.tag, group: group.clone(), nodes: tags }
+            } else if first != element.tag {
+                MeshFault::RepeatedEdge { elements: [first, element.tag], group: group.clone() }
+            } else {
+                continue;
+            };
+            return Err(source.error(source.find(Item::Element(element.tag)), fault));
         }
-        edges.sort_unstable();
-        if let Some(pair) = edges.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-            let tags = [pair[0].1, pair[1].1].map(|i| cells[i as usize].tag);
-            let ends = [pair[0].0 >> 32, pair[0].0 & u64::from(u32::MAX)].map(|n| nodes.tag(n as u32));
-            let fault = MeshFault::Overlap { cells: tags, nodes: ends };
-            return Err(source.error(source.find(Item::Element(tags[1])), fault));
-        }
-        Ok(Self(edges))
     }
-
-    fn contains(&self, [a, b]: [u32; 2]) -> bool {
-        [direct_edge(a, b), direct_edge(b, a)].iter().any(|edge| self.0.binary_search_by_key(edge, |e| e.0).is_ok())
-    }
-
-    /// Refuses elements of edge groups that are not an edge of a cell, or the same edge as another of the group.
-    pub(super) fn check_groups(
-        &self,
-        source: &Source<'_>,
-        nodes: &NodeTable,
-        elements: &[Element<'_, [u32; 2]>],
-    ) -> Result<(), MeshError> {
-        let mut seen = BTreeMap::new();
-        for element in elements {
-            let [a, b] = element.nodes;
-            let is_edge = self.contains(element.nodes);
-            for group in element.groups {
-                let first = *seen.entry((group, [a.min(b), a.max(b)])).or_insert(element.tag);
-                let fault = if !is_edge {
-                    let nodes = element.nodes.map(|n| nodes.tag(n));
-                    MeshFault::NotAnEdge { element: element.tag, group: group.clone(), nodes }
-                } else if first != element.tag {
-                    MeshFault::RepeatedEdge { elements: [first, element.tag], group: group.clone() }
-                } else {
-                    continue;
-                };
-                return Err(source.error(source.find(Item::Element(element.tag)), fault));
-            }
-        }
-        Ok(())
-    }
+    Ok(())
 }
 
-/// Refuses nodes off the plane of the first, and pairs of nodes at one place.
-pub(super) fn check_flat_and_joined(source: &Source<'_>, nodes: &NodeTable, used: &[u32]) -> Result<(), MeshError> {
+/// Refuses nodes off the plane of the first.
+pub(super) fn check_flat(source: &Source<'_>, nodes: &NodeTable, used: &[u32]) -> Result<(), MeshError> {
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];
     for p in used.iter().map(|n| nodes.plane(*n)) {
@@ -142,25 +115,5 @@ pub(super) fn check_flat_and_joined(source: &Source<'_>, nodes: &NodeTable, used
         let fault = MeshFault::NotFlat { node: off.tag, z: off.x[2], other: first.tag, other_z: first.x[2] };
         return Err(source.error(source.find(Item::Coordinates(off.tag)), fault));
     }
-    // Along an oblique line the nodes of regular meshes lie apart, so that nodes at one place are neighbours.
-    let oblique = |n: &u32| {
-        let [x, y] = nodes.plane(*n);
-        x + 0.618_033_988_749_894_9 * y
-    };
-    let mut sorted = used.to_vec();
-    sorted.sort_by(|a, b| oblique(a).total_cmp(&oblique(b)));
-    for pair in sorted.windows(2) {
-        let [a, b] = [nodes.plane(pair[0]), nodes.plane(pair[1])];
-        if (b[0] - a[0]).hypot(b[1] - a[1]) <= nothing {
-            let mut tags = [nodes.tag(pair[0]), nodes.tag(pair[1])];
-            tags.sort_unstable();
-            return Err(source.error(source.find(Item::Node(tags[1])), MeshFault::NotJoined { nodes: tags }));
-        }
-    }
     Ok(())
-}
-
-/// An edge as one number, which sorts faster than a pair.
-fn direct_edge(from: u32, to: u32) -> u64 {
-    u64::from(from) << 32 | u64::from(to)
 }

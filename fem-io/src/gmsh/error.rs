@@ -36,6 +36,26 @@ impl fmt::Display for FilePlace {
     }
 }
 
+/// Where cells do not meet as they should.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlawPlace {
+    /// The place, m.
+    pub at: [f64; 2],
+    /// How many such places there are.
+    pub all: usize,
+}
+
+impl fmt::Display for FlawPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y] = self.at.map(|x| x * 1e3);
+        write!(f, "at ({x:.4}, {y:.4}) mm (")?;
+        match self.all {
+            1 => f.write_str("`fem mesh --picture` shows the place)"),
+            n => write!(f, "one of {n} such places, which `fem mesh --picture` shows)"),
+        }
+    }
+}
+
 /// What can be wrong with a mesh file. Nodes, elements and entities have their numbers in the file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -61,7 +81,10 @@ pub enum MeshFault {
     #[error("not valid MSH 4.1: {0}; the file is damaged or cut short, save it again from gmsh")]
     Syntax(String),
     /// A section that must be there is not, or holds nothing.
-    #[error("the section ${0} is missing or empty: mesh the surfaces before saving (gmsh option -2)")]
+    #[error(
+        "the section ${0} is missing or empty: mesh the surfaces before saving (gmsh option -2), or get the file anew if it \
+         was cut short"
+    )]
     Missing(&'static str),
     /// A section occurs more than once.
     #[error("a second section ${0}: files cannot be joined by appending, merge them in gmsh and save once")]
@@ -189,25 +212,68 @@ pub enum MeshFault {
         /// Angle there.
         degrees: f64,
     },
-    /// Two cells over the same place.
+    /// Two cells on one side of an edge.
     #[error(
-        "cells {} and {} lie on the same side of the edge between nodes {} and {}: they overlap; \
+        "cells {} and {} lie on the same side of the edge between nodes {} and {}, {spot}: they overlap; \
          remove doubled surfaces (Coherence;) and mesh again", cells[0], cells[1], nodes[0], nodes[1]
     )]
-    Overlap {
+    SameSide {
         /// The cells.
         cells: [u64; 2],
         /// Nodes of their common edge.
         nodes: [u64; 2],
+        /// Where.
+        spot: FlawPlace,
+    },
+    /// Two cells over the same place.
+    #[error(
+        "cells {} and {} lie over each other {spot}: cut one surface out of the other (BooleanFragments or \
+         BooleanDifference) or leave one of them out of the physical groups, and mesh again", cells[0], cells[1]
+    )]
+    Overlap {
+        /// The cells.
+        cells: [u64; 2],
+        /// Where.
+        spot: FlawPlace,
+    },
+    /// A node on a side of a cell that is not a corner of it.
+    #[error(
+        "node {node} lies on the side of cell {cell} from node {} to node {} {spot} and is not a corner of it, so that the \
+         cells there are not joined: let both surfaces share one curve (Coherence; or BooleanFragments), which is then \
+         divided once, and mesh again; removeDuplicateNodes() cannot join them", side[0], side[1]
+    )]
+    Hanging {
+        /// The node.
+        node: u64,
+        /// The cell.
+        cell: u64,
+        /// Nodes of its side.
+        side: [u64; 2],
+        /// Where.
+        spot: FlawPlace,
     },
     /// Two nodes at the same place.
     #[error(
-        "nodes {} and {} lie at the same point, so that the cells there are not joined: let the surfaces share their \
-         curves (Coherence; or BooleanFragments) or call gmsh.model.mesh.removeDuplicateNodes()", nodes[0], nodes[1]
+        "nodes {} and {} lie at the same point {spot}, so that the cells there are not joined: let the surfaces share \
+         their curves (Coherence; or BooleanFragments) and mesh again, or call gmsh.model.mesh.removeDuplicateNodes(); \
+         where a cut is meant, name its physical curve in `mesh.cuts` of the scene", nodes[0], nodes[1]
     )]
     NotJoined {
         /// The nodes.
         nodes: [u64; 2],
+        /// Where.
+        spot: FlawPlace,
+    },
+    /// Cells with no more than a node in common.
+    #[error(
+        "cells are joined by node {node} alone {spot}, which makes a hinge: let the surfaces have a curve in common or none \
+         at all; where a cut ends at an edge, name that end as OpenBoundaryPhysicalGroup of gmsh's Plugin(Crack)"
+    )]
+    Pinched {
+        /// The node.
+        node: u64,
+        /// Where.
+        spot: FlawPlace,
     },
     /// Two elements of a group on the same two nodes.
     #[error("elements {} and {} of group {group:?} are the same edge; remove doubled curves (Coherence;)", elements[0], elements[1])]

@@ -2,8 +2,8 @@
 //!
 //! Cells are the quadrilaterals of all physical surfaces; physical curves become groups of edges, physical points
 //! groups of nodes. Node and cell numbers of the result follow the numbers in the file, not the order in it. Everything
-//! that would make the mesh another one than it seems (triangles, cells that overlap or are not joined, edges that
-//! belong to no cell, numbers given twice) is refused with place and remedy.
+//! that would make the mesh another one than it seems (cells that overlap or are not joined, edges that belong to no cell,
+//! numbers given twice) is refused with place and remedy.
 //!
 //! ```
 //! let square = "$MeshFormat\n4.1 0 8\n$EndMeshFormat
@@ -28,6 +28,7 @@ mod nodes;
 mod source;
 #[cfg(test)]
 mod tests;
+mod tiling;
 mod write;
 
 use std::path::Path;
@@ -35,7 +36,8 @@ use std::path::Path;
 use crate::bytes::{self, Links};
 use fem_core::mesh::PlaneMesh;
 
-pub use error::{FilePlace, MeshError, MeshFault};
+pub use error::{FilePlace, FlawPlace, MeshError, MeshFault};
+pub use tiling::Examined;
 pub use write::{Encoding, write};
 
 use elements::Grouped;
@@ -60,15 +62,9 @@ pub struct GmshMesh {
 /// Cells are quadrilaterals and triangles; those of second order are read by their corners, with a warning.
 ///
 /// # Errors
-/// When the file cannot be read, is not MSH 4.1 or is not a sound flat mesh of convex cells.
+/// When the file cannot be read, is not MSH 4.1 or is not a sound flat mesh of convex cells that tile a plate.
 pub fn read(path: &Path, unit_metres: f64) -> Result<GmshMesh, MeshError> {
-    let name = path.display().to_string();
-    let bytes = bytes::read(path, MAX_BYTES, Links::Follow).map_err(|e| MeshError {
-        file: name.clone(),
-        place: FilePlace::File,
-        fault: MeshFault::Unreadable(e.to_string()),
-    })?;
-    parse(&bytes, &name, unit_metres)
+    examine(path, unit_metres, &[])?.sound()
 }
 
 /// Reads a mesh from the bytes of a file; `name` stands for the file in messages.
@@ -76,6 +72,24 @@ pub fn read(path: &Path, unit_metres: f64) -> Result<GmshMesh, MeshError> {
 /// # Errors
 /// As [`read`].
 pub fn parse(bytes: &[u8], name: &str, unit_metres: f64) -> Result<GmshMesh, MeshError> {
+    examine_bytes(bytes, name, unit_metres, &[])?.sound()
+}
+
+/// Reads a mesh file whose cells need not tile a plate; where they do not on purpose, along the groups `cuts`, is no flaw.
+///
+/// # Errors
+/// As [`read`], but for flaws of the tiling, which are part of the result.
+pub fn examine(path: &Path, unit_metres: f64, cuts: &[String]) -> Result<Examined, MeshError> {
+    let name = path.display().to_string();
+    let bytes = bytes::read(path, MAX_BYTES, Links::Follow).map_err(|e| MeshError {
+        file: name.clone(),
+        place: FilePlace::File,
+        fault: MeshFault::Unreadable(e.to_string()),
+    })?;
+    examine_bytes(&bytes, &name, unit_metres, cuts)
+}
+
+fn examine_bytes(bytes: &[u8], name: &str, unit_metres: f64, cuts: &[String]) -> Result<Examined, MeshError> {
     let source = Source::open(name, bytes)?;
     if !(unit_metres > 0.0 && unit_metres.is_finite()) {
         return Err(source.error(FilePlace::File, MeshFault::Unit(unit_metres)));
@@ -89,7 +103,11 @@ pub fn parse(bytes: &[u8], name: &str, unit_metres: f64) -> Result<GmshMesh, Mes
     let turned = checks::orient(&source, &nodes, &mut grouped.cells)?;
     let mesh = assemble::mesh(&source, &nodes, &grouped, unit_metres)?;
     let warnings = warnings(&mesh, &groups, &grouped, &turned);
-    Ok(GmshMesh { mesh, warnings })
+    let examined = Examined::new(&source, GmshMesh { mesh, warnings }, cuts);
+    if examined.flaws.is_empty() {
+        checks::check_edges(&source, &nodes, &grouped.edges, &examined.read.mesh)?;
+    }
+    Ok(examined)
 }
 
 /// What the user should know of a mesh that was accepted.

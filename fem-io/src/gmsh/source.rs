@@ -32,7 +32,33 @@ impl<'a> Source<'a> {
         for (section, what) in [("Elements", "element"), ("Nodes", "node")] {
             source.begin(section, what)?;
         }
-        Ok(source)
+        match source.open_section() {
+            Some(section) => Err(source.cut_off(&format!("inside ${section}"))),
+            None => Ok(source),
+        }
+    }
+
+    /// The last section, if it does not end.
+    fn open_section(&self) -> Option<&'static str> {
+        let (name, start) = *self.sections.last()?;
+        let end = format!("$End{name}");
+        (self.until(start, end.as_bytes()).len() == self.bytes.len() - start).then_some(name)
+    }
+
+    fn cut_off(&self, at: &str) -> MeshError {
+        self.syntax(self.bytes.len(), &format!("the file ends {at}"))
+    }
+
+    /// What is said of a section that is not there. gmsh writes them in one order, nodes and elements both or neither.
+    fn lacking(&self, section: &'static str) -> MeshError {
+        let order = |name: &str| SECTIONS.iter().position(|known| *known == name);
+        let behind = self.sections.iter().any(|(name, _)| order(name) > order(section));
+        match self.open_section() {
+            _ if behind => self.error(FilePlace::File, MeshFault::Missing(section)),
+            Some(last) => self.cut_off(&format!("inside ${last}, before ${section}")),
+            None if self.section("Nodes").is_some() => self.cut_off(&format!("before ${section}")),
+            None => self.error(FilePlace::File, MeshFault::Missing(section)),
+        }
     }
 
     pub(super) fn error(&self, place: FilePlace, fault: MeshFault) -> MeshError {
@@ -51,7 +77,7 @@ impl<'a> Source<'a> {
     /// The numbers at the beginning of `$Nodes` or `$Elements`, blocks of `what`, all of them, their least and largest
     /// tag, and what follows.
     pub(super) fn begin(&self, section: &'static str, what: &str) -> Result<(Cursor<'a>, [u64; 4]), MeshError> {
-        let start = self.section(section).ok_or_else(|| self.error(FilePlace::File, MeshFault::Missing(section)))?;
+        let start = self.section(section).ok_or_else(|| self.lacking(section))?;
         let mut cursor = self.cursor(start);
         let mut head = [0; 4];
         for (number, name) in head.iter_mut().zip(["entity blocks", "entries", "least tag", "largest tag"]) {

@@ -1,13 +1,13 @@
 //! A mesh with its groups.
 
 use super::{Axis, Fill, MapCell, MapPlot, Panel, Stroke};
-use fem_core::mesh::PlaneMesh;
+use fem_core::mesh::{Flaw, PlaneMesh};
 
 /// The cells of `mesh` in mm with its groups in colours: edges as lines, nodes as dots, cells filled, unless they are all
-/// there are. Crosses mark `impacts`, m.
+/// there are. Crosses mark `impacts`, m, dots and crosses `flaws`, whose kinds have colours behind those of the groups.
 ///
 /// Groups have their colours in the order of their names; those without anything in them are left out.
-pub fn mesh_map(title: &str, mesh: &PlaneMesh, impacts: &[[f64; 2]]) -> MapPlot {
+pub fn mesh_map(title: &str, mesh: &PlaneMesh, impacts: &[[f64; 2]], flaws: &[Flaw]) -> MapPlot {
     let mm = |p: [f64; 2]| p.map(|v| v * 1e3);
     let place = |n: u32| mm(mesh.points[n as usize]);
     let mut fills = vec![Fill::Blank; mesh.quads.len()];
@@ -27,7 +27,15 @@ pub fn mesh_map(title: &str, mesh: &PlaneMesh, impacts: &[[f64; 2]]) -> MapPlot 
     }
     let cell = |(q, fill): (usize, Fill)| MapCell { corners: mesh.corners(q).map(mm).to_vec(), fill };
     panel.cells = fills.into_iter().enumerate().map(cell).collect();
-    panel.crosses = impacts.iter().map(|p| mm(*p)).collect();
+    for flaw in flaws {
+        let name = flaw.kind.name();
+        let k = classes.iter().position(|class| class == name).unwrap_or(classes.len());
+        if k == classes.len() {
+            classes.push(name.to_owned());
+        }
+        panel.dots.push((mm(flaw.at), k));
+    }
+    panel.crosses = impacts.iter().copied().chain(flaws.iter().map(|flaw| flaw.at)).map(mm).collect();
     let axis = |label: &str| Axis::linear(label, "mm");
     MapPlot {
         title: title.to_owned(),
@@ -51,7 +59,7 @@ mod tests {
         let mut mesh = PlaneMesh::rectangle(&[0.0, 1e-3, 2e-3], &[0.0, 1e-3]);
         mesh.groups.insert("patch".into(), Group { dim: 2, quads: vec![1], ..Group::default() });
         mesh.groups.insert("point".into(), Group { nodes: vec![4], ..Group::default() });
-        let map = mesh_map("plate", &mesh, &[[0.5e-3, 0.5e-3]]);
+        let map = mesh_map("plate", &mesh, &[[0.5e-3, 0.5e-3]], &[]);
         assert_eq!(map.classes, ["patch", "point", "x-max", "x-min", "y-max", "y-min"]);
         let panel = &map.panels[0];
         assert_eq!((panel.cells[0].fill, panel.cells[1].fill), (Fill::Blank, Fill::Class(0)));

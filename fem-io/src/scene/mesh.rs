@@ -21,6 +21,8 @@ pub enum MeshSource {
         refine: Located<u32>,
         /// What becomes of curved edges then.
         curves: Curves,
+        /// Groups along which the plate is cut: nodes of theirs may lie where others do.
+        cuts: Vec<Located<String>>,
     },
     /// A rectangle from the origin with equal cells.
     Rectangle {
@@ -49,6 +51,12 @@ const FILE: Keys = &[
     key("unit", Form::Text, r#""mm""#, "unit of its coordinates").required(),
     REFINE,
     CURVES,
+    key(
+        "cuts",
+        Form::List(&Form::Text),
+        r#"["slit"]"#,
+        "groups of edges along which the plate is cut on purpose, each face with nodes of its own at the same places",
+    ),
 ];
 const RECTANGLE: Keys = &[
     key(
@@ -181,7 +189,9 @@ pub(super) fn read(field: &SceneValue<'_>, scene: &Path) -> Result<MeshSource, S
     let metres_per_unit = units::parse_as(&format!("1 {}", unit.text()?), Dimension::LENGTH)
         .map_err(|_| unit.error("must be a unit of length", "write the unit of the file's coordinates: mm, m, in"))?;
     let refine = refine(&table, 1)?;
-    Ok(MeshSource::File { file: file.at(path), metres_per_unit, refine, curves: curves(&table)? })
+    let cut = |field: &SceneValue<'_>| Ok(field.at(field.text()?.to_owned()));
+    let cuts = table.optional("cuts").map_or(Ok(Vec::new()), |field| field.list()?.iter().map(cut).collect())?;
+    Ok(MeshSource::File { file: file.at(path), metres_per_unit, refine, curves: curves(&table)?, cuts })
 }
 
 fn rectangle(table: &Reader<'_>) -> Result<MeshSource, SceneError> {

@@ -1,17 +1,26 @@
 //! Plane meshes of quadrilaterals and triangles with named groups.
 
+mod boxes;
 mod curve;
 mod graded;
 mod refine;
+mod sides;
 #[cfg(test)]
 mod tests;
+mod tiling;
 
 pub use graded::{Graded, MAX_CELLS, Outline};
 pub use refine::Curves;
+pub use sides::{Side, Sides};
+pub use tiling::{Flaw, FlawKind};
 
 use crate::words::domain::{CellQuality, Corners, Domain};
 use curve::Chains;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
+
+/// Distance over the diagonal of a mesh within which a node and a place that is named, or that a symmetry gives, are one: above
+/// the rounding of coordinates, and below what [`crate::plates::support::FreeMotions`] takes for a hold.
+const SAME_PLACE: f64 = 1e-8;
 
 /// A named group of a mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -119,9 +128,8 @@ impl PlaneMesh {
 
     /// Edges of one cell alone, which lies to their left.
     pub(crate) fn boundary(&self) -> Vec<[u32; 2]> {
-        let edges = || self.quads.iter().flat_map(|q| q.sides());
-        let all: HashSet<[u32; 2]> = edges().collect();
-        edges().filter(|[a, b]| !all.contains(&[*b, *a])).collect()
+        let sides = Sides::of(self);
+        self.quads.iter().flat_map(|q| q.sides()).filter(|side| sides.opposite(*side).is_none()).collect()
     }
 
     /// Largest angle by which the boundary turns from edge to edge where it follows a curve, radians: turns of less than
@@ -143,6 +151,12 @@ impl PlaneMesh {
             }
         }
         (low, high)
+    }
+
+    /// Distance within which places are one, m.
+    pub fn reach(&self) -> f64 {
+        let (low, high) = self.bounds();
+        SAME_PLACE * (high[0] - low[0]).hypot(high[1] - low[1])
     }
 
     /// Sum of the cell areas, m².

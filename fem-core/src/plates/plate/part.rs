@@ -1,6 +1,6 @@
 //! Some of the cells of a plate as a plate of their own.
 
-use super::{Plate, columns, ordered};
+use super::{Plate, columns};
 use crate::plates::mesh::{Group, PlaneMesh};
 use crate::plates::symmetry::Symmetry;
 use std::collections::BTreeMap;
@@ -52,13 +52,7 @@ impl Plate {
 
     /// Columns on edges that a single quad has, ascending.
     pub fn outline(&self) -> Vec<u32> {
-        let mut sides: BTreeMap<[u32; 2], u32> = BTreeMap::new();
-        for quad in &self.plane.quads {
-            for side in quad.sides() {
-                *sides.entry(ordered(side)).or_insert(0) += 1;
-            }
-        }
-        let edges: Vec<[u32; 2]> = sides.into_iter().filter(|side| side.1 == 1).map(|side| side.0).collect();
+        let edges = self.plane.boundary();
         let nodes = edges.iter().flatten().copied().collect();
         self.columns_of_group(&Group { dim: 1, nodes, edges, quads: Vec::new() })
     }

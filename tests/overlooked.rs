@@ -1,0 +1,105 @@
+//! What a scene says and nothing would follow from: refused, or warned of with a number.
+
+use crate::support::{Case, fem, plate};
+
+/// A plate of solids, whose unknowns are displacements alone.
+fn case(support_and_load: &str) -> Case {
+    plate().text(&format!(
+        r#"
+title = "overlooked"
+analysis = "static"
+mesh = {{ rectangle = ["40 mm", "20 mm"], cells = [4, 2] }}
+element = {{ kind = "hex20" }}
+materials.tape = {{ library = "AS4/3502" }}
+laminate = {{ plies = "[0/90]s", material = "tape", ply_thickness = "0.25 mm", layers = [2, 2] }}
+output = {{ plots = false }}
+{support_and_load}
+"#
+    ))
+}
+
+/// What `fem check` says, without line breaks.
+fn said(case: &Case, status: i32) -> String {
+    let scene = case.write();
+    let done = fem(case.folder(), &["check", scene]);
+    assert_eq!(done.status, status, "{done:?}");
+    let all = format!("{} {}", done.stdout, done.stderr);
+    all.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
+}
+
+#[track_caller]
+fn holds(said: &str, words: &[&str]) {
+    for words in words {
+        assert!(said.contains(words), "{words:?} is not in {said}");
+    }
+}
+
+const CLAMPED: &str = r#"support = [{ group = "x-min", at = "all", fix = ["U10", "U20", "U30"] }]"#;
+
+#[test]
+fn supports_of_unknowns_that_the_element_lacks() {
+    let slopes = case(
+        r#"support = [{ group = "x-min", at = "mid-plane", fix = ["U10", "U20", "U30", "U13", "U31"] },
+            { group = "x-max", at = "mid-plane", fix = ["U30"] }]
+load = [{ pressure = "1 kPa" }]"#,
+    );
+    holds(&said(&slopes, 0), &["2 of 5 unknowns in the support of `x-min` are not of this element", "U13, U31"]);
+    assert!(
+        !said(&case(&format!("{CLAMPED}\nload = [{{ pressure = \"1 kPa\" }}]")), 0).contains("are not of this element")
+    );
+    let tied = |couple: &str| case(&format!("{CLAMPED}\nload = [{{ pressure = \"1 kPa\" }}]\ncouple = [{couple}]"));
+    holds(
+        &said(&tied(r#"{ group = "x-max", at = "top", dofs = ["U31"] }"#), 1),
+        &["the couple of `x-max` ties nothing", "unknowns that the element has"],
+    );
+    holds(
+        &said(&tied(r#"{ group = "x-max", at = "top", dofs = ["U30", "U31"] }"#), 0),
+        &["1 of 2 unknowns in the couple of `x-max`", "U31"],
+    );
+}
+
+#[test]
+fn loads_on_what_is_held() {
+    let loaded = |load: &str| case(&format!("{CLAMPED}\nload = [{load}]"));
+    let on_edge = r#"{ force_per_length = ["0 N/mm", "0 N/mm", "-1 N/mm"], group = "x-min" }"#;
+    let held = loaded(on_edge);
+    holds(&said(&held, 1), &["the supports take all of the load", "force_per_length"]);
+    // One of two loads, an edge of which a part is held, and a load that is nothing at all.
+    for load in [
+        &*format!("{on_edge}, {{ pressure = \"1 kPa\" }}"),
+        r#"{ force_per_length = ["0 N/mm", "0 N/mm", "-1 N/mm"], group = "y-min" }"#,
+        r#"{ pressure = "0 Pa" }"#,
+    ] {
+        said(&loaded(load), 0);
+    }
+}
+
+/// A quarter of a plate, struck at the corner that is its middle, by a node; and a cantilever struck at its tip.
+#[test]
+fn parts_of_a_plate_made_by_hand() {
+    let struck = |support: &str| {
+        let case = plate().text(&format!(
+            r#"
+title = "a quarter"
+mesh = {{ rectangle = ["20 mm", "20 mm"], cells = [4, 4] }}
+element = {{ kind = "mitc4" }}
+materials.tape = {{ library = "AS4/3502" }}
+laminate = {{ plies = "[0/90]s", material = "tape", ply_thickness = "0.25 mm", layers = [4] }}
+support = [{support}]
+impactor = {{ mass = "1 kg", velocity = "1 m/s", at = {{ x = "0 mm", y = "0 mm" }}, load = "node" }}
+contact = {{ law = "hertz", k = "1e4 N/mm^1.5" }}
+march = {{ integrator = "newmark", step = "1 us", end = "0.1 ms" }}
+effects = {{ damage = "off" }}
+output = {{ plots = false }}
+"#
+        ));
+        said(&case, 0)
+    };
+    let far = r#"{ group = "x-max", at = "mid-plane", fix = ["U10", "U20", "U30", "U13", "U23"] }"#;
+    let x = r#"{ group = "x-min", at = "mid-plane", fix = ["U10", "U13"] }"#;
+    let y = r#"{ group = "y-min", at = "mid-plane", fix = ["U20", "U23"] }"#;
+    let quarter = struck(&format!("{far}, {x}, {y}"));
+    holds(&quarter, &["hold U10 and U20 as in a quarter of a symmetric plate", "must have a quarter of the mass"]);
+    holds(&struck(&format!("{far}, {x}")), &["hold U10 as in a half of a symmetric plate"]);
+    assert!(!struck(far).contains("symmetric plate"));
+}
