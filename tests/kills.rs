@@ -3,7 +3,7 @@
 #![cfg(unix)]
 
 use crate::study::rows;
-use crate::support::{Case, failing, fem, watched};
+use crate::support::{Case, failing, fem, strip, watched};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -121,59 +121,78 @@ fn studied(case: &Case, folder: &str) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-/// Kills so many runs, runs into the folder of another one, studies and reports; how many of them did not end by themselves.
-fn kill(runs: usize, others: usize, studies: usize, reports: usize) -> usize {
-    let mut random = Random(1);
-    let case = watched();
-    let scene = case.write();
-    let (first, again) = (vec!["run", scene, "--out", "out"], vec!["run", scene, "--out", "out", "--resume"]);
-    let found = |folder: &str| files(&case, folder);
-    let own = Victim { case: &case, first: first.clone(), again, before: &|| (), found: &found };
-    let mut ended = own.kill(runs, &mut random);
+/// So many of each.
+struct Kills {
+    runs: usize,
+    /// Runs that draw, which takes longer than the rest.
+    drawn: usize,
+    /// Runs into the folder of another scene's.
+    over: usize,
+    reports: usize,
+    studies: usize,
+}
 
-    // Over the results of another scene; what it has left would be refused by `--resume`, and is superseded without.
-    let other = failing();
-    other.fem("run", &["--out", "out"]).good();
-    fem(other.folder(), &["report", "out"]).good();
-    let copy = || {
-        let copied = Command::new("cp").args(["-a", "out"]).arg(case.folder()).current_dir(other.folder()).status();
-        assert!(copied.unwrap().success());
-    };
-    let over = Victim { case: &case, first: first.clone(), again: first.clone(), before: &copy, found: &found };
-    ended += over.kill(others, &mut random);
+impl Kills {
+    /// How many of them did not end by themselves.
+    fn kill(&self) -> usize {
+        let mut random = Random(1);
+        let plain = watched().scene("maps = true", "maps = true\nplots = false");
+        let drawn = watched();
+        let short = strip().scene("end = \"20 us\"", "end = \"2 us\"").append("[reduction]\nvectors = 10\n");
+        let other = failing().append("[output]\nhistory_every = \"1 us\"\n");
+        other.fem("run", &["--out", "out"]).good();
+        fem(other.folder(), &["report", "out"]).good();
+        let scene = [&plain, &drawn, &short].map(Case::write)[0];
+        let first = || vec!["run", scene, "--out", "out"];
+        let again = || [first(), vec!["--resume"]].concat();
+        let copy = |from: &Path, to: &Case| {
+            let copied = Command::new("cp").arg("-a").arg(from).arg(to.folder().join("out")).status();
+            assert!(copied.unwrap().success());
+        };
 
-    let report = vec!["report", "out"];
-    let page = |folder: &str| {
-        let mut found = files(&case, folder);
-        found.insert("report.html".into(), fs::read(case.folder().join(folder).join("report.html")).unwrap());
-        found
-    };
-    case.fem("run", &["--out", "whole"]).good();
-    let whole = || {
-        let copied = Command::new("cp").args(["-a", "whole", "out"]).current_dir(case.folder()).status();
-        assert!(copied.unwrap().success());
-    };
-    let reported = Victim { case: &case, first: report.clone(), again: report, before: &whole, found: &page };
-    ended += reported.kill(reports, &mut random);
+        let nothing = || ();
+        let all = |folder: &str| files(&plain, folder);
+        let run = Victim { case: &plain, first: first(), again: again(), before: &nothing, found: &all };
+        let mut ended = run.kill(self.runs, &mut random);
 
-    let arguments = ["study", case.write(), "--axis", "step", "--out", "out"];
-    let resumed = [&arguments[..], &["--resume"]].concat();
-    let found = |folder: &str| studied(&case, folder);
-    let study = Victim { case: &case, first: arguments.to_vec(), again: resumed, before: &|| (), found: &found };
-    ended + study.kill(studies, &mut random)
+        // What another scene has left would be refused by `--resume`, and is superseded without.
+        let left = || copy(&other.folder().join("out"), &plain);
+        let over = Victim { case: &plain, first: first(), again: first(), before: &left, found: &all };
+        ended += over.kill(self.over, &mut random);
+
+        let all = |folder: &str| files(&drawn, folder);
+        let run = Victim { case: &drawn, first: first(), again: again(), before: &nothing, found: &all };
+        ended += run.kill(self.drawn, &mut random);
+
+        drawn.fem("run", &["--out", "whole"]).good();
+        let whole = || copy(&drawn.folder().join("whole"), &drawn);
+        let page = |folder: &str| {
+            let page = fs::read(drawn.folder().join(folder).join("report.html")).unwrap();
+            files(&drawn, folder).into_iter().chain([("report.html".to_owned(), page)]).collect()
+        };
+        let report = || vec!["report", "out"];
+        let report = Victim { case: &drawn, first: report(), again: report(), before: &whole, found: &page };
+        ended += report.kill(self.reports, &mut random);
+
+        let study = || vec!["study", scene, "--axis", "step", "--out", "out"];
+        let again = [study(), vec!["--resume"]].concat();
+        let all = |folder: &str| studied(&short, folder);
+        let study = Victim { case: &short, first: study(), again, before: &nothing, found: &all };
+        ended + study.kill(self.studies, &mut random)
+    }
 }
 
 #[test]
 fn at_any_moment() {
-    let ended = kill(20, 8, 2, 8);
-    assert!(ended >= 10, "{ended} of 38 kills met something that was running");
+    let ended = Kills { runs: 26, drawn: 2, over: 6, reports: 5, studies: 1 }.kill();
+    assert!(ended >= 20, "{ended} of 40 kills met something that was running");
 }
 
 #[test]
 #[ignore = "a thousand kills take minutes"]
 fn a_thousand_times() {
-    let ended = kill(640, 160, 40, 160);
-    assert!(ended >= 500, "{ended} of 1000 kills met something that was running");
+    let ended = Kills { runs: 500, drawn: 120, over: 160, reports: 180, studies: 40 }.kill();
+    assert!(ended >= 700, "{ended} of 1000 kills met something that was running");
 }
 
 /// A page never shows pictures of one run beside the numbers of another.

@@ -1,7 +1,9 @@
 //! The page that `fem report` makes of a folder of results, and what a run leaves for it.
 
 use crate::support::{Case, failing, fem, plate, root, strip, watched};
+use base64::Engine as _;
 use serde_json::Value;
+use sha2::Digest as _;
 use std::fs;
 use std::process::Command;
 
@@ -77,7 +79,14 @@ fn a_page_has_all_parts_and_needs_nothing_else() {
     assert!(page.contains("peak plate displacement <span") || page.contains("<dt>peak plate displacement</dt>"));
     let links = page.matches("://").count();
     assert_eq!(links, page.matches("http://www.w3.org/2000/svg").count(), "namespaces alone look like addresses");
-    for word in ["src=\"h", "href=\"h", "@import", "url(h", "fetch(", "XMLHttpRequest"] {
+    // The policy permits the two elements of the page by what stands in them.
+    for (element, directive) in [("script", "script-src"), ("style", "style-src")] {
+        let content =
+            page.split(&format!("<{element}>")).nth(1).unwrap().split(&format!("</{element}>")).next().unwrap();
+        let hash = base64::engine::general_purpose::STANDARD.encode(sha2::Sha256::digest(content));
+        assert!(page.contains(&format!("{directive} 'sha256-{hash}';")), "{directive}");
+    }
+    for word in ["unsafe-inline", "src=\"h", "href=\"h", "@import", "url(h", "fetch(", "XMLHttpRequest"] {
         assert!(!page.contains(word), "{word}");
     }
 

@@ -3,11 +3,16 @@
 use crate::bytes::{self, Links, ReadError};
 use crate::files::{FileError, unread};
 use serde::de::DeserializeOwned;
+use serde_json::Value;
 use std::io::ErrorKind;
 use std::path::Path;
 
 /// Largest file that is read: more is not a result of a run.
 const MAX_BYTES: u64 = 1 << 28;
+
+/// Largest document without a type, and most fields of a table: in memory they are many times as long.
+const MAX_DOCUMENT: usize = 1 << 24;
+const MAX_FIELDS: usize = 1 << 24;
 
 /// A table as it stands in its file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -62,12 +67,28 @@ pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, FileErro
     serde_json::from_str(&text).map(Some).map_err(|why| damaged(path, why.to_string()))
 }
 
+/// As [`read_json`], of a document whose form is not known: it is no longer than a summary.
+///
+/// # Errors
+/// As [`read_json`].
+pub fn read_document(path: &Path) -> Result<Option<Value>, FileError> {
+    let text = read_text(path)?;
+    if text.as_ref().is_some_and(|text| text.len() > MAX_DOCUMENT) {
+        return Err(damaged(path, format!("it is longer than {MAX_DOCUMENT} bytes")));
+    }
+    let parsed = text.map(|text| serde_json::from_str(&text)).transpose();
+    parsed.map_err(|why| damaged(path, why.to_string()))
+}
+
 /// A CSV table; `None` where there is none.
 ///
 /// # Errors
-/// As [`read_text`], and rows that are not as long as the header.
+/// As [`read_text`], rows that are not as long as the header, more fields than any run writes.
 pub fn read_table(path: &Path) -> Result<Option<Table>, FileError> {
     let Some(text) = read_text(path)? else { return Ok(None) };
+    if text.bytes().filter(|byte| b",\n".contains(byte)).count() > MAX_FIELDS {
+        return Err(damaged(path, format!("it has more than {MAX_FIELDS} fields")));
+    }
     let no_table = |why: csv::Error| damaged(path, why.to_string());
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let fields = |record: &csv::StringRecord| record.iter().map(str::to_owned).collect::<Vec<_>>();
@@ -107,6 +128,11 @@ mod tests {
         std::fs::write(&path, "{\"a\": 1").unwrap();
         let error = read_json::<serde_json::Value>(&path).unwrap_err().to_string();
         assert!(error.contains("damaged") && error.contains("EOF"), "{error}");
+        // What takes many times its length in memory.
+        std::fs::write(&path, ",".repeat(MAX_FIELDS) + "\n").unwrap();
+        assert!(read_table(&path).unwrap_err().to_string().contains("more than 16777216 fields"));
+        std::fs::write(&path, format!("[{}0]", "0,".repeat(MAX_DOCUMENT / 2))).unwrap();
+        assert!(read_document(&path).unwrap_err().to_string().contains("longer than"));
         std::fs::write(&path, [0xff, 0xfe]).unwrap();
         assert!(read_text(&path).unwrap_err().to_string().contains("it is not text"));
     }

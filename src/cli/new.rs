@@ -120,7 +120,9 @@ fn write(registry: &Registry, template: &Template, folder: &Path) -> miette::Res
     partial.push(format!(".{}.partial", std::process::id()));
     let partial = folder.with_file_name(partial);
     let put = || {
-        fs::create_dir_all(&partial)?;
+        fs::create_dir_all(folder.with_file_name(""))?;
+        // Not all of it: what has that name already is somebody else's.
+        fs::create_dir(&partial)?;
         files.iter().try_for_each(|(name, bytes)| fs::write(partial.join(name), bytes))?;
         fs::rename(&partial, folder)
     };

@@ -26,7 +26,8 @@ pub fn write_pictures(dir: &OutputDir, report: &Report) -> Result<(), Error> {
     draw(dir, "work-precision", &work_precision(report, what, &all))?;
     if all.len() > 1 {
         for (q, quantity) in report.asked.iter().enumerate() {
-            let name = format!("work-precision-{}", quantity.replace([' ', '/', '|'], "-"));
+            let name =
+                format!("work-precision-{}", quantity.replace(|c: char| c.is_control() || " /|\\".contains(c), "-"));
             draw(dir, &name, &work_precision(report, quantity, &[q]))?;
         }
     }

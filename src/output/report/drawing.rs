@@ -1,10 +1,13 @@
 //! Pictures of a folder that may be anyone's, as the page takes them.
 
 use minijinja::HtmlEscape;
-use roxmltree::{Document, Node};
+use roxmltree::{Document, Node, ParsingOptions};
 use std::fmt::Write as _;
 
 const SVG: &str = "http://www.w3.org/2000/svg";
+
+/// Most elements and texts of a picture.
+const MAX_NODES: u32 = 1 << 21;
 
 /// Elements of our own drawings with their attributes: nothing else gets onto the page.
 const ELEMENTS: [(&str, &[&str]); 7] = [
@@ -22,7 +25,8 @@ const ELEMENTS: [(&str, &[&str]); 7] = [
 /// Names come from [`ELEMENTS`], values have no character that could end them or address anything, texts are escaped: what
 /// is written cannot be read as anything else, whatever `svg` was.
 pub(super) fn redraw(svg: &str) -> Result<String, String> {
-    let document = Document::parse(svg).map_err(|why| why.to_string())?;
+    let limits = ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() };
+    let document = Document::parse_with_options(svg, limits).map_err(|why| why.to_string())?;
     let root = document.root_element();
     if root.tag_name().name() != "svg" {
         return Err(format!("its root is <{}>", root.tag_name().name()));
@@ -62,13 +66,10 @@ fn write_inside(out: &mut String, node: Node<'_, '_>, name: &'static str) -> Res
     }
     out.push('>');
     // Nothing in a drawing of ours lies deeper.
-    if name == "svg" {
-        node.children().try_for_each(|child| write(out, child))?;
-    } else if node.children().any(|child| child.is_element()) {
+    if name != "svg" && node.children().any(|child| child.is_element()) {
         return Err(format!("an element in <{name}>"));
-    } else {
-        node.children().try_for_each(|child| write(out, child))?;
     }
+    node.children().try_for_each(|child| write(out, child))?;
     let _ = write!(out, "</{name}>");
     Ok(())
 }

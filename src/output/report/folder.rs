@@ -6,7 +6,7 @@ use crate::analyses::impact::CHECKPOINT;
 use crate::error::Error;
 use crate::output::damage::{self, DamageMap};
 use fem_io::files::{self, FileError};
-use fem_io::results::{Table, damaged, read_bytes, read_json, read_table, read_text};
+use fem_io::results::{Table, damaged, read_bytes, read_document, read_json, read_table, read_text};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -72,7 +72,7 @@ impl Folder {
     pub(super) fn read(path: &Path) -> Result<Self, Error> {
         let file = |name: &str| path.join(name);
         let files = Files { folder: path, superseded: files::superseded(path)? };
-        let summary: Option<Value> = files.read("summary.json", read_json)?;
+        let summary: Option<Value> = files.read("summary.json", read_document)?;
         if summary.as_ref().is_some_and(|summary| summary.get("title").and_then(Value::as_str).is_none()) {
             return Err(damaged(&file("summary.json"), "it has no title".into()).into());
         }
@@ -82,7 +82,7 @@ impl Folder {
         }
         Ok(Self {
             path: path.to_owned(),
-            cost: files.read("cost.json", read_json)?,
+            cost: files.read("cost.json", read_document)?,
             scene: files.read(SCENE, read_text)?,
             history: files.read("history.csv", read_table)?,
             events: files.read("events.csv", read_table)?,
