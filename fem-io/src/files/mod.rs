@@ -65,7 +65,7 @@ impl OutputDir {
         match fs::create_dir(&keeping) {
             Err(_) if is_folder(&keeping) => {}
             Err(_) if keeping.symlink_metadata().is_ok() => {
-                return Err(FileError::NotAFile { path: keeping, what: "no folder of its own" });
+                return Err(FileError::NotAFile { path: keeping, what: "a link or a file" });
             }
             made => made.map_err(failed("create the folder", &keeping))?,
         }
