@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::forecast::MemoryEstimate;
-use crate::model::Model;
+use crate::model::{DENSITY, Model};
 use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, Symmetric, assemble, condense, pattern};
 use fem_core::counters::Counters;
 use fem_core::functional::Functional;
@@ -95,7 +95,7 @@ impl fmt::Display for Substructures {
 /// Assembles K and M of `model`, and what effects add to K. M is left zero where `inertia` is not wanted.
 ///
 /// # Errors
-/// A cell that the element refuses, more memory than there is.
+/// A cell that the element refuses, more memory than there is, a mass that is wanted where a material has no density.
 pub fn structure(
     model: &Model,
     inertia: bool,
@@ -103,6 +103,9 @@ pub fn structure(
     counters: &mut Counters,
 ) -> Result<Assembled, Error> {
     let Model { plate, element, constraints, division, .. } = model;
+    if let (true, Some(why)) = (inertia, &model.weightless) {
+        return Err(model.origin.source.error_at(&why.place, why.value.clone(), DENSITY).into());
+    }
     let (described, originals) = (plate.clone(), constraints.clone());
     let name = move |i: usize| described.describe(originals.original(i));
     let Some(division) = division else {

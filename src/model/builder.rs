@@ -9,6 +9,7 @@ use fem_core::contact::ContactLaw;
 use fem_core::dof::Dof;
 use fem_core::element::Element;
 use fem_core::failure::{FailureCriterion, Site, check_material};
+use fem_core::material::Material;
 use fem_core::mesh::Group;
 use fem_core::pieces;
 use fem_core::plate::Plate;
@@ -17,7 +18,9 @@ use fem_core::reduction::Reduction;
 use fem_core::support::{self, FreeMotions};
 use fem_core::time::Integrator;
 use fem_dynamics::integrate::located;
-use fem_io::scene::{self, Analysis, CriterionSpec, Located, NodeSet, Place, PluginSpec, Scene, SceneError, Support};
+use fem_io::scene::{
+    self, Analysis, CriterionSpec, LoadKind, Located, NodeSet, Place, PluginSpec, Scene, SceneError, Support,
+};
 use std::collections::BTreeSet;
 
 /// Vectors of a reduction that does not declare how many.
@@ -69,6 +72,28 @@ impl Builder<'_> {
 
     pub(super) fn element(&self) -> Result<Box<dyn Element>, SceneError> {
         build!(self, &self.scene.element, Element)
+    }
+
+    /// `materials` with the densities that masses are made of: 0 where a material gives none and the scene needs none, loads at
+    /// rest without weight; and why there is no mass then.
+    pub(super) fn weights(&self, materials: &[Material]) -> (Vec<Material>, Option<Located<String>>) {
+        let weighs = match &self.scene.analysis {
+            Analysis::Static(loads) => loads.iter().any(|load| matches!(load.kind, LoadKind::Gravity { .. })),
+            Analysis::Impact(_) | Analysis::Modes { .. } => true,
+        };
+        let mut weights = materials.to_vec();
+        if weighs {
+            return (weights, None);
+        }
+        weights.iter_mut().for_each(|material| material.density = material.density.or(Some(0.0)));
+        let laminates = self.scene.laminates.iter();
+        let mut plies =
+            laminates.flat_map(|spec| &spec.laminate.value.plies).map(|ply| &self.scene.materials[ply.material]);
+        let lacks = plies.find_map(|material| {
+            let why = material.value.mass_density().err()?;
+            Some(Located { place: material.place.clone(), value: why.to_string() })
+        });
+        (weights, lacks)
     }
 
     pub(super) fn law(&self, impactor: &scene::ImpactorSpec) -> Result<Box<dyn ContactLaw>, SceneError> {

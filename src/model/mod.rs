@@ -10,6 +10,7 @@ mod mesh;
 mod origin;
 mod plan;
 mod regions;
+mod spacing;
 mod substructures;
 mod symmetry;
 
@@ -17,6 +18,7 @@ pub use fields::FieldPlan;
 pub use gauge::Gauge;
 pub(crate) use mesh::examined_mesh;
 pub use mesh::mesh;
+pub(crate) use origin::DENSITY;
 pub use origin::Origin;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 
@@ -37,7 +39,7 @@ use fem_core::mesh::PlaneMesh;
 use fem_core::pieces;
 use fem_core::plate::Plate;
 use fem_failure::delamination::DelaminationThreshold;
-use fem_io::scene::{self, Analysis, Damage, Output, Scene, Window};
+use fem_io::scene::{self, Analysis, Damage, Located, Output, Scene, Window};
 use std::borrow::Borrow;
 use tracing::info;
 
@@ -48,6 +50,8 @@ pub struct Model {
     pub origin: Origin,
     /// Materials; layups and stations refer to them by index.
     pub materials: Vec<Material>,
+    /// Why there is no mass, where nothing that the scene asks for needs one and a material gives none.
+    pub weightless: Option<Located<String>>,
     /// The laminate under the first impactor, or the first where nothing strikes.
     pub laminate: Laminate,
     /// The laminates of the plate's regions.
@@ -147,11 +151,12 @@ impl Model {
         let levels = laminates[0].levels();
         let lacks = |why: MaterialError| {
             let material = scene.materials.iter().find(|m| m.value.name == why.material).unwrap_or(&scene.materials[0]);
-            builder.error(material, why.to_string(), "add its `density`, for example: density = \"1.58 g/cm^3\"")
+            builder.error(material, why.to_string(), DENSITY)
         };
         let at_rest = matches!(scene.analysis, Analysis::Static(_));
+        let (weights, weightless) = builder.weights(&materials);
         let stacks = |laminate: &Laminate| {
-            let mut stacks = laminate.stacks(&materials).map_err(lacks)?;
+            let mut stacks = laminate.stacks(&weights).map_err(lacks)?;
             for effect in effects.acting() {
                 effect.on_stacks(at_rest, laminate, &materials, &mut stacks).map_err(lacks)?;
             }
@@ -191,8 +196,13 @@ impl Model {
             |centre: [f64; 2]| (0..plate.plane.quads.len()).find(|q| plate.plane.corners(*q).locate(centre).is_some());
         let region = centres.first().and_then(|centre| struck(*centre)).map_or(0, |quad| plate.region(quad));
         let laminate = laminates[region].clone();
-        let areal_mass = laminate.areal_mass(&materials).map_err(lacks)?;
+        let areal_mass = laminate.areal_mass(&weights).map_err(lacks)?;
         builder.modes(&plan)?;
+        if let Plan::Impact(impact) = &plan {
+            let looks = Some(scene.failure.every).filter(|_| !criteria.is_empty());
+            let intervals = [("output.history_every", scene.output.history_every), ("failure.every", looks)];
+            warnings.extend(spacing::check(&impact.spec.march, &intervals));
+        }
         let division = builder.division(&plate, &constraints, &plan)?;
         let watched = builder.find_watched(&plate, &centres)?;
         let gauges = builder.gauges(&plate, &watched, &criteria)?;
@@ -208,6 +218,7 @@ impl Model {
         info!(element = scene.element.name.value, criteria = names.join(", "), unknowns = constraints.ndof(), "model");
         Ok(Self {
             origin: Origin::of(scene),
+            weightless,
             materials,
             laminate,
             laminates,

@@ -76,6 +76,17 @@ pub struct MarchSpec {
     pub end: Located<f64>,
 }
 
+impl MarchSpec {
+    /// Number of steps to the end, and their length, s: as it is written where it fits the end, so that a later end changes no bit
+    /// of it, shorter otherwise.
+    pub fn steps(&self) -> (u64, f64) {
+        let count = self.end.value / self.step.value;
+        let steps = (count * (1.0 - 1e-12)).ceil().max(1.0) as u64;
+        let whole = (count - steps as f64).abs() <= 1e-12 * count;
+        (steps, if whole { self.step.value } else { self.end.value / steps as f64 })
+    }
+}
+
 /// Where and when failure is looked for.
 #[derive(Debug, Clone)]
 pub struct Failure {

@@ -257,11 +257,8 @@ fn check_step(
         let help = "shorten `march.step`, reduce the model, or choose an implicit integrator such as `newmark`";
         return Err(model.origin.source.error_at(&march.step.place, why, help).into());
     }
-    let count = march.end.value / march.step.value;
-    let steps = (count * (1.0 - 1e-12)).ceil().max(1.0) as u64;
+    let (steps, step) = march.steps();
     let lowest = reduced.and_then(|r| r.modal.frequencies().next());
-    // As it is written where it fits the end: a later end then changes no bit of it.
-    let whole = (count - steps as f64).abs() <= 1e-12 * count;
     let Before { stiffness_entries, factor_entries, substructures, memory } = before;
     Ok(Sizes {
         unknowns: model.constraints.ndof(),
@@ -275,7 +272,7 @@ fn check_step(
         lowest_frequency: lowest.filter(|omega| omega.is_finite()).map(hertz),
         longest_step,
         steps,
-        step: if whole { march.step.value } else { march.end.value / steps as f64 },
+        step,
     })
 }
 
