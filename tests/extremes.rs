@@ -1,4 +1,4 @@
-//! Extremes and events are those of the steps, whatever a history keeps of them.
+//! Extremes and events are those of the steps, whatever a history keeps of them; what mesh, rows and densities must be for them.
 
 use crate::support::{Case, strip};
 use serde_json::Value;
@@ -76,4 +76,86 @@ fn a_study_needs_no_rows() {
     let rows = crate::study::rows(&case, "study");
     let ran = || rows.values().filter(|row| row["refused"].is_empty());
     assert!(ran().count() > 3 && ran().all(|row| row["force-history error"].parse::<f64>().is_ok()), "{rows:#?}");
+}
+
+/// A ball on a plate of `cells` by `cells` flat shells.
+fn struck(cells: usize) -> Case {
+    let sides = ["x-min", "x-max", "y-min", "y-max"];
+    let supports = sides.map(|side| format!("[[support]]\ngroup = '{side}'\nat = 'all'\nfix = ['U30']\n")).concat();
+    strip().text(&format!(
+        "title = 'plate'\nmesh = {{ rectangle = ['100 mm', '100 mm'], cells = [{cells}, {cells}] }}\n\
+         element = {{ kind = 'mitc4' }}\nsymmetry = 'half-turn'\nmaterials.t = {{ library = 'AS4/3502' }}\n\
+         effects = {{ damage = 'off' }}\n\
+         [laminate]\nplies = '[0/45/-45/90]2s'\nmaterial = 't'\nply_thickness = '0.13208 mm'\nlayers = 1\n{supports}\
+         [[support]]\nrestrain = 'rigid-motions'\n[impactor]\nmass = '1 g'\nvelocity = '10 m/s'\n\
+         at = {{ x = '50 mm', y = '50 mm' }}\npatch_radius = '2 mm'\n[contact]\nlaw = 'hertz'\nk = '3.4e9 N/m^1.5'\n\
+         [march]\nstep = '0.5 us'\nend = '80 us'\n"
+    ))
+}
+
+/// What a run and a check say of its cells, in parts of the force, and that force over time.
+fn of_cells(case: &Case) -> ([Option<f64>; 2], Vec<f64>) {
+    let told = |warnings: &Value| {
+        let said =
+            warnings.as_array().unwrap().iter().find_map(|w| w.as_str().filter(|w| w.contains("bending wave")))?;
+        let percent = said.split("wrong by up to about ").nth(1).unwrap().split(' ').next().unwrap();
+        Some(0.01 * percent.parse::<f64>().unwrap())
+    };
+    let run = told(&summary(case)["warnings"]);
+    let check: Value = serde_json::from_str(&case.fem("check", &["--json"]).good().stdout).unwrap();
+    let forces = case.table("out/history.csv").1.iter().map(|row| row[1].parse().unwrap()).collect();
+    ([run, told(&check["warnings"])], forces)
+}
+
+#[test]
+fn cells_too_large_for_the_waves_of_a_blow_are_told() {
+    let (none, fine) = of_cells(&struck(64));
+    assert_eq!(none, [None; 2]);
+    for cells in [12, 24] {
+        let (told, forces) = of_cells(&struck(cells));
+        let square = |of: &dyn Fn(usize) -> f64| (0..fine.len()).map(|k| of(k).powi(2)).sum::<f64>().sqrt();
+        let error = square(&|k| forces[k] - fine[k]) / square(&|k| fine[k]);
+        assert!(error > 0.05, "{cells}: {error}");
+        for told in told {
+            let told = told.unwrap();
+            assert!((1.0..5.0).contains(&(told / error)), "{cells}: {told} for {error}");
+        }
+    }
+}
+
+#[test]
+fn rows_between_steps_are_told_and_those_too_many_are_refused() {
+    let rows = |every: &str| blow().append(&format!("[output]\nhistory_every = \"{every}\"\n"));
+    let uneven = rows("0.25 us");
+    assert!(warned(&summary(&uneven), "`output.history_every` is 0.2500 us, no whole number of steps"));
+    let times: Vec<f64> = uneven.table("out/history.csv").1.iter().map(|row| row[0].parse().unwrap()).collect();
+    // But for the row of the end.
+    let even = times[..times.len() - 1].windows(2).all(|pair| (pair[1] - pair[0] - 0.3e-6).abs() < 1e-15);
+    assert!(even && times.len() > 300, "{times:?}");
+    let many = rows("0.1 us").scene("end = \"100 us\"", "end = \"99 s\"").fem("check", &[]);
+    assert!(many.status == 1 && many.stderr.contains("histories"), "{many:#?}");
+    assert!(many.stderr.contains("`output.history_every`"), "{many:#?}");
+}
+
+#[test]
+fn what_rests_without_weight_needs_no_density() {
+    let plate = |density: &str, load: &str| {
+        strip().text(&format!(
+            "title = 'rest'\nanalysis = 'static'\nmesh = {{ rectangle = ['10 mm', '10 mm'], cells = [2, 2] }}\n\
+             effects = {{ damage = 'off' }}\nsupport = [{{ group = 'x-min', at = 'all', fix = ['U10', 'U20', 'U30'] }}]\n\
+             load = [{{ {load} }}]\nmaterials.m = {{ e1 = '70 GPa', e2 = '70 GPa', e3 = '70 GPa', nu12 = 0.3, nu13 = 0.3, \
+             nu23 = 0.3, g12 = '27 GPa', g13 = '27 GPa', g23 = '27 GPa'{density} }}\n\
+             laminate = {{ plies = '[0]', material = 'm', ply_thickness = '1 mm', layers = [1] }}\n"
+        ))
+    };
+    let pressure = "pressure = '1 MPa', face = 'top'";
+    let light = summary(&plate("", pressure));
+    assert_eq!(light, summary(&plate(", density = '2.7 g/cm^3'", pressure)));
+    let weight = plate("", "gravity = ['0 m/s^2', '0 m/s^2', '-9.81 m/s^2']");
+    for done in
+        [weight.fem("run", &[]), plate("", pressure).fem("modes", &[]), plate("", pressure).fem("matrices", &[])]
+    {
+        assert!(done.status == 1 && done.stderr.contains("the mass of the plate needs a density"), "{done:#?}");
+        assert!(done.stderr.contains("materials.m") && done.stderr.contains("add its `density`"), "{done:#?}");
+    }
 }

@@ -1,12 +1,15 @@
 //! What mesh and step an impact asks for.
 
-use super::estimate::{Blow, Estimate};
+use super::cell_at;
+use super::estimate::{Blow, Estimate, first_wave};
 use super::held::Held;
 use super::plate::PlateConstants;
-use super::regime::Regime;
+use super::regime::{Regime, SMALL};
+use crate::analyses::impact::ContactRecord;
 use crate::effect::{Answer, Number};
-use crate::model::Model;
+use crate::model::{Model, Plan, Strike};
 use fem_core::dof::Dof;
+use fem_io::scene::ImpactorSpec;
 use std::f64::consts::TAU;
 
 /// Cells per wavelength by the degree of deflections in them: ten nodes, four cubic cells.
@@ -16,6 +19,87 @@ const CUBIC: f64 = 4.0;
 
 /// Steps per period: an error of (2π/20)²/12 = 0.8 % in it by the trapezoidal rule.
 const STEPS: f64 = 20.0;
+
+/// Cells per wavelength under an impactor, of the frequency of its force: with N of them the force history of a small mass was wrong by
+/// 0.6/N to 2.3/N, of `mitc4` and of `hermite-prism` (`docs/book/src/accuracy-statement.md`): what is round the patch of a force is
+/// found to first order only, whatever the element.
+const STRUCK: f64 = 20.0;
+const STRUCK_ERROR: f64 = 2.0;
+
+/// A warning where cells are too large for the bending waves of a force with this frequency, Hz, that acts at `place`.
+fn coarse(model: &Model, place: [f64; 2], frequency: f64) -> Option<String> {
+    let stiffness = model.laminate.effective_bending_stiffness(&model.materials);
+    let length = wavelength(stiffness / model.areal_mass, frequency);
+    let (struck, widest, needed) = (cell_at(model, place), widest(model), needed(model));
+    let (cell, needed, what) = match () {
+        () if length < STRUCK * struck => (struck, STRUCK, "under the impactor"),
+        () if length < needed * widest => (widest, needed, "where cells are largest"),
+        () => return None,
+    };
+    let error = if needed == STRUCK {
+        format!(
+            "the force over time may be wrong by up to about {:.0} %",
+            100.0 * (STRUCK_ERROR * cell / length).min(1.0)
+        )
+    } else {
+        "waves come back from there at a wrong time".to_owned()
+    };
+    Some(format!(
+        "the contact force has a mean frequency of {frequency:.0} Hz, whose bending wave of {:.2} mm has {:.1} cells {what}: \
+         {error}; cells of {:.2} mm would do",
+        1e3 * length,
+        length / cell,
+        1e3 * length / needed
+    ))
+}
+
+/// A warning of cells that are too large for what a run of `model` excited.
+pub fn warn_of_coarse_cells(model: &Model, contacts: &[ContactRecord]) -> Option<String> {
+    let mut strikes = strikes(model).zip(contacts);
+    strikes.find_map(|((_, strike), contact)| coarse(model, strike.centre, contact.frequency()?))
+}
+
+/// The same before a run, of impactors so small that the plate has no edges for them.
+pub fn expect_coarse_cells(model: &Model) -> Option<String> {
+    let mass = model.areal_mass * model.plate.plane.area();
+    let stiffness = model.laminate.effective_bending_stiffness(&model.materials);
+    strikes(model).filter(|(spec, _)| spec.mass <= SMALL * mass).find_map(|(spec, strike)| {
+        let blow = Blow { mass: spec.mass, velocity: spec.velocity, time: f64::INFINITY, law: &*strike.law };
+        coarse(model, strike.centre, first_wave(model.areal_mass, stiffness, &blow).0.frequency)
+    })
+}
+
+fn strikes(model: &Model) -> impl Iterator<Item = (&ImpactorSpec, &Strike)> {
+    let impact = match &model.plan {
+        Plan::Impact(impact) => Some(impact),
+        _ => None,
+    };
+    impact.into_iter().flat_map(|impact| impact.spec.impactors.iter().zip(&impact.strikes)).filter(|_| {
+        // Neither a plate that follows its force at rest has waves, nor a section cells in the plane.
+        model.moves() && !model.plate.info().is_section()
+    })
+}
+
+/// Length of bending waves, m, of bending stiffness over mass per area, m⁴/s².
+fn wavelength(ratio: f64, frequency: f64) -> f64 {
+    TAU * ratio.sqrt().sqrt() / (TAU * frequency).sqrt()
+}
+
+/// Edge of a square as large as the largest cell, m.
+fn widest(model: &Model) -> f64 {
+    let mesh = &model.plate.plane;
+    (0..mesh.quads.len()).map(|q| mesh.quality(q).area.sqrt()).fold(0.0, f64::max)
+}
+
+/// Cells per wavelength that the element needs.
+fn needed(model: &Model) -> f64 {
+    let has = |n, m| Dof::new(n, m).is_some_and(|dof| model.plate.info().dofs.contains(&dof));
+    match (has(3, 1), model.plate.columns.len() > model.plate.plane.points.len()) {
+        (true, _) => CUBIC,
+        (_, true) => QUADRATIC,
+        _ => LINEAR,
+    }
+}
 
 /// Mesh and step of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,27 +123,19 @@ impl Resolution {
         // A rise to the peak is a quarter of a period on a half-space, less of one on a plate.
         let of_contact = 1.0 / (2.0 * estimate.wave.time);
         let third = plate.rim.held.unwrap_or(Held { slope: false, in_plane: false }).third_mode();
-        let root = (plate.bending_stiffness / plate.areal_mass).sqrt();
-        let of_plate = third / plate.rim.radius().powi(2) * root / TAU;
+        let ratio = plate.bending_stiffness / plate.areal_mass;
+        let of_plate = third / plate.rim.radius().powi(2) * ratio.sqrt() / TAU;
         let frequency = match estimate.regime {
             Regime::SmallMass => of_contact,
             Regime::QuasiStatic => of_plate,
             Regime::Dynamic => of_contact.max(of_plate),
         };
-        let wavelength = TAU * root.sqrt() / (TAU * frequency).sqrt();
-        let mesh = &model.plate.plane;
-        let widest = (0..mesh.quads.len()).map(|q| mesh.quality(q).area.sqrt()).fold(0.0, f64::max);
-        let has = |n, m| Dof::new(n, m).is_some_and(|dof| model.plate.info().dofs.contains(&dof));
-        let needed = match (has(3, 1), model.plate.columns.len() > mesh.points.len()) {
-            (true, _) => CUBIC,
-            (_, true) => QUADRATIC,
-            _ => LINEAR,
-        };
+        let wavelength = wavelength(ratio, frequency);
         Self {
             frequency,
             wavelength,
-            cells: wavelength / widest,
-            needed,
+            cells: wavelength / widest(model),
+            needed: needed(model),
             step,
             longest_step: 1.0 / (STEPS * frequency),
         }

@@ -15,7 +15,7 @@ pub enum Regime {
 }
 
 /// M/m_p up to which a mass is small, and from which on it is large (Olsson 2000).
-const SMALL: f64 = 0.2;
+pub(super) const SMALL: f64 = 0.2;
 const LARGE: f64 = 2.0;
 
 /// Static over wave force from which on a response is quasi-static, whatever the masses; below 1 waves rule it.

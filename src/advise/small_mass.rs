@@ -1,6 +1,7 @@
 //! A mass much smaller than the plate's: the impact is over before waves return from the edges.
 
 use fem_core::contact::{ContactHistory, ContactLaw};
+use std::f64::consts::TAU;
 
 /// c = 8 √(m D*), N s/m: force over velocity of an infinite plate under a force at a point (Zener, Phys. Rev. 59 (1941) 669;
 /// Olsson, AIAA J. 30 (1992) 1587). m is the mass per area, D* the effective bending stiffness.
@@ -49,6 +50,8 @@ pub struct Wave {
     pub deflection: f64,
     /// Largest indentation, m.
     pub indentation: f64,
+    /// √(∫ Ḟ² dt / ∫ F² dt) / 2π, Hz.
+    pub frequency: f64,
 }
 
 /// Steps of the integration within a time scale of the contact or of the plate, whichever is shorter.
@@ -75,8 +78,11 @@ pub fn infinite_plate(mass: f64, velocity: f64, impedance: f64, law: &dyn Contac
     let along = |s: [f64; 2], r: [f64; 2], h: f64| [s[0] + h * r[0], s[1] + h * r[1]];
     let dt = contact_time(mass, velocity, k) / (1.0 + inelasticity(mass, velocity, impedance, k)) / STEPS;
     // Just touching: laws have no tangent before.
-    let (mut state, mut peak) =
-        ([TOUCH * velocity * dt, velocity], Wave { force: 0.0, time: 0.0, deflection: 0.0, indentation: 0.0 });
+    let (mut state, mut peak) = (
+        [TOUCH * velocity * dt, velocity],
+        Wave { force: 0.0, time: 0.0, deflection: 0.0, indentation: 0.0, frequency: 0.0 },
+    );
+    let (mut square, mut rates, mut last) = (0.0, 0.0, 0.0);
     for step in 1..=MOST_STEPS {
         let a = rate(state);
         let b = rate(along(state, a, 0.5 * dt));
@@ -87,11 +93,16 @@ pub fn infinite_plate(mass: f64, velocity: f64, impedance: f64, law: &dyn Contac
         if alpha > peak.indentation {
             peak = Wave { force: force(alpha), time: step as f64 * dt, indentation: alpha, ..peak };
         }
+        let now = force(alpha);
+        square += now * now;
+        rates += ((now - last) / dt).powi(2);
+        last = now;
         let given_up = velocity - (speed + force(alpha) / impedance);
         peak.deflection = mass * given_up / impedance;
         if !(alpha > 0.0) {
             break;
         }
     }
+    peak.frequency = (rates / square).sqrt() / TAU;
     peak
 }

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::forecast::MemoryEstimate;
-use crate::model::{DENSITY, Model};
+use crate::model::Model;
 use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, Symmetric, assemble, condense, pattern};
 use fem_core::counters::Counters;
 use fem_core::functional::Functional;
@@ -103,8 +103,8 @@ pub fn structure(
     counters: &mut Counters,
 ) -> Result<Assembled, Error> {
     let Model { plate, element, constraints, division, .. } = model;
-    if let (true, Some(why)) = (inertia, &model.weightless) {
-        return Err(model.origin.source.error_at(&why.place, why.value.clone(), DENSITY).into());
+    if inertia {
+        model.check_mass()?;
     }
     let (described, originals) = (plate.clone(), constraints.clone());
     let name = move |i: usize| described.describe(originals.original(i));

@@ -15,8 +15,9 @@ use std::sync::Arc;
 /// `unknowns.csv`, which names row and column of each. Supports and other equations are eliminated.
 ///
 /// # Errors
-/// A cell that the element refuses, a folder that cannot be written.
+/// A cell that the element refuses, a material without the density of a mass, a folder that cannot be written.
 pub fn write(dir: &OutputDir, model: &Model, threads: NonZeroUsize) -> Result<(), Error> {
+    model.check_mass()?;
     let pattern = Arc::new(pattern(&model.plate, &model.constraints));
     let mut counters = Counters::default();
     for (matrix, name) in [(Matrix::Stiffness, "stiffness.mtx"), (Matrix::Mass, "mass.mtx")] {

@@ -169,6 +169,7 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
         }
     };
     let plane = &model.plate.plane;
+    let coarse = advise::expect_coarse_cells(&model);
     Ok(Checked {
         title: model.origin.title.clone(),
         shape: plane.name_of_cells(),
@@ -191,7 +192,7 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
         criteria: model.criteria.iter().map(|(name, _)| name.clone()).collect(),
         fields: fields::expected(&model, frames)?,
         advised: Advised::of(&model, |_| None),
-        warnings: condition.and_then(warn_of_condition).into_iter().chain(model.warnings).collect(),
+        warnings: condition.and_then(warn_of_condition).into_iter().chain(coarse).chain(model.warnings).collect(),
         keys,
     })
 }

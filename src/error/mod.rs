@@ -42,7 +42,8 @@ pub enum Error {
     #[error("this takes about {needed} of memory, and {available} are free: {parts}")]
     #[diagnostic(help(
         "use fewer cells (a coarser mesh, a smaller `mesh.refine`), fewer `laminate.layers`, a `symmetry` of the \
-         plate, `substructures`, or a machine with more memory"
+         plate, `substructures`, or a machine with more memory; of histories a longer `output.history_every`, `failure.every` \
+         and `march.step`, or a nearer `march.end`"
     ))]
     Memory {
         /// What it takes.

@@ -25,18 +25,21 @@ pub struct MemoryEstimate {
     pub vectors: f64,
     /// What effects need beside.
     pub effects: f64,
+    /// Histories: what a march keeps of its steps, rows and samples.
+    pub histories: f64,
 }
 
 /// Sizes of the parts for people, largest first.
 impl fmt::Display for MemoryEstimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { model, matrices, factor, vectors, effects } = *self;
+        let Self { model, matrices, factor, vectors, effects, histories } = *self;
         let mut parts = [
             ("model", model),
             ("stiffness and mass", matrices),
             ("factor", factor),
             ("vectors", vectors),
             ("effects", effects),
+            ("histories", histories),
         ];
         parts.sort_by(|a, b| b.1.total_cmp(&a.1));
         let parts = parts.iter().filter(|(_, bytes)| *bytes > 0.0);
@@ -56,6 +59,8 @@ pub struct Demand {
     pub vectors: usize,
     /// Contacts, where a reduced plate is marched.
     pub contacts: Option<usize>,
+    /// What a march keeps of its steps, rows and samples, bytes.
+    pub kept: f64,
 }
 
 impl Demand {
@@ -75,12 +80,13 @@ impl MemoryEstimate {
             factor: symbolic.bytes(),
             vectors: 8.0 * Demand::BASES * demand.vectors as f64 * demand.unknowns as f64,
             effects,
+            histories: demand.kept,
         }
     }
 
     /// All of it.
     pub fn bytes(&self) -> f64 {
-        self.model + self.matrices + self.factor + self.vectors + self.effects
+        self.model + self.matrices + self.factor + self.vectors + self.effects + self.histories
     }
 }
 

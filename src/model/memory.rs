@@ -35,7 +35,11 @@ impl Model {
             Plan::Modes { count } => (2 * count, None),
             Plan::Static { .. } => (2, None),
         };
-        let demand = Demand { all: self.plate.ndof(), unknowns: pattern.ndof(), vectors, contacts };
+        let kept = match &self.plan {
+            Plan::Impact(impact) => self.kept(impact),
+            _ => 0.0,
+        };
+        let demand = Demand { all: self.plate.ndof(), unknowns: pattern.ndof(), vectors, contacts, kept };
         analyse(pattern, &demand, self.effects.memory(&self.body(), &demand))
     }
 

@@ -18,9 +18,9 @@ pub use fields::FieldPlan;
 pub use gauge::Gauge;
 pub(crate) use mesh::examined_mesh;
 pub use mesh::mesh;
-pub(crate) use origin::DENSITY;
 pub use origin::Origin;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
+pub(crate) use spacing::count_steps;
 
 use crate::effect::{Decision, Effects};
 use crate::effects::NonlinearPlies;
@@ -151,7 +151,7 @@ impl Model {
         let levels = laminates[0].levels();
         let lacks = |why: MaterialError| {
             let material = scene.materials.iter().find(|m| m.value.name == why.material).unwrap_or(&scene.materials[0]);
-            builder.error(material, why.to_string(), DENSITY)
+            builder.error(material, why.to_string(), origin::DENSITY)
         };
         let at_rest = matches!(scene.analysis, Analysis::Static(_));
         let (weights, weightless) = builder.weights(&materials);
@@ -244,6 +244,15 @@ impl Model {
             decisions: Vec::new(),
             warnings,
         })
+    }
+
+    /// Whether a mass can be made.
+    ///
+    /// # Errors
+    /// A material that lacks a density.
+    pub(crate) fn check_mass(&self) -> Result<(), Error> {
+        let Some(why) = &self.weightless else { return Ok(()) };
+        Err(self.origin.source.error_at(&why.place, why.value.clone(), origin::DENSITY).into())
     }
 
     /// Whether the plate has velocities: in an impact, unless it follows the force at rest.

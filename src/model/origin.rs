@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// What to do about a material without a density.
-pub(crate) const DENSITY: &str = "add its `density`, for example: density = \"1.58 g/cm^3\"";
+pub(super) const DENSITY: &str = "add its `density`, for example: density = \"1.58 g/cm^3\"";
 
 /// Where a model comes from: what heads its results, shows places in messages, and tells one scene from another.
 #[derive(Debug, Clone)]

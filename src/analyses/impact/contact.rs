@@ -2,6 +2,7 @@
 
 use fem_dynamics::impact::Touch;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// What the steps of a march saw of a contact, whatever rows its history has.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -12,6 +13,8 @@ pub struct ContactRecord {
     pub duration: f64,
     /// Largest force, N, and when it first was, s.
     pub force: (f64, f64),
+    /// ∫ F² dt, N² s, and ∫ (dF/dt)² dt, N²/s.
+    pub power: [f64; 2],
     /// Largest indentation, m.
     pub deepest: f64,
     /// Largest deflection of the plate under the impactor, m, towards which it moves.
@@ -21,6 +24,14 @@ pub struct ContactRecord {
     pub growth: Vec<(f64, f64)>,
     /// When the force first reached the delamination threshold of the model, s.
     pub threshold_time: Option<f64>,
+}
+
+impl ContactRecord {
+    /// Mean frequency of the force, Hz: √(∫ Ḟ² dt / ∫ F² dt) / 2π, of half a sine 1/(2 duration). Nothing without a force.
+    pub fn frequency(&self) -> Option<f64> {
+        let [square, rate] = self.power;
+        (square > 0.0).then(|| (rate / square).sqrt() / TAU)
+    }
 }
 
 /// Follows a contact from step to step.
@@ -44,9 +55,12 @@ impl Follower {
         record.deepest = record.deepest.max(indentation);
         record.deflection = record.deflection.max(deflection);
         record.count += u32::from(force > 0.0 && *low <= 0.0);
+        let dt = t - *before;
         if force > 0.0 {
-            record.duration += t - *before;
+            record.duration += dt;
         }
+        record.power[0] += force * force * dt;
+        record.power[1] += (force - *low).powi(2) / dt;
         if force > record.force.0 {
             record.force = (force, t);
         }
@@ -140,6 +154,18 @@ mod tests {
         assert_eq!((record.deepest, record.deflection), (8.0, 2.5));
         assert_eq!(record.threshold_time, Some(2.25));
         assert_eq!(record.growth, [(1.0, 0.0), (2.0, 1.0), (3.0, 3.0), (5.0, 2.5), (6.0, 4.0)]);
+    }
+
+    #[test]
+    fn half_a_sine_has_the_frequency_of_the_whole() {
+        let mut follower = Follower::new(None);
+        for k in 1..=1500 {
+            let t = f64::from(k) * 1e-7;
+            follower.take(t, touch((TAU * 5e3 * t).sin().max(0.0), 0.0));
+        }
+        let frequency = follower.finish().frequency();
+        assert!(frequency.is_some_and(|f| (f / 5e3 - 1.0).abs() < 1e-3), "{frequency:?}");
+        assert_eq!(Follower::new(None).finish().frequency(), None);
     }
 
     #[test]

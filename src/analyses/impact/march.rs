@@ -12,7 +12,7 @@ use crate::analyses::stress::{self, Watch};
 use crate::cost::Stopwatch;
 use crate::effect::Effect;
 use crate::error::{CheckpointError, Error};
-use crate::model::Model;
+use crate::model::{Model, count_steps};
 use fem_core::counters::Counters;
 use fem_core::structure::Tangent;
 use fem_core::time::{Histories, Integrator, State};
@@ -24,9 +24,6 @@ use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
 use std::rc::Rc;
 use tracing::info;
-
-/// Rows of the history unless the scene says otherwise.
-const HISTORY_ROWS: u64 = 2000;
 
 /// Marches a prepared model to its end; `progress` hears the share of the steps done.
 ///
@@ -127,7 +124,7 @@ impl<'a> March<'a> {
         let (model, impact) = (prepared.model, prepared.impact);
         let state = prepared.system.initial();
         let Sizes { steps, step: dt, .. } = prepared.sizes;
-        let row_every = model.output.history_every.map_or(steps.div_ceil(HISTORY_ROWS), |t| count_steps(t, dt));
+        let row_every = model.row_every(steps, dt);
         let progress = Progress {
             step: 0,
             dt,
@@ -446,11 +443,6 @@ impl<'a> March<'a> {
         }
         if step.is_multiple_of(self.scan_every) { Ok(()) } else { self.sample() }
     }
-}
-
-/// Steps of `dt` in an interval, at least one.
-fn count_steps(interval: f64, dt: f64) -> u64 {
-    ((interval / dt).round() as u64).max(1)
 }
 
 /// Largest index of a criterion at each of its sites.
