@@ -23,20 +23,22 @@ const STEPS: f64 = 20.0;
 /// Cells per wavelength under an impactor, of the frequency of its force: with N of them the force history of a small mass was wrong by
 /// 0.6/N to 2.3/N, of `mitc4` and of `hermite-prism` (`docs/book/src/accuracy-statement.md`): what is round the patch of a force is
 /// found to first order only, whatever the element.
-const STRUCK: f64 = 20.0;
 const STRUCK_ERROR: f64 = 2.0;
+
+/// How many times the cells that a wave needs elsewhere it needs there.
+const STRUCK: f64 = 2.0;
 
 /// A warning where cells are too large for the bending waves of a force with this frequency, Hz, that acts at `place`.
 fn coarse(model: &Model, place: [f64; 2], frequency: f64) -> Option<String> {
     let stiffness = model.laminate.effective_bending_stiffness(&model.materials);
     let length = wavelength(stiffness / model.areal_mass, frequency);
     let (struck, widest, needed) = (cell_at(model, place), widest(model), needed(model));
-    let (cell, needed, what) = match () {
-        () if length < STRUCK * struck => (struck, STRUCK, "under the impactor"),
+    let (cell, cells, what) = match () {
+        () if length < STRUCK * needed * struck => (struck, STRUCK * needed, "under the impactor"),
         () if length < needed * widest => (widest, needed, "where cells are largest"),
         () => return None,
     };
-    let error = if needed == STRUCK {
+    let error = if cells > needed {
         format!(
             "the force over time may be wrong by up to about {:.0} %",
             100.0 * (STRUCK_ERROR * cell / length).min(1.0)
@@ -49,7 +51,7 @@ fn coarse(model: &Model, place: [f64; 2], frequency: f64) -> Option<String> {
          {error}; cells of {:.2} mm would do",
         1e3 * length,
         length / cell,
-        1e3 * length / needed
+        1e3 * length / cells
     ))
 }
 

@@ -199,7 +199,9 @@ impl Model {
         let areal_mass = laminate.areal_mass(&weights).map_err(lacks)?;
         builder.modes(&plan)?;
         if let Plan::Impact(impact) = &plan {
-            let looks = Some(scene.failure.every).filter(|_| !criteria.is_empty());
+            // Looks at every step are all that there can be.
+            let every = scene.failure.every;
+            let looks = Some(every).filter(|_| !criteria.is_empty() && every > impact.spec.march.step.value);
             let intervals = [("output.history_every", scene.output.history_every), ("failure.every", looks)];
             warnings.extend(spacing::check(&impact.spec.march, &intervals));
         }
