@@ -13,6 +13,7 @@ mod effects;
 mod envelope;
 mod extremes;
 mod fields;
+mod free;
 mod impactors;
 mod indices;
 mod job;

@@ -7,10 +7,6 @@ use fem_core::structure::{SolveError, Structure};
 /// Start vectors, and the largest multiplicity of a frequency that is sure to be found.
 const BLOCK: usize = 4;
 
-/// Shift for structures that are not held, as a fraction of the Rayleigh quotient of a rough vector, which is near the
-/// highest ω²: about the square of the lowest flexible frequency, in any unit.
-const SHIFT: f64 = 1e-7;
-
 /// Natural modes, by frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Modes {
@@ -20,26 +16,28 @@ pub struct Modes {
     pub shapes: Vec<f64>,
 }
 
-/// The `count` lowest modes of K φ = ω² M φ; all of them where there are fewer.
+/// The `count` lowest modes of K φ = ω² M φ; all of them where there are fewer. The free motions of the structure count as
+/// modes of frequency zero where `with_free` says so; else they are left out.
 ///
-/// Block Lanczos on (K + σM)⁻¹ M with full reorthogonalisation in the metric of M. σ = 0 for a structure that is `held`;
-/// else it follows from K and M themselves, so that the answer does not depend on units, and rigid motions come out with
-/// frequencies of zero (to rounding). A singular M is not a problem: vectors are kept free of what it cannot see by one
-/// more application of the operator at the end (purification).
+/// Block Lanczos on K⁻¹ M with full reorthogonalisation in the metric of M, beside the free motions. A singular M is not a
+/// problem: vectors are kept free of what it cannot see by one more application of the operator at the end (purification).
 ///
 /// # Errors
 /// A matrix that cannot be factorised, or no convergence in a space of 5 `count` + 80 vectors.
-pub fn lowest(structure: &mut dyn Structure, count: usize, held: bool) -> Result<Modes, SolveError> {
+pub fn lowest(structure: &mut dyn Structure, count: usize, with_free: bool) -> Result<Modes, SolveError> {
     let n = structure.ndof();
     // Vectors that no symmetry makes orthogonal to a mode, the same on every machine.
     let rough = |k: usize| (0..n).map(move |i| ((i * (7919 + 2 * k) + 31 * k) % 1009) as f64 / 1009.0 - 0.47);
-    let shift = if held { 0.0 } else { SHIFT * rayleigh(structure, &rough(0).collect::<Vec<_>>()) };
+    let mut free = if with_free { structure.free_motions().to_vec() } else { Vec::new() };
+    free.truncate(n * count);
+    let moving = free.len() / n.max(1);
     let start: Vec<f64> = (0..BLOCK).flat_map(rough).collect();
     let inverse = |structure: &mut dyn Structure, x: &mut [f64]| {
         let columns = x.len() / n.max(1);
-        structure.solve_shifted(shift, x, columns)
+        structure.solve_shifted(0.0, x, columns)
     };
-    let (theta, mut shapes) = Lanczos::excited(structure, inverse, &start)?.lowest(count, 0.0)?;
+    let (theta, shapes) = Lanczos::excited(structure, inverse, &start)?.lowest(count - moving, 0.0)?;
+    let mut shapes = [free, shapes].concat();
     for shape in shapes.chunks_exact_mut(n.max(1)) {
         let mut image = vec![0.0; n];
         structure.add_mass(1.0, shape, &mut image);
@@ -47,13 +45,6 @@ pub fn lowest(structure: &mut dyn Structure, count: usize, held: bool) -> Result
         let scale = largest.signum() / dot(shape, &image).sqrt();
         shape.iter_mut().for_each(|x| *x *= scale);
     }
-    let omega = theta.iter().map(|theta| (1.0 / theta - shift).max(0.0).sqrt()).collect();
+    let omega = std::iter::repeat_n(0.0, moving).chain(theta.iter().map(|theta| theta.recip().sqrt())).collect();
     Ok(Modes { omega, shapes })
-}
-
-fn rayleigh(structure: &dyn Structure, x: &[f64]) -> f64 {
-    let (mut stiff, mut inert) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-    structure.add_stiffness(1.0, x, &mut stiff);
-    structure.add_mass(1.0, x, &mut inert);
-    dot(x, &stiff) / dot(x, &inert)
 }

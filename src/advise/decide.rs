@@ -47,7 +47,7 @@ fn at_rest(model: &Model, forces: &[f64], threads: NonZeroUsize) -> Result<Expec
     let nodal: Vec<(usize, f64)> = forces.iter().copied().enumerate().filter(|(_, force)| *force != 0.0).collect();
     let mut load = vec![0.0; model.constraints.ndof()];
     Functional(model.constraints.restrict(&nodal)).add_to(1.0, &mut load);
-    let independent = AtRest::of(model, threads)?.displacements(&load)?;
+    let independent = AtRest::of(model, &[], threads)?.displacements(&load)?;
     let plate = &model.plate;
     let mut u = vec![0.0; plate.ndof()];
     model.constraints.expand(&independent, &mut u);

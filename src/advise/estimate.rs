@@ -71,7 +71,8 @@ impl Estimate {
     /// Of `blow` on `plate`.
     pub fn new(plate: &PlateConstants, blow: &Blow<'_>) -> Self {
         let Blow { mass, velocity, time, law } = *blow;
-        let energy = blow.energy();
+        // What does not go on as a motion of both together.
+        let energy = blow.energy() / (1.0 + mass / plate.free_mass);
         let bending = Spring { bending: plate.stiffness, membrane: 0.0 };
         let stiffer = plate.membrane_coefficient() * plate.stiffness / plate.thickness.powi(2);
         let linear = energy_balance(energy, bending, law);

@@ -84,10 +84,10 @@ impl Advice {
 /// A scene without an impact, a section, a stiffness that cannot be assembled or factorised.
 pub fn advise(model: &Model, threads: NonZeroUsize) -> Result<Vec<Advice>, Error> {
     let Plan::Impact(impact) = &model.plan else { return Err(Error::NoImpact) };
-    let mut at_rest = AtRest::of(model, threads)?;
+    let mut at_rest = AtRest::of(model, &impact.strikes, threads)?;
     let work = MarchSize::of(model, impact, at_rest.factor_entries());
     let mut each = |(spec, strike): (&scene::ImpactorSpec, &Strike)| {
-        let plate = PlateConstants::under(model, strike, at_rest.stiffness(model, &strike.contact)?)?;
+        let plate = PlateConstants::under(model, strike, &mut at_rest)?;
         let march = &impact.spec.march;
         let blow =
             Blow { mass: spec.mass, velocity: spec.velocity, time: march.end.value - spec.start, law: &*strike.law };
@@ -104,7 +104,7 @@ pub fn advise(model: &Model, threads: NonZeroUsize) -> Result<Vec<Advice>, Error
             surrounded: plate.rim.held.is_some(),
             forces: [estimate.linear.force, estimate.with_membrane.force],
             first_wave: estimate.inertia_error(),
-            quasi_static: estimate.regime == Regime::QuasiStatic,
+            quasi_static: estimate.regime == Regime::QuasiStatic && plate.free_mass.is_infinite(),
             vibrates: decide::vibrates(model),
         };
         let of_effects = model.effects.known().iter().filter_map(|info| {

@@ -28,6 +28,9 @@ pub struct PlateConstants {
     pub shear_stiffness: f64,
     /// Kb: force over deflection under the impactor at rest, N/m, of the model itself.
     pub stiffness: f64,
+    /// Mass with which a plate that nothing holds under the impactor withstands its acceleration, kg; infinite of one that is
+    /// held.
+    pub free_mass: f64,
     /// What supports it.
     pub rim: Rim,
 }
@@ -48,7 +51,7 @@ impl PlateConstants {
         self.membrane_coefficient() * (deflection / self.thickness).powi(2)
     }
 
-    pub(super) fn under(model: &Model, strike: &Strike, stiffness: f64) -> Result<Self, Error> {
+    pub(super) fn under(model: &Model, strike: &Strike, at_rest: &mut AtRest) -> Result<Self, Error> {
         let Model { laminate, materials, .. } = model;
         let rim = Rim::around(model, strike.centre)
             .ok_or_else(|| Error::NoPlate { element: model.origin.element.clone() })?;
@@ -65,20 +68,36 @@ impl PlateConstants {
             bending_stiffness: laminate.effective_bending_stiffness(materials),
             poisson: (sum + 6.0 * mixed - 4.0 * twist) / (3.0 * sum + 2.0 * mixed + 4.0 * twist),
             shear_stiffness: KAPPA * shear.sum::<f64>(),
-            stiffness,
+            stiffness: at_rest.stiffness(model, &strike.contact)?,
+            free_mass: at_rest.free_mass(&strike.contact),
             rim,
         })
     }
 }
 
-/// A model at rest: its stiffness, factorised.
+/// A model at rest, or in the frame that moves with it: its stiffness, factorised.
 pub(super) struct AtRest {
     assembled: Assembled,
 }
 
 impl AtRest {
-    pub(super) fn of(model: &Model, threads: NonZeroUsize) -> Result<Self, Error> {
-        Ok(Self { assembled: assembled::structure(model, false, threads, &mut Counters::default())? })
+    pub(super) fn of(model: &Model, strikes: &[Strike], threads: NonZeroUsize) -> Result<Self, Error> {
+        let structure = |inertia: bool| assembled::structure(model, inertia, threads, &mut Counters::default());
+        let assembled = structure(false)?;
+        let moves = |strike: &Strike| assembled.structure.moves_under(&assembled.functional(&strike.contact));
+        let moves = strikes.iter().any(moves);
+        Ok(Self { assembled: if moves { structure(true)? } else { assembled } })
+    }
+
+    /// 1/Σ (wᵀ R)² over the free motions R of the plate.
+    fn free_mass(&self, contact: &Functional) -> f64 {
+        let structure = &self.assembled.structure;
+        let contact = self.assembled.functional(contact);
+        if !structure.moves_under(&contact) {
+            return f64::INFINITY;
+        }
+        let motions = structure.free_motions().chunks_exact(structure.ndof().max(1));
+        motions.map(|motion| contact.of(motion).powi(2)).sum::<f64>().recip()
     }
 
     /// Displacements of all independent unknowns under `load`.

@@ -57,7 +57,8 @@ impl Assembled {
         Some(Substructures { count, condensed, masters: condensation.ndof() })
     }
 
-    pub(super) fn functional(&self, w: &Functional) -> Functional {
+    /// A functional of the independent unknowns as one of those of the structure.
+    pub fn functional(&self, w: &Functional) -> Functional {
         let Some(condensation) = &self.condensation else { return w.clone() };
         let mut f = vec![0.0; condensation.independents()];
         w.add_to(1.0, &mut f);
@@ -116,13 +117,17 @@ pub fn structure(
         let m = if inertia { matrix(Matrix::Mass)? } else { Symmetric::zero(pattern.clone()) };
         model.effects.on_stiffness(&model.body(), &mut k)?;
         let factor_entries = symbolic.entries();
-        let structure = SparseStructure::new(symbolic, k, m, threads, name);
+        let mut structure = SparseStructure::new(symbolic, k, m, threads, name);
+        structure.release(&model.motions);
         return Ok(Assembled { structure, factor_entries, memory, condensation: None });
     };
     let Condensed { k, m, way } = condense(plate, &**element, constraints, division, inertia, threads, counters)?;
     let (symbolic, memory) = model.analyse(k.pattern().clone())?;
     let factor_entries = symbolic.entries();
     let masters: Vec<usize> = (0..way.ndof()).map(|i| way.independent(i)).collect();
-    let structure = SparseStructure::new(symbolic, k, m, threads, move |i| name(masters[i]));
+    let of_masters = |motion: &[f64]| masters.iter().map(|i| motion[*i]).collect::<Vec<_>>();
+    let motions: Vec<f64> = model.motions.chunks_exact(constraints.ndof()).flat_map(of_masters).collect();
+    let mut structure = SparseStructure::new(symbolic, k, m, threads, move |i| name(masters[i]));
+    structure.release(&motions);
     Ok(Assembled { structure, factor_entries, memory, condensation: Some(way) })
 }

@@ -39,7 +39,7 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Modes
     let mut counters = Counters::default();
     let mut assembled = assembled::structure(model, true, threads, &mut counters)?;
     stopwatch.lap("assemble");
-    let mut modes = modes::lowest(&mut assembled.structure, count, model.held)?;
+    let mut modes = modes::lowest(&mut assembled.structure, count, !model.held)?;
     (counters.factorisations, counters.solves) = assembled.structure.work();
     modes.shapes = assembled.expand(modes.shapes);
     let n = model.constraints.ndof();

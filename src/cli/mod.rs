@@ -22,8 +22,20 @@ use console::{Console, Format, Voice, printable, tell};
 use miette::{GraphicalReportHandler, GraphicalTheme, Report};
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
+use std::num::NonZeroUsize;
 use std::process::ExitCode;
 use textwrap::WordSplitter;
+
+/// Threads that are more than any machine of today has.
+const MOST_THREADS: usize = 4096;
+
+/// A number of threads.
+fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    match text.parse::<NonZeroUsize>() {
+        Ok(threads) if threads.get() <= MOST_THREADS => Ok(threads),
+        _ => Err(format!("must be a number from 1 to {MOST_THREADS}")),
+    }
+}
 
 /// Low-velocity impact on laminated composites.
 #[derive(Debug, Parser)]

@@ -83,6 +83,9 @@ impl Effect for Gravity {
         let forces: Vec<(usize, f64)> = forces.into_iter().enumerate().collect();
         self.load = vec![0.0; body.constraints.ndof()];
         Functional(body.constraints.restrict(&forces)).add_to(1.0, &mut self.load);
+        if structure.moves_under(&Functional(self.load.iter().copied().enumerate().collect())) {
+            return Err(Error::Unheld { load: "its weight", inertia: true });
+        }
         self.sag = self.load.clone();
         structure.solve_shifted(0.0, &mut self.sag, 1)?;
         Ok(self.sag.clone())
@@ -92,7 +95,7 @@ impl Effect for Gravity {
         if let Some(reduced) = reduced {
             let load = std::mem::take(&mut self.load);
             self.load = reduced.restrict(&Functional(load.into_iter().enumerate().collect()));
-            self.sag = self.load.iter().zip(reduced.modal.stiffnesses()).map(|(f, k)| f / k).collect();
+            self.sag = self.load.iter().zip(reduced.modal.compliances()).map(|(f, c)| f * c).collect();
         }
         let sag = 0.5 * self.load.iter().zip(&self.sag).map(|(f, u)| f * u).sum::<f64>();
         system.with_weight(Some(Weight { acceleration: self.acceleration, load: self.load.clone(), sag }))

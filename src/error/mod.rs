@@ -105,6 +105,14 @@ pub enum Error {
     },
     #[error("the march stopped: {0}")]
     Stopped(String),
+    #[error("{load} pushes the plate where nothing but a restraint of rigid motions holds it")]
+    #[diagnostic(help("support the plate against that motion{}", if *inertia { "" } else { ", or give it its inertia: effects.inertia = \"on\"" }))]
+    Unheld {
+        /// What pushes.
+        load: &'static str,
+        /// Whether the plate has inertia.
+        inertia: bool,
+    },
     #[error("the scene describes no static loads")]
     #[diagnostic(help("set `analysis = \"static\"` and give a `[[load]]`"))]
     NoLoads,

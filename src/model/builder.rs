@@ -16,6 +16,7 @@ use fem_core::plate::Plate;
 use fem_core::plugin::{Built, Kind, Role, unknown_key};
 use fem_core::reduction::Reduction;
 use fem_core::support::{self, FreeMotions};
+use fem_core::tensor::Stress6;
 use fem_core::time::Integrator;
 use fem_dynamics::integrate::located;
 use fem_io::scene::{
@@ -26,10 +27,37 @@ use std::collections::BTreeSet;
 /// Vectors of a reduction that does not declare how many.
 const VECTORS: usize = 60;
 
+/// A stress as impacts bring, Pa.
+const TYPICAL: f64 = 1e6;
+
 /// Looks things up for a scene and turns what is missing into errors that show the scene.
 pub(super) struct Builder<'a> {
     pub(super) scene: &'a Scene,
     pub(super) registry: &'a Registry,
+}
+
+/// How a plate is held.
+pub(super) struct Held<'a> {
+    pub(super) constraints: Constraints,
+    /// How the independent unknowns of a plate that moves can do so as a whole.
+    pub(super) motions: Vec<f64>,
+    /// What a restraint holds, and where it stands in the scene.
+    pub(super) restraint: Option<(FreeMotions, &'a Place)>,
+}
+
+impl Held<'_> {
+    /// Refuses loads at rest that only a restraint could carry.
+    pub(super) fn check_balance(&self, scene: &Scene, plate: &Plate, forces: &[f64]) -> Result<(), SceneError> {
+        let Some((free, place)) = &self.restraint else { return Ok(()) };
+        match free.pushed(plate, forces) {
+            None => Ok(()),
+            Some(motions) => Err(scene.source.error_at(
+                place,
+                format!("the loads push the plate where only this restraint would hold it: {motions}"),
+                "a restraint carries no load: support the plate against this motion, or balance the loads",
+            )),
+        }
+    }
 }
 
 macro_rules! build {
@@ -125,10 +153,11 @@ impl Builder<'_> {
         Some(size.and_then(|row| spec.params.count(row).ok()).unwrap_or(VECTORS).max(1))
     }
 
-    pub(super) fn criteria(&self) -> Result<Vec<NamedCriterion>, SceneError> {
+    pub(super) fn criteria(&self, element: &dyn Element) -> Result<Vec<NamedCriterion>, SceneError> {
         let each = |spec: &CriterionSpec| {
             let criterion = build!(self, &spec.plugin, Criterion)?;
             self.check_criterion(&spec.plugin, &*criterion)?;
+            self.check_scope(&spec.plugin, &*criterion, element)?;
             Ok((spec.label.clone(), criterion))
         };
         self.scene.failure.criteria.iter().map(each).collect()
@@ -160,6 +189,32 @@ impl Builder<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Refuses a criterion that an impact would sooner or later ask for stresses beyond its scope.
+    fn check_scope(
+        &self,
+        spec: &PluginSpec,
+        criterion: &dyn FailureCriterion,
+        element: &dyn Element,
+    ) -> Result<(), SceneError> {
+        let squeezed = if element.info().is_shell() { 0.0 } else { -TYPICAL };
+        let stress = Stress6::new([TYPICAL, TYPICAL, squeezed, TYPICAL, TYPICAL, TYPICAL]);
+        let struck = matches!(self.scene.analysis, Analysis::Impact(_)) && criterion.info().site == Site::Ply;
+        let refuses = |material: &Material| {
+            let mut indices = vec![0.0; criterion.info().modes.len()];
+            criterion.indices(&stress, material, &mut indices);
+            indices.iter().all(|index| index.is_nan())
+        };
+        let mut plies = self.scene.plies().map(|ply| &self.scene.materials[ply.material].value);
+        match struck && plies.any(refuses) {
+            true => Err(self.error(
+                &spec.name,
+                format!("under an impact there are stresses that criterion `{}` does not judge", spec.name.value),
+                format!("it takes {}", criterion.scope()),
+            )),
+            false => Ok(()),
+        }
     }
 
     /// Quads near one of `centres` that the symmetry keeps; all of these where the scene gives no radius.
@@ -200,7 +255,7 @@ impl Builder<'_> {
         Ok((self.columns(plate, &set.group)?, levels))
     }
 
-    pub(super) fn constraints(&self, plate: &Plate) -> Result<(Constraints, bool), SceneError> {
+    pub(super) fn constraints(&self, plate: &Plate) -> Result<Held<'_>, SceneError> {
         let source = &self.scene.source;
         let mut equations = Vec::new();
         // Of each equation, where it stands in the scene.
@@ -244,15 +299,17 @@ impl Builder<'_> {
         places.resize(equations.len(), self.scene.symmetry.as_ref().map_or(&Place::TOP, |symmetry| &symmetry.place));
         self.hold_pieces(plate, &equations)?;
         let free = FreeMotions::of(plate, &equations);
-        let mut held = true;
+        let at_rest = matches!(self.scene.analysis, Analysis::Static(_));
         match restraint {
             _ if free.is_empty() => {}
-            // Rigid motions are modes like others.
-            None if matches!(self.scene.analysis, Analysis::Modes { .. }) => held = false,
-            Some(place) => {
+            // A plate at rest has to be somewhere; one that moves does so freely.
+            Some(place) if at_rest => {
                 equations.extend(free.restrain(plate).map_err(|why| source.error_at(place, why.to_string(), ""))?);
                 places.resize(equations.len(), place);
             }
+            Some(_) => {}
+            // Rigid motions are modes like others.
+            None if matches!(self.scene.analysis, Analysis::Modes { .. }) => {}
             None => {
                 return Err(source.error_at(
                     self.scene.supports.first().map_or(&Place::TOP, Support::place),
@@ -261,7 +318,9 @@ impl Builder<'_> {
                 ));
             }
         }
-        Ok((self.eliminate(plate, &equations, &places)?, held))
+        let constraints = self.eliminate(plate, &equations, &places)?;
+        let motions = if at_rest { Vec::new() } else { free.of_unknowns(plate, &constraints) };
+        Ok(Held { constraints, motions, restraint: restraint.map(|place| (free, place)) })
     }
 
     /// What the user should know of unknowns that supports and couples name and the element lacks.

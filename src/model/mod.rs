@@ -39,7 +39,7 @@ use fem_core::mesh::PlaneMesh;
 use fem_core::pieces;
 use fem_core::plate::Plate;
 use fem_failure::delamination::DelaminationThreshold;
-use fem_io::scene::{self, Analysis, Damage, Located, Output, Scene, Window};
+use fem_io::scene::{self, Analysis, Damage, Located, Output, Scene, SceneError, Window};
 use std::borrow::Borrow;
 use tracing::info;
 
@@ -66,7 +66,9 @@ pub struct Model {
     pub laws: Option<PlyLaws>,
     /// Supports and other equations, eliminated.
     pub constraints: Constraints,
-    /// Whether the supports stop all rigid motions.
+    /// How the plate can move as a whole, by its independent unknowns, one motion after the other; at rest it cannot.
+    pub motions: Vec<f64>,
+    /// Whether the supports, or a restraint, stop all rigid motions. One that moves is restrained to the frame that goes with it.
     pub held: bool,
     /// The substructures, if the scene divides the plate into some.
     pub division: Option<Division>,
@@ -106,6 +108,9 @@ pub type NamedCriterion = (String, Box<dyn FailureCriterion>);
 /// Thickness over size of the plate outside of which the mesh's unit is probably wrong.
 const PLAUSIBLE_THICKNESS: std::ops::Range<f64> = 1e-4..0.5;
 
+/// The same outside of which there is no plate.
+const POSSIBLE_THICKNESS: std::ops::Range<f64> = 1e-6..2.0;
+
 /// Error of a deflection by straight edges along a curve that is worth a warning, and its size over θ², θ the turn from
 /// edge to edge: the area that the edges cut off, θ²/6, or three times that where an element has nodes in the middle of
 /// edges, because a support at these holds a polygon (16 edges round a circle: 7.5 %).
@@ -139,12 +144,12 @@ impl Model {
         info!(quads = mesh.quads.len(), nodes = mesh.points.len(), "mesh");
         let materials: Vec<Material> = scene.materials.iter().map(|m| m.value.clone()).collect();
         let (laminates, of_specs) = regions::distinct(&scene.laminates);
-        warnings.extend(check_sizes(&mesh, &laminates[0]));
+        warnings.extend(check_sizes(&builder, &mesh, &laminates[0])?);
 
         let element = builder.element()?;
         let criteria = match scene.effects.damage {
             Damage::Off => Vec::new(),
-            Damage::Onset => builder.criteria()?,
+            Damage::Onset => builder.criteria(&*element)?,
         };
         let mut effects = builder.effects(&*element, &criteria)?;
 
@@ -176,12 +181,15 @@ impl Model {
         warnings.extend(polygon(&plate));
         warnings.extend(warn_of_flat_cells(&plate));
         warnings.extend(incompressible(&plate, &laminates, &materials));
-        let (constraints, held) = builder.constraints(&plate)?;
+        let supports = builder.constraints(&plate)?;
+        let constraints = &supports.constraints;
         warnings.extend(builder.lacking(&plate)?);
         let plan = match &scene.analysis {
-            Analysis::Impact(spec) => Plan::Impact(Box::new(builder.impact(spec, &plate, &*element, &constraints)?)),
+            Analysis::Impact(spec) => Plan::Impact(Box::new(builder.impact(spec, &plate, &*element, constraints)?)),
             Analysis::Static(loads) => {
-                Plan::Static { forces: builder.forces(loads, &effects, &plate, &*element, &constraints)? }
+                let forces = builder.forces(loads, &effects, &plate, &*element, constraints)?;
+                supports.check_balance(scene, &plate, &forces)?;
+                Plan::Static { forces }
             }
             Analysis::Modes { count } => Plan::Modes { count: *count },
         };
@@ -205,7 +213,7 @@ impl Model {
             let intervals = [("output.history_every", scene.output.history_every), ("failure.every", looks)];
             warnings.extend(spacing::check(&impact.spec.march, &intervals));
         }
-        let division = builder.division(&plate, &constraints, &plan)?;
+        let division = builder.division(&plate, constraints, &plan)?;
         let watched = builder.find_watched(&plate, &centres)?;
         let gauges = builder.gauges(&plate, &watched, &criteria)?;
         let fields = builder.fields(&plate, &centres)?;
@@ -228,8 +236,9 @@ impl Model {
             plate,
             element,
             laws,
-            constraints,
-            held,
+            held: supports.motions.is_empty() || supports.restraint.is_some(),
+            constraints: supports.constraints,
+            motions: supports.motions,
             division,
             plan,
             profiles,
@@ -367,17 +376,18 @@ fn incompressible(plate: &Plate, laminates: &[Laminate], materials: &[Material])
     })
 }
 
-fn check_sizes(mesh: &PlaneMesh, laminate: &Laminate) -> Vec<String> {
+fn check_sizes(builder: &Builder<'_>, mesh: &PlaneMesh, laminate: &Laminate) -> Result<Vec<String>, SceneError> {
     let mut warnings = Vec::new();
     let (low, high) = mesh.bounds();
     let size = (high[0] - low[0]).max(high[1] - low[1]);
     let ratio = laminate.thickness() / size;
+    let sizes = format!("the plate is {:.4} mm wide and {:.4} mm thick", size * 1e3, laminate.thickness() * 1e3);
+    if !POSSIBLE_THICKNESS.contains(&ratio) {
+        let help = "look at `laminate.ply_thickness` and at `mesh.unit`, the unit of the mesh file";
+        return Err(builder.error(&builder.scene.laminates[0].laminate, sizes, help));
+    }
     if !PLAUSIBLE_THICKNESS.contains(&ratio) {
-        warnings.push(format!(
-            "the plate is {:.4} mm wide and {:.4} mm thick: is `mesh.unit` the unit of the mesh file?",
-            size * 1e3,
-            laminate.thickness() * 1e3
-        ));
+        warnings.push(format!("{sizes}: is `mesh.unit` the unit of the mesh file?"));
     }
     let poor: Vec<u64> = (0..mesh.quads.len())
         .filter(|q| mesh.quality(*q).largest_angle.to_degrees() > POOR_ANGLE)
@@ -389,5 +399,5 @@ fn check_sizes(mesh: &PlaneMesh, laminate: &Laminate) -> Vec<String> {
             poor.len()
         ));
     }
-    warnings
+    Ok(warnings)
 }

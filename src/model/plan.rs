@@ -110,8 +110,9 @@ impl Builder<'_> {
         let strike = |impactor: &scene::ImpactorSpec| {
             let (centre, contact) = self.contact_place(impactor, plate, element)?;
             self.symmetric_impact(plate, &impactor.at, centre)?;
-            let contact = Functional(constraints.restrict(&contact.0));
-            if contact.0.is_empty() {
+            let place = contact;
+            let contact = Functional(constraints.restrict(&place.0));
+            if contact.0.is_empty() || is_held_below(plate, constraints, &place) {
                 return Err(self.error(
                     &impactor.at,
                     "the supports hold the plate exactly where the impactor strikes",
@@ -325,4 +326,16 @@ impl Builder<'_> {
         };
         Ok((centre, contact))
     }
+}
+
+/// Whether more than half of a contact is on node columns of which a support holds a deflection.
+fn is_held_below(plate: &Plate, constraints: &Constraints, contact: &Functional) -> bool {
+    let level = |column: usize, level: usize| plate.dofs_at(column, level, Dof::SOLID[8]);
+    let held = |column: usize| {
+        (0..plate.levels.len()).flat_map(|l| level(column, l)).any(|dof| constraints.row(dof).0.is_empty())
+    };
+    let sum = |keep: &dyn Fn(usize) -> bool| -> f64 {
+        contact.0.iter().filter(|(dof, _)| keep(plate.locate(*dof).0)).map(|(_, w)| w.abs()).sum()
+    };
+    sum(&held) > 0.5 * sum(&|_| true)
 }

@@ -15,6 +15,7 @@ mod lawful;
 mod membrane;
 mod ordering;
 mod pattern;
+mod released;
 mod sparse;
 mod substructure;
 mod symmetric;

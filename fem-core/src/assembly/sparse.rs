@@ -1,10 +1,12 @@
 //! A plate's K and M as a [`Structure`].
 
+use super::released::Released;
 use super::{Cholesky, FactorError, InternalForce, LargePlate, LawPlate, Symbolic, Symmetric, coarse, condition};
 use crate::contracts::structure::Coarse;
 use crate::contracts::structure::{Nonlinear, SolveError, Structure, Tangent};
 use crate::words::damping::Rayleigh;
 use crate::words::energy::Energy;
+use crate::words::functional::Functional;
 use crate::words::prolongation::Prolongation;
 use std::fmt;
 use std::num::NonZeroUsize;
@@ -57,6 +59,7 @@ pub struct SparseStructure {
     prolongation: Option<Prolongation>,
     beyond: Option<Beyond>,
     damping: Option<Rayleigh>,
+    released: Released,
     threads: NonZeroUsize,
     name: Box<dyn Fn(usize) -> String + Send>,
     factorisations: u64,
@@ -85,6 +88,7 @@ impl SparseStructure {
             prolongation: None,
             beyond: None,
             damping: None,
+            released: Released::default(),
             threads,
             factor: Cholesky::new(symbolic, threads),
             factored: Factored::Nothing,
@@ -114,6 +118,18 @@ impl SparseStructure {
     /// Gives the structure viscous damping.
     pub fn damp(&mut self, damping: Rayleigh) {
         self.damping = Some(damping);
+    }
+
+    /// Lets the structure move as a whole by those of `motions` (`ndof × any`, column-major) that cost no energy. Without
+    /// inertia it stays where it is, and loads on it must be in balance.
+    pub fn release(&mut self, motions: &[f64]) {
+        self.released = Released::new(&self.k, &self.inertia, motions);
+        self.factored = Factored::Nothing;
+    }
+
+    /// Whether a load accelerates the structure as a whole.
+    pub fn moves_under(&self, load: &Functional) -> bool {
+        self.released.moves_under(load, &self.k)
     }
 
     /// Entries of one triangle of K.
@@ -146,6 +162,11 @@ impl SparseStructure {
         }
         let matrix = match what {
             Factored::Mass => &self.m,
+            Factored::Shifted(0.0) | Factored::Nothing if !self.released.springs().is_empty() => {
+                self.combined.lower_mut().val_mut().copy_from_slice(self.k.lower().val());
+                self.combined.add_to_diagonal(self.released.springs());
+                &self.combined
+            }
             Factored::Shifted(0.0) | Factored::Nothing => &self.k,
             Factored::Tangent => &self.combined,
             Factored::Shifted(shift) => {
@@ -180,6 +201,10 @@ impl Structure for SparseStructure {
         (self.name)(i)
     }
 
+    fn free_motions(&self) -> &[f64] {
+        self.released.motions()
+    }
+
     fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {
         self.k.add_product(scale, x, y);
     }
@@ -200,7 +225,14 @@ impl Structure for SparseStructure {
 
     fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
         self.factorise(Factored::Shifted(shift))?;
+        let relieved = shift == 0.0;
+        if relieved {
+            self.released.balance(x, columns);
+        }
         self.factor.solve(x, columns);
+        if relieved {
+            self.released.deform(x, columns);
+        }
         self.solves += columns as u64;
         Ok(())
     }
@@ -255,7 +287,8 @@ impl Structure for SparseStructure {
         let k = coarse::product(&self.k, p, &pattern);
         let m = coarse::product(&self.inertia, p, &pattern);
         let symbolic = Symbolic::new(pattern).map_err(SolveError::other)?;
-        let structure = Self::new(symbolic, k, m, self.threads, |i| format!("coarse unknown {}", i + 1));
+        let mut structure = Self::new(symbolic, k, m, self.threads, |i| format!("coarse unknown {}", i + 1));
+        structure.release(&p.fit(self.released.motions()));
         Ok(Some(Coarse { structure: Box::new(structure), prolongation: p.clone() }))
     }
 

@@ -68,6 +68,18 @@ impl Symmetric {
         Ok(())
     }
 
+    /// Entry (i, i).
+    pub(super) fn diagonal(&self, i: usize) -> f64 {
+        self.values[self.pattern.starts()[i]]
+    }
+
+    /// Adds to entries (i, i).
+    pub(super) fn add_to_diagonal(&mut self, more: &[(usize, f64)]) {
+        for (i, value) in more {
+            self.values[self.pattern.starts()[*i]] += value;
+        }
+    }
+
     /// `Y ← Y + scale · A X`, both `n × columns`, column-major; columns go together in fours, which reads the matrix once.
     ///
     /// faer's product wants both triangles, twice the memory, and takes longer (`cargo bench --bench assembly`).

@@ -90,7 +90,7 @@ impl std::error::Error for SolveError {
     }
 }
 
-/// A structure with stiffness K (symmetric, positive definite) and mass M (symmetric, semi-definite).
+/// A structure with stiffness K (symmetric, positive definite but for the free motions) and mass M (symmetric, semi-definite).
 ///
 /// One with viscous damping C (symmetric, semi-definite) has an `add_damping`, `solve_damped`, `solve_damped_mass` and
 /// `damping_rate` of its own; as they are provided, C = 0.
@@ -112,7 +112,15 @@ pub trait Structure: fmt::Debug + Send {
     /// `y ← y + scale · C x`, C of viscous damping; none adds nothing.
     fn add_damping(&self, _scale: f64, _x: &[f64], _y: &mut [f64]) {}
 
+    /// Motions R that cost no energy, K R = 0, with Rᵀ M R = 1; `ndof × motions`, column-major. None of a structure that is held.
+    fn free_motions(&self) -> &[f64] {
+        &[]
+    }
+
     /// `X ← (K + shift · M)⁻¹ X`, X of `ndof × columns`, column-major. The last factorisation is kept.
+    ///
+    /// At a shift of 0 a structure with free motions is in the frame that moves with them (inertia relief):
+    /// X ← P K⁺ Pᵀ X, P = 1 − R Rᵀ M, is the deformation by what of a load does not accelerate it as a whole, and free of R.
     ///
     /// # Errors
     /// A matrix that is not positive definite; the message names the unknown.

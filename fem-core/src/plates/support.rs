@@ -1,6 +1,6 @@
 //! Supports as equations, and the rigid motions that they leave.
 
-use crate::plates::constraint::Equation;
+use crate::plates::constraint::{Constraints, Equation};
 use crate::plates::error::PlateError;
 use crate::plates::plate::Plate;
 use crate::words::dof::Dof;
@@ -105,6 +105,10 @@ pub struct FreeMotions {
 /// Singular values of the supports below this fraction of the largest count as zero.
 pub(super) const RANK: f64 = 1e-7;
 
+/// Work of loads on a motion, over the sum of what each does where it moves most, below which they are in balance: rounding
+/// of their quadrature.
+const BALANCED: f64 = 1e-6;
+
 impl FreeMotions {
     /// Finds them.
     pub fn of(plate: &Plate, equations: &[Equation]) -> Self {
@@ -140,6 +144,26 @@ impl FreeMotions {
             norm += (factor * unit).powi(2);
         }
         row / norm.sqrt().max(f64::MIN_POSITIVE)
+    }
+
+    /// These motions of the independent unknowns, `ndof × motions`, column-major.
+    pub fn of_unknowns(&self, plate: &Plate, constraints: &Constraints) -> Vec<f64> {
+        let moves = |i: usize| Vector6::from(plate.rigid_motions(constraints.original(i), self.centre, self.length));
+        let each = self.basis.iter().flat_map(|motion| (0..constraints.ndof()).map(move |i| moves(i).dot(motion)));
+        each.collect()
+    }
+
+    /// Names of those that do work under `forces`, one per unknown before elimination of constraints.
+    pub fn pushed(&self, plate: &Plate, forces: &[f64]) -> Option<String> {
+        let (mut works, mut size) = (vec![0.0; self.basis.len()], 0.0);
+        for (dof, force) in forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
+            let moves = Vector6::from(plate.rigid_motions(dof, self.centre, self.length));
+            works.iter_mut().zip(&self.basis).for_each(|(work, motion)| *work += force * moves.dot(motion));
+            size += force.abs() * moves.amax();
+        }
+        let pushed = works.iter().zip(&self.basis).filter(|(work, _)| work.abs() > BALANCED * size);
+        let basis: Vec<_> = pushed.map(|(_, motion)| *motion).collect();
+        (!basis.is_empty()).then(|| Self { basis, ..*self }.names())
     }
 
     /// Their names: "translation along x, rotation about z".

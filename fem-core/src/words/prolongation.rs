@@ -1,5 +1,7 @@
 //! Displacements that follow from fewer.
 
+use nalgebra::{Cholesky, DMatrix, DVectorViewMut};
+
 /// P of u = P y, by rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prolongation {
@@ -51,5 +53,24 @@ impl Prolongation {
             all.append(&mut y);
         }
         all
+    }
+
+    /// The Y of which P Y is nearest to U, column by column; a node column's unknowns follow from its own coarse ones alone.
+    pub fn fit(&self, u: &[f64]) -> Vec<f64> {
+        let mut y = self.restrict(u);
+        let mut grams: Vec<_> = self.blocks.windows(2).map(|b| DMatrix::zeros(b[1] - b[0], b[1] - b[0])).collect();
+        for row in self.starts.windows(2).map(|row| &self.terms[row[0]..row[1]]).filter(|row| !row.is_empty()) {
+            let block = self.blocks.partition_point(|first| *first <= row[0].0) - 1;
+            for (i, p) in row {
+                row.iter().for_each(|(j, q)| grams[block][(i - self.blocks[block], j - self.blocks[block])] += p * q);
+            }
+        }
+        for (block, gram) in self.blocks.windows(2).zip(grams) {
+            let Some(gram) = Cholesky::new(gram) else { continue };
+            for y in y.chunks_exact_mut(self.columns().max(1)) {
+                gram.solve_mut(&mut DVectorViewMut::from_slice(&mut y[block[0]..block[1]], block[1] - block[0]));
+            }
+        }
+        y
     }
 }

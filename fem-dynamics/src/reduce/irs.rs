@@ -50,7 +50,7 @@ impl Reduction for Irs {
         // M_r⁻¹ loses what governors next to each other have in common, and nothing above notices. Frequencies do: those of more
         // shapes than Guyan's own are lower.
         let lowest = |basis: &[f64]| -> Result<f64, ReductionError> {
-            Ok(Reduced::project(structure, basis)?.modal.frequencies().next().unwrap_or(0.0))
+            Ok(Reduced::project(structure, basis)?.modal.lowest_frequency().unwrap_or(0.0))
         };
         if lowest(&basis)? <= (1.0 + SLACK) * lowest(&shapes.shapes())? {
             Ok(basis)

@@ -105,10 +105,13 @@ impl MembranePlate {
         contacts: &[Functional],
         stretching: &dyn MembraneForms,
     ) -> Result<(Self, Companions), ReductionError> {
-        let (n, rigid) = (reduced.ndof, &reduced.modal.stiffness);
+        let n = reduced.ndof;
+        // Free motions bend nothing: as if they were infinitely stiff.
+        let stiff = |k: &f64| if *k > 0.0 { *k } else { f64::INFINITY };
+        let bending: Vec<f64> = reduced.modal.stiffness.iter().map(stiff).collect();
         let loads: Vec<Vec<f64>> = contacts.iter().map(|contact| reduced.restrict(contact)).collect();
-        let Directions { vectors, reach } = Directions::new(rigid, &loads);
-        let basis = DMatrixView::from_slice(&reduced.basis, n, rigid.len());
+        let Directions { vectors, reach } = Directions::new(&bending, &loads);
+        let basis = DMatrixView::from_slice(&reduced.basis, n, bending.len());
         let fields = basis * &vectors;
         let m = vectors.ncols();
         let pairs = (0..m).flat_map(|i| (i..m).map(move |j| (i, j)));
@@ -128,7 +131,7 @@ impl MembranePlate {
         let mut shapes = -forces.clone();
         structure.solve_shifted(0.0, shapes.as_mut_slice(), terms)?;
         let couplings = basis.transpose() * &forces;
-        shapes += basis * DMatrix::from_fn(rigid.len(), terms, |r, t| couplings[(r, t)] / rigid[r]);
+        shapes += basis * DMatrix::from_fn(bending.len(), terms, |r, t| couplings[(r, t)] / bending[r]);
         let released = forces.transpose() * &shapes;
         let left = DMatrix::from_diagonal(&energies) + (&released + released.transpose()) * 0.5;
         let (turn, stiffness) = largest(left)?;
@@ -140,20 +143,20 @@ impl MembranePlate {
         };
         // The work of a stress on its own strains is σ_t, respectively the energy: per that, it counts how much there is.
         let counted = |mut forms: Vec<f64>, of: &DVector<f64>| {
-            for (form, value) in forms.chunks_exact_mut(rigid.len() * rigid.len()).zip(of) {
+            for (form, value) in forms.chunks_exact_mut(bending.len() * bending.len()).zip(of) {
                 form.iter_mut().for_each(|f| *f /= value);
             }
             forms
         };
         let couplings = couplings * &turn;
         // What the modes that a term is coupled to give way by.
-        let taken = couplings.column_iter().flat_map(|c| c.into_iter().zip(rigid).map(|(c, k)| c * c / k));
+        let taken = couplings.column_iter().flat_map(|c| c.into_iter().zip(&bending).map(|(c, k)| c * c / k));
         let coupled = taken.fold(0.0, f64::max) > NEGLIGIBLE * stiffness.max();
         let plate = Self {
             modal: reduced.modal.clone(),
             forms: counted(forms(&(&combinations * &turn), Some(&(&shapes * &turn)))?, &stiffness),
             couplings: if coupled { couplings.as_slice().to_vec() } else { Vec::new() },
-            products: vec![0.0; rigid.len() * stiffness.len()],
+            products: vec![0.0; bending.len() * stiffness.len()],
             values: vec![0.0; stiffness.len()],
             stiffness: stiffness.as_slice().to_vec(),
             factor: None,
@@ -198,10 +201,13 @@ struct Directions {
 impl Directions {
     fn new(stiffness: &[f64], loads: &[Vec<f64>]) -> Self {
         let n = stiffness.len();
-        let dot = |a: &DVector<f64>, b: &DVector<f64>| -> f64 { (0..n).map(|i| a[i] * stiffness[i] * b[i]).sum() };
-        let lowest = stiffness.first().map_or(0.0, |k| k.sqrt());
+        let bends: Vec<usize> = (0..n).filter(|i| stiffness[*i].is_finite()).collect();
+        let dot =
+            |a: &DVector<f64>, b: &DVector<f64>| -> f64 { bends.iter().map(|i| a[*i] * stiffness[*i] * b[*i]).sum() };
+        let lowest = bends.first().map_or(0.0, |i| stiffness[*i].sqrt());
         let under = |load: &[f64], tension: f64| {
-            DVector::from_fn(n, |i, _| load[i] / (stiffness[i] + tension * lowest * stiffness[i].sqrt()))
+            let response = |i: usize| load[i] / (stiffness[i] + tension * lowest * stiffness[i].sqrt());
+            DVector::from_fn(n, |i, _| if stiffness[i].is_finite() { response(i) } else { 0.0 })
         };
         let family: Vec<_> = loads.iter().flat_map(|load| TENSIONS.map(|tension| under(load, tension))).collect();
         let mut kept: Vec<DVector<f64>> = Vec::new();

@@ -36,7 +36,7 @@ const LARGEST: usize = 2000;
 /// A structure in the coordinates in which its K and M are diagonal.
 ///
 /// A mode with inertia is scaled to unit mass, so its stiffness is ω²; a mode without (from a singular M) to unit
-/// stiffness and no mass.
+/// stiffness and no mass. The free motions of the structure come first, without stiffness.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Modal {
     stiffness: Vec<f64>,
@@ -49,6 +49,16 @@ impl Modal {
     /// Circular frequencies, rad/s, ascending; infinite for modes without inertia.
     pub fn frequencies(&self) -> impl Iterator<Item = f64> + '_ {
         self.stiffness.iter().zip(&self.mass).map(|(k, m)| if *m > 0.0 { k.sqrt() } else { f64::INFINITY })
+    }
+
+    /// The lowest of the frequencies that are not zero.
+    pub fn lowest_frequency(&self) -> Option<f64> {
+        self.frequencies().find(|omega| *omega > 0.0)
+    }
+
+    /// Deformation of each mode under a unit force on it: one over its stiffness, none of a free motion.
+    pub fn compliances(&self) -> impl Iterator<Item = f64> + '_ {
+        self.stiffness.iter().map(|k| if *k > 0.0 { 1.0 / k } else { 0.0 })
     }
 
     /// Modal stiffnesses: ω², and 1 of modes without inertia.
@@ -102,7 +112,8 @@ impl Structure for Modal {
     fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
         for column in x.chunks_exact_mut(self.stiffness.len()).take(columns) {
             for ((x, k), m) in column.iter_mut().zip(&self.stiffness).zip(&self.mass) {
-                *x /= k + shift * m;
+                let stiffness = k + shift * m;
+                *x = if stiffness == 0.0 { 0.0 } else { *x / stiffness };
             }
         }
         Ok(())
@@ -156,7 +167,7 @@ pub struct Reduced {
 }
 
 impl Reduced {
-    /// Projects `structure` on the columns of `basis` (`ndof × m`) and diagonalises: TᵀKT, TᵀMT.
+    /// Projects `structure` on its free motions and the columns of `basis` (`ndof × m`) and diagonalises: TᵀKT, TᵀMT.
     ///
     /// The small eigenproblem is solved in the metric of K, which is definite where M need not be. Columns that depend on
     /// those before them are left out.
@@ -169,10 +180,16 @@ impl Reduced {
         if m == 0 {
             return Err(ReductionError::NoVectors);
         }
-        let t = DMatrix::from_column_slice(n, m, basis);
+        let free = DMatrix::from_column_slice(n, structure.free_motions().len() / n, structure.free_motions());
+        let mut t = DMatrix::from_column_slice(n, m, basis);
+        if !free.is_empty() {
+            let mut momenta = DMatrix::zeros(n, free.ncols());
+            structure.add_mass(1.0, free.as_slice(), momenta.as_mut_slice());
+            t -= &free * momenta.tr_mul(&t);
+        }
         let product = |add: &dyn Fn(&[f64], &mut [f64])| {
             let mut image = DMatrix::zeros(n, m);
-            add(basis, image.as_mut_slice());
+            add(t.as_slice(), image.as_mut_slice());
             let product = t.transpose() * image;
             (&product + product.transpose()) * 0.5
         };
@@ -195,7 +212,8 @@ impl Reduced {
         order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
         let largest = eigen.eigenvalues.iter().fold(0.0_f64, |a, b| a.max(*b));
         let mut vectors = DMatrix::zeros(m, m);
-        let mut modal = Modal { stiffness: Vec::with_capacity(m), mass: Vec::with_capacity(m), damping: Vec::new() };
+        let moves = free.ncols();
+        let mut modal = Modal { stiffness: vec![0.0; moves], mass: vec![1.0; moves], damping: Vec::new() };
         for (to, from) in order.into_iter().enumerate() {
             let inverse = eigen.eigenvalues[from];
             let mut column = eigen.eigenvectors.column(from).into_owned();
@@ -214,7 +232,7 @@ impl Reduced {
             vectors.set_column(to, &column);
         }
         let back = l.transpose().solve_upper_triangular(&vectors).ok_or(ReductionError::SingularStiffness)?;
-        let basis = (t * back).as_slice().to_vec();
+        let basis = [free.as_slice(), (t * back).as_slice()].concat();
         Ok(Self { modal, basis, ndof: n })
     }
 

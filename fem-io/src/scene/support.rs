@@ -101,7 +101,7 @@ const RESTRAIN: Keys = &[key(
     "restrain",
     Form::Words(&["rigid-motions"]),
     r#""rigid-motions""#,
-    "holds what other supports leave free, without straining the plate",
+    "at rest: holds what other supports leave free, without straining the plate; in motion: leaves it free",
 )
 .required()];
 pub(super) const EQUATION: Keys = &[key(

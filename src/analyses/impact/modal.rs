@@ -69,7 +69,8 @@ pub(super) struct Record {
 impl ModalView {
     /// Follows the `count` lowest modes of `modal` that a contact of the weights `load` excites, if there are any.
     pub(super) fn new(modal: &Modal, load: &[f64], count: usize) -> Option<Self> {
-        let all = || modal.frequencies().zip(load).enumerate().filter(|(_, (omega, _))| omega.is_finite());
+        let all =
+            || modal.frequencies().zip(load).enumerate().filter(|(_, (omega, _))| *omega > 0.0 && omega.is_finite());
         let flexibility = |omega: f64, phi: f64| (phi / omega).powi(2);
         let total: f64 = all().map(|(_, (omega, phi))| flexibility(omega, *phi)).sum();
         let mode = |(number, (omega, phi)): (usize, (f64, &f64))| Mode {

@@ -78,6 +78,10 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     stopwatch.lap("assemble");
     let before = Before::of(&assembled);
     let contacts: Vec<Functional> = impact.strikes.iter().map(|s| assembled.functional(&s.contact)).collect();
+    let inertia = model.effects.nature().inertia;
+    if !inertia && contacts.iter().any(|contact| assembled.structure.moves_under(contact)) {
+        return Err(Error::Unheld { load: "the impactor", inertia });
+    }
     let basis = choose_basis(model, impact, &mut assembled, &contacts);
     let reduced = reduce(model, impact, &mut assembled, basis, &mut effects)?;
     let Assembled { structure, condensation, .. } = assembled;
@@ -258,7 +262,7 @@ fn check_step(
         return Err(model.origin.source.error_at(&march.step.place, why, help).into());
     }
     let (steps, step) = march.steps();
-    let lowest = reduced.and_then(|r| r.modal.frequencies().next());
+    let lowest = reduced.and_then(|r| r.modal.lowest_frequency());
     let Before { stiffness_entries, factor_entries, substructures, memory } = before;
     Ok(Sizes {
         unknowns: model.constraints.ndof(),

@@ -18,9 +18,10 @@ pub(in crate::analyses::impact) fn estimate(
     condensation: Option<&Condensation>,
 ) -> Result<Option<f64>, ElementError> {
     let Some(impactor) = system.impactors().first() else { return Ok(None) };
-    let stiffnesses = reduced.modal.stiffnesses();
-    let mut q = vec![0.0; stiffnesses.len()];
-    impactor.load.iter().for_each(|(j, w)| q[*j] += w / stiffnesses[*j]);
+    let mut q: Vec<f64> = reduced.modal.compliances().collect();
+    let mut load = vec![0.0; q.len()];
+    impactor.load.iter().for_each(|(j, w)| load[*j] += w);
+    q.iter_mut().zip(&load).for_each(|(q, load)| *q *= load);
     let masters = condensation.map_or(model.constraints.ndof(), Condensation::ndof);
     let mut independent = vec![0.0; masters];
     reduced.expand(&q, &mut independent);

@@ -108,7 +108,7 @@ fn inertial_load(full: &Full, reduced: &Reduced, modes: &[Vec<f64>], instant: &I
 fn flexibility(contacts: &[Functional], reduced: &Reduced, modes: &[Vec<f64>], solved: &[f64]) -> f64 {
     let each = contacts.iter().zip(modes).zip(solved.chunks_exact(solved.len() / contacts.len()));
     let error = |((w, mode), solved): ((&Functional, &Vec<f64>), &[f64])| {
-        let of_reduced: f64 = reduced.modal.stiffnesses().iter().zip(mode).map(|(k, m)| m * m / k).sum();
+        let of_reduced: f64 = reduced.modal.compliances().zip(mode).map(|(c, m)| m * m * c).sum();
         (of_reduced / w.of(solved) - 1.0).abs()
     };
     each.map(error).fold(0.0, f64::max)
