@@ -70,6 +70,10 @@ impl Released {
         })
     }
 
+    pub(super) fn springs(&self) -> &[(usize, f64)] {
+        &self.springs
+    }
+
     /// Takes from loads, `ndof × columns`, what accelerates the structure as a whole: Pᵀ x = x − M R Rᵀ x.
     pub(super) fn balance(&self, loads: &mut [f64], columns: usize) {
         subtract(&self.momenta, &self.motions, loads, columns);
