@@ -198,7 +198,7 @@ impl Model {
             _ => Vec::new(),
         };
         if let Plan::Impact(impact) = &plan {
-            warnings.extend(plan::warn_of_parts(&impact.strikes, &plate, &constraints));
+            warnings.extend(plan::warn_of_parts(&impact.strikes, &plate, constraints));
         }
         let struck =
             |centre: [f64; 2]| (0..plate.plane.quads.len()).find(|q| plate.plane.corners(*q).locate(centre).is_some());
