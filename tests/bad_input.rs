@@ -456,7 +456,9 @@ mod marches {
     #[test]
     fn warnings_come_with_a_refusal_that_they_may_explain() {
         let case = with_keys(strip(), "reduction = { method = \"guyan\", governors = 1000 }");
-        let case = case.scene("unit = \"mm\"", "unit = \"m\"");
+        let case = case
+            .scene("unit = \"mm\"", "unit = \"m\"")
+            .scene("x = \"15 mm\", y = \"5 mm\"", "x = \"15 m\", y = \"5 m\"");
         let words = ["Warning: the plate is 30000.0000 mm wide and 2.1133 mm thick", "1000 governors are asked for"];
         refusal(&case, At::Scene("reduction ="), &words);
     }
