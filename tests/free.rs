@@ -1,6 +1,6 @@
 //! Plates that nothing holds: they fly on with what the impactor gives them.
 
-use crate::support::impact_of;
+use crate::support::{impact_of, plate};
 use fem::analyses::modes;
 use fem::io::scene::{self, Scene};
 use fem::{Model, Registry};
@@ -142,4 +142,23 @@ fn loads_that_only_a_restraint_would_carry_are_refused() {
     let struck = block(20.0, 50.0, 10.0, "hermite-prism", "");
     refused(&struck.replace("damage = 'off'", "damage = 'off', inertia = 'off'"), &["the impactor pushes", "inertia"]);
     refused(&struck.replace("damage = 'off'", "damage = 'off', gravity = '9.81 m/s^2'"), &["its weight pushes"]);
+}
+
+#[test]
+fn what_no_impact_can_be_is_refused() {
+    let line = "at = \"mid-plane\"\nfix = [\"U30\"]";
+    for (from, to, words) in [
+        ("[\"hashin-report\", \"octahedral\"]", "[\"tsai-hill\"]", "out_of_plane"),
+        ("ply_thickness = \"0.13208 mm\"", "ply_thickness = \"132.08 mm\"", "2113.2800 mm thick"),
+        ("velocity = \"1.56 m/s\"", "velocity = \"15.6 km/s\"", "no impact at low velocity"),
+        (line, &format!("{line}\n[[support]]\ngroup = \"impact\"\n{line}"), "exactly where the impactor strikes"),
+    ] {
+        let case = plate().scene(from, to);
+        let done = case.fem("check", &[]);
+        assert!(done.status != 0 && done.stderr.contains(words), "{to}: {done:#?}");
+    }
+    for threads in ["18446744073709551615", "100000000", "0"] {
+        let done = plate().fem("run", &["--threads", threads]);
+        assert!(done.status == 2 && done.stderr.contains("from 1 to 4096"), "{done:#?}");
+    }
 }

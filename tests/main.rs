@@ -16,6 +16,7 @@ mod fields;
 mod free;
 mod impactors;
 mod indices;
+mod invariance;
 mod job;
 mod kills;
 mod mesh;

@@ -12,7 +12,8 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 /// Writes `stiffness.mtx` and `mass.mtx` (Matrix Market, both triangles; N/m and kg for translations) and
-/// `unknowns.csv`, which names row and column of each. Supports and other equations are eliminated.
+/// `unknowns.csv`, which names row and column of each. Supports and other equations are eliminated; where these leave a plate
+/// that moves free, restrained or not, K is singular.
 ///
 /// # Errors
 /// A cell that the element refuses, a material without the density of a mass, a folder that cannot be written.
