@@ -39,7 +39,7 @@ impl Force {
             difference += (self.at(t) - reference.sample(k)).powi(2);
             size += reference.sample(k).powi(2);
         }
-        (difference / size).sqrt()
+        if size > 0.0 { (difference / size).sqrt() } else { f64::NAN }
     }
 
     fn sample(&self, k: usize) -> f64 {
