@@ -630,7 +630,7 @@ mod contact {
         let case = strip().scene("unit = \"mm\"", "unit = \"um\"");
         refusal(
             &case,
-            At::Scene("plies = "),
+            At::Scene("[laminate]"),
             &["0.0300 mm wide and 2.1133 mm thick", "`mesh.unit`, the unit of the mesh"],
         );
         let case = strip().scene("x = \"15 mm\"", "x = \"45 mm\"");

@@ -17,6 +17,7 @@ use fem_core::time::Integrator;
 use fem_io::scene::{
     self, Analysis, ContactLoad, ImpactPoint, Load, LoadKind, Located, Place, ProfileLine, SceneError,
 };
+use std::collections::BTreeMap;
 
 /// Fewest cells whose stresses can be differentiated.
 const LEAST_CELLS: usize = 4;
@@ -328,14 +329,11 @@ impl Builder<'_> {
     }
 }
 
-/// Whether more than half of a contact is on node columns of which a support holds a deflection.
+/// Whether a support holds a deflection of the node column on which most of a contact is.
 fn is_held_below(plate: &Plate, constraints: &Constraints, contact: &Functional) -> bool {
-    let level = |column: usize, level: usize| plate.dofs_at(column, level, Dof::SOLID[8]);
-    let held = |column: usize| {
-        (0..plate.levels.len()).flat_map(|l| level(column, l)).any(|dof| constraints.row(dof).0.is_empty())
-    };
-    let sum = |keep: &dyn Fn(usize) -> bool| -> f64 {
-        contact.0.iter().filter(|(dof, _)| keep(plate.locate(*dof).0)).map(|(_, w)| w.abs()).sum()
-    };
-    sum(&held) > 0.5 * sum(&|_| true)
+    let mut shares: BTreeMap<usize, f64> = BTreeMap::new();
+    contact.0.iter().for_each(|(dof, w)| *shares.entry(plate.locate(*dof).0).or_default() += w.abs());
+    let Some((column, _)) = shares.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)) else { return false };
+    let mut deflections = (0..plate.levels.len()).flat_map(|level| plate.dofs_at(column, level, Dof::SOLID[8]));
+    deflections.any(|dof| constraints.row(dof).0.is_empty())
 }

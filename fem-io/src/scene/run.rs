@@ -314,17 +314,17 @@ fn read_impactor(
     let velocity_field = table.required("velocity")?;
     let (mass, velocity) =
         (table.required("mass")?.positive(Dimension::MASS)?, velocity_field.positive(Dimension::VELOCITY)?);
-    if velocity > FASTEST {
-        return Err(velocity_field.error(
-            format!("{velocity} m/s is no impact at low velocity: waves of pressure would go through the plate, which are left out"),
-            format!("look for a typing error in number or unit; at most {FASTEST} m/s are taken"),
-        ));
-    }
     // Energies are compared with it.
     if !(0.5 * mass * velocity * velocity).is_normal() {
         return Err(velocity_field.error(
             "the energy of the impact is too large for floating-point numbers",
             "look for a typing error in mass or velocity",
+        ));
+    }
+    if velocity > FASTEST {
+        return Err(velocity_field.error(
+            format!("{velocity} m/s is no impact at low velocity: waves of pressure would go through the plate, which are left out"),
+            format!("look for a typing error in number or unit; at most {FASTEST} m/s are taken"),
         ));
     }
     let start = match table.optional("start") {

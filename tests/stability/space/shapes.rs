@@ -147,7 +147,7 @@ fn degenerate() -> f64 {
             Err(error) => [words, "plate.msh", "mesh"].iter().all(|words| said(&error).contains(words)),
         }
     };
-    let cell = |mesh: &&PlaneMesh| !refused(mesh, "cell ");
+    let cell = |mesh: &&PlaneMesh| !refused(mesh, "cell ") && !refused(mesh, "cells ");
     let nodes = |mesh: &&PlaneMesh| !refused(mesh, "nodes ") && !refused(mesh, "cell ");
     (meshes.iter().filter(cell).count() + together.iter().filter(nodes).count()) as f64
 }

@@ -214,7 +214,11 @@ fn same_bytes() -> f64 {
             let bytes = fs::read(case.folder().join(out).join(&name)).unwrap();
             (name, bytes)
         };
-        case.names(out).into_iter().filter(|name| name != "cost.json").map(bytes).collect::<Vec<_>>()
+        case.names(out)
+            .into_iter()
+            .filter(|name| !["cost.json", ".fem"].contains(&name.as_str()))
+            .map(bytes)
+            .collect::<Vec<_>>()
     });
     assert!(files[0].len() > 5 && files.iter().all(|run| run.len() == files[0].len()));
     files[1..].iter().flat_map(|run| run.iter().zip(&files[0])).filter(|(a, b)| a != b).count() as f64

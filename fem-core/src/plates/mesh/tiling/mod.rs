@@ -12,6 +12,9 @@ use std::collections::BTreeSet;
 /// in a file, and far below any gap that a cell beside it could resolve.
 const TOUCH: f64 = 1e-3;
 
+/// The width of a slender cell, of that: its nodes are at one place below.
+const SLENDER: f64 = 1e-6;
+
 /// Most flaws whose cells are searched for one by one.
 const MOST: usize = 20;
 
@@ -82,6 +85,7 @@ impl PlaneMesh {
     pub fn flaws(&self, cuts: &[String]) -> Vec<Flaw> {
         let sides = Sides::of(self);
         let mut flaws = self.on_the_same_side(&sides);
+        flaws.extend(self.without_length(&sides));
         if flaws.is_empty() {
             let free = FreeSides::of(self, &sides);
             let (touched, crossed) = free.meetings(cuts);
@@ -147,6 +151,19 @@ impl PlaneMesh {
         flaws
     }
 
+    /// Sides that are nothing beside their cell.
+    fn without_length(&self, sides: &Sides) -> Vec<Flaw> {
+        let nothing = |side: &&Side| {
+            let [a, b] = side.nodes.map(|n| self.point(n));
+            distance(a, b) <= SLENDER * TOUCH * height(self.corners(side.cell as usize))
+        };
+        let doubled = |side: &Side| {
+            let [a, b] = side.nodes;
+            Flaw { kind: FlawKind::Doubled { nodes: [a.min(b), a.max(b)] }, at: self.point(a) }
+        };
+        sides.all().iter().filter(nothing).map(doubled).collect()
+    }
+
     /// Nodes around which cells lie over each other: more than one of them covers the direction of x.
     fn covered_around(&self, sides: &Sides) -> Vec<Flaw> {
         let covers = |node: u32, side: &&Side| {
@@ -170,6 +187,7 @@ impl PlaneMesh {
 /// Sides of one cell alone.
 struct FreeSides<'a> {
     mesh: &'a PlaneMesh,
+    all: &'a Sides,
     sides: Vec<Side>,
     /// How near to a side a node is on it, m.
     reach: Vec<f64>,
@@ -177,7 +195,7 @@ struct FreeSides<'a> {
 }
 
 impl<'a> FreeSides<'a> {
-    fn of(mesh: &'a PlaneMesh, sides: &Sides) -> Self {
+    fn of(mesh: &'a PlaneMesh, sides: &'a Sides) -> Self {
         let free: Vec<Side> = sides.all().iter().filter(|side| sides.opposite(side.nodes).is_none()).copied().collect();
         let reach: Vec<f64> = free.iter().map(|side| TOUCH * height(mesh.corners(side.cell as usize))).collect();
         let around = |(side, reach): (&Side, &f64)| -> Box2 {
@@ -185,7 +203,7 @@ impl<'a> FreeSides<'a> {
             [[0, 1].map(|d| a[d].min(b[d]) - reach), [0, 1].map(|d| a[d].max(b[d]) + reach)]
         };
         let boxes = Boxes::new(free.iter().zip(&reach).map(around).collect());
-        Self { mesh, sides: free, reach, boxes }
+        Self { mesh, all: sides, sides: free, reach, boxes }
     }
 
     fn ends(&self, k: usize) -> [[f64; 2]; 2] {
@@ -222,11 +240,18 @@ impl<'a> FreeSides<'a> {
         let p = self.mesh.point(node);
         let reach = self.reach[k].min(self.reach[other]);
         let kind = match side.nodes.into_iter().find(|end| distance(self.mesh.point(*end), p) <= reach) {
+            Some(end) if self.are_apart(end, node, reach) => return None,
             Some(end) => FlawKind::Doubled { nodes: [end.min(node), end.max(node)] },
             None if off(self.ends(k), p) <= reach => FlawKind::Hanging { node, cell: side.cell, side: side.nodes },
             None => return None,
         };
         Some(Flaw { kind, at: p })
+    }
+
+    /// Whether two nodes so near to each other are the width of a slender cell.
+    fn are_apart(&self, a: u32, b: u32, reach: f64) -> bool {
+        let joined = self.all.find([a, b]).or(self.all.find([b, a])).is_some();
+        joined && distance(self.mesh.point(a), self.mesh.point(b)) > SLENDER * reach
     }
 
     /// Where side `k` crosses a later one, by more than a touch.
