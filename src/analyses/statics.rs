@@ -13,7 +13,7 @@ use fem_core::energy::Energy;
 use fem_core::estimate::mesh_error;
 use fem_core::field::Field as Displacements;
 use fem_core::functional::Functional;
-use fem_core::profile::{ProfilePoint, Resultants};
+use fem_core::profile::{Choice, ProfilePoint, Resultants};
 use fem_core::structure::Structure;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -53,6 +53,8 @@ pub struct StaticSolution {
     pub margins: Vec<Margin>,
     /// The states along the profiles of the model.
     pub profiles: Vec<Vec<ProfilePoint>>,
+    /// How σ₃₃ and the transverse shear of each were found.
+    pub transverse: Vec<[Choice; 2]>,
     /// Forces and moments per length at each of them.
     pub resultants: Vec<Resultants>,
     /// Work done.
@@ -135,11 +137,14 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
     }
     let sample = |named: &NamedProfile| {
         let line = &named.line;
-        let bottom = line.equilibrium.then_some(named.bottom);
-        Ok((named.profile.sample(&field, line.points, bottom)?, named.profile.resultants(&field)?))
+        // Equilibrium is that of small displacements.
+        let equilibrium = if nature.large { Some(false) } else { line.equilibrium };
+        let sampled = named.profile.sample(&field, line.points, equilibrium, named.pressures)?;
+        Ok(((sampled.points, [sampled.normal, sampled.shear]), named.profile.resultants(&field)?))
     };
     let sampled: Vec<_> = model.profiles.iter().map(sample).collect::<Result<_, ElementError>>()?;
-    let (profiles, resultants) = sampled.into_iter().unzip();
+    let (sampled, resultants): (Vec<_>, _) = sampled.into_iter().unzip();
+    let (profiles, transverse) = sampled.into_iter().unzip();
     stopwatch.lap("stresses");
     // The estimate sees only strains that cause stress.
     let mesh_error = if nature.large || nature.strained || model.laws.is_some() {
@@ -163,6 +168,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
         resultant,
         margins,
         profiles,
+        transverse,
         resultants,
         counters,
         phases,

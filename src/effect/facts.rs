@@ -118,7 +118,7 @@ impl<'a> Facts<'a> {
             Feature::FullModel => own(self.full),
             Feature::FollowedModes => scene.output.modes.as_ref().map(|modes| &modes.place),
             Feature::EquilibriumProfile => {
-                scene.profiles.iter().find(|line| line.equilibrium).map(|line| &line.name.place)
+                scene.profiles.iter().find(|line| line.equilibrium == Some(true)).map(|line| &line.name.place)
             }
             Feature::ExplicitIntegrator => None,
             Feature::PlyLaws => own(scene.plies().any(|ply| scene.laws[ply.material].is_some())),

@@ -219,7 +219,7 @@ impl Model {
         let fields = builder.fields(&plate, &centres)?;
         let resin = scene.interface.as_ref().map(|resin| resin.value);
         let threshold = builder.threshold(DelaminationThreshold::of(&laminate, &materials, resin))?;
-        let profiles = builder.profiles(&plate)?;
+        let profiles = builder.profiles(&plate, constraints)?;
         let laws = builder.laws(&plate, &laminates, &materials, &*element)?;
         if let Some(laws) = &laws {
             effects.act(Box::new(NonlinearPlies(laws.clone())));

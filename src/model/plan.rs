@@ -11,7 +11,7 @@ use fem_core::functional::Functional;
 use fem_core::load::{self, Face};
 use fem_core::patch;
 use fem_core::plate::{Plate, PlateError};
-use fem_core::profile::Profile;
+use fem_core::profile::{Mirrors, Profile};
 use fem_core::reduction::Reduction;
 use fem_core::time::Integrator;
 use fem_io::scene::{
@@ -74,8 +74,8 @@ pub struct NamedProfile {
     pub point: [f64; 2],
     /// The line through the plate.
     pub profile: Profile,
-    /// Pressure on the bottom face there, Pa.
-    pub bottom: f64,
+    /// Pressure on the bottom and on the top face there, Pa.
+    pub pressures: [f64; 2],
 }
 
 /// An impact on a node at the edge, where supports are those of a plane of symmetry: on a part of a plate, as it is made by hand.
@@ -217,43 +217,52 @@ impl Builder<'_> {
         }
     }
 
-    pub(super) fn profiles(&self, plate: &Plate) -> Result<Vec<NamedProfile>, SceneError> {
+    pub(super) fn profiles(&self, plate: &Plate, constraints: &Constraints) -> Result<Vec<NamedProfile>, SceneError> {
         let cells = plate.plane.quads.len();
+        let mirrors = Mirrors::of(plate, constraints);
         let each = |line: &ProfileLine| {
             let (point, _) = self.point(plate, &line.at)?;
-            let Some(profile) = Profile::at(plate, point) else {
+            let Some(profile) = Profile::at(plate, &mirrors, point) else {
                 return Err(self.error(&line.at, "the point lies outside the plate", "move it"));
             };
-            if line.equilibrium && cells < LEAST_CELLS {
+            if line.equilibrium == Some(true) && cells < LEAST_CELLS {
                 let message = format!("the stresses of {cells} cells cannot be differentiated for `equilibrium`");
                 let help = format!("use at least {LEAST_CELLS} cells, or leave `equilibrium` out");
                 return Err(self.error(&line.name, message, help));
             }
-            let bottom = self.bottom_pressure(plate, &profile, point)?;
-            Ok(NamedProfile { line: line.clone(), point, profile, bottom })
+            let pressures = self.pressures(plate, &profile, point)?;
+            Ok(NamedProfile { line: line.clone(), point, profile, pressures })
         };
         self.scene.profiles.iter().map(each).collect()
     }
 
-    /// What presses on the bottom face at a point: where loaded and free cells meet, the mean over the cells.
-    fn bottom_pressure(&self, plate: &Plate, profile: &Profile, point: [f64; 2]) -> Result<f64, SceneError> {
-        let Analysis::Static(loads) = &self.scene.analysis else { return Ok(0.0) };
-        let mut sum = 0.0;
+    /// What presses on the bottom and on the top face at a point: where loaded and free cells meet, the mean over the cells.
+    fn pressures(&self, plate: &Plate, profile: &Profile, point: [f64; 2]) -> Result<[f64; 2], SceneError> {
+        let mut sums = [0.0; 2];
+        let Analysis::Static(loads) = &self.scene.analysis else { return Ok(sums) };
         for load in loads {
-            let LoadKind::Pressure { pressure, face: Face::Bottom, group } = &load.kind else { continue };
-            let share = match group {
-                None => 1.0,
-                Some(name) => {
-                    let loaded = &self.group(plate, name)?.quads;
-                    let pressed = profile.quads().filter(|q| loaded.contains(&(*q as u32))).count();
-                    pressed as f64 / profile.quads().len() as f64
+            match &load.kind {
+                LoadKind::Pressure { pressure, face, group } => {
+                    let share = match group {
+                        None => 1.0,
+                        Some(name) => {
+                            let loaded = &self.group(plate, name)?.quads;
+                            let pressed = profile.quads().filter(|q| loaded.contains(&(*q as u32))).count();
+                            pressed as f64 / profile.quads().len() as f64
+                        }
+                    };
+                    if share > 0.0 {
+                        sums[usize::from(*face == Face::Top)] += share * pressure.at(point);
+                    }
                 }
-            };
-            if share > 0.0 {
-                sum += share * pressure.at(point);
+                LoadKind::Patch { force, at, radius } => {
+                    let (centre, _) = self.point(plate, at)?;
+                    sums[1] += force * patch::hertz_pressure(centre, *radius, point);
+                }
+                LoadKind::Edge { .. } | LoadKind::Point { .. } | LoadKind::Gravity { .. } => {}
             }
         }
-        Ok(sum)
+        Ok(sums)
     }
 
     /// A place on the plate, m, and the column of the node there if there is one.

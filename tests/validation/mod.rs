@@ -17,3 +17,4 @@ mod strip;
 mod study;
 mod substructures;
 mod symmetry;
+mod transverse;

@@ -19,10 +19,10 @@ const ORDER: std::ops::Range<f64> = 3.5..4.5;
 
 /// A laminate of the reference tables.
 pub(super) struct Laminate {
-    table: &'static str,
-    material: &'static str,
-    angles: &'static [u32],
-    ply: f64,
+    pub(super) table: &'static str,
+    pub(super) material: &'static str,
+    pub(super) angles: &'static [u32],
+    pub(super) ply: f64,
 }
 
 pub(super) const THREE: Laminate =

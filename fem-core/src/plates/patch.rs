@@ -7,7 +7,7 @@ use crate::words::dof::Dof;
 use crate::words::functional::Functional;
 use crate::words::quadrature::gauss_legendre;
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Rings and points per ring of the integration over the circle.
 const RINGS: usize = 24;
@@ -40,6 +40,12 @@ pub fn hertz(plate: &Plate, element: &dyn Element, centre: [f64; 2], a: f64) -> 
         })
     });
     mean(plate, element, centre, a, points).ok_or(PlateError::PatchOverEdge { of: "radius", size: a, centre })
+}
+
+/// That pressure of a unit force at `point`, Pa.
+pub fn hertz_pressure(centre: [f64; 2], a: f64, point: [f64; 2]) -> f64 {
+    let share = (point[0] - centre[0]).hypot(point[1] - centre[1]) / a;
+    1.5 / (PI * a * a) * (1.0 - share * share).max(0.0).sqrt()
 }
 
 /// Mean deflection under a uniform pressure on the square of side `side` around `centre`, parallel to the axes.

@@ -1,6 +1,8 @@
 //! What the displacements of a plate mean: stresses at places and along lines, of large deflections and of cure, and the error
 //! of a mesh.
 
+mod around;
+mod equilibrium;
 pub mod estimate;
 pub mod field;
 pub mod profile;

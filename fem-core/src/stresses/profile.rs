@@ -2,11 +2,12 @@
 
 use crate::contracts::element::ElementError;
 use crate::plates::plate::Plate;
+pub use crate::stresses::around::Mirrors;
+use crate::stresses::around::{Neighbour, neighbours};
+use crate::stresses::equilibrium::{Balance, Fit};
 use crate::stresses::field::{Field, Spot};
 use crate::words::quadrature::gauss_legendre;
 use crate::words::tensor::{Global, Ply, Strain6, Stress6};
-use nalgebra::{DMatrix, SVector};
-use std::collections::HashSet;
 
 /// State at a height of a profile. Interfaces appear twice, once per ply.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,12 +18,54 @@ pub struct ProfilePoint {
     pub z: f64,
     /// Displacement, m.
     pub displacement: [f64; 3],
-    /// Stress in the plate's frame, Pa.
+    /// Stress in the plate's frame from strains, Pa.
     pub global: Stress6<Global>,
-    /// Stress in the ply's frame, Pa.
+    /// The same in the ply's frame, Pa.
     pub in_ply: Stress6<Ply>,
     /// σ₃₃, σ₂₃, σ₃₁ of the plate's frame from equilibrium with the in-plane stresses, Pa.
     pub equilibrium: Option<[f64; 3]>,
+    /// The stress with its transverse components by the better way, in the plate's and in the ply's frame, Pa.
+    pub better: (Stress6<Global>, Stress6<Ply>),
+}
+
+/// A way to transverse stresses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// From strains, as the element has them.
+    Strains,
+    /// From equilibrium with the stresses in the plane.
+    Equilibrium,
+}
+
+impl Way {
+    /// What results call it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Strains => "strains",
+            Self::Equilibrium => "equilibrium",
+        }
+    }
+}
+
+/// The better way to a transverse stress, and what it misses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Choice {
+    /// The way.
+    pub way: Way,
+    /// From strains, the largest jump at an interface or difference from what is known at a face; from equilibrium, the part of
+    /// the in-plane stresses that the fit misses. Over the largest such stress.
+    pub missed: f64,
+}
+
+/// The states along a profile.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sampled {
+    /// From the bottom up.
+    pub points: Vec<ProfilePoint>,
+    /// How σ₃₃ was found.
+    pub normal: Choice,
+    /// How σ₂₃ and σ₃₁ were found.
+    pub shear: Choice,
 }
 
 /// Forces and moments per length of what is cut along the lines x and y.
@@ -42,19 +85,8 @@ pub struct Profile {
     /// Quads that meet at the point, with its natural coordinates in each.
     places: Vec<(usize, [f64; 2])>,
     /// Quads around it, for derivatives.
-    around: Vec<usize>,
-    point: [f64; 2],
+    around: Vec<Neighbour>,
 }
-
-/// Cells around a point whose stresses are differentiated: four deep from an edge, and all there are in a small mesh.
-const AROUND: usize = 30;
-const AROUND_SECTION: usize = 6;
-
-/// Terms xⁱ yʲ of a cubic in each direction: without x³y a half-wave of sine over the cells around is 20 % off.
-const TERMS: usize = 16;
-
-/// Gauss points between two heights of a profile: stresses of a ply are cubic in z at most.
-const BETWEEN: usize = 3;
 
 /// Gauss points through a ply for resultants: large strains of cubic displacements are of sixth degree in z.
 const PLY_POINTS: usize = 4;
@@ -62,24 +94,14 @@ const PLY_POINTS: usize = 4;
 impl Profile {
     /// The line at `point`; `None` outside the plate. Where regions of different plies meet it is in the one of the first cell
     /// that holds the point.
-    pub fn at(plate: &Plate, point: [f64; 2]) -> Option<Self> {
+    pub fn at(plate: &Plate, mirrors: &Mirrors, point: [f64; 2]) -> Option<Self> {
         let quads = &plate.plane.quads;
         let place = |q: usize| Some((q, plate.plane.corners(q).locate(point)?));
         let mut places: Vec<(usize, [f64; 2])> = (0..quads.len()).filter_map(place).collect();
         let region = plate.region(places.first()?.0);
         places.retain(|(quad, _)| plate.region(*quad) == region);
-        let mut around: Vec<usize> = places.iter().map(|p| p.0).collect();
-        let wanted = if plate.info().is_section() { AROUND_SECTION } else { AROUND };
-        let own = || (0..quads.len()).filter(|q| plate.region(*q) == region);
-        while around.len() < wanted {
-            let vertices: HashSet<u32> = around.iter().flat_map(|q| quads[*q]).collect();
-            let ring: Vec<usize> = own().filter(|q| quads[*q].iter().any(|v| vertices.contains(v))).collect();
-            if ring.len() == around.len() {
-                break;
-            }
-            around = ring;
-        }
-        Some(Self { places, around, point })
+        let around = neighbours(plate, mirrors, point, places.iter().map(|p| p.0).collect());
+        Some(Self { places, around })
     }
 
     /// The quads that meet at the point.
@@ -88,16 +110,20 @@ impl Profile {
     }
 
     /// The state of `field` at `points` heights of every ply, its faces included: means over the cells that meet at the
-    /// point.
+    /// point. The pressures on the bottom and the top face, Pa, are known.
     ///
-    /// With `equilibrium`, transverse stresses are also integrated from the bottom face, where the pressure is
-    /// `bottom` (Pa, pressing):
+    /// With `equilibrium`, and on its own accord where there are cells enough, transverse stresses are also integrated from
+    /// the bottom face, where the pressure is p:
     ///
     /// τ(z) = −∫ (∂σ₁₁/∂x + ∂σ₁₂/∂y) dz, likewise along y;  σ₃₃(z) = −p − ∫ (∂τ₁₃/∂x + ∂τ₂₃/∂y) dz
     ///
     /// The in-plane derivatives are those of a bicubic fitted to the stresses in the centres of the cells around the point,
-    /// where the parts of a displacement that an element interpolates linearly have their best slopes. What τ misses at
-    /// the stress-free top is taken off linearly.
+    /// where the parts of a displacement that an element interpolates linearly have their best slopes; behind an edge of
+    /// symmetry lie their images. What τ misses at the stress-free top is taken off linearly, what σ₃₃ misses of the
+    /// pressure there as s² (3 − 2s), s the height over the thickness.
+    ///
+    /// Where both ways are there and the cells around tell a bicubic, σ₃₃ is that from equilibrium. So is shear in a shell,
+    /// which meets faces and interfaces even where it is wrong; in a solid it is that which misses less ([`Choice`]).
     ///
     /// # Errors
     /// A cell that the element refuses.
@@ -105,24 +131,45 @@ impl Profile {
         &self,
         field: &Field<'_>,
         points: usize,
-        equilibrium: Option<f64>,
-    ) -> Result<Vec<ProfilePoint>, ElementError> {
+        equilibrium: Option<bool>,
+        pressures: [f64; 2],
+    ) -> Result<Sampled, ElementError> {
         let laminate = field.laminate(self.places[0].0);
         let z = laminate.boundaries();
         let mut all = Vec::new();
-        for (ply, lamina) in laminate.plies.iter().enumerate() {
+        for ply in 0..laminate.plies.len() {
             for i in 0..points.max(2) {
                 let share = i as f64 / (points.max(2) - 1) as f64;
                 let height = z[ply] + share * (z[ply + 1] - z[ply]);
                 let (global, displacement) = self.mean(field, ply, height)?;
-                let in_ply = global.to_ply(lamina.angle);
-                all.push(ProfilePoint { ply, z: height, displacement, global, in_ply, equilibrium: None });
+                let in_ply = global.to_ply(laminate.plies[ply].angle);
+                let better = (global, in_ply);
+                all.push(ProfilePoint { ply, z: height, displacement, global, in_ply, equilibrium: None, better });
             }
         }
-        if let Some(bottom) = equilibrium {
-            self.integrate(field, bottom, &mut all)?;
+        let fit = Fit::new(&self.around, field.plate().info().is_section());
+        let balance = match equilibrium.unwrap_or(fit.determined) {
+            true => {
+                let heights: Vec<_> = all.iter().map(|p| (p.ply, p.z)).collect();
+                Some(fit.integrate(field, pressures, &heights)?)
+            }
+            false => None,
+        };
+        for (point, found) in all.iter_mut().zip(balance.iter().flat_map(|b| &b.stresses)) {
+            point.equilibrium = Some(*found);
         }
-        Ok(all)
+        let trusted = balance.as_ref().filter(|_| fit.determined);
+        let (normal, shear) = choose(&all, trusted, pressures, field.plate().info().is_shell());
+        for point in &mut all {
+            let Some(found) = point.equilibrium else { continue };
+            for (k, choice) in [normal, shear, shear].into_iter().enumerate() {
+                if choice.way == Way::Equilibrium {
+                    point.better.0.0[TRANSVERSE[k]] = found[k];
+                }
+            }
+            point.better.1 = point.better.0.to_ply(laminate.plies[point.ply].angle);
+        }
+        Ok(Sampled { points: all, normal, shear })
     }
 
     /// Forces and moments per length: stresses, as [`Profile::sample`] has them, integrated through every ply exactly.
@@ -158,83 +205,43 @@ impl Profile {
         }
         Ok((field.stress(self.places[0].0, ply, &Strain6::new(strain)), displacement))
     }
-
-    /// Fills in the transverse stresses from equilibrium.
-    fn integrate(&self, field: &Field<'_>, bottom: f64, all: &mut [ProfilePoint]) -> Result<(), ElementError> {
-        let fit = self.fit(field.plate());
-        let (low, high) = match all {
-            [first, .., last] => (first.z, last.z),
-            _ => return Ok(()),
-        };
-        // Resultants so far: ∫ of the divergence of the in-plane stresses, and of its own divergence.
-        let (mut shear, mut second, mut normal) = ([0.0; 2], 0.0, -bottom);
-        let mut last: Option<(usize, f64)> = None;
-        for point in all.iter_mut() {
-            if let Some((ply, from)) = last.filter(|l| l.0 == point.ply) {
-                let half = 0.5 * (point.z - from);
-                normal += 2.0 * half * second;
-                for &(t, w) in gauss_legendre(BETWEEN) {
-                    let z = from + half * (1.0 + t);
-                    let [by_x, by_y, twice] = self.derivatives(field, &fit, ply, z)?;
-                    shear[0] -= half * w * by_x;
-                    shear[1] -= half * w * by_y;
-                    second += half * w * twice;
-                    // The double integral of `twice`, by parts.
-                    normal += half * w * twice * (point.z - z);
-                }
-            }
-            last = Some((point.ply, point.z));
-            point.equilibrium = Some([normal, shear[1], shear[0]]);
-        }
-        for point in all {
-            let share = (point.z - low) / (high - low);
-            if let Some([_, s23, s31]) = &mut point.equilibrium {
-                *s23 -= share * shear[1];
-                *s31 -= share * shear[0];
-            }
-        }
-        Ok(())
-    }
-
-    /// Least squares of a cubic in x times a cubic in y around the point: rows give its coefficients from the samples.
-    fn fit(&self, plate: &Plate) -> Fit {
-        let section = plate.info().is_section();
-        let centre = |quad: &usize| {
-            let [x, y, _] = plate.cell(quad * plate.layers()).position(plate.info().centre());
-            [x - self.point[0], y - self.point[1]]
-        };
-        let samples: Vec<[f64; 2]> = self.around.iter().map(centre).collect();
-        let size = samples.iter().fold(f64::MIN_POSITIVE, |m, s| m.max(s[0].abs()).max(s[1].abs()));
-        let terms = |[x, y]: [f64; 2]| -> [f64; TERMS] {
-            let (x, y) = (x / size, if section { 0.0 } else { y / size });
-            std::array::from_fn(|k| x.powi(k as i32 % 4) * y.powi(k as i32 / 4))
-        };
-        let a = DMatrix::from_fn(samples.len(), TERMS, |i, j| terms(samples[i])[j]);
-        // The pseudo-inverse leaves out what the samples cannot tell (y on a section).
-        let inverse = a.pseudo_inverse(1e-10).unwrap_or_else(|_| DMatrix::zeros(TERMS, samples.len()));
-        Fit { inverse, size }
-    }
-
-    /// ∂σ₁₁/∂x + ∂σ₁₂/∂y, ∂σ₁₂/∂x + ∂σ₂₂/∂y, and the divergence of the two.
-    fn derivatives(&self, field: &Field<'_>, fit: &Fit, ply: usize, z: f64) -> Result<[f64; 3], ElementError> {
-        let mut coefficients = SVector::<[f64; 3], TERMS>::from_element([0.0; 3]);
-        for (i, &quad) in self.around.iter().enumerate() {
-            let (e, _) = field.at(Spot { quad, at: field.plate().info().domain.centre(), ply, z })?;
-            let s = field.stress(quad, ply, &e);
-            for (c, row) in coefficients.iter_mut().zip(fit.inverse.column(i).iter()) {
-                for (c, s) in c.iter_mut().zip([s.0[0], s.0[1], s.0[3]]) {
-                    *c += row * s;
-                }
-            }
-        }
-        let [x, y, xx, xy, yy] = [1, 4, 2, 5, 8].map(|k| coefficients[k]);
-        let (h, hh) = (fit.size, fit.size * fit.size);
-        Ok([(x[0] + y[2]) / h, (x[2] + y[1]) / h, (2.0 * xx[0] + 2.0 * xy[2] + 2.0 * yy[1]) / hh])
-    }
 }
 
-struct Fit {
-    /// Terms × cells around.
-    inverse: DMatrix<f64>,
-    size: f64,
+/// Shear below this share of what the stresses around make is small where it is, as by symmetry, and its errors with it.
+const NOTABLE: f64 = 0.1;
+
+/// Places of σ₃₃, σ₂₃, σ₃₁ in the order of stresses.
+const TRANSVERSE: [usize; 3] = [2, 4, 5];
+
+/// The better ways to σ₃₃ and to shear.
+fn choose(
+    points: &[ProfilePoint],
+    balance: Option<&Balance>,
+    [bottom, top]: [f64; 2],
+    shell: bool,
+) -> (Choice, Choice) {
+    let [s33, s23, s31] = TRANSVERSE;
+    let largest =
+        |of: &[usize]| points.iter().flat_map(|p| of.iter().map(|k| p.global.0[*k].abs())).fold(0.0, f64::max);
+    // What strains miss, Pa.
+    let missed = |k: usize, [bottom, top]: [f64; 2]| {
+        let between = points.windows(2).filter(|pair| pair[0].ply != pair[1].ply);
+        let jumps = between.map(|pair| (pair[1].global.0[k] - pair[0].global.0[k]).abs());
+        let faces = points.first().map(|p| p.global.0[k] + bottom).into_iter();
+        let faces = faces.chain(points.last().map(|p| p.global.0[k] + top)).map(f64::abs);
+        jumps.chain(faces).fold(0.0, f64::max)
+    };
+    let share = |missed: f64, scale: f64| if missed == 0.0 { 0.0 } else { missed / scale };
+    let scale = balance.map_or(0.0, |b| NOTABLE * b.scale);
+    let shear = Choice {
+        way: Way::Strains,
+        missed: share(missed(s23, [0.0; 2]).max(missed(s31, [0.0; 2])), largest(&[s23, s31]).max(scale)),
+    };
+    let normal = Choice {
+        way: Way::Strains,
+        missed: share(missed(s33, [bottom, top]), largest(&[s33]).max(bottom.abs()).max(top.abs())),
+    };
+    let Some(balance) = balance else { return (normal, shear) };
+    let fitted = Choice { way: Way::Equilibrium, missed: balance.misfit };
+    (fitted, if shell || fitted.missed < shear.missed { fitted } else { shear })
 }

@@ -100,8 +100,8 @@ pub struct ProfileLine {
     pub at: Located<ImpactPoint>,
     /// Heights per ply.
     pub points: usize,
-    /// Whether transverse stresses are also found from equilibrium.
-    pub equilibrium: bool,
+    /// Whether transverse stresses are also found from equilibrium; where cells allow it, if the scene does not say.
+    pub equilibrium: Option<bool>,
 }
 
 const FACES: [(&str, Face); 2] = [("top", Face::Top), ("bottom", Face::Bottom)];
@@ -161,7 +161,12 @@ pub(super) const PROFILE: Keys = &[
     key("name", Form::Text, r#""centre""#, "part of the names of its files").required(),
     key("at", Form::Table(run::AT), r#"{ x = "50 mm", y = "50 mm" }"#, "where it pierces the plate").required(),
     key("points", Form::Count(2), "5", "heights per ply").default("5"),
-    key("equilibrium", Form::Flag, "true", "transverse stresses from equilibrium as well").default("false"),
+    key(
+        "equilibrium",
+        Form::Flag,
+        "true",
+        "transverse stresses from equilibrium as well; where cells allow it, if left out",
+    ),
 ];
 
 /// Most heights of a profile per ply.
@@ -265,7 +270,7 @@ pub(super) fn read_profiles(field: &SceneValue<'_>) -> Result<Vec<ProfileLine>, 
             name: name.at(text.to_owned()),
             at: run::read_point(&table.required("at")?)?,
             points,
-            equilibrium: table.optional("equilibrium").map_or(Ok(false), |field| field.flag())?,
+            equilibrium: table.optional("equilibrium").map(|field| field.flag()).transpose()?,
         });
     }
     Ok(all)

@@ -4,7 +4,7 @@ use super::{Node, StaticSummary, nodes};
 use crate::analyses::statics::StaticSolution;
 use crate::error::Error;
 use crate::model::{Model, NamedProfile};
-use fem_core::profile::ProfilePoint;
+use fem_core::profile::{Choice, ProfilePoint};
 use fem_io::files::OutputDir;
 use fem_io::plot::{self, Axis, LinePlot, Series, Style};
 use fem_io::tables::{self, TableValue};
@@ -22,13 +22,14 @@ pub fn write(dir: &OutputDir, model: &Model, solution: &StaticSolution, summary:
     };
     let header = ["node", "x_m", "y_m", "z_m", "u_m", "v_m", "w_m"];
     tables::write_columns(dir, "displacements.csv", &header, nodes.iter().map(row))?;
-    for (named, points) in model.profiles.iter().zip(&solution.profiles) {
-        write_profile(dir, model, named, points)?;
+    let sampled = solution.profiles.iter().zip(&solution.transverse);
+    for (named, (points, ways)) in model.profiles.iter().zip(sampled) {
+        write_profile(dir, model, named, points, *ways)?;
     }
     Ok(())
 }
 
-const PROFILE: [&str; 18] = [
+const PROFILE: [&str; 23] = [
     "z_m",
     "ply",
     "angle_deg",
@@ -47,13 +48,24 @@ const PROFILE: [&str; 18] = [
     "s12_Pa",
     "s23_Pa",
     "s13_Pa",
+    "szz_from",
+    "shear_from",
+    "szz_strains_Pa",
+    "syz_strains_Pa",
+    "szx_strains_Pa",
 ];
 const EQUILIBRIUM: [&str; 3] = ["szz_equilibrium_Pa", "syz_equilibrium_Pa", "szx_equilibrium_Pa"];
 
-fn write_profile(dir: &OutputDir, model: &Model, named: &NamedProfile, points: &[ProfilePoint]) -> Result<(), Error> {
+fn write_profile(
+    dir: &OutputDir,
+    model: &Model,
+    named: &NamedProfile,
+    points: &[ProfilePoint],
+    ways: [Choice; 2],
+) -> Result<(), Error> {
     let name = &named.line.name.value;
     let mut header = PROFILE.to_vec();
-    if named.line.equilibrium {
+    if points.iter().any(|p| p.equilibrium.is_some()) {
         header.extend(EQUILIBRIUM);
     }
     let region = named.profile.quads().next().map_or(0, |quad| model.plate.region(quad));
@@ -63,8 +75,15 @@ fn write_profile(dir: &OutputDir, model: &Model, named: &NamedProfile, points: &
             TableValue::Count(p.ply as u64 + 1),
             TableValue::Number(model.laminates[region].plies[p.ply].angle_deg),
         ];
-        let numbers = p.displacement.into_iter().chain(p.global.0).chain(p.in_ply.0);
-        row.extend(numbers.chain(p.equilibrium.into_iter().flatten()).map(TableValue::Number));
+        row.extend(p.displacement.into_iter().chain(p.better.0.0).chain(p.better.1.0).map(TableValue::Number));
+        row.extend(ways.map(|choice| TableValue::Text(choice.way.name())));
+        row.extend(
+            [2, 4, 5]
+                .map(|k| p.global.0[k])
+                .into_iter()
+                .chain(p.equilibrium.into_iter().flatten())
+                .map(TableValue::Number),
+        );
         row
     };
     tables::write_columns(dir, &format!("profile-{name}.csv"), &header, points.iter().map(row))?;
@@ -77,7 +96,7 @@ fn write_profile(dir: &OutputDir, model: &Model, named: &NamedProfile, points: &
     for (suffix, components) in [("in-plane", in_plane), ("transverse", transverse)] {
         let series = |(label, k): (&str, usize)| Series {
             label: label.into(),
-            points: points.iter().map(|p| (p.global.0[k] * 1e-6, p.z * 1e3)).collect(),
+            points: points.iter().map(|p| (p.better.0.0[k] * 1e-6, p.z * 1e3)).collect(),
             style: Style::Solid,
         };
         let picture = plot::line_plot(&LinePlot {

@@ -11,7 +11,7 @@ use crate::cost::Cost;
 use crate::model::{Model, NamedProfile};
 use crate::output::summary::Advised;
 use crate::words::{append, append_symmetry, describe_condition, warn_of_condition};
-use fem_core::profile::Resultants;
+use fem_core::profile::{Choice, Resultants, Way};
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -99,6 +99,10 @@ pub struct ProfileResultants {
     pub N_N_per_m: [f64; 3],
     pub M_N: [f64; 3],
     pub Q_N_per_m: [f64; 2],
+    pub szz_from: &'static str,
+    pub szz_missed_relative: f64,
+    pub shear_from: &'static str,
+    pub shear_missed_relative: f64,
 }
 
 impl StaticSummary {
@@ -111,6 +115,7 @@ impl StaticSummary {
             iterations: decrements.len(),
             last_decrement: decrements.last().copied().unwrap_or(0.0),
         });
+        let profiles = || model.profiles.iter().zip(&solution.transverse);
         Self {
             title: model.origin.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
@@ -123,7 +128,7 @@ impl StaticSummary {
             largest_deflection: Deflection { w_m, x_m, y_m, z_m },
             large_deflections: newton.filter(|_| model.effects.nature().large),
             ply_laws: newton.zip(solution.dissipated).map(|(newton, lost)| LawsSummary { newton, dissipated_J: lost }),
-            profiles: model.profiles.iter().zip(&solution.resultants).map(in_summary).collect(),
+            profiles: profiles().zip(&solution.resultants).map(in_summary).collect(),
             margins: solution.margins.clone(),
             advised: Advised::of(model, |_| None),
             residual_relative: solution.residual,
@@ -137,6 +142,7 @@ impl StaticSummary {
                 .cloned()
                 .chain(warn_of_residual(solution.residual))
                 .chain(warn_of_condition(solution.condition))
+                .chain(profiles().flat_map(warn_of_transverse))
                 .collect(),
         }
     }
@@ -198,7 +204,30 @@ impl StaticSummary {
     }
 }
 
-fn in_summary((named, resultants): (&NamedProfile, &Resultants)) -> ProfileResultants {
+/// Share of a transverse stress that may be missed without a word.
+const NOTABLE_MISS: f64 = 0.05;
+
+fn warn_of_transverse((named, [normal, shear]): (&NamedProfile, &[Choice; 2])) -> Vec<String> {
+    let stresses = [("\u{3c3}zz", *normal), ("transverse shear", *shear)];
+    let missed = stresses.into_iter().filter(|(_, choice)| choice.missed > NOTABLE_MISS);
+    let tell = |(name, Choice { way, missed }): (&str, Choice)| {
+        let what = match way {
+            Way::Strains => "jumps between plies, or differs from what acts on a face, by",
+            Way::Equilibrium => "follows from in-plane stresses whose changes from cell to cell a cubic misses by",
+        };
+        format!(
+            "profile `{}`: {name}, from {}, {what} {:.0} % and is about as wrong: use smaller cells around it",
+            named.line.name.value,
+            way.name(),
+            100.0 * missed
+        )
+    };
+    missed.map(tell).collect()
+}
+
+fn in_summary(
+    ((named, [normal, shear]), resultants): ((&NamedProfile, &[Choice; 2]), &Resultants),
+) -> ProfileResultants {
     ProfileResultants {
         name: named.line.name.value.clone(),
         x_m: named.point[0],
@@ -206,6 +235,10 @@ fn in_summary((named, resultants): (&NamedProfile, &Resultants)) -> ProfileResul
         N_N_per_m: resultants.membrane,
         M_N: resultants.bending,
         Q_N_per_m: resultants.shear,
+        szz_from: normal.way.name(),
+        szz_missed_relative: normal.missed,
+        shear_from: shear.way.name(),
+        shear_missed_relative: shear.missed,
     }
 }
 
