@@ -48,6 +48,7 @@ pub mod advise;
 pub mod analyses;
 pub mod cli;
 pub mod cost;
+pub mod decks;
 pub mod effect;
 pub mod effects;
 mod error;

@@ -9,6 +9,7 @@ mod book;
 mod comfort;
 mod command_line;
 mod criteria;
+mod decks;
 mod effects;
 mod envelope;
 mod extremes;

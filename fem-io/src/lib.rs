@@ -23,6 +23,7 @@
 
 mod bytes;
 pub mod checkpoint;
+pub mod deck;
 mod document;
 pub mod files;
 pub mod gmsh;

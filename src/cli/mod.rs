@@ -3,6 +3,7 @@
 mod advise;
 mod check;
 mod console;
+mod deck;
 mod envelope;
 mod list;
 mod manual;
@@ -19,6 +20,7 @@ mod study;
 use crate::registry::Registry;
 use clap::{Parser, Subcommand};
 use console::{Console, Format, Voice, printable, tell};
+use fem_io::deck::Program;
 use miette::{GraphicalReportHandler, GraphicalTheme, Report};
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
@@ -92,6 +94,15 @@ enum Command {
     Report(report::Arguments),
     /// Writes stiffness and mass (Matrix Market) with the names of their unknowns.
     Matrices(matrices::Arguments),
+    /// Runs a deck of LAMCEL: condenses a cell of elements on its masters, or prints stresses of its elements.
+    Lamcel(deck::Arguments),
+    /// Runs a deck of LAMSUB: condenses a plate of stacks of elements on its masters, or prints stresses of its elements.
+    Lamsub(deck::Arguments),
+    /// Runs a deck of TRADYR: puts pieces together by node numbers and marches an impact.
+    Tradyr(deck::TradyrArguments),
+    /// Works with decks of LAMCEL, LAMSUB and TRADYR and with what they leave.
+    #[command(subcommand)]
+    Deck(deck::Command),
     /// Shows a mesh: sizes, groups, quality; writes it for gmsh.
     ///
     /// Of a mesh file or of a scene, with what the scene makes of it. Lengths are printed in `--unit`, JSON is in SI units.
@@ -147,6 +158,10 @@ fn dispatch(registry: &Registry, command: &Command, console: &Console) -> miette
         Command::Report(a) => report::report(registry, a, console),
         Command::Mesh(a) => mesh::mesh(a, console),
         Command::Matrices(a) => matrices::matrices(registry, a, console),
+        Command::Lamcel(a) => deck::piece(Program::Lamcel, a, console),
+        Command::Lamsub(a) => deck::piece(Program::Lamsub, a, console),
+        Command::Tradyr(a) => deck::tradyr(a, console),
+        Command::Deck(a) => deck::deck(a, console),
         Command::List(a) => list::list(registry, a, console),
         Command::Schema => schema::schema(registry, console),
         Command::Completions(a) => manual::completions(a, console),

@@ -27,6 +27,9 @@ pub enum Error {
     Scene(#[from] SceneError),
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Deck(#[from] fem_io::deck::DeckError),
     #[error("the matrices cannot be assembled")]
     Assembly(#[from] AssemblyError),
     #[error("the substructures cannot be condensed")]

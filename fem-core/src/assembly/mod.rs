@@ -4,12 +4,14 @@
 //! there. Threads, equal cells, substructures and the factorisation are ours.
 
 mod alike;
+mod blocks;
 mod cell_map;
 mod coarse;
 mod condition;
 mod equilibrium;
 mod factor;
 mod free;
+mod inside;
 mod large;
 mod lawful;
 mod membrane;
@@ -20,9 +22,11 @@ mod sparse;
 mod substructure;
 mod symmetric;
 
+pub use blocks::{assemble_blocks, block_pattern};
 pub use equilibrium::{Equilibrium, EquilibriumError, InternalForce, equilibrium};
 pub use factor::{Cholesky, FactorError, Symbolic};
 pub use free::free_forces;
+pub use inside::Inside;
 pub use large::LargePlate;
 pub use lawful::{LawForce, LawPlate};
 pub use membrane::MembraneStrains;

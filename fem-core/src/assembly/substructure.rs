@@ -2,10 +2,9 @@
 
 use super::alike::GRAIN;
 use super::cell_map::CellMap;
+use super::inside::Inside;
 use super::pattern::Cliques;
-use super::{
-    AssemblyError, Cholesky, FactorError, Matrix, Symbolic, Symmetric, assemble, elimination_order, ordering, pattern,
-};
+use super::{AssemblyError, FactorError, Matrix, Symmetric, assemble, elimination_order, ordering, pattern};
 use crate::contracts::element::Element;
 use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;
@@ -15,9 +14,6 @@ use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
-
-/// Unit displacements of an outline whose static shapes are found together.
-const BLOCK: usize = 64;
 
 /// Which cells are condensed together, and what stays beside their outlines.
 #[derive(Debug, Clone, PartialEq)]
@@ -295,86 +291,10 @@ impl Class {
         let mut matrix = |which| assemble(&self.plate, element, &free, &pattern, which, threads, counters);
         let k = matrix(Matrix::Stiffness)?;
         let m = if inertia { matrix(Matrix::Mass)? } else { Symmetric::zero(pattern.clone()) };
-        let leading = k.leading(self.inside);
         let refused = |why| CondensationError::Factor { quad_tag: self.plate.plane.quad_tags[0], why };
-        let mut factor = Cholesky::new(Symbolic::new(leading.pattern().clone()).map_err(refused)?, threads);
-        factor.factorise(leading.lower()).map_err(refused)?;
-        let inside = Inside { count: self.inside, k, factor };
-
-        let (n, outline) = (self.order.len(), self.order.len() - self.inside);
-        let mut condensed = [vec![0.0; outline * outline], vec![0.0; outline * outline]];
-        for first in (0..outline).step_by(BLOCK) {
-            let count = BLOCK.min(outline - first);
-            let mut shapes = vec![0.0; n * count];
-            (0..count).for_each(|c| shapes[c * n + self.inside + first + c] = 1.0);
-            inside.follow_outline(&mut shapes);
-            let mut take = |which: usize, forces: &[f64]| {
-                let columns = condensed[which][first * outline..].chunks_exact_mut(outline);
-                columns.zip(forces.chunks_exact(n)).for_each(|(to, from)| to.copy_from_slice(&from[self.inside..]));
-            };
-            let mut forces = vec![0.0; n * count];
-            inside.k.add_product(1.0, &shapes, &mut forces);
-            take(0, &forces);
-            if inertia {
-                // TᵀMT = (M T)_b − K_bi K_ii⁻¹ (M T)_i
-                forces.fill(0.0);
-                m.add_product(1.0, &shapes, &mut forces);
-                inside.condense_load(&mut forces);
-                take(1, &forces);
-            }
-        }
-        condensed.iter_mut().for_each(|a| symmetrise(a, outline));
+        let inside = Inside::new(k, self.inside, threads).map_err(refused)?;
+        let condensed = inside.condense(inertia.then_some(&m));
         Ok((inside, condensed))
-    }
-}
-
-/// `A ← (A + Aᵀ)/2`
-fn symmetrise(a: &mut [f64], n: usize) {
-    for j in 0..n {
-        for i in j + 1..n {
-            let mean = 0.5 * (a[j * n + i] + a[i * n + j]);
-            (a[j * n + i], a[i * n + j]) = (mean, mean);
-        }
-    }
-}
-
-/// The stiffness of a class, unknowns inside first, and the factor of the part inside.
-#[derive(Debug)]
-struct Inside {
-    count: usize,
-    k: Symmetric,
-    factor: Cholesky,
-}
-
-impl Inside {
-    /// `X_i ← K_ii⁻¹ X_i`, column by column.
-    fn solve(&self, x: &mut [f64]) {
-        let n = self.k.ndof();
-        let mut inner: Vec<f64> = x.chunks_exact(n).flat_map(|x| &x[..self.count]).copied().collect();
-        self.factor.solve_in(&mut inner, x.len() / n, &mut Vec::new());
-        for (x, inner) in x.chunks_exact_mut(n).zip(inner.chunks_exact(self.count.max(1))) {
-            x[..self.count].copy_from_slice(inner);
-        }
-    }
-
-    /// `X_i ← −K_ii⁻¹ K_ib X_b`, column by column, where X_i = 0.
-    fn follow_outline(&self, x: &mut [f64]) {
-        let mut forces = vec![0.0; x.len()];
-        self.k.add_product(-1.0, x, &mut forces);
-        self.solve(&mut forces);
-        let n = self.k.ndof();
-        for (x, response) in x.chunks_exact_mut(n).zip(forces.chunks_exact(n)) {
-            x[..self.count].copy_from_slice(&response[..self.count]);
-        }
-    }
-
-    /// `F_b ← F_b − K_bi K_ii⁻¹ F_i`, column by column; returns `[K_ii⁻¹ F_i; 0]`.
-    fn condense_load(&self, f: &mut [f64]) -> Vec<f64> {
-        let mut x = f.to_vec();
-        self.solve(&mut x);
-        x.chunks_exact_mut(self.k.ndof()).for_each(|x| x[self.count..].fill(0.0));
-        self.k.add_product(-1.0, &x, f);
-        x
     }
 }
 
@@ -420,7 +340,7 @@ impl Condensation {
                 local.resize(local.len() + inside.count, 0.0);
                 local.extend(part.unknowns[inside.count..].iter().map(|dof| -> f64 { value(all, *dof) }));
             }
-            inside.follow_outline(&mut local);
+            inside.follow(&mut local);
             for (all, local) in all.chunks_exact_mut(n).zip(local.chunks_exact(part.unknowns.len())) {
                 self.add_inside(part, local, all);
             }

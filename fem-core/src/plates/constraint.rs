@@ -179,6 +179,40 @@ impl Constraints {
             pivots.push(pivot);
             rows.push(row);
         }
+        Ok(Self { redundant, ..Self::resolve(order, rows, &row_of) })
+    }
+
+    /// All unknowns where some follow others as stated: `relations` are unknowns with the terms that each is the sum of.
+    ///
+    /// An unknown follows by the first relation that is stated of it; terms may follow others by relations before or after, but
+    /// not in a circle. `order` as in [`Constraints::eliminate`].
+    ///
+    /// # Errors
+    /// An unknown that follows itself.
+    pub fn following<'a>(
+        order: &[usize],
+        relations: impl IntoIterator<Item = (usize, &'a [(usize, f64)])>,
+    ) -> Result<Self, ConstraintError> {
+        let (mut row_of, mut rows) = (vec![u32::MAX; order.len()], Vec::new());
+        for (number, (dof, terms)) in relations.into_iter().enumerate() {
+            let mut row = Row { terms: BTreeMap::new(), value: 0.0, equation: number, ties: true };
+            terms.iter().for_each(|(other, c)| *row.terms.entry(*other).or_insert(0.0) += c);
+            substitute(&mut row, &rows, &row_of);
+            if row.terms.contains_key(&dof) {
+                let origin = format!("unknown {}", dof + 1);
+                return Err(ConstraintError::Cycle { origin, others: vec!["those that it follows".into()] });
+            }
+            if row_of[dof] == u32::MAX {
+                row_of[dof] = rows.len() as u32;
+                rows.push(row);
+            }
+        }
+        Ok(Self::resolve(order, rows, &row_of))
+    }
+
+    /// Numbers the independent unknowns and has all others follow these alone.
+    fn resolve(order: &[usize], mut rows: Vec<Row>, row_of: &[u32]) -> Self {
+        let n = order.len();
         // A row holds only unknowns that were free when it was made; later rows may have bound some of them since.
         for r in (0..rows.len()).rev() {
             let mut row = Row {
@@ -187,7 +221,7 @@ impl Constraints {
                 equation: rows[r].equation,
                 ties: rows[r].ties,
             };
-            substitute(&mut row, &rows, &row_of);
+            substitute(&mut row, &rows, row_of);
             rows[r].terms = row.terms;
             rows[r].value -= row.value;
         }
@@ -213,12 +247,17 @@ impl Constraints {
             }
             starts.push(terms.len());
         }
-        Ok(Self { starts, terms, offset, independent, redundant })
+        Self { starts, terms, offset, independent, redundant: Vec::new() }
     }
 
     /// Number of independent unknowns.
     pub fn ndof(&self) -> usize {
         self.independent.len()
+    }
+
+    /// Number of unknowns before elimination.
+    pub fn all(&self) -> usize {
+        self.offset.len()
     }
 
     /// Unknown (before elimination) that independent number `i` stands for.
@@ -344,6 +383,20 @@ mod tests {
 
     fn solve(n: usize, equations: &[Equation]) -> Result<Constraints, ConstraintError> {
         Constraints::eliminate(&(0..n).collect::<Vec<_>>(), equations)
+    }
+
+    #[test]
+    fn what_is_stated_to_follow_follows() {
+        // 0 = 1, then 1 = 2·2 + 0.5·3, and 4 is fixed: of 4 = 0 after that nothing is heard.
+        let relations: [(usize, &[(usize, f64)]); 4] =
+            [(0, &[(1, 1.0)]), (1, &[(2, 2.0), (3, 0.5)]), (4, &[]), (4, &[(2, 1.0)])];
+        let c = Constraints::following(&[3, 2, 1, 0, 4], relations).unwrap();
+        assert_eq!((c.ndof(), c.original(0), c.original(1)), (2, 3, 2));
+        let mut u = [0.0; 5];
+        c.expand(&[4.0, 10.0], &mut u);
+        assert_eq!(u, [22.0, 22.0, 10.0, 4.0, 0.0]);
+        let circle: [(usize, &[(usize, f64)]); 2] = [(0, &[(1, 1.0)]), (1, &[(0, 1.0)])];
+        assert!(Constraints::following(&[0, 1], circle).is_err());
     }
 
     #[test]

@@ -55,6 +55,12 @@ impl Curve {
 }
 
 impl SunYang {
+    /// Loading k αⁿ, unloading with the exponent `m`, a dent of exponent `beta` beyond `critical`; β = 0 leaves no dent. A second
+    /// contact follows the curve of unloading.
+    pub fn new([k, n]: [f64; 2], m: f64, critical: f64, beta: f64) -> Self {
+        Self { loading: Hertz::new(k, n), m, critical, beta, reload_by_n: false }
+    }
+
     fn curve(&self, alpha_max: f64, p: f64) -> Curve {
         let dent = alpha_max - alpha_max * (self.critical / alpha_max).min(1.0).powf(self.beta);
         Curve { dent, depth: alpha_max - dent, peak: self.loading.at(alpha_max).force, p }

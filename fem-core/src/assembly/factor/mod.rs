@@ -143,6 +143,18 @@ impl Cholesky {
             .map_err(|bad| FactorError::NotPositive { column: bad.column })
     }
 
+    /// The smallest pivot of `matrix`, the one factorised, with its unknowns in units that make its diagonal 1, and the column of
+    /// it: 1 where a column depends on none before it, rounding where it follows from these. `None` of no columns.
+    pub fn weakest(&self, matrix: SparseColMatRef<'_, usize, f64>) -> Option<(usize, f64)> {
+        let tree = &*self.symbolic.tree;
+        let pivots = tree.fronts.iter().flat_map(|front| {
+            let diagonal = (0..front.pivots).map(|j| self.panels[front.panel + j * front.size() + j]);
+            tree.unknowns(front).iter().map(|column| *column as usize).zip(diagonal)
+        });
+        let scaled = pivots.map(|(j, l)| (j, l * l / matrix.val()[matrix.col_range(j).start]));
+        scaled.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     /// `X ← A⁻¹ X`, X of `n × columns`, column-major.
     pub fn solve(&mut self, x: &mut [f64], columns: usize) {
         let mut local = std::mem::take(&mut self.local);

@@ -1,0 +1,134 @@
+//! `fem lamcel`, `fem lamsub`, `fem tradyr` and `fem deck`.
+
+use super::run::default_folder;
+use super::{Console, Format};
+use crate::decks::{self, DeckOptions, DeckOutcome, Project, UnitSystem};
+use crate::error::Error;
+use clap::{Args, Subcommand};
+use fem_io::deck::{DeckSource, Program};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The deck: lines of items between commas.
+    deck: PathBuf,
+    /// Folder of the results by name [default: results/<folder of the deck>]
+    #[arg(long, value_name = "DIR")]
+    project: Option<PathBuf>,
+    /// What the deck's numbers are called in the listing: force, length, time.
+    #[arg(long, value_parser = units)]
+    units: Option<UnitSystem>,
+    #[command(flatten)]
+    format: Format,
+}
+
+/// Units by their name.
+fn units(text: &str) -> Result<UnitSystem, String> {
+    let known = UnitSystem::ALL.iter().find(|(name, _)| name.eq_ignore_ascii_case(text));
+    known
+        .map(|(_, units)| *units)
+        .ok_or_else(|| format!("known are {}", UnitSystem::ALL.map(|(name, _)| name).join(" and ")))
+}
+
+#[derive(Serialize)]
+struct Done<'a> {
+    deck: String,
+    #[serde(flatten)]
+    outcome: &'a DeckOutcome,
+    project: &'a Path,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct TradyrArguments {
+    #[command(flatten)]
+    deck: Arguments,
+    /// Displacement set whose analysis a restart goes on with [default: the last analysis]
+    #[arg(long, value_name = "NAME")]
+    restart_of: Option<String>,
+}
+
+pub(super) fn tradyr(arguments: &TradyrArguments, console: &Console) -> miette::Result<ExitCode> {
+    run(Program::Tradyr, &arguments.deck, arguments.restart_of.clone(), console)
+}
+
+pub(super) fn piece(program: Program, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
+    run(program, arguments, None, console)
+}
+
+fn run(
+    program: Program,
+    arguments: &Arguments,
+    restart_of: Option<String>,
+    console: &Console,
+) -> miette::Result<ExitCode> {
+    let source = DeckSource::read(&arguments.deck)?;
+    let folder = arguments.project.clone().unwrap_or_else(|| default_folder(&arguments.deck, ""));
+    let mut project = Project::open(&folder).map_err(Error::from)?;
+    let options = DeckOptions { units: arguments.units, restart_of, check: false };
+    let outcome = decks::run(&source, program, &mut project, &options)?;
+    super::warn(&outcome.warnings);
+    let done = Done { deck: source.name().to_owned(), outcome: &outcome, project: &folder };
+    console.show(arguments.format, &done, || text(&outcome, &folder))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn text(outcome: &DeckOutcome, folder: &Path) -> String {
+    let mut text = format!("{}\n", outcome.title);
+    for (name, count) in &outcome.counts {
+        let _ = writeln!(text, "  {name:<22}{count:>9}");
+    }
+    if !outcome.analysed {
+        text.push_str("  data check only: NCHECK is 0\n");
+    }
+    let _ = writeln!(text, "  project   {}", folder.display());
+    for file in &outcome.files {
+        let _ = writeln!(text, "            {file}");
+    }
+    text
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Checks all decks of a folder, in the order in which they need each other; writes nothing.
+    ///
+    /// Generations come first, then analyses, restarts and back substitutions. Everything is done but the march in time. The
+    /// exit status is 0 where all decks are good.
+    Check(CheckArguments),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CheckArguments {
+    /// Folder of decks: its files that end in .dat or .deck.
+    folder: PathBuf,
+    #[command(flatten)]
+    format: Format,
+}
+
+pub(super) fn deck(command: &Command, console: &Console) -> miette::Result<ExitCode> {
+    match command {
+        Command::Check(arguments) => check(arguments, console),
+    }
+}
+
+fn check(arguments: &CheckArguments, console: &Console) -> miette::Result<ExitCode> {
+    let checked = decks::check(&arguments.folder)?;
+    let good = checked.iter().all(|deck| deck.error.is_none());
+    console.show(arguments.format, &checked, || {
+        let mut text = String::new();
+        for deck in &checked {
+            let what = deck.error.as_ref().map_or_else(
+                || "good".to_owned(),
+                |fault| format!("line {}: {}\n{:>12}{}", fault.line, fault.message, "", fault.remedy),
+            );
+            let _ = writeln!(text, "{} ({}): {what}", deck.deck, deck.program);
+            deck.warnings.iter().for_each(|warning| {
+                let _ = writeln!(text, "{:>12}warning: {warning}", "");
+            });
+        }
+        text
+    })?;
+    Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}

@@ -1,0 +1,154 @@
+//! Back substitution: stresses and strains of single elements at a print step.
+
+use super::piece::Parts;
+use crate::error::Error;
+use fem_core::element::{Cell, Part, Scratch, Stack};
+use fem_core::failure::FailureCriterion;
+use fem_core::material::Material;
+use fem_core::tensor::{Global, Matrix6, Ply, Strain6, Stress6, rotate_stiffness, stress};
+use fem_failure::{HashinReport, Octahedral};
+use fem_io::deck::{Generation, Prints};
+
+/// Where in an element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    Ply,
+    Interface,
+    Surface,
+}
+
+impl Place {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Ply => "ply",
+            Self::Interface => "interface",
+            Self::Surface => "surface",
+        }
+    }
+}
+
+/// A place of an element: which, how it is averaged, and what it is made of.
+#[derive(Debug)]
+struct Station<'a> {
+    place: Place,
+    which: String,
+    part: Part,
+    material: &'a Material,
+    /// Fibre direction of its local axes, radians.
+    angle: f64,
+}
+
+/// What is found at a place.
+#[derive(Debug, Clone)]
+pub(super) struct Found {
+    pub(super) place: Place,
+    pub(super) which: String,
+    pub(super) strain: Strain6<Global>,
+    pub(super) stress: Stress6<Global>,
+    pub(super) local_strain: Strain6<Ply>,
+    pub(super) local_stress: Stress6<Ply>,
+    /// Left sides of eqs 38 to 42; those of other places, and those that want a strength of 0, are not there.
+    pub(super) indices: [Option<f64>; 5],
+}
+
+/// What the displacements `u` of a piece, all of its degrees of freedom in nodal axes, make of element `number` (from 0).
+///
+/// # Errors
+/// A cell that the element refuses.
+pub(super) fn recover(
+    deck: &Generation,
+    parts: &Parts<'_>,
+    number: usize,
+    prints: &Prints,
+    u: &[f64],
+) -> Result<Vec<Found>, Error> {
+    let stations = stations(deck, number, prints);
+    let dofs = parts.dofs(number);
+    let mut local: Vec<f64> = dofs.iter().map(|dof| u[*dof]).collect();
+    if let Some(turn) = parts.turn(number) {
+        local = (turn * nalgebra::DVector::from_vec(local)).as_slice().to_vec();
+    }
+    let (mut scratch, mut b) = (Scratch::default(), vec![0.0; 6 * dofs.len()]);
+    let mut found = Vec::with_capacity(stations.len());
+    for station in stations {
+        let c = station.material.elastic.stiffness();
+        let global = rotate_stiffness(&c, station.angle);
+        let cell = parts.cell(number);
+        // A section's strains across it follow from the stiffness of the place.
+        let stack = with(cell.stack, station.part.slice, global);
+        parts.element.mean_strains(&Cell { stack: &stack, ..cell }, &[station.part], &mut scratch, &mut b)?;
+        let mut strain = [0.0; 6];
+        for (column, u) in b.as_chunks::<6>().0.iter().zip(&local) {
+            strain.iter_mut().zip(column).for_each(|(e, b)| *e += b * u);
+        }
+        let strain = Strain6::<Global>::new(strain);
+        let local_strain = strain.to_ply(station.angle);
+        let local_stress = stress(&c, &local_strain);
+        found.push(Found {
+            place: station.place,
+            which: station.which,
+            strain,
+            stress: stress(&global, &strain),
+            local_strain,
+            local_stress,
+            indices: indices(station.place, &local_stress, station.material),
+        });
+    }
+    Ok(found)
+}
+
+/// `stack` with another stiffness of one of its plies.
+fn with(stack: &Stack, slice: usize, c: Matrix6) -> Stack {
+    let mut stack = stack.clone();
+    stack.slices[slice].c = c;
+    stack
+}
+
+fn stations<'a>(deck: &'a Generation, number: usize, prints: &Prints) -> Vec<Station<'a>> {
+    let plies = &deck.piece.elements[number].plies;
+    let laminate = &deck.laminate;
+    let (first, end, all) = (plies.start, plies.end, laminate.plies.len());
+    let z = laminate.heights();
+    let q = |k: usize| 2.0 * (z[k] - z[first]) / (z[end] - z[first]) - 1.0;
+    let of_ply = |place, which: String, ply: usize, q| Station {
+        place,
+        which,
+        part: Part { slice: ply - first, q },
+        material: &laminate.materials[laminate.plies[ply].material],
+        angle: laminate.plies[ply].angle,
+    };
+    let mut stations = Vec::new();
+    if prints.plies {
+        stations.extend(plies.clone().map(|ply| of_ply(Place::Ply, (ply + 1).to_string(), ply, [q(ply), q(ply + 1)])));
+    }
+    if prints.interfaces {
+        // Boundary k lies below ply k, counted from 0.
+        stations.extend((first.max(1)..=end.min(all - 1)).map(|k| Station {
+            place: Place::Interface,
+            which: format!("{k}|{}", k + 1),
+            part: Part { slice: k.min(end - 1) - first, q: [q(k), q(k)] },
+            material: &laminate.materials[laminate.interfaces],
+            angle: 0.0,
+        }));
+    }
+    if prints.surfaces {
+        let bottom = (first == 0).then(|| of_ply(Place::Surface, "bottom".into(), 0, [-1.0, -1.0]));
+        let top = (end == all).then(|| of_ply(Place::Surface, "top".into(), all - 1, [1.0, 1.0]));
+        stations.extend(bottom.into_iter().chain(top));
+    }
+    stations
+}
+
+fn indices(place: Place, stress: &Stress6<Ply>, material: &Material) -> [Option<f64>; 5] {
+    let mut found = [f64::NAN; 5];
+    match place {
+        Place::Ply => HashinReport::default().indices(stress, material, &mut found[..4]),
+        Place::Interface => {
+            Octahedral.indices(stress, material, &mut found[4..]);
+            // The criterion is J2/τ², eq. 42 its root.
+            found[4] = found[4].sqrt();
+        }
+        Place::Surface => {}
+    }
+    found.map(|index| index.is_finite().then_some(index))
+}

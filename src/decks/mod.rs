@@ -1,0 +1,201 @@
+//! The report's own input: LAMCEL, LAMSUB and TRADYR run from their decks (AFWAL-TR-87-4117, appendix).
+//!
+//! A deck says what a scene does not: pieces that are condensed once and put together by node numbers, constraints inside a
+//! piece, masters and governors one by one, stresses of single elements at single print steps. It has no second mechanics: elements,
+//! condensation, contact law, Runge-Kutta schemes and criteria are those of scenes. Numbers stay in the deck's units.
+//!
+//! ```text
+//! deck ── fem_io::deck::parse ──> Generation ── piece::generate ──> Matrices, kept in the Project under NAME6
+//!                                 ImpactDeck, Restart ── Model ── march ──> DisplacementSet, kept under NAME1
+//!                                 BackSubstitution ── back::recover ──> tables of stresses
+//! ```
+
+mod back;
+mod check;
+mod element;
+mod listing;
+mod march;
+mod model;
+mod piece;
+mod project;
+mod reduced;
+mod tables;
+
+pub use check::{Checked, Mistake, check};
+pub use listing::UnitSystem;
+pub use project::{Matrices, Project};
+
+use crate::error::Error;
+use fem_io::deck::{
+    self, BackSubstitution, Deck, DeckSource, Fault, Generation, ImpactDeck, MarchCard, NoResults, Program,
+};
+use listing::Listing;
+use model::Model;
+use piece::Parts;
+use project::{Analysis, DisplacementSet};
+use serde::{Serialize, Serializer};
+use tables::Substituted;
+
+/// How a deck is run.
+#[derive(Debug, Clone, Default)]
+pub struct DeckOptions {
+    /// What its numbers are called, where it is said.
+    pub units: Option<UnitSystem>,
+    /// The displacement set whose analysis a restart goes on with; the last analysis where none is named.
+    pub restart_of: Option<String>,
+    /// Everything is done but the march in time and back substitution.
+    pub check: bool,
+}
+
+/// What a deck came to.
+#[derive(Debug, Clone, Serialize)]
+pub struct DeckOutcome {
+    /// Its title.
+    pub title: String,
+    /// Whether more than a data check was asked for.
+    pub analysed: bool,
+    /// What is odd.
+    pub warnings: Vec<String>,
+    /// Numbers by name, as printed.
+    #[serde(serialize_with = "as_map")]
+    pub counts: Vec<(&'static str, usize)>,
+    /// What it left in the project.
+    pub files: Vec<String>,
+}
+
+fn as_map<S: Serializer>(counts: &[(&'static str, usize)], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(counts.iter().map(|(name, count)| (name.replace(' ', "_"), count)))
+}
+
+/// Runs a deck of `program` in `project`.
+///
+/// # Errors
+/// The first mistake of the deck with its place; a project that cannot be written.
+pub fn run(
+    source: &DeckSource,
+    program: Program,
+    project: &mut Project,
+    options: &DeckOptions,
+) -> Result<DeckOutcome, Error> {
+    let parsed = deck::parse(source, program, project)?;
+    let mut listing = Listing::new(source.name(), program, &parsed, options.units);
+    let mut run = Run { source, project, listing: &mut listing, check: options.check };
+    match &parsed.deck {
+        Deck::Generation(deck) => run.generate(deck)?,
+        Deck::Impact(deck) => run.analyse(deck)?,
+        Deck::Restart(march) => run.restart(march, options.restart_of.as_deref())?,
+        Deck::BackSubstitution(deck) => run.substitute(deck)?,
+    }
+    listing.write(project)
+}
+
+/// A deck at work.
+struct Run<'a> {
+    source: &'a DeckSource,
+    project: &'a mut Project,
+    listing: &'a mut Listing,
+    check: bool,
+}
+
+impl Run<'_> {
+    fn generate(&mut self, deck: &Generation) -> Result<(), Error> {
+        self.listing.generation(deck);
+        if !deck.analyse {
+            return Ok(());
+        }
+        let (_, matrices) = piece::generate(self.source, deck)?;
+        self.listing.matrices(self.project, &matrices)?;
+        self.project.keep_matrices(self.source, deck, matrices)
+    }
+
+    fn analyse(&mut self, deck: &ImpactDeck) -> Result<(), Error> {
+        self.listing.model(deck, self.project);
+        if !deck.march.analyse {
+            return Ok(());
+        }
+        let part =
+            |name: &str| (name.to_owned(), self.project.matrices(name).map(Matrices::checksum).unwrap_or_default());
+        let parts = deck.substructures.iter().map(|piece| part(&piece.name.value)).collect();
+        let deck_of = (self.source.name().to_owned(), self.source.text().to_owned());
+        self.go_on(deck, &deck.march, Analysis { deck: deck_of, parts, state: None })
+    }
+
+    fn restart(&mut self, march: &MarchCard, of: Option<&str>) -> Result<(), Error> {
+        let refuse = |found: String, help: &str| self.source.error(0..0, Fault::NoRestart, found, help);
+        let Some(analysis) = self.project.analysis(of).cloned() else {
+            let found = format!("there is no displacement set `{}` to go on with", of.unwrap_or_default());
+            return Err(refuse(found, "name the NAME1 of an analysis in this project").into());
+        };
+        self.project.fresh(&analysis.parts).map_err(|why| {
+            refuse(format!("the analysis cannot go on: {why}"), "analyse the model again, with NRSTRT 0")
+        })?;
+        let begun = DeckSource::new(&analysis.deck.0, analysis.deck.1.clone());
+        let Deck::Impact(deck) = deck::parse(&begun, Program::Tradyr, &NoResults)?.deck else {
+            return Err(refuse("the analysis was begun by another deck".into(), "analyse the model again").into());
+        };
+        self.listing.model(&deck, self.project);
+        if march.analyse { self.go_on(&deck, march, analysis) } else { Ok(()) }
+    }
+
+    /// Marches `analysis` on by `march` and keeps what it comes to.
+    fn go_on(&mut self, deck: &ImpactDeck, march: &MarchCard, mut analysis: Analysis) -> Result<(), Error> {
+        // Places are those of the deck at hand, but for the model's, which is that of the deck that began.
+        let begun = DeckSource::new(&analysis.deck.0, analysis.deck.1.clone());
+        let model = Model::new(&begun, deck, self.project)?;
+        let growth = model.check_step(self.source, march)?;
+        self.listing.frequencies(&model, march, growth);
+        self.listing.triangles(self.project, "governors", deck.freedom.kept.len(), &model.k, &model.m)?;
+        let earlier = march.set.as_ref().and_then(|name| self.project.set(name));
+        let continued = earlier.filter(|set| {
+            analysis.state.is_some() && (&set.analysis.deck, &set.analysis.parts) == (&analysis.deck, &analysis.parts)
+        });
+        let (mut count, mut steps) = continued.map_or((0, Vec::new()), |set| (set.count, set.steps.clone()));
+        count += march.steps / march.every;
+        if !self.check {
+            let (prints, state) = march::march(self.source, deck, march, &model, analysis.state.take())?;
+            self.listing.history(self.project, deck, &prints)?;
+            self.listing.motion(self.project, deck, march, &prints)?;
+            steps.extend(
+                prints.into_iter().map(|print| (print.time, print.motion.into_iter().next().unwrap_or_default())),
+            );
+            analysis.state = Some(state);
+        }
+        let set = DisplacementSet { analysis, count, steps };
+        self.project.keep_analysis(self.source, march.set.as_deref(), set)
+    }
+
+    fn substitute(&mut self, deck: &BackSubstitution) -> Result<(), Error> {
+        let (Some(matrices), Some(set)) = (self.project.generation(&deck.names), self.project.set(&deck.names[5]))
+        else {
+            return Ok(());
+        };
+        if !deck.analyse || self.check {
+            return Ok(());
+        }
+        let own = DeckSource::new(&matrices.deck.0, matrices.deck.1.clone());
+        let begun = DeckSource::new(&set.analysis.deck.0, set.analysis.deck.1.clone());
+        let (Deck::Generation(piece), Deck::Impact(model)) = (
+            deck::parse(&own, matrices.program(), &NoResults)?.deck,
+            deck::parse(&begun, Program::Tradyr, &NoResults)?.deck,
+        ) else {
+            return Ok(());
+        };
+        let (way, _) = piece::generate(&own, &piece)?;
+        let parts = Parts::new(&own, &piece)?;
+        let mut substituted = Vec::new();
+        for asked in &deck.sets {
+            let (_, u) = &set.steps[asked.step - 1];
+            let per_node = model.freedom.directions.len();
+            let nodes = model.substructures[asked.substructure - 1].nodes.iter();
+            let masters: Vec<f64> = nodes.flat_map(|n| &u[n * per_node..(n + 1) * per_node]).copied().collect();
+            let u = way.expand(&masters);
+            let found = asked
+                .elements
+                .iter()
+                .map(|number| Ok((*number, back::recover(&piece, &parts, number - 1, &asked.prints, &u)?)));
+            let found = found.collect::<Result<Vec<_>, Error>>()?;
+            substituted.push(Substituted { asked, u, found });
+        }
+        self.listing.substitution(self.project, &piece.freedom, &substituted)
+    }
+}
