@@ -184,15 +184,15 @@ fn substructures(
 
 fn impactor(reader: &mut Reader<'_>) -> Result<ImpactorCard, DeckError> {
     let record = reader.record(&["MIMP", "K", "N", "M", "I", "C"])?;
-    let mass = record.positive(0, Fault::ImpactDeck)?;
-    let k = record.positive(1, Fault::ImpactDeck)?;
+    let mass = record.positive(0, Fault::Impact)?;
+    let k = record.positive(1, Fault::Impact)?;
     let exponent = |i: usize, least: f64| in_range(&record, i, least..=f64::MAX);
     let (n, m) = (exponent(2, 1.0)?, exponent(3, 1.0)?);
     let i = in_range(&record, 4, 0.0..=1.0)?;
     let c = record.real(5)?;
     if !(c > 0.0 || i == 0.0 && c == 0.0) {
         let help = "what is left out is 0; only I = 0 leaves no dent and needs no C";
-        return record.error(5, Fault::ImpactDeck, format!("C is {c}, it must be above zero"), help);
+        return record.error(5, Fault::Impact, format!("C is {c}, it must be above zero"), help);
     }
     if m < n {
         let text = format!("M {m} is below N {n}: unloading gives back more than loading took");
@@ -202,7 +202,7 @@ fn impactor(reader: &mut Reader<'_>) -> Result<ImpactorCard, DeckError> {
     let (position, velocity) = (record.real(0)?, record.real(1)?);
     if velocity == 0.0 {
         let help = "V0 above zero strikes along DIR, below zero against it; what is left out is 0";
-        return record.error(1, Fault::ImpactDeck, "V0 is zero: the impactor has no side to strike from", help);
+        return record.error(1, Fault::Impact, "V0 is zero: the impactor has no side to strike from", help);
     }
     Ok(ImpactorCard { mass, k, n, m, i, c, position, velocity })
 }
@@ -216,5 +216,5 @@ fn in_range(record: &Record<'_>, i: usize, range: std::ops::RangeInclusive<f64>)
     let belongs = if *high == f64::MAX { format!("{low} or more") } else { format!("{low} to {high}") };
     let field = ["MIMP", "K", "N", "M", "I", "C"][i];
     let help = format!("{belongs} belongs there; what is left out is 0");
-    record.error(i, Fault::ImpactDeck, format!("{field} is {value}"), help)
+    record.error(i, Fault::Impact, format!("{field} is {value}"), help)
 }

@@ -48,7 +48,7 @@ pub enum Fault {
     Masters,
     NotAGovernor,
     Step,
-    ImpactDeck,
+    Impact,
     Unstable,
     Singular,
     SingularMass,
