@@ -1,6 +1,6 @@
 //! Extremes and events are those of the steps, whatever a history keeps of them; what mesh, rows and densities must be for them.
 
-use crate::support::{Case, strip};
+use crate::support::{Case, plate, strip};
 use serde_json::Value;
 
 /// A cantilever that a light ball strikes and leaves.
@@ -14,7 +14,7 @@ fn blow() -> Case {
 
 /// Plies that break along the fibres.
 const WEAK: &str =
-    "criteria = [\"octahedral\", { name = \"expression\", expression = \"abs(s1) / 5e7\" }]\nevery = \"0.5 us\"";
+    "criteria = [\"octahedral\", { name = \"expression\", expression = \"abs(s1) / (50*MPa)\" }]\nevery = \"0.5 us\"";
 
 fn summary(case: &Case) -> Value {
     case.fem("run", &["--out", "out"]).good();
@@ -157,5 +157,30 @@ fn what_rests_without_weight_needs_no_density() {
     {
         assert!(done.status == 1 && done.stderr.contains("the mass of the plate needs a density"), "{done:#?}");
         assert!(done.stderr.contains("materials.m") && done.stderr.contains("add its `density`"), "{done:#?}");
+    }
+}
+
+/// Of many places the stresses take most: of a reduced plate the operator that makes them, else samples and their strains.
+#[test]
+fn the_memory_of_stresses_is_foreseen() {
+    for reduction in ["{ method = 'ritz', vectors = 60 }", "{ method = 'none' }"] {
+        let case = plate().text(&format!(
+            "title = 'many places'\nmesh = {{ rectangle = ['60 mm', '60 mm'], cells = [30, 30] }}\nelement = {{ kind = 'mitc4' }}\n\
+             materials.tape = {{ library = 'AS4/3502' }}\nmaterials.resin = {{ library = '3502 resin' }}\n\
+             laminate = {{ plies = '[0/90]4s', material = 'tape', ply_thickness = '0.13 mm', layers = 1, interface = 'resin' }}\n\
+             support = [{{ group = 'x-min', at = 'mid-plane', fix = ['U10', 'U20', 'U30', 'U13', 'U23'] }}]\n\
+             impactor = {{ mass = '10 g', velocity = '1 m/s', at = {{ x = '30 mm', y = '30 mm' }} }}\n\
+             contact = {{ law = 'hertz', k = '1e8 N/m^1.5' }}\n\
+             failure = {{ criteria = ['hashin-report', 'octahedral'], every = '1 us' }}\nreduction = {reduction}\n\
+             march = {{ step = '1 us', end = '20 us' }}\noutput = {{ plots = false }}\n"
+        ));
+        let said = case.fem("check", &[]).good().stdout;
+        let line = said.lines().find(|line| line.trim_start().starts_with("memory")).unwrap();
+        assert!(line.contains("peak: stresses"), "{line}");
+        let estimate: f64 = line.split_whitespace().nth(2).unwrap().parse().unwrap();
+        case.fem("run", &["--out", "out"]).good();
+        let cost: Value = serde_json::from_str(&case.read("out/cost.json")).unwrap();
+        let peak = cost["peak_memory_MB"].as_f64().unwrap();
+        assert!((0.75..1.5).contains(&(estimate / peak)), "{line}: {peak}");
     }
 }

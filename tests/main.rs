@@ -14,6 +14,7 @@ mod effects;
 mod envelope;
 mod extremes;
 mod fields;
+mod forged;
 mod free;
 mod impactors;
 mod indices;

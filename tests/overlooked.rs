@@ -103,3 +103,39 @@ output = {{ plots = false }}
     holds(&struck(&format!("{far}, {x}")), &["hold U10 as in a half of a symmetric plate"]);
     assert!(!struck(far).contains("symmetric plate"));
 }
+
+/// Both sides that meet in a corner hold it along one direction each.
+#[test]
+fn supports_in_all_but_the_same_axes() {
+    let beside = |fix: &str, axes: &str| {
+        let text = case(&format!(
+            r#"support = [{{ group = "x-max", at = "all", fix = ["U10", "U20", "U30"] }},
+            {{ group = "y-min", at = "all", fix = ["U10"], axes = "30 deg" }},
+            {{ group = "x-min", at = "all", fix = {fix}, axes = "{axes} deg" }}]
+load = [{{ pressure = "1 kPa" }}]"#
+        ));
+        said(&text, 0)
+    };
+    let words =
+        ["the supports of `y-min` and `x-min` hold", "at (0.0000, 0.0000) mm", "in both directions", "the same `axes`"];
+    for (fix, axes, off) in [
+        (r#"["U10"]"#, "30.00001", "1.00e-5 degrees"),
+        (r#"["U10", "U30"]"#, "30.9", "9.00e-1 degrees"),
+        (r#"["U10"]"#, "-150.01", "1.00e-2 degrees"),
+        (r#"["U20"]"#, "-60.01", "1.00e-2 degrees"),
+    ] {
+        let said = beside(fix, axes);
+        holds(&said, &words);
+        holds(&said, &[off]);
+    }
+    for (fix, axes) in [
+        (r#"["U10"]"#, "30"),
+        (r#"["U10"]"#, "30.000001"),
+        (r#"["U10"]"#, "35"),
+        (r#"["U20"]"#, "30.5"),
+        (r#"["U10", "U20"]"#, "30.5"),
+        (r#"["U30"]"#, "30.5"),
+    ] {
+        assert!(!beside(fix, axes).contains("in both directions"), "{fix} {axes}");
+    }
+}

@@ -135,3 +135,31 @@ fn a_symmetry_that_the_regions_break_is_refused() {
     let kept = text(format!("{{ {PLIES} }}"));
     assert!(!kept.contains("make the mesh symmetric"), "{kept}");
 }
+
+#[test]
+fn the_mass_is_that_of_all_laminates() {
+    for x in ["15 mm", "45 mm"] {
+        let text = format!(
+            r#"
+title = "a heavy half"
+mesh = {{ file = "plate.msh", unit = "mm" }}
+element = {{ kind = "mitc4" }}
+effects = {{ damage = "off" }}
+materials.heavy = {{ e = "70 GPa", nu = 0.3, density = "3 g/cm^3" }}
+materials.light = {{ e = "70 GPa", nu = 0.3, density = "1 g/cm^3" }}
+laminate = [
+    {{ plies = "[0_2]", material = "light", ply_thickness = "0.5 mm", layers = 1 }},
+    {{ group = "left", plies = "[0_2]", material = "heavy", ply_thickness = "0.5 mm", layers = 1 }},
+]
+support = [{{ group = "x-min", at = "mid-plane", fix = ["U10", "U20", "U30", "U13", "U23"] }}]
+impactor = {{ mass = "1 g", velocity = "1 m/s", at = {{ x = "{x}", y = "20 mm" }} }}
+contact = {{ law = "hertz", k = "1e8 N/m^1.5" }}
+march = {{ step = "1 us", end = "5 us" }}
+"#
+        );
+        let case = plate().text(&text).mesh_bytes(halves([60e-3, 40e-3], [8, 6]));
+        case.fem("run", &["--out", "out"]).good();
+        let mass = case.summary("out")["model"]["plate_mass_g"].as_f64().unwrap();
+        assert!((mass / 4.8 - 1.0).abs() < 1e-9, "{mass} g");
+    }
+}

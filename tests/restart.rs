@@ -100,7 +100,7 @@ fn rows_of_the_history_stay_as_far_apart_as_they_were() {
 #[test]
 fn a_march_that_stopped_is_stopped_when_resumed() {
     let leaks = strip().scene("end = \"20 us\"", "step = \"1 ms\"\nend = \"10 ms\"");
-    let no_index = "criteria = [{ name = \"expression\", expression = \"0.5 * sqrt(1 - abs(s1) / 1e5)\" }]";
+    let no_index = "criteria = [{ name = \"expression\", expression = \"0.5 * sqrt(1 - abs(s1) / (100*kPa))\" }]";
     let no_index = strip().scene("criteria = [\"hashin-report\", \"octahedral\"]", no_index);
     for (case, why) in [(leaks, "energy error"), (no_index, "has no index")] {
         assert_eq!(case.fem("run", &["--out", "straight"]).status, 1);

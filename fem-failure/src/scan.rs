@@ -217,6 +217,9 @@ pub struct ScanRecord {
     seen: Vec<Seen>,
 }
 
+/// Evaluations beyond this are of no march, and a sum of them would overflow.
+const MOST_EVALUATIONS: u64 = 1 << 53;
+
 /// What one criterion saw. Tables have a row of one number per mode for each site that it looks at.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Seen {
@@ -479,11 +482,17 @@ impl Scan {
     }
 
     /// Continues from what a scan of the same sites and criteria had seen; `false`, and nothing changes, where `record`
-    /// is of another size.
+    /// is of another size or names sites that there are not.
     #[must_use]
     pub fn resume(&mut self, record: ScanRecord) -> bool {
         let size = |s: &Seen| [s.last.len(), s.maxima.len(), s.reached.len(), s.peaks.len(), s.first.len()];
+        let readings = |s: &Seen| {
+            let first = s.first.iter().flatten().map(|(reading, _)| *reading);
+            s.peaks.iter().flatten().copied().chain(first).all(|reading| (reading.site as usize) < self.sites.len())
+        };
         let fits = record.stress.len() == self.sites.len()
+            && record.evaluations < MOST_EVALUATIONS
+            && record.seen.iter().all(readings)
             && record.seen.iter().map(size).eq(self.record.seen.iter().map(size));
         if fits {
             self.record = record;

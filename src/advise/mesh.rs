@@ -63,9 +63,8 @@ pub fn warn_of_coarse_cells(model: &Model, contacts: &[ContactRecord]) -> Option
 
 /// The same before a run, of impactors so small that the plate has no edges for them.
 pub fn expect_coarse_cells(model: &Model) -> Option<String> {
-    let mass = model.areal_mass * model.plate.plane.area();
     let stiffness = model.laminate.effective_bending_stiffness(&model.materials);
-    strikes(model).filter(|(spec, _)| spec.mass <= SMALL * mass).find_map(|(spec, strike)| {
+    strikes(model).filter(|(spec, _)| spec.mass <= SMALL * model.mass).find_map(|(spec, strike)| {
         let blow = Blow { mass: spec.mass, velocity: spec.velocity, time: f64::INFINITY, law: &*strike.law };
         coarse(model, strike.centre, first_wave(model.areal_mass, stiffness, &blow).0.frequency)
     })

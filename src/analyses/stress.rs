@@ -2,6 +2,7 @@
 
 use super::expansion::Expansion;
 use crate::error::Error;
+use crate::forecast::Demand;
 use crate::model::{Model, NamedCriterion};
 use crate::words::name_ply;
 use faer::linalg::matmul::matmul;
@@ -15,12 +16,6 @@ use fem_failure::scan::{self, PlyOrInterface, Probe, Scan, ScanSite};
 use fem_io::scene::Window;
 use serde::{Deserialize, Serialize};
 use std::rc::Rc;
-
-/// Samples recovered together.
-const BATCH: usize = 16;
-
-/// Largest stress operator that is kept, bytes; beyond it stresses are recovered from expanded displacements.
-const OPERATOR_LIMIT: usize = 256 << 20;
 
 /// Indices of one criterion at one place over time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -97,13 +92,13 @@ impl<'a> Watch<'a> {
             probes,
             scan,
             record: Record { histories, ..Record::default() },
-            stresses: vec![0.0; 6 * recovery.sites() * BATCH],
+            stresses: vec![0.0; 6 * recovery.sites() * Demand::BATCH],
             states: vec![Stress6::new([0.0; 6]); recovery.sites()],
             recovery,
         };
         // Stresses of large deflections are not products with the coordinates.
         if let Some((basis, modes)) = watch.expansion.basis().filter(|_| !model.effects.nature().large)
-            && 6 * watch.recovery.sites() * modes * size_of::<f64>() <= OPERATOR_LIMIT
+            && 6 * watch.recovery.sites() * modes * size_of::<f64>() <= Demand::OPERATOR_LIMIT
         {
             let mut operator = vec![0.0; 6 * watch.recovery.sites() * modes];
             watch.recover(&watch.expansion.nodal(basis), modes, None, &mut operator)?;
@@ -120,7 +115,7 @@ impl<'a> Watch<'a> {
         self.record.points.extend_from_slice(points);
         self.record.times.push(t);
         self.record.waiting.extend_from_slice(coordinates);
-        if self.record.times.len() == BATCH { self.flush() } else { Ok(()) }
+        if self.record.times.len() == Demand::BATCH { self.flush() } else { Ok(()) }
     }
 
     /// Scans the samples still waiting.
@@ -194,9 +189,22 @@ impl<'a> Watch<'a> {
         (self.scan.record(), &self.record)
     }
 
-    /// Continues from what a watch of the same model has seen; `false` where the records are of another size.
-    pub(super) fn resume(&mut self, scan: scan::ScanRecord, record: Record) -> bool {
-        let fits = record.histories.len() == self.probes.len() && self.scan.resume(scan);
+    /// Continues from what a watch of the same model has seen, marched in coordinates of this `width`; `false` where the
+    /// records are of another size.
+    pub(super) fn resume(&mut self, scan: scan::ScanRecord, record: Record, width: usize) -> bool {
+        let count = record.times.len();
+        let states = self.model.laws.as_ref().map_or(0, PlyLaws::states);
+        let same = |(now, then): (&IndexHistory, &IndexHistory)| {
+            let modes = self.model.criteria[now.criterion].1.info().modes.len();
+            let sound = then.indices.len() == then.times.len() * modes;
+            sound && (now.criterion, now.site) == (then.criterion, then.site)
+        };
+        let fits = count < Demand::BATCH
+            && record.waiting.len() == count * width
+            && record.points.len() == count * states
+            && record.histories.len() == self.record.histories.len()
+            && self.record.histories.iter().zip(&record.histories).all(same)
+            && self.scan.resume(scan);
         if fits {
             self.record = record;
         }

@@ -27,12 +27,15 @@ pub struct MemoryEstimate {
     pub effects: f64,
     /// Histories: what a march keeps of its steps, rows and samples.
     pub histories: f64,
+    /// Stresses where criteria look: those of samples and what is kept of them, and what the operator that makes them takes beyond
+    /// the factor, which is gone by then.
+    pub stresses: f64,
 }
 
 /// Sizes of the parts for people, largest first.
 impl fmt::Display for MemoryEstimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { model, matrices, factor, vectors, effects, histories } = *self;
+        let Self { model, matrices, factor, vectors, effects, histories, stresses } = *self;
         let mut parts = [
             ("model", model),
             ("stiffness and mass", matrices),
@@ -40,6 +43,7 @@ impl fmt::Display for MemoryEstimate {
             ("vectors", vectors),
             ("effects", effects),
             ("histories", histories),
+            ("stresses", stresses),
         ];
         parts.sort_by(|a, b| b.1.total_cmp(&a.1));
         let parts = parts.iter().filter(|(_, bytes)| *bytes > 0.0);
@@ -61,6 +65,12 @@ pub struct Demand {
     pub contacts: Option<usize>,
     /// What a march keeps of its steps, rows and samples, bytes.
     pub kept: f64,
+    /// Places whose stresses are judged.
+    pub sites: usize,
+    /// Indices of all of them.
+    pub indices: usize,
+    /// Whether their stresses come from an operator on the coordinates of a reduced plate, if it is not too large.
+    pub operator: bool,
 }
 
 impl Demand {
@@ -68,12 +78,35 @@ impl Demand {
     pub const BASES: f64 = 3.0;
     /// Mesh and constraints, bytes per unknown.
     pub const PER_UNKNOWN: f64 = 200.0;
+    /// Samples of the stresses that are recovered together.
+    pub const BATCH: usize = 16;
+    /// Largest stress operator that is kept, bytes; beyond it stresses are recovered from expanded displacements.
+    pub const OPERATOR_LIMIT: usize = 256 << 20;
+    /// Of a stress, bytes.
+    const STRESS: usize = 6 * size_of::<f64>();
+    /// What a scan keeps per site and per index, bytes.
+    const PER_SITE: usize = 3 * Self::STRESS;
+    const PER_INDEX: usize = 4 * size_of::<f64>();
+
+    /// Stresses of samples with what is kept of them, and the operator while it is made, bytes. Either comes from as many
+    /// strains.
+    fn stresses(&self) -> [f64; 2] {
+        let samples = self.sites * Self::BATCH * Self::STRESS;
+        let kept = self.sites * Self::PER_SITE + self.indices * Self::PER_INDEX;
+        let operator = self.sites * Self::STRESS * self.vectors;
+        let [samples, operator] = match self.operator && operator <= Self::OPERATOR_LIMIT {
+            true => [samples, 2 * operator],
+            false => [2 * samples, 0],
+        };
+        [(samples + kept) as f64, operator as f64]
+    }
 }
 
 impl MemoryEstimate {
     /// Of a computation with these matrices, and what effects take beside.
     fn new(demand: &Demand, symbolic: &Symbolic, effects: f64) -> Self {
         let entries = symbolic.pattern().entries() as f64;
+        let [tables, operator] = demand.stresses();
         Self {
             model: PROGRAM + Demand::PER_UNKNOWN * demand.all as f64,
             matrices: PER_ENTRY * entries,
@@ -81,12 +114,13 @@ impl MemoryEstimate {
             vectors: 8.0 * Demand::BASES * demand.vectors as f64 * demand.unknowns as f64,
             effects,
             histories: demand.kept,
+            stresses: tables + (operator - symbolic.bytes()).max(0.0),
         }
     }
 
     /// All of it.
     pub fn bytes(&self) -> f64 {
-        self.model + self.matrices + self.factor + self.vectors + self.effects + self.histories
+        self.model + self.matrices + self.factor + self.vectors + self.effects + self.histories + self.stresses
     }
 }
 

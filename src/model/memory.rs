@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::forecast::{Demand, MemoryEstimate, Size, analyse};
 use fem_core::assembly::{Pattern, Symbolic};
 use fem_core::counters::Counters;
+use fem_core::failure::Site;
 use fem_core::plate::Plate;
 use std::sync::Arc;
 
@@ -39,7 +40,23 @@ impl Model {
             Plan::Impact(impact) => self.kept(impact),
             _ => 0.0,
         };
-        let demand = Demand { all: self.plate.ndof(), unknowns: pattern.ndof(), vectors, contacts, kept };
+        let judged = |of: Site| self.criteria.iter().filter(move |(_, c)| c.info().site == of);
+        let modes = |of: Site| judged(of).map(|(_, c)| c.info().modes.len()).sum::<usize>();
+        let plies = self.laminate.plies.len();
+        // An interface between two layers of cells has a stress from either side.
+        let looks = self.interface.is_some() && judged(Site::Interface).next().is_some();
+        let interfaces = if looks { plies + self.plate.layers() - 2 } else { 0 };
+        let quads = if self.criteria.is_empty() { 0 } else { self.watched.len() };
+        let demand = Demand {
+            all: self.plate.ndof(),
+            unknowns: pattern.ndof(),
+            vectors,
+            contacts,
+            kept,
+            sites: quads * (plies + interfaces),
+            indices: quads * (plies * modes(Site::Ply) + interfaces * modes(Site::Interface)),
+            operator: contacts.is_some() && !self.effects.nature().large,
+        };
         analyse(pattern, &demand, self.effects.memory(&self.body(), &demand))
     }
 

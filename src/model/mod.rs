@@ -13,6 +13,7 @@ mod regions;
 mod spacing;
 mod substructures;
 mod symmetry;
+mod turns;
 
 pub use fields::FieldPlan;
 pub use gauge::Gauge;
@@ -58,6 +59,8 @@ pub struct Model {
     pub laminates: Vec<Laminate>,
     /// Mass per area of that laminate, kg/m².
     pub areal_mass: f64,
+    /// Mass of the plate, kg.
+    pub mass: f64,
     /// Cells and unknowns.
     pub plate: Plate,
     /// The element of all cells.
@@ -184,6 +187,7 @@ impl Model {
         let supports = builder.constraints(&plate)?;
         let constraints = &supports.constraints;
         warnings.extend(builder.lacking(&plate)?);
+        warnings.extend(builder.nearly_turned(&plate)?);
         let plan = match &scene.analysis {
             Analysis::Impact(spec) => Plan::Impact(Box::new(builder.impact(spec, &plate, &*element, constraints)?)),
             Analysis::Static(loads) => {
@@ -204,7 +208,18 @@ impl Model {
             |centre: [f64; 2]| (0..plate.plane.quads.len()).find(|q| plate.plane.corners(*q).locate(centre).is_some());
         let region = centres.first().and_then(|centre| struck(*centre)).map_or(0, |quad| plate.region(quad));
         let laminate = laminates[region].clone();
-        let areal_mass = laminate.areal_mass(&weights).map_err(lacks)?;
+        let areal_masses: Vec<f64> = laminates
+            .iter()
+            .map(|of_region| of_region.areal_mass(&weights))
+            .collect::<Result<_, _>>()
+            .map_err(lacks)?;
+        let areal_mass = areal_masses[region];
+        let mass = match areal_masses[..] {
+            [everywhere] => everywhere * plate.plane.area(),
+            _ => (0..plate.plane.quads.len())
+                .map(|quad| areal_masses[plate.region(quad)] * plate.plane.quality(quad).area)
+                .sum(),
+        };
         builder.modes(&plan)?;
         if let Plan::Impact(impact) = &plan {
             // Looks at every step are all that there can be.
@@ -233,6 +248,7 @@ impl Model {
             laminate,
             laminates,
             areal_mass,
+            mass,
             plate,
             element,
             laws,

@@ -2,6 +2,10 @@
 //!
 //! What could be read in two ways (`2 s1`, `a^b^c`, a comparison without brackets) is refused. `-s1^2` is −(s1²).
 
+mod powers;
+
+pub use powers::PowerError;
+
 use crate::words::spelling::unknown_key;
 use std::fmt;
 
@@ -141,6 +145,8 @@ enum Step {
 pub struct Formula {
     /// In the order in which they are carried out.
     steps: Vec<Step>,
+    /// What each step stands for.
+    sources: Vec<Source>,
     names: Vec<usize>,
     /// Values that the stack holds at most.
     depth: usize,
@@ -193,28 +199,35 @@ impl Formula {
     }
 }
 
+/// An operator or a function, and the character where it stands, counted from 1.
+type Source = (&'static str, usize);
+
+/// Of numbers and names.
+const NOWHERE: Source = ("", 0);
+
 /// A bracket, or the whole text.
 #[derive(Default)]
 struct Level {
     /// Operators that wait for their second value, each of higher priority than the one before.
-    waiting: Vec<(u8, Binary)>,
+    waiting: Vec<(u8, Binary, Source)>,
     /// The operator before the last value.
     operator: &'static str,
     compared: bool,
     /// What the value of the bracket goes into.
-    function: Option<Function>,
+    function: Option<(Function, Source)>,
 }
 
 #[derive(Default)]
 struct Compiler {
     steps: Vec<Step>,
+    sources: Vec<Source>,
     names: Vec<usize>,
     held: usize,
     depth: usize,
 }
 
 impl Compiler {
-    fn push(&mut self, step: Step) {
+    fn push(&mut self, step: Step, source: Source) {
         match step {
             Step::Number(_) | Step::Value(_) => self.held += 1,
             Step::Apply(_) => {}
@@ -222,12 +235,13 @@ impl Compiler {
         }
         self.depth = self.depth.max(self.held);
         self.steps.push(step);
+        self.sources.push(source);
     }
 
     /// Carries out what waits in `level` and binds at least as tightly as `priority`.
     fn combine(&mut self, level: &mut Level, priority: u8) {
-        while let Some((_, operator)) = level.waiting.pop_if(|(waiting, _)| *waiting >= priority) {
-            self.push(Step::Combine(operator));
+        while let Some((_, operator, source)) = level.waiting.pop_if(|(waiting, ..)| *waiting >= priority) {
+            self.push(Step::Combine(operator), source);
         }
     }
 
@@ -245,6 +259,7 @@ impl Compiler {
         let mut rest = text.trim_start();
         while let Some(first) = rest.chars().next() {
             let (token, after) = rest.split_at(token_length(rest));
+            let place = text[..text.len() - rest.len()].chars().count() + 1;
             if first.is_ascii_alphanumeric() || matches!(first, '_' | '.' | '(') {
                 if !value_next {
                     return Err(FormulaError::MissingOperator(token.into()));
@@ -258,17 +273,18 @@ impl Compiler {
                     let inner = Level { function: function.take(), ..Level::default() };
                     outer.push(std::mem::replace(&mut level, inner));
                     (value_next, opened) = (true, true);
-                } else if let Some((_, apply)) = FUNCTIONS.iter().find(|f| f.0 == token) {
+                } else if let Some((name, apply)) = FUNCTIONS.iter().find(|f| f.0 == token) {
                     if !after.trim_start().starts_with('(') {
                         return Err(FormulaError::MissingBrackets(token.into()));
                     }
-                    function = Some(*apply);
+                    function = Some((*apply, (*name, place)));
                     value_next = true;
                 } else if first.is_ascii_alphabetic() || first == '_' {
                     self.push_name(token, known)?;
                 } else {
                     let number = token.parse().ok().filter(|number: &f64| number.is_finite());
-                    self.push(Step::Number(number.ok_or_else(|| FormulaError::Number(token.into()))?));
+                    let number = number.ok_or_else(|| FormulaError::Number(token.into()))?;
+                    self.push(Step::Number(number), NOWHERE);
                 }
             } else if first == ')' {
                 if value_next {
@@ -276,8 +292,8 @@ impl Compiler {
                 }
                 let mut inner = std::mem::replace(&mut level, outer.pop().ok_or(FormulaError::Unopened)?);
                 self.combine(&mut inner, 0);
-                if let Some(function) = inner.function {
-                    self.push(Step::Apply(function));
+                if let Some((function, source)) = inner.function {
+                    self.push(Step::Apply(function), source);
                 }
             } else if let Some((operator, priority, combine)) = OPERATORS.iter().find(|o| o.0 == token) {
                 let sign = opened && matches!(first, '+' | '-');
@@ -293,10 +309,10 @@ impl Compiler {
                 }
                 if sign {
                     // A sign is a subtraction from 0, so that −x² is −(x²).
-                    self.push(Step::Number(0.0));
+                    self.push(Step::Number(0.0), NOWHERE);
                 }
                 self.combine(&mut level, *priority);
-                level.waiting.push((*priority, *combine));
+                level.waiting.push((*priority, *combine, (*operator, place)));
                 level.operator = operator;
                 (value_next, opened) = (true, comparison);
             } else {
@@ -311,7 +327,8 @@ impl Compiler {
             return Err(if text.trim().is_empty() { FormulaError::Empty } else { FormulaError::MissingValue(None) });
         }
         self.combine(&mut level, 0);
-        Ok(Formula { steps: self.steps, names: self.names, depth: self.depth })
+        let Self { steps, sources, names, depth, .. } = self;
+        Ok(Formula { steps, sources, names, depth })
     }
 
     fn push_name(&mut self, name: &str, known: &[&str]) -> Result<(), FormulaError> {
@@ -323,7 +340,7 @@ impl Compiler {
             self.names.push(place);
             self.names.len() - 1
         });
-        self.push(Step::Value(k));
+        self.push(Step::Value(k), NOWHERE);
         Ok(())
     }
 }

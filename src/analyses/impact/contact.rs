@@ -80,6 +80,11 @@ impl Follower {
         self.last = (t, force, deflection);
     }
 
+    /// Whether it can be that of `step` steps.
+    pub(super) fn is_sound(&self, step: u64) -> bool {
+        u64::from(self.record.count) <= step + 1 && self.record.growth.len() as u64 <= 2 * step + 2
+    }
+
     pub(super) fn finish(self) -> ContactRecord {
         self.record
     }

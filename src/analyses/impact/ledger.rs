@@ -56,6 +56,14 @@ impl Ledger {
         Self { rows: Vec::new(), error: 0.0, forces: StepForces::new(dt), contacts, work: Vec::new() }
     }
 
+    /// Whether it can be that of a march after `step` steps of `dt`, with so many contacts and columns of effects.
+    pub(super) fn is_sound(&self, step: u64, dt: f64, contacts: usize, columns: usize) -> bool {
+        let rows = self.rows.iter().all(|row| row.impactors.len() == contacts && row.effects.len() == columns);
+        let in_time = self.rows.len() as u64 <= step + 1 && self.rows.is_sorted_by(|a, b| a.time_s < b.time_s);
+        let forces = self.forces.step() == dt && self.forces.last() as u64 <= step;
+        rows && in_time && forces && self.contacts.len() == contacts && self.contacts.iter().all(|c| c.is_sound(step))
+    }
+
     /// Shows effects the end of a step.
     pub(super) fn step(&mut self, effects: &mut [Box<dyn Effect>], system: &ImpactSystem, state: &State) {
         effects.iter_mut().for_each(|effect| effect.on_step(system, state, &mut self.work));

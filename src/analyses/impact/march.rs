@@ -1,5 +1,7 @@
 //! The march in time, with what is watched of it; a saved march can be continued.
 
+mod sound;
+
 use super::accuracy::{self, Accuracy, Estimates};
 use super::checkpoint::{self, Checkpoint};
 use super::frames::frames;
@@ -15,7 +17,7 @@ use crate::error::{CheckpointError, Error};
 use crate::model::{Model, count_steps};
 use fem_core::counters::Counters;
 use fem_core::structure::Tangent;
-use fem_core::time::{Histories, Integrator, State};
+use fem_core::time::{Integrator, State};
 use fem_dynamics::guard::Guard;
 use fem_dynamics::impact::ImpactSystem;
 use fem_failure::scan::{self, Scan};
@@ -164,13 +166,8 @@ impl<'a> March<'a> {
             return Err(CheckpointError::Beyond { folder, at: progress.state.t }.into());
         }
         let (mut march, sizes) = (Self::at(prepared, progress)?, || differs("its sizes differ".to_owned()));
-        let Self { system, integrator, progress, .. } = &mut march;
-        let fresh = system.initial();
-        let sizes_of = |state: &State| {
-            let Histories { contacts, points } = &state.histories;
-            [state.u.len(), contacts.len(), points.len()]
-        };
-        if sizes_of(&progress.state) != sizes_of(&fresh) {
+        let Self { model, system, integrator, progress, .. } = &mut march;
+        if !progress.is_sound(model, system, &system.initial()) {
             return Err(sizes());
         }
         integrator.resume(system);
@@ -184,11 +181,11 @@ impl<'a> March<'a> {
         }
         march.counted = SystemCounts::of(&march.system);
         let fits = match (&mut march.modal, modal) {
-            (Some(view), Some(record)) => view.resume(record),
+            (Some(view), Some(record)) => view.resume(record, march.progress.rows()),
             (view, record) => view.is_none() && record.is_none(),
         };
         let watch_fits = match (&mut march.watch, watched) {
-            (Some(watch), Some((scan, record))) => watch.resume(scan, record),
+            (Some(watch), Some((scan, record))) => watch.resume(scan, record, march.sizes.marched),
             (watch, record) => watch.is_none() && record.is_none(),
         };
         let kept = std::mem::take(&mut march.progress.effects);

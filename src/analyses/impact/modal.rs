@@ -112,10 +112,11 @@ impl ModalView {
         &self.record
     }
 
-    /// Continues from what a view of the same modes has seen; `false` where `record` is of another size.
-    pub(super) fn resume(&mut self, record: Record) -> bool {
+    /// Continues from what a view of the same modes has seen in so many rows; `false` where `record` is of another size.
+    pub(super) fn resume(&mut self, record: Record, rows: usize) -> bool {
         let n = self.modes.len();
-        let fits = [&record.largest, &record.strain, &record.kinetic].iter().all(|each| each.len() == n);
+        let fits = record.coordinates.len() == n * rows
+            && [&record.largest, &record.strain, &record.kinetic].iter().all(|each| each.len() == n);
         if fits {
             self.record = record;
         }

@@ -311,7 +311,7 @@ impl ImpactSummary {
                 nodes: model.plate.nodes(),
                 plies: model.laminate.plies.len(),
                 thickness_mm: thickness * 1e3,
-                plate_mass_g: model.areal_mass * model.plate.plane.area() * 1e3,
+                plate_mass_g: model.mass * 1e3,
                 unknowns: sizes.unknowns,
                 substructures: sizes.substructures,
                 unknowns_marched: sizes.marched,

@@ -1,6 +1,6 @@
 //! A formula over the stress and the constants of a material.
 
-use fem_core::formula::{Formula, FormulaError};
+use fem_core::formula::{Formula, FormulaError, PowerError};
 use fem_core::material::{Elastic, Material, Strength};
 use fem_core::tensor::{Ply, Stress6};
 
@@ -11,6 +11,8 @@ enum Symbol {
     Stress(usize),
     Strength(Strength),
     Elastic(fn(&Elastic) -> f64),
+    /// A unit of stress, Pa.
+    Unit(f64),
 }
 
 const STRESSES: [(&str, usize); 12] = [
@@ -43,11 +45,14 @@ const ELASTIC: [(&str, Constant); 9] = [
     ("G23", |e| e.g23),
 ];
 
+const UNITS: [(&str, f64); 4] = [("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9)];
+
 /// Every symbol with its name.
 fn symbols() -> impl Iterator<Item = (&'static str, Symbol)> {
     let stresses = STRESSES.iter().map(|(name, i)| (*name, Symbol::Stress(*i)));
     let strengths = Strength::ALL.iter().map(|s| (s.name(), Symbol::Strength(*s)));
-    stresses.chain(strengths).chain(ELASTIC.iter().map(|(name, constant)| (*name, Symbol::Elastic(*constant))))
+    let elastic = ELASTIC.iter().map(|(name, constant)| (*name, Symbol::Elastic(*constant)));
+    stresses.chain(strengths).chain(elastic).chain(UNITS.iter().map(|(name, unit)| (*name, Symbol::Unit(*unit))))
 }
 
 /// The index of a mode: a formula over the stress and the constants of a material.
@@ -56,6 +61,8 @@ pub(super) struct IndexFormula {
     formula: Formula,
     /// What to hand over, in the order that `formula` wants.
     symbols: Vec<Symbol>,
+    /// Of each the power of stress in its unit.
+    powers: Vec<f64>,
 }
 
 impl IndexFormula {
@@ -63,7 +70,14 @@ impl IndexFormula {
         let (names, known): (Vec<_>, Vec<_>) = symbols().unzip();
         let formula = Formula::parse(text, &names)?;
         let symbols = formula.names().iter().map(|k| known[*k]).collect();
-        Ok(Self { formula, symbols })
+        let power = |k: &usize| if names[*k].starts_with("nu") { 0.0 } else { 1.0 };
+        let powers = formula.names().iter().map(power).collect();
+        Ok(Self { formula, symbols, powers })
+    }
+
+    /// The power of stress in the unit of its value; 0 for a pure number.
+    pub(super) fn power(&self) -> Result<f64, PowerError> {
+        self.formula.power(&self.powers)
     }
 
     /// Strengths that it names.
@@ -76,12 +90,13 @@ impl IndexFormula {
 
     pub(super) fn value(&self, s: &Stress6<Ply>, m: &Material) -> f64 {
         // Aliases may be there beside what they stand for.
-        let mut values = [f64::NAN; STRESSES.len() + Strength::ALL.len() + ELASTIC.len()];
+        let mut values = [f64::NAN; STRESSES.len() + Strength::ALL.len() + ELASTIC.len() + UNITS.len()];
         for (value, symbol) in values.iter_mut().zip(&self.symbols) {
             *value = match symbol {
                 Symbol::Stress(i) => s.0[*i],
                 Symbol::Strength(which) => m.strengths.get(*which).unwrap_or(f64::NAN),
                 Symbol::Elastic(constant) => constant(&m.elastic),
+                Symbol::Unit(unit) => *unit,
             };
         }
         self.formula.value(&values[..self.symbols.len()])
@@ -120,6 +135,7 @@ mod tests {
             ("s11 - s1 + s22 - s2 + s33 - s3 + s21 - s12 + s32 - s23 + s31 - s13", 0.0),
             ("Xt + Yt/S12", 101.25),
             ("E1 + E2 + E3 + G12 + G13", 160.0),
+            ("kPa + MPa/Pa + GPa", 1.001_001e9),
             ("nu12 + 10*nu13 + 100*nu23", 43.3),
             ("2e2 + .5 + 1.", 201.5),
             ("1.5E-1*20", 3.0),
