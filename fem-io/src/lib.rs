@@ -4,8 +4,10 @@
 //! | --- | --- |
 //! | the scene, a TOML file over presets | [`scene`], with [`units`] and the library of [`materials`] |
 //! | meshes of gmsh | [`gmsh`] |
+//! | decks of LAMCEL, LAMSUB and TRADYR | [`deck`] |
 //! | the folder of results: files that appear whole or not at all | [`files`] |
 //! | what a later run goes on from | [`checkpoint`] |
+//! | arrays for NumPy | [`npy`] |
 //! | CSV and JSON, line plots as SVG and PNG | [`tables`], [`plot`] |
 //! | fields for ParaView and PyVista | [`vtu`] |
 //!
@@ -28,6 +30,7 @@ mod document;
 pub mod files;
 pub mod gmsh;
 pub mod materials;
+pub mod npy;
 pub mod plot;
 pub mod results;
 pub mod scene;

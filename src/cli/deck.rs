@@ -2,10 +2,11 @@
 
 use super::run::default_folder;
 use super::{Console, Format};
-use crate::decks::{self, DeckOptions, DeckOutcome, Project, UnitSystem};
+use crate::decks::{self, DeckOptions, DeckOutcome, Project, Shown, UnitSystem};
 use crate::error::Error;
 use clap::{Args, Subcommand};
 use fem_io::deck::{DeckSource, Program};
+use fem_io::files::OutputDir;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -97,6 +98,30 @@ pub(super) enum Command {
     /// Generations come first, then analyses, restarts and back substitutions. Everything is done but the march in time. The
     /// exit status is 0 where all decks are good.
     Check(CheckArguments),
+    /// Says what lies in a project under a name: matrices with their masters, displacements with their print steps.
+    Show(NamedArguments),
+    /// Writes a result for other programs: K, M and masters as Matrix Market, NumPy and CSV files, displacements as NumPy files.
+    Export(ExportArguments),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct NamedArguments {
+    /// Name of the result: NAME6 of a generation or NAME1 of an analysis.
+    name: String,
+    /// Folder of the results by name.
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    project: PathBuf,
+    #[command(flatten)]
+    format: Format,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExportArguments {
+    #[command(flatten)]
+    named: NamedArguments,
+    /// Folder of what is exported [default: that of the project]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -110,7 +135,49 @@ pub(super) struct CheckArguments {
 pub(super) fn deck(command: &Command, console: &Console) -> miette::Result<ExitCode> {
     match command {
         Command::Check(arguments) => check(arguments, console),
+        Command::Show(arguments) => show(arguments, console),
+        Command::Export(arguments) => export(arguments, console),
     }
+}
+
+fn show(arguments: &NamedArguments, console: &Console) -> miette::Result<ExitCode> {
+    let project = Project::open(&arguments.project).map_err(Error::from)?;
+    let shown = decks::show(&project, &arguments.name)?;
+    console.show(arguments.format, &shown, || shown.iter().map(described).collect())?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn described(shown: &Shown) -> String {
+    match shown {
+        Shown::Matrices { name, deck, program, names, elements, masters, checksum } => format!(
+            "{name}: matrices of {} masters, {elements} elements\n  {program}   {deck}\n  names     {}\n  masters   {}\n  checksum  \
+             {checksum}\n",
+            masters.len(),
+            names[..5].join(", "),
+            masters.join(", "),
+        ),
+        Shown::Displacements { name, deck, substructures, print_steps, last_time, stale } => format!(
+            "{name}: displacements of {print_steps} print steps to {last_time:.6e}\n  TRADYR   {deck}\n  made of   {}\n{}",
+            substructures.join(", "),
+            stale.as_ref().map_or(String::new(), |why| format!("  stale     {why}\n"))
+        ),
+    }
+}
+
+#[derive(Serialize)]
+struct Exported<'a> {
+    files: &'a [String],
+    folder: &'a Path,
+}
+
+fn export(ExportArguments { named, out }: &ExportArguments, console: &Console) -> miette::Result<ExitCode> {
+    let project = Project::open(&named.project).map_err(Error::from)?;
+    let other = out.as_ref().map(OutputDir::open).transpose().map_err(Error::from)?;
+    let Some(dir) = other.as_ref().or(project.dir()) else { return Ok(ExitCode::FAILURE) };
+    let files = decks::export(&project, &named.name, dir)?;
+    let done = Exported { files: &files, folder: dir.path() };
+    console.show(named.format, &done, || format!("{}\n  results   {}\n", files.join("\n"), dir.path().display()))?;
+    Ok(ExitCode::SUCCESS)
 }
 
 fn check(arguments: &CheckArguments, console: &Console) -> miette::Result<ExitCode> {

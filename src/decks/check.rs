@@ -17,6 +17,7 @@ pub struct Checked {
     /// The program that it is for, as far as that can be seen.
     pub program: String,
     /// The first mistake.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<Mistake>,
     /// What is odd.
     pub warnings: Vec<String>,

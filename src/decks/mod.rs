@@ -19,11 +19,13 @@ mod model;
 mod piece;
 mod project;
 mod reduced;
+mod show;
 mod tables;
 
 pub use check::{Checked, Mistake, check};
 pub use listing::UnitSystem;
 pub use project::{Matrices, Project};
+pub use show::{Shown, export, show};
 
 use crate::error::Error;
 use fem_io::deck::{
@@ -103,7 +105,8 @@ impl Run<'_> {
         if !deck.analyse {
             return Ok(());
         }
-        let (_, matrices) = piece::generate(self.source, deck)?;
+        let [k, m] = piece::generate(self.source, deck)?.condensed();
+        let matrices = Matrices::new(self.source, deck, k, m);
         self.listing.matrices(self.project, &matrices)?;
         self.project.keep_matrices(self.source, deck, matrices)
     }
@@ -117,7 +120,7 @@ impl Run<'_> {
             |name: &str| (name.to_owned(), self.project.matrices(name).map(Matrices::checksum).unwrap_or_default());
         let parts = deck.substructures.iter().map(|piece| part(&piece.name.value)).collect();
         let deck_of = (self.source.name().to_owned(), self.source.text().to_owned());
-        self.go_on(deck, &deck.march, Analysis { deck: deck_of, parts, state: None })
+        self.go_on(deck, &deck.march, Analysis { deck: deck_of, parts, state: None }, false)
     }
 
     fn restart(&mut self, march: &MarchCard, of: Option<&str>) -> Result<(), Error> {
@@ -134,11 +137,17 @@ impl Run<'_> {
             return Err(refuse("the analysis was begun by another deck".into(), "analyse the model again").into());
         };
         self.listing.model(&deck, self.project);
-        if march.analyse { self.go_on(&deck, march, analysis) } else { Ok(()) }
+        if march.analyse { self.go_on(&deck, march, analysis, true) } else { Ok(()) }
     }
 
-    /// Marches `analysis` on by `march` and keeps what it comes to.
-    fn go_on(&mut self, deck: &ImpactDeck, march: &MarchCard, mut analysis: Analysis) -> Result<(), Error> {
+    /// Marches `analysis` on by `march` and keeps what it comes to; a restart continues a set that the analysis wrote before.
+    fn go_on(
+        &mut self,
+        deck: &ImpactDeck,
+        march: &MarchCard,
+        mut analysis: Analysis,
+        restart: bool,
+    ) -> Result<(), Error> {
         // Places are those of the deck at hand, but for the model's, which is that of the deck that began.
         let begun = DeckSource::new(&analysis.deck.0, analysis.deck.1.clone());
         let model = Model::new(&begun, deck, self.project)?;
@@ -146,9 +155,8 @@ impl Run<'_> {
         self.listing.frequencies(&model, march, growth);
         self.listing.triangles(self.project, "governors", deck.freedom.kept.len(), &model.k, &model.m)?;
         let earlier = march.set.as_ref().and_then(|name| self.project.set(name));
-        let continued = earlier.filter(|set| {
-            analysis.state.is_some() && (&set.analysis.deck, &set.analysis.parts) == (&analysis.deck, &analysis.parts)
-        });
+        let continued = earlier
+            .filter(|set| restart && (&set.analysis.deck, &set.analysis.parts) == (&analysis.deck, &analysis.parts));
         let (mut count, mut steps) = continued.map_or((0, Vec::new()), |set| (set.count, set.steps.clone()));
         count += march.steps / march.every;
         if !self.check {
@@ -180,7 +188,7 @@ impl Run<'_> {
         ) else {
             return Ok(());
         };
-        let (way, _) = piece::generate(&own, &piece)?;
+        let way = piece::generate(&own, &piece)?;
         let parts = Parts::new(&own, &piece)?;
         let mut substituted = Vec::new();
         for asked in &deck.sets {

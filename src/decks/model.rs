@@ -46,7 +46,8 @@ impl Model {
         }
         let blocks: Vec<Block<'_>> =
             placed.iter().map(|(dofs, matrices)| Block { dofs, k: &matrices.k, m: &matrices.m }).collect();
-        let (way, [k, m]) = reduce(source, &deck.freedom, &blocks)?;
+        let way = reduce(source, &deck.freedom, &blocks)?;
+        let [k, m] = way.condensed();
         let n = deck.freedom.kept.len();
         let order: Vec<usize> = (0..n).collect();
         let all = match Constraints::following(&order, []) {

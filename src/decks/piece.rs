@@ -1,7 +1,6 @@
 //! A piece of LAMCEL or LAMSUB: from its deck to matrices on its masters.
 
 use super::element::element;
-use super::project::Matrices;
 use super::reduced::{Block, Way, reduce};
 use fem_core::element::{Cell, Element, ElementError, Scratch, Stack};
 use fem_core::laminate::Laminate;
@@ -93,11 +92,11 @@ fn turn_of_node(beta: f64) -> DMatrix<f64> {
     })
 }
 
-/// K̂ and M̂ of the piece, and the way back to all of its degrees of freedom.
+/// The piece on its masters.
 ///
 /// # Errors
 /// A cell that the element refuses, slaves that move without strain.
-pub(super) fn generate(source: &DeckSource, deck: &Generation) -> Result<(Way, Matrices), DeckError> {
+pub(super) fn generate(source: &DeckSource, deck: &Generation) -> Result<Way, DeckError> {
     let parts = Parts::new(source, deck)?;
     let mut scratch = Scratch::default();
     let mut blocks = Vec::new();
@@ -109,6 +108,5 @@ pub(super) fn generate(source: &DeckSource, deck: &Generation) -> Result<(Way, M
         blocks.push((parts.dofs(number), matrices));
     }
     let blocks: Vec<Block<'_>> = blocks.iter().map(|(dofs, [k, m])| Block { dofs, k, m }).collect();
-    let (way, [k, m]) = reduce(source, &deck.freedom, &blocks)?;
-    Ok((way, Matrices::new(source, deck, k, m)))
+    reduce(source, &deck.freedom, &blocks)
 }

@@ -141,6 +141,11 @@ impl Project {
         self.matrices.get(name)
     }
 
+    /// Names of all results.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.matrices.keys().chain(self.sets.keys()).map(String::as_str)
+    }
+
     /// The displacement set `name`.
     pub(super) fn set(&self, name: &str) -> Option<&DisplacementSet> {
         self.sets.get(name)

@@ -1,6 +1,6 @@
 //! Parts put together by number, constrained, and condensed on what is kept: pieces on their masters, models on governors.
 
-use fem_core::assembly::{FactorError, Inside, assemble_blocks, block_pattern};
+use fem_core::assembly::{FactorError, Inside, Symmetric, assemble_blocks, block_pattern};
 use fem_core::constraint::Constraints;
 use fem_io::deck::{DeckError, DeckSource, Fault, Freedom};
 use std::num::NonZeroUsize;
@@ -20,26 +20,20 @@ pub(super) struct Block<'a> {
     pub(super) m: &'a [f64],
 }
 
-/// The way from what is kept to all degrees of freedom.
+/// Parts on what is kept, and the way from there to all degrees of freedom.
 #[derive(Debug)]
 pub(super) struct Way {
     constraints: Constraints,
     inside: Inside,
+    mass: Symmetric,
     slaves: usize,
 }
-
-/// K̂ and M̂ on what is kept, in its order, both triangles, column-major.
-pub(super) type Condensed = [Vec<f64>; 2];
 
 /// Condenses `blocks` on what `freedom` keeps: constraints by substitution, then slaves statically (eqs 27-32).
 ///
 /// # Errors
 /// Slaves that can move without strain; more kept than dense matrices are made for.
-pub(super) fn reduce(
-    source: &DeckSource,
-    freedom: &Freedom,
-    blocks: &[Block<'_>],
-) -> Result<(Way, Condensed), DeckError> {
+pub(super) fn reduce(source: &DeckSource, freedom: &Freedom, blocks: &[Block<'_>]) -> Result<Way, DeckError> {
     if freedom.kept.len() > MOST_KEPT {
         let found = format!("{} degrees of freedom are kept", freedom.kept.len());
         let help = format!("{MOST_KEPT} at most: their matrices are full");
@@ -56,7 +50,7 @@ pub(super) fn reduce(
     let slaves = constraints.ndof() - freedom.kept.len();
     let pattern = Arc::new(block_pattern(blocks.iter().map(|b| b.dofs), &constraints));
     let k = assemble_blocks(&pattern, blocks.iter().map(|b| (b.dofs, b.k)), &constraints);
-    let m = assemble_blocks(&pattern, blocks.iter().map(|b| (b.dofs, b.m)), &constraints);
+    let mass = assemble_blocks(&pattern, blocks.iter().map(|b| (b.dofs, b.m)), &constraints);
     let loose = |column: usize| {
         let near = freedom.phrase(constraints.original(column));
         let found = format!("what is not kept can move without strain, seen at {near}");
@@ -73,11 +67,16 @@ pub(super) fn reduce(
     {
         return Err(loose(column));
     }
-    let condensed = inside.condense(Some(&m));
-    Ok((Way { constraints, inside, slaves }, condensed))
+    // Most unknowns are derivatives, which have no inertia.
+    Ok(Way { constraints, inside, mass: mass.compact(), slaves })
 }
 
 impl Way {
+    /// K̂ and M̂ on what is kept, in its order, both triangles, column-major.
+    pub(super) fn condensed(&self) -> [Vec<f64>; 2] {
+        self.inside.condense(Some(&self.mass))
+    }
+
     /// All degrees of freedom from those that are kept.
     pub(super) fn expand(&self, kept: &[f64]) -> Vec<f64> {
         let mut free = vec![0.0; self.constraints.ndof()];

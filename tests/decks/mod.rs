@@ -1,7 +1,9 @@
 //! Decks of LAMCEL, LAMSUB and TRADYR against the results of an independent interpreter (`tests/data/decks`).
 
+mod case1;
 mod malformed;
 mod mutated;
+mod project;
 
 use crate::support::root;
 use fem::decks::{self, DeckOptions, Project};

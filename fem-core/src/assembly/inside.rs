@@ -2,6 +2,7 @@
 
 use super::{Cholesky, FactorError, Symbolic, Symmetric};
 use std::num::NonZeroUsize;
+use std::ops::Range;
 
 /// Unit displacements of those that stay whose static shapes are found together.
 const BLOCK: usize = 64;
@@ -60,7 +61,7 @@ impl Inside {
             let columns = BLOCK.min(outline - first);
             let mut shapes = vec![0.0; n * columns];
             (0..columns).for_each(|c| shapes[c * n + count + first + c] = 1.0);
-            self.follow(&mut shapes);
+            self.follow_units(first..first + columns, &mut shapes);
             let mut take = |which: usize, forces: &[f64]| {
                 let columns = condensed[which][first * outline..].chunks_exact_mut(outline);
                 columns.zip(forces.chunks_exact(n)).for_each(|(to, from)| to.copy_from_slice(&from[count..]));
@@ -88,6 +89,20 @@ impl Inside {
         for (x, inner) in x.chunks_exact_mut(n).zip(inner.chunks_exact(self.count.max(1))) {
             x[..self.count].copy_from_slice(inner);
         }
+    }
+
+    /// As [`Inside::follow`] of unit displacements of these of the outline: −K_ib needs no product.
+    fn follow_units(&self, units: Range<usize>, x: &mut [f64]) {
+        let (n, lower) = (self.k.ndof(), self.k.lower());
+        for j in 0..self.count {
+            let entries = lower.col_range(j);
+            for (row, value) in lower.row_idx()[entries.clone()].iter().zip(&lower.val()[entries]) {
+                if let Some(b) = row.checked_sub(self.count).filter(|b| units.contains(b)) {
+                    x[(b - units.start) * n + j] = -value;
+                }
+            }
+        }
+        self.solve(x);
     }
 
     /// `X_i ← −K_ii⁻¹ K_ib X_b`, column by column, where X_i = 0.

@@ -154,7 +154,8 @@ impl Symmetric {
     }
 
     /// The matrix without entries that are zero; the diagonal stays.
-    pub(super) fn compact(&self) -> Self {
+    #[must_use]
+    pub fn compact(&self) -> Self {
         self.kept(self.ndof(), |row, column, value| value != 0.0 || row == column)
     }
 

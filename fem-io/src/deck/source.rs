@@ -171,7 +171,7 @@ impl Diagnostic for DeckError {
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        (self.0.fault != Fault::Unreadable).then_some(&*self.0.source.0 as &dyn SourceCode)
+        (!self.0.source.text().is_empty()).then_some(&*self.0.source.0 as &dyn SourceCode)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {

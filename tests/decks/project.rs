@@ -1,0 +1,97 @@
+//! What lies in a project: names, what is stale, exports, the folder's check.
+
+use super::{folder, program, run};
+use crate::support::{fem, root};
+use std::path::Path;
+
+/// The beam of the first example: its cell, and its impact.
+fn beam(results: &Path) {
+    let folder = folder("a-beam-plane-strain");
+    for (deck, of) in [("1-lamcel.dat", "lamcel"), ("2-tradyr.dat", "tradyr")] {
+        run(&folder.join(deck), program(of), results).unwrap();
+    }
+}
+
+/// A deck of the first example with another text in it, in a folder of its own.
+fn edited(results: &Path, deck: &str, from: &str, to: &str) -> std::path::PathBuf {
+    let text = std::fs::read_to_string(folder("a-beam-plane-strain").join(deck)).unwrap();
+    assert!(text.contains(from), "{deck} has no {from}");
+    let path = results.join(deck);
+    std::fs::write(&path, text.replacen(from, to, 1)).unwrap();
+    path
+}
+
+#[test]
+fn what_was_computed_from_older_matrices_is_stale() {
+    let (results, decks) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    beam(results.path());
+    let back = folder("a-beam-plane-strain").join("4-back-loop.dat");
+    run(&back, program("lamcel"), results.path()).unwrap();
+    let thicker = edited(decks.path(), "1-lamcel.dat", "1,0.13208,0.", "1,0.14,0.");
+    run(&thicker, program("lamcel"), results.path()).unwrap();
+    let error = run(&back, program("lamcel"), results.path()).unwrap_err().to_string();
+    assert!(error.contains("`BEAMDISP` is stale: the matrices `BEAMCELL.KM` were made anew since"), "{error}");
+    let restart = folder("d-restart").join("3-restart-same-name.dat");
+    let error = run(&restart, program("tradyr"), results.path()).unwrap_err().to_string();
+    assert!(error.contains("cannot go on: the matrices `BEAMCELL.KM` were made anew since"), "{error}");
+}
+
+#[test]
+fn names_that_differ_by_capitals_are_refused() {
+    let (results, decks) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    beam(results.path());
+    let other = edited(decks.path(), "1-lamcel.dat", "BEAMCELL.KM", "BeamCell.KM");
+    let error = run(&other, program("lamcel"), results.path()).unwrap_err().to_string();
+    assert!(error.contains("holds `BEAMCELL.KM`, from which `BeamCell.KM` differs by capitals alone"), "{error}");
+}
+
+#[test]
+fn matrices_and_displacements_are_shown_and_exported() {
+    let results = tempfile::tempdir().unwrap();
+    beam(results.path());
+    let in_project = |command: &[&str]| fem(results.path(), command).good();
+    let shown = in_project(&["deck", "show", "BEAMCELL.KM"]).stdout;
+    assert!(shown.contains("matrices of 36 masters, 4 elements") && shown.contains("LAMCEL"), "{shown}");
+    assert!(in_project(&["deck", "show", "BEAMDISP"]).stdout.contains("20 print steps to 4.000000e-4"));
+    let missing = fem(results.path(), &["deck", "show", "NOTHING"]);
+    assert!(missing.status == 1 && missing.stderr.contains("known are BEAMCELL.KM, BEAMDISP"), "{missing:?}");
+    in_project(&["deck", "export", "BEAMCELL.KM"]);
+    in_project(&["deck", "export", "BEAMDISP"]);
+    let read = |file: &str| std::fs::read(results.path().join(file)).unwrap();
+    let market = String::from_utf8(read("BEAMCELL.KM.stiffness.mtx")).unwrap();
+    let array = read("BEAMCELL.KM.stiffness.npy");
+    let values: Vec<f64> = array[128..].chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect();
+    let lower: Vec<f64> = (0..36).flat_map(|j| values[36 * j + j..36 * (j + 1)].to_vec()).collect();
+    let written: Vec<f64> = market.lines().skip(2).map(|line| line.parse().unwrap()).collect();
+    assert_eq!(lower, written);
+    assert_eq!(read("BEAMDISP.displacements.npy").len(), 128 + 8 * 20 * 198);
+}
+
+#[test]
+fn a_folder_of_decks_is_checked_in_the_order_in_which_they_need_each_other() {
+    let empty = tempfile::tempdir().unwrap();
+    for example in ["a-beam-plane-strain", "d-restart", "h-one-dof-a-node"] {
+        let good = fem(empty.path(), &["deck", "check", folder(example).to_str().unwrap()]);
+        assert_eq!(good.status, 0, "{good:?}");
+    }
+    let bad = fem(empty.path(), &["deck", "check", "--json", folder("g-malformed").to_str().unwrap()]);
+    let checked: serde_json::Value = serde_json::from_str(&bad.stdout).unwrap();
+    let good = checked.as_array().unwrap().iter().filter(|deck| deck["error"].is_null());
+    // The restart finds the analysis of the second, which is there in this folder.
+    let names: Vec<&str> = good.map(|deck| deck["deck"].as_str().unwrap().rsplit('/').next().unwrap()).collect();
+    assert_eq!((bad.status, names), (1, vec!["63-tradyr-no-restart.dat", "setup-1-lamcel.dat", "setup-2-tradyr.dat"]));
+    assert_eq!(std::fs::read_dir(empty.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn units_name_numbers_and_find_weight_densities() {
+    let (results, decks) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let deck = edited(decks.path(), "1-lamcel.dat", "1.575E-9", "1.5E-2");
+    let (deck, results) = (deck.to_str().unwrap(), results.path().to_str().unwrap());
+    let done = fem(&root(), &["lamcel", deck, "--project", results, "--units", "N-mm-s", "--json"]).good();
+    assert!(done.stderr.contains("looks like a weight density"), "{done:?}");
+    let outcome: serde_json::Value = serde_json::from_str(&done.stdout).unwrap();
+    assert_eq!(outcome["counts"]["masters"], 36);
+    let unknown = fem(&root(), &["lamcel", deck, "--project", results, "--units", "SI"]);
+    assert!(unknown.status == 2 && unknown.stderr.contains("known are N-mm-s and lbf-in-s"), "{unknown:?}");
+}
