@@ -39,7 +39,6 @@ fn decks_and_scene_fail_at_the_same_time() {
         Computed::of(&std::fs::read_to_string(folder.join("case-1.toml")).unwrap(), &folder.join("case-1.toml"));
     for (ply, equation, mode) in [(1, "eq40", "matrix tension"), (16, "eq41", "matrix compression")] {
         let (decks, scene) = (first(ply, equation), scene.onset(mode, Some(ply)).unwrap());
-        println!("ply {ply}: {mode} after {:.1} us by decks, {:.1} us by the scene", decks * 1e6, scene * 1e6);
         assert!((decks / scene - 1.0).abs() < 0.01, "ply {ply}: {decks} s by decks, {scene} s by the scene");
     }
 }
