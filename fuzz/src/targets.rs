@@ -7,6 +7,7 @@ use fem_core::material::{Elastic, Material, Strength, Strengths};
 use fem_core::mesh::{Curves, PlaneMesh};
 use fem_core::tensor::Stress6;
 use fem_failure::Expression;
+use fem_io::deck::{self, Deck, DeckSource, Freedom, NoResults, Program, Relation};
 use fem_io::scene::{self, ContactLoad, MeshSource};
 use fem_io::{gmsh, units};
 use miette::Diagnostic as _;
@@ -96,6 +97,49 @@ pub fn scene(data: &[u8]) {
             }
         }
     }
+}
+
+/// A deck that is read as one of any program has masters or governors that are free, print steps and plies; an error has a place
+/// and a remedy.
+pub fn deck(data: &[u8]) {
+    let source = DeckSource::new("deck.dat", String::from_utf8_lossy(data).into_owned());
+    for program in [Program::Lamcel, Program::Lamsub, Program::Tradyr] {
+        match deck::parse(&source, program, &NoResults).map(|parsed| parsed.deck) {
+            Ok(Deck::Generation(deck)) => {
+                free(&deck.freedom);
+                assert!(deck.laminate.plies.iter().all(|ply| ply.thickness > 0.0 && ply.angle.is_finite()));
+                assert!(deck.laminate.materials.iter().all(|material| material.check().is_ok()));
+                let nodes = deck.piece.nodes.len();
+                assert!(deck.piece.elements.iter().all(|card| card.nodes.iter().all(|node| *node < nodes)));
+            }
+            Ok(Deck::Impact(deck)) => {
+                free(&deck.freedom);
+                assert!(deck.freedom.kept.contains(&deck.struck) && deck.impactor.velocity != 0.0);
+                assert!(deck.march.steps > 0 && deck.march.every > 0 && deck.march.step.value > 0.0);
+            }
+            Ok(Deck::Restart(march)) => assert!(march.steps > 0 && march.every > 0 && march.step.value > 0.0),
+            Ok(Deck::BackSubstitution(back)) => assert!(back.sets.iter().all(|set| set.step > 0)),
+            Err(error) => {
+                assert!(!error.to_string().is_empty() && !error.remedy().is_empty(), "{error}");
+                let text = error.source_code();
+                for label in error.labels().into_iter().flatten() {
+                    assert!(
+                        text.is_none_or(|text| text.read_span(label.inner(), 0, 0).is_ok()),
+                        "no place for {error}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// What is kept is there, once, and follows nothing.
+fn free(freedom: &Freedom) {
+    let mut kept = freedom.kept.clone();
+    kept.sort_unstable();
+    assert!(!kept.is_empty() && kept.windows(2).all(|pair| pair[0] < pair[1]) && kept[kept.len() - 1] < freedom.ndof());
+    let bound = |relation: &Relation| kept.binary_search(&relation.dof).is_ok();
+    assert!(!freedom.relations.iter().any(bound) && freedom.nodes.is_sorted_by(|a, b| a < b));
 }
 
 /// A layup that is read and written ply by ply is the same layup.

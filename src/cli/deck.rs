@@ -1,9 +1,11 @@
 //! `fem lamcel`, `fem lamsub`, `fem tradyr` and `fem deck`.
 
+use super::envelope::criteria;
 use super::run::default_folder;
 use super::{Console, Format};
 use crate::decks::{self, DeckOptions, DeckOutcome, Project, Shown, UnitSystem};
 use crate::error::Error;
+use crate::registry::Registry;
 use clap::{Args, Subcommand};
 use fem_io::deck::{DeckSource, Program};
 use fem_io::files::OutputDir;
@@ -51,24 +53,35 @@ pub(super) struct TradyrArguments {
     restart_of: Option<String>,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct PieceArguments {
+    #[command(flatten)]
+    deck: Arguments,
+    /// Criteria by name, parameters after colons, whose indices are written besides those of the report.
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    criteria: Vec<String>,
+}
+
 pub(super) fn tradyr(arguments: &TradyrArguments, console: &Console) -> miette::Result<ExitCode> {
-    run(Program::Tradyr, &arguments.deck, arguments.restart_of.clone(), console)
+    let options = DeckOptions { restart_of: arguments.restart_of.clone(), ..DeckOptions::default() };
+    run(Program::Tradyr, &arguments.deck, options, console)
 }
 
-pub(super) fn piece(program: Program, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
-    run(program, arguments, None, console)
-}
-
-fn run(
+pub(super) fn piece(
+    registry: &Registry,
     program: Program,
-    arguments: &Arguments,
-    restart_of: Option<String>,
+    arguments: &PieceArguments,
     console: &Console,
 ) -> miette::Result<ExitCode> {
+    let criteria = criteria(registry, &arguments.criteria, None)?;
+    run(program, &arguments.deck, DeckOptions { criteria, ..DeckOptions::default() }, console)
+}
+
+fn run(program: Program, arguments: &Arguments, options: DeckOptions, console: &Console) -> miette::Result<ExitCode> {
     let source = DeckSource::read(&arguments.deck)?;
     let folder = arguments.project.clone().unwrap_or_else(|| default_folder(&arguments.deck, ""));
     let mut project = Project::open(&folder).map_err(Error::from)?;
-    let options = DeckOptions { units: arguments.units, restart_of, check: false };
+    let options = DeckOptions { units: arguments.units, ..options };
     let outcome = decks::run(&source, program, &mut project, &options)?;
     super::warn(&outcome.warnings);
     let done = Done { deck: source.name().to_owned(), outcome: &outcome, project: &folder };

@@ -89,7 +89,11 @@ fn material<'a>(name: &str, scene: Option<&'a Scene>) -> miette::Result<&'a Mate
     })
 }
 
-fn criteria(registry: &Registry, asked: &[String], scene: Option<&Scene>) -> miette::Result<Vec<NamedCriterion>> {
+pub(super) fn criteria(
+    registry: &Registry,
+    asked: &[String],
+    scene: Option<&Scene>,
+) -> miette::Result<Vec<NamedCriterion>> {
     let specs = || scene.into_iter().flat_map(|s| &s.failure.criteria);
     if asked.is_empty() {
         return specs().map(|spec| build_as(registry, spec)).collect();

@@ -2,8 +2,9 @@
 
 use super::piece::Parts;
 use crate::error::Error;
+use crate::model::NamedCriterion;
 use fem_core::element::{Cell, Part, Scratch, Stack};
-use fem_core::failure::FailureCriterion;
+use fem_core::failure::{FailureCriterion as _, Site};
 use fem_core::material::Material;
 use fem_core::tensor::{Global, Matrix6, Ply, Strain6, Stress6, rotate_stiffness, stress};
 use fem_failure::{HashinReport, Octahedral};
@@ -49,6 +50,8 @@ pub(super) struct Found {
     pub(super) local_stress: Stress6<Ply>,
     /// Left sides of eqs 38 to 42; those of other places, and those that want a strength of 0, are not there.
     pub(super) indices: [Option<f64>; 5],
+    /// Criterion, mode and index of others that were asked for.
+    pub(super) others: Vec<(String, &'static str, f64)>,
 }
 
 /// What the displacements `u` of a piece, all of its degrees of freedom in nodal axes, make of element `number` (from 0).
@@ -61,6 +64,7 @@ pub(super) fn recover(
     number: usize,
     prints: &Prints,
     u: &[f64],
+    criteria: &[NamedCriterion],
 ) -> Result<Vec<Found>, Error> {
     let stations = stations(deck, number, prints);
     let dofs = parts.dofs(number);
@@ -92,6 +96,7 @@ pub(super) fn recover(
             local_strain,
             local_stress,
             indices: indices(station.place, &local_stress, station.material),
+            others: others(criteria, station.place, &local_stress, station.material),
         });
     }
     Ok(found)
@@ -151,4 +156,28 @@ fn indices(place: Place, stress: &Stress6<Ply>, material: &Material) -> [Option<
         Place::Surface => {}
     }
     found.map(|index| index.is_finite().then_some(index))
+}
+
+/// Indices of `criteria` of this kind of place, as far as the material has the strengths that they require.
+fn others(
+    criteria: &[NamedCriterion],
+    place: Place,
+    stress: &Stress6<Ply>,
+    material: &Material,
+) -> Vec<(String, &'static str, f64)> {
+    let site = match place {
+        Place::Ply => Site::Ply,
+        Place::Interface => Site::Interface,
+        Place::Surface => return Vec::new(),
+    };
+    let mut found = Vec::new();
+    for (name, criterion) in criteria.iter().filter(|(_, criterion)| criterion.info().site == site) {
+        let info = criterion.info();
+        if material.require(info.strengths, name).is_ok() && criterion.check(material).is_ok() {
+            let mut indices = vec![f64::NAN; info.modes.len()];
+            criterion.indices(stress, material, &mut indices);
+            found.extend(info.modes.iter().zip(indices).map(|(mode, index)| (name.clone(), *mode, index)));
+        }
+    }
+    found
 }

@@ -5,6 +5,7 @@ use super::project::{Matrices, Project};
 use crate::error::Error;
 use fem_core::tensor::{Matrix6, rotate_stiffness};
 use fem_io::deck::{Freedom, Generation, Parsed, Program};
+use fem_io::plot::{self, Axis, LinePlot, Series};
 use fem_io::tables::{self, TableValue};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -205,6 +206,27 @@ impl Listing {
         let file = format!("{}.{name}.csv", self.stem);
         tables::write_columns(dir, &file, header, rows)?;
         self.outcome.files.push(file);
+        Ok(())
+    }
+
+    /// Curves over time beside the listing, in the deck's units.
+    pub(super) fn picture(
+        &mut self,
+        project: &Project,
+        name: &str,
+        quantity: &str,
+        dimension: [i32; 2],
+        series: Vec<Series>,
+    ) -> Result<(), Error> {
+        let Some(dir) = project.dir().filter(|_| series.iter().any(|curve| curve.points.len() > 1)) else {
+            return Ok(());
+        };
+        let unit = self.unit(dimension).trim_matches([' ', '(', ')']).to_owned();
+        let (title, time) = (self.outcome.title.clone(), self.units.map_or("", |_| "s"));
+        let (x, y) = (Axis::linear("Time", time), Axis::linear(quantity, unit));
+        let file = format!("{}.{name}", self.stem);
+        plot::line_plot(&LinePlot { title, x, y, series, marks: Vec::new() })?.write(dir, &file)?;
+        self.outcome.files.extend(["svg", "png"].map(|ending| format!("{file}.{ending}")));
         Ok(())
     }
 

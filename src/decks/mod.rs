@@ -28,6 +28,7 @@ pub use project::{Matrices, Project};
 pub use show::{Shown, export, show};
 
 use crate::error::Error;
+use crate::model::NamedCriterion;
 use fem_io::deck::{
     self, BackSubstitution, Deck, DeckSource, Fault, Generation, ImpactDeck, MarchCard, NoResults, Program,
 };
@@ -45,6 +46,8 @@ pub struct DeckOptions {
     pub units: Option<UnitSystem>,
     /// The displacement set whose analysis a restart goes on with; the last analysis where none is named.
     pub restart_of: Option<String>,
+    /// Criteria whose indices back substitution prints besides those of the report.
+    pub criteria: Vec<NamedCriterion>,
     /// Everything is done but the march in time and back substitution.
     pub check: bool,
 }
@@ -86,7 +89,7 @@ pub fn run(
         Deck::Generation(deck) => run.generate(deck)?,
         Deck::Impact(deck) => run.analyse(deck)?,
         Deck::Restart(march) => run.restart(march, options.restart_of.as_deref())?,
-        Deck::BackSubstitution(deck) => run.substitute(deck)?,
+        Deck::BackSubstitution(deck) => run.substitute(deck, &options.criteria)?,
     }
     listing.write(project)
 }
@@ -172,7 +175,7 @@ impl Run<'_> {
         self.project.keep_analysis(self.source, march.set.as_deref(), set)
     }
 
-    fn substitute(&mut self, deck: &BackSubstitution) -> Result<(), Error> {
+    fn substitute(&mut self, deck: &BackSubstitution, criteria: &[NamedCriterion]) -> Result<(), Error> {
         let (Some(matrices), Some(set)) = (self.project.generation(&deck.names), self.project.set(&deck.names[5]))
         else {
             return Ok(());
@@ -200,7 +203,7 @@ impl Run<'_> {
             let found = asked
                 .elements
                 .iter()
-                .map(|number| Ok((*number, back::recover(&piece, &parts, number - 1, &asked.prints, &u)?)));
+                .map(|number| Ok((*number, back::recover(&piece, &parts, number - 1, &asked.prints, &u, criteria)?)));
             let found = found.collect::<Result<Vec<_>, Error>>()?;
             substituted.push(Substituted { asked, u, found });
         }

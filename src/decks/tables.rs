@@ -7,6 +7,7 @@ use super::model::Model;
 use super::project::Project;
 use crate::error::Error;
 use fem_io::deck::{Freedom, ImpactDeck, MarchCard, Set};
+use fem_io::plot::{Series, Style};
 use fem_io::tables::TableValue;
 
 /// What was found of one print step of one substructure.
@@ -90,7 +91,16 @@ impl Listing {
                 print.step, print.time, print.force, print.impactor[0]
             ));
         }
-        self.table(project, "history", &header, rows)
+        self.table(project, "history", &header, rows)?;
+        let curve = |label: &str, of: &dyn Fn(&Print) -> f64| Series {
+            label: label.to_owned(),
+            points: prints.iter().map(|print| (print.time, of(print))).collect(),
+            style: Style::Solid,
+        };
+        let struck = curve("struck", &|print| print.motion[0][deck.struck]);
+        let impactor = curve("impactor", &|print| print.impactor[0]);
+        self.picture(project, "force", "Contact force", [1, 0], vec![curve("force", &|print| print.force)])?;
+        self.picture(project, "displacement", "Displacement", [0, 1], vec![impactor, struck])
     }
 
     /// Displacements, velocities and accelerations of all degrees of freedom at every print step, as far as they are printed.
@@ -170,6 +180,22 @@ impl Listing {
         let header = ["ndisp", "nsubs", "element", "where", "which", "eq38", "eq39", "eq40", "eq41", "eq42"];
         if judged.clone().next().is_some() {
             self.table(project, "failure", &header, judged)?;
+        }
+        let others = all.iter().flat_map(|one| {
+            let places = one.found.iter().flat_map(|(element, found)| found.iter().map(move |found| (*element, found)));
+            places.flat_map(move |(element, found)| {
+                found.others.iter().map(move |(criterion, mode, index)| {
+                    let mut values = start(one).to_vec();
+                    values.push(TableValue::Count(element as u64));
+                    values.extend([found.place.name(), &found.which, criterion, mode].map(TableValue::Text));
+                    values.push(TableValue::Index(*index));
+                    values
+                })
+            })
+        });
+        let header = ["ndisp", "nsubs", "element", "where", "which", "criterion", "mode", "index"];
+        if others.clone().next().is_some() {
+            self.table(project, "indices", &header, others)?;
         }
         Ok(())
     }

@@ -95,3 +95,26 @@ fn units_name_numbers_and_find_weight_densities() {
     let unknown = fem(&root(), &["lamcel", deck, "--project", results, "--units", "SI"]);
     assert!(unknown.status == 2 && unknown.stderr.contains("known are N-mm-s and lbf-in-s"), "{unknown:?}");
 }
+
+#[test]
+fn any_criterion_judges_stresses_of_a_deck() {
+    let results = tempfile::tempdir().unwrap();
+    beam(results.path());
+    let deck = folder("a-beam-plane-strain").join("3-back-all.dat");
+    let project = results.path().to_str().unwrap();
+    fem(&root(), &["lamcel", deck.to_str().unwrap(), "--project", project, "--criteria", "hashin-report,max-stress"])
+        .good();
+    let [failure, indices] =
+        ["failure", "indices"].map(|table| super::Table::read(&results.path().join(format!("3-back-all.{table}.csv"))));
+    let keys = ["ndisp", "nsubs", "element", "where", "which", "criterion", "mode"];
+    let (judged, equation, index) = (indices.by(&keys), failure.column("eq40"), indices.column("index"));
+    let plies: Vec<_> = failure.rows.iter().filter(|row| row[3] == "ply").collect();
+    assert_eq!(plies.len(), 16);
+    for row in plies {
+        let mut key = row[..5].to_vec();
+        key.extend(["hashin-report".to_owned(), "matrix tension".to_owned()]);
+        assert_eq!(judged[&key][index], row[equation]);
+    }
+    assert!(indices.rows.iter().any(|row| row[5] == "max-stress"));
+    assert!(results.path().join("2-tradyr.force.svg").exists());
+}
