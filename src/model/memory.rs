@@ -43,9 +43,10 @@ impl Model {
         let judged = |of: Site| self.criteria.iter().filter(move |(_, c)| c.info().site == of);
         let modes = |of: Site| judged(of).map(|(_, c)| c.info().modes.len()).sum::<usize>();
         let plies = self.laminate.plies.len();
-        // An interface between two layers of cells has a stress from either side.
+        // An interface between two layers of cells, or within a shell, has a stress from either side.
         let looks = self.interface.is_some() && judged(Site::Interface).next().is_some();
-        let interfaces = if looks { plies + self.plate.layers() - 2 } else { 0 };
+        let sides = if self.plate.info().is_shell() { 2 * (plies - 1) } else { plies + self.plate.layers() - 2 };
+        let interfaces = if looks { sides } else { 0 };
         let quads = if self.criteria.is_empty() { 0 } else { self.watched.len() };
         let demand = Demand {
             all: self.plate.ndof(),

@@ -2,7 +2,7 @@
 //! ways is far off: on the edges of a quarter made by hand, in thin plates, in a shell, on coarse cells.
 
 use super::pagano::{Laminate, Mesh, THREE};
-use super::scene::{PAGANO, Row, Side, farthest, largest};
+use super::scene::{AS4, PAGANO, Plate, Row, Side, farthest, largest};
 use fem::analyses::statics::StaticSolution;
 use fem::core::profile::{ProfilePoint, Way};
 
@@ -119,4 +119,35 @@ fn cells_too_few_for_equilibrium() {
     assert!(corner < NORMAL, "{corner}");
     let thin = solve(&THREE, 100.0, 2, SOLID, false);
     assert!(thin.shear(chosen) > 1.0 && thin.solution.transverse[1][1].missed > 0.2, "{:?}", thin.solution.transverse);
+}
+
+/// A laminate turned about the x axis with its load on the other face: the same reserve factors, in plies and interfaces that
+/// count from the other side, in cells on the other side of y.
+#[test]
+fn a_plate_upside_down_fails_likewise() {
+    let strengths = "Xt = '1.8 GPa'\nXc = '1.7 GPa'\nYt = '64 MPa'\nYc = '138 MPa'\nS12 = '109 MPa'\nS23 = '69 MPa'\n";
+    for (element, layers) in [(SHELL, vec![4]), (SOLID, vec![2, 2]), ("kind = 'hex20'", vec![1; 4])] {
+        let margins = |plies: &str, face: &str| {
+            let plate = Plate::new(&format!("{AS4}{strengths}"), plies, 0.25, layers.clone())
+                .rectangle([8.0, 6.0], [4, 3])
+                .element(element)
+                .sides([Side::Clamped, Side::Free, Side::Free, Side::Free])
+                .load(&format!("pressure = '1 kPa'\nface = '{face}'"))
+                .with("[failure]\ncriteria = ['hashin-report', 'octahedral']\nwindow = 'element'");
+            let text = plate.text("static").replace("[laminate]\n", "[laminate]\ninterface = 'm'\n");
+            let scene = fem::io::scene::parse(&text, "scene.toml".as_ref()).unwrap();
+            let model = fem::Model::new(scene, &fem::Registry::standard()).unwrap();
+            fem::analyses::statics::solve(&model, std::num::NonZeroUsize::MIN).unwrap().margins
+        };
+        let (up, down) = (margins("[0/90/45/-30]", "top"), margins("[30/-45/90/0]", "bottom"));
+        assert_eq!((up.len(), down.len()), (2, 2));
+        for (up, down) in up.iter().zip(&down) {
+            let off = (up.reserve_factor / down.reserve_factor - 1.0).abs();
+            assert!(off < 1e-6, "{element}: {up:?} {down:?}");
+            let turned: Vec<String> =
+                up.ply.split('|').rev().map(|ply| (5 - ply.parse::<u32>().unwrap()).to_string()).collect();
+            assert_eq!(turned.join("|"), down.ply, "{element}: {up:?} {down:?}");
+            assert!((up.x_m - down.x_m).abs() < 1e-12 && (up.y_m + down.y_m - 6e-3).abs() < 1e-12, "{up:?} {down:?}");
+        }
+    }
 }

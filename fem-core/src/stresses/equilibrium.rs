@@ -41,8 +41,8 @@ pub(super) struct Balance {
     pub(super) stresses: Vec<[f64; 3]>,
     /// Of the in-plane stresses at the faces, the part that the fit misses.
     pub(super) misfit: f64,
-    /// Shear that the change of these stresses over the cells around makes, Pa.
-    pub(super) scale: f64,
+    /// Shear and σ₃₃ that the change of these stresses over the cells around makes, Pa.
+    pub(super) scale: [f64; 2],
 }
 
 impl<'a> Fit<'a> {
@@ -73,7 +73,7 @@ impl<'a> Fit<'a> {
         heights: &[(usize, f64)],
     ) -> Result<Balance, ElementError> {
         let [(_, low), .., (_, high)] = heights else {
-            return Ok(Balance { stresses: Vec::new(), misfit: 0.0, scale: 0.0 });
+            return Ok(Balance { stresses: Vec::new(), misfit: 0.0, scale: [0.0; 2] });
         };
         // Resultants so far: ∫ of the divergence of the in-plane stresses, and of its own divergence.
         let (mut shear, mut second, mut normal) = ([0.0; 2], 0.0, -bottom);
@@ -110,7 +110,8 @@ impl<'a> Fit<'a> {
             misfit = misfit.max(missed);
             change = change.max(all);
         }
-        Ok(Balance { stresses, misfit, scale: change * (high - low) / self.size })
+        let slope = (high - low) / self.size;
+        Ok(Balance { stresses, misfit, scale: [change * slope, change * slope * slope] })
     }
 
     /// ∂σ₁₁/∂x + ∂σ₁₂/∂y, ∂σ₁₂/∂x + ∂σ₂₂/∂y, and the divergence of the two.

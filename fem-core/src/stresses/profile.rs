@@ -232,7 +232,7 @@ fn choose(
         jumps.chain(faces).fold(0.0, f64::max)
     };
     let share = |missed: f64, scale: f64| if missed == 0.0 { 0.0 } else { missed / scale };
-    let scale = balance.map_or(0.0, |b| NOTABLE * b.scale);
+    let scale = balance.map_or(0.0, |b| NOTABLE * b.scale[0]);
     let shear = Choice {
         way: Way::Strains,
         missed: share(missed(s23, [0.0; 2]).max(missed(s31, [0.0; 2])), largest(&[s23, s31]).max(scale)),
@@ -243,5 +243,8 @@ fn choose(
     };
     let Some(balance) = balance else { return (normal, shear) };
     let fitted = Choice { way: Way::Equilibrium, missed: balance.misfit };
-    (fitted, if shell || fitted.missed < shear.missed { fitted } else { shear })
+    // Of a pressure that goes straight through, little comes from changes in the plane.
+    let part = (balance.scale[1] / bottom.abs().max(top.abs())).min(1.0);
+    let normal = Choice { missed: fitted.missed * part, ..fitted };
+    (normal, if shell || fitted.missed < shear.missed { fitted } else { shear })
 }

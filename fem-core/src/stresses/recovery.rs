@@ -31,7 +31,7 @@ pub struct Station {
 /// Mean stresses of every ply (report eqs 12, 13) and at every interface (eq. 14), for a set of cells.
 ///
 /// Sites are ordered quad by quad, each with all stations from the bottom up. Interfaces between layers of cells are taken
-/// from both sides, because derivatives may jump there.
+/// from both sides, because derivatives may jump there, and so are those within a shell, whose shear strains jump between plies.
 #[derive(Debug, Clone)]
 pub struct Recovery {
     /// Stations through the thickness of the first region. Those of the others lie at the same heights in the same plies; angle
@@ -65,7 +65,7 @@ impl Recovery {
         sources.dedup();
         let position = |q: usize| sources.partition_point(|s| *s < q);
         let windows = quads.iter().map(|q| windows[*q].iter().map(|(q, w)| (position(*q), *w)).collect()).collect();
-        let of_region = |(region, laminate)| stations(plate.stacks(region), laminate, materials, resin);
+        let of_region = |(region, laminate)| stations(plate, region, laminate, materials, resin);
         let regions: Vec<Vec<Station>> = laminates.iter().enumerate().map(of_region).collect();
         let region_of = quads.iter().map(|quad| plate.region(*quad)).collect();
         Self { stations: regions.first().cloned().unwrap_or_default(), regions, region_of, quads, windows, sources }
@@ -237,7 +237,14 @@ fn add_product(operator: &[f64], u: &[f64], strain: &mut [f64; 6]) {
     }
 }
 
-fn stations(stacks: &[Stack], laminate: &Laminate, materials: &[Material], resin: Option<usize>) -> Vec<Station> {
+fn stations(
+    plate: &Plate,
+    region: usize,
+    laminate: &Laminate,
+    materials: &[Material],
+    resin: Option<usize>,
+) -> Vec<Station> {
+    let stacks = plate.stacks(region);
     let z = laminate.boundaries();
     let product = |c: &Matrix6, angle: f64| -> Matrix6 {
         let r = strain_rotation(angle);
@@ -265,6 +272,9 @@ fn stations(stacks: &[Stack], laminate: &Laminate, materials: &[Material], resin
         for k in range {
             let ply = &laminate.plies[k];
             let slice = &slices[k - first];
+            if k > first && plate.info().is_shell() {
+                all.extend(interface(k - 1, k - first, slice.q[0]));
+            }
             all.push(Station {
                 layer,
                 ply: k,
