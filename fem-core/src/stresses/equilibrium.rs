@@ -21,6 +21,11 @@ const LITTLE: f64 = 1e-6;
 /// What a fit misses that goes through all its samples cannot be seen: that of eight cells in a wave, rounded up.
 const UNSEEN: f64 = 0.05;
 
+/// Changes of a stress below this share of it are rounding.
+const ROUNDING: f64 = 1e-9;
+/// Shear below this share of the in-plane stresses is none that matters.
+const SLIGHT: f64 = 1e-4;
+
 /// σ₁₁, σ₂₂, σ₁₂ of each term.
 type Coefficients = SVector<[f64; 3], TERMS>;
 
@@ -39,9 +44,10 @@ pub(super) struct Fit<'a> {
 pub(super) struct Balance {
     /// σ₃₃, σ₂₃, σ₃₁ at each height, Pa.
     pub(super) stresses: Vec<[f64; 3]>,
-    /// Of the in-plane stresses at the faces, the part that the fit misses.
+    /// Of the change of the in-plane stresses at the faces over the cells around, the part that the fit misses; less where
+    /// hardly any shear comes from it.
     pub(super) misfit: f64,
-    /// Shear and σ₃₃ that the change of these stresses over the cells around makes, Pa.
+    /// Shear and σ₃₃ that this change makes, Pa.
     pub(super) scale: [f64; 2],
 }
 
@@ -104,14 +110,15 @@ impl<'a> Fit<'a> {
             *s23 -= share * shear[1];
             *s31 -= share * shear[0];
         }
-        let (mut misfit, mut change) = (0.0_f64, 0.0_f64);
-        for (ply, z) in heights.first().into_iter().chain(heights.last()) {
-            let (missed, all) = self.misfit(field, *ply, *z)?;
-            misfit = misfit.max(missed);
-            change = change.max(all);
-        }
         let slope = (high - low) / self.size;
-        Ok(Balance { stresses, misfit, scale: [change * slope, change * slope * slope] })
+        let (mut misfit, mut scale) = (0.0_f64, [0.0_f64; 2]);
+        for (ply, z) in heights.first().into_iter().chain(heights.last()) {
+            let (missed, change, all) = self.misfit(field, *ply, *z)?;
+            let part = if change > ROUNDING * all { (change * slope / (SLIGHT * all)).min(1.0) } else { 0.0 };
+            misfit = misfit.max(part * missed);
+            scale = [scale[0].max(change * slope), scale[1].max(change * slope * slope)];
+        }
+        Ok(Balance { stresses, misfit, scale })
     }
 
     /// ∂σ₁₁/∂x + ∂σ₁₂/∂y, ∂σ₁₂/∂x + ∂σ₂₂/∂y, and the divergence of the two.
@@ -122,21 +129,24 @@ impl<'a> Fit<'a> {
         Ok([(x[0] + y[2]) / h, (x[2] + y[1]) / h, (2.0 * xx[0] + 2.0 * xy[2] + 2.0 * yy[1]) / hh])
     }
 
-    /// The share of the change of the in-plane stresses over the cells that the fit misses, and that change, Pa: root mean squares.
-    fn misfit(&self, field: &Field<'_>, ply: usize, z: f64) -> Result<(f64, f64), ElementError> {
+    /// The share of the change of the in-plane stresses over the cells that the fit misses, that change and the stresses, Pa: root
+    /// mean squares.
+    fn misfit(&self, field: &Field<'_>, ply: usize, z: f64) -> Result<(f64, f64, f64), ElementError> {
         let samples = self.samples(field, ply, z)?;
         let coefficients = self.coefficients(&samples);
-        let (mut missed, mut all) = (0.0, 0.0);
+        let (mut missed, mut change, mut all) = (0.0, 0.0, 0.0);
         for (i, sample) in samples.iter().enumerate() {
             for (k, s) in sample.iter().enumerate() {
                 let fitted: f64 = self.terms.row(i).iter().zip(&coefficients).map(|(term, c)| term * c[k]).sum();
                 missed += (s - fitted).powi(2);
-                all += (s - coefficients[0][k]).powi(2);
+                change += (s - coefficients[0][k]).powi(2);
+                all += s * s;
             }
         }
         let seen = samples.len() > TERMS;
-        let share = if seen { (missed / f64::max(all, f64::MIN_POSITIVE)).sqrt() } else { UNSEEN };
-        Ok((share, (all / samples.len() as f64).sqrt()))
+        let share = if seen { (missed / f64::max(change, f64::MIN_POSITIVE)).sqrt() } else { UNSEEN };
+        let [change, all] = [change, all].map(|sum: f64| (sum / samples.len() as f64).sqrt());
+        Ok((share, change, all))
     }
 
     /// σ₁₁, σ₂₂, σ₁₂ in the centres of the cells.

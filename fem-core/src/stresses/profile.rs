@@ -243,8 +243,10 @@ fn choose(
     };
     let Some(balance) = balance else { return (normal, shear) };
     let fitted = Choice { way: Way::Equilibrium, missed: balance.misfit };
-    // Of a pressure that goes straight through, little comes from changes in the plane.
-    let part = (balance.scale[1] / bottom.abs().max(top.abs())).min(1.0);
+    // Of a pressure that goes straight through, little comes from changes in the plane; where none is, shear is what counts.
+    let [shear_scale, normal_scale] = balance.scale;
+    let pressure = bottom.abs().max(top.abs());
+    let part = share(normal_scale, if pressure > 0.0 { pressure } else { shear_scale }).min(1.0);
     let normal = Choice { missed: fitted.missed * part, ..fitted };
     (normal, if shell || fitted.missed < shear.missed { fitted } else { shear })
 }
