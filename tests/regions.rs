@@ -163,3 +163,27 @@ march = {{ step = "1 us", end = "5 us" }}
         assert!((mass / 4.8 - 1.0).abs() < 1e-9, "{mass} g");
     }
 }
+
+#[test]
+fn a_profile_where_laminates_meet_says_on_which_side_it_is() {
+    let text = r#"
+title = "halves"
+analysis = "static"
+mesh = { file = "plate.msh", unit = "mm" }
+element = { kind = "mitc4" }
+materials.tape = { library = "AS4/3502" }
+laminate = [
+    { plies = "[0/90]s", material = "tape", ply_thickness = "0.25 mm", layers = 1 },
+    { group = "left", plies = "[90/0]s", material = "tape", ply_thickness = "0.25 mm", layers = 1 },
+]
+effects = { damage = "off" }
+support = [{ group = "x-min", at = "mid-plane", fix = ["U10", "U20", "U30", "U13", "U23"] }]
+load = [{ pressure = "1 kPa" }]
+profile = [{ name = "line", at = { x = "30 mm", y = "20 mm" } }, { name = "beside", at = { x = "22 mm", y = "20 mm" } }]
+"#;
+    let case = plate().text(text).mesh_bytes(halves([60e-3, 40e-3], [8, 6]));
+    let said = case.fem("check", &[]).good();
+    let said = format!("{}{}", said.stdout, said.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("profile `line` is where laminates meet") && said.contains("on the side of cell"), "{said}");
+    assert!(!said.contains("profile `beside`"), "{said}");
+}

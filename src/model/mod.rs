@@ -235,6 +235,7 @@ impl Model {
         let resin = scene.interface.as_ref().map(|resin| resin.value);
         let threshold = builder.threshold(DelaminationThreshold::of(&laminate, &materials, resin))?;
         let profiles = builder.profiles(&plate, constraints)?;
+        warnings.extend(plan::warn_of_sides(&profiles, &plate));
         let laws = builder.laws(&plate, &laminates, &materials, &*element)?;
         if let Some(laws) = &laws {
             effects.act(Box::new(NonlinearPlies(laws.clone())));

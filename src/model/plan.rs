@@ -100,6 +100,20 @@ pub(super) fn warn_of_parts(strikes: &[Strike], plate: &Plate, constraints: &Con
     strikes.iter().filter_map(part).collect()
 }
 
+/// Profiles where laminates meet: on either side stresses are others.
+pub(super) fn warn_of_sides(profiles: &[NamedProfile], plate: &Plate) -> Vec<String> {
+    let side = |named: &NamedProfile| {
+        let quad = named.profile.quads().next()?;
+        let [x, y] = plate.plane.corners(quad).centroid().map(|x| x * 1e3);
+        Some(format!(
+            "profile `{}` is where laminates meet: its stresses are those on the side of cell {}, about ({x:.4}, {y:.4}) mm; move it off \
+             the line to choose a side",
+            named.line.name.value, plate.plane.quad_tags[quad]
+        ))
+    };
+    profiles.iter().filter(|named| named.profile.is_between_regions()).filter_map(side).collect()
+}
+
 impl Builder<'_> {
     pub(super) fn impact(
         &self,

@@ -84,6 +84,8 @@ pub struct Resultants {
 pub struct Profile {
     /// Quads that meet at the point, with its natural coordinates in each.
     places: Vec<(usize, [f64; 2])>,
+    /// Quads of other regions that meet there.
+    beyond: usize,
     /// Quads around it, for derivatives.
     around: Vec<Neighbour>,
 }
@@ -99,14 +101,21 @@ impl Profile {
         let place = |q: usize| Some((q, plate.plane.corners(q).locate(point)?));
         let mut places: Vec<(usize, [f64; 2])> = (0..quads.len()).filter_map(place).collect();
         let region = plate.region(places.first()?.0);
+        let all = places.len();
         places.retain(|(quad, _)| plate.region(*quad) == region);
+        let beyond = all - places.len();
         let around = neighbours(plate, mirrors, point, places.iter().map(|p| p.0).collect());
-        Some(Self { places, around })
+        Some(Self { places, beyond, around })
     }
 
     /// The quads that meet at the point.
     pub fn quads(&self) -> impl ExactSizeIterator<Item = usize> {
         self.places.iter().map(|p| p.0)
+    }
+
+    /// Whether regions of other plies meet the line, whose stresses are others.
+    pub fn is_between_regions(&self) -> bool {
+        self.beyond > 0
     }
 
     /// The state of `field` at `points` heights of every ply, its faces included: means over the cells that meet at the
