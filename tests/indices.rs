@@ -121,6 +121,7 @@ fn the_threshold_of_delamination_is_an_event_of_the_summary() {
         case.scene("library = \"AS4/3502\"", &format!("library = \"AS4/3502\", GIIc = \"{giic}\""))
     };
     let case = tough(plate(), "0.5 N/mm").scene("end = \"1 ms\"", "end = \"0.9 ms\"");
+    let case = case.append("[output]\nhistory_every = \"0.1 us\"\n");
     let done = case.fem("run", &["--out", "out"]).good();
     assert!(done.stdout.contains("a threshold, not a stress criterion"), "{}", done.stdout);
     let summary = case.summary("out");
@@ -128,7 +129,7 @@ fn the_threshold_of_delamination_is_an_event_of_the_summary() {
     assert!((threshold("force_N") - 1507.0).abs() < 1.0, "{summary}");
     assert!((threshold("bending_stiffness_N_m") - 43.1).abs() < 0.05, "{summary}");
     assert_eq!(threshold("toughness_GIIc_J_m2"), 500.0);
-    // The history has every step here, so that it brackets the crossing.
+    // The history has every step, so that it brackets the crossing.
     let (_, rows) = case.table("out/history.csv");
     let rows: Vec<_> = rows.iter().map(|row| numbers(row, &[0, 1])).collect();
     let after = rows.iter().position(|row| row[1] >= threshold("force_N")).unwrap();

@@ -51,8 +51,12 @@ mod stresses;
 #[cfg(feature = "testkit")]
 pub mod testkit;
 
-pub use contracts::{contact, element, failure, interface_law, large, plugin, ply_law, reduction, structure, time};
-pub use plates::{axes, constraint, laminate, laws, load, mesh, patch, pieces, plate, support, symmetry, window};
+pub use contracts::{
+    contact, element, failure, interface_law, large, plugin, ply_law, reduction, stack, structure, time, transverse,
+};
+pub use plates::{
+    axes, constraint, laminate, laws, load, mesh, patch, pieces, plate, support, symmetry, warping, window,
+};
 pub use stresses::{estimate, field, profile, recovery, residual};
 pub use words::{
     counters, damping, dof, domain, energy, formula, functional, layup, material, prolongation, quadrature, tensor,

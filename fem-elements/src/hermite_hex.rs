@@ -3,6 +3,7 @@
 use crate::hermite::{self, CORNERS, Quartet};
 use crate::hermite_prism::{F, HermitePrism, Mass, N, column, to_global};
 use crate::prism::{BLOCKS, STRAIN_ROW, matrix, multiply};
+use crate::transverse::TransverseStresses;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
 use fem_core::large::LargeDeflection;
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
@@ -35,7 +36,8 @@ pub struct HermiteHex {
 impl HermiteHex {
     /// With the given inertia.
     pub fn new(mass: Mass) -> Self {
-        Self { prism: HermitePrism::of_order(mass, HermitePrism::IN_PLANE_ORDER), mass }
+        let prism = HermitePrism::of_order(mass, HermitePrism::IN_PLANE_ORDER);
+        Self { prism: prism.with_transverse_stresses(TransverseStresses::OfStrains), mass }
     }
 }
 
@@ -204,7 +206,7 @@ impl Plugin for HermiteHex {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Element,
         name: "hermite-hex",
-        summary: "hermite-prism on rectangles and parallelograms only; refuses other quadrilaterals",
+        summary: "the report's solid on rectangles and parallelograms only; refuses other quadrilaterals",
         source: "AFWAL-TR-87-4117, eqs 16-23",
         params: &[Mass::PARAM],
     };

@@ -5,14 +5,16 @@ mod natural;
 use crate::hermite::{self, CORNERS, NodeFunctions, Quartet};
 use crate::large::{self, Gradients, Solid};
 use crate::prism::{BLOCKS, STRAIN_ROW, matrix, mean_powers, multiply};
+use crate::transverse::{Across, TransverseStresses};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::dof::Dof;
 use fem_core::domain::Domain;
-use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
+use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, Slice, Stack, positive};
 use fem_core::large::LargeDeflection;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::quadrature::{MAX_POINTS, gauss_legendre};
+use fem_core::tensor::apply;
 use natural::{Natural, Table};
 use std::ops::Range;
 
@@ -81,7 +83,9 @@ impl Mass {
 /// stiffness costs the same for one ply as for a hundred: for components n, n′
 ///
 /// K(n,n′) = Σ over in-plane points of w |J| G H(n,n′) Gᵀ, G: functions × (direction d, power k),
-/// H(n,n′)\[(d,k),(d′,k′)\] = M\[k+k′\]\[row(n,d)\]\[row(n′,d′)\].
+/// H(n,n′)\[(d,k),(d′,k′)\] = M\[k+k′\]\[row(n,d)\]\[row(n′,d′)\],
+///
+/// with the form (k, k′) of [`fem_core::transverse`] in place of M\[k+k′\] where transverse stresses are smooth.
 ///
 /// Functions of nodes one above the other differ only in the sign of their odd powers of q. The sums run over the even
 /// and the odd parts of the 16 functions of one face, 11 terms in all, which halves the work.
@@ -89,6 +93,7 @@ impl Mass {
 pub struct HermitePrism {
     info: ElementInfo,
     mass: Mass,
+    stresses: TransverseStresses,
     table: Table,
 }
 
@@ -108,6 +113,12 @@ impl HermitePrism {
         Ok(Self::of_order(mass, in_plane_order))
     }
 
+    /// The same with these transverse stresses; [`TransverseStresses::Smooth`] if nothing is said.
+    #[must_use]
+    pub fn with_transverse_stresses(self, stresses: TransverseStresses) -> Self {
+        Self { stresses, ..self }
+    }
+
     pub(crate) fn of_order(mass: Mass, in_plane_order: usize) -> Self {
         let info = ElementInfo {
             domain: Domain::Quadrilateral,
@@ -116,7 +127,7 @@ impl HermitePrism {
             in_plane_order,
             ply_order: 4,
         };
-        Self { table: Table::new(&info), info, mass }
+        Self { table: Table::new(&info), info, mass, stresses: TransverseStresses::Smooth }
     }
 }
 
@@ -167,6 +178,24 @@ pub(crate) const fn column(component: usize, function: usize) -> usize {
     12 * (function / 4) + 4 * component + function % 4
 }
 
+/// Strains of a function with this gradient in each component; `at` takes the value of a polynomial.
+fn put_strains(
+    b: &mut [f64],
+    f: usize,
+    gradient: &[Quartet; 3],
+    across: &Option<Across>,
+    at: impl Fn(&Quartet) -> f64,
+) {
+    let values = gradient.each_ref().map(at);
+    for (component, rows) in STRAIN_ROW.iter().enumerate() {
+        let column = &mut b[6 * column(component, f)..][..6];
+        rows.iter().zip(values).for_each(|(row, value)| column[*row] = value);
+        if let Some(across) = across {
+            across.put(column, rows, gradient);
+        }
+    }
+}
+
 fn shape(cell: &Cell<'_>, functions: Mass, [r, s, q]: [f64; 3], n: &mut [f64]) -> f64 {
     let h = cell.half_height();
     n.fill(0.0);
@@ -186,16 +215,12 @@ impl Element for HermitePrism {
         &self.info
     }
 
-    fn strain_operator(&self, cell: &Cell<'_>, _slice: usize, [r, s, q]: [f64; 3], b: &mut [f64]) -> f64 {
+    fn strain_operator(&self, cell: &Cell<'_>, slice: usize, [r, s, q]: [f64; 3], b: &mut [f64]) -> f64 {
         let plane = cell.plane(r, s);
+        let across = self.stresses.across(cell, slice, [q, q]);
         b.fill(0.0);
         gradients(cell, &jacobians(cell), 0..8, r, s, &plane, |f, g| {
-            for (d, g) in g.iter().enumerate() {
-                let value = hermite::at(g, q);
-                for (component, rows) in STRAIN_ROW.iter().enumerate() {
-                    b[6 * column(component, f) + rows[d]] = value;
-                }
-            }
+            put_strains(b, f, &g, &across, |g| hermite::at(g, q));
         });
         plane.det * cell.half_height()
     }
@@ -234,12 +259,14 @@ impl Element for HermitePrism {
             });
             Ok(())
         })?;
+        let transverse = self.stresses.in_stack(cell.stack);
         // [H(1,1) | H(1,2) | ...]: 11 × 66.
         for (column, hankel) in hankel.chunks_exact_mut(TERMS.len()).enumerate() {
             let (n, n2) = BLOCKS[column / TERMS.len()];
             let (d2, k2) = TERMS[column % TERMS.len()];
             for (h, (d, k)) in hankel.iter_mut().zip(&TERMS) {
-                *h = cell.stack.stiffness_moments[k + k2][STRAIN_ROW[n][*d]][STRAIN_ROW[n2][d2]];
+                let moment = transverse.map_or(&cell.stack.stiffness_moments[k + k2], |t| t.form(*k, k2));
+                *h = moment[STRAIN_ROW[n][*d]][STRAIN_ROW[n2][d2]];
             }
         }
         // P = G H of the even halves and of the odd ones, with (function, point) as rows.
@@ -322,8 +349,8 @@ impl Element for HermitePrism {
         scratch: &mut Scratch,
         b: &mut [f64],
     ) -> Result<(), ElementError> {
-        // Area means of the gradients: direction × function × power of q.
-        let [means] = scratch.arrays([3 * F * 4]);
+        // Area means of the gradients: function × direction × power of q.
+        let [means] = scratch.arrays([F * 3 * 4]);
         let jacobians = jacobians(cell);
         let mut area = 0.0;
         for_each_point(gauss_legendre(self.info.in_plane_order), |_, r, s, w| {
@@ -332,7 +359,7 @@ impl Element for HermitePrism {
             area += da;
             gradients(cell, &jacobians, 0..8, r, s, &plane, |f, gradient| {
                 for (d, polynomial) in gradient.iter().enumerate() {
-                    let at = 4 * (F * d + f);
+                    let at = 4 * (3 * f + d);
                     for (mean, value) in means[at..at + 4].iter_mut().zip(polynomial) {
                         *mean += da * value;
                     }
@@ -341,18 +368,26 @@ impl Element for HermitePrism {
             Ok(())
         })?;
         b.fill(0.0);
-        for (Part { q: [low, high], .. }, b) in parts.iter().zip(b.chunks_exact_mut(6 * N)) {
-            // Mean of q⁰ … q³ over the part, per area.
-            let powers: Quartet = mean_powers(*low, *high).map(|mean| mean / area);
-            for (at, polynomial) in means.chunks_exact(4).enumerate() {
-                let (d, f) = (at / F, at % F);
-                let value: f64 = polynomial.iter().zip(powers).map(|(a, b)| a * b).sum();
-                for (component, rows) in STRAIN_ROW.iter().enumerate() {
-                    b[6 * column(component, f) + rows[d]] = value;
-                }
+        means.iter_mut().for_each(|mean| *mean /= area);
+        for (Part { slice, q: [low, high] }, b) in parts.iter().zip(b.chunks_exact_mut(6 * N)) {
+            let powers: Quartet = mean_powers(*low, *high);
+            let across = self.stresses.across(cell, *slice, [*low, *high]);
+            for (f, mean) in means.chunks_exact(3 * 4).enumerate() {
+                let mean = std::array::from_fn(|d| std::array::from_fn(|k| mean[4 * d + k]));
+                put_strains(b, f, &mean, &across, |g| g.iter().zip(powers).map(|(a, b)| a * b).sum());
             }
         }
         Ok(())
+    }
+
+    fn held_stress(&self, stack: &Stack, part: &Part) -> [f64; 6] {
+        let Slice { c, free, .. } = &stack.slices[part.slice];
+        let mut strain = *free;
+        if let Some(transverse) = self.stresses.in_stack(stack) {
+            let a = transverse.amplitudes_of(stack.slices.iter().map(|slice| slice.free));
+            transverse.assume(part.slice, part.q, &a, &mut strain);
+        }
+        apply(c, &strain).map(|s| -s)
     }
 
     fn large_deflections(&self) -> Option<&dyn LargeDeflection> {
@@ -366,7 +401,7 @@ impl HermitePrism {
         let fill = |r: f64, s: f64, plane: &PlaneMap, out: &mut Gradients<F, 4>| {
             gradients(cell, &jacobians, 0..8, r, s, plane, |f, gradient| out[f] = gradient);
         };
-        with(&Solid { info: &self.info, gradients: &fill, unknown: |n, f| Some(column(n, f)) })
+        with(&Solid { info: &self.info, gradients: &fill, unknown: |n, f| Some(column(n, f)), stresses: self.stresses })
     }
 }
 
@@ -382,15 +417,15 @@ impl LargeDeflection for HermitePrism {
         let Some(tangent) = tangent else {
             let jacobians = jacobians(cell);
             let mut natural = Natural::new(&self.table, &jacobians, cell.half_height(), u);
-            let energy = large::energy(&self.info, cell, &mut natural)?;
+            let energy = large::energy(&self.info, self.stresses, cell, &mut natural)?;
             natural.force(&jacobians, force);
             return Ok(energy);
         };
         self.solid(cell, |solid| solid.internal(cell, u, scratch, force, Some(tangent)))
     }
 
-    fn large_strain(&self, cell: &Cell<'_>, _slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError> {
-        self.solid(cell, |solid| solid.strain(cell, xi, u))
+    fn large_strain(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError> {
+        self.solid(cell, |solid| solid.strain(cell, slice, xi, u))
     }
 
     fn mean_large_strains(
@@ -428,11 +463,12 @@ impl Plugin for HermitePrism {
         name: "hermite-prism",
         summary: "quadrilateral prism, 12 unknowns a node, any number of plies through one cell",
         source: "AFWAL-TR-87-4117, eqs 16-23",
-        params: &[Mass::PARAM, ORDER],
+        params: &[Mass::PARAM, ORDER, TransverseStresses::PARAM],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let built = Self::new(Mass::of(params)?, params.count(&ORDER)?);
-        Ok(Built::Element(Box::new(built.map_err(|e| ParamError::new(ORDER.name, e.to_string()))?)))
+        let built = Self::new(Mass::of(params)?, params.count(&ORDER)?)
+            .map_err(|e| ParamError::new(ORDER.name, e.to_string()))?;
+        Ok(Built::Element(Box::new(built.with_transverse_stresses(TransverseStresses::of(params)?))))
     }
 }

@@ -6,12 +6,17 @@
 //!
 //! f(n) = Σ over in-plane points of w |J| G p(n), p(n)\[(d,k)\] = ∫ P\[n\]\[d\] qᵏ dq, P = (I + H) S,
 //! K(n,n′) = Σ of w |J| G A(n,n′) Gᵀ, A(n,n′)\[(d,k),(d′,k′)\] = ∫ ∂P\[n\]\[d\]/∂H\[n′\]\[d′\] qᵏ⁺ᵏ′ dq.
+//!
+//! Where transverse stresses are smooth ([`fem_core::transverse`]), S and W are those of ε̄ for E less the free strains, whose
+//! amplitudes tie the plies of a cell at an in-plane point together: nine squares of ∫ rows ∂E/∂H qᵏ dq come to A.
 
 use crate::prism::{BLOCKS, STRAIN_ROW, matrix, multiply};
+use crate::transverse::TransverseStresses;
 use fem_core::element::{Cell, ElementError, ElementInfo, Part, PlaneMap, Scratch, Slice, positive};
 use fem_core::large::green_lagrange;
 use fem_core::quadrature::gauss_legendre;
 use fem_core::tensor::{Matrix6, apply};
+use fem_core::transverse::{AMPLITUDES, Amplitudes, Coupling, SmoothTransverse};
 
 /// Gradients [∂x, ∂y, ∂z] of `F` functions at an in-plane point, polynomials of `K` coefficients in q.
 pub(crate) type Gradients<const F: usize, const K: usize> = [[[f64; K]; 3]; F];
@@ -31,14 +36,16 @@ pub(crate) trait Displacements<const K: usize> {
 /// Strain energy of a cell, J; adds the forces to `displacements`.
 pub(crate) fn energy<const K: usize>(
     info: &ElementInfo,
+    stresses: TransverseStresses,
     cell: &Cell<'_>,
     displacements: &mut impl Displacements<K>,
 ) -> Result<f64, ElementError> {
+    let layer = Layer::new(info, cell, stresses);
     let mut energy = 0.0;
     for (point, (r, s, w)) in info.plane_points().enumerate() {
         let plane = cell.plane(r, s);
         let dv = positive(plane.det * cell.half_height())? * w;
-        let Through { energy: one, mut stresses } = through(info, cell, &displacements.gradient(point, &plane), None);
+        let Through { energy: one, mut stresses } = layer.through(&displacements.gradient(point, &plane), None);
         energy += dv * one;
         stresses.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|p| *p *= dv);
         displacements.add(point, &plane, &stresses);
@@ -53,6 +60,7 @@ pub(crate) struct Solid<'a, const F: usize, const K: usize> {
     pub(crate) gradients: &'a dyn Fn(f64, f64, &PlaneMap, &mut Gradients<F, K>),
     /// Unknown of the cell that multiplies a function in a component; none in one that stays zero.
     pub(crate) unknown: fn(usize, usize) -> Option<usize>,
+    pub(crate) stresses: TransverseStresses,
 }
 
 /// Powers of q that a product of two polynomials has: 2 K − 1 for K = 4.
@@ -61,8 +69,13 @@ const POWERS: usize = 7;
 /// Pairs of components of H, each once.
 const PAIRS: usize = 45;
 
-/// ∫ A qᵏ dq, pairs of components of H by columns of the upper triangle.
-type Moduli = [[f64; PAIRS]; POWERS];
+/// What the tangent is made of at an in-plane point.
+struct Moduli<const K: usize> {
+    /// ∫ A qᵏ dq, pairs of components of H by columns of the upper triangle.
+    powers: [[f64; PAIRS]; POWERS],
+    /// ∫ rows ∂E/∂H qᵏ dq for each of nine amplitudes, where transverse stresses are smooth.
+    rows: Option<Box<[[[f64; K]; 9]; AMPLITUDES]>>,
+}
 
 impl<const F: usize, const K: usize> Solid<'_, F, K> {
     /// [`fem_core::large::LargeDeflection::internal`]
@@ -83,12 +96,13 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
             [0; 4]
         });
         let mut functions: Gradients<F, K> = [[[0.0; K]; 3]; F];
+        let layer = Layer::new(self.info, cell, self.stresses);
         let mut energy = 0.0;
         force.fill(0.0);
         for (point, (r, s, w)) in self.info.plane_points().enumerate() {
             let dv = self.at(cell, r, s, &mut functions)? * w;
-            let mut moduli = wanted.then_some([[0.0; PAIRS]; POWERS]);
-            let through = through(self.info, cell, &self.gradient(&functions, u), moduli.as_mut());
+            let mut moduli = wanted.then(|| layer.moduli());
+            let through = layer.through(&self.gradient(&functions, u), moduli.as_mut());
             energy += dv * through.energy;
             for (f, gradient) in functions.iter().enumerate() {
                 for (n, stresses) in through.stresses.iter().enumerate() {
@@ -104,7 +118,7 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
                         part[F * i + f] = *value;
                     }
                 }
-                fill_hankel::<K>(moduli, dv, hankel);
+                fill_hankel(moduli, dv, hankel);
                 for (b, hankel) in hankel.chunks_exact(terms * terms).enumerate() {
                     let at = F * terms * (points * b + point);
                     multiply(&mut p[at..at + F * terms], matrix(part, F), matrix(hankel, terms));
@@ -133,10 +147,23 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
     }
 
     /// [`fem_core::large::LargeDeflection::large_strain`]
-    pub(crate) fn strain(&self, cell: &Cell<'_>, [r, s, q]: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError> {
+    pub(crate) fn strain(
+        &self,
+        cell: &Cell<'_>,
+        slice: usize,
+        [r, s, q]: [f64; 3],
+        u: &[f64],
+    ) -> Result<[f64; 6], ElementError> {
         let mut functions: Gradients<F, K> = [[[0.0; K]; 3]; F];
         self.at(cell, r, s, &mut functions)?;
-        Ok(green_lagrange(&at(&self.gradient(&functions, u), q)))
+        let gradient = self.gradient(&functions, u);
+        let mut strain = green_lagrange(&at(&gradient, q));
+        if let Some(transverse) = self.stresses.in_stack(cell.stack) {
+            let mut strains = [[0.0; POWERS]; 6];
+            add_strains(&gradient, 1.0, &mut strains);
+            transverse.assume(slice, [q, q], &transverse.amplitudes(&strains), &mut strain);
+        }
+        Ok(strain)
     }
 
     /// [`fem_core::large::LargeDeflection::mean_large_strains`]
@@ -154,13 +181,19 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
             volume += dv;
             add_strains(&self.gradient(&functions, u), dv, &mut mean);
         }
-        for (Part { q: [low, high], .. }, strains) in parts.iter().zip(strains.chunks_exact_mut(6)) {
+        mean.as_flattened_mut().iter_mut().for_each(|mean| *mean /= volume);
+        let transverse =
+            self.stresses.in_stack(cell.stack).map(|transverse| (transverse, transverse.amplitudes(&mean)));
+        for (Part { slice, q: [low, high] }, strains) in parts.iter().zip(strains.chunks_exact_mut(6)) {
             let powers: [f64; POWERS] = std::array::from_fn(|k| {
                 let p = k as i32 + 1;
                 if high > low { (high.powi(p) - low.powi(p)) / (f64::from(p) * (high - low)) } else { low.powi(p - 1) }
             });
             for (strain, mean) in strains.iter_mut().zip(&mean) {
-                *strain = mean.iter().zip(powers).map(|(e, q)| e * q).sum::<f64>() / volume;
+                *strain = mean.iter().zip(powers).map(|(e, q)| e * q).sum::<f64>();
+            }
+            if let (Some((transverse, a)), Ok(strain)) = (&transverse, strains.try_into()) {
+                transverse.assume(*slice, [*low, *high], a, strain);
             }
         }
         Ok(())
@@ -188,34 +221,76 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
     }
 }
 
-/// Integrates through the plies; adds to `moduli` where they are asked for.
-fn through<const K: usize>(
-    info: &ElementInfo,
-    cell: &Cell<'_>,
-    gradient: &Polynomial<K>,
-    mut moduli: Option<&mut Moduli>,
-) -> Through<K> {
-    let mut sum = Through { energy: 0.0, stresses: [[[0.0; K]; 3]; 3] };
-    // Power by power, the nine components side by side: vector instructions take them together.
-    let coefficients: [[[f64; 3]; 3]; K] = std::array::from_fn(|k| gradient.map(|row| row.map(|p| p[k])));
-    for slice in &cell.stack.slices {
-        let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
-        let held = apply(&slice.c, &slice.free).map(|s| -s);
-        for &(t, wt) in gauss_legendre(info.ply_order) {
-            let (q, w) = (middle + half * t, wt * half);
-            let mut h = [[0.0; 3]; 3];
-            for c in coefficients.iter().rev() {
-                for (h, c) in h.as_flattened_mut().iter_mut().zip(c.as_flattened()) {
-                    *h = *h * q + c;
+/// The plies of a cell.
+struct Layer<'a> {
+    info: &'a ElementInfo,
+    slices: &'a [Slice],
+    /// Smooth transverse stresses, and their amplitudes of the free strains.
+    transverse: Option<(&'a SmoothTransverse, Amplitudes)>,
+}
+
+impl<'a> Layer<'a> {
+    fn new(info: &'a ElementInfo, cell: &Cell<'a>, stresses: TransverseStresses) -> Self {
+        let slices = &cell.stack.slices;
+        let transverse =
+            stresses.in_stack(cell.stack).map(|all| (all, all.amplitudes_of(slices.iter().map(|slice| slice.free))));
+        Self { info, slices, transverse }
+    }
+
+    fn moduli<const K: usize>(&self) -> Moduli<K> {
+        let rows = self.transverse.as_ref().map(|_| Box::new([[[0.0; K]; 9]; AMPLITUDES]));
+        Moduli { powers: [[0.0; PAIRS]; POWERS], rows }
+    }
+
+    /// Integrates through the plies; adds to `moduli` where they are asked for.
+    fn through<const K: usize>(&self, gradient: &Polynomial<K>, mut moduli: Option<&mut Moduli<K>>) -> Through<K> {
+        let mut sum = Through { energy: 0.0, stresses: [[[0.0; K]; 3]; 3] };
+        let smooth = self.transverse.as_ref().map(|(all, free)| {
+            let mut strains = [[0.0; POWERS]; 6];
+            add_strains(gradient, 1.0, &mut strains);
+            (*all, all.amplitudes(&strains) - free)
+        });
+        // Power by power, the nine components side by side: vector instructions take them together.
+        let coefficients: [[[f64; 3]; 3]; K] = std::array::from_fn(|k| gradient.map(|row| row.map(|p| p[k])));
+        for (number, slice) in self.slices.iter().enumerate() {
+            let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
+            let reduced = smooth.as_ref().map(|(all, _)| all.reduced(number));
+            for &(t, wt) in gauss_legendre(self.info.ply_order) {
+                let (q, w) = (middle + half * t, wt * half);
+                let mut h = [[0.0; 3]; 3];
+                for c in coefficients.iter().rev() {
+                    for (h, c) in h.as_flattened_mut().iter_mut().zip(c.as_flattened()) {
+                        *h = *h * q + c;
+                    }
+                }
+                let mut strain = green_lagrange(&h);
+                strain.iter_mut().zip(&slice.free).for_each(|(e, free)| *e -= free);
+                let stress = match &smooth {
+                    None => product(&slice.c, &strain),
+                    Some((all, a)) => {
+                        all.assume(number, [q, q], a, &mut strain);
+                        all.stress(number, q, a, &strain)
+                    }
+                };
+                sum.add(&h, &strain, &stress, q, w);
+                if let Some(moduli) = &mut moduli {
+                    let rows = smooth.as_ref().map(|(all, _)| all.rows(number, q));
+                    add_moduli(moduli, &h, (reduced.as_ref().unwrap_or(&slice.c), rows), &stress, q, w);
                 }
             }
-            let stress = sum.add(&h, slice, &held, q, w);
-            if let Some(moduli) = &mut moduli {
-                add_moduli::<K>(moduli, &h, &slice.c, &stress, q, w);
-            }
         }
+        sum
     }
-    sum
+}
+
+/// C ε. C is symmetric: its rows, which vector instructions take whole, serve as columns.
+#[inline]
+fn product(c: &Matrix6, strain: &[f64; 6]) -> [f64; 6] {
+    let mut stress = [0.0; 6];
+    for (e, column) in strain.iter().zip(c) {
+        stress.iter_mut().zip(column).for_each(|(s, c)| *s += e * c);
+    }
+    stress
 }
 
 /// Integrals through the plies at an in-plane point.
@@ -227,20 +302,10 @@ struct Through<const K: usize> {
 }
 
 impl<const K: usize> Through<K> {
-    /// Returns S. `held` is the stress without displacements.
+    /// Adds a point with the strain E − ε₀, or ε̄ in its place, and S.
     #[inline]
-    fn add(&mut self, h: &[[f64; 3]; 3], slice: &Slice, held: &[f64; 6], q: f64, w: f64) -> [f64; 6] {
-        let strain = green_lagrange(h);
-        // C is symmetric: its rows, which vector instructions take whole, serve as columns.
-        let mut stress = *held;
-        for (e, column) in strain.iter().zip(&slice.c) {
-            for (s, c) in stress.iter_mut().zip(column) {
-                *s += e * c;
-            }
-        }
-        for ((e, free), s) in strain.iter().zip(&slice.free).zip(&stress) {
-            self.energy += 0.5 * w * (e - free) * s;
-        }
+    fn add(&mut self, h: &[[f64; 3]; 3], strain: &[f64; 6], stress: &[f64; 6], q: f64, w: f64) {
+        self.energy += 0.5 * w * strain.iter().zip(stress).map(|(e, s)| e * s).sum::<f64>();
         let mut powers = [w; K];
         for k in 1..K {
             powers[k] = powers[k - 1] * q;
@@ -254,7 +319,6 @@ impl<const K: usize> Through<K> {
                 }
             }
         }
-        stress
     }
 }
 
@@ -265,8 +329,15 @@ fn deformation(h: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     f
 }
 
-/// Adds w qᵏ ∂P/∂H.
-fn add_moduli<const K: usize>(moduli: &mut Moduli, h: &[[f64; 3]; 3], c: &Matrix6, stress: &[f64; 6], q: f64, w: f64) {
+/// Adds w qᵏ ∂P/∂H of a ply with the stiffness `c` and, where there are some, the rows of its transverse stresses.
+fn add_moduli<const K: usize>(
+    moduli: &mut Moduli<K>,
+    h: &[[f64; 3]; 3],
+    (c, rows): (&Matrix6, Option<Coupling>),
+    stress: &[f64; 6],
+    q: f64,
+    w: f64,
+) {
     let f = deformation(h);
     // ∂E/∂H: column 3 n + d has F[n][e] in the row of (d, e), once for normal strains as for engineering shears.
     let mut by = [[0.0; 6]; 9];
@@ -285,8 +356,19 @@ fn add_moduli<const K: usize>(moduli: &mut Moduli, h: &[[f64; 3]; 3], c: &Matrix
             at += 1;
         }
     }
+    if let (Some(sums), Some(rows)) = (&mut moduli.rows, rows) {
+        for (sums, row) in sums.iter_mut().zip(rows.row_iter()) {
+            for (sums, column) in sums.iter_mut().zip(&by) {
+                let mut value = w * row.iter().zip(column).map(|(a, b)| a * b).sum::<f64>();
+                for sum in sums {
+                    *sum += value;
+                    value *= q;
+                }
+            }
+        }
+    }
     let mut power = 1.0;
-    for moduli in &mut moduli[..2 * K - 1] {
+    for moduli in &mut moduli.powers[..2 * K - 1] {
         for (sum, pair) in moduli.iter_mut().zip(&pairs) {
             *sum += power * pair;
         }
@@ -295,14 +377,15 @@ fn add_moduli<const K: usize>(moduli: &mut Moduli, h: &[[f64; 3]; 3], c: &Matrix
 }
 
 /// dv A(n,n′) of the blocks, each 3 K × 3 K.
-fn fill_hankel<const K: usize>(moduli: &Moduli, dv: f64, out: &mut [f64]) {
+fn fill_hankel<const K: usize>(moduli: &Moduli<K>, dv: f64, out: &mut [f64]) {
     let terms = 3 * K;
     for ((n, n2), block) in BLOCKS.iter().zip(out.chunks_exact_mut(terms * terms)) {
         for (j, column) in block.chunks_exact_mut(terms).enumerate() {
             for (i, value) in column.iter_mut().enumerate() {
                 let (a, b) = (3 * n + i / K, 3 * n2 + j / K);
                 let (low, high) = (a.min(b), a.max(b));
-                *value = dv * moduli[i % K + j % K][high * (high + 1) / 2 + low];
+                let squares = moduli.rows.iter().flat_map(|rows| rows.iter()).map(|row| row[a][i % K] * row[b][j % K]);
+                *value = dv * (moduli.powers[i % K + j % K][high * (high + 1) / 2 + low] + squares.sum::<f64>());
             }
         }
     }

@@ -43,6 +43,7 @@ mod large;
 mod mitc4;
 mod prism;
 mod serendipity;
+mod transverse;
 mod webster_beam;
 mod wedge15;
 
@@ -50,5 +51,6 @@ pub use hermite_hex::HermiteHex;
 pub use hermite_prism::{HermitePrism, Mass};
 pub use hex20::Hex20;
 pub use mitc4::Mitc4;
+pub use transverse::TransverseStresses;
 pub use webster_beam::{PlaneState, WebsterBeam};
 pub use wedge15::Wedge15;

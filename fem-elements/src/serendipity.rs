@@ -2,6 +2,7 @@
 
 use crate::large::{Gradients, Solid};
 use crate::prism::{self, Prism};
+use crate::transverse::TransverseStresses;
 use fem_core::dof::Dof;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch};
 use fem_core::large::LargeDeflection;
@@ -94,7 +95,12 @@ where
     let fill = |r: f64, s: f64, plane: &PlaneMap, out: &mut Gradients<F, 3>| {
         element.gradients(cell, r, s, plane, |f, gradient| out[f] = gradient);
     };
-    with(&Solid { info: &element.info, gradients: &fill, unknown: |n, f| Some(Serendipity::<F>::unknown(n, f)) })
+    with(&Solid {
+        info: &element.info,
+        gradients: &fill,
+        unknown: |n, f| Some(Serendipity::<F>::unknown(n, f)),
+        stresses: TransverseStresses::OfStrains,
+    })
 }
 
 impl<const F: usize> LargeDeflection for Serendipity<F>
@@ -112,8 +118,8 @@ where
         with_solid(self, cell, |solid| solid.internal(cell, u, scratch, force, tangent))
     }
 
-    fn large_strain(&self, cell: &Cell<'_>, _slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError> {
-        with_solid(self, cell, |solid| solid.strain(cell, xi, u))
+    fn large_strain(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError> {
+        with_solid(self, cell, |solid| solid.strain(cell, slice, xi, u))
     }
 
     fn mean_large_strains(

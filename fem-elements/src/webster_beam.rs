@@ -3,9 +3,10 @@
 use crate::hermite::{self, NodeFunctions};
 use crate::hermite_prism::Mass;
 use crate::large::{Gradients, Solid};
+use crate::transverse::TransverseStresses;
 use fem_core::dof::Dof;
 use fem_core::domain::Domain;
-use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, Slice};
+use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, Stack};
 use fem_core::large::LargeDeflection;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::quadrature::MAX_POINTS;
@@ -154,7 +155,8 @@ impl Element for WebsterBeam {
         cell.plane(xi[0], 0.0).det * cell.half_height()
     }
 
-    fn held_stress(&self, slice: &Slice) -> [f64; 6] {
+    fn held_stress(&self, stack: &Stack, part: &Part) -> [f64; 6] {
+        let slice = &stack.slices[part.slice];
         apply(&self.condense(slice.c), &slice.free).map(|s| -s)
     }
 
@@ -185,7 +187,8 @@ impl WebsterBeam {
                 Some(2 * FUNCTIONS.len() * (f / FUNCTIONS.len()) + x_or_z / 2 * FUNCTIONS.len() + f % FUNCTIONS.len())
             }
         };
-        with(&Solid { info: &self.info, gradients: &fill, unknown })
+        let stresses = TransverseStresses::OfStrains;
+        with(&Solid { info: &self.info, gradients: &fill, unknown, stresses })
     }
 
     /// The stiffness that the section sees: under plane stress that of strains within it, those across it left free.
@@ -227,7 +230,7 @@ impl LargeDeflection for WebsterBeam {
     }
 
     fn large_strain(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError> {
-        let mut strain = self.solid(cell, |solid| solid.strain(cell, xi, u))?;
+        let mut strain = self.solid(cell, |solid| solid.strain(cell, 0, xi, u))?;
         self.complete(&cell.stack.slices[slice].c, &mut strain);
         Ok(strain)
     }

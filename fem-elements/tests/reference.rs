@@ -8,7 +8,7 @@ use fem_core::element::{Cell, Element, Part, Scratch, Slice, Stack};
 use fem_core::material::Elastic;
 use fem_core::tensor::{Strain6, rotate_stiffness, stress};
 use fem_core::testkit::Provided;
-use fem_elements::{HermitePrism, Mass};
+use fem_elements::{HermitePrism, Mass, TransverseStresses};
 use serde_json::Value;
 
 const TOLERANCE: f64 = 1e-10;
@@ -76,7 +76,7 @@ fn stiffness_mass_and_averages_agree_with_the_independent_implementation() {
             let (i, j) = (i.min(j), i.max(j));
             upper[i * 96 - i * (i + 1) / 2 + j]
         };
-        let fine = HermitePrism::new(Mass::Cubic, 16).unwrap();
+        let fine = HermitePrism::new(Mass::Cubic, 16).unwrap().with_transverse_stresses(TransverseStresses::OfStrains);
         let elements: [&dyn Element; 2] = [&fine, &Provided(&fine)];
         for element in elements {
             let ke = stiffness(element, &case.cell());

@@ -2,7 +2,7 @@
 
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, Scratch};
 use fem_core::large::LargeDeflection;
-use fem_elements::{HermitePrism, Mass, PlaneState, WebsterBeam};
+use fem_elements::{HermitePrism, Mass, PlaneState, TransverseStresses, WebsterBeam};
 use fem_io::deck::PieceKind;
 
 /// The order from which on rectangles are exact; elements do it faster than point by point.
@@ -17,7 +17,9 @@ pub(super) fn element(kind: PieceKind, order: usize) -> Result<Box<dyn Element>,
     let exact: Box<dyn Element> = match kind {
         PieceKind::PlaneStress => section(PlaneState::Stress)?,
         PieceKind::PlaneStrain => section(PlaneState::Strain)?,
-        PieceKind::Solid => Box::new(HermitePrism::new(Mass::Linear, EXACT)?),
+        PieceKind::Solid => {
+            Box::new(HermitePrism::new(Mass::Linear, EXACT)?.with_transverse_stresses(TransverseStresses::OfStrains))
+        }
     };
     if order == EXACT {
         return Ok(exact);

@@ -113,8 +113,7 @@ impl Effect for Cure {
         let of_station = |region: usize, station: &Station| match at_rest {
             false => cooled[region].stress(&materials[station.material], station.angle, station.z),
             true => {
-                let slice = station.ply - laminates[region].plies_of(station.layer).start;
-                let held = element.held_stress(&plate.stacks(region)[station.layer].slices[slice]);
+                let held = element.held_stress(&plate.stacks(region)[station.layer], station.part());
                 Ok(Stress6::<Global>::new(held).to_ply(station.angle))
             }
         };

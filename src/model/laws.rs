@@ -12,6 +12,11 @@ use fem_core::ply_law::PlyLaw;
 use fem_io::scene::{Place, PluginSpec, SceneError};
 
 impl Builder<'_> {
+    /// Whether some plies follow laws.
+    pub(super) fn has_laws(&self) -> bool {
+        self.scene.plies().any(|ply| self.scene.laws[ply.material].is_some())
+    }
+
     /// The laws of the plies, if some follow one.
     pub(super) fn laws(
         &self,

@@ -39,6 +39,7 @@ use fem_core::material::{Material, MaterialError};
 use fem_core::mesh::PlaneMesh;
 use fem_core::pieces;
 use fem_core::plate::Plate;
+use fem_core::warping;
 use fem_failure::delamination::DelaminationThreshold;
 use fem_io::scene::{self, Analysis, Damage, Located, Output, Scene, SceneError, Window};
 use std::borrow::Borrow;
@@ -129,6 +130,9 @@ const FLAT: f64 = 0.05;
 /// misjudge stresses: 1 − 2ν of an isotropic one, ν > 0.45 (measured in strips: 3 % at 0.44, 20 % at 0.49).
 const INCOMPRESSIBLE: f64 = 0.1;
 
+/// Excess of a shell's deflections that is worth a warning.
+const WARPING_ERROR: f64 = 0.02;
+
 /// Inner angle of a cell (degrees) beyond which its strains are poor.
 const POOR_ANGLE: f64 = 150.0;
 
@@ -165,6 +169,10 @@ impl Model {
         let (weights, weightless) = builder.weights(&materials);
         let stacks = |laminate: &Laminate| {
             let mut stacks = laminate.stacks(&weights).map_err(lacks)?;
+            if builder.has_laws() {
+                // A law needs the strains where it is asked, and what it takes off is measured against theirs.
+                stacks.iter_mut().for_each(|stack| stack.transverse = None);
+            }
             for effect in effects.acting() {
                 effect.on_stacks(at_rest, laminate, &materials, &mut stacks).map_err(lacks)?;
             }
@@ -184,6 +192,7 @@ impl Model {
         warnings.extend(polygon(&plate));
         warnings.extend(warn_of_flat_cells(&plate));
         warnings.extend(incompressible(&plate, &laminates, &materials));
+        warnings.extend(laminates.iter().find_map(|laminate| warn_of_warping(&plate, laminate, &materials)));
         let supports = builder.constraints(&plate)?;
         let constraints = &supports.constraints;
         warnings.extend(builder.lacking(&plate)?);
@@ -370,6 +379,19 @@ fn warn_of_flat_cells(plate: &Plate) -> Option<String> {
             "cells up to {over_thickness:.0} times as wide as the plate is thick bend too stiffly, by up to {:.1} %: \
              make them narrower or use the shell `mitc4`",
             error.min(1.0) * 100.0
+        )
+    })
+}
+
+/// A shell whose section warps more than first-order shear deformation knows.
+fn warn_of_warping(plate: &Plate, laminate: &Laminate, materials: &[Material]) -> Option<String> {
+    let (low, high) = plate.plane.bounds();
+    let excess = warping::shell_excess(laminate, materials, (high[0] - low[0]).min(high[1] - low[1]));
+    (plate.info().is_shell() && excess > WARPING_ERROR).then(|| {
+        format!(
+            "the section of this laminate warps, which a shell cannot: deflections are too large by about {:.0} %; use the \
+             solid `hermite-prism`",
+            100.0 * excess
         )
     })
 }

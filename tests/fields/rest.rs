@@ -95,7 +95,7 @@ fn stresses_are_means_over_plies_and_interfaces() {
         for (&(r, wr), &(s, ws)) in rule.iter().flat_map(|r| rule.iter().map(move |s| (r, s))) {
             for (z, wz) in z {
                 let (strain, _) = field.at(Spot { quad, at: [r, s], ply, z: *z }).unwrap();
-                let stress = field.stress(quad, ply, &strain).to_ply(model.laminate.plies[ply].angle);
+                let stress = field.stress(quad, (ply, *z), &strain).to_ply(model.laminate.plies[ply].angle);
                 sum.iter_mut().zip(stress.0).for_each(|(sum, s)| *sum += wr * ws * wz / 8.0 * s);
             }
         }
@@ -131,8 +131,8 @@ fn stresses_are_means_over_plies_and_interfaces() {
     for (cell, (normal, shear)) in normal.iter().zip(shear).enumerate() {
         let (quad, below) = (cell / 2, cell % 2);
         assert_eq!(interfaces.cells("ply_below")[cell], below as f64 + 1.0);
-        // Plies 1 and 2 share a cell: there is one side. Ply 3 has a layer of cells of its own.
-        let sides: &[usize] = if below == 0 { &[0] } else { &[1, 2] };
+        // Plies 1 and 2 share a cell, ply 3 has a layer of cells of its own: strains jump everywhere.
+        let sides = [below, below + 1];
         let mut want = [0.0; 6];
         for (side, &(r, wr), &(s, ws)) in
             sides.iter().flat_map(|side| rule.iter().flat_map(move |r| rule.iter().map(move |s| (*side, r, s))))

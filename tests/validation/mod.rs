@@ -7,6 +7,7 @@ mod cure;
 mod estimate;
 mod impact;
 mod large;
+mod layers;
 mod loads;
 mod modes;
 mod pagano;

@@ -29,9 +29,9 @@ pub(super) const THREE: Laminate =
     Laminate { table: "pagano_bidir_0_90_0_pag25.csv", material: PAGANO, angles: &[0, 90, 0], ply: 1.0 / 3.0 };
 const FOUR: Laminate =
     Laminate { table: "pagano_bidir_0_90_90_0_pag25.csv", material: PAGANO, angles: &[0, 90, 90, 0], ply: 0.25 };
-const EIGHT: Laminate =
+pub(super) const EIGHT: Laminate =
     Laminate { table: "pagano_bidir_xply8_as4.csv", material: AS4, angles: &[0, 90, 0, 90, 90, 0, 90, 0], ply: 0.13 };
-const SIXTEEN: Laminate = Laminate {
+pub(super) const SIXTEEN: Laminate = Laminate {
     table: "pagano_bidir_xply16_as4.csv",
     material: AS4,
     angles: &[0, 90, 0, 90, 0, 90, 0, 90, 90, 0, 90, 0, 90, 0, 90, 0],

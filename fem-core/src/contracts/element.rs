@@ -4,10 +4,11 @@ use crate::contracts::large::LargeDeflection;
 use crate::words::dof::Dof;
 use crate::words::domain::{Corners, Domain};
 use crate::words::quadrature::gauss_legendre;
-use crate::words::tensor::{Matrix6, apply};
+use crate::words::tensor::apply;
 use dyn_clone::DynClone;
 use std::fmt::{self, Debug};
 
+pub use crate::contracts::stack::{Slice, Stack};
 pub use crate::words::domain::PlaneMap;
 
 /// How an element describes itself.
@@ -59,51 +60,6 @@ impl ElementInfo {
     }
 }
 
-/// One ply (or the part of it) inside a cell.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Slice {
-    /// Natural bounds, −1 ≤ q₀ < q₁ ≤ 1.
-    pub q: [f64; 2],
-    /// Stiffness in the plate's frame, Pa.
-    pub c: Matrix6,
-    /// Density, kg/m³.
-    pub density: f64,
-    /// Strain in the plate's frame that the ply has where nothing stresses it, engineering shears.
-    pub free: [f64; 6],
-}
-
-/// The plies of one layer of cells, with their thickness moments (computed once for all cells of the layer).
-#[derive(Debug, Clone, PartialEq)]
-pub struct Stack {
-    /// Plies from the bottom up; they fill −1 ≤ q ≤ 1.
-    pub slices: Vec<Slice>,
-    /// Mₘ = ∫ C qᵐ dq, m = 0 … 6.
-    pub stiffness_moments: [Matrix6; 7],
-    /// ∫ ρ qᵐ dq, m = 0 … 6.
-    pub density_moments: [f64; 7],
-}
-
-impl Stack {
-    /// Computes the moments of `slices`.
-    pub fn new(slices: Vec<Slice>) -> Self {
-        let mut stiffness_moments = [[[0.0; 6]; 6]; 7];
-        let mut density_moments = [0.0; 7];
-        for slice in &slices {
-            for m in 0..7 {
-                let p = m as i32 + 1;
-                let moment = (slice.q[1].powi(p) - slice.q[0].powi(p)) / f64::from(p);
-                density_moments[m] += slice.density * moment;
-                for (row, c) in stiffness_moments[m].iter_mut().zip(&slice.c) {
-                    for (a, b) in row.iter_mut().zip(c) {
-                        *a += b * moment;
-                    }
-                }
-            }
-        }
-        Self { slices, stiffness_moments, density_moments }
-    }
-}
-
 /// A cell: an upright prism over a plane cell, and its plies.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell<'a> {
@@ -124,6 +80,11 @@ impl Cell<'_> {
     /// Half the height, ∂z/∂q, m.
     pub fn half_height(&self) -> f64 {
         0.5 * (self.z[1] - self.z[0])
+    }
+
+    /// q at the height `z`, m, or at the nearer face.
+    pub fn natural_height(&self, z: f64) -> f64 {
+        ((z - 0.5 * (self.z[0] + self.z[1])) / self.half_height()).clamp(-1.0, 1.0)
     }
 
     /// Position of a natural point, m.
@@ -242,10 +203,12 @@ pub trait Element: DynClone + Debug + Send + Sync {
         })
     }
 
-    /// Stress of a ply in a cell at rest, plate's frame, Pa: −C ε₀ of its free strain; a theory that gives up a strain for a
-    /// stress that it knows to vanish lets that strain go. The stress of displacements u is C b u on top of it.
-    fn held_stress(&self, slice: &Slice) -> [f64; 6] {
-        apply(&slice.c, &slice.free).map(|s| -s)
+    /// Mean stress of a part of a layer in a cell at rest, or its value on a face, plate's frame, Pa: −C ε₀ of the ply's free
+    /// strain; a theory that gives up a strain for a stress that it knows lets that strain go. The stress of displacements u is
+    /// C b u on top of it.
+    fn held_stress(&self, stack: &Stack, part: &Part) -> [f64; 6] {
+        let Slice { c, free, .. } = &stack.slices[part.slice];
+        apply(c, free).map(|s| -s)
     }
 
     /// Force `f` (ndof) = Σ over plies ∫ bᵀ C ε₀ dV by which free strains move the cell. Returns what energy the cell has when
@@ -260,7 +223,7 @@ pub trait Element: DynClone + Debug + Send + Sync {
         integrate(self.info(), cell.stack, |slice, xi, w| {
             let dv = positive(self.strain_operator(cell, slice, xi, b))? * w;
             let ply = &cell.stack.slices[slice];
-            let held = self.held_stress(ply);
+            let held = self.held_stress(cell.stack, &Part { slice, q: [xi[2]; 2] });
             for (f, b) in f.iter_mut().zip(b.chunks_exact(6)) {
                 *f -= dv * b.iter().zip(held).map(|(b, s)| b * s).sum::<f64>();
             }

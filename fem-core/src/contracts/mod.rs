@@ -8,5 +8,7 @@ pub mod large;
 pub mod plugin;
 pub mod ply_law;
 pub mod reduction;
+pub mod stack;
 pub mod structure;
 pub mod time;
+pub mod transverse;

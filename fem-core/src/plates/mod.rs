@@ -13,4 +13,5 @@ pub mod plate;
 mod prolongation;
 pub mod support;
 pub mod symmetry;
+pub mod warping;
 pub mod window;

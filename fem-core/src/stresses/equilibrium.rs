@@ -154,7 +154,7 @@ impl<'a> Fit<'a> {
         let at = field.plate().info().domain.centre();
         let sample = |&Neighbour { quad, turned, .. }: &Neighbour| {
             let (strain, _) = field.at(Spot { quad, at, ply, z })?;
-            let s = field.stress(quad, ply, &strain);
+            let s = field.stress(quad, (ply, z), &strain);
             Ok([s.s11(), s.s22(), turned * s.s12()])
         };
         self.around.iter().map(sample).collect()

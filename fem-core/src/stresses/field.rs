@@ -1,6 +1,6 @@
 //! A displacement field of a plate, evaluated in its plies.
 
-use crate::contracts::element::{Element, ElementError};
+use crate::contracts::element::{Element, ElementError, Part};
 use crate::contracts::large::LargeDeflection;
 use crate::plates::laminate::Laminate;
 use crate::plates::plate::Plate;
@@ -52,12 +52,14 @@ impl<'a> Field<'a> {
         &self.laminates[self.plate.region(quad)]
     }
 
-    /// Stress in `ply` over `quad` of a strain, both in the plate's frame, Pa. Under large deflections S = C E, on axes that turn with
+    /// Stress in `ply` at the height `z` over `quad` of a strain, both in the plate's frame, Pa. Under large deflections S = C E, on axes that turn with
     /// the plate. Free strains count.
-    pub fn stress(&self, quad: usize, ply: usize, strain: &Strain6<Global>) -> Stress6<Global> {
+    pub fn stress(&self, quad: usize, (ply, z): (usize, f64), strain: &Strain6<Global>) -> Stress6<Global> {
         let (layer, slice) = self.slice(quad, ply);
-        let slice = &self.plate.stacks(self.plate.region(quad))[layer].slices[slice];
-        let (held, moved) = (self.element.held_stress(slice), stress(&slice.c, strain));
+        let stack = &self.plate.stacks(self.plate.region(quad))[layer];
+        let q = self.plate.cell(quad * self.plate.layers() + layer).natural_height(z);
+        let held = self.element.held_stress(stack, &Part { slice, q: [q, q] });
+        let moved = stress(&stack.slices[slice].c, strain);
         Stress6::new(std::array::from_fn(|k| moved.0[k] + held[k]))
     }
 
@@ -70,7 +72,7 @@ impl<'a> Field<'a> {
         let (layer, slice) = self.slice(quad, ply);
         let number = quad * self.plate.layers() + layer;
         let cell = self.plate.cell(number);
-        let xi = [r, s, ((z - 0.5 * (cell.z[0] + cell.z[1])) / cell.half_height()).clamp(-1.0, 1.0)];
+        let xi = [r, s, cell.natural_height(z)];
         let mut dofs = Vec::new();
         self.plate.cell_dofs(number, &mut dofs);
         let mut operator = vec![0.0; 6 * dofs.len()];

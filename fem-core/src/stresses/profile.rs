@@ -212,7 +212,7 @@ impl Profile {
             strain.iter_mut().zip(e.0).for_each(|(m, e)| *m += e / n);
             displacement.iter_mut().zip(d).for_each(|(m, d)| *m += d / n);
         }
-        Ok((field.stress(self.places[0].0, ply, &Strain6::new(strain)), displacement))
+        Ok((field.stress(self.places[0].0, (ply, z), &Strain6::new(strain)), displacement))
     }
 }
 

@@ -24,8 +24,23 @@ pub struct Station {
     /// Material.
     pub material: usize,
     part: Part,
+    /// The other side of an interface within a layer whose strains jump from ply to ply: the resin takes the mean of both.
+    beside: Option<Part>,
     /// Strain in the plate's frame to stress in the station's.
     to_stress: Matrix6,
+}
+
+impl Station {
+    /// The ply, or the face of the ply below or above an interface, among those of its layer.
+    pub fn part(&self) -> &Part {
+        &self.part
+    }
+
+    /// Parts of the cell whose strains are taken, each with its share.
+    fn parts(&self) -> impl Iterator<Item = (Part, f64)> + use<> {
+        let share = if self.beside.is_some() { 0.5 } else { 1.0 };
+        [Some(self.part), self.beside].into_iter().flatten().map(move |part| (part, share))
+    }
 }
 
 /// Mean stresses of every ply (report eqs 12, 13) and at every interface (eq. 14), for a set of cells.
@@ -99,26 +114,26 @@ impl Recovery {
         let mut strains = vec![0.0; self.sources.len() * per_quad * fields];
         let (mut operators, mut scratch, mut dofs) = (Vec::new(), Scratch::default(), Vec::new());
         let mut local = vec![0.0; n * fields];
-        let parts: Vec<Part> = self.stations.iter().map(|s| s.part).collect();
+        let layers = self.parts_of_layers();
         for (quad, mut strains) in self.sources.iter().zip(strains.chunks_exact_mut(per_quad * fields)) {
-            let mut first = 0;
-            for stations in self.stations.chunk_by(|a, b| a.layer == b.layer) {
-                let layer = stations[0].layer;
+            for (layer, Parts { parts, shares, stations }) in layers.iter().enumerate() {
                 let number = quad * plate.layers() + layer;
                 let cell = plate.cell(number);
-                operators.resize(6 * n * stations.len(), 0.0);
-                let parts = &parts[first..first + stations.len()];
+                operators.resize(6 * n * parts.len(), 0.0);
                 element.mean_strains(&cell, parts, &mut scratch, &mut operators)?;
-                first += stations.len();
                 plate.cell_dofs(number, &mut dofs);
                 // Fields run fastest here and in the strains: one operation serves several of them.
                 for (dof, local) in dofs.iter().zip(local.chunks_exact_mut(fields)) {
                     let of_dof = u[*dof..].iter().step_by(plate.ndof());
                     local.iter_mut().zip(of_dof).for_each(|(local, u)| *local = *u);
                 }
-                let (here, rest) = strains.split_at_mut(6 * fields * stations.len());
+                let (of_layer, rest) = strains.split_at_mut(6 * fields * stations);
                 strains = rest;
-                for (operator, here) in operators.chunks_exact(6 * n).zip(here.chunks_exact_mut(6 * fields)) {
+                for (operator, (station, share)) in operators.chunks_exact_mut(6 * n).zip(shares) {
+                    let here = &mut of_layer[6 * fields * station..6 * fields * (station + 1)];
+                    if *share < 1.0 {
+                        operator.iter_mut().for_each(|b| *b *= share);
+                    }
                     if let Ok(strain) = <&mut [f64; 6]>::try_from(&mut *here) {
                         add_product(operator, &local, strain);
                         continue;
@@ -149,20 +164,23 @@ impl Recovery {
         u: &[f64],
         out: &mut [f64],
     ) -> Result<(), ElementError> {
-        let parts: Vec<Part> = self.stations.iter().map(|s| s.part).collect();
-        let mut strains = vec![0.0; self.sources.len() * 6 * parts.len()];
-        let (mut rest, mut dofs, mut local) = (strains.as_mut_slice(), Vec::new(), Vec::new());
+        let layers = self.parts_of_layers();
+        let mut strains = vec![0.0; self.sources.len() * 6 * self.stations.len()];
+        let (mut rest, mut dofs, mut local, mut of_parts) =
+            (strains.as_mut_slice(), Vec::new(), Vec::new(), Vec::new());
         for quad in &self.sources {
-            let mut parts = parts.as_slice();
-            for stations in self.stations.chunk_by(|a, b| a.layer == b.layer) {
-                let number = quad * plate.layers() + stations[0].layer;
+            for (layer, Parts { parts, shares, stations }) in layers.iter().enumerate() {
+                let number = quad * plate.layers() + layer;
                 plate.cell_dofs(number, &mut dofs);
                 local.clear();
                 local.extend(dofs.iter().map(|dof| u[*dof]));
-                let (of_layer, above) = parts.split_at(stations.len());
-                let (here, next) = rest.split_at_mut(6 * stations.len());
-                element.mean_large_strains(&plate.cell(number), of_layer, &local, here)?;
-                (parts, rest) = (above, next);
+                of_parts.resize(6 * parts.len(), 0.0);
+                element.mean_large_strains(&plate.cell(number), parts, &local, &mut of_parts)?;
+                let (here, next) = rest.split_at_mut(6 * stations);
+                for (strain, (station, share)) in of_parts.chunks_exact(6).zip(shares) {
+                    here[6 * station..].iter_mut().zip(strain).for_each(|(mean, e)| *mean += share * e);
+                }
+                rest = next;
             }
         }
         self.averaged(&strains, 1, out);
@@ -209,6 +227,18 @@ impl Recovery {
         Ok(())
     }
 
+    /// What is asked of the cells of each layer.
+    fn parts_of_layers(&self) -> Vec<Parts> {
+        let layers = self.stations.chunk_by(|a, b| a.layer == b.layer);
+        let each = layers.map(|stations| {
+            let all =
+                stations.iter().enumerate().flat_map(|(at, s)| s.parts().map(move |(part, share)| (part, (at, share))));
+            let (parts, shares) = all.unzip();
+            Parts { parts, shares, stations: stations.len() }
+        });
+        each.collect()
+    }
+
     /// Stresses of the strains of the sources, averaged over windows; several fields, which run fastest among the strains.
     fn averaged(&self, strains: &[f64], fields: usize, out: &mut [f64]) {
         let per_quad = 6 * self.stations.len();
@@ -228,6 +258,13 @@ impl Recovery {
             }
         }
     }
+}
+
+/// Parts of the cells of a layer; of each the station that it belongs to, and its share there.
+struct Parts {
+    parts: Vec<Part>,
+    shares: Vec<(usize, f64)>,
+    stations: usize,
 }
 
 /// What a strain operator makes of one field.
@@ -251,7 +288,7 @@ fn stations(
         std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| c[i][k] * r[k][j]).sum()))
     };
     let mut all = Vec::new();
-    for (layer, Stack { slices, .. }) in stacks.iter().enumerate() {
+    for (layer, Stack { slices, transverse, .. }) in stacks.iter().enumerate() {
         let range = laminate.plies_of(layer);
         let (first, end) = (range.start, range.end);
         let interface = |below: usize, slice: usize, q: f64| {
@@ -263,6 +300,7 @@ fn stations(
                 angle: 0.0,
                 material,
                 part: Part { slice, q: [q, q] },
+                beside: (transverse.is_some() && q > -1.0 && q < 1.0).then_some(Part { slice: slice + 1, q: [q, q] }),
                 to_stress: materials[material].elastic.stiffness(),
             })
         };
@@ -283,6 +321,7 @@ fn stations(
                 angle: ply.angle,
                 material: ply.material,
                 part: Part { slice: k - first, q: slice.q },
+                beside: None,
                 to_stress: product(&materials[ply.material].elastic.stiffness(), ply.angle),
             });
             if k + 1 < end || end < laminate.plies.len() {

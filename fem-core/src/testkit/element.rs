@@ -5,6 +5,7 @@ use crate::plates::mesh::PlaneMesh;
 use crate::plates::plate::{Plate, ZDerivatives};
 use crate::words::domain::{Corners, Domain};
 use crate::words::material::Elastic;
+use crate::words::quadrature::gauss_legendre;
 use crate::words::tensor::rotate_stiffness;
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -255,15 +256,16 @@ fn interpolate(info: &ElementInfo, cell: &Cell<'_>, field: impl Fn([f64; 3]) -> 
     info.nodes.iter().flat_map(node).collect()
 }
 
-/// Displacements uₙ = xₘ are reproduced with the strains that the element does not give up for a stress.
+/// Displacements uₙ = xₘ are reproduced with the strains that the element does not give up for a stress: those across a solid in
+/// the mean over its thickness, for its plies may share stresses instead.
 fn linear_fields(element: &dyn Element, cell: &Cell<'_>) -> Result<(), String> {
     let info = element.info();
     let (section, shell) = (info.is_section(), info.is_shell());
-    // Rows of the strain that the theory keeps, and fields that it can express.
-    let rows: &[usize] = match (section, shell) {
-        (true, _) => &[0, 2, 5],
-        (_, true) => &[0, 1, 3],
-        _ => &[0, 1, 2, 3, 4, 5],
+    // Rows of the strain that the theory keeps, at every place and in the mean, and fields that it can express.
+    let (rows, across): (&[usize], &[usize]) = match (section, shell) {
+        (true, _) => (&[0], &[2, 5]),
+        (_, true) => (&[0, 1, 3], &[]),
+        _ => (&[0, 1, 3], &[2, 4, 5]),
     };
     let fits = |n: usize, m: usize| !(section && (n == 1 || m == 1)) && !(shell && (n == 2 || m == 2));
     let (mut b, mut shape) = (vec![0.0; 6 * info.ndof()], vec![0.0; 3 * info.ndof()]);
@@ -280,26 +282,34 @@ fn linear_fields(element: &dyn Element, cell: &Cell<'_>) -> Result<(), String> {
                 (value, gradient)
             };
             let u = interpolate(info, cell, field);
-            for (slice, s) in cell.stack.slices.iter().enumerate() {
-                let xi = [0.37, if section { 0.0 } else { -0.62 }, 0.4 * s.q[0] + 0.6 * s.q[1]];
+            let sum = |operator: &[f64], rows: usize, row: usize| -> f64 {
+                operator.chunks_exact(rows).zip(&u).map(|(c, u)| c[row] * u).sum()
+            };
+            let wanted = [[0, 3, 5], [3, 1, 4], [5, 4, 2]][n][m];
+            let judge = |row: usize, got: f64| {
+                let want = f64::from(u8::from(row == wanted));
+                let why = || format!("u{} = x{}: strain component {row} is {got}, not {want}", n + 1, m + 1);
+                if (got - want).abs() > 1e-7 { Err(why()) } else { Ok(()) }
+            };
+            let [r, s] = [0.37, if section { 0.0 } else { -0.62 }];
+            let mut means = [0.0; 6];
+            for (slice, Slice { q: [low, high], .. }) in cell.stack.slices.iter().enumerate() {
+                for (t, w) in gauss_legendre(info.ply_order) {
+                    let half = 0.5 * (high - low);
+                    element.strain_operator(cell, slice, [r, s, 0.5 * (low + high) + half * t], &mut b);
+                    across.iter().for_each(|row| means[*row] += 0.5 * half * w * sum(&b, 6, *row));
+                }
+                let xi = [r, s, 0.4 * low + 0.6 * high];
                 element.strain_operator(cell, slice, xi, &mut b);
                 element.shape(cell, xi, &mut shape);
-                let sum = |operator: &[f64], rows: usize, row: usize| -> f64 {
-                    operator.chunks_exact(rows).zip(&u).map(|(c, u)| c[row] * u).sum()
-                };
-                let wanted = [[0, 3, 5], [3, 1, 4], [5, 4, 2]][n][m];
-                for row in rows {
-                    let (got, want) = (sum(&b, 6, *row), f64::from(u8::from(*row == wanted)));
-                    if (got - want).abs() > 1e-7 {
-                        return Err(format!("u{} = x{}: strain component {row} is {got}, not {want}", n + 1, m + 1));
-                    }
-                }
+                rows.iter().try_for_each(|row| judge(*row, sum(&b, 6, *row)))?;
                 let (value, _) = field(cell.position(xi));
                 let size = cell.half_height().max(extent(cell));
                 if (0..3).any(|d| (sum(&shape, 3, d) - value[d]).abs() > 1e-9 * size) {
                     return Err(format!("u{} = x{} is not reproduced", n + 1, m + 1));
                 }
             }
+            across.iter().try_for_each(|row| judge(*row, means[*row]))?;
         }
     }
     Ok(())
