@@ -291,6 +291,7 @@ fn stations(
     for (layer, Stack { slices, transverse, .. }) in stacks.iter().enumerate() {
         let range = laminate.plies_of(layer);
         let (first, end) = (range.start, range.end);
+        let shares = transverse.is_some() && !plate.info().is_shell();
         let interface = |below: usize, slice: usize, q: f64| {
             resin.map(|material| Station {
                 layer,
@@ -300,7 +301,7 @@ fn stations(
                 angle: 0.0,
                 material,
                 part: Part { slice, q: [q, q] },
-                beside: (transverse.is_some() && q > -1.0 && q < 1.0).then_some(Part { slice: slice + 1, q: [q, q] }),
+                beside: (shares && q > -1.0 && q < 1.0).then_some(Part { slice: slice + 1, q: [q, q] }),
                 to_stress: materials[material].elastic.stiffness(),
             })
         };
