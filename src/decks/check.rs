@@ -1,6 +1,6 @@
 //! All decks of a folder, checked without a march.
 
-use super::{DeckOptions, Project, run};
+use super::{DeckOptions, Matrices, Project, run};
 use crate::error::Error;
 use fem_io::deck::{self, Deck, DeckSource, NoResults, Program};
 use serde::Serialize;
@@ -43,13 +43,7 @@ pub struct Mistake {
 /// A folder that cannot be read.
 pub fn check(folder: &Path) -> Result<Vec<Checked>, Error> {
     let mut decks = decks(folder)?;
-    let program = |source: &DeckSource| {
-        let name = Path::new(source.name()).file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let named = [("lamcel", Program::Lamcel), ("lamsub", Program::Lamsub), ("tradyr", Program::Tradyr)];
-        // 62-lamsub-lamsub-of-lamcel is LAMSUB's: the first name counts.
-        let first = named.iter().filter_map(|(text, program)| Some((name.find(text)?, *program))).min_by_key(|n| n.0);
-        first.map_or_else(|| deck::guess(source), |(_, program)| program)
-    };
+    let program = |source: &DeckSource| named(source).unwrap_or_else(|| deck::guess(source));
     let rank = |source: &DeckSource| match deck::parse(source, program(source), &NoResults).map(|parsed| parsed.deck) {
         Ok(Deck::Generation(_)) => 0,
         Ok(Deck::Impact(_)) => 1,
@@ -59,7 +53,13 @@ pub fn check(folder: &Path) -> Result<Vec<Checked>, Error> {
     decks.sort_by_cached_key(|source| (rank(source), source.name().to_owned()));
     let mut project = Project::in_memory();
     let check = |source: &DeckSource| {
-        let program = program(source);
+        let mut program = program(source);
+        if named(source).is_none()
+            && let Ok(Deck::BackSubstitution(back)) = deck::parse(source, program, &NoResults).map(|parsed| parsed.deck)
+        {
+            // What wrote the names is the program, which such a deck does not show.
+            program = project.generation(&back.names).map_or(program, Matrices::program);
+        }
         let done = run(source, program, &mut project, &DeckOptions { check: true, ..DeckOptions::default() });
         let (warnings, error) = match done {
             Ok(outcome) => (outcome.warnings, None),
@@ -74,6 +74,14 @@ pub fn check(folder: &Path) -> Result<Vec<Checked>, Error> {
     let mut checked = decks.iter().map(check).collect::<Result<Vec<_>, Error>>()?;
     checked.sort_by(|a, b| a.deck.cmp(&b.deck));
     Ok(checked)
+}
+
+/// The program that the name of a deck's file holds; of several the first, as in 62-lamsub-of-lamcel.
+fn named(source: &DeckSource) -> Option<Program> {
+    let name = Path::new(source.name()).file_name()?.to_string_lossy().to_lowercase();
+    let programs = [("lamcel", Program::Lamcel), ("lamsub", Program::Lamsub), ("tradyr", Program::Tradyr)];
+    let found = programs.into_iter().filter_map(|(text, program)| Some((name.find(text)?, program)));
+    found.min_by_key(|(at, _)| *at).map(|(_, program)| program)
 }
 
 fn decks(folder: &Path) -> Result<Vec<DeckSource>, Error> {

@@ -70,8 +70,9 @@ fn matrices_and_displacements_are_shown_and_exported() {
 #[test]
 fn a_folder_of_decks_is_checked_in_the_order_in_which_they_need_each_other() {
     let empty = tempfile::tempdir().unwrap();
-    for example in ["a-beam-plane-strain", "d-restart", "h-one-dof-a-node"] {
-        let good = fem(empty.path(), &["deck", "check", folder(example).to_str().unwrap()]);
+    let examples = ["a-beam-plane-strain", "c1-quarter-plates-coupled", "d-restart", "h-one-dof-a-node"].map(folder);
+    for decks in examples {
+        let good = fem(empty.path(), &["deck", "check", decks.to_str().unwrap()]);
         assert_eq!(good.status, 0, "{good:?}");
     }
     let bad = fem(empty.path(), &["deck", "check", "--json", folder("g-malformed").to_str().unwrap()]);
