@@ -8,3 +8,4 @@ pub mod modes;
 pub(crate) mod saved;
 pub mod statics;
 pub mod stress;
+mod supports;

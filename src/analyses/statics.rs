@@ -2,6 +2,7 @@
 
 use super::assembled::{self, Substructures};
 use super::stress::{self, Margin};
+use super::supports;
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::{Model, NamedProfile, Plan};
@@ -47,6 +48,9 @@ pub struct StaticSolution {
     /// Error of the mesh in the energy norm, relative, where [`mesh_error`] can say; never under large
     /// displacements or with free strains.
     pub mesh_error: Option<f64>,
+    /// Share of the work of the loads that supports of nodal values cost between the nodes, where it is worth a word
+    /// ([`softness`](fem_core::assembly::softness)).
+    pub softness: Option<f64>,
     /// Sum of the loads along x, y, z, N.
     pub resultant: [f64; 3],
     /// Per criterion, the smallest reserve factor and where.
@@ -71,6 +75,7 @@ struct Found {
     energy: Energy,
     residual: f64,
     condition: f64,
+    softness: Option<f64>,
     decrements: Option<Vec<f64>>,
 }
 
@@ -88,6 +93,7 @@ impl Found {
             energy: found.energy,
             residual: found.residual,
             condition: found.condition,
+            softness: None,
             decrements: Some(found.decrements),
         }
     }
@@ -162,6 +168,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
         dissipated: model.laws.as_ref().map(|_| found.energy.dissipated),
         residual: found.residual,
         condition: found.condition,
+        softness: found.softness,
         decrements: found.decrements,
         u,
         mesh_error,
@@ -193,7 +200,7 @@ fn linear(
         held += energy;
     }
     let (mut rest, own) = assembled.load(&f);
-    let mut solved = rest.clone();
+    let (mut solved, own_load) = (rest.clone(), rest.clone());
     assembled.structure.solve_shifted(0.0, &mut solved, 1)?;
     assembled.structure.add_stiffness(-1.0, &solved, &mut rest);
     // One step of iterative refinement, for a solve beside the factor.
@@ -201,6 +208,7 @@ fn linear(
     assembled.structure.solve_shifted(0.0, &mut more, 1)?;
     assembled.structure.add_stiffness(-1.0, &more, &mut rest);
     solved.iter_mut().zip(&more).for_each(|(u, more)| *u += more);
+    let softness = supports::soft(model, &mut assembled, (&own_load, &solved))?;
     let mut independent = assembled.expand(solved);
     independent.iter_mut().zip(own.iter().flatten()).for_each(|(u, own)| *u += own);
     let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -216,6 +224,7 @@ fn linear(
         factor_entries: assembled.factor_entries,
         residual: norm(&rest) / norm(&f).max(f64::MIN_POSITIVE),
         condition,
+        softness,
         decrements: None,
     })
 }

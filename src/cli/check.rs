@@ -10,7 +10,7 @@ use crate::model::{Impact, Model, Plan};
 use crate::output::fields;
 use crate::output::summary::Advised;
 use crate::registry::Registry;
-use crate::words::{append_symmetry, describe_condition, warn_of_condition};
+use crate::words::{append_symmetry, describe_condition, warn_of_condition, warn_of_softness};
 use clap::Args;
 use fem_core::counters::Counters;
 use fem_io::scene::{self, Explained};
@@ -144,11 +144,12 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
         vec![]
     };
     let model = advise::decided(Model::new(scene, registry)?, NonZeroUsize::MIN)?;
-    let (mut march, mut condition, mut modes, mut frames) = (None, None, None, 1);
+    let (mut march, mut condition, mut modes, mut frames, mut soft) = (None, None, None, 1, None);
     let (memory, substructures) = match &model.plan {
         Plan::Impact(impact) => {
             let sizes = impact::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model.warnings))?.sizes;
             march = Some(MarchDocument::new(impact, &sizes));
+            soft = sizes.softness;
             let asked = model.output.fields.as_ref();
             frames = impact::frames(asked, asked.and_then(|asked| asked.every), &sizes).len();
             (sizes.memory, sizes.substructures)
@@ -192,7 +193,11 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
         criteria: model.criteria.iter().map(|(name, _)| name.clone()).collect(),
         fields: fields::expected(&model, frames)?,
         advised: Advised::of(&model, |_| None),
-        warnings: condition.and_then(warn_of_condition).into_iter().chain(coarse).chain(model.warnings).collect(),
+        warnings: (condition.and_then(warn_of_condition).into_iter())
+            .chain(soft.map(warn_of_softness))
+            .chain(coarse)
+            .chain(model.warnings)
+            .collect(),
         keys,
     })
 }

@@ -4,11 +4,13 @@ use super::NamedCriterion;
 use crate::registry::{NO_REDUCTION, Registry, RegistryError};
 use fem_core::assembly::elimination_order;
 use fem_core::axes::Turns;
+use fem_core::between;
 use fem_core::constraint::{Constraints, Equation};
 use fem_core::contact::ContactLaw;
 use fem_core::dof::Dof;
 use fem_core::element::Element;
 use fem_core::failure::{FailureCriterion, Site, check_material};
+use fem_core::functional::Functional;
 use fem_core::material::Material;
 use fem_core::mesh::Group;
 use fem_core::pieces;
@@ -41,6 +43,8 @@ pub(super) struct Held<'a> {
     pub(super) constraints: Constraints,
     /// How the independent unknowns of a plate that moves can do so as a whole.
     pub(super) motions: Vec<f64>,
+    /// What supports of nodal values leave free between the nodes, sums of the independent unknowns.
+    pub(super) between: Vec<Functional>,
     /// What a restraint holds, and where it stands in the scene.
     pub(super) restraint: Option<(FreeMotions, &'a Place)>,
 }
@@ -320,7 +324,21 @@ impl Builder<'_> {
         }
         let constraints = self.eliminate(plate, &equations, &places)?;
         let motions = if at_rest { Vec::new() } else { free.of_unknowns(plate, &constraints) };
-        Ok(Held { constraints, motions, restraint: restraint.map(|place| (free, place)) })
+        let between = self.between(plate, &constraints)?;
+        Ok(Held { constraints, motions, between, restraint: restraint.map(|place| (free, place)) })
+    }
+
+    /// What the supports leave free between the nodes that they hold.
+    fn between(&self, plate: &Plate, constraints: &Constraints) -> Result<Vec<Functional>, SceneError> {
+        let mut found = Vec::new();
+        for entry in &self.scene.supports {
+            let Support::Fix { nodes, dofs, axes, .. } = entry else { continue };
+            let levels = nodes.levels.of(plate).map_err(|why| self.error(&nodes.group, why.to_string(), ""))?;
+            let group = self.group(plate, &nodes.group)?;
+            found.extend(between::between(plate, group, &levels, dofs, *axes));
+        }
+        let left = found.iter().filter(|terms| !constraints.implies(terms));
+        Ok(left.map(|terms| Functional(constraints.restrict(terms))).collect())
     }
 
     /// What the user should know of unknowns that supports and couples name and the element lacks.

@@ -33,6 +33,7 @@ use fem_core::constraint::Constraints;
 use fem_core::dof::Dof;
 use fem_core::element::Element;
 use fem_core::failure::FailureCriterion;
+use fem_core::functional::Functional;
 use fem_core::laminate::Laminate;
 use fem_core::laws::PlyLaws;
 use fem_core::material::{Material, MaterialError};
@@ -70,6 +71,8 @@ pub struct Model {
     pub laws: Option<PlyLaws>,
     /// Supports and other equations, eliminated.
     pub constraints: Constraints,
+    /// What supports of nodal values leave free between the nodes, sums of the independent unknowns.
+    pub between: Vec<Functional>,
     /// How the plate can move as a whole, by its independent unknowns, one motion after the other; at rest it cannot.
     pub motions: Vec<f64>,
     /// Whether the supports, or a restraint, stop all rigid motions. One that moves is restrained to the frame that goes with it.
@@ -264,6 +267,7 @@ impl Model {
             laws,
             held: supports.motions.is_empty() || supports.restraint.is_some(),
             constraints: supports.constraints,
+            between: supports.between,
             motions: supports.motions,
             division,
             plan,

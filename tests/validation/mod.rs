@@ -14,6 +14,7 @@ mod pagano;
 mod patch;
 mod scene;
 mod slender;
+mod softness;
 mod strip;
 mod study;
 mod substructures;

@@ -1,6 +1,7 @@
 //! A plate of cells: mesh, plies, unknowns, and what holds, loads and strikes it.
 
 pub mod axes;
+pub mod between;
 pub mod constraint;
 mod error;
 pub mod laminate;

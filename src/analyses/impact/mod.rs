@@ -45,6 +45,9 @@ pub struct Sizes {
     pub memory: MemoryEstimate,
     /// Contact force of the first impactor per deflection under it, N/m, of the plate as marched.
     pub static_stiffness: f64,
+    /// Share of that deflection that supports of nodal values cost between the nodes, where it is worth a word
+    /// ([`softness`](fem_core::assembly::softness)).
+    pub softness: Option<f64>,
     /// Highest frequency of the plate as marched, Hz; `None` where no integrator limit asked for it.
     pub highest_frequency: Option<f64>,
     /// Lowest frequency of the reduced plate that the impact excites, Hz.

@@ -2,6 +2,7 @@
 
 use super::Sizes;
 use crate::analyses::assembled::{Assembled, Substructures, structure};
+use crate::analyses::supports;
 use crate::cost::Stopwatch;
 use crate::effect::{Effect, Feature, Marched};
 use crate::error::Error;
@@ -82,6 +83,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     if !inertia && contacts.iter().any(|contact| assembled.structure.moves_under(contact)) {
         return Err(Error::Unheld { load: "the impactor", inertia });
     }
+    let softness = soften(model, &mut assembled, &contacts)?;
     let basis = choose_basis(model, impact, &mut assembled, &contacts);
     let reduced = reduce(model, impact, &mut assembled, basis, &mut effects)?;
     let Assembled { structure, condensation, .. } = assembled;
@@ -99,7 +101,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     };
     let mut system = couple(model, ImpactSystem::new(structure, impactors), reduced.as_ref(), &mut effects);
     try_inertia(model, impact, &system, reduced.as_ref())?;
-    let sizes = check_step(model, impact, &mut system, reduced.as_ref(), before)?;
+    let sizes = Sizes { softness, ..check_step(model, impact, &mut system, reduced.as_ref(), before)? };
     Ok(Prepared {
         model,
         impact,
@@ -113,6 +115,16 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         counters,
         stopwatch,
     })
+}
+
+/// What supports of nodal values cost under the first impactor.
+fn soften(model: &Model, assembled: &mut Assembled, contacts: &[Functional]) -> Result<Option<f64>, Error> {
+    let Some(contact) = contacts.first().filter(|_| !model.between.is_empty()) else { return Ok(None) };
+    let mut load = vec![0.0; assembled.structure.ndof()];
+    contact.add_to(1.0, &mut load);
+    let mut u = load.clone();
+    assembled.structure.solve_shifted(0.0, &mut u, 1)?;
+    supports::soft(model, assembled, (&load, &u))
 }
 
 /// What is known of a plate once it is assembled.
@@ -272,6 +284,7 @@ fn check_step(
         factor_entries,
         memory,
         static_stiffness: 1.0 / system.static_flexibility(0)?,
+        softness: None,
         highest_frequency: highest.map(hertz),
         lowest_frequency: lowest.filter(|omega| omega.is_finite()).map(hertz),
         longest_step,

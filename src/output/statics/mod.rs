@@ -10,7 +10,7 @@ use crate::analyses::stress::Margin;
 use crate::cost::Cost;
 use crate::model::{Model, NamedProfile};
 use crate::output::summary::Advised;
-use crate::words::{append, append_symmetry, describe_condition, warn_of_condition};
+use crate::words::{append, append_symmetry, describe_condition, warn_of_condition, warn_of_softness};
 use fem_core::profile::{Choice, Resultants, Way};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -142,6 +142,7 @@ impl StaticSummary {
                 .cloned()
                 .chain(warn_of_residual(solution.residual))
                 .chain(warn_of_condition(solution.condition))
+                .chain(solution.softness.map(warn_of_softness))
                 .chain(profiles().flat_map(warn_of_transverse))
                 .collect(),
         }

@@ -3,11 +3,17 @@
 use crate::advise::warn_of_coarse_cells;
 use crate::analyses::impact::{ContactRecord, Outcome, Sizes};
 use crate::model::Model;
+use crate::words::warn_of_softness;
 
 /// All of it.
 pub(super) fn of_contacts(model: &Model, sizes: &Sizes, outcome: &Outcome) -> impl Iterator<Item = String> {
     let coarse = warn_of_coarse_cells(model, &outcome.contacts);
-    deep(model, outcome).chain(few_looks(model, sizes, outcome)).chain(rare_rows(outcome)).chain(coarse)
+    let soft = sizes.softness.map(warn_of_softness);
+    soft.into_iter()
+        .chain(deep(model, outcome))
+        .chain(few_looks(model, sizes, outcome))
+        .chain(rare_rows(outcome))
+        .chain(coarse)
 }
 
 /// Indentation over thickness above which a plate is not a half-space to an impactor; the shipped examples reach 0.05.

@@ -1,0 +1,39 @@
+//! Supports that fix values at nodes and leave the plate free between them, against supports that hold the face.
+
+use super::scene::{AS4, Plate, Side};
+
+/// A square of 16 plies, clamped, under a pressure.
+fn plate(ratio: f64, cells: usize) -> Plate {
+    let side = ratio * 2.08;
+    Plate::new(AS4, "[0/90/0/90/0/90/0/90]s", 0.13, vec![8, 8])
+        .rectangle([side; 2], [cells; 2])
+        .sides([Side::Clamped; 4])
+        .load("pressure = '1 MPa'")
+}
+
+/// The same, held in values alone.
+fn values(text: &str) -> String {
+    let mut kept = String::new();
+    for line in text.lines() {
+        let fix = line.starts_with("fix = ").then_some("fix = ['U10', 'U20', 'U30']");
+        kept.push_str(fix.unwrap_or(line));
+        kept.push('\n');
+    }
+    kept
+}
+
+/// What is said is what the other supports find, to a twentieth of it.
+#[test]
+fn what_is_free_between_nodes_is_said_with_its_number() {
+    for (ratio, cells) in [(10.0, 4), (4.0, 4), (10.0, 8)] {
+        let plate = plate(ratio, cells);
+        let held = plate.solve();
+        assert_eq!(held.softness, None);
+        let scene = fem::io::scene::parse(&values(&plate.text("static")), "scene.toml".as_ref()).unwrap();
+        let model = fem::Model::new(scene, &fem::Registry::standard()).unwrap();
+        let free = fem::analyses::statics::solve(&model, std::num::NonZeroUsize::MIN).unwrap();
+        let actual = 1.0 - held.strain_energy / free.strain_energy;
+        let said = free.softness.unwrap();
+        assert!(actual > 0.02 && (said / actual - 1.0).abs() < 0.05, "{ratio} {cells}: {said} {actual}");
+    }
+}
