@@ -195,7 +195,12 @@ impl Run<'_> {
         let parts = Parts::new(&own, &piece)?;
         let mut substituted = Vec::new();
         for asked in &deck.sets {
-            let (_, u) = &set.steps[asked.step - 1];
+            let Some((_, u)) = set.steps.get(asked.step - 1).filter(|(_, u)| u.len() == model.freedom.ndof()) else {
+                let found =
+                    format!("`{}` has no displacements of its model at print step {}", deck.names[5], asked.step);
+                let help = "analyse the model again";
+                return Err(self.source.error(0..0, Fault::NoSuchResult, found, help).into());
+            };
             let per_node = model.freedom.directions.len();
             let nodes = model.substructures[asked.substructure - 1].nodes.iter();
             let masters: Vec<f64> = nodes.flat_map(|n| &u[n * per_node..(n + 1) * per_node]).copied().collect();

@@ -52,6 +52,12 @@ impl Matrices {
         }
     }
 
+    /// Whether the matrices have a row for each master.
+    fn fits(&self) -> bool {
+        let entries = self.masters.len().pow(2);
+        self.k.len() == entries && self.m.len() == entries
+    }
+
     /// The program that made it.
     pub fn program(&self) -> Program {
         if self.lamsub { Program::Lamsub } else { Program::Lamcel }
@@ -90,6 +96,13 @@ pub(super) struct DisplacementSet {
     pub(super) steps: Vec<(f64, Vec<f64>)>,
 }
 
+impl DisplacementSet {
+    /// Whether it has the print steps that it counts, all of one length.
+    fn fits(&self) -> bool {
+        self.steps.len() == self.count && self.steps.windows(2).all(|pair| pair[0].1.len() == pair[1].1.len())
+    }
+}
+
 /// Results by name, in a folder or in memory.
 #[derive(Debug, Default)]
 pub struct Project {
@@ -120,11 +133,11 @@ impl Project {
         for path in entries.filter_map(|entry| Some(entry.ok()?.path())) {
             let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
             if let Some(name) = name.strip_suffix(MATRICES) {
-                project.matrices.insert(name.to_owned(), load(&path)?);
+                project.matrices.insert(name.to_owned(), load(&path, Matrices::fits)?);
             } else if let Some(name) = name.strip_suffix(SET) {
-                project.sets.insert(name.to_owned(), load(&path)?);
+                project.sets.insert(name.to_owned(), load(&path, DisplacementSet::fits)?);
             } else if name == LATEST {
-                project.latest = Some(load(&path)?);
+                project.latest = Some(load(&path, |_| true)?);
             }
         }
         project.dir = Some(dir);
@@ -225,9 +238,11 @@ impl Project {
     }
 }
 
-fn load<T: DeserializeOwned>(path: &Path) -> Result<T, FileError> {
+fn load<T: DeserializeOwned>(path: &Path, fits: impl Fn(&T) -> bool) -> Result<T, FileError> {
     let payload = checkpoint::read(path)?;
-    postcard::from_bytes(&payload).map_err(|e| FileError::Damaged { path: path.to_owned(), why: e.to_string() })
+    let damaged = |why: String| FileError::Damaged { path: path.to_owned(), why };
+    let loaded = postcard::from_bytes(&payload).map_err(|e| damaged(e.to_string()))?;
+    if fits(&loaded) { Ok(loaded) } else { Err(damaged("its parts do not fit each other".into())) }
 }
 
 /// Refuses a name that differs from one of `others` by capitals alone.
