@@ -139,3 +139,25 @@ load = [{{ pressure = "1 kPa" }}]"#
         assert!(!beside(fix, axes).contains("in both directions"), "{fix} {axes}");
     }
 }
+
+/// A quarter made by hand: beyond its cut edges windows have no cells.
+#[test]
+fn windows_that_are_cut_off_at_a_plane_of_symmetry() {
+    let with = |window: &str, cut: &str| {
+        let text = case(&format!(
+            r#"failure = {{ criteria = ["hashin-report"], window = {window} }}
+support = [{{ group = "x-min", at = "all", fix = ["U10", "U20", "U30"] }},
+            {{ group = "x-max", at = "all", fix = {cut} }}]
+load = [{{ pressure = "1 kPa" }}]"#
+        ));
+        said(&text, 0)
+    };
+    let quarter = r#"["U10"]"#;
+    holds(
+        &with("\"25 mm\"", quarter),
+        &["at 2 cells near an edge", "of 25.0000 mm is cut off", "window = \"element\""],
+    );
+    for (window, cut) in [("\"element\"", quarter), ("\"9 mm\"", quarter), ("\"25 mm\"", r#"["U10", "U30"]"#)] {
+        assert!(!with(window, cut).contains("is cut off"), "{window} {cut}");
+    }
+}

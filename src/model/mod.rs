@@ -40,6 +40,7 @@ use fem_core::material::{Material, MaterialError};
 use fem_core::mesh::PlaneMesh;
 use fem_core::pieces;
 use fem_core::plate::Plate;
+use fem_core::profile::Mirrors;
 use fem_core::warping;
 use fem_failure::delamination::DelaminationThreshold;
 use fem_io::scene::{self, Analysis, Damage, Located, Output, Scene, SceneError, Window};
@@ -246,7 +247,10 @@ impl Model {
         let fields = builder.fields(&plate, &centres)?;
         let resin = scene.interface.as_ref().map(|resin| resin.value);
         let threshold = builder.threshold(DelaminationThreshold::of(&laminate, &materials, resin))?;
-        let profiles = builder.profiles(&plate, constraints)?;
+        let mirrors = Mirrors::of(&plate, constraints);
+        let judged: &[usize] = if criteria.is_empty() { &[] } else { &watched };
+        warnings.extend(plan::warn_of_cut_windows(scene.failure.window, judged, &plate, &mirrors));
+        let profiles = builder.profiles(&plate, &mirrors)?;
         warnings.extend(plan::warn_of_sides(&profiles, &plate));
         let laws = builder.laws(&plate, &laminates, &materials, &*element)?;
         if let Some(laws) = &laws {

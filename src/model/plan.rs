@@ -15,7 +15,7 @@ use fem_core::profile::{Mirrors, Profile};
 use fem_core::reduction::Reduction;
 use fem_core::time::Integrator;
 use fem_io::scene::{
-    self, Analysis, ContactLoad, ImpactPoint, Load, LoadKind, Located, Place, ProfileLine, SceneError,
+    self, Analysis, ContactLoad, ImpactPoint, Load, LoadKind, Located, Place, ProfileLine, SceneError, Window,
 };
 use std::collections::BTreeMap;
 
@@ -98,6 +98,28 @@ pub(super) fn warn_of_parts(strikes: &[Strike], plate: &Plate, constraints: &Con
         ))
     };
     strikes.iter().filter_map(part).collect()
+}
+
+/// Windows of means that are cut off at a plane of symmetry, behind which the plate goes on, at the cells `watched`.
+pub(super) fn warn_of_cut_windows(
+    window: Window,
+    watched: &[usize],
+    plate: &Plate,
+    mirrors: &Mirrors,
+) -> Option<String> {
+    let Window::Square(side) = window else { return None };
+    let is_cut = |quad: &&usize| {
+        let corners = plate.plane.corners(**quad);
+        plate.plane.quality(**quad).area < side * side && mirrors.are_near(corners.centroid(), 0.5 * side)
+    };
+    let cut = watched.iter().filter(is_cut).count();
+    (cut > 0).then(|| {
+        format!(
+            "at {cut} cells near an edge whose supports are those of a plane of symmetry, `failure.window` of {:.4} mm is cut off with the \
+             plate: indices there may be some 10 % too small; give the whole plate and a `symmetry`, or window = \"element\"",
+            side * 1e3
+        )
+    })
 }
 
 /// Profiles where laminates meet: on either side stresses are others.
@@ -231,12 +253,11 @@ impl Builder<'_> {
         }
     }
 
-    pub(super) fn profiles(&self, plate: &Plate, constraints: &Constraints) -> Result<Vec<NamedProfile>, SceneError> {
+    pub(super) fn profiles(&self, plate: &Plate, mirrors: &Mirrors) -> Result<Vec<NamedProfile>, SceneError> {
         let cells = plate.plane.quads.len();
-        let mirrors = Mirrors::of(plate, constraints);
         let each = |line: &ProfileLine| {
             let (point, _) = self.point(plate, &line.at)?;
-            let Some(profile) = Profile::at(plate, &mirrors, point) else {
+            let Some(profile) = Profile::at(plate, mirrors, point) else {
                 return Err(self.error(&line.at, "the point lies outside the plate", "move it"));
             };
             if line.equilibrium == Some(true) && cells < LEAST_CELLS {

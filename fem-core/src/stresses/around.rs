@@ -43,6 +43,11 @@ impl Mirrors {
         }
         Self(planes)
     }
+
+    /// Whether one of them is nearer to `point` than `reach`, m.
+    pub fn are_near(&self, point: [f64; 2], reach: f64) -> bool {
+        self.0.iter().zip(point).any(|(planes, x)| planes.iter().any(|at| (at - x).abs() < reach))
+    }
 }
 
 /// Whether the supports along the edge where coordinate `d` is `at` are those of a plane of symmetry.
