@@ -128,8 +128,9 @@ fn an_indentation_that_no_contact_law_describes_is_warned_of() {
     let done = soft.fem("run", &["--out", "out"]).good();
     let summary = soft.summary("out");
     let deepest = summary["impact"]["peak_indentation_m"].as_f64().unwrap();
-    let warned = summary["warnings"][0].as_str().unwrap();
-    assert!(warned.contains(&format!("pressed {:.4} mm deep into a plate of 2.1133 mm", deepest * 1e3)), "{warned}");
+    let words = format!("pressed {:.4} mm deep into a plate of 2.1133 mm", deepest * 1e3);
+    let mut warnings = summary["warnings"].as_array().unwrap().iter().map(|warning| warning.as_str().unwrap());
+    let warned = warnings.find(|warning| warning.contains(&words)).unwrap();
     assert!(done.stdout.contains(warned), "{done:#?}");
     assert!(deepest > 0.25 * 2.1133e-3, "{deepest}");
 }

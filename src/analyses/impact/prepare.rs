@@ -83,9 +83,9 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     if !inertia && contacts.iter().any(|contact| assembled.structure.moves_under(contact)) {
         return Err(Error::Unheld { load: "the impactor", inertia });
     }
-    let softness = soften(model, &mut assembled, &contacts)?;
     let basis = choose_basis(model, impact, &mut assembled, &contacts);
     let reduced = reduce(model, impact, &mut assembled, basis, &mut effects)?;
+    let softness = soften(model, &mut assembled, &contacts, reduced.as_ref());
     let Assembled { structure, condensation, .. } = assembled;
     let plate = Marched { full: structure, reduced, stretched: None, contacts: distinct(&contacts) };
     let plate = change_structure(model, plate, &mut effects)?;
@@ -118,12 +118,20 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
 }
 
 /// What supports of nodal values cost under the first impactor.
-fn soften(model: &Model, assembled: &mut Assembled, contacts: &[Functional]) -> Result<Option<f64>, Error> {
-    let Some(contact) = contacts.first().filter(|_| !model.between.is_empty()) else { return Ok(None) };
+fn soften(model: &Model, assembled: &mut Assembled, contacts: &[Functional], reduced: Option<&Reduced>) -> Option<f64> {
+    let contact = contacts.first().filter(|_| !model.between.is_empty())?;
     let mut load = vec![0.0; assembled.structure.ndof()];
     contact.add_to(1.0, &mut load);
     let mut u = load.clone();
-    assembled.structure.solve_shifted(0.0, &mut u, 1)?;
+    match reduced {
+        // The response to the contact is in the space.
+        Some(reduced) => {
+            let modes = reduced.basis.chunks_exact(load.len()).zip(reduced.modal.compliances());
+            let q: Vec<f64> = modes.map(|(mode, compliance)| compliance * contact.of(mode)).collect();
+            reduced.expand(&q, &mut u);
+        }
+        None => assembled.structure.solve_shifted(0.0, &mut u, 1).ok()?,
+    }
     supports::soft(model, assembled, (&load, &u))
 }
 
