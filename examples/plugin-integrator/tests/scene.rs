@@ -35,8 +35,8 @@ fn peak(integrator: &str) -> f64 {
 
 #[test]
 fn the_force_converges_to_that_of_newmark() {
-    let converged = peak("integrator = \"newmark\"\nstep = \"0.05 us\"");
-    let [coarse, fine] = ["1 us", "0.25 us"]
+    let converged = peak("integrator = \"newmark\"\nstep = \"0.025 us\"");
+    let [coarse, fine] = ["0.5 us", "0.05 us"]
         .map(|step| (peak(&format!("integrator = \"tr-bdf2\"\nstep = \"{step}\"")) / converged - 1.0).abs());
     assert!(fine < 2e-4 && fine < 0.1 * coarse, "{coarse:e} {fine:e}");
 }
