@@ -23,7 +23,7 @@ type SectionOperator = SMatrix<f64, 8, N>;
 /// First-order-shear shell on a flat quadrilateral, whole laminate in one cell, free of shear locking.
 ///
 /// u = U10 + z U13, v = U20 + z U23, w = U30, bilinear in the plane; z from the middle of the cell. The slopes of the normal
-/// are its rotations: γ₃₁ = U13 + w,x. SmoothTransverse shears are interpolated from the middles of the edges in covariant
+/// are its rotations: γ₃₁ = U13 + w,x. Transverse shears are interpolated from the middles of the edges in covariant
 /// components (Bathe and Dvorkin, Int. J. Numer. Meth. Eng. 21 (1985) 367-383); their course through the plies, and the
 /// shear stiffness, come from equilibrium (Rolfes and Rohwer, Int. J. Numer. Meth. Eng. 40 (1997) 51-60), so shear stresses
 /// are continuous between plies and vanish at the faces. σ₃₃ = 0.

@@ -10,7 +10,7 @@ use fem_core::contact::ContactLaw;
 use fem_core::dof::Dof;
 use fem_core::element::Element;
 use fem_core::failure::{FailureCriterion, Site, check_material};
-use fem_core::functional::Functional;
+use fem_core::functional::{Functional, orthogonalise};
 use fem_core::material::Material;
 use fem_core::mesh::Group;
 use fem_core::pieces;
@@ -338,7 +338,7 @@ impl Builder<'_> {
             found.extend(between::between(plate, group, &levels, dofs, *axes));
         }
         let left = found.iter().filter(|terms| !constraints.implies(terms));
-        Ok(left.map(|terms| Functional(constraints.restrict(terms))).collect())
+        Ok(orthogonalise(left.map(|terms| Functional(constraints.restrict(terms))).collect()))
     }
 
     /// What the user should know of unknowns that supports and couples name and the element lacks.

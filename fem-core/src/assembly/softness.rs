@@ -10,7 +10,7 @@ const ENOUGH: f64 = 0.02;
 /// Share of the work of `load` on its displacements `u` = K⁻¹ f that would be missing if `free`, sums of unknowns, were zero: at
 /// least that, to about 2 % of it. Shares below `least` are told apart from it without a solve where a bound says so: none then.
 ///
-/// With the columns l of L, the motions g = Lᵀ u cost λᵀ g, (Lᵀ K⁻¹ L) λ = g; conjugate gradients, whose preconditioner
+/// The sums must be orthogonal ([`orthogonalise`](crate::words::functional::orthogonalise)). With the columns l of L, the motions g = Lᵀ u cost λᵀ g, (Lᵀ K⁻¹ L) λ = g; conjugate gradients, whose preconditioner
 /// L⁺ᵀ K L⁺ holds all but the motions themselves, approach it from below. What K takes to undo g alone is the bound.
 ///
 /// # Errors
@@ -24,7 +24,7 @@ pub fn softness(
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let work = dot(load, u);
     let sizes: Vec<f64> = free.iter().map(|l| l.0.iter().map(|(_, w)| w * w).sum()).collect();
-    // L⁺ of unknowns that belong to one sum each, which those of different nodes do.
+    // L⁺ of orthogonal sums.
     let undo = |structure: &dyn Structure, g: &[f64]| -> Vec<f64> {
         let (mut x, mut f) = (vec![0.0; u.len()], vec![0.0; u.len()]);
         free.iter().zip(&sizes).zip(g).for_each(|((l, size), g)| l.add_to(g / size, &mut x));

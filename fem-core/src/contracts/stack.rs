@@ -25,7 +25,7 @@ pub struct Stack {
     pub stiffness_moments: [Matrix6; 7],
     /// ∫ ρ qᵐ dq, m = 0 … 6.
     pub density_moments: [f64; 7],
-    /// SmoothTransverse stresses that are smooth across the plies; none where all plies are of one stiffness, whose strains have
+    /// Transverse stresses that are smooth across the plies; none where all plies are of one stiffness, whose strains have
     /// such stresses anyway.
     pub transverse: Option<SmoothTransverse>,
 }

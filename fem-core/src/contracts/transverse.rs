@@ -1,4 +1,4 @@
-//! SmoothTransverse stresses that are smooth across the plies of a layer of cells.
+//! Transverse stresses that are smooth across the plies of a layer of cells.
 //!
 //! Displacements that are polynomials through a layer of several plies have smooth strains, and stresses C ε that jump from ply
 //! to ply where equilibrium wants them continuous: the layer is too stiff, by 5 to 15 % of a thick plate's deflection. Here the
@@ -53,7 +53,7 @@ type Functions = SMatrix<f64, 3, AMPLITUDES>;
 /// Something of each amplitude from a strain.
 pub type Coupling = SMatrix<f64, AMPLITUDES, 6>;
 
-/// SmoothTransverse strains from a strain.
+/// Transverse strains from a strain.
 pub type Operator = SMatrix<f64, 3, 6>;
 
 /// Amplitudes a of the stresses.
@@ -181,7 +181,7 @@ impl SmoothTransverse {
         &self.forms[k][k2]
     }
 
-    /// SmoothTransverse rows of ε̄, its mean over `part` of the ply `slice` or its value where both bounds are one, from the
+    /// Transverse rows of ε̄, its mean over `part` of the ply `slice` or its value where both bounds are one, from the
     /// coefficients ε(k) of strains Σ ε(k) qᵏ: ē = Σ operator\[k\] ε(k).
     pub fn operator(&self, slice: usize, part: [f64; 2]) -> [Operator; LINEAR] {
         let ply = &self.plies[slice];

@@ -1,5 +1,7 @@
 //! Linear functionals of displacements.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 /// A linear functional of the displacements, `d = Σ wᵢ uᵢ`: one dof, or the weighted mean over a contact patch.
 ///
 /// ```
@@ -30,6 +32,55 @@ impl Functional {
     pub fn add_to(&self, scale: f64, y: &mut [f64]) {
         for &(i, w) in &self.0 {
             y[i] += scale * w;
+        }
+    }
+}
+
+/// Share of a functional's size below which what is left of it without others is rounding.
+const DEPENDENT: f64 = 1e-9;
+
+/// Functionals that span what `all` span and have no unknown in common or are orthogonal, Σ wᵢ w′ᵢ = 0: each without its parts
+/// along those before it, and none where nothing is left. Meant for many functionals of few unknowns each.
+pub fn orthogonalise(all: Vec<Functional>) -> Vec<Functional> {
+    let mut kept: Vec<Functional> = Vec::new();
+    let mut of_unknown: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for functional in all {
+        let mut left: BTreeMap<usize, f64> = BTreeMap::new();
+        functional.0.iter().for_each(|(i, w)| *left.entry(*i).or_default() += w);
+        let square = |left: &BTreeMap<usize, f64>| left.values().map(|w| w * w).sum::<f64>();
+        let whole = square(&left);
+        let shared: BTreeSet<usize> = left.keys().filter_map(|i| of_unknown.get(i)).flatten().copied().collect();
+        for other in shared.iter().map(|k| &kept[*k].0) {
+            let along: f64 = other.iter().map(|(i, w)| w * left.get(i).unwrap_or(&0.0)).sum();
+            let share = along / other.iter().map(|(_, w)| w * w).sum::<f64>();
+            other.iter().for_each(|(i, w)| *left.entry(*i).or_default() -= share * w);
+        }
+        if square(&left) > DEPENDENT * DEPENDENT * whole {
+            left.keys().for_each(|i| of_unknown.entry(*i).or_default().push(kept.len()));
+            kept.push(Functional(left.into_iter().collect()));
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_orthogonal_spans_the_same() {
+        let all =
+            [vec![(0, 1.0), (1, 1.0)], vec![(1, 2.0), (2, 1.0)], vec![(0, 1.0), (1, 3.0), (2, 1.0)], vec![(4, 1.0)]];
+        let found = orthogonalise(all.clone().map(Functional).to_vec());
+        assert_eq!(found.len(), 3, "{found:?}");
+        let dense =
+            |f: &Functional| (0..5).map(|i| f.0.iter().filter(|t| t.0 == i).map(|t| t.1).sum()).collect::<Vec<f64>>();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let basis: Vec<_> = found.iter().map(dense).collect();
+        assert!(dot(&basis[0], &basis[1]).abs() < 1e-15);
+        for one in all.map(Functional).iter().map(dense) {
+            let inside: f64 = basis.iter().map(|b| dot(&one, b).powi(2) / dot(b, b)).sum();
+            assert!((inside / dot(&one, &one) - 1.0).abs() < 1e-14);
         }
     }
 }

@@ -77,7 +77,6 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
 
     let mut assembled = assemble(model, impact, threads, &mut counters)?;
     stopwatch.lap("assemble");
-    let before = Before::of(&assembled);
     let contacts: Vec<Functional> = impact.strikes.iter().map(|s| assembled.functional(&s.contact)).collect();
     let inertia = model.effects.nature().inertia;
     if !inertia && contacts.iter().any(|contact| assembled.structure.moves_under(contact)) {
@@ -86,6 +85,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     let basis = choose_basis(model, impact, &mut assembled, &contacts);
     let reduced = reduce(model, impact, &mut assembled, basis, &mut effects)?;
     let softness = soften(model, &mut assembled, &contacts, reduced.as_ref());
+    let before = Before::of(&assembled, softness);
     let Assembled { structure, condensation, .. } = assembled;
     let plate = Marched { full: structure, reduced, stretched: None, contacts: distinct(&contacts) };
     let plate = change_structure(model, plate, &mut effects)?;
@@ -101,7 +101,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     };
     let mut system = couple(model, ImpactSystem::new(structure, impactors), reduced.as_ref(), &mut effects);
     try_inertia(model, impact, &system, reduced.as_ref())?;
-    let sizes = Sizes { softness, ..check_step(model, impact, &mut system, reduced.as_ref(), before)? };
+    let sizes = check_step(model, impact, &mut system, reduced.as_ref(), before)?;
     Ok(Prepared {
         model,
         impact,
@@ -135,22 +135,24 @@ fn soften(model: &Model, assembled: &mut Assembled, contacts: &[Functional], red
     supports::soft(model, assembled, (&load, &u))
 }
 
-/// What is known of a plate once it is assembled.
+/// What is known of a plate before it is marched.
 #[derive(Debug, Clone, Copy)]
 struct Before {
     stiffness_entries: usize,
     factor_entries: usize,
     substructures: Option<Substructures>,
     memory: MemoryEstimate,
+    softness: Option<f64>,
 }
 
 impl Before {
-    fn of(assembled: &Assembled) -> Self {
+    fn of(assembled: &Assembled, softness: Option<f64>) -> Self {
         Self {
             stiffness_entries: assembled.structure.entries(),
             factor_entries: assembled.factor_entries,
             substructures: assembled.substructures(),
             memory: assembled.memory,
+            softness,
         }
     }
 }
@@ -283,7 +285,7 @@ fn check_step(
     }
     let (steps, step) = march.steps();
     let lowest = reduced.and_then(|r| r.modal.lowest_frequency());
-    let Before { stiffness_entries, factor_entries, substructures, memory } = before;
+    let Before { stiffness_entries, factor_entries, substructures, memory, softness } = before;
     Ok(Sizes {
         unknowns: model.constraints.ndof(),
         substructures,
@@ -292,7 +294,7 @@ fn check_step(
         factor_entries,
         memory,
         static_stiffness: 1.0 / system.static_flexibility(0)?,
-        softness: None,
+        softness,
         highest_frequency: highest.map(hertz),
         lowest_frequency: lowest.filter(|omega| omega.is_finite()).map(hertz),
         longest_step,
