@@ -49,7 +49,19 @@ fn write_matrix(dir: &OutputDir, name: &str, matrix: &Symmetric) -> Result<(), E
     // Both triangles: readers disagree on which one a symmetric file holds, and sprs writes the other one.
     let full = matrix.full()?;
     let (symbolic, values) = full.parts();
-    let full = CsMatView::new_csc(full.shape(), symbolic.col_ptr(), symbolic.row_idx(), values);
-    dir.write(name, |out| write_matrix_market_to_bufwrite(out, full))?;
-    Ok(())
+    write_columns(dir, name, CsMatView::new_csc(full.shape(), symbolic.col_ptr(), symbolic.row_idx(), values))
+}
+
+/// Writes a full symmetric matrix of `n` rows as Matrix Market does sparse ones, so that all of ours are read alike.
+///
+/// # Errors
+/// As [`OutputDir::write`].
+pub(crate) fn write_full(dir: &OutputDir, name: &str, n: usize, values: &[f64]) -> Result<(), Error> {
+    let ends: Vec<usize> = (0..=n).map(|column| column * n).collect();
+    let rows: Vec<usize> = (0..n * n).map(|entry| entry % n).collect();
+    write_columns(dir, name, CsMatView::new_csc((n, n), &ends, &rows, values))
+}
+
+fn write_columns(dir: &OutputDir, name: &str, matrix: CsMatView<'_, f64>) -> Result<(), Error> {
+    Ok(dir.write(name, |out| write_matrix_market_to_bufwrite(out, matrix))?)
 }

@@ -127,6 +127,9 @@ fn check_inertia(source: &DeckSource, deck: &ImpactDeck, inertia: &Symmetric) ->
 }
 
 /// Circular frequencies of K* and M*, ascending; 0 of motions without strain.
+///
+/// `fem_dynamics` finds modes in the metric of K and bounds the highest frequency. Governors may describe rigid motions, so that
+/// K* is singular where M* is definite, and the listing prints the highest frequency itself.
 fn frequencies(n: usize, k: &[f64], m: &[f64]) -> Vec<f64> {
     let [k, m] = [k, m].map(|a| DMatrix::from_column_slice(n, n, a));
     let Some(l) = Dense::new(m).map(Dense::unpack) else { return Vec::new() };

@@ -4,8 +4,10 @@ use super::element::element;
 use super::reduced::{Block, Way, reduce};
 use fem_core::element::{Cell, Element, ElementError, Scratch, Stack};
 use fem_core::laminate::Laminate;
-use fem_io::deck::{DeckError, DeckSource, ElementCard, Fault, Generation, PieceKind};
+use fem_io::deck::{DeckError, DeckSource, Fault, Generation, PieceKind};
 use nalgebra::{DMatrix, Matrix3, Rotation3, Vector3};
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 /// What the elements of a piece are made of.
 #[derive(Debug)]
@@ -14,7 +16,8 @@ pub(super) struct Parts<'a> {
     pub(super) element: Box<dyn Element>,
     /// Heights of the ply boundaries.
     heights: Vec<f64>,
-    stacks: Vec<Stack>,
+    /// By the plies that they hold: elements beside each other share theirs.
+    stacks: BTreeMap<[usize; 2], Stack>,
 }
 
 impl<'a> Parts<'a> {
@@ -22,17 +25,19 @@ impl<'a> Parts<'a> {
     /// An order that the element does not know.
     pub(super) fn new(source: &DeckSource, deck: &'a Generation) -> Result<Self, DeckError> {
         let refuse = |why: String| source.error(0..0, Fault::Geometry, why, "");
-        let stack = |card: &ElementCard| {
+        let mut stacks = BTreeMap::new();
+        for card in &deck.piece.elements {
+            let Entry::Vacant(place) = stacks.entry([card.plies.start, card.plies.end]) else { continue };
             let plies = deck.laminate.plies[card.plies.clone()].to_vec();
             let laminate = Laminate { layers: vec![plies.len()], plies };
-            let mut stacks = laminate.stacks(&deck.laminate.materials).map_err(|why| refuse(why.to_string()))?;
-            Ok(stacks.remove(0))
-        };
+            let mut made = laminate.stacks(&deck.laminate.materials).map_err(|why| refuse(why.to_string()))?;
+            place.insert(made.remove(0));
+        }
         Ok(Self {
             deck,
             element: element(deck.kind, deck.order).map_err(|why| refuse(why.to_string()))?,
             heights: deck.laminate.heights(),
-            stacks: deck.piece.elements.iter().map(stack).collect::<Result<_, _>>()?,
+            stacks,
         })
     }
 
@@ -40,7 +45,7 @@ impl<'a> Parts<'a> {
     pub(super) fn cell(&self, number: usize) -> Cell<'_> {
         let card = &self.deck.piece.elements[number];
         let z = [self.heights[card.plies.start], self.heights[card.plies.end]];
-        Cell { corners: card.plane.into(), z, stack: &self.stacks[number] }
+        Cell { corners: card.plane.into(), z, stack: &self.stacks[&[card.plies.start, card.plies.end]] }
     }
 
     /// Degrees of freedom of an element, node by node.

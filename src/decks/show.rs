@@ -1,13 +1,13 @@
 //! What lies in a project: descriptions, and files for other programs.
 
 use super::project::Project;
+use crate::analyses::matrices::write_full;
 use crate::error::Error;
 use fem_io::deck::{DeckSource, Fault};
 use fem_io::files::OutputDir;
 use fem_io::npy;
 use fem_io::tables::{self, TableValue};
 use serde::Serialize;
-use std::io::{self, Write};
 
 /// A result of a project.
 #[derive(Debug, Clone, Serialize)]
@@ -80,7 +80,7 @@ pub fn export(project: &Project, name: &str, dir: &OutputDir) -> Result<Vec<Stri
         let n = matrices.masters.len();
         for (what, values) in [("stiffness", &matrices.k), ("mass", &matrices.m)] {
             files.push(format!("{name}.{what}.mtx"));
-            dir.write(&format!("{name}.{what}.mtx"), |out| write_market(out, n, values))?;
+            write_full(dir, &format!("{name}.{what}.mtx"), n, values)?;
             files.push(format!("{name}.{what}.npy"));
             npy::write(dir, &format!("{name}.{what}.npy"), &[n, n], values)?;
         }
@@ -103,10 +103,4 @@ pub fn export(project: &Project, name: &str, dir: &OutputDir) -> Result<Vec<Stri
         }
     }
     if files.is_empty() { Err(nothing(project, name)) } else { Ok(files) }
-}
-
-/// The lower triangle of a symmetric matrix, column by column.
-fn write_market(out: &mut dyn Write, n: usize, values: &[f64]) -> io::Result<()> {
-    writeln!(out, "%%MatrixMarket matrix array real symmetric\n{n} {n}")?;
-    (0..n).flat_map(|j| &values[j * n + j..(j + 1) * n]).try_for_each(|value| writeln!(out, "{value:e}"))
 }
