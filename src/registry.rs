@@ -112,6 +112,7 @@ impl Registry {
             .with::<integrate::Newmark>()
             .with::<integrate::HhtAlpha>()
             .with::<integrate::GeneralizedAlpha>()
+            .with::<integrate::EnergyConserving>()
             .with::<reduce::Guyan>()
             .with::<reduce::Irs>()
             .with::<reduce::CraigBampton>()

@@ -1,6 +1,7 @@
 //! A structure under the impact of lumped masses: the system that integrators march.
 
 mod influence;
+mod mean;
 mod newton;
 
 use crate::vector::dot;
@@ -363,6 +364,33 @@ impl ImpactSystem {
         Ok(square.sqrt())
     }
 
+    /// An implicit step; its forces are means over one that begins with the displacements `start`, if these are given.
+    fn solve(
+        &mut self,
+        [cm, cc, t]: [f64; 3],
+        h: &Histories,
+        start: Option<&[f64]>,
+        from: &[f64],
+        d: &mut [f64],
+    ) -> Result<(), StepError> {
+        let n = self.structure.ndof();
+        self.pull(&mut d[n..]);
+        if self.structure.nonlinear().is_some() {
+            return self.iterate([cm, cc, t], h, start, from, d);
+        }
+        self.prepare(cm, cc)?;
+        let Self { structure, impactors, influence, contact_calls, .. } = self;
+        structure.add_stiffness(-1.0, &from[..n], &mut d[..n]);
+        structure.solve_damped(cm, cc, &mut d[..n], 1).map_err(StepError::Factorisation)?;
+        for (d, impactor) in d[n..].iter_mut().zip(impactors.iter()) {
+            *d /= cm * impactor.mass;
+        }
+        influence.free.fill(0.0);
+        influence.set_approaches(impactors, from);
+        *contact_calls += influence.touch(impactors, t, &h.contacts, start, d)?;
+        Ok(())
+    }
+
     fn prepare(&mut self, cm: f64, cc: f64) -> Result<(), StepError> {
         if self.influence.cm == cm && self.influence.cc == cc && !self.influence.x.is_empty() {
             return Ok(());
@@ -453,22 +481,19 @@ impl SecondOrderSystem for ImpactSystem {
         from: &[f64],
         d: &mut [f64],
     ) -> Result<(), StepError> {
-        let n = self.structure.ndof();
-        self.pull(&mut d[n..]);
-        if self.structure.nonlinear().is_some() {
-            return self.iterate(cm, cc, t, h, from, d);
-        }
-        self.prepare(cm, cc)?;
-        let Self { structure, impactors, influence, contact_calls, .. } = self;
-        structure.add_stiffness(-1.0, &from[..n], &mut d[..n]);
-        structure.solve_damped(cm, cc, &mut d[..n], 1).map_err(StepError::Factorisation)?;
-        for (d, impactor) in d[n..].iter_mut().zip(impactors.iter()) {
-            *d /= cm * impactor.mass;
-        }
-        influence.free.fill(0.0);
-        influence.set_approaches(impactors, from);
-        *contact_calls += influence.touch(impactors, t, &h.contacts, d)?;
-        Ok(())
+        self.solve([cm, cc, t], h, None, from, d)
+    }
+
+    fn solve_midpoint(
+        &mut self,
+        cm: f64,
+        cc: f64,
+        t: f64,
+        s: &State,
+        from: &[f64],
+        d: &mut [f64],
+    ) -> Result<(), StepError> {
+        self.solve([cm, cc, t], &s.histories, Some(&s.u), from, d)
     }
 
     fn commit(&mut self, state: &mut State) -> Result<(), StepError> {

@@ -192,3 +192,18 @@ fn what_knows_linear_plies_only_is_refused() {
     refused(plain.replace("hahn-tsai", "hahn-tsay"), "did you mean `hahn-tsai`");
     refused(plain.replace("2.44e-8 1/MPa^3", "2.44e-8 1/MPa"), "alpha");
 }
+
+#[test]
+fn mean_forces_of_a_step_do_the_work_that_the_energies_say() {
+    for law in [LAW, ELASTIC] {
+        for (step, bound) in [("2 us", 1e-9), ("10 us", 1e-9)] {
+            let march = format!("integrator = 'energy-conserving', step = '{step}'");
+            let scene = struck(law, "").replace("integrator = 'newmark', step = '2 us'", &march);
+            assert!(scene.contains(&march));
+            let outcome = run(&scene, 1);
+            assert!(outcome.energy_error < bound, "{law}, {step}: {:e}", outcome.energy_error);
+            let lost = outcome.history.iter().flat_map(|row| &row.effects).fold(0.0_f64, |a, b| a.max(*b));
+            assert_eq!(lost > 1e-4, law == LAW, "{law}, {step}: {lost:e}");
+        }
+    }
+}

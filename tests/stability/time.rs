@@ -1,6 +1,7 @@
 //! Steps at and beyond their limits, stiff and soft contact, long and short marches.
 
 mod chatter;
+mod conserving;
 mod contact;
 mod large;
 mod marches;
@@ -17,7 +18,7 @@ use fem::dynamics::integrate::located;
 use plate::Navier;
 
 pub(crate) fn cases() -> Vec<Case> {
-    [steps::cases(), contact::cases(), chatter::cases(), marches::cases(), large::cases()]
+    [steps::cases(), contact::cases(), chatter::cases(), conserving::cases(), marches::cases(), large::cases()]
         .into_iter()
         .flatten()
         .collect()
@@ -69,6 +70,15 @@ fn sun_yang(k: f64, critical: f64) -> Box<dyn ContactLaw> {
     let params = Params::default()
         .with("k", Value::Quantity(k, Dimension::contact_stiffness(1.5)))
         .with("critical", Value::Quantity(critical, Dimension::LENGTH));
+    law("sun-yang", &params)
+}
+
+/// As [`sun_yang`], a second contact with the exponent of loading.
+fn sun_yang_reloading(k: f64, critical: f64) -> Box<dyn ContactLaw> {
+    let params = Params::default()
+        .with("k", Value::Quantity(k, Dimension::contact_stiffness(1.5)))
+        .with("critical", Value::Quantity(critical, Dimension::LENGTH))
+        .with("reloading", Value::Text("loading-exponent".into()));
     law("sun-yang", &params)
 }
 

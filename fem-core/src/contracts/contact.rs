@@ -49,9 +49,49 @@ pub trait ContactLaw: DynClone + Debug + Send + Sync {
     /// Work done on the contact up to `alpha`, J.
     fn energy(&self, history: &ContactHistory, alpha: f64) -> Energy;
 
+    /// Mean F̄ of the force on the way from `from` to `to` with `history` throughout, and dF̄/d`to`: the discrete gradient
+    /// F̄ = [W(to) − W(from)]/(to − from) of the work W = stored + dissipated.
+    ///
+    /// Of a short way W has too few digits; there F is integrated by Gauss' rule of three points, on either side of the
+    /// peak. F̄ lies between the forces at the ends, so that it never pulls.
+    fn mean_force(&self, history: &ContactHistory, from: f64, to: f64) -> ContactForce {
+        let [start, end] = [from, to].map(|alpha| self.force(history, alpha));
+        if !end.force.is_finite() {
+            return end;
+        }
+        let Branches { touch, peak } = self.branches(history);
+        let (low, high) = (from.min(to), from.max(to));
+        let [way, depth] = [high - low, low - touch];
+        let mean = if way <= SHORT * depth {
+            let part = |a: f64, b: f64| (b - a) / way * gauss(|alpha| self.force(history, alpha).force, a, b);
+            match peak {
+                Some(peak) if low < peak && peak < high => part(low, peak) + part(peak, high),
+                _ => part(low, high),
+            }
+        } else {
+            let [before, after] = [from, to].map(|alpha| self.energy(history, alpha));
+            ((after.stored - before.stored) + (after.dissipated - before.dissipated)) / (to - from)
+        };
+        // Where there is no way, the mean is not a number, and the force at its end is taken.
+        let force = mean.max(start.force.min(end.force)).min(start.force.max(end.force));
+        let tangent = if way <= TINY * depth { 0.5 * end.tangent } else { (end.force - force) / (to - from) };
+        ContactForce { force, tangent }
+    }
+
     /// Where the force is not smooth, given the committed history; a march of high order ends a step there.
     fn branches(&self, _history: &ContactHistory) -> Branches {
         Branches::default()
     }
 }
 dyn_clone::clone_trait_object!(ContactLaw);
+
+/// Ways, over the least depth on them, up to which Gauss' rule is exact but for rounding, and up to which the difference of two
+/// forces has too few digits for a tangent.
+const SHORT: f64 = 0.02;
+const TINY: f64 = 1e-8;
+
+/// Mean of `f` from `a` to `b`.
+fn gauss(f: impl Fn(f64) -> f64, a: f64, b: f64) -> f64 {
+    let (middle, reach) = (0.5 * (a + b), 0.5 * (b - a) * 0.6_f64.sqrt());
+    (5.0 * (f(middle - reach) + f(middle + reach)) + 8.0 * f(middle)) / 18.0
+}

@@ -118,6 +118,28 @@ pub trait SecondOrderSystem {
         d: &mut [f64],
     ) -> Result<(), StepError>;
 
+    /// Solves `(cm M + cc C) d + f̄ = r + p(t) + Σ F̄ p` for the change d of the displacement to the middle `from + d` of a step
+    /// from `s` to u₁ = 2 (from + d) − u₀, whose forces are discrete gradients of their energies:
+    ///
+    /// ```text
+    /// f̄ᵀ (u₁ − u₀) = V(u₁) − V(u₀)            f̄ = K (from + d) of a linear structure
+    /// F̄ (α₁ − α₀)  = W(α₁; h) − W(α₀; h)      of each contact, W stored and dissipated, h as committed in s
+    /// ```
+    ///
+    /// Otherwise as [`Self::solve_implicit`].
+    ///
+    /// # Errors
+    /// As [`Self::solve_implicit`].
+    fn solve_midpoint(
+        &mut self,
+        cm: f64,
+        cc: f64,
+        t: f64,
+        s: &State,
+        from: &[f64],
+        d: &mut [f64],
+    ) -> Result<(), StepError>;
+
     /// Takes the accepted state into its histories.
     ///
     /// # Errors
@@ -134,7 +156,7 @@ pub trait SecondOrderSystem {
 /// How an integrator limits its step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StepLimit {
-    /// Stable for every step.
+    /// Stable for every step, as long as the system is linear.
     None,
     /// ω Δt must not exceed this, ω the highest frequency of plate and contact, however they are damped.
     OmegaDt(f64),
@@ -162,6 +184,12 @@ pub trait Integrator: DynClone + Debug + Send {
 
     /// The limit that the caller enforces before the march.
     fn limit(&self) -> StepLimit;
+
+    /// Whether structure, impactors and contacts together gain no energy whatever the step, as with
+    /// [`SecondOrderSystem::solve_midpoint`].
+    fn conserves_energy(&self) -> bool {
+        false
+    }
 
     /// Sizes work arrays and finds the acceleration of a fresh state.
     ///

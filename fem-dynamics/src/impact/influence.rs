@@ -1,7 +1,7 @@
 //! Contact forces of an implicit step, from how the structure responds to each.
 
 use super::{Impactor, add, value};
-use fem_core::contact::{ContactHistory, ContactLaw};
+use fem_core::contact::{ContactForce, ContactHistory};
 use fem_core::structure::SolveError;
 use fem_core::time::StepError;
 
@@ -10,6 +10,11 @@ use fem_core::time::StepError;
 const TOLERANCE: f64 = 1e-14;
 /// Sweeps over several contacts before they count as unsolvable.
 const MOST_SWEEPS: usize = 20_000;
+
+/// Evaluations of a contact law until Newton's method counts as running in circles, as it may about a kink, and every second
+/// trial halves the bracket; and at most.
+const PATIENCE: u64 = 20;
+const MOST_CALLS: u64 = 200;
 
 /// Responses X = (K + cm M + cc C)⁻¹ p to the contact loads, for one (cm, cc); of a structure that is not linear, to its tangent.
 #[derive(Debug, Default)]
@@ -67,16 +72,17 @@ impl Influence {
     }
 
     /// Finds the contact forces for the response `d` without contact, and adds that to each, F (X, −1/(cm m)); returns the
-    /// evaluations of contact laws.
+    /// evaluations of contact laws. They are means over a step that begins with the displacements `start`, if these are given.
     pub(super) fn touch(
         &mut self,
         impactors: &[Impactor],
         t: f64,
         h: &[ContactHistory],
+        start: Option<&[f64]>,
         d: &mut [f64],
     ) -> Result<u64, StepError> {
         self.set_approaches(impactors, d);
-        let calls = self.balance(impactors, t, h)?;
+        let calls = self.balance(impactors, t, h, start)?;
         let n = d.len() - impactors.len();
         for (i, (impactor, force)) in impactors.iter().zip(&self.forces).enumerate() {
             if *force != 0.0 {
@@ -93,7 +99,13 @@ impl Influence {
     ///
     /// The approaches are symmetric and positive and no force falls with its indentation, so that this converges,
     /// slowly where stiff contacts share a place.
-    fn balance(&mut self, impactors: &[Impactor], t: f64, h: &[ContactHistory]) -> Result<u64, StepError> {
+    fn balance(
+        &mut self,
+        impactors: &[Impactor],
+        t: f64,
+        h: &[ContactHistory],
+        start: Option<&[f64]>,
+    ) -> Result<u64, StepError> {
         let count = impactors.len();
         let mut evaluations = 0;
         self.forces.fill(0.0);
@@ -103,7 +115,13 @@ impl Influence {
                 let row = &self.approach[i * count..(i + 1) * count];
                 let others = (0..count).filter(|j| *j != i).map(|j| row[j] * self.forces[j]);
                 let free = self.free[i] - others.sum::<f64>();
-                let (force, calls) = contact(&*impactor.law, &h[i], free, row[i]);
+                let (force, calls) = match start {
+                    None => contact(|alpha| impactor.law.force(&h[i], alpha), free, row[i]),
+                    Some(u) => {
+                        let start = u[u.len() - count + i] - value(&impactor.load, u);
+                        contact(|middle| mean_force(impactor, &h[i], start, middle), free, row[i])
+                    }
+                };
                 evaluations += calls;
                 if !force.is_finite() {
                     return Err(StepError::NotFinite { t });
@@ -119,17 +137,23 @@ impl Influence {
     }
 }
 
+/// Mean force of a step from indentation `start` as a function of that in the middle.
+fn mean_force(impactor: &Impactor, h: &ContactHistory, start: f64, middle: f64) -> ContactForce {
+    let mean = impactor.law.mean_force(h, start, 2.0 * middle - start);
+    ContactForce { tangent: 2.0 * mean.tangent, ..mean }
+}
+
 /// Solves α + `soft` F(α) = `free` for the force: Newton's method kept inside a bracket, because F never falls.
 /// Returns the force and the number of evaluations.
-fn contact(law: &dyn ContactLaw, h: &ContactHistory, free: f64, soft: f64) -> (f64, u64) {
-    let at_free = law.force(h, free);
+fn contact(law: impl Fn(f64) -> ContactForce, free: f64, soft: f64) -> (f64, u64) {
+    let at_free = law(free);
     if at_free.force == 0.0 {
         return (0.0, 1);
     }
     let (mut low, mut high) = (free - soft * at_free.force, free);
     let mut alpha = free - soft * at_free.force / (1.0 + soft * at_free.tangent);
-    for calls in 2..100 {
-        let c = law.force(h, alpha);
+    for calls in 2..MOST_CALLS {
+        let c = law(alpha);
         let residual = alpha + soft * c.force - free;
         if residual > 0.0 {
             high = alpha
@@ -143,7 +167,8 @@ fn contact(law: &dyn ContactLaw, h: &ContactHistory, free: f64, soft: f64) -> (f
             // Not (free - next)/soft, which has the error of α over that of a short step's small `soft`.
             return (c.force + c.tangent * correction, calls);
         }
-        alpha = if next > low && next < high { next } else { 0.5 * (low + high) };
+        let halve = calls > PATIENCE && calls % 2 == 0;
+        alpha = if next > low && next < high && !halve { next } else { 0.5 * (low + high) };
     }
-    ((free - alpha) / soft, 100)
+    ((free - alpha) / soft, MOST_CALLS)
 }

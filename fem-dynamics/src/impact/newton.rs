@@ -1,11 +1,14 @@
 //! Implicit steps of a structure whose internal force is not linear.
 
 use super::ImpactSystem;
-use fem_core::structure::{Nonlinear, SolveError, Tangent};
+use super::mean::MeanForce;
+use fem_core::energy::Energy;
+use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent};
 use fem_core::time::{Histories, StepError};
 
-/// Error of the change of displacement at which an iteration ends, relative, in the energy norm of the tangent.
-const ENOUGH: f64 = 1e-6;
+/// Error of the change of displacement at which an iteration ends, relative, in the energy norm of the tangent; the second where
+/// forces are means over a step, for the sake of the energy.
+const ENOUGH: [f64; 2] = [1e-6, 1e-10];
 
 /// The same relative to the displacement itself: what rounding leaves.
 const ROUNDING: f64 = 1e-11;
@@ -25,6 +28,7 @@ pub(super) struct Newton {
     at: Vec<f64>,
     residual: Vec<f64>,
     step: Vec<f64>,
+    mean: MeanForce,
     /// So far.
     turns: u64,
 }
@@ -64,18 +68,21 @@ impl ImpactSystem {
     ///
     /// A δ = r − cm M d − cc C d − f(ũ + d) + Σ F p, A = K_T + cm M + cc C, d ← d + δ,
     ///
-    /// the contact forces F such that the laws hold at ũ + d + δ. The error after a turn is estimated from how fast δ falls in
+    /// the contact forces F such that the laws hold at ũ + d + δ; or with mean forces over the step from `start`. The error after a turn is estimated from how fast δ falls in
     /// the norm of A.
     pub(super) fn iterate(
         &mut self,
-        cm: f64,
-        cc: f64,
-        t: f64,
+        [cm, cc, t]: [f64; 3],
         h: &Histories,
+        start: Option<&[f64]>,
         from: &[f64],
         d: &mut [f64],
     ) -> Result<(), StepError> {
         let n = self.structure.ndof();
+        let enough = ENOUGH[usize::from(start.is_some())];
+        if let Some(start) = start {
+            self.newton.mean.begin(&mut *self.structure, &start[..n], &h.points)?;
+        }
         let take = |u: &[f64]| Tangent { cm, cc, u: u.to_vec(), points: h.points.clone() };
         if !self.newton.tangent.as_ref().is_some_and(|tangent| tangent.cm == cm && tangent.cc == cc) {
             self.linearise(take(&from[..n]))?;
@@ -88,14 +95,15 @@ impl ImpactSystem {
         let mut before = None;
         for _ in 0..MOST {
             let Self { structure, impactors, influence, newton, contact_calls, .. } = self;
-            let Newton { load, at, residual, step, .. } = newton;
+            let Newton { load, at, residual, step, mean, .. } = newton;
             newton.turns += 1;
             at.clear();
             at.extend(from[..n].iter().zip(&*d).map(|(u, d)| u + d));
             residual.resize(n, 0.0);
-            let energy = nonlinear(structure.nonlinear())?
-                .internal(at, &h.points, residual)
-                .map_err(StepError::Factorisation)?;
+            let energy = match start {
+                None => internal(&mut **structure, at, &h.points, residual)?,
+                Some(_) => mean.internal(&mut **structure, at, &h.points, residual)?,
+            };
             residual.iter_mut().zip(&*load).for_each(|(f, r)| *f = r - *f);
             structure.add_mass(-cm, &d[..n], residual);
             structure.add_damping(-cc, &d[..n], residual);
@@ -107,7 +115,7 @@ impl ImpactSystem {
             influence.free.fill(0.0);
             influence.set_approaches(impactors, from);
             influence.set_approaches(impactors, d);
-            *contact_calls += influence.touch(impactors, t, &h.contacts, step)?;
+            *contact_calls += influence.touch(impactors, t, &h.contacts, start, step)?;
             d.iter_mut().zip(&*step).for_each(|(d, step)| *d += step);
             let work: f64 = residual.iter().zip(&*step).map(|(r, d)| r * d).sum();
             let square = work + influence.work(impactors, step);
@@ -123,7 +131,7 @@ impl ImpactSystem {
             };
             // A mode without inertia may ring, so that the way from ũ is longer than the whole displacement.
             let displacement = energy.total().abs().sqrt();
-            if left <= ENOUGH * largest.min(displacement) || size <= ROUNDING * displacement {
+            if left <= enough * largest.min(displacement) || size <= ROUNDING * displacement {
                 return Ok(());
             }
             before = Some(size);
@@ -143,4 +151,14 @@ impl ImpactSystem {
 
 fn nonlinear(structure: Option<&mut dyn Nonlinear>) -> Result<&mut dyn Nonlinear, StepError> {
     structure.ok_or(StepError::Factorisation(SolveError::Linear))
+}
+
+/// Internal force of a structure that is not linear.
+pub(super) fn internal(
+    structure: &mut dyn Structure,
+    u: &[f64],
+    points: &[f64],
+    force: &mut [f64],
+) -> Result<Energy, StepError> {
+    nonlinear(structure.nonlinear())?.internal(u, points, force).map_err(StepError::Factorisation)
 }

@@ -40,6 +40,10 @@ impl Integrator for Located {
         self.integrator.limit()
     }
 
+    fn conserves_energy(&self) -> bool {
+        self.integrator.conserves_energy()
+    }
+
     fn start(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError> {
         self.integrator.start(sys, s)
     }

@@ -7,6 +7,7 @@
 //! | `central-difference` | 2 | explicit | 1.8 |
 //! | `newmark` | 2 | implicit | none for 2β ≥ γ |
 //! | `hht-alpha`, `generalized-alpha` | 2 | implicit, damps high modes | none |
+//! | `energy-conserving` | 2 | implicit, keeps the energy in contact too | none |
 //!
 //! The histories of the contacts stay as committed during a step; a step ends with one commit. `a` in the state is the
 //! acceleration that the next step starts from, so that a state holds all that a restart needs. Schemes of order above 2
@@ -14,6 +15,7 @@
 
 mod central_difference;
 mod dormand_prince;
+mod energy_conserving;
 mod generalized_alpha;
 mod hht_alpha;
 mod located;
@@ -23,6 +25,7 @@ mod stages;
 
 pub use central_difference::CentralDifference;
 pub use dormand_prince::DormandPrince;
+pub use energy_conserving::EnergyConserving;
 pub use generalized_alpha::GeneralizedAlpha;
 pub use hht_alpha::HhtAlpha;
 pub use located::located;

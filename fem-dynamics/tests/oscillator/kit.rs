@@ -120,6 +120,7 @@ struct Careless {
     sound: Box<dyn Integrator>,
     order: u32,
     limit: StepLimit,
+    conserves: bool,
     deaf: bool,
     steps: f64,
     /// The step that it takes for one of dt, given the last that it took.
@@ -135,6 +136,10 @@ impl Integrator for Careless {
 
     fn limit(&self) -> StepLimit {
         self.limit
+    }
+
+    fn conserves_energy(&self) -> bool {
+        self.conserves
     }
 
     fn start(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError> {
@@ -162,6 +167,7 @@ fn of_integrators() {
         order: 2,
         limit: sound.limit(),
         sound,
+        conserves: false,
         deaf: false,
         steps: 0.0,
         step: |dt, _| dt,
@@ -185,6 +191,7 @@ fn of_integrators() {
         ("restarted", after(|step, s| s.v[0] += 1e-9 * step)),
         ("commit", after(|_, s| s.histories.contacts.iter_mut().for_each(|h| h[1] = 0.0))),
         ("elastic stop", after(|_, s| s.v[0] *= 1.0 - 1e-4 * s.histories.contacts.len() as f64)),
+        ("claims to conserve", Careless { conserves: true, ..sound.clone() }),
         ("NaN gives Ok", Careless { deaf: true, ..sound.clone() }),
     ] {
         let why = check_integrator(&scheme).unwrap_err();

@@ -15,12 +15,12 @@ use fem_core::testkit::Oscillators;
 use fem_core::time::{Integrator, State};
 use fem_dynamics::contact::{Hertz, SunYang};
 use fem_dynamics::integrate::{
-    CentralDifference, DormandPrince, GeneralizedAlpha, HhtAlpha, Newmark, Rk1, Rk2, Rk3, Rk4,
+    CentralDifference, DormandPrince, EnergyConserving, GeneralizedAlpha, HhtAlpha, Newmark, Rk1, Rk2, Rk3, Rk4,
 };
 use std::collections::BTreeMap;
 
 /// Name in the reference tables and order of every scheme.
-const SCHEMES: [(&str, i32); 14] = [
+const SCHEMES: [(&str, i32); 15] = [
     ("rk1", 1),
     ("rk2", 2),
     ("rk3", 3),
@@ -35,6 +35,7 @@ const SCHEMES: [(&str, i32); 14] = [
     ("generalized-0.9", 2),
     ("generalized-0.5", 2),
     ("generalized-0", 2),
+    ("energy-conserving", 2),
 ];
 
 fn scheme(name: &str) -> Box<dyn Integrator> {
@@ -46,6 +47,7 @@ fn scheme(name: &str) -> Box<dyn Integrator> {
         None if name == "rk4" => Rk4::build(&Params::default()),
         Some(("central", _)) => CentralDifference::build(&Params::default()),
         Some(("dormand", _)) => DormandPrince::build(&Params::default()),
+        Some(("energy", _)) => EnergyConserving::build(&Params::default()),
         Some(("newmark", "average")) => Newmark::build(&Params::default()),
         Some(("newmark", "linear")) => Newmark::build(&with("beta", 1.0 / 6.0)),
         Some(("hht", alpha)) => HhtAlpha::build(&with("alpha", -alpha.parse::<f64>().unwrap())),

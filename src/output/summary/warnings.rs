@@ -2,7 +2,7 @@
 
 use crate::advise::warn_of_coarse_cells;
 use crate::analyses::impact::{ContactRecord, Outcome, Sizes};
-use crate::model::Model;
+use crate::model::{Model, Plan};
 use crate::words::warn_of_softness;
 
 /// All of it.
@@ -11,6 +11,7 @@ pub(super) fn of_contacts(model: &Model, sizes: &Sizes, outcome: &Outcome) -> im
     let soft = sizes.softness.map(warn_of_softness);
     soft.into_iter()
         .chain(deep(model, outcome))
+        .chain(long_steps(model, sizes, outcome))
         .chain(few_looks(model, sizes, outcome))
         .chain(rare_rows(outcome))
         .chain(coarse)
@@ -31,6 +32,36 @@ fn deep(model: &Model, outcome: &Outcome) -> impl Iterator<Item = String> {
             thickness * 1e3
         )
     })
+}
+
+/// Steps in a period of the force below which a step counts as too long, and those of a better one.
+const COARSE: f64 = 20.0;
+const FINE: f64 = 60.0;
+/// Estimated error of the force from which on a step counts as too long.
+const WRONG: f64 = 0.05;
+
+/// A warning where steps are too long and the energy cannot show it.
+fn long_steps(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Option<String> {
+    let Plan::Impact(impact) = &model.plan else { return None };
+    if !impact.integrator.conserves_energy() {
+        return None;
+    }
+    let frequency = outcome.contacts.iter().filter_map(ContactRecord::frequency).fold(0.0, f64::max);
+    let steps = 1.0 / (frequency * sizes.step);
+    let error = outcome.accuracy.step.map(|step| step.force).filter(|error| *error > WRONG);
+    let (why, shorter) = match error {
+        _ if steps < COARSE => {
+            (format!("the contact force changes in {steps:.1} steps a period"), 1.0 / (FINE * frequency))
+        }
+        Some(error) => {
+            (format!("the step leaves about {:.0} % of the contact force", 100.0 * error), 0.25 * sizes.step)
+        }
+        None => return None,
+    };
+    Some(format!(
+        "{why}, and an integrator that keeps the energy at every step does not show it there: set `march.step` to {:.3} us",
+        1e6 * shorter
+    ))
 }
 
 /// Looks at a contact below which its stresses may have been missed.

@@ -27,6 +27,13 @@ pub(super) fn cases() -> Vec<Case> {
             long_steps,
         ),
         time.case(
+            "energy-conserving: large deflections",
+            "reduced and full plates, [0/90]s, [0_2/90/45]; w/h of 1.5 to 9; steps of 2 to 50 us",
+            "energy error",
+            1e-10,
+            conserving,
+        ),
+        time.case(
             "large deflections in explicit steps",
             "central-difference, rk4; 0.9 of the limit of the plate at rest; w/h of 1.5 to 4",
             "energy error",
@@ -128,6 +135,15 @@ fn implicit() -> f64 {
 fn long_steps() -> f64 {
     let each = [SYMMETRIC, CROSSED, MIXED].into_iter();
     worst(each.flat_map(|plate| [0.5, 2.5].map(|velocity| Plate { velocity, step_us: 50.0, ..plate }.energy_error())))
+}
+
+fn conserving() -> f64 {
+    let each = [SYMMETRIC, MIXED].into_iter().flat_map(|plate| {
+        let runs = [(2.5, 50.0, RITZ), (80.0, 2.0, RITZ), (20.0, 20.0, FULL)];
+        let plate = Plate { integrator: "energy-conserving", ..plate };
+        runs.map(|(velocity, step_us, reduction)| Plate { velocity, step_us, reduction, ..plate }.energy_error())
+    });
+    worst(each)
 }
 
 fn explicit() -> f64 {
