@@ -59,7 +59,10 @@ pub struct EventRow {
     pub mode: String,
     /// Time, s.
     pub time_s: f64,
-    /// Cell, by its number in the mesh file.
+    /// Substructure of a deck, from 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub substructure: Option<u64>,
+    /// Cell, by its number in the mesh file; of a deck its element.
     pub cell: u64,
     /// Ply counted from the bottom, such as `3`, or the two plies of an interface, `3|4`.
     pub ply: String,
@@ -272,10 +275,13 @@ trait Row: Default {
 
 impl Row for EventRow {
     fn fields(&self) -> Vec<(&'static str, TableValue<'_>)> {
-        vec![
+        let mut fields = vec![
             ("time_s", TableValue::Number(self.time_s)),
             ("criterion", TableValue::Text(&self.criterion)),
             ("mode", TableValue::Text(&self.mode)),
+        ];
+        fields.extend(self.substructure.map(|number| ("substructure", TableValue::Count(number))));
+        fields.extend([
             ("cell", TableValue::Count(self.cell)),
             ("ply", TableValue::Text(&self.ply)),
             ("angle_deg", TableValue::Number(self.angle_deg)),
@@ -283,7 +289,8 @@ impl Row for EventRow {
             ("y_m", TableValue::Number(self.y_m)),
             ("z_m", TableValue::Number(self.z_m)),
             ("index", TableValue::Index(self.index)),
-        ]
+        ]);
+        fields
     }
 }
 
@@ -463,6 +470,7 @@ mod tests {
         write_events(&dir, &[]).unwrap();
         assert_eq!(read(&dir, "events.csv"), header);
         let event = EventRow {
+            substructure: None,
             time_s: 2.2e-4,
             criterion: "octahedral".into(),
             mode: "tension, \"resin\"".into(),

@@ -3,6 +3,7 @@
 use super::envelope::criteria;
 use super::run::default_folder;
 use super::{Console, Format};
+use crate::cost::Provenance;
 use crate::decks::{self, DeckOptions, DeckOutcome, Project, Shown, UnitSystem};
 use crate::error::Error;
 use crate::registry::Registry;
@@ -22,8 +23,15 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR")]
     project: Option<PathBuf>,
     /// What the deck's numbers are called in the listing: force, length, time.
+    ///
+    /// An impact then leaves tables, a summary, failure and pictures in SI units in a folder named as the deck, of which `fem
+    /// report` makes a page.
     #[arg(long, value_parser = units)]
     units: Option<UnitSystem>,
+    /// Criteria by name, parameters after colons: of an impact with `--units` those that judge it [default: those of the report];
+    /// of back substitution those whose indices are written besides.
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    criteria: Vec<String>,
     #[command(flatten)]
     format: Format,
 }
@@ -53,35 +61,34 @@ pub(super) struct TradyrArguments {
     restart_of: Option<String>,
 }
 
-#[derive(Debug, Args)]
-pub(super) struct PieceArguments {
-    #[command(flatten)]
-    deck: Arguments,
-    /// Criteria by name, parameters after colons, whose indices are written besides those of the report.
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
-    criteria: Vec<String>,
-}
+/// Criteria that judge an impact where none are asked for: eqs 38 to 42.
+const OF_REPORT: [&str; 2] = ["hashin-report", "octahedral"];
 
-pub(super) fn tradyr(arguments: &TradyrArguments, console: &Console) -> miette::Result<ExitCode> {
-    let options = DeckOptions { restart_of: arguments.restart_of.clone(), ..DeckOptions::default() };
-    run(Program::Tradyr, &arguments.deck, options, console)
+pub(super) fn tradyr(registry: &Registry, arguments: &TradyrArguments, console: &Console) -> miette::Result<ExitCode> {
+    let TradyrArguments { deck, restart_of } = arguments;
+    let of_report = || OF_REPORT.map(str::to_owned).to_vec();
+    let asked = if deck.criteria.is_empty() { of_report() } else { deck.criteria.clone() };
+    let criteria = criteria(registry, &asked, None)?;
+    let options = DeckOptions { restart_of: restart_of.clone(), criteria, ..DeckOptions::default() };
+    run(Program::Tradyr, deck, options, console)
 }
 
 pub(super) fn piece(
     registry: &Registry,
     program: Program,
-    arguments: &PieceArguments,
+    arguments: &Arguments,
     console: &Console,
 ) -> miette::Result<ExitCode> {
     let criteria = criteria(registry, &arguments.criteria, None)?;
-    run(program, &arguments.deck, DeckOptions { criteria, ..DeckOptions::default() }, console)
+    run(program, arguments, DeckOptions { criteria, ..DeckOptions::default() }, console)
 }
 
 fn run(program: Program, arguments: &Arguments, options: DeckOptions, console: &Console) -> miette::Result<ExitCode> {
     let source = DeckSource::read(&arguments.deck)?;
     let folder = arguments.project.clone().unwrap_or_else(|| default_folder(&arguments.deck, ""));
     let mut project = Project::open(&folder).map_err(Error::from)?;
-    let options = DeckOptions { units: arguments.units, ..options };
+    let provenance = Some(Provenance::of(source.name()));
+    let options = DeckOptions { units: arguments.units, provenance, ..options };
     let outcome = decks::run(&source, program, &mut project, &options)?;
     super::warn(&outcome.warnings);
     let done = Done { deck: source.name().to_owned(), outcome: &outcome, project: &folder };
@@ -96,6 +103,31 @@ fn text(outcome: &DeckOutcome, folder: &Path) -> String {
     }
     if !outcome.analysed {
         text.push_str("  data check only: NCHECK is 0\n");
+    }
+    if let Some(impact) = &outcome.impact {
+        let i = &impact.impact;
+        let _ = writeln!(
+            text,
+            "  force     peak {:.1} N at {:.4} ms; deflection {:.4} mm; {} contact{}",
+            i.peak_force_N,
+            i.peak_force_time_s * 1e3,
+            i.peak_plate_displacement_m * 1e3,
+            i.contacts,
+            if i.contacts == 1 { "" } else { "s" }
+        );
+        for first in &impact.first_damage {
+            let event = &first.event;
+            let _ = writeln!(
+                text,
+                "  damage    {:>7.4} ms  {} {}, substructure {} element {} ply {}",
+                event.time_s * 1e3,
+                event.criterion,
+                event.mode,
+                event.substructure.unwrap_or_default(),
+                event.cell,
+                event.ply
+            );
+        }
     }
     let _ = writeln!(text, "  project   {}", folder.display());
     for file in &outcome.files {

@@ -95,9 +95,9 @@ enum Command {
     /// Writes stiffness and mass (Matrix Market) with the names of their unknowns.
     Matrices(matrices::Arguments),
     /// Runs a deck of LAMCEL: condenses a cell of elements on its masters, or prints stresses of its elements.
-    Lamcel(deck::PieceArguments),
+    Lamcel(deck::Arguments),
     /// Runs a deck of LAMSUB: condenses a plate of stacks of elements on its masters, or prints stresses of its elements.
-    Lamsub(deck::PieceArguments),
+    Lamsub(deck::Arguments),
     /// Runs a deck of TRADYR: puts pieces together by node numbers and marches an impact.
     Tradyr(deck::TradyrArguments),
     /// Works with decks of LAMCEL, LAMSUB and TRADYR and with what they leave.
@@ -160,7 +160,7 @@ fn dispatch(registry: &Registry, command: &Command, console: &Console) -> miette
         Command::Matrices(a) => matrices::matrices(registry, a, console),
         Command::Lamcel(a) => deck::piece(registry, Program::Lamcel, a, console),
         Command::Lamsub(a) => deck::piece(registry, Program::Lamsub, a, console),
-        Command::Tradyr(a) => deck::tradyr(a, console),
+        Command::Tradyr(a) => deck::tradyr(registry, a, console),
         Command::Deck(a) => deck::deck(a, console),
         Command::List(a) => list::list(registry, a, console),
         Command::Schema => schema::schema(registry, console),

@@ -3,7 +3,7 @@
 use super::piece::Parts;
 use crate::error::Error;
 use crate::model::NamedCriterion;
-use fem_core::element::{Cell, Part, Scratch, Stack};
+use fem_core::element::{Cell, ElementError, Part, Scratch, Stack};
 use fem_core::failure::{FailureCriterion as _, Site};
 use fem_core::material::Material;
 use fem_core::tensor::{Global, Matrix6, Ply, Strain6, Stress6, rotate_stiffness, stress};
@@ -30,13 +30,33 @@ impl Place {
 
 /// A place of an element: which, how it is averaged, and what it is made of.
 #[derive(Debug)]
-struct Station<'a> {
-    place: Place,
-    which: String,
-    part: Part,
-    material: &'a Material,
+pub(super) struct Station<'a> {
+    pub(super) place: Place,
+    pub(super) which: String,
+    /// Its ply, from 0; of an interface the one below.
+    pub(super) ply: usize,
+    pub(super) part: Part,
+    pub(super) material: &'a Material,
     /// Fibre direction of its local axes, radians.
-    angle: f64,
+    pub(super) angle: f64,
+    /// Mean strains in global axes per displacement of the element, six each.
+    operator: Vec<f64>,
+}
+
+impl Station<'_> {
+    /// Mean strains for the displacements `u` of the element in the plate's axes.
+    fn strain(&self, u: &[f64]) -> Strain6<Global> {
+        let mut strain = [0.0; 6];
+        for (column, u) in self.operator.as_chunks::<6>().0.iter().zip(u) {
+            strain.iter_mut().zip(column).for_each(|(e, b)| *e += b * u);
+        }
+        Strain6::new(strain)
+    }
+
+    /// Stress there in the axes of the ply.
+    pub(super) fn stress(&self, u: &[f64]) -> Stress6<Ply> {
+        stress(&self.material.elastic.stiffness(), &self.strain(u).to_ply(self.angle))
+    }
 }
 
 /// What is found at a place.
@@ -66,40 +86,47 @@ pub(super) fn recover(
     u: &[f64],
     criteria: &[NamedCriterion],
 ) -> Result<Vec<Found>, Error> {
-    let stations = stations(deck, number, prints);
-    let dofs = parts.dofs(number);
-    let mut local: Vec<f64> = dofs.iter().map(|dof| u[*dof]).collect();
-    if let Some(turn) = parts.turn(number) {
-        local = (turn * nalgebra::DVector::from_vec(local)).as_slice().to_vec();
-    }
-    let (mut scratch, mut b) = (Scratch::default(), vec![0.0; 6 * dofs.len()]);
-    let mut found = Vec::with_capacity(stations.len());
-    for station in stations {
+    let u = parts.displacements(number, u);
+    let found = stations(deck, parts, number, prints)?.into_iter().map(|station| {
         let c = station.material.elastic.stiffness();
-        let global = rotate_stiffness(&c, station.angle);
-        let cell = parts.cell(number);
-        // A section's strains across it follow from the stiffness of the place.
-        let stack = with(cell.stack, station.part.slice, global);
-        parts.element.mean_strains(&Cell { stack: &stack, ..cell }, &[station.part], &mut scratch, &mut b)?;
-        let mut strain = [0.0; 6];
-        for (column, u) in b.as_chunks::<6>().0.iter().zip(&local) {
-            strain.iter_mut().zip(column).for_each(|(e, b)| *e += b * u);
-        }
-        let strain = Strain6::<Global>::new(strain);
+        let strain = station.strain(&u);
         let local_strain = strain.to_ply(station.angle);
         let local_stress = stress(&c, &local_strain);
-        found.push(Found {
+        Found {
             place: station.place,
-            which: station.which,
+            stress: stress(&rotate_stiffness(&c, station.angle), &strain),
             strain,
-            stress: stress(&global, &strain),
             local_strain,
             local_stress,
             indices: indices(station.place, &local_stress, station.material),
             others: others(criteria, station.place, &local_stress, station.material),
-        });
+            which: station.which,
+        }
+    });
+    Ok(found.collect())
+}
+
+/// Places of element `number` (from 0) with what its displacements make of their strains.
+///
+/// # Errors
+/// A cell that the element refuses.
+pub(super) fn stations<'a>(
+    deck: &'a Generation,
+    parts: &Parts<'_>,
+    number: usize,
+    prints: &Prints,
+) -> Result<Vec<Station<'a>>, ElementError> {
+    let mut stations = places(deck, number, prints);
+    let (mut scratch, cell) = (Scratch::default(), parts.cell(number));
+    for station in &mut stations {
+        station.operator = vec![0.0; 6 * parts.element.info().ndof()];
+        let global = rotate_stiffness(&station.material.elastic.stiffness(), station.angle);
+        // A section's strains across it follow from the stiffness of the place.
+        let stack = with(cell.stack, station.part.slice, global);
+        let cell = Cell { stack: &stack, ..cell };
+        parts.element.mean_strains(&cell, &[station.part], &mut scratch, &mut station.operator)?;
     }
-    Ok(found)
+    Ok(stations)
 }
 
 /// `stack` with another stiffness of one of its plies.
@@ -109,7 +136,7 @@ fn with(stack: &Stack, slice: usize, c: Matrix6) -> Stack {
     stack
 }
 
-fn stations<'a>(deck: &'a Generation, number: usize, prints: &Prints) -> Vec<Station<'a>> {
+fn places<'a>(deck: &'a Generation, number: usize, prints: &Prints) -> Vec<Station<'a>> {
     let plies = &deck.piece.elements[number].plies;
     let laminate = &deck.laminate;
     let (first, end, all) = (plies.start, plies.end, laminate.plies.len());
@@ -118,6 +145,8 @@ fn stations<'a>(deck: &'a Generation, number: usize, prints: &Prints) -> Vec<Sta
     let of_ply = |place, which: String, ply: usize, q| Station {
         place,
         which,
+        ply,
+        operator: Vec::new(),
         part: Part { slice: ply - first, q },
         material: &laminate.materials[laminate.plies[ply].material],
         angle: laminate.plies[ply].angle,
@@ -131,6 +160,8 @@ fn stations<'a>(deck: &'a Generation, number: usize, prints: &Prints) -> Vec<Sta
         stations.extend((first.max(1)..=end.min(all - 1)).map(|k| Station {
             place: Place::Interface,
             which: format!("{k}|{}", k + 1),
+            ply: k - 1,
+            operator: Vec::new(),
             part: Part { slice: k.min(end - 1) - first, q: [q(k), q(k)] },
             material: &laminate.materials[laminate.interfaces],
             angle: 0.0,

@@ -2,6 +2,8 @@
 
 use super::DeckOutcome;
 use super::project::{Matrices, Project};
+use super::results::DeckImpact;
+use super::units::UnitSystem;
 use crate::error::Error;
 use fem_core::tensor::{Matrix6, rotate_stiffness};
 use fem_io::deck::{Freedom, Generation, Parsed, Program};
@@ -9,36 +11,6 @@ use fem_io::plot::{self, Axis, LinePlot, Series};
 use fem_io::tables::{self, TableValue};
 use std::fmt::Write as _;
 use std::path::Path;
-
-/// What the numbers of a deck are called: force, length and time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum UnitSystem {
-    NewtonMillimetreSecond,
-    PoundInchSecond,
-}
-
-impl UnitSystem {
-    /// All of them by the names of the command line.
-    pub const ALL: [(&'static str, Self); 2] =
-        [("N-mm-s", Self::NewtonMillimetreSecond), ("lbf-in-s", Self::PoundInchSecond)];
-
-    /// Force, length.
-    fn names(self) -> [&'static str; 2] {
-        match self {
-            Self::NewtonMillimetreSecond => ["N", "mm"],
-            Self::PoundInchSecond => ["lbf", "in"],
-        }
-    }
-
-    /// Metres per length.
-    fn metres(self) -> f64 {
-        match self {
-            Self::NewtonMillimetreSecond => 1e-3,
-            Self::PoundInchSecond => 0.0254,
-        }
-    }
-}
 
 /// Speeds of waves along fibres that a solid may have, m/s.
 const WAVES: std::ops::Range<f64> = 300.0..30e3;
@@ -57,8 +29,14 @@ impl Listing {
         let stem =
             Path::new(deck).file_stem().map_or_else(|| "deck".into(), |stem| stem.to_string_lossy().into_owned());
         let (title, analysed) = (parsed.deck.title().to_owned(), parsed.deck.analyses());
-        let outcome =
-            DeckOutcome { title, analysed, warnings: parsed.warnings.clone(), counts: Vec::new(), files: Vec::new() };
+        let outcome = DeckOutcome {
+            title,
+            analysed,
+            warnings: parsed.warnings.clone(),
+            counts: Vec::new(),
+            impact: None,
+            files: Vec::new(),
+        };
         let mut listing = Self { stem, units, text: String::new(), outcome };
         listing.line(&format!("{program}   {}", listing.outcome.title));
         listing.line(if analysed { "" } else { "data check only" });
@@ -68,6 +46,25 @@ impl Listing {
     pub(super) fn line(&mut self, line: &str) {
         self.text.push_str(line.trim_end());
         self.text.push('\n');
+    }
+
+    /// The deck's name without folder and ending.
+    pub(super) fn stem(&self) -> &str {
+        &self.stem
+    }
+
+    pub(super) fn units(&self) -> Option<UnitSystem> {
+        self.units
+    }
+
+    pub(super) fn warnings(&self) -> &[String] {
+        &self.outcome.warnings
+    }
+
+    /// Takes what came of an impact.
+    pub(super) fn found(&mut self, impact: DeckImpact) {
+        self.outcome.files.push(format!("{}/", self.stem));
+        self.outcome.impact = Some(impact);
     }
 
     pub(super) fn warn(&mut self, text: String) {
@@ -209,21 +206,19 @@ impl Listing {
         Ok(())
     }
 
-    /// Curves over time beside the listing, in the deck's units.
+    /// Curves over time beside the listing, in the deck's units, which nobody has named.
     pub(super) fn picture(
         &mut self,
         project: &Project,
         name: &str,
         quantity: &str,
-        dimension: [i32; 2],
         series: Vec<Series>,
     ) -> Result<(), Error> {
         let Some(dir) = project.dir().filter(|_| series.iter().any(|curve| curve.points.len() > 1)) else {
             return Ok(());
         };
-        let unit = self.unit(dimension).trim_matches([' ', '(', ')']).to_owned();
-        let (title, time) = (self.outcome.title.clone(), self.units.map_or("", |_| "s"));
-        let (x, y) = (Axis::linear("Time", time), Axis::linear(quantity, unit));
+        let title = self.outcome.title.clone();
+        let [x, y] = ["Time", quantity].map(|what| Axis::linear(what, "units of the deck"));
         let file = format!("{}.{name}", self.stem);
         plot::line_plot(&LinePlot { title, x, y, series, marks: Vec::new() })?.write(dir, &file)?;
         self.outcome.files.extend(["svg", "png"].map(|ending| format!("{file}.{ending}")));

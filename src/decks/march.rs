@@ -1,12 +1,15 @@
 //! The impact of TRADYR: governors and impactor in time.
 
 use super::model::Model;
+use crate::analyses::impact::{ContactRecord, Follower, StepForces, history_row};
 use crate::error::Error;
+use fem_core::counters::Counters;
 use fem_core::time::{Integrator, SecondOrderSystem, State};
 use fem_dynamics::contact::SunYang;
 use fem_dynamics::impact::{ImpactSystem, Impactor};
 use fem_dynamics::integrate::{Rk1, Rk2, Rk3, Rk4};
 use fem_io::deck::{DeckSource, Fault, ImpactDeck, MarchCard};
+use fem_io::tables::HistoryRow;
 
 /// Most bytes of motions that are held for printing.
 const MOST_BYTES: usize = 1 << 31;
@@ -26,7 +29,22 @@ pub(super) struct Print {
     pub(super) motion: [Vec<f64>; 3],
 }
 
-/// Marches from `from`, or from the beginning, and returns the print steps and the last state.
+/// A march that was made.
+#[derive(Debug)]
+pub(super) struct Marched {
+    pub(super) prints: Vec<Print>,
+    /// What an impact's history holds, at its beginning and at print steps.
+    pub(super) rows: Vec<HistoryRow>,
+    pub(super) contact: ContactRecord,
+    /// The force at every step of this run.
+    pub(super) forces: StepForces,
+    /// When this run began.
+    pub(super) begin: f64,
+    pub(super) counters: Counters,
+    pub(super) state: State,
+}
+
+/// Marches from `from`, or from the beginning.
 ///
 /// # Errors
 /// More print steps than can be held, a state that is not finite.
@@ -36,7 +54,7 @@ pub(super) fn march(
     march: &MarchCard,
     model: &Model,
     from: Option<State>,
-) -> Result<(Vec<Print>, State), Error> {
+) -> Result<Marched, Error> {
     let prints = march.steps / march.every;
     if prints.saturating_mul(24 * deck.freedom.ndof()) > MOST_BYTES {
         let found = format!("{prints} print steps of {} degrees of freedom", deck.freedom.ndof());
@@ -68,21 +86,39 @@ pub(super) fn march(
         None => {
             let mut state = system.initial();
             let governors = deck.freedom.kept.len();
-            state.u[governors] = side * card.position;
+            // Not -0 of an impactor that strikes against DIR.
+            state.u[governors] = side * card.position + 0.0;
             // An initial indentation counts as the largest so far.
             system.commit(&mut state)?;
             integrator.start(&mut system, &mut state)?;
             state
         }
     };
+    let (begin, mut work) = (state.t, Vec::new());
+    let begun = system.energies(&state, &mut work);
+    let mut rows = vec![history_row(&system, &state, &begun, begun.total())];
+    let (mut contact, mut forces) = (Follower::since(begin), StepForces::new(march.step.value));
     let mut printed = Vec::with_capacity(prints);
     for step in 1..=march.steps {
         integrator.step(&mut system, &mut state, march.step.value)?;
+        let touch = system.touch(0, &state);
+        contact.take(state.t, touch);
+        forces.take(step as u64, touch.force);
         if step % march.every == 0 {
             printed.push(print(step, side, &system, model, &state));
+            let energies = system.energies(&state, &mut work);
+            rows.push(history_row(&system, &state, &energies, begun.total()));
         }
     }
-    Ok((printed, state))
+    let (factorisations, solves) = system.structure().work();
+    let counters = Counters {
+        factorisations,
+        solves,
+        steps: march.steps as u64,
+        contact_calls: system.contact_calls(),
+        ..Counters::default()
+    };
+    Ok(Marched { prints: printed, rows, contact: contact.finish(), forces, begin, counters, state })
 }
 
 fn print(step: usize, side: f64, system: &ImpactSystem, model: &Model, state: &State) -> Print {

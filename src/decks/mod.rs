@@ -10,32 +10,40 @@
 //!                                 BackSubstitution ── back::recover ──> tables of stresses
 //! ```
 
+mod axes;
 mod back;
 mod check;
 mod element;
+mod judge;
 mod listing;
 mod march;
 mod model;
 mod piece;
 mod project;
 mod reduced;
+mod results;
 mod show;
 mod tables;
+mod units;
 
 pub use check::{Checked, Mistake, check};
-pub use listing::UnitSystem;
 pub use project::{Matrices, Project};
+pub use results::{DeckAccuracy, DeckImpact, DeckSize};
 pub use show::{Shown, export, show};
+pub use units::UnitSystem;
 
+use crate::cost::{Provenance, Stopwatch};
 use crate::error::Error;
 use crate::model::NamedCriterion;
 use fem_io::deck::{
     self, BackSubstitution, Deck, DeckSource, Fault, Generation, ImpactDeck, MarchCard, NoResults, Program,
 };
 use listing::Listing;
+use march::Marched;
 use model::Model;
 use piece::Parts;
 use project::{Analysis, DisplacementSet};
+use results::Impact;
 use serde::{Serialize, Serializer};
 use tables::Substituted;
 
@@ -46,10 +54,12 @@ pub struct DeckOptions {
     pub units: Option<UnitSystem>,
     /// The displacement set whose analysis a restart goes on with; the last analysis where none is named.
     pub restart_of: Option<String>,
-    /// Criteria whose indices back substitution prints besides those of the report.
+    /// Criteria that judge an impact, and whose indices back substitution prints besides those of the report.
     pub criteria: Vec<NamedCriterion>,
     /// Everything is done but the march in time and back substitution.
     pub check: bool,
+    /// What it takes to run it again.
+    pub provenance: Option<Provenance>,
 }
 
 /// What a deck came to.
@@ -64,6 +74,9 @@ pub struct DeckOutcome {
     /// Numbers by name, as printed.
     #[serde(serialize_with = "as_map")]
     pub counts: Vec<(&'static str, usize)>,
+    /// What came of an impact, where its units are named.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub impact: Option<DeckImpact>,
     /// What it left in the project.
     pub files: Vec<String>,
 }
@@ -84,12 +97,12 @@ pub fn run(
 ) -> Result<DeckOutcome, Error> {
     let parsed = deck::parse(source, program, project)?;
     let mut listing = Listing::new(source.name(), program, &parsed, options.units);
-    let mut run = Run { source, project, listing: &mut listing, check: options.check };
+    let mut run = Run { source, project, listing: &mut listing, options };
     match &parsed.deck {
         Deck::Generation(deck) => run.generate(deck)?,
         Deck::Impact(deck) => run.analyse(deck)?,
         Deck::Restart(march) => run.restart(march, options.restart_of.as_deref())?,
-        Deck::BackSubstitution(deck) => run.substitute(deck, &options.criteria)?,
+        Deck::BackSubstitution(deck) => run.substitute(deck)?,
     }
     listing.write(project)
 }
@@ -99,7 +112,7 @@ struct Run<'a> {
     source: &'a DeckSource,
     project: &'a mut Project,
     listing: &'a mut Listing,
-    check: bool,
+    options: &'a DeckOptions,
 }
 
 impl Run<'_> {
@@ -153,7 +166,9 @@ impl Run<'_> {
     ) -> Result<(), Error> {
         // Places are those of the deck at hand, but for the model's, which is that of the deck that began.
         let begun = DeckSource::new(&analysis.deck.0, analysis.deck.1.clone());
+        let mut watch = Stopwatch::default();
         let model = Model::new(&begun, deck, self.project)?;
+        watch.lap("model");
         let growth = model.check_step(self.source, march)?;
         self.listing.frequencies(&model, march, growth);
         self.listing.triangles(self.project, "governors", deck.freedom.kept.len(), &model.k, &model.m)?;
@@ -162,10 +177,19 @@ impl Run<'_> {
             .filter(|set| restart && (&set.analysis.deck, &set.analysis.parts) == (&analysis.deck, &analysis.parts));
         let (mut count, mut steps) = continued.map_or((0, Vec::new()), |set| (set.count, set.steps.clone()));
         count += march.steps / march.every;
-        if !self.check {
-            let (prints, state) = march::march(self.source, deck, march, &model, analysis.state.take())?;
-            self.listing.history(self.project, deck, &prints)?;
-            self.listing.motion(self.project, deck, march, &prints)?;
+        if !self.options.check {
+            let marched = march::march(self.source, deck, march, &model, analysis.state.take())?;
+            watch.lap("march");
+            self.listing.history(self.project, deck, &marched.prints)?;
+            self.listing.motion(self.project, deck, march, &marched.prints)?;
+            if let Some(units) = self.options.units {
+                let DeckOptions { criteria, provenance, .. } = self.options;
+                let (source, model, marched) = (self.source, &model, &marched);
+                let impact =
+                    Impact { source, deck, march, model, marched, units, criteria, provenance: provenance.as_ref() };
+                impact.write(self.project, self.listing, watch)?;
+            }
+            let Marched { prints, state, .. } = marched;
             steps.extend(
                 prints.into_iter().map(|print| (print.time, print.motion.into_iter().next().unwrap_or_default())),
             );
@@ -175,12 +199,12 @@ impl Run<'_> {
         self.project.keep_analysis(self.source, march.set.as_deref(), set)
     }
 
-    fn substitute(&mut self, deck: &BackSubstitution, criteria: &[NamedCriterion]) -> Result<(), Error> {
+    fn substitute(&mut self, deck: &BackSubstitution) -> Result<(), Error> {
         let (Some(matrices), Some(set)) = (self.project.generation(&deck.names), self.project.set(&deck.names[5]))
         else {
             return Ok(());
         };
-        if !deck.analyse || self.check {
+        if !deck.analyse || self.options.check {
             return Ok(());
         }
         let own = DeckSource::new(&matrices.deck.0, matrices.deck.1.clone());
@@ -205,10 +229,9 @@ impl Run<'_> {
             let nodes = model.substructures[asked.substructure - 1].nodes.iter();
             let masters: Vec<f64> = nodes.flat_map(|n| &u[n * per_node..(n + 1) * per_node]).copied().collect();
             let u = way.expand(&masters);
-            let found = asked
-                .elements
-                .iter()
-                .map(|number| Ok((*number, back::recover(&piece, &parts, number - 1, &asked.prints, &u, criteria)?)));
+            let found = asked.elements.iter().map(|number| {
+                Ok((*number, back::recover(&piece, &parts, number - 1, &asked.prints, &u, &self.options.criteria)?))
+            });
             let found = found.collect::<Result<Vec<_>, Error>>()?;
             substituted.push(Substituted { asked, u, found });
         }

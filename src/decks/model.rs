@@ -77,21 +77,19 @@ impl Model {
         self.omega.last().copied().unwrap_or(0.0) * march.step.value
     }
 
+    /// The longest stable step of the schemes that have one.
+    pub(super) fn longest_step(&self, march: &MarchCard) -> f64 {
+        march.step.value * limit(march) / self.omega_step(march)
+    }
+
     /// Refuses steps that blow up; returns by how much the fastest mode grows where every step grows.
     ///
     /// # Errors
     /// A DELTA beyond the limit of the scheme, with the largest that is possible.
     pub(super) fn check_step(&self, source: &DeckSource, march: &MarchCard) -> Result<Option<f64>, DeckError> {
-        let (x, steps) = (self.omega_step(march), march.steps as f64);
-        // |amplification|² of the scheme for ω Δt = x, less 1, and its inverse.
-        let limit = match march.order {
-            1 => ((2.0 * MOST_GROWTH.ln() / steps).exp_m1()).sqrt(),
-            2 => (4.0 * (2.0 * MOST_GROWTH.ln() / steps).exp_m1()).powf(0.25),
-            3 => 3.0_f64.sqrt(),
-            _ => 2.0 * SQRT_2,
-        };
+        let (x, steps, limit) = (self.omega_step(march), march.steps as f64, limit(march));
         if !(x <= limit) {
-            let longest = march.step.value * limit / x;
+            let longest = self.longest_step(march);
             let found = format!(
                 "DELTA is {}: the highest frequency times DELTA is {x:.4}, INTALG {} allows {limit:.4}",
                 march.step.value, march.order
@@ -104,6 +102,18 @@ impl Model {
             2 => Some((0.5 * steps * (0.25 * x.powi(4)).ln_1p()).exp()),
             _ => None,
         })
+    }
+}
+
+/// ω Δt that a scheme allows: its limit of stability, or what grows no more than [`MOST_GROWTH`] in all steps.
+fn limit(march: &MarchCard) -> f64 {
+    // |amplification|² of the scheme for ω Δt, less 1, is its square and a quarter of its fourth power.
+    let growth = (2.0 * MOST_GROWTH.ln() / march.steps as f64).exp_m1();
+    match march.order {
+        1 => growth.sqrt(),
+        2 => (4.0 * growth).powf(0.25),
+        3 => 3.0_f64.sqrt(),
+        _ => 2.0 * SQRT_2,
     }
 }
 

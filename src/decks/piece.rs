@@ -5,7 +5,7 @@ use super::reduced::{Block, Way, reduce};
 use fem_core::element::{Cell, Element, ElementError, Scratch, Stack};
 use fem_core::laminate::Laminate;
 use fem_io::deck::{DeckError, DeckSource, Fault, Generation, PieceKind};
-use nalgebra::{DMatrix, Matrix3, Rotation3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
@@ -49,14 +49,23 @@ impl<'a> Parts<'a> {
     }
 
     /// Degrees of freedom of an element, node by node.
-    pub(super) fn dofs(&self, number: usize) -> Vec<usize> {
+    fn dofs(&self, number: usize) -> Vec<usize> {
         let per_node = self.deck.freedom.directions.len();
         let nodes = self.deck.piece.elements[number].nodes.iter();
         nodes.flat_map(|node| node * per_node..(node + 1) * per_node).collect()
     }
 
+    /// Displacements of an element in the plate's axes, of those of the piece, which are in the axes of its nodes.
+    pub(super) fn displacements(&self, number: usize, u: &[f64]) -> Vec<f64> {
+        let own: Vec<f64> = self.dofs(number).into_iter().map(|dof| u[dof]).collect();
+        match self.turn(number) {
+            Some(turn) => (turn * DVector::from_vec(own)).as_slice().to_vec(),
+            None => own,
+        }
+    }
+
     /// T of u = T u', u' in the axes of the nodes of an element; `None` where all are those of the plate.
-    pub(super) fn turn(&self, number: usize) -> Option<DMatrix<f64>> {
+    fn turn(&self, number: usize) -> Option<DMatrix<f64>> {
         let nodes = &self.deck.piece.elements[number].nodes;
         let betas: Vec<f64> = nodes.iter().map(|node| self.deck.piece.nodes[*node].beta).collect();
         if self.deck.kind != PieceKind::Solid || betas.iter().all(|beta| *beta == 0.0) {

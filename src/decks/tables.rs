@@ -1,5 +1,6 @@
 //! Tables of an analysis and of a back substitution, and their part of the listing.
 
+use super::axes::unlike;
 use super::back::{Found, Place};
 use super::listing::{Listing, index};
 use super::march::Print;
@@ -39,6 +40,7 @@ impl Listing {
             let name = deck.freedom.phrase(*dof);
             self.warn(format!("{name} governs, a derivative: it has hardly any inertia, hence a high frequency"));
         }
+        unlike(deck, project).into_iter().for_each(|text| self.warn(text));
         let mut seen: Vec<&str> = Vec::new();
         for piece in &deck.substructures {
             let name = piece.name.value.as_str();
@@ -99,8 +101,12 @@ impl Listing {
         };
         let struck = curve("struck", &|print| print.motion[0][deck.struck]);
         let impactor = curve("impactor", &|print| print.impactor[0]);
-        self.picture(project, "force", "Contact force", [1, 0], vec![curve("force", &|print| print.force)])?;
-        self.picture(project, "displacement", "Displacement", [0, 1], vec![impactor, struck])
+        if self.units().is_some() {
+            // The pictures of any impact, in SI units, stand for these.
+            return Ok(());
+        }
+        self.picture(project, "force", "Contact force", vec![curve("force", &|print| print.force)])?;
+        self.picture(project, "displacement", "Displacement", vec![impactor, struck])
     }
 
     /// Displacements, velocities and accelerations of all degrees of freedom at every print step, as far as they are printed.

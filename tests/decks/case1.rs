@@ -2,7 +2,7 @@
 
 use super::{Table, number, program, run};
 use crate::report::Computed;
-use crate::support::root;
+use crate::support::{fem, root};
 
 /// DELTA times NPRINT of the deck, s.
 const PRINTED: f64 = 5e-6;
@@ -32,6 +32,20 @@ fn decks_and_scene_fail_at_the_same_time() {
     }
     let stresses =
         ["4-stresses-1", "5-stresses-2"].map(|deck| Table::read(&results.path().join(format!("{deck}.failure.csv"))));
+    // The command judges all elements on its way.
+    let project = results.path().to_str().unwrap();
+    let done = fem(&folder, &["tradyr", "3-impact.dat", "--project", project, "--units", "N-mm-s", "--json"]).good();
+    let impact = &serde_json::from_str::<serde_json::Value>(&done.stdout).unwrap()["impact"];
+    assert!(impact["accuracy"]["energy_error_relative"].as_f64().unwrap() < 1e-8, "{impact}");
+    let events = Table::read(&results.path().join("3-impact/events.csv"));
+    let event = |mode: &str, ply: u16| {
+        let [criterion, by, place, time] = ["criterion", "mode", "ply", "time_s"].map(|name| events.column(name));
+        let found = events
+            .rows
+            .iter()
+            .find(|row| row[criterion] == "hashin-report" && row[by] == mode && row[place] == ply.to_string());
+        number(&found.unwrap()[time])
+    };
     let first = |ply: u16, equation: &str| {
         stresses.iter().map(|table| onset(table, ply, equation)).fold(f64::INFINITY, f64::min)
     };
@@ -40,5 +54,10 @@ fn decks_and_scene_fail_at_the_same_time() {
     for (ply, equation, mode) in [(1, "eq40", "matrix tension"), (16, "eq41", "matrix compression")] {
         let (decks, scene) = (first(ply, equation), scene.onset(mode, Some(ply)).unwrap());
         assert!((decks / scene - 1.0).abs() < 0.01, "ply {ply}: {decks} s by decks, {scene} s by the scene");
+        let judged = event(mode, ply);
+        assert!(
+            (judged / decks - 1.0).abs() < 1e-9,
+            "ply {ply}: {judged} s by the impact, {decks} s by back substitution"
+        );
     }
 }

@@ -32,8 +32,7 @@ pub(crate) fn program(name: &str) -> Program {
 
 /// Runs a deck in the project of `results`.
 pub(crate) fn run(deck: &Path, program: Program, results: &Path) -> Result<decks::DeckOutcome, fem::Error> {
-    let source = DeckSource::read(deck)?;
-    decks::run(&source, program, &mut Project::open(results)?, &DeckOptions::default())
+    decks::run(&DeckSource::read(deck)?, program, &mut Project::open(results)?, &DeckOptions::default())
 }
 
 /// A table: its header and rows by key columns.

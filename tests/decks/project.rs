@@ -123,3 +123,96 @@ fn any_criterion_judges_stresses_of_a_deck() {
     assert!(indices.rows.iter().any(|row| row[5] == "max-stress"));
     assert!(results.path().join("2-tradyr.force.svg").exists());
 }
+
+/// The quarters of an example, and its impact with options.
+fn quarters(results: &Path, options: &[&str]) -> serde_json::Value {
+    let folder = folder("c1-quarter-plates-coupled");
+    for deck in ["1-lamsub-q1.dat", "2-lamsub-q2.dat"] {
+        run(&folder.join(deck), program("lamsub"), results).unwrap();
+    }
+    let impact = ["tradyr", "3-tradyr.dat", "--json", "--project", results.to_str().unwrap()];
+    serde_json::from_str(&fem(&folder, &[&impact[..], options].concat()).good().stdout).unwrap()
+}
+
+#[test]
+fn an_impact_of_named_units_leaves_what_any_impact_does() {
+    let results = tempfile::tempdir().unwrap();
+    let impact =
+        quarters(results.path(), &["--units", "N-mm-s", "--criteria", "hashin-report,max-stress"])["impact"].clone();
+    let own = super::Table::read(&results.path().join("3-tradyr.history.csv"));
+    let si = super::Table::read(&results.path().join("3-tradyr/history.csv"));
+    assert_eq!(si.rows.len(), own.rows.len() + 1, "and the beginning");
+    let last =
+        |table: &super::Table, name: &str| -> f64 { super::number(&table.rows.last().unwrap()[table.column(name)]) };
+    for (name, own_name, factor) in [
+        ("contact_force_N", "F", 1.0),
+        ("impactor_displacement_m", "u impactor", -1e-3),
+        ("impactor_velocity_m_s", "v impactor", -1e-3),
+        ("time_s", "t", 1.0_f64),
+    ] {
+        let (si, own) = (last(&si, name), last(&own, own_name));
+        assert!((si - factor * own).abs() <= 1e-14 * si.abs(), "{name}: {si}, {own}");
+    }
+    // The indentation of the deck is what impactor and plate differ by.
+    let gap = last(&si, "impactor_displacement_m") - last(&si, "plate_displacement_m");
+    assert!((gap - 1e-3 * last(&own, "delta")).abs() < 1e-15, "{gap}");
+    let energies: f64 =
+        ["impactor_kinetic_J", "plate_kinetic_J", "plate_strain_J", "contact_stored_J", "contact_dissipated_J"]
+            .iter()
+            .map(|name| last(&si, name))
+            .sum();
+    assert!((energies / impact["impact"]["energy_J"].as_f64().unwrap() - 1.0).abs() < 1e-6, "{energies} {impact}");
+    // Indices have no units: the same deck read in pounds and inches fails alike.
+    let again = tempfile::tempdir().unwrap();
+    let pounds =
+        quarters(again.path(), &["--units", "lbf-in-s", "--criteria", "hashin-report,max-stress"])["impact"].clone();
+    let ratio = |key: &str| pounds["impact"][key].as_f64().unwrap() / impact["impact"][key].as_f64().unwrap();
+    assert!((ratio("peak_force_N") / 4.448_221_615_260_5 - 1.0).abs() < 1e-12);
+    assert!((ratio("energy_J") / (4.448_221_615_260_5 * 25.4) - 1.0).abs() < 1e-12);
+    for kind in ["first_damage", "not_reached"] {
+        let times = |of: &serde_json::Value| -> Vec<(String, f64)> {
+            let each = of[kind].as_array().unwrap().iter();
+            each.map(|row| (row["mode"].to_string(), row["time_s"].as_f64().unwrap())).collect()
+        };
+        let (a, b) = (times(&impact), times(&pounds));
+        assert_eq!(a.len(), b.len());
+        assert!(a.iter().zip(&b).all(|(a, b)| a.0 == b.0 && (a.1 - b.1).abs() < 1e-12), "{a:?} {b:?}");
+    }
+    fem(results.path(), &["report", "3-tradyr"]).good();
+    let page = std::fs::read_to_string(results.path().join("3-tradyr/report.html")).unwrap();
+    for part in ["id=\"deck\"", "id=\"result-model\"", "contact_force", "force_displacement", "peak force"] {
+        assert!(page.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn a_criterion_without_its_strengths_is_left_out_and_said() {
+    let results = tempfile::tempdir().unwrap();
+    let done = quarters(results.path(), &["--units", "N-mm-s", "--criteria", "hashin-report,brewer-lagace"]);
+    let warnings = done["warnings"].to_string();
+    assert!(warnings.contains("judges nothing"), "{warnings}");
+    assert!(done["impact"]["not_reached"].to_string().contains("hashin-report"));
+}
+
+#[test]
+fn nodes_that_pieces_share_in_unlike_axes_are_told() {
+    let (results, decks) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let folder = folder("c1-quarter-plates-coupled");
+    run(&folder.join("1-lamsub-q1.dat"), program("lamsub"), results.path()).unwrap();
+    let text = std::fs::read_to_string(folder.join("2-lamsub-q2.dat")).unwrap();
+    let warned = |text: &str| {
+        let path = decks.path().join("2-lamsub-q2.dat");
+        std::fs::write(&path, text).unwrap();
+        run(&path, program("lamsub"), results.path()).unwrap();
+        run(&folder.join("3-tradyr.dat"), program("tradyr"), results.path()).unwrap().warnings
+    };
+    assert_eq!(warned(&text), Vec::<String>::new(), "columns that only their images share may have axes of their own");
+    let shared =
+        text.lines().find(|line| line.split(',').nth(1).is_some_and(|x| x == "0.") && line.contains(",25.,")).unwrap();
+    let turned = format!("{},90.", shared.rsplit_once(',').unwrap().0);
+    let warnings = warned(&text.replace(shared, &turned));
+    assert!(
+        warnings.iter().any(|w| w.starts_with("substructures 1 and 2 share node ") && w.contains("BETA 0 and 90")),
+        "{warnings:?}"
+    );
+}

@@ -22,7 +22,9 @@ pub(crate) fn cases() -> Vec<Case> {
         case("corpus of the scene reader", "8 inputs by hand, 200 found by fuzzing", || {
             replayed("scene", [8, 200], targets::scene)
         }),
-        case("decks, right and wrong", "74 inputs by hand", || replayed("deck", [74, 0], targets::deck)),
+        case("corpus of the reader of decks", "74 inputs by hand, 200 found by fuzzing", || {
+            replayed("deck", [74, 200], targets::deck)
+        }),
         case("corpus of the layup notation", "15 inputs by hand, 200 found by fuzzing", || {
             replayed("layup", [15, 200], targets::layup)
         }),

@@ -36,7 +36,7 @@ impl ContactRecord {
 
 /// Follows a contact from step to step.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct Follower {
+pub(crate) struct Follower {
     threshold: Option<f64>,
     /// Time, force and magnitude of the deflection at the step before; all are 0 at the beginning.
     last: (f64, f64, f64),
@@ -49,8 +49,13 @@ impl Follower {
         Self { threshold, last: (0.0, 0.0, 0.0), record: ContactRecord::default() }
     }
 
+    /// Of a march that begins at time `t`, s.
+    pub(crate) fn since(t: f64) -> Self {
+        Self { last: (t, 0.0, 0.0), ..Self::new(None) }
+    }
+
     /// The threshold's time comes by linear interpolation between steps.
-    pub(super) fn take(&mut self, t: f64, Touch { indentation, force, deflection, .. }: Touch) {
+    pub(crate) fn take(&mut self, t: f64, Touch { indentation, force, deflection, .. }: Touch) {
         let Self { threshold, last: (before, low, shallow), record } = self;
         record.deepest = record.deepest.max(indentation);
         record.deflection = record.deflection.max(deflection);
@@ -85,7 +90,7 @@ impl Follower {
         u64::from(self.record.count) <= step + 1 && self.record.growth.len() as u64 <= 2 * step + 2
     }
 
-    pub(super) fn finish(self) -> ContactRecord {
+    pub(crate) fn finish(self) -> ContactRecord {
         self.record
     }
 }

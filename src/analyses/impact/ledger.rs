@@ -5,7 +5,7 @@ use super::modal::ModalView;
 use crate::effect::Effect;
 use fem_core::time::State;
 use fem_dynamics::guard::{Alarm, Guard};
-use fem_dynamics::impact::{ImpactSystem, Touch};
+use fem_dynamics::impact::{Energies, ImpactSystem, Touch};
 use fem_io::tables::{HistoryRow, ImpactorRow};
 use serde::{Deserialize, Serialize};
 
@@ -113,26 +113,8 @@ impl Ledger {
             _ => {}
         }
         if look.row {
-            let impactor = |i: usize| {
-                let Touch { force, velocity, deflection, .. } = system.touch(i, state);
-                ImpactorRow {
-                    contact_force_n: force,
-                    impactor_displacement_m: system.position(i, &state.u),
-                    impactor_velocity_m_s: velocity,
-                    plate_displacement_m: deflection,
-                }
-            };
-            self.rows.push(HistoryRow {
-                time_s: state.t,
-                impactors: (0..self.contacts.len()).map(impactor).collect(),
-                impactor_kinetic_j: e.impactor,
-                plate_kinetic_j: e.kinetic,
-                plate_strain_j: e.strain,
-                contact_stored_j: e.stored,
-                contact_dissipated_j: e.dissipated,
-                effects: effects.iter().flat_map(|effect| effect.values(system, state, &e)).collect(),
-                energy_balance_j: e.total() - guard.energy(),
-            });
+            let effects = effects.iter().flat_map(|effect| effect.values(system, state, &e)).collect();
+            self.rows.push(HistoryRow { effects, ..history_row(system, state, &e, guard.energy()) });
         }
         balanced?;
         if let Some(modal) = modal {
@@ -142,6 +124,30 @@ impl Ledger {
             modal.weigh(state, look.steps as f64, [e.strain, e.kinetic]);
         }
         Ok(())
+    }
+}
+
+/// What an instant is to a history, effects apart; `begun` is the energy at the beginning.
+pub(crate) fn history_row(system: &ImpactSystem, state: &State, e: &Energies, begun: f64) -> HistoryRow {
+    let impactor = |i: usize| {
+        let Touch { force, velocity, deflection, .. } = system.touch(i, state);
+        ImpactorRow {
+            contact_force_n: force,
+            impactor_displacement_m: system.position(i, &state.u),
+            impactor_velocity_m_s: velocity,
+            plate_displacement_m: deflection,
+        }
+    };
+    HistoryRow {
+        time_s: state.t,
+        impactors: (0..state.histories.contacts.len()).map(impactor).collect(),
+        impactor_kinetic_j: e.impactor,
+        plate_kinetic_j: e.kinetic,
+        plate_strain_j: e.strain,
+        contact_stored_j: e.stored,
+        contact_dissipated_j: e.dissipated,
+        effects: Vec::new(),
+        energy_balance_j: e.total() - begun,
     }
 }
 

@@ -1,7 +1,7 @@
 //! A folder of results, read.
 
-use super::SCENE;
 use super::drawing::redraw;
+use super::{DECK, SCENE};
 use crate::analyses::impact::CHECKPOINT;
 use crate::error::Error;
 use crate::output::damage::{self, DamageMap};
@@ -30,6 +30,7 @@ pub(super) struct Folder {
     pub(super) summary: Option<Value>,
     pub(super) cost: Option<Value>,
     pub(super) scene: Option<String>,
+    pub(super) deck: Option<String>,
     pub(super) history: Option<Table>,
     pub(super) events: Option<Table>,
     pub(super) modes: Option<Table>,
@@ -84,6 +85,7 @@ impl Folder {
             path: path.to_owned(),
             cost: files.read("cost.json", read_document)?,
             scene: files.read(SCENE, read_text)?,
+            deck: files.read(DECK, read_text)?,
             history: files.read("history.csv", read_table)?,
             events: files.read("events.csv", read_table)?,
             modes: files.read("modes.csv", read_table)?,

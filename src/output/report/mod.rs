@@ -18,6 +18,9 @@ use std::path::{Path, PathBuf};
 /// Copy of the scene in a folder of results.
 pub const SCENE: &str = "scene.toml";
 
+/// Copy of the deck in a folder of results of one.
+pub const DECK: &str = "deck.dat";
+
 /// The page.
 pub const PAGE: &str = "report.html";
 

@@ -85,6 +85,7 @@ pub(super) fn render(folder: &Folder, columns: &[&LedgerColumn]) -> Result<Strin
         cost => any(folder.cost.as_ref().map(cost)),
         provenance => any(folder.cost.as_ref().and_then(|cost| cost.get("provenance"))),
         scene => folder.scene.as_deref(),
+        deck => folder.deck.as_deref(),
         style_hash => hash(STYLE),
         style => Any::from_safe_string(STYLE.to_owned()),
         data => Any::from_safe_string(escape_json(&data)),

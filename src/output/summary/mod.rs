@@ -7,11 +7,12 @@ use crate::advise::hindsight;
 use crate::analyses::assembled::Substructures;
 use crate::analyses::impact::{self, ContactRecord, ModeShare, Outcome, Sizes};
 use crate::effect::{AdviceRule, Decision, Hindsight};
-use crate::model::Model;
+use crate::model::{Model, NamedCriterion};
 use crate::words::name_ply;
 use fem_core::counters::Counters;
+use fem_core::material::Material;
 use fem_core::tensor::{Ply, Stress6};
-use fem_failure::scan::{FailureEvent, PlyOrInterface, first_per_mode};
+use fem_failure::scan::{FailureEvent, Peak, PlyOrInterface, first_per_mode};
 use fem_io::scene;
 use fem_io::tables::EventRow;
 use serde::{Serialize, Serializer};
@@ -238,6 +239,18 @@ pub struct Work {
     pub criterion_calls: u64,
 }
 
+impl From<&Peak> for MarginSummary {
+    fn from(peak: &Peak) -> Self {
+        Self {
+            criterion: peak.criterion.clone(),
+            mode: peak.mode.to_owned(),
+            largest_index: peak.index,
+            time_s: peak.time,
+            ply: name_ply(peak.site.place),
+        }
+    }
+}
+
 impl From<Counters> for Work {
     fn from(c: Counters) -> Self {
         Self {
@@ -287,15 +300,8 @@ impl ImpactSummary {
             event: event_row(model, e),
             contact_force_N: outcome.forces.at(e.time),
             stress: (&e.stress).into(),
-            reserve_factor: reserve(model, e),
+            reserve_factor: reserve(&model.criteria, &model.materials, e),
         };
-        let margins = outcome.peaks.iter().filter(|p| p.index < 1.0).map(|p| MarginSummary {
-            criterion: p.criterion.clone(),
-            mode: p.mode.to_owned(),
-            largest_index: p.index,
-            time_s: p.time,
-            ply: name_ply(p.site.place),
-        });
         Self {
             title: model.origin.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
@@ -322,9 +328,9 @@ impl ImpactSummary {
                 of_effects: outcome.quantities.iter().copied().collect(),
                 lowest_frequency_Hz: sizes.lowest_frequency,
             },
-            impact: model.impactors().iter().enumerate().map(|(i, spec)| impact(model, outcome, i, spec)).collect(),
+            impact: model.impactors().iter().enumerate().map(|(i, spec)| figures(model, outcome, i, spec)).collect(),
             first_damage: first_per_mode(&outcome.events).into_iter().map(damage).collect(),
-            not_reached: margins.collect(),
+            not_reached: not_reached(&outcome.peaks),
             delamination_threshold: model.threshold.map(|threshold| {
                 let first = threshold_reached(model, outcome).min_by(|a, b| a.0.total_cmp(&b.0));
                 Threshold {
@@ -361,31 +367,50 @@ impl ImpactSummary {
 }
 
 /// The response to impactor `i`, which is `spec`.
-#[allow(non_snake_case)]
-fn impact(model: &Model, outcome: &Outcome, i: usize, spec: &scene::ImpactorSpec) -> ImpactFigures {
-    let ContactRecord { force: (peak_force_N, peak_force_time_s), deflection, deepest, count, duration, .. } =
-        outcome.contacts[i];
-    let last = outcome.history.last();
-    let velocity = last.map_or(0.0, |r| r.impactors[i].impactor_velocity_m_s);
-    let (end, pull) = (last.map_or(0.0, |r| r.time_s), model.effects.nature().pull);
+fn figures(model: &Model, outcome: &Outcome, i: usize, spec: &scene::ImpactorSpec) -> ImpactFigures {
+    let end = outcome.history.last().map_or((0.0, 0.0), |r| (r.time_s, r.impactors[i].impactor_velocity_m_s));
     let name = model.label(spec);
-    ImpactFigures {
-        name: name.map(str::to_owned),
-        mass_kg: spec.mass,
-        velocity_m_s: spec.velocity,
-        energy_J: 0.5 * spec.mass * spec.velocity.powi(2),
-        start_time_s: name.map(|_| spec.start),
-        end_time_s: end,
-        peak_force_N,
-        peak_force_time_s,
-        peak_plate_displacement_m: deflection,
-        peak_plate_displacement_over_thickness: deflection / model.laminate.thickness(),
-        peak_indentation_m: deepest,
-        impulse_N_s: spec.mass * (spec.velocity - velocity + pull * end),
-        final_impactor_velocity_m_s: velocity,
-        contacts: count,
-        contact_time_s: duration,
+    let mut figures =
+        ImpactFigures::new([spec.mass, spec.velocity], &outcome.contacts[i], end, model.laminate.thickness());
+    figures.impulse_N_s += spec.mass * model.effects.nature().pull * end.0;
+    ImpactFigures { name: name.map(str::to_owned), start_time_s: name.map(|_| spec.start), ..figures }
+}
+
+impl ImpactFigures {
+    /// Of an only impactor of this mass and velocity, which nothing pulls: what its `contact` was, and the time and its velocity
+    /// at the `end`, on a plate of this thickness.
+    #[allow(non_snake_case)]
+    pub(crate) fn new(
+        [mass_kg, velocity_m_s]: [f64; 2],
+        contact: &ContactRecord,
+        end: (f64, f64),
+        thickness: f64,
+    ) -> Self {
+        let (end_time_s, final_impactor_velocity_m_s) = end;
+        let ContactRecord { force: (peak_force_N, peak_force_time_s), deflection, .. } = *contact;
+        Self {
+            name: None,
+            mass_kg,
+            velocity_m_s,
+            energy_J: 0.5 * mass_kg * velocity_m_s.powi(2),
+            start_time_s: None,
+            end_time_s,
+            peak_force_N,
+            peak_force_time_s,
+            peak_plate_displacement_m: deflection,
+            peak_plate_displacement_over_thickness: deflection / thickness,
+            peak_indentation_m: contact.deepest,
+            impulse_N_s: mass_kg * (velocity_m_s - final_impactor_velocity_m_s),
+            final_impactor_velocity_m_s,
+            contacts: contact.count,
+            contact_time_s: contact.duration,
+        }
     }
+}
+
+/// Largest indices of the modes that did not reach 1.
+pub(crate) fn not_reached(peaks: &[Peak]) -> Vec<MarginSummary> {
+    peaks.iter().filter(|peak| peak.index < 1.0).map(MarginSummary::from).collect()
 }
 
 /// When each force that did reach the threshold first did, and whose it is.
@@ -398,9 +423,9 @@ pub(super) fn threshold_reached<'a>(
 }
 
 /// Reserve factor of the stress of an event by its criterion, unless that has none.
-fn reserve(model: &Model, event: &FailureEvent) -> Option<f64> {
-    let (_, criterion) = model.criteria.iter().find(|(name, _)| *name == event.criterion)?;
-    let material = &model.materials[usize::from(event.material)];
+pub(crate) fn reserve(criteria: &[NamedCriterion], materials: &[Material], event: &FailureEvent) -> Option<f64> {
+    let (_, criterion) = criteria.iter().find(|(name, _)| *name == event.criterion)?;
+    let material = &materials[usize::from(event.material)];
     Some(criterion.reserve_factor(&event.stress, material).factor).filter(|factor| factor.is_finite())
 }
 
@@ -417,6 +442,7 @@ pub(super) fn event_row(model: &Model, event: &FailureEvent) -> EventRow {
         criterion: event.criterion.clone(),
         mode: event.mode.to_owned(),
         time_s: event.time,
+        substructure: None,
         cell: model.plate.plane.quad_tags[event.cell as usize],
         ply: name_ply(event.place),
         angle_deg,
