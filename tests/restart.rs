@@ -195,6 +195,9 @@ fn every_integrator_goes_on_as_if_nothing_had_been() {
         ("central-difference", "none", "0.01 us"),
         ("rk4", "none", "0.01 us"),
         ("dormand-prince", "none", "0.1 us"),
+        ("energy-conserving", "none", "0.5 us"),
+        ("energy-conserving\"\ntolerance = 1e-4\n#\"", "ritz", "2 us"),
+        ("energy-conserving\"\ntolerance = 1e-3\n#\"", "none", "2 us"),
     ] {
         let steps = 37.0 * step.trim_end_matches(" us").parse::<f64>().unwrap();
         let case = strip()

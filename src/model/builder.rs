@@ -20,7 +20,7 @@ use fem_core::reduction::Reduction;
 use fem_core::support::{self, FreeMotions};
 use fem_core::tensor::Stress6;
 use fem_core::time::Integrator;
-use fem_dynamics::integrate::located;
+use fem_dynamics::integrate::{divided, located};
 use fem_io::scene::{
     self, Analysis, CriterionSpec, LoadKind, Located, NodeSet, Place, PluginSpec, Scene, SceneError, Support,
 };
@@ -133,7 +133,11 @@ impl Builder<'_> {
     }
 
     pub(super) fn integrator(&self, impact: &scene::ImpactSpec) -> Result<Box<dyn Integrator>, SceneError> {
-        build!(self, &impact.march.integrator, Integrator).map(located)
+        let integrator = build!(self, &impact.march.integrator, Integrator).map(located)?;
+        Ok(match impact.march.tolerance {
+            Some(tolerance) => divided(integrator, tolerance),
+            None => integrator,
+        })
     }
 
     pub(super) fn reduction(&self, impact: &scene::ImpactSpec) -> Result<Option<Box<dyn Reduction>>, SceneError> {

@@ -175,6 +175,35 @@ impl StepLimit {
     }
 }
 
+/// Parts into which steps were divided by an error estimate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Parts {
+    /// How many.
+    pub count: u64,
+    /// The shortest, s.
+    pub shortest: f64,
+    /// The longest, s.
+    pub longest: f64,
+}
+
+impl Parts {
+    /// So many of length `h`, s.
+    pub fn new(count: u64, h: f64) -> Self {
+        Self { count, shortest: h, longest: h }
+    }
+
+    /// These and `more`.
+    #[must_use]
+    pub fn and(self, more: Self) -> Self {
+        Self {
+            count: self.count + more.count,
+            shortest: self.shortest.min(more.shortest),
+            longest: self.longest.max(more.longest),
+        }
+    }
+}
+
 /// A one-step time integrator.
 ///
 /// It keeps only work arrays: all that a restart needs is in [`State`].
@@ -189,6 +218,16 @@ pub trait Integrator: DynClone + Debug + Send {
     /// [`SecondOrderSystem::solve_midpoint`].
     fn conserves_energy(&self) -> bool {
         false
+    }
+
+    /// Parts of the steps made since this was last asked, of one that divides its steps by an error estimate.
+    fn take_parts(&mut self) -> Option<Parts> {
+        None
+    }
+
+    /// The same with a tolerance `factor` times as large, of one that divides its steps by an error estimate in proportion to it.
+    fn with_tolerance(&self, _factor: f64) -> Option<Box<dyn Integrator>> {
+        None
     }
 
     /// Sizes work arrays and finds the acceleration of a fresh state.

@@ -3,7 +3,7 @@
 use super::stages::{Rows, Stages};
 use super::{accelerate, accept};
 use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
-use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit};
+use fem_core::time::{Integrator, Parts, SecondOrderSystem, State, StepError, StepLimit};
 
 /// Dormand and Prince's pair: it divides a step into parts whose estimated error is within tolerance.
 ///
@@ -16,6 +16,7 @@ pub struct DormandPrince {
     rtol: f64,
     atol: f64,
     stages: Stages,
+    parts: Option<Parts>,
 }
 
 #[rustfmt::skip]
@@ -57,6 +58,10 @@ impl Integrator for DormandPrince {
         StepLimit::None
     }
 
+    fn take_parts(&mut self) -> Option<Parts> {
+        self.parts.take()
+    }
+
     fn start(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError> {
         self.resume(sys);
         accelerate(sys, s)
@@ -74,6 +79,8 @@ impl Integrator for DormandPrince {
             let error = self.error(s, h);
             if error <= 1.0 {
                 left -= h;
+                let part = Parts::new(1, h);
+                self.parts = Some(self.parts.map_or(part, |parts| parts.and(part)));
                 self.stages.take(s, end - left);
                 accept(sys, s)?;
                 if left <= 0.0 {
@@ -106,6 +113,6 @@ impl Plugin for DormandPrince {
 
     fn build(params: &Params) -> Result<Built, ParamError> {
         let (rtol, atol) = (params.number(&RTOL)?, params.number(&ATOL)?);
-        Ok(Built::Integrator(Box::new(Self { rtol, atol, stages: Stages::default() })))
+        Ok(Built::Integrator(Box::new(Self { rtol, atol, stages: Stages::default(), parts: None })))
     }
 }

@@ -1,7 +1,8 @@
 //! Steps that end where a contact law changes its branch.
 
+use super::copy;
 use fem_core::contact::{Branches, Indentation};
-use fem_core::time::{Histories, Integrator, SecondOrderSystem, State, StepError, StepLimit};
+use fem_core::time::{Integrator, Parts, SecondOrderSystem, State, StepError, StepLimit};
 
 /// Length of the bracket around a switch, over that of the step. The error that it leaves is of its square.
 const PRECISION: f64 = 1e-9;
@@ -42,6 +43,14 @@ impl Integrator for Located {
 
     fn conserves_energy(&self) -> bool {
         self.integrator.conserves_energy()
+    }
+
+    fn take_parts(&mut self) -> Option<Parts> {
+        self.integrator.take_parts()
+    }
+
+    fn with_tolerance(&self, factor: f64) -> Option<Box<dyn Integrator>> {
+        self.integrator.with_tolerance(factor).map(located)
     }
 
     fn start(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError> {
@@ -144,17 +153,6 @@ impl Located {
         copy(&self.before, s);
         self.integrator.step(sys, s, length)
     }
-}
-
-/// Copies without allocating, once the lengths agree.
-fn copy(from: &State, to: &mut State) {
-    let State { t, u, v, a, histories: Histories { contacts, points } } = to;
-    *t = from.t;
-    u.clone_from(&from.u);
-    v.clone_from(&from.v);
-    a.clone_from(&from.a);
-    contacts.clone_from(&from.histories.contacts);
-    points.clone_from(&from.histories.points);
 }
 
 /// A change of branch.

@@ -11,9 +11,11 @@
 //!
 //! The histories of the contacts stay as committed during a step; a step ends with one commit. `a` in the state is the
 //! acceleration that the next step starts from, so that a state holds all that a restart needs. Schemes of order above 2
-//! are marched [`located`]: their steps are divided where a contact law changes its branch.
+//! are marched [`located`]: their steps are divided where a contact law changes its branch. Any scheme may be [`divided`]: its steps
+//! are halved until an estimate of their error is within a tolerance.
 
 mod central_difference;
+mod divided;
 mod dormand_prince;
 mod energy_conserving;
 mod generalized_alpha;
@@ -24,6 +26,7 @@ mod runge_kutta;
 mod stages;
 
 pub use central_difference::CentralDifference;
+pub use divided::divided;
 pub use dormand_prince::DormandPrince;
 pub use energy_conserving::EnergyConserving;
 pub use generalized_alpha::GeneralizedAlpha;
@@ -32,7 +35,7 @@ pub use located::located;
 pub use newmark::Newmark;
 pub use runge_kutta::{Rk1, Rk2, Rk3, Rk4, RungeKutta};
 
-use fem_core::time::{SecondOrderSystem, State, StepError};
+use fem_core::time::{Histories, SecondOrderSystem, State, StepError};
 
 /// Part of the linear limit that a conditionally stable scheme may use: a contact stiffens within the step.
 const MARGIN: f64 = 0.9;
@@ -49,4 +52,15 @@ fn accept(sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepErro
         return Err(StepError::NotFinite { t: s.t });
     }
     sys.commit(s)
+}
+
+/// Copies without allocating, once the lengths agree.
+fn copy(from: &State, to: &mut State) {
+    let State { t, u, v, a, histories: Histories { contacts, points } } = to;
+    *t = from.t;
+    u.clone_from(&from.u);
+    v.clone_from(&from.v);
+    a.clone_from(&from.a);
+    contacts.clone_from(&from.histories.contacts);
+    points.clone_from(&from.histories.points);
 }

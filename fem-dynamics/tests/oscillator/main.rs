@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod contact;
+mod divided;
 mod impact;
 mod kit;
 mod located;

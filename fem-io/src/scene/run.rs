@@ -74,6 +74,8 @@ pub struct MarchSpec {
     pub step: Located<f64>,
     /// End, s.
     pub end: Located<f64>,
+    /// Error up to which steps are divided, if they are.
+    pub tolerance: Option<f64>,
 }
 
 impl MarchSpec {
@@ -204,6 +206,12 @@ pub(super) const MARCH: Keys = &[
     .required(),
     key("step", Form::Quantity(Dimension::TIME), r#""0.5 us""#, "step in time").required(),
     key("end", Form::Quantity(Dimension::TIME), r#""1 ms""#, "time at which the march ends").required(),
+    key(
+        "tolerance",
+        Form::Number,
+        "1e-3",
+        "steps are halved until the changes of velocity in each part are right to this share; whole steps if left out",
+    ),
 ];
 pub(super) const FAILURE: Keys = &[
     key(
@@ -385,6 +393,9 @@ fn read_load(table: &Reader<'_>) -> Result<Located<ContactLoad>, SceneError> {
     Ok(patch.at(ContactLoad::Patch { radius: patch.positive(Dimension::LENGTH)? }))
 }
 
+/// Tolerance of a part of a step above which its estimate means nothing.
+const LOOSEST: f64 = 0.1;
+
 pub(super) fn read_march(field: &SceneValue<'_>) -> Result<MarchSpec, SceneError> {
     let table = field.table(MARCH)?;
     let integrator = PluginSpec::read_or_name(&table.required("integrator")?, &[])?;
@@ -397,7 +408,14 @@ pub(super) fn read_march(field: &SceneValue<'_>) -> Result<MarchSpec, SceneError
             format!("between 1 and {MAX_STEPS:e} steps can be marched"),
         ));
     }
-    Ok(MarchSpec { integrator, step: step_field.at(step), end: end_field.at(end) })
+    let tolerance = table.optional("tolerance").map(|field| match field.number()? {
+        share if share > 0.0 && share <= LOOSEST => Ok(share),
+        share => Err(field.error(
+            format!("a tolerance of {share} cannot be kept"),
+            format!("give a share above 0 and up to {LOOSEST}"),
+        )),
+    });
+    Ok(MarchSpec { integrator, step: step_field.at(step), end: end_field.at(end), tolerance: tolerance.transpose()? })
 }
 
 pub(super) fn read_failure(field: &SceneValue<'_>, wanted: bool, in_time: bool) -> Result<Failure, SceneError> {

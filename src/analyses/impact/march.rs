@@ -17,7 +17,7 @@ use crate::error::{CheckpointError, Error};
 use crate::model::{Model, count_steps};
 use fem_core::counters::Counters;
 use fem_core::structure::Tangent;
-use fem_core::time::{Integrator, State};
+use fem_core::time::{Integrator, Parts, State};
 use fem_dynamics::guard::Guard;
 use fem_dynamics::impact::ImpactSystem;
 use fem_failure::scan::{self, Scan};
@@ -84,6 +84,8 @@ pub(super) struct Progress {
     /// Of each effect, what it needs to go on.
     effects: Vec<Vec<f64>>,
     work: SystemCounts,
+    /// Of steps that are divided by an estimate of their error.
+    parts: Option<Parts>,
     /// The tangent in use of a plate under large deflections.
     tangent: Option<Tangent>,
     stopped: Option<String>,
@@ -136,6 +138,7 @@ impl<'a> March<'a> {
             effects: Vec::new(),
             state,
             work: SystemCounts::default(),
+            parts: None,
             tangent: None,
             stopped: None,
         };
@@ -178,6 +181,7 @@ impl<'a> March<'a> {
             // A step in vain makes what is made once and kept, such as factors, so that the work of the others is what it
             // would be in one piece. What it may meet, the next step meets again.
             let _ = integrator.step(system, &mut progress.state.clone(), dt);
+            integrator.take_parts();
         }
         march.counted = SystemCounts::of(&march.system);
         let fits = match (&mut march.modal, modal) {
@@ -260,8 +264,11 @@ impl<'a> March<'a> {
 
     fn step(&mut self) -> Result<(), Error> {
         let Self { system, guard, effects, .. } = self;
-        let Progress { step, dt, row_every, state, ledger, .. } = &mut self.progress;
+        let Progress { step, dt, row_every, state, ledger, parts, .. } = &mut self.progress;
         self.integrator.step(system, state, *dt)?;
+        if let Some(more) = self.integrator.take_parts() {
+            *parts = Some(parts.map_or(more, |parts| parts.and(more)));
+        }
         *step += 1;
         // A sum of steps drifts; the product does not.
         state.t = *step as f64 * *dt;
@@ -401,7 +408,7 @@ impl<'a> March<'a> {
         self.stopwatch.lap("scan");
         self.count();
         info!(steps = self.progress.step, work = ?self.progress.work, "march");
-        let Progress { step, ledger, work, stopped, .. } = self.progress;
+        let Progress { step, ledger, work, parts, stopped, .. } = self.progress;
         let mut counters = self.counters;
         counters.steps = step;
         counters.contact_calls = work.contact_calls;
@@ -426,6 +433,7 @@ impl<'a> March<'a> {
             maxima,
             sites,
             energy_error,
+            parts,
             counters,
             phases: self.stopwatch.phases().to_vec(),
             stopped,

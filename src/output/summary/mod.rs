@@ -208,6 +208,12 @@ pub struct AccuracySummary {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stable_step_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    pub step_parts: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shortest_part_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub longest_part_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub step_error_force_L2_relative: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step_error_peak_force_relative: Option<f64>,
@@ -347,6 +353,9 @@ impl ImpactSummary {
                 energy_error_relative: outcome.energy_error,
                 step_s: sizes.step,
                 stable_step_s: Some(sizes.longest_step).filter(|s| s.is_finite()),
+                step_parts: outcome.parts.map(|parts| parts.count),
+                shortest_part_s: outcome.parts.map(|parts| parts.shortest),
+                longest_part_s: outcome.parts.map(|parts| parts.longest),
                 step_error_force_L2_relative: step.map(|e| e.force),
                 step_error_peak_force_relative: step.map(|e| e.peak),
                 compared_step_s: step.map(|e| e.compared),

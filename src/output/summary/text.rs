@@ -3,6 +3,7 @@
 use super::ImpactSummary;
 use crate::cost::Cost;
 use crate::words::{append, append_symmetry};
+use std::cmp::Ordering;
 use std::fmt::Write as _;
 
 /// Errors that are nothing but rounding.
@@ -147,6 +148,15 @@ impl ImpactSummary {
                 None => " (no stability limit)".to_owned(),
             }
         ));
+        if let (Some(parts), Some(shortest), Some(longest)) =
+            (self.accuracy.step_parts, self.accuracy.shortest_part_s, self.accuracy.longest_part_s)
+        {
+            line(format_args!(
+                "            steps in {parts} parts of {:.4} to {:.4} us, by an estimate of their error",
+                shortest * 1e6,
+                longest * 1e6
+            ));
+        }
         for estimate in self.estimates() {
             line(format_args!("            {estimate}"));
         }
@@ -175,8 +185,12 @@ impl ImpactSummary {
         let compared = a.compared_step_s.zip(a.compared_force_L2_relative);
         let step = match (a.step_error_force_L2_relative, compared) {
             (Some(error), Some((step, change))) => format!(
-                "step: force within about {error:.1e} ({} the step changes it by {change:.1e})",
-                if step > a.step_s { "twice" } else { "half" }
+                "step: force within about {error:.1e} ({} changes it by {change:.1e})",
+                match step.total_cmp(&a.step_s) {
+                    Ordering::Greater => "twice the step",
+                    Ordering::Less => "half the step",
+                    Ordering::Equal => "a looser tolerance",
+                }
             ),
             _ => "step: error not estimated; a run with half the step would show it".to_owned(),
         };

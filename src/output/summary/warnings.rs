@@ -43,7 +43,7 @@ const WRONG: f64 = 0.05;
 /// A warning where steps are too long and the energy cannot show it.
 fn long_steps(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Option<String> {
     let Plan::Impact(impact) = &model.plan else { return None };
-    if !impact.integrator.conserves_energy() {
+    if !impact.integrator.conserves_energy() || outcome.parts.is_some() {
         return None;
     }
     let frequency = outcome.contacts.iter().filter_map(ContactRecord::frequency).fold(0.0, f64::max);

@@ -1,0 +1,167 @@
+//! Steps that are halved until an estimate of their error is within a tolerance.
+
+use super::copy;
+use crate::vector::dot;
+use fem_core::contact::Indentation;
+use fem_core::time::{Integrator, Parts, SecondOrderSystem, State, StepError, StepLimit};
+
+/// Halvings of a step at most.
+const MOST: usize = 20;
+
+/// Changes below this share of what changes are not resolved for their own sake.
+const SMALL: f64 = 1e-3;
+
+/// `integrator`, with its steps halved until
+///
+/// ```text
+/// |v₂ − v₁|_M / (2ᵖ − 1) ≤ tolerance (|v₂ − v₀|_M + 10⁻³ |v₂|_M)             |v|²_M = vᵀ M v
+/// |α₂ − α₁| / (2ᵖ − 1) ≤ tolerance (h (|α̇₀| + |α̇₂|)/2 + 10⁻³ |α₂ − α_t|)      of each contact that touches
+/// ```
+///
+/// v₁ and α₁ the velocities and an indentation after one step h of order p, v₂ and α₂ after two of half the length, which are kept
+/// (Richardson's estimate), α_t where the contact begins. What a part changes of velocities and indentations is so right to `tolerance`, and so
+/// is the sum, as far as errors do not grow with time: those of the phase of a vibration do, with its number of periods.
+///
+/// Each step is tried whole first and each half of a half likewise: nothing but the state passes from step to step, so that a
+/// restart changes no bit. A step takes about twice as long as its parts alone; an implicit one needs a factorisation for
+/// each length, which a reduced plate has for nothing.
+pub fn divided(integrator: Box<dyn Integrator>, tolerance: f64) -> Box<dyn Integrator> {
+    Box::new(Divided { integrator, tolerance, levels: Vec::new(), work: [Vec::new(), Vec::new()], parts: None })
+}
+
+#[derive(Debug, Clone)]
+struct Divided {
+    integrator: Box<dyn Integrator>,
+    tolerance: f64,
+    /// Those of a step, of its halves, and so on.
+    levels: Vec<Level>,
+    work: [Vec<f64>; 2],
+    parts: Option<Parts>,
+}
+
+/// States about a part.
+#[derive(Debug, Clone, Default)]
+struct Level {
+    start: State,
+    /// After one step.
+    whole: State,
+    /// After half of it.
+    half: State,
+}
+
+impl Integrator for Divided {
+    fn order(&self) -> u32 {
+        self.integrator.order()
+    }
+
+    fn limit(&self) -> StepLimit {
+        self.integrator.limit()
+    }
+
+    fn conserves_energy(&self) -> bool {
+        self.integrator.conserves_energy()
+    }
+
+    fn take_parts(&mut self) -> Option<Parts> {
+        self.parts.take()
+    }
+
+    fn with_tolerance(&self, factor: f64) -> Option<Box<dyn Integrator>> {
+        Some(divided(self.integrator.clone(), factor * self.tolerance))
+    }
+
+    fn start(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError> {
+        self.integrator.start(sys, s)
+    }
+
+    fn resume(&mut self, sys: &mut dyn SecondOrderSystem) {
+        self.integrator.resume(sys);
+    }
+
+    fn step(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State, dt: f64) -> Result<(), StepError> {
+        let end = s.t + dt;
+        self.advance(sys, s, dt, 0, None)?;
+        s.t = end;
+        Ok(())
+    }
+}
+
+impl Divided {
+    /// Advances `s` by `h`, a step halved `depth` times; `whole` is the state after one step, where it is known.
+    fn advance(
+        &mut self,
+        sys: &mut dyn SecondOrderSystem,
+        s: &mut State,
+        h: f64,
+        depth: usize,
+        whole: Option<&State>,
+    ) -> Result<(), StepError> {
+        if self.levels.len() <= depth {
+            self.levels.push(Level::default());
+        }
+        let mut level = std::mem::take(&mut self.levels[depth]);
+        copy(s, &mut level.start);
+        let tried = match whole {
+            Some(whole) => {
+                copy(whole, &mut level.whole);
+                Ok(())
+            }
+            None => {
+                copy(s, &mut level.whole);
+                self.integrator.step(sys, &mut level.whole, h)
+            }
+        };
+        let first = self.integrator.step(sys, s, 0.5 * h);
+        copy(s, &mut level.half);
+        let halves = first.clone().and_then(|()| self.integrator.step(sys, s, 0.5 * h));
+        let done = match tried.and(halves) {
+            Ok(()) if self.agrees(sys, &level, s) => {
+                let parts = Parts::new(2, 0.5 * h);
+                self.parts = Some(self.parts.map_or(parts, |before| before.and(parts)));
+                Ok(())
+            }
+            Err(why) if depth == MOST => Err(why),
+            // Also where a step found no solution: a shorter one may.
+            _ if depth < MOST => {
+                copy(&level.start, s);
+                let known = first.is_ok().then_some(&level.half);
+                self.advance(sys, s, 0.5 * h, depth + 1, known)
+                    .and_then(|()| self.advance(sys, s, 0.5 * h, depth + 1, None))
+            }
+            _ => {
+                let what = format!("a part of {h:.3e} s does not meet the tolerance of {}; loosen it", self.tolerance);
+                Err(StepError::NoConvergence { t: s.t, what })
+            }
+        };
+        self.levels[depth] = level;
+        done
+    }
+
+    /// Whether `halves` and the whole step end near enough to each other.
+    fn agrees(&mut self, sys: &dyn SecondOrderSystem, level: &Level, halves: &State) -> bool {
+        let work = &mut self.work;
+        let mut change = |v: &[f64]| norm(sys, halves.v.iter().zip(v).map(|(a, b)| a - b), work);
+        let [off, change] = [&level.whole.v, &level.start.v].map(|v| change(v));
+        let velocity = norm(sys, halves.v.iter().copied(), work);
+        let order = 2.0_f64.powi(self.integrator.order() as i32);
+        let allowed = (order - 1.0) * self.tolerance;
+        off <= allowed * (change + SMALL * velocity)
+            && (0..halves.histories.contacts.len()).all(|i| {
+                let [start, whole, end] = [&level.start, &level.whole, halves].map(|s| sys.indentation(i, s));
+                let depth = |at: Indentation| at.alpha - sys.branches(i, &level.start.histories.contacts[i]).touch;
+                let way = 0.5 * (halves.t - level.start.t) * (start.rate.abs() + end.rate.abs());
+                [start, whole, end].into_iter().all(|at| depth(at) <= 0.0)
+                    || (end.alpha - whole.alpha).abs() <= allowed * (way + SMALL * depth(end).abs())
+            })
+    }
+}
+
+/// Root of vᵀ M v.
+fn norm(sys: &dyn SecondOrderSystem, v: impl Iterator<Item = f64>, [x, product]: &mut [Vec<f64>; 2]) -> f64 {
+    x.clear();
+    x.extend(v);
+    product.clear();
+    product.resize(x.len(), 0.0);
+    sys.add_mass(1.0, x, product);
+    dot(x, product).sqrt()
+}
