@@ -13,6 +13,7 @@ use fem::analyses::impact;
 use fem::core::assembly::{Cholesky, Matrix, SparseStructure, Symbolic, assemble, pattern};
 use fem::core::counters::Counters;
 use fem::core::functional::Functional;
+use fem::core::load::Face;
 use fem::core::patch;
 use fem::core::plugin::{Built, Params, Plugin, Value};
 use fem::core::prolongation::Prolongation;
@@ -148,7 +149,7 @@ fn measure(side: usize) -> Vec<(&'static str, f64)> {
     let (low, high) = plate.plane.bounds();
     let middle = |c: &usize| (0..2).map(|d| (2.0 * plate.columns[*c][d] - low[d] - high[d]).powi(2)).sum::<f64>();
     let struck = (0..plate.columns.len()).min_by(|a, b| middle(a).total_cmp(&middle(b))).unwrap();
-    let contact = constraints.restrict(&patch::node(&plate, struck).unwrap().0);
+    let contact = constraints.restrict(&patch::node(&plate, Face::Top, struck).unwrap().0);
     let contact = Functional(contact);
     let mut structure = SparseStructure::new(symbolic, k, m, ONE, |_| String::new());
     structure.offer_coarse(Prolongation::linear_in_z(&plate, &constraints));

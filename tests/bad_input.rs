@@ -781,15 +781,4 @@ mod substructures {
         let shell = divided(&masters.replace("U30", "U31")).scene("mesh =", "element = { kind = \"hex20\" }\nmesh =");
         refused(&shell, &["`plate` adds no masters", "the element has none of the unknowns"]);
     }
-
-    #[test]
-    fn folded_plate() {
-        let case = divided("cells = [4, 3]").scene("mesh =", "symmetry = \"half-turn\"\nmesh =");
-        let case = case.scene("group = \"x-min\"", "group = \"plate\"");
-        refusal(
-            &case,
-            At::Scene("symmetry ="),
-            &["nothing can be condensed", "leave `symmetry` or `substructures` out"],
-        );
-    }
 }

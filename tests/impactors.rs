@@ -3,6 +3,7 @@
 use crate::support::{impact_of, root, strip};
 use fem::Error;
 use fem::analyses::impact::Outcome;
+use fem::failure::scan::PlyOrInterface;
 use fem::io::scene;
 
 const LAW: &str = "{ law = 'hertz', k = '1e4 N/mm^1.5' }";
@@ -133,4 +134,58 @@ fn an_indentation_that_no_contact_law_describes_is_warned_of() {
     let warned = warnings.find(|warning| warning.contains(&words)).unwrap();
     assert!(done.stdout.contains(warned), "{done:#?}");
     assert!(deepest > 0.25 * 2.1133e-3, "{deepest}");
+}
+
+/// A plate without symmetry through its thickness, struck at a point by `load`.
+fn thrown(plies: &str, layers: &str, y: f64, load: &str) -> Outcome {
+    let edges = ["x-min", "x-max", "y-min", "y-max"]
+        .map(|edge| format!("[[support]]\ngroup = '{edge}'\nat = 'all'\nfix = ['U10', 'U20', 'U30']\n"));
+    let text = format!(
+        "title = 'sides'\nmesh = {{ rectangle = ['60 mm', '40 mm'], cells = [6, 4] }}\n\
+         materials.tape = {{ library = 'AS4/3502', Yt = '5 MPa' }}\nreduction = {{ method = 'ritz', vectors = 20 }}\n\
+         march = {{ integrator = 'newmark', step = '1 us', end = '80 us' }}\ncontact = {LAW}\n\
+         failure = {{ criteria = ['hashin-report'], radius = '15 mm' }}\n\
+         [laminate]\nplies = '{plies}'\nmaterial = 'tape'\nply_thickness = '0.25 mm'\nlayers = {layers}\n{}\
+         [impactor]\nmass = '20 g'\nvelocity = '2 m/s'\nat = {{ x = '20 mm', y = '{y} mm' }}\n{load}\n",
+        edges.concat()
+    );
+    impact_of(scene::parse(&text, &root().join("scene.toml")).unwrap()).unwrap().1.outcome
+}
+
+/// A laminate turned over about the x axis, its plies in reverse with angles of the other sign, feels from above what it felt
+/// from below.
+#[test]
+fn from_below_is_from_above_on_a_plate_turned_over() {
+    for load in ["load = 'node'", "patch_radius = '4 mm'", "patch_side = '6 mm'"] {
+        let below = thrown("[0/30/-45/90]", "[1, 3]", 10.0, &format!("{load}\nface = 'bottom'"));
+        let above = thrown("[90/45/-30/0]", "[3, 1]", 30.0, load);
+        let peak = largest(forces(&above, 0).into_iter());
+        let off = largest(forces(&below, 0).iter().zip(forces(&above, 0)).map(|(a, b)| a - b));
+        assert!(peak > 20.0 && off < 1e-6 * peak, "{load}: {off:e} of {peak}");
+        assert!(below.contacts[0].deflection > 0.0 && below.energy_error < 1e-3);
+        assert!(!above.events.is_empty(), "{:?}", above.peaks);
+        assert_eq!(below.events.len(), above.events.len());
+        let turned = |place: PlyOrInterface| match place {
+            PlyOrInterface::Ply(k) => PlyOrInterface::Ply(3 - k),
+            PlyOrInterface::Interface(k) => PlyOrInterface::Interface(2 - k),
+        };
+        for event in &below.events {
+            let image =
+                above.events.iter().find(|other| other.mode == event.mode && other.place == turned(event.place));
+            let image = image.unwrap_or_else(|| panic!("{load}: {event:?}"));
+            assert!((image.time - event.time).abs() < 1e-6 * 80e-6, "{event:?} {image:?}");
+        }
+        // From above the same plate is another one.
+        let other = thrown("[0/30/-45/90]", "[1, 3]", 10.0, load);
+        assert!(other.events.iter().map(|e| (e.place, e.mode)).ne(below.events.iter().map(|e| (e.place, e.mode))));
+    }
+}
+
+#[test]
+fn gravity_pulls_along_the_way_from_above_alone() {
+    let heavy = "method = 'none' }\neffects.gravity = '9.81 m/s^2' #";
+    outcome(&impactor("1 g", 20, ""), heavy, MARCH).unwrap();
+    let below = [impactor("1 g", 20, ""), impactor("1 g", 40, "face = 'bottom'")].concat();
+    let refused = outcome(&below, heavy, MARCH).unwrap_err().to_string();
+    assert!(refused.contains("strikes the bottom face"), "{refused}");
 }

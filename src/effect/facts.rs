@@ -4,6 +4,7 @@ use fem_core::constraint::Constraints;
 use fem_core::element::Element;
 use fem_core::failure::FailureCriterion;
 use fem_core::laminate::Laminate;
+use fem_core::load::Face;
 use fem_core::material::Material;
 use fem_core::plate::Plate;
 use fem_io::scene::{Analysis, Place, Scene, SceneError};
@@ -59,6 +60,8 @@ pub enum Feature {
     EquilibriumProfile,
     /// An integrator that needs the inverse of the mass matrix, which the first step finds out.
     ExplicitIntegrator,
+    /// An impactor that strikes the bottom face.
+    StruckFromBelow,
     /// Plies that follow laws.
     PlyLaws,
     /// Another effect.
@@ -121,6 +124,9 @@ impl<'a> Facts<'a> {
                 scene.profiles.iter().find(|line| line.equilibrium == Some(true)).map(|line| &line.name.place)
             }
             Feature::ExplicitIntegrator => None,
+            Feature::StruckFromBelow => {
+                own(scene.impact().is_some_and(|impact| impact.impactors.iter().any(|one| one.face == Face::Bottom)))
+            }
             Feature::PlyLaws => own(scene.plies().any(|ply| scene.laws[ply.material].is_some())),
             Feature::Effect(name) => own(self.effects.contains(&name)),
         }

@@ -65,6 +65,11 @@ impl Effect for Gravity {
                 "leave it out; at rest it is a load: load = [{ gravity = [...] }]",
             ),
             Exclusion::new(
+                Feature::StruckFromBelow,
+                "`effects.gravity` pulls along the way of an impactor from above, and one strikes the bottom face",
+                "turn the laminate over and strike the top face, or leave it out",
+            ),
+            Exclusion::new(
                 Feature::Substructures,
                 "gravity is not carried inside condensed substructures",
                 "leave one of `substructures` and `effects.gravity` out",

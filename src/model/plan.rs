@@ -207,7 +207,7 @@ impl Builder<'_> {
                 }
                 LoadKind::Patch { force, at, radius } => {
                     let (centre, _) = self.point(plate, at)?;
-                    let patch = patch::hertz(plate, element, centre, *radius).map_err(|why| {
+                    let patch = patch::hertz(plate, element, Face::Top, centre, *radius).map_err(|why| {
                         self.scene.source.error_at(place, why.to_string(), "choose a smaller `patch_radius`")
                     })?;
                     patch.add_to(*force, &mut forces);
@@ -352,14 +352,15 @@ impl Builder<'_> {
             let size = format!("the plate is {width:.4} mm by {depth:.4} mm, if `mesh.unit` is right");
             self.error(&impactor.load, why.to_string(), format!("choose a smaller `impactor.{key}`; {size}"))
         };
+        let face = impactor.face;
         let contact = match (impactor.load.value, column) {
             (ContactLoad::Patch { radius }, _) => {
-                patch::hertz(plate, element, centre, radius).map_err(|why| too_large(why, "patch_radius"))?
+                patch::hertz(plate, element, face, centre, radius).map_err(|why| too_large(why, "patch_radius"))?
             }
             (ContactLoad::Square { side }, _) => {
-                patch::square(plate, element, centre, side).map_err(|why| too_large(why, "patch_side"))?
+                patch::square(plate, element, face, centre, side).map_err(|why| too_large(why, "patch_side"))?
             }
-            (ContactLoad::Node, Some(column)) => patch::node(plate, column)
+            (ContactLoad::Node, Some(column)) => patch::node(plate, face, column)
                 .ok_or_else(|| self.error(at, "the element has no U30 to strike", "choose another element"))?,
             (ContactLoad::Node, None) => {
                 return Err(self.error(

@@ -16,11 +16,6 @@ impl Builder<'_> {
         plan: &Plan,
     ) -> Result<Option<Division>, SceneError> {
         let Some(spec) = &self.scene.substructures else { return Ok(None) };
-        if let Some(symmetry) = &self.scene.symmetry {
-            let message =
-                "`symmetry` ties the unknowns of all substructures to others, so that nothing can be condensed";
-            return Err(self.error(symmetry, message, "leave `symmetry` or `substructures` out"));
-        }
         let quads = match &spec.parts {
             Parts::Groups(names) => self.groups_of_quads(plate, names)?,
             Parts::Cells(block) => self.blocks(block)?,

@@ -308,6 +308,36 @@ fn an_impact_on_substructures() {
     }
 }
 
+/// Blocks that a fold does not cut are condensed as those of the whole plate: forces, and frequencies of symmetric modes, are the
+/// same, at a fraction of the masters.
+#[test]
+fn an_impact_on_folded_substructures() {
+    let central = |more: &str| {
+        let scene =
+            format!("{more}\nsubstructures = {{ cells = [2, 2] }}\n{MARCH}reduction = {{ method = 'none' }}\n{IMPACT}")
+                .replace("x = '27 mm', y = '22 mm'", "x = '30 mm', y = '20 mm'");
+        let model = Model::new(scene::parse(&scene, "scene.toml".as_ref()).unwrap(), &Registry::standard()).unwrap();
+        let prepared = impact::prepare(&model, ONE).unwrap();
+        let masters = prepared.sizes.substructures.unwrap().masters;
+        (masters, impact::march(prepared, |_| {}).unwrap())
+    };
+    let ((all, whole), (half, folded)) = (central(""), central("symmetry = 'half-turn'"));
+    assert!((0.45..0.6).contains(&(half as f64 / all as f64)), "{half} of {all}");
+    let force = |o: &Outcome| o.history.iter().map(|r| r.contact_force_n()).collect::<Vec<f64>>();
+    assert!(largest(&force(&whole)) > 100.0);
+    assert_close(&force(&folded), &force(&whole), 1e-7, "force");
+    assert_eq!(folded.stopped, None);
+    for (a, b) in whole.peaks.iter().zip(&folded.peaks) {
+        assert!((a.index / b.index - 1.0).abs() < 1e-6, "{a:?} {b:?}");
+    }
+    let plate = divided(&held(vec![4, 4], [6, 4]).sides([Supported, Supported, Clamped, Clamped]), "cells = [3, 2]");
+    let turned = Plate { mesh: format!("{}\nsymmetry = 'half-turn'", plate.mesh), ..plate.clone() };
+    let (all, symmetric) = (plate.frequencies(12), turned.frequencies(4));
+    for omega in symmetric {
+        assert!(all.iter().any(|other| (other / omega - 1.0).abs() < 1e-9), "{omega} of {all:?}");
+    }
+}
+
 #[test]
 fn the_command_says_how_the_plate_is_divided() {
     let scene = divided(&pressed(vec![4, 4], [6, 4]), "cells = [3, 2]").text("static");

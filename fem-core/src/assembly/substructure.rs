@@ -112,14 +112,15 @@ struct Class {
     inside: usize,
 }
 
-/// What equal substructures have in common: quads, their regions, and vertices from the first one, in units of `GRAIN` of their size, that size
+/// What equal substructures have in common: quads, their regions, how many each stands for, and vertices from the first one, in units of `GRAIN` of their size, that size
 /// as an exponent of 2, and the unknowns inside.
-type Shape = (Vec<Corners<u32>>, Vec<usize>, Vec<[i64; 2]>, i32, Vec<usize>);
+type Shape = (Vec<Corners<u32>>, Vec<usize>, Vec<u32>, Vec<[i64; 2]>, i32, Vec<usize>);
 
 /// Assembles K and M of `plate` substructure by substructure, each condensed on its masters; equal ones once.
 ///
 /// Equal are substructures of the same quads in the same arrangement with the same unknowns inside; what supports do to an
-/// outline makes no difference. Of a plate folded by a symmetry nothing would be inside, for every unknown is tied to another.
+/// outline makes no difference. Of a plate folded by a symmetry the quads that represent others are condensed, as many times as
+/// they stand for; substructures that a fold cuts are what is left of them.
 ///
 /// # Errors
 /// A cell that the element refuses, an inside that cannot be factorised.
@@ -197,7 +198,8 @@ struct Divided {
 fn divide(plate: &Plate, constraints: &Constraints, division: &Division) -> Divided {
     let stays = find_kept(plate, constraints, &division.kept);
     let (mut groups, mut loose): (BTreeMap<u32, Vec<u32>>, Vec<u32>) = (BTreeMap::new(), Vec::new());
-    for (quad, group) in (0..).zip(&division.quads) {
+    for (quad, _) in plate.symmetry().quads() {
+        let (quad, group) = (quad as u32, division.quads[quad]);
         group.map_or(&mut loose, |group| groups.entry(group).or_default()).push(quad);
     }
     let mut classes: Vec<Class> = Vec::new();
@@ -223,9 +225,13 @@ fn divide(plate: &Plate, constraints: &Constraints, division: &Division) -> Divi
 
 /// Whether an unknown of the plate is a master by itself: `kept`, held, or in an equation with others.
 fn find_kept(plate: &Plate, constraints: &Constraints, kept: &[usize]) -> Vec<bool> {
-    let mut stays = vec![false; plate.ndof()];
-    kept.iter().for_each(|dof| stays[*dof] = true);
-    for dof in (0..plate.ndof()).filter(|dof| constraints.position(*dof).is_none()) {
+    let (mut stays, mut used) = (vec![false; plate.ndof()], vec![false; plate.ndof()]);
+    for column in plate.symmetry().quads().flat_map(|(quad, _)| plate.columns_of_quad(quad)) {
+        used[plate.dofs_of_column(*column as usize)].fill(true);
+    }
+    // An image that no cell of a folded plate has is tied to what may well be inside.
+    let tied = (0..plate.ndof()).filter(|dof| constraints.position(*dof).is_none() && used[*dof]);
+    for dof in tied.chain(kept.iter().copied()) {
         stays[dof] = true;
         constraints.row(dof).0.iter().for_each(|(i, _)| stays[constraints.original(*i)] = true);
     }
@@ -241,7 +247,8 @@ fn shape(part: &Plate, inside: &[bool]) -> Shape {
     let places = points.iter().map(|p| from_first(p).map(|x| (x / grain).round() as i64)).collect();
     let inside = (0..inside.len()).filter(|dof| inside[*dof]).collect();
     let regions = (0..part.plane.quads.len()).map(|quad| part.region(quad)).collect();
-    (part.plane.quads.clone(), regions, places, exponent, inside)
+    let counts = part.symmetry().quads().map(|(_, count)| count as u32).collect();
+    (part.plane.quads.clone(), regions, counts, places, exponent, inside)
 }
 
 /// The independent unknowns that are masters, in an order that is good to eliminate them in.
@@ -251,11 +258,22 @@ fn masters(plate: &Plate, constraints: &Constraints, parts: &[Part], classes: &[
         column_of[plate.dofs_of_column(column)].fill(column as u32);
     }
     let mut inside = vec![false; plate.ndof()];
-    let mut cliques: Vec<Vec<u32>> = loose.iter().map(|quad| plate.columns_of_quad(*quad as usize).to_vec()).collect();
+    let tied = |dof: &usize| constraints.row(*dof).0.iter().map(|(i, _)| column_of[constraints.original(*i)]);
+    let folded = plate.symmetry().name().is_some();
+    let loose = loose.iter().map(|quad| {
+        let columns = plate.columns_of_quad(*quad as usize);
+        let unknowns = columns.iter().filter(|_| folded).flat_map(|column| plate.dofs_of_column(*column as usize));
+        let mut clique: Vec<u32> = unknowns.flat_map(|dof| tied(&dof)).chain(columns.iter().copied()).collect();
+        if folded {
+            clique.sort_unstable();
+            clique.dedup();
+        }
+        clique
+    });
+    let mut cliques: Vec<Vec<u32>> = loose.collect();
     for part in parts {
         let (own, outline) = part.unknowns.split_at(classes[part.class].inside);
         own.iter().for_each(|dof| inside[*dof] = true);
-        let tied = |dof: &usize| constraints.row(*dof).0.iter().map(|(i, _)| column_of[constraints.original(*i)]);
         let mut clique: Vec<u32> = outline.iter().flat_map(|dof| tied(dof).chain([column_of[*dof]])).collect();
         clique.sort_unstable();
         clique.dedup();

@@ -20,6 +20,16 @@ pub enum Face {
     Top,
 }
 
+impl Face {
+    /// Its layer of cells, its q there, and the sign of the force of what presses on it along z.
+    pub(super) fn place(self, plate: &Plate) -> (usize, f64, f64) {
+        match self {
+            Self::Bottom => (0, -1.0, 1.0),
+            Self::Top => (plate.layers() - 1, 1.0, -1.0),
+        }
+    }
+}
+
 /// Adds the forces of a pressure `p`(x, y), Pa, that presses on `face` of `quads`: downwards on the top, upwards on the
 /// bottom.
 pub fn pressure(
@@ -30,10 +40,7 @@ pub fn pressure(
     p: impl Fn([f64; 2]) -> f64,
     f: &mut [f64],
 ) {
-    let (layer, q, sign) = match face {
-        Face::Bottom => (0, -1.0, 1.0),
-        Face::Top => (plate.layers() - 1, 1.0, -1.0),
-    };
+    let (layer, q, sign) = face.place(plate);
     let mut shape = vec![0.0; 3 * element.info().ndof()];
     let mut dofs = Vec::new();
     let rule = element.info().domain.points(ORDER);
@@ -55,10 +62,7 @@ pub fn pressure(
 /// The deflection u₃ at the points of the integration over `face`, and the area that each stands for, m²: what springs under a
 /// plate are pressed by. Of cells that a symmetry maps onto each other one stands for all.
 pub fn deflections(plate: &Plate, element: &dyn Element, face: Face) -> Vec<(Functional, f64)> {
-    let (layer, q) = match face {
-        Face::Bottom => (0, -1.0),
-        Face::Top => (plate.layers() - 1, 1.0),
-    };
+    let (layer, q, _) = face.place(plate);
     let mut shape = vec![0.0; 3 * element.info().ndof()];
     let (mut dofs, mut found) = (Vec::new(), Vec::new());
     for (number, weight) in plate.kept_cells().filter(|(cell, _)| plate.place(*cell).1 == layer) {

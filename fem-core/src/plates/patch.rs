@@ -1,7 +1,8 @@
-//! Where a contact acts: one node, the Hertz pressure on a circle of the top face, or a uniform pressure on a square.
+//! Where a contact acts on a face: one node, the Hertz pressure on a circle, or a uniform pressure on a square.
 
 use crate::contracts::element::Element;
 use crate::plates::error::PlateError;
+use crate::plates::load::Face;
 use crate::plates::plate::Plate;
 use crate::words::dof::Dof;
 use crate::words::functional::Functional;
@@ -17,20 +18,27 @@ const SPOKES: usize = 96;
 const PANELS: usize = 8;
 const PANEL_POINTS: usize = 6;
 
-/// Deflection away from an impactor above the plate, −U30 of the top node of `column`.
-pub fn node(plate: &Plate, column: usize) -> Option<Functional> {
-    let dof = plate.dofs_at(column, plate.outer_levels()[1], Dof::new(3, 0)?).next()?;
-    Some(Functional(vec![(dof, -1.0)]))
+/// Deflection away from an impactor at `face`: −U30 of the top node of `column`, U30 of the bottom one.
+pub fn node(plate: &Plate, face: Face, column: usize) -> Option<Functional> {
+    let level = plate.outer_levels()[usize::from(face == Face::Top)];
+    let dof = plate.dofs_at(column, level, Dof::new(3, 0)?).next()?;
+    Some(Functional(vec![(dof, face.place(plate).2)]))
 }
 
-/// Mean deflection under the Hertz pressure p(ρ) = 3/(2πa²) √(1 − ρ²/a²) on the circle of radius `a` around `centre`:
-/// w = ∫ −u₃ p dA. As a load vector it is the consistent load of a unit force, as a displacement its conjugate.
+/// Mean deflection under the Hertz pressure p(ρ) = 3/(2πa²) √(1 − ρ²/a²) on the circle of radius `a` around `centre` of `face`:
+/// w = ∫ ∓u₃ p dA, positive away from what presses. As a load vector it is the consistent load of a unit force, as a displacement its conjugate.
 ///
 /// In rings c = √(1 − ρ²/a²) the pressure is the polynomial weight 3c² dc, which Gauss points integrate exactly.
 ///
 /// # Errors
 /// A circle that leaves the plate.
-pub fn hertz(plate: &Plate, element: &dyn Element, centre: [f64; 2], a: f64) -> Result<Functional, PlateError> {
+pub fn hertz(
+    plate: &Plate,
+    element: &dyn Element,
+    face: Face,
+    centre: [f64; 2],
+    a: f64,
+) -> Result<Functional, PlateError> {
     let points = gauss_legendre(RINGS).iter().flat_map(|&(g, w)| {
         let c = 0.5 * (1.0 + g);
         let rho = a * (1.0 - c * c).sqrt();
@@ -39,7 +47,7 @@ pub fn hertz(plate: &Plate, element: &dyn Element, centre: [f64; 2], a: f64) -> 
             ([centre[0] + rho * cos, centre[1] + rho * sin], 3.0 * c * c * 0.5 * w / SPOKES as f64)
         })
     });
-    mean(plate, element, centre, a, points).ok_or(PlateError::PatchOverEdge { of: "radius", size: a, centre })
+    mean(plate, element, face, centre, a, points).ok_or(PlateError::PatchOverEdge { of: "radius", size: a, centre })
 }
 
 /// That pressure of a unit force at `point`, Pa.
@@ -48,11 +56,17 @@ pub fn hertz_pressure(centre: [f64; 2], a: f64, point: [f64; 2]) -> f64 {
     1.5 / (PI * a * a) * (1.0 - share * share).max(0.0).sqrt()
 }
 
-/// Mean deflection under a uniform pressure on the square of side `side` around `centre`, parallel to the axes.
+/// Mean deflection under a uniform pressure on the square of side `side` around `centre` of `face`, parallel to the axes.
 ///
 /// # Errors
 /// A square that leaves the plate.
-pub fn square(plate: &Plate, element: &dyn Element, centre: [f64; 2], side: f64) -> Result<Functional, PlateError> {
+pub fn square(
+    plate: &Plate,
+    element: &dyn Element,
+    face: Face,
+    centre: [f64; 2],
+    side: f64,
+) -> Result<Functional, PlateError> {
     let half = 0.5 * side / PANELS as f64;
     let along = |d: usize| {
         (0..PANELS).flat_map(move |i| {
@@ -61,18 +75,23 @@ pub fn square(plate: &Plate, element: &dyn Element, centre: [f64; 2], side: f64)
         })
     };
     let points = along(0).flat_map(|(x, wx)| along(1).map(move |(y, wy)| ([x, y], wx * wy)));
-    mean(plate, element, centre, 0.5 * side, points).ok_or(PlateError::PatchOverEdge { of: "side", size: side, centre })
+    mean(plate, element, face, centre, 0.5 * side, points).ok_or(PlateError::PatchOverEdge {
+        of: "side",
+        size: side,
+        centre,
+    })
 }
 
-/// Weighted mean of −u₃ over points of the top face no farther than `reach` from `centre` along each axis.
+/// Weighted mean of the deflection away from what presses over points of `face` no farther than `reach` from `centre` along each axis.
 fn mean(
     plate: &Plate,
     element: &dyn Element,
+    face: Face,
     centre: [f64; 2],
     reach: f64,
     points: impl Iterator<Item = ([f64; 2], f64)>,
 ) -> Option<Functional> {
-    let top = plate.layers() - 1;
+    let (layer, q, sign) = face.place(plate);
     let mut shape = vec![0.0; 3 * element.info().ndof()];
     let mut dofs = Vec::new();
     let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
@@ -88,12 +107,12 @@ fn mean(
         .collect();
     for (p, weight) in points {
         let (quad, [r, s]) = near.iter().find_map(|q| Some((*q, plate.plane.corners(*q).locate(p)?)))?;
-        let cell = quad * plate.layers() + top;
-        element.shape(&plate.cell(cell), [r, s, 1.0], &mut shape);
+        let cell = quad * plate.layers() + layer;
+        element.shape(&plate.cell(cell), [r, s, q], &mut shape);
         plate.cell_dofs(cell, &mut dofs);
         for (dof, n) in dofs.iter().zip(shape.chunks_exact(3)) {
             if n[2] != 0.0 {
-                *sum.entry(*dof).or_insert(0.0) -= weight * n[2];
+                *sum.entry(*dof).or_insert(0.0) += sign * weight * n[2];
             }
         }
     }

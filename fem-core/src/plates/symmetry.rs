@@ -130,6 +130,13 @@ impl Symmetry {
         }
     }
 
+    /// Of the part over `quads`, which represent all that they do in the whole, with so many columns.
+    pub(crate) fn part(&self, columns: usize, quads: &[u32]) -> Self {
+        let sizes: HashMap<u32, u32> = self.kept.iter().copied().collect();
+        let kept = quads.iter().zip(0..).map(|(quad, own)| (own, sizes.get(quad).copied().unwrap_or(1)));
+        Self { kept: kept.collect(), ..Self::none(columns, quads.len()) }
+    }
+
     /// Folds `plate` by `group`.
     ///
     /// # Errors

@@ -104,7 +104,7 @@ pub struct ProfileLine {
     pub equilibrium: Option<bool>,
 }
 
-const FACES: [(&str, Face); 2] = [("top", Face::Top), ("bottom", Face::Bottom)];
+pub(super) const FACES: [(&str, Face); 2] = [("top", Face::Top), ("bottom", Face::Bottom)];
 /// Force per length.
 const LINE: Dimension = Dimension([0.0, 1.0, -2.0, 0.0]);
 const FORCE: Form = Form::Several(3, &Form::Quantity(Dimension::FORCE));
@@ -219,8 +219,16 @@ fn pressure(table: &Reader<'_>) -> Result<LoadKind, SceneError> {
         Node::Table(_) => formula(&field.table(FORMULA)?)?,
         _ => Pressure::Uniform(field.quantity(Dimension::PRESSURE)?),
     };
-    let face = table.optional("face").map_or(Ok(Face::Top), |field| field.choice(&FACES))?;
-    Ok(LoadKind::Pressure { pressure, face, group: table.optional("group").map(|f| group(&f)).transpose()? })
+    Ok(LoadKind::Pressure {
+        pressure,
+        face: face(table)?,
+        group: table.optional("group").map(|f| group(&f)).transpose()?,
+    })
+}
+
+/// The face that something acts on, the top unless another is named.
+pub(super) fn face(table: &Reader<'_>) -> Result<Face, SceneError> {
+    table.optional("face").map_or(Ok(Face::Top), |field| field.choice(&FACES))
 }
 
 fn formula(table: &Reader<'_>) -> Result<Pressure, SceneError> {

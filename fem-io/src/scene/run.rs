@@ -1,27 +1,31 @@
 //! The impact and its computation: impactor, march, failure, effects, output.
 
 use super::fields::{self, Fields};
+use super::load::{FACES, face};
 use super::plugin::PluginSpec;
-use crate::document::keys::{Form, Keys, key};
+use crate::document::keys::{Form, Keys, key, words};
 use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, Place, SceneError};
 use crate::document::tree::Node;
 use crate::units;
+use fem_core::load::Face;
 use fem_core::plugin::{Dimension, Kind};
 
-/// A rigid mass that strikes the top face from above.
+/// A rigid mass that strikes a face.
 #[derive(Debug, Clone)]
 pub struct ImpactorSpec {
     /// What results call it where there are several; their names differ.
     pub name: String,
     /// Mass, kg.
     pub mass: f64,
-    /// Speed downwards before first touch, m/s.
+    /// Speed towards the plate before first touch, m/s.
     pub velocity: f64,
     /// When it would reach the plate at rest, s; it flies freely before.
     pub start: f64,
     /// Where it strikes.
     pub at: Located<ImpactPoint>,
+    /// The face that it strikes.
+    pub face: Face,
     /// How its force enters the plate.
     pub load: Located<ContactLoad>,
     /// The contact law.
@@ -177,10 +181,12 @@ impl Default for Output {
 pub(super) const IMPACTOR: Keys = &[
     key("name", Form::Text, r#""first""#, "what results call it where there are several"),
     key("mass", Form::Quantity(Dimension::MASS), r#""2.49 kg""#, "mass of the rigid impactor").required(),
-    key("velocity", Form::Quantity(Dimension::VELOCITY), r#""1.56 m/s""#, "speed downwards at first touch").required(),
+    key("velocity", Form::Quantity(Dimension::VELOCITY), r#""1.56 m/s""#, "speed towards the plate at first touch")
+        .required(),
     key("start", Form::Quantity(Dimension::TIME), r#""50 us""#, "when it would reach the plate at rest")
         .default(r#""0 s""#),
-    key("at", Form::Table(AT), r#"{ group = "impact" }"#, "where it strikes the top face").required(),
+    key("at", Form::Table(AT), r#"{ group = "impact" }"#, "where it strikes").required(),
+    key("face", Form::Words(&words(&FACES)), r#""bottom""#, "face that it strikes").default(r#""top""#),
     key("patch_radius", Form::Quantity(Dimension::LENGTH), r#""3 mm""#, "its force is a Hertz pressure on this circle"),
     key("patch_side", Form::Quantity(Dimension::LENGTH), r#""2 mm""#, "its force is a uniform pressure on this square"),
     key("load", Form::Words(&["node"]), r#""node""#, "its force acts at one node"),
@@ -352,6 +358,7 @@ fn read_impactor(
         velocity,
         start,
         at: read_point(&table.required("at")?)?,
+        face: face(&table)?,
         load: read_load(&table)?,
         contact: PluginSpec::read(&contact, LAW, &[])?,
     })

@@ -2,11 +2,10 @@
 
 use super::{Plate, columns};
 use crate::plates::mesh::{Group, PlaneMesh};
-use crate::plates::symmetry::Symmetry;
 use std::collections::BTreeMap;
 
 impl Plate {
-    /// The cells over `quads`, and which unknown of this plate each of its unknowns is. Vertices and cells keep their order, so
+    /// The cells over `quads`, of which each stands for as many as here, and which unknown of this plate each of its unknowns is. Vertices and cells keep their order, so
     /// that equal parts of a regular mesh have equal numbers.
     pub fn part(&self, quads: &[u32]) -> (Self, Vec<usize>) {
         let whole = &self.plane;
@@ -23,7 +22,7 @@ impl Plate {
         };
         let (columns, quad_columns, edges) = columns(&plane, self.info.domain, &self.places);
         let mut part = Self {
-            symmetry: Symmetry::none(columns.len(), quads.len()),
+            symmetry: self.symmetry.part(columns.len(), quads),
             plane,
             columns,
             levels: self.levels.clone(),
