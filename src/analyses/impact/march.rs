@@ -199,14 +199,15 @@ impl<'a> March<'a> {
     }
 
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
+        let copy = prepared.copy();
         let Prepared { model, impact, mut system, effects, reduced, membrane, full, condensation, .. } = prepared;
         let Prepared { sizes, counters, mut stopwatch, .. } = prepared;
         stopwatch.lap("reduce");
-        let (membrane, companions) = membrane.unzip();
+        let companions = membrane.map(|(_, companions)| companions);
         let mut estimates = Estimates::default();
         // Here, where nothing else takes memory yet beside the full plate.
-        if let (Some(reduced), Some(full)) = (&reduced, full) {
-            estimates = Estimates::new(&system, (reduced, membrane.as_ref()), full, impact.integrator.clone(), &sizes);
+        if let (Some(copy), Some(reduced), Some(full)) = (copy, &reduced, full) {
+            estimates = Estimates::new(copy, reduced, full, impact.integrator.clone(), &sizes);
             estimates.mesh = accuracy::mesh::estimate(model, &system, reduced, condensation.as_ref())?;
             stopwatch.lap("accuracy");
         }

@@ -46,6 +46,17 @@ pub struct Prepared<'a> {
     pub(super) stopwatch: Stopwatch,
 }
 
+impl Prepared<'_> {
+    /// Another system like the one that is marched, where its plate is reduced.
+    pub fn copy(&self) -> Option<ImpactSystem> {
+        let plate: Box<dyn Structure> = match &self.membrane {
+            Some((membrane, _)) => Box::new(membrane.clone()),
+            None => Box::new(self.reduced.as_ref()?.modal.clone()),
+        };
+        Some(self.system.on(plate))
+    }
+}
+
 /// The plate before its reduction.
 #[derive(Debug)]
 pub(super) struct Full {

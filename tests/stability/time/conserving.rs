@@ -10,6 +10,8 @@ use fem::core::contact::ContactLaw;
 use fem::core::testkit::{Mode, Oscillators};
 use fem::core::time::State;
 use fem::dynamics::impact::{ImpactSystem, Impactor, Weight};
+use fem::dynamics::integrate::divided;
+use fem::dynamics::limit::longest_step;
 use fem::io::scene;
 use fem::job::{self, Found, Options};
 use std::f64::consts::PI;
@@ -30,6 +32,22 @@ pub(super) fn cases() -> Vec<Case> {
             "runs without a warning of their step whose force is off by more than 30 % (L2)",
             0.0,
             unseen,
+        ),
+        Room::Time.case(
+            "divided steps: force",
+            "newmark, energy-conserving, rk4; tolerance 1e-3, steps of a fiftieth of the lowest period or within the limit; Navier's \
+             plate of 25 modes under 1/100, 1 and 100 of its mass; Hertz and Sun-Yang contact, K of a steel tip times 1e-2, 1; half a \
+             period",
+            "error of the force (L2), against rk4 at short steps",
+            3e-3,
+            || divided_steps(&[1e-2, 1.0]),
+        ),
+        Room::Time.case(
+            "divided steps: force that chatters",
+            "the same; K times 1e2, where errors grow from contact to contact",
+            "error of the force (L2), against rk4 at short steps",
+            0.03,
+            || divided_steps(&[1e2]),
         ),
         Room::Time.case(
             "energy-conserving: chatter",
@@ -102,6 +120,32 @@ fn stiff_and_soft() -> f64 {
         assert!(seen.forces.iter().all(|force| *force >= 0.0));
         worst = largest([worst, seen.imbalance()]);
     });
+    worst
+}
+
+fn divided_steps(stiffer: &[f64]) -> f64 {
+    let plate = Navier::new(5, Units::SI);
+    let mut worst = 0.0;
+    for ratio in [1e-2, 1.0, 100.0] {
+        for law in stiffer.iter().flat_map(|stiffer| [hertz(stiffer * K), sun_yang(stiffer * K, 2e-5)]) {
+            let system = || super::struck(&plate, &[ratio * MASS], 2.0, law.clone());
+            let (longest, _) = longest_step(&mut system(), integrator("rk4").limit()).unwrap();
+            let dt = 2.0 * PI / plate.lowest() / 50.0;
+            let parts = (dt / (0.2 * longest)).ceil();
+            let exact = super::march(integrator("rk4"), &mut system(), dt / parts, 25 * parts as usize).unwrap();
+            for name in ["newmark", NAME, "rk4"] {
+                // Whole steps within the limit.
+                let stride = if name == "rk4" { 4.min(parts as usize) } else { parts as usize };
+                let steps = 25 * parts as usize / stride;
+                let scheme = divided(integrator(name), 1e-3);
+                let seen = super::march(scheme, &mut system(), stride as f64 * dt / parts, steps).unwrap();
+                let at = |k: usize| exact.forces[(k + 1) * stride - 1];
+                let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|f| f * f).sum::<f64>().sqrt();
+                let off = norm(&mut seen.forces.iter().enumerate().map(|(k, force)| force - at(k)));
+                worst = largest([worst, off / norm(&mut (0..steps).map(at))]);
+            }
+        }
+    }
     worst
 }
 

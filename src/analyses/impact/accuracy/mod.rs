@@ -13,10 +13,9 @@ pub use step::StepAccuracy;
 
 use super::prepare::Full;
 use super::{Sizes, StepForces};
-use fem_core::structure::Structure;
 use fem_core::time::Integrator;
 use fem_dynamics::impact::ImpactSystem;
-use fem_dynamics::reduce::{MembranePlate, Reduced};
+use fem_dynamics::reduce::Reduced;
 use step::Companion;
 
 /// Estimated errors of a run; nothing where no honest estimate is cheap.
@@ -39,22 +38,18 @@ pub(super) struct Estimates {
 }
 
 impl Estimates {
-    /// Marches a copy of the reduced plate, and asks the full one what the reduction leaves out of that.
+    /// Marches `copy`, the reduced plate with its impactors, and asks the full one what the reduction leaves out of that.
     pub(super) fn new(
-        system: &ImpactSystem,
-        (reduced, membrane): (&Reduced, Option<&MembranePlate>),
+        mut copy: ImpactSystem,
+        reduced: &Reduced,
         full: Full,
         integrator: Box<dyn Integrator>,
         sizes: &Sizes,
     ) -> Self {
-        let plate: Box<dyn Structure> = match membrane {
-            Some(membrane) => Box::new(membrane.clone()),
-            None => Box::new(reduced.modal.clone()),
-        };
-        let (companion, instants) =
-            step::march(system.on(plate), &reduced.modal, integrator, sizes, full.solves()).unzip();
         // The residual is that of a linear plate.
-        let instants = instants.filter(|_| membrane.is_none());
+        let linear = !copy.is_nonlinear();
+        let (companion, instants) = step::march(copy, &reduced.modal, integrator, sizes, full.solves()).unzip();
+        let instants = instants.filter(|_| linear);
         let reduction = reduction::estimate(full, reduced, &instants.unwrap_or_default());
         Self { companion, reduction, mesh: None }
     }
