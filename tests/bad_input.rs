@@ -779,6 +779,6 @@ mod substructures {
         refused(&divided(&masters.replace("plate", "plat")), &["the mesh has no group `plat`"]);
         refused(&divided(&masters.replace("U30", "W")), &["`W`"]);
         let shell = divided(&masters.replace("U30", "U31")).scene("mesh =", "element = { kind = \"hex20\" }\nmesh =");
-        refused(&shell, &["`plate` adds no masters", "the element has none of the unknowns"]);
+        refused(&shell, &["`plate` has none of these unknowns", "the element has none of the unknowns"]);
     }
 }

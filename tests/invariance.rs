@@ -3,7 +3,7 @@
 
 use crate::support::impact_of;
 use fem::analyses::impact::Outcome;
-use fem::core::mesh::PlaneMesh;
+use fem::core::mesh::{Group, PlaneMesh};
 use fem::io::gmsh::{self, Encoding};
 use fem::io::scene;
 use proptest::prelude::*;
@@ -17,6 +17,8 @@ struct Told {
     mesh: PlaneMesh,
     /// Where it is struck, at a node.
     at: [f64; 2],
+    /// Axes, degrees, in which its end is tied and the corners of that are in an equation.
+    ties: Option<[f64; 2]>,
     /// Angles, degrees, and how many plies of one thickness are each.
     plies: Vec<f64>,
     thickness: f64,
@@ -51,6 +53,14 @@ impl Told {
              failure = {{ criteria = ['max-stress'], every = '{:?} s' }}\n{}\n",
             self.element, self.step, self.reduction
         );
+        if let Some([end, corner]) = self.ties {
+            let _ = write!(
+                text,
+                "couple = [{{ group = 'x-max', at = 'top', dofs = ['U20', 'U11'], axes = '{end:?} deg' }}]\n\
+                 equation = [{{ terms = [{{ group = 'a', at = 'bottom', dof = 'U10', factor = 1.0, axes = '{end:?} deg' }}, \
+                 {{ group = 'b', at = 'bottom', dof = 'U10', factor = -0.5, axes = '{corner:?} deg' }}] }}]\n"
+            );
+        }
         let _ = write!(
             text,
             "[materials.m]\ne1 = '{e1:?} Pa'\ne2 = '{e2:?} Pa'\ne3 = '{e2:?} Pa'\nnu12 = 0.3\nnu13 = 0.3\nnu23 = 0.4\n\
@@ -89,12 +99,12 @@ impl Told {
 
     fn turned(mut self, degrees: f64) -> Self {
         let (sin, cos) = degrees.to_radians().sin_cos();
-        self.plies.iter_mut().for_each(|angle| *angle += degrees);
+        self.plies.iter_mut().chain(self.ties.iter_mut().flatten()).for_each(|angle| *angle += degrees);
         self.map(|[x, y]| [cos * x - sin * y, sin * x + cos * y])
     }
 
     fn mirrored(mut self) -> Self {
-        self.plies.iter_mut().for_each(|angle| *angle = -*angle);
+        self.plies.iter_mut().chain(self.ties.iter_mut().flatten()).for_each(|angle| *angle = -*angle);
         for quad in &mut self.mesh.quads {
             let [a, b, c, d] = <[u32; 4]>::try_from(&quad[..]).unwrap();
             *quad = [a, d, c, b].into();
@@ -158,6 +168,7 @@ fn told() -> impl Strategy<Value = Told> {
             let (x, y) = (lines(a, 4), lines(b, 3));
             Told {
                 at: [x[node.0], y[node.1]],
+                ties: None,
                 mesh: PlaneMesh::rectangle(&x, &y),
                 plies: plies.iter().map(|angle: &f64| angle.round()).collect(),
                 thickness,
@@ -241,5 +252,29 @@ fn reduced_plates_care_as_little_as_their_reduction_is_wrong() {
             let difference = difference(&first, &other.outcome(), way, scale);
             assert!(difference < own.max(1e-9), "{way}: {difference:e}, {own:e}");
         }
+    });
+}
+
+/// Ties and equations in axes of their own turn and mirror with the plate.
+#[test]
+fn ties_in_turned_axes_turn_with_the_plate() {
+    for_some(2, |mut told| {
+        let last = told.mesh.points.len() as u32 - 1;
+        for (name, node) in [("a", last), ("b", 4)] {
+            told.mesh.groups.insert(name.into(), Group { dim: 0, nodes: vec![node], ..Group::default() });
+        }
+        told.ties = Some([0.0, 20.0]);
+        let outcome = told.outcome();
+        for (way, other) in [
+            ("turned", told.clone().turned(37.0)),
+            ("mirrored", told.clone().turned(-11.0).mirrored()),
+            ("renumbered", told.clone().turned(90.0).renumbered()),
+        ] {
+            let off = difference(&outcome, &other.outcome(), way, 1.0);
+            assert!(off < 1e-6, "{way}: {off:e} of {told:?}");
+        }
+        // They are not ties in other axes.
+        let off = difference(&outcome, &Told { ties: Some([30.0, 50.0]), ..told.clone() }.outcome(), "", 1.0);
+        assert!(off > 1e-6, "{off:e} of {told:?}");
     });
 }

@@ -289,7 +289,7 @@ impl Builder<'_> {
         for couple in &self.scene.couples {
             let (columns, levels) = self.nodes(plate, &couple.nodes)?;
             let origin = format!("couple of `{}`", couple.nodes.group.value);
-            let coupled = support::couple(plate, &columns, &levels, &couple.dofs, &origin);
+            let coupled = support::couple(plate, &columns, &levels, &couple.dofs, turns.settle(couple.axes), &origin);
             if coupled.is_empty() {
                 let message = format!("the {origin} ties nothing");
                 let help = "a couple needs two nodes or more, and unknowns that the element has";
@@ -299,7 +299,7 @@ impl Builder<'_> {
             places.resize(equations.len(), &couple.place);
         }
         for (number, equation) in self.scene.equations.iter().enumerate() {
-            equations.push(self.equation(plate, equation, number)?);
+            equations.push(self.equation(plate, equation, number, &mut turns)?);
             places.push(&equation.place);
         }
         self.symmetric_supports(plate, &equations, &places)?;
@@ -401,7 +401,13 @@ impl Builder<'_> {
         })
     }
 
-    fn equation(&self, plate: &Plate, equation: &scene::EquationSpec, number: usize) -> Result<Equation, SceneError> {
+    fn equation(
+        &self,
+        plate: &Plate,
+        equation: &scene::EquationSpec,
+        number: usize,
+        turns: &mut Turns,
+    ) -> Result<Equation, SceneError> {
         let mut terms = Vec::new();
         for term in &equation.terms {
             let (columns, levels) = self.nodes(plate, &term.node)?;
@@ -412,10 +418,11 @@ impl Builder<'_> {
                     "name a group of one node and one level",
                 ));
             };
-            let dof = plate.dofs_at(*column as usize, *level, term.dof).next().ok_or_else(|| {
+            let sides = support::turned(plate, *column as usize, *level, term.dof, turns.settle(term.axes));
+            let own = sides.first().ok_or_else(|| {
                 self.error(&term.node.group, format!("the element has no {}", term.dof), "choose another unknown")
             })?;
-            terms.push((dof, term.factor));
+            terms.extend(own.iter().map(|(dof, factor)| (*dof, term.factor * factor)));
         }
         Ok(Equation { terms, value: 0.0, origin: format!("equation {}", number + 1), holds: false })
     }

@@ -318,8 +318,9 @@ impl Model {
         (self.impactors().len() > 1).then_some(impactor.name.as_str())
     }
 
-    /// Governors that a reduction may choose from, best first: deflections (U30 at the mid-plane or the lowest level),
-    /// each as far as possible from the contacts and from those before it, so that any first few cover the plate evenly.
+    /// Governors that a reduction may choose from, best first: those that the scene names, then deflections (U30 at the mid-plane or
+    /// the lowest level), each as far as possible from the contacts and from those before it, so that any first few cover the plate
+    /// evenly.
     pub fn governors(&self, impact: &Impact, count: usize) -> Vec<usize> {
         let level = self.plate.mid_level().unwrap_or(0);
         let Some(deflection) = Dof::new(3, 0) else { return Vec::new() };
@@ -330,10 +331,11 @@ impl Model {
             })
             .collect();
         let square = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
-        let from_contacts =
-            |c: &(usize, [f64; 2])| impact.strikes.iter().map(|s| square(c.1, s.centre)).fold(f64::INFINITY, f64::min);
-        let mut distance: Vec<f64> = candidates.iter().map(from_contacts).collect();
-        let mut chosen = Vec::new();
+        let named = impact.keep.iter().map(|i| self.plate.columns[self.plate.locate(self.constraints.original(*i)).0]);
+        let taken: Vec<[f64; 2]> = impact.strikes.iter().map(|strike| strike.centre).chain(named).collect();
+        let from_taken = |c: &(usize, [f64; 2])| taken.iter().map(|p| square(c.1, *p)).fold(f64::INFINITY, f64::min);
+        let mut distance: Vec<f64> = candidates.iter().map(from_taken).collect();
+        let mut chosen = impact.keep.clone();
         for _ in 0..count.min(candidates.len()) {
             // On a symmetric mesh many are equally far: take the first of them, whatever the last bit says.
             let farthest = distance.iter().fold(0.0_f64, |m, d| m.max(*d));

@@ -48,6 +48,8 @@ pub struct Impact {
     pub strikes: Vec<Strike>,
     /// The reduction, if any.
     pub reduction: Option<Box<dyn Reduction>>,
+    /// Governors that the scene names, independent unknowns.
+    pub keep: Vec<usize>,
     /// How many vectors the reduction makes, about, if any.
     pub vectors: Option<usize>,
     /// The integrator.
@@ -161,6 +163,7 @@ impl Builder<'_> {
         Ok(Impact {
             strikes: spec.impactors.iter().map(strike).collect::<Result<_, _>>()?,
             reduction: self.reduction(spec)?,
+            keep: self.keep(spec, plate, constraints)?,
             vectors: self.vectors(&spec.reduction),
             integrator: self.integrator(spec)?,
             spec: spec.clone(),

@@ -5,7 +5,8 @@ use super::plan::Plan;
 use fem_core::assembly::Division;
 use fem_core::constraint::Constraints;
 use fem_core::plate::Plate;
-use fem_io::scene::{Located, Masters, MeshSource, Parts, SceneError};
+use fem_core::plugin::{Kind, Value};
+use fem_io::scene::{ImpactPoint, ImpactSpec, Located, MeshSource, Parts, PluginSpec, SceneError, Unknowns};
 
 impl Builder<'_> {
     /// The division of the plate that the scene asks for; what a contact touches stays.
@@ -22,11 +23,11 @@ impl Builder<'_> {
         };
         let mut kept = Vec::new();
         for masters in &spec.masters {
-            kept.extend(self.masters(plate, masters)?);
+            kept.extend(self.unknowns(plate, masters)?);
         }
         if let Plan::Impact(impact) = plan {
-            let touched = impact.strikes.iter().flat_map(|strike| &strike.contact.0);
-            kept.extend(touched.map(|(i, _)| constraints.original(*i)));
+            let touched = impact.strikes.iter().flat_map(|strike| strike.contact.0.iter().map(|(i, _)| i));
+            kept.extend(touched.chain(&impact.keep).map(|i| constraints.original(*i)));
         }
         Ok(Some(Division { quads, kept }))
     }
@@ -67,16 +68,85 @@ impl Builder<'_> {
         Ok((0..nx * ny).map(|quad| Some(number(quad) as u32)).collect())
     }
 
-    fn masters(&self, plate: &Plate, masters: &Masters) -> Result<Vec<usize>, SceneError> {
-        let (columns, levels) = self.nodes(plate, &masters.nodes)?;
+    /// Unknowns (before constraints) that a scene names.
+    pub(super) fn unknowns(&self, plate: &Plate, named: &Unknowns) -> Result<Vec<usize>, SceneError> {
+        let at = &named.at;
+        let levels = named.levels.of(plate).map_err(|why| self.error(at, why.to_string(), ""))?;
+        let columns = match &at.value {
+            ImpactPoint::Group(name) => {
+                self.columns(plate, &Located { value: name.clone(), place: at.place.clone() })?
+            }
+            ImpactPoint::Point([x, y]) => {
+                let column = self.point(plate, at)?.1.ok_or_else(|| {
+                    let message = format!("no node of the mesh lies at ({:.6}, {:.6}) mm", x * 1e3, y * 1e3);
+                    self.error(at, message, "give the coordinates of a node, or name a group")
+                })?;
+                vec![column as u32]
+            }
+        };
+        let nodes = columns.iter().flat_map(|column| levels.iter().map(move |level| (*column as usize, *level)));
+        let each =
+            nodes.flat_map(|(column, level)| named.dofs.iter().flat_map(move |dof| plate.dofs_at(column, level, *dof)));
+        let found: Vec<usize> = each.collect();
+        if found.is_empty() {
+            let name = match &at.value {
+                ImpactPoint::Group(name) => format!("`{name}`"),
+                ImpactPoint::Point([x, y]) => format!("the node at ({:.6}, {:.6}) mm", x * 1e3, y * 1e3),
+            };
+            let message = format!("{name} has none of these unknowns");
+            return Err(self.error(at, message, "the element has none of the unknowns of `dofs`"));
+        }
+        Ok(found)
+    }
+
+    /// Governors that the scene names, as independent unknowns.
+    pub(super) fn keep(
+        &self,
+        spec: &ImpactSpec,
+        plate: &Plate,
+        constraints: &Constraints,
+    ) -> Result<Vec<usize>, SceneError> {
+        let (Some(keep), PluginSpec { name, params, .. }) = (&spec.keep, &spec.reduction) else {
+            return Ok(Vec::new());
+        };
+        if !self
+            .registry
+            .info(Kind::Reduction, &name.value)
+            .is_some_and(|info| info.params.iter().any(|row| row.name == "governors"))
+        {
+            let message = format!("`{}` keeps no governors", name.value);
+            return Err(self.error(keep, message, "choose method = \"guyan\" or \"irs\", or leave `keep` out"));
+        }
+        if params.get("select").is_some_and(|select| *select == Value::Text("ratio".into())) {
+            let help = "leave `select` or `keep` out";
+            return Err(self.error(keep, "governors are named, and to be selected by their ratios", help));
+        }
         let mut kept = Vec::new();
-        for (column, level) in columns.iter().flat_map(|column| levels.iter().map(move |level| (*column, *level))) {
-            kept.extend(masters.dofs.iter().flat_map(|dof| plate.dofs_at(column as usize, level, *dof)));
+        for named in &keep.value {
+            let unknowns = self.unknowns(plate, named)?;
+            // Of a group, what is held is left out.
+            let free: Vec<usize> = unknowns.iter().filter_map(|dof| constraints.position(*dof)).collect();
+            if free.is_empty() {
+                let first = plate.describe(unknowns[0]);
+                let message = format!("{first} is held, or follows from others: it cannot govern");
+                return Err(self.error(&named.at, message, "name unknowns that are free"));
+            }
+            for position in free {
+                if !kept.contains(&position) {
+                    kept.push(position);
+                }
+            }
         }
-        if kept.is_empty() {
-            let message = format!("`{}` adds no masters", masters.nodes.group.value);
-            return Err(self.error(&masters.nodes.group, message, "the element has none of the unknowns of `dofs`"));
+        match self.vectors(&spec.reduction) {
+            Some(count) if count < kept.len() => {
+                let message = format!("{} governors are named, and `governors` keeps {count}", kept.len());
+                Err(self.error(
+                    keep,
+                    message,
+                    format!("write governors = {} or more: those beyond spread over the plate", kept.len()),
+                ))
+            }
+            _ => Ok(kept),
         }
-        Ok(kept)
     }
 }

@@ -282,6 +282,61 @@ fn governors_of_masters_are_governors_of_all() {
     }
 }
 
+/// Governors named one by one, by the places that the rule finds, are the same governors; others are not.
+#[test]
+fn governors_that_are_named_are_those_that_govern() {
+    let key = |more: &str| {
+        format!(
+            "{MARCH}substructures = {{ cells = [4, 4] }}\nreduction = {{ method = 'guyan', governors = 5{more} }}\n"
+        )
+    };
+    let model = struck(&key(""));
+    let fem::Plan::Impact(impact) = &model.plan else { panic!() };
+    let assembled = assembled(&model);
+    let condensation = assembled.condensation.as_ref().unwrap();
+    let chosen = model.governors(impact, 2000).into_iter().filter(|i| condensation.master(*i).is_some()).take(5);
+    let named = |i: usize| {
+        let (column, _, _) = model.plate.locate(model.constraints.original(i));
+        let [x, y] = model.plate.columns[column];
+        format!("{{ x = '{x:?} m', y = '{y:?} m', at = 'mid-plane', dofs = ['U30'] }}")
+    };
+    let mut places: Vec<String> = chosen.map(named).collect();
+    let force = |o: &Outcome| o.history.iter().map(|r| r.contact_force_n()).collect::<Vec<f64>>();
+    let by_rule = force(&march(&key("")));
+    let by_name = |places: &[String]| force(&march(&key(&format!(", keep = [{}]", places.join(", ")))));
+    assert_eq!(by_name(&places), by_rule);
+    assert_eq!(by_name(&places[..2]), by_rule, "the rule goes on from those that are named");
+    places.reverse();
+    assert_close(&by_name(&places), &by_rule, 1e-7, "in another order");
+    let elsewhere = "{ x = '25 mm', y = '10 mm', at = 'top', dofs = ['U30', 'U31'] }";
+    let off: Vec<f64> = by_name(&[elsewhere.into()]).iter().zip(&by_rule).map(|(a, b)| a - b).collect();
+    assert!(largest(&off) > 1e-4 * largest(&by_rule), "{}", largest(&off));
+}
+
+#[test]
+fn governors_that_cannot_be_named_are_refused() {
+    let refused = |reduction: &str| {
+        let text = format!("{MARCH}reduction = {{ {reduction} }}\n{IMPACT}");
+        let scene = scene::parse(&text, "scene.toml".as_ref()).unwrap();
+        format!("{:?}", miette::Report::new(Model::new(scene, &Registry::standard()).unwrap_err()))
+    };
+    let keep = |at: &str| format!("keep = [{{ {at}, at = 'mid-plane', dofs = ['U30'] }}]");
+    let middle = keep("x = '30 mm', y = '20 mm'");
+    for (reduction, words) in [
+        (format!("method = 'ritz', vectors = 9, {middle}"), "`ritz` keeps no governors"),
+        (format!("method = 'guyan', governors = 9, select = 'ratio', {middle}"), "to be selected by their ratios"),
+        (
+            format!("method = 'guyan', governors = 9, {}", keep("x = '31 mm', y = '20 mm'")),
+            "no node of the mesh lies at (31.000000,",
+        ),
+        (format!("method = 'guyan', governors = 9, {}", keep("x = '60 mm', y = '20 mm'")), "it cannot govern"),
+        (format!("method = 'guyan', governors = 2, {}", keep("group = 'y-min'")), "`governors` keeps 2"),
+    ] {
+        let said = refused(&reduction);
+        assert!(said.contains(words), "{reduction}: {said}");
+    }
+}
+
 /// Force, energies and stresses of an impact, with a reduction on the masters and without.
 #[test]
 fn an_impact_on_substructures() {

@@ -32,58 +32,67 @@ impl Levels {
     }
 }
 
-/// `dofs` are zero at the nodes of `columns` × `levels`, in axes turned by `angle` (radians) about z.
+/// `dof` of a node in axes turned by `angle` (radians) about z, as a sum of its own unknowns; twice where layers have z-derivatives
+/// of their own, not at all where the element has none of them.
 ///
 /// In turned axes U′ₙ₀ = Σ Rₙᵢ Uᵢ₀ and U′ₙₘ = Σ Rₙᵢ Rₘⱼ Uᵢⱼ.
-pub fn fix(plate: &Plate, columns: &[u32], levels: &[usize], dofs: &[Dof], angle: f64, origin: &str) -> Vec<Equation> {
+pub fn turned(plate: &Plate, column: usize, level: usize, dof: Dof, angle: f64) -> Vec<Vec<(usize, f64)>> {
+    if angle == 0.0 {
+        return plate.dofs_at(column, level, dof).map(|i| vec![(i, 1.0)]).collect();
+    }
     let (s, c) = angle.sin_cos();
     let r = [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]];
+    let side = |side: usize| {
+        let mut terms = Vec::new();
+        for i in 0..3 {
+            for j in if dof.m() == 0 { 0..1 } else { 1..4 } {
+                let factor = r[dof.n() - 1][i] * if dof.m() == 0 { 1.0 } else { r[dof.m() - 1][j - 1] };
+                let Some(name) = Dof::new(i as u8 + 1, j as u8).filter(|_| factor != 0.0) else { continue };
+                let mut both = plate.dofs_at(column, level, name);
+                let first = both.next();
+                let chosen = if side == 1 { both.next().or(first) } else { first };
+                terms.extend(chosen.map(|d| (d, factor)));
+            }
+        }
+        terms
+    };
+    let mut sides = vec![side(0), side(1)];
+    sides.dedup();
+    sides.retain(|terms| !terms.is_empty());
+    sides
+}
+
+/// `dofs` are zero at the nodes of `columns` × `levels`, in axes turned by `angle` ([`turned`]).
+pub fn fix(plate: &Plate, columns: &[u32], levels: &[usize], dofs: &[Dof], angle: f64, origin: &str) -> Vec<Equation> {
     let mut equations = Vec::new();
     for &column in columns {
         for &level in levels {
             for dof in dofs {
-                let name = || format!("{origin}: {dof} at {}", plate.describe_column(column as usize));
-                if angle == 0.0 {
-                    let each = plate.dofs_at(column as usize, level, *dof);
-                    equations.extend(each.map(|i| Equation::fix(i, name())));
-                    continue;
-                }
-                // Where layers have z-derivatives of their own, the turned ones are zero in both.
-                let mut last = Vec::new();
-                for side in 0..2 {
-                    let mut terms = Vec::new();
-                    for i in 0..3 {
-                        for j in if dof.m() == 0 { 0..1 } else { 1..4 } {
-                            let factor = r[dof.n() - 1][i] * if dof.m() == 0 { 1.0 } else { r[dof.m() - 1][j - 1] };
-                            let Some(name) = Dof::new(i as u8 + 1, j as u8).filter(|_| factor != 0.0) else { continue };
-                            let mut both = plate.dofs_at(column as usize, level, name);
-                            let first = both.next();
-                            let chosen = if side == 1 { both.next().or(first) } else { first };
-                            terms.extend(chosen.map(|d| (d, factor)));
-                        }
-                    }
-                    if !terms.is_empty() && terms != last {
-                        equations.push(Equation { terms: terms.clone(), value: 0.0, origin: name(), holds: true });
-                    }
-                    last = terms;
-                }
+                let origin = format!("{origin}: {dof} at {}", plate.describe_column(column as usize));
+                let each = turned(plate, column as usize, level, *dof, angle).into_iter();
+                equations.extend(each.map(|terms| Equation { terms, value: 0.0, origin: origin.clone(), holds: true }));
             }
         }
     }
     equations
 }
 
-/// `dofs` have one common value over the nodes of `columns` × `levels`.
-pub fn couple(plate: &Plate, columns: &[u32], levels: &[usize], dofs: &[Dof], origin: &str) -> Vec<Equation> {
+/// `dofs` have one common value over the nodes of `columns` × `levels`, in axes turned by `angle` ([`turned`]).
+pub fn couple(
+    plate: &Plate,
+    columns: &[u32],
+    levels: &[usize],
+    dofs: &[Dof],
+    angle: f64,
+    origin: &str,
+) -> Vec<Equation> {
     let mut equations = Vec::new();
     for dof in dofs {
-        let all: Vec<usize> = columns
-            .iter()
-            .flat_map(|c| levels.iter().flat_map(move |l| plate.dofs_at(*c as usize, *l, *dof)))
-            .collect();
+        let at = |column: &u32, level: &usize| turned(plate, *column as usize, *level, *dof, angle);
+        let all: Vec<_> = columns.iter().flat_map(|c| levels.iter().flat_map(move |l| at(c, l))).collect();
         if let Some((first, rest)) = all.split_first() {
-            equations.extend(rest.iter().map(|d| Equation {
-                terms: vec![(*d, 1.0), (*first, -1.0)],
+            equations.extend(rest.iter().map(|terms| Equation {
+                terms: terms.iter().copied().chain(first.iter().map(|(i, factor)| (*i, -factor))).collect(),
                 value: 0.0,
                 origin: format!("{origin}: {dof}"),
                 holds: false,

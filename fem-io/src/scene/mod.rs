@@ -39,8 +39,8 @@ pub use run::{
 };
 pub use schema::schema;
 pub use study::{OwnAxis, Quantity, Setting, Study, rewrite};
-pub use substructures::{Masters, Parts, SubstructuresSpec};
-pub use support::{Couple, EquationSpec, NodeSet, Support, Term};
+pub use substructures::{Parts, SubstructuresSpec};
+pub use support::{Couple, EquationSpec, NodeSet, Support, Term, Unknowns};
 
 use crate::document::source::Origin;
 use crate::document::tree::Table;

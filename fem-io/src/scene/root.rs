@@ -114,7 +114,7 @@ pub(super) const KEYS: Keys = &[
     ),
     key(
         "reduction",
-        Form::Plugin(Kind::Reduction, "method", &[]),
+        Form::Plugin(Kind::Reduction, "method", run::REDUCTION),
         r#"{ method = "craig-bampton", modes = 40 }"#,
         "reduction of the plate to few unknowns: `fem list reductions`",
     ),

@@ -3,6 +3,7 @@
 use super::fields::{self, Fields};
 use super::load::{FACES, face};
 use super::plugin::PluginSpec;
+use super::support::{self, Unknowns};
 use crate::document::keys::{Form, Keys, key, words};
 use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, Place, SceneError};
@@ -65,6 +66,8 @@ pub struct ImpactSpec {
     pub impactors: Vec<ImpactorSpec>,
     /// The reduction; `none` for the full system.
     pub reduction: PluginSpec,
+    /// Governors that are named.
+    pub keep: Option<Located<Vec<Unknowns>>>,
     /// The march in time.
     pub march: MarchSpec,
 }
@@ -294,6 +297,15 @@ const MOST_MODES: usize = 38;
 /// Most steps of a march: more is a mistake in step or end, and would seem to hang.
 const MAX_STEPS: f64 = 1e9;
 
+/// Governors that are named.
+const KEEP: &str = "keep";
+pub(super) const REDUCTION: Keys = &[key(
+    KEEP,
+    Form::List(&Form::Table(support::UNKNOWNS)),
+    r#"[{ group = "line", at = "mid-plane", dofs = ["U30"] }]"#,
+    "governors of `guyan` and `irs` that are named; the rest spreads over the plate",
+)];
+
 /// The keys of an impact: one table of an impactor or a list of them, a contact law for those without their own.
 pub(super) fn read_impact(root: &Reader<'_>) -> Result<ImpactSpec, SceneError> {
     let march = read_march(&root.required("march")?)?;
@@ -309,7 +321,18 @@ pub(super) fn read_impact(root: &Reader<'_>) -> Result<ImpactSpec, SceneError> {
         }
         impactors.push(impactor);
     }
-    Ok(ImpactSpec { impactors, reduction: PluginSpec::read(&root.required("reduction")?, "method", &[])?, march })
+    let field = root.required("reduction")?;
+    let kept = field.entries()?.into_iter().find(|(key, _)| *key == KEEP);
+    let keep = kept.map(|(_, kept)| {
+        let each = kept.list()?.iter().map(support::unknowns).collect::<Result<_, SceneError>>()?;
+        Ok(kept.at(each))
+    });
+    Ok(ImpactSpec {
+        impactors,
+        reduction: PluginSpec::read(&field, "method", &[KEEP])?,
+        keep: keep.transpose()?,
+        march,
+    })
 }
 
 /// Velocity, m/s, at which a tenth of the strain at first touch, V over the speed of sound through the plate, is reached in
@@ -365,9 +388,13 @@ fn read_impactor(
 }
 
 pub(super) fn read_point(field: &SceneValue<'_>) -> Result<Located<ImpactPoint>, SceneError> {
-    let table = field.table(AT)?;
+    Ok(field.at(point(&field.table(AT)?)?))
+}
+
+/// The point of a table with these keys.
+pub(super) fn point(table: &Reader<'_>) -> Result<ImpactPoint, SceneError> {
     let [x, y] = ["x", "y"].map(|key| table.optional(key));
-    let point = match (table.optional("group"), x.or(y)) {
+    Ok(match (table.optional("group"), x.or(y)) {
         (Some(_), Some(stray)) => {
             return Err(stray.error("cannot be combined with `group`", "give a group of the mesh, or x and y"));
         }
@@ -376,8 +403,7 @@ pub(super) fn read_point(field: &SceneValue<'_>) -> Result<Located<ImpactPoint>,
             ImpactPoint::Point([coordinate("x")?, coordinate("y")?])
         }
         _ => ImpactPoint::Group(table.required("group")?.text()?.to_owned()),
-    };
-    Ok(field.at(point))
+    })
 }
 
 /// Ways in which the force of an impactor enters the plate, of which one counts.

@@ -1,10 +1,9 @@
 //! How the plate is divided into substructures.
 
-use super::support::{self, NodeSet};
+use super::support::{self, Unknowns};
 use crate::document::keys::{Form, Keys, key};
-use crate::document::reader::{Reader, SceneValue};
+use crate::document::reader::SceneValue;
 use crate::document::source::{Located, SceneError};
-use fem_core::dof::Dof;
 
 /// Parts of the plate that are condensed on their outlines before anything else is done with them.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,7 +11,7 @@ pub struct SubstructuresSpec {
     /// Which parts.
     pub parts: Parts,
     /// Unknowns that stay beside those on the outlines.
-    pub masters: Vec<Masters>,
+    pub masters: Vec<Unknowns>,
 }
 
 /// The parts of a plate.
@@ -22,15 +21,6 @@ pub enum Parts {
     Groups(Vec<Located<String>>),
     /// Blocks of that many cells along x and y of a built-in mesh.
     Cells(Located<[usize; 2]>),
-}
-
-/// Unknowns that stay.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Masters {
-    /// Of which nodes.
-    pub nodes: NodeSet,
-    /// Which unknowns.
-    pub dofs: Vec<Dof>,
 }
 
 pub(super) const KEYS: Keys = &[
@@ -43,7 +33,7 @@ pub(super) const KEYS: Keys = &[
     ),
     key(
         "masters",
-        Form::List(&Form::Table(support::COUPLE)),
+        Form::List(&Form::Table(support::UNKNOWNS)),
         r#"[{ group = "line", at = "mid-plane", dofs = ["U30"] }]"#,
         "unknowns that stay beside those on the outlines",
     ),
@@ -63,12 +53,8 @@ pub(super) fn read(field: &SceneValue<'_>) -> Result<SubstructuresSpec, SceneErr
             );
         }
     };
-    let masters =
-        table.optional("masters").map_or(Ok(Vec::new()), |field| field.list()?.iter().map(masters).collect())?;
+    let masters = table
+        .optional("masters")
+        .map_or(Ok(Vec::new()), |field| field.list()?.iter().map(support::unknowns).collect())?;
     Ok(SubstructuresSpec { parts, masters })
-}
-
-fn masters(field: &SceneValue<'_>) -> Result<Masters, SceneError> {
-    let table: Reader<'_> = field.table(support::COUPLE)?;
-    Ok(Masters { nodes: support::nodes(&table)?, dofs: support::dofs(&table.required("dofs")?)? })
 }

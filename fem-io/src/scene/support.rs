@@ -1,5 +1,6 @@
 //! What holds the plate: fixed unknowns, linear equations between unknowns, coupled sets.
 
+use super::run::{self, ImpactPoint};
 use crate::document::keys::{Form, Key, Keys, key, words};
 use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, Place, SceneError};
@@ -63,6 +64,8 @@ pub struct Term {
     pub node: NodeSet,
     /// The unknown.
     pub dof: Dof,
+    /// Turn of the node's own axes about z that the unknown refers to, radians.
+    pub axes: f64,
     /// Its factor in SI units; all products factor · unknown of an equation have one dimension.
     pub factor: f64,
 }
@@ -74,6 +77,8 @@ pub struct Couple {
     pub nodes: NodeSet,
     /// The unknowns.
     pub dofs: Vec<Dof>,
+    /// Turn of the nodes' own axes about z that the unknowns refer to, radians.
+    pub axes: f64,
     /// Where it stands.
     pub place: Place,
 }
@@ -94,9 +99,11 @@ const FIX: Keys = &[
     LEVEL,
     key("fix", DOFS, r#"["U30"]"#, "unknowns that stay zero: Unm is displacement n, derived along m (0: not derived)")
         .required(),
-    key("axes", Form::Quantity(Dimension::NONE), r#""30 deg""#, "turn about z of the axes that the unknowns refer to")
-        .default(r#""0 deg""#),
+    AXES,
 ];
+const AXES: Key =
+    key("axes", Form::Quantity(Dimension::NONE), r#""30 deg""#, "turn about z of the axes that the unknowns refer to")
+        .default(r#""0 deg""#);
 const RESTRAIN: Keys = &[key(
     "restrain",
     Form::Words(&["rigid-motions"]),
@@ -115,6 +122,7 @@ const TERM: Keys = &[
     GROUP,
     LEVEL,
     key("dof", Form::Text, r#""U10""#, "the unknown").required(),
+    AXES,
     key(
         "factor",
         Form::OneOf(&[Form::Number, Form::Text]),
@@ -123,8 +131,11 @@ const TERM: Keys = &[
     )
     .required(),
 ];
+/// Unknowns that are named: of the nodes of a group, or of the node at a point.
+pub(super) const UNKNOWNS: Keys =
+    &[run::AT[0], run::AT[1], run::AT[2], LEVEL, key("dofs", DOFS, r#"["U30"]"#, "unknowns of these nodes").required()];
 pub(super) const COUPLE: Keys =
-    &[GROUP, LEVEL, key("dofs", DOFS, r#"["U30"]"#, "unknowns that all these nodes share").required()];
+    &[GROUP, LEVEL, key("dofs", DOFS, r#"["U30"]"#, "unknowns that all these nodes share").required(), AXES];
 
 pub(super) fn read_all(field: &SceneValue<'_>) -> Result<Vec<Support>, SceneError> {
     field.list()?.iter().map(read).collect()
@@ -137,8 +148,11 @@ fn read(field: &SceneValue<'_>) -> Result<Support, SceneError> {
         field.table(RESTRAIN)?.required("restrain")?.choice(&[("rigid-motions", ())])?;
         return Ok(Support::RestrainRigidMotions { place });
     }
-    let axes = table.optional("axes").map_or(Ok(0.0), |field| field.quantity(Dimension::NONE))?;
-    Ok(Support::Fix { nodes: nodes(&table)?, dofs: dofs(&table.required("fix")?)?, axes, place })
+    Ok(Support::Fix { nodes: nodes(&table)?, dofs: dofs(&table.required("fix")?)?, axes: axes(&table)?, place })
+}
+
+fn axes(table: &Reader<'_>) -> Result<f64, SceneError> {
+    table.optional("axes").map_or(Ok(0.0), |field| field.quantity(Dimension::NONE))
 }
 
 pub(super) fn read_equations(field: &SceneValue<'_>) -> Result<Vec<EquationSpec>, SceneError> {
@@ -152,9 +166,27 @@ pub(super) fn read_equations(field: &SceneValue<'_>) -> Result<Vec<EquationSpec>
 pub(super) fn read_couples(field: &SceneValue<'_>) -> Result<Vec<Couple>, SceneError> {
     let read = |field: &SceneValue<'_>| {
         let table = field.table(COUPLE)?;
-        Ok(Couple { nodes: nodes(&table)?, dofs: dofs(&table.required("dofs")?)?, place: table.place().clone() })
+        let (nodes, dofs) = (nodes(&table)?, dofs(&table.required("dofs")?)?);
+        Ok(Couple { nodes, dofs, axes: axes(&table)?, place: table.place().clone() })
     };
     field.list()?.iter().map(read).collect()
+}
+
+/// Unknowns of some nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unknowns {
+    /// The nodes of a group, or the one at a point.
+    pub at: Located<ImpactPoint>,
+    /// Which of the nodes above each other.
+    pub levels: Levels,
+    /// Which unknowns.
+    pub dofs: Vec<Dof>,
+}
+
+pub(super) fn unknowns(field: &SceneValue<'_>) -> Result<Unknowns, SceneError> {
+    let table = field.table(UNKNOWNS)?;
+    let (at, levels) = (field.at(run::point(&table)?), table.required("at")?.choice(&LEVELS)?);
+    Ok(Unknowns { at, levels, dofs: dofs(&table.required("dofs")?)? })
 }
 
 pub(super) fn nodes(table: &Reader<'_>) -> Result<NodeSet, SceneError> {
@@ -188,7 +220,7 @@ fn terms(field: &SceneValue<'_>) -> Result<Vec<Term>, SceneError> {
                 "a displacement Un0 is a length and a derivative a pure number: give one of them a factor with unit, \"1 mm\"",
             ));
         }
-        Ok(Term { node: nodes(&table)?, dof, factor })
+        Ok(Term { node: nodes(&table)?, dof, axes: axes(&table)?, factor })
     };
     field.list()?.iter().map(&mut read).collect()
 }
