@@ -61,6 +61,18 @@ fn the_error_of_the_step_is_found_within_a_factor_of_three() {
 }
 
 #[test]
+fn the_error_of_divided_steps_is_found_within_a_factor_of_four() {
+    let fine = plate("0.0125 us", "");
+    // The first leaves steps of 0.2 us as they are, the last divides them.
+    for tolerance in ["0.1", "1e-2", "1e-3"] {
+        let run = plate_by(&format!("energy-conserving\"\ntolerance = {tolerance}\n#\""), "0.4 us", "");
+        let (step, parts) = (run.outcome.accuracy.step.unwrap(), run.outcome.parts.unwrap());
+        assert!(parts.count >= 2500 && parts.longest == 2e-7 && parts.shortest <= 2e-7, "{parts:?}");
+        within(4.0, step.force, error(&run, &fine));
+    }
+}
+
+#[test]
 fn twice_an_unstable_step_is_not_tried() {
     let explicit = |step| plate_by("central-difference", step, "reduction = { method = \"ritz\", vectors = 40 }");
     let run = explicit("0.1 us");

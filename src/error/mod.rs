@@ -156,8 +156,8 @@ pub enum Error {
     Plot(#[from] PlotError),
 }
 
-const STEP: &str = "shorten `march.step`";
-const STEP_OR_LAW: &str = "shorten `march.step`; if that changes nothing, look at the contact law: \
+const STEP: &str = "shorten `march.step`, or take the integrator `energy-conserving`";
+const STEP_OR_LAW: &str = "shorten `march.step`, or take the integrator `energy-conserving`; if that changes nothing, look at the contact law: \
     `fem_core::testkit::check_contact_law` finds what is wrong with it";
 const MATRIX: &str =
     "look at the supports, at the constants of the materials, and at the element if it is one of your own";

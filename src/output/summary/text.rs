@@ -3,7 +3,6 @@
 use super::ImpactSummary;
 use crate::cost::Cost;
 use crate::words::{append, append_symmetry};
-use std::cmp::Ordering;
 use std::fmt::Write as _;
 
 /// Errors that are nothing but rounding.
@@ -185,11 +184,12 @@ impl ImpactSummary {
         let compared = a.compared_step_s.zip(a.compared_force_L2_relative);
         let step = match (a.step_error_force_L2_relative, compared) {
             (Some(error), Some((step, change))) => format!(
-                "step: force within about {error:.1e} ({} changes it by {change:.1e})",
-                match step.total_cmp(&a.step_s) {
-                    Ordering::Greater => "twice the step",
-                    Ordering::Less => "half the step",
-                    Ordering::Equal => "a looser tolerance",
+                "step: force within about {error:.1e} ({} it by {change:.1e})",
+                match (step > a.step_s, a.step_parts) {
+                    (true, None) => "twice the step changes",
+                    (false, None) => "half the step changes",
+                    (true, Some(_)) => "parts twice as long change",
+                    (false, Some(_)) => "parts half as long change",
                 }
             ),
             _ => "step: error not estimated; a run with half the step would show it".to_owned(),
