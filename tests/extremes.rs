@@ -184,3 +184,22 @@ fn the_memory_of_stresses_is_foreseen() {
         assert!((0.75..1.5).contains(&(estimate / peak)), "{line}: {peak}");
     }
 }
+
+#[test]
+fn divided_steps_of_a_full_plate_are_told() {
+    let divided = |integrator: &str, method: &str| {
+        let march =
+            format!("[reduction]\nmethod = \"{method}\"\n[march]\nintegrator = \"{integrator}\"\ntolerance = 1e-2");
+        strip().scene("[march]", &march).fem("check", &[]).good()
+    };
+    for (integrator, method, told) in
+        [("newmark", "none", true), ("newmark", "ritz", false), ("dormand-prince", "none", false)]
+    {
+        let done = divided(integrator, method);
+        assert_eq!(
+            done.stdout.contains("factorises the full plate: at least 400 times in 200 steps"),
+            told,
+            "{done:#?}"
+        );
+    }
+}

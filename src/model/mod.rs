@@ -240,6 +240,7 @@ impl Model {
             let looks = Some(every).filter(|_| !criteria.is_empty() && every > impact.spec.march.step.value);
             let intervals = [("output.history_every", scene.output.history_every), ("failure.every", looks)];
             warnings.extend(spacing::check(&impact.spec.march, &intervals));
+            warnings.extend(spacing::check_parts(impact));
         }
         let division = builder.division(&plate, constraints, &plan)?;
         let watched = builder.find_watched(&plate, &centres)?;

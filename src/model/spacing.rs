@@ -1,6 +1,7 @@
 //! Times apart that a scene asks for, those that steps allow, and what is kept at them.
 
 use super::{Impact, Model};
+use fem_core::time::StepLimit;
 use fem_io::scene::MarchSpec;
 use fem_io::tables::{HistoryRow, ImpactorRow};
 
@@ -27,6 +28,20 @@ pub(super) fn check(march: &MarchSpec, intervals: &[(&str, Option<f64>)]) -> Vec
         })
     };
     intervals.iter().filter_map(apart).collect()
+}
+
+/// A warning where every length of a divided step factorises the full plate.
+pub(super) fn check_parts(impact: &Impact) -> Option<String> {
+    let implicit = impact.integrator.limit() == StepLimit::None && impact.integrator.order() <= 2;
+    (impact.spec.march.tolerance.is_some() && impact.reduction.is_none() && implicit).then(|| {
+        let (steps, _) = impact.spec.march.steps();
+        format!(
+            "with `march.tolerance` an implicit step is tried whole and in halves, and each length factorises the full plate: at \
+             least {} times in {steps} steps; name a reduction, for example {{ method = \"ritz\", vectors = 60 }}, or leave \
+             the tolerance out",
+            2 * steps
+        )
+    })
 }
 
 /// Rows of the history unless the scene says otherwise.

@@ -175,10 +175,10 @@ impl StepLimit {
     }
 }
 
-/// Parts into which steps were divided by an error estimate.
+/// Substeps into which steps were divided by an error estimate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Parts {
+pub struct Substeps {
     /// How many.
     pub count: u64,
     /// The shortest, s.
@@ -187,7 +187,7 @@ pub struct Parts {
     pub longest: f64,
 }
 
-impl Parts {
+impl Substeps {
     /// So many of length `h`, s.
     pub fn new(count: u64, h: f64) -> Self {
         Self { count, shortest: h, longest: h }
@@ -220,8 +220,8 @@ pub trait Integrator: DynClone + Debug + Send {
         false
     }
 
-    /// Parts of the steps made since this was last asked, of one that divides its steps by an error estimate.
-    fn take_parts(&mut self) -> Option<Parts> {
+    /// Substeps of the steps made since this was last asked, of one that divides its steps by an error estimate.
+    fn take_substeps(&mut self) -> Option<Substeps> {
         None
     }
 

@@ -3,7 +3,7 @@
 use super::copy;
 use crate::vector::dot;
 use fem_core::contact::Indentation;
-use fem_core::time::{Integrator, Parts, SecondOrderSystem, State, StepError, StepLimit};
+use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit, Substeps};
 
 /// Halvings of a step at most.
 const MOST: usize = 20;
@@ -36,7 +36,7 @@ struct Divided {
     /// Those of a step, of its halves, and so on.
     levels: Vec<Level>,
     work: [Vec<f64>; 2],
-    parts: Option<Parts>,
+    parts: Option<Substeps>,
 }
 
 /// States about a part.
@@ -62,7 +62,7 @@ impl Integrator for Divided {
         self.integrator.conserves_energy()
     }
 
-    fn take_parts(&mut self) -> Option<Parts> {
+    fn take_substeps(&mut self) -> Option<Substeps> {
         self.parts.take()
     }
 
@@ -116,7 +116,7 @@ impl Divided {
         let halves = first.clone().and_then(|()| self.integrator.step(sys, s, 0.5 * h));
         let done = match tried.and(halves) {
             Ok(()) if self.agrees(sys, &level, s) => {
-                let parts = Parts::new(2, 0.5 * h);
+                let parts = Substeps::new(2, 0.5 * h);
                 self.parts = Some(self.parts.map_or(parts, |before| before.and(parts)));
                 Ok(())
             }

@@ -3,7 +3,7 @@
 use super::stages::{Rows, Stages};
 use super::{accelerate, accept};
 use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
-use fem_core::time::{Integrator, Parts, SecondOrderSystem, State, StepError, StepLimit};
+use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit, Substeps};
 
 /// Dormand and Prince's pair: it divides a step into parts whose estimated error is within tolerance.
 ///
@@ -16,7 +16,7 @@ pub struct DormandPrince {
     rtol: f64,
     atol: f64,
     stages: Stages,
-    parts: Option<Parts>,
+    parts: Option<Substeps>,
 }
 
 #[rustfmt::skip]
@@ -58,7 +58,7 @@ impl Integrator for DormandPrince {
         StepLimit::None
     }
 
-    fn take_parts(&mut self) -> Option<Parts> {
+    fn take_substeps(&mut self) -> Option<Substeps> {
         self.parts.take()
     }
 
@@ -79,7 +79,7 @@ impl Integrator for DormandPrince {
             let error = self.error(s, h);
             if error <= 1.0 {
                 left -= h;
-                let part = Parts::new(1, h);
+                let part = Substeps::new(1, h);
                 self.parts = Some(self.parts.map_or(part, |parts| parts.and(part)));
                 self.stages.take(s, end - left);
                 accept(sys, s)?;

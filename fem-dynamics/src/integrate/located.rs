@@ -2,7 +2,7 @@
 
 use super::copy;
 use fem_core::contact::{Branches, Indentation};
-use fem_core::time::{Integrator, Parts, SecondOrderSystem, State, StepError, StepLimit};
+use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit, Substeps};
 
 /// Length of the bracket around a switch, over that of the step. The error that it leaves is of its square.
 const PRECISION: f64 = 1e-9;
@@ -45,8 +45,8 @@ impl Integrator for Located {
         self.integrator.conserves_energy()
     }
 
-    fn take_parts(&mut self) -> Option<Parts> {
-        self.integrator.take_parts()
+    fn take_substeps(&mut self) -> Option<Substeps> {
+        self.integrator.take_substeps()
     }
 
     fn with_tolerance(&self, factor: f64) -> Option<Box<dyn Integrator>> {

@@ -2,7 +2,7 @@
 
 use crate::{hertz, scheme, sun_yang};
 use fem_core::testkit::{Mode, Oscillators, check_integrator};
-use fem_core::time::{Parts, State, StepError};
+use fem_core::time::{State, StepError, Substeps};
 use fem_dynamics::integrate::{divided, located};
 
 const SCHEMES: [&str; 5] = ["energy-conserving", "newmark-average", "central-difference", "generalized-0.5", "rk4"];
@@ -18,7 +18,7 @@ fn contracts_hold() {
 
 /// Where the way back of a mass from the ground would have begun, in steps of 0.9 s, 3.6 to the contact, and what they were divided
 /// into.
-fn rebound(name: &str, tolerance: f64) -> (f64, Parts) {
+fn rebound(name: &str, tolerance: f64) -> (f64, Substeps) {
     let mut sys = Oscillators::sphere(1.0, hertz(1.0, 1.5));
     let mut s = State { u: vec![-0.2], v: vec![1.0], ..sys.state() };
     let mut scheme = divided(scheme(name), tolerance);
@@ -27,7 +27,7 @@ fn rebound(name: &str, tolerance: f64) -> (f64, Parts) {
         scheme.step(&mut sys, &mut s, 0.9).unwrap();
         assert!((s.t - 0.9 * f64::from(step)).abs() < 1e-12);
     }
-    (s.u[0] - s.v[0] * s.t, scheme.take_parts().unwrap())
+    (s.u[0] - s.v[0] * s.t, scheme.take_substeps().unwrap())
 }
 
 #[test]

@@ -455,6 +455,7 @@ fn refusals() {
         ("a parameter that is a table", spoilt("n = 1.5", "n = { a = 1 }")),
         ("an endless march", spoilt("end = \"1 ms\"", "end = \"1 ms\", step = \"1e-20 s\"")),
         ("a march shorter than its step", spoilt("end = \"1 ms\"", "end = \"1 ns\"")),
+        ("a tolerance that no estimate has", spoilt("end = \"1 ms\"", "end = \"1 ms\", tolerance = 0.5")),
         ("an unknown window", spoilt("radius =", "window = \"cell\", radius =")),
         ("two criteria of one name", spoilt("\"octahedral\"", "\"hashin-report\"")),
         ("a watch in no ply", spoilt("radius =", "watch = [{ at = { group = \"impact\" } }], radius =")),

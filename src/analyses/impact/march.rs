@@ -17,7 +17,7 @@ use crate::error::{CheckpointError, Error};
 use crate::model::{Model, count_steps};
 use fem_core::counters::Counters;
 use fem_core::structure::Tangent;
-use fem_core::time::{Integrator, Parts, State};
+use fem_core::time::{Integrator, State, Substeps};
 use fem_dynamics::guard::Guard;
 use fem_dynamics::impact::ImpactSystem;
 use fem_failure::scan::{self, Scan};
@@ -85,7 +85,7 @@ pub(super) struct Progress {
     effects: Vec<Vec<f64>>,
     work: SystemCounts,
     /// Of steps that are divided by an estimate of their error.
-    parts: Option<Parts>,
+    parts: Option<Substeps>,
     /// The tangent in use of a plate under large deflections.
     tangent: Option<Tangent>,
     stopped: Option<String>,
@@ -181,7 +181,7 @@ impl<'a> March<'a> {
             // A step in vain makes what is made once and kept, such as factors, so that the work of the others is what it
             // would be in one piece. What it may meet, the next step meets again.
             let _ = integrator.step(system, &mut progress.state.clone(), dt);
-            integrator.take_parts();
+            integrator.take_substeps();
         }
         march.counted = SystemCounts::of(&march.system);
         let fits = match (&mut march.modal, modal) {
@@ -267,7 +267,7 @@ impl<'a> March<'a> {
         let Self { system, guard, effects, .. } = self;
         let Progress { step, dt, row_every, state, ledger, parts, .. } = &mut self.progress;
         self.integrator.step(system, state, *dt)?;
-        if let Some(more) = self.integrator.take_parts() {
+        if let Some(more) = self.integrator.take_substeps() {
             *parts = Some(parts.map_or(more, |parts| parts.and(more)));
         }
         *step += 1;

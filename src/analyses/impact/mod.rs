@@ -27,7 +27,7 @@ use crate::cost::Phase;
 use crate::forecast::{MemoryEstimate, Size};
 use crate::model::Model;
 use fem_core::counters::Counters;
-use fem_core::time::Parts;
+use fem_core::time::Substeps;
 use fem_failure::scan::{FailureEvent, Peak, ScanSite};
 use fem_io::tables::HistoryRow;
 
@@ -88,8 +88,8 @@ pub struct Outcome {
     pub sites: usize,
     /// Largest deviation of the total energy from the energy of the impact, relative to it.
     pub energy_error: f64,
-    /// Parts into which steps were divided by an estimate of their error, where they were.
-    pub parts: Option<Parts>,
+    /// Substeps into which steps were divided by an estimate of their error, where they were.
+    pub parts: Option<Substeps>,
     /// Estimates of other errors.
     pub accuracy: Accuracy,
     /// Work done.

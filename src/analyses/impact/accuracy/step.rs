@@ -121,7 +121,7 @@ pub(super) fn march(
         forces.push(all);
     }
     // The error of divided steps does not follow the length of the whole ones.
-    let divides = integrator.take_parts().is_some();
+    let divides = integrator.take_substeps().is_some();
     let change = (proportional || !divides).then(|| (ratio.powf(ORDER.min(f64::from(integrator.order()))) - 1.0).abs());
     Some((Companion { dt, change, stride, forces }, instants))
 }
