@@ -19,7 +19,7 @@ use std::process::ExitCode;
 pub(super) struct Arguments {
     /// The deck: lines of items between commas.
     deck: PathBuf,
-    /// Folder of the results by name [default: results/<folder of the deck>]
+    /// Folder of the results by name [default: results/<folder of the deck>-project]
     #[arg(long, value_name = "DIR")]
     project: Option<PathBuf>,
     /// What the deck's numbers are called in the listing: force, length, time.
@@ -85,7 +85,7 @@ pub(super) fn piece(
 
 fn run(program: Program, arguments: &Arguments, options: DeckOptions, console: &Console) -> miette::Result<ExitCode> {
     let source = DeckSource::read(&arguments.deck)?;
-    let folder = arguments.project.clone().unwrap_or_else(|| default_folder(&arguments.deck, ""));
+    let folder = arguments.project.clone().unwrap_or_else(|| default_folder(&arguments.deck, "-project"));
     let mut project = Project::open(&folder).map_err(Error::from)?;
     let provenance = Some(Provenance::of(source.name()));
     let options = DeckOptions { units: arguments.units, provenance, ..options };
@@ -128,6 +128,11 @@ fn text(outcome: &DeckOutcome, folder: &Path) -> String {
                 event.ply
             );
         }
+    }
+    if outcome.analysed && outcome.impact.is_none() && outcome.counts.iter().any(|(name, _)| *name == "governors") {
+        text.push_str(
+            "  units     not named: with `--units` history, failure and pictures are written in SI units as well\n",
+        );
     }
     let _ = writeln!(text, "  project   {}", folder.display());
     for file in &outcome.files {

@@ -216,3 +216,20 @@ fn nodes_that_pieces_share_in_unlike_axes_are_told() {
         "{warnings:?}"
     );
 }
+
+#[test]
+fn a_project_of_its_own_stands_beside_results_of_scenes() {
+    let home = tempfile::tempdir().unwrap();
+    std::fs::create_dir(home.path().join("decks")).unwrap();
+    for deck in ["1-lamcel.dat", "2-tradyr.dat"] {
+        std::fs::copy(folder("a-beam-plane-strain").join(deck), home.path().join("decks").join(deck)).unwrap();
+    }
+    fem(home.path(), &["lamcel", "decks/1-lamcel.dat"]).good();
+    let said = fem(home.path(), &["tradyr", "decks/2-tradyr.dat"]).good().stdout;
+    assert!(said.contains("with `--units`"), "{said}");
+    let said = fem(home.path(), &["tradyr", "decks/2-tradyr.dat", "--units", "N-mm-s"]).good().stdout;
+    assert!(!said.contains("with `--units`") && said.contains("  force     peak "), "{said}");
+    for file in ["BEAMCELL.KM.matrices", "BEAMDISP.displacements", "2-tradyr/summary.json"] {
+        assert!(home.path().join("results/decks-project").join(file).exists(), "{file}");
+    }
+}
