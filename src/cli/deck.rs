@@ -41,7 +41,7 @@ fn units(text: &str) -> Result<UnitSystem, String> {
     let known = UnitSystem::ALL.iter().find(|(name, _)| name.eq_ignore_ascii_case(text));
     known
         .map(|(_, units)| *units)
-        .ok_or_else(|| format!("known are {}", UnitSystem::ALL.map(|(name, _)| name).join(" and ")))
+        .ok_or_else(|| format!("known are {}", UnitSystem::ALL.map(|(name, _)| name).join(", ")))
 }
 
 #[derive(Serialize)]

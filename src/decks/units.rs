@@ -9,18 +9,23 @@ use fem_io::tables::{HistoryRow, ImpactorRow};
 #[allow(missing_docs)]
 pub enum UnitSystem {
     NewtonMillimetreSecond,
+    NewtonMetreSecond,
     PoundInchSecond,
 }
 
 impl UnitSystem {
     /// All of them by the names of the command line.
-    pub const ALL: [(&'static str, Self); 2] =
-        [("N-mm-s", Self::NewtonMillimetreSecond), ("lbf-in-s", Self::PoundInchSecond)];
+    pub const ALL: [(&'static str, Self); 3] = [
+        ("N-mm-s", Self::NewtonMillimetreSecond),
+        ("N-m-s", Self::NewtonMetreSecond),
+        ("lbf-in-s", Self::PoundInchSecond),
+    ];
 
     /// Force, length.
     pub(super) fn names(self) -> [&'static str; 2] {
         match self {
             Self::NewtonMillimetreSecond => ["N", "mm"],
+            Self::NewtonMetreSecond => ["N", "m"],
             Self::PoundInchSecond => ["lbf", "in"],
         }
     }
@@ -29,13 +34,14 @@ impl UnitSystem {
     pub(super) fn metres(self) -> f64 {
         match self {
             Self::NewtonMillimetreSecond => 1e-3,
+            Self::NewtonMetreSecond => 1.0,
             Self::PoundInchSecond => 0.0254,
         }
     }
     /// Newtons per force.
     pub(super) fn newtons(self) -> f64 {
         match self {
-            Self::NewtonMillimetreSecond => 1.0,
+            Self::NewtonMillimetreSecond | Self::NewtonMetreSecond => 1.0,
             Self::PoundInchSecond => 4.448_221_615_260_5,
         }
     }

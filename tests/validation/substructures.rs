@@ -287,10 +287,15 @@ fn governors_of_masters_are_governors_of_all() {
 fn governors_that_are_named_are_those_that_govern() {
     let key = |more: &str| {
         format!(
-            "{MARCH}substructures = {{ cells = [4, 4] }}\nreduction = {{ method = 'guyan', governors = 5{more} }}\n"
+            "{MARCH}substructures = {{ cells = [2, 2] }}\nreduction = {{ method = 'guyan', governors = 5{more} }}\n"
         )
     };
-    let model = struck(&key(""));
+    let coarse = |more: &str| {
+        let text = format!("{more}\n{IMPACT}").replace("[12, 8]", "[6, 4]");
+        Model::new(scene::parse(&text, "scene.toml".as_ref()).unwrap(), &Registry::standard()).unwrap()
+    };
+    let coarse_march = |more: &str| impact::march(impact::prepare(&coarse(more), ONE).unwrap(), |_| {}).unwrap();
+    let model = coarse(&key(""));
     let fem::Plan::Impact(impact) = &model.plan else { panic!() };
     let assembled = assembled(&model);
     let condensation = assembled.condensation.as_ref().unwrap();
@@ -302,13 +307,13 @@ fn governors_that_are_named_are_those_that_govern() {
     };
     let mut places: Vec<String> = chosen.map(named).collect();
     let force = |o: &Outcome| o.history.iter().map(|r| r.contact_force_n()).collect::<Vec<f64>>();
-    let by_rule = force(&march(&key("")));
-    let by_name = |places: &[String]| force(&march(&key(&format!(", keep = [{}]", places.join(", ")))));
+    let by_rule = force(&coarse_march(&key("")));
+    let by_name = |places: &[String]| force(&coarse_march(&key(&format!(", keep = [{}]", places.join(", ")))));
     assert_eq!(by_name(&places), by_rule);
     assert_eq!(by_name(&places[..2]), by_rule, "the rule goes on from those that are named");
     places.reverse();
     assert_close(&by_name(&places), &by_rule, 1e-7, "in another order");
-    let elsewhere = "{ x = '25 mm', y = '10 mm', at = 'top', dofs = ['U30', 'U31'] }";
+    let elsewhere = "{ x = '20 mm', y = '10 mm', at = 'top', dofs = ['U30', 'U31'] }";
     let off: Vec<f64> = by_name(&[elsewhere.into()]).iter().zip(&by_rule).map(|(a, b)| a - b).collect();
     assert!(largest(&off) > 1e-4 * largest(&by_rule), "{}", largest(&off));
 }
@@ -316,7 +321,7 @@ fn governors_that_are_named_are_those_that_govern() {
 #[test]
 fn governors_that_cannot_be_named_are_refused() {
     let refused = |reduction: &str| {
-        let text = format!("{MARCH}reduction = {{ {reduction} }}\n{IMPACT}");
+        let text = format!("{MARCH}reduction = {{ {reduction} }}\n{IMPACT}").replace("[12, 8]", "[6, 4]");
         let scene = scene::parse(&text, "scene.toml".as_ref()).unwrap();
         format!("{:?}", miette::Report::new(Model::new(scene, &Registry::standard()).unwrap_err()))
     };
@@ -370,7 +375,8 @@ fn an_impact_on_folded_substructures() {
     let central = |more: &str| {
         let scene =
             format!("{more}\nsubstructures = {{ cells = [2, 2] }}\n{MARCH}reduction = {{ method = 'none' }}\n{IMPACT}")
-                .replace("x = '27 mm', y = '22 mm'", "x = '30 mm', y = '20 mm'");
+                .replace("x = '27 mm', y = '22 mm'", "x = '30 mm', y = '20 mm'")
+                .replace("0.2 ms", "0.05 ms");
         let model = Model::new(scene::parse(&scene, "scene.toml".as_ref()).unwrap(), &Registry::standard()).unwrap();
         let prepared = impact::prepare(&model, ONE).unwrap();
         let masters = prepared.sizes.substructures.unwrap().masters;
@@ -379,7 +385,7 @@ fn an_impact_on_folded_substructures() {
     let ((all, whole), (half, folded)) = (central(""), central("symmetry = 'half-turn'"));
     assert!((0.45..0.6).contains(&(half as f64 / all as f64)), "{half} of {all}");
     let force = |o: &Outcome| o.history.iter().map(|r| r.contact_force_n()).collect::<Vec<f64>>();
-    assert!(largest(&force(&whole)) > 100.0);
+    assert!(largest(&force(&whole)) > 20.0);
     assert_close(&force(&folded), &force(&whole), 1e-7, "force");
     assert_eq!(folded.stopped, None);
     for (a, b) in whole.peaks.iter().zip(&folded.peaks) {
