@@ -50,11 +50,18 @@ pub(super) fn judge(
     let governors = deck.freedom.kept.len();
     let unit = |g: usize| (0..governors).map(|k| if k == g { 1.0 } else { 0.0 }).collect::<Vec<_>>();
     let shapes: Vec<Vec<f64>> = (0..governors).map(|g| model.way.expand(&unit(g))).collect();
-    places.find(project, deck, &shapes)?;
+    let all = places.find(project, deck, &shapes)?;
     let Places { sites, cells, materials, rows, thickness, .. } = places;
 
     let (mut judging, mut left_out) = (Vec::new(), Vec::new());
-    for (name, criterion) in criteria {
+    if !all {
+        left_out.push(format!(
+            "failure was not judged: stresses of all plies per unit of {governors} governors take more than {} MB; back substitution \
+             judges single elements",
+            MOST_BYTES >> 20
+        ));
+    }
+    for (name, criterion) in criteria.iter().filter(|_| all) {
         let looks = |site: &&ScanSite| site.place.site() == criterion.info().site;
         let mut refused = sites
             .iter()
@@ -85,13 +92,6 @@ pub(super) fn judge(
     Ok(Judged { scan, cells, materials, criteria: judging, left_out, thickness })
 }
 
-/// Whether stresses of so many elements of a model can be held.
-pub(super) fn can_judge(project: &Project, deck: &ImpactDeck) -> bool {
-    let elements = deck.substructures.iter().filter_map(|piece| Some(project.matrices(&piece.name.value)?.elements));
-    // Of a ply and the interfaces at its sides.
-    elements.sum::<usize>().saturating_mul(3 * 6 * size_of::<f64>() * deck.freedom.kept.len()) <= MOST_BYTES
-}
-
 /// Places as they are found.
 struct Places {
     units: UnitSystem,
@@ -104,8 +104,9 @@ struct Places {
 }
 
 impl Places {
-    fn find(&mut self, project: &Project, deck: &ImpactDeck, shapes: &[Vec<f64>]) -> Result<(), Error> {
-        let mut pieces = BTreeMap::new();
+    /// All places of all pieces; none, and `false`, where they are too many.
+    fn find(&mut self, project: &Project, deck: &ImpactDeck, shapes: &[Vec<f64>]) -> Result<bool, Error> {
+        let (mut pieces, mut bytes) = (BTreeMap::new(), 0_usize);
         let per_node = deck.freedom.directions.len();
         for (number, placed) in deck.substructures.iter().enumerate() {
             let name = placed.name.value.as_str();
@@ -123,6 +124,14 @@ impl Places {
                 pieces.insert(name, (source, piece, way, first));
             }
             let (source, piece, way, first) = &pieces[name];
+            // Plies, and interfaces on either side of each.
+            let places: usize = piece.piece.elements.iter().map(|card| 2 * card.plies.len() + 1).sum();
+            bytes = bytes.saturating_add(places.saturating_mul(6 * size_of::<f64>() * shapes.len()));
+            if bytes > MOST_BYTES || piece.laminate.plies.len() > usize::from(u16::MAX) {
+                self.sites.clear();
+                self.rows.clear();
+                return Ok(false);
+            }
             let parts = Parts::new(source, piece)?;
             let masters = |u: &Vec<f64>| -> Vec<f64> {
                 placed.nodes.iter().flat_map(|n| &u[n * per_node..(n + 1) * per_node]).copied().collect()
@@ -157,6 +166,6 @@ impl Places {
                 }
             }
         }
-        Ok(())
+        Ok(true)
     }
 }

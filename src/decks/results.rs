@@ -1,7 +1,7 @@
 //! What an impact by decks leaves like any impact: tables, a summary and pictures in SI units, from which `fem report` makes its
 //! page.
 
-use super::judge::{Judged, can_judge, judge};
+use super::judge::{Judged, judge};
 use super::listing::Listing;
 use super::march::Marched;
 use super::model::Model;
@@ -82,14 +82,7 @@ impl Impact<'_> {
     pub(super) fn write(&self, project: &Project, listing: &mut Listing, mut watch: Stopwatch) -> Result<(), Error> {
         let Some(dir) = project.dir() else { return Ok(()) };
         let Marched { prints, rows, begin, .. } = self.marched;
-        let none: &[NamedCriterion] = &[];
-        let criteria = if can_judge(project, self.deck) {
-            self.criteria
-        } else {
-            listing.warn("failure was not judged: so many stresses of so many governors cannot be held; back substitution judges single elements".into());
-            none
-        };
-        let judged = judge(project, self.deck, self.model, (*begin, prints), self.units, criteria)?;
+        let judged = judge(project, self.deck, self.model, (*begin, prints), self.units, self.criteria)?;
         watch.lap("stresses");
         judged.left_out.iter().for_each(|why| listing.warn(why.clone()));
         let rows: Vec<HistoryRow> = rows.iter().map(|row| self.units.row(row)).collect();
