@@ -52,6 +52,18 @@ fn integrators_are_tried_up_to_their_limits() {
     assert!(limited.eq(all.iter().map(String::as_str)), "{rows:?}");
 }
 
+/// The length of whole steps alone would change nothing, and a study that says so would call the step exact.
+#[test]
+fn the_tolerance_of_divided_steps_follows_them() {
+    let march = "[march]\nintegrator = \"energy-conserving\"\nstep = \"1 us\"\ntolerance = 1e-3";
+    let case = short().scene("[march]", march).scene("end = \"4 us\"", "end = \"40 us\"");
+    case.fem("study", &["--axis", "step", "--out", "study"]).good();
+    let rows = rows(&case, "study");
+    let error = |setting: &str| number(&rows[&("joint".into(), setting.into())], "force-history error");
+    let errors = ["4.0000 us to 2e-2", "2.0000 us to 4e-3", "1.0000 us to 1e-3", "0.5000 us to 3e-4"].map(error);
+    assert!(errors.windows(2).all(|pair| pair[1] < 0.7 * pair[0]) && errors[3] > 0.0, "{errors:?}");
+}
+
 /// Two studies differ in their seconds alone, and one that goes on runs nothing twice.
 #[test]
 fn studies_of_one_scene_are_equal() {

@@ -10,7 +10,7 @@ use fem_core::plugin::{
 };
 use fem_core::time::StepLimit;
 use fem_dynamics::reduce::Ritz;
-use fem_io::scene::{Analysis, ContactLoad, MeshSource, Scene, Setting, Window};
+use fem_io::scene::{Analysis, ContactLoad, MarchSpec, MeshSource, Scene, Setting, Window};
 
 /// A part of the settings that is varied while the others stay as the scene has them.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,6 +69,8 @@ const COARSENINGS: usize = 2;
 
 /// Key of the step.
 pub(super) const STEP: &str = "march.step";
+/// Key of the tolerance that steps are divided to.
+const TOLERANCE: &str = "march.tolerance";
 
 /// Names of all axes, in the order in which they are run.
 pub const NAMES: [&str; 13] = [
@@ -150,7 +152,7 @@ fn standard(name: &str, scene: &Scene, model: &Model, registry: &Registry) -> Op
         "mesh" => (AxisKind::Ladder, mesh(scene)),
         "layers" => (AxisKind::Ladder, layers(scene, model)),
         "reduction" => (AxisKind::Ladder, reduction(scene, model, registry)?),
-        "step" => (AxisKind::Ladder, steps(scene)?),
+        "step" => (AxisKind::Ladder, steps(scene, model)?),
         "geometry" => (AxisKind::Ways, geometry(scene, &model.plate.plane)),
         "z-derivatives" => (AxisKind::Ways, z_derivatives(scene, model)),
         "quadrature" => (AxisKind::Ways, quadrature(scene, registry)),
@@ -285,13 +287,24 @@ pub(super) fn seconds(step: f64) -> String {
     quoted(format!("{step:e} s"))
 }
 
-fn steps(scene: &Scene) -> Option<Vec<Level>> {
-    let step = scene.impact()?.march.step.value;
-    let level = |share: f64| {
-        let label = format!("{:.4} us", step * share * 1e6);
-        if share == 1.0 { Level::own(label) } else { Level::new(label, [(STEP, seconds(step * share))]) }
+/// Steps; where they are divided to a tolerance, that follows them, so that their parts are longer or shorter as they are.
+fn steps(scene: &Scene, model: &Model) -> Option<Vec<Level>> {
+    let march = &scene.impact()?.march;
+    let Plan::Impact(impact) = &model.plan else { return None };
+    let order = impact.integrator.order() as i32;
+    let level = |share: &f64| {
+        let step = march.step.value * share;
+        let tolerance = march.tolerance.map(|tolerance| tolerance * share.powi(order));
+        let to = tolerance.map_or(String::new(), |tolerance| format!(" to {tolerance:.0e}"));
+        let label = format!("{:.4} us{to}", step * 1e6);
+        if *share == 1.0 {
+            return Some(Level::own(label));
+        }
+        let mut level = Level::new(label, [(STEP, seconds(step))]);
+        level.setting.extend(tolerance.map(|tolerance| (TOLERANCE.to_owned(), format!("{tolerance:e}"))));
+        tolerance.is_none_or(|tolerance| tolerance <= MarchSpec::LOOSEST).then_some(level)
     };
-    Some(STEPS.map(level).to_vec())
+    Some(STEPS.iter().filter_map(level).collect())
 }
 
 fn integrators(scene: &Scene, registry: &Registry) -> Option<Vec<Level>> {

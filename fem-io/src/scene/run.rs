@@ -86,6 +86,9 @@ pub struct MarchSpec {
 }
 
 impl MarchSpec {
+    /// Largest tolerance, above which the estimate of an error means nothing.
+    pub const LOOSEST: f64 = 0.1;
+
     /// Number of steps to the end, and their length, s: as it is written where it fits the end, so that a later end changes no bit
     /// of it, shorter otherwise.
     pub fn steps(&self) -> (u64, f64) {
@@ -426,9 +429,6 @@ fn read_load(table: &Reader<'_>) -> Result<Located<ContactLoad>, SceneError> {
     Ok(patch.at(ContactLoad::Patch { radius: patch.positive(Dimension::LENGTH)? }))
 }
 
-/// Tolerance of a part of a step above which its estimate means nothing.
-const LOOSEST: f64 = 0.1;
-
 pub(super) fn read_march(field: &SceneValue<'_>) -> Result<MarchSpec, SceneError> {
     let table = field.table(MARCH)?;
     let integrator = PluginSpec::read_or_name(&table.required("integrator")?, &[])?;
@@ -442,10 +442,10 @@ pub(super) fn read_march(field: &SceneValue<'_>) -> Result<MarchSpec, SceneError
         ));
     }
     let tolerance = table.optional("tolerance").map(|field| match field.number()? {
-        share if share > 0.0 && share <= LOOSEST => Ok(share),
+        share if share > 0.0 && share <= MarchSpec::LOOSEST => Ok(share),
         share => Err(field.error(
             format!("a tolerance of {share} cannot be kept"),
-            format!("give a share above 0 and up to {LOOSEST}"),
+            format!("give a share above 0 and up to {}", MarchSpec::LOOSEST),
         )),
     });
     Ok(MarchSpec { integrator, step: step_field.at(step), end: end_field.at(end), tolerance: tolerance.transpose()? })
