@@ -9,7 +9,8 @@ use crate::words::energy::Energy;
 /// tangent that agrees with differences on one side at least; a commit that changes neither the force nor the energy at
 /// the indentation it takes, however often it is called; stored and dissipated energy not negative, nothing stored
 /// where there is no force, dissipation that never falls; the sum of the two equal to ∫ F dα; branches as the law names
-/// them. NaN must come back as NaN, and a fresh history as the first contact, whatever the law has seen before.
+/// them; mean forces that lie between those at the ends, with the work of the law. NaN must come back as NaN, and a fresh history as the
+/// first contact, whatever the law has seen before.
 ///
 /// # Errors
 /// The first violation, with the place on the path.
@@ -66,7 +67,7 @@ impl Walk<'_> {
         }
 
         self.work += integral(|a| law.force(h, a).force, self.from, alpha);
-        self.from = alpha;
+        let begin = std::mem::replace(&mut self.from, alpha);
         let scale = largest * highest;
         let total = before.stored + before.dissipated;
         // The quadrature meets kinks of the force where a branch ends inside a step.
@@ -74,6 +75,9 @@ impl Walk<'_> {
             return Err(format!("stored + dissipated = {total:e}, but the work is {:e}", self.work));
         }
         check_branches(law, h, alpha)?;
+        for from in [begin, 0.0, alpha] {
+            check_mean(law, h, from, alpha, scale)?;
+        }
         for again in ["the", "a second"] {
             law.commit(h, alpha);
             let (force, energy) = (law.force(h, alpha), law.energy(h, alpha));
@@ -93,6 +97,22 @@ impl Walk<'_> {
         }
         Ok(())
     }
+}
+
+/// The mean force lies between those at the ends, and its work is that of the law.
+fn check_mean(law: &dyn ContactLaw, h: &ContactHistory, from: f64, to: f64, scale: f64) -> Result<(), String> {
+    let [start, end] = [from, to].map(|alpha| law.force(h, alpha).force);
+    let [before, after] = [from, to].map(|alpha| law.energy(h, alpha).total());
+    let mean = law.mean_force(h, from, to).force;
+    let work = mean * (to - from);
+    if !(start.min(end)..=start.max(end)).contains(&mean) || (work - (after - before)).abs() > 1e-6 * scale {
+        return Err(format!(
+            "the mean force from {from:e} to {to:e} is {mean:e}, of work {work:e}: the forces at the ends are {start:e} and \
+             {end:e}, the energy changes by {:e}",
+            after - before
+        ));
+    }
+    Ok(())
 }
 
 /// The force begins at `touch`; below the largest indentation it changes with a commit only if the law says `peak`.
