@@ -4,7 +4,7 @@ use crate::hermite::{self, CORNERS, Quartet};
 use crate::hermite_prism::{F, HermitePrism, Mass, N, column, to_global};
 use crate::prism::{BLOCKS, STRAIN_ROW, matrix, multiply};
 use crate::transverse::TransverseStresses;
-use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, positive};
+use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Point, Scratch, positive};
 use fem_core::large::LargeDeflection;
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
 use fem_core::quadrature::gauss_legendre;
@@ -190,11 +190,12 @@ impl Element for HermiteHex {
         &self,
         cell: &Cell<'_>,
         parts: &[Part],
+        plane: &[Point],
         scratch: &mut Scratch,
         b: &mut [f64],
     ) -> Result<(), ElementError> {
         constant_map(cell)?;
-        self.prism.mean_strains(cell, parts, scratch, b)
+        self.prism.mean_strains(cell, parts, plane, scratch, b)
     }
 
     fn large_deflections(&self) -> Option<&dyn LargeDeflection> {

@@ -10,7 +10,9 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::dof::Dof;
 use fem_core::domain::Domain;
-use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, Slice, Stack, positive};
+use fem_core::element::{
+    Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Point, Scratch, Slice, Stack, positive,
+};
 use fem_core::large::LargeDeflection;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::quadrature::{MAX_POINTS, gauss_legendre};
@@ -346,6 +348,7 @@ impl Element for HermitePrism {
         &self,
         cell: &Cell<'_>,
         parts: &[Part],
+        plane: &[Point],
         scratch: &mut Scratch,
         b: &mut [f64],
     ) -> Result<(), ElementError> {
@@ -353,9 +356,10 @@ impl Element for HermitePrism {
         let [means] = scratch.arrays([F * 3 * 4]);
         let jacobians = jacobians(cell);
         let mut area = 0.0;
-        for_each_point(gauss_legendre(self.info.in_plane_order), |_, r, s, w| {
+        for point in plane {
+            let [r, s] = point.at;
             let plane = cell.plane(r, s);
-            let da = positive(plane.det * cell.half_height())? * w;
+            let da = positive(plane.det * cell.half_height())? * point.weight();
             area += da;
             gradients(cell, &jacobians, 0..8, r, s, &plane, |f, gradient| {
                 for (d, polynomial) in gradient.iter().enumerate() {
@@ -365,8 +369,7 @@ impl Element for HermitePrism {
                     }
                 }
             });
-            Ok(())
-        })?;
+        }
         b.fill(0.0);
         means.iter_mut().for_each(|mean| *mean /= area);
         for (Part { slice, q: [low, high] }, b) in parts.iter().zip(b.chunks_exact_mut(6 * N)) {
@@ -432,10 +435,11 @@ impl LargeDeflection for HermitePrism {
         &self,
         cell: &Cell<'_>,
         parts: &[Part],
+        plane: &[Point],
         u: &[f64],
         strains: &mut [f64],
     ) -> Result<(), ElementError> {
-        self.solid(cell, |solid| solid.mean_strains(cell, parts, u, strains))
+        self.solid(cell, |solid| solid.mean_strains(cell, (parts, plane), u, strains))
     }
 }
 

@@ -12,7 +12,7 @@
 
 use crate::prism::{BLOCKS, STRAIN_ROW, matrix, multiply};
 use crate::transverse::TransverseStresses;
-use fem_core::element::{Cell, ElementError, ElementInfo, Part, PlaneMap, Scratch, Slice, positive};
+use fem_core::element::{Cell, ElementError, ElementInfo, Part, PlaneMap, Point, Scratch, Slice, positive};
 use fem_core::large::green_lagrange;
 use fem_core::quadrature::gauss_legendre;
 use fem_core::tensor::{Matrix6, apply};
@@ -170,14 +170,14 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
     pub(crate) fn mean_strains(
         &self,
         cell: &Cell<'_>,
-        parts: &[Part],
+        (parts, plane): (&[Part], &[Point]),
         u: &[f64],
         strains: &mut [f64],
     ) -> Result<(), ElementError> {
         let mut functions: Gradients<F, K> = [[[0.0; K]; 3]; F];
         let (mut volume, mut mean) = (0.0, [[0.0; POWERS]; 6]);
-        for (r, s, w) in self.info.plane_points() {
-            let dv = self.at(cell, r, s, &mut functions)? * w;
+        for point in plane {
+            let dv = self.at(cell, point.at[0], point.at[1], &mut functions)? * point.weight();
             volume += dv;
             add_strains(&self.gradient(&functions, u), dv, &mut mean);
         }

@@ -3,7 +3,7 @@
 use crate::lamination::{self, Lamination, PlyStrain};
 use fem_core::dof::Dof;
 use fem_core::domain::Domain;
-use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, Scratch, Stack, positive};
+use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, Point, Scratch, Stack, positive};
 use fem_core::large::LargeDeflection;
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
 use nalgebra::{Matrix2, Matrix4, Matrix5, SMatrix, SVector, Vector4};
@@ -152,15 +152,16 @@ impl Element for Mitc4 {
         &self,
         cell: &Cell<'_>,
         parts: &[Part],
+        plane: &[Point],
         _scratch: &mut Scratch,
         b: &mut [f64],
     ) -> Result<(), ElementError> {
         let h = cell.half_height();
         let lamination = Lamination::new(cell.stack)?;
         let (mut mean, mut volume) = (SectionOperator::zeros(), 0.0);
-        for (r, s, w) in self.info.plane_points() {
-            let (operator, jacobian) = section_operator(cell, r, s);
-            let dv = positive(jacobian)? * w;
+        for point in plane {
+            let (operator, jacobian) = section_operator(cell, point.at[0], point.at[1]);
+            let dv = positive(jacobian)? * point.weight();
             mean += operator * dv;
             volume += dv;
         }
@@ -265,6 +266,7 @@ impl LargeDeflection for Mitc4 {
         &self,
         cell: &Cell<'_>,
         parts: &[Part],
+        plane: &[Point],
         u: &[f64],
         strains: &mut [f64],
     ) -> Result<(), ElementError> {
@@ -272,9 +274,9 @@ impl LargeDeflection for Mitc4 {
         let lamination = Lamination::new(cell.stack)?;
         let u = SVector::<f64, N>::from_column_slice(u);
         let (mut mean, mut volume) = (SVector::<f64, 8>::zeros(), 0.0);
-        for (r, s, w) in self.info.plane_points() {
-            let bent = Bent::new(cell, r, s, &u);
-            let dv = positive(bent.jacobian)? * w;
+        for point in plane {
+            let bent = Bent::new(cell, point.at[0], point.at[1], &u);
+            let dv = positive(bent.jacobian)? * point.weight();
             mean += bent.strain * dv;
             volume += dv;
         }

@@ -8,7 +8,7 @@
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
-use fem_core::element::{Cell, Element, ElementError, Part, PlaneMap, Scratch, positive};
+use fem_core::element::{Cell, Element, ElementError, Part, PlaneMap, Point, Scratch, positive};
 
 /// Row of the strain vector (11 22 33 12 23 31) to which ∂u\[component\]/∂\[direction\] belongs.
 pub(crate) const STRAIN_ROW: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
@@ -155,13 +155,14 @@ pub(crate) fn mass<const F: usize, const K: usize, P: Prism<F, K>>(
 pub(crate) fn mean_strains<const F: usize, const K: usize, P: Prism<F, K>>(
     prism: &P,
     cell: &Cell<'_>,
-    parts: &[Part],
+    (parts, plane): (&[Part], &[Point]),
     b: &mut [f64],
 ) -> Result<(), ElementError> {
     let (mut means, mut area) = ([[[0.0; K]; 3]; F], 0.0);
-    for (r, s, w) in prism.info().plane_points() {
+    for point in plane {
+        let [r, s] = point.at;
         let plane = cell.plane(r, s);
-        let da = positive(plane.det * cell.half_height())? * w;
+        let da = positive(plane.det * cell.half_height())? * point.weight();
         area += da;
         prism.gradients(cell, r, s, &plane, |f, gradient| {
             for (mean, value) in means[f].as_flattened_mut().iter_mut().zip(gradient.as_flattened()) {

@@ -4,7 +4,7 @@ use crate::large::{Gradients, Solid};
 use crate::prism::{self, Prism};
 use crate::transverse::TransverseStresses;
 use fem_core::dof::Dof;
-use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch};
+use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Point, Scratch};
 use fem_core::large::LargeDeflection;
 use std::fmt::Debug;
 
@@ -73,10 +73,11 @@ where
         &self,
         cell: &Cell<'_>,
         parts: &[Part],
+        plane: &[Point],
         _scratch: &mut Scratch,
         b: &mut [f64],
     ) -> Result<(), ElementError> {
-        prism::mean_strains(self, cell, parts, b)
+        prism::mean_strains(self, cell, (parts, plane), b)
     }
 
     fn large_deflections(&self) -> Option<&dyn LargeDeflection> {
@@ -126,10 +127,11 @@ where
         &self,
         cell: &Cell<'_>,
         parts: &[Part],
+        plane: &[Point],
         u: &[f64],
         strains: &mut [f64],
     ) -> Result<(), ElementError> {
-        with_solid(self, cell, |solid| solid.mean_strains(cell, parts, u, strains))
+        with_solid(self, cell, |solid| solid.mean_strains(cell, (parts, plane), u, strains))
     }
 }
 

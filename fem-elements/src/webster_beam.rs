@@ -6,7 +6,7 @@ use crate::large::{Gradients, Solid};
 use crate::transverse::TransverseStresses;
 use fem_core::dof::Dof;
 use fem_core::domain::Domain;
-use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Scratch, Stack};
+use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Point, Scratch, Stack};
 use fem_core::large::LargeDeflection;
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo, Role};
 use fem_core::quadrature::MAX_POINTS;
@@ -239,10 +239,11 @@ impl LargeDeflection for WebsterBeam {
         &self,
         cell: &Cell<'_>,
         parts: &[Part],
+        plane: &[Point],
         u: &[f64],
         strains: &mut [f64],
     ) -> Result<(), ElementError> {
-        self.solid(cell, |solid| solid.mean_strains(cell, parts, u, strains))?;
+        self.solid(cell, |solid| solid.mean_strains(cell, (parts, plane), u, strains))?;
         for (part, strain) in parts.iter().zip(strains.chunks_exact_mut(6)) {
             self.complete(&cell.stack.slices[part.slice].c, strain);
         }

@@ -72,7 +72,7 @@ fn other_quadrilaterals_and_folded_cells_are_refused() {
         let errors = [
             hex.stiffness(&cell, scratch, &mut [0.0; 96 * 96]),
             hex.mass(&cell, scratch, &mut [0.0; 96 * 96]),
-            hex.mean_strains(&cell, &[part], scratch, &mut [0.0; 6 * 96]),
+            hex.mean_strains(&cell, &[part], hex.info().plane(), scratch, &mut [0.0; 6 * 96]),
         ];
         for error in errors {
             let error = error.unwrap_err().0;

@@ -224,7 +224,11 @@ fn parts(stack: &Stack) -> Vec<Part> {
 fn mean_strains(element: &dyn Element, cell: &Cell<'_>, u: &DVector<f64>) -> Vec<f64> {
     let parts = parts(cell.stack);
     let mut strains = vec![f64::NAN; 6 * parts.len()];
-    element.large_deflections().unwrap().mean_large_strains(cell, &parts, u.as_slice(), &mut strains).unwrap();
+    element
+        .large_deflections()
+        .unwrap()
+        .mean_large_strains(cell, &parts, element.info().plane(), u.as_slice(), &mut strains)
+        .unwrap();
     strains
 }
 
@@ -329,7 +333,15 @@ fn the_shell_has_the_strains_of_von_karman() {
     let u = motion(&shell, &Cell { z: [-0.4e-3, 0.4e-3], ..cell }, &h, 0.0);
     let part = Part { slice: 1, q: [0.0; 2] };
     let mut strain = [f64::NAN; 6];
-    shell.mean_large_strains(&Cell { z: [-0.4e-3, 0.4e-3], ..cell }, &[part], u.as_slice(), &mut strain).unwrap();
+    shell
+        .mean_large_strains(
+            &Cell { z: [-0.4e-3, 0.4e-3], ..cell },
+            &[part],
+            shell.info().plane(),
+            u.as_slice(),
+            &mut strain,
+        )
+        .unwrap();
     let want = [0.01 + 0.5 * slopes[0] * slopes[0], -0.02 + 0.5 * slopes[1] * slopes[1], 0.004 + slopes[0] * slopes[1]];
     for (got, want) in [strain[0], strain[1], strain[3]].into_iter().zip(want) {
         assert!((got - want).abs() < 1e-15, "{got} {want}");

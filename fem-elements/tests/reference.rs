@@ -91,7 +91,9 @@ fn stiffness_mass_and_averages_agree_with_the_independent_implementation() {
             let cell = case.cell();
             let mean = |slice: usize, q: [f64; 2]| {
                 let mut b = vec![0.0; 6 * 96];
-                element.mean_strains(&cell, &[Part { slice, q }], &mut Scratch::default(), &mut b).unwrap();
+                element
+                    .mean_strains(&cell, &[Part { slice, q }], element.info().plane(), &mut Scratch::default(), &mut b)
+                    .unwrap();
                 let e: [f64; 6] = std::array::from_fn(|i| (0..96).map(|j| b[i + 6 * j] * u[j]).sum());
                 e
             };

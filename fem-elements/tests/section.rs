@@ -85,7 +85,7 @@ fn the_independent_implementation_is_matched() {
         for (slice, (ply, average)) in stack.slices.iter().zip(averages).enumerate() {
             let mut b = vec![f64::NAN; 6 * N];
             let part = Part { slice, q: ply.q };
-            element.mean_strains(&cell, &[part], &mut Scratch::default(), &mut b).unwrap();
+            element.mean_strains(&cell, &[part], element.info().plane(), &mut Scratch::default(), &mut b).unwrap();
             let strain: [f64; 6] = std::array::from_fn(|i| (0..N).map(|j| b[i + 6 * j] * u[j]).sum());
             let stress = stress(&ply.c, &Strain6::<Global>::new(strain)).0;
             for (got, key) in [(strain, "strain"), (stress, "stress")] {

@@ -29,7 +29,7 @@ impl MarchSize {
             marched: solves.unwrap_or(unknowns).min(unknowns),
             reduced: solves.is_some(),
             factor_entries,
-            sites: model.watched.len() * places.iter().sum::<usize>(),
+            sites: (model.watched.len() + model.centres.len()) * places.iter().sum::<usize>(),
             step_s: march.step.value,
             samples: (march.end.value / model.sample_every) as u64,
             work: Counters {

@@ -11,7 +11,7 @@ use fem_core::failure::Site;
 use fem_core::laws::PlyLaws;
 use fem_core::recovery::{Recovery, Station};
 use fem_core::tensor::{Ply, Stress6};
-use fem_core::window;
+use fem_core::window::{self, Centre, Windows};
 use fem_failure::scan::{self, PlyOrInterface, Probe, Scan, ScanSite};
 use fem_io::scene::Window;
 use serde::{Deserialize, Serialize};
@@ -82,8 +82,9 @@ impl<'a> Watch<'a> {
     /// A criterion whose material lacks a constant, or a cell that the element refuses.
     pub(super) fn new(model: &'a Model, expansion: Rc<Expansion<'a>>) -> Result<Self, Error> {
         let recovery = build_recovery(model);
-        let scan = Scan::new(model.criteria.clone(), sites(model, &recovery), model.materials.clone())?;
-        let (probes, histories) = gauges(model, &scan).into_iter().unzip();
+        let scan = Scan::new(model.criteria.clone(), sites(&recovery), model.materials.clone())?;
+        let of_cells = model.watched.len() * recovery.stations.len();
+        let (probes, histories) = gauges(model, &scan, of_cells).into_iter().unzip();
         let mut watch = Self {
             model,
             expansion,
@@ -248,7 +249,7 @@ pub(crate) fn margins(model: &Model, u: &[f64]) -> Result<Vec<Margin>, Error> {
     if !stresses.iter().all(|s| s.is_finite()) {
         return Err(Error::NotFinite("stress"));
     }
-    let sites = sites(model, &recovery);
+    let sites = sites(&recovery);
     let smallest = |(name, criterion): &NamedCriterion| {
         let states = sites.iter().zip(stresses.chunks_exact(6));
         let judged = states.filter(|(site, _)| site.place.site() == criterion.info().site);
@@ -329,46 +330,43 @@ pub(crate) fn recover(
 fn build_recovery(model: &Model) -> Recovery {
     // Where nobody looks there is nothing to recover.
     let looks = model.criteria.iter().any(|(_, criterion)| criterion.info().site == Site::Interface);
-    recovery(model, model.watched.clone(), looks)
+    recovery(model, &model.watched, &model.centres, looks)
 }
 
-/// The stresses of `quads` as the criteria see them, those of interfaces where these are wanted and the scene has some.
-pub(crate) fn recovery(model: &Model, quads: Vec<usize>, interfaces: bool) -> Recovery {
+/// The stresses of `quads` as the criteria see them, and those around further `centres`; those of interfaces where these are wanted
+/// and the scene has some.
+pub(crate) fn recovery(model: &Model, quads: &[usize], centres: &[Centre], interfaces: bool) -> Recovery {
     let mesh = &model.plate.plane;
-    let windows = match model.window {
-        Window::Element => window::own(mesh),
-        Window::Square(side) => window::square(mesh, side, |quad| model.plate.region(quad)),
-    };
-    let resin = model.interface.filter(|_| interfaces);
-    Recovery::new(&model.plate, &model.laminates, &model.materials, resin, quads, &windows)
-}
-
-pub(crate) fn sites(model: &Model, recovery: &Recovery) -> Vec<ScanSite> {
-    let mesh = &model.plate.plane;
-    let site = |q: usize, s: &Station| {
-        let [x, y] = mesh.corners(q).centroid();
-        ScanSite {
-            cell: q as u32,
-            place: if s.interface {
-                PlyOrInterface::Interface(s.ply as u16)
-            } else {
-                PlyOrInterface::Ply(s.ply as u16)
-            },
-            position: [x, y, s.z],
-            angle: s.angle,
-            material: s.material as u16,
+    let windows: Vec<_> = match model.window {
+        Window::Element => quads.iter().map(|quad| window::own(mesh, *quad)).collect(),
+        Window::Square(side) => {
+            let windows = Windows::new(mesh, side, |quad| model.plate.region(quad));
+            let of_cells = quads.iter().map(|quad| windows.of_cell(*quad));
+            of_cells.chain(centres.iter().map(|centre| windows.around(*centre))).collect()
         }
     };
-    let over = |(i, q): (usize, &usize)| recovery.stations_over(i).iter().map(|s| site(*q, s)).collect::<Vec<_>>();
-    recovery.quads.iter().enumerate().flat_map(over).collect()
+    let resin = model.interface.filter(|_| interfaces);
+    Recovery::new(&model.plate, &model.laminates, &model.materials, resin, &windows)
+}
+
+pub(crate) fn sites(recovery: &Recovery) -> Vec<ScanSite> {
+    let site = |Centre { quad, at: [x, y] }: Centre, s: &Station| ScanSite {
+        cell: quad as u32,
+        place: if s.interface { PlyOrInterface::Interface(s.ply as u16) } else { PlyOrInterface::Ply(s.ply as u16) },
+        position: [x, y, s.z],
+        angle: s.angle,
+        material: s.material as u16,
+    };
+    let over = |(i, at): (usize, &Centre)| recovery.stations_over(i).iter().map(|s| site(*at, s)).collect::<Vec<_>>();
+    recovery.centres.iter().enumerate().flat_map(over).collect()
 }
 
 /// An empty history for every criterion of every gauge, and where the scan keeps its indices: an interface between two layers
-/// of cells has a stress from either side.
-fn gauges(model: &Model, scan: &Scan) -> Vec<(Vec<Probe>, IndexHistory)> {
+/// of cells has a stress from either side. The first `of_cells` sites are those of cells.
+fn gauges(model: &Model, scan: &Scan, of_cells: usize) -> Vec<(Vec<Probe>, IndexHistory)> {
     let mut all = Vec::new();
     for gauge in &model.gauges {
-        let sides: Vec<usize> = (0..scan.sites().len())
+        let sides: Vec<usize> = (0..of_cells)
             .filter(|s| scan.sites()[*s].cell as usize == gauge.quad && scan.sites()[*s].place == gauge.place)
             .collect();
         let Some(first) = sides.first() else { continue };

@@ -124,7 +124,8 @@ pub(super) fn stations<'a>(
         // A section's strains across it follow from the stiffness of the place.
         let stack = with(cell.stack, station.part.slice, global);
         let cell = Cell { stack: &stack, ..cell };
-        parts.element.mean_strains(&cell, &[station.part], &mut scratch, &mut station.operator)?;
+        let plane = parts.element.info().plane();
+        parts.element.mean_strains(&cell, &[station.part], plane, &mut scratch, &mut station.operator)?;
     }
     Ok(stations)
 }

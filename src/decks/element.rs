@@ -1,6 +1,6 @@
 //! Elements of a deck: those of the registry, integrated by NORDER points.
 
-use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, Scratch};
+use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, Point, Scratch};
 use fem_core::large::LargeDeflection;
 use fem_elements::{HermitePrism, Mass, PlaneState, TransverseStresses, WebsterBeam};
 use fem_io::deck::PieceKind;
@@ -56,10 +56,11 @@ impl Element for ByPoints {
         &self,
         cell: &Cell<'_>,
         parts: &[Part],
+        plane: &[Point],
         scratch: &mut Scratch,
         b: &mut [f64],
     ) -> Result<(), ElementError> {
-        self.exact.mean_strains(cell, parts, scratch, b)
+        self.exact.mean_strains(cell, parts, plane, scratch, b)
     }
 
     fn large_deflections(&self) -> Option<&dyn LargeDeflection> {

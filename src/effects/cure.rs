@@ -118,9 +118,9 @@ impl Effect for Cure {
             }
         };
         let mut stresses = Vec::with_capacity(6 * recovery.sites());
-        for (i, quad) in recovery.quads.iter().enumerate() {
+        for (i, centre) in recovery.centres.iter().enumerate() {
             for station in recovery.stations_over(i) {
-                let stress: Stress6<Ply> = of_station(plate.region(*quad), station)?;
+                let stress: Stress6<Ply> = of_station(plate.region(centre.quad), station)?;
                 stresses.extend(stress.0);
             }
         }

@@ -20,14 +20,22 @@ use fem_core::reduction::Reduction;
 use fem_core::support::{self, FreeMotions};
 use fem_core::tensor::Stress6;
 use fem_core::time::Integrator;
+<<<<<<< HEAD
 use fem_dynamics::integrate::{divided, located};
+=======
+use fem_core::window::{Centre, Windows};
+use fem_dynamics::integrate::located;
+>>>>>>> e819ed6 (First damage is judged in windows around the impact that do not hang on the mesh)
 use fem_io::scene::{
-    self, Analysis, CriterionSpec, LoadKind, Located, NodeSet, Place, PluginSpec, Scene, SceneError, Support,
+    self, Analysis, CriterionSpec, LoadKind, Located, NodeSet, Place, PluginSpec, Scene, SceneError, Support, Window,
 };
 use std::collections::BTreeSet;
 
 /// Vectors of a reduction that does not declare how many.
 const VECTORS: usize = 60;
+
+/// How far around an impact windows are centred that do not follow the mesh, in sides of a window.
+const REACH: f64 = 2.0;
 
 /// A stress so small that only its kind can be out of scope, Pa.
 const SMALL: f64 = 1.0;
@@ -240,6 +248,18 @@ impl Builder<'_> {
             return Err(self.scene.source.error_at(&failure.place, message, "enlarge the radius or leave it out"));
         }
         Ok(watched)
+    }
+
+    /// Centres of windows around `places` in the cells that are watched, where the scene's windows do not follow the mesh.
+    pub(super) fn find_centres(&self, plate: &Plate, watched: &[usize], places: &[[f64; 2]]) -> Vec<Centre> {
+        let Window::Square(side) = self.scene.failure.window else { return Vec::new() };
+        if self.scene.failure.criteria.is_empty() {
+            return Vec::new();
+        }
+        let windows = Windows::new(&plate.plane, side, |quad| plate.region(quad));
+        let is_watched = |quad: usize| watched.binary_search(&quad).is_ok();
+        let distinct = places.iter().enumerate().filter(|(k, place)| !places[..*k].contains(place));
+        distinct.flat_map(|(_, place)| windows.lattice(*place, REACH, is_watched)).collect()
     }
 
     pub(super) fn group<'p>(&self, plate: &'p Plate, group: &Located<String>) -> Result<&'p Group, SceneError> {

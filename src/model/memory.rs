@@ -47,15 +47,15 @@ impl Model {
         let looks = self.interface.is_some() && judged(Site::Interface).next().is_some();
         let sides = if self.plate.info().is_shell() { 2 * (plies - 1) } else { plies + self.plate.layers() - 2 };
         let interfaces = if looks { sides } else { 0 };
-        let quads = if self.criteria.is_empty() { 0 } else { self.watched.len() };
+        let windows = if self.criteria.is_empty() { 0 } else { self.watched.len() + self.centres.len() };
         let demand = Demand {
             all: self.plate.ndof(),
             unknowns: pattern.ndof(),
             vectors,
             contacts,
             kept,
-            sites: quads * (plies + interfaces),
-            indices: quads * (plies * modes(Site::Ply) + interfaces * modes(Site::Interface)),
+            sites: windows * (plies + interfaces),
+            indices: windows * (plies * modes(Site::Ply) + interfaces * modes(Site::Interface)),
             operator: contacts.is_some() && !self.effects.nature().large,
         };
         analyse(pattern, &demand, self.effects.memory(&self.body(), &demand))

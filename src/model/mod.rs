@@ -42,6 +42,7 @@ use fem_core::pieces;
 use fem_core::plate::Plate;
 use fem_core::profile::Mirrors;
 use fem_core::warping;
+use fem_core::window::Centre;
 use fem_failure::delamination::DelaminationThreshold;
 use fem_io::scene::{self, Analysis, Damage, Located, Output, Scene, SceneError, Window};
 use std::borrow::Borrow;
@@ -94,6 +95,8 @@ pub struct Model {
     pub interface: Option<usize>,
     /// Quads whose stresses the criteria judge; of those that a symmetry maps onto each other one.
     pub watched: Vec<usize>,
+    /// Centres of windows around the impacts, where stresses are computed as well.
+    pub centres: Vec<Centre>,
     /// Places whose indices are kept over time.
     pub gauges: Vec<Gauge>,
     /// What is written.
@@ -246,6 +249,7 @@ impl Model {
         let watched = builder.find_watched(&plate, &centres)?;
         let gauges = builder.gauges(&plate, &watched, &criteria)?;
         let fields = builder.fields(&plate, &centres)?;
+        let centres = builder.find_centres(&plate, &watched, &centres);
         let resin = scene.interface.as_ref().map(|resin| resin.value);
         let threshold = builder.threshold(DelaminationThreshold::of(&laminate, &materials, resin))?;
         let mirrors = Mirrors::of(&plate, constraints);
@@ -282,6 +286,7 @@ impl Model {
             sample_every: scene.failure.every,
             interface: resin,
             watched,
+            centres,
             gauges,
             output: scene.output.clone(),
             fields,

@@ -9,7 +9,7 @@ use dyn_clone::DynClone;
 use std::fmt::{self, Debug};
 
 pub use crate::contracts::stack::{Slice, Stack};
-pub use crate::words::domain::PlaneMap;
+pub use crate::words::domain::{PlaneMap, Point};
 
 /// How an element describes itself.
 #[derive(Debug, Clone, Copy)]
@@ -52,11 +52,15 @@ impl ElementInfo {
         [r, s, 0.0]
     }
 
+    /// In-plane quadrature points of the whole cell.
+    pub fn plane(&self) -> &'static [Point] {
+        let order = self.in_plane_order;
+        if self.is_section() { Domain::section_points(order) } else { self.domain.points(order) }
+    }
+
     /// In-plane quadrature points (r, s, weight).
     pub fn plane_points(&self) -> impl Iterator<Item = (f64, f64, f64)> + use<> {
-        let order = self.in_plane_order;
-        let points = if self.is_section() { Domain::section_points(order) } else { self.domain.points(order) };
-        points.iter().map(|point| (point.at[0], point.at[1], point.weight()))
+        self.plane().iter().map(|point| (point.at[0], point.at[1], point.weight()))
     }
 }
 
@@ -234,7 +238,8 @@ pub trait Element: DynClone + Debug + Send + Sync {
     }
 
     /// Mean-strain operators `b` (6 × ndof each, one after the other) of parts of the cell: (1/V) ∫ B dV (report eq. 12),
-    /// or the area mean of a face (eq. 14).
+    /// or the area mean of a face (eq. 14); in the plane over the points `plane`, those of the [whole](ElementInfo::plane) cell or a
+    /// single one.
     ///
     /// # Errors
     /// A Jacobian that is not positive at a Gauss point.
@@ -242,6 +247,7 @@ pub trait Element: DynClone + Debug + Send + Sync {
         &self,
         cell: &Cell<'_>,
         parts: &[Part],
+        plane: &[Point],
         scratch: &mut Scratch,
         b: &mut [f64],
     ) -> Result<(), ElementError> {
@@ -253,9 +259,9 @@ pub trait Element: DynClone + Debug + Send + Sync {
             let mut volume = 0.0;
             let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
             for &(t, wt) in gauss_legendre(if half > 0.0 { info.ply_order } else { 1 }) {
-                for (r, s, w) in info.plane_points() {
-                    let xi = [r, s, middle + half * t];
-                    let dv = positive(self.strain_operator(cell, *slice, xi, point))? * w * wt;
+                for at in plane {
+                    let xi = [at.at[0], at.at[1], middle + half * t];
+                    let dv = positive(self.strain_operator(cell, *slice, xi, point))? * at.weight() * wt;
                     volume += dv;
                     for (b, p) in b.iter_mut().zip(point.iter()) {
                         *b += dv * p;

@@ -1,6 +1,6 @@
 //! The contract of an element under large deflections.
 
-use crate::contracts::element::{Cell, ElementError, Part, Scratch};
+use crate::contracts::element::{Cell, ElementError, Part, Point, Scratch};
 use std::fmt::Debug;
 
 /// What an element offers besides its linear matrices where membrane stiffening is asked for.
@@ -32,8 +32,8 @@ pub trait LargeDeflection: Debug {
     /// As [`LargeDeflection::internal`].
     fn large_strain(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError>;
 
-    /// Means of E over parts of the cell (report eqs 12, 14), engineering shears, one after the other: `strains` holds
-    /// six per part.
+    /// Means of E over parts of the cell (report eqs 12, 14) and, in the plane, over the points `plane`; engineering shears, one after
+    /// the other: `strains` holds six per part.
     ///
     /// # Errors
     /// As [`LargeDeflection::internal`].
@@ -41,6 +41,7 @@ pub trait LargeDeflection: Debug {
         &self,
         cell: &Cell<'_>,
         parts: &[Part],
+        plane: &[Point],
         u: &[f64],
         strains: &mut [f64],
     ) -> Result<(), ElementError>;

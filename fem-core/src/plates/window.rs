@@ -1,68 +1,161 @@
-//! Averaging windows: what a cell's stress is the mean of.
+//! Averaging windows: what a stress is the mean of.
 //!
 //! A mean over the cell itself falls with the cell, and with it every onset time; over a window of fixed size it does
-//! not.
+//! not. Nor does one that is centred at a place of the plate, and not of its cells.
 
 use crate::plates::mesh::PlaneMesh;
 
-/// The cells that a square window of side `side`, centred on each cell and parallel to the axes, overlaps, with their
-/// shares of the overlapped area. At an edge the window is cut off with the plate, where regions of different plies meet with
-/// the cell's own `region`.
-///
-/// A cell larger than the window is its own mean.
-pub fn square(mesh: &PlaneMesh, side: f64, region: impl Fn(usize) -> usize) -> Vec<Vec<(usize, f64)>> {
-    let n = mesh.quads.len();
-    let centres: Vec<[f64; 2]> = (0..n).map(|q| mesh.corners(q).centroid()).collect();
-    let (low, _) = mesh.bounds();
-    // Bins about as large as window or cell, whichever is larger, so that either touches few of them.
-    let pitch = side.max((mesh.area() / n as f64).sqrt());
-    let bin = |p: [f64; 2]| -> [i64; 2] { std::array::from_fn(|d| ((p[d] - low[d]) / pitch).floor() as i64) };
-    // Cells by the bins that their bounding boxes touch.
-    let mut bins: Vec<([i64; 2], usize)> = Vec::new();
-    for q in 0..n {
-        let p = mesh.corners(q);
-        let corner = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 2] {
-            std::array::from_fn(|d| p.iter().fold(start, |m, p| pick(m, p[d])))
-        };
-        let (from, to) = (bin(corner(f64::min, f64::INFINITY)), bin(corner(f64::max, f64::NEG_INFINITY)));
-        for i in from[0]..=to[0] {
-            for j in from[1]..=to[1] {
-                bins.push(([i, j], q));
-            }
-        }
-    }
-    bins.sort_unstable();
-    let mut near = Vec::new();
-    (0..n)
-        .map(|q| {
-            if mesh.quality(q).area >= side * side {
-                return vec![(q, 1.0)];
-            }
-            let c = centres[q];
-            let half = 0.5 * side;
-            let (from, to) = (bin([c[0] - half, c[1] - half]), bin([c[0] + half, c[1] + half]));
-            near.clear();
-            for i in from[0]..=to[0] {
-                for j in from[1]..=to[1] {
-                    let first = bins.partition_point(|b| b.0 < [i, j]);
-                    near.extend(bins[first..].iter().take_while(|b| b.0 == [i, j]).map(|b| b.1));
-                }
-            }
-            near.retain(|other| region(*other) == region(q));
-            near.sort_unstable();
-            near.dedup();
-            let mut shares: Vec<(usize, f64)> = near.iter().map(|o| (*o, mesh.corners(*o).overlap(c, half))).collect();
-            let total: f64 = shares.iter().map(|s| s.1).sum();
-            shares.retain(|s| s.1 > 1e-12 * total);
-            shares.iter_mut().for_each(|s| s.1 /= total);
-            shares
-        })
-        .collect()
+/// Whose strains are taken: those of a cell, or at one of its samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Source {
+    /// The cell.
+    pub quad: usize,
+    /// Which of [`Domain::samples`](crate::words::domain::Domain::samples); the mean over the whole cell without.
+    pub sample: Option<usize>,
 }
 
-/// Each cell is its own mean.
-pub fn own(mesh: &PlaneMesh) -> Vec<Vec<(usize, f64)>> {
-    (0..mesh.quads.len()).map(|q| vec![(q, 1.0)]).collect()
+/// Where a window lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Centre {
+    /// The cell that holds it.
+    pub quad: usize,
+    /// Its position, m.
+    pub at: [f64; 2],
+}
+
+/// A mean of strains.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Window {
+    /// Where it lies.
+    pub centre: Centre,
+    /// What is averaged, with shares that add up to 1.
+    pub shares: Vec<(Source, f64)>,
+}
+
+/// Overlap with a cell that is no more than rounding, and share of a cell's area that is all of it but rounding.
+const NOTHING: f64 = 1e-12;
+
+/// How near a cell must be to hold a point, of the side.
+const NEAR: f64 = 1e-6;
+
+/// Windows of a mesh: squares of side `side`, parallel to the axes. At an edge a window is cut off with the plate, where regions of
+/// different plies meet with the region of the cell that holds its centre.
+#[derive(Debug)]
+pub struct Windows<'a, R> {
+    mesh: &'a PlaneMesh,
+    side: f64,
+    region: R,
+    low: [f64; 2],
+    /// As large as window or cell, whichever is larger, so that either touches few of them.
+    pitch: f64,
+    /// Cells by the bins that their bounding boxes touch.
+    bins: Vec<([i64; 2], usize)>,
+}
+
+impl<'a, R: Fn(usize) -> usize> Windows<'a, R> {
+    /// Squares of `side` (m) on `mesh`, whose cells lie in regions by number.
+    pub fn new(mesh: &'a PlaneMesh, side: f64, region: R) -> Self {
+        let (low, _) = mesh.bounds();
+        let pitch = side.max((mesh.area() / mesh.quads.len() as f64).sqrt());
+        let mut windows = Self { mesh, side, region, low, pitch, bins: Vec::new() };
+        for q in 0..mesh.quads.len() {
+            let p = mesh.corners(q);
+            let corner = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 2] {
+                std::array::from_fn(|d| p.iter().fold(start, |m, p| pick(m, p[d])))
+            };
+            let (from, to) =
+                (windows.bin(corner(f64::min, f64::INFINITY)), windows.bin(corner(f64::max, f64::NEG_INFINITY)));
+            for i in from[0]..=to[0] {
+                for j in from[1]..=to[1] {
+                    windows.bins.push(([i, j], q));
+                }
+            }
+        }
+        windows.bins.sort_unstable();
+        windows
+    }
+
+    fn bin(&self, p: [f64; 2]) -> [i64; 2] {
+        std::array::from_fn(|d| ((p[d] - self.low[d]) / self.pitch).floor() as i64)
+    }
+
+    /// Cells that may reach into the square |x − c| ≤ half, ascending.
+    fn near(&self, c: [f64; 2], half: f64) -> Vec<usize> {
+        let (from, to) = (self.bin([c[0] - half, c[1] - half]), self.bin([c[0] + half, c[1] + half]));
+        let mut near = Vec::new();
+        for i in from[0]..=to[0] {
+            for j in from[1]..=to[1] {
+                let first = self.bins.partition_point(|b| b.0 < [i, j]);
+                near.extend(self.bins[first..].iter().take_while(|b| b.0 == [i, j]).map(|b| b.1));
+            }
+        }
+        near.sort_unstable();
+        near.dedup();
+        near
+    }
+
+    /// The window around the centre of a cell, of whole cells weighted with the areas of the overlap. A cell larger than the window
+    /// is its own mean.
+    pub fn of_cell(&self, quad: usize) -> Window {
+        let corners = self.mesh.corners(quad);
+        if corners.area() >= self.side * self.side {
+            return own(self.mesh, quad);
+        }
+        let centre = Centre { quad, at: corners.centroid() };
+        self.over(centre, |quad, half| {
+            vec![(Source { quad, sample: None }, self.mesh.corners(quad).overlap(centre.at, half))]
+        })
+    }
+
+    /// The window around any place: of cells that lie within it as a whole, and of the samples of others, linear between these. What
+    /// it says does not hang on how it lies to the cells.
+    pub fn around(&self, centre: Centre) -> Window {
+        self.over(centre, |quad, half| {
+            let corners = self.mesh.corners(quad);
+            let samples = corners.overlap_of_samples(centre.at, half);
+            let overlap: f64 = samples.iter().sum();
+            if overlap > (1.0 - NOTHING) * corners.area() {
+                return vec![(Source { quad, sample: None }, overlap)];
+            }
+            let each = samples.iter().enumerate();
+            each.map(|(k, area)| (Source { quad, sample: Some(k) }, *area)).collect()
+        })
+    }
+
+    /// The mean over a window whose shares in each cell are areas.
+    fn over(&self, centre: Centre, areas: impl Fn(usize, f64) -> Vec<(Source, f64)>) -> Window {
+        let (half, own) = (0.5 * self.side, (self.region)(centre.quad));
+        let cells = self.near(centre.at, half).into_iter().filter(|quad| (self.region)(*quad) == own);
+        let mut shares: Vec<(Source, f64)> = cells.flat_map(|quad| areas(quad, half)).collect();
+        let total: f64 = shares.iter().map(|s| s.1).sum();
+        shares.retain(|s| s.1.abs() > NOTHING * total);
+        shares.iter_mut().for_each(|s| s.1 /= total);
+        Window { centre, shares }
+    }
+
+    /// Centres around a place that hang on nothing but it: on a square lattice of a quarter of the side within a side of `place`, of
+    /// half of it within `reach` sides. Those in none of the cells that are `kept` are left out.
+    pub fn lattice(&self, place: [f64; 2], reach: f64, kept: impl Fn(usize) -> bool) -> Vec<Centre> {
+        let pitch = 0.25 * self.side;
+        let n = (4.0 * reach) as i64;
+        let all = (-n..=n).flat_map(|i| (-n..=n).map(move |j| [i, j]));
+        let chosen = all.filter(|[i, j]| {
+            let distance = (*i as f64).hypot(*j as f64);
+            distance <= 4.0 || (distance <= 4.0 * reach && i % 2 == 0 && j % 2 == 0)
+        });
+        let at = |[i, j]: [i64; 2]| [place[0] + i as f64 * pitch, place[1] + j as f64 * pitch];
+        let hold = |at: [f64; 2]| {
+            let mut holding = self.near(at, NEAR * self.side).into_iter().filter(|quad| kept(*quad));
+            holding.find(|quad| self.mesh.corners(*quad).locate(at).is_some()).map(|quad| Centre { quad, at })
+        };
+        chosen.map(at).filter_map(hold).collect()
+    }
+}
+
+/// The mean over a cell itself.
+pub fn own(mesh: &PlaneMesh, quad: usize) -> Window {
+    let centre = Centre { quad, at: mesh.corners(quad).centroid() };
+    Window { centre, shares: vec![(Source { quad, sample: None }, 1.0)] }
 }
 
 #[cfg(test)]
@@ -83,6 +176,12 @@ mod tests {
             }
         }
         mesh
+    }
+
+    fn square(mesh: &PlaneMesh, side: f64, region: impl Fn(usize) -> usize) -> Vec<Vec<(usize, f64)>> {
+        let windows = Windows::new(mesh, side, region);
+        let cells = |window: Window| window.shares.into_iter().map(|(source, share)| (source.quad, share)).collect();
+        (0..mesh.quads.len()).map(|q| cells(windows.of_cell(q))).collect()
     }
 
     #[test]
@@ -115,7 +214,8 @@ mod tests {
     fn windows_of_any_size() {
         let mesh = grid(9, 1.0);
         for side in [1e-300, 1e-9, 0.01] {
-            assert_eq!(square(&mesh, side, |_| 0), own(&mesh), "{side}");
+            let own: Vec<_> = (0..81).map(|q| vec![(q, 1.0)]).collect();
+            assert_eq!(square(&mesh, side, |_| 0), own, "{side}");
         }
         for side in [20.0, 1e7, 1e300] {
             let windows = square(&mesh, side, |_| 0);
@@ -124,5 +224,67 @@ mod tests {
                 assert!(window.iter().all(|(_, share)| (share - 1.0 / 81.0).abs() < 1e-12), "{side}: {window:?}");
             }
         }
+    }
+
+    /// The mean of a field that is known where windows look.
+    fn mean(mesh: &PlaneMesh, window: &Window, f: impl Fn([f64; 2]) -> f64) -> f64 {
+        let value = |source: &Source| {
+            let corners = mesh.corners(source.quad);
+            let domain = corners.domain();
+            match source.sample {
+                Some(k) => f(corners.position(domain.samples()[k].at)),
+                None => {
+                    let points = domain.points(3).iter();
+                    let det = |p: [f64; 2]| corners.plane_map(p[0], p[1]).det;
+                    points.map(|p| p.weight() * det(p.at) * f(corners.position(p.at))).sum::<f64>() / corners.area()
+                }
+            }
+        };
+        window.shares.iter().map(|(source, share)| share * value(source)).sum()
+    }
+
+    #[test]
+    fn windows_around_places_do_not_see_the_cells() {
+        // Cells larger and smaller than the window, squeezed quadrilaterals, and triangles.
+        for (n, turn, triangles) in
+            [(3, 0.0, false), (20, 0.0, false), (4, 0.2, false), (5, 0.1, true), (17, 0.3, true)]
+        {
+            let mut mesh = grid(n, 9.0 / n as f64);
+            let middle = [4.5; 2];
+            for p in &mut mesh.points {
+                let r2 = (p[0] - middle[0]).powi(2) + (p[1] - middle[1]).powi(2);
+                let angle = turn * (1.0 - r2 / 40.5);
+                let [x, y] = [p[0] - middle[0], p[1] - middle[1]];
+                *p = [middle[0] + angle.cos() * x - angle.sin() * y, middle[1] + angle.sin() * x + angle.cos() * y];
+            }
+            if triangles {
+                let halves =
+                    |q: &crate::words::domain::Corners<u32>| [[q[0], q[1], q[2]].into(), [q[0], q[2], q[3]].into()];
+                mesh.quads = mesh.quads.iter().flat_map(halves).collect();
+            }
+            let windows = Windows::new(&mesh, 2.0, |_| 0);
+            let centres = windows.lattice([4.1, 4.6], 1.0, |_| true);
+            assert_eq!(centres.len(), 49, "{n}");
+            for centre in centres {
+                let window = windows.around(centre);
+                let [x, y] = centre.at;
+                let linear = mean(&mesh, &window, |p| 3.0 + 2.0 * p[0] - p[1]);
+                assert!((linear - (3.0 + 2.0 * x - y)).abs() < 1e-12, "{n} {turn} {triangles}: {linear} at {x}, {y}");
+                // The mean of (p - x)^2 is a twelfth of the side squared; samples of a cell h wide miss h^2/12 of it at most.
+                let square = mean(&mesh, &window, |p| (p[0] - x).powi(2));
+                let h = 9.0 / n as f64;
+                assert!((square - 4.0 / 12.0).abs() < 1.2 * h * h / 12.0, "{n} {turn} {triangles}: {square}");
+            }
+        }
+    }
+
+    #[test]
+    fn lattices_are_those_of_kept_cells() {
+        let mesh = grid(9, 1.0);
+        let windows = Windows::new(&mesh, 2.0, |_| 0);
+        let centres = windows.lattice([4.0, 4.0], 2.0, |quad| quad % 9 < 4);
+        assert!(centres.iter().all(|c| c.at[0] <= 4.0 + 1e-9 && mesh.corners(c.quad).locate(c.at).is_some()));
+        assert!(centres.iter().any(|c| c.at == [4.0, 4.0]) && centres.iter().any(|c| c.at == [0.0, 4.0]));
+        assert!(windows.lattice([-20.0, 4.0], 2.0, |_| true).is_empty());
     }
 }

@@ -1,12 +1,14 @@
 //! Stresses of plies and interfaces from displacements.
 
-use crate::contracts::element::{Element, ElementError, Part, Scratch, Stack};
+use crate::contracts::element::{Element, ElementError, ElementInfo, Part, Point, Scratch, Stack};
 use crate::contracts::large::LargeDeflection;
 use crate::plates::laminate::Laminate;
 use crate::plates::laws::{Asked, CellAnswer, PlyLaws};
 use crate::plates::plate::Plate;
+use crate::plates::window::{Centre, Source, Window};
 use crate::words::material::Material;
 use crate::words::tensor::{Matrix6, strain_rotation};
+use std::borrow::Cow;
 
 /// Where in the thickness a stress is taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,9 +45,9 @@ impl Station {
     }
 }
 
-/// Mean stresses of every ply (report eqs 12, 13) and at every interface (eq. 14), for a set of cells.
+/// Mean stresses of every ply (report eqs 12, 13) and at every interface (eq. 14), for a set of windows.
 ///
-/// Sites are ordered quad by quad, each with all stations from the bottom up. Interfaces between layers of cells are taken
+/// Sites are ordered window by window, each with all stations from the bottom up. Interfaces between layers of cells are taken
 /// from both sides, because derivatives may jump there, and so are those within a shell, whose shear strains jump between plies.
 #[derive(Debug, Clone)]
 pub struct Recovery {
@@ -54,46 +56,46 @@ pub struct Recovery {
     pub stations: Vec<Station>,
     /// Stations of every region.
     regions: Vec<Vec<Station>>,
-    /// Region of each watched quad.
+    /// Region of each window.
     region_of: Vec<usize>,
-    /// The quads watched.
-    pub quads: Vec<usize>,
-    /// Mean over the quads (positions in `sources`) that make up the window of each watched quad.
+    /// Where each window lies.
+    pub centres: Vec<Centre>,
+    /// Shares of each window, by positions in `sources`.
     windows: Vec<Vec<(usize, f64)>>,
-    /// Quads whose strains are needed.
-    sources: Vec<usize>,
+    /// Whose strains are needed.
+    sources: Vec<Source>,
 }
 
 impl Recovery {
-    /// Watches `quads`; `windows[q]` are the quads whose strains are averaged at quad q. Interfaces are watched when the
-    /// resin between plies is given. `laminates` are those of the regions of the plate, alike but for angles and materials.
+    /// Watches `windows`. Interfaces are watched when the resin between plies is given. `laminates` are those of the regions of the plate, alike but for angles and materials.
     pub fn new(
         plate: &Plate,
         laminates: &[Laminate],
         materials: &[Material],
         resin: Option<usize>,
-        quads: Vec<usize>,
-        windows: &[Vec<(usize, f64)>],
+        windows: &[Window],
     ) -> Self {
-        let mut sources: Vec<usize> = quads.iter().flat_map(|q| windows[*q].iter().map(|w| w.0)).collect();
+        let mut sources: Vec<Source> = windows.iter().flat_map(|window| window.shares.iter().map(|s| s.0)).collect();
         sources.sort_unstable();
         sources.dedup();
-        let position = |q: usize| sources.partition_point(|s| *s < q);
-        let windows = quads.iter().map(|q| windows[*q].iter().map(|(q, w)| (position(*q), *w)).collect()).collect();
+        let position = |source: &Source| sources.partition_point(|s| s < source);
+        let shares = |window: &Window| window.shares.iter().map(|(source, share)| (position(source), *share)).collect();
+        let centres: Vec<Centre> = windows.iter().map(|window| window.centre).collect();
         let of_region = |(region, laminate)| stations(plate, region, laminate, materials, resin);
         let regions: Vec<Vec<Station>> = laminates.iter().enumerate().map(of_region).collect();
-        let region_of = quads.iter().map(|quad| plate.region(*quad)).collect();
-        Self { stations: regions.first().cloned().unwrap_or_default(), regions, region_of, quads, windows, sources }
+        let region_of = centres.iter().map(|centre| plate.region(centre.quad)).collect();
+        let windows = windows.iter().map(shares).collect();
+        Self { stations: regions.first().cloned().unwrap_or_default(), regions, region_of, centres, windows, sources }
     }
 
-    /// Stations over the `i`-th watched quad.
+    /// Stations over the `i`-th window.
     pub fn stations_over(&self, i: usize) -> &[Station] {
         &self.regions[self.region_of[i]]
     }
 
     /// Number of sites.
     pub fn sites(&self) -> usize {
-        self.quads.len() * self.stations.len()
+        self.centres.len() * self.stations.len()
     }
 
     /// Stresses for several displacement fields at once: `u` is `ndof × fields` (before elimination of constraints), `out`
@@ -115,12 +117,13 @@ impl Recovery {
         let (mut operators, mut scratch, mut dofs) = (Vec::new(), Scratch::default(), Vec::new());
         let mut local = vec![0.0; n * fields];
         let layers = self.parts_of_layers();
-        for (quad, mut strains) in self.sources.iter().zip(strains.chunks_exact_mut(per_quad * fields)) {
+        for (source, mut strains) in self.sources.iter().zip(strains.chunks_exact_mut(per_quad * fields)) {
+            let (quad, plane) = (source.quad, points(plate.info(), *source));
             for (layer, Parts { parts, shares, stations }) in layers.iter().enumerate() {
                 let number = quad * plate.layers() + layer;
                 let cell = plate.cell(number);
                 operators.resize(6 * n * parts.len(), 0.0);
-                element.mean_strains(&cell, parts, &mut scratch, &mut operators)?;
+                element.mean_strains(&cell, parts, &plane, &mut scratch, &mut operators)?;
                 plate.cell_dofs(number, &mut dofs);
                 // Fields run fastest here and in the strains: one operation serves several of them.
                 for (dof, local) in dofs.iter().zip(local.chunks_exact_mut(fields)) {
@@ -168,14 +171,15 @@ impl Recovery {
         let mut strains = vec![0.0; self.sources.len() * 6 * self.stations.len()];
         let (mut rest, mut dofs, mut local, mut of_parts) =
             (strains.as_mut_slice(), Vec::new(), Vec::new(), Vec::new());
-        for quad in &self.sources {
+        for source in &self.sources {
+            let (quad, plane) = (source.quad, points(plate.info(), *source));
             for (layer, Parts { parts, shares, stations }) in layers.iter().enumerate() {
                 let number = quad * plate.layers() + layer;
                 plate.cell_dofs(number, &mut dofs);
                 local.clear();
                 local.extend(dofs.iter().map(|dof| u[*dof]));
                 of_parts.resize(6 * parts.len(), 0.0);
-                element.mean_large_strains(&plate.cell(number), parts, &local, &mut of_parts)?;
+                element.mean_large_strains(&plate.cell(number), parts, &plane, &local, &mut of_parts)?;
                 let (here, next) = rest.split_at_mut(6 * stations);
                 for (strain, (station, share)) in of_parts.chunks_exact(6).zip(shares) {
                     here[6 * station..].iter_mut().zip(strain).for_each(|(mean, e)| *mean += share * e);
@@ -188,7 +192,7 @@ impl Recovery {
     }
 
     /// Puts the stresses of plies that follow `laws` in place of those of linear elasticity: means over the Gauss points of
-    /// their cells at the displacements `u` (one field, before elimination of constraints) and the states `points`.
+    /// their cells, whatever the samples, at the displacements `u` (one field, before elimination of constraints) and the states `points`.
     ///
     /// # Errors
     /// A cell that the element refuses, a law that finds no stress.
@@ -202,7 +206,7 @@ impl Recovery {
     ) -> Result<(), ElementError> {
         let mut means = Vec::with_capacity(self.sources.len() * plate.layers());
         let (mut answer, mut dofs) = (CellAnswer::default(), Vec::new());
-        for quad in &self.sources {
+        for Source { quad, .. } in &self.sources {
             for layer in 0..plate.layers() {
                 let cell = quad * plate.layers() + layer;
                 plate.cell_dofs(cell, &mut dofs);
@@ -257,6 +261,14 @@ impl Recovery {
                 }
             }
         }
+    }
+}
+
+/// Points of the plane over which the strains of a source are means.
+fn points(info: &ElementInfo, source: Source) -> Cow<'static, [Point]> {
+    match source.sample {
+        None => Cow::Borrowed(info.plane()),
+        Some(k) => Cow::Owned(vec![info.domain.samples()[k]]),
     }
 }
 

@@ -135,7 +135,7 @@ impl Matrices {
         let mut scratch = Scratch::default();
         element.stiffness(cell, &mut scratch, &mut k)?;
         element.mass(cell, &mut scratch, &mut m)?;
-        element.mean_strains(cell, &parts, &mut scratch, &mut means)?;
+        element.mean_strains(cell, &parts, element.info().plane(), &mut scratch, &mut means)?;
         Ok(Self { n, k, m, means })
     }
 

@@ -77,7 +77,7 @@ pub(crate) fn check_overrides(element: &dyn Element, cell: &Cell<'_>) {
         .collect();
     let strains = |element: &dyn Element| {
         let mut b = vec![f64::NAN; 6 * element.info().ndof() * parts.len()];
-        element.mean_strains(cell, &parts, &mut Scratch::default(), &mut b).unwrap();
+        element.mean_strains(cell, &parts, element.info().plane(), &mut Scratch::default(), &mut b).unwrap();
         DVector::from_vec(b)
     };
     let (got, want) = (strains(element), strains(&plain));

@@ -61,13 +61,13 @@ impl<'a> Plies<'a> {
     /// # Errors
     /// A criterion whose material lacks a constant.
     pub(super) fn new(model: &'a Model, plan: &FieldPlan, plies: bool, interfaces: bool) -> Result<Self, Error> {
-        let recovery = stress::recovery(model, plan.quads.clone(), interfaces);
+        let recovery = stress::recovery(model, &plan.quads, &[], interfaces);
         let stacks = model.plate.stacks(0).iter().enumerate();
         let tops = stacks.flat_map(|(layer, stack)| stack.slices.iter().map(move |s| Height { layer, q: s.q[1] }));
         let heights = [Height { layer: 0, q: -1.0 }].into_iter().chain(tops).collect();
         let lattice = Lattice::new(model, &plan.quads, 1, heights);
         let judged = !matches!(model.plan, Plan::Modes { .. });
-        let scan = || Scan::new(model.criteria.clone(), stress::sites(model, &recovery), model.materials.clone());
+        let scan = || Scan::new(model.criteria.clone(), stress::sites(&recovery), model.materials.clone());
         let residual = if judged { stress::residual(model, &recovery)? } else { Vec::new() };
         let mut sheets = Vec::new();
         sheets.extend(plies.then(|| Sheets::plies(model, plan, &lattice, &recovery)));
@@ -183,7 +183,7 @@ impl Sheets {
     /// Sites of each cell.
     fn sites<'a>(&'a self, recovery: &'a Recovery) -> impl Iterator<Item = impl Iterator<Item = usize> + Clone> {
         let width = recovery.stations.len();
-        let quads = 0..recovery.quads.len();
+        let quads = 0..recovery.centres.len();
         quads.flat_map(move |quad| self.stations.iter().map(move |of| of.iter().map(move |s| quad * width + s)))
     }
 

@@ -157,8 +157,27 @@ impl Corners<[f64; 2]> {
         })
     }
 
-    /// Area within the square |x − c| ≤ half (Sutherland, Hodgman 1974), m².
+    /// Area within the square |x − c| ≤ half, m².
     pub(crate) fn overlap(&self, c: [f64; 2], half: f64) -> f64 {
+        self.clip(c, half).iter().map(|triangle| triangle.area()).sum()
+    }
+
+    /// Areas for which the values at [`Domain::samples`] stand in a mean over the square |x − c| ≤ half, m².
+    pub(crate) fn overlap_of_samples(&self, c: [f64; 2], half: f64) -> Corners<f64> {
+        let mut areas = self.map(|_| 0.0);
+        for triangle in self.clip(c, half) {
+            let share = triangle.area() / 3.0;
+            for [a, b] in triangle.sides() {
+                let middle = [0, 1].map(|d| c[d] + 0.5 * (a[d] + b[d]));
+                let functions = self.domain().sample_functions(self.locate(middle).unwrap_or(self.domain().centre()));
+                areas.iter_mut().zip(functions.iter()).for_each(|(area, f)| *area += share * f);
+            }
+        }
+        areas
+    }
+
+    /// What lies within the square |x − c| ≤ half (Sutherland, Hodgman 1974), as triangles relative to c.
+    fn clip(&self, c: [f64; 2], half: f64) -> Vec<Self> {
         // Four cuts add at most four corners.
         let mut polygon = [[0.0; 2]; 9];
         let mut n = self.len();
@@ -185,14 +204,9 @@ impl Corners<[f64; 2]> {
             polygon = cut;
             n = m;
             if n < 3 {
-                return 0.0;
+                return Vec::new();
             }
         }
-        0.5 * (0..n)
-            .map(|i| {
-                let (a, b) = (polygon[i], polygon[(i + 1) % n]);
-                a[0] * b[1] - a[1] * b[0]
-            })
-            .sum::<f64>()
+        (1..n - 1).map(|i| [polygon[0], polygon[i], polygon[i + 1]].into()).collect()
     }
 }

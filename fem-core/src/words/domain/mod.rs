@@ -104,6 +104,31 @@ impl Domain {
         rule::points(self, order)
     }
 
+    /// Points at which a field within the cell is sampled, one for each corner, where the strains of most elements are best: in a
+    /// quadrilateral the Gauss points of order 2 (Barlow 1976).
+    pub fn samples(self) -> Corners<Point> {
+        let ([r0, s0], share) = (self.centre(), self.sample_share());
+        let at = |[r, s]: [f64; 2]| Point { at: [r0 + share * (r - r0), s0 + share * (s - s0)], factors: [1.0; 2] };
+        match self {
+            Self::Quadrilateral => QUADRILATERAL.map(at).into(),
+            Self::Triangle => TRIANGLE.map(at).into(),
+        }
+    }
+
+    /// What the values at [`Domain::samples`] count for at a natural point: 1 at a sample, 0 at the others, linear between.
+    pub fn sample_functions(self, [r, s]: [f64; 2]) -> Corners<f64> {
+        let ([r0, s0], share) = (self.centre(), self.sample_share());
+        self.vertex_functions([r0 + (r - r0) / share, s0 + (s - s0) / share])
+    }
+
+    /// How far from the centre samples are, of the way to the corner.
+    fn sample_share(self) -> f64 {
+        match self {
+            Self::Quadrilateral => 3.0_f64.sqrt().recip(),
+            Self::Triangle => 0.5,
+        }
+    }
+
     /// Quadrature points of the section of a strip, which varies along r alone.
     pub fn section_points(order: usize) -> &'static [Point] {
         rule::section_points(order)
