@@ -53,11 +53,11 @@ fn within(factor: f64, estimate: f64, truth: f64) {
 fn the_error_of_the_step_is_found_within_a_factor_of_three() {
     let (fine, run) = (plate("0.0125 us", ""), plate("0.1 us", ""));
     let step = run.outcome.accuracy.step.unwrap();
-    within(3.0, step.force, error(&run, &fine));
+    within(3.0, step.error.force, error(&run, &fine));
     assert_eq!(step.compared, 2.0 * run.sizes.step);
 
     let run = small_mass("0.1 us");
-    within(3.0, run.outcome.accuracy.step.unwrap().force, error(&run, &small_mass("0.0125 us")));
+    within(3.0, run.outcome.accuracy.step.unwrap().error.force, error(&run, &small_mass("0.0125 us")));
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn the_error_of_divided_steps_is_found_within_a_factor_of_four() {
         let run = plate_by(&format!("energy-conserving\"\ntolerance = {tolerance}\n#\""), "0.4 us", "");
         let (step, parts) = (run.outcome.accuracy.step.unwrap(), run.outcome.parts.unwrap());
         assert!(parts.count >= 2500 && parts.longest == 2e-7 && parts.shortest <= 2e-7, "{parts:?}");
-        within(4.0, step.force, error(&run, &fine));
+        within(4.0, step.error.force, error(&run, &fine));
     }
 }
 
@@ -79,7 +79,7 @@ fn twice_an_unstable_step_is_not_tried() {
     let (step, sizes) = (run.outcome.accuracy.step.unwrap(), run.sizes);
     assert!(sizes.step < sizes.longest_step && 2.0 * sizes.step > sizes.longest_step, "{sizes:?}");
     assert_eq!(step.compared, 0.5 * sizes.step);
-    within(3.0, step.force, error(&run, &explicit("0.0125 us")));
+    within(3.0, step.error.force, error(&run, &explicit("0.0125 us")));
 }
 
 #[test]

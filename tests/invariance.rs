@@ -22,6 +22,8 @@ struct Told {
     /// Angles, degrees, and how many plies of one thickness are each.
     plies: Vec<f64>,
     thickness: f64,
+    /// Side of the windows, m.
+    window: f64,
     element: &'static str,
     reduction: &'static str,
     /// E1, E2, G12, density.
@@ -50,8 +52,8 @@ impl Told {
         let mut text = format!(
             "title = 't'\nmesh = {{ file = 'plate.msh', unit = '{unit}' }}\nelement = {{ kind = '{}' }}\n\
              support = [{{ group = 'x-min', at = 'all', fix = ['U10', 'U20', 'U30'] }}]\n\
-             failure = {{ criteria = ['max-stress'], every = '{:?} s' }}\n{}\n",
-            self.element, self.step, self.reduction
+             failure = {{ criteria = ['max-stress'], every = '{:?} s', window = '{:?} m' }}\n{}\n",
+            self.element, self.step, self.window, self.reduction
         );
         if let Some([end, corner]) = self.ties {
             let _ = write!(
@@ -141,6 +143,7 @@ impl Told {
     /// All lengths and times larger; forces grow with the square.
     fn larger(mut self, by: f64) -> Self {
         self.thickness *= by;
+        self.window *= by;
         self.mass *= by.powi(3);
         self.contact *= by.sqrt();
         self.step *= by;
@@ -172,6 +175,7 @@ fn told() -> impl Strategy<Value = Told> {
                 mesh: PlaneMesh::rectangle(&x, &y),
                 plies: plies.iter().map(|angle: &f64| angle.round()).collect(),
                 thickness,
+                window: 2.54e-3,
                 element,
                 reduction: "reduction = { method = 'none' }",
                 material: [130e9, 9e9, 5e9, 1600.0],

@@ -1,5 +1,9 @@
 //! First damage: which criterion reaches 1 where and when.
 
+mod climb;
+
+pub use climb::{Climb, Crests};
+
 use fem_core::failure::{FailureCriterion, Site, check_material};
 use fem_core::material::{Material, MaterialError};
 use fem_core::tensor::{Ply, Stress6};
@@ -102,6 +106,8 @@ pub struct Peak {
     pub time: f64,
     /// Where.
     pub site: ScanSite,
+    /// How the largest index anywhere came there.
+    pub climb: Climb,
 }
 
 /// Why a scan cannot start or continue.
@@ -229,6 +235,8 @@ struct Seen {
     /// When each index first reached 1, s; infinite where it did not.
     reached: Vec<f64>,
     peaks: Vec<Option<Reading>>,
+    /// One per mode.
+    climbs: Vec<Climb>,
     /// Row per place.
     first: Vec<Option<(Reading, Stress6<Ply>)>>,
 }
@@ -245,6 +253,8 @@ struct Watch {
     runs: Vec<(u16, Range<usize>)>,
     /// Indices of the present sample, a row for each site of `span`.
     now: Vec<f64>,
+    /// Largest index of each mode before it.
+    highest: Vec<f64>,
 }
 
 /// Where a scan keeps the indices of one criterion at one site.
@@ -321,12 +331,14 @@ impl Scan {
             }
             let modes = criterion.info().modes;
             let size = span.len() * modes.len();
-            watches.push(Watch { now: vec![0.0; size], name, criterion, modes, span, runs });
+            let highest = vec![0.0; modes.len()];
+            watches.push(Watch { now: vec![0.0; size], highest, name, criterion, modes, span, runs });
             seen.push(Seen {
                 last: vec![0.0; size],
                 maxima: vec![0.0; size],
                 reached: vec![f64::INFINITY; size],
                 peaks: vec![None; modes.len()],
+                climbs: vec![Climb::default(); modes.len()],
                 first: vec![None; places.len() * modes.len()],
             });
         }
@@ -420,8 +432,9 @@ impl Scan {
     pub fn peaks(&self) -> Vec<Peak> {
         let mut peaks = Vec::new();
         for (watch, seen) in self.watches.iter().zip(&self.record.seen) {
-            for (mode, reading) in watch.modes.iter().zip(&seen.peaks) {
+            for ((mode, reading), climb) in watch.modes.iter().zip(&seen.peaks).zip(&seen.climbs) {
                 peaks.extend(reading.map(|r| Peak {
+                    climb: climb.clone(),
                     criterion: watch.name.clone(),
                     mode,
                     index: r.index,
@@ -485,7 +498,8 @@ impl Scan {
     /// is of another size or names sites that there are not.
     #[must_use]
     pub fn resume(&mut self, record: ScanRecord) -> bool {
-        let size = |s: &Seen| [s.last.len(), s.maxima.len(), s.reached.len(), s.peaks.len(), s.first.len()];
+        let size =
+            |s: &Seen| [s.last.len(), s.maxima.len(), s.reached.len(), s.peaks.len(), s.climbs.len(), s.first.len()];
         let readings = |s: &Seen| {
             let first = s.first.iter().flatten().map(|(reading, _)| *reading);
             s.peaks.iter().flatten().copied().chain(first).all(|reading| (reading.site as usize) < self.sites.len())
@@ -493,6 +507,7 @@ impl Scan {
         let fits = record.stress.len() == self.sites.len()
             && record.evaluations < MOST_EVALUATIONS
             && record.seen.iter().all(readings)
+            && record.seen.iter().flat_map(|seen| &seen.climbs).all(Climb::is_sound)
             && record.seen.iter().map(size).eq(self.record.seen.iter().map(size));
         if fits {
             self.record = record;
@@ -535,8 +550,15 @@ impl Watch {
         for (maximum, now) in seen.maxima.iter_mut().zip(&self.now) {
             *maximum = maximum.max(*now);
         }
+        for (highest, peak) in self.highest.iter_mut().zip(&seen.peaks) {
+            *highest = peak.map_or(0.0, |peak| peak.index);
+        }
         for (row, indices) in self.now.chunks_exact(modes).enumerate() {
             for (mode, &index) in indices.iter().enumerate() {
+                if index > self.highest[mode] {
+                    let from = last.map_or((t, 0.0), |last| (last, seen.last[row * modes + mode]));
+                    seen.climbs[mode].take(from, (t, index));
+                }
                 let peak = &mut seen.peaks[mode];
                 let here = Reading { time: t, index, site: order[row] };
                 if peak.is_none_or(|p| index > p.index || (index == p.index && here.precedes(&p))) {

@@ -11,7 +11,7 @@ use fem_core::counters::Counters;
 use fem_core::dof::Dof;
 use fem_core::element::ElementError;
 use fem_core::energy::Energy;
-use fem_core::estimate::mesh_error;
+use fem_core::estimate::mesh_errors;
 use fem_core::field::Field as Displacements;
 use fem_core::functional::Functional;
 use fem_core::profile::{Choice, ProfilePoint, Resultants};
@@ -45,7 +45,7 @@ pub struct StaticSolution {
     /// Under large deflections, the Newton decrement of each iteration
     /// ([`Equilibrium::decrements`](fem_core::assembly::Equilibrium::decrements)).
     pub decrements: Option<Vec<f64>>,
-    /// Error of the mesh in the energy norm, relative, where [`mesh_error`] can say; never under large
+    /// Error of the mesh in the energy norm, relative, where [`mesh_errors`] can say; never under large
     /// displacements or with free strains.
     pub mesh_error: Option<f64>,
     /// Share of the work of the loads that supports of nodal values cost between the nodes, where it is worth a word
@@ -156,7 +156,9 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
     let mesh_error = if nature.large || nature.strained || model.laws.is_some() {
         None
     } else {
-        mesh_error(&model.plate, &*model.element, &u)?
+        mesh_errors(&model.plate, &*model.element, &model.constraints, &u)?
+            .map(|errors| errors[0])
+            .filter(|error| *error > 0.0)
     };
     stopwatch.lap("mesh error");
     let phases = stopwatch.phases().to_vec();

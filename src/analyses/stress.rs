@@ -340,7 +340,7 @@ pub(crate) fn recovery(model: &Model, quads: &[usize], centres: &[Centre], inter
     let windows: Vec<_> = match model.window {
         Window::Element => quads.iter().map(|quad| window::own(mesh, *quad)).collect(),
         Window::Square(side) => {
-            let windows = Windows::new(mesh, side, |quad| model.plate.region(quad));
+            let windows = Windows::new(mesh, (side, model.laminate.plies[0].angle), |quad| model.plate.region(quad));
             let of_cells = quads.iter().map(|quad| windows.of_cell(*quad));
             of_cells.chain(centres.iter().map(|centre| windows.around(*centre))).collect()
         }

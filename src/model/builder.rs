@@ -20,12 +20,8 @@ use fem_core::reduction::Reduction;
 use fem_core::support::{self, FreeMotions};
 use fem_core::tensor::Stress6;
 use fem_core::time::Integrator;
-<<<<<<< HEAD
-use fem_dynamics::integrate::{divided, located};
-=======
 use fem_core::window::{Centre, Windows};
-use fem_dynamics::integrate::located;
->>>>>>> e819ed6 (First damage is judged in windows around the impact that do not hang on the mesh)
+use fem_dynamics::integrate::{divided, located};
 use fem_io::scene::{
     self, Analysis, CriterionSpec, LoadKind, Located, NodeSet, Place, PluginSpec, Scene, SceneError, Support, Window,
 };
@@ -250,16 +246,28 @@ impl Builder<'_> {
         Ok(watched)
     }
 
-    /// Centres of windows around `places` in the cells that are watched, where the scene's windows do not follow the mesh.
-    pub(super) fn find_centres(&self, plate: &Plate, watched: &[usize], places: &[[f64; 2]]) -> Vec<Centre> {
+    /// Centres of windows, along the fibres of this `angle`, around `places` in the cells that are watched, where the scene's
+    /// windows do not follow the mesh, and the cells that they and their images lie in.
+    pub(super) fn find_centres(
+        &self,
+        (plate, angle): (&Plate, f64),
+        watched: &[usize],
+        places: &[[f64; 2]],
+    ) -> Vec<(Centre, Vec<usize>)> {
         let Window::Square(side) = self.scene.failure.window else { return Vec::new() };
         if self.scene.failure.criteria.is_empty() {
             return Vec::new();
         }
-        let windows = Windows::new(&plate.plane, side, |quad| plate.region(quad));
+        let windows = Windows::new(&plate.plane, (side, angle), |quad| plate.region(quad));
         let is_watched = |quad: usize| watched.binary_search(&quad).is_ok();
         let distinct = places.iter().enumerate().filter(|(k, place)| !places[..*k].contains(place));
-        distinct.flat_map(|(_, place)| windows.lattice(*place, REACH, is_watched)).collect()
+        let lattices = distinct.flat_map(|(_, place)| windows.lattice(*place, REACH, is_watched));
+        let symmetry = plate.symmetry();
+        let with_images = |(centre, holding): (Centre, Vec<usize>)| {
+            let kept: BTreeSet<usize> = holding.into_iter().map(|quad| symmetry.quad(quad)).collect();
+            (centre, (0..plate.plane.quads.len()).filter(|quad| kept.contains(&symmetry.quad(*quad))).collect())
+        };
+        lattices.map(with_images).collect()
     }
 
     pub(super) fn group<'p>(&self, plate: &'p Plate, group: &Located<String>) -> Result<&'p Group, SceneError> {

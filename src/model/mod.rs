@@ -97,6 +97,8 @@ pub struct Model {
     pub watched: Vec<usize>,
     /// Centres of windows around the impacts, where stresses are computed as well.
     pub centres: Vec<Centre>,
+    /// The cells that each of these, or an image of it, lies in.
+    pub centre_cells: Vec<Vec<usize>>,
     /// Places whose indices are kept over time.
     pub gauges: Vec<Gauge>,
     /// What is written.
@@ -249,7 +251,8 @@ impl Model {
         let watched = builder.find_watched(&plate, &centres)?;
         let gauges = builder.gauges(&plate, &watched, &criteria)?;
         let fields = builder.fields(&plate, &centres)?;
-        let centres = builder.find_centres(&plate, &watched, &centres);
+        let around = builder.find_centres((&plate, laminate.plies[0].angle), &watched, &centres);
+        let (centres, centre_cells) = around.into_iter().unzip();
         let resin = scene.interface.as_ref().map(|resin| resin.value);
         let threshold = builder.threshold(DelaminationThreshold::of(&laminate, &materials, resin))?;
         let mirrors = Mirrors::of(&plate, constraints);
@@ -287,6 +290,7 @@ impl Model {
             interface: resin,
             watched,
             centres,
+            centre_cells,
             gauges,
             output: scene.output.clone(),
             fields,

@@ -7,7 +7,7 @@ use crate::words::name_ply;
 use fem_failure::scan::PlyOrInterface;
 use fem_io::files::{FileError, OutputDir};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Name of the file.
 pub const FILE: &str = "damage.json";
@@ -90,6 +90,10 @@ impl DamageMap {
                 Some(first)
             })
             .collect();
+        // Windows at other places than centres of cells lie in several.
+        let bits = |at: [f64; 2]| at.map(f64::to_bits);
+        let shared: HashMap<[u64; 2], &Vec<usize>> =
+            model.centres.iter().map(|centre| bits(centre.at)).zip(&model.centre_cells).collect();
         let mut kept: Vec<u32> = outcome.maxima.iter().map(|m| m.site.cell).collect();
         kept.sort_unstable();
         kept.dedup();
@@ -114,7 +118,12 @@ impl DamageMap {
             let empty =
                 || PlaceDamage { ply: name_ply(m.site.place), index: vec![0.0; judged.len()], failed: Vec::new() };
             let (place, failed) = places.entry(key).or_insert_with(|| (empty(), FirstTimes::new()));
-            for &i in &stands_for[m.site.cell as usize] {
+            let [x, y, _] = m.site.position;
+            let cells = match shared.get(&bits([x, y])) {
+                Some(quads) => quads.iter().filter_map(|quad| judged.binary_search(&(*quad as u32)).ok()).collect(),
+                None => stands_for[m.site.cell as usize].clone(),
+            };
+            for i in cells {
                 place.index[i] = place.index[i].max(m.index);
                 for &(mode, time) in &m.reached {
                     let first = failed.entry((i as u32, (first_mode[m.criterion] + mode) as u32)).or_insert(time);

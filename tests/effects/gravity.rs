@@ -113,7 +113,7 @@ fn the_plate_sags_as_at_rest() {
             damage: "onset",
             impactor: "mass = '1 g', velocity = '1 m/s', load = 'node', start = '3.9 us'",
             reduction,
-            more: "[failure]\ncriteria = ['max-stress']\nevery = '10 us'\n",
+            more: "[failure]\ncriteria = ['max-stress']\nevery = '10 us'\nwindow = 'element'\n",
             ..Struck::new("gravity = '1e6 m/s^2'").march("integrator = 'newmark', step = '0.5 us', end = '4 us'")
         };
         let outcome = struck.outcome();

@@ -3,7 +3,7 @@
 use super::scene::{AS4, PAGANO, Plate, QUARTER, Side};
 use crate::support::{fem, root};
 use fem::analyses::statics;
-use fem::core::estimate::mesh_error;
+use fem::core::estimate::mesh_errors;
 use fem::core::quadrature::gauss_legendre;
 use fem::io::scene;
 use fem::{Model, Registry};
@@ -24,7 +24,7 @@ impl Solved {
     }
 
     fn estimate(&self) -> f64 {
-        mesh_error(&self.model.plate, &*self.model.element, &self.u).unwrap().unwrap()
+        mesh_errors(&self.model.plate, &*self.model.element, &self.model.constraints, &self.u).unwrap().unwrap()[0]
     }
 
     /// Strain in a ply of a cell.
@@ -143,7 +143,9 @@ fn nothing_is_said_where_a_plate_is_one_cell_wide() {
         let plate =
             Plate::new(AS4, "[0/90]s", 0.25, vec![2, 2]).rectangle([20.0, 5.0], cells).element(element).sides(sides);
         let solved = Solved::of(plate.load("pressure = '1 MPa'").model("static"));
-        mesh_error(&solved.model.plate, &*solved.model.element, &solved.u).unwrap()
+        mesh_errors(&solved.model.plate, &*solved.model.element, &solved.model.constraints, &solved.u)
+            .unwrap()
+            .map(|errors| errors[0])
     };
     assert_eq!(strip(SOLIDS[0], [8, 1]), None);
     assert_eq!(strip("kind = 'webster-beam'", [8, 1]), None);

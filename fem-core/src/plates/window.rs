@@ -4,6 +4,7 @@
 //! not. Nor does one that is centred at a place of the plate, and not of its cells.
 
 use crate::plates::mesh::PlaneMesh;
+use crate::words::domain::Corners;
 
 /// Whose strains are taken: those of a cell, or at one of its samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -38,11 +39,14 @@ const NOTHING: f64 = 1e-12;
 /// How near a cell must be to hold a point, of the side.
 const NEAR: f64 = 1e-6;
 
-/// Windows of a mesh: squares of side `side`, parallel to the axes. At an edge a window is cut off with the plate, where regions of
-/// different plies meet with the region of the cell that holds its centre.
+/// Windows of a mesh: squares of side `side` whose sides lie along two directions. At an edge a window is cut off with the plate,
+/// where regions of different plies meet with the region of the cell that holds its centre.
 #[derive(Debug)]
-pub struct Windows<'a, R> {
-    mesh: &'a PlaneMesh,
+pub struct Windows<R> {
+    /// The cells as seen in axes along the sides.
+    cells: Vec<Corners<[f64; 2]>>,
+    /// Cosine and sine of the angle of these axes.
+    axes: [f64; 2],
     side: f64,
     region: R,
     low: [f64; 2],
@@ -52,14 +56,18 @@ pub struct Windows<'a, R> {
     bins: Vec<([i64; 2], usize)>,
 }
 
-impl<'a, R: Fn(usize) -> usize> Windows<'a, R> {
-    /// Squares of `side` (m) on `mesh`, whose cells lie in regions by number.
-    pub fn new(mesh: &'a PlaneMesh, side: f64, region: R) -> Self {
-        let (low, _) = mesh.bounds();
-        let pitch = side.max((mesh.area() / mesh.quads.len() as f64).sqrt());
-        let mut windows = Self { mesh, side, region, low, pitch, bins: Vec::new() };
-        for q in 0..mesh.quads.len() {
-            let p = mesh.corners(q);
+impl<R: Fn(usize) -> usize> Windows<R> {
+    /// Squares of `side` (m) on `mesh`, turned by `angle` (radians, from x towards y); cells lie in regions by number.
+    pub fn new(mesh: &PlaneMesh, (side, angle): (f64, f64), region: R) -> Self {
+        let axes = [angle.cos(), angle.sin()];
+        let quads = 0..mesh.quads.len();
+        let cells: Vec<_> = quads.map(|quad| mesh.corners(quad).map(|p| seen(axes, p))).collect();
+        let area: f64 = cells.iter().map(Corners::area).sum();
+        let corners = cells.iter().flat_map(|cell| cell.iter());
+        let low = corners.fold([f64::INFINITY; 2], |low, p| [low[0].min(p[0]), low[1].min(p[1])]);
+        let pitch = side.max((area / cells.len() as f64).sqrt());
+        let mut windows = Self { cells, axes, side, region, low, pitch, bins: Vec::new() };
+        for (quad, p) in windows.cells.iter().enumerate() {
             let corner = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 2] {
                 std::array::from_fn(|d| p.iter().fold(start, |m, p| pick(m, p[d])))
             };
@@ -67,7 +75,7 @@ impl<'a, R: Fn(usize) -> usize> Windows<'a, R> {
                 (windows.bin(corner(f64::min, f64::INFINITY)), windows.bin(corner(f64::max, f64::NEG_INFINITY)));
             for i in from[0]..=to[0] {
                 for j in from[1]..=to[1] {
-                    windows.bins.push(([i, j], q));
+                    windows.bins.push(([i, j], quad));
                 }
             }
         }
@@ -97,22 +105,21 @@ impl<'a, R: Fn(usize) -> usize> Windows<'a, R> {
     /// The window around the centre of a cell, of whole cells weighted with the areas of the overlap. A cell larger than the window
     /// is its own mean.
     pub fn of_cell(&self, quad: usize) -> Window {
-        let corners = self.mesh.corners(quad);
+        let corners = &self.cells[quad];
+        let at = corners.centroid();
         if corners.area() >= self.side * self.side {
-            return own(self.mesh, quad);
+            return Window { centre: self.centre(quad, at), shares: vec![(Source { quad, sample: None }, 1.0)] };
         }
-        let centre = Centre { quad, at: corners.centroid() };
-        self.over(centre, |quad, half| {
-            vec![(Source { quad, sample: None }, self.mesh.corners(quad).overlap(centre.at, half))]
-        })
+        self.over(quad, at, |quad, half| vec![(Source { quad, sample: None }, self.cells[quad].overlap(at, half))])
     }
 
     /// The window around any place: of cells that lie within it as a whole, and of the samples of others, linear between these. What
     /// it says does not hang on how it lies to the cells.
     pub fn around(&self, centre: Centre) -> Window {
-        self.over(centre, |quad, half| {
-            let corners = self.mesh.corners(quad);
-            let samples = corners.overlap_of_samples(centre.at, half);
+        let at = seen(self.axes, centre.at);
+        self.over(centre.quad, at, |quad, half| {
+            let corners = &self.cells[quad];
+            let samples = corners.overlap_of_samples(at, half);
             let overlap: f64 = samples.iter().sum();
             if overlap > (1.0 - NOTHING) * corners.area() {
                 return vec![(Source { quad, sample: None }, overlap)];
@@ -122,20 +129,25 @@ impl<'a, R: Fn(usize) -> usize> Windows<'a, R> {
         })
     }
 
-    /// The mean over a window whose shares in each cell are areas.
-    fn over(&self, centre: Centre, areas: impl Fn(usize, f64) -> Vec<(Source, f64)>) -> Window {
-        let (half, own) = (0.5 * self.side, (self.region)(centre.quad));
-        let cells = self.near(centre.at, half).into_iter().filter(|quad| (self.region)(*quad) == own);
+    fn centre(&self, quad: usize, at: [f64; 2]) -> Centre {
+        Centre { quad, at: seen([self.axes[0], -self.axes[1]], at) }
+    }
+
+    /// The mean over a window around `at`, which cell `quad` holds; its shares in each cell are areas.
+    fn over(&self, quad: usize, at: [f64; 2], areas: impl Fn(usize, f64) -> Vec<(Source, f64)>) -> Window {
+        let (half, own) = (0.5 * self.side, (self.region)(quad));
+        let cells = self.near(at, half).into_iter().filter(|quad| (self.region)(*quad) == own);
         let mut shares: Vec<(Source, f64)> = cells.flat_map(|quad| areas(quad, half)).collect();
         let total: f64 = shares.iter().map(|s| s.1).sum();
         shares.retain(|s| s.1.abs() > NOTHING * total);
         shares.iter_mut().for_each(|s| s.1 /= total);
-        Window { centre, shares }
+        Window { centre: self.centre(quad, at), shares }
     }
 
     /// Centres around a place that hang on nothing but it: on a square lattice of a quarter of the side within a side of `place`, of
-    /// half of it within `reach` sides. Those in none of the cells that are `kept` are left out.
-    pub fn lattice(&self, place: [f64; 2], reach: f64, kept: impl Fn(usize) -> bool) -> Vec<Centre> {
+    /// half of it within `reach` sides; each with all cells that hold it. Those in none of the cells that are `kept` are left out, and a
+    /// centre names the first of these.
+    pub fn lattice(&self, place: [f64; 2], reach: f64, kept: impl Fn(usize) -> bool) -> Vec<(Centre, Vec<usize>)> {
         let pitch = 0.25 * self.side;
         let n = (4.0 * reach) as i64;
         let all = (-n..=n).flat_map(|i| (-n..=n).map(move |j| [i, j]));
@@ -143,13 +155,20 @@ impl<'a, R: Fn(usize) -> usize> Windows<'a, R> {
             let distance = (*i as f64).hypot(*j as f64);
             distance <= 4.0 || (distance <= 4.0 * reach && i % 2 == 0 && j % 2 == 0)
         });
+        let place = seen(self.axes, place);
         let at = |[i, j]: [i64; 2]| [place[0] + i as f64 * pitch, place[1] + j as f64 * pitch];
         let hold = |at: [f64; 2]| {
-            let mut holding = self.near(at, NEAR * self.side).into_iter().filter(|quad| kept(*quad));
-            holding.find(|quad| self.mesh.corners(*quad).locate(at).is_some()).map(|quad| Centre { quad, at })
+            let mut holding = self.near(at, NEAR * self.side);
+            holding.retain(|quad| self.cells[*quad].locate(at).is_some());
+            holding.iter().copied().find(|quad| kept(*quad)).map(|quad| (self.centre(quad, at), holding))
         };
         chosen.map(at).filter_map(hold).collect()
     }
+}
+
+/// A position in axes of this cosine and sine.
+fn seen([c, s]: [f64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
+    [c * x + s * y, c * y - s * x]
 }
 
 /// The mean over a cell itself.
@@ -179,7 +198,7 @@ mod tests {
     }
 
     fn square(mesh: &PlaneMesh, side: f64, region: impl Fn(usize) -> usize) -> Vec<Vec<(usize, f64)>> {
-        let windows = Windows::new(mesh, side, region);
+        let windows = Windows::new(mesh, (side, 0.0), region);
         let cells = |window: Window| window.shares.into_iter().map(|(source, share)| (source.quad, share)).collect();
         (0..mesh.quads.len()).map(|q| cells(windows.of_cell(q))).collect()
     }
@@ -258,14 +277,13 @@ mod tests {
                 *p = [middle[0] + angle.cos() * x - angle.sin() * y, middle[1] + angle.sin() * x + angle.cos() * y];
             }
             if triangles {
-                let halves =
-                    |q: &crate::words::domain::Corners<u32>| [[q[0], q[1], q[2]].into(), [q[0], q[2], q[3]].into()];
+                let halves = |q: &Corners<u32>| [[q[0], q[1], q[2]].into(), [q[0], q[2], q[3]].into()];
                 mesh.quads = mesh.quads.iter().flat_map(halves).collect();
             }
-            let windows = Windows::new(&mesh, 2.0, |_| 0);
+            let windows = Windows::new(&mesh, (2.0, 0.0), |_| 0);
             let centres = windows.lattice([4.1, 4.6], 1.0, |_| true);
             assert_eq!(centres.len(), 49, "{n}");
-            for centre in centres {
+            for (centre, _) in centres {
                 let window = windows.around(centre);
                 let [x, y] = centre.at;
                 let linear = mean(&mesh, &window, |p| 3.0 + 2.0 * p[0] - p[1]);
@@ -281,10 +299,12 @@ mod tests {
     #[test]
     fn lattices_are_those_of_kept_cells() {
         let mesh = grid(9, 1.0);
-        let windows = Windows::new(&mesh, 2.0, |_| 0);
+        let windows = Windows::new(&mesh, (2.0, 0.0), |_| 0);
         let centres = windows.lattice([4.0, 4.0], 2.0, |quad| quad % 9 < 4);
-        assert!(centres.iter().all(|c| c.at[0] <= 4.0 + 1e-9 && mesh.corners(c.quad).locate(c.at).is_some()));
-        assert!(centres.iter().any(|c| c.at == [4.0, 4.0]) && centres.iter().any(|c| c.at == [0.0, 4.0]));
+        assert!(centres.iter().all(|(c, _)| c.at[0] <= 4.0 + 1e-9 && mesh.corners(c.quad).locate(c.at).is_some()));
+        let cells = |at: [f64; 2]| centres.iter().find(|(c, _)| c.at == at).map(|(c, cells)| (c.quad, cells.clone()));
+        assert_eq!(cells([4.0, 4.0]), Some((30, vec![30, 31, 39, 40])));
+        assert_eq!(cells([0.0, 4.0]), Some((27, vec![27, 36])));
         assert!(windows.lattice([-20.0, 4.0], 2.0, |_| true).is_empty());
     }
 }

@@ -1,7 +1,9 @@
 //! How far a solution is from that of an infinitely fine mesh, judged by itself.
 
 use crate::contracts::element::{Element, ElementError, Stack, positive};
+use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;
+use crate::words::dof::Dof;
 use crate::words::domain::Domain;
 use crate::words::quadrature::gauss_legendre;
 use crate::words::tensor::apply;
@@ -23,8 +25,9 @@ const HEIGHTS: usize = 2;
 /// Terms of a complete cubic in x and y: as many as the points of four cells determine.
 const TERMS: usize = 10;
 
-/// Relative error of displacements `u` (before elimination of constraints) in the energy norm, ‖u − uₕ‖ / ‖u‖ with
-/// ‖u‖² = ½ ∫ ε·C ε dV, for the division of the plate into cells; how layers of cells divide the thickness is not judged.
+/// Relative errors of displacement `fields` (one after the other, before elimination of constraints) in the energy norm,
+/// ‖u − uₕ‖ / ‖u‖ with ‖u‖² = ½ ∫ ε·C ε dV, for the division of the plate into cells; how layers of cells divide the thickness
+/// is not judged. A field without strains has no error.
 ///
 /// The strains in a cell and in all that touch it are fitted by a cubic in x and y (least squares, weighted by area). How far
 /// the cell's strains are from the fit is taken for their error, and integrated through the plies with the moments of the
@@ -50,7 +53,12 @@ const TERMS: usize = 10;
 ///
 /// # Errors
 /// A cell whose Jacobian is not positive.
-pub fn mesh_error(plate: &Plate, element: &dyn Element, u: &[f64]) -> Result<Option<f64>, ElementError> {
+pub fn mesh_errors(
+    plate: &Plate,
+    element: &dyn Element,
+    constraints: &Constraints,
+    fields: &[f64],
+) -> Result<Option<Vec<f64>>, ElementError> {
     let quads = &plate.plane.quads;
     let mut inside = vec![true; plate.plane.points.len()];
     plate.plane.boundary().iter().flatten().for_each(|node| inside[*node as usize] = false);
@@ -64,15 +72,13 @@ pub fn mesh_error(plate: &Plate, element: &dyn Element, u: &[f64]) -> Result<Opt
     for (number, quad) in quads.iter().enumerate() {
         quad.iter().for_each(|node| touching[*node as usize].push(number));
     }
-    let mut strains = Strains { plate, element, u, b: vec![0.0; 6 * element.info().ndof()], dofs: Vec::new() };
+    let held = held(plate, constraints);
+    let mut strains = Strains { plate, element, fields, b: vec![0.0; 6 * element.info().ndof()], dofs: Vec::new() };
     let mut samples: Vec<Vec<Sample>> = vec![Vec::new(); quads.len()];
-    let (mut energy, mut error) = (0.0, 0.0);
+    let mut sums = vec![[0.0; 2]; fields.len() / plate.ndof()];
+    let heights = HEIGHTS * plate.layers();
     for (quad, weight) in plate.symmetry().quads() {
-        let mut around: Vec<usize> = quads[quad].iter().flat_map(|node| &touching[*node as usize]).copied().collect();
-        // Strains jump where regions meet.
-        around.retain(|other| plate.region(*other) == plate.region(quad));
-        around.sort_unstable();
-        around.dedup();
+        let around = around(plate, quad, &touching, &held);
         for other in &around {
             if samples[*other].is_empty() {
                 samples[*other] = strains.of(*other)?;
@@ -83,12 +89,54 @@ pub fn mesh_error(plate: &Plate, element: &dyn Element, u: &[f64]) -> Result<Opt
             return Ok(None);
         };
         for sample in &samples[quad] {
-            energy += weight * sample.area * energy_density(plate, quad, &sample.strains);
-            error += weight * sample.area * energy_density(plate, quad, &smooth.less(sample));
+            let errors = smooth.less(sample);
+            let each = sample.strains.chunks_exact(heights).zip(errors.chunks_exact(heights));
+            for ([energy, error], (strains, errors)) in sums.iter_mut().zip(each) {
+                *energy += weight * sample.area * energy_density(plate, quad, strains);
+                *error += weight * sample.area * energy_density(plate, quad, errors);
+            }
         }
     }
-    let relative = (error / (energy + error)).sqrt();
-    Ok(relative.is_finite().then_some(relative))
+    let relative = |[energy, error]: [f64; 2]| if error > 0.0 { (error / (energy + error)).sqrt() } else { 0.0 };
+    let errors: Vec<f64> = sums.into_iter().map(relative).collect();
+    Ok(errors.iter().all(|error| error.is_finite()).then_some(errors))
+}
+
+/// Vertices that are held along z at some level.
+fn held(plate: &Plate, constraints: &Constraints) -> Vec<bool> {
+    let Some(z) = Dof::new(3, 0) else { return Vec::new() };
+    let mut held = vec![false; plate.plane.points.len()];
+    for (vertex, held) in held.iter_mut().enumerate() {
+        let mut values = (0..=plate.layers()).flat_map(|level| plate.dofs_at(vertex, level, z));
+        *held = values.any(|dof| constraints.implies(&[(dof, 1.0)]));
+    }
+    held
+}
+
+/// The cells around a cell, itself among them, whose strains go on from it: shear jumps across a line that is held, and all strains
+/// do where regions meet.
+fn around(plate: &Plate, quad: usize, touching: &[Vec<usize>], held: &[bool]) -> Vec<usize> {
+    let quads = &plate.plane.quads;
+    let mut near: Vec<usize> = quads[quad].iter().flat_map(|node| &touching[*node as usize]).copied().collect();
+    near.retain(|other| plate.region(*other) == plate.region(quad));
+    near.sort_unstable();
+    near.dedup();
+    let mut reached = vec![quad];
+    let mut next = 0;
+    while let Some(from) = reached.get(next).copied() {
+        next += 1;
+        for [a, b] in quads[from].sides() {
+            if held[a as usize] && held[b as usize] {
+                continue;
+            }
+            let beside = |other: &&usize| quads[**other].sides().any(|side| side == [b, a]);
+            reached.extend(
+                near.iter().filter(beside).filter(|other| !reached.contains(other)).copied().collect::<Vec<_>>(),
+            );
+        }
+    }
+    // Too few of them to fit: better all.
+    if reached.len() * POINTS.len() < 2 * TERMS { near } else { reached }
 }
 
 /// What a cell says at one of [`POINTS`].
@@ -97,38 +145,42 @@ struct Sample {
     at: [f64; 2],
     /// Area that it stands for, m².
     area: f64,
-    /// From the bottom up, [`HEIGHTS`] a layer.
+    /// Of each field from the bottom up, [`HEIGHTS`] a layer.
     strains: Vec<[f64; 6]>,
 }
 
-/// Strains of a displacement field.
+/// Strains of displacement fields.
 struct Strains<'a> {
     plate: &'a Plate,
     element: &'a dyn Element,
-    u: &'a [f64],
+    fields: &'a [f64],
     b: Vec<f64>,
     dofs: Vec<usize>,
 }
 
 impl Strains<'_> {
     fn of(&mut self, quad: usize) -> Result<Vec<Sample>, ElementError> {
-        let layers = self.plate.layers();
+        let (layers, ndof) = (self.plate.layers(), self.plate.ndof());
+        let heights = HEIGHTS * layers;
         let corners = self.plate.cell(quad * layers);
         let mut samples = POINTS.map(|[r, s]| {
             let [x, y, _] = corners.position([r, s, 0.0]);
-            Sample { at: [x, y], area: corners.plane(r, s).det, strains: Vec::new() }
+            let strains = vec![[0.0; 6]; heights * self.fields.len() / ndof];
+            Sample { at: [x, y], area: corners.plane(r, s).det, strains }
         });
-        for number in quad * layers..(quad + 1) * layers {
+        for layer in 0..layers {
+            let number = quad * layers + layer;
             let cell = self.plate.cell(number);
             self.plate.cell_dofs(number, &mut self.dofs);
             for ([r, s], sample) in POINTS.iter().zip(&mut samples) {
-                for (q, _) in gauss_legendre(HEIGHTS) {
+                for (height, (q, _)) in gauss_legendre(HEIGHTS).iter().enumerate() {
                     positive(self.element.strain_operator(&cell, slice_at(cell.stack, *q), [*r, *s, *q], &mut self.b))?;
-                    let mut strain = [0.0; 6];
-                    for (dof, column) in self.dofs.iter().zip(self.b.chunks_exact(6)) {
-                        strain.iter_mut().zip(column).for_each(|(e, b)| *e += b * self.u[*dof]);
+                    let here = sample.strains[HEIGHTS * layer + height..].iter_mut().step_by(heights);
+                    for (strain, u) in here.zip(self.fields.chunks_exact(ndof)) {
+                        for (dof, column) in self.dofs.iter().zip(self.b.chunks_exact(6)) {
+                            strain.iter_mut().zip(column).for_each(|(e, b)| *e += b * u[*dof]);
+                        }
                     }
-                    sample.strains.push(strain);
                 }
             }
         }

@@ -165,6 +165,11 @@ impl MembranePlate {
         Ok((plate, Companions { forms, shapes: shapes.as_slice().to_vec() }))
     }
 
+    /// The same plate with other modes in bending, as many.
+    pub fn with(&self, modal: Modal) -> Self {
+        Self { modal, factor: None, ..self.clone() }
+    }
+
     /// Finds B_t q and b_t.
     fn stretch(&mut self, q: &[f64]) {
         let forms = self.forms.chunks_exact(q.len() * q.len());

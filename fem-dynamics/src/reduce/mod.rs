@@ -76,6 +76,11 @@ impl Modal {
         self.mass.fill(0.0);
     }
 
+    /// Takes a share of its stiffness from each mode, as from a plate that is softer.
+    pub fn soften(&mut self, shares: &[f64]) {
+        self.stiffness.iter_mut().zip(shares).for_each(|(k, share)| *k *= 1.0 - share);
+    }
+
     /// Gives the structure viscous damping, which leaves its modes as they are.
     pub fn damp(&mut self, damping: Damping) {
         let each = self.stiffness.iter().zip(&self.mass);

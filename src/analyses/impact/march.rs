@@ -2,12 +2,12 @@
 
 mod sound;
 
-use super::accuracy::{self, Accuracy, Estimates};
+use super::accuracy::{self, Accuracy, Before, Estimates};
 use super::checkpoint::{self, Checkpoint};
 use super::frames::frames;
 use super::ledger::{Ledger, Look};
 use super::modal::{self, ModalView};
-use super::prepare::{Prepared, describe_failure};
+use super::prepare::{Prepared, describe_failure, place_impactors};
 use super::{Maximum, Outcome, Sizes};
 use crate::analyses::expansion::Expansion;
 use crate::analyses::stress::{self, Watch};
@@ -20,6 +20,7 @@ use fem_core::structure::Tangent;
 use fem_core::time::{Integrator, State, Substeps};
 use fem_dynamics::guard::Guard;
 use fem_dynamics::impact::ImpactSystem;
+use fem_dynamics::reduce::Reduced;
 use fem_failure::scan::{self, Scan};
 use fem_io::files::{FileError, OutputDir};
 use miette::Diagnostic;
@@ -199,16 +200,30 @@ impl<'a> March<'a> {
     }
 
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
-        let copy = prepared.copy();
         let Prepared { model, impact, mut system, effects, reduced, membrane, full, condensation, .. } = prepared;
         let Prepared { sizes, counters, mut stopwatch, .. } = prepared;
         stopwatch.lap("reduce");
-        let companions = membrane.map(|(_, companions)| companions);
+        let (membrane, companions) = membrane.unzip();
         let mut estimates = Estimates::default();
         // Here, where nothing else takes memory yet beside the full plate.
-        if let (Some(copy), Some(reduced), Some(full)) = (copy, &reduced, full) {
-            estimates = Estimates::new(copy, reduced, full, impact.integrator.clone(), &sizes);
-            estimates.mesh = accuracy::mesh::estimate(model, &system, reduced, condensation.as_ref())?;
+        if let (Some(reduced), Some(full)) = (&reduced, full) {
+            let contacts = full.contacts.clone();
+            let couple = |mut richer: Reduced| {
+                effects.clone().iter_mut().for_each(|effect| effect.on_reduced(&mut richer));
+                let impactors = place_impactors(impact, &contacts, Some(&richer));
+                (ImpactSystem::new(Box::new(richer.modal.clone()), impactors), richer.modal)
+            };
+            let alone = membrane.is_none() && system.weight().is_none() && model.effects.nature().inertia;
+            let run = Before {
+                system: &system,
+                reduced,
+                membrane: membrane.as_ref(),
+                integrator: impact.integrator.clone(),
+                sizes: &sizes,
+                couple: if alone { Some(&couple) } else { None },
+                mesh: accuracy::mesh::estimate(model, &system, reduced, condensation.as_ref())?,
+            };
+            estimates = Estimates::new(run, full);
             stopwatch.lap("accuracy");
         }
         let followed = model.output.modes.as_ref().zip(reduced.as_ref());
@@ -418,9 +433,9 @@ impl<'a> March<'a> {
         counters.factorisations = counters.factorisations.max(work.factorisations);
         counters.solves = counters.solves.max(work.solves);
         let ended = stopped.is_none() && step == self.sizes.steps;
-        let accuracy = if ended { self.estimates.finish(&ledger.forces) } else { Accuracy::default() };
         let energy_error = ledger.error;
         let (contacts, forces, history) = ledger.records();
+        let accuracy = if ended { self.estimates.finish(&forces, contacts.first()) } else { Accuracy::default() };
         Outcome {
             accuracy,
             quantities: self.effects.iter().flat_map(|effect| effect.quantities(&self.system)).collect(),

@@ -9,7 +9,7 @@ mod march;
 mod modal;
 mod prepare;
 
-pub use accuracy::{Accuracy, ReductionAccuracy, ReductionResidual, StepAccuracy};
+pub use accuracy::{Accuracy, Differences, MeshAccuracy, ReductionAccuracy, ReductionResidual, StepAccuracy};
 pub use checkpoint::Checkpoint;
 pub(crate) use checkpoint::FILE as CHECKPOINT;
 pub(crate) use contact::Follower;

@@ -240,7 +240,7 @@ fn change_structure(model: &Model, mut plate: Marched, effects: &mut [Box<dyn Ef
 }
 
 /// The impactors of the scene, each with the load of its contact in coordinates of the march.
-fn place_impactors(impact: &Impact, contacts: &[Functional], reduced: Option<&Reduced>) -> Vec<Impactor> {
+pub(super) fn place_impactors(impact: &Impact, contacts: &[Functional], reduced: Option<&Reduced>) -> Vec<Impactor> {
     let impactor = |((spec, strike), contact): ((&scene::ImpactorSpec, &Strike), &Functional)| Impactor {
         mass: spec.mass,
         velocity: spec.velocity,

@@ -37,6 +37,8 @@ pub(super) struct Plies<'a> {
     model: &'a Model,
     lattice: Lattice<'a>,
     recovery: Recovery,
+    /// Cells and the windows that lie in them or their images, both by number, beside that around the centre of each.
+    around: Vec<(usize, usize)>,
     residual: Vec<f64>,
     /// Finds indices; a natural mode has none.
     scan: Option<Scan>,
@@ -61,7 +63,13 @@ impl<'a> Plies<'a> {
     /// # Errors
     /// A criterion whose material lacks a constant.
     pub(super) fn new(model: &'a Model, plan: &FieldPlan, plies: bool, interfaces: bool) -> Result<Self, Error> {
-        let recovery = stress::recovery(model, &plan.quads, &[], interfaces);
+        let recovery = stress::recovery(model, &plan.quads, &model.centres, interfaces);
+        let shown = |quads: &[usize]| -> Vec<usize> {
+            plan.quads.iter().enumerate().filter(|(_, quad)| quads.contains(quad)).map(|(cell, _)| cell).collect()
+        };
+        let windows = model.centre_cells.iter().zip(plan.quads.len()..);
+        let around =
+            windows.flat_map(|(quads, window)| shown(quads).into_iter().map(move |cell| (cell, window))).collect();
         let stacks = model.plate.stacks(0).iter().enumerate();
         let tops = stacks.flat_map(|(layer, stack)| stack.slices.iter().map(move |s| Height { layer, q: s.q[1] }));
         let heights = [Height { layer: 0, q: -1.0 }].into_iter().chain(tops).collect();
@@ -78,6 +86,7 @@ impl<'a> Plies<'a> {
             model,
             lattice,
             recovery,
+            around,
             residual,
             sheets,
         })
@@ -116,7 +125,7 @@ impl<'a> Plies<'a> {
             let points = [Array::reals("displacement", 3, &of_points.copied().collect::<Vec<_>>())];
             let mut cells = sheets.stresses(recovery, stresses);
             if let Some(scan) = &self.scan {
-                sheets.indices(model, recovery, scan, &mut cells);
+                sheets.indices(model, recovery, &self.around, scan, &mut cells);
             }
             let contents = Contents { points: &points, cells: &cells, fixed: &sheets.fixed, ..Contents::default() };
             frame.write(sheets.series, &sheets.grid, contents)?;
@@ -183,7 +192,7 @@ impl Sheets {
     /// Sites of each cell.
     fn sites<'a>(&'a self, recovery: &'a Recovery) -> impl Iterator<Item = impl Iterator<Item = usize> + Clone> {
         let width = recovery.stations.len();
-        let quads = 0..recovery.centres.len();
+        let quads = 0..self.grid.cells() / self.stations.len();
         quads.flat_map(move |quad| self.stations.iter().map(move |of| of.iter().map(move |s| quad * width + s)))
     }
 
@@ -206,8 +215,15 @@ impl Sheets {
         ]
     }
 
-    /// Adds the largest index of each criterion, and the number of its mode.
-    fn indices(&self, model: &Model, recovery: &Recovery, scan: &Scan, cells: &mut Vec<Array>) {
+    /// Adds the largest index of each criterion in all windows of a cell, and the number of its mode.
+    fn indices(
+        &self,
+        model: &Model,
+        recovery: &Recovery,
+        around: &[(usize, usize)],
+        scan: &Scan,
+        cells: &mut Vec<Array>,
+    ) {
         for (number, (name, criterion)) in model.criteria.iter().enumerate() {
             if criterion.info().site != self.site {
                 continue;
@@ -215,6 +231,13 @@ impl Sheets {
             let mut of_sites = vec![(0, f64::NEG_INFINITY); recovery.sites()];
             for (site, indices) in scan.latest(number) {
                 of_sites[site] = (1..).zip(indices.iter().copied()).fold((0, f64::NEG_INFINITY), larger);
+            }
+            let width = recovery.stations.len();
+            for (cell, window) in around {
+                for station in 0..width {
+                    let here = cell * width + station;
+                    of_sites[here] = larger(of_sites[here], of_sites[window * width + station]);
+                }
             }
             let largest = self.sites(recovery).map(|sites| {
                 let (mode, index) = sites.map(|site| of_sites[site]).fold((0, f64::NEG_INFINITY), larger);

@@ -107,7 +107,9 @@ pub(super) fn digits(value: f64) -> String {
 pub(super) fn sections(summary: &Map<String, Value>, rest: &str) -> Vec<Section> {
     let mut single = Section { id: "general".into(), heading: rest.to_owned(), facts: Vec::new(), table: None };
     let mut sections = Vec::new();
-    for (key, value) in summary.iter().filter(|(key, _)| !["title", "warnings", "stopped"].contains(&key.as_str())) {
+    for (key, value) in
+        summary.iter().filter(|(key, _)| !["title", "warnings", "cautions", "stopped"].contains(&key.as_str()))
+    {
         let plain = || key.replace('_', " ");
         let heading =
             HEADINGS.iter().find(|(name, _)| name == key).map_or_else(plain, |(_, heading)| (*heading).to_owned());

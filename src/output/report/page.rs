@@ -72,6 +72,7 @@ pub(super) fn render(folder: &Folder, columns: &[&LedgerColumn]) -> Result<Strin
         version => text("version"),
         finished => folder.summary.is_some(),
         stopped => text("stopped"),
+        cautions => any(list(summary, "cautions").filter_map(Value::as_str).collect::<Vec<_>>()),
         tiles => any(tiles(summary)),
         warnings => any(warnings),
         sections => any(facts::sections(summary, "General")),

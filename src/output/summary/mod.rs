@@ -1,11 +1,15 @@
 //! The summary of a run: for machines (`summary.json`) and for people.
 
+mod cautions;
+mod onset;
 mod text;
 mod warnings;
 
+pub use onset::OnsetBand;
+
 use crate::advise::hindsight;
 use crate::analyses::assembled::Substructures;
-use crate::analyses::impact::{self, ContactRecord, ModeShare, Outcome, Sizes};
+use crate::analyses::impact::{self, ContactRecord, Differences, ModeShare, Outcome, Sizes};
 use crate::effect::{AdviceRule, Decision, Hindsight};
 use crate::model::{Model, NamedCriterion};
 use crate::words::name_ply;
@@ -29,6 +33,9 @@ pub struct ImpactSummary {
     pub completed: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stopped: Option<String>,
+    /// Why a headline is not to be trusted.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cautions: Vec<String>,
     pub model: ModelSize,
     #[serde(serialize_with = "one_or_list")]
     pub impact: Vec<ImpactFigures>,
@@ -118,6 +125,8 @@ pub struct DamageSummary {
     pub stress: PlyStress,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reserve_factor: Option<f64>,
+    #[serde(flatten)]
+    pub band: Option<OnsetBand>,
 }
 
 /// Stress in a ply's axes; of an interface in the plate's.
@@ -229,6 +238,37 @@ pub struct AccuracySummary {
     pub reduction_flexibility_error_relative: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh_error_relative: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub results: Option<ResultErrors>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub results_of_step: Option<ResultErrors>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub results_of_reduction: Option<ResultErrors>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub results_of_mesh: Option<ResultErrors>,
+}
+
+/// Estimated errors of the main results, relative, that of the force's history in L2: of step, reduction and mesh together, and of
+/// each. Layers are in none of them.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[allow(missing_docs, non_snake_case)]
+pub struct ResultErrors {
+    pub force_history_L2_relative: f64,
+    pub peak_force_relative: f64,
+    pub impulse_relative: f64,
+    pub deflection_relative: f64,
+}
+
+impl ResultErrors {
+    fn of(differences: Option<Differences>) -> Option<Self> {
+        let Differences { force, peak, impulse, deflection } = differences?;
+        Some(Self {
+            force_history_L2_relative: force,
+            peak_force_relative: peak,
+            impulse_relative: impulse,
+            deflection_relative: deflection,
+        })
+    }
 }
 
 /// Work counters.
@@ -302,18 +342,21 @@ impl ImpactSummary {
         let thickness = model.laminate.thickness();
         let seen = hindsights(model, &outcome.contacts);
         let reached = |effect: &str| Some(seen.iter().find(|seen| seen.effect == effect)?.run.reached);
+        let error = onset::stress_error(&outcome.accuracy);
         let damage = |e: &FailureEvent| DamageSummary {
             event: event_row(model, e),
             contact_force_N: outcome.forces.at(e.time),
             stress: (&e.stress).into(),
             reserve_factor: reserve(&model.criteria, &model.materials, e),
+            band: OnsetBand::of((&model.criteria, &model.materials), &outcome.peaks, error, e),
         };
-        Self {
+        let summary = Self {
             title: model.origin.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
             fidelity: model.origin.fidelity.name(),
             completed: outcome.stopped.is_none(),
             stopped: outcome.stopped.clone(),
+            cautions: Vec::new(),
             model: ModelSize {
                 symmetry: model.plate.symmetry().name(),
                 shape: model.plate.plane.name_of_cells(),
@@ -356,14 +399,18 @@ impl ImpactSummary {
                 step_parts: outcome.parts.map(|parts| parts.count),
                 shortest_part_s: outcome.parts.map(|parts| parts.shortest),
                 longest_part_s: outcome.parts.map(|parts| parts.longest),
-                step_error_force_L2_relative: step.map(|e| e.force),
-                step_error_peak_force_relative: step.map(|e| e.peak),
+                step_error_force_L2_relative: step.map(|e| e.error.force),
+                step_error_peak_force_relative: step.map(|e| e.error.peak),
                 compared_step_s: step.map(|e| e.compared),
-                compared_force_L2_relative: step.map(|e| e.difference),
+                compared_force_L2_relative: step.map(|e| e.difference.force),
                 reduction_error_force_L2_relative: residual.and_then(|r| r.force),
                 reduction_residual_energy_relative: residual.map(|r| r.energy),
                 reduction_flexibility_error_relative: reduction.map(|e| e.flexibility),
-                mesh_error_relative: mesh,
+                mesh_error_relative: mesh.map(|e| e.at_rest),
+                results: ResultErrors::of(outcome.accuracy.results()),
+                results_of_step: ResultErrors::of(step.map(|e| e.error)),
+                results_of_reduction: ResultErrors::of(reduction.and_then(|e| e.response)),
+                results_of_mesh: ResultErrors::of(mesh.and_then(|e| e.response)),
             },
             work: outcome.counters.into(),
             warnings: {
@@ -371,7 +418,8 @@ impl ImpactSummary {
                     .chain(seen.iter().filter_map(|seen| seen.warning(model)));
                 model.warnings.iter().cloned().chain(found).collect()
             },
-        }
+        };
+        Self { cautions: cautions::cautions(model, outcome, &summary), ..summary }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The summary as people read it.
 
-use super::ImpactSummary;
+use super::{ImpactSummary, ResultErrors};
 use crate::cost::Cost;
 use crate::words::{append, append_symmetry};
 use std::fmt::Write as _;
@@ -18,6 +18,7 @@ impl ImpactSummary {
         };
         let m = &self.model;
         line(format_args!("{}", self.title));
+        self.cautions.iter().for_each(|caution| line(format_args!("  caution   {caution}")));
         line(format_args!(
             "  model     {} {} x {} layers, {} plies, {:.4} mm; {} unknowns{}, {} marched ({}){}",
             m.quads,
@@ -105,6 +106,14 @@ impl ImpactSummary {
                     d.reserve_factor.map_or_else(|| "      -".to_owned(), |r| format!("{r:>7.4}"))
                 ));
             }
+        }
+        let bands: Vec<_> = self.first_damage.iter().filter_map(|d| Some((d, d.band.as_ref()?))).collect();
+        if !bands.is_empty() {
+            line(format_args!("  when      how far these times are known"));
+        }
+        for (d, band) in bands {
+            let (time, criterion, mode) = (d.event.time_s * 1e3, &d.event.criterion, &d.event.mode);
+            line(format_args!("            {time:>6.4} ms  {criterion:<15} {mode:<19} {}", band.text()));
         }
         if !self.modes.is_empty() {
             line(format_args!("  modes     shares of each mode in the deflection at rest and in the plate's energies"));
@@ -214,6 +223,25 @@ impl ImpactSummary {
             || "mesh: error not estimated; `fem study` shows it".to_owned(),
             |error| format!("mesh: at rest under the contact within {error:.1e} in energy norm; layers are not judged"),
         );
-        vec![step, reduction, mesh]
+        vec![self.results(), step, reduction, mesh]
+    }
+
+    /// What the main results are worth.
+    fn results(&self) -> String {
+        let a = &self.accuracy;
+        let Some(all) = a.results else {
+            return "results: errors not estimated; `fem study` shows them".to_owned();
+        };
+        let of = |errors: Option<ResultErrors>| errors.map_or(0.0, |errors| errors.force_history_L2_relative);
+        let sources = [("step", a.results_of_step), ("reduction", a.results_of_reduction), ("mesh", a.results_of_mesh)];
+        let most = sources.into_iter().max_by(|x, y| of(x.1).total_cmp(&of(y.1))).map_or("mesh", |(name, _)| name);
+        let percent = |error: f64| format!("{:.2} %", 1e2 * error);
+        format!(
+            "results: peak force within about {}, force history {}, impulse {}, deflection {}; most from the {most}; layers are not judged",
+            percent(all.peak_force_relative),
+            percent(all.force_history_L2_relative),
+            percent(all.impulse_relative),
+            percent(all.deflection_relative),
+        )
     }
 }

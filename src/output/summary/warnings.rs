@@ -48,7 +48,7 @@ fn long_steps(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Option<String>
     }
     let frequency = outcome.contacts.iter().filter_map(ContactRecord::frequency).fold(0.0, f64::max);
     let steps = 1.0 / (frequency * sizes.step);
-    let error = outcome.accuracy.step.map(|step| step.force).filter(|error| *error > WRONG);
+    let error = outcome.accuracy.step.map(|step| step.error.force).filter(|error| *error > WRONG);
     let (why, shorter) = match error {
         _ if steps < COARSE => {
             (format!("the contact force changes in {steps:.1} steps a period"), 1.0 / (FINE * frequency))

@@ -1,22 +1,29 @@
 //! What a run says of its own errors: those of its time step, of its reduction and of its mesh.
 //!
-//! The first two come from a second march of the reduced plate without stresses, made before the run's own march, while the full
-//! plate is still at hand. Nothing depends on where a march was stopped and resumed, and whether an estimate is cheap enough
+//! They come from marches of the reduced plate without stresses beside the run, made before the run's own march, while the full
+//! plate is still at hand: with another step, with what the reduction leaves out, and as much softer as the mesh is too stiff.
+//! Nothing depends on where a march was stopped and resumed, and whether an estimate is cheap enough
 //! is decided by counts, not by a clock, so that results are the same on every machine.
 
+mod companion;
 pub(super) mod mesh;
 mod reduction;
 mod step;
 
+pub use companion::Differences;
+pub use mesh::MeshAccuracy;
 pub use reduction::{ReductionAccuracy, ReductionResidual};
 pub use step::StepAccuracy;
 
 use super::prepare::Full;
-use super::{Sizes, StepForces};
+use super::{ContactRecord, Sizes, StepForces};
+use companion::{Companion, Pace};
+use fem_core::structure::Structure;
 use fem_core::time::Integrator;
 use fem_dynamics::impact::ImpactSystem;
-use fem_dynamics::reduce::Reduced;
-use step::Companion;
+use fem_dynamics::reduce::{MembranePlate, Modal, Reduced};
+use mesh::OfFields;
+use reduction::Richer;
 
 /// Estimated errors of a run; nothing where no honest estimate is cheap.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -25,38 +32,73 @@ pub struct Accuracy {
     pub step: Option<StepAccuracy>,
     /// Of the reduction.
     pub reduction: Option<ReductionAccuracy>,
-    /// Of the mesh, relative, in the energy norm of the deflection under a contact at rest; layers are not judged.
-    pub mesh: Option<f64>,
+    /// Of the mesh; layers are not judged.
+    pub mesh: Option<MeshAccuracy>,
+}
+
+impl Accuracy {
+    /// Errors of the main results: those of step, reduction and mesh together, where all of them are known.
+    pub fn results(&self) -> Option<Differences> {
+        let reduction = self.reduction?;
+        let mut left = reduction.response?;
+        // Whichever sees more.
+        left.force = left.force.max(reduction.residual.and_then(|residual| residual.force).unwrap_or(0.0));
+        let sum = |a: Differences, b: Differences| a.with(b, |a, b| a + b);
+        Some(sum(sum(self.step?.error, left), self.mesh?.response?))
+    }
 }
 
 /// What is known before the march itself.
 #[derive(Debug, Default)]
 pub(super) struct Estimates {
-    companion: Option<Companion>,
+    other_step: Option<(Pace, Companion)>,
     reduction: Option<ReductionAccuracy>,
-    pub(super) mesh: Option<f64>,
+    mesh: Option<MeshAccuracy>,
+}
+
+/// A run before its march.
+pub(super) struct Before<'a> {
+    pub(super) system: &'a ImpactSystem,
+    pub(super) reduced: &'a Reduced,
+    pub(super) membrane: Option<&'a MembranePlate>,
+    pub(super) integrator: Box<dyn Integrator>,
+    pub(super) sizes: &'a Sizes,
+    /// Makes a reduced plate a system, where that is all that there is to it.
+    pub(super) couple: Option<&'a dyn Fn(Reduced) -> (ImpactSystem, Modal)>,
+    /// Errors of the mesh, where they are known.
+    pub(super) mesh: Option<OfFields>,
 }
 
 impl Estimates {
-    /// Marches `copy`, the reduced plate with its impactors, and asks the full one what the reduction leaves out of that.
-    pub(super) fn new(
-        mut copy: ImpactSystem,
-        reduced: &Reduced,
-        full: Full,
-        integrator: Box<dyn Integrator>,
-        sizes: &Sizes,
-    ) -> Self {
+    /// Marches copies of the reduced plate, and asks the full one what the reduction leaves out.
+    pub(super) fn new(run: Before<'_>, full: Full) -> Self {
+        let Before { system, reduced, membrane, integrator, sizes, couple, mesh } = run;
+        let plate: Box<dyn Structure> = match membrane {
+            Some(membrane) => Box::new(membrane.clone()),
+            None => Box::new(reduced.modal.clone()),
+        };
+        let pace = Pace::new(integrator, sizes, full.solves());
+        let mut instants = Vec::new();
+        let base = pace.march(system.on(plate), &reduced.modal, |instant| instants.push(instant));
         // The residual is that of a linear plate.
-        let linear = !copy.is_nonlinear();
-        let (companion, instants) = step::march(copy, &reduced.modal, integrator, sizes, full.solves()).unzip();
-        let instants = instants.filter(|_| linear);
-        let reduction = reduction::estimate(full, reduced, &instants.unwrap_or_default());
-        Self { companion, reduction, mesh: None }
+        if base.is_none() || membrane.is_some() {
+            instants.clear();
+        }
+        let richer = couple.zip(base.as_ref()).map(|(couple, base)| Richer { couple, pace: &pace, base });
+        let reduction = reduction::estimate(full, reduced, &instants, richer);
+        let mesh = mesh.map(|errors| match &base {
+            Some(base) => errors.judge(system, (reduced, membrane), &pace, base),
+            None => MeshAccuracy { at_rest: errors.at_rest, response: None },
+        });
+        Self { other_step: base.map(|base| (pace, base)), reduction, mesh }
     }
 
-    /// The estimates for a march with these forces that reached its end.
-    pub(super) fn finish(self, forces: &StepForces) -> Accuracy {
-        let step = self.companion.and_then(|companion| companion.compare(forces));
-        Accuracy { step, reduction: self.reduction, mesh: self.mesh }
+    /// The estimates for a march with these forces and first contact that reached its end.
+    pub(super) fn finish(self, forces: &StepForces, contact: Option<&ContactRecord>) -> Accuracy {
+        let difference = |(pace, companion): (Pace, Companion)| {
+            let difference = companion.from_run(forces, contact?)?;
+            companion.follows.then(|| StepAccuracy::of(&pace, difference))
+        };
+        Accuracy { step: self.other_step.and_then(difference), reduction: self.reduction, mesh: self.mesh }
     }
 }

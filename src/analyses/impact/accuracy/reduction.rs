@@ -1,10 +1,11 @@
 //! The error of the reduction, from the full plate.
 
 use super::super::prepare::Full;
-use super::step::Instant;
+use super::companion::{Companion, Differences, Instant, Pace};
 use fem_core::functional::Functional;
 use fem_core::structure::Structure;
-use fem_dynamics::reduce::Reduced;
+use fem_dynamics::impact::ImpactSystem;
+use fem_dynamics::reduce::{Modal, Reduced};
 
 /// Solutions that a reduction took for each that is spent on an instant, and instants at most.
 const SOLVES: u64 = 10;
@@ -23,6 +24,8 @@ pub struct ReductionAccuracy {
     pub flexibility: f64,
     /// What is left in the full model.
     pub residual: Option<ReductionResidual>,
+    /// What changes as what is left joins the vectors.
+    pub response: Option<Differences>,
 }
 
 /// The residual of the reduced solution u = Φ q in the full model, at some instants of the contact.
@@ -48,8 +51,31 @@ pub struct ReductionResidual {
     pub force: Option<f64>,
 }
 
+/// A richer model: marched at a pace, to be compared with the march of the model itself.
+pub(super) struct Richer<'a> {
+    /// Makes the plate of vectors a system.
+    pub(super) couple: &'a dyn Fn(Reduced) -> (ImpactSystem, Modal),
+    pub(super) pace: &'a Pace,
+    pub(super) base: &'a Companion,
+}
+
+impl Richer<'_> {
+    /// Marches the plate of the vectors of `reduced` and `more`.
+    fn march(&self, full: &Full, reduced: &Reduced, more: &[f64]) -> Option<Differences> {
+        let free = full.structure.free_motions().len();
+        let vectors = [&reduced.basis[free..], more].concat();
+        let (system, modal) = (self.couple)(Reduced::project(&full.structure, &vectors).ok()?);
+        self.base.from(&self.pace.march(system, &modal, |_| ())?)
+    }
+}
+
 /// Asks the full plate; nothing where it gives no finite answer.
-pub(super) fn estimate(mut full: Full, reduced: &Reduced, instants: &[Instant]) -> Option<ReductionAccuracy> {
+pub(super) fn estimate(
+    mut full: Full,
+    reduced: &Reduced,
+    instants: &[Instant],
+    richer: Option<Richer<'_>>,
+) -> Option<ReductionAccuracy> {
     let most = full.solves() / SOLVES;
     let chosen = choose_evenly(instants, usize::try_from(most).map_or(INSTANTS, |most| most.clamp(1, INSTANTS)));
     let n = full.structure.ndof();
@@ -84,7 +110,8 @@ pub(super) fn estimate(mut full: Full, reduced: &Reduced, instants: &[Instant]) 
     let force = Some(force).filter(|force| force.is_finite() && flexibility < HELD);
     // There is no energy without an instant in contact.
     let residual = energy.is_finite().then_some(ReductionResidual { energy, force });
-    flexibility.is_finite().then_some(ReductionAccuracy { flexibility, residual })
+    let response = richer.filter(|_| !chosen.is_empty()).and_then(|richer| richer.march(&full, reduced, moving));
+    flexibility.is_finite().then_some(ReductionAccuracy { flexibility, residual, response })
 }
 
 /// Σ F w − M Φ q̈.

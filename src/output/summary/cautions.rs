@@ -1,0 +1,100 @@
+//! When a headline is not to be trusted, in a line each: what stands at the top.
+
+use super::ImpactSummary;
+use crate::analyses::impact::Outcome;
+use crate::model::{Model, Plan};
+use fem_failure::scan::{FailureEvent, first_per_mode};
+use fem_io::scene::Window;
+
+/// Share of the peak that a force must have at the end for the impact not to be over.
+const OVER: f64 = 0.01;
+
+/// Estimated error above which a result is named.
+const LARGE: f64 = 0.05;
+
+/// All of them.
+pub(super) fn cautions(model: &Model, outcome: &Outcome, summary: &ImpactSummary) -> Vec<String> {
+    let mut found = Vec::new();
+    found.extend(unfinished(model, outcome, summary));
+    found.extend(delaminated(summary));
+    found.extend(rough(summary));
+    found.extend(first_per_mode(&outcome.events).into_iter().filter_map(|event| placed(model, event)));
+    found
+}
+
+/// A peak of what was computed, and not of the impact.
+fn unfinished(model: &Model, outcome: &Outcome, summary: &ImpactSummary) -> Option<String> {
+    let last = outcome.history.last()?;
+    let (figures, row) = summary
+        .impact
+        .iter()
+        .zip(&last.impactors)
+        .find(|(figures, row)| row.contact_force_n > OVER * figures.peak_force_N && figures.peak_force_N > 0.0)?;
+    let name = figures.name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
+    let rising = if figures.peak_force_time_s > (1.0 - OVER) * last.time_s { "; it is still rising" } else { "" };
+    let Plan::Impact(_) = &model.plan else { return None };
+    Some(format!(
+        "the impact{name} is not over at {:.4} ms, its force is {:.1} N{rising}: peak force, impulse, deflection and `not reached` \
+         hold up to then; make `march.end` later",
+        last.time_s * 1e3,
+        row.contact_force_n
+    ))
+}
+
+/// Interfaces that should have opened.
+fn delaminated(summary: &ImpactSummary) -> Option<String> {
+    let threshold = summary.delamination_threshold.as_ref()?;
+    let time = threshold.time_s?;
+    let peak = summary.impact.iter().map(|impact| impact.peak_force_N).fold(0.0, f64::max);
+    Some(format!(
+        "the force passes {:.1} N, at which the laminate delaminates, at {:.4} ms and reaches {:.2} times that: from then on it is the \
+         force on a plate without damage, and too large",
+        threshold.force_N,
+        time * 1e3,
+        peak / threshold.force_N
+    ))
+}
+
+/// Results whose estimated error is large.
+fn rough(summary: &ImpactSummary) -> Option<String> {
+    let errors = summary.accuracy.results?;
+    let each = [
+        ("peak force", errors.peak_force_relative),
+        ("force history", errors.force_history_L2_relative),
+        ("impulse", errors.impulse_relative),
+        ("deflection", errors.deflection_relative),
+    ];
+    let large: Vec<String> = each
+        .iter()
+        .filter(|(_, error)| *error > LARGE)
+        .map(|(name, error)| format!("{name} {:.0} %", 1e2 * error))
+        .collect();
+    (!large.is_empty())
+        .then(|| format!("estimated errors are large: {}; `fem study` says what to refine", large.join(", ")))
+}
+
+/// An onset whose place is chosen by the mesh or by where the criteria look.
+fn placed(model: &Model, event: &FailureEvent) -> Option<String> {
+    let (mesh, quad) = (&model.plate.plane, event.cell as usize);
+    let [x, y, _] = event.position;
+    if model.centres.iter().any(|centre| centre.at == [x, y]) {
+        return None;
+    }
+    let name = || format!("{} {} at ({:.3}, {:.3}) mm", event.criterion, event.mode, x * 1e3, y * 1e3);
+    let symmetry = model.plate.symmetry();
+    let judged = |other: usize| model.watched.binary_search(&symmetry.quad(other)).is_ok();
+    let corners = &mesh.quads[quad];
+    let beside = (0..mesh.quads.len()).filter(|other| mesh.quads[*other].iter().any(|node| corners.contains(node)));
+    if beside.into_iter().any(|other| !judged(other)) {
+        return Some(format!("{} is at the border of what is judged: enlarge `failure.radius`", name()));
+    }
+    match model.window {
+        Window::Square(side) if mesh.quality(quad).area > side * side => Some(format!(
+            "{} is in a cell of {:.2} mm, larger than the window of {:.2} mm: its time follows the mesh; refine there",
+            name(),
+            mesh.quality(quad).area.sqrt() * 1e3,
+            side * 1e3
+        )),
+        _ => None,
+    }
+}
