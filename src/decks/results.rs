@@ -12,7 +12,7 @@ use crate::error::Error;
 use crate::model::NamedCriterion;
 use crate::output::pictures::{Drawn, first_of_modes, write_curves};
 use crate::output::report::DECK;
-use crate::output::summary::{DamageSummary, ImpactFigures, MarginSummary, OnsetBand, Work, not_reached, reserve};
+use crate::output::summary::{DamageSummary, ImpactFigures, MarginSummary, Work, not_reached, reserve};
 use crate::words::name_ply;
 use fem_core::counters::Counters;
 use fem_failure::scan::{FailureEvent, PlyOrInterface, first_per_mode};
@@ -117,13 +117,11 @@ impl Impact<'_> {
     ) -> DeckImpact {
         let Self { deck, march, model, marched, units, .. } = self;
         let force = |t: f64| marched.forces.at(t - marched.begin) * units.newtons();
-        let peaks = judged.scan.peaks();
         let damage = |event: &FailureEvent| DamageSummary {
             event: event_row(judged, event),
             contact_force_N: force(event.time),
             stress: (&event.stress).into(),
             reserve_factor: reserve(&judged.criteria, &judged.materials, event),
-            band: OnsetBand::of((&judged.criteria, &judged.materials), &peaks, None, event),
         };
         let contact = units.contact(&marched.contact);
         let mass = deck.impactor.mass * units.kilograms();
@@ -148,7 +146,7 @@ impl Impact<'_> {
                 highest_frequency_Hz: hertz(model.omega.last()),
             },
             first_damage: first_per_mode(events).into_iter().map(damage).collect(),
-            not_reached: not_reached(&peaks),
+            not_reached: not_reached(&judged.scan.peaks()),
             accuracy: DeckAccuracy {
                 energy_error_relative: off / (0.5 * mass * (deck.impactor.velocity * units.metres()).powi(2)),
                 step_s: march.step.value,

@@ -36,11 +36,16 @@ pub(crate) fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) ->
         let mut represented = vec![Vec::new(); mesh.quads.len()];
         (0..mesh.quads.len()).for_each(|quad| represented[symmetry.quad(quad)].push(quad));
         let rows = outcome.maxima.iter().flat_map(|m| {
-            represented[m.site.cell as usize].iter().map(|quad| {
+            let [x, y, z] = m.site.position;
+            let row = |site: &ScanSite| row(model, m.criterion, m.mode, site, m.index);
+            if model.centres.iter().any(|centre| centre.at == [x, y]) {
+                return vec![row(&m.site)];
+            }
+            let of_cell = |quad: &usize| {
                 let [x, y] = mesh.corners(*quad).centroid();
-                let site = ScanSite { cell: *quad as u32, position: [x, y, m.site.position[2]], ..m.site };
-                row(model, m.criterion, m.mode, &site, m.index)
-            })
+                row(&ScanSite { cell: *quad as u32, position: [x, y, z], ..m.site })
+            };
+            represented[m.site.cell as usize].iter().map(of_cell).collect()
         });
         tables::write_index_maxima(dir, &rows.collect::<Vec<_>>())?;
     }

@@ -58,9 +58,10 @@ const UNITS: [(&str, &str); 19] = [
     ("_relative", ""),
 ];
 
-const HEADINGS: [(&str, &str); 8] = [
+const HEADINGS: [(&str, &str); 9] = [
     ("first_damage", "First damage of each mode, and its stress"),
     ("not_reached", "Modes that were not reached"),
+    ("onsets", "How far the times of first damage are known"),
     ("delamination_threshold", "Delamination threshold"),
     ("advised", "What the advisor decided, and why"),
     ("modes", "Modes followed"),

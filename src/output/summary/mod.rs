@@ -41,6 +41,9 @@ pub struct ImpactSummary {
     pub impact: Vec<ImpactFigures>,
     pub first_damage: Vec<DamageSummary>,
     pub not_reached: Vec<MarginSummary>,
+    /// How far the times of `first_damage` are known.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub onsets: Vec<OnsetBand>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delamination_threshold: Option<Threshold>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -125,8 +128,6 @@ pub struct DamageSummary {
     pub stress: PlyStress,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reserve_factor: Option<f64>,
-    #[serde(flatten)]
-    pub band: Option<OnsetBand>,
 }
 
 /// Stress in a ply's axes; of an interface in the plate's.
@@ -342,13 +343,11 @@ impl ImpactSummary {
         let thickness = model.laminate.thickness();
         let seen = hindsights(model, &outcome.contacts);
         let reached = |effect: &str| Some(seen.iter().find(|seen| seen.effect == effect)?.run.reached);
-        let error = onset::stress_error(&outcome.accuracy);
         let damage = |e: &FailureEvent| DamageSummary {
             event: event_row(model, e),
             contact_force_N: outcome.forces.at(e.time),
             stress: (&e.stress).into(),
             reserve_factor: reserve(&model.criteria, &model.materials, e),
-            band: OnsetBand::of((&model.criteria, &model.materials), &outcome.peaks, error, e),
         };
         let summary = Self {
             title: model.origin.title.clone(),
@@ -380,6 +379,7 @@ impl ImpactSummary {
             impact: model.impactors().iter().enumerate().map(|(i, spec)| figures(model, outcome, i, spec)).collect(),
             first_damage: first_per_mode(&outcome.events).into_iter().map(damage).collect(),
             not_reached: not_reached(&outcome.peaks),
+            onsets: onset::bands(model, outcome),
             delamination_threshold: model.threshold.map(|threshold| {
                 let first = threshold_reached(model, outcome).min_by(|a, b| a.0.total_cmp(&b.0));
                 Threshold {

@@ -1,22 +1,21 @@
 //! How far the time of an onset is known.
 
-use crate::analyses::impact::Accuracy;
-use crate::model::NamedCriterion;
-use fem_core::material::Material;
+use crate::analyses::impact::{Accuracy, Outcome};
+use crate::model::Model;
 use fem_core::tensor::Stress6;
-use fem_failure::scan::{Climb, Crests, FailureEvent, Peak};
+use fem_failure::scan::{Climb, Crests, FailureEvent, Peak, first_per_mode};
 use serde::Serialize;
 
 /// How much lower or higher a strength is that a time is given for: the scatter of a good material.
 const STRENGTH: f64 = 0.05;
 
-/// Criteria, and the materials that events count in.
-pub(crate) type Judged<'a> = (&'a [NamedCriterion], &'a [Material]);
-
 /// What moves the first onset of a mode. A time that is not there is later than the run, or earlier than what was followed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct OnsetBand {
+    pub criterion: String,
+    pub mode: String,
+    pub time_s: f64,
     /// Estimated error of the stress, of the force's history and of the strains under the contact together, and the times between
     /// which it leaves the onset.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,13 +35,20 @@ pub struct OnsetBand {
     pub next_crest_time_s: Option<f64>,
 }
 
+/// Of the first event of each mode.
+pub(super) fn bands(model: &Model, outcome: &Outcome) -> Vec<OnsetBand> {
+    let error = stress_error(&outcome.accuracy);
+    let firsts = first_per_mode(&outcome.events).into_iter();
+    firsts.filter_map(|event| OnsetBand::of(model, &outcome.peaks, error, event)).collect()
+}
+
 impl OnsetBand {
     /// Of the first event of a mode whose stresses have this error.
-    pub(crate) fn of(judged: Judged<'_>, peaks: &[Peak], error: Option<f64>, event: &FailureEvent) -> Option<Self> {
+    fn of(model: &Model, peaks: &[Peak], error: Option<f64>, event: &FailureEvent) -> Option<Self> {
         let peak = peaks.iter().find(|peak| peak.criterion == event.criterion && peak.mode == event.mode)?;
         let climb = &peak.climb;
         // The index that reaches 1 where all stresses are `factor` times as large.
-        let level = |factor: f64| Some(1.0 / index(judged, event, factor)?);
+        let level = |factor: f64| Some(1.0 / index(model, event, factor)?);
         let at = |factor: f64| time(climb, event, level(factor)?);
         let ends = [level(1.0 / (1.0 - STRENGTH)), level(1.0 / (1.0 + STRENGTH))];
         let crests = match ends {
@@ -50,6 +56,9 @@ impl OnsetBand {
             _ => None,
         };
         Some(Self {
+            criterion: event.criterion.clone(),
+            mode: event.mode.to_owned(),
+            time_s: event.time,
             stress_error_relative: error,
             earliest_time_s: error.and_then(|error| at(1.0 + error)),
             latest_time_s: error.and_then(|error| at(1.0 / (1.0 + error))),
@@ -80,17 +89,17 @@ impl OnsetBand {
 }
 
 /// Of the history of the force and of the strains under the contact, which have nothing to do with each other.
-pub(super) fn stress_error(accuracy: &Accuracy) -> Option<f64> {
+fn stress_error(accuracy: &Accuracy) -> Option<f64> {
     Some(accuracy.results()?.force.hypot(accuracy.mesh?.at_rest))
 }
 
 /// The index of the mode of `event` under `factor` times its stress.
-fn index((criteria, materials): Judged<'_>, event: &FailureEvent, factor: f64) -> Option<f64> {
-    let (_, criterion) = criteria.iter().find(|(name, _)| *name == event.criterion)?;
+fn index(model: &Model, event: &FailureEvent, factor: f64) -> Option<f64> {
+    let (_, criterion) = model.criteria.iter().find(|(name, _)| *name == event.criterion)?;
     let info = criterion.info();
     let mut indices = vec![0.0; info.modes.len()];
     let stress = Stress6::new(event.stress.0.map(|s| factor * s));
-    criterion.indices(&stress, &materials[usize::from(event.material)], &mut indices);
+    criterion.indices(&stress, &model.materials[usize::from(event.material)], &mut indices);
     let mode = info.modes.iter().position(|mode| *mode == event.mode)?;
     Some(indices[mode]).filter(|index| index.is_finite() && *index > 0.0)
 }

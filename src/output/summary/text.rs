@@ -107,12 +107,11 @@ impl ImpactSummary {
                 ));
             }
         }
-        let bands: Vec<_> = self.first_damage.iter().filter_map(|d| Some((d, d.band.as_ref()?))).collect();
-        if !bands.is_empty() {
+        if !self.onsets.is_empty() {
             line(format_args!("  when      how far these times are known"));
         }
-        for (d, band) in bands {
-            let (time, criterion, mode) = (d.event.time_s * 1e3, &d.event.criterion, &d.event.mode);
+        for band in &self.onsets {
+            let (time, criterion, mode) = (band.time_s * 1e3, &band.criterion, &band.mode);
             line(format_args!("            {time:>6.4} ms  {criterion:<15} {mode:<19} {}", band.text()));
         }
         if !self.modes.is_empty() {
