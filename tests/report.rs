@@ -304,9 +304,9 @@ fn the_same_energy_breaks_sooner_in_a_small_mass() {
     let ratio = large.onset(TENSION, None).unwrap() / small.onset(TENSION, None).unwrap();
     assert!((15.0..50.0).contains(&ratio), "{ratio}");
     // Strengths, stiffness and contact of IM6/934 are assumed: these are regressions, not validation.
-    within(large.onset(TENSION, None).unwrap(), 0.818e-3, 0.02, "large mass, tension");
-    within(small.onset(TENSION, None).unwrap(), 24.66e-6, 0.02, "small mass, tension");
-    within(small.onset(SHEAR, None).unwrap(), 14.77e-6, 0.03, "small mass, shear");
+    within(large.onset(TENSION, None).unwrap(), 0.7163e-3, 0.02, "large mass, tension");
+    within(small.onset(TENSION, None).unwrap(), 21.48e-6, 0.02, "small mass, tension");
+    within(small.onset(SHEAR, None).unwrap(), 13.14e-6, 0.03, "small mass, shear");
     within(large.peak_force(), 5287.0, 0.01, "large mass, force");
     within(small.peak_force(), 5527.0, 0.01, "small mass, force");
     // The report's reason: the large mass moves the plate in its first mode, the small one in many.
@@ -315,11 +315,11 @@ fn the_same_energy_breaks_sooner_in_a_small_mass() {
         let row = c.outcome.history.iter().position(|r| r.time_s >= t).unwrap();
         modal.coordinates[row * modal.modes.len()] / c.outcome.history[row].impactors[0].plate_displacement_m
     };
-    let shares = [(&large, 0.818e-3), (&small, 14.77e-6)].map(|(c, t)| first_share(c, t));
+    let shares = [(&large, 0.7163e-3), (&small, 13.14e-6)].map(|(c, t)| first_share(c, t));
     assert!(shares[0] > 0.75 && shares[1] < 0.15, "{shares:?}");
     let drop = Computed::example("im6-934-32ply-drop-weight", "", &[]);
     assert_eq!(drop.event(TENSION).place, fem::failure::scan::PlyOrInterface::Ply(0));
-    within(drop.onset(TENSION, None).unwrap(), 1.469e-3, 0.02, "drop weight, tension");
+    within(drop.onset(TENSION, None).unwrap(), 1.257e-3, 0.02, "drop weight, tension");
     within(drop.peak_force(), 3704.0, 0.01, "drop weight, force");
 }
 
@@ -327,11 +327,11 @@ fn the_same_energy_breaks_sooner_in_a_small_mass() {
 fn the_examples_give_their_numbers() {
     // (example, tension in the bottom ply us, peak force N until the scene's end): engineering settings.
     for (case, tension, force) in [
-        ("as4-3502-16ply-50mm", 457.3, 1911.2),
-        ("as4-3502-16ply-75mm", 782.8, 2150.1),
-        ("as4-3502-8ply-25mm", 267.8, 1016.4),
-        ("as4-3502-8ply-50mm", 817.4, 637.3),
-        ("as4-3502-8ply-75mm", 1510.8, 460.7),
+        ("as4-3502-16ply-50mm", 392.2, 1911.2),
+        ("as4-3502-16ply-75mm", 765.4, 2150.1),
+        ("as4-3502-8ply-25mm", 253.2, 1016.4),
+        ("as4-3502-8ply-50mm", 688.3, 637.3),
+        ("as4-3502-8ply-75mm", 1453.0, 460.7),
     ] {
         let c = Computed::example(case, "", &[]);
         within(c.onset(TENSION, Some(1)).unwrap() * 1e6, tension, 0.01, case);
