@@ -214,8 +214,13 @@ fn compare(symmetry: &str, edits: &[(&str, &str)], rounding: f64) {
     assert!(!a.events.is_empty() && a.events.len() == b.events.len(), "{} {}", a.events.len(), b.events.len());
     for (a, b) in a.events.iter().zip(&b.events) {
         assert_eq!((&a.criterion, a.mode, a.place), (&b.criterion, b.mode, b.place));
-        assert!((a.time / b.time - 1.0).abs() < 10.0 * rounding, "{a:?} {b:?}");
-        assert_eq!(part.plate.symmetry().quad(a.cell as usize), b.cell as usize);
+        // Places on a plane of symmetry are judged by strains from both sides of it.
+        assert!((a.time / b.time - 1.0).abs() < 20.0 * rounding, "{a:?} {b:?}");
+        // Several cells may hold the place.
+        let mesh = &whole.plate.plane;
+        let at = [a.position[0], a.position[1]];
+        let mut holding = (0..mesh.quads.len()).filter(|quad| mesh.corners(*quad).locate(at).is_some());
+        assert!(holding.any(|quad| part.plate.symmetry().quad(quad) == b.cell as usize), "{a:?} {b:?}");
     }
     assert!(part.constraints.ndof() as f64 <= 0.56 * whole.constraints.ndof() as f64);
     assert!(2 * b.sites <= a.sites + a.sites / 10, "{} of {}", b.sites, a.sites);

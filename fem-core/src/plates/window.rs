@@ -26,7 +26,7 @@ pub struct Centre {
 
 /// A mean of strains.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Window {
+pub struct Mean {
     /// Where it lies.
     pub centre: Centre,
     /// What is averaged, with shares that add up to 1.
@@ -104,18 +104,18 @@ impl<R: Fn(usize) -> usize> Windows<R> {
 
     /// The window around the centre of a cell, of whole cells weighted with the areas of the overlap. A cell larger than the window
     /// is its own mean.
-    pub fn of_cell(&self, quad: usize) -> Window {
+    pub fn of_cell(&self, quad: usize) -> Mean {
         let corners = &self.cells[quad];
         let at = corners.centroid();
         if corners.area() >= self.side * self.side {
-            return Window { centre: self.centre(quad, at), shares: vec![(Source { quad, sample: None }, 1.0)] };
+            return Mean { centre: self.centre(quad, at), shares: vec![(Source { quad, sample: None }, 1.0)] };
         }
         self.over(quad, at, |quad, half| vec![(Source { quad, sample: None }, self.cells[quad].overlap(at, half))])
     }
 
     /// The window around any place: of cells that lie within it as a whole, and of the samples of others, linear between these. What
     /// it says does not hang on how it lies to the cells.
-    pub fn around(&self, centre: Centre) -> Window {
+    pub fn around(&self, centre: Centre) -> Mean {
         let at = seen(self.axes, centre.at);
         self.over(centre.quad, at, |quad, half| {
             let corners = &self.cells[quad];
@@ -134,14 +134,14 @@ impl<R: Fn(usize) -> usize> Windows<R> {
     }
 
     /// The mean over a window around `at`, which cell `quad` holds; its shares in each cell are areas.
-    fn over(&self, quad: usize, at: [f64; 2], areas: impl Fn(usize, f64) -> Vec<(Source, f64)>) -> Window {
+    fn over(&self, quad: usize, at: [f64; 2], areas: impl Fn(usize, f64) -> Vec<(Source, f64)>) -> Mean {
         let (half, own) = (0.5 * self.side, (self.region)(quad));
         let cells = self.near(at, half).into_iter().filter(|quad| (self.region)(*quad) == own);
         let mut shares: Vec<(Source, f64)> = cells.flat_map(|quad| areas(quad, half)).collect();
         let total: f64 = shares.iter().map(|s| s.1).sum();
         shares.retain(|s| s.1.abs() > NOTHING * total);
         shares.iter_mut().for_each(|s| s.1 /= total);
-        Window { centre: self.centre(quad, at), shares }
+        Mean { centre: self.centre(quad, at), shares }
     }
 
     /// Centres around a place that hang on nothing but it: on a square lattice of a quarter of the side within a side of `place`, of
@@ -172,9 +172,9 @@ fn seen([c, s]: [f64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
 }
 
 /// The mean over a cell itself.
-pub fn own(mesh: &PlaneMesh, quad: usize) -> Window {
+pub fn own(mesh: &PlaneMesh, quad: usize) -> Mean {
     let centre = Centre { quad, at: mesh.corners(quad).centroid() };
-    Window { centre, shares: vec![(Source { quad, sample: None }, 1.0)] }
+    Mean { centre, shares: vec![(Source { quad, sample: None }, 1.0)] }
 }
 
 #[cfg(test)]
@@ -199,7 +199,7 @@ mod tests {
 
     fn square(mesh: &PlaneMesh, side: f64, region: impl Fn(usize) -> usize) -> Vec<Vec<(usize, f64)>> {
         let windows = Windows::new(mesh, (side, 0.0), region);
-        let cells = |window: Window| window.shares.into_iter().map(|(source, share)| (source.quad, share)).collect();
+        let cells = |window: Mean| window.shares.into_iter().map(|(source, share)| (source.quad, share)).collect();
         (0..mesh.quads.len()).map(|q| cells(windows.of_cell(q))).collect()
     }
 
@@ -246,7 +246,7 @@ mod tests {
     }
 
     /// The mean of a field that is known where windows look.
-    fn mean(mesh: &PlaneMesh, window: &Window, f: impl Fn([f64; 2]) -> f64) -> f64 {
+    fn mean(mesh: &PlaneMesh, window: &Mean, f: impl Fn([f64; 2]) -> f64) -> f64 {
         let value = |source: &Source| {
             let corners = mesh.corners(source.quad);
             let domain = corners.domain();

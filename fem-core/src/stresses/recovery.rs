@@ -5,7 +5,7 @@ use crate::contracts::large::LargeDeflection;
 use crate::plates::laminate::Laminate;
 use crate::plates::laws::{Asked, CellAnswer, PlyLaws};
 use crate::plates::plate::Plate;
-use crate::plates::window::{Centre, Source, Window};
+use crate::plates::window::{Centre, Mean, Source};
 use crate::words::material::Material;
 use crate::words::tensor::{Matrix6, strain_rotation};
 use std::borrow::Cow;
@@ -73,13 +73,13 @@ impl Recovery {
         laminates: &[Laminate],
         materials: &[Material],
         resin: Option<usize>,
-        windows: &[Window],
+        windows: &[Mean],
     ) -> Self {
         let mut sources: Vec<Source> = windows.iter().flat_map(|window| window.shares.iter().map(|s| s.0)).collect();
         sources.sort_unstable();
         sources.dedup();
         let position = |source: &Source| sources.partition_point(|s| s < source);
-        let shares = |window: &Window| window.shares.iter().map(|(source, share)| (position(source), *share)).collect();
+        let shares = |window: &Mean| window.shares.iter().map(|(source, share)| (position(source), *share)).collect();
         let centres: Vec<Centre> = windows.iter().map(|window| window.centre).collect();
         let of_region = |(region, laminate)| stations(plate, region, laminate, materials, resin);
         let regions: Vec<Vec<Station>> = laminates.iter().enumerate().map(of_region).collect();
