@@ -190,13 +190,13 @@ pub(super) struct Companion {
 
 impl Companion {
     /// How far the run is from it.
-    pub(super) fn from_run(&self, run: &StepForces, contact: &ContactRecord) -> Option<Differences> {
+    pub(super) fn against_run(&self, run: &StepForces, contact: &ContactRecord) -> Option<Differences> {
         let each = (1..).zip(&self.forces).map(|(number, other)| (run.after(number * self.stride as usize), *other));
         Differences::of(each, [contact.deflection, self.deflection])
     }
 
     /// How far another companion of the same pace is from it.
-    pub(super) fn from(&self, other: &Self) -> Option<Differences> {
+    pub(super) fn against(&self, other: &Self) -> Option<Differences> {
         Differences::of(
             self.forces.iter().copied().zip(other.forces.iter().copied()),
             [self.deflection, other.deflection],
@@ -233,21 +233,21 @@ mod tests {
     #[test]
     fn steps_that_the_marches_do_not_share_are_left_out() {
         let odd = run(|t| if t % 2.0 == 1.0 { 1e3 } else { t });
-        let same = companion(2, 3.0, |t| t).from_run(&odd, &contact(3.0));
+        let same = companion(2, 3.0, |t| t).against_run(&odd, &contact(3.0));
         assert_eq!(same, Some(Differences::default()));
-        assert_eq!(companion(2, 0.0, |_| 0.0).from_run(&run(|_| 0.0), &contact(0.0)), None, "nothing touches");
+        assert_eq!(companion(2, 0.0, |_| 0.0).against_run(&run(|_| 0.0), &contact(0.0)), None, "nothing touches");
     }
 
     #[test]
     fn differences_are_those_of_each_result() {
         let (one, other) = (companion(1, 2.0, |t| t), companion(1, 2.2, |t| 1.1 * t));
-        let found = one.from(&other).unwrap();
+        let found = one.against(&other).unwrap();
         for difference in [found.force, found.peak, found.impulse, found.deflection] {
             assert!((difference - 0.1).abs() < 1e-12);
         }
         // A force that comes later is another force, but the same impulse.
         let late = companion(1, 2.0, |t| if t > 9.0 { 1.0 } else { t + 1.0 });
-        let found = one.from(&late).unwrap();
+        let found = one.against(&late).unwrap();
         assert!(found.force > 0.3 && found.peak == 0.0 && found.impulse < 1e-12);
     }
 }

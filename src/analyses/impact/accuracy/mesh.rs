@@ -95,6 +95,6 @@ impl OfFields {
             None => Box::new(modal.clone()),
         };
         let softer = pace.march(system.on(plate), &modal, |_| ());
-        MeshAccuracy { at_rest: self.at_rest, response: softer.and_then(|softer| base.from(&softer)) }
+        MeshAccuracy { at_rest: self.at_rest, response: softer.and_then(|softer| base.against(&softer)) }
     }
 }

@@ -96,7 +96,7 @@ impl Estimates {
     /// The estimates for a march with these forces and first contact that reached its end.
     pub(super) fn finish(self, forces: &StepForces, contact: Option<&ContactRecord>) -> Accuracy {
         let difference = |(pace, companion): (Pace, Companion)| {
-            let difference = companion.from_run(forces, contact?)?;
+            let difference = companion.against_run(forces, contact?)?;
             companion.follows.then(|| StepAccuracy::of(&pace, difference))
         };
         Accuracy { step: self.other_step.and_then(difference), reduction: self.reduction, mesh: self.mesh }

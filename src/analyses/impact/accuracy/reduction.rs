@@ -65,7 +65,7 @@ impl Richer<'_> {
         let free = full.structure.free_motions().len();
         let vectors = [&reduced.basis[free..], more].concat();
         let (system, modal) = (self.couple)(Reduced::project(&full.structure, &vectors).ok()?);
-        self.base.from(&self.pace.march(system, &modal, |_| ())?)
+        self.base.against(&self.pace.march(system, &modal, |_| ())?)
     }
 }
 
