@@ -10,6 +10,7 @@ mod large;
 mod layers;
 mod loads;
 mod modes;
+mod onset;
 mod pagano;
 mod patch;
 mod scene;

@@ -205,7 +205,9 @@ impl ImpactSummary {
         let reduction = if m.unknowns_marched == m.substructures.map_or(m.unknowns, |s| s.masters) {
             "reduction: none, all unknowns are marched".to_owned()
         } else {
-            let force = a.reduction_error_force_L2_relative.map_or_else(
+            // What the richer plate does says it better than the energy of what is left out.
+            let richer = a.results_of_reduction.map(|errors| errors.force_history_L2_relative);
+            let force = richer.or(a.reduction_error_force_L2_relative).map_or_else(
                 || "error of the force not estimated".to_owned(),
                 |error| format!("force within about {error:.1e}"),
             );

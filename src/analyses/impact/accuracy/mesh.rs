@@ -16,7 +16,8 @@ const MOST: f64 = 0.5;
 ///
 /// What a mesh does to an impact is found from a march of the plate whose modes are as much softer as the estimate says that the
 /// mesh makes them stiffer, k (1 − η²), η the error of the mode in the energy norm: that a mode is too stiff is the first
-/// effect of a mesh of elements made of displacements, and the shapes follow with the square.
+/// effect of a mesh of elements made of displacements, and the shapes follow with the square. The deflection at rest is not made softer than
+/// its own estimate says.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshAccuracy {
     /// Error in the energy norm of the deflection at rest under the first impactor, relative ([`mesh_errors`]).
@@ -79,6 +80,24 @@ pub(in crate::analyses::impact) fn estimate(
 }
 
 impl OfFields {
+    /// Shares of the stiffness of each mode that the mesh adds: η², all of them by one factor less where together they would make
+    /// the deflection at rest larger than its own error says: errors of the vectors that a contact calls for cancel in it.
+    fn shares(&self, system: &ImpactSystem, reduced: &Reduced) -> Vec<f64> {
+        let mut shares: Vec<f64> = self.modes.iter().map(|error| (error * error).min(MOST)).collect();
+        let mut load = vec![0.0; shares.len()];
+        system.impactors().iter().take(1).flat_map(|first| &first.load).for_each(|(j, w)| load[*j] += w);
+        let (mut whole, mut more) = (0.0, 0.0);
+        for ((compliance, p), share) in reduced.modal.compliances().zip(&load).zip(&shares) {
+            whole += compliance * p * p;
+            more += compliance * p * p * share / (1.0 - share);
+        }
+        let factor = (whole * self.at_rest * self.at_rest / more).min(1.0);
+        if factor.is_finite() {
+            shares.iter_mut().for_each(|share| *share *= factor);
+        }
+        shares
+    }
+
     /// What the errors do to the impact that `base` is the march of.
     pub(super) fn judge(
         &self,
@@ -87,7 +106,7 @@ impl OfFields {
         pace: &Pace,
         base: &Companion,
     ) -> MeshAccuracy {
-        let shares: Vec<f64> = self.modes.iter().map(|error| (error * error).min(MOST)).collect();
+        let shares = self.shares(system, reduced);
         let mut modal = reduced.modal.clone();
         modal.soften(&shares);
         let plate: Box<dyn Structure> = match membrane {

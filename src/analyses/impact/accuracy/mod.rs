@@ -39,10 +39,7 @@ pub struct Accuracy {
 impl Accuracy {
     /// Errors of the main results: those of step, reduction and mesh together, where all of them are known.
     pub fn results(&self) -> Option<Differences> {
-        let reduction = self.reduction?;
-        let mut left = reduction.response?;
-        // Whichever sees more.
-        left.force = left.force.max(reduction.residual.and_then(|residual| residual.force).unwrap_or(0.0));
+        let left = self.reduction?.response?;
         let sum = |a: Differences, b: Differences| a.with(b, |a, b| a + b);
         Some(sum(sum(self.step?.error, left), self.mesh?.response?))
     }
