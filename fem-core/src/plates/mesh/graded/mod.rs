@@ -48,8 +48,8 @@ pub enum Outline {
 ///
 /// With the impact at the middle the mesh is its own image in both mirrors, and in quarter turns where the edge is. The
 /// scaled Jacobian, the smallest sine of an inner angle of a cell, is at least 0.84 in a disc, 0.5 in a square over a
-/// ring (0.7 with the impact at the middle and a ring of up to 0.8 of half the side), 0.35 in a rectangle over a ring,
-/// 1 in a grid.
+/// ring (0.7 with the impact at the middle and a ring of up to 0.8 of half the side), 0.35 in a rectangle, no more than
+/// twice as long as wide, over a ring of up to 0.9 of half its width, 0.24 over one of up to 0.95, 1 in a grid.
 ///
 /// Groups: `plate` (cells), `edge` and, where there is one, `support` (edges), `impact` (a node); of a rectangle also
 /// its sides `x-min`, `x-max`, `y-min`, `y-max`.
