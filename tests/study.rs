@@ -87,6 +87,9 @@ fn studies_of_one_scene_are_equal() {
     };
     let (one, two) = (stable("one"), stable("two"));
     assert_eq!(one.0, two.0);
+    // The mesh leaves most: it is climbed to its end, and the step no further than to see that it leaves little.
+    let ran = |axis: &str, level: &str| one.0.contains_key(&(axis.to_owned(), level.to_owned()));
+    assert!(ran("mesh", "refine 3") && ran("step", "0.2000 us") && !ran("step", "0.0500 us"), "{:?}", one.0.keys());
     let again = case.fem("study", &[&arguments("one")[..], &["--resume"]].concat()).good();
     assert!(again.stdout.contains("runs are there from before"), "{again:#?}");
     assert_eq!(stable("one").1, one.1, "a run was made again");
@@ -115,6 +118,53 @@ fn a_scene_names_its_own_axes_and_quantities() {
     let impulse = |out: &str| case.summary(out)["impact"]["impulse_N_s"].as_f64().unwrap();
     let exact = number(&rows[&("step".into(), "0.0250 us".into())], "impulse");
     assert!((impulse("promised") / exact - 1.0).abs() < 0.1);
+}
+
+/// What two ladders of three levels say that they leave, held against levels that are ten times finer.
+#[test]
+fn a_ladder_says_what_it_leaves() {
+    let text = std::fs::read_to_string(root().join("tests/data/scenes/study.toml")).unwrap();
+    let scene = text.split("[study]").next().unwrap();
+    let ladder = |name: &str, levels: [&str; 3]| {
+        format!(
+            "[[study.axis]]\nname = \"{name}\"\nlevels = [{{ {} }}, {{ {} }}, {{ {} }}]\n",
+            levels[0], levels[1], levels[2]
+        )
+    };
+    let text = format!(
+        "{scene}[study]\nquantities = [\"peak-force\", \"impulse\", \"deflection\"]\n{}{}",
+        ladder("cells", ["mesh.cells = [6, 4]", "mesh.cells = [12, 8]", "mesh.cells = [24, 16]"]),
+        ladder("steps", ["march.step = \"4 us\"", "march.step = \"2 us\"", "march.step = \"1 us\""]),
+    );
+    let case = strip().text(&text);
+    let told = case.fem("study", &["--axis", "cells,steps", "--json", "--out", "study"]).good();
+    let told: serde_json::Value = serde_json::from_str(&told.stdout).unwrap();
+    let rows = rows(&case, "study");
+    for (k, (axis, finest, finer)) in [
+        ("cells", "mesh.cells [24, 16]", ("\"40 mm\"], cells = [6, 4]", "\"40 mm\"], cells = [96, 64]")),
+        ("steps", "march.step \"1 us\"", ("\"newmark\", step = \"1 us\"", "\"newmark\", step = \"0.1 us\"")),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let exact = strip().text(&text).scene(finer.0, finer.1);
+        exact.fem("run", &["--out", "exact"]).good();
+        let row = &rows[&(axis.to_owned(), finest.to_owned())];
+        let impact = &exact.summary("exact")["impact"];
+        for (name, key) in
+            [("peak-force", "peak_force_N"), ("impulse", "impulse_N_s"), ("deflection", "peak_plate_displacement_m")]
+        {
+            let exact = (number(row, name) / impact[key].as_f64().unwrap() - 1.0).abs();
+            let ladder = &told["ladders"][k];
+            assert_eq!(ladder["axis"], axis);
+            let leaves = ladder["leaves"].as_array().unwrap().iter().find(|left| left["quantity"] == name).unwrap();
+            // A bar that is not there is infinite.
+            let most = leaves["error"].as_f64().zip(leaves["bar"].as_f64()).map_or(f64::INFINITY, |(e, bar)| e + bar);
+            assert!(exact <= most, "{axis}, {name}: {exact:e} is left, and not up to {most:e}");
+            // Three levels tell no order that another one confirms.
+            assert!(leaves["known"] == false && row[&format!("{name} of its axis: known")] == "no", "{leaves}");
+        }
+    }
 }
 
 #[test]

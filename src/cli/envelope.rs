@@ -166,7 +166,14 @@ fn picture(criteria: &[NamedCriterion], found: &Envelopes, m: &Material, plane: 
     }
     let axis = |name: &str| Axis::linear(format!("Stress {name}"), "MPa");
     let [x, y] = plane.names();
-    LinePlot { title: format!("Failure envelopes of {}", m.name), x: axis(x), y: axis(y), series, marks: Vec::new() }
+    LinePlot {
+        title: format!("Failure envelopes of {}", m.name),
+        x: axis(x),
+        y: axis(y),
+        series,
+        marks: Vec::new(),
+        doubts: Vec::new(),
+    }
 }
 
 /// Strengths along the axes, per criterion.

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::job;
 use crate::model::Model;
 use crate::registry::Registry;
-use crate::study::{self, Progress, Report, Session};
+use crate::study::{self, ErrorBar, Ladder, Progress, Report, Session};
 use clap::Args;
 use fem_io::scene::{self, Setting};
 use serde::Serialize;
@@ -48,11 +48,48 @@ struct Document<'a> {
     asked: &'a [String],
     tolerance: f64,
     runs: Vec<Map<String, Value>>,
+    ladders: Vec<LadderPart<'a>>,
     notes: &'a [String],
     /// Keys of the cheapest setting that keeps the tolerance of the command line.
     #[serde(skip_serializing_if = "Option::is_none")]
     kept_by: Option<&'a Setting>,
     results: &'a Path,
+}
+
+/// What the finest level of a ladder leaves of each quantity.
+#[derive(Serialize)]
+struct LadderPart<'a> {
+    axis: &'a str,
+    levels: Vec<&'a str>,
+    /// Why no finer level ran.
+    end: &'a str,
+    leaves: Vec<Leaves<'a>>,
+}
+
+/// What is left of a quantity; an error or a bar that nothing bounds is left out.
+#[derive(Serialize)]
+struct Leaves<'a> {
+    quantity: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    order: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bar: Option<f64>,
+    known: bool,
+}
+
+impl<'a> LadderPart<'a> {
+    fn new(ladder: &'a Ladder) -> Self {
+        let finite = |x: f64| Some(x).filter(|x| x.is_finite());
+        let leaves = |limit: &'a study::Limit| {
+            let left = ErrorBar { error: limit.convergence.left(), bar: limit.convergence.bar() };
+            let (error, bar) = (finite(left.error), finite(left.bar));
+            Leaves { quantity: &limit.quantity, order: limit.convergence.order(), error, bar, known: left.is_known() }
+        };
+        let levels = ladder.levels.iter().map(|rung| rung.level.label.as_str()).collect();
+        Self { axis: &ladder.axis, levels, end: &ladder.end, leaves: ladder.limits.iter().map(leaves).collect() }
+    }
 }
 
 /// A time above zero with its unit, s.
@@ -117,6 +154,7 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Consol
         asked: &report.asked,
         tolerance: report.tolerance,
         runs: study::named(&report),
+        ladders: report.ladders.iter().map(LadderPart::new).collect(),
         notes: &report.notes,
         kept_by: cheapest,
         results: session.dir().path(),
@@ -160,8 +198,9 @@ fn describe_cheapest(
             format!("\n  {tolerance} in all quantities is met by {}\n", file.display())
         }
         (Some(tolerance), None) => {
-            let best = report.rows.iter().filter_map(|row| row.worst()).reduce(f64::min);
-            let best = best.map_or(String::new(), |best| format!("; the best run reaches {best:.1e}"));
+            let best = report.rows.iter().filter_map(|row| row.worst()).map(ErrorBar::most).reduce(f64::min);
+            let best = best.filter(|best| best.is_finite());
+            let best = best.map_or(String::new(), |best| format!("; the best run may have {best:.1e}"));
             format!(
                 "\n  no run is certain to meet {tolerance} in all quantities{best}: allow more time or a larger error\n"
             )

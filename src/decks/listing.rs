@@ -220,7 +220,7 @@ impl Listing {
         let title = self.outcome.title.clone();
         let [x, y] = ["Time", quantity].map(|what| Axis::linear(what, "units of the deck"));
         let file = format!("{}.{name}", self.stem);
-        plot::line_plot(&LinePlot { title, x, y, series, marks: Vec::new() })?.write(dir, &file)?;
+        plot::line_plot(&LinePlot { title, x, y, series, marks: Vec::new(), doubts: Vec::new() })?.write(dir, &file)?;
         self.outcome.files.extend(["svg", "png"].map(|ending| format!("{file}.{ending}")));
         Ok(())
     }

@@ -1,8 +1,9 @@
 //! What accuracy costs in time: a scene run under many settings, against a reference that the study proves.
 //!
 //! 1. The scene runs as it is.
-//! 2. Every [`StudyAxis`] varies one part of the settings. A ladder of finer and finer levels shows its order of convergence and
-//!    what error each level leaves ([`Convergence`]).
+//! 2. Every [`StudyAxis`] varies one part of the settings. A ladder of finer and finer levels shows its order of convergence,
+//!    what error each level leaves, and how well that is known ([`Convergence`], [`ErrorBar`]). After its first levels, the
+//!    ladder is climbed that leaves most a second.
 //! 3. Levels of all ladders together, the cheapest whose errors add up to a tenth, a hundredth, ..., run jointly. The finest
 //!    of them that the limit allows is the reference: it is proven where the run a level coarser on
 //!    every ladder agrees to the tolerance.
@@ -24,9 +25,10 @@ mod report;
 mod session;
 mod table;
 mod text;
+mod ways;
 
 pub use axes::{AxisKind, Level, NAMES, StudyAxis, axes};
-pub use converge::{Convergence, limit};
+pub use converge::{Convergence, ErrorBar, limit};
 pub use ladder::{Ladder, Limit};
 pub use picture::write_pictures;
 pub use plan::{Planned, StudyPlan};
@@ -102,7 +104,7 @@ pub fn study(
     let tolerance = scene.study.tolerance.unwrap_or(TOLERANCE);
 
     let mut planner = Planner::new(session, &base, budget);
-    let plan = planner.plan(session, axes);
+    let mut plan = planner.plan(session, axes);
     tell(Progress::Planned(&plan));
     let whole = plan.seconds();
     let mut report = Report::new(scene, model, base, asked, tolerance);
@@ -124,20 +126,28 @@ pub fn study(
             report.add(planned, result);
             Ok(())
         };
+    let mut finer = std::mem::take(&mut plan.finer);
     for planned in plan.runs.iter().filter(|planned| planned.kind == AxisKind::Ladder) {
         run(session, &mut report, tell, planned)?;
     }
     report.climb(axes, MATTERS * tolerance);
+    while let Some(planned) = planner.next(session, &report, &mut finer) {
+        run(session, &mut report, tell, &planned)?;
+        report.climb(axes, MATTERS * tolerance);
+    }
+    report.left_out.extend(planner.explain(session, &report, &finer));
+    report.end_ladders(axes);
     let together = planner.joint(session, &report);
     tell(Progress::Together(&together));
     for planned in &together {
         run(session, &mut report, tell, planned)?;
     }
     let beside = plan.runs.iter().filter(|planned| planned.kind != AxisKind::Ladder);
-    for planned in beside.chain(&plan.spare) {
-        match planner.grant(session, planned) {
-            true => run(session, &mut report, tell, planned)?,
-            false => report.left_out.push((planned.axis.clone(), planned.level.label.clone(), plan::SPENT.into())),
+    let beside = beside.map(|planned| (planned, false)).chain(plan.spare.iter().map(|planned| (planned, true)));
+    for (planned, spare) in beside {
+        match planner.refuse(session, &report, planned, spare) {
+            None => run(session, &mut report, tell, planned)?,
+            Some(why) => report.left_out.push((planned.axis.clone(), planned.level.label.clone(), why.into())),
         }
     }
     report.compare(axes);

@@ -1,6 +1,7 @@
 //! What a study runs within its limits.
 
-use super::axes::{AxisKind, Level, StudyAxis};
+use super::axes::{AxisKind, Level, StudyAxis, judges};
+use super::ladder::Ladder;
 use super::predict::{self, Rates};
 use super::record::RunRecord;
 use super::report::Report;
@@ -16,8 +17,14 @@ const LIMIT: f64 = 240.0;
 const LARGEST: f64 = 60.0;
 
 /// Shares of the time for ladders and for levels of them together; the rest is for other ways and problems.
-const LADDERS: f64 = 0.4;
-const JOINT: f64 = 0.4;
+const LADDERS: f64 = 0.65;
+const JOINT: f64 = 0.25;
+
+/// Levels of a ladder without one of the scene's own that are run before any ladder is chosen.
+const FIRST: usize = 3;
+
+/// Share of what all ladders leave below which none of them is climbed further.
+const WORTH: f64 = 0.1;
 
 /// Largest share of the time that one run may take.
 const ONE: f64 = 0.25;
@@ -61,20 +68,22 @@ pub(super) const TOGETHER: &str = "joint";
 /// What a study is going to run.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StudyPlan {
-    /// The runs along single axes, in order.
+    /// The first levels of the ladders and the runs beside them, in order.
     pub runs: Vec<Planned>,
+    /// The finer levels of the ladders, of which those are run whose ladder leaves most a second.
+    pub finer: Vec<Planned>,
     /// Runs beside the ladders for which time may be left.
     pub spare: Vec<Planned>,
     /// Axis and level of what is not run, and why.
     pub left_out: Vec<(String, String, String)>,
-    /// Seconds that runs of levels of all ladders together may take.
-    pub joint: f64,
+    /// Seconds that finer levels, and levels of all ladders together, may take.
+    pub further: f64,
 }
 
 impl StudyPlan {
     /// Expected processor time of all, s.
     pub fn seconds(&self) -> f64 {
-        self.runs.iter().map(|run| run.seconds).sum::<f64>() + self.joint
+        self.runs.iter().map(|run| run.seconds).sum::<f64>() + self.further
     }
 }
 
@@ -111,52 +120,57 @@ impl Planner {
         if self.budget.is_some() { Rates::of(session.records()) } else { Rates::NOMINAL }
     }
 
-    /// What is left of the time.
-    fn rest(&self) -> f64 {
-        match self.budget {
-            Some(budget) => budget - (processor_time() - self.began),
-            None => LIMIT - self.spent,
-        }
+    /// What the study has taken so far.
+    fn used(&self) -> f64 {
+        if self.budget.is_some() { processor_time() - self.began } else { self.spent }
     }
 
-    /// The levels of `axes` that fit the time: of the ladders those next to the scene first, of the rest the cheapest.
+    /// What a run takes of the time: nothing, where a budget counts what is done already.
+    fn cost(&self, session: &Session<'_>, planned: &Planned, rates: Rates) -> f64 {
+        let done = self.budget.is_some() && session.has(&planned.level.setting);
+        if done { 0.0 } else { rates.seconds(&planned.size) }
+    }
+
+    /// The levels of `axes` that fit the time: of the ladders those up to the scene's own, and of the rest the cheapest.
     pub(super) fn plan(&mut self, session: &Session<'_>, axes: &[StudyAxis]) -> StudyPlan {
         let rates = self.rates(session);
-        let mut plan = StudyPlan { joint: JOINT * self.whole(), ..StudyPlan::default() };
-        let ladders: Vec<&StudyAxis> = axes.iter().filter(|axis| axis.kind == AxisKind::Ladder).collect();
-        // Without ladders to combine, their time is for the rest.
-        let share = |kind| match (kind, ladders.is_empty()) {
-            (AxisKind::Ladder, _) => LADDERS,
-            (_, false) => 1.0 - LADDERS - JOINT,
-            (_, true) => 1.0,
-        };
-        if ladders.is_empty() {
-            plan.joint = 0.0;
-        }
-        for kinds in [&[AxisKind::Ladder][..], &[AxisKind::Ways, AxisKind::Problems]] {
-            let mut all = Vec::new();
-            for axis in axes.iter().filter(|axis| kinds.contains(&axis.kind)) {
-                let own = axis.levels.iter().position(|level| level.setting.is_empty());
-                for (k, level) in axis.levels.iter().enumerate() {
-                    let far = own.filter(|_| axis.kind == AxisKind::Ladder).map_or(0, |own| own.abs_diff(k));
-                    match self.expect(session, axis, level, rates) {
-                        Ok(planned) => all.push((far, planned)),
-                        Err(why) => plan.left_out.push((axis.name.clone(), level.label.clone(), why)),
-                    }
+        let mut plan = StudyPlan::default();
+        let (mut first, mut beside) = (Vec::new(), Vec::new());
+        for axis in axes {
+            let own = axis.levels.iter().position(|level| level.setting.is_empty());
+            // Two levels at least, and all that are coarser than the scene and hence cheaper.
+            let until = own.map_or(FIRST, |own| own.max(1) + 1);
+            for (k, level) in axis.levels.iter().enumerate() {
+                match self.expect(session, axis, level, rates) {
+                    Ok(planned) if axis.kind != AxisKind::Ladder => beside.push(planned),
+                    Ok(planned) if k < until => first.push(planned),
+                    Ok(planned) => plan.finer.push(planned),
+                    Err(why) => plan.left_out.push((axis.name.clone(), level.label.clone(), why)),
                 }
             }
-            all.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.seconds.total_cmp(&b.1.seconds)));
-            let mut time = share(kinds[0]) * self.whole();
-            for (_, planned) in all {
-                let known = planned.level.setting.is_empty() || session.has(&planned.level.setting);
-                if known || planned.seconds <= time.min(self.largest()) {
-                    time -= if known { 0.0 } else { planned.seconds };
-                    plan.runs.push(planned);
-                } else if planned.kind != AxisKind::Ladder && planned.seconds <= self.largest() {
-                    plan.spare.push(planned);
-                } else {
-                    plan.left_out.push((planned.axis, planned.level.label, SPENT.into()));
-                }
+        }
+        let by_time = |a: &Planned, b: &Planned| a.seconds.total_cmp(&b.seconds);
+        // Without ladders to combine, their time is for the rest.
+        let ladders = !first.is_empty();
+        let mut time = LADDERS * self.whole();
+        first.sort_by(by_time);
+        for planned in first {
+            if planned.level.setting.is_empty() || self.take(session, &planned, &mut time, rates) {
+                plan.runs.push(planned);
+            } else {
+                plan.finer.insert(0, planned);
+            }
+        }
+        plan.further = if ladders { time + JOINT * self.whole() } else { 0.0 };
+        let mut time = if ladders { 1.0 - LADDERS - JOINT } else { 1.0 } * self.whole();
+        beside.sort_by(by_time);
+        for planned in beside {
+            if planned.level.setting.is_empty() || self.take(session, &planned, &mut time, rates) {
+                plan.runs.push(planned);
+            } else if planned.seconds <= self.largest() {
+                plan.spare.push(planned);
+            } else {
+                plan.left_out.push((planned.axis, planned.level.label, SPENT.into()));
             }
         }
         let place = |planned: &Planned| {
@@ -164,8 +178,57 @@ impl Planner {
             (axis, axis.and_then(|axis| axes[axis].levels.iter().position(|level| *level == planned.level)))
         };
         plan.runs.sort_by_key(|planned| (planned.kind != AxisKind::Ladder, place(planned)));
+        plan.finer.sort_by_key(place);
         self.spent += plan.runs.iter().filter(|run| run.kind == AxisKind::Ladder).map(|run| run.seconds).sum::<f64>();
         plan
+    }
+
+    /// Whether a run fits `time`, which it takes then.
+    fn take(&self, session: &Session<'_>, planned: &Planned, time: &mut f64, rates: Rates) -> bool {
+        let cost = self.cost(session, planned, rates);
+        let fits = cost <= time.min(self.largest());
+        *time -= if fits { cost } else { 0.0 };
+        fits
+    }
+
+    /// Takes from `finer` the level that is run next: the one of the ladder that leaves most a second, of those that are
+    /// worth it. `None` where there is none, or no time for any.
+    pub(super) fn next(&mut self, session: &Session<'_>, report: &Report, finer: &mut Vec<Planned>) -> Option<Planned> {
+        let rates = self.rates(session);
+        let time = LADDERS * self.whole() - self.used();
+        let mut best: Option<(usize, f64, f64)> = None;
+        for k in next_levels(finer) {
+            let planned = &finer[k];
+            let (left, mut time) = (report.ladder(&planned.axis).map_or(f64::INFINITY, leaves), time.max(0.0));
+            if !is_worth(report, &planned.axis) || !self.take(session, planned, &mut time, rates) {
+                continue;
+            }
+            let seconds = rates.seconds(&planned.size);
+            let better = |(_, most, taken): (usize, f64, f64)| {
+                (left / seconds).total_cmp(&most).then(taken.total_cmp(&seconds)).is_gt()
+            };
+            if best.is_none_or(better) {
+                best = Some((k, left / seconds, seconds));
+            }
+        }
+        let (k, _, seconds) = best?;
+        self.spent += seconds;
+        Some(Planned { seconds, ..finer.remove(k) })
+    }
+
+    /// Why none of `finer` was run: axis, level, reason.
+    pub(super) fn explain(
+        &self,
+        session: &Session<'_>,
+        report: &Report,
+        finer: &[Planned],
+    ) -> Vec<(String, String, String)> {
+        let rates = self.rates(session);
+        let why = |planned: &Planned| match is_worth(report, &planned.axis) {
+            false => format!("the ladder leaves less than {:.0} % of what all leave", WORTH * 100.0),
+            true => format!("{SPENT}, about {:.0} s", rates.seconds(&planned.size)),
+        };
+        finer.iter().map(|planned| (planned.axis.clone(), planned.level.label.clone(), why(planned))).collect()
     }
 
     fn expect(&self, session: &Session<'_>, axis: &StudyAxis, level: &Level, rates: Rates) -> Result<Planned, String> {
@@ -191,15 +254,26 @@ impl Planner {
         size().map_err(|why| why.to_string())
     }
 
-    /// Whether there is time for a run beside the ladders.
-    pub(super) fn grant(&mut self, session: &Session<'_>, planned: &Planned) -> bool {
+    /// Why a run beside the ladders is left out, unless it is granted: where `spare`, it must be judged by a ladder that is
+    /// worth it, or by none.
+    pub(super) fn refuse(
+        &mut self,
+        session: &Session<'_>,
+        report: &Report,
+        planned: &Planned,
+        spare: bool,
+    ) -> Option<&'static str> {
         if planned.level.setting.is_empty() || session.has(&planned.level.setting) {
-            return true;
+            return None;
+        }
+        let judges = judges(&planned.axis);
+        if spare && !judges.is_empty() && !judges.iter().any(|axis| is_worth(report, axis)) {
+            return Some("the ladders that judge it leave a small part of what all leave");
         }
         let seconds = self.rates(session).seconds(&planned.size);
-        let affordable = seconds <= self.rest();
+        let affordable = seconds <= self.whole() - self.used();
         self.spent += if affordable { seconds } else { 0.0 };
-        affordable
+        (!affordable).then_some(SPENT)
     }
 
     /// Levels of all ladders of `report` together: the cheapest for each target, and the finest that the time allows.
@@ -209,7 +283,8 @@ impl Planner {
             return Vec::new();
         }
         let rates = self.rates(session);
-        let mut time = (JOINT * self.whole()).min(self.rest());
+        // What the ladders have left over is for these.
+        let mut time = ((LADDERS + JOINT) * self.whole() - self.used()).max(0.0);
         let mut all = vec![Vec::new()];
         for ladder in ladders {
             all = all
@@ -226,9 +301,11 @@ impl Planner {
                 let label = each().map(|level| level.level.label.as_str()).collect::<Vec<_>>().join(", ");
                 let setting = each().flat_map(|level| level.level.setting.clone()).collect();
                 let level = Level { label, setting, at_limit: false };
-                let error = each().map(|level| level.worst(&sure)).sum();
-                let seconds = rates.seconds(&size);
-                (error, Planned { axis: TOGETHER.into(), kind: AxisKind::Ladder, level, size, seconds, rungs })
+                let error = each().map(|level| level.worst(&sure).map_or(f64::INFINITY, |worst| worst.error)).sum();
+                let mut planned =
+                    Planned { axis: TOGETHER.into(), kind: AxisKind::Ladder, level, size, seconds: 0.0, rungs };
+                planned.seconds = self.cost(session, &planned, rates);
+                (error, planned)
             })
             .filter(|(_, planned)| planned.size.factor_entries <= MOST_ENTRIES)
             .collect();
@@ -262,6 +339,22 @@ impl Planner {
         self.spent += chosen.iter().map(|planned| planned.seconds).sum::<f64>();
         chosen
     }
+}
+
+/// What `ladder` may leave, as far as a plan can count on it.
+fn leaves(ladder: &Ladder) -> f64 {
+    ladder.leaves().map_or(0.0, |limit| limit.convergence.feared())
+}
+
+/// Whether `axis` leaves a notable part of what all ladders leave, or nobody knows what it leaves.
+fn is_worth(report: &Report, axis: &str) -> bool {
+    let total: f64 = report.ladders.iter().map(leaves).sum();
+    report.ladder(axis).is_none_or(|ladder| ladder.stalls() || leaves(ladder) >= WORTH * total)
+}
+
+/// Places of the next level of every ladder in `finer`, whose levels are in order.
+fn next_levels(finer: &[Planned]) -> impl Iterator<Item = usize> {
+    (0..finer.len()).filter(|k| finer[..*k].iter().all(|before| before.axis != finer[*k].axis))
 }
 
 /// A level coarser along every ladder.

@@ -1,7 +1,7 @@
 //! What a study found.
 
 use super::axes::{AxisKind, LADDERS, Level, StudyAxis, judges};
-use super::converge::Convergence;
+use super::converge::{Convergence, ErrorBar};
 use super::ladder::Ladder;
 use super::plan::{Planned, SPENT, TOGETHER, below};
 use super::quantity::FORCE_HISTORY;
@@ -49,10 +49,10 @@ pub struct Row {
     pub result: Result<RunRecord, String>,
     /// Expected processor time, s.
     pub expected_s: f64,
-    /// Relative error of each quantity that its axis alone leaves, or changes.
-    pub own: Vec<Option<f64>>,
+    /// Relative error of each quantity that its axis alone leaves, or what it changes, which has no bar.
+    pub own: Vec<Option<ErrorBar>>,
     /// Relative error of each quantity, counted from the reference; what the reference leaves, where it is below that.
-    pub errors: Vec<Option<f64>>,
+    pub errors: Vec<Option<ErrorBar>>,
     /// Whether no cheaper run has a smaller worst error.
     pub front: bool,
 }
@@ -64,8 +64,8 @@ pub struct Reference {
     pub row: usize,
     /// Per quantity: its value extrapolated along every ladder, where it is a number.
     pub values: Vec<Option<f64>>,
-    /// Per quantity: the relative error that is left, as far as known.
-    pub bars: Vec<f64>,
+    /// Per quantity: the relative error that is left; infinite where something does not converge.
+    pub left: Vec<ErrorBar>,
     /// Per quantity: relative difference of the run that is a level coarser along every ladder.
     pub agreement: Vec<Option<f64>>,
 }
@@ -76,15 +76,20 @@ impl Row {
         Self { axis: axis.to_owned(), kind, level, rungs, result, expected_s, own, errors, front: false }
     }
 
-    /// The largest of its errors; `None` where one is unknown.
-    pub fn worst(&self) -> Option<f64> {
-        let each = self.errors.iter().copied().collect::<Option<Vec<f64>>>()?;
-        each.into_iter().reduce(f64::max).filter(|worst| worst.is_finite())
+    /// The largest of its errors of `quantities` (counted in those that are asked); `None` where one has none.
+    pub fn worst_of(&self, quantities: &[usize]) -> Option<ErrorBar> {
+        let each: Option<Vec<ErrorBar>> = quantities.iter().map(|q| self.errors.get(*q).copied().flatten()).collect();
+        ErrorBar::worst(each?)
+    }
+
+    /// The largest of its errors; `None` where it has none of a quantity.
+    pub fn worst(&self) -> Option<ErrorBar> {
+        self.worst_of(&(0..self.errors.len()).collect::<Vec<_>>())
     }
 
     /// The largest of its errors and differences along its axis.
-    pub fn own_worst(&self) -> Option<f64> {
-        self.own.iter().copied().flatten().reduce(f64::max)
+    pub fn own_worst(&self) -> Option<ErrorBar> {
+        ErrorBar::worst(self.own.iter().copied().flatten())
     }
 
     /// Nominal seconds: what it costs, whatever the machine.
@@ -155,6 +160,36 @@ impl Report {
         self.ladders = climbed.filter(|ladder| ladder.levels.len() > 1).collect();
     }
 
+    /// Says of every ladder why no finer level ran.
+    pub(super) fn end_ladders(&mut self, axes: &[StudyAxis]) {
+        for ladder in &mut self.ladders {
+            let levels = axes.iter().find(|axis| axis.name == ladder.axis).map_or(&[][..], |axis| &axis.levels);
+            let finest = ladder.levels.last().and_then(|rung| levels.iter().position(|level| *level == rung.level));
+            let Some(next) = finest.and_then(|k| levels.get(k + 1)) else {
+                "there is no finer level".clone_into(&mut ladder.end);
+                continue;
+            };
+            let planned = self.left_out.iter().find(|(axis, label, _)| *axis == ladder.axis && *label == next.label);
+            let ran = self.rows.iter().find(|row| row.axis == ladder.axis && row.level == *next);
+            let why = planned
+                .map(|left_out| left_out.2.as_str())
+                .or(ran.and_then(|row| row.result.as_ref().err()).map(String::as_str));
+            ladder.end = format!("{}: {}", next.label, why.unwrap_or(SPENT));
+        }
+    }
+
+    /// The rows whose runs were made for them: levels of all ladders together may be those of a single one.
+    pub(super) fn made(&self) -> impl Iterator<Item = &Row> {
+        let of = |row: &Row| (row.level.setting.clone(), row.level.at_limit);
+        let first = move |k: usize| self.rows[..k].iter().all(|before| of(before) != of(&self.rows[k]));
+        (0..self.rows.len()).filter(move |k| first(*k)).map(|k| &self.rows[k])
+    }
+
+    /// The ladder of `axis`, if it was climbed.
+    pub(super) fn ladder(&self, axis: &str) -> Option<&Ladder> {
+        self.ladders.iter().find(|ladder| ladder.axis == axis)
+    }
+
     /// What is asked and converges along every ladder; all of it, if nothing does.
     pub(super) fn convergent(&self) -> Vec<String> {
         let stalls = |name: &&String| {
@@ -167,6 +202,13 @@ impl Report {
 
     /// Counts errors from the reference, and what each axis changes from its judge.
     pub(super) fn compare(&mut self, axes: &[StudyAxis]) {
+        let place = |row: &Row| {
+            let axis = axes.iter().position(|axis| axis.name == row.axis);
+            let level = axis.and_then(|k| axes[k].levels.iter().position(|level| *level == row.level));
+            // The scene itself stays first, levels of all ladders together come behind them.
+            (row.kind != AxisKind::Ladder, axis.is_none(), axis, level)
+        };
+        self.rows[1..].sort_by(|a, b| place(a).cmp(&place(b)).then(a.work().total_cmp(&b.work())));
         self.count_errors();
         let finest = |axis: &str| {
             let axis = axes.iter().find(|a| a.name == axis)?;
@@ -188,8 +230,8 @@ impl Report {
             let Ok(record) = &row.result else { continue };
             row.errors = asked
                 .iter()
-                .zip(reference.values.iter().zip(&reference.bars))
-                .map(|(quantity, (value, bar))| {
+                .zip(reference.values.iter().zip(&reference.left))
+                .map(|(quantity, (value, left))| {
                     let error = match (value, record.value(quantity)) {
                         (Some(value), Some(own)) if quantity != FORCE_HISTORY && *value != 0.0 => {
                             ((own - value) / value).abs()
@@ -197,7 +239,8 @@ impl Report {
                         _ => record.difference(exact.as_ref().ok()?, quantity)?.abs(),
                     };
                     // An error below what is left of the reference is not known to be smaller.
-                    Some(if error < *bar && bar.is_finite() { *bar } else { error })
+                    let error = if error < left.error && left.error.is_finite() { left.error } else { error };
+                    Some(ErrorBar { error, bar: left.bar })
                 })
                 .collect();
             let ladder = ladders.iter().find(|ladder| ladder.axis == row.axis);
@@ -205,7 +248,10 @@ impl Report {
             let other = judge.or_else(|| base.clone().ok());
             row.own = match rung {
                 Some(rung) => rung.errors.iter().map(|e| Some(e.1)).collect(),
-                None => asked.iter().map(|q| Some(record.difference(other.as_ref()?, q)?.abs())).collect(),
+                None => {
+                    let change = |q: &String| Some(ErrorBar::exact(record.difference(other.as_ref()?, q)?.abs()));
+                    asked.iter().map(change).collect()
+                }
             };
         }
         self.mark_front();
@@ -216,7 +262,8 @@ impl Report {
     fn count_errors(&mut self) {
         let sure = self.convergent();
         let total = |row: &Row| -> f64 {
-            self.ladders.iter().zip(&row.rungs).map(|(ladder, k)| ladder.levels[*k].worst(&sure)).sum()
+            let each = self.ladders.iter().zip(&row.rungs).map(|(ladder, k)| ladder.levels[*k].worst(&sure));
+            each.map(|worst| worst.map_or(f64::INFINITY, |worst| worst.error)).sum()
         };
         let joint = self.rows.iter().enumerate().filter(|(_, row)| row.axis == TOGETHER && row.result.is_ok());
         let finest = joint.map(|(k, row)| (k, total(row))).min_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
@@ -225,22 +272,23 @@ impl Report {
         let Ok(record) = &finest.result else { return };
         let below = below(&finest.rungs);
         let second = self.rows.iter().find(|row| row.axis == TOGETHER && row.rungs == below);
-        let second = second.and_then(|row| row.result.as_ref().ok()).filter(|_| below != finest.rungs);
+        let second = second.and_then(|row| row.result.as_ref().ok()).filter(|_| finest.rungs.iter().all(|k| *k > 0));
         let mut reference = Reference { row, ..Reference::default() };
         for quantity in &self.asked {
             let each = self.ladders.iter().zip(&finest.rungs).map(|(ladder, k)| ladder.correction(quantity, *k));
-            let (mut correction, mut bar) = (0.0, 0.0);
+            let unknown = ErrorBar { error: f64::INFINITY, bar: f64::INFINITY };
+            let (mut correction, mut left) = (0.0, ErrorBar::exact(0.0));
             for found in each {
-                let (by, uncertain) = found.unwrap_or((0.0, f64::INFINITY));
+                let (by, of_ladder) = found.unwrap_or((0.0, unknown));
                 correction += by;
-                bar += uncertain;
+                left = ErrorBar { error: left.error + of_ladder.error, bar: left.bar + of_ladder.bar };
             }
             if finest.rungs.is_empty() {
-                bar = f64::INFINITY;
+                left = unknown;
             }
             let value = record.value(quantity);
             reference.values.push(value.map(|value| value + correction * value.abs()));
-            reference.bars.push(bar);
+            reference.left.push(left);
             reference.agreement.push(second.and_then(|second| second.difference(record, quantity)).map(f64::abs));
         }
         self.reference = reference;
@@ -263,20 +311,16 @@ impl Report {
         let mut best = f64::INFINITY;
         for k in self.sort_by_work() {
             let row = &mut self.rows[k];
-            row.front = row.worst().is_some_and(|worst| worst < best);
-            if row.front {
-                best = row.worst().unwrap_or(best);
-            }
+            let worst = row.worst().map_or(f64::INFINITY, |worst| worst.error);
+            row.front = worst < best;
+            best = best.min(worst);
         }
     }
 
     /// The cheapest run whose error of every quantity in `quantities` (counted in `asked`) is within `tolerance`, what is
     /// left of the reference included.
     pub fn cheapest(&self, quantities: &[usize], tolerance: f64) -> Option<&Row> {
-        let within = |row: &&Row| {
-            let error = |q: &usize| row.errors.get(*q).copied().flatten().map(|e| e + self.reference.bars[*q]);
-            quantities.iter().all(|q| error(q).is_some_and(|error| error <= tolerance))
-        };
+        let within = |row: &&Row| row.worst_of(quantities).is_some_and(|worst| worst.most() <= tolerance);
         self.sort_by_work().into_iter().map(|k| &self.rows[k]).find(within)
     }
 
@@ -296,8 +340,8 @@ impl Report {
                 };
                 notes.push(format!(
                     "{quantity} does not converge along {} as far as it was climbed: the last level changes it by \
-                     {difference:.1e}, hardly less than the one before; nothing is extrapolated{why}",
-                    ladder.axis
+                     {difference:.1e}, hardly less than the one before; nothing is extrapolated{why}; not run: {}",
+                    ladder.axis, ladder.end
                 ));
             }
         }
@@ -309,7 +353,7 @@ impl Report {
             );
         }
         if let Some(row) = self.rows.iter().find(|row| row.axis == "geometry") {
-            let error = row.own_worst().unwrap_or(0.0);
+            let error = row.own_worst().map_or(0.0, |worst| worst.error);
             notes.push(match self.straight {
                 true => format!(
                     "geometry: the mesh keeps straight edges along a curve, and refinement leads to the polygon's \
@@ -325,7 +369,7 @@ impl Report {
         let unclimbed: BTreeSet<&str> = self
             .left_out
             .iter()
-            .filter(|(axis, _, why)| why == SPENT && LADDERS.contains(&axis.as_str()))
+            .filter(|(axis, _, why)| why.starts_with(SPENT) && LADDERS.contains(&axis.as_str()))
             .map(|(axis, ..)| axis.as_str())
             .filter(|axis| self.ladders.iter().all(|ladder| ladder.axis != *axis))
             .collect();

@@ -1,5 +1,6 @@
 //! A study as a table for machines.
 
+use super::converge::ErrorBar;
 use super::record::RunRecord;
 use super::report::{Report, Row};
 use crate::error::Error;
@@ -32,8 +33,8 @@ const SIZES: [&str; 20] = [
     "worst_error",
 ];
 
-/// Writes study.csv, whole or not at all: a line per run with its keys, sizes and work; values and errors of all quantities;
-/// seconds and memory, which alone differ from study to study.
+/// Writes study.csv, whole or not at all: a line per run with its keys, sizes and work; values and errors of all quantities,
+/// how much larger these may be and whether they are known to a third; seconds and memory, which alone differ from study to study.
 ///
 /// # Errors
 /// A folder that cannot be written, a number that is not finite.
@@ -62,8 +63,12 @@ fn figures(report: &Report) -> Vec<&str> {
 fn header(report: &Report) -> Vec<String> {
     let mut header: Vec<String> = SIZES.map(str::to_owned).to_vec();
     header.extend(figures(report).into_iter().map(str::to_owned));
-    header.extend(report.asked.iter().map(|name| format!("{name} error")));
-    header.extend(report.asked.iter().map(|name| format!("{name} of its axis")));
+    for of in ["error", "of its axis"] {
+        header.extend(report.asked.iter().map(|name| format!("{name} {of}")));
+        for part in ["bar", "known"] {
+            header.extend(report.asked.iter().map(|name| format!("{name} {of}: {part}")));
+        }
+    }
     header.extend(PHASES.map(|phase| format!("{phase}_cpu_s")));
     header.extend(["expected_cpu_s", "peak_memory_MB"].map(str::to_owned));
     header
@@ -108,10 +113,15 @@ fn line<'a>(row: &'a Row, keys: &'a str, names: &[&str], asked: usize) -> Vec<Ta
         [|w| w.elements, |w| w.factorisations, |w| w.solves, |w| w.steps, |w| w.contact_calls, |w| w.criterion_calls];
     line.extend(work.map(|of| record.map_or(NONE, |r| TableValue::Count(of(&r.size.work)))));
     line.push(number(Some(row.work())));
-    line.push(number(row.worst()));
+    line.push(number(row.worst().map(|worst| worst.error)));
     line.extend(names.iter().map(|name| number(record.and_then(|r| r.value(name)))));
     for errors in [&row.errors, &row.own] {
-        line.extend((0..asked).map(|q| number(errors.get(q).copied().flatten())));
+        let each = || (0..asked).map(|q| errors.get(q).copied().flatten());
+        line.extend(each().map(|error| number(error.map(|e| e.error))));
+        line.extend(each().map(|error| number(error.map(|e| e.bar))));
+        let known =
+            |error: Option<ErrorBar>| error.map_or(NONE, |e| TableValue::Text(if e.is_known() { "yes" } else { "no" }));
+        line.extend(each().map(known));
     }
     line.extend((0..PHASES.len()).map(|k| number(record.map(|r| r.seconds[k]))));
     line.push(number(Some(row.expected_s)));

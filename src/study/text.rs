@@ -1,9 +1,9 @@
 //! A study as people read it.
 
 use super::axes::AxisKind;
-use super::converge::Convergence;
+use super::converge::{Convergence, ErrorBar};
 use super::ladder::Ladder;
-use super::plan::{StudyPlan, TOGETHER};
+use super::plan::StudyPlan;
 use super::report::{Report, Row};
 use std::fmt::{self, Write as _};
 
@@ -32,8 +32,9 @@ impl fmt::Display for StudyPlan {
             };
             writeln!(f, "    {axis:<14} {labels} ({seconds:.1} s)")?;
         }
-        if self.joint > 0.0 {
-            writeln!(f, "    {TOGETHER:<14} levels of all ladders together (up to {:.0} s)", self.joint)?;
+        if self.further > 0.0 {
+            let further = "the next level of the ladder that leaves most a second; then levels of all ladders together";
+            writeln!(f, "    {:<14} {further} (up to {:.0} s)", "further", self.further)?;
         }
         let spare: Vec<_> =
             self.spare.iter().map(|run| (run.axis.clone(), run.level.label.clone(), String::new())).collect();
@@ -98,13 +99,13 @@ pub fn tables(report: &Report) -> String {
 
 fn summary(report: &Report, t: &mut String) -> fmt::Result {
     let Ok(base) = &report.base().result else { return Ok(()) };
-    let ran: f64 = report.rows.iter().filter_map(|row| row.result.as_ref().ok()).map(|record| record.total()).sum();
+    let ran: f64 = report.made().filter_map(|row| row.result.as_ref().ok()).map(|record| record.total()).sum();
     let reference = &report.rows[report.reference.row];
     writeln!(t, "{}: what accuracy costs\n", report.title)?;
     writeln!(
         t,
         "* {} runs in {} of processor time; the scene as it is takes {}",
-        report.rows.len(),
+        report.made().count(),
         seconds(ran),
         seconds(base.total())
     )?;
@@ -118,7 +119,7 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
                 "* reference {verdict}: a level coarser along every ladder changes it by at most {worst:.1e} (asked: {:.1e})",
                 report.tolerance
             )?,
-            None => writeln!(t, "* reference NOT proven: there is none a level coarser")?,
+            None => writeln!(t, "* reference NOT proven: none is a level coarser along every ladder")?,
         }
     } else {
         writeln!(t, "* no ladder was climbed: what is shown are differences from the scene as it is")?;
@@ -131,9 +132,11 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
     for (q, quantity) in report.asked.iter().enumerate() {
         let error = report.base().errors.get(q).copied().flatten();
         let parts: Vec<String> = report.ladders.iter().map(|ladder| format_share(ladder, quantity)).collect();
-        let bar = report.reference.bars.get(q).copied().filter(|bar| bar.is_finite());
-        writeln!(t, "| {quantity} | {} | {} | {} |", figure(error), figure(bar), parts.join(" | "))?;
+        let left = figure(report.reference.left.get(q).copied());
+        writeln!(t, "| {quantity} | {} | {left} | {} |", figure(error), parts.join(" | "))?;
     }
+
+    where_time_went(report, t)?;
 
     writeln!(t, "\nThe cheapest run for an error\n")?;
     let mut previous = String::new();
@@ -141,9 +144,8 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
         for target in TARGETS {
             let Some(row) = report.cheapest(&quantities, target) else { continue };
             let Ok(record) = &row.result else { continue };
-            let error = quantities.iter().filter_map(|q| row.errors[*q]).reduce(f64::max).unwrap_or(0.0);
-            let bar = quantities.iter().map(|q| report.reference.bars[*q]).fold(0.0, f64::max);
-            let line = format!("{}: {} ({error:.1e} +- {bar:.0e})", describe(row), seconds(record.total()));
+            let error = figure(row.worst_of(&quantities));
+            let line = format!("{}: {} ({error})", describe(row), seconds(record.total()));
             if line != previous {
                 writeln!(t, "* {} of {name}: {line}", percent(target))?;
             }
@@ -157,6 +159,34 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
     report.notes.iter().try_for_each(|note| writeln!(t, "* note: {note}"))
 }
 
+/// Runs and seconds of every axis, what a ladder leaves at its finest level, and why it ends there.
+fn where_time_went(report: &Report, t: &mut String) -> fmt::Result {
+    writeln!(t, "\nWhere the time went\n")?;
+    writeln!(t, "| axis | runs | time | its finest level leaves | not run |")?;
+    writeln!(t, "| --- | --- | --- | --- | --- |")?;
+    let mut axes: Vec<&str> = Vec::new();
+    for row in report.made() {
+        if !axes.contains(&row.axis.as_str()) {
+            axes.push(&row.axis);
+        }
+    }
+    for axis in axes {
+        let each = || report.made().filter(|row| row.axis == axis);
+        let time: f64 = each().filter_map(|row| row.result.as_ref().ok()).map(|record| record.total()).sum();
+        let ladder = report.ladder(axis);
+        let leaves = ladder.and_then(Ladder::leaves).map_or_else(String::new, |limit| {
+            let left = match limit.convergence {
+                Convergence::Stalls { difference } => ErrorBar { error: difference, bar: f64::INFINITY },
+                other => ErrorBar { error: other.left(), bar: other.bar() },
+            };
+            format!("{} of {}", figure(Some(left)), limit.quantity)
+        });
+        let end: String = ladder.map_or("", |ladder| &ladder.end).chars().take(2 * WORDS).collect();
+        writeln!(t, "| {axis} | {} | {} | {leaves} | {end} |", each().count(), seconds(time))?;
+    }
+    Ok(())
+}
+
 /// Every quantity by itself, and all together where there are several.
 fn goals(report: &Report) -> Vec<(Vec<usize>, &str)> {
     let mut goals: Vec<(Vec<usize>, &str)> =
@@ -167,22 +197,32 @@ fn goals(report: &Report) -> Vec<(Vec<usize>, &str)> {
     goals
 }
 
-/// What a ladder leaves of a quantity at the scene's own level, with its order.
+/// What a ladder leaves of a quantity at the scene's own level, with its order, or with what would have to be run to know it.
 fn format_share(ladder: &Ladder, quantity: &str) -> String {
     let own = ladder.levels.iter().find(|rung| rung.level.setting.is_empty());
     let error = own.and_then(|rung| rung.errors.iter().find(|e| e.0 == quantity)).map(|e| e.1);
     let convergence = ladder.limits.iter().find(|limit| limit.quantity == quantity).map(|limit| limit.convergence);
+    let next = || match ladder.end.split_once(':') {
+        Some((level, _)) => format!("next: {level}"),
+        None => ladder.end.clone(),
+    };
     let how = match convergence {
         Some(Convergence::Converges { order, .. }) => format!(", order {order:.1}"),
-        Some(Convergence::Stalls { .. }) => ", no convergence".to_owned(),
-        Some(Convergence::Unknown { .. }) => ", order unknown".to_owned(),
+        Some(Convergence::Stalls { .. }) => format!(", no convergence; {}", next()),
+        Some(Convergence::Unknown { .. }) => format!(", order unknown; {}", next()),
         _ => String::new(),
     };
     format!("{}{how}", figure(error))
 }
 
-fn figure(error: Option<f64>) -> String {
-    error.filter(|error| error.is_finite()).map_or_else(|| "-".to_owned(), |error| format!("{error:.1e}"))
+/// An error, and what it may be where that is not known to a third.
+fn figure(error: Option<ErrorBar>) -> String {
+    match error.filter(|e| e.error.is_finite()) {
+        None => "-".to_owned(),
+        Some(e) if e.is_known() => format!("{:.1e}", e.error),
+        Some(e) if e.bar.is_finite() => format!("{:.1e} to {:.0e}", e.error, e.most()),
+        Some(e) => format!("{:.1e} or more", e.error),
+    }
 }
 
 /// The settings of a run that cost.

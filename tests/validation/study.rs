@@ -55,11 +55,13 @@ impl Studied {
     fn honest(&self, quantity: &str, floor: f64, decades: f64, error: &dyn Fn(&Row) -> f64) {
         let report = &self.report;
         let q = report.asked.iter().position(|name| name == quantity).unwrap();
-        let (bar, finest) = (report.reference.bars[q], report.reference.row);
+        let (bar, finest) = (report.reference.left[q].error, report.reference.row);
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
         for (k, row) in report.rows.iter().enumerate().filter(|(_, row)| row.result.is_ok()) {
-            let (estimate, exact) = (row.errors[q].unwrap(), error(row));
+            let (estimate, exact) = (row.errors[q].unwrap().error, error(row));
             let run = format!("{quantity} of {}, {}: {estimate:e} for {exact:e}", row.axis, row.level.label);
+            let told = row.errors[q].unwrap().most();
+            assert!(exact <= 1.05 * told + floor, "{run}, at most {told:e}");
             if exact > (2.0 * floor).max(bar) {
                 assert!((0.5..2.0).contains(&(estimate / exact)), "{run}");
                 (least, most) = (least.min(exact), most.max(exact));
@@ -214,7 +216,7 @@ fn a_force_at_a_node_of_a_solid_has_no_limit() {
     for (q, name) in report.asked.iter().enumerate() {
         assert_eq!(report.reference.values[q], reference.value(name));
         assert!(
-            report.reference.bars[q].is_infinite() && report.cheapest(&[q], 0.99).is_none(),
+            report.reference.left[q].error.is_infinite() && report.cheapest(&[q], 0.99).is_none(),
             "{:?}",
             report.reference
         );
@@ -286,7 +288,7 @@ fn straight_edges_along_a_circle() {
     let limit = |report: &Report| report.reference.values[0].unwrap();
     let exact = (limit(&straight) / limit(&kept) - 1.0).abs();
     let geometry = straight.rows.iter().find(|row| row.axis == "geometry").unwrap();
-    let told = geometry.own[0].unwrap();
+    let told = geometry.own[0].unwrap().error;
     assert!(exact > 1e-2 && (0.5..2.0).contains(&(told / exact)), "{told:e} for {exact:e}");
     let of = |report: &Report| report.notes.iter().find(|note| note.starts_with("geometry: ")).unwrap().clone();
     let [polygon, circle] = [of(&straight), of(&kept)];

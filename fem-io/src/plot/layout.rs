@@ -1,10 +1,11 @@
 //! Where everything of a plot goes.
 
 use super::flags::{Flag, GAP, flags};
+use super::pens::{Pen, Stroke, color};
 use super::scale::Range;
 use super::shapes::{Anchor, Color, Drawing, Shape, Text};
 use super::words::{estimate_width, shorten};
-use super::{Axis, LinePlot, Mark, PlotError, Scale, Series, Style};
+use super::{Axis, Doubt, LinePlot, Mark, PlotError, Scale, Series};
 
 pub(super) const WIDTH: f64 = 1600.0;
 /// Height of the area of the curves.
@@ -21,22 +22,14 @@ pub(super) const INK: Color = [0x22, 0x22, 0x22];
 pub(super) const FAINT: Color = [0x66, 0x66, 0x66];
 const GRID: Color = [0xe3, 0xe3, 0xe3];
 const MINOR_GRID: Color = [0xf0, 0xf0, 0xf0];
-/// Okabe and Ito (2008), without the yellow, which is lost on white, and the vermilion, which is for marks.
-const PALETTE: [Color; 6] = [
-    [0x00, 0x72, 0xb2],
-    [0xe6, 0x9f, 0x00],
-    [0x00, 0x9e, 0x73],
-    [0xcc, 0x79, 0xa7],
-    [0x56, 0xb4, 0xe9],
-    [0x00, 0x00, 0x00],
-];
-const MARK: Color = [0xd5, 0x5e, 0x00];
+pub(super) const MARK: Color = [0xd5, 0x5e, 0x00];
 
 /// The shapes of `plot`, which has points and is finite.
 pub(super) fn lay_out(plot: &LinePlot) -> Result<Drawing, PlotError> {
     let values = || {
         let points = plot.series.iter().flat_map(|s| s.points.iter().copied());
-        points.chain(plot.marks.iter().map(|m| (m.x, m.y)))
+        let bars = plot.doubts.iter().filter(|d| d.most.is_finite()).map(|d| (d.x, d.most));
+        points.chain(plot.marks.iter().map(|m| (m.x, m.y))).chain(bars)
     };
     let range =
         |axis: &Axis, largest| PlotError::Range { title: plot.title.clone(), axis: axis.label.clone(), largest };
@@ -58,8 +51,10 @@ pub(super) fn lay_out(plot: &LinePlot) -> Result<Drawing, PlotError> {
             names.push(series);
         }
     }
-    let pen = |s: &Series| Pen::new(s.style, names.iter().position(|n| n.label == s.label).unwrap_or(0));
-    let legend = if names.len() > 1 { legend(&names, left, right) } else { Vec::new() };
+    let place = |label: &str| names.iter().position(|n| n.label == label).unwrap_or(0);
+    let pen = |s: &Series| Pen::new(s.style, place(&s.label));
+    let texts = names.iter().map(|s| s.label.as_str()).filter(|_| names.len() > 1);
+    let legend = legend(texts.chain((!plot.doubts.is_empty()).then_some(DOUBTED)), left, right);
     let flags = flags(&plot.marks, |m| left + x.fraction(m.x) * (right - left), left, right);
     let rows = |rows: Option<usize>| rows.map_or(0.0, |last| (last + 1) as f64 * ROW);
     let legend_top = EDGE + 1.4 * TITLE;
@@ -76,42 +71,21 @@ pub(super) fn lay_out(plot: &LinePlot) -> Result<Drawing, PlotError> {
     for series in &plot.series {
         canvas.curve(&area, series, &pen(series));
     }
+    let mut doubts: Vec<(&Doubt, Color)> = plot.doubts.iter().map(|d| (d, color(place(&d.series)))).collect();
+    // Short bars above long ones.
+    doubts.sort_by(|a, b| b.0.most.total_cmp(&a.0.most));
+    doubts.iter().for_each(|(doubt, color)| canvas.doubt(&area, doubt, *color));
     for (flag, mark) in flags.iter().zip(&plot.marks) {
         canvas.flag(&area, flag, mark, top);
     }
-    for (entry, series) in legend.iter().zip(&names) {
+    for (entry, series) in legend.iter().zip(names.iter().filter(|_| names.len() > 1)) {
         canvas.legend(entry, &pen(series), legend_top);
+    }
+    if let Some(entry) = legend.last().filter(|_| !plot.doubts.is_empty()) {
+        canvas.legend_of_doubts(entry, legend_top);
     }
     let height = (area.bottom + 2.0 * LABEL + EDGE + 30.0).ceil();
     Ok(Drawing { title: shorten(&plot.title, TITLE, WIDTH), width: WIDTH, height, shapes: canvas.0 })
-}
-
-/// What a curve is drawn with: a line, dots or both.
-struct Pen {
-    color: Color,
-    line: Option<Stroke>,
-    dots: bool,
-}
-
-#[derive(Clone, Copy)]
-struct Stroke {
-    width: f64,
-    dashed: bool,
-}
-
-impl Pen {
-    /// Pen of the `n`-th name.
-    fn new(style: Style, n: usize) -> Self {
-        let stroke = |dashed| Some(Stroke { width: 3.5, dashed });
-        let color = PALETTE[n % PALETTE.len()];
-        match style {
-            Style::Solid => Self { color, line: stroke(false), dots: false },
-            Style::Dashed => Self { color, line: stroke(true), dots: false },
-            Style::Dots => Self { color, line: None, dots: true },
-            Style::Joined => Self { color, line: stroke(n / PALETTE.len() % 2 == 1), dots: true },
-            Style::Guide => Self { color: INK, line: Some(Stroke { width: 2.5, dashed: true }), dots: false },
-        }
-    }
 }
 
 /// First, lowest, highest and last of every run of points within one pixel column.
@@ -145,13 +119,18 @@ const DOT: f64 = 6.0;
 /// Length of the line beside a name in the legend.
 const SAMPLE: f64 = 56.0;
 
+/// What open points are, in the legend.
+const DOUBTED: &str = "open: may be as high as its bar";
+/// Half of the line across the end of a bar, and what is drawn of one without an end.
+const CAP: f64 = 7.0;
+const ARROW: f64 = 44.0;
+
 /// Entries side by side, in as many rows as they need.
-fn legend(series: &[&Series], left: f64, right: f64) -> Vec<Entry> {
+fn legend<'a>(labels: impl Iterator<Item = &'a str>, left: f64, right: f64) -> Vec<Entry> {
     let (mut row, mut x) = (0, left);
-    series
-        .iter()
-        .map(|s| {
-            let text = shorten(&s.label, SMALL, 0.5 * (right - left));
+    labels
+        .map(|label| {
+            let text = shorten(label, SMALL, 0.5 * (right - left));
             let width = SAMPLE + 14.0 + estimate_width(&text, SMALL);
             if x + width > right && x > left {
                 (row, x) = (row + 1, left);
@@ -253,6 +232,32 @@ impl Canvas {
             self.line(points, width, pen.color, dashed);
         }
         self.0.extend(dots.into_iter().map(|centre| Shape::Dot { centre, radius: DOT, color: pen.color }));
+    }
+
+    /// An open point with a bar up to the most that it may be; an arrow, where there is no such most.
+    fn doubt(&mut self, area: &Area, doubt: &Doubt, color: Color) {
+        let at @ [x, y] = area.place(doubt.x, doubt.y);
+        let end = if doubt.most.is_finite() { area.up(doubt.most) } else { (y - ARROW).max(area.top) };
+        // An arrow turns back from its end, a cap goes across it.
+        let back = if doubt.most.is_finite() { 0.0 } else { 1.5 * CAP };
+        self.line(vec![[x, y], [x, end]], 2.5, color, false);
+        self.line(vec![[x - CAP, end + back], [x, end], [x + CAP, end + back]], 2.5, color, false);
+        self.ring(at, color);
+    }
+
+    fn ring(&mut self, centre: [f64; 2], color: Color) {
+        self.0.push(Shape::Dot { centre, radius: DOT + 2.0, color });
+        self.0.push(Shape::Dot { centre, radius: DOT - 1.5, color: WHITE });
+    }
+
+    fn legend_of_doubts(&mut self, entry: &Entry, top: f64) {
+        let baseline = top + (entry.row as f64 + 0.6) * ROW;
+        let (x, middle) = (entry.left + 0.5 * SAMPLE, baseline - 0.35 * SMALL);
+        let end = middle - 0.35 * ROW;
+        self.line(vec![[x, middle], [x, end]], 2.5, FAINT, false);
+        self.line(vec![[x - CAP, end], [x + CAP, end]], 2.5, FAINT, false);
+        self.ring([x, middle], FAINT);
+        self.text([entry.left + SAMPLE + 14.0, baseline], &entry.text, SMALL, INK, Anchor::Start);
     }
 
     fn flag(&mut self, area: &Area, flag: &Flag, mark: &Mark, top: f64) {

@@ -20,6 +20,7 @@ mod map;
 mod map_layout;
 mod mesh;
 mod over_time;
+mod pens;
 mod png;
 mod scale;
 mod shapes;
@@ -30,6 +31,7 @@ mod work_precision;
 pub use map::{Fill, MapCell, MapPlot, Panel, Stroke, class_color, map_plot};
 pub use mesh::mesh_map;
 pub use over_time::{Physical, force_history, index_history, modal_history, over_time, unit_of_time};
+pub use pens::curve_color;
 pub use png::PngError;
 pub use work_precision::work_precision;
 
@@ -48,6 +50,8 @@ pub struct LinePlot {
     pub series: Vec<Series>,
     /// Marked points.
     pub marks: Vec<Mark>,
+    /// Points of the curves that are not known well, drawn open.
+    pub doubts: Vec<Doubt>,
 }
 
 /// What an axis shows.
@@ -102,8 +106,7 @@ pub enum Style {
     Dashed,
     /// Each as a dot.
     Dots,
-    /// Each as a dot, joined by a line. From the seventh name on colours begin again and the line is dashed, so that
-    /// twelve names differ.
+    /// Each as a dot, joined by a line. From the seventh name on the line is dashed.
     Joined,
     /// Joined by a thin dark dashed line, for what other curves are compared with.
     Guide,
@@ -118,6 +121,19 @@ pub struct Mark {
     pub y: f64,
     /// Its name.
     pub label: String,
+}
+
+/// A point of a curve that is not known well: open, with a bar up to the most that it may be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Doubt {
+    /// Name of its curve.
+    pub series: String,
+    /// Place, in the unit of the axis.
+    pub x: f64,
+    /// Place, in the unit of the axis.
+    pub y: f64,
+    /// The most that y may be; an arrow upwards shows that it is infinite.
+    pub most: f64,
 }
 
 /// A plot, drawn.
@@ -221,10 +237,11 @@ pub enum PlotError {
 /// Draws `plot`.
 ///
 /// A curve of any length is thinned to the first, lowest, highest and last point of every pixel column, which keeps
-/// all its peaks. Colours are those of Okabe and Ito (2008), which the colour-blind can tell apart.
+/// all its peaks. No two names have one colour. The first five are those of Okabe and Ito (2008), which the colour-blind can
+/// tell apart.
 ///
 /// # Errors
-/// No points; points or marks that are not finite, are beyond 10²⁵⁰ or are not positive where an axis is logarithmic;
+/// No points; points, marks or doubts that are not finite, are beyond 10²⁵⁰ or are not positive where an axis is logarithmic;
 /// more than 40 curves or marks.
 pub fn line_plot(plot: &LinePlot) -> Result<Picture, PlotError> {
     check(plot)?;
@@ -265,6 +282,11 @@ fn check(plot: &LinePlot) -> Result<(), PlotError> {
             drawable(x, y, &|| format!("curve `{}`, point {}", series.label, i + 1))?;
         }
     }
+    for doubt in &plot.doubts {
+        let what = || format!("open point of `{}`", doubt.series);
+        drawable(doubt.x, doubt.y, &what)?;
+        drawable(doubt.x, if doubt.most == f64::INFINITY { doubt.y } else { doubt.most }, &what)?;
+    }
     plot.marks.iter().try_for_each(|m| drawable(m.x, m.y, &|| format!("mark `{}`", m.label)))
 }
 
@@ -280,6 +302,7 @@ mod tests {
             y: Axis::linear("Ratio", ""),
             series: vec![Series { label: "curve".into(), points: points.to_vec(), style: Style::Solid }],
             marks: Vec::new(),
+            doubts: Vec::new(),
         }
     }
 
@@ -342,6 +365,23 @@ mod tests {
         let line = |l: &&str| l.contains("stroke-width=\"3.5\"");
         let pens = svg.lines().filter(line).map(|l| l.split(" points").next().unwrap());
         assert_eq!(pens.collect::<std::collections::BTreeSet<_>>().len(), 12);
+    }
+
+    #[test]
+    fn what_is_not_known_well_is_open_with_a_bar() {
+        let mut plot = plot(&[(0.0, 0.0), (1.0, 1.0)]);
+        let known = line_plot(&plot).unwrap().svg;
+        plot.doubts = [3.0, f64::INFINITY].map(|most| Doubt { series: "curve".into(), x: 1.0, y: 1.0, most }).to_vec();
+        let svg = line_plot(&plot).unwrap().svg;
+        assert!(svg.contains(">open: may be as high as its bar</text>") && !known.contains("open"));
+        // Each ring is a dot in the colour of its curve and a white one; that of the legend is of no curve.
+        assert_eq!((svg.matches("<circle").count(), svg.matches("fill=\"#fff").count()), (6, 4));
+        let bars = svg.lines().filter(|l| l.contains("stroke=\"#0072b2\" stroke-width=\"2.5\""));
+        assert_eq!(bars.count(), 4);
+        // The axis reaches as far as the bar that has an end.
+        assert!(svg.contains(">3.0</text>") && !known.contains(">3.0</text>"));
+        plot.doubts[0].most = f64::NAN;
+        assert!(line_plot(&plot).unwrap_err().to_string().contains("open point of `curve` is not finite"));
     }
 
     #[test]

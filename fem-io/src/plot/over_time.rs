@@ -51,6 +51,7 @@ pub fn over_time(title: &str, quantity: &str, kind: Physical, curves: Vec<Series
         y: Axis::linear(quantity, unit),
         series: curves.iter().map(shown).collect(),
         marks: Vec::new(),
+        doubts: Vec::new(),
     }
 }
 

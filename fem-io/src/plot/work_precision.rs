@@ -1,10 +1,10 @@
 //! What accuracy costs.
 
-use super::{Axis, LinePlot, Mark, Series, Style};
+use super::{Axis, Doubt, LinePlot, Mark, Series, Style};
 
 /// Relative error of `quantity` over processor time in s, both logarithmic, under the heading `title`.
 ///
-/// Points of `series` are (time, error). `front` are the points
+/// Points of `series` are (time, error); those of them that are not known well are `doubts`. `front` are the points
 /// that no other one beats in both, drawn as stairs: the least error within a time. `named` points (time, error, name)
 /// are marked.
 ///
@@ -14,6 +14,7 @@ pub fn work_precision(
     title: &str,
     quantity: &str,
     series: Vec<Series>,
+    doubts: Vec<Doubt>,
     front: &[(f64, f64)],
     named: &[(f64, f64, String)],
 ) -> LinePlot {
@@ -31,6 +32,7 @@ pub fn work_precision(
         y: Axis::logarithmic(format!("Error of {quantity}"), ""),
         series: curves,
         marks: marks.map(|(x, y, label)| Mark { x: *x, y: *y, label: label.clone() }).collect(),
+        doubts: doubts.into_iter().filter(|doubt| fits_axes(doubt.x, doubt.y)).collect(),
     }
 }
 
@@ -65,6 +67,7 @@ mod tests {
             "title",
             "the force",
             series.to_vec(),
+            Vec::new(),
             &[(0.3, 0.01), (0.1, 0.2)],
             &[(0.3, 0.01, "knee".into())],
         );
@@ -87,13 +90,17 @@ mod tests {
         let bad = [(1.0, 0.0), (1.0, f64::NAN), (1.0, f64::INFINITY), (1.0, -0.1), (0.0, 0.1), (f64::NAN, 0.1)];
         let mixed: Vec<_> = bad.iter().copied().chain([(2.0, 0.3)]).collect();
         let named: Vec<_> = mixed.iter().map(|p| (p.0, p.1, "name".to_owned())).collect();
-        let plot = work_precision("title", "x", vec![study("none", &bad), study("one", &mixed)], &mixed, &named);
+        let doubt = |p: &(f64, f64)| Doubt { series: "one".into(), x: p.0, y: p.1, most: f64::INFINITY };
+        let doubts = mixed.iter().map(doubt).collect();
+        let plot =
+            work_precision("title", "x", vec![study("none", &bad), study("one", &mixed)], doubts, &mixed, &named);
         let drawn: Vec<_> = plot.series.iter().map(|s| (s.label.as_str(), s.points.as_slice())).collect();
         assert_eq!(drawn, [("one", &[(2.0, 0.3)][..]), ("best for its time", &[(2.0, 0.3), (2.0, 0.3)])]);
         assert_eq!(plot.marks, [Mark { x: 2.0, y: 0.3, label: "name".into() }]);
+        assert_eq!(plot.doubts, [doubt(&(2.0, 0.3))]);
         assert!(line_plot(&plot).is_ok());
 
-        let nothing = work_precision("title", "x", vec![study("none", &bad)], &bad, &[]);
+        let nothing = work_precision("title", "x", vec![study("none", &bad)], Vec::new(), &bad, &[]);
         assert_eq!(nothing.series, []);
     }
 }

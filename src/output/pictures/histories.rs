@@ -90,6 +90,7 @@ pub(super) fn force_displacement(title: &str, names: &[&str], rows: &[HistoryRow
         y: Axis::linear("Contact force", force_unit),
         series,
         marks: Vec::new(),
+        doubts: Vec::new(),
     })
 }
 

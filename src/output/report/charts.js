@@ -1,5 +1,7 @@
-// Colours of curves: Okabe and Ito (2008), as in the pictures.
-const PENS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#000000", "#d55e00"];
+// Colours of curves, as in the pictures; darker when they come again.
+const PENS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#7a0177",
+  "#8c564b", "#005a32", "#b2df8a", "#000075", "#d0a0ff", "#984ea3"];
+const pen = (k) => `color-mix(in srgb, ${PENS[k % PENS.length]} ${100 * 0.7 ** Math.floor(k / PENS.length)}%, black)`;
 const WIDTH = 800, HEIGHT = 470, LEFT = 92, RIGHT = 30, TOP = 12, BOTTOM = 64;
 
 /** The first index whose time is not before `t`. */
@@ -85,7 +87,7 @@ function makeChart(figure, curves, chart, marks) {
     chart.series.forEach(({ values }, k) => {
       let points = "";
       for (let i = first; i <= last; i += 1) points += `${x(times[i]).toFixed(1)},${y(values[i]).toFixed(1)} `;
-      add(plot, "polyline", { points, fill: "none", stroke: PENS[k % PENS.length], "stroke-width": "2.5" });
+      add(plot, "polyline", { points, fill: "none", stroke: pen(k), "stroke-width": "2.5" });
     });
     add(svg, "g", { class: "cursor" });
     reset.disabled = view[0] === whole[0] && view[1] === whole[1];
@@ -103,12 +105,12 @@ function makeChart(figure, curves, chart, marks) {
     chart.series.forEach(({ name, values }, k) => {
       if (!several) return;
       const entry = add(key, "span", {}, i === null ? name : `${name} ${digits(values[i])} ${chart.unit}`);
-      entry.style.setProperty("--swatch", PENS[k % PENS.length]);
+      entry.style.setProperty("--swatch", pen(k));
     });
     if (i === null || times[i] < view[0] || times[i] > view[1]) return;
     add(cursor, "line", { x1: x(times[i]), x2: x(times[i]), y1: TOP, y2: HEIGHT - BOTTOM, stroke: "#666" });
     chart.series.forEach(({ values }, k) => add(cursor, "circle",
-      { cx: x(times[i]), cy: y(values[i]), r: 4.5, fill: PENS[k % PENS.length], stroke: "#fff" }));
+      { cx: x(times[i]), cy: y(values[i]), r: 4.5, fill: pen(k), stroke: "#fff" }));
     if (aloud) live.textContent = key.textContent;
   }
 

@@ -136,6 +136,13 @@ mod tests {
         Table { header: header.map(str::to_owned).to_vec(), rows: (0..rows).map(row).collect() }
     }
 
+    /// Curves of the page are in the colours of the pictures.
+    #[test]
+    fn colours_are_those_of_the_pictures() {
+        let script = include_str!("charts.js");
+        assert!((0..12).all(|k| script.contains(&fem_io::plot::curve_color(k))));
+    }
+
     #[test]
     fn a_long_history_is_thinned_but_for_its_peak() {
         let curves = curves(&table(10_000), &[]).unwrap().unwrap();

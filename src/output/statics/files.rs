@@ -105,6 +105,7 @@ fn write_profile(
             y: Axis::linear("Height", "mm"),
             series: components.map(series).to_vec(),
             marks: Vec::new(),
+            doubts: Vec::new(),
         })?;
         picture.write(dir, &format!("profile-{name}-{suffix}"))?;
     }
