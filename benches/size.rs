@@ -10,7 +10,7 @@ use cpu_time::ThreadTime;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 use fem::analyses::impact;
-use fem::core::assembly::{Cholesky, Matrix, SparseStructure, Symbolic, assemble, pattern};
+use fem::core::assembly::{Cholesky, Matrix, SparseStructure, Symbolic, assemble, column_order, pattern};
 use fem::core::counters::Counters;
 use fem::core::functional::Functional;
 use fem::core::load::Face;
@@ -152,7 +152,7 @@ fn measure(side: usize) -> Vec<(&'static str, f64)> {
     let contact = constraints.restrict(&patch::node(&plate, Face::Top, struck).unwrap().0);
     let contact = Functional(contact);
     let mut structure = SparseStructure::new(symbolic, k, m, ONE, |_| String::new());
-    structure.offer_coarse(Prolongation::linear_in_z(&plate, &constraints));
+    structure.offer_coarse(Prolongation::linear_in_z(&plate, &constraints, &column_order(&plate)));
     let Built::Reduction(ritz) = Ritz::build(&Params::default()).unwrap() else { unreachable!() };
     structure.solve_shifted(0.0, &mut vec![0.0; n], 1).unwrap();
     let start = ThreadTime::now();

@@ -3,6 +3,7 @@
 use crate::report::Computed;
 use crate::support::root;
 use fem::analyses::assembled;
+use fem::core::assembly::column_order;
 use fem::core::counters::Counters;
 use fem::core::prolongation::Prolongation;
 use fem::core::structure::Structure;
@@ -19,7 +20,7 @@ fn coarse_matrices_are_projections() {
         let model = Model::new(scene::parse(&text, &path).unwrap(), &Registry::standard()).unwrap();
         let mut structure =
             assembled::structure(&model, true, NonZeroUsize::MIN, &mut Counters::default()).unwrap().structure;
-        let p = Prolongation::linear_in_z(&model.plate, &model.constraints);
+        let p = Prolongation::linear_in_z(&model.plate, &model.constraints, &column_order(&model.plate));
         structure.offer_coarse(p.clone());
         let coarse = structure.coarse().unwrap().unwrap().structure;
         assert!(coarse.ndof() == p.columns() && 5 * coarse.ndof() < 2 * structure.ndof(), "{}", coarse.ndof());

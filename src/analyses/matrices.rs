@@ -12,7 +12,8 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 /// Writes `stiffness.mtx` and `mass.mtx` (Matrix Market, both triangles; N/m and kg for translations) and
-/// `unknowns.csv`, which names row and column of each. Supports and other equations are eliminated; where these leave a plate
+/// `unknowns.csv`, which names row and column of each: their order is that in which they are eliminated, of which no more is
+/// promised than that it is the same for equal scenes. Supports and other equations are eliminated; where these leave a plate
 /// that moves free, restrained or not, K is singular.
 ///
 /// # Errors

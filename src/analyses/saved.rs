@@ -1,6 +1,6 @@
 //! Files that a later process continues from, and what must agree with them for that.
 
-use crate::error::CheckpointError;
+use crate::error::{CheckpointError, WRITER};
 use crate::model::Model;
 use fem_io::checkpoint;
 use fem_io::files::{FileError, OutputDir};
@@ -16,7 +16,6 @@ const FREE: &[&str] = &["title", "study.", "output.plots", "output.maps", "outpu
 const MATERIALS: &str = "materials.";
 const LAW: &str = ".law";
 const MESH: &str = "mesh.file";
-const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Differences that a message names.
 const NAMED: usize = 4;
@@ -37,7 +36,7 @@ pub(crate) fn read<T: DeserializeOwned>(folder: &Path, file: &str, now: &Keys) -
     let damaged = |e: postcard::Error| FileError::Damaged { path: path.clone(), why: e.to_string() };
     // The version comes first: another one may have kept anything behind it.
     let (version, rest) = postcard::take_from_bytes::<String>(&payload).map_err(damaged)?;
-    if version != VERSION {
+    if version != WRITER {
         return Err(CheckpointError::Version { folder, theirs: version });
     }
     let (then, rest) = postcard::take_from_bytes::<Keys>(rest).map_err(damaged)?;
@@ -53,7 +52,7 @@ pub(crate) fn read<T: DeserializeOwned>(folder: &Path, file: &str, now: &Keys) -
 /// # Errors
 /// A folder that cannot be written.
 pub(crate) fn write(dir: &OutputDir, file: &str, keys: &Keys, found: &impl Serialize) -> Result<(), FileError> {
-    let payload = postcard::to_stdvec(&(VERSION, keys, found));
+    let payload = postcard::to_stdvec(&(WRITER, keys, found));
     let payload = payload.map_err(|e| FileError::Damaged { path: dir.path().join(file), why: e.to_string() })?;
     checkpoint::write(dir, file, &payload)
 }

@@ -4,6 +4,9 @@ use fem_io::files::FileError;
 use miette::Diagnostic;
 use std::path::PathBuf;
 
+/// What wrote a checkpoint. The last number changes with the numbering of unknowns, in which states are kept.
+pub(crate) const WRITER: &str = concat!(env!("CARGO_PKG_VERSION"), "+numbering.2");
+
 /// Why a march cannot continue from a checkpoint.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 #[non_exhaustive]
@@ -20,7 +23,7 @@ pub enum CheckpointError {
     #[diagnostic(help("run without `--resume`: that starts over and replaces the checkpoint"))]
     File(#[from] FileError),
     /// Another version wrote it.
-    #[error("the checkpoint in `{}` was written by version {theirs}, this is version {}", folder.display(), env!("CARGO_PKG_VERSION"))]
+    #[error("the checkpoint in `{}` was written by version {theirs}, this is version {}", folder.display(), WRITER)]
     #[diagnostic(help("continue with version {theirs}, or run without `--resume` to start over"))]
     Version {
         /// The folder.

@@ -3,6 +3,7 @@
 mod checkpoint;
 
 pub use checkpoint::CheckpointError;
+pub(crate) use checkpoint::WRITER;
 
 use fem_core::assembly::{AssemblyError, EquilibriumError, FactorError};
 use fem_core::element::ElementError;

@@ -31,7 +31,7 @@ pub use inside::Inside;
 pub use large::LargePlate;
 pub use lawful::{LawForce, LawPlate};
 pub use membrane::MembraneStrains;
-pub use ordering::nested_dissection;
+pub use ordering::{column_order, elimination_order};
 pub use pattern::{Pattern, PatternError, pattern};
 pub use softness::softness;
 pub use sparse::SparseStructure;
@@ -76,15 +76,6 @@ impl std::error::Error for AssemblyError {}
 
 /// Matrices made side by side before they are added.
 const BATCH: usize = 64;
-
-/// Order in which the unknowns of `plate` are best eliminated: columns by nested dissection, levels within.
-pub fn elimination_order(plate: &Plate) -> Vec<usize> {
-    let mut order = Vec::with_capacity(plate.ndof());
-    for column in nested_dissection(plate) {
-        order.extend(plate.dofs_of_column(column as usize));
-    }
-    order
-}
 
 /// K or M of `plate` on its [`pattern()`].
 ///

@@ -164,14 +164,21 @@ impl Cliques {
         self.ends.push(self.members.len() as u32);
     }
 
-    fn of(&self, clique: u32) -> &[u32] {
+    pub(super) fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = &[u32]> {
+        (0..self.ends.len() as u32).map(|clique| self.of(clique))
+    }
+
+    pub(super) fn of(&self, clique: u32) -> &[u32] {
         let start = if clique == 0 { 0 } else { self.ends[clique as usize - 1] };
         &self.members[start as usize..self.ends[clique as usize] as usize]
     }
 
-    /// The pattern of a matrix of `n` unknowns, each of which is in a clique.
-    pub(super) fn pattern(&self, n: usize) -> Pattern {
-        // Cliques of every column, then rows of every column through its cliques.
+    /// The cliques of each of `n` unknowns, ascending: where they start, the number of all at the end, and the cliques.
+    pub(super) fn by_member(&self, n: usize) -> (Vec<u32>, Vec<u32>) {
         let mut starts = vec![0_u32; n + 1];
         for i in &self.members {
             starts[*i as usize + 1] += 1;
@@ -187,6 +194,12 @@ impl Cliques {
                 fill[*i as usize] += 1;
             }
         }
+        (starts, cliques)
+    }
+
+    /// The pattern of a matrix of `n` unknowns, each of which is in a clique.
+    pub(super) fn pattern(&self, n: usize) -> Pattern {
+        let (starts, cliques) = self.by_member(n);
         let (mut column_starts, mut rows) = (Vec::with_capacity(n + 1), Vec::new());
         column_starts.push(0);
         // Unknowns that the same cliques share, such as those of a node, have their rows in common.

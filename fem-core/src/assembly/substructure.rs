@@ -253,37 +253,27 @@ fn shape(part: &Plate, inside: &[bool]) -> Shape {
 
 /// The independent unknowns that are masters, in an order that is good to eliminate them in.
 fn masters(plate: &Plate, constraints: &Constraints, parts: &[Part], classes: &[Class], loose: &[u32]) -> Vec<usize> {
-    let mut column_of = vec![0; plate.ndof()];
-    for column in 0..plate.columns.len() {
-        column_of[plate.dofs_of_column(column)].fill(column as u32);
-    }
     let mut inside = vec![false; plate.ndof()];
-    let tied = |dof: &usize| constraints.row(*dof).0.iter().map(|(i, _)| column_of[constraints.original(*i)]);
-    let folded = plate.symmetry().name().is_some();
-    let loose = loose.iter().map(|quad| {
-        let columns = plate.columns_of_quad(*quad as usize);
-        let unknowns = columns.iter().filter(|_| folded).flat_map(|column| plate.dofs_of_column(*column as usize));
-        let mut clique: Vec<u32> = unknowns.flat_map(|dof| tied(&dof)).chain(columns.iter().copied()).collect();
-        if folded {
-            clique.sort_unstable();
-            clique.dedup();
-        }
-        clique
-    });
-    let mut cliques: Vec<Vec<u32>> = loose.collect();
+    let (mut cliques, mut dofs, mut clique) = (Cliques::default(), Vec::new(), Vec::new());
+    let mut take = |dofs: &[usize]| {
+        clique.clear();
+        // What is held counts like any other, as in the order of the undivided plate.
+        clique.extend(dofs);
+        clique.extend(dofs.iter().flat_map(|dof| constraints.row(*dof).0).map(|(i, _)| constraints.original(*i)));
+        clique.sort_unstable();
+        clique.dedup();
+        cliques.push(&clique);
+    };
+    for cell in loose.iter().flat_map(|quad| (0..plate.layers()).map(|layer| *quad as usize * plate.layers() + layer)) {
+        plate.cell_dofs(cell, &mut dofs);
+        take(&dofs);
+    }
     for part in parts {
         let (own, outline) = part.unknowns.split_at(classes[part.class].inside);
         own.iter().for_each(|dof| inside[*dof] = true);
-        let mut clique: Vec<u32> = outline.iter().flat_map(|dof| tied(dof).chain([column_of[*dof]])).collect();
-        clique.sort_unstable();
-        clique.dedup();
-        cliques.push(clique);
+        take(outline);
     }
-    let mut set: Vec<u32> = cliques.iter().flatten().copied().collect();
-    set.sort_unstable();
-    set.dedup();
-    let columns = ordering::dissect(&plate.columns, cliques.into_iter(), set).into_iter();
-    let unknowns = columns.flat_map(|c| plate.dofs_of_column(c as usize)).filter(|dof| !inside[*dof]);
+    let unknowns = ordering::order(plate, &cliques).into_iter().filter(|dof| !inside[*dof]);
     unknowns.filter_map(|dof| constraints.position(dof)).collect()
 }
 

@@ -8,7 +8,7 @@ use crate::effect::{Effect, Feature, Marched};
 use crate::error::Error;
 use crate::forecast::MemoryEstimate;
 use crate::model::{Impact, Model, Plan, Strike};
-use fem_core::assembly::{Condensation, SparseStructure};
+use fem_core::assembly::{Condensation, SparseStructure, column_order};
 use fem_core::counters::Counters;
 use fem_core::functional::Functional;
 use fem_core::prolongation::Prolongation;
@@ -199,7 +199,11 @@ fn choose_basis(
             let governors = assembled.own(model.governors(impact, GOVERNORS));
             let structure = &mut assembled.structure;
             if assembled.condensation.is_none() {
-                structure.offer_coarse(Prolongation::linear_in_z(&model.plate, &model.constraints));
+                structure.offer_coarse(Prolongation::linear_in_z(
+                    &model.plate,
+                    &model.constraints,
+                    &column_order(&model.plate),
+                ));
             }
             Some(reduction.basis(structure, &distinct(contacts), &governors))
         }
