@@ -4,6 +4,7 @@
 mod accuracy;
 mod advise;
 mod architecture;
+mod asked;
 mod bad_input;
 mod book;
 mod comfort;

@@ -57,7 +57,7 @@ pub use contracts::{
 pub use plates::{
     axes, between, constraint, laminate, laws, load, mesh, patch, pieces, plate, support, symmetry, warping, window,
 };
-pub use stresses::{estimate, field, profile, recovery, residual};
+pub use stresses::{estimate, field, profile, recovery, residual, waves};
 pub use words::{
     counters, damping, dof, domain, energy, formula, functional, layup, material, prolongation, quadrature, tensor,
 };

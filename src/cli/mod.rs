@@ -39,6 +39,19 @@ fn threads(text: &str) -> Result<NonZeroUsize, String> {
     }
 }
 
+/// A time above zero with its unit, s.
+fn time(text: &str) -> Result<f64, String> {
+    let spaced = text.find(|c: char| c.is_alphabetic()).map_or(text.to_owned(), |at| {
+        let (number, unit) = text.split_at(at);
+        format!("{} {unit}", number.trim())
+    });
+    match fem_io::units::parse_as(&spaced, fem_core::plugin::Dimension::TIME) {
+        Ok(seconds) if seconds > 0.0 => Ok(seconds),
+        Ok(_) => Err("must be longer than zero".into()),
+        Err(why) => Err(why.to_string()),
+    }
+}
+
 /// Low-velocity impact on laminated composites.
 #[derive(Debug, Parser)]
 #[command(

@@ -5,6 +5,7 @@ use super::{Console, Format};
 use crate::job::{Options, Results, Task};
 use crate::registry::Registry;
 use clap::Args;
+use fem_io::scene;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -30,6 +31,6 @@ pub(super) struct Arguments {
 pub(super) fn modes(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, "-modes"));
     let (task, results) = (Task::Modes(arguments.count), Results::Folder(folder));
-    let options = Options { task, results, threads: arguments.threads, provenance: None };
-    compute(registry, &arguments.scene, options, "", arguments.format, console)
+    let options = Options { task, results, threads: arguments.threads, ..Options::default() };
+    compute(registry, &scene::read(&arguments.scene)?, options, "", arguments.format, console)
 }

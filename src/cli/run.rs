@@ -1,13 +1,17 @@
 //! `fem run`.
 
+use super::console::printable;
 use super::signals::Signals;
 use super::{Console, Format, console, warn};
-use crate::cost::{Cost, Provenance};
+use crate::cost::{Attained, Cost, Provenance};
 use crate::error::Error;
-use crate::job::{self, Finished, Follow, Found, Options, Results, Task};
+use crate::job::{self, Finished, Follow, Found, Options, Results};
+use crate::model::Model;
+use crate::output::report;
 use crate::registry::Registry;
+use crate::study;
 use clap::Args;
-use fem_io::scene;
+use fem_io::scene::{self, Scene};
 use indicatif::ProgressBar;
 use serde::Serialize;
 use std::num::NonZeroUsize;
@@ -28,6 +32,14 @@ pub(super) struct Arguments {
     /// `march.end`. The files are those of a run in one piece.
     #[arg(long)]
     resume: bool,
+    /// Largest relative error of the main results, for example 1% or 0.003: mesh, layers, reduction and step are raised until
+    /// what that changes says so, before the run [default: what the scene says, or none]
+    #[arg(long, value_name = "ERROR", value_parser = scene::parse_share)]
+    accuracy: Option<f64>,
+    /// Processor time that the search for that accuracy may take, for example 60s or 10min; what is run then depends on
+    /// the machine [default: ten minutes of a common machine, the same runs everywhere]
+    #[arg(long, value_name = "TIME", value_parser = super::time)]
+    budget: Option<f64>,
     /// Threads for the integration of element matrices; results do not depend on it.
     #[arg(long, value_name = "N", default_value = "1", value_parser = super::threads)]
     threads: NonZeroUsize,
@@ -45,26 +57,61 @@ struct Document<'a> {
 
 pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, ""));
-    let results = if arguments.resume { Results::Resumed(folder) } else { Results::Folder(folder) };
+    let results = if arguments.resume { Results::Resumed(folder.clone()) } else { Results::Folder(folder.clone()) };
     let again = if arguments.resume { "" } else { " --resume" };
-    let options = Options { task: Task::Scene, results, threads: arguments.threads, provenance: None };
-    compute(registry, &arguments.scene, options, again, arguments.format, console)
+    let mut options = Options { results, threads: arguments.threads, ..Options::default() };
+    let path = &arguments.scene;
+    let scene = scene::read(path)?;
+    let asked = arguments.accuracy.or_else(|| scene.accuracy.as_ref().map(|accuracy| accuracy.value));
+    let Some(asked) = asked else {
+        return compute(registry, &scene, options, again, arguments.format, console);
+    };
+    if arguments.resume {
+        // What was found for the accuracy lies there.
+        let found = scene::read(&folder.join(report::SCENE))?;
+        return compute(registry, &found, options, again, arguments.format, console);
+    }
+    let attained = attain(registry, arguments, &scene, asked, console)?;
+    let kept = attained.kept();
+    let scene = scene::parse(&scene::rewrite(path, &attained.setting)?, path)?;
+    options.attained = Some(attained);
+    let code = compute(registry, &scene, options, again, arguments.format, console)?;
+    Ok(if kept { code } else { ExitCode::FAILURE })
 }
 
-/// Does the job of the scene in the file `path`; `again` is what the command line lacks to go on where a signal ends it.
+/// Raises the settings of `scene`.
+fn attain(
+    registry: &Registry,
+    arguments: &Arguments,
+    scene: &Scene,
+    asked: f64,
+    console: &Console,
+) -> miette::Result<Attained> {
+    let model = Model::new(scene, registry)?;
+    let bar = console.progress(1000, "{msg}");
+    let found =
+        study::attain((&arguments.scene, scene, &model), registry, asked, arguments.budget, &mut |what, error| {
+            let so_far = error.map_or(String::new(), |error| format!("{:.2} % so far, ", 1e2 * error));
+            bar.set_message(printable(&format!("accuracy: {so_far}now {what}")).into_owned());
+            bar.tick();
+        })?;
+    bar.finish_and_clear();
+    Ok(found)
+}
+
+/// Does the job of `scene`; `again` is what the command line lacks to go on where a signal ends it.
 pub(super) fn compute(
     registry: &Registry,
-    path: &Path,
+    scene: &Scene,
     mut options: Options,
     again: &str,
     format: Format,
     console: &Console,
 ) -> miette::Result<ExitCode> {
-    let scene = scene::read(path).map_err(Error::from)?;
     options.provenance = Some(Provenance::of(scene.source.name()));
     let bar = console.progress(1000, "march {bar:40} {percent:>3} %  {eta} left");
     let mut terminal = Terminal { console, format, bar, signals: None };
-    let done = job::run(&scene, registry, &options, &mut terminal);
+    let done = job::run(scene, registry, &options, &mut terminal);
     if let (Err(Error::Cancelled { time, share }), Some(signal)) = (&done, terminal.signal()) {
         let (t, share) = (time * 1e3, share * 1e2);
         let command = options.provenance.map_or_else(String::new, |provenance| provenance.command);

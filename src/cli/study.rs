@@ -26,10 +26,10 @@ pub(super) struct Arguments {
     axis: Vec<String>,
     /// Processor time that the study may take, for example 60s or 10min; what is run then depends on the machine
     /// [default: four minutes of a common machine, the same runs everywhere]
-    #[arg(long, value_name = "TIME", value_parser = time)]
+    #[arg(long, value_name = "TIME", value_parser = super::time)]
     budget: Option<f64>,
     /// Writes scene.toml, the scene with the cheapest setting whose error is within this, for example 1% or 0.003
-    #[arg(long, value_name = "ERROR", value_parser = share)]
+    #[arg(long, value_name = "ERROR", value_parser = scene::parse_share)]
     tolerance: Option<f64>,
     /// Continue the study in the folder of the results; what has run there is not run again
     #[arg(long)]
@@ -89,28 +89,6 @@ impl<'a> LadderPart<'a> {
         };
         let levels = ladder.levels.iter().map(|rung| rung.level.label.as_str()).collect();
         Self { axis: &ladder.axis, levels, end: &ladder.end, leaves: ladder.limits.iter().map(leaves).collect() }
-    }
-}
-
-/// A time above zero with its unit, s.
-fn time(text: &str) -> Result<f64, String> {
-    let spaced = text.find(|c: char| c.is_alphabetic()).map_or(text.to_owned(), |at| {
-        let (number, unit) = text.split_at(at);
-        format!("{} {unit}", number.trim())
-    });
-    match fem_io::units::parse_as(&spaced, fem_core::plugin::Dimension::TIME) {
-        Ok(seconds) if seconds > 0.0 => Ok(seconds),
-        Ok(_) => Err("must be longer than zero".into()),
-        Err(why) => Err(why.to_string()),
-    }
-}
-
-/// A relative error between 0 and 1, or one in percent.
-fn share(text: &str) -> Result<f64, String> {
-    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
-    match number.trim().parse::<f64>() {
-        Ok(share) if share * unit > 0.0 && share * unit < 1.0 => Ok(share * unit),
-        _ => Err("must be an error between 0 and 1, or in percent: 0.01 or 1%".into()),
     }
 }
 

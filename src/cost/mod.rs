@@ -1,7 +1,10 @@
 //! What a run costs: time per phase, processor time, memory.
 
+mod attained;
 mod memory;
 
+pub(crate) use attained::FURTHER;
+pub use attained::{Attained, RaisedPart, Worth};
 pub use memory::{forget_peak_memory, peak_memory};
 pub(crate) use memory::{refuse, require};
 
@@ -22,6 +25,8 @@ pub struct Cost {
     pub peak_memory_MB: Option<f64>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub one_level_better: Vec<Better>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub accuracy_asked: Option<Attained>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub provenance: Option<Provenance>,
 }
@@ -65,6 +70,7 @@ impl Cost {
             phases,
             peak_memory_MB: peak_memory().map(|b| b as f64 / 1e6),
             one_level_better: Vec::new(),
+            accuracy_asked: None,
             provenance: None,
         }
     }
@@ -79,7 +85,10 @@ impl fmt::Display for Cost {
         self.peak_memory_MB.map_or(Ok(()), |m| write!(f, "; peak memory {m:.0} MB"))?;
         let better: Vec<String> =
             self.one_level_better.iter().map(|b| format!("{} +{:.2} s", b.what, b.more_cpu_s)).collect();
-        if better.is_empty() { Ok(()) } else { write!(f, "\n  better    would cost: {}", better.join(", ")) }
+        if !better.is_empty() {
+            write!(f, "\n  better    would cost: {}", better.join(", "))?;
+        }
+        self.accuracy_asked.as_ref().map_or(Ok(()), |attained| write!(f, "\n{attained}"))
     }
 }
 

@@ -9,7 +9,7 @@ mod rest;
 use crate::advise;
 use crate::analyses::impact::{Outcome, Sizes};
 use crate::analyses::{modes, statics};
-use crate::cost::{Cost, Phase, Provenance};
+use crate::cost::{Attained, Cost, Phase, Provenance};
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::output;
@@ -31,12 +31,20 @@ pub struct Options {
     pub threads: NonZeroUsize,
     /// What it takes to make the run again, for `cost.json`.
     pub provenance: Option<Provenance>,
+    /// The search for an accuracy that found its settings, for `cost.json`.
+    pub attained: Option<Attained>,
 }
 
 /// The analysis of the scene, on one thread, in memory.
 impl Default for Options {
     fn default() -> Self {
-        Self { task: Task::Scene, results: Results::InMemory, threads: NonZeroUsize::MIN, provenance: None }
+        Self {
+            task: Task::Scene,
+            results: Results::InMemory,
+            threads: NonZeroUsize::MIN,
+            provenance: None,
+            attained: None,
+        }
     }
 }
 
@@ -197,6 +205,7 @@ impl Options {
     }
 
     fn cost(&self, phases: &[Phase]) -> Cost {
-        Cost { provenance: self.provenance.clone(), ..Cost::new(self.threads, phases.to_vec()) }
+        let (provenance, accuracy_asked) = (self.provenance.clone(), self.attained.clone());
+        Cost { provenance, accuracy_asked, ..Cost::new(self.threads, phases.to_vec()) }
     }
 }

@@ -85,8 +85,11 @@ pub const NAMES: [&str; 13] = [
     "window",
 ];
 
+/// That of the layers of cells.
+pub(super) const LAYERS: &str = "layers";
+
 /// Those of them that are ladders.
-pub(super) const LADDERS: [&str; 4] = ["mesh", "layers", "reduction", "step"];
+pub(super) const LADDERS: [&str; 4] = ["mesh", LAYERS, "reduction", "step"];
 
 /// Most combinations of levels of all ladders.
 const MOST_TOGETHER: f64 = 1e5;

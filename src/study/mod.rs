@@ -12,6 +12,7 @@
 //! What is run is decided by nominal seconds, which follow from sizes alone, so that studies of one scene are equal but for
 //! their seconds; a budget is kept by the seconds of the machine.
 
+mod attain;
 mod axes;
 mod converge;
 mod force;
@@ -27,6 +28,7 @@ mod table;
 mod text;
 mod ways;
 
+pub use attain::{TellSearch, attain};
 pub use axes::{AxisKind, Level, NAMES, StudyAxis, axes};
 pub use converge::{Convergence, ErrorBar, limit};
 pub use ladder::{Ladder, Limit};

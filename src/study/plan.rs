@@ -30,10 +30,10 @@ const WORTH: f64 = 0.1;
 const ONE: f64 = 0.25;
 
 /// Entries of a factor beyond which no run is planned: 8 bytes each, and as much again on the way.
-const MOST_ENTRIES: usize = 400_000_000;
+pub(super) const MOST_ENTRIES: usize = 400_000_000;
 
 /// Cells beyond which a model is not even made to be measured.
-const MOST_CELLS: f64 = 200_000.0;
+pub(super) const MOST_CELLS: f64 = 200_000.0;
 
 /// Errors that levels of all ladders together are sought for, and how much smaller the sum of their errors is to be.
 const TARGETS: [f64; 10] = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5];

@@ -21,3 +21,5 @@ mod study;
 mod substructures;
 mod symmetry;
 mod transverse;
+mod waves;
+mod worth;

@@ -8,3 +8,4 @@ pub mod field;
 pub mod profile;
 pub mod recovery;
 pub mod residual;
+pub mod waves;

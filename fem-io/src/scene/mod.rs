@@ -38,7 +38,7 @@ pub use run::{
     Window,
 };
 pub use schema::schema;
-pub use study::{OwnAxis, Quantity, Setting, Study, rewrite};
+pub use study::{OwnAxis, Quantity, Setting, Study, parse_share, rewrite};
 pub use substructures::{Parts, SubstructuresSpec};
 pub use support::{Couple, EquationSpec, NodeSet, Support, Term, Unknowns};
 
@@ -61,6 +61,8 @@ pub struct Scene {
     pub title: String,
     /// The preset beneath its keys.
     pub fidelity: Fidelity,
+    /// Largest relative error of its results that whoever runs it is to raise its settings for.
+    pub accuracy: Option<Located<f64>>,
     /// What is computed.
     pub analysis: Analysis,
     /// The mesh.
@@ -247,6 +249,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
     Ok(Scene {
         title: root.required("title")?.text()?.to_owned(),
         fidelity,
+        accuracy: root.optional("accuracy").map(|field| study::read_accuracy(&field)).transpose()?,
         mesh: mesh::read(&root.required("mesh")?, path)?,
         symmetry: match root.optional("symmetry") {
             Some(field) => Some(field.at(field.choice(&SymmetryGroup::ALL)?)),

@@ -27,6 +27,12 @@ pub(super) const KEYS: Keys = &[
         .required(),
     key("fidelity", Form::Words(&words(&Fidelity::ALL)), r#""engineering""#, "preset beneath the keys of the scene")
         .default(r#""engineering""#),
+    key(
+        "accuracy",
+        Form::OneOf(&[Form::Number, Form::Text]),
+        r#""1 %""#,
+        "largest error of the results: `fem run` raises mesh, layers, reduction and step until it is kept",
+    ),
     key("analysis", Form::Words(&words(&ANALYSES)), r#""static""#, "what is computed").default(r#""impact""#),
     key(
         "symmetry",

@@ -149,7 +149,31 @@ pub(super) fn text(setting: &Setting) -> String {
     setting.iter().map(|(path, value)| format!("{path} = {value}\n")).collect()
 }
 
-/// The text of the scene `path` with `setting` written into it. Comments stay; relative names of files are
+/// A relative error, 0.01 or "1 %".
+pub(super) fn read_accuracy(field: &SceneValue<'_>) -> Result<Located<f64>, SceneError> {
+    let share = field.text().map_or_else(|_| field.number().ok(), |text| parse_share(text).ok());
+    let wrong =
+        || field.error("is no error that can be asked for", "give a part between 0 and 1, or per cent: 0.01, \"1 %\"");
+    share.filter(|share| is_share(*share)).map(|share| field.at(share)).ok_or_else(wrong)
+}
+
+fn is_share(share: f64) -> bool {
+    share > 0.0 && share < 1.0
+}
+
+/// A relative error between 0 and 1 from its text: `0.01`, `1%` or `1 %`.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn parse_share(text: &str) -> Result<f64, String> {
+    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+    let share = number.trim().parse::<f64>().ok().map(|share| share * unit);
+    share
+        .filter(|share| is_share(*share))
+        .ok_or_else(|| "must be an error between 0 and 1, or in percent: 0.01 or 1%".into())
+}
+
+/// The text of the scene `path` with `setting` written into it, and without the accuracy that it asks for, which a setting is to meet. Comments stay; relative names of files are
 /// made absolute, so that the scene can lie anywhere.
 ///
 /// # Errors
@@ -159,6 +183,7 @@ pub fn rewrite(path: &Path, setting: &Setting) -> Result<String, SceneError> {
     let source = Arc::new(SceneSource::new(path, &text, LIBRARY));
     let wrong = |why: String| source.error(why, "");
     let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| wrong(e.to_string()))?;
+    document.remove("accuracy");
     for (keys, value) in setting {
         let keys = Key::parse(keys).map_err(|e| wrong(e.to_string()))?;
         let value: Value = value.parse().map_err(|e: toml_edit::TomlError| wrong(e.to_string()))?;

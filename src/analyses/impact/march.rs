@@ -222,6 +222,7 @@ impl<'a> March<'a> {
                 sizes: &sizes,
                 couple: if alone { Some(&couple) } else { None },
                 mesh: accuracy::mesh::estimate(model, &system, reduced, condensation.as_ref())?,
+                layers: accuracy::layers::estimate(model, reduced)?,
             };
             estimates = Estimates::new(run, full);
             stopwatch.lap("accuracy");

@@ -247,10 +247,12 @@ pub struct AccuracySummary {
     pub results_of_reduction: Option<ResultErrors>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub results_of_mesh: Option<ResultErrors>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub results_of_layers: Option<ResultErrors>,
 }
 
-/// Estimated errors of the main results, relative, that of the force's history in L2: of step, reduction and mesh together, and of
-/// each. Layers are in none of them.
+/// Estimated errors of the main results, relative, that of the force's history in L2: of step, reduction, mesh and layers together,
+/// and of each.
 #[derive(Debug, Clone, Copy, Serialize)]
 #[allow(missing_docs, non_snake_case)]
 pub struct ResultErrors {
@@ -338,7 +340,7 @@ impl Seen {
 impl ImpactSummary {
     /// Sums up a run.
     pub fn new(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Self {
-        let impact::Accuracy { step, reduction, mesh } = outcome.accuracy;
+        let impact::Accuracy { step, reduction, mesh, layers } = outcome.accuracy;
         let residual = reduction.and_then(|error| error.residual);
         let thickness = model.laminate.thickness();
         let seen = hindsights(model, &outcome.contacts);
@@ -411,6 +413,7 @@ impl ImpactSummary {
                 results_of_step: ResultErrors::of(step.map(|e| e.error)),
                 results_of_reduction: ResultErrors::of(reduction.and_then(|e| e.response)),
                 results_of_mesh: ResultErrors::of(mesh.and_then(|e| e.response)),
+                results_of_layers: ResultErrors::of(layers),
             },
             work: outcome.counters.into(),
             warnings: {

@@ -191,15 +191,19 @@ impl ImpactSummary {
         }
         let compared = a.compared_step_s.zip(a.compared_force_L2_relative);
         let step = match (a.step_error_force_L2_relative, compared) {
-            (Some(error), Some((step, change))) => format!(
-                "step: force within about {error:.1e} ({} it by {change:.1e})",
-                match (step > a.step_s, a.step_parts) {
-                    (true, None) => "twice the step changes",
-                    (false, None) => "half the step changes",
-                    (true, Some(_)) => "parts twice as long change",
-                    (false, Some(_)) => "parts half as long change",
-                }
-            ),
+            (Some(error), Some((step, change))) => {
+                format!("step: force within about {error:.1e} ({} it by {change:.1e})", {
+                    let times = match step / a.step_s {
+                        ratio if ratio < 1.0 => "half".to_owned(),
+                        ratio if ratio < 3.0 => "twice".to_owned(),
+                        ratio => format!("{ratio:.0} times"),
+                    };
+                    match a.step_parts {
+                        None => format!("{times} the step changes"),
+                        Some(_) => format!("parts {times} as long change"),
+                    }
+                })
+            }
             _ => "step: error not estimated; a run with half the step would show it".to_owned(),
         };
         let reduction = if m.unknowns_marched == m.substructures.map_or(m.unknowns, |s| s.masters) {
@@ -222,7 +226,7 @@ impl ImpactSummary {
         };
         let mesh = a.mesh_error_relative.map_or_else(
             || "mesh: error not estimated; `fem study` shows it".to_owned(),
-            |error| format!("mesh: at rest under the contact within {error:.1e} in energy norm; layers are not judged"),
+            |error| format!("mesh: at rest under the contact within {error:.1e} in energy norm"),
         );
         vec![self.results(), step, reduction, mesh]
     }
@@ -234,11 +238,16 @@ impl ImpactSummary {
             return "results: errors not estimated; `fem study` shows them".to_owned();
         };
         let of = |errors: Option<ResultErrors>| errors.map_or(0.0, |errors| errors.force_history_L2_relative);
-        let sources = [("step", a.results_of_step), ("reduction", a.results_of_reduction), ("mesh", a.results_of_mesh)];
+        let sources = [
+            ("step", a.results_of_step),
+            ("reduction", a.results_of_reduction),
+            ("mesh", a.results_of_mesh),
+            ("layers", a.results_of_layers),
+        ];
         let most = sources.into_iter().max_by(|x, y| of(x.1).total_cmp(&of(y.1))).map_or("mesh", |(name, _)| name);
         let percent = |error: f64| format!("{:.2} %", 1e2 * error);
         format!(
-            "results: peak force within about {}, force history {}, impulse {}, deflection {}; most from the {most}; layers are not judged",
+            "results: peak force within about {}, force history {}, impulse {}, deflection {}; most from the {most}",
             percent(all.peak_force_relative),
             percent(all.force_history_L2_relative),
             percent(all.impulse_relative),

@@ -1,13 +1,20 @@
 //! Marches beside that of the run, of reduced plates and without stresses: what they differ by is what an error does.
 
 use super::super::{ContactRecord, Sizes, StepForces};
+use fem_core::structure::Structure;
 use fem_core::time::{Integrator, SecondOrderSystem as _, State};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
-use fem_dynamics::reduce::Modal;
+use fem_dynamics::reduce::{MembranePlate, Modal, Reduced};
 
 /// Entries of factors that solutions passed, for each unknown that a second march passes in a step: from here on it takes
 /// less than about three hundredths of the run.
 const CHEAP: u64 = 150;
+
+/// Longest step of a companion over that of the run: however little else a run has to do, it may be told so much of its errors.
+const LONGEST: u64 = 16;
+
+/// Solutions that take as long as a factorisation.
+const FACTORISATION: u64 = 30;
 
 /// Unknowns of a march that take as long as all else in a step.
 const STEP: u64 = 30;
@@ -82,7 +89,8 @@ pub(super) struct Instant {
     pub(super) stiffness: f64,
 }
 
-/// How a companion is marched: with twice the step of the run, or half of it where twice is not stable.
+/// How a companion is marched: with twice the step of the run, or more where that is not cheap, or half of it where twice is not
+/// stable.
 #[derive(Debug, Clone)]
 pub(super) struct Pace {
     integrator: Box<dyn Integrator>,
@@ -103,8 +111,18 @@ pub(super) struct Pace {
 impl Pace {
     /// Beside a run of these `sizes` that took so many `solves` with the full plate.
     pub(super) fn new(integrator: Box<dyn Integrator>, sizes: &Sizes, solves: u64) -> Self {
-        let (stride, parts) = if 2.0 * sizes.step <= sizes.longest_step { (2, 1) } else { (1, 2) };
+        let solves = solves + FACTORISATION;
         let budget = (sizes.factor_entries as u64).saturating_mul(solves) / CHEAP / (sizes.marched as u64 + STEP);
+        // Iterations of contacts may be worth a step each.
+        let budget = budget.max(2 * sizes.steps / LONGEST);
+        let stable = |stride: &u64| *stride as f64 * sizes.step <= sizes.longest_step;
+        let strides =
+            || std::iter::successors(Some(2), |stride| Some(2 * stride)).take_while(|stride| *stride <= LONGEST);
+        // The shortest that is cheap enough, or the longest that is stable; long steps iterate more.
+        let passes = |stride: &u64| sizes.steps / stride * u64::from(stride.ilog2().min(2));
+        let cheap = strides().filter(stable).find(|stride| passes(stride) <= budget);
+        let stride = cheap.or_else(|| strides().filter(stable).last());
+        let (stride, parts) = stride.map_or((1, 2), |stride| (stride, 1));
         let (dt, count) = (sizes.step * stride as f64 / parts as f64, sizes.steps / stride);
         // Whether their length or a tolerance decides, parts of steps are longer by the same ratio.
         let ratio = stride as f64 / parts as f64;
@@ -164,6 +182,25 @@ impl Pace {
         // The error of divided steps does not follow the length of the whole ones.
         companion.follows = self.proportional || integrator.take_substeps().is_none();
         Some(companion)
+    }
+}
+
+impl Pace {
+    /// What changes against `base` where shares of their stiffness are taken from the modes of its plate.
+    pub(super) fn soften(
+        &self,
+        system: &ImpactSystem,
+        (reduced, membrane): (&Reduced, Option<&MembranePlate>),
+        base: &Companion,
+        shares: &[f64],
+    ) -> Option<Differences> {
+        let mut modal = reduced.modal.clone();
+        modal.soften(shares);
+        let plate: Box<dyn Structure> = match membrane {
+            Some(membrane) => Box::new(membrane.with(modal.clone())),
+            None => Box::new(modal.clone()),
+        };
+        base.against(&self.march(system.on(plate), &modal, |_| ())?)
     }
 }
 

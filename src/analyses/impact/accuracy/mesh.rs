@@ -5,14 +5,13 @@ use crate::model::Model;
 use fem_core::assembly::Condensation;
 use fem_core::element::ElementError;
 use fem_core::estimate::mesh_errors;
-use fem_core::structure::Structure;
 use fem_dynamics::impact::ImpactSystem;
 use fem_dynamics::reduce::{MembranePlate, Reduced};
 
 /// Share of a mode's stiffness that its mesh adds, at most: beyond, it is no mode of the plate.
 const MOST: f64 = 0.5;
 
-/// Estimated errors of a mesh; layers are not judged.
+/// Estimated errors of a mesh.
 ///
 /// What a mesh does to an impact is found from a march of the plate whose modes are as much softer as the estimate says that the
 /// mesh makes them stiffer, k (1 − η²), η the error of the mode in the energy norm: that a mode is too stiff is the first
@@ -102,18 +101,13 @@ impl OfFields {
     pub(super) fn judge(
         &self,
         system: &ImpactSystem,
-        (reduced, membrane): (&Reduced, Option<&MembranePlate>),
+        plate: (&Reduced, Option<&MembranePlate>),
         pace: &Pace,
         base: &Companion,
     ) -> MeshAccuracy {
-        let shares = self.shares(system, reduced);
-        let mut modal = reduced.modal.clone();
-        modal.soften(&shares);
-        let plate: Box<dyn Structure> = match membrane {
-            Some(membrane) => Box::new(membrane.with(modal.clone())),
-            None => Box::new(modal.clone()),
-        };
-        let softer = pace.march(system.on(plate), &modal, |_| ());
-        MeshAccuracy { at_rest: self.at_rest, response: softer.and_then(|softer| base.against(&softer)) }
+        MeshAccuracy {
+            at_rest: self.at_rest,
+            response: pace.soften(system, plate, base, &self.shares(system, plate.0)),
+        }
     }
 }

@@ -1,11 +1,13 @@
-//! What a run says of its own errors: those of its time step, of its reduction and of its mesh.
+//! What a run says of its own errors: those of its time step, of its reduction, of its mesh and of its layers of cells.
 //!
 //! They come from marches of the reduced plate without stresses beside the run, made before the run's own march, while the full
-//! plate is still at hand: with another step, with what the reduction leaves out, and as much softer as the mesh is too stiff.
+//! plate is still at hand: with another step, with what the reduction leaves out, and as much softer as mesh and layers are too
+//! stiff.
 //! Nothing depends on where a march was stopped and resumed, and whether an estimate is cheap enough
 //! is decided by counts, not by a clock, so that results are the same on every machine.
 
 mod companion;
+pub(super) mod layers;
 pub(super) mod mesh;
 mod reduction;
 mod step;
@@ -25,6 +27,9 @@ use fem_dynamics::reduce::{MembranePlate, Modal, Reduced};
 use mesh::OfFields;
 use reduction::Richer;
 
+/// Least error of the peak over that of the history: the difference of two single values passes through zero by chance.
+const PEAK: f64 = 0.25;
+
 /// Estimated errors of a run; nothing where no honest estimate is cheap.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Accuracy {
@@ -32,16 +37,20 @@ pub struct Accuracy {
     pub step: Option<StepAccuracy>,
     /// Of the reduction.
     pub reduction: Option<ReductionAccuracy>,
-    /// Of the mesh; layers are not judged.
+    /// Of the mesh.
     pub mesh: Option<MeshAccuracy>,
+    /// Of the layers of cells: what changes as they lose what they add to the stiffness.
+    pub layers: Option<Differences>,
 }
 
 impl Accuracy {
-    /// Errors of the main results: those of step, reduction and mesh together, where all of them are known.
+    /// Errors of the main results: those of step, reduction, mesh and layers together, where all of them are known;
+    /// of the peak at least a quarter of that of the history.
     pub fn results(&self) -> Option<Differences> {
         let left = self.reduction?.response?;
         let sum = |a: Differences, b: Differences| a.with(b, |a, b| a + b);
-        Some(sum(sum(self.step?.error, left), self.mesh?.response?))
+        let all = [left, self.mesh?.response?, self.layers?].into_iter().fold(self.step?.error, sum);
+        Some(Differences { peak: all.peak.max(PEAK * all.force), ..all })
     }
 }
 
@@ -51,6 +60,7 @@ pub(super) struct Estimates {
     other_step: Option<(Pace, Companion)>,
     reduction: Option<ReductionAccuracy>,
     mesh: Option<MeshAccuracy>,
+    layers: Option<Differences>,
 }
 
 /// A run before its march.
@@ -64,12 +74,14 @@ pub(super) struct Before<'a> {
     pub(super) couple: Option<&'a dyn Fn(Reduced) -> (ImpactSystem, Modal)>,
     /// Errors of the mesh, where they are known.
     pub(super) mesh: Option<OfFields>,
+    /// Shares of the stiffness of each mode that layers of cells add, where they are known.
+    pub(super) layers: Option<Vec<f64>>,
 }
 
 impl Estimates {
     /// Marches copies of the reduced plate, and asks the full one what the reduction leaves out.
     pub(super) fn new(run: Before<'_>, full: Full) -> Self {
-        let Before { system, reduced, membrane, integrator, sizes, couple, mesh } = run;
+        let Before { system, reduced, membrane, integrator, sizes, couple, mesh, layers } = run;
         let plate: Box<dyn Structure> = match membrane {
             Some(membrane) => Box::new(membrane.clone()),
             None => Box::new(reduced.modal.clone()),
@@ -87,7 +99,9 @@ impl Estimates {
             Some(base) => errors.judge(system, (reduced, membrane), &pace, base),
             None => MeshAccuracy { at_rest: errors.at_rest, response: None },
         });
-        Self { other_step: base.map(|base| (pace, base)), reduction, mesh }
+        let soften = |shares: Vec<f64>| pace.soften(system, (reduced, membrane), base.as_ref()?, &shares);
+        let layers = layers.and_then(soften);
+        Self { other_step: base.map(|base| (pace, base)), reduction, mesh, layers }
     }
 
     /// The estimates for a march with these forces and first contact that reached its end.
@@ -96,6 +110,7 @@ impl Estimates {
             let difference = companion.against_run(forces, contact?)?;
             companion.follows.then(|| StepAccuracy::of(&pace, difference))
         };
-        Accuracy { step: self.other_step.and_then(difference), reduction: self.reduction, mesh: self.mesh }
+        let Self { other_step, reduction, mesh, layers } = self;
+        Accuracy { step: other_step.and_then(difference), reduction, mesh, layers }
     }
 }

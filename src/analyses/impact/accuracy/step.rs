@@ -7,10 +7,11 @@ const ORDER: f64 = 1.5;
 
 /// The estimated error of the time step, relative.
 ///
-/// From a march with another step Δt', twice the step Δt or half of it where twice is not stable:
+/// From a march with another step Δt', twice the step Δt, four to sixteen times where twice is not cheap beside the run, or half of it
+/// where twice is not stable:
 ///
 /// ```text
-/// ‖F − F'‖/‖F‖ / |(Δt'/Δt)ᵖ − 1|        p = min(order, 1.5)
+/// ‖F − F'‖/‖F‖ / |(Δt'/Δt)ᵖ − 1|        p = min(order, 1.5), beyond twice the step min(order, 1)
 /// ```
 ///
 /// over those steps that both marches meet, F the force of all impactors together; the same of peak, impulse and deflection. Where
@@ -33,7 +34,9 @@ pub struct StepAccuracy {
 impl StepAccuracy {
     /// From how far the run is from a march of this pace.
     pub(super) fn of(pace: &Pace, difference: Differences) -> Self {
-        let change = (pace.ratio().powf(ORDER.min(f64::from(pace.order()))) - 1.0).abs();
+        // Over several halvings the order of a kink is what counts.
+        let most = if pace.ratio() > 2.0 { 1.0 } else { ORDER };
+        let change = (pace.ratio().powf(most.min(f64::from(pace.order()))) - 1.0).abs();
         Self { compared: pace.dt, difference, error: difference.times(1.0 / change) }
     }
 }
