@@ -84,3 +84,21 @@ fn what_is_not_reached_has_its_reason_and_the_best_is_run() {
     assert!(asked["stopped"].is_string() && asked["reached"].as_f64().unwrap() > 1e-5, "{asked:#}");
     assert!(case.summary("out")["completed"].as_bool().unwrap());
 }
+
+/// What was raised is taken from the folder, the rest from the scene, which must be the one that was begun.
+#[test]
+fn a_run_goes_on_with_what_was_raised() {
+    let case = struck();
+    case.fem("run", &["--accuracy", "5%", "--out", "out"]).good();
+    let before = case.read("out/summary.json");
+    case.fem("run", &["--accuracy", "5%", "--resume", "--out", "out"]).good();
+    assert_eq!(case.read("out/summary.json"), before);
+    let other = case.scene("2 m/s", "3 m/s").fem("run", &["--accuracy", "5%", "--resume", "--out", "out"]);
+    assert!(other.status == 1 && other.stderr.contains("belongs to another run"), "{other:#?}");
+}
+
+#[test]
+fn a_budget_without_an_accuracy_is_refused() {
+    let done = struck().fem("run", &["--budget", "5s", "--out", "out"]);
+    assert!(done.status == 1 && done.stderr.contains("none is asked for"), "{done:#?}");
+}

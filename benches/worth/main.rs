@@ -12,13 +12,13 @@ const SMALL: f64 = 1e-3;
 fn main() {
     let wanted: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
     let mut all = Vec::new();
-    for (name, variants, layers) in SCENES {
+    for (name, variants) in SCENES {
         if !wanted.is_empty() && !wanted.iter().any(|word| name.contains(word.as_str())) {
             continue;
         }
         let mut known = Vec::new();
         for variant in variants {
-            all.extend(statements((name, *variant, layers), &mut known));
+            all.extend(statements((name, *variant), &mut known));
         }
     }
     let worth = |ratio: Option<f64>| ratio.unwrap_or(0.0);

@@ -13,6 +13,7 @@ use crate::study;
 use clap::Args;
 use fem_io::scene::{self, Scene};
 use indicatif::ProgressBar;
+use miette::miette;
 use serde::Serialize;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -64,12 +65,17 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console)
     let scene = scene::read(path)?;
     let asked = arguments.accuracy.or_else(|| scene.accuracy.as_ref().map(|accuracy| accuracy.value));
     let Some(asked) = asked else {
+        if arguments.budget.is_some() {
+            let help = "give `--accuracy 1%` beside it, or `accuracy = \"1 %\"` in the scene";
+            return Err(miette!(help = help, "`--budget` is for the search for an accuracy, and none is asked for"));
+        }
         return compute(registry, &scene, options, again, arguments.format, console);
     };
     if arguments.resume {
-        // What was found for the accuracy lies there.
-        let found = scene::read(&folder.join(report::SCENE))?;
-        return compute(registry, &found, options, again, arguments.format, console);
+        // What was raised for the accuracy lies there; whether the rest is the same is for the checkpoint to say.
+        let raised = study::raised(&scene::read(&folder.join(report::SCENE))?);
+        let scene = scene::parse(&scene::rewrite(path, &raised)?, path)?;
+        return compute(registry, &scene, options, again, arguments.format, console);
     }
     let attained = attain(registry, arguments, &scene, asked, console)?;
     let kept = attained.kept();

@@ -66,7 +66,7 @@ const COARSENINGS: usize = 2;
 /// Key of the step.
 pub(super) const STEP: &str = "march.step";
 /// Key of the tolerance that steps are divided to.
-const TOLERANCE: &str = "march.tolerance";
+pub(super) const TOLERANCE: &str = "march.tolerance";
 
 /// Names of all axes, in the order in which they are run.
 pub const NAMES: [&str; 13] = [

@@ -28,7 +28,7 @@ mod table;
 mod text;
 mod ways;
 
-pub use attain::{TellSearch, attain};
+pub use attain::{TellSearch, attain, raised};
 pub use axes::{AxisKind, Level, NAMES, StudyAxis, axes};
 pub use converge::{Convergence, ErrorBar, limit};
 pub use ladder::{Ladder, Limit};

@@ -4,16 +4,25 @@ mod climb;
 mod search;
 
 use super::NOTHING;
-use super::axes::{LADDERS, LAYERS, axes};
+use super::axes::{LADDERS, LAYERS, STEP, TOLERANCE, axes};
 use super::force::Force;
 use super::quantity::choose_quantities;
 use crate::cost::Attained;
 use crate::error::Error;
 use crate::model::Model;
 use crate::registry::Registry;
-use fem_io::scene::Scene;
+use fem_io::scene::{Scene, Setting};
 use search::Search;
 use std::path::Path;
+
+/// Keys that levels of these parts set, beside those of the reduction.
+const RAISED: [&str; 4] = ["mesh.refine", "laminate.layers", STEP, TOLERANCE];
+
+/// What of the scene `found` a search may have raised.
+pub fn raised(found: &Scene) -> Setting {
+    let raised = |key: &str| RAISED.contains(&key) || key.starts_with("reduction.");
+    found.keys.iter().filter(|(key, _)| raised(key)).map(|(key, value)| (key.clone(), value.clone())).collect()
+}
 
 /// What a search tells while it runs: what runs now, and the error so far, where it is known.
 pub type TellSearch<'a> = &'a mut dyn FnMut(&str, Option<f64>);

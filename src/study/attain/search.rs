@@ -242,7 +242,7 @@ impl<'a> Search<'a> {
                 "the next level takes about {seconds:.1} s and a run of all {whole:.1} s; {rest:.1} s are left"
             ));
         }
-        let levels = self.climbs.iter().zip(rungs).filter(|(_, rung)| **rung > 0);
+        let levels = self.climbs.iter().zip(rungs).filter(|(climb, rung)| **rung != climb.own);
         let what = levels.map(|(climb, rung)| format!("{} {}", climb.name, climb.levels[*rung].label));
         tell(&what.collect::<Vec<_>>().join(", "), error.filter(|error| error.is_finite()));
         let record = RunRecord::of(self.path, &self.setting(rungs), self.registry).map_err(|why| why.to_string())?;
