@@ -73,9 +73,12 @@ impl fmt::Display for Attained {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let percent = |error: f64| format!("{:.2} %", 1e2 * error);
         let known = |error: Option<f64>| error.map_or("unknown".to_owned(), percent);
-        let (reached, asked) = (known(self.reached), percent(self.asked));
+        let asked = percent(self.asked);
+        let reached =
+            self.reached.map_or("errors unknown".to_owned(), |error| format!("errors within {}", percent(error)));
         let (runs, seconds) = (self.runs, self.cpu_s);
-        writeln!(f, "  asked     {asked}: errors within {reached}, by what changes in {runs} runs ({seconds:.1} s)")?;
+        let runs = if runs == 1 { "a run".to_owned() } else { format!("{runs} runs") };
+        writeln!(f, "  asked     {asked}: {reached}, by what changes in {runs} ({seconds:.1} s)")?;
         let parts = self.parts.iter().map(|p| format!("{} {} leaves {}", p.axis, p.level, known(p.leaves)));
         writeln!(f, "            {}", parts.collect::<Vec<_>>().join(", "))?;
         let each = self.quantities.iter().map(|q| format!("{} {}", q.name, known(q.error)));
@@ -89,6 +92,7 @@ impl fmt::Display for Attained {
         let smaller = percent(FURTHER * self.asked);
         match self.further_cpu_s {
             Some(seconds) => write!(f, "            {smaller} would cost a run of about {seconds:.2} s"),
+            None if self.reached.is_none() => write!(f, "            what {smaller} would cost is unknown"),
             None => write!(f, "            {smaller} is beyond what can be raised"),
         }
     }
