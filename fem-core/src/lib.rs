@@ -17,14 +17,14 @@
 //! ```
 //! use fem_core::laminate::{LaminaPly, Laminate};
 //! use fem_core::layup;
-//! use fem_core::material::{Elastic, Material, Strengths};
+//! use fem_core::material::{Elastic, Material, Strengths, Toughnesses};
 //!
 //! let tape = Material {
 //!     name: "AS4/3502".into(),
 //!     elastic: Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9),
 //!     density: Some(1575.0),
 //!     strengths: Strengths::default(),
-//!     giic: None,
+//!     toughness: Toughnesses::default(), eta: None,
 //!     expansion: None,
 //! };
 //! tape.check()?;

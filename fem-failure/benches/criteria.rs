@@ -7,7 +7,7 @@
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use fem_core::failure::{FailureCriterion, Site};
-use fem_core::material::{Elastic, Material, Strength, Strengths};
+use fem_core::material::{Elastic, Material, Strength, Strengths, Toughnesses};
 use fem_core::tensor::{Ply, Stress6};
 use fem_failure::*;
 
@@ -34,7 +34,8 @@ fn as4_3502() -> Material {
         name: "AS4/3502".into(),
         elastic: Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9),
         density: None,
-        giic: None,
+        toughness: Toughnesses::default(),
+        eta: None,
         expansion: None,
         strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
     }

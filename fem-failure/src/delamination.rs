@@ -1,7 +1,7 @@
 //! The contact force at which an impact delaminates a plate.
 
 use fem_core::laminate::Laminate;
-use fem_core::material::Material;
+use fem_core::material::{Material, Toughness};
 use std::f64::consts::PI;
 
 /// Davies and Olsson's threshold: the force at which a circular delamination in the mid-plane grows at once.
@@ -30,8 +30,9 @@ impl DelaminationThreshold {
     ///
     /// The toughness is that of `resin` if it gives one, otherwise the smallest that a ply's material gives.
     pub fn of(laminate: &Laminate, materials: &[Material], resin: Option<usize>) -> Option<Self> {
-        let of_plies = || laminate.plies.iter().filter_map(|ply| materials[ply.material].giic).min_by(f64::total_cmp);
-        let giic = resin.and_then(|resin| materials[resin].giic).or_else(of_plies)?;
+        let of = |material: usize| materials[material].toughness.get(Toughness::GIIc);
+        let of_plies = || laminate.plies.iter().filter_map(|ply| of(ply.material)).min_by(f64::total_cmp);
+        let giic = resin.and_then(of).or_else(of_plies)?;
         let bending_stiffness = laminate.effective_bending_stiffness(materials);
         Some(Self { force: PI * (32.0 * bending_stiffness * giic / 3.0).sqrt(), bending_stiffness, giic })
     }
@@ -42,10 +43,12 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use fem_core::laminate::LaminaPly;
-    use fem_core::material::{Elastic, Strengths};
+    use fem_core::material::{Elastic, Strengths, Toughnesses};
 
     fn material(elastic: Elastic, giic: Option<f64>) -> Material {
-        Material { name: "m".into(), elastic, density: None, strengths: Strengths::default(), giic, expansion: None }
+        let toughness = giic.map_or(Toughnesses::default(), |v| Toughnesses::default().with(Toughness::GIIc, v));
+        let strengths = Strengths::default();
+        Material { name: "m".into(), elastic, density: None, strengths, toughness, eta: None, expansion: None }
     }
 
     fn laminate(angles: &[f64], thickness: f64) -> Laminate {

@@ -214,7 +214,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::{Hashin1980, HashinReport, MaxStress, Octahedral, Puck, TsaiHill, TsaiWu};
-    use fem_core::material::{Elastic, Strength, Strengths};
+    use fem_core::material::{Elastic, Strength, Strengths, Toughnesses};
 
     fn material() -> Material {
         let values = [1793e6, 1724e6, 64e6, 138e6, 109e6, 69e6];
@@ -222,7 +222,8 @@ mod tests {
             name: "AS4/3502".into(),
             elastic: Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9),
             density: None,
-            giic: None,
+            toughness: Toughnesses::default(),
+            eta: None,
             expansion: None,
             strengths: Strength::ALL.iter().zip(values).fold(Strengths::default(), |s, (which, v)| s.with(*which, v)),
         }

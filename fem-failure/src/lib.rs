@@ -9,7 +9,7 @@
 //!
 //! ```
 //! use fem_core::failure::assess;
-//! use fem_core::material::{Elastic, Material, Strength, Strengths};
+//! use fem_core::material::{Elastic, Material, Strength, Strengths, Toughnesses};
 //! use fem_core::tensor::Stress6;
 //! use fem_failure::HashinReport;
 //!
@@ -23,7 +23,7 @@
 //!         .with(Strength::Yt, 64e6)
 //!         .with(Strength::S12, 109e6)
 //!         .with(Strength::S23, 69e6),
-//!     giic: None,
+//!     toughness: Toughnesses::default(), eta: None,
 //!     expansion: None,
 //! };
 //! // 32 MPa across the fibres, half of what the matrix bears; components are 11 22 33 12 23 31 in ply axes.

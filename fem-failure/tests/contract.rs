@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use fem_core::failure::{AssessError, FailureCriterion, Site, assess, check_material};
-use fem_core::material::{Elastic, Material, Strength, Strengths};
+use fem_core::material::{Elastic, Material, Strength, Strengths, Toughnesses};
 use fem_core::plugin::{Built, Dimension, Kind, ParamError, Params, Plugin, PluginInfo, Value};
 use fem_core::tensor::{Ply, Stress6};
 use fem_core::testkit::check_criterion;
@@ -17,7 +17,8 @@ fn material(name: &str, values: [f64; 9]) -> Material {
         name: name.into(),
         elastic: Elastic::transversely_isotropic(138e9, 11e9, 0.28, 0.4, 5.5e9),
         density: None,
-        giic: None,
+        toughness: Toughnesses::default(),
+        eta: None,
         expansion: None,
         strengths,
     }

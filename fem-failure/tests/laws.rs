@@ -1,7 +1,7 @@
 //! Laws of plies: the contract, and closed forms.
 #![allow(clippy::unwrap_used)]
 
-use fem_core::material::{Elastic, Material, Strengths};
+use fem_core::material::{Elastic, Material, Strengths, Toughnesses};
 use fem_core::plugin::{Built, Dimension, Params, Plugin, Value};
 use fem_core::ply_law::{LawPoint, PlyLaw, PlyResponse};
 use fem_core::tensor::{Matrix6, Strain6};
@@ -18,7 +18,8 @@ fn tape() -> Material {
         elastic: Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, G),
         density: None,
         strengths: Strengths::default(),
-        giic: None,
+        toughness: Toughnesses::default(),
+        eta: None,
         expansion: None,
     }
 }

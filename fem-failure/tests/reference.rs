@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use fem_core::failure::{AssessError, FailureCriterion, Site, assess};
-use fem_core::material::{Elastic, Material, Strength, Strengths};
+use fem_core::material::{Elastic, Material, Strength, Strengths, Toughnesses};
 use fem_core::tensor::{Ply, Stress6};
 use fem_failure::*;
 use std::collections::BTreeMap;
@@ -55,7 +55,8 @@ fn with_strengths(row: &Row, elastic: Elastic, strengths: &[(Strength, &str)]) -
         name: row.text("material").into(),
         elastic,
         density: None,
-        giic: None,
+        toughness: Toughnesses::default(),
+        eta: None,
         expansion: None,
         strengths: strengths.iter().fold(Strengths::default(), |s, (which, c)| s.with(*which, row.number(c))),
     }

@@ -3,7 +3,7 @@
 
 use fem_core::failure::{FailureCriterion as _, Site};
 use fem_core::layup::{self, LayupPly};
-use fem_core::material::{Elastic, Material, Strength, Strengths};
+use fem_core::material::{Elastic, Material, Strength, Strengths, Toughnesses};
 use fem_core::mesh::{Curves, PlaneMesh};
 use fem_core::tensor::Stress6;
 use fem_failure::Expression;
@@ -194,7 +194,15 @@ pub fn expression(data: &[u8]) {
 fn material() -> Material {
     let strengths = Strength::ALL.iter().fold(Strengths::default(), |all, which| all.with(*which, 1e7));
     let elastic = Elastic::transversely_isotropic(1.3e11, 1e10, 0.3, 0.4, 5e9);
-    Material { name: "tape".into(), elastic, density: None, strengths, giic: None, expansion: None }
+    Material {
+        name: "tape".into(),
+        elastic,
+        density: None,
+        strengths,
+        toughness: Toughnesses::default(),
+        eta: None,
+        expansion: None,
+    }
 }
 
 /// A quantity that is read is finite, and 0 only where it is written so.

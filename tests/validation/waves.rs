@@ -3,7 +3,7 @@
 use fem::core::element::Element;
 use fem::core::laminate::{LaminaPly, Laminate};
 use fem::core::layup;
-use fem::core::material::{Elastic, Material, Strengths};
+use fem::core::material::{Elastic, Material, Strengths, Toughnesses};
 use fem::core::plate::ZDerivatives;
 use fem::core::waves::LayerShares;
 use fem::elements::{HermitePrism, Mass};
@@ -15,7 +15,15 @@ const NUMBERS: [f64; 4] = [0.1, 0.3, 1.0, 3.0];
 
 fn material(elastic: Elastic) -> Material {
     let strengths = Strengths::default();
-    Material { name: "m".into(), elastic, density: Some(RHO), strengths, giic: None, expansion: None }
+    Material {
+        name: "m".into(),
+        elastic,
+        density: Some(RHO),
+        strengths,
+        toughness: Toughnesses::default(),
+        eta: None,
+        expansion: None,
+    }
 }
 
 fn laminate(plies: &str, layers: &[usize]) -> Laminate {

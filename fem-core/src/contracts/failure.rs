@@ -284,14 +284,15 @@ pub fn search_reserve(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::words::material::{Elastic, Strengths};
+    use crate::words::material::{Elastic, Strengths, Toughnesses};
 
     fn material() -> Material {
         Material {
             name: "m".into(),
             elastic: Elastic::isotropic(1e9, 0.3),
             density: None,
-            giic: None,
+            toughness: Toughnesses::default(),
+            eta: None,
             expansion: None,
             strengths: Strengths::default().with(Strength::Xt, 100.0).with(Strength::Yt, 10.0),
         }

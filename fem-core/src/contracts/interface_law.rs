@@ -3,6 +3,7 @@
 use crate::contracts::failure::UnmetCondition;
 use crate::contracts::ply_law::{LawError, LawInfo, LawPoint};
 use crate::words::energy::Energy;
+use crate::words::material::Elastic;
 use dyn_clone::DynClone;
 use std::fmt::Debug;
 
@@ -14,8 +15,35 @@ pub type Jump = [f64; 3];
 pub struct InterfaceResponse {
     /// Tractions, Pa.
     pub traction: Jump,
+    /// What comes back of the work done per area, J/m².
+    pub stored: f64,
+    /// What does not.
+    pub dissipated: Sinks,
+}
+
+impl InterfaceResponse {
     /// Work done per area since the beginning, J/m².
-    pub energy: Energy,
+    pub fn energy(&self) -> Energy {
+        Energy { stored: self.stored, dissipated: self.dissipated.total() }
+    }
+}
+
+/// What an interface has dissipated per area since the beginning, J/m², by where it went; none of them ever falls.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Sinks {
+    /// Into cracks by its opening, mode I.
+    pub opening: f64,
+    /// Into cracks by shear, modes II and III.
+    pub shear: f64,
+    /// Into heat, by faces that slide upon each other.
+    pub friction: f64,
+}
+
+impl Sinks {
+    /// All of it.
+    pub fn total(&self) -> f64 {
+        self.opening + self.shear + self.friction
+    }
 }
 
 /// A law of an interface, t(δ) with a memory; δ is the jump of the displacement from the lower face to the upper one.
@@ -32,6 +60,12 @@ pub trait InterfaceLaw: DynClone + Debug + Send + Sync {
     /// The condition that the point does not meet, with its numbers.
     fn check(&self, _point: &LawPoint<'_>) -> Result<(), UnmetCondition> {
         Ok(())
+    }
+
+    /// Lengths over which tractions fall to zero ahead of a crack, m, in modes I and II: what cells must resolve. `arm` is the
+    /// solid on either side of the interface, `thickness` the smaller of its depths, m. `None` of a law that does not know.
+    fn process_zone(&self, _point: &LawPoint<'_>, _arm: &Elastic, _thickness: f64) -> Option<[f64; 2]> {
+        None
     }
 
     /// The answer to `jump`, m, of an interface with the state `old`; all of the state that the jump leaves goes into `new`.

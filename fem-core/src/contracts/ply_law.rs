@@ -2,7 +2,7 @@
 
 use crate::contracts::failure::UnmetCondition;
 use crate::words::energy::Energy;
-use crate::words::material::{Material, MaterialError, Strength};
+use crate::words::material::{Material, MaterialError, Strength, Toughness};
 use crate::words::tensor::{Matrix6, Ply, Strain6, Stress6};
 use dyn_clone::DynClone;
 use std::fmt::{self, Debug};
@@ -14,6 +14,8 @@ pub struct LawInfo {
     pub state: &'static [&'static str],
     /// Strengths that it requires of the material.
     pub strengths: &'static [Strength],
+    /// Toughnesses that it requires of the material.
+    pub toughness: &'static [Toughness],
 }
 
 /// What a law may know of the point that it is asked about.
@@ -67,7 +69,7 @@ impl std::error::Error for LawError {}
 ///
 /// impl PlyLaw for LinearElastic {
 ///     fn info(&self) -> &LawInfo {
-///         const INFO: LawInfo = LawInfo { state: &[], strengths: &[] };
+///         const INFO: LawInfo = LawInfo { state: &[], strengths: &[], toughness: &[] };
 ///         &INFO
 ///     }
 ///     fn respond(
@@ -121,7 +123,7 @@ dyn_clone::clone_trait_object!(PlyLaw);
 /// Whether the law called `name`, which says `info` of itself, can stand at `point`; `check` is its own opinion.
 ///
 /// # Errors
-/// Constants that no solid has, a required strength that is missing, a point that the law refuses.
+/// Constants that no solid has, a required strength or toughness that is missing, a point that the law refuses.
 pub fn check_law(
     info: &LawInfo,
     name: &str,
@@ -132,6 +134,7 @@ pub fn check_law(
     material.check()?;
     let user = format!("law `{name}`");
     material.require(info.strengths, &user)?;
+    material.require_toughness(info.toughness, &user)?;
     check.map_err(|why| MaterialError {
         material: material.name.clone(),
         why: format!("{user} cannot follow it: {why}"),

@@ -125,7 +125,7 @@ impl Laminate {
     ///
     /// ```
     /// use fem_core::laminate::{LaminaPly, Laminate};
-    /// use fem_core::material::{Elastic, Material, Strengths};
+    /// use fem_core::material::{Elastic, Material, Strengths, Toughnesses};
     ///
     /// // One isotropic ply: E h³/12 (1 − ν²).
     /// let (e, nu, h) = (70e9, 0.3, 2e-3);
@@ -134,7 +134,7 @@ impl Laminate {
     ///     elastic: Elastic::isotropic(e, nu),
     ///     density: None,
     ///     strengths: Strengths::default(),
-    ///     giic: None,
+    ///     toughness: Toughnesses::default(), eta: None,
     ///     expansion: None,
     /// };
     /// let ply = LaminaPly { angle: 0.0, angle_deg: 0.0, thickness: h, material: 0 };
@@ -202,7 +202,7 @@ impl Laminate {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::words::material::{Elastic, Strengths};
+    use crate::words::material::{Elastic, Strengths, Toughnesses};
 
     fn material(elastic: Elastic) -> Material {
         Material {
@@ -210,7 +210,8 @@ mod tests {
             elastic,
             density: None,
             strengths: Strengths::default(),
-            giic: None,
+            toughness: Toughnesses::default(),
+            eta: None,
             expansion: None,
         }
     }

@@ -65,7 +65,7 @@ pub fn shell_excess(laminate: &Laminate, materials: &[Material], side: f64) -> f
 mod tests {
     use super::*;
     use crate::plates::laminate::LaminaPly;
-    use crate::words::material::{Elastic, Strengths};
+    use crate::words::material::{Elastic, Strengths, Toughnesses};
 
     fn sheet(elastic: Elastic) -> Material {
         Material {
@@ -73,7 +73,8 @@ mod tests {
             elastic,
             density: None,
             strengths: Strengths::default(),
-            giic: None,
+            toughness: Toughnesses::default(),
+            eta: None,
             expansion: None,
         }
     }

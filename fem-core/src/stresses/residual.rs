@@ -81,11 +81,19 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::plates::laminate::LaminaPly;
-    use crate::words::material::{Elastic, Strengths};
+    use crate::words::material::{Elastic, Strengths, Toughnesses};
 
     fn material(elastic: Elastic, expansion: [f64; 3]) -> Material {
         let (strengths, expansion) = (Strengths::default(), Some(expansion));
-        Material { name: "m".into(), elastic, density: None, strengths, giic: None, expansion }
+        Material {
+            name: "m".into(),
+            elastic,
+            density: None,
+            strengths,
+            toughness: Toughnesses::default(),
+            eta: None,
+            expansion,
+        }
     }
 
     fn laminate(plies: &[(f64, usize)], thickness: f64) -> Laminate {

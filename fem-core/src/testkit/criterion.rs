@@ -203,7 +203,7 @@ impl Kit<'_> {
 mod tests {
     use super::*;
     use crate::contracts::failure::{CriterionInfo, Site};
-    use crate::words::material::{Elastic, Strengths};
+    use crate::words::material::{Elastic, Strengths, Toughnesses};
 
     /// (σ11/Xt)² and a shear mode, with a fault.
     #[derive(Debug, Clone, Copy, PartialEq)]
@@ -275,7 +275,8 @@ mod tests {
             name: "m".into(),
             elastic: Elastic::isotropic(1e9, 0.3),
             density: None,
-            giic: None,
+            toughness: Toughnesses::default(),
+            eta: None,
             expansion: None,
             strengths: Strengths::default().with(Strength::Xt, 1000.0).with(Strength::S12, 50.0),
         };

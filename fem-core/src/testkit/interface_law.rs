@@ -12,7 +12,7 @@ const MIRRORS: [Jump; 2] = [[1.0, -1.0, 1.0], [1.0, 1.0, -1.0]];
 /// Checks a law of an interface as [`check_ply_law`](super::check_ply_law) checks one of a ply, along paths of jumps that reach
 /// `largest` (m) in each component, and as deep into each other.
 ///
-/// The tangent of a virgin interface is free; energies are per area.
+/// The tangent of a virgin interface is free; energies are per area, and what is dissipated in each sink never falls.
 ///
 /// # Errors
 /// The first violation, with the place on the path.
@@ -29,8 +29,8 @@ pub fn check_interface_law(
         let point = LawPoint { material: &material, stiffness: &stiffness, length };
         check_law(law.info(), "under test", &point, law.check(&point)).map_err(|e| e.to_string())?;
         let respond = |jump: &Jump, old: &[f64], new: &mut [f64], tangent: Option<&mut [Jump; 3]>| {
-            let InterfaceResponse { traction, energy } = law.respond(&point, jump, old, new, tangent)?;
-            Ok((traction, energy))
+            let InterfaceResponse { traction, stored, dissipated } = law.respond(&point, jump, old, new, tangent)?;
+            Ok((traction, [stored, dissipated.opening, dissipated.shear, dissipated.friction]))
         };
         let largest = largest.map(|v| units.number(v, Dimension::LENGTH));
         Subject { info: law.info(), largest, respond: &respond }.check(&MIRRORS)

@@ -2,8 +2,7 @@
 
 use crate::contracts::plugin::Dimension;
 use crate::contracts::ply_law::{LawError, LawInfo};
-use crate::words::energy::Energy;
-use crate::words::material::{Elastic, Material, Strength, Strengths};
+use crate::words::material::{Elastic, Material, Strength, Strengths, Toughness, Toughnesses};
 
 /// Units in which a law must say the same as in those of SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,22 +31,24 @@ impl Units {
         let Elastic { e1, e2, e3, g12, g13, g23, .. } = m.elastic;
         let [e1, e2, e3, g12, g13, g23] = [e1, e2, e3, g12, g13, g23].map(pressure);
         let given = Strength::ALL.iter().filter_map(|which| Some((*which, pressure(m.strengths.get(*which)?))));
+        let energy = |v| self.number(v, Dimension::TOUGHNESS);
+        let tough = Toughness::ALL.iter().filter_map(|which| Some((*which, energy(m.toughness.get(*which)?))));
         Material {
             elastic: Elastic { e1, e2, e3, g12, g13, g23, ..m.elastic },
             density: m.density.map(|v| self.number(v, Dimension::DENSITY)),
-            giic: m.giic.map(|v| self.number(v, Dimension::TOUGHNESS)),
+            toughness: tough.fold(Toughnesses::default(), |all, (which, v)| all.with(which, v)),
             strengths: given.fold(Strengths::default(), |all, (which, v)| all.with(which, v)),
             ..m.clone()
         }
     }
 }
 
-/// What a law of `N` components says: stress and energy, state and tangent into its arguments.
+/// What a law of `N` components says: stress and energies, state and tangent into its arguments.
 pub(super) type Respond<'a, const N: usize> =
-    &'a dyn Fn(&[f64; N], &[f64], &mut [f64], Option<&mut [[f64; N]; N]>) -> Result<([f64; N], Energy), LawError>;
+    &'a dyn Fn(&[f64; N], &[f64], &mut [f64], Option<&mut [[f64; N]; N]>) -> Result<Answer<N>, LawError>;
 
-/// Stress and energy at a place of a path.
-pub(super) type Answer<const N: usize> = ([f64; N], Energy);
+/// Stress at a place of a path, and the energy stored and dissipated in each of up to three sinks.
+pub(super) type Answer<const N: usize> = ([f64; N], [f64; 4]);
 
 /// Steps between two turns of a path.
 const STEPS: u32 = 100;
@@ -123,9 +124,9 @@ impl<const N: usize> Subject<'_, N> {
     fn rest(&self) -> Result<(), String> {
         let (old, mut new) = self.states();
         let (stress, energy) = (self.respond)(&[0.0; N], &old, &mut new, None).map_err(|e| e.to_string())?;
-        if stress.iter().any(|s| *s != 0.0) || energy != Energy::default() || new != old {
+        if stress.iter().any(|s| *s != 0.0) || energy != [0.0; 4] || new != old {
             return Err(format!(
-                "a virgin point without strain has the stress {stress:?}, {energy:?} and the state {new:?}"
+                "a virgin point without strain has the stress {stress:?}, the energies {energy:?} and the state {new:?}"
             ));
         }
         Ok(())
@@ -149,7 +150,7 @@ impl<const N: usize> Subject<'_, N> {
     fn walk(&self, path: &[[f64; N]]) -> Result<Vec<Answer<N>>, String> {
         let (mut state, _) = self.states();
         let (mut from, mut answers) = ([0.0; N], Vec::new());
-        let (mut work, mut most, mut lost, mut worst) = (0.0, 0.0_f64, 0.0_f64, (0.0, String::new()));
+        let (mut work, mut most, mut lost, mut worst) = (0.0, 0.0_f64, [0.0_f64; 3], (0.0, String::new()));
         for turn in path {
             let start = from;
             for step in 1..=STEPS {
@@ -164,18 +165,18 @@ impl<const N: usize> Subject<'_, N> {
                 }
                 work += self.work(&from, &strain, &state).map_err(at)?;
                 most = most.max(work.abs());
-                let Energy { stored, dissipated } = answer.1;
-                let missed = (stored + dissipated - work).abs();
+                let [stored, dissipated @ ..] = answer.1;
+                let missed = (stored + dissipated.iter().sum::<f64>() - work).abs();
                 if missed > worst.0 {
-                    worst = (missed, at(format!("{:?} is not the work {work:e}", answer.1)));
+                    worst = (missed, at(format!("energies {:?}, whose sum is not the work {work:e}", answer.1)));
                 }
-                if stored < -ROUNDING * most || dissipated < lost - ROUNDING * most {
+                if stored < -ROUNDING * most || dissipated.iter().zip(lost).any(|(d, l)| *d < l - ROUNDING * most) {
                     return Err(at(format!(
-                        "stored energy is negative or dissipated energy falls from {lost:e}: {:?}",
+                        "stored energy is negative or dissipated energy falls from {lost:?}: {:?}",
                         answer.1
                     )));
                 }
-                lost = lost.max(dissipated);
+                lost = std::array::from_fn(|k| lost[k].max(dissipated[k]));
                 let (again, _) = self.answer(&strain, &new).map_err(at)?;
                 same(&[answer], &[again])
                     .map_err(|why| at(format!("once its state is taken over the answer changes: {why}")))?;
@@ -197,8 +198,7 @@ impl<const N: usize> Subject<'_, N> {
         };
         let (first, second) = (ask(0.0)?, ask(f64::NAN)?);
         let numbers = |((stress, energy), new): &(Answer<N>, Vec<f64>)| -> Vec<u64> {
-            let energies = [energy.stored, energy.dissipated];
-            stress.iter().chain(&energies).chain(new).map(|v| v.to_bits()).collect()
+            stress.iter().chain(energy).chain(new).map(|v| v.to_bits()).collect()
         };
         if let Some(name) = self.info.state.iter().zip(&second.1).find_map(|(name, v)| v.is_nan().then_some(name)) {
             return Err(format!("the state `{name}` is not written or no number"));
@@ -265,11 +265,10 @@ fn times<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
 pub(super) fn same<const N: usize>(a: &[Answer<N>], b: &[Answer<N>]) -> Result<(), String> {
     let largest = |of: &dyn Fn(&Answer<N>) -> f64| a.iter().map(of).fold(0.0, f64::max);
     let stress = largest(&|(s, _)| s.iter().fold(0.0, |m, s| m.max(s.abs())));
-    let energy = largest(&|(_, e)| e.stored.abs().max(e.dissipated.abs()));
+    let energy = largest(&|(_, e)| e.iter().fold(0.0, |m, e| m.max(e.abs())));
     let differ = |(a, b): &(&Answer<N>, &Answer<N>)| {
         a.0.iter().zip(&b.0).any(|(a, b)| (a - b).abs() > ROUNDING * stress)
-            || (a.1.stored - b.1.stored).abs() > ROUNDING * energy
-            || (a.1.dissipated - b.1.dissipated).abs() > ROUNDING * energy
+            || a.1.iter().zip(&b.1).any(|(a, b)| (a - b).abs() > ROUNDING * energy)
     };
     match a.iter().zip(b).find(differ) {
         Some((a, b)) => Err(format!("{a:?} and {b:?}")),
@@ -284,10 +283,8 @@ pub(super) fn same_in<const N: usize>(
     theirs: &[Answer<N>],
     energy: Dimension,
 ) -> Result<(), String> {
-    let number = |v: f64| units.number(v, energy);
-    let ours = si.iter().map(|(stress, Energy { stored, dissipated })| {
-        let energy = Energy { stored: number(*stored), dissipated: number(*dissipated) };
-        (stress.map(|s| units.number(s, Dimension::PRESSURE)), energy)
+    let ours = si.iter().map(|(stress, energies)| {
+        (stress.map(|s| units.number(s, Dimension::PRESSURE)), energies.map(|e| units.number(e, energy)))
     });
     same(&ours.collect::<Vec<_>>(), theirs).map_err(|why| format!("in other units it does not say the same: {why}"))
 }

@@ -38,7 +38,7 @@ pub fn check_ply_law(
         check_law(law.info(), "under test", &point, law.check(&point)).map_err(|e| e.to_string())?;
         let respond = |strain: &[f64; 6], old: &[f64], new: &mut [f64], tangent: Option<&mut Matrix6>| {
             let PlyResponse { stress, energy } = law.respond(&point, &Strain6::new(*strain), old, new, tangent)?;
-            Ok((stress.0, energy))
+            Ok((stress.0, [energy.stored, energy.dissipated, 0.0, 0.0]))
         };
         let subject = Subject { info: law.info(), largest: *largest, respond: &respond };
         let tangent = subject.virgin_tangent()?;

@@ -168,28 +168,50 @@ impl Elastic {
     }
 }
 
-macro_rules! strengths {
-    ($($(#[$doc:meta])* $variant:ident $get:ident $name:literal),+ $(,)?) => {
-        /// A constant that a criterion may require of a material.
+macro_rules! constants {
+    ($(#[$what:meta])* $one:ident of $all:ident: $($(#[$doc:meta])* $variant:ident $get:ident $name:literal),+ $(,)?) => {
+        $(#[$what])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        pub enum Strength { $($(#[$doc])* $variant),+ }
+        pub enum $one { $($(#[$doc])* $variant),+ }
 
-        impl Strength {
-            /// All constants, in the order of their declaration.
-            pub const ALL: &'static [Strength] = &[$(Strength::$variant),+];
+        impl $one {
+            /// All of them, in the order of their declaration.
+            pub const ALL: &'static [$one] = &[$($one::$variant),+];
             /// The key that scenes and tables use.
             pub const fn name(self) -> &'static str {
-                match self { $(Strength::$variant => $name),+ }
+                match self { $($one::$variant => $name),+ }
             }
         }
 
-        impl Strengths {
-            $($(#[$doc])* #[inline] pub const fn $get(&self) -> f64 { self.0[Strength::$variant as usize] })+
+        impl $all {
+            $($(#[$doc])* #[inline] pub const fn $get(&self) -> f64 { self.0[$one::$variant as usize] })+
+        }
+
+        impl Default for $all {
+            fn default() -> Self {
+                Self([f64::NAN; $one::ALL.len()])
+            }
+        }
+
+        impl $all {
+            /// The same with one constant given, SI.
+            #[must_use]
+            pub fn with(mut self, which: $one, value: f64) -> Self {
+                self.0[which as usize] = value;
+                self
+            }
+
+            /// The constant, if it was given.
+            pub fn get(&self, which: $one) -> Option<f64> {
+                Some(self.0[which as usize]).filter(|v| !v.is_nan())
+            }
         }
     };
 }
 
-strengths! {
+constants! {
+    /// A strength that a criterion or a law may require of a material.
+    Strength of Strengths:
     /// Tension along the fibres, s1T.
     Xt xt "Xt",
     /// Compression along the fibres (positive number), s1C.
@@ -210,32 +232,33 @@ strengths! {
     S13 s13 "S13",
 }
 
-const STRENGTHS: usize = Strength::ALL.len();
-
 /// Strengths of a material in Pa; a constant that nobody gave is NaN and never enters a computation, because
 /// criteria declare what they need and are refused without it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Strengths([f64; STRENGTHS]);
+pub struct Strengths([f64; Strength::ALL.len()]);
 
-impl Default for Strengths {
-    fn default() -> Self {
-        Self([f64::NAN; STRENGTHS])
-    }
+constants! {
+    /// An energy per new crack area that a law may require of a material.
+    Toughness of Toughnesses:
+    /// An interface that opens, mode I.
+    GIc gic "GIc",
+    /// An interface that is sheared, mode II.
+    GIIc giic "GIIc",
+    /// Fibres that break in tension.
+    Gft gft "Gft",
+    /// Fibres that kink in compression.
+    Gfc gfc "Gfc",
+    /// A crack along the fibres that opens.
+    Gmt gmt "Gmt",
+    /// Compression across the fibres.
+    Gmc gmc "Gmc",
+    /// A crack along the fibres that is sheared.
+    Gms gms "Gms",
 }
 
-impl Strengths {
-    /// The same strengths with one constant given.
-    #[must_use]
-    pub fn with(mut self, which: Strength, pascals: f64) -> Self {
-        self.0[which as usize] = pascals;
-        self
-    }
-
-    /// The constant, if it was given.
-    pub fn get(&self, which: Strength) -> Option<f64> {
-        Some(self.0[which as usize]).filter(|v| !v.is_nan())
-    }
-}
+/// Toughnesses of a material in J/m²; one that nobody gave is NaN, as a strength is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Toughnesses([f64; Toughness::ALL.len()]);
 
 /// A material: elasticity, density, strengths. SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -248,8 +271,10 @@ pub struct Material {
     pub density: Option<f64>,
     /// Strengths, Pa.
     pub strengths: Strengths,
-    /// Toughness of the interfaces between plies in mode II, GIIc, J/m², if it was given.
-    pub giic: Option<f64>,
+    /// Toughnesses, J/m².
+    pub toughness: Toughnesses,
+    /// Exponent of Benzeggagh and Kenane's toughness of an interface under a mixed mode, if it was given.
+    pub eta: Option<f64>,
     /// Thermal expansion along 1, 2, 3, 1/K, if it was given.
     pub expansion: Option<[f64; 3]>,
 }
@@ -264,10 +289,15 @@ impl Material {
         if let Err(why) = self.elastic.check() {
             return refuse(why.to_string());
         }
-        for (name, given, unit) in [("density", self.density, "kg/m3"), ("GIIc", self.giic, "J/m2")] {
+        let toughnesses = Toughness::ALL.iter().map(|&t| (t.name(), self.toughness.get(t), "J/m2"));
+        for (name, given, unit) in toughnesses.chain([("density", self.density, "kg/m3")]) {
             if let Some(v) = given.filter(|v| !(*v > 0.0 && v.is_finite())) {
                 return refuse(format!("{name} must be positive and finite, got {v} {unit}"));
             }
+        }
+        // Below 1 the toughness of a mixed mode rises at once from that of mode I, with a slope that has no bound.
+        if let Some(v) = self.eta.filter(|v| !(*v >= 1.0 && v.is_finite())) {
+            return refuse(format!("eta, Benzeggagh and Kenane's exponent, must be finite and at least 1, got {v}"));
         }
         if let Some(v) = self.expansion.iter().flatten().find(|v| !v.is_finite()) {
             return refuse(format!("thermal expansion must be finite, got {v} 1/K"));
@@ -307,13 +337,26 @@ impl Material {
     /// # Errors
     /// Names the user and every missing constant.
     pub fn require(&self, needed: &[Strength], user: &str) -> Result<(), MaterialError> {
-        let missing: Vec<_> = needed.iter().filter(|s| self.strengths.get(**s).is_none()).map(|s| s.name()).collect();
+        let missing = needed.iter().filter(|s| self.strengths.get(**s).is_none()).map(|s| s.name());
+        self.refuse_missing(missing.collect(), "strength", user)
+    }
+
+    /// Refuses a material that lacks a toughness which `user` requires.
+    ///
+    /// # Errors
+    /// Names the user and every missing toughness.
+    pub fn require_toughness(&self, needed: &[Toughness], user: &str) -> Result<(), MaterialError> {
+        let missing = needed.iter().filter(|t| self.toughness.get(**t).is_none()).map(|t| t.name());
+        self.refuse_missing(missing.collect(), "toughness", user)
+    }
+
+    fn refuse_missing(&self, missing: Vec<&str>, what: &str, user: &str) -> Result<(), MaterialError> {
         if missing.is_empty() {
             return Ok(());
         }
         Err(MaterialError {
             material: self.name.clone(),
-            why: format!("{user} needs the strength {}, which the material does not give", missing.join(", ")),
+            why: format!("{user} needs the {what} {}, which the material does not give", missing.join(", ")),
         })
     }
 }
@@ -351,14 +394,18 @@ mod tests {
             elastic: Elastic::isotropic(3.79e9, 0.36),
             density: Some(1260.0),
             strengths: Strengths::default().with(Strength::Xt, 38e6),
-            giic: None,
+            toughness: Toughnesses::default(),
+            eta: None,
             expansion: None,
         };
         assert!(m.check().is_ok());
         let heavy = Material { density: Some(f64::INFINITY), ..m.clone() };
         assert!(heavy.check().unwrap_err().to_string().contains("density must be positive and finite"));
-        let brittle = Material { density: None, giic: Some(0.0), ..m.clone() };
+        let brittle =
+            Material { density: None, toughness: Toughnesses::default().with(Toughness::GIIc, 0.0), ..m.clone() };
         assert!(brittle.check().unwrap_err().to_string().contains("GIIc must be positive and finite"));
+        let steep = Material { eta: Some(0.5), ..m.clone() };
+        assert!(steep.check().unwrap_err().to_string().contains("at least 1, got 0.5"));
         assert_eq!(m.mass_density(), Ok(1260.0));
         assert!(brittle.mass_density().unwrap_err().to_string().contains("`m`: the mass of the plate needs a density"));
         let error = m.require(&[Strength::Xt, Strength::S12], "criterion `x`").unwrap_err().to_string();

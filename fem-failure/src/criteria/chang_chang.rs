@@ -116,7 +116,7 @@ impl Plugin for ChangChang {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fem_core::material::{Elastic, Strengths};
+    use fem_core::material::{Elastic, Strengths, Toughnesses};
 
     #[test]
     fn nonlinear_shear_weighs_energies() {
@@ -124,7 +124,8 @@ mod tests {
             name: "m".into(),
             elastic: Elastic::isotropic(2.0, 0.0),
             density: None,
-            giic: None,
+            toughness: Toughnesses::default(),
+            eta: None,
             expansion: None,
             strengths: Strength::ALL.iter().fold(Strengths::default(), |s, which| s.with(*which, 2.0)),
         };

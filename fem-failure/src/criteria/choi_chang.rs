@@ -53,7 +53,7 @@ impl Plugin for ChoiChang {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fem_core::material::{Elastic, Strengths};
+    use fem_core::material::{Elastic, Strengths, Toughnesses};
 
     #[test]
     fn hand_values() {
@@ -63,7 +63,8 @@ mod tests {
             elastic: Elastic::isotropic(1.0, 0.0),
             density: None,
             strengths,
-            giic: None,
+            toughness: Toughnesses::default(),
+            eta: None,
             expansion: None,
         };
         let index = |s22, s23| {

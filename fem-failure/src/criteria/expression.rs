@@ -225,7 +225,7 @@ fn split_mode(item: &Value) -> Result<(&str, &str), ExpressionError> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use fem_core::material::{Elastic, Strengths};
+    use fem_core::material::{Elastic, Strengths, Toughnesses};
 
     fn build(value: Value) -> Result<Box<dyn FailureCriterion>, ParamError> {
         let built = Expression::build(&Params::default().with("expression", value))?;
@@ -292,7 +292,8 @@ mod tests {
             name: "m".into(),
             elastic: Elastic::transversely_isotropic(130.0 * unit, 10.0 * unit, 0.3, 0.4, 5.0 * unit),
             density: None,
-            giic: None,
+            toughness: Toughnesses::default(),
+            eta: None,
             expansion: None,
             strengths: Strengths::default().with(Strength::Xt, 3.0 * unit).with(Strength::Yt, 0.7 * unit),
         };

@@ -108,7 +108,7 @@ impl Plugin for HashinReport {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fem_core::material::{Elastic, Strengths};
+    use fem_core::material::{Elastic, Strengths, Toughnesses};
     use fem_core::plugin::Value;
 
     fn as4_3502() -> Material {
@@ -123,7 +123,8 @@ mod tests {
             name: "AS4/3502".into(),
             elastic: Elastic::transversely_isotropic(130.3e9, 9.65e9, 0.35, 0.40, 5.93e9),
             density: None,
-            giic: None,
+            toughness: Toughnesses::default(),
+            eta: None,
             expansion: None,
             strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
         }

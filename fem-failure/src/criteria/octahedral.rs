@@ -55,7 +55,7 @@ impl Plugin for Octahedral {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fem_core::material::{Elastic, Strengths};
+    use fem_core::material::{Elastic, Strengths, Toughnesses};
 
     #[test]
     fn hand_values() {
@@ -63,7 +63,8 @@ mod tests {
             name: "3502 resin".into(),
             elastic: Elastic::isotropic(3.79e9, 0.36),
             density: None,
-            giic: None,
+            toughness: Toughnesses::default(),
+            eta: None,
             expansion: None,
             strengths: Strengths::default().with(Strength::S12, 62e6),
         };

@@ -277,7 +277,7 @@ impl Plugin for Puck {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fem_core::material::{Elastic, Strengths};
+    use fem_core::material::{Elastic, Strengths, Toughnesses};
 
     /// Maxima on either side of the plane without σn, 1.5° apart, which steps of a degree do not tell from each other. The
     /// larger one, from eight million planes, is 1.0522654434445535.
@@ -289,7 +289,8 @@ mod tests {
             elastic: Elastic::transversely_isotropic(165e9, 9e9, 0.33, 0.40, 5.2e9),
             density: None,
             strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
-            giic: None,
+            toughness: Toughnesses::default(),
+            eta: None,
             expansion: None,
         };
         let [s22, s33, s12, s23, s31]: [f64; 5] =

@@ -57,8 +57,9 @@ impl HahnTsai {
 
 impl PlyLaw for HahnTsai {
     fn info(&self) -> &LawInfo {
-        const ELASTIC: LawInfo = LawInfo { state: &[], strengths: &[] };
-        const PERMANENT: LawInfo = LawInfo { state: &["permanent shear strain", "its length"], strengths: &[] };
+        const ELASTIC: LawInfo = LawInfo { state: &[], strengths: &[], toughness: &[] };
+        const PERMANENT: LawInfo =
+            LawInfo { state: &["permanent shear strain", "its length"], strengths: &[], toughness: &[] };
         match self.unloading {
             Unloading::Elastic => &ELASTIC,
             Unloading::Permanent => &PERMANENT,

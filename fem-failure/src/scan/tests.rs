@@ -1,14 +1,15 @@
 use super::*;
 use crate::{HashinReport, Octahedral};
 use fem_core::failure::CriterionInfo;
-use fem_core::material::{Elastic, Strength, Strengths};
+use fem_core::material::{Elastic, Strength, Strengths, Toughnesses};
 
 fn material(name: &str, strengths: &[(Strength, f64)]) -> Material {
     Material {
         name: name.into(),
         elastic: Elastic::isotropic(1.0, 0.3),
         density: None,
-        giic: None,
+        toughness: Toughnesses::default(),
+        eta: None,
         expansion: None,
         strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
     }

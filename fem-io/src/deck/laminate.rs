@@ -3,7 +3,7 @@
 use super::reader::Reader;
 use super::source::{DeckError, Fault};
 use fem_core::laminate::LaminaPly;
-use fem_core::material::{Elastic, Material, Strength, Strengths};
+use fem_core::material::{Elastic, Material, Strength, Strengths, Toughnesses};
 
 /// Materials and plies of a deck, in its units.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,5 +75,13 @@ fn material(reader: &mut Reader<'_>, number: usize) -> Result<Material, DeckErro
         }
     }
     let name = if label.is_empty() { format!("material {number}") } else { label };
-    Ok(Material { name, elastic, density: Some(density), strengths, giic: None, expansion: None })
+    Ok(Material {
+        name,
+        elastic,
+        density: Some(density),
+        strengths,
+        toughness: Toughnesses::default(),
+        eta: None,
+        expansion: None,
+    })
 }

@@ -3,7 +3,7 @@
 use crate::document::keys::{Form, Key, Keys, key};
 use crate::document::reader::Reader;
 use crate::document::source::SceneError;
-use fem_core::material::{Elastic, Material, Strength, Strengths};
+use fem_core::material::{Elastic, Material, Strength, Strengths, Toughness, Toughnesses};
 use fem_core::plugin::{Dimension, Kind};
 
 /// The keys of a material: where its constants come from, then the constants themselves.
@@ -42,7 +42,23 @@ pub(crate) const KEYS: Keys = &[
     stress("Zt", r#""60 MPa""#, "tensile strength through the thickness"),
     stress("Zc", r#""138 MPa""#, "compressive strength through the thickness"),
     stress("S13", r#""90 MPa""#, "shear strength 13"),
-    key("GIIc", Form::Quantity(Dimension::TOUGHNESS), r#""0.8 N/mm""#, "toughness of the interfaces in mode II"),
+    energy("GIc", r#""0.28 N/mm""#, "toughness of the interfaces in mode I"),
+    energy("GIIc", r#""0.8 N/mm""#, "toughness of the interfaces in mode II"),
+    key(
+        "eta",
+        Form::Number,
+        "1.45",
+        "Benzeggagh and Kenane's exponent: toughness of the interfaces between modes I and II",
+    ),
+    energy("Gft", r#""81.5 N/mm""#, "toughness of the ply: fibres that break in tension"),
+    energy("Gfc", r#""106 N/mm""#, "toughness of the ply: fibres that kink in compression"),
+    energy("Gmt", r#""0.28 N/mm""#, "toughness of the ply: a crack along the fibres that opens"),
+    energy("Gmc", r#""1.3 N/mm""#, "toughness of the ply: compression across the fibres"),
+    energy(
+        "Gms",
+        r#""0.8 N/mm""#,
+        "toughness of the ply: a crack along the fibres that is sheared; without it that of tension or compression across them",
+    ),
 ];
 
 /// The keys of constants.
@@ -50,6 +66,10 @@ pub(crate) const CONSTANTS: Keys = KEYS.split_at(4).1;
 
 const fn stress(name: &'static str, example: &'static str, about: &'static str) -> Key {
     key(name, Form::Quantity(Dimension::PRESSURE), example, about)
+}
+
+const fn energy(name: &'static str, example: &'static str, about: &'static str) -> Key {
+    key(name, Form::Quantity(Dimension::TOUGHNESS), example, about)
 }
 
 const fn expansion_key(name: &'static str, example: &'static str, about: &'static str) -> Key {
@@ -70,9 +90,15 @@ pub(crate) fn from_constants(name: &str, table: &Reader<'_>) -> Result<Material,
         }
     }
     let density = optional("density", Dimension::DENSITY)?;
-    let giic = optional("GIIc", Dimension::TOUGHNESS)?;
+    let mut toughness = Toughnesses::default();
+    for &which in Toughness::ALL {
+        if let Some(energy) = optional(which.name(), Dimension::TOUGHNESS)? {
+            toughness = toughness.with(which, energy);
+        }
+    }
+    let eta = table.optional("eta").map(|field| field.number()).transpose()?;
     let expansion = expansion(table)?;
-    let material = Material { name: name.to_owned(), elastic, density, strengths, giic, expansion };
+    let material = Material { name: name.to_owned(), elastic, density, strengths, toughness, eta, expansion };
     match material.check() {
         Ok(()) => Ok(material),
         Err(e) => {
@@ -125,9 +151,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_strength_that_a_criterion_may_ask_for_can_be_given() {
-        for strength in Strength::ALL {
-            assert!(CONSTANTS.iter().any(|key| key.name == strength.name()), "{}", strength.name());
+    fn every_constant_that_a_criterion_or_a_law_may_ask_for_can_be_given() {
+        let strengths = Strength::ALL.iter().map(|s| s.name());
+        for name in strengths.chain(Toughness::ALL.iter().map(|t| t.name())) {
+            assert!(CONSTANTS.iter().any(|key| key.name == name), "{name}");
         }
     }
 }

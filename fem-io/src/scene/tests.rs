@@ -1,7 +1,7 @@
 use super::*;
 use crate::document::keys;
 use fem_core::laminate::LaminaPly;
-use fem_core::material::Strength;
+use fem_core::material::{Strength, Toughness, Toughnesses};
 use fem_core::mesh::{Curves, Graded, Outline};
 use fem_core::plugin::Value;
 use fem_core::support::Levels;
@@ -166,7 +166,11 @@ fn a_material_comes_from_a_file_of_ones_own() {
     let tough =
         material(r#"{ file = "mine.toml", name = "E-glass/MY750", density = "2.1 g/cm^3", GIIc = "0.8 N/mm" }"#);
     assert_eq!(named("E-glass/MY750").density, None);
-    let want = Material { density: Some(2100.0), giic: Some(800.0), ..named("E-glass/MY750") };
+    let want = Material {
+        density: Some(2100.0),
+        toughness: Toughnesses::default().with(Toughness::GIIc, 800.0),
+        ..named("E-glass/MY750")
+    };
     assert_eq!(tough, format!("{want:?}"));
 
     let broken = crate::materials::LIBRARY.replace("\"9.65 GPa\"", "\"9.65 mm\"");

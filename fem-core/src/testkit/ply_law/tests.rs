@@ -3,7 +3,7 @@ use crate::contracts::plugin::Dimension;
 use crate::contracts::ply_law::{LawError, LawInfo, LawPoint, PlyLaw, PlyResponse};
 use crate::testkit::Units;
 use crate::words::energy::Energy;
-use crate::words::material::{Elastic, Material, Strength, Strengths};
+use crate::words::material::{Elastic, Material, Strength, Strengths, Toughnesses};
 use crate::words::tensor::{Matrix6, Ply, Strain6, Stress6, apply};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -34,8 +34,11 @@ impl Clone for Yielding {
 
 impl PlyLaw for Yielding {
     fn info(&self) -> &LawInfo {
-        const INFO: LawInfo =
-            LawInfo { state: &["plastic shear", "its length", "dissipated"], strengths: &[Strength::S12] };
+        const INFO: LawInfo = LawInfo {
+            state: &["plastic shear", "its length", "dissipated"],
+            strengths: &[Strength::S12],
+            toughness: &[],
+        };
         &INFO
     }
     fn respond(
@@ -78,7 +81,8 @@ fn check(spoil: fn(&mut Answer)) -> Result<(), String> {
         elastic: Elastic::transversely_isotropic(130e9, 9e9, 0.3, 0.4, 5e9),
         density: None,
         strengths: Strengths::default().with(Strength::S12, 60e6),
-        giic: None,
+        toughness: Toughnesses::default(),
+        eta: None,
         expansion: None,
     };
     let make = |units: &Units| -> Box<dyn PlyLaw> {

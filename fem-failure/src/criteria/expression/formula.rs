@@ -107,7 +107,7 @@ impl IndexFormula {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use fem_core::material::Strengths;
+    use fem_core::material::{Strengths, Toughnesses};
     use proptest::prelude::*;
 
     fn material() -> Material {
@@ -116,7 +116,8 @@ mod tests {
             name: "m".into(),
             elastic: Elastic::transversely_isotropic(130.0, 10.0, 0.3, 0.4, 5.0),
             density: None,
-            giic: None,
+            toughness: Toughnesses::default(),
+            eta: None,
             expansion: None,
             strengths: strengths.iter().fold(Strengths::default(), |s, (which, v)| s.with(*which, *v)),
         }
