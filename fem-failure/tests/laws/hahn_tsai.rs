@@ -1,5 +1,4 @@
-//! Laws of plies: the contract, and closed forms.
-#![allow(clippy::unwrap_used)]
+//! Nonlinear shear: the contract, and closed forms.
 
 use fem_core::material::{Elastic, Material, Strengths, Toughnesses};
 use fem_core::plugin::{Built, Dimension, Params, Plugin, Value};

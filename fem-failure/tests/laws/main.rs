@@ -1,0 +1,6 @@
+//! Laws of plies and of interfaces: contracts, closed forms, reference tables (`tests/data/damage`).
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod bilinear;
+mod hahn_tsai;
+mod tables;
