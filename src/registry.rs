@@ -142,6 +142,7 @@ impl Registry {
             .with::<failure::BrewerLagace>()
             .with::<failure::Expression>()
             .with::<failure::laws::HahnTsai>()
+            .with::<failure::laws::CrackBand>()
             .with::<failure::laws::Bilinear>()
             .with_effect::<effects::Membrane>()
             .with_effect::<effects::NoInertia>()

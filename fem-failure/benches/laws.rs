@@ -3,8 +3,9 @@
 use divan::counter::ItemsCount;
 use fem_core::interface_law::{InterfaceLaw, Jump};
 use fem_core::material::{Elastic, Material, Strength, Strengths, Toughness, Toughnesses};
-use fem_core::ply_law::LawPoint;
-use fem_failure::laws::{Bilinear, MixedMode};
+use fem_core::ply_law::{LawPoint, PlyLaw};
+use fem_core::tensor::Strain6;
+use fem_failure::laws::{Bilinear, CrackBand, HahnTsai, MixedMode, Unloading};
 
 fn main() {
     divan::main();
@@ -66,4 +67,42 @@ fn bilinear(bencher: divan::Bencher<'_, '_>, state: &str) {
     bencher
         .counter(ItemsCount::new(1_u32))
         .bench_local(|| law.respond(&point, &now, &old, &mut new, Some(&mut tangent)));
+}
+
+/// The strains of a ply before and after, under which it answers linearly, its damage grows, it unloads.
+fn strains(state: &str) -> [[f64; 6]; 2] {
+    let strain = |size: f64| [2e-3, 5e-3, -2e-3, 1.5e-2, 5e-3, 8e-3].map(|e| size * e);
+    match state {
+        "sound" => [strain(0.1), strain(0.2)],
+        "growing" => [strain(1.3), strain(1.31)],
+        _ => [strain(1.3), strain(0.9)],
+    }
+}
+
+fn ply(bencher: divan::Bencher<'_, '_>, law: &dyn PlyLaw, state: &str) {
+    let material = tape();
+    let stiffness = material.elastic.stiffness();
+    let point = LawPoint { material: &material, stiffness: &stiffness, length: 2e-4 };
+    let count = law.info().state.len();
+    let (virgin, mut old, mut new, mut tangent) = (vec![0.0; count], vec![0.0; count], vec![0.0; count], [[0.0; 6]; 6]);
+    let [before, now] = strains(state).map(Strain6::new);
+    let _ = law.respond(&point, &before, &virgin, &mut old, None);
+    bencher
+        .counter(ItemsCount::new(1_u32))
+        .bench_local(|| law.respond(&point, &now, &old, &mut new, Some(&mut tangent)));
+}
+
+#[divan::bench(args = ["sound", "growing", "unloading"])]
+fn crack_band(bencher: divan::Bencher<'_, '_>, state: &str) {
+    ply(bencher, &CrackBand { alpha: None, lower_strengths: false }, state);
+}
+
+#[divan::bench(args = ["sound", "growing", "unloading"])]
+fn crack_band_permanent(bencher: divan::Bencher<'_, '_>, state: &str) {
+    ply(bencher, &CrackBand { alpha: Some(2.44e-26), lower_strengths: false }, state);
+}
+
+#[divan::bench(args = ["sound", "growing", "unloading"])]
+fn hahn_tsai(bencher: divan::Bencher<'_, '_>, state: &str) {
+    ply(bencher, &HahnTsai::new(2.44e-26, Unloading::Permanent), state);
 }

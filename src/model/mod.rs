@@ -261,6 +261,7 @@ impl Model {
         let profiles = builder.profiles(&plate, &mirrors)?;
         warnings.extend(plan::warn_of_sides(&profiles, &plate));
         let laws = builder.laws(&plate, &laminates, &materials, &*element)?;
+        warnings.extend(laws.iter().flat_map(|laws| laws.warnings(&plate, &*element)));
         if let Some(laws) = &laws {
             effects.act(Box::new(NonlinearPlies(laws.clone())));
         }

@@ -207,3 +207,37 @@ fn mean_forces_of_a_step_do_the_work_that_the_energies_say() {
         }
     }
 }
+
+/// A plate of cells 10 mm wide and its toughnesses.
+fn wide(more: &str) -> Result<Model, Error> {
+    model(&format!(
+        "title = 'wide'\nanalysis = 'static'\nmesh = {{ rectangle = ['20 mm', '10 mm'], cells = [2, 1] }}\n\
+         element = {{ kind = 'hermite-prism' }}\neffects = {{ damage = 'off' }}\nsupport = {FREE}\n\
+         load = [{{ force_per_length = ['1 N/mm', '0 N/mm', '0 N/mm'], group = 'x-max' }}, \
+         {{ force_per_length = ['-1 N/mm', '0 N/mm', '0 N/mm'], group = 'x-min' }}]\n\
+         laminate = {{ plies = '[0]', material = 'tape', ply_thickness = '1 mm', layers = [1] }}\n\
+         [materials.tape]\nlibrary = 'AS4/3502'\nlaw = {{ name = 'crack-band'{more} }}\n\
+         Gft = '80 N/mm'\nGfc = '100 N/mm'\nGmt = '0.28 N/mm'\nGmc = '1.3 N/mm'\nGms = '0.8 N/mm'\n"
+    ))
+}
+
+#[test]
+fn cells_too_wide_for_a_toughness_are_refused_or_lower_strengths_and_say_so() {
+    let refused = wide("").unwrap_err().to_string();
+    for said in [
+        "material `tape`: law `crack-band`",
+        "a cell narrower than 1.8 G12 Gms/S12^2",
+        "cell = 1.000000e-2 m",
+        "lower_strengths",
+    ] {
+        assert!(refused.contains(said), "{said}: {refused}");
+    }
+    let lowered = wide(", lower_strengths = true").unwrap();
+    let warned = lowered.warnings.iter().filter(|warning| warning.contains("strengths are lowered")).count();
+    assert!(
+        warned == 1
+            && lowered.warnings.iter().any(|w| w.contains("law `crack-band`") && w.contains("Yt from 64.0 to "))
+    );
+    let missing = model(&struck("law = 'crack-band'\nGft = '80 N/mm'\n", "")).unwrap_err().to_string();
+    assert!(missing.contains("needs the toughness Gfc, Gmt, Gmc"), "{missing}");
+}

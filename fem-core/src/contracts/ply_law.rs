@@ -102,6 +102,11 @@ pub trait PlyLaw: DynClone + Debug + Send + Sync {
         Ok(())
     }
 
+    /// What the user should know of a point that the law takes, such as strengths that it lowers in so wide a cell.
+    fn warning(&self, _point: &LawPoint<'_>) -> Option<String> {
+        None
+    }
+
     /// The answer to `strain` (engineering shears) of a ply with the state `old`; all of the state that the strain leaves goes
     /// into `new`.
     ///

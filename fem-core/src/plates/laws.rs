@@ -160,6 +160,25 @@ impl PlyLaws {
         Ok(Some(all))
     }
 
+    /// What laws say of the widest cell of each material that follows one.
+    pub fn warnings(&self, plate: &Plate, element: &dyn Element) -> Vec<String> {
+        let mut widest = vec![0.0_f64; self.plies.len()];
+        for cell in 0..plate.cells() {
+            let layer = plate.place(cell).1;
+            widest[layer] = widest[layer].max(width(element.info(), &plate.cell(cell)));
+        }
+        let mut said = Vec::new();
+        for (plies, length) in self.plies.iter().zip(widest) {
+            for ply in plies.iter().flatten() {
+                let point = LawPoint { material: &ply.material, stiffness: &ply.stiffness, length };
+                let warning = ply.law.warning(&point);
+                let warning = warning.map(|why| format!("material `{}`, law `{}`: {why}", ply.material.name, ply.name));
+                said.extend(warning.filter(|warning| !said.contains(warning)));
+            }
+        }
+        said
+    }
+
     /// State variables of all cells.
     pub fn states(&self) -> usize {
         self.first[self.first.len() - 1]

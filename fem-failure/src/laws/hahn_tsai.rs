@@ -1,5 +1,6 @@
 //! Shear in the plane of a ply that softens.
 
+use super::shear;
 use fem_core::energy::Energy;
 use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::ply_law::{LawError, LawInfo, LawPoint, PlyLaw, PlyResponse};
@@ -44,12 +45,6 @@ impl HahnTsai {
         Self { alpha, unloading }
     }
 
-    /// |τ| of the curve at |γ|.
-    fn shear(&self, g: f64, strain: f64) -> f64 {
-        let k = 2.0 / (3.0 * self.alpha * g).sqrt();
-        k * ((3.0 * g * strain / k).asinh() / 3.0).sinh()
-    }
-
     fn excess(&self, stress: f64) -> f64 {
         self.alpha * stress.powi(3)
     }
@@ -80,7 +75,7 @@ impl PlyLaw for HahnTsai {
         let elastic = g * (strain.g12() - left);
         let yielding = elastic.abs() > (way / self.alpha).cbrt();
         let (size, on_curve) = if yielding {
-            let size = self.shear(g, elastic.abs() / g + way);
+            let size = shear::on_curve(self.alpha, g, elastic.abs() / g + way);
             (size, self.excess(size) - way)
         } else {
             (elastic.abs(), 0.0)
@@ -99,8 +94,7 @@ impl PlyLaw for HahnTsai {
         let mut stress = apply(point.stiffness, &strain.0);
         let linear = (0..6).filter(|k| *k != SHEAR).map(|k| stress[k] * strain.0[k]).sum::<f64>();
         stress[SHEAR] = shear;
-        // ∫ τ d(α τ³) up to the end of the way.
-        let beside = 0.75 * (way + on_curve) * ((way + on_curve) / self.alpha).cbrt();
+        let beside = shear::lost(self.alpha, way + on_curve);
         let recoverable = 0.5 * (linear + shear * shear / g);
         let energy = match self.unloading {
             Unloading::Elastic => Energy { stored: recoverable + beside, dissipated: 0.0 },

@@ -115,8 +115,8 @@ fn the_tables_are_met() {
                         assert!((got - want).abs() <= size, "{table} {name} {}: {what} {got} {want}", row["step"]);
                     };
                     near(point.state[0], row["damage"], 1e-11, "damage");
-                    for k in 0..3 {
-                        near(answer.traction[k], want[k], 1e-11 * strength.max(want[k].abs()), "traction");
+                    for (got, want) in answer.traction.into_iter().zip(want) {
+                        near(got, want, 1e-11 * strength.max(want.abs()), "traction");
                     }
                     near(answer.stored, row["stored_J_m2"], 1e-11 * toughness.max(row["stored_J_m2"]), "stored");
                     near(answer.dissipated.total(), row["dissipated_J_m2"], exact * toughness, "dissipated");

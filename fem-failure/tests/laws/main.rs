@@ -2,5 +2,6 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod bilinear;
+mod crack_band;
 mod hahn_tsai;
 mod tables;

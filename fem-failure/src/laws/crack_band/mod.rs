@@ -1,0 +1,319 @@
+//! A ply whose cracks are smeared over its cell.
+
+mod modes;
+mod permanent;
+mod solid;
+mod solve;
+
+use super::hahn_tsai::HahnTsai;
+use fem_core::energy::Energy;
+use fem_core::failure::UnmetCondition;
+use fem_core::material::{Strength, Toughness};
+use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::ply_law::{LawError, LawInfo, LawPoint, PlyLaw, PlyResponse};
+use fem_core::tensor::{Matrix6, Ply, Strain6, Stress6};
+use modes::{BRITTLE, Modes, State};
+use permanent::{Permanent, Sheared};
+use solid::{Damage, Solid};
+use solve::{Found, released};
+
+/// Where the shears 12, 23, 13 stand among six components.
+const SHEARS: [usize; 3] = [3, 4, 5];
+
+/// Crack-band damage of a ply in four modes: fibres in tension and compression, matrix in tension and compression.
+///
+/// With a = 1 − d of each normal component's mode by the sign of its stress, A = diag a, and E, O diagonal moduli and
+/// off-diagonal compliance:
+///
+/// ```text
+/// h = (I + E O A)⁻¹ E ε,  σ = A h          normal stresses, effective and true; regular at d = 1, continuous through closure
+/// t = G (γ − γp),  τ = Π (1 − d) t         shears, with the permanent strain γp of 12 and 13
+/// d = max over the history of min(1, (e − 1)/(e (1 − κ)))
+/// ```
+///
+/// The exposures e of h and t are Hashin's of 1980, fibre tension without shear; u = h2 + h3 < 0 is compression of the matrix. κ
+/// = L w/e² is the energy at onset over that of the crack: w sums what damage releases, normal stresses over the toughness of
+/// the mode (Gft, Gfc, Gmt, Gmc), shears over Gms where the material gives it. So stress falls linearly with strain, and a crack
+/// takes its toughness whatever the length L of the cell; between Gmt and Gms by the linear law Gn/Gmt + Gs/Gms = 1.
+///
+/// With `alpha` a shear along the fibres follows Hahn and Tsai's curve γ = τ/G + α τ³ in effective stresses, as the law
+/// `hahn-tsai` does with permanent strain, up to τ = S12; from there on it softens without yielding more.
+///
+/// d solves a fixed point, because h depends on it by way of Poisson's ratios: by Newton's method, of which the tangent follows.
+/// Energies are integrated at the middle of a step.
+///
+/// Limits: L is the width of the cell for cracks of every direction. Under shear both damages of the matrix grow where u changes
+/// its sign, and the stress jumps there. κ is at most 0.9: mixes with a pressure across the fibres, which may store any energy before
+/// they begin, dissipate more than their toughness.
+///
+/// Sources: Hashin, J. Appl. Mech. 47 (1980) 329; Bažant and Oh, Mater. Struct. 16 (1983) 155; Lapczyk and Hurtado, Compos. Part A 38 (2007)
+/// 2333; Hahn and Tsai, J. Compos. Mater. 7 (1973) 102.
+#[derive(Debug, Clone, Copy)]
+pub struct CrackBand {
+    /// Hahn and Tsai's α, 1/Pa³, of the permanent shear strain, if there is one.
+    pub alpha: Option<f64>,
+    /// Whether strengths are lowered where the cell is too wide for the toughness; otherwise it is refused.
+    pub lower_strengths: bool,
+}
+
+/// What the law remembers.
+#[derive(Debug, Clone, Copy)]
+struct Memory {
+    damage: Damage,
+    lost: f64,
+    /// Effective stresses at the last accepted strain.
+    state: State,
+    permanent: Permanent,
+}
+
+impl Memory {
+    const NAMES: &[&str] = &[
+        "fibre tension",
+        "fibre compression",
+        "matrix tension",
+        "matrix compression",
+        "lost",
+        "last effective 11",
+        "last effective 22",
+        "last effective 33",
+        "last effective 12",
+        "last effective 23",
+        "last effective 13",
+        "permanent shear strain 12",
+        "permanent shear strain 13",
+        "its length",
+    ];
+    /// Without a permanent strain.
+    const ELASTIC: usize = 11;
+
+    fn read(state: &[f64]) -> Self {
+        let at = |k: usize| state.get(k).copied().unwrap_or(0.0);
+        Self {
+            damage: std::array::from_fn(at),
+            lost: at(4),
+            state: State { h: [at(5), at(6), at(7)], t: [at(8), at(9), at(10)] },
+            permanent: Permanent { left: [at(11), at(12)], way: at(13) },
+        }
+    }
+
+    fn write(&self, state: &mut [f64]) {
+        let Self { damage, lost, state: State { h, t }, permanent: Permanent { left, way } } = *self;
+        let all = damage.into_iter().chain([lost]).chain(h).chain(t).chain(left).chain([way]);
+        state.iter_mut().zip(all).for_each(|(to, from)| *to = from);
+    }
+}
+
+/// A strength, the modulus along it and the toughness that it needs; and what a cell wider than 2 E G/X² breaks.
+type Limit = (Strength, &'static str);
+
+const LIMITS: [Limit; 6] = [
+    (Strength::Xt, "a cell narrower than 1.8 E1 Gft/Xt^2"),
+    (Strength::Xc, "a cell narrower than 1.8 E1 Gfc/Xc^2"),
+    (Strength::Yt, "a cell narrower than 1.8 E2 Gmt/Yt^2"),
+    (Strength::Yc, "a cell narrower than 1.8 E2 Gmc/Yc^2"),
+    (Strength::S12, "a cell narrower than 1.8 G12 Gms/S12^2, with Gmt where Gms is not given"),
+    (Strength::S23, "a cell narrower than 1.8 G23 Gms/S23^2, with Gmt where Gms is not given"),
+];
+
+impl CrackBand {
+    /// Widest cell for each strength of [`LIMITS`], m.
+    fn widest(point: &LawPoint<'_>) -> [f64; 6] {
+        let (e, toughness) = (&point.material.elastic, &point.material.toughness);
+        let shear = toughness.get(Toughness::Gms).unwrap_or(toughness.gmt());
+        let (across, g) = (e.e2.min(e.e3), e.g12.min(e.g13));
+        let energies = [
+            e.e1 * toughness.gft(),
+            e.e1 * toughness.gfc(),
+            across * toughness.gmt(),
+            across * toughness.gmc(),
+            g * shear,
+            e.g23 * shear,
+        ];
+        std::array::from_fn(|k| {
+            let x = point.material.strengths.get(LIMITS[k].0).unwrap_or(f64::NAN);
+            2.0 * BRITTLE * energies[k] / (x * x)
+        })
+    }
+
+    fn modes(&self, point: &LawPoint<'_>) -> Modes {
+        let (e, x, toughness) = (&point.material.elastic, &point.material.strengths, &point.material.toughness);
+        let moduli = [e.e1, e.e2, e.e3];
+        let (c12, c13, c23) = (-e.nu12, -e.nu13, -e.nu23);
+        let coupling = [[0.0, c12, c13], [c12 * e.e2 / e.e1, 0.0, c23], [c13 * e.e3 / e.e1, c23 * e.e3 / e.e2, 0.0]];
+        let mut strengths = [x.xt(), x.xc(), x.yt(), x.yc(), x.s12(), x.s23()];
+        if self.lower_strengths {
+            for (x, widest) in strengths.iter_mut().zip(Self::widest(point)) {
+                *x *= (widest / point.length).min(1.0).sqrt();
+            }
+        }
+        let [xt, xc, yt, yc, sl, st] = strengths;
+        let soft = [toughness.gft(), toughness.gfc(), toughness.gmt(), toughness.gmc()].map(|g| point.length / g);
+        let soft_shear = toughness.get(Toughness::Gms).map_or(soft, |g| [point.length / g; 4]);
+        Modes {
+            solid: Solid { e: moduli, coupling, g: [e.g12, e.g23, e.g13] },
+            strength: [xt, xc, yt, yc],
+            shear: [sl, st],
+            soft,
+            soft_shear,
+        }
+    }
+
+    /// Effective shears along the fibres.
+    fn sheared(&self, modes: &Modes, old: &Memory, strain: [f64; 2]) -> Sheared {
+        let [g, _, g13] = modes.solid.g;
+        match self.alpha {
+            Some(alpha) => old.permanent.shear(alpha, alpha * modes.shear[0].powi(3), g, strain),
+            None => Sheared {
+                t: [g * strain[0], g13 * strain[1]],
+                tangent: [[g, 0.0], [0.0, g13]],
+                left: old.permanent,
+                lost: 0.0,
+            },
+        }
+    }
+}
+
+impl PlyLaw for CrackBand {
+    fn info(&self) -> &LawInfo {
+        const ELASTIC: LawInfo = LawInfo {
+            state: Memory::NAMES.split_at(Memory::ELASTIC).0,
+            strengths: &[Strength::Xt, Strength::Xc, Strength::Yt, Strength::Yc, Strength::S12, Strength::S23],
+            toughness: &[Toughness::Gft, Toughness::Gfc, Toughness::Gmt, Toughness::Gmc],
+        };
+        const PERMANENT: LawInfo = LawInfo { state: Memory::NAMES, ..ELASTIC };
+        if self.alpha.is_some() { &PERMANENT } else { &ELASTIC }
+    }
+
+    fn check(&self, point: &LawPoint<'_>) -> Result<(), UnmetCondition> {
+        let (x, e) = (&point.material.strengths, &point.material.elastic);
+        let unmet = |condition, reason, values: [(&str, f64, &'static str); 2]| {
+            let values = values.map(|(name, value, unit)| (name.to_owned(), value, unit)).to_vec();
+            Err(UnmetCondition { condition, reason, values })
+        };
+        if !(x.s23() > 0.5 * x.yt()) {
+            let reason = "tension across the fibres in both directions would never break the matrix";
+            return unmet("S23 > Yt/2", reason, [("S23", x.s23(), "Pa"), ("Yt", x.yt(), "Pa")]);
+        }
+        if self.alpha.is_some() && e.g12 != e.g13 {
+            let reason = "the permanent shear strain is one of a material that is isotropic about its fibres";
+            return unmet("g12 = g13", reason, [("g12", e.g12, "Pa"), ("g13", e.g13, "Pa")]);
+        }
+        let widest = Self::widest(point);
+        let tightest = (0..widest.len()).min_by(|a, b| widest[*a].total_cmp(&widest[*b])).unwrap_or(0);
+        if !self.lower_strengths && !(point.length <= widest[tightest]) {
+            let reason = "a wider one stores more before it breaks than the crack takes, and snaps back; refine the mesh, give a \
+                          larger toughness, or say lower_strengths = true";
+            let values = [("cell", point.length, "m"), ("widest", widest[tightest], "m")];
+            return unmet(LIMITS[tightest].1, reason, values);
+        }
+        Ok(())
+    }
+
+    fn warning(&self, point: &LawPoint<'_>) -> Option<String> {
+        let widest = Self::widest(point);
+        let lowered = LIMITS.iter().zip(widest).filter(|(_, widest)| self.lower_strengths && point.length > *widest);
+        let lowered = lowered.filter_map(|((which, _), widest)| {
+            let x = point.material.strengths.get(*which)? * 1e-6;
+            Some(format!("{} from {x:.1} to {:.1} MPa", which.name(), x * (widest / point.length).sqrt()))
+        });
+        let lowered: Vec<_> = lowered.collect();
+        if !lowered.is_empty() {
+            return Some(format!(
+                "strengths are lowered to what the toughness bears in cells of {:.3} mm: {}; cells of {:.3} mm would need none of it",
+                point.length * 1e3,
+                lowered.join(", "),
+                widest.iter().fold(f64::INFINITY, |m, w| m.min(*w)) * 1e3
+            ));
+        }
+        let unique = Self::unique_compression(point);
+        (point.length > unique).then(|| {
+            format!(
+                "in cells of {:.3} mm the matrix breaks at once where it is compressed across the fibres with its other strains \
+                 held; cells of {:.3} mm or a larger Gmc would do without",
+                point.length * 1e3,
+                unique * 1e3
+            )
+        })
+    }
+
+    fn respond(
+        &self,
+        point: &LawPoint<'_>,
+        strain: &Strain6<Ply>,
+        old: &[f64],
+        new: &mut [f64],
+        tangent: Option<&mut Matrix6>,
+    ) -> Result<PlyResponse, LawError> {
+        let (modes, old) = (self.modes(point), Memory::read(old));
+        let e = &strain.0;
+        let sheared = self.sheared(&modes, &old, [e[3], e[5]]);
+        let t = [sheared.t[0], modes.solid.g[1] * e[4], sheared.t[1]];
+        let found = Found::new(&modes, &[e[0], e[1], e[2]], t, &old.damage, point.stiffness);
+        let (damage, state) = (found.damage, found.state());
+        let [left, left_before] = [damage, old.damage].map(|d| d.iter().map(|d| 1.0 - d).product::<f64>());
+        let mut lost = old.lost;
+        if damage != old.damage {
+            lost += released(&modes, [&old.damage, &damage], [&old.state, &state]);
+        }
+        if sheared.left.way > old.permanent.way {
+            let before = self.alpha.map_or(0.0, |alpha| super::shear::lost(alpha, old.permanent.way));
+            lost += 0.5 * (left + left_before) * (sheared.lost - before);
+        }
+        let normal: [f64; 3] = std::array::from_fn(|i| found.effective.left[i] * state.h[i]);
+        let stored = 0.5 * (0..3).map(|i| normal[i] * e[i]).sum::<f64>() + left * modes.sheared(&state);
+        if let Some(tangent) = tangent {
+            *tangent =
+                if damage == [0.0; 4] { *point.stiffness } else { found.tangent(&modes, left, &sheared.tangent) };
+            for (i, row) in [(0, 3), (1, 5)] {
+                if damage == [0.0; 4] {
+                    tangent[row][3] = sheared.tangent[i][0];
+                    tangent[row][5] = sheared.tangent[i][1];
+                }
+            }
+        }
+        Memory { damage, lost, state, permanent: sheared.left }.write(new);
+        let [t12, t23, t13] = t.map(|t| left * t);
+        let stress = Stress6::new([normal[0], normal[1], normal[2], t12, t23, t13]);
+        Ok(PlyResponse { stress, energy: Energy { stored, dissipated: lost } })
+    }
+}
+
+impl CrackBand {
+    /// Widest cell in which compression across the fibres has one answer with all other strains held:
+    /// κ < (C22 − ρ C23)/E2, ρ = (3r − 1)/(r + 1), r = (Yc/2 S23)².
+    fn unique_compression(point: &LawPoint<'_>) -> f64 {
+        let (c, material) = (point.stiffness, point.material);
+        let yc = material.strengths.yc();
+        let r = (0.5 * yc / material.strengths.s23()).powi(2);
+        let rho = (3.0 * r - 1.0) / (r + 1.0);
+        2.0 * (c[1][1] - rho * c[1][2]) * material.toughness.gmc() / (yc * yc)
+    }
+}
+
+const ALPHA: ParamInfo = ParamInfo::quantity(
+    "alpha",
+    "alpha of the permanent shear strain along the fibres, gamma = tau/G12 + alpha tau^3 up to S12, such as \"2.4e-8 1/MPa^3\"; \
+     none if left out",
+    HahnTsai::ALPHA,
+)
+.above(0.0)
+.optional();
+const LOWER: ParamInfo = ParamInfo::flag(
+    "lower_strengths",
+    "whether strengths are lowered, the toughness kept, where a cell is too wide for them; otherwise it is refused",
+);
+
+impl Plugin for CrackBand {
+    const INFO: PluginInfo = PluginInfo {
+        kind: Kind::PlyLaw,
+        name: "crack-band",
+        summary: "damage in four modes that softens linearly to the toughness of each, with permanent shear strain",
+        source: "Hashin 1980; Bazant and Oh 1983; Lapczyk and Hurtado 2007; Hahn and Tsai 1973",
+        params: &[ALPHA, LOWER],
+    };
+
+    fn build(params: &Params) -> Result<Built, ParamError> {
+        let alpha = if params.has(&ALPHA) { Some(params.number(&ALPHA)?) } else { None };
+        Ok(Built::PlyLaw(Box::new(Self { alpha, lower_strengths: params.flag(&LOWER)? })))
+    }
+}

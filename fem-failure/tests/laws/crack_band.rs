@@ -1,0 +1,289 @@
+//! Crack-band damage of a ply.
+
+use super::tables::{columns, paths};
+use fem_core::material::{Elastic, Material, Strength, Strengths, Toughness, Toughnesses};
+use fem_core::plugin::{Built, Dimension, Params, Plugin, Value};
+use fem_core::ply_law::{LawPoint, PlyLaw, PlyResponse, check_law};
+use fem_core::tensor::{Matrix6, Strain6};
+use fem_core::testkit::{Units, check_ply_law};
+use fem_failure::laws::{CrackBand, HahnTsai, Unloading};
+
+/// IM7/8552 (Camanho et al. 2007; nu23 and S23 assumed).
+fn tape() -> Material {
+    let strengths = [
+        (Strength::Xt, 2326e6),
+        (Strength::Xc, 1200e6),
+        (Strength::Yt, 62.3e6),
+        (Strength::Yc, 199.8e6),
+        (Strength::S12, 92.3e6),
+        (Strength::S23, 75.3e6),
+    ];
+    let toughness =
+        [(Toughness::Gft, 81.5e3), (Toughness::Gfc, 106.3e3), (Toughness::Gmt, 277.4), (Toughness::Gmc, 1310.0)];
+    Material {
+        name: "IM7/8552".into(),
+        elastic: Elastic::transversely_isotropic(171.4e9, 9.08e9, 0.32, 0.45, 5.29e9),
+        density: None,
+        strengths: strengths.into_iter().fold(Strengths::default(), |all, (which, v)| all.with(which, v)),
+        toughness: toughness.into_iter().fold(Toughnesses::default(), |all, (which, v)| all.with(which, v)),
+        eta: None,
+        expansion: None,
+    }
+}
+
+fn sheared(gms: f64) -> Material {
+    Material { toughness: tape().toughness.with(Toughness::Gms, gms), ..tape() }
+}
+
+const PLAIN: CrackBand = CrackBand { alpha: None, lower_strengths: false };
+const ALPHA: f64 = 2.44e-26;
+
+/// A law at a point and what it remembers.
+struct Point {
+    law: CrackBand,
+    material: Material,
+    length: f64,
+    state: Vec<f64>,
+    strain: [f64; 6],
+}
+
+impl Point {
+    fn new(law: CrackBand, material: Material, length: f64) -> Self {
+        let state = vec![0.0; law.info().state.len()];
+        Self { law, material, length, state, strain: [0.0; 6] }
+    }
+
+    fn ask(&self, strain: &[f64; 6]) -> (PlyResponse, Matrix6, Vec<f64>) {
+        let stiffness = self.material.elastic.stiffness();
+        let point = LawPoint { material: &self.material, stiffness: &stiffness, length: self.length };
+        let (mut new, mut tangent) = (vec![f64::NAN; self.state.len()], [[f64::NAN; 6]; 6]);
+        let strain = Strain6::new(*strain);
+        let answer = self.law.respond(&point, &strain, &self.state, &mut new, Some(&mut tangent)).unwrap();
+        (answer, tangent, new)
+    }
+
+    /// The answer at the end of a straight way.
+    fn walk(&mut self, to: &[f64; 6], parts: u32) -> PlyResponse {
+        let from = self.strain;
+        let mut last = None;
+        for part in 1..=parts {
+            let share = f64::from(part) / f64::from(parts);
+            self.strain = std::array::from_fn(|k| from[k] + share * (to[k] - from[k]));
+            let (answer, _, new) = self.ask(&self.strain);
+            self.state = new;
+            last = Some(answer);
+        }
+        last.unwrap()
+    }
+
+    /// The answer where one component of strain is given and all other stresses are zero, by Newton's method.
+    fn uniaxial(&mut self, component: usize, strain: f64) -> PlyResponse {
+        let mut trial = self.strain;
+        trial[component] = strain;
+        for _ in 0..50 {
+            let (answer, tangent, new) = self.ask(&trial);
+            let free: Vec<usize> = (0..3).filter(|k| *k != component).collect();
+            let [a, b] = [free[0], free[1]];
+            let [f, g] = [answer.stress.0[a], answer.stress.0[b]];
+            if f.hypot(g) < 1e-4 {
+                (self.strain, self.state) = (trial, new);
+                return answer;
+            }
+            let [p, q, r, s] = [tangent[a][a], tangent[a][b], tangent[b][a], tangent[b][b]];
+            let over = 1.0 / (p * s - q * r);
+            trial[a] -= over * (s * f - q * g);
+            trial[b] -= over * (p * g - r * f);
+        }
+        panic!("no uniaxial stress at {strain} of {component}");
+    }
+}
+
+#[test]
+fn it_keeps_the_contract() {
+    for (law, material, length, largest) in [
+        (PLAIN, tape(), 1e-4, [0.02, 0.012, 0.012, 0.03, 0.03, 0.03]),
+        (PLAIN, sheared(788.0), 2e-4, [0.03, 0.02, 0.02, 0.03, 0.04, 0.04]),
+        (CrackBand { alpha: Some(ALPHA), ..PLAIN }, sheared(788.0), 2e-4, [0.01, 0.012, 0.012, 0.04, 0.03, 0.05]),
+        (CrackBand { lower_strengths: true, ..PLAIN }, tape(), 4e-3, [0.02, 0.01, 0.01, 0.01, 0.01, 0.01]),
+    ] {
+        let make = |units: &Units| -> Box<dyn PlyLaw> {
+            Box::new(CrackBand { alpha: law.alpha.map(|a| units.number(a, HahnTsai::ALPHA)), ..law })
+        };
+        assert_eq!(check_ply_law(make, &material, length, &largest), Ok(()), "{law:?}");
+    }
+}
+
+/// Pure modes to rounding in one step from row to row. On other paths the state is that of small steps: to rounding where the
+/// matrix does not turn from tension to compression, to the first order of a step where it does.
+#[test]
+fn the_tables_are_met() {
+    const STRAIN: [&str; 6] = ["e11", "e22", "e33", "g12", "g23", "g13"];
+    const STRESS: [&str; 6] = ["s11", "s22", "s33", "s12", "s23", "s13"];
+    const TURNS: [&str; 4] =
+        ["compression2_with_shear", "constrained_tension_1", "fibre_crack_then_compression", "random"];
+    let material = tape();
+    let x = &material.strengths;
+    let strength = [x.xt(), x.yt(), x.yt(), x.s12(), x.s23(), x.s12()];
+    for (name, rows) in paths("ply_damage.csv.gz") {
+        let (parts, exact, lost) = match (name.starts_with("pure"), TURNS.iter().any(|turns| name.starts_with(turns))) {
+            (true, _) => (1, 1e-10, 1e-10),
+            (false, false) => (100, 1e-10, 1e-6),
+            (false, true) => (4000, 1e-4, 1e-5),
+        };
+        let mut point = Point::new(PLAIN, tape(), 2e-4);
+        for row in &rows {
+            let answer = point.walk(&columns(row, STRAIN), parts);
+            let near = |got: f64, want: f64, within: f64, what: &str| {
+                assert!((got - want).abs() <= within, "{name} {}: {what} {got} {want}", row["step"]);
+            };
+            for ((got, want), x) in answer.stress.0.into_iter().zip(columns(row, STRESS)).zip(strength) {
+                near(got, want, exact * x, "stress");
+            }
+            for (got, want) in point.state.iter().zip(columns(row, ["d_ft", "d_fc", "d_mt", "d_mc"])) {
+                near(*got, want, exact, "damage");
+            }
+            near(answer.energy.stored, row["stored_J_m3"], exact * 1e7, "stored");
+            near(
+                answer.energy.dissipated * 2e-4,
+                row["dissipated_J_m2"],
+                lost * row["dissipated_J_m2"].max(277.4),
+                "lost",
+            );
+        }
+    }
+}
+
+/// A bar of cells of which the middle one breaks: with the crack band its curve u(F) = 2 G/X + F/(E A) (L − 2 E G/X²) and its energy
+/// G A do not know the number of cells; through the snap-back, by the strain of the weak cell.
+#[test]
+fn bars_of_any_number_of_cells_break_alike() {
+    let material = tape();
+    let (e, x, g) = (9.08e9, 62.3e6, 277.4);
+    for (bar, cells) in [(0.9e-3, [1.0, 3.0, 9.0, 27.0]), (5.4e-3, [9.0, 27.0, 81.0, 243.0])] {
+        for cells in cells {
+            let length = bar / cells;
+            let mut weak = Point::new(PLAIN, material.clone(), length);
+            let (broken, mut work, mut last) = (2.0 * g / (x * length), 0.0, (0.0, 0.0));
+            let mut answer = None;
+            for k in 1..=400 {
+                let strain = 1.001 * broken * f64::from(k) / 400.0;
+                let found = weak.uniaxial(1, strain);
+                let force = found.stress.s22();
+                let u = strain * length + force / e * (bar - length);
+                if found.energy.dissipated > 0.0 {
+                    let want = 2.0 * g / x + force / e * (bar - 2.0 * e * g / (x * x));
+                    assert!(strain > broken || (u / want - 1.0).abs() < 1e-9, "{cells} {u} {want}");
+                }
+                work += 0.5 * (force + last.0) * (u - last.1);
+                last = (force, u);
+                answer = Some(found);
+            }
+            let lost = answer.unwrap().energy.dissipated * length;
+            // The work by the trapezoidal rule, which cuts off the corner of the curve.
+            assert!((lost / g - 1.0).abs() < 1e-9 && (work / g - 1.0).abs() < 5e-3, "{cells}: {lost} {work}");
+        }
+    }
+}
+
+/// Shear that breaks the matrix takes Gms, tension Gmt, and a mix what the linear law says.
+#[test]
+fn shear_has_a_toughness_of_its_own() {
+    let (gmt, gms) = (277.4, 788.0);
+    let lost = |strain: [f64; 6], parts| {
+        let mut point = Point::new(PLAIN, sheared(gms), 2e-4);
+        point.walk(&strain, parts).energy.dissipated * 2e-4
+    };
+    for parts in [1, 50] {
+        for component in 3..6 {
+            let strain = std::array::from_fn(|k| if k == component { 0.3 } else { 0.0 });
+            assert!((lost(strain, parts) / gms - 1.0).abs() < 1e-9);
+        }
+    }
+    // Effective stresses in a fixed mix: shear beside uniaxial tension.
+    let (s2, t) = (1e9, 1.5e9);
+    let [normal, shear] = [s2 * s2 / (2.0 * 9.08e9), t * t / (2.0 * 5.29e9)];
+    let want = (normal + shear) / (normal / gmt + shear / gms);
+    let mut point = Point::new(PLAIN, sheared(gms), 2e-4);
+    let found = (1..=2000).map(|k| {
+        let share = f64::from(k) / 2000.0;
+        point.strain[3] = share * t / 5.29e9;
+        point.uniaxial(1, share * s2 / 9.08e9).energy.dissipated * 2e-4
+    });
+    let found = found.last().unwrap();
+    assert!((found / want - 1.0).abs() < 1e-9, "{found} {want}");
+}
+
+/// Below the strength the law is Hahn and Tsai's; softening begins at S12 and takes the toughness beside what yielding took.
+#[test]
+fn a_permanent_shear_strain_is_hahn_and_tsais() {
+    let law = CrackBand { alpha: Some(ALPHA), ..PLAIN };
+    let mut point = Point::new(law, sheared(788.0), 2e-4);
+    let curve = HahnTsai::new(ALPHA, Unloading::Permanent);
+    let (material, mut state) = (tape(), [0.0; 2]);
+    let stiffness = material.elastic.stiffness();
+    let place = LawPoint { material: &material, stiffness: &stiffness, length: 2e-4 };
+    let s12 = 92.3e6_f64;
+    let strength = s12 / 5.29e9 + ALPHA * s12.powi(3);
+    for gamma in [0.3 * strength, 0.6 * strength, 0.2 * strength, -0.2 * strength, 0.1 * strength] {
+        let mut new = [0.0; 2];
+        let strain = Strain6::new([1e-4, 0.0, 0.0, gamma, 0.0, 0.0]);
+        let want = curve.respond(&place, &strain, &state, &mut new, None).unwrap();
+        state = new;
+        let found = point.walk(&strain.0, 1);
+        assert!((found.stress.s12() - want.stress.s12()).abs() < 1e-6 * s12, "{found:?} {want:?}");
+        assert!((found.energy.total() / want.energy.total() - 1.0).abs() < 1e-9);
+    }
+    let mut fresh = Point::new(law, sheared(788.0), 2e-4);
+    let along = |gamma: f64| [0.0, 0.0, 0.0, 0.6 * gamma, 0.0, 0.8 * gamma];
+    let peak = fresh.walk(&along(strength), 1).stress;
+    assert!((peak.0[3].hypot(peak.0[5]) / s12 - 1.0).abs() < 1e-9 && fresh.state[2] < 1e-9);
+    let broken = fresh.walk(&along(0.2), 1000);
+    let yielded = 0.75 * ALPHA * s12.powi(4);
+    assert_eq!(broken.stress.0[3], 0.0);
+    assert!(((broken.energy.dissipated - yielded) * 2e-4 / 788.0 - 1.0).abs() < 1e-9, "{broken:?}");
+    assert!((fresh.state[13] / (ALPHA * s12.powi(3)) - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn cells_too_wide_for_their_toughness_are_refused_or_lower_their_strengths() {
+    let stiffness = tape().elastic.stiffness();
+    let said = |law: &CrackBand, material: &Material, length: f64| {
+        let point = LawPoint { material, stiffness: &stiffness, length };
+        let checked = check_law(law.info(), "crack-band", &point, law.check(&point));
+        (checked.map_err(|e| e.to_string()), law.warning(&point))
+    };
+    // 0.9 times 2 G23 Gmt/S23²; with a toughness of shear 0.9 times 2 E2 Gmc/Yc².
+    let (refused, _) = said(&PLAIN, &tape(), 5e-4);
+    assert!(refused.clone().unwrap_err().contains("S23^2") && refused.unwrap_err().contains("widest = 2.757255e-4 m"));
+    let (refused, _) = said(&PLAIN, &sheared(788.0), 2e-3);
+    assert!(refused.unwrap_err().contains("1.8 E2 Gmc/Yc^2"));
+    assert_eq!(said(&PLAIN, &sheared(788.0), 2e-4), (Ok(()), None));
+    let (taken, warned) = said(&PLAIN, &sheared(788.0), 3e-4);
+    assert!(taken.is_ok() && warned.unwrap().contains("cells of 0.220 mm or a larger Gmc"));
+
+    let lowering = CrackBand { lower_strengths: true, ..PLAIN };
+    let (taken, warned) = said(&lowering, &sheared(788.0), 2e-3);
+    let warned = warned.unwrap();
+    assert!(taken.is_ok() && warned.contains("Yt from 62.3 to 47.6 MPa") && !warned.contains("Xt"), "{warned}");
+    // The energy is kept.
+    let mut point = Point::new(lowering, sheared(788.0), 2e-3);
+    let shear = |k: u32| [0.0, 0.0, 0.0, 0.02 * f64::from(k) / 2000.0, 0.0, 0.0];
+    let answers: Vec<_> = (1..=2000).map(|k| point.walk(&shear(k), 1)).collect();
+    let peak = answers.iter().map(|answer| answer.stress.s12()).fold(0.0, f64::max);
+    assert!((answers[1999].energy.dissipated * 2e-3 / 788.0 - 1.0).abs() < 1e-9);
+    assert!((peak / 61.2509e6 - 1.0).abs() < 1e-2 && warned.contains("S12 from 92.3 to 61.3 MPa"), "{peak} {warned}");
+
+    let missing = Material { toughness: Toughnesses::default().with(Toughness::Gft, 1.0), ..tape() };
+    assert!(said(&PLAIN, &missing, 1e-4).0.unwrap_err().contains("needs the toughness Gfc, Gmt, Gmc"));
+}
+
+#[test]
+fn it_is_built_from_a_scene() {
+    let alpha = Value::Quantity(ALPHA, HahnTsai::ALPHA);
+    let Built::PlyLaw(law) = CrackBand::build(&Params::default().with("alpha", alpha)).unwrap() else { unreachable!() };
+    assert_eq!(law.info().state.len(), 14);
+    let Built::PlyLaw(law) = CrackBand::build(&Params::default()).unwrap() else { unreachable!() };
+    assert_eq!(law.info().state.len(), 11);
+    let wrong = Params::default().with("alpha", Value::Quantity(1.0, Dimension::PRESSURE));
+    assert_eq!(CrackBand::build(&wrong).unwrap_err().key, "alpha");
+}
