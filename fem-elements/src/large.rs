@@ -17,6 +17,7 @@ use fem_core::large::green_lagrange;
 use fem_core::quadrature::gauss_legendre;
 use fem_core::tensor::{Matrix6, apply};
 use fem_core::transverse::{AMPLITUDES, Amplitudes, Coupling, SmoothTransverse};
+use fem_core::vectorised::vectorised;
 
 /// Gradients [∂x, ∂y, ∂z] of `F` functions at an in-plane point, polynomials of `K` coefficients in q.
 pub(crate) type Gradients<const F: usize, const K: usize> = [[[f64; K]; 3]; F];
@@ -97,12 +98,13 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
         });
         let mut functions: Gradients<F, K> = [[[0.0; K]; 3]; F];
         let layer = Layer::new(self.info, cell, self.stresses);
+        let unknowns = self.unknowns();
         let mut energy = 0.0;
         force.fill(0.0);
         for (point, (r, s, w)) in self.info.plane_points().enumerate() {
             let dv = self.at(cell, r, s, &mut functions)? * w;
             let mut moduli = wanted.then(|| layer.moduli());
-            let through = layer.through(&self.gradient(&functions, u), moduli.as_mut());
+            let through = layer.through(&gradient(&functions, &unknowns, u), moduli.as_mut());
             energy += dv * through.energy;
             for (f, gradient) in functions.iter().enumerate() {
                 for (n, stresses) in through.stresses.iter().enumerate() {
@@ -156,7 +158,7 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
     ) -> Result<[f64; 6], ElementError> {
         let mut functions: Gradients<F, K> = [[[0.0; K]; 3]; F];
         self.at(cell, r, s, &mut functions)?;
-        let gradient = self.gradient(&functions, u);
+        let gradient = gradient(&functions, &self.unknowns(), u);
         let mut strain = green_lagrange(&at(&gradient, q));
         if let Some(transverse) = self.stresses.in_stack(cell.stack) {
             let mut strains = [[0.0; POWERS]; 6];
@@ -175,25 +177,36 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
         strains: &mut [f64],
     ) -> Result<(), ElementError> {
         let mut functions: Gradients<F, K> = [[[0.0; K]; 3]; F];
-        let (mut volume, mut mean) = (0.0, [[0.0; POWERS]; 6]);
+        let unknowns = self.unknowns();
+        let (fields, mut volume) = (u.chunks_exact(self.info.ndof()), 0.0);
+        let mut means = vec![[[0.0; POWERS]; 6]; fields.len()];
         for point in plane {
             let dv = self.at(cell, point.at[0], point.at[1], &mut functions)? * point.weight();
             volume += dv;
-            add_strains(&self.gradient(&functions, u), dv, &mut mean);
+            vectorised(|| {
+                for (u, mean) in fields.clone().zip(&mut means) {
+                    add_strains(&gradient(&functions, &unknowns, u), dv, mean);
+                }
+            });
         }
-        mean.as_flattened_mut().iter_mut().for_each(|mean| *mean /= volume);
-        let transverse =
-            self.stresses.in_stack(cell.stack).map(|transverse| (transverse, transverse.amplitudes(&mean)));
-        for (Part { slice, q: [low, high] }, strains) in parts.iter().zip(strains.chunks_exact_mut(6)) {
-            let powers: [f64; POWERS] = std::array::from_fn(|k| {
+        let powers = |Part { q: [low, high], .. }: &Part| -> [f64; POWERS] {
+            std::array::from_fn(|k| {
                 let p = k as i32 + 1;
                 if high > low { (high.powi(p) - low.powi(p)) / (f64::from(p) * (high - low)) } else { low.powi(p - 1) }
-            });
-            for (strain, mean) in strains.iter_mut().zip(&mean) {
-                *strain = mean.iter().zip(powers).map(|(e, q)| e * q).sum::<f64>();
-            }
-            if let (Some((transverse, a)), Ok(strain)) = (&transverse, strains.try_into()) {
-                transverse.assume(*slice, [*low, *high], a, strain);
+            })
+        };
+        let powers: Vec<[f64; POWERS]> = parts.iter().map(powers).collect();
+        for (mean, strains) in means.iter_mut().zip(strains.chunks_exact_mut((6 * parts.len()).max(1))) {
+            mean.as_flattened_mut().iter_mut().for_each(|mean| *mean /= volume);
+            let transverse =
+                self.stresses.in_stack(cell.stack).map(|transverse| (transverse, transverse.amplitudes(mean)));
+            for ((Part { slice, q }, powers), strains) in parts.iter().zip(&powers).zip(strains.as_chunks_mut().0) {
+                for (strain, mean) in strains.iter_mut().zip(&*mean) {
+                    *strain = mean.iter().zip(powers).map(|(e, q)| e * q).sum::<f64>();
+                }
+                if let Some((transverse, a)) = &transverse {
+                    transverse.assume(*slice, *q, a, strains);
+                }
             }
         }
         Ok(())
@@ -206,19 +219,33 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
         positive(plane.det * cell.half_height())
     }
 
-    fn gradient(&self, functions: &Gradients<F, K>, u: &[f64]) -> Polynomial<K> {
-        let mut h = [[[0.0; K]; 3]; 3];
-        for (f, gradient) in functions.iter().enumerate() {
-            for (n, h) in h.iter_mut().enumerate() {
-                let Some(unknown) = (self.unknown)(n, f) else { continue };
-                let u = u[unknown];
-                for (h, g) in h.as_flattened_mut().iter_mut().zip(gradient.as_flattened()) {
-                    *h += u * g;
-                }
+    /// Of each function, the unknown that multiplies it in each component.
+    fn unknowns(&self) -> Unknowns<F> {
+        std::array::from_fn(|f| std::array::from_fn(|n| (self.unknown)(n, f)))
+    }
+}
+
+/// Unknowns of the cell that multiply each function in each component.
+type Unknowns<const F: usize> = [[Option<usize>; 3]; F];
+
+/// H at an in-plane point.
+#[inline(always)]
+fn gradient<const F: usize, const K: usize>(
+    functions: &Gradients<F, K>,
+    unknowns: &Unknowns<F>,
+    u: &[f64],
+) -> Polynomial<K> {
+    let mut h = [[[0.0; K]; 3]; 3];
+    for (gradient, unknowns) in functions.iter().zip(unknowns) {
+        for (unknown, h) in unknowns.iter().zip(&mut h) {
+            let Some(unknown) = unknown else { continue };
+            let u = u[*unknown];
+            for (h, g) in h.as_flattened_mut().iter_mut().zip(gradient.as_flattened()) {
+                *h += u * g;
             }
         }
-        h
     }
+    h
 }
 
 /// The plies of a cell.
@@ -392,6 +419,7 @@ fn fill_hankel<const K: usize>(moduli: &Moduli<K>, dv: f64, out: &mut [f64]) {
 }
 
 /// Adds `dv` E of a displacement gradient, polynomials in q of twice the degree.
+#[inline(always)]
 fn add_strains<const K: usize>(h: &Polynomial<K>, dv: f64, strains: &mut [[f64; POWERS]; 6]) {
     for (a, rows) in STRAIN_ROW.iter().enumerate() {
         for (b, row) in rows.iter().enumerate().skip(a) {

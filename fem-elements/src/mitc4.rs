@@ -272,17 +272,19 @@ impl LargeDeflection for Mitc4 {
     ) -> Result<(), ElementError> {
         let h = cell.half_height();
         let lamination = Lamination::new(cell.stack)?;
-        let u = SVector::<f64, N>::from_column_slice(u);
-        let (mut mean, mut volume) = (SVector::<f64, 8>::zeros(), 0.0);
-        for point in plane {
-            let bent = Bent::new(cell, point.at[0], point.at[1], &u);
-            let dv = positive(bent.jacobian)? * point.weight();
-            mean += bent.strain * dv;
-            volume += dv;
-        }
-        mean /= volume;
-        for (part, strains) in parts.iter().zip(strains.chunks_exact_mut(6)) {
-            strains.copy_from_slice((mean_ply_strain(&lamination, part, h) * mean).as_slice());
+        for (u, strains) in u.chunks_exact(N).zip(strains.chunks_exact_mut((6 * parts.len()).max(1))) {
+            let u = SVector::<f64, N>::from_column_slice(u);
+            let (mut mean, mut volume) = (SVector::<f64, 8>::zeros(), 0.0);
+            for point in plane {
+                let bent = Bent::new(cell, point.at[0], point.at[1], &u);
+                let dv = positive(bent.jacobian)? * point.weight();
+                mean += bent.strain * dv;
+                volume += dv;
+            }
+            mean /= volume;
+            for (part, strains) in parts.iter().zip(strains.chunks_exact_mut(6)) {
+                strains.copy_from_slice((mean_ply_strain(&lamination, part, h) * mean).as_slice());
+            }
         }
         Ok(())
     }

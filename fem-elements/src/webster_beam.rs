@@ -244,7 +244,7 @@ impl LargeDeflection for WebsterBeam {
         strains: &mut [f64],
     ) -> Result<(), ElementError> {
         self.solid(cell, |solid| solid.mean_strains(cell, (parts, plane), u, strains))?;
-        for (part, strain) in parts.iter().zip(strains.chunks_exact_mut(6)) {
+        for (part, strain) in parts.iter().cycle().zip(strains.chunks_exact_mut(6)) {
             self.complete(&cell.stack.slices[part.slice].c, strain);
         }
         Ok(())

@@ -223,13 +223,27 @@ fn parts(stack: &Stack) -> Vec<Part> {
 
 fn mean_strains(element: &dyn Element, cell: &Cell<'_>, u: &DVector<f64>) -> Vec<f64> {
     let parts = parts(cell.stack);
-    let mut strains = vec![f64::NAN; 6 * parts.len()];
+    let mut strains = vec![f64::NAN; 6 * parts.len() * u.len() / element.info().ndof()];
     element
         .large_deflections()
         .unwrap()
         .mean_large_strains(cell, &parts, element.info().plane(), u.as_slice(), &mut strains)
         .unwrap();
     strains
+}
+
+#[test]
+fn several_fields_have_the_strains_of_each() {
+    let stack = plies();
+    for element in all() {
+        let (cell, n) = (cell(&*element, &stack), element.info().ndof());
+        let fields = DVector::from_fn(3 * n, |i, _| 1e-5 * ((7 * i) as f64).sin());
+        let each = fields
+            .as_slice()
+            .chunks_exact(n)
+            .flat_map(|u| mean_strains(&*element, &cell, &DVector::from_column_slice(u)));
+        assert_eq!(mean_strains(&*element, &cell, &fields), each.collect::<Vec<_>>(), "{element:?}");
+    }
 }
 
 /// Plies that share stresses have a uniform strain in their mean, and their stresses are continuous.

@@ -320,10 +320,7 @@ pub(crate) fn recover(
         }
         return Ok(());
     };
-    for (u, out) in u.chunks_exact(model.plate.ndof()).zip(out.chunks_exact_mut(6 * recovery.sites())) {
-        recovery.large_stresses(&model.plate, large, u, out)?;
-    }
-    Ok(())
+    Ok(recovery.large_stresses(&model.plate, large, u, count, out)?)
 }
 
 /// Where the criteria look.

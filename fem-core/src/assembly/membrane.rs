@@ -48,7 +48,11 @@ struct OfCell {
     known: Vec<Matrix6>,
     b: Vec<f64>,
     shape: Vec<f64>,
-    slopes: Vec<[f64; 2]>,
+    /// ∂w/∂x and ∂w/∂y of each unknown at all in-plane points, `2 points × ndof` by rows.
+    gradients: Vec<f64>,
+    /// Unknowns of the fields, `ndof × fields`, and their slopes, `2 points × fields`.
+    u: Vec<f64>,
+    slopes: Vec<f64>,
 }
 
 impl<'a> MembraneStrains<'a> {
@@ -75,7 +79,7 @@ impl<'a> MembraneStrains<'a> {
     pub fn gram(&self) -> Result<Vec<f64>, AssemblyError> {
         let pairs = self.pairs();
         let mut gram = vec![0.0; pairs * pairs];
-        self.each(false, |weight, _, _, of| {
+        self.each(false, |weight, _, of| {
             let rows = of.strains.len() / pairs;
             matmul(
                 MatMut::from_column_major_slice_mut(&mut gram, pairs, pairs),
@@ -100,7 +104,7 @@ impl<'a> MembraneStrains<'a> {
         let (n, local) = (self.constraints.ndof(), self.element.info().ndof());
         let mut forces = vec![0.0; n * columns];
         let (mut combined, mut of_cell) = (Vec::new(), vec![0.0; local * columns]);
-        self.each(true, |weight, _, map, of| {
+        self.each(true, |weight, map, of| {
             let rows = of.strains.len() / pairs;
             combined.resize(rows * columns, 0.0);
             matmul(
@@ -144,9 +148,9 @@ impl<'a> MembraneStrains<'a> {
         let shapes = shapes.map(|shapes| Self::new(self.plate, self.element, self.constraints, shapes).fields);
         let (count, local) = (modes.count, self.element.info().ndof());
         let mut forms = vec![0.0; terms * count * count];
-        let (mut stress, mut u, mut slopes, mut shape) = (Vec::new(), vec![0.0; local], Vec::new(), Vec::new());
+        let (mut stress, mut u, mut of_modes) = (Vec::new(), vec![0.0; local], Vec::new());
         let (mut x, mut y) = (Vec::new(), Vec::new());
-        self.each(shapes.is_some(), |weight, cell, map, of| {
+        self.each(shapes.is_some(), |weight, map, of| {
             let rows = of.strains.len() / pairs;
             let points = rows / 3;
             stress.resize(rows * terms, 0.0);
@@ -166,16 +170,8 @@ impl<'a> MembraneStrains<'a> {
                     *stress += column.iter().zip(&u).map(|(b, u)| b * u).sum::<f64>();
                 }
             }
-            // Slopes of all modes, two rows per point.
-            x.resize(2 * points * count, 0.0);
-            y.resize(2 * points * count, 0.0);
-            for (point, (r, s, _)) in self.element.info().plane_points().enumerate() {
-                let gradient = gradient(self.element, cell, [r, s], &mut shape);
-                modes.slopes(map, &gradient, &mut u, &mut slopes);
-                for (i, slope) in slopes.iter().enumerate() {
-                    x[2 * (points * i + point)..][..2].copy_from_slice(slope);
-                }
-            }
+            modes.slopes(map, &of.gradients, &mut of_modes, &mut x);
+            y.resize(x.len(), 0.0);
             for (stress, form) in stress.chunks_exact(rows).zip(forms.chunks_exact_mut(count * count)) {
                 for (x, y) in x.chunks_exact(2 * points).zip(y.chunks_exact_mut(2 * points)) {
                     for ((x, y), n) in x.chunks_exact(2).zip(y.chunks_exact_mut(2)).zip(stress.chunks_exact(3)) {
@@ -196,17 +192,27 @@ impl<'a> MembraneStrains<'a> {
         Ok(forms)
     }
 
-    /// Slopes of the fields at a point.
-    fn slopes(&self, map: &CellMap, gradient: &[[f64; 2]], u: &mut [f64], slopes: &mut Vec<[f64; 2]>) {
-        slopes.clear();
-        slopes.extend(self.fields.chunks_exact(self.plate.ndof()).map(|field| {
+    /// Slopes of the fields in a cell, two rows per point.
+    fn slopes(&self, map: &CellMap, gradients: &[f64], u: &mut Vec<f64>, slopes: &mut Vec<f64>) {
+        let local = self.element.info().ndof();
+        let rows = gradients.len() / local;
+        u.resize(local * self.count, 0.0);
+        slopes.resize(rows * self.count, 0.0);
+        for (field, u) in self.fields.chunks_exact(self.plate.ndof()).zip(u.chunks_exact_mut(local)) {
             map.gather(field, u);
-            [0, 1].map(|d| gradient.iter().zip(&*u).map(|(g, u)| g[d] * u).sum())
-        }));
+        }
+        matmul(
+            MatMut::from_column_major_slice_mut(slopes, rows, self.count),
+            Accum::Replace,
+            MatRef::from_row_major_slice(gradients, rows, local),
+            MatRef::from_column_major_slice(u, local, self.count),
+            1.0,
+            Par::Seq,
+        );
     }
 
     /// Calls `take` with each cell that counts, and how much; the strain operator is integrated where `acts` wants it.
-    fn each(&self, acts: bool, mut take: impl FnMut(f64, &Cell<'_>, &CellMap, &OfCell)) -> Result<(), AssemblyError> {
+    fn each(&self, acts: bool, mut take: impl FnMut(f64, &CellMap, &OfCell)) -> Result<(), AssemblyError> {
         let (mut map, mut of) = (CellMap::default(), OfCell::default());
         for (cell, weight) in self.plate.kept_cells() {
             map.set(self.plate, self.constraints, cell);
@@ -215,7 +221,7 @@ impl<'a> MembraneStrains<'a> {
                 let (quad, layer) = self.plate.place(cell);
                 AssemblyError { quad_tag: self.plate.plane.quad_tags[quad], layer, error }
             })?;
-            take(weight, &view, &map, &of);
+            take(weight, &map, &of);
         }
         Ok(())
     }
@@ -224,13 +230,17 @@ impl<'a> MembraneStrains<'a> {
         let info = self.element.info();
         let (local, pairs) = (info.ndof(), self.pairs());
         let rows = 3 * info.plane_points().count();
-        let OfCell { strains, stresses, operator, known, b, shape, slopes } = of;
+        let OfCell { strains, stresses, operator, known, b, shape, gradients, u, slopes } = of;
         strains.resize(rows * pairs, 0.0);
         stresses.resize(rows * pairs, 0.0);
         operator.clear();
         operator.resize(local * rows, 0.0);
         b.resize(6 * local, 0.0);
-        let mut u = vec![0.0; local];
+        gradients.clear();
+        for (r, s, _) in info.plane_points() {
+            add_gradient(self.element, cell, [r, s], shape, gradients);
+        }
+        self.slopes(map, gradients, u, slopes);
         // ∫ C dq of the strains in the plane, where a theory takes stresses as zero without them.
         known.clear();
         let mut through = [[0.0; 3]; 3];
@@ -243,15 +253,14 @@ impl<'a> MembraneStrains<'a> {
             known.push(c);
         }
         for (point, (r, s, w)) in info.plane_points().enumerate() {
-            let gradient = gradient(self.element, cell, [r, s], shape);
-            self.slopes(map, &gradient, &mut u, slopes);
             let area = positive(cell.plane(r, s).det * cell.half_height())? * w;
             let stiffness = through.map(|row| row.map(|a| area * a));
             if acts {
                 let columns = &mut operator[local * 3 * point..local * 3 * (point + 1)];
                 for (number, (slice, c)) in cell.stack.slices.iter().zip(&*known).enumerate() {
                     let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
-                    for &(t, wt) in gauss_legendre(info.ply_order) {
+                    // The order is that of a product of two operators; for one, half of it is exact.
+                    for &(t, wt) in gauss_legendre(info.ply_order.div_ceil(2)) {
                         let det = self.element.strain_operator(cell, number, [r, s, middle + half * t], b);
                         let dv = positive(det)? * w * wt * half;
                         for (i, strain) in b.chunks_exact(6).enumerate() {
@@ -264,8 +273,9 @@ impl<'a> MembraneStrains<'a> {
                 }
             }
             let mut pair = 0;
-            for (i, a) in slopes.iter().enumerate() {
-                for (j, b) in slopes.iter().enumerate().skip(i) {
+            let here = || slopes.chunks_exact(rows / 3 * 2).map(|slopes| &slopes[2 * point..]).enumerate();
+            for (i, a) in here() {
+                for (j, b) in here().skip(i) {
                     let twice = if i == j { 0.5 } else { 1.0 };
                     let strain = [a[0] * b[0], a[1] * b[1], a[0] * b[1] + a[1] * b[0]].map(|e| twice * e);
                     let at = rows * pair + 3 * point;
@@ -281,8 +291,9 @@ impl<'a> MembraneStrains<'a> {
     }
 }
 
-/// ∂w/∂x and ∂w/∂y per unknown in the middle of a cell: differences that are exact for polynomials of the fourth degree.
-fn gradient(element: &dyn Element, cell: &Cell<'_>, at: [f64; 2], shape: &mut Vec<f64>) -> Vec<[f64; 2]> {
+/// Adds two rows, ∂w/∂x and ∂w/∂y of each unknown in the middle of a cell: differences that are exact for polynomials of the fourth
+/// degree.
+fn add_gradient(element: &dyn Element, cell: &Cell<'_>, at: [f64; 2], shape: &mut Vec<f64>, rows: &mut Vec<f64>) {
     let local = element.info().ndof();
     shape.resize(3 * local, 0.0);
     let mut natural = vec![[0.0; 2]; local];
@@ -298,7 +309,9 @@ fn gradient(element: &dyn Element, cell: &Cell<'_>, at: [f64; 2], shape: &mut Ve
         }
     }
     let [by_r, by_s] = cell.plane(at[0], at[1]).inverse;
-    natural.into_iter().map(|[r, s]| [r * by_r[0] + s * by_s[0], r * by_r[1] + s * by_s[1]]).collect()
+    for d in 0..2 {
+        rows.extend(natural.iter().map(|[r, s]| r * by_r[d] + s * by_s[d]));
+    }
 }
 
 /// C without the normal stresses that a theory takes as zero, known by its strain operator: they are condensed.

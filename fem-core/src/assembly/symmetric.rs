@@ -2,6 +2,7 @@
 
 use super::{Pattern, PatternError};
 use crate::words::functional::Functional;
+use crate::words::vectorised::vectorised;
 use faer::sparse::ops::binary_op;
 use faer::sparse::{FaerError, SparseColMat, SparseColMatMut, SparseColMatRef};
 use std::sync::Arc;
@@ -80,7 +81,8 @@ impl Symmetric {
         }
     }
 
-    /// `Y ← Y + scale · A X`, both `n × columns`, column-major; columns go together in fours, which reads the matrix once.
+    /// `Y ← Y + scale · A X`, both `n × columns`, column-major; columns go together in eights and fours, which reads the matrix once
+    /// for all of them.
     ///
     /// faer's product wants both triangles, twice the memory, and takes longer (`cargo bench --bench assembly`).
     pub fn add_product(&self, scale: f64, x: &[f64], y: &mut [f64]) {
@@ -88,17 +90,21 @@ impl Symmetric {
         if n == 0 {
             return;
         }
-        let (fours, rest) = (x.chunks_exact(4 * n), x.chunks_exact(4 * n).remainder());
-        let done = x.len() - rest.len();
-        for (x, y) in fours.zip(y.chunks_exact_mut(4 * n)) {
-            self.add_product_of_four(scale, x, y);
+        let (x, single) = x.split_at(x.len() - x.len() % (4 * n));
+        let (fours, alone) = y.split_at_mut(x.len());
+        for (x, y) in x.chunks(8 * n).zip(fours.chunks_mut(8 * n)) {
+            vectorised(|| match x.len() / n {
+                8 => self.add_product_of::<8>(scale, x, y),
+                _ => self.add_product_of::<4>(scale, x, y),
+            });
         }
-        for (x, y) in rest.chunks_exact(n).zip(y[done..].chunks_exact_mut(n)) {
-            self.add_product_of_one(scale, x, y);
+        for (x, y) in single.chunks_exact(n).zip(alone.chunks_exact_mut(n)) {
+            vectorised(|| self.add_product_of_one(scale, x, y));
         }
     }
 
     /// The columns of a group share their rows: a dense trapezoid between two gathered vectors.
+    #[inline(always)]
     fn add_product_of_one(&self, scale: f64, x: &[f64], y: &mut [f64]) {
         let (starts, rows) = (self.pattern.starts(), self.pattern.rows());
         let (mut from, mut to) = (Vec::new(), Vec::new());
@@ -120,21 +126,24 @@ impl Symmetric {
         }
     }
 
-    /// The same with four columns side by side.
-    fn add_product_of_four(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+    /// The same with some columns side by side.
+    #[inline(always)]
+    fn add_product_of<const COLUMNS: usize>(&self, scale: f64, x: &[f64], y: &mut [f64]) {
         let n = self.ndof();
-        let add = |y: &mut [f64; 4], a: f64, x: &[f64; 4]| y.iter_mut().zip(x).for_each(|(y, x)| *y += a * x);
+        let add = |y: &mut [f64; COLUMNS], a: f64, x: &[f64; COLUMNS]| {
+            y.iter_mut().zip(x).for_each(|(y, x)| *y += a * x);
+        };
         let (starts, rows) = (self.pattern.starts(), self.pattern.rows());
         let (mut from, mut to) = (Vec::new(), Vec::new());
         for group in self.pattern.groups().windows(2) {
             let rows = &rows[starts[group[0]]..starts[group[0] + 1]];
             from.clear();
-            from.extend(rows.iter().map(|i| -> [f64; 4] { std::array::from_fn(|c| scale * x[c * n + i]) }));
+            from.extend(rows.iter().map(|i| -> [f64; COLUMNS] { std::array::from_fn(|c| scale * x[c * n + i]) }));
             to.clear();
-            to.resize(rows.len(), [0.0; 4]);
+            to.resize(rows.len(), [0.0; COLUMNS]);
             for (local, j) in (group[0]..group[1]).enumerate() {
                 let values = &self.values[starts[j]..starts[j + 1]];
-                let (xj, mut sum) = (from[local], [0.0; 4]);
+                let (xj, mut sum) = (from[local], [0.0; COLUMNS]);
                 add(&mut sum, values[0], &xj);
                 for ((a, x), to) in values[1..].iter().zip(&from[local + 1..]).zip(&mut to[local + 1..]) {
                     add(to, *a, &xj);
@@ -178,6 +187,7 @@ impl Symmetric {
 }
 
 /// `y ← y + s a`; returns `a · x`.
+#[inline(always)]
 fn add_and_dot(a: &[f64], s: f64, x: &[f64], y: &mut [f64]) -> f64 {
     const LANES: usize = 4;
     let mut sums = [0.0; LANES];

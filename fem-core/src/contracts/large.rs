@@ -32,8 +32,8 @@ pub trait LargeDeflection: Debug {
     /// As [`LargeDeflection::internal`].
     fn large_strain(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError>;
 
-    /// Means of E over parts of the cell (report eqs 12, 14) and, in the plane, over the points `plane`; engineering shears, one after
-    /// the other: `strains` holds six per part.
+    /// Means of E over parts of the cell (report eqs 12, 14) and, in the plane, over the points `plane`, for the displacements `u` of
+    /// one field or of several, one after the other; engineering shears: `strains` holds six per part, field by field.
     ///
     /// # Errors
     /// As [`LargeDeflection::internal`].

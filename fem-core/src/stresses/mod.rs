@@ -2,6 +2,7 @@
 //! of a mesh.
 
 mod around;
+mod band;
 mod equilibrium;
 pub mod estimate;
 pub mod field;

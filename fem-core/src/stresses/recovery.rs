@@ -8,6 +8,7 @@ use crate::plates::plate::Plate;
 use crate::plates::window::{Centre, Mean, Source};
 use crate::words::material::Material;
 use crate::words::tensor::{Matrix6, strain_rotation};
+use crate::words::vectorised::vectorised;
 use std::borrow::Cow;
 
 /// Where in the thickness a stress is taken.
@@ -141,13 +142,15 @@ impl Recovery {
                         add_product(operator, &local, strain);
                         continue;
                     }
-                    for (column, local) in operator.chunks_exact(6).zip(local.chunks_exact(fields)) {
-                        for (b, strain) in column.iter().zip(here.chunks_exact_mut(fields)) {
-                            if *b != 0.0 {
-                                strain.iter_mut().zip(local).for_each(|(e, u)| *e += b * u);
+                    vectorised(|| {
+                        for (column, local) in operator.chunks_exact(6).zip(local.chunks_exact(fields)) {
+                            for (b, strain) in column.iter().zip(here.chunks_exact_mut(fields)) {
+                                if *b != 0.0 {
+                                    strain.iter_mut().zip(local).for_each(|(e, u)| *e += b * u);
+                                }
                             }
                         }
-                    }
+                    });
                 }
             }
         }
@@ -155,8 +158,8 @@ impl Recovery {
         Ok(())
     }
 
-    /// Stresses S = C E of large deflections `u` (one field, before elimination of constraints), on the axes of the sites as
-    /// they turn with the plate: six components per site, `out` is 6·sites.
+    /// Stresses S = C E of large deflections, on the axes of the sites as they turn with the plate; `u` and `out` as of
+    /// [`Recovery::stresses`].
     ///
     /// # Errors
     /// A cell that the element refuses.
@@ -165,10 +168,11 @@ impl Recovery {
         plate: &Plate,
         element: &dyn LargeDeflection,
         u: &[f64],
+        fields: usize,
         out: &mut [f64],
     ) -> Result<(), ElementError> {
         let layers = self.parts_of_layers();
-        let mut strains = vec![0.0; self.sources.len() * 6 * self.stations.len()];
+        let mut strains = vec![0.0; self.sources.len() * 6 * self.stations.len() * fields];
         let (mut rest, mut dofs, mut local, mut of_parts) =
             (strains.as_mut_slice(), Vec::new(), Vec::new(), Vec::new());
         for source in &self.sources {
@@ -177,17 +181,20 @@ impl Recovery {
                 let number = quad * plate.layers() + layer;
                 plate.cell_dofs(number, &mut dofs);
                 local.clear();
-                local.extend(dofs.iter().map(|dof| u[*dof]));
-                of_parts.resize(6 * parts.len(), 0.0);
+                local.extend(u.chunks_exact(plate.ndof()).flat_map(|u| dofs.iter().map(|dof| u[*dof])));
+                of_parts.resize(6 * parts.len() * fields, 0.0);
                 element.mean_large_strains(&plate.cell(number), parts, &plane, &local, &mut of_parts)?;
-                let (here, next) = rest.split_at_mut(6 * stations);
-                for (strain, (station, share)) in of_parts.chunks_exact(6).zip(shares) {
-                    here[6 * station..].iter_mut().zip(strain).for_each(|(mean, e)| *mean += share * e);
+                let (here, next) = rest.split_at_mut(6 * stations * fields);
+                for (field, of_parts) in of_parts.chunks_exact(6 * parts.len()).enumerate() {
+                    for (strain, (station, share)) in of_parts.chunks_exact(6).zip(shares) {
+                        let means = here[6 * station * fields + field..].iter_mut().step_by(fields);
+                        means.zip(strain).for_each(|(mean, e)| *mean += share * e);
+                    }
                 }
                 rest = next;
             }
         }
-        self.averaged(&strains, 1, out);
+        self.averaged(&strains, fields, out);
         Ok(())
     }
 

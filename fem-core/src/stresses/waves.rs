@@ -1,5 +1,6 @@
 //! Straight-crested waves in a plate of cells, and what its layers of cells add to their stiffness.
 
+use super::band::Band;
 use crate::contracts::element::{Element, ElementError, Scratch};
 use crate::plates::laminate::Laminate;
 use crate::plates::mesh::PlaneMesh;
@@ -7,7 +8,6 @@ use crate::plates::plate::{Plate, ZDerivatives};
 use crate::words::dof::Dof;
 use crate::words::domain::Domain;
 use crate::words::material::Material;
-use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{FRAC_PI_8, PI};
 
 /// Wave numbers times the thickness, from waves of sixty thicknesses to one of two.
@@ -177,35 +177,40 @@ impl Wave {
                 }
             })
             .collect();
-        let n = self.amplitudes;
+        // Real and imaginary part of an amplitude lie side by side, those of a level near each other: entries are near the diagonal.
+        let apart = |(i, j, _): &Entry| self.numbers[*i].abs_diff(self.numbers[*j]);
+        let width = 2 * (self.stiffness.iter().chain(&self.mass).map(apart).max()? + 1);
         let form = |entries: &[Entry]| {
-            let mut form = DMatrix::<f64>::zeros(2 * n, 2 * n);
+            let mut form = Band::zero(2 * self.amplitudes, width);
             for &(i, j, entry) in entries {
                 let ([a, b], [c, d]) = (values[i], values[j]);
                 let (real, imaginary) = (entry * (a * c + b * d), entry * (a * d - b * c));
-                let (i, j) = (self.numbers[i], self.numbers[j]);
-                form[(i, j)] += real;
-                form[(n + i, n + j)] += real;
-                form[(i, n + j)] -= imaginary;
-                form[(n + i, j)] += imaginary;
+                let (i, j) = (2 * self.numbers[i], 2 * self.numbers[j]);
+                form.add(i, j, real);
+                form.add(i + 1, j + 1, real);
+                form.add(i, j + 1, -imaginary);
+                form.add(i + 1, j, imaginary);
             }
             form
         };
         let (stiffness, mass) = (form(&self.stiffness), form(&self.mass));
-        let factor = stiffness.clone().cholesky()?;
+        let factor = stiffness.cholesky()?;
         // The whole thickness moves along z.
-        let mut u = DVector::zeros(2 * n);
+        let mut u = vec![0.0; 2 * self.amplitudes];
         for (dof, number) in self.numbers.iter().enumerate() {
             let (.., name) = self.plate.locate(dof);
             if name.n() == 3 && name.m() == 0 {
-                u[*number] = 1.0;
+                u[2 * number] = 1.0;
             }
         }
         for _ in 0..ITERATIONS {
-            u = factor.solve(&(&mass * u));
-            u /= u.amax();
+            u = mass.product(&u);
+            factor.solve(&mut u);
+            let largest = u.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
+            u.iter_mut().for_each(|u| *u /= largest);
         }
-        let square = u.dot(&(&stiffness * &u)) / u.dot(&(&mass * &u));
+        let energy = |form: &Band| form.product(&u).iter().zip(&u).map(|(f, u)| f * u).sum::<f64>();
+        let square = energy(&stiffness) / energy(&mass);
         (square > 0.0).then_some(square)
     }
 }

@@ -14,3 +14,4 @@ pub mod prolongation;
 pub mod quadrature;
 pub(crate) mod spelling;
 pub mod tensor;
+pub mod vectorised;

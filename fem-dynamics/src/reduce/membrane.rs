@@ -5,6 +5,7 @@ use fem_core::energy::Energy;
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
 use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent};
+use fem_core::vectorised::vectorised;
 use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, DVectorView, DVectorViewMut, Dyn, SymmetricEigen};
 
 /// Membrane tensions under which the static responses to a contact are directions: their stiffness against a mode over its
@@ -173,13 +174,13 @@ impl MembranePlate {
     /// Finds B_t q and b_t.
     fn stretch(&mut self, q: &[f64]) {
         let forms = self.forms.chunks_exact(q.len() * q.len());
-        for ((form, product), value) in forms.zip(self.products.chunks_exact_mut(q.len())).zip(&mut self.values) {
-            product.fill(0.0);
-            for (column, q) in form.chunks_exact(q.len()).zip(q) {
-                product.iter_mut().zip(column).for_each(|(p, b)| *p += q * b);
+        vectorised(|| {
+            for ((form, product), value) in forms.zip(self.products.chunks_exact_mut(q.len())).zip(&mut self.values) {
+                product.fill(0.0);
+                add_columns(form, q, product);
+                *value = product.iter().zip(q).map(|(p, q)| p * q).sum();
             }
-            *value = product.iter().zip(q).map(|(p, q)| p * q).sum();
-        }
+        });
     }
 
     /// c_t of term `t`, if there are any.
@@ -192,6 +193,23 @@ impl MembranePlate {
     fn tension(&self, t: usize, q: &[f64]) -> f64 {
         let coupled: f64 = self.coupling(t).iter().zip(q).map(|(c, q)| c * q).sum();
         self.stiffness[t] * self.values[t] + coupled
+    }
+}
+
+/// `y ← y + A x`, A of as many rows; some columns go together, one after the other, so that y is read and written for all of them once.
+#[inline(always)]
+fn add_columns(a: &[f64], x: &[f64], y: &mut [f64]) {
+    const TOGETHER: usize = 4;
+    let n = y.len();
+    let (fours, rest) = x.as_chunks::<TOGETHER>();
+    for (columns, x) in a.chunks_exact(TOGETHER * n).zip(fours) {
+        let [p, q, r, s]: [&[f64]; TOGETHER] = std::array::from_fn(|k| &columns[k * n..(k + 1) * n]);
+        for ((((y, p), q), r), s) in y.iter_mut().zip(p).zip(q).zip(r).zip(s) {
+            *y = *y + x[0] * p + x[1] * q + x[2] * r + x[3] * s;
+        }
+    }
+    for (column, x) in a[fours.len() * TOGETHER * n..].chunks_exact(n).zip(rest) {
+        y.iter_mut().zip(column).for_each(|(y, a)| *y += x * a);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Reductions: each chooses a basis; projection and expansion are common ([`Reduced`]).
 
 mod craig_bampton;
+mod diagonal;
 mod governors;
 mod guyan;
 mod irs;
@@ -9,13 +10,13 @@ mod modal;
 mod ritz;
 
 pub use craig_bampton::CraigBampton;
+pub use diagonal::Modal;
 pub use guyan::Guyan;
 pub use irs::Irs;
 pub use membrane::{Companions, MembraneForms, MembranePlate};
 pub use modal::ModalTruncation;
 pub use ritz::Ritz;
 
-use fem_core::damping::{Damping, Rayleigh};
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
 use fem_core::structure::{SolveError, Structure};
@@ -32,134 +33,6 @@ const EXCITED: f64 = 1e-9;
 
 /// Vectors of the largest basis that is made: dense matrices beyond that cost more than the sparse ones they replace.
 const LARGEST: usize = 2000;
-
-/// A structure in the coordinates in which its K and M are diagonal.
-///
-/// A mode with inertia is scaled to unit mass, so its stiffness is ω²; a mode without (from a singular M) to unit
-/// stiffness and no mass. The free motions of the structure come first, without stiffness.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Modal {
-    stiffness: Vec<f64>,
-    mass: Vec<f64>,
-    /// Empty without damping.
-    damping: Vec<f64>,
-}
-
-impl Modal {
-    /// Circular frequencies, rad/s, ascending; infinite for modes without inertia.
-    pub fn frequencies(&self) -> impl Iterator<Item = f64> + '_ {
-        self.stiffness.iter().zip(&self.mass).map(|(k, m)| if *m > 0.0 { k.sqrt() } else { f64::INFINITY })
-    }
-
-    /// The lowest of the frequencies that are not zero.
-    pub fn lowest_frequency(&self) -> Option<f64> {
-        self.frequencies().find(|omega| *omega > 0.0)
-    }
-
-    /// Deformation of each mode under a unit force on it: one over its stiffness, none of a free motion.
-    pub fn compliances(&self) -> impl Iterator<Item = f64> + '_ {
-        self.stiffness.iter().map(|k| if *k > 0.0 { 1.0 / k } else { 0.0 })
-    }
-
-    /// Modal stiffnesses: ω², and 1 of modes without inertia.
-    pub fn stiffnesses(&self) -> &[f64] {
-        &self.stiffness
-    }
-
-    /// Modal dampings; none of a structure without.
-    pub fn dampings(&self) -> &[f64] {
-        &self.damping
-    }
-
-    /// Takes the inertia of all modes away; they keep their stiffness.
-    pub fn without_inertia(&mut self) {
-        self.mass.fill(0.0);
-    }
-
-    /// Takes a share of its stiffness from each mode, as from a plate that is softer.
-    pub fn soften(&mut self, shares: &[f64]) {
-        self.stiffness.iter_mut().zip(shares).for_each(|(k, share)| *k *= 1.0 - share);
-    }
-
-    /// Gives the structure viscous damping, which leaves its modes as they are.
-    pub fn damp(&mut self, damping: Damping) {
-        let each = self.stiffness.iter().zip(&self.mass);
-        self.damping = match damping {
-            Damping::Rayleigh(Rayleigh { mass, stiffness }) => each.map(|(k, m)| mass * m + stiffness * k).collect(),
-            Damping::Ratio(ratio) => each.map(|(k, m)| 2.0 * ratio * (k * m).sqrt()).collect(),
-        };
-    }
-}
-
-impl Structure for Modal {
-    fn ndof(&self) -> usize {
-        self.stiffness.len()
-    }
-
-    fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {
-        let n = self.stiffness.len();
-        for (y, x) in y.chunks_exact_mut(n).zip(x.chunks_exact(n)) {
-            y.iter_mut().zip(&self.stiffness).zip(x).for_each(|((y, k), x)| *y += scale * k * x);
-        }
-    }
-
-    fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
-        let n = self.mass.len();
-        for (y, x) in y.chunks_exact_mut(n).zip(x.chunks_exact(n)) {
-            y.iter_mut().zip(&self.mass).zip(x).for_each(|((y, m), x)| *y += scale * m * x);
-        }
-    }
-
-    fn add_damping(&self, scale: f64, x: &[f64], y: &mut [f64]) {
-        y.iter_mut().zip(&self.damping).zip(x).for_each(|((y, c), x)| *y += scale * c * x);
-    }
-
-    fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
-        for column in x.chunks_exact_mut(self.stiffness.len()).take(columns) {
-            for ((x, k), m) in column.iter_mut().zip(&self.stiffness).zip(&self.mass) {
-                let stiffness = k + shift * m;
-                *x = if stiffness == 0.0 { 0.0 } else { *x / stiffness };
-            }
-        }
-        Ok(())
-    }
-
-    fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
-        for (i, (x, m)) in x.iter_mut().zip(&self.mass).enumerate() {
-            if *m == 0.0 {
-                return Err(SolveError::NoInertia { unknown: format!("mode {} of the reduced structure", i + 1) });
-            }
-            *x /= m;
-        }
-        Ok(())
-    }
-
-    fn solve_damped(&mut self, cm: f64, cc: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
-        if self.damping.is_empty() {
-            return self.solve_shifted(cm, x, columns);
-        }
-        for column in x.chunks_exact_mut(self.stiffness.len()).take(columns) {
-            let matrices = self.stiffness.iter().zip(&self.mass).zip(&self.damping);
-            column.iter_mut().zip(matrices).for_each(|(x, ((k, m), c))| *x /= k + cm * m + cc * c);
-        }
-        Ok(())
-    }
-
-    fn solve_damped_mass(&mut self, cc: f64, x: &mut [f64]) -> Result<(), SolveError> {
-        self.solve_mass(x)?;
-        let matrices = self.mass.iter().zip(&self.damping);
-        x.iter_mut().zip(matrices).for_each(|(x, (m, c))| *x /= 1.0 + cc * c / m);
-        Ok(())
-    }
-
-    fn damping_rate(&self, _: f64) -> f64 {
-        self.damping.iter().zip(&self.mass).map(|(c, m)| c / m).fold(0.0, f64::max)
-    }
-
-    fn highest_frequency(&mut self) -> Result<f64, SolveError> {
-        Ok(self.frequencies().fold(0.0, f64::max))
-    }
-}
 
 /// A reduced structure and the way back, u = Φ q.
 #[derive(Debug, Clone, PartialEq)]
@@ -187,11 +60,7 @@ impl Reduced {
         }
         let free = DMatrix::from_column_slice(n, structure.free_motions().len() / n, structure.free_motions());
         let mut t = DMatrix::from_column_slice(n, m, basis);
-        if !free.is_empty() {
-            let mut momenta = DMatrix::zeros(n, free.ncols());
-            structure.add_mass(1.0, free.as_slice(), momenta.as_mut_slice());
-            t -= &free * momenta.tr_mul(&t);
-        }
+        part_from(&free, structure, &mut t);
         let product = |add: &dyn Fn(&[f64], &mut [f64])| {
             let mut image = DMatrix::zeros(n, m);
             add(t.as_slice(), image.as_mut_slice());
@@ -200,6 +69,45 @@ impl Reduced {
         };
         let k = product(&|x, y| structure.add_stiffness(1.0, x, y));
         let mass = product(&|x, y| structure.add_mass(1.0, x, y));
+        Self::diagonalise(&free, t, k, mass)
+    }
+
+    /// `structure`, of which this is a reduction, on the columns of `more` as well (`ndof × any`): only these are multiplied by K
+    /// and M.
+    ///
+    /// # Errors
+    /// As [`Reduced::project`].
+    pub fn with(&self, structure: &dyn Structure, more: &[f64]) -> Result<Self, ReductionError> {
+        let (n, moves) = (self.ndof, structure.free_motions().len() / self.ndof);
+        let free = DMatrix::from_column_slice(n, moves, structure.free_motions());
+        let mut added = DMatrix::from_column_slice(n, more.len() / n, more);
+        part_from(&free, structure, &mut added);
+        let modes = self.modal.ndof() - moves;
+        let mut t = DMatrix::from_column_slice(n, modes, &self.basis[n * moves..])
+            .resize_horizontally(modes + added.ncols(), 0.0);
+        t.columns_mut(modes, added.ncols()).copy_from(&added);
+        let product = |known: &[f64], add: &dyn Fn(&[f64], &mut [f64])| {
+            let mut image = DMatrix::zeros(n, added.ncols());
+            add(added.as_slice(), image.as_mut_slice());
+            let beside = t.tr_mul(&image);
+            let mut product = DMatrix::zeros(t.ncols(), t.ncols());
+            product.view_mut((0, 0), (modes, modes)).set_partial_diagonal(known.iter().copied());
+            product.columns_mut(modes, added.ncols()).copy_from(&beside);
+            product.rows_mut(modes, added.ncols()).copy_from(&beside.transpose());
+            product
+        };
+        let k = product(&self.modal.stiffness[moves..], &|x, y| structure.add_stiffness(1.0, x, y));
+        let mass = product(&self.modal.mass[moves..], &|x, y| structure.add_mass(1.0, x, y));
+        Self::diagonalise(&free, t, k, mass)
+    }
+
+    /// The structure on its motions `free` and on the columns of `t`, whose Gram matrices in K and M are given.
+    fn diagonalise(
+        free: &DMatrix<f64>,
+        t: DMatrix<f64>,
+        k: DMatrix<f64>,
+        mass: DMatrix<f64>,
+    ) -> Result<Self, ReductionError> {
         if !k.iter().chain(mass.iter()).all(|v| v.is_finite()) {
             return Err(ReductionError::NotFinite("a reduced matrix"));
         }
@@ -237,8 +145,9 @@ impl Reduced {
             vectors.set_column(to, &column);
         }
         let back = l.transpose().solve_upper_triangular(&vectors).ok_or(ReductionError::SingularStiffness)?;
+        let ndof = t.nrows();
         let basis = [free.as_slice(), (t * back).as_slice()].concat();
-        Ok(Self { modal, basis, ndof: n })
+        Ok(Self { modal, basis, ndof })
     }
 
     /// A functional of u in modal coordinates: Φᵀ w.
@@ -254,6 +163,15 @@ impl Reduced {
                 *u += q * c;
             }
         }
+    }
+}
+
+/// Takes from the columns of `t` their shares in the motions `free` of the structure, in the metric of its M.
+fn part_from(free: &DMatrix<f64>, structure: &dyn Structure, t: &mut DMatrix<f64>) {
+    if !free.is_empty() {
+        let mut momenta = DMatrix::zeros(free.nrows(), free.ncols());
+        structure.add_mass(1.0, free.as_slice(), momenta.as_mut_slice());
+        *t -= free * momenta.tr_mul(t);
     }
 }
 

@@ -125,3 +125,19 @@ fn a_singular_mass_does_not_disturb() {
         }
     }
 }
+
+#[test]
+fn vectors_that_join_later_make_the_same_structure() {
+    let mut chain = Dense::chain(&[0.2; 30], 3e6);
+    let t = basis(&*reduction("ritz", 9), &mut chain, &[Functional::dof(11)], &[]).unwrap();
+    let (some, more) = t.as_slice().split_at(6 * 30);
+    let grown = Reduced::project(&chain, some).unwrap().with(&chain, more).unwrap();
+    let whole = Reduced::project(&chain, t.as_slice()).unwrap();
+    assert_eq!(grown.modal.stiffnesses().len(), 9);
+    for (grown, whole) in grown.modal.frequencies().zip(whole.modal.frequencies()) {
+        assert!((grown / whole - 1.0).abs() < 1e-9, "{grown} {whole}");
+    }
+    for (grown, whole) in grown.restrict(&Functional::dof(11)).iter().zip(whole.restrict(&Functional::dof(11))) {
+        assert!((grown.abs() / whole.abs() - 1.0).abs() < 1e-6, "{grown} {whole}");
+    }
+}

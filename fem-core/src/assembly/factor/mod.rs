@@ -110,6 +110,8 @@ pub struct Cholesky {
     symbolic: Symbolic,
     schedule: Schedule,
     panels: Vec<f64>,
+    /// Whether nothing has been written into the panels yet.
+    clean: bool,
     local: Vec<f64>,
 }
 
@@ -123,7 +125,7 @@ impl Cholesky {
     /// Reserves the storage. The factor is the same bit for bit for any number of `threads`.
     pub fn new(symbolic: Symbolic, threads: NonZeroUsize) -> Self {
         let schedule = Schedule::new(&symbolic.tree, threads.get());
-        Self { panels: vec![0.0; symbolic.entries()], schedule, symbolic, local: Vec::new() }
+        Self { panels: vec![0.0; symbolic.entries()], clean: true, schedule, symbolic, local: Vec::new() }
     }
 
     /// Factorises the symmetric matrix whose lower triangle is `matrix`, of the pattern analysed.
@@ -139,7 +141,8 @@ impl Cholesky {
         if let Some(bad) = matrix.val().iter().position(|v| !v.is_finite()) {
             return Err(FactorError::NotFinite { column: found.col_ptr().partition_point(|s| *s <= bad) - 1 });
         }
-        numeric::factorise(&self.symbolic.tree, &self.schedule, matrix, &mut self.panels)
+        let clean = std::mem::take(&mut self.clean);
+        numeric::factorise(&self.symbolic.tree, &self.schedule, matrix, &mut self.panels, clean)
             .map_err(|bad| FactorError::NotPositive { column: bad.column })
     }
 

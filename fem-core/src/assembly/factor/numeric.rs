@@ -22,7 +22,7 @@ pub(super) struct BadPivot {
     pub column: usize,
 }
 
-/// Fills `panels` with the factor.
+/// Fills `panels` with the factor; they need not be `clean`, all zero.
 ///
 /// Every front is computed by one thread and takes its children in one order: no number depends on the threads.
 pub(super) fn factorise(
@@ -30,6 +30,7 @@ pub(super) fn factorise(
     schedule: &Schedule,
     matrix: Matrix<'_>,
     panels: &mut [f64],
+    clean: bool,
 ) -> Result<(), BadPivot> {
     // The panels of a subtree are contiguous, and so are those between two subtrees.
     let mut shares: Vec<Vec<(Range<usize>, &mut [f64])>> = (0..schedule.workers).map(|_| Vec::new()).collect();
@@ -44,7 +45,7 @@ pub(super) fn factorise(
         }
     }
     let work = |share: Vec<(Range<usize>, &mut [f64])>| {
-        let mut worker = Worker::new(tree, share.iter().map(|s| s.0.clone()));
+        let mut worker = Worker::new(tree, share.iter().map(|s| s.0.clone()), clean);
         for (fronts, panels) in share {
             worker.subtree(tree, matrix, fronts, panels)?;
         }
@@ -68,7 +69,7 @@ pub(super) fn factorise(
     let limit = failure.map_or(usize::MAX, |e| e.front);
     if !top.is_empty() {
         let updates: Vec<&[f64]> = results.iter().map(|r| r.as_deref().unwrap_or_default()).collect();
-        failure = above(tree, schedule, matrix, top, &updates, limit).err().or(failure);
+        failure = above(tree, schedule, matrix, top, &updates, limit, clean).err().or(failure);
     }
     failure.map_or(Ok(()), Err)
 }
@@ -81,8 +82,9 @@ fn above(
     top: Vec<(usize, &mut [f64])>,
     updates: &[&[f64]],
     limit: usize,
+    clean: bool,
 ) -> Result<(), BadPivot> {
-    let mut worker = Worker::new(tree, top.iter().map(|t| t.0..t.0));
+    let mut worker = Worker::new(tree, top.iter().map(|t| t.0..t.0), clean);
     let square = top.iter().map(|t| tree.fronts[t.0].below().pow(2)).max().unwrap_or(0);
     worker.square.resize(square, 0.0);
     let mut taken = vec![0; updates.len()];
@@ -113,10 +115,12 @@ struct Worker {
     /// The update in the making.
     square: Vec<f64>,
     scratch: MemBuffer,
+    /// Whether panels come as zeros.
+    clean: bool,
 }
 
 impl Worker {
-    fn new(tree: &Tree, shares: impl Iterator<Item = Range<usize>>) -> Self {
+    fn new(tree: &Tree, shares: impl Iterator<Item = Range<usize>>, clean: bool) -> Self {
         let (mut held, mut stack, mut square) = (0, 0, 0);
         for fronts in shares {
             let (peak, s) = tree.memory(fronts.clone());
@@ -132,6 +136,7 @@ impl Worker {
             stack: Vec::with_capacity(stack),
             square: vec![0.0; square],
             scratch: MemBuffer::new(scratch),
+            clean,
         }
     }
 
@@ -157,7 +162,9 @@ impl Worker {
         for (k, u) in unknowns.iter().enumerate() {
             self.place[*u as usize] = k as u32;
         }
-        panel.fill(0.0);
+        if !self.clean {
+            panel.fill(0.0);
+        }
         for (u, column) in unknowns.iter().zip(panel.chunks_exact_mut(size)) {
             let entries = matrix.col_range(*u as usize);
             for (row, value) in matrix.row_idx()[entries.clone()].iter().zip(&matrix.val()[entries]) {

@@ -1,6 +1,7 @@
 //! Forward and backward substitution, front by front.
 
 use super::analysis::{Front, Tree};
+use crate::words::vectorised::vectorised;
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::prelude::{Reborrow, ReborrowMut};
@@ -17,6 +18,11 @@ pub(super) const BLOCK: usize = 64;
 
 /// `x ← A⁻¹ x`; `local` is room for the largest front.
 pub(super) fn single(tree: &Tree, panels: &[f64], x: &mut [f64], local: &mut Vec<f64>) {
+    vectorised(|| substitute(tree, panels, x, local));
+}
+
+#[inline(always)]
+fn substitute(tree: &Tree, panels: &[f64], x: &mut [f64], local: &mut Vec<f64>) {
     for front in &tree.fronts {
         let (unknowns, pivots) = (tree.unknowns(front), front.pivots);
         local.clear();
@@ -46,6 +52,7 @@ fn panel<'a>(front: &Front, panels: &'a [f64]) -> &'a [f64] {
 }
 
 /// `y₁ ← L₁₁⁻¹ y₁`, `y₂ ← y₂ − L₂₁ y₁` for the panel of L₁₁ over L₂₁.
+#[inline(always)]
 fn forward(panel: &[f64], y: &mut [f64], pivots: usize) {
     let size = y.len();
     let mut j = 0;
@@ -76,6 +83,7 @@ fn forward(panel: &[f64], y: &mut [f64], pivots: usize) {
 }
 
 /// `y₁ ← L₁₁⁻ᵀ (y₁ − L₂₁ᵀ y₂)`.
+#[inline(always)]
 fn backward(panel: &[f64], y: &mut [f64], pivots: usize) {
     let size = y.len();
     let whole = pivots - pivots % WIDTH;
@@ -99,6 +107,7 @@ fn backward(panel: &[f64], y: &mut [f64], pivots: usize) {
 }
 
 /// Products of `columns` with `y`, each summed in four lanes that a vector register holds.
+#[inline(always)]
 fn dots<const N: usize>(columns: [&[f64]; N], y: &[f64]) -> [f64; N] {
     const LANES: usize = 4;
     let mut sums = [[0.0; LANES]; N];

@@ -62,9 +62,7 @@ pub(super) struct Richer<'a> {
 impl Richer<'_> {
     /// Marches the plate of the vectors of `reduced` and `more`.
     fn march(&self, full: &Full, reduced: &Reduced, more: &[f64]) -> Option<Differences> {
-        let free = full.structure.free_motions().len();
-        let vectors = [&reduced.basis[free..], more].concat();
-        let (system, modal) = (self.couple)(Reduced::project(&full.structure, &vectors).ok()?);
+        let (system, modal) = (self.couple)(reduced.with(&full.structure, more).ok()?);
         self.base.against(&self.pace.march(system, &modal, |_| ())?)
     }
 }
