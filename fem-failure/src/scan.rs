@@ -7,9 +7,13 @@ pub use climb::{Climb, Crests};
 use fem_core::failure::{FailureCriterion, Site, check_material};
 use fem_core::material::{Material, MaterialError};
 use fem_core::tensor::{Ply, Stress6};
+use fem_core::vectorised::vectorised;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Range;
+
+/// Sites that are looked through together for something new.
+const BLOCK: usize = 16;
 
 /// A ply or the resin between two plies, counted from 0 at the bottom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -527,10 +531,12 @@ impl Watch {
             let out = &mut self.now[run.start * modes..run.end * modes];
             self.criterion.indices_many(&stress[run.clone()], &materials[usize::from(*material)], out);
         }
-        match self.now.iter().position(|v| v.is_nan() || *v == f64::NEG_INFINITY) {
-            Some(k) => Err((k / modes, k % modes)),
-            None => Ok(()),
+        let usable = |v: &f64| *v > f64::NEG_INFINITY;
+        if vectorised(|| self.now.iter().fold(true, |all, v| all & usable(v))) {
+            return Ok(());
         }
+        let bad = self.now.iter().position(|v| !usable(v)).unwrap_or(0);
+        Err((bad / modes, bad % modes))
     }
 
     /// Takes `now`, the indices at time `t`, into `seen`, whose last are those of the time `last`. `stress` are those of the
@@ -547,13 +553,17 @@ impl Watch {
         let modes = self.modes.len();
         let (order, slots) = (&order[self.span.clone()], &slots[self.span.clone()]);
         let stress = stress.map(|s| &s[self.span.clone()]);
-        for (maximum, now) in seen.maxima.iter_mut().zip(&self.now) {
-            *maximum = maximum.max(*now);
-        }
+        vectorised(|| seen.maxima.iter_mut().zip(&self.now).for_each(|(maximum, now)| *maximum = maximum.max(*now)));
         for (highest, peak) in self.highest.iter_mut().zip(&seen.peaks) {
             *highest = peak.map_or(0.0, |peak| peak.index);
         }
-        for (row, indices) in self.now.chunks_exact(modes).enumerate() {
+        // Of an index below the largest so far and below 1 there is nothing more to say.
+        let least = seen.peaks.iter().map(|peak| peak.map_or(f64::NEG_INFINITY, |peak| peak.index.min(1.0)));
+        let least: Vec<f64> = least.cycle().take(BLOCK * modes).collect();
+        let news = |block: &&[f64]| vectorised(|| block.iter().zip(&least).fold(false, |any, (i, l)| any | (i >= l)));
+        let blocks = (0..).step_by(BLOCK).zip(self.now.chunks(BLOCK * modes)).filter(|(_, block)| news(block));
+        let rows = blocks.flat_map(|(first, block)| (first..).zip(block.chunks_exact(modes)));
+        for (row, indices) in rows {
             for (mode, &index) in indices.iter().enumerate() {
                 if index > self.highest[mode] {
                     let from = last.map_or((t, 0.0), |last| (last, seen.last[row * modes + mode]));

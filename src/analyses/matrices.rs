@@ -6,12 +6,11 @@ use fem_core::assembly::{Matrix, Symmetric, assemble, pattern};
 use fem_core::counters::Counters;
 use fem_io::files::OutputDir;
 use fem_io::tables::{self, TableValue};
-use sprs::CsMatView;
-use sprs::io::write_matrix_market_to_bufwrite;
+use std::fmt::Write as _;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
-/// Writes `stiffness.mtx` and `mass.mtx` (Matrix Market, both triangles; N/m and kg for translations) and
+/// Writes `stiffness.mtx` and `mass.mtx` (Matrix Market, `symmetric`: the lower triangle; N/m and kg for translations) and
 /// `unknowns.csv`, which names row and column of each: their order is that in which they are eliminated, of which no more is
 /// promised than that it is the same for equal scenes. Supports and other equations are eliminated; where these leave a plate
 /// that moves free, restrained or not, K is singular.
@@ -46,11 +45,12 @@ pub fn write(dir: &OutputDir, model: &Model, threads: NonZeroUsize) -> Result<()
     Ok(())
 }
 
+/// Entries that are zero are left out, but for the diagonal.
 fn write_matrix(dir: &OutputDir, name: &str, matrix: &Symmetric) -> Result<(), Error> {
-    // Both triangles: readers disagree on which one a symmetric file holds, and sprs writes the other one.
-    let full = matrix.full()?;
-    let (symbolic, values) = full.parts();
-    write_columns(dir, name, CsMatView::new_csc(full.shape(), symbolic.col_ptr(), symbolic.row_idx(), values))
+    let matrix = matrix.compact();
+    let lower = matrix.lower();
+    let column = |j: usize| lower.row_idx_of_col(j).zip(lower.val_of_col(j)).map(|(i, value)| (i, *value));
+    write_lower(dir, name, matrix.ndof(), lower.val().len(), column)
 }
 
 /// Writes a full symmetric matrix of `n` rows as Matrix Market does sparse ones, so that all of ours are read alike.
@@ -58,11 +58,31 @@ fn write_matrix(dir: &OutputDir, name: &str, matrix: &Symmetric) -> Result<(), E
 /// # Errors
 /// As [`OutputDir::write`].
 pub(crate) fn write_full(dir: &OutputDir, name: &str, n: usize, values: &[f64]) -> Result<(), Error> {
-    let ends: Vec<usize> = (0..=n).map(|column| column * n).collect();
-    let rows: Vec<usize> = (0..n * n).map(|entry| entry % n).collect();
-    write_columns(dir, name, CsMatView::new_csc((n, n), &ends, &rows, values))
+    write_lower(dir, name, n, n * (n + 1) / 2, |j| (j..n).map(move |i| (i, values[j * n + i])))
 }
 
-fn write_columns(dir: &OutputDir, name: &str, matrix: CsMatView<'_, f64>) -> Result<(), Error> {
-    Ok(dir.write(name, |out| write_matrix_market_to_bufwrite(out, matrix))?)
+/// Writes the lower triangle, which is what the format holds of a symmetric matrix; `column` has its rows and values.
+fn write_lower<C>(
+    dir: &OutputDir,
+    name: &str,
+    n: usize,
+    entries: usize,
+    column: impl Fn(usize) -> C,
+) -> Result<(), Error>
+where
+    C: Iterator<Item = (usize, f64)>,
+{
+    Ok(dir.write(name, |out| {
+        writeln!(out, "%%MatrixMarket matrix coordinate real symmetric\n{n} {n} {entries}")?;
+        let mut lines = String::new();
+        for j in 0..n {
+            lines.clear();
+            for (i, value) in column(j) {
+                // Into a string nothing fails.
+                let _ = writeln!(lines, "{} {} {value:e}", i + 1, j + 1);
+            }
+            out.write_all(lines.as_bytes())?;
+        }
+        Ok(())
+    })?)
 }

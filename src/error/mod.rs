@@ -41,8 +41,6 @@ pub enum Error {
     Solve(#[from] fem_core::structure::SolveError),
     #[error("the matrices cannot be analysed")]
     Factor(#[from] fem_core::assembly::FactorError),
-    #[error("both triangles of a matrix need more memory than there is")]
-    BothTriangles(#[from] faer::sparse::FaerError),
     #[error("this takes about {needed} of memory, and {available} are free: {parts}")]
     #[diagnostic(help(
         "use fewer cells (a coarser mesh, a smaller `mesh.refine`), fewer `laminate.layers`, a `symmetry` of the \

@@ -61,13 +61,13 @@ fn matrices_and_displacements_are_shown_and_exported() {
     let market = String::from_utf8(read("BEAMCELL.KM.stiffness.mtx")).unwrap();
     let array = read("BEAMCELL.KM.stiffness.npy");
     let values: Vec<f64> = array[128..].chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect();
-    let written: Vec<f64> = market
-        .lines()
-        .filter(|line| !line.starts_with('%'))
-        .skip(1)
-        .map(|line| line.rsplit(' ').next().unwrap().parse().unwrap())
-        .collect();
-    assert_eq!(values, written, "K is symmetric, whichever index runs first");
+    let mut written = vec![f64::NAN; values.len()];
+    for line in market.lines().filter(|line| !line.starts_with('%')).skip(1) {
+        let [i, j, value] = line.split(' ').collect::<Vec<_>>()[..] else { panic!("{line}") };
+        let (i, j): (usize, usize) = (i.parse().unwrap(), j.parse().unwrap());
+        [36 * (j - 1) + i - 1, 36 * (i - 1) + j - 1].map(|at| written[at] = value.parse().unwrap());
+    }
+    assert_eq!(values, written);
     assert_eq!(read("BEAMDISP.displacements.npy").len(), 128 + 8 * 20 * 198);
 }
 

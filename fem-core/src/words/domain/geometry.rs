@@ -61,6 +61,9 @@ impl Corners<[f64; 2]> {
 
     /// Natural coordinates of `p` if it lies in the convex cell (to 1e-9 of its size).
     pub fn locate(&self, p: [f64; 2]) -> Option<[f64; 2]> {
+        if self.is_beside(p) {
+            return None;
+        }
         match self.domain() {
             Domain::Quadrilateral => self.locate_bilinear(p),
             Domain::Triangle => {
@@ -75,6 +78,16 @@ impl Corners<[f64; 2]> {
                 Some([r - 0.5 * beyond, s - 0.5 * beyond])
             }
         }
+    }
+
+    /// Whether `p` is clearly outside the box around the corners: of many cells that are asked for a point all but a few are soon done.
+    fn is_beside(&self, p: [f64; 2]) -> bool {
+        (0..2).any(|d| {
+            let [low, high] =
+                self.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |b, x| [b[0].min(x[d]), b[1].max(x[d])]);
+            let margin = 1e3 * NEAR * (high - low);
+            p[d] < low - margin || p[d] > high + margin
+        })
     }
 
     /// Newton's method.
