@@ -5,10 +5,9 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
 mod plate;
+mod rates;
 
 use cpu_time::ThreadTime;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par};
 use fem::analyses::impact;
 use fem::core::assembly::{Cholesky, Matrix, SparseStructure, Symbolic, assemble, column_order, pattern};
 use fem::core::counters::Counters;
@@ -71,13 +70,6 @@ fn seconds<T>(samples: usize, work: impl FnMut() -> T) -> f64 {
     clocks(samples, work)[0]
 }
 
-/// GFLOP/s of a product of two 1024 × 1024 matrices.
-fn product() -> f64 {
-    let a = Mat::<f64>::from_fn(1024, 1024, |i, j| ((i * 7 + j * 13) % 17) as f64);
-    let mut c = Mat::<f64>::zeros(1024, 1024);
-    2.0 * 1024_f64.powi(3) / seconds(5, || matmul(&mut c, Accum::Replace, &a, &a, 1.0, Par::Seq)) / 1e9
-}
-
 /// GB/s at which one core adds up numbers that no cache holds.
 fn stream() -> f64 {
     let numbers = vec![1.0_f64; 1 << 24];
@@ -127,7 +119,7 @@ fn measure(side: usize) -> Vec<(&'static str, f64)> {
     note("factor, s", time);
     let rate = flops / time / 1e9;
     note("factor, GFLOP/s", rate);
-    note("factor, share of a product", rate / product());
+    note("factor, share of a product", rate / rates::product());
     drop(factor);
     let mut factor = Cholesky::new(symbolic.clone(), TWO);
     let [_, wall_two] = clocks(few, || factor.factorise(k.lower()));
@@ -141,7 +133,7 @@ fn measure(side: usize) -> Vec<(&'static str, f64)> {
     note("solve, share of a stream", 16.0 * entries / solve / 1e9 / stream());
     let block = seconds(few, || factor.solve(&mut x, COLUMNS));
     note("solve of 40, s", block);
-    note("solve of 40, share of a product", 4e-9 * entries * COLUMNS as f64 / block / product());
+    note("solve of 40, share of a product", 4e-9 * entries * COLUMNS as f64 / block / rates::product());
     let mut y = vec![0.0; n];
     note("product with M, s", seconds(samples, || m.add_product(1.0, &x[..n], &mut y)));
     drop((factor, x, y));
