@@ -65,7 +65,9 @@ fn matrices_and_displacements_are_shown_and_exported() {
     for line in market.lines().filter(|line| !line.starts_with('%')).skip(1) {
         let [i, j, value] = line.split(' ').collect::<Vec<_>>()[..] else { panic!("{line}") };
         let (i, j): (usize, usize) = (i.parse().unwrap(), j.parse().unwrap());
-        [36 * (j - 1) + i - 1, 36 * (i - 1) + j - 1].map(|at| written[at] = value.parse().unwrap());
+        for at in [36 * (j - 1) + i - 1, 36 * (i - 1) + j - 1] {
+            written[at] = value.parse().unwrap();
+        }
     }
     assert_eq!(values, written);
     assert_eq!(read("BEAMDISP.displacements.npy").len(), 128 + 8 * 20 * 198);
