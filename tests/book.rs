@@ -112,6 +112,7 @@ fn the_tables_are_those_of_the_registry() {
         ("elements-table.md", elements_table()),
         ("contact-laws-table.md", plain_table(Kind::Contact, "law")),
         ("ply-laws-table.md", plain_table(Kind::PlyLaw, "law")),
+        ("interface-laws-table.md", plain_table(Kind::InterfaceLaw, "law")),
         ("reductions-table.md", plain_table(Kind::Reduction, "reduction")),
         ("integrators-table.md", integrators_table()),
     ] {
