@@ -242,6 +242,10 @@ fn a_permanent_shear_strain_is_hahn_and_tsais() {
     assert_eq!(broken.stress.0[3], 0.0);
     assert!(((broken.energy.dissipated - yielded) * 2e-4 / 788.0 - 1.0).abs() < 1e-9, "{broken:?}");
     assert!((fresh.state[13] / (ALPHA * s12.powi(3)) - 1.0).abs() < 1e-12);
+    // It ends there in a single step too.
+    let mut sudden = Point::new(law, sheared(788.0), 2e-4);
+    sudden.walk(&along(0.2), 1);
+    assert!((sudden.state[13] / (ALPHA * s12.powi(3)) - 1.0).abs() < 1e-12);
 }
 
 #[test]
