@@ -6,6 +6,7 @@ use fem_core::assembly::{Matrix, Symmetric, assemble, pattern};
 use fem_core::counters::Counters;
 use fem_io::files::OutputDir;
 use fem_io::tables::{self, TableValue};
+use sprs::{CsMatView, TriMat};
 use std::fmt::Write as _;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -48,9 +49,9 @@ pub fn write(dir: &OutputDir, model: &Model, threads: NonZeroUsize) -> Result<()
 /// Entries that are zero are left out, but for the diagonal.
 fn write_matrix(dir: &OutputDir, name: &str, matrix: &Symmetric) -> Result<(), Error> {
     let matrix = matrix.compact();
-    let lower = matrix.lower();
-    let column = |j: usize| lower.row_idx_of_col(j).zip(lower.val_of_col(j)).map(|(i, value)| (i, *value));
-    write_lower(dir, name, matrix.ndof(), lower.val().len(), column)
+    let (symbolic, values) = matrix.lower().parts();
+    let shape = (matrix.ndof(), matrix.ndof());
+    write_lower(dir, name, CsMatView::new_csc(shape, symbolic.col_ptr(), symbolic.row_idx(), values))
 }
 
 /// Writes a full symmetric matrix of `n` rows as Matrix Market does sparse ones, so that all of ours are read alike.
@@ -58,26 +59,23 @@ fn write_matrix(dir: &OutputDir, name: &str, matrix: &Symmetric) -> Result<(), E
 /// # Errors
 /// As [`OutputDir::write`].
 pub(crate) fn write_full(dir: &OutputDir, name: &str, n: usize, values: &[f64]) -> Result<(), Error> {
-    write_lower(dir, name, n, n * (n + 1) / 2, |j| (j..n).map(move |i| (i, values[j * n + i])))
+    let mut lower = TriMat::with_capacity((n, n), n * (n + 1) / 2);
+    for (j, column) in values.chunks_exact(n.max(1)).enumerate() {
+        (j..n).for_each(|i| lower.add_triplet(i, j, column[i]));
+    }
+    write_lower(dir, name, lower.to_csc::<usize>().view())
 }
 
-/// Writes the lower triangle, which is what the format holds of a symmetric matrix; `column` has its rows and values.
-fn write_lower<C>(
-    dir: &OutputDir,
-    name: &str,
-    n: usize,
-    entries: usize,
-    column: impl Fn(usize) -> C,
-) -> Result<(), Error>
-where
-    C: Iterator<Item = (usize, f64)>,
-{
+/// Writes a lower triangle in columns: what the format holds of a symmetric matrix. sprs itself would write the upper one, and
+/// line by line.
+fn write_lower(dir: &OutputDir, name: &str, lower: CsMatView<'_, f64>) -> Result<(), Error> {
     Ok(dir.write(name, |out| {
-        writeln!(out, "%%MatrixMarket matrix coordinate real symmetric\n{n} {n} {entries}")?;
+        let (rows, columns) = lower.shape();
+        writeln!(out, "%%MatrixMarket matrix coordinate real symmetric\n{rows} {columns} {}", lower.nnz())?;
         let mut lines = String::new();
-        for j in 0..n {
+        for (j, column) in lower.outer_iterator().enumerate() {
             lines.clear();
-            for (i, value) in column(j) {
+            for (i, value) in column.iter() {
                 // Into a string nothing fails.
                 let _ = writeln!(lines, "{} {} {value:e}", i + 1, j + 1);
             }
