@@ -32,6 +32,7 @@ mod regions;
 mod registry;
 mod report;
 mod restart;
+mod separation;
 mod snapshots;
 mod strangers;
 mod study;

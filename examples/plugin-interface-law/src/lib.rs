@@ -32,6 +32,9 @@ struct Curve {
     width: f64,
 }
 
+/// Openings over δc at which a number has no room for what is left.
+const BROKEN: f64 = 1e3;
+
 impl Curve {
     fn of(point: &LawPoint<'_>) -> Self {
         let peak = std::f64::consts::E * point.material.strengths.zt();
@@ -62,6 +65,16 @@ impl InterfaceLaw for Exponential {
             toughness: &[Toughness::GIc],
         };
         &INFO
+    }
+
+    /// What is lost beyond the peak, which is at δ = δc.
+    fn damage(&self, point: &LawPoint<'_>, state: &[f64]) -> f64 {
+        let curve = Curve::of(point);
+        1.0 - curve.secant(state[0].max(curve.width)) / curve.secant(curve.width)
+    }
+
+    fn broken(&self, point: &LawPoint<'_>, state: &mut [f64]) {
+        state[0] = BROKEN * Curve::of(point).width;
     }
 
     fn respond(

@@ -12,12 +12,14 @@ mod equilibrium;
 mod factor;
 mod free;
 mod inside;
+mod krylov;
 mod large;
 mod lawful;
 mod membrane;
 mod ordering;
 mod pattern;
 mod released;
+mod separable;
 mod softness;
 mod sparse;
 mod substructure;
@@ -33,6 +35,9 @@ pub use lawful::{LawForce, LawPlate};
 pub use membrane::MembraneStrains;
 pub use ordering::{column_order, elimination_order};
 pub use pattern::{Pattern, PatternError, pattern};
+pub use separable::{
+    Growth, Path, PathEnd, PathError, PathPoint, Separable, SeparableError, SeparableParts, SeparableWork,
+};
 pub use softness::softness;
 pub use sparse::SparseStructure;
 pub use substructure::{Condensation, CondensationError, Condensed, Division, condense};

@@ -142,11 +142,21 @@ impl Pattern {
 
 /// The pattern of K and M of a plate under constraints.
 pub fn pattern(plate: &Plate, constraints: &Constraints) -> Pattern {
+    joined_pattern(plate, constraints, std::iter::empty())
+}
+
+/// The same where the independent unknowns of each set of `more` are coupled as well.
+pub(super) fn joined_pattern<'a>(
+    plate: &Plate,
+    constraints: &Constraints,
+    more: impl Iterator<Item = &'a [usize]>,
+) -> Pattern {
     let (mut map, mut cliques) = (CellMap::default(), Cliques::default());
     for (cell, _) in plate.kept_cells() {
         map.set(plate, constraints, cell);
         cliques.push(&map.reduced);
     }
+    more.for_each(|set| cliques.push(set));
     cliques.pattern(constraints.ndof())
 }
 

@@ -44,6 +44,16 @@ impl Sinks {
     pub fn total(&self) -> f64 {
         self.opening + self.shear + self.friction
     }
+
+    /// With `factor` times `more`.
+    #[must_use]
+    pub fn plus(self, factor: f64, more: Self) -> Self {
+        Self {
+            opening: self.opening + factor * more.opening,
+            shear: self.shear + factor * more.shear,
+            friction: self.friction + factor * more.friction,
+        }
+    }
 }
 
 /// A law of an interface, t(δ) with a memory; δ is the jump of the displacement from the lower face to the upper one.
@@ -53,6 +63,14 @@ impl Sinks {
 pub trait InterfaceLaw: DynClone + Debug + Send + Sync {
     /// State variables and required strengths.
     fn info(&self) -> &LawInfo;
+
+    /// Share of its cohesion that a point with this state has lost: 0 as long as its tractions still grow with the jump, 1 where
+    /// nothing holds any more. An interface of a plate is opened around the points that have lost some.
+    fn damage(&self, point: &LawPoint<'_>, state: &[f64]) -> f64;
+
+    /// Makes `state`, that of a virgin interface, one in which nothing holds any more, such as in a delamination that is there
+    /// from the beginning.
+    fn broken(&self, point: &LawPoint<'_>, state: &mut [f64]);
 
     /// Refuses a point whose constants the law cannot use.
     ///

@@ -237,6 +237,11 @@ pub trait Nonlinear {
         Ok(())
     }
 
+    /// Whether tangents change so much within a step that each turn of an iteration takes its own.
+    fn softens(&self) -> bool {
+        false
+    }
+
     /// Factorises a tangent and keeps it.
     ///
     /// # Errors

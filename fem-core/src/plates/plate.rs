@@ -1,6 +1,7 @@
 //! A plate of cells: a plane mesh extruded through the layers of a laminate, and the numbers of its unknowns.
 
 mod part;
+mod separation;
 
 use crate::contracts::element::{Cell, ElementInfo, Stack};
 use crate::plates::laminate::SAME_HEIGHT;
@@ -10,6 +11,8 @@ use crate::words::dof::Dof;
 use crate::words::domain::Domain;
 use std::collections::HashMap;
 use std::fmt::Write;
+
+pub use separation::{CLOSED, FaceUnknowns};
 
 pub use crate::plates::error::{Asymmetry, PlateError};
 
@@ -30,7 +33,8 @@ pub enum ZDerivatives {
 /// * node number: `column · levels + level`; the element's table says which of them exist, the others have no unknowns
 /// * cell number: `quad · layers + layer`
 /// * unknowns of a node: those of the element in its order; with layer-wise z-derivatives a node between layers has a
-///   second set of its `Un3`, which belongs to the cells above it
+///   second set of its `Un3`, which belongs to the cells above it; where the layers may [separate](Plate::separate), of all its
+///   unknowns
 #[derive(Debug, Clone)]
 pub struct Plate {
     /// The plane mesh.
@@ -58,6 +62,8 @@ pub struct Plate {
     /// First unknown of each node, and the total at the end.
     offsets: Vec<usize>,
     symmetry: Symmetry,
+    /// By node, whether the layers above and below may separate there; empty where they may nowhere.
+    separable: Vec<bool>,
 }
 
 impl Plate {
@@ -115,6 +121,7 @@ impl Plate {
             edges,
             pitch,
             offsets: Vec::new(),
+            separable: Vec::new(),
         };
         plate.number();
         Ok(plate)
@@ -152,9 +159,14 @@ impl Plate {
         let mut next = 0;
         self.offsets = Vec::with_capacity(below.len() + 1);
         self.offsets.push(0);
-        for (below, above) in below.into_iter().zip(above) {
-            next += if below || above { self.info.dofs.len() } else { 0 };
-            next += if below && above { inner } else { 0 };
+        let nd = self.info.dofs.len();
+        for (node, (below, above)) in below.into_iter().zip(above).enumerate() {
+            next += if below || above { nd } else { 0 };
+            next += match below && above {
+                true if self.is_separable(node) => nd,
+                true => inner,
+                false => 0,
+            };
             self.offsets.push(next);
         }
     }
@@ -277,9 +289,10 @@ impl Plate {
             let first = self.offsets[node];
             // The second set of a node between layers serves the cells above it.
             let upper = self.slots[i].1 == 0 && self.offsets[node + 1] - first > nd;
+            let whole = self.is_separable(node);
             let mut extra = first + nd;
             for (k, dof) in self.info.dofs.iter().enumerate() {
-                if upper && dof.m() == 3 {
+                if upper && (whole || dof.m() == 3) {
                     out.push(extra);
                     extra += 1;
                 } else {
@@ -296,7 +309,7 @@ impl Plate {
         let (first, end) = (self.offsets[node], self.offsets[node + 1]);
         let nd = self.info.dofs.len();
         let own = self.info.dofs.iter().position(|d| *d == dof).map(|k| first + k);
-        let second = self.info.dofs.iter().filter(|d| d.m() == 3).position(|d| *d == dof).map(|k| first + nd + k);
+        let second = self.second_set(node).position(|d| *d == dof).map(|k| first + nd + k);
         own.into_iter().chain(second).filter(move |i| *i < end)
     }
 
@@ -321,8 +334,8 @@ impl Plate {
         let node = self.offsets.partition_point(|o| *o <= dof) - 1;
         let k = dof - self.offsets[node];
         let name = self.info.dofs.get(k).copied().unwrap_or_else(|| {
-            let mut z = self.info.dofs.iter().filter(|d| d.m() == 3);
-            z.nth(k - self.info.dofs.len()).copied().unwrap_or(self.info.dofs[0])
+            let mut second = self.second_set(node);
+            second.nth(k - self.info.dofs.len()).copied().unwrap_or(self.info.dofs[0])
         });
         (node / self.levels.len(), node % self.levels.len(), name)
     }

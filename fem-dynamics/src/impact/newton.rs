@@ -19,6 +19,7 @@ const SLOW: f64 = 0.03;
 /// Turns, and tangents among them, before a step counts as unsolvable.
 const MOST: usize = 60;
 const MOST_TANGENTS: usize = 12;
+const MOST_SOFT: usize = 15;
 
 /// What an iteration keeps between steps.
 #[derive(Debug, Default)]
@@ -91,9 +92,15 @@ impl ImpactSystem {
         self.newton.load.extend_from_slice(d);
         d.fill(0.0);
         let (mut largest, mut tangents) = (0.0_f64, 0);
+        let softens = nonlinear(self.structure.nonlinear())?.softens();
         // The size of the turn before, with the same tangent.
         let mut before = None;
-        for _ in 0..MOST {
+        let most = if softens { MOST_SOFT } else { MOST };
+        for _ in 0..most {
+            if softens {
+                let point: Vec<f64> = from[..n].iter().zip(&*d).map(|(u, d)| u + d).collect();
+                self.linearise(take(&point))?;
+            }
             let Self { structure, impactors, influence, newton, contact_calls, .. } = self;
             let Newton { load, at, residual, step, mean, .. } = newton;
             newton.turns += 1;
@@ -135,7 +142,7 @@ impl ImpactSystem {
                 return Ok(());
             }
             before = Some(size);
-            if rate.is_some_and(|rate| rate > SLOW) {
+            if !softens && rate.is_some_and(|rate| rate > SLOW) {
                 if tangents == MOST_TANGENTS {
                     break;
                 }

@@ -184,6 +184,14 @@ impl InterfaceLaw for Bilinear {
         Ok(())
     }
 
+    fn damage(&self, _: &LawPoint<'_>, state: &[f64]) -> f64 {
+        Memory::read(state).damage
+    }
+
+    fn broken(&self, _: &LawPoint<'_>, state: &mut [f64]) {
+        Memory { damage: 1.0, ..Memory::read(state) }.write(state);
+    }
+
     fn process_zone(&self, point: &LawPoint<'_>, arm: &Elastic, thickness: f64) -> Option<[f64; 2]> {
         let c = self.envelope(point);
         let strengths = [point.material.strengths.zt(), c.shear];

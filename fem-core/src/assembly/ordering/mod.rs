@@ -22,16 +22,28 @@ use dissection::Graph;
 /// between layers with z-derivatives of their own there are three such groups, those of the layer below, those of the layer
 /// above and the rest, so that the rest alone separates two layers.
 pub fn elimination_order(plate: &Plate) -> Vec<usize> {
+    let alone: Vec<usize> = (0..plate.ndof()).collect();
+    joined_order(plate, &alone, std::iter::empty())
+}
+
+/// The same where each unknown is one with that of number `joined`, and all of each set of `more` are coupled as those of a cell are.
+pub(super) fn joined_order<'a>(plate: &Plate, joined: &[usize], more: impl Iterator<Item = &'a [usize]>) -> Vec<usize> {
     let symmetry = plate.symmetry();
     let (mut cliques, mut dofs) = (Cliques::default(), Vec::new());
+    // Of unknowns that are one, as a symmetry makes them, one stands for all, with the neighbours of all.
+    let stand_in = |dof: usize| {
+        let column = plate.locate(dof).0;
+        let first = |column: usize| plate.dofs_of_column(column).start;
+        joined[first(symmetry.column(column as u32) as usize) + dof - first(column)]
+    };
     for (cell, _) in plate.kept_cells() {
         plate.cell_dofs(cell, &mut dofs);
-        // Of unknowns that a symmetry ties together one stands for all, with the neighbours of all.
-        for dof in &mut dofs {
-            let column = plate.locate(*dof).0;
-            let first = |column: usize| plate.dofs_of_column(column).start;
-            *dof = first(symmetry.column(column as u32) as usize) + *dof - first(column);
-        }
+        dofs.iter_mut().for_each(|dof| *dof = stand_in(*dof));
+        cliques.push(&dofs);
+    }
+    for set in more {
+        dofs.clear();
+        dofs.extend(set.iter().map(|dof| stand_in(*dof)));
         cliques.push(&dofs);
     }
     let mut order = order(plate, &cliques);

@@ -36,6 +36,7 @@ impl Plate {
             edges,
             pitch: self.pitch,
             offsets: Vec::new(),
+            separable: Vec::new(),
         };
         part.number();
         let mut unknowns = vec![0; part.ndof()];

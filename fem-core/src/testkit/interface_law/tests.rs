@@ -24,6 +24,15 @@ impl InterfaceLaw for Softening {
         const INFO: LawInfo = LawInfo { state: &["damage", "dissipated"], strengths: &[], toughness: &[] };
         &INFO
     }
+
+    fn damage(&self, _: &LawPoint<'_>, state: &[f64]) -> f64 {
+        state[0]
+    }
+
+    fn broken(&self, _: &LawPoint<'_>, state: &mut [f64]) {
+        state[0] = 1.0;
+    }
+
     fn respond(
         &self,
         _: &LawPoint<'_>,

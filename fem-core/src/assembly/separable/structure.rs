@@ -1,0 +1,86 @@
+//! A plate that separates, as dynamics see it.
+
+use super::{Separable, SeparableError};
+use crate::contracts::structure::{Nonlinear, SolveError, Structure, Tangent};
+use crate::words::energy::Energy;
+
+impl From<SeparableError> for SolveError {
+    fn from(error: SeparableError) -> Self {
+        SolveError::other(error)
+    }
+}
+
+impl Structure for Separable {
+    fn ndof(&self) -> usize {
+        Separable::ndof(self)
+    }
+
+    fn name(&self, i: usize) -> String {
+        self.parts.plate.describe(self.parts.constraints.original(i))
+    }
+
+    fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        self.k.add_product(scale, x, y);
+    }
+
+    fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        self.m.add_product(scale, x, y);
+    }
+
+    /// As it is from the first, with the stiffness of interfaces to which nothing has happened.
+    fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
+        let n = Separable::ndof(self);
+        let states = self.initial.clone();
+        self.linearise(&vec![0.0; n], &states, shift)?;
+        x.chunks_exact_mut(n).take(columns).try_for_each(|x| self.solve(x))?;
+        Ok(())
+    }
+
+    fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
+        if self.tied.factored != Some(f64::INFINITY) {
+            self.cm = f64::INFINITY;
+            self.factorise()?;
+        }
+        let mut y = vec![0.0; self.tied.ndof()];
+        self.tied.restrict(x, &mut y);
+        self.tied.factor.solve(&mut y, 1);
+        self.tied.way.expand(&y, x);
+        Ok(())
+    }
+
+    fn states(&self) -> usize {
+        self.first[self.first.len() - 1]
+    }
+
+    fn nonlinear(&mut self) -> Option<&mut dyn Nonlinear> {
+        Some(self)
+    }
+
+    fn work(&self) -> (u64, u64) {
+        (self.work.factorisations, self.work.solves)
+    }
+}
+
+impl Nonlinear for Separable {
+    fn internal(&mut self, u: &[f64], points: &[f64], force: &mut [f64]) -> Result<Energy, SolveError> {
+        Ok(Separable::internal(self, u, points, force)?)
+    }
+
+    fn commit(&mut self, u: &[f64], points: &mut [f64]) -> Result<(), SolveError> {
+        Ok(Separable::commit(self, u, points)?)
+    }
+
+    fn softens(&self) -> bool {
+        true
+    }
+
+    fn linearise(&mut self, Tangent { cm, u, points, .. }: &Tangent) -> Result<(), SolveError> {
+        Ok(Separable::linearise(self, u, points, *cm)?)
+    }
+
+    fn solve_linearised(&mut self, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
+        let n = Separable::ndof(self);
+        x.chunks_exact_mut(n).take(columns).try_for_each(|x| self.solve(x))?;
+        Ok(())
+    }
+}

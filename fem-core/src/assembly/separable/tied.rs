@@ -1,0 +1,170 @@
+//! The unknowns that are left where both sides of what is closed are one, and a factor in them.
+
+use super::{SeparableError, SeparableParts};
+use crate::assembly::cell_map::CellMap;
+use crate::assembly::ordering::joined_order;
+use crate::assembly::pattern::joined_pattern;
+use crate::assembly::{Cholesky, Matrix, Symbolic, Symmetric, assemble};
+use crate::contracts::interface_law::Jump;
+use crate::plates::constraint::Constraints;
+use crate::words::counters::Counters;
+use std::collections::HashSet;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+
+/// What is open, the unknowns that are left, and a factor of what is near the tangent in them.
+pub(super) struct Tied {
+    /// Which cells of the interfaces are open.
+    pub(super) open: Vec<bool>,
+    pub(super) way: Way,
+    constraints: Constraints,
+    maps: Vec<(usize, CellMap)>,
+    near: Symmetric,
+    pub(super) factor: Cholesky,
+    /// Entries of the factor.
+    pub(super) entries: usize,
+    /// Factor on the mass in what was factorised.
+    pub(super) factored: Option<f64>,
+    /// Whether the factor has become too different from the tangent.
+    pub(super) stale: bool,
+    /// Whether it is that of the tangent.
+    pub(super) exact: bool,
+    /// Moduli in what was factorised.
+    moduli: Vec<Vec<[Jump; 3]>>,
+}
+
+/// ũ = T y.
+#[derive(Debug, Default)]
+pub(super) struct Way {
+    starts: Vec<usize>,
+    terms: Vec<(usize, f64)>,
+}
+
+impl Way {
+    pub(super) fn expand(&self, y: &[f64], x: &mut [f64]) {
+        for (x, row) in x.iter_mut().zip(self.starts.windows(2)) {
+            *x = self.terms[row[0]..row[1]].iter().map(|(i, c)| c * y[*i]).sum();
+        }
+    }
+
+    /// `y ← Tᵀ x`.
+    pub(super) fn restrict(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        for (x, row) in x.iter().zip(self.starts.windows(2)) {
+            self.terms[row[0]..row[1]].iter().for_each(|(i, c)| y[*i] += c * x);
+        }
+    }
+}
+
+impl Tied {
+    pub(super) fn new(parts: &SeparableParts, open: Vec<bool>, threads: NonZeroUsize) -> Result<Self, SeparableError> {
+        let SeparableParts { plate, supports, constraints: full, interfaces, .. } = parts;
+        let cells = || interfaces.cells().iter().enumerate().filter(|(cell, _)| open[*cell]);
+        let closed = closed_nodes(parts, &open);
+        let ties = plate.ties(|column, face| closed.contains(&(column, face)));
+        let mut joined: Vec<usize> = (0..plate.ndof()).collect();
+        ties.iter().for_each(|tie| joined[tie.terms[0].0] = tie.terms[1].0);
+        let sets: Vec<Vec<usize>> =
+            cells().map(|(_, cell)| [&cell.unknowns.below[..], &cell.unknowns.above[..]].concat()).collect();
+        let order = joined_order(plate, &joined, sets.iter().map(Vec::as_slice));
+        let equations = [&supports[..], &ties[..]].concat();
+        let constraints = Constraints::eliminate(&order, &equations).map_err(SeparableError::Constraints)?;
+        let map = |((number, _), dofs): ((usize, _), &Vec<usize>)| {
+            let mut map = CellMap::default();
+            map.set_unknowns(dofs, &constraints);
+            (number, map)
+        };
+        let maps: Vec<(usize, CellMap)> = cells().zip(&sets).map(map).collect();
+        let coupled = maps.iter().map(|(_, map)| &map.reduced[..]);
+        let pattern = Arc::new(joined_pattern(plate, &constraints, coupled));
+        let symbolic = Symbolic::new(pattern.clone()).map_err(SeparableError::Factor)?;
+        let mut way = Way { starts: vec![0], terms: Vec::new() };
+        for i in 0..full.ndof() {
+            way.terms.extend_from_slice(constraints.row(full.original(i)).0);
+            way.starts.push(way.terms.len());
+        }
+        Ok(Self {
+            open,
+            way,
+            constraints,
+            maps,
+            near: Symmetric::zero(pattern),
+            entries: symbolic.entries(),
+            factor: Cholesky::new(symbolic, threads),
+            factored: None,
+            stale: false,
+            exact: false,
+            moduli: Vec::new(),
+        })
+    }
+
+    /// Sees whether the factor is that of a tangent with these `moduli`.
+    pub(super) fn compare(&mut self, moduli: &[Vec<[Jump; 3]>]) {
+        let definite =
+            |m: &[Jump; 3]| (0..3).all(|i| (0..3).all(|j| if i == j { m[i][j] >= 0.0 } else { m[i][j] == 0.0 }));
+        self.exact = self.moduli == moduli && moduli.iter().flatten().all(definite);
+    }
+
+    pub(super) fn ndof(&self) -> usize {
+        self.constraints.ndof()
+    }
+
+    /// `y ← Tᵀ x`.
+    pub(super) fn restrict(&self, x: &[f64], y: &mut [f64]) {
+        self.way.restrict(x, y);
+    }
+
+    /// Factorises K + `cm` M with the stiffness of the interfaces that `moduli` leave definite; M alone where `cm` is infinite.
+    pub(super) fn factorise(
+        &mut self,
+        parts: &SeparableParts,
+        cm: f64,
+        moduli: &[Vec<[Jump; 3]>],
+        threads: NonZeroUsize,
+    ) -> Result<(), SeparableError> {
+        let SeparableParts { plate, element, interfaces, .. } = parts;
+        let pattern = self.near.pattern().clone();
+        let mut counters = Counters::default();
+        let mut matrix = |which| {
+            assemble(plate, &**element, &self.constraints, &pattern, which, threads, &mut counters)
+                .map_err(SeparableError::Assembly)
+        };
+        let only_mass = cm.is_infinite();
+        self.near = matrix(if only_mass { Matrix::Mass } else { Matrix::Stiffness })?;
+        if cm != 0.0 && !only_mass {
+            let mass = matrix(Matrix::Mass)?;
+            let near = self.near.lower_mut().val_mut();
+            near.iter_mut().zip(mass.lower().val()).for_each(|(k, m)| *k += cm * m);
+        }
+        if !only_mass {
+            let mut secant = Vec::new();
+            for (cell, map) in &mut self.maps {
+                interfaces.secant(*cell, &moduli[*cell], &mut secant);
+                map.scatter(&secant, 1.0, &mut self.near);
+            }
+        }
+        self.factored = None;
+        self.factor.factorise(self.near.lower()).map_err(SeparableError::Factor)?;
+        (self.factored, self.stale) = (Some(cm), false);
+        self.moduli.clone_from(&moduli.to_vec());
+        Ok(())
+    }
+}
+
+/// Nodes (column, face) around which a cell is closed, or lies beyond what may open.
+fn closed_nodes(parts: &SeparableParts, open: &[bool]) -> HashSet<(usize, usize)> {
+    let SeparableParts { plate, interfaces, .. } = parts;
+    let symmetry = plate.symmetry();
+    let cells = interfaces.cells().iter().zip(open);
+    let open: HashSet<(usize, usize)> = cells.filter(|(_, open)| **open).map(|(c, _)| (c.quad, c.face)).collect();
+    let mut faces: Vec<usize> = interfaces.cells().iter().map(|cell| cell.face).collect();
+    faces.sort_unstable();
+    faces.dedup();
+    let mut closed = HashSet::new();
+    for face in faces {
+        for quad in (0..plate.plane.quads.len()).filter(|quad| !open.contains(&(symmetry.quad(*quad), face))) {
+            closed.extend(plate.columns_of_quad(quad).iter().map(|column| (*column as usize, face)));
+        }
+    }
+    closed
+}

@@ -1,0 +1,6 @@
+//! Layers that separate: delamination specimens against beams on cohesive interfaces.
+
+mod circle;
+mod closed;
+mod dynamics;
+mod specimens;
