@@ -241,8 +241,8 @@ mod mesh {
 
     #[test]
     fn triangles() {
-        let case = with_keys(strip().mesh_file("triangles.msh"), "element.kind = \"hex20\"");
-        let words = ["is a triangle", "wedge15", "Recombine Surface"];
+        let case = with_keys(strip().mesh_file("triangles.msh"), "element.kind = \"mitc4\"");
+        let words = ["is a triangle", "hermite-prism", "Recombine Surface"];
         insta::assert_snapshot!(refusal(&case, At::Scene("element."), &words));
     }
 

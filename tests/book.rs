@@ -7,6 +7,7 @@ use crate::snapshots::element;
 use crate::support::{Case, root, strip};
 use fem::Registry;
 use fem::core::dof::Dof;
+use fem::core::element::Tables;
 use fem::core::failure::Site;
 use fem::core::plugin::{Built, Kind, Params, PluginInfo};
 use std::fmt::Write;
@@ -49,8 +50,8 @@ fn criteria_table() -> String {
 /// Every element of the registry with its default parameters, in Markdown.
 fn elements_table() -> String {
     let mut text = WRITTEN.to_owned();
-    text.push_str("| element | is a | nodes | unknowns of a node | what for | parameters | source |\n");
-    text.push_str("| --- | --- | ---: | --- | --- | --- | --- |\n");
+    text.push_str("| element | is a | stands on | nodes | unknowns of a node | what for | parameters | source |\n");
+    text.push_str("| --- | --- | --- | ---: | --- | --- | --- | --- |\n");
     for info in Registry::standard().list(Kind::Element) {
         let element = element(info.name, &Params::default());
         let about = element.info();
@@ -61,8 +62,10 @@ fn elements_table() -> String {
         };
         let unknowns: Vec<_> = about.dofs.iter().map(Dof::to_string).collect();
         let params = parameters_of(info);
-        let [nodes, unknowns] = [about.nodes.len().to_string(), unknowns.join(" ")];
-        let cells = [&format!("`{}`", info.name), is_a, &nodes, &unknowns, info.summary, &params, info.source];
+        let forms = [Some(&*element), element.triangular()].into_iter().flatten();
+        let nodes: Vec<_> = forms.map(|form| form.info().nodes.len().to_string()).collect();
+        let (nodes, unknowns, on) = (nodes.join(", "), unknowns.join(" "), Tables::from(&*element).cells());
+        let cells = [&format!("`{}`", info.name), is_a, on, &nodes, &unknowns, info.summary, &params, info.source];
         writeln!(text, "| {} |", cells.join(" | ")).unwrap();
     }
     text

@@ -47,6 +47,9 @@ fn list_shows_the_registry() {
                 assert!(line.contains(words), "{words:?} is not in {line:?}");
             }
             assert!(line.starts_with(&format!("{} ", info.name)), "{line}");
+            if kind == Kind::Element {
+                assert!(lines.next().unwrap().trim().starts_with("stands on "));
+            }
             for parameter in info.params {
                 assert_eq!(lines.next().unwrap().trim(), format!("{}: {parameter}", parameter.name));
             }

@@ -1,7 +1,8 @@
 //! The report's solid element on parallelograms: the Jacobian is constant, so the matrices are tables times moments.
 
-use crate::hermite::{self, CORNERS, Quartet};
-use crate::hermite_prism::{F, HermitePrism, Mass, N, column, to_global};
+use crate::hermite::{self, Quartet};
+use crate::hermite_prism::{F, HermitePrism, N};
+use crate::hermite_solid::{Functions, Mass, column, to_global};
 use crate::prism::{BLOCKS, STRAIN_ROW, matrix, multiply};
 use crate::transverse::TransverseStresses;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Point, Scratch, positive};
@@ -80,7 +81,7 @@ fn table<const A: usize>(fields: impl Fn(usize, f64, f64) -> [Quartet; A]) -> Ve
 
 static STIFFNESS: LazyLock<Vec<f64>> = LazyLock::new(|| {
     table(|f, r, s| {
-        let (natural, m) = (hermite::node_functions(CORNERS[f / 4], r, s), f % 4);
+        let (natural, m) = (HermitePrism::node_functions(f / 4, r, s), f % 4);
         [natural.n_r[m], natural.n_s[m], hermite::derivative(&natural.n[m])]
     })
 });
@@ -88,7 +89,7 @@ static CUBIC_MASS: LazyLock<Vec<f64>> = LazyLock::new(|| mass_table(Mass::Cubic)
 static LINEAR_MASS: LazyLock<Vec<f64>> = LazyLock::new(|| mass_table(Mass::Linear));
 
 fn mass_table(mass: Mass) -> Vec<f64> {
-    table(|f, r, s| [mass.functions(CORNERS[f / 4], r, s)[f % 4]])
+    table(|f, r, s| [HermitePrism::inertia_functions(mass, f / 4, r, s)[f % 4]])
 }
 
 /// Turns products of functions with natural derivatives as unknowns into those with global ones, node pair by node pair.
@@ -196,6 +197,10 @@ impl Element for HermiteHex {
     ) -> Result<(), ElementError> {
         constant_map(cell)?;
         self.prism.mean_strains(cell, parts, plane, scratch, b)
+    }
+
+    fn triangular(&self) -> Option<&dyn Element> {
+        self.prism.triangular()
     }
 
     fn large_deflections(&self) -> Option<&dyn LargeDeflection> {

@@ -73,6 +73,7 @@ impl Hex20 {
                 in_plane_order,
                 ply_order: 3,
             },
+            triangular: Some(Box::default()),
         })
     }
 }
@@ -111,7 +112,7 @@ impl Plugin for Hex20 {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Element,
         name: "hex20",
-        summary: "20-node serendipity hexahedron, 3 unknowns a node, any number of plies through one cell",
+        summary: "20-node serendipity hexahedron, on triangles the 15-node wedge, 3 unknowns a node, any number of plies through one cell",
         source: "Zienkiewicz and Taylor, The Finite Element Method, vol. 1, 5th ed. (2000), ch. 8",
         params: &[ORDER],
     };

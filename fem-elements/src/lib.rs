@@ -37,6 +37,8 @@
 pub mod hermite;
 mod hermite_hex;
 mod hermite_prism;
+mod hermite_solid;
+mod hermite_wedge;
 mod hex20;
 mod lamination;
 mod large;
@@ -48,7 +50,9 @@ mod webster_beam;
 mod wedge15;
 
 pub use hermite_hex::HermiteHex;
-pub use hermite_prism::{HermitePrism, Mass};
+pub use hermite_prism::HermitePrism;
+pub use hermite_solid::{HermiteSolid, Mass};
+pub use hermite_wedge::HermiteWedge;
 pub use hex20::Hex20;
 pub use mitc4::Mitc4;
 pub use transverse::TransverseStresses;

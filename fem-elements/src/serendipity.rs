@@ -15,6 +15,8 @@ pub(crate) const DOFS: [Dof; 3] = [Dof::SOLID[0], Dof::SOLID[4], Dof::SOLID[8]];
 #[derive(Debug, Clone)]
 pub struct Serendipity<const F: usize> {
     pub(crate) info: ElementInfo,
+    /// The form of the element for triangles, where this is the one for quadrilaterals.
+    pub(crate) triangular: Option<Box<Serendipity<15>>>,
 }
 
 /// What tells one from another.
@@ -78,6 +80,10 @@ where
         b: &mut [f64],
     ) -> Result<(), ElementError> {
         prism::mean_strains(self, cell, (parts, plane), b)
+    }
+
+    fn triangular(&self) -> Option<&dyn Element> {
+        self.triangular.as_deref().map(|wedge| wedge as &dyn Element)
     }
 
     fn large_deflections(&self) -> Option<&dyn LargeDeflection> {

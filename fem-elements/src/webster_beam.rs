@@ -1,7 +1,7 @@
 //! Webster's beam element: the section x-z of a strip (report eqs 1-15).
 
 use crate::hermite::{self, NodeFunctions};
-use crate::hermite_prism::Mass;
+use crate::hermite_solid::Mass;
 use crate::large::{Gradients, Solid};
 use crate::transverse::TransverseStresses;
 use fem_core::dof::Dof;

@@ -50,7 +50,10 @@ impl Default for Wedge15 {
         // Six points in the plane are exact to the fourth degree, that of K and M on straight sides; three points through a
         // ply as well: strains are quadratic in q.
         let domain = Domain::Triangle;
-        Self { info: ElementInfo { domain, nodes: &NODES, dofs: &DOFS, in_plane_order: 2, ply_order: 3 } }
+        Self {
+            info: ElementInfo { domain, nodes: &NODES, dofs: &DOFS, in_plane_order: 2, ply_order: 3 },
+            triangular: None,
+        }
     }
 }
 

@@ -310,7 +310,7 @@ pub(crate) fn recover(
     points: Option<&[f64]>,
     out: &mut [f64],
 ) -> Result<(), Error> {
-    let Some(large) = model.element.large_deflections().filter(|_| model.effects.nature().large) else {
+    if !model.effects.nature().large {
         recovery.stresses(&model.plate, &*model.element, u, count, out)?;
         let Some((laws, points)) = model.laws.as_ref().zip(points) else { return Ok(()) };
         let fields = u.chunks_exact(model.plate.ndof()).zip(out.chunks_exact_mut(6 * recovery.sites()));
@@ -319,8 +319,8 @@ pub(crate) fn recover(
             recovery.put_lawful(&model.plate, &*model.element, laws, (u, points), out)?;
         }
         return Ok(());
-    };
-    Ok(recovery.large_stresses(&model.plate, large, u, count, out)?)
+    }
+    Ok(recovery.large_stresses(&model.plate, &*model.element, u, count, out)?)
 }
 
 /// Where the criteria look.

@@ -4,7 +4,8 @@ use super::{Console, Format};
 use crate::registry::Registry;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use fem_core::plugin::{Kind, ParamDefault, ParamForm, ParamInfo, PluginInfo};
+use fem_core::element::Tables;
+use fem_core::plugin::{Built, Kind, ParamDefault, ParamForm, ParamInfo, Params, PluginInfo};
 use fem_io::materials::{self, LibraryMaterial};
 use fem_io::scene::{Absent, EFFECT_SETTINGS, Form, Key};
 use serde::Serialize;
@@ -42,6 +43,9 @@ struct Entry {
     source: &'static str,
     #[serde(skip_serializing_if = "String::is_empty")]
     values: String,
+    /// Shapes of plane cells that an element stands on.
+    #[serde(skip_serializing_if = "str::is_empty")]
+    stands_on: &'static str,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     parameters: Vec<Parameter>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -86,7 +90,8 @@ pub(super) fn list(registry: &Registry, arguments: &Arguments, console: &Console
         MATERIALS => materials::names().filter_map(materials::library).map(Entry::from).collect(),
         plural => {
             let kinds = Kind::ALL.iter().filter(|kind| kind.plural() == plural);
-            kinds.flat_map(|kind| registry.choices(*kind)).map(|info| Entry::from(&info)).collect()
+            let entry = |info: PluginInfo| Entry { stands_on: stands_on(registry, &info), ..Entry::from(&info) };
+            kinds.flat_map(|kind| registry.choices(*kind)).map(entry).collect()
         }
     };
     console.show(arguments.format, &entries, || entries.iter().map(Entry::text).collect())?;
@@ -95,7 +100,15 @@ pub(super) fn list(registry: &Registry, arguments: &Arguments, console: &Console
 
 impl Entry {
     fn new(name: &'static str, summary: &'static str, source: &'static str) -> Self {
-        Self { name, summary, source, values: String::new(), parameters: Vec::new(), constants: Vec::new() }
+        Self {
+            name,
+            summary,
+            source,
+            values: String::new(),
+            stands_on: "",
+            parameters: Vec::new(),
+            constants: Vec::new(),
+        }
     }
 
     fn text(&self) -> String {
@@ -103,10 +116,20 @@ impl Entry {
         let source = if source.is_empty() { String::new() } else { format!(" [{source}]") };
         let mut lines = vec![format!("{name:<20} {summary}{source}")];
         lines.extend(Some(&self.values).filter(|v| !v.is_empty()).map(|values| format!("{:<20}   {values}", "")));
+        let stands_on = Some(self.stands_on).filter(|cells| !cells.is_empty());
+        lines.extend(stands_on.map(|cells| format!("{:<20}   stands on {cells}", "")));
         lines.extend(self.parameters.iter().map(|p| format!("{:<20}   {}: {}", "", p.name, p.text)));
         let constant = |c: &Constant| format!("{:<20}   {}: {}, {} [{}]", "", c.name, c.value, c.status, c.source);
         lines.extend(self.constants.iter().map(constant));
         lines.join("\n") + "\n"
+    }
+}
+
+/// The shapes of plane cells that an element stands on; nothing for what is none, or needs parameters.
+fn stands_on(registry: &Registry, info: &PluginInfo) -> &'static str {
+    match registry.build(info.kind, info.name, &Params::default()) {
+        Ok(Built::Element(element)) => Tables::from(&*element).cells(),
+        _ => "",
     }
 }
 

@@ -5,6 +5,7 @@ use crate::effect::{Body, Effect, EffectInfo, EffectPlugin, Exclusion, Facts, Fe
 use crate::error::Error;
 use fem_core::assembly::free_forces;
 use fem_core::element::Stack;
+use fem_core::element::form;
 use fem_core::failure::Site;
 use fem_core::laminate::Laminate;
 use fem_core::material::{Material, MaterialError};
@@ -110,9 +111,10 @@ impl Effect for Cure {
         let Body { plate, element, laminates, materials, at_rest, .. } = *body;
         let cooled = laminates.iter().map(|laminate| Residual::new(laminate, materials, self.change));
         let cooled: Vec<Residual> = cooled.collect::<Result<_, _>>()?;
-        let of_station = |region: usize, station: &Station| match at_rest {
+        let of_station = |quad: usize, region: usize, station: &Station| match at_rest {
             false => cooled[region].stress(&materials[station.material], station.angle, station.z),
             true => {
+                let element = form(element, plate.plane.quads[quad].domain());
                 let held = element.held_stress(&plate.stacks(region)[station.layer], station.part());
                 Ok(Stress6::<Global>::new(held).to_ply(station.angle))
             }
@@ -120,7 +122,7 @@ impl Effect for Cure {
         let mut stresses = Vec::with_capacity(6 * recovery.sites());
         for (i, centre) in recovery.centres.iter().enumerate() {
             for station in recovery.stations_over(i) {
-                let stress: Stress6<Ply> = of_station(plate.region(centre.quad), station)?;
+                let stress: Stress6<Ply> = of_station(centre.quad, plate.region(centre.quad), station)?;
                 stresses.extend(stress.0);
             }
         }

@@ -1,7 +1,7 @@
 //! The mesh of a scene.
 
 use crate::error::Error;
-use fem_core::domain::Domain;
+use fem_core::element::Tables;
 use fem_core::mesh::PlaneMesh;
 use fem_core::plugin::unknown_key;
 use fem_io::gmsh::{self, Examined, GmshMesh, MeshError, MeshFault};
@@ -64,22 +64,19 @@ pub(crate) fn examined_mesh(scene: &Scene) -> Result<Examined, Error> {
     }
 }
 
-/// What helps where a mesh has cells of another shape than the element's; nothing where it has not.
-pub(super) fn other_shape(mesh: &PlaneMesh, domain: Domain) -> &'static str {
-    match (mesh.name_of_cells(), domain) {
-        ("triangles", Domain::Quadrilateral) => {
-            "give an element for triangles, for example element = { kind = \"wedge15\" }, or let Gmsh make quadrilaterals: \
-             Recombine Surface or Mesh.RecombineAll = 1, and Mesh.SubdivisionAlgorithm = 1 where triangles are left"
-        }
-        ("quads", Domain::Triangle) => {
+/// What helps where a mesh has cells of a shape that the element does not stand on; nothing where it has none.
+pub(super) fn other_shape(mesh: &PlaneMesh, element: &Tables) -> &'static str {
+    match mesh.name_of_cells() {
+        _ if mesh.quads.iter().all(|quad| element.on(quad.domain()).is_some()) => "",
+        "quads" => {
             "give an element for quadrilaterals, for example element = { kind = \"hex20\" }, or a mesh of triangles, which \
              Gmsh makes without Recombine Surface"
         }
-        ("cells", _) => {
-            "meshes of quadrilaterals and triangles are not supported yet: use Recombine Surface or Mesh.RecombineAll = 1, \
-             and Mesh.SubdivisionAlgorithm = 1 where triangles are left"
+        _ => {
+            "give an element that also stands on triangles (`fem list elements`), for example element = { kind = \
+             \"hermite-prism\" }, or let Gmsh make quadrilaterals: Recombine Surface or Mesh.RecombineAll = 1, and \
+             Mesh.SubdivisionAlgorithm = 1 where triangles are left"
         }
-        _ => "",
     }
 }
 

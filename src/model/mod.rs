@@ -31,7 +31,7 @@ use builder::Builder;
 use fem_core::assembly::Division;
 use fem_core::constraint::Constraints;
 use fem_core::dof::Dof;
-use fem_core::element::Element;
+use fem_core::element::{Element, Tables};
 use fem_core::failure::FailureCriterion;
 use fem_core::functional::Functional;
 use fem_core::laminate::Laminate;
@@ -187,8 +187,8 @@ impl Model {
             }
             Ok::<_, Error>(stacks)
         };
-        let help = mesh::other_shape(&mesh, element.info().domain);
-        let mut plate = Plate::new(mesh, levels, stacks(&laminates[0])?, *element.info(), scene.z_derivatives.value)
+        let help = mesh::other_shape(&mesh, &Tables::from(&*element));
+        let mut plate = Plate::new(mesh, levels, stacks(&laminates[0])?, &*element, scene.z_derivatives.value)
             .map_err(|why| builder.error(&scene.element.name, why.to_string(), help))?;
         for (quads, laminate) in builder.regions(&plate, &of_specs)?.iter().zip(&laminates).skip(1) {
             plate

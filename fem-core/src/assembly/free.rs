@@ -2,7 +2,7 @@
 
 use super::AssemblyError;
 use super::cell_map::CellMap;
-use crate::contracts::element::{Element, Scratch};
+use crate::contracts::element::{Element, Scratch, form};
 use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;
 
@@ -18,10 +18,13 @@ pub fn free_forces(
 ) -> Result<(Vec<f64>, f64), AssemblyError> {
     let mut forces = vec![0.0; constraints.ndof()];
     let mut energy = 0.0;
-    let mut of_cell = vec![0.0; element.info().ndof()];
+    let mut of_cell = Vec::new();
     let (mut map, mut scratch) = (CellMap::default(), Scratch::default());
     for (cell, weight) in plate.kept_cells() {
-        let held = element.free_force(&plate.cell(cell), &mut scratch, &mut of_cell).map_err(|error| {
+        let view = plate.cell(cell);
+        let element = form(element, view.corners.domain());
+        of_cell.resize(element.info().ndof(), 0.0);
+        let held = element.free_force(&view, &mut scratch, &mut of_cell).map_err(|error| {
             let (quad, layer) = plate.place(cell);
             AssemblyError { quad_tag: plate.plane.quad_tags[quad], layer, error }
         })?;

@@ -2,7 +2,7 @@
 
 use super::cell_map::CellMap;
 use super::{AssemblyError, Symmetric};
-use crate::contracts::element::{Element, ElementError, Scratch};
+use crate::contracts::element::{Element, ElementError, Scratch, form};
 use crate::contracts::large::LargeDeflection;
 use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;
@@ -36,13 +36,14 @@ struct CellArrays {
 impl LargePlate {
     /// `None` where the element does not support large deflections.
     pub fn new(plate: &Plate, element: Box<dyn Element>, constraints: &Constraints) -> Option<Self> {
-        element.large_deflections()?;
+        for domain in plate.plane.quads.iter().map(|quad| quad.domain()) {
+            form(&*element, domain).large_deflections()?;
+        }
         let cells = plate.kept_cells().map(|(cell, weight)| {
             let mut map = CellMap::default();
             map.set(plate, constraints, cell);
             (cell, weight, map)
         });
-        let n = element.info().ndof();
         Some(Self {
             cells: cells.collect(),
             plate: plate.clone(),
@@ -50,12 +51,7 @@ impl LargePlate {
             constraints: constraints.clone(),
             all: vec![0.0; plate.ndof()],
             integrated: 0,
-            work: CellArrays {
-                u: vec![0.0; n],
-                force: vec![0.0; n],
-                tangent: vec![0.0; n * n],
-                ..CellArrays::default()
-            },
+            work: CellArrays::default(),
         })
     }
 
@@ -98,7 +94,9 @@ impl LargePlate {
                 let (quad, layer) = plate.place(*cell);
                 AssemblyError { quad_tag: plate.plane.quad_tags[quad], layer, error }
             };
+            let element = form(&**element, plate.plane.quads[plate.place(*cell).0].domain());
             let Some(large) = element.large_deflections() else { continue };
+            work.resize(element.info().ndof());
             let one = work.integrate(large, plate, *cell, map, all, tangent.is_some()).map_err(failed)?;
             if !one.is_finite() {
                 return Err(failed(ElementError("its strain energy is not finite".into())));
@@ -114,6 +112,12 @@ impl LargePlate {
 }
 
 impl CellArrays {
+    fn resize(&mut self, n: usize) {
+        self.u.resize(n, 0.0);
+        self.force.resize(n, 0.0);
+        self.tangent.resize(n * n, 0.0);
+    }
+
     fn integrate(
         &mut self,
         large: &dyn LargeDeflection,

@@ -3,7 +3,7 @@
 use super::cell_map::CellMap;
 use super::equilibrium::{EquilibriumError, InternalForce, dot};
 use super::{AssemblyError, Symmetric};
-use crate::contracts::element::{Element, ElementError};
+use crate::contracts::element::{Element, ElementError, form};
 use crate::plates::constraint::Constraints;
 use crate::plates::laws::{Asked, CellAnswer, PlyLaws};
 use crate::plates::plate::Plate;
@@ -43,7 +43,7 @@ impl LawPlate {
             constraints: constraints.clone(),
             laws,
             all: vec![0.0; plate.ndof()],
-            u: vec![0.0; element.info().ndof()],
+            u: Vec::new(),
             element,
             answer: CellAnswer::default(),
             integrated: 0,
@@ -90,9 +90,11 @@ impl LawPlate {
         constraints.expand(u, all);
         for (cell, weight, map) in cells {
             let states = laws.states_of(*cell);
+            let element = form(&**element, plate.plane.quads[plate.place(*cell).0].domain());
+            local.resize(element.info().ndof(), 0.0);
             map.gather(all, local);
             let new = new.as_deref_mut().map(|new| &mut new[states.clone()]);
-            let asked = Asked { plate, element: &**element, cell: *cell, u: local, states: &points[states] };
+            let asked = Asked { plate, element, cell: *cell, u: local, states: &points[states] };
             let finite = |answer: &CellAnswer| answer.energy.total().is_finite();
             let refused = || ElementError("its strain energy is not finite".into());
             laws.respond(asked, new, tangent, answer)

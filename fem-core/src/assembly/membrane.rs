@@ -2,7 +2,7 @@
 
 use super::AssemblyError;
 use super::cell_map::CellMap;
-use crate::contracts::element::{Cell, Element, ElementError, positive};
+use crate::contracts::element::{Cell, Element, ElementError, form, positive};
 use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;
 use crate::words::quadrature::gauss_legendre;
@@ -101,11 +101,13 @@ impl<'a> MembraneStrains<'a> {
     pub fn forces(&self, combinations: &[f64]) -> Result<Vec<f64>, AssemblyError> {
         let pairs = self.pairs();
         let columns = combinations.len() / pairs;
-        let (n, local) = (self.constraints.ndof(), self.element.info().ndof());
+        let n = self.constraints.ndof();
         let mut forces = vec![0.0; n * columns];
-        let (mut combined, mut of_cell) = (Vec::new(), vec![0.0; local * columns]);
+        let (mut combined, mut of_cell) = (Vec::new(), Vec::new());
         self.each(true, |weight, map, of| {
             let rows = of.strains.len() / pairs;
+            let local = of.operator.len() / rows;
+            of_cell.resize(local * columns, 0.0);
             combined.resize(rows * columns, 0.0);
             matmul(
                 MatMut::from_column_major_slice_mut(&mut combined, rows, columns),
@@ -146,13 +148,14 @@ impl<'a> MembraneStrains<'a> {
         let terms = combinations.len() / pairs;
         let modes = Self::new(self.plate, self.element, self.constraints, modes);
         let shapes = shapes.map(|shapes| Self::new(self.plate, self.element, self.constraints, shapes).fields);
-        let (count, local) = (modes.count, self.element.info().ndof());
+        let count = modes.count;
         let mut forms = vec![0.0; terms * count * count];
-        let (mut stress, mut u, mut of_modes) = (Vec::new(), vec![0.0; local], Vec::new());
+        let (mut stress, mut u, mut of_modes) = (Vec::new(), Vec::new(), Vec::new());
         let (mut x, mut y) = (Vec::new(), Vec::new());
         self.each(shapes.is_some(), |weight, map, of| {
             let rows = of.strains.len() / pairs;
-            let points = rows / 3;
+            let (points, local) = (rows / 3, of.operator.len() / rows);
+            u.resize(local, 0.0);
             stress.resize(rows * terms, 0.0);
             matmul(
                 MatMut::from_column_major_slice_mut(&mut stress, rows, terms),
@@ -170,7 +173,7 @@ impl<'a> MembraneStrains<'a> {
                     *stress += column.iter().zip(&u).map(|(b, u)| b * u).sum::<f64>();
                 }
             }
-            modes.slopes(map, &of.gradients, &mut of_modes, &mut x);
+            modes.slopes(map, local, &of.gradients, &mut of_modes, &mut x);
             y.resize(x.len(), 0.0);
             for (stress, form) in stress.chunks_exact(rows).zip(forms.chunks_exact_mut(count * count)) {
                 for (x, y) in x.chunks_exact(2 * points).zip(y.chunks_exact_mut(2 * points)) {
@@ -193,8 +196,7 @@ impl<'a> MembraneStrains<'a> {
     }
 
     /// Slopes of the fields in a cell, two rows per point.
-    fn slopes(&self, map: &CellMap, gradients: &[f64], u: &mut Vec<f64>, slopes: &mut Vec<f64>) {
-        let local = self.element.info().ndof();
+    fn slopes(&self, map: &CellMap, local: usize, gradients: &[f64], u: &mut Vec<f64>, slopes: &mut Vec<f64>) {
         let rows = gradients.len() / local;
         u.resize(local * self.count, 0.0);
         slopes.resize(rows * self.count, 0.0);
@@ -227,7 +229,8 @@ impl<'a> MembraneStrains<'a> {
     }
 
     fn integrate(&self, cell: &Cell<'_>, map: &CellMap, acts: bool, of: &mut OfCell) -> Result<(), ElementError> {
-        let info = self.element.info();
+        let element = form(self.element, cell.corners.domain());
+        let info = element.info();
         let (local, pairs) = (info.ndof(), self.pairs());
         let rows = 3 * info.plane_points().count();
         let OfCell { strains, stresses, operator, known, b, shape, gradients, u, slopes } = of;
@@ -238,14 +241,14 @@ impl<'a> MembraneStrains<'a> {
         b.resize(6 * local, 0.0);
         gradients.clear();
         for (r, s, _) in info.plane_points() {
-            add_gradient(self.element, cell, [r, s], shape, gradients);
+            add_gradient(element, cell, [r, s], shape, gradients);
         }
-        self.slopes(map, gradients, u, slopes);
+        self.slopes(map, local, gradients, u, slopes);
         // ∫ C dq of the strains in the plane, where a theory takes stresses as zero without them.
         known.clear();
         let mut through = [[0.0; 3]; 3];
         for (number, slice) in cell.stack.slices.iter().enumerate() {
-            self.element.strain_operator(cell, number, [0.0, 0.0, 0.5 * (slice.q[0] + slice.q[1])], b);
+            element.strain_operator(cell, number, [0.0, 0.0, 0.5 * (slice.q[0] + slice.q[1])], b);
             let c = reduced(&slice.c, b);
             for (sum, i) in through.iter_mut().zip(PLANE) {
                 sum.iter_mut().zip(PLANE).for_each(|(sum, j)| *sum += (slice.q[1] - slice.q[0]) * c[i][j]);
@@ -261,7 +264,7 @@ impl<'a> MembraneStrains<'a> {
                     let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
                     // The order is that of a product of two operators; for one, half of it is exact.
                     for &(t, wt) in gauss_legendre(info.ply_order.div_ceil(2)) {
-                        let det = self.element.strain_operator(cell, number, [r, s, middle + half * t], b);
+                        let det = element.strain_operator(cell, number, [r, s, middle + half * t], b);
                         let dv = positive(det)? * w * wt * half;
                         for (i, strain) in b.chunks_exact(6).enumerate() {
                             for (k, row) in PLANE.iter().enumerate() {

@@ -43,7 +43,7 @@ pub use sparse::SparseStructure;
 pub use substructure::{Condensation, CondensationError, Condensed, Division, condense};
 pub use symmetric::Symmetric;
 
-use crate::contracts::element::{Element, ElementError, Scratch};
+use crate::contracts::element::{Element, ElementError, Scratch, form};
 use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;
 use crate::words::counters::Counters;
@@ -99,7 +99,7 @@ pub fn assemble(
     threads: NonZeroUsize,
     counters: &mut Counters,
 ) -> Result<Symmetric, AssemblyError> {
-    let size = element.info().ndof().pow(2);
+    let size = plate.most_unknowns().pow(2);
     let mut sum = Symmetric::zero(pattern.clone());
     let mut map = CellMap::default();
     let alike = Alike::of(plate);
@@ -108,6 +108,8 @@ pub fn assemble(
     let integrate = |cell: usize, scratch: &mut Scratch, out: &mut [f64]| -> Result<(), AssemblyError> {
         let (quad, layer) = plate.place(cell);
         let view = plate.cell(cell);
+        let element = form(element, view.corners.domain());
+        let out = &mut out[..element.info().ndof().pow(2)];
         let done = match matrix {
             Matrix::Stiffness => element.stiffness(&view, scratch, out),
             Matrix::Mass => element.mass(&view, scratch, out),
@@ -150,7 +152,9 @@ pub fn assemble(
         }
         counters.elements += count as u64;
         for (i, a) in batch.chunks_exact(size).enumerate() {
-            for (cell, weight) in alike.cells(first + i) {
+            let cells = alike.cells(first + i);
+            let a = &a[..plate.info_of(plate.place(cells[0].0 as usize).0).ndof().pow(2)];
+            for (cell, weight) in cells {
                 map.set(plate, constraints, *cell as usize);
                 map.scatter(a, *weight, &mut sum);
             }

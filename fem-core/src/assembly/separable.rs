@@ -347,7 +347,7 @@ impl Separable {
                 continue;
             }
             work.cells += 1;
-            arrays.gather(map, interfaces.components().len());
+            arrays.gather(map, interfaces.components(number).len());
             let new = new.as_deref_mut().map(|new| &mut new[own.clone()]);
             let failed = |error| {
                 let quad_tag = plate.plane.quad_tags[cell.quad];
@@ -409,11 +409,11 @@ impl Tangent<'_> {
         }
         arrays.all.resize(plate.ndof(), 0.0);
         constraints.expand(x, &mut arrays.all);
-        let n = interfaces.components().len();
-        arrays.answer.force.resize(n, 0.0);
         for (cell, (map, moduli)) in self.maps.iter().zip(self.moduli).enumerate().filter(|(_, m)| !m.1.is_empty()) {
+            let n = interfaces.components(cell).len();
             arrays.gather(map, n);
             let Arrays { apart, answer, .. } = arrays;
+            answer.force.resize(n, 0.0);
             interfaces.apply(cell, moduli, apart, &mut answer.force);
             arrays.spread();
             map.scatter_vector(&arrays.both, 1.0, y);

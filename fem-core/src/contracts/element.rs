@@ -275,12 +275,61 @@ pub trait Element: DynClone + Debug + Send + Sync {
         Ok(())
     }
 
+    /// The form on triangles of an element for quadrilaterals, where it has one: the same unknowns at nodes of the same heights, and
+    /// along a side the same functions, so that both stand side by side in a mesh.
+    fn triangular(&self) -> Option<&dyn Element> {
+        None
+    }
+
     /// The element under large deflections, where it knows them.
     fn large_deflections(&self) -> Option<&dyn LargeDeflection> {
         None
     }
 }
 dyn_clone::clone_trait_object!(Element);
+
+/// The form of an element for cells of a shape; the element itself where it has none.
+pub fn form(element: &dyn Element, domain: Domain) -> &dyn Element {
+    let forms = [Some(element), element.triangular()];
+    forms.into_iter().flatten().find(|form| form.info().domain == domain).unwrap_or(element)
+}
+
+/// The tables of an element on the shapes of cells that it takes.
+#[derive(Debug, Clone, Copy)]
+pub struct Tables {
+    /// Of the element itself.
+    pub own: ElementInfo,
+    /// Of its form on triangles.
+    pub triangular: Option<ElementInfo>,
+}
+
+impl Tables {
+    /// The table for cells of a shape.
+    pub fn on(&self, domain: Domain) -> Option<&ElementInfo> {
+        [Some(&self.own), self.triangular.as_ref()].into_iter().flatten().find(|info| info.domain == domain)
+    }
+
+    /// What the element stands on: "quadrilaterals and triangles".
+    pub fn cells(&self) -> &'static str {
+        match [Domain::Quadrilateral, Domain::Triangle].map(|domain| self.on(domain).is_some()) {
+            [true, true] => "quadrilaterals and triangles",
+            [_, false] => "quadrilaterals",
+            [false, _] => "triangles",
+        }
+    }
+}
+
+impl From<ElementInfo> for Tables {
+    fn from(own: ElementInfo) -> Self {
+        Self { own, triangular: None }
+    }
+}
+
+impl From<&dyn Element> for Tables {
+    fn from(element: &dyn Element) -> Self {
+        Self { own: *element.info(), triangular: element.triangular().map(|form| *form.info()) }
+    }
+}
 
 /// Ply-wise Gauss points of a cell, each with its slice and its weight (without the Jacobian).
 fn integrate(

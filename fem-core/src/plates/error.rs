@@ -17,7 +17,7 @@ pub enum PlateError {
         /// Those of the region.
         of_region: usize,
     },
-    /// A cell of another shape than the element stands on.
+    /// A cell of a shape that the element does not stand on.
     OtherShape {
         /// What the element stands on.
         of_element: &'static str,
@@ -88,7 +88,7 @@ impl fmt::Display for PlateError {
                 write!(f, "a region has {of_region} layers of cells, the plate {layers}")
             }
             Self::OtherShape { of_element, quad_tag, of_cell } => {
-                write!(f, "the element stands on {of_element}s, and cell {quad_tag} is a {of_cell}")
+                write!(f, "the element stands on {of_element}, and cell {quad_tag} is a {of_cell}")
             }
             Self::NoStrip { quad_tag } => write!(
                 f,

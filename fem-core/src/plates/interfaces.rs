@@ -1,6 +1,6 @@
 //! Interfaces of a plate that may open: their tractions as forces on the faces of the layers that they join.
 
-use crate::contracts::element::{Element, ElementError, positive};
+use crate::contracts::element::{Element, ElementError, form, positive};
 use crate::contracts::interface_law::{InterfaceLaw, InterfaceResponse, Jump, Sinks};
 use crate::contracts::ply_law::{LawPoint, check_law};
 use crate::plates::plate::{FaceUnknowns, Plate};
@@ -45,7 +45,7 @@ pub struct Interfaces {
     stiffness: Matrix6,
     cells: Vec<InterfaceCell>,
     shapes: Vec<FaceShape>,
-    /// Component of the displacement, counted from 0, that each unknown of a face is of.
+    /// Component of the displacement, counted from 0, that each unknown of a face of a cell is of.
     components: Vec<usize>,
     per_point: usize,
 }
@@ -133,8 +133,7 @@ impl Interfaces {
         faces: &[(usize, Vec<u32>)],
         order: usize,
     ) -> Result<Self, InterfacesError> {
-        let slots: Vec<_> = plate.face_slots().collect();
-        let components: Vec<usize> = slots.iter().map(|(_, dof)| dof.n() - 1).collect();
+        let components: Vec<usize> = plate.face_slots(None).map(|(_, dof)| dof.n() - 1).collect();
         let per_point = CARRIED + of.law.info().state.len();
         let stiffness = of.material.elastic.stiffness();
         let mut shape_of = vec![None; plate.plane.quads.len()];
@@ -145,7 +144,7 @@ impl Interfaces {
                 let shape = match shape_of[*quad] {
                     Some(shape) => shape,
                     None => {
-                        let shape = FaceShape::new(plate, element, *quad, order, &slots)?;
+                        let shape = FaceShape::new(plate, element, *quad, order)?;
                         let point = LawPoint { material: &of.material, stiffness: &stiffness, length: shape.length };
                         check_law(of.law.info(), &of.name, &point, of.law.check(&point))
                             .map_err(InterfacesError::Material)?;
@@ -272,13 +271,15 @@ impl Interfaces {
 
     /// Shape functions at a point of a cell, one per unknown of its faces.
     pub fn functions(&self, cell: usize, point: usize) -> &[f64] {
-        let n = self.components.len();
+        let n = self.components(cell).len();
         &self.shapes[self.cells[cell].shape].functions[point * n..(point + 1) * n]
     }
 
-    /// Component of the displacement, counted from 0, that each unknown of a face is of.
-    pub fn components(&self) -> &[usize] {
-        &self.components
+    /// Component of the displacement, counted from 0, that each unknown of a face of a cell is of.
+    pub fn components(&self, cell: usize) -> &[usize] {
+        let shape = &self.shapes[self.cells[cell].shape];
+        // Nodes have the same unknowns: those of a triangle are the first of those of a quadrilateral.
+        &self.components[..shape.functions.len() / shape.areas.len()]
     }
 
     /// Stiffness of an interface that opens for the first time, Pa/m.
@@ -314,7 +315,7 @@ impl Interfaces {
         answer: &mut InterfaceAnswer,
     ) -> Result<(), ElementError> {
         let shape = &self.shapes[self.cells[cell].shape];
-        let (n, count) = (self.components.len(), self.per_point - CARRIED);
+        let (n, count) = (self.components(cell).len(), self.per_point - CARRIED);
         answer.force.clear();
         answer.force.resize(n, 0.0);
         answer.moduli.clear();
@@ -357,7 +358,7 @@ impl Interfaces {
     /// `force ← ∫ Nᵀ D N dA apart` of a cell with these `moduli`.
     pub fn apply(&self, cell: usize, moduli: &[[Jump; 3]], apart: &[f64], force: &mut [f64]) {
         force.fill(0.0);
-        let n = self.components.len();
+        let n = self.components(cell).len();
         let shape = &self.shapes[self.cells[cell].shape];
         for (modulus, functions) in moduli.iter().zip(shape.functions.chunks_exact(n)) {
             let mut jump = [0.0; 3];
@@ -374,7 +375,7 @@ impl Interfaces {
     /// Stiffness of a cell on the unknowns below and then above, column-major, of the symmetric parts of `moduli` without what
     /// couples the components, and nowhere negative.
     pub fn secant(&self, cell: usize, moduli: &[[Jump; 3]], matrix: &mut Vec<f64>) {
-        let n = self.components.len();
+        let n = self.components(cell).len();
         matrix.clear();
         matrix.resize(4 * n * n, 0.0);
         let shape = &self.shapes[self.cells[cell].shape];
@@ -416,14 +417,10 @@ fn jump_of(stiffness: &[Jump; 3], traction: &Jump) -> Jump {
 pub const MOST_STATES: usize = 16;
 
 impl FaceShape {
-    fn new(
-        plate: &Plate,
-        element: &dyn Element,
-        quad: usize,
-        order: usize,
-        slots: &[(usize, Dof)],
-    ) -> Result<Self, InterfacesError> {
+    fn new(plate: &Plate, element: &dyn Element, quad: usize, order: usize) -> Result<Self, InterfacesError> {
+        let slots: Vec<(usize, Dof)> = plate.face_slots(Some(quad)).collect();
         let cell = plate.cell(quad * plate.layers());
+        let element = form(element, cell.corners.domain());
         let ndof = element.info().ndof();
         let mut n = vec![0.0; 3 * ndof];
         let on_face: Vec<usize> = slots.iter().map(|(slot, _)| *slot).collect();

@@ -1,6 +1,6 @@
 //! Plies of a plate that follow laws: what their stresses differ from those of linear elasticity.
 
-use crate::contracts::element::{Cell, Element, ElementError, ElementInfo, Slice, add_product, positive};
+use crate::contracts::element::{Cell, Element, ElementError, ElementInfo, Slice, add_product, form, positive};
 use crate::contracts::ply_law::{LawPoint, PlyLaw, PlyResponse, check_law};
 use crate::plates::laminate::Laminate;
 use crate::plates::plate::Plate;
@@ -140,12 +140,14 @@ impl PlyLaws {
         if info.is_shell() || info.is_section() {
             return Err(LawsError::Theory);
         }
-        let points = info.plane_points().count() * info.ply_order;
         let mut all = Self { plies, first: Vec::with_capacity(plate.cells() + 1) };
         let mut next = 0;
         for cell in 0..plate.cells() {
             all.first.push(next);
             let view = plate.cell(cell);
+            let element = form(element, view.corners.domain());
+            let info = element.info();
+            let points = info.plane_points().count() * info.ply_order;
             let length = width(info, &view);
             for ply in all.of(plate, cell).iter().flatten() {
                 next += points * ply.law.info().state.len();
@@ -164,8 +166,8 @@ impl PlyLaws {
     pub fn warnings(&self, plate: &Plate, element: &dyn Element) -> Vec<String> {
         let mut widest = vec![0.0_f64; self.plies.len()];
         for cell in 0..plate.cells() {
-            let layer = plate.place(cell).1;
-            widest[layer] = widest[layer].max(width(element.info(), &plate.cell(cell)));
+            let (layer, view) = (plate.place(cell).1, plate.cell(cell));
+            widest[layer] = widest[layer].max(width(form(element, view.corners.domain()).info(), &view));
         }
         let mut said = Vec::new();
         for (plies, length) in self.plies.iter().zip(widest) {
@@ -210,7 +212,9 @@ impl PlyLaws {
         answer: &mut CellAnswer,
     ) -> Result<(), ElementError> {
         let Asked { plate, element, cell, u, states } = asked;
-        let (info, view, plies) = (element.info(), plate.cell(cell), self.of(plate, cell));
+        let (view, plies) = (plate.cell(cell), self.of(plate, cell));
+        let element = form(element, view.corners.domain());
+        let info = element.info();
         let (levels, n) = (gauss_legendre(info.ply_order), info.ndof());
         let rows = 6 * levels.len();
         answer.clear(n, rows, plies.len(), states.len(), tangent);

@@ -1,6 +1,6 @@
 //! Loads as consistent nodal forces, f = ∫ Nᵀ p dA: one per unknown, before elimination of constraints.
 
-use crate::contracts::element::{Element, ElementError, Scratch};
+use crate::contracts::element::{Element, ElementError, Scratch, form};
 use crate::plates::error::PlateError;
 use crate::plates::plate::Plate;
 use crate::words::dof::Dof;
@@ -41,14 +41,14 @@ pub fn pressure(
     f: &mut [f64],
 ) {
     let (layer, q, sign) = face.place(plate);
-    let mut shape = vec![0.0; 3 * element.info().ndof()];
-    let mut dofs = Vec::new();
-    let rule = element.info().domain.points(ORDER);
+    let (mut shape, mut dofs) = (Vec::new(), Vec::new());
     for quad in quads {
         let number = quad * plate.layers() + layer;
         let cell = plate.cell(number);
         plate.cell_dofs(number, &mut dofs);
-        for &Point { at: [r, s], factors } in rule {
+        let element = form(element, cell.corners.domain());
+        shape.resize(3 * dofs.len(), 0.0);
+        for &Point { at: [r, s], factors } in cell.corners.domain().points(ORDER) {
             element.shape(&cell, [r, s, q], &mut shape);
             let [x, y, _] = cell.position([r, s, q]);
             let force = sign * p([x, y]) * cell.plane(r, s).det * factors[0] * factors[1];
@@ -63,12 +63,13 @@ pub fn pressure(
 /// plate are pressed by. Of cells that a symmetry maps onto each other one stands for all.
 pub fn deflections(plate: &Plate, element: &dyn Element, face: Face) -> Vec<(Functional, f64)> {
     let (layer, q, _) = face.place(plate);
-    let mut shape = vec![0.0; 3 * element.info().ndof()];
-    let (mut dofs, mut found) = (Vec::new(), Vec::new());
+    let (mut shape, mut dofs, mut found) = (Vec::new(), Vec::new(), Vec::new());
     for (number, weight) in plate.kept_cells().filter(|(cell, _)| plate.place(*cell).1 == layer) {
         let cell = plate.cell(number);
         plate.cell_dofs(number, &mut dofs);
-        for &Point { at: [r, s], factors } in element.info().domain.points(ORDER) {
+        let element = form(element, cell.corners.domain());
+        shape.resize(3 * dofs.len(), 0.0);
+        for &Point { at: [r, s], factors } in cell.corners.domain().points(ORDER) {
             element.shape(&cell, [r, s, q], &mut shape);
             let along = dofs.iter().zip(shape.chunks_exact(3)).map(|(dof, n)| (*dof, n[2])).filter(|(_, n)| *n != 0.0);
             found.push((Functional(along.collect()), weight * cell.plane(r, s).det * factors[0] * factors[1]));
@@ -81,8 +82,7 @@ pub fn deflections(plate: &Plate, element: &dyn Element, face: Face) -> Vec<(Fun
 pub fn edge(plate: &Plate, element: &dyn Element, edges: &[[u32; 2]], per_length: [f64; 3], f: &mut [f64]) {
     let mut open: HashSet<[u32; 2]> = edges.iter().map(|[a, b]| [*a.min(b), *a.max(b)]).collect();
     let thickness = plate.levels[plate.levels.len() - 1] - plate.levels[0];
-    let mut shape = vec![0.0; 3 * element.info().ndof()];
-    let mut dofs = Vec::new();
+    let (mut shape, mut dofs) = (Vec::new(), Vec::new());
     let rule = gauss_legendre(ORDER);
     for (quad, corners) in plate.plane.quads.iter().enumerate() {
         for (side, [a, b]) in corners.sides().enumerate() {
@@ -95,6 +95,8 @@ pub fn edge(plate: &Plate, element: &dyn Element, edges: &[[u32; 2]], per_length
                 let number = quad * plate.layers() + layer;
                 let cell = plate.cell(number);
                 plate.cell_dofs(number, &mut dofs);
+                let element = form(element, corners.domain());
+                shape.resize(3 * dofs.len(), 0.0);
                 for &(t, wt) in rule {
                     let [r, s] = corners.domain().on_side(side, t);
                     for &(q, wq) in rule {
@@ -137,10 +139,13 @@ pub fn gravity(
     acceleration: [f64; 3],
     f: &mut [f64],
 ) -> Result<(), ElementError> {
-    let n = element.info().ndof();
-    let (mut mass, mut scratch, mut dofs) = (vec![0.0; n * n], Scratch::default(), Vec::new());
+    let (mut mass, mut scratch, mut dofs) = (Vec::new(), Scratch::default(), Vec::new());
     for number in 0..plate.cells() {
-        element.mass(&plate.cell(number), &mut scratch, &mut mass)?;
+        let cell = plate.cell(number);
+        let element = form(element, cell.corners.domain());
+        let n = element.info().ndof();
+        mass.resize(n * n, 0.0);
+        element.mass(&cell, &mut scratch, &mut mass)?;
         plate.cell_dofs(number, &mut dofs);
         for (column, name) in mass.chunks_exact(n).zip(element.info().dofs.iter().cycle()) {
             let a = if name.m() == 0 { acceleration[name.n() - 1] } else { 0.0 };

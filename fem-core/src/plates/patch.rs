@@ -1,6 +1,6 @@
 //! Where a contact acts on a face: one node, the Hertz pressure on a circle, or a uniform pressure on a square.
 
-use crate::contracts::element::Element;
+use crate::contracts::element::{Element, form};
 use crate::plates::error::PlateError;
 use crate::plates::load::Face;
 use crate::plates::plate::Plate;
@@ -92,7 +92,7 @@ fn mean(
     points: impl Iterator<Item = ([f64; 2], f64)>,
 ) -> Option<Functional> {
     let (layer, q, sign) = face.place(plate);
-    let mut shape = vec![0.0; 3 * element.info().ndof()];
+    let mut shape = Vec::new();
     let mut dofs = Vec::new();
     let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
     let near: Vec<usize> = (0..plate.plane.quads.len())
@@ -108,6 +108,8 @@ fn mean(
     for (p, weight) in points {
         let (quad, [r, s]) = near.iter().find_map(|q| Some((*q, plate.plane.corners(*q).locate(p)?)))?;
         let cell = quad * plate.layers() + layer;
+        let element = form(element, plate.plane.quads[quad].domain());
+        shape.resize(3 * element.info().ndof(), 0.0);
         element.shape(&plate.cell(cell), [r, s, q], &mut shape);
         plate.cell_dofs(cell, &mut dofs);
         for (dof, n) in dofs.iter().zip(shape.chunks_exact(3)) {

@@ -3,12 +3,12 @@
 mod part;
 mod separation;
 
-use crate::contracts::element::{Cell, ElementInfo, Stack};
+use crate::contracts::element::{Cell, ElementInfo, Stack, Tables};
 use crate::plates::laminate::SAME_HEIGHT;
 use crate::plates::mesh::{Group, PlaneMesh};
 use crate::plates::symmetry::{self, Symmetry};
 use crate::words::dof::Dof;
-use crate::words::domain::Domain;
+use crate::words::domain::{Corners, Domain};
 use std::collections::HashMap;
 use std::fmt::Write;
 
@@ -47,14 +47,12 @@ pub struct Plate {
     stacks: Vec<Stack>,
     /// Region of each quad.
     regions: Vec<u16>,
-    info: ElementInfo,
+    /// Of each shape of its cells, quadrilaterals first.
+    layouts: Vec<Layout>,
     z_derivatives: ZDerivatives,
-    /// Columns of each quad, `places.len()` a quad.
+    /// Columns of each quad, from the place on that `starts` has for it.
     quad_columns: Vec<u32>,
-    /// Of each node of the element: which of the quad's columns, and how many levels above the cell's lower face.
-    slots: Vec<(usize, usize)>,
-    /// In-plane natural coordinates of a quad's columns.
-    places: Vec<[f64; 2]>,
+    starts: Vec<u32>,
     /// The two vertices that an edge column stands between, from column `points` on.
     edges: Vec<[u32; 2]>,
     /// Levels per layer of cells: 1, or 2 with nodes at mid-height.
@@ -66,6 +64,30 @@ pub struct Plate {
     separable: Vec<bool>,
 }
 
+/// Where an element has its nodes in cells of a shape.
+#[derive(Debug, Clone)]
+struct Layout {
+    info: ElementInfo,
+    /// Of each node of the element: which of the quad's columns, and how many levels above the cell's lower face.
+    slots: Vec<(usize, usize)>,
+    /// In-plane natural coordinates of a quad's columns.
+    places: Vec<[f64; 2]>,
+}
+
+impl Layout {
+    fn new(info: ElementInfo, pitch: usize) -> Self {
+        let mut places: Vec<[f64; 2]> = Vec::new();
+        let slots = info.nodes.iter().map(|&[r, s, q]| {
+            let place = places.iter().position(|p| *p == [r, s]).unwrap_or_else(|| {
+                places.push([r, s]);
+                places.len() - 1
+            });
+            (place, ((q + 1.0) * 0.5 * pitch as f64) as usize)
+        });
+        Self { slots: slots.collect(), info, places }
+    }
+}
+
 impl Plate {
     /// Extrudes `plane` through the faces at heights `faces`, one stack of plies between two of them.
     ///
@@ -75,30 +97,24 @@ impl Plate {
         mut plane: PlaneMesh,
         faces: Vec<f64>,
         stacks: Vec<Stack>,
-        info: ElementInfo,
+        tables: impl Into<Tables>,
         z_derivatives: ZDerivatives,
     ) -> Result<Self, PlateError> {
+        let tables = tables.into();
+        let info = tables.own;
         if !info.nodes.iter().flatten().all(|c| [-1.0, 0.0, 1.0].contains(c)) {
             return Err(PlateError::NodeOffGrid);
         }
+        let forms = forms(&plane, &tables)?;
         if info.is_shell() && stacks.len() != 1 {
             return Err(PlateError::LayersOfShell);
         }
-        one_shape(&plane, info.domain)?;
         if info.is_section() {
             along_x(&mut plane)?;
         }
-        let mut places: Vec<[f64; 2]> = Vec::new();
         let pitch = if info.nodes.iter().any(|n| n[2] == 0.0) { 2 } else { 1 };
-        let slots = info.nodes.iter().map(|&[r, s, q]| {
-            let place = places.iter().position(|p| *p == [r, s]).unwrap_or_else(|| {
-                places.push([r, s]);
-                places.len() - 1
-            });
-            (place, ((q + 1.0) * 0.5 * pitch as f64) as usize)
-        });
-        let slots: Vec<_> = slots.collect();
-        let (columns, quad_columns, edges) = columns(&plane, info.domain, &places);
+        let layouts: Vec<Layout> = forms.into_iter().map(|info| Layout::new(info, pitch)).collect();
+        let Columns { positions: columns, of_quads: quad_columns, starts, edges } = Columns::of(&plane, &layouts);
         let levels = match pitch {
             1 => faces,
             _ => {
@@ -113,11 +129,10 @@ impl Plate {
             columns,
             levels,
             stacks,
-            info,
+            layouts,
             z_derivatives,
             quad_columns,
-            slots,
-            places,
+            starts,
             edges,
             pitch,
             offsets: Vec::new(),
@@ -144,22 +159,22 @@ impl Plate {
     fn number(&mut self) {
         let inner = match self.z_derivatives {
             ZDerivatives::Shared => 0,
-            ZDerivatives::LayerWise => self.info.dofs.iter().filter(|d| d.m() == 3).count(),
+            ZDerivatives::LayerWise => self.info().dofs.iter().filter(|d| d.m() == 3).count(),
         };
         // How often a node is in a cell's lower half and upper half: both, where it lies between layers.
         let mut below = vec![false; self.columns.len() * self.levels.len()];
         let mut above = below.clone();
         for cell in 0..self.cells() {
-            for i in 0..self.slots.len() {
+            for (i, (_, up)) in self.layout(self.place(cell).0).slots.iter().enumerate() {
                 let node = self.cell_node(cell, i);
-                let at = if self.slots[i].1 == 0 { &mut above } else { &mut below };
+                let at = if *up == 0 { &mut above } else { &mut below };
                 at[node] = true;
             }
         }
         let mut next = 0;
         self.offsets = Vec::with_capacity(below.len() + 1);
         self.offsets.push(0);
-        let nd = self.info.dofs.len();
+        let nd = self.info().dofs.len();
         for (node, (below, above)) in below.into_iter().zip(above).enumerate() {
             next += if below || above { nd } else { 0 };
             next += match below && above {
@@ -230,9 +245,26 @@ impl Plate {
         self.offsets.windows(2).filter(|o| o[1] > o[0]).count()
     }
 
-    /// The element's table.
+    /// The element's table; where there are quadrilaterals and triangles, the one for quadrilaterals. Unknowns and the heights of
+    /// nodes are the same in both.
     pub fn info(&self) -> &ElementInfo {
-        &self.info
+        &self.layouts[0].info
+    }
+
+    /// The element's table for the shape of a quad.
+    pub fn info_of(&self, quad: usize) -> &ElementInfo {
+        &self.layout(quad).info
+    }
+
+    /// Most unknowns that a cell has.
+    pub fn most_unknowns(&self) -> usize {
+        self.layouts.iter().map(|layout| layout.info.ndof()).fold(0, usize::max)
+    }
+
+    fn layout(&self, quad: usize) -> &Layout {
+        let domain = self.plane.quads[quad].domain();
+        let own = self.layouts.iter().find(|layout| layout.info.domain == domain);
+        own.unwrap_or(&self.layouts[0])
     }
 
     /// Quad and layer of a cell.
@@ -242,8 +274,7 @@ impl Plate {
 
     /// Columns of a quad.
     pub fn columns_of_quad(&self, quad: usize) -> &[u32] {
-        let n = self.places.len();
-        &self.quad_columns[quad * n..(quad + 1) * n]
+        &self.quad_columns[self.starts[quad] as usize..self.starts[quad + 1] as usize]
     }
 
     /// Columns with nodes of a group: its vertices, and the middles of its edges and quads.
@@ -269,7 +300,7 @@ impl Plate {
 
     fn cell_node(&self, cell: usize, i: usize) -> usize {
         let (quad, layer) = self.place(cell);
-        let (place, up) = self.slots[i];
+        let (place, up) = self.layout(quad).slots[i];
         self.node(self.columns_of_quad(quad)[place] as usize, layer * self.pitch + up)
     }
 
@@ -283,15 +314,16 @@ impl Plate {
     /// Unknowns of a cell, in element order.
     pub fn cell_dofs(&self, cell: usize, out: &mut Vec<usize>) {
         out.clear();
-        let nd = self.info.dofs.len();
-        for i in 0..self.slots.len() {
+        let dofs = self.info().dofs;
+        let nd = dofs.len();
+        for (i, (_, up)) in self.layout(self.place(cell).0).slots.iter().enumerate() {
             let node = self.cell_node(cell, i);
             let first = self.offsets[node];
             // The second set of a node between layers serves the cells above it.
-            let upper = self.slots[i].1 == 0 && self.offsets[node + 1] - first > nd;
+            let upper = *up == 0 && self.offsets[node + 1] - first > nd;
             let whole = self.is_separable(node);
             let mut extra = first + nd;
-            for (k, dof) in self.info.dofs.iter().enumerate() {
+            for (k, dof) in dofs.iter().enumerate() {
                 if upper && (whole || dof.m() == 3) {
                     out.push(extra);
                     extra += 1;
@@ -307,8 +339,8 @@ impl Plate {
     pub fn dofs_at(&self, column: usize, level: usize, dof: Dof) -> impl Iterator<Item = usize> + use<> {
         let node = self.node(column, level);
         let (first, end) = (self.offsets[node], self.offsets[node + 1]);
-        let nd = self.info.dofs.len();
-        let own = self.info.dofs.iter().position(|d| *d == dof).map(|k| first + k);
+        let nd = self.info().dofs.len();
+        let own = self.info().dofs.iter().position(|d| *d == dof).map(|k| first + k);
         let second = self.second_set(node).position(|d| *d == dof).map(|k| first + nd + k);
         own.into_iter().chain(second).filter(move |i| *i < end)
     }
@@ -320,7 +352,7 @@ impl Plate {
 
     /// Lowest and highest level with nodes: the faces of the plate, or the reference surface of a shell.
     pub fn outer_levels(&self) -> [usize; 2] {
-        if self.info.is_shell() { [1, 1] } else { [0, self.levels.len() - 1] }
+        if self.info().is_shell() { [1, 1] } else { [0, self.levels.len() - 1] }
     }
 
     /// Level whose z is the mid-plane of the laminate, if there is one.
@@ -333,9 +365,9 @@ impl Plate {
     pub fn locate(&self, dof: usize) -> (usize, usize, Dof) {
         let node = self.offsets.partition_point(|o| *o <= dof) - 1;
         let k = dof - self.offsets[node];
-        let name = self.info.dofs.get(k).copied().unwrap_or_else(|| {
+        let name = self.info().dofs.get(k).copied().unwrap_or_else(|| {
             let mut second = self.second_set(node);
-            second.nth(k - self.info.dofs.len()).copied().unwrap_or(self.info.dofs[0])
+            second.nth(k - self.info().dofs.len()).copied().unwrap_or(self.info().dofs[0])
         });
         (node / self.levels.len(), node % self.levels.len(), name)
     }
@@ -393,57 +425,78 @@ impl Plate {
     }
 }
 
-/// Columns over the places (r, s) of each quad: their positions, those of each quad, and the vertex pairs of edge columns.
-fn columns(plane: &PlaneMesh, domain: Domain, places: &[[f64; 2]]) -> (Vec<[f64; 2]>, Vec<u32>, Vec<[u32; 2]>) {
-    let mut positions = plane.points.clone();
-    let mut edges: Vec<[u32; 2]> = Vec::new();
-    let mut numbers = HashMap::new();
-    let middle = |of: &[u32]| -> [f64; 2] {
-        std::array::from_fn(|d| of.iter().map(|v| plane.points[*v as usize][d]).sum::<f64>() / of.len() as f64)
-    };
-    let around: Vec<Vec<usize>> = places.iter().map(|place| domain.corners_around(*place)).collect();
-    for quad in &plane.quads {
-        for ends in around.iter().filter_map(|around| <[usize; 2]>::try_from(&around[..]).ok()) {
-            let ends = ordered(ends.map(|i| quad[i]));
-            numbers.entry(ends).or_insert_with(|| {
-                edges.push(ends);
-                positions.push(middle(&ends));
-                positions.len() as u32 - 1
-            });
+/// Columns over the places (r, s) of each quad.
+struct Columns {
+    positions: Vec<[f64; 2]>,
+    /// Of each quad, from the place on that `starts` has for it.
+    of_quads: Vec<u32>,
+    starts: Vec<u32>,
+    /// The vertices that columns on edges stand between.
+    edges: Vec<[u32; 2]>,
+}
+
+impl Columns {
+    fn of(plane: &PlaneMesh, layouts: &[Layout]) -> Self {
+        let mut positions = plane.points.clone();
+        let mut edges: Vec<[u32; 2]> = Vec::new();
+        let mut numbers = HashMap::new();
+        let middle = |of: &[u32]| -> [f64; 2] {
+            std::array::from_fn(|d| of.iter().map(|v| plane.points[*v as usize][d]).sum::<f64>() / of.len() as f64)
+        };
+        let corners = |layout: &Layout| -> Vec<Vec<usize>> {
+            layout.places.iter().map(|place| layout.info.domain.corners_around(*place)).collect()
+        };
+        let of_layouts: Vec<_> = layouts.iter().map(|layout| (layout.info.domain, corners(layout))).collect();
+        let around = |quad: &Corners<u32>| {
+            let own = of_layouts.iter().find(|(domain, _)| *domain == quad.domain());
+            own.map_or(&[][..], |(_, around)| around)
+        };
+        for quad in &plane.quads {
+            for ends in around(quad).iter().filter_map(|around| <[usize; 2]>::try_from(&around[..]).ok()) {
+                let ends = ordered(ends.map(|i| quad[i]));
+                numbers.entry(ends).or_insert_with(|| {
+                    edges.push(ends);
+                    positions.push(middle(&ends));
+                    positions.len() as u32 - 1
+                });
+            }
         }
+        let first_centre = positions.len() as u32;
+        if of_layouts.iter().any(|(_, around)| around.iter().any(|around| around.len() > 2)) {
+            positions.extend(plane.quads.iter().map(|quad| middle(quad)));
+        }
+        let (mut of_quads, mut starts) = (Vec::new(), vec![0]);
+        for (q, quad) in plane.quads.iter().enumerate() {
+            of_quads.extend(around(quad).iter().map(|around| match around[..] {
+                [corner] => quad[corner],
+                [a, b] => numbers[&ordered([quad[a], quad[b]])],
+                _ => first_centre + q as u32,
+            }));
+            starts.push(of_quads.len() as u32);
+        }
+        Self { positions, of_quads, starts, edges }
     }
-    let first_centre = positions.len() as u32;
-    if around.iter().any(|around| around.len() > 2) {
-        positions.extend(plane.quads.iter().map(|quad| middle(quad)));
-    }
-    let mut of_quads = Vec::with_capacity(plane.quads.len() * places.len());
-    for (q, quad) in plane.quads.iter().enumerate() {
-        of_quads.extend(around.iter().map(|around| match around[..] {
-            [corner] => quad[corner],
-            [a, b] => numbers[&ordered([quad[a], quad[b]])],
-            _ => first_centre + q as u32,
-        }));
-    }
-    (positions, of_quads, edges)
 }
 
 fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// All cells are of the shape that the element stands on.
+/// The tables for the shapes that the cells have, quadrilaterals first.
 ///
 /// # Errors
-/// A cell that is not.
-fn one_shape(plane: &PlaneMesh, domain: Domain) -> Result<(), PlateError> {
-    match plane.quads.iter().position(|corners| corners.domain() != domain) {
-        None => Ok(()),
-        Some(other) => Err(PlateError::OtherShape {
-            of_element: domain.name(),
-            quad_tag: plane.quad_tags[other],
-            of_cell: plane.quads[other].domain().name(),
-        }),
+/// A cell of a shape that there is none for.
+fn forms(plane: &PlaneMesh, tables: &Tables) -> Result<Vec<ElementInfo>, PlateError> {
+    let mut found = Vec::new();
+    for domain in [Domain::Quadrilateral, Domain::Triangle] {
+        let Some(first) = plane.quads.iter().position(|corners| corners.domain() == domain) else { continue };
+        found.push(*tables.on(domain).ok_or_else(|| PlateError::OtherShape {
+            of_element: tables.cells(),
+            quad_tag: plane.quad_tags[first],
+            of_cell: domain.name(),
+        })?);
     }
+    Ok(if found.is_empty() { vec![tables.own] } else { found })
 }
 
 /// Turns the quads of a strip so that their r runs along x.

@@ -89,7 +89,7 @@ pub(super) fn neighbours(plate: &Plate, mirrors: &Mirrors, point: [f64; 2], star
 
 fn with_images(plate: &Plate, Mirrors(planes): &Mirrors, point: [f64; 2], ring: &[usize]) -> Vec<Neighbour> {
     let centre = |quad: &usize| {
-        let [x, y, _] = plate.cell(quad * plate.layers()).position(plate.info().centre());
+        let [x, y, _] = plate.cell(quad * plate.layers()).position(plate.info_of(*quad).centre());
         [x, y]
     };
     let from = |p: [f64; 2]| [p[0] - point[0], p[1] - point[1]];

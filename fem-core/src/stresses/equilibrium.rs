@@ -151,8 +151,8 @@ impl<'a> Fit<'a> {
 
     /// σ₁₁, σ₂₂, σ₁₂ in the centres of the cells.
     fn samples(&self, field: &Field<'_>, ply: usize, z: f64) -> Result<Vec<[f64; 3]>, ElementError> {
-        let at = field.plate().info().domain.centre();
         let sample = |&Neighbour { quad, turned, .. }: &Neighbour| {
+            let at = field.plate().info_of(quad).domain.centre();
             let (strain, _) = field.at(Spot { quad, at, ply, z })?;
             let s = field.stress(quad, (ply, z), &strain);
             Ok([s.s11(), s.s22(), turned * s.s12()])

@@ -63,7 +63,7 @@ pub fn mesh_errors(
     let mut inside = vec![true; plate.plane.points.len()];
     plate.plane.boundary().iter().flatten().for_each(|node| inside[*node as usize] = false);
     if plate.info().is_section()
-        || plate.info().domain != Domain::Quadrilateral
+        || plate.plane.quads.iter().any(|quad| quad.domain() == Domain::Triangle)
         || !quads.iter().all(|quad| quad.iter().any(|node| inside[*node as usize]))
     {
         return Ok(None);

@@ -1,7 +1,6 @@
 //! A displacement field of a plate, evaluated in its plies.
 
-use crate::contracts::element::{Element, ElementError, Part};
-use crate::contracts::large::LargeDeflection;
+use crate::contracts::element::{Element, ElementError, Part, form};
 use crate::plates::laminate::Laminate;
 use crate::plates::plate::Plate;
 use crate::words::tensor::{Global, Strain6, Stress6, stress};
@@ -14,7 +13,7 @@ pub struct Field<'a> {
     element: &'a dyn Element,
     /// Unknowns, before elimination of constraints.
     u: &'a [f64],
-    large: Option<&'a dyn LargeDeflection>,
+    large: bool,
 }
 
 /// Where a field is looked at.
@@ -33,13 +32,13 @@ pub struct Spot {
 impl<'a> Field<'a> {
     /// The field of the unknowns `u`, with small strains; one laminate for each region of the plate.
     pub fn new(plate: &'a Plate, laminates: &'a [Laminate], element: &'a dyn Element, u: &'a [f64]) -> Self {
-        Self { plate, laminates, element, u, large: None }
+        Self { plate, laminates, element, u, large: false }
     }
 
     /// The same with the strains of large deflections, where the element knows them.
     #[must_use]
     pub fn with_large_strains(self) -> Self {
-        Self { large: self.element.large_deflections(), ..self }
+        Self { large: true, ..self }
     }
 
     /// The plate.
@@ -58,7 +57,7 @@ impl<'a> Field<'a> {
         let (layer, slice) = self.slice(quad, ply);
         let stack = &self.plate.stacks(self.plate.region(quad))[layer];
         let q = self.plate.cell(quad * self.plate.layers() + layer).natural_height(z);
-        let held = self.element.held_stress(stack, &Part { slice, q: [q, q] });
+        let held = self.form(quad).held_stress(stack, &Part { slice, q: [q, q] });
         let moved = stress(&stack.slices[slice].c, strain);
         Stress6::new(std::array::from_fn(|k| moved.0[k] + held[k]))
     }
@@ -76,20 +75,25 @@ impl<'a> Field<'a> {
         let mut dofs = Vec::new();
         self.plate.cell_dofs(number, &mut dofs);
         let mut operator = vec![0.0; 6 * dofs.len()];
-        let strain = match self.large {
+        let element = self.form(quad);
+        let strain = match element.large_deflections().filter(|_| self.large) {
             Some(large) => {
                 let local: Vec<f64> = dofs.iter().map(|dof| self.u[*dof]).collect();
                 large.large_strain(&cell, slice, xi, &local)?
             }
             None => {
-                self.element.strain_operator(&cell, slice, xi, &mut operator);
+                element.strain_operator(&cell, slice, xi, &mut operator);
                 self.product(&dofs, &operator)
             }
         };
         let shape = &mut operator[..3 * dofs.len()];
-        self.element.shape(&cell, xi, shape);
+        element.shape(&cell, xi, shape);
         let displacement = self.product(&dofs, shape);
         Ok((Strain6::new(strain), displacement))
+    }
+
+    fn form(&self, quad: usize) -> &'a dyn Element {
+        form(self.element, self.plate.plane.quads[quad].domain())
     }
 
     /// The layer of cells that holds a ply, and its number there.

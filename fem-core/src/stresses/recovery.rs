@@ -1,7 +1,6 @@
 //! Stresses of plies and interfaces from displacements.
 
-use crate::contracts::element::{Element, ElementError, ElementInfo, Part, Point, Scratch, Stack};
-use crate::contracts::large::LargeDeflection;
+use crate::contracts::element::{Element, ElementError, ElementInfo, Part, Point, Scratch, Stack, form};
 use crate::plates::laminate::Laminate;
 use crate::plates::laws::{Asked, CellAnswer, PlyLaws};
 use crate::plates::plate::Plate;
@@ -112,14 +111,15 @@ impl Recovery {
         fields: usize,
         out: &mut [f64],
     ) -> Result<(), ElementError> {
-        let n = element.info().ndof();
         let per_quad = 6 * self.stations.len();
         let mut strains = vec![0.0; self.sources.len() * per_quad * fields];
         let (mut operators, mut scratch, mut dofs) = (Vec::new(), Scratch::default(), Vec::new());
-        let mut local = vec![0.0; n * fields];
+        let mut local = Vec::new();
         let layers = self.parts_of_layers();
         for (source, mut strains) in self.sources.iter().zip(strains.chunks_exact_mut(per_quad * fields)) {
-            let (quad, plane) = (source.quad, points(plate.info(), *source));
+            let element = form(element, plate.plane.quads[source.quad].domain());
+            let (quad, plane, n) = (source.quad, points(element.info(), *source), element.info().ndof());
+            local.resize(n * fields, 0.0);
             for (layer, Parts { parts, shares, stations }) in layers.iter().enumerate() {
                 let number = quad * plate.layers() + layer;
                 let cell = plate.cell(number);
@@ -166,7 +166,7 @@ impl Recovery {
     pub fn large_stresses(
         &self,
         plate: &Plate,
-        element: &dyn LargeDeflection,
+        element: &dyn Element,
         u: &[f64],
         fields: usize,
         out: &mut [f64],
@@ -176,14 +176,16 @@ impl Recovery {
         let (mut rest, mut dofs, mut local, mut of_parts) =
             (strains.as_mut_slice(), Vec::new(), Vec::new(), Vec::new());
         for source in &self.sources {
-            let (quad, plane) = (source.quad, points(plate.info(), *source));
+            let element = form(element, plate.plane.quads[source.quad].domain());
+            let Some(large) = element.large_deflections() else { return Err(ElementError(NO_LARGE.into())) };
+            let (quad, plane) = (source.quad, points(element.info(), *source));
             for (layer, Parts { parts, shares, stations }) in layers.iter().enumerate() {
                 let number = quad * plate.layers() + layer;
                 plate.cell_dofs(number, &mut dofs);
                 local.clear();
                 local.extend(u.chunks_exact(plate.ndof()).flat_map(|u| dofs.iter().map(|dof| u[*dof])));
                 of_parts.resize(6 * parts.len() * fields, 0.0);
-                element.mean_large_strains(&plate.cell(number), parts, &plane, &local, &mut of_parts)?;
+                large.mean_large_strains(&plate.cell(number), parts, &plane, &local, &mut of_parts)?;
                 let (here, next) = rest.split_at_mut(6 * stations * fields);
                 for (field, of_parts) in of_parts.chunks_exact(6 * parts.len()).enumerate() {
                     for (strain, (station, share)) in of_parts.chunks_exact(6).zip(shares) {
@@ -270,6 +272,8 @@ impl Recovery {
         }
     }
 }
+
+const NO_LARGE: &str = "the element knows no large deflections";
 
 /// Points of the plane over which the strains of a source are means.
 fn points(info: &ElementInfo, source: Source) -> Cow<'static, [Point]> {

@@ -25,6 +25,8 @@ const ZERO: f64 = 1e-11;
 /// * linear displacements are reproduced, with their strains; a uniform motion carries the mass of the cell
 /// * the corner that is counted first, the axes and the unit of length do not matter
 /// * folded, flat and undefined cells are refused; so may be the distorted one, by an element for parallelograms
+/// * the form on triangles, if there is one, is such an element too, has the same unknowns, and moves as this one does along a
+///   side that both share
 ///
 /// # Errors
 /// The first violation, in words.
@@ -48,7 +50,46 @@ pub fn check_element(element: &dyn Element) -> Result<(), String> {
         }
     }
     frames(element)?;
-    refusals(element)
+    refusals(element)?;
+    match element.triangular() {
+        Some(wedge) => {
+            side_by_side(element, wedge)?;
+            check_element(wedge).map_err(|why| format!("on triangles: {why}"))
+        }
+        None => Ok(()),
+    }
+}
+
+/// A square and a triangle below it move as one along their common side.
+fn side_by_side(element: &dyn Element, wedge: &dyn Element) -> Result<(), String> {
+    let (upper, lower) = (element.info(), wedge.info());
+    if (upper.domain, lower.domain) != (Domain::Quadrilateral, Domain::Triangle) || upper.dofs != lower.dofs {
+        return Err("the form on triangles needs an element for quadrilaterals, and its unknowns".into());
+    }
+    let stack = Stack::new(vec![tape(20.0)]);
+    let z = [0.0, 0.4e-3];
+    let square = Cell { corners: [[0.0, 0.0], [1e-3, 0.0], [1e-3, 1e-3], [0.0, 1e-3]].into(), z, stack: &stack };
+    let triangle = Cell { corners: [[0.0, 0.0], [0.3e-3, -0.8e-3], [1e-3, 0.0]].into(), z, stack: &stack };
+    // Anything at the nodes of the side, nothing elsewhere.
+    let displacements = |element: &dyn Element, cell: &Cell<'_>| -> Vec<[f64; 3]> {
+        let info = element.info();
+        let unknown = |(at, k): (&[f64; 3], usize)| match cell.position(*at) {
+            [x, y, z] if y.abs() < 1e-12 => (1e3 * x + 1.7e3 * z + 0.9 * k as f64 + 0.4).sin(),
+            _ => 0.0,
+        };
+        let u: Vec<f64> =
+            info.nodes.iter().flat_map(|at| (0..info.dofs.len()).map(move |k| unknown((at, k)))).collect();
+        let mut shape = vec![0.0; 3 * info.ndof()];
+        let points = (0..35).map(|i| [1e-3 * f64::from(i % 7) / 6.0, f64::from(i / 7) / 2.0 - 1.0]);
+        let at = |[x, q]: [f64; 2]| {
+            let [r, s] = cell.corners.locate([x, 0.0]).unwrap_or(info.domain.centre());
+            element.shape(cell, [r, s, q], &mut shape);
+            [0, 1, 2].map(|n| shape.chunks_exact(3).zip(&u).map(|(column, u)| column[n] * u).sum())
+        };
+        points.map(at).collect()
+    };
+    let (above, below) = (displacements(element, &square), displacements(wedge, &triangle));
+    close(above.as_flattened(), below.as_flattened()).map_err(|e| format!("cells of both shapes part by {e:.1e}"))
 }
 
 type Shape = (&'static str, Corners<[f64; 2]>, [f64; 2]);

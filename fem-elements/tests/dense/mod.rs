@@ -3,7 +3,7 @@
 
 use fem_core::dof::Dof;
 use fem_core::domain::Corners;
-use fem_core::element::{Cell, Element, Part, Scratch, Slice, Stack};
+use fem_core::element::{Cell, Element, Part, Scratch, Slice, Stack, form};
 use fem_core::material::Elastic;
 use fem_core::mesh::PlaneMesh;
 use fem_core::plate::{Plate, ZDerivatives};
@@ -119,12 +119,23 @@ pub(crate) struct Model {
 
 impl Model {
     pub(crate) fn new(element: &dyn Element, plane: PlaneMesh, faces: Vec<f64>, stacks: Vec<Stack>) -> Self {
-        let plate = Plate::new(plane, faces, stacks, *element.info(), ZDerivatives::Shared).unwrap();
+        Self::with(element, plane, (faces, stacks), ZDerivatives::Shared)
+    }
+
+    /// The same, whose layers share their z-derivatives or not.
+    pub(crate) fn with(
+        element: &dyn Element,
+        plane: PlaneMesh,
+        (faces, stacks): (Vec<f64>, Vec<Stack>),
+        z_derivatives: ZDerivatives,
+    ) -> Self {
+        let plate = Plate::new(plane, faces, stacks, element, z_derivatives).unwrap();
         let n = plate.ndof();
         let mut model = Self { plate, k: DMatrix::zeros(n, n), m: DMatrix::zeros(n, n) };
         let mut dofs = Vec::new();
         for number in 0..model.plate.cells() {
             let cell = model.plate.cell(number);
+            let element = form(element, cell.corners.domain());
             let (k, m) = (stiffness(element, &cell), mass(element, &cell));
             model.plate.cell_dofs(number, &mut dofs);
             for (j, dj) in dofs.iter().enumerate() {
@@ -183,7 +194,7 @@ impl Model {
 }
 
 /// `nx` × `ny` cells on (0, 1) × (0, 1), mapped.
-pub(crate) fn grid(nx: usize, ny: usize, map: impl Fn(f64, f64) -> [f64; 2]) -> PlaneMesh {
+pub(crate) fn grid(nx: usize, ny: usize, mut map: impl FnMut(f64, f64) -> [f64; 2]) -> PlaneMesh {
     let mut mesh = PlaneMesh::default();
     for j in 0..=ny {
         mesh.points.extend((0..=nx).map(|i| map(i as f64 / nx as f64, j as f64 / ny as f64)));

@@ -73,10 +73,10 @@ impl Shape {
     }
 }
 
-/// Points and cells of one shape, compressed once for all files that they appear in.
+/// Points and cells, compressed once for all files that they appear in.
 #[derive(Debug, Clone)]
 pub struct Grid {
-    shape: Shape,
+    version: &'static str,
     points: usize,
     cells: usize,
     positions: Array,
@@ -97,19 +97,23 @@ pub struct Contents<'a> {
 }
 
 impl Grid {
-    /// A grid of points, m, and cells, the numbers of whose points follow each other.
-    pub fn new(points: &[[f64; 3]], shape: Shape, cells: &[u32]) -> Self {
-        let count = cells.len() / shape.points();
-        let offsets = (1..=count).map(|cell| (cell * shape.points()) as i64);
+    /// A grid of points, m, and cells of these shapes, the numbers of whose points follow each other.
+    pub fn new(points: &[[f64; 3]], shapes: &[Shape], cells: &[u32]) -> Self {
+        let offsets = shapes.iter().scan(0, |end, shape| {
+            *end += shape.points() as i64;
+            Some(*end)
+        });
+        let types: Vec<u8> = shapes.iter().map(|shape| shape.id()).collect();
         Self {
-            shape,
+            // The later version reads all that the earlier one does.
+            version: shapes.iter().map(|shape| shape.version()).max().unwrap_or("1.0"),
             points: points.len(),
-            cells: count,
+            cells: shapes.len(),
             positions: Array::precise("Points", 3, points.as_flattened()),
             topology: [
                 Array::integers("connectivity", cells.iter().map(|point| i64::from(*point))),
                 Array::integers("offsets", offsets),
-                Array::bytes("types", &vec![shape.id(); count]),
+                Array::bytes("types", &types),
             ],
         }
     }
@@ -141,7 +145,7 @@ impl Grid {
         }
         dir.write_unsynced(name, |out| {
             let mut appended = Appended::default();
-            let version = self.shape.version();
+            let version = self.version;
             writeln!(out, r#"<?xml version="1.0"?>"#)?;
             writeln!(
                 out,

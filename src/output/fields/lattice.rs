@@ -1,7 +1,8 @@
 //! Points of a plate, and displacements there.
 
 use crate::model::Model;
-use fem_core::domain::Corners;
+use fem_core::domain::{Corners, Domain};
+use fem_core::element::form;
 use std::collections::HashMap;
 
 /// A height in the thickness.
@@ -22,6 +23,8 @@ pub(super) struct Lattice<'a> {
     heights: Vec<Height>,
     /// Columns of each quad, one after the other, in the order of the domain's lattice.
     of_quads: Vec<u32>,
+    /// Shape of each quad, and where its columns begin.
+    starts: Vec<(Domain, usize)>,
     /// Shape functions at all points, unless there are too many.
     kept: Option<Rows>,
 }
@@ -59,12 +62,14 @@ impl Rows {
 impl<'a> Lattice<'a> {
     /// The points at the ends of `intervals` equal parts of the sides of `quads`.
     pub(super) fn new(model: &'a Model, quads: &[usize], intervals: usize, heights: Vec<Height>) -> Self {
-        let (n, plane, domain) = (intervals, &model.plate.plane, model.plate.info().domain);
-        let points = domain.lattice(n);
+        let (n, plane) = (intervals, &model.plate.plane);
+        let points = [Domain::Quadrilateral, Domain::Triangle].map(|domain| domain.lattice(n));
         let mut numbers: HashMap<[u32; 3], u32> = HashMap::new();
-        let (mut columns, mut of_quads) = (Vec::new(), Vec::with_capacity(quads.len() * points.len()));
+        let (mut columns, mut of_quads, mut starts) = (Vec::new(), Vec::new(), Vec::new());
         for quad in quads {
-            for point in &points {
+            let domain = plane.quads[*quad].domain();
+            starts.push((domain, of_quads.len()));
+            for point in &points[usize::from(domain == Domain::Triangle)] {
                 let place = point.map(|i| 2.0 * i as f64 / n as f64 - 1.0);
                 let new = |columns: &mut Vec<_>| {
                     columns.push((*quad, place));
@@ -76,13 +81,23 @@ impl<'a> Lattice<'a> {
                 });
             }
         }
-        let mut lattice = Self { model, intervals, columns, heights, of_quads, kept: None };
+        let mut lattice = Self { model, intervals, columns, heights, of_quads, starts, kept: None };
         if lattice.len() * model.plate.info().ndof() * size_of::<(u32, f64)>() <= LIMIT {
             let mut rows = Rows::default();
             (0..lattice.columns.len()).for_each(|column| lattice.shapes(column, &mut rows));
             lattice.kept = Some(rows);
         }
         lattice
+    }
+
+    /// Number of quads.
+    pub(super) fn quads(&self) -> usize {
+        self.starts.len()
+    }
+
+    /// Shape of the `quad`-th quad.
+    pub(super) fn domain(&self, quad: usize) -> Domain {
+        self.starts[quad].0
     }
 
     /// Number of points.
@@ -92,8 +107,8 @@ impl<'a> Lattice<'a> {
 
     /// The point of the lattice on the `quad`-th quad and at a height.
     pub(super) fn point(&self, quad: usize, point: [usize; 2], height: usize) -> u32 {
-        let (n, domain) = (self.intervals, self.model.plate.info().domain);
-        let column = self.of_quads[quad * domain.lattice_count(n) + domain.lattice_number(n, point)] as usize;
+        let (domain, start) = self.starts[quad];
+        let column = self.of_quads[start + domain.lattice_number(self.intervals, point)] as usize;
         (column * self.heights.len() + height) as u32
     }
 
@@ -127,7 +142,8 @@ impl<'a> Lattice<'a> {
     fn shapes(&self, column: usize, rows: &mut Rows) {
         let Model { plate, element, .. } = self.model;
         let (quad, [r, s]) = self.columns[column];
-        let (mut dofs, mut shape) = (Vec::new(), vec![0.0; 3 * plate.info().ndof()]);
+        let element = form(&**element, plate.plane.quads[quad].domain());
+        let (mut dofs, mut shape) = (Vec::new(), vec![0.0; 3 * element.info().ndof()]);
         for of_layer in self.heights.chunk_by(|a, b| a.layer == b.layer) {
             let number = quad * plate.layers() + of_layer[0].layer;
             let cell = plate.cell(number);

@@ -8,14 +8,21 @@ use fem_core::domain::Domain;
 use fem_io::scene::{FieldCells, FieldSeries};
 use fem_io::vtu::{Array, Contents, Grid, Shape, lagrange_hexahedron, quadratic_wedge};
 
-/// Cells of a file over one of the plate: their order, which no element's displacements exceed in a natural coordinate, and
-/// the points (i, j, k) of each.
-fn cells_of(domain: Domain, cells: FieldCells) -> (usize, Shape, Vec<Vec<[usize; 3]>>) {
+/// Cells of a file over one of the plate, each by its points (i, j, k).
+type Cells = (Shape, Vec<Vec<[usize; 3]>>);
+
+/// Parts of a side of a cell: what no displacement of an element exceeds along it; where all cells are triangles, curved ones are of
+/// second order.
+fn order_of(quads: impl Iterator<Item = Domain>) -> usize {
+    if quads.into_iter().all(|domain| domain == Domain::Triangle) { 2 } else { 3 }
+}
+
+fn cells_of(domain: Domain, order: usize, cells: FieldCells) -> Cells {
     match (domain, cells) {
-        (Domain::Quadrilateral, FieldCells::Lagrange) => (3, Shape::Lagrange(3), vec![lagrange_hexahedron(3)]),
-        (Domain::Quadrilateral, FieldCells::Subdivided) => (3, Shape::Hexahedron, linear(domain, 3)),
-        (Domain::Triangle, FieldCells::Lagrange) => (2, Shape::QuadraticWedge, vec![quadratic_wedge()]),
-        (Domain::Triangle, FieldCells::Subdivided) => (2, Shape::Wedge, linear(domain, 2)),
+        (Domain::Quadrilateral, FieldCells::Lagrange) => (Shape::Lagrange(order), vec![lagrange_hexahedron(order)]),
+        (Domain::Quadrilateral, FieldCells::Subdivided) => (Shape::Hexahedron, linear(domain, order)),
+        (Domain::Triangle, FieldCells::Lagrange) if order == 2 => (Shape::QuadraticWedge, vec![quadratic_wedge()]),
+        (Domain::Triangle, _) => (Shape::Wedge, linear(domain, order)),
     }
 }
 
@@ -30,21 +37,25 @@ pub(super) struct Plate<'a> {
 impl<'a> Plate<'a> {
     pub(super) fn new(model: &'a Model, plan: &FieldPlan) -> Self {
         let layers = model.plate.layers();
-        let (order, shape, cells) = cells_of(model.plate.info().domain, plan.cells);
+        let order = order_of(plan.quads.iter().map(|quad| model.plate.plane.quads[*quad].domain()));
+        let of = [Domain::Quadrilateral, Domain::Triangle].map(|domain| cells_of(domain, order, plan.cells));
         let heights = (0..=order * layers).map(|level| {
             let layer = level.saturating_sub(1) / order;
             Height { layer, q: 2.0 * (level - order * layer) as f64 / order as f64 - 1.0 }
         });
         let lattice = Lattice::new(model, &plan.quads, order, heights.collect());
         let of_plate = || (0..plan.quads.len()).flat_map(|quad| (0..layers).map(move |layer| (quad, layer)));
+        let cells = |quad: usize| &of[usize::from(lattice.domain(quad) == Domain::Triangle)];
         let point = |quad: usize, layer: usize, [i, j, k]: [usize; 3]| lattice.point(quad, [i, j], order * layer + k);
-        let mut points = Vec::new();
+        let (mut points, mut shapes) = (Vec::new(), Vec::new());
         for (quad, layer) in of_plate() {
+            let (shape, cells) = cells(quad);
+            shapes.extend(cells.iter().map(|_| *shape));
             points.extend(cells.iter().flatten().map(|ijk| point(quad, layer, *ijk)));
         }
         let each = |value: &dyn Fn(usize, usize) -> i64| -> Vec<i64> {
             of_plate()
-                .flat_map(|(quad, layer)| cells.iter().map(move |_| (quad, layer)))
+                .flat_map(|(quad, layer)| cells(quad).1.iter().map(move |_| (quad, layer)))
                 .map(|(q, l)| value(q, l))
                 .collect()
         };
@@ -52,7 +63,7 @@ impl<'a> Plate<'a> {
         let numbers = each(&|_, layer| layer as i64 + 1);
         let fixed =
             [("cell", tags), ("layer", numbers)].map(|(name, values)| Array::integers(name, values.into_iter()));
-        Self { grid: Grid::new(&lattice.positions(), shape, &points), lattice, fixed }
+        Self { grid: Grid::new(&lattice.positions(), &shapes, &points), lattice, fixed }
     }
 
     /// What the values of a frame take, bytes.

@@ -14,18 +14,22 @@ use fem_io::scene::FieldSeries;
 use fem_io::vtu::{Array, Contents, Grid, Shape};
 
 /// Points over the corners of a quad at a height of a lattice of one interval.
-fn face(lattice: &Lattice<'_>, domain: Domain, quad: usize, height: usize) -> Vec<u32> {
-    let corners = domain.lattice_cells(1)[0];
+fn face(lattice: &Lattice<'_>, quad: usize, height: usize) -> Vec<u32> {
+    let corners = lattice.domain(quad).lattice_cells(1)[0];
     corners.into_iter().map(|corner| lattice.point(quad, corner, height)).collect()
 }
 
-/// Linear cells of a domain, as prisms and as faces.
-fn shapes(domain: Domain) -> [Shape; 2] {
-    match domain {
-        Domain::Quadrilateral => [Shape::Hexahedron, Shape::Quad],
-        Domain::Triangle => [Shape::Wedge, Shape::Triangle],
-    }
+/// Linear cells over the quads of a lattice, `sheets` over each: prisms, or their faces.
+fn shapes(lattice: &Lattice<'_>, sheets: usize, prisms: bool) -> Vec<Shape> {
+    let of = |quad: usize| match (lattice.domain(quad), prisms) {
+        (Domain::Quadrilateral, true) => Shape::Hexahedron,
+        (Domain::Quadrilateral, false) => Shape::Quad,
+        (Domain::Triangle, true) => Shape::Wedge,
+        (Domain::Triangle, false) => Shape::Triangle,
+    };
+    (0..lattice.quads()).flat_map(|quad| std::iter::repeat_n(of(quad), sheets)).collect()
 }
+
 const COMPONENTS: [&str; 6] = ["11", "22", "33", "12", "23", "31"];
 /// Positions of the shear tractions (31, 23) of an interface among the components.
 const SHEAR: [usize; 2] = [5, 4];
@@ -145,8 +149,7 @@ impl Sheets {
     fn plies(model: &Model, plan: &FieldPlan, lattice: &Lattice<'_>, recovery: &Recovery) -> Self {
         let plies = &model.laminate.plies;
         let over = |quad: &usize| model.laminates[model.plate.region(*quad)].plies.iter();
-        let domain = model.plate.info().domain;
-        let face = |quad: usize, height: usize| face(lattice, domain, quad, height);
+        let face = |quad: usize, height: usize| face(lattice, quad, height);
         let cells = (0..plan.quads.len()).flat_map(|quad| (0..plies.len()).map(move |ply| (quad, ply)));
         let cells: Vec<u32> = cells.flat_map(|(quad, ply)| [face(quad, ply), face(quad, ply + 1)].concat()).collect();
         let angles: Vec<f64> = plan.quads.iter().flat_map(|quad| over(quad).map(|ply| ply.angle_deg)).collect();
@@ -155,7 +158,7 @@ impl Sheets {
         Self {
             series: FieldSeries::Plies,
             site: Site::Ply,
-            grid: Grid::new(&lattice.positions(), shapes(domain)[0], &cells),
+            grid: Grid::new(&lattice.positions(), &shapes(lattice, plies.len(), true), &cells),
             fixed: vec![
                 tags(model, plan, plies.len()),
                 numbers("ply", plan, plies.len()),
@@ -169,8 +172,7 @@ impl Sheets {
 
     fn interfaces(model: &Model, plan: &FieldPlan, lattice: &Lattice<'_>, recovery: &Recovery) -> Self {
         let count = model.laminate.plies.len() - 1;
-        let domain = model.plate.info().domain;
-        let face = |quad: usize, height: usize| face(lattice, domain, quad, height);
+        let face = |quad: usize, height: usize| face(lattice, quad, height);
         let cells = (0..plan.quads.len()).flat_map(|quad| (1..=count).map(move |height| (quad, height)));
         let mut cells: Vec<u32> = cells.flat_map(|(quad, height)| face(quad, height)).collect();
         // The two faces of the plate are not interfaces.
@@ -182,7 +184,7 @@ impl Sheets {
         Self {
             series: FieldSeries::Interfaces,
             site: Site::Interface,
-            grid: Grid::new(&positions, shapes(domain)[1], &cells),
+            grid: Grid::new(&positions, &shapes(lattice, count, false), &cells),
             fixed: vec![tags(model, plan, count), numbers("ply_below", plan, count)],
             points,
             stations: stations(recovery, count, true),

@@ -27,10 +27,10 @@ impl Separable {
         let tractions = self.nodal_tractions(u);
         let fresh = self.reached(&tractions, states);
         let parts = &self.parts;
-        let domain = parts.element.info().domain;
         for number in fresh {
             let cell = &parts.interfaces.cells()[number];
             let corners = parts.plate.plane.corners(cell.quad);
+            let domain = corners.domain();
             let at_corner: Vec<Jump> = parts
                 .plate
                 .corner_columns(cell.quad)
@@ -86,13 +86,13 @@ impl Separable {
         let mut nodes: BTreeMap<(usize, usize), Jump> = BTreeMap::new();
         let parts = &self.parts;
         let plate = &parts.plate;
-        let corners = parts.element.info().domain.corners().len() as f64;
         let mut force = vec![0.0; u.len()];
         self.k.add_product(1.0, u, &mut force);
         let symmetry = plate.symmetry();
         let mut areas: BTreeMap<(u32, usize), f64> = BTreeMap::new();
         for cell in parts.interfaces.cells() {
-            let share = cell.weight * plate.plane.corners(cell.quad).area() / corners;
+            let corners = plate.plane.corners(cell.quad);
+            let share = cell.weight * corners.area() / corners.len() as f64;
             for column in plate.corner_columns(cell.quad) {
                 nodes.entry((column as usize, cell.face)).or_default();
                 *areas.entry((symmetry.column(column), cell.face)).or_default() += share;

@@ -1,6 +1,6 @@
 //! Some of the cells of a plate as a plate of their own.
 
-use super::{Plate, columns};
+use super::{Columns, Plate};
 use crate::plates::mesh::{Group, PlaneMesh};
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ impl Plate {
             node_tags: vertices.iter().map(|v| whole.node_tags[*v as usize]).collect(),
             quad_tags: quads.iter().map(|q| whole.quad_tags[*q as usize]).collect(),
         };
-        let (columns, quad_columns, edges) = columns(&plane, self.info.domain, &self.places);
+        let Columns { positions: columns, of_quads: quad_columns, starts, edges } = Columns::of(&plane, &self.layouts);
         let mut part = Self {
             symmetry: self.symmetry.part(columns.len(), quads),
             plane,
@@ -28,11 +28,10 @@ impl Plate {
             levels: self.levels.clone(),
             stacks: self.stacks.clone(),
             regions: quads.iter().map(|q| self.regions[*q as usize]).collect(),
-            info: self.info,
+            layouts: self.layouts.clone(),
             z_derivatives: self.z_derivatives,
             quad_columns,
-            slots: self.slots.clone(),
-            places: self.places.clone(),
+            starts,
             edges,
             pitch: self.pitch,
             offsets: Vec::new(),

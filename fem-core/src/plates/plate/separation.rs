@@ -47,7 +47,7 @@ impl Plate {
     /// Names of the second set of unknowns of a node between layers.
     pub(super) fn second_set(&self, node: usize) -> impl Iterator<Item = &'static Dof> + use<> {
         let whole = self.is_separable(node);
-        self.info.dofs.iter().filter(move |dof| whole || dof.m() == 3)
+        self.info().dofs.iter().filter(move |dof| whole || dof.m() == 3)
     }
 
     /// Level of a face between layers.
@@ -56,20 +56,21 @@ impl Plate {
     }
 
     /// Unknowns of a cell, in its own count, that the displacements on its upper face depend on: those of the nodes there but
-    /// their z-derivatives.
-    pub fn face_slots(&self) -> impl Iterator<Item = (usize, Dof)> + '_ {
-        let nd = self.info.dofs.len();
-        let top = (0..self.slots.len()).filter(|i| self.slots[*i].1 == self.pitch);
+    /// their z-derivatives. Without a `quad`, those of the shape with most corners.
+    pub fn face_slots(&self, quad: Option<usize>) -> impl Iterator<Item = (usize, Dof)> + '_ {
+        let nd = self.info().dofs.len();
+        let slots = &quad.map_or(&self.layouts[0], |quad| self.layout(quad)).slots;
+        let top = (0..slots.len()).filter(|i| slots[*i].1 == self.pitch);
         top.flat_map(move |i| {
-            self.info.dofs.iter().enumerate().filter(|(_, d)| d.m() != 3).map(move |(k, d)| (i * nd + k, *d))
+            self.info().dofs.iter().enumerate().filter(|(_, d)| d.m() != 3).map(move |(k, d)| (i * nd + k, *d))
         })
     }
 
     /// Unknowns of the two sides of the face between the layers `face − 1` and `face` over a quad.
     pub fn face_unknowns(&self, quad: usize, face: usize) -> FaceUnknowns {
-        let nd = self.info.dofs.len();
+        let nd = self.info().dofs.len();
         let mut found = FaceUnknowns::default();
-        for (i, (place, up)) in self.slots.iter().enumerate() {
+        for (i, (place, up)) in self.layout(quad).slots.iter().enumerate() {
             if *up != self.pitch {
                 continue;
             }
@@ -77,7 +78,7 @@ impl Plate {
             debug_assert_eq!(node, self.cell_node(quad * self.layers() + face - 1, i));
             let first = self.offsets[node];
             let above = if self.is_separable(node) { first + nd } else { first };
-            for (k, _) in self.info.dofs.iter().enumerate().filter(|(_, dof)| dof.m() != 3) {
+            for (k, _) in self.info().dofs.iter().enumerate().filter(|(_, dof)| dof.m() != 3) {
                 found.below.push(first + k);
                 found.above.push(above + k);
             }
@@ -96,9 +97,9 @@ impl Plate {
     /// the z-derivatives that layers have of their own.
     pub fn pairs(&self, column: usize, face: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
         let node = self.node(column, face * self.pitch);
-        let (first, nd) = (self.offsets[node], self.info.dofs.len());
+        let (first, nd) = (self.offsets[node], self.info().dofs.len());
         let shared = self.z_derivatives == ZDerivatives::Shared;
-        let names = self.info.dofs.iter().enumerate().filter(move |(_, dof)| shared || dof.m() != 3);
+        let names = self.info().dofs.iter().enumerate().filter(move |(_, dof)| shared || dof.m() != 3);
         names.map(move |(k, _)| [first + nd + k, first + k])
     }
 
@@ -125,9 +126,10 @@ pub const CLOSED: &str = "the closed interface";
 impl Plate {
     /// Columns with nodes at the corners of a quad; a section has its nodes between two corners, which share them.
     pub fn corner_columns(&self, quad: usize) -> impl Iterator<Item = u32> + '_ {
-        let middle = if self.info.is_section() { 0.0 } else { 1.0 };
-        let at = move |[r, s]: &[f64; 2]| self.places.iter().position(|place| *place == [*r, middle * s]);
-        let places = self.info.domain.corners().iter().filter_map(at);
+        let middle = if self.info().is_section() { 0.0 } else { 1.0 };
+        let layout = self.layout(quad);
+        let at = move |[r, s]: &[f64; 2]| layout.places.iter().position(|place| *place == [*r, middle * s]);
+        let places = layout.info.domain.corners().iter().filter_map(at);
         places.map(move |place| self.columns_of_quad(quad)[place])
     }
 

@@ -30,8 +30,9 @@ fn product(along: usize, across: usize) -> Points {
         .collect()
 }
 
-/// Rules of 1, 6 and 7 points (degrees 1, 4, 5) in closed form (Strang and Fix 1973; Radon 1948); beyond, Gauss points in
-/// the three quadrilaterals between the centroid and the middles of the sides, any degree, same symmetry.
+/// Rules of 1, 6 and 7 points (degrees 1, 4, 5) in closed form (Strang and Fix 1973; Radon 1948) and of 16 (degree 8; Dunavant
+/// 1985, its equations solved to the last digit); beyond, Gauss points in the three quadrilaterals between the centroid and the
+/// middles of the sides, any degree, same symmetry.
 fn triangle(order: usize) -> Points {
     // Points with area coordinates (1 − 2a, a, a) and its turns, share `w` of the area each.
     let orbit = |a: f64, w: f64| [[a, a], [1.0 - 2.0 * a, a], [a, 1.0 - 2.0 * a]].map(|p| point(p, w));
@@ -52,6 +53,20 @@ fn triangle(order: usize) -> Points {
             let orbits = [(6.0 + root, 155.0 + root), (6.0 - root, 155.0 - root)];
             let orbits = orbits.into_iter().flat_map(|(a, w)| orbit(a / 21.0, w / 1200.0));
             std::iter::once(point([1.0 / 3.0; 2], 9.0 / 40.0)).chain(orbits).collect()
+        }
+        4 => {
+            const ORBITS: [(f64, f64); 3] = [
+                (0.459_292_588_292_723_2, 0.095_091_634_267_284_63),
+                (0.170_569_307_751_760_2, 0.103_217_370_534_718_25),
+                (0.050_547_228_317_030_98, 0.032_458_497_623_198_08),
+            ];
+            const SIX: [f64; 2] = [0.008_394_777_409_957_605, 0.263_112_829_634_638_1];
+            let [a, b] = SIX;
+            let c = 1.0 - a - b;
+            let pairs = [[a, b], [b, a], [a, c], [c, a], [b, c], [c, b]];
+            let six = pairs.into_iter().map(|pair| point(pair, 0.027_230_314_174_434_995));
+            let orbits = ORBITS.into_iter().flat_map(|(a, w)| orbit(a, w));
+            std::iter::once(point([1.0 / 3.0; 2], 0.144_315_607_677_787_17)).chain(orbits).chain(six).collect()
         }
         _ => thirds(order + 1),
     }

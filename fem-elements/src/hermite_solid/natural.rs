@@ -2,10 +2,10 @@
 //!
 //! Once the derivatives at the nodes are natural ones, the functions' gradients are a table of the element; the shape of the
 //! cell enters in a 2 × 2 matrix per node and per in-plane point. As in the stiffness, the sums run over the even and the odd
-//! parts in q of the 16 functions of the upper face.
+//! parts in q of the functions of the upper face.
 
-use super::{BELOW, H, HALVES, Jacobians, TERMS, column};
-use crate::hermite::{self, CORNERS};
+use super::{BELOW, Functions, HALVES, HermiteSolid, Jacobians, TERMS, column};
+use crate::hermite;
 use crate::large::{Displacements, Polynomial};
 use fem_core::element::{ElementInfo, PlaneMap};
 use std::fmt;
@@ -17,25 +17,28 @@ const WIDTH: usize = 6;
 type Components = [f64; 4];
 
 /// A number per component of the even and the odd parts of the functions.
-type Parts = [[Components; H]; 2];
+type Parts<const H: usize> = [[Components; H]; 2];
 
 /// Natural gradients of the even and the odd parts at each in-plane point.
 #[derive(Clone)]
-pub(super) struct Table(Vec<[[[f64; WIDTH]; H]; 2]>);
+pub(super) struct Table<const H: usize>(Vec<[[[f64; WIDTH]; H]; 2]>);
 
 /// Thousands of numbers would hide what an element's message is about.
-impl fmt::Debug for Table {
+impl<const H: usize> fmt::Debug for Table<H> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Table of {} points", self.0.len())
     }
 }
 
-impl Table {
-    pub(super) fn new(info: &ElementInfo) -> Self {
+impl<const H: usize> Table<H> {
+    pub(super) fn new<const F: usize>(info: &ElementInfo) -> Self
+    where
+        HermiteSolid<F, H>: Functions,
+    {
         let at = |(r, s, _)| {
             let mut parts = [[[0.0; WIDTH]; H]; 2];
             for f in 0..H {
-                let (functions, m) = (hermite::node_functions(CORNERS[4 + f / 4], r, s), f % 4);
+                let (functions, m) = (HermiteSolid::<F, H>::node_functions((H + f) / 4, r, s), f % 4);
                 let gradient = [functions.n_r[m], functions.n_s[m], hermite::derivative(&functions.n[m])];
                 for (half, part) in HALVES.into_iter().zip(&mut parts) {
                     for ((d, k), value) in TERMS[half].iter().zip(&mut part[f]) {
@@ -50,17 +53,17 @@ impl Table {
 }
 
 /// Displacements of a cell, and the forces conjugate to them.
-pub(super) struct Natural<'a> {
-    table: &'a Table,
+pub(super) struct Natural<'a, const H: usize> {
+    table: &'a Table<H>,
     half_height: f64,
-    u: Parts,
-    force: Parts,
+    u: Parts<H>,
+    force: Parts<H>,
 }
 
-impl<'a> Natural<'a> {
-    pub(super) fn new(table: &'a Table, jacobians: &Jacobians, half_height: f64, u: &[f64]) -> Self {
-        let mut parts = Parts::default();
-        for (below, jacobian) in jacobians[..4].iter().enumerate() {
+impl<'a, const H: usize> Natural<'a, H> {
+    pub(super) fn new(table: &'a Table<H>, jacobians: &Jacobians, half_height: f64, u: &[f64]) -> Self {
+        let mut parts = [[Components::default(); H]; 2];
+        for (below, jacobian) in jacobians[..H / 4].iter().enumerate() {
             for n in 0..3 {
                 // A node stands upright above the one below it: both have the same Jacobian.
                 let [low, high] = [4 * below, H + 4 * below].map(|f| {
@@ -74,12 +77,12 @@ impl<'a> Natural<'a> {
                 }
             }
         }
-        Self { table, half_height, u: parts, force: Parts::default() }
+        Self { table, half_height, u: parts, force: [[Components::default(); H]; 2] }
     }
 
     /// The transpose of what [`Self::new`] does to the displacements.
     pub(super) fn force(&self, jacobians: &Jacobians, force: &mut [f64]) {
-        for (below, jacobian) in jacobians[..4].iter().enumerate() {
+        for (below, jacobian) in jacobians[..H / 4].iter().enumerate() {
             for n in 0..3 {
                 let [even, odd] =
                     [0, 1].map(|half| -> [f64; 4] { std::array::from_fn(|m| self.force[half][4 * below + m][n]) });
@@ -97,7 +100,7 @@ impl<'a> Natural<'a> {
     }
 }
 
-impl Displacements<4> for Natural<'_> {
+impl<const H: usize> Displacements<4> for Natural<'_, H> {
     fn gradient(&self, point: usize, plane: &PlaneMap) -> Polynomial<4> {
         let mut natural = [[[0.0; 4]; 3]; 3];
         for ((half, table), u) in HALVES.into_iter().zip(&self.table.0[point]).zip(&self.u) {
