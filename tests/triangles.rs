@@ -106,3 +106,71 @@ fn elements_and_meshes_that_do_not_fit_are_refused_with_what_helps() {
     let said = mixed.fem("check", &[]).good().stdout;
     assert!(said.contains(" cells, "), "{said}");
 }
+
+/// A scene on a mesh of `tests/data/meshes`, whose cells are divided in four `refine` times.
+fn of_gmsh(mesh: &str, refine: usize, scene: &str) -> Case {
+    let bytes = fs::read(root().join("tests/data/meshes").join(format!("{mesh}.msh"))).unwrap();
+    plate()
+        .text(&format!("mesh = {{ file = \"plate.msh\", unit = \"mm\", refine = {refine} }}\n{scene}"))
+        .mesh_bytes(bytes)
+}
+
+#[test]
+fn impacts_on_meshes_straight_out_of_gmsh() {
+    for (mesh, [x, y]) in
+        [("rectangle", [30, 20]), ("disc", [0, 0]), ("hole", [20, 20]), ("l-shape", [12, 12]), ("mixed", [30, 20])]
+    {
+        let case = of_gmsh(
+            mesh,
+            0,
+            &format!(
+                "title = \"{mesh}\"\nmaterials.tape = {{ library = \"AS4/3502\" }}\n\
+                 laminate = {{ plies = \"[0/45/-45/90]s\", material = \"tape\", ply_thickness = \"0.13208 mm\", layers = [8] }}\n\
+                 impactor = {{ mass = \"100 g\", velocity = \"2 m/s\", at = {{ x = \"{x} mm\", y = \"{y} mm\" }} }}\n\
+                 contact = {{ law = \"hertz\", k = \"1.07e5 N/mm^1.5\" }}\nreduction = {{ method = \"ritz\", vectors = 30 }}\n\
+                 march = {{ step = \"1 us\", end = \"100 us\" }}\n\
+                 support = [{{ group = \"rim\", at = \"all\", fix = [\"U10\", \"U20\", \"U30\"] }}]\n\
+                 failure = {{ criteria = [\"puck\"], every = \"5 us\" }}\n\
+                 {}",
+                if mesh == "mixed" { "output = { maps = true, fields = { every = \"50 us\" } }\n" } else { "" }
+            ),
+        );
+        case.fem("run", &["--out", "out"]).good();
+        let summary = case.summary("out");
+        let force = number(&summary, "peak_force_N").unwrap();
+        assert!(force > 50.0 && force < 300.0, "{mesh}: {force} N");
+        let fields = |case: &Case| case.read("out/fields/plies.pvd").matches("DataSet ").count();
+        assert!(mesh != "mixed" || fields(&case) == 3);
+    }
+}
+
+#[test]
+fn clamped_plates_straight_out_of_gmsh_have_the_frequencies_of_theory() {
+    // ω a² √(ρh/D) of the lowest mode: 10.2158 of a circle of radius a; of a rectangle by series, 27.01 for sides of 1.5 a and a.
+    let lowest = |mesh: &str| {
+        let case = of_gmsh(
+            mesh,
+            1,
+            "title = \"steel\"\nanalysis = \"modes\"\n\
+             materials.steel = { e1 = \"206 GPa\", e2 = \"206 GPa\", e3 = \"206 GPa\", nu12 = 0.3, nu13 = 0.3, nu23 = 0.3, \
+             g12 = \"79.2307692 GPa\", g13 = \"79.2307692 GPa\", g23 = \"79.2307692 GPa\", density = \"7.9 g/cm^3\" }\n\
+             laminate = { plies = \"[0]\", material = \"steel\", ply_thickness = \"0.8 mm\", layers = [1] }\n\
+             support = [{ group = \"rim\", at = \"all\", fix = [\"U10\", \"U20\", \"U30\", \"U13\", \"U23\", \"U31\", \"U32\"] }]\n\
+             modes = { count = 2 }\n",
+        );
+        case.fem("run", &["--out", "out"]).good();
+        let (_, rows) = case.table("out/modes.csv");
+        rows[0][1].parse::<f64>().unwrap()
+    };
+    let factor = |hz: f64, a: f64| {
+        let h = 0.8e-3_f64;
+        std::f64::consts::TAU * hz * a * a * (7900.0 * 12.0 * (1.0 - 0.09) / (206e9 * h * h)).sqrt()
+    };
+    let circle = factor(lowest("disc"), 30e-3) / 10.2158 - 1.0;
+    // Between the nodes of the rim the plate moves a little, and shear is not in the theory: both make it softer.
+    assert!((-1e-2..0.0).contains(&circle), "{circle:e}");
+    for mesh in ["rectangle", "mixed"] {
+        let error = factor(lowest(mesh), 40e-3) / 27.01 - 1.0;
+        assert!((-1e-2..0.0).contains(&error), "{mesh}: {error:e}");
+    }
+}

@@ -4,7 +4,7 @@
 //! and then differ by it, which [`Strike::stiff_across`] shows: plies that do not yield across the laminate leave of a solid
 //! what first-order theory has, and its histories meet the series.
 
-use super::scene::{AS4, MeshFile, Plate, Side, gmsh_grid, isotropic, order, reference};
+use super::scene::{AS4, Cells, MeshFile, Plate, Side, gmsh_cells, isotropic, order, reference};
 use crate::support::draw;
 use fem::analyses::impact;
 use fem::io::scene;
@@ -52,6 +52,7 @@ pub(super) struct Strike {
     /// Cells are half a patch long under the impactor, longer by `growth` from one to the next, at most `longest`, mm.
     pub(super) growth: f64,
     pub(super) longest: f64,
+    pub(super) cells: Cells,
     /// kg and m/s.
     pub(super) mass: f64,
     pub(super) velocity: f64,
@@ -109,7 +110,7 @@ impl Strike {
     pub(super) fn mesh(&self) -> MeshFile {
         let x = self.lines();
         let y = self.width.map_or_else(|| x.clone(), |width| vec![0.0, width]);
-        gmsh_grid(&x, &y, 0.0)
+        gmsh_cells(&x, &y, 0.0, self.cells)
     }
 
     /// Of the whole plate to that which is computed.
@@ -276,6 +277,7 @@ fn shell(material: String, plies: &'static str, ply_mm: f64, layers: &'static [u
         patch: 2.0,
         growth: 1.12,
         longest: 100.0,
+        cells: Cells::Quads,
         mass: 0.0328107936740918,
         velocity: 1.0,
         k: 14901620370.37037,
@@ -346,6 +348,7 @@ fn as4x16() -> Strike {
         patch: 2.0,
         growth: 1.2,
         longest: 4.0,
+        cells: Cells::Quads,
         mass: 2.49,
         velocity: 1.56,
         k: 3383637096.3801656,
@@ -373,6 +376,15 @@ fn a_small_mass_on_sixteen_plies() {
     let strike = small_mass().stiff_across();
     agrees(&strike, "impact_as4x16_smallmass_fsdtri_patch2_hertz.csv", 3);
     agrees(&strike.law(SUN_YANG), SMALL_MASS, 3);
+}
+
+/// The same series by triangles, and by triangles among quadrilaterals.
+#[test]
+fn cells_of_both_shapes() {
+    for cells in [Cells::Triangles, Cells::Mixed] {
+        let strike = Strike { cells, ..as4x16().stiff_across() };
+        agrees(&strike.law(SUN_YANG), LARGE_MASS, 2);
+    }
 }
 
 /// With the modulus that the plies have across the laminate, the squeeze under the patch makes the contact softer than that

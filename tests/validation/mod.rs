@@ -21,5 +21,6 @@ mod study;
 mod substructures;
 mod symmetry;
 mod transverse;
+mod triangles;
 mod waves;
 mod worth;

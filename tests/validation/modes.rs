@@ -1,7 +1,7 @@
 //! Natural frequencies against exact elasticity and thin-plate theory.
 
 use super::scene::Side::{self, Supported, Symmetric};
-use super::scene::{AS4, PAGANO, Plate, isotropic, reference};
+use super::scene::{AS4, Cells, PAGANO, Plate, gmsh_cells, isotropic, reference};
 
 /// The first frequencies of a plate, relative.
 const FREQUENCY: f64 = 1e-3;
@@ -19,6 +19,10 @@ const ZERO: f64 = 1e-3;
 /// The tables hold m, n ≤ 3, so that only so many ranks are known: (1,4) comes next.
 fn check(table: &str, plies: &str, ply: f64, layers: usize, ratio: f64, cells: usize, ranks: usize) {
     let plate = Plate::new(PAGANO, plies, ply, vec![1; layers]).rectangle([0.5 * ratio; 2], [cells; 2]);
+    check_plate(&plate, table, ratio, ranks);
+}
+
+fn check_plate(plate: &Plate, table: &str, ratio: f64, ranks: usize) {
     let classes = [Symmetric, Supported].map(|x| [Symmetric, Supported].map(|y| [Supported, x, Supported, y]));
     let found = |sides: &[Side; 4]| plate.clone().sides(*sides).frequencies(6);
     let mut omega: Vec<f64> = classes.as_flattened().iter().flat_map(found).collect();
@@ -39,6 +43,16 @@ fn three_plies_thick() {
 #[test]
 fn three_plies_moderately_thick() {
     check("vib3d_0_90_0_pag25.csv", "[0/90/0]", 1.0 / 3.0, 3, 10.0, 5, 10);
+}
+
+#[test]
+fn three_plies_by_cells_of_both_shapes() {
+    for (ratio, cells) in [(4.0, Cells::Triangles), (10.0, Cells::Triangles), (10.0, Cells::Mixed)] {
+        let lines: Vec<f64> = (0..=8).map(|i| 0.5 * ratio * f64::from(i) / 8.0).collect();
+        let mesh = gmsh_cells(&lines, &lines, 0.1, cells);
+        let plate = Plate::new(PAGANO, "[0/90/0]", 1.0 / 3.0, vec![1; 3]).rectangle([0.5 * ratio; 2], [8; 2]);
+        check_plate(&plate.on(&mesh), "vib3d_0_90_0_pag25.csv", ratio, 10);
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Cross-ply plates under a sine pressure (Pagano 1970): a quarter of the plate, derivatives along z layer by layer.
 
-use super::scene::{AS4, PAGANO, Plate, Row, farthest, largest, order, reference};
+use super::scene::{AS4, Cells, MeshFile, PAGANO, Plate, Row, farthest, gmsh_cells, largest, order, reference};
 use fem::core::profile::ProfilePoint;
 use std::f64::consts::PI;
 
@@ -27,7 +27,7 @@ pub(super) struct Laminate {
 
 pub(super) const THREE: Laminate =
     Laminate { table: "pagano_bidir_0_90_0_pag25.csv", material: PAGANO, angles: &[0, 90, 0], ply: 1.0 / 3.0 };
-const FOUR: Laminate =
+pub(super) const FOUR: Laminate =
     Laminate { table: "pagano_bidir_0_90_90_0_pag25.csv", material: PAGANO, angles: &[0, 90, 90, 0], ply: 0.25 };
 pub(super) const EIGHT: Laminate =
     Laminate { table: "pagano_bidir_xply8_as4.csv", material: AS4, angles: &[0, 90, 0, 90, 90, 0, 90, 0], ply: 0.13 };
@@ -81,10 +81,15 @@ impl Laminate {
 }
 
 fn errors(laminate: &Laminate, ratio: f64, mesh: Mesh, z_derivatives: &str) -> Errors {
+    errors_on(laminate, ratio, (mesh, None), z_derivatives)
+}
+
+/// On a mesh of a file in place of equal rectangles, where there is one.
+fn errors_on(laminate: &Laminate, ratio: f64, (mesh, file): (Mesh, Option<&MeshFile>), z_derivatives: &str) -> Errors {
     let (rows, h, split) = (laminate.exact(ratio), laminate.height(), mesh.1);
     let points = (rows.len() / laminate.angles.len() - 1) / split + 1;
     let plate = laminate.plate(ratio, mesh, points).element(&format!("z_derivatives = '{z_derivatives}'"));
-    let solution = plate.solve();
+    let solution = file.map_or(plate.clone(), |file| plate.on(file)).solve();
     let worst = |column: &str, profile: usize, value: &dyn Fn(&ProfilePoint) -> f64| {
         farthest(&rows, column, ("z_over_h", h), split, &solution.profiles[profile], value) / largest(&rows, column)
     };
@@ -102,7 +107,20 @@ fn errors(laminate: &Laminate, ratio: f64, mesh: Mesh, z_derivatives: &str) -> E
 /// from equilibrium needs fewer cells.
 #[track_caller]
 fn check(laminate: &Laminate, ratio: f64, mesh: Mesh) {
-    let e = errors(laminate, ratio, mesh, "layer-wise");
+    judge(ratio, &errors(laminate, ratio, mesh, "layer-wise"));
+}
+
+/// The same on triangles, or on triangles among quadrilaterals, of irregular shape.
+#[track_caller]
+pub(super) fn check_cells(laminate: &Laminate, ratio: f64, mesh: Mesh, cells: Cells) {
+    let half = 0.5 * ratio * laminate.height();
+    let lines: Vec<f64> = (0..=mesh.0).map(|i| half * i as f64 / mesh.0 as f64).collect();
+    let file = gmsh_cells(&lines, &lines, 0.05, cells);
+    judge(ratio, &errors_on(laminate, ratio, (mesh, Some(&file)), "layer-wise"));
+}
+
+#[track_caller]
+fn judge(ratio: f64, e: &Errors) {
     assert!(e.deflection < DEFLECTION, "{e:?}");
     assert!(e.in_plane < IN_PLANE, "{e:?}");
     let shear = if ratio < 50.0 { e.shear } else { e.equilibrium };

@@ -194,6 +194,36 @@ impl MeshFile {
 /// A gmsh file of the quads between lines at `x` and `y`, mm, whose inner nodes are moved by up to `distortion` of the
 /// distance to their neighbours. The upper right corner is a group `corner`.
 pub(super) fn gmsh_grid(x: &[f64], y: &[f64], distortion: f64) -> MeshFile {
+    gmsh_cells(x, y, distortion, Cells::Quads)
+}
+
+/// What a mesh is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cells {
+    Quads,
+    /// Each quad cut along a diagonal, which one in turn.
+    Triangles,
+    /// Quads left whole or cut along the one or the other diagonal, which looks random.
+    Mixed,
+}
+
+impl Cells {
+    fn of(self, [i, j]: [usize; 2], [a, b, c, d]: [usize; 4]) -> Vec<Vec<usize>> {
+        let kind = match self {
+            Self::Quads => 2,
+            Self::Triangles => (i + j) % 2,
+            Self::Mixed => c * 7919 % 101 % 3,
+        };
+        match kind {
+            0 => vec![vec![a, b, c], vec![a, c, d]],
+            1 => vec![vec![a, b, d], vec![b, c, d]],
+            _ => vec![vec![a, b, c, d]],
+        }
+    }
+}
+
+/// [`gmsh_grid`] of other cells.
+pub(super) fn gmsh_cells(x: &[f64], y: &[f64], distortion: f64, cells: Cells) -> MeshFile {
     let (nx, ny) = (x.len(), y.len());
     let node = |i: usize, j: usize| 1 + i + j * nx;
     let mut nodes = Vec::new();
@@ -207,7 +237,7 @@ pub(super) fn gmsh_grid(x: &[f64], y: &[f64], distortion: f64) -> MeshFile {
             nodes.push([moved(x, i, 3 * node(i, j)), moved(y, j, 5 * node(i, j) + 1)]);
         }
     }
-    let quad = |i: usize, j: usize| vec![node(i - 1, j - 1), node(i, j - 1), node(i, j), node(i - 1, j)];
+    let quad = |i: usize, j: usize| cells.of([i, j], [node(i - 1, j - 1), node(i, j - 1), node(i, j), node(i - 1, j)]);
     gmsh_file(
         &nodes,
         &[
@@ -216,14 +246,14 @@ pub(super) fn gmsh_grid(x: &[f64], y: &[f64], distortion: f64) -> MeshFile {
             ("x-max", (1..ny).map(|j| vec![node(nx - 1, j - 1), node(nx - 1, j)]).collect()),
             ("y-min", (1..nx).map(|i| vec![node(i - 1, 0), node(i, 0)]).collect()),
             ("y-max", (1..nx).map(|i| vec![node(i - 1, ny - 1), node(i, ny - 1)]).collect()),
-            ("plate", (1..ny).flat_map(|j| (1..nx).map(move |i| (i, j))).map(|(i, j)| quad(i, j)).collect()),
+            ("plate", (1..ny).flat_map(|j| (1..nx).map(move |i| (i, j))).flat_map(|(i, j)| quad(i, j)).collect()),
         ],
     )
 }
 
-/// A gmsh file of nodes, mm, and of groups of points, edges or quads, which number nodes from 1.
+/// A gmsh file of nodes, mm, and of groups of points, edges or cells, which number nodes from 1.
 pub(super) fn gmsh_file(nodes: &[[f64; 2]], groups: &[(&str, Vec<Vec<usize>>)]) -> MeshFile {
-    let dim = |elements: &[Vec<usize>]| [0, 0, 1, 1, 2][elements[0].len()];
+    let dim = |elements: &[Vec<usize>]| [0, 0, 1, 2, 2][elements[0].len()];
     let count = |wanted: usize| groups.iter().filter(|g| dim(&g.1) == wanted).count();
     // Points, which come first, are numbered by themselves.
     let tagged = || (1..=count(0)).chain(1..).zip(groups);
@@ -243,10 +273,15 @@ pub(super) fn gmsh_file(nodes: &[[f64; 2]], groups: &[(&str, Vec<Vec<usize>>)]) 
     (1..=n).for_each(|i| t += &format!("{i}\n"));
     nodes.iter().for_each(|[x, y]| t += &format!("{x} {y} 0\n"));
     let m: usize = groups.iter().map(|g| g.1.len()).sum();
-    let _ = writeln!(t, "$EndNodes\n$Elements\n{} {m} 1 {m}", groups.len());
+    let mut groups: Vec<_> = tagged().map(|(tag, (_, elements))| (tag, elements.clone())).collect();
+    groups.iter_mut().for_each(|(_, elements)| elements.sort_by_key(Vec::len));
+    let blocks = groups
+        .iter()
+        .flat_map(|(tag, elements)| elements.chunk_by(|a, b| a.len() == b.len()).map(move |elements| (tag, elements)));
+    let _ = writeln!(t, "$EndNodes\n$Elements\n{} {m} 1 {m}", blocks.clone().count());
     let mut number = 0;
-    for (tag, (_, elements)) in tagged() {
-        let kind = [15, 15, 1, 1, 3][elements[0].len()];
+    for (tag, elements) in blocks {
+        let kind = [15, 15, 1, 2, 3][elements[0].len()];
         let _ = writeln!(t, "{} {tag} {kind} {}", dim(elements), elements.len());
         for nodes in elements {
             number += 1;
