@@ -28,8 +28,9 @@ const SLOPES: [[f64; 2]; 3] = [[-0.5, -0.5], [0.5, 0.0], [0.0, 0.5]];
 pub type HermiteWedge = HermiteSolid<24, 12>;
 
 impl HermiteWedge {
-    /// In-plane order 4 is exact.
+    /// In-plane order 4 is exact for K and M on every triangle: higher ones are taken as 4.
     pub(crate) fn of_order(mass: Mass, in_plane_order: usize) -> Self {
+        let in_plane_order = in_plane_order.min(4);
         let info =
             ElementInfo { domain: Domain::Triangle, nodes: &CORNERS, dofs: &Dof::SOLID, in_plane_order, ply_order: 4 };
         Self::of(info, mass, None)
