@@ -1,15 +1,15 @@
 //! How far a solution is from that of an infinitely fine mesh, judged by itself.
 
-use crate::contracts::element::{Element, ElementError, Stack, positive};
+use crate::contracts::element::{Element, ElementError, Stack, form, positive};
 use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;
 use crate::words::dof::Dof;
-use crate::words::domain::Domain;
+use crate::words::domain::{Corners, Domain};
 use crate::words::quadrature::gauss_legendre;
 use crate::words::tensor::apply;
 use nalgebra::{SMatrix, SVector};
 
-/// Where a cell is sampled, ± √(2/3) along its axes: a rule of third degree with equal weights. The error of strains that
+/// Where a quadrilateral is sampled, ± √(2/3) along its axes: a rule of third degree with equal weights. The error of strains that
 /// are polynomials of first or second degree in a cell, a Legendre polynomial in r or s, vanishes there in the mean and
 /// times r or s, so that a smooth fit does not see it.
 const POINTS: [[f64; 2]; 4] = [
@@ -18,6 +18,16 @@ const POINTS: [[f64; 2]; 4] = [
     [0.0, -0.816_496_580_927_726],
     [0.0, 0.816_496_580_927_726],
 ];
+/// Where a triangle is: a rule of second degree with equal weights.
+const IN_TRIANGLE: [[f64; 2]; 3] = [[-2.0 / 3.0, -2.0 / 3.0], [1.0 / 3.0, -2.0 / 3.0], [-2.0 / 3.0, 1.0 / 3.0]];
+
+/// The points of a cell, and the weight of each.
+fn points(domain: Domain) -> (&'static [[f64; 2]], f64) {
+    match domain {
+        Domain::Quadrilateral => (&POINTS, 1.0),
+        Domain::Triangle => (&IN_TRIANGLE, 2.0 / 3.0),
+    }
+}
 
 /// Heights in a layer of cells, between which strains are taken for linear.
 const HEIGHTS: usize = 2;
@@ -46,9 +56,11 @@ const TERMS: usize = 10;
 /// On these the jumps of strain between cells say 0.6 to 2.7 and strains averaged at nodes 0.9 to 5.3, because both depend on
 /// the degree of an element and on which derivatives it shares at nodes.
 ///
-/// `None` where nothing honest can be said: a section of a strip, triangles (the points at which cells are sampled are those
-/// of quadrilaterals), a cell none of whose nodes is inside the plate (fewer
-/// than two cells across), no strain at all. What it does not see: edges that should be curved, supports at too few
+/// The first plate in 4 x 4 and 6 x 6 cells cut in two, or every third left whole, gives 0.83 to 0.92 with `hermite-prism` and 0.70 to
+/// 0.74 with `hex20`.
+///
+/// `None` where nothing honest can be said: a section of a strip, a cell none of whose nodes is inside the plate (fewer
+/// than two cells across; of a triangle, none of its neighbours' either), no strain at all. What it does not see: edges that should be curved, supports at too few
 /// nodes, and that a point force or a sharp corner spoils cells around it as well.
 ///
 /// # Errors
@@ -62,18 +74,21 @@ pub fn mesh_errors(
     let quads = &plate.plane.quads;
     let mut inside = vec![true; plate.plane.points.len()];
     plate.plane.boundary().iter().flatten().for_each(|node| inside[*node as usize] = false);
-    if plate.info().is_section()
-        || plate.plane.quads.iter().any(|quad| quad.domain() == Domain::Triangle)
-        || !quads.iter().all(|quad| quad.iter().any(|node| inside[*node as usize]))
-    {
-        return Ok(None);
-    }
     let mut touching: Vec<Vec<usize>> = vec![Vec::new(); plate.plane.points.len()];
     for (number, quad) in quads.iter().enumerate() {
         quad.iter().for_each(|node| touching[*node as usize].push(number));
     }
+    let reaches_inside = |quad: &Corners<u32>| quad.iter().any(|node| inside[*node as usize]);
+    // A triangle in a corner of the plate has all its nodes on the edge, and neighbours that have not.
+    let sees = |quad: &Corners<u32>| {
+        let mut beside = quad.iter().flat_map(|node| &touching[*node as usize]);
+        reaches_inside(quad) || quad.domain() == Domain::Triangle && beside.any(|other| reaches_inside(&quads[*other]))
+    };
+    if plate.info().is_section() || !quads.iter().all(sees) {
+        return Ok(None);
+    }
     let held = held(plate, constraints);
-    let mut strains = Strains { plate, element, fields, b: vec![0.0; 6 * element.info().ndof()], dofs: Vec::new() };
+    let mut strains = Strains { plate, element, fields, b: Vec::new(), dofs: Vec::new() };
     let mut samples: Vec<Vec<Sample>> = vec![Vec::new(); quads.len()];
     let mut sums = vec![[0.0; 2]; fields.len() / plate.ndof()];
     let heights = HEIGHTS * plate.layers();
@@ -136,7 +151,8 @@ fn around(plate: &Plate, quad: usize, touching: &[Vec<usize>], held: &[bool]) ->
         }
     }
     // Too few of them to fit: better all.
-    if reached.len() * POINTS.len() < 2 * TERMS { near } else { reached }
+    let samples: usize = reached.iter().map(|quad| points(quads[*quad].domain()).0.len()).sum();
+    if samples < 2 * TERMS { near } else { reached }
 }
 
 /// What a cell says at one of [`POINTS`].
@@ -163,18 +179,22 @@ impl Strains<'_> {
         let (layers, ndof) = (self.plate.layers(), self.plate.ndof());
         let heights = HEIGHTS * layers;
         let corners = self.plate.cell(quad * layers);
-        let mut samples = POINTS.map(|[r, s]| {
-            let [x, y, _] = corners.position([r, s, 0.0]);
+        let domain = corners.corners.domain();
+        let ((points, weight), element) = (points(domain), form(self.element, domain));
+        self.b.resize(6 * element.info().ndof(), 0.0);
+        let sample = |[r, s]: &[f64; 2]| {
+            let [x, y, _] = corners.position([*r, *s, 0.0]);
             let strains = vec![[0.0; 6]; heights * self.fields.len() / ndof];
-            Sample { at: [x, y], area: corners.plane(r, s).det, strains }
-        });
+            Sample { at: [x, y], area: weight * corners.plane(*r, *s).det, strains }
+        };
+        let mut samples: Vec<Sample> = points.iter().map(sample).collect();
         for layer in 0..layers {
             let number = quad * layers + layer;
             let cell = self.plate.cell(number);
             self.plate.cell_dofs(number, &mut self.dofs);
-            for ([r, s], sample) in POINTS.iter().zip(&mut samples) {
+            for ([r, s], sample) in points.iter().zip(&mut samples) {
                 for (height, (q, _)) in gauss_legendre(HEIGHTS).iter().enumerate() {
-                    positive(self.element.strain_operator(&cell, slice_at(cell.stack, *q), [*r, *s, *q], &mut self.b))?;
+                    positive(element.strain_operator(&cell, slice_at(cell.stack, *q), [*r, *s, *q], &mut self.b))?;
                     let here = sample.strains[HEIGHTS * layer + height..].iter_mut().step_by(heights);
                     for (strain, u) in here.zip(self.fields.chunks_exact(ndof)) {
                         for (dof, column) in self.dofs.iter().zip(self.b.chunks_exact(6)) {
@@ -184,7 +204,7 @@ impl Strains<'_> {
                 }
             }
         }
-        Ok(samples.to_vec())
+        Ok(samples)
     }
 }
 
