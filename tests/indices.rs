@@ -128,6 +128,11 @@ fn the_threshold_of_delamination_is_an_event_of_the_summary() {
     let summary = case.summary("out");
     let threshold = |key: &str| summary["delamination_threshold"][key].as_f64().unwrap();
     assert!((threshold("force_N") - 1507.0).abs() < 1.0, "{summary}");
+    // Of sixteen plies only the two in the middle are alike.
+    assert_eq!(threshold("interfaces"), 14.0);
+    assert!((threshold("force_of_all_N") / (threshold("force_N") * (3.0_f64 / 16.0).sqrt()) - 1.0).abs() < 1e-12);
+    assert!(threshold("time_of_all_s") < threshold("time_s"), "{summary}");
+    assert!(summary["cautions"].to_string().contains("all 14 interfaces between unlike plies"), "{summary}");
     assert!((threshold("bending_stiffness_N_m") - 43.1).abs() < 0.05, "{summary}");
     assert_eq!(threshold("toughness_GIIc_J_m2"), 500.0);
     // The history has every step, so that it brackets the crossing.

@@ -19,8 +19,9 @@ const DYNAMIC: f64 = 1.21;
 pub struct DelaminationAdvice {
     /// The force at which it delaminates, N, and what it follows from.
     pub threshold: DelaminationThreshold,
-    /// Largest force of the impact over the threshold, which counts 1.21 times for a small mass.
-    pub ratio: f64,
+    /// Largest force of the impact over the threshold of one delamination and over that of all interfaces, which count 1.21 times for
+    /// a small mass.
+    pub ratios: [f64; 2],
 }
 
 /// What the threshold says.
@@ -40,15 +41,16 @@ impl DelaminationAdvice {
         let resin = model.interface;
         let threshold = DelaminationThreshold::of(&model.laminate, &model.materials, resin)?;
         let dynamic = if estimate.regime == Regime::SmallMass { DYNAMIC } else { 1.0 };
-        Some(Self { threshold, ratio: estimate.force() / (dynamic * threshold.force) })
+        let ratios = [threshold.force, threshold.force_of_all].map(|force| estimate.force() / (dynamic * force));
+        Some(Self { threshold, ratios })
     }
 
     /// What that means.
     pub fn verdict(&self) -> Delaminates {
-        match self.ratio {
-            ratio if ratio < SAFE => Delaminates::No,
-            ratio if ratio <= BEYOND => Delaminates::Perhaps,
-            _ => Delaminates::Yes,
+        match self.ratios {
+            [one, _] if one > BEYOND => Delaminates::Yes,
+            [_, all] if all < SAFE => Delaminates::No,
+            _ => Delaminates::Perhaps,
         }
     }
 }
@@ -65,20 +67,23 @@ pub(super) fn answer(found: Option<&DelaminationAdvice>) -> Answer {
     let Some(found) = found else {
         return answer(Vec::new(), "unknown: no material gives its toughness `GIIc`");
     };
-    let DelaminationThreshold { force, giic, .. } = found.threshold;
+    let DelaminationThreshold { force, interfaces, force_of_all, giic, .. } = found.threshold;
     let choice = match found.verdict() {
         Delaminates::No => "an elastic run is enough",
-        Delaminates::Perhaps => "it may delaminate: look at when the threshold is reached",
+        Delaminates::Perhaps => "it may delaminate: look at when the thresholds are reached",
         Delaminates::Yes => {
             "it will delaminate: trust the run up to the threshold, interfaces that open are not simulated"
         }
     };
+    let [one, all] = found.ratios;
     let numbers = vec![
-        Number::new("F / F_d", format!("{:.3}", found.ratio))
-            .threshold(format!("no below {SAFE}, yes above {BEYOND}"))
-            .source("Davies and Zhang 1995; small mass 1.21 F_d, Olsson 2006"),
-        Number::new("F_d = pi sqrt(32 D* GIIc/3)", format!("{force:.1} N at GIIc {giic:.0} J/m2"))
-            .source("50 % more or less GIIc changes F_d by about 25 %"),
+        Number::new("F / F_1", format!("{one:.3}"))
+            .threshold(format!("yes above {BEYOND}"))
+            .source("Davies and Zhang 1995; small mass 1.21 F_n, Olsson 2006"),
+        Number::new("F / F_n", format!("{all:.3}")).threshold(format!("no below {SAFE}")),
+        Number::new("F_n = pi sqrt(32 D* GIIc/(n+2))", format!("{force:.1} N at n = 1 and GIIc {giic:.0} J/m2"))
+            .source("50 % more or less GIIc changes F_n by about 25 %"),
+        Number::new("interfaces of unlike plies", format!("n = {interfaces}: {force_of_all:.1} N")),
     ];
     answer(numbers, choice)
 }

@@ -5,7 +5,7 @@ use miette::Diagnostic;
 use std::path::PathBuf;
 
 /// What wrote a checkpoint. The last number changes with the numbering of unknowns, in which states are kept.
-pub(crate) const WRITER: &str = concat!(env!("CARGO_PKG_VERSION"), "+numbering.2");
+pub(crate) const WRITER: &str = concat!(env!("CARGO_PKG_VERSION"), "+numbering.3");
 
 /// Why a march cannot continue from a checkpoint.
 #[derive(Debug, thiserror::Error, Diagnostic)]

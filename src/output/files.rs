@@ -29,10 +29,16 @@ pub fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result
 /// As [`write_tables`], and numbers that no plot can show.
 pub fn write_plots(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
     let mut marks = pictures::first_of_modes(&outcome.events);
-    marks.extend(threshold_reached(model, outcome).map(|(t, name)| {
-        let by = name.map_or(String::new(), |name| format!(" by {name}"));
-        (t, format!("delamination threshold{by}"))
-    }));
+    let several = model.threshold.is_some_and(|threshold| threshold.interfaces > 1);
+    for (which, of) in [(0, " of all"), (1, " of one")] {
+        if !several && which > 0 {
+            continue;
+        }
+        marks.extend(threshold_reached(model, outcome, which).map(|(t, name)| {
+            let by = name.map_or(String::new(), |name| format!(" by {name}"));
+            (t, format!("delamination threshold{}{by}", if several { of } else { "" }))
+        }));
+    }
     let drawn = Drawn {
         title: &model.origin.title,
         names: model.impactors().iter().map(|impactor| model.label(impactor).unwrap_or("")).collect(),

@@ -22,8 +22,8 @@ pub struct ContactRecord {
     /// Times, s, and magnitudes, m, of the deflection while it grew beyond all before; the last is the largest. The step
     /// before is always there, so that a level is crossed between two neighbours.
     pub growth: Vec<(f64, f64)>,
-    /// When the force first reached the delamination threshold of the model, s.
-    pub threshold_time: Option<f64>,
+    /// When the force first reached each delamination threshold of the model, s: of all interfaces, and of one delamination.
+    pub threshold_times: [Option<f64>; 2],
 }
 
 impl ContactRecord {
@@ -37,16 +37,16 @@ impl ContactRecord {
 /// Follows a contact from step to step.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Follower {
-    threshold: Option<f64>,
+    thresholds: Option<[f64; 2]>,
     /// Time, force and magnitude of the deflection at the step before; all are 0 at the beginning.
     last: (f64, f64, f64),
     record: ContactRecord,
 }
 
 impl Follower {
-    /// `threshold`: a force whose first reaching is noted, N.
-    pub(super) fn new(threshold: Option<f64>) -> Self {
-        Self { threshold, last: (0.0, 0.0, 0.0), record: ContactRecord::default() }
+    /// `thresholds`: forces whose first reaching is noted, N.
+    pub(super) fn new(thresholds: Option<[f64; 2]>) -> Self {
+        Self { thresholds, last: (0.0, 0.0, 0.0), record: ContactRecord::default() }
     }
 
     /// Of a march that begins at time `t`, s.
@@ -54,9 +54,9 @@ impl Follower {
         Self { last: (t, 0.0, 0.0), ..Self::new(None) }
     }
 
-    /// The threshold's time comes by linear interpolation between steps.
+    /// Times of thresholds come by linear interpolation between steps.
     pub(crate) fn take(&mut self, t: f64, Touch { indentation, force, deflection, .. }: Touch) {
-        let Self { threshold, last: (before, low, shallow), record } = self;
+        let Self { thresholds, last: (before, low, shallow), record } = self;
         record.deepest = record.deepest.max(indentation);
         record.deflection = record.deflection.max(deflection);
         record.count += u32::from(force > 0.0 && *low <= 0.0);
@@ -77,10 +77,10 @@ impl Follower {
             }
             record.growth.push((t, deflection));
         }
-        if let (None, Some(level)) = (record.threshold_time, *threshold)
-            && force >= level
-        {
-            record.threshold_time = Some(*before + (t - *before) * ((level - *low) / (force - *low)));
+        for (time, level) in record.threshold_times.iter_mut().zip(thresholds.iter().flatten()) {
+            if time.is_none() && force >= *level {
+                *time = Some(*before + (t - *before) * ((level - *low) / (force - *low)));
+            }
         }
         self.last = (t, force, deflection);
     }
@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn extremes_counts_and_times_are_those_of_the_steps() {
-        let mut follower = Follower::new(Some(5.0));
+        let mut follower = Follower::new(Some([5.0, 9.0]));
         let steps = [(0.0, 0.0), (4.0, 1.0), (8.0, -3.0), (0.0, 2.0), (2.0, 2.5), (0.0, -4.0), (0.0, 1.0)];
         for (k, (force, deflection)) in steps.into_iter().enumerate() {
             follower.take((k + 1) as f64, touch(force, deflection));
@@ -162,7 +162,7 @@ mod tests {
         let record = follower.finish();
         assert_eq!((record.count, record.duration, record.force), (2, 3.0, (8.0, 3.0)));
         assert_eq!((record.deepest, record.deflection), (8.0, 2.5));
-        assert_eq!(record.threshold_time, Some(2.25));
+        assert_eq!(record.threshold_times, [Some(2.25), None]);
         assert_eq!(record.growth, [(1.0, 0.0), (2.0, 1.0), (3.0, 3.0), (5.0, 2.5), (6.0, 4.0)]);
     }
 

@@ -50,9 +50,9 @@ impl Look {
 }
 
 impl Ledger {
-    /// Of a march with steps of `dt`, of so many `contacts`; `threshold`: a force whose first reaching is noted, N.
-    pub(super) fn new(dt: f64, contacts: usize, threshold: Option<f64>) -> Self {
-        let contacts = (0..contacts).map(|_| Follower::new(threshold)).collect();
+    /// Of a march with steps of `dt`, of so many `contacts`; `thresholds`: forces whose first reaching is noted, N.
+    pub(super) fn new(dt: f64, contacts: usize, thresholds: Option<[f64; 2]>) -> Self {
+        let contacts = (0..contacts).map(|_| Follower::new(thresholds)).collect();
         Self { rows: Vec::new(), error: 0.0, forces: StepForces::new(dt), contacts, work: Vec::new() }
     }
 

@@ -135,7 +135,11 @@ impl<'a> March<'a> {
             dt,
             row_every,
             frame_every: model.output.fields.as_ref().and_then(|fields| fields.every),
-            ledger: Ledger::new(dt, state.histories.contacts.len(), model.threshold.map(|threshold| threshold.force)),
+            ledger: Ledger::new(
+                dt,
+                state.histories.contacts.len(),
+                model.threshold.map(|of| [of.force_of_all, of.force]),
+            ),
             effects: Vec::new(),
             state,
             work: SystemCounts::default(),

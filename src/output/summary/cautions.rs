@@ -44,14 +44,19 @@ fn unfinished(model: &Model, outcome: &Outcome, summary: &ImpactSummary) -> Opti
 /// Interfaces that should have opened.
 fn delaminated(summary: &ImpactSummary) -> Option<String> {
     let threshold = summary.delamination_threshold.as_ref()?;
-    let time = threshold.time_s?;
+    let time = threshold.time_of_all_s?;
     let peak = summary.impact.iter().map(|impact| impact.peak_force_N).fold(0.0, f64::max);
+    let what = match threshold.interfaces {
+        1 => "the laminate delaminates".to_owned(),
+        n => format!("all {n} interfaces between unlike plies delaminate (one alone at {:.1} N)", threshold.force_N),
+    };
+    let too = if threshold.time_s.is_some() { "too large" } else { "probably too large" };
     Some(format!(
-        "the force passes {:.1} N, at which the laminate delaminates, at {:.4} ms and reaches {:.2} times that: from then on it is the \
-         force on a plate without damage, and too large",
-        threshold.force_N,
+        "the force passes {:.1} N, at which {what}, at {:.4} ms and reaches {:.2} times that: from then on it is the force on a plate \
+         without damage, and {too}",
+        threshold.force_of_all_N,
         time * 1e3,
-        peak / threshold.force_N
+        peak / threshold.force_of_all_N
     ))
 }
 

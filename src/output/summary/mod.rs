@@ -149,16 +149,21 @@ impl From<&Stress6<Ply>> for PlyStress {
     }
 }
 
-/// The contact force at which the laminate delaminates, by energies and not by stresses, and when it was first reached; by
-/// which impactor, where there are several.
+/// The contact force at which one delamination of the laminate grows, by energies and not by stresses, and that at which all of its
+/// interfaces between unlike plies do, which is the least; when they were first reached, the least by which impactor, where there are
+/// several.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
 pub struct Threshold {
     pub force_N: f64,
+    pub interfaces: usize,
+    pub force_of_all_N: f64,
     pub bending_stiffness_N_m: f64,
     pub toughness_GIIc_J_m2: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_s: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_of_all_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub impactor: Option<String>,
 }
@@ -383,13 +388,17 @@ impl ImpactSummary {
             not_reached: not_reached(&outcome.peaks),
             onsets: onset::bands(model, outcome),
             delamination_threshold: model.threshold.map(|threshold| {
-                let first = threshold_reached(model, outcome).min_by(|a, b| a.0.total_cmp(&b.0));
+                let first = |which| threshold_reached(model, outcome, which).min_by(|a, b| a.0.total_cmp(&b.0));
+                let [all, one] = [0, 1].map(first);
                 Threshold {
                     force_N: threshold.force,
+                    interfaces: threshold.interfaces,
+                    force_of_all_N: threshold.force_of_all,
                     bending_stiffness_N_m: threshold.bending_stiffness,
                     toughness_GIIc_J_m2: threshold.giic,
-                    time_s: first.map(|first| first.0),
-                    impactor: first.and_then(|first| first.1.map(str::to_owned)),
+                    time_s: one.map(|first| first.0),
+                    time_of_all_s: all.map(|first| first.0),
+                    impactor: all.and_then(|first| first.1.map(str::to_owned)),
                 }
             }),
             modes: outcome.modal.as_ref().map_or(Vec::new(), |modal| modal.modes.clone()),
@@ -473,13 +482,15 @@ pub(crate) fn not_reached(peaks: &[Peak]) -> Vec<MarginSummary> {
     peaks.iter().filter(|peak| peak.index < 1.0).map(MarginSummary::from).collect()
 }
 
-/// When each force that did reach the threshold first did, and whose it is.
+/// When each impactor first reached a delamination threshold, that of all interfaces (0) or of one delamination (1), and its name
+/// where there are several.
 pub(super) fn threshold_reached<'a>(
     model: &'a Model,
     outcome: &'a Outcome,
+    which: usize,
 ) -> impl Iterator<Item = (f64, Option<&'a str>)> + use<'a> {
     let each = model.impactors().iter().zip(&outcome.contacts);
-    each.filter_map(|(impactor, contact)| Some((contact.threshold_time?, model.label(impactor))))
+    each.filter_map(move |(impactor, contact)| Some((contact.threshold_times[which]?, model.label(impactor))))
 }
 
 /// Reserve factor of the stress of an event by its criterion, unless that has none.

@@ -135,12 +135,23 @@ impl ImpactSummary {
         if let Some(d) = &self.delamination_threshold {
             let peak = self.impact.iter().map(|i| i.peak_force_N).fold(0.0, f64::max);
             let by = d.impactor.as_ref().map_or(String::new(), |name| format!(" by {name}"));
-            let reached = match d.time_s {
-                Some(t) => format!("first reached at {:.4} ms{by}", t * 1e3),
-                None => format!("not reached: the peak is {:.2} of it", peak / d.force_N),
+            let all = match d.interfaces {
+                1 => String::new(),
+                n => format!(
+                    " for one delamination, {:.1} N for all {n} interfaces between unlike plies",
+                    d.force_of_all_N
+                ),
+            };
+            let reached = match (d.time_of_all_s, d.time_s) {
+                (Some(least), _) if d.interfaces == 1 => format!("first reached at {:.4} ms{by}", least * 1e3),
+                (Some(least), Some(one)) => {
+                    format!("first reached at {:.4} ms (one) and {:.4} ms (all){by}", one * 1e3, least * 1e3)
+                }
+                (Some(least), None) => format!("that of all first reached at {:.4} ms{by}", least * 1e3),
+                (None, _) => format!("not reached: the peak is {:.2} of it", peak / d.force_of_all_N),
             };
             line(format_args!(
-                "  delam.    threshold of the contact force {:.1} N (Davies-Olsson, D* {:.4} N m, GIIc {:.1} J/m2), {reached}; \
+                "  delam.    threshold of the contact force {:.1} N{all} (Davies-Olsson, D* {:.4} N m, GIIc {:.1} J/m2), {reached}; \
                  a threshold, not a stress criterion",
                 d.force_N, d.bending_stiffness_N_m, d.toughness_GIIc_J_m2
             ));
