@@ -444,7 +444,7 @@ fn a_laminate_that_delaminates() {
         advice(&square.text()).delamination.unwrap()
     };
     let low = threshold(500.0, 0.1);
-    let verdicts = [0.1, 0.9 / low.ratio * 0.1, 1.5 / low.ratio * 0.1].map(|v| threshold(500.0, v).verdict());
+    let verdicts = [0.1, 0.9 / low.ratios[0] * 0.1, 1.5 / low.ratios[0] * 0.1].map(|v| threshold(500.0, v).verdict());
     assert_eq!(verdicts[0], Delaminates::No, "{low:?}");
     assert_eq!(verdicts[2], Delaminates::Yes, "{low:?}");
     near(threshold(2000.0, 0.1).threshold.force, 2.0 * low.threshold.force, 1e-12);

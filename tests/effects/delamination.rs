@@ -31,7 +31,7 @@ fn it_is_found_without_criteria() {
     let outcome = Struck { more: "", ..struck("off", "delamination = 'threshold'", true) }.outcome();
     let peak = outcome.history.iter().map(super::force).fold(0.0, f64::max);
     let force = threshold("off", "delamination = 'threshold'", true).unwrap();
-    assert_eq!(outcome.contacts[0].threshold_time.is_some(), peak > force, "{peak} {force}");
+    assert_eq!(outcome.contacts[0].threshold_times[0].is_some(), peak > force, "{peak} {force}");
     assert!(outcome.events.is_empty());
 }
 
