@@ -27,6 +27,8 @@ pub struct Guard {
     energy: f64,
     /// E₀.
     scale: f64,
+    /// What may be missing of the strain energy, relative to E₀.
+    lent: f64,
     bounds: Vec<Bounds>,
 }
 
@@ -137,7 +139,10 @@ impl Guard {
             speed: (2.0 * most / impactor.mass).sqrt(),
         });
         let scale = if highest.is_finite() { highest } else { energy };
-        Self { energy, scale, bounds: bounds.collect() }
+        let bounds = bounds.collect();
+        // An interface is lent what it is opened with, and gives it back elsewhere.
+        let lent = if system.softens() { TOLERANCE } else { ROUNDING };
+        Self { energy, scale, lent, bounds }
     }
 
     /// Energy at the beginning, J.
@@ -179,8 +184,9 @@ impl Guard {
     /// # Errors
     /// A bound that is broken.
     pub fn balance(&self, energies: &Energies) -> Result<f64, Alarm> {
-        for (matrix, energy) in [("stiffness", energies.strain), ("mass", energies.kinetic)] {
-            if energy < -ROUNDING * self.scale {
+        for (matrix, energy, most) in [("stiffness", energies.strain, self.lent), ("mass", energies.kinetic, ROUNDING)]
+        {
+            if energy < -most * self.scale {
                 return Err(Alarm::Indefinite { matrix, energy: energy / self.scale });
             }
         }

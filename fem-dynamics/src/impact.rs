@@ -71,6 +71,8 @@ pub struct ImpactSystem {
     inertia: bool,
     influence: Influence,
     newton: Newton,
+    /// Internal force of a structure that softens.
+    force: Vec<f64>,
     contact_calls: u64,
 }
 
@@ -146,6 +148,7 @@ impl ImpactSystem {
             inertia: true,
             influence: Influence::default(),
             newton: Newton::default(),
+            force: Vec::new(),
             contact_calls: 0,
         }
     }
@@ -375,12 +378,20 @@ impl ImpactSystem {
     ) -> Result<(), StepError> {
         let n = self.structure.ndof();
         self.pull(&mut d[n..]);
-        if self.structure.nonlinear().is_some() {
+        if self.is_nonlinear() && !self.softens() {
             return self.iterate([cm, cc, t], h, start, from, d);
+        }
+        match self.structure.nonlinear() {
+            None => self.structure.add_stiffness(-1.0, &from[..n], &mut d[..n]),
+            Some(softening) => {
+                let force = &mut self.force;
+                force.resize(n, 0.0);
+                softening.internal(&from[..n], &h.points, force).map_err(StepError::Factorisation)?;
+                d.iter_mut().zip(&*force).for_each(|(d, f)| *d -= f);
+            }
         }
         self.prepare(cm, cc)?;
         let Self { structure, impactors, influence, contact_calls, .. } = self;
-        structure.add_stiffness(-1.0, &from[..n], &mut d[..n]);
         structure.solve_damped(cm, cc, &mut d[..n], 1).map_err(StepError::Factorisation)?;
         for (d, impactor) in d[n..].iter_mut().zip(impactors.iter()) {
             *d /= cm * impactor.mass;
@@ -392,11 +403,13 @@ impl ImpactSystem {
     }
 
     fn prepare(&mut self, cm: f64, cc: f64) -> Result<(), StepError> {
-        if self.influence.cm == cm && self.influence.cc == cc && !self.influence.x.is_empty() {
+        let of = (cm, cc, self.structure.revision());
+        let Self { structure, impactors, influence, .. } = self;
+        if (influence.cm, influence.cc, influence.revision) == of && !influence.x.is_empty() {
             return Ok(());
         }
-        let Self { structure, impactors, influence, .. } = self;
         let n = structure.ndof();
+        influence.revision = of.2;
         influence.set(cm, cc, n, impactors, |x, count| structure.solve_damped(cm, cc, x, count))
     }
 }

@@ -171,6 +171,35 @@ pub fn write_events(dir: &OutputDir, rows: &[EventRow]) -> Result<(), FileError>
     write_table(dir, "events.csv", rows)
 }
 
+/// A cell of an interface that is damaged.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DelaminationRow {
+    /// `4|5`, between these two plies.
+    pub interface: String,
+    /// Number of the cell in the mesh file.
+    pub cell: u64,
+    /// Its centre, m.
+    pub x_m: f64,
+    /// Its centre, m.
+    pub y_m: f64,
+    /// Its area, m².
+    pub area_m2: f64,
+    /// Share of its area that holds no more.
+    pub delaminated: f64,
+    /// Mean share of its cohesion that it has lost.
+    pub damage: f64,
+    /// When a point of it first held no more, s; nothing where all hold.
+    pub since_s: Option<f64>,
+}
+
+/// Writes `delaminations.csv`.
+///
+/// # Errors
+/// A value that is not finite, and as [`OutputDir::write`].
+pub fn write_delaminations(dir: &OutputDir, rows: &[DelaminationRow]) -> Result<(), FileError> {
+    write_table(dir, "delaminations.csv", rows)
+}
+
 /// Writes `index_maxima.csv`.
 ///
 /// # Errors
@@ -291,6 +320,21 @@ impl Row for EventRow {
             ("index", TableValue::Index(self.index)),
         ]);
         fields
+    }
+}
+
+impl Row for DelaminationRow {
+    fn fields(&self) -> Vec<(&'static str, TableValue<'_>)> {
+        vec![
+            ("interface", TableValue::Text(&self.interface)),
+            ("cell", TableValue::Count(self.cell)),
+            ("x_m", TableValue::Number(self.x_m)),
+            ("y_m", TableValue::Number(self.y_m)),
+            ("area_m2", TableValue::Number(self.area_m2)),
+            ("delaminated", TableValue::Number(self.delaminated)),
+            ("damage", TableValue::Number(self.damage)),
+            ("since_s", self.since_s.map_or(TableValue::Text(""), TableValue::Number)),
+        ]
     }
 }
 

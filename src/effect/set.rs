@@ -63,6 +63,11 @@ impl Effects {
         &self.acting
     }
 
+    /// Those that act or are left to the advisor.
+    pub(crate) fn wanted(&self) -> impl Iterator<Item = &'static EffectInfo> + '_ {
+        self.acting.iter().chain(&self.left).map(|effect| effect.info())
+    }
+
     /// Whether the effect `name` acts.
     pub fn has(&self, name: &str) -> bool {
         self.acting.iter().any(|effect| effect.info().key.name == name)

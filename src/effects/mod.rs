@@ -3,6 +3,7 @@
 mod cure;
 mod damping;
 mod gravity;
+mod growth;
 mod inertia;
 mod membrane;
 mod plies;
@@ -10,6 +11,7 @@ mod plies;
 pub use cure::Cure;
 pub use damping::ViscousDamping;
 pub use gravity::Gravity;
+pub use growth::GrowingDelaminations;
 pub use inertia::NoInertia;
 pub use membrane::Membrane;
 pub use plies::NonlinearPlies;

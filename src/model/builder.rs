@@ -45,6 +45,8 @@ pub(super) struct Builder<'a> {
 /// How a plate is held.
 pub(super) struct Held<'a> {
     pub(super) constraints: Constraints,
+    /// What was eliminated.
+    pub(super) equations: Vec<Equation>,
     /// How the independent unknowns of a plate that moves can do so as a whole.
     pub(super) motions: Vec<f64>,
     /// What supports of nodal values leave free between the nodes, sums of the independent unknowns.
@@ -357,7 +359,7 @@ impl Builder<'_> {
         let constraints = self.eliminate(plate, &equations, &places)?;
         let motions = if at_rest { Vec::new() } else { free.of_unknowns(plate, &constraints) };
         let between = self.between(plate, &constraints)?;
-        Ok(Held { constraints, motions, between, restraint: restraint.map(|place| (free, place)) })
+        Ok(Held { constraints, equations, motions, between, restraint: restraint.map(|place| (free, place)) })
     }
 
     /// What the supports leave free between the nodes that they hold.

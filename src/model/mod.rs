@@ -10,6 +10,7 @@ mod mesh;
 mod origin;
 mod plan;
 mod regions;
+mod separation;
 mod spacing;
 mod substructures;
 mod symmetry;
@@ -21,10 +22,11 @@ pub(crate) use mesh::examined_mesh;
 pub use mesh::mesh;
 pub use origin::Origin;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
+pub(crate) use separation::Separation;
 pub(crate) use spacing::count_steps;
 
 use crate::effect::{Decision, Effects};
-use crate::effects::NonlinearPlies;
+use crate::effects::{GrowingDelaminations, NonlinearPlies};
 use crate::error::Error;
 use crate::registry::Registry;
 use builder::Builder;
@@ -71,6 +73,8 @@ pub struct Model {
     pub element: Box<dyn Element>,
     /// The laws that plies follow, if some are not linear elastic.
     pub laws: Option<PlyLaws>,
+    /// The interfaces that may open, if some may.
+    pub separation: Option<Separation>,
     /// Supports and other equations, eliminated.
     pub constraints: Constraints,
     /// What supports of nodal values leave free between the nodes, sums of the independent unknowns.
@@ -159,7 +163,8 @@ impl Model {
         let mesh = read.mesh;
         info!(quads = mesh.quads.len(), nodes = mesh.points.len(), "mesh");
         let materials: Vec<Material> = scene.materials.iter().map(|m| m.value.clone()).collect();
-        let (laminates, of_specs) = regions::distinct(&scene.laminates);
+        let (mut laminates, of_specs) = regions::distinct(&scene.laminates);
+        let mut split = builder.split(&mut laminates)?;
         warnings.extend(check_sizes(&builder, &mesh, &laminates[0])?);
 
         let element = builder.element()?;
@@ -195,6 +200,9 @@ impl Model {
                 .assign(quads, stacks(laminate)?)
                 .map_err(|why| builder.error(&scene.laminates[0].laminate, why.to_string(), ""))?;
         }
+        if let Some(split) = &mut split {
+            builder.separate(split, &mut plate)?;
+        }
         builder.fold(&mut plate, &laminates, &materials, &criteria)?;
         memory::check(&plate)?;
         warnings.extend(warn_of_pieces(&plate));
@@ -202,7 +210,7 @@ impl Model {
         warnings.extend(warn_of_flat_cells(&plate));
         warnings.extend(incompressible(&plate, &laminates, &materials));
         warnings.extend(laminates.iter().find_map(|laminate| warn_of_warping(&plate, laminate, &materials)));
-        let supports = builder.constraints(&plate)?;
+        let mut supports = builder.constraints(&plate)?;
         let constraints = &supports.constraints;
         warnings.extend(builder.lacking(&plate)?);
         warnings.extend(builder.nearly_turned(&plate)?);
@@ -262,6 +270,17 @@ impl Model {
         warnings.extend(plan::warn_of_sides(&profiles, &plate));
         let laws = builder.laws(&plate, &laminates, &materials, &*element)?;
         warnings.extend(laws.iter().flat_map(|laws| laws.warnings(&plate, &*element)));
+        let separation = match &split {
+            None => None,
+            Some(split) => {
+                let equations = std::mem::take(&mut supports.equations);
+                Some(builder.separation(split, &plate, &*element, &laminate, &materials, equations, &effects)?)
+            }
+        };
+        if let Some(separation) = &separation {
+            warnings.extend(separation.warning());
+            effects.act(Box::new(GrowingDelaminations(separation.interfaces.clone())));
+        }
         if let Some(laws) = &laws {
             effects.act(Box::new(NonlinearPlies(laws.clone())));
         }
@@ -278,6 +297,7 @@ impl Model {
             plate,
             element,
             laws,
+            separation,
             held: supports.motions.is_empty() || supports.restraint.is_some(),
             constraints: supports.constraints,
             between: supports.between,

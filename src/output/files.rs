@@ -2,7 +2,7 @@
 
 use super::pictures::Drawn;
 use super::summary::{event_row, threshold_reached};
-use super::{indices, modal, pictures};
+use super::{delamination, indices, modal, pictures};
 use crate::analyses::impact::Outcome;
 use crate::error::Error;
 use crate::model::Model;
@@ -20,6 +20,7 @@ pub fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result
     let events: Vec<_> = outcome.events.iter().map(|event| event_row(model, event)).collect();
     tables::write_events(dir, &events)?;
     modal::write_table(dir, outcome)?;
+    delamination::write_table(dir, model, outcome)?;
     indices::write_tables(dir, model, outcome)
 }
 
@@ -48,6 +49,7 @@ pub fn write_plots(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<
     };
     pictures::write_curves(dir, &drawn)?;
     modal::write_plot(dir, model, outcome)?;
+    delamination::write_plot(dir, model, outcome)?;
     indices::write_plots(dir, model, outcome)?;
     pictures::write_damage(dir, model, outcome)
 }

@@ -1,6 +1,7 @@
 //! What an analysis found, for people and machines: summaries, tables, fields, pictures, the page of a folder of results.
 
 pub mod damage;
+mod delamination;
 pub(crate) mod fields;
 mod files;
 mod indices;

@@ -7,7 +7,7 @@ mod tied;
 
 use super::cell_map::CellMap;
 use super::krylov::Krylov;
-use super::{AssemblyError, FactorError, Matrix, Symmetric, assemble, pattern};
+use super::{AssemblyError, FactorError, LargePlate, Matrix, Symmetric, assemble, pattern};
 use crate::contracts::element::{Element, ElementError};
 use crate::contracts::interface_law::Jump;
 use crate::plates::constraint::{ConstraintError, Constraints, Equation};
@@ -18,7 +18,7 @@ use crate::words::energy::Energy;
 use std::fmt;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
-use tied::Tied;
+use tied::{Factored, Tied};
 
 pub use growth::Growth;
 pub use path::{Path, PathEnd, PathError, PathPoint};
@@ -94,7 +94,7 @@ pub struct SeparableParts {
 
 /// A plate whose layers may separate.
 ///
-/// f(ũ) = K ũ + Cᵀ Σ ∫ Nᵀ t(N (u⁺ − u⁻)) dA, the sum over the open cells of its [`Interfaces`], ũ with both sides of all nodes that may
+/// f(ũ) = K ũ (or the force under large deflections) + Cᵀ Σ ∫ Nᵀ t(N (u⁺ − u⁻)) dA, the sum over the open cells of its [`Interfaces`], ũ with both sides of all nodes that may
 /// separate. Where a cell around a node is closed, its two sides move as one: u⁺ = u⁻ there, ũ = T y with y the unknowns that are
 /// left. What is closed is rigid and costs no unknown of a factorisation; which cells are open is part of their state.
 ///
@@ -104,12 +104,12 @@ pub struct Separable {
     parts: SeparableParts,
     /// States of each cell of the interfaces.
     first: Vec<usize>,
-    /// Those of all, from the first.
-    initial: Vec<f64>,
     threads: NonZeroUsize,
     /// K and M of both sides.
     k: Symmetric,
     m: Symmetric,
+    /// Forces under large deflections, where they are wanted.
+    large: Option<LargePlate>,
     /// Of each cell of the interfaces.
     maps: Vec<CellMap>,
     tied: Tied,
@@ -127,6 +127,7 @@ struct Arrays {
     both: Vec<f64>,
     apart: Vec<f64>,
     answer: InterfaceAnswer,
+    right: Vec<f64>,
     full: Vec<f64>,
     image: Vec<f64>,
 }
@@ -169,10 +170,10 @@ impl Separable {
         Ok(Self {
             parts,
             first,
-            initial: states.to_vec(),
             threads,
             k,
             m,
+            large: None,
             maps,
             tied,
             cm: 0.0,
@@ -181,6 +182,14 @@ impl Separable {
             arrays: Arrays::default(),
             work: SeparableWork { cells: counters.elements, ..SeparableWork::default() },
         })
+    }
+
+    /// The same under large deflections; `None` where the element does not support them.
+    #[must_use]
+    pub fn with_large_deflections(self) -> Option<Self> {
+        let SeparableParts { plate, element, constraints, .. } = &self.parts;
+        let large = LargePlate::new(plate, element.clone(), constraints)?;
+        Some(Self { large: Some(large), ..self })
     }
 
     /// Number of unknowns, both sides of what is closed counted.
@@ -228,9 +237,16 @@ impl Separable {
     /// # Errors
     /// A law that finds no traction.
     pub fn internal(&mut self, u: &[f64], states: &[f64], force: &mut [f64]) -> Result<Energy, SeparableError> {
-        force.fill(0.0);
-        self.k.add_product(1.0, u, force);
-        let mut energy = Energy { stored: 0.5 * super::equilibrium::dot(u, force), dissipated: 0.0 };
+        self.take(states)?;
+        let stored = match &mut self.large {
+            Some(large) => large.internal(u, force, None).map_err(SeparableError::Assembly)?,
+            None => {
+                force.fill(0.0);
+                self.k.add_product(1.0, u, force);
+                0.5 * super::equilibrium::dot(u, force)
+            }
+        };
+        let mut energy = Energy { stored, dissipated: 0.0 };
         self.each(u, states, None, false, |arrays, weight, map, cell| {
             energy.stored += weight * (arrays.answer.stored - Interfaces::lent(cell));
             energy.dissipated += weight * arrays.answer.dissipated.total();
@@ -270,7 +286,7 @@ impl Separable {
         })?;
         self.moduli = moduli;
         self.cm = cm;
-        if self.tied.factored != Some(cm) || self.tied.stale {
+        if self.tied.factored != Factored::Near(cm) || self.tied.stale {
             self.factorise()?;
         }
         self.tied.compare(&self.moduli);
@@ -279,7 +295,7 @@ impl Separable {
 
     fn factorise(&mut self) -> Result<(), SeparableError> {
         self.work.factorisations += 1;
-        self.tied.factorise(&self.parts, self.cm, &self.moduli, self.threads)
+        self.tied.factorise(&self.parts, Factored::Near(self.cm), &self.moduli, self.threads)
     }
 
     /// `x ← T (Tᵀ A T)⁻¹ Tᵀ x` with the last tangent: the displacements under forces x.
@@ -326,6 +342,26 @@ impl Separable {
                 return Err(SeparableError::Unsolved(residual));
             }
         }
+        Ok(())
+    }
+
+    /// `x ← T (Tᵀ A T)⁻¹ Tᵀ x`, A = M, or K + cm M with the stiffness of what is open, undamaged.
+    fn solve_with(&mut self, what: Factored, x: &mut [f64]) -> Result<(), SeparableError> {
+        let Self { parts, tied, arrays, work, threads, .. } = self;
+        if tied.factored != what {
+            let mut moduli = vec![Vec::new(); parts.interfaces.cells().len()];
+            for (cell, moduli) in moduli.iter_mut().enumerate().filter(|(cell, _)| tied.open[*cell]) {
+                parts.interfaces.undamaged(cell, moduli);
+            }
+            tied.factorise(parts, what, &moduli, *threads)?;
+            work.factorisations += 1;
+        }
+        let y = &mut arrays.right;
+        y.resize(tied.ndof(), 0.0);
+        tied.restrict(x, y);
+        tied.factor.solve(y, 1);
+        work.solves += 1;
+        tied.way.expand(y, x);
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use super::released::Released;
 use super::{Cholesky, FactorError, InternalForce, LargePlate, LawPlate, Symbolic, Symmetric, coarse, condition};
 use crate::contracts::structure::Coarse;
-use crate::contracts::structure::{Nonlinear, SolveError, Structure, Tangent};
+use crate::contracts::structure::{Nonlinear, SolveError, Structure, Tangent, Tangents};
 use crate::words::damping::Rayleigh;
 use crate::words::energy::Energy;
 use crate::words::functional::Functional;
@@ -309,6 +309,12 @@ impl Nonlinear for SparseStructure {
         }
     }
 
+    fn tangents(&mut self) -> Option<&mut dyn Tangents> {
+        Some(self)
+    }
+}
+
+impl Tangents for SparseStructure {
     fn linearise(&mut self, Tangent { cm, cc, u, points }: &Tangent) -> Result<(), SolveError> {
         let beyond = self.beyond.as_mut().ok_or(SolveError::Linear)?;
         self.force.resize(u.len(), 0.0);

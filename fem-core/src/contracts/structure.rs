@@ -196,6 +196,11 @@ pub trait Structure: fmt::Debug + Send {
         None
     }
 
+    /// A number that changes when K does, of a structure whose interfaces open.
+    fn revision(&self) -> u64 {
+        0
+    }
+
     /// A coarse model of the structure, where it has one.
     ///
     /// # Errors
@@ -237,11 +242,15 @@ pub trait Nonlinear {
         Ok(())
     }
 
-    /// Whether tangents change so much within a step that each turn of an iteration takes its own.
-    fn softens(&self) -> bool {
-        false
+    /// What implicit steps iterate with. None of a structure that softens, whose forces never rise faster than those of K as
+    /// [`Structure::solve_damped`] has it at hand: that then takes the place of a tangent, once a step.
+    fn tangents(&mut self) -> Option<&mut dyn Tangents> {
+        None
     }
+}
 
+/// Tangents of internal forces.
+pub trait Tangents {
     /// Factorises a tangent and keeps it.
     ///
     /// # Errors

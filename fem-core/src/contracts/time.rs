@@ -220,6 +220,11 @@ pub trait Integrator: DynClone + Debug + Send {
         false
     }
 
+    /// Spectral radius for steps much longer than a period: below 1, high modes are damped.
+    fn radius_of_long_steps(&self) -> f64 {
+        1.0
+    }
+
     /// Substeps of the steps made since this was last asked, of one that divides its steps by an error estimate.
     fn take_substeps(&mut self) -> Option<Substeps> {
         None

@@ -211,6 +211,25 @@ impl Interfaces {
         areas
     }
 
+    /// Area of the plane under which some face has points that have lost more than `share` of their cohesion, m².
+    pub fn projected_area(&self, states: &[f64], share: f64) -> f64 {
+        let first = self.first_states();
+        let mut lost: BTreeMap<usize, (f64, Vec<f64>)> = BTreeMap::new();
+        for (number, cell) in self.cells.iter().enumerate() {
+            let own = &states[first[number]..first[number + 1]];
+            if !Self::is_open(own) {
+                continue;
+            }
+            let (_, areas) = lost.entry(cell.quad).or_insert_with(|| (cell.weight, vec![0.0; self.points(cell)]));
+            for (lost, (area, damage)) in areas.iter_mut().zip(self.damage(number, own)) {
+                if damage > share {
+                    *lost = area;
+                }
+            }
+        }
+        lost.values().map(|(weight, areas)| weight * areas.iter().sum::<f64>()).sum()
+    }
+
     /// Whether a cell is open, from its states.
     pub fn is_open(states: &[f64]) -> bool {
         states[0] != 0.0
@@ -293,6 +312,15 @@ impl Interfaces {
             Ok(_) => tangent,
             Err(_) => [[0.0; 3]; 3],
         }
+    }
+
+    /// Moduli of a cell to which nothing has happened, as [`InterfaceAnswer::moduli`] times the cells that it stands for.
+    pub fn undamaged(&self, cell: usize, moduli: &mut Vec<[Jump; 3]>) {
+        let stiffness = self.virgin(&self.point(cell));
+        let InterfaceCell { shape, weight, .. } = self.cells[cell];
+        let areas = self.shapes[shape].areas.iter();
+        moduli.clear();
+        moduli.extend(areas.map(|area| stiffness.map(|row| row.map(|k| weight * area * k))));
     }
 
     fn point(&self, cell: usize) -> LawPoint<'_> {

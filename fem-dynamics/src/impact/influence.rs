@@ -21,6 +21,8 @@ const MOST_CALLS: u64 = 200;
 pub(super) struct Influence {
     pub(super) cm: f64,
     pub(super) cc: f64,
+    /// That of the structure.
+    pub(super) revision: u64,
     pub(super) x: Vec<f64>,
     /// Approach at contact i per force at contact j, pᵢᵀ Xⱼ and 1/(cm m) on the diagonal, by rows.
     approach: Vec<f64>,

@@ -3,7 +3,7 @@
 use super::ImpactSystem;
 use super::mean::MeanForce;
 use fem_core::energy::Energy;
-use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent};
+use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent, Tangents};
 use fem_core::time::{Histories, StepError};
 
 /// Error of the change of displacement at which an iteration ends, relative, in the energy norm of the tangent; the second where
@@ -19,7 +19,6 @@ const SLOW: f64 = 0.03;
 /// Turns, and tangents among them, before a step counts as unsolvable.
 const MOST: usize = 60;
 const MOST_TANGENTS: usize = 12;
-const MOST_SOFT: usize = 15;
 
 /// What an iteration keeps between steps.
 #[derive(Debug, Default)]
@@ -50,6 +49,11 @@ impl ImpactSystem {
         self.structure.nonlinear().is_some()
     }
 
+    /// Whether it falls short of K u without a tangent, as that of a structure that is damaged does.
+    pub fn softens(&mut self) -> bool {
+        self.structure.nonlinear().is_some_and(|forces| forces.tangents().is_none())
+    }
+
     /// Takes the tangent of the structure.
     ///
     /// # Errors
@@ -57,7 +61,7 @@ impl ImpactSystem {
     pub fn linearise(&mut self, tangent: Tangent) -> Result<(), StepError> {
         let Self { structure, impactors, influence, newton, .. } = self;
         let n = structure.ndof();
-        let Some(large) = structure.nonlinear() else { return Ok(()) };
+        let Some(large) = structure.nonlinear().and_then(|f| f.tangents()) else { return Ok(()) };
         newton.tangent = None;
         large.linearise(&tangent).map_err(StepError::Factorisation)?;
         influence.set(tangent.cm, tangent.cc, n, impactors, |x, count| large.solve_linearised(x, count))?;
@@ -91,16 +95,10 @@ impl ImpactSystem {
         self.newton.load.clear();
         self.newton.load.extend_from_slice(d);
         d.fill(0.0);
-        let (mut largest, mut tangents) = (0.0_f64, 0);
-        let softens = nonlinear(self.structure.nonlinear())?.softens();
+        let (mut largest, mut renewals) = (0.0_f64, 0);
         // The size of the turn before, with the same tangent.
         let mut before = None;
-        let most = if softens { MOST_SOFT } else { MOST };
-        for _ in 0..most {
-            if softens {
-                let point: Vec<f64> = from[..n].iter().zip(&*d).map(|(u, d)| u + d).collect();
-                self.linearise(take(&point))?;
-            }
+        for _ in 0..MOST {
             let Self { structure, impactors, influence, newton, contact_calls, .. } = self;
             let Newton { load, at, residual, step, mean, .. } = newton;
             newton.turns += 1;
@@ -116,7 +114,7 @@ impl ImpactSystem {
             structure.add_damping(-cc, &d[..n], residual);
             step.clear();
             step.extend_from_slice(residual);
-            nonlinear(structure.nonlinear())?.solve_linearised(step, 1).map_err(StepError::Factorisation)?;
+            tangents(nonlinear(structure.nonlinear())?)?.solve_linearised(step, 1).map_err(StepError::Factorisation)?;
             let free = impactors.iter().zip(&load[n..]).zip(&d[n..]);
             step.extend(free.map(|((impactor, r), d)| r / (cm * impactor.mass) - d));
             influence.free.fill(0.0);
@@ -142,13 +140,13 @@ impl ImpactSystem {
                 return Ok(());
             }
             before = Some(size);
-            if !softens && rate.is_some_and(|rate| rate > SLOW) {
-                if tangents == MOST_TANGENTS {
+            if rate.is_some_and(|rate| rate > SLOW) {
+                if renewals == MOST_TANGENTS {
                     break;
                 }
                 let point: Vec<f64> = from[..n].iter().zip(&*d).map(|(u, d)| u + d).collect();
                 self.linearise(take(&point))?;
-                tangents += 1;
+                renewals += 1;
                 before = None;
             }
         }
@@ -158,6 +156,10 @@ impl ImpactSystem {
 
 fn nonlinear(structure: Option<&mut dyn Nonlinear>) -> Result<&mut dyn Nonlinear, StepError> {
     structure.ok_or(StepError::Factorisation(SolveError::Linear))
+}
+
+fn tangents(forces: &mut dyn Nonlinear) -> Result<&mut dyn Tangents, StepError> {
+    forces.tangents().ok_or(StepError::Factorisation(SolveError::NotLinearised))
 }
 
 /// Internal force of a structure that is not linear.

@@ -31,6 +31,10 @@ impl Integrator for Cut {
         self.integrator.limit()
     }
 
+    fn radius_of_long_steps(&self) -> f64 {
+        self.integrator.radius_of_long_steps()
+    }
+
     fn conserves_energy(&self) -> bool {
         self.integrator.conserves_energy()
     }

@@ -56,6 +56,15 @@ impl Integrator for GeneralizedAlpha {
         if shortfall > 0.0 { StepLimit::OmegaDt(MARGIN / shortfall.sqrt()) } else { StepLimit::None }
     }
 
+    /// Of the roots −α_f/(1 − α_f) and those of β λ² + (1/2 + γ − 2β) λ + 1/2 − γ + β = 0.
+    fn radius_of_long_steps(&self) -> f64 {
+        let Self { alpha_f, beta, gamma, .. } = *self;
+        let (half, product) = (0.5 * (0.5 + gamma - 2.0 * beta) / beta, (0.5 - gamma + beta) / beta);
+        let square = half * half - product;
+        let pair = if square > 0.0 { half.abs() + square.sqrt() } else { product.sqrt() };
+        pair.max(alpha_f / (1.0 - alpha_f))
+    }
+
     fn start(&mut self, sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepError> {
         self.resume(sys);
         accelerate(sys, s)

@@ -4,7 +4,7 @@ use super::{Modal, Reduced};
 use fem_core::energy::Energy;
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
-use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent};
+use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent, Tangents};
 use fem_core::vectorised::vectorised;
 use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, DVectorView, DVectorViewMut, Dyn, SymmetricEigen};
 
@@ -328,6 +328,12 @@ impl Nonlinear for MembranePlate {
         Ok(Energy { stored: energy, dissipated: 0.0 })
     }
 
+    fn tangents(&mut self) -> Option<&mut dyn Tangents> {
+        Some(self)
+    }
+}
+
+impl Tangents for MembranePlate {
     fn linearise(&mut self, Tangent { cm, cc, u: q, .. }: &Tangent) -> Result<(), SolveError> {
         self.stretch(q);
         let n = q.len();

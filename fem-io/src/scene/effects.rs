@@ -24,6 +24,8 @@ pub enum Delamination {
     Off,
     /// The contact force at which it begins is found, by energies; the plate stays as it is.
     Threshold,
+    /// Interfaces open where their law says so.
+    Growth,
 }
 
 /// What a scene says of effects.
@@ -96,11 +98,22 @@ pub(super) const KEYS: Keys = &[
         "delamination",
         Form::Words(&words(&DELAMINATIONS)),
         r#""threshold""#,
-        "the contact force at which the laminate delaminates; follows `damage` unless it is given",
+        "the contact force at which the laminate delaminates, or delaminations that grow; the threshold follows `damage` unless \
+         it is given",
     ),
 ];
 const DAMAGES: [(&str, Damage); 2] = [("onset", Damage::Onset), ("off", Damage::Off)];
-const DELAMINATIONS: [(&str, Delamination); 2] = [("off", Delamination::Off), ("threshold", Delamination::Threshold)];
+const DELAMINATIONS: [(&str, Delamination); 3] =
+    [("off", Delamination::Off), ("threshold", Delamination::Threshold), ("growth", Delamination::Growth)];
+
+/// Whether a table of effects asks for delaminations that grow; whatever else is wrong with it is found when it is read.
+pub(super) fn asks_for_growth(field: &SceneValue<'_>) -> bool {
+    field.entries().is_ok_and(|entries| {
+        entries.iter().any(|(key, value)| {
+            *key == "delamination" && matches!(value.choice(&DELAMINATIONS), Ok(Delamination::Growth))
+        })
+    })
+}
 
 pub(super) fn read(field: &SceneValue<'_>) -> Result<EffectsSpec, SceneError> {
     let mut effects = EffectsSpec::default();

@@ -54,6 +54,8 @@ pub struct LaminateSpec {
     pub group: Option<Located<String>>,
     /// The plies; their materials count in those of the scene.
     pub laminate: Located<Laminate>,
+    /// Whether the scene names its layers of cells.
+    pub layered: bool,
 }
 
 /// The laminates, one table or a list of them, and the material of the resin between plies if one is named.
@@ -102,7 +104,9 @@ fn read(
     let layup = read_layup(&layup_field)?;
     let plies: Vec<LaminaPly> =
         layup.iter().map(|ply| read_ply(ply, common, &types, &layup_field)).collect::<Result<_, _>>()?;
-    let layers = match table.optional("layers") {
+    let layers = table.optional("layers");
+    let layered = layers.is_some();
+    let layers = match layers {
         Some(field) => read_layers(&field, plies.len())?,
         None => as_equal_as_possible(plies.len(), plies.len().min(2)),
     };
@@ -110,7 +114,7 @@ fn read(
         Some(field) => Some(field.at(material::find(&field, materials)?)),
         None => None,
     };
-    Ok((LaminateSpec { group, laminate: field.at(Laminate { plies, layers }) }, interface))
+    Ok((LaminateSpec { group, laminate: field.at(Laminate { plies, layers }), layered }, interface))
 }
 
 fn read_layup(field: &SceneValue<'_>) -> Result<Vec<LayupPly>, SceneError> {

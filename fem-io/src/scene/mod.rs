@@ -5,6 +5,7 @@
 //! [`SceneError`] that shows the line.
 
 mod annotate;
+mod delamination;
 mod effects;
 mod explain;
 mod fields;
@@ -26,6 +27,7 @@ pub use crate::document::keys::{Absent, Form, Key, Keys, Plugins, key, words};
 pub use crate::document::reader::{Reader, SceneValue};
 pub use crate::document::source::{Located, Place, SceneError, SceneSource};
 pub use annotate::annotate;
+pub use delamination::{DelaminationSpec, StartingDelamination};
 pub use effects::{Damage, Delamination, EFFECT_SETTINGS, EffectSetting, EffectSpec, EffectsSpec};
 pub use explain::{Explained, explain};
 pub use fields::{FieldCells, FieldSeries, Fields, Region};
@@ -91,6 +93,8 @@ pub struct Scene {
     pub substructures: Option<SubstructuresSpec>,
     /// The effects that are simulated.
     pub effects: EffectsSpec,
+    /// Which interfaces open, where delaminations grow.
+    pub delamination: Option<DelaminationSpec>,
     /// Lines through the thickness along which stresses are written.
     pub profiles: Vec<ProfileLine>,
     /// Where and when failure is looked for.
@@ -170,6 +174,10 @@ pub enum Analysis {
 
 /// Natural frequencies unless a scene says how many.
 pub const DEFAULT_MODES: usize = 10;
+
+/// What delaminations that grow lay over the preset.
+const GROWTH: &str = include_str!("presets/growth.toml");
+
 const MODES: Keys = &[key("count", Form::Count(1), "10", "how many of the lowest modes").default("10")];
 
 /// Reads the scene file `path`.
@@ -221,9 +229,15 @@ impl Merged {
             Some(field) => field.choice(&Fidelity::ALL)?,
             None => Fidelity::Engineering,
         };
+        let effects = Reader::root(&own, KEYS, &source)?.optional("effects");
+        let growth = effects.is_some_and(|field| effects::asks_for_growth(&field));
         let name = format!("preset `{}`", fidelity.name());
         let source = Arc::new(SceneSource::clone(&source).with(Origin::Preset, name, fidelity.preset()));
-        let table = own.over(Table::parse(fidelity.preset(), Origin::Preset, &source)?);
+        let preset = Table::parse(fidelity.preset(), Origin::Preset, &source)?;
+        let table = match growth {
+            true => own.over(Table::parse(GROWTH, Origin::Preset, &source)?.over(preset)),
+            false => own.over(preset),
+        };
         Ok(Self { table, fidelity, source })
     }
 }
@@ -245,6 +259,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
         Analysis::Impact(impact) => Some(&impact.march),
         _ => None,
     };
+    let growth = effects.delamination.as_ref().is_some_and(|wish| wish.value == Delamination::Growth);
     let onset = effects.damage == Damage::Onset;
     Ok(Scene {
         title: root.required("title")?.text()?.to_owned(),
@@ -271,6 +286,14 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
         substructures: root.optional("substructures").map(|field| substructures::read(&field)).transpose()?,
         failure: run::read_failure(&root.required("failure")?, onset && in_time, in_time)?,
         output: root.optional("output").map_or(Ok(Output::default()), |field| run::read_output(&field, march))?,
+        delamination: match root.optional("delamination") {
+            Some(field) if growth => Some(delamination::read(&field)?),
+            Some(field) => {
+                let help = "set effects = { delamination = \"growth\" }, or leave the table out";
+                return Err(field.error("means nothing where delaminations do not grow", help));
+            }
+            None => None,
+        },
         analysis,
         effects,
         profiles: root.optional("profile").map_or(Ok(Vec::new()), |field| load::read_profiles(&field))?,

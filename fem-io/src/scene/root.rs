@@ -1,7 +1,7 @@
 //! The outermost table of a scene.
 
 use super::mesh::MESHES;
-use super::{Fidelity, MODES, laminate, load, run, study, substructures, support};
+use super::{Fidelity, MODES, delamination, laminate, load, run, study, substructures, support};
 use crate::document::keys::{Form, Keys, key, words};
 use crate::materials::constants;
 use fem_core::plate::ZDerivatives;
@@ -110,6 +110,12 @@ pub(super) const KEYS: Keys = &[
         "contact law: `fem list contact-laws`",
     ),
     key("effects", Form::Effects, r#"{ damage = "onset" }"#, "what is simulated beyond the linear plate").default("{}"),
+    key(
+        "delamination",
+        delamination::FORM,
+        r#"{ law = "bilinear", friction = 0.3 }"#,
+        "interfaces that open, where `effects.delamination` is \"growth\": `fem list interface-laws`",
+    ),
     key("load", Form::List(&Form::OneOf(load::LOADS)), r#"[{ pressure = "1 MPa", face = "top" }]"#, "loads at rest"),
     key("modes", Form::Table(MODES), "{ count = 10 }", "natural modes that are found").default("{}"),
     key(

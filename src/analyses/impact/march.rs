@@ -4,6 +4,7 @@ mod sound;
 
 use super::accuracy::{self, Accuracy, Before, Estimates};
 use super::checkpoint::{self, Checkpoint};
+use super::delamination::Onsets;
 use super::frames::frames;
 use super::ledger::{Ledger, Look};
 use super::modal::{self, ModalView};
@@ -87,6 +88,8 @@ pub(super) struct Progress {
     work: SystemCounts,
     /// Of steps that are divided by an estimate of their error.
     parts: Option<Substeps>,
+    /// Of the cells of interfaces, where delaminations grow.
+    onsets: Onsets,
     /// The tangent in use of a plate under large deflections.
     tangent: Option<Tangent>,
     stopped: Option<String>,
@@ -127,7 +130,10 @@ impl<'a> March<'a> {
     /// A criterion whose material lacks a constant, a singular mass.
     pub fn start(prepared: Prepared<'a>) -> Result<Self, Error> {
         let (model, impact) = (prepared.model, prepared.impact);
-        let state = prepared.system.initial();
+        let mut state = prepared.system.initial();
+        if let Some(separation) = &model.separation {
+            state.histories.points.clone_from(&separation.states);
+        }
         let Sizes { steps, step: dt, .. } = prepared.sizes;
         let row_every = model.row_every(steps, dt);
         let progress = Progress {
@@ -144,12 +150,16 @@ impl<'a> March<'a> {
             state,
             work: SystemCounts::default(),
             parts: None,
+            onsets: Onsets::new(model.separation.as_ref().map_or(0, |of| of.interfaces.cells().len())),
             tangent: None,
             stopped: None,
         };
         let mut march = Self::at(prepared, progress)?;
         let Self { integrator, system, progress: Progress { state, .. }, .. } = &mut march;
         integrator.start(system, state).map_err(|e| describe_failure(model, impact, e))?;
+        if let Some(separation) = &model.separation {
+            march.progress.onsets.take(0.0, separation, &march.progress.state.histories.points);
+        }
         march.look(Look::due(0, true))?;
         march.sample()?;
         Ok(march)
@@ -285,7 +295,7 @@ impl<'a> March<'a> {
 
     fn step(&mut self) -> Result<(), Error> {
         let Self { system, guard, effects, .. } = self;
-        let Progress { step, dt, row_every, state, ledger, parts, .. } = &mut self.progress;
+        let Progress { step, dt, row_every, state, ledger, parts, onsets, .. } = &mut self.progress;
         self.integrator.step(system, state, *dt)?;
         if let Some(more) = self.integrator.take_substeps() {
             *parts = Some(parts.map_or(more, |parts| parts.and(more)));
@@ -295,6 +305,9 @@ impl<'a> March<'a> {
         state.t = *step as f64 * *dt;
         ledger.contacts(*step, system, guard, state)?;
         ledger.step(effects, system, state);
+        if let Some(separation) = &self.model.separation {
+            onsets.take(state.t, separation, &state.histories.points);
+        }
         if let Some(modal) = &mut self.modal {
             modal.step(state);
         }
@@ -429,7 +442,9 @@ impl<'a> March<'a> {
         self.stopwatch.lap("scan");
         self.count();
         info!(steps = self.progress.step, work = ?self.progress.work, "march");
-        let Progress { step, ledger, work, parts, stopped, .. } = self.progress;
+        let Progress { step, ledger, work, parts, stopped, onsets, state, .. } = self.progress;
+        let separation = self.model.separation.as_ref();
+        let delaminated = separation.map(|separation| onsets.finish(separation, &state.histories.points));
         let mut counters = self.counters;
         counters.steps = step;
         counters.contact_calls = work.contact_calls;
@@ -446,6 +461,7 @@ impl<'a> March<'a> {
             quantities: self.effects.iter().flat_map(|effect| effect.quantities(&self.system)).collect(),
             contacts,
             forces,
+            delaminated,
             modal: self.modal.map(ModalView::finish),
             history,
             events,

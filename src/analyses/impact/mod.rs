@@ -3,6 +3,7 @@
 mod accuracy;
 mod checkpoint;
 mod contact;
+mod delamination;
 mod frames;
 mod ledger;
 mod march;
@@ -14,6 +15,7 @@ pub use checkpoint::Checkpoint;
 pub(crate) use checkpoint::FILE as CHECKPOINT;
 pub(crate) use contact::Follower;
 pub use contact::{ContactRecord, StepForces};
+pub use delamination::{Delaminated, DelaminatedCell, DelaminatedInterface};
 pub(crate) use frames::frames;
 pub use ledger::BALANCE_EVERY;
 pub(crate) use ledger::history_row;
@@ -82,6 +84,8 @@ pub struct Outcome {
     pub histories: Vec<IndexHistory>,
     /// Largest index per criterion and site, if the scene asks for maps or plots.
     pub maxima: Vec<Maximum>,
+    /// What has delaminated, where delaminations grow.
+    pub delaminated: Option<Delaminated>,
     /// What the lowest modes do, if the scene asks for it.
     pub modal: Option<ModalHistory>,
     /// Sites watched.

@@ -7,19 +7,20 @@ use crate::cost::Stopwatch;
 use crate::effect::{Effect, Feature, Marched};
 use crate::error::Error;
 use crate::forecast::MemoryEstimate;
-use crate::model::{Impact, Model, Plan, Strike};
-use fem_core::assembly::{Condensation, SparseStructure, column_order};
+use crate::model::{Impact, Model, Plan, Separation, Strike};
+use fem_core::assembly::{Condensation, Separable, SeparableParts, SparseStructure, column_order, pattern};
 use fem_core::counters::Counters;
 use fem_core::functional::Functional;
 use fem_core::prolongation::Prolongation;
 use fem_core::reduction::ReductionError;
-use fem_core::structure::Structure;
+use fem_core::structure::{SolveError, Structure};
 use fem_core::time::{Integrator, StepError};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
 use fem_dynamics::limit::{self, TooLong};
 use fem_dynamics::reduce::{Companions, MembranePlate, Reduced, static_responses};
 use fem_io::scene;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 /// Governors offered to a reduction.
 const GOVERNORS: usize = 2000;
@@ -82,6 +83,9 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     if model.effects.undecided() {
         return Err(Error::Undecided);
     }
+    if let Some(separation) = &model.separation {
+        return prepare_separable(model, impact, separation, threads);
+    }
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
     let mut effects = model.effects.acting().to_vec();
@@ -122,6 +126,56 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         membrane: stretched,
         full,
         condensation,
+        sizes,
+        counters,
+        stopwatch,
+    })
+}
+
+/// The same of a plate whose interfaces may open.
+fn prepare_separable<'a>(
+    model: &'a Model,
+    impact: &'a Impact,
+    separation: &Separation,
+    threads: NonZeroUsize,
+) -> Result<Prepared<'a>, Error> {
+    let mut stopwatch = Stopwatch::default();
+    let Model { plate, element, constraints, .. } = model;
+    let Separation { interfaces, growth, supports, states, .. } = separation;
+    let pattern = Arc::new(pattern(plate, constraints));
+    let stiffness_entries = pattern.entries();
+    let (_, memory) = model.analyse(pattern)?;
+    model.check_mass()?;
+    let parts = SeparableParts {
+        plate: plate.clone(),
+        element: element.clone(),
+        supports: supports.clone(),
+        constraints: constraints.clone(),
+        interfaces: interfaces.clone(),
+        growth: *growth,
+    };
+    let mut structure = Separable::new(parts, states, true, threads).map_err(SolveError::from)?;
+    if model.effects.nature().large {
+        structure = structure.with_large_deflections().ok_or(SolveError::Linear)?;
+    }
+    let counters = Counters { elements: structure.work().cells, ..Counters::default() };
+    let (_, factor_entries) = structure.size();
+    stopwatch.lap("assemble");
+    let contacts: Vec<Functional> = impact.strikes.iter().map(|strike| strike.contact.clone()).collect();
+    let impactors = place_impactors(impact, &contacts, None);
+    let mut effects = model.effects.acting().to_vec();
+    let mut system = couple(model, ImpactSystem::new(Box::new(structure), impactors), None, &mut effects);
+    let before = Before { stiffness_entries, factor_entries, substructures: None, memory, softness: None };
+    let sizes = check_step(model, impact, &mut system, None, before)?;
+    Ok(Prepared {
+        model,
+        impact,
+        system,
+        effects,
+        reduced: None,
+        membrane: None,
+        full: None,
+        condensation: None,
         sizes,
         counters,
         stopwatch,

@@ -12,13 +12,14 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Pictures of a run and what they show, in the order of the page; those of profiles come after them.
-const PICTURES: [(&str, &str); 7] = [
+const PICTURES: [(&str, &str); 8] = [
     ("contact_force", "Contact force over time"),
     ("displacement", "Displacements over time"),
     ("energy", "Energies over time"),
     ("force_displacement", "Contact force over displacements"),
     ("index_history", "Failure indices at the watched places"),
     ("modal_coordinates", "Modes in the deflection"),
+    ("c_scan", "Delaminations in plan"),
     ("damage_map", "Damage in plan"),
 ];
 const SECTION: (&str, &str) = ("damage_section", "Damage in a section");

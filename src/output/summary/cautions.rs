@@ -1,7 +1,7 @@
 //! When a headline is not to be trusted, in a line each: what stands at the top.
 
 use super::ImpactSummary;
-use crate::analyses::impact::Outcome;
+use crate::analyses::impact::{Delaminated, Outcome};
 use crate::model::{Model, Plan};
 use fem_failure::scan::{FailureEvent, first_per_mode};
 use fem_io::scene::Window;
@@ -16,7 +16,10 @@ const LARGE: f64 = 0.05;
 pub(super) fn cautions(model: &Model, outcome: &Outcome, summary: &ImpactSummary) -> Vec<String> {
     let mut found = Vec::new();
     found.extend(unfinished(model, outcome, summary));
-    found.extend(delaminated(summary));
+    match &outcome.delaminated {
+        None => found.extend(delaminated(summary)),
+        Some(grown) => found.extend(bordered(grown)),
+    }
     found.extend(rough(summary));
     found.extend(first_per_mode(&outcome.events).into_iter().filter_map(|event| placed(model, event)));
     found
@@ -39,6 +42,14 @@ fn unfinished(model: &Model, outcome: &Outcome, summary: &ImpactSummary) -> Opti
         last.time_s * 1e3,
         row.contact_force_n
     ))
+}
+
+/// Delaminations that would have grown on.
+fn bordered(grown: &Delaminated) -> Option<String> {
+    grown.at_border.then(|| {
+        "damage has come to the border of where interfaces may open: enlarge `delamination.radius`, or leave it out"
+            .to_owned()
+    })
 }
 
 /// Interfaces that should have opened.

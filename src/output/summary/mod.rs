@@ -1,6 +1,7 @@
 //! The summary of a run: for machines (`summary.json`) and for people.
 
 mod cautions;
+mod delamination;
 mod onset;
 mod text;
 mod warnings;
@@ -9,6 +10,8 @@ pub use onset::OnsetBand;
 
 use crate::advise::hindsight;
 use crate::analyses::assembled::Substructures;
+pub use delamination::{DelaminationFigures, InterfaceFigures};
+
 use crate::analyses::impact::{self, ContactRecord, Differences, ModeShare, Outcome, Sizes};
 use crate::effect::{AdviceRule, Decision, Hindsight};
 use crate::model::{Model, NamedCriterion};
@@ -46,6 +49,8 @@ pub struct ImpactSummary {
     pub onsets: Vec<OnsetBand>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delamination_threshold: Option<Threshold>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub delamination: Option<DelaminationFigures>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub modes: Vec<ModeShare>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -356,6 +361,8 @@ impl ImpactSummary {
             stress: (&e.stress).into(),
             reserve_factor: reserve(&model.criteria, &model.materials, e),
         };
+        let impact: Vec<ImpactFigures> =
+            model.impactors().iter().enumerate().map(|(i, spec)| figures(model, outcome, i, spec)).collect();
         let summary = Self {
             title: model.origin.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
@@ -383,7 +390,8 @@ impl ImpactSummary {
                 of_effects: outcome.quantities.iter().copied().collect(),
                 lowest_frequency_Hz: sizes.lowest_frequency,
             },
-            impact: model.impactors().iter().enumerate().map(|(i, spec)| figures(model, outcome, i, spec)).collect(),
+            delamination: DelaminationFigures::of(model, outcome, &impact),
+            impact,
             first_damage: first_per_mode(&outcome.events).into_iter().map(damage).collect(),
             not_reached: not_reached(&outcome.peaks),
             onsets: onset::bands(model, outcome),

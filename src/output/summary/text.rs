@@ -132,7 +132,17 @@ impl ImpactSummary {
                 ));
             }
         }
-        if let Some(d) = &self.delamination_threshold {
+        if let Some(grown) = &self.delamination {
+            line(format_args!(
+                "  delam.    {:.1} mm2 projected, {:.1} mm2 of all interfaces; {:.4} J dissipated in them, {:.4} J absorbed",
+                grown.projected_area_mm2, grown.area_mm2, grown.dissipated_J, grown.absorbed_J
+            ));
+            for one in grown.interfaces.iter().filter(|one| one.area_mm2 > 0.0) {
+                let since = one.since_s.map_or(String::new(), |t| format!(", from {:.4} ms", t * 1e3));
+                line(format_args!("            interface {:>7} {:>10.1} mm2{since}", one.interface, one.area_mm2));
+            }
+        }
+        if let (Some(d), None) = (&self.delamination_threshold, &self.delamination) {
             let peak = self.impact.iter().map(|i| i.peak_force_N).fold(0.0, f64::max);
             let by = d.impactor.as_ref().map_or(String::new(), |name| format!(" by {name}"));
             let all = match d.interfaces {

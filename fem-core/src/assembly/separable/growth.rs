@@ -18,6 +18,9 @@ pub struct Growth {
     pub trigger: f64,
 }
 
+/// How much farther than it must an opening goes, because each costs a factorisation.
+const AHEAD: f64 = 1.5;
+
 impl Separable {
     /// Opens the closed cells near damage and near what is about to be, in `states`, with the tractions that they carry.
     ///
@@ -25,7 +28,12 @@ impl Separable {
     /// each cell. It is not that of the closed interface, which is singular at its border, but what that comes to.
     pub(super) fn grow(&mut self, u: &[f64], states: &mut [f64]) {
         let tractions = self.nodal_tractions(u);
-        let fresh = self.reached(&tractions, states);
+        let growth = self.parts.growth;
+        if self.reached(&tractions, states, growth).is_empty() {
+            return;
+        }
+        let ahead = Growth { margin: AHEAD * growth.margin, trigger: growth.trigger / AHEAD };
+        let fresh = self.reached(&tractions, states, ahead);
         let parts = &self.parts;
         for number in fresh {
             let cell = &parts.interfaces.cells()[number];
@@ -46,9 +54,9 @@ impl Separable {
     }
 
     /// Closed cells nearer to damage, or to a node whose tractions are near those of damage, than the band is wide.
-    fn reached(&self, tractions: &BTreeMap<(usize, usize), Jump>, states: &[f64]) -> Vec<usize> {
+    fn reached(&self, tractions: &BTreeMap<(usize, usize), Jump>, states: &[f64], growth: Growth) -> Vec<usize> {
         let plate = &self.parts.plate;
-        let (interfaces, growth) = (&self.parts.interfaces, self.parts.growth);
+        let interfaces = &self.parts.interfaces;
         let centre = |quad: usize| plate.plane.corners(quad).centroid();
         let mut sources: BTreeMap<usize, Vec<[f64; 2]>> = BTreeMap::new();
         let mut hurt: BTreeSet<(usize, usize)> = BTreeSet::new();

@@ -1,7 +1,8 @@
 //! A plate that separates, as dynamics see it.
 
+use super::tied::Factored;
 use super::{Separable, SeparableError};
-use crate::contracts::structure::{Nonlinear, SolveError, Structure, Tangent};
+use crate::contracts::structure::{Nonlinear, SolveError, Structure};
 use crate::words::energy::Energy;
 
 impl From<SeparableError> for SolveError {
@@ -27,25 +28,15 @@ impl Structure for Separable {
         self.m.add_product(scale, x, y);
     }
 
-    /// As it is from the first, with the stiffness of interfaces to which nothing has happened.
+    /// Of the interfaces that are open, undamaged.
     fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
         let n = Separable::ndof(self);
-        let states = self.initial.clone();
-        self.linearise(&vec![0.0; n], &states, shift)?;
-        x.chunks_exact_mut(n).take(columns).try_for_each(|x| self.solve(x))?;
+        x.chunks_exact_mut(n).take(columns).try_for_each(|x| self.solve_with(Factored::Undamaged(shift), x))?;
         Ok(())
     }
 
     fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
-        if self.tied.factored != Some(f64::INFINITY) {
-            self.cm = f64::INFINITY;
-            self.factorise()?;
-        }
-        let mut y = vec![0.0; self.tied.ndof()];
-        self.tied.restrict(x, &mut y);
-        self.tied.factor.solve(&mut y, 1);
-        self.tied.way.expand(&y, x);
-        Ok(())
+        Ok(self.solve_with(Factored::Mass, x)?)
     }
 
     fn states(&self) -> usize {
@@ -54,6 +45,10 @@ impl Structure for Separable {
 
     fn nonlinear(&mut self) -> Option<&mut dyn Nonlinear> {
         Some(self)
+    }
+
+    fn revision(&self) -> u64 {
+        self.work.openings
     }
 
     fn work(&self) -> (u64, u64) {
@@ -68,19 +63,5 @@ impl Nonlinear for Separable {
 
     fn commit(&mut self, u: &[f64], points: &mut [f64]) -> Result<(), SolveError> {
         Ok(Separable::commit(self, u, points)?)
-    }
-
-    fn softens(&self) -> bool {
-        true
-    }
-
-    fn linearise(&mut self, Tangent { cm, u, points, .. }: &Tangent) -> Result<(), SolveError> {
-        Ok(Separable::linearise(self, u, points, *cm)?)
-    }
-
-    fn solve_linearised(&mut self, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
-        let n = Separable::ndof(self);
-        x.chunks_exact_mut(n).take(columns).try_for_each(|x| self.solve(x))?;
-        Ok(())
     }
 }

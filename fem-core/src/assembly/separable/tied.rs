@@ -23,14 +23,24 @@ pub(super) struct Tied {
     pub(super) factor: Cholesky,
     /// Entries of the factor.
     pub(super) entries: usize,
-    /// Factor on the mass in what was factorised.
-    pub(super) factored: Option<f64>,
+    pub(super) factored: Factored,
     /// Whether the factor has become too different from the tangent.
     pub(super) stale: bool,
     /// Whether it is that of the tangent.
     pub(super) exact: bool,
     /// Moduli in what was factorised.
     moduli: Vec<Vec<[Jump; 3]>>,
+}
+
+/// What a factor is of; with its factor on the mass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Factored {
+    Nothing,
+    Mass,
+    /// The plate with what is open undamaged.
+    Undamaged(f64),
+    /// What is near the tangent.
+    Near(f64),
 }
 
 /// ũ = T y.
@@ -91,7 +101,7 @@ impl Tied {
             near: Symmetric::zero(pattern),
             entries: symbolic.entries(),
             factor: Cholesky::new(symbolic, threads),
-            factored: None,
+            factored: Factored::Nothing,
             stale: false,
             exact: false,
             moduli: Vec::new(),
@@ -114,11 +124,11 @@ impl Tied {
         self.way.restrict(x, y);
     }
 
-    /// Factorises K + `cm` M with the stiffness of the interfaces that `moduli` leave definite; M alone where `cm` is infinite.
+    /// Factorises `what`, with the stiffness of the interfaces that `moduli` leave definite.
     pub(super) fn factorise(
         &mut self,
         parts: &SeparableParts,
-        cm: f64,
+        what: Factored,
         moduli: &[Vec<[Jump; 3]>],
         threads: NonZeroUsize,
     ) -> Result<(), SeparableError> {
@@ -129,24 +139,27 @@ impl Tied {
             assemble(plate, &**element, &self.constraints, &pattern, which, threads, &mut counters)
                 .map_err(SeparableError::Assembly)
         };
-        let only_mass = cm.is_infinite();
-        self.near = matrix(if only_mass { Matrix::Mass } else { Matrix::Stiffness })?;
-        if cm != 0.0 && !only_mass {
-            let mass = matrix(Matrix::Mass)?;
-            let near = self.near.lower_mut().val_mut();
-            near.iter_mut().zip(mass.lower().val()).for_each(|(k, m)| *k += cm * m);
-        }
-        if !only_mass {
-            let mut secant = Vec::new();
-            for (cell, map) in &mut self.maps {
-                interfaces.secant(*cell, &moduli[*cell], &mut secant);
-                map.scatter(&secant, 1.0, &mut self.near);
+        self.factored = Factored::Nothing;
+        match what {
+            Factored::Nothing => return Ok(()),
+            Factored::Mass => self.near = matrix(Matrix::Mass)?,
+            Factored::Undamaged(cm) | Factored::Near(cm) => {
+                self.near = matrix(Matrix::Stiffness)?;
+                if cm != 0.0 {
+                    let mass = matrix(Matrix::Mass)?;
+                    let near = self.near.lower_mut().val_mut();
+                    near.iter_mut().zip(mass.lower().val()).for_each(|(k, m)| *k += cm * m);
+                }
+                let mut secant = Vec::new();
+                for (cell, map) in &mut self.maps {
+                    interfaces.secant(*cell, &moduli[*cell], &mut secant);
+                    map.scatter(&secant, 1.0, &mut self.near);
+                }
+                self.moduli.clone_from(&moduli.to_vec());
             }
         }
-        self.factored = None;
         self.factor.factorise(self.near.lower()).map_err(SeparableError::Factor)?;
-        (self.factored, self.stale) = (Some(cm), false);
-        self.moduli.clone_from(&moduli.to_vec());
+        (self.factored, self.stale) = (what, false);
         Ok(())
     }
 }

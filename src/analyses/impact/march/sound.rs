@@ -13,7 +13,7 @@ pub(super) const MOST: u64 = 1 << 53;
 impl Progress {
     /// Whether it fits itself and a march of `model`, whose system begins with `fresh`.
     pub(super) fn is_sound(&self, model: &Model, system: &ImpactSystem, fresh: &State) -> bool {
-        let Self { step, dt, row_every, state, ledger, work, parts, tangent, .. } = self;
+        let Self { step, dt, row_every, state, ledger, work, parts, onsets, tangent, .. } = self;
         let sizes = |s: &State| [s.u.len(), s.v.len(), s.a.len(), s.histories.contacts.len(), s.histories.points.len()];
         let SystemCounts { factorisations, solves, contact_calls, iterations } = *work;
         let n = system.structure().ndof();
@@ -23,6 +23,7 @@ impl Progress {
             && [factorisations, solves, contact_calls, iterations].iter().all(|count| *count < MOST)
             && parts.is_none_or(|parts| parts.count < MOST)
             && sizes(state) == sizes(fresh)
+            && onsets.is_sound(model.separation.as_ref().map_or(0, |of| of.interfaces.cells().len()))
             && on_time
             && ledger.is_sound(*step, *dt, model.impactors().len(), model.effects.columns().count())
             && tangent.as_ref().is_none_or(fits)

@@ -1,0 +1,314 @@
+//! Interfaces between plies that may open: which, where, and how they hold before they do.
+
+use super::builder::{Builder, build, is_within};
+use crate::effect::Effects;
+use crate::registry::{NO_REDUCTION, RegistryError};
+use fem_core::assembly::Growth;
+use fem_core::constraint::Equation;
+use fem_core::element::Element;
+use fem_core::interface_law::InterfaceLaw;
+use fem_core::interfaces::{InterfaceMaterial, Interfaces, InterfacesError};
+use fem_core::laminate::{LaminaPly, Laminate};
+use fem_core::material::{Elastic, Material};
+use fem_core::plate::Plate;
+use fem_core::plugin::{Built, Kind};
+use fem_core::ply_law::LawPoint;
+use fem_io::scene::{DelaminationSpec, PluginSpec, SceneError};
+use std::collections::BTreeSet;
+
+/// What an integrator may miss of it by rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// Difference of two angles, radians, up to which plies are alike.
+const ALIKE: f64 = 1e-6;
+
+/// Largest spectral radius for long steps of an integrator under which faces may clap.
+const DAMPED: f64 = 0.5;
+
+/// Effects that go with delaminations that grow.
+const BESIDE: [&str; 1] = ["membrane"];
+
+/// Process zones, and cells, that are open ahead of damage.
+const ZONES: f64 = 1.5;
+const CELLS: f64 = 2.0;
+
+/// Interfaces of a plate that may open.
+#[derive(Debug, Clone)]
+pub struct Separation {
+    /// Cell by cell.
+    pub interfaces: Interfaces,
+    /// When they open.
+    pub growth: Growth,
+    /// Supports, and what a symmetry makes of its border.
+    pub supports: Vec<Equation>,
+    /// Each face between layers of cells that may open, with the number of plies below it.
+    pub faces: Vec<(usize, usize)>,
+    /// States at the start.
+    pub states: Vec<f64>,
+    /// Shortest process zone in modes I and II, m, where the law knows it, and the widest cell that may open, m.
+    pub zone: Option<([f64; 2], f64)>,
+    /// Quads beside others that may not open.
+    pub border: BTreeSet<usize>,
+    first: Vec<usize>,
+}
+
+impl Separation {
+    /// Where the states of each cell of the interfaces begin, and their number at the end.
+    pub fn first(&self) -> &[usize] {
+        &self.first
+    }
+
+    /// Number of plies below a face.
+    pub fn below(&self, face: usize) -> usize {
+        self.faces.iter().find(|(own, _)| *own == face).map_or(0, |(_, below)| *below)
+    }
+
+    /// What the user should know of cells against process zones.
+    pub(super) fn warning(&self) -> Option<String> {
+        let ([opening, shear], cell) = self.zone?;
+        let [opening, shear, cell] = [opening, shear, cell].map(|length| length * 1e3);
+        let shortest = opening.min(shear);
+        (cell > shortest).then(|| {
+            format!(
+                "interfaces soften over about {opening:.2} mm where they open and {shear:.2} mm where they slide, and cells up to \
+                 {cell:.2} mm wide may open: forces ripple, by some 5 % at cells twice as long as that and 10 % at three times; make \
+                 them narrower"
+            )
+        })
+    }
+}
+
+/// Where a plate is given two sides.
+pub(super) struct Split<'a> {
+    spec: &'a DelaminationSpec,
+    faces: Vec<(usize, usize)>,
+    /// The cells at each face.
+    quads: Vec<u32>,
+}
+
+impl<'a> Builder<'a> {
+    /// Lays the layers of cells of `laminate` so that interfaces that may open lie between them, where the scene has none of its own.
+    pub(super) fn split(&self, laminates: &mut [Laminate]) -> Result<Option<Split<'a>>, SceneError> {
+        let Some(spec) = &self.scene.delamination else { return Ok(None) };
+        let [laminate] = laminates else {
+            let message = "delaminations that grow are not supported yet in a plate of several laminates";
+            return Err(self.error(&spec.law.name, message, "give the plate one laminate, or leave the growth out"));
+        };
+        let plies = laminate.plies.len();
+        let differ = |pair: &[LaminaPly]| {
+            (pair[0].angle - pair[1].angle).sin().abs() > ALIKE || pair[0].material != pair[1].material
+        };
+        let mut below: Vec<usize> = match &spec.interfaces {
+            None => (1..plies).filter(|k| differ(&laminate.plies[k - 1..=*k])).collect(),
+            Some(named) => {
+                if let Some(wrong) = named.value.iter().find(|k| k.value + 1 >= plies) {
+                    let message = format!("there is no interface {} in a laminate of {plies} plies", wrong.value + 1);
+                    let help = format!("interface k lies between the plies k and k + 1: 1 to {}", plies - 1);
+                    return Err(self.error(wrong, message, help));
+                }
+                named.value.iter().map(|k| k.value + 1).collect()
+            }
+        };
+        below.sort_unstable();
+        below.dedup();
+        let specified = &self.scene.laminates[0];
+        if below.is_empty() {
+            let message = "all plies are alike, so that no interface may open unless it is named";
+            let help = "name some: delamination = { interfaces = [4] }";
+            return Err(self.error(&specified.laminate, message, help));
+        }
+        if !specified.layered {
+            let ends = below.iter().copied().chain([plies]);
+            let starts = [0].into_iter().chain(below.iter().copied());
+            laminate.layers = ends.zip(starts).map(|(end, start)| end - start).collect();
+        }
+        let mut face_of = vec![None; plies + 1];
+        let mut sum = 0;
+        for (layer, count) in laminate.layers.iter().enumerate() {
+            sum += count;
+            face_of[sum] = Some(layer + 1);
+        }
+        let found = |k: &usize| face_of[*k].map(|face| (face, *k));
+        let faces: Vec<(usize, usize)> = below.iter().filter_map(found).collect();
+        if faces.len() < below.len() {
+            let inside = below.iter().find(|k| face_of[**k].is_none()).copied().unwrap_or_default();
+            let message = format!("interface {inside} may open and lies inside a layer of cells");
+            let help = "leave `laminate.layers` out, so that layers end where interfaces may open, or name others in \
+                        `delamination.interfaces`";
+            return Err(self.error(&specified.laminate, message, help));
+        }
+        Ok(Some(Split { spec, faces, quads: Vec::new() }))
+    }
+
+    /// Gives the nodes at the interfaces two sides.
+    pub(super) fn separate(&self, split: &mut Split<'_>, plate: &mut Plate) -> Result<(), SceneError> {
+        let all = 0..plate.plane.quads.len();
+        split.quads = match &split.spec.radius {
+            None => all.map(|quad| quad as u32).collect(),
+            Some(radius) => {
+                let strikes = self.scene.impact().into_iter().flat_map(|impact| &impact.impactors);
+                let centres: Vec<[f64; 2]> = strikes
+                    .map(|impactor| Ok(self.point(plate, &impactor.at)?.0))
+                    .collect::<Result<_, SceneError>>()?;
+                let within = is_within(plate, &centres, radius.value);
+                let near: Vec<u32> = all.filter(within).map(|quad| quad as u32).collect();
+                if near.is_empty() {
+                    let message = "no cell has its centre within `delamination.radius` of the impact";
+                    return Err(self.error(radius, message, "enlarge the radius or leave it out"));
+                }
+                near
+            }
+        };
+        split.faces.iter().for_each(|(face, _)| plate.separate(*face, &split.quads));
+        Ok(())
+    }
+
+    /// The interfaces of a plate that is split.
+    pub(super) fn separation(
+        &self,
+        split: &Split<'_>,
+        plate: &Plate,
+        element: &dyn Element,
+        laminate: &Laminate,
+        materials: &[Material],
+        supports: Vec<Equation>,
+        effects: &Effects,
+    ) -> Result<Separation, SceneError> {
+        let Split { spec, faces, quads } = split;
+        self.goes_with_growth(spec, effects)?;
+        let name = &spec.law.name;
+        let resin = self.scene.interface.as_ref().map_or(laminate.plies[0].material, |resin| resin.value);
+        let law = self.interface_law(&spec.law)?;
+        let material = materials[resin].clone();
+        let arm = thinnest(laminate, faces);
+        let stiffness = material.elastic.stiffness();
+        let bending = 12.0 * laminate.effective_bending_stiffness(materials) / laminate.thickness().powi(3);
+        let elastic = Elastic { e1: bending, ..material.elastic };
+        let widest = quads.iter().map(|quad| plate.plane.quality(*quad as usize).area.sqrt()).fold(0.0, f64::max);
+        let of = InterfaceMaterial { name: name.value.clone(), law: law.clone(), material };
+        let sets: Vec<(usize, Vec<u32>)> = faces.iter().map(|(face, _)| (*face, quads.clone())).collect();
+        let interfaces = Interfaces::new(plate, element, of, &sets, spec.points).map_err(|why| match &why {
+            InterfacesError::Element => {
+                let kind = &self.scene.element.name;
+                let message = format!("interfaces of a plate of `{}` cannot open: {why}", kind.value);
+                self.error(kind, message, "choose a solid element such as `hermite-prism`")
+            }
+            InterfacesError::Material(_) => {
+                let at = &self.scene.materials[resin];
+                let help =
+                    "complete the material; or give `laminate.interface` another, with its toughnesses and strengths";
+                self.error(at, why.to_string(), help)
+            }
+            _ => self.error(name, why.to_string(), ""),
+        })?;
+        let point = LawPoint { material: &materials[resin], stiffness: &stiffness, length: widest };
+        let zone = law.process_zone(&point, &elastic, arm);
+        let shortest = zone.map_or(f64::INFINITY, |[open, slide]| open.min(slide));
+        let zones = if shortest.is_finite() { ZONES * shortest } else { 0.0 };
+        let margin = spec.margin.unwrap_or((CELLS * widest).max(zones));
+        let growth = Growth { margin, trigger: spec.trigger };
+        let mut states = vec![0.0; interfaces.states()];
+        self.crack(split, plate, &interfaces, margin, &mut states)?;
+        let mut may = vec![false; plate.plane.quads.len()];
+        quads.iter().for_each(|quad| may[*quad as usize] = true);
+        let mut rim = BTreeSet::new();
+        for quad in (0..may.len()).filter(|quad| !may[*quad]) {
+            rim.extend(plate.columns_of_quad(quad).iter().copied());
+        }
+        let touches = |quad: &usize| plate.columns_of_quad(*quad).iter().any(|column| rim.contains(column));
+        let border = quads.iter().map(|quad| *quad as usize).filter(touches).collect();
+        let first = interfaces.first_states();
+        let zone = zone.map(|zone| (zone, widest));
+        Ok(Separation { interfaces, growth, supports, faces: faces.clone(), states, zone, border, first })
+    }
+
+    /// Opens the delaminations that are there at the start.
+    fn crack(
+        &self,
+        Split { spec, faces, .. }: &Split<'_>,
+        plate: &Plate,
+        interfaces: &Interfaces,
+        margin: f64,
+        states: &mut [f64],
+    ) -> Result<(), SceneError> {
+        let first = interfaces.first_states();
+        for start in &spec.starting {
+            let number = start.interface.value + 1;
+            let face = faces.iter().find(|(_, below)| *below == number).map(|(face, _)| *face).ok_or_else(|| {
+                let known: Vec<String> = faces.iter().map(|(_, below)| below.to_string()).collect();
+                let message = format!("interface {number} is none of those that may open");
+                self.error(&start.interface, message, format!("they are {}", known.join(", ")))
+            })?;
+            let (centre, _) = self.point(plate, &start.at)?;
+            let from = |p: [f64; 2]| (p[0] - centre[0]).hypot(p[1] - centre[1]);
+            let mut broken = 0;
+            for (number, cell) in interfaces.cells().iter().enumerate().filter(|(_, cell)| cell.face == face) {
+                let own = first[number]..first[number + 1];
+                let inside = interfaces.positions(number).iter().filter(|p| from(**p) < start.radius).count();
+                broken += inside;
+                if inside > 0 || from(plate.plane.corners(cell.quad).centroid()) < start.radius + margin {
+                    interfaces.crack(number, &mut states[own], |p| from(p) < start.radius);
+                }
+            }
+            if broken == 0 {
+                let message = "this delamination holds no point of the interface that may open";
+                let help = "its centre in the plate and near enough to the impact, its radius more than a cell";
+                return Err(self.error(&start.at, message, help));
+            }
+        }
+        Ok(())
+    }
+
+    fn interface_law(&self, spec: &PluginSpec) -> Result<Box<dyn InterfaceLaw>, SceneError> {
+        build!(self, spec, InterfaceLaw)
+    }
+
+    /// Refuses what does not stand beside delaminations that grow.
+    fn goes_with_growth(&self, spec: &DelaminationSpec, effects: &Effects) -> Result<(), SceneError> {
+        let name = &spec.law.name;
+        let wish = self.scene.effects.delamination.as_ref().map_or(&name.place, |wish| &wish.place);
+        let refuse = |place, message: &str, help: &str| Err(self.scene.source.error_at(place, message, help));
+        let Some(impact) = self.scene.impact() else {
+            return refuse(wish, "delaminations grow under an impact, and this analysis has none", "leave it out");
+        };
+        if self.scene.substructures.is_some() {
+            return refuse(
+                wish,
+                "condensed `substructures` are linear, and delaminations grow",
+                "leave one of them out",
+            );
+        }
+        if self.has_laws() {
+            let message = "plies that follow a law do not stand beside delaminations that grow yet";
+            return refuse(wish, message, "leave the `law` of the material out, or the growth");
+        }
+        if let Some(other) = effects.wanted().find(|info| !BESIDE.contains(&info.key.name)) {
+            let message = format!("`effects.{}` does not stand beside delaminations that grow yet", other.key.name);
+            return refuse(wish, &message, "leave one of them out");
+        }
+        let reduction = &impact.reduction.name;
+        if reduction.value != NO_REDUCTION {
+            let help = "march the full plate: reduction = { method = \"none\" }";
+            return refuse(&reduction.place, "a reduced plate is linear, and delaminations grow", help);
+        }
+        let integrator = &impact.march.integrator.name;
+        if self.integrator(impact)?.radius_of_long_steps() > DAMPED + ROUNDING {
+            let message = format!(
+                "`{}` keeps high modes, which faces that close excite until they drown the rest",
+                integrator.value
+            );
+            let help = format!("damp them: integrator = {{ name = \"generalized-alpha\", rho = {DAMPED} }}");
+            return Err(self.scene.source.error_at(&integrator.place, message, help));
+        }
+        Ok(())
+    }
+}
+
+/// Thickness of the thinnest part of a laminate between two faces that may open, or one of them and the outside, m.
+fn thinnest(laminate: &Laminate, faces: &[(usize, usize)]) -> f64 {
+    let heights = laminate.boundaries();
+    let mut cuts = vec![0];
+    cuts.extend(faces.iter().map(|(_, below)| *below));
+    cuts.push(laminate.plies.len());
+    cuts.windows(2).map(|cut| heights[cut[1]] - heights[cut[0]]).fold(f64::INFINITY, f64::min)
+}
