@@ -16,11 +16,15 @@ use fem_io::scene::{Form, key};
 pub struct NonlinearPlies(pub PlyLaws);
 
 impl NonlinearPlies {
+    /// Its column.
+    pub const LOST: LedgerColumn =
+        LedgerColumn { name: "ply_dissipated_J", unit: "J", label: "lost in the plies", counts: true };
+
     /// Its entry.
     pub const INFO: EffectInfo = EffectInfo {
         key: key("law", Form::PluginName(Kind::PlyLaw), r#""hahn-tsai""#, "law of the plies of a material"),
         source: "",
-        columns: &[LedgerColumn { name: "ply_dissipated_J", unit: "J", label: "lost in the plies", counts: true }],
+        columns: &[Self::LOST],
         advice: None,
     };
 }

@@ -9,7 +9,7 @@ use fem_core::material::Material;
 use fem_core::plate::Plate;
 use fem_core::plugin::{Built, Kind};
 use fem_core::ply_law::PlyLaw;
-use fem_io::scene::{Place, PluginSpec, SceneError};
+use fem_io::scene::{Damage, Place, PluginSpec, SceneError};
 
 impl Builder<'_> {
     /// Whether some plies follow laws.
@@ -17,13 +17,14 @@ impl Builder<'_> {
         self.scene.plies().any(|ply| self.scene.laws[ply.material].is_some())
     }
 
-    /// The laws of the plies, if some follow one.
+    /// The laws of the plies, if some follow one, in the cells of a `zone` or in all.
     pub(super) fn laws(
         &self,
         plate: &Plate,
         laminates: &[Laminate],
         materials: &[Material],
         element: &dyn Element,
+        zone: Option<&[u32]>,
     ) -> Result<Option<PlyLaws>, SceneError> {
         let lawful = self.scene.plies().find_map(|ply| self.scene.laws[ply.material].as_ref());
         let laminate = match (laminates, lawful) {
@@ -39,7 +40,7 @@ impl Builder<'_> {
             spec.as_ref().map(named).transpose()
         };
         let laws = self.scene.laws.iter().map(built).collect::<Result<Vec<_>, _>>()?;
-        let laws = PlyLaws::new(plate, laminate, materials, &laws, element).map_err(|why| match &why {
+        let laws = PlyLaws::new(plate, laminate, materials, &laws, element, zone).map_err(|why| match &why {
             LawsError::Material(error) => {
                 let spec = self.scene.laws.iter().zip(materials).find(|(_, m)| m.name == error.material);
                 let place = spec.and_then(|(spec, _)| spec.as_ref()).map_or(&Place::TOP, |spec| &spec.name.place);
@@ -72,7 +73,8 @@ impl Builder<'_> {
         if self.scene.substructures.is_some() {
             return refuse(&Place::TOP, "condensed `substructures` are linear", LEAVE);
         }
-        if let Some(symmetry) = &self.scene.symmetry {
+        let stresses = self.scene.effects.damage != Damage::Off || self.scene.output.fields.is_some();
+        if let Some(symmetry) = self.scene.symmetry.as_ref().filter(|_| stresses) {
             return refuse(&symmetry.place, "stresses of a folded plate are those of linear elastic plies", LEAVE);
         }
         if let Some(line) = self.scene.profiles.first() {

@@ -47,6 +47,7 @@ use fem_core::warping;
 use fem_core::window::Centre;
 use fem_failure::delamination::DelaminationThreshold;
 use fem_io::scene::{self, Analysis, Damage, Located, Output, Scene, SceneError, Window};
+use separation::Split;
 use std::borrow::Borrow;
 use tracing::info;
 
@@ -268,20 +269,18 @@ impl Model {
         warnings.extend(plan::warn_of_cut_windows(scene.failure.window, judged, &plate, &mirrors));
         let profiles = builder.profiles(&plate, &mirrors)?;
         warnings.extend(plan::warn_of_sides(&profiles, &plate));
-        let laws = builder.laws(&plate, &laminates, &materials, &*element)?;
+        let zone = split.as_ref().and_then(Split::zone);
+        let laws = builder.laws(&plate, &laminates, &materials, &*element, zone)?;
         warnings.extend(laws.iter().flat_map(|laws| laws.warnings(&plate, &*element)));
-        let separation = match &split {
-            None => None,
-            Some(split) => {
-                let equations = std::mem::take(&mut supports.equations);
-                Some(builder.separation(split, &plate, &*element, &laminate, &materials, equations, &effects)?)
-            }
-        };
-        if let Some(separation) = &separation {
-            warnings.extend(separation.warning());
-            effects.act(Box::new(GrowingDelaminations(separation.interfaces.clone())));
-        }
-        if let Some(laws) = &laws {
+        let mut separation = None;
+        if let Some(split) = &split {
+            let equations = std::mem::take(&mut supports.equations);
+            let built = builder.separation(split, &plate, &*element, &laminate, &materials, equations, &effects)?;
+            warnings.extend(built.warning());
+            let (interfaces, plies) = (built.interfaces.clone(), laws.is_some());
+            effects.act(Box::new(GrowingDelaminations { interfaces, plies }));
+            separation = Some(built);
+        } else if let Some(laws) = &laws {
             effects.act(Box::new(NonlinearPlies(laws.clone())));
         }
         let names: Vec<_> = criteria.iter().map(|(name, _)| name.as_str()).collect();

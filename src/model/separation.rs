@@ -25,9 +25,6 @@ const ALIKE: f64 = 1e-6;
 /// Largest spectral radius for long steps of an integrator under which faces may clap.
 const DAMPED: f64 = 0.5;
 
-/// Effects that go with delaminations that grow.
-const BESIDE: [&str; 1] = ["membrane"];
-
 /// Process zones, and cells, that are open ahead of damage.
 const ZONES: f64 = 1.5;
 const CELLS: f64 = 2.0;
@@ -58,6 +55,11 @@ impl Separation {
         &self.first
     }
 
+    /// Whether something has delaminated at the start.
+    pub fn is_cracked(&self) -> bool {
+        self.states.iter().any(|state| *state != 0.0)
+    }
+
     /// Number of plies below a face.
     pub fn below(&self, face: usize) -> usize {
         self.faces.iter().find(|(own, _)| *own == face).map_or(0, |(_, below)| *below)
@@ -84,6 +86,13 @@ pub(super) struct Split<'a> {
     faces: Vec<(usize, usize)>,
     /// The cells at each face.
     quads: Vec<u32>,
+}
+
+impl Split<'_> {
+    /// The cells that may be damaged, where these are not all.
+    pub(super) fn zone(&self) -> Option<&[u32]> {
+        self.spec.radius.as_ref().map(|_| &self.quads[..])
+    }
 }
 
 impl<'a> Builder<'a> {
@@ -278,11 +287,7 @@ impl<'a> Builder<'a> {
                 "leave one of them out",
             );
         }
-        if self.has_laws() {
-            let message = "plies that follow a law do not stand beside delaminations that grow yet";
-            return refuse(wish, message, "leave the `law` of the material out, or the growth");
-        }
-        if let Some(other) = effects.wanted().find(|info| !BESIDE.contains(&info.key.name)) {
+        if let Some(other) = effects.wanted().next() {
             let message = format!("`effects.{}` does not stand beside delaminations that grow yet", other.key.name);
             return refuse(wish, &message, "leave one of them out");
         }

@@ -1,6 +1,6 @@
 //! A circular delamination under a central load: whatever its size, it grows at one force (Kirchhoff plate, closed form).
 
-use super::specimens::law;
+use super::specimens::{PENALTY, law};
 use fem_core::assembly::{Growth, Path, PathEnd, Separable, SeparableParts, elimination_order};
 use fem_core::constraint::{Constraints, Equation};
 use fem_core::dof::Dof;
@@ -53,7 +53,7 @@ fn a_circular_delamination_grows_at_one_force() {
     let quads: Vec<u32> = (0..plate.plane.quads.len()).filter(inside).map(|q| q as u32).collect();
     plate.separate(1, &quads);
     plate.fold(SymmetryGroup::Quarter).unwrap();
-    let of = InterfaceMaterial { name: "bilinear".into(), law: law(), material };
+    let of = InterfaceMaterial { name: "bilinear".into(), law: law(PENALTY), material };
     let interfaces = Interfaces::new(&plate, &element, of, &[(1, quads)], 6).unwrap();
     let margin = 3.0 * cell;
     let mut states = vec![0.0; interfaces.states()];
@@ -77,7 +77,8 @@ fn a_circular_delamination_grows_at_one_force() {
     let constraints = Constraints::eliminate(&elimination_order(&plate), &supports).unwrap();
     let load = patch::hertz(&plate, &element, Face::Top, [0.0; 2], LOADED).unwrap();
     let growth = Growth { margin, trigger: 0.2 };
-    let parts = SeparableParts { plate, element: Box::new(element), supports, constraints, interfaces, growth };
+    let parts =
+        SeparableParts { plate, element: Box::new(element), supports, constraints, interfaces, growth, plies: None };
     let mut plate = Separable::new(parts, &states, false, NonZeroUsize::MIN).unwrap();
     let area = |radius: f64| PI * (radius * radius - START * START);
     let critical = PI * (8.0 * E * THICKNESS.powi(3) * GIIC / (9.0 * (1.0 - 0.09))).sqrt();

@@ -56,7 +56,7 @@ fn clamp(plate: &Plate) -> Vec<Equation> {
 
 fn separable(plate: Plate, element: Box<dyn Element>, supports: Vec<Equation>, open: bool) -> (Separable, Vec<f64>) {
     let all: Vec<u32> = (0..plate.plane.quads.len() as u32).collect();
-    let of = InterfaceMaterial { name: "bilinear".into(), law: law(), material: material() };
+    let of = InterfaceMaterial { name: "bilinear".into(), law: law(PENALTY), material: material() };
     let faces: Vec<(usize, Vec<u32>)> = (1..plate.layers()).map(|face| (face, all.clone())).collect();
     let interfaces = Interfaces::new(&plate, &*element, of, &faces, 4).unwrap();
     let mut states = vec![0.0; interfaces.states()];
@@ -67,7 +67,7 @@ fn separable(plate: Plate, element: Box<dyn Element>, supports: Vec<Equation>, o
     }
     let constraints = Constraints::eliminate(&elimination_order(&plate), &supports).unwrap();
     let growth = Growth { margin: 1e-3, trigger: 0.5 };
-    let parts = SeparableParts { plate, element, supports, constraints, interfaces, growth };
+    let parts = SeparableParts { plate, element, supports, constraints, interfaces, growth, plies: None };
     (Separable::new(parts, &states, true, NonZeroUsize::MIN).unwrap(), states)
 }
 

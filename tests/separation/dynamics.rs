@@ -1,12 +1,12 @@
 //! An end notched strip that a mass strikes: the crack runs, the energy stays.
 
-use super::specimens::{WIDTH, end_notched};
+use super::specimens::{Specimen, WIDTH, end_notched};
 use fem_core::contact::{ContactForce, ContactHistory, ContactLaw};
 use fem_core::energy::Energy;
 use fem_core::plugin::{Built, Params, Plugin, Value};
 use fem_core::structure::Structure;
 use fem_dynamics::impact::{ImpactSystem, Impactor};
-use fem_dynamics::integrate::{GeneralizedAlpha, cut};
+use fem_dynamics::integrate::GeneralizedAlpha;
 
 #[derive(Debug, Clone)]
 struct Spring(f64);
@@ -35,25 +35,22 @@ struct Ran {
 }
 
 /// Marches to 1.2 ms in steps of `dt`.
-fn march(dt: f64, rho: f64) -> Ran {
-    let specimen = end_notched(25e-3);
+fn march(dt: f64) -> Ran {
+    let specimen = Specimen { penalty: 2e13, ..end_notched(25e-3) };
     let (plate, states) = specimen.build();
     let parts = plate.parts().clone();
     let load = parts.constraints.restrict(&specimen.load(&plate));
     let impactor = Impactor { mass: 0.3, velocity: 3.0, start: 0.0, load, law: Box::new(Spring(2e6)) };
     let mut system = ImpactSystem::new(Box::new(plate) as Box<dyn Structure>, vec![impactor]);
-    let params = Params::default().with("rho", Value::Number(rho));
-    let Built::Integrator(scheme) = GeneralizedAlpha::build(&params).unwrap() else { panic!() };
-    let mut scheme = cut(scheme);
+    let params = Params::default().with("rho", Value::Number(0.5));
+    let Built::Integrator(mut scheme) = GeneralizedAlpha::build(&params).unwrap() else { panic!() };
     let mut state = system.initial();
     state.histories.points = states;
     scheme.start(&mut system, &mut state).unwrap();
     let (mut work, mut peak, mut balance) = (Vec::new(), 0.0_f64, 0.0_f64);
     let whole = 0.5 * 0.3 * 3.0 * 3.0;
     while state.t < 1.2e-3 - 0.5 * dt {
-        if scheme.step(&mut system, &mut state, dt).is_err() {
-            break;
-        }
+        scheme.step(&mut system, &mut state, dt).unwrap();
         peak = peak.max(system.contact_force(0, &state));
         balance = balance.max((system.energies(&state, &mut work).total() / whole - 1.0).abs());
     }
@@ -63,21 +60,7 @@ fn march(dt: f64, rho: f64) -> Ran {
 
 #[test]
 fn a_struck_strip_cracks_and_keeps_its_energy() {
-    for rho in [0.8, 0.5, 0.2, 0.0] {
-        for dt in [5e-6, 2e-6, 1e-6, 0.5e-6, 0.25e-6] {
-            let begin = std::time::Instant::now();
-            let r = march(dt, rho);
-            println!(
-                "rho {rho} dt {dt:e} peak {:.2} balance {:.2e} open {:.4} diss {:.5} {:?}",
-                r.peak,
-                r.balance,
-                r.open,
-                r.dissipated,
-                begin.elapsed()
-            );
-        }
-    }
-    let [long, short] = [10e-6, 5e-6].map(|dt| march(dt, 0.5));
+    let [long, short] = [0.5e-6, 0.25e-6].map(march);
     // The crack has run by more than half its length, through an unstable part.
     assert!(short.open > 40e-3, "{}", short.open);
     assert!(long.balance < 5e-3 && short.balance < 3e-3, "{} {}", long.balance, short.balance);

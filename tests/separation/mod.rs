@@ -1,6 +1,7 @@
-//! Layers that separate: delamination specimens against beams on cohesive interfaces.
+//! Layers that separate: delamination specimens against beams on cohesive interfaces, and impacts.
 
 mod circle;
 mod closed;
 mod dynamics;
+mod scenes;
 mod specimens;

@@ -20,7 +20,7 @@ pub(super) const WIDTH: f64 = 0.025;
 const ARM: f64 = 0.0015;
 
 /// Normal and shear stiffness of the sound interface, Pa/m.
-const PENALTY: f64 = 1e14;
+pub(super) const PENALTY: f64 = 1e14;
 
 /// Length of its process zones, m: as the references have it.
 const ZONES: [f64; 2] = [1.71e-3, 5.18e-3];
@@ -31,6 +31,8 @@ pub(super) struct Specimen {
     pub(super) cracked: f64,
     pub(super) margin: f64,
     pub(super) shear_strength: f64,
+    /// Normal and shear stiffness of the sound interface, Pa/m.
+    pub(super) penalty: f64,
     /// Unknowns (x, level, axis, side) that are held.
     pub(super) held: Vec<(f64, usize, u8, usize)>,
     /// The same with forces of the load of factor 1, N.
@@ -56,9 +58,9 @@ fn material(shear_strength: f64) -> Material {
     }
 }
 
-pub(super) fn law() -> Box<dyn InterfaceLaw> {
+pub(super) fn law(penalty: f64) -> Box<dyn InterfaceLaw> {
     let k = |v: f64| Value::Quantity(v, Dimension([-2.0, 1.0, -2.0, 0.0]));
-    let params = Params::default().with("penalty", k(PENALTY)).with("shear_penalty", k(PENALTY));
+    let params = Params::default().with("penalty", k(penalty)).with("shear_penalty", k(penalty));
     let Built::InterfaceLaw(law) = Bilinear::build(&params).unwrap() else { panic!() };
     law
 }
@@ -76,7 +78,7 @@ impl Specimen {
         let mut plate = Plate::new(mesh, laminate.levels(), stacks, info, ZDerivatives::LayerWise).unwrap();
         let quads: Vec<u32> = (0..plate.plane.quads.len() as u32).collect();
         plate.separate(1, &quads);
-        let of = InterfaceMaterial { name: "bilinear".into(), law: law(), material };
+        let of = InterfaceMaterial { name: "bilinear".into(), law: law(self.penalty), material };
         let interfaces = Interfaces::new(&plate, &element, of, &[(1, quads)], 12).unwrap();
         let mut states = vec![0.0; interfaces.states()];
         let first = interfaces.first_states();
@@ -92,7 +94,15 @@ impl Specimen {
         let supports: Vec<Equation> = self.held.iter().map(hold).collect();
         let constraints = Constraints::eliminate(&elimination_order(&plate), &supports).unwrap();
         let growth = Growth { margin: self.margin, trigger: 0.2 };
-        let parts = SeparableParts { plate, element: Box::new(element), supports, constraints, interfaces, growth };
+        let parts = SeparableParts {
+            plate,
+            element: Box::new(element),
+            supports,
+            constraints,
+            interfaces,
+            growth,
+            plies: None,
+        };
         (Separable::new(parts, &states, true, NonZeroUsize::MIN).unwrap(), states)
     }
 
@@ -166,6 +176,7 @@ fn double_cantilever(cell: f64) -> Specimen {
         cracked: 30e-3,
         margin: (2.0 * ZONES[0]).max(2.0 * cell),
         shear_strength: 60e6,
+        penalty: PENALTY,
         held: (0..3).flat_map(|level| [(90e-3, level, 1, 0), (90e-3, level, 3, 0)]).collect(),
         load: vec![(0.0, 1, 3, 1, 1.0), (0.0, 1, 3, 0, -1.0)],
     }
@@ -207,6 +218,7 @@ pub(super) fn end_notched(a0: f64) -> Specimen {
         cracked: a0,
         margin: 2.0 * ZONES[1],
         shear_strength: 60e6,
+        penalty: PENALTY,
         held: vec![(0.0, 0, 3, 0), (100e-3, 0, 3, 0), (100e-3, 0, 1, 0)],
         load: vec![(50e-3, 2, 3, 0, -1.0)],
     }

@@ -73,6 +73,10 @@ impl InterfaceLaw for Exponential {
         1.0 - curve.secant(state[0].max(curve.width)) / curve.secant(curve.width)
     }
 
+    fn dissipated(&self, state: &[f64]) -> Sinks {
+        Sinks { opening: state[1], shear: state[2], friction: 0.0 }
+    }
+
     fn broken(&self, point: &LawPoint<'_>, state: &mut [f64]) {
         state[0] = BROKEN * Curve::of(point).width;
     }
@@ -115,7 +119,7 @@ impl InterfaceLaw for Exponential {
             traction[0] = curve.stiffness * jump[0];
         }
         let stored = 0.5 * traction.iter().zip(jump).map(|(t, d)| t * d).sum::<f64>();
-        Ok(InterfaceResponse { traction, stored, dissipated: Sinks { opening: new[1], shear: new[2], friction: 0.0 } })
+        Ok(InterfaceResponse { traction, stored, dissipated: self.dissipated(new) })
     }
 }
 // ANCHOR_END: law

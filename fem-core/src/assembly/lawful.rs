@@ -1,11 +1,12 @@
 //! Internal forces of a plate whose plies follow laws.
 
+use super::alike::Alike;
 use super::cell_map::CellMap;
 use super::equilibrium::{EquilibriumError, InternalForce, dot};
 use super::{AssemblyError, Symmetric};
 use crate::contracts::element::{Element, ElementError, form};
 use crate::plates::constraint::Constraints;
-use crate::plates::laws::{Asked, CellAnswer, PlyLaws};
+use crate::plates::laws::{Asked, CellAnswer, CellOperators, PlyLaws};
 use crate::plates::plate::Plate;
 use crate::words::energy::Energy;
 
@@ -19,8 +20,10 @@ pub struct LawPlate {
     element: Box<dyn Element>,
     constraints: Constraints,
     laws: PlyLaws,
-    /// Cells with such plies, and how many each stands for, with their unknowns.
-    cells: Vec<(usize, f64, CellMap)>,
+    cells: Vec<LawCell>,
+    /// Operators by shape of cell, as far as there is room.
+    shapes: Vec<Option<CellOperators>>,
+    room: usize,
     /// Displacements before elimination, and of a cell.
     all: Vec<f64>,
     u: Vec<f64>,
@@ -28,17 +31,39 @@ pub struct LawPlate {
     integrated: u64,
 }
 
+/// Memory that operators may take, bytes; those of other cells are found whenever they are needed.
+const ROOM: usize = 256 << 20;
+
+/// A cell with plies that follow laws.
+#[derive(Debug, Clone)]
+struct LawCell {
+    cell: usize,
+    /// How many it stands for.
+    weight: f64,
+    shape: usize,
+    map: CellMap,
+}
+
 impl LawPlate {
     /// `laws` are those of `plate`.
     pub fn new(plate: &Plate, element: Box<dyn Element>, constraints: &Constraints, laws: PlyLaws) -> Self {
-        let lawful = plate.kept_cells().filter(|(cell, _)| laws.concern(plate, *cell));
-        let cells = lawful.map(|(cell, weight)| {
-            let mut map = CellMap::default();
-            map.set(plate, constraints, cell);
-            (cell, weight, map)
-        });
+        let alike = Alike::of(plate);
+        let mut cells = Vec::new();
+        for shape in 0..alike.len() {
+            for (cell, weight) in alike.cells(shape) {
+                let cell = *cell as usize;
+                if laws.concern(plate, cell) {
+                    let mut map = CellMap::default();
+                    map.set(plate, constraints, cell);
+                    cells.push(LawCell { cell, weight: *weight, shape, map });
+                }
+            }
+        }
+        cells.sort_by_key(|cell| cell.cell);
         Self {
-            cells: cells.collect(),
+            cells,
+            shapes: vec![None; alike.len()],
+            room: ROOM / CellOperators::bytes(&*element),
             plate: plate.clone(),
             constraints: constraints.clone(),
             laws,
@@ -72,6 +97,20 @@ impl LawPlate {
         self.each(u, &old, Some(points), false, |_, _, _| ())
     }
 
+    /// Adds the force beyond that of K to `force`; returns the energies beyond those of K, J.
+    ///
+    /// # Errors
+    /// A law that finds no stress.
+    pub fn add(&mut self, u: &[f64], points: &[f64], force: &mut [f64]) -> Result<Energy, AssemblyError> {
+        let mut energy = Energy::default();
+        self.each(u, points, None, false, |weight, answer, map| {
+            energy.stored += weight * answer.energy.stored;
+            energy.dissipated += weight * answer.energy.dissipated;
+            map.scatter_vector(&answer.force, weight, force);
+        })?;
+        Ok(energy)
+    }
+
     /// The plate with K, at the states `points`.
     pub fn on<'a>(&'a mut self, k: &'a Symmetric, points: &'a [f64]) -> LawForce<'a> {
         LawForce { k, laws: self, points }
@@ -85,24 +124,36 @@ impl LawPlate {
         tangent: bool,
         mut take: impl FnMut(f64, &CellAnswer, &mut CellMap),
     ) -> Result<(), AssemblyError> {
-        let Self { plate, element, constraints, laws, cells, all, u: local, answer, integrated } = self;
+        let Self { plate, element, constraints, laws, cells, shapes, room, all, u: local, answer, integrated } = self;
         *integrated += cells.len() as u64;
         constraints.expand(u, all);
-        for (cell, weight, map) in cells {
+        let mut passing = None;
+        for LawCell { cell, weight, shape, map } in cells {
             let states = laws.states_of(*cell);
             let element = form(&**element, plate.plane.quads[plate.place(*cell).0].domain());
             local.resize(element.info().ndof(), 0.0);
             map.gather(all, local);
             let new = new.as_deref_mut().map(|new| &mut new[states.clone()]);
-            let asked = Asked { plate, element, cell: *cell, u: local, states: &points[states] };
+            let failed = |error| {
+                let (quad, layer) = plate.place(*cell);
+                AssemblyError { quad_tag: plate.plane.quad_tags[quad], layer, error }
+            };
+            if shapes[*shape].is_none() {
+                let found = CellOperators::new(element, &plate.cell(*cell)).map_err(failed)?;
+                if *room > 0 {
+                    *room -= 1;
+                    shapes[*shape] = Some(found);
+                } else {
+                    passing = Some(found);
+                }
+            }
+            let Some(operators) = shapes[*shape].as_ref().or(passing.as_ref()) else { continue };
+            let asked = Asked { plate, element, cell: *cell, operators, u: local, states: &points[states] };
             let finite = |answer: &CellAnswer| answer.energy.total().is_finite();
             let refused = || ElementError("its strain energy is not finite".into());
             laws.respond(asked, new, tangent, answer)
                 .and_then(|()| if finite(answer) { Ok(()) } else { Err(refused()) })
-                .map_err(|error| {
-                    let (quad, layer) = plate.place(*cell);
-                    AssemblyError { quad_tag: plate.plane.quad_tags[quad], layer, error }
-                })?;
+                .map_err(failed)?;
             take(*weight, answer, map);
         }
         Ok(())

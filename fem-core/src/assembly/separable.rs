@@ -7,7 +7,7 @@ mod tied;
 
 use super::cell_map::CellMap;
 use super::krylov::Krylov;
-use super::{AssemblyError, FactorError, LargePlate, Matrix, Symmetric, assemble, pattern};
+use super::{AssemblyError, FactorError, LawPlate, Matrix, Symmetric, assemble, pattern};
 use crate::contracts::element::{Element, ElementError};
 use crate::contracts::interface_law::Jump;
 use crate::plates::constraint::{ConstraintError, Constraints, Equation};
@@ -90,11 +90,13 @@ pub struct SeparableParts {
     pub interfaces: Interfaces,
     /// When they open.
     pub growth: Growth,
+    /// The plies that follow laws, if some do; their states follow those of the interfaces.
+    pub plies: Option<LawPlate>,
 }
 
 /// A plate whose layers may separate.
 ///
-/// f(ũ) = K ũ (or the force under large deflections) + Cᵀ Σ ∫ Nᵀ t(N (u⁺ − u⁻)) dA, the sum over the open cells of its [`Interfaces`], ũ with both sides of all nodes that may
+/// f(ũ) = K ũ + Cᵀ Σ ∫ Nᵀ t(N (u⁺ − u⁻)) dA, the sum over the open cells of its [`Interfaces`], ũ with both sides of all nodes that may
 /// separate. Where a cell around a node is closed, its two sides move as one: u⁺ = u⁻ there, ũ = T y with y the unknowns that are
 /// left. What is closed is rigid and costs no unknown of a factorisation; which cells are open is part of their state.
 ///
@@ -108,8 +110,6 @@ pub struct Separable {
     /// K and M of both sides.
     k: Symmetric,
     m: Symmetric,
-    /// Forces under large deflections, where they are wanted.
-    large: Option<LargePlate>,
     /// Of each cell of the interfaces.
     maps: Vec<CellMap>,
     tied: Tied,
@@ -173,7 +173,6 @@ impl Separable {
             threads,
             k,
             m,
-            large: None,
             maps,
             tied,
             cm: 0.0,
@@ -182,14 +181,6 @@ impl Separable {
             arrays: Arrays::default(),
             work: SeparableWork { cells: counters.elements, ..SeparableWork::default() },
         })
-    }
-
-    /// The same under large deflections; `None` where the element does not support them.
-    #[must_use]
-    pub fn with_large_deflections(self) -> Option<Self> {
-        let SeparableParts { plate, element, constraints, .. } = &self.parts;
-        let large = LargePlate::new(plate, element.clone(), constraints)?;
-        Some(Self { large: Some(large), ..self })
     }
 
     /// Number of unknowns, both sides of what is closed counted.
@@ -238,15 +229,15 @@ impl Separable {
     /// A law that finds no traction.
     pub fn internal(&mut self, u: &[f64], states: &[f64], force: &mut [f64]) -> Result<Energy, SeparableError> {
         self.take(states)?;
-        let stored = match &mut self.large {
-            Some(large) => large.internal(u, force, None).map_err(SeparableError::Assembly)?,
-            None => {
-                force.fill(0.0);
-                self.k.add_product(1.0, u, force);
-                0.5 * super::equilibrium::dot(u, force)
-            }
-        };
-        let mut energy = Energy { stored, dissipated: 0.0 };
+        force.fill(0.0);
+        self.k.add_product(1.0, u, force);
+        let mut energy = Energy { stored: 0.5 * super::equilibrium::dot(u, force), dissipated: 0.0 };
+        if let Some(plies) = &mut self.parts.plies {
+            let own = &states[self.first[self.first.len() - 1]..];
+            let Energy { stored, dissipated } = plies.add(u, own, force).map_err(SeparableError::Assembly)?;
+            energy.stored += stored;
+            energy.dissipated += dissipated;
+        }
         self.each(u, states, None, false, |arrays, weight, map, cell| {
             energy.stored += weight * (arrays.answer.stored - Interfaces::lent(cell));
             energy.dissipated += weight * arrays.answer.dissipated.total();
@@ -262,6 +253,10 @@ impl Separable {
     pub fn commit(&mut self, u: &[f64], states: &mut [f64]) -> Result<(), SeparableError> {
         let old = states.to_vec();
         self.each(u, &old, Some(states), false, |_, _, _, _| ())?;
+        if let Some(plies) = &mut self.parts.plies {
+            let from = self.first[self.first.len() - 1];
+            plies.commit(u, &mut states[from..]).map_err(SeparableError::Assembly)?;
+        }
         self.grow(u, states);
         Ok(())
     }

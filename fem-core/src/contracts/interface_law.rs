@@ -68,6 +68,9 @@ pub trait InterfaceLaw: DynClone + Debug + Send + Sync {
     /// nothing holds any more. An interface of a plate is opened around the points that have lost some.
     fn damage(&self, point: &LawPoint<'_>, state: &[f64]) -> f64;
 
+    /// What a point with this state has dissipated: what the [response](Self::respond) says that left the state.
+    fn dissipated(&self, state: &[f64]) -> Sinks;
+
     /// Makes `state`, that of a virgin interface, one in which nothing holds any more, such as in a delamination that is there
     /// from the beginning.
     fn broken(&self, point: &LawPoint<'_>, state: &mut [f64]);

@@ -211,6 +211,21 @@ impl Interfaces {
         areas
     }
 
+    /// What all cells have dissipated, J.
+    pub fn dissipated(&self, states: &[f64]) -> Sinks {
+        let first = self.first_states();
+        let mut sum = Sinks::default();
+        for (number, cell) in self.cells.iter().enumerate() {
+            let own = &states[first[number]..first[number + 1]];
+            if Self::is_open(own) {
+                for (area, state) in self.laws(number, own) {
+                    sum = sum.plus(cell.weight * area, self.of.law.dissipated(state));
+                }
+            }
+        }
+        sum
+    }
+
     /// Area of the plane under which some face has points that have lost more than `share` of their cohesion, m².
     pub fn projected_area(&self, states: &[f64], share: f64) -> f64 {
         let first = self.first_states();

@@ -39,8 +39,11 @@ struct LawfulPly {
 /// Forces and energies are those beyond linear elasticity, σ − C ε, which K has already.
 #[derive(Debug, Clone)]
 pub struct PlyLaws {
-    /// By layer of cells and slice of its stack.
+    /// By layer of cells and slice of its stack; and none at all, of the quads beyond.
     plies: Vec<Vec<Option<LawfulPly>>>,
+    none: Vec<Vec<Option<LawfulPly>>>,
+    /// Quads whose plies follow no law.
+    beyond: Vec<bool>,
     /// First state variable of each cell, and their number at the end.
     first: Vec<usize>,
 }
@@ -86,15 +89,55 @@ pub struct CellAnswer {
     /// Mean stress of each ply that follows a law, its own axes, Pa, and the volume, m³; by slice.
     pub means: Vec<([f64; 6], f64)>,
     new: Vec<f64>,
-    /// Of all levels at an in-plane point, `6 levels × ndof`, and of one.
-    operators: Vec<f64>,
-    operator: Vec<f64>,
     product: Vec<f64>,
     /// Of the levels, six each; stresses weighted, moduli between all pairs.
     strains: Vec<f64>,
     stresses: Vec<f64>,
     moduli: Vec<f64>,
     through: Vec<Through>,
+}
+
+/// Strain operators of a cell; equal of cells of one shape.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellOperators {
+    /// Jacobian times weight of each in-plane point.
+    weights: Vec<f64>,
+    /// Of all levels at each in-plane point, `6 levels × ndof`.
+    operators: Vec<f64>,
+}
+
+impl CellOperators {
+    /// Those of `cell`.
+    ///
+    /// # Errors
+    /// A folded cell.
+    pub fn new(element: &dyn Element, cell: &Cell<'_>) -> Result<Self, ElementError> {
+        let element = form(element, cell.corners.domain());
+        let info = element.info();
+        let levels = gauss_legendre(info.ply_order);
+        let (n, rows) = (info.ndof(), 6 * levels.len());
+        let points: Vec<_> = info.plane_points().collect();
+        let mut found =
+            Self { weights: Vec::with_capacity(points.len()), operators: vec![0.0; points.len() * rows * n] };
+        let mut operator = vec![0.0; 6 * n];
+        for ((r, s, w), all) in points.into_iter().zip(found.operators.chunks_exact_mut(rows * n)) {
+            let mut jacobian = 0.0;
+            for (k, (q, _)) in levels.iter().enumerate() {
+                jacobian = positive(element.strain_operator(cell, 0, [r, s, *q], &mut operator))?;
+                for (b, all) in operator.chunks_exact(6).zip(all.chunks_exact_mut(rows)) {
+                    all[6 * k..6 * k + 6].copy_from_slice(b);
+                }
+            }
+            found.weights.push(jacobian * w);
+        }
+        Ok(found)
+    }
+
+    /// Memory that those of a cell take, bytes.
+    pub fn bytes(element: &dyn Element) -> usize {
+        let info = element.info();
+        8 * info.plane_points().count() * 6 * info.ply_order * info.ndof()
+    }
 }
 
 /// What a cell is asked about.
@@ -106,6 +149,8 @@ pub struct Asked<'a> {
     pub element: &'a dyn Element,
     /// Number of the cell.
     pub cell: usize,
+    /// Its operators.
+    pub operators: &'a CellOperators,
     /// Displacements of the cell.
     pub u: &'a [f64],
     /// States of the cell ([`PlyLaws::states_of`]).
@@ -113,7 +158,8 @@ pub struct Asked<'a> {
 }
 
 impl PlyLaws {
-    /// The plies of `laminate` whose material has one of `laws`, by material; `None` where there is none.
+    /// The plies of `laminate` whose material has one of `laws`, by material, in the cells of `quads`, or in all; `None` where there
+    /// is none.
     ///
     /// # Errors
     /// An element that gives up strains, a law that refuses its material.
@@ -123,6 +169,7 @@ impl PlyLaws {
         materials: &[Material],
         laws: &[Option<(String, Box<dyn PlyLaw>)>],
         element: &dyn Element,
+        quads: Option<&[u32]>,
     ) -> Result<Option<Self>, LawsError> {
         let lawful = |ply: usize| {
             let ply = &laminate.plies[ply];
@@ -140,7 +187,10 @@ impl PlyLaws {
         if info.is_shell() || info.is_section() {
             return Err(LawsError::Theory);
         }
-        let mut all = Self { plies, first: Vec::with_capacity(plate.cells() + 1) };
+        let mut beyond = vec![quads.is_some(); plate.plane.quads.len()];
+        quads.into_iter().flatten().for_each(|quad| beyond[*quad as usize] = false);
+        let none = plies.iter().map(|layer| vec![None; layer.len()]).collect();
+        let mut all = Self { plies, none, beyond, first: Vec::with_capacity(plate.cells() + 1) };
         let mut next = 0;
         for cell in 0..plate.cells() {
             all.first.push(next);
@@ -166,7 +216,10 @@ impl PlyLaws {
     pub fn warnings(&self, plate: &Plate, element: &dyn Element) -> Vec<String> {
         let mut widest = vec![0.0_f64; self.plies.len()];
         for cell in 0..plate.cells() {
-            let (layer, view) = (plate.place(cell).1, plate.cell(cell));
+            let ((quad, layer), view) = (plate.place(cell), plate.cell(cell));
+            if self.beyond[quad] {
+                continue;
+            }
             widest[layer] = widest[layer].max(width(form(element, view.corners.domain()).info(), &view));
         }
         let mut said = Vec::new();
@@ -197,7 +250,8 @@ impl PlyLaws {
     }
 
     fn of(&self, plate: &Plate, cell: usize) -> &[Option<LawfulPly>] {
-        &self.plies[plate.place(cell).1]
+        let (quad, layer) = plate.place(cell);
+        if self.beyond[quad] { &self.none[layer] } else { &self.plies[layer] }
     }
 
     /// The answer of a cell; with its tangent where that is wanted, with the states that are left where `new` has room for them.
@@ -211,7 +265,7 @@ impl PlyLaws {
         tangent: bool,
         answer: &mut CellAnswer,
     ) -> Result<(), ElementError> {
-        let Asked { plate, element, cell, u, states } = asked;
+        let Asked { plate, element, cell, operators, u, states } = asked;
         let (view, plies) = (plate.cell(cell), self.of(plate, cell));
         let element = form(element, view.corners.domain());
         let info = element.info();
@@ -220,16 +274,16 @@ impl PlyLaws {
         answer.clear(n, rows, plies.len(), states.len(), tangent);
         answer.through = through(levels, &view.stack.slices, plies);
         let (length, mut at) = (width(info, &view), 0);
-        for (r, s, w) in info.plane_points() {
-            let dv = answer.strain(element, &view, [r, s], u)? * w;
+        for (dv, operators) in operators.weights.iter().zip(operators.operators.chunks_exact(rows * n)) {
+            answer.strain(operators, u);
             for k in 0..answer.through.len() {
                 let Some(ply) = &plies[answer.through[k].slice] else { continue };
                 let point = LawPoint { material: &ply.material, stiffness: &ply.stiffness, length };
                 let count = ply.law.info().state.len();
-                answer.ask(ply, &point, k, dv, (&states[at..at + count], at))?;
+                answer.ask(ply, &point, k, *dv, (&states[at..at + count], at))?;
                 at += count;
             }
-            answer.add(n, rows);
+            answer.add(operators, n, rows);
         }
         for (mean, volume) in answer.means.iter_mut().filter(|(_, volume)| *volume > 0.0) {
             mean.iter_mut().for_each(|s| *s /= *volume);
@@ -248,8 +302,6 @@ impl CellAnswer {
             (&mut self.force, n),
             (&mut self.tangent, if tangent { n * n } else { 0 }),
             (&mut self.new, states),
-            (&mut self.operators, rows * n),
-            (&mut self.operator, 6 * n),
             (&mut self.product, rows * n),
             (&mut self.strains, rows),
             (&mut self.stresses, rows),
@@ -263,29 +315,15 @@ impl CellAnswer {
         self.means.resize(slices, ([0.0; 6], 0.0));
     }
 
-    /// Takes operators and strains of the levels at an in-plane point; returns the Jacobian there.
-    fn strain(
-        &mut self,
-        element: &dyn Element,
-        cell: &Cell<'_>,
-        [r, s]: [f64; 2],
-        u: &[f64],
-    ) -> Result<f64, ElementError> {
-        let Self { operators, operator, strains, stresses, moduli, .. } = self;
-        let rows = strains.len();
+    /// Takes the strains of the levels at an in-plane point.
+    fn strain(&mut self, operators: &[f64], u: &[f64]) {
+        let Self { strains, stresses, moduli, .. } = self;
         strains.fill(0.0);
         stresses.fill(0.0);
         moduli.fill(0.0);
-        let mut jacobian = 0.0;
-        for (k, (q, _)) in gauss_legendre(element.info().ply_order).iter().enumerate() {
-            jacobian = positive(element.strain_operator(cell, 0, [r, s, *q], operator))?;
-            let level = 6 * k..6 * k + 6;
-            for ((b, u), all) in operator.chunks_exact(6).zip(u).zip(operators.chunks_exact_mut(rows)) {
-                all[level.clone()].copy_from_slice(b);
-                strains[level.clone()].iter_mut().zip(b).for_each(|(e, b)| *e += b * u);
-            }
+        for (b, u) in operators.chunks_exact(strains.len()).zip(u) {
+            strains.iter_mut().zip(b).for_each(|(e, b)| *e += b * u);
         }
-        Ok(jacobian)
     }
 
     /// Asks the law of a ply at a point through the thickness; `old` are its states, from the place `at` on.
@@ -346,8 +384,8 @@ impl CellAnswer {
     }
 
     /// Adds what stresses and moduli of the levels are worth to force and tangent.
-    fn add(&mut self, n: usize, rows: usize) {
-        let Self { force, tangent, operators, product, stresses, moduli, .. } = self;
+    fn add(&mut self, operators: &[f64], n: usize, rows: usize) {
+        let Self { force, tangent, product, stresses, moduli, .. } = self;
         for (f, b) in force.iter_mut().zip(operators.chunks_exact(rows)) {
             *f += b.iter().zip(&*stresses).map(|(b, s)| b * s).sum::<f64>();
         }

@@ -2,7 +2,7 @@
 
 use crate::contracts::element::{Element, ElementError, ElementInfo, Part, Point, Scratch, Stack, form};
 use crate::plates::laminate::Laminate;
-use crate::plates::laws::{Asked, CellAnswer, PlyLaws};
+use crate::plates::laws::{Asked, CellAnswer, CellOperators, PlyLaws};
 use crate::plates::plate::Plate;
 use crate::plates::window::{Centre, Mean, Source};
 use crate::words::material::Material;
@@ -221,7 +221,9 @@ impl Recovery {
                 plate.cell_dofs(cell, &mut dofs);
                 let local: Vec<f64> = dofs.iter().map(|dof| u[*dof]).collect();
                 let states = &points[laws.states_of(cell)];
-                laws.respond(Asked { plate, element, cell, u: &local, states }, None, false, &mut answer)?;
+                let operators = CellOperators::new(element, &plate.cell(cell))?;
+                let asked = Asked { plate, element, cell, operators: &operators, u: &local, states };
+                laws.respond(asked, None, false, &mut answer)?;
                 means.push(answer.means.clone());
             }
         }

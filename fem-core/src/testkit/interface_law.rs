@@ -3,7 +3,7 @@
 use super::law::{Subject, Units, same_in};
 use crate::contracts::interface_law::{InterfaceLaw, InterfaceResponse, Jump};
 use crate::contracts::plugin::Dimension;
-use crate::contracts::ply_law::{LawPoint, check_law};
+use crate::contracts::ply_law::{LawError, LawPoint, check_law};
 use crate::words::material::Material;
 
 /// Components that change their sign in a mirror image along either axis of the plane.
@@ -12,7 +12,8 @@ const MIRRORS: [Jump; 2] = [[1.0, -1.0, 1.0], [1.0, 1.0, -1.0]];
 /// Checks a law of an interface as [`check_ply_law`](super::check_ply_law) checks one of a ply, along paths of jumps that reach
 /// `largest` (m) in each component, and as deep into each other.
 ///
-/// The tangent of a virgin interface is free; energies are per area, and what is dissipated in each sink never falls.
+/// The tangent of a virgin interface is free; energies are per area, and what is dissipated in each sink never falls and is
+/// what the state says.
 ///
 /// # Errors
 /// The first violation, with the place on the path.
@@ -30,6 +31,9 @@ pub fn check_interface_law(
         check_law(law.info(), "under test", &point, law.check(&point)).map_err(|e| e.to_string())?;
         let respond = |jump: &Jump, old: &[f64], new: &mut [f64], tangent: Option<&mut [Jump; 3]>| {
             let InterfaceResponse { traction, stored, dissipated } = law.respond(&point, jump, old, new, tangent)?;
+            if law.dissipated(new) != dissipated {
+                return Err(LawError("what its state says that it dissipated is not what it answered".into()));
+            }
             Ok((traction, [stored, dissipated.opening, dissipated.shear, dissipated.friction]))
         };
         let largest = largest.map(|v| units.number(v, Dimension::LENGTH));

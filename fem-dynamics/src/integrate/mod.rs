@@ -12,10 +12,9 @@
 //! The histories of the contacts stay as committed during a step; a step ends with one commit. `a` in the state is the
 //! acceleration that the next step starts from, so that a state holds all that a restart needs. Schemes of order above 2
 //! are marched [`located`]: their steps are divided where a contact law changes its branch. Any scheme may be [`divided`]: its steps
-//! are halved until an estimate of their error is within a tolerance; or [`cut`]: they are halved where they find no solution.
+//! are halved until an estimate of their error is within a tolerance.
 
 mod central_difference;
-mod cut;
 mod divided;
 mod dormand_prince;
 mod energy_conserving;
@@ -27,7 +26,6 @@ mod runge_kutta;
 mod stages;
 
 pub use central_difference::CentralDifference;
-pub use cut::cut;
 pub use divided::divided;
 pub use dormand_prince::DormandPrince;
 pub use energy_conserving::EnergyConserving;

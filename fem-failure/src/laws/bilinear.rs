@@ -188,6 +188,10 @@ impl InterfaceLaw for Bilinear {
         Memory::read(state).damage
     }
 
+    fn dissipated(&self, state: &[f64]) -> Sinks {
+        Memory::read(state).lost
+    }
+
     fn broken(&self, _: &LawPoint<'_>, state: &mut [f64]) {
         Memory { damage: 1.0, ..Memory::read(state) }.write(state);
     }

@@ -105,10 +105,6 @@ pub(super) fn read(field: &SceneValue<'_>) -> Result<DelaminationSpec, SceneErro
         interfaces: match own("interfaces") {
             Some(field) => {
                 let each = field.list()?.iter().map(interface).collect::<Result<Vec<_>, SceneError>>()?;
-                if each.is_empty() {
-                    let help = "name the interfaces that may open, or leave `interfaces` out";
-                    return Err(field.error("no interface may open", help));
-                }
                 Some(field.at(each))
             }
             None => None,

@@ -2,6 +2,8 @@
 
 use crate::effects::GrowingDelaminations;
 use crate::model::Separation;
+use fem_core::interface_law::Sinks;
+use fem_core::interfaces::Interfaces;
 
 /// A delamination as an impact leaves it.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,6 +12,8 @@ pub struct Delaminated {
     pub interfaces: Vec<DelaminatedInterface>,
     /// Area of the plate under which some interface has delaminated, m².
     pub projected: f64,
+    /// What the interfaces have dissipated, J.
+    pub dissipated: Sinks,
     /// Cells of the interfaces that are damaged; of those that a symmetry maps onto each other one.
     pub cells: Vec<DelaminatedCell>,
     /// Whether damage has come to the border of where interfaces may open.
@@ -64,7 +68,7 @@ impl Onsets {
         for (number, since) in self.0.iter_mut().enumerate().filter(|(_, since)| since.is_infinite()) {
             let own = &states[first[number]..first[number + 1]];
             let broken = |(_, damage): (f64, f64)| damage > GrowingDelaminations::BROKEN;
-            if fem_core::interfaces::Interfaces::is_open(own) && interfaces.damage(number, own).any(broken) {
+            if Interfaces::is_open(own) && interfaces.damage(number, own).any(broken) {
                 *since = t;
             }
         }
@@ -101,6 +105,7 @@ impl Onsets {
         Delaminated {
             interfaces: separation.faces.iter().map(of).collect(),
             projected: interfaces.projected_area(states, GrowingDelaminations::BROKEN),
+            dissipated: interfaces.dissipated(states),
             cells,
             at_border,
         }

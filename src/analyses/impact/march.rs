@@ -132,7 +132,7 @@ impl<'a> March<'a> {
         let (model, impact) = (prepared.model, prepared.impact);
         let mut state = prepared.system.initial();
         if let Some(separation) = &model.separation {
-            state.histories.points.clone_from(&separation.states);
+            state.histories.points[..separation.states.len()].copy_from_slice(&separation.states);
         }
         let Sizes { steps, step: dt, .. } = prepared.sizes;
         let row_every = model.row_every(steps, dt);
@@ -326,7 +326,8 @@ impl<'a> March<'a> {
         let u = self.coordinates();
         let Some(watch) = &mut self.watch else { return Ok(()) };
         self.stopwatch.lap("march");
-        let sampled = watch.sample(self.progress.state.t, &u, &self.progress.state.histories.points);
+        let beside = self.model.separation.as_ref().map_or(0, |separation| separation.states.len());
+        let sampled = watch.sample(self.progress.state.t, &u, &self.progress.state.histories.points[beside..]);
         self.stopwatch.lap("scan");
         sampled
     }
@@ -358,7 +359,8 @@ impl<'a> March<'a> {
 
     /// States of plies that follow laws, at present.
     pub fn points(&self) -> &[f64] {
-        &self.progress.state.histories.points
+        let beside = self.model.separation.as_ref().map_or(0, |separation| separation.states.len());
+        &self.progress.state.histories.points[beside..]
     }
 
     /// Velocities of these, m/s; `None` where the plate has no inertia.

@@ -8,7 +8,7 @@ use crate::effect::{Effect, Feature, Marched};
 use crate::error::Error;
 use crate::forecast::MemoryEstimate;
 use crate::model::{Impact, Model, Plan, Separation, Strike};
-use fem_core::assembly::{Condensation, Separable, SeparableParts, SparseStructure, column_order, pattern};
+use fem_core::assembly::{Condensation, LawPlate, Separable, SeparableParts, SparseStructure, column_order, pattern};
 use fem_core::counters::Counters;
 use fem_core::functional::Functional;
 use fem_core::prolongation::Prolongation;
@@ -153,20 +153,23 @@ fn prepare_separable<'a>(
         constraints: constraints.clone(),
         interfaces: interfaces.clone(),
         growth: *growth,
+        plies: model.laws.as_ref().map(|laws| LawPlate::new(plate, element.clone(), constraints, laws.clone())),
     };
     let mut structure = Separable::new(parts, states, true, threads).map_err(SolveError::from)?;
-    if model.effects.nature().large {
-        structure = structure.with_large_deflections().ok_or(SolveError::Linear)?;
-    }
     let counters = Counters { elements: structure.work().cells, ..Counters::default() };
     let (_, factor_entries) = structure.size();
     stopwatch.lap("assemble");
     let contacts: Vec<Functional> = impact.strikes.iter().map(|strike| strike.contact.clone()).collect();
     let impactors = place_impactors(impact, &contacts, None);
+    let stiffness = match contacts.first() {
+        Some(contact) if separation.is_cracked() => Some(1.0 / cracked_flexibility(&mut structure, states, contact)?),
+        _ => None,
+    };
     let mut effects = model.effects.acting().to_vec();
     let mut system = couple(model, ImpactSystem::new(Box::new(structure), impactors), None, &mut effects);
     let before = Before { stiffness_entries, factor_entries, substructures: None, memory, softness: None };
     let sizes = check_step(model, impact, &mut system, None, before)?;
+    let sizes = Sizes { static_stiffness: stiffness.unwrap_or(sizes.static_stiffness), ..sizes };
     Ok(Prepared {
         model,
         impact,
@@ -180,6 +183,15 @@ fn prepare_separable<'a>(
         counters,
         stopwatch,
     })
+}
+
+/// Static deflection per force at `contact`, m/N, with the delaminations that are there at the start.
+fn cracked_flexibility(structure: &mut Separable, states: &[f64], contact: &Functional) -> Result<f64, Error> {
+    let mut x = vec![0.0; structure.ndof()];
+    structure.linearise(&x, states, 0.0).map_err(SolveError::from)?;
+    contact.add_to(1.0, &mut x);
+    structure.solve(&mut x).map_err(SolveError::from)?;
+    Ok(contact.of(&x))
 }
 
 /// What supports of nodal values cost under the first impactor.

@@ -9,6 +9,9 @@ use fem_io::scene::Window;
 /// Share of the peak that a force must have at the end for the impact not to be over.
 const OVER: f64 = 0.01;
 
+/// Share of the energy of the impact that may be lost by the integrator.
+const DAMPED: f64 = 0.01;
+
 /// Estimated error above which a result is named.
 const LARGE: f64 = 0.05;
 
@@ -18,7 +21,10 @@ pub(super) fn cautions(model: &Model, outcome: &Outcome, summary: &ImpactSummary
     found.extend(unfinished(model, outcome, summary));
     match &outcome.delaminated {
         None => found.extend(delaminated(summary)),
-        Some(grown) => found.extend(bordered(grown)),
+        Some(grown) => {
+            found.extend(bordered(grown));
+            found.extend(damped(outcome));
+        }
     }
     found.extend(rough(summary));
     found.extend(first_per_mode(&outcome.events).into_iter().filter_map(|event| placed(model, event)));
@@ -49,6 +55,17 @@ fn bordered(grown: &Delaminated) -> Option<String> {
     grown.at_border.then(|| {
         "damage has come to the border of where interfaces may open: enlarge `delamination.radius`, or leave it out"
             .to_owned()
+    })
+}
+
+/// Energy that is neither in the plate nor in its cracks.
+fn damped(outcome: &Outcome) -> Option<String> {
+    let share = outcome.energy_error;
+    (share > DAMPED).then(|| {
+        format!(
+            "{:.1} % of the energy of the impact was lost in waves that the integrator damps, and not in cracks: halve `march.step`",
+            1e2 * share
+        )
     })
 }
 

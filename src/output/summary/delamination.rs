@@ -2,8 +2,7 @@
 
 use super::ImpactFigures;
 use crate::analyses::impact::Outcome;
-use crate::effects::GrowingDelaminations;
-use crate::model::Model;
+use fem_core::interface_law::Sinks;
 use serde::Serialize;
 
 /// Delaminations that have grown: their areas, what they took, what the impactors lost altogether.
@@ -13,6 +12,9 @@ pub struct DelaminationFigures {
     pub projected_area_mm2: f64,
     pub area_mm2: f64,
     pub dissipated_J: f64,
+    pub dissipated_by_opening_J: f64,
+    pub dissipated_by_shear_J: f64,
+    pub dissipated_by_friction_J: f64,
     pub absorbed_J: f64,
     pub cells: usize,
     pub interfaces: Vec<InterfaceFigures>,
@@ -29,9 +31,9 @@ pub struct InterfaceFigures {
 }
 
 impl DelaminationFigures {
-    pub(super) fn of(model: &Model, outcome: &Outcome, impact: &[ImpactFigures]) -> Option<Self> {
+    pub(super) fn of(outcome: &Outcome, impact: &[ImpactFigures]) -> Option<Self> {
         let grown = outcome.delaminated.as_ref()?;
-        let column = model.effects.columns().position(|column| column.name == GrowingDelaminations::LOST)?;
+        let Sinks { opening, shear, friction } = grown.dissipated;
         let left = |f: &ImpactFigures| f.energy_J - 0.5 * f.mass_kg * f.final_impactor_velocity_m_s.powi(2);
         let interfaces = grown.interfaces.iter().map(|one| InterfaceFigures {
             interface: format!("{}|{}", one.below, one.below + 1),
@@ -41,7 +43,10 @@ impl DelaminationFigures {
         Some(Self {
             projected_area_mm2: grown.projected * 1e6,
             area_mm2: grown.interfaces.iter().map(|one| one.area * 1e6).sum(),
-            dissipated_J: outcome.history.last().map_or(0.0, |row| row.effects[column]),
+            dissipated_J: grown.dissipated.total(),
+            dissipated_by_opening_J: opening,
+            dissipated_by_shear_J: shear,
+            dissipated_by_friction_J: friction,
             absorbed_J: impact.iter().map(left).sum(),
             cells: grown.cells.len(),
             interfaces: interfaces.collect(),

@@ -390,7 +390,7 @@ impl ImpactSummary {
                 of_effects: outcome.quantities.iter().copied().collect(),
                 lowest_frequency_Hz: sizes.lowest_frequency,
             },
-            delamination: DelaminationFigures::of(model, outcome, &impact),
+            delamination: DelaminationFigures::of(outcome, &impact),
             impact,
             first_damage: first_per_mode(&outcome.events).into_iter().map(damage).collect(),
             not_reached: not_reached(&outcome.peaks),

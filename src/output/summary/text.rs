@@ -134,8 +134,12 @@ impl ImpactSummary {
         }
         if let Some(grown) = &self.delamination {
             line(format_args!(
-                "  delam.    {:.1} mm2 projected, {:.1} mm2 of all interfaces; {:.4} J dissipated in them, {:.4} J absorbed",
-                grown.projected_area_mm2, grown.area_mm2, grown.dissipated_J, grown.absorbed_J
+                "  delam.    {:.1} mm2 projected, {:.1} mm2 of all interfaces; {:.4} J dissipated in them ({:.4} J by friction), {:.4} J absorbed",
+                grown.projected_area_mm2,
+                grown.area_mm2,
+                grown.dissipated_J,
+                grown.dissipated_by_friction_J,
+                grown.absorbed_J
             ));
             for one in grown.interfaces.iter().filter(|one| one.area_mm2 > 0.0) {
                 let since = one.since_s.map_or(String::new(), |t| format!(", from {:.4} ms", t * 1e3));

@@ -2,6 +2,7 @@
 
 use super::tied::Factored;
 use super::{Separable, SeparableError};
+use crate::assembly::LawPlate;
 use crate::contracts::structure::{Nonlinear, SolveError, Structure};
 use crate::words::energy::Energy;
 
@@ -40,7 +41,7 @@ impl Structure for Separable {
     }
 
     fn states(&self) -> usize {
-        self.first[self.first.len() - 1]
+        self.first[self.first.len() - 1] + self.parts.plies.as_ref().map_or(0, LawPlate::states)
     }
 
     fn nonlinear(&mut self) -> Option<&mut dyn Nonlinear> {

@@ -21,12 +21,16 @@ struct Softening {
 
 impl InterfaceLaw for Softening {
     fn info(&self) -> &LawInfo {
-        const INFO: LawInfo = LawInfo { state: &["damage", "dissipated"], strengths: &[], toughness: &[] };
+        const INFO: LawInfo = LawInfo { state: &["damage", "dissipated", "by shear"], strengths: &[], toughness: &[] };
         &INFO
     }
 
     fn damage(&self, _: &LawPoint<'_>, state: &[f64]) -> f64 {
         state[0]
+    }
+
+    fn dissipated(&self, state: &[f64]) -> Sinks {
+        Sinks { opening: state[1] - state[2], shear: state[2], friction: 0.0 }
     }
 
     fn broken(&self, _: &LawPoint<'_>, state: &mut [f64]) {
@@ -69,8 +73,8 @@ impl InterfaceLaw for Softening {
             }
         }
         let stored = 0.5 * traction.iter().zip(jump).map(|(t, d)| t * d).sum::<f64>();
-        let shear = self.leak * new[1] * jump[1].abs() / self.end;
-        Ok(InterfaceResponse { traction, stored, dissipated: Sinks { opening: new[1] - shear, shear, friction: 0.0 } })
+        new[2] = self.leak * new[1] * jump[1].abs() / self.end;
+        Ok(InterfaceResponse { traction, stored, dissipated: self.dissipated(new) })
     }
 }
 
