@@ -21,9 +21,6 @@ pub struct GrowingDelaminations {
 }
 
 impl GrowingDelaminations {
-    /// Share of its cohesion from which on a point counts as delaminated: all but the rounding of a law that tends to 1.
-    pub const BROKEN: f64 = 0.99;
-
     /// Its entry.
     pub const INFO: EffectInfo = EffectInfo {
         key: key("delamination", Form::PluginName(Kind::InterfaceLaw), r#""growth""#, "delaminations that grow"),
@@ -51,8 +48,8 @@ impl Effect for GrowingDelaminations {
 
     fn values(&self, _: &ImpactSystem, state: &State, energies: &Energies) -> Vec<f64> {
         let points = &state.histories.points[..self.interfaces.states()];
-        let all = self.interfaces.lost_area(points, Self::BROKEN).into_values().sum();
-        let projected = self.interfaces.projected_area(points, Self::BROKEN);
+        let all = self.interfaces.lost_area(points, Interfaces::BROKEN).into_values().sum();
+        let projected = self.interfaces.projected_area(points, Interfaces::BROKEN);
         let lost = self.interfaces.dissipated(points).total();
         let mut values = vec![lost, all, projected];
         if self.plies {

@@ -10,13 +10,22 @@ pub(crate) enum Room {
     Space,
     Algebra,
     Failure,
+    Growth,
     Resources,
     Input,
 }
 
 impl Room {
-    pub(crate) const ALL: [Self; 7] =
-        [Self::Time, Self::Guards, Self::Space, Self::Algebra, Self::Failure, Self::Resources, Self::Input];
+    pub(crate) const ALL: [Self; 8] = [
+        Self::Time,
+        Self::Guards,
+        Self::Space,
+        Self::Algebra,
+        Self::Failure,
+        Self::Growth,
+        Self::Resources,
+        Self::Input,
+    ];
 
     /// A case that does not wait for `--ignored`; see [`Case`].
     pub(crate) fn case(
@@ -37,6 +46,7 @@ impl Room {
             Self::Space => "Space",
             Self::Algebra => "Algebra",
             Self::Failure => "Failure criteria",
+            Self::Growth => "Delaminations that grow",
             Self::Resources => "Resources",
             Self::Input => "Malformed input",
         }

@@ -7,6 +7,7 @@
 mod algebra;
 mod case;
 mod failure;
+mod growth;
 mod guards;
 mod input;
 mod plates;
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
         space::cases(),
         algebra::cases(),
         failure::cases(),
+        growth::cases(),
         resources::cases(),
         input::cases(),
     ];

@@ -121,6 +121,9 @@ pub struct InterfaceAnswer {
 }
 
 impl Interfaces {
+    /// Share of its cohesion from which on a point counts as delaminated: all but the rounding of a law that tends to 1.
+    pub const BROKEN: f64 = 0.99;
+
     /// The interfaces at `faces` of `plate`, each over its quads, where [`Plate::separate`] has been called for them; `order` points
     /// of integration each way. A symmetry of the plate leaves one cell for all its images.
     ///

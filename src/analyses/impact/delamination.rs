@@ -1,6 +1,5 @@
 //! What has delaminated, and when.
 
-use crate::effects::GrowingDelaminations;
 use crate::model::Separation;
 use fem_core::interface_law::Sinks;
 use fem_core::interfaces::Interfaces;
@@ -67,7 +66,7 @@ impl Onsets {
         let first = separation.first();
         for (number, since) in self.0.iter_mut().enumerate().filter(|(_, since)| since.is_infinite()) {
             let own = &states[first[number]..first[number + 1]];
-            let broken = |(_, damage): (f64, f64)| damage > GrowingDelaminations::BROKEN;
+            let broken = |(_, damage): (f64, f64)| damage > Interfaces::BROKEN;
             if Interfaces::is_open(own) && interfaces.damage(number, own).any(broken) {
                 *since = t;
             }
@@ -77,7 +76,7 @@ impl Onsets {
     /// What the march leaves.
     pub(super) fn finish(self, separation: &Separation, states: &[f64]) -> Delaminated {
         let (interfaces, first) = (&separation.interfaces, separation.first());
-        let areas = interfaces.lost_area(states, GrowingDelaminations::BROKEN);
+        let areas = interfaces.lost_area(states, Interfaces::BROKEN);
         let mut cells = Vec::new();
         let mut at_border = false;
         for (number, cell) in interfaces.cells().iter().enumerate() {
@@ -86,7 +85,7 @@ impl Onsets {
             for (a, damage) in interfaces.damage(number, own) {
                 area += a;
                 lost += a * damage;
-                broken += if damage > GrowingDelaminations::BROKEN { a } else { 0.0 };
+                broken += if damage > Interfaces::BROKEN { a } else { 0.0 };
             }
             if lost > 0.0 {
                 at_border |= separation.border.contains(&cell.quad);
@@ -104,7 +103,7 @@ impl Onsets {
         };
         Delaminated {
             interfaces: separation.faces.iter().map(of).collect(),
-            projected: interfaces.projected_area(states, GrowingDelaminations::BROKEN),
+            projected: interfaces.projected_area(states, Interfaces::BROKEN),
             dissipated: interfaces.dissipated(states),
             cells,
             at_border,
