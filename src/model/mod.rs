@@ -174,6 +174,7 @@ impl Model {
             Damage::Onset => builder.criteria(&*element)?,
         };
         let mut effects = builder.effects(&*element, &criteria)?;
+        builder.goes_with_growth(&effects)?;
 
         let levels = laminates[0].levels();
         let lacks = |why: MaterialError| {
@@ -275,7 +276,7 @@ impl Model {
         let mut separation = None;
         if let Some(split) = &split {
             let equations = std::mem::take(&mut supports.equations);
-            let built = builder.separation(split, &plate, &*element, &laminate, &materials, equations, &effects)?;
+            let built = builder.separation(split, &plate, &*element, &laminate, &materials, equations)?;
             warnings.extend(built.warning());
             let (interfaces, plies) = (built.interfaces.clone(), laws.is_some());
             effects.act(Box::new(GrowingDelaminations { interfaces, plies }));

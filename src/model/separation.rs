@@ -181,10 +181,8 @@ impl<'a> Builder<'a> {
         laminate: &Laminate,
         materials: &[Material],
         supports: Vec<Equation>,
-        effects: &Effects,
     ) -> Result<Separation, SceneError> {
         let Split { spec, faces, quads } = split;
-        self.goes_with_growth(spec, effects)?;
         let name = &spec.law.name;
         let resin = self.scene.interface.as_ref().map_or(laminate.plies[0].material, |resin| resin.value);
         let law = self.interface_law(&spec.law)?;
@@ -273,7 +271,8 @@ impl<'a> Builder<'a> {
     }
 
     /// Refuses what does not stand beside delaminations that grow.
-    fn goes_with_growth(&self, spec: &DelaminationSpec, effects: &Effects) -> Result<(), SceneError> {
+    pub(super) fn goes_with_growth(&self, effects: &Effects) -> Result<(), SceneError> {
+        let Some(spec) = &self.scene.delamination else { return Ok(()) };
         let name = &spec.law.name;
         let wish = self.scene.effects.delamination.as_ref().map_or(&name.place, |wish| &wish.place);
         let refuse = |place, message: &str, help: &str| Err(self.scene.source.error_at(place, message, help));
