@@ -127,10 +127,10 @@ fn impacts_on_meshes_straight_out_of_gmsh() {
                 "title = \"{mesh}\"\nmaterials.tape = {{ library = \"AS4/3502\" }}\n\
                  laminate = {{ plies = \"[0/45/-45/90]s\", material = \"tape\", ply_thickness = \"0.13208 mm\", layers = [8] }}\n\
                  impactor = {{ mass = \"100 g\", velocity = \"2 m/s\", at = {{ x = \"{x} mm\", y = \"{y} mm\" }} }}\n\
-                 contact = {{ law = \"hertz\", k = \"1.07e5 N/mm^1.5\" }}\nreduction = {{ method = \"ritz\", vectors = 30 }}\n\
+                 contact = {{ law = \"hertz\", k = \"1.07e5 N/mm^1.5\" }}\nreduction = {{ method = \"ritz\", vectors = 20 }}\n\
                  march = {{ step = \"1 us\", end = \"100 us\" }}\n\
                  support = [{{ group = \"rim\", at = \"all\", fix = [\"U10\", \"U20\", \"U30\"] }}]\n\
-                 failure = {{ criteria = [\"puck\"], every = \"5 us\" }}\n\
+                 failure = {{ criteria = [\"puck\"], every = \"20 us\" }}\n\
                  {}",
                 if mesh == "mixed" { "output = { maps = true, fields = { every = \"50 us\" } }\n" } else { "" }
             ),

@@ -2,6 +2,7 @@
 
 use crate::scene::Plate;
 use fem::analyses::statics::{self, StaticSolution};
+use fem::core::domain::{Corners, Domain};
 use fem::core::mesh::{Group, PlaneMesh};
 use fem::io::scene;
 use fem::{Error, Model, Registry};
@@ -48,6 +49,21 @@ pub(crate) fn jiggled(mut mesh: PlaneMesh, share: f64) -> PlaneMesh {
     mesh
 }
 
+/// Its cells cut along one of their diagonals or, of every fifth, left whole.
+pub(crate) fn cut(mut mesh: PlaneMesh) -> PlaneMesh {
+    let parts = |(number, quad): (usize, &Corners<u32>)| {
+        let [a, b, c, d] = quad.four();
+        match number * 7919 % 5 {
+            0 => vec![*quad],
+            1 | 3 => vec![[a, b, c].into(), [a, c, d].into()],
+            _ => vec![[a, b, d].into(), [b, c, d].into()],
+        }
+    };
+    mesh.quads = mesh.quads.iter().enumerate().flat_map(parts).collect();
+    mesh.quad_tags = (1..=mesh.quads.len() as u64).collect();
+    mesh
+}
+
 /// Nodes and cells in another order, cells from another corner.
 pub(crate) fn shuffled(mesh: &PlaneMesh, seed: usize) -> PlaneMesh {
     let order = |n: usize| -> Vec<usize> {
@@ -86,7 +102,7 @@ pub(crate) fn nearest(mesh: &PlaneMesh, at: [f64; 2]) -> u32 {
 
 /// Middles of its cells.
 pub(crate) fn middles(mesh: &PlaneMesh) -> Vec<[f64; 2]> {
-    let middle = |q| [0, 1].map(|d| mesh.corners(q).iter().map(|p| p[d]).sum::<f64>() / 4.0);
+    let middle = |q| [0, 1].map(|d| mesh.corners(q).iter().map(|p| p[d]).sum::<f64>() / mesh.quads[q].len() as f64);
     (0..mesh.quads.len()).map(middle).collect()
 }
 
@@ -110,7 +126,10 @@ pub(crate) fn gmsh(mesh: &PlaneMesh) -> String {
     for (i, (_, g)) in of(1) {
         blocks.push((format!("1 {} 1", i + 2), g.edges.iter().map(|e| e.to_vec()).collect()));
     }
-    blocks.push(("2 1 3".into(), mesh.quads.iter().map(|q| q.to_vec()).collect()));
+    for cells in mesh.quads.chunk_by(|a, b| a.domain() == b.domain()) {
+        let kind = if cells[0].domain() == Domain::Triangle { 2 } else { 3 };
+        blocks.push((format!("2 1 {kind}"), cells.iter().map(|q| q.to_vec()).collect()));
+    }
     let count: usize = blocks.iter().map(|b| b.1.len()).sum();
     let _ = writeln!(t, "$EndNodes\n$Elements\n{} {count} 1 {count}", blocks.len());
     let mut tag = 0;

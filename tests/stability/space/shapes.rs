@@ -1,7 +1,9 @@
 //! Cells that are not squares.
 
 use crate::case::{Case, Room};
-use crate::plates::{HEX, SHELL, SOLIDS, jiggled, middles, model, moved, on, probe, rectangle, said, solve, worst};
+use crate::plates::{
+    HEX, SHELL, SOLIDS, cut, jiggled, middles, model, moved, on, probe, rectangle, said, solve, worst,
+};
 use crate::scene::{AS4, PAGANO, Plate, QUARTER, Side};
 use fem::core::mesh::PlaneMesh;
 use std::f64::consts::PI;
@@ -49,6 +51,27 @@ pub(super) fn cases() -> Vec<Case> {
             "change of the deflection of a laminate that square cells give",
             5e-2,
             || worst(ANGLES.map(|degrees| bent(&pinched(square(8), degrees), &GENERAL))),
+        ),
+        Room::Space.case(
+            "patch test on triangles among quadrilaterals",
+            "cells cut in two or left whole, inner nodes moved by up to 0.1 and 0.4 of the distance to the next; every solid for cells of any shape",
+            "error of a uniform stress, oblique to the fibres, in the middle of every cell",
+            1e-9,
+            || worst([0.1, 0.4].map(|share| stretched(&cut(jiggled(square(8), share)), &SOLIDS))),
+        ),
+        Room::Space.case(
+            "bending on triangles among quadrilaterals",
+            "cells cut in two or left whole, inner nodes moved by up to 0.1 and 0.4 of the distance to the next; every solid for cells of any shape",
+            "change of the deflection of a laminate that square cells give",
+            2e-2,
+            || worst([0.1, 0.4].map(|share| bent(&cut(jiggled(square(8), share)), &SOLIDS))),
+        ),
+        Room::Space.case(
+            "bending on slender triangles",
+            "sides of cells to 1:1000, beside square ones, cut in two or left whole; every solid for cells of any shape",
+            "change of the deflection of a laminate that square cells give",
+            1e-2,
+            || bent(&cut(slender()), &SOLIDS),
         ),
         Room::Space.case(
             "degenerate cells",
