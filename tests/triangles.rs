@@ -130,9 +130,12 @@ fn impacts_on_meshes_straight_out_of_gmsh() {
                  contact = {{ law = \"hertz\", k = \"1.07e5 N/mm^1.5\" }}\nreduction = {{ method = \"ritz\", vectors = 20 }}\n\
                  march = {{ step = \"1 us\", end = \"100 us\" }}\n\
                  support = [{{ group = \"rim\", at = \"all\", fix = [\"U10\", \"U20\", \"U30\"] }}]\n\
-                 failure = {{ criteria = [\"puck\"], every = \"20 us\" }}\n\
                  {}",
-                if mesh == "mixed" { "output = { maps = true, fields = { every = \"50 us\" } }\n" } else { "" }
+                if mesh == "mixed" {
+                    "failure = { criteria = [\"puck\"] }\noutput = { maps = true, fields = { every = \"50 us\" } }\n"
+                } else {
+                    "effects = { damage = \"off\" }\n"
+                }
             ),
         );
         case.fem("run", &["--out", "out"]).good();

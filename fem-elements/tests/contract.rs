@@ -64,3 +64,56 @@ fn faults_are_found() {
         assert!(why.contains(words), "{why:?} does not say {words:?}");
     }
 }
+
+/// An element with another form on triangles than its own.
+#[derive(Debug, Clone)]
+struct Beside {
+    element: Hex20,
+    wedge: Box<dyn Element>,
+}
+
+impl Element for Beside {
+    fn info(&self) -> &ElementInfo {
+        self.element.info()
+    }
+    fn strain_operator(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], b: &mut [f64]) -> f64 {
+        self.element.strain_operator(cell, slice, xi, b)
+    }
+    fn shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
+        self.element.shape(cell, xi, n)
+    }
+    fn triangular(&self) -> Option<&dyn Element> {
+        Some(&*self.wedge)
+    }
+}
+
+/// The wedge, whose displacements between nodes are others.
+#[derive(Debug, Clone, Default)]
+struct Bulging(Wedge15);
+
+impl Element for Bulging {
+    fn info(&self) -> &ElementInfo {
+        self.0.info()
+    }
+    fn strain_operator(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], b: &mut [f64]) -> f64 {
+        self.0.strain_operator(cell, slice, xi, b)
+    }
+    fn shape(&self, cell: &Cell<'_>, xi: [f64; 3], n: &mut [f64]) -> f64 {
+        let jacobian = self.0.shape(cell, xi, n);
+        n[0] += (1.0 - xi[1] * xi[1]) * xi[1];
+        jacobian
+    }
+}
+
+#[test]
+fn forms_on_triangles_that_do_not_fit_are_found() {
+    let element = Hex20::new(3).unwrap();
+    let all: [(Box<dyn Element>, &str); 2] = [
+        (Box::new(Hex20::new(3).unwrap()), "needs an element for quadrilaterals"),
+        (Box::<Bulging>::default(), "cells of both shapes part by"),
+    ];
+    for (wedge, words) in all {
+        let why = check_element(&Beside { element: element.clone(), wedge }).unwrap_err();
+        assert!(why.contains(words), "{words:?}: {why}");
+    }
+}

@@ -1,5 +1,6 @@
 //! A plate of cells: a plane mesh extruded through the layers of a laminate, and the numbers of its unknowns.
 
+mod layout;
 mod part;
 mod separation;
 
@@ -8,8 +9,7 @@ use crate::plates::laminate::SAME_HEIGHT;
 use crate::plates::mesh::{Group, PlaneMesh};
 use crate::plates::symmetry::{self, Symmetry};
 use crate::words::dof::Dof;
-use crate::words::domain::{Corners, Domain};
-use std::collections::HashMap;
+use layout::{Columns, Layout, forms, ordered};
 use std::fmt::Write;
 
 pub use separation::{CLOSED, FaceUnknowns};
@@ -62,30 +62,6 @@ pub struct Plate {
     symmetry: Symmetry,
     /// By node, whether the layers above and below may separate there; empty where they may nowhere.
     separable: Vec<bool>,
-}
-
-/// Where an element has its nodes in cells of a shape.
-#[derive(Debug, Clone)]
-struct Layout {
-    info: ElementInfo,
-    /// Of each node of the element: which of the quad's columns, and how many levels above the cell's lower face.
-    slots: Vec<(usize, usize)>,
-    /// In-plane natural coordinates of a quad's columns.
-    places: Vec<[f64; 2]>,
-}
-
-impl Layout {
-    fn new(info: ElementInfo, pitch: usize) -> Self {
-        let mut places: Vec<[f64; 2]> = Vec::new();
-        let slots = info.nodes.iter().map(|&[r, s, q]| {
-            let place = places.iter().position(|p| *p == [r, s]).unwrap_or_else(|| {
-                places.push([r, s]);
-                places.len() - 1
-            });
-            (place, ((q + 1.0) * 0.5 * pitch as f64) as usize)
-        });
-        Self { slots: slots.collect(), info, places }
-    }
 }
 
 impl Plate {
@@ -423,80 +399,6 @@ impl Plate {
         }
         values
     }
-}
-
-/// Columns over the places (r, s) of each quad.
-struct Columns {
-    positions: Vec<[f64; 2]>,
-    /// Of each quad, from the place on that `starts` has for it.
-    of_quads: Vec<u32>,
-    starts: Vec<u32>,
-    /// The vertices that columns on edges stand between.
-    edges: Vec<[u32; 2]>,
-}
-
-impl Columns {
-    fn of(plane: &PlaneMesh, layouts: &[Layout]) -> Self {
-        let mut positions = plane.points.clone();
-        let mut edges: Vec<[u32; 2]> = Vec::new();
-        let mut numbers = HashMap::new();
-        let middle = |of: &[u32]| -> [f64; 2] {
-            std::array::from_fn(|d| of.iter().map(|v| plane.points[*v as usize][d]).sum::<f64>() / of.len() as f64)
-        };
-        let corners = |layout: &Layout| -> Vec<Vec<usize>> {
-            layout.places.iter().map(|place| layout.info.domain.corners_around(*place)).collect()
-        };
-        let of_layouts: Vec<_> = layouts.iter().map(|layout| (layout.info.domain, corners(layout))).collect();
-        let around = |quad: &Corners<u32>| {
-            let own = of_layouts.iter().find(|(domain, _)| *domain == quad.domain());
-            own.map_or(&[][..], |(_, around)| around)
-        };
-        for quad in &plane.quads {
-            for ends in around(quad).iter().filter_map(|around| <[usize; 2]>::try_from(&around[..]).ok()) {
-                let ends = ordered(ends.map(|i| quad[i]));
-                numbers.entry(ends).or_insert_with(|| {
-                    edges.push(ends);
-                    positions.push(middle(&ends));
-                    positions.len() as u32 - 1
-                });
-            }
-        }
-        let first_centre = positions.len() as u32;
-        if of_layouts.iter().any(|(_, around)| around.iter().any(|around| around.len() > 2)) {
-            positions.extend(plane.quads.iter().map(|quad| middle(quad)));
-        }
-        let (mut of_quads, mut starts) = (Vec::new(), vec![0]);
-        for (q, quad) in plane.quads.iter().enumerate() {
-            of_quads.extend(around(quad).iter().map(|around| match around[..] {
-                [corner] => quad[corner],
-                [a, b] => numbers[&ordered([quad[a], quad[b]])],
-                _ => first_centre + q as u32,
-            }));
-            starts.push(of_quads.len() as u32);
-        }
-        Self { positions, of_quads, starts, edges }
-    }
-}
-
-fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
-}
-
-/// The tables for the shapes that the cells have, quadrilaterals first.
-///
-/// # Errors
-/// A cell of a shape that there is none for.
-fn forms(plane: &PlaneMesh, tables: &Tables) -> Result<Vec<ElementInfo>, PlateError> {
-    let mut found = Vec::new();
-    for domain in [Domain::Quadrilateral, Domain::Triangle] {
-        let Some(first) = plane.quads.iter().position(|corners| corners.domain() == domain) else { continue };
-        found.push(*tables.on(domain).ok_or_else(|| PlateError::OtherShape {
-            of_element: tables.cells(),
-            quad_tag: plane.quad_tags[first],
-            of_cell: domain.name(),
-        })?);
-    }
-    Ok(if found.is_empty() { vec![tables.own] } else { found })
 }
 
 /// Turns the quads of a strip so that their r runs along x.
