@@ -6,6 +6,7 @@ use fem_core::assembly::{elimination_order, pattern};
 use fem_core::constraint::{Constraints, Equation};
 use fem_core::counters::Counters;
 use fem_core::dof::Dof;
+use fem_core::domain::Corners;
 use fem_core::element::Element;
 use fem_core::interfaces::{InterfaceMaterial, Interfaces};
 use fem_core::laminate::{LaminaPly, Laminate};
@@ -32,13 +33,28 @@ fn material() -> Material {
     }
 }
 
+/// Whether every second cell is cut in two.
+#[derive(Clone, Copy)]
+enum Cells {
+    Quads,
+    Mixed,
+}
+
 /// A plate of 12 mm by 8 mm, `[0/45/90]`, whose two interfaces may open where `separate` says so.
-fn plate(element: &dyn Element, separate: bool) -> Plate {
-    let mesh = PlaneMesh::rectangle(&[0.0, 3e-3, 5e-3, 9e-3, 12e-3], &[0.0, 3e-3, 5e-3, 8e-3]);
+fn plate(element: &dyn Element, cells: Cells, separate: bool) -> Plate {
+    let mut mesh = PlaneMesh::rectangle(&[0.0, 3e-3, 5e-3, 9e-3, 12e-3], &[0.0, 3e-3, 5e-3, 8e-3]);
+    if let Cells::Mixed = cells {
+        let parts = |(number, quad): (usize, &Corners<u32>)| {
+            let [a, b, c, d] = quad.four();
+            if number % 2 == 0 { vec![*quad] } else { vec![[a, b, c].into(), [a, c, d].into()] }
+        };
+        mesh.quads = mesh.quads.iter().enumerate().flat_map(parts).collect();
+        mesh.quad_tags = (1..=mesh.quads.len() as u64).collect();
+    }
     let ply = |angle_deg: f64| LaminaPly { angle_deg, angle: angle_deg.to_radians(), thickness: 0.5e-3, material: 0 };
     let laminate = Laminate { plies: [0.0, 45.0, 90.0].map(ply).to_vec(), layers: vec![1, 1, 1] };
     let stacks = laminate.stacks(&[material()]).unwrap();
-    let mut plate = Plate::new(mesh, laminate.levels(), stacks, *element.info(), ZDerivatives::LayerWise).unwrap();
+    let mut plate = Plate::new(mesh, laminate.levels(), stacks, element, ZDerivatives::LayerWise).unwrap();
     let all: Vec<u32> = (0..plate.plane.quads.len() as u32).collect();
     if separate {
         (1..3).for_each(|face| plate.separate(face, &all));
@@ -75,8 +91,8 @@ fn separable(plate: Plate, element: Box<dyn Element>, supports: Vec<Equation>, o
 fn a_closed_plate_is_one_that_cannot_open() {
     let elements: [Box<dyn Element>; 2] =
         [Box::new(HermitePrism::new(Mass::Cubic, 4).unwrap()), Box::new(Hex20::new(3).unwrap())];
-    for element in elements {
-        let whole = plate(&*element, false);
+    for (element, cells) in elements.into_iter().flat_map(|e| [(e.clone(), Cells::Quads), (e, Cells::Mixed)]) {
+        let whole = plate(&*element, cells, false);
         let supports = clamp(&whole);
         let constraints = Constraints::eliminate(&elimination_order(&whole), &supports).unwrap();
         let pattern = Arc::new(pattern(&whole, &constraints));
@@ -111,7 +127,7 @@ fn a_closed_plate_is_one_that_cannot_open() {
             })
         };
         let want = deflections(&whole, &constraints, &mut |shift, x| structure.solve_shifted(shift, x, 1).unwrap());
-        let apart = plate(&*element, true);
+        let apart = plate(&*element, cells, true);
         let supports = clamp(&apart);
         let constraints = Constraints::eliminate(&elimination_order(&apart), &supports).unwrap();
         let (mut closed, _) = separable(apart.clone(), element.clone(), supports, false);
@@ -130,8 +146,12 @@ fn a_closed_plate_is_one_that_cannot_open() {
 
 #[test]
 fn sound_interfaces_are_springs_in_series() {
+    [Cells::Quads, Cells::Mixed].into_iter().for_each(springs_in_series);
+}
+
+fn springs_in_series(cells: Cells) {
     let element: Box<dyn Element> = Box::new(HermitePrism::new(Mass::Cubic, 4).unwrap());
-    let plate = plate(&*element, true);
+    let plate = plate(&*element, cells, true);
     // Held on its lower face, and in its plane everywhere, so that it is only pulled through its thickness.
     let mut supports = Vec::new();
     for (column, level) in (0..plate.columns.len()).flat_map(|c| (0..plate.levels.len()).map(move |l| (c, l))) {
