@@ -92,6 +92,28 @@ fn a_plate_at_rest_folded_by_half_a_turn() {
 }
 
 #[test]
+fn delaminations_grow_between_triangles_as_between_quadrilaterals() {
+    let edges = ["x-min", "x-max", "y-min", "y-max"]
+        .map(|edge| format!("{{ group = \"{edge}\", at = \"bottom\", fix = [\"U30\"] }}"))
+        .join(", ");
+    let scene = |mesh: &str| {
+        format!(
+            "title = \"growth\"\nsymmetry = \"quarter\"\nmesh = {mesh}\n\
+             effects = {{ damage = \"off\", delamination = \"growth\" }}\ndelamination = {{ penalty = \"2e4 N/mm^3\" }}\n\
+             support = [{edges}, {{ restrain = \"rigid-motions\" }}]\n\
+             impactor = {{ mass = \"1 kg\", velocity = \"5 m/s\", at = {{ x = \"30 mm\", y = \"20 mm\" }}, patch_radius = \"3 mm\" }}\n\
+             contact = {{ law = \"hertz\", k = \"4e9 N/m^1.5\" }}\n\
+             march = {{ integrator = {{ name = \"generalized-alpha\", rho = 0.5 }}, step = \"2 us\", end = \"450 us\" }}\n\
+             laminate = {{ plies = \"[0/90/0]\", material = \"tape\", ply_thickness = \"1 mm\", layers = 3 }}\n\
+             materials.tape = {{ library = \"IM7/8552\", Zt = \"20 MPa\", S13 = \"25 MPa\" }}\n"
+        )
+    };
+    let quads = plate().text(&scene("{ rectangle = [\"60 mm\", \"40 mm\"], cells = [12, 10] }"));
+    let wedges = plate().text(&scene("{ file = \"plate.msh\", unit = \"mm\" }")).mesh_bytes(triangles(12, 10));
+    agree(&[quads, wedges], &["peak_force_N", "projected_area_mm2", "dissipated_J"], 0.03);
+}
+
+#[test]
 fn elements_and_meshes_that_do_not_fit_are_refused_with_what_helps() {
     let refused = |case: Case, words: &[&str]| {
         let said = case.fem("check", &[]);

@@ -1,7 +1,7 @@
 //! Elements: one file each, all implementing [`Element`](fem_core::element::Element).
 //!
-//! [`HermitePrism`] is the solid element of AFWAL-TR-87-4117, [`HermiteHex`] its quick form for parallelograms,
-//! [`WebsterBeam`] the section of a strip; [`hermite`] holds the polynomials that their family is made of.
+//! [`HermitePrism`] is the solid element of AFWAL-TR-87-4117, [`HermiteWedge`] its form on triangles, [`HermiteHex`] its quick form
+//! for parallelograms, [`WebsterBeam`] the section of a strip; [`hermite`] holds the polynomials that their family is made of.
 //!
 //! A uniform stretch stores the energy of its strain, whatever the number of plies:
 //!
