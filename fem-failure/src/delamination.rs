@@ -1,6 +1,6 @@
 //! The contact force at which an impact delaminates a plate.
 
-use fem_core::laminate::{LaminaPly, Laminate};
+use fem_core::laminate::Laminate;
 use fem_core::material::{Material, Toughness};
 use std::f64::consts::PI;
 
@@ -33,9 +33,6 @@ pub struct DelaminationThreshold {
     pub giic: f64,
 }
 
-/// Difference of two angles, radians, up to which plies are alike.
-const ALIKE: f64 = 1e-6;
-
 impl DelaminationThreshold {
     /// The threshold of `laminate`, whose interfaces are of the material `resin`; `None` where no material gives GIIc.
     ///
@@ -45,10 +42,7 @@ impl DelaminationThreshold {
         let of_plies = || laminate.plies.iter().filter_map(|ply| of(ply.material)).min_by(f64::total_cmp);
         let giic = resin.and_then(of).or_else(of_plies)?;
         let bending_stiffness = laminate.effective_bending_stiffness(materials);
-        let differ = |pair: &[LaminaPly]| {
-            (pair[0].angle - pair[1].angle).sin().abs() > ALIKE || pair[0].material != pair[1].material
-        };
-        let interfaces = laminate.plies.windows(2).filter(|pair| differ(pair)).count().max(1);
+        let interfaces = laminate.unlike().count().max(1);
         let force_of = |n: usize| PI * (32.0 * bending_stiffness * giic / (n as f64 + 2.0)).sqrt();
         Some(Self { force: force_of(1), interfaces, force_of_all: force_of(interfaces), bending_stiffness, giic })
     }
@@ -58,6 +52,7 @@ impl DelaminationThreshold {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use fem_core::laminate::LaminaPly;
     use fem_core::material::{Elastic, Strengths, Toughnesses};
 
     fn material(elastic: Elastic, giic: Option<f64>) -> Material {

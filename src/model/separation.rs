@@ -8,7 +8,7 @@ use fem_core::constraint::Equation;
 use fem_core::element::Element;
 use fem_core::interface_law::InterfaceLaw;
 use fem_core::interfaces::{InterfaceMaterial, Interfaces, InterfacesError};
-use fem_core::laminate::{LaminaPly, Laminate};
+use fem_core::laminate::Laminate;
 use fem_core::material::{Elastic, Material};
 use fem_core::plate::Plate;
 use fem_core::plugin::{Built, Kind};
@@ -18,9 +18,6 @@ use std::collections::BTreeSet;
 
 /// What an integrator may miss of it by rounding.
 const ROUNDING: f64 = 1e-6;
-
-/// Difference of two angles, radians, up to which plies are alike.
-const ALIKE: f64 = 1e-6;
 
 /// Largest spectral radius for long steps of an integrator under which faces may clap.
 const DAMPED: f64 = 0.5;
@@ -104,11 +101,8 @@ impl<'a> Builder<'a> {
             return Err(self.error(&spec.law.name, message, "give the plate one laminate, or leave the growth out"));
         };
         let plies = laminate.plies.len();
-        let differ = |pair: &[LaminaPly]| {
-            (pair[0].angle - pair[1].angle).sin().abs() > ALIKE || pair[0].material != pair[1].material
-        };
         let mut below: Vec<usize> = match &spec.interfaces {
-            None => (1..plies).filter(|k| differ(&laminate.plies[k - 1..=*k])).collect(),
+            None => laminate.unlike().collect(),
             Some(named) => {
                 if let Some(wrong) = named.value.iter().find(|k| k.value + 1 >= plies) {
                     let message = format!("there is no interface {} in a laminate of {plies} plies", wrong.value + 1);

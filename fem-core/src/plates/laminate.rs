@@ -30,6 +30,9 @@ pub struct Laminate {
 /// Heights that differ by less than this fraction of the thickness are one.
 pub(crate) const SAME_HEIGHT: f64 = 1e-9;
 
+/// Difference of two angles, radians, up to which plies are alike.
+const ALIKE: f64 = 1e-6;
+
 impl Laminate {
     /// Total thickness, m.
     pub fn thickness(&self) -> f64 {
@@ -51,6 +54,15 @@ impl Laminate {
             *top = 0.5 * h;
         }
         all
+    }
+
+    /// Numbers of plies below each interface between plies of different angle or material.
+    pub fn unlike(&self) -> impl Iterator<Item = usize> + '_ {
+        let differ = |pair: &[LaminaPly]| {
+            (pair[0].angle - pair[1].angle).sin().abs() > ALIKE || pair[0].material != pair[1].material
+        };
+        let pairs = (1..).zip(self.plies.windows(2));
+        pairs.filter(move |(_, pair)| differ(pair)).map(|(below, _)| below)
     }
 
     /// First and one past the last ply of a layer.
