@@ -214,6 +214,22 @@ fn the_mesh_of_the_book_is_refined() {
     assert_eq!(quads(refined), 4 * quads(example()));
 }
 
+#[test]
+fn the_supports_of_the_book_hold() {
+    let supports = fs::read_to_string(root().join("docs/book/src/supports.toml")).unwrap();
+    let scene = fs::read_to_string(root().join("examples/pagano-0-90-0/scene.toml")).unwrap();
+    let (start, end) = (scene.find("[[support]]").unwrap(), scene.find("[[load]]").unwrap());
+    let rectangle = scene[..start].replace("\"5 mm\", \"5 mm\"", "\"80 mm\", \"50 mm\"").replace("[6, 6]", "[16, 10]");
+    let case = strip().text(&format!("{supports}{rectangle}{}", &scene[end..scene.find("[[profile]]").unwrap()]));
+    let done = case.fem("check", &["--explain"]).good();
+    for line in [
+        "`x-min`, clamped: U10 U11 U13 U20 U21 U23 U30 U31 at 44 nodes, 1 along the edge and 2 across it",
+        "the disc at (60.0000, 40.0000) mm, roller: U30 U31",
+    ] {
+        assert!(done.stdout.contains(line), "{}", done.stdout);
+    }
+}
+
 /// Axes, keys and quantities of studies are those of the program.
 #[test]
 fn the_studies_of_the_book_are_made() {

@@ -57,6 +57,9 @@ struct Checked {
     unknowns: usize,
     unknowns_before_constraints: usize,
     redundant_equations: usize,
+    /// What each support holds, where that is explained.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    supports: Vec<String>,
     memory_MB: f64,
     #[serde(skip)]
     memory: MemoryEstimate,
@@ -184,6 +187,7 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
         unknowns: model.constraints.ndof(),
         unknowns_before_constraints: model.plate.ndof(),
         redundant_equations: model.constraints.redundant.len(),
+        supports: if arguments.explain { model.supports.clone() } else { Vec::new() },
         memory_MB: memory.bytes() * 1e-6,
         memory,
         substructures,
@@ -224,6 +228,7 @@ impl Checked {
             ("unknowns", format!("{unknowns} of {} after constraints{redundant}", self.unknowns_before_constraints)),
             ("memory", format!("about {memory_MB:.0} MB at the peak: {memory}")),
         ];
+        lines.extend(self.supports.iter().map(|support| ("support", support.clone())));
         lines.extend(self.substructures.map(|parts| ("divided", parts.to_string())));
         lines.extend(self.march.iter().flat_map(MarchDocument::lines));
         lines.extend(self.condition.map(|condition| ("stiffness", describe_condition(condition))));

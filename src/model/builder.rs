@@ -1,6 +1,7 @@
 //! Looks up what a scene names: mesh, plug-ins, groups, supports.
 
 use super::NamedCriterion;
+use super::supports::describe;
 use crate::registry::{NO_REDUCTION, Registry, RegistryError};
 use fem_core::assembly::elimination_order;
 use fem_core::axes::Turns;
@@ -51,6 +52,8 @@ pub(super) struct Held<'a> {
     pub(super) motions: Vec<f64>,
     /// What supports of nodal values leave free between the nodes, sums of the independent unknowns.
     pub(super) between: Vec<Functional>,
+    /// What each support holds, in words.
+    pub(super) described: Vec<String>,
     /// What a restraint holds, and where it stands in the scene.
     pub(super) restraint: Option<(FreeMotions, &'a Place)>,
 }
@@ -298,22 +301,23 @@ impl Builder<'_> {
         let mut equations = Vec::new();
         // Of each equation, where it stands in the scene.
         let mut places = Vec::new();
-        let mut restraint = None;
+        let (mut restraint, mut described) = (None, Vec::new());
         let mut turns = Turns::default();
         for entry in &self.scene.supports {
             match entry {
-                Support::Fix { nodes, dofs, axes, place } => {
-                    let (columns, levels) = self.nodes(plate, nodes)?;
-                    let origin = format!("support of `{}`", nodes.group.value);
-                    let fixed = support::fix(plate, &columns, &levels, dofs, turns.settle(*axes), &origin);
-                    if fixed.is_empty() {
-                        let message = format!("the support of `{}` fixes nothing", nodes.group.value);
-                        return Err(source.error_at(place, message, "the element has none of the unknowns of `fix`"));
-                    }
-                    equations.extend(fixed);
-                    places.resize(equations.len(), place);
-                }
                 Support::RestrainRigidMotions { place } => restraint = Some(place),
+                _ => {
+                    let (name, holds) = self.holds(plate, entry, &mut turns)?;
+                    described.push(describe(plate, entry, &name, &holds));
+                    let before = equations.len();
+                    let origin = format!("support of {name}");
+                    equations.extend(holds.iter().flat_map(|hold| hold.equations(plate, &origin)));
+                    if equations.len() == before {
+                        let help = "the element has none of the unknowns that it names";
+                        return Err(source.error_at(entry.place(), format!("the {origin} fixes nothing"), help));
+                    }
+                    places.resize(equations.len(), entry.place());
+                }
             }
         }
         for couple in &self.scene.couples {
@@ -359,7 +363,14 @@ impl Builder<'_> {
         let constraints = self.eliminate(plate, &equations, &places)?;
         let motions = if at_rest { Vec::new() } else { free.of_unknowns(plate, &constraints) };
         let between = self.between(plate, &constraints)?;
-        Ok(Held { constraints, equations, motions, between, restraint: restraint.map(|place| (free, place)) })
+        Ok(Held {
+            constraints,
+            equations,
+            motions,
+            between,
+            described,
+            restraint: restraint.map(|place| (free, place)),
+        })
     }
 
     /// What the supports leave free between the nodes that they hold.

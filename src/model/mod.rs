@@ -13,6 +13,7 @@ mod regions;
 mod separation;
 mod spacing;
 mod substructures;
+mod supports;
 mod symmetry;
 mod turns;
 
@@ -78,6 +79,8 @@ pub struct Model {
     pub separation: Option<Separation>,
     /// Supports and other equations, eliminated.
     pub constraints: Constraints,
+    /// What each support holds, in words.
+    pub supports: Vec<String>,
     /// What supports of nodal values leave free between the nodes, sums of the independent unknowns.
     pub between: Vec<Functional>,
     /// How the plate can move as a whole, by its independent unknowns, one motion after the other; at rest it cannot.
@@ -300,6 +303,7 @@ impl Model {
             separation,
             held: supports.motions.is_empty() || supports.restraint.is_some(),
             constraints: supports.constraints,
+            supports: supports.described,
             between: supports.between,
             motions: supports.motions,
             division,

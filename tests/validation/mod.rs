@@ -19,6 +19,7 @@ mod softness;
 mod strip;
 mod study;
 mod substructures;
+mod supports;
 mod symmetry;
 mod transverse;
 mod triangles;

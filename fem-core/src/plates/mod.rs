@@ -4,6 +4,7 @@ pub mod axes;
 pub mod between;
 pub mod constraint;
 mod error;
+pub mod hold;
 pub mod interfaces;
 pub mod laminate;
 pub mod laws;

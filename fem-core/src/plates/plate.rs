@@ -348,6 +348,11 @@ impl Plate {
         (node / self.levels.len(), node % self.levels.len(), name)
     }
 
+    /// The vertices that a column on a side stands between.
+    pub fn ends(&self, column: usize) -> Option<[u32; 2]> {
+        self.edges.get(column.checked_sub(self.plane.points.len())?).copied()
+    }
+
     /// "node 17", "the middle of nodes 17 and 18", "the middle of cell 5": numbers of the mesh file.
     pub fn describe_column(&self, column: usize) -> String {
         let vertices = self.plane.points.len();
@@ -355,8 +360,8 @@ impl Plate {
         if column < vertices {
             return format!("node {}", self.plane.node_tags[column]);
         }
-        match self.edges.get(column - vertices) {
-            Some([a, b]) => format!("the middle of nodes {} and {}", tag(*a), tag(*b)),
+        match self.ends(column) {
+            Some([a, b]) => format!("the middle of nodes {} and {}", tag(a), tag(b)),
             None => format!("the middle of cell {}", self.plane.quad_tags[column - vertices - self.edges.len()]),
         }
     }

@@ -32,6 +32,14 @@ impl Levels {
     }
 }
 
+/// Axes turned by `angle` (radians) about z, as rows.
+pub(super) fn axes_at(angle: f64) -> [[f64; 3]; 3] {
+    let (s, c) = angle.sin_cos();
+    // At quarter turns one of them is zero: what rounding leaves of it would hold unknowns that no one named.
+    let [s, c] = [s, c].map(|x| if x.abs() < f64::EPSILON { 0.0 } else { x });
+    [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]
+}
+
 /// `dof` of a node in axes turned by `angle` (radians) about z, as a sum of its own unknowns; twice where layers have z-derivatives
 /// of their own, not at all where the element has none of them.
 ///
@@ -40,8 +48,7 @@ pub fn turned(plate: &Plate, column: usize, level: usize, dof: Dof, angle: f64) 
     if angle == 0.0 {
         return plate.dofs_at(column, level, dof).map(|i| vec![(i, 1.0)]).collect();
     }
-    let (s, c) = angle.sin_cos();
-    let r = [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]];
+    let r = axes_at(angle);
     let side = |side: usize| {
         let mut terms = Vec::new();
         for i in 0..3 {
@@ -60,21 +67,6 @@ pub fn turned(plate: &Plate, column: usize, level: usize, dof: Dof, angle: f64) 
     sides.dedup();
     sides.retain(|terms| !terms.is_empty());
     sides
-}
-
-/// `dofs` are zero at the nodes of `columns` × `levels`, in axes turned by `angle` ([`turned`]).
-pub fn fix(plate: &Plate, columns: &[u32], levels: &[usize], dofs: &[Dof], angle: f64, origin: &str) -> Vec<Equation> {
-    let mut equations = Vec::new();
-    for &column in columns {
-        for &level in levels {
-            for dof in dofs {
-                let origin = format!("{origin}: {dof} at {}", plate.describe_column(column as usize));
-                let each = turned(plate, column as usize, level, *dof, angle).into_iter();
-                equations.extend(each.map(|terms| Equation { terms, value: 0.0, origin: origin.clone(), holds: true }));
-            }
-        }
-    }
-    equations
 }
 
 /// `dofs` have one common value over the nodes of `columns` × `levels`, in axes turned by `angle` ([`turned`]).

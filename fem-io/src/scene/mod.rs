@@ -42,7 +42,7 @@ pub use run::{
 pub use schema::schema;
 pub use study::{OwnAxis, Quantity, Setting, Study, parse_share, rewrite};
 pub use substructures::{Parts, SubstructuresSpec};
-pub use support::{Couple, EquationSpec, NodeSet, Support, Term, Unknowns};
+pub use support::{Couple, EquationSpec, NodeSet, Support, SupportArea, Term, Unknowns};
 
 use crate::document::source::Origin;
 use crate::document::tree::Table;

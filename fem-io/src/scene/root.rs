@@ -76,7 +76,7 @@ pub(super) const KEYS: Keys = &[
     key(
         "support",
         Form::List(&Form::OneOf(support::SUPPORTS)),
-        r#"[{ group = "support", at = "mid-plane", fix = ["U30"] }, { restrain = "rigid-motions" }]"#,
+        r#"[{ group = "edge", kind = "clamped" }]"#,
         "what holds the plate",
     ),
     key(

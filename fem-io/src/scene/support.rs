@@ -1,4 +1,4 @@
-//! What holds the plate: fixed unknowns, linear equations between unknowns, coupled sets.
+//! What holds the plate: supports by name, fixed unknowns, linear equations between unknowns, coupled sets.
 
 use super::run::{self, ImpactPoint};
 use crate::document::keys::{Form, Key, Keys, key, words};
@@ -6,6 +6,7 @@ use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, Place, SceneError};
 use crate::document::tree::Node;
 use fem_core::dof::{Dof, DofError};
+use fem_core::hold::SupportKind;
 use fem_core::plugin::Dimension;
 use fem_core::support::Levels;
 
@@ -32,6 +33,17 @@ pub enum Support {
         /// Where it stands.
         place: Place,
     },
+    /// A support by name, of the nodes of a group or of a disc.
+    Kind {
+        /// Where on the plate.
+        area: Located<SupportArea>,
+        /// What is held there.
+        kind: SupportKind,
+        /// Which of the nodes above each other.
+        levels: Levels,
+        /// Where it stands.
+        place: Place,
+    },
     /// A statically determinate hold on whatever rigid motions all other supports leave free.
     RestrainRigidMotions {
         /// Where it stands.
@@ -43,7 +55,33 @@ impl Support {
     /// Where it stands.
     pub fn place(&self) -> &Place {
         match self {
-            Self::Fix { place, .. } | Self::RestrainRigidMotions { place } => place,
+            Self::Fix { place, .. } | Self::Kind { place, .. } | Self::RestrainRigidMotions { place } => place,
+        }
+    }
+}
+
+/// Where a support by name acts.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SupportArea {
+    /// On this group of the mesh.
+    Group(String),
+    /// Within a circle.
+    Disc {
+        /// Its middle, m.
+        centre: [f64; 2],
+        /// Its radius, m.
+        radius: f64,
+    },
+}
+
+impl std::fmt::Display for SupportArea {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Group(name) => write!(f, "`{name}`"),
+            Self::Disc { centre, .. } => {
+                let [x, y] = centre.map(|x| x * 1e3);
+                write!(f, "the disc at ({x:.4}, {y:.4}) mm")
+            }
         }
     }
 }
@@ -93,7 +131,28 @@ pub(super) const LEVEL: Key =
 const DOFS: Form = Form::List(&Form::Text);
 
 /// What a support may be.
-pub(super) const SUPPORTS: &[Form] = &[Form::Table(FIX), Form::Table(RESTRAIN)];
+pub(super) const SUPPORTS: &[Form] = &[Form::Table(KIND), Form::Table(FIX), Form::Table(RESTRAIN)];
+const KIND: Keys = &[
+    key("group", Form::Text, r#""edge""#, "a group of the mesh: edges, nodes or cells"),
+    key(
+        "disc",
+        Form::Table(DISC),
+        r#"{ x = "0 mm", y = "0 mm", radius = "5 mm" }"#,
+        "the nodes within a circle, instead of a group, as under a clamp",
+    ),
+    key("kind", Form::Words(&words(&SupportKind::ALL)), r#""clamped""#, "what is held there").required(),
+    key(
+        "at",
+        Form::Words(&words(&LEVELS)),
+        r#""bottom""#,
+        "which of the nodes above each other; \"all\", of a hinge and a roller \"mid-plane\", if left out",
+    ),
+];
+const DISC: Keys = &[
+    key("x", Form::Quantity(Dimension::LENGTH), r#""0 mm""#, "x of its middle").required(),
+    key("y", Form::Quantity(Dimension::LENGTH), r#""0 mm""#, "y of its middle").required(),
+    key("radius", Form::Quantity(Dimension::LENGTH), r#""5 mm""#, "its radius").required(),
+];
 const FIX: Keys = &[
     GROUP,
     LEVEL,
@@ -148,7 +207,37 @@ fn read(field: &SceneValue<'_>) -> Result<Support, SceneError> {
         field.table(RESTRAIN)?.required("restrain")?.choice(&[("rigid-motions", ())])?;
         return Ok(Support::RestrainRigidMotions { place });
     }
+    if table.optional("kind").is_some() {
+        return read_kind(&field.table(KIND)?, place);
+    }
+    if table.optional("fix").is_none() {
+        return Err(field.error(
+            "says where the plate is held, and not how",
+            "add `kind`, for example kind = \"clamped\", or name unknowns: fix = [\"U30\"]",
+        ));
+    }
     Ok(Support::Fix { nodes: nodes(&table)?, dofs: dofs(&table.required("fix")?)?, axes: axes(&table)?, place })
+}
+
+fn read_kind(table: &Reader<'_>, place: Place) -> Result<Support, SceneError> {
+    let field = table.required("kind")?;
+    let kind = field.choice(&SupportKind::ALL)?;
+    let area = match (table.optional("group"), table.optional("disc")) {
+        (Some(group), None) => group.at(SupportArea::Group(group.text()?.to_owned())),
+        (None, Some(disc)) => {
+            let keys = disc.table(DISC)?;
+            let [x, y] = ["x", "y"].map(|key| keys.required(key)?.quantity(Dimension::LENGTH));
+            let radius = keys.required("radius")?.positive(Dimension::LENGTH)?;
+            disc.at(SupportArea::Disc { centre: [x?, y?], radius })
+        }
+        _ => {
+            return Err(
+                field.error("is of a group or of a disc, of one of them", "write group = \"edge\", for example")
+            );
+        }
+    };
+    let levels = table.optional("at").map_or(Ok(kind.levels()), |at| at.choice(&LEVELS))?;
+    Ok(Support::Kind { area, kind, levels, place })
 }
 
 fn axes(table: &Reader<'_>) -> Result<f64, SceneError> {

@@ -1,6 +1,7 @@
 //! Plane meshes of quadrilaterals and triangles with named groups.
 
 mod boxes;
+mod course;
 mod curve;
 mod graded;
 mod refine;
@@ -9,6 +10,7 @@ mod sides;
 mod tests;
 mod tiling;
 
+pub use curve::Course;
 pub use graded::{Graded, MAX_CELLS, Outline};
 pub use refine::Curves;
 pub use sides::{Side, Sides};
