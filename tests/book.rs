@@ -1,6 +1,7 @@
 //! The book says what the program does.
 
 mod links;
+mod readme;
 
 use crate::registry::criteria;
 use crate::snapshots::element;

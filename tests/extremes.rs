@@ -127,7 +127,7 @@ fn cells_too_large_for_the_waves_of_a_blow_are_told() {
 fn rows_between_steps_are_told_and_those_too_many_are_refused() {
     let rows = |every: &str| blow().append(&format!("[output]\nhistory_every = \"{every}\"\n"));
     let uneven = rows("0.25 us");
-    assert!(warned(&summary(&uneven), "`output.history_every` is 0.2500 us, no whole number of steps"));
+    assert!(warned(&summary(&uneven), "`output.history_every` is 0.25 us, no whole number of steps"));
     let times: Vec<f64> = uneven.table("out/history.csv").1.iter().map(|row| row[0].parse().unwrap()).collect();
     // But for the row of the end.
     let even = times[..times.len() - 1].windows(2).all(|pair| (pair[1] - pair[0] - 0.3e-6).abs() < 1e-15);

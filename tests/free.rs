@@ -149,7 +149,7 @@ fn what_no_impact_can_be_is_refused() {
     let line = "at = \"mid-plane\"\nfix = [\"U30\"]";
     for (from, to, words) in [
         ("[\"hashin-report\", \"octahedral\"]", "[\"tsai-hill\"]", "out_of_plane"),
-        ("ply_thickness = \"0.13208 mm\"", "ply_thickness = \"132.08 mm\"", "2113.2800 mm thick"),
+        ("ply_thickness = \"0.13208 mm\"", "ply_thickness = \"132.08 mm\"", "2.113 m thick"),
         ("velocity = \"1.56 m/s\"", "velocity = \"15.6 km/s\"", "no impact at low velocity"),
         (line, &format!("{line}\n[[support]]\ngroup = \"impact\"\n{line}"), "exactly where the impactor strikes"),
     ] {

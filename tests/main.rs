@@ -28,6 +28,7 @@ mod model;
 mod overlooked;
 mod page;
 mod parameters;
+
 mod regions;
 mod registry;
 mod report;

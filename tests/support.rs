@@ -6,6 +6,7 @@ use fem::job::{self, Finished, Found, ImpactFound, Options};
 use fem::{Error, Model, Registry};
 use serde_json::Value;
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -227,12 +228,17 @@ impl Done {
 
 /// Runs `fem` with `arguments` in `folder`.
 pub(crate) fn fem(folder: &Path, arguments: &[&str]) -> Done {
-    let output = Command::new(env!("CARGO_BIN_EXE_fem"))
-        .args(arguments)
-        .current_dir(folder)
-        .stdin(Stdio::null())
-        .output()
-        .unwrap();
+    fem_reading(folder, arguments, "")
+}
+
+/// The same with `text` on standard input.
+pub(crate) fn fem_reading(folder: &Path, arguments: &[&str], text: &str) -> Done {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fem"));
+    command.args(arguments).current_dir(folder).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut run = command.spawn().unwrap();
+    // A command that does not read it closes the pipe.
+    let _ = run.stdin.take().unwrap().write_all(text.as_bytes());
+    let output = run.wait_with_output().unwrap();
     Done {
         status: output.status.code().expect("ended by a signal"),
         stdout: String::from_utf8(output.stdout).unwrap(),

@@ -5,6 +5,7 @@ use super::plate::PlateConstants;
 use crate::effect::{Answer, Number};
 use fem_core::contact::{Branches, ContactForce, ContactHistory, ContactLaw};
 use fem_core::energy::Energy;
+use fem_core::plugin::Dimension;
 use fem_io::scene::ContactLoad;
 use std::f64::consts::PI;
 
@@ -85,8 +86,8 @@ impl Contact {
                 Number::new("E_contact / E", format!("{:.2} %", 100.0 * self.share))
                     .threshold(format!("little below {:.0} %, much above {:.0} %", 100.0 * LITTLE, 100.0 * MUCH))
                     .source("work of the law at the peak; (2/5) F^(5/3)/k^(2/3) for Hertz"),
-                Number::new("dent", format!("{:.4} mm", 1e3 * self.dent))
-                    .threshold(format!("0; indentation {:.4} mm", 1e3 * self.indentation))
+                Number::new("dent", Dimension::LENGTH.of(self.dent))
+                    .threshold(format!("0; indentation {}", Dimension::LENGTH.of(self.indentation)))
                     .source("of the law: 0 up to its critical indentation"),
                 Number::new("E_lost / E", format!("{:.2} %", 100.0 * self.lost)).source("of the law, from the peak on"),
                 Number::new("radius / cell", format!("{:.2}", self.radius / self.cell))

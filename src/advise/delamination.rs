@@ -4,6 +4,7 @@ use super::estimate::Estimate;
 use super::regime::Regime;
 use crate::effect::{Answer, Number};
 use crate::model::Model;
+use fem_core::plugin::Dimension;
 use fem_failure::delamination::DelaminationThreshold;
 
 /// Force over threshold up to which a plate without delaminations will do, and from which on it will not: GIIc is known to
@@ -81,9 +82,12 @@ pub(super) fn answer(found: Option<&DelaminationAdvice>) -> Answer {
             .threshold(format!("yes above {BEYOND}"))
             .source("Davies and Zhang 1995; small mass 1.21 F_n, Olsson 2006"),
         Number::new("F / F_n", format!("{all:.3}")).threshold(format!("no below {SAFE}")),
-        Number::new("F_n = pi sqrt(32 D* GIIc/(n+2))", format!("{force:.1} N at n = 1 and GIIc {giic:.0} J/m2"))
-            .source("50 % more or less GIIc changes F_n by about 25 %"),
-        Number::new("interfaces of unlike plies", format!("n = {interfaces}: {force_of_all:.1} N")),
+        Number::new(
+            "F_n = pi sqrt(32 D* GIIc/(n+2))",
+            format!("{} at n = 1 and GIIc {giic:.0} J/m^2", Dimension::FORCE.of(force)),
+        )
+        .source("50 % more or less GIIc changes F_n by about 25 %"),
+        Number::new("interfaces of unlike plies", format!("n = {interfaces}: {}", Dimension::FORCE.of(force_of_all))),
     ];
     answer(numbers, choice)
 }

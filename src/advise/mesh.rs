@@ -9,6 +9,7 @@ use crate::analyses::impact::ContactRecord;
 use crate::effect::{Answer, Number};
 use crate::model::{Model, Plan, Strike};
 use fem_core::dof::Dof;
+use fem_core::plugin::Dimension;
 use fem_io::scene::ImpactorSpec;
 use std::f64::consts::TAU;
 
@@ -47,11 +48,12 @@ fn coarse(model: &Model, place: [f64; 2], frequency: f64) -> Option<String> {
         "waves come back from there at a wrong time".to_owned()
     };
     Some(format!(
-        "the contact force has a mean frequency of {frequency:.0} Hz, whose bending wave of {:.2} mm has {:.1} cells {what}: \
-         {error}; cells of {:.2} mm would do",
-        1e3 * length,
+        "the contact force has a mean frequency of {}, whose bending wave of {} has {:.1} cells {what}: \
+         {error}; cells of {} would do",
+        Dimension::FREQUENCY.of(frequency),
+        Dimension::LENGTH.of(length),
         length / cell,
-        1e3 * length / cells
+        Dimension::LENGTH.of(length / cells)
     ))
 }
 
@@ -167,14 +169,14 @@ impl Resolution {
         Answer {
             question: "mesh and step",
             numbers: vec![
-                Number::new("f", format!("{:.1} Hz", self.frequency))
+                Number::new("f", Dimension::FREQUENCY.of(self.frequency))
                     .source("1/(2 time to peak) of the contact; third axisymmetric mode of the plate (Leissa 1969)"),
-                Number::new("2 pi (D*/m)^(1/4)/sqrt(2 pi f)", format!("{:.3} mm", 1e3 * self.wavelength))
+                Number::new("2 pi (D*/m)^(1/4)/sqrt(2 pi f)", Dimension::LENGTH.of(self.wavelength))
                     .source("length of bending waves"),
                 Number::new("wavelength / cell", format!("{:.2}", self.cells))
                     .threshold(format!("{}: ten nodes, or four cubic cells", self.needed)),
-                Number::new("step", format!("{:.4} us", 1e6 * self.step))
-                    .threshold(format!("{:.4} us = 1/(20 f)", 1e6 * self.longest_step)),
+                Number::new("step", Dimension::TIME.of(self.step))
+                    .threshold(format!("{} = 1/(20 f)", Dimension::TIME.of(self.longest_step))),
             ],
             choice: format!("{mesh}, {step}{end}"),
             effect: "mesh and step as asked for",

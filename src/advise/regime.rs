@@ -2,6 +2,7 @@
 
 use super::estimate::Estimate;
 use crate::effect::{Answer, Number};
+use fem_core::plugin::digits;
 
 /// How a plate responds to an impact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,15 +59,18 @@ impl Estimate {
         Answer {
             question: "regime",
             numbers: vec![
-                Number::new("M / plate mass", format!("{:.4}", self.mass_ratio))
+                Number::new("M / plate mass", digits(self.mass_ratio))
                     .threshold(format!("small up to {SMALL}, large from {LARGE}"))
                     .source("Olsson 2000"),
-                Number::new("static / wave force", format!("{:.3}", self.static_over_wave))
+                Number::new("static / wave force", digits(self.static_over_wave))
                     .threshold(format!("waves below 1, static above {STATIC}"))
                     .source("sqrt(L/(1+L)) / exp(-z/sqrt(1-z^2) acos z), after Christoforou and Yigit 1998"),
-                Number::new("L = Kb/K, z = sqrt(K M)/2c", format!("{:.3e}, {:.4}", self.stiffness_ratio, self.damping))
-                    .source("c = 8 sqrt(m D*), K the secant of the contact law"),
-                Number::new("lambda = M/(c T)", format!("{:.4}", self.inelasticity))
+                Number::new(
+                    "L = Kb/K, z = sqrt(K M)/2c",
+                    format!("{}, {}", digits(self.stiffness_ratio), digits(self.damping)),
+                )
+                .source("c = 8 sqrt(m D*), K the secant of the contact law"),
+                Number::new("lambda = M/(c T)", digits(self.inelasticity))
                     .threshold("1: below a half-space, above a plate that takes the energy")
                     .source("T = (M/(k sqrt V))^(2/5), Zener 1941"),
             ],

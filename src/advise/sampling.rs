@@ -2,6 +2,7 @@
 
 use super::estimate::{Blow, first_wave};
 use crate::model::{Model, Plan, Strike};
+use fem_core::plugin::Dimension;
 use fem_io::scene::ImpactorSpec;
 
 /// Looks within the rise of a contact force to its peak, a quarter of a period: of a sine that is sampled so, a peak is missed by
@@ -24,11 +25,11 @@ pub(super) fn look_often(mut model: Model) -> Model {
     let every = shortest / LOOKS;
     if !model.criteria.is_empty() && every < model.sample_every {
         model.warnings.push(format!(
-            "the criteria look every {:.4} us and not every {:.4} us, because the contact force rises within {:.4} us: set \
+            "the criteria look every {} and not every {}, because the contact force rises within {}: set \
              `failure.every` to no more than that",
-            every * 1e6,
-            model.sample_every * 1e6,
-            shortest * 1e6
+            Dimension::TIME.of(every),
+            Dimension::TIME.of(model.sample_every),
+            Dimension::TIME.of(shortest)
         ));
         model.sample_every = every;
     }

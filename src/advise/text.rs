@@ -2,6 +2,7 @@
 
 use super::Advice;
 use crate::effect::{Answer, Number};
+use fem_core::plugin::{Dimension, digits};
 use std::fmt;
 
 impl fmt::Display for Advice {
@@ -9,34 +10,38 @@ impl fmt::Display for Advice {
         let Self { mass, velocity, plate, estimate, .. } = self;
         let name = self.impactor.as_ref().map_or(String::new(), |name| format!("{name}: "));
         let energy = 0.5 * mass * velocity * velocity;
-        let (inside, a) = (plate.mass() * 1e3, plate.rim.radius());
+        let (inside, a) = (plate.mass(), plate.rim.radius());
         writeln!(
             f,
-            "  impact    {name}{mass:.4} kg at {velocity:.4} m/s = {energy:.4} J on {inside:.4} g inside the supports"
+            "  impact    {name}{} at {} = {} on {} inside the supports",
+            Dimension::MASS.of(*mass),
+            Dimension::VELOCITY.of(*velocity),
+            Dimension::ENERGY.of(energy),
+            Dimension::MASS.of(inside)
         )?;
         let held = plate.rim.held.map_or("does not surround the impact", |held| held.name());
         let circle = plate.rim.held.map_or(String::new(), |held| {
             let stiffness = held.circle_stiffness(plate.bending_stiffness, plate.poisson, a);
-            format!(" (a circle of this area: {:.2} N/mm)", stiffness * 1e-3)
+            format!(" (a circle of this area: {}/mm)", Dimension::FORCE.of(stiffness * 1e-3))
         });
         writeln!(
             f,
-            "  edge      {held}; radius of a circle as large a = {:.4} mm, {:.1} thicknesses",
-            a * 1e3,
+            "  edge      {held}; radius of a circle as large a = {}, {:.1} thicknesses",
+            Dimension::LENGTH.of(a),
             a / plate.thickness
         )?;
         writeln!(
             f,
-            "  plate     stiffness at rest Kb = {:.2} N/mm{circle}, D* = {:.4} N m",
-            plate.stiffness * 1e-3,
-            plate.bending_stiffness
+            "  plate     stiffness at rest Kb = {}/mm{circle}, D* = {} N m",
+            Dimension::FORCE.of(plate.stiffness * 1e-3),
+            digits(plate.bending_stiffness)
         )?;
         writeln!(
             f,
-            "  expected  force up to {:.1} N after {:.4} ms; deflection up to {:.4} mm = {:.2} thicknesses until the march ends",
-            estimate.force(),
-            estimate.time_of_peak * 1e3,
-            estimate.deflection * 1e3,
+            "  expected  force up to {} after {}; deflection up to {} = {:.2} thicknesses until the march ends",
+            Dimension::FORCE.of(estimate.force()),
+            Dimension::TIME.of(estimate.time_of_peak),
+            Dimension::LENGTH.of(estimate.deflection),
             estimate.deflection / plate.thickness
         )?;
         self.answers.iter().zip(1..).try_for_each(|(answer, number)| write_answer(f, answer, number))

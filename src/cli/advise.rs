@@ -1,12 +1,11 @@
 //! `fem advise`.
 
-use super::{Console, Format, warn};
+use super::{Console, Format, read_scene};
 use crate::advise::{self, Advice};
 use crate::effect::Answer;
 use crate::model::Model;
 use crate::registry::Registry;
 use clap::Args;
-use fem_io::scene;
 use serde::Serialize;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -57,8 +56,8 @@ struct Document<'a> {
 }
 
 pub(super) fn advise(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
-    let model = scene::read(&arguments.scene).map_err(Into::into).and_then(|scene| Model::new(scene, registry))?;
-    let all = advise::advise(&model, arguments.threads).inspect_err(|_| warn(&model.warnings))?;
+    let model = read_scene(&arguments.scene).and_then(|scene| Model::new(scene, registry))?;
+    let all = advise::advise(&model, arguments.threads).inspect_err(|_| console.warn(&model.warnings))?;
     let title = &model.origin.title;
     let data = Document { title, impact: all.iter().map(Said::from).collect(), warnings: &model.warnings };
     let text = || format!("{title}\n{}", all.iter().map(ToString::to_string).collect::<String>());

@@ -1,6 +1,6 @@
 //! `fem check`.
 
-use super::{Console, Format, warn};
+use super::{Console, Format, read_scene};
 use crate::advise;
 use crate::analyses::assembled::{self, Substructures};
 use crate::analyses::impact::{self, Sizes};
@@ -13,6 +13,7 @@ use crate::registry::Registry;
 use crate::words::{append_symmetry, describe_condition, warn_of_condition, warn_of_softness};
 use clap::Args;
 use fem_core::counters::Counters;
+use fem_core::plugin::Dimension;
 use fem_io::scene::{self, Explained};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -23,7 +24,7 @@ use std::process::ExitCode;
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  fem check coupon/scene.toml\n  fem check coupon/scene.toml --explain | less")]
 pub(super) struct Arguments {
-    /// Scene file (TOML); its mesh is looked for beside it.
+    /// Scene file (TOML), or `-` for standard input; its mesh is looked for beside it.
     scene: PathBuf,
     /// Prints every key that holds: its value, where that comes from (a line of the scene, the preset, a library, a
     /// default) and what it means.
@@ -34,7 +35,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn check(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
-    let checked = sizes(registry, arguments)?;
+    let checked = sizes(registry, arguments, console)?;
     console.show(arguments.format, &checked, || checked.text())?;
     Ok(ExitCode::SUCCESS)
 }
@@ -119,30 +120,27 @@ impl MarchDocument {
 
     fn lines(&self) -> [Line; 3] {
         let known = [("lowest excited", self.lowest_frequency_Hz), ("highest", self.highest_frequency_Hz)];
-        let known: Vec<_> = known.iter().filter_map(|(name, f)| Some(format!("{name} {:.1} Hz", (*f)?))).collect();
+        let known: Vec<_> =
+            known.iter().filter_map(|(name, f)| Some(format!("{name} {}", Dimension::FREQUENCY.of((*f)?)))).collect();
         let stable = match self.longest_step_s {
-            Some(step) => format!("stable up to {:.4} us", step * 1e6),
+            Some(step) => format!("stable up to {}", Dimension::TIME.of(step)),
             None => "no stability limit".to_owned(),
         };
         let Self { unknowns_marched: unknowns, steps, integrator, .. } = self;
-        let (step, end) = (self.step_s * 1e6, self.end_s * 1e3);
+        let [step, end] = [self.step_s, self.end_s].map(|time| Dimension::TIME.of(time));
+        let stiffness = Dimension::FORCE.of(self.static_stiffness_N_m * 1e-3);
         [
-            ("contact", format!("static stiffness of the plate {:.2} N/mm", self.static_stiffness_N_m * 1e-3)),
+            ("contact", format!("static stiffness of the plate {stiffness}/mm")),
             ("frequency", if known.is_empty() { "the march needs none".into() } else { known.join(", ") }),
-            (
-                "march",
-                format!(
-                    "{unknowns} unknowns, {steps} steps of {step:.4} us to {end:.4} ms with {integrator} ({stable})"
-                ),
-            ),
+            ("march", format!("{unknowns} unknowns, {steps} steps of {step} to {end} with {integrator} ({stable})")),
         ]
     }
 }
 
-fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
-    let scene = scene::read(&arguments.scene)?;
+fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Result<Checked, Error> {
+    let scene = read_scene(&arguments.scene)?;
     let keys = if arguments.explain {
-        scene::explain(&arguments.scene, &|kind| registry.choices(kind), &registry.effect_keys())?
+        scene::explain(&scene.source, &|kind| registry.choices(kind), &registry.effect_keys())?
     } else {
         vec![]
     };
@@ -150,7 +148,8 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
     let (mut march, mut condition, mut modes, mut frames, mut soft) = (None, None, None, 1, None);
     let (memory, substructures) = match &model.plan {
         Plan::Impact(impact) => {
-            let sizes = impact::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| warn(&model.warnings))?.sizes;
+            let sizes =
+                impact::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| console.warn(&model.warnings))?.sizes;
             march = Some(MarchDocument::new(impact, &sizes));
             soft = sizes.softness;
             let asked = model.output.fields.as_ref();
@@ -160,10 +159,10 @@ fn sizes(registry: &Registry, arguments: &Arguments) -> Result<Checked, Error> {
         plan => {
             let counters = &mut Counters::default();
             let assembled = assembled::structure(&model, true, NonZeroUsize::MIN, counters);
-            let mut assembled = assembled.inspect_err(|_| warn(&model.warnings))?;
+            let mut assembled = assembled.inspect_err(|_| console.warn(&model.warnings))?;
             if model.held {
                 let found = assembled.structure.condition().map_err(Error::from);
-                condition = Some(found.inspect_err(|_| warn(&model.warnings))?);
+                condition = Some(found.inspect_err(|_| console.warn(&model.warnings))?);
             }
             if let Plan::Modes { count } = plan {
                 modes = Some(*count);
@@ -211,6 +210,7 @@ type Line = (&'static str, String);
 impl Checked {
     fn text(&self) -> String {
         let Self { shape, quads, nodes, plies, thickness_mm, layers, unknowns, memory_MB, memory, .. } = self;
+        let thickness = Dimension::LENGTH.of(thickness_mm * 1e-3);
         let redundant = match self.redundant_equations {
             0 => String::new(),
             n => format!(" ({n} redundant equations)"),
@@ -224,7 +224,7 @@ impl Checked {
                     append_symmetry(self.symmetry)
                 ),
             ),
-            ("plate", format!("{plies} plies, {thickness_mm:.4} mm, {layers} layers of cells")),
+            ("plate", format!("{plies} plies, {thickness}, {layers} layers of cells")),
             ("unknowns", format!("{unknowns} of {} after constraints{redundant}", self.unknowns_before_constraints)),
             ("memory", format!("about {memory_MB:.0} MB at the peak: {memory}")),
         ];

@@ -1,8 +1,9 @@
 //! What the command says: results on standard output, everything else on standard error.
 
+use super::messages::{self, Color, MessageFormat};
+use super::progress::{Progress, ProgressForm};
 use clap::Args;
 use fem_io::tables;
-use indicatif::{ProgressBar, ProgressStyle};
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
 use std::borrow::Cow;
@@ -20,6 +21,15 @@ pub(super) struct Voice {
     /// Says on standard error what is done: mesh, plug-ins, phases with their seconds, files; -vv says more.
     #[arg(short, long, global = true, action = clap::ArgAction::Count)]
     verbose: u8,
+    /// When errors have colours: `always`, `never`, or `auto`, on a terminal unless NO_COLOR, CLICOLOR or TERM say otherwise.
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto", hide_possible_values = true)]
+    pub(super) color: Color,
+    /// How errors and warnings are said: `human`, or `json` for a document on each line of standard error.
+    #[arg(long, global = true, value_name = "FORMAT", default_value = "human", hide_possible_values = true)]
+    pub(super) message_format: MessageFormat,
+    /// How progress is shown on standard error: `auto` for a bar on a terminal, `plain` for lines in a log, `none`.
+    #[arg(long, global = true, value_name = "FORM", default_value = "auto", hide_possible_values = true)]
+    progress: ProgressForm,
 }
 
 impl Voice {
@@ -106,13 +116,15 @@ impl Console {
         self.lost.get().map_or(Ok(()), |why| Err(miette!("cannot write to standard output: {why}")))
     }
 
-    /// A bar on a terminal, nothing elsewhere or beside a log.
-    pub(super) fn progress(&self, length: u64, template: &str) -> ProgressBar {
-        if self.voice.quiet || self.voice.verbose > 0 {
-            return ProgressBar::hidden();
-        }
-        let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-        ProgressBar::new(length).with_style(style)
+    /// The progress of `what`, drawn by `template` where it is a bar; nothing beside a log.
+    pub(super) fn progress(&self, what: &'static str, template: &str) -> Progress {
+        let logs = self.voice.verbose > 0 && self.voice.progress == ProgressForm::Auto;
+        Progress::new(if self.voice.quiet || logs { ProgressForm::None } else { self.voice.progress }, what, template)
+    }
+
+    /// Says on standard error what may explain why a model cannot be computed.
+    pub(super) fn warn(&self, warnings: &[String]) {
+        messages::warn(warnings, self.voice);
     }
 }
 

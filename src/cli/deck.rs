@@ -8,6 +8,7 @@ use crate::decks::{self, DeckOptions, DeckOutcome, Project, Shown, UnitSystem};
 use crate::error::Error;
 use crate::registry::Registry;
 use clap::{Args, Subcommand};
+use fem_core::plugin::Dimension;
 use fem_io::deck::{DeckSource, Program};
 use fem_io::files::OutputDir;
 use serde::Serialize;
@@ -90,7 +91,7 @@ fn run(program: Program, arguments: &Arguments, options: DeckOptions, console: &
     let provenance = Some(Provenance::of(source.name()));
     let options = DeckOptions { units: arguments.units, provenance, ..options };
     let outcome = decks::run(&source, program, &mut project, &options)?;
-    super::warn(&outcome.warnings);
+    console.warn(&outcome.warnings);
     let done = Done { deck: source.name().to_owned(), outcome: &outcome, project: &folder };
     console.show(arguments.format, &done, || text(&outcome, &folder))?;
     Ok(ExitCode::SUCCESS)
@@ -108,10 +109,10 @@ fn text(outcome: &DeckOutcome, folder: &Path) -> String {
         let i = &impact.impact;
         let _ = writeln!(
             text,
-            "  force     peak {:.1} N at {:.4} ms; deflection {:.4} mm; {} contact{}",
-            i.peak_force_N,
-            i.peak_force_time_s * 1e3,
-            i.peak_plate_displacement_m * 1e3,
+            "  force     peak {} at {}; deflection {}; {} contact{}",
+            Dimension::FORCE.of(i.peak_force_N),
+            Dimension::TIME.of(i.peak_force_time_s),
+            Dimension::LENGTH.of(i.peak_plate_displacement_m),
             i.contacts,
             if i.contacts == 1 { "" } else { "s" }
         );
@@ -119,8 +120,8 @@ fn text(outcome: &DeckOutcome, folder: &Path) -> String {
             let event = &first.event;
             let _ = writeln!(
                 text,
-                "  damage    {:>7.4} ms  {} {}, substructure {} element {} ply {}",
-                event.time_s * 1e3,
+                "  damage    {:>9}  {} {}, substructure {} element {} ply {}",
+                Dimension::TIME.of(event.time_s),
                 event.criterion,
                 event.mode,
                 event.substructure.unwrap_or_default(),

@@ -1,7 +1,7 @@
 //! `fem matrices`.
 
 use super::run::default_folder;
-use super::{Console, Format};
+use super::{Console, Format, read_scene};
 use crate::analyses::matrices;
 use crate::error::Error;
 use crate::job;
@@ -9,7 +9,6 @@ use crate::model::Model;
 use crate::registry::Registry;
 use clap::Args;
 use fem_io::files::OutputDir;
-use fem_io::scene;
 use serde::Serialize;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -42,7 +41,7 @@ pub(super) fn matrices(registry: &Registry, arguments: &Arguments, console: &Con
 }
 
 fn write(registry: &Registry, arguments: &Arguments) -> Result<(usize, OutputDir), Error> {
-    let model = Model::new(scene::read(&arguments.scene)?, registry)?;
+    let model = Model::new(read_scene(&arguments.scene)?, registry)?;
     let dir = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, ""));
     let dir = job::folder::results(&dir, &model.origin.source)?;
     matrices::write(&dir, &model, NonZeroUsize::MIN)?;

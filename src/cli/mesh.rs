@@ -1,6 +1,6 @@
 //! `fem mesh`.
 
-use super::{Console, Format};
+use super::{Console, Format, read_scene};
 use crate::error::Error;
 use crate::model;
 use crate::output::mesh::MeshSummary;
@@ -8,7 +8,7 @@ use clap::Args;
 use fem_core::plugin::Dimension;
 use fem_io::files::OutputDir;
 use fem_io::gmsh::{self, Encoding, Examined, GmshMesh};
-use fem_io::scene::{self, ImpactPoint};
+use fem_io::scene::ImpactPoint;
 use fem_io::{plot, units};
 use miette::miette;
 use std::fmt::Write as _;
@@ -71,10 +71,10 @@ pub(super) fn mesh(arguments: &Arguments, console: &Console) -> miette::Result<E
 
 /// The mesh, and the points that impactors of a scene strike, m.
 fn read(file: &Path, metres: f64) -> Result<(Examined, Vec<[f64; 2]>), Error> {
-    if file.extension().is_none_or(|extension| extension != "toml") {
+    if file.as_os_str() != "-" && file.extension().is_none_or(|extension| extension != "toml") {
         return Ok((gmsh::examine(file, metres, &[])?, Vec::new()));
     }
-    let scene = scene::read(file)?;
+    let scene = read_scene(file)?;
     let examined = model::examined_mesh(&scene)?;
     let mesh = &examined.read.mesh;
     let impactors = scene.impact().map_or(&[][..], |impact| &impact.impactors);

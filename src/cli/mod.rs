@@ -9,27 +9,32 @@ mod list;
 mod manual;
 mod matrices;
 mod mesh;
+mod messages;
 mod modes;
 mod new;
+mod progress;
 mod report;
 mod run;
 mod schema;
 mod signals;
 mod study;
 
+use crate::error::Error;
 use crate::registry::Registry;
 use clap::{Parser, Subcommand};
-use console::{Console, Format, Voice, printable, tell};
+use console::{Console, Format, Voice};
 use fem_io::deck::Program;
-use miette::{GraphicalReportHandler, GraphicalTheme, Report};
+use fem_io::scene::{self, Scene};
 use std::ffi::OsString;
-use std::io::{IsTerminal, Write};
+use std::io::Read;
 use std::num::NonZeroUsize;
+use std::path::Path;
 use std::process::ExitCode;
-use textwrap::WordSplitter;
 
 /// Threads that are more than any machine of today has.
 const MOST_THREADS: usize = 4096;
+/// Bytes of a scene that are read from standard input.
+const MOST_BYTES: u64 = 1 << 22;
 
 /// A number of threads.
 fn threads(text: &str) -> Result<NonZeroUsize, String> {
@@ -153,7 +158,7 @@ pub fn run_with(registry: Registry, arguments: impl IntoIterator<Item = impl Int
     match done.and_then(|code| console.close().map(|()| code)) {
         Ok(code) => code,
         Err(report) => {
-            print_report(&report);
+            messages::print_report(&report, arguments.voice);
             ExitCode::FAILURE
         }
     }
@@ -182,30 +187,12 @@ fn dispatch(registry: &Registry, command: &Command, console: &Console) -> miette
     }
 }
 
-/// Shows an error with its causes, the place in the scene, and what to do.
-fn print_report(report: &Report) {
-    let mut text = render(report, GraphicalTheme::unicode_nocolor());
-    // Colours are what else a terminal is steered by: they are left out where the texts have something of the kind.
-    if std::io::stderr().is_terminal() && printable(&text) == text {
-        text = render(report, GraphicalTheme::unicode());
-        let _ = write!(std::io::stderr(), "Error:{text}");
-    } else {
-        tell(&format!("Error:{text}"));
+/// The scene in the file `path`, or on standard input where that is `-`; its mesh is then looked for in the working folder.
+fn read_scene(path: &Path) -> Result<Scene, Error> {
+    if path.as_os_str() != "-" {
+        return Ok(scene::read(path)?);
     }
-}
-
-fn render(report: &Report, theme: GraphicalTheme) -> String {
     let mut text = String::new();
-    // Names with hyphens stay whole, to be copied.
-    let handler =
-        GraphicalReportHandler::new_themed(theme).with_width(110).with_word_splitter(WordSplitter::NoHyphenation);
-    let shown = handler.render_report(&mut text, report.as_ref());
-    if shown.is_ok() { text } else { format!("{report:?}") }
-}
-
-/// Says on standard error what may explain why a model cannot be computed.
-fn warn(warnings: &[String]) {
-    for warning in warnings {
-        tell(&format!("Warning: {warning}\n"));
-    }
+    std::io::stdin().take(MOST_BYTES).read_to_string(&mut text).map_err(Error::Input)?;
+    Ok(scene::parse(&text, Path::new("standard input"))?)
 }

@@ -1,11 +1,10 @@
 //! `fem modes`.
 
 use super::run::{compute, default_folder};
-use super::{Console, Format};
+use super::{Console, Format, read_scene};
 use crate::job::{Options, Results, Task};
 use crate::registry::Registry;
 use clap::Args;
-use fem_io::scene;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -32,5 +31,5 @@ pub(super) fn modes(registry: &Registry, arguments: &Arguments, console: &Consol
     let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, "-modes"));
     let (task, results) = (Task::Modes(arguments.count), Results::Folder(folder));
     let options = Options { task, results, threads: arguments.threads, ..Options::default() };
-    compute(registry, &scene::read(&arguments.scene)?, options, "", arguments.format, console)
+    compute(registry, &read_scene(&arguments.scene)?, options, "", arguments.format, console)
 }

@@ -1,8 +1,8 @@
 //! `fem run`.
 
-use super::console::printable;
+use super::progress::Progress;
 use super::signals::Signals;
-use super::{Console, Format, console, warn};
+use super::{Console, Format, console, read_scene};
 use crate::cost::{Attained, Cost, Provenance};
 use crate::error::Error;
 use crate::job::{self, Finished, Follow, Found, Options, Results};
@@ -11,8 +11,8 @@ use crate::output::report;
 use crate::registry::Registry;
 use crate::study;
 use clap::Args;
+use fem_core::plugin::Dimension;
 use fem_io::scene::{self, Scene};
-use indicatif::ProgressBar;
 use miette::miette;
 use serde::Serialize;
 use std::num::NonZeroUsize;
@@ -23,7 +23,7 @@ use std::process::ExitCode;
 #[derive(Debug, Args)]
 #[command(after_help = "Example: fem run coupon/scene.toml --threads 4")]
 pub(super) struct Arguments {
-    /// Scene file (TOML); its mesh is looked for beside it.
+    /// Scene file (TOML), or `-` for standard input; its mesh is looked for beside it.
     scene: PathBuf,
     /// Folder of the results [default: results/<folder of the scene>]
     #[arg(long, value_name = "DIR")]
@@ -62,7 +62,7 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console)
     let again = if arguments.resume { "" } else { " --resume" };
     let mut options = Options { results, threads: arguments.threads, ..Options::default() };
     let path = &arguments.scene;
-    let scene = scene::read(path)?;
+    let scene = read_scene(path)?;
     let asked = arguments.accuracy.or_else(|| scene.accuracy.as_ref().map(|accuracy| accuracy.value));
     let Some(asked) = asked else {
         if arguments.budget.is_some() {
@@ -71,6 +71,10 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console)
         }
         return compute(registry, &scene, options, again, arguments.format, console);
     };
+    if path.as_os_str() == "-" {
+        let help = "give the scene as a file: the search for an accuracy reads it again and again";
+        return Err(miette!(help = help, "an accuracy cannot be asked for of a scene on standard input"));
+    }
     if arguments.resume {
         // What was raised for the accuracy lies there; whether the rest is the same is for the checkpoint to say.
         let raised = study::raised(&scene::read(&folder.join(report::SCENE))?);
@@ -94,14 +98,13 @@ fn attain(
     console: &Console,
 ) -> miette::Result<Attained> {
     let model = Model::new(scene, registry)?;
-    let bar = console.progress(1000, "{msg}");
+    let progress = console.progress("accuracy", "accuracy: {msg}");
     let found =
         study::attain((&arguments.scene, scene, &model), registry, asked, arguments.budget, &mut |what, error| {
             let so_far = error.map_or(String::new(), |error| format!("{:.2} % so far, ", 1e2 * error));
-            bar.set_message(printable(&format!("accuracy: {so_far}now {what}")).into_owned());
-            bar.tick();
+            progress.message(&format!("{so_far}now {what}"));
         })?;
-    bar.finish_and_clear();
+    progress.finish();
     Ok(found)
 }
 
@@ -115,14 +118,14 @@ pub(super) fn compute(
     console: &Console,
 ) -> miette::Result<ExitCode> {
     options.provenance = Some(Provenance::of(scene.source.name()));
-    let bar = console.progress(1000, "march {bar:40} {percent:>3} %  {eta} left");
-    let mut terminal = Terminal { console, format, bar, signals: None };
+    let progress = console.progress("march", "march {bar:40} {percent:>3} %  {eta} left");
+    let mut terminal = Terminal { console, format, progress, signals: None };
     let done = job::run(scene, registry, &options, &mut terminal);
     if let (Err(Error::Cancelled { time, share }), Some(signal)) = (&done, terminal.signal()) {
-        let (t, share) = (time * 1e3, share * 1e2);
+        let (time, share) = (Dimension::TIME.of(*time), share * 1e2);
         let command = options.provenance.map_or_else(String::new, |provenance| provenance.command);
         console::tell(&format!(
-            "Stopped by a signal at {t:.4} ms, {share:.0} % of the march. To continue: {command}{again}\n"
+            "Stopped by a signal at {time}, {share:.0} % of the march. To continue: {command}{again}\n"
         ));
         return Ok(ExitCode::from(128 + signal));
     }
@@ -137,7 +140,7 @@ pub(super) fn compute(
 struct Terminal<'a> {
     console: &'a Console,
     format: Format,
-    bar: ProgressBar,
+    progress: Progress,
     /// From the beginning of a march on; before it there is nothing to keep, and signals do what they do by default.
     signals: Option<Signals>,
 }
@@ -151,7 +154,7 @@ impl Terminal<'_> {
 impl Follow for Terminal<'_> {
     fn marched(&mut self, share: f64) -> ControlFlow<()> {
         let signals = self.signals.get_or_insert_with(Signals::listen);
-        self.bar.set_position((share * 1000.0) as u64);
+        self.progress.share(share);
         match signals.received() {
             Some(_) => ControlFlow::Break(()),
             None => ControlFlow::Continue(()),
@@ -159,12 +162,12 @@ impl Follow for Terminal<'_> {
     }
 
     fn found(&mut self, found: &Found, cost: &Cost) {
-        self.bar.finish_and_clear();
+        self.progress.finish();
         self.console.say(self.format, || found.text(cost));
     }
 
     fn failed(&mut self, warnings: &[String]) {
-        warn(warnings);
+        self.console.warn(warnings);
     }
 }
 

@@ -1,6 +1,5 @@
 //! `fem study`.
 
-use super::console::printable;
 use super::run::default_folder;
 use super::{Console, Format};
 use crate::error::Error;
@@ -9,7 +8,9 @@ use crate::model::Model;
 use crate::registry::Registry;
 use crate::study::{self, ErrorBar, Ladder, Progress, Report, Session};
 use clap::Args;
+use fem_core::plugin::Dimension;
 use fem_io::scene::{self, Setting};
+use miette::miette;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
@@ -95,30 +96,37 @@ impl<'a> LadderPart<'a> {
 pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let format = arguments.format;
     let path = &arguments.scene;
+    if path.as_os_str() == "-" {
+        return Err(miette!(
+            help = "give the scene as a file",
+            "a study reads its scene again and again, and standard input once"
+        ));
+    }
     let scene = scene::read(path)?;
     let model = Model::new(&scene, registry)?;
     let folder = arguments.out.clone().unwrap_or_else(|| default_folder(path, "-study"));
     let axes = study::axes(&scene, &model, registry, &arguments.axis)?;
     let dir = job::folder::results(&folder, &model.origin.source).map_err(Error::from)?;
     let mut session = Session::open(path, &model, registry, dir, arguments.resume)?;
-    let bar = console.progress(1000, "study {bar:40} {percent:>3} %  {msg}");
+    let progress = console.progress("study", "study {bar:40} {percent:>3} %  {msg}");
     let found = session.found();
     if found > 0 {
         console.say(format, || format!("  {found} runs are there from before\n"));
     }
     let report = study::study(&mut session, &scene, &model, &axes, arguments.budget, &mut |told| match told {
-        Progress::Planned(plan) => bar.suspend(|| console.say(format, || format!("{plan}\n"))),
+        Progress::Planned(plan) => progress.suspend(|| console.say(format, || format!("{plan}\n"))),
         Progress::Together([]) => {}
         Progress::Together(runs) => {
-            let each: String = runs.iter().map(|r| format!("\n    {} ({:.1} s)", r.level.label, r.seconds)).collect();
-            bar.suspend(|| console.say(format, || format!("  ladders climbed; now together:{each}\n\n")));
+            let each: String =
+                runs.iter().map(|r| format!("\n    {} ({})", r.level.label, Dimension::TIME.of(r.seconds))).collect();
+            progress.suspend(|| console.say(format, || format!("  ladders climbed; now together:{each}\n\n")));
         }
         Progress::Runs { what, share } => {
-            bar.set_position((share * 1000.0) as u64);
-            bar.set_message(printable(&what).into_owned());
+            progress.share(share);
+            progress.message(&what);
         }
     })?;
-    bar.finish_and_clear();
+    progress.finish();
     write(&session, &report)?;
     console.say(format, || study::text(&report));
     let cheapest = arguments.tolerance.and_then(|tolerance| cheapest(&report, tolerance));

@@ -1,5 +1,6 @@
 //! What was reached of an accuracy that was asked for, and its price.
 
+use fem_core::plugin::Dimension;
 use fem_io::scene::Setting;
 use serde::Serialize;
 use std::fmt;
@@ -78,7 +79,7 @@ impl fmt::Display for Attained {
             self.reached.map_or("errors unknown".to_owned(), |error| format!("errors within {}", percent(error)));
         let (runs, seconds) = (self.runs, self.cpu_s);
         let runs = if runs == 1 { "a run".to_owned() } else { format!("{runs} runs") };
-        writeln!(f, "  asked     {asked}: {reached}, by what changes in {runs} ({seconds:.1} s)")?;
+        writeln!(f, "  asked     {asked}: {reached}, by what changes in {runs} ({})", Dimension::TIME.of(seconds))?;
         let parts = self.parts.iter().map(|p| format!("{} {} leaves {}", p.axis, p.level, known(p.leaves)));
         writeln!(f, "            {}", parts.collect::<Vec<_>>().join(", "))?;
         let each = self.quantities.iter().map(|q| format!("{} {}", q.name, known(q.error)));
@@ -91,7 +92,9 @@ impl fmt::Display for Attained {
         }
         let smaller = percent(FURTHER * self.asked);
         match self.further_cpu_s {
-            Some(seconds) => write!(f, "            {smaller} would cost a run of about {seconds:.2} s"),
+            Some(seconds) => {
+                write!(f, "            {smaller} would cost a run of about {}", Dimension::TIME.of(seconds))
+            }
             None if self.reached.is_none() => write!(f, "            what {smaller} would cost is unknown"),
             None => write!(f, "            {smaller} is beyond what can be raised"),
         }

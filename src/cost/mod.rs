@@ -9,6 +9,7 @@ pub use memory::{forget_peak_memory, peak_memory};
 pub(crate) use memory::{refuse, require};
 
 use cpu_time::ProcessTime;
+use fem_core::plugin::Dimension;
 use serde::Serialize;
 use std::fmt;
 use std::num::NonZeroUsize;
@@ -80,11 +81,13 @@ impl Cost {
 impl fmt::Display for Cost {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let sum = |seconds: fn(&Phase) -> f64| self.phases.iter().map(seconds).sum::<f64>();
-        let phases: Vec<String> = self.phases.iter().map(|p| format!("{} {:.3} s", p.name, p.wall_s)).collect();
-        write!(f, "{:.3} s wall, {:.3} s processor: {}", sum(|p| p.wall_s), sum(|p| p.cpu_s), phases.join(", "))?;
+        let phases: Vec<String> =
+            self.phases.iter().map(|p| format!("{} {}", p.name, Dimension::TIME.of(p.wall_s))).collect();
+        let [wall, processor] = [sum(|p| p.wall_s), sum(|p| p.cpu_s)].map(|seconds| Dimension::TIME.of(seconds));
+        write!(f, "{wall} wall, {processor} processor: {}", phases.join(", "))?;
         self.peak_memory_MB.map_or(Ok(()), |m| write!(f, "; peak memory {m:.0} MB"))?;
         let better: Vec<String> =
-            self.one_level_better.iter().map(|b| format!("{} +{:.2} s", b.what, b.more_cpu_s)).collect();
+            self.one_level_better.iter().map(|b| format!("{} +{}", b.what, Dimension::TIME.of(b.more_cpu_s))).collect();
         if !better.is_empty() {
             write!(f, "\n  better    would cost: {}", better.join(", "))?;
         }

@@ -5,6 +5,7 @@ use super::project::{Matrices, Project};
 use super::results::DeckImpact;
 use super::units::UnitSystem;
 use crate::error::Error;
+use fem_core::plugin::Dimension;
 use fem_core::tensor::{Matrix6, rotate_stiffness};
 use fem_io::deck::{Freedom, Generation, Parsed, Program};
 use fem_io::plot::{self, Axis, LinePlot, Series};
@@ -116,9 +117,10 @@ impl Listing {
             let speed = (material.elastic.e1 / material.density.unwrap_or(f64::NAN)).sqrt() * units.metres();
             if !WAVES.contains(&speed) {
                 self.warn(format!(
-                    "waves run along the fibres of `{}` at {speed:.3e} m/s: RHO is a mass density, force time^2 / length^4, and \
+                    "waves run along the fibres of `{}` at {}: RHO is a mass density, force time^2 / length^4, and \
                      looks like a weight density",
-                    material.name
+                    material.name,
+                    Dimension::VELOCITY.of(speed)
                 ));
             }
         }

@@ -8,6 +8,7 @@ pub(crate) use checkpoint::WRITER;
 use fem_core::assembly::{AssemblyError, EquilibriumError, FactorError};
 use fem_core::element::ElementError;
 use fem_core::material::MaterialError;
+use fem_core::plugin::Dimension;
 use fem_core::time::StepError;
 use fem_dynamics::guard::Alarm;
 use fem_failure::scan::ScanError;
@@ -26,6 +27,9 @@ pub enum Error {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Scene(#[from] SceneError),
+    #[error("cannot read the scene from standard input: {0}")]
+    #[diagnostic(help("it must be UTF-8 and end"))]
+    Input(std::io::Error),
     #[error(transparent)]
     Mesh(#[from] MeshError),
     #[error(transparent)]
@@ -69,7 +73,7 @@ pub enum Error {
     #[error("there is nothing to resume: only an impact is marched in time")]
     #[diagnostic(help("run without `--resume`"))]
     NotMarched,
-    #[error("the march was broken off at {:.4} ms, {:.0} % of it", time * 1e3, share * 1e2)]
+    #[error("the march was broken off at {}, {:.0} % of it", Dimension::TIME.of(*time), share * 1e2)]
     #[diagnostic(help("go on from the checkpoint in its folder, if it has one"))]
     Cancelled {
         /// Time reached, s.

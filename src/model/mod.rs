@@ -43,6 +43,7 @@ use fem_core::material::{Material, MaterialError};
 use fem_core::mesh::PlaneMesh;
 use fem_core::pieces;
 use fem_core::plate::Plate;
+use fem_core::plugin::Dimension;
 use fem_core::profile::Mirrors;
 use fem_core::warping;
 use fem_core::window::Centre;
@@ -465,7 +466,8 @@ fn check_sizes(builder: &Builder<'_>, mesh: &PlaneMesh, laminate: &Laminate) -> 
     let (low, high) = mesh.bounds();
     let size = (high[0] - low[0]).max(high[1] - low[1]);
     let ratio = laminate.thickness() / size;
-    let sizes = format!("the plate is {:.4} mm wide and {:.4} mm thick", size * 1e3, laminate.thickness() * 1e3);
+    let sizes = [size, laminate.thickness()].map(|length| Dimension::LENGTH.of(length));
+    let sizes = format!("the plate is {} wide and {} thick", sizes[0], sizes[1]);
     if !POSSIBLE_THICKNESS.contains(&ratio) {
         let help = "look at `laminate.ply_thickness` and at `mesh.unit`, the unit of the mesh file";
         return Err(builder.error(&builder.scene.laminates[0].laminate, sizes, help));

@@ -11,6 +11,7 @@ use fem_core::functional::Functional;
 use fem_core::load::{self, Face};
 use fem_core::patch;
 use fem_core::plate::{Plate, PlateError};
+use fem_core::plugin::Dimension;
 use fem_core::profile::{Mirrors, Profile};
 use fem_core::reduction::Reduction;
 use fem_core::time::Integrator;
@@ -117,9 +118,9 @@ pub(super) fn warn_of_cut_windows(
     let cut = watched.iter().filter(is_cut).count();
     (cut > 0).then(|| {
         format!(
-            "at {cut} cells near an edge whose supports are those of a plane of symmetry, `failure.window` of {:.4} mm is cut off with the \
+            "at {cut} cells near an edge whose supports are those of a plane of symmetry, `failure.window` of {} is cut off with the \
              plate: indices there may be some 10 % too small; give the whole plate and a `symmetry`, or window = \"element\"",
-            side * 1e3
+            Dimension::LENGTH.of(side)
         )
     })
 }
@@ -343,16 +344,18 @@ impl Builder<'_> {
         let too_large = |why: PlateError, key: &str| {
             let (low, high) = plate.plane.bounds();
             if (0..2).any(|d| !(low[d]..=high[d]).contains(&centre[d])) {
-                let [from, to] = [low, high].map(|corner| corner.map(|x| x * 1e3));
-                let message = format!("({:.4}, {:.4}) mm lies outside the plate", centre[0] * 1e3, centre[1] * 1e3);
+                let message = format!("x, y = {} lies outside the plate", Dimension::LENGTH.list(&centre));
                 let help = format!(
-                    "x runs from {:.4} to {:.4} mm and y from {:.4} to {:.4} mm, if `mesh.unit` is right",
-                    from[0], to[0], from[1], to[1]
+                    "x runs from {} to {} and y from {} to {}, if `mesh.unit` is right",
+                    Dimension::LENGTH.of(low[0]),
+                    Dimension::LENGTH.of(high[0]),
+                    Dimension::LENGTH.of(low[1]),
+                    Dimension::LENGTH.of(high[1])
                 );
                 return self.error(at, message, help);
             }
-            let [width, depth] = [0, 1].map(|d| (high[d] - low[d]) * 1e3);
-            let size = format!("the plate is {width:.4} mm by {depth:.4} mm, if `mesh.unit` is right");
+            let [width, depth] = [0, 1].map(|d| Dimension::LENGTH.of(high[d] - low[d]));
+            let size = format!("the plate is {width} by {depth}, if `mesh.unit` is right");
             self.error(&impactor.load, why.to_string(), format!("choose a smaller `impactor.{key}`; {size}"))
         };
         let face = impactor.face;

@@ -11,6 +11,7 @@ use fem_core::interfaces::{InterfaceMaterial, Interfaces, InterfacesError};
 use fem_core::laminate::Laminate;
 use fem_core::material::{Elastic, Material};
 use fem_core::plate::Plate;
+use fem_core::plugin::Dimension;
 use fem_core::plugin::{Built, Kind};
 use fem_core::ply_law::LawPoint;
 use fem_io::scene::{DelaminationSpec, PluginSpec, SceneError};
@@ -65,13 +66,15 @@ impl Separation {
     /// What the user should know of cells against process zones.
     pub(super) fn warning(&self) -> Option<String> {
         let ([opening, shear], cell) = self.zone?;
-        let [opening, shear, cell] = [opening, shear, cell].map(|length| length * 1e3);
         let shortest = opening.min(shear);
         (cell > shortest).then(|| {
             format!(
-                "interfaces soften over about {opening:.2} mm where they open and {shear:.2} mm where they slide, and cells up to \
-                 {cell:.2} mm wide may open: forces ripple, by some 5 % at cells twice as long as that and 10 % at three times; make \
-                 them narrower"
+                "interfaces soften over about {} where they open and {} where they slide, and cells up to \
+                 {} wide may open: forces ripple, by some 5 % at cells twice as long as that and 10 % at three times; make \
+                 them narrower",
+                Dimension::LENGTH.of(opening),
+                Dimension::LENGTH.of(shear),
+                Dimension::LENGTH.of(cell)
             )
         })
     }

@@ -1,6 +1,7 @@
 //! Times apart that a scene asks for, those that steps allow, and what is kept at them.
 
 use super::{Impact, Model};
+use fem_core::plugin::Dimension;
 use fem_core::time::StepLimit;
 use fem_io::scene::MarchSpec;
 use fem_io::tables::{HistoryRow, ImpactorRow};
@@ -15,15 +16,16 @@ pub(super) fn check(march: &MarchSpec, intervals: &[(&str, Option<f64>)]) -> Vec
         let asked = asked.filter(|asked| *asked < steps as f64 * dt)?;
         let count = asked / dt;
         let nearest = count.round().max(1.0);
-        let us = |count: f64| format!("{:.4} us", count * dt * 1e6);
-        let others = if count < 1.0 { us(1.0) } else { format!("{} or {}", us(count.floor()), us(count.ceil())) };
+        let times = |count: f64| Dimension::TIME.of(count * dt);
+        let others =
+            if count < 1.0 { times(1.0) } else { format!("{} or {}", times(count.floor()), times(count.ceil())) };
         ((nearest - count).abs() > APART * count).then(|| {
             format!(
-                "`{key}` is {:.4} us, no whole number of steps of {}: it is done every {}; write {others}, or another \
+                "`{key}` is {}, no whole number of steps of {}: it is done every {}; write {others}, or another \
                  `march.step`",
-                asked * 1e6,
-                us(1.0),
-                us(nearest)
+                Dimension::TIME.of(asked),
+                times(1.0),
+                times(nearest)
             )
         })
     };
@@ -110,8 +112,8 @@ mod tests {
             assert_eq!(said(good), [""; 0], "{good}");
         }
         let [warning] = &said(0.5)[..] else { panic!() };
-        assert!(warning.contains("every 0.6000 us; write 0.4000 us or 0.6000 us"), "{warning}");
+        assert!(warning.contains("every 0.6 us; write 0.4 us or 0.6 us"), "{warning}");
         let [warning] = &said(0.05)[..] else { panic!() };
-        assert!(warning.contains("every 0.2000 us; write 0.2000 us, or"), "{warning}");
+        assert!(warning.contains("every 0.2 us; write 0.2 us, or"), "{warning}");
     }
 }

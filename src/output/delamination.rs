@@ -3,6 +3,7 @@
 use crate::analyses::impact::{Delaminated, DelaminatedCell, Outcome};
 use crate::error::Error;
 use crate::model::{Model, Plan};
+use fem_core::plugin::Dimension;
 use fem_io::files::OutputDir;
 use fem_io::plot::{self, Axis, Fill, MapCell, MapPlot, Panel};
 use fem_io::tables::{self, DelaminationRow};
@@ -91,8 +92,8 @@ fn c_scan(model: &Model, grown: &Delaminated) -> MapPlot {
             };
         }
     }
-    let mut panels = vec![panel(format!("projection: {:.1} mm\u{b2}", grown.projected * 1e6), projection)];
-    let titles = shown.iter().map(|one| format!("interface {}: {:.1} mm\u{b2}", name(one.below), one.area * 1e6));
+    let mut panels = vec![panel(format!("projection: {}", Dimension::AREA.of(grown.projected)), projection)];
+    let titles = shown.iter().map(|one| format!("interface {}: {}", name(one.below), Dimension::AREA.of(one.area)));
     panels.extend(titles.zip(each).take(SHEET).map(|(title, fills)| panel(title, fills)));
     MapPlot {
         title: format!("Delaminations. {}", model.origin.title),

@@ -3,6 +3,7 @@
 use crate::analyses::impact::{ModeShare, Outcome};
 use crate::error::Error;
 use crate::model::Model;
+use fem_core::plugin::Dimension;
 use fem_io::files::OutputDir;
 use fem_io::plot;
 use fem_io::tables::{self, TableValue};
@@ -35,7 +36,7 @@ pub(crate) fn write_plot(dir: &OutputDir, model: &Model, outcome: &Outcome) -> R
     };
     let sum = over_time(&|i| outcome.history[i].impactors[0].plate_displacement_m);
     let part = |(k, mode): (usize, &ModeShare)| {
-        let label = format!("mode {}, {:.2} kHz", k + 1, mode.frequency_Hz * 1e-3);
+        let label = format!("mode {}, {}", k + 1, Dimension::FREQUENCY.of(mode.frequency_Hz));
         (label, over_time(&|i| modal.coordinates[i * n + k]))
     };
     let above = |i: usize| sum[i].1 - modal.coordinates[i * n..(i + 1) * n].iter().sum::<f64>();

@@ -6,6 +6,7 @@ use crate::cost::Cost;
 use crate::error::Error;
 use crate::model::Model;
 use crate::words::{append, append_symmetry};
+use fem_core::plugin::Dimension;
 use fem_io::files::OutputDir;
 use fem_io::tables::{self, TableValue};
 use serde::Serialize;
@@ -57,10 +58,10 @@ impl ModesSummary {
         let symmetry = append_symmetry(self.symmetry);
         let divided = append(self.substructures);
         let mut t = format!("{}\n  model     {} unknowns{divided}{symmetry}{alone}\n", self.title, self.unknowns);
-        t.push_str("  mode   frequency (Hz)   mass along x, y, z (g)\n");
+        t.push_str("  mode        frequency   mass along x, y, z\n");
         for (i, (f, m)) in self.frequencies_Hz.iter().zip(&self.effective_masses_kg).enumerate() {
-            let [x, y, z] = m.map(|m| m * 1e3);
-            let _ = writeln!(t, "  {:>4}   {f:>14.4}   {x:.4}, {y:.4}, {z:.4}", i + 1);
+            let (frequency, masses) = (Dimension::FREQUENCY.of(*f), Dimension::MASS.list(m));
+            let _ = writeln!(t, "  {:>4}   {frequency:>14}   {masses}", i + 1);
         }
         let Self { elements, elements_reused, solves, .. } = self;
         let _ = writeln!(t, "  work      {elements} element matrices, {elements_reused} reused, {solves} solves");

@@ -4,6 +4,7 @@ use super::ways;
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::registry::{NO_REDUCTION, Registry};
+use fem_core::plugin::Dimension;
 use fem_core::plugin::{Kind, Plugin as _, Role, unknown_key};
 use fem_dynamics::reduce::Ritz;
 use fem_io::scene::{MarchSpec, MeshSource, Scene, Setting};
@@ -253,7 +254,7 @@ fn steps(scene: &Scene, model: &Model) -> Option<Vec<Level>> {
         let step = march.step.value * share;
         let tolerance = march.tolerance.map(|tolerance| tolerance * share.powi(order));
         let to = tolerance.map_or(String::new(), |tolerance| format!(" to {tolerance:.0e}"));
-        let label = format!("{:.4} us{to}", step * 1e6);
+        let label = format!("{}{to}", Dimension::TIME.of(step));
         if *share == 1.0 {
             return Some(Level::own(label));
         }

@@ -10,6 +10,7 @@ use crate::cost::processor_time;
 use crate::error::Error;
 use crate::forecast::Size;
 use crate::model::Model;
+use fem_core::plugin::Dimension;
 use fem_io::scene;
 
 /// Nominal seconds of a study without a budget, and of its largest run.
@@ -226,7 +227,7 @@ impl Planner {
         let rates = self.rates(session);
         let why = |planned: &Planned| match is_worth(report, &planned.axis) {
             false => format!("the ladder leaves less than {:.0} % of what all leave", WORTH * 100.0),
-            true => format!("{SPENT}, about {:.0} s", rates.seconds(&planned.size)),
+            true => format!("{SPENT}, about {}", Dimension::TIME.of(rates.seconds(&planned.size))),
         };
         finer.iter().map(|planned| (planned.axis.clone(), planned.level.label.clone(), why(planned))).collect()
     }

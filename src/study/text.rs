@@ -5,6 +5,7 @@ use super::converge::{Convergence, ErrorBar};
 use super::ladder::Ladder;
 use super::plan::StudyPlan;
 use super::report::{Report, Row};
+use fem_core::plugin::Dimension;
 use std::fmt::{self, Write as _};
 
 /// Characters of a refusal that a table shows.
@@ -19,7 +20,7 @@ const TARGETS: [f64; 4] = [0.1, 0.01, 1e-3, 1e-4];
 /// What will be run, before it is run.
 impl fmt::Display for StudyPlan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "  will run, about {:.0} s of processor time:", self.seconds())?;
+        writeln!(f, "  will run, about {} of processor time:", Dimension::TIME.of(self.seconds()))?;
         let mut axes: Vec<&str> = self.runs.iter().map(|run| run.axis.as_str()).collect();
         axes.dedup();
         for axis in axes {
@@ -30,11 +31,11 @@ impl fmt::Display for StudyPlan {
                 [first, .., last] if labels.len() > MANY => format!("{} from {first} to {last}", labels.len()),
                 _ => labels.join(", "),
             };
-            writeln!(f, "    {axis:<14} {labels} ({seconds:.1} s)")?;
+            writeln!(f, "    {axis:<14} {labels} ({})", Dimension::TIME.of(seconds))?;
         }
         if self.further > 0.0 {
             let further = "the next level of the ladder that leaves most a second; then levels of all ladders together";
-            writeln!(f, "    {:<14} {further} (up to {:.0} s)", "further", self.further)?;
+            writeln!(f, "    {:<14} {further} (up to {})", "further", Dimension::TIME.of(self.further))?;
         }
         let spare: Vec<_> =
             self.spare.iter().map(|run| (run.axis.clone(), run.level.label.clone(), String::new())).collect();
@@ -62,15 +63,6 @@ fn group_by_axis(left_out: &[(String, String, String)]) -> Vec<(&str, String, St
         _ => labels.join(", "),
     };
     groups.into_iter().map(|(axis, labels, why)| (axis, shown(labels), why.chars().take(WORDS).collect())).collect()
-}
-
-/// A time in three digits.
-fn seconds(s: f64) -> String {
-    match s {
-        s if s < 0.0095 => format!("{:.1} ms", s * 1e3),
-        s if s < 10.0 => format!("{s:.2} s"),
-        s => format!("{s:.0} s"),
-    }
 }
 
 fn percent(x: f64) -> String {
@@ -106,8 +98,8 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
         t,
         "* {} runs in {} of processor time; the scene as it is takes {}",
         report.made().count(),
-        seconds(ran),
-        seconds(base.total())
+        Dimension::TIME.of(ran),
+        Dimension::TIME.of(base.total())
     )?;
     if report.reference.row > 0 {
         writeln!(t, "* errors are measured against: {}, extrapolated along each ladder", describe(reference))?;
@@ -145,7 +137,7 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
             let Some(row) = report.cheapest(&quantities, target) else { continue };
             let Ok(record) = &row.result else { continue };
             let error = figure(row.worst_of(&quantities));
-            let line = format!("{}: {} ({error})", describe(row), seconds(record.total()));
+            let line = format!("{}: {} ({error})", describe(row), Dimension::TIME.of(record.total()));
             if line != previous {
                 writeln!(t, "* {} of {name}: {line}", percent(target))?;
             }
@@ -182,7 +174,7 @@ fn where_time_went(report: &Report, t: &mut String) -> fmt::Result {
             format!("{} of {}", figure(Some(left)), limit.quantity)
         });
         let end: String = ladder.map_or("", |ladder| &ladder.end).chars().take(2 * WORDS).collect();
-        writeln!(t, "| {axis} | {} | {} | {leaves} | {end} |", each().count(), seconds(time))?;
+        writeln!(t, "| {axis} | {} | {} | {leaves} | {end} |", each().count(), Dimension::TIME.of(time))?;
     }
     Ok(())
 }
@@ -229,11 +221,11 @@ fn figure(error: Option<ErrorBar>) -> String {
 fn describe(row: &Row) -> String {
     let Ok(record) = &row.result else { return row.level.label.clone() };
     let size = &record.size;
-    let mut words = vec![format!("cells {:.3} mm", size.cell_m * 1e3)];
+    let mut words = vec![format!("cells {}", Dimension::LENGTH.of(size.cell_m))];
     words.push(if size.layers == 1 { "1 layer".into() } else { format!("{} layers", size.layers) });
     if size.step_s > 0.0 {
         words.push(format!("{} unknowns marched", size.marched));
-        words.push(format!("step {:.4} us", size.step_s * 1e6));
+        words.push(format!("step {}", Dimension::TIME.of(size.step_s)));
     }
     if row.kind != AxisKind::Ladder && !row.level.setting.is_empty() {
         words.push(row.level.label.clone());

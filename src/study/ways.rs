@@ -5,6 +5,7 @@ use crate::model::{Model, Plan};
 use crate::registry::{NO_REDUCTION, Registry};
 use fem_core::mesh::PlaneMesh;
 use fem_core::plate::ZDerivatives;
+use fem_core::plugin::Dimension;
 use fem_core::plugin::{Built, Kind, ParamDefault, ParamForm, ParamInfo, Params, PluginInfo, Role};
 use fem_core::time::StepLimit;
 use fem_io::scene::{Analysis, ContactLoad, Scene, Window};
@@ -60,7 +61,7 @@ pub(super) fn integrators(scene: &Scene, registry: &Registry) -> Option<Vec<Leve
             _ => false,
         };
         let steps = [4.0, 2.0, 1.0, 0.5].map(|share| step * share);
-        let each = steps.map(|step| Level::new(format!("{name} {:.4} us", step * 1e6), keys(step)));
+        let each = steps.map(|step| Level::new(format!("{name} {}", Dimension::TIME.of(step)), keys(step)));
         let longest = Level { at_limit: true, ..Level::new(format!("{name} at its limit"), keys(step)) };
         each.into_iter().chain(limited.then_some(longest))
     };
@@ -116,11 +117,14 @@ pub(super) fn elements(scene: &Scene, registry: &Registry) -> Vec<Level> {
 pub(super) fn contact(scene: &Scene) -> Option<Vec<Level>> {
     let node = Level::new("node", [("impactor.load", quoted("node"))]);
     let side = |side: f64| {
-        Level::new(format!("square {:.3} mm", side * 1e3), [("impactor.patch_side", quoted(format!("{side:e} m")))])
+        Level::new(
+            format!("square {}", Dimension::LENGTH.of(side)),
+            [("impactor.patch_side", quoted(format!("{side:e} m")))],
+        )
     };
     let radius = |radius: f64| {
         Level::new(
-            format!("radius {:.3} mm", radius * 1e3),
+            format!("radius {}", Dimension::LENGTH.of(radius)),
             [("impactor.patch_radius", quoted(format!("{radius:e} m")))],
         )
     };
@@ -135,8 +139,7 @@ pub(super) fn window(model: &Model) -> Vec<Level> {
     if model.criteria.is_empty() || !matches!(model.plan, Plan::Impact(_)) {
         return Vec::new();
     }
-    let side =
-        |side: f64| Level::new(format!("{:.3} mm", side * 1e3), [("failure.window", quoted(format!("{side:e} m")))]);
+    let side = |side: f64| Level::new(Dimension::LENGTH.of(side), [("failure.window", quoted(format!("{side:e} m")))]);
     match model.window {
         Window::Element => [1e-3, 2e-3, 4e-3].map(side).to_vec(),
         Window::Square(own) => {

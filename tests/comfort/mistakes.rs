@@ -1,6 +1,7 @@
 //! What is said to typical mistakes, for people to judge.
 
-use crate::support::{Case, strip};
+use crate::support::{Case, fem_reading, strip};
+use serde_json::Value;
 use std::fs;
 
 #[test]
@@ -66,4 +67,49 @@ fn line_ends_tabs_and_encodings() {
         assert!(done.status == 1 && done.stderr.contains(words), "{done:#?}");
         assert!(done.stderr.contains("save it as UTF-8"), "{done:#?}");
     }
+}
+
+/// Mistakes that have nothing to do with each other are said at once, by their lines; what follows from one is not said.
+#[test]
+fn several_mistakes_at_once() {
+    let case = strip()
+        .scene("mass = \"2.49 kg\"", "mas = \"2.49 kg\"")
+        .scene("\"1.56 m/s\"", "1.56")
+        .scene("end = \"20 us\"", "end = \"20 usec\"")
+        .scene("at = \"all\"", "at = \"everything\"");
+    let said = case.fem("check", &[]).stderr;
+    let order = ["support[0].at", "unknown key `impactor.mas`", "`impactor.velocity`", "`march.end`"];
+    let places: Vec<_> =
+        order.iter().map(|words| said.find(words).unwrap_or_else(|| panic!("{words}: {said}"))).collect();
+    assert!(places.is_sorted(), "{said}");
+    assert_eq!(said.matches('×').count(), 4, "{said}");
+
+    let done = case.fem("check", &["--message-format", "json"]);
+    let messages: Vec<Value> = done.stderr.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!((done.status, messages.len()), (1, 4), "{}", done.stderr);
+    let lines: Vec<_> = case.read("plate/scene.toml").lines().map(str::to_owned).collect();
+    for (message, words) in messages.iter().zip(["everything", "mas = ", "1.56", "20 usec"]) {
+        assert_eq!((&message["level"], &message["file"]), (&"error".into(), &"plate/scene.toml".into()));
+        let line = &lines[message["line"].as_u64().unwrap() as usize - 1];
+        let from = message["column"].as_u64().unwrap() as usize - 1;
+        let shown = &line[from..from + message["length"].as_u64().unwrap() as usize];
+        assert!(line.contains(words) && words.contains(shown.trim_matches('"').trim_end_matches(" =")), "{message}");
+        assert!(message["help"].as_str().is_some_and(|help| !help.is_empty()), "{message}");
+    }
+}
+
+#[test]
+fn a_scene_on_standard_input() {
+    let case = strip();
+    let scene = case.write();
+    let text = case.read(scene).replace("file = \"plate.msh\"", "file = \"plate/plate.msh\"");
+    let run = |arguments: &[&str], text: &str| fem_reading(case.folder(), arguments, text);
+    let from_file = case.fem("check", &[]).good().stdout;
+    assert_eq!(run(&["check", "-"], &text).good().stdout, from_file);
+    run(&["run", "-", "--out", "out"], &text).good();
+    assert_eq!(case.read("out/scene.toml"), text);
+    let wrong = run(&["check", "-"], &text.replace("2.49 kg", "2.49"));
+    assert!(wrong.status == 1 && wrong.stderr.contains("standard input:"), "{wrong:#?}");
+    let again = run(&["study", "-"], &text);
+    assert!(again.status == 1 && again.stderr.contains("give the scene as a file"), "{again:#?}");
 }

@@ -88,3 +88,18 @@ fn every_command_has_help() {
         assert!(help.contains(&format!("Usage: fem {command}")), "{help}");
     }
 }
+
+/// What a log keeps: a line for each tenth, and no colour unless it is asked for.
+#[test]
+fn progress_and_colours_are_asked_for() {
+    let case = strip();
+    let done = case.fem("run", &["--out", "out", "--progress", "plain"]).good();
+    let lines: Vec<_> = done.stderr.lines().collect();
+    assert_eq!(lines.len(), 10, "{}", done.stderr);
+    assert!(lines[0].starts_with("march: 10 %, after ") && lines[9].starts_with("march: 100 %"), "{}", done.stderr);
+    assert_eq!(case.fem("run", &["--out", "out"]).good().stderr, "", "no bar outside a terminal");
+
+    let wrong = strip().scene("\"2.49 kg\"", "2.49");
+    let colored = |options: &[&str]| wrong.fem("check", options).stderr.contains('\u{1b}');
+    assert!(colored(&["--color", "always"]) && !colored(&["--color", "never"]) && !colored(&[]));
+}

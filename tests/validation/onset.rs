@@ -82,7 +82,7 @@ fn what_is_not_to_be_trusted_stands_at_the_top() {
     let unfinished = summary(&plate());
     let said = cautions(&unfinished);
     assert!(
-        said.iter().any(|caution| caution.contains("is not over at 1.0000 ms") && caution.contains("rising")),
+        said.iter().any(|caution| caution.contains("is not over at 1 ms") && caution.contains("rising")),
         "{said:?}"
     );
     // To the end of the contact there is nothing of the sort.

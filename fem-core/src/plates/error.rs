@@ -1,5 +1,6 @@
 //! What a plate refuses.
 
+use crate::contracts::plugin::Dimension;
 use std::fmt;
 
 /// Why a plate cannot be made, folded, held or loaded as asked.
@@ -106,8 +107,8 @@ impl fmt::Display for PlateError {
                 "the unknowns of this element cannot restrain {motions}: fix unknowns at nodes of your choice"
             ),
             Self::PatchOverEdge { of, size, centre } => {
-                let [size, x, y] = [*size, centre[0], centre[1]].map(|x| x * 1e3);
-                write!(f, "the contact patch of {of} {size:.4} mm around ({x:.4}, {y:.4}) mm extends beyond the plate")
+                let (size, centre) = (Dimension::LENGTH.of(*size), Dimension::LENGTH.list(centre));
+                write!(f, "the contact patch of {of} {size} around x, y = {centre} extends beyond the plate")
             }
             Self::NoDisplacement { node, axis } => write!(f, "{node} has no displacement along {axis}"),
         }

@@ -111,6 +111,17 @@ impl Form {
         }
     }
 
+    /// The keys of all tables among `forms`.
+    pub(crate) fn keys_of_any(forms: &'static [Self]) -> Vec<&'static Key> {
+        let mut all: Vec<&'static Key> = Vec::new();
+        for key in forms.iter().filter_map(Self::keys).flatten() {
+            if all.iter().all(|known| known.name != key.name) {
+                all.push(key);
+            }
+        }
+        all
+    }
+
     /// Of several forms the one that `node` is meant to have.
     pub(crate) fn form_of(&self, node: &Node) -> &Form {
         match self {

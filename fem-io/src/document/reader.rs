@@ -19,19 +19,33 @@ pub struct Reader<'a> {
 impl<'a> Reader<'a> {
     /// The outermost table of a document.
     pub(crate) fn root(table: &'a Table, keys: Keys, source: &'a Arc<SceneSource>) -> Result<Self, SceneError> {
-        Self { table, path: String::new(), place: Place::TOP, keys: keys.iter().collect(), source }.checked()
+        Self::unchecked(table, keys, source).checked()
+    }
+
+    /// The same, whatever keys it has.
+    pub(crate) fn unchecked(table: &'a Table, keys: Keys, source: &'a Arc<SceneSource>) -> Self {
+        Self { table, path: String::new(), place: Place::TOP, keys: keys.iter().collect(), source }
     }
 
     /// Refuses unknown keys first of all: a misspelt key explains a missing one.
     fn checked(self) -> Result<Self, SceneError> {
-        match self.table.0.iter().find(|e| self.keys.iter().all(|key| key.name != e.key)) {
-            None => Ok(self),
-            Some(stray) => {
-                let path = self.path_of(&stray.key);
-                let help = format!("`{}` {}", stray.key, unknown_key(&stray.key, self.keys.iter().map(|key| key.name)));
-                Err(self.source.error_at(&stray.place, format!("unknown key `{path}`"), help))
-            }
-        }
+        let stray = self.strays().next();
+        stray.map_or(Ok(self), Err)
+    }
+
+    /// An error for each key that the table does not know.
+    pub(crate) fn strays(&self) -> impl Iterator<Item = SceneError> {
+        let stray = self.table.0.iter().filter(|e| self.keys.iter().all(|key| key.name != e.key));
+        stray.map(|stray| {
+            let path = self.path_of(&stray.key);
+            let help = format!("`{}` {}", stray.key, unknown_key(&stray.key, self.keys.iter().map(|key| key.name)));
+            self.source.error_at(&stray.place, format!("unknown key `{path}`"), help)
+        })
+    }
+
+    /// The keys that the table may have.
+    pub(crate) fn keys(&self) -> impl Iterator<Item = &'static Key> {
+        self.keys.iter().copied()
     }
 
     fn path_of(&self, key: &str) -> String {
@@ -299,18 +313,17 @@ impl<'a> SceneValue<'a> {
 
     /// A table with the keys of any of `forms`.
     pub(crate) fn table_of(&self, forms: &'static [Form]) -> Result<Reader<'a>, SceneError> {
-        let mut all: Vec<&'static Key> = Vec::new();
-        for key in forms.iter().filter_map(Form::keys).flatten() {
-            if all.iter().all(|known| known.name != key.name) {
-                all.push(key);
-            }
-        }
-        self.table_with(all)
+        self.table_with(Form::keys_of_any(forms))
     }
 
     fn table_with(&self, keys: Vec<&'static Key>) -> Result<Reader<'a>, SceneError> {
+        self.unchecked_table(keys)?.checked()
+    }
+
+    /// A table that is meant to have `keys`, whatever it has.
+    pub(crate) fn unchecked_table(&self, keys: Vec<&'static Key>) -> Result<Reader<'a>, SceneError> {
         let table = self.any_table()?;
-        Reader { table, path: self.path.clone(), place: self.place().clone(), keys, source: self.source }.checked()
+        Ok(Reader { table, path: self.path.clone(), place: self.place().clone(), keys, source: self.source })
     }
 
     /// A table whose keys are the scene's own names.

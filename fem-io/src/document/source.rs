@@ -108,12 +108,24 @@ impl SceneSource {
         message: impl Into<String>,
         help: impl Into<String>,
     ) -> SceneError {
-        SceneError { message: message.into(), help: help.into(), place: Some(place.clone()), source: Arc::clone(self) }
+        SceneError {
+            message: message.into(),
+            help: help.into(),
+            place: Some(place.clone()),
+            source: Arc::clone(self),
+            others: Vec::new(),
+        }
     }
 
     /// An error about the file as a whole.
     pub(crate) fn error(self: &Arc<Self>, message: impl Into<String>, help: impl Into<String>) -> SceneError {
-        SceneError { message: message.into(), help: help.into(), place: None, source: Arc::clone(self) }
+        SceneError {
+            message: message.into(),
+            help: help.into(),
+            place: None,
+            source: Arc::clone(self),
+            others: Vec::new(),
+        }
     }
 
     fn document(&self, place: &Place) -> &NamedSource<String> {
@@ -151,12 +163,36 @@ pub struct SceneError {
     help: String,
     place: Option<Place>,
     source: Arc<SceneSource>,
+    /// What else is wrong, by its place.
+    others: Vec<SceneError>,
 }
+
+/// Mistakes that are said at once.
+const MOST: usize = 20;
 
 impl SceneError {
     /// Name of the text and line (from 1) of the trouble; `None` if it is about no line.
     pub fn location(&self) -> Option<(&str, usize)> {
         self.source.line(self.place.as_ref()?)
+    }
+
+    /// This and `others` as one, by their places; what has been said of a place is not said again.
+    pub(crate) fn with(self, others: Vec<Self>) -> Self {
+        let mut all = vec![self];
+        for other in others {
+            if all.iter().all(|known| known.message != other.message && known.start() != other.start()) {
+                all.push(other);
+            }
+        }
+        all.sort_by_key(Self::start);
+        all.truncate(MOST);
+        let mut first = all.remove(0);
+        first.others = all;
+        first
+    }
+
+    fn start(&self) -> Option<(Origin, usize)> {
+        self.place.as_ref().map(|place| (place.origin, place.span.start))
     }
 
     /// What to do about it.
@@ -179,6 +215,11 @@ impl Diagnostic for SceneError {
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
         self.place.as_ref().map(|place| self.source.document(place) as &dyn SourceCode)
+    }
+
+    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
+        let others = self.others.iter().map(|other| other as &dyn Diagnostic);
+        (!self.others.is_empty()).then(|| Box::new(others) as Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {

@@ -9,8 +9,8 @@
 //!
 //! let times = [0.0, 20e-6, 40e-6]; // s
 //! let plot = force_history("A hat", &times, &[("impactor", vec![0.0, 900.0, 0.0])], &[(20e-6, "peak".into())])?;
-//! assert_eq!((&*plot.x.unit, &*plot.y.unit), ("µs", "N"));
-//! assert!(line_plot(&plot)?.svg.contains("peak, 20.0 µs"));
+//! assert_eq!((&*plot.x.unit, &*plot.y.unit), ("us", "N"));
+//! assert!(line_plot(&plot)?.svg.contains("peak, 20 us"));
 //! # Ok::<(), fem_io::plot::PlotError>(())
 //! ```
 
@@ -30,12 +30,13 @@ mod work_precision;
 
 pub use map::{Fill, MapCell, MapPlot, Panel, Stroke, class_color, map_plot};
 pub use mesh::mesh_map;
-pub use over_time::{Physical, force_history, index_history, modal_history, over_time, unit_of_time};
+pub use over_time::{force_history, index_history, modal_history, over_time};
 pub use pens::curve_color;
 pub use png::PngError;
 pub use work_precision::work_precision;
 
 use crate::files::{FileError, OutputDir};
+use fem_core::plugin::Dimension;
 
 /// Curves over a common axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,6 +79,14 @@ impl Axis {
     /// An axis with a linear scale.
     pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { label: label.into(), unit: unit.into(), scale: Scale::Linear }
+    }
+
+    /// A linear axis for `values` in SI units, in the unit that fits them; with how large that is.
+    pub fn fitting(label: &str, of: Dimension, values: impl Iterator<Item = f64>) -> (Self, f64) {
+        match of.unit_for(values.fold(0.0, |most, value| value.abs().max(most))) {
+            Some(unit) => (Self::linear(label, unit.symbol), unit.size),
+            None => (Self::linear(label, of.to_string()), 1.0),
+        }
     }
 
     /// An axis with a logarithmic scale, for positive values.

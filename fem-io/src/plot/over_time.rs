@@ -1,54 +1,22 @@
 //! Quantities over time.
 
 use super::{Axis, LinePlot, Mark, PlotError, Series, Style};
-
-/// What is shown over time, by its unit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Physical {
-    /// m, shown in µm up to a tenth of a millimetre, else in mm.
-    Length,
-    /// N, shown in kN from one kilonewton on.
-    Force,
-    /// J, shown in mJ up to a tenth of a joule, else in J.
-    Energy,
-    /// A pure number.
-    Number,
-}
-
-impl Physical {
-    /// Unit for values up to `largest` in SI units, and how many of it are one of these.
-    pub fn unit(self, largest: f64) -> (&'static str, f64) {
-        match self {
-            Self::Length if largest < 1e-4 => ("µm", 1e6),
-            Self::Length => ("mm", 1e3),
-            Self::Force if largest < 1e3 => ("N", 1.0),
-            Self::Force => ("kN", 1e-3),
-            Self::Energy if largest < 0.1 => ("mJ", 1e3),
-            Self::Energy => ("J", 1.0),
-            Self::Number => ("", 1.0),
-        }
-    }
-}
-
-/// Unit for times up to `longest`, s, and how many of it are a second: µs up to one millisecond, else ms.
-pub fn unit_of_time(longest: f64) -> (&'static str, f64) {
-    if longest <= 1.000_001e-3 { ("µs", 1e6) } else { ("ms", 1e3) }
-}
+use fem_core::plugin::Dimension;
 
 /// Curves of `quantity` under the heading `title`: names, points (time in s, value in SI units) and how they are drawn.
-pub fn over_time(title: &str, quantity: &str, kind: Physical, curves: Vec<Series>) -> LinePlot {
+pub fn over_time(title: &str, quantity: &str, of: Dimension, curves: Vec<Series>) -> LinePlot {
     let points = || curves.iter().flat_map(|curve| &curve.points);
-    let (time_unit, per_s) = unit_of_time(largest(points().map(|p| p.0)));
-    let (unit, per_si) = kind.unit(largest(points().map(|p| p.1)));
+    let (time, x) = Axis::fitting("Time", Dimension::TIME, points().map(|p| p.0));
+    let (value, y) = Axis::fitting(quantity, of, points().map(|p| p.1));
     let shown = |curve: &Series| Series {
-        points: curve.points.iter().map(|(t, v)| (t * per_s, v * per_si)).collect(),
+        points: curve.points.iter().map(|(t, v)| (t / x, v / y)).collect(),
         label: curve.label.clone(),
         style: curve.style,
     };
     LinePlot {
         title: title.to_owned(),
-        x: Axis::linear("Time", time_unit),
-        y: Axis::linear(quantity, unit),
+        x: time,
+        y: value,
         series: curves.iter().map(shown).collect(),
         marks: Vec::new(),
         doubts: Vec::new(),
@@ -80,17 +48,17 @@ pub fn force_history(
     }
     let points = |forces: &[f64]| times_s.iter().copied().zip(forces.iter().copied()).collect();
     let curves = forces_n.iter().map(|(label, forces)| Series::solid(*label, points(forces)));
-    let plot = over_time(title, "Contact force", Physical::Force, curves.collect());
+    let plot = over_time(title, "Contact force", Dimension::FORCE, curves.collect());
 
-    let (unit, per_s) = unit_of_time(largest(times_s.iter().copied()));
-    let mut events: Vec<_> = events.iter().map(|(t, name)| (t * per_s, name)).collect();
+    let (_, unit) = Axis::fitting("Time", Dimension::TIME, times_s.iter().copied());
+    let mut events: Vec<_> = events.iter().collect();
     events.sort_by(|a, b| a.0.total_cmp(&b.0));
     let height = |x: f64| plot.series.iter().map(|curve| height_at(&curve.points, x)).reduce(f64::max).unwrap_or(0.0);
-    let mark = |x: f64, label: String| Mark { x, y: height(x), label };
+    let mark = |t: f64, label: String| Mark { x: t / unit, y: height(t / unit), label };
     let named = events.iter().take(NAMED_EVENTS);
-    let mut marks: Vec<_> = named.map(|(x, name)| mark(*x, format!("{name}, {} {unit}", three_digits(*x)))).collect();
-    if let Some((x, _)) = events.get(NAMED_EVENTS) {
-        marks.push(mark(*x, format!("{} later events", events.len() - NAMED_EVENTS)));
+    let mut marks: Vec<_> = named.map(|(t, name)| mark(*t, format!("{name}, {}", Dimension::TIME.of(*t)))).collect();
+    if let Some((t, _)) = events.get(NAMED_EVENTS) {
+        marks.push(mark(*t, format!("{} later events", events.len() - NAMED_EVENTS)));
     }
     Ok(LinePlot { marks, ..plot })
 }
@@ -101,24 +69,19 @@ const INDEX_DRAWN: f64 = 1e100;
 /// Failure indices over time under the heading `title`: for every name its points (time in s, index), and a dashed line at
 /// 1. A point whose index is infinite is left out.
 pub fn index_history(title: &str, curves: &[(String, Vec<(f64, f64)>)]) -> LinePlot {
-    let last = largest(curves.iter().flat_map(|(_, points)| points.iter().map(|p| p.0)));
+    let last = curves.iter().flat_map(|(_, points)| points.iter().map(|p| p.0)).fold(0.0, f64::max);
     let failure = Series { label: "failure".into(), points: vec![(0.0, 1.0), (last, 1.0)], style: Style::Dashed };
     let finite = |points: &[(f64, f64)]| points.iter().copied().filter(|p| p.1 < INDEX_DRAWN).collect();
     let curves = curves.iter().map(|(label, points)| Series::solid(label, finite(points)));
     let curves = curves.filter(|series| !series.points.is_empty()).chain([failure]);
-    over_time(title, "Failure index", Physical::Number, curves.collect())
+    over_time(title, "Failure index", Dimension::NONE, curves.collect())
 }
 
 /// A deflection over time under the heading `title` with its parts by mode: names and points (time in s, deflection in m).
 pub fn modal_history(title: &str, sum: Vec<(f64, f64)>, parts: Vec<(String, Vec<(f64, f64)>)>) -> LinePlot {
     let sum = Series { label: "all modes".into(), points: sum, style: Style::Dashed };
     let parts = parts.into_iter().map(|(label, points)| Series::solid(label, points));
-    over_time(title, "Deflection under the impactor", Physical::Length, [sum].into_iter().chain(parts).collect())
-}
-
-/// The largest magnitude, 0 of none.
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(0.0, |m, v| m.max(v.abs()))
+    over_time(title, "Deflection under the impactor", Dimension::LENGTH, [sum].into_iter().chain(parts).collect())
 }
 
 /// Height of the curve at `x`, between its points by a straight line; the end's height beyond an end.
@@ -129,12 +92,6 @@ fn height_at(points: &[(f64, f64)], x: f64) -> f64 {
         (Some(end), None) | (None, Some(end)) => end.1,
         (None, None) => 0.0,
     }
-}
-
-/// `x` to three significant digits, never fewer than its whole ones.
-fn three_digits(x: f64) -> String {
-    let whole = if x == 0.0 { 1.0 } else { x.abs().log10().floor() + 1.0 };
-    format!("{x:.*}", (3.0 - whole).clamp(0.0, 12.0) as usize)
 }
 
 #[cfg(test)]
@@ -149,31 +106,30 @@ mod tests {
                 over_time("title", "quantity", kind, vec![Series::solid("one", vec![(0.0, 0.0), (2e-3, value)])]);
             (plot.x.unit, plot.y.unit, plot.series[0].points[1])
         };
-        assert_eq!(shown(Physical::Length, -5e-5), ("ms".into(), "µm".into(), (2.0, -50.0)));
-        assert_eq!(shown(Physical::Length, 2e-3), ("ms".into(), "mm".into(), (2.0, 2.0)));
-        assert_eq!(shown(Physical::Energy, 0.05), ("ms".into(), "mJ".into(), (2.0, 50.0)));
-        assert_eq!(shown(Physical::Energy, 3.0), ("ms".into(), "J".into(), (2.0, 3.0)));
-        assert_eq!(unit_of_time(1e-3), ("µs", 1e6));
+        assert_eq!(shown(Dimension::LENGTH, -5e-5), ("ms".into(), "um".into(), (2.0, -50.0)));
+        assert_eq!(shown(Dimension::LENGTH, 2e-3), ("ms".into(), "mm".into(), (2.0, 2.0)));
+        assert_eq!(shown(Dimension::ENERGY, 0.05), ("ms".into(), "mJ".into(), (2.0, 50.0)));
+        assert_eq!(shown(Dimension::ENERGY, 3.0), ("ms".into(), "J".into(), (2.0, 3.0)));
     }
 
     #[test]
     fn a_force_history_chooses_its_units_and_puts_events_on_the_curve() {
         let small =
             force_history("title", &[0.0, 1e-3], &[("force", vec![0.0, 900.0])], &[(2.5e-4, "shear".into())]).unwrap();
-        assert_eq!((small.x.unit.as_str(), small.y.unit.as_str()), ("µs", "N"));
-        assert_eq!(small.marks, [Mark { x: 250.0, y: 225.0, label: "shear, 250 µs".into() }]);
+        assert_eq!((small.x.unit.as_str(), small.y.unit.as_str()), ("ms", "N"));
+        assert_eq!(small.marks, [Mark { x: 0.25, y: 225.0, label: "shear, 0.25 ms".into() }]);
 
         let large = force_history(
             "title",
             &[0.0, 2e-3],
-            &[("force", vec![0.0, 4000.0])],
+            &[("force", vec![0.0, 40_000.0])],
             &[(1.5e-3, "b".into()), (5e-5, "a".into())],
         )
         .unwrap();
         assert_eq!((large.x.unit.as_str(), large.y.unit.as_str()), ("ms", "kN"));
         let labels: Vec<_> = large.marks.iter().map(|m| m.label.as_str()).collect();
-        assert_eq!(labels, ["a, 0.0500 ms", "b, 1.50 ms"]);
-        assert!((large.marks[1].y - 3.0).abs() < 1e-12);
+        assert_eq!(labels, ["a, 50 us", "b, 1.5 ms"]);
+        assert!((large.marks[1].y - 30.0).abs() < 1e-12);
     }
 
     #[test]
@@ -184,7 +140,7 @@ mod tests {
             ("c".to_owned(), vec![(0.0, f64::INFINITY)]),
         ];
         let plot = index_history("title", &curves);
-        assert_eq!((plot.x.unit.as_str(), plot.y.label.as_str()), ("µs", "Failure index"));
+        assert_eq!((plot.x.unit.as_str(), plot.y.label.as_str()), ("ms", "Failure index"));
         let drawn: Vec<_> = plot.series.iter().map(|s| (s.label.as_str(), s.points.clone(), s.style)).collect();
         let line = |points: [(f64, f64); 2]| points.to_vec();
         let want = [
@@ -203,7 +159,7 @@ mod tests {
         assert_eq!((plot.x.unit.as_str(), plot.y.unit.as_str()), ("ms", "mm"));
         let drawn: Vec<_> = plot.series.iter().map(|s| (s.label.as_str(), s.points[1], s.style)).collect();
         assert_eq!(drawn, [("all modes", (2.0, 1.0), Style::Dashed), ("mode 1", (2.0, 0.5), Style::Solid)]);
-        assert_eq!(modal_history("title", points(5e-5), Vec::new()).y.unit, "µm");
+        assert_eq!(modal_history("title", points(5e-5), Vec::new()).y.unit, "um");
     }
 
     #[test]

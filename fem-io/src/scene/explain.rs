@@ -25,14 +25,14 @@ pub struct Explained {
     pub about: String,
 }
 
-/// The keys that hold in the scene file `path`, in the order of the tables of a scene, with the parameters of
+/// The keys that hold in the scene that has been read from `source`, in the order of the tables of a scene, with the parameters of
 /// `plugins` and the keys of `effects`.
 ///
 /// # Errors
-/// As [`super::read`].
-pub fn explain(path: &Path, plugins: Plugins<'_>, effects: &[Key]) -> Result<Vec<Explained>, SceneError> {
-    super::read(path)?;
-    let Merged { mut table, source, .. } = Merged::new(&super::read_text(path)?, path, "")?;
+/// As [`super::parse`].
+pub fn explain(source: &SceneSource, plugins: Plugins<'_>, effects: &[Key]) -> Result<Vec<Explained>, SceneError> {
+    let path = Path::new(source.name());
+    let Merged { mut table, source, .. } = Merged::new(source.text(), path, "")?;
     let analysis = match table.get("analysis").map(|entry| &entry.item.node) {
         Some(Node::Text(text)) => text.clone(),
         _ => "impact".to_owned(),

@@ -192,7 +192,7 @@ pub fn read(path: &Path) -> Result<Scene, SceneError> {
 ///
 /// # Errors
 /// Anything that is not a scene: TOML at fault, unknown, missing or contradicting keys, values without unit, of the
-/// wrong dimension or out of range. The first of these, with its place.
+/// wrong dimension or out of range. All of these that can be told by themselves, with their places.
 pub fn parse(text: &str, path: &Path) -> Result<Scene, SceneError> {
     parse_with(text, path, "")
 }
@@ -225,11 +225,11 @@ impl Merged {
             Arc::new(SceneSource::new(path, text, LIBRARY).with(Origin::Setting, "setting of the study", setting));
         let own = Table::parse(text, Origin::Scene, &source)?;
         let own = Table::parse(setting, Origin::Setting, &source)?.over(own);
-        let fidelity = match Reader::root(&own, KEYS, &source)?.optional("fidelity") {
+        let fidelity = match Reader::unchecked(&own, KEYS, &source).optional("fidelity") {
             Some(field) => field.choice(&Fidelity::ALL)?,
             None => Fidelity::Engineering,
         };
-        let effects = Reader::root(&own, KEYS, &source)?.optional("effects");
+        let effects = Reader::unchecked(&own, KEYS, &source).optional("effects");
         let growth = effects.is_some_and(|field| effects::asks_for_growth(&field));
         let name = format!("preset `{}`", fidelity.name());
         let source = Arc::new(SceneSource::clone(&source).with(Origin::Preset, name, fidelity.preset()));
@@ -243,8 +243,16 @@ impl Merged {
 }
 
 fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneError> {
-    let Merged { table: merged, fidelity, source } = Merged::new(text, path, setting)?;
-    let root = Reader::root(&merged, KEYS, &source)?;
+    let merged = Merged::new(text, path, setting)?;
+    read_merged(&merged, path).map_err(|first| {
+        let faults = Reader::unchecked(&merged.table, KEYS, &merged.source).faults();
+        first.with(faults)
+    })
+}
+
+fn read_merged(merged: &Merged, path: &Path) -> Result<Scene, SceneError> {
+    let Merged { table: merged, fidelity, source } = merged;
+    let root = Reader::root(merged, KEYS, source)?;
     let mut keys = BTreeMap::new();
     merged.flatten("", &mut keys);
 
@@ -263,7 +271,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
     let onset = effects.damage == Damage::Onset;
     Ok(Scene {
         title: root.required("title")?.text()?.to_owned(),
-        fidelity,
+        fidelity: *fidelity,
         accuracy: root.optional("accuracy").map(|field| study::read_accuracy(&field)).transpose()?,
         mesh: mesh::read(&root.required("mesh")?, path)?,
         symmetry: match root.optional("symmetry") {
@@ -299,7 +307,7 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
         profiles: root.optional("profile").map_or(Ok(Vec::new()), |field| load::read_profiles(&field))?,
         study: root.optional("study").map_or(Ok(Study::default()), |field| study::read(&field))?,
         keys,
-        source,
+        source: Arc::clone(source),
     })
 }
 

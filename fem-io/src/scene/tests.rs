@@ -578,7 +578,7 @@ fn defaults_are_those_of_the_reader() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, GOOD).unwrap();
-    let given: Setting = explain(&path, &|_| Vec::new(), &[])
+    let given: Setting = explain(&read(&path).unwrap().source, &|_| Vec::new(), &[])
         .unwrap()
         .into_iter()
         .filter(|key| key.from == "default" && !key.key.contains('['))

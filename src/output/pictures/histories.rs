@@ -1,7 +1,8 @@
 //! Curves of an impact.
 
 use crate::effect::LedgerColumn;
-use fem_io::plot::{Axis, LinePlot, Physical, Series, Style, over_time};
+use fem_core::plugin::Dimension;
+use fem_io::plot::{Axis, LinePlot, Series, Style, over_time};
 use fem_io::tables::{HistoryRow, ImpactorRow};
 
 /// Share of the largest energy below which a curve would lie on the axis.
@@ -23,7 +24,7 @@ pub(super) fn displacement(title: &str, names: &[&str], rows: &[HistoryRow]) -> 
             Series::solid(label("plate", " under the impactor", name), curve(i, |r| r.plate_displacement_m)),
         ]
     });
-    unless_zero(over_time(title, "Displacement", Physical::Length, curves.collect()))
+    unless_zero(over_time(title, "Displacement", Dimension::LENGTH, curves.collect()))
 }
 
 /// Where the energy is, and its sum; what is lost counts. Parts too small to be seen are left out. `columns` are those of
@@ -52,7 +53,7 @@ pub(super) fn energy(title: &str, columns: &[&LedgerColumn], rows: &[HistoryRow]
     let total = rows.iter().enumerate().map(|(i, row)| (row.time_s, sum(i))).collect();
     let total = Series { label: "sum".into(), points: total, style: Style::Guide };
     let seen = parts.into_iter().chain(shares).filter(|part| size(part) > VISIBLE * largest);
-    unless_zero(over_time(title, "Energy", Physical::Energy, seen.chain([total]).collect()))
+    unless_zero(over_time(title, "Energy", Dimension::ENERGY, seen.chain([total]).collect()))
 }
 
 type Length = fn(&ImpactorRow) -> f64;
@@ -77,21 +78,13 @@ pub(super) fn force_displacement(title: &str, names: &[&str], rows: &[HistoryRow
             }
         }
     }
-    let largest =
-        |d: fn(&(f64, f64)) -> f64| series.iter().flat_map(|s| &s.points).map(|p| d(p).abs()).fold(0.0, f64::max);
-    let (length_unit, per_m) = Physical::Length.unit(largest(|p| p.0));
-    let (force_unit, per_n) = Physical::Force.unit(largest(|p| p.1));
+    let points = || series.iter().flat_map(|s| &s.points);
+    let (x, length) = Axis::fitting("Displacement", Dimension::LENGTH, points().map(|p| p.0));
+    let (y, force) = Axis::fitting("Contact force", Dimension::FORCE, points().map(|p| p.1));
     for p in series.iter_mut().flat_map(|s| &mut s.points) {
-        *p = (p.0 * per_m, p.1 * per_n);
+        *p = (p.0 / length, p.1 / force);
     }
-    unless_zero(LinePlot {
-        title: title.to_owned(),
-        x: Axis::linear("Displacement", length_unit),
-        y: Axis::linear("Contact force", force_unit),
-        series,
-        marks: Vec::new(),
-        doubts: Vec::new(),
-    })
+    unless_zero(LinePlot { title: title.to_owned(), x, y, series, marks: Vec::new(), doubts: Vec::new() })
 }
 
 /// The plot if something of it differs from zero.

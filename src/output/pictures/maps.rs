@@ -1,7 +1,8 @@
 //! Damage in plan and in a section.
 
 use crate::output::damage::{DamageMap, ModeName, PlaceDamage};
-use fem_io::plot::{Axis, Fill, MapCell, MapPlot, Panel, unit_of_time};
+use fem_core::plugin::Dimension;
+use fem_io::plot::{Axis, Fill, MapCell, MapPlot, Panel};
 
 /// Most plies and interfaces of a sheet.
 const SHEET: usize = 12;
@@ -42,11 +43,7 @@ pub fn plan(title: &str, damage: &DamageMap) -> MapPlot {
 
 fn plan_of(damage: &DamageMap, place: &PlaceDamage, near: &[bool]) -> Panel {
     let heading = match place.failed.first() {
-        Some(first) => {
-            let (unit, per_s) = unit_of_time(damage.end_s);
-            let digits = if unit == "ms" { 4 } else { 1 };
-            format!("{}: from {:.digits$} {unit}", name_place(damage, place), first.2 * per_s)
-        }
+        Some(first) => format!("{}: from {}", name_place(damage, place), Dimension::TIME.of(first.2)),
         None => format!("{}: up to {:.2}", name_place(damage, place), place.largest()),
     };
     let fills = fills(place);
@@ -102,8 +99,10 @@ pub fn section(title: &str, damage: &DamageMap) -> Option<MapPlot> {
     if cut.is_empty() {
         return None;
     }
-    let mut panel =
-        Panel { title: format!("section at y = {:.2} mm, interfaces as thin bands", y * 1e3), ..Panel::default() };
+    let mut panel = Panel {
+        title: format!("section at y = {}, interfaces as thin bands", Dimension::LENGTH.of(y)),
+        ..Panel::default()
+    };
     // Interfaces last: their bands lie above the plies.
     let (interfaces, plies): (Vec<_>, Vec<_>) = damage.places.iter().partition(|place| place.ply.contains('|'));
     for place in plies.into_iter().chain(interfaces) {
@@ -217,7 +216,7 @@ mod tests {
     fn a_sheet_shows_what_failed_and_what_came_next_to_failing() {
         let map = plan("t", &damage());
         assert_eq!(map.panels.len(), 1);
-        assert_eq!(map.panels[0].title, "ply 2 (90\u{b0}): from 200.0 µs");
+        assert_eq!(map.panels[0].title, "ply 2 (90\u{b0}): from 0.2 ms");
         let fills: Vec<_> = map.panels[0].cells.iter().map(|cell| cell.fill).collect();
         // The view is 2 mm round the middle of the failed cell and the impact, at 1.5 mm.
         assert_eq!(fills, [Fill::Share(0.7), Fill::Class(1), Fill::Share(0.9)]);

@@ -1,7 +1,8 @@
 //! The history as curves to move through.
 
 use crate::effect::LedgerColumn;
-use fem_io::plot::unit_of_time;
+use fem_core::plugin::Dimension;
+use fem_io::plot::Axis;
 use fem_io::results::Table;
 use serde::Serialize;
 
@@ -11,7 +12,7 @@ const ROWS: usize = 1200;
 /// Curves over a common time.
 #[derive(Debug, Serialize)]
 pub(super) struct Curves {
-    pub(super) time_unit: &'static str,
+    pub(super) time_unit: String,
     /// How many of that unit are a second.
     pub(super) per_s: f64,
     pub(super) times: Vec<f64>,
@@ -24,7 +25,7 @@ pub(super) struct Chart {
     /// Name of the picture that shows the same.
     pub(super) id: &'static str,
     pub(super) quantity: &'static str,
-    pub(super) unit: &'static str,
+    pub(super) unit: String,
     pub(super) series: Vec<Series>,
 }
 
@@ -34,12 +35,12 @@ pub(super) struct Series {
     pub(super) values: Vec<f64>,
 }
 
-/// A chart by its columns: which they are, what they show, and its unit with how many of it are an SI unit.
+/// A chart by its columns: which they are and what they show.
 struct Kind {
     id: &'static str,
     quantity: &'static str,
     endings: &'static [(&'static str, &'static str)],
-    unit: (&'static str, f64),
+    of: Dimension,
 }
 
 const KINDS: [Kind; 4] = [
@@ -47,19 +48,19 @@ const KINDS: [Kind; 4] = [
         id: "contact_force",
         quantity: "Contact force",
         endings: &[("contact_force_N", "contact force")],
-        unit: ("N", 1.0),
+        of: Dimension::FORCE,
     },
     Kind {
         id: "displacement",
         quantity: "Displacement",
         endings: &[("impactor_displacement_m", "impactor"), ("plate_displacement_m", "plate under the impactor")],
-        unit: ("mm", 1e3),
+        of: Dimension::LENGTH,
     },
     Kind {
         id: "velocity",
         quantity: "Velocity",
         endings: &[("impactor_velocity_m_s", "impactor")],
-        unit: ("m/s", 1.0),
+        of: Dimension::VELOCITY,
     },
     Kind {
         id: "energy",
@@ -71,7 +72,7 @@ const KINDS: [Kind; 4] = [
             ("contact_stored_J", "contact"),
             ("contact_dissipated_J", "lost in the contact"),
         ],
-        unit: ("J", 1.0),
+        of: Dimension::ENERGY,
     },
 ];
 
@@ -83,24 +84,26 @@ pub(super) fn curves(history: &Table, effects: &[&LedgerColumn]) -> Result<Optio
     let Some(times) = history.header.iter().position(|name| name == "time_s").map(|k| &values[k]) else {
         return Ok(None);
     };
-    let (time_unit, per_s) = unit_of_time(times.iter().fold(0.0, |m, t| m.max(*t)));
+    let (time, second) = Axis::fitting("Time", Dimension::TIME, times.iter().copied());
     let kept = choose_rows(&values, times.len());
-    let pick = |values: &[f64], factor: f64| kept.iter().map(|i| six_digits(values[*i] * factor)).collect::<Vec<_>>();
+    let pick = |values: &[f64], unit: f64| kept.iter().map(|i| six_digits(values[*i] / unit)).collect::<Vec<_>>();
     let chart = |kind: &Kind| {
-        let mut series = Vec::new();
-        let of_effects = effects.iter().filter(|column| kind.id == "energy" && column.unit == kind.unit.0);
+        let mut found: Vec<(String, &[f64])> = Vec::new();
+        let of_effects = effects.iter().filter(|column| kind.id == "energy" && column.unit == "J");
         let of_effects = of_effects.map(|column| (column.name, column.label));
         for (ending, name) in kind.endings.iter().copied().chain(of_effects) {
             for (column, values) in history.header.iter().zip(&values) {
                 let Some(impactor) = column.strip_suffix(ending) else { continue };
                 let of = impactor.strip_suffix('.').map_or(String::new(), |impactor| format!(", {impactor}"));
-                series.push(Series { name: format!("{name}{of}"), values: pick(values, kind.unit.1) });
+                found.push((format!("{name}{of}"), values));
             }
         }
-        Chart { id: kind.id, quantity: kind.quantity, unit: kind.unit.0, series }
+        let (axis, unit) = Axis::fitting(kind.quantity, kind.of, found.iter().flat_map(|f| f.1).copied());
+        let series = found.into_iter().map(|(name, values)| Series { name, values: pick(values, unit) });
+        Chart { id: kind.id, quantity: kind.quantity, unit: axis.unit, series: series.collect() }
     };
     let charts = KINDS.iter().map(chart).filter(|chart| !chart.series.is_empty()).collect();
-    Ok(Some(Curves { time_unit, per_s, times: pick(times, per_s), charts }))
+    Ok(Some(Curves { time_unit: time.unit, per_s: 1.0 / second, times: pick(times, second), charts }))
 }
 
 /// Rows at equal distances, and those of the lowest and the highest value of every column, ascending.
@@ -147,7 +150,7 @@ mod tests {
     fn a_long_history_is_thinned_but_for_its_peak() {
         let curves = curves(&table(10_000), &[]).unwrap().unwrap();
         assert!((ROWS / 2..ROWS + 8).contains(&curves.times.len()), "{}", curves.times.len());
-        assert_eq!((curves.time_unit, curves.times.last()), ("ms", Some(&9.999)));
+        assert_eq!((&*curves.time_unit, curves.times.last()), ("ms", Some(&9.999)));
         let names: Vec<_> = curves.charts.iter().map(|c| (c.id, c.series[0].name.as_str())).collect();
         assert_eq!(names, [("contact_force", "contact force, a"), ("displacement", "plate under the impactor, a")]);
         let peak = curves.charts[0].series[0].values.iter().position(|v| *v == 99.0).unwrap();

@@ -1,5 +1,6 @@
 //! A summary as headings, facts and tables, whatever is in it: units are in the names of its keys.
 
+use fem_core::plugin::{Dimension, digits};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -35,28 +36,53 @@ pub(super) struct Column {
     pub(super) numeric: bool,
 }
 
+/// The unit that the ending of a key stands for.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum KeyUnit {
+    /// One of a dimension, so large in SI units: it is shown with the prefix that fits.
+    Of(Dimension, f64),
+    /// One that is shown as it is; empty for none.
+    As(&'static str),
+}
+use KeyUnit::{As, Of};
+
 /// Endings of keys, and the units they stand for; of two that fit, the longer one.
-const UNITS: [(&str, &str); 19] = [
-    ("_N_per_m", "N/m"),
-    ("_J_m2", "J/m²"),
-    ("_rad_s", "rad/s"),
-    ("_N_m", "N/m"),
-    ("_m_s", "m/s"),
-    ("_N_s", "N s"),
-    ("_MPa", "MPa"),
-    ("_deg", "°"),
-    ("_MB", "MB"),
-    ("_mm", "mm"),
-    ("_Hz", "Hz"),
-    ("_kg", "kg"),
-    ("_Pa", "Pa"),
-    ("_J", "J"),
-    ("_g", "g"),
-    ("_N", "N"),
-    ("_m", "m"),
-    ("_s", "s"),
-    ("_relative", ""),
+const UNITS: [(&str, KeyUnit); 21] = [
+    ("_N_per_m", As("N/m")),
+    ("_J_m2", As("J/m^2")),
+    ("_rad_s", As("rad/s")),
+    ("_N_m", As("N/m")),
+    ("_m_s", Of(Dimension::VELOCITY, 1.0)),
+    ("_N_s", As("N s")),
+    ("_MPa", Of(Dimension::PRESSURE, 1e6)),
+    ("_mm2", Of(Dimension::AREA, 1e-6)),
+    ("_deg", As("°")),
+    ("_m2", Of(Dimension::AREA, 1.0)),
+    ("_MB", As("MB")),
+    ("_mm", Of(Dimension::LENGTH, 1e-3)),
+    ("_Hz", Of(Dimension::FREQUENCY, 1.0)),
+    ("_kg", Of(Dimension::MASS, 1.0)),
+    ("_Pa", Of(Dimension::PRESSURE, 1.0)),
+    ("_J", Of(Dimension::ENERGY, 1.0)),
+    ("_g", Of(Dimension::MASS, 1e-3)),
+    ("_N", Of(Dimension::FORCE, 1.0)),
+    ("_m", Of(Dimension::LENGTH, 1.0)),
+    ("_s", Of(Dimension::TIME, 1.0)),
+    ("_relative", As("")),
 ];
+
+impl KeyUnit {
+    /// The unit to show `values` in, and how many of it are one of these.
+    pub(super) fn fit(self, values: impl Iterator<Item = f64>) -> (&'static str, f64) {
+        match self {
+            As(symbol) => (symbol, 1.0),
+            Of(dimension, size) => {
+                let largest = values.fold(0.0, |most: f64, value| value.abs().max(most));
+                dimension.unit_for(size * largest).map_or(("", 1.0), |unit| (unit.symbol, size / unit.size))
+            }
+        }
+    }
+}
 
 const HEADINGS: [(&str, &str); 9] = [
     ("first_damage", "First damage of each mode, and its stress"),
@@ -70,21 +96,23 @@ const HEADINGS: [(&str, &str); 9] = [
     ("margins", "Reserve factors"),
 ];
 
-/// A key's name for people, the unit to show it in, and how many of that are one of the key's own: millimetres for metres,
-/// milliseconds for times, microseconds for steps.
-pub(super) fn split_unit(key: &str) -> (String, &'static str, f64) {
-    let (stem, unit) = UNITS.iter().find_map(|(end, unit)| Some((key.strip_suffix(end)?, *unit))).unwrap_or((key, ""));
-    let (unit, factor) = match unit {
-        "m" => ("mm", 1e3),
-        "s" if stem.ends_with("time") => ("ms", 1e3),
-        "s" if stem.ends_with("step") => ("µs", 1e6),
-        unit => (unit, 1.0),
-    };
+/// A key's name for people, and its unit.
+pub(super) fn split_unit(key: &str) -> (String, KeyUnit) {
+    let (stem, unit) =
+        UNITS.iter().find_map(|(end, unit)| Some((key.strip_suffix(end)?, *unit))).unwrap_or((key, As("")));
     let relative = if key.ends_with("_relative") { ", relative" } else { "" };
-    (format!("{}{relative}", stem.replace('_', " ")), unit, factor)
+    (format!("{}{relative}", stem.replace('_', " ")), unit)
 }
 
-/// A number, `factor` times, with six digits at most, as text; other values as they are.
+/// The numbers of a value.
+fn numbers(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(values) => values.iter().flat_map(numbers).collect(),
+        value => value.as_f64().into_iter().collect(),
+    }
+}
+
+/// A number, `factor` times, with four significant digits at most, as text; other values as they are.
 pub(super) fn format_value(value: &Value, factor: f64) -> String {
     match value {
         Value::String(text) => text.clone(),
@@ -96,12 +124,6 @@ pub(super) fn format_value(value: &Value, factor: f64) -> String {
         Value::Array(values) => values.iter().map(|value| format_value(value, factor)).collect::<Vec<_>>().join(", "),
         Value::Null | Value::Object(_) => String::new(),
     }
-}
-
-/// Six significant digits, by powers of ten where that is shorter.
-pub(super) fn digits(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    if rounded != 0.0 && !(1e-4..1e7).contains(&rounded.abs()) { format!("{rounded:e}") } else { rounded.to_string() }
 }
 
 /// The parts of a summary; its single values come first, under the heading `rest`.
@@ -130,8 +152,10 @@ pub(super) fn sections(summary: &Map<String, Value>, rest: &str) -> Vec<Section>
     sections
 }
 
-fn fact(key: &str, value: &Value) -> Fact {
-    let (label, unit, factor) = split_unit(key);
+/// A value by its key.
+pub(super) fn fact(key: &str, value: &Value) -> Fact {
+    let (label, unit) = split_unit(key);
+    let (unit, factor) = unit.fit(numbers(value).into_iter());
     Fact { label, value: format_value(value, factor), unit: unit.to_owned() }
 }
 
@@ -164,21 +188,18 @@ fn grid(rows: &[Value]) -> Grid {
         row.iter().find(|(name, _)| name == key).map(|(_, value)| (*value).clone())
     };
     let column = |key: &&String| {
-        let (label, unit, _) = split_unit(key);
-        let numeric = rows.iter().filter_map(|row| of(row, key)).all(|value| value.is_number());
-        Column { label, unit: unit.to_owned(), numeric }
+        let values = || rows.iter().filter_map(|row| of(row, key));
+        let (label, unit) = split_unit(key);
+        let (unit, factor) = unit.fit(values().flat_map(|value| numbers(&value)));
+        let numeric = values().all(|value| value.is_number());
+        (Column { label, unit: unit.to_owned(), numeric }, factor)
     };
-    Grid {
-        columns: keys.iter().map(column).collect(),
-        rows: rows
-            .iter()
-            .map(|row| {
-                keys.iter()
-                    .map(|key| of(row, key).map_or(String::new(), |v| format_value(&v, split_unit(key).2)))
-                    .collect()
-            })
-            .collect(),
-    }
+    let (columns, factors): (Vec<_>, Vec<_>) = keys.iter().map(column).unzip();
+    let shown = |row: &Vec<(String, &Value)>| {
+        let fields = keys.iter().zip(&factors);
+        fields.map(|(key, factor)| of(row, key).map_or(String::new(), |v| format_value(&v, *factor))).collect()
+    };
+    Grid { columns, rows: rows.iter().map(shown).collect() }
 }
 
 #[cfg(test)]
@@ -190,8 +211,8 @@ mod tests {
     #[test]
     fn keys_tell_their_units() {
         let both = |key: &str| {
-            let (label, unit, _) = split_unit(key);
-            format!("{label} [{unit}]")
+            let (label, unit) = split_unit(key);
+            format!("{label} [{}]", unit.fit([1.0].into_iter()).0)
         };
         let keys =
             ["peak_force_N", "static_stiffness_N_m", "final_impactor_velocity_m_s", "mesh_error_relative", "layers"];
@@ -203,11 +224,14 @@ mod tests {
             "layers []",
         ];
         assert_eq!(keys.map(both), want);
-        assert_eq!(["w_m", "end_time_s", "wall_s", "step_s"].map(|key| split_unit(key).2), [1e3, 1e3, 1.0, 1e6]);
-        assert_eq!(
-            [0.1 + 0.2, 1913.2097520488533, 7.633260460168094e-9, 0.0].map(digits),
-            ["0.3", "1913.21", "7.63326e-9", "0"]
-        );
+        let of = |key: &str, value: f64| {
+            let Fact { value, unit, .. } = fact(key, &value.into());
+            format!("{value} {unit}")
+        };
+        assert_eq!(of("w_m", 0.0135), "13.5 mm");
+        assert_eq!(of("step_s", 3.5e-7), "0.35 us");
+        assert_eq!(of("s11_MPa", 535.61), "535.6 MPa");
+        assert_eq!(of("energy_error_relative", 7.633260460168094e-9), "7.633e-9 ");
     }
 
     #[test]

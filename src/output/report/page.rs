@@ -8,6 +8,7 @@ use crate::error::Error;
 use crate::output::damage::DamageMap;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use fem_core::plugin::digits;
 use fem_io::plot::class_color;
 use fem_io::results::{Table, damaged};
 use fem_io::tables::EventRow;
@@ -129,9 +130,8 @@ fn figure(picture: &Picture, interactive: bool) -> Figure {
 /// What is asked first of an impact.
 fn tiles(summary: &Map<String, Value>) -> Vec<Fact> {
     let mut tiles = Vec::new();
-    let mut tile = |label: &str, value: Option<f64>, factor: f64, unit: &str| {
-        let shown = |v: f64| facts::digits(four(v * factor));
-        tiles.extend(value.map(|v| Fact { label: label.into(), value: shown(v), unit: unit.into() }));
+    let mut tile = |label: &str, key: &str, value: Option<f64>| {
+        tiles.extend(value.map(|v| Fact { label: label.into(), ..facts::fact(key, &v.into()) }));
     };
     let impacts: Vec<&Value> = match summary.get("impact") {
         Some(Value::Array(several)) => several.iter().collect(),
@@ -140,12 +140,16 @@ fn tiles(summary: &Map<String, Value>) -> Vec<Fact> {
     for impact in impacts {
         let of = impact.get("name").and_then(Value::as_str).map_or(String::new(), |name| format!(", {name}"));
         let number = |key: &str| impact.get(key).and_then(Value::as_f64);
-        tile(&format!("impact energy{of}"), number("energy_J"), 1.0, "J");
-        tile(&format!("peak force{of}"), number("peak_force_N"), 1.0, "N");
-        tile(&format!("peak deflection{of}"), number("peak_plate_displacement_m"), 1e3, "mm");
+        for (label, key) in [
+            ("impact energy", "energy_J"),
+            ("peak force", "peak_force_N"),
+            ("peak deflection", "peak_plate_displacement_m"),
+        ] {
+            tile(&format!("{label}{of}"), key, number(key));
+        }
     }
     let first = first_damage(summary).map(|event| event.time_s).reduce(f64::min);
-    tile("first damage", first, 1e3, "ms");
+    tile("first damage", "time_s", first);
     if summary.get("first_damage").is_some() && first.is_none() {
         tiles.push(Fact { label: "first damage".into(), value: "none".into(), unit: String::new() });
     }
@@ -156,18 +160,18 @@ fn four(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
-/// A CSV table; numbers have six digits.
+/// A CSV table; numbers have four significant digits.
 fn table(table: &Table) -> Grid {
     let number = |text: &str| text.parse::<f64>().ok();
     let column = |(k, key): (usize, &String)| {
-        let (label, unit, _) = facts::split_unit(key);
-        Column { label, unit: unit.to_owned(), numeric: table.rows.iter().all(|row| number(&row[k]).is_some()) }
+        let values = || table.rows.iter().map(|row| number(&row[k]));
+        let (label, unit) = facts::split_unit(key);
+        let (unit, factor) = unit.fit(values().flatten());
+        (Column { label, unit: unit.to_owned(), numeric: values().all(|value| value.is_some()) }, factor)
     };
-    let columns: Vec<_> = table.header.iter().enumerate().map(column).collect();
-    let factors: Vec<f64> = table.header.iter().map(|key| facts::split_unit(key).2).collect();
-    let field = |(text, factor): (&String, &f64)| {
-        number(text).map_or_else(|| text.clone(), |value| facts::digits(value * factor))
-    };
+    let (columns, factors): (Vec<_>, Vec<f64>) = table.header.iter().enumerate().map(column).unzip();
+    let field =
+        |(text, factor): (&String, &f64)| number(text).map_or_else(|| text.clone(), |value| digits(value * factor));
     let rows = table.rows.iter().map(|row| row.iter().zip(&factors).map(field).collect()).collect();
     Grid { columns, rows }
 }

@@ -11,6 +11,7 @@ use crate::cost::Cost;
 use crate::model::{Model, NamedProfile};
 use crate::output::summary::Advised;
 use crate::words::{append, append_symmetry, describe_condition, warn_of_condition, warn_of_softness};
+use fem_core::plugin::Dimension;
 use fem_core::profile::{Choice, Resultants, Way};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -151,19 +152,17 @@ impl StaticSummary {
     /// The summary as people read it.
     pub fn text(&self, cost: &Cost) -> String {
         let d = &self.largest_deflection;
-        let [fx, fy, fz] = self.resultant_N;
         let mut t = format!(
-            "{}\n  model     {} unknowns{}{}\n  loads     {fx:.4}, {fy:.4}, {fz:.4} N along x, y, z\n  \
-             response  largest deflection {:.6} mm at ({:.4}, {:.4}, {:.4}) mm; strain energy {:.6e} J\n",
+            "{}\n  model     {} unknowns{}{}\n  loads     {} along x, y, z\n  \
+             response  largest deflection {} at x, y, z = {}; strain energy {}\n",
             self.title,
             self.unknowns,
             append_symmetry(self.symmetry),
             append(self.substructures),
-            d.w_m * 1e3,
-            d.x_m * 1e3,
-            d.y_m * 1e3,
-            d.z_m * 1e3,
-            self.strain_energy_J
+            Dimension::FORCE.list(&self.resultant_N),
+            Dimension::LENGTH.of(d.w_m),
+            Dimension::LENGTH.list(&[d.x_m, d.y_m, d.z_m]),
+            Dimension::ENERGY.of(self.strain_energy_J)
         );
         if let Some(Newton { iterations, last_decrement }) = self.large_deflections {
             let _ = writeln!(
@@ -176,19 +175,19 @@ impl StaticSummary {
             let _ = writeln!(
                 t,
                 "  plies     follow laws, found in {iterations} Newton iterations (last decrement {last_decrement:.1e} of the work \
-                 of the loads); {lost:.6e} J lost in them; reserve factors are those of the stresses, not of the loads"
+                 of the loads); {} lost in them; reserve factors are those of the stresses, not of the loads",
+                Dimension::ENERGY.of(lost)
             );
         }
         for m in &self.margins {
             let _ = writeln!(
                 t,
-                "  margin    {} {}: reserve factor {:.4} in ply {} at ({:.3}, {:.3}) mm",
+                "  margin    {} {}: reserve factor {:.4} in ply {} at x, y = {}",
                 m.criterion,
                 m.mode,
                 m.reserve_factor,
                 m.ply,
-                m.x_m * 1e3,
-                m.y_m * 1e3
+                Dimension::LENGTH.list(&[m.x_m, m.y_m])
             );
         }
         self.advised.iter().for_each(|advised| t.push_str(&format!("  advised   {advised}\n")));

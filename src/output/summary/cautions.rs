@@ -3,6 +3,7 @@
 use super::ImpactSummary;
 use crate::analyses::impact::{Delaminated, Outcome};
 use crate::model::{Model, Plan};
+use fem_core::plugin::Dimension;
 use fem_failure::scan::{FailureEvent, first_per_mode};
 use fem_io::scene::Window;
 
@@ -43,10 +44,10 @@ fn unfinished(model: &Model, outcome: &Outcome, summary: &ImpactSummary) -> Opti
     let rising = if figures.peak_force_time_s > (1.0 - OVER) * last.time_s { "; it is still rising" } else { "" };
     let Plan::Impact(_) = &model.plan else { return None };
     Some(format!(
-        "the impact{name} is not over at {:.4} ms, its force is {:.1} N{rising}: peak force, impulse, deflection and `not reached` \
+        "the impact{name} is not over at {}, its force is {}{rising}: peak force, impulse, deflection and `not reached` \
          hold up to then; make `march.end` later",
-        last.time_s * 1e3,
-        row.contact_force_n
+        Dimension::TIME.of(last.time_s),
+        Dimension::FORCE.of(row.contact_force_n)
     ))
 }
 
@@ -76,14 +77,17 @@ fn delaminated(summary: &ImpactSummary) -> Option<String> {
     let peak = summary.impact.iter().map(|impact| impact.peak_force_N).fold(0.0, f64::max);
     let what = match threshold.interfaces {
         1 => "the laminate delaminates".to_owned(),
-        n => format!("all {n} interfaces between unlike plies delaminate (one alone at {:.1} N)", threshold.force_N),
+        n => format!(
+            "all {n} interfaces between unlike plies delaminate (one alone at {})",
+            Dimension::FORCE.of(threshold.force_N)
+        ),
     };
     let too = if threshold.time_s.is_some() { "too large" } else { "probably too large" };
     Some(format!(
-        "the force passes {:.1} N, at which {what}, at {:.4} ms and reaches {:.2} times that: from then on it is the force on a plate \
+        "the force passes {}, at which {what}, at {} and reaches {:.2} times that: from then on it is the force on a plate \
          without damage, and {too}",
-        threshold.force_of_all_N,
-        time * 1e3,
+        Dimension::FORCE.of(threshold.force_of_all_N),
+        Dimension::TIME.of(time),
         peak / threshold.force_of_all_N
     ))
 }
@@ -113,7 +117,7 @@ fn placed(model: &Model, event: &FailureEvent) -> Option<String> {
     if model.centres.iter().any(|centre| centre.at == [x, y]) {
         return None;
     }
-    let name = || format!("{} {} at ({:.3}, {:.3}) mm", event.criterion, event.mode, x * 1e3, y * 1e3);
+    let name = || format!("{} {} at x, y = {}", event.criterion, event.mode, Dimension::LENGTH.list(&[x, y]));
     let symmetry = model.plate.symmetry();
     let judged = |other: usize| model.watched.binary_search(&symmetry.quad(other)).is_ok();
     let corners = &mesh.quads[quad];
@@ -123,10 +127,10 @@ fn placed(model: &Model, event: &FailureEvent) -> Option<String> {
     }
     match model.window {
         Window::Square(side) if mesh.quality(quad).area > side * side => Some(format!(
-            "{} is in a cell of {:.2} mm, larger than the window of {:.2} mm: its time follows the mesh; refine there",
+            "{} is in a cell of {}, larger than the window of {}: its time follows the mesh; refine there",
             name(),
-            mesh.quality(quad).area.sqrt() * 1e3,
-            side * 1e3
+            Dimension::LENGTH.of(mesh.quality(quad).area.sqrt()),
+            Dimension::LENGTH.of(side)
         )),
         _ => None,
     }

@@ -2,6 +2,7 @@
 
 use crate::analyses::impact::{Accuracy, Outcome};
 use crate::model::Model;
+use fem_core::plugin::Dimension;
 use fem_core::tensor::Stress6;
 use fem_failure::scan::{Climb, Crests, FailureEvent, Peak, first_per_mode};
 use serde::Serialize;
@@ -71,17 +72,17 @@ impl OnsetBand {
 
     /// As people read it, after the onset's own time.
     pub(super) fn text(&self) -> String {
-        let ms = |time: Option<f64>| time.map_or_else(|| "not reached".to_owned(), |t| format!("{:.4} ms", 1e3 * t));
+        let at = |time: Option<f64>| time.map_or_else(|| "not reached".to_owned(), |t| Dimension::TIME.of(t));
         let errors = match self.stress_error_relative {
             None => "errors not estimated".to_owned(),
             Some(error) => {
-                let (from, to) = (ms(self.earliest_time_s), ms(self.latest_time_s));
+                let (from, to) = (at(self.earliest_time_s), at(self.latest_time_s));
                 format!("{from} to {to} for stresses {:.1} % larger or smaller", 1e2 * error)
             }
         };
-        let [lower, higher] = [self.strength_5_percent_lower_time_s, self.strength_5_percent_higher_time_s].map(ms);
+        let [lower, higher] = [self.strength_5_percent_lower_time_s, self.strength_5_percent_higher_time_s].map(at);
         let crests = self.crest_index.map_or_else(String::new, |index| {
-            let next = self.next_crest_time_s.map_or("none until the end".to_owned(), |t| format!("{:.4} ms", 1e3 * t));
+            let next = self.next_crest_time_s.map_or("none until the end".to_owned(), |t| Dimension::TIME.of(t));
             format!("; crests compete: one reaches an index of {index:.2}, the next to pass it comes at {next}")
         });
         format!("{errors}; strengths 5 % lower {lower}, 5 % higher {higher}{crests}")

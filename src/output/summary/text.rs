@@ -3,6 +3,7 @@
 use super::{ImpactSummary, ResultErrors};
 use crate::cost::Cost;
 use crate::words::{append, append_symmetry};
+use fem_core::plugin::{Dimension, digits};
 use std::fmt::Write as _;
 
 /// Errors that are nothing but rounding.
@@ -20,12 +21,12 @@ impl ImpactSummary {
         line(format_args!("{}", self.title));
         self.cautions.iter().for_each(|caution| line(format_args!("  caution   {caution}")));
         line(format_args!(
-            "  model     {} {} x {} layers, {} plies, {:.4} mm; {} unknowns{}, {} marched ({}){}",
+            "  model     {} {} x {} layers, {} plies, {}; {} unknowns{}, {} marched ({}){}",
             m.quads,
             m.shape,
             m.layers,
             m.plies,
-            m.thickness_mm,
+            Dimension::LENGTH.of(m.thickness_mm * 1e-3),
             m.unknowns,
             append(m.substructures),
             m.unknowns_marched,
@@ -34,16 +35,19 @@ impl ImpactSummary {
         ));
         for i in &self.impact {
             let name = i.name.as_ref().map_or(String::new(), |name| format!("{name}: "));
-            let start = i.start_time_s.map_or(String::new(), |t| format!(", there at {:.4} ms", t * 1e3));
+            let start = i.start_time_s.map_or(String::new(), |t| format!(", there at {}", Dimension::TIME.of(t)));
             line(format_args!(
-                "  impact    {name}{:.4} kg at {:.4} m/s = {:.4} J on a plate of {:.4} g{start}",
-                i.mass_kg, i.velocity_m_s, i.energy_J, m.plate_mass_g
+                "  impact    {name}{} at {} = {} on a plate of {}{start}",
+                Dimension::MASS.of(i.mass_kg),
+                Dimension::VELOCITY.of(i.velocity_m_s),
+                Dimension::ENERGY.of(i.energy_J),
+                Dimension::MASS.of(m.plate_mass_g * 1e-3)
             ));
             line(format_args!(
-                "  force     {name}peak {:.1} N at {:.4} ms; deflection {:.4} mm = {:.2} thicknesses; {} contact{}",
-                i.peak_force_N,
-                i.peak_force_time_s * 1e3,
-                i.peak_plate_displacement_m * 1e3,
+                "  force     {name}peak {} at {}; deflection {} = {:.2} thicknesses; {} contact{}",
+                Dimension::FORCE.of(i.peak_force_N),
+                Dimension::TIME.of(i.peak_force_time_s),
+                Dimension::LENGTH.of(i.peak_plate_displacement_m),
                 i.peak_plate_displacement_over_thickness,
                 i.contacts,
                 if i.contacts == 1 { "" } else { "s" }
@@ -51,34 +55,33 @@ impl ImpactSummary {
         }
         if self.first_damage.is_empty() {
             let end = self.impact.first().map_or(0.0, |i| i.end_time_s);
-            line(format_args!("  damage    none until {:.4} ms", end * 1e3));
+            line(format_args!("  damage    none until {}", Dimension::TIME.of(end)));
         } else {
             line(format_args!("  damage    first onset of each mode (plies are counted from the bottom)"));
             line(format_args!(
-                "            {:>9}  {:<15} {:<19} {:>7} {:>7}  {:>17}  {:>8}",
+                "            {:>9}  {:<15} {:<19} {:>7} {:>7}  {:>19}  {:>8}",
                 "time", "criterion", "mode", "ply", "angle", "x, y", "force"
             ));
             for d in &self.first_damage {
                 line(format_args!(
-                    "            {:>6.4} ms  {:<15} {:<19} {:>7} {:>5.0}°  {:>7.3}, {:>7.3} mm {:>7.1} N",
-                    d.event.time_s * 1e3,
+                    "            {:>9}  {:<15} {:<19} {:>7} {:>5.0}°  {:>19}  {:>8}",
+                    Dimension::TIME.of(d.event.time_s),
                     d.event.criterion,
                     d.event.mode,
                     d.event.ply,
                     d.event.angle_deg,
-                    d.event.x_m * 1e3,
-                    d.event.y_m * 1e3,
-                    d.contact_force_N
+                    Dimension::LENGTH.list(&[d.event.x_m, d.event.y_m]),
+                    Dimension::FORCE.of(d.contact_force_N)
                 ));
             }
         }
         for n in &self.not_reached {
             line(format_args!(
-                "            not reached: {} {}, largest index {:.3} at {:.4} ms, ply {}",
+                "            not reached: {} {}, largest index {:.3} at {}, ply {}",
                 n.criterion,
                 n.mode,
                 n.largest_index,
-                n.time_s * 1e3,
+                Dimension::TIME.of(n.time_s),
                 n.ply
             ));
         }
@@ -93,8 +96,8 @@ impl ImpactSummary {
             for d in &self.first_damage {
                 let s = &d.stress;
                 line(format_args!(
-                    "            {:>6.4} ms  {:<15} {:<19} {:>7.1} {:>7.1} {:>7.1} {:>7.1} {:>7.1} {:>7.1}  {}",
-                    d.event.time_s * 1e3,
+                    "            {:>9}  {:<15} {:<19} {:>7.1} {:>7.1} {:>7.1} {:>7.1} {:>7.1} {:>7.1}  {}",
+                    Dimension::TIME.of(d.event.time_s),
                     d.event.criterion,
                     d.event.mode,
                     s.s11_MPa,
@@ -111,8 +114,8 @@ impl ImpactSummary {
             line(format_args!("  when      how far these times are known"));
         }
         for band in &self.onsets {
-            let (time, criterion, mode) = (band.time_s * 1e3, &band.criterion, &band.mode);
-            line(format_args!("            {time:>6.4} ms  {criterion:<15} {mode:<19} {}", band.text()));
+            let (time, criterion, mode) = (Dimension::TIME.of(band.time_s), &band.criterion, &band.mode);
+            line(format_args!("            {time:>9}  {criterion:<15} {mode:<19} {}", band.text()));
         }
         if !self.modes.is_empty() {
             line(format_args!("  modes     shares of each mode in the deflection at rest and in the plate's energies"));
@@ -122,28 +125,29 @@ impl ImpactSummary {
             ));
             for (k, m) in self.modes.iter().enumerate() {
                 line(format_args!(
-                    "            {:>4} {:>9.1} Hz {:>6.1} % {:>6.1} % {:>6.1} %  {:>14.6} mm",
+                    "            {:>4} {:>12} {:>6.1} % {:>6.1} % {:>6.1} %  {:>17}",
                     k + 1,
-                    m.frequency_Hz,
+                    Dimension::FREQUENCY.of(m.frequency_Hz),
                     m.static_share * 1e2,
                     m.strain_share * 1e2,
                     m.kinetic_share * 1e2,
-                    m.largest_m * 1e3
+                    Dimension::LENGTH.of(m.largest_m)
                 ));
             }
         }
         if let Some(grown) = &self.delamination {
             line(format_args!(
-                "  delam.    {:.1} mm2 projected, {:.1} mm2 of all interfaces; {:.4} J dissipated in them ({:.4} J by friction), {:.4} J absorbed",
-                grown.projected_area_mm2,
-                grown.area_mm2,
-                grown.dissipated_J,
-                grown.dissipated_by_friction_J,
-                grown.absorbed_J
+                "  delam.    {} projected, {} of all interfaces; {} dissipated in them ({} by friction), {} absorbed",
+                Dimension::AREA.of(grown.projected_area_mm2 * 1e-6),
+                Dimension::AREA.of(grown.area_mm2 * 1e-6),
+                Dimension::ENERGY.of(grown.dissipated_J),
+                Dimension::ENERGY.of(grown.dissipated_by_friction_J),
+                Dimension::ENERGY.of(grown.absorbed_J)
             ));
             for one in grown.interfaces.iter().filter(|one| one.area_mm2 > 0.0) {
-                let since = one.since_s.map_or(String::new(), |t| format!(", from {:.4} ms", t * 1e3));
-                line(format_args!("            interface {:>7} {:>10.1} mm2{since}", one.interface, one.area_mm2));
+                let since = one.since_s.map_or(String::new(), |t| format!(", from {}", Dimension::TIME.of(t)));
+                let area = Dimension::AREA.of(one.area_mm2 * 1e-6);
+                line(format_args!("            interface {:>7} {area:>14}{since}", one.interface));
             }
         }
         if let (Some(d), None) = (&self.delamination_threshold, &self.delamination) {
@@ -152,31 +156,37 @@ impl ImpactSummary {
             let all = match d.interfaces {
                 1 => String::new(),
                 n => format!(
-                    " for one delamination, {:.1} N for all {n} interfaces between unlike plies",
-                    d.force_of_all_N
+                    " for one delamination, {} for all {n} interfaces between unlike plies",
+                    Dimension::FORCE.of(d.force_of_all_N)
                 ),
             };
             let reached = match (d.time_of_all_s, d.time_s) {
-                (Some(least), _) if d.interfaces == 1 => format!("first reached at {:.4} ms{by}", least * 1e3),
+                (Some(least), _) if d.interfaces == 1 => format!("first reached at {}{by}", Dimension::TIME.of(least)),
                 (Some(least), Some(one)) => {
-                    format!("first reached at {:.4} ms (one) and {:.4} ms (all){by}", one * 1e3, least * 1e3)
+                    format!(
+                        "first reached at {} (one) and {} (all){by}",
+                        Dimension::TIME.of(one),
+                        Dimension::TIME.of(least)
+                    )
                 }
-                (Some(least), None) => format!("that of all first reached at {:.4} ms{by}", least * 1e3),
+                (Some(least), None) => format!("that of all first reached at {}{by}", Dimension::TIME.of(least)),
                 (None, _) => format!("not reached: the peak is {:.2} of it", peak / d.force_of_all_N),
             };
             line(format_args!(
-                "  delam.    threshold of the contact force {:.1} N{all} (Davies-Olsson, D* {:.4} N m, GIIc {:.1} J/m2), {reached}; \
+                "  delam.    threshold of the contact force {}{all} (Davies-Olsson, D* {} N m, GIIc {} J/m^2), {reached}; \
                  a threshold, not a stress criterion",
-                d.force_N, d.bending_stiffness_N_m, d.toughness_GIIc_J_m2
+                Dimension::FORCE.of(d.force_N),
+                digits(d.bending_stiffness_N_m),
+                digits(d.toughness_GIIc_J_m2)
             ));
         }
         self.advised.iter().for_each(|advised| line(format_args!("  advised   {advised}")));
         line(format_args!(
-            "  accuracy  energy error {:.1e} of the impact energy; step {:.4} us{}",
+            "  accuracy  energy error {:.1e} of the impact energy; step {}{}",
             self.accuracy.energy_error_relative,
-            self.accuracy.step_s * 1e6,
+            Dimension::TIME.of(self.accuracy.step_s),
             match self.accuracy.stable_step_s {
-                Some(s) => format!(" (stable up to {:.4} us)", s * 1e6),
+                Some(s) => format!(" (stable up to {})", Dimension::TIME.of(s)),
                 None => " (no stability limit)".to_owned(),
             }
         ));
@@ -184,9 +194,9 @@ impl ImpactSummary {
             (self.accuracy.step_parts, self.accuracy.shortest_part_s, self.accuracy.longest_part_s)
         {
             line(format_args!(
-                "            steps in {parts} parts of {:.4} to {:.4} us, by an estimate of their error",
-                shortest * 1e6,
-                longest * 1e6
+                "            steps in {parts} parts of {} to {}, by an estimate of their error",
+                Dimension::TIME.of(shortest),
+                Dimension::TIME.of(longest)
             ));
         }
         for estimate in self.estimates() {

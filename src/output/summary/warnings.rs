@@ -4,6 +4,7 @@ use crate::advise::warn_of_coarse_cells;
 use crate::analyses::impact::{ContactRecord, Outcome, Sizes};
 use crate::model::{Model, Plan};
 use crate::words::warn_of_softness;
+use fem_core::plugin::Dimension;
 
 /// All of it.
 pub(super) fn of_contacts(model: &Model, sizes: &Sizes, outcome: &Outcome) -> impl Iterator<Item = String> {
@@ -26,10 +27,10 @@ fn deep(model: &Model, outcome: &Outcome) -> impl Iterator<Item = String> {
     let deep = outcome.contacts.iter().filter(move |contact| contact.deepest > DEEP * thickness);
     deep.map(move |contact| {
         format!(
-            "the impactor is pressed {:.4} mm deep into a plate of {:.4} mm: contact laws hold for indentations that \
+            "the impactor is pressed {} deep into a plate of {}: contact laws hold for indentations that \
              are small compared with the thickness, unless it is the impactor that yields",
-            contact.deepest * 1e3,
-            thickness * 1e3
+            Dimension::LENGTH.of(contact.deepest),
+            Dimension::LENGTH.of(thickness)
         )
     })
 }
@@ -59,8 +60,8 @@ fn long_steps(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Option<String>
         None => return None,
     };
     Some(format!(
-        "{why}, and an integrator that keeps the energy at every step does not show it there: set `march.step` to {:.3} us",
-        1e6 * shorter
+        "{why}, and an integrator that keeps the energy at every step does not show it there: set `march.step` to {}",
+        Dimension::TIME.of(shorter)
     ))
 }
 
@@ -77,10 +78,11 @@ fn few_looks(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Option<String> 
     let seldom = shortest < LOOKS * model.sample_every && model.sample_every > sizes.step;
     (seldom && !model.criteria.is_empty()).then(|| {
         format!(
-            "a contact lasted {:.4} us in all, and the criteria looked every {:.4} us: damage may have come and gone between two              looks; set `failure.every` to {:.4} us",
-            shortest * 1e6,
-            model.sample_every * 1e6,
-            (shortest / LOOKS).max(sizes.step) * 1e6
+            "a contact lasted {} in all, and the criteria looked every {}: damage may have come and gone between two looks; \
+             set `failure.every` to {}",
+            Dimension::TIME.of(shortest),
+            Dimension::TIME.of(model.sample_every),
+            Dimension::TIME.of((shortest / LOOKS).max(sizes.step))
         )
     })
 }
@@ -94,9 +96,11 @@ fn rare_rows(outcome: &Outcome) -> Option<String> {
     let mut each = outcome.contacts.iter().enumerate().map(|(i, contact)| (contact, shown(i)));
     let (contact, shown) = each.find(|(contact, shown)| *shown < (1.0 - MISSED) * contact.force.0)?;
     Some(format!(
-        "the rows of history.csv, and pictures of them, show a largest force of {shown:.1} N, and it was {:.1} N: set          `output.history_every` to {:.4} us or less",
-        contact.force.0,
-        contact.duration / f64::from(contact.count) / ROWS * 1e6
+        "the rows of history.csv, and pictures of them, show a largest force of {}, and it was {}: set \
+         `output.history_every` to {} or less",
+        Dimension::FORCE.of(shown),
+        Dimension::FORCE.of(contact.force.0),
+        Dimension::TIME.of(contact.duration / f64::from(contact.count) / ROWS)
     ))
 }
 

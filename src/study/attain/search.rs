@@ -11,6 +11,7 @@ use crate::study::axes::StudyAxis;
 use crate::study::plan::{MOST_CELLS, MOST_ENTRIES, below};
 use crate::study::predict::{self, Rates};
 use crate::study::record::RunRecord;
+use fem_core::plugin::Dimension;
 use fem_io::scene::{self, Setting};
 use std::path::Path;
 use tracing::info;
@@ -239,7 +240,10 @@ impl<'a> Search<'a> {
         let whole = self.price(&sizes, &tops).unwrap_or(0.0);
         if seconds + whole > rest {
             return Err(format!(
-                "the next level takes about {seconds:.1} s and a run of all {whole:.1} s; {rest:.1} s are left"
+                "the next level takes about {}, and a run of all {}; {} are left",
+                Dimension::TIME.of(seconds),
+                Dimension::TIME.of(whole),
+                Dimension::TIME.of(rest)
             ));
         }
         let levels = self.climbs.iter().zip(rungs).filter(|(climb, rung)| **rung != climb.own);

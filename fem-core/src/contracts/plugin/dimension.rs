@@ -10,6 +10,7 @@ pub struct Dimension(pub [f64; 4]);
 impl Dimension {
     pub const NONE: Self = Self([0.0; 4]);
     pub const LENGTH: Self = Self([1.0, 0.0, 0.0, 0.0]);
+    pub const AREA: Self = Self([2.0, 0.0, 0.0, 0.0]);
     pub const MASS: Self = Self([0.0, 1.0, 0.0, 0.0]);
     pub const TIME: Self = Self([0.0, 0.0, 1.0, 0.0]);
     pub const TEMPERATURE: Self = Self([0.0, 0.0, 0.0, 1.0]);

@@ -1,12 +1,14 @@
 //! How a plug-in introduces itself and receives its parameters.
 
 mod dimension;
+mod figure;
 mod params;
 mod row;
 mod value;
 
 pub use crate::words::spelling::unknown_key;
 pub use dimension::Dimension;
+pub use figure::{DisplayUnit, digits};
 pub use params::Params;
 pub use row::{ParamDefault, ParamForm, ParamInfo, Role, Unit};
 pub use value::{ParamError, Value};
