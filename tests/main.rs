@@ -28,7 +28,6 @@ mod model;
 mod overlooked;
 mod page;
 mod parameters;
-
 mod regions;
 mod registry;
 mod report;

@@ -46,7 +46,7 @@ fn the_three_commands_print_what_is_shown() {
         fs::write(&file, format!("{before}{}{printed}{}{after}", FENCES[0], FENCES[1])).unwrap();
         return;
     }
-    assert_eq!(masked(shown), masked(&printed), "write it anew: UPDATE_BOOK=1 cargo test --test all readme");
+    assert_eq!(masked(shown), masked(&printed), "write it anew: UPDATE_BOOK=1 cargo test --test all book");
 }
 
 /// The two commands for everything are there, and what must hold calls just these.
