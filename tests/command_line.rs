@@ -195,6 +195,7 @@ const PURE: &[&str] = &[
     "criterion_calls",
     "reserve_factor",
     "threads",
+    "format",
 ];
 
 /// Ends of the names of quantities: their units, or what makes them pure.

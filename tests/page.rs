@@ -177,7 +177,8 @@ fn static_and_modal_results_have_pages_without_what_they_lack() {
     fem(case.folder(), &["report", "modes"]).good();
     let page = case.read("modes/report.html");
     check_html(&page);
-    assert!(page.contains("id=\"modes-table\"") && !page.contains("id=\"pictures\""));
+    assert!(page.contains("id=\"modes-table\"") && page.contains("id=\"picture-mode_shapes\""));
+    assert!(page.contains("Lowest natural frequency "));
 }
 
 /// A run that a signal stopped has left a checkpoint; one that stopped by itself all of its results.

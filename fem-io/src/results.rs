@@ -58,6 +58,10 @@ pub fn read_text(path: &Path) -> Result<Option<String>, FileError> {
     String::from_utf8(bytes).map(Some).map_err(|_| damaged(path, "it is not text".into()))
 }
 
+/// Version of the format of results: JSON files say it as `format`, and the tables beside them are of the same. It grows when a
+/// key or a column goes or changes its meaning, not when one comes.
+pub const FORMAT: u32 = 1;
+
 /// The content of a JSON file; `None` where there is none.
 ///
 /// # Errors

@@ -20,6 +20,7 @@ use tracing::{debug, info};
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[allow(missing_docs, non_snake_case)]
 pub struct Cost {
+    pub format: u32,
     pub threads: usize,
     pub phases: Vec<Phase>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -67,6 +68,7 @@ impl Cost {
             info!(phase = name, wall_s, cpu_s, "done");
         }
         Self {
+            format: fem_io::results::FORMAT,
             threads: threads.get(),
             phases,
             peak_memory_MB: peak_memory().map(|b| b as f64 / 1e6),

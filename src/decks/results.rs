@@ -28,6 +28,8 @@ use std::num::NonZeroUsize;
 pub struct DeckImpact {
     pub title: String,
     pub version: &'static str,
+    /// [`fem_io::results::FORMAT`].
+    pub format: u32,
     pub completed: bool,
     pub model: DeckSize,
     pub impact: ImpactFigures,
@@ -134,6 +136,7 @@ impl Impact<'_> {
         DeckImpact {
             title: march.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
+            format: fem_io::results::FORMAT,
             completed: true,
             model: DeckSize {
                 substructures: deck.substructures.len(),

@@ -48,7 +48,7 @@ fn write(dir: &OutputDir, model: &Model, found: &Found) -> Result<Option<Phase>,
             fields::write_static(dir, model, &own.solution)
         }
         Found::Modes(own) => {
-            output::modes::write(dir, &own.solution, &own.summary)?;
+            output::modes::write(dir, model, &own.solution, &own.summary)?;
             fields::write_modes(dir, model, &own.solution)
         }
         // A march writes as it goes on.

@@ -20,6 +20,9 @@ const LARGEST: f64 = 1e9;
 /// Where a symmetry was computed it is unfolded: every cell of the mesh stands for itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DamageMap {
+    /// [`fem_io::results::FORMAT`].
+    #[serde(default)]
+    pub format: u32,
     /// End of the march, s.
     pub end_s: f64,
     /// Modes of all criteria, what `places` count in.
@@ -145,6 +148,7 @@ impl DamageMap {
         let z = model.laminate.boundaries();
         let plies = model.laminate.plies.iter().zip(z.windows(2));
         Some(Self {
+            format: fem_io::results::FORMAT,
             end_s: outcome.history.last().map_or(0.0, |row| row.time_s),
             modes: modes.collect(),
             plies: plies.map(|(ply, z)| PlyBand { angle_deg: ply.angle_deg, z_m: [z[0], z[1]] }).collect(),
@@ -228,6 +232,7 @@ mod tests {
 
     fn map() -> DamageMap {
         DamageMap {
+            format: fem_io::results::FORMAT,
             end_s: 1e-3,
             modes: vec![
                 ModeName { criterion: "c".into(), mode: "m".into() },

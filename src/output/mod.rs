@@ -10,6 +10,7 @@ mod modal;
 pub mod modes;
 pub mod pictures;
 pub mod report;
+mod shapes;
 pub mod statics;
 pub mod summary;
 

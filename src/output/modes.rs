@@ -5,9 +5,11 @@ use crate::analyses::modes::ModesSolution;
 use crate::cost::Cost;
 use crate::error::Error;
 use crate::model::Model;
+use crate::output::shapes::mode_shapes;
 use crate::words::{append, append_symmetry};
 use fem_core::plugin::Dimension;
 use fem_io::files::OutputDir;
+use fem_io::plot;
 use fem_io::tables::{self, TableValue};
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -19,6 +21,8 @@ use std::fmt::Write as _;
 pub struct ModesSummary {
     pub title: String,
     pub version: &'static str,
+    /// [`fem_io::results::FORMAT`].
+    pub format: u32,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub symmetry: Option<&'static str>,
     pub unknowns: usize,
@@ -39,6 +43,7 @@ impl ModesSummary {
         Self {
             title: model.origin.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
+            format: fem_io::results::FORMAT,
             symmetry: model.plate.symmetry().name(),
             unknowns: solution.unknowns,
             substructures: solution.substructures,
@@ -59,8 +64,10 @@ impl ModesSummary {
         let divided = append(self.substructures);
         let mut t = format!("{}\n  model     {} unknowns{divided}{symmetry}{alone}\n", self.title, self.unknowns);
         t.push_str("  mode        frequency   mass along x, y, z\n");
+        let largest = self.effective_masses_kg.iter().flatten().fold(0.0, |most: f64, m| most.max(*m));
+        let rounded = |m: &f64| if *m < EXACT * largest { 0.0 } else { *m };
         for (i, (f, m)) in self.frequencies_Hz.iter().zip(&self.effective_masses_kg).enumerate() {
-            let (frequency, masses) = (Dimension::FREQUENCY.of(*f), Dimension::MASS.list(m));
+            let (frequency, masses) = (Dimension::FREQUENCY.of(*f), Dimension::MASS.list(&m.each_ref().map(rounded)));
             let _ = writeln!(t, "  {:>4}   {frequency:>14}   {masses}", i + 1);
         }
         let Self { elements, elements_reused, solves, .. } = self;
@@ -71,11 +78,14 @@ impl ModesSummary {
     }
 }
 
-/// Writes `summary.json` and `modes.csv`.
+/// Share of the largest mass below which one is rounding.
+const EXACT: f64 = 1e-9;
+
+/// Writes `summary.json`, `modes.csv` and, unless the scene wants no pictures, `mode_shapes` as SVG and PNG.
 ///
 /// # Errors
 /// A folder that cannot be written, a number that is not finite.
-pub fn write(dir: &OutputDir, solution: &ModesSolution, summary: &ModesSummary) -> Result<(), Error> {
+pub fn write(dir: &OutputDir, model: &Model, solution: &ModesSolution, summary: &ModesSummary) -> Result<(), Error> {
     tables::write_json(dir, "summary.json", summary)?;
     let header =
         ["mode", "frequency_Hz", "omega_rad_s", "effective_mass_x_kg", "effective_mass_y_kg", "effective_mass_z_kg"];
@@ -85,5 +95,8 @@ pub fn write(dir: &OutputDir, solution: &ModesSolution, summary: &ModesSummary) 
     };
     let each = solution.modes.omega.iter().zip(&solution.effective_masses).enumerate();
     tables::write_columns(dir, "modes.csv", &header, each.map(row))?;
+    if model.output.plots && !solution.modes.omega.is_empty() {
+        plot::map_plot(&mode_shapes(model, solution))?.write(dir, "mode_shapes")?;
+    }
     Ok(())
 }

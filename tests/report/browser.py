@@ -9,6 +9,7 @@ import base64
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -182,6 +183,29 @@ def use_events(browser):
     browser.ask("(() => { const f = document.querySelector('.filter input'); f.value = ''; f.dispatchEvent(new Event('input')); })()")
 
 
+def use_screens(browser):
+    """The first screen says what matters, at any width and in both colour schemes, and so does a print."""
+    first = browser.ask("(document.querySelector('#first') ?? {}).textContent ?? ''")
+    top = browser.ask("(() => { const e = document.querySelector('#first'); return e ? e.getBoundingClientRect().bottom + scrollY : 0; })()")
+    expect(top < 900, f"what failed first stands on the first screen: {top}")
+    if "First damage" in first:
+        for part in (r"in (ply|interface) \d", r"at [\d.]+ (ns|us|ms|s)\b", r"under [\d.]+ (N|kN)\b", r"(Nothing speaks|Not to be trusted|To be read|stopped early)"):
+            expect(re.search(part, first), f"the first screen has {part}: {first}")
+    browser.ask("document.querySelectorAll('details').forEach(d => { d.open = true; })")
+    for scheme in ("light", "dark"):
+        browser.call("Emulation.setEmulatedMedia", media="screen", features=[{"name": "prefers-color-scheme", "value": scheme}])
+        for width in (1280, 390):
+            browser.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=width < 500)
+            wide = browser.ask("document.documentElement.scrollWidth")
+            expect(wide <= width, f"nothing is wider than {width} px: {wide}")
+        light = browser.ask("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+        expect(light == (scheme == "light"), f"the page is {scheme}")
+    browser.call("Emulation.setEmulatedMedia", media="print", features=[])
+    expect(browser.ask("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)", "a print is on white")
+    browser.call("Emulation.setEmulatedMedia", media="screen", features=[])
+    browser.call("Emulation.clearDeviceMetricsOverride")
+
+
 def main(page, screenshot=None):
     program = next((found for name in BROWSERS if (found := shutil.which(name))), None)
     if program is None:
@@ -199,6 +223,7 @@ def main(page, screenshot=None):
             for selector, use in (("svg.chart", use_chart), ("#map", use_damage), ("#events-table", use_events)):
                 if has(selector):
                     use(browser)
+            use_screens(browser)
             if screenshot:
                 browser.ask("scrollTo(0, 0)")
                 browser.screenshot(screenshot)

@@ -81,10 +81,10 @@ impl Axis {
         Self { label: label.into(), unit: unit.into(), scale: Scale::Linear }
     }
 
-    /// A linear axis for `values` in SI units, in the unit that fits them; with how large that is.
+    /// A linear axis for `values` in SI units, in the unit that fits them; with how many of that are one in SI units.
     pub fn fitting(label: &str, of: Dimension, values: impl Iterator<Item = f64>) -> (Self, f64) {
         match of.unit_for(values.fold(0.0, |most, value| value.abs().max(most))) {
-            Some(unit) => (Self::linear(label, unit.symbol), unit.size),
+            Some(unit) => (Self::linear(label, unit.symbol), unit.per),
             None => (Self::linear(label, of.to_string()), 1.0),
         }
     }

@@ -9,7 +9,7 @@ pub fn over_time(title: &str, quantity: &str, of: Dimension, curves: Vec<Series>
     let (time, x) = Axis::fitting("Time", Dimension::TIME, points().map(|p| p.0));
     let (value, y) = Axis::fitting(quantity, of, points().map(|p| p.1));
     let shown = |curve: &Series| Series {
-        points: curve.points.iter().map(|(t, v)| (t / x, v / y)).collect(),
+        points: curve.points.iter().map(|(t, v)| (t * x, v * y)).collect(),
         label: curve.label.clone(),
         style: curve.style,
     };
@@ -54,7 +54,7 @@ pub fn force_history(
     let mut events: Vec<_> = events.iter().collect();
     events.sort_by(|a, b| a.0.total_cmp(&b.0));
     let height = |x: f64| plot.series.iter().map(|curve| height_at(&curve.points, x)).reduce(f64::max).unwrap_or(0.0);
-    let mark = |t: f64, label: String| Mark { x: t / unit, y: height(t / unit), label };
+    let mark = |t: f64, label: String| Mark { x: t * unit, y: height(t * unit), label };
     let named = events.iter().take(NAMED_EVENTS);
     let mut marks: Vec<_> = named.map(|(t, name)| mark(*t, format!("{name}, {}", Dimension::TIME.of(*t)))).collect();
     if let Some((t, _)) = events.get(NAMED_EVENTS) {
@@ -144,9 +144,9 @@ mod tests {
         let drawn: Vec<_> = plot.series.iter().map(|s| (s.label.as_str(), s.points.clone(), s.style)).collect();
         let line = |points: [(f64, f64); 2]| points.to_vec();
         let want = [
-            ("a", line([(0.0, 0.0), (1e3, 4.0)]), Style::Solid),
-            ("b", line([(0.0, 0.5), (1e3, 2.0)]), Style::Solid),
-            ("failure", line([(0.0, 1.0), (1e3, 1.0)]), Style::Dashed),
+            ("a", line([(0.0, 0.0), (1.0, 4.0)]), Style::Solid),
+            ("b", line([(0.0, 0.5), (1.0, 2.0)]), Style::Solid),
+            ("failure", line([(0.0, 1.0), (1.0, 1.0)]), Style::Dashed),
         ];
         assert_eq!(drawn, want);
         assert!(line_plot(&plot).unwrap().svg.contains(">failure</text>"));

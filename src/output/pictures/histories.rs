@@ -82,7 +82,7 @@ pub(super) fn force_displacement(title: &str, names: &[&str], rows: &[HistoryRow
     let (x, length) = Axis::fitting("Displacement", Dimension::LENGTH, points().map(|p| p.0));
     let (y, force) = Axis::fitting("Contact force", Dimension::FORCE, points().map(|p| p.1));
     for p in series.iter_mut().flat_map(|s| &mut s.points) {
-        *p = (p.0 / length, p.1 / force);
+        *p = (p.0 * length, p.1 * force);
     }
     unless_zero(LinePlot { title: title.to_owned(), x, y, series, marks: Vec::new(), doubts: Vec::new() })
 }

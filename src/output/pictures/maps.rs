@@ -196,6 +196,7 @@ mod tests {
             failed,
         };
         DamageMap {
+            format: fem_io::results::FORMAT,
             end_s: 1e-3,
             modes: ["fibre", "matrix"].map(|mode| ModeName { criterion: "c".into(), mode: mode.into() }).to_vec(),
             plies: vec![PlyBand { angle_deg: 0.0, z_m: [-1e-4, 0.0] }, PlyBand { angle_deg: 90.0, z_m: [0.0, 1e-4] }],

@@ -78,11 +78,16 @@ function makeChart(figure, curves, chart, marks) {
     add(svg, "text", { x: 20, y: middle, "text-anchor": "middle", fill: "#222", transform: `rotate(-90 20 ${middle})` },
       `${chart.quantity} (${chart.unit})`);
     const plot = add(svg, "g", { "clip-path": `url(#${clip})` });
+    let row = 0;
     for (const [time, name] of marks) {
       const place = x(time * perSecond);
       const line = add(plot, "line",
         { x1: place, x2: place, y1: TOP, y2: HEIGHT - BOTTOM, stroke: "#b34e00", "stroke-dasharray": "5 4" });
       add(line, "title", {}, name);
+      const right = place > (LEFT + WIDTH - RIGHT) / 2;
+      add(plot, "text", { x: place + (right ? -6 : 6), y: TOP + 18 + 20 * (row % 8), "text-anchor": right ? "end" : "start",
+        "font-size": "16", fill: "#b34e00", stroke: "#fff", "stroke-width": "4", "paint-order": "stroke" }, name);
+      row += 1;
     }
     chart.series.forEach(({ values }, k) => {
       let points = "";

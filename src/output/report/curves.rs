@@ -86,7 +86,7 @@ pub(super) fn curves(history: &Table, effects: &[&LedgerColumn]) -> Result<Optio
     };
     let (time, second) = Axis::fitting("Time", Dimension::TIME, times.iter().copied());
     let kept = choose_rows(&values, times.len());
-    let pick = |values: &[f64], unit: f64| kept.iter().map(|i| six_digits(values[*i] / unit)).collect::<Vec<_>>();
+    let pick = |values: &[f64], unit: f64| kept.iter().map(|i| six_digits(values[*i] * unit)).collect::<Vec<_>>();
     let chart = |kind: &Kind| {
         let mut found: Vec<(String, &[f64])> = Vec::new();
         let of_effects = effects.iter().filter(|column| kind.id == "energy" && column.unit == "J");
@@ -103,7 +103,7 @@ pub(super) fn curves(history: &Table, effects: &[&LedgerColumn]) -> Result<Optio
         Chart { id: kind.id, quantity: kind.quantity, unit: axis.unit, series: series.collect() }
     };
     let charts = KINDS.iter().map(chart).filter(|chart| !chart.series.is_empty()).collect();
-    Ok(Some(Curves { time_unit: time.unit, per_s: 1.0 / second, times: pick(times, second), charts }))
+    Ok(Some(Curves { time_unit: time.unit, per_s: second, times: pick(times, second), charts }))
 }
 
 /// Rows at equal distances, and those of the lowest and the highest value of every column, ascending.

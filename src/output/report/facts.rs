@@ -78,7 +78,7 @@ impl KeyUnit {
             As(symbol) => (symbol, 1.0),
             Of(dimension, size) => {
                 let largest = values.fold(0.0, |most: f64, value| value.abs().max(most));
-                dimension.unit_for(size * largest).map_or(("", 1.0), |unit| (unit.symbol, size / unit.size))
+                dimension.unit_for(size * largest).map_or(("", 1.0), |unit| (unit.symbol, size * unit.per))
             }
         }
     }
@@ -130,8 +130,9 @@ pub(super) fn format_value(value: &Value, factor: f64) -> String {
 pub(super) fn sections(summary: &Map<String, Value>, rest: &str) -> Vec<Section> {
     let mut single = Section { id: "general".into(), heading: rest.to_owned(), facts: Vec::new(), table: None };
     let mut sections = Vec::new();
-    for (key, value) in
-        summary.iter().filter(|(key, _)| !["title", "warnings", "cautions", "stopped"].contains(&key.as_str()))
+    for (key, value) in summary
+        .iter()
+        .filter(|(key, _)| !["title", "format", "warnings", "cautions", "stopped"].contains(&key.as_str()))
     {
         let plain = || key.replace('_', " ");
         let heading =

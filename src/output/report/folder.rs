@@ -6,19 +6,20 @@ use crate::analyses::impact::CHECKPOINT;
 use crate::error::Error;
 use crate::output::damage::{self, DamageMap};
 use fem_io::files::{self, FileError};
-use fem_io::results::{Table, damaged, read_bytes, read_document, read_json, read_table, read_text};
+use fem_io::results::{FORMAT, Table, damaged, read_bytes, read_document, read_json, read_table, read_text};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Pictures of a run and what they show, in the order of the page; those of profiles come after them.
-const PICTURES: [(&str, &str); 8] = [
+const PICTURES: [(&str, &str); 9] = [
     ("contact_force", "Contact force over time"),
     ("displacement", "Displacements over time"),
     ("energy", "Energies over time"),
     ("force_displacement", "Contact force over displacements"),
     ("index_history", "Failure indices at the watched places"),
     ("modal_coordinates", "Modes in the deflection"),
+    ("mode_shapes", "Shapes of the lowest modes"),
     ("c_scan", "Delaminations in plan"),
     ("damage_map", "Damage in plan"),
 ];
@@ -77,6 +78,12 @@ impl Folder {
         let summary: Option<Value> = files.read("summary.json", read_document)?;
         if summary.as_ref().is_some_and(|summary| summary.get("title").and_then(Value::as_str).is_none()) {
             return Err(damaged(&file("summary.json"), "it has no title".into()).into());
+        }
+        if let Some(newer) = summary.as_ref().and_then(|s| s.get("format")?.as_u64()).filter(|f| *f > u64::from(FORMAT))
+        {
+            let why =
+                format!("its format is {newer}, and this program reads formats up to {FORMAT}: use a newer `fem`");
+            return Err(damaged(&file("summary.json"), why).into());
         }
         let damage: Option<DamageMap> = files.read(damage::FILE, read_json)?;
         if let Some(why) = damage.as_ref().and_then(|damage| damage.check().err()) {

@@ -7,6 +7,7 @@ mod curves;
 mod drawing;
 mod facts;
 mod folder;
+mod headline;
 mod page;
 
 use crate::effect::LedgerColumn;

@@ -3,6 +3,7 @@
 use super::curves::{Curves, curves};
 use super::facts::{self, Column, Fact, Grid, Section};
 use super::folder::{Folder, Picture};
+use super::headline::Headline;
 use crate::effect::LedgerColumn;
 use crate::error::Error;
 use crate::output::damage::DamageMap;
@@ -74,6 +75,7 @@ pub(super) fn render(folder: &Folder, columns: &[&LedgerColumn]) -> Result<Strin
         finished => folder.summary.is_some(),
         stopped => text("stopped"),
         cautions => any(list(summary, "cautions").filter_map(Value::as_str).collect::<Vec<_>>()),
+        headline => any(Headline::new(summary)),
         tiles => any(tiles(summary)),
         warnings => any(warnings),
         sections => any(facts::sections(summary, "General")),
@@ -147,6 +149,9 @@ fn tiles(summary: &Map<String, Value>) -> Vec<Fact> {
         ] {
             tile(&format!("{label}{of}"), key, number(key));
         }
+        let left = number("mass_kg").zip(number("final_impactor_velocity_m_s")).map(|(m, v)| 0.5 * m * v * v);
+        let lost = number("energy_J").zip(left).map(|(before, after)| before - after);
+        tile(&format!("energy that the impactor lost{of}"), "energy_J", lost);
     }
     let first = first_damage(summary).map(|event| event.time_s).reduce(f64::min);
     tile("first damage", "time_s", first);

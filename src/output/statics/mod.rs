@@ -34,6 +34,8 @@ fn warn_of_residual(residual: f64) -> Option<String> {
 pub struct StaticSummary {
     pub title: String,
     pub version: &'static str,
+    /// [`fem_io::results::FORMAT`].
+    pub format: u32,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub symmetry: Option<&'static str>,
     pub unknowns: usize,
@@ -120,6 +122,7 @@ impl StaticSummary {
         Self {
             title: model.origin.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
+            format: fem_io::results::FORMAT,
             symmetry: model.plate.symmetry().name(),
             unknowns: solution.unknowns,
             substructures: solution.substructures,

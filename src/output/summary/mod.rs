@@ -32,6 +32,8 @@ use std::fmt::{self, Display};
 pub struct ImpactSummary {
     pub title: String,
     pub version: &'static str,
+    /// [`fem_io::results::FORMAT`].
+    pub format: u32,
     pub fidelity: &'static str,
     pub completed: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -366,6 +368,7 @@ impl ImpactSummary {
         let summary = Self {
             title: model.origin.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
+            format: fem_io::results::FORMAT,
             fidelity: model.origin.fidelity.name(),
             completed: outcome.stopped.is_none(),
             stopped: outcome.stopped.clone(),

@@ -7,31 +7,31 @@ use super::Dimension;
 pub struct DisplayUnit {
     /// As it is written behind a number; empty for a pure number.
     pub symbol: &'static str,
-    /// One of it in SI units.
-    pub size: f64,
+    /// How many of it are one in SI units.
+    pub per: f64,
     /// The smallest value in SI units that it is used for.
     from: f64,
 }
 
-const fn unit(symbol: &'static str, size: f64, from: f64) -> DisplayUnit {
-    DisplayUnit { symbol, size, from }
+const fn unit(symbol: &'static str, per: f64, from: f64) -> DisplayUnit {
+    DisplayUnit { symbol, per, from }
 }
 
 /// Dimensions and their units, the largest first.
 const UNITS: [(Dimension, &[DisplayUnit]); 10] = [
     (Dimension::NONE, &[unit("", 1.0, 0.0)]),
-    (Dimension::LENGTH, &[unit("m", 1.0, 1.0), unit("mm", 1e-3, 1e-4), unit("um", 1e-6, 1e-7), unit("nm", 1e-9, 0.0)]),
-    (Dimension::MASS, &[unit("kg", 1.0, 1.0), unit("g", 1e-3, 1e-4), unit("mg", 1e-6, 0.0)]),
-    (Dimension::TIME, &[unit("s", 1.0, 0.1), unit("ms", 1e-3, 1e-4), unit("us", 1e-6, 1e-7), unit("ns", 1e-9, 0.0)]),
-    (Dimension::VELOCITY, &[unit("km/s", 1e3, 1e4), unit("m/s", 1.0, 0.1), unit("mm/s", 1e-3, 0.0)]),
-    (Dimension::FREQUENCY, &[unit("MHz", 1e6, 1e6), unit("kHz", 1e3, 1e4), unit("Hz", 1.0, 0.0)]),
-    (Dimension::FORCE, &[unit("MN", 1e6, 1e7), unit("kN", 1e3, 1e4), unit("N", 1.0, 0.1), unit("mN", 1e-3, 0.0)]),
-    (Dimension::ENERGY, &[unit("kJ", 1e3, 1e4), unit("J", 1.0, 0.1), unit("mJ", 1e-3, 1e-4), unit("uJ", 1e-6, 0.0)]),
+    (Dimension::LENGTH, &[unit("m", 1.0, 1.0), unit("mm", 1e3, 1e-4), unit("um", 1e6, 1e-7), unit("nm", 1e9, 0.0)]),
+    (Dimension::MASS, &[unit("kg", 1.0, 1.0), unit("g", 1e3, 1e-4), unit("mg", 1e6, 0.0)]),
+    (Dimension::TIME, &[unit("s", 1.0, 0.1), unit("ms", 1e3, 1e-4), unit("us", 1e6, 1e-7), unit("ns", 1e9, 0.0)]),
+    (Dimension::VELOCITY, &[unit("km/s", 1e-3, 1e4), unit("m/s", 1.0, 0.1), unit("mm/s", 1e3, 0.0)]),
+    (Dimension::FREQUENCY, &[unit("MHz", 1e-6, 1e6), unit("kHz", 1e-3, 1e4), unit("Hz", 1.0, 0.0)]),
+    (Dimension::FORCE, &[unit("MN", 1e-6, 1e7), unit("kN", 1e-3, 1e4), unit("N", 1.0, 0.1), unit("mN", 1e3, 0.0)]),
+    (Dimension::ENERGY, &[unit("kJ", 1e-3, 1e4), unit("J", 1.0, 0.1), unit("mJ", 1e3, 1e-4), unit("uJ", 1e6, 0.0)]),
     (
         Dimension::PRESSURE,
-        &[unit("GPa", 1e9, 1e10), unit("MPa", 1e6, 1e5), unit("kPa", 1e3, 100.0), unit("Pa", 1.0, 0.0)],
+        &[unit("GPa", 1e-9, 1e10), unit("MPa", 1e-6, 1e5), unit("kPa", 1e-3, 100.0), unit("Pa", 1.0, 0.0)],
     ),
-    (Dimension::AREA, &[unit("m^2", 1.0, 0.1), unit("mm^2", 1e-6, 0.0)]),
+    (Dimension::AREA, &[unit("m^2", 1.0, 0.1), unit("mm^2", 1e6, 0.0)]),
 ];
 
 impl Dimension {
@@ -74,7 +74,7 @@ impl Dimension {
 impl DisplayUnit {
     /// `value`, in SI units, as a number in this unit.
     pub fn number(self, value: f64) -> String {
-        digits(value / self.size)
+        digits(value * self.per)
     }
 }
 

@@ -1,0 +1,143 @@
+//! What is read first on a page: what failed first, and what speaks against the numbers.
+
+use fem_core::plugin::{Dimension, digits};
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+/// The first lines of a page.
+#[derive(Debug, PartialEq, Serialize)]
+pub(super) struct Headline {
+    /// What happened first.
+    first: String,
+    /// Whether something speaks against the results.
+    doubt: bool,
+    /// What it is, and how well the results are known.
+    verdict: String,
+}
+
+impl Headline {
+    /// `None` of results that say nothing of the kind.
+    pub(super) fn new(summary: &Map<String, Value>) -> Option<Self> {
+        let first = first_damage(summary).or_else(|| margin(summary)).or_else(|| frequency(summary))?;
+        let count = |key: &str| list(summary, key).len();
+        let (cautions, warnings) = (count("cautions"), count("warnings"));
+        let several = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+        let against = match (summary.contains_key("stopped"), cautions, warnings) {
+            (true, ..) => "The march stopped early: all of it holds up to then.".to_owned(),
+            (_, 0, 0) => "Nothing speaks against it: no caution, no warning.".to_owned(),
+            (_, 0, n) => format!("To be read with {}, below.", several(n, "warning")),
+            (_, n, 0) => format!("Not to be trusted as it is: {}, below.", several(n, "caution")),
+            (_, n, m) => {
+                format!("Not to be trusted as it is: {} and {}, below.", several(n, "caution"), several(m, "warning"))
+            }
+        };
+        let known = match (number(summary, "/accuracy/results/peak_force_relative"), summary.get("impact")) {
+            (Some(error), _) => format!(" Peak force within about {:.2} %.", 1e2 * error),
+            (None, Some(_)) => " How well the force is known was not estimated.".to_owned(),
+            (None, None) => String::new(),
+        };
+        let doubt = cautions + warnings > 0 || summary.contains_key("stopped");
+        Some(Self { first, doubt, verdict: against + &known })
+    }
+}
+
+fn list<'a>(summary: &'a Map<String, Value>, key: &str) -> &'a [Value] {
+    summary.get(key).and_then(Value::as_array).map_or(&[], Vec::as_slice)
+}
+
+/// A number of the summary by its path.
+fn number(summary: &Map<String, Value>, path: &str) -> Option<f64> {
+    let mut keys = path.trim_start_matches('/').split('/');
+    let first = summary.get(keys.next()?)?;
+    keys.try_fold(first, |value, key| value.get(key))?.as_f64()
+}
+
+/// Of an impact: mode, ply, time, force and place of the first damage.
+fn first_damage(summary: &Map<String, Value>) -> Option<String> {
+    summary.get("first_damage")?;
+    let of = |event: &Value, key: &str| event.get(key).and_then(Value::as_f64).unwrap_or(f64::NAN);
+    let text = |event: &Value, key: &str| event.get(key).and_then(Value::as_str).unwrap_or_default().to_owned();
+    let events = list(summary, "first_damage").iter();
+    let Some(event) = events.min_by(|a, b| of(a, "time_s").total_cmp(&of(b, "time_s"))) else {
+        let judged = !list(summary, "not_reached").is_empty();
+        return Some(if judged { "No damage".to_owned() } else { "Damage was not looked for".to_owned() });
+    };
+    let ply = text(event, "ply");
+    let place = match ply.contains('|') {
+        true => format!("interface {ply}"),
+        false => format!("ply {ply} ({}°)", digits(of(event, "angle_deg"))),
+    };
+    Some(format!(
+        "First damage: {} in {place} at {} under {}, at x, y = {} ({})",
+        text(event, "mode"),
+        Dimension::TIME.of(of(event, "time_s")),
+        Dimension::FORCE.of(of(event, "contact_force_N")),
+        Dimension::LENGTH.list(&[of(event, "x_m"), of(event, "y_m")]),
+        text(event, "criterion")
+    ))
+}
+
+/// Of loads at rest: the smallest reserve factor.
+fn margin(summary: &Map<String, Value>) -> Option<String> {
+    let of = |margin: &Value| margin.get("reserve_factor").and_then(Value::as_f64).unwrap_or(f64::INFINITY);
+    let least = list(summary, "margins").iter().min_by(|a, b| of(a).total_cmp(&of(b)))?;
+    let text = |key: &str| least.get(key).and_then(Value::as_str).unwrap_or_default();
+    Some(format!(
+        "Smallest reserve factor {}: {} in ply {} ({})",
+        digits(of(least)),
+        text("mode"),
+        text("ply"),
+        text("criterion")
+    ))
+}
+
+/// Of natural modes: the lowest frequency.
+fn frequency(summary: &Map<String, Value>) -> Option<String> {
+    let lowest = list(summary, "frequencies_Hz").first()?.as_f64()?;
+    Some(format!("Lowest natural frequency {}", Dimension::FREQUENCY.of(lowest)))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use serde_json::json;
+
+    fn headline(summary: &Value) -> Headline {
+        Headline::new(summary.as_object().unwrap()).unwrap()
+    }
+
+    #[test]
+    fn the_first_screen_says_what_failed_first_and_what_speaks_against_it() {
+        let event = |time: f64, ply: &str| {
+            json!({ "criterion": "puck", "mode": "matrix tension", "time_s": time, "ply": ply, "angle_deg": -45.0, "x_m": 0.0,
+                    "y_m": 1.5e-3, "contact_force_N": 849.06 })
+        };
+        let mut summary = json!({ "impact": {}, "first_damage": [event(2e-3, "3|4"), event(3.922e-4, "1")], "cautions": [],
+            "warnings": [], "accuracy": { "results": { "peak_force_relative": 0.0045 } } });
+        let good = headline(&summary);
+        assert_eq!(
+            good.first,
+            "First damage: matrix tension in ply 1 (-45°) at 0.3922 ms under 849.1 N, at x, y = 0, 1.5 mm (puck)"
+        );
+        assert!(!good.doubt && good.verdict.ends_with("no warning. Peak force within about 0.45 %."), "{good:?}");
+        summary["warnings"] = json!(["w"]);
+        summary["cautions"] = json!(["a", "b"]);
+        let doubtful = headline(&summary);
+        assert!(doubtful.doubt && doubtful.verdict.contains("2 cautions and 1 warning, below"), "{doubtful:?}");
+        summary["first_damage"] = json!([event(1e-3, "3|4")]);
+        assert!(headline(&summary).first.contains("in interface 3|4 at 1 ms"));
+        summary["first_damage"] = json!([]);
+        summary["not_reached"] = json!([{}]);
+        assert_eq!(headline(&summary).first, "No damage");
+    }
+
+    #[test]
+    fn plates_at_rest_and_modes_have_one_too() {
+        let margins = json!({ "margins": [{ "reserve_factor": 3.0 }, { "reserve_factor": 1.234_56, "mode": "fibre", "ply": "2",
+            "criterion": "c" }] });
+        assert_eq!(headline(&margins).first, "Smallest reserve factor 1.235: fibre in ply 2 (c)");
+        assert_eq!(headline(&json!({ "frequencies_Hz": [12_345.0] })).first, "Lowest natural frequency 12.35 kHz");
+        assert_eq!(Headline::new(&Map::new()), None);
+    }
+}
