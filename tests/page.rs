@@ -181,6 +181,49 @@ fn static_and_modal_results_have_pages_without_what_they_lack() {
     assert!(page.contains("Lowest natural frequency "));
 }
 
+/// Runs over each other, with what differs in their scenes, and a force that was measured: that of the first run itself.
+#[test]
+fn runs_are_compared_with_each_other_and_with_a_measurement() {
+    let case = strip();
+    case.fem("run", &["--out", "slow"]).good();
+    let case = case.scene("\"1.56 m/s\"", "\"2 m/s\"");
+    case.fem("run", &["--out", "fast"]).good();
+    let (header, rows) = case.table("slow/history.csv");
+    let column = |name: &str| header.iter().position(|column| column == name).unwrap();
+    let (time, force) = (column("time_s"), column("contact_force_N"));
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let lines = rows.iter().map(|row| format!("{:e};{:e}\n", 1e6 * number(&row[time]), 1e-3 * number(&row[force])));
+    fs::write(case.folder().join("measured.csv"), "t (us); F (kN)\n".to_owned() + &lines.collect::<String>()).unwrap();
+
+    let report =
+        |folders: &[&str]| fem(case.folder(), &[&["report"], folders, &["--measured", "measured.csv"]].concat());
+    let done = report(&["slow", "fast"]).good();
+    assert_eq!(done.stdout, "  report    slow/comparison.html\n");
+    let page = case.read("slow/comparison.html");
+    check_html(&page);
+    for words in [
+        "What differs in their scenes",
+        "<td>impactor.velocity</td>",
+        "fast: Against what was measured",
+        "peak deflection",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    let (_, data) = page.split_once("id=\"data\">").unwrap();
+    let data: Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    let series = |chart: usize| data["curves"]["charts"][chart]["series"].as_array().unwrap();
+    let names: Vec<_> = series(0).iter().map(|curve| curve["name"].as_str().unwrap()).collect();
+    assert_eq!((names, series(1).len()), (vec!["slow", "fast", "measured"], 2));
+
+    report(&["slow"]).good();
+    let alone = case.read("slow/report.html");
+    let (_, table) = alone.split_once("Against what was measured").unwrap();
+    assert_eq!(table.split_once("</table>").unwrap().0.matches(">0 %<").count(), 3, "{table}");
+    fs::write(case.folder().join("measured.csv"), "t;F\n0;1\n").unwrap();
+    let refused = report(&["slow"]);
+    assert!(refused.status == 1 && refused.stderr.contains("has a unit of time"), "{refused:#?}");
+}
+
 /// A run that a signal stopped has left a checkpoint; one that stopped by itself all of its results.
 #[test]
 fn stopped_runs_have_pages_that_say_so() {

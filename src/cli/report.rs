@@ -10,8 +10,12 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Folder of the results of `fem run`; report.html is written into it.
-    folder: PathBuf,
+    /// Folders of the results of `fem run`: report.html is written into an only one, comparison.html into the first of several.
+    #[arg(required = true, value_name = "FOLDER")]
+    folders: Vec<PathBuf>,
+    /// Table of a measured force over time, laid over the computed one: its first line names the units, `time_ms,force_kN`.
+    #[arg(long, value_name = "CSV")]
+    measured: Option<PathBuf>,
     #[command(flatten)]
     format: Format,
 }
@@ -23,7 +27,8 @@ struct Written {
 }
 
 pub(super) fn report(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
-    let written = Written { report: report::write(&arguments.folder, &registry.columns())? };
+    let written =
+        Written { report: report::write(&arguments.folders, arguments.measured.as_deref(), &registry.columns())? };
     console.show(arguments.format, &written, || format!("  report    {}\n", written.report.display()))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -197,6 +197,17 @@ pub fn parse(text: &str, path: &Path) -> Result<Scene, SceneError> {
     parse_with(text, path, "")
 }
 
+/// Every value of the scene `text` by the path of its key, as it is written there; nothing of its preset.
+///
+/// # Errors
+/// A text that is not TOML.
+pub fn keys(text: &str) -> Result<BTreeMap<String, String>, SceneError> {
+    let source = Arc::new(SceneSource::new(Path::new("scene"), text, LIBRARY));
+    let mut keys = BTreeMap::new();
+    Table::parse(text, Origin::Scene, &source)?.flatten("", &mut keys);
+    Ok(keys)
+}
+
 /// As [`read`], with the keys of `setting` laid over those of the scene: how a study varies it.
 ///
 /// # Errors

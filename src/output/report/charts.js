@@ -91,7 +91,7 @@ function makeChart(figure, curves, chart, marks) {
     }
     chart.series.forEach(({ values }, k) => {
       let points = "";
-      for (let i = first; i <= last; i += 1) points += `${x(times[i]).toFixed(1)},${y(values[i]).toFixed(1)} `;
+      for (let i = first; i <= last; i += 1) if (values[i] !== null) points += `${x(times[i]).toFixed(1)},${y(values[i]).toFixed(1)} `;
       add(plot, "polyline", { points, fill: "none", stroke: pen(k), "stroke-width": "2.5" });
     });
     add(svg, "g", { class: "cursor" });
@@ -109,12 +109,12 @@ function makeChart(figure, curves, chart, marks) {
     const several = chart.series.length > 1 || i !== null;
     chart.series.forEach(({ name, values }, k) => {
       if (!several) return;
-      const entry = add(key, "span", {}, i === null ? name : `${name} ${digits(values[i])} ${chart.unit}`);
+      const entry = add(key, "span", {}, i === null || values[i] === null ? name : `${name} ${digits(values[i])} ${chart.unit}`);
       entry.style.setProperty("--swatch", pen(k));
     });
     if (i === null || times[i] < view[0] || times[i] > view[1]) return;
     add(cursor, "line", { x1: x(times[i]), x2: x(times[i]), y1: TOP, y2: HEIGHT - BOTTOM, stroke: "#666" });
-    chart.series.forEach(({ values }, k) => add(cursor, "circle",
+    chart.series.forEach(({ values }, k) => values[i] !== null && add(cursor, "circle",
       { cx: x(times[i]), cy: y(values[i]), r: 4.5, fill: pen(k), stroke: "#fff" }));
     if (aloud) live.textContent = key.textContent;
   }

@@ -1,5 +1,6 @@
 //! The history as curves to move through.
 
+use super::measured::{Measured, at};
 use crate::effect::LedgerColumn;
 use fem_core::plugin::Dimension;
 use fem_io::plot::Axis;
@@ -26,13 +27,17 @@ pub(super) struct Chart {
     pub(super) id: &'static str,
     pub(super) quantity: &'static str,
     pub(super) unit: String,
+    /// How many of that unit are one in SI units.
+    #[serde(skip)]
+    per_si: f64,
     pub(super) series: Vec<Series>,
 }
 
 #[derive(Debug, Serialize)]
 pub(super) struct Series {
     pub(super) name: String,
-    pub(super) values: Vec<f64>,
+    /// At the times; none where the curve has ended.
+    pub(super) values: Vec<Option<f64>>,
 }
 
 /// A chart by its columns: which they are and what they show.
@@ -99,11 +104,76 @@ pub(super) fn curves(history: &Table, effects: &[&LedgerColumn]) -> Result<Optio
             }
         }
         let (axis, unit) = Axis::fitting(kind.quantity, kind.of, found.iter().flat_map(|f| f.1).copied());
-        let series = found.into_iter().map(|(name, values)| Series { name, values: pick(values, unit) });
-        Chart { id: kind.id, quantity: kind.quantity, unit: axis.unit, series: series.collect() }
+        let some = |values: Vec<f64>| values.into_iter().map(Some).collect();
+        let series = found.into_iter().map(|(name, values)| Series { name, values: some(pick(values, unit)) });
+        Chart { id: kind.id, quantity: kind.quantity, unit: axis.unit, per_si: unit, series: series.collect() }
     };
     let charts = KINDS.iter().map(chart).filter(|chart| !chart.series.is_empty()).collect();
     Ok(Some(Curves { time_unit: time.unit, per_s: second, times: pick(times, second), charts }))
+}
+
+impl Curves {
+    /// Adds a measured force to the computed one.
+    pub(super) fn lay_over(&mut self, measured: &Measured) {
+        let times: Vec<f64> = self.times.iter().map(|t| t / self.per_s).collect();
+        for chart in self.charts.iter_mut().filter(|chart| chart.id == FORCE) {
+            let value = |t: &f64| at(&measured.points, *t).map(|force| six_digits(force * chart.per_si));
+            let values = times.iter().map(value).collect();
+            chart.series.push(Series { name: "measured".into(), values });
+        }
+    }
+}
+
+/// The chart of the contact force.
+const FORCE: &str = "contact_force";
+
+/// What runs are compared by: chart, quantity, column, dimension.
+const COMPARED: [(&str, &str, &str, Dimension); 3] = [
+    (FORCE, "Contact force", "contact_force_N", Dimension::FORCE),
+    ("displacement", "Plate under the impactor", "plate_displacement_m", Dimension::LENGTH),
+    ("energy", "Energy of the impactor", "impactor_kinetic_J", Dimension::ENERGY),
+];
+
+/// Points (s, SI unit) of the sum of all columns of a history that end in `ending`.
+fn points(history: &Table, ending: &str) -> Vec<(f64, f64)> {
+    let column = |k: usize| history.numbers(k).unwrap_or_default();
+    let Some(times) = history.header.iter().position(|name| name == "time_s").map(column) else { return Vec::new() };
+    let all = history.header.iter().enumerate().filter(|(_, name)| name.ends_with(ending));
+    let all: Vec<Vec<f64>> = all.map(|(k, _)| column(k)).collect();
+    if all.is_empty() {
+        return Vec::new();
+    }
+    let sum = |i: usize| all.iter().filter_map(|values| values.get(i)).sum();
+    times.iter().enumerate().map(|(i, t)| (*t, sum(i))).collect()
+}
+
+/// The contact force of all impactors, s and N.
+pub(super) fn force(history: &Table) -> Vec<(f64, f64)> {
+    points(history, "contact_force_N")
+}
+
+/// Histories of several runs over a common time; `None` where there are none.
+pub(super) fn overlaid(runs: &[(&str, &Table)], measured: Option<&Measured>) -> Option<Curves> {
+    let end = |history: &Table| force(history).last().map_or(0.0, |p| p.0);
+    let end = runs.iter().map(|(_, history)| end(history)).fold(0.0, f64::max);
+    let times: Vec<f64> = (0..=ROWS).map(|i| end * i as f64 / ROWS as f64).collect();
+    let chart = |(id, quantity, ending, of): &(&'static str, &'static str, &str, Dimension)| {
+        let each: Vec<_> = runs.iter().map(|(name, history)| (*name, points(history, ending))).collect();
+        let (axis, per_si) = Axis::fitting(quantity, *of, each.iter().flat_map(|(_, points)| points).map(|p| p.1));
+        let series = each.iter().filter(|(_, points)| !points.is_empty()).map(|(name, points)| Series {
+            name: (*name).to_owned(),
+            values: times.iter().map(|t| at(points, *t).map(|value| six_digits(value * per_si))).collect(),
+        });
+        Chart { id, quantity, unit: axis.unit, per_si, series: series.collect() }
+    };
+    let charts: Vec<_> = COMPARED.iter().map(chart).filter(|chart| !chart.series.is_empty()).collect();
+    let (time, per_s) = Axis::fitting("Time", Dimension::TIME, times.iter().copied());
+    let shown = times.iter().map(|t| six_digits(t * per_s)).collect();
+    let mut curves = Curves { time_unit: time.unit, per_s, times: shown, charts };
+    if let Some(measured) = measured {
+        curves.lay_over(measured);
+    }
+    (end > 0.0).then_some(curves)
 }
 
 /// Rows at equal distances, and those of the lowest and the highest value of every column, ascending.
@@ -153,8 +223,8 @@ mod tests {
         assert_eq!((&*curves.time_unit, curves.times.last()), ("ms", Some(&9.999)));
         let names: Vec<_> = curves.charts.iter().map(|c| (c.id, c.series[0].name.as_str())).collect();
         assert_eq!(names, [("contact_force", "contact force, a"), ("displacement", "plate under the impactor, a")]);
-        let peak = curves.charts[0].series[0].values.iter().position(|v| *v == 99.0).unwrap();
-        assert_eq!((curves.times[peak], curves.charts[1].series[0].values[0]), (4.321, 1.0));
+        let peak = curves.charts[0].series[0].values.iter().position(|v| *v == Some(99.0)).unwrap();
+        assert_eq!((curves.times[peak], curves.charts[1].series[0].values[0]), (4.321, Some(1.0)));
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! What is on the page.
 
-use super::curves::{Curves, curves};
+use super::curves::{self, Curves, curves};
 use super::facts::{self, Column, Fact, Grid, Section};
 use super::folder::{Folder, Picture};
 use super::headline::Headline;
+use super::measured::Measured;
 use crate::effect::LedgerColumn;
 use crate::error::Error;
 use crate::output::damage::DamageMap;
@@ -42,15 +43,20 @@ struct Figure {
 }
 
 /// The page of a folder of results.
-pub(super) fn render(folder: &Folder, columns: &[&LedgerColumn]) -> Result<String, Error> {
+pub(super) fn render(folder: &Folder, measured: Option<&Measured>, columns: &[&LedgerColumn]) -> Result<String, Error> {
     let none = Map::new();
     let summary = folder.summary.as_ref().and_then(Value::as_object).unwrap_or(&none);
     let text = |key: &str| summary.get(key).and_then(Value::as_str);
     let history = folder.path.join("history.csv");
     let curves = folder.history.as_ref().map_or(Ok(None), |history| curves(history, columns));
-    let curves = curves.map_err(|(column, row, text)| {
+    let mut curves = curves.map_err(|(column, row, text)| {
         damaged(&history, format!("row {row}, column {column}: `{text}` is not a finite number"))
     })?;
+    let force = folder.history.as_ref().map(curves::force);
+    let against = measured.zip(force).and_then(|(measured, force)| measured.against(&force));
+    if let Some((measured, curves)) = measured.zip(curves.as_mut()) {
+        curves.lay_over(measured);
+    }
     let (damage, least) = folder.damage.as_ref().map_or((Value::Null, 0.0), damage);
     let colors: Vec<String> = (0..7).map(class_color).collect();
     let marks = first_damage(summary).map(|event| json!([event.time_s, event.mode]));
@@ -66,10 +72,7 @@ pub(super) fn render(folder: &Folder, columns: &[&LedgerColumn]) -> Result<Strin
         None => Vec::new(),
     };
 
-    let script = format!("(() => {{\n\"use strict\";\n{}}})();\n", SCRIPTS.join("\n"));
-    let mut environment = Environment::new();
-    environment.add_template("page.html", TEMPLATE)?;
-    let page = environment.get_template("page.html")?.render(context! {
+    let context = context! {
         title => text("title").unwrap_or("A run that was stopped"),
         version => text("version"),
         finished => folder.summary.is_some(),
@@ -78,7 +81,7 @@ pub(super) fn render(folder: &Folder, columns: &[&LedgerColumn]) -> Result<Strin
         headline => any(Headline::new(summary)),
         tiles => any(tiles(summary)),
         warnings => any(warnings),
-        sections => any(facts::sections(summary, "General")),
+        sections => any(against.into_iter().chain(facts::sections(summary, "General")).collect::<Vec<_>>()),
         figures => any(figures),
         curves => curves.is_some(),
         charts => others,
@@ -90,13 +93,24 @@ pub(super) fn render(folder: &Folder, columns: &[&LedgerColumn]) -> Result<Strin
         provenance => any(folder.cost.as_ref().and_then(|cost| cost.get("provenance"))),
         scene => folder.scene.as_deref(),
         deck => folder.deck.as_deref(),
+    };
+    fill(&data, context)
+}
+
+/// The page of a context, with its style, its scripts and their `data`.
+pub(super) fn fill(data: &Value, context: Any) -> Result<String, Error> {
+    let script = format!("(() => {{\n\"use strict\";\n{}}})();\n", SCRIPTS.join("\n"));
+    let mut environment = Environment::new();
+    environment.add_template("page.html", TEMPLATE)?;
+    let own = context! {
         style_hash => hash(STYLE),
         style => Any::from_safe_string(STYLE.to_owned()),
-        data => Any::from_safe_string(escape_json(&data)),
+        data => Any::from_safe_string(escape_json(data)),
         script_hash => hash(&script),
         script => Any::from_safe_string(script),
-    })?;
-    Ok(page)
+        ..context
+    };
+    Ok(environment.get_template("page.html")?.render(own)?)
 }
 
 /// By which the policy of the page knows what it permits: the content of our own elements and nothing else.
@@ -104,7 +118,7 @@ fn hash(content: &str) -> String {
     format!("sha256-{}", STANDARD.encode(Sha256::digest(content)))
 }
 
-fn any(value: impl Serialize) -> Any {
+pub(super) fn any(value: impl Serialize) -> Any {
     Any::from(Serde(value))
 }
 
