@@ -44,7 +44,7 @@ pub fn write(paths: &[PathBuf], measured: Option<&Path>, columns: &[&LedgerColum
     paths.iter().try_for_each(|path| Folder::check(path))?;
     let measured = measured.map(Measured::read).transpose()?;
     // Before the files are read, so that no run changes them meanwhile.
-    let dirs = paths.iter().map(|path| OutputDir::open(path)).collect::<Result<Vec<_>, _>>()?;
+    let dirs = paths.iter().map(OutputDir::open).collect::<Result<Vec<_>, _>>()?;
     let folders = paths.iter().map(|path| Folder::read(path)).collect::<Result<Vec<_>, _>>()?;
     let (name, page) = match &folders[..] {
         [folder] => (PAGE, page::render(folder, measured.as_ref(), columns)?),
