@@ -1,5 +1,6 @@
 //! Where and when the criteria reached 1: `damage.json`, from which damage is drawn.
 
+use super::outlines::{PlanOutline, outlines};
 use crate::analyses::impact::Outcome;
 use crate::error::Error;
 use crate::model::{Model, Plan};
@@ -31,6 +32,9 @@ pub struct DamageMap {
     pub plies: Vec<PlyBand>,
     /// Where impactors strike, m.
     pub impacts_m: Vec<[f64; 2]>,
+    /// What holds and what strikes the plate, in plan.
+    #[serde(default)]
+    pub outlines: Vec<PlanOutline>,
     /// Nodes of the mesh, m.
     pub points_m: Vec<[f64; 2]>,
     /// Corners of the cells, anticlockwise, numbers in `points_m`.
@@ -153,6 +157,7 @@ impl DamageMap {
             modes: modes.collect(),
             plies: plies.map(|(ply, z)| PlyBand { angle_deg: ply.angle_deg, z_m: [z[0], z[1]] }).collect(),
             impacts_m: impact.strikes.iter().map(|strike| strike.centre).collect(),
+            outlines: outlines(model),
             points_m: mesh.points.clone(),
             quads: mesh.quads.iter().map(|corners| corners.to_vec()).collect(),
             cells: mesh.quad_tags.clone(),
@@ -184,7 +189,8 @@ impl DamageMap {
             self.judged.iter().all(|q| (*q as usize) < self.quads.len()),
             "`judged` names a cell that does not exist",
         )?;
-        let places = self.points_m.iter().chain(&self.impacts_m).flatten().copied();
+        let lines = self.outlines.iter().flat_map(|outline| &outline.lines_m).flatten();
+        let places = self.points_m.iter().chain(&self.impacts_m).chain(lines).flatten().copied();
         let heights = self.plies.iter().flat_map(|ply| [ply.angle_deg, ply.z_m[0], ply.z_m[1]]);
         good(places.chain(heights).chain([self.end_s]).all(f64::is_finite), "a coordinate is not finite")?;
         for place in &self.places {
@@ -240,6 +246,7 @@ mod tests {
             ],
             plies: vec![PlyBand { angle_deg: 0.0, z_m: [0.0, 1e-3] }],
             impacts_m: vec![[0.0, 0.0]],
+            outlines: Vec::new(),
             points_m: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
             quads: vec![vec![0, 1, 2, 3]],
             cells: vec![7],

@@ -3,6 +3,7 @@
 use crate::analyses::impact::{Delaminated, DelaminatedCell, Outcome};
 use crate::error::Error;
 use crate::model::{Model, Plan};
+use crate::output::outlines::{drawn, outlines};
 use fem_core::plugin::Dimension;
 use fem_io::files::OutputDir;
 use fem_io::plot::{self, Axis, Fill, MapCell, MapPlot, Panel};
@@ -102,6 +103,7 @@ fn c_scan(model: &Model, grown: &Delaminated) -> MapPlot {
         equal_aspect: true,
         scale: Some("delaminated share".into()),
         classes: shown.iter().map(|one| name(one.below)).collect(),
+        outlines: drawn(&outlines(model)),
         panels,
     }
 }

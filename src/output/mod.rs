@@ -8,6 +8,7 @@ mod indices;
 pub mod mesh;
 mod modal;
 pub mod modes;
+pub mod outlines;
 pub mod pictures;
 pub mod report;
 mod shapes;

@@ -3,6 +3,7 @@
 use crate::analyses::modes::ModesSolution;
 use crate::analyses::statics::dof_of;
 use crate::model::Model;
+use crate::output::outlines::{drawn, outlines};
 use fem_core::plugin::Dimension;
 use fem_io::plot::{Axis, Fill, MapCell, MapPlot, Panel};
 use std::f64::consts::TAU;
@@ -26,6 +27,7 @@ pub(super) fn mode_shapes(model: &Model, solution: &ModesSolution) -> MapPlot {
         equal_aspect: true,
         scale: Some("deflection, 0.5 at rest".into()),
         classes: Vec::new(),
+        outlines: drawn(&outlines(model)),
         panels: panels.collect(),
     }
 }

@@ -18,8 +18,21 @@ pub struct MapPlot {
     pub scale: Option<String>,
     /// Names of the classes, each with its [`class_color`]; those in use are in the legend.
     pub classes: Vec<String>,
+    /// What is drawn above the cells of every panel, as far as it is in sight.
+    pub outlines: Vec<MapOutline>,
     /// The panels, at least one, row by row.
     pub panels: Vec<Panel>,
+}
+
+/// Lines that say where something is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapOutline {
+    /// What it is, in the legend.
+    pub name: String,
+    /// Points of each line, in the units of the axes.
+    pub lines: Vec<Vec<[f64; 2]>>,
+    /// Whether the lines are dashed.
+    pub dashed: bool,
 }
 
 /// One panel of a map.
@@ -177,6 +190,7 @@ mod tests {
             equal_aspect: true,
             scale: Some("index".into()),
             classes: vec!["tension".into(), "shear".into()],
+            outlines: Vec::new(),
             panels: vec![Panel { title: "ply 1".into(), cells, ..Panel::default() }],
         }
     }

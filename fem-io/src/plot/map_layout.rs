@@ -1,7 +1,7 @@
 //! Where everything of a map goes.
 
 use super::layout::{Canvas, EDGE, FAINT, INK, LABEL, ROW, SMALL, TITLE, WHITE, WIDTH, axis_name};
-use super::map::{Fill, MapPlot, Panel, STEPS, class, places, share};
+use super::map::{Fill, MapOutline, MapPlot, Panel, STEPS, class, places, share};
 use super::scale::Range;
 use super::shapes::{Anchor, Color, Drawing, Shape, Text};
 use super::words::{estimate_width, shorten};
@@ -19,6 +19,8 @@ const BAR: [f64; 2] = [300.0, 22.0];
 const SAMPLE: f64 = 26.0;
 /// More cells of a panel than these have no edges of their own, which would be all there is to see.
 const EDGED: usize = 3000;
+/// Width of an outline.
+const OUTLINE: f64 = 2.5;
 const CELL_EDGE: Color = [0xcf; 3];
 
 /// The shapes of `plot`, which has cells and is finite.
@@ -34,11 +36,13 @@ pub(super) fn lay_out(plot: &MapPlot) -> Result<Drawing, PlotError> {
         _ => 4,
     };
     let rows = plot.panels.len().div_ceil(columns);
-    let y_ticks = y.ticks(if rows > 2 { 4 } else { 8 });
+    let most = if rows > 2 { 4 } else { 8 };
     let widest = |ticks: &[(f64, String)]| ticks.iter().map(|t| estimate_width(&t.1, SMALL)).fold(0.0, f64::max);
-    let left = EDGE + LABEL + 30.0 + widest(&y_ticks);
+    let left = EDGE + LABEL + 30.0 + widest(&y.ticks(most));
     let right = WIDTH - EDGE - 20.0 - if notes > 0.0 { notes + 20.0 } else { 0.0 };
-    let mut width = (right - left - (columns - 1) as f64 * GAP) / columns as f64;
+    // The last label of a panel stays apart from the first of the next.
+    let gap = GAP.max(widest(&x.ticks(8)) + 12.0);
+    let mut width = (right - left - (columns - 1) as f64 * gap) / columns as f64;
     let mut height = FREE / rows as f64;
     if plot.equal_aspect {
         let tall = (y.length() / x.length()).clamp(1e-3, 1e3);
@@ -46,6 +50,9 @@ pub(super) fn lay_out(plot: &MapPlot) -> Result<Drawing, PlotError> {
         width = height / tall;
     }
     let height = height.max(40.0);
+    let stack = |ticks: &Vec<(f64, String)>| 1.3 * SMALL * ticks.len() as f64 <= height;
+    let mut y_ticks = (1..=most).rev().map(|most| y.ticks(most)).find(stack).unwrap_or_else(|| y.ticks(1));
+    y_ticks.truncate((height / SMALL) as usize);
     let fits = |ticks: &[(f64, String)]| widest(ticks) * 1.4 * ticks.len() as f64 <= width;
     let x_ticks = (2..=10).rev().map(|most| x.ticks(most)).find(|ticks| fits(ticks)).unwrap_or_else(|| x.ticks(1));
 
@@ -57,18 +64,21 @@ pub(super) fn lay_out(plot: &MapPlot) -> Result<Drawing, PlotError> {
         INK,
         Anchor::Start,
     );
-    let top = canvas.map_legend(plot, left, WIDTH - EDGE, EDGE + 1.4 * TITLE);
+    let seen = plot.outlines.iter().filter(|outline| visible(outline, x, y).next().is_some());
+    let seen: Vec<&MapOutline> = seen.collect();
+    let top = canvas.map_legend(plot, &seen, left, WIDTH - EDGE, EDGE + 1.4 * TITLE);
     let pitch = height + ROW + GAP;
     for (i, panel) in plot.panels.iter().enumerate() {
         let (row, column) = (i / columns, i % columns);
-        let from = [left + column as f64 * (width + GAP), top + row as f64 * pitch + ROW];
+        let from = [left + column as f64 * (width + gap), top + row as f64 * pitch + ROW];
         let area = Area { x, y, left: from[0], top: from[1], width, height };
         canvas.panel(&area, panel);
+        plot.outlines.iter().for_each(|outline| canvas.outline(&area, outline));
         let lowest = i + columns >= plot.panels.len();
         canvas.frame(&area, if column == 0 { &y_ticks } else { &[] }, if lowest { &x_ticks } else { &[] });
     }
     let bottom = top + (rows - 1) as f64 * pitch + ROW + height;
-    let across = (columns - 1) as f64 * (width + GAP) + width;
+    let across = (columns - 1) as f64 * (width + gap) + width;
     let place = [left + 0.5 * across, bottom + 30.0 + 2.0 * LABEL];
     canvas.text(place, &axis_name(&plot.x, across.max(400.0)), LABEL, INK, Anchor::Middle);
     canvas.0.push(Shape::Text(Text {
@@ -81,6 +91,13 @@ pub(super) fn lay_out(plot: &MapPlot) -> Result<Drawing, PlotError> {
     }));
     let height = (bottom + 2.0 * LABEL + EDGE + 30.0).ceil();
     Ok(Drawing { title: shorten(&plot.title, TITLE, WIDTH), width: WIDTH, height, shapes: canvas.0 })
+}
+
+/// The straight parts of an outline that are in sight.
+fn visible(outline: &MapOutline, x: Range, y: Range) -> impl Iterator<Item = [[f64; 2]; 2]> {
+    let inside = move |p: [f64; 2]| (0.0..=1.0).contains(&x.fraction(p[0])) && (0.0..=1.0).contains(&y.fraction(p[1]));
+    let parts = outline.lines.iter().flat_map(|line| line.windows(2)).map(|w| [w[0], w[1]]);
+    parts.filter(move |part| part.iter().all(|p| inside(*p)))
 }
 
 /// What an axis reaches over: all places, with some air.
@@ -118,7 +135,7 @@ fn color(fill: Fill) -> Color {
 
 impl Canvas {
     /// Scale of shares and samples of the classes in use, in as many rows as they need; returns where they end.
-    fn map_legend(&mut self, plot: &MapPlot, left: f64, right: f64, top: f64) -> f64 {
+    fn map_legend(&mut self, plot: &MapPlot, outlines: &[&MapOutline], left: f64, right: f64, top: f64) -> f64 {
         let mut used: Vec<usize> = plot.panels.iter().flat_map(classes_of).collect();
         used.sort_unstable();
         used.dedup();
@@ -129,19 +146,31 @@ impl Canvas {
             self.text([x + BAR[0] + 14.0, middle + 0.35 * SMALL], &name, SMALL, INK, Anchor::Start);
             x += BAR[0] + 14.0 + estimate_width(&name, SMALL) + 40.0;
         }
-        for k in used {
-            let name = shorten(&plot.classes[k], SMALL, 0.6 * (right - left));
+        let classes = used.into_iter().map(|k| (plot.classes[k].as_str(), Ok(k)));
+        for (name, what) in classes.chain(outlines.iter().map(|outline| (outline.name.as_str(), Err(outline.dashed)))) {
+            let name = shorten(name, SMALL, 0.6 * (right - left));
             let width = SAMPLE + 12.0 + estimate_width(&name, SMALL);
             if x + width > right && x > left {
                 (x, middle) = (left, middle + if middle < top + ROW { 1.6 * ROW } else { ROW });
             }
-            let [a, b] = [[x, middle - 0.5 * SAMPLE], [x + SAMPLE, middle + 0.5 * SAMPLE]];
-            let ring = vec![a, [b[0], a[1]], b, [a[0], b[1]]];
-            self.0.push(Shape::Polygons { rings: vec![ring], fill: class(k), edge: class(k) });
+            match what {
+                Ok(k) => {
+                    let [a, b] = [[x, middle - 0.5 * SAMPLE], [x + SAMPLE, middle + 0.5 * SAMPLE]];
+                    let ring = vec![a, [b[0], a[1]], b, [a[0], b[1]]];
+                    self.0.push(Shape::Polygons { rings: vec![ring], fill: class(k), edge: class(k) });
+                }
+                Err(dashed) => self.line(vec![[x, middle], [x + SAMPLE, middle]], OUTLINE, INK, dashed),
+            }
             self.text([x + SAMPLE + 12.0, middle + 0.35 * SMALL], &name, SMALL, INK, Anchor::Start);
             x += width + 40.0;
         }
         middle + if plot.scale.is_some() { 1.1 * ROW } else { 0.6 * ROW }
+    }
+
+    fn outline(&mut self, area: &Area, outline: &MapOutline) {
+        for [a, b] in visible(outline, area.x, area.y) {
+            self.line(vec![area.place(a), area.place(b)], OUTLINE, INK, outline.dashed);
+        }
     }
 
     /// The colours of shares from 0 to 1.

@@ -44,6 +44,7 @@ pub fn mesh_map(title: &str, mesh: &PlaneMesh, impacts: &[[f64; 2]], flaws: &[Fl
         equal_aspect: true,
         scale: None,
         classes,
+        outlines: Vec::new(),
         panels: vec![panel],
     }
 }

@@ -14,6 +14,8 @@
 //! # Ok::<(), fem_io::plot::PlotError>(())
 //! ```
 
+#[cfg(test)]
+mod boxes;
 mod flags;
 mod layout;
 mod map;
@@ -28,7 +30,7 @@ mod svg;
 mod words;
 mod work_precision;
 
-pub use map::{Fill, MapCell, MapPlot, Panel, Stroke, class_color, map_plot};
+pub use map::{Fill, MapCell, MapOutline, MapPlot, Panel, Stroke, class_color, map_plot};
 pub use mesh::mesh_map;
 pub use over_time::{force_history, index_history, modal_history, over_time};
 pub use pens::curve_color;

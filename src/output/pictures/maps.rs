@@ -1,6 +1,7 @@
 //! Damage in plan and in a section.
 
 use crate::output::damage::{DamageMap, ModeName, PlaceDamage};
+use crate::output::outlines::drawn;
 use fem_core::plugin::Dimension;
 use fem_io::plot::{Axis, Fill, MapCell, MapPlot, Panel};
 
@@ -37,6 +38,7 @@ pub fn plan(title: &str, damage: &DamageMap) -> MapPlot {
         equal_aspect: true,
         scale: Some("largest index".into()),
         classes: classes(damage),
+        outlines: drawn(&damage.outlines),
         panels: shown.iter().map(|place| plan_of(damage, place, &near)).collect(),
     }
 }
@@ -126,6 +128,7 @@ pub fn section(title: &str, damage: &DamageMap) -> Option<MapPlot> {
         equal_aspect: false,
         scale: Some("largest index".into()),
         classes: classes(damage),
+        outlines: Vec::new(),
         panels: vec![panel],
     })
 }
@@ -186,6 +189,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::output::damage::{Failed, PlyBand};
+    use crate::output::outlines::PlanOutline;
 
     /// Four cells of 1 mm in a row, two plies and their interface; the second cell of ply 2 fails.
     fn damage() -> DamageMap {
@@ -201,6 +205,7 @@ mod tests {
             modes: ["fibre", "matrix"].map(|mode| ModeName { criterion: "c".into(), mode: mode.into() }).to_vec(),
             plies: vec![PlyBand { angle_deg: 0.0, z_m: [-1e-4, 0.0] }, PlyBand { angle_deg: 90.0, z_m: [0.0, 1e-4] }],
             impacts_m: vec![[2e-3, 0.5e-3]],
+            outlines: vec![PlanOutline { what: "support".into(), lines_m: vec![vec![[0.0, 0.0], [2e-3, 0.0]]] }],
             points_m: points.collect(),
             quads: (0..4).map(|i| vec![i, i + 1, i + 6, i + 5]).collect(),
             cells: vec![1, 2, 3, 4],
