@@ -34,6 +34,7 @@ mod report;
 mod restart;
 mod separation;
 mod snapshots;
+mod standards;
 mod strangers;
 mod study;
 mod support;

@@ -4,9 +4,10 @@ use super::{Console, Format};
 use crate::registry::Registry;
 use clap::Args;
 use fem_core::plugin::unknown_key;
-use fem_io::{scene, tables};
+use fem_io::{materials, scene, tables};
 use miette::{Context as _, IntoDiagnostic, miette};
 use serde::Serialize;
+use std::borrow::Cow;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -20,6 +21,9 @@ pub(super) struct Arguments {
     /// What the scene begins with, see --list.
     #[arg(long, value_name = "TEMPLATE", default_value = "drop-weight")]
     template: String,
+    /// Material of the plies, one of the library (`fem list materials`), instead of the template's.
+    #[arg(long, value_name = "MATERIAL")]
+    material: Option<String>,
     /// Lists the templates.
     #[arg(long, conflicts_with = "folder")]
     list: bool,
@@ -43,6 +47,12 @@ const TEMPLATES: &[Template] = &[
         name: "drop-weight",
         summary: "a falling mass of some kilograms on a supported rectangle: low velocity, long contact",
         scene: include_str!("templates/drop-weight.toml"),
+        mesh: None,
+    },
+    Template {
+        name: "astm-d7136",
+        summary: "the drop-weight test of ASTM D7136: a window of 125 x 75 mm, four clamps, a tip of 16 mm, 6.7 J/mm",
+        scene: include_str!("templates/astm-d7136.toml"),
         mesh: None,
     },
     Template {
@@ -71,6 +81,29 @@ const TEMPLATES: &[Template] = &[
     },
 ];
 
+/// How a template names the material of its plies.
+const TAPE: &str = "[materials.tape]\nlibrary = \"";
+
+impl Template {
+    /// Its scene, with the plies of this material of the library.
+    fn with(&self, material: Option<&str>) -> miette::Result<Cow<'static, str>> {
+        let Some(material) = material else { return Ok(self.scene.into()) };
+        if materials::library(material).is_none() {
+            let hint = unknown_key(material, materials::names());
+            return Err(miette!(help = format!("`{material}` {hint}"), "the library has no material `{material}`"));
+        }
+        let (before, after) = self.scene.split_once(TAPE).ok_or_else(|| {
+            miette!(
+                help = "change it in the scene",
+                "the plies of the template `{}` have a material of their own",
+                self.name
+            )
+        })?;
+        let end = after.find('"').unwrap_or(after.len());
+        Ok(format!("{before}{TAPE}{material}{}", &after[end..]).into())
+    }
+}
+
 /// What is written, and where.
 #[derive(Debug, Serialize)]
 struct Written<'a> {
@@ -90,7 +123,7 @@ pub(super) fn new(registry: &Registry, arguments: &Arguments, console: &Console)
         let hint = unknown_key(asked, TEMPLATES.iter().map(|template| template.name));
         miette!(help = format!("`{asked}` {hint}"), "there is no template `{asked}`")
     })?;
-    let written = Written { template: template.name, folder, files: write(registry, template, folder)? };
+    let written = Written { template: template.name, folder, files: write(registry, template, arguments, folder)? };
     console.show(arguments.format, &written, || {
         let scene = folder.join(SCENE);
         format!("{}: {}\n  to run it: fem run {}\n", template.name, written.files.join(", "), scene.display())
@@ -103,13 +136,21 @@ const SCHEMA: &str = "scene.schema.json";
 const MESH: &str = "plate.msh";
 
 /// Writes the folder, whole or not at all.
-fn write(registry: &Registry, template: &Template, folder: &Path) -> miette::Result<Vec<&'static str>> {
+fn write(
+    registry: &Registry,
+    template: &Template,
+    arguments: &Arguments,
+    folder: &Path,
+) -> miette::Result<Vec<&'static str>> {
     if folder.symlink_metadata().is_ok() {
         let help = "choose another name, or remove it yourself";
         return Err(miette!(help = help, "`{}` exists already and is not overwritten", folder.display()));
     }
     let (plugins, effects) = (|kind| registry.choices(kind), registry.effect_keys());
-    let scene = format!("#:schema ./{SCHEMA}\n{}", scene::annotate(template.scene, &plugins, &effects)?);
+    let scene = format!(
+        "#:schema ./{SCHEMA}\n{}",
+        scene::annotate(&template.with(arguments.material.as_deref())?, &plugins, &effects)?
+    );
     let schema = tables::json_text(SCHEMA, &scene::schema(&plugins, &effects)).into_diagnostic()?;
     let mut files = vec![(SCENE, scene.as_bytes()), (SCHEMA, schema.as_bytes())];
     files.extend(template.mesh.map(|mesh| (MESH, mesh)));

@@ -4,7 +4,7 @@ use crate::support::{fem, root, strip};
 use fem::io::scene;
 use std::fs;
 
-const TEMPLATES: [&str; 5] = ["drop-weight", "ball", "ring", "pagano", "modes"];
+const TEMPLATES: [&str; 6] = ["drop-weight", "astm-d7136", "ball", "ring", "pagano", "modes"];
 
 #[test]
 fn every_template_is_a_scene_that_says_the_same_with_its_comments() {
@@ -26,7 +26,7 @@ fn every_template_is_a_scene_that_says_the_same_with_its_comments() {
     }
     let mut names: Vec<_> = folder.path().read_dir().unwrap().map(|e| e.unwrap().file_name()).collect();
     names.sort();
-    assert_eq!(names, ["ball", "drop-weight", "modes", "pagano", "ring"], "nothing else is left behind");
+    assert_eq!(names, ["astm-d7136", "ball", "drop-weight", "modes", "pagano", "ring"], "nothing else is left behind");
 }
 
 #[test]
@@ -37,6 +37,24 @@ fn a_new_scene_runs_at_once() {
         let done = fem(folder.path(), &["run", &format!("{name}/scene.toml")]).good();
         assert!(done.stdout.trim_end().ends_with(words), "{done:#?}");
     }
+}
+
+#[test]
+fn a_template_takes_a_material_of_the_library() {
+    let folder = tempfile::tempdir().unwrap();
+    let new = |arguments: &[&str]| fem(folder.path(), &[&["new", "plate"], arguments].concat());
+    for (arguments, words) in [
+        (["--template", "astm-d7136", "--material", "IM7/8553"], "did you mean `IM7/8552`?"),
+        (["--template", "pagano", "--material", "IM7/8552"], "have a material of their own"),
+    ] {
+        let done = new(&arguments);
+        assert!(done.status == 1 && done.stderr.contains(words), "{done:#?}");
+    }
+    new(&["--template", "astm-d7136", "--material", "T700/M21"]).good();
+    let scene = scene::read(&folder.path().join("plate/scene.toml")).unwrap();
+    let template = scene::read(&root().join("src/cli/templates/astm-d7136.toml")).unwrap();
+    let changed = scene.keys.iter().filter(|(key, value)| template.keys.get(*key) != Some(value));
+    assert_eq!(changed.map(|(key, _)| key.as_str()).collect::<Vec<_>>(), ["materials.tape.library"]);
 }
 
 #[test]

@@ -107,6 +107,12 @@ const PLATE: Keys = &[
     )
     .required(),
     SUPPORT,
+    key(
+        "window",
+        Form::Several(2, &Form::Quantity(Dimension::LENGTH)),
+        r#"["75 mm", "75 mm"]"#,
+        "lengths along x and y of the window of a frame about the origin, whose sides become the group `window`",
+    ),
     IMPACT,
     SIZE,
     EDGE_SIZE,
@@ -223,6 +229,13 @@ fn graded(
     let plate = Graded {
         outline,
         support: keys.optional("support").map(length).transpose()?,
+        window: match outline {
+            Outline::Disc { .. } => None,
+            Outline::Rectangle { .. } => keys
+                .optional("window")
+                .map(|field| pair(&field, |field| field.positive(Dimension::LENGTH)))
+                .transpose()?,
+        },
         impact: keys.optional("impact").map_or(Ok([0.0; 2]), at_impact)?,
         size,
         edge_size: keys.optional("edge_size").map_or(Ok(COARSENING * size), length)?,

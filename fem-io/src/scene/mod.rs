@@ -22,6 +22,7 @@ mod substructures;
 mod support;
 #[cfg(test)]
 mod tests;
+mod tip;
 
 pub use crate::document::keys::{Absent, Form, Key, Keys, Plugins, key, words};
 pub use crate::document::reader::{Reader, SceneValue};
@@ -272,7 +273,7 @@ fn read_merged(merged: &Merged, path: &Path) -> Result<Scene, SceneError> {
     let (laminates, interface) = laminate::read_all(&root.required("laminate")?, &materials)?;
     let element = root.required("element")?;
     let effects = root.optional("effects").map_or(Ok(EffectsSpec::default()), |field| effects::read(&field))?;
-    let analysis = read_analysis(&root)?;
+    let analysis = read_analysis(&root, &tip::Struck { materials: &materials, laminate: whole(&laminates) })?;
     let in_time = matches!(analysis, Analysis::Impact(_));
     let march = match &analysis {
         Analysis::Impact(impact) => Some(&impact.march),
@@ -322,6 +323,11 @@ fn read_merged(merged: &Merged, path: &Path) -> Result<Scene, SceneError> {
     })
 }
 
+/// The laminate of the plate apart from regions of their own.
+fn whole(laminates: &[LaminateSpec]) -> &LaminateSpec {
+    laminates.iter().find(|spec| spec.group.is_none()).unwrap_or(&laminates[0])
+}
+
 /// Keys that an analysis does not use; presets hold them for others.
 fn list_unused_keys(analysis: &str) -> &'static [&'static str] {
     match analysis {
@@ -331,7 +337,7 @@ fn list_unused_keys(analysis: &str) -> &'static [&'static str] {
     }
 }
 
-fn read_analysis(root: &Reader<'_>) -> Result<Analysis, SceneError> {
+fn read_analysis(root: &Reader<'_>, struck: &tip::Struck<'_>) -> Result<Analysis, SceneError> {
     let which = root.optional("analysis").map_or(Ok(Which::Impact), |field| field.choice(&ANALYSES))?;
     let name = ANALYSES[which as usize].0;
     let mut stray = list_unused_keys(name).iter().filter_map(|key| root.optional(key));
@@ -350,7 +356,7 @@ fn read_analysis(root: &Reader<'_>) -> Result<Analysis, SceneError> {
             })?;
             Analysis::Modes { count }
         }
-        Which::Impact => Analysis::Impact(Box::new(run::read_impact(root)?)),
+        Which::Impact => Analysis::Impact(Box::new(run::read_impact(root, struck)?)),
     })
 }
 

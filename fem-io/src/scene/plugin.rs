@@ -22,6 +22,14 @@ impl PluginSpec {
         self.places.get(key).unwrap_or(&self.name.place)
     }
 
+    /// A plug-in with parameters that follow from the value of `field`.
+    pub(super) fn made<const N: usize>(name: &str, values: [(&str, Value); N], field: &SceneValue<'_>) -> Self {
+        let mut params = Params::default();
+        let places = values.iter().map(|(key, _)| ((*key).to_owned(), field.place().clone())).collect();
+        values.into_iter().for_each(|(key, value)| params.insert(key, value));
+        Self { name: field.at(name.to_owned()), params, places }
+    }
+
     /// Reads a bare name, or a table with the key `name`; keys of `others` belong to somebody else.
     pub(super) fn read_or_name(field: &SceneValue<'_>, others: &[&str]) -> Result<Self, SceneError> {
         match field.node() {

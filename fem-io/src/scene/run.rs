@@ -4,6 +4,7 @@ use super::fields::{self, Fields};
 use super::load::{FACES, face};
 use super::plugin::PluginSpec;
 use super::support::{self, Unknowns};
+use super::tip::{self, Struck};
 use crate::document::keys::{Form, Keys, key, words};
 use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, Place, SceneError};
@@ -79,8 +80,10 @@ pub struct MarchSpec {
     pub integrator: PluginSpec,
     /// Step, s.
     pub step: Located<f64>,
-    /// End, s.
+    /// End, s; the latest one of a march that ends with the separation.
     pub end: Located<f64>,
+    /// Whether it ends once all impactors have left the plate.
+    pub until_separation: bool,
     /// Error up to which steps are divided, if they are.
     pub tolerance: Option<f64>,
 }
@@ -187,12 +190,24 @@ impl Default for Output {
 pub(super) const IMPACTOR: Keys = &[
     key("name", Form::Text, r#""first""#, "what results call it where there are several"),
     key("mass", Form::Quantity(Dimension::MASS), r#""2.49 kg""#, "mass of the rigid impactor").required(),
-    key("velocity", Form::Quantity(Dimension::VELOCITY), r#""1.56 m/s""#, "speed towards the plate at first touch")
-        .required(),
+    key("velocity", Form::Quantity(Dimension::VELOCITY), r#""1.56 m/s""#, "speed towards the plate at first touch"),
+    key(
+        "energy",
+        Form::OneOf(&[Form::Quantity(Dimension::ENERGY), Form::Quantity(Dimension::FORCE)]),
+        r#""6.7 J/mm""#,
+        "energy of the impact instead of its velocity, or energy per thickness of the laminate",
+    ),
     key("start", Form::Quantity(Dimension::TIME), r#""50 us""#, "when it would reach the plate at rest")
         .default(r#""0 s""#),
     key("at", Form::Table(AT), r#"{ group = "impact" }"#, "where it strikes").required(),
     key("face", Form::Words(&words(&FACES)), r#""bottom""#, "face that it strikes").default(r#""top""#),
+    key(
+        "diameter",
+        Form::Quantity(Dimension::LENGTH),
+        r#""16 mm""#,
+        "diameter of its spherical tip; with `material` it makes Hertz's law, instead of `contact`",
+    ),
+    key("material", Form::Text, r#""steel""#, "material of its tip, one of `materials`, isotropic"),
     key("patch_radius", Form::Quantity(Dimension::LENGTH), r#""3 mm""#, "its force is a Hertz pressure on this circle"),
     key("patch_side", Form::Quantity(Dimension::LENGTH), r#""2 mm""#, "its force is a uniform pressure on this square"),
     key("load", Form::Words(&["node"]), r#""node""#, "its force acts at one node"),
@@ -208,6 +223,10 @@ pub(super) const AT: Keys = &[
     key("x", Form::Quantity(Dimension::LENGTH), r#""0 mm""#, "x of the point, instead of a group"),
     key("y", Form::Quantity(Dimension::LENGTH), r#""0 mm""#, "y of the point, instead of a group"),
 ];
+/// The end of a march that follows the impactors until they have left.
+const SEPARATION: &str = "separation";
+/// When such a march ends at the latest unless a scene says, s.
+const LATEST: f64 = 20e-3;
 pub(super) const MARCH: Keys = &[
     key(
         "integrator",
@@ -217,7 +236,19 @@ pub(super) const MARCH: Keys = &[
     )
     .required(),
     key("step", Form::Quantity(Dimension::TIME), r#""0.5 us""#, "step in time").required(),
-    key("end", Form::Quantity(Dimension::TIME), r#""1 ms""#, "time at which the march ends").required(),
+    key(
+        "end",
+        Form::OneOf(&[Form::Words(&[SEPARATION]), Form::Quantity(Dimension::TIME)]),
+        r#""1 ms""#,
+        "time at which the march ends; \"separation\": once all impactors have left the plate",
+    )
+    .required(),
+    key(
+        "latest",
+        Form::Quantity(Dimension::TIME),
+        r#""10 ms""#,
+        "time at which a march to the separation ends at the latest; 20 ms if left out",
+    ),
     key(
         "tolerance",
         Form::Number,
@@ -310,13 +341,13 @@ pub(super) const REDUCTION: Keys = &[key(
 )];
 
 /// The keys of an impact: one table of an impactor or a list of them, a contact law for those without their own.
-pub(super) fn read_impact(root: &Reader<'_>) -> Result<ImpactSpec, SceneError> {
+pub(super) fn read_impact(root: &Reader<'_>, struck: &Struck<'_>) -> Result<ImpactSpec, SceneError> {
     let march = read_march(&root.required("march")?)?;
     let field = root.required("impactor")?;
     let fields = if matches!(field.node(), Node::List(_)) { field.list()? } else { vec![field] };
     let mut impactors: Vec<ImpactorSpec> = Vec::new();
     for (number, field) in (1..).zip(&fields) {
-        let impactor = read_impactor(root, field, number, march.end.value)?;
+        let impactor = read_impactor(root, field, number, (struck, march.end.value))?;
         if impactors.iter().any(|other| other.name == impactor.name) {
             let message =
                 format!("a second impactor is called `{}`, and results could not tell them apart", impactor.name);
@@ -346,14 +377,13 @@ fn read_impactor(
     root: &Reader<'_>,
     field: &SceneValue<'_>,
     number: usize,
-    end: f64,
+    (struck, end): (&Struck<'_>, f64),
 ) -> Result<ImpactorSpec, SceneError> {
     let table = field.table(IMPACTOR)?;
     let name =
         table.optional("name").map_or(Ok(format!("impactor-{number}")), |field| field.text().map(str::to_owned))?;
-    let velocity_field = table.required("velocity")?;
-    let (mass, velocity) =
-        (table.required("mass")?.positive(Dimension::MASS)?, velocity_field.positive(Dimension::VELOCITY)?);
+    let mass = table.required("mass")?.positive(Dimension::MASS)?;
+    let (velocity_field, velocity) = tip::velocity(&table, mass, struck)?;
     // Energies are compared with it.
     if !(0.5 * mass * velocity * velocity).is_normal() {
         return Err(velocity_field.error(
@@ -377,7 +407,13 @@ fn read_impactor(
             start => start,
         },
     };
-    let contact = table.optional("contact").map_or_else(|| root.required("contact"), Ok)?;
+    let contact = match tip::law(&table, struck)? {
+        Some((law, tip)) => match table.optional("contact").or_else(|| root.optional("contact")) {
+            Some(_) => return Err(tip.error("makes Hertz's law, and there is a `contact`", "leave one of the two out")),
+            None => law,
+        },
+        None => PluginSpec::read(&table.optional("contact").map_or_else(|| root.required("contact"), Ok)?, LAW, &[])?,
+    };
     Ok(ImpactorSpec {
         name,
         mass,
@@ -386,7 +422,7 @@ fn read_impactor(
         at: read_point(&table.required("at")?)?,
         face: face(&table)?,
         load: read_load(&table)?,
-        contact: PluginSpec::read(&contact, LAW, &[])?,
+        contact,
     })
 }
 
@@ -432,8 +468,9 @@ fn read_load(table: &Reader<'_>) -> Result<Located<ContactLoad>, SceneError> {
 pub(super) fn read_march(field: &SceneValue<'_>) -> Result<MarchSpec, SceneError> {
     let table = field.table(MARCH)?;
     let integrator = PluginSpec::read_or_name(&table.required("integrator")?, &[])?;
-    let (step_field, end_field) = (table.required("step")?, table.required("end")?);
-    let (step, end) = (step_field.positive(Dimension::TIME)?, end_field.positive(Dimension::TIME)?);
+    let step_field = table.required("step")?;
+    let (end_field, end, until_separation) = read_end(&table)?;
+    let step = step_field.positive(Dimension::TIME)?;
     let steps = end / step;
     if !(1.0..=MAX_STEPS).contains(&steps) {
         return Err(end_field.error(
@@ -448,7 +485,32 @@ pub(super) fn read_march(field: &SceneValue<'_>) -> Result<MarchSpec, SceneError
             format!("give a share above 0 and up to {}", MarchSpec::LOOSEST),
         )),
     });
-    Ok(MarchSpec { integrator, step: step_field.at(step), end: end_field.at(end), tolerance: tolerance.transpose()? })
+    let (step, end) = (step_field.at(step), end_field.at(end));
+    Ok(MarchSpec { integrator, step, end, until_separation, tolerance: tolerance.transpose()? })
+}
+
+/// Where the end of a march stands, when it is, s, and whether the separation comes before it.
+fn read_end<'a>(table: &Reader<'a>) -> Result<(SceneValue<'a>, f64, bool), SceneError> {
+    let (end, latest) = (table.required("end")?, table.optional("latest"));
+    let separation = matches!(end.node(), Node::Text(text) if !units::begins_with_number(text));
+    if separation {
+        end.choice(&[(SEPARATION, ())])?;
+    }
+    match (separation, latest) {
+        (true, Some(latest)) => {
+            let time = latest.positive(Dimension::TIME)?;
+            Ok((latest, time, true))
+        }
+        (true, None) => Ok((end, LATEST, true)),
+        (false, None) => {
+            let time = end.positive(Dimension::TIME)?;
+            Ok((end, time, false))
+        }
+        (false, Some(latest)) => {
+            let help = "write end = \"separation\", or leave `latest` out";
+            Err(latest.error("is for marches that end with the separation", help))
+        }
+    }
 }
 
 pub(super) fn read_failure(field: &SceneValue<'_>, wanted: bool, in_time: bool) -> Result<Failure, SceneError> {

@@ -16,6 +16,10 @@ pub const BALANCE_EVERY: u64 = 128;
 /// steps, whatever the end of the march and the rows of its history.
 const DENSE: u32 = 10;
 
+/// Time without a force after which an impactor that moves away has left, over the time from the first to the last force: a plate
+/// that swings back within it touches again.
+const QUIET: f64 = 0.05;
+
 /// What every step adds to.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Ledger {
@@ -86,6 +90,15 @@ impl Ledger {
         }
         self.forces.take(step, all);
         Ok(())
+    }
+
+    /// Whether all impactors have struck and left for good after `step` steps: they move away from the plate, and none has touched it
+    /// for a while ([`QUIET`]).
+    pub(super) fn separated(&self, step: u64, system: &ImpactSystem, state: &State) -> bool {
+        let last = self.forces.last() as u64;
+        let gone = |(i, contact): (usize, &Follower)| contact.has_touched() && system.touch(i, state).velocity < 0.0;
+        let quiet = |first: u64| (step - last) as f64 > QUIET * (last - first) as f64;
+        step > last && self.forces.first().is_some_and(quiet) && self.contacts.iter().enumerate().all(gone)
     }
 
     /// What the contacts were.

@@ -55,6 +55,7 @@ pub struct March<'a> {
     guard: Guard,
     integrator: Box<dyn Integrator>,
     sizes: Sizes,
+    until_separation: bool,
     scan_every: u64,
     watch: Option<Watch<'a>>,
     modal: Option<ModalView>,
@@ -255,6 +256,7 @@ impl<'a> March<'a> {
             effects,
             integrator,
             sizes,
+            until_separation: impact.spec.march.until_separation,
             scan_every,
             watch,
             modal,
@@ -270,10 +272,16 @@ impl<'a> March<'a> {
 
     /// Whether the march has ended or stopped.
     pub fn done(&self) -> bool {
-        self.progress.stopped.is_some() || self.progress.step >= self.sizes.steps
+        self.progress.stopped.is_some() || self.ended()
     }
 
-    /// Share of the steps done.
+    /// Whether the march has come to its end: the last step, or the separation of all impactors where the scene asks for that.
+    fn ended(&self) -> bool {
+        let Progress { step, state, ledger, .. } = &self.progress;
+        *step >= self.sizes.steps || (self.until_separation && ledger.separated(*step, &self.system, state))
+    }
+
+    /// Share of the steps done, of all that there may be.
     pub fn share(&self) -> f64 {
         self.progress.step as f64 / self.sizes.steps as f64
     }
@@ -421,6 +429,7 @@ impl<'a> March<'a> {
     /// What the march found. Its end is a row of the history and a sample of the stresses.
     pub fn finish(mut self) -> Outcome {
         self.stopwatch.lap("march");
+        let ended = self.ended();
         if self.progress.stopped.is_none() {
             let closed = self.close();
             self.stop_on_error(self.progress.step, closed);
@@ -454,7 +463,7 @@ impl<'a> March<'a> {
         // A full system has counted since it was assembled, a reduced one counts nothing.
         counters.factorisations = counters.factorisations.max(work.factorisations);
         counters.solves = counters.solves.max(work.solves);
-        let ended = stopped.is_none() && step == self.sizes.steps;
+        let ended = stopped.is_none() && ended;
         let energy_error = ledger.error;
         let (contacts, forces, history) = ledger.records();
         let accuracy = if ended { self.estimates.finish(&forces, contacts.first()) } else { Accuracy::default() };

@@ -18,6 +18,9 @@ const OFF_CENTRE: f64 = 0.6;
 /// Largest radius of a support over that of the largest circle in the plate.
 const WIDEST_SUPPORT: f64 = 0.95;
 
+/// Least width of what is left of a side beside a window, over the side.
+const SLIGHT: f64 = 1e-3;
+
 /// Largest ratio of the sides of a rectangle over a circular support.
 const LONGEST: f64 = 2.0;
 
@@ -44,14 +47,14 @@ pub enum Outline {
 /// large as `edge_size` asks for; rings are about as thick as their cells are wide. An impact off the middle is reached
 /// by a map of the circle onto itself that keeps angles; as edges opposite to it become longer, n is larger. A
 /// rectangle without circular support is a grid of lines along the axes, whose distances grow by a fifth from cell to
-/// cell up to `edge_size`.
+/// cell up to `edge_size`; a window is a rectangle of such lines.
 ///
 /// With the impact at the middle the mesh is its own image in both mirrors, and in quarter turns where the edge is. The
 /// scaled Jacobian, the smallest sine of an inner angle of a cell, is at least 0.84 in a disc, 0.5 in a square over a
 /// ring (0.7 with the impact at the middle and a ring of up to 0.8 of half the side), 0.35 in a rectangle, no more than
 /// twice as long as wide, over a ring of up to 0.9 of half its width, 0.24 over one of up to 0.95, 1 in a grid.
 ///
-/// Groups: `plate` (cells), `edge` and, where there is one, `support` (edges), `impact` (a node); of a rectangle also
+/// Groups: `plate` (cells), `edge` and, where there are such, `support` and `window` (edges), `impact` (a node); of a rectangle also
 /// its sides `x-min`, `x-max`, `y-min`, `y-max`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Graded {
@@ -59,6 +62,8 @@ pub struct Graded {
     pub outline: Outline,
     /// Radius of a circular line of support about the origin.
     pub support: Option<f64>,
+    /// Lengths along x and y of a rectangle of lines about the origin, the window of a frame.
+    pub window: Option<[f64; 2]>,
     /// Place of the impact.
     pub impact: [f64; 2],
     /// Largest edge of the cells at the impact; those beside an impact off the middle may differ by a sixth.
@@ -87,11 +92,11 @@ impl Graded {
     /// # Errors
     /// Lengths that are not positive and finite, an impact too far from the middle or off the plate, a support that does
     /// not lie inside the edge, a strip over a circular support, more than [`MAX_CELLS`] cells. The key of the error is
-    /// `radius`, `sides`, `support`, `impact`, `size` or `edge_size`.
+    /// `radius`, `sides`, `support`, `window`, `impact`, `size` or `edge_size`.
     pub fn mesh(&self) -> Result<PlaneMesh, ParamError> {
         Ok(match self.divide()? {
             Division::Rings(rings) => rings.mesh(),
-            Division::Grid([x, y]) => grid::mesh(&x, &y, self.impact),
+            Division::Grid([x, y]) => grid::mesh(&x, &y, self.impact, self.window),
         })
     }
 
@@ -99,7 +104,8 @@ impl Graded {
         self.check()?;
         let division = match (self.outline, self.support) {
             (Outline::Rectangle { sides }, None) => {
-                let lines = |d: usize| grid::lines(sides[d], self.impact[d], self.size, self.edge_size);
+                let window = |d: usize| self.window.map(|window| window[d]);
+                let lines = |d: usize| grid::lines(sides[d], window(d), self.impact[d], [self.size, self.edge_size]);
                 Division::Grid([lines(0)?, lines(1)?])
             }
             _ => Division::Rings(Rings::new(self)),
@@ -135,6 +141,17 @@ impl Graded {
                  edge itself, leave it out and hold the group `edge`"
             );
             return Err(ParamError::new("support", why));
+        }
+        if let Some(window) = self.window {
+            let Outline::Rectangle { sides } = self.outline else {
+                return Err(ParamError::new("window", "is that of a rectangle"));
+            };
+            if self.support.is_some() {
+                return Err(ParamError::new("window", "and `support` exclude each other"));
+            }
+            if !(0..2).all(|d| window[d] > 0.0 && window[d] <= (1.0 - SLIGHT) * sides[d]) {
+                return Err(ParamError::new("window", "lies inside the plate, shorter than its sides along x and y"));
+            }
         }
         match (self.outline, self.support) {
             (Outline::Rectangle { sides }, None) => {

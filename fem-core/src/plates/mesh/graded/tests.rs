@@ -3,8 +3,14 @@ use proptest::prelude::*;
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 
-const DISC: Graded =
-    Graded { outline: Outline::Disc { radius: 25e-3 }, support: None, impact: [0.0; 2], size: 1e-3, edge_size: 3e-3 };
+const DISC: Graded = Graded {
+    outline: Outline::Disc { radius: 25e-3 },
+    support: None,
+    window: None,
+    impact: [0.0; 2],
+    size: 1e-3,
+    edge_size: 3e-3,
+};
 const RINGED: Graded = Graded { support: Some(20e-3), ..DISC };
 const SQUARE: Graded = Graded { outline: Outline::Rectangle { sides: [50e-3; 2] }, ..RINGED };
 const GRID: Graded = Graded { outline: Outline::Rectangle { sides: [100e-3, 60e-3] }, ..DISC };

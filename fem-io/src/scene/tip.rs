@@ -1,0 +1,82 @@
+//! What an impactor is in terms of a test: its energy for its velocity, its tip for a contact law.
+
+use super::laminate::LaminateSpec;
+use super::plugin::PluginSpec;
+use crate::document::reader::{Reader, SceneValue};
+use crate::document::source::{Located, SceneError};
+use fem_core::material::Material;
+use fem_core::plugin::{Dimension, Value};
+
+/// The plate that an impactor strikes.
+pub(super) struct Struck<'a> {
+    pub(super) materials: &'a [Located<Material>],
+    /// The plies of the plate apart from regions of their own.
+    pub(super) laminate: &'a LaminateSpec,
+}
+
+/// Difference of two moduli of an isotropic material, relative.
+const SAME: f64 = 1e-6;
+
+/// The velocity, m/s, and the field that says it: itself, or v = √(2 E/m) of an energy, or of one per thickness of the laminate.
+pub(super) fn velocity<'a>(
+    table: &Reader<'a>,
+    mass: f64,
+    struck: &Struck<'_>,
+) -> Result<(SceneValue<'a>, f64), SceneError> {
+    match table.either(["velocity", "energy"])? {
+        [Some(field), _] => {
+            let velocity = field.positive(Dimension::VELOCITY)?;
+            Ok((field, velocity))
+        }
+        [None, Some(field)] => {
+            let (value, dimension) = field.any_quantity(field.text()?)?;
+            let energy = match dimension {
+                of if of.matches(&Dimension::ENERGY) => value,
+                of if of.matches(&Dimension::FORCE) => value * struck.laminate.laminate.value.thickness(),
+                of => {
+                    let message = format!("is an energy or an energy per thickness, not {of}");
+                    return Err(field.error(message, "write \"28 J\" or \"6.7 J/mm\""));
+                }
+            };
+            if !(energy > 0.0) {
+                return Err(field.error("must be positive", "write \"28 J\" or \"6.7 J/mm\""));
+            }
+            Ok((field, (2.0 * energy / mass).sqrt()))
+        }
+        [None, None] => Err(table.missing("velocity", "write velocity = \"1.56 m/s\", or energy = \"6.7 J/mm\"")),
+    }
+}
+
+/// Hertz's law of a spherical tip on the laminate, and the field of its diameter, where a scene gives the tip.
+///
+/// The modulus across the laminate is that of its plies in series, 1/E = Σ (hᵢ/h)/E₃ᵢ.
+pub(super) fn law<'a>(
+    table: &Reader<'a>,
+    struck: &Struck<'_>,
+) -> Result<Option<(PluginSpec, SceneValue<'a>)>, SceneError> {
+    let (diameter, material) = match (table.optional("diameter"), table.optional("material")) {
+        (None, None) => return Ok(None),
+        (Some(diameter), Some(material)) => (diameter, material),
+        (Some(_), None) => return Err(table.missing("material", "name the material of the tip: material = \"steel\"")),
+        (None, Some(_)) => return Err(table.missing("diameter", "give that of the tip: diameter = \"16 mm\"")),
+    };
+    let named = material.word(struck.materials.iter().map(|material| material.value.name.as_str()))?;
+    let tip = &struck.materials[named].value;
+    let [e, others] = [tip.elastic.e1, tip.elastic.e2.min(tip.elastic.e3)];
+    if (others / e - 1.0).abs() > SAME {
+        let message = format!("`{}` is not isotropic", tip.name);
+        return Err(material.error(message, "a tip is of one modulus: metals { library = \"steel\" }"));
+    }
+    let laminate = &struck.laminate.laminate.value;
+    let compliance: f64 =
+        laminate.plies.iter().map(|ply| ply.thickness / struck.materials[ply.material].value.elastic.e3).sum();
+    let across = laminate.thickness() / compliance;
+    let radius = 0.5 * diameter.positive(Dimension::LENGTH)?;
+    let values = [
+        ("radius", Value::Text(format!("{radius} m"))),
+        ("e_tip", Value::Text(format!("{e} Pa"))),
+        ("nu_tip", Value::Number(tip.elastic.nu12)),
+        ("e_plate", Value::Text(format!("{across} Pa"))),
+    ];
+    Ok(Some((PluginSpec::made("hertz", values, &diameter), diameter)))
+}
