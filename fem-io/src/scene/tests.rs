@@ -290,6 +290,7 @@ fn a_mesh_may_be_built_in() {
     let disc = Graded {
         outline: Outline::Disc { radius: 0.025 },
         support: None,
+        window: None,
         impact: [0.0; 2],
         size: 1e-3,
         edge_size: 3e-3,
@@ -299,6 +300,7 @@ fn a_mesh_may_be_built_in() {
     let plate = Graded {
         outline: Outline::Rectangle { sides: [0.06, 0.05] },
         support: Some(0.02),
+        window: None,
         impact: [1e-3, -2e-3],
         edge_size: 2e-3,
         ..disc

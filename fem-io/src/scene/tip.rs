@@ -1,6 +1,7 @@
 //! What an impactor is in terms of a test: its energy for its velocity, its tip for a contact law.
 
 use super::laminate::LaminateSpec;
+use super::material;
 use super::plugin::PluginSpec;
 use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, SceneError};
@@ -54,18 +55,17 @@ pub(super) fn law<'a>(
     table: &Reader<'a>,
     struck: &Struck<'_>,
 ) -> Result<Option<(PluginSpec, SceneValue<'a>)>, SceneError> {
-    let (diameter, material) = match (table.optional("diameter"), table.optional("material")) {
+    let (diameter, named) = match (table.optional("diameter"), table.optional("material")) {
         (None, None) => return Ok(None),
-        (Some(diameter), Some(material)) => (diameter, material),
+        (Some(diameter), Some(named)) => (diameter, named),
         (Some(_), None) => return Err(table.missing("material", "name the material of the tip: material = \"steel\"")),
         (None, Some(_)) => return Err(table.missing("diameter", "give that of the tip: diameter = \"16 mm\"")),
     };
-    let named = material.word(struck.materials.iter().map(|material| material.value.name.as_str()))?;
-    let tip = &struck.materials[named].value;
+    let tip = &struck.materials[material::find(&named, struck.materials)?].value;
     let [e, others] = [tip.elastic.e1, tip.elastic.e2.min(tip.elastic.e3)];
     if (others / e - 1.0).abs() > SAME {
         let message = format!("`{}` is not isotropic", tip.name);
-        return Err(material.error(message, "a tip is of one modulus: metals { library = \"steel\" }"));
+        return Err(named.error(message, "a tip has one modulus, as metals have: steel = { library = \"steel\" }"));
     }
     let laminate = &struck.laminate.laminate.value;
     let compliance: f64 =

@@ -33,7 +33,7 @@ fn built_in_meshes() {
     let plates = [(Outline::Disc { radius: 25e-3 }, None), (square, Some(20e-3)), (square, None)];
     for (outline, support) in plates {
         let impact = [3e-3, -2e-3];
-        let built = Graded { outline, support, impact, size: 2e-3, edge_size: 5e-3 }.mesh().unwrap();
+        let built = Graded { outline, support, window: None, impact, size: 2e-3, edge_size: 5e-3 }.mesh().unwrap();
         for encoding in [Encoding::Ascii, Encoding::Binary] {
             // In metres to the last bit.
             assert_eq!(read_again(&built, 1.0, encoding).mesh, built);

@@ -188,7 +188,7 @@ proptest! {
         let support = support.map(|share| share * inner);
         let off = off * support.unwrap_or(inner);
         let impact = [off * direction.cos(), off * direction.sin()];
-        let plate = Graded { outline, support, impact, size: size.max(0.02), edge_size: growth * size.max(0.02) };
+        let plate = Graded { outline, support, window: None, impact, size: size.max(0.02), edge_size: growth * size.max(0.02) };
         if plate.cells().is_ok_and(|n| n < 100_000) {
             let mesh = plate.mesh().unwrap();
             // The smallest of 55 000 plates with rings close to the edge was 0.2496, of 28 000 with smaller ones 0.353.
@@ -203,5 +203,31 @@ proptest! {
             let inside = mesh.points.len() * 2 == 2 * mesh.quads.len() + mesh.boundary().len() + 2;
             prop_assert!(inside, "{:?}", plate);
         }
+    }
+}
+
+#[test]
+fn windows_are_lines_of_the_grid() {
+    for impact in [[0.0; 2], [12e-3, -7e-3], [45e-3, 0.0]] {
+        let mesh = sound(Graded { impact, window: Some([80e-3, 40e-3]), ..GRID });
+        let window = &mesh.groups["window"];
+        let on = |node: &u32| {
+            let [x, y] = mesh.points[*node as usize];
+            (x.abs() == 40e-3 && y.abs() <= 20e-3) || (y.abs() == 20e-3 && x.abs() <= 40e-3)
+        };
+        assert!(window.nodes.iter().all(on), "{impact:?}");
+        let length = |[a, b]: &[u32; 2]| {
+            let [p, q] = [a, b].map(|node| mesh.points[*node as usize]);
+            (p[0] - q[0]).hypot(p[1] - q[1])
+        };
+        assert!((window.edges.iter().map(length).sum::<f64>() - 0.24).abs() < 1e-12, "{impact:?}");
+    }
+    for (plate, why) in [
+        (Graded { window: Some([0.1, 0.04]), ..GRID }, "lies inside the plate"),
+        (Graded { window: Some([0.01; 2]), ..DISC }, "is that of a rectangle"),
+        (Graded { window: Some([0.01; 2]), ..SQUARE }, "exclude each other"),
+    ] {
+        let wrong = plate.mesh().unwrap_err();
+        assert!(wrong.key == "window" && wrong.why.contains(why), "{wrong:?}");
     }
 }
