@@ -22,6 +22,7 @@ mod indices;
 mod invariance;
 mod job;
 mod kills;
+mod laminate;
 mod mesh;
 mod modal;
 mod model;

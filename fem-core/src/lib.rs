@@ -55,8 +55,8 @@ pub use contracts::{
     contact, element, failure, interface_law, large, plugin, ply_law, reduction, stack, structure, time, transverse,
 };
 pub use plates::{
-    axes, between, constraint, hold, interfaces, laminate, laws, load, mesh, patch, pieces, plate, support, symmetry,
-    warping, window,
+    axes, between, classical, constraint, hold, interfaces, laminate, laws, load, mesh, patch, pieces, plate, support,
+    symmetry, warping, window,
 };
 pub use stresses::{estimate, field, profile, recovery, residual, waves};
 pub use words::{

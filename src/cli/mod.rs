@@ -5,6 +5,7 @@ mod check;
 mod console;
 mod deck;
 mod envelope;
+mod laminate;
 mod list;
 mod manual;
 mod matrices;
@@ -96,6 +97,10 @@ enum Command {
     Advise(advise::Arguments),
     /// Draws and tabulates failure envelopes of a material.
     Envelope(envelope::Arguments),
+    /// Shows a laminate: A, B, D, moduli, couplings, what warmth and loads do, and which ply fails first.
+    ///
+    /// By classical laminate theory, of plies that are named or those of a scene. Writes nothing.
+    Laminate(laminate::Arguments),
     /// Finds the lowest natural frequencies of a scene's plate and writes modes.csv.
     Modes(modes::Arguments),
     /// Shows what accuracy costs: where the error of a scene comes from, and the cheapest setting for a smaller one.
@@ -171,6 +176,7 @@ fn dispatch(registry: &Registry, command: &Command, console: &Console) -> miette
         Command::Check(a) => check::check(registry, a, console),
         Command::Envelope(a) => envelope::envelope(registry, a, console),
         Command::Advise(a) => advise::advise(registry, a, console),
+        Command::Laminate(a) => laminate::laminate(registry, a, console),
         Command::Modes(a) => modes::modes(registry, a, console),
         Command::Study(a) => study::study(registry, a, console),
         Command::Report(a) => report::report(registry, a, console),

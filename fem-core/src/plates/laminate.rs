@@ -1,6 +1,7 @@
 //! Laminates: plies from the bottom up, grouped into layers of cells.
 
 use crate::contracts::element::{Slice, Stack};
+use crate::plates::classical::ClassicalLaminate;
 use crate::words::material::{Material, MaterialError};
 use crate::words::tensor::{apply, rotate_stiffness, strain_rotation};
 use nalgebra::Matrix3;
@@ -154,19 +155,8 @@ impl Laminate {
     /// assert!((d[(0, 0)] / (e * h.powi(3) / 12.0 / (1.0 - nu * nu)) - 1.0).abs() < 1e-12);
     /// ```
     pub fn bending_stiffness(&self, materials: &[Material]) -> Matrix3<f64> {
-        const PLANE: [usize; 3] = [0, 1, 3];
-        let z = self.boundaries();
-        let [mut a, mut b, mut d] = [Matrix3::zeros(); 3];
-        for (ply, z) in self.plies.iter().zip(z.windows(2)) {
-            let c = rotate_stiffness(&materials[ply.material].elastic.stiffness(), ply.angle);
-            let q = Matrix3::from_fn(|i, j| {
-                let (i, j) = (PLANE[i], PLANE[j]);
-                c[i][j] - c[i][2] * c[2][j] / c[2][2]
-            });
-            a += q * (z[1] - z[0]);
-            b += q * (0.5 * (z[1].powi(2) - z[0].powi(2)));
-            d += q * ((z[1].powi(3) - z[0].powi(3)) / 3.0);
-        }
+        let plate = ClassicalLaminate::new(self, materials);
+        let (a, b, d) = (plate.membrane, plate.coupling, plate.bending);
         d - b * a.try_inverse().unwrap_or_else(|| Matrix3::repeat(f64::NAN)) * b
     }
 

@@ -2,6 +2,7 @@
 
 pub mod axes;
 pub mod between;
+pub mod classical;
 pub mod constraint;
 mod error;
 pub mod hold;

@@ -1,0 +1,70 @@
+//! `fem laminate`.
+
+use crate::support::{fem, root};
+use serde_json::Value;
+
+fn found(arguments: &[&str]) -> Value {
+    let done = fem(&root(), &[&["laminate"], arguments, &["--json"]].concat()).good();
+    serde_json::from_str(&done.stdout).unwrap()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+const TAPE: [&str; 4] = ["--material", "AS4/3502", "--ply-thickness", "0.125 mm"];
+
+#[test]
+fn a_quasi_isotropic_laminate() {
+    let found = found(&[&["[45/0/-45/90]s"], &TAPE[..]].concat());
+    let plane = &found["in_plane"];
+    let [ex, ey, gxy, nuxy] = ["Ex_Pa", "Ey_Pa", "Gxy_Pa", "nuxy"].map(|key| number(&plane[key]));
+    // Isotropic in its plane: G = E/2(1 + nu).
+    assert!((ex / ey - 1.0).abs() < 1e-12 && (gxy / (ex / (2.0 * (1.0 + nuxy))) - 1.0).abs() < 1e-12);
+    assert_eq!((&found["uncoupled"], &found["balanced"]), (&Value::Bool(true), &Value::Bool(true)));
+    assert!((number(&found["thickness_m"]) - 1e-3).abs() < 1e-15 && number(&found["bend_twist"]) > 0.05);
+    assert!(number(&found["flexural"]["Ex_Pa"]) != ex);
+}
+
+/// Along the fibres of a single ply all there is is its strength; across them, too.
+#[test]
+fn the_first_failure_of_one_ply_is_its_strength() {
+    let strengths = &fem::io::materials::library("AS4/3502").unwrap().material.strengths;
+    for (force, strength) in [("1,0,0", strengths.xt()), ("-1,0,0", strengths.xc()), ("0,1,0", strengths.yt())] {
+        let found = found(&[&["[0]"], &TAPE[..], &["--force", force, "--criteria", "max-stress,tsai-wu"]].concat());
+        for first in found["first_failure"].as_array().unwrap() {
+            // 1 N/mm on 0.125 mm is 8 MPa.
+            assert!((number(&first["reserve"]) * 8e6 / strength - 1.0).abs() < 1e-9, "{force}: {first}");
+        }
+    }
+    let found = found(&[&["[0]"], &TAPE[..], &["--moment", "1,0,0", "--criteria", "max-stress"]].concat());
+    // 6 M/h² = 384 MPa at the faces.
+    let first = &found["first_failure"][0];
+    let (least, face) =
+        if strengths.xt() < strengths.xc() { (strengths.xt(), "upper") } else { (strengths.xc(), "lower") };
+    assert!((number(&first["reserve"]) * 384e6 / least - 1.0).abs() < 1e-9 && first["face"] == face, "{first}");
+}
+
+#[test]
+fn scenes_have_laminates() {
+    let scene = "examples/as4-3502-16ply-50mm/scene.toml";
+    let of_scene = found(&[scene]);
+    let plies = found(&["[0/45/-45/90]2s", "--material", "AS4/3502", "--ply-thickness", "0.13208 mm"]);
+    assert_eq!(of_scene["A_N_m"], plies["A_N_m"]);
+    let text = fem(&root(), &["laminate", scene]).good().stdout;
+    assert!(text.starts_with("16 plies, 2.1133 mm, 3.3284 kg/m^2\n") && text.contains("A, N/mm"), "{text}");
+}
+
+#[test]
+fn what_is_wrong_is_said() {
+    for (arguments, words) in [
+        (vec!["[0/90]s"], "need a material and a thickness"),
+        (vec!["[0/90", "--material", "AS4/3502", "--ply-thickness", "1 mm"], "plies run from the bottom up"),
+        (vec!["[0]", "--material", "AS4", "--ply-thickness", "1 mm"], "the library has no material `AS4`"),
+        (vec!["[0]", "--material", "AS4/3502", "--ply-thickness", "1 mm", "--force", "1,2"], "takes three numbers"),
+        (vec!["examples/pagano-0-90-0/scene.toml", "--material", "AS4/3502"], "materials and thicknesses of its own"),
+    ] {
+        let done = fem(&root(), &[&["laminate"], &arguments[..]].concat());
+        assert!(done.status == 1 && done.stderr.contains(words), "{arguments:?}: {done:#?}");
+    }
+}
