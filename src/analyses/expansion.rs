@@ -3,7 +3,8 @@
 use crate::model::Model;
 use fem_core::assembly::Condensation;
 use fem_core::structure::Structure;
-use fem_dynamics::reduce::{Companions, Reduced};
+use fem_dynamics::reduce::{Companions, Reduced, Share};
+use std::sync::Arc;
 
 /// From the coordinates of a march to the unknowns of the plate, before elimination of constraints.
 #[derive(Debug)]
@@ -13,6 +14,8 @@ pub(super) struct Expansion<'a> {
     pub(super) reduced: Option<Reduced>,
     /// What large deflections add to the modes.
     pub(super) companions: Option<Companions>,
+    /// What the stretching of a full plate adds to its displacements.
+    pub(super) share: Option<Arc<Share>>,
     /// Where the unknowns of the structure are masters alone.
     pub(super) condensation: Option<Condensation>,
 }
@@ -25,7 +28,12 @@ impl Expansion<'_> {
 
     /// `count` fields in the unknowns of the plate, of as many in coordinates of the march.
     pub(super) fn displacements(&self, coordinates: &[f64], count: usize) -> Vec<f64> {
-        let Some(reduced) = &self.reduced else { return self.nodal(coordinates) };
+        let Some(reduced) = &self.reduced else {
+            let Some(share) = &self.share else { return self.nodal(coordinates) };
+            let mut u = coordinates.to_vec();
+            u.chunks_exact_mut(coordinates.len() / count).for_each(|u| share.complete(u));
+            return self.nodal(&u);
+        };
         let width = coordinates.len() / count;
         let n = reduced.basis.len() / width;
         let mut u = vec![0.0; n * count];

@@ -17,14 +17,15 @@ pub use stages::{Marched, Nature};
 use crate::error::Error;
 use crate::forecast::Demand;
 use dyn_clone::DynClone;
-use fem_core::assembly::{SparseStructure, Symmetric};
+use fem_core::assembly::{Separable, SparseStructure, Symmetric};
 use fem_core::element::Stack;
+use fem_core::functional::Functional;
 use fem_core::laminate::Laminate;
 use fem_core::material::{Material, MaterialError};
 use fem_core::recovery::Recovery;
 use fem_core::time::State;
 use fem_dynamics::impact::{Energies, ImpactSystem};
-use fem_dynamics::reduce::Reduced;
+use fem_dynamics::reduce::{Reduced, Stretch};
 use fem_io::scene::{Key, SceneError, SceneValue};
 use std::fmt::Debug;
 
@@ -96,6 +97,11 @@ pub trait Effect: DynClone + Debug + Send + Sync {
         Ok(())
     }
 
+    /// Whether it stands beside delaminations that grow.
+    fn goes_with_growth(&self) -> bool {
+        false
+    }
+
     /// Changes what is computed of the plate.
     fn alter(&self, _nature: &mut Nature) {}
 
@@ -151,6 +157,21 @@ pub trait Effect: DynClone + Debug + Send + Sync {
     /// A plate that cannot be changed so.
     fn on_structure(&mut self, _body: &Body<'_>, _plate: &mut Marched) -> Result<(), Error> {
         Ok(())
+    }
+
+    /// How its deflections stretch a plate whose layers may separate, struck at `contacts` and marched by steps of `step`,
+    /// s; `None` where nothing of the kind is computed.
+    ///
+    /// # Errors
+    /// A plate that is not held.
+    fn stretch(
+        &self,
+        _body: &Body<'_>,
+        _plate: &mut Separable,
+        _contacts: &[Functional],
+        _step: f64,
+    ) -> Result<Option<Stretch>, Error> {
+        Ok(None)
     }
 
     /// Changes plate and impactors as one system, of a full plate (`None`) or a reduced one.

@@ -64,8 +64,8 @@ impl Effects {
     }
 
     /// Those that act or are left to the advisor.
-    pub(crate) fn wanted(&self) -> impl Iterator<Item = &'static EffectInfo> + '_ {
-        self.acting.iter().chain(&self.left).map(|effect| effect.info())
+    pub(crate) fn wanted(&self) -> impl Iterator<Item = &dyn Effect> + '_ {
+        self.acting.iter().chain(&self.left).map(|effect| &**effect)
     }
 
     /// Whether the effect `name` acts.

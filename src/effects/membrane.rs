@@ -7,9 +7,10 @@ use crate::effect::{
 };
 use crate::error::Error;
 use crate::forecast::{Demand, Size, nominal};
-use fem_core::assembly::{LargePlate, MembraneStrains};
+use fem_core::assembly::{LargePlate, MembraneStrains, Separable};
+use fem_core::functional::Functional;
 use fem_core::structure::SolveError;
-use fem_dynamics::reduce::{MembraneForms, MembranePlate};
+use fem_dynamics::reduce::{MembraneForms, MembranePlate, Stretch};
 use fem_io::scene::{Form, SceneError, SceneValue, key, words};
 
 /// Strains are those of large deflections: of the element in a full plate, of a few patterns of membrane stress in a reduced one.
@@ -86,6 +87,10 @@ impl Effect for Membrane {
         ))
     }
 
+    fn goes_with_growth(&self) -> bool {
+        true
+    }
+
     fn alter(&self, nature: &mut Nature) {
         nature.large = true;
     }
@@ -122,6 +127,16 @@ impl Effect for Membrane {
             }
         }
         Ok(())
+    }
+
+    fn stretch(
+        &self,
+        body: &Body<'_>,
+        plate: &mut Separable,
+        contacts: &[Functional],
+        step: f64,
+    ) -> Result<Option<Stretch>, Error> {
+        Ok(Some(Stretch::new(plate, contacts, step, &MembraneOf(*body)).map_err(SolveError::other)?))
     }
 }
 

@@ -283,8 +283,9 @@ impl<'a> Builder<'a> {
                 "leave one of them out",
             );
         }
-        if let Some(other) = effects.wanted().next() {
-            let message = format!("`effects.{}` does not stand beside delaminations that grow yet", other.key.name);
+        if let Some(other) = effects.wanted().find(|effect| !effect.goes_with_growth()) {
+            let name = other.info().key.name;
+            let message = format!("`effects.{name}` does not stand beside delaminations that grow yet");
             return refuse(wish, &message, "leave one of them out");
         }
         let reduction = &impact.reduction.name;

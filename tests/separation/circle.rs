@@ -77,8 +77,16 @@ fn a_circular_delamination_grows_at_one_force() {
     let constraints = Constraints::eliminate(&elimination_order(&plate), &supports).unwrap();
     let load = patch::hertz(&plate, &element, Face::Top, [0.0; 2], LOADED).unwrap();
     let growth = Growth { margin, trigger: 0.2 };
-    let parts =
-        SeparableParts { plate, element: Box::new(element), supports, constraints, interfaces, growth, plies: None };
+    let parts = SeparableParts {
+        plate,
+        element: Box::new(element),
+        supports,
+        constraints,
+        interfaces,
+        growth,
+        plies: None,
+        motions: Vec::new(),
+    };
     let mut plate = Separable::new(parts, &states, false, NonZeroUsize::MIN).unwrap();
     let area = |radius: f64| PI * (radius * radius - START * START);
     let critical = PI * (8.0 * E * THICKNESS.powi(3) * GIIC / (9.0 * (1.0 - 0.09))).sqrt();

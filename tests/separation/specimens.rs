@@ -102,6 +102,7 @@ impl Specimen {
             interfaces,
             growth,
             plies: None,
+            motions: Vec::new(),
         };
         (Separable::new(parts, &states, true, NonZeroUsize::MIN).unwrap(), states)
     }

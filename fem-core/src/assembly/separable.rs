@@ -7,6 +7,7 @@ mod tied;
 
 use super::cell_map::CellMap;
 use super::krylov::Krylov;
+use super::released::Released;
 use super::{AssemblyError, FactorError, LawPlate, Matrix, Symmetric, assemble, pattern};
 use crate::contracts::element::{Element, ElementError};
 use crate::contracts::interface_law::Jump;
@@ -92,6 +93,8 @@ pub struct SeparableParts {
     pub growth: Growth,
     /// The plies that follow laws, if some do; their states follow those of the interfaces.
     pub plies: Option<LawPlate>,
+    /// Motions as a whole that the supports leave free, of the independent unknowns; `ndof × any`, column-major.
+    pub motions: Vec<f64>,
 }
 
 /// A plate whose layers may separate.
@@ -110,6 +113,7 @@ pub struct Separable {
     /// K and M of both sides.
     k: Symmetric,
     m: Symmetric,
+    released: Released,
     /// Of each cell of the interfaces.
     maps: Vec<CellMap>,
     tied: Tied,
@@ -167,12 +171,14 @@ impl Separable {
         };
         let maps = interfaces.cells().iter().map(map).collect();
         let tied = Tied::new(&parts, open_cells(&first, states), threads)?;
+        let released = Released::new(&k, &m, &parts.motions);
         Ok(Self {
             parts,
             first,
             threads,
             k,
             m,
+            released,
             maps,
             tied,
             cm: 0.0,
@@ -290,7 +296,8 @@ impl Separable {
 
     fn factorise(&mut self) -> Result<(), SeparableError> {
         self.work.factorisations += 1;
-        self.tied.factorise(&self.parts, Factored::Near(self.cm), &self.moduli, self.threads)
+        let near = Factored::Near(self.cm);
+        self.tied.factorise(&self.parts, near, &self.moduli, self.released.springs(), self.threads)
     }
 
     /// `x ← T (Tᵀ A T)⁻¹ Tᵀ x` with the last tangent: the displacements under forces x.
@@ -342,14 +349,18 @@ impl Separable {
 
     /// `x ← T (Tᵀ A T)⁻¹ Tᵀ x`, A = M, or K + cm M with the stiffness of what is open, undamaged.
     fn solve_with(&mut self, what: Factored, x: &mut [f64]) -> Result<(), SeparableError> {
-        let Self { parts, tied, arrays, work, threads, .. } = self;
+        let Self { parts, released, tied, arrays, work, threads, .. } = self;
         if tied.factored != what {
             let mut moduli = vec![Vec::new(); parts.interfaces.cells().len()];
             for (cell, moduli) in moduli.iter_mut().enumerate().filter(|(cell, _)| tied.open[*cell]) {
                 parts.interfaces.undamaged(cell, moduli);
             }
-            tied.factorise(parts, what, &moduli, *threads)?;
+            tied.factorise(parts, what, &moduli, released.springs(), *threads)?;
             work.factorisations += 1;
+        }
+        let at_rest = what == Factored::Undamaged(0.0);
+        if at_rest {
+            released.balance(x, 1);
         }
         let y = &mut arrays.right;
         y.resize(tied.ndof(), 0.0);
@@ -357,6 +368,9 @@ impl Separable {
         tied.factor.solve(y, 1);
         work.solves += 1;
         tied.way.expand(y, x);
+        if at_rest {
+            released.deform(x, 1);
+        }
         Ok(())
     }
 

@@ -8,6 +8,7 @@ mod irs;
 mod membrane;
 mod modal;
 mod ritz;
+mod stretched;
 
 pub use craig_bampton::CraigBampton;
 pub use diagonal::Modal;
@@ -16,6 +17,7 @@ pub use irs::Irs;
 pub use membrane::{Companions, MembraneForms, MembranePlate};
 pub use modal::ModalTruncation;
 pub use ritz::Ritz;
+pub use stretched::{Share, Stretch, StretchedPlate};
 
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
@@ -148,6 +150,18 @@ impl Reduced {
         let ndof = t.nrows();
         let basis = [free.as_slice(), (t * back).as_slice()].concat();
         Ok(Self { modal, basis, ndof })
+    }
+
+    /// The same without the modes above the circular frequency `omega`, rad/s.
+    fn up_to(mut self, omega: f64) -> Self {
+        let Modal { stiffness, mass, damping } = &mut self.modal;
+        let slow = |(k, m): &(&f64, &f64)| **k <= omega * omega * **m;
+        let kept = stiffness.iter().zip(&*mass).take_while(slow).count();
+        stiffness.truncate(kept);
+        mass.truncate(kept);
+        damping.truncate(kept);
+        self.basis.truncate(kept * self.ndof);
+        self
     }
 
     /// A functional of u in modal coordinates: Φᵀ w.

@@ -33,6 +33,13 @@ pub struct Ritz {
     two_level: bool,
 }
 
+impl Ritz {
+    /// So many vectors of the exact space.
+    pub(super) fn krylov(vectors: usize) -> Self {
+        Self { vectors, two_level: false }
+    }
+}
+
 impl Reduction for Ritz {
     fn basis(
         &self,

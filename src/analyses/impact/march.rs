@@ -215,7 +215,8 @@ impl<'a> March<'a> {
     }
 
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
-        let Prepared { model, impact, mut system, effects, reduced, membrane, full, condensation, .. } = prepared;
+        let Prepared { model, impact, mut system, effects, reduced, membrane, share, full, condensation, .. } =
+            prepared;
         let Prepared { sizes, counters, mut stopwatch, .. } = prepared;
         stopwatch.lap("reduce");
         let (membrane, companions) = membrane.unzip();
@@ -244,7 +245,7 @@ impl<'a> March<'a> {
         }
         let followed = model.output.modes.as_ref().zip(reduced.as_ref());
         let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
-        let expansion = Rc::new(Expansion { model, reduced, companions, condensation });
+        let expansion = Rc::new(Expansion { model, reduced, companions, share, condensation });
         let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, expansion.clone())?) };
         stopwatch.lap("prepare stresses");
         let scan_every = count_steps(model.sample_every, sizes.step);

@@ -17,7 +17,7 @@ use fem_core::structure::{SolveError, Structure};
 use fem_core::time::{Integrator, StepError};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
 use fem_dynamics::limit::{self, TooLong};
-use fem_dynamics::reduce::{Companions, MembranePlate, Reduced, static_responses};
+use fem_dynamics::reduce::{Companions, MembranePlate, Reduced, Share, Stretch, StretchedPlate, static_responses};
 use fem_io::scene;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -38,6 +38,8 @@ pub struct Prepared<'a> {
     pub(super) reduced: Option<Reduced>,
     /// A reduced plate that its deflections stretch, and what it does beside its modes.
     pub(super) membrane: Option<(MembranePlate, Companions)>,
+    /// What the stretching of a full plate adds to its displacements.
+    pub(super) share: Option<Arc<Share>>,
     /// What a reduced model was made from.
     pub(super) full: Option<Full>,
     pub(super) condensation: Option<Condensation>,
@@ -124,6 +126,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
         effects,
         reduced,
         membrane: stretched,
+        share: None,
         full,
         condensation,
         sizes,
@@ -154,6 +157,7 @@ fn prepare_separable<'a>(
         interfaces: interfaces.clone(),
         growth: *growth,
         plies: model.laws.as_ref().map(|laws| LawPlate::new(plate, element.clone(), constraints, laws.clone())),
+        motions: model.motions.clone(),
     };
     let mut structure = Separable::new(parts, states, true, threads).map_err(SolveError::from)?;
     let counters = Counters { elements: structure.work().cells, ..Counters::default() };
@@ -166,7 +170,18 @@ fn prepare_separable<'a>(
         _ => None,
     };
     let mut effects = model.effects.acting().to_vec();
-    let mut system = couple(model, ImpactSystem::new(Box::new(structure), impactors), None, &mut effects);
+    let (struck, (_, step)) = (distinct(&contacts), impact.spec.march.steps());
+    let mut stretch = None;
+    for effect in &effects {
+        stretch = stretch.or(effect.stretch(&model.body(), &mut structure, &struck, step)?);
+    }
+    stopwatch.lap("reduce");
+    let share = stretch.as_ref().map(Stretch::share);
+    let structure: Box<dyn Structure> = match stretch {
+        Some(stretch) => Box::new(StretchedPlate::new(Box::new(structure), stretch)),
+        None => Box::new(structure),
+    };
+    let mut system = couple(model, ImpactSystem::new(structure, impactors), None, &mut effects);
     let before = Before { stiffness_entries, factor_entries, substructures: None, memory, softness: None };
     let sizes = check_step(model, impact, &mut system, None, before)?;
     let sizes = Sizes { static_stiffness: stiffness.unwrap_or(sizes.static_stiffness), ..sizes };
@@ -177,6 +192,7 @@ fn prepare_separable<'a>(
         effects,
         reduced: None,
         membrane: None,
+        share,
         full: None,
         condensation: None,
         sizes,

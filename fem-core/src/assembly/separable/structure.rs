@@ -21,6 +21,10 @@ impl Structure for Separable {
         self.parts.plate.describe(self.parts.constraints.original(i))
     }
 
+    fn free_motions(&self) -> &[f64] {
+        self.released.motions()
+    }
+
     fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {
         self.k.add_product(scale, x, y);
     }

@@ -51,6 +51,11 @@ pub(super) struct Way {
 }
 
 impl Way {
+    /// What an unknown of both sides is, in those that are left.
+    fn of(&self, i: usize) -> &[(usize, f64)] {
+        &self.terms[self.starts[i]..self.starts[i + 1]]
+    }
+
     pub(super) fn expand(&self, y: &[f64], x: &mut [f64]) {
         for (x, row) in x.iter_mut().zip(self.starts.windows(2)) {
             *x = self.terms[row[0]..row[1]].iter().map(|(i, c)| c * y[*i]).sum();
@@ -124,12 +129,14 @@ impl Tied {
         self.way.restrict(x, y);
     }
 
-    /// Factorises `what`, with the stiffness of the interfaces that `moduli` leave definite.
+    /// Factorises `what`, with the stiffness of the interfaces that `moduli` leave definite; at rest `springs` at unknowns hold a plate
+    /// that is free to move as a whole.
     pub(super) fn factorise(
         &mut self,
         parts: &SeparableParts,
         what: Factored,
         moduli: &[Vec<[Jump; 3]>],
+        springs: &[(usize, f64)],
         threads: NonZeroUsize,
     ) -> Result<(), SeparableError> {
         let SeparableParts { plate, element, interfaces, .. } = parts;
@@ -149,6 +156,9 @@ impl Tied {
                     let mass = matrix(Matrix::Mass)?;
                     let near = self.near.lower_mut().val_mut();
                     near.iter_mut().zip(mass.lower().val()).for_each(|(k, m)| *k += cm * m);
+                } else {
+                    let first = |(i, spring): &(usize, f64)| Some((self.way.of(*i).first()?.0, *spring));
+                    self.near.add_to_diagonal(&springs.iter().filter_map(first).collect::<Vec<_>>());
                 }
                 let mut secant = Vec::new();
                 for (cell, map) in &mut self.maps {

@@ -1,0 +1,164 @@
+//! A full plate whose deflections stretch it.
+
+use super::membrane::InPlane;
+use super::{Companions, MembraneForms, MembranePlate, Reduced, Ritz};
+use crate::vector::{axpy, dot};
+use fem_core::energy::Energy;
+use fem_core::functional::Functional;
+use fem_core::reduction::{Reduction, ReductionError};
+use fem_core::structure::{Nonlinear, SolveError, Structure};
+use std::sync::Arc;
+
+/// Vectors of the share of the displacements that stretches a plate, and the fastest of their modes that take part, in radians a step:
+/// those that explicit steps would follow.
+const VECTORS: usize = 30;
+const FASTEST: f64 = 2.0;
+
+/// How a full plate is stretched: as its share in few vectors Φ is, with Φᵀ M Φ = 1.
+///
+/// Tension follows the deflection of the plate as a whole, which few vectors hold; what they leave out, ripples beside the contact or
+/// two faces that move apart, stretches nothing. In its plane the plate follows at once and undamaged.
+#[derive(Debug, Clone)]
+pub struct Stretch {
+    membrane: MembranePlate,
+    share: Arc<Share>,
+}
+
+/// The share q = Φᵀ M u of displacements in the vectors Φ, and what the stretching adds to u.
+#[derive(Debug)]
+pub struct Share {
+    /// M Φ, `ndof × modes`.
+    weights: Vec<f64>,
+    modes: usize,
+    companions: Companions,
+}
+
+impl Share {
+    fn of(&self, u: &[f64], q: &mut [f64]) {
+        q.iter_mut().zip(self.weights.chunks_exact(u.len())).for_each(|(q, column)| *q = dot(column, u));
+    }
+
+    /// Adds to the displacements `u` of the full plate what it does in its plane, and through its thickness, because it is stretched.
+    pub fn complete(&self, u: &mut [f64]) {
+        let mut q = vec![0.0; self.modes];
+        self.of(u, &mut q);
+        self.companions.complete(&q, u);
+    }
+}
+
+impl Stretch {
+    /// Finds the stretching of `structure`, struck at `contacts`, for steps of `step`, s.
+    ///
+    /// # Errors
+    /// A structure that is not held, or that its tension bends; a cell that cannot be integrated.
+    pub fn new(
+        structure: &mut dyn Structure,
+        contacts: &[Functional],
+        step: f64,
+        stretching: &dyn MembraneForms,
+    ) -> Result<Self, ReductionError> {
+        let basis = Ritz::krylov(VECTORS).basis(structure, contacts, &[])?;
+        let reduced = Reduced::project(structure, &basis)?.up_to(FASTEST / step);
+        drop(basis);
+        let (membrane, companions) =
+            MembranePlate::with_plane(structure, &reduced, contacts, stretching, InPlane::AtOnce)?;
+        let mut weights = vec![0.0; reduced.basis.len()];
+        structure.add_mass(1.0, &reduced.basis, &mut weights);
+        let share = Share { weights, modes: reduced.modal.ndof(), companions };
+        Ok(Self { membrane, share: Arc::new(share) })
+    }
+
+    /// Its share in the vectors.
+    pub fn share(&self) -> Arc<Share> {
+        self.share.clone()
+    }
+}
+
+/// A full plate with the forces of its stretching: f(u) + M Φ g(Φᵀ M u), g those of the [`MembranePlate`] beside its modes'.
+///
+/// They have a potential and are smooth in space. The plate is one whose steps take the undamaged K in the place of a tangent: its tension
+/// is explicit in them, stable while it raises no frequency of the vectors to near 2/Δt.
+#[derive(Debug)]
+pub struct StretchedPlate {
+    plate: Box<dyn Structure>,
+    stretch: Stretch,
+    q: Vec<f64>,
+    g: Vec<f64>,
+}
+
+impl StretchedPlate {
+    /// `plate`, stretched.
+    pub fn new(plate: Box<dyn Structure>, stretch: Stretch) -> Self {
+        let modes = stretch.share.modes;
+        Self { plate, stretch, q: vec![0.0; modes], g: vec![0.0; modes] }
+    }
+}
+
+impl Structure for StretchedPlate {
+    fn ndof(&self) -> usize {
+        self.plate.ndof()
+    }
+
+    fn name(&self, i: usize) -> String {
+        self.plate.name(i)
+    }
+
+    fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        self.plate.add_stiffness(scale, x, y);
+    }
+
+    fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        self.plate.add_mass(scale, x, y);
+    }
+
+    fn free_motions(&self) -> &[f64] {
+        self.plate.free_motions()
+    }
+
+    fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
+        self.plate.solve_shifted(shift, x, columns)
+    }
+
+    fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
+        self.plate.solve_mass(x)
+    }
+
+    fn states(&self) -> usize {
+        self.plate.states()
+    }
+
+    fn nonlinear(&mut self) -> Option<&mut dyn Nonlinear> {
+        Some(self)
+    }
+
+    fn revision(&self) -> u64 {
+        self.plate.revision()
+    }
+
+    fn work(&self) -> (u64, u64) {
+        self.plate.work()
+    }
+}
+
+impl Nonlinear for StretchedPlate {
+    fn internal(&mut self, u: &[f64], points: &[f64], force: &mut [f64]) -> Result<Energy, SolveError> {
+        let Self { plate, stretch: Stretch { membrane, share }, q, g } = self;
+        let mut energy = match plate.nonlinear() {
+            Some(plate) => plate.internal(u, points, force)?,
+            None => {
+                force.fill(0.0);
+                plate.add_stiffness(1.0, u, force);
+                Energy { stored: 0.5 * dot(u, force), dissipated: 0.0 }
+            }
+        };
+        share.of(u, q);
+        g.fill(0.0);
+        energy.stored += membrane.add_tension(q, g);
+        g.iter().zip(share.weights.chunks_exact(u.len())).for_each(|(g, column)| axpy(*g, column, force));
+        Ok(energy)
+    }
+
+    fn commit(&mut self, u: &[f64], points: &mut [f64]) -> Result<(), SolveError> {
+        self.plate.nonlinear().map_or(Ok(()), |plate| plate.commit(u, points))
+    }
+}
