@@ -245,7 +245,7 @@ impl Interfaces {
                 }
             }
         }
-        lost.values().map(|(weight, areas)| weight * areas.iter().sum::<f64>()).sum()
+        lost.values().fold(0.0, |sum, (weight, areas)| sum + weight * areas.iter().sum::<f64>())
     }
 
     /// Whether a cell is open, from its states.
