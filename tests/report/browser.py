@@ -189,7 +189,7 @@ def use_screens(browser):
     top = browser.ask("(() => { const e = document.querySelector('#first'); return e ? e.getBoundingClientRect().bottom + scrollY : 0; })()")
     expect(top < 900, f"what failed first stands on the first screen: {top}")
     if "First damage" in first:
-        for part in (r"in (ply|interface) \d", r"at [\d.]+ (ns|us|ms|s)\b", r"under [\d.]+ (N|kN)\b", r"(Nothing speaks|Not to be trusted|To be read|stopped early)"):
+        for part in (r"in (ply|interface) \d", r"at [\d.]+ (ns|us|ms|s)\b", r"under [\d.]+ (N|kN)\b", r"(Nothing speaks|No caution|Not to be trusted|To be read|stopped early)"):
             expect(re.search(part, first), f"the first screen has {part}: {first}")
     browser.ask("document.querySelectorAll('details').forEach(d => { d.open = true; })")
     for scheme in ("light", "dark"):

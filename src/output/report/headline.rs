@@ -22,8 +22,11 @@ impl Headline {
         let count = |key: &str| list(summary, key).len();
         let (cautions, warnings) = (count("cautions"), count("warnings"));
         let several = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+        let error = number(summary, "/accuracy/results/peak_force_relative");
+        let unknown = error.is_none() && summary.contains_key("impact");
         let against = match (summary.contains_key("stopped"), cautions, warnings) {
             (true, ..) => "The march stopped early: all of it holds up to then.".to_owned(),
+            (_, 0, 0) if unknown => "No caution and no warning.".to_owned(),
             (_, 0, 0) => "Nothing speaks against it: no caution, no warning.".to_owned(),
             (_, 0, n) => format!("To be read with {}, below.", several(n, "warning")),
             (_, n, 0) => format!("Not to be trusted as it is: {}, below.", several(n, "caution")),
@@ -31,12 +34,12 @@ impl Headline {
                 format!("Not to be trusted as it is: {} and {}, below.", several(n, "caution"), several(m, "warning"))
             }
         };
-        let known = match (number(summary, "/accuracy/results/peak_force_relative"), summary.get("impact")) {
-            (Some(error), _) => format!(" Peak force within about {:.2} %.", 1e2 * error),
-            (None, Some(_)) => " How well the force is known was not estimated.".to_owned(),
-            (None, None) => String::new(),
+        let known = match error {
+            Some(error) => format!(" Peak force within about {:.2} %.", 1e2 * error),
+            None if unknown => " How well the force is known was not estimated: `fem study` shows it.".to_owned(),
+            None => String::new(),
         };
-        let doubt = cautions + warnings > 0 || summary.contains_key("stopped");
+        let doubt = cautions + warnings > 0 || unknown || summary.contains_key("stopped");
         Some(Self { first, doubt, verdict: against + &known })
     }
 }
@@ -121,6 +124,9 @@ mod tests {
             "First damage: matrix tension in ply 1 (-45°) at 0.3922 ms under 849.1 N, at x, y = 0, 1.5 mm (puck)"
         );
         assert!(!good.doubt && good.verdict.ends_with("no warning. Peak force within about 0.45 %."), "{good:?}");
+        let mut unknown = summary.clone();
+        unknown["accuracy"] = json!({});
+        assert!(headline(&unknown).doubt && headline(&unknown).verdict.contains("not estimated"));
         summary["warnings"] = json!(["w"]);
         summary["cautions"] = json!(["a", "b"]);
         let doubtful = headline(&summary);
