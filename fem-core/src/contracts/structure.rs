@@ -243,7 +243,7 @@ pub trait Nonlinear {
     }
 
     /// What implicit steps iterate with. None of a structure that softens, whose forces never rise faster than those of K as
-    /// [`Structure::solve_damped`] has it at hand: that then takes the place of a tangent, once a step.
+    /// [`Structure::solve_damped`] has it at hand, but for what is slow beside a step: that then takes the place of a tangent, once a step.
     fn tangents(&mut self) -> Option<&mut dyn Tangents> {
         None
     }
