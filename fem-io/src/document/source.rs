@@ -176,6 +176,11 @@ impl SceneError {
         self.source.line(self.place.as_ref()?)
     }
 
+    /// This mistake and those that were found with it, by their places.
+    pub fn mistakes(&self) -> impl Iterator<Item = &Self> {
+        std::iter::once(self).chain(&self.others)
+    }
+
     /// This and `others` as one, by their places; what has been said of a place is not said again.
     pub(crate) fn with(self, others: Vec<Self>) -> Self {
         let mut all = vec![self];
