@@ -85,7 +85,7 @@ const BUILT_PLATE: Keys = &[
         "plate",
         Form::Table(PLATE),
         r#"{ sides = ["100 mm", "100 mm"], support = "25 mm", size = "1 mm" }"#,
-        "a rectangle about the origin, its cells growing from the impact; groups plate, edge, x-min …, impact, support, window",
+        "a rectangle about the origin, cells growing from the impact; groups plate, edge, x-min …, impact, support, window",
     )
     .required(),
     REFINE,
