@@ -187,14 +187,20 @@ fn a_plate_that_is_free_to_turn_is_stretched_alike() {
     assert!(apart(&free, &held) < 1e-4, "{}", apart(&free, &held));
 }
 
-/// Tension that bends a plate is not known to its modes.
+/// Tension that bends a plate is not known to its modes, nor one whose deflections no step follows.
 #[test]
-fn a_plate_that_its_tension_bends_is_refused() {
-    let effects = "delamination = 'growth', membrane = 'on'";
-    let model = Plate { effects, plies: "[0/0/90]", ..Plate::new() }.model().unwrap();
-    let error = impact::prepare(&model, NonZeroUsize::MIN).map(|_| ()).expect_err("it is refused");
-    let report = format!("{:?}", miette::Report::new(error));
-    assert!(report.contains("its tension would bend this plate"), "{report}");
+fn a_plate_that_its_modes_do_not_stretch_is_refused() {
+    let plate = || Plate { effects: "delamination = 'growth', membrane = 'on'", ..Plate::new() };
+    let refused = |plate: Plate, words: &str| {
+        let model = plate.model().unwrap();
+        let error = impact::prepare(&model, NonZeroUsize::MIN).map(|_| ()).expect_err("it is refused");
+        let report = format!("{:?}", miette::Report::new(error));
+        assert!(report.contains(words), "{report}");
+    };
+    refused(Plate { plies: "[0/0/90]", ..plate() }, "its tension would bend this plate");
+    for step_us in [25.0, 400.0] {
+        refused(Plate { step_us, ..plate() }, "the step is too long for the deflections");
+    }
 }
 
 #[test]

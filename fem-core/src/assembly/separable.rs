@@ -300,11 +300,24 @@ impl Separable {
         self.tied.factorise(&self.parts, near, &self.moduli, self.released.springs(), self.threads)
     }
 
-    /// `x ← T (Tᵀ A T)⁻¹ Tᵀ x` with the last tangent: the displacements under forces x.
+    /// `x ← T (Tᵀ A T)⁻¹ Tᵀ x` with the last tangent: the displacements under forces x; at rest (cm = 0) in the frame that moves with the
+    /// plate, where that is free to.
     ///
     /// # Errors
     /// [`SeparableError::Unsolved`].
     pub fn solve(&mut self, x: &mut [f64]) -> Result<(), SeparableError> {
+        let at_rest = self.cm == 0.0;
+        if at_rest {
+            self.released.balance(x, 1);
+        }
+        self.solve_tied(x)?;
+        if at_rest {
+            self.released.deform(x, 1);
+        }
+        Ok(())
+    }
+
+    fn solve_tied(&mut self, x: &mut [f64]) -> Result<(), SeparableError> {
         let mut right = vec![0.0; self.tied.ndof()];
         self.tied.restrict(x, &mut right);
         if self.tied.exact {
