@@ -6,6 +6,7 @@ use fem_core::plugin::{Built, Kind, ParamError, ParamForm, ParamInfo, Params, Pl
 use fem_io::scene::{EFFECT_SETTINGS, EffectSpec, Key, SceneError, SceneValue};
 use fem_io::units::{self, UnitError};
 use std::fmt;
+use std::sync::Arc;
 use tracing::debug;
 
 /// The name of no reduction: the full model is marched.
@@ -27,10 +28,19 @@ pub struct Registry {
     clashes: Vec<(Kind, &'static str)>,
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone)]
 struct Entry {
     info: PluginInfo,
-    build: fn(&Params) -> Result<Built, ParamError>,
+    build: Arc<Build>,
+}
+
+/// Makes a plug-in from its parameters.
+type Build = dyn Fn(&Params) -> Result<Built, ParamError> + Send + Sync;
+
+impl fmt::Debug for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Debug::fmt(&self.info, f)
+    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -153,11 +163,22 @@ impl Registry {
 
     /// The registry with one plug-in more.
     #[must_use]
-    pub fn with<P: Plugin>(mut self) -> Self {
-        if self.find(P::INFO.kind, P::INFO.name).is_some() {
-            self.clashes.push((P::INFO.kind, P::INFO.name));
+    pub fn with<P: Plugin>(self) -> Self {
+        self.with_built(P::INFO, P::build as fn(&Params) -> Result<Built, ParamError>)
+    }
+
+    /// The registry with one plug-in more that no type stands for, such as one that was written in another language: `build` makes it,
+    /// as [`Plugin::build`] does.
+    #[must_use]
+    pub fn with_built(
+        mut self,
+        info: PluginInfo,
+        build: impl Fn(&Params) -> Result<Built, ParamError> + Send + Sync + 'static,
+    ) -> Self {
+        if self.find(info.kind, info.name).is_some() {
+            self.clashes.push((info.kind, info.name));
         }
-        self.entries.push(Entry { info: P::INFO, build: P::build });
+        self.entries.push(Entry { info, build: Arc::new(build) });
         self
     }
 

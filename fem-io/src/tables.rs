@@ -35,6 +35,27 @@ impl HistoryRow {
     pub fn contact_force_n(&self) -> f64 {
         self.impactors.iter().map(|impactor| impactor.contact_force_n).sum()
     }
+
+    /// Its values in the order of [`history_columns`].
+    pub fn values(&self) -> impl Iterator<Item = f64> {
+        let of_each = self.impactors.iter().flat_map(|impactor| {
+            [
+                impactor.contact_force_n,
+                impactor.impactor_displacement_m,
+                impactor.impactor_velocity_m_s,
+                impactor.plate_displacement_m,
+            ]
+        });
+        let energies = [
+            self.impactor_kinetic_j,
+            self.plate_kinetic_j,
+            self.plate_strain_j,
+            self.contact_stored_j,
+            self.contact_dissipated_j,
+        ];
+        let effects = self.effects.iter().copied().chain([self.energy_balance_j]);
+        [self.time_s].into_iter().chain(of_each).chain(energies).chain(effects)
+    }
 }
 
 /// One impactor at one instant.
@@ -120,8 +141,21 @@ pub struct EnvelopeRow {
     pub stresses_mpa: [f64; 2],
 }
 
+/// Names of the columns of `history.csv`, with their units: those of the impactors begin with name and point where there are several.
+pub fn history_columns(impactors: &[&str], effects: &[&str]) -> Vec<String> {
+    const OF_EACH: [&str; 4] =
+        ["contact_force_N", "impactor_displacement_m", "impactor_velocity_m_s", "plate_displacement_m"];
+    let of_each = impactors.iter().flat_map(|name| {
+        OF_EACH.map(|column| if impactors.len() == 1 { column.to_owned() } else { format!("{name}.{column}") })
+    });
+    const ENERGIES: [&str; 5] =
+        ["impactor_kinetic_J", "plate_kinetic_J", "plate_strain_J", "contact_stored_J", "contact_dissipated_J"];
+    let energies = ENERGIES.iter().chain(effects).chain(&["energy_balance_J"]).map(|name| (*name).to_owned());
+    ["time_s".to_owned()].into_iter().chain(of_each).chain(energies).collect()
+}
+
 /// Writes `history.csv`; every row has as many impactors as `impactors` has names, and as many values of effects as `effects`
-/// has. Where there are several impactors, their columns begin with the name and a point.
+/// has. Its columns are [`history_columns`].
 ///
 /// # Errors
 /// A value that is not finite, and as [`OutputDir::write`].
@@ -131,35 +165,9 @@ pub fn write_history(
     effects: &[&str],
     rows: &[HistoryRow],
 ) -> Result<(), FileError> {
-    const OF_EACH: [&str; 4] =
-        ["contact_force_N", "impactor_displacement_m", "impactor_velocity_m_s", "plate_displacement_m"];
-    let of_each = impactors.iter().flat_map(|name| {
-        OF_EACH.map(|column| if impactors.len() == 1 { column.to_owned() } else { format!("{name}.{column}") })
-    });
-    const ENERGIES: [&str; 5] =
-        ["impactor_kinetic_J", "plate_kinetic_J", "plate_strain_J", "contact_stored_J", "contact_dissipated_J"];
-    let energies = ENERGIES.iter().chain(effects).chain(&["energy_balance_J"]).map(|name| (*name).to_owned());
-    let header: Vec<String> = ["time_s".to_owned()].into_iter().chain(of_each).chain(energies).collect();
+    let header = history_columns(impactors, effects);
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
-    let values = |row: &HistoryRow| {
-        let of_each = row.impactors.iter().flat_map(|impactor| {
-            [
-                impactor.contact_force_n,
-                impactor.impactor_displacement_m,
-                impactor.impactor_velocity_m_s,
-                impactor.plate_displacement_m,
-            ]
-        });
-        let energies = [
-            row.impactor_kinetic_j,
-            row.plate_kinetic_j,
-            row.plate_strain_j,
-            row.contact_stored_j,
-            row.contact_dissipated_j,
-        ];
-        let effects = row.effects.iter().copied().chain([row.energy_balance_j]);
-        [row.time_s].into_iter().chain(of_each).chain(energies).chain(effects).map(TableValue::Number).collect()
-    };
+    let values = |row: &HistoryRow| row.values().map(TableValue::Number).collect();
     write_columns(dir, "history.csv", &header, rows.iter().map(values))
 }
 
@@ -293,8 +301,19 @@ impl From<TableValue<'_>> for Value {
 impl EnvelopeRow {
     /// Its values by the names of their columns.
     pub fn named(&self) -> Map<String, Value> {
-        self.fields().into_iter().map(|(name, field)| (name.to_owned(), field.into())).collect()
+        named(self)
     }
+}
+
+impl EventRow {
+    /// Its values by the names of their columns; an infinite index is `"inf"`.
+    pub fn named(&self) -> Map<String, Value> {
+        named(self)
+    }
+}
+
+fn named<R: Row>(row: &R) -> Map<String, Value> {
+    row.fields().into_iter().map(|(name, field)| (name.to_owned(), field.into())).collect()
 }
 
 /// A row of a table: its columns with their values, in order.

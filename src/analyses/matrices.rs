@@ -11,39 +11,74 @@ use std::fmt::Write as _;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
-/// Writes `stiffness.mtx` and `mass.mtx` (Matrix Market, `symmetric`: the lower triangle; N/m and kg for translations) and
-/// `unknowns.csv`, which names row and column of each: their order is that in which they are eliminated, of which no more is
-/// promised than that it is the same for equal scenes. Supports and other equations are eliminated; where these leave a plate
-/// that moves free, restrained or not, K is singular.
+/// K and M with the names of their unknowns. Supports and other equations are eliminated; where these leave a plate that moves free,
+/// restrained or not, K is singular.
+#[derive(Debug, Clone)]
+pub struct PlateMatrices {
+    /// K: N/m for translations.
+    pub stiffness: Symmetric,
+    /// M: kg for translations.
+    pub mass: Symmetric,
+    /// What each row and column stands for, in the order in which unknowns are eliminated, of which no more is promised than that it is
+    /// the same for equal scenes.
+    pub unknowns: Vec<NamedUnknown>,
+}
+
+/// An independent unknown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedUnknown {
+    /// Which: `U30`, the displacement along z, `U31`, its derivative along x.
+    pub name: String,
+    /// Node of the mesh file above or below which it is; 0 for one that the file does not have.
+    pub node: u64,
+    /// Place, m.
+    pub place: [f64; 3],
+}
+
+impl PlateMatrices {
+    /// Those of `model`, assembled.
+    ///
+    /// # Errors
+    /// A cell that the element refuses, a material without the density of a mass.
+    pub fn new(model: &Model, threads: NonZeroUsize) -> Result<Self, Error> {
+        model.check_mass()?;
+        let Model { plate, element, constraints, .. } = model;
+        let pattern = Arc::new(pattern(plate, constraints));
+        let mut counters = Counters::default();
+        let mut matrix = |which| assemble(plate, &**element, constraints, &pattern, which, threads, &mut counters);
+        let (mut stiffness, mass) = (matrix(Matrix::Stiffness)?, matrix(Matrix::Mass)?);
+        model.effects.on_stiffness(&model.body(), &mut stiffness)?;
+        Ok(Self { stiffness, mass, unknowns: unknowns(model) })
+    }
+}
+
+/// The independent unknowns of `model`, in the order of its matrices and of the shapes of its modes.
+pub fn unknowns(model: &Model) -> Vec<NamedUnknown> {
+    let Model { plate, constraints, .. } = model;
+    let named = |i| {
+        let (column, level, dof) = plate.locate(constraints.original(i));
+        let [x, y] = plate.columns[column];
+        let node = plate.plane.node_tags.get(column).copied().unwrap_or(0);
+        NamedUnknown { name: dof.to_string(), node, place: [x, y, plate.levels[level]] }
+    };
+    (0..constraints.ndof()).map(named).collect()
+}
+
+/// Writes `stiffness.mtx` and `mass.mtx` (Matrix Market, `symmetric`: the lower triangle) and `unknowns.csv`, which names row and column
+/// of each: [`PlateMatrices`].
 ///
 /// # Errors
-/// A cell that the element refuses, a material without the density of a mass, a folder that cannot be written.
+/// As [`PlateMatrices::new`], and a folder that cannot be written.
 pub fn write(dir: &OutputDir, model: &Model, threads: NonZeroUsize) -> Result<(), Error> {
-    model.check_mass()?;
-    let pattern = Arc::new(pattern(&model.plate, &model.constraints));
-    let mut counters = Counters::default();
-    for (matrix, name) in [(Matrix::Stiffness, "stiffness.mtx"), (Matrix::Mass, "mass.mtx")] {
-        let mut values =
-            assemble(&model.plate, &*model.element, &model.constraints, &pattern, matrix, threads, &mut counters)?;
-        if matrix == Matrix::Stiffness {
-            model.effects.on_stiffness(&model.body(), &mut values)?;
-        }
-        write_matrix(dir, name, &values)?;
-    }
+    let PlateMatrices { stiffness, mass, unknowns } = PlateMatrices::new(model, threads)?;
+    write_matrix(dir, "stiffness.mtx", &stiffness)?;
+    write_matrix(dir, "mass.mtx", &mass)?;
     let header = ["row", "unknown", "node", "x_m", "y_m", "z_m"];
-    let named: Vec<_> = (0..pattern.ndof()).map(|i| model.plate.locate(model.constraints.original(i))).collect();
-    let names: Vec<String> = named.iter().map(|n| n.2.to_string()).collect();
-    let row = |(i, name): (usize, &(usize, usize, _))| {
-        let [x, y] = model.plate.columns[name.0];
-        let tag = model.plate.plane.node_tags.get(name.0).copied().unwrap_or(0);
-        let place = [x, y, model.plate.levels[name.1]].map(TableValue::Number);
-        [TableValue::Count(i as u64 + 1), TableValue::Text(&names[i]), TableValue::Count(tag)]
-            .into_iter()
-            .chain(place)
-            .collect()
-    };
-    tables::write_columns(dir, "unknowns.csv", &header, named.iter().enumerate().map(row))?;
-    Ok(())
+    let rows = unknowns.iter().enumerate().map(|(i, unknown)| {
+        let names = [TableValue::Count(i as u64 + 1), TableValue::Text(&unknown.name), TableValue::Count(unknown.node)];
+        names.into_iter().chain(unknown.place.map(TableValue::Number)).collect()
+    });
+    Ok(tables::write_columns(dir, "unknowns.csv", &header, rows)?)
 }
 
 /// Entries that are zero are left out, but for the diagonal.

@@ -7,21 +7,36 @@ use crate::analyses::impact::Outcome;
 use crate::error::Error;
 use crate::model::Model;
 use fem_io::files::OutputDir;
-use fem_io::tables;
+use fem_io::tables::{self, EventRow};
 
 /// Writes the tables of a run; each file appears whole or not at all.
 ///
 /// # Errors
 /// A folder that cannot be written, a number that is not finite.
 pub fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
-    let names: Vec<_> = model.impactors().iter().map(|impactor| impactor.name.as_str()).collect();
-    let columns: Vec<_> = model.effects.columns().map(|column| column.name).collect();
-    tables::write_history(dir, &names, &columns, &outcome.history)?;
-    let events: Vec<_> = outcome.events.iter().map(|event| event_row(model, event)).collect();
-    tables::write_events(dir, &events)?;
+    let (impactors, effects) = columns(model);
+    tables::write_history(dir, &impactors, &effects, &outcome.history)?;
+    tables::write_events(dir, &events(model, outcome))?;
     modal::write_table(dir, outcome)?;
     delamination::write_table(dir, model, outcome)?;
     indices::write_tables(dir, model, outcome)
+}
+
+/// Impactors and columns of effects, by which [`tables::history_columns`] names the values of a row.
+fn columns(model: &Model) -> (Vec<&str>, Vec<&str>) {
+    let impactors = model.impactors().iter().map(|impactor| impactor.name.as_str()).collect();
+    (impactors, model.effects.columns().map(|column| column.name).collect())
+}
+
+/// Names of the values of each row of [`Outcome::history`].
+pub fn history_columns(model: &Model) -> Vec<String> {
+    let (impactors, effects) = columns(model);
+    tables::history_columns(&impactors, &effects)
+}
+
+/// The rows of `events.csv`.
+pub fn events(model: &Model, outcome: &Outcome) -> Vec<EventRow> {
+    outcome.events.iter().map(|event| event_row(model, event)).collect()
 }
 
 /// Draws [`pictures`]: curves over time, the contact forces with the first event of each mode; the indices at the gauges; damage.

@@ -15,4 +15,4 @@ mod shapes;
 pub mod statics;
 pub mod summary;
 
-pub use files::{write_plots, write_tables};
+pub use files::{events, history_columns, write_plots, write_tables};

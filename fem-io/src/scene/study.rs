@@ -173,21 +173,39 @@ pub fn parse_share(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "must be an error between 0 and 1, or in percent: 0.01 or 1%".into())
 }
 
-/// The text of the scene `path` with `setting` written into it, and without the accuracy that it asks for, which a setting is to meet. Comments stay; relative names of files are
-/// made absolute, so that the scene can lie anywhere.
+/// The text of the scene `path` as by [`with_setting`], and without the accuracy that it asks for, which a setting is to meet.
 ///
 /// # Errors
 /// A scene that cannot be read, or a setting that does not fit its keys.
 pub fn rewrite(path: &Path, setting: &Setting) -> Result<String, SceneError> {
-    let text = super::read_text(path)?;
-    let source = Arc::new(SceneSource::new(path, &text, LIBRARY));
+    let mut document = written(&super::read_text(path)?, path, setting)?;
+    document.remove("accuracy");
+    Ok(document.to_string())
+}
+
+/// The scene `text`, that of `path`, with `setting` written into it. Comments stay; relative names of files are made absolute, so
+/// that the scene can lie anywhere.
+///
+/// # Errors
+/// A text that is not TOML, or a setting that does not fit its keys.
+pub fn with_setting(text: &str, path: &Path, setting: &Setting) -> Result<String, SceneError> {
+    written(text, path, setting).map(|document| document.to_string())
+}
+
+fn written(text: &str, path: &Path, setting: &Setting) -> Result<DocumentMut, SceneError> {
+    let source = Arc::new(SceneSource::new(path, text, LIBRARY));
     let wrong = |why: String| source.error(why, "");
     let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| wrong(e.to_string()))?;
-    document.remove("accuracy");
-    for (keys, value) in setting {
-        let keys = Key::parse(keys).map_err(|e| wrong(e.to_string()))?;
-        let value: Value = value.parse().map_err(|e: toml_edit::TomlError| wrong(e.to_string()))?;
-        set_path(document.as_table_mut(), &keys, &value);
+    for (path, value) in setting {
+        let keys = Key::parse(path).map_err(|e| wrong(format!("`{path}` is no path of keys: {e}")))?;
+        let value: Value = value.parse().map_err(|e: toml_edit::TomlError| wrong(format!("`{path}`: {e}")))?;
+        if !set_path(document.as_table_mut(), &keys, &value) {
+            let help = "set the whole of it, a table or a list, at once";
+            return Err(source.error(
+                format!("nothing can be set at `{path}`: it leads through a value or a list in one line"),
+                help,
+            ));
+        }
     }
     let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned)).unwrap_or_default();
     let rooted = |item: Option<&mut Item>| {
@@ -202,16 +220,20 @@ pub fn rewrite(path: &Path, setting: &Setting) -> Result<String, SceneError> {
     for (_, material) in materials.into_iter().flat_map(|materials| materials.iter_mut()) {
         rooted(material.as_table_like_mut().and_then(|material| material.get_mut("file")));
     }
-    Ok(document.to_string())
+    Ok(document)
 }
 
 /// Names of plug-ins: a table that names another one is made anew.
 const NAMES: [&str; 4] = ["kind", "law", "method", "name"];
 
-fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) {
+/// Sets `value` where `keys` lead; whether they lead anywhere.
+fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) -> bool {
     match keys {
-        [] => {}
-        [key] => drop(table.insert(key, Item::Value(value.clone()))),
+        [] => false,
+        [key] => {
+            table.insert(key, Item::Value(value.clone()));
+            true
+        }
         [key, rest @ ..] => {
             if let ([last], Some(old)) = (rest, table.get_mut(key))
                 && NAMES.contains(&last.get())
@@ -220,8 +242,8 @@ fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) {
                 *old = if old.is_table() { Item::Table(Table::new()) } else { Item::Value(InlineTable::new().into()) };
             }
             match table.entry(key).or_insert_with(|| Item::Table(Table::new())) {
-                Item::ArrayOfTables(tables) => tables.iter_mut().for_each(|table| set_path(table, rest, value)),
-                item => item.as_table_like_mut().into_iter().for_each(|table| set_path(table, rest, value)),
+                Item::ArrayOfTables(tables) => tables.iter_mut().all(|table| set_path(table, rest, value)),
+                item => item.as_table_like_mut().is_some_and(|table| set_path(table, rest, value)),
             }
         }
     }
@@ -258,5 +280,18 @@ mod tests {
                  [materials.m]\nfile = \"{root}/m.toml\"\n\n[march]\nstep = \"0.1 us\"\n"
             )
         );
+    }
+
+    #[test]
+    fn a_setting_that_leads_nowhere_is_refused() {
+        let text = "title = \"t\"\naccuracy = 0.01\nimpactor = [{ mass = \"1 kg\" }]\n";
+        let set = |key: &str, value: &str| {
+            with_setting(text, Path::new("scene.toml"), &[(key.to_owned(), value.to_owned())].into())
+        };
+        assert!(set("title", "\"other\"").unwrap().starts_with("title = \"other\"\naccuracy = 0.01\n"));
+        for (key, value) in [("title.short", "1"), ("impactor.mass", "\"2 kg\""), ("a..b", "1"), ("title", "1 kg")] {
+            let why = set(key, value).unwrap_err().to_string();
+            assert!(why.contains(&format!("`{key}`")), "{why}");
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! What a static analysis writes.
 
-use super::{Node, StaticSummary, nodes};
+use super::{MovedNode, StaticSummary, nodes};
 use crate::analyses::statics::StaticSolution;
 use crate::error::Error;
 use crate::model::{Model, NamedProfile};
@@ -16,7 +16,7 @@ use fem_io::tables::{self, TableValue};
 pub fn write(dir: &OutputDir, model: &Model, solution: &StaticSolution, summary: &StaticSummary) -> Result<(), Error> {
     tables::write_json(dir, "summary.json", summary)?;
     let nodes = nodes(model, &solution.u);
-    let row = |n: &Node| {
+    let row = |n: &MovedNode| {
         let numbers = n.x.into_iter().chain(n.u).map(TableValue::Number);
         [TableValue::Count(n.tag)].into_iter().chain(numbers).collect()
     };

@@ -246,23 +246,28 @@ fn in_summary(
 }
 
 /// A node with its displacement.
-struct Node {
-    tag: u64,
-    x: [f64; 3],
-    u: [f64; 3],
+#[derive(Debug, Clone, PartialEq)]
+pub struct MovedNode {
+    /// Its number in the mesh file.
+    pub tag: u64,
+    /// Its place, m.
+    pub x: [f64; 3],
+    /// Its displacement, m.
+    pub u: [f64; 3],
 }
 
-/// The nodes above and below each other at the vertices of the mesh, at the outermost levels and the mid-plane.
-fn nodes(model: &Model, u: &[f64]) -> Vec<Node> {
+/// The nodes above and below each other at the vertices of the mesh, at the outermost levels and the mid-plane: the rows of
+/// `displacements.csv`.
+pub fn nodes(model: &Model, u: &[f64]) -> Vec<MovedNode> {
     let plate = &model.plate;
     let mut levels = plate.outer_levels().to_vec();
     levels.extend(plate.mid_level());
     levels.sort_unstable();
     levels.dedup();
-    let at = |column: usize, level: usize| -> Option<Node> {
+    let at = |column: usize, level: usize| -> Option<MovedNode> {
         let value = |n: u8| plate.dofs_at(column, level, dof_of(n)).next().map(|d| u[d]);
         let all = [1, 2, 3].map(value);
-        all.iter().any(Option::is_some).then(|| Node {
+        all.iter().any(Option::is_some).then(|| MovedNode {
             tag: plate.plane.node_tags.get(column).copied().unwrap_or(0),
             x: [plate.columns[column][0], plate.columns[column][1], plate.levels[level]],
             u: all.map(|v| v.unwrap_or(0.0)),

@@ -1,0 +1,37 @@
+"""Low-velocity impact on laminated composites: force, stresses, first damage.
+
+A scene is read, run and looked at:
+
+>>> scene = femlam.Scene.load("coupon/scene.toml")
+>>> result = scene.replace({"impactor.velocity": "2 m/s"}).run()
+>>> result["contact_force_N"].max()
+
+Numbers are in SI units; the names of columns end with theirs. Stresses have the order 11 22 33 12 23 31.
+"""
+
+from femlam._criterion import Criterion, Material, check_criterion, indices, material
+from femlam._errors import FemError, Mistake, SceneError
+from femlam._native import __version__
+from femlam._results import ImpactResult, ModesResult, Result, StaticResult, Table
+from femlam._scene import Advice, Laminate, Matrices, Scene
+
+__all__ = [
+    "Advice",
+    "Criterion",
+    "FemError",
+    "ImpactResult",
+    "Laminate",
+    "Material",
+    "Matrices",
+    "Mistake",
+    "ModesResult",
+    "Result",
+    "Scene",
+    "SceneError",
+    "StaticResult",
+    "Table",
+    "__version__",
+    "check_criterion",
+    "indices",
+    "material",
+]

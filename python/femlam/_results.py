@@ -1,0 +1,221 @@
+"""What a run found."""
+
+from __future__ import annotations
+
+import html
+import json
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+_UNITS = {
+    "m_s": "m/s",
+    "N_s": "N s",
+    "rad_s": "rad/s",
+    "m2": "m²",
+    "deg": "°",
+    "Hz": "Hz",
+    "Pa": "Pa",
+    "kg": "kg",
+    "J": "J",
+    "N": "N",
+    "m": "m",
+    "s": "s",
+}
+
+
+def _unit(column: str) -> str:
+    return next((unit for ending, unit in _UNITS.items() if column.endswith("_" + ending)), "")
+
+
+class Table(Mapping[str, NDArray[Any]]):
+    """Columns by their names, arrays of one length; numbers are in the units with which the names end."""
+
+    def __init__(self, columns: Mapping[str, NDArray[Any]]) -> None:
+        """Of columns that are shown, not copied."""
+        self._columns = dict(columns)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """Show a column, shape (rows,)."""
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Walk over the names of the columns."""
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        """Count the columns."""
+        return len(self._columns)
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return len(next(iter(self._columns.values()), ()))
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each column; empty where it has none."""
+        return {name: _unit(name) for name in self}
+
+    def frame(self) -> pd.DataFrame:
+        """Return a frame of pandas, which must be installed; its units are in ``frame.attrs["units"]``."""
+        import pandas as pd
+
+        frame = pd.DataFrame(self._columns)
+        frame.attrs["units"] = self.units
+        return frame
+
+    def __repr__(self) -> str:
+        """Name columns and rows."""
+        return f"<Table of {self.rows} rows: {', '.join(self)}>"
+
+    def _repr_html_(self) -> str:
+        head = "".join(f"<th>{html.escape(name)}</th>" for name in self)
+        shown = min(self.rows, 10)
+        cells = ["".join(f"<td>{html.escape(str(self[name][i]))}</td>" for name in self) for i in range(shown)]
+        body = "".join(f"<tr>{row}</tr>" for row in cells)
+        rest = f"<p>{shown} of {self.rows} rows</p>" if shown < self.rows else ""
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{rest}"
+
+
+class Result:
+    """What any analysis found."""
+
+    def __init__(self, found: dict[str, Any]) -> None:
+        """Of what the native module returns."""
+        self._text: str = found["text"]
+        self.summary: dict[str, Any] = json.loads(found["summary"])
+        """The document of ``summary.json``; units are in the names of its keys."""
+        self.cost: dict[str, Any] = json.loads(found["cost"])
+        """The document of ``cost.json``."""
+        self.folder: str | None = None if found["folder"] is None else str(found["folder"])
+        """Where its files are, if it was run into a folder."""
+
+    @property
+    def warnings(self) -> list[str]:
+        """What may be wrong with the model."""
+        return list(self.summary.get("warnings", []))
+
+    def __str__(self) -> str:
+        """Return the summary as the command line prints it."""
+        return self._text
+
+    def __repr__(self) -> str:
+        """Name the scene."""
+        return f"<{type(self).__name__} of {self.summary['title']!r}>"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(self._text)}</pre>"
+
+
+class ImpactResult(Result):
+    """The response to an impact: force, motion and energies over time, and what failed."""
+
+    def __init__(self, found: dict[str, Any]) -> None:
+        """Of what the native module returns."""
+        super().__init__(found)
+        table: NDArray[np.float64] = found["history"]
+        table.flags.writeable = False
+        self.history = Table(dict(zip(found["columns"], table)))
+        """The table of ``history.csv``: every column shows a row of one array, without a copy, and cannot be written to."""
+        events = json.loads(found["events"])
+        columns = ["time_s", "criterion", "mode", "cell", "ply", "angle_deg", "x_m", "y_m", "z_m", "index"]
+
+        def column(name: str) -> NDArray[Any]:
+            values = [event[name] for event in events]
+            if name in ("criterion", "mode", "ply"):
+                return np.array(values, dtype=object)
+            return np.array(values, dtype=np.int64 if name == "cell" else np.float64)
+
+        self.events = Table({name: column(name) for name in columns})
+        """The table of ``events.csv``: first damage by criterion, mode and place, by time."""
+
+    @property
+    def completed(self) -> bool:
+        """Whether the march came to its end; ``summary["stopped"]`` says why not."""
+        return bool(self.summary["completed"])
+
+    def __getitem__(self, column: str) -> NDArray[np.float64]:
+        """Show a column of the history, shape (rows,)."""
+        return self.history[column]
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Times of the rows of the history, s, shape (rows,)."""
+        return self.history["time_s"]
+
+    @property
+    def force(self) -> NDArray[np.float64]:
+        """Contact force of all impactors together, N, shape (rows,); of one impactor without a copy."""
+        if "contact_force_N" in self.history:
+            return self.history["contact_force_N"]
+        of_each = [self.history[name] for name in self.history if name.endswith(".contact_force_N")]
+        return np.asarray(np.sum(of_each, axis=0))
+
+    def plot_force(self, ax: Axes | None = None) -> Axes:
+        """Draw the contact force over time, with the first damage by each criterion and mode; needs matplotlib.
+
+        ``ax``: the axes to draw on; new ones by default. Returns them.
+        """
+        if ax is None:
+            from matplotlib.figure import Figure
+
+            try:
+                import matplotlib.pyplot as plt
+
+                ax = plt.subplots(layout="constrained")[1]
+            except ImportError:
+                ax = Figure(layout="constrained").subplots()
+        ax.plot(self.time * 1e3, self.force * 1e-3, label="contact force")
+        for damage in self.summary["first_damage"]:
+            name = f"{damage['criterion']}: {damage['mode']}"
+            ax.plot(damage["time_s"] * 1e3, damage["contact_force_N"] * 1e-3, "o", label=name)
+        ax.set(xlabel="Time (ms)", ylabel="Contact force (kN)", title=self.summary["title"])
+        ax.legend(fontsize="small")
+        return ax
+
+
+class StaticResult(Result):
+    """Displacements under loads at rest."""
+
+    def __init__(self, found: dict[str, Any]) -> None:
+        """Of what the native module returns."""
+        super().__init__(found)
+        self.nodes: NDArray[np.uint64] = found["nodes"]
+        """Numbers in the mesh file of the nodes at the outer faces and the mid-plane, shape (n,)."""
+        self.places: NDArray[np.float64] = found["places"]
+        """Where they are, m, shape (n, 3)."""
+        self.displacements: NDArray[np.float64] = found["displacements"]
+        """How they move, m, shape (n, 3)."""
+
+
+class ModesResult(Result):
+    """The lowest natural modes."""
+
+    def __init__(self, found: dict[str, Any]) -> None:
+        """Of what the native module returns."""
+        super().__init__(found)
+        self.omega: NDArray[np.float64] = found["omega"]
+        """Circular frequencies, rad/s, shape (modes,)."""
+        self.shapes: NDArray[np.float64] = found["shapes"]
+        """Shapes of unit modal mass over the unknowns of :meth:`femlam.Scene.matrices`, shape (modes, unknowns)."""
+        self.effective_masses: NDArray[np.float64] = found["effective_masses"]
+        """Mass that moves with each along x, y and z, kg, shape (modes, 3)."""
+        self.unknowns = Table({name: np.asarray(column) for name, column in found["unknowns"].items()})
+        """What each unknown stands for: name, node, place."""
+
+    @property
+    def frequencies(self) -> NDArray[np.float64]:
+        """Natural frequencies, Hz, shape (modes,)."""
+        return self.omega / (2 * np.pi)
+
+
+def _result(found: dict[str, Any]) -> Result:
+    kind = ImpactResult if "history" in found else ModesResult if "omega" in found else StaticResult
+    return kind(found)

@@ -1,0 +1,307 @@
+"""Scenes: read, changed, run."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import os
+import re
+import tempfile
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Callable, Union, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from femlam import _native
+from femlam._criterion import Criterion
+from femlam._results import ModesResult, Result, Table, _result
+
+if TYPE_CHECKING:
+    import scipy.sparse
+
+PathLike = Union[str, "os.PathLike[str]"]
+
+
+@dataclass(frozen=True)
+class Matrices:
+    """Stiffness and mass of a plate after its supports are eliminated, both whole and symmetric, shape (n, n)."""
+
+    stiffness: scipy.sparse.csc_array
+    """K, N/m for translations."""
+    mass: scipy.sparse.csc_array
+    """M, kg for translations."""
+    unknowns: Table
+    """What each row and column stands for, in order: ``unknown`` (``U30``: along z), ``node``, ``x_m``, ``y_m``, ``z_m``."""
+
+
+@dataclass(frozen=True)
+class Laminate:
+    """Classical laminate theory of the plies of a scene; rows and columns 11, 22, 12, each matrix of shape (3, 3)."""
+
+    A: NDArray[np.float64]
+    """Forces per length by strains, N/m."""
+    B: NDArray[np.float64]
+    """Coupling, N."""
+    D: NDArray[np.float64]
+    """Moments per length by curvatures, N m."""
+    in_plane: dict[str, float]
+    """Ex, Ey, Gxy in Pa, and nuxy."""
+    flexural: dict[str, float]
+    """The same in bending."""
+    thickness: float
+    """m"""
+    angles: list[float]
+    """Angles of the plies from the bottom up, degrees."""
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What the advisor says of one impactor before the run."""
+
+    impactor: str | None
+    """Its name, where there are several."""
+    mass_kg: float
+    velocity_m_s: float
+    peak_force_N: float
+    """What formulas expect."""
+    answers: list[dict[str, Any]]
+    """Question, numbers, choice, effect, error, cost."""
+    text: str
+
+    def __str__(self) -> str:
+        """Return the advice as the command line prints it."""
+        return self.text
+
+
+class Scene:
+    """What is struck, by what, and how it is computed. A scene does not change: :meth:`replace` makes another one."""
+
+    def __init__(self, native: _native.Scene) -> None:
+        """Not for users: see :meth:`load`, :meth:`from_text` and :meth:`from_dict`."""
+        self._native = native
+        self._keys = native.keys
+
+    @classmethod
+    def load(cls, path: PathLike) -> Scene:
+        """Read a scene file (TOML); its mesh is looked for beside it.
+
+        Raises :class:`femlam.SceneError` with all mistakes that can be told by themselves.
+        """
+        return cls(_native.Scene.read(path))
+
+    @classmethod
+    def from_text(cls, text: str, folder: PathLike = ".", name: str = "<text>") -> Scene:
+        """Read a scene from its text; mesh files are looked for in ``folder``, errors call it ``name``."""
+        return cls(_native.Scene.parse(text, Path(folder) / name))
+
+    @classmethod
+    def from_dict(cls, keys: Mapping[str, Any], folder: PathLike = ".") -> Scene:
+        """Read a scene from its keys, nested as in the file.
+
+        Quantities are texts with their units (``"2 m/s"``) or quantities of pint. Lines in errors are those of :attr:`text`
+        as TOML writes it.
+        """
+        return cls.from_text(_native.as_toml(json.dumps(_plain(keys))), folder, "<dict>")
+
+    @property
+    def text(self) -> str:
+        """Its text, TOML."""
+        return self._native.text
+
+    @property
+    def name(self) -> str:
+        """Its file, as it was named."""
+        return self._native.name
+
+    def keys(self) -> list[str]:
+        """List the paths of all keys, those of its preset among them: ``impactor.mass``, ``failure.watch[0].ply``."""
+        return list(self._keys)
+
+    def __contains__(self, key: object) -> bool:
+        """Whether the scene or its preset has the key."""
+        return isinstance(key, str) and bool(self._below(key))
+
+    def __getitem__(self, key: str) -> Any:
+        """Return a value as the scene writes it: a text with its unit, a number, a flag, or a list or dictionary of them."""
+        below = self._below(key)
+        if not below:
+            near = difflib.get_close_matches(key, self._keys, 3)
+            hint = f"did you mean {', '.join(near)}?" if near else "keys() lists all"
+            raise KeyError(f"the scene has no key `{key}`; {hint}")
+        return _nested(below)
+
+    def _below(self, key: str) -> dict[str, str]:
+        """Values by what their paths add to the key."""
+        if key in self._keys:
+            return {"": self._keys[key]}
+        return {path[len(key) :]: value for path, value in self._keys.items() if path.startswith((key + ".", key + "["))}
+
+    def quantity(self, key: str) -> float:
+        """Return a value that has a unit in SI units: ``scene.quantity("impactor.velocity")``."""
+        return _native.quantity(str(self[key]))
+
+    def replace(self, keys: Mapping[str, Any]) -> Scene:
+        """Return the scene with other values, by the paths of their keys, checked as if they stood in the file.
+
+        >>> scene.replace({"impactor.velocity": "3 m/s", "mesh.refine": 1})
+        """
+        setting = {key: _native.as_value(json.dumps(_plain(value))) for key, value in keys.items()}
+        return Scene(self._native.replaced(setting))
+
+    def save(self, path: PathLike) -> None:
+        """Write the scene; names of mesh files are made absolute, so that it can lie anywhere."""
+        Path(path).write_text(self._native.rooted(), encoding="utf-8")
+
+    def check(self, criteria: Iterable[Criterion] = ()) -> list[str]:
+        """Check the scene with its mesh and its plug-ins; return warnings."""
+        return self._native.check(list(criteria))
+
+    def run(
+        self,
+        *,
+        folder: PathLike | None = None,
+        resume: bool = False,
+        threads: int = 1,
+        progress: Callable[[float], object] | None = None,
+        criteria: Iterable[Criterion] = (),
+        accuracy: float | None = None,
+    ) -> Result:
+        """Compute what the scene asks for: an :class:`ImpactResult`, a :class:`StaticResult` or a :class:`ModesResult`.
+
+        * ``folder``: where the files of ``fem run`` go; without it all stays in memory.
+        * ``resume``: go on from the checkpoint in that folder.
+        * ``threads``: for the integration of element matrices; results do not depend on it.
+        * ``progress``: called with the share of the march that is done, at most twenty times a second.
+        * ``criteria``: criteria of one's own, which the scene names in ``failure.criteria``.
+        * ``accuracy``: largest relative error of the main results, for which mesh, layers, reduction and step are raised
+          before the run; by default what the scene says.
+
+        Other threads of Python run meanwhile. Ctrl-C, and whatever ``progress`` raises, stops a march at its next step; in a
+        folder it leaves a checkpoint, from which ``resume`` goes on.
+        """
+        asked = accuracy is not None or "accuracy" in self
+        if asked and not self._is_file():
+            # The search for an accuracy reads the scene again and again.
+            with tempfile.TemporaryDirectory() as temporary:
+                path = Path(temporary) / "scene.toml"
+                self.save(path)
+                return Scene.load(path)._compute(None, folder, resume, threads, progress, criteria, accuracy)
+        return self._compute(None, folder, resume, threads, progress, criteria, accuracy)
+
+    def modes(self, count: int | None = None, *, folder: PathLike | None = None, threads: int = 1) -> ModesResult:
+        """Find the lowest natural modes of the plate, whatever the scene asks for; as many as it says, or ten."""
+        if count is not None and count < 1:
+            raise ValueError("count must be 1 or more")
+        return cast(ModesResult, self._compute(count or 0, folder, False, threads, None, (), None))
+
+    def advise(self, *, threads: int = 1) -> list[Advice]:
+        """Say, of each impactor, which effects its impact calls for."""
+        return [Advice(**each) for each in json.loads(self._native.advise(_threads(threads)))]
+
+    def laminate(self) -> Laminate:
+        """Return A, B, D and moduli of the laminate."""
+        return Laminate(**self._native.laminate())
+
+    def matrices(self, *, threads: int = 1) -> Matrices:
+        """Assemble stiffness and mass; needs SciPy."""
+        import scipy.sparse
+
+        found = self._native.matrices(_threads(threads))
+
+        def whole(parts: tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]) -> scipy.sparse.csc_array:
+            lower = scipy.sparse.csc_array(parts, shape=(len(parts[2]) - 1,) * 2)
+            return scipy.sparse.csc_array(lower + scipy.sparse.tril(lower, -1).T)
+
+        unknowns = Table({name: np.asarray(column) for name, column in found["unknowns"].items()})
+        return Matrices(whole(found["stiffness"]), whole(found["mass"]), unknowns)
+
+    def __repr__(self) -> str:
+        """Name the scene."""
+        return f"<Scene {self['title']!r} of {self.name}>"
+
+    def _repr_html_(self) -> str:
+        import html
+
+        return f"<pre>{html.escape(self.text)}</pre>"
+
+    def _is_file(self) -> bool:
+        try:
+            return Path(self.name).read_text(encoding="utf-8") == self.text
+        except OSError:
+            return False
+
+    def _compute(
+        self,
+        modes: int | None,
+        folder: PathLike | None,
+        resume: bool,
+        threads: int,
+        progress: Callable[[float], object] | None,
+        criteria: Iterable[Criterion],
+        accuracy: float | None,
+    ) -> Result:
+        if resume and folder is None:
+            raise ValueError("to resume, name the folder of the run that was stopped")
+        if accuracy is not None and not 0 < accuracy < 1:
+            raise ValueError("accuracy must be a relative error between 0 and 1, such as 0.01")
+        criteria = list(criteria)
+        for criterion in criteria:
+            if not self._native.asks_for(criterion.name):
+                raise ValueError(
+                    f"the scene does not ask for the criterion `{criterion.name}`: name it in `failure.criteria`"
+                )
+        asked: _native.Asked = {
+            "modes": modes,
+            "threads": _threads(threads),
+            "folder": None if folder is None else os.fspath(folder),
+            "resume": resume,
+            "progress": progress,
+            "criteria": criteria,
+            "accuracy": accuracy,
+        }
+        return _result(self._native.run(asked))
+
+
+_STEP = re.compile(r"\.([^.\[]+)|\[(\d+)\]")
+
+
+def _nested(leaves: Mapping[str, str]) -> Any:
+    """Put the values at the ends of paths, ``.mass`` or ``[0].ply``, into lists and dictionaries."""
+    if "" in leaves:
+        text = leaves[""]
+        return text[1:-1] if text.startswith('"') else json.loads(text)
+    parts: dict[str, dict[str, str]] = {}
+    places: dict[int, dict[str, str]] = {}
+    for path, value in leaves.items():
+        step = _STEP.match(path)
+        assert step is not None, path
+        name, place = step.groups()
+        part = parts.setdefault(name, {}) if place is None else places.setdefault(int(place), {})
+        part[path[step.end() :]] = value
+    if places:
+        return [_nested(places[i]) for i in sorted(places)]
+    return {name: _nested(part) for name, part in parts.items()}
+
+
+def _threads(threads: int) -> int:
+    if threads < 1:
+        raise ValueError("threads must be 1 or more")
+    return threads
+
+
+def _plain(value: Any) -> Any:
+    """Return what JSON can hold: quantities of pint as texts, paths as names, numbers of NumPy as numbers."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(each) for key, each in value.items()}
+    if hasattr(value, "magnitude") and hasattr(value, "units"):
+        return f"{value.magnitude!r} {value.units:~C}".replace("**", "^")
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [_plain(each) for each in value]
+    return value

@@ -1,0 +1,63 @@
+//! Runs.
+
+use crate::criterion::{PyCriterion, registry};
+use crate::mistakes::raise;
+use crate::results::results;
+use crate::watch::Watch;
+use fem::io::scene::{self, Scene};
+use fem::job::{self, Finished, Options, Results, Task};
+use fem::{Error, Model, Registry, study};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+/// What is asked of a run.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Asked {
+    /// So many modes, whatever the scene asks for; 0 for as many as it says.
+    modes: Option<usize>,
+    threads: NonZeroUsize,
+    folder: Option<PathBuf>,
+    resume: bool,
+    progress: Option<Py<PyAny>>,
+    criteria: Vec<PyCriterion>,
+    /// Largest error of the main results, for which settings are raised.
+    accuracy: Option<f64>,
+}
+
+pub(crate) fn run<'py>(py: Python<'py>, scene: &Scene, path: &Path, asked: Asked) -> PyResult<Bound<'py, PyDict>> {
+    let Asked { modes, threads, folder, resume, progress, criteria, accuracy } = asked;
+    let registry = registry(&criteria);
+    let results_in = match (folder, resume) {
+        (None, _) => Results::InMemory,
+        (Some(folder), false) => Results::Folder(folder),
+        (Some(folder), true) => Results::Resumed(folder),
+    };
+    let task = modes.map_or(Task::Scene, |count| Task::Modes(NonZeroUsize::new(count)));
+    let mut options = Options { task, results: results_in, threads, ..Options::default() };
+    let raised: Vec<_> = criteria.iter().map(|criterion| criterion.raised.clone()).collect();
+    let mut watch = Watch::new(progress.as_ref(), &raised);
+    let done = py.detach(|| {
+        let raised = match accuracy.or_else(|| scene.accuracy.as_ref().map(|accuracy| accuracy.value)) {
+            Some(asked) if task == Task::Scene => Some(attain(scene, path, &registry, asked, &mut options)?),
+            _ => None,
+        };
+        job::run(raised.as_ref().unwrap_or(scene), &registry, &options, &mut watch)
+    });
+    match (done, watch.raised()) {
+        (_, Some(raised)) => Err(raised),
+        (Err(error), None) => Err(raise(&error)),
+        (Ok(Finished { model, found, cost, folder }), None) => results(py, &model, found, &cost, folder),
+    }
+}
+
+/// The scene with settings raised until its main results are as exact as is `asked`.
+fn attain(scene: &Scene, path: &Path, registry: &Registry, asked: f64, options: &mut Options) -> Result<Scene, Error> {
+    let model = Model::new(scene, registry)?;
+    let attained = study::attain((path, scene, &model), registry, asked, None, &mut |_, _| {})?;
+    let raised = scene::parse(&scene::rewrite(path, &attained.setting)?, path)?;
+    options.attained = Some(attained);
+    Ok(raised)
+}

@@ -1,0 +1,38 @@
+import numpy as np
+import pytest
+
+import femlam
+
+
+@pytest.fixture
+def result(scene: femlam.Scene) -> femlam.ImpactResult:
+    return scene.replace({"march.end": "0.3 ms"}).run()
+
+
+def test_tables_are_frames(result: femlam.ImpactResult) -> None:
+    pytest.importorskip("pandas")
+    frame, events = result.history.frame(), result.events.frame()
+    assert frame.attrs["units"]["impactor_velocity_m_s"] == "m/s"
+    assert frame["contact_force_N"].max() == result.force.max()
+    assert next(iter(events["mode"])) == result.summary["first_damage"][0]["mode"]
+    assert events["time_s"].is_monotonic_increasing
+    assert (events["index"] >= 1).all()
+    assert events.attrs["units"]["angle_deg"] == "°"
+
+
+def test_the_force_is_drawn(result: femlam.ImpactResult) -> None:
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    pyplot.switch_backend("agg")
+    axes = pyplot.figure().subplots()
+    assert result.plot_force(axes) is axes
+    line = axes.get_lines()[0]
+    np.testing.assert_array_equal(line.get_ydata(), result.force * 1e-3)
+    assert len(axes.get_lines()) == 1 + len(result.summary["first_damage"])
+    pyplot.close("all")
+
+
+def test_notebooks_show_results(result: femlam.ImpactResult) -> None:
+    assert "peak" in result._repr_html_()
+    assert result.history._repr_html_().count("<tr>") == 11
+    assert "rows" in repr(result.history)
+    assert result.warnings == result.summary["warnings"]
