@@ -9,11 +9,12 @@ A scene is read, run and looked at:
 Numbers are in SI units; the names of columns end with theirs. Stresses have the order 11 22 33 12 23 31.
 """
 
+from femlam._asked import Advice, Laminate, Matrices
 from femlam._criterion import Criterion, Material, check_criterion, indices, material
 from femlam._errors import FemError, Mistake, SceneError
 from femlam._native import __version__
 from femlam._results import ImpactResult, ModesResult, Result, StaticResult, Table
-from femlam._scene import Advice, Laminate, Matrices, Scene
+from femlam._scene import Scene
 
 __all__ = [
     "Advice",

@@ -8,7 +8,6 @@ import os
 import re
 import tempfile
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Union, cast
 
@@ -16,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from femlam import _native
+from femlam._asked import Advice, Laminate, Matrices
 from femlam._criterion import Criterion
 from femlam._results import ModesResult, Result, Table, _result
 
@@ -23,57 +23,6 @@ if TYPE_CHECKING:
     import scipy.sparse
 
 PathLike = Union[str, "os.PathLike[str]"]
-
-
-@dataclass(frozen=True)
-class Matrices:
-    """Stiffness and mass of a plate after its supports are eliminated, both whole and symmetric, shape (n, n)."""
-
-    stiffness: scipy.sparse.csc_array
-    """K, N/m for translations."""
-    mass: scipy.sparse.csc_array
-    """M, kg for translations."""
-    unknowns: Table
-    """What each row and column stands for, in order: ``unknown`` (``U30``: along z), ``node``, ``x_m``, ``y_m``, ``z_m``."""
-
-
-@dataclass(frozen=True)
-class Laminate:
-    """Classical laminate theory of the plies of a scene; rows and columns 11, 22, 12, each matrix of shape (3, 3)."""
-
-    A: NDArray[np.float64]
-    """Forces per length by strains, N/m."""
-    B: NDArray[np.float64]
-    """Coupling, N."""
-    D: NDArray[np.float64]
-    """Moments per length by curvatures, N m."""
-    in_plane: dict[str, float]
-    """Ex, Ey, Gxy in Pa, and nuxy."""
-    flexural: dict[str, float]
-    """The same in bending."""
-    thickness: float
-    """m"""
-    angles: list[float]
-    """Angles of the plies from the bottom up, degrees."""
-
-
-@dataclass(frozen=True)
-class Advice:
-    """What the advisor says of one impactor before the run."""
-
-    impactor: str | None
-    """Its name, where there are several."""
-    mass_kg: float
-    velocity_m_s: float
-    peak_force_N: float
-    """What formulas expect."""
-    answers: list[dict[str, Any]]
-    """Question, numbers, choice, effect, error, cost."""
-    text: str
-
-    def __str__(self) -> str:
-        """Return the advice as the command line prints it."""
-        return self.text
 
 
 class Scene:
@@ -218,6 +167,10 @@ class Scene:
         unknowns = Table({name: np.asarray(column) for name, column in found["unknowns"].items()})
         return Matrices(whole(found["stiffness"]), whole(found["mass"]), unknowns)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Let other processes have it."""
+        return _parse, (self.text, self.name)
+
     def __repr__(self) -> str:
         """Name the scene."""
         return f"<Scene {self['title']!r} of {self.name}>"
@@ -263,6 +216,10 @@ class Scene:
             "accuracy": accuracy,
         }
         return _result(self._native.run(asked))
+
+
+def _parse(text: str, name: str) -> Scene:
+    return Scene(_native.Scene.parse(text, name))
 
 
 _STEP = re.compile(r"\.([^.\[]+)|\[(\d+)\]")

@@ -35,7 +35,7 @@ pub(crate) struct PyCriterion {
     object: Arc<Py<PyAny>>,
     name: &'static str,
     summary: &'static str,
-    info: &'static CriterionInfo,
+    info: CriterionInfo,
     pub(crate) raised: Raised,
 }
 
@@ -55,17 +55,23 @@ impl FromPyObject<'_, '_> for PyCriterion {
             };
             Strength::ALL.iter().find(named).copied().ok_or_else(unknown)
         };
+        let (modes, strengths) = (texts("modes")?, texts("strengths")?);
+        if modes.is_empty() {
+            return Err(PyValueError::new_err("`modes` is empty: a criterion has at least one mode"));
+        }
+        let strengths: Vec<_> = strengths.iter().map(strength).collect::<PyResult<_>>()?;
+        let (modes, strengths) = lists(modes.iter().map(|mode| keep(mode)).collect(), strengths);
         let info = CriterionInfo {
             site: if object.getattr("at_interfaces")?.extract()? { Site::Interface } else { Site::Ply },
-            modes: texts("modes")?.iter().map(|mode| keep(mode)).collect::<Vec<_>>().leak(),
-            strengths: texts("strengths")?.iter().map(strength).collect::<PyResult<Vec<_>>>()?.leak(),
+            modes,
+            strengths,
             invariant_about_fibre: object.getattr("invariant_about_fibre")?.extract()?,
         };
         Ok(Self {
             object: Arc::new(object.to_owned().unbind()),
             name: keep(&text("name")?),
             summary: keep(&text("summary")?),
-            info: Box::leak(Box::new(info)),
+            info,
             raised: Raised::default(),
         })
     }
@@ -83,9 +89,24 @@ fn keep(text: &str) -> &'static str {
     text
 }
 
+/// Modes and strengths of a class.
+type Lists = (&'static [&'static str], &'static [Strength]);
+
+/// The same for lists.
+fn lists(modes: Vec<&'static str>, strengths: Vec<Strength>) -> Lists {
+    static KEPT: Mutex<Vec<Lists>> = Mutex::new(Vec::new());
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = kept.iter().find(|known| known.0 == modes && known.1 == strengths) {
+        return *known;
+    }
+    let lists: Lists = (modes.leak(), strengths.leak());
+    kept.push(lists);
+    lists
+}
+
 impl FailureCriterion for PyCriterion {
     fn info(&self) -> &CriterionInfo {
-        self.info
+        &self.info
     }
 
     fn indices(&self, s: &Stress6<Ply>, m: &Material, out: &mut [f64]) {

@@ -74,7 +74,12 @@ def test_the_contract_finds_what_is_wrong() -> None:
     class UnknownStrength(YamadaSun):
         strengths = ("Xtt",)
 
+    class WithoutModes(YamadaSun):
+        modes = ()
+
     femlam.check_criterion(YamadaSun(), "AS4/3502")
+    with pytest.raises(ValueError, match="`modes` is empty"):
+        femlam.check_criterion(WithoutModes(), "AS4/3502")
     faults = {
         LosesNan: "NaN and passes",
         FailsAtRest: "without stress",

@@ -1,3 +1,5 @@
+import pickle
+
 import numpy as np
 import pytest
 
@@ -29,6 +31,12 @@ def test_the_force_is_drawn(result: femlam.ImpactResult) -> None:
     np.testing.assert_array_equal(line.get_ydata(), result.force * 1e-3)
     assert len(axes.get_lines()) == 1 + len(result.summary["first_damage"])
     pyplot.close("all")
+
+
+def test_results_go_to_other_processes(result: femlam.ImpactResult) -> None:
+    other = pickle.loads(pickle.dumps(result))
+    assert other.force.tobytes() == result.force.tobytes()
+    assert other.summary == result.summary
 
 
 def test_notebooks_show_results(result: femlam.ImpactResult) -> None:

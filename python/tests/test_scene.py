@@ -91,6 +91,11 @@ def test_a_dictionary_makes_a_scene(square: dict, tmp_path: Path) -> None:
         femlam.Scene.from_dict({**square, "title": object()})
 
 
+def test_a_scene_goes_to_other_processes(scene: femlam.Scene) -> None:
+    other = pickle.loads(pickle.dumps(scene))
+    assert (other.text, other.name, other.check()) == (scene.text, scene.name, [])
+
+
 def test_a_saved_scene_can_lie_anywhere(scene: femlam.Scene, tmp_path: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
     scene.save(tmp_path / "elsewhere" / "scene.toml")
