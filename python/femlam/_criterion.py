@@ -58,7 +58,7 @@ class Criterion:
     ...         return stress[:, 0] / material.Xt
 
     The program asks for many states in one call, which takes some 20 µs, and about as long a state as a criterion in Rust.
-    Reserve factors are found by search, hundreds of calls each. :func:`check_criterion` finds what is wrong with a criterion.
+    Reserve factors are found by search, hundreds of calls each. :func:`check_criterion` finds what is wrong with one.
     """
 
     name: ClassVar[str]
