@@ -182,7 +182,7 @@ class ImpactResult(Result):
 
 
 class StaticResult(Result):
-    """Displacements under loads at rest."""
+    """Displacements and stresses under loads at rest."""
 
     def __init__(self, found: dict[str, Any]) -> None:
         """Of what the native module returns."""
@@ -193,6 +193,12 @@ class StaticResult(Result):
         """Where they are, m, shape (n, 3)."""
         self.displacements: NDArray[np.float64] = found["displacements"]
         """How they move, m, shape (n, 3)."""
+        profiles: dict[str, dict[str, list[Any]]] = found["profiles"]
+        self.profiles = {
+            name: Table({column: np.array(values) for column, values in columns.items()})
+            for name, columns in profiles.items()
+        }
+        """Of each ``[[profile]]`` of the scene the table of ``profile-<name>.csv``: stresses through the thickness."""
 
 
 class ModesResult(Result):

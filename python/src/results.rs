@@ -4,12 +4,13 @@ use crate::json;
 use fem::Model;
 use fem::analyses::matrices::{NamedUnknown, unknowns};
 use fem::cost::Cost;
+use fem::io::tables::TableValue;
 use fem::job::{Found, ImpactFound, ModesFound, StaticFound};
-use fem::output::statics::{MovedNode, nodes};
+use fem::output::statics::{MovedNode, ProfileTable, nodes, profile};
 use fem::output::{events, history_columns};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList};
 use std::path::PathBuf;
 
 /// Everything by name; arrays are made once, and Python shows parts of them without copying.
@@ -53,7 +54,29 @@ fn at_rest(all: &Bound<'_, PyDict>, model: &Model, found: &StaticFound) -> PyRes
         |part: fn(&MovedNode) -> [f64; 3]| array(all.py(), nodes.iter().flat_map(part).collect(), [nodes.len(), 3]);
     all.set_item("nodes", PyArray1::from_iter(all.py(), nodes.iter().map(|node| node.tag)))?;
     all.set_item("places", of(|node| node.x)?)?;
-    all.set_item("displacements", of(|node| node.u)?)
+    all.set_item("displacements", of(|node| node.u)?)?;
+    let profiles = PyDict::new(all.py());
+    for (which, named) in model.profiles.iter().enumerate() {
+        profiles
+            .set_item(&named.line.name.value, profile_columns(all.py(), profile(model, &found.solution, which))?)?;
+    }
+    all.set_item("profiles", profiles)
+}
+
+fn profile_columns(py: Python<'_>, (names, rows): ProfileTable) -> PyResult<Bound<'_, PyDict>> {
+    let all = PyDict::new(py);
+    for (k, name) in names.into_iter().enumerate() {
+        let column = PyList::empty(py);
+        for row in &rows {
+            match row[k] {
+                TableValue::Number(value) | TableValue::Index(value) => column.append(value)?,
+                TableValue::Count(value) => column.append(value)?,
+                TableValue::Text(text) => column.append(text)?,
+            }
+        }
+        all.set_item(name, column)?;
+    }
+    Ok(all)
 }
 
 fn modes(all: &Bound<'_, PyDict>, model: &Model, found: ModesFound) -> PyResult<()> {

@@ -83,6 +83,16 @@ def test_loads_at_rest(square: dict) -> None:
     assert len(result.nodes) == len(result.places)
 
 
+def test_stresses_through_the_thickness_are_those_of_pagano() -> None:
+    scene = femlam.Scene.load(Path(__file__).parents[2] / "examples" / "pagano-0-90-0" / "scene.toml")
+    centre = scene.run().profiles["centre"]
+    # Exact: 59.06 MPa at the top of the centre.
+    top = np.argmax(centre["z_m"])
+    assert abs(centre["sxx_Pa"][top]) == pytest.approx(59.06e6, rel=1e-3)
+    assert centre["ply"][top] == 3
+    assert centre.units["sxx_Pa"] == "Pa"
+
+
 def test_a_run_that_is_interrupted_goes_on_from_its_folder(scene: femlam.Scene, tmp_path: Path) -> None:
     shares = []
 

@@ -3,8 +3,8 @@
 use super::{MovedNode, StaticSummary, nodes};
 use crate::analyses::statics::StaticSolution;
 use crate::error::Error;
-use crate::model::{Model, NamedProfile};
-use fem_core::profile::{Choice, ProfilePoint};
+use crate::model::Model;
+use fem_core::profile::ProfilePoint;
 use fem_io::files::OutputDir;
 use fem_io::plot::{self, Axis, LinePlot, Series, Style};
 use fem_io::tables::{self, TableValue};
@@ -22,11 +22,7 @@ pub fn write(dir: &OutputDir, model: &Model, solution: &StaticSolution, summary:
     };
     let header = ["node", "x_m", "y_m", "z_m", "u_m", "v_m", "w_m"];
     tables::write_columns(dir, "displacements.csv", &header, nodes.iter().map(row))?;
-    let sampled = solution.profiles.iter().zip(&solution.transverse);
-    for (named, (points, ways)) in model.profiles.iter().zip(sampled) {
-        write_profile(dir, model, named, points, *ways)?;
-    }
-    Ok(())
+    (0..model.profiles.len()).try_for_each(|which| write_profile(dir, model, solution, which))
 }
 
 const PROFILE: [&str; 23] = [
@@ -56,19 +52,17 @@ const PROFILE: [&str; 23] = [
 ];
 const EQUILIBRIUM: [&str; 3] = ["szz_equilibrium_Pa", "syz_equilibrium_Pa", "szx_equilibrium_Pa"];
 
-fn write_profile(
-    dir: &OutputDir,
-    model: &Model,
-    named: &NamedProfile,
-    points: &[ProfilePoint],
-    ways: [Choice; 2],
-) -> Result<(), Error> {
-    let name = &named.line.name.value;
+/// Names of columns, and rows.
+pub type ProfileTable = (Vec<&'static str>, Vec<Vec<TableValue<'static>>>);
+
+/// The table of `profile-<name>.csv` of the profile number `which` of `model`.
+pub fn profile(model: &Model, solution: &StaticSolution, which: usize) -> ProfileTable {
+    let (points, ways) = (&solution.profiles[which], solution.transverse[which]);
     let mut header = PROFILE.to_vec();
     if points.iter().any(|p| p.equilibrium.is_some()) {
         header.extend(EQUILIBRIUM);
     }
-    let region = named.profile.quads().next().map_or(0, |quad| model.plate.region(quad));
+    let region = model.profiles[which].profile.quads().next().map_or(0, |quad| model.plate.region(quad));
     let row = |p: &ProfilePoint| {
         let mut row = vec![
             TableValue::Number(p.z),
@@ -86,7 +80,14 @@ fn write_profile(
         );
         row
     };
-    tables::write_columns(dir, &format!("profile-{name}.csv"), &header, points.iter().map(row))?;
+    (header, points.iter().map(row).collect())
+}
+
+fn write_profile(dir: &OutputDir, model: &Model, solution: &StaticSolution, which: usize) -> Result<(), Error> {
+    let name = &model.profiles[which].line.name.value;
+    let (header, rows) = profile(model, solution, which);
+    tables::write_columns(dir, &format!("profile-{name}.csv"), &header, rows.into_iter())?;
+    let points = &solution.profiles[which];
     if !model.output.plots {
         return Ok(());
     }

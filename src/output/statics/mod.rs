@@ -2,7 +2,7 @@
 
 mod files;
 
-pub use files::write;
+pub use files::{ProfileTable, profile, write};
 
 use crate::analyses::assembled::Substructures;
 use crate::analyses::statics::{StaticSolution, dof_of};
