@@ -34,6 +34,13 @@ def _unit(column: str) -> str:
     return next((unit for ending, unit in _UNITS.items() if column.endswith("_" + ending)), "")
 
 
+def _fitting(largest: float) -> tuple[float, str]:
+    """Return the factor and the prefix with which a number is easy to read."""
+    prefixes = ((1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"))
+    # What rounding has left just below a power of ten is that power.
+    return next(((1 / size, prefix) for size, prefix in prefixes if largest >= 0.999 * size), (1.0, ""))
+
+
 class Table(Mapping[str, NDArray[Any]]):
     """Columns by their names, arrays of one length; numbers are in the units with which the names end."""
 
@@ -172,11 +179,13 @@ class ImpactResult(Result):
                 ax = plt.subplots(layout="constrained")[1]
             except ImportError:
                 ax = Figure(layout="constrained").subplots()
-        ax.plot(self.time * 1e3, self.force * 1e-3, label="contact force")
+        (to_time, of_time), (to_force, of_force) = _fitting(self.time[-1]), _fitting(self.force.max())
+        ax.plot(self.time * to_time, self.force * to_force, label="contact force")
         for damage in self.summary["first_damage"]:
             name = f"{damage['criterion']}: {damage['mode']}"
-            ax.plot(damage["time_s"] * 1e3, damage["contact_force_N"] * 1e-3, "o", label=name)
-        ax.set(xlabel="Time (ms)", ylabel="Contact force (kN)", title=self.summary["title"])
+            ax.plot(damage["time_s"] * to_time, damage["contact_force_N"] * to_force, "o", label=name)
+        labels = {"xlabel": f"Time ({of_time}s)", "ylabel": f"Contact force ({of_force}N)"}
+        ax.set(**labels, title=self.summary["title"])
         ax.legend(fontsize="small")
         return ax
 

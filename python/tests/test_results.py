@@ -28,7 +28,8 @@ def test_the_force_is_drawn(result: femlam.ImpactResult) -> None:
     axes = pyplot.figure().subplots()
     assert result.plot_force(axes) is axes
     line = axes.get_lines()[0]
-    np.testing.assert_array_equal(line.get_ydata(), result.force * 1e-3)
+    np.testing.assert_allclose(line.get_ydata(), result.force)
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("Time (µs)", "Contact force (N)")
     assert len(axes.get_lines()) == 1 + len(result.summary["first_damage"])
     pyplot.close("all")
 
