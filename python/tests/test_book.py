@@ -1,4 +1,4 @@
-"""What the chapter of the book shows is what comes out."""
+"""What the pages about the package show is what comes out."""
 
 import contextlib
 import io
@@ -9,13 +9,14 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs" / "book" / "src" / "python.md"
+PAGES = (ROOT / "docs" / "book" / "src" / "python.md", ROOT / "python" / "README.md")
 
 
-def test_the_chapter_says_what_is_printed(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_a_page_says_what_is_printed(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """With UPDATE_BOOK it is written anew."""
     monkeypatch.chdir(ROOT)
-    text, names = PAGE.read_text(), {}
+    text, names = page.read_text(encoding="utf-8"), {}
 
     def printed(block: re.Match) -> str:
         output = io.StringIO()
@@ -26,6 +27,6 @@ def test_the_chapter_says_what_is_printed(monkeypatch: pytest.MonkeyPatch) -> No
     run, blocks = re.subn(r"```python\n(.*?)```\n\n```text\n.*?```\n", printed, text, flags=re.DOTALL)
     assert blocks == text.count("```python")
     if "UPDATE_BOOK" in os.environ:
-        PAGE.write_text(run)
+        page.write_text(run, encoding="utf-8")
     else:
         assert run == text
