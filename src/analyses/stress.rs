@@ -310,17 +310,19 @@ pub(crate) fn recover(
     points: Option<&[f64]>,
     out: &mut [f64],
 ) -> Result<(), Error> {
-    if !model.effects.nature().large {
-        recovery.stresses(&model.plate, &*model.element, u, count, out)?;
-        let Some((laws, points)) = model.laws.as_ref().zip(points) else { return Ok(()) };
-        let fields = u.chunks_exact(model.plate.ndof()).zip(out.chunks_exact_mut(6 * recovery.sites()));
-        for (field, (u, out)) in fields.enumerate() {
-            let points = &points[field * laws.states()..(field + 1) * laws.states()];
-            recovery.put_lawful(&model.plate, &*model.element, laws, (u, points), out)?;
-        }
-        return Ok(());
+    let (plate, element, large) = (&model.plate, &*model.element, model.effects.nature().large);
+    if large {
+        recovery.large_stresses(plate, element, u, count, out)?;
+    } else {
+        recovery.stresses(plate, element, u, count, out)?;
     }
-    Ok(recovery.large_stresses(&model.plate, &*model.element, u, count, out)?)
+    let Some((laws, points)) = model.laws.as_ref().zip(points) else { return Ok(()) };
+    let fields = u.chunks_exact(plate.ndof()).zip(out.chunks_exact_mut(6 * recovery.sites()));
+    for (field, (u, out)) in fields.enumerate() {
+        let points = &points[field * laws.states()..(field + 1) * laws.states()];
+        recovery.put_lawful(plate, element, laws, (u, points), large, out)?;
+    }
+    Ok(())
 }
 
 /// Where the criteria look.

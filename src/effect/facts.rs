@@ -64,6 +64,8 @@ pub enum Feature {
     StruckFromBelow,
     /// Plies that follow laws.
     PlyLaws,
+    /// Plies that follow laws in a plate whose delaminations do not grow.
+    PlyLawsAlone,
     /// Another effect.
     Effect(&'static str),
 }
@@ -114,6 +116,7 @@ impl<'a> Facts<'a> {
     fn find(&self, feature: Feature) -> Option<&'a Place> {
         let Self { scene, place, .. } = *self;
         let own = |has: bool| has.then_some(place);
+        let lawful = || scene.plies().any(|ply| scene.laws[ply.material].is_some());
         match feature {
             Feature::NoImpact => own(scene.impact().is_none()),
             Feature::Modes => own(matches!(scene.analysis, Analysis::Modes { .. })),
@@ -127,7 +130,8 @@ impl<'a> Facts<'a> {
             Feature::StruckFromBelow => {
                 own(scene.impact().is_some_and(|impact| impact.impactors.iter().any(|one| one.face == Face::Bottom)))
             }
-            Feature::PlyLaws => own(scene.plies().any(|ply| scene.laws[ply.material].is_some())),
+            Feature::PlyLaws => own(lawful()),
+            Feature::PlyLawsAlone => own(lawful() && scene.delamination.is_none()),
             Feature::Effect(name) => own(self.effects.contains(&name)),
         }
     }

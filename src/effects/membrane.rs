@@ -57,9 +57,9 @@ impl Effect for Membrane {
     fn excludes(&self) -> &'static [Exclusion] {
         const EXCLUDED: &[Exclusion] = &[
             Exclusion::new(
-                Feature::PlyLaws,
+                Feature::PlyLawsAlone,
                 "membrane stiffening is that of linear elastic plies, but plies follow a law",
-                "leave it out, or the `law` of the material",
+                "leave it out, or the `law` of the material, or have delaminations grow beside them",
             ),
             Exclusion::new(Feature::Modes, "natural modes are those of small vibrations", "leave `membrane` out"),
             Exclusion::new(

@@ -5,3 +5,4 @@ mod closed;
 mod dynamics;
 mod scenes;
 mod specimens;
+mod stretched;

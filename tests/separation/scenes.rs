@@ -9,31 +9,32 @@ use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 
 /// Three plies of two kinds, 48 mm by 40 mm, unless said otherwise 3 mm thick and simply supported, under 1 kg.
-struct Plate {
-    effects: &'static str,
-    delamination: String,
-    symmetry: &'static str,
-    plies: &'static str,
-    ply_mm: f64,
-    material: &'static str,
-    mass_kg: f64,
-    velocity: f64,
-    step_us: f64,
-    end_us: u32,
-    hold: &'static str,
-    more: &'static str,
+pub(super) struct Plate {
+    pub(super) effects: &'static str,
+    pub(super) delamination: String,
+    pub(super) symmetry: &'static str,
+    pub(super) plies: &'static str,
+    pub(super) ply_mm: f64,
+    pub(super) material: &'static str,
+    pub(super) mass_kg: f64,
+    pub(super) velocity: f64,
+    pub(super) step_us: f64,
+    pub(super) end_us: u32,
+    pub(super) hold: &'static str,
+    pub(super) more: &'static str,
 }
 
 /// Interfaces weak enough to soften over several cells.
 const TAPE: &str = "library = 'IM7/8552'\nZt = '20 MPa'\nS13 = '25 MPa'\n";
 /// A resin that no impact of these tests damages.
-const STRONG: &str = "library = 'IM7/8552'\nZt = '1 GPa'\nS13 = '1 GPa'\nGIc = '900 kJ/m^2'\nGIIc = '900 kJ/m^2'\n";
+pub(super) const STRONG: &str =
+    "library = 'IM7/8552'\nZt = '1 GPa'\nS13 = '1 GPa'\nGIc = '900 kJ/m^2'\nGIIc = '900 kJ/m^2'\n";
 const GROWTH: &str = "delamination = 'growth'";
 /// What the growth lays over a preset, for a scene without it.
 const ALIKE: &str = "reduction = { method = 'none' }\n";
 
 impl Plate {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         let delamination = "delamination = { penalty = '2e4 N/mm^3' }\n".into();
         Self {
             effects: GROWTH,
@@ -55,7 +56,7 @@ impl Plate {
         Self { effects: "", delamination: String::new(), more: ALIKE, ..Self::new() }
     }
 
-    fn text(&self) -> String {
+    pub(super) fn text(&self) -> String {
         let Self { effects, delamination, symmetry, plies, ply_mm, material, mass_kg, velocity, .. } = self;
         let Self { step_us, end_us, hold, more, .. } = self;
         let edges =
@@ -91,12 +92,12 @@ impl Plate {
     }
 }
 
-fn forces(outcome: &Outcome) -> Vec<f64> {
+pub(super) fn forces(outcome: &Outcome) -> Vec<f64> {
     outcome.history.iter().map(|row| row.impactors[0].contact_force_n).collect()
 }
 
 /// Root of the sum of squared differences over that of squares.
-fn apart(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn apart(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     let square = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>();
     (square(&mut a.iter().zip(b).map(|(a, b)| a - b)) / square(&mut b.iter().copied())).sqrt()
@@ -153,7 +154,7 @@ fn shorter_steps_find_the_same() {
 }
 
 /// A thin plate, held in its plane all around, that deflects by its thickness and no interface of which is damaged.
-fn stretched(effects: &'static str, more: &'static str) -> Plate {
+pub(super) fn stretched(effects: &'static str, more: &'static str) -> Plate {
     Plate {
         effects,
         more,

@@ -3,16 +3,21 @@
 use super::alike::Alike;
 use super::cell_map::CellMap;
 use super::equilibrium::{EquilibriumError, InternalForce, dot};
+use super::membrane::MembraneStrains;
 use super::{AssemblyError, Symmetric};
 use crate::contracts::element::{Element, ElementError, form};
+use crate::contracts::structure::Stretching;
 use crate::plates::constraint::Constraints;
-use crate::plates::laws::{Asked, CellAnswer, CellOperators, PlyLaws};
+use crate::plates::laws::{Asked, CellAnswer, CellOperators, Patterns, PlyLaws};
 use crate::plates::plate::Plate;
 use crate::words::energy::Energy;
+use std::sync::Arc;
 
 /// The plies of a plate that follow laws, as forces on the independent unknowns.
 ///
-/// f(ũ) = K ũ + Cᵀ Σ ∫ Bᵀ (σ − C ε) dV, the sum over the cells with such plies: cells without cost nothing beyond their part of K.
+/// f(ũ) = K ũ + Cᵀ Σ ∫ Bᵀ (σ − C ε) dV, the sum over the cells with such plies: cells without cost nothing beyond their part of K. In a
+/// plate that is [stretched](LawPlate::stretch) ε has the strains of that as well, and σ does work on them.
+///
 /// Nothing is allocated after the first call but a few numbers per cell.
 #[derive(Debug, Clone)]
 pub struct LawPlate {
@@ -29,6 +34,20 @@ pub struct LawPlate {
     u: Vec<f64>,
     answer: CellAnswer,
     integrated: u64,
+    stretched: Option<Stretched>,
+}
+
+/// A plate that its deflections stretch, with arrays to work in.
+#[derive(Debug, Clone)]
+struct Stretched {
+    by: Arc<dyn Stretching>,
+    /// Strains of the patterns in each cell that follows laws.
+    strains: Vec<Vec<f64>>,
+    completed: Vec<f64>,
+    amounts: Vec<f64>,
+    /// Forces conjugate to both.
+    on_completed: Vec<f64>,
+    on_amounts: Vec<f64>,
 }
 
 /// Memory that operators may take, bytes; those of other cells are found whenever they are needed.
@@ -72,7 +91,28 @@ impl LawPlate {
             element,
             answer: CellAnswer::default(),
             integrated: 0,
+            stretched: None,
         }
+    }
+
+    /// Has the plate stretched by its deflections.
+    ///
+    /// # Errors
+    /// A cell that is folded.
+    pub fn stretch(&mut self, by: Arc<dyn Stretching>) -> Result<(), AssemblyError> {
+        let Self { plate, element, constraints, cells, .. } = self;
+        let patterns = MembraneStrains::new(plate, &**element, constraints, by.deflections());
+        let of = |LawCell { cell, .. }: &LawCell| {
+            patterns.of_cell(*cell, by.combinations()).map_err(|error| {
+                let (quad, layer) = plate.place(*cell);
+                AssemblyError { quad_tag: plate.plane.quad_tags[quad], layer, error }
+            })
+        };
+        let strains = cells.iter().map(of).collect::<Result<_, _>>()?;
+        let zero = vec![0.0; constraints.ndof()];
+        let (on_completed, amounts, on_amounts) = (zero.clone(), Vec::new(), Vec::new());
+        self.stretched = Some(Stretched { by, strains, completed: zero, amounts, on_completed, on_amounts });
+        Ok(())
     }
 
     /// State variables of all points.
@@ -94,7 +134,8 @@ impl LawPlate {
             return Ok(());
         }
         let old = points.to_vec();
-        self.each(u, &old, Some(points), false, |_, _, _| ())
+        self.each(u, &old, Some(points), None, None)?;
+        Ok(())
     }
 
     /// Adds the force beyond that of K to `force`; returns the energies beyond those of K, J.
@@ -102,13 +143,7 @@ impl LawPlate {
     /// # Errors
     /// A law that finds no stress.
     pub fn add(&mut self, u: &[f64], points: &[f64], force: &mut [f64]) -> Result<Energy, AssemblyError> {
-        let mut energy = Energy::default();
-        self.each(u, points, None, false, |weight, answer, map| {
-            energy.stored += weight * answer.energy.stored;
-            energy.dissipated += weight * answer.energy.dissipated;
-            map.scatter_vector(&answer.force, weight, force);
-        })?;
-        Ok(energy)
+        self.each(u, points, None, Some(force), None)
     }
 
     /// The plate with K, at the states `points`.
@@ -116,22 +151,41 @@ impl LawPlate {
         LawForce { k, laws: self, points }
     }
 
+    /// Asks all cells; takes what is wanted of their answers, and the energies beyond those of K.
     fn each(
         &mut self,
         u: &[f64],
         points: &[f64],
         mut new: Option<&mut [f64]>,
-        tangent: bool,
-        mut take: impl FnMut(f64, &CellAnswer, &mut CellMap),
-    ) -> Result<(), AssemblyError> {
-        let Self { plate, element, constraints, laws, cells, shapes, room, all, u: local, answer, integrated } = self;
+        mut force: Option<&mut [f64]>,
+        mut tangent: Option<&mut Symmetric>,
+    ) -> Result<Energy, AssemblyError> {
+        let Self {
+            plate,
+            element,
+            constraints,
+            laws,
+            cells,
+            shapes,
+            room,
+            all,
+            u: local,
+            answer,
+            integrated,
+            stretched,
+        } = self;
         *integrated += cells.len() as u64;
-        constraints.expand(u, all);
+        match stretched {
+            Some(stretched) => constraints.expand(stretched.begin(u), all),
+            None => constraints.expand(u, all),
+        }
+        let mut energy = Energy::default();
         let mut passing = None;
-        for LawCell { cell, weight, shape, map } in cells {
+        for (number, LawCell { cell, weight, shape, map }) in cells.iter_mut().enumerate() {
             let states = laws.states_of(*cell);
             let element = form(&**element, plate.plane.quads[plate.place(*cell).0].domain());
-            local.resize(element.info().ndof(), 0.0);
+            let n = element.info().ndof();
+            local.resize(n, 0.0);
             map.gather(all, local);
             let new = new.as_deref_mut().map(|new| &mut new[states.clone()]);
             let failed = |error| {
@@ -148,15 +202,49 @@ impl LawPlate {
                 }
             }
             let Some(operators) = shapes[*shape].as_ref().or(passing.as_ref()) else { continue };
-            let asked = Asked { plate, element, cell: *cell, operators, u: local, states: &points[states] };
+            let patterns = stretched.as_ref().map(|stretched| stretched.of(number));
+            let states = &points[states];
+            let asked = Asked { plate, element, cell: *cell, operators, u: local, stretched: patterns, states };
             let finite = |answer: &CellAnswer| answer.energy.total().is_finite();
             let refused = || ElementError("its strain energy is not finite".into());
-            laws.respond(asked, new, tangent, answer)
+            laws.respond(asked, new, tangent.is_some(), answer)
                 .and_then(|()| if finite(answer) { Ok(()) } else { Err(refused()) })
                 .map_err(failed)?;
-            take(*weight, answer, map);
+            energy.stored += *weight * answer.energy.stored;
+            energy.dissipated += *weight * answer.energy.dissipated;
+            match (&mut force, &mut *stretched) {
+                (Some(_), Some(stretched)) => stretched.take(map, *weight, answer),
+                (Some(force), None) => map.scatter_vector(&answer.force, *weight, force),
+                (None, _) => {}
+            }
+            if let Some(tangent) = &mut tangent {
+                map.scatter(&answer.tangent, *weight, tangent);
+            }
         }
-        Ok(())
+        if let (Some(force), Some(Stretched { by, on_completed, on_amounts, .. })) = (force, stretched) {
+            by.restrict(u, on_completed, on_amounts, force);
+        }
+        Ok(energy)
+    }
+}
+
+impl Stretched {
+    /// The displacements at `u`, with what follows at once.
+    fn begin(&mut self, u: &[f64]) -> &[f64] {
+        self.by.expand(u, &mut self.completed, &mut self.amounts);
+        self.on_completed.fill(0.0);
+        self.on_amounts.clear();
+        self.on_amounts.resize(self.amounts.len(), 0.0);
+        &self.completed
+    }
+
+    fn of(&self, cell: usize) -> Patterns<'_> {
+        Patterns { strains: &self.strains[cell], amounts: &self.amounts }
+    }
+
+    fn take(&mut self, map: &mut CellMap, weight: f64, answer: &CellAnswer) {
+        map.scatter_vector(&answer.force, weight, &mut self.on_completed);
+        self.on_amounts.iter_mut().zip(&answer.on_patterns).for_each(|(sum, work)| *sum += weight * work);
     }
 }
 
@@ -182,14 +270,9 @@ impl InternalForce for LawForce<'_> {
         if let Some(tangent) = &mut tangent {
             tangent.lower_mut().val_mut().copy_from_slice(k.lower().val());
         }
-        laws.each(u, points, None, tangent.is_some(), |weight, answer, map| {
-            energy.stored += weight * answer.energy.stored;
-            energy.dissipated += weight * answer.energy.dissipated;
-            map.scatter_vector(&answer.force, weight, force);
-            if let Some(tangent) = &mut tangent {
-                map.scatter(&answer.tangent, weight, tangent);
-            }
-        })?;
+        let Energy { stored, dissipated } = laws.each(u, points, None, Some(force), tangent)?;
+        energy.stored += stored;
+        energy.dissipated += dissipated;
         Ok(energy)
     }
 

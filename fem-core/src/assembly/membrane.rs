@@ -5,6 +5,7 @@ use super::cell_map::CellMap;
 use crate::contracts::element::{Cell, Element, ElementError, form, positive};
 use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;
+use crate::plates::slopes::add_slopes;
 use crate::words::quadrature::gauss_legendre;
 use crate::words::tensor::Matrix6;
 use faer::linalg::matmul::matmul;
@@ -12,9 +13,6 @@ use faer::{Accum, MatMut, MatRef, Par};
 
 /// Rows of the strains in the plane of the plate, 11, 22 and 12.
 const PLANE: [usize; 3] = [0, 1, 3];
-
-/// Step of the differences of shape functions, in natural coordinates.
-const STEP: f64 = 0.25;
 
 /// A stress that a theory takes as zero, relative to the others.
 const ABSENT: f64 = 1e-12;
@@ -91,6 +89,27 @@ impl<'a> MembraneStrains<'a> {
             );
         })?;
         Ok(gram)
+    }
+
+    /// The strains Σ over pairs of c_p ε_p in a cell at its in-plane points, for each column c of `combinations`, one after the other.
+    ///
+    /// # Errors
+    /// A cell that is folded.
+    pub(super) fn of_cell(&self, cell: usize, combinations: &[f64]) -> Result<Vec<f64>, ElementError> {
+        let (pairs, mut map, mut of) = (self.pairs(), CellMap::default(), OfCell::default());
+        map.set(self.plate, self.constraints, cell);
+        self.integrate(&self.plate.cell(cell), &map, false, &mut of)?;
+        let (rows, columns) = (of.strains.len() / pairs, combinations.len() / pairs);
+        let mut combined = vec![0.0; rows * columns];
+        matmul(
+            MatMut::from_column_major_slice_mut(&mut combined, rows, columns),
+            Accum::Replace,
+            MatRef::from_column_major_slice(&of.strains, rows, pairs),
+            MatRef::from_column_major_slice(combinations, pairs, columns),
+            1.0,
+            Par::Seq,
+        );
+        Ok(combined)
     }
 
     /// Forces ∫ Bᵀ C ε dV that the strains ε = Σ over pairs of c_p ε_p do on the independent unknowns, for each column c
@@ -241,7 +260,7 @@ impl<'a> MembraneStrains<'a> {
         b.resize(6 * local, 0.0);
         gradients.clear();
         for (r, s, _) in info.plane_points() {
-            add_gradient(element, cell, [r, s], shape, gradients);
+            add_slopes(element, cell, [r, s], shape, gradients);
         }
         self.slopes(map, local, gradients, u, slopes);
         // ∫ C dq of the strains in the plane, where a theory takes stresses as zero without them.
@@ -291,29 +310,6 @@ impl<'a> MembraneStrains<'a> {
             }
         }
         Ok(())
-    }
-}
-
-/// Adds two rows, ∂w/∂x and ∂w/∂y of each unknown in the middle of a cell: differences that are exact for polynomials of the fourth
-/// degree.
-fn add_gradient(element: &dyn Element, cell: &Cell<'_>, at: [f64; 2], shape: &mut Vec<f64>, rows: &mut Vec<f64>) {
-    let local = element.info().ndof();
-    shape.resize(3 * local, 0.0);
-    let mut natural = vec![[0.0; 2]; local];
-    let directions = if element.info().is_section() { 1 } else { 2 };
-    for d in 0..directions {
-        for (steps, weight) in [(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)] {
-            let mut xi = [at[0], at[1], 0.0];
-            xi[d] += steps * STEP;
-            element.shape(cell, xi, shape);
-            for (g, n) in natural.iter_mut().zip(shape.chunks_exact(3)) {
-                g[d] += weight / (12.0 * STEP) * n[2];
-            }
-        }
-    }
-    let [by_r, by_s] = cell.plane(at[0], at[1]).inverse;
-    for d in 0..2 {
-        rows.extend(natural.iter().map(|[r, s]| r * by_r[d] + s * by_s[d]));
     }
 }
 

@@ -11,6 +11,7 @@ use super::released::Released;
 use super::{AssemblyError, FactorError, LawPlate, Matrix, Symmetric, assemble, pattern};
 use crate::contracts::element::{Element, ElementError};
 use crate::contracts::interface_law::Jump;
+use crate::contracts::structure::Stretching;
 use crate::plates::constraint::{ConstraintError, Constraints, Equation};
 use crate::plates::interfaces::{InterfaceAnswer, InterfaceCell, Interfaces};
 use crate::plates::plate::Plate;
@@ -197,6 +198,14 @@ impl Separable {
     /// What it is made of.
     pub fn parts(&self) -> &SeparableParts {
         &self.parts
+    }
+
+    /// Has the laws of the plies see how deflections stretch the plate.
+    ///
+    /// # Errors
+    /// A cell that is folded.
+    pub fn stretch(&mut self, by: &Arc<dyn Stretching>) -> Result<(), SeparableError> {
+        self.parts.plies.iter_mut().try_for_each(|plies| plies.stretch(by.clone())).map_err(SeparableError::Assembly)
     }
 
     /// States of a cell of the interfaces among those of all.

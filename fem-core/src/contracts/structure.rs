@@ -277,3 +277,20 @@ pub struct Tangent {
     /// States of the points there.
     pub points: Vec<f64>,
 }
+
+/// How the deflections of a plate stretch it, as the laws of its plies see it: its membrane strains are Σ b_t (ε_t + B s_t), the amounts
+/// b_t functions of its displacements, ε_t = Σ c_p ε_p over the pairs p of few deflections, ε_p by their slopes, s_t displacements that
+/// follow at once.
+pub trait Stretching: std::fmt::Debug + Send + Sync {
+    /// The deflections, independent unknowns, one after the other.
+    fn deflections(&self) -> &[f64];
+
+    /// c_p of each pattern, `pairs × patterns`.
+    fn combinations(&self) -> &[f64];
+
+    /// The amounts at `u`, and `u` + Σ b_t s_t.
+    fn expand(&self, u: &[f64], completed: &mut [f64], amounts: &mut Vec<f64>);
+
+    /// Adds to `force` what forces conjugate to both do on `u`.
+    fn restrict(&self, u: &[f64], on_completed: &[f64], on_amounts: &[f64], force: &mut [f64]);
+}

@@ -82,6 +82,8 @@ impl std::error::Error for LawsError {}
 pub struct CellAnswer {
     /// ∫ Bᵀ (σ − C ε) dV, N, conjugate to the unknowns.
     pub force: Vec<f64>,
+    /// ∫ ε_t · (σ − C ε) dV of each pattern that stretches the cell, J; conjugate to their amounts.
+    pub on_patterns: Vec<f64>,
     /// Its derivative, symmetric part, where it is asked for; column-major.
     pub tangent: Vec<f64>,
     /// What is stored beyond linear elasticity, which may be negative, and what is dissipated, J.
@@ -153,8 +155,30 @@ pub struct Asked<'a> {
     pub operators: &'a CellOperators,
     /// Displacements of the cell.
     pub u: &'a [f64],
+    /// How it is stretched beside, if it is.
+    pub stretched: Option<Patterns<'a>>,
     /// States of the cell ([`PlyLaws::states_of`]).
     pub states: &'a [f64],
+}
+
+/// Membrane strains of a cell, Σ b_t ε_t: 11, 22 and 12 at each in-plane point, the same through the thickness.
+#[derive(Debug, Clone, Copy)]
+pub struct Patterns<'a> {
+    /// ε_t at all in-plane points, one pattern after the other.
+    pub strains: &'a [f64],
+    /// b_t.
+    pub amounts: &'a [f64],
+}
+
+/// Rows of the strains in the plane of the plate, 11, 22 and 12.
+const PLANE: [usize; 3] = [0, 1, 3];
+
+impl Patterns<'_> {
+    /// ε_t at a point, pattern by pattern.
+    fn at(&self, point: usize) -> impl Iterator<Item = &[f64]> {
+        let each = self.strains.len() / self.amounts.len().max(1);
+        self.strains.chunks_exact(each.max(1)).map(move |pattern| &pattern[3 * point..3 * point + 3])
+    }
 }
 
 impl PlyLaws {
@@ -265,17 +289,21 @@ impl PlyLaws {
         tangent: bool,
         answer: &mut CellAnswer,
     ) -> Result<(), ElementError> {
-        let Asked { plate, element, cell, operators, u, states } = asked;
+        let Asked { plate, element, cell, operators, u, stretched, states } = asked;
         let (view, plies) = (plate.cell(cell), self.of(plate, cell));
         let element = form(element, view.corners.domain());
         let info = element.info();
         let (levels, n) = (gauss_legendre(info.ply_order), info.ndof());
         let rows = 6 * levels.len();
         answer.clear(n, rows, plies.len(), states.len(), tangent);
+        answer.on_patterns.clear();
+        answer.on_patterns.resize(stretched.map_or(0, |patterns| patterns.amounts.len()), 0.0);
         answer.through = through(levels, &view.stack.slices, plies);
         let (length, mut at) = (width(info, &view), 0);
-        for (dv, operators) in operators.weights.iter().zip(operators.operators.chunks_exact(rows * n)) {
+        let points = operators.weights.iter().zip(operators.operators.chunks_exact(rows * n));
+        for (number, (dv, operators)) in points.enumerate() {
             answer.strain(operators, u);
+            stretched.iter().for_each(|patterns| answer.stretch(patterns, number));
             for k in 0..answer.through.len() {
                 let Some(ply) = &plies[answer.through[k].slice] else { continue };
                 let point = LawPoint { material: &ply.material, stiffness: &ply.stiffness, length };
@@ -284,6 +312,7 @@ impl PlyLaws {
                 at += count;
             }
             answer.add(operators, n, rows);
+            stretched.iter().for_each(|patterns| answer.work(patterns, number));
         }
         for (mean, volume) in answer.means.iter_mut().filter(|(_, volume)| *volume > 0.0) {
             mean.iter_mut().for_each(|s| *s /= *volume);
@@ -323,6 +352,28 @@ impl CellAnswer {
         moduli.fill(0.0);
         for (b, u) in operators.chunks_exact(strains.len()).zip(u) {
             strains.iter_mut().zip(b).for_each(|(e, b)| *e += b * u);
+        }
+    }
+
+    /// Adds the strains of patterns at an in-plane point.
+    fn stretch(&mut self, patterns: &Patterns<'_>, point: usize) {
+        let mut sum = [0.0; 3];
+        for (strain, amount) in patterns.at(point).zip(patterns.amounts) {
+            sum.iter_mut().zip(strain).for_each(|(sum, e)| *sum += amount * e);
+        }
+        for level in self.strains.chunks_exact_mut(6) {
+            PLANE.iter().zip(sum).for_each(|(row, e)| level[*row] += e);
+        }
+    }
+
+    /// Adds the work on patterns at an in-plane point.
+    fn work(&mut self, patterns: &Patterns<'_>, point: usize) {
+        let mut forces = [0.0; 3];
+        for level in self.stresses.chunks_exact(6) {
+            forces.iter_mut().zip(PLANE).for_each(|(n, row)| *n += level[row]);
+        }
+        for (strain, work) in patterns.at(point).zip(&mut self.on_patterns) {
+            *work += strain.iter().zip(forces).map(|(e, n)| e * n).sum::<f64>();
         }
     }
 

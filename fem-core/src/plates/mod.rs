@@ -15,6 +15,7 @@ pub mod patch;
 pub mod pieces;
 pub mod plate;
 mod prolongation;
+pub(crate) mod slopes;
 pub mod support;
 pub mod symmetry;
 pub mod warping;

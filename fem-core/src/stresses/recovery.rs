@@ -2,8 +2,9 @@
 
 use crate::contracts::element::{Element, ElementError, ElementInfo, Part, Point, Scratch, Stack, form};
 use crate::plates::laminate::Laminate;
-use crate::plates::laws::{Asked, CellAnswer, CellOperators, PlyLaws};
+use crate::plates::laws::{Asked, CellAnswer, CellOperators, Patterns, PlyLaws};
 use crate::plates::plate::Plate;
+use crate::plates::slopes::bent;
 use crate::plates::window::{Centre, Mean, Source};
 use crate::words::material::Material;
 use crate::words::tensor::{Matrix6, strain_rotation};
@@ -201,7 +202,8 @@ impl Recovery {
     }
 
     /// Puts the stresses of plies that follow `laws` in place of those of linear elasticity: means over the Gauss points of
-    /// their cells, whatever the samples, at the displacements `u` (one field, before elimination of constraints) and the states `points`.
+    /// their cells, whatever the samples, at the displacements `u` (one field, before elimination of constraints) and the states `points`;
+    /// with the strains of its slopes where they are `large`.
     ///
     /// # Errors
     /// A cell that the element refuses, a law that finds no stress.
@@ -211,6 +213,7 @@ impl Recovery {
         element: &dyn Element,
         laws: &PlyLaws,
         (u, points): (&[f64], &[f64]),
+        large: bool,
         out: &mut [f64],
     ) -> Result<(), ElementError> {
         let mut means = Vec::with_capacity(self.sources.len() * plate.layers());
@@ -222,7 +225,9 @@ impl Recovery {
                 let local: Vec<f64> = dofs.iter().map(|dof| u[*dof]).collect();
                 let states = &points[laws.states_of(cell)];
                 let operators = CellOperators::new(element, &plate.cell(cell))?;
-                let asked = Asked { plate, element, cell, operators: &operators, u: &local, states };
+                let strains = if large { bent(element, &plate.cell(cell), &local) } else { Vec::new() };
+                let stretched = large.then_some(Patterns { strains: &strains, amounts: &[1.0] });
+                let asked = Asked { plate, element, cell, operators: &operators, u: &local, stretched, states };
                 laws.respond(asked, None, false, &mut answer)?;
                 means.push(answer.means.clone());
             }

@@ -1,6 +1,7 @@
 //! A reduced plate whose deflections stretch it.
 
 use super::{Modal, Reduced};
+use crate::vector::axpy;
 use fem_core::energy::Energy;
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
@@ -97,13 +98,42 @@ pub struct Companions {
     shapes: Vec<f64>,
 }
 
+/// The strains of the membrane stresses of a [`MembranePlate`], Σ b_t (ε_t + B s_t): ε_t a combination of those of pairs of deflections.
+#[derive(Debug, Clone)]
+pub(super) struct Patterns {
+    pub(super) deflections: Vec<f64>,
+    /// `pairs × patterns`.
+    pub(super) combinations: Vec<f64>,
+    /// b_t and s_t.
+    pub(super) follow: Companions,
+}
+
 impl Companions {
     /// Adds to u = Φ q what the stretching adds.
     pub fn complete(&self, q: &[f64], u: &mut [f64]) {
-        for (form, shape) in self.forms.chunks_exact(q.len() * q.len()).zip(self.shapes.chunks_exact(u.len())) {
-            let columns = form.chunks_exact(q.len()).zip(q);
-            let a: f64 = columns.map(|(column, qj)| qj * column.iter().zip(q).map(|(a, q)| a * q).sum::<f64>()).sum();
-            u.iter_mut().zip(shape).for_each(|(u, s)| *u += a * s);
+        self.amounts(q).zip(self.shapes(u.len())).for_each(|(a, shape)| axpy(a, shape, u));
+    }
+
+    /// a_t
+    pub(super) fn amounts<'a>(&'a self, q: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let of = move |form: &[f64]| {
+            form.chunks_exact(q.len())
+                .zip(q)
+                .map(|(column, qj)| qj * column.iter().zip(q).map(|(a, q)| a * q).sum::<f64>())
+                .sum()
+        };
+        self.forms.chunks_exact(q.len() * q.len()).map(of)
+    }
+
+    /// s_t, each of `ndof` unknowns.
+    pub(super) fn shapes(&self, ndof: usize) -> impl Iterator<Item = &[f64]> {
+        self.shapes.chunks_exact(ndof)
+    }
+
+    /// Adds to `g` what works on a_t do on q: Σ f_t 2 A_t q.
+    pub(super) fn add_works(&self, q: &[f64], works: impl Iterator<Item = f64>, g: &mut [f64]) {
+        for (form, work) in self.forms.chunks_exact(q.len() * q.len()).zip(works) {
+            form.chunks_exact(q.len()).zip(q).for_each(|(column, q)| axpy(2.0 * work * q, column, g));
         }
     }
 }
@@ -120,7 +150,8 @@ impl MembranePlate {
         contacts: &[Functional],
         stretching: &dyn MembraneForms,
     ) -> Result<(Self, Companions), ReductionError> {
-        Self::with_plane(structure, reduced, contacts, stretching, InPlane::OfModes)
+        let (plate, companions, _) = Self::with_plane(structure, reduced, contacts, stretching, InPlane::OfModes)?;
+        Ok((plate, companions))
     }
 
     /// The same, with what the modes would do in the plane of the plate.
@@ -133,7 +164,7 @@ impl MembranePlate {
         contacts: &[Functional],
         stretching: &dyn MembraneForms,
         in_plane: InPlane,
-    ) -> Result<(Self, Companions), ReductionError> {
+    ) -> Result<(Self, Companions, Patterns), ReductionError> {
         let n = reduced.ndof;
         // Free motions bend nothing: as if they were infinitely stiff.
         let stiff = |k: &f64| if *k > 0.0 { *k } else { f64::INFINITY };
@@ -188,9 +219,10 @@ impl MembranePlate {
         // What the modes that a term is coupled to give way by.
         let taken = couplings.column_iter().flat_map(|c| c.into_iter().zip(&bending).map(|(c, k)| c * c / k));
         let coupled = taken.fold(0.0, f64::max) > NEGLIGIBLE * stiffness.max();
+        let turned = &combinations * &turn;
         let plate = Self {
             modal: reduced.modal.clone(),
-            forms: counted(forms(&(&combinations * &turn), Some(&shapes_of_left))?, &stiffness),
+            forms: counted(forms(&turned, Some(&shapes_of_left))?, &stiffness),
             couplings: if coupled { couplings.as_slice().to_vec() } else { Vec::new() },
             products: vec![0.0; bending.len() * stiffness.len()],
             values: vec![0.0; stiffness.len()],
@@ -198,7 +230,12 @@ impl MembranePlate {
             factor: None,
         };
         let forms = counted(forms(&combinations, None)?, &energies);
-        Ok((plate, Companions { forms, shapes: shapes.as_slice().to_vec() }))
+        let patterns = Patterns {
+            deflections: fields.as_slice().to_vec(),
+            combinations: turned.as_slice().to_vec(),
+            follow: Companions { forms: plate.forms.clone(), shapes: shapes_of_left.as_slice().to_vec() },
+        };
+        Ok((plate, Companions { forms, shapes: shapes.as_slice().to_vec() }, patterns))
     }
 
     /// The same plate with other modes in bending, as many.

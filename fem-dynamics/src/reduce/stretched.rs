@@ -1,12 +1,12 @@
 //! A full plate whose deflections stretch it.
 
-use super::membrane::InPlane;
+use super::membrane::{InPlane, Patterns};
 use super::{Companions, MembraneForms, MembranePlate, Reduced, Ritz};
 use crate::vector::{axpy, dot};
 use fem_core::energy::Energy;
 use fem_core::functional::Functional;
 use fem_core::reduction::{Reduction, ReductionError};
-use fem_core::structure::{Nonlinear, SolveError, Structure};
+use fem_core::structure::{Nonlinear, SolveError, Stretching, Structure};
 use std::sync::Arc;
 
 /// Vectors of the share of the displacements that stretches a plate, and the fastest of their modes that take part, in radians a step:
@@ -45,6 +45,7 @@ pub struct Share {
     weights: Vec<f64>,
     modes: usize,
     companions: Companions,
+    patterns: Patterns,
 }
 
 impl Share {
@@ -57,6 +58,36 @@ impl Share {
         let mut q = vec![0.0; self.modes];
         self.of(u, &mut q);
         self.companions.complete(&q, u);
+    }
+}
+
+impl Stretching for Share {
+    fn deflections(&self) -> &[f64] {
+        &self.patterns.deflections
+    }
+
+    fn combinations(&self) -> &[f64] {
+        &self.patterns.combinations
+    }
+
+    fn expand(&self, u: &[f64], completed: &mut [f64], amounts: &mut Vec<f64>) {
+        let mut q = vec![0.0; self.modes];
+        self.of(u, &mut q);
+        completed.copy_from_slice(u);
+        let follow = &self.patterns.follow;
+        amounts.clear();
+        amounts.extend(follow.amounts(&q));
+        amounts.iter().zip(follow.shapes(u.len())).for_each(|(b, shape)| axpy(*b, shape, completed));
+    }
+
+    fn restrict(&self, u: &[f64], on_completed: &[f64], on_amounts: &[f64], force: &mut [f64]) {
+        let (mut q, mut g) = (vec![0.0; self.modes], vec![0.0; self.modes]);
+        self.of(u, &mut q);
+        let follow = &self.patterns.follow;
+        let works = on_amounts.iter().zip(follow.shapes(u.len())).map(|(own, shape)| own + dot(shape, on_completed));
+        follow.add_works(&q, works, &mut g);
+        axpy(1.0, on_completed, force);
+        g.iter().zip(self.weights.chunks_exact(u.len())).for_each(|(g, column)| axpy(*g, column, force));
     }
 }
 
@@ -79,11 +110,11 @@ impl Stretch {
         if flexibilities(&reduced, contacts).iter().zip(&all).any(|(kept, all)| !(*kept >= HELD * all)) {
             return Err(ReductionError::Solve(SolveError::other(TOO_LONG)));
         }
-        let (membrane, companions) =
+        let (membrane, companions, patterns) =
             MembranePlate::with_plane(structure, &reduced, contacts, stretching, InPlane::AtOnce)?;
         let mut weights = vec![0.0; reduced.basis.len()];
         structure.add_mass(1.0, &reduced.basis, &mut weights);
-        let share = Share { weights, modes: reduced.modal.ndof(), companions };
+        let share = Share { weights, modes: reduced.modal.ndof(), companions, patterns };
         Ok(Self { membrane, share: Arc::new(share) })
     }
 

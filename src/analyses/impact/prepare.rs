@@ -13,7 +13,7 @@ use fem_core::counters::Counters;
 use fem_core::functional::Functional;
 use fem_core::prolongation::Prolongation;
 use fem_core::reduction::ReductionError;
-use fem_core::structure::{SolveError, Structure};
+use fem_core::structure::{SolveError, Stretching, Structure};
 use fem_core::time::{Integrator, StepError};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
 use fem_dynamics::limit::{self, TooLong};
@@ -177,6 +177,9 @@ fn prepare_separable<'a>(
     }
     stopwatch.lap("reduce");
     let share = stretch.as_ref().map(Stretch::share);
+    if let Some(share) = share.clone() {
+        structure.stretch(&(share as Arc<dyn Stretching>)).map_err(SolveError::from)?;
+    }
     let structure: Box<dyn Structure> = match stretch {
         Some(stretch) => Box::new(StretchedPlate::new(Box::new(structure), stretch)),
         None => Box::new(structure),

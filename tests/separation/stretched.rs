@@ -1,0 +1,160 @@
+//! Plies that follow laws in a plate whose deflections stretch it.
+
+use super::scenes::{Plate, STRONG, apart, stretched};
+use crate::support::root;
+use fem::core::assembly::{LawPlate, Separable, SeparableParts};
+use fem::core::energy::Energy;
+use fem::core::functional::Functional;
+use fem::core::laws::PlyLaws;
+use fem::core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
+use fem::core::ply_law::{LawError, LawInfo, LawPoint, PlyLaw, PlyResponse};
+use fem::core::structure::Structure;
+use fem::core::tensor::{Matrix6, Ply, Strain6, stress};
+use fem::dynamics::reduce::StretchedPlate;
+use fem::effect::Effect;
+use fem::io::scene;
+use fem::{Model, Plan, Registry};
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+
+const BOTH: &str = "delamination = 'growth', membrane = 'on'";
+
+/// A ply with a share of its stiffness.
+#[derive(Debug, Clone)]
+struct Weaker;
+
+const SHARE: f64 = 0.8;
+
+impl PlyLaw for Weaker {
+    fn info(&self) -> &LawInfo {
+        const INFO: LawInfo = LawInfo { state: &[], strengths: &[], toughness: &[] };
+        &INFO
+    }
+
+    fn respond(
+        &self,
+        point: &LawPoint<'_>,
+        strain: &Strain6<Ply>,
+        _: &[f64],
+        _: &mut [f64],
+        _: Option<&mut Matrix6>,
+    ) -> Result<PlyResponse, LawError> {
+        let mut stress = stress(point.stiffness, strain);
+        stress.0.iter_mut().for_each(|s| *s *= SHARE);
+        let stored = 0.5 * stress.0.iter().zip(strain.0).map(|(s, e)| s * e).sum::<f64>();
+        Ok(PlyResponse { stress, energy: Energy { stored, dissipated: 0.0 } })
+    }
+}
+
+impl Plugin for Weaker {
+    const INFO: PluginInfo = PluginInfo {
+        kind: Kind::PlyLaw,
+        name: "weaker",
+        summary: "a share of the stiffness",
+        source: "none",
+        params: &[],
+    };
+
+    fn build(_: &Params) -> Result<Built, ParamError> {
+        Ok(Built::PlyLaw(Box::new(Self)))
+    }
+}
+
+fn leaked(text: String) -> &'static str {
+    Box::leak(text.into_boxed_str())
+}
+
+/// A plate that is stretched, with its states and some displacements: under the impactor, pushed aside, deflected by its thickness.
+struct Struck {
+    plate: StretchedPlate,
+    points: Vec<f64>,
+    u: Vec<f64>,
+}
+
+impl Struck {
+    fn new(material: &'static str) -> Self {
+        let scene = Plate { material, plies: "[45/-45/45]", symmetry: "half-turn", ..stretched(BOTH, "") }.text();
+        let registry = Registry::standard().with::<Weaker>();
+        let model = Model::new(scene::parse(&scene, &root().join("scene.toml")).unwrap(), &registry).unwrap();
+        let (Plan::Impact(impact), Some(separation)) = (&model.plan, &model.separation) else { panic!("an impact") };
+        let (element, constraints) = (&model.element, &model.constraints);
+        let laws = |laws: &PlyLaws| LawPlate::new(&model.plate, element.clone(), constraints, laws.clone());
+        let parts = SeparableParts {
+            plate: model.plate.clone(),
+            element: element.clone(),
+            supports: separation.supports.clone(),
+            constraints: constraints.clone(),
+            interfaces: separation.interfaces.clone(),
+            growth: separation.growth,
+            plies: model.laws.as_ref().map(laws),
+            motions: model.motions.clone(),
+        };
+        let mut plate = Separable::new(parts, &separation.states, true, NonZeroUsize::MIN).unwrap();
+        let contacts: Vec<Functional> = impact.strikes.iter().map(|strike| strike.contact.clone()).collect();
+        let of = |effect: &Box<dyn Effect>| effect.stretch(&model.body(), &mut plate, &contacts, 1e-6).unwrap();
+        let stretch = model.effects.acting().iter().find_map(of).unwrap();
+        plate.stretch(&(stretch.share() as Arc<_>)).unwrap();
+        let mut u = vec![0.0; Structure::ndof(&plate)];
+        contacts[0].add_to(1.0, &mut u);
+        plate.solve_shifted(0.0, &mut u, 1).unwrap();
+        let scale = 1.2e-3 / contacts[0].of(&u);
+        let aside = direction(&mut plate, &u);
+        u.iter_mut().zip(aside).for_each(|(u, d)| *u = scale * (*u + 0.2 * d));
+        let mut points = vec![0.0; Structure::states(&plate)];
+        points[..separation.states.len()].copy_from_slice(&separation.states);
+        Self { plate: StretchedPlate::new(Box::new(plate), stretch), points, u }
+    }
+
+    /// Force and energy at `u` + `s` `d`.
+    fn at(&mut self, s: f64, d: &[f64]) -> (Vec<f64>, f64) {
+        let there: Vec<f64> = self.u.iter().zip(d).map(|(u, d)| u + s * d).collect();
+        let mut force = vec![0.0; there.len()];
+        let energy = self.plate.nonlinear().unwrap().internal(&there, &self.points, &mut force).unwrap();
+        (force, energy.stored)
+    }
+}
+
+/// Displacements like no others, as large as `u`.
+fn direction(plate: &mut dyn Structure, u: &[f64]) -> Vec<f64> {
+    let mut d: Vec<f64> = (0..u.len()).map(|i| (0.37 * i as f64).sin()).collect();
+    plate.solve_shifted(1e12, &mut d, 1).unwrap();
+    let size = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let ratio = size(u) / size(&d);
+    d.iter_mut().for_each(|d| *d *= ratio);
+    d
+}
+
+/// A law that takes a fifth of all stresses takes a fifth of all forces, those of the tension as well: the strains that it sees are those
+/// that stretch the plate.
+#[test]
+fn a_weaker_law_is_a_weaker_plate() {
+    let [mut sound, mut weaker] =
+        [STRONG.to_owned(), format!("{STRONG}law = 'weaker'\n")].map(|text| Struck::new(leaked(text)));
+    let none = vec![0.0; sound.u.len()];
+    let ((of_sound, stored), (of_weaker, left)) = (sound.at(0.0, &none), weaker.at(0.0, &none));
+    let mut linear = none;
+    sound.plate.add_stiffness(0.5, &sound.u, &mut linear);
+    let bent: f64 = linear.iter().zip(&sound.u).map(|(f, u)| f * u).sum();
+    assert!(stored > 1.3 * bent, "{stored} {bent}");
+    assert!((left / (SHARE * stored) - 1.0).abs() < 1e-6, "{left} {stored}");
+    // What the two sides of a closed interface do on each other moves nothing.
+    let [expected, found] = [(of_sound, SHARE), (of_weaker, 1.0)].map(|(force, share)| {
+        let mut moved: Vec<f64> = force.iter().map(|f| share * f).collect();
+        sound.plate.solve_shifted(0.0, &mut moved, 1).unwrap();
+        moved
+    });
+    assert!(apart(&found, &expected) < 1e-6, "{}", apart(&found, &expected));
+}
+
+/// The forces of plies and of their stretching are the derivatives of the energy.
+#[test]
+fn forces_are_those_of_the_energy() {
+    let law = "law = { name = 'hahn-tsai', alpha = '2.44e-8 1/MPa^3', unloading = 'elastic' }\n";
+    let mut struck = Struck::new(leaked(format!("{STRONG}{law}")));
+    let d = struck.u.iter().enumerate().map(|(i, u)| u * (1.0 + 0.3 * (0.1 * i as f64).sin())).collect::<Vec<_>>();
+    let (force, _) = struck.at(0.0, &d);
+    let work: f64 = force.iter().zip(&d).map(|(f, d)| f * d).sum();
+    let h = 1e-4;
+    let slope = (struck.at(h, &d).1 - struck.at(-h, &d).1) / (2.0 * h);
+    assert!((slope / work - 1.0).abs() < 1e-6, "{slope} {work}");
+}
