@@ -5,7 +5,7 @@ use fem_core::interface_law::{InterfaceLaw, Jump};
 use fem_core::material::{Elastic, Material, Strength, Strengths, Toughness, Toughnesses};
 use fem_core::ply_law::{LawPoint, PlyLaw};
 use fem_core::tensor::Strain6;
-use fem_failure::laws::{Bilinear, CrackBand, HahnTsai, MixedMode, Unloading};
+use fem_failure::laws::{Bilinear, Breaks, CrackBand, HahnTsai, MixedMode, Unloading};
 
 fn main() {
     divan::main();
@@ -94,12 +94,12 @@ fn ply(bencher: divan::Bencher<'_, '_>, law: &dyn PlyLaw, state: &str) {
 
 #[divan::bench(args = ["sound", "growing", "unloading"])]
 fn crack_band(bencher: divan::Bencher<'_, '_>, state: &str) {
-    ply(bencher, &CrackBand { alpha: None, lower_strengths: false }, state);
+    ply(bencher, &CrackBand { alpha: None, breaks: Breaks::All, lower_strengths: false }, state);
 }
 
 #[divan::bench(args = ["sound", "growing", "unloading"])]
 fn crack_band_permanent(bencher: divan::Bencher<'_, '_>, state: &str) {
-    ply(bencher, &CrackBand { alpha: Some(2.44e-26), lower_strengths: false }, state);
+    ply(bencher, &CrackBand { alpha: Some(2.44e-26), breaks: Breaks::All, lower_strengths: false }, state);
 }
 
 #[divan::bench(args = ["sound", "growing", "unloading"])]

@@ -8,7 +8,7 @@ mod process_zone;
 mod shear;
 
 pub use bilinear::Bilinear;
-pub use crack_band::CrackBand;
+pub use crack_band::{Breaks, CrackBand};
 pub use hahn_tsai::{HahnTsai, Unloading};
 pub use mixed_mode::MixedMode;
 pub use process_zone::process_zone;

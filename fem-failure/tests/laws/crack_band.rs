@@ -4,9 +4,9 @@ use super::tables::{columns, paths};
 use fem_core::material::{Elastic, Material, Strength, Strengths, Toughness, Toughnesses};
 use fem_core::plugin::{Built, Dimension, Params, Plugin, Value};
 use fem_core::ply_law::{LawPoint, PlyLaw, PlyResponse, check_law};
-use fem_core::tensor::{Matrix6, Strain6};
+use fem_core::tensor::{Matrix6, Strain6, apply};
 use fem_core::testkit::{Units, check_ply_law};
-use fem_failure::laws::{CrackBand, HahnTsai, Unloading};
+use fem_failure::laws::{Breaks, CrackBand, HahnTsai, Unloading};
 
 /// IM7/8552 (Camanho et al. 2007; nu23 and S23 assumed).
 fn tape() -> Material {
@@ -35,8 +35,19 @@ fn sheared(gms: f64) -> Material {
     Material { toughness: tape().toughness.with(Toughness::Gms, gms), ..tape() }
 }
 
-const PLAIN: CrackBand = CrackBand { alpha: None, lower_strengths: false };
+const PLAIN: CrackBand = CrackBand { alpha: None, breaks: Breaks::All, lower_strengths: false };
+const FIBRES: CrackBand = CrackBand { breaks: Breaks::Fibres, ..PLAIN };
 const ALPHA: f64 = 2.44e-26;
+
+/// The tape without what its matrix bears.
+fn fibres() -> Material {
+    let (x, toughness) = (tape().strengths, tape().toughness);
+    Material {
+        strengths: Strengths::default().with(Strength::Xt, x.xt()).with(Strength::Xc, x.xc()),
+        toughness: Toughnesses::default().with(Toughness::Gft, toughness.gft()).with(Toughness::Gfc, toughness.gfc()),
+        ..tape()
+    }
+}
 
 /// A law at a point and what it remembers.
 struct Point {
@@ -105,12 +116,38 @@ fn it_keeps_the_contract() {
         (PLAIN, sheared(788.0), 2e-4, [0.03, 0.02, 0.02, 0.03, 0.04, 0.04]),
         (CrackBand { alpha: Some(ALPHA), ..PLAIN }, sheared(788.0), 2e-4, [0.01, 0.012, 0.012, 0.04, 0.03, 0.05]),
         (CrackBand { lower_strengths: true, ..PLAIN }, tape(), 4e-3, [0.02, 0.01, 0.01, 0.01, 0.01, 0.01]),
+        (FIBRES, fibres(), 4e-3, [0.02, 0.01, 0.01, 0.01, 0.01, 0.01]),
     ] {
         let make = |units: &Units| -> Box<dyn PlyLaw> {
             Box::new(CrackBand { alpha: law.alpha.map(|a| units.number(a, HahnTsai::ALPHA)), ..law })
         };
         assert_eq!(check_ply_law(make, &material, length, &largest), Ok(()), "{law:?}");
     }
+}
+
+/// Fibres break as they do where the matrix may break as well, and nothing else does.
+#[test]
+fn fibres_break_alone() {
+    for way in [1.0, -1.0] {
+        let mut both = [(PLAIN, tape()), (FIBRES, fibres())].map(|(law, material)| Point::new(law, material, 1e-3));
+        // There, halfway back, and on until they are through.
+        let there = (1..=7).chain((2..=6).rev()).chain(3..=40).map(|part| 0.002 * f64::from(part));
+        let lost: Vec<f64> = there
+            .map(|strain| {
+                let [all, fibres] = both.each_mut().map(|point| point.uniaxial(0, way * strain));
+                assert!((all.stress.0[0] - fibres.stress.0[0]).abs() < 1.0, "{all:?} {fibres:?}");
+                let [all, fibres] = [all, fibres].map(|answer| answer.energy.dissipated);
+                assert!((all - fibres).abs() <= 1e-9 * all, "{all} {fibres}");
+                fibres
+            })
+            .collect();
+        assert!(lost[0] == 0.0 && lost[7] > 0.0 && lost[lost.len() - 1] > lost[7], "{lost:?}");
+    }
+    let mut point = Point::new(FIBRES, fibres(), 4e-3);
+    let answer = point.walk(&[0.0, 0.05, -0.05, 0.1, 0.1, 0.1], 10);
+    let linear = apply(&point.material.elastic.stiffness(), &point.strain);
+    assert!(answer.stress.0.iter().zip(linear).all(|(s, l)| (s - l).abs() < 1e-9 * 1e9), "{answer:?}");
+    assert_eq!(answer.energy.dissipated, 0.0);
 }
 
 /// Pure modes to rounding in one step from row to row. On other paths the state is that of small steps: to rounding where the

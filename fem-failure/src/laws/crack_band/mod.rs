@@ -46,14 +46,28 @@ const SHEARS: [usize; 3] = [3, 4, 5];
 /// its sign, and the stress jumps there. κ is at most 0.9: mixes with a pressure across the fibres, which may store any energy before
 /// they begin, dissipate more than their toughness.
 ///
+/// Where fibres alone break, their limits are those of the cell: often millimetres, where a matrix asks for tenths. Cracks of the matrix
+/// are then left out, and what they would open, soften and take.
+///
 /// Sources: Hashin, J. Appl. Mech. 47 (1980) 329; Bažant and Oh, Mater. Struct. 16 (1983) 155; Lapczyk and Hurtado, Compos. Part A 38 (2007)
 /// 2333; Hahn and Tsai, J. Compos. Mater. 7 (1973) 102.
 #[derive(Debug, Clone, Copy)]
 pub struct CrackBand {
     /// Hahn and Tsai's α, 1/Pa³, of the permanent shear strain, if there is one.
     pub alpha: Option<f64>,
+    /// Which modes break; the matrix may stay elastic.
+    pub breaks: Breaks,
     /// Whether strengths are lowered where the cell is too wide for the toughness; otherwise it is refused.
     pub lower_strengths: bool,
+}
+
+/// What of a ply breaks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Breaks {
+    /// Fibres and matrix.
+    All,
+    /// Fibres; the matrix stays elastic but for what their cracks cut.
+    Fibres,
 }
 
 /// What the law remembers.
@@ -117,7 +131,7 @@ const LIMITS: [Limit; 6] = [
 
 impl CrackBand {
     /// Widest cell for each strength of [`LIMITS`], m.
-    fn widest(point: &LawPoint<'_>) -> [f64; 6] {
+    fn widest(&self, point: &LawPoint<'_>) -> [f64; 6] {
         let (e, toughness) = (&point.material.elastic, &point.material.toughness);
         let shear = toughness.get(Toughness::Gms).unwrap_or(toughness.gmt());
         let (across, g) = (e.e2.min(e.e3), e.g12.min(e.g13));
@@ -131,8 +145,16 @@ impl CrackBand {
         ];
         std::array::from_fn(|k| {
             let x = point.material.strengths.get(LIMITS[k].0).unwrap_or(f64::NAN);
-            2.0 * BRITTLE * energies[k] / (x * x)
+            if k < self.breaking() { 2.0 * BRITTLE * energies[k] / (x * x) } else { f64::INFINITY }
         })
+    }
+
+    /// How many of [`LIMITS`] there are.
+    fn breaking(&self) -> usize {
+        match self.breaks {
+            Breaks::All => LIMITS.len(),
+            Breaks::Fibres => 2,
+        }
     }
 
     fn modes(&self, point: &LawPoint<'_>) -> Modes {
@@ -142,7 +164,7 @@ impl CrackBand {
         let coupling = [[0.0, c12, c13], [c12 * e.e2 / e.e1, 0.0, c23], [c13 * e.e3 / e.e1, c23 * e.e3 / e.e2, 0.0]];
         let mut strengths = [x.xt(), x.xc(), x.yt(), x.yc(), x.s12(), x.s23()];
         if self.lower_strengths {
-            for (x, widest) in strengths.iter_mut().zip(Self::widest(point)) {
+            for (x, widest) in strengths.iter_mut().zip(self.widest(point)) {
                 *x *= (widest / point.length).min(1.0).sqrt();
             }
         }
@@ -155,6 +177,7 @@ impl CrackBand {
             shear: [sl, st],
             soft,
             soft_shear,
+            matrix: self.breaks == Breaks::All,
         }
     }
 
@@ -175,13 +198,21 @@ impl CrackBand {
 
 impl PlyLaw for CrackBand {
     fn info(&self) -> &LawInfo {
-        const ELASTIC: LawInfo = LawInfo {
+        use Strength::{S12, S23, Xc, Xt, Yc, Yt};
+        const ALL: LawInfo = LawInfo {
             state: Memory::NAMES.split_at(Memory::ELASTIC).0,
-            strengths: &[Strength::Xt, Strength::Xc, Strength::Yt, Strength::Yc, Strength::S12, Strength::S23],
+            strengths: &[Xt, Xc, Yt, Yc, S12, S23],
             toughness: &[Toughness::Gft, Toughness::Gfc, Toughness::Gmt, Toughness::Gmc],
         };
-        const PERMANENT: LawInfo = LawInfo { state: Memory::NAMES, ..ELASTIC };
-        if self.alpha.is_some() { &PERMANENT } else { &ELASTIC }
+        const FIBRES: LawInfo = LawInfo { strengths: &[Xt, Xc], toughness: &[Toughness::Gft, Toughness::Gfc], ..ALL };
+        const ALL_PERMANENT: LawInfo = LawInfo { state: Memory::NAMES, ..ALL };
+        const FIBRES_PERMANENT: LawInfo = LawInfo { state: Memory::NAMES, strengths: &[Xt, Xc, S12], ..FIBRES };
+        match (self.breaks, self.alpha) {
+            (Breaks::All, None) => &ALL,
+            (Breaks::All, Some(_)) => &ALL_PERMANENT,
+            (Breaks::Fibres, None) => &FIBRES,
+            (Breaks::Fibres, Some(_)) => &FIBRES_PERMANENT,
+        }
     }
 
     fn check(&self, point: &LawPoint<'_>) -> Result<(), UnmetCondition> {
@@ -190,7 +221,7 @@ impl PlyLaw for CrackBand {
             let values = values.map(|(name, value, unit)| (name.to_owned(), value, unit)).to_vec();
             Err(UnmetCondition { condition, reason, values })
         };
-        if !(x.s23() > 0.5 * x.yt()) {
+        if self.breaks == Breaks::All && !(x.s23() > 0.5 * x.yt()) {
             let reason = "tension across the fibres in both directions would never break the matrix";
             return unmet("S23 > Yt/2", reason, [("S23", x.s23(), "Pa"), ("Yt", x.yt(), "Pa")]);
         }
@@ -198,7 +229,7 @@ impl PlyLaw for CrackBand {
             let reason = "the permanent shear strain is one of a material that is isotropic about its fibres";
             return unmet("g12 = g13", reason, [("g12", e.g12, "Pa"), ("g13", e.g13, "Pa")]);
         }
-        let widest = Self::widest(point);
+        let widest = self.widest(point);
         let tightest = (0..widest.len()).min_by(|a, b| widest[*a].total_cmp(&widest[*b])).unwrap_or(0);
         if !self.lower_strengths && !(point.length <= widest[tightest]) {
             let reason = "a wider one stores more before it breaks than the crack takes, and snaps back; refine the mesh, give a \
@@ -210,7 +241,7 @@ impl PlyLaw for CrackBand {
     }
 
     fn warning(&self, point: &LawPoint<'_>) -> Option<String> {
-        let widest = Self::widest(point);
+        let widest = self.widest(point);
         let lowered = LIMITS.iter().zip(widest).filter(|(_, widest)| self.lower_strengths && point.length > *widest);
         let lowered = lowered.filter_map(|((which, _), widest)| {
             let x = point.material.strengths.get(*which)? * 1e-6;
@@ -226,7 +257,7 @@ impl PlyLaw for CrackBand {
             ));
         }
         let unique = Self::unique_compression(point);
-        (point.length > unique).then(|| {
+        (self.breaks == Breaks::All && point.length > unique).then(|| {
             format!(
                 "in cells of {:.3} mm the matrix breaks at once where it is compressed across the fibres with its other strains \
                  held; cells of {:.3} mm or a larger Gmc would do without",
@@ -303,17 +334,24 @@ const LOWER: ParamInfo = ParamInfo::flag(
     "whether strengths are lowered, the toughness kept, where a cell is too wide for them; otherwise it is refused",
 );
 
+const BREAKS: ParamInfo = ParamInfo::word(
+    "breaks",
+    "what breaks",
+    &[("all", "fibres and matrix"), ("fibres", "fibres, in cells as wide as these allow; the matrix stays elastic")],
+);
+
 impl Plugin for CrackBand {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::PlyLaw,
         name: "crack-band",
         summary: "damage in four modes that softens linearly to the toughness of each, with permanent shear strain",
         source: "Hashin 1980; Bazant and Oh 1983; Lapczyk and Hurtado 2007; Hahn and Tsai 1973",
-        params: &[ALPHA, LOWER],
+        params: &[BREAKS, ALPHA, LOWER],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
         let alpha = if params.has(&ALPHA) { Some(params.number(&ALPHA)?) } else { None };
-        Ok(Built::PlyLaw(Box::new(Self { alpha, lower_strengths: params.flag(&LOWER)? })))
+        let breaks = if params.word(&BREAKS)? == "fibres" { Breaks::Fibres } else { Breaks::All };
+        Ok(Built::PlyLaw(Box::new(Self { alpha, breaks, lower_strengths: params.flag(&LOWER)? })))
     }
 }

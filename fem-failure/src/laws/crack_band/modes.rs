@@ -47,6 +47,8 @@ pub(super) struct Modes {
     /// L/G of each mode for normal stresses, and for shears.
     pub(super) soft: [f64; 4],
     pub(super) soft_shear: [f64; 4],
+    /// Whether the matrix breaks.
+    pub(super) matrix: bool,
 }
 
 impl Modes {
@@ -55,6 +57,7 @@ impl Modes {
         match mode {
             0 => s.h[0] / self.strength[0],
             1 => -s.h[0] / self.strength[1],
+            _ if !self.matrix => 0.0,
             2 => {
                 let pull = s.pull() / self.strength[2];
                 (pull * pull + self.shears(s)).sqrt()
