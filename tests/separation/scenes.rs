@@ -73,11 +73,11 @@ impl Plate {
         )
     }
 
-    fn model(&self) -> Result<Model, Error> {
+    pub(super) fn model(&self) -> Result<Model, Error> {
         Model::new(scene::parse(&self.text(), &root().join("scene.toml"))?, &Registry::standard())
     }
 
-    fn outcome(&self) -> Outcome {
+    pub(super) fn outcome(&self) -> Outcome {
         impact_of(scene::parse(&self.text(), &root().join("scene.toml")).unwrap()).unwrap().1.outcome
     }
 
