@@ -143,6 +143,14 @@ fn fibres_break_alone() {
             .collect();
         assert!(lost[0] == 0.0 && lost[7] > 0.0 && lost[lost.len() - 1] > lost[7], "{lost:?}");
     }
+    // A matrix at rest bears all shears, through broken fibres too.
+    let mut point = Point::new(FIBRES, fibres(), 1e-3);
+    let broken = point.walk(&[0.2, 0.0, 0.0, 0.01, 0.01, 0.01], 400);
+    let stiffness = point.material.elastic.stiffness();
+    let elastic = |k: usize| (broken.stress.0[k] / (0.01 * stiffness[k][k]) - 1.0).abs() < 1e-12;
+    assert!(broken.stress.0[0].abs() < 1.0 && (3..6).all(elastic), "{broken:?}");
+    let taken = broken.energy.dissipated * 1e-3 / point.material.toughness.gft();
+    assert!((taken - 1.0).abs() < 0.05, "{taken}");
     let mut point = Point::new(FIBRES, fibres(), 4e-3);
     let answer = point.walk(&[0.0, 0.05, -0.05, 0.1, 0.1, 0.1], 10);
     let linear = apply(&point.material.elastic.stiffness(), &point.strain);

@@ -46,8 +46,9 @@ const SHEARS: [usize; 3] = [3, 4, 5];
 /// its sign, and the stress jumps there. κ is at most 0.9: mixes with a pressure across the fibres, which may store any energy before
 /// they begin, dissipate more than their toughness.
 ///
-/// Where fibres alone break, their limits are those of the cell: often millimetres, where a matrix asks for tenths. Cracks of the matrix
-/// are then left out, and what they would open, soften and take.
+/// Where fibres alone break, cells may be as wide as these allow: often millimetres, where a matrix asks for tenths. Cracks across the
+/// fibres then take σ11 alone, all shears staying elastic, and cracks of the matrix are left out, with what they would open, soften and
+/// take.
 ///
 /// Sources: Hashin, J. Appl. Mech. 47 (1980) 329; Bažant and Oh, Mater. Struct. 16 (1983) 155; Lapczyk and Hurtado, Compos. Part A 38 (2007)
 /// 2333; Hahn and Tsai, J. Compos. Mater. 7 (1973) 102.
@@ -66,7 +67,7 @@ pub struct CrackBand {
 pub enum Breaks {
     /// Fibres and matrix.
     All,
-    /// Fibres; the matrix stays elastic but for what their cracks cut.
+    /// Fibres; the matrix stays elastic, and with it all shears.
     Fibres,
 }
 
@@ -281,7 +282,7 @@ impl PlyLaw for CrackBand {
         let t = [sheared.t[0], modes.solid.g[1] * e[4], sheared.t[1]];
         let found = Found::new(&modes, &[e[0], e[1], e[2]], t, &old.damage, point.stiffness);
         let (damage, state) = (found.damage, found.state());
-        let [left, left_before] = [damage, old.damage].map(|d| d.iter().map(|d| 1.0 - d).product::<f64>());
+        let [left, left_before] = [damage, old.damage].map(|d| modes.shears_left(&d));
         let mut lost = old.lost;
         if damage != old.damage {
             lost += released(&modes, [&old.damage, &damage], [&old.state, &state]);

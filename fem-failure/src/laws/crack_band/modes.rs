@@ -1,6 +1,6 @@
 //! The four modes: when they begin, how far they have gone.
 
-use super::solid::Solid;
+use super::solid::{Damage, Solid};
 
 /// Largest share that the energy stored at onset may have in what a crack takes: at 1 a point would break at once.
 pub(super) const BRITTLE: f64 = 0.9;
@@ -116,6 +116,16 @@ impl Modes {
             return [normal(0), 0.0];
         }
         [normal(1) + normal(2), self.sheared(s)]
+    }
+
+    /// What damages leave of the shears.
+    pub(super) fn shears_left(&self, damage: &Damage) -> f64 {
+        if self.matrix { damage.iter().map(|d| 1.0 - d).product() } else { 1.0 }
+    }
+
+    /// The same without the damage of a mode; zero where that does nothing to the shears.
+    pub(super) fn shears_left_by_others(&self, damage: &Damage, mode: usize) -> f64 {
+        if self.matrix { (0..4).filter(|k| *k != mode).map(|k| 1.0 - damage[k]).product() } else { 0.0 }
     }
 
     /// Energy of the effective shears, J/m³.

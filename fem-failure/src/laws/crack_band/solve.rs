@@ -154,18 +154,13 @@ impl Found {
             for i in 0..3 {
                 tangent[i][j] = normal[i] * direct[i] - h[i] * damaged[by[i]];
             }
-            let lost: f64 = (0..4).map(|k| damaged[k] * others(&self.damage, k)).sum();
+            let lost: f64 = (0..4).map(|k| damaged[k] * modes.shears_left_by_others(&self.damage, k)).sum();
             for (k, row) in SHEARS.into_iter().enumerate() {
                 tangent[row][j] = left * shears[k] - self.t[k] * lost;
             }
         }
         tangent
     }
-}
-
-/// What the other damages leave of the shears.
-fn others(damage: &Damage, mode: usize) -> f64 {
-    (0..4).filter(|k| *k != mode).map(|k| 1.0 - damage[k]).product()
 }
 
 /// Energy that damage releases between two states, Σ ∫ Y dd, J/m³.
@@ -183,7 +178,7 @@ pub(super) fn released(modes: &Modes, damage: [&Damage; 2], states: [&State; 2])
         let state = if modes.exposure(mode, &half) > 0.0 { half } else { *after };
         let energy = |state: &State, e: f64| {
             let [normal, _] = modes.released(mode, state);
-            (normal + modes.sheared(state) * others(&middle, mode)) / (e * e)
+            (normal + modes.sheared(state) * modes.shears_left_by_others(&middle, mode)) / (e * e)
         };
         let e = modes.exposure(mode, &state);
         let (kappa, y) = (modes.brittleness(mode, &state, e), energy(&state, e));
