@@ -97,12 +97,14 @@ class Scene:
 
         >>> scene.replace({"impactor.velocity": "3 m/s", "mesh.refine": 1})
         """
-        setting = {key: _native.as_value(json.dumps(_plain(value))) for key, value in keys.items()}
-        return Scene(self._native.replaced(setting))
+        values = [(key, _native.as_value(json.dumps(_plain(value)))) for key, value in keys.items()]
+        return Scene(self._native.replaced(values))
 
     def save(self, path: PathLike) -> None:
         """Write the scene; names of mesh files are made absolute, so that it can lie anywhere."""
-        Path(path).write_text(self._native.rooted(), encoding="utf-8")
+        folder = Path(self.name).parent.absolute()
+        files = {key: folder / self[key] for key in self._keys if _FILE.fullmatch(key)}
+        Path(path).write_text((self.replace(files) if files else self).text, encoding="utf-8")
 
     def check(self, criteria: Iterable[Criterion] = ()) -> list[str]:
         """Check the scene with its mesh and its plug-ins; return warnings."""
@@ -222,6 +224,7 @@ def _parse(text: str, name: str) -> Scene:
     return Scene(_native.Scene.parse(text, name))
 
 
+_FILE = re.compile(r"mesh\.file|materials\.[^.]+\.file")
 _STEP = re.compile(r"\.([^.\[]+)|\[(\d+)\]")
 
 

@@ -6,7 +6,7 @@ use crate::laminate::laminate;
 use crate::matrices::matrices;
 use crate::mistakes::raise;
 use crate::run::{Asked, run};
-use fem::io::scene::{self, Setting};
+use fem::io::scene;
 use fem::io::units::{self, UnitError};
 use fem::{Error, Model};
 use miette::MietteDiagnostic;
@@ -67,15 +67,9 @@ impl Scene {
     }
 
     /// The same with values of TOML in the place of others, by the paths of their keys.
-    fn replaced(&self, py: Python<'_>, setting: Setting) -> PyResult<Self> {
-        let path = self.path();
-        let replaced = || scene::parse(&scene::with_setting(self.0.source.text(), path, &setting)?, path);
+    fn replaced(&self, py: Python<'_>, keys: Vec<(String, String)>) -> PyResult<Self> {
+        let replaced = || scene::parse_set(self.0.source.text(), self.path(), &keys);
         py.detach(replaced).map(Self).map_err(|error| raise(&error))
-    }
-
-    /// Its text with names of files made absolute.
-    fn rooted(&self) -> PyResult<String> {
-        scene::with_setting(self.text(), self.path(), &Setting::new()).map_err(|error| raise(&error))
     }
 
     #[getter]

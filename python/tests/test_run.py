@@ -37,7 +37,7 @@ def test_an_impact_in_memory_is_that_of_the_files(scene: femlam.Scene, tmp_path:
 @pytest.mark.skipif("FEM" not in os.environ, reason="FEM does not name the command")
 def test_its_bits_are_those_of_the_command_line(scene: femlam.Scene, tmp_path: Path) -> None:
     scene.save(tmp_path / "saved.toml")
-    command = [os.environ["FEM"], "run", "saved.toml", "--out", "command"]
+    command = [os.path.abspath(os.environ["FEM"]), "run", "saved.toml", "--out", "command"]
     subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
     femlam.Scene.load(tmp_path / "saved.toml").run(folder=tmp_path / "python")
     assert files(tmp_path / "python") == files(tmp_path / "command")

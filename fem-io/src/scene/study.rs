@@ -1,5 +1,6 @@
 //! What a study of the scene varies and looks at, and the settings that it puts over those of the scene.
 
+use super::Scene;
 use crate::document::keys::{Form, Keys, key};
 use crate::document::reader::SceneValue;
 use crate::document::source::{Located, SceneError, SceneSource};
@@ -173,23 +174,38 @@ pub fn parse_share(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "must be an error between 0 and 1, or in percent: 0.01 or 1%".into())
 }
 
-/// The text of the scene `path` as by [`with_setting`], and without the accuracy that it asks for, which a setting is to meet.
+/// The text of the scene `path` with `setting` written into it, and without the accuracy that it asks for, which a setting is to meet.
+/// Comments stay; relative names of files are made absolute, so that the scene can lie anywhere.
 ///
 /// # Errors
 /// A scene that cannot be read, or a setting that does not fit its keys.
 pub fn rewrite(path: &Path, setting: &Setting) -> Result<String, SceneError> {
     let mut document = written(&super::read_text(path)?, path, setting)?;
     document.remove("accuracy");
+    let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned)).unwrap_or_default();
+    let rooted = |item: Option<&mut Item>| {
+        if let Some(item) = item
+            && let Some(file) = item.as_str()
+        {
+            *item = toml_edit::value(folder.join(file).display().to_string());
+        }
+    };
+    rooted(document.get_mut("mesh").and_then(|mesh| mesh.get_mut("file")));
+    let materials = document.get_mut("materials").and_then(Item::as_table_like_mut);
+    for (_, material) in materials.into_iter().flat_map(|materials| materials.iter_mut()) {
+        rooted(material.as_table_like_mut().and_then(|material| material.get_mut("file")));
+    }
     Ok(document.to_string())
 }
 
-/// The scene `text`, that of `path`, with `setting` written into it. Comments stay; relative names of files are made absolute, so
-/// that the scene can lie anywhere.
+/// Reads the scene `text`, that of `path`, with `keys` and their values, both as TOML writes them, in the place of its own; the text of
+/// what is read has them in it.
 ///
 /// # Errors
-/// A text that is not TOML, or a setting that does not fit its keys.
-pub fn with_setting(text: &str, path: &Path, setting: &Setting) -> Result<String, SceneError> {
-    written(text, path, setting).map(|document| document.to_string())
+/// As [`parse`](super::parse), and keys that do not fit the text.
+pub fn parse_set(text: &str, path: &Path, keys: &[(String, String)]) -> Result<Scene, SceneError> {
+    let setting = keys.iter().cloned().collect();
+    super::parse(&written(text, path, &setting)?.to_string(), path)
 }
 
 fn written(text: &str, path: &Path, setting: &Setting) -> Result<DocumentMut, SceneError> {
@@ -206,19 +222,6 @@ fn written(text: &str, path: &Path, setting: &Setting) -> Result<DocumentMut, Sc
                 help,
             ));
         }
-    }
-    let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned)).unwrap_or_default();
-    let rooted = |item: Option<&mut Item>| {
-        if let Some(item) = item
-            && let Some(file) = item.as_str()
-        {
-            *item = toml_edit::value(folder.join(file).display().to_string());
-        }
-    };
-    rooted(document.get_mut("mesh").and_then(|mesh| mesh.get_mut("file")));
-    let materials = document.get_mut("materials").and_then(Item::as_table_like_mut);
-    for (_, material) in materials.into_iter().flat_map(|materials| materials.iter_mut()) {
-        rooted(material.as_table_like_mut().and_then(|material| material.get_mut("file")));
     }
     Ok(document)
 }
@@ -286,7 +289,8 @@ mod tests {
     fn a_setting_that_leads_nowhere_is_refused() {
         let text = "title = \"t\"\naccuracy = 0.01\nimpactor = [{ mass = \"1 kg\" }]\n";
         let set = |key: &str, value: &str| {
-            with_setting(text, Path::new("scene.toml"), &[(key.to_owned(), value.to_owned())].into())
+            let setting = [(key.to_owned(), value.to_owned())].into();
+            written(text, Path::new("scene.toml"), &setting).map(|document| document.to_string())
         };
         assert!(set("title", "\"other\"").unwrap().starts_with("title = \"other\"\naccuracy = 0.01\n"));
         for (key, value) in [("title.short", "1"), ("impactor.mass", "\"2 kg\""), ("a..b", "1"), ("title", "1 kg")] {
