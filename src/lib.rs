@@ -58,6 +58,7 @@ mod model;
 pub mod output;
 mod registry;
 pub mod study;
+pub mod sweep;
 mod words;
 
 pub use effect::{Decision, Effects};

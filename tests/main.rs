@@ -39,6 +39,7 @@ mod standards;
 mod strangers;
 mod study;
 mod support;
+mod sweep;
 mod tiling;
 mod triangles;
 mod two_level;

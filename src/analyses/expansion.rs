@@ -11,13 +11,13 @@ use std::sync::Arc;
 pub(super) struct Expansion<'a> {
     pub(super) model: &'a Model,
     /// The coordinates of a reduced plate; those of the structure where there is none.
-    pub(super) reduced: Option<Reduced>,
+    pub(super) reduced: Option<Arc<Reduced>>,
     /// What large deflections add to the modes.
     pub(super) companions: Option<Companions>,
     /// What the stretching of a full plate adds to its displacements.
     pub(super) share: Option<Arc<Share>>,
     /// Where the unknowns of the structure are masters alone.
-    pub(super) condensation: Option<Condensation>,
+    pub(super) condensation: Option<Arc<Condensation>>,
 }
 
 impl Expansion<'_> {

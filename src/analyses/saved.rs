@@ -11,7 +11,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 /// Keys, or beginnings of them, on which no number depends.
-const FREE: &[&str] = &["title", "study.", "output.plots", "output.maps", "output.checkpoint_every"];
+const FREE: &[&str] = &["title", "study.", "sweep.", "output.plots", "output.maps", "output.checkpoint_every"];
 
 const MATERIALS: &str = "materials.";
 const LAW: &str = ".law";

@@ -16,6 +16,7 @@ use fem_failure::scan::{self, PlyOrInterface, Probe, Scan, ScanSite};
 use fem_io::scene::Window;
 use serde::{Deserialize, Serialize};
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// Indices of one criterion at one place over time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -49,17 +50,44 @@ impl IndexHistory {
 pub(super) struct Watch<'a> {
     model: &'a Model,
     expansion: Rc<Expansion<'a>>,
-    recovery: Recovery,
-    /// Six per station, empty where there are none.
-    residual: Vec<f64>,
-    /// 6·sites × modes: stresses per unit of each modal coordinate.
-    operator: Option<Vec<f64>>,
+    of_plate: Arc<PlateStresses>,
     scan: Scan,
     /// Where the scan keeps the indices of each history.
     probes: Vec<Vec<Probe>>,
     stresses: Vec<f64>,
     states: Vec<Stress6<Ply>>,
     record: Record,
+}
+
+/// What the criteria see of a plate, whatever strikes it.
+#[derive(Debug)]
+pub(super) struct PlateStresses {
+    recovery: Recovery,
+    /// Six per station, empty where there are none.
+    residual: Vec<f64>,
+    /// 6·sites × modes: stresses per unit of each modal coordinate.
+    operator: Option<Vec<f64>>,
+}
+
+impl PlateStresses {
+    /// Those of `model`, which is marched in the coordinates of `expansion`.
+    ///
+    /// # Errors
+    /// A material that lacks a constant, or a cell that the element refuses.
+    pub(super) fn new(model: &Model, expansion: &Expansion<'_>) -> Result<Self, Error> {
+        let recovery = build_recovery(model);
+        let residual = residual(model, &recovery)?;
+        let mut operator = None;
+        // Stresses of large deflections are not products with the coordinates.
+        if let Some((basis, modes)) = expansion.basis().filter(|_| !model.effects.nature().large)
+            && 6 * recovery.sites() * modes * size_of::<f64>() <= Demand::OPERATOR_LIMIT
+        {
+            let mut product = vec![0.0; 6 * recovery.sites() * modes];
+            recover(model, &recovery, &expansion.nodal(basis), modes, None, &mut product)?;
+            operator = Some(product);
+        }
+        Ok(Self { recovery, residual, operator })
+    }
 }
 
 /// What a watch keeps beside its scan.
@@ -79,33 +107,26 @@ impl<'a> Watch<'a> {
     /// Prepares the scan of `model`, which is marched in the coordinates of `expansion`.
     ///
     /// # Errors
-    /// A criterion whose material lacks a constant, or a cell that the element refuses.
-    pub(super) fn new(model: &'a Model, expansion: Rc<Expansion<'a>>) -> Result<Self, Error> {
-        let recovery = build_recovery(model);
-        let scan = Scan::new(model.criteria.clone(), sites(&recovery), model.materials.clone())?;
+    /// A criterion whose material lacks a constant.
+    pub(super) fn new(
+        model: &'a Model,
+        expansion: Rc<Expansion<'a>>,
+        of_plate: Arc<PlateStresses>,
+    ) -> Result<Self, Error> {
+        let recovery = &of_plate.recovery;
+        let scan = Scan::new(model.criteria.clone(), sites(recovery), model.materials.clone())?;
         let of_cells = model.watched.len() * recovery.stations.len();
         let (probes, histories) = gauges(model, &scan, of_cells).into_iter().unzip();
-        let mut watch = Self {
+        Ok(Self {
             model,
             expansion,
-            operator: None,
-            residual: residual(model, &recovery)?,
             probes,
             scan,
             record: Record { histories, ..Record::default() },
             stresses: vec![0.0; 6 * recovery.sites() * Demand::BATCH],
             states: vec![Stress6::new([0.0; 6]); recovery.sites()],
-            recovery,
-        };
-        // Stresses of large deflections are not products with the coordinates.
-        if let Some((basis, modes)) = watch.expansion.basis().filter(|_| !model.effects.nature().large)
-            && 6 * watch.recovery.sites() * modes * size_of::<f64>() <= Demand::OPERATOR_LIMIT
-        {
-            let mut operator = vec![0.0; 6 * watch.recovery.sites() * modes];
-            watch.recover(&watch.expansion.nodal(basis), modes, None, &mut operator)?;
-            watch.operator = Some(operator);
-        }
-        Ok(watch)
+            of_plate,
+        })
     }
 
     /// Takes a sample: coordinates of the march at time `t`, states of plies that follow laws.
@@ -143,10 +164,11 @@ impl<'a> Watch<'a> {
         if count == 0 {
             return Ok(());
         }
-        let rows = 6 * self.recovery.sites();
+        let PlateStresses { recovery, residual, operator } = &*self.of_plate;
+        let rows = 6 * recovery.sites();
         let width = waiting.len() / count;
         let out = &mut stresses[..rows * count];
-        match &self.operator {
+        match operator {
             Some(operator) => matmul(
                 MatMut::from_column_major_slice_mut(out, rows, count),
                 Accum::Replace,
@@ -155,9 +177,12 @@ impl<'a> Watch<'a> {
                 1.0,
                 Par::Seq,
             ),
-            None => self.recover(&self.expansion.displacements(waiting, count), count, Some(points), out)?,
+            None => {
+                let u = self.expansion.displacements(waiting, count);
+                recover(self.model, recovery, &u, count, Some(points), out)?;
+            }
         }
-        add(out, &self.residual);
+        add(out, residual);
         for (t, stresses) in times.iter().zip(stresses.chunks_exact(rows)) {
             for (state, s) in self.states.iter_mut().zip(stresses.chunks_exact(6)) {
                 *state = Stress6::new([s[0], s[1], s[2], s[3], s[4], s[5]]);
@@ -168,11 +193,6 @@ impl<'a> Watch<'a> {
             }
         }
         Ok(())
-    }
-
-    /// Stresses of `count` displacement fields, one after the other, without those that do not follow from them.
-    fn recover(&self, u: &[f64], count: usize, points: Option<&[f64]>, out: &mut [f64]) -> Result<(), Error> {
-        recover(self.model, &self.recovery, u, count, points, out)
     }
 
     /// What the scan found.
@@ -214,7 +234,7 @@ impl<'a> Watch<'a> {
 
     /// Number of sites watched.
     pub(super) fn sites(&self) -> usize {
-        self.recovery.sites()
+        self.of_plate.recovery.sites()
     }
 }
 

@@ -56,7 +56,7 @@ struct Document<'a> {
 }
 
 pub(super) fn advise(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
-    let model = read_scene(&arguments.scene).and_then(|scene| Model::new(scene, registry))?;
+    let model = read_scene(&arguments.scene, &[]).and_then(|scene| Model::new(scene, registry))?;
     let all = advise::advise(&model, arguments.threads).inspect_err(|_| console.warn(&model.warnings))?;
     let title = &model.origin.title;
     let data = Document { title, impact: all.iter().map(Said::from).collect(), warnings: &model.warnings };

@@ -26,6 +26,10 @@ use std::process::ExitCode;
 pub(super) struct Arguments {
     /// Scene file (TOML), or `-` for standard input; its mesh is looked for beside it.
     scene: PathBuf,
+    /// Sets a key of the scene, for example impactor.velocity=2 or 'laminate.plies=[0/90]4s'; a number without unit has that of
+    /// the scene. May be given again for other keys
+    #[arg(long, value_name = "KEY=VALUE", value_parser = super::assignment)]
+    set: Vec<super::Assignment>,
     /// Prints every key that holds: its value, where that comes from (a line of the scene, the preset, a library, a
     /// default) and what it means.
     #[arg(long)]
@@ -138,7 +142,7 @@ impl MarchDocument {
 }
 
 fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Result<Checked, Error> {
-    let scene = read_scene(&arguments.scene)?;
+    let scene = read_scene(&arguments.scene, &arguments.set)?;
     let keys = if arguments.explain {
         scene::explain(&scene.source, &|kind| registry.choices(kind), &registry.effect_keys())?
     } else {

@@ -41,7 +41,7 @@ pub(super) fn matrices(registry: &Registry, arguments: &Arguments, console: &Con
 }
 
 fn write(registry: &Registry, arguments: &Arguments) -> Result<(usize, OutputDir), Error> {
-    let model = Model::new(read_scene(&arguments.scene)?, registry)?;
+    let model = Model::new(read_scene(&arguments.scene, &[])?, registry)?;
     let dir = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, ""));
     let dir = job::folder::results(&dir, &model.origin.source)?;
     matrices::write(&dir, &model, NonZeroUsize::MIN)?;

@@ -74,7 +74,7 @@ fn read(file: &Path, metres: f64) -> Result<(Examined, Vec<[f64; 2]>), Error> {
     if file.as_os_str() != "-" && file.extension().is_none_or(|extension| extension != "toml") {
         return Ok((gmsh::examine(file, metres, &[])?, Vec::new()));
     }
-    let scene = read_scene(file)?;
+    let scene = read_scene(file, &[])?;
     let examined = model::examined_mesh(&scene)?;
     let mesh = &examined.read.mesh;
     let impactors = scene.impact().map_or(&[][..], |impact| &impact.impactors);

@@ -19,6 +19,7 @@ mod run;
 mod schema;
 mod signals;
 mod study;
+mod sweep;
 
 use crate::error::Error;
 use crate::registry::Registry;
@@ -45,6 +46,11 @@ fn threads(text: &str) -> Result<NonZeroUsize, String> {
     }
 }
 
+/// A number of cases.
+fn samples(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|count| *count > 0).ok_or_else(|| "must be a number from 1 on".into())
+}
+
 /// A time above zero with its unit, s.
 fn time(text: &str) -> Result<f64, String> {
     let spaced = text.find(|c: char| c.is_alphabetic()).map_or(text.to_owned(), |at| {
@@ -55,6 +61,17 @@ fn time(text: &str) -> Result<f64, String> {
         Ok(seconds) if seconds > 0.0 => Ok(seconds),
         Ok(_) => Err("must be longer than zero".into()),
         Err(why) => Err(why.to_string()),
+    }
+}
+
+/// A key of the scene and the value that it takes.
+type Assignment = (String, String);
+
+/// `key=value`.
+fn assignment(text: &str) -> Result<Assignment, String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
+        _ => Err("write a key of the scene and its value: 'impactor.velocity=2 m/s'".into()),
     }
 }
 
@@ -110,6 +127,12 @@ enum Command {
     /// will run, prints tables, writes study.csv, study.md and pictures of errors over time; every run is kept at once in
     /// study.bin, from which `--resume` goes on.
     Study(study::Arguments),
+    /// Runs many cases of a scene: any of its keys over lists, ranges and distributions, one table.
+    ///
+    /// Cases that differ only in the impactor, the contact and strengths share their plate, so that each takes its march alone; the
+    /// rows are those of `fem run`. Writes sweep.csv, sweep.json, cost.csv and pictures. A case that fails has a row that says
+    /// why, and the exit status is then 1. Every few seconds what is done is kept in sweep.bin, from which `--resume` goes on.
+    Sweep(sweep::Arguments),
     /// Makes a page from a folder of results: report.html, which opens from disk.
     ///
     /// One file with everything in it: summary, pictures, curves and damage to move through, events, errors, costs, the scene.
@@ -179,6 +202,7 @@ fn dispatch(registry: &Registry, command: &Command, console: &Console) -> miette
         Command::Laminate(a) => laminate::laminate(registry, a, console),
         Command::Modes(a) => modes::modes(registry, a, console),
         Command::Study(a) => study::study(registry, a, console),
+        Command::Sweep(a) => sweep::sweep(registry, a, console),
         Command::Report(a) => report::report(registry, a, console),
         Command::Mesh(a) => mesh::mesh(a, console),
         Command::Matrices(a) => matrices::matrices(registry, a, console),
@@ -193,12 +217,13 @@ fn dispatch(registry: &Registry, command: &Command, console: &Console) -> miette
     }
 }
 
-/// The scene in the file `path`, or on standard input where that is `-`; its mesh is then looked for in the working folder.
-fn read_scene(path: &Path) -> Result<Scene, Error> {
+/// The scene in the file `path`, or on standard input where that is `-`, with what is `set` over its keys; its mesh is then looked
+/// for in the working folder.
+fn read_scene(path: &Path, set: &[Assignment]) -> Result<Scene, Error> {
     if path.as_os_str() != "-" {
-        return Ok(scene::read(path)?);
+        return Ok(scene::read_words(path, set)?);
     }
     let mut text = String::new();
     std::io::stdin().take(MOST_BYTES).read_to_string(&mut text).map_err(Error::Input)?;
-    Ok(scene::parse(&text, Path::new("standard input"))?)
+    Ok(scene::parse_words(&text, Path::new("standard input"), set)?)
 }

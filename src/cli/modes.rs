@@ -31,5 +31,5 @@ pub(super) fn modes(registry: &Registry, arguments: &Arguments, console: &Consol
     let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, "-modes"));
     let (task, results) = (Task::Modes(arguments.count), Results::Folder(folder));
     let options = Options { task, results, threads: arguments.threads, ..Options::default() };
-    compute(registry, &read_scene(&arguments.scene)?, options, "", arguments.format, console)
+    compute(registry, &read_scene(&arguments.scene, &[])?, options, "", arguments.format, console)
 }

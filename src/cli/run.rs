@@ -28,6 +28,10 @@ pub(super) struct Arguments {
     /// Folder of the results [default: results/<folder of the scene>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Sets a key of the scene, for example impactor.velocity=2 or 'laminate.plies=[0/90]4s'; a number without unit has that of
+    /// the scene. May be given again for other keys
+    #[arg(long, value_name = "KEY=VALUE", value_parser = super::assignment)]
+    set: Vec<super::Assignment>,
     /// Continue from the checkpoint in the folder of the results: a march that was stopped or killed, or one with a
     /// later
     /// `march.end`. The files are those of a run in one piece.
@@ -62,7 +66,7 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console)
     let again = if arguments.resume { "" } else { " --resume" };
     let mut options = Options { results, threads: arguments.threads, ..Options::default() };
     let path = &arguments.scene;
-    let scene = read_scene(path)?;
+    let scene = read_scene(path, &arguments.set)?;
     let asked = arguments.accuracy.or_else(|| scene.accuracy.as_ref().map(|accuracy| accuracy.value));
     let Some(asked) = asked else {
         if arguments.budget.is_some() {
@@ -74,6 +78,10 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console)
     if path.as_os_str() == "-" {
         let help = "give the scene as a file: the search for an accuracy reads it again and again";
         return Err(miette!(help = help, "an accuracy cannot be asked for of a scene on standard input"));
+    }
+    if !arguments.set.is_empty() {
+        let help = "write the keys into the scene: the search for an accuracy reads it again and again";
+        return Err(miette!(help = help, "an accuracy cannot be asked for beside `--set`"));
     }
     if arguments.resume {
         // What was raised for the accuracy lies there; whether the rest is the same is for the checkpoint to say.

@@ -103,6 +103,14 @@ pub enum Error {
         /// What there is.
         help: String,
     },
+    #[error("{message}")]
+    #[diagnostic(help("{help}"))]
+    Sweep {
+        /// What is wrong with it.
+        message: String,
+        /// What helps.
+        help: String,
+    },
     #[error("the ladders of the study have {together:.0} combinations of levels, too many to choose from")]
     #[diagnostic(help("name fewer of them with `--axis`, or give the scene's own axes fewer levels"))]
     TooManyLevels {

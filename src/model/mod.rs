@@ -12,6 +12,7 @@ mod plan;
 mod regions;
 mod separation;
 mod spacing;
+mod strike;
 mod substructures;
 mod supports;
 mod symmetry;
@@ -25,6 +26,7 @@ pub use origin::Origin;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 pub(crate) use separation::Separation;
 pub(crate) use spacing::count_steps;
+pub(crate) use strike::leaves_plate;
 
 use crate::effect::{Decision, Effects};
 use crate::effects::{GrowingDelaminations, NonlinearPlies};

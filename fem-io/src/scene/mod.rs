@@ -17,9 +17,11 @@ mod plugin;
 mod root;
 mod run;
 mod schema;
+mod setting;
 mod study;
 mod substructures;
 mod support;
+mod sweep;
 #[cfg(test)]
 mod tests;
 mod tip;
@@ -41,9 +43,11 @@ pub use run::{
     Window,
 };
 pub use schema::schema;
-pub use study::{OwnAxis, Quantity, Setting, Study, parse_set, parse_share, rewrite};
+pub use setting::{Setting, Written, parse_set, parse_words, rewrite, unit};
+pub use study::{OwnAxis, Quantity, Study, parse_share};
 pub use substructures::{Parts, SubstructuresSpec};
 pub use support::{Couple, EquationSpec, NodeSet, Support, SupportArea, Term, Unknowns};
+pub use sweep::{Sampling, SweepSpec, Varied};
 
 use crate::document::source::Origin;
 use crate::document::tree::Table;
@@ -104,6 +108,8 @@ pub struct Scene {
     pub output: Output,
     /// What a study of it varies and looks at.
     pub study: Study,
+    /// What a sweep of it varies.
+    pub sweep: SweepSpec,
     /// Every value of the scene and of the preset beneath it by the path of its key, `failure.watch[0].ply`, as it is written.
     pub keys: BTreeMap<String, String>,
     /// Its text, for errors that show a place.
@@ -214,7 +220,23 @@ pub fn keys(text: &str) -> Result<BTreeMap<String, String>, SceneError> {
 /// # Errors
 /// As [`read`], and anything that makes no sense in `setting`.
 pub fn read_with(path: &Path, setting: &Setting) -> Result<Scene, SceneError> {
-    parse_with(&read_text(path)?, path, &study::text(setting))
+    parse_with(&read_text(path)?, path, &setting::text(setting))
+}
+
+/// As [`read_with`], of a text that is read already.
+///
+/// # Errors
+/// As [`parse`], and anything that makes no sense in `setting`.
+pub fn parse_under(text: &str, path: &Path, setting: &Setting) -> Result<Scene, SceneError> {
+    parse_with(text, path, &setting::text(setting))
+}
+
+/// As [`read`], with `keys` and their values in words over those of the scene: [`parse_words`].
+///
+/// # Errors
+/// As [`parse_words`], and a file that cannot be read.
+pub fn read_words(path: &Path, keys: &[(String, String)]) -> Result<Scene, SceneError> {
+    parse_words(&read_text(path)?, path, keys)
 }
 
 fn read_text(path: &Path) -> Result<String, SceneError> {
@@ -233,8 +255,11 @@ struct Merged {
 
 impl Merged {
     fn new(text: &str, path: &Path, setting: &str) -> Result<Self, SceneError> {
-        let source =
-            Arc::new(SceneSource::new(path, text, LIBRARY).with(Origin::Setting, "setting of the study", setting));
+        let source = Arc::new(SceneSource::new(path, text, LIBRARY).with(
+            Origin::Setting,
+            "what is set over the scene",
+            setting,
+        ));
         let own = Table::parse(text, Origin::Scene, &source)?;
         let own = Table::parse(setting, Origin::Setting, &source)?.over(own);
         let fidelity = match Reader::unchecked(&own, KEYS, &source).optional("fidelity") {
@@ -318,6 +343,7 @@ fn read_merged(merged: &Merged, path: &Path) -> Result<Scene, SceneError> {
         effects,
         profiles: root.optional("profile").map_or(Ok(Vec::new()), |field| load::read_profiles(&field))?,
         study: root.optional("study").map_or(Ok(Study::default()), |field| study::read(&field))?,
+        sweep: root.optional("sweep").map_or(Ok(SweepSpec::default()), |field| sweep::read(&field))?,
         keys,
         source: Arc::clone(source),
     })

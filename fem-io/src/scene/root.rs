@@ -1,7 +1,7 @@
 //! The outermost table of a scene.
 
 use super::mesh::MESHES;
-use super::{Fidelity, MODES, delamination, laminate, load, run, study, substructures, support};
+use super::{Fidelity, MODES, delamination, laminate, load, run, study, substructures, support, sweep};
 use crate::document::keys::{Form, Keys, key, words};
 use crate::materials::constants;
 use fem_core::plate::ZDerivatives;
@@ -150,4 +150,6 @@ pub(super) const KEYS: Keys = &[
         "what `fem study` varies and looks at",
     )
     .default("{}"),
+    key("sweep", Form::Table(sweep::KEYS), r#"{ set = { impactor.velocity = "1..5:9" } }"#, "what `fem sweep` varies")
+        .default("{}"),
 ];

@@ -1,18 +1,10 @@
-//! What a study of the scene varies and looks at, and the settings that it puts over those of the scene.
+//! What a study of the scene varies and looks at.
 
-use super::Scene;
+use super::setting::Setting;
 use crate::document::keys::{Form, Keys, key};
 use crate::document::reader::SceneValue;
-use crate::document::source::{Located, SceneError, SceneSource};
-use crate::materials::LIBRARY;
+use crate::document::source::{Located, SceneError};
 use fem_core::plugin::Dimension;
-use std::collections::BTreeMap;
-use std::path::Path;
-use std::sync::Arc;
-use toml_edit::{DocumentMut, InlineTable, Item, Key, Table, TableLike, Value};
-
-/// Keys that replace those of a scene: values by the paths of their keys, both as TOML writes them.
-pub type Setting = BTreeMap<String, String>;
 
 /// What a scene says of studies of it.
 #[derive(Debug, Clone, Default)]
@@ -145,11 +137,6 @@ fn quantity(field: &SceneValue<'_>) -> Result<Located<Quantity>, SceneError> {
     }))
 }
 
-/// A setting as the text of a TOML document.
-pub(super) fn text(setting: &Setting) -> String {
-    setting.iter().map(|(path, value)| format!("{path} = {value}\n")).collect()
-}
-
 /// A relative error, 0.01 or "1 %".
 pub(super) fn read_accuracy(field: &SceneValue<'_>) -> Result<Located<f64>, SceneError> {
     let share = field.text().map_or_else(|_| field.number().ok(), |text| parse_share(text).ok());
@@ -172,130 +159,4 @@ pub fn parse_share(text: &str) -> Result<f64, String> {
     share
         .filter(|share| is_share(*share))
         .ok_or_else(|| "must be an error between 0 and 1, or in percent: 0.01 or 1%".into())
-}
-
-/// The text of the scene `path` with `setting` written into it, and without the accuracy that it asks for, which a setting is to meet.
-/// Comments stay; relative names of files are made absolute, so that the scene can lie anywhere.
-///
-/// # Errors
-/// A scene that cannot be read, or a setting that does not fit its keys.
-pub fn rewrite(path: &Path, setting: &Setting) -> Result<String, SceneError> {
-    let mut document = written(&super::read_text(path)?, path, setting)?;
-    document.remove("accuracy");
-    let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned)).unwrap_or_default();
-    let rooted = |item: Option<&mut Item>| {
-        if let Some(item) = item
-            && let Some(file) = item.as_str()
-        {
-            *item = toml_edit::value(folder.join(file).display().to_string());
-        }
-    };
-    rooted(document.get_mut("mesh").and_then(|mesh| mesh.get_mut("file")));
-    let materials = document.get_mut("materials").and_then(Item::as_table_like_mut);
-    for (_, material) in materials.into_iter().flat_map(|materials| materials.iter_mut()) {
-        rooted(material.as_table_like_mut().and_then(|material| material.get_mut("file")));
-    }
-    Ok(document.to_string())
-}
-
-/// Reads the scene `text`, that of `path`, with `keys` and their values, both as TOML writes them, in the place of its own; the text of
-/// what is read has them in it.
-///
-/// # Errors
-/// As [`parse`](super::parse), and keys that do not fit the text.
-pub fn parse_set(text: &str, path: &Path, keys: &[(String, String)]) -> Result<Scene, SceneError> {
-    let setting = keys.iter().cloned().collect();
-    super::parse(&written(text, path, &setting)?.to_string(), path)
-}
-
-fn written(text: &str, path: &Path, setting: &Setting) -> Result<DocumentMut, SceneError> {
-    let source = Arc::new(SceneSource::new(path, text, LIBRARY));
-    let wrong = |why: String| source.error(why, "");
-    let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| wrong(e.to_string()))?;
-    for (path, value) in setting {
-        let keys = Key::parse(path).map_err(|e| wrong(format!("`{path}` is no path of keys: {e}")))?;
-        let value: Value = value.parse().map_err(|e: toml_edit::TomlError| wrong(format!("`{path}`: {e}")))?;
-        if !set_path(document.as_table_mut(), &keys, &value) {
-            let help = "set the whole of it, a table or a list, at once";
-            return Err(source.error(
-                format!("nothing can be set at `{path}`: it leads through a value or a list in one line"),
-                help,
-            ));
-        }
-    }
-    Ok(document)
-}
-
-/// Names of plug-ins: a table that names another one is made anew.
-const NAMES: [&str; 4] = ["kind", "law", "method", "name"];
-
-/// Sets `value` where `keys` lead; whether they lead anywhere.
-fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) -> bool {
-    match keys {
-        [] => false,
-        [key] => {
-            table.insert(key, Item::Value(value.clone()));
-            true
-        }
-        [key, rest @ ..] => {
-            if let ([last], Some(old)) = (rest, table.get_mut(key))
-                && NAMES.contains(&last.get())
-                && old.get(last.get()).is_some_and(|name| name.as_str() != value.as_str())
-            {
-                *old = if old.is_table() { Item::Table(Table::new()) } else { Item::Value(InlineTable::new().into()) };
-            }
-            match table.entry(key).or_insert_with(|| Item::Table(Table::new())) {
-                Item::ArrayOfTables(tables) => tables.iter_mut().all(|table| set_path(table, rest, value)),
-                item => item.as_table_like_mut().is_some_and(|table| set_path(table, rest, value)),
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-
-    use super::*;
-
-    #[test]
-    fn a_setting_goes_into_the_text() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("scene.toml");
-        let scene = "# What it is.\nmesh = { file = \"plate.msh\", unit = \"mm\" }\n\n[[impactor]]\nmass = \"1 kg\" # heavy\n\n\
-                     [reduction]\nmethod = \"guyan\"\ngovernors = 3\n\n[materials.m]\nfile = \"m.toml\"\n";
-        std::fs::write(&path, scene).unwrap();
-        let setting = [
-            ("mesh.refine", "1"),
-            ("impactor.patch_radius", "\"2 mm\""),
-            ("reduction.method", "\"ritz\""),
-            ("reduction.vectors", "20"),
-            ("march.step", "\"0.1 us\""),
-        ];
-        let setting = setting.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
-        let text = rewrite(&path, &setting).unwrap();
-        let root = folder.path().display();
-        assert_eq!(
-            text,
-            format!(
-                "# What it is.\nmesh = {{ file = \"{root}/plate.msh\", unit = \"mm\" , refine = 1 }}\n\n[[impactor]]\n\
-                 mass = \"1 kg\" # heavy\npatch_radius = \"2 mm\"\n\n[reduction]\nmethod = \"ritz\"\nvectors = 20\n\n\
-                 [materials.m]\nfile = \"{root}/m.toml\"\n\n[march]\nstep = \"0.1 us\"\n"
-            )
-        );
-    }
-
-    #[test]
-    fn a_setting_that_leads_nowhere_is_refused() {
-        let text = "title = \"t\"\naccuracy = 0.01\nimpactor = [{ mass = \"1 kg\" }]\n";
-        let set = |key: &str, value: &str| {
-            let setting = [(key.to_owned(), value.to_owned())].into();
-            written(text, Path::new("scene.toml"), &setting).map(|document| document.to_string())
-        };
-        assert!(set("title", "\"other\"").unwrap().starts_with("title = \"other\"\naccuracy = 0.01\n"));
-        for (key, value) in [("title.short", "1"), ("impactor.mass", "\"2 kg\""), ("a..b", "1"), ("title", "1 kg")] {
-            let why = set(key, value).unwrap_err().to_string();
-            assert!(why.contains(&format!("`{key}`")), "{why}");
-        }
-    }
 }

@@ -11,7 +11,7 @@ use super::modal::{self, ModalView};
 use super::prepare::{Prepared, describe_failure, place_impactors};
 use super::{Maximum, Outcome, Sizes};
 use crate::analyses::expansion::Expansion;
-use crate::analyses::stress::{self, Watch};
+use crate::analyses::stress::{self, PlateStresses, Watch};
 use crate::cost::Stopwatch;
 use crate::effect::Effect;
 use crate::error::{CheckpointError, Error};
@@ -27,6 +27,7 @@ use fem_io::files::{FileError, OutputDir};
 use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
 use std::rc::Rc;
+use std::sync::Arc;
 use tracing::info;
 
 /// Marches a prepared model to its end; `progress` hears the share of the steps done.
@@ -215,8 +216,9 @@ impl<'a> March<'a> {
     }
 
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
-        let Prepared { model, impact, mut system, effects, reduced, membrane, share, full, condensation, .. } =
-            prepared;
+        let Prepared {
+            model, impact, mut system, effects, reduced, membrane, share, full, condensation, stresses, ..
+        } = prepared;
         let Prepared { sizes, counters, mut stopwatch, .. } = prepared;
         stopwatch.lap("reduce");
         let (membrane, companions) = membrane.unzip();
@@ -237,16 +239,23 @@ impl<'a> March<'a> {
                 integrator: impact.integrator.clone(),
                 sizes: &sizes,
                 couple: if alone { Some(&couple) } else { None },
-                mesh: accuracy::mesh::estimate(model, &system, reduced, condensation.as_ref())?,
+                mesh: accuracy::mesh::estimate(model, &system, reduced, condensation.as_deref())?,
                 layers: accuracy::layers::estimate(model, reduced)?,
             };
             estimates = Estimates::new(run, full);
             stopwatch.lap("accuracy");
         }
-        let followed = model.output.modes.as_ref().zip(reduced.as_ref());
+        let followed = model.output.modes.as_ref().zip(reduced.as_deref());
         let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
         let expansion = Rc::new(Expansion { model, reduced, companions, share, condensation });
-        let watch = if model.criteria.is_empty() { None } else { Some(Watch::new(model, expansion.clone())?) };
+        let watch = match (model.criteria.is_empty(), stresses) {
+            (true, _) => None,
+            (false, Some(known)) => Some(Watch::new(model, expansion.clone(), known)?),
+            (false, None) => {
+                let of_plate = Arc::new(PlateStresses::new(model, &expansion)?);
+                Some(Watch::new(model, expansion.clone(), of_plate)?)
+            }
+        };
         stopwatch.lap("prepare stresses");
         let scan_every = count_steps(model.sample_every, sizes.step);
         let (integrator, counted) = (impact.integrator.clone(), SystemCounts::default());

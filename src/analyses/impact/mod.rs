@@ -9,6 +9,7 @@ mod ledger;
 mod march;
 mod modal;
 mod prepare;
+mod shared;
 
 pub use accuracy::{Accuracy, Differences, MeshAccuracy, ReductionAccuracy, ReductionResidual, StepAccuracy};
 pub use checkpoint::Checkpoint;
@@ -22,6 +23,7 @@ pub(crate) use ledger::history_row;
 pub use march::{March, march};
 pub use modal::{ModalHistory, ModeShare};
 pub use prepare::{Prepared, prepare};
+pub use shared::SharedPlate;
 
 use super::assembled::Substructures;
 use super::stress::IndexHistory;

@@ -2,6 +2,7 @@
 
 use super::Sizes;
 use crate::analyses::assembled::{Assembled, Substructures, structure};
+use crate::analyses::stress::PlateStresses;
 use crate::analyses::supports;
 use crate::cost::Stopwatch;
 use crate::effect::{Effect, Feature, Marched};
@@ -35,14 +36,16 @@ pub struct Prepared<'a> {
     pub(super) impact: &'a Impact,
     pub(super) system: ImpactSystem,
     pub(super) effects: Vec<Box<dyn Effect>>,
-    pub(super) reduced: Option<Reduced>,
+    pub(super) reduced: Option<Arc<Reduced>>,
     /// A reduced plate that its deflections stretch, and what it does beside its modes.
     pub(super) membrane: Option<(MembranePlate, Companions)>,
     /// What the stretching of a full plate adds to its displacements.
     pub(super) share: Option<Arc<Share>>,
     /// What a reduced model was made from.
     pub(super) full: Option<Full>,
-    pub(super) condensation: Option<Condensation>,
+    pub(super) condensation: Option<Arc<Condensation>>,
+    /// What the criteria see of it, where that is known from an impact before.
+    pub(super) stresses: Option<Arc<PlateStresses>>,
     /// Sizes and limits.
     pub sizes: Sizes,
     pub(super) counters: Counters,
@@ -50,6 +53,12 @@ pub struct Prepared<'a> {
 }
 
 impl Prepared<'_> {
+    /// Without the plate before its reduction, so that the march estimates no errors.
+    #[must_use]
+    pub fn without_estimates(self) -> Self {
+        Self { full: None, ..self }
+    }
+
     /// Another system like the one that is marched, where its plate is reduced.
     pub fn copy(&self) -> Option<ImpactSystem> {
         let plate: Box<dyn Structure> = match &self.membrane {
@@ -88,6 +97,37 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     if let Some(separation) = &model.separation {
         return prepare_separable(model, impact, separation, threads);
     }
+    let ready = make_ready(model, impact, threads)?;
+    let Ready { effects, plate: Marched { full, reduced, stretched, .. }, contacts, condensation, .. } = ready;
+    let Ready { before, counters, stopwatch, .. } = ready;
+    let reduced = reduced.map(Arc::new);
+    let (structure, full): (Box<dyn Structure>, _) = match (&reduced, &stretched) {
+        (None, _) => (Box::new(full), None),
+        (Some(reduced), None) => {
+            (Box::new(reduced.modal.clone()), Some(Full { structure: full, contacts: contacts.clone() }))
+        }
+        (Some(_), Some((stretched, _))) => {
+            (Box::new(stretched.clone()), Some(Full { structure: full, contacts: contacts.clone() }))
+        }
+    };
+    let struck = Struck { structure, effects, reduced, membrane: stretched, condensation: condensation.map(Arc::new) };
+    let prepared = strike((model, impact), struck, &contacts, before)?;
+    Ok(Prepared { full, counters, stopwatch, ..prepared })
+}
+
+/// A plate that waits for its impactors.
+pub(super) struct Ready {
+    pub(super) effects: Vec<Box<dyn Effect>>,
+    pub(super) plate: Marched,
+    pub(super) contacts: Vec<Functional>,
+    pub(super) condensation: Option<Condensation>,
+    pub(super) before: Before,
+    pub(super) counters: Counters,
+    pub(super) stopwatch: Stopwatch,
+}
+
+/// Assembles and reduces the plate of `model`.
+pub(super) fn make_ready(model: &Model, impact: &Impact, threads: NonZeroUsize) -> Result<Ready, Error> {
     let mut stopwatch = Stopwatch::default();
     let mut counters = Counters::default();
     let mut effects = model.effects.acting().to_vec();
@@ -108,30 +148,45 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     let plate = change_structure(model, plate, &mut effects)?;
     (counters.factorisations, counters.solves) = plate.full.work();
     stopwatch.lap("reduce");
+    Ok(Ready { effects, plate, contacts, condensation, before, counters, stopwatch })
+}
 
-    let Marched { full, reduced, stretched, .. } = plate;
-    let impactors = place_impactors(impact, &contacts, reduced.as_ref());
-    let (structure, full): (Box<dyn Structure>, _) = match (&reduced, &stretched) {
-        (None, _) => (Box::new(full), None),
-        (Some(reduced), None) => (Box::new(reduced.modal.clone()), Some(Full { structure: full, contacts })),
-        (Some(_), Some((stretched, _))) => (Box::new(stretched.clone()), Some(Full { structure: full, contacts })),
-    };
-    let mut system = couple(model, ImpactSystem::new(structure, impactors), reduced.as_ref(), &mut effects);
-    try_inertia(model, impact, &system, reduced.as_ref())?;
-    let sizes = check_step(model, impact, &mut system, reduced.as_ref(), before)?;
+/// A plate as it is struck.
+pub(super) struct Struck {
+    pub(super) structure: Box<dyn Structure>,
+    pub(super) effects: Vec<Box<dyn Effect>>,
+    pub(super) reduced: Option<Arc<Reduced>>,
+    pub(super) membrane: Option<(MembranePlate, Companions)>,
+    pub(super) condensation: Option<Arc<Condensation>>,
+}
+
+/// Couples a plate to the impactors of `model` and checks the step.
+pub(super) fn strike<'a>(
+    (model, impact): (&'a Model, &'a Impact),
+    plate: Struck,
+    contacts: &[Functional],
+    before: Before,
+) -> Result<Prepared<'a>, Error> {
+    let Struck { structure, mut effects, reduced, membrane, condensation } = plate;
+    let of_march = reduced.as_deref();
+    let impactors = place_impactors(impact, contacts, of_march);
+    let mut system = couple(model, ImpactSystem::new(structure, impactors), of_march, &mut effects);
+    try_inertia(model, impact, &system, of_march)?;
+    let sizes = check_step(model, impact, &mut system, of_march, before)?;
     Ok(Prepared {
         model,
         impact,
         system,
         effects,
         reduced,
-        membrane: stretched,
+        membrane,
         share: None,
-        full,
+        full: None,
         condensation,
+        stresses: None,
         sizes,
-        counters,
-        stopwatch,
+        counters: Counters::default(),
+        stopwatch: Stopwatch::default(),
     })
 }
 
@@ -198,6 +253,7 @@ fn prepare_separable<'a>(
         share,
         full: None,
         condensation: None,
+        stresses: None,
         sizes,
         counters,
         stopwatch,
@@ -233,7 +289,7 @@ fn soften(model: &Model, assembled: &mut Assembled, contacts: &[Functional], red
 
 /// What is known of a plate before it is marched.
 #[derive(Debug, Clone, Copy)]
-struct Before {
+pub(super) struct Before {
     stiffness_entries: usize,
     factor_entries: usize,
     substructures: Option<Substructures>,
@@ -254,7 +310,7 @@ impl Before {
 }
 
 /// Whether the plate is what its static responses are: linear, and without inertia.
-fn rests(model: &Model) -> bool {
+pub(super) fn rests(model: &Model) -> bool {
     let nature = model.effects.nature();
     !nature.inertia && !nature.large
 }

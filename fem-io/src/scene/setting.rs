@@ -1,0 +1,258 @@
+//! Keys laid over those of a scene: by the command line, a study or a sweep.
+
+use super::{Merged, Scene, parse, parse_with, read_text};
+use crate::document::source::{SceneError, SceneSource};
+use crate::materials::LIBRARY;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+use toml_edit::{DocumentMut, InlineTable, Item, Key, Table, TableLike, Value};
+
+/// Keys that replace those of a scene: values by the paths of their keys, both as TOML writes them.
+pub type Setting = BTreeMap<String, String>;
+
+/// A setting as the text of a TOML document.
+pub(super) fn text(setting: &Setting) -> String {
+    setting.iter().map(|(path, value)| format!("{path} = {value}\n")).collect()
+}
+
+/// The values of a scene as they are written, by the paths of their keys, by which a value without quotes or unit is read as
+/// what it stands for.
+#[derive(Debug, Clone)]
+pub struct Written(BTreeMap<String, String>);
+
+impl Written {
+    /// Those of the scene `text` and of the preset beneath it; `path` names it in errors.
+    ///
+    /// # Errors
+    /// A text that is not TOML, or a key that no scene has.
+    pub fn of(text: &str, path: &Path) -> Result<Self, SceneError> {
+        let mut keys = BTreeMap::new();
+        Merged::new(text, path, "")?.table.flatten("", &mut keys);
+        Ok(Self(keys))
+    }
+
+    /// Those of a scene that is read.
+    pub fn in_scene(scene: &Scene) -> Self {
+        Self(scene.keys.clone())
+    }
+
+    /// The text that stands at `key`, in the first table of a list; nothing where there is none, or no text.
+    pub fn text(&self, key: &str) -> Option<&str> {
+        let plain = key.replace(['"', '\''], "");
+        let same = |path: &str| path.split('.').map(|part| part.split('[').next()).eq(plain.split('.').map(Some));
+        let (_, value) = self.0.iter().find(|(path, _)| same(path))?;
+        value.strip_prefix('"')?.strip_suffix('"')
+    }
+
+    /// `value` as TOML writes it at `key`: a text where the scene has one there, and with its unit where it is a number that
+    /// has none; else as it is, or as a text where TOML has no such value.
+    pub fn toml(&self, key: &str, value: &str) -> String {
+        let value = value.trim();
+        let quoted = |text: &str| Value::from(text).to_string();
+        let as_toml = value.parse::<Value>().ok();
+        match (self.text(key), &as_toml) {
+            (_, Some(Value::String(_))) => value.to_owned(),
+            (Some(text), _) => match unit(text).filter(|_| value.parse::<f64>().is_ok()) {
+                Some(unit) => quoted(&format!("{value} {unit}")),
+                None => quoted(value),
+            },
+            (None, Some(_)) => value.to_owned(),
+            (None, None) => quoted(value),
+        }
+    }
+}
+
+/// The unit of a quantity, `m/s` of `1.56 m/s`.
+pub fn unit(quantity: &str) -> Option<&str> {
+    let (number, unit) = quantity.trim().split_once(char::is_whitespace)?;
+    number.parse::<f64>().ok().map(|_| unit.trim())
+}
+
+/// Reads the scene `text`, that of `path`, with `keys` and their values, both as TOML writes them, in the place of its own; the text of
+/// what is read has them in it.
+///
+/// # Errors
+/// As [`parse`], and keys that do not fit the text, or that are given twice.
+pub fn parse_set(text: &str, path: &Path, keys: &[(String, String)]) -> Result<Scene, SceneError> {
+    if keys.is_empty() {
+        return parse(text, path);
+    }
+    let source = Arc::new(SceneSource::new(path, text, LIBRARY));
+    let mut setting = Setting::new();
+    for (key, value) in keys {
+        Key::parse(key).map_err(|_| {
+            source.error(format!("`{key}` is no key"), "write it as in `impactor.velocity = ...`: words and points")
+        })?;
+        if setting.insert(key.clone(), value.clone()).is_some() {
+            return Err(source.error(format!("`{key}` is set twice"), "set it once"));
+        }
+    }
+    let written = write(text, path, &setting)?.to_string();
+    // What is wrong is shown in what is set, and not in a text that nobody wrote.
+    parse_with(text, path, &self::text(&setting))?;
+    parse(&written, path)
+}
+
+/// As [`parse_set`], of values in words: they need neither quotes nor, where the scene has one, a unit.
+///
+/// # Errors
+/// As [`parse_set`].
+pub fn parse_words(text: &str, path: &Path, keys: &[(String, String)]) -> Result<Scene, SceneError> {
+    if keys.is_empty() {
+        return parse(text, path);
+    }
+    let written = Written::of(text, path)?;
+    let keys: Vec<_> = keys.iter().map(|(key, words)| (key.clone(), written.toml(key, words))).collect();
+    parse_set(text, path, &keys)
+}
+
+/// The text of the scene `path` with `setting` written into it, and without the accuracy that it asks for, which a setting is to meet.
+/// Comments stay; relative names of files are made absolute, so that the scene can lie anywhere.
+///
+/// # Errors
+/// A scene that cannot be read, or a setting that does not fit its keys.
+pub fn rewrite(path: &Path, setting: &Setting) -> Result<String, SceneError> {
+    let mut document = write(&read_text(path)?, path, setting)?;
+    document.remove("accuracy");
+    let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned)).unwrap_or_default();
+    let rooted = |item: Option<&mut Item>| {
+        if let Some(item) = item
+            && let Some(file) = item.as_str()
+        {
+            *item = toml_edit::value(folder.join(file).display().to_string());
+        }
+    };
+    rooted(document.get_mut("mesh").and_then(|mesh| mesh.get_mut("file")));
+    let materials = document.get_mut("materials").and_then(Item::as_table_like_mut);
+    for (_, material) in materials.into_iter().flat_map(|materials| materials.iter_mut()) {
+        rooted(material.as_table_like_mut().and_then(|material| material.get_mut("file")));
+    }
+    Ok(document.to_string())
+}
+
+/// The scene `text` with `setting` written into it.
+fn write(text: &str, path: &Path, setting: &Setting) -> Result<DocumentMut, SceneError> {
+    let source = Arc::new(SceneSource::new(path, text, LIBRARY));
+    let wrong = |why: String| source.error(why, "");
+    let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| wrong(e.to_string()))?;
+    for (path, value) in setting {
+        let keys = Key::parse(path).map_err(|e| wrong(format!("`{path}` is no path of keys: {e}")))?;
+        let value: Value = value.parse().map_err(|e: toml_edit::TomlError| wrong(format!("`{path}`: {e}")))?;
+        if !set_path(document.as_table_mut(), &keys, &value) {
+            let help = "set the whole of it, a table or a list, at once";
+            return Err(source.error(
+                format!("nothing can be set at `{path}`: it leads through a value or a list in one line"),
+                help,
+            ));
+        }
+    }
+    Ok(document)
+}
+
+/// Keys of which a table has one: to set it takes the other away.
+const EITHER: [[&str; 2]; 2] = [["velocity", "energy"], ["patch_radius", "patch_side"]];
+
+/// Names of plug-ins: a table that names another one is made anew.
+const NAMES: [&str; 4] = ["kind", "law", "method", "name"];
+
+/// Sets `value` where `keys` lead; whether they lead anywhere.
+fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) -> bool {
+    match keys {
+        [] => false,
+        [key] => {
+            for [a, b] in EITHER {
+                let other = if key.get() == a {
+                    b
+                } else if key.get() == b {
+                    a
+                } else {
+                    continue;
+                };
+                table.remove(other);
+            }
+            table.insert(key, Item::Value(value.clone()));
+            true
+        }
+        [key, rest @ ..] => {
+            if let ([last], Some(old)) = (rest, table.get_mut(key))
+                && NAMES.contains(&last.get())
+                && old.get(last.get()).is_some_and(|name| name.as_str() != value.as_str())
+            {
+                *old = if old.is_table() { Item::Table(Table::new()) } else { Item::Value(InlineTable::new().into()) };
+            }
+            match table.entry(key).or_insert_with(|| Item::Table(Table::new())) {
+                Item::ArrayOfTables(tables) => tables.iter_mut().all(|table| set_path(table, rest, value)),
+                item => item.as_table_like_mut().is_some_and(|table| set_path(table, rest, value)),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    #[test]
+    fn a_setting_goes_into_the_text() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        let scene = "# What it is.\nmesh = { file = \"plate.msh\", unit = \"mm\" }\n\n[[impactor]]\nmass = \"1 kg\" # heavy\n\n\
+                     [reduction]\nmethod = \"guyan\"\ngovernors = 3\n\n[materials.m]\nfile = \"m.toml\"\n";
+        std::fs::write(&path, scene).unwrap();
+        let setting = [
+            ("mesh.refine", "1"),
+            ("impactor.patch_radius", "\"2 mm\""),
+            ("reduction.method", "\"ritz\""),
+            ("reduction.vectors", "20"),
+            ("march.step", "\"0.1 us\""),
+        ];
+        let setting = setting.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
+        let text = rewrite(&path, &setting).unwrap();
+        let root = folder.path().display();
+        assert_eq!(
+            text,
+            format!(
+                "# What it is.\nmesh = {{ file = \"{root}/plate.msh\", unit = \"mm\" , refine = 1 }}\n\n[[impactor]]\n\
+                 mass = \"1 kg\" # heavy\npatch_radius = \"2 mm\"\n\n[reduction]\nmethod = \"ritz\"\nvectors = 20\n\n\
+                 [materials.m]\nfile = \"{root}/m.toml\"\n\n[march]\nstep = \"0.1 us\"\n"
+            )
+        );
+    }
+
+    #[test]
+    fn values_are_read_as_what_stands_there() {
+        let text = "title = \"t\"\nlaminate = { plies = \"[0]\", layers = [1] }\nimpactor = { velocity = \"2 m/s\" }\n";
+        let written = Written::of(text, "scene.toml".as_ref()).unwrap();
+        let cases = [
+            ("impactor.velocity", "3", "\"3 m/s\""),
+            ("impactor.velocity", "3 mm/s", "\"3 mm/s\""),
+            ("impactor.velocity", "'3 mm/s'", "'3 mm/s'"),
+            ("laminate.plies", "[90]", "\"[90]\""),
+            ("laminate.layers", "[2]", "[2]"),
+            // Of the preset.
+            ("impactor.patch_radius", "2.5", "\"2.5 mm\""),
+            ("reduction.vectors", "20", "20"),
+            ("effects.membrane", "on", "\"on\""),
+        ];
+        for (key, value, toml) in cases {
+            assert_eq!(written.toml(key, value), toml, "{key}");
+        }
+    }
+
+    #[test]
+    fn a_setting_that_leads_nowhere_is_refused() {
+        let text = "title = \"t\"\naccuracy = 0.01\nimpactor = [{ mass = \"1 kg\" }]\n";
+        let set = |key: &str, value: &str| {
+            let setting = [(key.to_owned(), value.to_owned())].into();
+            write(text, Path::new("scene.toml"), &setting).map(|document| document.to_string())
+        };
+        assert!(set("title", "\"other\"").unwrap().starts_with("title = \"other\"\naccuracy = 0.01\n"));
+        for (key, value) in [("title.short", "1"), ("impactor.mass", "\"2 kg\""), ("a..b", "1"), ("title", "1 kg")] {
+            let why = set(key, value).unwrap_err().to_string();
+            assert!(why.contains(&format!("`{key}`")), "{why}");
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! `fem sweep`.
+
+use super::run::{compute, default_folder};
+use super::signals::Signals;
+use super::{Assignment, Console, Format, console};
+use crate::error::Error;
+use crate::job::{Options, Results, folder};
+use crate::registry::Registry;
+use crate::sweep::{self, Record, Scatter, Sweep, SweepRequest};
+use clap::{Args, Subcommand};
+use fem_io::files::OutputDir;
+use fem_io::results::FORMAT;
+use fem_io::scene::{self, Sampling, Scene};
+use miette::miette;
+use std::fmt::Write as _;
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+#[command(
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true,
+    after_help = "Examples:\n  fem sweep coupon/scene.toml --set impactor.velocity=1..5:9 --threads 4\n  \
+                  fem sweep coupon/scene.toml --set 'laminate.plies=[0/90]4s,[45/-45]4s' --set impactor.mass=1..3:5\n  \
+                  fem sweep coupon/scene.toml --set 'materials.cfrp.Yt=normal(50 MPa, 8 %)' --samples 300\n  \
+                  fem sweep show results/coupon-sweep 7"
+)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Scene file (TOML)
+    #[arg(required = true)]
+    scene: Option<PathBuf>,
+    /// What a key of the scene becomes: a list `a,b`, a range `1..5:9` of nine values, a range `1..5` for samples, or normal,
+    /// lognormal, weibull, uniform, as in 'normal(50 MPa, 8 %) within 30..70'. A number without unit has that of the scene. May
+    /// be given again for other keys, and goes over those of the table `[sweep]`
+    #[arg(long, value_name = "KEY=VALUES", value_parser = super::assignment)]
+    set: Vec<Assignment>,
+    /// How cases are chosen; `saltelli` for Sobol's indices, which say what matters [default: what the scene says, or a grid, or random where numbers scatter]
+    #[arg(long, value_name = "DESIGN", value_parser = ["grid", "random", "latin-hypercube", "sobol", "saltelli"])]
+    design: Option<String>,
+    /// How many cases a design of samples has [default: what the scene says, or 100]
+    #[arg(long, value_name = "N", value_parser = super::samples)]
+    samples: Option<usize>,
+    /// What random numbers follow from [default: what the scene says, or 1]
+    #[arg(long, value_name = "SEED")]
+    seed: Option<u64>,
+    /// Cases that are marched at a time; the table does not depend on it.
+    #[arg(long, value_name = "N", default_value = "1", value_parser = super::threads)]
+    threads: NonZeroUsize,
+    /// Continue the sweep in the folder of the results; cases that are there are not run again
+    #[arg(long)]
+    resume: bool,
+    /// Runs part K of N alone, in a folder of its own in that of the results, for another process or machine
+    #[arg(long, value_name = "K/N", value_parser = part, conflicts_with = "gather")]
+    part: Option<(usize, usize)>,
+    /// Runs nothing: makes the table of the parts in the folder of the results
+    #[arg(long)]
+    gather: bool,
+    /// Runs nothing: prints the cases
+    #[arg(long, conflicts_with_all = ["part", "gather", "resume"])]
+    expand: bool,
+    /// Folder of the results [default: results/<folder of the scene>-sweep]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    format: Format,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Runs a case of a sweep whole, as `fem run` does.
+    Show(ShowArguments),
+}
+
+#[derive(Debug, Args)]
+struct ShowArguments {
+    /// Folder of the results of the sweep
+    results: PathBuf,
+    /// The case, a number of the first column of sweep.csv
+    case: NonZeroUsize,
+    /// Folder of the results [default: case-<CASE> in that of the sweep]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    format: Format,
+}
+
+/// `k/n`.
+fn part(text: &str) -> Result<(usize, usize), String> {
+    let part = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
+    part.filter(|(k, n)| (1..=*n).contains(k)).ok_or_else(|| "write it as in 1/4, the first of four".into())
+}
+
+pub(super) fn sweep(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
+    if let Some(Command::Show(arguments)) = &arguments.command {
+        return show(registry, arguments, console);
+    }
+    let Some(path) = arguments.scene.as_deref().filter(|path| path.as_os_str() != "-") else {
+        let help = "give the scene as a file: `fem sweep show` reads it again";
+        return Err(miette!(help = help, "a sweep takes no scene on standard input"));
+    };
+    let scene = scene::read(path)?;
+    let Arguments { set, design, samples, seed, .. } = arguments;
+    let asked = SweepRequest { set: set.clone(), design: design.clone(), samples: *samples, seed: *seed };
+    let sweep = Sweep::new(&scene, registry, &asked)?;
+    if arguments.expand {
+        console.print(&expanded(&sweep));
+        return Ok(ExitCode::SUCCESS);
+    }
+    let whole = arguments.out.clone().unwrap_or_else(|| default_folder(path, "-sweep"));
+    let out = arguments.part.map_or(whole.clone(), |part| sweep::part_folder(&whole, part));
+    let mut rows = match (arguments.gather, arguments.resume) {
+        (true, _) => sweep.gather(&whole)?,
+        (false, true) => sweep.saved(&out)?,
+        (false, false) => Vec::new(),
+    };
+    // Beside the parts that are gathered.
+    let dir = if arguments.gather { OutputDir::open(&out) } else { folder::results(&out, &scene.source) };
+    let dir = dir.map_err(Error::from)?;
+    dir.begin_run();
+    let cases = if arguments.gather { Vec::new() } else { sweep.part(arguments.part) };
+    if !rows.is_empty() {
+        console.say(arguments.format, || format!("  {} cases are there from before\n", rows.len()));
+    }
+    let signals = Signals::listen();
+    let progress = console.progress("sweep", "sweep {bar:40} {percent:>3} %  {msg}  {eta} left");
+    sweep.run(&dir, &cases, arguments.threads, &mut rows, &mut |done| {
+        progress.share(done as f64 / cases.len().max(1) as f64);
+        progress.message(&format!("{done} of {}", cases.len()));
+        if signals.received().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    progress.finish();
+    // Shares of blocks that are made for indices are no probabilities.
+    let random = !matches!(sweep.design.sampling, Sampling::Grid | Sampling::Saltelli);
+    let failed = rows.iter().filter(|row| row.result.is_err()).count();
+    let record = Record {
+        format: FORMAT,
+        title: scene.title.clone(),
+        scene: std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).display().to_string(),
+        asked,
+        design: sweep.design.sampling.name().to_owned(),
+        keys: sweep.design.axes.iter().map(|axis| axis.key.clone()).collect(),
+        cases: sweep.design.count,
+        done: rows.len(),
+        failed,
+        importance: match sweep.design.sampling {
+            Sampling::Saltelli => sweep::importance(&sweep.design, &rows),
+            _ => Vec::new(),
+        },
+        scatter: (random && rows.len() > failed).then(|| sweep::scatter(&rows)),
+    };
+    sweep::write(&dir, &sweep, &rows, &record)?;
+    if scene.output.plots {
+        sweep::write_pictures(&dir, &scene.title, &sweep, &rows, record.scatter.as_ref())?;
+    }
+    dir.remove_older().map_err(Error::from)?;
+    console.show(arguments.format, &record, || text(&scene, &record, &rows, &dir))?;
+    let expected = if arguments.gather { sweep.design.count } else { cases.len() };
+    if let Some(signal) = signals.received() {
+        console::tell(&format!(
+            "Stopped by a signal after {} of {expected} cases. To continue: the same command with --resume\n",
+            rows.len()
+        ));
+        return Ok(ExitCode::from(128 + signal));
+    }
+    if rows.len() < expected {
+        console::tell(&format!("{} of {expected} cases are missing: run the parts that lack\n", expected - rows.len()));
+    }
+    Ok(if failed == 0 && rows.len() >= expected { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// The cases as a table of what they set.
+fn expanded(sweep: &Sweep<'_>) -> String {
+    let keys: Vec<&str> = sweep.design.axes.iter().map(|axis| axis.key.as_str()).collect();
+    let mut text = format!("case\t{}\n", keys.join("\t"));
+    for case in 0..sweep.design.count {
+        let _ = writeln!(text, "{}\t{}", case + 1, sweep.design.case(case).join("\t"));
+    }
+    text
+}
+
+/// What a sweep says of itself.
+fn text(scene: &Scene, record: &Record, rows: &[sweep::CaseRow], dir: &OutputDir) -> String {
+    let mut text = format!("{}\n", scene.title);
+    let keys = record.keys.join(", ");
+    let _ = writeln!(text, "  cases     {} of {}, {} over {keys}", record.done, record.cases, record.design);
+    let found = || rows.iter().filter_map(|row| row.result.as_ref().ok());
+    let peaks = || found().filter_map(|case| case.impactors.first()).map(|impactor| impactor.peak_force);
+    let newton = |force: f64| fem_core::plugin::Dimension::FORCE.of(force);
+    if let (Some(low), Some(high)) = (peaks().reduce(f64::min), peaks().reduce(f64::max)) {
+        let _ = writeln!(text, "  force     peaks from {} to {}", newton(low), newton(high));
+        let damaged = found().filter(|case| case.first.is_some()).count();
+        let _ = writeln!(text, "  damage    in {damaged} of {} cases", found().count());
+    }
+    if let Some(scatter) = &record.scatter {
+        scattered(&mut text, scatter);
+    }
+    let first = record.importance.first().map(|of| of.result.as_str());
+    for of in record.importance.iter().filter(|of| Some(of.result.as_str()) == first) {
+        let (alone, total) = (of.first, of.total);
+        let [a, b, c, d] = [of.first_low, of.first_high, of.total_low, of.total_high];
+        let _ = writeln!(
+            text,
+            "  matters   {} of {}: alone {alone:.2} ({a:.2} to {b:.2}), in all {total:.2} ({c:.2} to {d:.2})",
+            of.key, of.result
+        );
+    }
+    for row in rows.iter().filter(|row| row.result.is_err()).take(3) {
+        let why = row.result.as_ref().err().map_or("", String::as_str);
+        let _ = writeln!(text, "  failed    case {}: {why}", row.case);
+    }
+    let seconds: f64 = rows.iter().map(|row| row.seconds).sum();
+    let time = fem_core::plugin::Dimension::TIME;
+    let each = time.of(seconds / rows.len().max(1) as f64);
+    let _ = writeln!(text, "  time      {} of processor, {each} a case", time.of(seconds));
+    let _ = writeln!(text, "  results   {}", dir.path().display());
+    text
+}
+
+fn scattered(text: &mut String, scatter: &Scatter) {
+    for of in scatter.damage.iter().filter(|of| of.cases > 0) {
+        let [share, low, high] = [of.probability, of.low, of.high].map(|share| 1e2 * share);
+        let _ = writeln!(text, "  share     {}: {share:.1} %, with 95 % confidence {low:.1} to {high:.1} %", of.what);
+    }
+    for basis in &scatter.bases {
+        let force = fem_core::plugin::Dimension::FORCE.of(basis.force_N);
+        let how = match basis.method {
+            "normal" => format!("mean - {:.3} s, if they are normal", basis.factor),
+            _ => format!("number {} from the least, whatever their distribution", basis.factor),
+        };
+        let _ = writeln!(text, "  {}-basis   force at first damage {force}: {how}", basis.basis);
+    }
+}
+
+fn show(registry: &Registry, arguments: &ShowArguments, console: &Console) -> miette::Result<ExitCode> {
+    let record = sweep::read_record(&arguments.results)?;
+    let path = Path::new(&record.scene);
+    let scene = scene::read(path)?;
+    let sweep = Sweep::new(&scene, registry, &record.asked)?;
+    let case = arguments.case.get();
+    if case > sweep.design.count {
+        let help = format!("cases are numbered from 1 to {}", sweep.design.count);
+        return Err(miette!(help = help, "the sweep has no case {case}"));
+    }
+    let set: Vec<Assignment> = sweep.setting(case - 1).into_iter().collect();
+    let out = arguments.out.clone().unwrap_or_else(|| arguments.results.join(format!("case-{case}")));
+    let options = Options { results: Results::Folder(out), ..Options::default() };
+    compute(registry, &scene::parse_set(scene.source.text(), path, &set)?, options, "", arguments.format, console)
+}

@@ -1,0 +1,175 @@
+//! `fem run --set` and `fem sweep`: a row is a run.
+
+use crate::support::{Case, fem};
+use fem::Registry;
+use fem::io::scene::{self, Setting};
+use fem::job::{self, Found, Options};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs;
+
+/// A case that takes little time and meets damage.
+fn quick() -> Case {
+    let case = Case::example("as4-3502-8ply-25mm").scene("end = \"1 ms\"", "end = \"0.3 ms\"");
+    case.append("\n[reduction]\nmethod = \"ritz\"\nvectors = 20\n\n[output]\nplots = false\n")
+}
+
+/// The rows of sweep.csv by column.
+fn rows(case: &Case, folder: &str) -> Vec<BTreeMap<String, String>> {
+    let (header, rows) = case.table(&format!("{folder}/sweep.csv"));
+    rows.into_iter().map(|row| header.iter().cloned().zip(row).collect()).collect()
+}
+
+fn bits(row: &BTreeMap<String, String>, column: &str) -> Option<u64> {
+    row[column].parse::<f64>().ok().map(f64::to_bits)
+}
+
+/// Impactor, contact and strengths share a plate; a layup has its own. Each row is to the bit what a run of its own finds.
+#[test]
+fn rows_are_runs_to_the_bit() {
+    let case = quick();
+    let axes = [
+        ("laminate.plies", "[0/45/-45/90]s,[45/-45/0/90]s"),
+        ("impactor.velocity", "1.5..3:2"),
+        ("materials.as4-3502.Yt", "40 MPa,60 MPa"),
+        ("contact.beta", "0.4,0.5"),
+    ];
+    let set: Vec<String> = axes.iter().flat_map(|(key, words)| ["--set".into(), format!("{key}={words}")]).collect();
+    let set: Vec<&str> = set.iter().map(String::as_str).collect();
+    case.fem("sweep", &[&set[..], &["--out", "one"]].concat()).good();
+    case.fem("sweep", &[&set[..], &["--out", "two", "--threads", "2"]].concat()).good();
+    assert_eq!(case.read("one/sweep.csv"), case.read("two/sweep.csv"));
+    let rows = rows(&case, "one");
+    assert_eq!(rows.len(), 16);
+
+    let path = case.folder().join("plate/scene.toml");
+    // Both layups, a case of each in the middle of those that share its plate.
+    for row in [&rows[2], &rows[13]] {
+        let value = |key: &str, unit: &str| match unit {
+            "" => format!("\"{}\"", row[key]),
+            unit => format!("\"{} {unit}\"", row[&format!("{key} [{unit}]")]),
+        };
+        let setting: Setting = [
+            ("laminate.plies".to_owned(), value("laminate.plies", "")),
+            ("impactor.velocity".to_owned(), value("impactor.velocity", "m/s")),
+            ("materials.as4-3502.Yt".to_owned(), value("materials.as4-3502.Yt", "MPa")),
+            ("contact.beta".to_owned(), row["contact.beta"].clone()),
+        ]
+        .into();
+        let scene = scene::read_with(&path, &setting).unwrap();
+        let done = job::run(&scene, &Registry::standard(), &Options::default(), &mut ()).unwrap();
+        let Found::Impact(found) = done.found else { panic!("an impact") };
+        let impact = &found.summary.impact[0];
+        let same = [
+            ("peak_force_N", impact.peak_force_N),
+            ("peak_force_time_s", impact.peak_force_time_s),
+            ("impulse_N_s", impact.impulse_N_s),
+            ("deflection_m", impact.peak_plate_displacement_m),
+            ("contact_time_s", impact.contact_time_s),
+            ("damage_time_s", found.outcome.events[0].time),
+            ("damage_force_N", found.outcome.forces.at(found.outcome.events[0].time)),
+            ("energy_error", found.outcome.energy_error),
+        ];
+        for (column, value) in same {
+            assert_eq!(bits(row, column), Some(value.to_bits()), "{column}: {} {value:e}", row[column]);
+        }
+        for peak in &found.outcome.peaks {
+            let column = format!("{} {} index", peak.criterion, peak.mode);
+            assert_eq!(bits(row, &column), Some(peak.index.to_bits()), "{column}");
+        }
+    }
+    // The strength acts: the weaker plate is damaged at the smaller force.
+    assert!(rows[0]["damage_force_N"].parse::<f64>().unwrap() < rows[2]["damage_force_N"].parse::<f64>().unwrap());
+}
+
+/// Parts that are gathered, a sweep that goes on and one in one piece make the same table; `show` runs a case of it.
+#[test]
+fn parts_and_what_goes_on_make_the_same_table() {
+    let case = quick();
+    let samples = ["--set", "impactor.velocity=uniform(1, 3)", "--set", "materials.as4-3502.Yt=normal(50 MPa, 10 %)"];
+    let options = |more: &[&'static str]| [&samples[..], &["--samples", "6", "--seed", "5"], more].concat();
+    case.fem("sweep", &options(&["--out", "whole"])).good();
+    case.fem("sweep", &options(&["--out", "parts", "--part", "1/2"])).good();
+    let early = case.fem("sweep", &options(&["--out", "parts", "--gather"]));
+    assert!(early.status == 1 && early.stderr.contains("3 of 6 cases are missing"), "{early:#?}");
+    case.fem("sweep", &options(&["--out", "parts", "--part", "2/2"])).good();
+    case.fem("sweep", &options(&["--out", "parts", "--gather"])).good();
+    assert_eq!(case.read("whole/sweep.csv"), case.read("parts/sweep.csv"));
+    let done = case.fem("sweep", &options(&["--out", "whole", "--resume"])).good();
+    assert!(done.stdout.contains("6 cases are there from before"), "{done:#?}");
+    assert_eq!(case.read("whole/sweep.csv"), case.read("parts/sweep.csv"));
+
+    let record: Value = serde_json::from_str(&case.read("whole/sweep.json")).unwrap();
+    assert_eq!((record["cases"].as_u64(), record["failed"].as_u64()), (Some(6), Some(0)));
+    let any = &record["scatter"]["damage"][0];
+    let [low, share, high] = ["low", "probability", "high"].map(|key| any[key].as_f64().unwrap());
+    assert!(low <= share && share <= high, "{any}");
+
+    fem(case.folder(), &["sweep", "show", "whole", "4", "--out", "shown"]).good();
+    let row = &rows(&case, "whole")[3];
+    let shown = case.summary("shown");
+    assert_eq!(bits(row, "peak_force_N"), shown["impact"]["peak_force_N"].as_f64().map(f64::to_bits));
+    let refused = fem(case.folder(), &["sweep", "show", "whole", "7"]);
+    assert!(refused.stderr.contains("no case 7") && refused.status == 1, "{refused:#?}");
+}
+
+/// The table of the scene says the same as the command line, and a case that fails has a row that says why.
+#[test]
+fn a_scene_may_have_its_sweep() {
+    let sweep = "\n[sweep]\nset = { contact.n = [1.5], impactor.patch_radius = \"1 mm, 1 m\" }\n";
+    let case = quick().append(sweep);
+    let done = case.fem("sweep", &["--out", "out"]);
+    assert_eq!(done.status, 1, "{done:#?}");
+    let rows = rows(&case, "out");
+    assert!(rows[0]["failed"].is_empty() && rows[0]["peak_force_N"].parse::<f64>().is_ok(), "{rows:?}");
+    assert!(rows[1]["failed"].contains("patch") && rows[1]["peak_force_N"].is_empty(), "{rows:?}");
+    assert!(done.stdout.contains("failed    case 2"), "{done:#?}");
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_before_anything_runs() {
+    let case = quick();
+    let big =
+        ["--set", "impactor.velocity=1..5:1000", "--set", "impactor.mass=1..5:1000", "--set", "contact.n=1..2:1000"];
+    for (options, words) in [
+        (&["--set", "impactor.speed=1..5:3"][..], &["unknown key `impactor.speed`"][..]),
+        (&["--set", "impactor.velocity=1..5 kg:3"], &["`impactor.velocity`", "is a mass, not a velocity"]),
+        (&["--set", "impactor.velocity=5..1:3"], &["`impactor.velocity`: its range from 5 to 1 is empty"]),
+        (&["--set", "impactor.velocity=1..5"], &["numbers without end", "1..5:9", "--design"]),
+        (
+            &["--set", "impactor.velocity=normal(2, -1)"],
+            &["`impactor.velocity`", "deviation is -1 and must be above 0"],
+        ),
+        (&["--set", "impactor.velocity=1,-1"], &["`impactor.velocity`", "must be positive"]),
+        (&big, &["1000000000 cases", "at most 1000000"]),
+        (&["--set", "title=a", "--set", "title=b"], &["`title`: is varied twice"]),
+        (&[], &["nothing is varied", "--set impactor.velocity=1..5:9"]),
+    ] {
+        let given = if options.first().is_some_and(|_| options.len() == 2 && options[1].ends_with("1..5")) {
+            [options, &["--design", "grid"]].concat()
+        } else {
+            options.to_vec()
+        };
+        let done = case.fem("sweep", &[&given[..], &["--out", "out"]].concat());
+        let said = done.stderr.split_whitespace().collect::<Vec<_>>().join(" ").replace(" │ ", " ");
+        assert!(done.status == 1 && words.iter().all(|word| said.contains(word)), "{options:?} {done:#?}");
+        assert!(!case.folder().join("out").exists(), "{options:?}");
+    }
+}
+
+/// The scene in the results has what was set, so that it can be run again.
+#[test]
+fn what_is_set_is_the_scene() {
+    let case = quick();
+    let set = ["--set", "impactor.energy=2 J", "--set", "march.end=0.05", "--out"];
+    case.fem("run", &[&set[..], &["a"]].concat()).good();
+    let impact = &case.summary("a")["impact"];
+    let [mass, velocity] = ["mass_kg", "velocity_m_s"].map(|key| impact[key].as_f64().unwrap());
+    assert!((0.5 * mass * velocity * velocity / 2.0 - 1.0).abs() < 1e-12);
+    assert!((impact["end_time_s"].as_f64().unwrap() / 5e-5 - 1.0).abs() < 1e-12);
+    let written = case.read("a/scene.toml");
+    assert!(written.contains("energy = \"2 J\"") && !written.contains("velocity ="), "{written}");
+    fs::copy(case.folder().join("a/scene.toml"), case.folder().join("plate/again.toml")).unwrap();
+    fem(case.folder(), &["run", "plate/again.toml", "--out", "b"]).good();
+    assert_eq!(case.summary("a")["impact"], case.summary("b")["impact"]);
+}
