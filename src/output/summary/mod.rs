@@ -13,7 +13,7 @@ use crate::analyses::assembled::Substructures;
 pub use delamination::{DelaminationFigures, InterfaceFigures};
 
 use crate::analyses::impact::{self, ContactRecord, Differences, ModeShare, Outcome, Sizes};
-use crate::effect::{AdviceRule, Decision, Hindsight};
+use crate::effect::{AdviceRule, Decision, Hindsight, LedgerColumn};
 use crate::model::{Model, NamedCriterion};
 use crate::words::name_ply;
 use fem_core::counters::Counters;
@@ -53,6 +53,12 @@ pub struct ImpactSummary {
     pub delamination_threshold: Option<Threshold>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delamination: Option<DelaminationFigures>,
+    /// Energies that effects have taken or hold at the end, J, by their columns of the history.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub energies_of_effects: BTreeMap<&'static str, f64>,
+    /// The same with words, for people.
+    #[serde(skip)]
+    labelled: Vec<(&'static str, f64)>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub modes: Vec<ModeShare>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -394,6 +400,8 @@ impl ImpactSummary {
                 lowest_frequency_Hz: sizes.lowest_frequency,
             },
             delamination: DelaminationFigures::of(outcome, &impact),
+            energies_of_effects: energies(model, outcome).map(|(column, energy)| (column.name, energy)).collect(),
+            labelled: energies(model, outcome).map(|(column, energy)| (column.label, energy)).collect(),
             impact,
             first_damage: first_per_mode(&outcome.events).into_iter().map(damage).collect(),
             not_reached: not_reached(&outcome.peaks),
@@ -444,6 +452,12 @@ impl ImpactSummary {
         };
         Self { cautions: cautions::cautions(model, outcome, &summary), ..summary }
     }
+}
+
+/// What effects have taken or hold at the end, J.
+fn energies<'a>(model: &'a Model, outcome: &'a Outcome) -> impl Iterator<Item = (&'static LedgerColumn, f64)> + 'a {
+    let last = outcome.history.last().into_iter().flat_map(|row| row.effects.iter().copied());
+    model.effects.columns().zip(last).filter(|(column, _)| column.unit == "J")
 }
 
 /// The response to impactor `i`, which is `spec`.

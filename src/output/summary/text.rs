@@ -150,6 +150,14 @@ impl ImpactSummary {
                 line(format_args!("            interface {:>7} {area:>14}{since}", one.interface));
             }
         }
+        if !self.labelled.is_empty() {
+            let each: Vec<String> = self
+                .labelled
+                .iter()
+                .map(|(label, energy)| format!("{label} {}", Dimension::ENERGY.of(*energy)))
+                .collect();
+            line(format_args!("  energy    at the end: {}", each.join(", ")));
+        }
         if let (Some(d), None) = (&self.delamination_threshold, &self.delamination) {
             let peak = self.impact.iter().map(|i| i.peak_force_N).fold(0.0, f64::max);
             let by = d.impactor.as_ref().map_or(String::new(), |name| format!(" by {name}"));
