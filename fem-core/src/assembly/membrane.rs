@@ -99,16 +99,8 @@ impl<'a> MembraneStrains<'a> {
         let (pairs, mut map, mut of) = (self.pairs(), CellMap::default(), OfCell::default());
         map.set(self.plate, self.constraints, cell);
         self.integrate(&self.plate.cell(cell), &map, false, &mut of)?;
-        let (rows, columns) = (of.strains.len() / pairs, combinations.len() / pairs);
-        let mut combined = vec![0.0; rows * columns];
-        matmul(
-            MatMut::from_column_major_slice_mut(&mut combined, rows, columns),
-            Accum::Replace,
-            MatRef::from_column_major_slice(&of.strains, rows, pairs),
-            MatRef::from_column_major_slice(combinations, pairs, columns),
-            1.0,
-            Par::Seq,
-        );
+        let mut combined = Vec::new();
+        product(&of.strains, combinations, pairs, &mut combined);
         Ok(combined)
     }
 
@@ -126,24 +118,8 @@ impl<'a> MembraneStrains<'a> {
         self.each(true, |weight, map, of| {
             let rows = of.strains.len() / pairs;
             let local = of.operator.len() / rows;
-            of_cell.resize(local * columns, 0.0);
-            combined.resize(rows * columns, 0.0);
-            matmul(
-                MatMut::from_column_major_slice_mut(&mut combined, rows, columns),
-                Accum::Replace,
-                MatRef::from_column_major_slice(&of.strains, rows, pairs),
-                MatRef::from_column_major_slice(combinations, pairs, columns),
-                1.0,
-                Par::Seq,
-            );
-            matmul(
-                MatMut::from_column_major_slice_mut(&mut of_cell, local, columns),
-                Accum::Replace,
-                MatRef::from_column_major_slice(&of.operator, local, rows),
-                MatRef::from_column_major_slice(&combined, rows, columns),
-                1.0,
-                Par::Seq,
-            );
+            product(&of.strains, combinations, pairs, &mut combined);
+            product(&of.operator, &combined, rows, &mut of_cell);
             for (force, total) in of_cell.chunks_exact(local).zip(forces.chunks_exact_mut(n)) {
                 map.scatter_vector(force, weight, total);
             }
@@ -175,15 +151,7 @@ impl<'a> MembraneStrains<'a> {
             let rows = of.strains.len() / pairs;
             let (points, local) = (rows / 3, of.operator.len() / rows);
             u.resize(local, 0.0);
-            stress.resize(rows * terms, 0.0);
-            matmul(
-                MatMut::from_column_major_slice_mut(&mut stress, rows, terms),
-                Accum::Replace,
-                MatRef::from_column_major_slice(&of.stresses, rows, pairs),
-                MatRef::from_column_major_slice(combinations, pairs, terms),
-                1.0,
-                Par::Seq,
-            );
+            product(&of.stresses, combinations, pairs, &mut stress);
             for (field, stress) in
                 shapes.iter().flat_map(|s| s.chunks_exact(self.plate.ndof())).zip(stress.chunks_exact_mut(rows))
             {
@@ -311,6 +279,20 @@ impl<'a> MembraneStrains<'a> {
         }
         Ok(())
     }
+}
+
+/// `out ← A B`, column-major, A of `inner` columns.
+fn product(a: &[f64], b: &[f64], inner: usize, out: &mut Vec<f64>) {
+    let (rows, columns) = (a.len() / inner, b.len() / inner);
+    out.resize(rows * columns, 0.0);
+    matmul(
+        MatMut::from_column_major_slice_mut(out, rows, columns),
+        Accum::Replace,
+        MatRef::from_column_major_slice(a, rows, inner),
+        MatRef::from_column_major_slice(b, inner, columns),
+        1.0,
+        Par::Seq,
+    );
 }
 
 /// C without the normal stresses that a theory takes as zero, known by its strain operator: they are condensed.
