@@ -13,8 +13,6 @@ const MOST: usize = 1_000_000;
 const MOST_SOBOL: usize = 1 << 16;
 /// Most keys that its dimensions are enough for, twice each in blocks of Saltelli's.
 const MOST_AXES: usize = 100;
-/// Cases where nobody says how many.
-const SAMPLES: usize = 100;
 
 /// A key of the scene and what it becomes.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,7 +46,7 @@ impl Design {
     pub fn new(
         axes: Vec<SweepAxis>,
         sampling: Option<Sampling>,
-        samples: Option<usize>,
+        samples: usize,
         seed: u64,
     ) -> Result<Self, Error> {
         let refuse = |message: String, help: &str| Error::Sweep { message, help: help.to_owned() };
@@ -72,8 +70,8 @@ impl Design {
             (Sampling::Grid, None) => {
                 axes.iter().map(|axis| axis.variation.count().unwrap_or(1) as f64).product::<f64>()
             }
-            (Sampling::Saltelli, _) => samples.unwrap_or(SAMPLES) as f64 * (axes.len() + 2) as f64,
-            _ => samples.unwrap_or(SAMPLES) as f64,
+            (Sampling::Saltelli, _) => samples as f64 * (axes.len() + 2) as f64,
+            _ => samples as f64,
         };
         let most = match sampling {
             Sampling::Sobol => MOST_SOBOL,
@@ -151,19 +149,19 @@ mod tests {
 
     #[test]
     fn a_grid_has_every_pair() {
-        let grid = Design::new(axes(&["1..3:3", "a,b"]), None, None, 1).unwrap();
+        let grid = Design::new(axes(&["1..3:3", "a,b"]), None, 100, 1).unwrap();
         let cases: Vec<String> = (0..grid.count).map(|k| grid.case(k).join(" ")).collect();
         assert_eq!(cases, ["1 a", "1 b", "2 a", "2 b", "3 a", "3 b"]);
-        let big = Design::new(axes(&["0..1:1000", "0..1:1000", "0..1:1000"]), None, None, 1).unwrap_err();
+        let big = Design::new(axes(&["0..1:1000", "0..1:1000", "0..1:1000"]), None, 100, 1).unwrap_err();
         assert!(big.to_string().contains("1000000000 cases"), "{big}");
-        assert!(Design::new(axes(&["0..1"]), Some(Sampling::Grid), None, 1).is_err());
+        assert!(Design::new(axes(&["0..1"]), Some(Sampling::Grid), 100, 1).is_err());
     }
 
     /// Independent numbers scatter by 1/√(12 n) about 1/2 in the mean; parts of equal probability hold one each.
     #[test]
     fn samples_fill_the_range() {
         for sampling in [Sampling::Random, Sampling::LatinHypercube, Sampling::Sobol] {
-            let design = Design::new(axes(&["0..1", "0..1"]), Some(sampling), Some(256), 7).unwrap();
+            let design = Design::new(axes(&["0..1", "0..1"]), Some(sampling), 256, 7).unwrap();
             for axis in 0..2 {
                 let mut values: Vec<f64> = (0..256).map(|k| design.case(k)[axis].parse().unwrap()).collect();
                 let mean = values.iter().sum::<f64>() / 256.0;
@@ -176,7 +174,7 @@ mod tests {
             }
             assert_eq!(
                 design.case(17),
-                Design::new(axes(&["0..1", "0..1"]), Some(sampling), Some(256), 7).unwrap().case(17)
+                Design::new(axes(&["0..1", "0..1"]), Some(sampling), 256, 7).unwrap().case(17)
             );
         }
     }

@@ -107,8 +107,8 @@ impl<'a> Sweep<'a> {
             Some(name) => Sampling::ALL.iter().find(|(known, _)| known == name).map(|(_, sampling)| *sampling),
             None => scene.sweep.design,
         };
-        let samples = asked.samples.or(scene.sweep.samples);
-        let seed = asked.seed.or(scene.sweep.seed).unwrap_or(1);
+        let samples = asked.samples.unwrap_or(scene.sweep.samples);
+        let seed = asked.seed.unwrap_or(scene.sweep.seed);
         let design = Design::new(axes, sampling, samples, seed)?;
         let mut identity = saved::identity(&Model::new(scene, registry)?)?;
         identity.retain(|key, _| !key.starts_with("sweep."));

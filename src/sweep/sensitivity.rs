@@ -114,7 +114,7 @@ mod tests {
             key: key.to_string(),
             variation: Variation::parse(&format!("uniform({}, {PI})", -PI), None).unwrap(),
         };
-        let design = Design::new((0..3).map(axis).collect(), Some(Sampling::Saltelli), Some(samples), 3).unwrap();
+        let design = Design::new((0..3).map(axis).collect(), Some(Sampling::Saltelli), samples, 3).unwrap();
         assert_eq!(design.count, 5 * samples);
         let case = |k: usize| f(&design.case(k).iter().map(|x| x.parse().unwrap()).collect::<Vec<f64>>());
         (0..samples).map(|block| (0..5).map(|k| case(5 * block + k)).collect()).collect()

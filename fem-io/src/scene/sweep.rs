@@ -6,16 +6,22 @@ use crate::document::source::SceneError;
 use toml_edit::Value;
 
 /// What a scene says of sweeps of it.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SweepSpec {
     /// Keys of the scene with what they become.
     pub set: Vec<(String, Varied)>,
     /// How cases are chosen.
     pub design: Option<Sampling>,
     /// How many cases a design of samples has.
-    pub samples: Option<usize>,
+    pub samples: usize,
     /// What random numbers follow from.
-    pub seed: Option<u64>,
+    pub seed: u64,
+}
+
+impl Default for SweepSpec {
+    fn default() -> Self {
+        Self { set: Vec::new(), design: None, samples: 100, seed: 1 }
+    }
 }
 
 /// What a key becomes in the cases of a sweep.
@@ -77,6 +83,7 @@ pub(super) const KEYS: Keys = &[
 
 pub(super) fn read(field: &SceneValue<'_>) -> Result<SweepSpec, SceneError> {
     let table = field.table(KEYS)?;
+    let plain = SweepSpec::default();
     let set = |field: SceneValue<'_>| {
         let help = "write keys of the scene with what they become: { impactor.velocity = \"1..5:9\" }";
         let setting = field.any_table()?.setting().filter(|keys| !keys.is_empty());
@@ -87,8 +94,8 @@ pub(super) fn read(field: &SceneValue<'_>) -> Result<SweepSpec, SceneError> {
     Ok(SweepSpec {
         set: table.optional("set").map(set).transpose()?.unwrap_or_default(),
         design: table.optional("design").map(|field| field.choice(&Sampling::ALL)).transpose()?,
-        samples: table.optional("samples").map(|field| field.count()).transpose()?,
-        seed: table.optional("seed").map(|field| field.at_least(0)).transpose()?.map(|seed| seed as u64),
+        samples: table.optional("samples").map(|field| field.count()).transpose()?.unwrap_or(plain.samples),
+        seed: table.optional("seed").map(|field| field.at_least(0)).transpose()?.map_or(plain.seed, |seed| seed as u64),
     })
 }
 
