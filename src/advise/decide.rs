@@ -2,8 +2,8 @@
 
 use super::plate::AtRest;
 use super::sampling::look_often;
-use super::{Rim, advise};
-use crate::effect::Expected;
+use super::{Rim, advise, interfaces};
+use crate::effect::{Decision, Expected};
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use fem_core::dof::Dof;
@@ -15,11 +15,27 @@ use std::num::NonZeroUsize;
 /// with stresses that are judged often enough.
 ///
 /// Each effect has a number of its own for what is expected of an impactor, or of loads at rest, and a threshold; the largest
-/// number counts.
+/// number counts. Whether delaminations grow follows from a march of the plate in which they do not.
 ///
 /// # Errors
 /// As [`advise`].
-pub fn decided(model: Model, threads: NonZeroUsize) -> Result<Model, Error> {
+pub fn decided(mut model: Model, threads: NonZeroUsize) -> Result<Model, Error> {
+    let Some(grown) = model.grown.take() else { return decide_effects(model, threads) };
+    let model = decide_effects(model, threads)?;
+    let expected = match &grown.separation {
+        Some(separation) if !separation.is_cracked() => interfaces::strained(&model, separation, threads)?,
+        // What is open from the beginning can only be followed.
+        _ => 1.0,
+    };
+    let threshold = interfaces::THRESHOLD;
+    let on = expected > threshold;
+    let mut model = if on { decide_effects(*grown, threads)? } else { model };
+    let formula = "share of the tractions that damage an interface";
+    model.decisions.push(Decision { effect: "delamination", on, formula, expected, threshold });
+    Ok(model)
+}
+
+fn decide_effects(model: Model, threads: NonZeroUsize) -> Result<Model, Error> {
     let mut model = look_often(model);
     if !model.effects.undecided() {
         return Ok(model);

@@ -13,6 +13,7 @@ mod delamination;
 mod estimate;
 mod held;
 mod hindsight;
+mod interfaces;
 pub mod large_mass;
 mod mesh;
 mod plate;

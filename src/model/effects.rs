@@ -3,6 +3,7 @@
 use super::builder::Builder;
 use super::{Model, NamedCriterion, Plan};
 use crate::effect::{Body, Effects, Facts, Wish};
+use crate::error::Error;
 use crate::registry::NO_REDUCTION;
 use fem_core::element::Element;
 use fem_failure::delamination::DelaminationThreshold;
@@ -34,6 +35,12 @@ impl Builder<'_> {
             effects.add(wish, &Facts { scene: self.scene, element, criteria, full, effects: &wanted, place })?;
         }
         Ok(effects)
+    }
+
+    /// The model with delaminations that grow, where the scene leaves them to the advisor.
+    pub(super) fn grown(&self) -> Result<Option<Box<Model>>, Error> {
+        let Some(grown) = &self.scene.grown else { return Ok(None) };
+        Ok(Some(Box::new(Model::new(&**grown, self.registry)?)))
     }
 
     /// `threshold` where the scene wants it.

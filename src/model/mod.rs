@@ -118,6 +118,9 @@ pub struct Model {
     pub fields: Option<FieldPlan>,
     /// Force at which the laminate delaminates, where that is looked for and a material gives the toughness.
     pub threshold: Option<DelaminationThreshold>,
+    /// The same with delaminations that grow, where the scene leaves them to the advisor, who has not decided yet. Until then they
+    /// do not.
+    pub grown: Option<Box<Model>>,
     /// What is simulated beyond the linear elastic plate.
     pub effects: Effects,
     /// What the advisor decided of that.
@@ -323,6 +326,7 @@ impl Model {
             output: scene.output.clone(),
             fields,
             threshold,
+            grown: builder.grown()?,
             effects,
             decisions: Vec::new(),
             warnings,

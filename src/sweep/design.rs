@@ -43,12 +43,7 @@ impl Design {
     ///
     /// # Errors
     /// No axes, more cases than can be, numbers without end on a grid.
-    pub fn new(
-        axes: Vec<SweepAxis>,
-        sampling: Option<Sampling>,
-        samples: usize,
-        seed: u64,
-    ) -> Result<Self, Error> {
+    pub fn new(axes: Vec<SweepAxis>, sampling: Option<Sampling>, samples: usize, seed: u64) -> Result<Self, Error> {
         let refuse = |message: String, help: &str| Error::Sweep { message, help: help.to_owned() };
         if axes.is_empty() {
             let help = "give `--set impactor.velocity=1..5:9`, or a table `[sweep]` in the scene";
@@ -172,10 +167,7 @@ mod tests {
                     assert!(values.iter().enumerate().all(|(k, v)| (v * 256.0) as usize == k), "{sampling:?}");
                 }
             }
-            assert_eq!(
-                design.case(17),
-                Design::new(axes(&["0..1", "0..1"]), Some(sampling), 256, 7).unwrap().case(17)
-            );
+            assert_eq!(design.case(17), Design::new(axes(&["0..1", "0..1"]), Some(sampling), 256, 7).unwrap().case(17));
         }
     }
 }

@@ -3,6 +3,7 @@
 mod circle;
 mod closed;
 mod dynamics;
+mod left;
 mod scenes;
 mod specimens;
 mod stretched;

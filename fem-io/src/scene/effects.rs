@@ -26,6 +26,8 @@ pub enum Delamination {
     Threshold,
     /// Interfaces open where their law says so.
     Growth,
+    /// As with `Growth` where the sound plate strains its interfaces so far, else as with `Threshold`.
+    Auto,
 }
 
 /// What a scene says of effects.
@@ -98,21 +100,22 @@ pub(super) const KEYS: Keys = &[
         "delamination",
         Form::Words(&words(&DELAMINATIONS)),
         r#""threshold""#,
-        "the contact force at which the laminate delaminates, or delaminations that grow; the threshold follows `damage` unless \
-         it is given",
+        "the force at which the laminate delaminates, or delaminations that grow; the threshold follows `damage` by default",
     ),
 ];
 const DAMAGES: [(&str, Damage); 2] = [("onset", Damage::Onset), ("off", Damage::Off)];
-const DELAMINATIONS: [(&str, Delamination); 3] =
-    [("off", Delamination::Off), ("threshold", Delamination::Threshold), ("growth", Delamination::Growth)];
+const DELAMINATIONS: [(&str, Delamination); 4] = [
+    ("off", Delamination::Off),
+    ("threshold", Delamination::Threshold),
+    ("growth", Delamination::Growth),
+    ("auto", Delamination::Auto),
+];
 
-/// Whether a table of effects asks for delaminations that grow; whatever else is wrong with it is found when it is read.
-pub(super) fn asks_for_growth(field: &SceneValue<'_>) -> bool {
-    field.entries().is_ok_and(|entries| {
-        entries.iter().any(|(key, value)| {
-            *key == "delamination" && matches!(value.choice(&DELAMINATIONS), Ok(Delamination::Growth))
-        })
-    })
+/// What a table of effects says of delamination; whatever is wrong with it is found when it is read.
+pub(super) fn delamination_in(field: &SceneValue<'_>) -> Option<Delamination> {
+    let entries = field.entries().ok()?;
+    let (_, value) = entries.iter().find(|(key, _)| *key == "delamination")?;
+    value.choice(&DELAMINATIONS).ok()
 }
 
 pub(super) fn read(field: &SceneValue<'_>) -> Result<EffectsSpec, SceneError> {

@@ -32,7 +32,7 @@ pub struct Explained {
 /// As [`super::parse`].
 pub fn explain(source: &SceneSource, plugins: Plugins<'_>, effects: &[Key]) -> Result<Vec<Explained>, SceneError> {
     let path = Path::new(source.name());
-    let Merged { mut table, source, .. } = Merged::new(source.text(), path, "")?;
+    let Merged { mut table, source, .. } = Merged::new(source.text(), path, "", false)?;
     let analysis = match table.get("analysis").map(|entry| &entry.item.node) {
         Some(Node::Text(text)) => text.clone(),
         _ => "impact".to_owned(),

@@ -100,6 +100,8 @@ pub struct Scene {
     pub effects: EffectsSpec,
     /// Which interfaces open, where delaminations grow.
     pub delamination: Option<DelaminationSpec>,
+    /// The same scene with delaminations that grow, where it leaves them to the advisor.
+    pub grown: Option<Box<Scene>>,
     /// Lines through the thickness along which stresses are written.
     pub profiles: Vec<ProfileLine>,
     /// Where and when failure is looked for.
@@ -250,11 +252,16 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
 struct Merged {
     table: Table,
     fidelity: Fidelity,
+    /// What it says of delamination.
+    delamination: Option<Delamination>,
+    /// Whether delaminations grow.
+    grows: bool,
     source: Arc<SceneSource>,
 }
 
 impl Merged {
-    fn new(text: &str, path: &Path, setting: &str) -> Result<Self, SceneError> {
+    /// `grown` tells whether delaminations grow that the scene leaves to the advisor.
+    fn new(text: &str, path: &Path, setting: &str, grown: bool) -> Result<Self, SceneError> {
         let source = Arc::new(SceneSource::new(path, text, LIBRARY).with(
             Origin::Setting,
             "what is set over the scene",
@@ -267,28 +274,40 @@ impl Merged {
             None => Fidelity::Engineering,
         };
         let effects = Reader::unchecked(&own, KEYS, &source).optional("effects");
-        let growth = effects.is_some_and(|field| effects::asks_for_growth(&field));
+        let delamination = effects.and_then(|field| effects::delamination_in(&field));
+        let grows = match delamination {
+            Some(Delamination::Auto) => grown,
+            wish => wish == Some(Delamination::Growth),
+        };
         let name = format!("preset `{}`", fidelity.name());
         let source = Arc::new(SceneSource::clone(&source).with(Origin::Preset, name, fidelity.preset()));
         let preset = Table::parse(fidelity.preset(), Origin::Preset, &source)?;
-        let table = match growth {
+        let table = match grows {
             true => own.over(Table::parse(GROWTH, Origin::Preset, &source)?.over(preset)),
             false => own.over(preset),
         };
-        Ok(Self { table, fidelity, source })
+        Ok(Self { table, fidelity, delamination, grows, source })
     }
 }
 
 fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneError> {
-    let merged = Merged::new(text, path, setting)?;
-    read_merged(&merged, path).map_err(|first| {
-        let faults = Reader::unchecked(&merged.table, KEYS, &merged.source).faults();
-        first.with(faults)
-    })
+    let read = |merged: &Merged| {
+        read_merged(merged, path).map_err(|first| {
+            let faults = Reader::unchecked(&merged.table, KEYS, &merged.source).faults();
+            first.with(faults)
+        })
+    };
+    let merged = Merged::new(text, path, setting, false)?;
+    let scene = read(&merged)?;
+    if merged.delamination != Some(Delamination::Auto) {
+        return Ok(scene);
+    }
+    let grown = read(&Merged::new(text, path, setting, true)?)?;
+    Ok(Scene { grown: Some(Box::new(grown)), ..scene })
 }
 
 fn read_merged(merged: &Merged, path: &Path) -> Result<Scene, SceneError> {
-    let Merged { table: merged, fidelity, source } = merged;
+    let Merged { table: merged, fidelity, delamination, grows, source } = merged;
     let root = Reader::root(merged, KEYS, source)?;
     let mut keys = BTreeMap::new();
     merged.flatten("", &mut keys);
@@ -304,7 +323,6 @@ fn read_merged(merged: &Merged, path: &Path) -> Result<Scene, SceneError> {
         Analysis::Impact(impact) => Some(&impact.march),
         _ => None,
     };
-    let growth = effects.delamination.as_ref().is_some_and(|wish| wish.value == Delamination::Growth);
     let onset = effects.damage == Damage::Onset;
     Ok(Scene {
         title: root.required("title")?.text()?.to_owned(),
@@ -332,13 +350,15 @@ fn read_merged(merged: &Merged, path: &Path) -> Result<Scene, SceneError> {
         failure: run::read_failure(&root.required("failure")?, onset && in_time, in_time)?,
         output: root.optional("output").map_or(Ok(Output::default()), |field| run::read_output(&field, march))?,
         delamination: match root.optional("delamination") {
-            Some(field) if growth => Some(delamination::read(&field)?),
+            Some(field) if *grows => Some(delamination::read(&field)?),
+            Some(_) if *delamination == Some(Delamination::Auto) => None,
             Some(field) => {
                 let help = "set effects = { delamination = \"growth\" }, or leave the table out";
                 return Err(field.error("means nothing where delaminations do not grow", help));
             }
             None => None,
         },
+        grown: None,
         analysis,
         effects,
         profiles: root.optional("profile").map_or(Ok(Vec::new()), |field| load::read_profiles(&field))?,

@@ -28,7 +28,7 @@ impl Written {
     /// A text that is not TOML, or a key that no scene has.
     pub fn of(text: &str, path: &Path) -> Result<Self, SceneError> {
         let mut keys = BTreeMap::new();
-        Merged::new(text, path, "")?.table.flatten("", &mut keys);
+        Merged::new(text, path, "", false)?.table.flatten("", &mut keys);
         Ok(Self(keys))
     }
 

@@ -91,7 +91,7 @@ impl Full {
 /// step beyond the stability limit.
 pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Error> {
     let Plan::Impact(impact) = &model.plan else { return Err(Error::NoImpact) };
-    if model.effects.undecided() {
+    if model.effects.undecided() || model.grown.is_some() {
         return Err(Error::Undecided);
     }
     if let Some(separation) = &model.separation {

@@ -34,7 +34,8 @@ impl SharedPlate {
     /// As [`prepare`], but for the step.
     pub fn new(model: &Model, threads: NonZeroUsize) -> Result<Option<Self>, Error> {
         let Plan::Impact(impact) = &model.plan else { return Err(Error::NoImpact) };
-        if model.effects.undecided() || model.separation.is_some() || model.laws.is_some() {
+        let undecided = model.effects.undecided() || model.grown.is_some();
+        if undecided || model.separation.is_some() || model.laws.is_some() {
             return Ok(None);
         }
         if impact.reduction.is_none() && !rests(model) {

@@ -1,0 +1,85 @@
+//! Delaminations that a scene leaves to the advisor.
+
+use super::scenes::{Plate, forces};
+use crate::support::{impact_of, root};
+use fem::analyses::impact::Outcome;
+use fem::effect::Decision;
+use fem::io::scene;
+use fem::{Model, Registry};
+
+/// The plate of the other tests, whose plies nobody judges, under a blow of this velocity, m/s, with `what` done about delamination.
+fn struck(what: &str, velocity: f64) -> (Model, Outcome) {
+    let plate = Plate { effects: "delamination = WHAT", velocity, end_us: 250, ..Plate::new() };
+    let mut text = plate.text().replace("WHAT", &format!("'{what}'"));
+    if what == "threshold" {
+        // The table means nothing where nothing grows.
+        text = text.replace(&plate.delamination, "");
+    }
+    let (model, found) = impact_of(scene::parse(&text, &root().join("scene.toml")).unwrap()).unwrap();
+    (model, found.outcome)
+}
+
+fn decision(model: &Model) -> Decision {
+    let of = model.decisions.iter().find(|decision| decision.effect == "delamination");
+    *of.expect("it is the advisor's")
+}
+
+#[test]
+fn interfaces_that_hold_stay_closed_and_cost_nothing() {
+    let ((model, left), (_, closed)) = (struck("auto", 0.5), struck("threshold", 0.5));
+    let decision = decision(&model);
+    assert!(!decision.on && decision.expected > 0.2 && decision.expected < 0.5, "{decision:?}");
+    assert!(left.delaminated.is_none() && model.separation.is_none());
+    assert_eq!(forces(&left), forces(&closed));
+    assert_eq!(left.peaks, closed.peaks);
+    assert_eq!(left.counters.factorisations, closed.counters.factorisations);
+}
+
+#[test]
+fn interfaces_that_give_way_are_followed() {
+    let ((model, left), (_, open)) = (struck("auto", 3.0), struck("growth", 3.0));
+    let decision = decision(&model);
+    assert!(decision.on && decision.expected > 1.0, "{decision:?}");
+    assert_eq!(forces(&left), forces(&open));
+    let [left, open] = [&left, &open].map(|outcome| outcome.delaminated.as_ref().unwrap());
+    assert!(open.dissipated.total() > 0.0 && left.dissipated == open.dissipated, "{:?} {:?}", left, open);
+    assert_eq!(left.projected, open.projected);
+}
+
+/// The share is proportional to the blow where shear alone strains the interfaces, and the threshold lies where it is said to.
+#[test]
+fn the_share_follows_the_blow() {
+    let share = |velocity| decision(&struck("auto", velocity).0).expected;
+    let [weak, twice] = [0.3, 0.6].map(share);
+    // A contact of Hertz's is stiffer under more force, so that twice the velocity gives a little more than twice.
+    assert!((1.9..2.4).contains(&(twice / weak)), "{weak} {twice}");
+    // What the threshold leaves closed has nothing to lose.
+    let (_, open) = struck("growth", 0.3 * 0.5 / weak);
+    assert_eq!(open.delaminated.unwrap().dissipated.total(), 0.0);
+}
+
+#[test]
+fn what_is_open_from_the_beginning_is_followed() {
+    let mut plate = Plate { effects: "delamination = 'auto'", velocity: 0.05, end_us: 20, ..Plate::new() };
+    plate.delamination = "delamination = { penalty = '2e4 N/mm^3', \
+        start = [{ interface = 1, at = { x = '24 mm', y = '20 mm' }, radius = '10 mm' }] }\n"
+        .into();
+    let (model, found) = impact_of(scene::parse(&plate.text(), &root().join("scene.toml")).unwrap()).unwrap();
+    assert!(decision(&model).on && found.outcome.delaminated.is_some());
+}
+
+#[test]
+fn what_nobody_can_decide_is_refused() {
+    // What cannot grow cannot be left to the advisor either.
+    let left = || Plate { effects: "delamination = 'auto'", ..Plate::new() };
+    let refuse = |find: &str, put: &str, word: &str| {
+        let text = left().text().replace(find, put);
+        let read = scene::parse(&text, &root().join("scene.toml")).map_err(fem::Error::from);
+        let error = read.and_then(|scene| Model::new(scene, &Registry::standard())).map(|_| ()).expect_err("refused");
+        let report = format!("{:?}", miette::Report::new(error));
+        assert!(report.contains(word), "{word:?} is not in {report}");
+    };
+    refuse("'hermite-prism'", "'mitc4'", "a shell holds");
+    refuse("library = 'IM7/8552'", "library = 'AS4/3502'", "the toughness between the plies");
+    refuse("penalty = '2e4 N/mm^3'", "points = 99", "points");
+}
