@@ -2,7 +2,7 @@
 
 use crate::support::{Case, impact_of, root, strip};
 use fem::advise::large_mass::{ImpactPeak, Spring, energy_balance, rigid_target};
-use fem::advise::small_mass::{self, infinite_plate, linear_contact_force};
+use fem::advise::small_mass::{self, infinite_plate, linear_contact_force, rise_time};
 use fem::advise::{Advice, Delaminates, Regime, advise, decided};
 use fem::advise::{Held, hindsight};
 use fem::analyses::impact::{self, Outcome, Sizes};
@@ -271,6 +271,7 @@ fn small_masses_on_an_infinite_plate() {
         let c = small_mass::impedance(areal, d);
         near(small_mass::inelasticity(mass, velocity, c, k), lambda, 3e-3);
         let wave = infinite_plate(mass, velocity, c, &*law("hertz", k), k);
+        assert_eq!(rise_time(mass, velocity, c, &*law("hertz", k), k), wave.time);
         near(wave.force, force, 2e-4);
         near(wave.force, series, 5e-3);
         near(wave.time, time, 2e-3);

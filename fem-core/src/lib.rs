@@ -60,6 +60,6 @@ pub use plates::{
 };
 pub use stresses::{estimate, field, profile, recovery, residual, waves};
 pub use words::{
-    counters, damping, dof, domain, energy, formula, functional, layup, material, prolongation, quadrature, tensor,
-    vectorised,
+    counters, damping, dof, domain, energy, formula, functional, interval, layup, material, prolongation, quadrature,
+    tensor, vectorised,
 };

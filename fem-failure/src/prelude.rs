@@ -1,7 +1,7 @@
 //! What every criterion's file needs.
 
 pub(crate) use crate::terms::{Terms, from_terms};
-pub(crate) use fem_core::failure::{CriterionInfo, FailureCriterion, Site, UnmetCondition};
+pub(crate) use fem_core::failure::{CriterionInfo, FailureCriterion, Site, StressRange, UnmetCondition};
 pub(crate) use fem_core::material::{Material, Strength};
 pub(crate) use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 pub(crate) use fem_core::tensor::{Ply, Stress6};
@@ -10,4 +10,10 @@ pub(crate) use fem_core::tensor::{Ply, Stress6};
 #[inline]
 pub(crate) fn macaulay(v: f64) -> f64 {
     if v < 0.0 { 0.0 } else { v }
+}
+
+/// The bound of a mode that applies to a stress alone where a condition is met, which some of a range do or none.
+#[inline]
+pub(crate) fn when(some: bool, bound: f64) -> f64 {
+    if some { bound.max(0.0) } else { 0.0 }
 }

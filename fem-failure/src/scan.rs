@@ -1,8 +1,10 @@
 //! First damage: which criterion reaches 1 where and when.
 
 mod climb;
+mod survey;
 
 pub use climb::{Climb, Crests};
+pub use survey::{Samples, windows};
 
 use fem_core::failure::{FailureCriterion, Site, check_material};
 use fem_core::material::{Material, MaterialError};
@@ -242,7 +244,58 @@ struct Seen {
     /// One per mode.
     climbs: Vec<Climb>,
     /// Row per place.
-    first: Vec<Option<(Reading, Stress6<Ply>)>>,
+    first: Vec<First>,
+}
+
+/// The first crossing of 1 and the stress there.
+type First = Option<(Reading, Stress6<Ply>)>;
+
+/// A mode of a criterion at a site.
+#[derive(Debug, Clone, Copy)]
+struct Spot {
+    mode: usize,
+    /// Of the place among those of [`Seen::first`].
+    first: usize,
+    site: u32,
+}
+
+/// A sample of an index and of the stress that it follows from.
+#[derive(Debug, Clone, Copy)]
+struct Sighting<'a> {
+    time: f64,
+    index: f64,
+    stress: &'a Stress6<Ply>,
+}
+
+impl Seen {
+    /// Takes what an index is `now` and was at the sample `before`, unless `now` is the first; when it reached 1 in between, s. The
+    /// order in which sites and samples are taken does not matter.
+    fn take(&mut self, spot: Spot, before: Option<Sighting<'_>>, now: Sighting<'_>) -> Option<f64> {
+        let (t, index) = (now.time, now.index);
+        self.climbs[spot.mode].take(before.map_or((t, 0.0), |before| (before.time, before.index)), (t, index));
+        let peak = &mut self.peaks[spot.mode];
+        let here = Reading { time: t, index, site: spot.site };
+        if peak.is_none_or(|p| index > p.index || (index == p.index && here.precedes(&p))) {
+            *peak = Some(here);
+        }
+        // A site that has crossed already left its record then. An infinite index crosses at the sample before.
+        if !(index >= 1.0 && before.is_none_or(|before| before.index < 1.0)) {
+            return None;
+        }
+        let (time, stress) = match before {
+            None => (t, *now.stress),
+            Some(before) => {
+                let share = (1.0 - before.index) / (index - before.index);
+                let between = |i| (1.0 - share) * before.stress.0[i] + share * now.stress.0[i];
+                ((before.time + (t - before.time) * share).min(t), Stress6::new(std::array::from_fn(between)))
+            }
+        };
+        let (here, first) = (Reading { time, ..here }, &mut self.first[spot.first]);
+        if first.is_none_or(|(f, _)| here.precedes(&f)) {
+            *first = Some((here, stress));
+        }
+        Some(time)
+    }
 }
 
 /// One criterion and where it looks.
@@ -257,8 +310,6 @@ struct Watch {
     runs: Vec<(u16, Range<usize>)>,
     /// Indices of the present sample, a row for each site of `span`.
     now: Vec<f64>,
-    /// Largest index of each mode before it.
-    highest: Vec<f64>,
 }
 
 /// Where a scan keeps the indices of one criterion at one site.
@@ -335,8 +386,7 @@ impl Scan {
             }
             let modes = criterion.info().modes;
             let size = span.len() * modes.len();
-            let highest = vec![0.0; modes.len()];
-            watches.push(Watch { now: vec![0.0; size], highest, name, criterion, modes, span, runs });
+            watches.push(Watch { now: vec![0.0; size], name, criterion, modes, span, runs });
             seen.push(Seen {
                 last: vec![0.0; size],
                 maxima: vec![0.0; size],
@@ -381,15 +431,7 @@ impl Scan {
             if let Err((row, mode)) = watch.evaluate(&self.stress, &self.materials) {
                 let k = watch.span.start + row;
                 let site = &self.sites[self.order[k] as usize];
-                return Err(ScanError::Index {
-                    time: t,
-                    criterion: watch.name.clone(),
-                    mode: watch.modes[mode],
-                    cell: site.cell,
-                    place: site.place,
-                    stress: self.stress[k],
-                    scope: watch.criterion.scope(),
-                });
+                return Err(watch.refusal(site, t, mode, self.stress[k]));
             }
         }
         for (watch, seen) in self.watches.iter_mut().zip(&mut self.record.seen) {
@@ -539,6 +581,19 @@ impl Watch {
         Err((bad / modes, bad % modes))
     }
 
+    /// That `mode` has no usable index of `stress`.
+    fn refusal(&self, site: &ScanSite, time: f64, mode: usize, stress: Stress6<Ply>) -> ScanError {
+        ScanError::Index {
+            time,
+            criterion: self.name.clone(),
+            mode: self.modes[mode],
+            cell: site.cell,
+            place: site.place,
+            stress,
+            scope: self.criterion.scope(),
+        }
+    }
+
     /// Takes `now`, the indices at time `t`, into `seen`, whose last are those of the time `last`. `stress` are those of the
     /// two.
     fn record(
@@ -554,9 +609,6 @@ impl Watch {
         let (order, slots) = (&order[self.span.clone()], &slots[self.span.clone()]);
         let stress = stress.map(|s| &s[self.span.clone()]);
         vectorised(|| seen.maxima.iter_mut().zip(&self.now).for_each(|(maximum, now)| *maximum = maximum.max(*now)));
-        for (highest, peak) in self.highest.iter_mut().zip(&seen.peaks) {
-            *highest = peak.map_or(0.0, |peak| peak.index);
-        }
         // Of an index below the largest so far and below 1 there is nothing more to say.
         let least = seen.peaks.iter().map(|peak| peak.map_or(f64::NEG_INFINITY, |peak| peak.index.min(1.0)));
         let least: Vec<f64> = least.cycle().take(BLOCK * modes).collect();
@@ -565,28 +617,12 @@ impl Watch {
         let rows = blocks.flat_map(|(first, block)| (first..).zip(block.chunks_exact(modes)));
         for (row, indices) in rows {
             for (mode, &index) in indices.iter().enumerate() {
-                if index > self.highest[mode] {
-                    let from = last.map_or((t, 0.0), |last| (last, seen.last[row * modes + mode]));
-                    seen.climbs[mode].take(from, (t, index));
-                }
-                let peak = &mut seen.peaks[mode];
-                let here = Reading { time: t, index, site: order[row] };
-                if peak.is_none_or(|p| index > p.index || (index == p.index && here.precedes(&p))) {
-                    *peak = Some(here);
-                }
-                let before = seen.last[row * modes + mode];
-                // A site that has crossed already left its record then. An infinite index crosses at the sample before.
-                if index >= 1.0 && (last.is_none() || before < 1.0) {
-                    let first = &mut seen.first[slots[row] as usize * modes + mode];
-                    let share = if last.is_some() { (1.0 - before) / (index - before) } else { 1.0 };
-                    let time = last.map_or(t, |last| (last + (t - last) * share).min(t));
-                    let here = Reading { time, ..here };
+                let spot = Spot { mode, first: slots[row] as usize * modes + mode, site: order[row] };
+                let was = seen.last[row * modes + mode];
+                let before = last.map(|time| Sighting { time, index: was, stress: &stress[0][row] });
+                if let Some(time) = seen.take(spot, before, Sighting { time: t, index, stress: &stress[1][row] }) {
                     let reached = &mut seen.reached[row * modes + mode];
                     *reached = reached.min(time);
-                    if first.is_none_or(|(f, _)| here.precedes(&f)) {
-                        let between = |i| (1.0 - share) * stress[0][row].0[i] + share * stress[1][row].0[i];
-                        *first = Some((here, Stress6::new(std::array::from_fn(between))));
-                    }
                 }
             }
         }

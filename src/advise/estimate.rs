@@ -3,7 +3,7 @@
 use super::large_mass::{self, ImpactPeak, Spring, energy_balance, rigid_target};
 use super::plate::PlateConstants;
 use super::regime::Regime;
-use super::small_mass::{self, Wave, infinite_plate};
+use super::small_mass::{self, Wave, infinite_plate, rise_time};
 use fem_core::contact::ContactLaw;
 use std::f64::consts::FRAC_PI_2;
 
@@ -30,10 +30,19 @@ impl Blow<'_> {
 /// The first contact of `blow` with an infinite plate of this mass per area, kg/m², and bending stiffness, N m; and the constant of
 /// Hertz's law that is as stiff where the blow is spent, N/m^1.5.
 pub(super) fn first_wave(areal_mass: f64, bending_stiffness: f64, blow: &Blow<'_>) -> (Wave, f64) {
-    let rigid = rigid_target(blow.energy(), blow.law);
-    let k = rigid.force / rigid.indentation.powf(1.5);
-    let impedance = small_mass::impedance(areal_mass, bending_stiffness);
+    let (impedance, k) = (small_mass::impedance(areal_mass, bending_stiffness), as_stiff(blow));
     (infinite_plate(blow.mass, blow.velocity, impedance, blow.law, k), k)
+}
+
+/// When the force of that first contact is largest, s.
+pub(super) fn first_rise(areal_mass: f64, bending_stiffness: f64, blow: &Blow<'_>) -> f64 {
+    let impedance = small_mass::impedance(areal_mass, bending_stiffness);
+    rise_time(blow.mass, blow.velocity, impedance, blow.law, as_stiff(blow))
+}
+
+fn as_stiff(blow: &Blow<'_>) -> f64 {
+    let rigid = rigid_target(blow.energy(), blow.law);
+    rigid.force / rigid.indentation.powf(1.5)
 }
 
 /// The estimates for an impact, as if its impactor struck alone.

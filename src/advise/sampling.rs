@@ -1,6 +1,6 @@
 //! How often the criteria look at the stresses of an impact.
 
-use super::estimate::{Blow, first_wave};
+use super::estimate::{Blow, first_rise};
 use crate::model::{Model, Plan, Strike};
 use fem_core::plugin::Dimension;
 use fem_io::scene::ImpactorSpec;
@@ -17,7 +17,7 @@ pub(super) fn look_often(mut model: Model) -> Model {
     let rise = |(spec, strike): (&ImpactorSpec, &Strike)| {
         let time = impact.spec.march.end.value;
         let blow = Blow { mass: spec.mass, velocity: spec.velocity, time, law: &*strike.law };
-        first_wave(model.areal_mass, stiffness, &blow).0.time
+        first_rise(model.areal_mass, stiffness, &blow)
     };
     // Of a law without a peak there is no rise.
     let rises = impact.spec.impactors.iter().zip(&impact.strikes).map(rise).filter(|rise| *rise > 0.0);

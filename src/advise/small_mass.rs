@@ -1,7 +1,8 @@
 //! A mass much smaller than the plate's: the impact is over before waves return from the edges.
 
-use fem_core::contact::{ContactHistory, ContactLaw};
+use fem_core::contact::{ContactForce, ContactHistory, ContactLaw};
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 
 /// c = 8 √(m D*), N s/m: force over velocity of an infinite plate under a force at a point (Zener, Phys. Rev. 59 (1941) 669;
 /// Olsson, AIAA J. 30 (1992) 1587). m is the mass per area, D* the effective bending stiffness.
@@ -70,39 +71,76 @@ const MOST_STEPS: usize = 200_000;
 /// (Zener; Olsson), by the method of Runge and Kutta. Any contact law will do; the deflection is the momentum that was given
 /// up, over c.
 pub fn infinite_plate(mass: f64, velocity: f64, impedance: f64, law: &dyn ContactLaw, k: f64) -> Wave {
-    let rate = |[alpha, speed]: [f64; 2]| {
-        let contact = law.force(&ContactHistory::default(), alpha);
-        [speed, -contact.tangent * speed / impedance - contact.force / mass]
-    };
-    let force = |alpha: f64| law.force(&ContactHistory::default(), alpha).force;
+    let mut peak = Wave { force: 0.0, time: 0.0, deflection: 0.0, indentation: 0.0, frequency: 0.0 };
+    let (mut square, mut rates, mut last) = (0.0, 0.0, 0.0);
+    follow(mass, velocity, impedance, law, k, |Moment { time, dt, state: [alpha, speed], force }| {
+        if alpha > peak.indentation {
+            peak = Wave { force, time, indentation: alpha, ..peak };
+        }
+        square += force * force;
+        rates += ((force - last) / dt).powi(2);
+        last = force;
+        let given_up = velocity - (speed + force / impedance);
+        peak.deflection = mass * given_up / impedance;
+        ControlFlow::Continue(())
+    });
+    peak.frequency = (rates / square).sqrt() / TAU;
+    peak
+}
+
+/// The time of [`Wave`] alone, which is over long before the contact is.
+pub fn rise_time(mass: f64, velocity: f64, impedance: f64, law: &dyn ContactLaw, k: f64) -> f64 {
+    let (mut time, mut indentation) = (0.0, 0.0);
+    follow(mass, velocity, impedance, law, k, |moment| {
+        let [alpha, _] = moment.state;
+        if !(alpha > indentation) {
+            return ControlFlow::Break(());
+        }
+        (time, indentation) = (moment.time, alpha);
+        ControlFlow::Continue(())
+    });
+    time
+}
+
+/// What the contact with an infinite plate is after a step.
+struct Moment {
+    time: f64,
+    dt: f64,
+    /// Indentation and its rate.
+    state: [f64; 2],
+    force: f64,
+}
+
+/// Steps through the contact, until it is over or `heard` has enough.
+fn follow(
+    mass: f64,
+    velocity: f64,
+    impedance: f64,
+    law: &dyn ContactLaw,
+    k: f64,
+    mut heard: impl FnMut(Moment) -> ControlFlow<()>,
+) {
+    let contact = |alpha: f64| law.force(&ContactHistory::default(), alpha);
+    let rate = |contact: ContactForce, speed: f64| [speed, -contact.tangent * speed / impedance - contact.force / mass];
     let along = |s: [f64; 2], r: [f64; 2], h: f64| [s[0] + h * r[0], s[1] + h * r[1]];
     let dt = contact_time(mass, velocity, k) / (1.0 + inelasticity(mass, velocity, impedance, k)) / STEPS;
     // Just touching: laws have no tangent before.
-    let (mut state, mut peak) = (
-        [TOUCH * velocity * dt, velocity],
-        Wave { force: 0.0, time: 0.0, deflection: 0.0, indentation: 0.0, frequency: 0.0 },
-    );
-    let (mut square, mut rates, mut last) = (0.0, 0.0, 0.0);
+    let mut state = [TOUCH * velocity * dt, velocity];
+    let mut here = contact(state[0]);
     for step in 1..=MOST_STEPS {
-        let a = rate(state);
-        let b = rate(along(state, a, 0.5 * dt));
-        let c = rate(along(state, b, 0.5 * dt));
-        let d = rate(along(state, c, dt));
+        let next = |r: [f64; 2], h: f64| {
+            let [alpha, speed] = along(state, r, h);
+            rate(contact(alpha), speed)
+        };
+        let a = rate(here, state[1]);
+        let b = next(a, 0.5 * dt);
+        let c = next(b, 0.5 * dt);
+        let d = next(c, dt);
         state = std::array::from_fn(|i| state[i] + dt / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
-        let [alpha, speed] = state;
-        if alpha > peak.indentation {
-            peak = Wave { force: force(alpha), time: step as f64 * dt, indentation: alpha, ..peak };
-        }
-        let now = force(alpha);
-        square += now * now;
-        rates += ((now - last) / dt).powi(2);
-        last = now;
-        let given_up = velocity - (speed + force(alpha) / impedance);
-        peak.deflection = mass * given_up / impedance;
-        if !(alpha > 0.0) {
+        here = contact(state[0]);
+        let moment = Moment { time: step as f64 * dt, dt, state, force: here.force };
+        if heard(moment).is_break() || !(state[0] > 0.0) {
             break;
         }
     }
-    peak.frequency = (rates / square).sqrt() / TAU;
-    peak
 }

@@ -5,6 +5,7 @@ mod expansion;
 pub mod impact;
 pub mod matrices;
 pub mod modes;
+mod operator;
 pub(crate) mod saved;
 pub mod statics;
 pub mod stress;

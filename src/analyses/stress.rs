@@ -1,12 +1,11 @@
 //! Stresses along a march: sampled, recovered in batches, handed to the scan.
 
 use super::expansion::Expansion;
+use super::operator::{LANES, SURVEYED, Sampled, StressOperator, put};
 use crate::error::Error;
 use crate::forecast::Demand;
 use crate::model::{Model, NamedCriterion};
 use crate::words::name_ply;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
 use fem_core::failure::Site;
 use fem_core::laws::PlyLaws;
 use fem_core::recovery::{Recovery, Station};
@@ -52,6 +51,8 @@ pub(super) struct Watch<'a> {
     expansion: Rc<Expansion<'a>>,
     of_plate: Arc<PlateStresses>,
     scan: Scan,
+    /// Whether only what can be first or largest is judged.
+    sparing: bool,
     /// Where the scan keeps the indices of each history.
     probes: Vec<Vec<Probe>>,
     stresses: Vec<f64>,
@@ -63,10 +64,16 @@ pub(super) struct Watch<'a> {
 #[derive(Debug)]
 pub(super) struct PlateStresses {
     recovery: Recovery,
-    /// Six per station, empty where there are none.
-    residual: Vec<f64>,
-    /// 6·sites × modes: stresses per unit of each modal coordinate.
-    operator: Option<Vec<f64>>,
+    way: Way,
+}
+
+/// How stresses follow from coordinates.
+#[derive(Debug)]
+enum Way {
+    /// By a product.
+    Product(StressOperator),
+    /// From displacements; six a site that do not follow from them, none where there are none.
+    Recovery(Vec<f64>),
 }
 
 impl PlateStresses {
@@ -77,16 +84,15 @@ impl PlateStresses {
     pub(super) fn new(model: &Model, expansion: &Expansion<'_>) -> Result<Self, Error> {
         let recovery = build_recovery(model);
         let residual = residual(model, &recovery)?;
-        let mut operator = None;
         // Stresses of large deflections are not products with the coordinates.
         if let Some((basis, modes)) = expansion.basis().filter(|_| !model.effects.nature().large)
             && 6 * recovery.sites() * modes * size_of::<f64>() <= Demand::OPERATOR_LIMIT
         {
             let mut product = vec![0.0; 6 * recovery.sites() * modes];
             recover(model, &recovery, &expansion.nodal(basis), modes, None, &mut product)?;
-            operator = Some(product);
+            return Ok(Self { recovery, way: Way::Product(StressOperator::new(&product, modes, residual)) });
         }
-        Ok(Self { recovery, residual, operator })
+        Ok(Self { recovery, way: Way::Recovery(residual) })
     }
 }
 
@@ -104,7 +110,8 @@ pub(super) struct Record {
 }
 
 impl<'a> Watch<'a> {
-    /// Prepares the scan of `model`, which is marched in the coordinates of `expansion`.
+    /// Prepares the scan of `model`, which is marched in the coordinates of `expansion`; with `firsts_alone` it judges only what can
+    /// be first or largest, where the stresses are products and no single place is followed. It then cannot be saved.
     ///
     /// # Errors
     /// A criterion whose material lacks a constant.
@@ -112,18 +119,22 @@ impl<'a> Watch<'a> {
         model: &'a Model,
         expansion: Rc<Expansion<'a>>,
         of_plate: Arc<PlateStresses>,
+        firsts_alone: bool,
     ) -> Result<Self, Error> {
         let recovery = &of_plate.recovery;
         let scan = Scan::new(model.criteria.clone(), sites(recovery), model.materials.clone())?;
         let of_cells = model.watched.len() * recovery.stations.len();
-        let (probes, histories) = gauges(model, &scan, of_cells).into_iter().unzip();
+        let (probes, histories): (Vec<_>, Vec<_>) = gauges(model, &scan, of_cells).into_iter().unzip();
+        let sparing = firsts_alone && histories.is_empty() && matches!(of_plate.way, Way::Product(_));
+        let stresses = if sparing { 0 } else { 6 * recovery.sites() * Demand::BATCH };
         Ok(Self {
             model,
             expansion,
+            sparing,
             probes,
             scan,
             record: Record { histories, ..Record::default() },
-            stresses: vec![0.0; 6 * recovery.sites() * Demand::BATCH],
+            stresses: vec![0.0; stresses],
             states: vec![Stress6::new([0.0; 6]); recovery.sites()],
             of_plate,
         })
@@ -137,7 +148,8 @@ impl<'a> Watch<'a> {
         self.record.points.extend_from_slice(points);
         self.record.times.push(t);
         self.record.waiting.extend_from_slice(coordinates);
-        if self.record.times.len() == Demand::BATCH { self.flush() } else { Ok(()) }
+        let most = if self.sparing { SURVEYED } else { Demand::BATCH };
+        if self.record.times.len() == most { self.flush() } else { Ok(()) }
     }
 
     /// Scans the samples still waiting.
@@ -145,6 +157,14 @@ impl<'a> Watch<'a> {
     /// # Errors
     /// As [`Watch::sample`].
     pub(super) fn flush(&mut self) -> Result<(), Error> {
+        if let (true, Way::Product(operator)) = (self.sparing, &self.of_plate.way) {
+            let Record { times, waiting, .. } = &mut self.record;
+            self.scan.survey(times, &mut Sampled::new(operator, waiting, times.len()))?;
+            // The next batch begins with the last sample.
+            waiting.drain(..waiting.len() / times.len().max(1) * times.len().saturating_sub(1));
+            times.drain(..times.len().saturating_sub(1));
+            return Ok(());
+        }
         let [times, waiting, points] =
             [&mut self.record.times, &mut self.record.waiting, &mut self.record.points].map(std::mem::take);
         let mut stresses = std::mem::take(&mut self.stresses);
@@ -164,25 +184,25 @@ impl<'a> Watch<'a> {
         if count == 0 {
             return Ok(());
         }
-        let PlateStresses { recovery, residual, operator } = &*self.of_plate;
+        let PlateStresses { recovery, way } = &*self.of_plate;
         let rows = 6 * recovery.sites();
-        let width = waiting.len() / count;
         let out = &mut stresses[..rows * count];
-        match operator {
-            Some(operator) => matmul(
-                MatMut::from_column_major_slice_mut(out, rows, count),
-                Accum::Replace,
-                MatRef::from_column_major_slice(operator, rows, width),
-                MatRef::from_column_major_slice(waiting, width, count),
-                1.0,
-                Par::Seq,
-            ),
-            None => {
+        match way {
+            Way::Product(operator) => {
+                let (columns, mut samples) = (operator.columns(waiting), [Stress6::new([0.0; 6]); LANES]);
+                for site in 0..recovery.sites() {
+                    put(&operator.stresses(site, &columns), &mut samples[..count]);
+                    for (out, sample) in out.chunks_exact_mut(rows).zip(&samples) {
+                        out[6 * site..6 * site + 6].copy_from_slice(&sample.0);
+                    }
+                }
+            }
+            Way::Recovery(residual) => {
                 let u = self.expansion.displacements(waiting, count);
                 recover(self.model, recovery, &u, count, Some(points), out)?;
+                add(out, residual);
             }
         }
-        add(out, residual);
         for (t, stresses) in times.iter().zip(stresses.chunks_exact(rows)) {
             for (state, s) in self.states.iter_mut().zip(stresses.chunks_exact(6)) {
                 *state = Stress6::new([s[0], s[1], s[2], s[3], s[4], s[5]]);

@@ -109,10 +109,10 @@ fn compute(sweep: &Sweep<'_>, group: &Group, case: usize, stop: &AtomicBool) -> 
     let scene = parse_under(sweep.source.text(), Path::new(sweep.source.name()), &sweep.setting(case))?;
     if let Some((model, plate)) = on_shared_plate(sweep, group, &scene)? {
         let model = advise::decided(model, NonZeroUsize::MIN)?;
-        return march(&model, plate.struck(&model)?, stop);
+        return march(&model, || plate.struck(&model), stop);
     }
     let model = advise::decided(plain(&scene, sweep)?, NonZeroUsize::MIN)?;
-    march(&model, impact::prepare(&model, NonZeroUsize::MIN)?.without_estimates(), stop)
+    march(&model, || Ok(impact::prepare(&model, NonZeroUsize::MIN)?.without_estimates()), stop)
 }
 
 /// The model of `scene` on the plate that the cases of `group` share, made by the first of them; `None` where there is but one, or
@@ -139,13 +139,24 @@ fn plain(scene: &Scene, sweep: &Sweep<'_>) -> Result<Model, Error> {
     Ok(model)
 }
 
-fn march(model: &Model, prepared: Prepared<'_>, stop: &AtomicBool) -> Result<CaseFigures, Error> {
-    let sizes = prepared.sizes;
-    let mut march = March::start(prepared)?;
-    while !march.done() && !stop.load(Ordering::Relaxed) {
-        march.advance();
+fn march<'a>(
+    model: &'a Model,
+    prepared: impl Fn() -> Result<Prepared<'a>, Error>,
+    stop: &AtomicBool,
+) -> Result<CaseFigures, Error> {
+    let run = |prepared: Prepared<'a>| {
+        let sizes = prepared.sizes;
+        let mut march = March::start(prepared)?;
+        while !march.done() && !stop.load(Ordering::Relaxed) {
+            march.advance();
+        }
+        Ok::<_, Error>((sizes, march.finish()))
+    };
+    let (mut sizes, mut outcome) = run(prepared()?.firsts_alone())?;
+    if outcome.stopped.is_some() {
+        // The first that is refused anywhere says why, as in `fem run`.
+        (sizes, outcome) = run(prepared()?)?;
     }
-    let outcome = march.finish();
     match outcome.stopped.clone() {
         Some(why) => Err(Error::Stopped(why)),
         None => Ok(CaseFigures::of(model, &sizes, outcome)),

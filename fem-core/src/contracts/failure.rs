@@ -1,5 +1,6 @@
 //! The contract of a failure criterion.
 
+use crate::words::interval::Interval;
 use crate::words::material::{Material, MaterialError, Strength};
 use crate::words::tensor::{Ply, Stress6};
 use dyn_clone::DynClone;
@@ -43,6 +44,27 @@ impl Reserve {
     pub const UNBOUNDED: Self = Self { factor: f64::INFINITY, mode: None };
 }
 
+/// All stresses between two, component by component.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)]
+pub struct StressRange {
+    pub low: Stress6<Ply>,
+    pub high: Stress6<Ply>,
+}
+
+macro_rules! components {
+    ($($name:ident)*) => {
+        impl StressRange {$(
+            #[inline]
+            #[allow(missing_docs)]
+            pub fn $name(&self) -> Interval {
+                Interval { low: self.low.$name(), high: self.high.$name() }
+            }
+        )*}
+    };
+}
+components!(s11 s22 s33 s12 s23 s31);
+
 /// A failure criterion: a pure function of the stress in a ply's (or the resin's) own axes.
 ///
 /// ```
@@ -82,6 +104,21 @@ pub trait FailureCriterion: DynClone + Debug + Send + Sync {
     fn indices_many(&self, s: &[Stress6<Ply>], m: &Material, out: &mut [f64]) {
         for (s, out) in s.iter().zip(out.chunks_exact_mut(self.info().modes.len())) {
             self.indices(s, m, out);
+        }
+    }
+
+    /// What no index of a stress in `s` exceeds but by rounding (a part in 10⁹ is left for that), one per mode into `out`: a
+    /// scan passes over what cannot fail. Infinite, as provided, where the criterion cannot say; a finite number says as
+    /// well that it refuses no stress in `s`. [`Interval`] makes such bounds of the formulas of the indices.
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let _ = (s, m);
+        out.fill(f64::INFINITY);
+    }
+
+    /// [`FailureCriterion::bounds`] of many ranges, `modes` numbers each.
+    fn bounds_many(&self, s: &[StressRange], m: &Material, out: &mut [f64]) {
+        for (s, out) in s.iter().zip(out.chunks_exact_mut(self.info().modes.len())) {
+            self.bounds(s, m, out);
         }
     }
 

@@ -1,6 +1,6 @@
 //! The contract of a failure criterion.
 
-use crate::contracts::failure::{FailureCriterion, Reserve, check_material};
+use crate::contracts::failure::{FailureCriterion, Reserve, StressRange, check_material};
 use crate::words::material::{Material, Strength};
 use crate::words::tensor::{Ply, Stress6};
 
@@ -9,8 +9,8 @@ use crate::words::tensor::{Ply, Stress6};
 /// Demanded: a name for every mode, and every mode written, by [`FailureCriterion::indices_many`] as by
 /// [`FailureCriterion::indices`]; no failure without stress; a NaN in a component that matters never passes; a reserve
 /// factor below which nothing fails, at which its mode does, and that is inversely proportional to the stress from
-/// 10⁻²⁰⁰ to 10²⁰⁰; indices that a rotation about the fibre leaves alone, where that is claimed. Stresses that the
-/// criterion refuses are passed over, but it must take half of those in plane stress.
+/// 10⁻²⁰⁰ to 10²⁰⁰; indices that a rotation about the fibre leaves alone, where that is claimed; bounds that no index
+/// exceeds. Stresses that the criterion refuses are passed over, but it must take half of those in plane stress.
 ///
 /// # Errors
 /// The first violation, with the stress.
@@ -34,6 +34,9 @@ pub fn check_criterion(criterion: &dyn FailureCriterion, m: &Material) -> Result
         return Err(format!("it refuses most plane stresses and says that it takes {}", criterion.scope()));
     }
     kit.batch(&taken)?;
+    for pair in states.windows(2) {
+        kit.bounds(&pair[0], &pair[1])?;
+    }
     for s in &taken {
         let at = |why: String| format!("{why}, for {s:?}");
         kit.nan(s).map_err(at)?;
@@ -186,6 +189,39 @@ impl Kit<'_> {
         Ok(())
     }
 
+    /// Over ranges from small to large around the way from `from` to `to`, at their ends and in between.
+    fn bounds(&self, from: &Stress6<Ply>, to: &Stress6<Ply>) -> Result<(), String> {
+        for share in [0.0, 0.01, 0.3, 1.0] {
+            let other: [f64; 6] = std::array::from_fn(|i| from.0[i] + share * (to.0[i] - from.0[i]));
+            let [low, high] = [f64::min, f64::max]
+                .map(|least: fn(f64, f64) -> f64| Stress6::new(std::array::from_fn(|i| least(from.0[i], other[i]))));
+            let mut most = vec![f64::NAN; self.modes];
+            self.criterion.bounds(&StressRange { low, high }, self.m, &mut most);
+            if most.iter().all(|most| *most == f64::INFINITY) {
+                continue;
+            }
+            for k in 0..128_u32 {
+                // Corners first, then places within.
+                let within: [f64; 6] = std::array::from_fn(|i| match k {
+                    0..64 if k >> i & 1 == 0 => low.0[i],
+                    0..64 => high.0[i],
+                    _ => {
+                        let weyl = (f64::from(k) * [2_f64, 3.0, 5.0, 7.0, 11.0, 13.0][i].sqrt()).fract();
+                        (low.0[i] + weyl * (high.0[i] - low.0[i])).clamp(low.0[i], high.0[i])
+                    }
+                });
+                let s = Stress6::new(within);
+                let indices = self.indices(&s);
+                let holds =
+                    |(index, most): (&f64, &f64)| *most == f64::INFINITY || *index <= *most + 1e-12 * most.abs();
+                if !indices.iter().zip(&most).all(holds) {
+                    return Err(format!("the bounds {most:?} are below the indices {indices:?}, for {s:?}"));
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn rotation(&self, s: &Stress6<Ply>) -> Result<(), String> {
         let straight = self.indices(s);
         let scale = straight.iter().fold(1.0, |a: f64, v| a.max(v.abs()));
@@ -218,6 +254,7 @@ mod tests {
         OverflowsTheReserve,
         DiffersInBatches,
         RefusesEverything,
+        IsBoundTooLow,
     }
 
     impl FailureCriterion for Faulty {
@@ -252,6 +289,12 @@ mod tests {
                 self.indices(s, m, out);
                 out[1] *= if *self == Self::DiffersInBatches { 1.0 + 1e-15 } else { 1.0 };
             }
+        }
+
+        fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+            let share = if *self == Self::IsBoundTooLow { 0.99 } else { 1.0 };
+            out.fill(f64::INFINITY);
+            out[0] = share * s.s11().squared().high / m.strengths.xt().powi(2);
         }
 
         fn reserve_factor(&self, s: &Stress6<Ply>, m: &Material) -> Reserve {
@@ -290,6 +333,7 @@ mod tests {
             (Faulty::OverflowsTheReserve, "times the stress"),
             (Faulty::DiffersInBatches, "indices_many"),
             (Faulty::RefusesEverything, "refuses"),
+            (Faulty::IsBoundTooLow, "are below the indices"),
         ];
         assert_eq!(check_criterion(&Faulty::None, &m), Ok(()));
         for (fault, words) in faults {

@@ -66,6 +66,23 @@ impl FailureCriterion for Hashin1980 {
 
     from_terms!();
 
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let r = &m.strengths;
+        let along = (s.s12().squared() + s.s31().squared()).high / (r.s12() * r.s12());
+        let (across, s23) = (s.s23().squared(), r.s23() * r.s23());
+        let (sum, half) = (s.s22() + s.s33(), (s.s22() - s.s33()) * 0.5);
+        let linear = sum.negative() * (r.yc() * r.yc() / (4.0 * s23) - 1.0) * (1.0 / r.yc());
+        out.copy_from_slice(&[
+            when(s.s11().reaches_positive(), (s.s11().positive().high / r.xt()).powi(2) + along),
+            when(s.s11().reaches_negative(), (s.s11().low / r.xc()).powi(2)),
+            when(
+                sum.reaches_positive(),
+                (sum.positive().high / r.yt()).powi(2) + (across - s.s22() * s.s33()).high / s23 + along,
+            ),
+            when(sum.reaches_negative(), linear.high.max(0.0) + (half.squared() + across).high / s23 + along),
+        ]);
+    }
+
     fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
         check_transverse_tension(m)
     }

@@ -34,6 +34,12 @@ fn shear(s: &Stress6<Ply>, m: &Material) -> f64 {
     (s.s31() / m.strengths.s13()).powi(2) + (s.s23() / m.strengths.s23()).powi(2)
 }
 
+/// What [`shear`] does not exceed.
+#[inline]
+fn shear_bound(s: &StressRange, m: &Material) -> f64 {
+    (s.s31().magnitude() / m.strengths.s13()).powi(2) + (s.s23().magnitude() / m.strengths.s23()).powi(2)
+}
+
 impl QuadraticStress {
     #[inline]
     fn terms(&self, s: &Stress6<Ply>, m: &Material) -> [Terms; 1] {
@@ -74,6 +80,10 @@ impl FailureCriterion for QuadraticStress {
     }
 
     from_terms!();
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        out[0] = (s.s33().positive().high / m.strengths.zt()).powi(2) + shear_bound(s, m);
+    }
 }
 
 impl FailureCriterion for MaxStressInterface {
@@ -88,6 +98,15 @@ impl FailureCriterion for MaxStressInterface {
     }
 
     from_terms!();
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let r = &m.strengths;
+        out.copy_from_slice(&[
+            s.s33().positive().high / r.zt(),
+            s.s31().magnitude() / r.s13(),
+            s.s23().magnitude() / r.s23(),
+        ]);
+    }
 }
 
 impl FailureCriterion for BrewerLagace {
@@ -102,6 +121,11 @@ impl FailureCriterion for BrewerLagace {
     }
 
     from_terms!();
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let normal = (s.s33().positive().high / m.strengths.zt()).max(-s.s33().negative().low / m.strengths.zc());
+        out[0] = normal * normal + shear_bound(s, m);
+    }
 }
 
 macro_rules! plugin {

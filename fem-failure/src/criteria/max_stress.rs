@@ -53,6 +53,22 @@ impl FailureCriterion for MaxStress {
     }
 
     from_terms!();
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let r = &m.strengths;
+        let (pulled, pressed) = (|v: f64, limit: f64| v.max(0.0) / limit, |v: f64, limit: f64| (-v).max(0.0) / limit);
+        out.copy_from_slice(&[
+            pulled(s.s11().high, r.xt()),
+            pressed(s.s11().low, r.xc()),
+            pulled(s.s22().high, r.yt()),
+            pressed(s.s22().low, r.yc()),
+            pulled(s.s33().high, r.yt()),
+            pressed(s.s33().low, r.yc()),
+            s.s23().magnitude() / r.s23(),
+            s.s31().magnitude() / r.s12(),
+            s.s12().magnitude() / r.s12(),
+        ]);
+    }
 }
 
 impl Plugin for MaxStress {

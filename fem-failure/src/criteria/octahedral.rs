@@ -36,6 +36,13 @@ impl FailureCriterion for Octahedral {
     }
 
     from_terms!();
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let (a, b, c) = (s.s11() - s.s22(), s.s22() - s.s33(), s.s33() - s.s11());
+        let shear = s.s12().squared() + s.s23().squared() + s.s31().squared();
+        let tau = m.strengths.s12();
+        out[0] = ((a.squared() + b.squared() + c.squared()).high / 6.0 + shear.high) / (tau * tau);
+    }
 }
 
 impl Plugin for Octahedral {

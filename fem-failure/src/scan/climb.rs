@@ -52,6 +52,10 @@ impl Climb {
 
     /// An index that went from `before` at time `from` to `now` at `t`, in a straight line.
     pub(super) fn take(&mut self, (from, before): (f64, f64), (t, now): (f64, f64)) {
+        // Most are far below what was passed before.
+        if now < LOWEST || self.times[LEVELS - 1] <= from {
+            return;
+        }
         let top = Self::passed(now);
         // What was passed earlier lies below.
         if top == 0 || self.times[top - 1] <= from || now <= before {
@@ -61,6 +65,11 @@ impl Climb {
             let share = (Self::level(k) - before) / (now - before);
             self.times[k] = self.times[k].min((from + (t - from) * share).min(t));
         }
+    }
+
+    /// The lowest level that was not passed by the time `from`; infinite where all were.
+    pub(super) fn open(&self, from: f64) -> f64 {
+        self.times.iter().position(|time| *time > from).map_or(f64::INFINITY, Self::level)
     }
 
     /// When the index first passed `level`, s: between two levels by a straight line unless a crest ends there. `None` for one that

@@ -1,6 +1,6 @@
 use super::*;
 use crate::{HashinReport, Octahedral};
-use fem_core::failure::CriterionInfo;
+use fem_core::failure::{CriterionInfo, StressRange};
 use fem_core::material::{Elastic, Strength, Strengths, Toughnesses};
 
 fn material(name: &str, strengths: &[(Strength, f64)]) -> Material {
@@ -233,4 +233,82 @@ fn missing_constants_are_named_before_the_march() {
         Scan::new(criteria(), sites, vec![ply()]),
         Err(ScanError::NoSuchMaterial { material: 1, given: 1, .. })
     ));
+}
+
+/// Stresses of sites over a batch of samples, and ranges that hold them closely.
+struct Batch<'a>(&'a [Vec<Stress6<Ply>>]);
+
+impl Samples for Batch<'_> {
+    fn ranges(&mut self, site: usize, out: &mut [StressRange]) {
+        for (window, out) in windows(self.0.len()).zip(out) {
+            let states = self.0[window].iter().map(|sample| sample[site].0);
+            let [low, high] = [f64::min, f64::max].map(|f: fn(f64, f64) -> f64| {
+                let extreme = |a: [f64; 6], b: [f64; 6]| std::array::from_fn(|i| f(a[i], b[i]));
+                Stress6::new(states.clone().reduce(extreme).unwrap())
+            });
+            *out = StressRange { low, high };
+        }
+    }
+
+    fn stresses(&mut self, site: usize, window: usize, out: &mut [Stress6<Ply>]) {
+        let window = windows(self.0.len()).nth(window).unwrap();
+        self.0[window].iter().zip(out).for_each(|(sample, out)| *out = sample[site]);
+    }
+}
+
+#[test]
+fn a_survey_finds_what_a_scan_of_all_samples_finds() {
+    let places = [PlyOrInterface::Ply(0), PlyOrInterface::Interface(0), PlyOrInterface::Ply(1)];
+    let sites: Vec<_> = (0..40).flat_map(|cell| places.map(|p| site(cell, p, u16::from(p == places[1])))).collect();
+    let (tape, resin) = (ply(), resin(9.0));
+    let mut failed = 0;
+    // `Plain` cannot say what it does not exceed.
+    for (size, with_plain) in [(0.1, true), (0.4, false), (1.0, false), (3.0, true), (20.0, false)] {
+        let mut criteria: Vec<(String, Box<dyn FailureCriterion>)> =
+            vec![("h".into(), Box::new(HashinReport::default())), ("o".into(), Box::new(Octahedral))];
+        if with_plain {
+            criteria.push(("p".into(), Box::new(Plain)));
+        }
+        let stress = |sample: usize, site: usize| {
+            let component = |i: usize| {
+                let (t, phase) = (sample as f64 / 100.0, (site * 7 + i * 3) as f64);
+                let near = 1.0 / (1.0 + (site / 3) as f64);
+                size * t * near * 6.0 * ((4.0 + 0.1 * phase) * t + phase).sin()
+            };
+            Stress6::new(std::array::from_fn(component))
+        };
+        let samples: Vec<Vec<_>> = (0..100).map(|s| (0..sites.len()).map(|k| stress(s, k)).collect()).collect();
+        let times: Vec<f64> = (0..samples.len()).map(|s| s as f64 * 1e-5).collect();
+        let scan = Scan::new(criteria, sites.clone(), vec![tape.clone(), resin.clone()]).unwrap();
+        let mut all = scan.clone();
+        times.iter().zip(&samples).for_each(|(t, s)| all.sample(*t, s).unwrap());
+        for batch in [100, 37, 2] {
+            let mut some = scan.clone();
+            let mut end = 0;
+            while end < times.len() {
+                let start = end.saturating_sub(1);
+                end = (start + batch).min(times.len());
+                some.survey(&times[start..end], &mut Batch(&samples[start..end])).unwrap();
+            }
+            assert_eq!(some.events(), all.events());
+            assert_eq!(some.peaks(), all.peaks());
+            failed += usize::from(!some.events().is_empty());
+            if batch == 100 && !with_plain {
+                assert!(some.evaluations() < all.evaluations() / 2, "{} {size}", some.evaluations());
+            }
+        }
+    }
+    assert!((6..=12).contains(&failed), "some sizes fail, some do not: {failed}");
+}
+
+#[test]
+fn a_survey_refuses_what_a_scan_refuses() {
+    let mut scan = plain(1);
+    let sample = |s: f64| vec![along(s)];
+    assert!(matches!(scan.survey(&[0.0, 0.0], &mut Batch(&[sample(0.0), sample(1.0)])), Err(ScanError::Time { .. })));
+    assert!(scan.survey(&[f64::NAN], &mut Batch(&[sample(0.0)])).is_err());
+    scan.survey(&[0.0, 1.0], &mut Batch(&[sample(0.0), sample(0.5)])).unwrap();
+    assert!(scan.survey(&[2.0, 3.0], &mut Batch(&[sample(0.0), sample(1.0)])).is_err(), "a sample is left out");
+    let bad = [sample(0.5), sample(f64::INFINITY)];
+    assert!(matches!(scan.survey(&[1.0, 2.0], &mut Batch(&bad)), Err(ScanError::Stress { .. })));
 }

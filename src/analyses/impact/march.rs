@@ -217,7 +217,18 @@ impl<'a> March<'a> {
 
     fn at(prepared: Prepared<'a>, progress: Progress) -> Result<Self, Error> {
         let Prepared {
-            model, impact, mut system, effects, reduced, membrane, share, full, condensation, stresses, ..
+            model,
+            impact,
+            mut system,
+            effects,
+            reduced,
+            membrane,
+            share,
+            full,
+            condensation,
+            stresses,
+            firsts_alone,
+            ..
         } = prepared;
         let Prepared { sizes, counters, mut stopwatch, .. } = prepared;
         stopwatch.lap("reduce");
@@ -248,12 +259,11 @@ impl<'a> March<'a> {
         let followed = model.output.modes.as_ref().zip(reduced.as_deref());
         let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
         let expansion = Rc::new(Expansion { model, reduced, companions, share, condensation });
-        let watch = match (model.criteria.is_empty(), stresses) {
-            (true, _) => None,
-            (false, Some(known)) => Some(Watch::new(model, expansion.clone(), known)?),
-            (false, None) => {
-                let of_plate = Arc::new(PlateStresses::new(model, &expansion)?);
-                Some(Watch::new(model, expansion.clone(), of_plate)?)
+        let watch = match model.criteria.is_empty() {
+            true => None,
+            false => {
+                let known = stresses.map_or_else(|| PlateStresses::new(model, &expansion).map(Arc::new), Ok)?;
+                Some(Watch::new(model, expansion.clone(), known, firsts_alone)?)
             }
         };
         stopwatch.lap("prepare stresses");

@@ -46,6 +46,8 @@ pub struct Prepared<'a> {
     pub(super) condensation: Option<Arc<Condensation>>,
     /// What the criteria see of it, where that is known from an impact before.
     pub(super) stresses: Option<Arc<PlateStresses>>,
+    /// Whether criteria judge only what can be first or largest.
+    pub(super) firsts_alone: bool,
     /// Sizes and limits.
     pub sizes: Sizes,
     pub(super) counters: Counters,
@@ -57,6 +59,13 @@ impl Prepared<'_> {
     #[must_use]
     pub fn without_estimates(self) -> Self {
         Self { full: None, ..self }
+    }
+
+    /// With criteria that judge only where an index can be the first to reach 1, or the largest: events and peaks are to the bit those
+    /// of all places, but maps of all places and checkpoints cannot be made.
+    #[must_use]
+    pub fn firsts_alone(self) -> Self {
+        Self { firsts_alone: true, ..self }
     }
 
     /// Another system like the one that is marched, where its plate is reduced.
@@ -184,6 +193,7 @@ pub(super) fn strike<'a>(
         full: None,
         condensation,
         stresses: None,
+        firsts_alone: false,
         sizes,
         counters: Counters::default(),
         stopwatch: Stopwatch::default(),
@@ -254,6 +264,7 @@ fn prepare_separable<'a>(
         full: None,
         condensation: None,
         stresses: None,
+        firsts_alone: false,
         sizes,
         counters,
         stopwatch,

@@ -1,0 +1,171 @@
+//! Stresses of the places that are watched, as products with the coordinates of a reduced plate.
+
+use crate::forecast::Demand;
+use fem_core::failure::StressRange;
+use fem_core::tensor::{Ply, Stress6};
+use fem_core::vectorised::products;
+use fem_failure::scan::{Samples, windows};
+use std::ops::Range;
+
+/// Columns of a product.
+pub(super) const LANES: usize = Demand::BATCH;
+
+/// Samples that fill all lanes when a scan looks at them window by window.
+pub(super) const SURVEYED: usize = LANES * (LANES - 1) + 1;
+
+/// Columns of coordinates, `LANES` numbers for each of them.
+type Columns = Vec<[f64; LANES]>;
+
+/// The stress at each site per unit of each coordinate.
+#[derive(Debug)]
+pub(super) struct StressOperator {
+    /// Of each site six rows, one number per coordinate.
+    rows: Vec<f64>,
+    width: usize,
+    /// Stresses that do not follow from the coordinates, six a site; empty where there are none.
+    residual: Vec<f64>,
+}
+
+impl StressOperator {
+    /// From fields of stresses, six a site, one for each of `width` coordinates.
+    pub(super) fn new(fields: &[f64], width: usize, residual: Vec<f64>) -> Self {
+        let height = fields.len() / width.max(1);
+        let mut rows = vec![0.0; fields.len()];
+        // A square of both at a time stays near.
+        for (first, block) in (0..).step_by(8).zip(fields.chunks(8 * height.max(1))) {
+            for row in 0..height {
+                for (out, field) in rows[row * width + first..].iter_mut().zip(block.chunks_exact(height)) {
+                    *out = field[row];
+                }
+            }
+        }
+        Self { rows, width, residual }
+    }
+
+    /// Coordinates of `samples`, one after the other, as columns; lanes without a sample are zero.
+    pub(super) fn columns(&self, samples: &[f64]) -> Columns {
+        let lane = |k: usize| std::array::from_fn(|lane| samples.get(lane * self.width + k).copied().unwrap_or(0.0));
+        (0..self.width).map(lane).collect()
+    }
+
+    /// The stresses of `site` for each of the `columns`, by component. A sum takes its terms in one order whatever stands beside it,
+    /// so that a stress does not depend on what else is computed.
+    pub(super) fn stresses(&self, site: usize, columns: &Columns) -> [[f64; LANES]; 6] {
+        let mut out = self.product::<false>(site, columns);
+        for (out, residual) in out.iter_mut().zip(self.residual(site)) {
+            out.iter_mut().for_each(|s| *s += residual);
+        }
+        out
+    }
+
+    fn residual(&self, site: usize) -> [f64; 6] {
+        std::array::from_fn(|i| self.residual.get(6 * site + i).copied().unwrap_or(0.0))
+    }
+
+    /// The product of the rows of `site`, or of their magnitudes, with the columns.
+    fn product<const MAGNITUDES: bool>(&self, site: usize, columns: &Columns) -> [[f64; LANES]; 6] {
+        let rows = &self.rows[6 * site * self.width..][..6 * self.width];
+        // Three rows at a time leave all sums in registers.
+        let (first, second) = rows.split_at(3 * self.width);
+        let [[a, b, c], [d, e, f]] = [first, second].map(|rows| products::<MAGNITUDES, LANES>(rows, columns));
+        [a, b, c, d, e, f]
+    }
+}
+
+/// Samples of coordinates, as a scan asks for their stresses.
+pub(super) struct Sampled<'a> {
+    operator: &'a StressOperator,
+    /// Of each window.
+    columns: Vec<Columns>,
+    /// Of each window, a lane: the middle of each coordinate's range, and half its length.
+    middles: Columns,
+    halves: Columns,
+}
+
+impl<'a> Sampled<'a> {
+    /// Of `count` samples, at most [`SURVEYED`], whose coordinates stand one after the other.
+    pub(super) fn new(operator: &'a StressOperator, coordinates: &[f64], count: usize) -> Self {
+        let width = operator.width;
+        let of = |window: &Range<usize>| &coordinates[window.start * width..window.end * width];
+        let windows: Vec<_> = windows(count).collect();
+        let (mut middles, mut halves) = (vec![[0.0; LANES]; width], vec![[0.0; LANES]; width]);
+        // Rounding takes half a unit of each term and sum.
+        let rounding = (width + 8) as f64 * 8.0 * f64::EPSILON;
+        for (lane, window) in windows.iter().enumerate() {
+            for (k, (middle, half)) in middles.iter_mut().zip(&mut halves).enumerate() {
+                let values = of(window).iter().skip(k).step_by(width);
+                let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+                middle[lane] = 0.5 * (low + high);
+                let reach = (high - middle[lane]).max(middle[lane] - low);
+                half[lane] = reach + rounding * (middle[lane].abs() + reach);
+            }
+        }
+        Self { operator, columns: windows.iter().map(|window| operator.columns(of(window))).collect(), middles, halves }
+    }
+}
+
+impl Samples for Sampled<'_> {
+    fn ranges(&mut self, site: usize, out: &mut [StressRange]) {
+        let middle = self.operator.product::<false>(site, &self.middles);
+        let half = self.operator.product::<true>(site, &self.halves);
+        let [mut low, mut high] = [[[0.0; LANES]; 6]; 2];
+        for (i, residual) in self.operator.residual(site).into_iter().enumerate() {
+            for lane in 0..LANES {
+                let (middle, half) = (middle[i][lane], half[i][lane]);
+                let half = half + 4.0 * f64::EPSILON * (middle.abs() + half + residual.abs());
+                (low[i][lane], high[i][lane]) = (middle + residual - half, middle + residual + half);
+            }
+        }
+        for (lane, out) in out.iter_mut().enumerate() {
+            let [low, high] = [&low, &high].map(|components| at(components, lane));
+            *out = StressRange { low, high };
+        }
+    }
+
+    fn stresses(&mut self, site: usize, window: usize, out: &mut [Stress6<Ply>]) {
+        put(&self.operator.stresses(site, &self.columns[window]), out);
+    }
+}
+
+/// Turns components of samples into samples of components.
+pub(super) fn put(components: &[[f64; LANES]; 6], out: &mut [Stress6<Ply>]) {
+    out.iter_mut().enumerate().for_each(|(lane, out)| *out = at(components, lane));
+}
+
+fn at([a, b, c, d, e, f]: &[[f64; LANES]; 6], lane: usize) -> Stress6<Ply> {
+    Stress6::new([a[lane], b[lane], c[lane], d[lane], e[lane], f[lane]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_hold_the_stresses_closely() {
+        let (sites, width, count) = (3, 5, 100);
+        let wave = |k: usize| (k as f64 * 0.7).sin();
+        let fields: Vec<f64> = (0..6 * sites * width).map(|k| 1e9 * wave(k * k)).collect();
+        let residual: Vec<f64> = (0..6 * sites).map(|k| 1e7 * wave(3 * k)).collect();
+        let coordinates: Vec<f64> = (0..width * count).map(|k| wave(k / width * (1 + k % width)) * 0.01).collect();
+        let operator = StressOperator::new(&fields, width, residual.clone());
+        let mut sampled = Sampled::new(&operator, &coordinates, count);
+        let all: Vec<_> = windows(count).collect();
+        let mut ranges = vec![StressRange { low: Stress6::new([0.0; 6]), high: Stress6::new([0.0; 6]) }; all.len()];
+        let mut out = [Stress6::new([0.0; 6]); LANES];
+        for site in 0..sites {
+            sampled.ranges(site, &mut ranges);
+            for (number, window) in all.iter().enumerate() {
+                sampled.stresses(site, number, &mut out[..window.len()]);
+                for (sample, stress) in window.clone().zip(&out) {
+                    for i in 0..6 {
+                        let field = |k: usize| fields[k * 6 * sites + 6 * site + i] * coordinates[sample * width + k];
+                        let sum = (0..width).map(field).sum::<f64>() + residual[6 * site + i];
+                        let StressRange { low, high } = ranges[number];
+                        assert!((stress.0[i] - sum).abs() < 1e-6, "{} is not {sum}", stress.0[i]);
+                        assert!(low.0[i] <= stress.0[i] && stress.0[i] <= high.0[i]);
+                    }
+                }
+            }
+        }
+    }
+}
