@@ -168,6 +168,34 @@ fn a_ladder_says_what_it_leaves() {
     }
 }
 
+/// Delaminations that grow have ladders of their own, and none of what they have chosen.
+#[test]
+fn of_delaminations_that_grow() {
+    let case = strip().text(
+        "title = 'growth'\nmesh = { rectangle = ['48 mm', '40 mm'], cells = [6, 6] }\nsymmetry = 'quarter'\n\
+         element = { kind = 'hermite-prism' }\neffects = { damage = 'off', delamination = 'growth' }\n\
+         support = [{ group = 'x-min', kind = 'simply-supported' }, { group = 'x-max', kind = 'simply-supported' }]\n\
+         impactor = { mass = '1 kg', velocity = '3 m/s', at = { x = '24 mm', y = '20 mm' }, patch_radius = '4 mm' }\n\
+         contact = { law = 'hertz', k = '4e9 N/m^1.5' }\nmarch = { step = '1 us', end = '250 us' }\n\
+         laminate = { plies = '[0/90/0]', material = 'tape', ply_thickness = '1 mm' }\n\
+         [materials.tape]\nlibrary = 'IM7/8552'\nZt = '20 MPa'\nS13 = '25 MPa'\n",
+    );
+    let done = case.fem("study", &["--axis", "layers,reduction,points,margin", "--out", "study"]).good();
+    let rows = rows(&case, "study");
+    let of = |axis: &str| rows.iter().filter(|((of, _), _)| of == axis).map(|(_, row)| row).collect::<Vec<_>>();
+    assert!(of("layers").is_empty() && of("reduction").is_empty(), "{done:#?}");
+    let (points, margins) = (of("points"), of("margin"));
+    assert_eq!(points.iter().map(|row| &row["setting"][..]).collect::<Vec<_>>(), ["2 x 2 points", "8 x 8 points"]);
+    let own = &of("scene")[0];
+    let dissipated = |row: &BTreeMap<String, String>| number(row, "dissipated-energy");
+    assert!(dissipated(own) > 0.01 && number(own, "absorbed-energy") != 0.0, "{own:?}");
+    // Neither more points nor more that is open ahead of damage find another damage, only less well integrated ones do.
+    for row in margins.iter().chain(&points[1..]) {
+        assert!((dissipated(row) / dissipated(own) - 1.0).abs() < 0.05, "{row:?} {own:?}");
+    }
+    assert!(done.stdout.contains("dissipated-energy"), "{done:#?}");
+}
+
 #[test]
 fn what_a_study_does_not_know_is_refused() {
     let case = short();

@@ -1,10 +1,10 @@
 //! What statements of accuracy are worth: errors that runs say of themselves against those to finer runs, the worst first:
-//! `cargo bench --bench worth`, with parts of names of examples if not all. A Markdown table.
+//! `cargo bench --bench worth`, with parts of names of examples or settings if not all. A Markdown table.
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
 mod scenes;
 
-use scenes::{SCENES, statements};
+use scenes::{SCENES, Variant, statements};
 
 /// Errors below this are of no interest.
 const SMALL: f64 = 1e-3;
@@ -13,11 +13,12 @@ fn main() {
     let wanted: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
     let mut all = Vec::new();
     for (name, variants) in SCENES {
-        if !wanted.is_empty() && !wanted.iter().any(|word| name.contains(word.as_str())) {
-            continue;
-        }
+        let chosen = |variant: &&Variant| {
+            let whole = format!("{name}, {}", variant.0);
+            wanted.is_empty() || wanted.iter().any(|word| whole.contains(word.as_str()))
+        };
         let mut known = Vec::new();
-        for variant in variants {
+        for variant in variants.iter().filter(chosen) {
             all.extend(statements((name, *variant), &mut known));
         }
     }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// An example, and settings of it.
 type Scene = (&'static str, &'static [Variant]);
 /// A name and what it sets.
-type Variant = (&'static str, &'static [(&'static str, &'static str)]);
+pub(crate) type Variant = (&'static str, &'static [(&'static str, &'static str)]);
 
 const AS_GIVEN: Variant = ("as given", &[]);
 const FEW: Variant = ("15 vectors", &[("reduction", "{ method = 'ritz', vectors = 15 }")]);
@@ -20,16 +20,20 @@ const MODES: Variant = ("20 modes", &[("reduction", "{ method = 'modal', modes =
 const CRAIG: Variant = ("30 interface modes", &[("reduction", "{ method = 'craig-bampton', modes = 30 }")]);
 const LONG_STEP: Variant = ("steps of 1 us", &[("march.step", "'1 us'")]);
 const SHELL: Variant = ("mitc4", &[("element", "{ kind = 'mitc4' }"), ("laminate.layers", "1")]);
+const STRETCHED: Variant = ("membrane", &[("effects.membrane", "'on'")]);
+const STRETCHED_FEW: Variant =
+    ("membrane, 15 vectors", &[("effects.membrane", "'on'"), ("reduction", "{ method = 'ritz', vectors = 15 }")]);
 const SERENDIPITY: Variant = ("hex20", &[("element", "{ kind = 'hex20' }")]);
 
-pub(crate) const SCENES: [Scene; 7] = [
+pub(crate) const SCENES: [Scene; 8] = [
     ("as4-3502-16ply-50mm", &[AS_GIVEN, FEW, GOVERNORS, THREE, MODES, CRAIG, LONG_STEP, SHELL, SERENDIPITY]),
-    ("as4-3502-16ply-75mm", &[AS_GIVEN, FEW, LONG_STEP, SHELL]),
-    ("as4-3502-8ply-25mm", &[AS_GIVEN, FEW, GOVERNORS, LONG_STEP, SERENDIPITY]),
+    ("as4-3502-16ply-75mm", &[AS_GIVEN, FEW, LONG_STEP, SHELL, STRETCHED]),
+    ("as4-3502-8ply-25mm", &[AS_GIVEN, FEW, GOVERNORS, LONG_STEP, SERENDIPITY, STRETCHED]),
     ("as4-3502-8ply-50mm", &[AS_GIVEN, FEW, MODES, SHELL]),
-    ("as4-3502-8ply-75mm", &[AS_GIVEN, LONG_STEP, CRAIG]),
+    ("as4-3502-8ply-75mm", &[AS_GIVEN, LONG_STEP, CRAIG, STRETCHED, STRETCHED_FEW]),
     ("im6-934-32ply-small-mass", &[AS_GIVEN, FEW, LONG_STEP, SHELL]),
     ("im6-934-32ply-large-mass", &[AS_GIVEN, FEW, SHELL]),
+    ("im6-934-32ply-drop-weight", &[STRETCHED]),
 ];
 
 /// A result, the figure of a study that it is, and its error.
@@ -67,12 +71,13 @@ fn setting(of: &[(&str, &str)]) -> Setting {
 pub(crate) fn statements((name, variant): (&str, Variant), known: &mut Vec<(String, RunRecord)>) -> Vec<Statement> {
     let (path, registry) = (example(name), Registry::standard());
     let own = setting(variant.1);
-    let kind = variant.1.iter().find(|(key, _)| *key == "element");
+    // What makes another plate, and not the same one less well.
+    let kind: Vec<_> = variant.1.iter().filter(|(key, _)| *key == "element" || key.starts_with("effects.")).collect();
     let key = format!("{name} {kind:?}");
     let finer = known.iter().position(|(other, _)| *other == key).unwrap_or_else(|| {
         let mut fine = setting(&[("mesh.refine", "1"), ("reduction", "{ method = 'ritz', vectors = 160 }")]);
-        fine.extend(kind.map(|(key, value)| ((*key).to_owned(), (*value).to_owned())));
-        let shell = kind.is_some_and(|(_, value)| value.contains("mitc4"));
+        fine.extend(kind.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())));
+        let shell = kind.iter().any(|(_, value)| value.contains("mitc4"));
         fine.insert("laminate.layers".to_owned(), if shell { "1" } else { "4" }.to_owned());
         let step = scene::read(&path).unwrap().impact().unwrap().march.step.value;
         fine.insert("march.step".to_owned(), format!("'{:e} s'", 0.5 * step));

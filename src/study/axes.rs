@@ -7,7 +7,7 @@ use crate::registry::{NO_REDUCTION, Registry};
 use fem_core::plugin::Dimension;
 use fem_core::plugin::{Kind, Plugin as _, Role, unknown_key};
 use fem_dynamics::reduce::Ritz;
-use fem_io::scene::{MarchSpec, MeshSource, Scene, Setting};
+use fem_io::scene::{DelaminationSpec, MarchSpec, MeshSource, Scene, Setting};
 
 /// A part of the settings that is varied while the others stay as the scene has them.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,11 +70,13 @@ pub(super) const STEP: &str = "march.step";
 pub(super) const TOLERANCE: &str = "march.tolerance";
 
 /// Names of all axes, in the order in which they are run.
-pub const NAMES: [&str; 13] = [
+pub const NAMES: [&str; 15] = [
     "mesh",
     "layers",
     "reduction",
     "step",
+    "points",
+    "margin",
     "geometry",
     "z-derivatives",
     "quadrature",
@@ -90,7 +92,7 @@ pub const NAMES: [&str; 13] = [
 pub(super) const LAYERS: &str = "layers";
 
 /// Those of them that are ladders.
-pub(super) const LADDERS: [&str; 4] = ["mesh", LAYERS, "reduction", "step"];
+pub(super) const LADDERS: [&str; 6] = ["mesh", LAYERS, "reduction", "step", "points", "margin"];
 
 /// Most combinations of levels of all ladders.
 const MOST_TOGETHER: f64 = 1e5;
@@ -148,7 +150,12 @@ pub(super) fn judges(axis: &str) -> &'static [&'static str] {
 
 /// The axis `name` of `scene`, whose model is `model`, if it has at least one level beside the scene's own.
 fn standard(name: &str, scene: &Scene, model: &Model, registry: &Registry) -> Option<StudyAxis> {
+    // Delaminations that grow have laid layers and chosen what marches them.
+    let grows = scene.delamination.is_some() || scene.grown.is_some();
     let (kind, levels) = match name {
+        LAYERS | "reduction" | "reductions" | "integrators" if grows => return None,
+        "points" => (AxisKind::Ladder, points(scene)?),
+        "margin" => (AxisKind::Ladder, margin(model)?),
         "mesh" => (AxisKind::Ladder, mesh(scene)),
         "layers" => (AxisKind::Ladder, layers(scene, model)),
         "reduction" => (AxisKind::Ladder, reduction(scene, model, registry)?),
@@ -243,6 +250,24 @@ pub(super) fn reduced(name: &str, size: Option<(&str, usize)>, choice: &str) -> 
 
 pub(super) fn seconds(step: f64) -> String {
     quoted(format!("{step:e} s"))
+}
+
+/// Points of integration of a cell of an interface.
+fn points(scene: &Scene) -> Option<Vec<Level>> {
+    let own = scene.delamination.as_ref()?.points;
+    let label = |n: usize| format!("{n} x {n} points");
+    let level = |n: usize| Level::new(label(n), [("delamination.points", n.to_string())]);
+    let coarser = Some(own / 2).filter(|n| *n > 1).map(level);
+    let finer = Some(2 * own).filter(|n| *n <= DelaminationSpec::MOST_POINTS).map(level);
+    Some(coarser.into_iter().chain([Level::own(label(own))]).chain(finer).collect())
+}
+
+/// Width of what is open ahead of damage.
+fn margin(model: &Model) -> Option<Vec<Level>> {
+    let own = model.separation.as_ref()?.growth.margin;
+    let label = |margin: f64| Dimension::LENGTH.of(margin).to_string();
+    let wider = |by: f64| Level::new(label(by * own), [("delamination.margin", quoted(format!("{:e} m", by * own)))]);
+    Some(vec![Level::own(label(own)), wider(2.0), wider(4.0)])
 }
 
 /// Steps; where they are divided to a tolerance, that follows them, so that their parts are longer or shorter as they are.

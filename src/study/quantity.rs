@@ -40,6 +40,12 @@ pub(super) fn of_impact(model: &Model, found: &ImpactFound) -> Vec<Figure> {
         figures.push(Figure::new(name("impulse"), impact.impulse_N_s, true));
         figures.push(Figure::new(name("deflection"), impact.peak_plate_displacement_m, true));
     }
+    if let Some(grown) = &summary.delamination {
+        figures.push(Figure::new("delaminated-area", grown.projected_area_mm2 * 1e-6, true));
+        figures.push(Figure::new("delaminated-areas", grown.area_mm2 * 1e-6, false));
+        figures.push(Figure::new("dissipated-energy", grown.dissipated_J, true));
+        figures.push(Figure::new("absorbed-energy", grown.absorbed_J, true));
+    }
     figures.push(Figure::new("compliance", 1.0 / sizes.static_stiffness, false));
     let first = outcome.events.iter().map(|e| e.time).reduce(f64::min);
     figures.extend(first.map(|time| Figure::new("first-damage", time, true)));

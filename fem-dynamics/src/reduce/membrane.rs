@@ -243,6 +243,19 @@ impl MembranePlate {
         Self { modal, factor: None, ..self.clone() }
     }
 
+    /// The same plate, stretched by the slowest `count` of its modes alone.
+    #[must_use]
+    pub fn stretched_by(&self, count: usize) -> Self {
+        let n = self.modal.stiffnesses().len();
+        let mut slow = self.clone();
+        for form in slow.forms.chunks_exact_mut(n * n) {
+            for (j, column) in form.chunks_exact_mut(n).enumerate() {
+                column[if j < count { count.min(n) } else { 0 }..].fill(0.0);
+            }
+        }
+        slow
+    }
+
     /// Finds B_t q and b_t.
     fn stretch(&mut self, q: &[f64]) {
         let forms = self.forms.chunks_exact(q.len() * q.len());

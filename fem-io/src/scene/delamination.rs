@@ -37,9 +37,13 @@ pub struct StartingDelamination {
     pub radius: f64,
 }
 
-/// Points of integration of a cell each way, and the most.
+/// Points of integration of a cell each way.
 const POINTS: usize = 4;
-const MOST_POINTS: usize = 16;
+
+impl DelaminationSpec {
+    /// Most points of integration of a cell, each way.
+    pub const MOST_POINTS: usize = 16;
+}
 
 /// Share of the tractions of damage at which interfaces are opened. The mean at a node misses the peak beside it.
 const TRIGGER: f64 = 0.2;
@@ -93,10 +97,13 @@ pub(super) fn read(field: &SceneValue<'_>) -> Result<DelaminationSpec, SceneErro
         other => Err(field.error(format!("{other} is not a share"), "give a number between 0 and 1, such as 0.2")),
     };
     let points = |field: &SceneValue<'_>| match field.count()? {
-        count if count <= MOST_POINTS => Ok(count),
+        count if count <= DelaminationSpec::MOST_POINTS => Ok(count),
         count => Err(field.error(
             format!("{count} points each way"),
-            format!("4 to 8 are enough at cells as wide as the process zone, {MOST_POINTS} are the most"),
+            format!(
+                "4 to 8 are enough at cells as wide as the process zone, {} are the most",
+                DelaminationSpec::MOST_POINTS
+            ),
         )),
     };
     let interface = |field: &SceneValue<'_>| Ok(field.at(field.count()? - 1));

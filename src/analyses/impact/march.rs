@@ -242,7 +242,7 @@ impl<'a> March<'a> {
                 let impactors = place_impactors(impact, &contacts, Some(&richer));
                 (ImpactSystem::new(Box::new(richer.modal.clone()), impactors), richer.modal)
             };
-            let alone = membrane.is_none() && system.weight().is_none() && model.effects.nature().inertia;
+            let alone = system.weight().is_none() && model.effects.nature().inertia;
             let run = Before {
                 system: &system,
                 reduced,

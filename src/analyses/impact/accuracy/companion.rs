@@ -22,8 +22,9 @@ const STEP: u64 = 30;
 /// Evaluations of a contact law in a step, of the integrators that are most asked for.
 const CALLS: u64 = 4;
 
-/// Matrices that an iteration passes.
+/// Matrices that an iteration of a plate under large deflections passes, and iterations of a step.
 const FORMS: u64 = 16;
+const ITERATIONS: u64 = 2;
 
 /// States of a march that are kept, at most.
 const KEPT: u64 = 64;
@@ -109,18 +110,23 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    /// Beside a run of these `sizes` that took so many `solves` with the full plate.
-    pub(super) fn new(integrator: Box<dyn Integrator>, sizes: &Sizes, solves: u64) -> Self {
+    /// Beside a run of these `sizes` that took so many `solves` with the full plate, under `large` deflections or not.
+    pub(super) fn new(integrator: Box<dyn Integrator>, sizes: &Sizes, solves: u64, large: bool) -> Self {
         let solves = solves + FACTORISATION;
+        // Steps of the linear plate that one of the run takes as long as.
+        let passes = |steps: u64| match large {
+            true => steps.saturating_mul(1 + ITERATIONS * iteration(sizes.marched as u64)),
+            false => steps,
+        };
         let budget = (sizes.factor_entries as u64).saturating_mul(solves) / CHEAP / (sizes.marched as u64 + STEP);
         // Iterations of contacts may be worth a step each.
-        let budget = budget.max(2 * sizes.steps / LONGEST);
+        let budget = budget.max(passes(2 * sizes.steps / LONGEST));
         let stable = |stride: &u64| *stride as f64 * sizes.step <= sizes.longest_step;
         let strides =
             || std::iter::successors(Some(2), |stride| Some(2 * stride)).take_while(|stride| *stride <= LONGEST);
         // The shortest that is cheap enough, or the longest that is stable; long steps iterate more.
-        let passes = |stride: &u64| sizes.steps / stride * u64::from(stride.ilog2().min(2));
-        let cheap = strides().filter(stable).find(|stride| passes(stride) <= budget);
+        let all = |stride: &u64| passes(sizes.steps / stride * u64::from(stride.ilog2().min(2)));
+        let cheap = strides().filter(stable).find(|stride| all(stride) <= budget);
         let stride = cheap.or_else(|| strides().filter(stable).last());
         let (stride, parts) = stride.map_or((1, 2), |stride| (stride, 1));
         let (dt, count) = (sizes.step * stride as f64 / parts as f64, sizes.steps / stride);
@@ -149,9 +155,7 @@ impl Pace {
         modal: &Modal,
         mut see: impl FnMut(Instant),
     ) -> Option<Companion> {
-        // Each iteration of a plate under large deflections passes some matrices.
-        let (unknowns, marched) = (self.marched as u64, self.marched as u64 + STEP);
-        let nonlinear = |system: &ImpactSystem| system.iterations() * FORMS * unknowns * unknowns / marched;
+        let nonlinear = |system: &ImpactSystem| system.iterations() * iteration(self.marched as u64);
         if self.count.saturating_mul(self.parts) > self.budget {
             return None;
         }
@@ -164,8 +168,8 @@ impl Pace {
                 integrator.step(&mut system, &mut state, self.dt).ok()?;
                 state.t = (i * self.parts + part) as f64 * self.dt;
             }
-            // Stages and divided steps are not seen in the number of steps.
-            if system.contact_calls() / CALLS + nonlinear(&system) > self.budget {
+            // Stages and divided steps are not seen in the number of steps; others do not stop little beyond a march that did not.
+            if system.contact_calls() / CALLS + nonlinear(&system) > MORE * self.budget {
                 return None;
             }
             let each: Vec<f64> = (0..system.impactors().len()).map(|k| system.contact_force(k, &state)).collect();
@@ -202,6 +206,14 @@ impl Pace {
         };
         base.against(&self.march(system.on(plate), &modal, |_| ())?)
     }
+}
+
+/// Most work of a companion over the budget, by which its steps are chosen.
+const MORE: u64 = 2;
+
+/// Steps of a linear plate of so many unknowns that an iteration under large deflections takes as long as.
+fn iteration(unknowns: u64) -> u64 {
+    FORMS * unknowns * unknowns / (unknowns + STEP)
 }
 
 /// Of the stiffest contact.

@@ -30,6 +30,10 @@ use reduction::Richer;
 /// Least error of the peak over that of the history: the difference of two single values passes through zero by chance.
 const PEAK: f64 = 0.25;
 
+/// What half of the vectors change in the tension of large deflections, over what all of them leave: 2³ − 1. Against 160 vectors
+/// of `as4-3502-8ply-75mm` 15 and 60 of them left a nineteenth and a seventh of it in the impulse.
+const HALVED: f64 = 7.0;
+
 /// Estimated errors of a run; nothing where no honest estimate is cheap.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Accuracy {
@@ -70,7 +74,7 @@ pub(super) struct Before<'a> {
     pub(super) membrane: Option<&'a MembranePlate>,
     pub(super) integrator: Box<dyn Integrator>,
     pub(super) sizes: &'a Sizes,
-    /// Makes a reduced plate a system, where that is all that there is to it.
+    /// Makes a linear reduced plate a system, where only the tension of large deflections is beside it.
     pub(super) couple: Option<&'a dyn Fn(Reduced) -> (ImpactSystem, Modal)>,
     /// Errors of the mesh, where they are known.
     pub(super) mesh: Option<OfFields>,
@@ -86,15 +90,28 @@ impl Estimates {
             Some(membrane) => Box::new(membrane.clone()),
             None => Box::new(reduced.modal.clone()),
         };
-        let pace = Pace::new(integrator, sizes, full.solves());
+        let pace = Pace::new(integrator, sizes, full.solves(), membrane.is_some());
         let mut instants = Vec::new();
         let base = pace.march(system.on(plate), &reduced.modal, |instant| instants.push(instant));
-        // The residual is that of a linear plate.
-        if base.is_none() || membrane.is_some() {
+        // What a reduction leaves out is asked of the linear plate: tension is a matter of its slow vectors.
+        let linear = membrane.and_then(|_| {
+            instants.clear();
+            pace.march(system.on(Box::new(reduced.modal.clone())), &reduced.modal, |instant| instants.push(instant))
+        });
+        let linear = if membrane.is_some() { linear.as_ref() } else { base.as_ref() };
+        if linear.is_none() {
             instants.clear();
         }
-        let richer = couple.zip(base.as_ref()).map(|(couple, base)| Richer { couple, pace: &pace, base });
-        let reduction = reduction::estimate(full, reduced, &instants, richer);
+        let richer = couple.zip(linear).map(|(couple, base)| Richer { couple, pace: &pace, base });
+        let mut reduction = reduction::estimate(full, reduced, &instants, richer);
+        if let (Some(found), Some(membrane)) = (&mut reduction, membrane) {
+            // Of the tension, by what half of the vectors change in it.
+            let slow = membrane.stretched_by(sizes.marched / 2);
+            let left = base
+                .as_ref()
+                .and_then(|base| base.against(&pace.march(system.on(Box::new(slow)), &reduced.modal, |_| ())?));
+            found.response = found.response.zip(left).map(|(a, b)| a.with(b, |a, b| a + b / HALVED));
+        }
         let mesh = mesh.map(|errors| match &base {
             Some(base) => errors.judge(system, (reduced, membrane), &pace, base),
             None => MeshAccuracy { at_rest: errors.at_rest, response: None },

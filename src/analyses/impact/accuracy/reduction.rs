@@ -89,16 +89,18 @@ pub(super) fn estimate(
     let mut solved = loads.clone();
     full.structure.solve_shifted(0.0, &mut solved, full.contacts.len() + chosen.len()).ok()?;
 
-    let (at_rest, moving) = solved.split_at(n * full.contacts.len());
+    let (at_rest, moving) = solved.split_at_mut(n * full.contacts.len());
     let flexibility = flexibility(&full.contacts, reduced, &modes, at_rest);
     let (mut left, mut energy, mut change, mut size) = (0.0_f64, 0.0_f64, 0.0, 0.0);
     let mut u = vec![0.0; n];
     for ((instant, load), solved) in
-        chosen.iter().zip(loads[at_rest.len()..].chunks_exact(n)).zip(moving.chunks_exact(n))
+        chosen.iter().zip(loads[at_rest.len()..].chunks_exact(n)).zip(moving.chunks_exact_mut(n))
     {
         reduced.expand(&instant.q, &mut u);
-        // rᵀ K⁻¹ r = (load − K u)ᵀ (solved − u), of which uᵀ r = 0.
-        let epsilon: f64 = load.iter().zip(solved.iter().zip(&u)).map(|(f, (x, u))| f * (x - u)).sum();
+        // What is left alone: beside the modes u + K⁻¹ r would be lost in rounding.
+        solved.iter_mut().zip(&u).for_each(|(x, u)| *x -= u);
+        // rᵀ K⁻¹ r = (load − K u)ᵀ K⁻¹ r, of which uᵀ r = 0.
+        let epsilon: f64 = load.iter().zip(&*solved).map(|(f, x)| f * x).sum();
         left = left.max(epsilon);
         energy = energy.max(reduced.modal.stiffnesses().iter().zip(&instant.q).map(|(k, q)| k * q * q).sum());
         change += instant.stiffness * epsilon.max(0.0);
