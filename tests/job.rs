@@ -1,7 +1,7 @@
 //! A job in memory, in a folder, broken off and gone on with.
 
-use crate::support::{Case, plate, watched};
-use fem::job::{self, Finished, Follow, Found, Options, Results, Task};
+use crate::support::{Case, impact_of, plate, watched};
+use fem::job::{self, Finished, Follow, Found, KeptPlate, Options, Results, Task};
 use fem::{Error, Registry, cost::Cost, io::scene};
 use serde_json::Value;
 use std::num::NonZeroUsize;
@@ -71,4 +71,36 @@ fn modes_of_any_scene() {
     assert_eq!(found.summary.frequencies_Hz.len(), 2);
     let resumed = done(&case, &modes(Results::Resumed(case.folder().to_owned())), &mut ());
     assert!(matches!(resumed, Err(Error::NotMarched)));
+}
+
+#[test]
+fn a_plate_that_is_kept_is_struck_as_by_runs_of_their_own() {
+    let case = watched().append("[reduction]\nmethod = \"ritz\"\nvectors = 12\n");
+    case.write();
+    let (path, registry) = (case.folder().join("plate/scene.toml"), Registry::standard());
+    let read = |key: &str, value: &str| scene::read_with(&path, &[(key.into(), value.into())].into()).unwrap();
+    let plate = KeptPlate::new(&scene::read(&path).unwrap(), &registry, NonZeroUsize::MIN).unwrap();
+    let impacts = [("impactor.velocity", "\"1 m/s\""), ("impactor.mass", "\"20 g\""), ("contact.beta", "0.5")];
+    let struck = std::thread::scope(|scope| {
+        let strike = |(key, value)| plate.impact(&read(key, value), &registry, &mut ()).unwrap();
+        impacts.map(|impact| scope.spawn(move || strike(impact))).map(|thread| thread.join().unwrap())
+    });
+    for ((key, value), struck) in impacts.into_iter().zip(struck) {
+        let Found::Impact(found) = struck.found else { panic!("an impact") };
+        let (_, own) = impact_of(read(key, value)).unwrap();
+        let outcomes = [&found.outcome, &own.outcome];
+        let [a, b] =
+            outcomes.map(|of| of.history.iter().flat_map(|row| row.values()).map(f64::to_bits).collect::<Vec<_>>());
+        assert_eq!(a, b, "{key}");
+        let [a, b] = outcomes.map(|of| (&of.events, &of.peaks));
+        assert_eq!(a, b, "{key}");
+        let [mut a, mut b] = [&found.summary, &own.summary].map(|of| serde_json::to_value(of).unwrap());
+        for summary in [&mut a, &mut b] {
+            // Estimates of errors need the plate before its reduction.
+            summary.as_object_mut().unwrap().remove("accuracy");
+        }
+        assert_eq!(a, b, "{key}");
+    }
+    let refused = plate.impact(&read("mesh.refine", "1"), &registry, &mut ()).unwrap_err();
+    assert!(matches!(refused, Error::OtherPlate { key } if key == "mesh.refine"));
 }

@@ -13,8 +13,10 @@ from femlam._asked import Advice, Laminate, Matrices
 from femlam._criterion import Criterion, Material, check_criterion, indices, material
 from femlam._errors import FemError, Mistake, SceneError
 from femlam._native import __version__
+from femlam._plate import Plate
 from femlam._results import ImpactResult, ModesResult, Result, StaticResult, Table
 from femlam._scene import Scene
+from femlam._sweep import SweepResult
 
 __all__ = [
     "Advice",
@@ -26,10 +28,12 @@ __all__ = [
     "Matrices",
     "Mistake",
     "ModesResult",
+    "Plate",
     "Result",
     "Scene",
     "SceneError",
     "StaticResult",
+    "SweepResult",
     "Table",
     "__version__",
     "check_criterion",

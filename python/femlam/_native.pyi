@@ -17,6 +17,17 @@ class Asked(TypedDict):
     criteria: list[Any]
     accuracy: float | None
 
+class AskedOfSweep(TypedDict):
+    set: list[tuple[str, str]]
+    design: str | None
+    samples: int | None
+    seed: int | None
+    threads: int
+    folder: str
+    resume: bool
+    progress: Any | None
+    criteria: list[Any]
+
 class Scene:
     @staticmethod
     def read(path: str | os.PathLike[str]) -> Scene: ...
@@ -35,6 +46,11 @@ class Scene:
     def matrices(self, threads: int) -> dict[str, Any]: ...
     def laminate(self) -> dict[str, Any]: ...
     def asks_for(self, name: str) -> bool: ...
+    def sweep(self, asked: AskedOfSweep) -> str: ...
+    def plate(self, criteria: list[Any], threads: int) -> Plate: ...
+
+class Plate:
+    def impact(self, scene: Scene, criteria: list[Any], progress: Any | None) -> dict[str, Any]: ...
 
 def as_toml(json: str) -> str: ...
 def as_value(json: str) -> str: ...

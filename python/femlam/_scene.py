@@ -17,7 +17,9 @@ from numpy.typing import NDArray
 from femlam import _native
 from femlam._asked import Advice, Laminate, Matrices
 from femlam._criterion import Criterion
+from femlam._plate import Plate
 from femlam._results import ModesResult, Result, Table, _result
+from femlam._sweep import SweepResult
 
 if TYPE_CHECKING:
     import scipy.sparse
@@ -142,6 +144,57 @@ class Scene:
                 return Scene.load(path)._compute(None, folder, resume, threads, progress, criteria, accuracy)
         return self._compute(None, folder, resume, threads, progress, criteria, accuracy)
 
+    def plate(self, *, criteria: Iterable[Criterion] = (), threads: int = 1) -> Plate:
+        """Reduce the plate of the scene and keep it for many impacts: :meth:`Plate.impact` marches them alone.
+
+        ``threads`` and ``criteria`` are those of :meth:`run`.
+        """
+        criteria = self._asked_for(criteria)
+        return Plate(self, self._native.plate(criteria, _threads(threads)), criteria)
+
+    def sweep(
+        self,
+        set: Mapping[str, Any],
+        *,
+        design: str | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+        threads: int = 1,
+        folder: PathLike | None = None,
+        resume: bool = False,
+        progress: Callable[[float], object] | None = None,
+        criteria: Iterable[Criterion] = (),
+    ) -> SweepResult:
+        """Run many cases of the scene, those of one plate on the same one: ``fem sweep``.
+
+        * ``set``: what keys become: a list of values, or the words of the command line, ``"1..5:9"`` for nine values,
+          ``"normal(50 MPa, 8 %)"`` for numbers that scatter; it goes over the table ``[sweep]`` of the scene;
+        * ``design``: ``"grid"``, ``"random"``, ``"latin-hypercube"``, ``"sobol"`` or ``"saltelli"``, with its
+          ``samples`` and ``seed``;
+        * ``threads``: cases that are marched at a time; the table does not depend on it;
+        * ``folder``: where the files of ``fem sweep`` go, from which ``resume`` goes on; without it they are not kept;
+        * ``progress`` and ``criteria``: as in :meth:`run`.
+
+        >>> scene.sweep({"impactor.velocity": "1..5:9", "laminate.plies": ["[0/90]2s", "[45/-45]2s"]}).table
+        """
+        if resume and folder is None:
+            raise ValueError("to resume, name the folder of the sweep that was stopped")
+        with tempfile.TemporaryDirectory() as temporary:
+            where = Path(temporary) / "sweep" if folder is None else Path(folder)
+            asked: _native.AskedOfSweep = {
+                "set": [(key, _words(values)) for key, values in set.items()],
+                "design": design,
+                "samples": samples,
+                "seed": seed,
+                "threads": _threads(threads),
+                "folder": os.fspath(where),
+                "resume": resume,
+                "progress": progress,
+                "criteria": self._asked_for(criteria),
+            }
+            summary = json.loads(self._native.sweep(asked))
+            return SweepResult(where, summary, keep=folder is not None)
+
     def modes(self, count: int | None = None, *, folder: PathLike | None = None, threads: int = 1) -> ModesResult:
         """Find the lowest natural modes of the plate, whatever the scene asks for; as many as it says, or ten."""
         if count is not None and count < 1:
@@ -202,22 +255,26 @@ class Scene:
             raise ValueError("to resume, name the folder of the run that was stopped")
         if accuracy is not None and not 0 < accuracy < 1:
             raise ValueError("accuracy must be a relative error between 0 and 1, such as 0.01")
-        criteria = list(criteria)
-        for criterion in criteria:
-            if not self._native.asks_for(criterion.name):
-                raise ValueError(
-                    f"the scene does not ask for the criterion `{criterion.name}`: name it in `failure.criteria`"
-                )
         asked: _native.Asked = {
             "modes": modes,
             "threads": _threads(threads),
             "folder": None if folder is None else os.fspath(folder),
             "resume": resume,
             "progress": progress,
-            "criteria": criteria,
+            "criteria": self._asked_for(criteria),
             "accuracy": accuracy,
         }
         return _result(self._native.run(asked))
+
+    def _asked_for(self, criteria: Iterable[Criterion]) -> list[Criterion]:
+        """Return criteria that the scene names."""
+        criteria = list(criteria)
+        for criterion in criteria:
+            if not self._native.asks_for(criterion.name):
+                raise ValueError(
+                    f"the scene does not ask for the criterion `{criterion.name}`: name it in `failure.criteria`"
+                )
+        return criteria
 
 
 def _parse(text: str, name: str) -> Scene:
@@ -250,6 +307,12 @@ def _threads(threads: int) -> int:
     if threads < 1:
         raise ValueError("threads must be 1 or more")
     return threads
+
+
+def _words(values: Any) -> str:
+    """Return what a key becomes in words, as on the command line."""
+    values = _plain(values)
+    return ",".join(str(value) for value in values) if isinstance(values, list) else str(values)
 
 
 def _plain(value: Any) -> Any:

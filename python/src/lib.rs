@@ -7,9 +7,11 @@ mod criterion;
 mod laminate;
 mod matrices;
 mod mistakes;
+mod plate;
 mod results;
 mod run;
 mod scene;
+mod sweep;
 mod watch;
 
 use pyo3::prelude::*;
@@ -20,6 +22,8 @@ mod _native {
     use super::criterion::{check_criterion, indices};
     #[pymodule_export]
     use super::laminate::material;
+    #[pymodule_export]
+    use super::plate::Plate;
     #[pymodule_export]
     use super::scene::{Scene, as_toml, as_value, quantity};
     use pyo3::prelude::*;

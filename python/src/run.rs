@@ -37,15 +37,25 @@ pub(crate) fn run<'py>(py: Python<'py>, scene: &Scene, path: &Path, asked: Asked
     };
     let task = modes.map_or(Task::Scene, |count| Task::Modes(NonZeroUsize::new(count)));
     let mut options = Options { task, results: results_in, threads, ..Options::default() };
-    let raised: Vec<_> = criteria.iter().map(|criterion| criterion.raised.clone()).collect();
-    let mut watch = Watch::new(progress.as_ref(), &raised);
-    let done = py.detach(|| {
+    follow(py, progress.as_ref(), &criteria, |watch| {
         let raised = match accuracy.or_else(|| scene.accuracy.as_ref().map(|accuracy| accuracy.value)) {
             Some(asked) if task == Task::Scene => Some(attain(scene, path, &registry, asked, &mut options)?),
             _ => None,
         };
-        job::run(raised.as_ref().unwrap_or(scene), &registry, &options, &mut watch)
-    });
+        job::run(raised.as_ref().unwrap_or(scene), &registry, &options, watch)
+    })
+}
+
+/// What `job` finds, other threads of Python running meanwhile; what its callback or a criterion raises comes first.
+pub(crate) fn follow<'py>(
+    py: Python<'py>,
+    progress: Option<&Py<PyAny>>,
+    criteria: &[PyCriterion],
+    job: impl FnOnce(&mut Watch<'_>) -> Result<Finished, Error> + Send,
+) -> PyResult<Bound<'py, PyDict>> {
+    let raised: Vec<_> = criteria.iter().map(|criterion| criterion.raised.clone()).collect();
+    let mut watch = Watch::new(progress, &raised);
+    let done = py.detach(|| job(&mut watch));
     match (done, watch.raised()) {
         (_, Some(raised)) => Err(raised),
         (Err(error), None) => Err(raise(&error)),

@@ -5,7 +5,9 @@ use crate::criterion::{PyCriterion, registry};
 use crate::laminate::laminate;
 use crate::matrices::matrices;
 use crate::mistakes::raise;
+use crate::plate::Plate;
 use crate::run::{Asked, run};
+use crate::sweep::{AskedOfSweep, sweep};
 use fem::io::scene;
 use fem::io::units::{self, UnitError};
 use fem::{Error, Model};
@@ -98,6 +100,16 @@ impl Scene {
         run(py, &self.0, self.path(), asked)
     }
 
+    /// Its plate, reduced and kept.
+    fn plate(&self, py: Python<'_>, criteria: Vec<PyCriterion>, threads: NonZeroUsize) -> PyResult<Plate> {
+        Plate::of(py, self, &criteria, threads)
+    }
+
+    /// Runs its cases into a folder; what `sweep.json` holds.
+    fn sweep(&self, py: Python<'_>, asked: AskedOfSweep) -> PyResult<String> {
+        sweep(py, &self.0, self.path(), asked)
+    }
+
     /// What the advisor answers, as JSON.
     fn advise(&self, py: Python<'_>, threads: NonZeroUsize) -> PyResult<String> {
         advise(py, &self.0, threads)
@@ -120,6 +132,10 @@ impl Scene {
 }
 
 impl Scene {
+    pub(crate) fn read_one(&self) -> &scene::Scene {
+        &self.0
+    }
+
     fn path(&self) -> &Path {
         Path::new(self.0.source.name())
     }

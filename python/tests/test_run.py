@@ -2,6 +2,7 @@ import csv
 import os
 import signal
 import subprocess
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -9,6 +10,14 @@ import numpy as np
 import pytest
 
 import femlam
+
+
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Ctrl-C stops this process, also where it was started in the background."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def columns(path: Path) -> dict:
@@ -93,7 +102,7 @@ def test_stresses_through_the_thickness_are_those_of_pagano() -> None:
     assert centre.units["sxx_Pa"] == "Pa"
 
 
-def test_a_run_that_is_interrupted_goes_on_from_its_folder(scene: femlam.Scene, tmp_path: Path) -> None:
+def test_a_run_that_is_interrupted_goes_on_from_its_folder(scene: femlam.Scene, tmp_path: Path, interruptible: None) -> None:
     shares = []
 
     def interrupt(share: float) -> None:

@@ -9,8 +9,7 @@ use crate::registry::Registry;
 use crate::sweep::{self, Record, Scatter, Sweep, SweepRequest};
 use clap::{Args, Subcommand};
 use fem_io::files::OutputDir;
-use fem_io::results::FORMAT;
-use fem_io::scene::{self, Sampling, Scene};
+use fem_io::scene::{self, Scene};
 use miette::miette;
 use std::fmt::Write as _;
 use std::num::NonZeroUsize;
@@ -133,25 +132,7 @@ pub(super) fn sweep(registry: &Registry, arguments: &Arguments, console: &Consol
         if signals.received().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
     progress.finish();
-    // Shares of blocks that are made for indices are no probabilities.
-    let random = !matches!(sweep.design.sampling, Sampling::Grid | Sampling::Saltelli);
-    let failed = rows.iter().filter(|row| row.result.is_err()).count();
-    let record = Record {
-        format: FORMAT,
-        title: scene.title.clone(),
-        scene: std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).display().to_string(),
-        asked,
-        design: sweep.design.sampling.name().to_owned(),
-        keys: sweep.design.axes.iter().map(|axis| axis.key.clone()).collect(),
-        cases: sweep.design.count,
-        done: rows.len(),
-        failed,
-        importance: match sweep.design.sampling {
-            Sampling::Saltelli => sweep::importance(&sweep.design, &rows),
-            _ => Vec::new(),
-        },
-        scatter: (random && rows.len() > failed).then(|| sweep::scatter(&rows)),
-    };
+    let record = Record::new(&scene, path, asked, &sweep, &rows);
     sweep::write(&dir, &sweep, &rows, &record)?;
     if scene.output.plots {
         sweep::write_pictures(&dir, &scene.title, &sweep, &rows, record.scatter.as_ref())?;
@@ -169,7 +150,7 @@ pub(super) fn sweep(registry: &Registry, arguments: &Arguments, console: &Consol
     if rows.len() < expected {
         console::tell(&format!("{} of {expected} cases are missing: run the parts that lack\n", expected - rows.len()));
     }
-    Ok(if failed == 0 && rows.len() >= expected { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if record.failed == 0 && rows.len() >= expected { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 /// The cases as a table of what they set.

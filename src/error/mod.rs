@@ -84,6 +84,21 @@ pub enum Error {
     #[error("the scene describes no impact")]
     #[diagnostic(help("set `analysis = \"impact\"` and describe impactor, contact and march"))]
     NoImpact,
+    #[error("no plate can be kept for the impacts of this scene: they need more of it than its modes")]
+    #[diagnostic(help(
+        "give the scene a `reduction`, write \"on\" or \"off\" for effects that it leaves to the advisor, and leave out laws of plies \
+         and interfaces that open; or run each impact by itself"
+    ))]
+    NotKept,
+    #[error("`{key}` belongs to the plate, which is kept as it is")]
+    #[diagnostic(help(
+        "keep a plate of a scene with that value; on a plate the impactor may change but for its place and patch, the contact \
+         law, and strengths"
+    ))]
+    OtherPlate {
+        /// The first key that differs.
+        key: String,
+    },
     #[error("`{element}` is a section, and the advisor's formulas hold for plates only")]
     #[diagnostic(help("use a plate and one of its elements, such as `mitc4`"))]
     NoPlate {

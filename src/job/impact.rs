@@ -71,7 +71,7 @@ impl Files<'_> {
 ///
 /// # Errors
 /// [`Error::Cancelled`] where `follow` broke the march off, after a checkpoint.
-fn advance(
+pub(super) fn advance(
     model: &Model,
     march: &mut March<'_>,
     dir: Option<&OutputDir>,

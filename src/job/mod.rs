@@ -1,10 +1,14 @@
 //! A job: a scene becomes what it asks for, in a folder of results or in memory.
 //!
 //! [`run`] is what the command, a study and any other program call; nothing else knows the steps from a scene to its results.
+//! Who strikes one plate many times keeps it: [`KeptPlate`].
 
 pub(crate) mod folder;
 mod impact;
+mod plate;
 mod rest;
+
+pub use plate::KeptPlate;
 
 use crate::advise;
 use crate::analyses::impact::{Outcome, Sizes};

@@ -1,12 +1,13 @@
 //! A sweep as tables.
 
 use super::runner::CaseRow;
-use super::scatter::Scatter;
-use super::sensitivity::Importance;
+use super::scatter::{Scatter, scatter};
+use super::sensitivity::{Importance, importance};
 use super::{Sweep, SweepRequest};
 use crate::error::Error;
 use fem_io::files::{FileError, OutputDir};
-use fem_io::scene::unit;
+use fem_io::results::FORMAT;
+use fem_io::scene::{Sampling, Scene, unit};
 use fem_io::tables::{self, TableValue};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -38,6 +39,32 @@ pub struct Record {
     /// What matters, of a design that is made for it.
     #[serde(skip_deserializing, skip_serializing_if = "Vec::is_empty")]
     pub importance: Vec<Importance>,
+}
+
+impl Record {
+    /// Of what `rows` of the cases of `scene`, the file `path`, say.
+    pub fn new(scene: &Scene, path: &Path, asked: SweepRequest, sweep: &Sweep<'_>, rows: &[CaseRow]) -> Self {
+        let design = &sweep.design;
+        // Shares of blocks that are made for indices are no probabilities.
+        let random = !matches!(design.sampling, Sampling::Grid | Sampling::Saltelli);
+        let failed = rows.iter().filter(|row| row.result.is_err()).count();
+        Self {
+            format: FORMAT,
+            title: scene.title.clone(),
+            scene: std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).display().to_string(),
+            asked,
+            design: design.sampling.name().to_owned(),
+            keys: design.axes.iter().map(|axis| axis.key.clone()).collect(),
+            cases: design.count,
+            done: rows.len(),
+            failed,
+            importance: match design.sampling {
+                Sampling::Saltelli => importance(design, rows),
+                _ => Vec::new(),
+            },
+            scatter: (random && rows.len() > failed).then(|| scatter(rows)),
+        }
+    }
 }
 
 const FILE: &str = "sweep.json";
