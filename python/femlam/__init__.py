@@ -10,6 +10,7 @@ Numbers are in SI units; the names of columns end with theirs. Stresses have the
 """
 
 from femlam._asked import Advice, Laminate, Matrices
+from femlam._contact import ContactLaw, check_contact_law
 from femlam._criterion import Criterion, Material, check_criterion, indices, material
 from femlam._errors import FemError, Mistake, SceneError
 from femlam._native import __version__
@@ -20,6 +21,7 @@ from femlam._sweep import SweepResult
 
 __all__ = [
     "Advice",
+    "ContactLaw",
     "Criterion",
     "FemError",
     "ImpactResult",
@@ -36,6 +38,7 @@ __all__ = [
     "SweepResult",
     "Table",
     "__version__",
+    "check_contact_law",
     "check_criterion",
     "indices",
     "material",

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
 
 from femlam import _native
+from femlam._contact import ContactLaw
 from femlam._criterion import Criterion
 from femlam._results import ImpactResult
 
@@ -21,12 +22,12 @@ class Plate:
     It does not change, and threads may strike it at the same time.
     """
 
-    def __init__(self, scene: Scene, native: _native.Plate, criteria: Iterable[Criterion]) -> None:
+    def __init__(self, scene: Scene, native: _native.Plate, own: Sequence[Criterion | ContactLaw]) -> None:
         """Not for users: see :meth:`femlam.Scene.plate`."""
         self.scene = scene
         """The scene that it is of."""
         self._native = native
-        self._criteria = list(criteria)
+        self._own = own
 
     def impact(
         self,
@@ -51,7 +52,7 @@ class Plate:
         given = {"mass": (mass, "kg"), "velocity": (velocity, "m/s"), "energy": (energy, "J")}
         values = {f"impactor.{key}": _with(unit, value) for key, (value, unit) in given.items() if value is not None}
         scene = self.scene.replace({**(keys or {}), **values})
-        return ImpactResult(self._native.impact(scene._native, self._criteria, progress))
+        return ImpactResult(self._native.impact(scene._native, list(self._own), progress))
 
     def __repr__(self) -> str:
         """Name the scene."""

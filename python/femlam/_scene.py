@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from femlam import _native
 from femlam._asked import Advice, Laminate, Matrices
+from femlam._contact import ContactLaw
 from femlam._criterion import Criterion
 from femlam._plate import Plate
 from femlam._results import ModesResult, Result, Table, _result
@@ -108,9 +109,9 @@ class Scene:
         files = {key: folder / self[key] for key in self._keys if _FILE.fullmatch(key)}
         Path(path).write_text((self.replace(files) if files else self).text, encoding="utf-8")
 
-    def check(self, criteria: Iterable[Criterion] = ()) -> list[str]:
+    def check(self, criteria: Iterable[Criterion] = (), laws: Iterable[ContactLaw] = ()) -> list[str]:
         """Check the scene with its mesh and its plug-ins; return warnings."""
-        return self._native.check(list(criteria))
+        return self._native.check([*criteria, *laws])
 
     def run(
         self,
@@ -120,6 +121,7 @@ class Scene:
         threads: int = 1,
         progress: Callable[[float], object] | None = None,
         criteria: Iterable[Criterion] = (),
+        laws: Iterable[ContactLaw] = (),
         accuracy: float | None = None,
     ) -> Result:
         """Compute what the scene asks for: an :class:`ImpactResult`, a :class:`StaticResult` or a :class:`ModesResult`.
@@ -129,28 +131,30 @@ class Scene:
         * ``threads``: for the integration of element matrices; results do not depend on it.
         * ``progress``: called with the share of the march that is done, at most twenty times a second.
         * ``criteria``: criteria of one's own, which the scene names in ``failure.criteria``.
+        * ``laws``: contact laws of one's own, which it names in ``contact.law``.
         * ``accuracy``: largest relative error of the main results, for which mesh, layers, reduction and step are raised
           before the run; by default what the scene says.
 
         Other threads of Python run meanwhile. Ctrl-C, and whatever ``progress`` raises, stops a march at its next step; in a
         folder it leaves a checkpoint, from which ``resume`` goes on.
         """
+        own = self._asked_for(criteria, laws)
         asked = accuracy is not None or "accuracy" in self
         if asked and not self._is_file():
             # The search for an accuracy reads the scene again and again.
             with tempfile.TemporaryDirectory() as temporary:
                 path = Path(temporary) / "scene.toml"
                 self.save(path)
-                return Scene.load(path)._compute(None, folder, resume, threads, progress, criteria, accuracy)
-        return self._compute(None, folder, resume, threads, progress, criteria, accuracy)
+                return Scene.load(path)._compute(None, folder, resume, threads, progress, own, accuracy)
+        return self._compute(None, folder, resume, threads, progress, own, accuracy)
 
-    def plate(self, *, criteria: Iterable[Criterion] = (), threads: int = 1) -> Plate:
+    def plate(self, *, criteria: Iterable[Criterion] = (), laws: Iterable[ContactLaw] = (), threads: int = 1) -> Plate:
         """Reduce the plate of the scene and keep it for many impacts: :meth:`Plate.impact` marches them alone.
 
-        ``threads`` and ``criteria`` are those of :meth:`run`.
+        ``threads``, ``criteria`` and ``laws`` are those of :meth:`run`.
         """
-        criteria = self._asked_for(criteria)
-        return Plate(self, self._native.plate(criteria, _threads(threads)), criteria)
+        own = self._asked_for(criteria, laws)
+        return Plate(self, self._native.plate(own, _threads(threads)), own)
 
     def sweep(
         self,
@@ -164,6 +168,7 @@ class Scene:
         resume: bool = False,
         progress: Callable[[float], object] | None = None,
         criteria: Iterable[Criterion] = (),
+        laws: Iterable[ContactLaw] = (),
     ) -> SweepResult:
         """Run many cases of the scene, those of one plate on the same one: ``fem sweep``.
 
@@ -173,7 +178,7 @@ class Scene:
           ``samples`` and ``seed``;
         * ``threads``: cases that are marched at a time; the table does not depend on it;
         * ``folder``: where the files of ``fem sweep`` go, from which ``resume`` goes on; without it they are not kept;
-        * ``progress`` and ``criteria``: as in :meth:`run`.
+        * ``progress``, ``criteria`` and ``laws``: as in :meth:`run`.
 
         >>> scene.sweep({"impactor.velocity": "1..5:9", "laminate.plies": ["[0/90]2s", "[45/-45]2s"]}).table
         """
@@ -190,7 +195,7 @@ class Scene:
                 "folder": os.fspath(where),
                 "resume": resume,
                 "progress": progress,
-                "criteria": self._asked_for(criteria),
+                "own": self._asked_for(criteria, laws),
             }
             summary = json.loads(self._native.sweep(asked))
             return SweepResult(where, summary, keep=folder is not None)
@@ -199,7 +204,7 @@ class Scene:
         """Find the lowest natural modes of the plate, whatever the scene asks for; as many as it says, or ten."""
         if count is not None and count < 1:
             raise ValueError("count must be 1 or more")
-        return cast(ModesResult, self._compute(count or 0, folder, False, threads, None, (), None))
+        return cast(ModesResult, self._compute(count or 0, folder, False, threads, None, [], None))
 
     def advise(self, *, threads: int = 1) -> list[Advice]:
         """Say, of each impactor, which effects its impact calls for."""
@@ -248,7 +253,7 @@ class Scene:
         resume: bool,
         threads: int,
         progress: Callable[[float], object] | None,
-        criteria: Iterable[Criterion],
+        own: list[Criterion | ContactLaw],
         accuracy: float | None,
     ) -> Result:
         if resume and folder is None:
@@ -261,20 +266,19 @@ class Scene:
             "folder": None if folder is None else os.fspath(folder),
             "resume": resume,
             "progress": progress,
-            "criteria": self._asked_for(criteria),
+            "own": own,
             "accuracy": accuracy,
         }
         return _result(self._native.run(asked))
 
-    def _asked_for(self, criteria: Iterable[Criterion]) -> list[Criterion]:
-        """Return criteria that the scene names."""
-        criteria = list(criteria)
-        for criterion in criteria:
-            if not self._native.asks_for(criterion.name):
-                raise ValueError(
-                    f"the scene does not ask for the criterion `{criterion.name}`: name it in `failure.criteria`"
-                )
-        return criteria
+    def _asked_for(self, criteria: Iterable[Criterion], laws: Iterable[ContactLaw]) -> list[Criterion | ContactLaw]:
+        """Return plug-ins of one's own that the scene names."""
+        own: list[Criterion | ContactLaw] = [*criteria, *laws]
+        for each in own:
+            what, key = ("criterion", "failure.criteria") if isinstance(each, Criterion) else ("contact law", "contact.law")
+            if not self._native.asks_for(each.name):
+                raise ValueError(f"the scene does not ask for the {what} `{each.name}`: name it in `{key}`")
+        return own
 
 
 def _parse(text: str, name: str) -> Scene:

@@ -1,7 +1,7 @@
 //! What the advisor answers.
 
-use crate::criterion::registry;
 use crate::mistakes::raise;
+use crate::own::registry;
 use fem::io::scene::Scene;
 use fem::{Model, advise};
 use pyo3::prelude::*;

@@ -6,7 +6,7 @@ use crate::results::array;
 use fem::Registry;
 use fem::core::failure::{CriterionInfo, FailureCriterion, Site, check_material};
 use fem::core::material::{Material, Strength};
-use fem::core::plugin::{Built, Kind, Params, PluginInfo, unknown_key};
+use fem::core::plugin::{Built, Kind, Params, unknown_key};
 use fem::core::tensor::{Ply, Stress6};
 use miette::MietteDiagnostic;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
@@ -24,7 +24,7 @@ impl Raised {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
-    fn put(&self, error: PyErr) {
+    pub(crate) fn put(&self, error: PyErr) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
     }
 }
@@ -33,8 +33,8 @@ impl Raised {
 #[derive(Debug, Clone)]
 pub(crate) struct PyCriterion {
     object: Arc<Py<PyAny>>,
-    name: &'static str,
-    summary: &'static str,
+    pub(crate) name: &'static str,
+    pub(crate) summary: &'static str,
     info: CriterionInfo,
     pub(crate) raised: Raised,
 }
@@ -78,7 +78,7 @@ impl FromPyObject<'_, '_> for PyCriterion {
 }
 
 /// A text that lives until the program ends, once however often it is kept: what a registry lists and events carry.
-fn keep(text: &str) -> &'static str {
+pub(crate) fn keep(text: &str) -> &'static str {
     static KEPT: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(known) = kept.get(text) {
@@ -135,16 +135,6 @@ impl PyCriterion {
         out.copy_from_slice(found.as_slice()?);
         Ok(())
     }
-}
-
-/// The plug-ins of the program with `criteria` besides.
-pub(crate) fn registry(criteria: &[PyCriterion]) -> Registry {
-    criteria.iter().fold(Registry::standard(), |registry, criterion| {
-        let PyCriterion { name, summary, .. } = criterion;
-        let info = PluginInfo { kind: Kind::Criterion, name, summary, source: "Python", params: &[] };
-        let criterion = criterion.clone();
-        registry.with_built(info, move |_| Ok(Built::Criterion(Box::new(criterion.clone()))))
-    })
 }
 
 /// Holds a criterion of Python against the contract of criteria, on a material of the library.

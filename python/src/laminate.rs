@@ -1,8 +1,8 @@
 //! Classical laminate theory, and materials.
 
-use crate::criterion::registry;
 use crate::json;
 use crate::mistakes::raise;
+use crate::own::registry;
 use crate::results::array;
 use fem::Model;
 use fem::core::classical::{ClassicalLaminate, PlaneModuli};

@@ -3,10 +3,12 @@
 //! Arrays are NumPy's, all else that is found is JSON: what `summary.json` and its like hold.
 
 mod advice;
+mod contact;
 mod criterion;
 mod laminate;
 mod matrices;
 mod mistakes;
+mod own;
 mod plate;
 mod results;
 mod run;
@@ -18,6 +20,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _native {
+    #[pymodule_export]
+    use super::contact::check_contact_law;
     #[pymodule_export]
     use super::criterion::{check_criterion, indices};
     #[pymodule_export]

@@ -1,7 +1,7 @@
 //! K and M as the parts of sparse matrices of SciPy.
 
-use crate::criterion::registry;
 use crate::mistakes::raise;
+use crate::own::registry;
 use crate::results::names;
 use fem::Model;
 use fem::analyses::matrices::PlateMatrices;

@@ -1,7 +1,8 @@
 //! Many impacts on one plate.
 
-use crate::criterion::{PyCriterion, registry};
+use crate::criterion::Raised;
 use crate::mistakes::raise;
+use crate::own::{Own, raised, registry};
 use crate::run::follow;
 use crate::scene::Scene;
 use fem::job::KeptPlate;
@@ -14,9 +15,9 @@ use std::num::NonZeroUsize;
 pub(crate) struct Plate(KeptPlate);
 
 impl Plate {
-    pub(crate) fn of(py: Python<'_>, scene: &Scene, criteria: &[PyCriterion], threads: NonZeroUsize) -> PyResult<Self> {
-        let kept = py.detach(|| KeptPlate::new(scene.read_one(), &registry(criteria), threads));
-        match criteria.iter().find_map(|criterion| criterion.raised.take()) {
+    pub(crate) fn of(py: Python<'_>, scene: &Scene, own: &[Own], threads: NonZeroUsize) -> PyResult<Self> {
+        let kept = py.detach(|| KeptPlate::new(scene.read_one(), &registry(own), threads));
+        match raised(own).iter().find_map(Raised::take) {
             Some(raised) => Err(raised),
             None => kept.map(Self).map_err(|error| raise(&error)),
         }
@@ -30,10 +31,10 @@ impl Plate {
         &self,
         py: Python<'py>,
         scene: &Scene,
-        criteria: Vec<PyCriterion>,
+        own: Vec<Own>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let registry = registry(&criteria);
-        follow(py, progress.as_ref(), &criteria, |watch| self.0.impact(scene.read_one(), &registry, watch))
+        let registry = registry(&own);
+        follow(py, progress.as_ref(), &own, |watch| self.0.impact(scene.read_one(), &registry, watch))
     }
 }

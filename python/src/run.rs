@@ -1,7 +1,7 @@
 //! Runs.
 
-use crate::criterion::{PyCriterion, registry};
 use crate::mistakes::raise;
+use crate::own::{Own, raised, registry};
 use crate::results::results;
 use crate::watch::Watch;
 use fem::io::scene::{self, Scene};
@@ -22,14 +22,14 @@ pub(crate) struct Asked {
     folder: Option<PathBuf>,
     resume: bool,
     progress: Option<Py<PyAny>>,
-    criteria: Vec<PyCriterion>,
+    own: Vec<Own>,
     /// Largest error of the main results, for which settings are raised.
     accuracy: Option<f64>,
 }
 
 pub(crate) fn run<'py>(py: Python<'py>, scene: &Scene, path: &Path, asked: Asked) -> PyResult<Bound<'py, PyDict>> {
-    let Asked { modes, threads, folder, resume, progress, criteria, accuracy } = asked;
-    let registry = registry(&criteria);
+    let Asked { modes, threads, folder, resume, progress, own, accuracy } = asked;
+    let registry = registry(&own);
     let results_in = match (folder, resume) {
         (None, _) => Results::InMemory,
         (Some(folder), false) => Results::Folder(folder),
@@ -37,7 +37,7 @@ pub(crate) fn run<'py>(py: Python<'py>, scene: &Scene, path: &Path, asked: Asked
     };
     let task = modes.map_or(Task::Scene, |count| Task::Modes(NonZeroUsize::new(count)));
     let mut options = Options { task, results: results_in, threads, ..Options::default() };
-    follow(py, progress.as_ref(), &criteria, |watch| {
+    follow(py, progress.as_ref(), &own, |watch| {
         let raised = match accuracy.or_else(|| scene.accuracy.as_ref().map(|accuracy| accuracy.value)) {
             Some(asked) if task == Task::Scene => Some(attain(scene, path, &registry, asked, &mut options)?),
             _ => None,
@@ -50,10 +50,10 @@ pub(crate) fn run<'py>(py: Python<'py>, scene: &Scene, path: &Path, asked: Asked
 pub(crate) fn follow<'py>(
     py: Python<'py>,
     progress: Option<&Py<PyAny>>,
-    criteria: &[PyCriterion],
+    own: &[Own],
     job: impl FnOnce(&mut Watch<'_>) -> Result<Finished, Error> + Send,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let raised: Vec<_> = criteria.iter().map(|criterion| criterion.raised.clone()).collect();
+    let raised = raised(own);
     let mut watch = Watch::new(progress, &raised);
     let done = py.detach(|| job(&mut watch));
     match (done, watch.raised()) {

@@ -1,10 +1,10 @@
 //! Scenes.
 
 use crate::advice::advise;
-use crate::criterion::{PyCriterion, registry};
 use crate::laminate::laminate;
 use crate::matrices::matrices;
 use crate::mistakes::raise;
+use crate::own::{Own, registry};
 use crate::plate::Plate;
 use crate::run::{Asked, run};
 use crate::sweep::{AskedOfSweep, sweep};
@@ -91,8 +91,8 @@ impl Scene {
     }
 
     /// What is wrong with the scene and its mesh, if anything; otherwise warnings.
-    fn check(&self, py: Python<'_>, criteria: Vec<PyCriterion>) -> PyResult<Vec<String>> {
-        let warnings = || Ok(Model::new(&self.0, &registry(&criteria))?.warnings);
+    fn check(&self, py: Python<'_>, own: Vec<Own>) -> PyResult<Vec<String>> {
+        let warnings = || Ok(Model::new(&self.0, &registry(&own))?.warnings);
         py.detach(warnings).map_err(|error: Error| raise(&error))
     }
 
@@ -101,8 +101,8 @@ impl Scene {
     }
 
     /// Its plate, reduced and kept.
-    fn plate(&self, py: Python<'_>, criteria: Vec<PyCriterion>, threads: NonZeroUsize) -> PyResult<Plate> {
-        Plate::of(py, self, &criteria, threads)
+    fn plate(&self, py: Python<'_>, own: Vec<Own>, threads: NonZeroUsize) -> PyResult<Plate> {
+        Plate::of(py, self, &own, threads)
     }
 
     /// Runs its cases into a folder; what `sweep.json` holds.
@@ -125,9 +125,11 @@ impl Scene {
         laminate(py, &self.0)
     }
 
-    /// Whether the scene asks for the criterion `name`.
+    /// Whether the scene names the criterion or the contact law `name`.
     fn asks_for(&self, name: &str) -> bool {
-        self.0.failure.criteria.iter().any(|spec| spec.plugin.name.value == name)
+        let laws = self.0.impact().into_iter().flat_map(|impact| &impact.impactors).map(|impactor| &impactor.contact);
+        let plugins = self.0.failure.criteria.iter().map(|spec| &spec.plugin).chain(laws);
+        plugins.into_iter().any(|plugin| plugin.name.value == name)
     }
 }
 

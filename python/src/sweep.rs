@@ -1,8 +1,8 @@
 //! Sweeps.
 
-use crate::criterion::{PyCriterion, registry};
 use crate::json;
 use crate::mistakes::raise;
+use crate::own::{Own, raised, registry};
 use crate::watch::Watch;
 use fem::Error;
 use fem::io::files::OutputDir;
@@ -25,15 +25,15 @@ pub(crate) struct AskedOfSweep {
     folder: PathBuf,
     resume: bool,
     progress: Option<Py<PyAny>>,
-    criteria: Vec<PyCriterion>,
+    own: Vec<Own>,
 }
 
 /// Runs the cases into the folder; what `sweep.json` holds.
 pub(crate) fn sweep(py: Python<'_>, scene: &Scene, path: &Path, asked: AskedOfSweep) -> PyResult<String> {
-    let AskedOfSweep { set, design, samples, seed, threads, folder, resume, progress, criteria } = asked;
+    let AskedOfSweep { set, design, samples, seed, threads, folder, resume, progress, own } = asked;
     let asked = SweepRequest { set, design, samples, seed };
-    let registry = registry(&criteria);
-    let raised: Vec<_> = criteria.iter().map(|criterion| criterion.raised.clone()).collect();
+    let registry = registry(&own);
+    let raised = raised(&own);
     let mut watch = Watch::new(progress.as_ref(), &raised);
     let done = py.detach(|| -> Result<Record, Error> {
         let sweep = Sweep::new(scene, &registry, &asked)?;
