@@ -6,6 +6,7 @@ pub mod impact;
 pub mod matrices;
 pub mod modes;
 mod operator;
+mod samples;
 pub(crate) mod saved;
 pub mod statics;
 pub mod stress;

@@ -80,6 +80,8 @@ pub(super) struct Sampled<'a> {
     /// Of each window, a lane: the middle of each coordinate's range, and half its length.
     middles: Columns,
     halves: Columns,
+    /// Ranges of all sites, where they were made before.
+    known: Option<&'a [StressRange]>,
 }
 
 impl<'a> Sampled<'a> {
@@ -100,12 +102,37 @@ impl<'a> Sampled<'a> {
                 half[lane] = reach + rounding * (middle[lane].abs() + reach);
             }
         }
-        Self { operator, columns: windows.iter().map(|window| operator.columns(of(window))).collect(), middles, halves }
+        Self {
+            operator,
+            columns: windows.iter().map(|window| operator.columns(of(window))).collect(),
+            middles,
+            halves,
+            known: None,
+        }
+    }
+
+    /// With the ranges of all sites, if they are known from [`Sampled::all_ranges`].
+    pub(super) fn knowing(self, known: Option<&'a [StressRange]>) -> Self {
+        Self { known, ..self }
+    }
+
+    /// Of the first `sites` sites, those of the windows of each after those of the one before.
+    pub(super) fn all_ranges(&mut self, sites: usize) -> Vec<StressRange> {
+        let none = StressRange { low: Stress6::new([0.0; 6]), high: Stress6::new([0.0; 6]) };
+        let mut all = vec![none; sites * self.columns.len()];
+        for (site, out) in all.chunks_exact_mut(self.columns.len()).enumerate() {
+            self.ranges(site, out);
+        }
+        all
     }
 }
 
 impl Samples for Sampled<'_> {
     fn ranges(&mut self, site: usize, out: &mut [StressRange]) {
+        if let Some(known) = self.known {
+            out.copy_from_slice(&known[site * out.len()..][..out.len()]);
+            return;
+        }
         let middle = self.operator.product::<false>(site, &self.middles);
         let half = self.operator.product::<true>(site, &self.halves);
         let [mut low, mut high] = [[[0.0; LANES]; 6]; 2];

@@ -1,7 +1,8 @@
 //! Stresses along a march: sampled, recovered in batches, handed to the scan.
 
 use super::expansion::Expansion;
-use super::operator::{LANES, SURVEYED, Sampled, StressOperator, put};
+use super::operator::{LANES, put};
+use super::samples::{PlateSamples, PlateStresses, Way};
 use crate::error::Error;
 use crate::forecast::Demand;
 use crate::model::{Model, NamedCriterion};
@@ -51,49 +52,14 @@ pub(super) struct Watch<'a> {
     expansion: Rc<Expansion<'a>>,
     of_plate: Arc<PlateStresses>,
     scan: Scan,
-    /// Whether only what can be first or largest is judged.
+    /// Whether only what can be first or largest is judged, when all samples are there.
     sparing: bool,
+    samples: Option<PlateSamples>,
     /// Where the scan keeps the indices of each history.
     probes: Vec<Vec<Probe>>,
     stresses: Vec<f64>,
     states: Vec<Stress6<Ply>>,
     record: Record,
-}
-
-/// What the criteria see of a plate, whatever strikes it.
-#[derive(Debug)]
-pub(super) struct PlateStresses {
-    recovery: Recovery,
-    way: Way,
-}
-
-/// How stresses follow from coordinates.
-#[derive(Debug)]
-enum Way {
-    /// By a product.
-    Product(StressOperator),
-    /// From displacements; six a site that do not follow from them, none where there are none.
-    Recovery(Vec<f64>),
-}
-
-impl PlateStresses {
-    /// Those of `model`, which is marched in the coordinates of `expansion`.
-    ///
-    /// # Errors
-    /// A material that lacks a constant, or a cell that the element refuses.
-    pub(super) fn new(model: &Model, expansion: &Expansion<'_>) -> Result<Self, Error> {
-        let recovery = build_recovery(model);
-        let residual = residual(model, &recovery)?;
-        // Stresses of large deflections are not products with the coordinates.
-        if let Some((basis, modes)) = expansion.basis().filter(|_| !model.effects.nature().large)
-            && 6 * recovery.sites() * modes * size_of::<f64>() <= Demand::OPERATOR_LIMIT
-        {
-            let mut product = vec![0.0; 6 * recovery.sites() * modes];
-            recover(model, &recovery, &expansion.nodal(basis), modes, None, &mut product)?;
-            return Ok(Self { recovery, way: Way::Product(StressOperator::new(&product, modes, residual)) });
-        }
-        Ok(Self { recovery, way: Way::Recovery(residual) })
-    }
 }
 
 /// What a watch keeps beside its scan.
@@ -131,6 +97,7 @@ impl<'a> Watch<'a> {
             model,
             expansion,
             sparing,
+            samples: None,
             probes,
             scan,
             record: Record { histories, ..Record::default() },
@@ -148,8 +115,7 @@ impl<'a> Watch<'a> {
         self.record.points.extend_from_slice(points);
         self.record.times.push(t);
         self.record.waiting.extend_from_slice(coordinates);
-        let most = if self.sparing { SURVEYED } else { Demand::BATCH };
-        if self.record.times.len() == most { self.flush() } else { Ok(()) }
+        if !self.sparing && self.record.times.len() == Demand::BATCH { self.flush() } else { Ok(()) }
     }
 
     /// Scans the samples still waiting.
@@ -157,13 +123,10 @@ impl<'a> Watch<'a> {
     /// # Errors
     /// As [`Watch::sample`].
     pub(super) fn flush(&mut self) -> Result<(), Error> {
-        if let (true, Way::Product(operator)) = (self.sparing, &self.of_plate.way) {
-            let Record { times, waiting, .. } = &mut self.record;
-            self.scan.survey(times, &mut Sampled::new(operator, waiting, times.len()))?;
-            // The next batch begins with the last sample.
-            waiting.drain(..waiting.len() / times.len().max(1) * times.len().saturating_sub(1));
-            times.drain(..times.len().saturating_sub(1));
-            return Ok(());
+        if self.sparing {
+            let Record { times, waiting, .. } = std::mem::take(&mut self.record);
+            let samples = PlateSamples::new(Arc::clone(&self.of_plate), times, waiting);
+            return Ok(self.samples.insert(samples).survey(&mut self.scan, &[])?);
         }
         let [times, waiting, points] =
             [&mut self.record.times, &mut self.record.waiting, &mut self.record.points].map(std::mem::take);
@@ -218,6 +181,11 @@ impl<'a> Watch<'a> {
     /// What the scan found.
     pub(super) fn scan(&self) -> &Scan {
         &self.scan
+    }
+
+    /// All samples, where only what can be first or largest was judged.
+    pub(super) fn into_samples(self) -> Option<PlateSamples> {
+        self.samples
     }
 
     /// What the gauges saw.
@@ -366,7 +334,7 @@ pub(crate) fn recover(
 }
 
 /// Where the criteria look.
-fn build_recovery(model: &Model) -> Recovery {
+pub(super) fn build_recovery(model: &Model) -> Recovery {
     // Where nobody looks there is nothing to recover.
     let looks = model.criteria.iter().any(|(_, criterion)| criterion.info().site == Site::Interface);
     recovery(model, &model.watched, &model.centres, looks)

@@ -26,7 +26,7 @@ pub use origin::Origin;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 pub(crate) use separation::Separation;
 pub(crate) use spacing::count_steps;
-pub(crate) use strike::leaves_plate;
+pub(crate) use strike::{leaves_march, leaves_plate};
 
 use crate::effect::{Decision, Effects};
 use crate::effects::{GrowingDelaminations, NonlinearPlies};

@@ -22,10 +22,17 @@ pub(crate) fn leaves_plate(path: &str) -> bool {
     match (parts.next(), parts.next(), parts.next()) {
         (Some("contact"), ..) | (Some("impactor"), Some("contact"), _) => true,
         (Some("impactor"), Some(key), None) => OF_IMPACTOR.contains(&key),
-        (Some("materials"), Some(_), Some(key)) => Strength::ALL.iter().any(|strength| strength.name() == key),
+        (Some("materials"), ..) => leaves_march(path),
         (Some(first), ..) => FREE.contains(&first),
         _ => false,
     }
+}
+
+/// Whether a scene that differs in the key `path` alone has the same march on a plate that impacts share: the strengths of materials.
+pub(crate) fn leaves_march(path: &str) -> bool {
+    let mut parts = path.split('.');
+    let (first, _, key) = (parts.next(), parts.next(), parts.next());
+    first == Some("materials") && Strength::ALL.iter().any(|strength| Some(strength.name()) == key)
 }
 
 impl Model {

@@ -3,9 +3,9 @@
 use super::Sweep;
 use super::figures::CaseFigures;
 use crate::advise;
-use crate::analyses::impact::{self, March, Prepared, SharedPlate};
+use crate::analyses::impact::{self, March, Outcome, Prepared, SharedPlate, Sizes};
 use crate::error::Error;
-use crate::model::{Model, leaves_plate};
+use crate::model::{Model, leaves_march, leaves_plate};
 use cpu_time::ThreadTime;
 use fem_io::scene::{Scene, parse_under};
 use serde::{Deserialize, Serialize};
@@ -40,6 +40,34 @@ struct Group {
     left: AtomicUsize,
 }
 
+/// Cases of one march on such a plate, which the first makes as well.
+#[derive(Default)]
+struct Alike {
+    marched: Mutex<Option<Marched>>,
+    left: AtomicUsize,
+}
+
+type Marched = Arc<(Sizes, Outcome)>;
+
+/// A case, and what it shares with others.
+#[derive(Clone, Copy)]
+struct Shared<'a> {
+    group: &'a Group,
+    alike: &'a Alike,
+    case: usize,
+}
+
+/// Numbers of those that have the same values, in the order in which they are first met.
+#[derive(Default)]
+struct Numbers(BTreeMap<Vec<String>, usize>);
+
+impl Numbers {
+    fn of(&mut self, values: Vec<String>) -> usize {
+        let next = self.0.len();
+        *self.0.entry(values).or_insert(next)
+    }
+}
+
 /// Runs the cases `wanted`, counted from 0, on so many `threads`; `heard` takes each row as it comes, and may break off: cases that
 /// are under way are then given up.
 pub(super) fn run(
@@ -48,29 +76,33 @@ pub(super) fn run(
     threads: NonZeroUsize,
     heard: &mut dyn FnMut(Option<CaseRow>) -> ControlFlow<()>,
 ) {
-    let mut groups: Vec<Group> = Vec::new();
-    let mut of_plate: BTreeMap<Vec<String>, usize> = BTreeMap::new();
-    let mut cases: Vec<(usize, usize)> = Vec::new();
+    let (mut of_plate, mut of_march) = (Numbers::default(), Numbers::default());
+    let mut cases: Vec<(usize, usize, usize)> = Vec::new();
     for &case in wanted {
-        let values = sweep.design.case(case).into_iter().zip(&sweep.design.axes);
-        let plate = values.filter(|(_, axis)| !leaves_plate(&axis.key)).map(|(value, _)| value).collect();
-        let group = *of_plate.entry(plate).or_insert_with(|| {
-            groups.push(Group::default());
-            groups.len() - 1
-        });
-        *groups[group].left.get_mut() += 1;
-        cases.push((group, case));
+        let values = sweep.design.case(case);
+        let but = |leaves: fn(&str) -> bool| {
+            let changed = values.iter().zip(&sweep.design.axes).filter(|(_, axis)| !leaves(&axis.key));
+            changed.map(|(value, _)| value.clone()).collect::<Vec<_>>()
+        };
+        cases.push((of_plate.of(but(leaves_plate)), of_march.of(but(leaves_march)), case));
     }
-    // Those of a plate one after the other, so that few plates are held at a time.
+    let mut groups: Vec<Group> = of_plate.0.iter().map(|_| Group::default()).collect();
+    let mut alike: Vec<Alike> = of_march.0.iter().map(|_| Alike::default()).collect();
+    for &(group, march, _) in &cases {
+        *groups[group].left.get_mut() += 1;
+        *alike[march].left.get_mut() += 1;
+    }
+    // Those of a plate one after the other, and those of a march, so that little is held at a time.
     cases.sort_unstable();
     let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
     let (send, receive) = mpsc::channel();
     std::thread::scope(|scope| {
         for _ in 0..threads.get().min(cases.len()) {
-            let (send, groups, cases, next, stop) = (send.clone(), &groups, &cases, &next, &stop);
+            let (send, groups, alike, cases, next, stop) = (send.clone(), &groups, &alike, &cases, &next, &stop);
             scope.spawn(move || {
-                while let Some(&(group, case)) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let Some(row) = row(sweep, &groups[group], case, stop) else { break };
+                while let Some(&(group, march, case)) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let shared = Shared { group: &groups[group], alike: &alike[march], case };
+                    let Some(row) = row(sweep, shared, stop) else { break };
                     if send.send(row).is_err() {
                         break;
                     }
@@ -92,9 +124,13 @@ pub(super) fn run(
 }
 
 /// Runs a case; `None` where it is to `stop`.
-fn row(sweep: &Sweep<'_>, group: &Group, case: usize, stop: &AtomicBool) -> Option<CaseRow> {
+fn row(sweep: &Sweep<'_>, shared: Shared<'_>, stop: &AtomicBool) -> Option<CaseRow> {
     let begun = ThreadTime::now();
-    let result = compute(sweep, group, case, stop);
+    let Shared { group, alike, case } = shared;
+    let result = compute(sweep, shared, stop);
+    if alike.left.fetch_sub(1, Ordering::Relaxed) == 1 {
+        *alike.marched.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    }
     if group.left.fetch_sub(1, Ordering::Relaxed) == 1 {
         *group.base.lock().unwrap_or_else(PoisonError::into_inner) = None;
     }
@@ -105,14 +141,31 @@ fn row(sweep: &Sweep<'_>, group: &Group, case: usize, stop: &AtomicBool) -> Opti
     Some(CaseRow { case: case + 1, result: result.map_err(|why| describe(&why)), seconds })
 }
 
-fn compute(sweep: &Sweep<'_>, group: &Group, case: usize, stop: &AtomicBool) -> Result<CaseFigures, Error> {
-    let scene = parse_under(sweep.source.text(), Path::new(sweep.source.name()), &sweep.setting(case))?;
-    if let Some((model, plate)) = on_shared_plate(sweep, group, &scene)? {
-        let model = advise::decided(model, NonZeroUsize::MIN)?;
-        return march(&model, || plate.struck(&model), stop);
+fn compute(sweep: &Sweep<'_>, shared: Shared<'_>, stop: &AtomicBool) -> Result<CaseFigures, Error> {
+    let scene = parse_under(sweep.source.text(), Path::new(sweep.source.name()), &sweep.setting(shared.case))?;
+    let Some((model, plate)) = on_shared_plate(sweep, shared.group, &scene)? else {
+        let model = advise::decided(plain(&scene, sweep)?, NonZeroUsize::MIN)?;
+        let prepared = || Ok(impact::prepare(&model, NonZeroUsize::MIN)?.without_estimates());
+        let (sizes, outcome) = march(prepared, stop)?;
+        return Ok(CaseFigures::of(&model, &sizes, outcome));
+    };
+    let model = advise::decided(model, NonZeroUsize::MIN)?;
+    let mut marched = shared.alike.marched.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = marched.clone() {
+        drop(marched);
+        // One that is refused is marched, which says why as `fem run` does.
+        if let Ok(Some(outcome)) = known.1.judged_anew(&model) {
+            return Ok(CaseFigures::of(&model, &known.0, outcome));
+        }
+        let (sizes, outcome) = march(|| plate.struck(&model), stop)?;
+        return Ok(CaseFigures::of(&model, &sizes, outcome));
     }
-    let model = advise::decided(plain(&scene, sweep)?, NonZeroUsize::MIN)?;
-    march(&model, || Ok(impact::prepare(&model, NonZeroUsize::MIN)?.without_estimates()), stop)
+    let (sizes, outcome) = march(|| plate.struck(&model), stop)?;
+    if shared.alike.left.load(Ordering::Relaxed) > 1 {
+        *marched = Some(Arc::new((sizes, outcome.clone())));
+    }
+    drop(marched);
+    Ok(CaseFigures::of(&model, &sizes, outcome))
 }
 
 /// The model of `scene` on the plate that the cases of `group` share, made by the first of them; `None` where there is but one, or
@@ -139,11 +192,8 @@ fn plain(scene: &Scene, sweep: &Sweep<'_>) -> Result<Model, Error> {
     Ok(model)
 }
 
-fn march<'a>(
-    model: &'a Model,
-    prepared: impl Fn() -> Result<Prepared<'a>, Error>,
-    stop: &AtomicBool,
-) -> Result<CaseFigures, Error> {
+/// Marches what is `prepared` to its end.
+fn march<'a>(prepared: impl Fn() -> Result<Prepared<'a>, Error>, stop: &AtomicBool) -> Result<(Sizes, Outcome), Error> {
     let run = |prepared: Prepared<'a>| {
         let sizes = prepared.sizes;
         let mut march = March::start(prepared)?;
@@ -152,14 +202,14 @@ fn march<'a>(
         }
         Ok::<_, Error>((sizes, march.finish()))
     };
-    let (mut sizes, mut outcome) = run(prepared()?.firsts_alone())?;
-    if outcome.stopped.is_some() {
+    let mut marched = run(prepared()?.firsts_alone())?;
+    if marched.1.stopped.is_some() {
         // The first that is refused anywhere says why, as in `fem run`.
-        (sizes, outcome) = run(prepared()?)?;
+        marched = run(prepared()?)?;
     }
-    match outcome.stopped.clone() {
+    match marched.1.stopped.clone() {
         Some(why) => Err(Error::Stopped(why)),
-        None => Ok(CaseFigures::of(model, &sizes, outcome)),
+        None => Ok(marched),
     }
 }
 

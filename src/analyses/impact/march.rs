@@ -11,7 +11,8 @@ use super::modal::{self, ModalView};
 use super::prepare::{Prepared, describe_failure, place_impactors};
 use super::{Maximum, Outcome, Sizes};
 use crate::analyses::expansion::Expansion;
-use crate::analyses::stress::{self, PlateStresses, Watch};
+use crate::analyses::samples::PlateStresses;
+use crate::analyses::stress::{self, Watch};
 use crate::cost::Stopwatch;
 use crate::effect::Effect;
 use crate::error::{CheckpointError, Error};
@@ -505,6 +506,7 @@ impl<'a> March<'a> {
             counters,
             phases: self.stopwatch.phases().to_vec(),
             stopped,
+            samples: self.watch.and_then(Watch::into_samples).map(Arc::new),
         }
     }
 

@@ -26,14 +26,17 @@ pub use prepare::{Prepared, prepare};
 pub use shared::SharedPlate;
 
 use super::assembled::Substructures;
+use super::samples::PlateSamples;
 use super::stress::IndexHistory;
 use crate::cost::Phase;
+use crate::error::Error;
 use crate::forecast::{MemoryEstimate, Size};
 use crate::model::Model;
 use fem_core::counters::Counters;
 use fem_core::time::Substeps;
 use fem_failure::scan::{FailureEvent, Peak, ScanSite};
 use fem_io::tables::HistoryRow;
+use std::sync::Arc;
 
 /// Sizes and limits of a model that is ready to march.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,9 +107,22 @@ pub struct Outcome {
     pub phases: Vec<Phase>,
     /// Why the run ended before its time, if it did; everything above holds up to then.
     pub stopped: Option<String>,
+    /// What the criteria saw, where they judged only what can be first or largest.
+    pub samples: Option<Arc<PlateSamples>>,
 }
 
 impl Outcome {
+    /// The same march by the criteria and strengths of `model`, which differs in nothing else from the one that was marched; `None`
+    /// where [`Prepared::firsts_alone`] has not kept what they see.
+    ///
+    /// # Errors
+    /// A criterion whose material lacks a constant, an index that is not a number.
+    pub fn judged_anew(&self, model: &Model) -> Result<Option<Self>, Error> {
+        let Some(samples) = &self.samples else { return Ok(None) };
+        let scan = samples.judge(model)?;
+        Ok(Some(Self { events: scan.events(), peaks: scan.peaks(), ..self.clone() }))
+    }
+
     /// Sizes of the run, from which its time follows.
     pub fn size(&self, model: &Model, sizes: &Sizes) -> Size {
         Size {

@@ -2,7 +2,7 @@
 
 use super::Sizes;
 use crate::analyses::assembled::{Assembled, Substructures, structure};
-use crate::analyses::stress::PlateStresses;
+use crate::analyses::samples::PlateStresses;
 use crate::analyses::supports;
 use crate::cost::Stopwatch;
 use crate::effect::{Effect, Feature, Marched};

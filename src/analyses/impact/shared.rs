@@ -2,7 +2,7 @@
 
 use super::prepare::{Before, Prepared, Ready, Struck, make_ready, rests, strike};
 use crate::analyses::expansion::Expansion;
-use crate::analyses::stress::PlateStresses;
+use crate::analyses::samples::PlateStresses;
 use crate::effect::Effect;
 use crate::error::Error;
 use crate::model::{Model, Plan};
