@@ -5,13 +5,16 @@ from __future__ import annotations
 import html
 import json
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     import pandas as pd
+    import pyvista
     from matplotlib.axes import Axes
 
 _UNITS = {
@@ -108,6 +111,27 @@ class Result:
     def warnings(self) -> list[str]:
         """What may be wrong with the model."""
         return list(self.summary.get("warnings", []))
+
+    def fields(self, part: str = "plate") -> dict[float, pyvista.UnstructuredGrid]:
+        """Read the fields that the run has left in its folder, by their times, s; needs PyVista.
+
+        * ``part``: ``"plate"``, ``"plies"`` or ``"interfaces"``.
+
+        A run into a folder writes those that ``output.fields`` of its scene asks for.
+        """
+        import pyvista
+
+        if self.folder is None:
+            raise ValueError('fields are files: run into a folder, `scene.run(folder="results")`')
+        series = Path(self.folder) / "fields" / f"{part}.pvd"
+        if not series.exists():
+            there = ", ".join(sorted(path.stem for path in series.parent.glob("*.pvd"))) or "none"
+            raise ValueError(f"there are no fields of `{part}`, but of: {there}; `output.fields` of the scene asks for them")
+        found = ElementTree.parse(series).iter("DataSet")
+        return {
+            float(each.attrib["timestep"]): pyvista.UnstructuredGrid(str(series.with_name(each.attrib["file"])))
+            for each in found
+        }
 
     def __str__(self) -> str:
         """Return the summary as the command line prints it."""

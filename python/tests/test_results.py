@@ -1,4 +1,5 @@
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -45,3 +46,23 @@ def test_notebooks_show_results(result: femlam.ImpactResult) -> None:
     assert result.history._repr_html_().count("<tr>") == 11
     assert "rows" in repr(result.history)
     assert result.warnings == result.summary["warnings"]
+
+
+def test_fields_are_read_by_their_times(scene: femlam.Scene, square: dict, tmp_path: Path) -> None:
+    pytest.importorskip("pyvista")
+    asked = scene.replace({"output.fields.every": "50 us"})
+    result = asked.run(folder=tmp_path / "out")
+    plate = result.fields()
+    assert list(plate) == pytest.approx([0, 5e-5, 1e-4])
+    deflections = [abs(grid.point_data["displacement"][:, 2]).max() for grid in plate.values()]
+    assert deflections[0] < deflections[1] < deflections[2]
+    # The history has the mean over the patch of the contact.
+    assert deflections[2] == pytest.approx(abs(result["plate_displacement_m"][-1]), rel=0.2)
+    assert set(result.fields("plies")) == set(plate)
+    with pytest.raises(ValueError, match="of: interfaces, plate, plies"):
+        result.fields("layers")
+    with pytest.raises(ValueError, match="folder"):
+        scene.run().fields()
+    load = {"pressure": "1 kPa", "face": "top"}
+    rest = femlam.Scene.from_dict({**square, "analysis": "static", "load": [load], "output": {"fields": True}})
+    assert len(rest.run(folder=tmp_path / "rest").fields()) == 1
