@@ -12,6 +12,9 @@ use fem_io::tables::{self, DelaminationRow};
 /// Most interfaces of a sheet, beside their projection.
 const SHEET: usize = 11;
 
+/// Spans of time that have a colour each.
+const SPANS: usize = 6;
+
 /// Cells in view beyond those that are damaged, as a share of what these span.
 const AROUND: f64 = 0.6;
 
@@ -51,35 +54,80 @@ pub(crate) fn write_table(dir: &OutputDir, model: &Model, outcome: &Outcome) -> 
 }
 
 /// Draws `c_scan`, where something is damaged: the projection, each cell in the colour of the uppermost interface that has delaminated
-/// there, then each interface.
+/// there, then each interface; and `c_scan_times`, where something has delaminated: when it first was.
 ///
 /// # Errors
 /// As [`OutputDir::write`], and numbers that no plot can show.
 pub(crate) fn write_plot(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
     let Some(grown) = outcome.delaminated.as_ref().filter(|grown| !grown.cells.is_empty()) else { return Ok(()) };
-    Ok(plot::map_plot(&c_scan(model, grown))?.write(dir, "c_scan")?)
+    plot::map_plot(&c_scan(model, grown))?.write(dir, "c_scan")?;
+    match times(model, grown) {
+        Some(times) => Ok(plot::map_plot(&times)?.write(dir, "c_scan_times")?),
+        None => Ok(()),
+    }
 }
 
-fn c_scan(model: &Model, grown: &Delaminated) -> MapPlot {
-    let mesh = &model.plate.plane;
-    let view = view(model, grown);
-    let crosses: Vec<[f64; 2]> = match &model.plan {
+/// A panel of the cells of the mesh that are in `view`.
+fn panel(model: &Model, view: &[usize], title: String, fills: &[Fill]) -> Panel {
+    let corners = |quad: usize| model.plate.plane.corners(quad).into_iter().map(|p| p.map(|x| x * 1e3)).collect();
+    let crosses = match &model.plan {
         Plan::Impact(impact) => impact.strikes.iter().map(|strike| strike.centre.map(|x| x * 1e3)).collect(),
         _ => Vec::new(),
     };
-    let panel = |title: String, fills: Vec<Fill>| Panel {
-        title,
-        cells: view
-            .iter()
-            .map(|quad| MapCell {
-                corners: mesh.corners(*quad).into_iter().map(|p| p.map(|x| x * 1e3)).collect(),
-                fill: fills[*quad],
-            })
-            .collect(),
-        crosses: crosses.clone(),
-        ..Panel::default()
-    };
-    let blank = || vec![Fill::Blank; mesh.quads.len()];
+    let cells = view.iter().map(|quad| MapCell { corners: corners(*quad), fill: fills[*quad] }).collect();
+    Panel { title, cells, crosses, ..Panel::default() }
+}
+
+/// A sheet without panels.
+fn sheet(model: &Model, title: &str) -> MapPlot {
+    MapPlot {
+        title: format!("{title}. {}", model.origin.title),
+        x: Axis::linear("x", "mm"),
+        y: Axis::linear("y", "mm"),
+        equal_aspect: true,
+        scale: None,
+        classes: Vec::new(),
+        outlines: drawn(&outlines(model)),
+        panels: Vec::new(),
+    }
+}
+
+/// When cells first delaminated at a point: the first interface of each place, then each interface; `None` where none has.
+fn times(model: &Model, grown: &Delaminated) -> Option<MapPlot> {
+    let view = view(model, grown);
+    let grew = |cell: &DelaminatedCell| cell.since.filter(|since| *since > 0.0);
+    let all = || grown.cells.iter().filter_map(grew);
+    let [first, last] = [all().reduce(f64::min)?, all().reduce(f64::max)?];
+    let part = |since: f64| ((since - first) / (last - first) * SPANS as f64) as usize;
+    // Of a delamination that was there at the start it is the last class.
+    let class = |since: f64| if since > 0.0 { part(since).min(SPANS - 1) } else { SPANS };
+    let mut sheets = vec![vec![f64::INFINITY; model.plate.plane.quads.len()]; 1 + grown.interfaces.len()];
+    for (quad, cell) in cells(model, grown) {
+        let Some(number) = grown.interfaces.iter().position(|one| one.below == cell.below) else { continue };
+        let since = cell.since.unwrap_or(f64::INFINITY);
+        for sheet in [0, 1 + number] {
+            sheets[sheet][quad] = sheets[sheet][quad].min(since);
+        }
+    }
+    let end = |k: usize| first + (last - first) * (k + 1) as f64 / SPANS as f64;
+    let spans = (0..SPANS).map(|k| format!("until {}", Dimension::TIME.of(end(k))));
+    let titles = [format!("first of all, from {}", Dimension::TIME.of(first))].into_iter();
+    let titles = titles.chain(grown.interfaces.iter().map(|one| format!("interface {}", name(one.below))));
+    let fill = |since: &f64| if since.is_finite() { Fill::Class(class(*since)) } else { Fill::Blank };
+    let panels = titles.zip(&sheets).filter(|(_, times)| times.iter().any(|since| since.is_finite()));
+    let panels = panels
+        .take(1 + SHEET)
+        .map(|(title, times)| panel(model, &view, title, &times.iter().map(fill).collect::<Vec<_>>()));
+    Some(MapPlot {
+        classes: spans.chain(["from the beginning".to_owned()]).collect(),
+        panels: panels.collect(),
+        ..sheet(model, "When it delaminated")
+    })
+}
+
+fn c_scan(model: &Model, grown: &Delaminated) -> MapPlot {
+    let view = view(model, grown);
+    let blank = || vec![Fill::Blank; model.plate.plane.quads.len()];
     let shown: Vec<_> = grown.interfaces.iter().filter(|one| one.area > 0.0).collect();
     let mut projection = blank();
     let mut each = vec![blank(); shown.len()];
@@ -93,18 +141,15 @@ fn c_scan(model: &Model, grown: &Delaminated) -> MapPlot {
             };
         }
     }
-    let mut panels = vec![panel(format!("projection: {}", Dimension::AREA.of(grown.projected)), projection)];
+    let title = format!("projection: {}", Dimension::AREA.of(grown.projected));
+    let mut panels = vec![panel(model, &view, title, &projection)];
     let titles = shown.iter().map(|one| format!("interface {}: {}", name(one.below), Dimension::AREA.of(one.area)));
-    panels.extend(titles.zip(each).take(SHEET).map(|(title, fills)| panel(title, fills)));
+    panels.extend(titles.zip(each).take(SHEET).map(|(title, fills)| panel(model, &view, title, &fills)));
     MapPlot {
-        title: format!("Delaminations. {}", model.origin.title),
-        x: Axis::linear("x", "mm"),
-        y: Axis::linear("y", "mm"),
-        equal_aspect: true,
         scale: Some("delaminated share".into()),
         classes: shown.iter().map(|one| name(one.below)).collect(),
-        outlines: drawn(&outlines(model)),
         panels,
+        ..sheet(model, "Delaminations")
     }
 }
 

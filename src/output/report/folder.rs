@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Pictures of a run and what they show, in the order of the page; those of profiles come after them.
-const PICTURES: [(&str, &str); 9] = [
+const PICTURES: [(&str, &str); 10] = [
     ("contact_force", "Contact force over time"),
     ("displacement", "Displacements over time"),
     ("energy", "Energies over time"),
@@ -21,6 +21,7 @@ const PICTURES: [(&str, &str); 9] = [
     ("modal_coordinates", "Modes in the deflection"),
     ("mode_shapes", "Shapes of the lowest modes"),
     ("c_scan", "Delaminations in plan"),
+    ("c_scan_times", "When it delaminated"),
     ("damage_map", "Damage in plan"),
 ];
 const SECTION: (&str, &str) = ("damage_section", "Damage in a section");
