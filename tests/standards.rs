@@ -32,6 +32,11 @@ fn an_energy_is_a_velocity() {
     assert!((velocity("4.5 J/mm") - 3.0).abs() < 1e-12);
     let said = refusal(&format!("{TIP}energy = '9 J', velocity = '3 m/s', "), END);
     assert!(said.contains("cannot be combined with `velocity`"), "{said}");
+    let fall = scene(&format!("{TIP}drop_height = '0.5 m', "), END).impact().unwrap().impactors[0].velocity;
+    assert!((0.5 * fall * fall / 9.80665 - 0.5).abs() < 1e-12);
+    let said = refusal(&format!("{TIP}drop_height = '1 m', energy = '9 J', "), END);
+    assert!(said.contains("cannot be combined with `energy`"), "{said}");
+    assert!(refusal(&format!("{TIP}drop_height = '0 m', "), END).contains("positive"));
     let said = refusal(&format!("{TIP}energy = '9 m/s', "), END);
     assert!(said.contains("energy per thickness"), "{said}");
     assert!(refusal(TIP, END).contains("`impactor.velocity` is missing"));

@@ -10,7 +10,7 @@ use fem_io::scene::Scene;
 
 /// Keys of an impactor by which its march differs, and nothing before it. The place and the patch of the contact shape the
 /// reduction.
-const OF_IMPACTOR: [&str; 7] = ["mass", "velocity", "energy", "start", "name", "diameter", "material"];
+const OF_IMPACTOR: [&str; 8] = ["mass", "velocity", "energy", "drop_height", "start", "name", "diameter", "material"];
 
 /// Keys on which no number of a march depends.
 const FREE: [&str; 3] = ["title", "study", "sweep"];

@@ -83,19 +83,21 @@ impl<'a> Reader<'a> {
             .checked()
     }
 
-    /// Two keys that exclude each other: at most one of them remains, that of the text which counts more.
+    /// Keys that exclude each other: at most one of them remains, that of the text which counts most.
     ///
     /// # Errors
-    /// Both keys in one text.
-    pub fn either(&self, keys: [&str; 2]) -> Result<[Option<SceneValue<'a>>; 2], SceneError> {
-        match keys.map(|key| self.optional(key)) {
-            [Some(a), Some(b)] if a.place().origin == b.place().origin => {
-                Err(b.error(format!("cannot be combined with `{}`", keys[0]), "leave one of the two out"))
-            }
-            [Some(a), Some(b)] if a.place().origin > b.place().origin => Ok([Some(a), None]),
-            [Some(_), Some(b)] => Ok([None, Some(b)]),
-            one => Ok(one),
+    /// Two of them in that text.
+    pub fn either<const N: usize>(&self, keys: [&str; N]) -> Result<[Option<SceneValue<'a>>; N], SceneError> {
+        let mut found = keys.map(|key| self.optional(key));
+        let strongest = found.iter().flatten().map(|value| value.place().origin).max();
+        for value in &mut found {
+            value.take_if(|value| Some(value.place().origin) != strongest);
         }
+        let mut given = keys.iter().zip(&found).filter_map(|(key, value)| Some((key, value.as_ref()?)));
+        if let (Some((first, _)), Some((_, second))) = (given.next(), given.next()) {
+            return Err(second.error(format!("cannot be combined with `{first}`"), "leave one of the two out"));
+        }
+        Ok(found)
     }
 
     pub(crate) fn place(&self) -> &Place {

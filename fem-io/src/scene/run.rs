@@ -197,6 +197,12 @@ pub(super) const IMPACTOR: Keys = &[
         r#""6.7 J/mm""#,
         "energy of the impact instead of its velocity, or energy per thickness of the laminate",
     ),
+    key(
+        "drop_height",
+        Form::Quantity(Dimension::LENGTH),
+        r#""0.5 m""#,
+        "height of a free fall instead of its velocity, v = sqrt(2 g h) with g = 9.80665 m/s2",
+    ),
     key("start", Form::Quantity(Dimension::TIME), r#""50 us""#, "when it would reach the plate at rest")
         .default(r#""0 s""#),
     key("at", Form::Table(AT), r#"{ group = "impact" }"#, "where it strikes").required(),

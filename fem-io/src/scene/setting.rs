@@ -151,7 +151,7 @@ fn write(text: &str, path: &Path, setting: &Setting) -> Result<DocumentMut, Scen
 }
 
 /// Keys of which a table has one: to set it takes the other away.
-const EITHER: [[&str; 2]; 2] = [["velocity", "energy"], ["patch_radius", "patch_side"]];
+const EITHER: [&[&str]; 2] = [&["velocity", "energy", "drop_height"], &["patch_radius", "patch_side"]];
 
 /// Names of plug-ins: a table that names another one is made anew.
 const NAMES: [&str; 4] = ["kind", "law", "method", "name"];
@@ -161,15 +161,10 @@ fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) -> bool {
     match keys {
         [] => false,
         [key] => {
-            for [a, b] in EITHER {
-                let other = if key.get() == a {
-                    b
-                } else if key.get() == b {
-                    a
-                } else {
-                    continue;
-                };
-                table.remove(other);
+            for others in EITHER.iter().filter(|keys| keys.contains(&key.get())) {
+                others.iter().filter(|other| **other != key.get()).for_each(|other| {
+                    table.remove(other);
+                });
             }
             table.insert(key, Item::Value(value.clone()));
             true

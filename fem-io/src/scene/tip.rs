@@ -15,21 +15,25 @@ pub(super) struct Struck<'a> {
     pub(super) laminate: &'a LaminateSpec,
 }
 
+/// Standard acceleration of free fall, m/s² (3rd CGPM, 1901).
+const GRAVITY: f64 = 9.80665;
+
 /// Difference of two moduli of an isotropic material, relative.
 const SAME: f64 = 1e-6;
 
-/// The velocity, m/s, and the field that says it: itself, or v = √(2 E/m) of an energy, or of one per thickness of the laminate.
+/// The velocity, m/s, and the field that says it: itself, v = √(2 E/m) of an energy or of one per thickness of the laminate, or
+/// v = √(2 g h) of a fall without friction.
 pub(super) fn velocity<'a>(
     table: &Reader<'a>,
     mass: f64,
     struck: &Struck<'_>,
 ) -> Result<(SceneValue<'a>, f64), SceneError> {
-    match table.either(["velocity", "energy"])? {
-        [Some(field), _] => {
+    match table.either(["velocity", "energy", "drop_height"])? {
+        [Some(field), ..] => {
             let velocity = field.positive(Dimension::VELOCITY)?;
             Ok((field, velocity))
         }
-        [None, Some(field)] => {
+        [None, Some(field), _] => {
             let (value, dimension) = field.any_quantity(field.text()?)?;
             let energy = match dimension {
                 of if of.matches(&Dimension::ENERGY) => value,
@@ -44,7 +48,11 @@ pub(super) fn velocity<'a>(
             }
             Ok((field, (2.0 * energy / mass).sqrt()))
         }
-        [None, None] => Err(table.missing("velocity", "write velocity = \"1.56 m/s\", or energy = \"6.7 J/mm\"")),
+        [None, None, Some(field)] => {
+            let height = field.positive(Dimension::LENGTH)?;
+            Ok((field, (2.0 * GRAVITY * height).sqrt()))
+        }
+        [None, None, None] => Err(table.missing("velocity", "write velocity = \"1.56 m/s\", or energy = \"6.7 J/mm\"")),
     }
 }
 
