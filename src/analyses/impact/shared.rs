@@ -31,7 +31,7 @@ impl SharedPlate {
     /// The plate of `model`; `None` where it is not reduced, so that it has to be made anew for each impact.
     ///
     /// # Errors
-    /// As [`prepare`], but for the step.
+    /// As [`prepare`](super::prepare()), but for the step.
     pub fn new(model: &Model, threads: NonZeroUsize) -> Result<Option<Self>, Error> {
         let Plan::Impact(impact) = &model.plan else { return Err(Error::NoImpact) };
         let undecided = model.effects.undecided() || model.grown.is_some();
@@ -64,7 +64,7 @@ impl SharedPlate {
         }))
     }
 
-    /// The impact of `model` on it, whose plate must be this one. It marches as [`prepare`] has it, to the bit, without estimates
+    /// The impact of `model` on it, whose plate must be this one. It marches as [`prepare`](super::prepare()) has it, to the bit, without estimates
     /// of errors, which need the plate before its reduction.
     ///
     /// # Errors
