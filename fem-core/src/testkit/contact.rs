@@ -119,7 +119,8 @@ fn check_mean(law: &dyn ContactLaw, h: &ContactHistory, from: f64, to: f64, scal
 fn check_branches(law: &dyn ContactLaw, h: &ContactHistory, alpha: f64) -> Result<(), String> {
     let Branches { touch, peak } = law.branches(h);
     let just_above = touch + 1e-3 * (alpha - touch);
-    if law.force(h, touch).force != 0.0 || (alpha > touch && !(law.force(h, just_above).force > 0.0)) {
+    // An indentation may be so little beyond that no number lies between.
+    if law.force(h, touch).force != 0.0 || (just_above > touch && !(law.force(h, just_above).force > 0.0)) {
         return Err(format!("the force does not begin at {touch:e}, where `branches` says it does"));
     }
     let mut after = *h;
