@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the pictures of the book's chapters on validation anew: those that `fem` draws, and those of the tests that hold a
-# force history against another one.
+# Makes the pictures of the book's chapters on validation and fields anew: those that `fem` draws, those of the tests that hold
+# a force history against another one, and that of `view.py`, for which FEM_PYTHON names a Python with PyVista.
 #
 #     docs/validation.sh
 set -euo pipefail
@@ -35,5 +35,9 @@ $a membrane = "on"'
 for name in case-1-report case-1-default case-5-linear case-5-membrane; do
     cp "$out/$name/contact_force.svg" "$images/$name.svg"
 done
+
+"$fem" new "$out/plate" --template drop-weight
+"$fem" run "$out/plate/scene.toml" --set output.fields=true --out "$out/fields"
+"${FEM_PYTHON:-python3}" "$out/fields/fields/view.py" --save docs/book/src/images/fields.png
 
 UPDATE_BOOK=1 cargo test --release --test all -- validation::impact report::case_3

@@ -124,8 +124,9 @@ class Result:
         if self.folder is None:
             raise ValueError('fields are files: run into a folder, `scene.run(folder="results")`')
         series = Path(self.folder) / "fields" / f"{part}.pvd"
-        if not series.exists():
-            there = ", ".join(sorted(path.stem for path in series.parent.glob("*.pvd"))) or "none"
+        parts = sorted({path.stem for path in series.parent.glob("*.pvd")} - {"all"})
+        if part not in parts:
+            there = ", ".join(parts) or "none"
             raise ValueError(f"there are no fields of `{part}`, but of: {there}; `output.fields` of the scene asks for them")
         found = ElementTree.parse(series).iter("DataSet")
         return {

@@ -136,6 +136,23 @@ impl<'a> Watch<'a> {
         done
     }
 
+    /// The scan as it would be with the samples still waiting; these wait on, because a sum in another batch may differ in its last
+    /// bit.
+    ///
+    /// # Errors
+    /// As [`Watch::sample`].
+    pub(super) fn so_far(&self) -> Result<Scan, Error> {
+        let Record { times, waiting, points, .. } = &self.record;
+        let (mut scan, rows) = (self.scan.clone(), 6 * self.sites());
+        let (mut stresses, mut states) = (vec![0.0; rows * times.len()], self.states.clone());
+        self.recover_batch(waiting, points, times.len(), &mut stresses)?;
+        for (t, stresses) in times.iter().zip(stresses.chunks_exact(rows)) {
+            fill(&mut states, stresses);
+            scan.sample(*t, &states)?;
+        }
+        Ok(scan)
+    }
+
     fn scan_batch(
         &mut self,
         times: &[f64],
@@ -143,13 +160,26 @@ impl<'a> Watch<'a> {
         points: &[f64],
         stresses: &mut [f64],
     ) -> Result<(), Error> {
-        let count = times.len();
+        let rows = 6 * self.sites();
+        let stresses = &mut stresses[..rows * times.len()];
+        self.recover_batch(waiting, points, times.len(), stresses)?;
+        for (t, stresses) in times.iter().zip(stresses.chunks_exact(rows)) {
+            fill(&mut self.states, stresses);
+            self.scan.sample(*t, &self.states)?;
+            for (probes, history) in self.probes.iter().zip(&mut self.record.histories) {
+                history.take(*t, probes.iter().map(|probe| self.scan.read(*probe)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Stresses of all sites in `count` samples, sample by sample.
+    fn recover_batch(&self, waiting: &[f64], points: &[f64], count: usize, out: &mut [f64]) -> Result<(), Error> {
         if count == 0 {
             return Ok(());
         }
         let PlateStresses { recovery, way } = &*self.of_plate;
         let rows = 6 * recovery.sites();
-        let out = &mut stresses[..rows * count];
         match way {
             Way::Product(operator) => {
                 let (columns, mut samples) = (operator.columns(waiting), [Stress6::new([0.0; 6]); LANES]);
@@ -164,15 +194,6 @@ impl<'a> Watch<'a> {
                 let u = self.expansion.displacements(waiting, count);
                 recover(self.model, recovery, &u, count, Some(points), out)?;
                 add(out, residual);
-            }
-        }
-        for (t, stresses) in times.iter().zip(stresses.chunks_exact(rows)) {
-            for (state, s) in self.states.iter_mut().zip(stresses.chunks_exact(6)) {
-                *state = Stress6::new([s[0], s[1], s[2], s[3], s[4], s[5]]);
-            }
-            self.scan.sample(*t, &self.states)?;
-            for (probes, history) in self.probes.iter().zip(&mut self.record.histories) {
-                history.take(*t, probes.iter().map(|probe| self.scan.read(*probe)));
             }
         }
         Ok(())
@@ -223,6 +244,13 @@ impl<'a> Watch<'a> {
     /// Number of sites watched.
     pub(super) fn sites(&self) -> usize {
         self.of_plate.recovery.sites()
+    }
+}
+
+/// Stresses of all sites, six numbers each, as states.
+fn fill(states: &mut [Stress6<Ply>], stresses: &[f64]) {
+    for (state, s) in states.iter_mut().zip(stresses.chunks_exact(6)) {
+        *state = Stress6::new([s[0], s[1], s[2], s[3], s[4], s[5]]);
     }
 }
 

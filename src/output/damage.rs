@@ -5,7 +5,7 @@ use crate::analyses::impact::Outcome;
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::words::name_ply;
-use fem_failure::scan::PlyOrInterface;
+use fem_failure::scan::{PlyOrInterface, ScanSite};
 use fem_io::files::{FileError, OutputDir};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap};
@@ -97,10 +97,7 @@ impl DamageMap {
                 Some(first)
             })
             .collect();
-        // Windows at other places than centres of cells lie in several.
-        let bits = |at: [f64; 2]| at.map(f64::to_bits);
-        let shared: HashMap<[u64; 2], &Vec<usize>> =
-            model.centres.iter().map(|centre| bits(centre.at)).zip(&model.centre_cells).collect();
+        let unfolding = Unfolding::new(model);
         let mut kept: Vec<u32> = outcome.maxima.iter().map(|m| m.site.cell).collect();
         kept.sort_unstable();
         kept.dedup();
@@ -111,11 +108,6 @@ impl DamageMap {
             return None;
         }
 
-        // Of each computed cell the positions in `judged` that it stands for.
-        let mut stands_for = vec![Vec::new(); mesh.quads.len()];
-        for (i, q) in judged.iter().enumerate() {
-            stands_for[symmetry.quad(*q as usize)].push(i);
-        }
         let mut places: BTreeMap<(u16, bool), (PlaceDamage, FirstTimes)> = BTreeMap::new();
         for m in &outcome.maxima {
             let key = match m.site.place {
@@ -125,12 +117,7 @@ impl DamageMap {
             let empty =
                 || PlaceDamage { ply: name_ply(m.site.place), index: vec![0.0; judged.len()], failed: Vec::new() };
             let (place, failed) = places.entry(key).or_insert_with(|| (empty(), FirstTimes::new()));
-            let [x, y, _] = m.site.position;
-            let cells = match shared.get(&bits([x, y])) {
-                Some(quads) => quads.iter().filter_map(|quad| judged.binary_search(&(*quad as u32)).ok()).collect(),
-                None => stands_for[m.site.cell as usize].clone(),
-            };
-            for i in cells {
+            for i in unfolding.quads(&m.site).iter().filter_map(|quad| judged.binary_search(&(*quad as u32)).ok()) {
                 place.index[i] = place.index[i].max(m.index);
                 for &(mode, time) in &m.reached {
                     let first = failed.entry((i as u32, (first_mode[m.criterion] + mode) as u32)).or_insert(time);
@@ -223,6 +210,34 @@ impl PlaceDamage {
     pub fn largest(&self) -> f64 {
         self.index.iter().fold(0.0, |m, v| m.max(*v))
     }
+}
+
+/// The cells of the whole plate that a site speaks for.
+#[derive(Debug)]
+pub(super) struct Unfolding<'a> {
+    /// By the place of a window around an impact, which may lie in several cells.
+    windows: HashMap<[u64; 2], &'a [usize]>,
+    /// Of each computed cell itself and its images.
+    images: Vec<Vec<usize>>,
+}
+
+impl<'a> Unfolding<'a> {
+    pub(super) fn new(model: &'a Model) -> Self {
+        let (count, symmetry) = (model.plate.plane.quads.len(), model.plate.symmetry());
+        let mut images = vec![Vec::new(); count];
+        (0..count).for_each(|quad| images[symmetry.quad(quad)].push(quad));
+        let windows = model.centres.iter().zip(&model.centre_cells);
+        Self { windows: windows.map(|(centre, cells)| (bits(centre.at), cells.as_slice())).collect(), images }
+    }
+
+    pub(super) fn quads(&self, site: &ScanSite) -> &[usize] {
+        let [x, y, _] = site.position;
+        self.windows.get(&bits([x, y])).copied().unwrap_or(&self.images[site.cell as usize])
+    }
+}
+
+fn bits(at: [f64; 2]) -> [u64; 2] {
+    at.map(f64::to_bits)
 }
 
 /// Four digits are more than a colour shows, and a third of the bytes.

@@ -85,7 +85,9 @@ fn the_scene_says_when_where_and_what() {
         struck(r#"{ every = "7 us", times = ["2.04 us", "20 us"], parts = ["plies"], region = { radius = "6 mm" } }"#);
     case.fem("run", &["--out", "out"]).good();
     at(&times(&case, "plies"), &[0.0, 2.0, 7.0, 14.0, 20.0]);
-    assert!(case.names("out/fields").iter().all(|name| name.starts_with("plies") || name == ".fem"));
+    let beside = [".fem", "all.pvd", "names.json", "view.py"];
+    let foreign = |name: &&String| !name.starts_with("plies") && !beside.contains(&name.as_str());
+    assert_eq!(case.names("out/fields").iter().find(foreign), None);
     let (_, grid) = series(&case, "out", "plies").remove(0);
     // Of 4 x 2 cells of 7.5 mm by 5 mm the four around the middle.
     assert_eq!(grid.cells, 4 * 16);
@@ -160,6 +162,47 @@ fn indices_of_all_samples_are_those_of_the_map() {
     }
 }
 
+/// A frame at every sample again: what is known so far follows from the frames up to there.
+#[test]
+fn what_failed_so_far_follows_from_the_frames_before() {
+    let case = struck("{ every = \"1 us\" }")
+        .scene("library = \"AS4/3502\"", "library = \"AS4/3502\", Yt = \"0.5 MPa\"")
+        .scene("[failure]", "[failure]\nevery = \"1 us\"");
+    case.fem("run", &["--out", "out"]).good();
+    let names: serde_json::Value = serde_json::from_str(&case.read("out/fields/names.json")).unwrap();
+    let mut onsets = 0;
+    for criterion in names["criteria"].as_array().unwrap() {
+        let name = criterion["name"].as_str().unwrap();
+        let modes: Vec<&str> =
+            criterion["modes"].as_array().unwrap().iter().map(|mode| mode.as_str().unwrap()).collect();
+        let frames = series(&case, "out", criterion["series"].as_str().unwrap());
+        let mut largest = vec![0.0_f64; frames[0].1.cells];
+        let mut before = vec![(0.0, 0.0); largest.len()];
+        for (time, grid) in &frames {
+            let (index, so_far) = (grid.cells(&format!("{name} index")), grid.cells(&format!("{name} index so far")));
+            let mode = grid.cells(&format!("{name} mode"));
+            let onset: Vec<&[f64]> = modes.iter().map(|mode| grid.cells(&format!("{name} {mode} onset"))).collect();
+            for cell in 0..largest.len() {
+                largest[cell] = largest[cell].max(index[cell]);
+                assert!(close(so_far[cell], largest[cell], largest[cell]), "{name} {time} {cell}");
+                let first = onset.iter().map(|onset| onset[cell]).fold(f64::NAN, f64::min);
+                assert_eq!(first.is_finite(), largest[cell] >= 1.0, "{name} {time} {cell}");
+                // Where one mode leads, its line between the two samples crosses 1.
+                let (t, i) = before[cell];
+                if largest[cell] == index[cell] && i < 1.0 && index[cell] >= 1.0 && first > t {
+                    let of_mode = onset[mode[cell] as usize - 1][cell];
+                    assert!(t < of_mode && of_mode <= *time * (1.0 + 1e-6), "{name} {cell}: {of_mode}");
+                    onsets += 1;
+                }
+                before[cell] = (*time, largest[cell]);
+            }
+        }
+    }
+    assert!(onsets > 10, "{onsets} onsets");
+    let all = super::collection(&folder(&case, "out").join("all.pvd"));
+    assert!(all.len() == 3 * 21 && all.iter().all(|(_, file)| file.exists()), "{}", all.len());
+}
+
 #[test]
 fn a_later_end_goes_on_with_the_frames() {
     let until = |end: &str| struck("{ every = \"3 us\" }").scene("end = \"20 us\"", &format!("end = \"{end}\""));
@@ -171,7 +214,7 @@ fn a_later_end_goes_on_with_the_frames() {
     let written = fs::metadata(&first).unwrap().modified().unwrap();
     long.fem("run", &["--out", "out", "--resume"]).good();
     assert_eq!(fs::metadata(&first).unwrap().modified().unwrap(), written, "frames of before stay");
-    assert_eq!(long.names("out/fields").len(), 1 + 3 * (14 + 1));
+    assert_eq!(long.names("out/fields").len(), 4 + 3 * (14 + 1));
     assert_eq!(long.differing("straight/fields", "out/fields"), [""; 0]);
     assert_eq!(long.differing("straight", "out"), [""; 0]);
 }
@@ -200,7 +243,7 @@ fn a_killed_run_leaves_valid_series_and_ends_as_if_nothing_had_been() {
     let case = case.scene(OFTEN, "");
     case.fem("run", &["--out", "out", "--resume"]).good();
     case.fem("run", &["--out", "straight"]).good();
-    assert_eq!(case.names("out/fields").len(), 1 + 3 * (61 + 1));
+    assert_eq!(case.names("out/fields").len(), 4 + 3 * (61 + 1));
     assert_eq!(case.differing("straight/fields", "out/fields"), [""; 0]);
 }
 

@@ -32,5 +32,11 @@ fn other_readers_find_what_was_written() {
             .unwrap();
         let said = [done.stdout, done.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
         assert!(done.status.success() && said[0].contains("all as expected"), "{cells}: {said:?}");
+        let drawn = Command::new(&python)
+            .args(["out/fields/view.py", "--save", "fields.png"])
+            .current_dir(case.folder())
+            .output();
+        let picture = case.folder().join("fields.png");
+        assert!(drawn.as_ref().is_ok_and(|drawn| drawn.status.success()) && picture.exists(), "{cells}: {drawn:?}");
     }
 }

@@ -39,6 +39,16 @@ impl Array {
         Self { refused, ..Self::new(name, "Float64", components, values.len(), encode(&bytes, deflate)) }
     }
 
+    /// Real numbers in single precision; not a number where there is none, which readers leave out and paint in a colour of its own.
+    pub fn where_known(name: impl Into<String>, values: &[Option<f64>]) -> Self {
+        let mut bytes = Vec::with_capacity(size_of::<f32>() * values.len());
+        let single = values.iter().map(|value| value.map_or(f32::NAN, |value| value as f32));
+        single.for_each(|value| bytes.extend_from_slice(&value.to_le_bytes()));
+        let infinite = |value: &Option<f64>| value.is_some_and(|value| !(value as f32).is_finite());
+        let refused = values.iter().position(infinite).map(|at| (at, values[at].unwrap_or(f64::NAN)));
+        Self { refused, ..Self::new(name, "Float32", 1, values.len(), encode(&bytes, deflate)) }
+    }
+
     /// Whole numbers.
     pub fn integers(name: impl Into<String>, values: impl Iterator<Item = i64> + Clone) -> Self {
         let narrow = values.clone().all(|value| i32::try_from(value).is_ok());
@@ -169,6 +179,19 @@ mod tests {
         let kind = |values: &[i64]| Array::integers("n", values.iter().copied()).kind;
         assert_eq!(kind(&[-1, 0, 2_147_483_647]), "Int32");
         assert_eq!(kind(&[0, 2_147_483_648]), "Int64");
+    }
+
+    #[test]
+    fn a_number_that_is_not_there_is_written_as_none() {
+        let array = Array::where_known("onset", &[Some(0.5), None]);
+        assert!(array.check("plies-0001.vtu").is_ok());
+        let mut bytes = Vec::new();
+        let header = 8 * (3 + 1);
+        flate2::read::ZlibDecoder::new(&array.encoded[header..]).read_to_end(&mut bytes).unwrap();
+        let values: Vec<f32> = bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
+        assert!(values[0] == 0.5 && values[1].is_nan() && values.len() == 2, "{values:?}");
+        let error = Array::where_known("onset", &[None, Some(1e39)]).check("plies-0001.vtu").unwrap_err().to_string();
+        assert!(error.contains("row 2, column onset"), "{error}");
     }
 
     #[test]

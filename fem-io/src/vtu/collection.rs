@@ -8,6 +8,8 @@ use crate::files::{FileError, OutputDir};
 pub struct Member {
     /// Its time, or whatever numbers the series.
     pub time: f64,
+    /// What it shows, where files show several things at a time.
+    pub part: usize,
     /// Its name, in the folder of the series.
     pub file: String,
 }
@@ -21,8 +23,8 @@ pub fn write_collection(dir: &OutputDir, name: &str, members: &[Member]) -> Resu
         writeln!(out, r#"<?xml version="1.0"?>"#)?;
         writeln!(out, r#"<VTKFile type="Collection" version="1.0" byte_order="LittleEndian">"#)?;
         writeln!(out, "<Collection>")?;
-        for Member { time, file } in members {
-            writeln!(out, r#"<DataSet timestep="{time}" part="0" file="{}"/>"#, escape(file))?;
+        for Member { time, part, file } in members {
+            writeln!(out, r#"<DataSet timestep="{time}" part="{part}" file="{}"/>"#, escape(file))?;
         }
         writeln!(out, "</Collection>\n</VTKFile>")
     })

@@ -5,7 +5,7 @@
 //! | numbers | appended raw behind the XML, little-endian, in blocks of 64 KiB that are zlib streams each |
 //! | headers | `UInt64`: number of blocks, size of a block, size of the last one if it is shorter, compressed sizes |
 //! | coordinates | `Float64`, because plies are thin and a plate may lie far from its origin |
-//! | other reals | `Float32`: seven digits, half the size; stored, because they hardly compress (a tenth) |
+//! | other reals | `Float32`: seven digits, half the size; stored, because they hardly compress (a tenth), unless most are missing |
 //! | whole numbers | `Int32` where all fit, `Int64` otherwise |
 //!
 //! Files of Lagrange cells are of version 2.2, in which the edges of these cells have their present order; all others

@@ -386,6 +386,16 @@ impl<'a> March<'a> {
         self.expansion.displacements(&self.coordinates(), 1)
     }
 
+    /// Largest index of every criterion and site over all samples so far.
+    ///
+    /// # Errors
+    /// A stress or an index that is not finite.
+    pub fn maxima(&self) -> Result<Vec<Maximum>, Error> {
+        let Some(watch) = &self.watch else { return Ok(Vec::new()) };
+        let scan = watch.so_far()?;
+        Ok((0..self.model.criteria.len()).flat_map(|k| largest(&scan, k)).collect())
+    }
+
     /// States of plies that follow laws, at present.
     pub fn points(&self) -> &[f64] {
         let beside = self.model.separation.as_ref().map_or(0, |separation| separation.states.len());

@@ -34,7 +34,9 @@ impl<'a> MarchFields<'a> {
                 self.writer = Writer::new(self.model, self.dir, march.frame_times())?;
             }
             let Some(writer) = &mut self.writer else { return Ok(()) };
-            writer.take(number, State { velocities: v.as_deref(), points: Some(&points), ..State::of(&u) })
+            let maxima = if writer.shows_plies() { march.maxima()? } else { Vec::new() };
+            let maxima = Some(maxima.as_slice());
+            writer.take(number, State { maxima, velocities: v.as_deref(), points: Some(&points), ..State::of(&u) })
         })
     }
 

@@ -6,25 +6,32 @@
 //! | `plies` | one per ply and quad | stress in the axes of the ply and indices, as the criteria see them |
 //! | `interfaces` | one per interface and quad | tractions and indices |
 //!
+//! `all.pvd` lists the frames of all series, `names.json` says what numbers in them count, and `view.py` draws them.
+//!
 //! A frame is a state of the whole plate, also where a symmetry computes a part of it. Files depend on nothing but
 //! the state, so that a resumed march writes what one in one piece writes.
 
 mod lattice;
 mod march;
+mod names;
 mod plate;
 mod plies;
 mod size;
+mod so_far;
 
 pub(crate) use march::MarchFields;
 pub(crate) use size::{Expected, expected};
 
+use crate::analyses::impact::Maximum;
 use crate::analyses::{modes, statics, stress};
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::Model;
 use fem_io::files::OutputDir;
 use fem_io::scene::FieldSeries;
+use fem_io::tables::write_json;
 use fem_io::vtu::{Array, Contents, Grid, Member, write_collection};
+use names::Names;
 use plate::Plate;
 use plies::Plies;
 use std::f64::consts::TAU;
@@ -35,6 +42,9 @@ const FOLDER: &str = "fields";
 /// Name of the time that writing takes.
 const PHASE: &str = "fields";
 
+/// Draws the files with PyVista.
+const SCRIPT: &str = include_str!("view.py");
+
 /// A state of the plate, in its unknowns before elimination of constraints.
 #[derive(Debug, Clone, Copy)]
 struct State<'a> {
@@ -44,12 +54,14 @@ struct State<'a> {
     points: Option<&'a [f64]>,
     /// Of a natural mode, Hz.
     frequency: Option<f64>,
+    /// In a march what the criteria have found up to now.
+    maxima: Option<&'a [Maximum]>,
 }
 
 impl<'a> State<'a> {
     /// Displacements alone.
     fn of(displacements: &'a [f64]) -> Self {
-        Self { displacements, velocities: None, points: None, frequency: None }
+        Self { displacements, velocities: None, points: None, frequency: None, maxima: None }
     }
 }
 
@@ -69,6 +81,13 @@ impl<'a> Layout<'a> {
             [FieldSeries::Plies, FieldSeries::Interfaces].map(|series| plan.series.contains(&series));
         let plies = if plies || interfaces { Some(Plies::new(model, plan, plies, interfaces)?) } else { None };
         Ok(Some(Self { plate, plies }))
+    }
+
+    fn has(&self, series: FieldSeries) -> bool {
+        match series {
+            FieldSeries::Plate => self.plate.is_some(),
+            _ => self.plies.as_ref().is_some_and(|plies| plies.has(series)),
+        }
     }
 }
 
@@ -96,6 +115,8 @@ struct Waiting {
     velocities: Option<Vec<f64>>,
     points: Option<Vec<f64>>,
     frequency: Option<f64>,
+    /// What the criteria had found, for `plies` and for `interfaces`.
+    so_far: Vec<(FieldSeries, Vec<Array>)>,
 }
 
 impl<'a> Writer<'a> {
@@ -107,6 +128,8 @@ impl<'a> Writer<'a> {
     fn new(model: &'a Model, results: &OutputDir, times: Vec<f64>) -> Result<Option<Self>, Error> {
         let Some(layout) = Layout::new(model)? else { return Ok(None) };
         let dir = results.folder(FOLDER)?;
+        write_json(&dir, "names.json", &Names::of(model))?;
+        dir.write("view.py", |out| out.write_all(SCRIPT.as_bytes()))?;
         Ok(Some(Self { layout, dir, times, waiting: Vec::new() }))
     }
 
@@ -115,14 +138,20 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// As [`Writer::flush`].
     fn take(&mut self, number: usize, state: State<'_>) -> Result<(), Error> {
-        let State { displacements, frequency, .. } = state;
+        let State { displacements, frequency, maxima, .. } = state;
         let [velocities, points] = [state.velocities, state.points].map(|values| values.map(<[f64]>::to_vec));
-        self.waiting.push(Waiting { number, displacements: displacements.to_vec(), velocities, points, frequency });
+        let displacements = displacements.to_vec();
         let Layout { plate, plies } = &self.layout;
+        let so_far = plies.as_ref().zip(maxima).map_or_else(Vec::new, |(plies, maxima)| plies.so_far(maxima));
+        self.waiting.push(Waiting { number, displacements, velocities, points, frequency, so_far });
         let of_frame =
             plate.as_ref().map_or(0, Plate::bytes_of_frame) + plies.as_ref().map_or(0, Plies::bytes_of_frame);
         let most = (STORE / of_frame.max(1)).clamp(1, BATCH);
         if self.waiting.len() < most { Ok(()) } else { self.flush() }
+    }
+
+    fn shows_plies(&self) -> bool {
+        self.layout.plies.is_some()
     }
 
     /// Writes the frames that wait, and the series up to them.
@@ -133,19 +162,23 @@ impl<'a> Writer<'a> {
     fn flush(&mut self) -> Result<(), Error> {
         let waiting = std::mem::take(&mut self.waiting);
         let Self { layout: Layout { plate, plies }, dir, times, .. } = self;
-        let frames = waiting.iter().map(|Waiting { number, displacements, velocities, points, frequency }| {
+        let frames = waiting.iter().map(|Waiting { number, displacements, velocities, points, frequency, so_far }| {
             let [velocities, points] = [velocities, points].map(Option::as_deref);
-            let state = State { displacements, velocities, points, frequency: *frequency };
-            Frame { dir, times: &times[..=*number], state }
+            let state = State { displacements, velocities, points, frequency: *frequency, maxima: None };
+            Frame { dir, times: &times[..=*number], state, so_far }
         });
         let frames: Vec<Frame<'_>> = frames.collect();
         if let Some(plate) = plate {
             plate.write(&frames)?;
         }
         match plies {
-            Some(plies) if !frames.is_empty() => plies.write(&frames),
-            _ => Ok(()),
+            Some(plies) if !frames.is_empty() => plies.write(&frames)?,
+            _ => {}
         }
+        let Some(last) = frames.last() else { return Ok(()) };
+        let series = [FieldSeries::Plate, FieldSeries::Plies, FieldSeries::Interfaces];
+        let written: Vec<FieldSeries> = series.into_iter().filter(|series| self.layout.has(*series)).collect();
+        last.list("all", &written)
     }
 }
 
@@ -197,6 +230,12 @@ struct Frame<'a> {
     /// Times of all frames up to this one.
     times: &'a [f64],
     state: State<'a>,
+    so_far: &'a [(FieldSeries, Vec<Array>)],
+}
+
+/// Name of the file of a frame, whose number counts from 1.
+fn file(series: FieldSeries, number: usize) -> String {
+    format!("{}-{number:04}.vtu", series.name())
 }
 
 impl Frame<'_> {
@@ -206,13 +245,20 @@ impl Frame<'_> {
 
     /// Writes the file of a series, and the list of its files.
     fn write(&self, series: FieldSeries, grid: &Grid, contents: Contents<'_>) -> Result<(), Error> {
-        let name = series.name();
-        let file = |number: usize| format!("{name}-{number:04}.vtu");
         let mut field = vec![Array::precise("TimeValue", 1, &[self.time()])];
         field.extend(self.state.frequency.map(|frequency| Array::precise("frequency_Hz", 1, &[frequency])));
-        grid.write(self.dir, &file(self.times.len()), Contents { field: &field, ..contents })?;
-        let members = (1..).zip(self.times).map(|(number, time)| Member { time: *time, file: file(number) });
-        write_collection(self.dir, &format!("{name}.pvd"), &members.collect::<Vec<_>>())?;
-        Ok(())
+        grid.write(self.dir, &file(series, self.times.len()), Contents { field: &field, ..contents })?;
+        self.list(series.name(), &[series])
+    }
+
+    /// Writes the list `name` of these series up to this frame.
+    fn list(&self, name: &str, series: &[FieldSeries]) -> Result<(), Error> {
+        let parts = |(number, time): (usize, &f64)| {
+            let member =
+                |(part, series): (usize, &FieldSeries)| Member { time: *time, part, file: file(*series, number) };
+            series.iter().enumerate().map(member).collect::<Vec<_>>()
+        };
+        let members: Vec<Member> = (1..).zip(self.times).flat_map(parts).collect();
+        Ok(write_collection(self.dir, &format!("{name}.pvd"), &members)?)
     }
 }

@@ -2,6 +2,8 @@
 
 use super::Frame;
 use super::lattice::{Height, Lattice};
+use super::so_far::SoFar;
+use crate::analyses::impact::Maximum;
 use crate::analyses::stress;
 use crate::error::Error;
 use crate::model::{FieldPlan, Model, Plan};
@@ -46,6 +48,7 @@ pub(super) struct Plies<'a> {
     residual: Vec<f64>,
     /// Finds indices; a natural mode has none.
     scan: Option<Scan>,
+    so_far: SoFar<'a>,
     pub(super) sheets: Vec<Sheets>,
     states: Vec<Stress6<Ply>>,
 }
@@ -86,6 +89,7 @@ impl<'a> Plies<'a> {
         sheets.extend(interfaces.then(|| Sheets::interfaces(model, plan, &lattice, &recovery)));
         Ok(Self {
             scan: if judged { Some(scan()?) } else { None },
+            so_far: SoFar::new(model, plan),
             states: vec![Stress6::new([0.0; 6]); recovery.sites()],
             model,
             lattice,
@@ -99,6 +103,16 @@ impl<'a> Plies<'a> {
     /// What the stresses and displacements of a frame take, bytes.
     pub(super) fn bytes_of_frame(&self) -> usize {
         (6 * self.recovery.sites() + 3 * self.lattice.len()) * size_of::<f64>()
+    }
+
+    /// What the criteria of a march have found, for each of the series.
+    pub(super) fn so_far(&self, maxima: &[Maximum]) -> Vec<(FieldSeries, Vec<Array>)> {
+        let arrays = |sheets: &Sheets| self.so_far.arrays(self.model, maxima, sheets.site, sheets.stations.len());
+        self.sheets.iter().map(|sheets| (sheets.series, arrays(sheets))).collect()
+    }
+
+    pub(super) fn has(&self, series: FieldSeries) -> bool {
+        self.sheets.iter().any(|sheets| sheets.series == series)
     }
 
     pub(super) fn write(&mut self, frames: &[Frame<'_>]) -> Result<(), Error> {
@@ -131,6 +145,8 @@ impl<'a> Plies<'a> {
             if let Some(scan) = &self.scan {
                 sheets.indices(model, recovery, &self.around, scan, &mut cells);
             }
+            let known = frame.so_far.iter().filter(|(series, _)| *series == sheets.series);
+            cells.extend(known.flat_map(|(_, arrays)| arrays).cloned());
             let contents = Contents { points: &points, cells: &cells, fixed: &sheets.fixed, ..Contents::default() };
             frame.write(sheets.series, &sheets.grid, contents)?;
         }
@@ -141,7 +157,13 @@ impl<'a> Plies<'a> {
     pub(super) fn changing(&self, sheets: &Sheets) -> usize {
         let stress = if sheets.site == Site::Ply { COMPONENTS.len() } else { 1 + SHEAR.len() };
         let judged = self.model.criteria.iter().filter(|(_, criterion)| criterion.info().site == sheets.site);
-        stress + if self.scan.is_some() { judged.count() } else { 0 }
+        // Beside the index of the frame that of all samples so far; times of onsets are few.
+        let indices = match self.model.plan {
+            Plan::Impact(_) => 2,
+            Plan::Static { .. } => 1,
+            Plan::Modes { .. } => 0,
+        };
+        stress + indices * judged.count()
     }
 }
 
