@@ -159,6 +159,7 @@ impl Registry {
             .with_effect::<effects::ViscousDamping>()
             .with_effect::<effects::Gravity>()
             .with_effect::<effects::Cure>()
+            .with_effect::<effects::Preload>()
     }
 
     /// The registry with one plug-in more.

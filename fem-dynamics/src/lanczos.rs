@@ -151,7 +151,19 @@ where
     ///
     /// # Errors
     /// Those of the operator, numbers that are not finite, and a space that grows without convergence.
-    pub(crate) fn lowest(mut self, count: usize, share: f64) -> Result<(Vec<f64>, Vec<f64>), SolveError> {
+    pub(crate) fn lowest(self, count: usize, share: f64) -> Result<(Vec<f64>, Vec<f64>), SolveError> {
+        self.find(count, share, |theta| theta)
+    }
+
+    /// The same of the eigenvalues of largest `rank`, among those of positive rank, whatever the start excites.
+    ///
+    /// # Errors
+    /// As [`Lanczos::lowest`].
+    pub(crate) fn largest(self, count: usize, rank: fn(f64) -> f64) -> Result<(Vec<f64>, Vec<f64>), SolveError> {
+        self.find(count, 0.0, rank)
+    }
+
+    fn find(mut self, count: usize, share: f64, rank: fn(f64) -> f64) -> Result<(Vec<f64>, Vec<f64>), SolveError> {
         let limit = self.n.min(count.saturating_mul(5).saturating_add(80));
         loop {
             let grown = self.size() < limit && self.grow()?;
@@ -164,14 +176,15 @@ where
             }
             let eigen = SymmetricEigen::new(DMatrix::from_fn(size, size, |i, j| self.t[i.max(j)][i.min(j)]));
             let excited = |i: usize| eigen.eigenvectors.view((0, i), (self.starts, 1)).norm() >= share;
-            let mut order: Vec<usize> = (0..size).filter(|i| eigen.eigenvalues[*i] > 0.0 && excited(*i)).collect();
-            order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+            let rank = |i: usize| rank(eigen.eigenvalues[i]);
+            let mut order: Vec<usize> = (0..size).filter(|i| rank(*i) > 0.0 && excited(*i)).collect();
+            order.sort_by(|a, b| rank(*b).total_cmp(&rank(*a)));
             order.truncate(count);
             let beyond = self.beyond()?;
             let residual = |i: usize| {
                 let share = |of: usize| eigen.eigenvectors[(of, i)].abs();
                 let parts = beyond.iter().map(|(of, length)| of.map_or(f64::INFINITY, share) * length);
-                parts.sum::<f64>() / eigen.eigenvalues[i]
+                parts.sum::<f64>() / rank(i)
             };
             let whole = size == self.n || beyond.is_empty();
             if whole || order.len() == count && order.iter().all(|i| residual(*i) <= TOLERANCE) {

@@ -62,6 +62,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod buckling;
 pub mod contact;
 pub mod guard;
 pub mod impact;

@@ -5,7 +5,7 @@ use crate::vector::dot;
 use fem_core::structure::{SolveError, Structure};
 
 /// Start vectors, and the largest multiplicity of a frequency that is sure to be found.
-const BLOCK: usize = 4;
+pub(crate) const BLOCK: usize = 4;
 
 /// Natural modes, by frequency.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,12 +26,10 @@ pub struct Modes {
 /// A matrix that cannot be factorised, or no convergence in a space of 5 `count` + 80 vectors.
 pub fn lowest(structure: &mut dyn Structure, count: usize, with_free: bool) -> Result<Modes, SolveError> {
     let n = structure.ndof();
-    // Vectors that no symmetry makes orthogonal to a mode, the same on every machine.
-    let rough = |k: usize| (0..n).map(move |i| ((i * (7919 + 2 * k) + 31 * k) % 1009) as f64 / 1009.0 - 0.47);
     let mut free = if with_free { structure.free_motions().to_vec() } else { Vec::new() };
     free.truncate(n * count);
     let moving = free.len() / n.max(1);
-    let start: Vec<f64> = (0..BLOCK).flat_map(rough).collect();
+    let start: Vec<f64> = (0..BLOCK).flat_map(|k| rough(n, k)).collect();
     let inverse = |structure: &mut dyn Structure, x: &mut [f64]| {
         let columns = x.len() / n.max(1);
         structure.solve_shifted(0.0, x, columns)
@@ -47,4 +45,9 @@ pub fn lowest(structure: &mut dyn Structure, count: usize, with_free: bool) -> R
     }
     let omega = std::iter::repeat_n(0.0, moving).chain(theta.iter().map(|theta| theta.recip().sqrt())).collect();
     Ok(Modes { omega, shapes })
+}
+
+/// The `k`-th of vectors that no symmetry makes orthogonal to a mode, the same on every machine.
+pub(crate) fn rough(n: usize, k: usize) -> impl Iterator<Item = f64> {
+    (0..n).map(move |i| ((i * (7919 + 2 * k) + 31 * k) % 1009) as f64 / 1009.0 - 0.47)
 }

@@ -133,6 +133,49 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
         Ok(energy)
     }
 
+    /// [`fem_core::large::LargeDeflection::geometric_stiffness`]
+    pub(crate) fn geometric_stiffness(
+        &self,
+        cell: &Cell<'_>,
+        u: &[f64],
+        scratch: &mut Scratch,
+        kg: &mut [f64],
+    ) -> Result<(), ElementError> {
+        let (terms, ndof) = (3 * K, self.info.ndof());
+        let [g, p, hankel, one, block] = scratch.arrays([F * terms, F * terms, terms * terms, F * F, F * F]);
+        let mut functions: Gradients<F, K> = [[[0.0; K]; 3]; F];
+        let layer = Layer::new(self.info, cell, self.stresses);
+        let unknowns = self.unknowns();
+        for (r, s, w) in self.info.plane_points() {
+            let dv = self.at(cell, r, s, &mut functions)? * w;
+            let stresses = layer.small_stresses(&gradient(&functions, &unknowns, u));
+            for (f, gradient) in functions.iter().enumerate() {
+                for (i, value) in gradient.as_flattened().iter().enumerate() {
+                    g[F * i + f] = *value;
+                }
+            }
+            for (j, column) in hankel.chunks_exact_mut(terms).enumerate() {
+                for (i, value) in column.iter_mut().enumerate() {
+                    *value = dv * stresses[i % K + j % K][STRAIN_ROW[i / K][j / K]];
+                }
+            }
+            multiply(p, matrix(g, F), matrix(hankel, terms));
+            multiply(one, matrix(p, F), matrix(g, F).transpose());
+            block.iter_mut().zip(one.iter()).for_each(|(sum, one)| *sum += one);
+        }
+        kg.fill(0.0);
+        for n in 0..3 {
+            for f2 in 0..F {
+                for f in 0..F {
+                    let (Some(i), Some(j)) = ((self.unknown)(n, f), (self.unknown)(n, f2)) else { continue };
+                    // The mean of both triangles: symmetric to the last bit.
+                    kg[i + ndof * j] = 0.5 * (block[f + F * f2] + block[f2 + F * f]);
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// K = Σ over points of P Gᵀ, block by block.
     fn gather(&self, g: &[f64], p: &[f64], block: &mut [f64], tangent: &mut [f64]) {
         let (g, ndof) = (matrix(g, F), self.info.ndof());
@@ -262,6 +305,38 @@ impl<'a> Layer<'a> {
         let transverse =
             stresses.in_stack(cell.stack).map(|all| (all, all.amplitudes_of(slices.iter().map(|slice| slice.free))));
         Self { info, slices, transverse }
+    }
+
+    /// ∫ σ qᵏ dq of small displacements with this gradient.
+    fn small_stresses<const K: usize>(&self, gradient: &Polynomial<K>) -> [[f64; 6]; POWERS] {
+        let mut strains = [[0.0; POWERS]; 6];
+        for (a, rows) in STRAIN_ROW.iter().enumerate() {
+            for (b, row) in rows.iter().enumerate() {
+                strains[*row].iter_mut().zip(&gradient[a][b]).for_each(|(strain, h)| *strain += h);
+            }
+        }
+        let smooth = self.transverse.as_ref().map(|(all, free)| (*all, all.amplitudes(&strains) - free));
+        let mut sum = [[0.0; 6]; POWERS];
+        for (number, slice) in self.slices.iter().enumerate() {
+            let (middle, half) = (0.5 * (slice.q[0] + slice.q[1]), 0.5 * (slice.q[1] - slice.q[0]));
+            for &(t, wt) in gauss_legendre(self.info.ply_order) {
+                let (q, mut w) = (middle + half * t, wt * half);
+                let mut strain = strains.map(|p| p.iter().rev().fold(0.0, |sum, c| sum * q + c));
+                strain.iter_mut().zip(&slice.free).for_each(|(e, free)| *e -= free);
+                let stress = match &smooth {
+                    None => product(&slice.c, &strain),
+                    Some((all, a)) => {
+                        all.assume(number, [q, q], a, &mut strain);
+                        all.stress(number, q, a, &strain)
+                    }
+                };
+                for sum in &mut sum {
+                    sum.iter_mut().zip(&stress).for_each(|(sum, stress)| *sum += w * stress);
+                    w *= q;
+                }
+            }
+        }
+        sum
     }
 
     fn moduli<const K: usize>(&self) -> Moduli<K> {

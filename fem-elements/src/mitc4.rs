@@ -250,6 +250,28 @@ impl LargeDeflection for Mitc4 {
         Ok(energy)
     }
 
+    fn geometric_stiffness(
+        &self,
+        cell: &Cell<'_>,
+        u: &[f64],
+        _scratch: &mut Scratch,
+        kg: &mut [f64],
+    ) -> Result<(), ElementError> {
+        let h = cell.half_height();
+        let lamination = Lamination::new(cell.stack)?;
+        let (section, held) = (lamination.section(h) / h, lamination.held(h).0 / h);
+        let (u, rest) = (SVector::<f64, N>::from_column_slice(u), SVector::zeros());
+        let mut sum = SMatrix::<f64, N, N>::zeros();
+        for (r, s, w) in self.info.plane_points() {
+            let Bent { operator, slopes, jacobian, .. } = Bent::new(cell, r, s, &rest);
+            let forces = section * (operator * u) + held;
+            let membrane = Matrix2::new(forces[0], forces[2], forces[2], forces[1]);
+            sum += slopes.tr_mul(&(membrane * slopes * (positive(jacobian)? * w)));
+        }
+        kg.copy_from_slice(sum.as_slice());
+        Ok(())
+    }
+
     fn large_strain(
         &self,
         cell: &Cell<'_>,

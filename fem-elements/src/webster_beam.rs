@@ -212,6 +212,13 @@ impl WebsterBeam {
             }
         }
     }
+
+    /// A stack with the stiffnesses of the strip.
+    fn condensed(&self, stack: &Stack) -> Stack {
+        let mut stack = stack.clone();
+        stack.slices.iter_mut().for_each(|slice| slice.c = self.condense(slice.c));
+        stack
+    }
 }
 
 impl LargeDeflection for WebsterBeam {
@@ -223,10 +230,21 @@ impl LargeDeflection for WebsterBeam {
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, ElementError> {
-        let mut stack = cell.stack.clone();
-        stack.slices.iter_mut().for_each(|slice| slice.c = self.condense(slice.c));
+        let stack = self.condensed(cell.stack);
         let cell = Cell { stack: &stack, ..*cell };
         self.solid(&cell, |solid| solid.internal(&cell, u, scratch, force, tangent))
+    }
+
+    fn geometric_stiffness(
+        &self,
+        cell: &Cell<'_>,
+        u: &[f64],
+        scratch: &mut Scratch,
+        kg: &mut [f64],
+    ) -> Result<(), ElementError> {
+        let stack = self.condensed(cell.stack);
+        let cell = Cell { stack: &stack, ..*cell };
+        self.solid(&cell, |solid| solid.geometric_stiffness(&cell, u, scratch, kg))
     }
 
     fn large_strain(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError> {

@@ -157,6 +157,36 @@ fn forces_are_derivatives_of_the_energy_and_tangents_of_the_forces() {
 }
 
 /// At rest large deflections have the force and the energy of small ones; a cell that is as its plies want to be has none.
+/// The energy of third degree is ½ ∫ ε C η(u, u) with the quadratic strains η: along u the tangent changes by
+/// φᵀ (∂K/∂u) φ = φᵀ K_G(u) φ + 2 uᵀ K_G(φ) φ. Free strains stress a cell that has not moved.
+#[test]
+fn geometric_stiffnesses_are_those_of_the_energy() {
+    let stacks = [plies(), hot_plies()];
+    for (element, stack) in all().flat_map(|element| stacks.iter().map(move |stack| (element.clone(), stack))) {
+        let cell = cell(&*element, stack);
+        let geometric = |u: &DVector<f64>| {
+            let mut sum = DMatrix::repeat(u.len(), u.len(), f64::NAN);
+            let large = element.large_deflections().unwrap();
+            let done = large.geometric_stiffness(&cell, u.as_slice(), &mut Scratch::default(), sum.as_mut_slice());
+            done.unwrap();
+            assert!((&sum - sum.transpose()).amax() <= 1e-14 * sum.amax(), "{element:?}");
+            sum
+        };
+        let zero = DVector::zeros(element.info().ndof());
+        let at_rest = geometric(&zero);
+        let hot = internal(&*element, &cell, &zero).2 - stiffness(&*element, &cell);
+        assert!((&at_rest - &hot).amax() <= 1e-12 * internal(&*element, &cell, &zero).2.amax(), "{element:?}");
+        let u = motion(&*element, &cell, &Matrix3::new(0.02, 0.1, 0.0, -0.1, 0.01, 0.05, -0.2, 0.1, 0.03), 0.05);
+        let phi = motion(&*element, &cell, &Matrix3::new(0.1, -0.2, 0.1, 0.3, 0.05, 0.1, 0.1, -0.4, 0.1), 0.1);
+        let tangent = |step: f64| internal(&*element, &cell, &(&u * step)).2;
+        let change = (tangent(1e-3) - tangent(-1e-3)) / 2e-3;
+        let of = |u: &DVector<f64>| geometric(u) - &at_rest;
+        let (found, expected) =
+            ((of(&u) * &phi).dot(&phi) + 2.0 * (of(&phi) * &phi).dot(&u), (change * &phi).dot(&phi));
+        assert!((found - expected).abs() < 1e-6 * expected.abs(), "{element:?}: {found} {expected}");
+    }
+}
+
 #[test]
 fn free_strains_push_a_cell_at_rest() {
     let hot = hot_plies();

@@ -3,9 +3,13 @@
 use crate::error::Error;
 use crate::forecast::MemoryEstimate;
 use crate::model::Model;
-use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, Symmetric, assemble, condense, pattern};
+use fem_core::assembly::{
+    Condensation, Condensed, Matrix, SparseStructure, Symbolic, Symmetric, assemble, condense, pattern,
+};
 use fem_core::counters::Counters;
 use fem_core::functional::Functional;
+use fem_core::structure::{SolveError, Structure};
+use fem_dynamics::buckling;
 use serde::Serialize;
 use std::fmt;
 use std::num::NonZeroUsize;
@@ -116,9 +120,14 @@ pub fn structure(
         let mut k = matrix(Matrix::Stiffness)?;
         let m = if inertia { matrix(Matrix::Mass)? } else { Symmetric::zero(pattern.clone()) };
         model.effects.on_stiffness(&model.body(), &mut k)?;
+        let geometric = model.effects.geometric(&model.body(), &pattern)?;
+        geometric.iter().for_each(|geometric| k.add(1.0, geometric));
         let factor_entries = symbolic.entries();
         let mut structure = SparseStructure::new(symbolic, k, m, threads, name);
         structure.release(&model.motions);
+        if let Some(geometric) = &geometric {
+            check_buckling(&mut structure, geometric, threads)?;
+        }
         return Ok(Assembled { structure, factor_entries, memory, condensation: None });
     };
     let Condensed { k, m, way } = condense(plate, &**element, constraints, division, inertia, threads, counters)?;
@@ -130,4 +139,26 @@ pub fn structure(
     let mut structure = SparseStructure::new(symbolic, k, m, threads, move |i| name(masters[i]));
     structure.release(&motions);
     Ok(Assembled { structure, factor_entries, memory, condensation: Some(way) })
+}
+
+/// Factors looked at for the first that is positive: those of a shear load come in pairs of either sign.
+const FACTORS: usize = 4;
+
+/// Refuses a `geometric` stiffness, part of that of `structure`, which buckles the plate.
+fn check_buckling(structure: &mut SparseStructure, geometric: &Symmetric, threads: NonZeroUsize) -> Result<(), Error> {
+    // The factor serves what comes next as well.
+    match structure.solve_shifted(0.0, &mut vec![0.0; geometric.ndof()], 1) {
+        Err(SolveError::NotPositive { .. }) => {}
+        other => return Ok(other?),
+    }
+    let mut k = structure.matrices().0.clone();
+    k.add(-1.0, geometric);
+    let pattern = k.pattern().clone();
+    let mut elastic =
+        SparseStructure::new(Symbolic::new(pattern.clone())?, k, Symmetric::zero(pattern), threads, |i| {
+            format!("independent unknown {}", i + 1)
+        });
+    let found = buckling::factors(&mut elastic, |scale, x, y| geometric.add_product(scale, x, y), FACTORS)?;
+    let factor = found.factors.into_iter().filter(|factor| *factor > 0.0).fold(f64::INFINITY, f64::min);
+    Err(Error::Buckled { factor })
 }

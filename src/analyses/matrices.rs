@@ -48,6 +48,9 @@ impl PlateMatrices {
         let mut matrix = |which| assemble(plate, &**element, constraints, &pattern, which, threads, &mut counters);
         let (mut stiffness, mass) = (matrix(Matrix::Stiffness)?, matrix(Matrix::Mass)?);
         model.effects.on_stiffness(&model.body(), &mut stiffness)?;
+        if let Some(geometric) = model.effects.geometric(&model.body(), &pattern)? {
+            stiffness.add(1.0, &geometric);
+        }
         Ok(Self { stiffness, mass, unknowns: unknowns(model) })
     }
 }

@@ -137,14 +137,18 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
     constraints.expand(&found.independent, &mut u);
     stopwatch.lap("solve");
     let margins = stress::margins(model, &u)?;
-    let mut field = Displacements::new(&model.plate, &model.laminates, &*model.element, &u);
+    // Stresses of a profile are those of all that the plate has been through.
+    let displaced = model.effects.displaced(&model.body())?;
+    let since =
+        displaced.as_ref().map(|before| before.iter().zip(&u).map(|(before, u)| before + u).collect::<Vec<_>>());
+    let mut field = Displacements::new(&model.plate, &model.laminates, &*model.element, since.as_ref().unwrap_or(&u));
     if nature.large {
         field = field.with_large_strains();
     }
     let sample = |named: &NamedProfile| {
         let line = &named.line;
-        // Equilibrium is that of small displacements.
-        let equilibrium = if nature.large { Some(false) } else { line.equilibrium };
+        // Equilibrium is that of small displacements of a plate at rest before.
+        let equilibrium = if nature.large || displaced.is_some() { Some(false) } else { line.equilibrium };
         let sampled = named.profile.sample(&field, line.points, equilibrium, named.pressures)?;
         Ok(((sampled.points, [sampled.normal, sampled.shear]), named.profile.resultants(&field)?))
     };

@@ -12,7 +12,7 @@ mod stages;
 pub use advice::{AdviceRule, Answer, Decision, Expected, Hindsight, Judgement, Number};
 pub use facts::{Body, Exclusion, Facts, Feature};
 pub use set::Effects;
-pub use stages::{Marched, Nature};
+pub use stages::{EdgeLoad, Gripped, Marched, Nature};
 
 use crate::error::Error;
 use crate::forecast::Demand;
@@ -124,12 +124,37 @@ pub trait Effect: DynClone + Debug + Send + Sync {
         Ok(())
     }
 
+    /// What acts on edges in the plane before all else, while supports do not hold these edges there.
+    fn edges(&self) -> &[EdgeLoad] {
+        &[]
+    }
+
+    /// Takes how the plate is held and loaded meanwhile.
+    fn on_edges(&mut self, _gripped: Gripped) {}
+
     /// Adds to the stiffness of the assembled plate, of any analysis.
     ///
     /// # Errors
     /// What it adds has no place there.
     fn on_stiffness(&self, _body: &Body<'_>, _stiffness: &mut Symmetric) -> Result<(), Error> {
         Ok(())
+    }
+
+    /// Adds the geometric stiffness of the stresses of its edges: in an analysis of buckling what the load factors multiply, else a
+    /// part of the stiffness.
+    ///
+    /// # Errors
+    /// A cell that the element refuses, a plate that is not held.
+    fn add_geometric(&self, _body: &Body<'_>, _sum: &mut Symmetric) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// Displacements before all else, one per unknown, of which stresses of a plate at rest are part; `None` without.
+    ///
+    /// # Errors
+    /// As [`Effect::add_geometric`].
+    fn displaced(&self, _body: &Body<'_>) -> Result<Option<Vec<f64>>, Error> {
+        Ok(None)
     }
 
     /// Forces under loads at rest, N, one per independent unknown, and the energy at no displacement, J; `None` without.

@@ -1,11 +1,12 @@
 //! The effects of a model.
 
-use super::{Body, Decision, Effect, EffectInfo, Facts, Feature, LedgerColumn, Nature, Wish};
+use super::{Body, Decision, EdgeLoad, Effect, EffectInfo, Facts, Feature, Gripped, LedgerColumn, Nature, Wish};
 use crate::error::Error;
 use crate::forecast::Demand;
-use fem_core::assembly::Symmetric;
+use fem_core::assembly::{Pattern, Symmetric};
 use fem_core::recovery::Recovery;
 use fem_io::scene::SceneError;
+use std::sync::Arc;
 
 /// The effects that act on a model, those that are left to the advisor, and all that could.
 #[derive(Debug, Clone, Default)]
@@ -121,6 +122,33 @@ impl Effects {
     /// Adds what they add to the stiffness.
     pub(crate) fn on_stiffness(&self, body: &Body<'_>, stiffness: &mut Symmetric) -> Result<(), Error> {
         self.acting.iter().try_for_each(|effect| effect.on_stiffness(body, stiffness))
+    }
+
+    /// What acts on edges before all else, where an effect says so; one of them does at most.
+    pub(crate) fn edges(&self) -> Option<&[EdgeLoad]> {
+        self.acting.iter().map(|effect| effect.edges()).find(|edges| !edges.is_empty())
+    }
+
+    /// Tells the effect that loads edges before all else how the plate is held meanwhile.
+    pub(crate) fn on_edges(&mut self, gripped: &Gripped) {
+        let loading = self.acting.iter_mut().filter(|effect| !effect.edges().is_empty());
+        loading.for_each(|effect| effect.on_edges(gripped.clone()));
+    }
+
+    /// Displacements before all else, one per unknown.
+    pub(crate) fn displaced(&self, body: &Body<'_>) -> Result<Option<Vec<f64>>, Error> {
+        let mut each = self.acting.iter().filter_map(|effect| effect.displaced(body).transpose());
+        each.next().transpose()
+    }
+
+    /// The geometric stiffness on `pattern` of stresses before all else; `None` without.
+    pub(crate) fn geometric(&self, body: &Body<'_>, pattern: &Arc<Pattern>) -> Result<Option<Symmetric>, Error> {
+        let mut sum = None;
+        for effect in self.acting.iter().filter(|effect| !effect.edges().is_empty()) {
+            let sum = sum.get_or_insert_with(|| Symmetric::zero(pattern.clone()));
+            effect.add_geometric(body, sum)?;
+        }
+        Ok(sum)
     }
 
     /// Stresses that do not follow from displacements, six per site; empty without.

@@ -1,8 +1,10 @@
 //! What effects change on the way from matrices to a system that is marched.
 
 use fem_core::assembly::SparseStructure;
+use fem_core::constraint::Constraints;
 use fem_core::functional::Functional;
 use fem_dynamics::reduce::{Companions, MembranePlate, Reduced};
+use fem_io::scene::Located;
 
 /// What is computed of a plate: linear and with inertia, unless effects change it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,4 +36,26 @@ pub struct Marched {
     pub stretched: Option<(MembranePlate, Companions)>,
     /// Where impactors strike, each place once.
     pub contacts: Vec<Functional>,
+}
+
+/// What acts on an edge in the plane before all else.
+#[derive(Debug, Clone)]
+pub struct EdgeLoad {
+    /// A group of edges.
+    pub group: Located<String>,
+    /// Force per length along the normal, which points out of the plate, N/m.
+    pub force: f64,
+    /// Force per length along the edge, anticlockwise round the plate, N/m.
+    pub shear: f64,
+    /// Displacement along the normal, m, where it is prescribed.
+    pub displacement: Option<f64>,
+}
+
+/// A plate as it is held and loaded while [`EdgeLoad`]s act.
+#[derive(Debug, Clone)]
+pub struct Gripped {
+    /// Supports, prescribed displacements and other equations, eliminated.
+    pub constraints: Constraints,
+    /// Nodal forces, one per unknown before elimination.
+    pub forces: Vec<f64>,
 }

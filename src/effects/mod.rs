@@ -7,6 +7,7 @@ mod growth;
 mod inertia;
 mod membrane;
 mod plies;
+mod preload;
 
 pub use cure::Cure;
 pub use damping::ViscousDamping;
@@ -15,6 +16,7 @@ pub use growth::GrowingDelaminations;
 pub use inertia::NoInertia;
 pub use membrane::Membrane;
 pub use plies::NonlinearPlies;
+pub use preload::Preload;
 
 use crate::effect::{Effect, Wish};
 use fem_io::scene::{Form, SceneError, SceneValue};

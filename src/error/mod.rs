@@ -43,6 +43,12 @@ pub enum Error {
     Element(#[from] ElementError),
     #[error("the model cannot be solved")]
     Solve(#[from] fem_core::structure::SolveError),
+    #[error("`effects.preload` buckles the plate: at {:.4} of it the plate has no stiffness left", factor)]
+    #[diagnostic(help("lower the preload below that; analysis = \"buckling\" finds the load factors"))]
+    Buckled {
+        /// Factor on the preload.
+        factor: f64,
+    },
     #[error("the matrices cannot be analysed")]
     Factor(#[from] fem_core::assembly::FactorError),
     #[error("this takes about {needed} of memory, and {available} are free: {parts}")]

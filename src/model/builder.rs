@@ -320,22 +320,7 @@ impl Builder<'_> {
                 }
             }
         }
-        for couple in &self.scene.couples {
-            let (columns, levels) = self.nodes(plate, &couple.nodes)?;
-            let origin = format!("couple of `{}`", couple.nodes.group.value);
-            let coupled = support::couple(plate, &columns, &levels, &couple.dofs, turns.settle(couple.axes), &origin);
-            if coupled.is_empty() {
-                let message = format!("the {origin} ties nothing");
-                let help = "a couple needs two nodes or more, and unknowns that the element has";
-                return Err(source.error_at(&couple.place, message, help));
-            }
-            equations.extend(coupled);
-            places.resize(equations.len(), &couple.place);
-        }
-        for (number, equation) in self.scene.equations.iter().enumerate() {
-            equations.push(self.equation(plate, equation, number, &mut turns)?);
-            places.push(&equation.place);
-        }
+        self.ties(plate, &mut turns, &mut equations, &mut places)?;
         self.symmetric_supports(plate, &equations, &places)?;
         equations.extend(plate.symmetry().equations(plate));
         places.resize(equations.len(), self.scene.symmetry.as_ref().map_or(&Place::TOP, |symmetry| &symmetry.place));
@@ -371,6 +356,33 @@ impl Builder<'_> {
             described,
             restraint: restraint.map(|place| (free, place)),
         })
+    }
+
+    /// Adds the couples and equations of the scene, and where they stand.
+    pub(super) fn ties<'s>(
+        &'s self,
+        plate: &Plate,
+        turns: &mut Turns,
+        equations: &mut Vec<Equation>,
+        places: &mut Vec<&'s Place>,
+    ) -> Result<(), SceneError> {
+        for couple in &self.scene.couples {
+            let (columns, levels) = self.nodes(plate, &couple.nodes)?;
+            let origin = format!("couple of `{}`", couple.nodes.group.value);
+            let coupled = support::couple(plate, &columns, &levels, &couple.dofs, turns.settle(couple.axes), &origin);
+            if coupled.is_empty() {
+                let message = format!("the {origin} ties nothing");
+                let help = "a couple needs two nodes or more, and unknowns that the element has";
+                return Err(self.scene.source.error_at(&couple.place, message, help));
+            }
+            equations.extend(coupled);
+            places.resize(equations.len(), &couple.place);
+        }
+        for (number, equation) in self.scene.equations.iter().enumerate() {
+            equations.push(self.equation(plate, equation, number, turns)?);
+            places.push(&equation.place);
+        }
+        Ok(())
     }
 
     /// What the supports leave free between the nodes that they hold.

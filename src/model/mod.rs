@@ -9,6 +9,7 @@ mod memory;
 mod mesh;
 mod origin;
 mod plan;
+mod preload;
 mod regions;
 mod separation;
 mod spacing;
@@ -222,6 +223,7 @@ impl Model {
         warnings.extend(incompressible(&plate, &laminates, &materials));
         warnings.extend(laminates.iter().find_map(|laminate| warn_of_warping(&plate, laminate, &materials)));
         let mut supports = builder.constraints(&plate)?;
+        builder.preload(&plate, &*element, &supports, &mut effects)?;
         let constraints = &supports.constraints;
         warnings.extend(builder.lacking(&plate)?);
         warnings.extend(builder.nearly_turned(&plate)?);

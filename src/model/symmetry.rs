@@ -166,6 +166,8 @@ impl Builder<'_> {
         for (dof, force) in forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
             largest[kind(dof)] = largest[kind(dof)].max(force.abs());
         }
+        // Moments that are rounding alone have no scale of their own.
+        largest[1] = largest[1].max(largest[0] * (plate.levels[plate.levels.len() - 1] - plate.levels[0]));
         for (dof, force) in forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
             for (image, sign) in plate.symmetry().images(plate, dof) {
                 if (forces[image] - sign * force).abs() > ROUNDING * largest[kind(dof)] {

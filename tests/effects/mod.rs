@@ -8,6 +8,7 @@ mod inertia;
 mod laws;
 mod membrane;
 mod off;
+mod preload;
 
 use crate::support::{impact_of, root};
 use fem::analyses::impact::{Outcome, Sizes};

@@ -4,7 +4,7 @@ use crate::support::{fem, watched};
 
 #[test]
 fn effects_that_are_off_change_no_bit() {
-    let written = "[effects]\ndamage = \"onset\"\ndelamination = \"off\"\nmembrane = \"off\"\ndamping = \"off\"\n\
+    let written = "[effects]\ndamage = \"onset\"\ndelamination = \"off\"\nmembrane = \"off\"\npreload = \"off\"\ndamping = \"off\"\n\
                    inertia = \"on\"\ngravity = \"off\"\n";
     let case = watched();
     case.fem("run", &["--out", "without"]).good();
@@ -21,7 +21,7 @@ fn effects_that_are_off_change_no_bit() {
 #[test]
 fn effects_are_listed() {
     let listed = fem(&crate::support::root(), &["list", "effects"]).good().stdout;
-    for effect in ["damage", "delamination", "membrane", "damping", "inertia", "gravity"] {
+    for effect in ["damage", "delamination", "membrane", "preload", "damping", "inertia", "gravity"] {
         assert!(listed.lines().any(|line| line.split_whitespace().next() == Some(effect)), "{effect}: {listed}");
     }
 }

@@ -66,6 +66,8 @@ pub(super) struct Strike {
     /// us.
     pub(super) step: f64,
     pub(super) end: f64,
+    /// Keys of its effects.
+    pub(super) effects: String,
 }
 
 const HERTZ: &str = "law = 'hertz'";
@@ -134,7 +136,7 @@ impl Strike {
             .sides([Side::Supported, Side::Symmetric, across[0], across[1]]);
         plate.more = format!(
             "[impactor]\nmass = '{} kg'\nvelocity = '{} m/s'\nat = {{ x = '{} mm', y = '{} mm' }}\npatch_side = '{side} mm'\n\
-             [contact]\n{}\nk = '{} N/m^1.5'\n[effects]\ndamage = 'off'\n[reduction]\nmethod = 'ritz'\nvectors = {}\nspace = '{}'\n\
+             [contact]\n{}\nk = '{} N/m^1.5'\n[effects]\ndamage = 'off'\n{}\n[reduction]\nmethod = 'ritz'\nvectors = {}\nspace = '{}'\n\
              [march]\nintegrator = 'newmark'\nstep = '{} us'\nend = '{} us'\n[output]\nhistory_every = '1 us'\n",
             self.mass / parts,
             self.velocity,
@@ -142,6 +144,7 @@ impl Strike {
             at[1],
             self.law,
             self.k / parts,
+            self.effects,
             self.vectors,
             self.space,
             self.step,
@@ -265,7 +268,7 @@ fn l2(values: &[f64], exact: &[f64]) -> f64 {
 }
 
 /// Plates of `mitc4`, with its shear stiffness from equilibrium, which for layers differs from 5/6 G h.
-fn shell(material: String, plies: &'static str, ply_mm: f64, layers: &'static [usize]) -> Strike {
+pub(super) fn shell(material: String, plies: &'static str, ply_mm: f64, layers: &'static [usize]) -> Strike {
     Strike {
         element: "kind = 'mitc4'".into(),
         material,
@@ -286,6 +289,7 @@ fn shell(material: String, plies: &'static str, ply_mm: f64, layers: &'static [u
         space: "two-level",
         step: 0.1,
         end: 90.0,
+        effects: String::new(),
     }
 }
 
@@ -357,6 +361,7 @@ fn as4x16() -> Strike {
         space: "two-level",
         step: 0.5,
         end: 8000.0,
+        effects: String::new(),
     }
 }
 

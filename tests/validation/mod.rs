@@ -13,6 +13,7 @@ mod modes;
 mod onset;
 mod pagano;
 mod patch;
+mod preload;
 mod scene;
 mod slender;
 mod softness;

@@ -18,6 +18,7 @@ mod lawful;
 mod membrane;
 mod ordering;
 mod pattern;
+mod preload;
 mod released;
 mod separable;
 mod softness;
@@ -35,6 +36,7 @@ pub use lawful::{LawForce, LawPlate};
 pub use membrane::MembraneStrains;
 pub use ordering::{column_order, elimination_order};
 pub use pattern::{Pattern, PatternError, pattern};
+pub use preload::{add_geometric_stiffness, displacements_at_rest};
 pub use separable::{
     Growth, Path, PathEnd, PathError, PathPoint, Separable, SeparableError, SeparableParts, SeparableWork,
 };

@@ -69,6 +69,11 @@ impl Symmetric {
         Ok(())
     }
 
+    /// `A ← A + scale · B`, both on one pattern.
+    pub fn add(&mut self, scale: f64, other: &Self) {
+        self.values.iter_mut().zip(&other.values).for_each(|(a, b)| *a += scale * b);
+    }
+
     /// Entry (i, i).
     pub(super) fn diagonal(&self, i: usize) -> f64 {
         self.values[self.pattern.starts()[i]]

@@ -26,6 +26,21 @@ pub trait LargeDeflection: Debug {
         tangent: Option<&mut [f64]>,
     ) -> Result<f64, ElementError>;
 
+    /// Geometric stiffness `kg` (ndof × ndof, symmetric) of the stresses σ = C (ε − ε₀) of small displacements `u`: what they add to
+    /// the stiffness of small displacements on top, Σ over plies ∫ σ : ∇δuᵀ ∇δu dV, J per unknown squared.
+    ///
+    /// A solid has the gradients of all displacements in it; a shell those of its deflection alone, which is von Kármán's.
+    ///
+    /// # Errors
+    /// As [`LargeDeflection::internal`].
+    fn geometric_stiffness(
+        &self,
+        cell: &Cell<'_>,
+        u: &[f64],
+        scratch: &mut Scratch,
+        kg: &mut [f64],
+    ) -> Result<(), ElementError>;
+
     /// E in the ply `slice` at natural point `xi`, engineering shears.
     ///
     /// # Errors

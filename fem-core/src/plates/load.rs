@@ -80,6 +80,17 @@ pub fn deflections(plate: &Plate, element: &dyn Element, face: Face) -> Vec<(Fun
 
 /// Adds the forces of `per_length` (x, y, z), N/m, along `edges` of the plane mesh, spread evenly through the thickness.
 pub fn edge(plate: &Plate, element: &dyn Element, edges: &[[u32; 2]], per_length: [f64; 3], f: &mut [f64]) {
+    tractions(plate, element, edges, |_| per_length, f);
+}
+
+/// The same of a force per length that follows from the normal of each edge, which points out of the plate.
+pub fn tractions(
+    plate: &Plate,
+    element: &dyn Element,
+    edges: &[[u32; 2]],
+    per_length: impl Fn([f64; 2]) -> [f64; 3],
+    f: &mut [f64],
+) {
     let mut open: HashSet<[u32; 2]> = edges.iter().map(|[a, b]| [*a.min(b), *a.max(b)]).collect();
     let thickness = plate.levels[plate.levels.len() - 1] - plate.levels[0];
     let (mut shape, mut dofs) = (Vec::new(), Vec::new());
@@ -91,6 +102,7 @@ pub fn edge(plate: &Plate, element: &dyn Element, edges: &[[u32; 2]], per_length
             }
             let [p, q] = [a, b].map(|v| plate.plane.points[v as usize]);
             let length = (q[0] - p[0]).hypot(q[1] - p[1]);
+            let per_length = per_length([(q[1] - p[1]) / length, (p[0] - q[0]) / length]);
             for layer in 0..plate.layers() {
                 let number = quad * plate.layers() + layer;
                 let cell = plate.cell(number);

@@ -429,6 +429,16 @@ where
         self.solid(cell, |solid| solid.internal(cell, u, scratch, force, Some(tangent)))
     }
 
+    fn geometric_stiffness(
+        &self,
+        cell: &Cell<'_>,
+        u: &[f64],
+        scratch: &mut Scratch,
+        kg: &mut [f64],
+    ) -> Result<(), ElementError> {
+        self.solid(cell, |solid| solid.geometric_stiffness(cell, u, scratch, kg))
+    }
+
     fn large_strain(&self, cell: &Cell<'_>, slice: usize, xi: [f64; 3], u: &[f64]) -> Result<[f64; 6], ElementError> {
         self.solid(cell, |solid| solid.strain(cell, slice, xi, u))
     }

@@ -63,7 +63,11 @@ impl<'a> Reader<'a> {
         Some(SceneValue { item: &entry.item, key_place: &entry.place, path, example, source: self.source })
     }
 
-    pub(crate) fn required(&self, key: &str) -> Result<SceneValue<'a>, SceneError> {
+    /// The value of `key`.
+    ///
+    /// # Errors
+    /// The table lacks it.
+    pub fn required(&self, key: &str) -> Result<SceneValue<'a>, SceneError> {
         let example = || format!("write, for example: {} = {}", self.path_of(key), self.example(key));
         self.optional(key).ok_or_else(|| self.missing(key, example()))
     }
@@ -173,7 +177,8 @@ impl<'a> SceneValue<'a> {
         &self.item.node
     }
 
-    pub(crate) fn at<T>(&self, value: T) -> Located<T> {
+    /// `value`, which stands here.
+    pub fn at<T>(&self, value: T) -> Located<T> {
         Located { value, place: self.item.place.clone() }
     }
 
@@ -250,7 +255,11 @@ impl<'a> SceneValue<'a> {
         }
     }
 
-    pub(crate) fn text(&self) -> Result<&'a str, SceneError> {
+    /// The text, which is not empty.
+    ///
+    /// # Errors
+    /// Another value, or an empty text.
+    pub fn text(&self) -> Result<&'a str, SceneError> {
         match self.node() {
             Node::Text(text) if text.trim().is_empty() => Err(self.wrong("a text")),
             Node::Text(text) => Ok(text),
@@ -287,7 +296,10 @@ impl<'a> SceneValue<'a> {
     }
 
     /// The elements of a list that is not empty.
-    pub(crate) fn list(&self) -> Result<Vec<SceneValue<'a>>, SceneError> {
+    ///
+    /// # Errors
+    /// No list, or an empty one.
+    pub fn list(&self) -> Result<Vec<SceneValue<'a>>, SceneError> {
         match self.node() {
             Node::List(items) if !items.is_empty() => Ok(items
                 .iter()

@@ -1,0 +1,117 @@
+//! Loads in the plane before an impact.
+
+use super::{EDGES, Struck, deflection, difference, force, said};
+use crate::support::{impact_of, root};
+use fem::core::tensor::Stress6;
+use fem::io::scene;
+use fem::io::tables::HistoryRow;
+use fem::{Model, Registry};
+
+const COMPRESSED: &str = "preload = [{ group = 'x-min', force = '-8 N/mm' }, { group = 'x-max', force = '-8 N/mm' }, \
+     { group = 'y-min', force = '0 N/mm' }, { group = 'y-max', force = '0 N/mm' }]";
+const STRETCHED: &str = "preload = [{ group = 'x-min', force = '20 N/mm' }, { group = 'x-max', force = '20 N/mm' }, \
+     { group = 'y-min', force = '0 N/mm' }, { group = 'y-max', force = '0 N/mm' }]";
+const NOTHING: &str = "preload = [{ group = 'x-min', force = '0 N/mm' }]";
+
+fn largest(rows: &[HistoryRow], value: fn(&HistoryRow) -> f64) -> f64 {
+    rows.iter().map(value).fold(0.0, f64::max)
+}
+
+#[test]
+fn tension_stiffens_and_compression_softens() {
+    let [pressed, bare, pulled] = [COMPRESSED, "", STRETCHED].map(|effects| Struck::new(effects).outcome());
+    let [a, b, c] = [&pressed, &bare, &pulled].map(|outcome| largest(&outcome.history, deflection));
+    assert!(a > 1.02 * b && b > 1.02 * c, "{a:e} {b:e} {c:e}");
+    for outcome in [pressed, pulled] {
+        assert!(outcome.energy_error < 1e-4, "the balance closes: {:e}", outcome.energy_error);
+    }
+}
+
+#[test]
+fn a_preload_of_nothing_changes_no_bit() {
+    let histories = ["", NOTHING].map(|effects| Struck::new(effects).history());
+    let values = histories.each_ref().map(|rows| rows.iter().flat_map(HistoryRow::values).collect::<Vec<f64>>());
+    assert_eq!(values[0], values[1]);
+}
+
+#[test]
+fn a_reduced_plate_meets_the_full_one() {
+    let of = |reduction| Struck { reduction, ..Struck::new(COMPRESSED) }.history();
+    let (full, reduced) = (of("method = 'none'"), of("method = 'ritz', vectors = 120"));
+    for value in [force, deflection] {
+        assert!(difference(&reduced, &full, value) < 1e-3, "{:e}", difference(&reduced, &full, value));
+    }
+}
+
+#[test]
+fn a_symmetric_plate_is_a_part_of_the_whole() {
+    let whole = Struck { reduction: "method = 'none'", ..Struck::new(COMPRESSED) };
+    let part = whole.text().replace("element =", "symmetry = 'quarter'\nelement =");
+    let (_, part) = impact_of(scene::parse(&part, &root().join("scene.toml")).unwrap()).unwrap();
+    let (whole, part) = (whole.history(), part.outcome.history);
+    let off = difference(&part, &whole, deflection);
+    assert!(off < 1e-6, "{off:e}");
+}
+
+/// A laminate of as many plies along x as across: its plies have the strains of their mean stiffness.
+#[test]
+fn plies_start_with_the_stresses_of_the_preload() {
+    let failure = "[failure]\ncriteria = ['max-stress']\nevery = '5 us'\n";
+    let struck = Struck { damage: "onset", more: failure, ..Struck::new(STRETCHED) };
+    let struck = Struck { impactor: "mass = '1 mg', velocity = '1 um/s'", ..struck };
+    let (model, found) = (struck.model().unwrap(), struck.outcome());
+    let material = &model.materials[0];
+    let s = material.elastic.compliance();
+    let (e1, e2, nu) = (1.0 / s[0][0], 1.0 / s[1][1], -s[0][1] / s[0][0]);
+    let reduced = 1.0 - nu * nu * e2 / e1;
+    let [q11, q22, q12] = [e1, e2, nu * e2].map(|q| q / reduced);
+    let mean = 0.5 * (q11 + q22);
+    // 20 N/mm along x of 1 mm.
+    let strain = 20e6 * mean / (mean * mean - q12 * q12);
+    let contraction = -strain * q12 / mean;
+    let along = [q11 * strain + q12 * contraction, q12 * strain + q22 * contraction];
+    let across = [q11 * contraction + q12 * strain, q12 * contraction + q22 * strain];
+    let indices = |[s11, s22]: [f64; 2]| {
+        let mut indices = vec![0.0; model.criteria[0].1.info().modes.len()];
+        model.criteria[0].1.indices(&Stress6::new([s11, s22, 0.0, 0.0, 0.0, 0.0]), material, &mut indices);
+        indices.into_iter().fold(0.0, f64::max)
+    };
+    let expected = indices(along).max(indices(across));
+    let peak = found.peaks.iter().map(|peak| peak.index).fold(0.0, f64::max);
+    assert!((peak / expected - 1.0).abs() < 1e-3, "{peak} {expected}");
+}
+
+#[test]
+fn what_buckles_the_plate_is_refused_with_its_factor() {
+    const BEYOND: &str = "preload = [{ group = 'x-min', force = '-80 N/mm' }, { group = 'x-max', force = '-80 N/mm' }, \
+         { group = 'y-min', force = '0 N/mm' }, { group = 'y-max', force = '0 N/mm' }]";
+    Struck::new(BEYOND).refused(&["buckles the plate", "at 0.", "lower the preload"]);
+}
+
+#[test]
+fn what_it_cannot_be_is_refused_by_name() {
+    let refused = |effects: &'static str, words: &[&str]| Struck::new(effects).refused(words);
+    refused("preload = [{ group = 'left', force = '1 N/mm' }]", &["the mesh has no group `left`"]);
+    refused("preload = [{ group = 'plate', force = '1 N/mm' }]", &["no edges", "physical curve"]);
+    refused("preload = [{ group = 'x-min' }]", &["does not say how much", "`displacement`"]);
+    refused("preload = [{ group = 'x-min', force = '1 N' }]", &["effects.preload", "N/mm"]);
+    refused(
+        "preload = [{ group = 'x-min', force = '1 N/mm', displacement = '1 mm' }]",
+        &["both force and displacement", "keep one"],
+    );
+    refused(
+        "preload = [{ group = 'x-min', force = '1 N/mm' }, { group = 'x-min', shear = '1 N/mm' }]",
+        &["another entry", "once"],
+    );
+    refused(
+        "preload = [{ group = 'x-min', force = '1 N/mm' }, { group = 'x-max', force = '2 N/mm' }, { group = 'y-min', force = '0 N/mm' }, \
+         { group = 'y-max', force = '0 N/mm' }]",
+        &["pushes the plate", "translation along x", "opposite edge"],
+    );
+    refused("preload = [{ group = 'x-min', force = '1 N/mm' }], membrane = 'on'", &["membrane", "leave one of"]);
+    let held = EDGES.concat();
+    let text = Struck::new(NOTHING).text().replace(&held, "[[support]]\nrestrain = 'rigid-motions'\n");
+    let scene = scene::parse(&text, &root().join("scene.toml")).unwrap();
+    let free = said(Model::new(scene, &Registry::standard()).expect_err("it is free"));
+    assert!(free.contains("supports leave the plate free"), "{free}");
+}
