@@ -35,6 +35,7 @@ mod report;
 mod restart;
 mod separation;
 mod snapshots;
+mod squeeze;
 mod standards;
 mod strangers;
 mod study;

@@ -72,8 +72,9 @@ fn assembly_is_the_same_for_any_number_of_threads() {
 #[test]
 fn a_contact_patch_is_a_mean_around_its_centre() {
     let model = model_of(&[("at = { group = \"impact\" }", "at = { x = \"3 mm\", y = \"-2 mm\" }")]).unwrap();
-    let patch = fem::core::patch::hertz(&model.plate, &*model.element, fem::core::load::Face::Top, [3e-3, -2e-3], 3e-3)
-        .unwrap();
+    let patch =
+        fem::core::patch::hertz(&model.plate, &*model.element, (fem::core::load::Face::Top, 0.0), [3e-3, -2e-3], 3e-3)
+            .unwrap();
     let value = |motion: usize| -> f64 {
         patch.0.iter().map(|(d, w)| w * model.plate.rigid_motions(*d, [0.0; 3], 1.0)[motion]).sum()
     };

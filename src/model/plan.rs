@@ -64,6 +64,9 @@ pub struct Strike {
     pub contact: Functional,
     /// Where the impactor strikes, m.
     pub centre: [f64; 2],
+    /// Weights of the squeeze, the deflection under the impactor less that of the surface below, which its indentation counts from; `None`
+    /// where that is the face itself.
+    pub squeeze: Option<Functional>,
     /// The contact law.
     pub law: Box<dyn ContactLaw>,
 }
@@ -148,7 +151,7 @@ impl Builder<'_> {
         constraints: &Constraints,
     ) -> Result<Impact, SceneError> {
         let strike = |impactor: &scene::ImpactorSpec| {
-            let (centre, contact) = self.contact_place(impactor, plate, element)?;
+            let (centre, contact) = self.contact_place(impactor, 0.0, plate, element)?;
             self.symmetric_impact(plate, &impactor.at, centre)?;
             let place = contact;
             let contact = Functional(constraints.restrict(&place.0));
@@ -159,7 +162,11 @@ impl Builder<'_> {
                     "move the impact or the support",
                 ));
             }
-            Ok(Strike { contact, centre, law: self.law(impactor)? })
+            let squeeze = match &impactor.indentation_from {
+                Some(from) => Some(self.squeeze((impactor, from), (plate, element), constraints, &place)?),
+                None => None,
+            };
+            Ok(Strike { contact, centre, squeeze, law: self.law(impactor)? })
         };
         Ok(Impact {
             strikes: spec.impactors.iter().map(strike).collect::<Result<_, _>>()?,
@@ -211,7 +218,7 @@ impl Builder<'_> {
                 }
                 LoadKind::Patch { force, at, radius } => {
                     let (centre, _) = self.point(plate, at)?;
-                    let patch = patch::hertz(plate, element, Face::Top, centre, *radius).map_err(|why| {
+                    let patch = patch::hertz(plate, element, (Face::Top, 0.0), centre, *radius).map_err(|why| {
                         self.scene.source.error_at(place, why.to_string(), "choose a smaller `patch_radius`")
                     })?;
                     patch.add_to(*force, &mut forces);
@@ -332,10 +339,32 @@ impl Builder<'_> {
         })
     }
 
-    /// Where the impactor strikes, and the deflection there as weights of the unknowns.
+    /// The deflection of a contact `place` less that of the surface that its indentation counts `from`.
+    fn squeeze(
+        &self,
+        (impactor, from): (&scene::ImpactorSpec, &Located<f64>),
+        (plate, element): (&Plate, &dyn Element),
+        constraints: &Constraints,
+        place: &Functional,
+    ) -> Result<Functional, SceneError> {
+        if impactor.load.value == ContactLoad::Node {
+            return Err(self.error(
+                from,
+                "a force at one node squeezes a solid without limit as cells shrink",
+                "give the impactor a patch (`patch_radius`), or leave `indentation_from` out",
+            ));
+        }
+        let (_, Functional(mut below)) = self.contact_place(impactor, from.value, plate, element)?;
+        below.iter_mut().for_each(|(_, weight)| *weight = -*weight);
+        below.extend(&place.0);
+        Ok(Functional(constraints.restrict(&below)))
+    }
+
+    /// Where the impactor strikes, and the deflection there, or at a `depth` in thicknesses below it, as weights of the unknowns.
     fn contact_place(
         &self,
         impactor: &scene::ImpactorSpec,
+        depth: f64,
         plate: &Plate,
         element: &dyn Element,
     ) -> Result<([f64; 2], Functional), SceneError> {
@@ -360,12 +389,10 @@ impl Builder<'_> {
         };
         let face = impactor.face;
         let contact = match (impactor.load.value, column) {
-            (ContactLoad::Patch { radius }, _) => {
-                patch::hertz(plate, element, face, centre, radius).map_err(|why| too_large(why, "patch_radius"))?
-            }
-            (ContactLoad::Square { side }, _) => {
-                patch::square(plate, element, face, centre, side).map_err(|why| too_large(why, "patch_side"))?
-            }
+            (ContactLoad::Patch { radius }, _) => patch::hertz(plate, element, (face, depth), centre, radius)
+                .map_err(|why| too_large(why, "patch_radius"))?,
+            (ContactLoad::Square { side }, _) => patch::square(plate, element, (face, depth), centre, side)
+                .map_err(|why| too_large(why, "patch_side"))?,
             (ContactLoad::Node, Some(column)) => patch::node(plate, face, column)
                 .ok_or_else(|| self.error(at, "the element has no U30 to strike", "choose another element"))?,
             (ContactLoad::Node, None) => {

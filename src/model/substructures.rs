@@ -26,7 +26,8 @@ impl Builder<'_> {
             kept.extend(self.unknowns(plate, masters)?);
         }
         if let Plan::Impact(impact) = plan {
-            let touched = impact.strikes.iter().flat_map(|strike| strike.contact.0.iter().map(|(i, _)| i));
+            let functionals = impact.strikes.iter().flat_map(|strike| [Some(&strike.contact), strike.squeeze.as_ref()]);
+            let touched = functionals.flatten().flat_map(|functional| functional.0.iter().map(|(i, _)| i));
             kept.extend(touched.chain(&impact.keep).map(|i| constraints.original(*i)));
         }
         Ok(Some(Division { quads, kept }))

@@ -75,7 +75,7 @@ fn a_circular_delamination_grows_at_one_force() {
     }
     supports.extend(plate.symmetry().equations(&plate));
     let constraints = Constraints::eliminate(&elimination_order(&plate), &supports).unwrap();
-    let load = patch::hertz(&plate, &element, Face::Top, [0.0; 2], LOADED).unwrap();
+    let load = patch::hertz(&plate, &element, (Face::Top, 0.0), [0.0; 2], LOADED).unwrap();
     let growth = Growth { margin, trigger: 0.2 };
     let parts = SeparableParts {
         plate,

@@ -60,6 +60,8 @@ pub(super) struct Strike {
     pub(super) k: f64,
     /// Name and other keys of the law.
     pub(super) law: &'static str,
+    /// Surface that its indentation counts from.
+    pub(super) from: &'static str,
     pub(super) vectors: usize,
     /// How they are found.
     pub(super) space: &'static str,
@@ -136,12 +138,13 @@ impl Strike {
             .sides([Side::Supported, Side::Symmetric, across[0], across[1]]);
         plate.more = format!(
             "[impactor]\nmass = '{} kg'\nvelocity = '{} m/s'\nat = {{ x = '{} mm', y = '{} mm' }}\npatch_side = '{side} mm'\n\
-             [contact]\n{}\nk = '{} N/m^1.5'\n[effects]\ndamage = 'off'\n{}\n[reduction]\nmethod = 'ritz'\nvectors = {}\nspace = '{}'\n\
+             indentation_from = '{}'\n[contact]\n{}\nk = '{} N/m^1.5'\n[effects]\ndamage = 'off'\n{}\n[reduction]\nmethod = 'ritz'\nvectors = {}\nspace = '{}'\n\
              [march]\nintegrator = 'newmark'\nstep = '{} us'\nend = '{} us'\n[output]\nhistory_every = '1 us'\n",
             self.mass / parts,
             self.velocity,
             at[0],
             at[1],
+            self.from,
             self.law,
             self.k / parts,
             self.effects,
@@ -285,6 +288,7 @@ pub(super) fn shell(material: String, plies: &'static str, ply_mm: f64, layers: 
         velocity: 1.0,
         k: 14901620370.37037,
         law: HERTZ,
+        from: "face",
         vectors: 150,
         space: "two-level",
         step: 0.1,
@@ -357,6 +361,7 @@ fn as4x16() -> Strike {
         velocity: 1.56,
         k: 3383637096.3801656,
         law: HERTZ,
+        from: "face",
         vectors: 100,
         space: "two-level",
         step: 0.5,
@@ -409,6 +414,20 @@ fn solids_squeeze_under_the_contact() {
         assert!((difference.peak - peak).abs() < 1e-3, "{difference:?}");
         assert!((difference.first_impulse - impulse).abs() < 3e-4, "{difference:?}");
         assert!(difference.curve < 2.0 * CURVE && difference.impulse.abs() < IMPULSE, "{difference:?}");
+    }
+}
+
+/// Counted from the mid-plane, as the series does it, the law holds the squeeze, and it counts once: the first forces are 0.15 % and 0.11 %
+/// higher instead of 1.0 % and 2.0 % lower, and their impulses within 0.04 %.
+#[test]
+#[ignore = "fifteen seconds"]
+fn a_squeeze_that_counts_once() {
+    for (strike, mass) in [(as4x16(), "large"), (small_mass(), "small")] {
+        let table = format!("impact_as4x16_{mass}mass_fsdtri_patch2_hertz.csv");
+        let difference = Strike { space: "krylov", from: "mid-plane", ..strike }.against(&table);
+        assert!(difference.peak.abs() < 3e-3 && difference.curve < 1.5e-2, "{mass}: {difference:?}");
+        assert!(difference.first_impulse.abs() < 1e-3, "{mass}: {difference:?}");
+        difference.small_in_motion();
     }
 }
 

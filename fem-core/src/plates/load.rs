@@ -28,6 +28,24 @@ impl Face {
             Self::Top => (plate.layers() - 1, 1.0, -1.0),
         }
     }
+
+    /// The same of the surface that lies `depth` thicknesses of the plate below it, 0 to 1. Of a shell all are one.
+    pub(super) fn below(self, plate: &Plate, depth: f64) -> (usize, f64, f64) {
+        let (outer, q, sign) = self.place(plate);
+        if depth == 0.0 {
+            return (outer, q, sign);
+        }
+        let pitch = (plate.levels.len() - 1) / plate.layers();
+        let faces: Vec<f64> = plate.levels.iter().step_by(pitch).copied().collect();
+        let (bottom, top) = (faces[0], faces[faces.len() - 1]);
+        let z = match self {
+            Self::Bottom => bottom + depth * (top - bottom),
+            Self::Top => top - depth * (top - bottom),
+        };
+        let layer = faces[1..faces.len() - 1].partition_point(|face| *face < z);
+        let (low, high) = (faces[layer], faces[layer + 1]);
+        (layer, (2.0 * (z - low) / (high - low) - 1.0).clamp(-1.0, 1.0), sign)
+    }
 }
 
 /// Adds the forces of a pressure `p`(x, y), Pa, that presses on `face` of `quads`: downwards on the top, upwards on the

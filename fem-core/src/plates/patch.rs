@@ -1,4 +1,5 @@
-//! Where a contact acts on a face: one node, the Hertz pressure on a circle, or a uniform pressure on a square.
+//! Where a contact acts on a face: one node, the Hertz pressure on a circle, or a uniform pressure on a square. The same means of the
+//! deflection are taken below the face: at a `depth` in thicknesses of the plate, 0 at the face and 1 at the opposite one.
 
 use crate::contracts::element::{Element, form};
 use crate::plates::error::PlateError;
@@ -35,7 +36,7 @@ pub fn node(plate: &Plate, face: Face, column: usize) -> Option<Functional> {
 pub fn hertz(
     plate: &Plate,
     element: &dyn Element,
-    face: Face,
+    (face, depth): (Face, f64),
     centre: [f64; 2],
     a: f64,
 ) -> Result<Functional, PlateError> {
@@ -47,7 +48,11 @@ pub fn hertz(
             ([centre[0] + rho * cos, centre[1] + rho * sin], 3.0 * c * c * 0.5 * w / SPOKES as f64)
         })
     });
-    mean(plate, element, face, centre, a, points).ok_or(PlateError::PatchOverEdge { of: "radius", size: a, centre })
+    mean(plate, element, (face, depth), centre, a, points).ok_or(PlateError::PatchOverEdge {
+        of: "radius",
+        size: a,
+        centre,
+    })
 }
 
 /// That pressure of a unit force at `point`, Pa.
@@ -63,7 +68,7 @@ pub fn hertz_pressure(centre: [f64; 2], a: f64, point: [f64; 2]) -> f64 {
 pub fn square(
     plate: &Plate,
     element: &dyn Element,
-    face: Face,
+    (face, depth): (Face, f64),
     centre: [f64; 2],
     side: f64,
 ) -> Result<Functional, PlateError> {
@@ -75,23 +80,23 @@ pub fn square(
         })
     };
     let points = along(0).flat_map(|(x, wx)| along(1).map(move |(y, wy)| ([x, y], wx * wy)));
-    mean(plate, element, face, centre, 0.5 * side, points).ok_or(PlateError::PatchOverEdge {
+    mean(plate, element, (face, depth), centre, 0.5 * side, points).ok_or(PlateError::PatchOverEdge {
         of: "side",
         size: side,
         centre,
     })
 }
 
-/// Weighted mean of the deflection away from what presses over points of `face` no farther than `reach` from `centre` along each axis.
+/// Weighted mean of the deflection away from what presses over points below `face` no farther than `reach` from `centre` along each axis.
 fn mean(
     plate: &Plate,
     element: &dyn Element,
-    face: Face,
+    (face, depth): (Face, f64),
     centre: [f64; 2],
     reach: f64,
     points: impl Iterator<Item = ([f64; 2], f64)>,
 ) -> Option<Functional> {
-    let (layer, q, sign) = face.place(plate);
+    let (layer, q, sign) = face.below(plate, depth);
     let mut shape = Vec::new();
     let mut dofs = Vec::new();
     let mut sum: BTreeMap<usize, f64> = BTreeMap::new();

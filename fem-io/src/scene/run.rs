@@ -32,6 +32,9 @@ pub struct ImpactorSpec {
     pub load: Located<ContactLoad>,
     /// The contact law.
     pub contact: PluginSpec,
+    /// The surface whose deflection the indentation of the law counts from, by its depth in thicknesses of the plate, where it lies
+    /// below the face.
+    pub indentation_from: Option<Located<f64>>,
 }
 
 /// A point of the plane: where an impactor strikes, or something is watched.
@@ -223,7 +226,16 @@ pub(super) const IMPACTOR: Keys = &[
         r#"{ law = "hertz", k = "1.07e5 N/mm^1.5" }"#,
         "contact law of this impactor; that of the scene if left out",
     ),
+    key(
+        "indentation_from",
+        Form::Words(&words(&SURFACES)),
+        r#""mid-plane""#,
+        "surface that the law's indentation counts from; below the face, its squeeze counts once",
+    )
+    .default(r#""face""#),
 ];
+/// Surfaces that an indentation counts from, by their depth in thicknesses.
+const SURFACES: [(&str, f64); 3] = [("face", 0.0), ("mid-plane", 0.5), ("opposite-face", 1.0)];
 pub(super) const AT: Keys = &[
     key("group", Form::Text, r#""impact""#, "a group of the mesh with one node"),
     key("x", Form::Quantity(Dimension::LENGTH), r#""0 mm""#, "x of the point, instead of a group"),
@@ -429,6 +441,10 @@ fn read_impactor(
         face: face(&table)?,
         load: read_load(&table)?,
         contact,
+        indentation_from: match table.optional("indentation_from") {
+            Some(field) => Some(field.at(field.choice(&SURFACES)?)).filter(|from| from.value > 0.0),
+            None => None,
+        },
     })
 }
 

@@ -9,6 +9,7 @@ use super::frames::frames;
 use super::ledger::{Ledger, Look};
 use super::modal::{self, ModalView};
 use super::prepare::{Prepared, describe_failure, place_impactors};
+use super::squeeze::Squeeze;
 use super::{Maximum, Outcome, Sizes};
 use crate::analyses::expansion::Expansion;
 use crate::analyses::samples::PlateStresses;
@@ -57,6 +58,7 @@ pub struct March<'a> {
     guard: Guard,
     integrator: Box<dyn Integrator>,
     sizes: Sizes,
+    squeezes: Vec<Option<Squeeze>>,
     until_separation: bool,
     scan_every: u64,
     watch: Option<Watch<'a>>,
@@ -229,6 +231,7 @@ impl<'a> March<'a> {
             condensation,
             stresses,
             firsts_alone,
+            squeezes,
             ..
         } = prepared;
         let Prepared { sizes, counters, mut stopwatch, .. } = prepared;
@@ -238,9 +241,10 @@ impl<'a> March<'a> {
         // Here, where nothing else takes memory yet beside the full plate.
         if let (Some(reduced), Some(full)) = (&reduced, full) {
             let contacts = full.contacts.clone();
+            let laws: Vec<_> = system.impactors().iter().map(|impactor| impactor.law.clone()).collect();
             let couple = |mut richer: Reduced| {
                 effects.clone().iter_mut().for_each(|effect| effect.on_reduced(&mut richer));
-                let impactors = place_impactors(impact, &contacts, Some(&richer));
+                let impactors = place_impactors(impact, &contacts, Some(&richer), &laws);
                 (ImpactSystem::new(Box::new(richer.modal.clone()), impactors), richer.modal)
             };
             let alone = system.weight().is_none() && model.effects.nature().inertia;
@@ -277,6 +281,7 @@ impl<'a> March<'a> {
             effects,
             integrator,
             sizes,
+            squeezes,
             until_separation: impact.spec.march.until_separation,
             scan_every,
             watch,
@@ -502,6 +507,7 @@ impl<'a> March<'a> {
             accuracy,
             quantities: self.effects.iter().flat_map(|effect| effect.quantities(&self.system)).collect(),
             contacts,
+            squeezes: self.squeezes,
             forces,
             delaminated,
             modal: self.modal.map(ModalView::finish),

@@ -10,6 +10,7 @@ mod march;
 mod modal;
 mod prepare;
 mod shared;
+mod squeeze;
 
 pub use accuracy::{Accuracy, Differences, MeshAccuracy, ReductionAccuracy, ReductionResidual, StepAccuracy};
 pub use checkpoint::Checkpoint;
@@ -24,6 +25,7 @@ pub use march::{March, march};
 pub use modal::{ModalHistory, ModeShare};
 pub use prepare::{Prepared, prepare};
 pub use shared::SharedPlate;
+pub use squeeze::Squeeze;
 
 use super::assembled::Substructures;
 use super::samples::PlateSamples;
@@ -77,6 +79,8 @@ pub struct Outcome {
     pub quantities: Vec<(&'static str, f64)>,
     /// Of each impactor of the scene, what its contact was.
     pub contacts: Vec<ContactRecord>,
+    /// What the law of each leaves to the plate, if anything.
+    pub squeezes: Vec<Option<Squeeze>>,
     /// The force of all impactors at every step.
     pub forces: StepForces,
     /// Force, motion and energies over time, as rows.

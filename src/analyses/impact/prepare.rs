@@ -1,6 +1,7 @@
 //! Assemble, reduce, couple to the impactors.
 
 use super::Sizes;
+use super::squeeze::{self, Squeeze};
 use crate::analyses::assembled::{Assembled, Substructures, structure};
 use crate::analyses::samples::PlateStresses;
 use crate::analyses::supports;
@@ -10,6 +11,7 @@ use crate::error::Error;
 use crate::forecast::MemoryEstimate;
 use crate::model::{Impact, Model, Plan, Separation, Strike};
 use fem_core::assembly::{Condensation, LawPlate, Separable, SeparableParts, SparseStructure, column_order, pattern};
+use fem_core::contact::ContactLaw;
 use fem_core::counters::Counters;
 use fem_core::functional::Functional;
 use fem_core::prolongation::Prolongation;
@@ -19,7 +21,6 @@ use fem_core::time::{Integrator, StepError};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
 use fem_dynamics::limit::{self, TooLong};
 use fem_dynamics::reduce::{Companions, MembranePlate, Reduced, Share, Stretch, StretchedPlate, static_responses};
-use fem_io::scene;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
@@ -48,6 +49,8 @@ pub struct Prepared<'a> {
     pub(super) stresses: Option<Arc<PlateStresses>>,
     /// Whether criteria judge only what can be first or largest.
     pub(super) firsts_alone: bool,
+    /// What the contact laws leave to the plate.
+    pub(super) squeezes: Vec<Option<Squeeze>>,
     /// Sizes and limits.
     pub sizes: Sizes,
     pub(super) counters: Counters,
@@ -151,7 +154,8 @@ pub(super) fn make_ready(model: &Model, impact: &Impact, threads: NonZeroUsize) 
     let basis = choose_basis(model, impact, &mut assembled, &contacts);
     let reduced = reduce(model, impact, &mut assembled, basis, &mut effects)?;
     let softness = soften(model, &mut assembled, &contacts, reduced.as_ref());
-    let before = Before::of(&assembled, softness);
+    let squeezes = squeezes(impact, &mut assembled, &contacts)?;
+    let before = Before { squeezes, ..Before::of(&assembled, softness) };
     let Assembled { structure, condensation, .. } = assembled;
     let plate = Marched { full: structure, reduced, stretched: None, contacts: distinct(&contacts) };
     let plate = change_structure(model, plate, &mut effects)?;
@@ -178,7 +182,8 @@ pub(super) fn strike<'a>(
 ) -> Result<Prepared<'a>, Error> {
     let Struck { structure, mut effects, reduced, membrane, condensation } = plate;
     let of_march = reduced.as_deref();
-    let impactors = place_impactors(impact, contacts, of_march);
+    let (laws, squeezes) = squeeze::laws(model, impact, &before.squeezes)?;
+    let impactors = place_impactors(impact, contacts, of_march, &laws);
     let mut system = couple(model, ImpactSystem::new(structure, impactors), of_march, &mut effects);
     try_inertia(model, impact, &system, of_march)?;
     let sizes = check_step(model, impact, &mut system, of_march, before)?;
@@ -194,6 +199,7 @@ pub(super) fn strike<'a>(
         condensation,
         stresses: None,
         firsts_alone: false,
+        squeezes,
         sizes,
         counters: Counters::default(),
         stopwatch: Stopwatch::default(),
@@ -229,9 +235,19 @@ fn prepare_separable<'a>(
     let (_, factor_entries) = structure.size();
     stopwatch.lap("assemble");
     let contacts: Vec<Functional> = impact.strikes.iter().map(|strike| strike.contact.clone()).collect();
-    let impactors = place_impactors(impact, &contacts, None);
+    let ndof = structure.ndof();
+    let at_rest = |load: &mut [f64]| respond(&mut structure, states, load);
+    let squeezed: Vec<Functional> = impact.strikes.iter().map(|s| s.squeeze.clone().unwrap_or_default()).collect();
+    let compliances = squeeze::compliances(&squeezed, &contacts, ndof, at_rest)?;
+    let (laws, squeezes) = squeeze::laws(model, impact, &compliances)?;
+    let impactors = place_impactors(impact, &contacts, None, &laws);
     let stiffness = match contacts.first() {
-        Some(contact) if separation.is_cracked() => Some(1.0 / cracked_flexibility(&mut structure, states, contact)?),
+        Some(contact) if separation.is_cracked() => {
+            let mut x = vec![0.0; ndof];
+            contact.add_to(1.0, &mut x);
+            respond(&mut structure, states, &mut x)?;
+            Some(1.0 / contact.of(&x))
+        }
         _ => None,
     };
     let mut effects = model.effects.acting().to_vec();
@@ -250,7 +266,8 @@ fn prepare_separable<'a>(
         None => Box::new(structure),
     };
     let mut system = couple(model, ImpactSystem::new(structure, impactors), None, &mut effects);
-    let before = Before { stiffness_entries, factor_entries, substructures: None, memory, softness: None };
+    let (substructures, softness) = (None, None);
+    let before = Before { stiffness_entries, factor_entries, substructures, memory, softness, squeezes: compliances };
     let sizes = check_step(model, impact, &mut system, None, before)?;
     let sizes = Sizes { static_stiffness: stiffness.unwrap_or(sizes.static_stiffness), ..sizes };
     Ok(Prepared {
@@ -265,19 +282,28 @@ fn prepare_separable<'a>(
         condensation: None,
         stresses: None,
         firsts_alone: false,
+        squeezes,
         sizes,
         counters,
         stopwatch,
     })
 }
 
-/// Static deflection per force at `contact`, m/N, with the delaminations that are there at the start.
-fn cracked_flexibility(structure: &mut Separable, states: &[f64], contact: &Functional) -> Result<f64, Error> {
-    let mut x = vec![0.0; structure.ndof()];
-    structure.linearise(&x, states, 0.0).map_err(SolveError::from)?;
-    contact.add_to(1.0, &mut x);
-    structure.solve(&mut x).map_err(SolveError::from)?;
-    Ok(contact.of(&x))
+/// Answers a `load` with the displacements at rest, with the delaminations that are there at the start.
+fn respond(structure: &mut Separable, states: &[f64], load: &mut [f64]) -> Result<(), Error> {
+    structure.linearise(&vec![0.0; load.len()], states, 0.0).map_err(SolveError::from)?;
+    Ok(structure.solve(load).map_err(SolveError::from)?)
+}
+
+/// The squeeze of every contact that asks for it per force at rest, m/N.
+fn squeezes(impact: &Impact, assembled: &mut Assembled, contacts: &[Functional]) -> Result<Vec<f64>, Error> {
+    let own = |strike: &Strike| strike.squeeze.as_ref().map_or_else(Functional::default, |w| assembled.functional(w));
+    let squeezes: Vec<Functional> = impact.strikes.iter().map(own).collect();
+    let structure = &mut assembled.structure;
+    let ndof = structure.ndof();
+    squeeze::compliances(&squeezes, contacts, ndof, |u| {
+        Ok(structure.solve_shifted(0.0, u, 1).map_err(StepError::Factorisation)?)
+    })
 }
 
 /// What supports of nodal values cost under the first impactor.
@@ -299,13 +325,15 @@ fn soften(model: &Model, assembled: &mut Assembled, contacts: &[Functional], red
 }
 
 /// What is known of a plate before it is marched.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Before {
     stiffness_entries: usize,
     factor_entries: usize,
     substructures: Option<Substructures>,
     memory: MemoryEstimate,
     softness: Option<f64>,
+    /// Of each contact, m/N.
+    squeezes: Vec<f64>,
 }
 
 impl Before {
@@ -316,6 +344,7 @@ impl Before {
             substructures: assembled.substructures(),
             memory: assembled.memory,
             softness,
+            squeezes: Vec::new(),
         }
     }
 }
@@ -396,8 +425,14 @@ fn change_structure(model: &Model, mut plate: Marched, effects: &mut [Box<dyn Ef
 }
 
 /// The impactors of the scene, each with the load of its contact in coordinates of the march.
-pub(super) fn place_impactors(impact: &Impact, contacts: &[Functional], reduced: Option<&Reduced>) -> Vec<Impactor> {
-    let impactor = |((spec, strike), contact): ((&scene::ImpactorSpec, &Strike), &Functional)| Impactor {
+pub(super) fn place_impactors(
+    impact: &Impact,
+    contacts: &[Functional],
+    reduced: Option<&Reduced>,
+    laws: &[Box<dyn ContactLaw>],
+) -> Vec<Impactor> {
+    let each = impact.spec.impactors.iter().zip(laws).zip(contacts);
+    let impactors = each.map(|((spec, law), contact)| Impactor {
         mass: spec.mass,
         velocity: spec.velocity,
         start: spec.start,
@@ -405,9 +440,9 @@ pub(super) fn place_impactors(impact: &Impact, contacts: &[Functional], reduced:
             None => contact.0.clone(),
             Some(r) => r.restrict(contact).into_iter().enumerate().collect(),
         },
-        law: strike.law.clone(),
-    };
-    impact.spec.impactors.iter().zip(&impact.strikes).zip(contacts).map(impactor).collect()
+        law: law.clone(),
+    });
+    impactors.collect()
 }
 
 /// Plate and impactors as effects make one system of them.
@@ -452,7 +487,7 @@ fn check_step(
     }
     let (steps, step) = march.steps();
     let lowest = reduced.and_then(|r| r.modal.lowest_frequency());
-    let Before { stiffness_entries, factor_entries, substructures, memory, softness } = before;
+    let Before { stiffness_entries, factor_entries, substructures, memory, softness, .. } = before;
     Ok(Sizes {
         unknowns: model.constraints.ndof(),
         substructures,

@@ -82,7 +82,7 @@ impl SharedPlate {
             membrane: self.membrane.clone(),
             condensation: self.condensation.clone(),
         };
-        let prepared = strike((model, impact), struck, &self.contacts, self.before)?;
+        let prepared = strike((model, impact), struck, &self.contacts, self.before.clone())?;
         Ok(Prepared { counters: self.counters, stresses: self.stresses.clone(), ..prepared })
     }
 }

@@ -1,7 +1,7 @@
 //! When a headline is not to be trusted, in a line each: what stands at the top.
 
-use super::ImpactSummary;
-use crate::analyses::impact::{Delaminated, Outcome};
+use super::{ImpactFigures, ImpactSummary};
+use crate::analyses::impact::{Delaminated, Outcome, Squeeze};
 use crate::model::{Model, Plan};
 use fem_core::plugin::Dimension;
 use fem_failure::scan::{FailureEvent, first_per_mode};
@@ -28,6 +28,7 @@ pub(super) fn cautions(model: &Model, outcome: &Outcome, summary: &ImpactSummary
         }
     }
     found.extend(rough(summary));
+    found.extend(outcome.squeezes.iter().zip(&summary.impact).filter_map(stiff));
     found.extend(first_per_mode(&outcome.events).into_iter().filter_map(|event| placed(model, event)));
     found
 }
@@ -108,6 +109,18 @@ fn rough(summary: &ImpactSummary) -> Option<String> {
         .collect();
     (!large.is_empty())
         .then(|| format!("estimated errors are large: {}; `fem study` says what to refine", large.join(", ")))
+}
+
+/// A contact so stiff that what the plate gives under it was not all taken from the law.
+fn stiff((squeeze, figures): (&Option<Squeeze>, &ImpactFigures)) -> Option<String> {
+    let limit = squeeze.as_ref()?.force_limit;
+    let name = figures.name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
+    (figures.peak_force_N > limit).then(|| {
+        format!(
+            "beyond {} the contact law{name} is so stiff that the plate gives more than half of what the law does: what more it gives there              counts twice (`indentation_from`)",
+            Dimension::FORCE.of(limit)
+        )
+    })
 }
 
 /// An onset whose place is chosen by the mesh or by where the criteria look.

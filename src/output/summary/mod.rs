@@ -120,6 +120,8 @@ pub struct ImpactFigures {
     pub final_impactor_velocity_m_s: f64,
     pub contacts: u32,
     pub contact_time_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub squeeze_m_N: Option<f64>,
 }
 
 /// As a scene has it: a single impactor as a table, several as a list.
@@ -466,6 +468,7 @@ fn figures(model: &Model, outcome: &Outcome, i: usize, spec: &scene::ImpactorSpe
     let name = model.label(spec);
     let mut figures =
         ImpactFigures::new([spec.mass, spec.velocity], &outcome.contacts[i], end, model.laminate.thickness());
+    figures.squeeze_m_N = outcome.squeezes[i].map(|squeeze| squeeze.compliance);
     figures.impulse_N_s += spec.mass * model.effects.nature().pull * end.0;
     ImpactFigures { name: name.map(str::to_owned), start_time_s: name.map(|_| spec.start), ..figures }
 }
@@ -498,6 +501,7 @@ impl ImpactFigures {
             final_impactor_velocity_m_s,
             contacts: contact.count,
             contact_time_s: contact.duration,
+            squeeze_m_N: None,
         }
     }
 }

@@ -1,0 +1,117 @@
+//! A contact law without what the plate gives by itself.
+
+use super::indentation_of;
+use fem_core::contact::{Branches, ContactForce, ContactHistory, ContactLaw};
+use fem_core::energy::Energy;
+
+/// Largest share of a law's own compliance dα/dF that the plate may take of it.
+const MOST: f64 = 0.5;
+
+/// A law whose indentation counts from a surface of the plate that the force squeezes towards its face: α = a + c F(α), a the indentation
+/// of the face and c the static compliance of what lies between.
+///
+/// A law that was measured holds the squeeze of the specimen; in a plate that is squeezed by itself it would count twice. What
+/// is left is stiffer, dF/da = F′/(1 − c F′). The work c F²/2 is the plate's, and taken from what the law stores.
+///
+/// Where c is half of the law's own compliance, on loading or on the way back, at [`force_limit`](Self::force_limit), the squeeze is no part
+/// of such a law; beyond it no more is taken away, α = a + c F_limit. The squeeze follows the force at once: waves through the thickness are
+/// left out of it, as they are of the law.
+#[derive(Debug, Clone)]
+pub struct WithoutSqueeze {
+    law: Box<dyn ContactLaw>,
+    compliance: f64,
+    limit: f64,
+}
+
+impl WithoutSqueeze {
+    /// `law` without the squeeze of `compliance` (m/N), positive, in a contact that never takes more than `energy` (J); `None` where
+    /// the squeeze is more than half of what the law gives from the first touch on.
+    pub fn new(law: Box<dyn ContactLaw>, compliance: f64, energy: f64) -> Option<Self> {
+        let deepest = indentation_of(&*law, energy)?;
+        let stiffest = |alpha: f64| {
+            let mut history = ContactHistory::default();
+            let loading = law.force(&history, alpha).tangent;
+            law.commit(&mut history, alpha);
+            // Next to the peak, on the way back.
+            loading.max(law.force(&history, alpha * (1.0 - 1e-6)).tangent)
+        };
+        let fits = |alpha: f64| compliance * stiffest(alpha) <= MOST;
+        let mut low = deepest;
+        while !fits(low) {
+            low *= 0.5;
+            if !(low > deepest * 1e-9) {
+                return None;
+            }
+        }
+        let mut high = (2.0 * low).min(deepest);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if fits(middle) { low = middle } else { high = middle }
+        }
+        let limit = law.force(&ContactHistory::default(), low).force;
+        (limit > 0.0).then_some(Self { law, compliance, limit })
+    }
+
+    /// Force up to which the squeeze is taken from the law, N.
+    pub fn force_limit(&self) -> f64 {
+        self.limit
+    }
+
+    /// Indentation of the law less that of the face at a force, m.
+    fn squeeze(&self, force: f64) -> f64 {
+        self.compliance * force.min(self.limit)
+    }
+
+    /// The indentation α of the law at that of the face `a`: Newton's iteration between bounds for α − squeeze(F(α)) = a.
+    fn of_law(&self, history: &ContactHistory, a: f64) -> f64 {
+        // Without an overlap, and where `a` is not a number, there is no force.
+        if self.law.force(history, a).force == 0.0 || !a.is_finite() {
+            return a;
+        }
+        let (mut low, mut high) = (a, a + self.squeeze(f64::INFINITY));
+        let mut alpha = a;
+        for _ in 0..100 {
+            let ContactForce { force, tangent } = self.law.force(history, alpha);
+            let left = alpha - self.squeeze(force) - a;
+            if left < 0.0 {
+                low = alpha
+            } else {
+                high = alpha
+            }
+            let slope = 1.0 - if force < self.limit { self.compliance * tangent } else { 0.0 };
+            let next = alpha - left / slope;
+            let next = if low <= next && next <= high { next } else { 0.5 * (low + high) };
+            if (next - alpha).abs() <= f64::EPSILON * alpha.abs() || high - low <= f64::EPSILON * high.abs() {
+                return next;
+            }
+            alpha = next;
+        }
+        alpha
+    }
+}
+
+impl ContactLaw for WithoutSqueeze {
+    fn force(&self, history: &ContactHistory, alpha: f64) -> ContactForce {
+        let ContactForce { force, tangent } = self.law.force(history, self.of_law(history, alpha));
+        let share = if force < self.limit { self.compliance * tangent } else { 0.0 };
+        ContactForce { force, tangent: tangent / (1.0 - share) }
+    }
+
+    fn commit(&self, history: &mut ContactHistory, alpha: f64) {
+        self.law.commit(history, self.of_law(history, alpha));
+    }
+
+    fn energy(&self, history: &ContactHistory, alpha: f64) -> Energy {
+        let of_law = self.of_law(history, alpha);
+        let Energy { stored, dissipated } = self.law.energy(history, of_law);
+        let taken = self.law.force(history, of_law).force.min(self.limit);
+        Energy { stored: stored - 0.5 * self.compliance * taken * taken, dissipated }
+    }
+
+    fn branches(&self, history: &ContactHistory) -> Branches {
+        let Branches { touch, peak } = self.law.branches(history);
+        // Rounded downwards, because a contact that is loaded is there, and not below.
+        let of_face = |peak: f64| (peak - self.squeeze(self.law.force(history, peak).force)) * (1.0 - 1e-14);
+        Branches { touch, peak: peak.map(of_face) }
+    }
+}
