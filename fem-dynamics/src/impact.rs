@@ -4,9 +4,8 @@ mod influence;
 mod mean;
 mod newton;
 
-use crate::contact::indentation_of;
 use crate::vector::dot;
-use fem_core::contact::{Branches, ContactHistory, ContactLaw, Indentation};
+use fem_core::contact::{Branches, ContactHistory, ContactLaw, Indentation, indentation_of};
 use fem_core::energy::Energy;
 use fem_core::structure::Structure;
 use fem_core::time::{Histories, SecondOrderSystem, State, StepError};

@@ -6,13 +6,11 @@
 //! | `hertz` | k αⁿ | the same |
 //! | `sun-yang` | k αⁿ | a steeper curve, which leaves a dent and dissipates |
 
-mod depth;
 mod hertz;
 mod linear;
 mod sun_yang;
 mod without_squeeze;
 
-pub(crate) use depth::indentation_of;
 pub use hertz::Hertz;
 pub use linear::Linear;
 pub use sun_yang::SunYang;

@@ -1,7 +1,6 @@
 //! A contact law without what the plate gives by itself.
 
-use super::indentation_of;
-use fem_core::contact::{Branches, ContactForce, ContactHistory, ContactLaw};
+use fem_core::contact::{Branches, ContactForce, ContactHistory, ContactLaw, indentation_of};
 use fem_core::energy::Energy;
 
 /// Largest share of a law's own compliance dα/dF that the plate may take of it.
