@@ -86,7 +86,7 @@ fn check_of_every_example() {
     scenes.sort();
     assert!(scenes.len() >= 8, "{scenes:?}");
     for scene in scenes {
-        let done = fem(&root(), &["check", scene.to_str().unwrap()]).good();
+        let done = fem(&root(), &["check", "--full", scene.to_str().unwrap()]).good();
         let at_rest = done.stdout.contains("analysis  ");
         let limit = if at_rest { "static" } else { "stability limit" };
         for words in ["quads", "plies", "unknowns", limit, "the scene is valid"] {
@@ -100,8 +100,9 @@ fn check_of_every_example() {
 fn check_prints_sizes_and_the_stable_step() {
     let case = strip().scene("[march]", "[march]\nintegrator = \"rk4\"\nstep = \"0.01 us\"");
     // The frequencies of a reduced model depend on rounding in their last digits.
-    let shown = case.fem("check", &[]).good().stdout.replace(|c: char| c.is_ascii_digit(), "#");
-    insta::assert_snapshot!(shown);
+    let shown = |options| case.fem("check", options).good().stdout.replace(|c: char| c.is_ascii_digit(), "#");
+    insta::assert_snapshot!(shown(&["--full"]));
+    insta::assert_snapshot!("check_without_the_stiffness", shown(&[]));
     assert_eq!(case.names("."), ["plate"], "a check writes nothing");
 }
 

@@ -97,6 +97,20 @@ impl fmt::Display for Substructures {
     }
 }
 
+/// Memory that a computation of `model` is expected to take at its peak, before K is assembled; `None` where the plate is divided,
+/// whose masters follow from K.
+///
+/// # Errors
+/// More memory than there is, a mass that is wanted where a material has no density.
+pub(crate) fn expected_memory(model: &Model) -> Result<Option<MemoryEstimate>, Error> {
+    model.check_mass()?;
+    if model.division.is_some() {
+        return Ok(None);
+    }
+    let pattern = Arc::new(pattern(&model.plate, &model.constraints));
+    Ok(Some(model.analyse(pattern)?.1))
+}
+
 /// Assembles K and M of `model`, and what effects add to K. M is left zero where `inertia` is not wanted.
 ///
 /// # Errors

@@ -14,6 +14,7 @@ use crate::words::{append_symmetry, describe_condition, warn_of_condition, warn_
 use clap::Args;
 use fem_core::counters::Counters;
 use fem_core::plugin::Dimension;
+use fem_core::time::StepLimit;
 use fem_io::scene::{self, Explained};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -22,7 +23,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  fem check coupon/scene.toml\n  fem check coupon/scene.toml --explain | less")]
+#[command(
+    after_help = "Examples:\n  fem check coupon/scene.toml\n  fem check coupon/scene.toml --full\n  fem check coupon/scene.toml --explain | less"
+)]
 pub(super) struct Arguments {
     /// Scene file (TOML), or `-` for standard input; its mesh is looked for beside it.
     scene: PathBuf,
@@ -30,6 +33,10 @@ pub(super) struct Arguments {
     /// the scene. May be given again for other keys
     #[arg(long, value_name = "KEY=VALUE", value_parser = super::assignment)]
     set: Vec<super::Assignment>,
+    /// Assembles and reduces the plate as a run does: whether supports hold it, what the advisor answers, frequencies, the longest
+    /// stable step. It takes seconds, of large plates more.
+    #[arg(long)]
+    full: bool,
     /// Prints every key that holds: its value, where that comes from (a line of the scene, the preset, a library, a
     /// default) and what it means.
     #[arg(long)]
@@ -65,9 +72,10 @@ struct Checked {
     /// What each support holds, where that is explained.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     supports: Vec<String>,
-    memory_MB: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    memory_MB: Option<f64>,
     #[serde(skip)]
-    memory: MemoryEstimate,
+    memory: Option<MemoryEstimate>,
     #[serde(skip_serializing_if = "Option::is_none")]
     substructures: Option<Substructures>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -84,6 +92,9 @@ struct Checked {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     advised: Vec<Advised>,
     warnings: Vec<String>,
+    /// What only the stiffness tells.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    not_looked_at: Vec<&'static str>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     keys: Vec<Explained>,
 }
@@ -91,12 +102,14 @@ struct Checked {
 #[derive(Serialize)]
 #[allow(non_snake_case)]
 struct MarchDocument {
-    static_stiffness_N_m: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    static_stiffness_N_m: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     lowest_frequency_Hz: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     highest_frequency_Hz: Option<f64>,
-    unknowns_marched: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unknowns_marched: Option<usize>,
     steps: u64,
     step_s: f64,
     end_s: f64,
@@ -107,22 +120,29 @@ struct MarchDocument {
 }
 
 impl MarchDocument {
-    fn new(impact: &Impact, sizes: &Sizes) -> Self {
+    /// With `sizes` where these are known.
+    fn new(impact: &Impact, sizes: Option<&Sizes>) -> Self {
         let spec = &impact.spec.march;
+        let (steps, step_s) = spec.steps();
         Self {
-            static_stiffness_N_m: sizes.static_stiffness,
-            lowest_frequency_Hz: sizes.lowest_frequency,
-            highest_frequency_Hz: sizes.highest_frequency,
-            unknowns_marched: sizes.marched,
-            steps: sizes.steps,
-            step_s: sizes.step,
+            static_stiffness_N_m: sizes.map(|sizes| sizes.static_stiffness),
+            lowest_frequency_Hz: sizes.and_then(|sizes| sizes.lowest_frequency),
+            highest_frequency_Hz: sizes.and_then(|sizes| sizes.highest_frequency),
+            unknowns_marched: sizes.map(|sizes| sizes.marched),
+            steps,
+            step_s,
             end_s: spec.end.value,
             integrator: spec.integrator.name.value.clone(),
-            longest_step_s: Some(sizes.longest_step).filter(|step| step.is_finite()),
+            longest_step_s: sizes.map(|sizes| sizes.longest_step).filter(|step| step.is_finite()),
         }
     }
 
-    fn lines(&self) -> [Line; 3] {
+    fn lines(&self) -> Vec<Line> {
+        let [step, end] = [self.step_s, self.end_s].map(|time| Dimension::TIME.of(time));
+        let steps = format!("{} steps of {step} to {end} with {}", self.steps, self.integrator);
+        let (Some(stiffness), Some(unknowns)) = (self.static_stiffness_N_m, self.unknowns_marched) else {
+            return vec![("march", steps)];
+        };
         let known = [("lowest excited", self.lowest_frequency_Hz), ("highest", self.highest_frequency_Hz)];
         let known: Vec<_> =
             known.iter().filter_map(|(name, f)| Some(format!("{name} {}", Dimension::FREQUENCY.of((*f)?)))).collect();
@@ -130,15 +150,53 @@ impl MarchDocument {
             Some(step) => format!("stable up to {}", Dimension::TIME.of(step)),
             None => "no stability limit".to_owned(),
         };
-        let Self { unknowns_marched: unknowns, steps, integrator, .. } = self;
-        let [step, end] = [self.step_s, self.end_s].map(|time| Dimension::TIME.of(time));
-        let stiffness = Dimension::FORCE.of(self.static_stiffness_N_m * 1e-3);
-        [
+        let stiffness = Dimension::FORCE.of(stiffness * 1e-3);
+        vec![
             ("contact", format!("static stiffness of the plate {stiffness}/mm")),
             ("frequency", if known.is_empty() { "the march needs none".into() } else { known.join(", ") }),
-            ("march", format!("{unknowns} unknowns, {steps} steps of {step} to {end} with {integrator} ({stable})")),
+            ("march", format!("{unknowns} unknowns, {steps} ({stable})")),
         ]
     }
+}
+
+/// What is known of a model before it is computed.
+struct Found {
+    memory: Option<MemoryEstimate>,
+    substructures: Option<Substructures>,
+    /// Of a march.
+    sizes: Option<Sizes>,
+    /// Of the stiffness of a plate at rest.
+    condition: Option<f64>,
+}
+
+impl Found {
+    fn without_stiffness(model: &Model) -> Result<Self, Error> {
+        let memory = assembled::expected_memory(model)?;
+        Ok(Self { memory, substructures: None, sizes: None, condition: None })
+    }
+
+    fn with_stiffness(model: &Model) -> Result<Self, Error> {
+        if let Plan::Impact(_) = &model.plan {
+            let sizes = impact::prepare(model, NonZeroUsize::MIN)?.sizes;
+            let (memory, substructures) = (Some(sizes.memory), sizes.substructures);
+            return Ok(Self { memory, substructures, sizes: Some(sizes), condition: None });
+        }
+        let mut assembled = assembled::structure(model, true, NonZeroUsize::MIN, &mut Counters::default())?;
+        let condition = if model.held { Some(assembled.structure.condition()?) } else { None };
+        Ok(Self { memory: Some(assembled.memory), substructures: assembled.substructures(), sizes: None, condition })
+    }
+}
+
+/// What only the stiffness of `model` tells.
+fn unseen(model: &Model) -> Vec<&'static str> {
+    let decided = !model.effects.undecided() && model.grown.is_none();
+    let advised = Some("which effects the advisor turns on").filter(|_| !decided);
+    let of_plan: &[_] = match &model.plan {
+        Plan::Impact(impact) if impact.integrator.limit() == StepLimit::None => &["frequencies"],
+        Plan::Impact(_) => &["frequencies", "the longest stable step"],
+        Plan::Static { .. } | Plan::Modes { .. } => &["the condition of the stiffness"],
+    };
+    ["whether the supports hold the plate"].into_iter().chain(advised).chain(of_plan.iter().copied()).collect()
 }
 
 fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Result<Checked, Error> {
@@ -148,33 +206,24 @@ fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Resul
     } else {
         vec![]
     };
-    let model = advise::decided(Model::new(scene, registry)?, NonZeroUsize::MIN)?;
-    let (mut march, mut condition, mut modes, mut frames, mut soft) = (None, None, None, 1, None);
-    let (memory, substructures) = match &model.plan {
-        Plan::Impact(impact) => {
-            let sizes =
-                impact::prepare(&model, NonZeroUsize::MIN).inspect_err(|_| console.warn(&model.warnings))?.sizes;
-            march = Some(MarchDocument::new(impact, &sizes));
-            soft = sizes.softness;
-            let asked = model.output.fields.as_ref();
-            frames = impact::frames(asked, asked.and_then(|asked| asked.every), &sizes).len();
-            (sizes.memory, sizes.substructures)
-        }
-        plan => {
-            let counters = &mut Counters::default();
-            let assembled = assembled::structure(&model, true, NonZeroUsize::MIN, counters);
-            let mut assembled = assembled.inspect_err(|_| console.warn(&model.warnings))?;
-            if model.held {
-                let found = assembled.structure.condition().map_err(Error::from);
-                condition = Some(found.inspect_err(|_| console.warn(&model.warnings))?);
-            }
-            if let Plan::Modes { count } = plan {
-                modes = Some(*count);
-                frames = *count;
-            }
-            (assembled.memory, assembled.substructures())
-        }
+    let mut model = Model::new(scene, registry)?;
+    let found = if arguments.full {
+        model = advise::decided(model, NonZeroUsize::MIN)?;
+        Found::with_stiffness(&model).inspect_err(|_| console.warn(&model.warnings))?
+    } else {
+        Found::without_stiffness(&model).inspect_err(|_| console.warn(&model.warnings))?
     };
+    let Found { memory, substructures, sizes, condition } = found;
+    let march = match &model.plan {
+        Plan::Impact(impact) => Some(MarchDocument::new(impact, sizes.as_ref())),
+        _ => None,
+    };
+    let modes = if let Plan::Modes { count } = &model.plan { Some(*count) } else { None };
+    let asked = model.output.fields.as_ref();
+    let frames = march.as_ref().map_or(modes.unwrap_or(1), |march| {
+        impact::frames(asked, asked.and_then(|asked| asked.every), (march.steps, march.step_s)).len()
+    });
+    let not_looked_at = if arguments.full { Vec::new() } else { unseen(&model) };
     let plane = &model.plate.plane;
     let coarse = advise::expect_coarse_cells(&model);
     Ok(Checked {
@@ -191,7 +240,7 @@ fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Resul
         unknowns_before_constraints: model.plate.ndof(),
         redundant_equations: model.constraints.redundant.len(),
         supports: if arguments.explain { model.supports.clone() } else { Vec::new() },
-        memory_MB: memory.bytes() * 1e-6,
+        memory_MB: memory.as_ref().map(|memory| memory.bytes() * 1e-6),
         memory,
         substructures,
         march,
@@ -201,10 +250,11 @@ fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Resul
         fields: fields::expected(&model, frames)?,
         advised: Advised::of(&model, |_| None),
         warnings: (condition.and_then(warn_of_condition).into_iter())
-            .chain(soft.map(warn_of_softness))
+            .chain(sizes.and_then(|sizes| sizes.softness).map(warn_of_softness))
             .chain(coarse)
             .chain(model.warnings)
             .collect(),
+        not_looked_at,
         keys,
     })
 }
@@ -213,7 +263,7 @@ type Line = (&'static str, String);
 
 impl Checked {
     fn text(&self) -> String {
-        let Self { shape, quads, nodes, plies, thickness_mm, layers, unknowns, memory_MB, memory, .. } = self;
+        let Self { shape, quads, nodes, plies, thickness_mm, layers, unknowns, .. } = self;
         let thickness = Dimension::LENGTH.of(thickness_mm * 1e-3);
         let redundant = match self.redundant_equations {
             0 => String::new(),
@@ -230,8 +280,11 @@ impl Checked {
             ),
             ("plate", format!("{plies} plies, {thickness}, {layers} layers of cells")),
             ("unknowns", format!("{unknowns} of {} after constraints{redundant}", self.unknowns_before_constraints)),
-            ("memory", format!("about {memory_MB:.0} MB at the peak: {memory}")),
         ];
+        lines.extend(self.memory.as_ref().map(|memory| {
+            let megabytes = memory.bytes() * 1e-6;
+            ("memory", format!("about {megabytes:.0} MB at the peak: {memory}"))
+        }));
         lines.extend(self.supports.iter().map(|support| ("support", support.clone())));
         lines.extend(self.substructures.map(|parts| ("divided", parts.to_string())));
         lines.extend(self.march.iter().flat_map(MarchDocument::lines));
@@ -244,6 +297,9 @@ impl Checked {
         lines.extend(self.fields.map(|fields| ("fields", fields.to_string())));
         lines.extend(self.advised.iter().map(|advised| ("advised", advised.to_string())));
         lines.extend(self.warnings.iter().map(|warning| ("warning", warning.clone())));
+        if !self.not_looked_at.is_empty() {
+            lines.push(("not seen", format!("{}; `fem check --full` looks at it", self.not_looked_at.join(", "))));
+        }
         let lines: String = lines.iter().map(|(what, text)| format!("  {what:<9} {text}\n")).collect();
         format!("{}\n{lines}  the scene is valid\n{}", self.title, format_explained(&self.keys))
     }

@@ -105,7 +105,7 @@ enum Command {
     /// its energy balance. Writes a checkpoint now and then, at the end and when it is stopped (Ctrl-C, SIGTERM, SIGHUP: exit
     /// status 130, 143, 129), from which `--resume` goes on.
     Run(run::Arguments),
-    /// Validates a scene with its mesh and prints sizes and the stable step; marches nothing.
+    /// Validates a scene with its mesh and prints sizes; marches nothing.
     Check(check::Arguments),
     /// Says which effects an impact calls for, before it is computed: regime, membrane, contact, shear, delamination, mesh.
     ///

@@ -43,12 +43,16 @@ fn modes() {
 
 #[test]
 fn check() {
-    let data = document(strip().fem("check", &["--json"]));
+    let quick = document(strip().fem("check", &["--json"]));
+    assert!(quick["not_looked_at"].is_array() && quick["march"].get("static_stiffness_N_m").is_none(), "{quick}");
+    let data = document(strip().fem("check", &["--full", "--json"]));
+    assert!(data.get("not_looked_at").is_none() && data["march"]["static_stiffness_N_m"].is_f64(), "{data}");
+    assert_eq!(data["memory_MB"], quick["memory_MB"]);
     assert_eq!((&data["quads"], &data["layers"], &data["plies"]), (&8.into(), &2.into(), &16.into()));
     assert_eq!(data["march"]["integrator"], "newmark");
     assert_eq!(data["march"]["steps"], 200);
     assert!(data["march"].get("longest_step_s").is_none() && data.get("keys").is_none(), "{data}");
-    let at_rest = document(at_rest().fem("check", &["--json"]));
+    let at_rest = document(at_rest().fem("check", &["--full", "--json"]));
     assert!(at_rest["condition"].as_f64().is_some_and(|c| c > 1.0) && at_rest.get("march").is_none(), "{at_rest}");
 }
 

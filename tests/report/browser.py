@@ -2,10 +2,13 @@
 """Opens a page of `fem report` in Chromium and uses it: python3 tests/report/browser.py PAGE [SCREENSHOT]
 
 Speaks the DevTools protocol over two pipes, so that Python and Chromium are all it needs. Fails when the page logs an
-error, asks for anything but itself, has no heading, or when its parts do not answer.
+error, asks for anything but itself, has no heading, when its parts do not answer, or when axe-core finds a barrier. For the
+last of these the package `axe-playwright-python` of Python is there, of which the file of axe-core alone is used
+(`pip install --no-deps axe-playwright-python`), or AXE names that file; without either it is left out.
 """
 
 import base64
+import importlib.util
 import json
 import os
 import pathlib
@@ -183,6 +186,44 @@ def use_events(browser):
     browser.ask("(() => { const f = document.querySelector('.filter input'); f.value = ''; f.dispatchEvent(new Event('input')); })()")
 
 
+def use_loops(browser):
+    # Scrolled to, the drawing is read at the point of its largest force.
+    browser.ask("document.querySelector('#picture-force_displacement svg.chart').scrollIntoView({ block: 'center', behavior: 'instant' })")
+    x, y = browser.ask("(() => { const s = document.querySelector('#picture-force_displacement svg.chart');"
+                       " const p = [...s.querySelector('polyline').points].reduce((a, b) => (b.y < a.y ? b : a));"
+                       " const q = new DOMPoint(p.x, p.y).matrixTransform(s.getScreenCTM()); return [q.x, q.y]; })()")
+    browser.mouse("mouseMoved", x, y)
+    reading = browser.ask("document.querySelector('#picture-force_displacement .chart-key').textContent")
+    peak = browser.ask("(() => { const c = JSON.parse(document.getElementById('data').textContent).curves.charts[0];"
+                       " return [Math.max(...c.series[0].values), c.unit]; })()")
+    shown = [float(force.replace("\u2212", "-")) for force in re.findall(rf", (\S+) {peak[1]}", reading)]
+    expect(shown and abs(max(shown) / peak[0] - 1) < 1e-3, f"the force over displacements is read at its peak, {peak}: {reading}")
+    curve = "document.querySelector('#picture-force_displacement polyline').getAttribute('points')"
+    whole = browser.ask(curve)
+    browser.mouse("mousePressed", x, y, button="left", clickCount=1)
+    browser.mouse("mouseMoved", x - 100, y + 100, button="left")
+    browser.mouse("mouseReleased", x - 100, y + 100, button="left", clickCount=1)
+    expect(browser.ask(curve) != whole, "dragging zooms into the force over displacements")
+    browser.ask("document.querySelector('#picture-force_displacement .chart-bar button').click()")
+    browser.mouse("mouseMoved", 1, 1)
+    expect(browser.ask(curve) == whole, "its button shows the whole")
+
+
+def axe_core():
+    """The script that looks for barriers; None where it is not there."""
+    if named := os.environ.get("AXE"):
+        return pathlib.Path(named).read_text(encoding="utf-8")
+    package = importlib.util.find_spec("axe_playwright_python")
+    return (pathlib.Path(package.origin).parent / "axe.min.js").read_text(encoding="utf-8") if package else None
+
+
+def look_for_barriers(browser, script, where):
+    browser.ask(f"{script};0")
+    found = browser.ask("axe.run(document, { resultTypes: ['violations'] }).then(r => r.violations.flatMap(v => v.nodes.map("
+                        "n => `${v.id}: ${n.target} ${n.failureSummary}`)))")
+    expect(not found, f"axe-core finds no barrier, {where} {found[:8] or ''}")
+
+
 def use_screens(browser):
     """The first screen says what matters, at any width and in both colour schemes, and so does a print."""
     first = browser.ask("(document.querySelector('#first') ?? {}).textContent ?? ''")
@@ -192,12 +233,17 @@ def use_screens(browser):
         for part in (r"in (ply|interface) \d", r"at [\d.]+ (ns|us|ms|s)\b", r"under [\d.]+ (N|kN)\b", r"(Nothing speaks|No caution|Not to be trusted|To be read|stopped early)"):
             expect(re.search(part, first), f"the first screen has {part}: {first}")
     browser.ask("document.querySelectorAll('details').forEach(d => { d.open = true; })")
+    script = axe_core()
+    if script is None:
+        print("SKIPPED: axe-core is not there")
     for scheme in ("light", "dark"):
         browser.call("Emulation.setEmulatedMedia", media="screen", features=[{"name": "prefers-color-scheme", "value": scheme}])
         for width in (1280, 390):
             browser.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=width < 500)
             wide = browser.ask("document.documentElement.scrollWidth")
             expect(wide <= width, f"nothing is wider than {width} px: {wide}")
+            if script:
+                look_for_barriers(browser, script, f"{scheme}, {width} px")
         light = browser.ask("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
         expect(light == (scheme == "light"), f"the page is {scheme}")
     browser.call("Emulation.setEmulatedMedia", media="print", features=[])
@@ -220,7 +266,7 @@ def main(page, screenshot=None):
                         " !(e.textContent.trim() || e.getAttribute('aria-label') || e.getAttribute('alt') || e.closest('label'))).length")
             expect(browser.ask(nameless) == 0, "everything to use has a name")
             expect(browser.ask("document.documentElement.scrollWidth <= 1280"), "nothing is wider than the window")
-            for selector, use in (("svg.chart", use_chart), ("#map", use_damage), ("#events-table", use_events)):
+            for selector, use in (("svg.chart", use_chart), ("#picture-force_displacement svg.chart", use_loops), ("#map", use_damage), ("#events-table", use_events)):
                 if has(selector):
                     use(browser)
             use_screens(browser)

@@ -404,7 +404,7 @@ fn the_command_says_how_the_plate_is_divided() {
     let scene = divided(&pressed(vec![4, 4], [6, 4]), "cells = [3, 2]").text("static");
     let case = strip().text(&scene);
     let words = "masters of 4 substructures, 1 condensed and 3 reused";
-    let checked = case.fem("check", &[]).good().stdout;
+    let checked = case.fem("check", &["--full"]).good().stdout;
     assert!(checked.contains(words), "{checked}");
     let ran = case.fem("run", &["--out", "results"]).good().stdout;
     assert!(ran.contains(words), "{ran}");

@@ -405,7 +405,7 @@ fn read_impactor(
     // Energies are compared with it.
     if !(0.5 * mass * velocity * velocity).is_normal() {
         return Err(velocity_field.error(
-            "the energy of the impact is too large for floating-point numbers",
+            "the energy of the impact is too large or too small for floating-point numbers",
             "look for a typing error in mass or velocity",
         ));
     }

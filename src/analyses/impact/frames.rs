@@ -1,12 +1,10 @@
 //! Which steps of a march are frames.
 
-use super::Sizes;
 use fem_io::scene::Fields;
 
 /// Steps of a march that are frames, ascending: those nearest to the multiples of `every`, s, if there is one, and to
-/// the times of `fields`.
-pub(crate) fn frames(fields: Option<&Fields>, every: Option<f64>, sizes: &Sizes) -> Vec<u64> {
-    let Sizes { steps, step: dt, .. } = *sizes;
+/// the times of `fields`. A march has that many steps of that length, s.
+pub(crate) fn frames(fields: Option<&Fields>, every: Option<f64>, (steps, dt): (u64, f64)) -> Vec<u64> {
     let nearest = |t: f64| (t / dt).round() as u64;
     let regular = every.map(|every| every.max(dt));
     let regular = regular.into_iter().flat_map(|every| (0_u32..).map(move |k| f64::from(k) * every));

@@ -287,7 +287,7 @@ impl<'a> March<'a> {
             watch,
             modal,
             expansion,
-            frames: frames(model.output.fields.as_ref(), progress.frame_every, &sizes),
+            frames: frames(model.output.fields.as_ref(), progress.frame_every, (sizes.steps, sizes.step)),
             estimates,
             counters,
             counted,

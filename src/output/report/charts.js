@@ -14,24 +14,51 @@ function atTime(times, t) {
   return low;
 }
 
-/** A chart in the place of the still picture in `figure`, which stays where scripts do not run. */
-function makeChart(figure, curves, chart, marks) {
-  const { times, time_unit: unit, per_s: perSecond } = curves;
-  const whole = [times[0], times[times.length - 1]];
-  if (!(whole[1] > whole[0])) return;
+/** Bar, empty drawing and status line in the place of the still picture in `figure`, which stays where scripts do not run. */
+function makeFrame(figure, label) {
   figure.querySelectorAll(".drawing, img").forEach((still) => still.remove());
   const caption = figure.querySelector("figcaption");
   const bar = add(null, "div", { class: "chart-bar" });
   const key = add(bar, "div", { class: "chart-key", "aria-live": "off" });
   const reset = add(bar, "button", { type: "button", disabled: "" }, "Whole");
   const svg = add(null, "svg", {
-    class: "chart", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, tabindex: "0", role: "img", "font-size": "19",
-    "aria-label": `${chart.quantity} over time: ${chart.series.map((s) => s.name).join(", ")}. Arrow keys read values.`,
+    class: "chart", viewBox: `0 0 ${WIDTH} ${HEIGHT}`, tabindex: "0", role: "img", "font-size": "19", "aria-label": label,
   });
   figure.insertBefore(bar, caption);
   figure.insertBefore(svg, caption);
   const live = add(figure, "p", { role: "status", class: "chart-live" });
-  live.style.cssText = "position:absolute;width:1px;height:1px;overflow:hidden;clip-path:inset(50%)";
+  return { key, reset, svg, live };
+}
+
+/** Clears `svg`, draws its grid and the names of its axes; the group that curves are drawn in. */
+function drawGrid(svg, id, across, up) {
+  svg.replaceChildren();
+  const x = (v) => LEFT + (v - across.low) / (across.high - across.low) * (WIDTH - LEFT - RIGHT);
+  const y = (v) => HEIGHT - BOTTOM - (v - up.low) / (up.high - up.low) * (HEIGHT - TOP - BOTTOM);
+  const clip = `clip-${id}`;
+  add(add(add(svg, "defs"), "clipPath", { id: clip }), "rect",
+    { x: LEFT, y: TOP, width: WIDTH - LEFT - RIGHT, height: HEIGHT - TOP - BOTTOM });
+  for (const [value, label] of ticks(across.low, across.high, 7)) {
+    add(svg, "line", { x1: x(value), x2: x(value), y1: TOP, y2: HEIGHT - BOTTOM, stroke: "#e3e3e3" });
+    add(svg, "text", { x: x(value), y: HEIGHT - BOTTOM + 24, "text-anchor": "middle", fill: "#222" }, label);
+  }
+  for (const [value, label] of ticks(up.low, up.high, 6)) {
+    add(svg, "line", { x1: LEFT, x2: WIDTH - RIGHT, y1: y(value), y2: y(value), stroke: value === 0 ? "#666" : "#e3e3e3" });
+    add(svg, "text", { x: LEFT - 8, y: y(value) + 6, "text-anchor": "end", fill: "#222" }, label);
+  }
+  add(svg, "text", { x: (LEFT + WIDTH - RIGHT) / 2, y: HEIGHT - 8, "text-anchor": "middle", fill: "#222" }, across.name);
+  const middle = (TOP + HEIGHT - BOTTOM) / 2;
+  add(svg, "text", { x: 20, y: middle, "text-anchor": "middle", fill: "#222", transform: `rotate(-90 20 ${middle})` }, up.name);
+  return { x, y, plot: add(svg, "g", { "clip-path": `url(#${clip})` }) };
+}
+
+/** A chart in the place of the still picture in `figure`. */
+function makeChart(figure, curves, chart, marks) {
+  const { times, time_unit: unit, per_s: perSecond } = curves;
+  const whole = [times[0], times[times.length - 1]];
+  if (!(whole[1] > whole[0])) return;
+  const { key, reset, svg, live } = makeFrame(figure,
+    `${chart.quantity} over time: ${chart.series.map((s) => s.name).join(", ")}. Arrow keys read values.`);
   let view = [...whole], reading = null, drag = null, x, y;
 
   const timeAt = (event) => {
@@ -50,7 +77,6 @@ function makeChart(figure, curves, chart, marks) {
   const zoom = (about, factor) => show(about - (about - view[0]) * factor, about + (view[1] - about) * factor);
 
   function draw() {
-    svg.replaceChildren();
     const [first, last] = [Math.max(0, atTime(times, view[0]) - 1), Math.min(times.length - 1, atTime(times, view[1]))];
     let low = 0, high = 0;
     for (const { values } of chart.series) {
@@ -60,24 +86,10 @@ function makeChart(figure, curves, chart, marks) {
     const air = 0.05 * (high - low);
     if (low < 0) low -= air;
     high += air;
-    x = (t) => LEFT + (t - view[0]) / (view[1] - view[0]) * (WIDTH - LEFT - RIGHT);
-    y = (v) => HEIGHT - BOTTOM - (v - low) / (high - low) * (HEIGHT - TOP - BOTTOM);
-    const clip = `clip-${chart.id}`;
-    add(add(add(svg, "defs"), "clipPath", { id: clip }), "rect",
-      { x: LEFT, y: TOP, width: WIDTH - LEFT - RIGHT, height: HEIGHT - TOP - BOTTOM });
-    for (const [value, label] of ticks(view[0], view[1], 7)) {
-      add(svg, "line", { x1: x(value), x2: x(value), y1: TOP, y2: HEIGHT - BOTTOM, stroke: "#e3e3e3" });
-      add(svg, "text", { x: x(value), y: HEIGHT - BOTTOM + 24, "text-anchor": "middle", fill: "#222" }, label);
-    }
-    for (const [value, label] of ticks(low, high, 6)) {
-      add(svg, "line", { x1: LEFT, x2: WIDTH - RIGHT, y1: y(value), y2: y(value), stroke: value === 0 ? "#666" : "#e3e3e3" });
-      add(svg, "text", { x: LEFT - 8, y: y(value) + 6, "text-anchor": "end", fill: "#222" }, label);
-    }
-    add(svg, "text", { x: (LEFT + WIDTH - RIGHT) / 2, y: HEIGHT - 8, "text-anchor": "middle", fill: "#222" }, `Time (${unit})`);
-    const middle = (TOP + HEIGHT - BOTTOM) / 2;
-    add(svg, "text", { x: 20, y: middle, "text-anchor": "middle", fill: "#222", transform: `rotate(-90 20 ${middle})` },
-      `${chart.quantity} (${chart.unit})`);
-    const plot = add(svg, "g", { "clip-path": `url(#${clip})` });
+    const grid = drawGrid(svg, chart.id, { low: view[0], high: view[1], name: `Time (${unit})` },
+      { low, high, name: `${chart.quantity} (${chart.unit})` });
+    ({ x, y } = grid);
+    const { plot } = grid;
     let row = 0;
     for (const [time, name] of marks) {
       const place = x(time * perSecond);

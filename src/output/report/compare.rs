@@ -91,7 +91,7 @@ fn results(names: &[String], folders: &[Folder]) -> Section {
     };
     let doubts = ["cautions and warnings".to_owned()].into_iter().chain(folders.iter().map(doubts)).collect();
     let rows = RESULTS.iter().filter_map(row).chain([doubts]).collect();
-    Section { id: "compared".into(), heading: "Results".into(), facts: Vec::new(), table: grid("", names, rows) }
+    Section { id: "compared".into(), heading: "Results".into(), facts: Vec::new(), table: grid("result", names, rows) }
 }
 
 /// Keys whose values differ; what a scene leaves to its preset is empty.

@@ -74,8 +74,8 @@ impl Measured {
             row("impulse", impulses, &impulse),
             vec!["force over time, L2".into(), String::new(), String::new(), format!("{} %", digits(100.0 * distance))],
         ];
-        let column = |label: &str| Column { label: label.into(), unit: String::new(), numeric: !label.is_empty() };
-        let columns = ["", "measured", "computed", "difference"].map(column).to_vec();
+        let column = |label: &str| Column { label: label.into(), unit: String::new(), numeric: label != "result" };
+        let columns = ["result", "measured", "computed", "difference"].map(column).to_vec();
         let heading = "Against what was measured, while both are known".into();
         Some(Section { id: "measured".into(), heading, facts: Vec::new(), table: Some(Grid { columns, rows }) })
     }

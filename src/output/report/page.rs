@@ -23,8 +23,13 @@ use sha2::{Digest as _, Sha256};
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 /// One after the other in a scope of their own; the first is what the others share.
-const SCRIPTS: [&str; 4] =
-    [include_str!("common.js"), include_str!("charts.js"), include_str!("damage.js"), include_str!("table.js")];
+const SCRIPTS: [&str; 5] = [
+    include_str!("common.js"),
+    include_str!("charts.js"),
+    include_str!("loops.js"),
+    include_str!("damage.js"),
+    include_str!("table.js"),
+];
 
 /// A picture with more than this many bytes of SVG is shown by its PNG where that is smaller.
 const LARGE_SVG: usize = 200_000;
