@@ -143,6 +143,15 @@ fn none(faults: &[String]) {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
+/// Whoever reads the files as they are, from the first page on, sees no `{{#include}}` of the book.
+#[test]
+fn the_readme_leads_to_pages_that_stand_alone() {
+    let linked = Page::read(Path::new("README.md")).unwrap();
+    let pages = linked.links().map(|link| link.split('#').next().unwrap_or(link)).filter(|link| link.ends_with(".md"));
+    let unfilled: Vec<&str> = pages.filter(|page| file(Path::new(page)).unwrap().contains("{{#")).collect();
+    assert_eq!(unfilled, [""; 0]);
+}
+
 #[test]
 fn links_lead_somewhere() {
     let (mut links, mut faults) = (0, Vec::new());
