@@ -2,7 +2,7 @@
 # Makes the tables and pictures of docs/accuracy.md anew, and the tables of reductions and integrators in
 # docs/performance.md: all of them, or those that are named.
 #
-#     docs/accuracy.sh [large-mass] [small-mass] [karas] [pagano] [reductions]
+#     docs/accuracy.sh [large-mass] [small-mass] [karas] [pagano] [coupon] [reductions]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 cargo build --release
@@ -71,13 +71,14 @@ reductions() {
     } | put integrators docs/performance.md
 }
 
-for name in "${@:-large-mass small-mass karas pagano reductions}"; do
+for name in "${@:-large-mass small-mass karas pagano coupon reductions}"; do
     for one in $name; do
         case $one in
         large-mass) page large-mass "$large" "work-precision-force-history ladders" --axis mesh,layers,reduction,step,geometry ;;
         small-mass) page small-mass "$small" "work-precision-force-history ladders" --axis mesh,layers,reduction,step ;;
         karas) page karas docs/accuracy/karas.toml "work-precision-peak-force ladders" ;;
         pagano) page pagano docs/accuracy/pagano.toml "work-precision ladders" ;;
+        coupon) page coupon docs/accuracy/coupon.toml "work-precision-force-history ladders" --axis mesh,layers,reduction,step --budget 400s ;;
         reductions) reductions ;;
         *) echo "there is no part $one" >&2 && exit 2 ;;
         esac
