@@ -143,6 +143,29 @@ fn nothing_is_said_that_is_not_known() {
     assert!(divided.step.is_none(), "{divided:?}");
 }
 
+/// A plate that is not reduced, and one under gravity, say what the reduced one without weight says: hardly anything of it is the reduction's.
+#[test]
+fn full_plates_and_weights_say_what_their_results_are_worth() {
+    let said = |more: &str| {
+        let case = strip().scene("end = \"20 us\"", "end = \"0.2 ms\"\nstep = \"0.2 us\"").append(more);
+        case.fem("run", &["--out", "out"]).good();
+        let accuracy = said(&case);
+        ["force_history_L2", "impulse", "deflection"].map(|result| {
+            let each = ["results", "results_of_mesh", "results_of_layers"];
+            each.map(|of| accuracy[of][format!("{result}_relative")].as_f64().unwrap_or_else(|| panic!("{accuracy:#}")))
+        })
+    };
+    let reduced = said("");
+    let full = said("[reduction]\nmethod = \"none\"\n");
+    for (reduced, full) in reduced.iter().flatten().zip(full.iter().flatten()) {
+        assert!((0.5..2.0).contains(&(full / reduced)), "{full:.2e} for {reduced:.2e}");
+    }
+    let light = said("[effects]\ngravity = \"1e-6 m/s^2\"\n");
+    for (none, light) in reduced.iter().flatten().zip(light.iter().flatten()) {
+        assert!((light / none - 1.0).abs() < 1e-2, "{light:.4e} for {none:.4e}");
+    }
+}
+
 /// So small a plate, marched for so long, that a second march with twice the step would take as long as all the rest.
 #[test]
 fn a_march_that_is_all_the_run_is_compared_with_one_of_much_longer_steps() {

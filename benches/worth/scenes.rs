@@ -23,11 +23,14 @@ const SHELL: Variant = ("mitc4", &[("element", "{ kind = 'mitc4' }"), ("laminate
 const STRETCHED: Variant = ("membrane", &[("effects.membrane", "'on'")]);
 const STRETCHED_FEW: Variant =
     ("membrane, 15 vectors", &[("effects.membrane", "'on'"), ("reduction", "{ method = 'ritz', vectors = 15 }")]);
+const HEAVY: Variant = ("gravity", &[("effects.gravity", "'9.81 m/s^2'")]);
+const UNREDUCED: Variant =
+    ("not reduced, to 0.1 ms", &[("reduction", "{ method = 'none' }"), ("march.end", "'0.1 ms'")]);
 const SERENDIPITY: Variant = ("hex20", &[("element", "{ kind = 'hex20' }")]);
 
 pub(crate) const SCENES: [Scene; 8] = [
-    ("as4-3502-16ply-50mm", &[AS_GIVEN, FEW, GOVERNORS, THREE, MODES, CRAIG, LONG_STEP, SHELL, SERENDIPITY]),
-    ("as4-3502-16ply-75mm", &[AS_GIVEN, FEW, LONG_STEP, SHELL, STRETCHED]),
+    ("as4-3502-16ply-50mm", &[AS_GIVEN, FEW, GOVERNORS, THREE, MODES, CRAIG, LONG_STEP, SHELL, SERENDIPITY, UNREDUCED]),
+    ("as4-3502-16ply-75mm", &[AS_GIVEN, FEW, LONG_STEP, SHELL, STRETCHED, HEAVY]),
     ("as4-3502-8ply-25mm", &[AS_GIVEN, FEW, GOVERNORS, LONG_STEP, SERENDIPITY, STRETCHED]),
     ("as4-3502-8ply-50mm", &[AS_GIVEN, FEW, MODES, SHELL]),
     ("as4-3502-8ply-75mm", &[AS_GIVEN, LONG_STEP, CRAIG, STRETCHED, STRETCHED_FEW]),
@@ -72,7 +75,11 @@ pub(crate) fn statements((name, variant): (&str, Variant), known: &mut Vec<(Stri
     let (path, registry) = (example(name), Registry::standard());
     let own = setting(variant.1);
     // What makes another plate, and not the same one less well.
-    let kind: Vec<_> = variant.1.iter().filter(|(key, _)| *key == "element" || key.starts_with("effects.")).collect();
+    let kind: Vec<_> = variant
+        .1
+        .iter()
+        .filter(|(key, _)| ["element", "march.end"].contains(key) || key.starts_with("effects."))
+        .collect();
     let key = format!("{name} {kind:?}");
     let finer = known.iter().position(|(other, _)| *other == key).unwrap_or_else(|| {
         let mut fine = setting(&[("mesh.refine", "1"), ("reduction", "{ method = 'ritz', vectors = 160 }")]);

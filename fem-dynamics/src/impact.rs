@@ -152,6 +152,14 @@ impl ImpactSystem {
         }
     }
 
+    /// With the gravity of `other`, of whose plate nothing but its sag is known: what pulls at the impactors.
+    #[must_use]
+    pub fn pulled_as(self, other: &Self) -> Self {
+        let load = vec![0.0; self.structure.ndof()];
+        let weight = other.weight.as_ref().map(|weight| Weight { acceleration: weight.acceleration, load, sag: 0.0 });
+        self.with_weight(weight)
+    }
+
     fn gravity(&self) -> f64 {
         self.weight.as_ref().map_or(0.0, |weight| weight.acceleration)
     }
@@ -184,6 +192,11 @@ impl ImpactSystem {
     /// The structure.
     pub fn structure(&self) -> &dyn Structure {
         &*self.structure
+    }
+
+    /// The structure, to solve with it before a march.
+    pub fn structure_mut(&mut self) -> &mut dyn Structure {
+        &mut *self.structure
     }
 
     /// The impactors.

@@ -232,6 +232,7 @@ impl<'a> March<'a> {
             stresses,
             firsts_alone,
             squeezes,
+            unreduced,
             ..
         } = prepared;
         let Prepared { sizes, counters, mut stopwatch, .. } = prepared;
@@ -245,22 +246,30 @@ impl<'a> March<'a> {
             let couple = |mut richer: Reduced| {
                 effects.clone().iter_mut().for_each(|effect| effect.on_reduced(&mut richer));
                 let impactors = place_impactors(impact, &contacts, Some(&richer), &laws);
-                (ImpactSystem::new(Box::new(richer.modal.clone()), impactors), richer.modal)
+                (ImpactSystem::new(Box::new(richer.modal.clone()), impactors).pulled_as(&system), richer.modal)
             };
-            let alone = system.weight().is_none() && model.effects.nature().inertia;
             let run = Before {
                 system: &system,
                 reduced,
                 membrane: membrane.as_ref(),
                 integrator: impact.integrator.clone(),
                 sizes: &sizes,
-                couple: if alone { Some(&couple) } else { None },
+                couple: if model.effects.nature().inertia { Some(&couple) } else { None },
                 mesh: accuracy::mesh::estimate(model, &system, reduced, condensation.as_deref())?,
                 layers: accuracy::layers::estimate(model, reduced)?,
             };
-            estimates = Estimates::new(run, full);
+            let solves = full.solves();
+            estimates = Estimates::new(run, Some(full), solves);
             stopwatch.lap("accuracy");
         }
+        let before = SystemCounts::of(&system);
+        if let Some(contacts) = unreduced {
+            let found = accuracy::unreduced::estimate((model, impact), &mut system, &effects, &contacts, &sizes);
+            estimates = found.unwrap_or_default();
+            stopwatch.lap("accuracy");
+        }
+        // What was counted for the estimates is no work of the run.
+        let counted = SystemCounts::between(SystemCounts::default(), before, SystemCounts::of(&system));
         let followed = model.output.modes.as_ref().zip(reduced.as_deref());
         let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
         let expansion = Rc::new(Expansion { model, reduced, companions, share, condensation });
@@ -273,7 +282,7 @@ impl<'a> March<'a> {
         };
         stopwatch.lap("prepare stresses");
         let scan_every = count_steps(model.sample_every, sizes.step);
-        let (integrator, counted) = (impact.integrator.clone(), SystemCounts::default());
+        let integrator = impact.integrator.clone();
         Ok(Self {
             model,
             guard: Guard::new(&mut system),

@@ -44,6 +44,8 @@ pub struct Prepared<'a> {
     pub(super) share: Option<Arc<Share>>,
     /// What a reduced model was made from.
     pub(super) full: Option<Full>,
+    /// Where each impactor strikes a linear plate that is not reduced, whose errors are to be estimated.
+    pub(super) unreduced: Option<Vec<Functional>>,
     pub(super) condensation: Option<Arc<Condensation>>,
     /// What the criteria see of it, where that is known from an impact before.
     pub(super) stresses: Option<Arc<PlateStresses>>,
@@ -61,7 +63,7 @@ impl Prepared<'_> {
     /// Without the plate before its reduction, so that the march estimates no errors.
     #[must_use]
     pub fn without_estimates(self) -> Self {
-        Self { full: None, ..self }
+        Self { full: None, unreduced: None, ..self }
     }
 
     /// With criteria that judge only where an index can be the first to reach 1, or the largest: events and peaks are to the bit those
@@ -113,6 +115,8 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     let Ready { effects, plate: Marched { full, reduced, stretched, .. }, contacts, condensation, .. } = ready;
     let Ready { before, counters, stopwatch, .. } = ready;
     let reduced = reduced.map(Arc::new);
+    let linear = !model.effects.nature().large && model.laws.is_none() && condensation.is_none();
+    let unreduced = (reduced.is_none() && linear).then(|| contacts.clone());
     let (structure, full): (Box<dyn Structure>, _) = match (&reduced, &stretched) {
         (None, _) => (Box::new(full), None),
         (Some(reduced), None) => {
@@ -124,7 +128,7 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     };
     let struck = Struck { structure, effects, reduced, membrane: stretched, condensation: condensation.map(Arc::new) };
     let prepared = strike((model, impact), struck, &contacts, before)?;
-    Ok(Prepared { full, counters, stopwatch, ..prepared })
+    Ok(Prepared { full, unreduced, counters, stopwatch, ..prepared })
 }
 
 /// A plate that waits for its impactors.
@@ -196,6 +200,7 @@ pub(super) fn strike<'a>(
         membrane,
         share: None,
         full: None,
+        unreduced: None,
         condensation,
         stresses: None,
         firsts_alone: false,
@@ -279,6 +284,7 @@ fn prepare_separable<'a>(
         membrane: None,
         share,
         full: None,
+        unreduced: None,
         condensation: None,
         stresses: None,
         firsts_alone: false,

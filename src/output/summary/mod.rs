@@ -360,7 +360,7 @@ impl Seen {
 impl ImpactSummary {
     /// Sums up a run.
     pub fn new(model: &Model, sizes: &Sizes, outcome: &Outcome) -> Self {
-        let impact::Accuracy { step, reduction, mesh, layers } = outcome.accuracy;
+        let impact::Accuracy { step, reduction, mesh, layers, .. } = outcome.accuracy;
         let residual = reduction.and_then(|error| error.residual);
         let thickness = model.laminate.thickness();
         let seen = hindsights(model, &outcome.contacts);

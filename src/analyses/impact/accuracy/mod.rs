@@ -11,6 +11,7 @@ pub(super) mod layers;
 pub(super) mod mesh;
 mod reduction;
 mod step;
+pub(super) mod unreduced;
 
 pub use companion::Differences;
 pub use mesh::MeshAccuracy;
@@ -39,6 +40,8 @@ const HALVED: f64 = 7.0;
 pub struct Accuracy {
     /// Of the time step.
     pub step: Option<StepAccuracy>,
+    /// Whether there is no reduction, which then leaves nothing.
+    pub unreduced: bool,
     /// Of the reduction.
     pub reduction: Option<ReductionAccuracy>,
     /// Of the mesh.
@@ -51,7 +54,7 @@ impl Accuracy {
     /// Errors of the main results: those of step, reduction, mesh and layers together, where all of them are known;
     /// of the peak at least a quarter of that of the history.
     pub fn results(&self) -> Option<Differences> {
-        let left = self.reduction?.response?;
+        let left = if self.unreduced { Differences::default() } else { self.reduction?.response? };
         let sum = |a: Differences, b: Differences| a.with(b, |a, b| a + b);
         let all = [left, self.mesh?.response?, self.layers?].into_iter().fold(self.step?.error, sum);
         Some(Differences { peak: all.peak.max(PEAK * all.force), ..all })
@@ -62,6 +65,7 @@ impl Accuracy {
 #[derive(Debug, Default)]
 pub(super) struct Estimates {
     other_step: Option<(Pace, Companion)>,
+    unreduced: bool,
     reduction: Option<ReductionAccuracy>,
     mesh: Option<MeshAccuracy>,
     layers: Option<Differences>,
@@ -83,14 +87,15 @@ pub(super) struct Before<'a> {
 }
 
 impl Estimates {
-    /// Marches copies of the reduced plate, and asks the full one what the reduction leaves out.
-    pub(super) fn new(run: Before<'_>, full: Full) -> Self {
+    /// Marches copies of the reduced plate, and asks the full one what the reduction leaves out, if that is not what is marched; all beside a
+    /// run that takes as long as so many `solves` of the full plate.
+    pub(super) fn new(run: Before<'_>, full: Option<Full>, solves: u64) -> Self {
         let Before { system, reduced, membrane, integrator, sizes, couple, mesh, layers } = run;
         let plate: Box<dyn Structure> = match membrane {
             Some(membrane) => Box::new(membrane.clone()),
             None => Box::new(reduced.modal.clone()),
         };
-        let pace = Pace::new(integrator, sizes, full.solves(), membrane.is_some());
+        let pace = Pace::new(integrator, sizes, solves, membrane.is_some());
         let mut instants = Vec::new();
         let base = pace.march(system.on(plate), &reduced.modal, |instant| instants.push(instant));
         // What a reduction leaves out is asked of the linear plate: tension is a matter of its slow vectors.
@@ -103,7 +108,8 @@ impl Estimates {
             instants.clear();
         }
         let richer = couple.zip(linear).map(|(couple, base)| Richer { couple, pace: &pace, base });
-        let mut reduction = reduction::estimate(full, reduced, &instants, richer);
+        let unreduced = full.is_none();
+        let mut reduction = full.and_then(|full| reduction::estimate(full, reduced, &instants, richer));
         if let (Some(found), Some(membrane)) = (&mut reduction, membrane) {
             // Of the tension, by what half of the vectors change in it.
             let slow = membrane.stretched_by(sizes.marched / 2);
@@ -118,7 +124,7 @@ impl Estimates {
         });
         let soften = |shares: Vec<f64>| pace.soften(system, (reduced, membrane), base.as_ref()?, &shares);
         let layers = layers.and_then(soften);
-        Self { other_step: base.map(|base| (pace, base)), reduction, mesh, layers }
+        Self { other_step: base.map(|base| (pace, base)), unreduced, reduction, mesh, layers }
     }
 
     /// The estimates for a march with these forces and first contact that reached its end.
@@ -127,7 +133,7 @@ impl Estimates {
             let difference = companion.against_run(forces, contact?)?;
             companion.follows.then(|| StepAccuracy::of(&pace, difference))
         };
-        let Self { other_step, reduction, mesh, layers } = self;
-        Accuracy { step: other_step.and_then(difference), reduction, mesh, layers }
+        let Self { other_step, unreduced, reduction, mesh, layers } = self;
+        Accuracy { step: other_step.and_then(difference), unreduced, reduction, mesh, layers }
     }
 }

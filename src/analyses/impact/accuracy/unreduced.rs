@@ -1,0 +1,49 @@
+//! Estimates of a run whose plate is not reduced: those of a reduced one that is marched beside it.
+
+use super::{Before, Estimates, layers, mesh};
+use crate::analyses::impact::Sizes;
+use crate::analyses::impact::prepare::place_impactors;
+use crate::effect::Effect;
+use crate::model::{Impact, Model};
+use fem_core::functional::Functional;
+use fem_core::plugin::{Built, Params, Plugin as _};
+use fem_dynamics::impact::ImpactSystem;
+use fem_dynamics::reduce::{Reduced, Ritz};
+
+/// Vectors that a run may solve for beside its steps: one in so many of these.
+const STEPS: u64 = 4;
+
+/// Marches of the plate of the default's vectors, which have to be few beside the steps of the run; nothing of a plate that is not linear.
+///
+/// What a run differs by from the plate beside it counts as the error of its step, so that this holds what the vectors leave as well.
+pub(in crate::analyses::impact) fn estimate(
+    (model, impact): (&Model, &Impact),
+    system: &mut ImpactSystem,
+    effects: &[Box<dyn Effect>],
+    contacts: &[Functional],
+    sizes: &Sizes,
+) -> Option<Estimates> {
+    let laws: Vec<_> = system.impactors().iter().map(|impactor| impactor.law.clone()).collect();
+    let Ok(Built::Reduction(ritz)) = Ritz::build(&Params::default()) else { return None };
+    let structure = system.structure_mut();
+    let basis = ritz.basis(structure, contacts, &[]).ok()?;
+    if (basis.len() / structure.ndof()) as u64 > sizes.steps / STEPS {
+        return None;
+    }
+    let mut reduced = Reduced::project(structure, &basis).ok()?;
+    effects.to_vec().iter_mut().for_each(|effect| effect.on_reduced(&mut reduced));
+    let impactors = place_impactors(impact, contacts, Some(&reduced), &laws);
+    let beside = ImpactSystem::new(Box::new(reduced.modal.clone()), impactors).pulled_as(system);
+    let sizes = Sizes { marched: reduced.modal.frequencies().count(), ..*sizes };
+    let run = Before {
+        system: &beside,
+        reduced: &reduced,
+        membrane: None,
+        integrator: impact.integrator.clone(),
+        sizes: &sizes,
+        couple: None,
+        mesh: mesh::estimate(model, &beside, &reduced, None).ok()?,
+        layers: layers::estimate(model, &reduced).ok()?,
+    };
+    Some(Estimates::new(run, None, sizes.steps))
+}
