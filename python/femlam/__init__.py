@@ -15,12 +15,13 @@ from femlam._criterion import Criterion, Material, check_criterion, indices, mat
 from femlam._errors import FemError, Mistake, SceneError
 from femlam._native import __version__
 from femlam._plate import Plate
-from femlam._results import ImpactResult, ModesResult, Result, StaticResult, Table
+from femlam._results import BucklingResult, ImpactResult, ModesResult, Result, StaticResult, Table
 from femlam._scene import Scene
 from femlam._sweep import SweepResult
 
 __all__ = [
     "Advice",
+    "BucklingResult",
     "ContactLaw",
     "Criterion",
     "FemError",

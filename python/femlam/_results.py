@@ -256,6 +256,20 @@ class ModesResult(Result):
         return self.omega / (2 * np.pi)
 
 
+class BucklingResult(Result):
+    """Factors on the preload that buckle the plate."""
+
+    def __init__(self, found: dict[str, Any]) -> None:
+        """Of what the native module returns."""
+        super().__init__(found)
+        self.load_factors: NDArray[np.float64] = found["load_factors"]
+        """Those nearest to zero, by size, shape (factors,); negative where the opposite load buckles the plate."""
+        self.shapes: NDArray[np.float64] = found["shapes"]
+        """Shapes whose largest displacement is 1 m over the unknowns of :meth:`femlam.Scene.matrices`, shape (factors, unknowns)."""
+        self.unknowns = Table({name: np.asarray(column) for name, column in found["unknowns"].items()})
+        """What each unknown stands for: name, node, place."""
+
+
 def _result(found: dict[str, Any]) -> Result:
-    kind = ImpactResult if "history" in found else ModesResult if "omega" in found else StaticResult
-    return kind(found)
+    kinds = {"history": ImpactResult, "omega": ModesResult, "load_factors": BucklingResult}
+    return next((kind for key, kind in kinds.items() if key in found), StaticResult)(found)

@@ -124,7 +124,7 @@ class Scene:
         laws: Iterable[ContactLaw] = (),
         accuracy: float | None = None,
     ) -> Result:
-        """Compute what the scene asks for: an :class:`ImpactResult`, a :class:`StaticResult` or a :class:`ModesResult`.
+        """Compute what the scene asks for: an impact, loads at rest, modes or buckling, each a result of its own.
 
         * ``folder``: where the files of ``fem run`` go; without it all stays in memory.
         * ``resume``: go on from the checkpoint in that folder.

@@ -5,7 +5,7 @@ use fem::Model;
 use fem::analyses::matrices::{NamedUnknown, unknowns};
 use fem::cost::Cost;
 use fem::io::tables::TableValue;
-use fem::job::{Found, ImpactFound, ModesFound, StaticFound};
+use fem::job::{BucklingFound, Found, ImpactFound, ModesFound, StaticFound};
 use fem::output::statics::{MovedNode, ProfileTable, nodes, profile};
 use fem::output::{events, history_columns};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -30,6 +30,7 @@ pub(crate) fn results<'py>(
         Found::Impact(found) => impact(&all, model, &found)?,
         Found::Static(found) => at_rest(&all, model, &found)?,
         Found::Modes(found) => modes(&all, model, *found)?,
+        Found::Buckling(found) => buckling(&all, model, *found)?,
     }
     Ok(all)
 }
@@ -87,6 +88,15 @@ fn modes(all: &Bound<'_, PyDict>, model: &Model, found: ModesFound) -> PyResult<
     all.set_item("shapes", array(py, solution.modes.shapes, [count, unknowns_of_each])?)?;
     let masses = solution.effective_masses.into_iter().flatten().collect();
     all.set_item("effective_masses", array(py, masses, [count, 3])?)?;
+    all.set_item("unknowns", names(py, &unknowns(model))?)
+}
+
+fn buckling(all: &Bound<'_, PyDict>, model: &Model, found: BucklingFound) -> PyResult<()> {
+    let py = all.py();
+    let BucklingFound { solution, .. } = found;
+    let (count, unknowns_of_each) = (solution.buckling.factors.len(), solution.unknowns);
+    all.set_item("load_factors", PyArray1::from_vec(py, solution.buckling.factors))?;
+    all.set_item("shapes", array(py, solution.buckling.shapes, [count, unknowns_of_each])?)?;
     all.set_item("unknowns", names(py, &unknowns(model))?)
 }
 

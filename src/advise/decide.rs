@@ -44,7 +44,7 @@ fn decide_effects(model: Model, threads: NonZeroUsize) -> Result<Model, Error> {
         Plan::Impact(_) => advise(&model, threads)?.iter().map(|advice| advice.expected).collect(),
         Plan::Static { forces } => vec![at_rest(&model, forces, threads)?],
         // Refused before.
-        Plan::Modes { .. } => return Ok(model),
+        Plan::Modes { .. } | Plan::Buckling { .. } => return Ok(model),
     };
     let decisions = model.effects.decide(|advice| expected.iter().map(advice.number).fold(0.0, f64::max));
     model.decisions = decisions;

@@ -2,14 +2,12 @@
 
 use crate::error::Error;
 use crate::forecast::MemoryEstimate;
-use crate::model::Model;
-use fem_core::assembly::{
-    Condensation, Condensed, Matrix, SparseStructure, Symbolic, Symmetric, assemble, condense, pattern,
-};
+use crate::model::{Model, Plan};
+use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, Symmetric, assemble, condense, pattern};
 use fem_core::counters::Counters;
 use fem_core::functional::Functional;
 use fem_core::structure::{SolveError, Structure};
-use fem_dynamics::buckling;
+use fem_dynamics::buckling::{self, Buckling};
 use serde::Serialize;
 use std::fmt;
 use std::num::NonZeroUsize;
@@ -103,7 +101,9 @@ impl fmt::Display for Substructures {
 /// # Errors
 /// More memory than there is, a mass that is wanted where a material has no density.
 pub(crate) fn expected_memory(model: &Model) -> Result<Option<MemoryEstimate>, Error> {
-    model.check_mass()?;
+    if !matches!(model.plan, Plan::Buckling { .. }) {
+        model.check_mass()?;
+    }
     if model.division.is_some() {
         return Ok(None);
     }
@@ -111,11 +111,53 @@ pub(crate) fn expected_memory(model: &Model) -> Result<Option<MemoryEstimate>, E
     Ok(Some(model.analyse(pattern)?.1))
 }
 
-/// Assembles K and M of `model`, and what effects add to K. M is left zero where `inertia` is not wanted.
+/// Assembles K and M of `model`, and what effects add to K, among it what stresses of a preload do. M is left zero where `inertia`
+/// is not wanted.
 ///
 /// # Errors
-/// A cell that the element refuses, more memory than there is, a mass that is wanted where a material has no density.
+/// A cell that the element refuses, more memory than there is, a mass that is wanted where a material has no density, a preload
+/// that buckles the plate.
 pub fn structure(
+    model: &Model,
+    inertia: bool,
+    threads: NonZeroUsize,
+    counters: &mut Counters,
+) -> Result<Assembled, Error> {
+    let mut assembled = elastic(model, inertia, threads, counters)?;
+    let pattern = assembled.structure.matrices().0.pattern().clone();
+    let Some(geometric) = model.effects.geometric(&model.body(), &pattern)? else { return Ok(assembled) };
+    assembled.structure.add(1.0, &geometric);
+    // The factor serves what comes next as well.
+    match assembled.structure.solve_shifted(0.0, &mut vec![0.0; geometric.ndof()], 1) {
+        Err(SolveError::NotPositive { .. }) => {}
+        other => return Ok(other.map(|()| assembled)?),
+    }
+    assembled.structure.add(-1.0, &geometric);
+    let found = factors(&mut assembled.structure, &geometric, FACTORS)?.factors;
+    let factor = found.into_iter().filter(|factor| *factor > 0.0).fold(f64::INFINITY, f64::min);
+    Err(Error::Buckled { factor })
+}
+
+/// Factors looked at for the first that is positive: those of a shear load come in pairs of either sign.
+const FACTORS: usize = 4;
+
+/// The `count` factors on a `geometric` stiffness that are nearest to zero and take all stiffness from `structure`, and its shapes.
+///
+/// # Errors
+/// A structure that is not held, factors that do not converge.
+pub(super) fn factors(
+    structure: &mut SparseStructure,
+    geometric: &Symmetric,
+    count: usize,
+) -> Result<Buckling, SolveError> {
+    buckling::factors(structure, |scale, x, y| geometric.add_product(scale, x, y), count)
+}
+
+/// The same without the stresses of a preload.
+///
+/// # Errors
+/// As [`structure`], but for the preload.
+pub fn elastic(
     model: &Model,
     inertia: bool,
     threads: NonZeroUsize,
@@ -134,14 +176,9 @@ pub fn structure(
         let mut k = matrix(Matrix::Stiffness)?;
         let m = if inertia { matrix(Matrix::Mass)? } else { Symmetric::zero(pattern.clone()) };
         model.effects.on_stiffness(&model.body(), &mut k)?;
-        let geometric = model.effects.geometric(&model.body(), &pattern)?;
-        geometric.iter().for_each(|geometric| k.add(1.0, geometric));
         let factor_entries = symbolic.entries();
         let mut structure = SparseStructure::new(symbolic, k, m, threads, name);
         structure.release(&model.motions);
-        if let Some(geometric) = &geometric {
-            check_buckling(&mut structure, geometric, threads)?;
-        }
         return Ok(Assembled { structure, factor_entries, memory, condensation: None });
     };
     let Condensed { k, m, way } = condense(plate, &**element, constraints, division, inertia, threads, counters)?;
@@ -153,26 +190,4 @@ pub fn structure(
     let mut structure = SparseStructure::new(symbolic, k, m, threads, move |i| name(masters[i]));
     structure.release(&motions);
     Ok(Assembled { structure, factor_entries, memory, condensation: Some(way) })
-}
-
-/// Factors looked at for the first that is positive: those of a shear load come in pairs of either sign.
-const FACTORS: usize = 4;
-
-/// Refuses a `geometric` stiffness, part of that of `structure`, which buckles the plate.
-fn check_buckling(structure: &mut SparseStructure, geometric: &Symmetric, threads: NonZeroUsize) -> Result<(), Error> {
-    // The factor serves what comes next as well.
-    match structure.solve_shifted(0.0, &mut vec![0.0; geometric.ndof()], 1) {
-        Err(SolveError::NotPositive { .. }) => {}
-        other => return Ok(other?),
-    }
-    let mut k = structure.matrices().0.clone();
-    k.add(-1.0, geometric);
-    let pattern = k.pattern().clone();
-    let mut elastic =
-        SparseStructure::new(Symbolic::new(pattern.clone())?, k, Symmetric::zero(pattern), threads, |i| {
-            format!("independent unknown {}", i + 1)
-        });
-    let found = buckling::factors(&mut elastic, |scale, x, y| geometric.add_product(scale, x, y), FACTORS)?;
-    let factor = found.factors.into_iter().filter(|factor| *factor > 0.0).fold(f64::INFINITY, f64::min);
-    Err(Error::Buckled { factor })
 }

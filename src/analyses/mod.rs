@@ -1,6 +1,7 @@
-//! What a model can be asked: the response to an impact, loads at rest, natural modes, its matrices.
+//! What a model can be asked: the response to an impact, loads at rest, natural modes, buckling, its matrices.
 
 pub mod assembled;
+pub mod buckling;
 mod expansion;
 pub mod impact;
 pub mod matrices;

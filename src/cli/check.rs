@@ -86,6 +86,9 @@ struct Checked {
     /// How many modes are found, where these are the analysis.
     #[serde(skip_serializing_if = "Option::is_none")]
     modes: Option<usize>,
+    /// How many load factors of buckling are found, where these are the analysis.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    load_factors: Option<usize>,
     criteria: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     fields: Option<fields::Expected>,
@@ -181,7 +184,11 @@ impl Found {
             let (memory, substructures) = (Some(sizes.memory), sizes.substructures);
             return Ok(Self { memory, substructures, sizes: Some(sizes), condition: None });
         }
-        let mut assembled = assembled::structure(model, true, NonZeroUsize::MIN, &mut Counters::default())?;
+        let counters = &mut Counters::default();
+        let mut assembled = match &model.plan {
+            Plan::Buckling { .. } => assembled::elastic(model, false, NonZeroUsize::MIN, counters)?,
+            _ => assembled::structure(model, true, NonZeroUsize::MIN, counters)?,
+        };
         let condition = if model.held { Some(assembled.structure.condition()?) } else { None };
         Ok(Self { memory: Some(assembled.memory), substructures: assembled.substructures(), sizes: None, condition })
     }
@@ -194,9 +201,16 @@ fn unseen(model: &Model) -> Vec<&'static str> {
     let of_plan: &[_] = match &model.plan {
         Plan::Impact(impact) if impact.integrator.limit() == StepLimit::None => &["frequencies"],
         Plan::Impact(_) => &["frequencies", "the longest stable step"],
-        Plan::Static { .. } | Plan::Modes { .. } => &["the condition of the stiffness"],
+        Plan::Static { .. } | Plan::Modes { .. } | Plan::Buckling { .. } => &["the condition of the stiffness"],
     };
-    ["whether the supports hold the plate"].into_iter().chain(advised).chain(of_plan.iter().copied()).collect()
+    let loaded = model.effects.edges().is_some() && !matches!(model.plan, Plan::Buckling { .. });
+    let buckles = Some("whether the preload buckles it").filter(|_| loaded);
+    ["whether the supports hold the plate"]
+        .into_iter()
+        .chain(buckles)
+        .chain(advised)
+        .chain(of_plan.iter().copied())
+        .collect()
 }
 
 fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Result<Checked, Error> {
@@ -218,9 +232,13 @@ fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Resul
         Plan::Impact(impact) => Some(MarchDocument::new(impact, sizes.as_ref())),
         _ => None,
     };
-    let modes = if let Plan::Modes { count } = &model.plan { Some(*count) } else { None };
+    let (modes, load_factors) = match &model.plan {
+        Plan::Modes { count } => (Some(*count), None),
+        Plan::Buckling { count } => (None, Some(*count)),
+        _ => (None, None),
+    };
     let asked = model.output.fields.as_ref();
-    let frames = march.as_ref().map_or(modes.unwrap_or(1), |march| {
+    let frames = march.as_ref().map_or(modes.or(load_factors).unwrap_or(1), |march| {
         impact::frames(asked, asked.and_then(|asked| asked.every), (march.steps, march.step_s)).len()
     });
     let not_looked_at = if arguments.full { Vec::new() } else { unseen(&model) };
@@ -246,6 +264,7 @@ fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Resul
         march,
         condition,
         modes,
+        load_factors,
         criteria: model.criteria.iter().map(|(name, _)| name.clone()).collect(),
         fields: fields::expected(&model, frames)?,
         advised: Advised::of(&model, |_| None),
@@ -290,7 +309,9 @@ impl Checked {
         lines.extend(self.march.iter().flat_map(MarchDocument::lines));
         lines.extend(self.condition.map(|condition| ("stiffness", describe_condition(condition))));
         if self.march.is_none() {
-            let analysis = self.modes.map_or("static".to_owned(), |count| format!("the {count} lowest modes"));
+            let modes = self.modes.map(|count| format!("the {count} lowest modes"));
+            let buckling = self.load_factors.map(|count| format!("buckling, {count} load factors"));
+            let analysis = modes.or(buckling).unwrap_or_else(|| "static".to_owned());
             lines.push(("analysis", analysis));
         }
         lines.push(("damage", if self.criteria.is_empty() { "off".into() } else { self.criteria.join(", ") }));

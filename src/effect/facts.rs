@@ -48,7 +48,7 @@ pub struct Facts<'a> {
 pub enum Feature {
     /// An analysis that is no impact.
     NoImpact,
-    /// Natural modes.
+    /// Natural modes, and buckling.
     Modes,
     /// Substructures.
     Substructures,
@@ -119,7 +119,7 @@ impl<'a> Facts<'a> {
         let lawful = || scene.plies().any(|ply| scene.laws[ply.material].is_some());
         match feature {
             Feature::NoImpact => own(scene.impact().is_none()),
-            Feature::Modes => own(matches!(scene.analysis, Analysis::Modes { .. })),
+            Feature::Modes => own(matches!(scene.analysis, Analysis::Modes { .. } | Analysis::Buckling { .. })),
             Feature::Substructures => own(scene.substructures.is_some()),
             Feature::FullModel => own(self.full),
             Feature::FollowedModes => scene.output.modes.as_ref().map(|modes| &modes.place),

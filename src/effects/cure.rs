@@ -56,7 +56,7 @@ impl Effect for Cure {
         const EXCLUDED: &[Exclusion] = &[
             Exclusion::new(
                 Feature::Modes,
-                "residual stresses do not change the natural modes of a free plate",
+                "residual stresses change neither the natural modes nor the buckling loads of a free plate",
                 "leave `cure` out",
             ),
             Exclusion::new(

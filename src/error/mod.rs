@@ -43,6 +43,8 @@ pub enum Error {
     Element(#[from] ElementError),
     #[error("the model cannot be solved")]
     Solve(#[from] fem_core::structure::SolveError),
+    #[error("an analysis of buckling needs `effects.preload`, and the scene has none")]
+    NoPreload,
     #[error("`effects.preload` buckles the plate: at {:.4} of it the plate has no stiffness left", factor)]
     #[diagnostic(help("lower the preload below that; analysis = \"buckling\" finds the load factors"))]
     Buckled {

@@ -12,7 +12,7 @@ pub use plate::KeptPlate;
 
 use crate::advise;
 use crate::analyses::impact::{Outcome, Sizes};
-use crate::analyses::{modes, statics};
+use crate::analyses::{buckling, modes, statics};
 use crate::cost::{Attained, Cost, Phase, Provenance};
 use crate::error::Error;
 use crate::model::{Model, Plan};
@@ -112,6 +112,8 @@ pub enum Found {
     Static(Box<StaticFound>),
     /// Natural modes.
     Modes(Box<ModesFound>),
+    /// Load factors of buckling.
+    Buckling(Box<BucklingFound>),
 }
 
 /// The response to an impact.
@@ -139,12 +141,20 @@ pub struct ModesFound {
     pub summary: output::modes::ModesSummary,
 }
 
+/// Load factors of buckling.
+#[derive(Debug, Clone)]
+#[allow(missing_docs)]
+pub struct BucklingFound {
+    pub solution: buckling::BucklingSolution,
+    pub summary: output::buckling::BucklingSummary,
+}
+
 impl Found {
     /// Whether all was computed that the scene asks for: a march that meets what no impact can do stops before its end.
     pub fn completed(&self) -> bool {
         match self {
             Self::Impact(found) => found.summary.completed,
-            Self::Static(_) | Self::Modes(_) => true,
+            Self::Static(_) | Self::Modes(_) | Self::Buckling(_) => true,
         }
     }
 
@@ -154,6 +164,7 @@ impl Found {
             Self::Impact(found) => found.summary.text(cost),
             Self::Static(found) => found.summary.text(cost),
             Self::Modes(found) => found.summary.text(cost),
+            Self::Buckling(found) => found.summary.text(cost),
         }
     }
 }
@@ -164,6 +175,7 @@ impl Serialize for Found {
             Self::Impact(found) => found.summary.serialize(serializer),
             Self::Static(found) => found.summary.serialize(serializer),
             Self::Modes(found) => found.summary.serialize(serializer),
+            Self::Buckling(found) => found.summary.serialize(serializer),
         }
     }
 }
@@ -186,6 +198,7 @@ pub fn run(scene: &Scene, registry: &Registry, options: &Options, follow: &mut d
         (None, Plan::Impact(_)) => impact::run(&model, options, follow)?,
         _ if matches!(options.results, Results::Resumed(_)) => return Err(Error::NotMarched),
         (None, Plan::Static { .. }) => rest::statics(&model, options, follow)?,
+        (None, Plan::Buckling { count }) => rest::buckling(&model, *count, options, follow)?,
         (asked, plan) => {
             let own = match plan {
                 Plan::Modes { count } => *count,

@@ -1,8 +1,8 @@
-//! Loads at rest and natural modes: solve, sum up, write.
+//! Loads at rest, natural modes and buckling: solve, sum up, write.
 
 use super::folder::{begin_run, keep_scene};
-use super::{Follow, Found, ModesFound, Options, Part, StaticFound};
-use crate::analyses::{modes, statics};
+use super::{BucklingFound, Follow, Found, ModesFound, Options, Part, StaticFound};
+use crate::analyses::{buckling, modes, statics};
 use crate::cost::Phase;
 use crate::error::Error;
 use crate::model::Model;
@@ -20,6 +20,12 @@ pub(super) fn modes(model: &Model, count: usize, options: &Options, follow: &mut
     let solution = modes::solve(model, count, options.threads).inspect_err(|_| follow.failed(&model.warnings))?;
     let (summary, phases) = (output::modes::ModesSummary::new(model, &solution), solution.phases.clone());
     hand_over(model, Found::Modes(Box::new(ModesFound { solution, summary })), &phases, options, follow)
+}
+
+pub(super) fn buckling(model: &Model, count: usize, options: &Options, follow: &mut dyn Follow) -> Result<Part, Error> {
+    let solution = buckling::solve(model, count, options.threads).inspect_err(|_| follow.failed(&model.warnings))?;
+    let (summary, phases) = (output::buckling::BucklingSummary::new(model, &solution), solution.phases.clone());
+    hand_over(model, Found::Buckling(Box::new(BucklingFound { solution, summary })), &phases, options, follow)
 }
 
 fn hand_over(
@@ -50,6 +56,10 @@ fn write(dir: &OutputDir, model: &Model, found: &Found) -> Result<Option<Phase>,
         Found::Modes(own) => {
             output::modes::write(dir, model, &own.solution, &own.summary)?;
             fields::write_modes(dir, model, &own.solution)
+        }
+        Found::Buckling(own) => {
+            output::buckling::write(dir, model, &own.solution, &own.summary)?;
+            fields::write_buckling(dir, model, &own.solution)
         }
         // A march writes as it goes on.
         Found::Impact(_) => Ok(None),

@@ -121,6 +121,7 @@ impl Builder<'_> {
         let weighs = match &self.scene.analysis {
             Analysis::Static(loads) => loads.iter().any(|load| matches!(load.kind, LoadKind::Gravity { .. })),
             Analysis::Impact(_) | Analysis::Modes { .. } => true,
+            Analysis::Buckling { .. } => false,
         };
         let mut weights = materials.to_vec();
         if weighs {

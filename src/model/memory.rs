@@ -33,7 +33,7 @@ impl Model {
                 Some(vectors) => (vectors, Some(impact.strikes.len())),
                 None => (2, None),
             },
-            Plan::Modes { count } => (2 * count, None),
+            Plan::Modes { count } | Plan::Buckling { count } => (2 * count, None),
             Plan::Static { .. } => (2, None),
         };
         let kept = match &self.plan {

@@ -235,6 +235,7 @@ impl Model {
                 Plan::Static { forces }
             }
             Analysis::Modes { count } => Plan::Modes { count: *count },
+            Analysis::Buckling { count } => Plan::Buckling { count: *count },
         };
         let centres: Vec<_> = match &plan {
             Plan::Impact(impact) => impact.strikes.iter().map(|strike| strike.centre).collect(),
@@ -353,7 +354,7 @@ impl Model {
     pub fn impactors(&self) -> &[scene::ImpactorSpec] {
         match &self.plan {
             Plan::Impact(impact) => &impact.spec.impactors,
-            Plan::Static { .. } | Plan::Modes { .. } => &[],
+            Plan::Static { .. } | Plan::Modes { .. } | Plan::Buckling { .. } => &[],
         }
     }
 

@@ -1,4 +1,4 @@
-//! What a model is for: an impact, loads at rest, natural modes.
+//! What a model is for: an impact, loads at rest, natural modes, buckling.
 
 use super::builder::Builder;
 use crate::effect::Effects;
@@ -35,6 +35,11 @@ pub enum Plan {
     },
     /// The lowest natural frequencies.
     Modes {
+        /// How many.
+        count: usize,
+    },
+    /// The factors on the preload that buckle the plate.
+    Buckling {
         /// How many.
         count: usize,
     },

@@ -13,7 +13,7 @@ use fem_core::load;
 use fem_core::mesh::Group;
 use fem_core::plate::Plate;
 use fem_core::support::{FreeMotions, Levels, turned};
-use fem_io::scene::{Located, SceneError, Support, SupportArea};
+use fem_io::scene::{Analysis, Located, Place, SceneError, Support, SupportArea};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Sine of the angle between two edges of one line.
@@ -34,7 +34,13 @@ impl Builder<'_> {
         held: &Held<'_>,
         effects: &mut Effects,
     ) -> Result<(), Error> {
-        let Some(edges) = effects.edges().map(<[EdgeLoad]>::to_vec) else { return Ok(()) };
+        let buckles = matches!(self.scene.analysis, Analysis::Buckling { .. });
+        let Some(edges) = effects.edges().map(<[EdgeLoad]>::to_vec) else {
+            let help = "write, for example: effects = { preload = [{ group = \"x-max\", force = \"-1 N/mm\" }] }";
+            let missing =
+                || self.scene.source.error_at(&Place::TOP, "`effects.preload` is missing: nothing buckles", help);
+            return if buckles { Err(missing().into()) } else { Ok(()) };
+        };
         let normals = outer_normals(plate);
         let mut named = BTreeSet::new();
         let mut forces = vec![0.0; plate.ndof()];
@@ -83,6 +89,10 @@ impl Builder<'_> {
         if !loaded.is_empty() && constraints.implies(&loaded) {
             let help = "name the edges beside it too: force = \"0 N/mm\" frees them while others are loaded";
             return Err(self.error(first, "the supports take all of the preload: it moves nothing", help).into());
+        }
+        let moved = edges.iter().any(|one| one.displacement.is_some_and(|by| by != 0.0));
+        if buckles && loaded.is_empty() && !moved {
+            return Err(self.error(first, "the preload is zero: nothing buckles", "give it a force").into());
         }
         effects.on_edges(&Gripped { constraints, forces });
         Ok(())

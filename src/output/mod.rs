@@ -1,5 +1,6 @@
 //! What an analysis found, for people and machines: summaries, tables, fields, pictures, the page of a folder of results.
 
+pub mod buckling;
 pub mod damage;
 mod delamination;
 pub(crate) mod fields;

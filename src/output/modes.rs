@@ -5,7 +5,7 @@ use crate::analyses::modes::ModesSolution;
 use crate::cost::Cost;
 use crate::error::Error;
 use crate::model::Model;
-use crate::output::shapes::mode_shapes;
+use crate::output::shapes::shapes;
 use crate::words::{append, append_symmetry};
 use fem_core::plugin::Dimension;
 use fem_io::files::OutputDir;
@@ -96,7 +96,9 @@ pub fn write(dir: &OutputDir, model: &Model, solution: &ModesSolution, summary: 
     let each = solution.modes.omega.iter().zip(&solution.effective_masses).enumerate();
     tables::write_columns(dir, "modes.csv", &header, each.map(row))?;
     if model.output.plots && !solution.modes.omega.is_empty() {
-        plot::map_plot(&mode_shapes(model, solution))?.write(dir, "mode_shapes")?;
+        let each = solution.modes.omega.iter().enumerate();
+        let titles = each.map(|(k, omega)| format!("mode {}: {}", k + 1, Dimension::FREQUENCY.of(omega / TAU)));
+        plot::map_plot(&shapes(model, &solution.modes.shapes, titles))?.write(dir, "mode_shapes")?;
     }
     Ok(())
 }

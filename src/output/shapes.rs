@@ -1,25 +1,18 @@
-//! Pictures of natural modes.
+//! Pictures of natural modes and of buckling.
 
-use crate::analyses::modes::ModesSolution;
 use crate::analyses::statics::dof_of;
 use crate::model::Model;
 use crate::output::outlines::{drawn, outlines};
-use fem_core::plugin::Dimension;
 use fem_io::plot::{Axis, Fill, MapCell, MapPlot, Panel};
-use std::f64::consts::TAU;
 
 /// Most modes on a picture.
 const SHEET: usize = 12;
 
-/// The lowest modes in plan: cells by their deflection, from white, down, to dark, up.
-pub(super) fn mode_shapes(model: &Model, solution: &ModesSolution) -> MapPlot {
-    let shapes = solution.modes.shapes.chunks_exact(model.constraints.ndof().max(1));
-    let each = shapes.zip(&solution.modes.omega).take(SHEET).enumerate();
-    let panels = each.map(|(k, (shape, omega))| Panel {
-        title: format!("mode {}: {}", k + 1, Dimension::FREQUENCY.of(omega / TAU)),
-        cells: cells(model, shape),
-        ..Panel::default()
-    });
+/// The first of `shapes` in plan, each under its title: cells by their deflection, from white, down, to dark, up.
+pub(super) fn shapes(model: &Model, shapes: &[f64], titles: impl Iterator<Item = String>) -> MapPlot {
+    let shapes = shapes.chunks_exact(model.constraints.ndof().max(1));
+    let each = shapes.zip(titles).take(SHEET);
+    let panels = each.map(|(shape, title)| Panel { title, cells: cells(model, shape), ..Panel::default() });
     MapPlot {
         title: model.origin.title.clone(),
         x: Axis::linear("x", "mm"),

@@ -132,6 +132,12 @@ pub(super) fn of_modes(omega: &[f64]) -> Vec<Figure> {
     omega.iter().enumerate().map(frequency).collect()
 }
 
+/// Of buckling.
+pub(super) fn of_buckling(factors: &[f64]) -> Vec<Figure> {
+    let figure = |(k, factor): (usize, &f64)| Figure::new(format!("buckling-factor {}", k + 1), *factor, true);
+    factors.iter().enumerate().map(figure).collect()
+}
+
 /// Names of what accuracy is asked of, among those that the scene as it is has found: of what is 0 there, no error is a
 /// part.
 ///

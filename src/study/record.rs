@@ -51,6 +51,11 @@ impl RunRecord {
                 let size = Size { factor_entries: solution.factor_entries, ..model.size(&solution.counters) };
                 (size, quantity::of_statics(&scene, &model, own)?, None)
             }
+            Found::Buckling(own) => {
+                let solution = &own.solution;
+                let size = Size { factor_entries: solution.factor_entries, ..model.size(&solution.counters) };
+                (size, quantity::of_buckling(&solution.buckling.factors), None)
+            }
             Found::Modes(own) => {
                 let solution = &own.solution;
                 let size = Size { factor_entries: solution.factor_entries, ..model.size(&solution.counters) };

@@ -86,7 +86,7 @@ pub(super) fn quadrature(scene: &Scene, registry: &Registry) -> Vec<Level> {
 }
 
 pub(super) fn mass(scene: &Scene, registry: &Registry) -> Vec<Level> {
-    let inert = !matches!(scene.analysis, Analysis::Static(_));
+    let inert = !matches!(scene.analysis, Analysis::Static(_) | Analysis::Buckling { .. });
     let info = registry.info(Kind::Element, &scene.element.name.value).filter(|_| inert);
     let Some(row) = info.and_then(|info| info.params_of(Role::Inertia).next()) else { return Vec::new() };
     let ParamForm::Word(words) = row.form else { return Vec::new() };

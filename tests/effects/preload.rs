@@ -1,7 +1,7 @@
 //! Loads in the plane before an impact.
 
 use super::{EDGES, Struck, deflection, difference, force, said};
-use crate::support::{impact_of, root};
+use crate::support::{impact_of, plate, root};
 use fem::core::tensor::Stress6;
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
@@ -114,4 +114,39 @@ fn what_it_cannot_be_is_refused_by_name() {
     let scene = scene::parse(&text, &root().join("scene.toml")).unwrap();
     let free = said(Model::new(scene, &Registry::standard()).expect_err("it is free"));
     assert!(free.contains("supports leave the plate free"), "{free}");
+}
+
+#[test]
+fn buckling_is_written_and_a_scene_without_a_preload_refused() {
+    let text = Struck::new(COMPRESSED).text();
+    let dropped = ["impactor", "contact", "reduction", "march"];
+    let kept = text.lines().filter(|line| !dropped.iter().any(|key| line.trim_start().starts_with(key)));
+    let buckling = format!(
+        "analysis = 'buckling'\nbuckling = {{ count = 3 }}\n{}\n[output]\nfields = true\n",
+        kept.collect::<Vec<_>>().join("\n")
+    );
+    let case = plate().text(&buckling);
+    let printed = case.fem("run", &["--out", "out"]).good().stdout;
+    let factors = case.summary("out")["load_factors"].as_array().unwrap().clone();
+    assert!(factors.len() == 3 && printed.contains("load factor"), "{printed}");
+    assert!(factors.windows(2).all(|pair| pair[0].as_f64().unwrap().abs() <= pair[1].as_f64().unwrap().abs()));
+    let (header, rows) = case.table("out/buckling.csv");
+    assert_eq!((header, rows.len()), (vec!["shape".to_owned(), "load_factor".to_owned()], 3));
+    let names = case.names("out/fields");
+    assert!(names.iter().any(|name| name == "plate-0003.vtu"), "{names:?}");
+    let frame = std::fs::read(case.folder().join("out/fields/plate-0001.vtu")).unwrap();
+    assert!(String::from_utf8_lossy(&frame).contains("load_factor"));
+    // The plate is refused at that factor, and at none below.
+    let at = |share: f64| {
+        let force = format!("'{} N/mm'", -8.0 * share * factors[0].as_f64().unwrap());
+        let effects = COMPRESSED.replace("'-8 N/mm'", &force);
+        let scene = scene::parse(&text.replace(COMPRESSED, &effects), &root().join("scene.toml")).unwrap();
+        impact_of(scene).map(|_| ())
+    };
+    assert!(at(0.99).is_ok());
+    let beyond = said(at(1.25).expect_err("it buckles"));
+    assert!(beyond.contains("at 0.8000 of it"), "{beyond}");
+    let none = plate().text(&buckling.replace(COMPRESSED, "preload = 'off'"));
+    let refused = none.fem("check", &[]);
+    assert!(refused.stderr.contains("`effects.preload` is missing"), "{}", refused.stderr);
 }

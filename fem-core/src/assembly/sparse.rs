@@ -127,6 +127,12 @@ impl SparseStructure {
         self.factored = Factored::Nothing;
     }
 
+    /// K ← K + `scale` A, A on the pattern of K.
+    pub fn add(&mut self, scale: f64, a: &Symmetric) {
+        self.k.add(scale, a);
+        self.factored = Factored::Nothing;
+    }
+
     /// Whether a load accelerates the structure as a whole.
     pub fn moves_under(&self, load: &Functional) -> bool {
         self.released.moves_under(load, &self.k)

@@ -179,6 +179,11 @@ pub enum Analysis {
         /// How many.
         count: usize,
     },
+    /// The factors on the preload that are nearest to zero and buckle the plate.
+    Buckling {
+        /// How many.
+        count: usize,
+    },
 }
 
 /// Natural frequencies unless a scene says how many.
@@ -186,6 +191,12 @@ pub const DEFAULT_MODES: usize = 10;
 
 /// What delaminations that grow lay over the preset.
 const GROWTH: &str = include_str!("presets/growth.toml");
+
+/// Load factors of buckling unless a scene says how many.
+const DEFAULT_FACTORS: usize = 4;
+
+const BUCKLING: Keys =
+    &[key("count", Form::Count(1), "4", "how many of the load factors nearest to zero").default("4")];
 
 const MODES: Keys = &[key("count", Form::Count(1), "10", "how many of the lowest modes").default("10")];
 
@@ -377,9 +388,10 @@ fn whole(laminates: &[LaminateSpec]) -> &LaminateSpec {
 /// Keys that an analysis does not use; presets hold them for others.
 fn list_unused_keys(analysis: &str) -> &'static [&'static str] {
     match analysis {
-        "static" => &["impactor", "contact", "reduction", "march", "modes"],
-        "modes" => &["impactor", "contact", "reduction", "march", "load", "profile"],
-        _ => &["load", "modes", "profile"],
+        "static" => &["impactor", "contact", "reduction", "march", "modes", "buckling"],
+        "modes" => &["impactor", "contact", "reduction", "march", "load", "profile", "buckling"],
+        "buckling" => &["impactor", "contact", "reduction", "march", "load", "profile", "modes"],
+        _ => &["load", "modes", "buckling", "profile"],
     }
 }
 
@@ -388,7 +400,7 @@ fn read_analysis(root: &Reader<'_>, struck: &tip::Struck<'_>) -> Result<Analysis
     let name = ANALYSES[which as usize].0;
     let mut stray = list_unused_keys(name).iter().filter_map(|key| root.optional(key));
     if let Some(field) = stray.find(|field| field.place().origin != Origin::Preset) {
-        let help = "leave it out, or choose another `analysis`: impact, static, modes";
+        let help = "leave it out, or choose another `analysis`: impact, static, modes, buckling";
         return Err(field.error(format!("means nothing in the analysis `{name}`"), help));
     }
     Ok(match which {
@@ -396,14 +408,16 @@ fn read_analysis(root: &Reader<'_>, struck: &tip::Struck<'_>) -> Result<Analysis
         Which::Static => {
             Analysis::Static(root.optional("load").map_or(Ok(Vec::new()), |field| load::read_all(&field))?)
         }
-        Which::Modes => {
-            let count = root.optional("modes").map_or(Ok(DEFAULT_MODES), |field| {
-                field.table(MODES)?.optional("count").map_or(Ok(DEFAULT_MODES), |field| field.count())
-            })?;
-            Analysis::Modes { count }
-        }
+        Which::Modes => Analysis::Modes { count: read_count(root, "modes", MODES, DEFAULT_MODES)? },
+        Which::Buckling => Analysis::Buckling { count: read_count(root, "buckling", BUCKLING, DEFAULT_FACTORS)? },
         Which::Impact => Analysis::Impact(Box::new(run::read_impact(root, struck)?)),
     })
+}
+
+/// How many the table `key` asks for.
+fn read_count(root: &Reader<'_>, key: &str, keys: Keys, default: usize) -> Result<usize, SceneError> {
+    let Some(field) = root.optional(key) else { return Ok(default) };
+    field.table(keys)?.optional("count").map_or(Ok(default), |field| field.count())
 }
 
 /// `shared` where neither scene nor preset says.

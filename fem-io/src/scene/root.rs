@@ -1,7 +1,7 @@
 //! The outermost table of a scene.
 
 use super::mesh::MESHES;
-use super::{Fidelity, MODES, delamination, laminate, load, run, study, substructures, support, sweep};
+use super::{BUCKLING, Fidelity, MODES, delamination, laminate, load, run, study, substructures, support, sweep};
 use crate::document::keys::{Form, Keys, key, words};
 use crate::materials::constants;
 use fem_core::plate::ZDerivatives;
@@ -14,10 +14,11 @@ pub(super) enum Which {
     Impact,
     Static,
     Modes,
+    Buckling,
 }
 
-pub(super) const ANALYSES: [(&str, Which); 3] =
-    [("impact", Which::Impact), ("static", Which::Static), ("modes", Which::Modes)];
+pub(super) const ANALYSES: [(&str, Which); 4] =
+    [("impact", Which::Impact), ("static", Which::Static), ("modes", Which::Modes), ("buckling", Which::Buckling)];
 pub(super) const Z_DERIVATIVES: [(&str, ZDerivatives); 2] =
     [("shared", ZDerivatives::Shared), ("layer-wise", ZDerivatives::LayerWise)];
 
@@ -118,6 +119,7 @@ pub(super) const KEYS: Keys = &[
     ),
     key("load", Form::List(&Form::OneOf(load::LOADS)), r#"[{ pressure = "1 MPa", face = "top" }]"#, "loads at rest"),
     key("modes", Form::Table(MODES), "{ count = 10 }", "natural modes that are found").default("{}"),
+    key("buckling", Form::Table(BUCKLING), "{ count = 4 }", "load factors of the preload that are found").default("{}"),
     key(
         "profile",
         Form::List(&Form::Table(load::PROFILE)),

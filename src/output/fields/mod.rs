@@ -23,7 +23,7 @@ pub(crate) use march::MarchFields;
 pub(crate) use size::{Expected, expected};
 
 use crate::analyses::impact::Maximum;
-use crate::analyses::{modes, statics, stress};
+use crate::analyses::{buckling, modes, statics, stress};
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::Model;
@@ -52,8 +52,8 @@ struct State<'a> {
     velocities: Option<&'a [f64]>,
     /// States of plies that follow laws; without them plies are linear elastic.
     points: Option<&'a [f64]>,
-    /// Of a natural mode, Hz.
-    frequency: Option<f64>,
+    /// Of a natural mode its frequency, Hz, of buckling its load factor, by the name of the field.
+    figure: Option<(&'static str, f64)>,
     /// In a march what the criteria have found up to now.
     maxima: Option<&'a [Maximum]>,
 }
@@ -61,7 +61,7 @@ struct State<'a> {
 impl<'a> State<'a> {
     /// Displacements alone.
     fn of(displacements: &'a [f64]) -> Self {
-        Self { displacements, velocities: None, points: None, frequency: None, maxima: None }
+        Self { displacements, velocities: None, points: None, figure: None, maxima: None }
     }
 }
 
@@ -114,7 +114,7 @@ struct Waiting {
     displacements: Vec<f64>,
     velocities: Option<Vec<f64>>,
     points: Option<Vec<f64>>,
-    frequency: Option<f64>,
+    figure: Option<(&'static str, f64)>,
     /// What the criteria had found, for `plies` and for `interfaces`.
     so_far: Vec<(FieldSeries, Vec<Array>)>,
 }
@@ -138,12 +138,12 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// As [`Writer::flush`].
     fn take(&mut self, number: usize, state: State<'_>) -> Result<(), Error> {
-        let State { displacements, frequency, maxima, .. } = state;
+        let State { displacements, figure, maxima, .. } = state;
         let [velocities, points] = [state.velocities, state.points].map(|values| values.map(<[f64]>::to_vec));
         let displacements = displacements.to_vec();
         let Layout { plate, plies } = &self.layout;
         let so_far = plies.as_ref().zip(maxima).map_or_else(Vec::new, |(plies, maxima)| plies.so_far(maxima));
-        self.waiting.push(Waiting { number, displacements, velocities, points, frequency, so_far });
+        self.waiting.push(Waiting { number, displacements, velocities, points, figure, so_far });
         let of_frame =
             plate.as_ref().map_or(0, Plate::bytes_of_frame) + plies.as_ref().map_or(0, Plies::bytes_of_frame);
         let most = (STORE / of_frame.max(1)).clamp(1, BATCH);
@@ -162,9 +162,9 @@ impl<'a> Writer<'a> {
     fn flush(&mut self) -> Result<(), Error> {
         let waiting = std::mem::take(&mut self.waiting);
         let Self { layout: Layout { plate, plies }, dir, times, .. } = self;
-        let frames = waiting.iter().map(|Waiting { number, displacements, velocities, points, frequency, so_far }| {
+        let frames = waiting.iter().map(|Waiting { number, displacements, velocities, points, figure, so_far }| {
             let [velocities, points] = [velocities, points].map(Option::as_deref);
-            let state = State { displacements, velocities, points, frequency: *frequency, maxima: None };
+            let state = State { displacements, velocities, points, figure: *figure, maxima: None };
             Frame { dir, times: &times[..=*number], state, so_far }
         });
         let frames: Vec<Frame<'_>> = frames.collect();
@@ -209,15 +209,37 @@ pub(crate) fn write_modes(
     model: &Model,
     solution: &modes::ModesSolution,
 ) -> Result<Option<Phase>, Error> {
-    let mut stopwatch = Stopwatch::default();
     let found = &solution.modes;
-    let numbers = (1..=found.omega.len()).map(|number| number as f64).collect();
+    write_shapes(dir, model, &found.shapes, found.omega.iter().map(|omega| ("frequency_Hz", omega / TAU)))
+}
+
+/// The same of each shape of buckling.
+///
+/// # Errors
+/// As [`write_modes`].
+pub(crate) fn write_buckling(
+    dir: &OutputDir,
+    model: &Model,
+    solution: &buckling::BucklingSolution,
+) -> Result<Option<Phase>, Error> {
+    let found = &solution.buckling;
+    write_shapes(dir, model, &found.shapes, found.factors.iter().map(|factor| ("load_factor", *factor)))
+}
+
+fn write_shapes(
+    dir: &OutputDir,
+    model: &Model,
+    shapes: &[f64],
+    figures: impl ExactSizeIterator<Item = (&'static str, f64)>,
+) -> Result<Option<Phase>, Error> {
+    let mut stopwatch = Stopwatch::default();
+    let numbers = (1..=figures.len()).map(|number| number as f64).collect();
     let Some(mut writer) = Writer::new(model, dir, numbers)? else { return Ok(None) };
     let mut u = vec![0.0; model.plate.ndof()];
-    let shapes = found.shapes.chunks_exact(model.constraints.ndof().max(1));
-    for (number, (shape, omega)) in shapes.zip(&found.omega).enumerate() {
+    let shapes = shapes.chunks_exact(model.constraints.ndof().max(1));
+    for (number, (shape, figure)) in shapes.zip(figures).enumerate() {
         model.constraints.expand(shape, &mut u);
-        writer.take(number, State { frequency: Some(omega / TAU), ..State::of(&u) })?;
+        writer.take(number, State { figure: Some(figure), ..State::of(&u) })?;
     }
     writer.flush()?;
     stopwatch.lap(PHASE);
@@ -246,7 +268,7 @@ impl Frame<'_> {
     /// Writes the file of a series, and the list of its files.
     fn write(&self, series: FieldSeries, grid: &Grid, contents: Contents<'_>) -> Result<(), Error> {
         let mut field = vec![Array::precise("TimeValue", 1, &[self.time()])];
-        field.extend(self.state.frequency.map(|frequency| Array::precise("frequency_Hz", 1, &[frequency])));
+        field.extend(self.state.figure.map(|(name, figure)| Array::precise(name, 1, &[figure])));
         grid.write(self.dir, &file(series, self.times.len()), Contents { field: &field, ..contents })?;
         self.list(series.name(), &[series])
     }

@@ -81,7 +81,7 @@ impl<'a> Plies<'a> {
         let tops = stacks.flat_map(|(layer, stack)| stack.slices.iter().map(move |s| Height { layer, q: s.q[1] }));
         let heights = [Height { layer: 0, q: -1.0 }].into_iter().chain(tops).collect();
         let lattice = Lattice::new(model, &plan.quads, 1, heights);
-        let judged = !matches!(model.plan, Plan::Modes { .. });
+        let judged = !matches!(model.plan, Plan::Modes { .. } | Plan::Buckling { .. });
         let scan = || Scan::new(model.criteria.clone(), stress::sites(&recovery), model.materials.clone());
         let residual = if judged { stress::residual(model, &recovery)? } else { Vec::new() };
         let mut sheets = Vec::new();
@@ -161,7 +161,7 @@ impl<'a> Plies<'a> {
         let indices = match self.model.plan {
             Plan::Impact(_) => 2,
             Plan::Static { .. } => 1,
-            Plan::Modes { .. } => 0,
+            Plan::Modes { .. } | Plan::Buckling { .. } => 0,
         };
         stress + indices * judged.count()
     }

@@ -84,7 +84,7 @@ impl KeyUnit {
     }
 }
 
-const HEADINGS: [(&str, &str); 9] = [
+const HEADINGS: [(&str, &str); 10] = [
     ("first_damage", "First damage of each mode, and its stress"),
     ("not_reached", "Modes that were not reached"),
     ("onsets", "How far the times of first damage are known"),
@@ -93,6 +93,7 @@ const HEADINGS: [(&str, &str); 9] = [
     ("modes", "Modes followed"),
     ("work", "Work"),
     ("frequencies_Hz", "Frequencies"),
+    ("load_factors", "Load factors of the preload"),
     ("margins", "Reserve factors"),
 ];
 

@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Pictures of a run and what they show, in the order of the page; those of profiles come after them.
-const PICTURES: [(&str, &str); 10] = [
+const PICTURES: [(&str, &str); 11] = [
     ("contact_force", "Contact force over time"),
     ("displacement", "Displacements over time"),
     ("energy", "Energies over time"),
@@ -20,6 +20,7 @@ const PICTURES: [(&str, &str); 10] = [
     ("index_history", "Failure indices at the watched places"),
     ("modal_coordinates", "Modes in the deflection"),
     ("mode_shapes", "Shapes of the lowest modes"),
+    ("buckling_shapes", "Shapes of buckling"),
     ("c_scan", "Delaminations in plan"),
     ("c_scan_times", "When it delaminated"),
     ("damage_map", "Damage in plan"),

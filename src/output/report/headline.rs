@@ -18,7 +18,8 @@ pub(super) struct Headline {
 impl Headline {
     /// `None` of results that say nothing of the kind.
     pub(super) fn new(summary: &Map<String, Value>) -> Option<Self> {
-        let first = first_damage(summary).or_else(|| margin(summary)).or_else(|| frequency(summary))?;
+        let first = first_damage(summary).or_else(|| margin(summary)).or_else(|| frequency(summary));
+        let first = first.or_else(|| load_factor(summary))?;
         let count = |key: &str| list(summary, key).len();
         let (cautions, warnings) = (count("cautions"), count("warnings"));
         let several = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
@@ -98,6 +99,12 @@ fn margin(summary: &Map<String, Value>) -> Option<String> {
 fn frequency(summary: &Map<String, Value>) -> Option<String> {
     let lowest = list(summary, "frequencies_Hz").first()?.as_f64()?;
     Some(format!("Lowest natural frequency {}", Dimension::FREQUENCY.of(lowest)))
+}
+
+/// Of buckling: the load factor nearest to zero.
+fn load_factor(summary: &Map<String, Value>) -> Option<String> {
+    let first = list(summary, "load_factors").first()?.as_f64()?;
+    Some(format!("The plate buckles at {first:.4} of the preload"))
 }
 
 #[cfg(test)]
