@@ -3,6 +3,7 @@
 use super::messages::{self, Color, MessageFormat};
 use super::progress::{Progress, ProgressForm};
 use clap::Args;
+use fem_io::results::FORMAT;
 use fem_io::tables;
 use miette::{IntoDiagnostic, miette};
 use serde::Serialize;
@@ -62,6 +63,14 @@ pub(super) struct Console {
     lost: OnceCell<io::Error>,
 }
 
+/// Results with the version of their format.
+#[derive(Serialize)]
+struct Versioned<'a, T> {
+    format: u32,
+    #[serde(flatten)]
+    data: &'a T,
+}
+
 impl Console {
     pub(super) fn new(voice: Voice) -> Self {
         Self { voice, lost: OnceCell::new() }
@@ -74,8 +83,18 @@ impl Console {
         }
     }
 
-    /// Prints results: `text` for people or `data` for programs.
+    /// Prints results: `text` for people, or `data` for programs, whose fields follow the version of the format.
     pub(super) fn show(
+        &self,
+        format: Format,
+        data: &impl Serialize,
+        text: impl FnOnce() -> String,
+    ) -> miette::Result<()> {
+        self.show_plain(format, &Versioned { format: FORMAT, data }, text)
+    }
+
+    /// The same of a list, or of what says its version itself.
+    pub(super) fn show_plain(
         &self,
         format: Format,
         data: &impl Serialize,

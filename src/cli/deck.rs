@@ -194,7 +194,7 @@ pub(super) fn deck(command: &Command, console: &Console) -> miette::Result<ExitC
 fn show(arguments: &NamedArguments, console: &Console) -> miette::Result<ExitCode> {
     let project = Project::open(&arguments.project).map_err(Error::from)?;
     let shown = decks::show(&project, &arguments.name)?;
-    console.show(arguments.format, &shown, || shown.iter().map(described).collect())?;
+    console.show_plain(arguments.format, &shown, || shown.iter().map(described).collect())?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -234,7 +234,7 @@ fn export(ExportArguments { named, out }: &ExportArguments, console: &Console) -
 fn check(arguments: &CheckArguments, console: &Console) -> miette::Result<ExitCode> {
     let checked = decks::check(&arguments.folder)?;
     let good = checked.iter().all(|deck| deck.error.is_none());
-    console.show(arguments.format, &checked, || {
+    console.show_plain(arguments.format, &checked, || {
         let mut text = String::new();
         for deck in &checked {
             let what = deck.error.as_ref().map_or_else(

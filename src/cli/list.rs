@@ -94,7 +94,7 @@ pub(super) fn list(registry: &Registry, arguments: &Arguments, console: &Console
             kinds.flat_map(|kind| registry.choices(*kind)).map(entry).collect()
         }
     };
-    console.show(arguments.format, &entries, || entries.iter().map(Entry::text).collect())?;
+    console.show_plain(arguments.format, &entries, || entries.iter().map(Entry::text).collect())?;
     Ok(ExitCode::SUCCESS)
 }
 

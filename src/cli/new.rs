@@ -115,7 +115,7 @@ struct Written<'a> {
 pub(super) fn new(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let Some(folder) = &arguments.folder else {
         let line = |t: &Template| format!("{:<20} {}\n", t.name, t.summary);
-        console.show(arguments.format, &TEMPLATES, || TEMPLATES.iter().map(line).collect())?;
+        console.show_plain(arguments.format, &TEMPLATES, || TEMPLATES.iter().map(line).collect())?;
         return Ok(ExitCode::SUCCESS);
     };
     let asked = &arguments.template;

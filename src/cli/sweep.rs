@@ -138,7 +138,7 @@ pub(super) fn sweep(registry: &Registry, arguments: &Arguments, console: &Consol
         sweep::write_pictures(&dir, &scene.title, &sweep, &rows, record.scatter.as_ref())?;
     }
     dir.remove_older().map_err(Error::from)?;
-    console.show(arguments.format, &record, || text(&scene, &record, &rows, &dir))?;
+    console.show_plain(arguments.format, &record, || text(&scene, &record, &rows, &dir))?;
     let expected = if arguments.gather { sweep.design.count } else { cases.len() };
     if let Some(signal) = signals.received() {
         console::tell(&format!(

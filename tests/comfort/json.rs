@@ -5,7 +5,11 @@ use serde_json::Value;
 
 fn document(done: Done) -> Value {
     let Done { stdout, .. } = done.good();
-    serde_json::from_str(&stdout).unwrap_or_else(|why| panic!("{why}: {stdout}"))
+    let data: Value = serde_json::from_str(&stdout).unwrap_or_else(|why| panic!("{why}: {stdout}"));
+    let versions = stdout.lines().filter(|line| line.starts_with("  \"format\":")).count();
+    let version = data.get("format").and_then(Value::as_u64);
+    assert_eq!((versions, version), if data.is_array() { (0, None) } else { (1, Some(1)) }, "{stdout}");
+    data
 }
 
 /// The same scene in another analysis.
