@@ -244,9 +244,12 @@ fn nonlinear(
     stopwatch: &mut Stopwatch,
 ) -> Result<Found, Error> {
     let Model { plate, element, constraints, .. } = model;
-    let (symbolic, _) = model.analyse(Arc::new(pattern(plate, constraints)))?;
+    let pattern = Arc::new(pattern(plate, constraints));
+    let geometric = model.effects.geometric(&model.body(), &pattern)?;
+    let (symbolic, _) = model.analyse(pattern)?;
     let factor_entries = symbolic.entries();
     let mut large = LargePlate::new(plate, element.clone(), constraints).ok_or(Error::SmallOnly)?;
+    geometric.into_iter().for_each(|geometric| large.carry(geometric));
     // A plate that is hot and has not moved is pressed in its plane more than it bears.
     let start = match model.effects.nature().strained {
         true => linear(model, f, threads, counters, stopwatch)?.independent,

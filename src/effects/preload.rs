@@ -1,7 +1,9 @@
 //! Loads in the plane of the plate that act before all else.
 
 use super::OFF;
-use crate::effect::{Body, EdgeLoad, Effect, EffectInfo, EffectPlugin, Exclusion, Facts, Feature, Gripped, Wish};
+use crate::effect::{
+    Body, EdgeLoad, Effect, EffectInfo, EffectPlugin, Exclusion, Facts, Feature, Gripped, Marched, Wish,
+};
 use crate::error::Error;
 use crate::forecast::Demand;
 use fem_core::assembly::{Symmetric, add_geometric_stiffness, displacements_at_rest};
@@ -120,11 +122,6 @@ impl Effect for Preload {
                 "leave it out, or the `law` of the material",
             ),
             Exclusion::new(
-                Feature::Effect("membrane"),
-                "a preload is about small deflections yet, and `effects.membrane` about large ones: the tension of both does not add up",
-                "leave one of `effects.membrane` and `effects.preload` out",
-            ),
-            Exclusion::new(
                 Feature::EquilibriumProfile,
                 "`equilibrium` integrates stresses of a plate without a preload",
                 "leave `equilibrium` out, or `effects.preload`",
@@ -165,6 +162,16 @@ impl Effect for Preload {
     fn add_geometric(&self, body: &Body<'_>, sum: &mut Symmetric) -> Result<(), Error> {
         let u = self.displacements(body)?;
         Ok(add_geometric_stiffness(body.plate, body.element, body.constraints, u, sum)?)
+    }
+
+    /// Large deflections of a full plate have forces of their own; a reduced one has its K.
+    fn on_structure(&mut self, body: &Body<'_>, plate: &mut Marched) -> Result<(), Error> {
+        if plate.reduced.is_none() {
+            let mut geometric = Symmetric::zero(plate.full.matrices().0.pattern().clone());
+            self.add_geometric(body, &mut geometric)?;
+            plate.full.carry(geometric);
+        }
+        Ok(())
     }
 
     fn displaced(&self, body: &Body<'_>) -> Result<Option<Vec<f64>>, Error> {

@@ -212,6 +212,42 @@ fn a_strip_buckles_as_euler_says() {
     }
 }
 
+/// A strip between ends that do not move, simply supported, under a pressure and a tension N₀ before it: with S = N₀ + E h ∫ ½ w′² dx/L
+/// its deflection is that of a beam under S.
+#[test]
+fn large_deflections_of_a_tense_strip_are_those_of_a_beam_under_all_of_its_tension() {
+    let (length, h, e, q, tense) = (0.2, 1e-3_f64, 70e9, 5e4, 5e4);
+    let d = e * h.powi(3) / 12.0;
+    // Slopes and the deflection in the middle, of a beam from −L/2 to L/2 under the tension s.
+    let beam = |s: f64| {
+        let (k, half) = ((s / d).sqrt(), 0.5 * length);
+        let slope = |x: f64| q / s * (x - (k * x).sinh() / (k * (k * half).cosh()));
+        let steps = 2000;
+        let stretch = (0..steps).map(|i| slope(half * (f64::from(i) + 0.5) / f64::from(steps)).powi(2)).sum::<f64>();
+        let w = q * length * length / (8.0 * s) - q / (s * k * k) * (1.0 - (k * half).cosh().recip());
+        (0.5 * stretch / f64::from(steps), w)
+    };
+    let (mut low, mut high) = (tense, 100.0 * tense);
+    for _ in 0..100 {
+        let s = 0.5 * (low + high);
+        if tense + e * h * beam(s).0 > s { low = s } else { high = s }
+    }
+    let (tension, exact) = (low, beam(low).1);
+    assert!(tension > 1.5 * tense, "both count: {tension}");
+    let strip = Plate::new(&isotropic(70.0, 0.3, 2.7), "[0_2]", 500.0 * h, vec![1, 1])
+        .element("kind = 'webster-beam'")
+        .rectangle([500.0 * length, 10.0], [20, 1])
+        .sides([Side::Free, Symmetric, Side::Free, Side::Free])
+        .pressure(&format!("{}", 1e-6 * q))
+        .probe([500.0 * length, 5.0])
+        .with("[[support]]\ngroup = 'x-min'\nkind = 'hinged'\n")
+        .with(&format!("[effects]\nmembrane = 'on'\npreload = [{{ group = 'x-min', force = '{tense} N/m' }}]"));
+    let solution = strip.solve();
+    let profile = &solution.profiles[0];
+    let off = profile[profile.len() / 2].displacement[2].abs() / exact - 1.0;
+    assert!(off.abs() < CLOSE, "{off:.2e} of {exact:e}, S = {tension}");
+}
+
 #[test]
 fn turned_and_scaled_plates_have_the_same_factors() {
     let plies = |plies: &str, load| Plate { plies: plies.into(), ..pressed(SOLID, load, [Symmetric; 2]) };

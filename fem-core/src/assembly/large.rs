@@ -18,6 +18,8 @@ pub struct LargePlate {
     constraints: Constraints,
     /// Cells, and how many each stands for, with their unknowns.
     cells: Vec<(usize, f64, CellMap)>,
+    /// Geometric stiffness of stresses at rest, if there are some.
+    preload: Option<Symmetric>,
     /// Displacements before elimination.
     all: Vec<f64>,
     work: CellArrays,
@@ -49,10 +51,16 @@ impl LargePlate {
             plate: plate.clone(),
             element,
             constraints: constraints.clone(),
+            preload: None,
             all: vec![0.0; plate.ndof()],
             integrated: 0,
             work: CellArrays::default(),
         })
+    }
+
+    /// Gives the plate stresses at rest, whose forces are in balance there, by their geometric stiffness on the pattern of K.
+    pub fn carry(&mut self, geometric: Symmetric) {
+        self.preload = Some(geometric);
     }
 
     /// Number of independent unknowns.
@@ -81,7 +89,7 @@ impl LargePlate {
         force: &mut [f64],
         mut tangent: Option<&mut Symmetric>,
     ) -> Result<f64, AssemblyError> {
-        let Self { plate, element, constraints, cells, all, work, integrated } = self;
+        let Self { plate, element, constraints, cells, preload, all, work, integrated } = self;
         *integrated += cells.len() as u64;
         constraints.expand(u, all);
         force.fill(0.0);
@@ -106,6 +114,13 @@ impl LargePlate {
             if let Some(tangent) = &mut tangent {
                 map.scatter(&work.tangent, *weight, tangent);
             }
+        }
+        if let Some(geometric) = preload {
+            let mut turned = vec![0.0; u.len()];
+            geometric.add_product(1.0, u, &mut turned);
+            force.iter_mut().zip(&turned).for_each(|(force, more)| *force += more);
+            energy += 0.5 * u.iter().zip(&turned).map(|(u, f)| u * f).sum::<f64>();
+            tangent.iter_mut().for_each(|tangent| tangent.add(1.0, geometric));
         }
         Ok(energy)
     }

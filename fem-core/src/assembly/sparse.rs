@@ -110,6 +110,13 @@ impl SparseStructure {
         self.beyond = large.map(|large| Beyond::Large(Box::new(large)));
     }
 
+    /// Gives large deflections, where the structure has them, the `geometric` stiffness of stresses at rest, which its K holds.
+    pub fn carry(&mut self, geometric: Symmetric) {
+        if let Some(Beyond::Large(large)) = &mut self.beyond {
+            large.carry(geometric);
+        }
+    }
+
     /// Gives the structure the internal forces of plies that follow laws; its K is their tangent before anything has happened.
     pub fn follow(&mut self, laws: LawPlate) {
         self.beyond = Some(Beyond::Laws(Box::new(laws)));
