@@ -130,6 +130,17 @@ fn the_tables_are_those_of_the_registry() {
 }
 
 /// The book explains whatever `check_element` and the matrices may say, and nothing that they do not.
+/// Who cites it, and who reads what changed, finds the version that is built, and one date.
+#[test]
+fn the_version_is_the_same_everywhere() {
+    let version = env!("CARGO_PKG_VERSION");
+    let citation = fs::read_to_string(root().join("CITATION.cff")).unwrap();
+    assert!(citation.contains(&format!("\nversion: {version}\n")), "{citation}");
+    let date = citation.split_once("\ndate-released: ").and_then(|(_, rest)| rest.lines().next()).unwrap();
+    let changes = fs::read_to_string(root().join("CHANGELOG.md")).unwrap();
+    assert!(changes.contains(&format!("\n## [{version}] - {date}\n")), "{version}, {date}");
+}
+
 #[test]
 fn the_messages_about_elements_are_explained() {
     let read = |file: &str| fs::read_to_string(root().join(file)).unwrap().replace("\r\n", "\n");

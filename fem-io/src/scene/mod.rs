@@ -255,7 +255,8 @@ pub fn read_words(path: &Path, keys: &[(String, String)]) -> Result<Scene, Scene
 fn read_text(path: &Path) -> Result<String, SceneError> {
     crate::document::source::read_text(path).map_err(|why| {
         let message = format!("cannot read the scene `{}`: {why}", path.display());
-        Arc::new(SceneSource::new(path, "", LIBRARY)).error(message, "")
+        Arc::new(SceneSource::new(path, "", LIBRARY))
+            .error(message, "name the file of a scene; `fem new FOLDER` writes one to begin with")
     })
 }
 
