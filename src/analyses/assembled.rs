@@ -134,7 +134,7 @@ pub fn structure(
     }
     assembled.structure.add(-1.0, &geometric);
     let found = factors(&mut assembled.structure, &geometric, FACTORS)?.factors;
-    let factor = found.into_iter().filter(|factor| *factor > 0.0).fold(f64::INFINITY, f64::min);
+    let factor = found.into_iter().filter(|factor| *factor > 0.0).min_by(f64::total_cmp);
     Err(Error::Buckled { factor })
 }
 

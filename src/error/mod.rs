@@ -45,11 +45,14 @@ pub enum Error {
     Solve(#[from] fem_core::structure::SolveError),
     #[error("an analysis of buckling needs `effects.preload`, and the scene has none")]
     NoPreload,
-    #[error("`effects.preload` buckles the plate: at {:.4} of it the plate has no stiffness left", factor)]
+    #[error(
+        "`effects.preload` buckles the plate{}",
+        factor.map_or_else(String::new, |factor| format!(": at {factor:.4} of it the plate has no stiffness left"))
+    )]
     #[diagnostic(help("lower the preload below that; analysis = \"buckling\" finds the load factors"))]
     Buckled {
-        /// Factor on the preload.
-        factor: f64,
+        /// Factor on the preload, where it is among those nearest to zero.
+        factor: Option<f64>,
     },
     #[error("the matrices cannot be analysed")]
     Factor(#[from] fem_core::assembly::FactorError),
