@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
+#[command(after_help = "Example: fem mesh coupon/scene.toml --picture")]
 pub(super) struct Arguments {
     /// Mesh file of gmsh (MSH 4.1), or a scene (.toml) whose mesh is meant.
     file: PathBuf,

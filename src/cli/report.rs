@@ -9,6 +9,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  fem report results/coupon --measured drop.csv\n  fem report results/coupon results/thicker"
+)]
 pub(super) struct Arguments {
     /// Folders of the results of `fem run`: report.html is written into an only one, comparison.html into the first of several.
     #[arg(required = true, value_name = "FOLDER")]

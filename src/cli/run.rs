@@ -32,7 +32,7 @@ pub(super) struct Arguments {
     /// the scene. May be given again for other keys
     #[arg(long, value_name = "KEY=VALUE", value_parser = super::assignment)]
     set: Vec<super::Assignment>,
-    /// Continue from the checkpoint in the folder of the results: a march that was stopped or killed, or one with a
+    /// Continues from the checkpoint in the folder of the results: a march that was stopped or killed, or one with a
     /// later
     /// `march.end`. The files are those of a run in one piece.
     #[arg(long)]

@@ -32,7 +32,7 @@ pub(super) struct Arguments {
     /// Writes scene.toml, the scene with the cheapest setting whose error is within this, for example 1% or 0.003
     #[arg(long, value_name = "ERROR", value_parser = scene::parse_share)]
     tolerance: Option<f64>,
-    /// Continue the study in the folder of the results; what has run there is not run again
+    /// Continues the study in the folder of the results; what has run there is not run again
     #[arg(long)]
     resume: bool,
     /// Folder of the results [default: results/<folder of the scene>-study]

@@ -49,7 +49,7 @@ pub(super) struct Arguments {
     /// Cases that are marched at a time; the table does not depend on it.
     #[arg(long, value_name = "N", default_value = "1", value_parser = super::threads)]
     threads: NonZeroUsize,
-    /// Continue the sweep in the folder of the results; cases that are there are not run again
+    /// Continues the sweep in the folder of the results; cases that are there are not run again
     #[arg(long)]
     resume: bool,
     /// Runs part K of N alone, in a folder of its own in that of the results, for another process or machine
