@@ -2,7 +2,7 @@
 
 use super::impact::{Strike, shell};
 use super::scene::Side::{self, Supported, Symmetric};
-use super::scene::{AS4, Plate, isotropic, reference};
+use super::scene::{AS4, Cells, Plate, gmsh_cells, isotropic, reference};
 use fem::analyses::buckling;
 use std::f64::consts::{PI, TAU};
 use std::num::NonZeroUsize;
@@ -161,6 +161,18 @@ fn buckling_loads_are_those_of_elasticity_and_of_first_order_theory() {
                 assert!(off.abs() < CLOSE, "{x} {y} {column} {middle:?}: {off:.2e}");
             }
         }
+    }
+}
+
+#[test]
+fn cells_of_both_shapes_and_serendipity_buckle_as_well() {
+    let lines: Vec<f64> = (0..=8).map(|i| SIDE / 16.0 * f64::from(i)).collect();
+    let mixed = gmsh_cells(&lines, &lines, 0.1, Cells::Mixed);
+    let exact = reference("preload_buckling_as4x16.csv")[0]["N_exact3d_N_per_m"];
+    for element in [SOLID.0, "kind = 'hex20'"] {
+        let plate = pressed((element, SOLID.1, SOLID.2), [-1.0, 0.0], [Symmetric; 2]).on(&mixed);
+        let off = factors(&plate, 1)[0] / exact - 1.0;
+        assert!(off.abs() < CLOSE, "{element}: {off:.2e}");
     }
 }
 
