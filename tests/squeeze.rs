@@ -64,6 +64,22 @@ fn what_is_squeezed_counts_once() {
     assert_eq!(word, struck(&plate(1e-3 * k, "")).0);
 }
 
+/// In cells far larger than the patch the plate thickens by Poisson's effect of its bending more than it is squeezed; the run says that the law
+/// stays as it is.
+#[test]
+fn cells_that_let_no_squeeze_through_are_named() {
+    let coarse = |more: &str| {
+        let text =
+            plate(1e3, more).replace("nu = 0.0", "nu = 0.3").replace("patch_side = '20 mm'", "patch_side = '1 mm'");
+        impact_of(scene::parse(&text, Path::new("scene.toml")).unwrap()).unwrap().1
+    };
+    let (plain, asked) = (coarse(""), coarse(", indentation_from = 'mid-plane'"));
+    assert!(asked.summary.impact[0].squeeze_m_N.unwrap() < 0.0);
+    assert_eq!(asked.summary.impact[0].peak_force_N, plain.summary.impact[0].peak_force_N);
+    assert!(asked.summary.cautions.iter().any(|caution| caution.contains("`indentation_from` changes nothing")));
+    assert!(plain.summary.cautions.is_empty(), "{:?}", plain.summary.cautions);
+}
+
 /// A shell has no thickness to be squeezed.
 #[test]
 fn a_shell_has_none() {

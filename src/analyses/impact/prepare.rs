@@ -302,7 +302,7 @@ fn respond(structure: &mut Separable, states: &[f64], load: &mut [f64]) -> Resul
 }
 
 /// The squeeze of every contact that asks for it per force at rest, m/N.
-fn squeezes(impact: &Impact, assembled: &mut Assembled, contacts: &[Functional]) -> Result<Vec<f64>, Error> {
+fn squeezes(impact: &Impact, assembled: &mut Assembled, contacts: &[Functional]) -> Result<Vec<Option<f64>>, Error> {
     let own = |strike: &Strike| strike.squeeze.as_ref().map_or_else(Functional::default, |w| assembled.functional(w));
     let squeezes: Vec<Functional> = impact.strikes.iter().map(own).collect();
     let structure = &mut assembled.structure;
@@ -339,7 +339,7 @@ pub(super) struct Before {
     memory: MemoryEstimate,
     softness: Option<f64>,
     /// Of each contact, m/N.
-    squeezes: Vec<f64>,
+    squeezes: Vec<Option<f64>>,
 }
 
 impl Before {

@@ -14,13 +14,14 @@ const MARGIN: f64 = 4.0;
 /// What a contact law leaves to the plate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Squeeze {
-    /// Approach of the face and the surface that the indentation counts from, per force at rest, m/N.
+    /// Approach of the face and the surface that the indentation counts from, per force at rest, m/N. It is negative where the plate thickens
+    /// under its bending by more than the cells let it be squeezed; then nothing is taken from the law.
     pub compliance: f64,
     /// Force up to which it is taken from the law, N.
     pub force_limit: f64,
 }
 
-/// What every contact squeezes per force at rest, m/N; 0 where nothing of the plate lies between the surfaces. `solve` answers a load
+/// What every contact squeezes per force at rest, m/N; `None` where nothing of the plate lies between the surfaces. `solve` answers a load
 /// on `ndof` unknowns with the displacements at rest.
 ///
 /// # Errors
@@ -30,15 +31,15 @@ pub(super) fn compliances(
     contacts: &[Functional],
     ndof: usize,
     mut solve: impl FnMut(&mut [f64]) -> Result<(), Error>,
-) -> Result<Vec<f64>, Error> {
+) -> Result<Vec<Option<f64>>, Error> {
     let compliance = |(squeeze, contact): (&Functional, &Functional)| {
         if squeeze.0.is_empty() {
-            return Ok(0.0);
+            return Ok(None);
         }
         let mut u = vec![0.0; ndof];
         contact.add_to(1.0, &mut u);
         solve(&mut u)?;
-        Ok(squeeze.of(&u))
+        Ok(Some(squeeze.of(&u)))
     };
     squeezes.iter().zip(contacts).map(compliance).collect()
 }
@@ -51,24 +52,24 @@ pub(super) fn compliances(
 pub(super) fn laws(
     model: &Model,
     impact: &Impact,
-    compliances: &[f64],
+    compliances: &[Option<f64>],
 ) -> Result<(Vec<Box<dyn ContactLaw>>, Vec<Option<Squeeze>>), Error> {
     let energy: f64 = impact.spec.impactors.iter().map(|spec| 0.5 * spec.mass * spec.velocity.powi(2)).sum();
-    let of = |((spec, strike), compliance): ((&scene::ImpactorSpec, &Strike), &f64)| {
-        // A surface that the force does not bring nearer to the face squeezes nothing.
-        if !(*compliance > 0.0) {
-            return Ok((strike.law.clone(), None));
+    let of = |((spec, strike), compliance): ((&scene::ImpactorSpec, &Strike), &Option<f64>)| {
+        let Some(compliance) = *compliance else { return Ok((strike.law.clone(), None)) };
+        if !(compliance > 0.0) {
+            return Ok((strike.law.clone(), Some(Squeeze { compliance, force_limit: f64::INFINITY })));
         }
-        let Some(law) = WithoutSqueeze::new(strike.law.clone(), *compliance, MARGIN * energy) else {
+        let Some(law) = WithoutSqueeze::new(strike.law.clone(), compliance, MARGIN * energy) else {
             let message = format!(
                 "the plate between there and the face gives {} a newton, half of what the contact law gives from the first touch on, or more: \
                  its squeeze is no part of such a law",
-                Dimension::LENGTH.of(*compliance)
+                Dimension::LENGTH.of(compliance)
             );
             let place = spec.indentation_from.as_ref().map_or(&spec.at.place, |from| &from.place);
             return Err(model.origin.source.error_at(place, message, "leave `indentation_from` out").into());
         };
-        let squeeze = Squeeze { compliance: *compliance, force_limit: law.force_limit() };
+        let squeeze = Squeeze { compliance, force_limit: law.force_limit() };
         Ok((Box::new(law) as Box<dyn ContactLaw>, Some(squeeze)))
     };
     impact.spec.impactors.iter().zip(&impact.strikes).zip(compliances).map(of).collect()

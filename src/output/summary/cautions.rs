@@ -111,10 +111,15 @@ fn rough(summary: &ImpactSummary) -> Option<String> {
         .then(|| format!("estimated errors are large: {}; `fem study` says what to refine", large.join(", ")))
 }
 
-/// A contact so stiff that what the plate gives under it was not all taken from the law.
+/// A squeeze that was not, or not all, taken from the contact law.
 fn stiff((squeeze, figures): (&Option<Squeeze>, &ImpactFigures)) -> Option<String> {
-    let limit = squeeze.as_ref()?.force_limit;
+    let Squeeze { compliance, force_limit: limit } = (*squeeze)?;
     let name = figures.name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
+    if !(compliance > 0.0) {
+        return Some(format!(
+            "nothing was taken from the contact law{name}: in these cells the plate thickens under its bending by more than the patch              squeezes it, so that `indentation_from` changes nothing; use cells of half the patch there"
+        ));
+    }
     (figures.peak_force_N > limit).then(|| {
         format!(
             "beyond {} the contact law{name} is so stiff that the plate gives more than half of what the law does: what more it gives there              counts twice (`indentation_from`)",
