@@ -265,7 +265,7 @@ class BucklingResult(Result):
         self.load_factors: NDArray[np.float64] = found["load_factors"]
         """Those nearest to zero, by size, shape (factors,); negative where the opposite load buckles the plate."""
         self.shapes: NDArray[np.float64] = found["shapes"]
-        """Shapes whose largest displacement is 1 m over the unknowns of :meth:`femlam.Scene.matrices`, shape (factors, unknowns)."""
+        """Shapes whose largest displacement is 1 m, over the unknowns of ``Scene.matrices``, shape (factors, unknowns)."""
         self.unknowns = Table({name: np.asarray(column) for name, column in found["unknowns"].items()})
         """What each unknown stands for: name, node, place."""
 
