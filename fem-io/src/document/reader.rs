@@ -223,7 +223,14 @@ impl<'a> SceneValue<'a> {
     /// As [`SceneValue::quantity`], and any other value.
     pub fn positive(&self, wanted: Dimension) -> Result<f64, SceneError> {
         let value = self.quantity(wanted)?;
-        if value > 0.0 { Ok(value) } else { Err(self.wrong("positive")) }
+        if value > 0.0 {
+            return Ok(value);
+        }
+        let got = match self.node() {
+            Node::Text(text) => format!("`{text}`"),
+            other => other.describe(),
+        };
+        Err(self.error(format!("must be positive, got {got}"), self.by_example()))
     }
 
     /// A quantity of any dimension.
