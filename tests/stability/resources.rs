@@ -14,7 +14,7 @@ pub(crate) fn cases() -> Vec<Case> {
     let foreseen = Room::Resources.case(
         "memory that is foreseen",
         "plates of 6000, 12 000 and 47 000 unknowns, reduced and in full",
-        "ratio of the estimate of `fem check` and the peak of `fem run`, the larger over the smaller",
+        "ratio of the estimate of `fem check --full` and the peak of `fem run`, the larger over the smaller",
         1.5,
         memory_foreseen,
     );

@@ -60,7 +60,7 @@ pub(super) fn cases() -> Vec<Case> {
         ),
         Room::Time.case(
             "beyond the limit, by command",
-            "`fem check` and `fem run` of a clamped strip; every integrator with a limit; 1.0001, 1.5 and 1000 of it",
+            "`fem check --full` and `fem run` of a clamped strip; every integrator with a limit; 1.0001, 1.5 and 1000 of it",
             "commands that do not refuse with line, frequency and limit, or that leave results",
             0.0,
             refused,
