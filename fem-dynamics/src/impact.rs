@@ -5,7 +5,7 @@ mod mean;
 mod newton;
 
 use crate::vector::dot;
-use fem_core::contact::{Branches, ContactHistory, ContactLaw, Indentation, indentation_of};
+use fem_core::contact::{Branches, ContactHistory, ContactLaw, Indentation};
 use fem_core::energy::Energy;
 use fem_core::structure::Structure;
 use fem_core::time::{Histories, SecondOrderSystem, State, StepError};
@@ -34,7 +34,26 @@ pub struct Impactor {
 impl Impactor {
     /// Indentation (m) at which the contact has taken `energy` (J) on first loading; `None` where it never does.
     pub fn indentation_of(&self, energy: f64) -> Option<f64> {
-        indentation_of(&*self.law, energy)
+        let work = |alpha: f64| {
+            let Energy { stored, dissipated } = self.law.energy(&ContactHistory::default(), alpha);
+            stored + dissipated
+        };
+        let mut high = 1.0;
+        while !(work(high) >= energy) {
+            high *= 2.0;
+            if high > f64::MAX {
+                return None;
+            }
+        }
+        while work(0.5 * high) >= energy && high > f64::MIN_POSITIVE {
+            high *= 0.5;
+        }
+        let mut low = 0.5 * high;
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if work(middle) < energy { low = middle } else { high = middle }
+        }
+        Some(high)
     }
 }
 

@@ -20,6 +20,8 @@ pub struct LargePlate {
     cells: Vec<(usize, f64, CellMap)>,
     /// Geometric stiffness of stresses at rest, if there are some.
     preload: Option<Symmetric>,
+    /// Its forces.
+    turned: Vec<f64>,
     /// Displacements before elimination.
     all: Vec<f64>,
     work: CellArrays,
@@ -52,6 +54,7 @@ impl LargePlate {
             element,
             constraints: constraints.clone(),
             preload: None,
+            turned: Vec::new(),
             all: vec![0.0; plate.ndof()],
             integrated: 0,
             work: CellArrays::default(),
@@ -89,7 +92,7 @@ impl LargePlate {
         force: &mut [f64],
         mut tangent: Option<&mut Symmetric>,
     ) -> Result<f64, AssemblyError> {
-        let Self { plate, element, constraints, cells, preload, all, work, integrated } = self;
+        let Self { plate, element, constraints, cells, preload, turned, all, work, integrated } = self;
         *integrated += cells.len() as u64;
         constraints.expand(u, all);
         force.fill(0.0);
@@ -116,10 +119,11 @@ impl LargePlate {
             }
         }
         if let Some(geometric) = preload {
-            let mut turned = vec![0.0; u.len()];
-            geometric.add_product(1.0, u, &mut turned);
-            force.iter_mut().zip(&turned).for_each(|(force, more)| *force += more);
-            energy += 0.5 * u.iter().zip(&turned).map(|(u, f)| u * f).sum::<f64>();
+            turned.clear();
+            turned.resize(u.len(), 0.0);
+            geometric.add_product(1.0, u, turned);
+            force.iter_mut().zip(&*turned).for_each(|(force, more)| *force += more);
+            energy += 0.5 * u.iter().zip(&*turned).map(|(u, f)| u * f).sum::<f64>();
             tangent.iter_mut().for_each(|tangent| tangent.add(1.0, geometric));
         }
         Ok(energy)

@@ -85,30 +85,6 @@ pub trait ContactLaw: DynClone + Debug + Send + Sync {
 }
 dyn_clone::clone_trait_object!(ContactLaw);
 
-/// Indentation (m) at which `law` has taken `energy` (J) on first loading; `None` where it never does.
-pub fn indentation_of(law: &dyn ContactLaw, energy: f64) -> Option<f64> {
-    let work = |alpha: f64| {
-        let Energy { stored, dissipated } = law.energy(&ContactHistory::default(), alpha);
-        stored + dissipated
-    };
-    let mut high = 1.0;
-    while !(work(high) >= energy) {
-        high *= 2.0;
-        if high > f64::MAX {
-            return None;
-        }
-    }
-    while work(0.5 * high) >= energy && high > f64::MIN_POSITIVE {
-        high *= 0.5;
-    }
-    let mut low = 0.5 * high;
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if work(middle) < energy { low = middle } else { high = middle }
-    }
-    Some(high)
-}
-
 /// Ways, over the least depth on them, up to which Gauss' rule is exact but for rounding, and up to which the difference of two
 /// forces has too few digits for a tangent.
 const SHORT: f64 = 0.02;

@@ -1,10 +1,14 @@
 //! A contact law without what the plate gives by itself.
 
-use fem_core::contact::{Branches, ContactForce, ContactHistory, ContactLaw, indentation_of};
+use fem_core::contact::{Branches, ContactForce, ContactHistory, ContactLaw};
 use fem_core::energy::Energy;
 
 /// Largest share of a law's own compliance dα/dF that the plate may take of it.
 const MOST: f64 = 0.5;
+
+/// Indentations between which it is looked for, m.
+const SHALLOWEST: f64 = 1e-9;
+const DEEPEST: f64 = 1.0;
 
 /// A law whose indentation counts from a surface of the plate that the force squeezes towards its face: α = a + c F(α), a the indentation
 /// of the face and c the static compliance of what lies between.
@@ -23,35 +27,34 @@ pub struct WithoutSqueeze {
 }
 
 impl WithoutSqueeze {
-    /// `law` without the squeeze of `compliance` (m/N), positive, in a contact that never takes more than `energy` (J); `None` where
-    /// the squeeze is more than half of what the law gives from the first touch on.
-    pub fn new(law: Box<dyn ContactLaw>, compliance: f64, energy: f64) -> Option<Self> {
-        let deepest = indentation_of(&*law, energy)?;
-        let stiffest = |alpha: f64| {
+    /// `law` without the squeeze of `compliance` (m/N), positive; `None` where the squeeze is more than half of what the law gives from
+    /// the first touch on.
+    pub fn new(law: Box<dyn ContactLaw>, compliance: f64) -> Option<Self> {
+        let fits = |alpha: f64| {
             let mut history = ContactHistory::default();
             let loading = law.force(&history, alpha).tangent;
             law.commit(&mut history, alpha);
             // Next to the peak, on the way back.
-            loading.max(law.force(&history, alpha * (1.0 - 1e-6)).tangent)
+            compliance * loading.max(law.force(&history, alpha * (1.0 - 1e-6)).tangent) <= MOST
         };
-        let fits = |alpha: f64| compliance * stiffest(alpha) <= MOST;
-        let mut low = deepest;
-        while !fits(low) {
-            low *= 0.5;
-            if !(low > deepest * 1e-9) {
-                return None;
+        let mut depths =
+            std::iter::successors(Some(SHALLOWEST), |depth| Some(2.0 * depth)).take_while(|depth| *depth < DEEPEST);
+        let limit = match depths.find(|depth| !fits(*depth)) {
+            None => f64::INFINITY,
+            Some(SHALLOWEST) => return None,
+            Some(stiff) => {
+                let (mut low, mut high) = (0.5 * stiff, stiff);
+                for _ in 0..50 {
+                    let middle = 0.5 * (low + high);
+                    if fits(middle) { low = middle } else { high = middle }
+                }
+                law.force(&ContactHistory::default(), low).force
             }
-        }
-        let mut high = (2.0 * low).min(deepest);
-        for _ in 0..50 {
-            let middle = 0.5 * (low + high);
-            if fits(middle) { low = middle } else { high = middle }
-        }
-        let limit = law.force(&ContactHistory::default(), low).force;
-        (limit > 0.0).then_some(Self { law, compliance, limit })
+        };
+        Some(Self { law, compliance, limit })
     }
 
-    /// Force up to which the squeeze is taken from the law, N.
+    /// Force up to which the squeeze is taken from the law, N; infinite where it always is.
     pub fn force_limit(&self) -> f64 {
         self.limit
     }
@@ -67,7 +70,8 @@ impl WithoutSqueeze {
         if self.law.force(history, a).force == 0.0 || !a.is_finite() {
             return a;
         }
-        let (mut low, mut high) = (a, a + self.squeeze(f64::INFINITY));
+        // What is taken is at most half of the way, or that at the limit.
+        let (mut low, mut high) = (a, if self.limit.is_finite() { a + self.squeeze(self.limit) } else { 2.0 * a });
         let mut alpha = a;
         for _ in 0..100 {
             let ContactForce { force, tangent } = self.law.force(history, alpha);

@@ -102,13 +102,13 @@ fn no_force_within_the_dent() {
 fn without_the_squeeze_of_the_plate_contracts_hold() {
     // The squeeze is 0.4, 4 and 26 % of what the law gives at the deepest, and beyond a limit in the middle.
     for compliance in [1e-10, 1e-9, 5e-9, 2e-8] {
-        let law = WithoutSqueeze::new(hertz(3.38e9, 1.5), compliance, 1.0).unwrap();
+        let law = WithoutSqueeze::new(hertz(3.38e9, 1.5), compliance).unwrap();
         check_contact_law(&law, 1e-4).unwrap_or_else(|why| panic!("{compliance}: {why}"));
     }
     for rule in RULES {
         for critical in [2e-4, 8e-5, 1e-7] {
             for compliance in [1e-10, 2e-9] {
-                let law = WithoutSqueeze::new(sun_yang(3.38e9, critical, rule), compliance, 1.0).unwrap();
+                let law = WithoutSqueeze::new(sun_yang(3.38e9, critical, rule), compliance).unwrap();
                 check_contact_law(&law, 1.6e-4).unwrap_or_else(|why| panic!("{rule} {critical} {compliance}: {why}"));
             }
         }
@@ -119,9 +119,9 @@ fn without_the_squeeze_of_the_plate_contracts_hold() {
 fn two_springs_in_series_are_one_that_was_measured() {
     // What is left of a linear law and the squeeze are in series the law itself.
     let (k, c) = (2e7, 1e-8);
-    let law = WithoutSqueeze::new(hertz(k, 1.0), c, 10.0).unwrap();
+    let law = WithoutSqueeze::new(hertz(k, 1.0), c).unwrap();
     let h = ContactHistory::default();
-    for face in [1e-6, 3e-5, 4e-4] {
+    for face in [1e-6, 3e-5, 4e-4, 0.4] {
         let at = law.force(&h, face);
         assert!((at.force * (1.0 / k - c) / face - 1.0).abs() < 1e-14);
         assert!((at.tangent * (1.0 / k - c) - 1.0).abs() < 1e-14);
@@ -129,7 +129,7 @@ fn two_springs_in_series_are_one_that_was_measured() {
     }
     // Of Hertz's law and of an unloading branch by the forces: the face lies c F above the surface that the law counts from.
     let (whole, left) =
-        (sun_yang(3.38e9, 8e-5, RULES[0]), WithoutSqueeze::new(sun_yang(3.38e9, 8e-5, RULES[0]), 1e-9, 10.0).unwrap());
+        (sun_yang(3.38e9, 8e-5, RULES[0]), WithoutSqueeze::new(sun_yang(3.38e9, 8e-5, RULES[0]), 1e-9).unwrap());
     let (mut of_law, mut of_face) = (h, h);
     for alpha in [1e-5, 8e-5, 1.5e-4, 1.3e-4, 7e-5, 1e-5, 9e-5, 1.7e-4] {
         let force = whole.force(&of_law, alpha).force;
@@ -142,10 +142,10 @@ fn two_springs_in_series_are_one_that_was_measured() {
 
 #[test]
 fn a_law_as_stiff_as_the_plate_holds_no_squeeze() {
-    assert!(WithoutSqueeze::new(hertz(2e7, 1.0), 3e-8, 1.0).is_none());
+    assert!(WithoutSqueeze::new(hertz(2e7, 1.0), 3e-8).is_none());
     // Hertz's law gives more than any squeeze at first, and half of it at the limit: F' = 1.5 k^(2/3) F^(1/3) = 1/(2 c).
     let (k, c) = (3.38e9_f64, 2e-8_f64);
-    let law = WithoutSqueeze::new(hertz(k, 1.5), c, 1.0).unwrap();
+    let law = WithoutSqueeze::new(hertz(k, 1.5), c).unwrap();
     let limit = (1.0 / (3.0 * c)).powi(3) / (k * k);
     assert!((law.force_limit() / limit - 1.0).abs() < 1e-9, "{} {limit}", law.force_limit());
     // It does not pull, and beyond the limit it is the law once more, deeper by what was taken away.

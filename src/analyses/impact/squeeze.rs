@@ -8,9 +8,6 @@ use fem_core::plugin::Dimension;
 use fem_dynamics::contact::WithoutSqueeze;
 use fem_io::scene;
 
-/// How far the indentation of a contact is sought, in energies of the impact.
-const MARGIN: f64 = 4.0;
-
 /// What a contact law leaves to the plate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Squeeze {
@@ -54,13 +51,12 @@ pub(super) fn laws(
     impact: &Impact,
     compliances: &[Option<f64>],
 ) -> Result<(Vec<Box<dyn ContactLaw>>, Vec<Option<Squeeze>>), Error> {
-    let energy: f64 = impact.spec.impactors.iter().map(|spec| 0.5 * spec.mass * spec.velocity.powi(2)).sum();
     let of = |((spec, strike), compliance): ((&scene::ImpactorSpec, &Strike), &Option<f64>)| {
         let Some(compliance) = *compliance else { return Ok((strike.law.clone(), None)) };
         if !(compliance > 0.0) {
             return Ok((strike.law.clone(), Some(Squeeze { compliance, force_limit: f64::INFINITY })));
         }
-        let Some(law) = WithoutSqueeze::new(strike.law.clone(), compliance, MARGIN * energy) else {
+        let Some(law) = WithoutSqueeze::new(strike.law.clone(), compliance) else {
             let message = format!(
                 "the plate between there and the face gives {} a newton, half of what the contact law gives from the first touch on, or more: \
                  its squeeze is no part of such a law",

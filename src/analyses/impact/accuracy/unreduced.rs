@@ -6,14 +6,15 @@ use crate::analyses::impact::prepare::place_impactors;
 use crate::effect::Effect;
 use crate::model::{Impact, Model};
 use fem_core::functional::Functional;
-use fem_core::plugin::{Built, Params, Plugin as _};
+use fem_core::plugin::{Built, Params, Plugin as _, Value};
 use fem_dynamics::impact::ImpactSystem;
 use fem_dynamics::reduce::{Reduced, Ritz};
 
-/// Vectors that a run may solve for beside its steps: one in so many of these.
+/// Vectors of the plate beside the run, and steps of the run for each of them, at least.
+const VECTORS: u32 = 60;
 const STEPS: u64 = 4;
 
-/// Marches of the plate of the default's vectors, which have to be few beside the steps of the run; nothing of a plate that is not linear.
+/// Marches of the plate in a few vectors, where these are few beside the steps of the run.
 ///
 /// What a run differs by from the plate beside it counts as the error of its step, so that this holds what the vectors leave as well.
 pub(in crate::analyses::impact) fn estimate(
@@ -23,13 +24,14 @@ pub(in crate::analyses::impact) fn estimate(
     contacts: &[Functional],
     sizes: &Sizes,
 ) -> Option<Estimates> {
-    let laws: Vec<_> = system.impactors().iter().map(|impactor| impactor.law.clone()).collect();
-    let Ok(Built::Reduction(ritz)) = Ritz::build(&Params::default()) else { return None };
-    let structure = system.structure_mut();
-    let basis = ritz.basis(structure, contacts, &[]).ok()?;
-    if (basis.len() / structure.ndof()) as u64 > sizes.steps / STEPS {
+    if sizes.steps < STEPS * u64::from(VECTORS) {
         return None;
     }
+    let laws: Vec<_> = system.impactors().iter().map(|impactor| impactor.law.clone()).collect();
+    let vectors = Params::default().with("vectors", Value::Number(VECTORS.into()));
+    let Ok(Built::Reduction(ritz)) = Ritz::build(&vectors) else { return None };
+    let structure = system.structure_mut();
+    let basis = ritz.basis(structure, contacts, &[]).ok()?;
     let mut reduced = Reduced::project(structure, &basis).ok()?;
     effects.to_vec().iter_mut().for_each(|effect| effect.on_reduced(&mut reduced));
     let impactors = place_impactors(impact, contacts, Some(&reduced), &laws);
