@@ -5,13 +5,13 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 target=$1
 runs=${2:-10000000}
 case $target in
-mesh) length=4096 ;;
+mesh | lines) length=4096 ;;
 scene) length=2048 ;;
 deck) length=4096 ;;
 layup) length=256 ;;
 expression) length=512 ;;
 units) length=64 ;;
-*) echo "targets: mesh scene deck layup expression units" >&2 && exit 2 ;;
+*) echo "targets: mesh lines scene deck layup expression units" >&2 && exit 2 ;;
 esac
 
 # What cargo-fuzz sets where it has no sanitizer. With --target, build scripts go without.

@@ -51,9 +51,11 @@ pub mod cost;
 pub mod decks;
 pub mod effect;
 pub mod effects;
+pub mod envelope;
 mod error;
 pub mod forecast;
 pub mod job;
+pub mod map;
 mod model;
 pub mod output;
 mod registry;
@@ -69,6 +71,6 @@ pub use fem_elements as elements;
 pub use fem_failure as failure;
 pub use fem_io as io;
 pub use model::{
-    FieldPlan, Gauge, Impact, Model, NamedCriterion, NamedProfile, Origin, Plan, Strike, mesh as scene_mesh,
+    FieldPlan, Gauge, Impact, Model, NamedCriterion, NamedProfile, Origin, PathPlan, Plan, Strike, mesh as scene_mesh,
 };
 pub use registry::{NO_REDUCTION, Registry, RegistryError};

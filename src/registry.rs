@@ -3,6 +3,7 @@
 use crate::effect::{EffectInfo, EffectPlugin, LedgerColumn, Wish};
 use crate::effects;
 use fem_core::plugin::{Built, Kind, ParamError, ParamForm, ParamInfo, Params, Plugin, PluginInfo, Value, unknown_key};
+use fem_io::cache::Cache;
 use fem_io::scene::{EFFECT_SETTINGS, EffectSpec, Key, SceneError, SceneValue};
 use fem_io::units::{self, UnitError};
 use std::fmt;
@@ -26,6 +27,7 @@ pub struct Registry {
     entries: Vec<Entry>,
     effects: Vec<EffectEntry>,
     clashes: Vec<(Kind, &'static str)>,
+    cache: Option<Cache>,
 }
 
 #[derive(Clone)]
@@ -98,6 +100,17 @@ impl Registry {
     /// A registry without plug-ins.
     pub fn empty() -> Self {
         Self::default()
+    }
+
+    /// The same, with a folder in which plates of models are kept for later runs.
+    #[must_use]
+    pub fn with_cache(self, cache: Option<Cache>) -> Self {
+        Self { cache, ..self }
+    }
+
+    /// Where plates are kept, if they are.
+    pub fn cache(&self) -> Option<&Cache> {
+        self.cache.as_ref()
     }
 
     /// All plug-ins of the framework.
@@ -237,6 +250,12 @@ impl Registry {
     /// What the plug-in `name` of `kind` says of its parameter `key`.
     pub fn param(&self, kind: Kind, name: &str, key: &str) -> Option<&ParamInfo> {
         self.info(kind, name)?.params.iter().find(|p| p.name == key)
+    }
+
+    /// Parameters of the plug-in `name` of `kind` with quantities that are texts in SI; `None` for another plug-in, or a text that is none.
+    pub(crate) fn in_si(&self, kind: Kind, name: &str, params: &Params) -> Option<(Params, &'static [ParamInfo])> {
+        let rows = self.info(kind, name)?.params;
+        Some((in_si(params, rows).ok()?, rows))
     }
 
     /// What a scene can name: the plug-ins of a kind and, instead of a reduction, [`NO_REDUCTION`].

@@ -14,6 +14,11 @@ pub(crate) fn name_ply(place: PlyOrInterface) -> String {
     }
 }
 
+/// The same with the region from whose bottom plies are counted, where that is said: "3 doubler".
+pub(crate) fn name_ply_of(place: PlyOrInterface, region: Option<&str>) -> String {
+    region.map_or_else(|| name_ply(place), |region| format!("{} {region}", name_ply(place)))
+}
+
 /// ", symmetry quarter", or nothing.
 pub(crate) fn append_symmetry(symmetry: Option<&str>) -> String {
     append(symmetry.map(|name| format!("symmetry {name}")))

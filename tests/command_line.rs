@@ -70,11 +70,29 @@ fn list_shows_the_materials() {
         let line = lines.next().unwrap();
         assert!(line.starts_with(&format!("{name} ")) && line.ends_with(&material.summary), "{line}");
         for c in &material.constants {
-            let constant = format!("{}: {}, {} [{}]", c.key, c.value, c.status, c.source);
+            let range = c.range.as_ref().map_or_else(String::new, |[low, high]| format!(" ({low} to {high})"));
+            let constant = format!("{}: {}{range}, {} [{}]", c.key, c.value, c.status, c.source);
             assert_eq!(lines.next().unwrap().trim(), constant);
         }
     }
     assert_eq!(lines.next(), None);
+}
+
+#[test]
+fn list_shows_the_materials_that_suffice() {
+    let complete = |wanted: &str| {
+        let listed = fem(&root(), &["list", "materials", "--complete-for", wanted]).good().stdout;
+        listed.lines().filter(|line| !line.starts_with(' ')).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let has = |all: &[String], name: &str| all.iter().any(|line| line.starts_with(&format!("{name} ")));
+    assert_eq!(complete("impact").len(), fem::io::materials::names().count());
+    let opens = complete("delamination");
+    assert!(has(&opens, "IM7/8552") && has(&opens, "HTA/6376") && !has(&opens, "AS4/3502") && !has(&opens, "steel"));
+    let cracks = complete("damage");
+    assert!(has(&cracks, "T700/M21") && !has(&cracks, "AS4/8552"));
+    assert!(has(&complete("cure"), "steel") && has(&complete("failure"), "S-glass/epoxy"));
+    let refused = fem(&root(), &["list", "criteria", "--complete-for", "cure"]);
+    assert!(refused.status != 0 && refused.stderr.contains("of materials, not of criteria"), "{refused:#?}");
 }
 
 #[test]
@@ -171,7 +189,7 @@ fn run_writes_its_results_to_a_folder_named_like_that_of_the_scene() {
     check_summary(&cost);
     let phases: Vec<_> = cost["phases"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap()).collect();
     assert_eq!(phases, ["assemble", "reduce", "accuracy", "prepare stresses", "march", "scan", "checkpoint"]);
-    assert_eq!(cost["threads"], 1);
+    assert_eq!(cost["threads"], std::thread::available_parallelism().unwrap().get());
 }
 
 /// Numbers of the summary that have no unit.

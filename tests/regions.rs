@@ -38,8 +38,9 @@ const PLIES: &str = "plies = \"[0/45/-45/90]s\", material = \"tape\", ply_thickn
 #[test]
 fn two_regions_of_one_laminate_are_the_undivided_plate_bit_for_bit() {
     let name = "impact-everything-written.toml";
-    let [whole, divided] = [format!("{{ {PLIES} }}"), format!("[{{ group = \"left\", {PLIES} }}, {{ {PLIES} }}]")]
-        .map(|laminate| scene(name, &laminate));
+    let [whole, divided] =
+        [format!("{{ {PLIES} }}"), format!("[{{ group = \"left\", align = \"bottom\", {PLIES} }}, {{ {PLIES} }}]")]
+            .map(|laminate| scene(name, &laminate));
     for case in [&whole, &divided] {
         case.fem("run", &["--out", "out"]).good();
     }
@@ -111,8 +112,7 @@ fn laminates_that_do_not_fit_are_refused() {
         words.iter().for_each(|words| assert!(text.contains(words), "{words:?}: {text}"));
     };
     let other = |from: &str, to: &str| format!("[{{ {PLIES} }}, {{ group = \"left\", {} }}]", PLIES.replace(from, to));
-    refused(&other("0.13208", "0.2"), &["laminates 1 and 2", "1.056640 and 1.600000 mm thick", "steps in thickness"]);
-    refused(&other("[4, 4]", "[3, 5]"), &["layers of cells hold [4, 4] and [3, 5] plies"]);
+    refused(&other("0.13208", "0.2"), &["laminates 1 and 2", "1.056640 and 1.600000 mm thick", "nothing says how"]);
     refused(&other("45/-45", "45"), &["the layers hold 8 plies, the laminate has 6"]);
     refused(&other(", interface = \"resin\"", ""), &["different materials between their plies"]);
     refused(&format!("[{{ {PLIES} }}, {{ {PLIES} }}]"), &["a second laminate has no `group`"]);

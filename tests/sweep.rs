@@ -173,3 +173,71 @@ fn what_is_set_is_the_scene() {
     fem(case.folder(), &["run", "plate/again.toml", "--out", "b"]).good();
     assert_eq!(case.summary("a")["impact"], case.summary("b")["impact"]);
 }
+
+/// Formulas are columns of their own, of what each case sets and finds; what no case beats is marked; both are drawn.
+#[test]
+fn formulas_are_columns_and_what_nothing_beats_is_marked() {
+    let case = quick().scene("plots = false", "plots = true");
+    let set = [
+        "--set",
+        "laminate.plies=[0/45/-45/90]s,[0/90]2s",
+        "--set",
+        "impactor.velocity=1,2",
+        "--set",
+        "impactor.mass=1 kg,2000 g",
+    ];
+    let formulas = [
+        "--quantity=lost = absorbed_energy / energy",
+        "--quantity=energy - 0.5*impactor_mass*impactor_velocity^2",
+        "--quantity=share = damage_force / (2*kN)",
+    ];
+    let pareto = ["--pareto", "least deflection, most peak_force/energy", "--out", "out"];
+    let nowhere = ["--quantity=none = energy / (energy - energy)"];
+    let done = case.fem("sweep", &[&set[..], &formulas, &nowhere, &pareto].concat()).good();
+    assert!(done.stdout.contains("none: in no case a number"), "{done:#?}");
+    let rows = rows(&case, "out");
+    assert_eq!(rows.len(), 8);
+    let number = |row: &BTreeMap<String, String>, column: &str| row[column].parse::<f64>().ok();
+    let points: Vec<[f64; 2]> = rows
+        .iter()
+        .map(|row| {
+            [
+                number(row, "deflection_m").unwrap(),
+                -number(row, "peak_force_N").unwrap() / number(row, "energy_J").unwrap(),
+            ]
+        })
+        .collect();
+    for (row, point) in rows.iter().zip(&points) {
+        let of = |column: &str| number(row, column).unwrap();
+        assert_eq!(of("lost"), of("absorbed_energy_J") / of("energy_J"));
+        assert!(of("energy - 0.5*impactor_mass*impactor_velocity^2 [J]").abs() < 1e-12, "{row:?}");
+        // A case without damage has no force of it.
+        assert_eq!(number(row, "share"), number(row, "damage_force_N").map(|force| force / 2e3));
+        let beaten = points.iter().any(|other| other != point && other[0] <= point[0] && other[1] <= point[1]);
+        assert_eq!(of("on_pareto_front"), f64::from(u8::from(!beaten)), "{row:?}");
+    }
+    let front = case.read("out/pareto_front.svg");
+    assert!(["front", "[0/90]2s", "deflection, least (mm)"].iter().all(|words| front.contains(words)), "{front}");
+
+    let samples = ["--design", "saltelli", "--samples", "8", "--set", "impactor.velocity=1..3"];
+    case.fem("sweep", &[&samples[..], &formulas[..1], &["--out", "out"]].concat()).good();
+    let bars = case.read("out/importance_lost.svg");
+    assert!(["alone", "in all", "95 % interval", "impactor.velocity"].iter().all(|words| bars.contains(words)));
+
+    for (option, words) in [
+        ("--quantity=peak_force + energy", "`+` at character 12 has different units"),
+        ("--quantity=sin(energy)", "`sin` at character 1 takes a pure number"),
+        ("--quantity=a = peak_forc", "did you mean `peak_force`"),
+        ("--quantity=energy^deflection", "`^` at character 7"),
+        ("--quantity=energy = peak_force", "`energy` is known already"),
+        ("--quantity=share = energy/energy", "two quantities are called `share`"),
+        ("--pareto=least deflection", "does not say two quantities"),
+        ("--pareto=least deflection, largest energy", "does not say two quantities"),
+    ] {
+        let always = "--quantity=share = damage_force / (2*kN)";
+        let done = case.fem("sweep", &["--set", "impactor.velocity=1,2", always, option, "--out", "refused"]);
+        let said = done.stderr.split_whitespace().collect::<Vec<_>>().join(" ").replace(" │ ", " ");
+        assert!(done.status == 1 && said.contains(words), "{option} {done:#?}");
+        assert!(!case.folder().join("refused").exists(), "{option}");
+    }
+}

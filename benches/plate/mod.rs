@@ -30,7 +30,7 @@ pub(crate) fn subject(side: usize) -> Subject {
         let angle_deg = [0.0, 45.0, -45.0, 90.0][k % 4];
         LaminaPly { angle: f64::to_radians(angle_deg), angle_deg, thickness: 0.13e-3, material: 0 }
     };
-    let laminate = Laminate { plies: (0..16).map(ply).collect(), layers: vec![8, 8] };
+    let laminate = Laminate { plies: (0..16).map(ply).collect(), layers: vec![8, 8], middle: 0.0 };
     let element = HermitePrism::new(Mass::Cubic, HermitePrism::IN_PLANE_ORDER).unwrap();
     let stacks = laminate.stacks(&[material]).unwrap();
     let plate = Plate::new(mesh, laminate.levels(), stacks, *element.info(), ZDerivatives::LayerWise).unwrap();

@@ -88,11 +88,11 @@ pub(crate) fn statements((name, variant): (&str, Variant), known: &mut Vec<(Stri
         fine.insert("laminate.layers".to_owned(), if shell { "1" } else { "4" }.to_owned());
         let step = scene::read(&path).unwrap().impact().unwrap().march.step.value;
         fine.insert("march.step".to_owned(), format!("'{:e} s'", 0.5 * step));
-        known.push((key, RunRecord::of(&path, &fine, &registry).unwrap()));
+        known.push((key, RunRecord::of(&path, &fine, &registry, &mut ()).unwrap()));
         known.len() - 1
     });
     let finer = &known[finer].1;
-    let run = RunRecord::of(&path, &own, &registry).unwrap();
+    let run = RunRecord::of(&path, &own, &registry, &mut ()).unwrap();
     let found = job::run(&scene::read_with(&path, &own).unwrap(), &registry, &Options::default(), &mut ()).unwrap();
     let Found::Impact(impact) = found.found else { return Vec::new() };
     let said: Option<Differences> = impact.outcome.accuracy.results();

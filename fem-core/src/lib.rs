@@ -7,12 +7,12 @@
 //! | contracts | [`element`], [`failure`], [`contact`], [`time`], [`reduction`]; [`plugin`] introduces an implementation |
 //! | formulas that people write | [`formula`] |
 //! | materials and laminates | [`tensor`], [`material`], [`layup`], [`laminate`] |
-//! | the plate and its unknowns | [`domain`], [`mesh`], [`dof`], [`plate`], [`support`], [`axes`], [`symmetry`], [`constraint`], [`pieces`], [`patch`], [`load`] |
+//! | the plate and its unknowns | [`domain`], [`mesh`], [`dof`], [`plate`], [`support`], [`springs`], [`axes`], [`symmetry`], [`constraint`], [`pieces`], [`patch`], [`load`] |
 //! | matrices and stresses | [`quadrature`], [`structure`], [`damping`], [`recovery`], [`profile`], [`window`], [`counters`] |
+//! | checks of the contracts, for the tests of plug-in crates | [`testkit`] |
 #![cfg_attr(feature = "assembly", doc = "| sparse matrices (feature `assembly`) | [`assembly`] |")]
-#![cfg_attr(feature = "testkit", doc = "| checks of the contracts (feature `testkit`) | [`testkit`] |")]
 //!
-//! A plug-in crate depends on this crate alone, without its default feature `assembly`, which brings the sparse solver.
+//! A plug-in crate depends on this crate alone; the sparse solver comes with the feature `assembly`.
 //!
 //! ```
 //! use fem_core::laminate::{LaminaPly, Laminate};
@@ -32,7 +32,7 @@
 //! let plies = layup::parse("[0/45/-45/90]2s")?.iter().map(|p| ply(p.angle_deg)).collect();
 //!
 //! // Two layers of cells, eight plies each, meet at the mid-plane.
-//! let laminate = Laminate { plies, layers: vec![8, 8] };
+//! let laminate = Laminate { plies, layers: vec![8, 8], middle: 0.0 };
 //! assert_eq!(laminate.levels()[1], 0.0);
 //! assert!((laminate.areal_mass(&[tape])? - 3.328416).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -48,15 +48,15 @@ mod plates;
 #[cfg(feature = "assembly")]
 pub mod assembly;
 mod stresses;
-#[cfg(feature = "testkit")]
 pub mod testkit;
 
 pub use contracts::{
-    contact, element, failure, interface_law, large, plugin, ply_law, reduction, stack, structure, time, transverse,
+    contact, cubic_strains, element, failure, interface_law, large, plugin, ply_law, reduction, stack, structure, time,
+    transverse,
 };
 pub use plates::{
-    axes, between, classical, constraint, hold, interfaces, laminate, laws, load, mesh, patch, pieces, plate, support,
-    symmetry, warping, window,
+    axes, between, classical, constraint, hold, interfaces, laminate, laws, load, mesh, patch, pieces, plate, springs,
+    support, symmetry, warping, window,
 };
 pub use stresses::{estimate, field, profile, recovery, residual, waves};
 pub use words::{

@@ -4,6 +4,7 @@ mod influence;
 mod mean;
 mod newton;
 
+use crate::lifting::{Lifting, OneSided};
 use crate::vector::dot;
 use fem_core::contact::{Branches, ContactHistory, ContactLaw, Indentation};
 use fem_core::energy::Energy;
@@ -11,6 +12,7 @@ use fem_core::structure::Structure;
 use fem_core::time::{Histories, SecondOrderSystem, State, StepError};
 use influence::Influence;
 use newton::Newton;
+use std::sync::Arc;
 
 /// Sweeps of an upper bound of what weight adds to an energy, and the change, relative, at which it counts as found.
 const MOST_SINKING: usize = 200;
@@ -61,7 +63,8 @@ impl Impactor {
 /// positive towards the structure.
 ///
 /// Of a linear structure, f = K u, an implicit step needs the response to each contact load once per step length and then
-/// one back-substitution and a scalar equation per step. Otherwise it is an iteration of Newton's, each turn of which costs
+/// one back-substitution and a scalar equation per step; on springs that only push, a small convex problem and another
+/// back-substitution. Otherwise it is an iteration of Newton's, each turn of which costs
 /// an internal force and as much again; the tangent is renewed where the iteration is slow.
 #[derive(Debug)]
 pub struct ImpactSystem {
@@ -153,6 +156,14 @@ impl ImpactSystem {
         }
     }
 
+    /// The same on `springs` that only push, which the structure has in its stiffness as if they pulled, too.
+    #[must_use]
+    pub fn on_one_sided(mut self, springs: Arc<[OneSided]>) -> Self {
+        self.influence = Influence::default();
+        self.influence.lifting = Lifting::new(springs);
+        self
+    }
+
     /// The same under gravity, if there is some.
     #[must_use]
     pub fn with_weight(self, weight: Option<Weight>) -> Self {
@@ -186,6 +197,7 @@ impl ImpactSystem {
     /// The same impact on another `structure`, one with the same unknowns.
     pub fn on(&self, structure: Box<dyn Structure>) -> Self {
         let copy = Self::new(structure, self.impactors.clone()).with_weight(self.weight.clone());
+        let copy = copy.on_one_sided(Arc::clone(self.influence.lifting.springs()));
         Self { inertia: self.inertia, ..copy }
     }
 
@@ -280,6 +292,7 @@ impl ImpactSystem {
             plies: nonlinear.map_or(0.0, |energy| energy.dissipated),
             ..Energies::default()
         };
+        energies.strain -= self.influence.lifting.energy(&state.u[..n]);
         for (i, impactor) in self.impactors.iter().enumerate() {
             energies.impactor += 0.5 * impactor.mass * state.v[n + i].powi(2);
             let alpha = self.approach(i, &state.u);
@@ -409,9 +422,10 @@ impl ImpactSystem {
         for (d, impactor) in d[n..].iter_mut().zip(impactors.iter()) {
             *d /= cm * impactor.mass;
         }
-        influence.free.fill(0.0);
+        influence.begin(start.map(|u| &u[..n]));
         influence.set_approaches(impactors, from);
-        *contact_calls += influence.touch(impactors, t, &h.contacts, start, d)?;
+        let solve = |x: &mut [f64], count| structure.solve_damped(cm, cc, x, count);
+        *contact_calls += influence.touch(impactors, t, &h.contacts, start, d, solve)?;
         Ok(())
     }
 
@@ -463,6 +477,7 @@ impl SecondOrderSystem for ImpactSystem {
                 Err(_) => f.fill(f64::NAN),
             },
         }
+        self.influence.lifting.add_forces(&u[..n], &mut f[..n]);
         self.structure.add_damping(-1.0, &v[..n], &mut f[..n]);
         for (i, impactor) in self.impactors.iter().enumerate() {
             let force = impactor.law.force(&h.contacts[i], self.approach(i, u)).force;

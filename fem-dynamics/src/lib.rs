@@ -5,6 +5,7 @@
 //! | few unknowns instead of many | [`reduce`] |
 //! | force of an indentation | [`contact`] |
 //! | structure and impactors as one system, with its energies | [`impact`] |
+//! | springs under a structure that only push | [`lifting`] |
 //! | natural frequencies | [`modes`] |
 //! | steps in time | [`integrate`], [`limit`] |
 //! | what no impact can do | [`guard`] |
@@ -68,6 +69,7 @@ pub mod guard;
 pub mod impact;
 pub mod integrate;
 mod lanczos;
+pub mod lifting;
 pub mod limit;
 pub mod modes;
 pub mod reduce;

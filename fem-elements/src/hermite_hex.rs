@@ -5,6 +5,7 @@ use crate::hermite_prism::{F, HermitePrism, N};
 use crate::hermite_solid::{Functions, Mass, column, to_global};
 use crate::prism::{BLOCKS, STRAIN_ROW, matrix, multiply};
 use crate::transverse::TransverseStresses;
+use fem_core::cubic_strains::CubicStrains;
 use fem_core::element::{Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Point, Scratch, positive};
 use fem_core::large::LargeDeflection;
 use fem_core::plugin::{Built, Kind, ParamError, Params, Plugin, PluginInfo};
@@ -201,6 +202,10 @@ impl Element for HermiteHex {
 
     fn triangular(&self) -> Option<&dyn Element> {
         self.prism.triangular()
+    }
+
+    fn cubic_strains(&self) -> Option<&dyn CubicStrains> {
+        self.prism.cubic_strains()
     }
 
     fn large_deflections(&self) -> Option<&dyn LargeDeflection> {

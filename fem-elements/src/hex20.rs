@@ -45,7 +45,7 @@ const NODES: [[f64; 3]; 20] = [
     [-1.0, 1.0, 0.0],
 ];
 
-/// 20-node serendipity hexahedron with straight edges, three translations a node.
+/// 20-node serendipity hexahedron, three translations a node.
 ///
 /// Complete quadratics where the quadrilateral is a parallelogram; {1, x, y} × {1, z, z²} on every other. Integrated
 /// exactly through the thickness, so that a matrix costs the same for any number of plies.

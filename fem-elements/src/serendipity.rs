@@ -11,7 +11,7 @@ use std::fmt::Debug;
 /// Translations.
 pub(crate) const DOFS: [Dof; 3] = [Dof::SOLID[0], Dof::SOLID[4], Dof::SOLID[8]];
 
-/// Serendipity solid of `F` nodes with straight edges.
+/// Serendipity solid of `F` nodes; sides in the plane may be bent.
 #[derive(Debug, Clone)]
 pub struct Serendipity<const F: usize> {
     pub(crate) info: ElementInfo,
@@ -84,6 +84,10 @@ where
 
     fn triangular(&self) -> Option<&dyn Element> {
         self.triangular.as_deref().map(|wedge| wedge as &dyn Element)
+    }
+
+    fn takes_bent_sides(&self) -> bool {
+        true
     }
 
     fn large_deflections(&self) -> Option<&dyn LargeDeflection> {

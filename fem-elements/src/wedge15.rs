@@ -39,7 +39,7 @@ const NODES: [[f64; 3]; 15] = [
     [-1.0, 1.0, 0.0],
 ];
 
-/// 15-node serendipity wedge with straight edges, three translations a node.
+/// 15-node serendipity wedge, three translations a node.
 ///
 /// Complete quadratics on every triangle. Integrated exactly in the plane and through the thickness, so that a matrix costs
 /// the same for any number of plies.

@@ -2,9 +2,11 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 mod common;
+mod delaunay;
 mod dense;
 
 use common::{interpolation_error, monomials, zero_modes};
+use delaunay::{delaunay, random};
 use dense::*;
 use fem_core::dof::Dof;
 use fem_core::domain::{Corners, Domain};
@@ -14,17 +16,6 @@ use fem_core::mesh::PlaneMesh;
 use fem_core::plate::ZDerivatives;
 use fem_elements::{HermitePrism, Mass};
 use nalgebra::{DVector, Matrix3, Vector3};
-
-/// Numbers between −1 and 1 that a seed gives.
-fn random(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
-    move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        state as f64 / u64::MAX as f64 * 2.0 - 1.0
-    }
-}
 
 /// Triangles and quadrilaterals of all shapes on the unit square.
 fn mixed(n: usize, seed: u64) -> PlaneMesh {
@@ -52,7 +43,7 @@ fn polynomials_on_every_triangle() {
     let element = HermitePrism::new(Mass::Cubic, 4).unwrap();
     let stack = even(&carbon(), &[0.0]);
     let corners = Corners::from([[0.1, -0.2], [2.3, 0.3], [0.7, 1.8]]);
-    let cell = Cell { corners, z: [-0.3, 0.6], stack: &stack };
+    let cell = Cell { corners: corners.into(), z: [-0.3, 0.6], stack: &stack };
     let wedge = element::form(&element, Domain::Triangle);
     let within = |[i, j, k]: [i32; 3]| i + j <= 2 && k <= 1 || i + j <= 1 && k <= 3;
     for powers in monomials([3, 3, 4], 7) {
@@ -87,10 +78,13 @@ fn patches_of_both_shapes_keep_constant_strain() {
     };
     let inner = |[x, y, _]: [f64; 3]| [x, y].iter().all(|v| (1e-9..1.0 - 1e-9).contains(v));
     let mut shapes = [0, 0];
-    for seed in 1..=200 {
-        // One of ten in two layers.
-        let (n, faces) = if seed % 10 == 0 { (2, vec![-0.3, 0.1, 0.3]) } else { (3, vec![-0.3, 0.3]) };
-        let mesh = mixed(n, seed);
+    // One of ten in two layers.
+    let of_both = (1..=200).map(|seed| match seed % 10 {
+        0 => (seed, mixed(2, seed), vec![-0.3, 0.1, 0.3]),
+        _ => (seed, mixed(3, seed), vec![-0.3, 0.3]),
+    });
+    let of_triangles = (1..=200).map(|seed| (seed, delaunay(seed), vec![-0.3, 0.3]));
+    for (seed, mesh, faces) in of_both.chain(of_triangles) {
         mesh.quads.iter().for_each(|cell| shapes[usize::from(cell.domain() == Domain::Triangle)] += 1);
         let stacks = vec![layer.clone(); faces.len() - 1];
         let model = Model::new(&element, mesh, faces, stacks);

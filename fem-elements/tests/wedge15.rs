@@ -1,8 +1,10 @@
 //! The 15-node wedge on random triangles against polynomials and exact elasticity.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+mod delaunay;
 mod dense;
 
+use delaunay::delaunay;
 use dense::*;
 use fem_core::domain::Corners;
 use fem_core::element::{Cell, Element};
@@ -63,16 +65,20 @@ fn quadratics_have_their_exact_strains_on_every_triangle() {
 fn patches_of_random_triangles_keep_constant_strain() {
     let elastic = Elastic::transversely_isotropic(13.0, 1.0, 0.35, 0.4, 0.6);
     let layer = even(&elastic, &[30.0, 30.0]);
-    let model = Model::new(&Wedge15::default(), random(3), vec![-0.3, 0.1, 0.3], vec![layer.clone(), layer]);
     let field = |[x, y, z]: [f64; 3]| {
         [0.3 * x - 0.2 * y + 0.5 * z + 0.1, 0.7 * x + 0.1 * y - 0.4 * z, -0.6 * x + 0.8 * y + 0.2 * z - 0.3]
     };
     let inner = |[x, y, z]: [f64; 3]| [x, y].iter().all(|v| (1e-9..1.0 - 1e-9).contains(v)) && z.abs() < 0.29;
-    let unknowns = model.unknowns();
-    assert!(unknowns.iter().filter(|u| inner(u.1)).count() > 20);
-    let u = model.solve(&DVector::zeros(unknowns.len()), |dof, p| (!inner(p)).then(|| field(p)[dof.n() - 1]));
-    for (u, (dof, p)) in u.iter().zip(unknowns) {
-        assert!((u - field(p)[dof.n() - 1]).abs() < 1e-10, "{dof} {p:?}: {u}");
+    let two_layers = (random(3), vec![-0.3, 0.1, 0.3]);
+    for (mesh, faces) in std::iter::once(two_layers).chain((1..=200).map(|seed| (delaunay(seed), vec![-0.3, 0.3]))) {
+        let stacks = vec![layer.clone(); faces.len() - 1];
+        let model = Model::new(&Wedge15::default(), mesh, faces, stacks);
+        let unknowns = model.unknowns();
+        assert!(unknowns.iter().filter(|u| inner(u.1)).count() > 20);
+        let u = model.solve(&DVector::zeros(unknowns.len()), |dof, p| (!inner(p)).then(|| field(p)[dof.n() - 1]));
+        for (u, (dof, p)) in u.iter().zip(unknowns) {
+            assert!((u - field(p)[dof.n() - 1]).abs() < 1e-10, "{dof} {p:?}: {u}");
+        }
     }
 }
 

@@ -63,7 +63,7 @@ mod tests {
 
     fn laminate(angles: &[f64], thickness: f64) -> Laminate {
         let ply = |deg: &f64| LaminaPly { angle: deg.to_radians(), angle_deg: *deg, thickness, material: 0 };
-        Laminate { plies: angles.iter().map(ply).collect(), layers: vec![angles.len()] }
+        Laminate { plies: angles.iter().map(ply).collect(), layers: vec![angles.len()], middle: 0.0 }
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! First damage: which criterion reaches 1 where and when.
 
 mod climb;
+mod hulls;
 mod survey;
 
 pub use climb::{Climb, Crests};
+pub use hulls::{Extremes, Hulls, StressesOf};
 pub use survey::{Samples, windows};
 
 use fem_core::failure::{FailureCriterion, Site, check_material};
@@ -278,23 +280,45 @@ impl Seen {
         if peak.is_none_or(|p| index > p.index || (index == p.index && here.precedes(&p))) {
             *peak = Some(here);
         }
-        // A site that has crossed already left its record then. An infinite index crosses at the sample before.
-        if !(index >= 1.0 && before.is_none_or(|before| before.index < 1.0)) {
-            return None;
-        }
-        let (time, stress) = match before {
-            None => (t, *now.stress),
-            Some(before) => {
-                let share = (1.0 - before.index) / (index - before.index);
-                let between = |i| (1.0 - share) * before.stress.0[i] + share * now.stress.0[i];
-                ((before.time + (t - before.time) * share).min(t), Stress6::new(std::array::from_fn(between)))
-            }
-        };
+        let (time, stress) = crossing(before, now)?;
         let (here, first) = (Reading { time, ..here }, &mut self.first[spot.first]);
         if first.is_none_or(|(f, _)| here.precedes(&f)) {
             *first = Some((here, stress));
         }
         Some(time)
+    }
+}
+
+/// When an index reached 1 between the sample `before`, unless `now` is the first, and `now`, s, and the stress then.
+fn crossing(before: Option<Sighting<'_>>, now: Sighting<'_>) -> Option<(f64, Stress6<Ply>)> {
+    // A site that has crossed already left its record then. An infinite index crosses at the sample before.
+    if !(now.index >= 1.0 && before.is_none_or(|before| before.index < 1.0)) {
+        return None;
+    }
+    let Some(before) = before else { return Some((now.time, *now.stress)) };
+    let share = (1.0 - before.index) / (now.index - before.index);
+    let between = |i| (1.0 - share) * before.stress.0[i] + share * now.stress.0[i];
+    let time = (before.time + (now.time - before.time) * share).min(now.time);
+    Some((time, Stress6::new(std::array::from_fn(between))))
+}
+
+/// That mode number `mode` of `criterion`, called `name`, has no usable index of `stress`.
+fn refusal(
+    name: &str,
+    criterion: &dyn FailureCriterion,
+    site: &ScanSite,
+    time: f64,
+    mode: usize,
+    stress: Stress6<Ply>,
+) -> ScanError {
+    ScanError::Index {
+        time,
+        criterion: name.to_owned(),
+        mode: criterion.info().modes[mode],
+        cell: site.cell,
+        place: site.place,
+        stress,
+        scope: criterion.scope(),
     }
 }
 
@@ -431,7 +455,7 @@ impl Scan {
             if let Err((row, mode)) = watch.evaluate(&self.stress, &self.materials) {
                 let k = watch.span.start + row;
                 let site = &self.sites[self.order[k] as usize];
-                return Err(watch.refusal(site, t, mode, self.stress[k]));
+                return Err(refusal(&watch.name, &*watch.criterion, site, t, mode, self.stress[k]));
             }
         }
         for (watch, seen) in self.watches.iter_mut().zip(&mut self.record.seen) {
@@ -535,6 +559,11 @@ impl Scan {
         self.record.evaluations
     }
 
+    /// Whether there was a sample.
+    pub fn has_begun(&self) -> bool {
+        self.record.time.is_some()
+    }
+
     /// What the scan has seen, to be kept.
     pub fn record(&self) -> &ScanRecord {
         &self.record
@@ -579,19 +608,6 @@ impl Watch {
         }
         let bad = self.now.iter().position(|v| !usable(v)).unwrap_or(0);
         Err((bad / modes, bad % modes))
-    }
-
-    /// That `mode` has no usable index of `stress`.
-    fn refusal(&self, site: &ScanSite, time: f64, mode: usize, stress: Stress6<Ply>) -> ScanError {
-        ScanError::Index {
-            time,
-            criterion: self.name.clone(),
-            mode: self.modes[mode],
-            cell: site.cell,
-            place: site.place,
-            stress,
-            scope: self.criterion.scope(),
-        }
     }
 
     /// Takes `now`, the indices at time `t`, into `seen`, whose last are those of the time `last`. `stress` are those of the

@@ -7,6 +7,7 @@
 use cpu_time::ProcessTime;
 use fem_core::mesh::PlaneMesh;
 use fem_io::gmsh::{self, Encoding};
+use fem_io::meshes;
 use std::hint::black_box;
 use std::path::Path;
 use std::process::Command;
@@ -49,7 +50,7 @@ fn measure(file: &Path) {
     let mut cells = 0;
     for _ in 0..7 {
         let (processor, wall) = (ProcessTime::now(), Instant::now());
-        let mesh = black_box(gmsh::read(file, 1e-3).unwrap()).mesh;
+        let mesh = black_box(meshes::read(file, 1e-3).unwrap()).mesh;
         let read = [processor.elapsed(), wall.elapsed()];
         let tiling = ProcessTime::now();
         assert_eq!(black_box(mesh.flaws(&[])), []);

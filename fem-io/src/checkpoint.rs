@@ -27,12 +27,19 @@ const MAX_BYTES: u64 = 1 << 34;
 /// As [`OutputDir::write`].
 pub fn write(dir: &OutputDir, name: &str, payload: &[u8]) -> Result<(), FileError> {
     dir.write(name, |out| {
-        out.write_all(MAGIC)?;
-        out.write_all(&VERSION.to_le_bytes())?;
-        out.write_all(&(payload.len() as u64).to_le_bytes())?;
-        out.write_all(&crc32fast::hash(payload).to_le_bytes())?;
+        out.write_all(&header(payload))?;
         out.write_all(payload)
     })
+}
+
+/// `payload` in its frame.
+pub(crate) fn frame(payload: &[u8]) -> Vec<u8> {
+    [&header(payload)[..], payload].concat()
+}
+
+fn header(payload: &[u8]) -> Vec<u8> {
+    let (length, sum) = ((payload.len() as u64).to_le_bytes(), crc32fast::hash(payload).to_le_bytes());
+    [&MAGIC[..], &VERSION.to_le_bytes(), &length, &sum].concat()
 }
 
 /// The payload of the file `path`.

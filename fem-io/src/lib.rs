@@ -3,10 +3,10 @@
 //! | what | where |
 //! | --- | --- |
 //! | the scene, a TOML file over presets | [`scene`], with [`units`] and the library of [`materials`] |
-//! | meshes of gmsh | [`gmsh`] |
+//! | meshes of gmsh, Abaqus and Nastran | [`meshes`]; [`gmsh`] writes them |
 //! | decks of LAMCEL, LAMSUB and TRADYR | [`deck`] |
 //! | the folder of results: files that appear whole or not at all | [`files`] |
-//! | what a later run goes on from | [`checkpoint`] |
+//! | what a later run goes on from, or need not compute again | [`checkpoint`], [`cache`] |
 //! | arrays for NumPy | [`npy`] |
 //! | CSV and JSON, line plots as SVG and PNG | [`tables`], [`plot`] |
 //! | fields for ParaView and PyVista | [`vtu`] |
@@ -23,15 +23,20 @@
 //! # Ok::<(), fem_io::units::UnitError>(())
 //! ```
 
+mod abaqus;
 mod bytes;
+pub mod cache;
 pub mod checkpoint;
 pub mod deck;
 mod document;
 pub mod files;
 pub mod gmsh;
 pub mod materials;
+pub mod meshes;
+mod nastran;
 pub mod npy;
 pub mod plot;
+mod raw;
 pub mod results;
 pub mod scene;
 pub mod tables;

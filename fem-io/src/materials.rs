@@ -36,6 +36,8 @@ pub struct Constant {
     pub status: Status,
     /// Where it comes from.
     pub source: String,
+    /// The lowest and the highest of the values that sources give, where they disagree.
+    pub range: Option<[String; 2]>,
 }
 
 /// How far a constant can be trusted.
@@ -93,10 +95,17 @@ const MATERIAL: Keys = &[
     key("constants", Form::Named(&Form::Table(CONSTANT)), "{ }", "its constants by the keys of a scene").required(),
 ];
 const CONSTANT: Keys = &[
-    key("value", Form::OneOf(&[Form::Number, Form::Text]), r#""130.3 GPa""#, "its value, with its unit").required(),
+    key("value", VALUE, r#""130.3 GPa""#, "its value, with its unit").required(),
     key("status", Form::Words(&words(&STATUS)), r#""measured""#, "how far it can be trusted").required(),
     key("source", Form::Text, r#""a data sheet""#, "where it comes from").required(),
+    key(
+        "range",
+        Form::Several(2, &VALUE),
+        r#"["128 GPa", "141 GPa"]"#,
+        "the lowest and the highest of the values that sources give",
+    ),
 ];
+const VALUE: Form = Form::OneOf(&[Form::Number, Form::Text]);
 
 /// The materials of a text in the format of the library, which `source` holds as such.
 pub(crate) fn parse(text: &str, source: &Arc<SceneSource>) -> Result<Vec<LibraryMaterial>, SceneError> {
@@ -118,10 +127,8 @@ fn read(name: &str, field: &SceneValue<'_>) -> Result<LibraryMaterial, SceneErro
         let value = constant.required("value")?;
         constants.push(Constant {
             key: key.to_owned(),
-            value: match value.node() {
-                Node::Number(number) => number.to_string(),
-                _ => value.text()?.to_owned(),
-            },
+            value: written(&value)?,
+            range: constant.optional("range").map(|range| range_around(&value, &range)).transpose()?,
             status: constant.required("status")?.choice(&STATUS)?,
             source: constant.required("source")?.text()?.to_owned(),
         });
@@ -133,6 +140,33 @@ fn read(name: &str, field: &SceneValue<'_>) -> Result<LibraryMaterial, SceneErro
         material: constants::from_constants(name, &own.of(&table, constants::CONSTANTS, field.source())?)?,
         table,
     })
+}
+
+/// A value as it is written.
+fn written(value: &SceneValue<'_>) -> Result<String, SceneError> {
+    Ok(match value.node() {
+        Node::Number(number) => number.to_string(),
+        _ => value.text()?.to_owned(),
+    })
+}
+
+/// The ends of the range of a value, which lies between them.
+fn range_around(value: &SceneValue<'_>, range: &SceneValue<'_>) -> Result<[String; 2], SceneError> {
+    let size = |value: &SceneValue<'_>| match value.node() {
+        Node::Text(text) => value.any_quantity(text).map(|(size, dimension)| (size, Some(dimension))),
+        _ => Ok((value.number()?, None)),
+    };
+    let ends = range.list()?;
+    let [low, high] = &ends[..] else {
+        return Err(range.error("is not two values", "give the lowest and the highest value"));
+    };
+    let ((below, low_unit), (at, unit), (above, high_unit)) = (size(low)?, size(value)?, size(high)?);
+    if !(below <= at && at <= above && low_unit == unit && high_unit == unit) {
+        return Err(
+            range.error("does not hold the value", "give the lowest and the highest value, with units like its own")
+        );
+    }
+    Ok([written(low)?, written(high)?])
 }
 
 #[cfg(test)]
@@ -147,7 +181,17 @@ mod tests {
         for material in all() {
             assert!(material.constants.iter().all(|c| !c.source.is_empty() && !c.value.is_empty()));
             assert_eq!(material.material.check(), Ok(()));
+            let Material { density, strengths, .. } = &material.material;
+            assert!(density.is_some(), "{}", material.material.name);
+            // 1 is along the fibres, the ribbon or the warp; cores are stiffest through their thickness.
+            let e = &material.material.elastic;
+            let (along, through) = (e.e1.max(e.e2), e.e3);
+            let is_core = strengths.get(Strength::Zc).is_some() && strengths.get(Strength::Yt).is_none();
+            assert_eq!(through > along, is_core, "{}", material.material.name);
+            // A slip of a unit or a digit.
+            assert!((40.0..9000.0).contains(&density.unwrap()) && (1e6..3e11).contains(&along));
         }
+        assert!(all().len() >= 25);
         assert!(library("AS4").is_none());
     }
 
@@ -160,6 +204,8 @@ mod tests {
         assert_eq!(mpa, [1793.0, 1724.0, 64.0, 138.0, 109.0, 69.0]);
         let g23 = fibre.elastic.g23 / 1e9;
         assert!((g23 - 3.446).abs() < 5e-4, "G23 = E2 / (2 (1 + nu23)), got {g23} GPa");
+        let range = library("IM6/934").unwrap().constants[0].range.clone();
+        assert_eq!(range, Some(["160 GPa", "172 GPa"].map(str::to_owned)));
         let resin = library("3502 resin").unwrap();
         assert_eq!(resin.material.strengths.get(Strength::S12), Some(62e6));
         assert_eq!(resin.constants[0].value, "3.79 GPa");
@@ -194,7 +240,7 @@ mod tests {
                 let want: f64 = row[column].parse().unwrap();
                 assert!((got / want - 1.0).abs() < 1e-14, "{}, {column}: {got}, not {want}", row["material"]);
             }
-            let guessed = |c: &Constant| c.status != Status::Measured && c.key != "S23";
+            let guessed = |c: &Constant| c.status != Status::Measured && !["S23", "density"].contains(&c.key.as_str());
             assert!(!set.constants.iter().any(guessed), "{:?}", set.constants);
             compared += 1;
         }
@@ -210,6 +256,12 @@ mod tests {
                  library = { value = 1, status = \"typical\", source = \"y\" }",
                 4,
                 "known: e, nu",
+            ),
+            (
+                "[materials.x]\nsummary = \"x\"\nconstants.e = { value = \"9 GPa\", status = \"typical\", source = \"y\", \
+                 range = [\"1 GPa\", \"8 GPa\"] }",
+                3,
+                "lowest and the highest",
             ),
             ("[material.x]\n", 1, "did you mean `materials`"),
             ("\n# nothing", 1, "[materials.\"its name\"]"),

@@ -83,6 +83,9 @@ pub struct EventRow {
     /// Substructure of a deck, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub substructure: Option<u64>,
+    /// Region of the plate from whose bottom plies are counted, where plies of one number do not lie at one height in all of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub region: Option<String>,
     /// Cell, by its number in the mesh file; of a deck its element.
     pub cell: u64,
     /// Ply counted from the bottom, such as `3`, or the two plies of an interface, `3|4`.
@@ -107,6 +110,8 @@ pub struct IndexRow {
     pub criterion: String,
     /// Failure mode.
     pub mode: String,
+    /// Region of the plate from whose bottom plies are counted, where plies of one number do not lie at one height in all of them.
+    pub region: Option<String>,
     /// Cell, by its number in the mesh file.
     pub cell: u64,
     /// Ply counted from the bottom, such as `3`, or the two plies of an interface, `3|4`.
@@ -306,6 +311,11 @@ impl EnvelopeRow {
 }
 
 impl EventRow {
+    /// The ply, and the region from whose bottom it is counted where that is said.
+    pub fn name_of_ply(&self) -> String {
+        self.region.as_ref().map_or_else(|| self.ply.clone(), |region| format!("{} {region}", self.ply))
+    }
+
     /// Its values by the names of their columns; an infinite index is `"inf"`.
     pub fn named(&self) -> Map<String, Value> {
         named(self)
@@ -329,6 +339,7 @@ impl Row for EventRow {
             ("mode", TableValue::Text(&self.mode)),
         ];
         fields.extend(self.substructure.map(|number| ("substructure", TableValue::Count(number))));
+        fields.extend(self.region.as_ref().map(|name| ("region", TableValue::Text(name))));
         fields.extend([
             ("cell", TableValue::Count(self.cell)),
             ("ply", TableValue::Text(&self.ply)),
@@ -360,16 +371,17 @@ impl Row for DelaminationRow {
 impl Row for IndexRow {
     fn fields(&self) -> Vec<(&'static str, TableValue<'_>)> {
         let [x, y, z] = self.position_m;
-        vec![
-            ("criterion", TableValue::Text(&self.criterion)),
-            ("mode", TableValue::Text(&self.mode)),
+        let mut fields = vec![("criterion", TableValue::Text(&self.criterion)), ("mode", TableValue::Text(&self.mode))];
+        fields.extend(self.region.as_ref().map(|name| ("region", TableValue::Text(name))));
+        fields.extend([
             ("cell", TableValue::Count(self.cell)),
             ("ply", TableValue::Text(&self.ply)),
             ("x_m", TableValue::Number(x)),
             ("y_m", TableValue::Number(y)),
             ("z_m", TableValue::Number(z)),
             ("index", TableValue::Index(self.index)),
-        ]
+        ]);
+        fields
     }
 }
 
@@ -534,6 +546,7 @@ mod tests {
         assert_eq!(read(&dir, "events.csv"), header);
         let event = EventRow {
             substructure: None,
+            region: None,
             time_s: 2.2e-4,
             criterion: "octahedral".into(),
             mode: "tension, \"resin\"".into(),

@@ -9,7 +9,7 @@ use fem_core::tensor::Stress6;
 use fem_failure::Expression;
 use fem_io::deck::{self, Deck, DeckSource, Freedom, NoResults, Program, Relation};
 use fem_io::scene::{self, ContactLoad, MeshSource};
-use fem_io::{gmsh, units};
+use fem_io::{meshes, units};
 use miette::Diagnostic as _;
 use std::path::Path;
 
@@ -17,9 +17,19 @@ fn text(data: &[u8]) -> &str {
     std::str::from_utf8(data).unwrap_or_default()
 }
 
-/// A mesh that is read has finite corners and cells of positive area.
+/// A mesh of gmsh that is read has finite corners and cells of positive area.
 pub fn mesh(data: &[u8]) {
-    match gmsh::parse(data, "plate.msh", 1e-3) {
+    plate(data, "plate.msh");
+}
+
+/// The same of meshes of Abaqus and Nastran.
+pub fn lines(data: &[u8]) {
+    plate(data, "plate.inp");
+    plate(data, "plate.bdf");
+}
+
+fn plate(data: &[u8], name: &str) {
+    match meshes::parse(data, name, 1e-3) {
         Ok(plate) => {
             let mesh = plate.mesh;
             sound(&mesh);
@@ -28,9 +38,9 @@ pub fn mesh(data: &[u8]) {
         Err(error) => {
             assert!(!error.fault.to_string().is_empty());
             match error.place {
-                gmsh::FilePlace::File => {}
-                gmsh::FilePlace::Line(line) => assert!((1..=1 + newlines(data)).contains(&line), "{error}"),
-                gmsh::FilePlace::Byte(byte) => assert!(byte <= data.len(), "{error}"),
+                meshes::FilePlace::File => {}
+                meshes::FilePlace::Line(line) => assert!((1..=1 + newlines(data)).contains(&line), "{error}"),
+                meshes::FilePlace::Byte(byte) => assert!(byte <= data.len(), "{error}"),
             }
         }
     }
@@ -66,7 +76,7 @@ pub fn scene(data: &[u8]) {
                 assert_eq!(material.value.check(), Ok(()));
             }
             match scene.mesh {
-                MeshSource::Rectangle { size, cells } => {
+                MeshSource::Rectangle { size, cells, .. } => {
                     size.into_iter().for_each(positive);
                     assert!(cells.iter().all(|n| *n > 0));
                 }

@@ -12,12 +12,16 @@ Numbers are in SI units; the names of columns end with theirs. Stresses have the
 from femlam._asked import Advice, Laminate, Matrices
 from femlam._contact import ContactLaw, check_contact_law
 from femlam._criterion import Criterion, Material, check_criterion, indices, material
+from femlam._envelope import envelope
 from femlam._errors import FemError, Mistake, SceneError
 from femlam._native import __version__
 from femlam._plate import Plate
-from femlam._results import BucklingResult, ImpactResult, ModesResult, Result, StaticResult, Table
+from femlam._ply_law import LawPoint, PlyAnswer, PlyLaw, check_ply_law
+from femlam._results import BucklingResult, ImpactResult, ModesResult, Result, StaticResult
 from femlam._scene import Scene
+from femlam._study import StudyResult
 from femlam._sweep import SweepResult
+from femlam._table import Table
 
 __all__ = [
     "Advice",
@@ -27,20 +31,26 @@ __all__ = [
     "FemError",
     "ImpactResult",
     "Laminate",
+    "LawPoint",
     "Material",
     "Matrices",
     "Mistake",
     "ModesResult",
     "Plate",
+    "PlyAnswer",
+    "PlyLaw",
     "Result",
     "Scene",
     "SceneError",
     "StaticResult",
+    "StudyResult",
     "SweepResult",
     "Table",
     "__version__",
     "check_contact_law",
     "check_criterion",
+    "check_ply_law",
+    "envelope",
     "indices",
     "material",
 ]

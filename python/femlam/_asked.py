@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import html
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from femlam._results import Table
+from femlam._table import Table
 
 if TYPE_CHECKING:
     import scipy.sparse
@@ -63,3 +64,6 @@ class Advice:
     def __str__(self) -> str:
         """Return the advice as the command line prints it."""
         return self.text
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(self.text)}</pre>"

@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING, Any, Callable
 import numpy as np
 
 from femlam import _native
-from femlam._contact import ContactLaw
-from femlam._criterion import Criterion
 from femlam._results import ImpactResult
 
 if TYPE_CHECKING:
-    from femlam._scene import Scene
+    from femlam._scene import PlugIn, Scene
 
 
 class Plate:
@@ -22,7 +20,7 @@ class Plate:
     It does not change, and threads may strike it at the same time.
     """
 
-    def __init__(self, scene: Scene, native: _native.Plate, own: Sequence[Criterion | ContactLaw]) -> None:
+    def __init__(self, scene: Scene, native: _native.Plate, own: Sequence[PlugIn]) -> None:
         """Not for users: see :meth:`femlam.Scene.plate`."""
         self.scene = scene
         """The scene that it is of."""

@@ -4,37 +4,20 @@ from __future__ import annotations
 
 import html
 import json
-from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Callable, TypeVar, overload
 from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
 
+from femlam._table import Table
+
 if TYPE_CHECKING:
-    import pandas as pd
     import pyvista
     from matplotlib.axes import Axes
 
-_UNITS = {
-    "m_s": "m/s",
-    "N_s": "N s",
-    "rad_s": "rad/s",
-    "m2": "m²",
-    "deg": "°",
-    "Hz": "Hz",
-    "Pa": "Pa",
-    "kg": "kg",
-    "J": "J",
-    "N": "N",
-    "m": "m",
-    "s": "s",
-}
-
-
-def _unit(column: str) -> str:
-    return next((unit for ending, unit in _UNITS.items() if column.endswith("_" + ending)), "")
+Grid = TypeVar("Grid")
 
 
 def _fitting(largest: float) -> tuple[float, str]:
@@ -44,54 +27,18 @@ def _fitting(largest: float) -> tuple[float, str]:
     return next(((1 / size, prefix) for size, prefix in prefixes if largest >= 0.999 * size), (1.0, ""))
 
 
-class Table(Mapping[str, NDArray[Any]]):
-    """Columns by their names, arrays of one length; numbers are in the units with which the names end."""
+def _axes(ax: Axes | None) -> Axes:
+    """Return the axes to draw on: those given, or new ones."""
+    if ax is not None:
+        return ax
+    from matplotlib.figure import Figure
 
-    def __init__(self, columns: Mapping[str, NDArray[Any]]) -> None:
-        """Of columns that are shown, not copied."""
-        self._columns = dict(columns)
+    try:
+        import matplotlib.pyplot as plt
 
-    def __getitem__(self, name: str) -> NDArray[Any]:
-        """Show a column, shape (rows,)."""
-        return self._columns[name]
-
-    def __iter__(self) -> Iterator[str]:
-        """Walk over the names of the columns."""
-        return iter(self._columns)
-
-    def __len__(self) -> int:
-        """Count the columns."""
-        return len(self._columns)
-
-    @property
-    def rows(self) -> int:
-        """Number of rows."""
-        return len(next(iter(self._columns.values()), ()))
-
-    @property
-    def units(self) -> dict[str, str]:
-        """Unit of each column; empty where it has none."""
-        return {name: _unit(name) for name in self}
-
-    def frame(self) -> pd.DataFrame:
-        """Return a frame of pandas, which must be installed; its units are in ``frame.attrs["units"]``."""
-        import pandas as pd
-
-        frame = pd.DataFrame(self._columns)
-        frame.attrs["units"] = self.units
-        return frame
-
-    def __repr__(self) -> str:
-        """Name columns and rows."""
-        return f"<Table of {self.rows} rows: {', '.join(self)}>"
-
-    def _repr_html_(self) -> str:
-        head = "".join(f"<th>{html.escape(name)}</th>" for name in self)
-        shown = min(self.rows, 10)
-        cells = ["".join(f"<td>{html.escape(str(self[name][i]))}</td>" for name in self) for i in range(shown)]
-        body = "".join(f"<tr>{row}</tr>" for row in cells)
-        rest = f"<p>{shown} of {self.rows} rows</p>" if shown < self.rows else ""
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{rest}"
+        return plt.subplots(layout="constrained")[1]
+    except ImportError:
+        return Figure(layout="constrained").subplots()
 
 
 class Result:
@@ -112,15 +59,24 @@ class Result:
         """What may be wrong with the model."""
         return list(self.summary.get("warnings", []))
 
-    def fields(self, part: str = "plate") -> dict[float, pyvista.UnstructuredGrid]:
-        """Read the fields that the run has left in its folder, by their times, s; needs PyVista.
+    @overload
+    def fields(self, part: str = "plate") -> dict[float, pyvista.UnstructuredGrid]: ...
 
-        * ``part``: ``"plate"``, ``"plies"`` or ``"interfaces"``.
+    @overload
+    def fields(self, part: str = "plate", *, read: Callable[[str], Grid]) -> dict[float, Grid]: ...
+
+    def fields(self, part: str = "plate", *, read: Callable[[str], Any] | None = None) -> dict[float, Any]:
+        """Read the fields that the run has left in its folder, by their times, s.
+
+        * ``part``: ``"plate"``, ``"plies"`` or ``"interfaces"``;
+        * ``read``: what makes a grid of a file of VTK: ``meshio.read``, or by default ``pyvista.UnstructuredGrid``.
 
         A run into a folder writes those that ``output.fields`` of its scene asks for.
         """
-        import pyvista
+        if read is None:
+            import pyvista
 
+            read = pyvista.UnstructuredGrid
         if self.folder is None:
             raise ValueError('fields are files: run into a folder, `scene.run(folder="results")`')
         series = Path(self.folder) / "fields" / f"{part}.pvd"
@@ -129,10 +85,7 @@ class Result:
             there = ", ".join(parts) or "none"
             raise ValueError(f"there are no fields of `{part}`, but of: {there}; `output.fields` of the scene asks for them")
         found = ElementTree.parse(series).iter("DataSet")
-        return {
-            float(each.attrib["timestep"]): pyvista.UnstructuredGrid(str(series.with_name(each.attrib["file"])))
-            for each in found
-        }
+        return {float(each.attrib["timestep"]): read(str(series.with_name(each.attrib["file"]))) for each in found}
 
     def __str__(self) -> str:
         """Return the summary as the command line prints it."""
@@ -195,15 +148,7 @@ class ImpactResult(Result):
 
         ``ax``: the axes to draw on; new ones by default. Returns them.
         """
-        if ax is None:
-            from matplotlib.figure import Figure
-
-            try:
-                import matplotlib.pyplot as plt
-
-                ax = plt.subplots(layout="constrained")[1]
-            except ImportError:
-                ax = Figure(layout="constrained").subplots()
+        ax = _axes(ax)
         (to_time, of_time), (to_force, of_force) = _fitting(self.time[-1]), _fitting(self.force.max())
         ax.plot(self.time * to_time, self.force * to_force, label="contact force")
         for damage in self.summary["first_damage"]:
@@ -211,6 +156,21 @@ class ImpactResult(Result):
             ax.plot(damage["time_s"] * to_time, damage["contact_force_N"] * to_force, "o", label=name)
         labels = {"xlabel": f"Time ({of_time}s)", "ylabel": f"Contact force ({of_force}N)"}
         ax.set(**labels, title=self.summary["title"])
+        ax.legend(fontsize="small")
+        return ax
+
+    def plot(self, *columns: str, ax: Axes | None = None) -> Axes:
+        """Draw columns of the history over time, such as ``"impactor_velocity_m_s"``; needs matplotlib.
+
+        * ``columns``: names of :attr:`history`, whose ends are the units;
+        * ``ax``: the axes to draw on; new ones by default. Returns them.
+        """
+        drawn = {name: self.history[name] for name in columns}
+        ax = _axes(ax)
+        to_time, of_time = _fitting(self.time[-1])
+        for name, values in drawn.items():
+            ax.plot(self.time * to_time, values, label=name)
+        ax.set(xlabel=f"Time ({of_time}s)", title=self.summary["title"])
         ax.legend(fontsize="small")
         return ax
 

@@ -7,7 +7,8 @@ import json
 import os
 import re
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Union, cast
 
@@ -18,14 +19,20 @@ from femlam import _native
 from femlam._asked import Advice, Laminate, Matrices
 from femlam._contact import ContactLaw
 from femlam._criterion import Criterion
+from femlam._envelope import envelope
 from femlam._plate import Plate
-from femlam._results import ModesResult, Result, Table, _result
+from femlam._ply_law import PlyLaw
+from femlam._results import ModesResult, Result, _result
+from femlam._study import StudyResult
 from femlam._sweep import SweepResult
+from femlam._table import Table
 
 if TYPE_CHECKING:
     import scipy.sparse
 
 PathLike = Union[str, "os.PathLike[str]"]
+Law = Union[ContactLaw, PlyLaw]
+PlugIn = Union[Criterion, ContactLaw, PlyLaw]
 
 
 class Scene:
@@ -109,7 +116,7 @@ class Scene:
         files = {key: folder / self[key] for key in self._keys if _FILE.fullmatch(key)}
         Path(path).write_text((self.replace(files) if files else self).text, encoding="utf-8")
 
-    def check(self, criteria: Iterable[Criterion] = (), laws: Iterable[ContactLaw] = ()) -> list[str]:
+    def check(self, criteria: Iterable[Criterion] = (), laws: Iterable[Law] = ()) -> list[str]:
         """Check the scene with its mesh and its plug-ins; return warnings."""
         return self._native.check([*criteria, *laws])
 
@@ -121,7 +128,7 @@ class Scene:
         threads: int = 1,
         progress: Callable[[float], object] | None = None,
         criteria: Iterable[Criterion] = (),
-        laws: Iterable[ContactLaw] = (),
+        laws: Iterable[Law] = (),
         accuracy: float | None = None,
     ) -> Result:
         """Compute what the scene asks for: an impact, loads at rest, modes or buckling, each a result of its own.
@@ -131,7 +138,7 @@ class Scene:
         * ``threads``: for the integration of element matrices; results do not depend on it.
         * ``progress``: called with the share of the march that is done, at most twenty times a second.
         * ``criteria``: criteria of one's own, which the scene names in ``failure.criteria``.
-        * ``laws``: contact laws of one's own, which it names in ``contact.law``.
+        * ``laws``: contact laws of one's own, which it names in ``contact.law``, and ply laws, which its materials name.
         * ``accuracy``: largest relative error of the main results, for which mesh, layers, reduction and step are raised
           before the run; by default what the scene says.
 
@@ -140,15 +147,11 @@ class Scene:
         """
         own = self._asked_for(criteria, laws)
         asked = accuracy is not None or "accuracy" in self
-        if asked and not self._is_file():
-            # The search for an accuracy reads the scene again and again.
-            with tempfile.TemporaryDirectory() as temporary:
-                path = Path(temporary) / "scene.toml"
-                self.save(path)
-                return Scene.load(path)._compute(None, folder, resume, threads, progress, own, accuracy)
-        return self._compute(None, folder, resume, threads, progress, own, accuracy)
+        # The search for an accuracy reads the scene again and again.
+        with self._as_file() if asked else nullcontext(self) as scene:
+            return scene._compute(None, folder, resume, threads, progress, own, accuracy)
 
-    def plate(self, *, criteria: Iterable[Criterion] = (), laws: Iterable[ContactLaw] = (), threads: int = 1) -> Plate:
+    def plate(self, *, criteria: Iterable[Criterion] = (), laws: Iterable[Law] = (), threads: int = 1) -> Plate:
         """Reduce the plate of the scene and keep it for many impacts: :meth:`Plate.impact` marches them alone.
 
         ``threads``, ``criteria`` and ``laws`` are those of :meth:`run`.
@@ -163,12 +166,13 @@ class Scene:
         design: str | None = None,
         samples: int | None = None,
         seed: int | None = None,
+        correlate: Mapping[tuple[str, str], float] | None = None,
         threads: int = 1,
         folder: PathLike | None = None,
         resume: bool = False,
         progress: Callable[[float], object] | None = None,
         criteria: Iterable[Criterion] = (),
-        laws: Iterable[ContactLaw] = (),
+        laws: Iterable[Law] = (),
     ) -> SweepResult:
         """Run many cases of the scene, those of one plate on the same one: ``fem sweep``.
 
@@ -176,6 +180,7 @@ class Scene:
           ``"normal(50 MPa, 8 %)"`` for numbers that scatter; it goes over the table ``[sweep]`` of the scene;
         * ``design``: ``"grid"``, ``"random"``, ``"latin-hypercube"``, ``"sobol"`` or ``"saltelli"``, with its
           ``samples`` and ``seed``;
+        * ``correlate``: correlations of pairs of keys that scatter, ``{("materials.m.Yt", "materials.m.S12"): 0.6}``;
         * ``threads``: cases that are marched at a time; the table does not depend on it;
         * ``folder``: where the files of ``fem sweep`` go, from which ``resume`` goes on; without it they are not kept;
         * ``progress``, ``criteria`` and ``laws``: as in :meth:`run`.
@@ -191,6 +196,7 @@ class Scene:
                 "design": design,
                 "samples": samples,
                 "seed": seed,
+                "correlate": [f"{a},{b}={value}" for (a, b), value in (correlate or {}).items()],
                 "threads": _threads(threads),
                 "folder": os.fspath(where),
                 "resume": resume,
@@ -199,6 +205,53 @@ class Scene:
             }
             summary = json.loads(self._native.sweep(asked))
             return SweepResult(where, summary, keep=folder is not None)
+
+    def study(
+        self,
+        axes: Iterable[str] = (),
+        *,
+        budget: float | None = None,
+        tolerance: float | None = None,
+        folder: PathLike | None = None,
+        resume: bool = False,
+        progress: Callable[[float], object] | None = None,
+        criteria: Iterable[Criterion] = (),
+        laws: Iterable[Law] = (),
+    ) -> StudyResult:
+        """Find what accuracy costs, the scene run under many settings: ``fem study``.
+
+        * ``axes``: what is varied, ``"mesh"``, ``"step"`` and so on; what the scene says or all that fit it by default;
+        * ``budget``: processor time that it may take, s; without it as much as it takes on a common machine in four minutes;
+        * ``tolerance``: relative error, for which the result's ``kept_by`` is the cheapest scene;
+        * ``folder``: where the files of ``fem study`` go, from which ``resume`` goes on; without it they are not kept;
+        * ``progress``, ``criteria`` and ``laws``: as in :meth:`run`; Ctrl-C leaves the runs so far in the folder.
+        """
+        if resume and folder is None:
+            raise ValueError("to resume, name the folder of the study that was stopped")
+        with tempfile.TemporaryDirectory() as temporary, self._as_file() as scene:
+            where = Path(temporary) / "study" if folder is None else Path(folder)
+            asked: _native.AskedOfStudy = {
+                "axes": list(axes),
+                "budget": budget,
+                "tolerance": tolerance,
+                "folder": os.fspath(where),
+                "resume": resume,
+                "progress": progress,
+                "own": self._asked_for(criteria, laws),
+            }
+            document, text, kept = scene._native.study(asked)
+            kept_by = None if kept is None else Scene(_native.Scene.parse(kept, self.name))
+            return StudyResult(where, (json.loads(document), text, kept_by), keep=folder is not None)
+
+    def envelope(
+        self, plane: str = "s2-s12", *, material: str | None = None, criteria: Iterable[str | Criterion] = ()
+    ) -> Table:
+        """Return the failure envelope of a material of the scene by its criteria: :func:`femlam.envelope`.
+
+        * ``material``: the first of the scene by default;
+        * ``criteria``: as the scene calls them, or others; those of the scene by default.
+        """
+        return envelope(material, criteria, plane, scene=self)
 
     def modes(self, count: int | None = None, *, folder: PathLike | None = None, threads: int = 1) -> ModesResult:
         """Find the lowest natural modes of the plate, whatever the scene asks for; as many as it says, or ten."""
@@ -227,6 +280,14 @@ class Scene:
         unknowns = Table({name: np.asarray(column) for name, column in found["unknowns"].items()})
         return Matrices(whole(found["stiffness"]), whole(found["mass"]), unknowns)
 
+    def __eq__(self, other: object) -> bool:
+        """Whether it is the same text, read under the same name."""
+        return isinstance(other, Scene) and (self.text, self.name) == (other.text, other.name)
+
+    def __hash__(self) -> int:
+        """Let it be a key."""
+        return hash((self.text, self.name))
+
     def __reduce__(self) -> tuple[Any, ...]:
         """Let other processes have it."""
         return _parse, (self.text, self.name)
@@ -239,6 +300,17 @@ class Scene:
         import html
 
         return f"<pre>{html.escape(self.text)}</pre>"
+
+    @contextmanager
+    def _as_file(self) -> Iterator[Scene]:
+        """Lend the scene as one that lies in a file."""
+        if self._is_file():
+            yield self
+            return
+        with tempfile.TemporaryDirectory() as temporary:
+            path = Path(temporary) / "scene.toml"
+            self.save(path)
+            yield Scene.load(path)
 
     def _is_file(self) -> bool:
         try:
@@ -253,7 +325,7 @@ class Scene:
         resume: bool,
         threads: int,
         progress: Callable[[float], object] | None,
-        own: list[Criterion | ContactLaw],
+        own: list[PlugIn],
         accuracy: float | None,
     ) -> Result:
         if resume and folder is None:
@@ -271,11 +343,11 @@ class Scene:
         }
         return _result(self._native.run(asked))
 
-    def _asked_for(self, criteria: Iterable[Criterion], laws: Iterable[ContactLaw]) -> list[Criterion | ContactLaw]:
+    def _asked_for(self, criteria: Iterable[Criterion], laws: Iterable[Law]) -> list[PlugIn]:
         """Return plug-ins of one's own that the scene names."""
-        own: list[Criterion | ContactLaw] = [*criteria, *laws]
+        own: list[PlugIn] = [*criteria, *laws]
         for each in own:
-            what, key = ("criterion", "failure.criteria") if isinstance(each, Criterion) else ("contact law", "contact.law")
+            what, key = _WHERE[next(kind for kind in _WHERE if isinstance(each, kind))]
             if not self._native.asks_for(each.name):
                 raise ValueError(f"the scene does not ask for the {what} `{each.name}`: name it in `{key}`")
         return own
@@ -285,6 +357,11 @@ def _parse(text: str, name: str) -> Scene:
     return Scene(_native.Scene.parse(text, name))
 
 
+_WHERE: dict[type, tuple[str, str]] = {
+    Criterion: ("criterion", "failure.criteria"),
+    ContactLaw: ("contact law", "contact.law"),
+    PlyLaw: ("ply law", "law` of a material, `materials.NAME.law"),
+}
 _FILE = re.compile(r"mesh\.file|materials\.[^.]+\.file")
 _STEP = re.compile(r"\.([^.\[]+)|\[(\d+)\]")
 

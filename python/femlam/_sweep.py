@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import html
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from numpy.typing import NDArray
 
-from femlam._results import Table
+from femlam._table import read_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,7 +21,7 @@ class SweepResult:
         """Of a folder of results."""
         self.summary = summary
         """The document of ``sweep.json``: keys, numbers of cases, what they say together where numbers scatter."""
-        self.table = _read(folder / "sweep.csv")
+        self.table = read_table(folder / "sweep.csv")
         """The table of ``sweep.csv``, a row a case: what it sets, what it finds, or in ``failed`` why it found nothing."""
         self.folder = str(folder) if keep else None
         """Where its files are, if it was run into a folder."""
@@ -42,21 +40,3 @@ class SweepResult:
 
     def _repr_html_(self) -> str:
         return f"<p>{html.escape(repr(self))}</p>{self.table._repr_html_()}"
-
-
-def _read(path: Path) -> Table:
-    with path.open(encoding="utf-8", newline="") as file:
-        header, *rows = csv.reader(file)
-    return Table({name: _column([row[k] for row in rows]) for k, name in enumerate(header)})
-
-
-def _column(words: list[str]) -> NDArray[Any]:
-    """Make numbers of a column where all its words are; what is empty is NaN among numbers."""
-    try:
-        numbers = [float(word) if word else np.nan for word in words]
-    except ValueError:
-        return np.array(words, dtype=object)
-    whole = all(word.isdigit() for word in words) and bool(words)
-    if not any(words):
-        return np.array(words, dtype=object)
-    return np.array(numbers, dtype=np.int64 if whole else np.float64)

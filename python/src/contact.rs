@@ -1,6 +1,7 @@
 //! Contact laws that are classes of Python.
 
-use crate::criterion::{Raised, keep};
+use crate::criterion::Raised;
+use crate::kept;
 use crate::mistakes::raise;
 use fem::core::contact::{Branches, ContactForce, ContactHistory, ContactLaw};
 use fem::core::energy::Energy;
@@ -25,8 +26,8 @@ impl FromPyObject<'_, '_> for PyContactLaw {
     fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
         let text = |name: &str| object.getattr(name)?.extract::<String>();
         Ok(Self {
-            name: keep(&text("name")?),
-            summary: keep(&text("summary")?),
+            name: kept::text(&text("name")?),
+            summary: kept::text(&text("summary")?),
             object: Arc::new(object.to_owned().unbind()),
             raised: Raised::default(),
         })

@@ -1,18 +1,18 @@
 //! Failure criteria that are classes of Python, and those of the program.
 
+use crate::kept;
 use crate::laminate::{constants, find};
 use crate::mistakes::raise;
 use crate::results::array;
 use fem::Registry;
 use fem::core::failure::{CriterionInfo, FailureCriterion, Site, check_material};
-use fem::core::material::{Material, Strength};
-use fem::core::plugin::{Built, Kind, Params, unknown_key};
+use fem::core::material::Material;
 use fem::core::tensor::{Ply, Stress6};
+use fem::envelope::criteria;
 use miette::MietteDiagnostic;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What a criterion has raised first; the run it belongs to ends with it.
@@ -45,63 +45,24 @@ impl FromPyObject<'_, '_> for PyCriterion {
     fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
         let text = |name: &str| object.getattr(name)?.extract::<String>();
         let texts = |name: &str| object.getattr(name)?.extract::<Vec<String>>();
-        let strength = |name: &String| {
-            let named = |strength: &&Strength| strength.name() == name;
-            let unknown = || {
-                PyValueError::new_err(format!(
-                    "strength `{name}` {}",
-                    unknown_key(name, Strength::ALL.iter().map(|s| s.name()))
-                ))
-            };
-            Strength::ALL.iter().find(named).copied().ok_or_else(unknown)
-        };
-        let (modes, strengths) = (texts("modes")?, texts("strengths")?);
+        let modes = texts("modes")?;
         if modes.is_empty() {
             return Err(PyValueError::new_err("`modes` is empty: a criterion has at least one mode"));
         }
-        let strengths: Vec<_> = strengths.iter().map(strength).collect::<PyResult<_>>()?;
-        let (modes, strengths) = lists(modes.iter().map(|mode| keep(mode)).collect(), strengths);
         let info = CriterionInfo {
             site: if object.getattr("at_interfaces")?.extract()? { Site::Interface } else { Site::Ply },
-            modes,
-            strengths,
+            modes: kept::texts(&modes),
+            strengths: kept::strengths(&texts("strengths")?)?,
             invariant_about_fibre: object.getattr("invariant_about_fibre")?.extract()?,
         };
         Ok(Self {
             object: Arc::new(object.to_owned().unbind()),
-            name: keep(&text("name")?),
-            summary: keep(&text("summary")?),
+            name: kept::text(&text("name")?),
+            summary: kept::text(&text("summary")?),
             info,
             raised: Raised::default(),
         })
     }
-}
-
-/// A text that lives until the program ends, once however often it is kept: what a registry lists and events carry.
-pub(crate) fn keep(text: &str) -> &'static str {
-    static KEPT: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
-    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = kept.get(text) {
-        return known;
-    }
-    let text: &'static str = text.to_owned().leak();
-    kept.insert(text);
-    text
-}
-
-/// Modes and strengths of a class.
-type Lists = (&'static [&'static str], &'static [Strength]);
-
-/// The same for lists.
-fn lists(modes: Vec<&'static str>, strengths: Vec<Strength>) -> Lists {
-    static KEPT: Mutex<Vec<Lists>> = Mutex::new(Vec::new());
-    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = kept.iter().find(|known| known.0 == modes && known.1 == strengths) {
-        return *known;
-    }
-    let lists: Lists = (modes.leak(), strengths.leak());
-    kept.push(lists);
-    lists
 }
 
 impl FailureCriterion for PyCriterion {
@@ -158,20 +119,13 @@ pub(crate) fn indices<'py>(
     material: &str,
 ) -> PyResult<(Vec<&'static str>, Bound<'py, PyArray2<f64>>)> {
     let material = find(material)?;
-    let refused = |why: String, help: String| raise(&MietteDiagnostic::new(why).with_help(help));
-    let built = Registry::standard().build(Kind::Criterion, name, &Params::default());
-    let criterion = match built {
-        Ok(Built::Criterion(criterion)) => criterion,
-        Ok(_) => return Err(refused(format!("`{name}` is no criterion"), String::new())),
-        Err(fem::RegistryError::Unknown { hint, .. }) => {
-            return Err(refused(format!("there is no criterion `{name}`"), hint));
-        }
-        Err(error) => return Err(refused(format!("criterion `{name}`: {error}"), String::new())),
-    };
-    check_material(&*criterion, name, material).map_err(|error| refused(error.to_string(), String::new()))?;
+    let refused = |why: String| raise(&MietteDiagnostic::new(why));
+    let found = criteria(&Registry::standard(), &[name.to_owned()], None).map_err(|error| raise(&error))?;
+    let Some((_, criterion)) = found.first() else { return Err(refused(format!("there is no criterion `{name}`"))) };
+    check_material(&**criterion, name, material).map_err(|error| refused(error.to_string()))?;
     let states: Vec<_> = states.as_slice()?.chunks_exact(6).map(state).collect();
     if let Some(wrong) = states.iter().find(|s| !s.is_finite()) {
-        return Err(refused(format!("a stress is not finite: {wrong:?}"), String::new()));
+        return Err(refused(format!("a stress is not finite: {wrong:?}")));
     }
     let modes = criterion.info().modes;
     let found = py.detach(|| {

@@ -5,14 +5,18 @@
 mod advice;
 mod contact;
 mod criterion;
+mod envelope;
+mod kept;
 mod laminate;
 mod matrices;
 mod mistakes;
 mod own;
 mod plate;
+mod ply_law;
 mod results;
 mod run;
 mod scene;
+mod study;
 mod sweep;
 mod watch;
 
@@ -25,9 +29,13 @@ mod _native {
     #[pymodule_export]
     use super::criterion::{check_criterion, indices};
     #[pymodule_export]
+    use super::envelope::envelope;
+    #[pymodule_export]
     use super::laminate::material;
     #[pymodule_export]
     use super::plate::Plate;
+    #[pymodule_export]
+    use super::ply_law::check_ply_law;
     #[pymodule_export]
     use super::scene::{Scene, as_toml, as_value, quantity};
     use pyo3::prelude::*;

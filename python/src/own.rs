@@ -2,6 +2,7 @@
 
 use crate::contact::PyContactLaw;
 use crate::criterion::{PyCriterion, Raised};
+use crate::ply_law::PyPlyLaw;
 use fem::Registry;
 use fem::core::plugin::{Built, Kind, PluginInfo};
 use pyo3::prelude::*;
@@ -10,15 +11,19 @@ use pyo3::prelude::*;
 pub(crate) enum Own {
     Criterion(PyCriterion),
     Contact(PyContactLaw),
+    Ply(PyPlyLaw),
 }
 
 impl FromPyObject<'_, '_> for Own {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
-        match object.hasattr("indices")? {
-            true => object.extract().map(Self::Criterion),
-            false => object.extract().map(Self::Contact),
+        if object.hasattr("indices")? {
+            object.extract().map(Self::Criterion)
+        } else if object.hasattr("respond")? {
+            object.extract().map(Self::Ply)
+        } else {
+            object.extract().map(Self::Contact)
         }
     }
 }
@@ -28,6 +33,7 @@ pub(crate) fn raised(own: &[Own]) -> Vec<Raised> {
     let raised = |own: &Own| match own {
         Own::Criterion(criterion) => criterion.raised.clone(),
         Own::Contact(law) => law.raised.clone(),
+        Own::Ply(law) => law.raised.clone(),
     };
     own.iter().map(raised).collect()
 }
@@ -45,6 +51,11 @@ pub(crate) fn registry(own: &[Own]) -> Registry {
             let law = law.clone();
             let info = info(Kind::Contact, law.name, law.summary);
             registry.with_built(info, move |_| Ok(Built::Contact(Box::new(law.clone()))))
+        }
+        Own::Ply(law) => {
+            let law = law.clone();
+            let info = info(Kind::PlyLaw, law.name, law.summary);
+            registry.with_built(info, move |_| Ok(Built::PlyLaw(Box::new(law.built()))))
         }
     })
 }

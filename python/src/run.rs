@@ -3,12 +3,13 @@
 use crate::mistakes::raise;
 use crate::own::{Own, raised, registry};
 use crate::results::results;
-use crate::watch::Watch;
+use crate::watch::{Quiet, Watch};
 use fem::io::scene::{self, Scene};
 use fem::job::{self, Finished, Options, Results, Task};
 use fem::{Error, Model, Registry, study};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::cell::RefCell;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
@@ -39,7 +40,7 @@ pub(crate) fn run<'py>(py: Python<'py>, scene: &Scene, path: &Path, asked: Asked
     let mut options = Options { task, results: results_in, threads, ..Options::default() };
     follow(py, progress.as_ref(), &own, |watch| {
         let raised = match accuracy.or_else(|| scene.accuracy.as_ref().map(|accuracy| accuracy.value)) {
-            Some(asked) if task == Task::Scene => Some(attain(scene, path, &registry, asked, &mut options)?),
+            Some(asked) if task == Task::Scene => Some(attain(scene, path, &registry, asked, &mut options, watch)?),
             _ => None,
         };
         job::run(raised.as_ref().unwrap_or(scene), &registry, &options, watch)
@@ -64,9 +65,17 @@ pub(crate) fn follow<'py>(
 }
 
 /// The scene with settings raised until its main results are as exact as is `asked`.
-fn attain(scene: &Scene, path: &Path, registry: &Registry, asked: f64, options: &mut Options) -> Result<Scene, Error> {
+fn attain(
+    scene: &Scene,
+    path: &Path,
+    registry: &Registry,
+    asked: f64,
+    options: &mut Options,
+    watch: &mut Watch<'_>,
+) -> Result<Scene, Error> {
     let model = Model::new(scene, registry)?;
-    let attained = study::attain((path, scene, &model), registry, asked, None, &mut |_, _| {})?;
+    let watch = RefCell::new(watch);
+    let attained = study::attain((path, scene, &model), registry, asked, None, &mut |_, _| {}, &mut Quiet(&watch))?;
     let raised = scene::parse(&scene::rewrite(path, &attained.setting)?, path)?;
     options.attained = Some(attained);
     Ok(raised)

@@ -7,6 +7,7 @@ use crate::mistakes::raise;
 use crate::own::{Own, registry};
 use crate::plate::Plate;
 use crate::run::{Asked, run};
+use crate::study::{AskedOfStudy, study};
 use crate::sweep::{AskedOfSweep, sweep};
 use fem::io::scene;
 use fem::io::units::{self, UnitError};
@@ -110,6 +111,12 @@ impl Scene {
         sweep(py, &self.0, self.path(), asked)
     }
 
+    /// Studies what accuracy costs; its document as JSON, its text, and the text of the scene with the cheapest setting that keeps
+    /// the tolerance.
+    fn study(&self, py: Python<'_>, asked: AskedOfStudy) -> PyResult<(String, String, Option<String>)> {
+        study(py, &self.0, self.path(), asked)
+    }
+
     /// What the advisor answers, as JSON.
     fn advise(&self, py: Python<'_>, threads: NonZeroUsize) -> PyResult<String> {
         advise(py, &self.0, threads)
@@ -125,11 +132,12 @@ impl Scene {
         laminate(py, &self.0)
     }
 
-    /// Whether the scene names the criterion or the contact law `name`.
+    /// Whether the scene names the criterion, the contact law or the ply law `name`.
     fn asks_for(&self, name: &str) -> bool {
         let laws = self.0.impact().into_iter().flat_map(|impact| &impact.impactors).map(|impactor| &impactor.contact);
-        let plugins = self.0.failure.criteria.iter().map(|spec| &spec.plugin).chain(laws);
-        plugins.into_iter().any(|plugin| plugin.name.value == name)
+        let plugins = self.0.failure.criteria.iter().map(|spec| &spec.plugin);
+        let mut plugins = plugins.chain(laws).chain(self.0.laws.iter().flatten());
+        plugins.any(|plugin| plugin.name.value == name)
     }
 }
 

@@ -21,6 +21,7 @@ pub(crate) struct AskedOfSweep {
     design: Option<String>,
     samples: Option<usize>,
     seed: Option<u64>,
+    correlate: Vec<String>,
     threads: NonZeroUsize,
     folder: PathBuf,
     resume: bool,
@@ -30,8 +31,8 @@ pub(crate) struct AskedOfSweep {
 
 /// Runs the cases into the folder; what `sweep.json` holds.
 pub(crate) fn sweep(py: Python<'_>, scene: &Scene, path: &Path, asked: AskedOfSweep) -> PyResult<String> {
-    let AskedOfSweep { set, design, samples, seed, threads, folder, resume, progress, own } = asked;
-    let asked = SweepRequest { set, design, samples, seed };
+    let AskedOfSweep { set, design, samples, seed, correlate, threads, folder, resume, progress, own } = asked;
+    let asked = SweepRequest { set, design, samples, seed, correlate, ..SweepRequest::default() };
     let registry = registry(&own);
     let raised = raised(&own);
     let mut watch = Watch::new(progress.as_ref(), &raised);
@@ -45,7 +46,7 @@ pub(crate) fn sweep(py: Python<'_>, scene: &Scene, path: &Path, asked: AskedOfSw
         let record = Record::new(scene, path, asked, &sweep, &rows);
         sweep::write(&dir, &sweep, &rows, &record)?;
         if scene.output.plots {
-            sweep::write_pictures(&dir, &scene.title, &sweep, &rows, record.scatter.as_ref())?;
+            sweep::write_pictures(&dir, &scene.title, &sweep, &rows, &record)?;
         }
         dir.remove_older()?;
         Ok(record)

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PAGES = (ROOT / "docs" / "book" / "src" / "python.md", ROOT / "python" / "README.md")
+BOOK = ROOT / "docs" / "book" / "src"
+PAGES = (BOOK / "python.md", BOOK / "python-many.md", ROOT / "python" / "README.md")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

@@ -23,6 +23,13 @@ def test_tables_are_frames(result: femlam.ImpactResult) -> None:
     assert events.attrs["units"]["angle_deg"] == "°"
 
 
+def test_tables_are_frames_of_polars(result: femlam.ImpactResult) -> None:
+    pytest.importorskip("polars")
+    frame, events = result.history.polars(), result.events.polars()
+    np.testing.assert_array_equal(frame["contact_force_N"].to_numpy(), result.force)
+    assert (events.height, events["mode"][0]) == (result.events.rows, result.events["mode"][0])
+
+
 def test_the_force_is_drawn(result: femlam.ImpactResult) -> None:
     pyplot = pytest.importorskip("matplotlib.pyplot")
     pyplot.switch_backend("agg")
@@ -32,6 +39,18 @@ def test_the_force_is_drawn(result: femlam.ImpactResult) -> None:
     np.testing.assert_allclose(line.get_ydata(), result.force)
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("Time (µs)", "Contact force (N)")
     assert len(axes.get_lines()) == 1 + len(result.summary["first_damage"])
+    pyplot.close("all")
+
+
+def test_columns_are_drawn(result: femlam.ImpactResult) -> None:
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    pyplot.switch_backend("agg")
+    axes = result.plot("impactor_velocity_m_s", "plate_displacement_m")
+    assert [line.get_label() for line in axes.get_lines()] == ["impactor_velocity_m_s", "plate_displacement_m"]
+    np.testing.assert_array_equal(axes.get_lines()[0].get_ydata(), result["impactor_velocity_m_s"])
+    with pytest.raises(KeyError, match="velocity"):
+        result.plot("velocity", ax=axes)
+    assert len(axes.get_lines()) == 2
     pyplot.close("all")
 
 
@@ -59,6 +78,9 @@ def test_fields_are_read_by_their_times(scene: femlam.Scene, square: dict, tmp_p
     # The history has the mean over the patch of the contact.
     assert deflections[2] == pytest.approx(abs(result["plate_displacement_m"][-1]), rel=0.2)
     assert set(result.fields("plies")) == set(plate)
+    meshio = pytest.importorskip("meshio")
+    plies = list(result.fields("plies", read=meshio.read).values())
+    assert plies[-1].cell_data["stress"][0].shape[1] == 6
     with pytest.raises(ValueError, match="of: interfaces, plate, plies"):
         result.fields("layers")
     with pytest.raises(ValueError, match="folder"):

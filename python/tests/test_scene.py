@@ -67,6 +67,16 @@ def test_all_mistakes_of_a_file_are_told_with_their_places(folder: Path) -> None
         femlam.Scene.load(folder / "nothing.toml")
 
 
+def test_quantities_of_pint_have_their_units(scene: femlam.Scene) -> None:
+    pint = pytest.importorskip("pint")
+    units = pint.UnitRegistry()
+    other = scene.replace({"impactor.velocity": 2.5 * units.m / units.s, "impactor.mass": 800 * units.gram})
+    assert other.quantity("impactor.velocity") == 2.5
+    assert other.quantity("impactor.mass") == 0.8
+    with pytest.raises(femlam.SceneError, match="is a length, not a velocity"):
+        scene.replace({"impactor.velocity": 2 * units.mm})
+
+
 def test_what_the_mesh_lacks_is_told_with_the_line_of_the_scene(folder: Path) -> None:
     scene = femlam.Scene.load(folder / "scene.toml").replace({"impactor.at": {"group": "impakt"}})
     with pytest.raises(femlam.SceneError, match="impakt") as caught:
@@ -93,6 +103,8 @@ def test_a_dictionary_makes_a_scene(square: dict, tmp_path: Path) -> None:
 def test_a_scene_goes_to_other_processes(scene: femlam.Scene) -> None:
     other = pickle.loads(pickle.dumps(scene))
     assert (other.text, other.name, other.check()) == (scene.text, scene.name, [])
+    assert {scene: 1}[other] == 1
+    assert other != scene.replace({"impactor.velocity": "3 m/s"})
 
 
 def test_a_saved_scene_can_lie_anywhere(scene: femlam.Scene, tmp_path: Path) -> None:

@@ -42,7 +42,7 @@ fn decide_effects(model: Model, threads: NonZeroUsize) -> Result<Model, Error> {
     }
     let expected = match &model.plan {
         Plan::Impact(_) => advise(&model, threads)?.iter().map(|advice| advice.expected).collect(),
-        Plan::Static { forces } => vec![at_rest(&model, forces, threads)?],
+        Plan::Static { forces, .. } => vec![at_rest(&model, forces, threads)?],
         // Refused before.
         Plan::Modes { .. } | Plan::Buckling { .. } => return Ok(model),
     };

@@ -9,6 +9,9 @@ use std::f64::consts::{PI, TAU};
 /// Weights of an equation below which it holds a displacement.
 const NOTHING: f64 = 1e-9;
 
+/// Weight of a node in the deflection of a spring from which on it is held by it.
+const SHARE: f64 = 0.05;
+
 /// The part of a plate inside its supports, and how it is held.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rim {
@@ -73,8 +76,8 @@ fn surrounded(mut directions: Vec<f64>) -> bool {
     directions.iter().zip(next).all(|(a, b)| b - a < PI * (1.0 - NOTHING))
 }
 
-fn levels(model: &Model) -> impl Iterator<Item = usize> + use<> {
-    let [low, high] = model.plate.outer_levels();
+fn levels(model: &Model, column: usize) -> impl Iterator<Item = usize> + use<> {
+    let [low, high] = model.plate.outer_levels(column);
     low..=high
 }
 
@@ -89,7 +92,16 @@ fn zero(model: &Model, column: usize, level: usize, terms: &[(Option<Dof>, f64)]
 }
 
 fn deflection_held(model: &Model, column: usize) -> bool {
-    levels(model).any(|level| zero(model, column, level, &[(Dof::new(3, 0), 1.0)]))
+    levels(model, column)
+        .any(|level| zero(model, column, level, &[(Dof::new(3, 0), 1.0)]) || sprung(model, column, level))
+}
+
+/// Whether springs hold the deflection of a node.
+fn sprung(model: &Model, column: usize, level: usize) -> bool {
+    let Some(dof) = Dof::new(3, 0).and_then(|w| model.plate.dofs_at(column, level, w).next()) else { return false };
+    let own = model.constraints.restrict(&[(dof, 1.0)]);
+    let weighs = |(i, weight): &(usize, f64)| weight.abs() > SHARE && own.iter().any(|(own, _)| own == i);
+    model.springs.iter().any(|spring| spring.at.0.iter().any(weighs))
 }
 
 /// How most of the edges `rim` are held.
@@ -112,7 +124,7 @@ fn hold(model: &Model, rim: &BTreeSet<[u32; 2]>) -> Held {
 /// Uₙ₀ across the edge, at how many levels it is zero.
 fn levels_held(model: &Model, column: usize, [x, y]: [f64; 2]) -> usize {
     let across = [(Dof::new(1, 0), x), (Dof::new(2, 0), y)];
-    levels(model).filter(|level| zero(model, column, *level, &across)).count()
+    levels(model, column).filter(|level| zero(model, column, *level, &across)).count()
 }
 
 fn in_plane_held(model: &Model, column: usize, normal: [f64; 2]) -> bool {
@@ -123,6 +135,6 @@ fn in_plane_held(model: &Model, column: usize, normal: [f64; 2]) -> bool {
 fn slope_held(model: &Model, column: usize, [x, y]: [f64; 2]) -> bool {
     let deflection = [(Dof::new(3, 1), x), (Dof::new(3, 2), y)];
     let turn = [(Dof::new(1, 3), x), (Dof::new(2, 3), y)];
-    levels(model).any(|l| zero(model, column, l, &deflection) || zero(model, column, l, &turn))
+    levels(model, column).any(|l| zero(model, column, l, &deflection) || zero(model, column, l, &turn))
         || levels_held(model, column, [x, y]) > 1
 }

@@ -22,6 +22,8 @@ pub struct Assembled {
     pub factor_entries: usize,
     /// Memory that the computation is expected to take at its peak.
     pub memory: MemoryEstimate,
+    /// The preload over the one that buckles the plate, negative where only the opposite one does, where there is some.
+    pub buckling: Option<f64>,
     /// From the masters to the independent unknowns of the model.
     pub condensation: Option<Condensation>,
 }
@@ -130,7 +132,11 @@ pub fn structure(
     // The factor serves what comes next as well.
     match assembled.structure.solve_shifted(0.0, &mut vec![0.0; geometric.ndof()], 1) {
         Err(SolveError::NotPositive { .. }) => {}
-        other => return Ok(other.map(|()| assembled)?),
+        other => {
+            other?;
+            assembled.buckling = share(&mut assembled.structure, &geometric);
+            return Ok(assembled);
+        }
     }
     assembled.structure.add(-1.0, &geometric);
     let found = factors(&mut assembled.structure, &geometric, FACTORS)?.factors;
@@ -140,6 +146,16 @@ pub fn structure(
 
 /// Factors looked at for the first that is positive: those of a shear load come in pairs of either sign.
 const FACTORS: usize = 4;
+
+/// The part that a preload is of the one that buckles the plate, whose stiffness has that of the preload, `geometric`, in it; if none of
+/// the [`FACTORS`] looked at is of that load, of the opposite one, negative; `None` where none is found.
+fn share(structure: &mut SparseStructure, geometric: &Symmetric) -> Option<f64> {
+    // Factors on what is added to the preload.
+    let more = factors(structure, geometric, FACTORS).ok()?.factors;
+    let shares: Vec<f64> = more.iter().map(|more| (1.0 + more).recip()).filter(|share| share.is_finite()).collect();
+    let largest = shares.iter().copied().max_by(f64::total_cmp)?;
+    if largest > 0.0 { Some(largest) } else { shares.into_iter().min_by(f64::total_cmp) }
+}
 
 /// The `count` factors on a `geometric` stiffness that are nearest to zero and take all stiffness from `structure`, and its shapes.
 ///
@@ -175,11 +191,14 @@ pub fn elastic(
         let mut matrix = |which| assemble(plate, &**element, constraints, &pattern, which, threads, counters);
         let mut k = matrix(Matrix::Stiffness)?;
         let m = if inertia { matrix(Matrix::Mass)? } else { Symmetric::zero(pattern.clone()) };
+        for spring in &model.springs {
+            k.add_spring(spring.stiffness, &spring.at).map_err(SolveError::other)?;
+        }
         model.effects.on_stiffness(&model.body(), &mut k)?;
         let factor_entries = symbolic.entries();
         let mut structure = SparseStructure::new(symbolic, k, m, threads, name);
         structure.release(&model.motions);
-        return Ok(Assembled { structure, factor_entries, memory, condensation: None });
+        return Ok(Assembled { structure, factor_entries, memory, buckling: None, condensation: None });
     };
     let Condensed { k, m, way } = condense(plate, &**element, constraints, division, inertia, threads, counters)?;
     let (symbolic, memory) = model.analyse(k.pattern().clone())?;
@@ -189,5 +208,5 @@ pub fn elastic(
     let motions: Vec<f64> = model.motions.chunks_exact(constraints.ndof()).flat_map(of_masters).collect();
     let mut structure = SparseStructure::new(symbolic, k, m, threads, move |i| name(masters[i]));
     structure.release(&motions);
-    Ok(Assembled { structure, factor_entries, memory, condensation: Some(way) })
+    Ok(Assembled { structure, factor_entries, memory, buckling: None, condensation: Some(way) })
 }

@@ -2,11 +2,14 @@
 
 pub mod assembled;
 pub mod buckling;
+pub mod delamination;
 mod expansion;
 pub mod impact;
+mod kept;
 pub mod matrices;
 pub mod modes;
 mod operator;
+mod path;
 mod samples;
 pub(crate) mod saved;
 pub mod statics;

@@ -22,6 +22,8 @@ pub struct ModesSolution {
     pub unknowns: usize,
     /// Entries of the factor of K.
     pub factor_entries: usize,
+    /// The preload over the one that buckles the plate ([`Assembled::buckling`](assembled::Assembled::buckling)).
+    pub buckling: Option<f64>,
     /// How the plate is divided, if it is.
     pub substructures: Option<Substructures>,
     /// Work done.
@@ -71,6 +73,15 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Modes
     let effective_masses = effective_masses.collect();
     stopwatch.lap("modes");
     let (substructures, phases) = (assembled.substructures(), stopwatch.phases().to_vec());
-    let factor_entries = assembled.factor_entries;
-    Ok(ModesSolution { modes, effective_masses, unknowns: n, factor_entries, substructures, counters, phases })
+    let (factor_entries, buckling) = (assembled.factor_entries, assembled.buckling);
+    Ok(ModesSolution {
+        modes,
+        effective_masses,
+        unknowns: n,
+        factor_entries,
+        buckling,
+        substructures,
+        counters,
+        phases,
+    })
 }

@@ -42,6 +42,35 @@ impl StressOperator {
         Self { rows, width, residual }
     }
 
+    /// The six rows of `site`, and its stresses that do not follow from the coordinates.
+    pub(super) fn of(&self, site: usize) -> (&[f64], [f64; 6]) {
+        (&self.rows[6 * site * self.width..][..6 * self.width], self.residual(site))
+    }
+
+    /// That of rows that were kept ([`StressOperator::rows`]); `None` where they are not six for each of so many `sites`.
+    pub(super) fn of_rows(rows: Vec<f64>, sites: usize, width: usize, residual: Vec<f64>) -> Option<Self> {
+        let fits = Some(rows.len()) == sites.checked_mul(6 * width) && rows.iter().all(|row| row.is_finite());
+        fits.then_some(Self { rows, width, residual })
+    }
+
+    /// Of each site six rows, one number per coordinate.
+    pub(super) fn rows(&self) -> &[f64] {
+        &self.rows
+    }
+
+    /// Number of coordinates.
+    pub(super) fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Whether the rows of `sites` give `field`, the stresses of coordinates `q` that do follow from them, but for rounding.
+    pub(super) fn gives(&self, sites: impl Iterator<Item = usize>, q: &[f64], field: &[f64]) -> bool {
+        let rows = sites.flat_map(|site| self.of(site).0.chunks_exact(self.width));
+        let sums = rows.map(|row| row.iter().zip(q).map(|(s, q)| s * q).sum::<f64>());
+        let largest = field.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        sums.zip(field).all(|(sum, stress)| (sum - stress).abs() <= 1e-8 * largest)
+    }
+
     /// Coordinates of `samples`, one after the other, as columns; lanes without a sample are zero.
     pub(super) fn columns(&self, samples: &[f64]) -> Columns {
         let lane = |k: usize| std::array::from_fn(|lane| samples.get(lane * self.width + k).copied().unwrap_or(0.0));
@@ -80,8 +109,6 @@ pub(super) struct Sampled<'a> {
     /// Of each window, a lane: the middle of each coordinate's range, and half its length.
     middles: Columns,
     halves: Columns,
-    /// Ranges of all sites, where they were made before.
-    known: Option<&'a [StressRange]>,
 }
 
 impl<'a> Sampled<'a> {
@@ -102,37 +129,12 @@ impl<'a> Sampled<'a> {
                 half[lane] = reach + rounding * (middle[lane].abs() + reach);
             }
         }
-        Self {
-            operator,
-            columns: windows.iter().map(|window| operator.columns(of(window))).collect(),
-            middles,
-            halves,
-            known: None,
-        }
-    }
-
-    /// With the ranges of all sites, if they are known from [`Sampled::all_ranges`].
-    pub(super) fn knowing(self, known: Option<&'a [StressRange]>) -> Self {
-        Self { known, ..self }
-    }
-
-    /// Of the first `sites` sites, those of the windows of each after those of the one before.
-    pub(super) fn all_ranges(&mut self, sites: usize) -> Vec<StressRange> {
-        let none = StressRange { low: Stress6::new([0.0; 6]), high: Stress6::new([0.0; 6]) };
-        let mut all = vec![none; sites * self.columns.len()];
-        for (site, out) in all.chunks_exact_mut(self.columns.len()).enumerate() {
-            self.ranges(site, out);
-        }
-        all
+        Self { operator, columns: windows.iter().map(|window| operator.columns(of(window))).collect(), middles, halves }
     }
 }
 
 impl Samples for Sampled<'_> {
     fn ranges(&mut self, site: usize, out: &mut [StressRange]) {
-        if let Some(known) = self.known {
-            out.copy_from_slice(&known[site * out.len()..][..out.len()]);
-            return;
-        }
         let middle = self.operator.product::<false>(site, &self.middles);
         let half = self.operator.product::<true>(site, &self.halves);
         let [mut low, mut high] = [[[0.0; LANES]; 6]; 2];

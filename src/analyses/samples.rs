@@ -1,16 +1,25 @@
 //! The stresses of a plate that is marched, as its criteria see them, and all that a march showed them.
 
 use super::expansion::Expansion;
-use super::operator::{LANES, SURVEYED, Sampled, StressOperator};
-use super::stress::{build_recovery, recover, residual, sites};
+use super::kept::KeptPart;
+use super::operator::{LANES, SURVEYED, Sampled, StressOperator, put};
+use super::stress::{build_recovery, of_cells, recover, residual, sites};
 use crate::error::Error;
 use crate::forecast::Demand;
-use crate::model::Model;
+use crate::model::{Model, NamedCriterion};
 use fem_core::failure::StressRange;
+use fem_core::material::Material;
 use fem_core::recovery::Recovery;
-use fem_failure::scan::{Scan, ScanError};
+use fem_core::tensor::{Ply, Stress6};
+use fem_failure::scan::{Extremes, Hulls, Samples, Scan, ScanError, ScanSite, windows};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
+
+/// Instants of a march at which it is asked where the plate is hot.
+const INSTANTS: usize = 64;
+
+/// Cells in which stresses that were kept are held against those that are computed.
+const LOOKED_AT: usize = 8;
 
 /// What the criteria see of a plate, whatever strikes it.
 #[derive(Debug)]
@@ -40,12 +49,55 @@ impl PlateStresses {
         if let Some((basis, modes)) = expansion.basis().filter(|_| !model.effects.nature().large)
             && 6 * recovery.sites() * modes * size_of::<f64>() <= Demand::OPERATOR_LIMIT
         {
+            let kept = KeptPart::of_stresses(model);
+            if let Some(rows) = kept.as_ref().and_then(KeptPart::read) {
+                let operator = StressOperator::of_rows(rows, recovery.sites(), modes, residual.clone());
+                match operator {
+                    Some(operator) if agrees(model, &recovery, &operator, expansion, basis)? => {
+                        return Ok(Self { recovery, way: Way::Product(operator) });
+                    }
+                    _ => kept.iter().for_each(|kept| kept.refuse("its stresses are not those of the plate")),
+                }
+            }
             let mut product = vec![0.0; 6 * recovery.sites() * modes];
             recover(model, &recovery, &expansion.nodal(basis), modes, None, &mut product)?;
-            return Ok(Self { recovery, way: Way::Product(StressOperator::new(&product, modes, residual)) });
+            let operator = StressOperator::new(&product, modes, residual);
+            if let Some(kept) = &kept {
+                kept.write(&operator.rows());
+            }
+            return Ok(Self { recovery, way: Way::Product(operator) });
         }
         Ok(Self { recovery, way: Way::Recovery(residual) })
     }
+}
+
+/// Whether the rows of `operator` give the stresses of a combination of all modes in some cells, [`LOOKED_AT`].
+///
+/// # Errors
+/// A cell that the element refuses.
+fn agrees(
+    model: &Model,
+    recovery: &Recovery,
+    operator: &StressOperator,
+    expansion: &Expansion<'_>,
+    basis: &[f64],
+) -> Result<bool, Error> {
+    let modes = operator.width();
+    let q: Vec<f64> = (0..modes).map(|k| 1.0 / (1.0 + k as f64)).collect();
+    let mut u = vec![0.0; basis.len() / modes];
+    for (q, mode) in q.iter().zip(basis.chunks_exact(u.len())) {
+        u.iter_mut().zip(mode).for_each(|(u, mode)| *u += q * mode);
+    }
+    let count = model.watched.len();
+    let mut chosen: Vec<usize> = (0..LOOKED_AT).map(|k| k * count.saturating_sub(1) / (LOOKED_AT - 1)).collect();
+    chosen.dedup();
+    let quads: Vec<usize> = chosen.iter().filter_map(|k| model.watched.get(*k)).copied().collect();
+    let some = of_cells(model, &quads);
+    let mut field = vec![0.0; 6 * some.sites()];
+    recover(model, &some, &expansion.nodal(&u), 1, None, &mut field)?;
+    let begin = |k: usize| (0..k).map(|k| recovery.stations_over(k).len()).sum::<usize>();
+    let sites = chosen.iter().take(quads.len()).flat_map(|k| begin(*k)..begin(k + 1));
+    Ok(operator.gives(sites, &q, &field))
 }
 
 /// The coordinates that a plate had at the samples of a march, from which its stresses are judged.
@@ -54,31 +106,84 @@ pub struct PlateSamples {
     of_plate: Arc<PlateStresses>,
     times: Vec<f64>,
     coordinates: Vec<f64>,
-    /// Of each batch the ranges of all sites, which are the same for all strengths: made once they are wanted again.
-    ranges: OnceLock<Vec<Vec<StressRange>>>,
+    /// What is the same for all strengths: made once it is wanted; `None` where it cannot be, or would be too large.
+    hulls: OnceLock<Option<Hulls>>,
 }
 
 impl PlateSamples {
     /// Of a plate that had these `coordinates` at `times`, s.
     pub(super) fn new(of_plate: Arc<PlateStresses>, times: Vec<f64>, coordinates: Vec<f64>) -> Self {
-        Self { of_plate, times, coordinates, ranges: OnceLock::new() }
+        Self { of_plate, times, coordinates, hulls: OnceLock::new() }
     }
 
-    /// Events and peaks by the criteria and strengths of `model`, which is that of the march but for these.
+    /// First and largest indices by these criteria and materials, which have the march that was sampled; `None` where it has to be
+    /// marched for that.
     ///
     /// # Errors
     /// A criterion whose material lacks a constant, a stress or an index that is not finite.
-    pub(super) fn judge(&self, model: &Model) -> Result<Scan, Error> {
-        let mut scan = Scan::new(model.criteria.clone(), sites(&self.of_plate.recovery), model.materials.clone())?;
-        let all =
-            || self.batches().filter_map(|batch| Some(self.sampled(batch)?.all_ranges(scan.sites().len()))).collect();
-        let of_window = scan.sites().len() * size_of::<StressRange>();
-        let known = match self.times.len() / (LANES - 1) * of_window <= Demand::OPERATOR_LIMIT {
-            true => self.ranges.get_or_init(all).as_slice(),
-            false => &[],
+    pub(super) fn judge(&self, criteria: &[NamedCriterion], materials: &[Material]) -> Result<Option<Extremes>, Error> {
+        let Way::Product(operator) = &self.of_plate.way else { return Ok(None) };
+        let Some(hulls) = self.hulls.get_or_init(|| self.make_hulls()) else { return Ok(None) };
+        let stresses = |site: usize, window: usize, out: &mut [Stress6<Ply>]| {
+            let batch = self.batches().nth(window / LANES).unwrap_or_default();
+            let within = windows(batch.len()).nth(window % LANES).unwrap_or_default();
+            let columns = operator.columns(self.coordinates(batch.start + within.start..batch.start + within.end));
+            put(&operator.stresses(site, &columns), out);
         };
-        self.survey(&mut scan, known)?;
-        Ok(scan)
+        Ok(Some(hulls.judge(criteria, materials, &stresses)?))
+    }
+
+    fn make_hulls(&self) -> Option<Hulls> {
+        let sites = sites(&self.of_plate.recovery);
+        let all = |batch: Range<usize>| windows(batch.len()).map(move |w| batch.start + w.start..batch.start + w.end);
+        let windows: Vec<Range<usize>> = self.batches().flat_map(all).collect();
+        if Hulls::size(sites.len(), windows.len()) > Demand::OPERATOR_LIMIT {
+            return None;
+        }
+        let mut sampled: Vec<Sampled<'_>> = self.batches().filter_map(|batch| self.sampled(batch)).collect();
+        let ranges = |site: usize, out: &mut [StressRange]| {
+            sampled.iter_mut().zip(out.chunks_mut(LANES)).for_each(|(batch, out)| batch.ranges(site, out));
+        };
+        Hulls::new(sites, self.times.clone(), windows, ranges)
+    }
+
+    /// Where the stresses are judged.
+    pub(super) fn sites(&self) -> Vec<ScanSite> {
+        sites(&self.of_plate.recovery)
+    }
+
+    /// Raises the score of each place to the largest share, over instants of the march, that an index of `model` has there in the largest
+    /// index of its mode at that instant; instants at which that is below what is `warm` for the mode (criterion, mode) do not count.
+    pub(super) fn add_hotness(&self, model: &Model, warm: &dyn Fn(&str, &str) -> f64, scores: &mut Vec<f64>) {
+        let Way::Product(operator) = &self.of_plate.way else { return };
+        let (sites, width) = (self.sites(), self.coordinates.len() / self.times.len().max(1));
+        scores.resize(sites.len(), 0.0);
+        let chosen: Vec<usize> = (0..INSTANTS).map(|k| k * self.times.len() / INSTANTS).collect();
+        for batch in chosen.chunks(LANES) {
+            let at: Vec<f64> =
+                batch.iter().flat_map(|k| &self.coordinates[k * width..(k + 1) * width]).copied().collect();
+            let (columns, mut stresses) = (operator.columns(&at), [Stress6::new([0.0; 6]); LANES]);
+            for (name, criterion) in &model.criteria {
+                let info = criterion.info();
+                let modes = info.modes.len();
+                let judged: Vec<usize> = (0..sites.len()).filter(|i| sites[*i].place.site() == info.site).collect();
+                let mut indices = vec![0.0; modes * batch.len() * judged.len()];
+                for (site, out) in judged.iter().zip(indices.chunks_exact_mut(modes * batch.len())) {
+                    put(&operator.stresses(*site, &columns), &mut stresses);
+                    let material = &model.materials[usize::from(sites[*site].material)];
+                    for (stress, out) in stresses.iter().zip(out.chunks_exact_mut(modes)) {
+                        criterion.indices(stress, material, out);
+                    }
+                }
+                for lane in 0..modes * batch.len() {
+                    let of = || indices.iter().skip(lane).step_by(modes * batch.len());
+                    let largest = of().fold(0.0_f64, |a, b| a.max(*b));
+                    if largest > warm(name, info.modes[lane % modes]) {
+                        judged.iter().zip(of()).for_each(|(site, v)| scores[*site] = scores[*site].max(v / largest));
+                    }
+                }
+            }
+        }
     }
 
     /// Each begins with the last sample of the one before.
@@ -87,18 +192,25 @@ impl PlateSamples {
         (0..count.saturating_sub(1).max(1)).step_by(SURVEYED - 1).map(move |start| start..(start + SURVEYED).min(count))
     }
 
+    fn coordinates(&self, samples: Range<usize>) -> &[f64] {
+        let width = self.coordinates.len() / self.times.len().max(1);
+        &self.coordinates[samples.start * width..samples.end * width]
+    }
+
     /// `None` where the stresses are no product with the coordinates, of which none are kept.
     fn sampled(&self, batch: Range<usize>) -> Option<Sampled<'_>> {
         let Way::Product(operator) = &self.of_plate.way else { return None };
-        let width = self.coordinates.len() / self.times.len().max(1);
-        Some(Sampled::new(operator, &self.coordinates[batch.start * width..batch.end * width], batch.len()))
+        Some(Sampled::new(operator, self.coordinates(batch.clone()), batch.len()))
     }
 
-    /// `known` are the ranges of each batch, or none.
-    pub(super) fn survey(&self, scan: &mut Scan, known: &[Vec<StressRange>]) -> Result<(), ScanError> {
-        for (number, batch) in self.batches().enumerate() {
-            let Some(sampled) = self.sampled(batch.clone()) else { continue };
-            scan.survey(&self.times[batch], &mut sampled.knowing(known.get(number).map(Vec::as_slice)))?;
+    /// Shows all samples to `scan`.
+    ///
+    /// # Errors
+    /// A stress or an index that is not finite.
+    pub(super) fn survey(&self, scan: &mut Scan) -> Result<(), ScanError> {
+        for batch in self.batches() {
+            let Some(mut sampled) = self.sampled(batch.clone()) else { continue };
+            scan.survey(&self.times[batch], &mut sampled)?;
         }
         Ok(())
     }

@@ -1,8 +1,9 @@
 //! Displacements, stresses and margins under loads at rest.
 
 use super::assembled::{self, Substructures};
+pub use super::path::{Followed, PathState};
 use super::stress::{self, Margin};
-use super::supports;
+use super::{path, supports};
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::{Model, NamedProfile, Plan};
@@ -16,6 +17,7 @@ use fem_core::field::Field as Displacements;
 use fem_core::functional::Functional;
 use fem_core::profile::{Choice, ProfilePoint, Resultants};
 use fem_core::structure::Structure;
+use fem_dynamics::lifting::{self, Lifting, OneSided};
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
@@ -33,6 +35,8 @@ pub struct StaticSolution {
     pub substructures: Option<Substructures>,
     /// Entries of the factor of K.
     pub factor_entries: usize,
+    /// The preload over the one that buckles the plate, of small displacements ([`Assembled::buckling`](assembled::Assembled::buckling)).
+    pub buckling: Option<f64>,
     /// ½ uᵀ K u, J, or ½ ∫ Eᵀ C E dV.
     pub strain_energy: f64,
     /// Work lost in the plies, J, where some follow a law.
@@ -40,8 +44,10 @@ pub struct StaticSolution {
     /// ‖f − K u‖ / ‖f‖ of the independent unknowns, K u being the internal force.
     pub residual: f64,
     /// Condition number of K, or of its tangent at the end, estimated
-    /// ([`condition`](fem_core::assembly::SparseStructure::condition)).
-    pub condition: f64,
+    /// ([`condition`](fem_core::assembly::SparseStructure::condition)); not of a plate that comes apart.
+    pub condition: Option<f64>,
+    /// The path that the loads have taken, where interfaces may open.
+    pub followed: Option<Followed>,
     /// Under large deflections, the Newton decrement of each iteration
     /// ([`Equilibrium::decrements`](fem_core::assembly::Equilibrium::decrements)).
     pub decrements: Option<Vec<f64>>,
@@ -72,11 +78,13 @@ struct Found {
     independent: Vec<f64>,
     substructures: Option<Substructures>,
     factor_entries: usize,
+    buckling: Option<f64>,
     energy: Energy,
     residual: f64,
-    condition: f64,
+    condition: Option<f64>,
     softness: Option<f64>,
     decrements: Option<Vec<f64>>,
+    followed: Option<Followed>,
 }
 
 impl Found {
@@ -90,11 +98,13 @@ impl Found {
             independent: found.u,
             substructures: None,
             factor_entries: 0,
+            buckling: None,
             energy: found.energy,
             residual: found.residual,
-            condition: found.condition,
+            condition: Some(found.condition),
             softness: None,
             decrements: Some(found.decrements),
+            followed: None,
         }
     }
 }
@@ -105,7 +115,7 @@ impl Found {
 /// A scene without loads at rest, a cell that the element refuses, a structure that is not held, buckles or is too
 /// ill-conditioned, a result that is not finite, a criterion whose material lacks a constant.
 pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Error> {
-    let Plan::Static { forces } = &model.plan else { return Err(Error::NoLoads) };
+    let Plan::Static { forces, .. } = &model.plan else { return Err(Error::NoLoads) };
     if model.effects.undecided() {
         return Err(Error::Undecided);
     }
@@ -116,17 +126,24 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
     let nodal: Vec<(usize, f64)> = forces.iter().copied().enumerate().filter(|(_, force)| *force != 0.0).collect();
     let mut f = vec![0.0; constraints.ndof()];
     Functional(constraints.restrict(&nodal)).add_to(1.0, &mut f);
-    let resultant = [1, 2, 3].map(|n| {
+    let mut resultant = [1, 2, 3].map(|n| {
         let along = |(dof, f): (usize, &f64)| if model.plate.locate(dof).2 == dof_of(n) { *f } else { 0.0 };
         forces.iter().enumerate().map(along).sum()
     });
     let nature = model.effects.nature();
     let solver = match &model.laws {
+        _ if model.separation.is_some() => followed,
         Some(_) => lawful,
         None if nature.large => nonlinear,
+        None if model.one_sided().next().is_some() => lifting,
         None => linear,
     };
     let found = solver(model, &f, threads, &mut counters, &mut stopwatch)?;
+    if let Plan::Static { path: Some(plan), .. } = &model.plan {
+        // What is left of the forces of the scene at the end of the path.
+        let scale = found.followed.as_ref().and_then(|path| path.states.last()).map_or(1.0, |state| state.force);
+        resultant = resultant.map(|force| force * scale / plan.unit);
+    }
     if !found.energy.total().is_finite() {
         return Err(Error::NotFinite("displacement"));
     }
@@ -157,7 +174,7 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
     let (profiles, transverse) = sampled.into_iter().unzip();
     stopwatch.lap("stresses");
     // The estimate sees only strains that cause stress.
-    let mesh_error = if nature.large || nature.strained || model.laws.is_some() {
+    let mesh_error = if nature.large || nature.strained || model.laws.is_some() || model.separation.is_some() {
         None
     } else {
         mesh_errors(&model.plate, &*model.element, &model.constraints, &u)?
@@ -170,10 +187,12 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
         unknowns: constraints.ndof(),
         substructures: found.substructures,
         factor_entries: found.factor_entries,
+        buckling: found.buckling,
         strain_energy: found.energy.stored,
-        dissipated: model.laws.as_ref().map(|_| found.energy.dissipated),
+        dissipated: (model.laws.is_some() || model.separation.is_some()).then_some(found.energy.dissipated),
         residual: found.residual,
         condition: found.condition,
+        followed: found.followed,
         softness: found.softness,
         decrements: found.decrements,
         u,
@@ -228,10 +247,50 @@ fn linear(
         independent,
         substructures: assembled.substructures(),
         factor_entries: assembled.factor_entries,
+        buckling: assembled.buckling,
         residual: norm(&rest) / norm(&f).max(f64::MIN_POSITIVE),
-        condition,
+        condition: Some(condition),
         softness,
         decrements: None,
+        followed: None,
+    })
+}
+
+/// On springs that only push.
+fn lifting(
+    model: &Model,
+    f: &[f64],
+    threads: NonZeroUsize,
+    counters: &mut Counters,
+    stopwatch: &mut Stopwatch,
+) -> Result<Found, Error> {
+    let assembled = assembled::structure(model, false, threads, counters)?;
+    stopwatch.lap("assemble");
+    let (mut structure, factor_entries, buckling) = (assembled.structure, assembled.factor_entries, assembled.buckling);
+    let springs = model.one_sided().map(|spring| OneSided { at: spring.at.clone(), stiffness: spring.stiffness });
+    let mut lifting = Lifting::new(springs.collect());
+    let mut independent = f.to_vec();
+    structure.solve_shifted(0.0, &mut independent, 1)?;
+    lifting::at_rest(&mut lifting, &mut independent, |x, columns| structure.solve_shifted(0.0, x, columns))?;
+    let mut rest = f.to_vec();
+    structure.add_stiffness(-1.0, &independent, &mut rest);
+    lifting.add_forces(&independent, &mut rest);
+    let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let condition = structure.condition()?;
+    (counters.factorisations, counters.solves) = structure.work();
+    // The force is not linear in the displacements, and homogeneous of degree one.
+    let stored = 0.5 * f.iter().zip(&independent).map(|(f, u)| f * u).sum::<f64>();
+    Ok(Found {
+        energy: Energy { stored, dissipated: 0.0 },
+        independent,
+        substructures: None,
+        factor_entries,
+        buckling,
+        residual: norm(&rest) / norm(f).max(f64::MIN_POSITIVE),
+        condition: Some(condition),
+        softness: None,
+        decrements: None,
+        followed: None,
     })
 }
 
@@ -257,6 +316,33 @@ fn nonlinear(
     };
     let found = equilibrium(&mut large, symbolic, f, start, threads)?;
     Ok(Found { factor_entries, ..Found::of(found, large.integrated(), counters) })
+}
+
+/// Interfaces that open, step by step.
+fn followed(
+    model: &Model,
+    _: &[f64],
+    threads: NonZeroUsize,
+    counters: &mut Counters,
+    stopwatch: &mut Stopwatch,
+) -> Result<Found, Error> {
+    let (Some(separation), Plan::Static { path: Some(plan), .. }) = (&model.separation, &model.plan) else {
+        return Err(Error::NoLoads);
+    };
+    let path::End { followed, u, factor_entries, last } =
+        path::follow(model, (plan, separation), threads, counters, stopwatch)?;
+    Ok(Found {
+        independent: u,
+        substructures: None,
+        factor_entries,
+        buckling: None,
+        energy: last.energy,
+        residual: last.residual,
+        condition: None,
+        softness: None,
+        decrements: None,
+        followed: Some(followed),
+    })
 }
 
 /// Plies that follow laws: all of the load at once, on a plate to which nothing has happened.

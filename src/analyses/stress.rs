@@ -6,7 +6,7 @@ use super::samples::{PlateSamples, PlateStresses, Way};
 use crate::error::Error;
 use crate::forecast::Demand;
 use crate::model::{Model, NamedCriterion};
-use crate::words::name_ply;
+use crate::words::name_ply_of;
 use fem_core::failure::Site;
 use fem_core::laws::PlyLaws;
 use fem_core::recovery::{Recovery, Station};
@@ -77,7 +77,7 @@ pub(super) struct Record {
 
 impl<'a> Watch<'a> {
     /// Prepares the scan of `model`, which is marched in the coordinates of `expansion`; with `firsts_alone` it judges only what can
-    /// be first or largest, where the stresses are products and no single place is followed. It then cannot be saved.
+    /// be first or largest, where the stresses are products and no single place is followed.
     ///
     /// # Errors
     /// A criterion whose material lacks a constant.
@@ -89,10 +89,9 @@ impl<'a> Watch<'a> {
     ) -> Result<Self, Error> {
         let recovery = &of_plate.recovery;
         let scan = Scan::new(model.criteria.clone(), sites(recovery), model.materials.clone())?;
-        let of_cells = model.watched.len() * recovery.stations.len();
+        let of_cells = (0..model.watched.len()).map(|window| recovery.sites_over(window).len()).sum();
         let (probes, histories): (Vec<_>, Vec<_>) = gauges(model, &scan, of_cells).into_iter().unzip();
         let sparing = firsts_alone && histories.is_empty() && matches!(of_plate.way, Way::Product(_));
-        let stresses = if sparing { 0 } else { 6 * recovery.sites() * Demand::BATCH };
         Ok(Self {
             model,
             expansion,
@@ -101,7 +100,7 @@ impl<'a> Watch<'a> {
             probes,
             scan,
             record: Record { histories, ..Record::default() },
-            stresses: vec![0.0; stresses],
+            stresses: Vec::new(),
             states: vec![Stress6::new([0.0; 6]); recovery.sites()],
             of_plate,
         })
@@ -115,7 +114,7 @@ impl<'a> Watch<'a> {
         self.record.points.extend_from_slice(points);
         self.record.times.push(t);
         self.record.waiting.extend_from_slice(coordinates);
-        if !self.sparing && self.record.times.len() == Demand::BATCH { self.flush() } else { Ok(()) }
+        if !self.sparing && self.record.times.len() >= Demand::BATCH { self.flush() } else { Ok(()) }
     }
 
     /// Scans the samples still waiting.
@@ -126,12 +125,19 @@ impl<'a> Watch<'a> {
         if self.sparing {
             let Record { times, waiting, .. } = std::mem::take(&mut self.record);
             let samples = PlateSamples::new(Arc::clone(&self.of_plate), times, waiting);
-            return Ok(self.samples.insert(samples).survey(&mut self.scan, &[])?);
+            return Ok(self.samples.insert(samples).survey(&mut self.scan)?);
         }
         let [times, waiting, points] =
             [&mut self.record.times, &mut self.record.waiting, &mut self.record.points].map(std::mem::take);
         let mut stresses = std::mem::take(&mut self.stresses);
-        let done = self.scan_batch(&times, &waiting, &points, &mut stresses);
+        stresses.resize(6 * self.sites() * Demand::BATCH, 0.0);
+        let [width, states] = [&waiting, &points].map(|all| all.len() / times.len().max(1));
+        // A watch that judged all samples at its end may have left more of them than a batch.
+        let done = (0..).step_by(Demand::BATCH).zip(times.chunks(Demand::BATCH)).try_for_each(|(first, times)| {
+            let end = first + times.len();
+            let (waiting, points) = (&waiting[first * width..end * width], &points[first * states..end * states]);
+            self.scan_batch(times, waiting, points, &mut stresses)
+        });
         self.stresses = stresses;
         done
     }
@@ -229,14 +235,14 @@ impl<'a> Watch<'a> {
             let sound = then.indices.len() == then.times.len() * modes;
             sound && (now.criterion, now.site) == (then.criterion, then.site)
         };
-        let fits = count < Demand::BATCH
-            && record.waiting.len() == count * width
+        let fits = record.waiting.len() == count * width
             && record.points.len() == count * states
             && record.histories.len() == self.record.histories.len()
             && self.record.histories.iter().zip(&record.histories).all(same)
             && self.scan.resume(scan);
         if fits {
             self.record = record;
+            self.sparing &= !self.scan.has_begun();
         }
         fits
     }
@@ -301,7 +307,7 @@ pub(crate) fn margins(model: &Model, u: &[f64]) -> Result<Vec<Margin>, Error> {
             mode: criterion.info().modes[mode].to_owned(),
             reserve_factor,
             cell: model.plate.plane.quad_tags[site.cell as usize],
-            ply: name_ply(site.place),
+            ply: name_ply_of(site.place, model.region_of(site.cell as usize)),
             x_m: site.position[0],
             y_m: site.position[1],
             z_m: site.position[2],
@@ -363,9 +369,17 @@ pub(crate) fn recover(
 
 /// Where the criteria look.
 pub(super) fn build_recovery(model: &Model) -> Recovery {
-    // Where nobody looks there is nothing to recover.
-    let looks = model.criteria.iter().any(|(_, criterion)| criterion.info().site == Site::Interface);
-    recovery(model, &model.watched, &model.centres, looks)
+    recovery(model, &model.watched, &model.centres, looks_between(model))
+}
+
+/// The same in `quads` alone.
+pub(super) fn of_cells(model: &Model, quads: &[usize]) -> Recovery {
+    recovery(model, quads, &[], looks_between(model))
+}
+
+/// Whether a criterion looks between plies: where nobody looks there is nothing to recover.
+pub(super) fn looks_between(model: &Model) -> bool {
+    model.criteria.iter().any(|(_, criterion)| criterion.info().site == Site::Interface)
 }
 
 /// The stresses of `quads` as the criteria see them, and those around further `centres`; those of interfaces where these are wanted

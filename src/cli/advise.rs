@@ -7,7 +7,6 @@ use crate::model::Model;
 use crate::registry::Registry;
 use clap::Args;
 use serde::Serialize;
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -16,9 +15,8 @@ use std::process::ExitCode;
 pub(super) struct Arguments {
     /// Scene file (TOML) of an impact.
     scene: PathBuf,
-    /// Threads for the integration of element matrices; results do not depend on it.
-    #[arg(long, value_name = "N", default_value = "1", value_parser = super::threads)]
-    threads: NonZeroUsize,
+    #[command(flatten)]
+    threads: super::Threads,
     #[command(flatten)]
     format: Format,
 }
@@ -57,7 +55,7 @@ struct Document<'a> {
 
 pub(super) fn advise(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let model = read_scene(&arguments.scene, &[]).and_then(|scene| Model::new(scene, registry))?;
-    let all = advise::advise(&model, arguments.threads).inspect_err(|_| console.warn(&model.warnings))?;
+    let all = advise::advise(&model, arguments.threads.count()).inspect_err(|_| console.warn(&model.warnings))?;
     let title = &model.origin.title;
     let data = Document { title, impact: all.iter().map(Said::from).collect(), warnings: &model.warnings };
     let text = || format!("{title}\n{}", all.iter().map(ToString::to_string).collect::<String>());

@@ -13,11 +13,12 @@ use crate::registry::Registry;
 use crate::words::{append_symmetry, describe_condition, warn_of_condition, warn_of_softness};
 use clap::Args;
 use fem_core::counters::Counters;
+use fem_core::laminate::Laminate;
 use fem_core::plugin::Dimension;
 use fem_core::time::StepLimit;
 use fem_io::scene::{self, Explained};
 use serde::Serialize;
-use std::fmt::Write as _;
+use std::fmt::{self, Display, Write as _};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -66,6 +67,9 @@ struct Checked {
     plies: usize,
     thickness_mm: f64,
     layers: usize,
+    /// Regions, where plies of one number do not lie at one height in all of them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    regions: Vec<RegionSize>,
     unknowns: usize,
     unknowns_before_constraints: usize,
     redundant_equations: usize,
@@ -100,6 +104,46 @@ struct Checked {
     not_looked_at: Vec<&'static str>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     keys: Vec<Explained>,
+}
+
+/// A region of a plate whose regions differ in their heights.
+#[derive(Serialize)]
+struct RegionSize {
+    name: String,
+    quads: usize,
+    plies: usize,
+    /// Heights of its faces.
+    z_mm: [f64; 2],
+    layers: usize,
+}
+
+impl RegionSize {
+    fn all(model: &Model) -> Vec<Self> {
+        let plate = &model.plate;
+        let of = |(region, (name, laminate)): (usize, (&String, &Laminate))| {
+            let z = laminate.boundaries();
+            Self {
+                name: name.clone(),
+                quads: (0..plate.plane.quads.len()).filter(|quad| plate.region(*quad) == region).count(),
+                plies: laminate.plies.len(),
+                z_mm: [z[0], z[z.len() - 1]].map(|z| z * 1e3),
+                layers: laminate.layers.len(),
+            }
+        };
+        model.region_names.iter().zip(&model.laminates).enumerate().map(of).collect()
+    }
+}
+
+/// "`patch`: 16 plies in 3 layers of cells, z from -1.04 mm to 1.04 mm, over 24 of the mesh".
+impl Display for RegionSize {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, quads, plies, z_mm, layers } = self;
+        let [low, high] = z_mm.map(|z| Dimension::LENGTH.of(z * 1e-3));
+        write!(
+            f,
+            "`{name}`: {plies} plies in {layers} layers of cells, z from {low} to {high}, over {quads} of the mesh"
+        )
+    }
 }
 
 #[derive(Serialize)]
@@ -254,6 +298,7 @@ fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Resul
         plies: model.laminate.plies.len(),
         thickness_mm: model.laminate.thickness() * 1e3,
         layers: model.plate.layers(),
+        regions: RegionSize::all(&model),
         unknowns: model.constraints.ndof(),
         unknowns_before_constraints: model.plate.ndof(),
         redundant_equations: model.constraints.redundant.len(),
@@ -300,6 +345,7 @@ impl Checked {
             ("plate", format!("{plies} plies, {thickness}, {layers} layers of cells")),
             ("unknowns", format!("{unknowns} of {} after constraints{redundant}", self.unknowns_before_constraints)),
         ];
+        lines.splice(2..2, self.regions.iter().map(|region| ("region", region.to_string())));
         lines.extend(self.memory.as_ref().map(|memory| {
             let megabytes = memory.bytes() * 1e-6;
             ("memory", format!("about {megabytes:.0} MB at the peak: {memory}"))

@@ -1,10 +1,10 @@
 //! `fem lamcel`, `fem lamsub`, `fem tradyr` and `fem deck`.
 
-use super::envelope::criteria;
 use super::run::default_folder;
 use super::{Console, Format};
 use crate::cost::Provenance;
 use crate::decks::{self, DeckOptions, DeckOutcome, Project, Shown, UnitSystem};
+use crate::envelope::criteria;
 use crate::error::Error;
 use crate::registry::Registry;
 use clap::{Args, Subcommand};

@@ -1,7 +1,7 @@
 //! `fem laminate`.
 
-use super::envelope::criteria;
 use super::{Console, Format};
+use crate::envelope::criteria;
 use crate::model::NamedCriterion;
 use crate::registry::Registry;
 use clap::Args;
@@ -40,10 +40,10 @@ pub(super) struct Arguments {
     /// Thickness of a ply with its unit.
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     ply_thickness: Option<f64>,
-    /// Forces per length along 11, 22, 12, N/mm.
+    /// Forces per length, N11, N22, N12, N/mm.
     #[arg(long, value_name = "N11,N22,N12", value_delimiter = ',', num_args = 1, allow_hyphen_values = true)]
     force: Vec<f64>,
-    /// Moments per length 11, 22, 12, N mm/mm.
+    /// Moments per length, M11, M22, M12, N mm/mm.
     #[arg(long, value_name = "M11,M22,M12", value_delimiter = ',', num_args = 1, allow_hyphen_values = true)]
     moment: Vec<f64>,
     /// Criteria of the first failure, parameters after colons [default: tsai-wu, or those of the scene]
@@ -210,7 +210,7 @@ fn of_layup(arguments: &Arguments) -> miette::Result<(Laminate, Vec<Material>)> 
     let ply = |angle_deg: f64| LaminaPly { angle: angle_deg.to_radians(), angle_deg, thickness, material: 0 };
     let plies: Vec<_> = plies.iter().map(|of_layup| ply(of_layup.angle_deg)).collect();
     let layers = vec![plies.len()];
-    Ok((Laminate { plies, layers }, vec![material.material.clone()]))
+    Ok((Laminate { plies, layers, middle: 0.0 }, vec![material.material.clone()]))
 }
 
 /// Three components; none are three zeros.

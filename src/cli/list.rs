@@ -5,6 +5,7 @@ use crate::registry::Registry;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use fem_core::element::Tables;
+use fem_core::material::{Material, Strength, Toughness};
 use fem_core::plugin::{Built, Kind, ParamDefault, ParamForm, ParamInfo, Params, PluginInfo};
 use fem_io::materials::{self, LibraryMaterial};
 use fem_io::scene::{Absent, EFFECT_SETTINGS, Form, Key};
@@ -14,11 +15,14 @@ use std::ops::Bound;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
-#[command(after_help = "Example: fem list contact-laws")]
+#[command(after_help = "Examples:\n  fem list contact-laws\n  fem list materials --complete-for delamination")]
 pub(super) struct Arguments {
     /// What to list.
     #[arg(value_parser = topics())]
     what: String,
+    /// Only materials that give all that this needs.
+    #[arg(long, value_name = "USE", value_parser = uses())]
+    complete_for: Option<String>,
     #[command(flatten)]
     format: Format,
 }
@@ -32,6 +36,69 @@ fn topics() -> PossibleValuesParser {
     let others = [(EFFECTS, "`effects`"), (MATERIALS, "`library` of a material")];
     let topic = |(name, purpose)| PossibleValue::new(name).help(format!("For {purpose}"));
     kinds.chain(others).map(topic).collect::<Vec<_>>().into()
+}
+
+/// What materials may be used for.
+struct Use {
+    name: &'static str,
+    needs: &'static str,
+    strengths: &'static [Strength],
+    toughnesses: &'static [Toughness],
+    others: fn(&Material) -> bool,
+}
+
+impl Use {
+    /// Whether a material gives all that it needs.
+    fn is_met(&self, material: &Material) -> bool {
+        let Self { strengths, toughnesses, others, .. } = self;
+        material.require(strengths, "").is_ok()
+            && material.require_toughness(toughnesses, "").is_ok()
+            && others(material)
+    }
+}
+
+const OF_PLIES: &[Strength] = &[Strength::Xt, Strength::Xc, Strength::Yt, Strength::Yc, Strength::S12, Strength::S23];
+
+const USES: [Use; 5] = [
+    Use {
+        name: "impact",
+        needs: "a plate that moves: density",
+        strengths: &[],
+        toughnesses: &[],
+        others: |material| material.density.is_some(),
+    },
+    Use {
+        name: "failure",
+        needs: "criteria of plies: Xt Xc Yt Yc S12 S23",
+        strengths: OF_PLIES,
+        toughnesses: &[],
+        others: |_| true,
+    },
+    Use {
+        name: "delamination",
+        needs: "interfaces that open: Zt S13 GIc GIIc",
+        strengths: &[Strength::Zt, Strength::S13],
+        toughnesses: &[Toughness::GIc, Toughness::GIIc],
+        others: |_| true,
+    },
+    Use {
+        name: "damage",
+        needs: "plies that crack: strengths as for failure, Gft Gfc Gmt Gmc",
+        strengths: OF_PLIES,
+        toughnesses: &[Toughness::Gft, Toughness::Gfc, Toughness::Gmt, Toughness::Gmc],
+        others: |_| true,
+    },
+    Use {
+        name: "cure",
+        needs: "residual stresses: thermal expansion",
+        strengths: &[],
+        toughnesses: &[],
+        others: |material| material.expansion.is_some(),
+    },
+];
+
+fn uses() -> PossibleValuesParser {
+    USES.iter().map(|of| PossibleValue::new(of.name).help(of.needs)).collect::<Vec<_>>().into()
 }
 
 /// A thing that a scene can name.
@@ -79,15 +146,28 @@ struct Constant {
     value: &'static str,
     status: String,
     source: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    range: Option<&'static [String; 2]>,
 }
 
 pub(super) fn list(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
+    let wanted = arguments.complete_for.as_ref().and_then(|wanted| USES.iter().find(|of| of.name == wanted));
+    if wanted.is_some() && arguments.what != MATERIALS {
+        return Err(miette::miette!(
+            help = "fem list materials --complete-for delamination",
+            "`--complete-for` is of materials, not of {}",
+            arguments.what
+        ));
+    }
     let entries: Vec<Entry> = match arguments.what.as_str() {
         EFFECTS => {
             let settings = EFFECT_SETTINGS.iter().map(|setting| Entry::effect(&setting.key, setting.source));
             settings.chain(registry.effects().map(|info| Entry::effect(&info.key, info.source))).collect()
         }
-        MATERIALS => materials::names().filter_map(materials::library).map(Entry::from).collect(),
+        MATERIALS => {
+            let complete = |m: &&LibraryMaterial| wanted.is_none_or(|of| of.is_met(&m.material));
+            materials::names().filter_map(materials::library).filter(complete).map(Entry::from).collect()
+        }
         plural => {
             let kinds = Kind::ALL.iter().filter(|kind| kind.plural() == plural);
             let entry = |info: PluginInfo| Entry { stands_on: stands_on(registry, &info), ..Entry::from(&info) };
@@ -119,7 +199,10 @@ impl Entry {
         let stands_on = Some(self.stands_on).filter(|cells| !cells.is_empty());
         lines.extend(stands_on.map(|cells| format!("{:<20}   stands on {cells}", "")));
         lines.extend(self.parameters.iter().map(|p| format!("{:<20}   {}: {}", "", p.name, p.text)));
-        let constant = |c: &Constant| format!("{:<20}   {}: {}, {} [{}]", "", c.name, c.value, c.status, c.source);
+        let constant = |c: &Constant| {
+            let range = c.range.map_or_else(String::new, |[low, high]| format!(" ({low} to {high})"));
+            format!("{:<20}   {}: {}{range}, {} [{}]", "", c.name, c.value, c.status, c.source)
+        };
         lines.extend(self.constants.iter().map(constant));
         lines.join("\n") + "\n"
     }
@@ -208,6 +291,7 @@ impl From<&'static LibraryMaterial> for Entry {
             value: &c.value,
             status: c.status.to_string(),
             source: &c.source,
+            range: c.range.as_ref(),
         };
         let constants = material.constants.iter().map(constant).collect();
         Self { constants, ..Self::new(&material.material.name, &material.summary, "") }

@@ -7,7 +7,8 @@ use crate::output::mesh::MeshSummary;
 use clap::Args;
 use fem_core::plugin::Dimension;
 use fem_io::files::OutputDir;
-use fem_io::gmsh::{self, Encoding, Examined, GmshMesh};
+use fem_io::gmsh::{self, Encoding};
+use fem_io::meshes::{self, Examined, FileMesh};
 use fem_io::scene::ImpactPoint;
 use fem_io::{plot, units};
 use miette::miette;
@@ -18,7 +19,7 @@ use std::process::ExitCode;
 #[derive(Debug, Args)]
 #[command(after_help = "Example: fem mesh coupon/scene.toml --picture")]
 pub(super) struct Arguments {
-    /// Mesh file of gmsh (MSH 4.1), or a scene (.toml) whose mesh is meant.
+    /// Mesh file of gmsh, Abaqus (.inp) or Nastran (.bdf), or a scene (.toml) whose mesh is meant.
     file: PathBuf,
     /// Unit of the coordinates in a mesh file, of lengths that are printed, and of the file that is written.
     #[arg(long, default_value = "mm")]
@@ -42,7 +43,7 @@ pub(super) fn mesh(arguments: &Arguments, console: &Console) -> miette::Result<E
     let (examined, impacts) = read(&arguments.file, metres)?;
     let draw = |folder: &PathBuf| draw(&arguments.file, folder, &examined, &impacts);
     let picture = arguments.picture.as_ref().map(draw).transpose()?;
-    let GmshMesh { mesh, warnings } = match examined.sound() {
+    let FileMesh { mesh, warnings } = match examined.sound() {
         Ok(read) => read,
         Err(refusal) => {
             for file in picture.iter().flatten() {
@@ -73,7 +74,7 @@ pub(super) fn mesh(arguments: &Arguments, console: &Console) -> miette::Result<E
 /// The mesh, and the points that impactors of a scene strike, m.
 fn read(file: &Path, metres: f64) -> Result<(Examined, Vec<[f64; 2]>), Error> {
     if file.as_os_str() != "-" && file.extension().is_none_or(|extension| extension != "toml") {
-        return Ok((gmsh::examine(file, metres, &[])?, Vec::new()));
+        return Ok((meshes::examine(file, metres, &[])?, Vec::new()));
     }
     let scene = read_scene(file, &[])?;
     let examined = model::examined_mesh(&scene)?;

@@ -1,6 +1,7 @@
 //! The command line, as a function of the registry.
 
 mod advise;
+mod cache;
 mod check;
 mod console;
 mod deck;
@@ -8,6 +9,7 @@ mod envelope;
 mod laminate;
 mod list;
 mod manual;
+mod map;
 mod matrices;
 mod mesh;
 mod messages;
@@ -23,8 +25,10 @@ mod sweep;
 
 use crate::error::Error;
 use crate::registry::Registry;
+use cache::Keep;
 use clap::{Parser, Subcommand};
 use console::{Console, Format, Voice};
+use fem_io::cache::Cache;
 use fem_io::deck::Program;
 use fem_io::scene::{self, Scene};
 use std::ffi::OsString;
@@ -37,6 +41,20 @@ use std::process::ExitCode;
 const MOST_THREADS: usize = 4096;
 /// Bytes of a scene that are read from standard input.
 const MOST_BYTES: u64 = 1 << 22;
+
+/// Threads of a command.
+#[derive(Debug, Clone, Copy, clap::Args)]
+struct Threads {
+    /// Threads that work at a time; results do not depend on it [default: as many as the machine offers]
+    #[arg(long = "threads", value_name = "N", value_parser = threads)]
+    asked: Option<NonZeroUsize>,
+}
+
+impl Threads {
+    fn count(self) -> NonZeroUsize {
+        self.asked.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN)
+    }
+}
 
 /// A number of threads.
 fn threads(text: &str) -> Result<NonZeroUsize, String> {
@@ -88,6 +106,8 @@ struct Arguments {
     command: Command,
     #[command(flatten)]
     voice: Voice,
+    #[command(flatten)]
+    keep: Keep,
 }
 
 #[derive(Debug, Subcommand)]
@@ -132,12 +152,20 @@ enum Command {
     /// Cases that differ only in the impactor, the contact and strengths share their plate, so that each takes its march alone; the
     /// rows are those of `fem run`. Writes sweep.csv, sweep.json, cost.csv and pictures. A case that fails has a row that says
     /// why, and the exit status is then 1. Every few seconds what is done is kept in sweep.bin, from which `--resume` goes on.
-    Sweep(sweep::Arguments),
+    Sweep(Box<sweep::Arguments>),
+    /// Finds the range of impacts that a plate bears: where damage begins over two keys of a scene, by which mode.
+    ///
+    /// Computes few impacts, each where the lines are known least, until all lines are known to the tolerance, and says how well
+    /// they are. Writes map.json, border.csv, impacts.csv and a picture; over mass and velocity with lines of equal energy. Fails
+    /// where an impact fails or the tolerance is not reached.
+    Map(map::Arguments),
     /// Makes a page from a folder of results: report.html, which opens from disk.
     ///
     /// One file with everything in it: summary, pictures, curves and damage to move through, events, errors, costs, the scene.
     /// Reads the files of the folder alone.
     Report(report::Arguments),
+    /// Shows the plates that are kept for later runs, or removes them.
+    Cache(cache::Arguments),
     /// Writes stiffness and mass (Matrix Market) with the names of their unknowns.
     Matrices(matrices::Arguments),
     /// Runs a deck of LAMCEL: condenses a cell of elements on its masters, or prints stresses of its elements.
@@ -182,7 +210,9 @@ pub fn run_with(registry: Registry, arguments: impl IntoIterator<Item = impl Int
         }
     };
     let console = Console::new(arguments.voice);
+    let registry = registry.with_cache(arguments.keep.cache());
     let done = arguments.voice.logging(|| dispatch(&registry, &arguments.command, &console));
+    registry.cache().into_iter().flat_map(Cache::words).for_each(|word| console::tell(&format!("{word}\n")));
     match done.and_then(|code| console.close().map(|()| code)) {
         Ok(code) => code,
         Err(report) => {
@@ -203,8 +233,10 @@ fn dispatch(registry: &Registry, command: &Command, console: &Console) -> miette
         Command::Modes(a) => modes::modes(registry, a, console),
         Command::Study(a) => study::study(registry, a, console),
         Command::Sweep(a) => sweep::sweep(registry, a, console),
+        Command::Map(a) => map::map(registry, a, console),
         Command::Report(a) => report::report(registry, a, console),
         Command::Mesh(a) => mesh::mesh(a, console),
+        Command::Cache(a) => cache::cache(a, console),
         Command::Matrices(a) => matrices::matrices(registry, a, console),
         Command::Lamcel(a) => deck::piece(registry, Program::Lamcel, a, console),
         Command::Lamsub(a) => deck::piece(registry, Program::Lamsub, a, console),

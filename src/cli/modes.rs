@@ -20,9 +20,8 @@ pub(super) struct Arguments {
     /// Folder of the results [default: results/<folder of the scene>-modes]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Threads for the integration of element matrices; results do not depend on it.
-    #[arg(long, value_name = "N", default_value = "1", value_parser = super::threads)]
-    threads: NonZeroUsize,
+    #[command(flatten)]
+    threads: super::Threads,
     #[command(flatten)]
     format: Format,
 }
@@ -30,6 +29,6 @@ pub(super) struct Arguments {
 pub(super) fn modes(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, "-modes"));
     let (task, results) = (Task::Modes(arguments.count), Results::Folder(folder));
-    let options = Options { task, results, threads: arguments.threads, ..Options::default() };
+    let options = Options { task, results, threads: arguments.threads.count(), ..Options::default() };
     compute(registry, &read_scene(&arguments.scene, &[])?, options, "", arguments.format, console)
 }

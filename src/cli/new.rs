@@ -56,6 +56,18 @@ const TEMPLATES: &[Template] = &[
         mesh: None,
     },
     Template {
+        name: "aitm-1-0010",
+        summary: "the impact of AITM 1-0010: the fixture of ASTM D7136, 2 kg with 30 J",
+        scene: include_str!("templates/aitm-1-0010.toml"),
+        mesh: None,
+    },
+    Template {
+        name: "astm-d6264",
+        summary: "quasi-static indentation after ASTM D6264: an opening of 125 mm, a tip of 12.7 mm, 4 J/mm",
+        scene: include_str!("templates/astm-d6264.toml"),
+        mesh: None,
+    },
+    Template {
         name: "ball",
         summary: "a small steel ball on a clamped plate: over before waves come back from the edge",
         scene: include_str!("templates/ball.toml"),

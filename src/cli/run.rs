@@ -15,7 +15,6 @@ use fem_core::plugin::Dimension;
 use fem_io::scene::{self, Scene};
 use miette::miette;
 use serde::Serialize;
-use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -45,9 +44,8 @@ pub(super) struct Arguments {
     /// the machine [default: ten minutes of a common machine, the same runs everywhere]
     #[arg(long, value_name = "TIME", value_parser = super::time)]
     budget: Option<f64>,
-    /// Threads for the integration of element matrices; results do not depend on it.
-    #[arg(long, value_name = "N", default_value = "1", value_parser = super::threads)]
-    threads: NonZeroUsize,
+    #[command(flatten)]
+    threads: super::Threads,
     #[command(flatten)]
     format: Format,
 }
@@ -64,7 +62,7 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console)
     let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, ""));
     let results = if arguments.resume { Results::Resumed(folder.clone()) } else { Results::Folder(folder.clone()) };
     let again = if arguments.resume { "" } else { " --resume" };
-    let mut options = Options { results, threads: arguments.threads, ..Options::default() };
+    let mut options = Options { results, threads: arguments.threads.count(), ..Options::default() };
     let path = &arguments.scene;
     let scene = read_scene(path, &arguments.set)?;
     let asked = arguments.accuracy.or_else(|| scene.accuracy.as_ref().map(|accuracy| accuracy.value));
@@ -107,11 +105,12 @@ fn attain(
 ) -> miette::Result<Attained> {
     let model = Model::new(scene, registry)?;
     let progress = console.progress("accuracy", "accuracy: {msg}");
-    let found =
-        study::attain((&arguments.scene, scene, &model), registry, asked, arguments.budget, &mut |what, error| {
-            let so_far = error.map_or(String::new(), |error| format!("{:.2} % so far, ", 1e2 * error));
-            progress.message(&format!("{so_far}now {what}"));
-        })?;
+    let mut tell = |what: &str, error: Option<f64>| {
+        let so_far = error.map_or(String::new(), |error| format!("{:.2} % so far, ", 1e2 * error));
+        progress.message(&format!("{so_far}now {what}"));
+    };
+    let what = (arguments.scene.as_path(), scene, &model);
+    let found = study::attain(what, registry, asked, arguments.budget, &mut tell, &mut ())?;
     progress.finish();
     Ok(found)
 }

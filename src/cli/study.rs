@@ -6,14 +6,12 @@ use crate::error::Error;
 use crate::job;
 use crate::model::Model;
 use crate::registry::Registry;
-use crate::study::{self, ErrorBar, Ladder, Progress, Report, Session};
+use crate::study::{self, ErrorBar, Progress, Report, Session};
 use clap::Args;
 use fem_core::plugin::Dimension;
 use fem_io::scene::{self, Setting};
 use miette::miette;
-use serde::Serialize;
-use serde_json::{Map, Value};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
@@ -42,57 +40,6 @@ pub(super) struct Arguments {
     format: Format,
 }
 
-/// What a study found, its runs as study.csv has them.
-#[derive(Serialize)]
-struct Document<'a> {
-    title: &'a str,
-    asked: &'a [String],
-    tolerance: f64,
-    runs: Vec<Map<String, Value>>,
-    ladders: Vec<LadderPart<'a>>,
-    notes: &'a [String],
-    /// Keys of the cheapest setting that keeps the tolerance of the command line.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    kept_by: Option<&'a Setting>,
-    results: &'a Path,
-}
-
-/// What the finest level of a ladder leaves of each quantity.
-#[derive(Serialize)]
-struct LadderPart<'a> {
-    axis: &'a str,
-    levels: Vec<&'a str>,
-    /// Why no finer level ran.
-    end: &'a str,
-    leaves: Vec<Leaves<'a>>,
-}
-
-/// What is left of a quantity; an error or a bar that nothing bounds is left out.
-#[derive(Serialize)]
-struct Leaves<'a> {
-    quantity: &'a str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    order: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    error: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    bar: Option<f64>,
-    known: bool,
-}
-
-impl<'a> LadderPart<'a> {
-    fn new(ladder: &'a Ladder) -> Self {
-        let finite = |x: f64| Some(x).filter(|x| x.is_finite());
-        let leaves = |limit: &'a study::Limit| {
-            let left = ErrorBar { error: limit.convergence.left(), bar: limit.convergence.bar() };
-            let (error, bar) = (finite(left.error), finite(left.bar));
-            Leaves { quantity: &limit.quantity, order: limit.convergence.order(), error, bar, known: left.is_known() }
-        };
-        let levels = ladder.levels.iter().map(|rung| rung.level.label.as_str()).collect();
-        Self { axis: &ladder.axis, levels, end: &ladder.end, leaves: ladder.limits.iter().map(leaves).collect() }
-    }
-}
-
 pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let format = arguments.format;
     let path = &arguments.scene;
@@ -113,7 +60,7 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Consol
     if found > 0 {
         console.say(format, || format!("  {found} runs are there from before\n"));
     }
-    let report = study::study(&mut session, &scene, &model, &axes, arguments.budget, &mut |told| match told {
+    let mut tell = |told: Progress<'_>| match told {
         Progress::Planned(plan) => progress.suspend(|| console.say(format, || format!("{plan}\n"))),
         Progress::Together([]) => {}
         Progress::Together(runs) => {
@@ -125,9 +72,10 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Consol
             progress.share(share);
             progress.message(&what);
         }
-    })?;
+    };
+    let report = study::study(&mut session, &scene, &model, &axes, arguments.budget, &mut tell, &mut ())?;
     progress.finish();
-    write(&session, &report)?;
+    study::write_results(session.dir(), &report)?;
     console.say(format, || study::text(&report));
     let cheapest = arguments.tolerance.and_then(|tolerance| cheapest(&report, tolerance));
     if let Some(setting) = cheapest {
@@ -135,27 +83,10 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Consol
     }
     session.dir().remove_older().map_err(Error::from)?;
     console.say(format, || describe_cheapest(&session, arguments.tolerance, cheapest, &report));
-    let data = Document {
-        title: &report.title,
-        asked: &report.asked,
-        tolerance: report.tolerance,
-        runs: study::named(&report),
-        ladders: report.ladders.iter().map(LadderPart::new).collect(),
-        notes: &report.notes,
-        kept_by: cheapest,
-        results: session.dir().path(),
-    };
+    let data = study::Document::new(&report, cheapest, session.dir().path());
     console.show(format, &data, || format!("\n  results   {}\n", session.dir().path().display()))?;
     let kept = arguments.tolerance.is_none() || cheapest.is_some();
     Ok(if kept { ExitCode::SUCCESS } else { ExitCode::FAILURE })
-}
-
-fn write(session: &Session<'_>, report: &Report) -> Result<(), Error> {
-    let dir = session.dir();
-    study::write(dir, report)?;
-    study::write_pictures(dir, report)?;
-    dir.write("study.md", |out| write!(out, "{}{}", study::text(report), study::tables(report)))?;
-    Ok(())
 }
 
 /// The cheapest setting that keeps `tolerance` in all quantities.

@@ -1,15 +1,17 @@
 //! `fem sweep`.
 
+mod parts;
+
 use super::run::{compute, default_folder};
 use super::signals::Signals;
 use super::{Assignment, Console, Format, console};
 use crate::error::Error;
 use crate::job::{Options, Results, folder};
 use crate::registry::Registry;
-use crate::sweep::{self, Record, Scatter, Sweep, SweepRequest};
+use crate::sweep::{self, Engine, Record, Scatter, Sweep, SweepRequest};
 use clap::{Args, Subcommand};
-use fem_io::files::OutputDir;
-use fem_io::scene::{self, Scene};
+use fem_io::files::{OutputDir, is_own};
+use fem_io::scene;
 use miette::miette;
 use std::fmt::Write as _;
 use std::num::NonZeroUsize;
@@ -46,9 +48,19 @@ pub(super) struct Arguments {
     /// What random numbers follow from [default: what the scene says, or 1]
     #[arg(long, value_name = "SEED")]
     seed: Option<u64>,
-    /// Cases that are marched at a time; the table does not depend on it.
-    #[arg(long, value_name = "N", default_value = "1", value_parser = super::threads)]
-    threads: NonZeroUsize,
+    /// Correlation of two keys that scatter, between -1 and 1, for example materials.cfrp.Yt,materials.cfrp.S12=0.6; once a pair
+    #[arg(long, value_name = "KEY,KEY=R")]
+    correlate: Vec<String>,
+    /// A formula of columns of the table and keys that vary, as a column of its own: 'lost = absorbed_energy / energy'. May be given again
+    #[arg(long, value_name = "NAME=FORMULA")]
+    quantity: Vec<String>,
+    /// Two quantities that cases are weighed by: those that no other case beats are marked and drawn
+    #[arg(long, value_name = "'least FORMULA, most FORMULA'")]
+    pareto: Option<String>,
+    /// Cases that are marched at a time; the table does not depend on it [default: one on each core, as far as their plates fit the
+    /// memory; one of a part]
+    #[arg(long, value_name = "N", value_parser = super::threads)]
+    threads: Option<NonZeroUsize>,
     /// Continues the sweep in the folder of the results; cases that are there are not run again
     #[arg(long)]
     resume: bool,
@@ -61,6 +73,15 @@ pub(super) struct Arguments {
     /// Runs nothing: prints the cases
     #[arg(long, conflicts_with_all = ["part", "gather", "resume"])]
     expand: bool,
+    /// Has a scheduler run the parts, waits for them, gives out again what was lost, and makes the table
+    #[arg(long, value_name = "ENGINE", value_parser = ["slurm", "hyperqueue"], conflicts_with_all = ["part", "gather", "expand"])]
+    engine: Option<String>,
+    /// How many parts the scheduler is given [default: 16, or as many as there are cases]
+    #[arg(long, value_name = "N", value_parser = super::samples, requires = "engine")]
+    parts: Option<usize>,
+    /// An option for the scheduler, as in --engine-option=--partition=short. May be given again
+    #[arg(long, value_name = "OPTION", requires = "engine", allow_hyphen_values = true)]
+    engine_option: Vec<String>,
     /// Folder of the results [default: results/<folder of the scene>-sweep]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -102,8 +123,16 @@ pub(super) fn sweep(registry: &Registry, arguments: &Arguments, console: &Consol
         return Err(miette!(help = help, "a sweep takes no scene on standard input"));
     };
     let scene = scene::read(path)?;
-    let Arguments { set, design, samples, seed, .. } = arguments;
-    let asked = SweepRequest { set: set.clone(), design: design.clone(), samples: *samples, seed: *seed };
+    let Arguments { set, design, samples, seed, correlate, quantity, pareto, .. } = arguments;
+    let asked = SweepRequest {
+        set: set.clone(),
+        design: design.clone(),
+        samples: *samples,
+        seed: *seed,
+        correlate: correlate.clone(),
+        quantities: quantity.clone(),
+        pareto: pareto.clone(),
+    };
     let sweep = Sweep::new(&scene, registry, &asked)?;
     if arguments.expand {
         console.print(&expanded(&sweep));
@@ -111,22 +140,37 @@ pub(super) fn sweep(registry: &Registry, arguments: &Arguments, console: &Consol
     }
     let whole = arguments.out.clone().unwrap_or_else(|| default_folder(path, "-sweep"));
     let out = arguments.part.map_or(whole.clone(), |part| sweep::part_folder(&whole, part));
-    let mut rows = match (arguments.gather, arguments.resume) {
+    let signals = Signals::listen();
+    let engine = Engine::ALL.iter().find(|(name, _)| Some(*name) == arguments.engine.as_deref());
+    if let Some((_, engine)) = engine {
+        parts::run(*engine, &sweep, arguments, (path, &whole), console, &signals)?;
+    }
+    let gathered = arguments.gather || engine.is_some();
+    let mut rows = match (gathered, arguments.resume) {
         (true, _) => sweep.gather(&whole)?,
-        (false, true) => sweep.saved(&out)?,
-        (false, false) => Vec::new(),
+        // A part that nobody has begun begins.
+        (false, true) if arguments.part.is_none() || is_own(&out) => sweep.saved(&out)?,
+        (false, _) => Vec::new(),
     };
+    if arguments.gather && rows.is_empty() {
+        let help = "run them first: `fem sweep SCENE --part 1/4`";
+        return Err(miette!(help = help, "`{}` holds no parts of this sweep", whole.display()));
+    }
     // Beside the parts that are gathered.
-    let dir = if arguments.gather { OutputDir::open(&out) } else { folder::results(&out, &scene.source) };
+    let dir = if gathered { OutputDir::open(&out) } else { folder::results(&out, &scene.source) };
     let dir = dir.map_err(Error::from)?;
     dir.begin_run();
-    let cases = if arguments.gather { Vec::new() } else { sweep.part(arguments.part) };
-    if !rows.is_empty() {
+    let cases = if gathered { Vec::new() } else { sweep.part(arguments.part) };
+    if !rows.is_empty() && !gathered {
         console.say(arguments.format, || format!("  {} cases are there from before\n", rows.len()));
     }
-    let signals = Signals::listen();
+    let threads = match (arguments.threads, arguments.part) {
+        (Some(threads), _) => threads,
+        (None, Some(_)) => NonZeroUsize::MIN,
+        (None, None) => sweep.workers()?,
+    };
     let progress = console.progress("sweep", "sweep {bar:40} {percent:>3} %  {msg}  {eta} left");
-    sweep.run(&dir, &cases, arguments.threads, &mut rows, &mut |done| {
+    sweep.run(&dir, &cases, threads, &mut rows, &mut |done| {
         progress.share(done as f64 / cases.len().max(1) as f64);
         progress.message(&format!("{done} of {}", cases.len()));
         if signals.received().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -135,11 +179,12 @@ pub(super) fn sweep(registry: &Registry, arguments: &Arguments, console: &Consol
     let record = Record::new(&scene, path, asked, &sweep, &rows);
     sweep::write(&dir, &sweep, &rows, &record)?;
     if scene.output.plots {
-        sweep::write_pictures(&dir, &scene.title, &sweep, &rows, record.scatter.as_ref())?;
+        let pictures = sweep::write_pictures(&dir, &scene.title, &sweep, &rows, &record)?;
+        sweep::write_page(&dir, &scene.title, &sweep, &rows, pictures)?;
     }
     dir.remove_older().map_err(Error::from)?;
-    console.show_plain(arguments.format, &record, || text(&scene, &record, &rows, &dir))?;
-    let expected = if arguments.gather { sweep.design.count } else { cases.len() };
+    console.show_plain(arguments.format, &record, || text(&sweep, &record, &rows, &dir))?;
+    let expected = if gathered { sweep.design.count } else { cases.len() };
     if let Some(signal) = signals.received() {
         console::tell(&format!(
             "Stopped by a signal after {} of {expected} cases. To continue: the same command with --resume\n",
@@ -148,10 +193,16 @@ pub(super) fn sweep(registry: &Registry, arguments: &Arguments, console: &Consol
         return Ok(ExitCode::from(128 + signal));
     }
     if rows.len() < expected {
-        console::tell(&format!("{} of {expected} cases are missing: run the parts that lack\n", expected - rows.len()));
+        console::tell(&format!(
+            "{} of {expected} cases are missing: run the parts that lack, with --resume\n",
+            expected - rows.len()
+        ));
     }
     Ok(if record.failed == 0 && rows.len() >= expected { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
+
+/// Cases that are named in a line.
+const FEW: usize = 12;
 
 /// The cases as a table of what they set.
 fn expanded(sweep: &Sweep<'_>) -> String {
@@ -164,8 +215,8 @@ fn expanded(sweep: &Sweep<'_>) -> String {
 }
 
 /// What a sweep says of itself.
-fn text(scene: &Scene, record: &Record, rows: &[sweep::CaseRow], dir: &OutputDir) -> String {
-    let mut text = format!("{}\n", scene.title);
+fn text(sweep: &Sweep<'_>, record: &Record, rows: &[sweep::CaseRow], dir: &OutputDir) -> String {
+    let mut text = format!("{}\n", record.title);
     let keys = record.keys.join(", ");
     let _ = writeln!(text, "  cases     {} of {}, {} over {keys}", record.done, record.cases, record.design);
     let found = || rows.iter().filter_map(|row| row.result.as_ref().ok());
@@ -175,6 +226,18 @@ fn text(scene: &Scene, record: &Record, rows: &[sweep::CaseRow], dir: &OutputDir
         let _ = writeln!(text, "  force     peaks from {} to {}", newton(low), newton(high));
         let damaged = found().filter(|case| case.first.is_some()).count();
         let _ = writeln!(text, "  damage    in {damaged} of {} cases", found().count());
+    }
+    for of in &record.quantities {
+        let [low, high] = [of.least, of.most].map(|value| sweep.quantities[of.number].dimension.of(value));
+        let _ = writeln!(text, "  quantity  {}: from {low} to {high} in {} cases", of.name, of.cases);
+    }
+    for of in sweep.quantities.iter().filter(|of| !record.quantities.iter().any(|range| range.name == of.name)) {
+        let _ = writeln!(text, "  quantity  {}: in no case a number", of.name);
+    }
+    if let Some(front) = &record.pareto_front {
+        let few = front.iter().take(FEW).map(usize::to_string).collect::<Vec<_>>().join(", ");
+        let more = if front.len() > FEW { ", ..." } else { "" };
+        let _ = writeln!(text, "  front     no case beats {} of them: {few}{more}", front.len());
     }
     if let Some(scatter) = &record.scatter {
         scattered(&mut text, scatter);

@@ -34,6 +34,11 @@ pub(crate) fn require(needed: f64, parts: impl Fn() -> String) -> Result<(), Err
     if fits { Ok(()) } else { Err(refuse(needed, parts())) }
 }
 
+/// How many of what takes `each` bytes there is memory for; `None` where the system does not tell.
+pub(crate) fn how_many_fit(each: f64) -> Option<usize> {
+    available().map(|bytes| (bytes as f64 / each.max(1.0)) as usize)
+}
+
 /// The error that there is less memory than `needed`, bytes.
 pub(crate) fn refuse(needed: f64, parts: String) -> Error {
     let available = available().map_or("less".into(), |bytes| describe_bytes(bytes as f64));

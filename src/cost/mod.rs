@@ -6,7 +6,7 @@ mod memory;
 pub(crate) use attained::FURTHER;
 pub use attained::{Attained, RaisedPart, Worth};
 pub use memory::{forget_peak_memory, peak_memory};
-pub(crate) use memory::{refuse, require};
+pub(crate) use memory::{how_many_fit, refuse, require};
 
 use cpu_time::ProcessTime;
 use fem_core::plugin::Dimension;

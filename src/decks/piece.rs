@@ -29,7 +29,7 @@ impl<'a> Parts<'a> {
         for card in &deck.piece.elements {
             let Entry::Vacant(place) = stacks.entry([card.plies.start, card.plies.end]) else { continue };
             let plies = deck.laminate.plies[card.plies.clone()].to_vec();
-            let laminate = Laminate { layers: vec![plies.len()], plies };
+            let laminate = Laminate { layers: vec![plies.len()], plies, middle: 0.0 };
             let mut made = laminate.stacks(&deck.laminate.materials).map_err(|why| refuse(why.to_string()))?;
             place.insert(made.remove(0));
         }

@@ -149,7 +149,7 @@ impl Impact<'_> {
                 highest_frequency_Hz: hertz(model.omega.last()),
             },
             first_damage: first_per_mode(events).into_iter().map(damage).collect(),
-            not_reached: not_reached(&judged.scan.peaks()),
+            not_reached: not_reached(&judged.scan.peaks(), |_| None),
             accuracy: DeckAccuracy {
                 energy_error_relative: off / (0.5 * mass * (deck.impactor.velocity * units.metres()).powi(2)),
                 step_s: march.step.value,
@@ -175,6 +175,7 @@ fn event_row(judged: &Judged, event: &FailureEvent) -> EventRow {
         mode: event.mode.to_owned(),
         time_s: event.time,
         substructure: Some(substructure),
+        region: None,
         cell: element,
         ply: name_ply(event.place),
         angle_deg,

@@ -66,6 +66,8 @@ pub enum Feature {
     PlyLaws,
     /// Plies that follow laws in a plate whose delaminations do not grow.
     PlyLawsAlone,
+    /// Regions whose mid-planes lie at different heights.
+    EccentricSteps,
     /// Another effect.
     Effect(&'static str),
 }
@@ -129,6 +131,10 @@ impl<'a> Facts<'a> {
             Feature::ExplicitIntegrator => None,
             Feature::StruckFromBelow => {
                 own(scene.impact().is_some_and(|impact| impact.impactors.iter().any(|one| one.face == Face::Bottom)))
+            }
+            Feature::EccentricSteps => {
+                let off = |laminate: &Laminate| laminate.middle != 0.0;
+                scene.laminates.iter().map(|spec| &spec.laminate).find(|one| off(&one.value)).map(|one| &one.place)
             }
             Feature::PlyLaws => own(lawful()),
             Feature::PlyLawsAlone => own(lawful() && scene.delamination.is_none()),

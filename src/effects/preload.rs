@@ -117,6 +117,11 @@ impl Effect for Preload {
                 "leave one of `substructures` and `effects.preload` out",
             ),
             Exclusion::new(
+                Feature::EccentricSteps,
+                "a preload bends a plate whose regions have their mid-planes at different heights, and it is that of a plane plate",
+                "write align = \"middle\", or leave `effects.preload` out",
+            ),
+            Exclusion::new(
                 Feature::PlyLaws,
                 "a preload is that of linear elastic plies, but plies follow a law",
                 "leave it out, or the `law` of the material",

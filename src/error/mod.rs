@@ -13,7 +13,7 @@ use fem_core::time::StepError;
 use fem_dynamics::guard::Alarm;
 use fem_failure::scan::ScanError;
 use fem_io::files::FileError;
-use fem_io::gmsh::MeshError;
+use fem_io::meshes::MeshError;
 use fem_io::plot::PlotError;
 use fem_io::scene::SceneError;
 use miette::Diagnostic;

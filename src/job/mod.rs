@@ -7,8 +7,10 @@ pub(crate) mod folder;
 mod impact;
 mod plate;
 mod rest;
+mod what_if;
 
 pub use plate::KeptPlate;
+pub use what_if::what_if;
 
 use crate::advise;
 use crate::analyses::impact::{Outcome, Sizes};

@@ -1,6 +1,8 @@
 //! Looks up what a scene names: mesh, plug-ins, groups, supports.
 
 use super::NamedCriterion;
+use super::path::Driven;
+use super::springs::Springs;
 use super::supports::describe;
 use crate::registry::{NO_REDUCTION, Registry, RegistryError};
 use fem_core::assembly::elimination_order;
@@ -12,13 +14,15 @@ use fem_core::dof::Dof;
 use fem_core::element::Element;
 use fem_core::failure::{FailureCriterion, Site, check_material};
 use fem_core::functional::{Functional, orthogonalise};
+use fem_core::hold::SupportKind;
 use fem_core::material::Material;
 use fem_core::mesh::Group;
 use fem_core::pieces;
 use fem_core::plate::Plate;
 use fem_core::plugin::{Built, Kind, Role, unknown_key};
 use fem_core::reduction::Reduction;
-use fem_core::support::{self, FreeMotions};
+use fem_core::springs::SupportSpring;
+use fem_core::support::{self, ColumnLevels, FreeMotions};
 use fem_core::tensor::Stress6;
 use fem_core::time::Integrator;
 use fem_core::window::{Centre, Windows};
@@ -54,6 +58,10 @@ pub(super) struct Held<'a> {
     pub(super) between: Vec<Functional>,
     /// What each support holds, in words.
     pub(super) described: Vec<String>,
+    /// Displacements that the scene prescribes.
+    pub(super) driven: Option<Driven>,
+    /// What gives way of them.
+    pub(super) springs: Springs,
     /// What a restraint holds, and where it stands in the scene.
     pub(super) restraint: Option<(FreeMotions, &'a Place)>,
 }
@@ -292,23 +300,42 @@ impl Builder<'_> {
         Ok(plate.columns_of_group(self.group(plate, group)?))
     }
 
-    pub(super) fn nodes(&self, plate: &Plate, set: &NodeSet) -> Result<(Vec<u32>, Vec<usize>), SceneError> {
-        let levels = set.levels.of(plate).map_err(|why| self.error(&set.group, why.to_string(), ""))?;
-        Ok((self.columns(plate, &set.group)?, levels))
+    /// Columns and levels of the nodes that a set names.
+    pub(super) fn nodes(&self, plate: &Plate, set: &NodeSet) -> Result<Vec<ColumnLevels>, SceneError> {
+        let columns = self.columns(plate, &set.group)?;
+        set.levels.at(plate, &columns).map_err(|why| self.error(&set.group, why.to_string(), ""))
     }
 
-    pub(super) fn constraints(&self, plate: &Plate) -> Result<Held<'_>, SceneError> {
+    /// The same one by one.
+    pub(super) fn each_node(&self, plate: &Plate, set: &NodeSet) -> Result<Vec<(u32, usize)>, SceneError> {
+        let mut all = Vec::new();
+        for (columns, levels) in self.nodes(plate, set)? {
+            all.extend(columns.iter().flat_map(|column| levels.iter().map(move |level| (*column, *level))));
+        }
+        Ok(all)
+    }
+
+    pub(super) fn constraints(&self, plate: &Plate, element: &dyn Element) -> Result<Held<'_>, SceneError> {
         let source = &self.scene.source;
         let mut equations = Vec::new();
         // Of each equation, where it stands in the scene.
         let mut places = Vec::new();
         let (mut restraint, mut described) = (None, Vec::new());
         let mut turns = Turns::default();
+        let mut springs = Springs::default();
         for entry in &self.scene.supports {
             match entry {
                 Support::RestrainRigidMotions { place } => restraint = Some(place),
+                Support::Kind { area, kind: kind @ SupportKind::Free, .. } => {
+                    self.holds(plate, entry, &mut turns)?;
+                    described.push(format!("{}, {}: nothing", area.value, kind.name()));
+                }
                 _ => {
                     let (name, holds) = self.holds(plate, entry, &mut turns)?;
+                    if let Some(sprung) = self.add_springs((plate, element), entry, &mut springs)? {
+                        described.push(sprung);
+                        continue;
+                    }
                     described.push(describe(plate, entry, &name, &holds));
                     let before = equations.len();
                     let origin = format!("support of {name}");
@@ -322,11 +349,20 @@ impl Builder<'_> {
             }
         }
         self.ties(plate, &mut turns, &mut equations, &mut places)?;
+        let driven = self.driven(plate, &mut equations, &mut places)?;
         self.symmetric_supports(plate, &equations, &places)?;
         equations.extend(plate.symmetry().equations(plate));
         places.resize(equations.len(), self.scene.symmetry.as_ref().map_or(&Place::TOP, |symmetry| &symmetry.place));
-        self.hold_pieces(plate, &equations)?;
-        let free = FreeMotions::of(plate, &equations);
+        // What springs hold does not move as a whole either.
+        let sprung = |spring: &SupportSpring| Equation {
+            terms: spring.at.0.clone(),
+            value: 0.0,
+            origin: String::new(),
+            holds: false,
+        };
+        let holding: Vec<Equation> = equations.iter().cloned().chain(springs.all.iter().map(sprung)).collect();
+        self.hold_pieces(plate, &holding)?;
+        let free = FreeMotions::of(plate, &holding);
         let at_rest = matches!(self.scene.analysis, Analysis::Static(_));
         match restraint {
             _ if free.is_empty() => {}
@@ -355,6 +391,8 @@ impl Builder<'_> {
             motions,
             between,
             described,
+            driven,
+            springs,
             restraint: restraint.map(|place| (free, place)),
         })
     }
@@ -368,9 +406,9 @@ impl Builder<'_> {
         places: &mut Vec<&'s Place>,
     ) -> Result<(), SceneError> {
         for couple in &self.scene.couples {
-            let (columns, levels) = self.nodes(plate, &couple.nodes)?;
+            let nodes = self.each_node(plate, &couple.nodes)?;
             let origin = format!("couple of `{}`", couple.nodes.group.value);
-            let coupled = support::couple(plate, &columns, &levels, &couple.dofs, turns.settle(couple.axes), &origin);
+            let coupled = support::couple(plate, &nodes, &couple.dofs, turns.settle(couple.axes), &origin);
             if coupled.is_empty() {
                 let message = format!("the {origin} ties nothing");
                 let help = "a couple needs two nodes or more, and unknowns that the element has";
@@ -391,9 +429,9 @@ impl Builder<'_> {
         let mut found = Vec::new();
         for entry in &self.scene.supports {
             let Support::Fix { nodes, dofs, axes, .. } = entry else { continue };
-            let levels = nodes.levels.of(plate).map_err(|why| self.error(&nodes.group, why.to_string(), ""))?;
             let group = self.group(plate, &nodes.group)?;
-            found.extend(between::between(plate, group, &levels, dofs, *axes));
+            let levels = |column: u32| nodes.levels.of(plate, column as usize).unwrap_or_default();
+            found.extend(between::between(plate, group, levels, dofs, *axes));
         }
         let left = found.iter().filter(|terms| !constraints.implies(terms));
         Ok(orthogonalise(left.map(|terms| Functional(constraints.restrict(terms))).collect()))
@@ -409,10 +447,8 @@ impl Builder<'_> {
         let coupled = self.scene.couples.iter().map(|couple| ("couple", &couple.nodes, &couple.dofs));
         let mut warnings = Vec::new();
         for (what, nodes, dofs) in fixed.chain(coupled) {
-            let (columns, levels) = self.nodes(plate, nodes)?;
-            let has = |dof: &Dof| {
-                columns.iter().any(|c| levels.iter().any(|l| plate.dofs_at(*c as usize, *l, *dof).next().is_some()))
-            };
+            let nodes_of = self.each_node(plate, nodes)?;
+            let has = |dof: &Dof| nodes_of.iter().any(|(c, l)| plate.dofs_at(*c as usize, *l, *dof).next().is_some());
             let names: Vec<_> = dofs.iter().filter(|dof| !has(dof)).map(Dof::to_string).collect();
             if !names.is_empty() {
                 warnings.push(format!(
@@ -464,15 +500,14 @@ impl Builder<'_> {
     ) -> Result<Equation, SceneError> {
         let mut terms = Vec::new();
         for term in &equation.terms {
-            let (columns, levels) = self.nodes(plate, &term.node)?;
-            let ([column], [level]) = (&columns[..], &levels[..]) else {
+            let [(column, level)] = self.each_node(plate, &term.node)?[..] else {
                 return Err(self.error(
                     &term.node.group,
                     format!("a term of an equation takes a single node, but `{}` has more", term.node.group.value),
                     "name a group of one node and one level",
                 ));
             };
-            let sides = support::turned(plate, *column as usize, *level, term.dof, turns.settle(term.axes));
+            let sides = support::turned(plate, column as usize, level, term.dof, turns.settle(term.axes));
             let own = sides.first().ok_or_else(|| {
                 self.error(&term.node.group, format!("the element has no {}", term.dof), "choose another unknown")
             })?;

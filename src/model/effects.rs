@@ -51,6 +51,8 @@ impl Builder<'_> {
         match &self.scene.effects.delamination {
             None => Ok(threshold.filter(|_| self.scene.effects.damage == Damage::Onset)),
             Some(wish) if wish.value == Delamination::Off => Ok(None),
+            // What grows is followed; no impact gives the force a meaning.
+            Some(_) if self.scene.impact().is_none() && self.scene.delamination.is_some() => Ok(None),
             Some(wish) if threshold.is_none() => Err(self.error(
                 wish,
                 "no material gives the toughness between the plies",

@@ -2,6 +2,7 @@
 
 use super::{Builder, NamedCriterion};
 use fem_core::failure::Site;
+use fem_core::laminate::Laminate;
 use fem_core::plate::Plate;
 use fem_failure::scan::PlyOrInterface;
 use fem_io::scene::{Depth, IndexWatch, SceneError};
@@ -25,6 +26,7 @@ impl Builder<'_> {
     pub(super) fn gauges(
         &self,
         plate: &Plate,
+        laminates: &[Laminate],
         watched: &[usize],
         criteria: &[NamedCriterion],
     ) -> Result<Vec<Gauge>, SceneError> {
@@ -32,7 +34,7 @@ impl Builder<'_> {
         if criteria.is_empty() {
             return Ok(Vec::new());
         }
-        let gauges = failure.watch.iter().map(|watch| self.gauge(plate, watched, criteria, watch));
+        let gauges = failure.watch.iter().map(|watch| self.gauge(plate, laminates, watched, criteria, watch));
         let gauges = gauges.collect::<Result<Vec<_>, _>>()?;
         let histories: usize = gauges.iter().map(|gauge| gauge.criteria.len()).sum();
         if histories > MOST {
@@ -46,6 +48,7 @@ impl Builder<'_> {
     fn gauge(
         &self,
         plate: &Plate,
+        laminates: &[Laminate],
         watched: &[usize],
         criteria: &[NamedCriterion],
         watch: &IndexWatch,
@@ -67,7 +70,7 @@ impl Builder<'_> {
             self.error(&watch.at, message, "choose a place on the plate and within `failure.radius` of the impact")
         })?;
 
-        let plies = self.scene.laminates[0].laminate.value.plies.len();
+        let plies = laminates[plate.region(quad)].plies.len();
         let (place, fits) = match watch.depth.value {
             Depth::Ply(k) => (PlyOrInterface::Ply(k as u16), k < plies),
             Depth::Interface(k) => (PlyOrInterface::Interface(k as u16), k + 1 < plies),

@@ -42,20 +42,28 @@ impl Model {
         };
         let judged = |of: Site| self.criteria.iter().filter(move |(_, c)| c.info().site == of);
         let modes = |of: Site| judged(of).map(|(_, c)| c.info().modes.len()).sum::<usize>();
-        let plies = self.laminate.plies.len();
-        // An interface between two layers of cells, or within a shell, has a stress from either side.
         let looks = self.interface.is_some() && judged(Site::Interface).next().is_some();
-        let sides = if self.plate.info().is_shell() { 2 * (plies - 1) } else { plies + self.plate.layers() - 2 };
-        let interfaces = if looks { sides } else { 0 };
-        let windows = if self.criteria.is_empty() { 0 } else { self.watched.len() + self.centres.len() };
+        let counts = |region: usize| {
+            let plies = self.laminates[region].plies.len();
+            let layers = self.laminates[region].layers.len();
+            // An interface between two layers of cells, or within a shell, has a stress from either side.
+            let sides = if self.plate.info().is_shell() { 2 * (plies - 1) } else { plies + layers - 2 };
+            [plies, if looks { sides } else { 0 }]
+        };
+        let centres = self.centres.iter().map(|centre| centre.quad);
+        let windows = self.watched.iter().copied().chain(centres).filter(|_| !self.criteria.is_empty());
+        let [plies, interfaces] = windows.fold([0, 0], |[plies, interfaces], quad| {
+            let [own, between] = counts(self.plate.region(quad));
+            [plies + own, interfaces + between]
+        });
         let demand = Demand {
             all: self.plate.ndof(),
             unknowns: pattern.ndof(),
             vectors,
             contacts,
             kept,
-            sites: windows * (plies + interfaces),
-            indices: windows * (plies * modes(Site::Ply) + interfaces * modes(Site::Interface)),
+            sites: plies + interfaces,
+            indices: plies * modes(Site::Ply) + interfaces * modes(Site::Interface),
             operator: contacts.is_some() && !self.effects.nature().large,
         };
         analyse(pattern, &demand, self.effects.memory(&self.body(), &demand))

@@ -1,17 +1,17 @@
 //! The mesh of a scene.
 
 use crate::error::Error;
-use fem_core::element::Tables;
+use fem_core::element::{Element, Tables, form};
 use fem_core::mesh::PlaneMesh;
 use fem_core::plugin::unknown_key;
-use fem_io::gmsh::{self, Examined, GmshMesh, MeshError, MeshFault};
-use fem_io::scene::{self, Located, MeshSource, Scene, SceneError};
+use fem_io::meshes::{self, Examined, FileMesh, MeshError, MeshFault};
+use fem_io::scene::{self, Located, MeshSource, NamedPart, Scene, SceneError};
 
 /// The mesh of `scene`, read or built, and refined as the scene says.
 ///
 /// # Errors
 /// A file that cannot be read or is not a sound mesh; too many cells; a group to cut along that there is not.
-pub fn mesh(scene: &Scene) -> Result<GmshMesh, Error> {
+pub fn mesh(scene: &Scene) -> Result<FileMesh, Error> {
     Ok(examined_mesh(scene)?.sound()?)
 }
 
@@ -30,7 +30,7 @@ pub(crate) fn examined_mesh(scene: &Scene) -> Result<Examined, Error> {
                 }
                 _ => wrong.into(),
             };
-            let mut examined = gmsh::examine(&file.value, *metres_per_unit, &names).map_err(unreadable)?;
+            let mut examined = meshes::examine(&file.value, *metres_per_unit, &names).map_err(unreadable)?;
             let mesh = &mut examined.read.mesh;
             let edges = || mesh.groups.iter().filter(|(_, group)| group.dim == 1).map(|(name, _)| name.as_str());
             if let Some(cut) = cuts.iter().find(|cut| edges().all(|name| name != cut.value)) {
@@ -52,16 +52,44 @@ pub(crate) fn examined_mesh(scene: &Scene) -> Result<Examined, Error> {
             }
             Ok(examined)
         }
-        MeshSource::Rectangle { size, cells } => {
+        MeshSource::Rectangle { size, cells, parts } => {
             let [x, y] =
                 [0, 1].map(|d| -> Vec<f64> { (0..=cells[d]).map(|i| size[d] * i as f64 / cells[d] as f64).collect() });
-            Ok(Examined::built(PlaneMesh::rectangle(&x, &y)))
+            let mut mesh = PlaneMesh::rectangle(&x, &y);
+            for NamedPart { name, corners: [low, high] } in parts {
+                let group = mesh.within_rectangle(*low, *high);
+                if group.nodes.is_empty() {
+                    let message = format!("no node of the mesh lies in the group `{}`", name.value);
+                    let help = "nodes lie where cells end: choose `mesh.cells` so that one does, or enlarge the group";
+                    return Err(error(scene, name, message, help).into());
+                }
+                mesh.groups.insert(name.value.clone(), group);
+            }
+            Ok(Examined::built(mesh))
         }
         MeshSource::Graded { plate, refine, curves } => {
             let mesh = plate.value.mesh().map_err(|wrong| error(scene, plate, wrong.to_string(), ""))?;
             Ok(Examined::built((0..*refine).fold(mesh, |mesh, _| mesh.refined(*curves))))
         }
     }
+}
+
+/// Straightens the bent sides of a mesh where the element cannot stand on them, and says so.
+pub(super) fn straighten(mesh: &mut PlaneMesh, element: &dyn Element) -> Option<String> {
+    if mesh.bends.is_empty() || mesh.quads.iter().all(|quad| form(element, quad.domain()).takes_bent_sides()) {
+        return None;
+    }
+    let share = |([a, b], bend): (&[u32; 2], &[f64; 2])| {
+        let [p, q] = [a, b].map(|n| mesh.points[*n as usize]);
+        bend[0].hypot(bend[1]) / (q[0] - p[0]).hypot(q[1] - p[1])
+    };
+    let (count, most) = (mesh.bends.len(), mesh.bends.iter().map(share).fold(0.0, f64::max));
+    mesh.bends.clear();
+    Some(format!(
+        "{count} sides of cells are bent, by up to {:.2} % of their length, and stay straight, since the element knows no others: use \
+         `hex20` or `hermite-prism`",
+        100.0 * most
+    ))
 }
 
 /// What helps where a mesh has cells of a shape that the element does not stand on; nothing where it has none.

@@ -5,14 +5,17 @@ mod effects;
 mod fields;
 mod gauge;
 mod laws;
+mod locked;
 mod memory;
 mod mesh;
 mod origin;
+mod path;
 mod plan;
 mod preload;
 mod regions;
 mod separation;
 mod spacing;
+mod springs;
 mod strike;
 mod substructures;
 mod supports;
@@ -24,6 +27,7 @@ pub use gauge::Gauge;
 pub(crate) use mesh::examined_mesh;
 pub use mesh::mesh;
 pub use origin::Origin;
+pub use path::PathPlan;
 pub use plan::{Impact, NamedProfile, Plan, Strike};
 pub(crate) use separation::Separation;
 pub(crate) use spacing::count_steps;
@@ -48,9 +52,11 @@ use fem_core::pieces;
 use fem_core::plate::Plate;
 use fem_core::plugin::Dimension;
 use fem_core::profile::Mirrors;
+use fem_core::springs::SupportSpring;
 use fem_core::warping;
 use fem_core::window::Centre;
 use fem_failure::delamination::DelaminationThreshold;
+use fem_io::cache::Cache;
 use fem_io::scene::{self, Analysis, Damage, Located, Output, Scene, SceneError, Window};
 use separation::Split;
 use std::borrow::Borrow;
@@ -69,6 +75,8 @@ pub struct Model {
     pub laminate: Laminate,
     /// The laminates of the plate's regions.
     pub laminates: Vec<Laminate>,
+    /// What results call these, where plies of one number do not lie at one height in all of them.
+    pub region_names: Vec<String>,
     /// Mass per area of that laminate, kg/m².
     pub areal_mass: f64,
     /// Mass of the plate, kg.
@@ -89,6 +97,8 @@ pub struct Model {
     pub between: Vec<Functional>,
     /// How the plate can move as a whole, by its independent unknowns, one motion after the other; at rest it cannot.
     pub motions: Vec<f64>,
+    /// Springs of supports that give way, of the independent unknowns.
+    pub springs: Vec<SupportSpring>,
     /// Whether the supports, or a restraint, stop all rigid motions. One that moves is restrained to the frame that goes with it.
     pub held: bool,
     /// The substructures, if the scene divides the plate into some.
@@ -128,6 +138,8 @@ pub struct Model {
     pub decisions: Vec<Decision>,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// Where plates are kept for later runs, if they are.
+    pub cache: Option<Cache>,
 }
 
 /// A criterion under the name by which the scene calls it.
@@ -171,14 +183,19 @@ impl Model {
         let builder = Builder { scene, registry };
         let read = mesh(scene)?;
         let mut warnings = read.warnings;
-        let mesh = read.mesh;
+        let mut mesh = read.mesh;
         info!(quads = mesh.quads.len(), nodes = mesh.points.len(), "mesh");
         let materials: Vec<Material> = scene.materials.iter().map(|m| m.value.clone()).collect();
         let (mut laminates, of_specs) = regions::distinct(&scene.laminates);
         let mut split = builder.split(&mut laminates)?;
-        warnings.extend(check_sizes(&builder, &mesh, &laminates[0])?);
+        warnings.extend(check_sizes(&builder, &mesh, &laminates)?);
 
         let element = builder.element()?;
+        let shell = element.info().is_shell();
+        if !shell {
+            builder.share_levels(&mut laminates, &of_specs)?;
+        }
+        warnings.extend(mesh::straighten(&mut mesh, &*element));
         let criteria = match scene.effects.damage {
             Damage::Off => Vec::new(),
             Damage::Onset => builder.criteria(&*element)?,
@@ -186,7 +203,11 @@ impl Model {
         let mut effects = builder.effects(&*element, &criteria)?;
         builder.goes_with_growth(&effects)?;
 
-        let levels = laminates[0].levels();
+        // A shell has one reference surface, about which its plies may lie to one side.
+        let levels = |laminate: &Laminate| match laminate.layers.len() {
+            1 if shell => laminate.about_reference().to_vec(),
+            _ => laminate.levels(),
+        };
         let lacks = |why: MaterialError| {
             let material = scene.materials.iter().find(|m| m.value.name == why.material).unwrap_or(&scene.materials[0]);
             builder.error(material, why.to_string(), origin::DENSITY)
@@ -194,7 +215,7 @@ impl Model {
         let at_rest = matches!(scene.analysis, Analysis::Static(_));
         let (weights, weightless) = builder.weights(&materials);
         let stacks = |laminate: &Laminate| {
-            let mut stacks = laminate.stacks(&weights).map_err(lacks)?;
+            let mut stacks = laminate.stacks_between(&levels(laminate), &weights).map_err(lacks)?;
             if builder.has_laws() {
                 // A law needs the strains where it is asked, and what it takes off is measured against theirs.
                 stacks.iter_mut().for_each(|stack| stack.transverse = None);
@@ -205,13 +226,15 @@ impl Model {
             Ok::<_, Error>(stacks)
         };
         let help = mesh::other_shape(&mesh, &Tables::from(&*element));
-        let mut plate = Plate::new(mesh, levels, stacks(&laminates[0])?, &*element, scene.z_derivatives.value)
+        let own = stacks(&laminates[0])?;
+        let mut plate = Plate::new(mesh, levels(&laminates[0]), own, &*element, scene.z_derivatives.value)
             .map_err(|why| builder.error(&scene.element.name, why.to_string(), help))?;
         for (quads, laminate) in builder.regions(&plate, &of_specs)?.iter().zip(&laminates).skip(1) {
             plate
-                .assign(quads, stacks(laminate)?)
+                .assign(quads, levels(laminate), stacks(laminate)?)
                 .map_err(|why| builder.error(&scene.laminates[0].laminate, why.to_string(), ""))?;
         }
+        builder.check_steps(&plate, &of_specs)?;
         if let Some(split) = &mut split {
             builder.separate(split, &mut plate)?;
         }
@@ -222,9 +245,11 @@ impl Model {
         warnings.extend(warn_of_flat_cells(&plate));
         warnings.extend(incompressible(&plate, &laminates, &materials));
         warnings.extend(laminates.iter().find_map(|laminate| warn_of_warping(&plate, laminate, &materials)));
-        let mut supports = builder.constraints(&plate)?;
+        let mut supports = builder.constraints(&plate, &*element)?;
+        builder.check_springs(&plate, &supports.springs, &effects)?;
         builder.preload(&plate, &*element, &supports, &mut effects)?;
         let constraints = &supports.constraints;
+        warnings.extend(builder.locked(&plate)?);
         warnings.extend(builder.lacking(&plate)?);
         warnings.extend(builder.nearly_turned(&plate)?);
         let plan = match &scene.analysis {
@@ -232,7 +257,9 @@ impl Model {
             Analysis::Static(loads) => {
                 let forces = builder.forces(loads, &effects, &plate, &*element, constraints)?;
                 supports.check_balance(scene, &plate, &forces)?;
-                Plan::Static { forces }
+                let of = (&plate, &*element);
+                let path = builder.path(of, &laminates[0], &materials, &effects, (&supports, &forces))?;
+                Plan::Static { forces, path }
             }
             Analysis::Modes { count } => Plan::Modes { count: *count },
             Analysis::Buckling { count } => Plan::Buckling { count: *count },
@@ -271,7 +298,7 @@ impl Model {
         }
         let division = builder.division(&plate, constraints, &plan)?;
         let watched = builder.find_watched(&plate, &centres)?;
-        let gauges = builder.gauges(&plate, &watched, &criteria)?;
+        let gauges = builder.gauges(&plate, &laminates, &watched, &criteria)?;
         let fields = builder.fields(&plate, &centres)?;
         let around = builder.find_centres((&plate, laminate.plies[0].angle), &watched, &centres);
         let (centres, centre_cells) = around.into_iter().unzip();
@@ -303,6 +330,7 @@ impl Model {
             weightless,
             materials,
             laminate,
+            region_names: regions::names(&laminates, &scene.laminates, &of_specs),
             laminates,
             areal_mass,
             mass,
@@ -311,6 +339,7 @@ impl Model {
             laws,
             separation,
             held: supports.motions.is_empty() || supports.restraint.is_some(),
+            springs: supports.springs.restrict(&supports.constraints),
             constraints: supports.constraints,
             supports: supports.described,
             between: supports.between,
@@ -333,7 +362,13 @@ impl Model {
             effects,
             decisions: Vec::new(),
             warnings,
+            cache: registry.cache().cloned(),
         })
+    }
+
+    /// The springs that only push.
+    pub fn one_sided(&self) -> impl Iterator<Item = &SupportSpring> {
+        self.springs.iter().filter(|spring| spring.one_sided)
     }
 
     /// Whether a mass can be made.
@@ -358,6 +393,11 @@ impl Model {
         }
     }
 
+    /// What results call the region of a quad, where that says which plies are meant.
+    pub fn region_of(&self, quad: usize) -> Option<&str> {
+        self.region_names.get(self.plate.region(quad)).map(String::as_str)
+    }
+
     /// What results call an impactor: nothing where it is the only one.
     pub fn label<'a>(&self, impactor: &'a scene::ImpactorSpec) -> Option<&'a str> {
         (self.impactors().len() > 1).then_some(impactor.name.as_str())
@@ -367,11 +407,10 @@ impl Model {
     /// the lowest level), each as far as possible from the contacts and from those before it, so that any first few cover the plate
     /// evenly.
     pub fn governors(&self, impact: &Impact, count: usize) -> Vec<usize> {
-        let level = self.plate.mid_level().unwrap_or(0);
         let Some(deflection) = Dof::new(3, 0) else { return Vec::new() };
         let candidates: Vec<(usize, [f64; 2])> = (0..self.plate.columns.len())
             .filter_map(|column| {
-                let dof = self.plate.dofs_at(column, level, deflection).next()?;
+                let dof = self.plate.dofs_at(column, self.plate.reference_level(column), deflection).next()?;
                 Some((self.constraints.position(dof)?, self.plate.columns[column]))
             })
             .collect();
@@ -470,12 +509,13 @@ fn incompressible(plate: &Plate, laminates: &[Laminate], materials: &[Material])
     })
 }
 
-fn check_sizes(builder: &Builder<'_>, mesh: &PlaneMesh, laminate: &Laminate) -> Result<Vec<String>, SceneError> {
+fn check_sizes(builder: &Builder<'_>, mesh: &PlaneMesh, laminates: &[Laminate]) -> Result<Vec<String>, SceneError> {
     let mut warnings = Vec::new();
     let (low, high) = mesh.bounds();
     let size = (high[0] - low[0]).max(high[1] - low[1]);
-    let ratio = laminate.thickness() / size;
-    let sizes = [size, laminate.thickness()].map(|length| Dimension::LENGTH.of(length));
+    let thickness = laminates.iter().map(Laminate::thickness).fold(0.0, f64::max);
+    let ratio = thickness / size;
+    let sizes = [size, thickness].map(|length| Dimension::LENGTH.of(length));
     let sizes = format!("the plate is {} wide and {} thick", sizes[0], sizes[1]);
     if !POSSIBLE_THICKNESS.contains(&ratio) {
         let help = "look at `laminate.ply_thickness` and at `mesh.unit`, the unit of the mesh file";

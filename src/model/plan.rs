@@ -1,6 +1,7 @@
 //! What a model is for: an impact, loads at rest, natural modes, buckling.
 
 use super::builder::Builder;
+use super::path::PathPlan;
 use crate::effect::Effects;
 use crate::error::Error;
 use fem_core::constraint::Constraints;
@@ -32,6 +33,8 @@ pub enum Plan {
     Static {
         /// Nodal forces, one per unknown before elimination of constraints: N, or N m for derivatives.
         forces: Vec<f64>,
+        /// How loads are followed while interfaces open, where they may.
+        path: Option<PathPlan>,
     },
     /// The lowest natural frequencies.
     Modes {
@@ -92,10 +95,10 @@ pub struct NamedProfile {
 /// An impact on a node at the edge, where supports are those of a plane of symmetry: on a part of a plate, as it is made by hand.
 pub(super) fn warn_of_parts(strikes: &[Strike], plate: &Plate, constraints: &Constraints) -> Vec<String> {
     let outline = plate.outline();
-    let level = plate.mid_level().unwrap_or(0);
     let part = |strike: &Strike| {
         let column = *outline.iter().find(|column| plate.columns[**column as usize] == strike.centre)? as usize;
         let held = |n: u8| {
+            let level = plate.reference_level(column);
             let dof = Dof::new(n, 0).and_then(|dof| plate.dofs_at(column, level, dof).next())?;
             constraints.implies(&[(dof, 1.0)]).then(|| format!("U{n}0"))
         };
@@ -224,7 +227,11 @@ impl Builder<'_> {
                 LoadKind::Patch { force, at, radius } => {
                     let (centre, _) = self.point(plate, at)?;
                     let patch = patch::hertz(plate, element, (Face::Top, 0.0), centre, *radius).map_err(|why| {
-                        self.scene.source.error_at(place, why.to_string(), "choose a smaller `patch_radius`")
+                        self.scene.source.error_at(
+                            place,
+                            why.to_string(),
+                            "choose a smaller `patch_radius`, or move it",
+                        )
                     })?;
                     patch.add_to(*force, &mut forces);
                 }
@@ -236,14 +243,15 @@ impl Builder<'_> {
                     load::edge(plate, element, edges, *force_per_length, &mut forces);
                 }
                 LoadKind::Point { force, node } => {
-                    let (columns, levels) = self.nodes(plate, node)?;
-                    let ([column], [level]) = (&columns[..], &levels[..]) else {
+                    let [(column, level)] = self.each_node(plate, node)?[..] else {
                         let message = format!("a force acts at one node, and `{}` has more", node.group.value);
                         return Err(self.error(&node.group, message, "name a group of one node and one level").into());
                     };
-                    load::point(plate, *column as usize, *level, *force, &mut forces)
+                    load::point(plate, column as usize, level, *force, &mut forces)
                         .map_err(|why| self.error(&node.group, why.to_string(), ""))?;
                 }
+                // Those who follow a path find its force.
+                LoadKind::Displacement { .. } => {}
                 LoadKind::Gravity { acceleration } => {
                     load::gravity(plate, element, *acceleration, &mut forces)?;
                 }
@@ -310,7 +318,10 @@ impl Builder<'_> {
                     let (centre, _) = self.point(plate, at)?;
                     sums[1] += force * patch::hertz_pressure(centre, *radius, point);
                 }
-                LoadKind::Edge { .. } | LoadKind::Point { .. } | LoadKind::Gravity { .. } => {}
+                LoadKind::Edge { .. }
+                | LoadKind::Point { .. }
+                | LoadKind::Displacement { .. }
+                | LoadKind::Gravity { .. } => {}
             }
         }
         Ok(sums)
@@ -387,6 +398,12 @@ impl Builder<'_> {
                     Dimension::LENGTH.of(high[1])
                 );
                 return self.error(at, message, help);
+            }
+            if matches!(why, PlateError::PatchOverStep { .. }) {
+                let help = format!(
+                    "an impactor touches the higher side alone: move it off the step, or choose a smaller `impactor.{key}`"
+                );
+                return self.error(&impactor.load, why.to_string(), help);
             }
             let [width, depth] = [0, 1].map(|d| Dimension::LENGTH.of(high[d] - low[d]));
             let size = format!("the plate is {width} by {depth}, if `mesh.unit` is right");

@@ -179,12 +179,12 @@ impl Builder<'_> {
             return Err(self.error(&one.group, message, "give every straight part an entry of its own, or a `force`"));
         }
         let angle = turns.settle(y.atan2(x));
-        let levels = Levels::All.of(plate).map_err(|why| self.error(&one.group, why.to_string(), ""))?;
         // The face moves as a whole, but turns with a shell.
         let derivatives: &[u8] = if plate.info().is_shell() { &[0, 2] } else { &[0, 2, 3] };
         let mut equations = Vec::new();
         for column in plate.columns_of_group(group) {
-            for level in &levels {
+            let levels = Levels::All.of(plate, column as usize);
+            for level in &levels.map_err(|why| self.error(&one.group, why.to_string(), ""))? {
                 for m in derivatives {
                     let Some(dof) = Dof::new(1, *m) else { continue };
                     let value = if *m == 0 { displacement } else { 0.0 };

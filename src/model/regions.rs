@@ -1,9 +1,11 @@
 //! Which cells have which laminate.
 
 use super::Builder;
-use fem_core::laminate::Laminate;
+use fem_core::laminate::{CutPly, Laminate};
 use fem_core::plate::Plate;
+use fem_core::plugin::Dimension;
 use fem_io::scene::{LaminateSpec, SceneError};
+use std::collections::HashMap;
 
 /// The laminates that differ, and which of them each of the scene's is: parts of a plate with equal plies are one region.
 pub(super) fn distinct(specs: &[LaminateSpec]) -> (Vec<Laminate>, Vec<usize>) {
@@ -19,7 +21,85 @@ pub(super) fn distinct(specs: &[LaminateSpec]) -> (Vec<Laminate>, Vec<usize>) {
     (laminates, of_specs)
 }
 
+/// What results call each region, where plies of one number do not lie at one height in all of them; nothing else.
+pub(super) fn names(laminates: &[Laminate], specs: &[LaminateSpec], of_specs: &[usize]) -> Vec<String> {
+    let heights = laminates[0].boundaries();
+    let same = |laminate: &Laminate| {
+        let z = laminate.boundaries();
+        z.len() == heights.len()
+            && z.iter().zip(&heights).all(|(a, b)| (a - b).abs() <= SAME_HEIGHT * laminate.thickness())
+    };
+    if laminates.iter().all(same) {
+        return Vec::new();
+    }
+    let name = |region: usize| {
+        let own = specs.iter().zip(of_specs).filter(|(_, of)| **of == region);
+        own.map(|(spec, _)| spec.name()).collect::<Vec<_>>().join(", ")
+    };
+    (0..laminates.len()).map(name).collect()
+}
+
+/// Heights that differ by less than this fraction of the thickness are one.
+const SAME_HEIGHT: f64 = 1e-9;
+
 impl Builder<'_> {
+    /// Divides layers of cells where those of regions beside them end.
+    ///
+    /// # Errors
+    /// A ply that this would cut.
+    pub(super) fn share_levels(&self, laminates: &mut [Laminate], of_specs: &[usize]) -> Result<(), SceneError> {
+        Laminate::share_levels(laminates).map_err(|CutPly { laminate, ply, by, parts }| {
+            let spec = |region: usize| {
+                let number = of_specs.iter().position(|of| *of == region).unwrap_or(0);
+                &self.scene.laminates[number]
+            };
+            let [below, above] = parts.map(|part| Dimension::LENGTH.of(part));
+            let message = format!(
+                "layers of cells of `{}` end inside ply {} of `{}`: {below} above its lower face and {above} below its upper one, and a \
+                 layer holds whole plies",
+                spec(by).name(),
+                ply + 1,
+                spec(laminate).name()
+            );
+            let help = "write this ply as two that meet there, with types under `ply` of these thicknesses, or choose `layers` and \
+                        `align` so that faces meet";
+            self.error(&spec(laminate).laminate, message, help)
+        })
+    }
+
+    /// Refuses regions side by side whose heights have nothing in common.
+    pub(super) fn check_steps(&self, plate: &Plate, of_specs: &[usize]) -> Result<(), SceneError> {
+        if !plate.is_stepped() {
+            return Ok(());
+        }
+        let mut beside: HashMap<[u32; 2], usize> = HashMap::new();
+        for (quad, corners) in plate.plane.quads.iter().enumerate() {
+            for [a, b] in corners.sides() {
+                let Some(other) = beside.insert([a.min(b), a.max(b)], quad) else { continue };
+                let [one, two] = [other, quad].map(|quad| plate.faces_over(quad));
+                let [low, high] = [one[0].max(two[0]), one[1].min(two[1])];
+                if low < high && !plate.same_height(low, high) {
+                    continue;
+                }
+                let spec = |quad: usize| {
+                    let number = of_specs.iter().position(|of| *of == plate.region(quad)).unwrap_or(0);
+                    &self.scene.laminates[number]
+                };
+                let describe = |quad: usize, [low, high]: [f64; 2]| {
+                    let (tag, [low, high]) =
+                        (plate.plane.quad_tags[quad], [low, high].map(|z| Dimension::LENGTH.of(z)));
+                    format!("cell {tag} of `{}` from z = {low} to {high}", spec(quad).name())
+                };
+                let message =
+                    format!("faces of a step do not touch: {} and {}", describe(other, one), describe(quad, two));
+                let help = "move one of the laminates with `align` or `offset`, so that both have heights in common";
+                let later = if spec(quad).group.is_some() { quad } else { other };
+                return Err(self.error(&spec(later).laminate, message, help));
+            }
+        }
+        Ok(())
+    }
+
     /// Quads of each region, where `of_specs` says which region each laminate of the scene makes.
     ///
     /// # Errors

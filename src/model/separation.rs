@@ -14,7 +14,7 @@ use fem_core::plate::Plate;
 use fem_core::plugin::Dimension;
 use fem_core::plugin::{Built, Kind};
 use fem_core::ply_law::LawPoint;
-use fem_io::scene::{DelaminationSpec, PluginSpec, SceneError};
+use fem_io::scene::{Analysis, DelaminationSpec, Place, PluginSpec, SceneError, StartingExtent};
 use std::collections::BTreeSet;
 
 /// What an integrator may miss of it by rounding.
@@ -79,6 +79,9 @@ impl Separation {
         })
     }
 }
+
+/// Whether a point, m, of a cell is in a delamination; how far a place is from it, m; where it stands in the scene.
+type Extent<'s> = (Box<dyn Fn(usize, [f64; 2]) -> bool>, Box<dyn Fn([f64; 2]) -> f64>, &'s Place);
 
 /// Where a plate is given two sides.
 pub(super) struct Split<'a> {
@@ -151,6 +154,10 @@ impl<'a> Builder<'a> {
         let all = 0..plate.plane.quads.len();
         split.quads = match &split.spec.radius {
             None => all.map(|quad| quad as u32).collect(),
+            Some(radius) if self.scene.impact().is_none() => {
+                let message = "`delamination.radius` is measured from the impact, and this analysis has none";
+                return Err(self.error(radius, message, "leave it out"));
+            }
             Some(radius) => {
                 let strikes = self.scene.impact().into_iter().flat_map(|impact| &impact.impactors);
                 let centres: Vec<[f64; 2]> = strikes
@@ -188,7 +195,7 @@ impl<'a> Builder<'a> {
         let stiffness = material.elastic.stiffness();
         let bending = 12.0 * laminate.effective_bending_stiffness(materials) / laminate.thickness().powi(3);
         let elastic = Elastic { e1: bending, ..material.elastic };
-        let widest = quads.iter().map(|quad| plate.plane.quality(*quad as usize).area.sqrt()).fold(0.0, f64::max);
+        let widest = quads.iter().map(|quad| cell_length(plate, *quad as usize)).fold(0.0, f64::max);
         let of = InterfaceMaterial { name: name.value.clone(), law: law.clone(), material };
         let sets: Vec<(usize, Vec<u32>)> = faces.iter().map(|(face, _)| (*face, quads.clone())).collect();
         let interfaces = Interfaces::new(plate, element, of, &sets, spec.points).map_err(|why| match &why {
@@ -205,7 +212,7 @@ impl<'a> Builder<'a> {
             }
             _ => self.error(name, why.to_string(), ""),
         })?;
-        let point = LawPoint { material: &materials[resin], stiffness: &stiffness, length: widest };
+        let point = LawPoint { material: &materials[resin], stiffness: &stiffness, length: widest, thickness: 0.0 };
         let zone = law.process_zone(&point, &elastic, arm);
         let shortest = zone.map_or(f64::INFINITY, |[open, slide]| open.min(slide));
         let zones = if shortest.is_finite() { ZONES * shortest } else { 0.0 };
@@ -243,24 +250,43 @@ impl<'a> Builder<'a> {
                 let message = format!("interface {number} is none of those that may open");
                 self.error(&start.interface, message, format!("they are {}", known.join(", ")))
             })?;
-            let (centre, _) = self.point(plate, &start.at)?;
-            let from = |p: [f64; 2]| (p[0] - centre[0]).hypot(p[1] - centre[1]);
+            let (inside, distance, place) = self.extent(plate, &start.extent)?;
             let mut broken = 0;
             for (number, cell) in interfaces.cells().iter().enumerate().filter(|(_, cell)| cell.face == face) {
                 let own = first[number]..first[number + 1];
-                let inside = interfaces.positions(number).iter().filter(|p| from(**p) < start.radius).count();
-                broken += inside;
-                if inside > 0 || from(plate.plane.corners(cell.quad).centroid()) < start.radius + margin {
-                    interfaces.crack(number, &mut states[own], |p| from(p) < start.radius);
+                let within = interfaces.positions(number).iter().filter(|p| inside(cell.quad, **p)).count();
+                broken += within;
+                if within > 0 || distance(plate.plane.corners(cell.quad).centroid()) < margin {
+                    interfaces.crack(number, &mut states[own], |p| inside(cell.quad, p));
                 }
             }
             if broken == 0 {
                 let message = "this delamination holds no point of the interface that may open";
-                let help = "its centre in the plate and near enough to the impact, its radius more than a cell";
-                return Err(self.error(&start.at, message, help));
+                let help = "its centre in the plate and near enough to the impact, its radius more than a cell; or a group of cells";
+                return Err(self.scene.source.error_at(place, message, help));
             }
         }
         Ok(())
+    }
+
+    /// Whether a point of a cell lies in a delamination, and how far a place is from it, m; where it stands in the scene.
+    fn extent<'s>(&self, plate: &Plate, extent: &'s StartingExtent) -> Result<Extent<'s>, SceneError> {
+        match extent {
+            StartingExtent::Disc { at, radius } => {
+                let ([x, y], _) = self.point(plate, at)?;
+                let (radius, from) = (*radius, move |p: [f64; 2]| (p[0] - x).hypot(p[1] - y));
+                Ok((Box::new(move |_, p| from(p) < radius), Box::new(move |p| from(p) - radius), &at.place))
+            }
+            StartingExtent::Group(name) => {
+                let quads: BTreeSet<u32> = self.group(plate, name)?.quads.iter().copied().collect();
+                let boxes: Vec<[[f64; 2]; 2]> = quads.iter().map(|quad| extremes(plate, *quad as usize)).collect();
+                let from = move |p: [f64; 2]| {
+                    let beyond = |b: &[[f64; 2]; 2]| [0, 1].map(|d| (b[0][d] - p[d]).max(p[d] - b[1][d]).max(0.0));
+                    boxes.iter().map(beyond).map(|[x, y]| x.hypot(y)).fold(f64::INFINITY, f64::min)
+                };
+                Ok((Box::new(move |quad, _| quads.contains(&(quad as u32))), Box::new(from), &name.place))
+            }
+        }
     }
 
     fn interface_law(&self, spec: &PluginSpec) -> Result<Box<dyn InterfaceLaw>, SceneError> {
@@ -273,9 +299,11 @@ impl<'a> Builder<'a> {
         let name = &spec.law.name;
         let wish = self.scene.effects.delamination.as_ref().map_or(&name.place, |wish| &wish.place);
         let refuse = |place, message: &str, help: &str| Err(self.scene.source.error_at(place, message, help));
-        let Some(impact) = self.scene.impact() else {
-            return refuse(wish, "delaminations grow under an impact, and this analysis has none", "leave it out");
-        };
+        let at_rest = matches!(self.scene.analysis, Analysis::Static(_));
+        if self.scene.impact().is_none() && !at_rest {
+            let message = "delaminations grow under an impact or loads at rest, and this analysis has none of them";
+            return refuse(wish, message, "leave it out");
+        }
         if self.scene.substructures.is_some() {
             return refuse(
                 wish,
@@ -288,6 +316,9 @@ impl<'a> Builder<'a> {
             let message = format!("`effects.{name}` does not stand beside delaminations that grow yet");
             return refuse(wish, &message, "leave one of them out");
         }
+        let Some(impact) = self.scene.impact() else {
+            return self.goes_with_path(effects, wish);
+        };
         let reduction = &impact.reduction.name;
         if reduction.value != NO_REDUCTION {
             let help = "march the full plate: reduction = { method = \"none\" }";
@@ -304,6 +335,37 @@ impl<'a> Builder<'a> {
         }
         Ok(())
     }
+
+    /// Refuses what does not stand beside delaminations that grow under loads at rest.
+    fn goes_with_path(&self, effects: &Effects, wish: &Place) -> Result<(), SceneError> {
+        if let Some(other) = effects.wanted().next() {
+            let message = format!(
+                "`effects.{}` does not stand beside delaminations that grow under loads at rest",
+                other.info().key.name
+            );
+            return Err(self.scene.source.error_at(wish, message, "leave one of them out"));
+        }
+        Ok(())
+    }
+}
+
+/// Least and greatest x and y of a cell, m.
+fn extremes(plate: &Plate, quad: usize) -> [[f64; 2]; 2] {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for p in plate.plane.corners(quad) {
+        low = [0, 1].map(|d| low[d].min(p[d]));
+        high = [0, 1].map(|d| high[d].max(p[d]));
+    }
+    [low, high]
+}
+
+/// How far a crack goes through a cell, m: of a section along x, elsewhere the side of a square as large.
+pub(super) fn cell_length(plate: &Plate, quad: usize) -> f64 {
+    if plate.info().is_section() {
+        let [low, high] = extremes(plate, quad);
+        return high[0] - low[0];
+    }
+    plate.plane.quality(quad).area.sqrt()
 }
 
 /// Thickness of the thinnest part of a laminate between two faces that may open, or one of them and the outside, m.

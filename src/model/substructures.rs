@@ -72,7 +72,6 @@ impl Builder<'_> {
     /// Unknowns (before constraints) that a scene names.
     pub(super) fn unknowns(&self, plate: &Plate, named: &Unknowns) -> Result<Vec<usize>, SceneError> {
         let at = &named.at;
-        let levels = named.levels.of(plate).map_err(|why| self.error(at, why.to_string(), ""))?;
         let columns = match &at.value {
             ImpactPoint::Group(name) => {
                 self.columns(plate, &Located { value: name.clone(), place: at.place.clone() })?
@@ -85,7 +84,10 @@ impl Builder<'_> {
                 vec![column as u32]
             }
         };
-        let nodes = columns.iter().flat_map(|column| levels.iter().map(move |level| (*column as usize, *level)));
+        let nodes = named.levels.at(plate, &columns).map_err(|why| self.error(at, why.to_string(), ""))?;
+        let nodes = nodes.iter().flat_map(|(columns, levels)| {
+            columns.iter().flat_map(move |column| levels.iter().map(move |level| (*column as usize, *level)))
+        });
         let each =
             nodes.flat_map(|(column, level)| named.dofs.iter().flat_map(move |dof| plate.dofs_at(column, level, *dof)));
         let found: Vec<usize> = each.collect();

@@ -2,7 +2,7 @@
 
 use super::builder::Builder;
 use fem_core::axes::Turns;
-use fem_core::hold::Hold;
+use fem_core::hold::{Hold, SupportKind};
 use fem_core::mesh::Group;
 use fem_core::plate::Plate;
 use fem_io::scene::{Located, SceneError, Support, SupportArea};
@@ -18,18 +18,21 @@ impl Builder<'_> {
     ) -> Result<(String, Vec<Hold>), SceneError> {
         match support {
             Support::Fix { nodes, dofs, axes, .. } => {
-                let (columns, levels) = self.nodes(plate, nodes)?;
-                let (dofs, angle) = (dofs.clone(), turns.settle(*axes));
-                Ok((format!("`{}`", nodes.group.value), vec![Hold { columns, levels, dofs, angle, curvature: 0.0 }]))
+                let angle = turns.settle(*axes);
+                let hold = |(columns, levels)| Hold { columns, levels, dofs: dofs.clone(), angle, curvature: 0.0 };
+                let holds = self.nodes(plate, nodes)?.into_iter().map(hold).collect();
+                Ok((format!("`{}`", nodes.group.value), holds))
             }
-            Support::Kind { area, kind, levels, place } => {
+            Support::Kind { kind: SupportKind::Free | SupportKind::Rest, .. }
+            | Support::Kind { stiffness: Some(_), .. } => {
+                self.check_kind(plate, support)?;
+                Ok((String::new(), Vec::new()))
+            }
+            Support::Kind { area, kind, levels, .. } => {
                 let name = area.value.to_string();
-                let group = self.area(plate, area)?;
-                if let Some([why, help]) = kind.refuses(&plate.plane, &group, *levels) {
-                    return Err(self.scene.source.error_at(place, format!("the support of {name}: {why}"), help));
-                }
+                let group = self.check_kind(plate, support)?;
                 levels
-                    .of(plate)
+                    .at(plate, &plate.columns_of_group(&group))
                     .map_err(|why| self.error(area, why.to_string(), "write at = \"bottom\", for example"))?;
                 Ok((name, Hold::of_kind(plate, &group, *kind, *levels, turns)))
             }
@@ -37,8 +40,24 @@ impl Builder<'_> {
         }
     }
 
+    /// What a support by name acts on, where its kind can act there.
+    fn check_kind(&self, plate: &Plate, support: &Support) -> Result<Group, SceneError> {
+        let Support::Kind { area, kind, levels, stiffness, place } = support else { return Ok(Group::default()) };
+        // Springs of a disc are spread over it, wherever nodes are.
+        let sprung = stiffness.is_some() || *kind == SupportKind::Rest;
+        let spread = matches!(area.value, SupportArea::Disc { .. }) && sprung;
+        let group = if spread { Group::default() } else { self.area(plate, area)? };
+        match kind.refuses(&plate.plane, &group, *levels) {
+            None => Ok(group),
+            Some([why, help]) => {
+                let message = format!("the support of {}: {why}", area.value);
+                Err(self.scene.source.error_at(place, message, help))
+            }
+        }
+    }
+
     /// The part of the plate that a support by name acts on.
-    fn area(&self, plate: &Plate, area: &Located<SupportArea>) -> Result<Group, SceneError> {
+    pub(super) fn area(&self, plate: &Plate, area: &Located<SupportArea>) -> Result<Group, SceneError> {
         match &area.value {
             SupportArea::Group(name) => {
                 let name = Located { value: name.clone(), place: area.place.clone() };

@@ -159,6 +159,17 @@ impl Builder<'_> {
 
     /// Refuses a load that makes `forces`, one per unknown, unsymmetric.
     pub(super) fn symmetric_load(&self, plate: &Plate, forces: &[f64], place: &Place) -> Result<(), SceneError> {
+        self.symmetric_forces(plate, "the load breaks", forces, place)
+    }
+
+    /// The same of other forces: `what` breaks the symmetry.
+    pub(super) fn symmetric_forces(
+        &self,
+        plate: &Plate,
+        what: &str,
+        forces: &[f64],
+        place: &Place,
+    ) -> Result<(), SceneError> {
         let Some(name) = plate.symmetry().name() else { return Ok(()) };
         // Forces and moments have scales of their own.
         let mut largest = [0.0_f64; 2];
@@ -172,7 +183,7 @@ impl Builder<'_> {
             for (image, sign) in plate.symmetry().images(plate, dof) {
                 if (forces[image] - sign * force).abs() > ROUNDING * largest[kind(dof)] {
                     let message = format!(
-                        "the load breaks the symmetry `{name}`: it has no image of what acts on {}",
+                        "{what} the symmetry `{name}`: there is no image of what acts on {}",
                         plate.describe(dof)
                     );
                     let help = "make it symmetric, or leave `symmetry` out";

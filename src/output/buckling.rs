@@ -4,6 +4,7 @@ use crate::analyses::buckling::BucklingSolution;
 use crate::cost::Cost;
 use crate::error::Error;
 use crate::model::Model;
+use crate::output::preload::PreloadFigures;
 use crate::output::shapes::shapes;
 use crate::words::append_symmetry;
 use fem_io::files::OutputDir;
@@ -23,6 +24,8 @@ pub struct BucklingSummary {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub symmetry: Option<&'static str>,
     pub unknowns: usize,
+    #[serde(flatten)]
+    pub preload: PreloadFigures,
     /// Factors on the preload, by size; negative where the opposite load buckles the plate.
     pub load_factors: Vec<f64>,
     pub elements: u64,
@@ -40,6 +43,7 @@ impl BucklingSummary {
             format: fem_io::results::FORMAT,
             symmetry: model.plate.symmetry().name(),
             unknowns: solution.unknowns,
+            preload: PreloadFigures::new(model, None),
             load_factors: solution.buckling.factors.clone(),
             elements: solution.counters.elements,
             elements_reused: solution.counters.elements_reused,
@@ -53,6 +57,7 @@ impl BucklingSummary {
         let alone = if self.symmetry.is_some() { ": its symmetric shapes alone" } else { "" };
         let symmetry = append_symmetry(self.symmetry);
         let mut t = format!("{}\n  model     {} unknowns{symmetry}{alone}\n", self.title, self.unknowns);
+        self.preload.line().iter().for_each(|line| t.push_str(&format!("{line}\n")));
         t.push_str("  shape     load factor\n");
         for (i, factor) in self.load_factors.iter().enumerate() {
             let opposite = if *factor < 0.0 { "   under the opposite load" } else { "" };

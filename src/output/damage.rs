@@ -5,6 +5,7 @@ use crate::analyses::impact::Outcome;
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::words::name_ply;
+use fem_core::laminate::{LaminaPly, Laminate};
 use fem_failure::scan::{PlyOrInterface, ScanSite};
 use fem_io::files::{FileError, OutputDir};
 use serde::{Deserialize, Serialize};
@@ -35,12 +36,15 @@ pub struct DamageMap {
     /// What holds and what strikes the plate, in plan.
     #[serde(default)]
     pub outlines: Vec<PlanOutline>,
-    /// Nodes of the mesh, m.
+    /// Nodes of the mesh and, behind them, places that divide bent sides, m.
     pub points_m: Vec<[f64; 2]>,
-    /// Corners of the cells, anticlockwise, numbers in `points_m`.
+    /// Corners of the cells, anticlockwise, and the places along bent sides between them, numbers in `points_m`.
     pub quads: Vec<Vec<u32>>,
     /// Number of each cell in the mesh file.
     pub cells: Vec<u64>,
+    /// Region of each cell, where `places` say theirs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regions: Vec<String>,
     /// Cells that the criteria judged, ascending, numbers in `quads`.
     pub judged: Vec<u32>,
     /// Plies and interfaces from the bottom up.
@@ -59,6 +63,9 @@ pub struct ModeName {
 /// A ply.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlyBand {
+    /// Region of the plate, where plies of one number do not lie at one height in all of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub region: Option<String>,
     /// Angle of its fibres from x towards y, degrees.
     pub angle_deg: f64,
     /// Its lower and upper face, m.
@@ -68,8 +75,11 @@ pub struct PlyBand {
 /// What the criteria found in a ply or in an interface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlaceDamage {
-    /// `3`, or `3|4` for an interface.
+    /// `3`, or `3|4` for an interface, counted from the bottom of its region.
     pub ply: String,
+    /// That region, where plies of one number do not lie at one height in all of them: `index` is 0 in cells of others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub region: Option<String>,
     /// Largest index of all modes in each of the judged cells, four digits; at most 1e9.
     pub index: Vec<f64>,
     /// What reached 1, by time.
@@ -108,16 +118,25 @@ impl DamageMap {
             return None;
         }
 
-        let mut places: BTreeMap<(u16, bool), (PlaceDamage, FirstTimes)> = BTreeMap::new();
+        let mut places: BTreeMap<(usize, u16, bool), (PlaceDamage, FirstTimes)> = BTreeMap::new();
         for m in &outcome.maxima {
+            let own = m.site.cell as usize;
+            let apart = !model.region_names.is_empty();
+            let region = if apart { model.plate.region(own) } else { 0 };
             let key = match m.site.place {
-                PlyOrInterface::Ply(k) => (k, false),
-                PlyOrInterface::Interface(k) => (k, true),
+                PlyOrInterface::Ply(k) => (region, k, false),
+                PlyOrInterface::Interface(k) => (region, k, true),
             };
-            let empty =
-                || PlaceDamage { ply: name_ply(m.site.place), index: vec![0.0; judged.len()], failed: Vec::new() };
+            let empty = || PlaceDamage {
+                ply: name_ply(m.site.place),
+                region: model.region_of(own).map(str::to_owned),
+                index: vec![0.0; judged.len()],
+                failed: Vec::new(),
+            };
             let (place, failed) = places.entry(key).or_insert_with(|| (empty(), FirstTimes::new()));
-            for i in unfolding.quads(&m.site).iter().filter_map(|quad| judged.binary_search(&(*quad as u32)).ok()) {
+            let here = |quad: &&usize| !apart || model.plate.region(**quad) == region;
+            let cells = unfolding.quads(&m.site).iter().filter(here);
+            for i in cells.filter_map(|quad| judged.binary_search(&(*quad as u32)).ok()) {
                 place.index[i] = place.index[i].max(m.index);
                 for &(mode, time) in &m.reached {
                     let first = failed.entry((i as u32, (first_mode[m.criterion] + mode) as u32)).or_insert(time);
@@ -136,17 +155,30 @@ impl DamageMap {
             let named = |mode: &&str| ModeName { criterion: name.clone(), mode: (*mode).to_owned() };
             criterion.info().modes.iter().map(named).collect::<Vec<_>>()
         });
-        let z = model.laminate.boundaries();
-        let plies = model.laminate.plies.iter().zip(z.windows(2));
+        let bands = |laminate: &Laminate, region: Option<&String>| -> Vec<PlyBand> {
+            let z = laminate.boundaries();
+            let band = |(ply, z): (&LaminaPly, &[f64])| PlyBand {
+                region: region.cloned(),
+                angle_deg: ply.angle_deg,
+                z_m: [z[0], z[1]],
+            };
+            laminate.plies.iter().zip(z.windows(2)).map(band).collect()
+        };
+        let plies = match &model.region_names[..] {
+            [] => bands(&model.laminate, None),
+            names => model.laminates.iter().zip(names).flat_map(|(own, name)| bands(own, Some(name))).collect(),
+        };
+        let (points_m, quads) = mesh.outlines();
         Some(Self {
             format: fem_io::results::FORMAT,
             end_s: outcome.history.last().map_or(0.0, |row| row.time_s),
             modes: modes.collect(),
-            plies: plies.map(|(ply, z)| PlyBand { angle_deg: ply.angle_deg, z_m: [z[0], z[1]] }).collect(),
+            plies,
+            regions: (0..mesh.quads.len()).filter_map(|quad| model.region_of(quad)).map(str::to_owned).collect(),
             impacts_m: impact.strikes.iter().map(|strike| strike.centre).collect(),
             outlines: outlines(model),
-            points_m: mesh.points.clone(),
-            quads: mesh.quads.iter().map(|corners| corners.to_vec()).collect(),
+            points_m,
+            quads,
             cells: mesh.quad_tags.clone(),
             judged,
             places,
@@ -176,6 +208,10 @@ impl DamageMap {
             self.judged.iter().all(|q| (*q as usize) < self.quads.len()),
             "`judged` names a cell that does not exist",
         )?;
+        good(
+            self.regions.is_empty() || self.regions.len() == self.quads.len(),
+            "`regions` and `quads` differ in length",
+        )?;
         let lines = self.outlines.iter().flat_map(|outline| &outline.lines_m).flatten();
         let places = self.points_m.iter().chain(&self.impacts_m).chain(lines).flatten().copied();
         let heights = self.plies.iter().flat_map(|ply| [ply.angle_deg, ply.z_m[0], ply.z_m[1]]);
@@ -190,8 +226,19 @@ impl DamageMap {
         Ok(())
     }
 
-    /// Corners of a cell, m.
-    pub fn corners(&self, quad: u32) -> Vec<[f64; 2]> {
+    /// Whether a place has the cell that is the `i`-th of those judged.
+    pub fn holds(&self, place: &PlaceDamage, i: usize) -> bool {
+        let region = self.regions.get(self.judged[i] as usize);
+        place.region.is_none() || region.is_none() || place.region.as_ref() == region
+    }
+
+    /// The ply of this number, from 0, in the region of a place.
+    pub fn band(&self, place: &PlaceDamage, ply: usize) -> Option<&PlyBand> {
+        self.plies.iter().filter(|band| band.region == place.region).nth(ply)
+    }
+
+    /// A cell as a polygon, m.
+    pub fn outline(&self, quad: u32) -> Vec<[f64; 2]> {
         self.quads[quad as usize].iter().map(|n| self.points_m[*n as usize]).collect()
     }
 }
@@ -259,7 +306,8 @@ mod tests {
                 ModeName { criterion: "c".into(), mode: "m".into() },
                 ModeName { criterion: "c".into(), mode: "n".into() },
             ],
-            plies: vec![PlyBand { angle_deg: 0.0, z_m: [0.0, 1e-3] }],
+            plies: vec![PlyBand { region: None, angle_deg: 0.0, z_m: [0.0, 1e-3] }],
+            regions: Vec::new(),
             impacts_m: vec![[0.0, 0.0]],
             outlines: Vec::new(),
             points_m: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
@@ -268,6 +316,7 @@ mod tests {
             judged: vec![0],
             places: vec![PlaceDamage {
                 ply: "1".into(),
+                region: None,
                 index: vec![1.5],
                 failed: vec![Failed(0, 1, 1e-4), Failed(0, 0, 2e-4)],
             }],

@@ -1,6 +1,6 @@
 //! Delaminations as a table and as a picture in plan, a C-scan.
 
-use crate::analyses::impact::{Delaminated, DelaminatedCell, Outcome};
+use crate::analyses::delamination::{Delaminated, DelaminatedCell};
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use crate::output::outlines::{drawn, outlines};
@@ -34,8 +34,8 @@ fn name(below: usize) -> String {
 ///
 /// # Errors
 /// As [`OutputDir::write`].
-pub(crate) fn write_table(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
-    let Some(grown) = &outcome.delaminated else { return Ok(()) };
+pub(crate) fn write_table(dir: &OutputDir, model: &Model, grown: Option<&Delaminated>) -> Result<(), Error> {
+    let Some(grown) = grown else { return Ok(()) };
     let mesh = &model.plate.plane;
     let row = |(quad, cell): (usize, &DelaminatedCell)| {
         let [x, y] = mesh.corners(quad).centroid();
@@ -58,8 +58,8 @@ pub(crate) fn write_table(dir: &OutputDir, model: &Model, outcome: &Outcome) -> 
 ///
 /// # Errors
 /// As [`OutputDir::write`], and numbers that no plot can show.
-pub(crate) fn write_plot(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<(), Error> {
-    let Some(grown) = outcome.delaminated.as_ref().filter(|grown| !grown.cells.is_empty()) else { return Ok(()) };
+pub(crate) fn write_plot(dir: &OutputDir, model: &Model, grown: Option<&Delaminated>) -> Result<(), Error> {
+    let Some(grown) = grown.filter(|grown| !grown.cells.is_empty()) else { return Ok(()) };
     plot::map_plot(&c_scan(model, grown))?.write(dir, "c_scan")?;
     match times(model, grown) {
         Some(times) => Ok(plot::map_plot(&times)?.write(dir, "c_scan_times")?),
@@ -69,12 +69,12 @@ pub(crate) fn write_plot(dir: &OutputDir, model: &Model, outcome: &Outcome) -> R
 
 /// A panel of the cells of the mesh that are in `view`.
 fn panel(model: &Model, view: &[usize], title: String, fills: &[Fill]) -> Panel {
-    let corners = |quad: usize| model.plate.plane.corners(quad).into_iter().map(|p| p.map(|x| x * 1e3)).collect();
+    let outline = |quad: usize| model.plate.plane.outline(quad).into_iter().map(|p| p.map(|x| x * 1e3)).collect();
     let crosses = match &model.plan {
         Plan::Impact(impact) => impact.strikes.iter().map(|strike| strike.centre.map(|x| x * 1e3)).collect(),
         _ => Vec::new(),
     };
-    let cells = view.iter().map(|quad| MapCell { corners: corners(*quad), fill: fills[*quad] }).collect();
+    let cells = view.iter().map(|quad| MapCell { corners: outline(*quad), fill: fills[*quad] }).collect();
     Panel { title, cells, crosses, ..Panel::default() }
 }
 

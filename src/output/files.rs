@@ -18,7 +18,7 @@ pub fn write_tables(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result
     tables::write_history(dir, &impactors, &effects, &outcome.history)?;
     tables::write_events(dir, &events(model, outcome))?;
     modal::write_table(dir, outcome)?;
-    delamination::write_table(dir, model, outcome)?;
+    delamination::write_table(dir, model, outcome.delaminated.as_ref())?;
     indices::write_tables(dir, model, outcome)
 }
 
@@ -64,7 +64,7 @@ pub fn write_plots(dir: &OutputDir, model: &Model, outcome: &Outcome) -> Result<
     };
     pictures::write_curves(dir, &drawn)?;
     modal::write_plot(dir, model, outcome)?;
-    delamination::write_plot(dir, model, outcome)?;
+    delamination::write_plot(dir, model, outcome.delaminated.as_ref())?;
     indices::write_plots(dir, model, outcome)?;
     pictures::write_damage(dir, model, outcome)
 }

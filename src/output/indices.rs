@@ -4,7 +4,7 @@ use crate::analyses::impact::Outcome;
 use crate::analyses::stress::IndexHistory;
 use crate::error::Error;
 use crate::model::Model;
-use crate::words::name_ply;
+use crate::words::{name_ply, name_ply_of};
 use fem_failure::scan::ScanSite;
 use fem_io::files::OutputDir;
 use fem_io::plot;
@@ -15,6 +15,7 @@ fn row(model: &Model, criterion: usize, mode: Option<usize>, site: &ScanSite, in
     IndexRow {
         criterion: name.clone(),
         mode: mode.map_or("none", |mode| criterion.info().modes[mode]).to_owned(),
+        region: model.region_of(site.cell as usize).map(str::to_owned),
         cell: model.plate.plane.quad_tags[site.cell as usize],
         ply: name_ply(site.place),
         position_m: site.position,
@@ -80,7 +81,8 @@ pub(crate) fn write_plots(dir: &OutputDir, model: &Model, outcome: &Outcome) -> 
 fn curve(model: &Model, history: &IndexHistory) -> (String, Vec<(f64, f64)>) {
     let (name, criterion) = &model.criteria[history.criterion];
     let [x, y] = [0, 1].map(|d| history.site.position[d] * 1e3);
-    let label = format!("{name}, ply {} at ({x:.2}, {y:.2}) mm", name_ply(history.site.place));
+    let ply = name_ply_of(history.site.place, model.region_of(history.site.cell as usize));
+    let label = format!("{name}, ply {ply} at ({x:.2}, {y:.2}) mm");
     let largest = history.indices.chunks_exact(criterion.info().modes.len());
     let largest = largest.map(|indices| indices.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v)));
     (label, history.times.iter().copied().zip(largest).collect())

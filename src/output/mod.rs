@@ -11,6 +11,7 @@ mod modal;
 pub mod modes;
 pub mod outlines;
 pub mod pictures;
+pub mod preload;
 pub mod report;
 mod shapes;
 pub mod statics;

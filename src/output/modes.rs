@@ -5,6 +5,7 @@ use crate::analyses::modes::ModesSolution;
 use crate::cost::Cost;
 use crate::error::Error;
 use crate::model::Model;
+use crate::output::preload::PreloadFigures;
 use crate::output::shapes::shapes;
 use crate::words::{append, append_symmetry};
 use fem_core::plugin::Dimension;
@@ -28,6 +29,8 @@ pub struct ModesSummary {
     pub unknowns: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub substructures: Option<Substructures>,
+    #[serde(flatten)]
+    pub preload: PreloadFigures,
     pub held: bool,
     pub frequencies_Hz: Vec<f64>,
     pub effective_masses_kg: Vec<[f64; 3]>,
@@ -47,6 +50,7 @@ impl ModesSummary {
             symmetry: model.plate.symmetry().name(),
             unknowns: solution.unknowns,
             substructures: solution.substructures,
+            preload: PreloadFigures::new(model, solution.buckling),
             held: model.held,
             frequencies_Hz: solution.modes.omega.iter().map(|w| w / TAU).collect(),
             effective_masses_kg: solution.effective_masses.clone(),
@@ -63,6 +67,7 @@ impl ModesSummary {
         let symmetry = append_symmetry(self.symmetry);
         let divided = append(self.substructures);
         let mut t = format!("{}\n  model     {} unknowns{divided}{symmetry}{alone}\n", self.title, self.unknowns);
+        self.preload.line().iter().for_each(|line| t.push_str(&format!("{line}\n")));
         t.push_str("  mode        frequency   mass along x, y, z\n");
         let largest = self.effective_masses_kg.iter().flatten().fold(0.0, |most: f64, m| most.max(*m));
         let rounded = |m: &f64| if *m < EXACT * largest { 0.0 } else { *m };

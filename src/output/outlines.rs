@@ -65,8 +65,7 @@ fn supports(model: &Model) -> Vec<Vec<[f64; 2]>> {
     }
     let mut alone = held;
     sides.keys().flatten().for_each(|node| alone[*node as usize] = false);
-    let point = |node: u32| mesh.points[node as usize];
-    let lines = sides.iter().filter(|(_, cells)| **cells < 2).map(|(side, _)| side.map(point).to_vec());
+    let lines = sides.iter().filter(|(_, cells)| **cells < 2).map(|(side, _)| mesh.along(*side));
     let (low, high) = mesh.bounds();
     let r = MARK * (high[0] - low[0]).max(high[1] - low[1]);
     let diamond = |[x, y]: [f64; 2]| vec![[x - r, y], [x, y - r], [x + r, y], [x, y + r], [x - r, y]];

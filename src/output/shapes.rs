@@ -26,24 +26,33 @@ pub(super) fn shapes(model: &Model, shapes: &[f64], titles: impl Iterator<Item =
 }
 
 fn cells(model: &Model, shape: &[f64]) -> Vec<MapCell> {
-    let plate = &model.plate;
-    let mut u = vec![0.0; plate.ndof()];
+    let mut u = vec![0.0; model.plate.ndof()];
     model.constraints.expand(shape, &mut u);
+    let means = deflections(model, &u);
+    let largest = means.iter().fold(f64::MIN_POSITIVE, |most, w| w.abs().max(most));
+    let shares = means.iter().map(|w| 0.5 + 0.5 * w / largest);
+    filled(model, shares)
+}
+
+/// The cells of the mesh, mm, each with its share.
+pub(super) fn filled(model: &Model, shares: impl Iterator<Item = f64>) -> Vec<MapCell> {
+    let plane = &model.plate.plane;
+    let outline = |quad| plane.outline(quad).into_iter().map(|p| p.map(|v| v * 1e3)).collect();
+    shares.enumerate().map(|(quad, share)| MapCell { corners: outline(quad), fill: Fill::Share(share) }).collect()
+}
+
+/// Mean deflection of the corners of each cell under the displacements `u` (before elimination of constraints), m.
+pub(super) fn deflections(model: &Model, u: &[f64]) -> Vec<f64> {
+    let plate = &model.plate;
     let deflection = |column: usize| {
-        let levels = plate.outer_levels().into_iter().chain(plate.mid_level());
+        let levels = plate.outer_levels(column).into_iter().chain(plate.mid_level());
         let dofs = levels.filter_map(|level| plate.dofs_at(column, level, dof_of(3)).next());
         dofs.map(|dof| u[dof]).next().unwrap_or(0.0)
     };
-    let quads = &plate.plane.quads;
-    let means = quads.iter().map(|quad| {
+    let quads = plate.plane.quads.iter();
+    let means = quads.map(|quad| {
         let nodes = quad.iter().map(|node| deflection(*node as usize));
         nodes.sum::<f64>() / quad.iter().count() as f64
     });
-    let means: Vec<f64> = means.collect();
-    let largest = means.iter().fold(f64::MIN_POSITIVE, |most, w| w.abs().max(most));
-    let cell = |(quad, w): (usize, &f64)| MapCell {
-        corners: plate.plane.corners(quad).into_iter().map(|p| p.map(|v| v * 1e3)).collect(),
-        fill: Fill::Share(0.5 + 0.5 * w / largest),
-    };
-    means.iter().enumerate().map(cell).collect()
+    means.collect()
 }

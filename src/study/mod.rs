@@ -15,6 +15,7 @@
 mod attain;
 mod axes;
 mod converge;
+mod document;
 mod force;
 mod ladder;
 mod picture;
@@ -31,17 +32,17 @@ mod ways;
 pub use attain::{TellSearch, attain, raised};
 pub use axes::{AxisKind, Level, NAMES, StudyAxis, axes};
 pub use converge::{Convergence, ErrorBar, limit};
+pub use document::{Document, write_results};
 pub use ladder::{Ladder, Limit};
-pub use picture::write_pictures;
 pub use plan::{Planned, StudyPlan};
 pub use quantity::{FORCE_HISTORY, Figure};
 pub use record::RunRecord;
 pub use report::{Report, Row};
 pub use session::Session;
-pub use table::{named, write};
-pub use text::{tables, text};
+pub use text::text;
 
 use crate::error::Error;
+use crate::job::Follow;
 use crate::model::Model;
 use axes::{STEP, seconds};
 use fem_io::scene::{Scene, Setting};
@@ -84,10 +85,12 @@ pub enum Progress<'a> {
 pub type Tell<'a> = &'a mut dyn FnMut(Progress<'_>);
 
 /// Studies `scene`, that of `session`, whose model is `model`, along `axes`, in `budget` seconds of processor time if given.
+/// `follow` is heard before every run and at every step of its march.
 ///
 /// # Errors
 /// A quantity that the scene does not have, a scene that does not run as it is, a folder that cannot be
-/// written. A level that does not run is a row of the report.
+/// written; [`Error::Cancelled`] where `follow` broke the study off, whose runs so far are kept. A level that does not run is a row
+/// of the report.
 pub fn study(
     session: &mut Session<'_>,
     scene: &Scene,
@@ -95,9 +98,10 @@ pub fn study(
     axes: &[StudyAxis],
     budget: Option<f64>,
     tell: Tell<'_>,
+    follow: &mut dyn Follow,
 ) -> Result<Report, Error> {
     tell(Progress::Runs { what: "the scene as it is".into(), share: 0.0 });
-    let base = session.run(&Setting::new())?;
+    let base = session.run(&Setting::new(), follow)?;
     let base = base.map_err(|why| Error::Study(format!("the scene itself does not run: {why}")))?;
     let asked = quantity::choose_quantities(scene, &base.figures, base.force.as_ref().is_some_and(Force::acts))?;
     if asked.is_empty() {
@@ -122,7 +126,7 @@ pub fn study(
                 false => Ok(planned.level.setting.clone()),
             };
             let result = match setting {
-                Ok(setting) => session.run(&setting)?,
+                Ok(setting) => session.run(&setting, follow)?,
                 Err(why) => Err(why.to_string()),
             };
             report.add(planned, result);

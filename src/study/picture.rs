@@ -23,7 +23,7 @@ type Point = (f64, ErrorBar);
 ///
 /// # Errors
 /// A folder that cannot be written.
-pub fn write_pictures(dir: &OutputDir, report: &Report) -> Result<(), Error> {
+pub(super) fn write_pictures(dir: &OutputDir, report: &Report) -> Result<(), Error> {
     let all: Vec<usize> = (0..report.asked.len()).collect();
     let what = if all.len() == 1 { report.asked[0].as_str() } else { "all quantities" };
     draw(dir, "work-precision", &work_precision(report, what, &all))?;

@@ -2,7 +2,7 @@
 
 use crate::job::{ImpactFound, StaticFound};
 use crate::model::Model;
-use crate::words::name_ply;
+use crate::words::name_ply_of;
 use fem_core::plugin::unknown_key;
 use fem_core::profile::ProfilePoint;
 use fem_failure::scan::first_per_mode;
@@ -44,7 +44,7 @@ pub(super) fn of_impact(model: &Model, found: &ImpactFound) -> Vec<Figure> {
         figures.push(Figure::new("delaminated-area", grown.projected_area_mm2 * 1e-6, true));
         figures.push(Figure::new("delaminated-areas", grown.area_mm2 * 1e-6, false));
         figures.push(Figure::new("dissipated-energy", grown.dissipated_J, true));
-        figures.push(Figure::new("absorbed-energy", grown.absorbed_J, true));
+        figures.extend(grown.absorbed_J.map(|energy| Figure::new("absorbed-energy", energy, true)));
     }
     figures.push(Figure::new("compliance", 1.0 / sizes.static_stiffness, false));
     let first = outcome.events.iter().map(|e| e.time).reduce(f64::min);
@@ -54,7 +54,8 @@ pub(super) fn of_impact(model: &Model, found: &ImpactFound) -> Vec<Figure> {
     }
     for history in &outcome.histories {
         let [x, y, _] = history.site.position;
-        let place = format!("{} at ({:.2}, {:.2}) mm", name_ply(history.site.place), x * 1e3, y * 1e3);
+        let ply = name_ply_of(history.site.place, model.region_of(history.site.cell as usize));
+        let place = format!("{ply} at ({:.2}, {:.2}) mm", x * 1e3, y * 1e3);
         let name = format!("index {} {place}", model.criteria[history.criterion].0);
         figures.push(Figure::new(name, history.indices.iter().fold(0.0, |m: f64, i| m.max(*i)), false));
     }
@@ -76,6 +77,11 @@ pub(super) fn of_statics(scene: &Scene, model: &Model, found: &StaticFound) -> R
         Figure::new("deflection", summary.largest_deflection.w_m, true),
         Figure::new("energy", solution.strain_energy, true),
     ];
+    if let Some(path) = &summary.path {
+        figures.push(Figure::new("peak-force", path.peak_force_N, true));
+        figures.push(Figure::new("delaminated-area", path.delamination.projected_area_mm2 * 1e-6, true));
+        figures.push(Figure::new("dissipated-energy", path.dissipated_J, true));
+    }
     let reserve = solution.margins.iter().map(|m| m.reserve_factor).reduce(f64::min);
     figures.extend(reserve.map(|factor| Figure::new("reserve-factor", factor, false)));
     for (named, points) in model.profiles.iter().zip(&solution.profiles) {

@@ -7,7 +7,7 @@ use crate::analyses::impact;
 use crate::cost;
 use crate::error::Error;
 use crate::forecast::{PHASES, Size, seconds_per_phase};
-use crate::job::{self, Finished, Found, Options};
+use crate::job::{self, Finished, Follow, Found, Options};
 use crate::model::Model;
 use crate::registry::Registry;
 use fem_io::scene::{self, Setting};
@@ -30,14 +30,17 @@ pub struct RunRecord {
 }
 
 impl RunRecord {
-    /// Runs `path` with `setting` over its keys.
+    /// Runs `path` with `setting` over its keys; `follow` is heard before the run, whatever it is, and at every step of a march.
     ///
     /// # Errors
     /// Those of a run, and a march that stopped before its end.
-    pub fn of(path: &Path, setting: &Setting, registry: &Registry) -> Result<Self, Error> {
+    pub fn of(path: &Path, setting: &Setting, registry: &Registry, follow: &mut dyn Follow) -> Result<Self, Error> {
+        if follow.marched(0.0).is_break() {
+            return Err(Error::Cancelled { time: 0.0, share: 0.0 });
+        }
         cost::forget_peak_memory();
         let scene = scene::read_with(path, setting)?;
-        let Finished { model, found, cost, .. } = job::run(&scene, registry, &Options::default(), &mut ())?;
+        let Finished { model, found, cost, .. } = job::run(&scene, registry, &Options::default(), follow)?;
         let (size, figures, force) = match &found {
             Found::Impact(own) => {
                 if let Some(why) = &own.outcome.stopped {

@@ -3,7 +3,7 @@
 use super::record::RunRecord;
 use crate::analyses::saved::{self, Keys};
 use crate::error::{CheckpointError, Error};
-use crate::job::folder;
+use crate::job::{Follow, folder};
 use crate::model::Model;
 use crate::registry::Registry;
 use fem_io::files::OutputDir;
@@ -84,12 +84,19 @@ impl<'a> Session<'a> {
     /// Runs the scene under `setting`, unless that is done.
     ///
     /// # Errors
-    /// A folder that cannot be written. What is wrong with the run itself is its result.
-    pub(super) fn run(&mut self, setting: &Setting) -> Result<Result<RunRecord, String>, Error> {
+    /// A folder that cannot be written, a run that `follow` broke off. What is wrong with the run itself is its result.
+    pub(super) fn run(
+        &mut self,
+        setting: &Setting,
+        follow: &mut dyn Follow,
+    ) -> Result<Result<RunRecord, String>, Error> {
         if let Some((_, run)) = self.runs.iter().find(|run| run.0 == *setting) {
             return Ok(run.clone());
         }
-        let run = RunRecord::of(&self.path, setting, self.registry).map_err(|why| why.to_string());
+        let run = match RunRecord::of(&self.path, setting, self.registry, follow) {
+            Err(broken_off @ Error::Cancelled { .. }) => return Err(broken_off),
+            run => run.map_err(|why| why.to_string()),
+        };
         self.runs.push((setting.clone(), run.clone()));
         saved::write(&self.dir, FILE, &self.identity, &self.runs)?;
         Ok(run)

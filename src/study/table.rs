@@ -38,7 +38,7 @@ const SIZES: [&str; 20] = [
 ///
 /// # Errors
 /// A folder that cannot be written, a number that is not finite.
-pub fn write(dir: &OutputDir, report: &Report) -> Result<(), Error> {
+pub(super) fn write(dir: &OutputDir, report: &Report) -> Result<(), Error> {
     let header = header(report);
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let keys: Vec<String> = report.rows.iter().map(keys).collect();
@@ -46,7 +46,7 @@ pub fn write(dir: &OutputDir, report: &Report) -> Result<(), Error> {
 }
 
 /// The lines of study.csv by the names of its columns; what is empty there is left out.
-pub fn named(report: &Report) -> Vec<Map<String, Value>> {
+pub(super) fn named(report: &Report) -> Vec<Map<String, Value>> {
     let header = header(report);
     let keys: Vec<String> = report.rows.iter().map(keys).collect();
     let named = |line: Vec<TableValue<'_>>| {

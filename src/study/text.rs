@@ -81,7 +81,7 @@ pub fn text(report: &Report) -> String {
 }
 
 /// Every run of a study, in Markdown.
-pub fn tables(report: &Report) -> String {
+pub(super) fn tables(report: &Report) -> String {
     let mut t = String::new();
     for kind in [AxisKind::Ladder, AxisKind::Ways, AxisKind::Problems] {
         let _ = table(report, kind, &mut t);

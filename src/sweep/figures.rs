@@ -1,10 +1,10 @@
 //! What a case found.
 
-use crate::analyses::impact::{Accuracy, Outcome, Sizes};
-use crate::model::Model;
+use crate::analyses::impact::{Accuracy, Outcome, Sizes, StepForces};
+use crate::model::{Model, NamedCriterion};
 use crate::output::summary::{ImpactFigures, ImpactSummary};
 use crate::words::name_ply;
-use fem_failure::scan::FailureEvent;
+use fem_failure::scan::{Extremes, first_per_mode};
 use serde::{Deserialize, Serialize};
 
 /// What a case found; SI units.
@@ -16,11 +16,18 @@ pub struct CaseFigures {
     pub first: Option<FirstDamage>,
     /// Of each mode of each criterion.
     pub modes: Vec<ModeFigures>,
+    /// Largest contact force over that at which all interfaces between unlike plies delaminate, where that is known.
+    pub over_threshold: Option<f64>,
     /// Largest deviation of the energy from that of the impact, relative to it.
     pub energy_error: f64,
     /// How many warnings and cautions `fem run` would say, but for those that follow from estimates of errors.
     pub warnings: u64,
+    /// The force of all impactors, N, over time, s, at some hundreds of steps at most, to be drawn; none of a march that is judged again.
+    pub history: Vec<[f32; 2]>,
 }
+
+/// Most points of a history that is drawn.
+const DRAWN: usize = 200;
 
 /// What an impactor did.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -77,36 +84,70 @@ pub struct ModeFigures {
 
 impl CaseFigures {
     /// Of a march that ended.
-    pub(super) fn of(model: &Model, sizes: &Sizes, mut outcome: Outcome) -> Self {
+    pub(super) fn of(model: &Model, sizes: &Sizes, outcome: &mut Outcome) -> Self {
         outcome.accuracy = Accuracy::default();
-        let summary = ImpactSummary::new(model, sizes, &outcome);
-        let force = |event: &FailureEvent| outcome.forces.at(event.time);
-        let earliest = |event: &&FailureEvent, of: &str, mode: &str| event.criterion == of && event.mode == mode;
-        let mode = |of: &str, mode: &str| ModeFigures {
-            name: format!("{of} {mode}"),
-            index: outcome.peaks.iter().find(|peak| peak.criterion == of && peak.mode == mode).map_or(0.0, |p| p.index),
-            onset: outcome
-                .events
-                .iter()
-                .find(|event| earliest(event, of, mode))
-                .map(|event| (event.time, force(event))),
+        let summary = ImpactSummary::new(model, sizes, outcome);
+        let index = |of: &str, mode: &str| {
+            let peak = outcome.peaks.iter().find(|peak| peak.criterion == of && peak.mode == mode);
+            peak.map_or(f64::NEG_INFINITY, |peak| peak.index)
         };
-        let modes = model
-            .criteria
-            .iter()
-            .flat_map(|(name, criterion)| criterion.info().modes.iter().map(|of| mode(name, of)).collect::<Vec<_>>());
+        let modes =
+            |(name, criterion): &NamedCriterion| criterion.info().modes.iter().map(|m| index(name, m)).collect();
+        let found = Extremes {
+            largest: model.criteria.iter().map(modes).collect(),
+            firsts: first_per_mode(&outcome.events).into_iter().cloned().collect(),
+        };
+        let none = Self {
+            modes: Vec::new(),
+            first: None,
+            impactors: summary.impact.iter().map(StruckFigures::from).collect(),
+            over_threshold: summary.delamination_threshold.as_ref().map(|threshold| {
+                summary.impact.iter().map(|of| of.peak_force_N).fold(0.0, f64::max) / threshold.force_of_all_N
+            }),
+            energy_error: outcome.energy_error,
+            warnings: (summary.warnings.len() + summary.cautions.len()) as u64,
+            history: Vec::new(),
+        };
+        let end = outcome.history.last().map_or(0.0, |row| row.time_s);
+        let found = none.judged(&model.criteria, &found, &outcome.forces);
+        Self { history: drawn(&outcome.forces, end), ..found }
+    }
+
+    /// Of the same march, where these were `found` by criteria.
+    pub(super) fn judged(&self, criteria: &[NamedCriterion], found: &Extremes, forces: &StepForces) -> Self {
+        let mode = |of: &str, mode: &str, index: f64| ModeFigures {
+            name: format!("{of} {mode}"),
+            index: if index > f64::NEG_INFINITY { index } else { 0.0 },
+            onset: found
+                .firsts
+                .iter()
+                .find(|event| event.criterion == of && event.mode == mode)
+                .map(|event| (event.time, forces.at(event.time))),
+        };
+        let each = criteria.iter().zip(&found.largest).flat_map(|((name, criterion), largest)| {
+            let modes = criterion.info().modes.iter().zip(largest);
+            modes.map(|(of, index)| mode(name, of, *index)).collect::<Vec<_>>()
+        });
         Self {
-            modes: modes.collect(),
-            first: outcome.events.first().map(|event| FirstDamage {
+            modes: each.collect(),
+            first: found.firsts.first().map(|event| FirstDamage {
                 time: event.time,
                 criterion: event.criterion.clone(),
                 mode: event.mode.to_owned(),
                 ply: name_ply(event.place),
-                force: force(event),
+                force: forces.at(event.time),
             }),
-            impactors: summary.impact.iter().map(StruckFigures::from).collect(),
-            energy_error: outcome.energy_error,
-            warnings: (summary.warnings.len() + summary.cautions.len()) as u64,
+            impactors: self.impactors.clone(),
+            history: Vec::new(),
+            ..*self
         }
     }
+}
+
+/// A force until the time `end`, s.
+fn drawn(forces: &StepForces, end: f64) -> Vec<[f32; 2]> {
+    let steps = (end / forces.step()).round() as usize;
+    let every = steps.div_ceil(DRAWN).max(1);
+    let points = (0..=steps).step_by(every).map(|step| [step as f64 * forces.step(), forces.after(step)]);
+    points.map(|point| point.map(|number| number as f32)).collect()
 }

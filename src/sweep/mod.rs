@@ -4,10 +4,18 @@
 //! and strengths share their plate, assembled, reduced and with its stresses; their rows are those of a run of their own, to the
 //! bit.
 
+mod alike;
+mod chart;
+mod copula;
 mod design;
 mod distribution;
+mod engine;
 mod figures;
+mod marcher;
+mod page;
+mod pareto;
 mod picture;
+mod quantity;
 mod runner;
 mod scatter;
 mod sensitivity;
@@ -16,18 +24,26 @@ mod variation;
 
 pub use design::{Design, SweepAxis};
 pub use distribution::Distribution;
+pub use engine::Engine;
 pub use figures::{CaseFigures, FirstDamage, ModeFigures, StruckFigures};
+pub use marcher::Marcher;
+pub(crate) use page::CasesPage;
+pub use pareto::{Objective, Objectives};
+pub(crate) use picture::border;
 pub use picture::write_pictures;
+pub use quantity::CaseQuantity;
 pub use runner::CaseRow;
 pub use scatter::{Basis, Probability, Scatter, basis_factor, scatter};
 pub use sensitivity::{Importance, importance};
-pub use table::{Record, read_record, write};
+pub use table::{QuantityRange, Record, read_record, write, write_page};
 pub use variation::Variation;
 
+use crate::analyses::assembled::expected_memory;
 use crate::analyses::saved::{self, Keys};
+use crate::cost;
 use crate::error::Error;
 use crate::job::folder;
-use crate::model::Model;
+use crate::model::{Model, leaves_plate};
 use crate::registry::Registry;
 use fem_io::files::OutputDir;
 use fem_io::scene::{Sampling, Scene, SceneSource, Setting, Varied, Written, parse_under};
@@ -42,8 +58,9 @@ use std::time::{Duration, Instant};
 const FILE: &str = "sweep.bin";
 /// The same of a part of a sweep, `k` of `n`.
 const PART: &str = "part-";
-/// How long rows wait before they are saved.
-const SAVED_EVERY: Duration = Duration::from_secs(5);
+/// How long rows wait before they are saved: at least so long, and so many times as long as saving them takes.
+const SAVED_AFTER: Duration = Duration::from_millis(200);
+const SAVED_SHARE: u32 = 20;
 /// How often someone who waits is heard.
 const PATIENCE: Duration = Duration::from_millis(50);
 
@@ -61,6 +78,15 @@ pub struct SweepRequest {
     /// What random numbers follow from.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
+    /// Correlations of pairs of keys, `KEY,KEY=0.6`; none: those of the scene.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub correlate: Vec<String>,
+    /// Formulas of what cases set and find, each `NAME = FORMULA` or the formula alone; none: those of the scene.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub quantities: Vec<String>,
+    /// Two quantities that are weighed against each other, `least FORMULA, most FORMULA`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pareto: Option<String>,
 }
 
 /// The cases of a scene.
@@ -68,6 +94,10 @@ pub struct SweepRequest {
 pub struct Sweep<'a> {
     /// Which there are.
     pub design: Design,
+    /// What is said of each besides what it found.
+    pub quantities: Vec<CaseQuantity>,
+    /// What is weighed against each other.
+    pub objectives: Option<Objectives>,
     registry: &'a Registry,
     source: Arc<SceneSource>,
     written: Written,
@@ -109,14 +139,22 @@ impl<'a> Sweep<'a> {
         };
         let samples = asked.samples.unwrap_or(scene.sweep.samples);
         let seed = asked.seed.unwrap_or(scene.sweep.seed);
-        let design = Design::new(axes, sampling, samples, seed)?;
-        let mut identity = saved::identity(&Model::new(scene, registry)?)?;
+        let correlations = if asked.correlate.is_empty() { &scene.sweep.correlate } else { &asked.correlate };
+        let design = Design::new(axes, sampling, samples, seed, correlations)?;
+        let model = Model::new(scene, registry)?;
+        let known = quantity::Known::new(&model, &design.axes, &written);
+        let quantities = if asked.quantities.is_empty() { &scene.sweep.quantities } else { &asked.quantities };
+        let quantities = known.quantities(quantities)?;
+        let objectives = asked.pareto.as_ref().or(scene.sweep.pareto.as_ref());
+        let objectives = objectives.map(|text| pareto::parse(text, &known)).transpose()?;
+        let mut identity = saved::identity(&model)?;
         identity.retain(|key, _| !key.starts_with("sweep."));
         identity.insert(
             "the cases of the sweep".into(),
-            format!("{:?} {:?} {} {}", design.axes, sampling, design.count, seed),
+            format!("{:?} {:?} {} {} {:?}", design.axes, sampling, design.count, seed, correlations),
         );
-        let sweep = Self { design, registry, source: Arc::clone(&scene.source), written, identity };
+        let sweep =
+            Self { design, quantities, objectives, registry, source: Arc::clone(&scene.source), written, identity };
         sweep.check()?;
         Ok(sweep)
     }
@@ -158,27 +196,41 @@ impl<'a> Sweep<'a> {
         Ok(saved::write(dir, FILE, &self.identity, &rows)?)
     }
 
-    /// The cases of part `k` of `n`, counted from 0, or all: neighbours, which share plates where the keys of plates come first.
+    /// The cases of part `k` of `n`, counted from 0, or all: those that share a plate are in one part, or in neighbours.
     pub fn part(&self, part: Option<(usize, usize)>) -> Vec<usize> {
-        let (k, n) = part.unwrap_or((1, 1));
+        let all: Vec<usize> = (0..self.design.count).collect();
+        let Some((k, n)) = part else { return all };
         let begin = |k: usize| (self.design.count as u128 * k as u128 / n as u128) as usize;
-        (begin(k - 1)..begin(k)).collect()
+        runner::in_order(&self.design, &all)[begin(k - 1)..begin(k)].iter().map(|(.., case)| *case).collect()
     }
 
-    /// Rows of the parts in `folder`, each case once.
+    /// How many cases this machine marches at a time: one on each core, as far as their plates fit its memory.
     ///
     /// # Errors
-    /// No parts, a damaged one, one of another sweep.
+    /// A plate that takes more than there is.
+    pub fn workers(&self) -> Result<NonZeroUsize, Error> {
+        let cores = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+        let one_plate = self.design.axes.iter().all(|axis| leaves_plate(&axis.key));
+        if one_plate || cores == NonZeroUsize::MIN {
+            return Ok(cores);
+        }
+        let scene = parse_under(self.source.text(), Path::new(self.source.name()), &BTreeMap::new())?;
+        let memory = expected_memory(&Model::new(&scene, self.registry)?)?;
+        let fit = memory.and_then(|plate| cost::how_many_fit(plate.bytes())).and_then(NonZeroUsize::new);
+        Ok(fit.map_or(cores, |fit| fit.min(cores)))
+    }
+
+    /// Rows of the parts in `folder`, each case once; none where no part is there, or has saved any.
+    ///
+    /// # Errors
+    /// A damaged part, one of another sweep.
     pub fn gather(&self, folder: &Path) -> Result<Vec<CaseRow>, Error> {
         let mut rows: BTreeMap<usize, CaseRow> = BTreeMap::new();
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         let parts = entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(PART));
-        for part in parts.map(|entry| entry.path()).filter(|path| path.is_dir()) {
+        // A part that was killed at once has saved nothing.
+        for part in parts.map(|entry| entry.path()).filter(|path| path.join(FILE).symlink_metadata().is_ok()) {
             rows.extend(self.saved(&part)?.into_iter().map(|row| (row.case, row)));
-        }
-        if rows.is_empty() {
-            let message = format!("`{}` holds no parts of this sweep", folder.display());
-            return Err(Error::Sweep { message, help: "run them first: `fem sweep SCENE --part 1/4`".into() });
         }
         Ok(rows.into_values().collect())
     }
@@ -198,12 +250,14 @@ impl<'a> Sweep<'a> {
     ) -> Result<(), Error> {
         let done: BTreeSet<usize> = rows.iter().map(|row| row.case).collect();
         let missing: Vec<usize> = cases.iter().copied().filter(|case| !done.contains(&(case + 1))).collect();
-        let (mut last, mut failed) = (Instant::now(), None);
+        let (mut last, mut wait, mut failed) = (Instant::now(), SAVED_AFTER, None);
         runner::run(self, &missing, threads, &mut |row| {
             rows.extend(row);
-            if last.elapsed() >= SAVED_EVERY && failed.is_none() {
+            if last.elapsed() >= wait && failed.is_none() {
+                let begun = Instant::now();
                 failed = self.save(dir, rows).err();
                 last = Instant::now();
+                wait = SAVED_AFTER.max(SAVED_SHARE * (last - begun));
             }
             match failed {
                 Some(_) => ControlFlow::Break(()),

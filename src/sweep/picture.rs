@@ -1,18 +1,20 @@
 //! A sweep as pictures.
 
 use super::runner::CaseRow;
-use super::scatter::Scatter;
-use super::{CaseFigures, Sweep};
+use super::table::Record;
+use super::{CaseFigures, Scatter, Sweep, chart};
 use crate::error::Error;
 use fem_io::files::OutputDir;
 use fem_io::plot::{
-    self, Axis, Fill, LinePlot, MapCell, MapPlot, Mark, Panel, Series, Stroke, Style, line_plot, map_plot,
+    Axis, Fill, LinePlot, MapCell, MapPlot, Mark, Panel, Picture, Series, Stroke, Style, line_plot, map_plot,
 };
 use fem_io::scene::Sampling;
 use std::collections::BTreeMap;
 
 /// Most curves of a picture.
 const MOST_CURVES: usize = 8;
+/// Most histories of a picture.
+const MOST_HISTORIES: usize = 40;
 /// Most cells of a map.
 const MOST_CELLS: usize = 40_000;
 
@@ -23,8 +25,9 @@ struct Point<'a> {
 }
 
 /// Draws what the design shows, each as SVG and PNG: curves over the only number that varies, `peak_force` and `damage_index`; a
-/// map over two, `damage_map`; `force_at_damage`, how the force at first damage scatters. A picture that would have nothing to
-/// show is left out.
+/// map over two, `damage_map`; `force_at_damage`, how the force at first damage scatters; `force_histories` of a few cases, one over
+/// the other; `importance_*`, Sobol's indices of each result; `pareto_front`. A picture that would have nothing to show is left out. The
+/// pictures as SVG.
 ///
 /// # Errors
 /// A folder that cannot be written.
@@ -33,8 +36,9 @@ pub fn write_pictures(
     title: &str,
     sweep: &Sweep<'_>,
     rows: &[CaseRow],
-    scatter: Option<&Scatter>,
-) -> Result<(), Error> {
+    record: &Record,
+) -> Result<Vec<String>, Error> {
+    let mut album = Album { dir, pictures: Vec::new() };
     let point = |row: &CaseRow| sweep.design.case(row.case - 1);
     let points: Vec<Point<'_>> = rows
         .iter()
@@ -42,7 +46,7 @@ pub fn write_pictures(
         .filter(|point| !point.found.impactors.is_empty())
         .collect();
     if points.is_empty() {
-        return Ok(());
+        return Ok(album.pictures);
     }
     let varied: Vec<usize> =
         (0..sweep.design.axes.len()).filter(|axis| sweep.design.axes[*axis].variation.count() != Some(1)).collect();
@@ -54,7 +58,7 @@ pub fn write_pictures(
             let first = |found: &CaseFigures| Some(found.first.as_ref()?.force);
             let mut series = curves(&points, (*x, &varied), "peak", &peak);
             series.extend(curves(&points, (*x, &varied), "at first damage", &first));
-            draw(dir, "peak_force", title, sweep, *x, ("Contact force", "N"), series)?;
+            draw(&mut album, "peak_force", title, sweep, *x, ("Contact force", "N"), series)?;
             let modes = points[0].found.modes.iter().enumerate();
             let index = |k: usize| move |found: &CaseFigures| found.modes.get(k).map(|mode| mode.index);
             let mut series: Vec<Series> =
@@ -63,19 +67,68 @@ pub fn write_pictures(
                 let points = ends.map(|x| (x, 1.0)).to_vec();
                 series.push(Series { label: "damage".into(), points, style: Style::Guide });
             }
-            draw(dir, "damage_index", title, sweep, *x, ("Largest failure index", ""), series)?;
+            draw(&mut album, "damage_index", title, sweep, *x, ("Largest failure index", ""), series)?;
         }
         ([x, y], Sampling::Grid) if varied.len() == 2 => {
             if let Some(map) = map(title, sweep, &points, [*x, *y]) {
-                map_plot(&map)?.write(dir, "damage_map")?;
+                album.put("damage_map", map_plot(&map)?)?;
             }
         }
         _ => {}
     }
-    match scatter {
-        Some(scatter) => histogram(dir, title, &points, scatter),
-        None => Ok(()),
+    overlay(&mut album, title, &points, &varied)?;
+    if let Some(scatter) = &record.scatter {
+        histogram(&mut album, title, &points, scatter)?;
     }
+    for of in record.importance.chunk_by(|a, b| a.result == b.result) {
+        let name = of[0].result.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
+        album.put(&format!("importance_{name}"), map_plot(&chart::bars(title, of))?)?;
+    }
+    let words = varied.iter().copied().find(|axis| !numeric.contains(axis));
+    if let Some(plot) = chart::front(title, sweep, rows, words) {
+        album.put("pareto_front", line_plot(&plot)?)?;
+    }
+    Ok(album.pictures)
+}
+
+/// Pictures that were written.
+struct Album<'a> {
+    dir: &'a OutputDir,
+    pictures: Vec<String>,
+}
+
+impl Album<'_> {
+    fn put(&mut self, name: &str, picture: Picture) -> Result<(), Error> {
+        picture.write(self.dir, name)?;
+        self.pictures.push(picture.svg);
+        Ok(())
+    }
+}
+
+/// The forces of few cases over time, each by the values that vary where they are few enough to be told apart.
+fn overlay(album: &mut Album<'_>, title: &str, points: &[Point<'_>], varied: &[usize]) -> Result<(), Error> {
+    let with: Vec<&Point<'_>> = points.iter().filter(|point| point.found.history.len() > 1).collect();
+    if !(2..=MOST_HISTORIES).contains(&with.len()) {
+        return Ok(());
+    }
+    let name = |point: &Point<'_>| match with.len() > MOST_CURVES {
+        true => "cases".to_owned(),
+        false => varied.iter().map(|axis| point.values[*axis].as_str()).collect::<Vec<_>>().join(", "),
+    };
+    let series = with.iter().map(|point| Series {
+        label: name(point),
+        points: point.found.history.iter().map(|[t, f]| (1e3 * f64::from(*t), f64::from(*f))).collect(),
+        style: Style::Solid,
+    });
+    let plot = LinePlot {
+        title: title.to_owned(),
+        x: Axis::linear("Time", "ms"),
+        y: Axis::linear("Contact force", "N"),
+        series: series.collect(),
+        marks: Vec::new(),
+        doubts: Vec::new(),
+    };
+    album.put("force_histories", line_plot(&plot)?)
 }
 
 /// The number that an axis has in a case.
@@ -115,7 +168,7 @@ fn axis(sweep: &Sweep<'_>, k: usize) -> Axis {
 }
 
 fn draw(
-    dir: &OutputDir,
+    album: &mut Album<'_>,
     name: &str,
     title: &str,
     sweep: &Sweep<'_>,
@@ -127,7 +180,7 @@ fn draw(
     if drawn {
         let (x, y) = (axis(sweep, x), Axis::linear(label, unit));
         let plot = LinePlot { title: title.to_owned(), x, y, series, marks: Vec::new(), doubts: Vec::new() };
-        line_plot(&plot)?.write(dir, name)?;
+        album.put(name, line_plot(&plot)?)?;
     }
     Ok(())
 }
@@ -185,7 +238,7 @@ fn map(title: &str, sweep: &Sweep<'_>, points: &[Point<'_>], axes: [usize; 2]) -
 
 /// The lines on which `index` is 1, a piece for each cell of the grid that they cross: marching triangles, linear between the
 /// points.
-fn border(xs: &[f64], ys: &[f64], index: &dyn Fn(usize, usize) -> Option<f64>) -> Vec<Vec<[f64; 2]>> {
+pub(crate) fn border(xs: &[f64], ys: &[f64], index: &dyn Fn(usize, usize) -> Option<f64>) -> Vec<Vec<[f64; 2]>> {
     let mut pieces = Vec::new();
     for i in 1..xs.len() {
         for j in 1..ys.len() {
@@ -207,7 +260,7 @@ fn border(xs: &[f64], ys: &[f64], index: &dyn Fn(usize, usize) -> Option<f64>) -
 }
 
 /// How the force at first damage scatters, with basis values.
-fn histogram(dir: &OutputDir, title: &str, points: &[Point<'_>], scatter: &Scatter) -> Result<(), Error> {
+fn histogram(album: &mut Album<'_>, title: &str, points: &[Point<'_>], scatter: &Scatter) -> Result<(), Error> {
     let forces: Vec<f64> = points.iter().filter_map(|point| Some(point.found.first.as_ref()?.force)).collect();
     let (low, high) = forces.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), f| (low.min(*f), high.max(*f)));
     if forces.len() < 10 || !(high > low) {
@@ -236,7 +289,7 @@ fn histogram(dir: &OutputDir, title: &str, points: &[Point<'_>], scatter: &Scatt
         marks: marks.collect(),
         doubts: Vec::new(),
     };
-    Ok(plot::line_plot(&plot)?.write(dir, "force_at_damage")?)
+    album.put("force_at_damage", line_plot(&plot)?)
 }
 
 #[cfg(test)]

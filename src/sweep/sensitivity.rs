@@ -1,6 +1,6 @@
 //! Which of the numbers that vary matter: Sobol's indices.
 
-use super::Design;
+use super::Sweep;
 use super::design::generator;
 use super::figures::CaseFigures;
 use super::runner::CaseRow;
@@ -28,36 +28,43 @@ pub struct Importance {
 }
 
 /// Of the design that is made for it, all results that vary; blocks of cases of which one failed are left out.
-pub fn importance(design: &Design, rows: &[CaseRow]) -> Vec<Importance> {
+pub fn importance(sweep: &Sweep<'_>, rows: &[CaseRow]) -> Vec<Importance> {
+    let design = &sweep.design;
     let width = design.axes.len() + 2;
     let whole = rows.chunk_by(|a, b| (a.case - 1) / width == (b.case - 1) / width).filter(|block| block.len() == width);
-    let blocks: Vec<Vec<&CaseFigures>> =
-        whole.filter_map(|block| block.iter().map(|row| row.result.as_ref().ok()).collect()).collect();
+    let of = |row: &CaseRow| Some(results(sweep, row.case, row.result.as_ref().ok()?));
+    let blocks: Vec<Vec<Results>> = whole.filter_map(|block| block.iter().map(of).collect()).collect();
     let Some(one) = blocks.first().and_then(|block| block.first()) else { return Vec::new() };
     let mut all = Vec::new();
-    for result in 0..results(one).len() {
-        let values: Vec<Vec<f64>> =
-            blocks.iter().map(|block| block.iter().map(|case| results(case)[result].1).collect()).collect();
+    for (result, (name, _)) in one.iter().enumerate() {
+        let value = |case: &Results| case.get(result)?.1;
+        let values: Vec<Vec<f64>> = blocks.iter().filter_map(|block| block.iter().map(value).collect()).collect();
         let indices = sobol_indices(&values, design.seed);
         all.extend(indices.into_iter().zip(&design.axes).map(|(of, axis)| {
             let [[first, first_low, first_high], [total, total_low, total_high]] = of;
-            let (result, key) = (results(one)[result].0.clone(), axis.key.clone());
+            let (result, key) = (name.clone(), axis.key.clone());
             Importance { result, key, first, first_low, first_high, total, total_low, total_high }
         }));
     }
     all
 }
 
-/// Results that indices are computed of.
-fn results(case: &CaseFigures) -> Vec<(String, f64)> {
+/// Results that indices are computed of, where a case has them.
+type Results = Vec<(String, Option<f64>)>;
+
+fn results(sweep: &Sweep<'_>, number: usize, case: &CaseFigures) -> Results {
     let mut all = Vec::new();
     for of in &case.impactors {
         let name = |what: &str| of.name.as_ref().map_or(what.to_owned(), |name| format!("{name} {what}"));
-        all.push((name("peak_force_N"), of.peak_force));
-        all.push((name("deflection_m"), of.deflection));
-        all.push((name("absorbed_energy_J"), of.absorbed_energy));
+        all.push((name("peak_force_N"), Some(of.peak_force)));
+        all.push((name("deflection_m"), Some(of.deflection)));
+        all.push((name("absorbed_energy_J"), Some(of.absorbed_energy)));
     }
-    all.extend(case.modes.iter().map(|mode| (format!("{} index", mode.name), mode.index)));
+    all.extend(case.modes.iter().map(|mode| (format!("{} index", mode.name), Some(mode.index))));
+    if !sweep.quantities.is_empty() {
+        let values = sweep.design.case(number - 1);
+        all.extend(sweep.quantities.iter().map(|of| (of.name.clone(), of.value(&values, case))));
+    }
     all
 }
 
@@ -104,7 +111,7 @@ fn sobol_indices(blocks: &[Vec<f64>], seed: u64) -> Vec<[[f64; 3]; 2]> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::{SweepAxis, Variation};
+    use super::super::{Design, SweepAxis, Variation};
     use super::*;
     use fem_io::scene::Sampling;
     use std::f64::consts::PI;
@@ -114,7 +121,7 @@ mod tests {
             key: key.to_string(),
             variation: Variation::parse(&format!("uniform({}, {PI})", -PI), None).unwrap(),
         };
-        let design = Design::new((0..3).map(axis).collect(), Some(Sampling::Saltelli), samples, 3).unwrap();
+        let design = Design::new((0..3).map(axis).collect(), Some(Sampling::Saltelli), samples, 3, &[]).unwrap();
         assert_eq!(design.count, 5 * samples);
         let case = |k: usize| f(&design.case(k).iter().map(|x| x.parse().unwrap()).collect::<Vec<f64>>());
         (0..samples).map(|block| (0..5).map(|k| case(5 * block + k)).collect()).collect()

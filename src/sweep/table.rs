@@ -1,5 +1,7 @@
 //! A sweep as tables.
 
+use super::page::{self, CasesPage};
+use super::quantity::{CaseQuantity, OF_IMPACTOR};
 use super::runner::CaseRow;
 use super::scatter::{Scatter, scatter};
 use super::sensitivity::{Importance, importance};
@@ -36,6 +38,12 @@ pub struct Record {
     /// What they say together.
     #[serde(skip_deserializing, skip_serializing_if = "Option::is_none")]
     pub scatter: Option<Scatter>,
+    /// What was asked of each case.
+    #[serde(skip_deserializing, skip_serializing_if = "Vec::is_empty")]
+    pub quantities: Vec<QuantityRange>,
+    /// Cases that no other one beats in two quantities.
+    #[serde(skip_deserializing, skip_serializing_if = "Option::is_none")]
+    pub pareto_front: Option<Vec<usize>>,
     /// What matters, of a design that is made for it.
     #[serde(skip_deserializing, skip_serializing_if = "Vec::is_empty")]
     pub importance: Vec<Importance>,
@@ -58,12 +66,50 @@ impl Record {
             cases: design.count,
             done: rows.len(),
             failed,
+            quantities: QuantityRange::all(sweep, rows),
+            pareto_front: sweep.objectives.as_ref().map(|_| {
+                let on = marked(sweep, rows).filter(|(_, on)| *on == Some(true));
+                on.map(|(row, _)| row.case).collect()
+            }),
             importance: match design.sampling {
-                Sampling::Saltelli => importance(design, rows),
+                Sampling::Saltelli => importance(sweep, rows),
                 _ => Vec::new(),
             },
             scatter: (random && rows.len() > failed).then(|| scatter(rows)),
         }
+    }
+}
+
+/// Between what values a quantity lies.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct QuantityRange {
+    pub name: String,
+    /// In SI units.
+    pub unit: String,
+    /// Cases that have it.
+    pub cases: usize,
+    pub least: f64,
+    pub most: f64,
+    /// Its number among those of the sweep.
+    #[serde(skip)]
+    pub number: usize,
+}
+
+impl QuantityRange {
+    /// Of all that some case has.
+    fn all(sweep: &Sweep<'_>, rows: &[CaseRow]) -> Vec<Self> {
+        let mut all: Vec<Self> = Vec::new();
+        for (number, of) in sweep.quantities.iter().enumerate() {
+            let found = rows.iter().filter_map(|row| Some((row.case - 1, row.result.as_ref().ok()?)));
+            let values = found.filter_map(|(case, found)| of.value(&sweep.design.case(case), found));
+            let range = values.fold((f64::INFINITY, f64::NEG_INFINITY, 0), |(a, b, n), v| (a.min(v), b.max(v), n + 1));
+            let (least, most, cases) = range;
+            if cases > 0 {
+                all.push(Self { name: of.name.clone(), unit: of.unit(), cases, least, most, number });
+            }
+        }
+        all
     }
 }
 
@@ -79,11 +125,37 @@ pub fn write(dir: &OutputDir, sweep: &Sweep<'_>, rows: &[CaseRow], record: &Reco
     let header = header(sweep, rows);
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let values: Vec<Vec<String>> = rows.iter().map(|row| sweep.design.case(row.case - 1)).collect();
-    let lines = rows.iter().zip(&values).map(|(row, values)| line(row, values, &header, sweep));
+    let lines = marked(sweep, rows).zip(&values).map(|(row, values)| line(row, values, &header, sweep));
     tables::write_columns(dir, "sweep.csv", &header, lines)?;
     let costs = rows.iter().map(|row| vec![TableValue::Count(row.case as u64), TableValue::Number(row.seconds)]);
     tables::write_columns(dir, "cost.csv", &["case", "cpu_s"], costs)?;
     Ok(tables::write_json(dir, FILE, record)?)
+}
+
+/// Writes report.html, a page of all cases with these `pictures`, unless there are too many.
+///
+/// # Errors
+/// A folder that cannot be written.
+pub fn write_page(
+    dir: &OutputDir,
+    title: &str,
+    sweep: &Sweep<'_>,
+    rows: &[CaseRow],
+    pictures: Vec<String>,
+) -> Result<(), Error> {
+    let columns = header(sweep, rows);
+    let names: Vec<&str> = columns.iter().map(String::as_str).collect();
+    let shown = &rows[..rows.len().min(page::MOST + 1)];
+    let values: Vec<Vec<String>> = shown.iter().map(|row| sweep.design.case(row.case - 1)).collect();
+    let page = CasesPage {
+        title,
+        columns: &columns,
+        rows: marked(sweep, shown).zip(&values).map(|(row, values)| line(row, values, &names, sweep)).collect(),
+        histories: shown.iter().map(|row| row.result.as_ref().map_or(&[][..], |of| of.history.as_slice())).collect(),
+        varied: sweep.design.axes.len(),
+        pictures,
+    };
+    page.write(dir)
 }
 
 /// What `folder` holds.
@@ -100,17 +172,13 @@ pub fn read_record(folder: &Path) -> Result<Record, Error> {
     serde_json::from_str(&text).map_err(|cause| FileError::Json { file: path.display().to_string(), cause }.into())
 }
 
-/// Columns of each impactor, of the first damage and of all others.
-const OF_IMPACTOR: [&str; 7] = [
-    "energy_J",
-    "peak_force_N",
-    "peak_force_time_s",
-    "impulse_N_s",
-    "deflection_m",
-    "contact_time_s",
-    "absorbed_energy_J",
-];
+/// Columns of the first damage.
 const OF_DAMAGE: [&str; 5] = ["damage_time_s", "damage_criterion", "damage_mode", "damage_ply", "damage_force_N"];
+
+/// Each row with whether it is on the front, where it has a place there.
+fn marked<'a>(sweep: &Sweep<'_>, rows: &'a [CaseRow]) -> impl Iterator<Item = (&'a CaseRow, Option<bool>)> + Clone {
+    rows.iter().zip(sweep.front(rows)).map(|(row, of)| (row, of.map(|(_, on)| on)))
+}
 
 fn header(sweep: &Sweep<'_>, rows: &[CaseRow]) -> Vec<String> {
     let mut header = vec!["case".to_owned()];
@@ -122,19 +190,27 @@ fn header(sweep: &Sweep<'_>, rows: &[CaseRow]) -> Vec<String> {
     if let Some(one) = rows.iter().find_map(|row| row.result.as_ref().ok()) {
         for impactor in &one.impactors {
             let name = impactor.name.as_ref().map_or(String::new(), |name| format!("{name} "));
-            header.extend(OF_IMPACTOR.map(|column| format!("{name}{column}")));
+            header.extend(OF_IMPACTOR.map(|(column, unit, ..)| format!("{name}{column}_{unit}")));
         }
         header.extend(OF_DAMAGE.map(str::to_owned));
         for mode in &one.modes {
             let name = &mode.name;
             header.extend([format!("{name} index"), format!("{name} time_s"), format!("{name} force_N")]);
         }
+        header.extend(one.over_threshold.map(|_| "force_over_delamination_threshold".to_owned()));
         header.extend(["energy_error", "warnings"].map(str::to_owned));
+        header.extend(sweep.quantities.iter().map(CaseQuantity::column));
+        header.extend(sweep.objectives.as_ref().map(|_| "on_pareto_front".to_owned()));
     }
     header
 }
 
-fn line<'a>(row: &'a CaseRow, values: &'a [String], header: &[&str], sweep: &Sweep<'_>) -> Vec<TableValue<'a>> {
+fn line<'a>(
+    (row, on_front): (&'a CaseRow, Option<bool>),
+    values: &'a [String],
+    header: &[&str],
+    sweep: &Sweep<'_>,
+) -> Vec<TableValue<'a>> {
     let mut line = vec![TableValue::Count(row.case as u64)];
     line.extend(values.iter().zip(&sweep.design.axes).map(|(value, axis)| {
         let number = match axis.variation.unit() {
@@ -154,8 +230,7 @@ fn line<'a>(row: &'a CaseRow, values: &'a [String], header: &[&str], sweep: &Swe
     };
     line.push(NONE);
     for of in &figures.impactors {
-        let each = [of.energy, of.peak_force, of.peak_force_time, of.impulse, of.deflection, of.contact_time];
-        line.extend(each.into_iter().chain([of.absorbed_energy]).map(|value| number(Some(value))));
+        line.extend(OF_IMPACTOR.map(|(.., at)| number(Some(at(of)))));
     }
     match &figures.first {
         None => line.extend([(); OF_DAMAGE.len()].map(|()| NONE)),
@@ -168,6 +243,9 @@ fn line<'a>(row: &'a CaseRow, values: &'a [String], header: &[&str], sweep: &Swe
     for mode in &figures.modes {
         line.extend([Some(mode.index), mode.onset.map(|onset| onset.0), mode.onset.map(|onset| onset.1)].map(number));
     }
+    line.extend(figures.over_threshold.map(|share| number(Some(share))));
     line.extend([number(Some(figures.energy_error)), TableValue::Count(figures.warnings)]);
+    line.extend(sweep.quantities.iter().map(|quantity| number(quantity.value(values, figures))));
+    line.extend(sweep.objectives.as_ref().map(|_| on_front.map_or(NONE, |on| TableValue::Count(on.into()))));
     line
 }

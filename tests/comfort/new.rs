@@ -4,7 +4,8 @@ use crate::support::{fem, root, strip};
 use fem::io::scene;
 use std::fs;
 
-const TEMPLATES: [&str; 6] = ["drop-weight", "astm-d7136", "ball", "ring", "pagano", "modes"];
+const TEMPLATES: [&str; 8] =
+    ["drop-weight", "astm-d7136", "aitm-1-0010", "astm-d6264", "ball", "ring", "pagano", "modes"];
 
 #[test]
 fn every_template_is_a_scene_that_says_the_same_with_its_comments() {
@@ -26,7 +27,11 @@ fn every_template_is_a_scene_that_says_the_same_with_its_comments() {
     }
     let mut names: Vec<_> = folder.path().read_dir().unwrap().map(|e| e.unwrap().file_name()).collect();
     names.sort();
-    assert_eq!(names, ["astm-d7136", "ball", "drop-weight", "modes", "pagano", "ring"], "nothing else is left behind");
+    assert_eq!(
+        names,
+        ["aitm-1-0010", "astm-d6264", "astm-d7136", "ball", "drop-weight", "modes", "pagano", "ring"],
+        "nothing else is left behind"
+    );
 }
 
 #[test]

@@ -38,7 +38,8 @@ fn deflection_of(side: f64, cells: usize, load: &str, effects: &str) -> f64 {
         far(*a).total_cmp(&far(*b))
     });
     let dof = fem::core::dof::Dof::new(3, 0).unwrap();
-    let at = model.plate.dofs_at(middle.unwrap(), model.plate.outer_levels()[0], dof).next().unwrap();
+    let middle = middle.unwrap();
+    let at = model.plate.dofs_at(middle, model.plate.outer_levels(middle)[0], dof).next().unwrap();
     -solution.u[at]
 }
 

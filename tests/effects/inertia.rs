@@ -1,7 +1,7 @@
 //! A plate without inertia: at rest under the contact forces at every instant.
 
 use super::{Struck, deflection, difference, force};
-use crate::support::root;
+use crate::support::{impact_of, root};
 use fem::analyses::impact;
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
@@ -150,6 +150,27 @@ fn several_impactors_bend_one_plate() {
 #[test]
 fn modes_cannot_be_followed() {
     Struck { more: "[output]\nmodes = 3\n", ..heavy(OFF) }.refused(&["without inertia has none", "leave one of"]);
+}
+
+/// A plate on rollers moves freely in its plane; halves and quarters of it do not. Without inertia nothing moves it.
+#[test]
+fn motions_in_the_plane_stay_where_they_are() {
+    let run = |symmetry: &str| {
+        let struck =
+            heavy("inertia = 'off', membrane = 'on'").march("integrator = 'newmark', step = '20 us', end = '20 ms'");
+        let text = struck.text().replace("['U10', 'U20', 'U30']", "['U30']");
+        let text = format!("{symmetry}\n{text}[[support]]\nrestrain = 'rigid-motions'\n");
+        let (_, found) = impact_of(scene::parse(&text, &root().join("scene.toml")).unwrap()).unwrap();
+        assert!(found.outcome.stopped.is_none() && found.outcome.energy_error < 1e-3, "{:?}", found.outcome.stopped);
+        found.outcome.history
+    };
+    let [whole, half, quarter] = ["", "symmetry = 'half-turn'", "symmetry = 'quarter'"].map(run);
+    for part in [half, quarter] {
+        let found = difference(&whole, &part, force);
+        // As many vectors, but not the same.
+        assert!(found < 1e-3, "{found:e}");
+    }
+    assert!(whole.iter().map(deflection).fold(0.0, f64::max) > 1e-3, "it is stretched");
 }
 
 /// 2.49 kg on a plate of some 10 g: the plate's inertia makes ripples on a half-sine.

@@ -1,6 +1,7 @@
 //! Loads in the plane before an impact.
 
 use super::{EDGES, Struck, deflection, difference, force, said};
+use crate::pictures::pictures;
 use crate::support::{impact_of, plate, root};
 use fem::core::tensor::Stress6;
 use fem::io::scene;
@@ -148,9 +149,12 @@ fn buckling_is_written_and_a_scene_without_a_preload_refused() {
     let printed = case.fem("run", &["--out", "out"]).good().stdout;
     let factors = case.summary("out")["load_factors"].as_array().unwrap().clone();
     assert!(factors.len() == 3 && printed.contains("load factor"), "{printed}");
+    assert!(printed.contains("preload   x-min -8 N/mm, x-max -8 N/mm, y-min 0 N/mm, y-max 0 N/mm\n"), "{printed}");
+    assert_eq!(case.summary("out")["preload"][0]["force_N_per_m"].as_f64(), Some(-8e3));
     assert!(factors.windows(2).all(|pair| pair[0].as_f64().unwrap().abs() <= pair[1].as_f64().unwrap().abs()));
     let (header, rows) = case.table("out/buckling.csv");
     assert_eq!((header, rows.len()), (vec!["shape".to_owned(), "load_factor".to_owned()], 3));
+    pictures(&case, "out", &[]);
     let names = case.names("out/fields");
     assert!(names.iter().any(|name| name == "plate-0003.vtu"), "{names:?}");
     let frame = std::fs::read(case.folder().join("out/fields/plate-0001.vtu")).unwrap();
@@ -160,11 +164,16 @@ fn buckling_is_written_and_a_scene_without_a_preload_refused() {
         let force = format!("'{} N/mm'", -8.0 * share * factors[0].as_f64().unwrap());
         let effects = COMPRESSED.replace("'-8 N/mm'", &force);
         let scene = scene::parse(&text.replace(COMPRESSED, &effects), &root().join("scene.toml")).unwrap();
-        impact_of(scene).map(|_| ())
+        impact_of(scene).map(|(_, found)| found.sizes.buckling)
     };
-    assert!(at(0.99).is_ok());
+    let near = at(0.99).unwrap().unwrap();
+    assert!((near / 0.99 - 1.0).abs() < 1e-6, "{near}");
     let beyond = said(at(1.25).expect_err("it buckles"));
     assert!(beyond.contains("at 0.8000 of it"), "{beyond}");
+    let said = |text: &str| plate().text(text).fem("modes", &["--out", "modes"]).good().stdout;
+    let quarter = said(&text.replace("element =", "symmetry = 'quarter'\nelement ="));
+    assert!(quarter.contains("of the load that buckles the plate into a symmetric shape\n"), "{quarter}");
+    assert!(said(&text).contains("of the load that buckles the plate\n"));
     let none = plate().text(&buckling.replace(COMPRESSED, "preload = 'off'"));
     let refused = none.fem("check", &[]);
     assert!(refused.stderr.contains("`effects.preload` is missing"), "{}", refused.stderr);

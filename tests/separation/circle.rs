@@ -45,7 +45,7 @@ fn a_circular_delamination_grows_at_one_force() {
     };
     let element = HermitePrism::new(Mass::Cubic, 4).unwrap();
     let ply = LaminaPly { angle_deg: 0.0, angle: 0.0, thickness: 0.5 * THICKNESS, material: 0 };
-    let laminate = Laminate { plies: vec![ply; 2], layers: vec![1, 1] };
+    let laminate = Laminate { plies: vec![ply; 2], layers: vec![1, 1], middle: 0.0 };
     let stacks = laminate.stacks(std::slice::from_ref(&material)).unwrap();
     let mesh = PlaneMesh::rectangle(&x, &x);
     let mut plate = Plate::new(mesh, laminate.levels(), stacks, *element.info(), ZDerivatives::LayerWise).unwrap();

@@ -52,7 +52,7 @@ fn plate(element: &dyn Element, cells: Cells, separate: bool) -> Plate {
         mesh.quad_tags = (1..=mesh.quads.len() as u64).collect();
     }
     let ply = |angle_deg: f64| LaminaPly { angle_deg, angle: angle_deg.to_radians(), thickness: 0.5e-3, material: 0 };
-    let laminate = Laminate { plies: [0.0, 45.0, 90.0].map(ply).to_vec(), layers: vec![1, 1, 1] };
+    let laminate = Laminate { plies: [0.0, 45.0, 90.0].map(ply).to_vec(), layers: vec![1, 1, 1], middle: 0.0 };
     let stacks = laminate.stacks(&[material()]).unwrap();
     let mut plate = Plate::new(mesh, laminate.levels(), stacks, element, ZDerivatives::LayerWise).unwrap();
     let all: Vec<u32> = (0..plate.plane.quads.len() as u32).collect();

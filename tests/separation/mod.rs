@@ -4,6 +4,7 @@ mod circle;
 mod closed;
 mod dynamics;
 mod left;
+mod paths;
 mod pictures;
 mod scenes;
 mod specimens;

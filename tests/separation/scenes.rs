@@ -1,7 +1,8 @@
 //! Delaminations that grow, as scenes ask for them.
 
 use crate::support::{impact_of, root};
-use fem::analyses::impact::{self, Checkpoint, Delaminated, March, Outcome};
+use fem::analyses::delamination::Delaminated;
+use fem::analyses::impact::{self, Checkpoint, March, Outcome};
 use fem::io::files::OutputDir;
 use fem::io::scene;
 use fem::{Error, Model, Registry};

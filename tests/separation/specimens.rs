@@ -70,7 +70,7 @@ impl Specimen {
     pub(super) fn build(&self) -> (Separable, Vec<f64>) {
         let element = WebsterBeam::new(PlaneState::Stress, Mass::Cubic, 4).unwrap();
         let ply = LaminaPly { angle_deg: 0.0, angle: 0.0, thickness: ARM, material: 0 };
-        let laminate = Laminate { plies: vec![ply; 2], layers: vec![1, 1] };
+        let laminate = Laminate { plies: vec![ply; 2], layers: vec![1, 1], middle: 0.0 };
         let material = material(self.shear_strength);
         let stacks = laminate.stacks(std::slice::from_ref(&material)).unwrap();
         let mesh = PlaneMesh::rectangle(&self.x, &[0.0, WIDTH]);
@@ -146,26 +146,26 @@ fn cells(at: &[f64], length: f64) -> Vec<f64> {
     x
 }
 
-/// Columns of a reference while the crack grows.
-fn reference<const N: usize>(name: &str, columns: [&str; N]) -> Vec<[f64; N]> {
+/// Columns of a reference on a branch; where a file holds several specimens, "specimen,branch".
+pub(super) fn reference<const N: usize>(name: &str, branch: &str, columns: [&str; N]) -> Vec<[f64; N]> {
     let path = format!("{}/tests/data/damage/{name}.csv", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(path).unwrap();
     let mut lines = text.lines();
     let names: Vec<&str> = lines.next().unwrap().split(',').collect();
     let place = |column: &str| names.iter().position(|name| *name == column).unwrap();
-    let (branch, columns) = (place("branch"), columns.map(place));
+    let (last, columns) = (place("branch"), columns.map(place));
     let rows = lines.map(|line| line.split(',').collect::<Vec<_>>());
-    rows.filter(|row| row[branch] == "crack_growth").map(|row| columns.map(|c| row[c].parse().unwrap())).collect()
+    rows.filter(|row| row[..=last].join(",") == branch).map(|row| columns.map(|c| row[c].parse().unwrap())).collect()
 }
 
 /// The second column of a reference at a value of the first, along straight lines of logarithms; where it has one.
-fn at(reference: &[[f64; 2]], x: f64) -> Option<f64> {
+pub(super) fn at(reference: &[[f64; 2]], x: f64) -> Option<f64> {
     let pair = reference.windows(2).find(|pair| pair[0][0] <= x && x <= pair[1][0])?;
     let share = (x / pair[0][0]).ln() / (pair[1][0] / pair[0][0]).ln();
     Some(pair[0][1] * (pair[1][1] / pair[0][1]).powf(share))
 }
 
-fn mean_and_ripple(errors: &[f64]) -> [f64; 2] {
+pub(super) fn mean_and_ripple(errors: &[f64]) -> [f64; 2] {
     let n = errors.len() as f64;
     let mean = errors.iter().sum::<f64>() / n;
     [mean, (errors.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / n).sqrt()]
@@ -185,7 +185,7 @@ fn double_cantilever(cell: f64) -> Specimen {
 
 #[test]
 fn a_double_cantilever_grows_as_beams_on_its_interface() {
-    let exact = reference("specimens_cohesive_dcb_im7_8552", ["delta_m", "P_N"]);
+    let exact = reference("specimens_cohesive_dcb_im7_8552", "crack_growth", ["delta_m", "P_N"]);
     // Cells of half a process zone and of a whole one: mean of the force's error, ripple, per cent.
     for (share, bounds) in [(0.5, [0.5, 0.6]), (1.0, [0.5, 1.5])] {
         let end = PathEnd { opening: 4.2e-3, dissipated: f64::INFINITY, steps: 500 };
@@ -229,7 +229,8 @@ pub(super) fn end_notched(a0: f64) -> Specimen {
 fn an_end_notched_flexure_snaps_back_as_beams_on_its_interface() {
     for (name, a0) in [("specimens_cohesive_enf_im7_8552", 36e-3), ("specimens_cohesive_enf_short_im7_8552", 25e-3)] {
         // Along the branch dissipation grows where the deflection may turn back.
-        let [force, deflection] = ["P_N", "delta_m"].map(|column| reference(name, ["dissipated_J", column]));
+        let [force, deflection] =
+            ["P_N", "delta_m"].map(|column| reference(name, "crack_growth", ["dissipated_J", column]));
         let specimen = end_notched(a0);
         let end = PathEnd { opening: 5e-3, dissipated: 770.0 * WIDTH * 14e-3, steps: 300 };
         let seen = specimen.follow(770.0 * WIDTH * 0.5e-3, end);

@@ -190,3 +190,22 @@ fn tension_breaks_fibres() {
     }
     assert!(found(&march.finish()) == found(&broken), "resumed");
 }
+
+/// Plies that split and yield under a contact, in cells of 4 mm: they take energy that fibres alone do not, softly, and it balances.
+#[test]
+fn plies_split_in_wide_cells() {
+    let after = |more: &str| {
+        let law = format!("law = {{ name = 'crack-band', {more}, lower_strengths = true }}\n");
+        let material = leaked(format!("{STRONG}{law}"));
+        let outcome = Plate { material, velocity: 14.0, end_us: 60, ..stretched(BOTH, "") }.outcome();
+        assert!(outcome.energy_error < 5e-3 && outcome.stopped.is_none(), "{more}: {}", outcome.energy_error);
+        let last = outcome.history.len() - 1;
+        (outcome.history[last].effects[3], forces(&outcome)[last])
+    };
+    let (fibres, force) = after("breaks = 'fibres'");
+    let (split, softer) = after("breaks = 'splits', alpha = '2.44e-8 1/MPa^3'");
+    assert!(
+        split > 2.0 * fibres + 0.003 && softer < force && softer > 0.7 * force,
+        "{split} {fibres}, {softer} {force}"
+    );
+}

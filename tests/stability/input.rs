@@ -16,8 +16,11 @@ pub(crate) fn cases() -> Vec<Case> {
         Room::Input.case(name, varied, "inputs that panic or break a promise of the reader", 0.0, worst)
     };
     vec![
-        case("corpus of the mesh reader", "13 inputs by hand, 200 found by fuzzing", || {
-            replayed("mesh", [13, 200], targets::mesh)
+        case("corpus of the mesh reader", "14 inputs by hand, 200 found by fuzzing", || {
+            replayed("mesh", [14, 200], targets::mesh)
+        }),
+        case("corpus of the readers of Abaqus and Nastran", "12 inputs by hand", || {
+            replayed("lines", [12, 0], targets::lines)
         }),
         case("corpus of the scene reader", "8 inputs by hand, 200 found by fuzzing", || {
             replayed("scene", [8, 200], targets::scene)

@@ -22,7 +22,7 @@ fn middle(mesh: &str, refine: usize, support: &str) -> f64 {
     let _ = write!(plate.mesh, "{{ disc = {{ radius = '25 mm', {mesh} }}, refine = {refine} }}");
     let model = plate.model("static");
     let node = model.plate.plane.groups["impact"].nodes[0] as usize;
-    let [level, _] = model.plate.outer_levels();
+    let [level, _] = model.plate.outer_levels(node);
     let dof = model.plate.dofs_at(node, level, Dof::new(3, 0).unwrap()).next().unwrap();
     -fem::analyses::statics::solve(&model, std::num::NonZeroUsize::MIN).unwrap().u[dof]
 }

@@ -38,7 +38,7 @@ fn plate(mesh: &MeshFile, nu: f64) -> Plate {
 fn resultant(load: &str, force: [f64; 3], point: [f64; 3]) {
     let mesh = distorted();
     let model = plate(&mesh, 0.3).sides(CLAMPED).load(load).model("static");
-    let Plan::Static { forces } = &model.plan else { panic!("{:?}", model.plan) };
+    let Plan::Static { forces, .. } = &model.plan else { panic!("{:?}", model.plan) };
     let mut work = [0.0; 6];
     for (dof, f) in forces.iter().enumerate() {
         let motions = model.plate.rigid_motions(dof, [0.0; 3], 1.0);

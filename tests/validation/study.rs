@@ -34,7 +34,7 @@ impl Studied {
         let mut session = Session::open(&path, &model, &registry, out, false).unwrap();
         let names: Vec<String> = axes.iter().map(|&axis| axis.to_owned()).collect();
         let axes = fem::study::axes(&scene, &model, &registry, &names).unwrap();
-        let report = study(&mut session, &scene, &model, &axes, None, &mut |_| ()).unwrap();
+        let report = study(&mut session, &scene, &model, &axes, None, &mut |_| (), &mut ()).unwrap();
         Self { folder, report }
     }
 

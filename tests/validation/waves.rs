@@ -34,7 +34,7 @@ fn laminate(plies: &str, layers: &[usize]) -> Laminate {
         thickness: H / angles.len() as f64,
         material: 0,
     };
-    Laminate { plies: angles.iter().map(|p| ply(p.angle_deg)).collect(), layers: layers.to_vec() }
+    Laminate { plies: angles.iter().map(|p| ply(p.angle_deg)).collect(), layers: layers.to_vec(), middle: 0.0 }
 }
 
 fn shares(element: &dyn Element, laminate: &Laminate, elastic: Elastic) -> Vec<(f64, f64)> {

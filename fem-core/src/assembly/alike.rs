@@ -12,9 +12,9 @@ pub(super) struct Alike {
     cells: Vec<(u32, f64)>,
 }
 
-/// Corners of the plane cell as seen from its first corner, and the height, in units of `GRAIN` of the cell's size; which
-/// stack; and the size itself, as an exponent of 2.
-type Shape = ([i64; 7], usize, i32);
+/// Corners of the plane cell as seen from its first corner, the height, and how its sides are bent, in units of `GRAIN` of the
+/// cell's size; which stack; and the size itself, as an exponent of 2.
+type Shape = ([i64; 7], Option<[[i64; 2]; 4]>, usize, i32);
 
 /// Shapes closer than this fraction of their size are equal: above the rounding of coordinates, far below what shows.
 pub(super) const GRAIN: f64 = 1e-11;
@@ -22,7 +22,9 @@ pub(super) const GRAIN: f64 = 1e-11;
 impl Alike {
     pub(super) fn of(plate: &Plate) -> Self {
         let all: Vec<&Stack> = (0..plate.regions()).flat_map(|region| plate.stacks(region)).collect();
-        let stacks: Vec<usize> = all.iter().map(|s| all.iter().position(|t| t == s).unwrap_or(0)).collect();
+        let first = |s: &Stack| all.iter().position(|t| *t == s).unwrap_or(0);
+        let of_region = |region| plate.stacks(region).iter().map(first).collect();
+        let stacks: Vec<Vec<usize>> = (0..plate.regions()).map(of_region).collect();
         let mut numbers: HashMap<Shape, u32> = HashMap::new();
         let mut starts = vec![0];
         let kept = plate.kept_cells();
@@ -66,7 +68,7 @@ impl Alike {
     }
 }
 
-fn shape(plate: &Plate, number: usize, stacks: &[usize]) -> Shape {
+fn shape(plate: &Plate, number: usize, stacks: &[Vec<usize>]) -> Shape {
     let (cell, (quad, layer)) = (plate.cell(number), plate.place(number));
     let p = cell.corners.four();
     let edges: [f64; 6] = std::array::from_fn(|i| p[1 + i / 2][i % 2] - p[0][i % 2]);
@@ -75,5 +77,6 @@ fn shape(plate: &Plate, number: usize, stacks: &[usize]) -> Shape {
     let grain = f64::from(exponent).exp2() * GRAIN;
     let height = 2.0 * cell.half_height();
     let grains = |i: usize| (edges.get(i).copied().unwrap_or(height) / grain).round() as i64;
-    (std::array::from_fn(grains), stacks[plate.region(quad) * plate.layers() + layer], exponent)
+    let bends = cell.corners.bends().map(|bends| bends.four().map(|bend| bend.map(|b| (b / grain).round() as i64)));
+    (std::array::from_fn(grains), bends, stacks[plate.region(quad)][layer], exponent)
 }

@@ -223,6 +223,13 @@ impl Separable {
         (self.tied.ndof(), self.tied.entries)
     }
 
+    /// Norm of forces on the unknowns that are left.
+    fn size_of(&self, forces: &[f64]) -> f64 {
+        let mut left = vec![0.0; self.tied.ndof()];
+        self.tied.restrict(forces, &mut left);
+        super::equilibrium::dot(&left, &left).sqrt()
+    }
+
     /// Work done so far.
     pub fn work(&self) -> SeparableWork {
         self.work

@@ -264,7 +264,7 @@ fn masters(plate: &Plate, constraints: &Constraints, parts: &[Part], classes: &[
         clique.dedup();
         cliques.push(&clique);
     };
-    for cell in loose.iter().flat_map(|quad| (0..plate.layers()).map(|layer| *quad as usize * plate.layers() + layer)) {
+    for cell in loose.iter().flat_map(|quad| plate.cells_over(*quad as usize)) {
         plate.cell_dofs(cell, &mut dofs);
         take(&dofs);
     }

@@ -1,8 +1,9 @@
 //! The contract of an element, and the kernels that any element gets for free.
 
+use crate::contracts::cubic_strains::CubicStrains;
 use crate::contracts::large::LargeDeflection;
 use crate::words::dof::Dof;
-use crate::words::domain::{Corners, Domain};
+use crate::words::domain::{Domain, PlaneCell};
 use crate::words::quadrature::gauss_legendre;
 use crate::words::tensor::apply;
 use dyn_clone::DynClone;
@@ -67,8 +68,8 @@ impl ElementInfo {
 /// A cell: an upright prism over a plane cell, and its plies.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell<'a> {
-    /// Corners of the plane cell, m, anticlockwise from (r, s) = (−1, −1).
-    pub corners: Corners<[f64; 2]>,
+    /// The plane cell: its corners, m, anticlockwise from (r, s) = (−1, −1), and its sides.
+    pub corners: PlaneCell,
     /// Heights of the lower and upper face, m.
     pub z: [f64; 2],
     /// Its plies.
@@ -278,6 +279,18 @@ pub trait Element: DynClone + Debug + Send + Sync {
     /// The form on triangles of an element for quadrilaterals, where it has one: the same unknowns at nodes of the same heights, and
     /// along a side the same functions, so that both stand side by side in a mesh.
     fn triangular(&self) -> Option<&dyn Element> {
+        None
+    }
+
+    /// Whether the element may stand on cells with bent sides ([`PlaneCell`]): its functions hold all quadratics in r and s, and so
+    /// all linear displacements of x and y there.
+    fn takes_bent_sides(&self) -> bool {
+        false
+    }
+
+    /// The strains of an element for which they are cubic through the height of a cell, where it offers them: means over the parts of
+    /// many plies are then quicker to take than by [`Element::mean_strains`].
+    fn cubic_strains(&self) -> Option<&dyn CubicStrains> {
         None
     }
 

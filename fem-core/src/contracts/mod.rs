@@ -1,6 +1,7 @@
 //! What a plug-in promises, and what it may ask of a structure.
 
 pub mod contact;
+pub mod cubic_strains;
 pub mod element;
 pub mod failure;
 pub mod interface_law;

@@ -28,6 +28,8 @@ pub struct LawPoint<'a> {
     /// Length over which a crack through the point is smeared, m: the width of its cell. An energy per area over this length
     /// is what the crack takes per volume.
     pub length: f64,
+    /// Thickness of the ply and of those about it that are alike, m: cracks through it stand about as far apart. Of an interface 0.
+    pub thickness: f64,
 }
 
 /// Stress of a ply and where its work has gone.

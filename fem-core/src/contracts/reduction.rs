@@ -104,6 +104,19 @@ pub trait Reduction: DynClone + Debug + Send + Sync {
         keep: &[Functional],
         candidates: &[usize],
     ) -> Result<Vec<f64>, ReductionError>;
+
+    /// The same with K T, where it is known from the solves that made T.
+    ///
+    /// # Errors
+    /// As [`Reduction::basis`].
+    fn basis_and_forces(
+        &self,
+        structure: &mut dyn Structure,
+        keep: &[Functional],
+        candidates: &[usize],
+    ) -> Result<(Vec<f64>, Option<Vec<f64>>), ReductionError> {
+        Ok((self.basis(structure, keep, candidates)?, None))
+    }
 }
 // ANCHOR_END: contract
 dyn_clone::clone_trait_object!(Reduction);

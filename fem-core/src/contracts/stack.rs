@@ -19,7 +19,7 @@ pub struct Slice {
 /// The plies of one layer of cells, with their thickness moments (computed once for all cells of the layer).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stack {
-    /// Plies from the bottom up; they fill −1 ≤ q ≤ 1.
+    /// Plies from the bottom up; they fill −1 ≤ q ≤ 1, or a part of it in a shell whose plies lie to one side of its reference surface.
     pub slices: Vec<Slice>,
     /// Mₘ = ∫ C qᵐ dq, m = 0 … 6.
     pub stiffness_moments: [Matrix6; 7],
@@ -49,5 +49,10 @@ impl Stack {
         }
         let transverse = SmoothTransverse::new(&slices);
         Self { slices, stiffness_moments, density_moments, transverse }
+    }
+
+    /// Natural heights between which the plies lie.
+    pub fn extent(&self) -> [f64; 2] {
+        [self.slices.first().map_or(-1.0, |slice| slice.q[0]), self.slices.last().map_or(1.0, |slice| slice.q[1])]
     }
 }

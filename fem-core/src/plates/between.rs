@@ -7,13 +7,20 @@ use crate::words::dof::Dof;
 
 /// Derivatives along a held line or face of the displacements that are zero at its nodes, as sums over all unknowns: where these
 /// are unknowns of their own, the plate moves between the nodes. The sides and cells of `group` are held in the values among
-/// `dofs`, in axes turned by `angle` (radians), at `levels`; over the height where these are two or more.
-pub fn between(plate: &Plate, group: &Group, levels: &[usize], dofs: &[Dof], angle: f64) -> Vec<Vec<(usize, f64)>> {
+/// `dofs`, in axes turned by `angle` (radians), at the `levels` of each node; over the height where these are two or more.
+pub fn between(
+    plate: &Plate,
+    group: &Group,
+    levels: impl Fn(u32) -> Vec<usize>,
+    dofs: &[Dof],
+    angle: f64,
+) -> Vec<Vec<(usize, f64)>> {
     let turn = axes_at(angle);
     let mut found = Vec::new();
     for (column, courses) in plate.plane.courses(group) {
+        let levels = levels(column);
         let column = column as usize;
-        for level in levels {
+        for level in &levels {
             for n in dofs.iter().filter(|dof| dof.m() == 0).map(|dof| turn[dof.n() - 1]) {
                 let along = |t: [f64; 3], side: usize| -> Vec<(usize, f64)> {
                     let mut terms = Vec::new();

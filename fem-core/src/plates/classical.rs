@@ -55,7 +55,7 @@ pub struct PlateStrain {
 impl ClassicalLaminate {
     /// Of these plies, whose materials pass [`Material::check`].
     pub fn new(laminate: &Laminate, materials: &[Material]) -> Self {
-        let boundaries = laminate.boundaries();
+        let boundaries: Vec<f64> = laminate.boundaries().into_iter().map(|z| z - laminate.middle).collect();
         let [mut membrane, mut coupling, mut bending] = [Matrix3::zeros(); 3];
         let mut stiffnesses = Vec::new();
         for (ply, z) in laminate.plies.iter().zip(boundaries.windows(2)) {
@@ -170,7 +170,7 @@ mod tests {
             thickness,
             material,
         };
-        Laminate { plies: plies.iter().map(ply).collect(), layers: vec![plies.len()] }
+        Laminate { plies: plies.iter().map(ply).collect(), layers: vec![plies.len()], middle: 0.0 }
     }
 
     fn near(got: &[f64], want: &[f64], tolerance: f64) {

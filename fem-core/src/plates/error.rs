@@ -11,13 +11,20 @@ pub enum PlateError {
     NodeOffGrid,
     /// A shell in several layers of cells.
     LayersOfShell,
-    /// A region with other layers than the plate.
+    /// A region with plies for other layers than its faces say.
     LayersOfRegion {
-        /// Layers of the plate.
+        /// Layers between its faces.
         layers: usize,
-        /// Those of the region.
+        /// Those that there are plies for.
         of_region: usize,
     },
+    /// A region whose layers are cut by faces of another.
+    CutLayer {
+        /// Its number.
+        region: usize,
+    },
+    /// More regions than can be counted.
+    TooManyRegions,
     /// A cell of a shape that the element does not stand on.
     OtherShape {
         /// What the element stands on.
@@ -57,6 +64,17 @@ pub enum PlateError {
         /// Centre of the patch, m.
         centre: [f64; 2],
     },
+    /// A contact patch that reaches over a step of the face.
+    PatchOverStep {
+        /// `radius` or `side`.
+        of: &'static str,
+        /// Its length, m.
+        size: f64,
+        /// Centre of the patch, m.
+        centre: [f64; 2],
+        /// Height of the step, m.
+        step: f64,
+    },
     /// A force along an axis along which the node cannot move.
     NoDisplacement {
         /// The node.
@@ -86,8 +104,12 @@ impl fmt::Display for PlateError {
                 f.write_str("a shell holds the whole laminate in one layer of cells: give `layers = 1`")
             }
             Self::LayersOfRegion { layers, of_region } => {
-                write!(f, "a region has {of_region} layers of cells, the plate {layers}")
+                write!(f, "a region has plies for {of_region} layers of cells, and faces for {layers}")
             }
+            Self::CutLayer { region } => {
+                write!(f, "faces of other regions lie inside the layers of cells of region {}", region + 1)
+            }
+            Self::TooManyRegions => write!(f, "a plate has at most {} regions", u16::MAX),
             Self::OtherShape { of_element, quad_tag, of_cell } => {
                 write!(f, "the element stands on {of_element}, and cell {quad_tag} is a {of_cell}")
             }
@@ -109,6 +131,14 @@ impl fmt::Display for PlateError {
             Self::PatchOverEdge { of, size, centre } => {
                 let (size, centre) = (Dimension::LENGTH.of(*size), Dimension::LENGTH.list(centre));
                 write!(f, "the contact patch of {of} {size} around x, y = {centre} extends beyond the plate")
+            }
+            Self::PatchOverStep { of, size, centre, step } => {
+                let (size, centre, step) =
+                    (Dimension::LENGTH.of(*size), Dimension::LENGTH.list(centre), Dimension::LENGTH.of(*step));
+                write!(
+                    f,
+                    "the contact patch of {of} {size} around x, y = {centre} reaches over a step of {step} in the face"
+                )
             }
             Self::NoDisplacement { node, axis } => write!(f, "{node} has no displacement along {axis}"),
         }

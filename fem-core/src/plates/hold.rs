@@ -26,21 +26,30 @@ pub enum SupportKind {
     Roller,
     /// A plane of symmetry: u_n = 0, and u_t and w are even.
     Symmetry,
+    /// Clamped but for the deflection: u_n = u_t = 0 over the height.
+    Guided,
+    /// Nothing is held.
+    Free,
+    /// No deflection towards the support, from which the plate may lift off: by springs that only push.
+    Rest,
 }
 
-use SupportKind::{Clamped, Hinged, Roller, SimplySupported, Symmetry};
+use SupportKind::{Clamped, Free, Guided, Hinged, Rest, Roller, SimplySupported, Symmetry};
 
 /// Sine of the angle between two edges of one plane.
 const SAME_LINE: f64 = 1e-6;
 
 impl SupportKind {
     /// All of them by name.
-    pub const ALL: [(&str, Self); 5] = [
+    pub const ALL: [(&str, Self); 8] = [
         ("clamped", Clamped),
         ("simply-supported", SimplySupported),
         ("hinged", Hinged),
         ("roller", Roller),
         ("symmetry", Symmetry),
+        ("guided", Guided),
+        ("free", Free),
+        ("rest", Rest),
     ];
 
     /// Its name.
@@ -51,8 +60,9 @@ impl SupportKind {
     /// The levels that it acts on unless a scene says otherwise.
     pub fn levels(self) -> Levels {
         match self {
-            Clamped | SimplySupported | Symmetry => Levels::All,
+            Clamped | SimplySupported | Symmetry | Guided | Free => Levels::All,
             Hinged | Roller => Levels::MidPlane,
+            Rest => Levels::Bottom,
         }
     }
 
@@ -62,6 +72,10 @@ impl SupportKind {
             Hinged if levels == Levels::All => Some([
                 "a hinge holds the plate at one height: held at all of them it does not turn",
                 "write at = \"mid-plane\", \"bottom\" or \"top\", or kind = \"clamped\"",
+            ]),
+            Rest if matches!(levels, Levels::All | Levels::MidPlane) => Some([
+                "a plate rests on one of its faces",
+                "write at = \"bottom\", or at = \"top\" of what presses from above",
             ]),
             Symmetry if levels != Levels::All => {
                 Some(["a plane of symmetry cuts the plate through", "leave `at` out, or write at = \"all\""])
@@ -87,6 +101,8 @@ impl SupportKind {
     fn holds(self, n: u8) -> bool {
         match self {
             Clamped | Hinged => true,
+            Guided => n != 3,
+            Free | Rest => false,
             SimplySupported => n != 2,
             Roller => n == 3,
             Symmetry => n == 2,
@@ -120,24 +136,27 @@ impl Hold {
     /// Middles of sides that stand for a curve are off it: there the deflection is left to the nodes beside them, unless the plate is
     /// clamped.
     pub fn of_kind(plate: &Plate, group: &Group, kind: SupportKind, at: Levels, turns: &mut Turns) -> Vec<Self> {
-        let Ok(levels) = at.of(plate) else { return Vec::new() };
         let courses = plate.plane.courses(group);
         let curved = |node: u32| courses.get(&node).is_some_and(|all| all.iter().any(|course| course.curvature != 0.0));
-        let all_levels = levels.len();
-        // Held at one height, the deflection leaves a clamped plate its thickness, which the plies change as they are stretched.
-        let height = |level: &&usize| plate.levels[**level].abs();
-        let middle: Vec<usize> =
-            levels.iter().min_by(|a, b| height(a).total_cmp(&height(b))).copied().into_iter().collect();
-        let of_deflection = if kind == Clamped { &middle } else { &levels };
         let mut known = Vec::new();
         let mut holds = Vec::new();
         for column in plate.columns_of_group(group) {
+            let Ok(levels) = at.of(plate, column as usize) else { continue };
+            let all_levels = levels.len();
+            // Held at one height, the deflection leaves a clamped plate its thickness, which the plies change as they are stretched.
+            let height = |level: &&usize| plate.levels[**level].abs();
+            let middle: Vec<usize> =
+                levels.iter().min_by(|a, b| height(a).total_cmp(&height(b))).copied().into_iter().collect();
+            let of_deflection = if kind == Clamped { &middle } else { &levels };
             let chord = plate.ends(column as usize).map(|ends| {
                 let [p, q] = ends.map(|node| plate.plane.points[node as usize]);
                 (ends, Course::straight((q[1] - p[1]).atan2(q[0] - p[0])))
             });
             let off = kind != Clamped
-                && chord.is_some_and(|(ends, _)| group.quads.is_empty() && ends.into_iter().all(curved));
+                && chord.is_some_and(|(ends, _)| {
+                    // The middle of a chord is off the curve, that of a bent side is on it.
+                    group.quads.is_empty() && ends.into_iter().all(curved) && !plate.plane.bends.contains_key(&ends)
+                });
             let own: Vec<Course> = match chord {
                 Some((_, chord)) => vec![chord],
                 None => courses.get(&column).cloned().unwrap_or_default(),

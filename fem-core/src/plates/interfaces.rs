@@ -148,7 +148,12 @@ impl Interfaces {
                     Some(shape) => shape,
                     None => {
                         let shape = FaceShape::new(plate, element, *quad, order)?;
-                        let point = LawPoint { material: &of.material, stiffness: &stiffness, length: shape.length };
+                        let point = LawPoint {
+                            material: &of.material,
+                            stiffness: &stiffness,
+                            length: shape.length,
+                            thickness: 0.0,
+                        };
                         check_law(of.law.info(), &of.name, &point, of.law.check(&point))
                             .map_err(InterfacesError::Material)?;
                         shapes.push(shape);
@@ -343,7 +348,7 @@ impl Interfaces {
 
     fn point(&self, cell: usize) -> LawPoint<'_> {
         let length = self.shapes[self.cells[cell].shape].length;
-        LawPoint { material: &self.of.material, stiffness: &self.stiffness, length }
+        LawPoint { material: &self.of.material, stiffness: &self.stiffness, length, thickness: 0.0 }
     }
 
     /// Tractions of a cell under the differences `apart` of its unknowns, above minus below; with their moduli where these are wanted,
@@ -465,7 +470,7 @@ pub const MOST_STATES: usize = 16;
 impl FaceShape {
     fn new(plate: &Plate, element: &dyn Element, quad: usize, order: usize) -> Result<Self, InterfacesError> {
         let slots: Vec<(usize, Dof)> = plate.face_slots(Some(quad)).collect();
-        let cell = plate.cell(quad * plate.layers());
+        let cell = plate.cell(plate.cell_over(quad, 0));
         let element = form(element, cell.corners.domain());
         let ndof = element.info().ndof();
         let mut n = vec![0.0; 3 * ndof];

@@ -26,6 +26,21 @@ pub struct Laminate {
     pub plies: Vec<LaminaPly>,
     /// Plies per layer of cells, from the bottom up; the sum is the number of plies.
     pub layers: Vec<usize>,
+    /// z of its mid-plane, m: not 0 where regions of a plate are of different thickness and their mid-planes lie at different heights.
+    pub middle: f64,
+}
+
+/// A face of layers of cells that lies inside a ply.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CutPly {
+    /// The laminate of the ply.
+    pub laminate: usize,
+    /// The ply, counted from its bottom.
+    pub ply: usize,
+    /// The laminate whose layers end there.
+    pub by: usize,
+    /// Thickness of the ply below and above the face, m.
+    pub parts: [f64; 2],
 }
 
 /// Heights that differ by less than this fraction of the thickness are one.
@@ -40,10 +55,10 @@ impl Laminate {
         self.plies.iter().map(|p| p.thickness).sum()
     }
 
-    /// z of the ply boundaries from the bottom (−h/2) to the top (h/2): one more than plies.
+    /// z of the ply boundaries from the bottom (−h/2 from the mid-plane) to the top (h/2): one more than plies.
     pub fn boundaries(&self) -> Vec<f64> {
         let h = self.thickness();
-        let mut z = -0.5 * h;
+        let mut z = self.middle - 0.5 * h;
         let mut all = Vec::with_capacity(self.plies.len() + 1);
         all.push(z);
         for ply in &self.plies {
@@ -52,7 +67,8 @@ impl Laminate {
             all.push(if z.abs() < SAME_HEIGHT * h { 0.0 } else { z });
         }
         if let Some(top) = all.last_mut() {
-            *top = 0.5 * h;
+            let z = self.middle + 0.5 * h;
+            *top = if z.abs() < SAME_HEIGHT * h { 0.0 } else { z };
         }
         all
     }
@@ -64,6 +80,13 @@ impl Laminate {
         };
         let pairs = (1..).zip(self.plies.windows(2));
         pairs.filter(move |(_, pair)| differ(pair)).map(|(below, _)| below)
+    }
+
+    /// Thickness of a ply and of those about it that are alike, m.
+    pub fn alike(&self, ply: usize) -> f64 {
+        let first = self.unlike().take_while(|below| *below <= ply).last().unwrap_or(0);
+        let end = self.unlike().find(|below| *below > ply).unwrap_or(self.plies.len());
+        self.plies[first..end].iter().map(|ply| ply.thickness).sum()
     }
 
     /// First and one past the last ply of a layer.
@@ -89,16 +112,23 @@ impl Laminate {
     /// # Errors
     /// A ply's material has no density.
     pub fn stacks(&self, materials: &[Material]) -> Result<Vec<Stack>, MaterialError> {
+        self.stacks_between(&self.levels(), materials)
+    }
+
+    /// The same in cells whose faces lie at the heights `levels`, one more than layers: plies need not fill the cells of a shell.
+    ///
+    /// # Errors
+    /// A ply's material has no density.
+    pub fn stacks_between(&self, levels: &[f64], materials: &[Material]) -> Result<Vec<Stack>, MaterialError> {
         let z = self.boundaries();
-        let levels = self.levels();
         (0..self.layers.len())
             .map(|layer| {
                 let (low, high) = (levels[layer], levels[layer + 1]);
                 let range = self.plies_of(layer);
                 let (first, end) = (range.start, range.end);
                 let q = |i: usize| match i {
-                    i if i == first => -1.0,
-                    i if i == end => 1.0,
+                    i if i == first && z[i] == low => -1.0,
+                    i if i == end && z[i] == high => 1.0,
                     i => 2.0 * (z[i] - low) / (high - low) - 1.0,
                 };
                 let slice = |i: usize| {
@@ -151,7 +181,7 @@ impl Laminate {
     ///     expansion: None,
     /// };
     /// let ply = LaminaPly { angle: 0.0, angle_deg: 0.0, thickness: h, material: 0 };
-    /// let d = Laminate { plies: vec![ply], layers: vec![1] }.bending_stiffness(&[sheet]);
+    /// let d = Laminate { plies: vec![ply], layers: vec![1], middle: 0.0 }.bending_stiffness(&[sheet]);
     /// assert!((d[(0, 0)] / (e * h.powi(3) / 12.0 / (1.0 - nu * nu)) - 1.0).abs() < 1e-12);
     /// ```
     pub fn bending_stiffness(&self, materials: &[Material]) -> Matrix3<f64> {
@@ -170,25 +200,50 @@ impl Laminate {
         root * (0.5 * (eta + 1.0)).sqrt()
     }
 
-    /// Why a plate cannot have regions of this laminate and of `other`; nothing where it can. All faces of plies and layers must
-    /// lie at the same heights, to 1e-9 of the thickness.
-    pub fn disagreement(&self, other: &Self) -> Option<String> {
-        let [mm, other_mm] = [self, other].map(|laminate| laminate.thickness() * 1e3);
-        if (mm - other_mm).abs() > SAME_HEIGHT * mm {
-            return Some(format!(
-                "they are {mm:.6} and {other_mm:.6} mm thick; steps in thickness are not supported yet"
-            ));
+    /// Heights about z = 0 between which a shell holds the laminate: its reference surface is in the middle, wherever the plies lie.
+    pub fn about_reference(&self) -> [f64; 2] {
+        let z = self.boundaries();
+        let reach = z[0].abs().max(z[z.len() - 1].abs());
+        [-reach, reach]
+    }
+
+    /// Divides layers of `laminates` where those of others end, so that in regions side by side layers have their faces at the same
+    /// heights as far as both reach.
+    ///
+    /// # Errors
+    /// A face that lies inside a ply.
+    pub fn share_levels(laminates: &mut [Self]) -> Result<(), CutPly> {
+        let thickest = laminates.iter().map(Self::thickness).fold(0.0, f64::max);
+        let same = |a: f64, b: f64| (a - b).abs() <= SAME_HEIGHT * thickest;
+        let levels: Vec<Vec<f64>> = laminates.iter().map(Self::levels).collect();
+        for (number, laminate) in laminates.iter_mut().enumerate() {
+            let z = laminate.boundaries();
+            let mut ends = vec![false; z.len()];
+            let mut at = 0;
+            laminate.layers.iter().for_each(|plies| {
+                at += plies;
+                ends[at] = true;
+            });
+            let of_others =
+                levels.iter().enumerate().flat_map(|(by, levels)| levels.iter().map(move |level| (by, *level)));
+            for (by, level) in of_others {
+                if level < z[0] || level > z[z.len() - 1] || same(level, z[0]) || same(level, z[z.len() - 1]) {
+                    continue;
+                }
+                let above = z.partition_point(|z| *z < level);
+                match [above - 1, above].into_iter().find(|face| same(z[*face], level)) {
+                    Some(face) => ends[face] = true,
+                    None => {
+                        let parts = [level - z[above - 1], z[above] - level];
+                        return Err(CutPly { laminate: number, ply: above - 1, by, parts });
+                    }
+                }
+            }
+            let faces: Vec<usize> = (1..ends.len()).filter(|face| ends[*face]).collect();
+            let starts = std::iter::once(&0).chain(&faces);
+            laminate.layers = faces.iter().zip(starts).map(|(end, start)| end - start).collect();
         }
-        let (plies, others) = (self.plies.len(), other.plies.len());
-        if plies != others {
-            return Some(format!("they have {plies} and {others} plies"));
-        }
-        if self.layers != other.layers {
-            return Some(format!("their layers of cells hold {:?} and {:?} plies", self.layers, other.layers));
-        }
-        let (z, others) = (self.boundaries(), other.boundaries());
-        let apart = (1..z.len()).find(|k| (z[*k] - others[*k]).abs() * 1e3 > SAME_HEIGHT * mm)?;
-        Some(format!("ply {apart} ends at {:.6} and {:.6} mm above the mid-plane", z[apart] * 1e3, others[apart] * 1e3))
+        Ok(())
     }
 
     /// Mass per area, kg/m².
@@ -225,7 +280,15 @@ mod tests {
             thickness: 1e-3,
             material: 0,
         };
-        Laminate { plies: angles.iter().map(ply).collect(), layers: vec![angles.len()] }
+        Laminate { plies: angles.iter().map(ply).collect(), layers: vec![angles.len()], middle: 0.0 }
+    }
+
+    #[test]
+    fn alike_plies_are_one_thick_ply() {
+        let plate = laminate(&[0.0, 0.0, 45.0, 90.0, 90.0, -90.0, 0.0]);
+        let found: Vec<f64> = (0..7).map(|ply| 1e3 * plate.alike(ply)).collect();
+        let want = [2.0, 2.0, 1.0, 3.0, 3.0, 3.0, 1.0];
+        assert!(found.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
     }
 
     #[test]
@@ -256,5 +319,37 @@ mod tests {
         let [heavy] = m.map(|m| Material { density: Some(2700.0), ..m });
         assert_eq!(plate.areal_mass(std::slice::from_ref(&heavy)), Ok(2.7));
         assert_eq!(plate.stacks(&[heavy]).unwrap().len(), 1);
+    }
+
+    #[test]
+    fn layers_are_divided_where_those_of_others_end() {
+        let plies = |n: usize, layers: &[usize], middle: f64| Laminate {
+            layers: layers.to_vec(),
+            middle,
+            ..laminate(&vec![0.0; n])
+        };
+        // Eight plies of 1 mm, and four of them that go on at the bottom.
+        let mut both = [plies(8, &[3, 5], 0.0), plies(4, &[2, 2], -2e-3)];
+        Laminate::share_levels(&mut both).unwrap();
+        assert_eq!((&both[0].layers[..], &both[1].layers[..]), (&[2, 1, 1, 4][..], &[2, 1, 1][..]));
+        assert_eq!(both[1].levels(), [-4e-3, -2e-3, -1e-3, 0.0]);
+        // A face half a ply up cuts that ply.
+        let cut = Laminate::share_levels(&mut [plies(8, &[8], 0.0), plies(4, &[4], 0.5e-3)]).unwrap_err();
+        assert_eq!((cut.laminate, cut.ply, cut.by), (0, 2, 1));
+        cut.parts.iter().for_each(|part| assert!((part - 0.5e-3).abs() < 1e-12));
+        // Alike, nothing is divided.
+        let mut alike = [plies(4, &[1, 3], 0.0), plies(4, &[1, 3], 0.0)];
+        Laminate::share_levels(&mut alike).unwrap();
+        assert_eq!(alike[0].layers, [1, 3]);
+    }
+
+    #[test]
+    fn a_laminate_off_the_reference_bends_as_it_does_on_it() {
+        let m = [material(Elastic::isotropic(70e9, 0.3))];
+        let (on, off) = (laminate(&[0.0, 0.0]), Laminate { middle: 3e-3, ..laminate(&[0.0, 0.0]) });
+        assert!(ClassicalLaminate::new(&off, &m).is_uncoupled());
+        assert_eq!(off.about_reference(), [-4e-3, 4e-3]);
+        let [d, also] = [on, off].map(|laminate| laminate.bending_stiffness(&m)[(0, 0)]);
+        assert!((d / also - 1.0).abs() < 1e-12);
     }
 }

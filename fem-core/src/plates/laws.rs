@@ -28,6 +28,8 @@ struct LawfulPly {
     stiffness: Matrix6,
     /// Strain in the plate's frame to strain in the ply's.
     rotation: Matrix6,
+    /// Of the ply and of those about it that are alike, m.
+    thickness: f64,
 }
 
 /// The plies of a plate that follow laws.
@@ -196,14 +198,14 @@ impl PlyLaws {
         quads: Option<&[u32]>,
     ) -> Result<Option<Self>, LawsError> {
         let lawful = |ply: usize| {
-            let ply = &laminate.plies[ply];
+            let (thickness, ply) = (laminate.alike(ply), &laminate.plies[ply]);
             let (name, law) = laws.get(ply.material)?.clone()?;
             let material = materials[ply.material].clone();
             let (stiffness, rotation) = (material.elastic.stiffness(), strain_rotation(ply.angle));
-            Some(LawfulPly { name, law, material, stiffness, rotation })
+            Some(LawfulPly { name, law, material, stiffness, rotation, thickness })
         };
         let plies: Vec<Vec<_>> =
-            (0..plate.layers()).map(|layer| laminate.plies_of(layer).map(lawful).collect()).collect();
+            (0..laminate.layers.len()).map(|layer| laminate.plies_of(layer).map(lawful).collect()).collect();
         if plies.iter().flatten().all(Option::is_none) {
             return Ok(None);
         }
@@ -225,7 +227,8 @@ impl PlyLaws {
             let length = width(info, &view);
             for ply in all.of(plate, cell).iter().flatten() {
                 next += points * ply.law.info().state.len();
-                let point = LawPoint { material: &ply.material, stiffness: &ply.stiffness, length };
+                let point =
+                    LawPoint { material: &ply.material, stiffness: &ply.stiffness, length, thickness: ply.thickness };
                 check_law(ply.law.info(), &ply.name, &point, ply.law.check(&point)).map_err(LawsError::Material)?;
             }
             if info.ply_order > MOST_LEVELS || !polynomial(element, &view) {
@@ -249,7 +252,8 @@ impl PlyLaws {
         let mut said = Vec::new();
         for (plies, length) in self.plies.iter().zip(widest) {
             for ply in plies.iter().flatten() {
-                let point = LawPoint { material: &ply.material, stiffness: &ply.stiffness, length };
+                let point =
+                    LawPoint { material: &ply.material, stiffness: &ply.stiffness, length, thickness: ply.thickness };
                 let warning = ply.law.warning(&point);
                 let warning = warning.map(|why| format!("material `{}`, law `{}`: {why}", ply.material.name, ply.name));
                 said.extend(warning.filter(|warning| !said.contains(warning)));
@@ -306,7 +310,8 @@ impl PlyLaws {
             stretched.iter().for_each(|patterns| answer.stretch(patterns, number));
             for k in 0..answer.through.len() {
                 let Some(ply) = &plies[answer.through[k].slice] else { continue };
-                let point = LawPoint { material: &ply.material, stiffness: &ply.stiffness, length };
+                let point =
+                    LawPoint { material: &ply.material, stiffness: &ply.stiffness, length, thickness: ply.thickness };
                 let count = ply.law.info().state.len();
                 answer.ask(ply, &point, k, *dv, (&states[at..at + count], at))?;
                 at += count;

@@ -21,30 +21,39 @@ pub enum Face {
 }
 
 impl Face {
-    /// Its layer of cells, its q there, and the sign of the force of what presses on it along z.
-    pub(super) fn place(self, plate: &Plate) -> (usize, f64, f64) {
+    /// Its cell over a quad, its q there, and the sign of the force of what presses on it along z.
+    pub(super) fn place(self, plate: &Plate, quad: usize) -> (usize, f64, f64) {
+        let cells = plate.cells_over(quad);
         match self {
-            Self::Bottom => (0, -1.0, 1.0),
-            Self::Top => (plate.layers() - 1, 1.0, -1.0),
+            Self::Bottom => (cells.start, -1.0, self.sign()),
+            Self::Top => (cells.end - 1, 1.0, self.sign()),
+        }
+    }
+
+    /// Sign of the force of what presses on it along z.
+    pub(super) fn sign(self) -> f64 {
+        match self {
+            Self::Bottom => 1.0,
+            Self::Top => -1.0,
         }
     }
 
     /// The same of the surface that lies `depth` thicknesses of the plate below it, 0 to 1. Of a shell all are one.
-    pub(super) fn below(self, plate: &Plate, depth: f64) -> (usize, f64, f64) {
-        let (outer, q, sign) = self.place(plate);
+    pub(super) fn below(self, plate: &Plate, quad: usize, depth: f64) -> (usize, f64, f64) {
+        let (outer, q, sign) = self.place(plate, quad);
         if depth == 0.0 {
             return (outer, q, sign);
         }
-        let pitch = (plate.levels.len() - 1) / plate.layers();
-        let faces: Vec<f64> = plate.levels.iter().step_by(pitch).copied().collect();
-        let (bottom, top) = (faces[0], faces[faces.len() - 1]);
+        let cells = plate.cells_over(quad);
+        let (bottom, top) = (plate.faces_of(cells.start)[0], plate.faces_of(cells.end - 1)[1]);
         let z = match self {
             Self::Bottom => bottom + depth * (top - bottom),
             Self::Top => top - depth * (top - bottom),
         };
-        let layer = faces[1..faces.len() - 1].partition_point(|face| *face < z);
-        let (low, high) = (faces[layer], faces[layer + 1]);
-        (layer, (2.0 * (z - low) / (high - low) - 1.0).clamp(-1.0, 1.0), sign)
+        let last = cells.end - 1;
+        let cell = cells.into_iter().find(|cell| plate.faces_of(*cell)[1] >= z).unwrap_or(last);
+        let [low, high] = plate.faces_of(cell);
+        (cell, (2.0 * (z - low) / (high - low) - 1.0).clamp(-1.0, 1.0), sign)
     }
 }
 
@@ -58,10 +67,9 @@ pub fn pressure(
     p: impl Fn([f64; 2]) -> f64,
     f: &mut [f64],
 ) {
-    let (layer, q, sign) = face.place(plate);
     let (mut shape, mut dofs) = (Vec::new(), Vec::new());
     for quad in quads {
-        let number = quad * plate.layers() + layer;
+        let (number, q, sign) = face.place(plate, quad);
         let cell = plate.cell(number);
         plate.cell_dofs(number, &mut dofs);
         let element = form(element, cell.corners.domain());
@@ -80,9 +88,9 @@ pub fn pressure(
 /// The deflection u₃ at the points of the integration over `face`, and the area that each stands for, m²: what springs under a
 /// plate are pressed by. Of cells that a symmetry maps onto each other one stands for all.
 pub fn deflections(plate: &Plate, element: &dyn Element, face: Face) -> Vec<(Functional, f64)> {
-    let (layer, q, _) = face.place(plate);
     let (mut shape, mut dofs, mut found) = (Vec::new(), Vec::new(), Vec::new());
-    for (number, weight) in plate.kept_cells().filter(|(cell, _)| plate.place(*cell).1 == layer) {
+    for (quad, weight) in plate.symmetry().quads() {
+        let (number, q, _) = face.place(plate, quad);
         let cell = plate.cell(number);
         plate.cell_dofs(number, &mut dofs);
         let element = form(element, cell.corners.domain());
@@ -110,7 +118,6 @@ pub fn tractions(
     f: &mut [f64],
 ) {
     let mut open: HashSet<[u32; 2]> = edges.iter().map(|[a, b]| [*a.min(b), *a.max(b)]).collect();
-    let thickness = plate.levels[plate.levels.len() - 1] - plate.levels[0];
     let (mut shape, mut dofs) = (Vec::new(), Vec::new());
     let rule = gauss_legendre(ORDER);
     for (quad, corners) in plate.plane.quads.iter().enumerate() {
@@ -120,18 +127,32 @@ pub fn tractions(
             }
             let [p, q] = [a, b].map(|v| plate.plane.points[v as usize]);
             let length = (q[0] - p[0]).hypot(q[1] - p[1]);
-            let per_length = per_length([(q[1] - p[1]) / length, (p[0] - q[0]) / length]);
-            for layer in 0..plate.layers() {
-                let number = quad * plate.layers() + layer;
+            let along_chord = per_length([(q[1] - p[1]) / length, (p[0] - q[0]) / length]);
+            let bend = plate.plane.bends.get(&[a.min(b), a.max(b)]);
+            // Length per t, and force per length there.
+            let at = |t: f64| match bend {
+                None => (0.5 * length, along_chord),
+                Some(bend) => {
+                    let [x, y] = [0, 1].map(|d| 0.5 * (q[d] - p[d]) - 2.0 * t * bend[d]);
+                    let by_t = x.hypot(y);
+                    (by_t, per_length([y / by_t, -x / by_t]))
+                }
+            };
+            let cells = plate.cells_over(quad);
+            let thickness = plate.faces_of(cells.end - 1)[1] - plate.faces_of(cells.start)[0];
+            for number in cells {
                 let cell = plate.cell(number);
                 plate.cell_dofs(number, &mut dofs);
+                let [low, high] = cell.stack.extent();
+                let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
                 let element = form(element, corners.domain());
                 shape.resize(3 * dofs.len(), 0.0);
                 for &(t, wt) in rule {
                     let [r, s] = corners.domain().on_side(side, t);
+                    let (by_t, per_length) = at(t);
                     for &(q, wq) in rule {
-                        element.shape(&cell, [r, s, q], &mut shape);
-                        let share = 0.5 * length * wt * wq * cell.half_height() / thickness;
+                        element.shape(&cell, [r, s, middle + half * q], &mut shape);
+                        let share = by_t * wt * wq * cell.half_height() / thickness;
                         for (dof, n) in dofs.iter().zip(shape.chunks_exact(3)) {
                             f[*dof] += share * (0..3).map(|d| per_length[d] * n[d]).sum::<f64>();
                         }
@@ -170,7 +191,7 @@ pub fn gravity(
     f: &mut [f64],
 ) -> Result<(), ElementError> {
     let (mut mass, mut scratch, mut dofs) = (Vec::new(), Scratch::default(), Vec::new());
-    for number in 0..plate.cells() {
+    for number in plate.cell_numbers() {
         let cell = plate.cell(number);
         let element = form(element, cell.corners.domain());
         let n = element.info().ndof();

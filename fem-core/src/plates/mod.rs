@@ -16,6 +16,7 @@ pub mod pieces;
 pub mod plate;
 mod prolongation;
 pub(crate) mod slopes;
+pub mod springs;
 pub mod support;
 pub mod symmetry;
 pub mod warping;

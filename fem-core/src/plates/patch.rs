@@ -21,9 +21,9 @@ const PANEL_POINTS: usize = 6;
 
 /// Deflection away from an impactor at `face`: −U30 of the top node of `column`, U30 of the bottom one.
 pub fn node(plate: &Plate, face: Face, column: usize) -> Option<Functional> {
-    let level = plate.outer_levels()[usize::from(face == Face::Top)];
+    let level = plate.outer_levels(column)[usize::from(face == Face::Top)];
     let dof = plate.dofs_at(column, level, Dof::new(3, 0)?).next()?;
-    Some(Functional(vec![(dof, face.place(plate).2)]))
+    Some(Functional(vec![(dof, face.sign())]))
 }
 
 /// Mean deflection under the Hertz pressure p(ρ) = 3/(2πa²) √(1 − ρ²/a²) on the circle of radius `a` around `centre` of `face`:
@@ -32,7 +32,7 @@ pub fn node(plate: &Plate, face: Face, column: usize) -> Option<Functional> {
 /// In rings c = √(1 − ρ²/a²) the pressure is the polynomial weight 3c² dc, which Gauss points integrate exactly.
 ///
 /// # Errors
-/// A circle that leaves the plate.
+/// A circle that leaves the plate, or reaches over a step of the face.
 pub fn hertz(
     plate: &Plate,
     element: &dyn Element,
@@ -48,11 +48,7 @@ pub fn hertz(
             ([centre[0] + rho * cos, centre[1] + rho * sin], 3.0 * c * c * 0.5 * w / SPOKES as f64)
         })
     });
-    mean(plate, element, (face, depth), centre, a, points).ok_or(PlateError::PatchOverEdge {
-        of: "radius",
-        size: a,
-        centre,
-    })
+    mean(plate, element, (face, depth), Area { of: "radius", size: a, centre, reach: a }, points)
 }
 
 /// That pressure of a unit force at `point`, Pa.
@@ -64,7 +60,7 @@ pub fn hertz_pressure(centre: [f64; 2], a: f64, point: [f64; 2]) -> f64 {
 /// Mean deflection under a uniform pressure on the square of side `side` around `centre` of `face`, parallel to the axes.
 ///
 /// # Errors
-/// A square that leaves the plate.
+/// A square that leaves the plate, or reaches over a step of the face.
 pub fn square(
     plate: &Plate,
     element: &dyn Element,
@@ -80,23 +76,25 @@ pub fn square(
         })
     };
     let points = along(0).flat_map(|(x, wx)| along(1).map(move |(y, wy)| ([x, y], wx * wy)));
-    mean(plate, element, (face, depth), centre, 0.5 * side, points).ok_or(PlateError::PatchOverEdge {
-        of: "side",
-        size: side,
-        centre,
-    })
+    mean(plate, element, (face, depth), Area { of: "side", size: side, centre, reach: 0.5 * side }, points)
 }
 
-/// Weighted mean of the deflection away from what presses over points below `face` no farther than `reach` from `centre` along each axis.
+/// A part of a face around `centre`, as errors call it, no farther than `reach` from there along each axis.
+struct Area {
+    of: &'static str,
+    size: f64,
+    centre: [f64; 2],
+    reach: f64,
+}
+
+/// Weighted mean of the deflection away from what presses over points below `face` in an area.
 fn mean(
     plate: &Plate,
     element: &dyn Element,
     (face, depth): (Face, f64),
-    centre: [f64; 2],
-    reach: f64,
+    Area { of, size, centre, reach }: Area,
     points: impl Iterator<Item = ([f64; 2], f64)>,
-) -> Option<Functional> {
-    let (layer, q, sign) = face.below(plate, depth);
+) -> Result<Functional, PlateError> {
     let mut shape = Vec::new();
     let mut dofs = Vec::new();
     let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
@@ -110,9 +108,16 @@ fn mean(
             })
         })
         .collect();
+    let height = |quad: usize| plate.faces_over(quad)[usize::from(face == Face::Top)];
+    let mut struck: Option<f64> = None;
     for (p, weight) in points {
-        let (quad, [r, s]) = near.iter().find_map(|q| Some((*q, plate.plane.corners(*q).locate(p)?)))?;
-        let cell = quad * plate.layers() + layer;
+        let found = near.iter().find_map(|q| Some((*q, plate.plane.cell(*q).locate(p)?)));
+        let (quad, [r, s]) = found.ok_or(PlateError::PatchOverEdge { of, size, centre })?;
+        let (first, here) = (*struck.get_or_insert_with(|| height(quad)), height(quad));
+        if !plate.same_height(first, here) {
+            return Err(PlateError::PatchOverStep { of, size, centre, step: (first - here).abs() });
+        }
+        let (cell, q, sign) = face.below(plate, quad, depth);
         let element = form(element, plate.plane.quads[quad].domain());
         shape.resize(3 * element.info().ndof(), 0.0);
         element.shape(&plate.cell(cell), [r, s, q], &mut shape);
@@ -123,5 +128,5 @@ fn mean(
             }
         }
     }
-    Some(Functional(sum.into_iter().collect()))
+    Ok(Functional(sum.into_iter().collect()))
 }

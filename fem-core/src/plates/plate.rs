@@ -2,6 +2,7 @@
 
 mod layout;
 mod part;
+mod region;
 mod separation;
 
 use crate::contracts::element::{Cell, ElementInfo, Stack, Tables};
@@ -10,6 +11,7 @@ use crate::plates::mesh::{Group, PlaneMesh};
 use crate::plates::symmetry::{self, Symmetry};
 use crate::words::dof::Dof;
 use layout::{Columns, Layout, forms, ordered};
+use region::Region;
 use std::fmt::Write;
 
 pub use separation::{CLOSED, FaceUnknowns};
@@ -31,7 +33,8 @@ pub enum ZDerivatives {
 ///   its quads
 /// * levels: the faces of the layers from the bottom, and their middles where the element has nodes there
 /// * node number: `column · levels + level`; the element's table says which of them exist, the others have no unknowns
-/// * cell number: `quad · layers + layer`
+/// * cell number: `quad · layers + layer`; where regions differ in thickness, layers of the plate that a region does not reach have no
+///   cells there, and layers of a region count from its own bottom
 /// * unknowns of a node: those of the element in its order; with layer-wise z-derivatives a node between layers has a
 ///   second set of its `Un3`, which belongs to the cells above it; where the layers may [separate](Plate::separate), of all its
 ///   unknowns
@@ -43,10 +46,9 @@ pub struct Plate {
     pub columns: Vec<[f64; 2]>,
     /// z of the levels, m.
     pub levels: Vec<f64>,
-    /// Plies of each layer, region after region.
-    stacks: Vec<Stack>,
+    regions: Vec<Region>,
     /// Region of each quad.
-    regions: Vec<u16>,
+    region_of: Vec<u16>,
     /// Of each shape of its cells, quadrilaterals first.
     layouts: Vec<Layout>,
     z_derivatives: ZDerivatives,
@@ -91,20 +93,13 @@ impl Plate {
         let pitch = if info.nodes.iter().any(|n| n[2] == 0.0) { 2 } else { 1 };
         let layouts: Vec<Layout> = forms.into_iter().map(|info| Layout::new(info, pitch)).collect();
         let Columns { positions: columns, of_quads: quad_columns, starts, edges } = Columns::of(&plane, &layouts);
-        let levels = match pitch {
-            1 => faces,
-            _ => {
-                let middle = |pair: &[f64]| [pair[0], 0.5 * (pair[0] + pair[1])];
-                faces.windows(2).flat_map(middle).chain(faces.last().copied()).collect()
-            }
-        };
         let mut plate = Self {
             symmetry: Symmetry::none(columns.len(), plane.quads.len()),
-            regions: vec![0; plane.quads.len()],
+            region_of: vec![0; plane.quads.len()],
             plane,
             columns,
-            levels,
-            stacks,
+            levels: Vec::new(),
+            regions: vec![Region::new(faces, stacks)?],
             layouts,
             z_derivatives,
             quad_columns,
@@ -114,22 +109,9 @@ impl Plate {
             offsets: Vec::new(),
             separable: Vec::new(),
         };
+        plate.stack_up()?;
         plate.number();
         Ok(plate)
-    }
-
-    /// Gives the cells over `quads` plies of their own, one stack per layer: a region of the plate, whose layers lie at the
-    /// same heights as those of all others. To be done before the plate is folded.
-    ///
-    /// # Errors
-    /// Another number of layers; more regions than can be counted.
-    pub fn assign(&mut self, quads: &[u32], stacks: Vec<Stack>) -> Result<(), PlateError> {
-        let layers = self.layers();
-        let number = u16::try_from(self.regions()).ok().filter(|_| stacks.len() == layers);
-        let number = number.ok_or(PlateError::LayersOfRegion { layers, of_region: stacks.len() })?;
-        self.stacks.extend(stacks);
-        quads.iter().for_each(|quad| self.regions[*quad as usize] = number);
-        Ok(())
     }
 
     fn number(&mut self) {
@@ -140,7 +122,7 @@ impl Plate {
         // How often a node is in a cell's lower half and upper half: both, where it lies between layers.
         let mut below = vec![false; self.columns.len() * self.levels.len()];
         let mut above = below.clone();
-        for cell in 0..self.cells() {
+        for cell in self.cell_numbers() {
             for (i, (_, up)) in self.layout(self.place(cell).0).slots.iter().enumerate() {
                 let node = self.cell_node(cell, i);
                 let at = if *up == 0 { &mut above } else { &mut below };
@@ -177,43 +159,9 @@ impl Plate {
         &self.symmetry
     }
 
-    /// Cells that represent others or themselves alone, ascending, and how many they stand for.
-    pub fn kept_cells(&self) -> impl Iterator<Item = (usize, f64)> + Clone {
-        let layers = self.layers();
-        self.symmetry
-            .quads()
-            .flat_map(move |(quad, weight)| (quad * layers..(quad + 1) * layers).map(move |cell| (cell, weight)))
-    }
-
     /// Number of unknowns before constraints.
     pub fn ndof(&self) -> usize {
         self.offsets[self.offsets.len() - 1]
-    }
-
-    /// Number of cells.
-    pub fn cells(&self) -> usize {
-        self.plane.quads.len() * self.layers()
-    }
-
-    /// Number of layers of cells.
-    pub fn layers(&self) -> usize {
-        (self.levels.len() - 1) / self.pitch
-    }
-
-    /// Number of regions, which differ by their plies.
-    pub fn regions(&self) -> usize {
-        self.stacks.len() / self.layers()
-    }
-
-    /// Region of a quad: 0 unless [`Plate::assign`] gave it another one.
-    pub fn region(&self, quad: usize) -> usize {
-        usize::from(self.regions[quad])
-    }
-
-    /// Plies of the layers of a region.
-    pub fn stacks(&self, region: usize) -> &[Stack] {
-        let layers = self.layers();
-        &self.stacks[region * layers..(region + 1) * layers]
     }
 
     /// Number of nodes.
@@ -243,11 +191,6 @@ impl Plate {
         own.unwrap_or(&self.layouts[0])
     }
 
-    /// Quad and layer of a cell.
-    pub fn place(&self, cell: usize) -> (usize, usize) {
-        (cell / self.layers(), cell % self.layers())
-    }
-
     /// Columns of a quad.
     pub fn columns_of_quad(&self, quad: usize) -> &[u32] {
         &self.quad_columns[self.starts[quad] as usize..self.starts[quad + 1] as usize]
@@ -275,16 +218,15 @@ impl Plate {
     }
 
     fn cell_node(&self, cell: usize, i: usize) -> usize {
-        let (quad, layer) = self.place(cell);
+        let (quad, layer) = (cell / self.layers(), cell % self.layers());
         let (place, up) = self.layout(quad).slots[i];
         self.node(self.columns_of_quad(quad)[place] as usize, layer * self.pitch + up)
     }
 
     /// A cell as an element sees it.
     pub fn cell(&self, cell: usize) -> Cell<'_> {
-        let (quad, layer) = self.place(cell);
-        let z = [layer, layer + 1].map(|face| self.levels[face * self.pitch]);
-        Cell { corners: self.plane.corners(quad), z, stack: &self.stacks(self.region(quad))[layer] }
+        let quad = cell / self.layers();
+        Cell { corners: self.plane.cell(quad), z: self.faces_of(cell), stack: self.stack(cell) }
     }
 
     /// Unknowns of a cell, in element order.
@@ -326,15 +268,24 @@ impl Plate {
         self.offsets[self.node(column, 0)]..self.offsets[self.node(column + 1, 0)]
     }
 
-    /// Lowest and highest level with nodes: the faces of the plate, or the reference surface of a shell.
-    pub fn outer_levels(&self) -> [usize; 2] {
-        if self.info().is_shell() { [1, 1] } else { [0, self.levels.len() - 1] }
+    /// Lowest and highest level with nodes at a column: the faces of the plate there, or the reference surface of a shell.
+    pub fn outer_levels(&self, column: usize) -> [usize; 2] {
+        let nodes = &self.offsets[self.node(column, 0)..=self.node(column + 1, 0)];
+        let holds = |pair: &[usize]| pair[1] > pair[0];
+        let first = nodes.windows(2).position(holds).unwrap_or(0);
+        [first, nodes.windows(2).rposition(holds).unwrap_or(first)]
     }
 
-    /// Level whose z is the mid-plane of the laminate, if there is one.
+    /// Level whose z is 0, if there is one: the mid-plane of the laminate from which heights count.
     pub fn mid_level(&self) -> Option<usize> {
         let h = self.levels[self.levels.len() - 1] - self.levels[0];
         self.levels.iter().position(|z| z.abs() < SAME_HEIGHT * h)
+    }
+
+    /// That level, or where a column has no node there its lowest.
+    pub fn reference_level(&self, column: usize) -> usize {
+        let [low, high] = self.outer_levels(column);
+        self.mid_level().filter(|level| (low..=high).contains(level)).unwrap_or(low)
     }
 
     /// Column, level and name of an unknown.

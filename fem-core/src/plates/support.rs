@@ -6,6 +6,9 @@ use crate::plates::plate::Plate;
 use crate::words::dof::Dof;
 use nalgebra::{Matrix6, SymmetricEigen, Vector6};
 
+/// Columns, and the levels at each of them.
+pub type ColumnLevels = (Vec<u32>, Vec<usize>);
+
 /// Levels of a plate that a support acts on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs)]
@@ -17,18 +20,35 @@ pub enum Levels {
 }
 
 impl Levels {
-    /// The level numbers.
+    /// The level numbers at a column.
     ///
     /// # Errors
     /// No level at the mid-plane.
-    pub fn of(self, plate: &Plate) -> Result<Vec<usize>, PlateError> {
-        let [bottom, top] = plate.outer_levels();
+    pub fn of(self, plate: &Plate, column: usize) -> Result<Vec<usize>, PlateError> {
+        let [bottom, top] = plate.outer_levels(column);
+        let middle = || plate.mid_level().filter(|level| (bottom..=top).contains(level));
         match self {
             Self::Bottom => Ok(vec![bottom]),
             Self::Top => Ok(vec![top]),
             Self::All => Ok((bottom..=top).collect()),
-            Self::MidPlane => plate.mid_level().map(|l| vec![l]).ok_or(PlateError::NoMidPlane),
+            Self::MidPlane => middle().map(|l| vec![l]).ok_or(PlateError::NoMidPlane),
         }
+    }
+
+    /// `columns` with the level numbers at them, those of equal levels together.
+    ///
+    /// # Errors
+    /// No level at the mid-plane.
+    pub fn at(self, plate: &Plate, columns: &[u32]) -> Result<Vec<ColumnLevels>, PlateError> {
+        let mut all: Vec<ColumnLevels> = Vec::new();
+        for column in columns {
+            let levels = self.of(plate, *column as usize)?;
+            match all.iter_mut().find(|(_, known)| *known == levels) {
+                Some((columns, _)) => columns.push(*column),
+                None => all.push((vec![*column], levels)),
+            }
+        }
+        Ok(all)
     }
 }
 
@@ -69,19 +89,12 @@ pub fn turned(plate: &Plate, column: usize, level: usize, dof: Dof, angle: f64) 
     sides
 }
 
-/// `dofs` have one common value over the nodes of `columns` × `levels`, in axes turned by `angle` ([`turned`]).
-pub fn couple(
-    plate: &Plate,
-    columns: &[u32],
-    levels: &[usize],
-    dofs: &[Dof],
-    angle: f64,
-    origin: &str,
-) -> Vec<Equation> {
+/// `dofs` have one common value over the nodes (column, level), in axes turned by `angle` ([`turned`]).
+pub fn couple(plate: &Plate, nodes: &[(u32, usize)], dofs: &[Dof], angle: f64, origin: &str) -> Vec<Equation> {
     let mut equations = Vec::new();
     for dof in dofs {
-        let at = |column: &u32, level: &usize| turned(plate, *column as usize, *level, *dof, angle);
-        let all: Vec<_> = columns.iter().flat_map(|c| levels.iter().flat_map(move |l| at(c, l))).collect();
+        let at = |(column, level): &(u32, usize)| turned(plate, *column as usize, *level, *dof, angle);
+        let all: Vec<_> = nodes.iter().flat_map(at).collect();
         if let Some((first, rest)) = all.split_first() {
             equations.extend(rest.iter().map(|terms| Equation {
                 terms: terms.iter().copied().chain(first.iter().map(|(i, factor)| (*i, -factor))).collect(),
@@ -220,8 +233,9 @@ impl FreeMotions {
             let from = |c: usize, d: usize| plate.columns[c][d] - plate.columns[column][d];
             farthest(&|c: &usize| (from(far, 0) * from(*c, 1) - from(far, 1) * from(*c, 0)).abs())
         });
-        let level = plate.mid_level().unwrap_or(0);
-        let unknown = |column: usize, n: u8, m: u8| Dof::new(n, m).and_then(|d| plate.dofs_at(column, level, d).next());
+        let unknown = |column: usize, n: u8, m: u8| {
+            Dof::new(n, m).and_then(|d| plate.dofs_at(column, plate.reference_level(column), d).next())
+        };
         let mut chosen: Vec<Equation> = Vec::new();
         let mut left = self.basis.clone();
         // At the centre u, v, w, then w,y − v,z and so on; at the far node and beside both u, v, w.

@@ -81,7 +81,7 @@ mod tests {
 
     fn plies(thickness: &[f64]) -> Laminate {
         let ply = |(material, t): (usize, &f64)| LaminaPly { angle: 0.3, angle_deg: 0.0, thickness: *t, material };
-        Laminate { plies: thickness.iter().enumerate().map(ply).collect(), layers: vec![thickness.len()] }
+        Laminate { plies: thickness.iter().enumerate().map(ply).collect(), layers: vec![thickness.len()], middle: 0.0 }
     }
 
     /// φ = z/4 − 5 z³/(3 h²) of a homogeneous plate: ∫ φ² dz = h³/(12 · 84).

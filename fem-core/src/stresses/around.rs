@@ -93,7 +93,7 @@ pub(super) fn neighbours(plate: &Plate, mirrors: &Mirrors, point: [f64; 2], star
 
 fn with_images(plate: &Plate, Mirrors(planes): &Mirrors, point: [f64; 2], ring: &[usize]) -> Vec<Neighbour> {
     let centre = |quad: &usize| {
-        let [x, y, _] = plate.cell(quad * plate.layers()).position(plate.info_of(*quad).centre());
+        let [x, y, _] = plate.cell(plate.cell_over(*quad, 0)).position(plate.info_of(*quad).centre());
         [x, y]
     };
     let from = |p: [f64; 2]| [p[0] - point[0], p[1] - point[1]];

@@ -91,15 +91,15 @@ pub fn mesh_errors(
     let mut strains = Strains { plate, element, fields, b: Vec::new(), dofs: Vec::new() };
     let mut samples: Vec<Vec<Sample>> = vec![Vec::new(); quads.len()];
     let mut sums = vec![[0.0; 2]; fields.len() / plate.ndof()];
-    let heights = HEIGHTS * plate.layers();
     for (quad, weight) in plate.symmetry().quads() {
+        let heights = HEIGHTS * plate.layers_over(quad);
         let around = around(plate, quad, &touching, &held);
         for other in &around {
             if samples[*other].is_empty() {
                 samples[*other] = strains.of(*other)?;
             }
         }
-        let Some(smooth) = Fit::of(plate.plane.corners(quad).centroid(), || around.iter().flat_map(|q| &samples[*q]))
+        let Some(smooth) = Fit::of(plate.plane.cell(quad).centroid(), || around.iter().flat_map(|q| &samples[*q]))
         else {
             return Ok(None);
         };
@@ -176,9 +176,9 @@ struct Strains<'a> {
 
 impl Strains<'_> {
     fn of(&mut self, quad: usize) -> Result<Vec<Sample>, ElementError> {
-        let (layers, ndof) = (self.plate.layers(), self.plate.ndof());
+        let (layers, ndof) = (self.plate.layers_over(quad), self.plate.ndof());
         let heights = HEIGHTS * layers;
-        let corners = self.plate.cell(quad * layers);
+        let corners = self.plate.cell(self.plate.cell_over(quad, 0));
         let domain = corners.corners.domain();
         let ((points, weight), element) = (points(domain), form(self.element, domain));
         self.b.resize(6 * element.info().ndof(), 0.0);
@@ -189,7 +189,7 @@ impl Strains<'_> {
         };
         let mut samples: Vec<Sample> = points.iter().map(sample).collect();
         for layer in 0..layers {
-            let number = quad * layers + layer;
+            let number = self.plate.cell_over(quad, layer);
             let cell = self.plate.cell(number);
             self.plate.cell_dofs(number, &mut self.dofs);
             for ([r, s], sample) in points.iter().zip(&mut samples) {
@@ -216,7 +216,7 @@ fn slice_at(stack: &Stack, q: f64) -> usize {
 /// ½ ∫ ε·C ε dz through the plies, J/m², of strains that are linear in z in each layer.
 fn energy_density(plate: &Plate, quad: usize, strains: &[[f64; 6]]) -> f64 {
     let of_layer = |(layer, pair): (usize, &[[f64; 6]])| {
-        let cell = plate.cell(quad * plate.layers() + layer);
+        let cell = plate.cell(plate.cell_over(quad, layer));
         let q = gauss_legendre(HEIGHTS)[1].0;
         let mean: [f64; 6] = std::array::from_fn(|c| 0.5 * (pair[1][c] + pair[0][c]));
         let slope: [f64; 6] = std::array::from_fn(|c| 0.5 * (pair[1][c] - pair[0][c]) / q);

@@ -56,7 +56,7 @@ impl<'a> Field<'a> {
     pub fn stress(&self, quad: usize, (ply, z): (usize, f64), strain: &Strain6<Global>) -> Stress6<Global> {
         let (layer, slice) = self.slice(quad, ply);
         let stack = &self.plate.stacks(self.plate.region(quad))[layer];
-        let q = self.plate.cell(quad * self.plate.layers() + layer).natural_height(z);
+        let q = self.plate.cell(self.plate.cell_over(quad, layer)).natural_height(z);
         let held = self.form(quad).held_stress(stack, &Part { slice, q: [q, q] });
         let moved = stress(&stack.slices[slice].c, strain);
         Stress6::new(std::array::from_fn(|k| moved.0[k] + held[k]))
@@ -69,7 +69,7 @@ impl<'a> Field<'a> {
     pub fn at(&self, spot: Spot) -> Result<(Strain6<Global>, [f64; 3]), ElementError> {
         let Spot { quad, at: [r, s], ply, z } = spot;
         let (layer, slice) = self.slice(quad, ply);
-        let number = quad * self.plate.layers() + layer;
+        let number = self.plate.cell_over(quad, layer);
         let cell = self.plate.cell(number);
         let xi = [r, s, cell.natural_height(z)];
         let mut dofs = Vec::new();

@@ -73,7 +73,7 @@ pub struct Sampled {
 pub struct Resultants {
     /// ∫ σ dz of the components 11, 22, 12, N/m.
     pub membrane: [f64; 3],
-    /// ∫ σ z dz of the same, z from the middle of the thickness, N.
+    /// ∫ σ z dz of the same, about z = 0, N.
     pub bending: [f64; 3],
     /// ∫ τ dz of the components 31, 23, N/m.
     pub shear: [f64; 2],
@@ -98,7 +98,7 @@ impl Profile {
     /// that holds the point.
     pub fn at(plate: &Plate, mirrors: &Mirrors, point: [f64; 2]) -> Option<Self> {
         let quads = &plate.plane.quads;
-        let place = |q: usize| Some((q, plate.plane.corners(q).locate(point)?));
+        let place = |q: usize| Some((q, plate.plane.cell(q).locate(point)?));
         let mut places: Vec<(usize, [f64; 2])> = (0..quads.len()).filter_map(place).collect();
         let region = plate.region(places.first()?.0);
         let all = places.len();

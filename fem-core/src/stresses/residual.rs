@@ -103,7 +103,7 @@ mod tests {
             thickness,
             material: *material,
         };
-        Laminate { plies: plies.iter().map(ply).collect(), layers: vec![plies.len()] }
+        Laminate { plies: plies.iter().map(ply).collect(), layers: vec![plies.len()], middle: 0.0 }
     }
 
     /// Timoshenko's bimetal of equal thicknesses, J. Opt. Soc. Am. 11 (1925) 233-255: κ = 24 Δα ΔT / (h (14 + n + 1/n)),

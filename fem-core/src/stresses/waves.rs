@@ -106,7 +106,7 @@ fn halved(laminate: &Laminate) -> Laminate {
         layers.extend([own.len() / 2, own.len() - own.len() / 2]);
         plies.extend(own);
     }
-    Laminate { plies, layers }
+    Laminate { plies, layers, middle: laminate.middle }
 }
 
 /// One cell of an infinite plate, and the amplitudes of a wave in it: of u, v, w at each level, and of their z-derivatives.
@@ -144,7 +144,7 @@ impl Wave {
         let mut wave = Self { plate, amplitudes, numbers, stiffness: Vec::new(), mass: Vec::new() };
         let n = info.ndof();
         let (mut scratch, mut matrix, mut dofs) = (Scratch::default(), vec![0.0; n * n], Vec::new());
-        for number in 0..wave.plate.cells() {
+        for number in wave.plate.cell_numbers() {
             wave.plate.cell_dofs(number, &mut dofs);
             let cell = wave.plate.cell(number);
             let add = |entries: &mut Vec<Entry>, matrix: &[f64]| {

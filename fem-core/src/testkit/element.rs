@@ -1,5 +1,6 @@
 //! The contract of an element.
 
+use crate::contracts::cubic_strains::{COEFFICIENTS, CubicStrains};
 use crate::contracts::element::{Cell, Element, ElementError, ElementInfo, Part, Scratch, Slice, Stack};
 use crate::plates::mesh::PlaneMesh;
 use crate::plates::plate::{Plate, ZDerivatives};
@@ -41,7 +42,7 @@ pub fn check_element(element: &dyn Element) -> Result<(), String> {
     }
     for (name, corners, z) in cells(info) {
         for (plies, stack) in stacks() {
-            let cell = Cell { corners, z, stack: &stack };
+            let cell = Cell { corners: corners.into(), z, stack: &stack };
             let found = match Matrices::of(element, &cell) {
                 Err(_) if name == "distorted" => continue,
                 found => found.map_err(|e| format!("{name} cell, {plies}: {e}"))?,
@@ -160,6 +161,21 @@ impl Element for Provided<'_> {
     }
 }
 
+/// Operators of the mean strains in all parts, by way of the coefficients.
+fn means_of_cubics(cubic: &dyn CubicStrains, cell: &Cell<'_>, info: &ElementInfo) -> Result<Vec<f64>, ElementError> {
+    let mut coefficients = vec![f64::NAN; COEFFICIENTS * info.ndof()];
+    cubic.coefficients(cell, info.plane(), &mut coefficients)?;
+    let mut means = Vec::new();
+    for part in parts(cell.stack) {
+        let shares = cubic.shares(cell.stack, &part);
+        for column in coefficients.chunks_exact(COEFFICIENTS) {
+            means
+                .extend(shares.iter().map(|shares| shares.iter().zip(column).map(|(share, c)| share * c).sum::<f64>()));
+        }
+    }
+    Ok(means)
+}
+
 struct Matrices {
     n: usize,
     k: Vec<f64>,
@@ -194,6 +210,10 @@ impl Matrices {
                 .map_err(|e| format!("the overridden {name} differs from the provided one by {e:.1e}"))?;
         }
         close(&self.means, &plain.means).map_err(|e| format!("overridden mean strains differ by {e:.1e}"))?;
+        if let Some(cubic) = element.cubic_strains() {
+            let means = means_of_cubics(cubic, cell, element.info()).map_err(|e| e.to_string())?;
+            close(&means, &plain.means).map_err(|e| format!("mean strains from coefficients differ by {e:.1e}"))?;
+        }
         self.rigid_motions(element, cell, regular)?;
         linear_fields(element, cell)
     }
@@ -263,7 +283,7 @@ fn mass_of(cell: &Cell<'_>) -> f64 {
 
 /// A plate of this one cell.
 fn single(cell: &Cell<'_>, info: ElementInfo) -> Result<Plate, String> {
-    let (mesh, stacks) = (PlaneMesh::single(cell.corners), vec![cell.stack.clone()]);
+    let (mesh, stacks) = (PlaneMesh::single(*cell.corners), vec![cell.stack.clone()]);
     Plate::new(mesh, cell.z.to_vec(), stacks, info, ZDerivatives::Shared).map_err(|why| why.to_string())
 }
 
@@ -399,13 +419,14 @@ fn frames(element: &dyn Element) -> Result<(), String> {
     let corners = part_of(element.info(), corners);
     let z = [-0.3e-3, 0.3e-3];
     let stack = Stack::new(vec![tape(20.0)]);
-    let reference = energy(element, &Cell { corners, z, stack: &stack }, wave(0.0, 1.0))?;
+    let reference = energy(element, &Cell { corners: corners.into(), z, stack: &stack }, wave(0.0, 1.0))?;
     let agree = |what: &str, got: f64| match (got / reference - 1.0).abs() {
         error if error <= 1e-9 => Ok(()),
         error => Err(format!("{what} changes the energy by {error:.1e}")),
     };
     for unit in [1e-3, 1e3] {
-        let scaled = Cell { corners: corners.map(|p| p.map(|p| unit * p)), z: z.map(|z| unit * z), stack: &stack };
+        let scaled =
+            Cell { corners: corners.map(|p| p.map(|p| unit * p)).into(), z: z.map(|z| unit * z), stack: &stack };
         agree("the unit of length", energy(element, &scaled, wave(0.0, unit))? / unit.powi(3))?;
     }
     if section {
@@ -414,14 +435,20 @@ fn frames(element: &dyn Element) -> Result<(), String> {
     for turn in 1..corners.len() {
         let mut corners = corners;
         corners.rotate_left(turn);
-        agree("the corner counted first", energy(element, &Cell { corners, z, stack: &stack }, wave(0.0, 1.0))?)?;
+        agree(
+            "the corner counted first",
+            energy(element, &Cell { corners: corners.into(), z, stack: &stack }, wave(0.0, 1.0))?,
+        )?;
     }
     for degrees in [90.0, 33.0] {
         let angle = f64::to_radians(degrees);
         let (s, c) = angle.sin_cos();
         let turned = Stack::new(vec![tape(20.0 + degrees)]);
         let corners = corners.map(|[x, y]| [c * x - s * y, s * x + c * y]);
-        agree("a turn of the axes", energy(element, &Cell { corners, z, stack: &turned }, wave(angle, 1.0))?)?;
+        agree(
+            "a turn of the axes",
+            energy(element, &Cell { corners: corners.into(), z, stack: &turned }, wave(angle, 1.0))?,
+        )?;
     }
     Ok(())
 }
@@ -435,7 +462,7 @@ fn refusals(element: &dyn Element) -> Result<(), String> {
     folded[1..].reverse();
     undefined[0][0] = f64::NAN;
     for (what, corners, z) in [("folded", folded, z), ("undefined", undefined, z), ("flat", good, [0.0, 0.0])] {
-        if Matrices::of(element, &Cell { corners, z, stack: &stack }).is_ok() {
+        if Matrices::of(element, &Cell { corners: corners.into(), z, stack: &stack }).is_ok() {
             return Err(format!("a cell that is {what} is not refused"));
         }
     }

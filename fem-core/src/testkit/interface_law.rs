@@ -27,7 +27,7 @@ pub fn check_interface_law(
         let (law, material) = (make(units), units.material(material));
         let stiffness = material.elastic.stiffness();
         let length = units.number(length, Dimension::LENGTH);
-        let point = LawPoint { material: &material, stiffness: &stiffness, length };
+        let point = LawPoint { material: &material, stiffness: &stiffness, length, thickness: 0.0 };
         check_law(law.info(), "under test", &point, law.check(&point)).map_err(|e| e.to_string())?;
         let respond = |jump: &Jump, old: &[f64], new: &mut [f64], tangent: Option<&mut [Jump; 3]>| {
             let InterfaceResponse { traction, stored, dissipated } = law.respond(&point, jump, old, new, tangent)?;

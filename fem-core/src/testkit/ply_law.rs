@@ -34,7 +34,7 @@ pub fn check_ply_law(
         let (law, material) = (make(units), units.material(material));
         let stiffness = material.elastic.stiffness();
         let length = units.number(length, Dimension::LENGTH);
-        let point = LawPoint { material: &material, stiffness: &stiffness, length };
+        let point = LawPoint { material: &material, stiffness: &stiffness, length, thickness: length };
         check_law(law.info(), "under test", &point, law.check(&point)).map_err(|e| e.to_string())?;
         let respond = |strain: &[f64; 6], old: &[f64], new: &mut [f64], tangent: Option<&mut Matrix6>| {
             let PlyResponse { stress, energy } = law.respond(&point, &Strain6::new(*strain), old, new, tangent)?;

@@ -1,6 +1,7 @@
 //! Contact forces of an implicit step, from how the structure responds to each.
 
 use super::{Impactor, add, value};
+use crate::lifting::Lifting;
 use fem_core::contact::{ContactForce, ContactHistory};
 use fem_core::structure::SolveError;
 use fem_core::time::StepError;
@@ -27,8 +28,12 @@ pub(super) struct Influence {
     /// Approach at contact i per force at contact j, pᵢᵀ Xⱼ and 1/(cm m) on the diagonal, by rows.
     approach: Vec<f64>,
     /// Approach at each contact without forces.
-    pub(super) free: Vec<f64>,
+    free: Vec<f64>,
     forces: Vec<f64>,
+    /// Springs that only push, their deflections without forces, and those by a unit force of each contact.
+    pub(super) lifting: Lifting,
+    lifts: Vec<f64>,
+    across: Vec<Vec<f64>>,
 }
 
 impl Influence {
@@ -39,10 +44,10 @@ impl Influence {
         cc: f64,
         n: usize,
         impactors: &[Impactor],
-        solve: impl FnOnce(&mut [f64], usize) -> Result<(), SolveError>,
+        mut solve: impl FnMut(&mut [f64], usize) -> Result<(), SolveError>,
     ) -> Result<(), StepError> {
         let count = impactors.len();
-        let Self { x, approach, free, forces, .. } = self;
+        let Self { x, approach, free, forces, lifting, lifts, across, .. } = self;
         x.clear();
         x.resize(n * count, 0.0);
         for (impactor, column) in impactors.iter().zip(x.chunks_exact_mut(n)) {
@@ -56,8 +61,23 @@ impl Influence {
         }
         free.resize(count, 0.0);
         forces.resize(count, 0.0);
+        lifts.resize(lifting.springs().len(), 0.0);
+        lifting.set(n, &mut solve).map_err(StepError::Factorisation)?;
+        let deflections = |x: &[f64]| {
+            let mut w = vec![0.0; lifts.len()];
+            lifting.add_deflections(x, &mut w);
+            w
+        };
+        *across = x.chunks_exact(n).map(deflections).collect();
         (self.cm, self.cc) = (cm, cc);
         Ok(())
+    }
+
+    /// Forgets the approaches without forces; forces are means over a step that begins with the displacements `start`, if these are given.
+    pub(super) fn begin(&mut self, start: Option<&[f64]>) {
+        self.free.fill(0.0);
+        self.lifts.fill(0.0);
+        self.lifting.begin(start);
     }
 
     /// Adds what the displacements `x` add to the approaches without forces.
@@ -66,15 +86,19 @@ impl Influence {
         for (i, (impactor, free)) in impactors.iter().zip(&mut self.free).enumerate() {
             *free += x[n + i] - value(&impactor.load, x);
         }
+        self.lifting.add_deflections(x, &mut self.lifts);
     }
 
-    /// Work of the contact forces along `d`.
+    /// Work of the contact forces, and of those that relieve springs, along `d`.
     pub(super) fn work(&self, impactors: &[Impactor], d: &[f64]) -> f64 {
-        impactors.iter().zip(&self.forces).map(|(impactor, force)| force * value(&impactor.load, d)).sum()
+        let contacts: f64 = impactors.iter().zip(&self.forces).map(|(i, force)| force * value(&i.load, d)).sum();
+        let springs = self.lifting.springs().iter().zip(self.lifting.forces());
+        contacts + springs.map(|(spring, force)| force * spring.at.of(d)).sum::<f64>()
     }
 
-    /// Finds the contact forces for the response `d` without contact, and adds that to each, F (X, −1/(cm m)); returns the
-    /// evaluations of contact laws. They are means over a step that begins with the displacements `start`, if these are given.
+    /// Finds the contact forces for the response `d` without contact, and adds that to each, F (X, −1/(cm m)), and that to the relief of
+    /// springs, found by `solve` as in [`Self::set`]; returns the evaluations of contact laws. Forces are means over a step that begins
+    /// with the displacements `start`, if these are given.
     pub(super) fn touch(
         &mut self,
         impactors: &[Impactor],
@@ -82,6 +106,7 @@ impl Influence {
         h: &[ContactHistory],
         start: Option<&[f64]>,
         d: &mut [f64],
+        solve: impl FnOnce(&mut [f64], usize) -> Result<(), SolveError>,
     ) -> Result<u64, StepError> {
         self.set_approaches(impactors, d);
         let calls = self.balance(impactors, t, h, start)?;
@@ -94,13 +119,26 @@ impl Influence {
                 d[n + i] -= force / (self.cm * impactor.mass);
             }
         }
+        if self.lifting.is_empty() {
+            return Ok(calls);
+        }
+        let lifts = pressed(&self.lifts, &self.across, &self.forces);
+        if !self.lifting.relieve(&lifts) {
+            return Err(StepError::NoConvergence { t, what: "the forces of the supports that only push".into() });
+        }
+        if self.lifting.forces().iter().any(|force| *force != 0.0) {
+            let mut x = vec![0.0; n];
+            self.lifting.add_load(&mut x);
+            solve(&mut x, 1).map_err(StepError::Factorisation)?;
+            d.iter_mut().zip(&x).for_each(|(d, x)| *d += x);
+        }
         Ok(calls)
     }
 
     /// Finds the contact forces, each in turn until none changes; returns the evaluations of contact laws.
     ///
     /// The approaches are symmetric and positive and no force falls with its indentation, so that this converges,
-    /// slowly where stiff contacts share a place.
+    /// slowly where stiff contacts share a place. With each force the springs that only push find theirs.
     fn balance(
         &mut self,
         impactors: &[Impactor],
@@ -110,26 +148,46 @@ impl Influence {
     ) -> Result<u64, StepError> {
         let count = impactors.len();
         let mut evaluations = 0;
-        self.forces.fill(0.0);
+        let Self { approach, free, forces, lifting, lifts, across, .. } = self;
+        forces.fill(0.0);
         for _ in 0..MOST_SWEEPS {
             let mut settled = true;
             for (i, impactor) in impactors.iter().enumerate() {
-                let row = &self.approach[i * count..(i + 1) * count];
-                let others = (0..count).filter(|j| *j != i).map(|j| row[j] * self.forces[j]);
-                let free = self.free[i] - others.sum::<f64>();
+                let row = &approach[i * count..(i + 1) * count];
+                let others = (0..count).filter(|j| *j != i).map(|j| row[j] * forces[j]);
+                let mut free = free[i] - others.sum::<f64>();
+                let before = forces[i];
+                let (mut at_others, mut given) = (Vec::new(), 0.0);
+                if !lifting.is_empty() {
+                    forces[i] = 0.0;
+                    at_others = pressed(lifts, across, forces);
+                    lifting.relieve(&at_others);
+                    given = along(&across[i], lifting.forces());
+                    free -= given;
+                }
+                // Approach that its own force takes back, and its derivative.
+                let yielding = |force: f64| {
+                    if at_others.is_empty() {
+                        return (row[i] * force, row[i]);
+                    }
+                    let w: Vec<f64> = at_others.iter().zip(&across[i]).map(|(w, across)| w + across * force).collect();
+                    lifting.relieve(&w);
+                    let more = along(&across[i], lifting.forces()) - given;
+                    (row[i] * force + more, row[i] + lifting.slope(&across[i]))
+                };
                 let (force, calls) = match start {
-                    None => contact(|alpha| impactor.law.force(&h[i], alpha), free, row[i]),
+                    None => contact(|alpha| impactor.law.force(&h[i], alpha), free, yielding),
                     Some(u) => {
                         let start = u[u.len() - count + i] - value(&impactor.load, u);
-                        contact(|middle| mean_force(impactor, &h[i], start, middle), free, row[i])
+                        contact(|middle| mean_force(impactor, &h[i], start, middle), free, yielding)
                     }
                 };
                 evaluations += calls;
                 if !force.is_finite() {
                     return Err(StepError::NotFinite { t });
                 }
-                settled &= row[i] * (force - self.forces[i]).abs() <= TOLERANCE * free.abs();
-                self.forces[i] = force;
+                settled &= row[i] * (force - before).abs() <= TOLERANCE * free.abs();
+                forces[i] = force;
             }
             if count < 2 || settled {
                 return Ok(evaluations);
@@ -139,24 +197,42 @@ impl Influence {
     }
 }
 
+/// Deflections of springs under contact forces.
+fn pressed(lifts: &[f64], across: &[Vec<f64>], forces: &[f64]) -> Vec<f64> {
+    let mut w = lifts.to_vec();
+    for (across, force) in across.iter().zip(forces) {
+        w.iter_mut().zip(across).for_each(|(w, across)| *w += force * across);
+    }
+    w
+}
+
+fn along(across: &[f64], forces: &[f64]) -> f64 {
+    across.iter().zip(forces).map(|(across, force)| across * force).sum()
+}
+
 /// Mean force of a step from indentation `start` as a function of that in the middle.
 fn mean_force(impactor: &Impactor, h: &ContactHistory, start: f64, middle: f64) -> ContactForce {
     let mean = impactor.law.mean_force(h, start, 2.0 * middle - start);
     ContactForce { tangent: 2.0 * mean.tangent, ..mean }
 }
 
-/// Solves α + `soft` F(α) = `free` for the force: Newton's method kept inside a bracket, because F never falls.
-/// Returns the force and the number of evaluations.
-fn contact(law: impl Fn(f64) -> ContactForce, free: f64, soft: f64) -> (f64, u64) {
+/// Solves α + y(F(α)) = `free` for the force, y and its derivative by `yielding`: Newton's method kept inside a bracket, because F and y
+/// never fall. Returns the force and the number of evaluations.
+fn contact(law: impl Fn(f64) -> ContactForce, free: f64, mut yielding: impl FnMut(f64) -> (f64, f64)) -> (f64, u64) {
     let at_free = law(free);
     if at_free.force == 0.0 {
         return (0.0, 1);
     }
-    let (mut low, mut high) = (free - soft * at_free.force, free);
-    let mut alpha = free - soft * at_free.force / (1.0 + soft * at_free.tangent);
+    let (mut yielded, mut soft) = yielding(at_free.force);
+    let (mut low, mut high) = (free - yielded, free);
+    let mut alpha = free - yielded / (1.0 + soft * at_free.tangent);
+    let mut beside = 0.0;
     for calls in 2..MOST_CALLS {
         let c = law(alpha);
-        let residual = alpha + soft * c.force - free;
+        (yielded, soft) = yielding(c.force);
+        // What y has beside its tangent through 0.
+        beside = yielded - soft * c.force;
+        let residual = alpha + yielded - free;
         if residual > 0.0 {
             high = alpha
         } else {
@@ -172,5 +248,5 @@ fn contact(law: impl Fn(f64) -> ContactForce, free: f64, soft: f64) -> (f64, u64
         let halve = calls > PATIENCE && calls % 2 == 0;
         alpha = if next > low && next < high && !halve { next } else { 0.5 * (low + high) };
     }
-    ((free - alpha) / soft, MOST_CALLS)
+    ((free - alpha - beside) / soft, MOST_CALLS)
 }

@@ -117,10 +117,15 @@ impl ImpactSystem {
             tangents(nonlinear(structure.nonlinear())?)?.solve_linearised(step, 1).map_err(StepError::Factorisation)?;
             let free = impactors.iter().zip(&load[n..]).zip(&d[n..]);
             step.extend(free.map(|((impactor, r), d)| r / (cm * impactor.mass) - d));
-            influence.free.fill(0.0);
+            influence.begin(start.map(|u| &u[..n]));
             influence.set_approaches(impactors, from);
             influence.set_approaches(impactors, d);
-            *contact_calls += influence.touch(impactors, t, &h.contacts, start, step)?;
+            let mut forces = structure.nonlinear();
+            let solve = |x: &mut [f64], count| match forces.as_mut().and_then(|forces| forces.tangents()) {
+                Some(tangents) => tangents.solve_linearised(x, count),
+                None => Err(SolveError::NotLinearised),
+            };
+            *contact_calls += influence.touch(impactors, t, &h.contacts, start, step, solve)?;
             d.iter_mut().zip(&*step).for_each(|(d, step)| *d += step);
             let work: f64 = residual.iter().zip(&*step).map(|(r, d)| r * d).sum();
             let square = work + influence.work(impactors, step);

@@ -36,6 +36,11 @@ impl Modal {
         &self.stiffness
     }
 
+    /// Modal masses: 1, and 0 of modes without inertia.
+    pub fn masses(&self) -> &[f64] {
+        &self.mass
+    }
+
     /// Modal dampings; none of a structure without.
     pub fn dampings(&self) -> &[f64] {
         &self.damping

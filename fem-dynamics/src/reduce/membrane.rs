@@ -465,7 +465,9 @@ impl Tangents for MembranePlate {
             }
         }
         for (i, (k, mass)) in self.modal.stiffness.iter().zip(&self.modal.mass).enumerate() {
-            tangent[(i, i)] += k + cm * mass + cc * self.modal.damping.get(i).unwrap_or(&0.0);
+            // A free motion without inertia stays where it is: no force is there to answer one along it.
+            let own = if *k == 0.0 && *mass == 0.0 { f64::INFINITY } else { k + cm * mass };
+            tangent[(i, i)] += own + cc * self.modal.damping.get(i).unwrap_or(&0.0);
         }
         self.factor = None;
         self.factor = Some(Cholesky::new(tangent).ok_or(SolveError::Buckled)?);

@@ -7,6 +7,7 @@ mod guyan;
 mod irs;
 mod membrane;
 mod modal;
+mod restored;
 mod ritz;
 mod stretched;
 
@@ -55,6 +56,15 @@ impl Reduced {
     /// # Errors
     /// No columns, a stiffness that is not definite on them, or numbers that are not finite.
     pub fn project(structure: &dyn Structure, basis: &[f64]) -> Result<Self, ReductionError> {
+        Self::project_loaded(structure, basis, &[])
+    }
+
+    /// The same where the first columns of `basis` are the responses at rest to `forces`, which need not be in balance on a structure
+    /// that moves: only the other columns are multiplied by K.
+    ///
+    /// # Errors
+    /// As [`Reduced::project`].
+    pub fn project_loaded(structure: &dyn Structure, basis: &[f64], forces: &[f64]) -> Result<Self, ReductionError> {
         let n = structure.ndof();
         let m = basis.len() / n.max(1);
         if m == 0 {
@@ -63,14 +73,17 @@ impl Reduced {
         let free = DMatrix::from_column_slice(n, structure.free_motions().len() / n, structure.free_motions());
         let mut t = DMatrix::from_column_slice(n, m, basis);
         part_from(&free, structure, &mut t);
-        let product = |add: &dyn Fn(&[f64], &mut [f64])| {
+        let product = |known: &[f64], add: &dyn Fn(&[f64], &mut [f64])| {
             let mut image = DMatrix::zeros(n, m);
-            add(t.as_slice(), image.as_mut_slice());
+            let (front, rest) = image.as_mut_slice().split_at_mut(known.len());
+            front.copy_from_slice(known);
+            add(&t.as_slice()[known.len()..], rest);
             let product = t.transpose() * image;
             (&product + product.transpose()) * 0.5
         };
-        let k = product(&|x, y| structure.add_stiffness(1.0, x, y));
-        let mass = product(&|x, y| structure.add_mass(1.0, x, y));
+        // Motions as a whole, of which the columns are free, feel no force of a balanced load nor of what balances it.
+        let k = product(forces, &|x, y| structure.add_stiffness(1.0, x, y));
+        let mass = product(&[], &|x, y| structure.add_mass(1.0, x, y));
         Self::diagonalise(&free, t, k, mass)
     }
 

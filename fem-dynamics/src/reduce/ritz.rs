@@ -45,8 +45,17 @@ impl Reduction for Ritz {
         &self,
         structure: &mut dyn Structure,
         keep: &[Functional],
-        _: &[usize],
+        candidates: &[usize],
     ) -> Result<Vec<f64>, ReductionError> {
+        Ok(self.basis_and_forces(structure, keep, candidates)?.0)
+    }
+
+    fn basis_and_forces(
+        &self,
+        structure: &mut dyn Structure,
+        keep: &[Functional],
+        _: &[usize],
+    ) -> Result<(Vec<f64>, Option<Vec<f64>>), ReductionError> {
         let vectors = columns(structure, self.vectors.max(keep.len()), 0)?;
         if self.two_level
             && let Some(coarse) = structure.coarse()?
@@ -55,11 +64,11 @@ impl Reduction for Ritz {
             match two_level(structure, coarse, keep, vectors) {
                 // Of cells a thousand times as wide as thick rounding leaves nothing of a stiffness that is projected.
                 Err(ReductionError::Solve(SolveError::NotPositive { .. })) => {}
-                basis => return basis,
+                made => return made.map(|(basis, forces)| (basis, Some(forces))),
             }
         }
         let start = static_responses(structure, keep)?;
-        krylov(structure, &start, vectors)
+        Ok((krylov(structure, &start, vectors)?, None))
     }
 }
 
@@ -73,26 +82,27 @@ fn krylov(structure: &mut dyn Structure, start: &[f64], vectors: usize) -> Resul
     Ok(space.into_basis())
 }
 
-/// K⁻¹ [P, M P_c Y], P_c the prolongation.
+/// K⁻¹ [P, M P_c Y], P_c the prolongation, and what K⁻¹ is applied to.
 fn two_level(
     structure: &mut dyn Structure,
     Coarse { structure: mut small, prolongation }: Coarse,
     keep: &[Functional],
     vectors: usize,
-) -> Result<Vec<f64>, ReductionError> {
+) -> Result<(Vec<f64>, Vec<f64>), ReductionError> {
     let n = structure.ndof();
-    let mut basis = vec![0.0; n * keep.len()];
-    for (w, column) in keep.iter().zip(basis.chunks_exact_mut(n)) {
+    let mut forces = vec![0.0; n * keep.len()];
+    for (w, column) in keep.iter().zip(forces.chunks_exact_mut(n)) {
         w.add_to(1.0, column);
     }
-    let mut start = prolongation.restrict(&basis);
+    let mut start = prolongation.restrict(&forces);
     solve(&mut *small, &mut start)?;
     let rough = prolongation.expand(&krylov(&mut *small, &start, vectors - keep.len())?);
-    let contacts = basis.len();
-    basis.resize(contacts + rough.len(), 0.0);
-    structure.add_mass(1.0, &rough, &mut basis[contacts..]);
+    let contacts = forces.len();
+    forces.resize(contacts + rough.len(), 0.0);
+    structure.add_mass(1.0, &rough, &mut forces[contacts..]);
+    let mut basis = forces.clone();
     solve(structure, &mut basis)?;
-    Ok(basis)
+    Ok((basis, forces))
 }
 
 const VECTORS: ParamInfo = ParamInfo::count("vectors", "vectors in all").at_least(1.0).default(60.0).role(Role::Size);

@@ -2,6 +2,7 @@
 
 use crate::{Dense, basis, reduction, spread};
 use fem_core::functional::Functional;
+use fem_core::structure::Structure;
 use fem_dynamics::modes;
 use fem_dynamics::reduce::Reduced;
 use std::f64::consts::PI;
@@ -139,5 +140,23 @@ fn vectors_that_join_later_make_the_same_structure() {
     }
     for (grown, whole) in grown.restrict(&Functional::dof(11)).iter().zip(whole.restrict(&Functional::dof(11))) {
         assert!((grown.abs() / whole.abs() - 1.0).abs() < 1e-6, "{grown} {whole}");
+    }
+}
+
+#[test]
+fn forces_that_are_known_take_the_place_of_products() {
+    let mut chain = Dense::chain(&[0.2; 30], 3e6);
+    let t = basis(&*reduction("ritz", 9), &mut chain, &[Functional::dof(11)], &[]).unwrap();
+    let mut forces = vec![0.0; t.len()];
+    chain.add_stiffness(1.0, t.as_slice(), &mut forces);
+    let project = |forces: &[f64]| Reduced::project_loaded(&chain, t.as_slice(), forces).unwrap().modal;
+    let [whole, some] = [project(&[]), project(&forces[..6 * 30])];
+    for (one, other) in whole.frequencies().zip(some.frequencies()) {
+        assert!((one / other - 1.0).abs() < 1e-9, "{one} {other}");
+    }
+    // They are believed: of twice the forces the plate is twice as stiff.
+    forces.iter_mut().for_each(|force| *force *= 2.0);
+    for (one, other) in whole.frequencies().zip(project(&forces).frequencies()) {
+        assert!((other / one - 2_f64.sqrt()).abs() < 1e-9, "{one} {other}");
     }
 }

@@ -8,12 +8,14 @@ use crate::prism::{BLOCKS, STRAIN_ROW, matrix, mean_powers, multiply};
 use crate::transverse::{Across, TransverseStresses};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
+use fem_core::cubic_strains::{COEFFICIENTS, CubicStrains};
 use fem_core::element::{
     Cell, Element, ElementError, ElementInfo, Part, PlaneMap, Point, Scratch, Slice, Stack, positive,
 };
 use fem_core::large::LargeDeflection;
 use fem_core::plugin::{ParamError, ParamInfo, Params, Role};
 use fem_core::tensor::apply;
+use fem_core::transverse::ACROSS;
 use natural::{Natural, Table};
 use std::fmt::Debug;
 use std::ops::Range;
@@ -343,32 +345,14 @@ where
         scratch: &mut Scratch,
         b: &mut [f64],
     ) -> Result<(), ElementError> {
-        // Area means of the gradients: function × direction × power of q.
-        let [means] = scratch.arrays([F * 3 * 4]);
-        let jacobians = self.jacobians(cell);
-        let mut area = 0.0;
-        for point in plane {
-            let [r, s] = point.at;
-            let plane = cell.plane(r, s);
-            let da = positive(plane.det * cell.half_height())? * point.weight();
-            area += da;
-            Self::gradients(cell, &jacobians, 0..H / 2, r, s, &plane, |f, gradient| {
-                for (d, polynomial) in gradient.iter().enumerate() {
-                    let at = 4 * (3 * f + d);
-                    for (mean, value) in means[at..at + 4].iter_mut().zip(polynomial) {
-                        *mean += da * value;
-                    }
+        let [coefficients] = scratch.arrays([COEFFICIENTS * 3 * F]);
+        self.coefficients(cell, plane, coefficients)?;
+        for (part, b) in parts.iter().zip(b.chunks_exact_mut(18 * F)) {
+            let shares = self.shares(cell.stack, part);
+            for (column, coefficients) in b.chunks_exact_mut(6).zip(coefficients.chunks_exact(COEFFICIENTS)) {
+                for (strain, shares) in column.iter_mut().zip(&shares) {
+                    *strain = shares.iter().zip(coefficients).map(|(share, c)| share * c).sum();
                 }
-            });
-        }
-        b.fill(0.0);
-        means.iter_mut().for_each(|mean| *mean /= area);
-        for (Part { slice, q: [low, high] }, b) in parts.iter().zip(b.chunks_exact_mut(18 * F)) {
-            let powers: Quartet = mean_powers(*low, *high);
-            let across = self.stresses.across(cell, *slice, [*low, *high]);
-            for (f, mean) in means.chunks_exact(3 * 4).enumerate() {
-                let mean = std::array::from_fn(|d| std::array::from_fn(|k| mean[4 * d + k]));
-                put_strains(b, f, &mean, &across, |g| g.iter().zip(powers).map(|(a, b)| a * b).sum());
             }
         }
         Ok(())
@@ -388,8 +372,63 @@ where
         self.triangular.as_deref().map(|wedge| wedge as &dyn Element)
     }
 
+    fn takes_bent_sides(&self) -> bool {
+        true
+    }
+
+    fn cubic_strains(&self) -> Option<&dyn CubicStrains> {
+        Some(self)
+    }
+
     fn large_deflections(&self) -> Option<&dyn LargeDeflection> {
         Some(self)
+    }
+}
+
+impl<const F: usize, const H: usize> CubicStrains for HermiteSolid<F, H>
+where
+    Self: Functions,
+{
+    fn coefficients(&self, cell: &Cell<'_>, plane: &[Point], b: &mut [f64]) -> Result<(), ElementError> {
+        let (mut means, mut area) = ([[[0.0; 4]; 3]; F], 0.0);
+        let jacobians = self.jacobians(cell);
+        for point in plane {
+            let [r, s] = point.at;
+            let plane = cell.plane(r, s);
+            let da = positive(plane.det * cell.half_height())? * point.weight();
+            area += da;
+            Self::gradients(cell, &jacobians, 0..H / 2, r, s, &plane, |f, gradient| {
+                for (mean, value) in means[f].as_flattened_mut().iter_mut().zip(gradient.as_flattened()) {
+                    *mean += da * value;
+                }
+            });
+        }
+        b.fill(0.0);
+        for (f, gradient) in means.iter().enumerate() {
+            for (component, rows) in STRAIN_ROW.iter().enumerate() {
+                let powers = b[COEFFICIENTS * column(component, f)..][..COEFFICIENTS].chunks_exact_mut(6);
+                for (k, strains) in powers.enumerate() {
+                    rows.iter().zip(gradient).for_each(|(row, polynomial)| strains[*row] = polynomial[k] / area);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn shares(&self, stack: &Stack, Part { slice, q: [low, high] }: &Part) -> [[f64; COEFFICIENTS]; 6] {
+        let powers: Quartet = mean_powers(*low, *high);
+        let mut shares = [[0.0; COEFFICIENTS]; 6];
+        for (row, shares) in shares.iter_mut().enumerate() {
+            powers.iter().enumerate().for_each(|(k, mean)| shares[6 * k + row] = *mean);
+        }
+        if let Some(transverse) = self.stresses.in_stack(stack) {
+            for (k, operator) in transverse.operator(*slice, [*low, *high]).iter().enumerate() {
+                for (i, row) in ACROSS.into_iter().enumerate() {
+                    (0..6).for_each(|strain| shares[row][6 * k + strain] = operator[(i, strain)]);
+                }
+            }
+        }
+        shares
     }
 }
 

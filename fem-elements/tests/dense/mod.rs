@@ -98,7 +98,7 @@ pub(crate) fn check_rigid_motions(element: &dyn Element, cell: &Cell<'_>) {
     let spectrum = scaled_spectrum(&stiffness(element, cell));
     assert!(spectrum[0] > -1e-12 && spectrum[5] < 1e-12, "{:?}", &spectrum[..7]);
     assert!(spectrum[6] > 1e-6, "{:?}", &spectrum[..7]);
-    let model = Model::new(element, PlaneMesh::single(cell.corners), cell.z.to_vec(), vec![cell.stack.clone()]);
+    let model = Model::new(element, PlaneMesh::single(*cell.corners), cell.z.to_vec(), vec![cell.stack.clone()]);
     let length = cell.corners[2][0] - cell.corners[0][0];
     let scale = model.k.diagonal().map(f64::sqrt);
     for motion in 0..6 {

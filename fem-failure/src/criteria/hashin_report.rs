@@ -31,6 +31,24 @@ pub struct HashinReport {
     pub product: Product,
 }
 
+/// One over strengths, of shears over their squares: many bounds are made of them.
+struct Inverses {
+    xt: f64,
+    xc: f64,
+    yt: f64,
+    s12: f64,
+    s23: f64,
+}
+
+impl Inverses {
+    fn of(m: &Material) -> Self {
+        let r = &m.strengths;
+        let [xt, xc, yt] = [r.xt(), r.xc(), r.yt()].map(f64::recip);
+        let [s12, s23] = [r.s12(), r.s23()].map(|strength| (strength * strength).recip());
+        Self { xt, xc, yt, s12, s23 }
+    }
+}
+
 impl HashinReport {
     const fn describe(invariant_about_fibre: bool) -> CriterionInfo {
         CriterionInfo {
@@ -39,6 +57,26 @@ impl HashinReport {
             strengths: &[Strength::Xt, Strength::Xc, Strength::Yt, Strength::S12, Strength::S23],
             invariant_about_fibre,
         }
+    }
+
+    #[inline]
+    fn bound(&self, s: &StressRange, inverses: &Inverses, out: &mut [f64]) {
+        let product = match self.product {
+            Product::Minus => s.s22() * s.s33() * -1.0,
+            Product::Plus => s.s22() * s.s33(),
+        };
+        let along = (s.s12().squared() + s.s31().squared()).high * inverses.s12;
+        let across = s.s23().squared();
+        let (sum, half) = (s.s22() + s.s33(), (s.s22() - s.s33()) * 0.5);
+        out.copy_from_slice(&[
+            when(s.s11().reaches_positive(), (s.s11().positive().high * inverses.xt).powi(2) + along),
+            when(s.s11().reaches_negative(), (s.s11().low * inverses.xc).powi(2)),
+            when(
+                sum.reaches_positive(),
+                (sum.positive().high * inverses.yt).powi(2) + (across + product).high * inverses.s23 + along,
+            ),
+            when(sum.reaches_negative(), (half.squared() + across).high * inverses.s23 + along),
+        ]);
     }
 
     #[inline]
@@ -74,23 +112,14 @@ impl FailureCriterion for HashinReport {
     from_terms!();
 
     fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
-        let r = &m.strengths;
-        let product = match self.product {
-            Product::Minus => s.s22() * s.s33() * -1.0,
-            Product::Plus => s.s22() * s.s33(),
-        };
-        let along = (s.s12().squared() + s.s31().squared()).high / (r.s12() * r.s12());
-        let (across, s23) = (s.s23().squared(), r.s23() * r.s23());
-        let (sum, half) = (s.s22() + s.s33(), (s.s22() - s.s33()) * 0.5);
-        out.copy_from_slice(&[
-            when(s.s11().reaches_positive(), (s.s11().positive().high / r.xt()).powi(2) + along),
-            when(s.s11().reaches_negative(), (s.s11().low / r.xc()).powi(2)),
-            when(
-                sum.reaches_positive(),
-                (sum.positive().high / r.yt()).powi(2) + (across + product).high / s23 + along,
-            ),
-            when(sum.reaches_negative(), (half.squared() + across).high / s23 + along),
-        ]);
+        self.bound(s, &Inverses::of(m), out);
+    }
+
+    fn bounds_many(&self, s: &[StressRange], m: &Material, out: &mut [f64]) {
+        let inverses = Inverses::of(m);
+        for (s, out) in s.iter().zip(out.chunks_exact_mut(self.info().modes.len())) {
+            self.bound(s, &inverses, out);
+        }
     }
 
     fn check(&self, m: &Material) -> Result<(), UnmetCondition> {

@@ -1,19 +1,19 @@
 //! A scan that judges only what can be first or largest.
 
-use super::{First, Scan, ScanError, ScanSite, Seen, Sighting, Spot, Watch};
+use super::{BLOCK, First, Scan, ScanError, ScanSite, Seen, Sighting, Spot, Watch, refusal};
 use fem_core::failure::StressRange;
 use fem_core::material::Material;
 use fem_core::tensor::{Ply, Stress6};
 use std::ops::Range;
 
 /// Samples of a window: those that it judges, and the one before them.
-const WINDOW: usize = 16;
+pub(super) const WINDOW: usize = 16;
 
 /// Share of a bound that rounding may take.
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// Components of stress beyond which a bound might overflow, Pa.
-const IMMENSE: f64 = 1e60;
+pub(super) const IMMENSE: f64 = 1e60;
 
 /// Stresses over a batch of samples, site by site.
 pub trait Samples {
@@ -33,20 +33,53 @@ pub fn windows(samples: usize) -> impl ExactSizeIterator<Item = Range<usize>> {
 /// What no index exceeds: of each row of a watch, window and mode.
 struct Bounds {
     of: Vec<f64>,
+    /// The largest of each [`BLOCK`] of rows.
+    of_blocks: Vec<f64>,
     windows: usize,
     modes: usize,
 }
 
 impl Bounds {
+    /// Of so many rows, no bounds yet.
+    fn new(rows: usize, windows: usize, modes: usize) -> Self {
+        let size = windows * modes;
+        let (of, of_blocks) = (vec![f64::INFINITY; rows * size], vec![f64::INFINITY; rows.div_ceil(BLOCK) * size]);
+        Self { of, of_blocks, windows, modes }
+    }
+
+    /// Once all rows have their bounds.
+    fn block(&mut self) {
+        let size = (self.windows * self.modes).max(1);
+        for (block, rows) in self.of_blocks.chunks_exact_mut(size).zip(self.of.chunks(BLOCK * size)) {
+            block.fill(f64::NEG_INFINITY);
+            for row in rows.chunks_exact(size) {
+                // A bound that is not a number bounds nothing.
+                block.iter_mut().zip(row).for_each(|(b, r)| *b = b.max(if r.is_nan() { f64::INFINITY } else { *r }));
+            }
+        }
+    }
+
     fn at(&self, row: usize, window: usize) -> &[f64] {
         &self.of[(row * self.windows + window) * self.modes..][..self.modes]
     }
 
+    fn of_block(&self, block: usize, window: usize) -> &[f64] {
+        &self.of_blocks[(block * self.windows + window) * self.modes..][..self.modes]
+    }
+
+    fn rows(&self) -> usize {
+        self.of.len() / (self.windows * self.modes).max(1)
+    }
+
     /// The row and window of the largest bound of `mode` in `within`.
     fn top(&self, mode: usize, within: Range<usize>) -> Option<(usize, usize)> {
-        let rows = 0..self.of.len() / (self.windows * self.modes).max(1);
-        let all = rows.flat_map(|row| within.clone().map(move |window| (row, window)));
-        all.max_by(|a, b| self.at(a.0, a.1)[mode].total_cmp(&self.at(b.0, b.1)[mode]))
+        let blocks =
+            (0..self.rows().div_ceil(BLOCK)).flat_map(|block| within.clone().map(move |window| (block, window)));
+        let of_block = |at: (usize, usize)| self.of_block(at.0, at.1)[mode];
+        let (block, window) = blocks.reduce(|a, b| if of_block(b) > of_block(a) { b } else { a })?;
+        let rows = block * BLOCK..((block + 1) * BLOCK).min(self.rows());
+        let of_row = |row: usize| self.at(row, window)[mode];
+        rows.reduce(|a, b| if of_row(b) > of_row(a) { b } else { a }).map(|row| (row, window))
     }
 }
 
@@ -117,10 +150,7 @@ impl Scan {
     /// Those of every watch.
     fn bounds(&self, windows: usize, samples: &mut dyn Samples) -> Vec<Bounds> {
         let rest = StressRange { low: Stress6::new([0.0; 6]), high: Stress6::new([0.0; 6]) };
-        let of = |watch: &Watch| {
-            let modes = watch.modes.len();
-            Bounds { of: vec![f64::INFINITY; watch.span.len() * windows * modes], windows, modes }
-        };
+        let of = |watch: &Watch| Bounds::new(watch.span.len(), windows, watch.modes.len());
         let mut all: Vec<Bounds> = self.watches.iter().map(of).collect();
         let says = |watch: &&Watch| {
             let mut of_rest = vec![f64::INFINITY; watch.modes.len()];
@@ -155,6 +185,7 @@ impl Scan {
                 watch.criterion.bounds_many(&ranges, material, out);
             }
         }
+        all.iter_mut().for_each(Bounds::block);
         all
     }
 }
@@ -192,23 +223,44 @@ impl Judge<'_> {
             let (from, start) = (self.times[window.start], self.times[self.judged(window).start]);
             let open = seen.climbs.iter().map(|climb| Sought { open: climb.open(from), record: f64::NEG_INFINITY });
             let mut sought: Vec<Sought> = open.collect();
-            let update = |sought: &mut [Sought], seen: &Seen| {
-                (0..).zip(sought).for_each(|(mode, sought)| sought.update(seen, mode, start));
-            };
-            update(&mut sought, seen);
+            (0..).zip(&mut sought).for_each(|(mode, sought)| sought.update(seen, mode, start));
             let tops: Vec<_> = (0..bounds.modes).filter_map(|mode| bounds.top(mode, number..number + 1)).collect();
-            for row in tops.into_iter().map(|(row, _)| row).chain(0..watch.span.len()) {
-                let place = self.slots[watch.span.start + row] as usize * bounds.modes;
-                let reaches = |((bound, sought), first): ((&f64, &Sought), &First)| {
-                    let failed = first.is_some_and(|(first, _)| first.time < from);
-                    bound * (1.0 + ROUNDING) >= if failed { sought.record } else { sought.record.min(1.0) }
-                };
-                if bounds.at(row, number).iter().zip(&sought).zip(&seen.first[place..]).any(reaches) {
-                    let least: Vec<f64> = sought.iter().map(|sought| sought.record.min(1.0)).collect();
-                    self.judge(watch, seen, row, (number, window), &least)?;
-                    update(&mut sought, seen);
+            for (row, _) in tops {
+                self.judge_if(watch, seen, (bounds, row), (number, window), &mut sought)?;
+            }
+            for block in 0..bounds.rows().div_ceil(BLOCK) {
+                // Of a place that has not failed 1 is enough.
+                let reaches = |(bound, sought): (&f64, &Sought)| !(bound * (1.0 + ROUNDING) < sought.record.min(1.0));
+                if bounds.of_block(block, number).iter().zip(&sought).any(reaches) {
+                    for row in block * BLOCK..((block + 1) * BLOCK).min(bounds.rows()) {
+                        self.judge_if(watch, seen, (bounds, row), (number, window), &mut sought)?;
+                    }
                 }
             }
+        }
+        Ok(())
+    }
+
+    /// Takes the site of `row` over a window if its bounds say that it can add something to what is `sought`.
+    fn judge_if(
+        &mut self,
+        watch: &Watch,
+        seen: &mut Seen,
+        (bounds, row): (&Bounds, usize),
+        (number, window): (usize, &Range<usize>),
+        sought: &mut [Sought],
+    ) -> Result<(), ScanError> {
+        let from = self.times[window.start];
+        let place = self.slots[watch.span.start + row] as usize * bounds.modes;
+        let reaches = |((bound, sought), first): ((&f64, &Sought), &First)| {
+            let failed = first.is_some_and(|(first, _)| first.time < from);
+            !(bound * (1.0 + ROUNDING) < if failed { sought.record } else { sought.record.min(1.0) })
+        };
+        if bounds.at(row, number).iter().zip(&*sought).zip(&seen.first[place..]).any(reaches) {
+            let start = self.times[self.judged(window).start];
+            let least: Vec<f64> = sought.iter().map(|sought| sought.record.min(1.0)).collect();
+            self.judge(watch, seen, row, (number, window), &least)?;
+            (0..).zip(sought).for_each(|(mode, sought)| sought.update(seen, mode, start));
         }
         Ok(())
     }
@@ -241,7 +293,8 @@ impl Judge<'_> {
         }
         watch.criterion.indices_many(&stress[..count], &self.materials[usize::from(site.material)], &mut indices);
         if let Some(bad) = indices.iter().position(|index| !(*index > f64::NEG_INFINITY)) {
-            return Err(watch.refusal(site, times[bad / modes], bad % modes, stress[bad / modes]));
+            let (sample, mode) = (bad / modes, bad % modes);
+            return Err(refusal(&watch.name, &*watch.criterion, site, times[sample], mode, stress[sample]));
         }
         let judged = self.judged(window);
         self.evaluations += judged.len() as u64;

@@ -301,6 +301,54 @@ fn a_survey_finds_what_a_scan_of_all_samples_finds() {
     assert!((6..=12).contains(&failed), "some sizes fail, some do not: {failed}");
 }
 
+/// Under many strengths, one after the other, whatever was likely before.
+#[test]
+fn hulls_find_what_a_scan_of_all_samples_finds() {
+    let places = [PlyOrInterface::Ply(0), PlyOrInterface::Interface(0), PlyOrInterface::Ply(1)];
+    let sites: Vec<_> = (0..90).flat_map(|cell| places.map(|p| site(cell, p, u16::from(p == places[1])))).collect();
+    let stress = |sample: usize, site: usize| {
+        let component = |i: usize| {
+            let (t, phase) = (sample as f64 / 100.0, (site * 7 + i * 3) as f64);
+            t * 6.0 / (1.0 + (site / 3) as f64) * ((4.0 + 0.1 * phase) * t + phase).sin()
+        };
+        Stress6::new(std::array::from_fn(component))
+    };
+    let samples: Vec<Vec<_>> = (0..100).map(|s| (0..sites.len()).map(|k| stress(s, k)).collect()).collect();
+    let times: Vec<f64> = (0..samples.len()).map(|s| s as f64 * 1e-5).collect();
+    let all: Vec<_> = windows(samples.len()).collect();
+    let ranges = |site: usize, out: &mut [StressRange]| Batch(&samples).ranges(site, out);
+    let hulls = Hulls::new(sites.clone(), times.clone(), all.clone(), ranges).unwrap();
+    let stresses = |site: usize, window: usize, out: &mut [Stress6<Ply>]| Batch(&samples).stresses(site, window, out);
+    let mut failed = [0; 2];
+    for round in 0..40 {
+        // From what fails at once to what never does, and back.
+        let factor = 0.05 * f64::from(1 + (round * 7) % 40).powi(2);
+        let mut criteria: Vec<(String, Box<dyn FailureCriterion>)> =
+            vec![("h".into(), Box::new(HashinReport::default())), ("o".into(), Box::new(Octahedral))];
+        if round % 10 == 9 {
+            criteria.push(("p".into(), Box::new(Plain)));
+        }
+        let mut tape = ply();
+        for which in [Strength::Xt, Strength::Xc, Strength::Yt, Strength::S12, Strength::S23] {
+            let own = tape.strengths.get(which).unwrap();
+            tape.strengths =
+                tape.strengths.with(which, own * if which == Strength::S23 { 0.2 + factor } else { factor });
+        }
+        let materials = vec![tape, resin(9.0 * factor)];
+        let found = hulls.judge(&criteria, &materials, &stresses).unwrap();
+        let mut scan = Scan::new(criteria.clone(), sites.clone(), materials).unwrap();
+        times.iter().zip(&samples).for_each(|(t, s)| scan.sample(*t, s).unwrap());
+        let firsts: Vec<_> = first_per_mode(&scan.events()).into_iter().cloned().collect();
+        assert_eq!(found.firsts, firsts, "{round}");
+        let largest: Vec<f64> = scan.peaks().iter().map(|peak| peak.index).collect();
+        assert_eq!(found.largest.concat(), largest, "{round}");
+        failed[usize::from(firsts.is_empty())] += 1;
+    }
+    assert!(failed.iter().all(|count| *count > 5), "some fail, some do not: {failed:?}");
+    let nowhere = Hulls::new(sites, times, all, |_, out| out.iter_mut().for_each(|range| range.high.0[0] = 1e100));
+    assert!(nowhere.is_none());
+}
+
 #[test]
 fn a_survey_refuses_what_a_scan_refuses() {
     let mut scan = plain(1);

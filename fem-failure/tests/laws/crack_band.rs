@@ -37,6 +37,7 @@ fn sheared(gms: f64) -> Material {
 
 const PLAIN: CrackBand = CrackBand { alpha: None, breaks: Breaks::All, lower_strengths: false };
 const FIBRES: CrackBand = CrackBand { breaks: Breaks::Fibres, ..PLAIN };
+const SPLITS: CrackBand = CrackBand { breaks: Breaks::Splits, ..PLAIN };
 const ALPHA: f64 = 2.44e-26;
 
 /// The tape without what its matrix bears.
@@ -54,6 +55,7 @@ struct Point {
     law: CrackBand,
     material: Material,
     length: f64,
+    thickness: f64,
     state: Vec<f64>,
     strain: [f64; 6],
 }
@@ -61,12 +63,17 @@ struct Point {
 impl Point {
     fn new(law: CrackBand, material: Material, length: f64) -> Self {
         let state = vec![0.0; law.info().state.len()];
-        Self { law, material, length, state, strain: [0.0; 6] }
+        Self { law, material, length, thickness: length, state, strain: [0.0; 6] }
     }
 
     fn ask(&self, strain: &[f64; 6]) -> (PlyResponse, Matrix6, Vec<f64>) {
         let stiffness = self.material.elastic.stiffness();
-        let point = LawPoint { material: &self.material, stiffness: &stiffness, length: self.length };
+        let point = LawPoint {
+            material: &self.material,
+            stiffness: &stiffness,
+            length: self.length,
+            thickness: self.thickness,
+        };
         let (mut new, mut tangent) = (vec![f64::NAN; self.state.len()], [[f64::NAN; 6]; 6]);
         let strain = Strain6::new(*strain);
         let answer = self.law.respond(&point, &strain, &self.state, &mut new, Some(&mut tangent)).unwrap();
@@ -117,6 +124,9 @@ fn it_keeps_the_contract() {
         (CrackBand { alpha: Some(ALPHA), ..PLAIN }, sheared(788.0), 2e-4, [0.01, 0.012, 0.012, 0.04, 0.03, 0.05]),
         (CrackBand { lower_strengths: true, ..PLAIN }, tape(), 4e-3, [0.02, 0.01, 0.01, 0.01, 0.01, 0.01]),
         (FIBRES, fibres(), 4e-3, [0.02, 0.01, 0.01, 0.01, 0.01, 0.01]),
+        (CrackBand { alpha: Some(ALPHA), ..FIBRES }, tape(), 1e-3, [0.01, 0.01, 0.01, 0.06, 0.03, 0.06]),
+        (SPLITS, sheared(788.0), 2e-4, [0.02, 0.012, 0.012, 0.04, 0.04, 0.04]),
+        (CrackBand { alpha: Some(ALPHA), ..SPLITS }, sheared(788.0), 2e-4, [0.01, 0.012, 0.012, 0.06, 0.04, 0.06]),
     ] {
         let make = |units: &Units| -> Box<dyn PlyLaw> {
             Box::new(CrackBand { alpha: law.alpha.map(|a| units.number(a, HahnTsai::ALPHA)), ..law })
@@ -266,7 +276,7 @@ fn a_permanent_shear_strain_is_hahn_and_tsais() {
     let curve = HahnTsai::new(ALPHA, Unloading::Permanent);
     let (material, mut state) = (tape(), [0.0; 2]);
     let stiffness = material.elastic.stiffness();
-    let place = LawPoint { material: &material, stiffness: &stiffness, length: 2e-4 };
+    let place = LawPoint { material: &material, stiffness: &stiffness, length: 2e-4, thickness: 2e-4 };
     let s12 = 92.3e6_f64;
     let strength = s12 / 5.29e9 + ALPHA * s12.powi(3);
     for gamma in [0.3 * strength, 0.6 * strength, 0.2 * strength, -0.2 * strength, 0.1 * strength] {
@@ -293,11 +303,74 @@ fn a_permanent_shear_strain_is_hahn_and_tsais() {
     assert!((sudden.state[13] / (ALPHA * s12.powi(3)) - 1.0).abs() < 1e-12);
 }
 
+/// Where the matrix bears it, shear yields on at S12: closed forms of the curve, of the energy and of the way back.
+#[test]
+fn shear_yields_on_where_no_crack_takes_over() {
+    let (g, s12) = (5.29e9, 92.3e6_f64);
+    let curve = ALPHA * s12.powi(3);
+    for parts in [1, 7, 100] {
+        let mut point = Point::new(CrackBand { alpha: Some(ALPHA), ..FIBRES }, tape(), 1e-3);
+        let along = |gamma: f64| [0.0, 0.0, 0.0, 0.6 * gamma, 0.0, 0.8 * gamma];
+        let there = point.walk(&along(0.1), parts);
+        assert!((there.stress.0[3].hypot(there.stress.0[5]) / s12 - 1.0).abs() < 1e-12, "{there:?}");
+        let way = 0.1 - s12 / g;
+        let lost = 0.75 * ALPHA * s12.powi(4) + s12 * (way - curve);
+        assert!((there.energy.dissipated / lost - 1.0).abs() < 1e-12 && (point.state[13] / way - 1.0).abs() < 1e-12);
+        // Back by twice the elastic strain, and on: elastic first, then at −S12.
+        let back = point.walk(&along(0.1 - 2.0 * s12 / g), parts);
+        assert!((back.energy.dissipated / lost - 1.0).abs() < 1e-9, "{back:?}");
+        let on = point.walk(&along(0.1 - 2.0 * s12 / g - 0.01), parts);
+        assert!((on.stress.0[3] / (-0.6 * s12) - 1.0).abs() < 1e-9, "{on:?}");
+        assert!((on.energy.dissipated / (lost + 0.01 * s12) - 1.0).abs() < 1e-9);
+    }
+}
+
+/// Splits take their toughness over the thickness of the ply, however wide the cell, and leave what is between them: of σ22 and τ12 what
+/// shear lag says, of τ23 what a short column bears. 33, 13 and a pressure stay as these were.
+#[test]
+fn splits_run_through_their_ply() {
+    let (gmt, gms, thickness) = (277.4, 788.0, 2.5e-4);
+    let (e2, g12) = (9.08e9, 5.29e9_f64);
+    let g23 = e2 / 2.9;
+    let lag = |square: f64| 1.0 - square.sqrt().tanh() / square.sqrt();
+    let (open, slid, sheared_across) = (lag(3.0 * g23 / e2), lag(3.0), 1.0 / (1.2 + g23 / e2));
+    let near = |got: f64, want: f64| assert!((got / want - 1.0).abs() < 1e-9, "{got} {want}");
+    let fresh = |length: f64| Point { thickness, ..Point::new(SPLITS, sheared(gms), length) };
+    let alone = |component: usize, strain: f64| std::array::from_fn(|k| if k == component { strain } else { 0.0 });
+    for length in [5e-4, 4e-3] {
+        let mut point = fresh(length);
+        let broken = (1..=1000).map(|k| point.uniaxial(1, 1e-4 * f64::from(k))).last().unwrap();
+        near(broken.stress.s22(), open * 0.1 * e2);
+        near(broken.energy.dissipated * thickness, gmt);
+        assert_eq!(point.state[..4], [0.0, 0.0, 1.0, 0.0]);
+        for (component, left) in [(3, slid * g12), (4, sheared_across * g23)] {
+            let found = fresh(length).walk(&alone(component, 0.5), 50);
+            near(found.stress.0[component], 0.5 * left);
+            near(found.energy.dissipated * thickness, gms);
+        }
+        // Closed, the ply is that of before under pressure, and slides.
+        near(point.uniaxial(1, -0.005).stress.s22(), -0.005 * e2);
+        let closed = point.walk(&[0.0, -0.005, 0.0, 0.01, 0.01, 0.01], 5);
+        near(closed.stress.0[3], 0.01 * slid * g12);
+        near(closed.stress.0[4], 0.01 * sheared_across * g23);
+        near(closed.stress.0[5], 0.01 * g12);
+        let across = fresh(length).walk(&[0.0, -0.05, 0.05, 0.0, 0.0, 0.1], 10);
+        let linear = apply(&sheared(gms).elastic.stiffness(), &[0.0, -0.05, 0.05, 0.0, 0.0, 0.1]);
+        assert!(across.stress.0.iter().zip(linear).all(|(s, l)| (s - l).abs() < 1.0), "{across:?}");
+    }
+    // Plies too thick for the toughness are refused by name, whatever the cell.
+    let stiffness = tape().elastic.stiffness();
+    let material = sheared(gms);
+    let point = LawPoint { material: &material, stiffness: &stiffness, length: 8e-3, thickness: 5e-3 };
+    let refused = check_law(SPLITS.info(), "crack-band", &point, SPLITS.check(&point)).unwrap_err().to_string();
+    assert!(refused.contains("Yt^2") && refused.contains("plies = 5.000000e-3 m"), "{refused}");
+}
+
 #[test]
 fn cells_too_wide_for_their_toughness_are_refused_or_lower_their_strengths() {
     let stiffness = tape().elastic.stiffness();
     let said = |law: &CrackBand, material: &Material, length: f64| {
-        let point = LawPoint { material, stiffness: &stiffness, length };
+        let point = LawPoint { material, stiffness: &stiffness, length, thickness: length };
         let checked = check_law(law.info(), "crack-band", &point, law.check(&point));
         (checked.map_err(|e| e.to_string()), law.warning(&point))
     };

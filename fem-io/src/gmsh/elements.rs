@@ -4,10 +4,12 @@ use fem_core::domain::Corners;
 use std::collections::BTreeSet;
 
 use super::cursor::Cursor;
-use super::error::{FilePlace, MeshError, MeshFault};
 use super::groups::Groups;
-use super::nodes::NodeTable;
-use super::source::{Item, Source};
+use super::source::{Source, Version};
+use crate::raw::{Element, FilePlace, Item, MeshError, MeshFault, Places as _, Raw};
+
+/// Nodes of the largest shape.
+const MOST_NODES: usize = 64;
 
 /// Shapes of elements: number in the file, name, nodes.
 const KINDS: [(i32, &str, usize); 36] = [
@@ -49,157 +51,197 @@ const KINDS: [(i32, &str, usize); 36] = [
     (92, "Hex64", 64),
 ];
 
-/// An element with its corners, numbered as in the node table, and the groups it belongs to.
+/// What an element lies on and belongs to.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Element<'g, N> {
-    pub(super) tag: u64,
-    pub(super) nodes: N,
-    pub(super) groups: &'g [String],
+struct Holder {
+    /// Dimension of what it lies on.
+    dim: i32,
+    /// Which of [`Raw::groups`] it belongs to.
+    groups: u32,
 }
 
-/// Elements that belong to a group, in ascending order of their tags.
-#[derive(Debug, Default)]
-pub(super) struct Grouped<'g> {
-    pub(super) points: Vec<Element<'g, [u32; 1]>>,
-    pub(super) edges: Vec<Element<'g, [u32; 2]>>,
-    pub(super) cells: Vec<Element<'g, Corners<u32>>>,
-    /// Surfaces that hold elements.
-    surfaces: BTreeSet<i32>,
+/// Elements on their way into `raw`.
+struct Elements<'a, 's> {
+    source: &'a Source<'s>,
+    raw: &'a mut Raw,
+    /// All numbers.
+    tags: Vec<u64>,
     /// Number of surface elements in no group.
-    pub(super) left_out: usize,
-    /// Number of cells of second order, and how far their mid-side nodes lie off the middle of the straight edge at
-    /// most, as a fraction of the edge.
-    pub(super) second_order: (usize, f64),
+    left_out: usize,
 }
 
-/// Elements of one shape on one entity, being read.
-struct Block<'s> {
-    source: &'s Source<'s>,
-    nodes: &'s NodeTable,
-    /// Its number, and how many there are.
-    number: [u64; 2],
-    count: u64,
-    /// Nodes of an element.
-    each: usize,
+/// Reads the elements into `raw`.
+pub(super) fn read(source: &Source<'_>, groups: &mut Groups, raw: &mut Raw) -> Result<(), MeshError> {
+    let mut elements = Elements { source, raw, tags: Vec::new(), left_out: 0 };
+    let announced = match source.version {
+        Version::V22 => elements.one_by_one(groups)?,
+        Version::V40 | Version::V41 => elements.in_blocks(groups)?,
+    };
+    let Elements { mut tags, left_out, .. } = elements;
+    if tags.len() as u64 != announced {
+        let fault = MeshFault::Count { section: "Elements", announced, found: tags.len() };
+        return Err(source.error(FilePlace::File, fault));
+    }
+    tags.sort_unstable();
+    if let Some(pair) = tags.windows(2).find(|pair| pair[0] == pair[1]) {
+        let fault = MeshFault::RepeatedTag(format!("the file has element {}", pair[0]));
+        return Err(source.error_at(Some(Item::Element(pair[0])), fault));
+    }
+    raw.groups = groups.lists().to_vec();
+    if left_out > 0 {
+        raw.warnings.push(format!(
+            "{left_out} surface elements belong to no physical group and are left out; unset Mesh.SaveAll or name their \
+             surface"
+        ));
+    }
+    let used: BTreeSet<u32> = raw
+        .cells
+        .iter()
+        .map(|e| e.groups)
+        .chain(raw.edges.iter().map(|e| e.groups))
+        .chain(raw.points.iter().map(|e| e.groups))
+        .collect();
+    let held: BTreeSet<&String> = used.iter().flat_map(|set| &raw.groups[*set as usize]).collect();
+    let empty = groups.names().filter(|name| !held.contains(name));
+    let empty = empty.map(|name| format!("the physical group {name:?} holds no elements and is left out"));
+    raw.warnings.extend(empty);
+    Ok(())
 }
 
-impl<'g> Grouped<'g> {
-    pub(super) fn read(source: &Source<'_>, nodes: &NodeTable, groups: &'g Groups) -> Result<Self, MeshError> {
+impl Elements<'_, '_> {
+    /// The blocks of versions 4.
+    fn in_blocks(&mut self, names: &Groups) -> Result<u64, MeshError> {
+        let source = self.source;
         let (mut cursor, [blocks, announced, low, _]) = source.begin("Elements", "element")?;
-        let mut grouped = Self::default();
-        let mut tags = Vec::with_capacity(source.at_most(announced));
+        let mut surfaces = BTreeSet::new();
+        self.tags.reserve(source.at_most(announced));
         for block in 1..=blocks {
-            grouped.take(source, nodes, groups, [block, blocks], &mut cursor, &mut tags)?;
+            let at_block = format!("in element entity block ({block} of {blocks})");
+            let wrong = |what: &'static str| {
+                move |at| source.syntax(at, &format!("{what}, in element entity block ({block} of {blocks})"))
+            };
+            let (dim, entity) = source.entity(&mut cursor).map_err(wrong("entity dimension or tag"))?;
+            let kind = shape(cursor.int().map_err(wrong("element type"))?)
+                .ok_or_else(|| wrong("an element type that is not known")(cursor.at()))?;
+            let count = cursor.size().map_err(wrong("number of elements"))?;
+            let mut holder = None;
+            for i in 1..=count {
+                let definition = |at| source.syntax(at, &format!("element definition ({i} of {count}), {at_block}"));
+                let tag = source.tag(&mut cursor).map_err(definition)?;
+                let unknown = || {
+                    let fault = MeshFault::UnknownEntity { element: tag, dim, entity };
+                    source.error_at(Some(Item::Element(tag)), fault)
+                };
+                let groups = match holder {
+                    Some(groups) => groups,
+                    None => *holder.insert(names.of(dim, entity).ok_or_else(unknown)?),
+                };
+                if dim == 2 {
+                    surfaces.insert(entity);
+                }
+                self.take(&mut cursor, tag, kind, Holder { dim, groups }, names, definition)?;
+            }
         }
         cursor.end("$EndElements").map_err(|at| source.syntax(at, "$EndElements should stand here"))?;
-        if low == 0 {
+        if low == 0 && source.version == Version::V41 {
             return Err(source.error(FilePlace::File, MeshFault::Syntax("element number 0 is reserved".to_owned())));
         }
-        if tags.len() as u64 != announced {
-            let fault = MeshFault::Count { section: "Elements", announced, found: tags.len() };
-            return Err(source.error(FilePlace::File, fault));
-        }
-        tags.sort_unstable();
-        if let Some(pair) = tags.windows(2).find(|pair| pair[0] == pair[1]) {
-            let fault = MeshFault::RepeatedTag(format!("the file has element {}", pair[0]));
-            return Err(source.error(source.find(Item::Element(pair[0])), fault));
-        }
-        if let Some(part) = groups.parts.iter().find(|part| !grouped.surfaces.contains(part)) {
+        if let Some(part) = names.parts.iter().find(|part| !surfaces.contains(part)) {
             return Err(source.error(FilePlace::File, MeshFault::Split { surface: *part }));
         }
-        grouped.points.sort_unstable_by_key(|e| e.tag);
-        grouped.edges.sort_unstable_by_key(|e| e.tag);
-        grouped.cells.sort_unstable_by_key(|e| e.tag);
-        Ok(grouped)
+        Ok(announced)
     }
 
+    /// The elements of version 2.2, which name their group themselves: one that belongs to several stands there as often, with
+    /// other numbers.
+    fn one_by_one(&mut self, names: &mut Groups) -> Result<u64, MeshError> {
+        let source = self.source;
+        let (mut cursor, announced) = source.begin_list("Elements", "elements")?;
+        self.tags.reserve(source.at_most(announced));
+        // A binary file says number of tags and shape once for several elements.
+        let (mut kind, mut labels, mut left) = (0, 0, 0);
+        for i in 1..=announced {
+            let wrong = |at| source.syntax(at, &format!("element definition ({i} of {announced})"));
+            let mut tag = None;
+            if !source.binary {
+                tag = Some(source.tag(&mut cursor).map_err(wrong)?);
+            }
+            if left == 0 {
+                kind = cursor.int().map_err(wrong)?;
+                left = if source.binary { cursor.int().map_err(wrong)? } else { 1 };
+                labels = cursor.int().map_err(wrong)?;
+            }
+            left -= 1;
+            let tag = tag.map_or_else(|| source.tag(&mut cursor), Ok).map_err(wrong)?;
+            let kind = shape(kind).ok_or_else(|| wrong(cursor.at()))?;
+            let mut physical = 0;
+            for label in 0..labels {
+                let value = cursor.int().map_err(wrong)?;
+                physical = if label == 0 { value } else { physical };
+            }
+            let dim = dimension(kind.1);
+            let set = names.of_physical(source, dim, physical)?;
+            self.take(&mut cursor, tag, kind, Holder { dim, groups: set }, names, wrong)?;
+        }
+        cursor.end("$EndElements").map_err(|at| source.syntax(at, "$EndElements should stand here"))?;
+        join(&mut self.raw.points, names);
+        join(&mut self.raw.edges, names);
+        join(&mut self.raw.cells, names);
+        Ok(announced)
+    }
+
+    /// Reads the nodes of an element, and keeps it where it belongs to a group.
     fn take(
         &mut self,
-        source: &Source<'_>,
-        nodes: &NodeTable,
-        groups: &'g Groups,
-        number: [u64; 2],
         cursor: &mut Cursor<'_>,
-        tags: &mut Vec<u64>,
+        tag: u64,
+        (_, kind, count): (i32, &str, usize),
+        Holder { dim, groups }: Holder,
+        names: &Groups,
+        wrong: impl Fn(usize) -> MeshError + Copy,
     ) -> Result<(), MeshError> {
-        let wrong = |what: &'static str| {
-            move |at| source.syntax(at, &format!("{what}, in element entity block ({} of {})", number[0], number[1]))
-        };
-        let dim = cursor.int().map_err(wrong("entity dimension"))?;
-        let entity = cursor.int().map_err(wrong("entity tag"))?;
-        let kind = cursor.int().map_err(wrong("element type"))?;
-        let Some(kind) = KINDS.iter().find(|known| known.0 == kind) else {
-            return Err(wrong("an element type that is not known")(cursor.at()));
-        };
-        let count = cursor.size().map_err(wrong("number of elements"))?;
-        if count == 0 {
+        let mut all = [0; MOST_NODES];
+        let nodes = &mut all[..count];
+        for node in &mut *nodes {
+            *node = self.source.tag(cursor).map_err(wrong)?;
+        }
+        self.tags.push(tag);
+        if groups == Groups::NONE {
+            self.left_out += usize::from(dim == 2);
             return Ok(());
         }
-        let block = Block { source, nodes, number, count, each: kind.2 };
-        let mut ahead = *cursor;
-        let element = ahead.size().map_err(|at| block.wrong(1, at))?;
-        let fail = |fault| Err(source.error(source.find(Item::Element(element)), fault));
-        let Some(groups) = groups.of(dim, entity) else {
-            return fail(MeshFault::UnknownEntity { element, dim, entity });
-        };
-        if dim == 2 {
-            self.surfaces.insert(entity);
-        }
-        let Some(group) = groups.first() else {
-            self.left_out += if dim == 2 { count as usize } else { 0 };
-            return block.each(cursor, tags, |_, _| Ok(()));
-        };
-        match (dim, kind.1) {
-            (0, "Pnt") => block.each(cursor, tags, |tag, nodes| {
-                self.points.push(Element { tag, nodes: block.corners(tag, nodes)?, groups });
-                Ok(())
-            }),
-            (1, "Lin2" | "Lin3") => block.each(cursor, tags, |tag, nodes| {
-                self.edges.push(Element { tag, nodes: block.corners(tag, nodes)?, groups });
-                Ok(())
-            }),
-            (2, "Qua4" | "Qua8" | "Qua9" | "Tri3" | "Tri6") => block.each(cursor, tags, |tag, nodes| {
-                let corners: Corners<u32> = match kind.1 {
-                    "Tri3" | "Tri6" => block.corners::<3>(tag, nodes)?.into(),
-                    _ => block.corners::<4>(tag, nodes)?.into(),
-                };
-                self.cells.push(Element { tag, nodes: corners, groups });
-                if nodes.len() > corners.len() {
-                    self.second_order.0 += 1;
-                    self.second_order.1 = self.second_order.1.max(block.bulge(tag, corners, nodes)?);
-                }
-                Ok(())
-            }),
-            (_, kind) => fail(MeshFault::Kind { element, group: group.clone(), kind: kind.to_owned() }),
-        }
-    }
-}
-
-impl Block<'_> {
-    /// Passes number and nodes of each element to `take`.
-    fn each(
-        &self,
-        cursor: &mut Cursor<'_>,
-        tags: &mut Vec<u64>,
-        mut take: impl FnMut(u64, &[u64]) -> Result<(), MeshError>,
-    ) -> Result<(), MeshError> {
-        let mut nodes = vec![0; self.each];
-        for i in 1..=self.count {
-            let tag = cursor.size().map_err(|at| self.wrong(i, at))?;
-            for node in &mut nodes {
-                *node = cursor.size().map_err(|at| self.wrong(i, at))?;
+        match (dim, kind) {
+            (0, "Pnt") => {
+                let nodes = self.corners(tag, nodes)?;
+                self.raw.points.push(Element { tag, nodes, groups });
             }
-            tags.push(tag);
-            take(tag, &nodes)?;
+            (1, "Lin2" | "Lin3") => {
+                let nodes = self.corners(tag, nodes)?;
+                self.raw.edges.push(Element { tag, nodes, groups });
+            }
+            (2, "Qua4" | "Qua8" | "Qua9" | "Tri3" | "Tri6") => {
+                let corners: Corners<u32> = match kind {
+                    "Tri3" | "Tri6" => self.corners::<3>(tag, nodes)?.into(),
+                    _ => self.corners::<4>(tag, nodes)?.into(),
+                };
+                self.raw.cells.push(Element { tag, nodes: corners, groups });
+                if nodes.len() > corners.len() {
+                    let middles = corners.sides().zip(&nodes[corners.len()..]);
+                    let middles: Result<Vec<_>, _> =
+                        middles.map(|(_, middle)| self.lookup(tag, *middle).map(Some)).collect();
+                    self.raw.middles_of(tag, corners, middles?.into_iter());
+                }
+            }
+            (_, kind) => {
+                let fault = MeshFault::Kind {
+                    element: tag,
+                    group: names.lists()[groups as usize].join(", "),
+                    kind: kind.to_owned(),
+                };
+                return Err(self.source.error_at(Some(Item::Element(tag)), fault));
+            }
         }
         Ok(())
-    }
-
-    fn wrong(&self, element: u64, at: usize) -> MeshError {
-        let [block, blocks] = self.number;
-        let what =
-            format!("element definition ({element} of {}), in element entity block ({block} of {blocks})", self.count);
-        self.source.syntax(at, &what)
     }
 
     /// The first `N` nodes of an element.
@@ -212,21 +254,32 @@ impl Block<'_> {
     }
 
     fn lookup(&self, element: u64, node: u64) -> Result<u32, MeshError> {
-        let unknown = || {
-            let place = self.source.find(Item::Element(element));
-            self.source.error(place, MeshFault::UnknownNode { element, node })
-        };
-        self.nodes.index(node).ok_or_else(unknown)
+        let unknown = || self.source.error_at(Some(Item::Element(element)), MeshFault::UnknownNode { element, node });
+        self.raw.nodes.index(node).ok_or_else(unknown)
     }
+}
 
-    /// Largest distance of a mid-side node from the middle of its edge, as a fraction of the edge.
-    fn bulge(&self, tag: u64, corners: Corners<u32>, nodes: &[u64]) -> Result<f64, MeshError> {
-        let mut largest = 0.0_f64;
-        for (side, middle) in corners.sides().zip(&nodes[corners.len()..]) {
-            let ([a, b], middle) = (side.map(|n| self.nodes.plane(n)), self.nodes.plane(self.lookup(tag, *middle)?));
-            let off = (middle[0] - 0.5 * (a[0] + b[0])).hypot(middle[1] - 0.5 * (a[1] + b[1]));
-            largest = largest.max(off / (b[0] - a[0]).hypot(b[1] - a[1]));
+/// Elements that follow each other on the same nodes are one, in the groups of both.
+fn join<N: PartialEq>(elements: &mut Vec<Element<N>>, groups: &mut Groups) {
+    elements.dedup_by(|next, first| {
+        let again = next.nodes == first.nodes && next.groups != first.groups;
+        if again {
+            first.groups = groups.joined(first.groups, next.groups);
         }
-        Ok(largest)
+        again
+    });
+}
+
+fn shape(number: i32) -> Option<(i32, &'static str, usize)> {
+    KINDS.into_iter().find(|known| known.0 == number)
+}
+
+/// Dimension of a shape.
+fn dimension(name: &str) -> i32 {
+    match &name[..3] {
+        "Pnt" => 0,
+        "Lin" => 1,
+        "Tri" | "Qua" => 2,
+        _ => 3,
     }
 }

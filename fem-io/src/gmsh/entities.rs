@@ -3,8 +3,8 @@
 use mshio::error::MshParserErrorKind;
 
 use super::cursor::Cursor;
-use super::error::{FilePlace, MeshError, MeshFault};
-use super::source::Source;
+use super::source::{Source, Version};
+use crate::raw::{FilePlace, MeshError, MeshFault};
 
 /// A point, curve, surface or volume.
 #[derive(Debug)]
@@ -17,9 +17,13 @@ pub(super) struct Entity {
     pub(super) part: bool,
 }
 
-/// All entities of a file; parts come after the wholes.
+/// All entities of a file; parts come after the wholes. Version 2.2 has none.
 pub(super) fn read(source: &Source<'_>) -> Result<Vec<Entity>, MeshError> {
-    let mut all = read_whole(source)?;
+    let mut all = match source.version {
+        Version::V22 => return Ok(Vec::new()),
+        Version::V40 => read_older(source)?,
+        Version::V41 => read_whole(source)?,
+    };
     if let Some(start) = source.section("PartitionedEntities") {
         let mut cursor = source.cursor(start);
         read_parts(&mut cursor, &mut all)
@@ -57,6 +61,36 @@ fn read_whole(source: &Source<'_>) -> Result<Vec<Entity>, MeshError> {
     let surfaces = entities.surfaces.into_iter().map(|e| entity(2, e.tag, e.physical_tags));
     let volumes = entities.volumes.into_iter().map(|e| entity(3, e.tag, e.physical_tags));
     Ok(points.chain(curves).chain(surfaces).chain(volumes).collect())
+}
+
+/// `$Entities` of version 4.0, which mshio does not read: points have a box, too.
+fn read_older(source: &Source<'_>) -> Result<Vec<Entity>, MeshError> {
+    let missing = |section| source.error(FilePlace::File, MeshFault::Missing(section));
+    if source.section("PartitionedEntities").is_some() {
+        let what = "partitions in MSH 4.0, which are read in 4.1 alone: set Mesh.MshFileVersion = 4.1";
+        return Err(source.error(FilePlace::File, MeshFault::Syntax(what.to_owned())));
+    }
+    let mut cursor = source.cursor(source.section("Entities").ok_or_else(|| missing("Entities"))?);
+    let mut all = Vec::new();
+    let mut older = || -> Result<(), usize> {
+        let counts = [cursor.size()?, cursor.size()?, cursor.size()?, cursor.size()?];
+        for (dim, count) in (0..).zip(counts) {
+            for _ in 0..count {
+                let tag = cursor.int()?;
+                for _ in 0..6 {
+                    cursor.double()?;
+                }
+                let physical = ints(&mut cursor)?;
+                if dim > 0 {
+                    ints(&mut cursor)?;
+                }
+                all.push(Entity { dim, tag, physical, part: false });
+            }
+        }
+        cursor.end("$EndEntities")
+    };
+    older().map_err(|at| source.syntax(at, "an entity"))?;
+    Ok(all)
 }
 
 /// `$PartitionedEntities`, which mshio skips.

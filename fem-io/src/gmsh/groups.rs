@@ -3,42 +3,58 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::entities::Entity;
-use super::error::{FilePlace, MeshError, MeshFault};
 use super::source::Source;
+use crate::raw::{FilePlace, MeshError, MeshFault};
 
 /// Physical groups of a file.
 #[derive(Debug)]
 pub(super) struct Groups {
     /// Dimension of each named group.
     dims: BTreeMap<String, i32>,
-    /// Names of the groups that each entity, by dimension and number, belongs to.
-    entities: BTreeMap<(i32, i32), Vec<String>>,
+    /// Names by dimension and number.
+    names: Names,
+    /// Sets of names that an entity belongs to; the first is empty.
+    lists: Vec<Vec<String>>,
+    /// The place of each set in the list.
+    known: BTreeMap<Vec<String>, u32>,
+    /// The set of each physical group alone.
+    alone: BTreeMap<(i32, u32), u32>,
+    /// The set of each entity, by dimension and number.
+    entities: BTreeMap<(i32, i32), u32>,
     /// Surfaces that are parts of a partition and belong to groups.
     pub(super) parts: BTreeSet<i32>,
 }
 
 impl Groups {
+    /// The set of no group.
+    pub(super) const NONE: u32 = 0;
+
     /// A group without a name is called by its number.
     pub(super) fn new(source: &Source<'_>, entities: Vec<Entity>) -> Result<Self, MeshError> {
         let names = physical_names(source)?;
-        let mut groups = Self { dims: BTreeMap::new(), entities: BTreeMap::new(), parts: BTreeSet::new() };
+        let mut groups = Self {
+            dims: BTreeMap::new(),
+            names: Names::new(),
+            lists: vec![Vec::new()],
+            known: [(Vec::new(), Self::NONE)].into(),
+            alone: BTreeMap::new(),
+            entities: BTreeMap::new(),
+            parts: BTreeSet::new(),
+        };
         for ((dim, _), (place, name)) in &names {
             groups.declare(name, *dim).map_err(|fault| source.error(*place, fault))?;
         }
+        groups.names = names;
         for Entity { dim, tag: entity, physical: tags, part } in entities {
             let mut of_entity = Vec::with_capacity(tags.len());
             for tag in tags {
                 // A negative number means reversed orientation, which the mesh itself already shows.
-                let tag = tag.unsigned_abs();
-                let name = names.get(&(dim, tag)).map_or_else(|| tag.to_string(), |(_, name)| name.clone());
-                groups.declare(&name, dim).map_err(|fault| source.error(FilePlace::File, fault))?;
-                of_entity.push(name);
+                of_entity.push(groups.named(source, dim, tag.unsigned_abs())?);
             }
-            of_entity.sort_unstable();
-            of_entity.dedup();
             if part && dim == 2 && !of_entity.is_empty() {
                 groups.parts.insert(entity);
             }
+            let of_entity = groups.set(of_entity);
             // The elements of a partitioned mesh lie on parts, some of which have the number of a whole.
             if groups.entities.insert((dim, entity), of_entity).is_some() && !part {
                 let what = format!("$Entities holds the entity {entity} of dimension {dim}");
@@ -48,9 +64,47 @@ impl Groups {
         Ok(groups)
     }
 
-    /// Groups of an entity, none if the file does not know the entity.
-    pub(super) fn of(&self, dim: i32, entity: i32) -> Option<&[String]> {
-        self.entities.get(&(dim, entity)).map(Vec::as_slice)
+    /// The set of an entity, none if the file does not know the entity.
+    pub(super) fn of(&self, dim: i32, entity: i32) -> Option<u32> {
+        self.entities.get(&(dim, entity)).copied()
+    }
+
+    /// The set of a physical group alone; 0 is none.
+    pub(super) fn of_physical(&mut self, source: &Source<'_>, dim: i32, physical: i32) -> Result<u32, MeshError> {
+        let key = (dim, physical.unsigned_abs());
+        if let Some(known) = self.alone.get(&key) {
+            return Ok(*known);
+        }
+        let name = if physical == 0 { None } else { Some(self.named(source, key.0, key.1)?) };
+        let set = self.set(name.into_iter().collect());
+        self.alone.insert(key, set);
+        Ok(set)
+    }
+
+    /// The set that holds both.
+    pub(super) fn joined(&mut self, a: u32, b: u32) -> u32 {
+        self.set([a, b].iter().flat_map(|set| self.lists[*set as usize].clone()).collect())
+    }
+
+    /// The sets of names, by number.
+    pub(super) fn lists(&self) -> &[Vec<String>] {
+        &self.lists
+    }
+
+    fn set(&mut self, mut names: Vec<String>) -> u32 {
+        names.sort_unstable();
+        names.dedup();
+        *self.known.entry(names).or_insert_with_key(|names| {
+            self.lists.push(names.clone());
+            self.lists.len() as u32 - 1
+        })
+    }
+
+    /// Name of a physical group.
+    fn named(&mut self, source: &Source<'_>, dim: i32, tag: u32) -> Result<String, MeshError> {
+        let name = self.names.get(&(dim, tag)).map_or_else(|| tag.to_string(), |(_, name)| name.clone());
+        self.declare(&name, dim).map_err(|fault| source.error(FilePlace::File, fault))?;
+        Ok(name)
     }
 
     /// All names, of groups without elements, too.

@@ -1,24 +1,36 @@
 //! The bytes of a mesh file: header, sections and places.
 
-use super::cursor::Cursor;
-use super::error::{FilePlace, MeshError, MeshFault};
+use super::cursor::{Cursor, Lacking};
+use crate::raw::{FilePlace, Item, MeshError, MeshFault, Places};
 
 /// Sections that concern us. Others are skipped.
 const SECTIONS: [&str; 5] = ["PhysicalNames", "Entities", "PartitionedEntities", "Nodes", "Elements"];
 
-/// A thing in a file, by its number there.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Item {
-    Node(u64),
-    Coordinates(u64),
-    Element(u64),
+/// Version of the format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Version {
+    V22,
+    V40,
+    V41,
 }
 
-/// A file whose header is that of MSH 4.1 and whose sections are known.
+impl Version {
+    const ALL: [(&'static [u8], Self); 6] = [
+        (b"4.1", Self::V41),
+        (b"4", Self::V40),
+        (b"4.0", Self::V40),
+        (b"2.2", Self::V22),
+        (b"2.1", Self::V22),
+        (b"2", Self::V22),
+    ];
+}
+
+/// A file whose header is that of MSH and whose sections are known.
 #[derive(Debug)]
 pub(super) struct Source<'a> {
     name: &'a str,
     bytes: &'a [u8],
+    pub(super) version: Version,
     pub(super) binary: bool,
     /// Sections and the offset at which each begins behind its marker.
     sections: Vec<(&'static str, usize)>,
@@ -26,11 +38,15 @@ pub(super) struct Source<'a> {
 
 impl<'a> Source<'a> {
     pub(super) fn open(name: &'a str, bytes: &'a [u8]) -> Result<Self, MeshError> {
-        let binary = header(bytes).map_err(|(place, fault)| MeshError { file: name.to_owned(), place, fault })?;
-        let mut source = Self { name, bytes, binary, sections: Vec::with_capacity(SECTIONS.len()) };
+        let (version, binary) =
+            header(bytes).map_err(|(place, fault)| MeshError { file: name.to_owned(), place, fault })?;
+        let mut source = Self { name, bytes, version, binary, sections: Vec::with_capacity(SECTIONS.len()) };
         source.find_sections()?;
         for (section, what) in [("Elements", "element"), ("Nodes", "node")] {
-            source.begin(section, what)?;
+            match version {
+                Version::V22 => source.begin_list(section, &format!("{what}s")).map(|_| ()),
+                Version::V40 | Version::V41 => source.begin(section, what).map(|_| ()),
+            }?;
         }
         match source.open_section() {
             Some(section) => Err(source.cut_off(&format!("inside ${section}"))),
@@ -75,20 +91,55 @@ impl<'a> Source<'a> {
     }
 
     /// The numbers at the beginning of `$Nodes` or `$Elements`, blocks of `what`, all of them, their least and largest
-    /// tag, and what follows.
+    /// tag (0 in version 4.0), and what follows.
     pub(super) fn begin(&self, section: &'static str, what: &str) -> Result<(Cursor<'a>, [u64; 4]), MeshError> {
         let start = self.section(section).ok_or_else(|| self.lacking(section))?;
         let mut cursor = self.cursor(start);
         let mut head = [0; 4];
-        for (number, name) in head.iter_mut().zip(["entity blocks", "entries", "least tag", "largest tag"]) {
+        let (numbers, many) = if self.version == Version::V41 { (4, "four") } else { (2, "two") };
+        for (number, name) in head[..numbers].iter_mut().zip(["entity blocks", "entries", "least tag", "largest tag"]) {
             *number = cursor.size().map_err(|at| {
                 self.syntax(
                     at,
-                    &format!("the section ${section} does not begin with four whole numbers: number of {what} {name}"),
+                    &format!(
+                        "the section ${section} does not begin with {many} whole numbers: number of {what} {name}"
+                    ),
                 )
             })?;
         }
         if head[1] == 0 { Err(self.error(self.place(start), MeshFault::Missing(section))) } else { Ok((cursor, head)) }
+    }
+
+    /// The number of things in a section of version 2.2, and what follows.
+    pub(super) fn begin_list(&self, section: &'static str, what: &str) -> Result<(Cursor<'a>, u64), MeshError> {
+        let start = self.section(section).ok_or_else(|| self.lacking(section))?;
+        // The number is text in binary files, too.
+        let mut cursor = Cursor::new(self.bytes, start, false);
+        let announced = cursor.size().map_err(|at| {
+            self.syntax(at, &format!("the section ${section} does not begin with the number of its {what}"))
+        })?;
+        if announced == 0 {
+            return Err(self.error(self.place(start), MeshFault::Missing(section)));
+        }
+        let line_end = self.bytes[cursor.at()..].iter().position(|b| *b == b'\n').map_or(0, |n| n + 1);
+        Ok((self.cursor(cursor.at() + line_end), announced))
+    }
+
+    /// Number of a node or an element.
+    pub(super) fn tag(&self, cursor: &mut Cursor<'_>) -> Result<u64, Lacking> {
+        match self.version {
+            Version::V41 => cursor.size(),
+            Version::V22 | Version::V40 => {
+                let at = cursor.at();
+                cursor.int().and_then(|tag| u64::try_from(tag).map_err(|_| at))
+            }
+        }
+    }
+
+    /// Dimension and number of the entity of a block.
+    pub(super) fn entity(&self, cursor: &mut Cursor<'_>) -> Result<(i32, i32), Lacking> {
+        let (first, second) = (cursor.int()?, cursor.int()?);
+        Ok(if self.version == Version::V41 { (first, second) } else { (second, first) })
     }
 
     /// No more than so many of `announced` things fit into the file.
@@ -128,10 +179,6 @@ impl<'a> Source<'a> {
     }
 
     /// Where a thing is described, in files with one thing on a line, as gmsh writes them.
-    pub(super) fn find(&self, item: Item) -> FilePlace {
-        self.search(item).map_or(FilePlace::File, FilePlace::Line)
-    }
-
     fn search(&self, item: Item) -> Option<usize> {
         if self.binary {
             return None;
@@ -140,17 +187,22 @@ impl<'a> Source<'a> {
             Item::Node(tag) | Item::Coordinates(tag) => ("Nodes", tag),
             Item::Element(tag) => ("Elements", tag),
         };
+        let is_it = |text: &[u8]| text.split(u8::is_ascii_whitespace).next().and_then(number) == Some(tag);
         let mut lines = self.lines(self.section(section)?);
         lines.next()?;
+        if self.version == Version::V22 {
+            return lines.find(|(_, text)| is_it(text)).map(|(line, _)| line);
+        }
         loop {
             let block: usize = number(lines.next()?.1.split(u8::is_ascii_whitespace).nth(3)?)?;
             for _ in 0..block {
                 let (line, text) = lines.next()?;
-                if text.split(u8::is_ascii_whitespace).next().and_then(number) == Some(tag) {
-                    return Some(if matches!(item, Item::Coordinates(_)) { line + block } else { line });
+                if is_it(text) {
+                    let behind = matches!(item, Item::Coordinates(_)) && self.version == Version::V41;
+                    return Some(if behind { line + block } else { line });
                 }
             }
-            if section == "Nodes" && block > 0 {
+            if section == "Nodes" && block > 0 && self.version == Version::V41 {
                 lines.nth(block - 1)?;
             }
         }
@@ -189,31 +241,36 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Whether the file is binary.
-fn header(bytes: &[u8]) -> Result<bool, (FilePlace, MeshFault)> {
+impl Places for Source<'_> {
+    fn error_at(&self, item: Option<Item>, fault: MeshFault) -> MeshError {
+        self.error(item.and_then(|item| self.search(item)).map_or(FilePlace::File, FilePlace::Line), fault)
+    }
+}
+
+/// The version, and whether the file is binary.
+fn header(bytes: &[u8]) -> Result<(Version, bool), (FilePlace, MeshFault)> {
     let at_line_2 = |fault| Err((FilePlace::Line(2), fault));
     let Some(rest) = bytes.strip_prefix(b"$MeshFormat") else {
-        return Err((FilePlace::File, MeshFault::NotMsh));
+        return Err((FilePlace::File, MeshFault::NotAMesh));
     };
     let mut lines = rest.splitn(3, |b| *b == b'\n');
     let (Some(b"" | b"\r"), Some(text)) = (lines.next(), lines.next()) else {
-        return Err((FilePlace::File, MeshFault::NotMsh));
+        return Err((FilePlace::File, MeshFault::NotAMesh));
     };
     let text = text.trim_ascii();
     let shown = || String::from_utf8_lossy(&text[..text.len().min(40)]).into_owned();
     let mut words = text.split(u8::is_ascii_whitespace);
-    match words.next() {
-        Some(b"4.1") => {}
-        Some(version)
-            if (1..8).contains(&version.len()) && version.iter().all(|b| b.is_ascii_digit() || *b == b'.') =>
-        {
-            return at_line_2(MeshFault::Version(String::from_utf8_lossy(version).into_owned()));
-        }
-        _ => return at_line_2(MeshFault::Header(shown())),
-    }
+    let word = words.next().unwrap_or_default();
+    let Some((_, version)) = Version::ALL.iter().find(|known| known.0 == word) else {
+        let is_version = (1..8).contains(&word.len()) && word.iter().all(|b| b.is_ascii_digit() || *b == b'.');
+        let version = || MeshFault::Version(String::from_utf8_lossy(word).into_owned());
+        return at_line_2(if is_version { version() } else { MeshFault::Header(shown()) });
+    };
     match (words.next(), words.next(), words.next()) {
-        (Some(b"0"), Some(b"8"), None) => Ok(false),
-        (Some(b"1"), Some(b"8"), None) if lines.next().is_some_and(|r| r.starts_with(&1_u32.to_le_bytes())) => Ok(true),
+        (Some(b"0"), Some(b"8"), None) => Ok((*version, false)),
+        (Some(b"1"), Some(b"8"), None) if lines.next().is_some_and(|r| r.starts_with(&1_u32.to_le_bytes())) => {
+            Ok((*version, true))
+        }
         _ => at_line_2(MeshFault::Header(shown())),
     }
 }

@@ -8,9 +8,9 @@ use super::{Axis, Picture, PlotError, map_layout, png, svg};
 pub struct MapPlot {
     /// Heading.
     pub title: String,
-    /// Horizontal axis, linear.
+    /// Horizontal axis.
     pub x: Axis,
-    /// Vertical axis, linear.
+    /// Vertical axis.
     pub y: Axis,
     /// Whether a unit is as long upwards as it is to the right.
     pub equal_aspect: bool,
@@ -52,7 +52,7 @@ pub struct Panel {
     pub notes: Vec<(f64, String)>,
 }
 
-/// A convex polygon.
+/// A polygon that does not cross itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapCell {
     /// Corners in the units of the axes, at least three.

@@ -13,6 +13,8 @@ const GAP: f64 = 44.0;
 /// Height of a map whose aspect is free, and the most of one whose is not.
 const FREE: f64 = 700.0;
 const TALLEST: f64 = 1150.0;
+/// Air at each end of an axis, as a share of it.
+const AIR: f64 = 0.03;
 /// Length and height of the scale of shares in the legend.
 const BAR: [f64; 2] = [300.0, 22.0];
 /// Side of the sample of a class in the legend.
@@ -104,9 +106,12 @@ fn visible(outline: &MapOutline, x: Range, y: Range) -> impl Iterator<Item = [[f
 fn range(plot: &MapPlot, axis: &Axis, d: usize) -> Result<Range, PlotError> {
     let values = || plot.panels.iter().flat_map(places).map(|p| p[d]);
     let (lo, hi) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)));
-    let air = 0.03 * (hi - lo);
     let error = |largest| PlotError::Range { title: plot.title.clone(), axis: axis.label.clone(), largest };
-    Range::of(Scale::Linear, [lo - air, hi + air].into_iter()).map_err(error)
+    let [low, high] = match axis.scale {
+        Scale::Linear => [lo - AIR * (hi - lo), hi + AIR * (hi - lo)],
+        Scale::Logarithmic => [lo / (hi / lo).powf(AIR), hi * (hi / lo).powf(AIR)],
+    };
+    Range::of(axis.scale, [low, high].into_iter()).map_err(error)
 }
 
 /// Where a panel is.

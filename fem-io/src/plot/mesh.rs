@@ -17,15 +17,18 @@ pub fn mesh_map(title: &str, mesh: &PlaneMesh, impacts: &[[f64; 2]], flaws: &[Fl
         let k = classes.len();
         match group.dim {
             0 => panel.dots.extend(group.nodes.iter().map(|n| (place(*n), k))),
-            1 => {
-                panel.lines.extend(group.edges.iter().map(|edge| Stroke { points: edge.map(place).to_vec(), class: k }))
-            }
+            1 => panel.lines.extend(
+                group
+                    .edges
+                    .iter()
+                    .map(|edge| Stroke { points: mesh.along(*edge).into_iter().map(mm).collect(), class: k }),
+            ),
             _ if group.quads.len() == mesh.quads.len() => continue,
             _ => group.quads.iter().for_each(|q| fills[*q as usize] = Fill::Class(k)),
         }
         classes.push(name.clone());
     }
-    let cell = |(q, fill): (usize, Fill)| MapCell { corners: mesh.corners(q).map(mm).to_vec(), fill };
+    let cell = |(q, fill): (usize, Fill)| MapCell { corners: mesh.outline(q).into_iter().map(mm).collect(), fill };
     panel.cells = fills.into_iter().enumerate().map(cell).collect();
     for flaw in flaws {
         let name = flaw.kind.name();

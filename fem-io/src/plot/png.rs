@@ -48,7 +48,9 @@ pub(super) fn render(drawing: &Drawing) -> Result<Vec<u8>, PngError> {
             Shape::Polygons { rings, fill: inside, edge } => {
                 let outlines = rings.iter().filter_map(|ring| polyline(&[&ring[..], &ring[..1]].concat()));
                 for outline in outlines {
-                    fill(&mut pixels, &outline, *inside, Transform::identity());
+                    // The line along its edges smooths them.
+                    let plain = Paint { anti_alias: false, ..paint(*inside) };
+                    pixels.fill_path(&outline, &plain, FillRule::Winding, Transform::identity(), None);
                     pixels.stroke_path(&outline, &paint(*edge), &Stroke::default(), Transform::identity(), None);
                 }
             }
@@ -65,7 +67,10 @@ fn encode(pixels: &Pixmap) -> Result<Vec<u8>, png::EncodingError> {
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::Fast);
     let mut writer = encoder.write_header()?;
-    let rgb: Vec<u8> = pixels.data().chunks_exact(4).flat_map(|rgba| [rgba[0], rgba[1], rgba[2]]).collect();
+    let mut rgb = vec![0; pixels.data().len() / 4 * 3];
+    for (to, from) in rgb.as_chunks_mut::<3>().0.iter_mut().zip(pixels.data().as_chunks::<4>().0) {
+        to.copy_from_slice(&from[..3]);
+    }
     writer.write_image_data(&rgb)?;
     writer.finish()?;
     Ok(file)

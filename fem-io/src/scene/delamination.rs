@@ -26,15 +26,27 @@ pub struct DelaminationSpec {
     pub starting: Vec<StartingDelamination>,
 }
 
-/// A circular delamination at the start.
+/// A delamination at the start.
 #[derive(Debug, Clone)]
 pub struct StartingDelamination {
     /// Its interface, counted from 0.
     pub interface: Located<usize>,
-    /// Its centre.
-    pub at: Located<ImpactPoint>,
-    /// Its radius, m.
-    pub radius: f64,
+    /// Where it is.
+    pub extent: StartingExtent,
+}
+
+/// Where a delamination is at the start.
+#[derive(Debug, Clone)]
+pub enum StartingExtent {
+    /// In a circle.
+    Disc {
+        /// Its centre.
+        at: Located<ImpactPoint>,
+        /// Its radius, m.
+        radius: f64,
+    },
+    /// In the cells of a group of the mesh.
+    Group(Located<String>),
 }
 
 /// Points of integration of a cell each way.
@@ -76,13 +88,14 @@ pub(super) const KEYS: Keys = &[
         "start",
         Form::List(&Form::Table(START)),
         r#"[{ interface = 4, at = { x = "75 mm", y = "50 mm" }, radius = "5 mm" }]"#,
-        "round delaminations that are there before the impact",
+        "delaminations that are there at the beginning",
     ),
 ];
 const START: Keys = &[
     key("interface", Form::Count(1), "4", "which: k lies between the plies k and k + 1").required(),
-    key("at", Form::Table(AT), r#"{ x = "75 mm", y = "50 mm" }"#, "its centre").required(),
-    key("radius", Form::Quantity(Dimension::LENGTH), r#""5 mm""#, "its radius").required(),
+    key("at", Form::Table(AT), r#"{ x = "75 mm", y = "50 mm" }"#, "centre of a round one"),
+    key("radius", Form::Quantity(Dimension::LENGTH), r#""5 mm""#, "its radius"),
+    key("group", Form::Text, r#""crack""#, "its cells, a group of the mesh, where it is not round"),
 ];
 
 /// The form of the table.
@@ -133,9 +146,16 @@ pub(super) fn read(field: &SceneValue<'_>) -> Result<DelaminationSpec, SceneErro
 fn read_start(field: &SceneValue<'_>) -> Result<StartingDelamination, SceneError> {
     let table = field.table(START)?;
     let interface = table.required("interface")?;
-    Ok(StartingDelamination {
-        interface: interface.at(interface.count()? - 1),
-        at: read_point(&table.required("at")?)?,
-        radius: table.required("radius")?.positive(Dimension::LENGTH)?,
-    })
+    let extent = match (table.optional("group"), table.optional("at"), table.optional("radius")) {
+        (Some(group), None, None) => StartingExtent::Group(group.at(group.text()?.to_owned())),
+        (None, _, _) => StartingExtent::Disc {
+            at: read_point(&table.required("at")?)?,
+            radius: table.required("radius")?.positive(Dimension::LENGTH)?,
+        },
+        (Some(group), ..) => {
+            let help = "leave out `group`, or `at` and `radius`";
+            return Err(group.error("is round or the cells of a group, not both", help));
+        }
+    };
+    Ok(StartingDelamination { interface: interface.at(interface.count()? - 1), extent })
 }

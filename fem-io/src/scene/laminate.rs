@@ -33,6 +33,18 @@ pub(super) const KEYS: Keys = &[
         r#"{ core = { thickness = "5 mm" } }"#,
         "types of ply, for `plies` such as \"[0/90{core}]s\"",
     ),
+    key(
+        "align",
+        Form::Words(&["bottom", "middle", "top"]),
+        r#""bottom""#,
+        "what lies as high as in the laminate of the rest of the plate, where thickness differs",
+    ),
+    key(
+        "offset",
+        Form::Quantity(Dimension::LENGTH),
+        r#""0.52 mm""#,
+        "instead of `align`: height of the mid-plane above that of the rest of the plate",
+    ),
     key("interface", Form::Text, r#""resin""#, "material between the plies, for criteria that look there"),
 ];
 const PLY_KEYS: Keys = &[
@@ -58,6 +70,82 @@ pub struct LaminateSpec {
     pub layered: bool,
 }
 
+impl LaminateSpec {
+    /// What results call the part of the plate.
+    pub fn name(&self) -> &str {
+        self.group.as_ref().map_or("rest", |group| &group.value)
+    }
+}
+
+/// Heights that differ by less than this fraction of the thickness are one.
+const SAME_HEIGHT: f64 = 1e-9;
+
+/// A laminate, and what says where it lies.
+type Placed = (LaminateSpec, Option<Located<Lies>>);
+
+/// Where a laminate lies beside that of the rest of the plate.
+#[derive(Debug, Clone, Copy)]
+enum Lies {
+    Bottom,
+    Middle,
+    Top,
+    /// Height of its mid-plane above the other, m.
+    At(f64),
+}
+
+impl Lies {
+    /// z of the mid-plane, m, of a laminate of this thickness beside one of thickness `datum` around z = 0.
+    fn middle(self, thickness: f64, datum: f64) -> f64 {
+        let middle = match self {
+            Self::Bottom => 0.5 * (thickness - datum),
+            Self::Middle => 0.0,
+            Self::Top => 0.5 * (datum - thickness),
+            Self::At(height) => height,
+        };
+        if middle.abs() <= SAME_HEIGHT * thickness.max(datum) { 0.0 } else { middle }
+    }
+}
+
+fn read_lies(table: &Reader<'_>) -> Result<Option<Located<Lies>>, SceneError> {
+    let align = table.optional("align");
+    if let (Some(_), Some(field)) = (&align, table.optional("offset")) {
+        return Err(field.error("`align` and `offset` both say where the laminate lies", "keep one of them"));
+    }
+    if let Some(field) = align {
+        let all = [("bottom", Lies::Bottom), ("middle", Lies::Middle), ("top", Lies::Top)];
+        return Ok(Some(field.at(field.choice(&all)?)));
+    }
+    table.optional("offset").map(|field| Ok(field.at(Lies::At(field.quantity(Dimension::LENGTH)?)))).transpose()
+}
+
+/// Gives laminates their heights: those of the rest of the plate, or the first where all have groups, lie around z = 0.
+fn place(all: &mut [Placed], fields: &[&SceneValue<'_>]) -> Result<(), SceneError> {
+    let datum = all.iter().position(|(spec, _)| spec.group.is_none()).unwrap_or(0);
+    if all[datum].1.is_some() {
+        let which = if all[datum].0.group.is_none() { "the rest of the plate" } else { "the first region" };
+        let message = format!("heights count from the mid-plane of this laminate, that of {which}");
+        let help = "leave `align` and `offset` out here: they say where the other laminates lie";
+        return Err(fields[datum].error(message, help));
+    }
+    let thickness = all[datum].0.laminate.value.thickness();
+    for (number, (spec, lies)) in all.iter_mut().enumerate().filter(|(number, _)| *number != datum) {
+        let own = spec.laminate.value.thickness();
+        if lies.is_none() && (own - thickness).abs() > SAME_HEIGHT * own.max(thickness) {
+            let (first, second) = (datum.min(number), datum.max(number));
+            let [a, b] = if number < datum { [own, thickness] } else { [thickness, own] }.map(|h| h * 1e3);
+            let message = format!(
+                "laminates {} and {} are {a:.6} and {b:.6} mm thick, and nothing says how one lies beside the other",
+                first + 1,
+                second + 1
+            );
+            let help = "write align = \"bottom\", \"middle\" or \"top\", what both have at one height, or `offset`";
+            return Err(fields[number].error(message, help));
+        }
+        spec.laminate.value.middle = lies.as_ref().map_or(Lies::Middle, |lies| lies.value).middle(own, thickness);
+    }
+    Ok(())
+}
+
 /// The laminates, one table or a list of them, and the material of the resin between plies if one is named.
 pub(super) fn read_all(
     field: &SceneValue<'_>,
@@ -65,34 +153,28 @@ pub(super) fn read_all(
 ) -> Result<(Vec<LaminateSpec>, Option<Located<usize>>), SceneError> {
     let list = if matches!(field.node(), Node::List(_)) { field.list()? } else { Vec::new() };
     let fields: Vec<&SceneValue<'_>> = if list.is_empty() { vec![field] } else { list.iter().collect() };
-    let (mut all, mut interface): (Vec<LaminateSpec>, Option<Located<usize>>) = (Vec::new(), None);
+    let (mut all, mut interface) = (Vec::<Placed>::new(), None::<Located<usize>>);
     for (number, field) in fields.iter().enumerate() {
-        let (spec, resin) = read(field, materials)?;
-        if let Some(first) = all.first() {
-            if let Some(why) = first.laminate.value.disagreement(&spec.laminate.value) {
-                let message = format!("laminates 1 and {} do not fit together: {why}", number + 1);
-                let help = "the faces of all plies must lie at the same heights in all laminates of a plate";
-                return Err(field.error(message, help));
-            }
-            if resin.as_ref().map(|resin| resin.value) != interface.as_ref().map(|resin| resin.value) {
-                let message = format!("laminates 1 and {} have different materials between their plies", number + 1);
-                return Err(field.error(message, "give all laminates of a plate the same `interface`"));
-            }
+        let ((spec, lies), resin) = read(field, materials)?;
+        if number > 0 && resin.as_ref().map(|resin| resin.value) != interface.as_ref().map(|resin| resin.value) {
+            let message = format!("laminates 1 and {} have different materials between their plies", number + 1);
+            return Err(field.error(message, "give all laminates of a plate the same `interface`"));
         }
-        if spec.group.is_none() && all.iter().any(|other| other.group.is_none()) {
+        if spec.group.is_none() && all.iter().any(|(other, _)| other.group.is_none()) {
             let help = "give all but one a `group`, the name of the physical surface that has these plies";
             return Err(field.error("a second laminate has no `group`", help));
         }
         interface = resin;
-        all.push(spec);
+        all.push((spec, lies));
     }
-    Ok((all, interface))
+    place(&mut all, &fields)?;
+    Ok((all.into_iter().map(|(spec, _)| spec).collect(), interface))
 }
 
 fn read(
     field: &SceneValue<'_>,
     materials: &[Located<Material>],
-) -> Result<(LaminateSpec, Option<Located<usize>>), SceneError> {
+) -> Result<(Placed, Option<Located<usize>>), SceneError> {
     let table = field.table(KEYS)?;
     let group = table.optional("group").map(|field| Ok(field.at(field.text()?.to_owned()))).transpose()?;
     let common = PlyType {
@@ -114,7 +196,8 @@ fn read(
         Some(field) => Some(field.at(material::find(&field, materials)?)),
         None => None,
     };
-    Ok((LaminateSpec { group, laminate: field.at(Laminate { plies, layers }), layered }, interface))
+    let laminate = field.at(Laminate { plies, layers, middle: 0.0 });
+    Ok(((LaminateSpec { group, laminate, layered }, read_lies(&table)?), interface))
 }
 
 fn read_layup(field: &SceneValue<'_>) -> Result<Vec<LayupPly>, SceneError> {

@@ -7,6 +7,7 @@ use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, Place, SceneError};
 use crate::document::tree::Node;
 use crate::units;
+use fem_core::dof::Dof;
 use fem_core::formula::Formula;
 use fem_core::load::Face;
 use fem_core::plugin::Dimension;
@@ -54,6 +55,15 @@ pub enum LoadKind {
         force: [f64; 3],
         /// The node.
         node: NodeSet,
+    },
+    /// A displacement of nodes, m, all alike: the force that it takes is found.
+    Displacement {
+        /// How far.
+        displacement: f64,
+        /// Which component.
+        dof: Dof,
+        /// The nodes.
+        nodes: NodeSet,
     },
     /// Weight: an acceleration of all masses, m/s².
     Gravity {
@@ -111,8 +121,14 @@ const FORCE: Form = Form::Several(3, &Form::Quantity(Dimension::FORCE));
 const LEVEL: Key = support::LEVEL;
 
 /// What a load may be: each kind has keys of its own.
-pub(super) const LOADS: &[Form] =
-    &[Form::Table(PRESSURE), Form::Table(PATCH), Form::Table(EDGE), Form::Table(GRAVITY), Form::Table(POINT)];
+pub(super) const LOADS: &[Form] = &[
+    Form::Table(PRESSURE),
+    Form::Table(PATCH),
+    Form::Table(EDGE),
+    Form::Table(GRAVITY),
+    Form::Table(POINT),
+    Form::Table(DISPLACEMENT),
+];
 const PRESSURE: Keys = &[
     key(
         "pressure",
@@ -148,6 +164,18 @@ const EDGE: Keys = &[
 const POINT: Keys = &[
     key("force", FORCE, r#"["0 N", "0 N", "-5 N"]"#, "at one node, along x, y and z").required(),
     key("group", Form::Text, r#""impact""#, "the node, a group of the mesh").required(),
+    LEVEL,
+];
+const DISPLACEMENT: Keys = &[
+    key(
+        "displacement",
+        Form::Quantity(Dimension::LENGTH),
+        r#""2 mm""#,
+        "of all these nodes alike, while delaminations grow; the force that it takes is found",
+    )
+    .required(),
+    key("dof", Form::Text, r#""U30""#, "which component: U10 along x, U20 along y, U30 along z").required(),
+    key("group", Form::Text, r#""x-min""#, "the nodes, a group of the mesh").required(),
     LEVEL,
 ];
 const GRAVITY: Keys = &[key(
@@ -197,13 +225,29 @@ fn read(field: &SceneValue<'_>) -> Result<Load, SceneError> {
     } else if has("gravity") {
         let table = field.table(GRAVITY)?;
         LoadKind::Gravity { acceleration: vector(&table.required("gravity")?, Dimension::ACCELERATION)? }
+    } else if has("displacement") {
+        let table = field.table(DISPLACEMENT)?;
+        let (displacement, dof) = (table.required("displacement")?, table.required("dof")?);
+        LoadKind::Displacement {
+            displacement: match displacement.quantity(Dimension::LENGTH)? {
+                0.0 => return Err(displacement.error("moves nothing", "hold nodes by `support`")),
+                moved => moved,
+            },
+            dof: match support::dof(&dof)? {
+                other if other.m() > 0 => {
+                    return Err(dof.error(format!("{other} is a slope"), "name a displacement: U10, U20 or U30"));
+                }
+                moved => moved,
+            },
+            nodes: support::nodes(&table)?,
+        }
     } else if has("force") {
         let table = field.table(POINT)?;
         LoadKind::Point { force: vector(&table.required("force")?, Dimension::FORCE)?, node: support::nodes(&table)? }
     } else {
         return Err(field.error(
             "does not say what acts",
-            "a load has `pressure`, `force`, `patch_radius` with `force`, `force_per_length` or `gravity`",
+            "a load has `pressure`, `force`, `patch_radius` with `force`, `force_per_length`, `displacement` or `gravity`",
         ));
     };
     Ok(Load { kind, place: any.place().clone() })

@@ -3,6 +3,7 @@
 use crate::document::keys::{Form, Key, Keys, key, words};
 use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, SceneError};
+use crate::document::tree::Node;
 use crate::units;
 use fem_core::mesh::{Curves, Graded, MAX_CELLS, Outline};
 use fem_core::plugin::Dimension;
@@ -30,6 +31,8 @@ pub enum MeshSource {
         size: [f64; 2],
         /// Cells along x and y, refined as the scene asks for.
         cells: [usize; 2],
+        /// Parts of it that have names.
+        parts: Vec<NamedPart>,
     },
     /// A disc or a rectangle about the origin whose cells grow from the impact.
     Graded {
@@ -42,11 +45,20 @@ pub enum MeshSource {
     },
 }
 
+/// A rectangle with a name, within a mesh: its cells, or the edges or the node where it is a line or a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedPart {
+    /// Its name.
+    pub name: Located<String>,
+    /// Its corners with the least and the greatest x and y, m.
+    pub corners: [[f64; 2]; 2],
+}
+
 /// Where a mesh may come from.
 pub(super) const MESHES: &[Form] =
     &[Form::Table(FILE), Form::Table(RECTANGLE), Form::Table(BUILT_DISC), Form::Table(BUILT_PLATE)];
 const FILE: Keys = &[
-    key("file", Form::Text, r#""plate.msh""#, "a mesh of gmsh, MSH 4.1; counts from the folder of the scene")
+    key("file", Form::Text, r#""plate.msh""#, "a mesh of gmsh, Abaqus or Nastran; counts from the folder of the scene")
         .required(),
     key("unit", Form::Text, r#""mm""#, "unit of its coordinates").required(),
     REFINE,
@@ -68,7 +80,19 @@ const RECTANGLE: Keys = &[
     .required(),
     key("cells", Form::Several(2, &Form::Count(1)), "[8, 4]", "cells along x and y").required(),
     REFINE,
+    key(
+        "groups",
+        Form::Named(&Form::Table(PART)),
+        r#"{ crack = { x = ["0 mm", "30 mm"] }, roller = { x = "50 mm" } }"#,
+        "more groups by names of your own: the cells of a part, the edges of a line, the node at a point",
+    ),
 ];
+const PART: Keys = &[
+    key("x", SPAN, r#"["0 mm", "30 mm"]"#, "from where to where along x, or at which x; everywhere if left out"),
+    key("y", SPAN, r#""5 mm""#, "the same along y"),
+];
+const SPAN: Form =
+    Form::OneOf(&[Form::Quantity(Dimension::LENGTH), Form::Several(2, &Form::Quantity(Dimension::LENGTH))]);
 const BUILT_DISC: Keys = &[
     key(
         "disc",
@@ -213,8 +237,38 @@ fn rectangle(table: &Reader<'_>) -> Result<MeshSource, SceneError> {
         }
     };
     let refine = refine(table, all)?;
-    Ok(MeshSource::Rectangle { size, cells: cells.map(|n| n << refine.value) })
+    let parts = match table.optional("groups") {
+        Some(field) => {
+            field.entries()?.iter().map(|(name, field)| part(name, field, size)).collect::<Result<_, _>>()?
+        }
+        None => Vec::new(),
+    };
+    Ok(MeshSource::Rectangle { size, cells: cells.map(|n| n << refine.value), parts })
 }
+
+/// A part of a rectangle of this `size` that is called `name`.
+fn part(name: &str, field: &SceneValue<'_>, size: [f64; 2]) -> Result<NamedPart, SceneError> {
+    if BUILT.contains(&name) {
+        return Err(field.error(format!("`{name}` is a group of every rectangle"), "choose another name"));
+    }
+    let table = field.table(PART)?;
+    let span = |key: &str, whole: f64| {
+        let Some(field) = table.optional(key) else { return Ok([0.0, whole]) };
+        let ends = match field.node() {
+            Node::List(_) => pair(&field, |end| end.quantity(Dimension::LENGTH))?,
+            _ => [field.quantity(Dimension::LENGTH)?; 2],
+        };
+        if ends[0] > ends[1] {
+            return Err(field.error("ends before it begins", "write the smaller end first"));
+        }
+        Ok(ends)
+    };
+    let [x, y] = [span("x", size[0])?, span("y", size[1])?];
+    Ok(NamedPart { name: field.at(name.to_owned()), corners: [0, 1].map(|end| [x[end], y[end]]) })
+}
+
+/// Groups of every rectangle.
+const BUILT: [&str; 5] = ["x-min", "x-max", "y-min", "y-max", "plate"];
 
 /// A plate of the mesh `table`, described by `keys`, the value of `field`.
 fn graded(

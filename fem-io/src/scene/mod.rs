@@ -13,6 +13,7 @@ mod laminate;
 mod load;
 mod material;
 mod mesh;
+mod path;
 mod plugin;
 mod root;
 mod run;
@@ -30,13 +31,14 @@ pub use crate::document::keys::{Absent, Form, Key, Keys, Plugins, key, words};
 pub use crate::document::reader::{Reader, SceneValue};
 pub use crate::document::source::{Located, Place, SceneError, SceneSource};
 pub use annotate::annotate;
-pub use delamination::{DelaminationSpec, StartingDelamination};
+pub use delamination::{DelaminationSpec, StartingDelamination, StartingExtent};
 pub use effects::{Damage, Delamination, EFFECT_SETTINGS, EffectSetting, EffectSpec, EffectsSpec};
 pub use explain::{Explained, explain};
 pub use fields::{FieldCells, FieldSeries, Fields, Region};
 pub use laminate::LaminateSpec;
 pub use load::{Load, LoadKind, Pressure, ProfileLine};
-pub use mesh::{MeshSource, refined_cells};
+pub use mesh::{MeshSource, NamedPart, refined_cells};
+pub use path::PathSpec;
 pub use plugin::PluginSpec;
 pub use run::{
     ContactLoad, CriterionSpec, Depth, Failure, ImpactPoint, ImpactSpec, ImpactorSpec, IndexWatch, MarchSpec, Output,
@@ -100,6 +102,8 @@ pub struct Scene {
     pub effects: EffectsSpec,
     /// Which interfaces open, where delaminations grow.
     pub delamination: Option<DelaminationSpec>,
+    /// How loads at rest are followed while interfaces open, where it says so.
+    pub path: Option<Located<PathSpec>>,
     /// The same scene with delaminations that grow, where it leaves them to the advisor.
     pub grown: Option<Box<Scene>>,
     /// Lines through the thickness along which stresses are written.
@@ -318,13 +322,13 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
     Ok(Scene { grown: Some(Box::new(grown)), ..scene })
 }
 
-fn read_merged(merged: &Merged, path: &Path) -> Result<Scene, SceneError> {
+fn read_merged(merged: &Merged, file: &Path) -> Result<Scene, SceneError> {
     let Merged { table: merged, fidelity, delamination, grows, source } = merged;
     let root = Reader::root(merged, KEYS, source)?;
     let mut keys = BTreeMap::new();
     merged.flatten("", &mut keys);
 
-    let folder = path.parent().unwrap_or(Path::new(""));
+    let folder = file.parent().unwrap_or(Path::new(""));
     let materials = material::read_all(&root.required("materials")?, folder)?;
     let (laminates, interface) = laminate::read_all(&root.required("laminate")?, &materials)?;
     let element = root.required("element")?;
@@ -340,7 +344,7 @@ fn read_merged(merged: &Merged, path: &Path) -> Result<Scene, SceneError> {
         title: root.required("title")?.text()?.to_owned(),
         fidelity: *fidelity,
         accuracy: root.optional("accuracy").map(|field| study::read_accuracy(&field)).transpose()?,
-        mesh: mesh::read(&root.required("mesh")?, path)?,
+        mesh: mesh::read(&root.required("mesh")?, file)?,
         symmetry: match root.optional("symmetry") {
             Some(field) => Some(field.at(field.choice(&SymmetryGroup::ALL)?)),
             None => None,
@@ -370,6 +374,16 @@ fn read_merged(merged: &Merged, path: &Path) -> Result<Scene, SceneError> {
             }
             None => None,
         },
+        path: match root.optional("path") {
+            Some(field) if *grows => Some(field.at(path::read(&field)?)),
+            Some(field) => {
+                let help = "set effects = { delamination = \"growth\" }, or leave the table out";
+                return Err(
+                    field.error("is that of loads at rest while delaminations grow, which they do not here", help)
+                );
+            }
+            None => None,
+        },
         grown: None,
         analysis,
         effects,
@@ -390,9 +404,9 @@ fn whole(laminates: &[LaminateSpec]) -> &LaminateSpec {
 fn list_unused_keys(analysis: &str) -> &'static [&'static str] {
     match analysis {
         "static" => &["impactor", "contact", "reduction", "march", "modes", "buckling"],
-        "modes" => &["impactor", "contact", "reduction", "march", "load", "profile", "buckling"],
-        "buckling" => &["impactor", "contact", "reduction", "march", "load", "profile", "modes"],
-        _ => &["load", "modes", "buckling", "profile"],
+        "modes" => &["impactor", "contact", "reduction", "march", "load", "path", "profile", "buckling"],
+        "buckling" => &["impactor", "contact", "reduction", "march", "load", "path", "profile", "modes"],
+        _ => &["load", "path", "modes", "buckling", "profile"],
     }
 }
 

@@ -1,7 +1,7 @@
 //! The outermost table of a scene.
 
 use super::mesh::MESHES;
-use super::{BUCKLING, Fidelity, MODES, delamination, laminate, load, run, study, substructures, support, sweep};
+use super::{BUCKLING, Fidelity, MODES, delamination, laminate, load, path, run, study, substructures, support, sweep};
 use crate::document::keys::{Form, Keys, key, words};
 use crate::materials::constants;
 use fem_core::plate::ZDerivatives;
@@ -118,6 +118,12 @@ pub(super) const KEYS: Keys = &[
         "interfaces that open, where `effects.delamination` is \"growth\": `fem list interface-laws`",
     ),
     key("load", Form::List(&Form::OneOf(load::LOADS)), r#"[{ pressure = "1 MPa", face = "top" }]"#, "loads at rest"),
+    key(
+        "path",
+        Form::Table(path::KEYS),
+        r#"{ until = "4 mm" }"#,
+        "how loads at rest are followed, where `effects.delamination` is \"growth\"",
+    ),
     key("modes", Form::Table(MODES), "{ count = 10 }", "natural modes that are found").default("{}"),
     key("buckling", Form::Table(BUCKLING), "{ count = 4 }", "load factors of the preload that are found").default("{}"),
     key(

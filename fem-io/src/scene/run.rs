@@ -454,16 +454,16 @@ pub(super) fn read_point(field: &SceneValue<'_>) -> Result<Located<ImpactPoint>,
 
 /// The point of a table with these keys.
 pub(super) fn point(table: &Reader<'_>) -> Result<ImpactPoint, SceneError> {
-    let [x, y] = ["x", "y"].map(|key| table.optional(key));
-    Ok(match (table.optional("group"), x.or(y)) {
-        (Some(_), Some(stray)) => {
-            return Err(stray.error("cannot be combined with `group`", "give a group of the mesh, or x and y"));
-        }
-        (None, Some(_)) => {
+    // What a text says of the place goes over what stands beneath it.
+    let [group, x] = table.either(["group", "x"])?;
+    let [_, y] = table.either(["group", "y"])?;
+    Ok(match (group, x.or(y)) {
+        (_, Some(_)) => {
             let coordinate = |key| table.required(key)?.quantity(Dimension::LENGTH);
             ImpactPoint::Point([coordinate("x")?, coordinate("y")?])
         }
-        _ => ImpactPoint::Group(table.required("group")?.text()?.to_owned()),
+        (Some(group), None) => ImpactPoint::Group(group.text()?.to_owned()),
+        (None, None) => ImpactPoint::Group(table.required("group")?.text()?.to_owned()),
     })
 }
 

@@ -153,8 +153,14 @@ fn write(text: &str, path: &Path, setting: &Setting) -> Result<DocumentMut, Scen
 /// Keys of which a table has one: to set it takes the other away.
 const EITHER: [&[&str]; 2] = [&["velocity", "energy", "drop_height"], &["patch_radius", "patch_side"]];
 
+/// Keys of a place, and those that each of them takes away.
+const PLACE: [[&[&str]; 2]; 2] = [[&["x", "y"], &["group"]], [&["group"], &["x", "y"]]];
+
 /// Names of plug-ins: a table that names another one is made anew.
 const NAMES: [&str; 4] = ["kind", "law", "method", "name"];
+
+/// Tables that belong to the law that they name; a material has its constants besides.
+const OF_LAWS: [&str; 2] = ["contact", "delamination"];
 
 /// Sets `value` where `keys` lead; whether they lead anywhere.
 fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) -> bool {
@@ -166,12 +172,16 @@ fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) -> bool {
                     table.remove(other);
                 });
             }
+            for other in PLACE.iter().filter(|keys| keys[0].contains(&key.get())).flat_map(|keys| keys[1]) {
+                table.remove(other);
+            }
             table.insert(key, Item::Value(value.clone()));
             true
         }
         [key, rest @ ..] => {
             if let ([last], Some(old)) = (rest, table.get_mut(key))
                 && NAMES.contains(&last.get())
+                && (last.get() != "law" || OF_LAWS.contains(&key.get()))
                 && old.get(last.get()).is_some_and(|name| name.as_str() != value.as_str())
             {
                 *old = if old.is_table() { Item::Table(Table::new()) } else { Item::Value(InlineTable::new().into()) };
@@ -189,6 +199,17 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
+
+    #[test]
+    fn a_material_keeps_its_constants_under_another_law() {
+        let text = "[materials.m]\nlibrary = \"AS4/3502\"\nlaw = \"crack-band\"\n\n[contact]\nlaw = \"hertz\"\nk = 3\n";
+        let mut document: DocumentMut = text.parse().unwrap();
+        for (keys, law) in [("materials.m.law", "hahn-tsai"), ("contact.law", "linear")] {
+            assert!(set_path(document.as_table_mut(), &Key::parse(keys).unwrap(), &Value::from(law)));
+        }
+        let expected = "[materials.m]\nlibrary = \"AS4/3502\"\nlaw = \"hahn-tsai\"\n\n[contact]\nlaw = \"linear\"\n";
+        assert_eq!(document.to_string(), expected);
+    }
 
     #[test]
     fn a_setting_goes_into_the_text() {

@@ -41,6 +41,8 @@ pub enum Support {
         kind: SupportKind,
         /// Which of the nodes above each other.
         levels: Levels,
+        /// Force per deflection of what gives way, and per length or area of it, in SI units.
+        stiffness: Option<Located<(f64, Dimension)>>,
         /// Where it stands.
         place: Place,
     },
@@ -145,7 +147,13 @@ const KIND: Keys = &[
         "at",
         Form::Words(&words(&LEVELS)),
         r#""bottom""#,
-        "which of the nodes above each other; \"all\", of a hinge and a roller \"mid-plane\", if left out",
+        "which of the nodes above each other; \"all\", of a hinge and a roller \"mid-plane\", of a rest \"bottom\", if left out",
+    ),
+    key(
+        "stiffness",
+        Form::Text,
+        r#""50 N/mm^2""#,
+        "of a roller or a rest that gives way: force per deflection, and per length of an edge or per area of cells and discs",
     ),
 ];
 const DISC: Keys = &[
@@ -237,7 +245,20 @@ fn read_kind(table: &Reader<'_>, place: Place) -> Result<Support, SceneError> {
         }
     };
     let levels = table.optional("at").map_or(Ok(kind.levels()), |at| at.choice(&LEVELS))?;
-    Ok(Support::Kind { area, kind, levels, place })
+    let stiffness = table.optional("stiffness").map(|field| stiffness(&field, kind)).transpose()?;
+    Ok(Support::Kind { area, kind, levels, stiffness, place })
+}
+
+fn stiffness(field: &SceneValue<'_>, kind: SupportKind) -> Result<Located<(f64, Dimension)>, SceneError> {
+    if !matches!(kind, SupportKind::Roller | SupportKind::Rest) {
+        let message = format!("a support of kind \"{}\" does not give way", kind.name());
+        return Err(field.error(message, "write kind = \"roller\", or kind = \"rest\" where the plate may lift off"));
+    }
+    let (value, dimension) = field.any_quantity(field.text()?)?;
+    if !(value > 0.0 && value.is_finite()) {
+        return Err(field.error("a stiffness is positive", "leave it out for a support that does not give way"));
+    }
+    Ok(field.at((value, dimension)))
 }
 
 fn axes(table: &Reader<'_>) -> Result<f64, SceneError> {
@@ -287,7 +308,7 @@ pub(super) fn dofs(field: &SceneValue<'_>) -> Result<Vec<Dof>, SceneError> {
     field.list()?.iter().map(dof).collect()
 }
 
-fn dof(field: &SceneValue<'_>) -> Result<Dof, SceneError> {
+pub(super) fn dof(field: &SceneValue<'_>) -> Result<Dof, SceneError> {
     field
         .text()?
         .parse()

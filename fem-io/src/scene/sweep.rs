@@ -16,11 +16,25 @@ pub struct SweepSpec {
     pub samples: usize,
     /// What random numbers follow from.
     pub seed: u64,
+    /// Correlations of pairs of keys, in words.
+    pub correlate: Vec<String>,
+    /// Formulas of what cases set and find.
+    pub quantities: Vec<String>,
+    /// Two of them that are weighed against each other, in words.
+    pub pareto: Option<String>,
 }
 
 impl Default for SweepSpec {
     fn default() -> Self {
-        Self { set: Vec::new(), design: None, samples: 100, seed: 1 }
+        Self {
+            set: Vec::new(),
+            design: None,
+            samples: 100,
+            seed: 1,
+            correlate: Vec::new(),
+            quantities: Vec::new(),
+            pareto: None,
+        }
     }
 }
 
@@ -79,6 +93,24 @@ pub(super) const KEYS: Keys = &[
     ),
     key("samples", Form::Count(1), "200", "how many cases a design of samples has").default("100"),
     key("seed", Form::Count(0), "1", "what random numbers follow from").default("1"),
+    key(
+        "correlate",
+        Form::List(&Form::Text),
+        r#"["materials.as4-3502.Yt, materials.as4-3502.S12 = 0.6"]"#,
+        "correlations of pairs of keys that scatter, between -1 and 1",
+    ),
+    key(
+        "quantities",
+        Form::List(&Form::Text),
+        r#"["lost = absorbed_energy / energy"]"#,
+        "formulas of columns of the table and keys that vary, each a column of its own",
+    ),
+    key(
+        "pareto",
+        Form::Text,
+        r#""least deflection, most damage_force""#,
+        "two quantities that cases are weighed by: those that no other case beats are marked and drawn",
+    ),
 ];
 
 pub(super) fn read(field: &SceneValue<'_>) -> Result<SweepSpec, SceneError> {
@@ -95,8 +127,15 @@ pub(super) fn read(field: &SceneValue<'_>) -> Result<SweepSpec, SceneError> {
         set: table.optional("set").map(set).transpose()?.unwrap_or_default(),
         design: table.optional("design").map(|field| field.choice(&Sampling::ALL)).transpose()?,
         samples: table.optional("samples").map(|field| field.count()).transpose()?.unwrap_or(plain.samples),
+        correlate: table.optional("correlate").map(texts).transpose()?.unwrap_or_default(),
+        quantities: table.optional("quantities").map(texts).transpose()?.unwrap_or_default(),
+        pareto: table.optional("pareto").map(|field| Ok(field.text()?.to_owned())).transpose()?,
         seed: table.optional("seed").map(|field| field.at_least(0)).transpose()?.map_or(plain.seed, |seed| seed as u64),
     })
+}
+
+fn texts(field: SceneValue<'_>) -> Result<Vec<String>, SceneError> {
+    field.list()?.iter().map(|text| Ok(text.text()?.to_owned())).collect()
 }
 
 /// A value of TOML: texts in words, the items of a list as levels, anything else as its only level.

@@ -35,6 +35,10 @@ pub enum Shape {
     Triangle,
     /// Three points anticlockwise seen from above, and the three above them.
     Wedge,
+    /// Four points and the middles of its sides, anticlockwise each, and its own.
+    BiquadraticQuad,
+    /// Three points and the middles of its sides, anticlockwise each.
+    QuadraticTriangle,
     /// 15 points in the order of [`quadratic_wedge`].
     QuadraticWedge,
     /// (n + 1)³ points in the order of [`lagrange_hexahedron`], n the order.
@@ -48,6 +52,8 @@ impl Shape {
             Self::Hexahedron => 8,
             Self::Triangle => 3,
             Self::Wedge => 6,
+            Self::BiquadraticQuad => 9,
+            Self::QuadraticTriangle => 6,
             Self::QuadraticWedge => 15,
             Self::Lagrange(order) => (order + 1).pow(3),
         }
@@ -60,6 +66,8 @@ impl Shape {
             Self::Hexahedron => 12,
             Self::Triangle => 5,
             Self::Wedge => 13,
+            Self::BiquadraticQuad => 28,
+            Self::QuadraticTriangle => 22,
             Self::QuadraticWedge => 26,
             Self::Lagrange(_) => 72,
         }

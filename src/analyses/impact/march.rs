@@ -4,13 +4,13 @@ mod sound;
 
 use super::accuracy::{self, Accuracy, Before, Estimates};
 use super::checkpoint::{self, Checkpoint};
-use super::delamination::Onsets;
 use super::frames::frames;
 use super::ledger::{Ledger, Look};
 use super::modal::{self, ModalView};
 use super::prepare::{Prepared, describe_failure, place_impactors};
 use super::squeeze::Squeeze;
 use super::{Maximum, Outcome, Sizes};
+use crate::analyses::delamination::Onsets;
 use crate::analyses::expansion::Expansion;
 use crate::analyses::samples::PlateStresses;
 use crate::analyses::stress::{self, Watch};
@@ -31,6 +31,9 @@ use serde::{Deserialize, Serialize};
 use std::rc::Rc;
 use std::sync::Arc;
 use tracing::info;
+
+/// Coordinates of samples that may wait for the end of a march.
+const WAITING: u64 = 1 << 22;
 
 /// Marches a prepared model to its end; `progress` hears the share of the steps done.
 ///
@@ -273,15 +276,16 @@ impl<'a> March<'a> {
         let followed = model.output.modes.as_ref().zip(reduced.as_deref());
         let modal = followed.and_then(|(count, r)| ModalView::new(&r.modal, &modal::load(&system), count.value));
         let expansion = Rc::new(Expansion { model, reduced, companions, share, condensation });
+        let scan_every = count_steps(model.sample_every, sizes.step);
         let watch = match model.criteria.is_empty() {
             true => None,
             false => {
                 let known = stresses.map_or_else(|| PlateStresses::new(model, &expansion).map(Arc::new), Ok)?;
-                Some(Watch::new(model, expansion.clone(), known, firsts_alone)?)
+                let sparing = firsts_alone || firsts_suffice(model, &sizes, scan_every);
+                Some(Watch::new(model, expansion.clone(), known, sparing)?)
             }
         };
         stopwatch.lap("prepare stresses");
-        let scan_every = count_steps(model.sample_every, sizes.step);
         let integrator = impact.integrator.clone();
         Ok(Self {
             model,
@@ -543,6 +547,13 @@ impl<'a> March<'a> {
         }
         if step.is_multiple_of(self.scan_every) { Ok(()) } else { self.sample() }
     }
+}
+
+/// Whether nobody asks for the largest index of every place, and all samples of the march may wait for its end.
+fn firsts_suffice(model: &Model, sizes: &Sizes, scan_every: u64) -> bool {
+    let output = &model.output;
+    let waiting = sizes.steps / scan_every.max(1) * sizes.marched as u64;
+    !output.maps && !output.plots && output.fields.is_none() && waiting <= WAITING
 }
 
 /// Largest index of a criterion at each of its sites.

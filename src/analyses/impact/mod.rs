@@ -1,9 +1,9 @@
 //! The response to an impact: assemble, reduce, march, scan.
 
 mod accuracy;
+mod carried;
 mod checkpoint;
 mod contact;
-mod delamination;
 mod frames;
 mod ledger;
 mod march;
@@ -13,11 +13,11 @@ mod shared;
 mod squeeze;
 
 pub use accuracy::{Accuracy, Differences, MeshAccuracy, ReductionAccuracy, ReductionResidual, StepAccuracy};
+pub use carried::CarriedPlate;
 pub use checkpoint::Checkpoint;
 pub(crate) use checkpoint::FILE as CHECKPOINT;
 pub(crate) use contact::Follower;
 pub use contact::{ContactRecord, StepForces};
-pub use delamination::{Delaminated, DelaminatedCell, DelaminatedInterface};
 pub(crate) use frames::frames;
 pub use ledger::BALANCE_EVERY;
 pub(crate) use ledger::history_row;
@@ -28,15 +28,17 @@ pub use shared::SharedPlate;
 pub use squeeze::Squeeze;
 
 use super::assembled::Substructures;
+use super::delamination::Delaminated;
 use super::samples::PlateSamples;
 use super::stress::IndexHistory;
 use crate::cost::Phase;
 use crate::error::Error;
 use crate::forecast::{MemoryEstimate, Size};
-use crate::model::Model;
+use crate::model::{Model, NamedCriterion};
 use fem_core::counters::Counters;
+use fem_core::material::Material;
 use fem_core::time::Substeps;
-use fem_failure::scan::{FailureEvent, Peak, ScanSite};
+use fem_failure::scan::{Extremes, FailureEvent, Peak, ScanSite};
 use fem_io::tables::HistoryRow;
 use std::sync::Arc;
 
@@ -53,6 +55,8 @@ pub struct Sizes {
     pub stiffness_entries: usize,
     /// Entries of its Cholesky factor.
     pub factor_entries: usize,
+    /// The preload over the one that buckles the plate ([`Assembled::buckling`](super::assembled::Assembled::buckling)).
+    pub buckling: Option<f64>,
     /// Memory that the run is expected to take at its peak.
     pub memory: MemoryEstimate,
     /// Contact force of the first impactor per deflection under it, N/m, of the plate as marched.
@@ -116,15 +120,13 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// The same march by the criteria and strengths of `model`, which differs in nothing else from the one that was marched; `None`
-    /// where [`Prepared::firsts_alone`] has not kept what they see.
+    /// First and largest indices of the same march by these criteria and materials, which differ from those of the march in strengths
+    /// alone; `None` where it has to be marched anew for them, as without [`Prepared::firsts_alone`].
     ///
     /// # Errors
     /// A criterion whose material lacks a constant, an index that is not a number.
-    pub fn judged_anew(&self, model: &Model) -> Result<Option<Self>, Error> {
-        let Some(samples) = &self.samples else { return Ok(None) };
-        let scan = samples.judge(model)?;
-        Ok(Some(Self { events: scan.events(), peaks: scan.peaks(), ..self.clone() }))
+    pub fn judged_anew(&self, criteria: &[NamedCriterion], materials: &[Material]) -> Result<Option<Extremes>, Error> {
+        self.samples.as_ref().map_or(Ok(None), |samples| samples.judge(criteria, materials))
     }
 
     /// Sizes of the run, from which its time follows.

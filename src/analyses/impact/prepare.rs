@@ -3,6 +3,8 @@
 use super::Sizes;
 use super::squeeze::{self, Squeeze};
 use crate::analyses::assembled::{Assembled, Substructures, structure};
+use crate::analyses::delamination::separable_parts;
+use crate::analyses::kept::KeptPart;
 use crate::analyses::samples::PlateStresses;
 use crate::analyses::supports;
 use crate::cost::Stopwatch;
@@ -10,15 +12,17 @@ use crate::effect::{Effect, Feature, Marched};
 use crate::error::Error;
 use crate::forecast::MemoryEstimate;
 use crate::model::{Impact, Model, Plan, Separation, Strike};
-use fem_core::assembly::{Condensation, LawPlate, Separable, SeparableParts, SparseStructure, column_order, pattern};
+use fem_core::assembly::{Condensation, Separable, SparseStructure, column_order, pattern};
 use fem_core::contact::ContactLaw;
 use fem_core::counters::Counters;
-use fem_core::functional::Functional;
+use fem_core::functional::{Functional, orthogonalise};
 use fem_core::prolongation::Prolongation;
 use fem_core::reduction::ReductionError;
+use fem_core::springs::SupportSpring;
 use fem_core::structure::{SolveError, Stretching, Structure};
 use fem_core::time::{Integrator, StepError};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
+use fem_dynamics::lifting::OneSided;
 use fem_dynamics::limit::{self, TooLong};
 use fem_dynamics::reduce::{Companions, MembranePlate, Reduced, Share, Stretch, StretchedPlate, static_responses};
 use std::num::NonZeroUsize;
@@ -67,7 +71,7 @@ impl Prepared<'_> {
     }
 
     /// With criteria that judge only where an index can be the first to reach 1, or the largest: events and peaks are to the bit those
-    /// of all places, but maps of all places and checkpoints cannot be made.
+    /// of all places, but maps of all places cannot be made.
     #[must_use]
     pub fn firsts_alone(self) -> Self {
         Self { firsts_alone: true, ..self }
@@ -89,12 +93,15 @@ pub(super) struct Full {
     pub(super) structure: SparseStructure,
     /// Where each impactor strikes.
     pub(super) contacts: Vec<Functional>,
+    /// Right-hand sides that were solved for when the reduction was made that is kept, if it is.
+    kept: u64,
 }
 
 impl Full {
-    /// Right-hand sides solved for so far.
+    /// Right-hand sides solved for so far, those of a reduction that is kept among them: what a plate costs does not hang on who has
+    /// made it.
     pub(super) fn solves(&self) -> u64 {
-        self.structure.work().1
+        self.kept + self.structure.work().1
     }
 }
 
@@ -117,18 +124,21 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     let reduced = reduced.map(Arc::new);
     let linear = !model.effects.nature().large && model.laws.is_none() && condensation.is_none();
     let unreduced = (reduced.is_none() && linear).then(|| contacts.clone());
+    let kept = counters.solves - full.work().1;
     let (structure, full): (Box<dyn Structure>, _) = match (&reduced, &stretched) {
         (None, _) => (Box::new(full), None),
         (Some(reduced), None) => {
-            (Box::new(reduced.modal.clone()), Some(Full { structure: full, contacts: contacts.clone() }))
+            (Box::new(reduced.modal.clone()), Some(Full { structure: full, contacts: contacts.clone(), kept }))
         }
         (Some(_), Some((stretched, _))) => {
-            (Box::new(stretched.clone()), Some(Full { structure: full, contacts: contacts.clone() }))
+            (Box::new(stretched.clone()), Some(Full { structure: full, contacts: contacts.clone(), kept }))
         }
     };
     let struck = Struck { structure, effects, reduced, membrane: stretched, condensation: condensation.map(Arc::new) };
     let prepared = strike((model, impact), struck, &contacts, before)?;
-    Ok(Prepared { full, unreduced, counters, stopwatch, ..prepared })
+    let prepared = Prepared { full, unreduced, counters, stopwatch, ..prepared };
+    // Estimates know linear plates, and those that their deflections stretch.
+    Ok(if model.one_sided().next().is_some() { prepared.without_estimates() } else { prepared })
 }
 
 /// A plate that waits for its impactors.
@@ -155,15 +165,32 @@ pub(super) fn make_ready(model: &Model, impact: &Impact, threads: NonZeroUsize) 
     if !inertia && contacts.iter().any(|contact| assembled.structure.moves_under(contact)) {
         return Err(Error::Unheld { load: "the impactor", inertia });
     }
-    let basis = choose_basis(model, impact, &mut assembled, &contacts);
-    let reduced = reduce(model, impact, &mut assembled, basis, &mut effects)?;
+    offer_coarse(model, impact, &mut assembled);
+    let kept = KeptPart::of_modes(model, impact).filter(|_| !rests(model));
+    let known = kept.as_ref().and_then(|kept| kept.read_modes(&assembled.structure));
+    let (known, work) = known.unzip();
+    let before = assembled.structure.work();
+    let basis = match &known {
+        None => choose_basis(model, impact, &mut assembled, &contacts),
+        Some(_) => None,
+    };
+    let after = assembled.structure.work();
+    let mut reduced = reduce(model, impact, &mut assembled, (basis, known), &mut effects)?;
+    if let (Some(kept), Some(reduced), None) = (&kept, &reduced, work) {
+        kept.write_modes(reduced, (after.0 - before.0, after.1 - before.1));
+    }
+    if let Some(reduced) = &mut reduced {
+        effects.iter_mut().for_each(|effect| effect.on_reduced(reduced));
+    }
     let softness = soften(model, &mut assembled, &contacts, reduced.as_ref());
     let squeezes = squeezes(impact, &mut assembled, &contacts)?;
     let before = Before { squeezes, ..Before::of(&assembled, softness) };
     let Assembled { structure, condensation, .. } = assembled;
     let plate = Marched { full: structure, reduced, stretched: None, contacts: distinct(&contacts) };
     let plate = change_structure(model, plate, &mut effects)?;
-    (counters.factorisations, counters.solves) = plate.full.work();
+    let own = plate.full.work();
+    let (factorisations, solves) = work.unwrap_or_default();
+    (counters.factorisations, counters.solves) = (factorisations.max(own.0), solves + own.1);
     stopwatch.lap("reduce");
     Ok(Ready { effects, plate, contacts, condensation, before, counters, stopwatch })
 }
@@ -219,22 +246,13 @@ fn prepare_separable<'a>(
     threads: NonZeroUsize,
 ) -> Result<Prepared<'a>, Error> {
     let mut stopwatch = Stopwatch::default();
-    let Model { plate, element, constraints, .. } = model;
-    let Separation { interfaces, growth, supports, states, .. } = separation;
+    let Model { plate, constraints, .. } = model;
+    let states = &separation.states;
     let pattern = Arc::new(pattern(plate, constraints));
     let stiffness_entries = pattern.entries();
     let (_, memory) = model.analyse(pattern)?;
     model.check_mass()?;
-    let parts = SeparableParts {
-        plate: plate.clone(),
-        element: element.clone(),
-        supports: supports.clone(),
-        constraints: constraints.clone(),
-        interfaces: interfaces.clone(),
-        growth: *growth,
-        plies: model.laws.as_ref().map(|laws| LawPlate::new(plate, element.clone(), constraints, laws.clone())),
-        motions: model.motions.clone(),
-    };
+    let parts = separable_parts(model, separation);
     let mut structure = Separable::new(parts, states, true, threads).map_err(SolveError::from)?;
     let counters = Counters { elements: structure.work().cells, ..Counters::default() };
     let (_, factor_entries) = structure.size();
@@ -271,8 +289,9 @@ fn prepare_separable<'a>(
         None => Box::new(structure),
     };
     let mut system = couple(model, ImpactSystem::new(structure, impactors), None, &mut effects);
-    let (substructures, softness) = (None, None);
-    let before = Before { stiffness_entries, factor_entries, substructures, memory, softness, squeezes: compliances };
+    let (buckling, substructures, softness, squeezed) = (None, None, None, compliances);
+    let before =
+        Before { stiffness_entries, factor_entries, buckling, substructures, memory, softness, squeezes: squeezed };
     let sizes = check_step(model, impact, &mut system, None, before)?;
     let sizes = Sizes { static_stiffness: stiffness.unwrap_or(sizes.static_stiffness), ..sizes };
     Ok(Prepared {
@@ -335,6 +354,7 @@ fn soften(model: &Model, assembled: &mut Assembled, contacts: &[Functional], red
 pub(super) struct Before {
     stiffness_entries: usize,
     factor_entries: usize,
+    buckling: Option<f64>,
     substructures: Option<Substructures>,
     memory: MemoryEstimate,
     softness: Option<f64>,
@@ -347,6 +367,7 @@ impl Before {
         Self {
             stiffness_entries: assembled.structure.entries(),
             factor_entries: assembled.factor_entries,
+            buckling: assembled.buckling,
             substructures: assembled.substructures(),
             memory: assembled.memory,
             softness,
@@ -372,53 +393,64 @@ fn assemble(
     structure(model, nature.inertia || (nature.large && impact.reduction.is_some()), threads, counters)
 }
 
+/// Offers a plate that is reduced to modes what iterative solutions of it begin with.
+fn offer_coarse(model: &Model, impact: &Impact, assembled: &mut Assembled) {
+    if impact.reduction.is_some() && !rests(model) && assembled.condensation.is_none() {
+        let columns = column_order(&model.plate);
+        let coarse = Prolongation::linear_in_z(&model.plate, &model.constraints, &columns);
+        assembled.structure.offer_coarse(coarse);
+    }
+}
+
+/// T, and K T where it is known.
+type Basis = (Vec<f64>, Option<Vec<f64>>);
+
 /// The basis of the plate, if it is reduced: to a plate that rests a reduction has nothing to add.
 fn choose_basis(
     model: &Model,
     impact: &Impact,
     assembled: &mut Assembled,
     contacts: &[Functional],
-) -> Option<Result<Vec<f64>, ReductionError>> {
+) -> Option<Result<Basis, ReductionError>> {
     match &impact.reduction {
-        _ if rests(model) => Some(static_responses(&mut assembled.structure, &distinct(contacts))),
+        _ if rests(model) => {
+            let responses = static_responses(&mut assembled.structure, &distinct(contacts));
+            Some(responses.map(|responses| (responses, None)))
+        }
         None => None,
         Some(reduction) => {
             let governors = assembled.own(model.governors(impact, GOVERNORS));
-            let structure = &mut assembled.structure;
-            if assembled.condensation.is_none() {
-                structure.offer_coarse(Prolongation::linear_in_z(
-                    &model.plate,
-                    &model.constraints,
-                    &column_order(&model.plate),
-                ));
-            }
-            Some(reduction.basis(structure, &distinct(contacts), &governors))
+            Some(reduction.basis_and_forces(&mut assembled.structure, &distinct(contacts), &governors))
         }
     }
 }
 
-/// The plate in the coordinates of `basis` and of what effects add to it.
+/// The plate in the coordinates of a basis and of what effects add to it; `known` is the same where it was kept.
 fn reduce(
     model: &Model,
     impact: &Impact,
     assembled: &mut Assembled,
-    basis: Option<Result<Vec<f64>, ReductionError>>,
+    (basis, known): (Option<Result<Basis, ReductionError>>, Option<Reduced>),
     effects: &mut [Box<dyn Effect>],
 ) -> Result<Option<Reduced>, Error> {
     let mut more = Vec::new();
     for effect in &mut *effects {
         more.extend(effect.vectors(&model.body(), &mut assembled.structure)?);
     }
-    let Some(basis) = basis else { return Ok(None) };
-    let project = |mut basis: Vec<f64>| {
+    let Some(basis) = basis else { return Ok(known) };
+    // Where a spring that only pushes has let go, the plate answers as to the force that it does not get.
+    let lifting = orthogonalise(model.one_sided().map(|spring| spring.at.clone()).collect());
+    if !lifting.is_empty() {
+        more.extend(static_responses(&mut assembled.structure, &lifting).map_err(SolveError::other)?);
+    }
+    let project = |(mut basis, forces): Basis| {
         basis.extend(more);
-        Reduced::project(&assembled.structure, &basis)
+        Reduced::project_loaded(&assembled.structure, &basis, forces.as_deref().unwrap_or_default())
     };
-    let mut reduced = basis.and_then(project).map_err(|why| {
+    let reduced = basis.and_then(project).map_err(|why| {
         let name = &impact.spec.reduction.name;
         model.origin.source.error_at(&name.place, format!("reduction `{}`: {why}", name.value), "")
     })?;
-    effects.iter_mut().for_each(|effect| effect.on_reduced(&mut reduced));
     Ok(Some(reduced))
 }
 
@@ -458,7 +490,15 @@ fn couple(
     reduced: Option<&Reduced>,
     effects: &mut [Box<dyn Effect>],
 ) -> ImpactSystem {
-    effects.iter_mut().fold(system, |system, effect| effect.on_system(&model.body(), reduced, system))
+    let system = effects.iter_mut().fold(system, |system, effect| effect.on_system(&model.body(), reduced, system));
+    let in_march = |spring: &SupportSpring| OneSided {
+        at: match reduced {
+            None => spring.at.clone(),
+            Some(reduced) => Functional(reduced.restrict(&spring.at).into_iter().enumerate().collect()),
+        },
+        stiffness: spring.stiffness,
+    };
+    system.on_one_sided(model.one_sided().map(in_march).collect())
 }
 
 /// Makes a step of a plate without inertia, to see whether the integrator can do without.
@@ -493,13 +533,14 @@ fn check_step(
     }
     let (steps, step) = march.steps();
     let lowest = reduced.and_then(|r| r.modal.lowest_frequency());
-    let Before { stiffness_entries, factor_entries, substructures, memory, softness, .. } = before;
+    let Before { stiffness_entries, factor_entries, buckling, substructures, memory, softness, .. } = before;
     Ok(Sizes {
         unknowns: model.constraints.ndof(),
         substructures,
         marched: system.structure().ndof(),
         stiffness_entries,
         factor_entries,
+        buckling,
         memory,
         static_stiffness: 1.0 / system.static_flexibility(0)?,
         softness,

@@ -18,11 +18,11 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct SharedPlate {
     effects: Vec<Box<dyn Effect>>,
-    reduced: Arc<Reduced>,
-    membrane: Option<(MembranePlate, Companions)>,
+    pub(super) reduced: Arc<Reduced>,
+    pub(super) membrane: Option<(MembranePlate, Companions)>,
     condensation: Option<Arc<Condensation>>,
     contacts: Vec<Functional>,
-    stresses: Option<Arc<PlateStresses>>,
+    pub(super) stresses: Option<Arc<PlateStresses>>,
     before: Before,
     counters: Counters,
 }

@@ -36,15 +36,21 @@ pub(super) struct Plate<'a> {
 
 impl<'a> Plate<'a> {
     pub(super) fn new(model: &'a Model, plan: &FieldPlan) -> Self {
-        let layers = model.plate.layers();
         let order = order_of(plan.quads.iter().map(|quad| model.plate.plane.quads[*quad].domain()));
         let of = [Domain::Quadrilateral, Domain::Triangle].map(|domain| cells_of(domain, order, plan.cells));
-        let heights = (0..=order * layers).map(|level| {
-            let layer = level.saturating_sub(1) / order;
-            Height { layer, q: 2.0 * (level - order * layer) as f64 / order as f64 - 1.0 }
-        });
-        let lattice = Lattice::new(model, &plan.quads, order, heights.collect());
-        let of_plate = || (0..plan.quads.len()).flat_map(|quad| (0..layers).map(move |layer| (quad, layer)));
+        let heights = |region: usize| {
+            let stacks = model.plate.stacks(region);
+            let height = |level: usize| {
+                let layer = level.saturating_sub(1) / order;
+                let q = 2.0 * (level - order * layer) as f64 / order as f64 - 1.0;
+                let [low, high] = stacks[layer].extent();
+                Height { layer, q: 0.5 * (low + high) + 0.5 * (high - low) * q }
+            };
+            (0..=order * stacks.len()).map(height).collect()
+        };
+        let lattice = Lattice::new(model, &plan.quads, order, heights);
+        let layers = |quad: usize| model.plate.layers_over(plan.quads[quad]);
+        let of_plate = || (0..plan.quads.len()).flat_map(|quad| (0..layers(quad)).map(move |layer| (quad, layer)));
         let cells = |quad: usize| &of[usize::from(lattice.domain(quad) == Domain::Triangle)];
         let point = |quad: usize, layer: usize, [i, j, k]: [usize; 3]| lattice.point(quad, [i, j], order * layer + k);
         let (mut points, mut shapes) = (Vec::new(), Vec::new());

@@ -12,26 +12,47 @@ use fem_core::failure::Site;
 use fem_core::recovery::{Recovery, Station};
 use fem_core::tensor::{Ply, Stress6};
 use fem_failure::scan::Scan;
-use fem_io::scene::FieldSeries;
-use fem_io::vtu::{Array, Contents, Grid, Shape};
+use fem_io::scene::{FieldCells, FieldSeries};
+use fem_io::vtu::{Array, Contents, Grid, Shape, lagrange_hexahedron, quadratic_wedge};
 
-/// Points over the corners of a quad at a height of a lattice of one interval.
-fn face(lattice: &Lattice<'_>, quad: usize, height: usize) -> Vec<u32> {
-    let corners = lattice.domain(quad).lattice_cells(1)[0];
-    corners.into_iter().map(|corner| lattice.point(quad, corner, height)).collect()
+/// Points (i, j) of a sheet over a quad as VTK counts them: corners, then middles of sides and of the quad where it is of second order.
+fn face_of(domain: Domain, order: usize) -> Vec<[usize; 2]> {
+    match (domain, order) {
+        (domain, 1) => domain.lattice_cells(1)[0].to_vec(),
+        (Domain::Quadrilateral, _) => {
+            vec![[0, 0], [2, 0], [2, 2], [0, 2], [1, 0], [2, 1], [1, 2], [0, 1], [1, 1]]
+        }
+        (Domain::Triangle, _) => vec![[0, 0], [2, 0], [0, 2], [1, 0], [1, 1], [0, 1]],
+    }
 }
 
-/// Linear cells over the quads of a lattice, `sheets` over each: prisms, or their faces.
-fn shapes(lattice: &Lattice<'_>, sheets: usize, prisms: bool) -> Vec<Shape> {
-    let of = |quad: usize| match (lattice.domain(quad), prisms) {
-        (Domain::Quadrilateral, true) => Shape::Hexahedron,
-        (Domain::Quadrilateral, false) => Shape::Quad,
-        (Domain::Triangle, true) => Shape::Wedge,
-        (Domain::Triangle, false) => Shape::Triangle,
+/// Points (i, j, k) of a ply over a quad as VTK counts them.
+fn prism_of(domain: Domain, order: usize) -> Vec<[usize; 3]> {
+    match (domain, order) {
+        (domain, 1) => {
+            [0, 1].into_iter().flat_map(|k| face_of(domain, 1).into_iter().map(move |[i, j]| [i, j, k])).collect()
+        }
+        (Domain::Quadrilateral, _) => lagrange_hexahedron(2),
+        (Domain::Triangle, _) => quadratic_wedge(),
+    }
+}
+
+/// Cells over the quads of a lattice, `sheets` over each: prisms, or their faces.
+fn shapes(lattice: &Lattice<'_>, sheets: impl Fn(usize) -> usize, prisms: bool) -> Vec<Shape> {
+    let of = |quad: usize| match (lattice.domain(quad), prisms, lattice.intervals()) {
+        (Domain::Quadrilateral, true, 1) => Shape::Hexahedron,
+        (Domain::Quadrilateral, false, 1) => Shape::Quad,
+        (Domain::Triangle, true, 1) => Shape::Wedge,
+        (Domain::Triangle, false, 1) => Shape::Triangle,
+        (Domain::Quadrilateral, true, order) => Shape::Lagrange(order),
+        (Domain::Quadrilateral, false, _) => Shape::BiquadraticQuad,
+        (Domain::Triangle, true, _) => Shape::QuadraticWedge,
+        (Domain::Triangle, false, _) => Shape::QuadraticTriangle,
     };
-    (0..lattice.quads()).flat_map(|quad| std::iter::repeat_n(of(quad), sheets)).collect()
+    (0..lattice.quads()).flat_map(|quad| std::iter::repeat_n(of(quad), sheets(quad))).collect()
 }
 
+const DOMAINS: [Domain; 2] = [Domain::Quadrilateral, Domain::Triangle];
 const COMPONENTS: [&str; 6] = ["11", "22", "33", "12", "23", "31"];
 /// Positions of the shear tractions (31, 23) of an interface among the components.
 const SHEAR: [usize; 2] = [5, 4];
@@ -62,8 +83,10 @@ pub(super) struct Sheets {
     pub(super) fixed: Vec<Array>,
     /// Points of the lattice that the grid has.
     points: Vec<u32>,
-    /// Stations of each sheet: an interface between layers of cells has one on either side.
-    stations: Vec<Vec<usize>>,
+    /// Region of each quad.
+    regions: Vec<usize>,
+    /// Stations of each sheet of each region: an interface between layers of cells has one on either side.
+    stations: Vec<Vec<Vec<usize>>>,
 }
 
 impl<'a> Plies<'a> {
@@ -77,10 +100,20 @@ impl<'a> Plies<'a> {
         let windows = model.centre_cells.iter().zip(plan.quads.len()..);
         let around =
             windows.flat_map(|(quads, window)| shown(quads).into_iter().map(move |cell| (cell, window))).collect();
-        let stacks = model.plate.stacks(0).iter().enumerate();
-        let tops = stacks.flat_map(|(layer, stack)| stack.slices.iter().map(move |s| Height { layer, q: s.q[1] }));
-        let heights = [Height { layer: 0, q: -1.0 }].into_iter().chain(tops).collect();
-        let lattice = Lattice::new(model, &plan.quads, 1, heights);
+        // Cells of second order are bent as those of the mesh.
+        let bent = !model.plate.plane.bends.is_empty() && plan.cells == FieldCells::Lagrange;
+        let order = if bent { 2 } else { 1 };
+        let heights = |region: usize| {
+            let stacks = model.plate.stacks(region).iter().enumerate();
+            let bottom = Height { layer: 0, q: model.plate.stacks(region)[0].extent()[0] };
+            let slices = stacks.flat_map(|(layer, stack)| stack.slices.iter().map(move |slice| (layer, slice.q)));
+            let up = |(layer, [low, high]): (usize, [f64; 2])| {
+                let middle = bent.then_some(Height { layer, q: 0.5 * (low + high) });
+                middle.into_iter().chain([Height { layer, q: high }])
+            };
+            std::iter::once(bottom).chain(slices.flat_map(up)).collect()
+        };
+        let lattice = Lattice::new(model, &plan.quads, order, heights);
         let judged = !matches!(model.plan, Plan::Modes { .. } | Plan::Buckling { .. });
         let scan = || Scan::new(model.criteria.clone(), stress::sites(&recovery), model.materials.clone());
         let residual = if judged { stress::residual(model, &recovery)? } else { Vec::new() };
@@ -107,7 +140,7 @@ impl<'a> Plies<'a> {
 
     /// What the criteria of a march have found, for each of the series.
     pub(super) fn so_far(&self, maxima: &[Maximum]) -> Vec<(FieldSeries, Vec<Array>)> {
-        let arrays = |sheets: &Sheets| self.so_far.arrays(self.model, maxima, sheets.site, sheets.stations.len());
+        let arrays = |sheets: &Sheets| self.so_far.arrays(self.model, maxima, sheets.site, &sheets.starts());
         self.sheets.iter().map(|sheets| (sheets.series, arrays(sheets))).collect()
     }
 
@@ -169,37 +202,47 @@ impl<'a> Plies<'a> {
 
 impl Sheets {
     fn plies(model: &Model, plan: &FieldPlan, lattice: &Lattice<'_>, recovery: &Recovery) -> Self {
-        let plies = &model.laminate.plies;
         let over = |quad: &usize| model.laminates[model.plate.region(*quad)].plies.iter();
-        let face = |quad: usize, height: usize| face(lattice, quad, height);
-        let cells = (0..plan.quads.len()).flat_map(|quad| (0..plies.len()).map(move |ply| (quad, ply)));
-        let cells: Vec<u32> = cells.flat_map(|(quad, ply)| [face(quad, ply), face(quad, ply + 1)].concat()).collect();
+        let count = |quad: usize| over(&plan.quads[quad]).len();
+        let order = lattice.intervals();
+        let prisms = DOMAINS.map(|domain| prism_of(domain, order));
+        let prism = |quad: usize| prisms[usize::from(lattice.domain(quad) == DOMAINS[1])].iter();
+        let cells = (0..plan.quads.len()).flat_map(|quad| (0..count(quad)).map(move |ply| (quad, ply)));
+        let cells: Vec<u32> = cells
+            .flat_map(|(quad, ply)| prism(quad).map(move |[i, j, k]| lattice.point(quad, [*i, *j], order * ply + k)))
+            .collect();
         let angles: Vec<f64> = plan.quads.iter().flat_map(|quad| over(quad).map(|ply| ply.angle_deg)).collect();
         let materials: Vec<i64> =
             plan.quads.iter().flat_map(|quad| over(quad).map(|ply| ply.material as i64)).collect();
         Self {
             series: FieldSeries::Plies,
             site: Site::Ply,
-            grid: Grid::new(&lattice.positions(), &shapes(lattice, plies.len(), true), &cells),
+            grid: Grid::new(&lattice.positions(), &shapes(lattice, count, true), &cells),
             fixed: vec![
-                tags(model, plan, plies.len()),
-                numbers("ply", plan, plies.len()),
+                tags(model, plan, count),
+                numbers("ply", plan, count),
                 Array::reals("angle_deg", 1, &angles),
                 Array::integers("material", materials.into_iter()),
             ],
             points: (0..lattice.len() as u32).collect(),
-            stations: stations(recovery, plies.len(), false),
+            regions: regions(model, plan),
+            stations: stations(model, recovery, false),
         }
     }
 
     fn interfaces(model: &Model, plan: &FieldPlan, lattice: &Lattice<'_>, recovery: &Recovery) -> Self {
-        let count = model.laminate.plies.len() - 1;
-        let face = |quad: usize, height: usize| face(lattice, quad, height);
-        let cells = (0..plan.quads.len()).flat_map(|quad| (1..=count).map(move |height| (quad, height)));
-        let mut cells: Vec<u32> = cells.flat_map(|(quad, height)| face(quad, height)).collect();
+        let count = |quad: usize| model.laminates[model.plate.region(plan.quads[quad])].plies.len() - 1;
+        let order = lattice.intervals();
+        let faces = DOMAINS.map(|domain| face_of(domain, order));
+        let face = |quad: usize| faces[usize::from(lattice.domain(quad) == DOMAINS[1])].iter();
+        let cells = (0..plan.quads.len()).flat_map(|quad| (1..=count(quad)).map(move |height| (quad, height)));
+        let mut cells: Vec<u32> = cells
+            .flat_map(|(quad, height)| face(quad).map(move |point| lattice.point(quad, *point, order * height)))
+            .collect();
         // The two faces of the plate are not interfaces.
-        let inside = |point: &u32| (1..=count).contains(&(*point as usize % (count + 2)));
-        let points: Vec<u32> = (0..lattice.len() as u32).filter(inside).collect();
+        let mut points = cells.clone();
+        points.sort_unstable();
+        points.dedup();
         cells.iter_mut().for_each(|point| *point = points.partition_point(|p| p < point) as u32);
         let all = lattice.positions();
         let positions: Vec<[f64; 3]> = points.iter().map(|point| all[*point as usize]).collect();
@@ -209,15 +252,25 @@ impl Sheets {
             grid: Grid::new(&positions, &shapes(lattice, count, false), &cells),
             fixed: vec![tags(model, plan, count), numbers("ply_below", plan, count)],
             points,
-            stations: stations(recovery, count, true),
+            regions: regions(model, plan),
+            stations: stations(model, recovery, true),
         }
     }
 
     /// Sites of each cell.
     fn sites<'a>(&'a self, recovery: &'a Recovery) -> impl Iterator<Item = impl Iterator<Item = usize> + Clone> {
-        let width = recovery.stations.len();
-        let quads = 0..self.grid.cells() / self.stations.len();
-        quads.flat_map(move |quad| self.stations.iter().map(move |of| of.iter().map(move |s| quad * width + s)))
+        let of_quad = move |(quad, region): (usize, &usize)| {
+            let first = recovery.sites_over(quad).start;
+            self.stations[*region].iter().map(move |of| of.iter().map(move |s| first + s))
+        };
+        self.regions.iter().enumerate().flat_map(of_quad)
+    }
+
+    /// First cell over each quad, and the number of all at the end.
+    fn starts(&self) -> Vec<usize> {
+        let mut starts = vec![0];
+        self.regions.iter().for_each(|region| starts.push(starts[starts.len() - 1] + self.stations[*region].len()));
+        starts
     }
 
     /// Stresses of a ply in its axes, tractions of an interface in the plate's: means of both sides.
@@ -256,11 +309,15 @@ impl Sheets {
             for (site, indices) in scan.latest(number) {
                 of_sites[site] = (1..).zip(indices.iter().copied()).fold((0, f64::NEG_INFINITY), larger);
             }
-            let width = recovery.stations.len();
             for (cell, window) in around {
-                for station in 0..width {
-                    let here = cell * width + station;
-                    of_sites[here] = larger(of_sites[here], of_sites[window * width + station]);
+                // A window lies in one region: of cells of others that hold its centre it says nothing.
+                let (here, there) = (recovery.sites_over(*cell), recovery.sites_over(*window));
+                if model.plate.region(recovery.centres[*cell].quad)
+                    == model.plate.region(recovery.centres[*window].quad)
+                {
+                    for (here, there) in here.zip(there) {
+                        of_sites[here] = larger(of_sites[here], of_sites[there]);
+                    }
                 }
             }
             let largest = self.sites(recovery).map(|sites| {
@@ -280,22 +337,29 @@ fn larger(a: (i64, f64), b: (i64, f64)) -> (i64, f64) {
 }
 
 /// Number of each cell's quad in the mesh file.
-fn tags(model: &Model, plan: &FieldPlan, sheets: usize) -> Array {
-    let tag = |quad: &usize| model.plate.plane.quad_tags[*quad] as i64;
-    let tags: Vec<i64> = plan.quads.iter().flat_map(|quad| std::iter::repeat_n(tag(quad), sheets)).collect();
+fn tags(model: &Model, plan: &FieldPlan, sheets: impl Fn(usize) -> usize) -> Array {
+    let tag = |quad: usize| model.plate.plane.quad_tags[plan.quads[quad]] as i64;
+    let tags: Vec<i64> = (0..plan.quads.len()).flat_map(|quad| std::iter::repeat_n(tag(quad), sheets(quad))).collect();
     Array::integers("cell", tags.into_iter())
 }
 
 /// 1, 2, … from the bottom of each quad.
-fn numbers(name: &str, plan: &FieldPlan, sheets: usize) -> Array {
-    Array::integers(name, plan.quads.iter().flat_map(|_| 1..=sheets as i64))
+fn numbers(name: &str, plan: &FieldPlan, sheets: impl Fn(usize) -> usize) -> Array {
+    let numbers: Vec<i64> = (0..plan.quads.len()).flat_map(|quad| 1..=sheets(quad) as i64).collect();
+    Array::integers(name, numbers.into_iter())
 }
 
-/// Stations of each ply, or of the interface above it.
-fn stations(recovery: &Recovery, sheets: usize, interface: bool) -> Vec<Vec<usize>> {
-    let of = |sheet: usize| {
+/// Region of each quad.
+fn regions(model: &Model, plan: &FieldPlan) -> Vec<usize> {
+    plan.quads.iter().map(|quad| model.plate.region(*quad)).collect()
+}
+
+/// Stations of each ply of each region, or of the interface above it.
+fn stations(model: &Model, recovery: &Recovery, interface: bool) -> Vec<Vec<Vec<usize>>> {
+    let of = |region: usize, sheet: usize| {
         let here = |(_, s): &(usize, &Station)| s.interface == interface && s.ply == sheet;
-        recovery.stations.iter().enumerate().filter(here).map(|(station, _)| station).collect()
+        recovery.stations_of(region).iter().enumerate().filter(here).map(|(station, _)| station).collect()
     };
-    (0..sheets).map(of).collect()
+    let sheets = |region: usize| 0..model.laminates[region].plies.len() - usize::from(interface);
+    (0..model.laminates.len()).map(|region| sheets(region).map(|sheet| of(region, sheet)).collect()).collect()
 }

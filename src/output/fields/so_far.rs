@@ -22,10 +22,11 @@ impl<'a> SoFar<'a> {
         Self { unfolding: Unfolding::new(model), shown }
     }
 
-    /// For each criterion that looks at `site` its largest index in cells with `sheets` over each quad, and a time for each of its
-    /// modes; none where the march judged nothing, or where nothing reached 1.
-    pub(super) fn arrays(&self, model: &Model, maxima: &[Maximum], site: Site, sheets: usize) -> Vec<Array> {
-        let count = self.shown.iter().flatten().count() * sheets;
+    /// For each criterion that looks at `site` its largest index in cells of which those over each quad begin at `starts`, and a time for
+    /// each of its modes; none where the march judged nothing, or where nothing reached 1.
+    pub(super) fn arrays(&self, model: &Model, maxima: &[Maximum], site: Site, starts: &[usize]) -> Vec<Array> {
+        let count = starts[starts.len() - 1];
+        let region = |quad: usize| model.plate.region(quad);
         let mut arrays = Vec::new();
         for (number, (name, criterion)) in model.criteria.iter().enumerate() {
             let modes = criterion.info().modes;
@@ -36,8 +37,9 @@ impl<'a> SoFar<'a> {
             for maximum in maxima.iter().filter(|maximum| maximum.criterion == number) {
                 let (PlyOrInterface::Ply(sheet) | PlyOrInterface::Interface(sheet)) = maximum.site.place;
                 for quad in self.unfolding.quads(&maximum.site) {
-                    let Some(position) = self.shown[*quad] else { continue };
-                    let cell = position * sheets + usize::from(sheet);
+                    let here = region(*quad) == region(maximum.site.cell as usize);
+                    let Some(position) = self.shown[*quad].filter(|_| here) else { continue };
+                    let cell = starts[position] + usize::from(sheet);
                     let index = maximum.index.min(f64::from(f32::MAX));
                     largest[cell] = Some(largest[cell].map_or(index, |before: f64| before.max(index)));
                     for &(mode, time) in &maximum.reached {

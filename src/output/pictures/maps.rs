@@ -49,14 +49,15 @@ fn plan_of(damage: &DamageMap, place: &PlaceDamage, near: &[bool]) -> Panel {
         None => format!("{}: up to {:.2}", name_place(damage, place), place.largest()),
     };
     let fills = fills(place);
-    let judged = damage.judged.iter().zip(fills).filter(|(q, _)| near[**q as usize]);
+    let here = (0..damage.judged.len()).map(|i| damage.holds(place, i));
+    let judged = damage.judged.iter().zip(fills).zip(here).filter(|((q, _), here)| *here && near[**q as usize]);
     let cell = |q: u32, fill: Fill| MapCell {
-        corners: damage.corners(q).into_iter().map(|p| p.map(|v| v * 1e3)).collect(),
+        corners: damage.outline(q).into_iter().map(|p| p.map(|v| v * 1e3)).collect(),
         fill,
     };
     Panel {
         title: heading,
-        cells: judged.map(|(q, fill)| cell(*q, fill)).collect(),
+        cells: judged.map(|((q, fill), _)| cell(*q, fill)).collect(),
         crosses: damage.impacts_m.iter().map(|p| p.map(|v| v * 1e3)).collect(),
         ..Panel::default()
     }
@@ -65,7 +66,7 @@ fn plan_of(damage: &DamageMap, place: &PlaceDamage, near: &[bool]) -> Panel {
 /// Cells of the view: those within a box round all that failed and all impacts, half as large again on every side, which
 /// is at least a quarter of the plate; all where nothing failed.
 fn find_view(damage: &DamageMap) -> Vec<bool> {
-    let corners = |q: u32| damage.corners(q).into_iter();
+    let places = |q: u32| damage.outline(q).into_iter();
     let failed = damage.places.iter().flat_map(|place| &place.failed).map(|f| damage.judged[f.0 as usize]);
     let mut failed: Vec<u32> = failed.collect();
     failed.sort_unstable();
@@ -77,12 +78,12 @@ fn find_view(damage: &DamageMap) -> Vec<bool> {
         let start = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         points.fold(start, |[lo, hi], p| [[0, 1].map(|d| lo[d].min(p[d])), [0, 1].map(|d| hi[d].max(p[d]))])
     };
-    let plate = bounds(&mut damage.judged.iter().flat_map(|q| corners(*q)));
-    let [lo, hi] = bounds(&mut failed.iter().flat_map(|q| corners(*q)).chain(damage.impacts_m.iter().copied()));
+    let plate = bounds(&mut damage.judged.iter().flat_map(|q| places(*q)));
+    let [lo, hi] = bounds(&mut failed.iter().flat_map(|q| places(*q)).chain(damage.impacts_m.iter().copied()));
     let size = |d: usize| (2.0 * (hi[d] - lo[d])).max(0.25 * (plate[1][d] - plate[0][d]));
     let half = 0.5 * size(0).max(size(1));
     let inside = |q: u32| {
-        let p = damage.corners(q);
+        let p = damage.outline(q);
         (0..2).all(|d| {
             let centre = p.iter().map(|p| p[d]).sum::<f64>() / p.len() as f64;
             (centre - 0.5 * (lo[d] + hi[d])).abs() <= half * (1.0 + 1e-9)
@@ -96,7 +97,7 @@ pub fn section(title: &str, damage: &DamageMap) -> Option<MapPlot> {
     let y = damage.impacts_m.first()?[1];
     let near = find_view(damage);
     let seen = damage.judged.iter().enumerate().filter(|(_, q)| near[**q as usize]);
-    let cut = seen.filter_map(|(i, q)| Some((i, crossing(&damage.corners(*q), y)?)));
+    let cut = seen.filter_map(|(i, q)| Some((i, crossing(&damage.outline(*q), y)?)));
     let cut: Vec<(usize, [f64; 2])> = cut.collect();
     if cut.is_empty() {
         return None;
@@ -114,13 +115,17 @@ pub fn section(title: &str, damage: &DamageMap) -> Option<MapPlot> {
             let corners = [[*a, low], [*b, low], [*b, high], [*a, high]];
             MapCell { corners: corners.map(|p| p.map(|v| v * 1e3)).to_vec(), fill: fills[*i] }
         };
-        panel.cells.extend(cut.iter().map(band));
+        panel.cells.extend(cut.iter().filter(|(i, _)| damage.holds(place, *i)).map(band));
     }
-    let every = damage.plies.len().div_ceil(ANGLES);
+    // Angles are those under the impact.
+    let struck = cut.iter().find(|(_, [a, b])| (*a..=*b).contains(&damage.impacts_m[0][0])).map(|(i, _)| *i);
+    let region = struck.and_then(|i| damage.regions.get(damage.judged[i] as usize));
+    let own = || damage.plies.iter().filter(|band| band.region.is_none() || band.region.as_ref() == region);
+    let every = own().count().div_ceil(ANGLES).max(1);
     let note = |(k, ply): (usize, &crate::output::damage::PlyBand)| {
         (0.5e3 * (ply.z_m[0] + ply.z_m[1]), format!("{}: {}", k + 1, degrees(ply.angle_deg)))
     };
-    panel.notes = damage.plies.iter().enumerate().step_by(every).map(note).collect();
+    panel.notes = own().enumerate().step_by(every).map(note).collect();
     Some(MapPlot {
         title: title.to_owned(),
         x: Axis::linear("x", "mm"),
@@ -136,11 +141,11 @@ pub fn section(title: &str, damage: &DamageMap) -> Option<MapPlot> {
 /// From which z to which a place is drawn; `None` for one that the laminate does not have.
 fn heights(damage: &DamageMap, place: &PlaceDamage) -> Option<[f64; 2]> {
     let mut numbers = place.ply.split('|').map(|k| k.parse::<usize>().ok()?.checked_sub(1));
-    let lower = damage.plies.get(numbers.next()??)?.z_m;
+    let lower = damage.band(place, numbers.next()??)?.z_m;
     match numbers.next() {
         None => Some(lower),
         Some(upper) => {
-            let upper = damage.plies.get(upper?)?.z_m;
+            let upper = damage.band(place, upper?)?.z_m;
             let half = 0.5 * INTERFACE * (lower[1] - lower[0]).min(upper[1] - upper[0]);
             Some([lower[1] - half, lower[1] + half])
         }
@@ -172,11 +177,16 @@ fn classes(damage: &DamageMap) -> Vec<String> {
     damage.modes.iter().map(name).collect()
 }
 
-/// `ply 1 (45°)`, `interface 1|2`.
+/// `ply 1 (45°)`, `interface 1|2`; with the region of a stepped plate `1 doubler (45°)`, `1|2 doubler`.
 fn name_place(damage: &DamageMap, place: &PlaceDamage) -> String {
-    match place.ply.parse::<usize>().ok().and_then(|k| damage.plies.get(k.wrapping_sub(1))) {
-        Some(ply) => format!("ply {} ({})", place.ply, degrees(ply.angle_deg)),
-        None => format!("interface {}", place.ply),
+    let angle =
+        place.ply.parse::<usize>().ok().and_then(|k| damage.band(place, k.wrapping_sub(1))).map(|ply| ply.angle_deg);
+    match (angle, &place.region) {
+        (Some(angle), None) => format!("ply {} ({})", place.ply, degrees(angle)),
+        (None, None) => format!("interface {}", place.ply),
+        // Short: a time stands beside it.
+        (Some(angle), Some(region)) => format!("{} {region} ({})", place.ply, degrees(angle)),
+        (None, Some(region)) => format!("{} {region}", place.ply),
     }
 }
 
@@ -196,6 +206,7 @@ mod tests {
         let points = (0..2).flat_map(|j| (0..5).map(move |i| [f64::from(i) * 1e-3, f64::from(j) * 1e-3]));
         let place = |ply: &str, index: [f64; 4], failed: Vec<Failed>| PlaceDamage {
             ply: ply.into(),
+            region: None,
             index: index.to_vec(),
             failed,
         };
@@ -203,7 +214,10 @@ mod tests {
             format: fem_io::results::FORMAT,
             end_s: 1e-3,
             modes: ["fibre", "matrix"].map(|mode| ModeName { criterion: "c".into(), mode: mode.into() }).to_vec(),
-            plies: vec![PlyBand { angle_deg: 0.0, z_m: [-1e-4, 0.0] }, PlyBand { angle_deg: 90.0, z_m: [0.0, 1e-4] }],
+            plies: [(0.0, [-1e-4, 0.0]), (90.0, [0.0, 1e-4])]
+                .map(|(angle_deg, z_m)| PlyBand { region: None, angle_deg, z_m })
+                .to_vec(),
+            regions: Vec::new(),
             impacts_m: vec![[2e-3, 0.5e-3]],
             outlines: vec![PlanOutline { what: "support".into(), lines_m: vec![vec![[0.0, 0.0], [2e-3, 0.0]]] }],
             points_m: points.collect(),

@@ -4,8 +4,12 @@ if (data.damage) {
   const colour = (mode) => data.colors[mode % data.colors.length];
   const criteria = new Set(modes.map((m) => m.criterion));
   const modeName = (m) => criteria.size > 1 ? `${modes[m].mode} (${modes[m].criterion})` : modes[m].mode;
-  const angle = (ply) => `${plies[ply - 1].angle_deg}\u00b0`.replace("-", "\u2212");
-  const called = ({ ply }) => ply.includes("|") ? `interface ${ply}` : `ply ${ply} (${angle(ply)})`;
+  const angle = (ply, region) =>
+    `${plies.filter((band) => band.region === region)[ply - 1].angle_deg}\u00b0`.replace("-", "\u2212");
+  const called = ({ ply, region }) => {
+    const of = region === undefined ? "" : ` of ${region}`;
+    return ply.includes("|") ? `interface ${ply}${of}` : `ply ${ply}${of} (${angle(ply, region)})`;
+  };
   const ms = (t) => `${digits(t * 1e3)} ms`;
   // Greys of ColorBrewer for indices below 1, as in the pictures.
   const GREYS = [255, 240, 217, 189, 150, 115];

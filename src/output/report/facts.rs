@@ -84,7 +84,7 @@ impl KeyUnit {
     }
 }
 
-const HEADINGS: [(&str, &str); 10] = [
+const HEADINGS: [(&str, &str); 11] = [
     ("first_damage", "First damage of each mode, and its stress"),
     ("not_reached", "Modes that were not reached"),
     ("onsets", "How far the times of first damage are known"),
@@ -93,6 +93,7 @@ const HEADINGS: [(&str, &str); 10] = [
     ("modes", "Modes followed"),
     ("work", "Work"),
     ("frequencies_Hz", "Frequencies"),
+    ("preload", "Preload of the edges"),
     ("load_factors", "Load factors of the preload"),
     ("margins", "Reserve factors"),
 ];
@@ -139,19 +140,43 @@ pub(super) fn sections(summary: &Map<String, Value>, rest: &str) -> Vec<Section>
         let heading =
             HEADINGS.iter().find(|(name, _)| name == key).map_or_else(plain, |(_, heading)| (*heading).to_owned());
         let mut letters = heading.chars();
-        let heading = letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect());
-        let section = |facts, table| Section { id: key.clone(), heading, facts, table };
+        let heading: String =
+            letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect());
         match value {
-            Value::Object(fields) => sections.push(section(facts(fields), None)),
-            Value::Array(rows) if rows.iter().any(Value::is_object) => {
-                sections.push(section(Vec::new(), Some(grid(rows))))
-            }
+            Value::Object(_) => sections.extend(parts(key, &heading, value)),
+            Value::Array(rows) if rows.iter().any(Value::is_object) => sections.extend(parts(key, &heading, value)),
             Value::Array(rows) if rows.is_empty() || rows.iter().any(Value::is_array) => {}
             _ => single.facts.push(fact(key, value)),
         }
     }
     sections.insert(0, single);
     sections
+}
+
+/// Whether a value is or holds a table.
+fn holds_table(value: &Value) -> bool {
+    match value {
+        Value::Object(fields) => fields.values().any(holds_table),
+        Value::Array(rows) => rows.iter().any(Value::is_object),
+        _ => false,
+    }
+}
+
+/// A table, or fields and what they hold: what holds a table is a part of its own.
+fn parts(id: &str, heading: &str, value: &Value) -> Vec<Section> {
+    let section = |facts, table| Section { id: id.to_owned(), heading: heading.to_owned(), facts, table };
+    match value {
+        Value::Object(fields) => {
+            let (apart, own): (Vec<_>, Vec<_>) = fields.iter().partition(|(_, value)| holds_table(value));
+            let own: Map<_, _> = own.into_iter().map(|(key, value)| (key.clone(), value.clone())).collect();
+            let within = apart.into_iter().flat_map(|(key, value)| {
+                parts(&format!("{id}-{key}"), &format!("{heading}: {}", key.replace('_', " ")), value)
+            });
+            std::iter::once(section(facts(&own), None)).chain(within).collect()
+        }
+        Value::Array(rows) => vec![section(Vec::new(), Some(grid(rows)))],
+        _ => Vec::new(),
+    }
 }
 
 /// A value by its key.
@@ -249,5 +274,15 @@ mod tests {
         let labels: Vec<_> = grid.columns.iter().map(|c| (c.label.as_str(), c.numeric)).collect();
         assert_eq!(labels, [("mode", false), ("s11", true), ("reserve factor", true)]);
         assert_eq!(grid.rows, [["a", "1", ""], ["b", "", "2"]]);
+    }
+
+    #[test]
+    fn a_table_within_is_a_part_of_its_own() {
+        let summary = json!({"path": {"dissipated_J": 1.0, "delamination": {"dissipated_J": 2.0,
+            "interfaces": [{"interface": "1|2", "area_mm2": 3.0}]}}});
+        let sections = sections(summary.as_object().unwrap(), "Rest");
+        let headings: Vec<_> = sections.iter().skip(1).map(|s| (s.heading.as_str(), s.facts.len())).collect();
+        assert_eq!(headings, [("Path", 1), ("Path: delamination", 1), ("Path: delamination: interfaces", 0)]);
+        assert_eq!(sections[3].table.as_ref().unwrap().rows, [["1|2", "3"]]);
     }
 }

@@ -12,13 +12,15 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Pictures of a run and what they show, in the order of the page; those of profiles come after them.
-const PICTURES: [(&str, &str); 11] = [
+const PICTURES: [(&str, &str); 13] = [
     ("contact_force", "Contact force over time"),
     ("displacement", "Displacements over time"),
     ("energy", "Energies over time"),
-    ("force_displacement", "Contact force over displacements"),
+    ("force_displacement", "Force over displacements"),
     ("index_history", "Failure indices at the watched places"),
     ("modal_coordinates", "Modes in the deflection"),
+    ("deflection", "Deflection in plan"),
+    ("ply_stresses", "Stresses of the outer plies in plan"),
     ("mode_shapes", "Shapes of the lowest modes"),
     ("buckling_shapes", "Shapes of buckling"),
     ("c_scan", "Delaminations in plan"),

@@ -18,8 +18,9 @@ pub(super) struct Headline {
 impl Headline {
     /// `None` of results that say nothing of the kind.
     pub(super) fn new(summary: &Map<String, Value>) -> Option<Self> {
-        let first = first_damage(summary).or_else(|| margin(summary)).or_else(|| frequency(summary));
-        let first = first.or_else(|| load_factor(summary))?;
+        let first =
+            first_damage(summary).or_else(|| path(summary)).or_else(|| margin(summary)).or_else(|| frequency(summary));
+        let first = first.or_else(|| load_factor(summary)).or_else(|| deflection(summary))?;
         let count = |key: &str| list(summary, key).len();
         let (cautions, warnings) = (count("cautions"), count("warnings"));
         let several = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
@@ -64,7 +65,11 @@ fn first_damage(summary: &Map<String, Value>) -> Option<String> {
     let events = list(summary, "first_damage").iter();
     let Some(event) = events.min_by(|a, b| of(a, "time_s").total_cmp(&of(b, "time_s"))) else {
         let judged = !list(summary, "not_reached").is_empty();
-        return Some(if judged { "No damage".to_owned() } else { "Damage was not looked for".to_owned() });
+        return Some(
+            delaminated(summary, "/delamination").unwrap_or_else(|| {
+                if judged { "No damage".to_owned() } else { "Damage was not looked for".to_owned() }
+            }),
+        );
     };
     let ply = text(event, "ply");
     let place = match ply.contains('|') {
@@ -81,6 +86,22 @@ fn first_damage(summary: &Map<String, Value>) -> Option<String> {
     ))
 }
 
+/// The area that delaminations have taken in plan, where they may grow.
+fn delaminated(summary: &Map<String, Value>, path: &str) -> Option<String> {
+    let area = number(summary, &format!("{path}/projected_area_mm2"))?;
+    Some(match area > 0.0 {
+        true => format!("{} delaminated in plan", Dimension::AREA.of(1e-6 * area)),
+        false => "No delamination".to_owned(),
+    })
+}
+
+/// Of loads that are followed through growth: the largest force, and what has delaminated in the end.
+fn path(summary: &Map<String, Value>) -> Option<String> {
+    let of = |key: &str| number(summary, &format!("/path/{key}"));
+    let (force, at) = (Dimension::FORCE.of(of("peak_force_N")?), Dimension::LENGTH.of(of("displacement_at_peak_m")?));
+    Some(format!("Largest force {force} at {at}; {} in the end", delaminated(summary, "/path/delamination")?))
+}
+
 /// Of loads at rest: the smallest reserve factor.
 fn margin(summary: &Map<String, Value>) -> Option<String> {
     let of = |margin: &Value| margin.get("reserve_factor").and_then(Value::as_f64).unwrap_or(f64::INFINITY);
@@ -93,6 +114,13 @@ fn margin(summary: &Map<String, Value>) -> Option<String> {
         text("ply"),
         text("criterion")
     ))
+}
+
+/// Of loads at rest that no criterion judges: the largest deflection.
+fn deflection(summary: &Map<String, Value>) -> Option<String> {
+    let of = |key: &str| number(summary, &format!("/largest_deflection/{key}"));
+    let place = Dimension::LENGTH.list(&[of("x_m")?, of("y_m")?]);
+    Some(format!("Largest deflection {} at x, y = {place}", Dimension::LENGTH.of(of("w_m")?)))
 }
 
 /// Of natural modes: the lowest frequency.
@@ -151,6 +179,14 @@ mod tests {
             "criterion": "c" }] });
         assert_eq!(headline(&margins).first, "Smallest reserve factor 1.235: fibre in ply 2 (c)");
         assert_eq!(headline(&json!({ "frequencies_Hz": [12_345.0] })).first, "Lowest natural frequency 12.35 kHz");
+        let rest = json!({ "largest_deflection": { "w_m": 7.5e-5, "x_m": 0.005, "y_m": 0.01, "z_m": 0.0 } });
+        assert_eq!(headline(&rest).first, "Largest deflection 75 um at x, y = 5, 10 mm");
+        let path = json!({ "path": { "peak_force_N": 70.0, "displacement_at_peak_m": 1.7e-3,
+            "delamination": { "projected_area_mm2": 1253.0 } }, "largest_deflection": {} });
+        let said = "Largest force 70 N at 1.7 mm; 1253 mm^2 delaminated in plan in the end";
+        assert_eq!(headline(&path).first, said);
+        let grown = json!({ "first_damage": [], "delamination": { "projected_area_mm2": 0.0 } });
+        assert_eq!(headline(&grown).first, "No delamination");
         assert_eq!(Headline::new(&Map::new()), None);
     }
 }

@@ -11,6 +11,11 @@ mod folder;
 mod headline;
 mod measured;
 mod page;
+mod what_if;
+
+pub use what_if::{WhatIf, WhatIfCriterion, WhatIfImpact, WhatIfLaw, WhatIfPlate, WhatIfUnloading};
+
+pub(crate) use page::standalone;
 
 use crate::effect::LedgerColumn;
 use crate::error::Error;
@@ -32,14 +37,20 @@ pub const PAGE: &str = "report.html";
 pub const COMPARISON: &str = "comparison.html";
 
 /// Reads the folders of results `paths`, writes [`PAGE`] into an only one, or [`COMPARISON`] into the first of several, and says
-/// where that is. `measured` is a table of a force over time, laid over the computed one; `columns` are those of effects.
+/// where that is. `measured` is a table of a force over time, laid over the computed one; `columns` are those of effects. The page of an only
+/// folder marches impacts of its own on what is given as `what_if`.
 ///
 /// A march that was stopped by a signal has left a checkpoint alone: the page says so.
 ///
 /// # Errors
 /// No folder, or one that no run wrote into, a file in it that is cut off or changed, a run that is still writing there; a table
 /// that says no force over time.
-pub fn write(paths: &[PathBuf], measured: Option<&Path>, columns: &[&LedgerColumn]) -> Result<PathBuf, Error> {
+pub fn write(
+    paths: &[PathBuf],
+    measured: Option<&Path>,
+    columns: &[&LedgerColumn],
+    what_if: Option<&WhatIf>,
+) -> Result<PathBuf, Error> {
     let Some(first) = paths.first() else { return Err(Error::NoResults { folder: PathBuf::new() }) };
     paths.iter().try_for_each(|path| Folder::check(path))?;
     let measured = measured.map(Measured::read).transpose()?;
@@ -47,7 +58,7 @@ pub fn write(paths: &[PathBuf], measured: Option<&Path>, columns: &[&LedgerColum
     let dirs = paths.iter().map(OutputDir::open).collect::<Result<Vec<_>, _>>()?;
     let folders = paths.iter().map(|path| Folder::read(path)).collect::<Result<Vec<_>, _>>()?;
     let (name, page) = match &folders[..] {
-        [folder] => (PAGE, page::render(folder, measured.as_ref(), columns)?),
+        [folder] => (PAGE, page::render(folder, measured.as_ref(), columns, what_if)?),
         several => (COMPARISON, compare::render(several, measured.as_ref())?),
     };
     dirs[0].write(name, |out| out.write_all(page.as_bytes()))?;

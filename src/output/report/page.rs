@@ -5,6 +5,7 @@ use super::facts::{self, Column, Fact, Grid, Section};
 use super::folder::{Folder, Picture};
 use super::headline::Headline;
 use super::measured::Measured;
+use super::what_if::WhatIf;
 use crate::effect::LedgerColumn;
 use crate::error::Error;
 use crate::output::damage::DamageMap;
@@ -15,7 +16,7 @@ use fem_io::plot::class_color;
 use fem_io::results::{Table, damaged};
 use fem_io::tables::EventRow;
 use minijinja::value::Serde;
-use minijinja::{Environment, Value as Any, context};
+use minijinja::{Environment, HtmlEscape, Value as Any, context};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use sha2::{Digest as _, Sha256};
@@ -23,12 +24,15 @@ use sha2::{Digest as _, Sha256};
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 /// One after the other in a scope of their own; the first is what the others share.
-const SCRIPTS: [&str; 5] = [
+const SCRIPTS: [&str; 8] = [
     include_str!("common.js"),
     include_str!("charts.js"),
     include_str!("loops.js"),
     include_str!("damage.js"),
     include_str!("table.js"),
+    include_str!("march.js"),
+    include_str!("judge.js"),
+    include_str!("what_if.js"),
 ];
 
 /// A picture with more than this many bytes of SVG is shown by its PNG where that is smaller.
@@ -48,7 +52,12 @@ struct Figure {
 }
 
 /// The page of a folder of results.
-pub(super) fn render(folder: &Folder, measured: Option<&Measured>, columns: &[&LedgerColumn]) -> Result<String, Error> {
+pub(super) fn render(
+    folder: &Folder,
+    measured: Option<&Measured>,
+    columns: &[&LedgerColumn],
+    what_if: Option<&WhatIf>,
+) -> Result<String, Error> {
     let none = Map::new();
     let summary = folder.summary.as_ref().and_then(Value::as_object).unwrap_or(&none);
     let text = |key: &str| summary.get(key).and_then(Value::as_str);
@@ -65,7 +74,11 @@ pub(super) fn render(folder: &Folder, measured: Option<&Measured>, columns: &[&L
     let (damage, least) = folder.damage.as_ref().map_or((Value::Null, 0.0), damage);
     let colors: Vec<String> = (0..7).map(class_color).collect();
     let marks = first_damage(summary).map(|event| json!([event.time_s, event.mode]));
-    let data = json!({ "curves": curves, "damage": damage, "colors": colors, "marks": marks.collect::<Vec<_>>() });
+    let marks = marks.collect::<Vec<_>>();
+    let mut data = json!({ "curves": curves, "damage": damage, "colors": colors, "marks": marks });
+    if let Some(what_if) = what_if {
+        data["what_if"] = json!(what_if);
+    }
     let warnings: Vec<&str> = list(summary, "warnings").filter_map(Value::as_str).collect();
     let interactive = |name: &str| curves.iter().any(|c: &Curves| c.charts.iter().any(|chart| chart.id == name));
     let figures: Vec<_> = folder.pictures.iter().map(|picture| figure(picture, interactive(&picture.name))).collect();
@@ -92,6 +105,11 @@ pub(super) fn render(folder: &Folder, measured: Option<&Measured>, columns: &[&L
         charts => others,
         damage => !damage.is_null(),
         least => least,
+        what_if => what_if.is_some(),
+        no_what_if => what_if.and_then(|what_if| match what_if {
+            WhatIf::Missing { why } => Some(why),
+            WhatIf::Plate(_) => None,
+        }),
         events => any(folder.events.as_ref().map(table)),
         modes => any(folder.modes.as_ref().map(table)),
         cost => any(folder.cost.as_ref().map(cost)),
@@ -106,6 +124,7 @@ pub(super) fn render(folder: &Folder, measured: Option<&Measured>, columns: &[&L
 pub(super) fn fill(data: &Value, context: Any) -> Result<String, Error> {
     let script = format!("(() => {{\n\"use strict\";\n{}}})();\n", SCRIPTS.join("\n"));
     let mut environment = Environment::new();
+    environment.add_filter("with_code", with_code);
     environment.add_template("page.html", TEMPLATE)?;
     let own = context! {
         style_hash => hash(STYLE),
@@ -116,6 +135,21 @@ pub(super) fn fill(data: &Value, context: Any) -> Result<String, Error> {
         ..context
     };
     Ok(environment.get_template("page.html")?.render(own)?)
+}
+
+/// A page with a `body` of its own: the style of all pages, a `script` after what their scripts share, the `data` of both.
+pub(crate) fn standalone(title: &str, body: &str, script: &str, data: &Value) -> String {
+    let script = format!("(() => {{\n\"use strict\";\n{}\n{script}}})();\n", SCRIPTS[0]);
+    let title = title.replace('&', "&amp;").replace('<', "&lt;");
+    let (style_hash, script_hash, data) = (hash(STYLE), hash(&script), escape_json(data));
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src '{style_hash}'; \
+         script-src '{script_hash}'; img-src data:; base-uri 'none'; form-action 'none'\">\n\
+         <title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<header><h1>{title}</h1></header>\n<main>\n{body}</main>\n\
+         <script type=\"application/json\" id=\"data\">{data}</script>\n<script>{script}</script>\n</body>\n</html>\n"
+    )
 }
 
 /// By which the policy of the page knows what it permits: the content of our own elements and nothing else.
@@ -134,6 +168,16 @@ fn list<'a>(summary: &'a Map<String, Value>, key: &str) -> impl Iterator<Item = 
 /// The first events of a summary.
 fn first_damage(summary: &Map<String, Value>) -> impl Iterator<Item = EventRow> + use<'_> {
     list(summary, "first_damage").filter_map(|event| EventRow::deserialize(event).ok())
+}
+
+/// A message with what stands in backquotes set as code.
+fn with_code(message: &str) -> Any {
+    let mut html = String::new();
+    for (number, part) in message.split('`').enumerate() {
+        let escaped = HtmlEscape(part);
+        html += &if number % 2 == 0 { escaped.to_string() } else { format!("<code>{escaped}</code>") };
+    }
+    Any::from_safe_string(html)
 }
 
 /// JSON that cannot end the element that it stands in.
@@ -223,17 +267,33 @@ fn compact(map: &DamageMap, least: f64) -> Value {
     let um = |v: f64| (v * 1e6).round() / 1e3;
     let cells = kept
         .iter()
-        .map(|i| map.corners(map.judged[*i]).into_iter().map(|p| p.map(um)).collect::<Vec<_>>())
+        .map(|i| map.outline(map.judged[*i]).into_iter().map(|p| p.map(um)).collect::<Vec<_>>())
         .collect::<Vec<_>>();
     let tags = kept.iter().map(|i| map.cells[map.judged[*i] as usize]).collect::<Vec<_>>();
     let places = map.places.iter().map(|place| {
         let index: Vec<f64> = kept.iter().map(|i| four(place.index[*i]).min(1e9)).collect();
         let failed = place.failed.iter().filter_map(|f| Some(json!([position[f.0 as usize]?, f.1, f.2])));
-        json!({ "ply": place.ply, "index": index, "failed": failed.collect::<Vec<_>>() })
+        let mut place_of = json!({ "ply": place.ply, "index": index, "failed": failed.collect::<Vec<_>>() });
+        if let Some(region) = &place.region {
+            place_of["region"] = json!(region);
+        }
+        place_of
     });
     json!({
         "end_s": map.end_s, "modes": map.modes, "plies": map.plies, "cells": cells, "tags": tags,
         "impacts": map.impacts_m.iter().map(|p| p.map(um)).collect::<Vec<_>>(),
         "places": places.collect::<Vec<_>>(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_code;
+
+    #[test]
+    fn code_in_messages_is_set_as_code_and_nothing_else_is_markup() {
+        let of = |message: &str| with_code(message).to_string();
+        assert_eq!(of("later than `march.end`, <b>"), "later than <code>march.end</code>, &lt;b&gt;");
+        assert_eq!(of("`<i>` & one ` alone"), "<code>&lt;i&gt;</code> &amp; one <code> alone</code>");
+    }
 }

@@ -1,6 +1,6 @@
 //! What a static analysis writes.
 
-use super::{MovedNode, StaticSummary, nodes};
+use super::{MovedNode, StaticSummary, nodes, path, plans};
 use crate::analyses::statics::StaticSolution;
 use crate::error::Error;
 use crate::model::Model;
@@ -9,10 +9,11 @@ use fem_io::files::OutputDir;
 use fem_io::plot::{self, Axis, LinePlot, Series, Style};
 use fem_io::tables::{self, TableValue};
 
-/// Writes `summary.json`, `displacements.csv` and, per profile, `profile-<name>.csv` with pictures.
+/// Writes `summary.json`, `displacements.csv`, the path of loads under which interfaces open, and, per profile, `profile-<name>.csv`; unless
+/// the scene wants no pictures, those of the profiles, and deflection and stresses in plan.
 ///
 /// # Errors
-/// A folder that cannot be written, a number that is not finite.
+/// A folder that cannot be written, a number that is not finite, a cell that the element refuses.
 pub fn write(dir: &OutputDir, model: &Model, solution: &StaticSolution, summary: &StaticSummary) -> Result<(), Error> {
     tables::write_json(dir, "summary.json", summary)?;
     let nodes = nodes(model, &solution.u);
@@ -22,6 +23,10 @@ pub fn write(dir: &OutputDir, model: &Model, solution: &StaticSolution, summary:
     };
     let header = ["node", "x_m", "y_m", "z_m", "u_m", "v_m", "w_m"];
     tables::write_columns(dir, "displacements.csv", &header, nodes.iter().map(row))?;
+    if model.output.plots {
+        plans::write(dir, model, &solution.u)?;
+    }
+    solution.followed.iter().try_for_each(|followed| path::write(dir, model, followed))?;
     (0..model.profiles.len()).try_for_each(|which| write_profile(dir, model, solution, which))
 }
 

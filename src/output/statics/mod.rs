@@ -1,14 +1,18 @@
 //! What a static analysis says and writes.
 
 mod files;
+mod path;
+mod plans;
 
 pub use files::{ProfileTable, profile, write};
+pub use path::PathFigures;
 
 use crate::analyses::assembled::Substructures;
 use crate::analyses::statics::{StaticSolution, dof_of};
 use crate::analyses::stress::Margin;
 use crate::cost::Cost;
 use crate::model::{Model, NamedProfile};
+use crate::output::preload::PreloadFigures;
 use crate::output::summary::Advised;
 use crate::words::{append, append_symmetry, describe_condition, warn_of_condition, warn_of_softness};
 use fem_core::plugin::Dimension;
@@ -42,6 +46,8 @@ pub struct StaticSummary {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub substructures: Option<Substructures>,
     pub factor_entries: usize,
+    #[serde(flatten)]
+    pub preload: PreloadFigures,
     pub resultant_N: [f64; 3],
     pub strain_energy_J: f64,
     pub largest_deflection: Deflection,
@@ -50,13 +56,16 @@ pub struct StaticSummary {
     pub large_deflections: Option<Newton>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ply_laws: Option<LawsSummary>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub path: Option<PathFigures>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub profiles: Vec<ProfileResultants>,
     pub margins: Vec<Margin>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub advised: Vec<Advised>,
     pub residual_relative: f64,
-    pub condition_estimate: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub condition_estimate: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh_error_relative: Option<f64>,
     pub elements: u64,
@@ -118,6 +127,7 @@ impl StaticSummary {
             iterations: decrements.len(),
             last_decrement: decrements.last().copied().unwrap_or(0.0),
         });
+        let path = solution.followed.as_ref().and_then(PathFigures::of);
         let profiles = || model.profiles.iter().zip(&solution.transverse);
         Self {
             title: model.origin.title.clone(),
@@ -127,11 +137,13 @@ impl StaticSummary {
             unknowns: solution.unknowns,
             substructures: solution.substructures,
             factor_entries: solution.factor_entries,
+            preload: PreloadFigures::new(model, solution.buckling),
             resultant_N: solution.resultant,
             strain_energy_J: solution.strain_energy,
             largest_deflection: Deflection { w_m, x_m, y_m, z_m },
             large_deflections: newton.filter(|_| model.effects.nature().large),
             ply_laws: newton.zip(solution.dissipated).map(|(newton, lost)| LawsSummary { newton, dissipated_J: lost }),
+            path: path.clone(),
             profiles: profiles().zip(&solution.resultants).map(in_summary).collect(),
             margins: solution.margins.clone(),
             advised: Advised::of(model, |_| None),
@@ -145,7 +157,8 @@ impl StaticSummary {
                 .iter()
                 .cloned()
                 .chain(warn_of_residual(solution.residual))
-                .chain(warn_of_condition(solution.condition))
+                .chain(solution.condition.and_then(warn_of_condition))
+                .chain(path.iter().flat_map(PathFigures::warnings))
                 .chain(solution.softness.map(warn_of_softness))
                 .chain(profiles().flat_map(warn_of_transverse))
                 .collect(),
@@ -167,6 +180,7 @@ impl StaticSummary {
             Dimension::LENGTH.list(&[d.x_m, d.y_m, d.z_m]),
             Dimension::ENERGY.of(self.strain_energy_J)
         );
+        self.preload.line().iter().for_each(|line| t.push_str(&format!("{line}\n")));
         if let Some(Newton { iterations, last_decrement }) = self.large_deflections {
             let _ = writeln!(
                 t,
@@ -182,6 +196,7 @@ impl StaticSummary {
                 Dimension::ENERGY.of(lost)
             );
         }
+        self.path.iter().flat_map(PathFigures::lines).for_each(|line| t.push_str(&format!("{line}\n")));
         for m in &self.margins {
             let _ = writeln!(
                 t,
@@ -197,8 +212,8 @@ impl StaticSummary {
         let mesh = self.mesh_error_relative.map_or(String::new(), |error| {
             format!("; mesh about {:.2} % in the energy norm (strains against a smooth fit of them)", 100.0 * error)
         });
-        let (residual, condition) = (self.residual_relative, describe_condition(self.condition_estimate));
-        let _ = writeln!(t, "  accuracy  residual {residual:.1e} of the loads; {condition}{mesh}");
+        let condition = self.condition_estimate.map_or(String::new(), |c| format!("; {}", describe_condition(c)));
+        let _ = writeln!(t, "  accuracy  residual {:.1e} of the loads{condition}{mesh}", self.residual_relative);
         let what = if self.large_deflections.is_some() { "integrations of cells" } else { "element matrices" };
         let _ = writeln!(t, "  work      {} {what}, {} reused", self.elements, self.elements_reused);
         let _ = writeln!(t, "  time      {cost}");
@@ -260,10 +275,13 @@ pub struct MovedNode {
 /// `displacements.csv`.
 pub fn nodes(model: &Model, u: &[f64]) -> Vec<MovedNode> {
     let plate = &model.plate;
-    let mut levels = plate.outer_levels().to_vec();
-    levels.extend(plate.mid_level());
-    levels.sort_unstable();
-    levels.dedup();
+    let levels = |column: usize| {
+        let mut levels = plate.outer_levels(column).to_vec();
+        levels.extend(plate.mid_level());
+        levels.sort_unstable();
+        levels.dedup();
+        levels
+    };
     let at = |column: usize, level: usize| -> Option<MovedNode> {
         let value = |n: u8| plate.dofs_at(column, level, dof_of(n)).next().map(|d| u[d]);
         let all = [1, 2, 3].map(value);
@@ -273,5 +291,5 @@ pub fn nodes(model: &Model, u: &[f64]) -> Vec<MovedNode> {
             u: all.map(|v| v.unwrap_or(0.0)),
         })
     };
-    (0..plate.columns.len()).flat_map(|c| levels.iter().filter_map(move |l| at(c, *l))).collect()
+    (0..plate.columns.len()).flat_map(|c| levels(c).into_iter().filter_map(move |l| at(c, l))).collect()
 }

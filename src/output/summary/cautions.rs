@@ -1,7 +1,8 @@
 //! When a headline is not to be trusted, in a line each: what stands at the top.
 
 use super::{ImpactFigures, ImpactSummary};
-use crate::analyses::impact::{Delaminated, Outcome, Squeeze};
+use crate::analyses::delamination::Delaminated;
+use crate::analyses::impact::{Outcome, Squeeze};
 use crate::model::{Model, Plan};
 use fem_core::plugin::Dimension;
 use fem_failure::scan::{FailureEvent, first_per_mode};
@@ -126,6 +127,11 @@ fn stiff((squeeze, figures): (&Option<Squeeze>, &ImpactFigures)) -> Option<Strin
             Dimension::FORCE.of(limit)
         )
     })
+}
+
+/// Whether there is a caution about the place of an onset.
+pub(crate) fn follows_mesh(model: &Model, event: &FailureEvent) -> bool {
+    placed(model, event).is_some()
 }
 
 /// An onset whose place is chosen by the mesh or by where the criteria look.

@@ -1,11 +1,13 @@
 //! Delaminations that have grown, in figures.
 
 use super::ImpactFigures;
+use crate::analyses::delamination::Delaminated;
 use crate::analyses::impact::Outcome;
 use fem_core::interface_law::Sinks;
+use fem_core::plugin::Dimension;
 use serde::Serialize;
 
-/// Delaminations that have grown: their areas, what they took, what the impactors lost altogether.
+/// Delaminations that have grown: their areas, what they took, what impactors lost altogether.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs, non_snake_case)]
 pub struct DelaminationFigures {
@@ -15,7 +17,8 @@ pub struct DelaminationFigures {
     pub dissipated_by_opening_J: f64,
     pub dissipated_by_shear_J: f64,
     pub dissipated_by_friction_J: f64,
-    pub absorbed_J: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub absorbed_J: Option<f64>,
     pub cells: usize,
     pub interfaces: Vec<InterfaceFigures>,
 }
@@ -31,25 +34,49 @@ pub struct InterfaceFigures {
 }
 
 impl DelaminationFigures {
-    pub(super) fn of(outcome: &Outcome, impact: &[ImpactFigures]) -> Option<Self> {
-        let grown = outcome.delaminated.as_ref()?;
-        let Sinks { opening, shear, friction } = grown.dissipated;
+    pub(super) fn of_impact(outcome: &Outcome, impact: &[ImpactFigures]) -> Option<Self> {
         let left = |f: &ImpactFigures| f.energy_J - 0.5 * f.mass_kg * f.final_impactor_velocity_m_s.powi(2);
+        let absorbed = Some(impact.iter().map(left).sum());
+        outcome.delaminated.as_ref().map(|grown| Self { absorbed_J: absorbed, ..Self::of(grown) })
+    }
+
+    /// Of loads at rest.
+    pub(crate) fn of(grown: &Delaminated) -> Self {
+        let Sinks { opening, shear, friction } = grown.dissipated;
         let interfaces = grown.interfaces.iter().map(|one| InterfaceFigures {
             interface: format!("{}|{}", one.below, one.below + 1),
             area_mm2: one.area * 1e6,
             since_s: one.since,
         });
-        Some(Self {
+        Self {
             projected_area_mm2: grown.projected * 1e6,
             area_mm2: grown.interfaces.iter().map(|one| one.area * 1e6).sum(),
             dissipated_J: grown.dissipated.total(),
             dissipated_by_opening_J: opening,
             dissipated_by_shear_J: shear,
             dissipated_by_friction_J: friction,
-            absorbed_J: impact.iter().map(left).sum(),
+            absorbed_J: None,
             cells: grown.cells.len(),
             interfaces: interfaces.collect(),
-        })
+        }
+    }
+
+    /// As people read it, a line each.
+    pub(crate) fn lines(&self) -> Vec<String> {
+        let absorbed =
+            self.absorbed_J.map_or(String::new(), |energy| format!(", {} absorbed", Dimension::ENERGY.of(energy)));
+        let all = format!(
+            "  delam.    {} projected, {} of all interfaces; {} dissipated in them ({} by friction){absorbed}",
+            Dimension::AREA.of(self.projected_area_mm2 * 1e-6),
+            Dimension::AREA.of(self.area_mm2 * 1e-6),
+            Dimension::ENERGY.of(self.dissipated_J),
+            Dimension::ENERGY.of(self.dissipated_by_friction_J),
+        );
+        let each = self.interfaces.iter().filter(|one| one.area_mm2 > 0.0).map(|one| {
+            let since = one.since_s.map_or(String::new(), |t| format!(", from {}", Dimension::TIME.of(t)));
+            let area = Dimension::AREA.of(one.area_mm2 * 1e-6);
+            format!("            interface {:>7} {area:>14}{since}", one.interface)
+        });
+        [all].into_iter().chain(each).collect()
     }
 }

@@ -6,6 +6,7 @@ mod onset;
 mod text;
 mod warnings;
 
+pub(crate) use cautions::follows_mesh;
 pub use onset::OnsetBand;
 
 use crate::advise::hindsight;
@@ -15,7 +16,8 @@ pub use delamination::{DelaminationFigures, InterfaceFigures};
 use crate::analyses::impact::{self, ContactRecord, Differences, ModeShare, Outcome, Sizes};
 use crate::effect::{AdviceRule, Decision, Hindsight, LedgerColumn};
 use crate::model::{Model, NamedCriterion};
-use crate::words::name_ply;
+use crate::output::preload::PreloadFigures;
+use crate::words::{name_ply, name_ply_of};
 use fem_core::counters::Counters;
 use fem_core::material::Material;
 use fem_core::tensor::{Ply, Stress6};
@@ -42,6 +44,8 @@ pub struct ImpactSummary {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cautions: Vec<String>,
     pub model: ModelSize,
+    #[serde(flatten)]
+    pub preload: PreloadFigures,
     #[serde(serialize_with = "one_or_list")]
     pub impact: Vec<ImpactFigures>,
     pub first_damage: Vec<DamageSummary>,
@@ -308,14 +312,14 @@ pub struct Work {
     pub criterion_calls: u64,
 }
 
-impl From<&Peak> for MarginSummary {
-    fn from(peak: &Peak) -> Self {
+impl MarginSummary {
+    fn new(peak: &Peak, region: Option<&str>) -> Self {
         Self {
             criterion: peak.criterion.clone(),
             mode: peak.mode.to_owned(),
             largest_index: peak.index,
             time_s: peak.time,
-            ply: name_ply(peak.site.place),
+            ply: name_ply_of(peak.site.place, region),
         }
     }
 }
@@ -401,12 +405,13 @@ impl ImpactSummary {
                 of_effects: outcome.quantities.iter().copied().collect(),
                 lowest_frequency_Hz: sizes.lowest_frequency,
             },
-            delamination: DelaminationFigures::of(outcome, &impact),
+            preload: PreloadFigures::new(model, sizes.buckling),
+            delamination: DelaminationFigures::of_impact(outcome, &impact),
             energies_of_effects: energies(model, outcome).map(|(column, energy)| (column.name, energy)).collect(),
             labelled: energies(model, outcome).map(|(column, energy)| (column.label, energy)).collect(),
             impact,
             first_damage: first_per_mode(&outcome.events).into_iter().map(damage).collect(),
-            not_reached: not_reached(&outcome.peaks),
+            not_reached: not_reached(&outcome.peaks, |quad| model.region_of(quad)),
             onsets: onset::bands(model, outcome),
             delamination_threshold: model.threshold.map(|threshold| {
                 let first = |which| threshold_reached(model, outcome, which).min_by(|a, b| a.0.total_cmp(&b.0));
@@ -507,8 +512,9 @@ impl ImpactFigures {
 }
 
 /// Largest indices of the modes that did not reach 1.
-pub(crate) fn not_reached(peaks: &[Peak]) -> Vec<MarginSummary> {
-    peaks.iter().filter(|peak| peak.index < 1.0).map(MarginSummary::from).collect()
+pub(crate) fn not_reached<'a>(peaks: &[Peak], region: impl Fn(usize) -> Option<&'a str>) -> Vec<MarginSummary> {
+    let below = peaks.iter().filter(|peak| peak.index < 1.0);
+    below.map(|peak| MarginSummary::new(peak, region(peak.site.cell as usize))).collect()
 }
 
 /// When each impactor first reached a delamination threshold, that of all interfaces (0) or of one delamination (1), and its name
@@ -543,6 +549,7 @@ pub(super) fn event_row(model: &Model, event: &FailureEvent) -> EventRow {
         mode: event.mode.to_owned(),
         time_s: event.time,
         substructure: None,
+        region: model.region_of(event.cell as usize).map(str::to_owned),
         cell: model.plate.plane.quad_tags[event.cell as usize],
         ply: name_ply(event.place),
         angle_deg,

@@ -33,6 +33,7 @@ impl ImpactSummary {
             self.fidelity,
             append_symmetry(m.symmetry)
         ));
+        self.preload.line().iter().for_each(|preload| line(format_args!("{preload}")));
         for i in &self.impact {
             let name = i.name.as_ref().map_or(String::new(), |name| format!("{name}: "));
             let start = i.start_time_s.map_or(String::new(), |t| format!(", there at {}", Dimension::TIME.of(t)));
@@ -57,7 +58,9 @@ impl ImpactSummary {
             let end = self.impact.first().map_or(0.0, |i| i.end_time_s);
             line(format_args!("  damage    none until {}", Dimension::TIME.of(end)));
         } else {
-            line(format_args!("  damage    first onset of each mode (plies are counted from the bottom)"));
+            let regions = self.first_damage.iter().any(|d| d.event.region.is_some());
+            let of = if regions { " of their region" } else { "" };
+            line(format_args!("  damage    first onset of each mode (plies are counted from the bottom{of})"));
             line(format_args!(
                 "            {:>9}  {:<15} {:<19} {:>7} {:>7}  {:>19}  {:>8}",
                 "time", "criterion", "mode", "ply", "angle", "x, y", "force"
@@ -68,7 +71,7 @@ impl ImpactSummary {
                     Dimension::TIME.of(d.event.time_s),
                     d.event.criterion,
                     d.event.mode,
-                    d.event.ply,
+                    d.event.name_of_ply(),
                     d.event.angle_deg,
                     Dimension::LENGTH.list(&[d.event.x_m, d.event.y_m]),
                     Dimension::FORCE.of(d.contact_force_N)
@@ -136,19 +139,7 @@ impl ImpactSummary {
             }
         }
         if let Some(grown) = &self.delamination {
-            line(format_args!(
-                "  delam.    {} projected, {} of all interfaces; {} dissipated in them ({} by friction), {} absorbed",
-                Dimension::AREA.of(grown.projected_area_mm2 * 1e-6),
-                Dimension::AREA.of(grown.area_mm2 * 1e-6),
-                Dimension::ENERGY.of(grown.dissipated_J),
-                Dimension::ENERGY.of(grown.dissipated_by_friction_J),
-                Dimension::ENERGY.of(grown.absorbed_J)
-            ));
-            for one in grown.interfaces.iter().filter(|one| one.area_mm2 > 0.0) {
-                let since = one.since_s.map_or(String::new(), |t| format!(", from {}", Dimension::TIME.of(t)));
-                let area = Dimension::AREA.of(one.area_mm2 * 1e-6);
-                line(format_args!("            interface {:>7} {area:>14}{since}", one.interface));
-            }
+            grown.lines().iter().for_each(|one| line(format_args!("{one}")));
         }
         if !self.labelled.is_empty() {
             let each: Vec<String> = self

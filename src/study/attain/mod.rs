@@ -9,6 +9,7 @@ use super::force::Force;
 use super::quantity::choose_quantities;
 use crate::cost::Attained;
 use crate::error::Error;
+use crate::job::Follow;
 use crate::model::Model;
 use crate::registry::Registry;
 use fem_io::scene::{Scene, Setting};
@@ -40,29 +41,31 @@ pub type TellSearch<'a> = &'a mut dyn FnMut(&str, Option<f64>);
 /// Errors of all parts add up; of the combinations of levels that are good enough the cheapest is chosen, and where there is none, the
 /// part that leaves most is raised. A run a level below the chosen one in all parts shows what they change together, which adds
 /// to the error where it is more than the sum. Nothing is made coarser than the scene has it; sampling in time and
-/// the windows of stresses stay as they are. The run at the chosen levels is for whoever asked.
+/// the windows of stresses stay as they are. The run at the chosen levels is for whoever asked. `follow` is heard before every run and
+/// at every step of its march.
 ///
 /// # Errors
-/// A scene that does not run as it is, quantities that are all 0.
+/// A scene that does not run as it is, quantities that are all 0; [`Error::Cancelled`] where `follow` broke the search off.
 pub fn attain(
     (path, scene, model): (&Path, &Scene, &Model),
     registry: &Registry,
     asked: f64,
     budget: Option<f64>,
     tell: TellSearch<'_>,
+    follow: &mut dyn Follow,
 ) -> Result<Attained, Error> {
     let ladders = axes(scene, model, registry, &LADDERS.map(str::to_owned))?;
     // A single ply, or the laminates of a list.
     let layers = model.plate.info().is_shell() || ladders.iter().any(|axis| axis.name == LAYERS);
     tell("the scene as it is", None);
-    let mut search = Search::new(path, registry, ladders, asked, budget)?;
+    let mut search = Search::new((path, registry), ladders, asked, budget, follow)?;
     let base = search.base();
     let forced = base.force.as_ref().is_some_and(Force::acts);
     search.names = choose_quantities(scene, &base.figures, forced)?;
     if search.names.is_empty() {
         return Err(Error::Study(NOTHING.to_owned()));
     }
-    let (chosen, stopped) = search.raise(tell);
+    let (chosen, stopped) = search.raise(tell)?;
     let not_judged = (!layers).then_some("layers of cells, of which no key makes more");
     Ok(Attained { not_judged, ..search.attained(&chosen, stopped) })
 }

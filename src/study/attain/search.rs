@@ -5,6 +5,7 @@ use super::climb::Climb;
 use crate::cost::{Attained, FURTHER, RaisedPart, Worth, processor_time};
 use crate::error::Error;
 use crate::forecast::Size;
+use crate::job::Follow;
 use crate::model::Model;
 use crate::registry::Registry;
 use crate::study::axes::StudyAxis;
@@ -22,7 +23,6 @@ const LIMIT: f64 = 600.0;
 /// Levels beyond the highest that was run whose cost is told.
 const BEYOND: usize = 3;
 
-#[derive(Debug)]
 pub(super) struct Search<'a> {
     path: &'a Path,
     registry: &'a Registry,
@@ -37,6 +37,9 @@ pub(super) struct Search<'a> {
     runs: Vec<(Vec<usize>, RunRecord)>,
     /// What parts raised together change more than each alone, of every quantity.
     together: Vec<f64>,
+    follow: &'a mut dyn Follow,
+    /// How `follow` broke it off.
+    broken_off: Option<Error>,
 }
 
 impl<'a> Search<'a> {
@@ -45,18 +48,18 @@ impl<'a> Search<'a> {
     /// # Errors
     /// Those of a run.
     pub(super) fn new(
-        path: &'a Path,
-        registry: &'a Registry,
+        (path, registry): (&'a Path, &'a Registry),
         ladders: Vec<StudyAxis>,
         asked: f64,
         budget: Option<f64>,
+        follow: &'a mut dyn Follow,
     ) -> Result<Self, Error> {
         let began = processor_time();
         let climbs: Vec<Climb> = ladders.into_iter().filter_map(Climb::new).collect();
         let own = climbs.iter().map(|climb| climb.own).collect();
-        let runs = vec![(own, RunRecord::of(path, &Setting::new(), registry)?)];
+        let runs = vec![(own, RunRecord::of(path, &Setting::new(), registry, follow)?)];
         let (names, together) = (Vec::new(), Vec::new());
-        Ok(Self { path, registry, asked, budget, began, climbs, names, runs, together })
+        Ok(Self { path, registry, asked, budget, began, climbs, names, runs, together, follow, broken_off: None })
     }
 
     pub(super) fn base(&self) -> &RunRecord {
@@ -159,7 +162,16 @@ impl<'a> Search<'a> {
 
     /// Raises parts alone until some of their levels together are good enough; those, and otherwise the best that time allows
     /// with why they are not.
-    pub(super) fn raise(&mut self, tell: TellSearch<'_>) -> (Vec<usize>, Option<String>) {
+    ///
+    /// # Errors
+    /// A search that was broken off.
+    pub(super) fn raise(&mut self, tell: TellSearch<'_>) -> Result<(Vec<usize>, Option<String>), Error> {
+        let found = self.raise_to_the_end(tell);
+        self.broken_off.take().map_or(Ok(found), Err)
+    }
+
+    /// The same; what is broken off comes to its end without further runs.
+    fn raise_to_the_end(&mut self, tell: TellSearch<'_>) -> (Vec<usize>, Option<String>) {
         self.together = vec![0.0; self.names.len()];
         (0..self.climbs.len()).for_each(|k| self.climb(k, None, tell));
         loop {
@@ -233,6 +245,9 @@ impl<'a> Search<'a> {
         if self.known(rungs).is_some() {
             return Ok(());
         }
+        if let Some(broken_off) = &self.broken_off {
+            return Err(broken_off.to_string());
+        }
         let sizes = self.sizes(1);
         let (seconds, rest) = (self.price(&sizes, rungs)?, self.rest().max(0.0));
         // What has been found is still to be run together.
@@ -249,9 +264,17 @@ impl<'a> Search<'a> {
         let levels = self.climbs.iter().zip(rungs).filter(|(climb, rung)| **rung != climb.own);
         let what = levels.map(|(climb, rung)| format!("{} {}", climb.name, climb.levels[*rung].label));
         tell(&what.collect::<Vec<_>>().join(", "), error.filter(|error| error.is_finite()));
-        let record = RunRecord::of(self.path, &self.setting(rungs), self.registry).map_err(|why| why.to_string())?;
-        self.runs.push((rungs.to_vec(), record));
-        Ok(())
+        match RunRecord::of(self.path, &self.setting(rungs), self.registry, &mut *self.follow) {
+            Ok(record) => {
+                self.runs.push((rungs.to_vec(), record));
+                Ok(())
+            }
+            Err(why) => {
+                let told = why.to_string();
+                self.broken_off = Some(why).filter(|why| matches!(why, Error::Cancelled { .. }));
+                Err(told)
+            }
+        }
     }
 
     /// Why nothing can be raised that `q` needs.

@@ -121,7 +121,7 @@ fn digits() -> f64 {
                 let mesh = if order == 0 { mesh } else { shuffled(&mesh, order) };
                 let meshed = on(probe(plate, [11.0, 9.0]), &mesh);
                 let (_, solution) = solve(&meshed.plate.text("static")).ok()?;
-                Some((solution.profiles[0][0].displacement[2], solution.condition))
+                Some((solution.profiles[0][0].displacement[2], solution.condition.unwrap()))
             };
             // Plates that are refused say so.
             let Some((w, condition)) = solved(0) else { continue };

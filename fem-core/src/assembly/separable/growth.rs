@@ -37,7 +37,7 @@ impl Separable {
         let parts = &self.parts;
         for number in fresh {
             let cell = &parts.interfaces.cells()[number];
-            let corners = parts.plate.plane.corners(cell.quad);
+            let corners = parts.plate.plane.cell(cell.quad);
             let domain = corners.domain();
             let at_corner: Vec<Jump> = parts
                 .plate
@@ -57,7 +57,7 @@ impl Separable {
     fn reached(&self, tractions: &BTreeMap<(usize, usize), Jump>, states: &[f64], growth: Growth) -> Vec<usize> {
         let plate = &self.parts.plate;
         let interfaces = &self.parts.interfaces;
-        let centre = |quad: usize| plate.plane.corners(quad).centroid();
+        let centre = |quad: usize| plate.plane.cell(quad).centroid();
         let mut sources: BTreeMap<usize, Vec<[f64; 2]>> = BTreeMap::new();
         let mut hurt: BTreeSet<(usize, usize)> = BTreeSet::new();
         for (number, cell) in interfaces.cells().iter().enumerate() {
@@ -99,7 +99,7 @@ impl Separable {
         let symmetry = plate.symmetry();
         let mut areas: BTreeMap<(u32, usize), f64> = BTreeMap::new();
         for cell in parts.interfaces.cells() {
-            let corners = plate.plane.corners(cell.quad);
+            let corners = plate.plane.cell(cell.quad);
             let share = cell.weight * corners.area() / corners.len() as f64;
             for column in plate.corner_columns(cell.quad) {
                 nodes.entry((column as usize, cell.face)).or_default();

@@ -16,6 +16,9 @@ const MOST_CUTS: usize = 30;
 /// Share of the energy step at which the control changes from opening to dissipation.
 const BEGUN: f64 = 0.05;
 
+/// Of an opening that is given.
+const ROUNDING: f64 = 1e-9;
+
 /// Largest deviation of the dissipated energy from what was asked, relative.
 const OFF: f64 = 0.5;
 
@@ -28,6 +31,8 @@ pub struct PathPoint {
     pub opening: f64,
     /// Work done on the plate, J.
     pub energy: Energy,
+    /// Forces that are left over, relative to the load, in the unknowns of what is open.
+    pub residual: f64,
     /// Iterations that it took.
     pub iterations: usize,
 }
@@ -140,21 +145,25 @@ impl<'a> Path<'a> {
     /// A path that was lost; what has been seen stands.
     pub fn follow(&mut self, end: PathEnd, mut see: impl FnMut(&PathPoint, &Self)) -> Result<(), PathError> {
         for _ in 0..end.steps {
-            let point = self.advance()?;
+            let point = self.advance(end.opening)?;
             see(&point, self);
-            if point.opening >= end.opening || point.energy.dissipated >= end.dissipated {
+            if point.opening >= (1.0 - ROUNDING) * end.opening || point.energy.dissipated >= end.dissipated {
                 break;
             }
         }
         Ok(())
     }
 
-    fn advance(&mut self) -> Result<PathPoint, PathError> {
+    /// Makes a step, none by opening beyond `most`.
+    fn advance(&mut self, most: f64) -> Result<PathPoint, PathError> {
         let f = self.force();
         let mut control = match self.control {
             Some(control) => control,
             None => Control::Opening(self.first_opening(&f)?),
         };
+        if let Control::Opening(opening) = &mut control {
+            *opening = opening.min(most - dot(&f, &self.u));
+        }
         for _ in 0..MOST_CUTS {
             match self.attempt(&f, control)? {
                 Some((point, u)) => {
@@ -232,7 +241,9 @@ impl<'a> Path<'a> {
                 Err(SeparableError::Unsolved(_)) => return Ok(None),
                 done => done?,
             }
-            let missing = wanted - row(&u, factor) - h * dot(f, &a);
+            // Work that the step does on what is not yet as it should be: residual forces, and what the row misses.
+            let short = wanted - row(&u, factor);
+            let missing = short - h * dot(f, &a);
             let more = missing / (h * dot(f, &b) + w);
             let mut work = 0.0;
             for ((u, a), (b, r)) in u.iter_mut().zip(&a).zip(b.iter().zip(&residual)) {
@@ -241,14 +252,16 @@ impl<'a> Path<'a> {
                 work += step * r;
             }
             factor += more;
-            let change = work.abs() + (more * (row(&u, factor) - wanted)).abs();
+            let change = work.abs() + (more * short).abs();
             if !change.is_finite() || !factor.is_finite() {
                 return Ok(None);
             }
             let scale = *first.get_or_insert(change.max(self.step * 1e-3).max(wanted.abs() * factor.abs() * 1e-6));
             if change <= ENOUGH * scale {
                 let energy = self.plate.internal(&u, &self.states, &mut force)?;
-                let point = PathPoint { load: factor, opening: dot(f, &u), energy, iterations: iteration };
+                force.iter_mut().zip(f).for_each(|(force, f)| *force = factor * f - *force);
+                let residual = self.plate.size_of(&force) / (factor.abs() * self.plate.size_of(f));
+                let point = PathPoint { load: factor, opening: dot(f, &u), energy, residual, iterations: iteration };
                 return Ok(Some((point, u)));
             }
         }

@@ -17,8 +17,26 @@ impl PlaneMesh {
 
     /// The nodes within `radius` of a place, m, with the sides and cells that lie between them.
     pub fn within(&self, centre: [f64; 2], radius: f64) -> Group {
-        let inside: Vec<bool> =
-            self.points.iter().map(|p| (p[0] - centre[0]).hypot(p[1] - centre[1]) <= radius + self.reach()).collect();
+        let reach = radius + self.reach();
+        self.between(|p| (p[0] - centre[0]).hypot(p[1] - centre[1]) <= reach)
+    }
+
+    /// The nodes within a rectangle, m, with the sides and cells that lie between them: nodes alone where it is a point, sides where it
+    /// is a line.
+    pub fn within_rectangle(&self, low: [f64; 2], high: [f64; 2]) -> Group {
+        let reach = self.reach();
+        let group = self.between(|p| (0..2).all(|d| (low[d] - reach..=high[d] + reach).contains(&p[d])));
+        let dim = match (&group.quads[..], &group.edges[..]) {
+            ([], []) => 0,
+            ([], _) => 1,
+            _ => 2,
+        };
+        Group { dim, ..group }
+    }
+
+    /// The nodes at places that are `within`, with the sides and cells that lie between them.
+    fn between(&self, within: impl Fn(&[f64; 2]) -> bool) -> Group {
+        let inside: Vec<bool> = self.points.iter().map(within).collect();
         let nodes = (0..).zip(&inside).filter(|(_, inside)| **inside).map(|(node, _)| node).collect();
         let is_inside = |node: &u32| inside[*node as usize];
         let quads = (0..).zip(&self.quads).filter(|(_, corners)| corners.iter().all(is_inside)).map(|(quad, _)| quad);

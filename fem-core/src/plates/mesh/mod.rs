@@ -16,13 +16,16 @@ pub use refine::Curves;
 pub use sides::{Side, Sides};
 pub use tiling::{Flaw, FlawKind};
 
-use crate::words::domain::{CellQuality, Corners, Domain};
+use crate::words::domain::{CellQuality, Corners, Domain, PlaneCell};
 use curve::Chains;
 use std::collections::BTreeMap;
 
 /// Distance over the diagonal of a mesh within which a node and a place that is named, or that a symmetry gives, are one: above
 /// the rounding of coordinates, and below what [`crate::plates::support::FreeMotions`] takes for a hold.
 const SAME_PLACE: f64 = 1e-8;
+
+/// Straight parts that a bent side is drawn in.
+const PARTS: u32 = 8;
 
 /// A named group of a mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -51,6 +54,9 @@ pub struct PlaneMesh {
     pub node_tags: Vec<u64>,
     /// Number of each cell in the file.
     pub quad_tags: Vec<u64>,
+    /// From the middle of the chord of a side to that of the side, m, by the ends of the side, the lower number first: a parabola.
+    /// Other sides are straight.
+    pub bends: BTreeMap<[u32; 2], [f64; 2]>,
 }
 
 impl PlaneMesh {
@@ -105,6 +111,7 @@ impl PlaneMesh {
             groups: BTreeMap::new(),
             node_tags: (1..=corners.len() as u64).collect(),
             quad_tags: vec![1],
+            bends: BTreeMap::new(),
         }
     }
 
@@ -118,14 +125,63 @@ impl PlaneMesh {
         }
     }
 
-    /// Corner positions of a cell.
+    /// Corner positions of a cell; without its bent sides.
     pub fn corners(&self, quad: usize) -> Corners<[f64; 2]> {
         self.quads[quad].map(|n| self.points[n as usize])
     }
 
+    /// A cell with its sides, which may be bent.
+    pub fn cell(&self, quad: usize) -> PlaneCell {
+        let corners = self.corners(quad);
+        if self.bends.is_empty() {
+            return corners.into();
+        }
+        let bend = |[a, b]: [u32; 2]| self.bends.get(&[a.min(b), a.max(b)]).copied().unwrap_or_default();
+        PlaneCell::bent(corners, self.quads[quad].map_sides(bend))
+    }
+
+    /// Places along a side from end to end, m: the ends, and places that divide it into short straight parts where it is bent.
+    pub fn along(&self, [a, b]: [u32; 2]) -> Vec<[f64; 2]> {
+        let [start, end] = [a, b].map(|n| self.points[n as usize]);
+        let Some(bend) = self.bends.get(&[a.min(b), a.max(b)]) else { return vec![start, end] };
+        let place = |part: u32| {
+            let t = f64::from(part) / f64::from(PARTS);
+            [0, 1].map(|d| (1.0 - t) * start[d] + t * end[d] + 4.0 * t * (1.0 - t) * bend[d])
+        };
+        std::iter::once(start).chain((1..PARTS).map(place)).chain([end]).collect()
+    }
+
+    /// A cell as a polygon, m: its corners, and places along its bent sides.
+    pub fn outline(&self, quad: usize) -> Vec<[f64; 2]> {
+        self.quads[quad]
+            .sides()
+            .flat_map(|side| self.along(side).into_iter().rev().skip(1).rev().collect::<Vec<_>>())
+            .collect()
+    }
+
+    /// All cells as polygons, by numbers of places: the nodes, m, and behind them those that divide bent sides.
+    pub fn outlines(&self) -> (Vec<[f64; 2]>, Vec<Vec<u32>>) {
+        let mut places = self.points.clone();
+        let mut firsts = BTreeMap::new();
+        for side in self.bends.keys() {
+            firsts.insert(side, places.len() as u32);
+            let along = self.along(*side);
+            places.extend(&along[1..along.len() - 1]);
+        }
+        let from = |[a, b]: [u32; 2]| {
+            let first = firsts.get(&[a.min(b), a.max(b)]);
+            let inside = first
+                .into_iter()
+                .flat_map(move |first| (1..PARTS).map(move |part| first + if a < b { part } else { PARTS - part } - 1));
+            std::iter::once(a).chain(inside)
+        };
+        let polygons = self.quads.iter().map(|quad| quad.sides().flat_map(from).collect()).collect();
+        (places, polygons)
+    }
+
     /// CellQuality of a cell.
     pub fn quality(&self, quad: usize) -> CellQuality {
-        self.corners(quad).quality()
+        self.cell(quad).quality()
     }
 
     /// Edges of one cell alone, which lies to their left.
@@ -136,10 +192,11 @@ impl PlaneMesh {
 
     /// Largest angle by which the boundary turns from edge to edge where it follows a curve, radians: turns of less than
     /// 0.7 between edges that neither begin nor end a straight line, where the circles through three nodes in a row have
-    /// one sense and about one size. 0 for a boundary of straight lines and sharp corners.
+    /// one sense and about one size. 0 for a boundary of straight lines and sharp corners; bent sides do not count.
     pub fn curved_turn(&self) -> f64 {
         let chains = Chains::of(&self.points, self.boundary());
-        chains.edges().iter().flat_map(|edge| chains.bends(*edge)).fold(0.0, |m, bend| m.max(bend.turn.abs()))
+        let straight = chains.edges().iter().filter(|[a, b]| !self.bends.contains_key(&[*a.min(b), *a.max(b)]));
+        straight.flat_map(|edge| chains.bends(*edge)).fold(0.0, |m, bend| m.max(bend.turn.abs()))
     }
 
     /// Lower and upper corner of the bounding box.

@@ -2,7 +2,7 @@
 
 use super::curve::Chains;
 use super::{Group, PlaneMesh};
-use crate::words::domain::Corners;
+use crate::words::domain::{Corners, Domain};
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
@@ -43,12 +43,15 @@ impl PlaneMesh {
     /// centre of a cell is that of its transfinite (Coons) patch, half the sum of its middles less a quarter of that of
     /// its corners. Edges of a cell that would no longer be convex (thin, beside a coarse curve) stay straight.
     ///
+    /// Sides that the mesh itself says are bent stay what they are, with either: the parts cover the same places.
+    ///
     /// Groups keep their meaning: of nodes the same nodes, of edges their halves, of cells their quarters, each with all
     /// nodes. Old nodes keep their place and tag, new ones count on from the largest. The quarters of the cell with tag t
     /// have the tags 10 t + 1 to 10 t + 4, in the order of its corners, so that they name the cell they come from; tags
     /// that would not fit stay at the largest number there is.
     pub fn refined(&self, curves: Curves) -> Self {
         let bends = match curves {
+            _ if !self.bends.is_empty() => self.bends.iter().map(|(ends, bend)| (*ends, *bend)).collect(),
             Curves::Kept => self.convex_bends(),
             Curves::Straight => HashMap::new(),
         };
@@ -67,6 +70,9 @@ impl PlaneMesh {
                 fine.points.push(corners.coons_centre(middles.map(|n| fine.points[n as usize])));
                 fine.points.len() as u32 - 1
             });
+            if !self.bends.is_empty() {
+                fine.bends.extend(self.bends_of_parts(quad, middles, &quarters));
+            }
             fine.quads.extend(quarters);
             fine.quad_tags.extend((1..=4).map(|k| tag.saturating_mul(10).saturating_add(k)));
         }
@@ -76,6 +82,45 @@ impl PlaneMesh {
         let groups = self.groups.iter().map(|(name, group)| (name.clone(), group.refined(&middles, &fine.quads)));
         fine.groups = groups.collect();
         fine
+    }
+
+    /// How the sides of the quarters of a cell are bent: those on a side as a part of its parabola, those inside as the map of the
+    /// cell bends them.
+    fn bends_of_parts(
+        &self,
+        quad: &Corners<u32>,
+        middles: Corners<u32>,
+        quarters: &[Corners<u32>; 4],
+    ) -> Vec<([u32; 2], [f64; 2])> {
+        let bends = quad.map_sides(|edge| self.bends.get(&key(edge)).copied().unwrap_or_default());
+        let n = quad.len();
+        let mut parts = Vec::new();
+        let mut put = |ends: [u32; 2], bend: [f64; 2]| {
+            // Half of a parabola is bent by a quarter.
+            if bend != [0.0; 2] {
+                parts.push((key(ends), bend.map(|b| 0.25 * b)));
+            }
+        };
+        for (i, [a, b]) in quad.sides().enumerate() {
+            put([a, middles[i]], bends[i]);
+            put([middles[i], b], bends[i]);
+        }
+        match quad.domain() {
+            Domain::Quadrilateral => {
+                let centre = quarters[0][2];
+                for i in 0..n {
+                    // The line from the middle of a side to that across runs along the sides between.
+                    put([middles[i], centre], mean(bends[(i + 1) % n], bends[(i + 3) % n]));
+                }
+            }
+            Domain::Triangle => {
+                for i in 0..n {
+                    // Beside corner i + 2: parallel to the side across, number i.
+                    put([middles[(i + 1) % n], middles[(i + 2) % n]], bends[i]);
+                }
+            }
+        }
+        parts
     }
 
     /// The middle of an edge, on its curve where `bends` says how far that is.

@@ -20,6 +20,7 @@ fn ring(inner: &[[f64; 2]], outer: &[[f64; 2]]) -> PlaneMesh {
         groups: [("inner".to_owned(), edges(0)), ("outer".to_owned(), edges(n))].into(),
         node_tags: (1..=2 * u64::from(n)).collect(),
         quad_tags: (1..=u64::from(n)).collect(),
+        ..PlaneMesh::default()
     }
 }
 
@@ -266,5 +267,52 @@ proptest! {
         // Twice as many edges along the boundary, each in the place of half an old one.
         prop_assert_eq!(fine.boundary().len(), 2 * mesh.boundary().len());
         prop_assert_eq!(fine.points.len(), 9 * 7);
+    }
+}
+
+/// Parts of cells with bent sides lie where the cells' maps put them.
+#[test]
+fn bent_sides_stay_the_same_curves_when_cells_are_divided() {
+    let mut mesh = PlaneMesh {
+        points: vec![[0.0, 0.0], [2.0, 0.1], [2.2, 1.9], [0.1, 2.0], [3.6, 1.0]],
+        quads: vec![[0, 1, 2, 3].into(), [1, 4, 2].into()],
+        node_tags: (1..=5).collect(),
+        quad_tags: vec![1, 2],
+        ..PlaneMesh::default()
+    };
+    mesh.bends = [([0, 1], [0.1, -0.2]), ([1, 2], [0.15, 0.05]), ([2, 4], [0.1, 0.1])].into();
+    for curves in [Curves::Kept, Curves::Straight] {
+        let fine = mesh.refined(curves);
+        assert!((fine.area() / mesh.area() - 1.0).abs() < 1e-14);
+        for (quad, part) in (0..2).flat_map(|quad| (0..4).map(move |k| (quad, 4 * quad + k))) {
+            let (whole, part) = (mesh.cell(quad), fine.cell(part));
+            for at in part.domain().points(3).iter().map(|point| point.at) {
+                // The map of a part is that of the cell, of natural coordinates that are linear in its own.
+                let corners = part.map(|p| whole.locate(p).unwrap());
+                let expected = whole.position(corners.position(at));
+                let got = part.position(at);
+                assert!((0..2).all(|d| (got[d] - expected[d]).abs() < 1e-12), "{got:?} {expected:?}");
+            }
+        }
+    }
+    assert_eq!(mesh.refined(Curves::Kept).bends.len(), 6 + 2 + 4);
+}
+
+/// The outline of a cell passes through the middle of a bent side, seen from either cell; its places by number are the same.
+#[test]
+fn bent_sides_are_drawn_bent() {
+    let mut mesh = PlaneMesh::rectangle(&[0.0, 1.0, 2.0], &[0.0, 1.0]);
+    assert_eq!(mesh.outline(0), mesh.corners(0).to_vec());
+    assert_eq!(mesh.outlines().0, mesh.points);
+    mesh.bends.insert([1, 4], [0.25, 0.0]);
+    let (places, polygons) = mesh.outlines();
+    assert_eq!(places.len(), mesh.points.len() + 7);
+    for (quad, polygon) in polygons.iter().enumerate() {
+        let outline = mesh.outline(quad);
+        assert_eq!(outline.len(), 11);
+        assert!(outline.contains(&[1.25, 0.5]));
+        let apart =
+            |(p, n): (&[f64; 2], &u32)| (0..2).map(|d| (p[d] - places[*n as usize][d]).abs()).fold(0.0, f64::max);
+        assert!(outline.iter().zip(polygon).map(apart).fold(0.0, f64::max) < 1e-15, "{quad}");
     }
 }

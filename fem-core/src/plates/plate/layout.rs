@@ -61,7 +61,8 @@ impl Columns {
                 let ends = ordered(ends.map(|i| quad[i]));
                 numbers.entry(ends).or_insert_with(|| {
                     edges.push(ends);
-                    positions.push(middle(&ends));
+                    let (straight, bend) = (middle(&ends), plane.bends.get(&ends));
+                    positions.push(bend.map_or(straight, |bend| [0, 1].map(|d| straight[d] + bend[d])));
                     positions.len() as u32 - 1
                 });
             }

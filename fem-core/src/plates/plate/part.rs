@@ -13,12 +13,16 @@ impl Plate {
         vertices.sort_unstable();
         vertices.dedup();
         let number = |vertex: u32| vertices.partition_point(|v| *v < vertex) as u32;
+        let is_own = |end: &u32| vertices.binary_search(end).is_ok();
+        let own = whole.bends.iter().filter(|(ends, _)| ends.iter().all(is_own));
+        let bends = own.map(|(ends, bend)| (ends.map(number), *bend));
         let plane = PlaneMesh {
             points: vertices.iter().map(|v| whole.points[*v as usize]).collect(),
             quads: quads.iter().map(|q| whole.quads[*q as usize].map(number)).collect(),
             groups: BTreeMap::new(),
             node_tags: vertices.iter().map(|v| whole.node_tags[*v as usize]).collect(),
             quad_tags: quads.iter().map(|q| whole.quad_tags[*q as usize]).collect(),
+            bends: bends.collect(),
         };
         let Columns { positions: columns, of_quads: quad_columns, starts, edges } = Columns::of(&plane, &self.layouts);
         let mut part = Self {
@@ -26,8 +30,8 @@ impl Plate {
             plane,
             columns,
             levels: self.levels.clone(),
-            stacks: self.stacks.clone(),
-            regions: quads.iter().map(|q| self.regions[*q as usize]).collect(),
+            regions: self.regions.clone(),
+            region_of: quads.iter().map(|q| self.region_of[*q as usize]).collect(),
             layouts: self.layouts.clone(),
             z_derivatives: self.z_derivatives,
             quad_columns,
@@ -40,10 +44,10 @@ impl Plate {
         part.number();
         let mut unknowns = vec![0; part.ndof()];
         let (mut own, mut of_whole) = (Vec::new(), Vec::new());
-        for cell in 0..part.cells() {
+        for cell in part.cell_numbers() {
             let (quad, layer) = part.place(cell);
             part.cell_dofs(cell, &mut own);
-            self.cell_dofs(quads[quad] as usize * self.layers() + layer, &mut of_whole);
+            self.cell_dofs(self.cell_over(quads[quad] as usize, layer), &mut of_whole);
             own.iter().zip(&of_whole).for_each(|(own, whole)| unknowns[*own] = *whole);
         }
         (part, unknowns)

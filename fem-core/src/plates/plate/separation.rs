@@ -75,7 +75,7 @@ impl Plate {
                 continue;
             }
             let node = self.node(self.columns_of_quad(quad)[*place] as usize, face * self.pitch);
-            debug_assert_eq!(node, self.cell_node(quad * self.layers() + face - 1, i));
+            debug_assert_eq!(node, self.cell_node(self.cell_over(quad, face - 1), i));
             let first = self.offsets[node];
             let above = if self.is_separable(node) { first + nd } else { first };
             for (k, _) in self.info().dofs.iter().enumerate().filter(|(_, dof)| dof.m() != 3) {

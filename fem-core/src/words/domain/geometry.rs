@@ -13,6 +13,34 @@ pub struct PlaneMap {
     pub inverse: [[f64; 2]; 2],
 }
 
+impl PlaneMap {
+    /// Of this Jacobian.
+    pub(super) fn of(j: [[f64; 2]; 2]) -> Self {
+        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+        Self { jacobian: j, det, inverse: [[j[1][1] / det, -j[1][0] / det], [-j[0][1] / det, j[0][0] / det]] }
+    }
+}
+
+impl Domain {
+    /// The point itself if it lies in the domain, or the nearest in it if that is not farther than `near`.
+    pub(super) fn inside(self, [r, s]: [f64; 2], near: f64) -> Option<[f64; 2]> {
+        match self {
+            Self::Quadrilateral => {
+                let inside = r.abs() <= 1.0 + near && s.abs() <= 1.0 + near;
+                inside.then(|| [r.clamp(-1.0, 1.0), s.clamp(-1.0, 1.0)])
+            }
+            Self::Triangle => {
+                if !(r >= -1.0 - near && s >= -1.0 - near && r + s <= near) {
+                    return None;
+                }
+                let [r, s] = [r.max(-1.0), s.max(-1.0)];
+                let beyond = (r + s).max(0.0);
+                Some([r - 0.5 * beyond, s - 0.5 * beyond])
+            }
+        }
+    }
+}
+
 /// Shape measures of a plane cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellQuality {
@@ -28,7 +56,7 @@ pub struct CellQuality {
 }
 
 /// How far outside a cell a point still counts as in it, of the cell's size.
-const NEAR: f64 = 1e-9;
+pub(super) const NEAR: f64 = 1e-9;
 
 impl Corners<[f64; 2]> {
     /// The bilinear or linear map at (r, s).
@@ -49,8 +77,7 @@ impl Corners<[f64; 2]> {
                 j = [b, c].map(|p| [0.5 * (p[0] - a[0]), 0.5 * (p[1] - a[1])]);
             }
         }
-        let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-        PlaneMap { jacobian: j, det, inverse: [[j[1][1] / det, -j[1][0] / det], [-j[0][1] / det, j[0][0] / det]] }
+        PlaneMap::of(j)
     }
 
     /// Position of a natural point.
@@ -69,13 +96,7 @@ impl Corners<[f64; 2]> {
             Domain::Triangle => {
                 let PlaneMap { inverse, .. } = self.plane_map(0.0, 0.0);
                 let [x, y] = [0, 1].map(|d| p[d] - self[0][d]);
-                let [r, s] = inverse.map(|row| row[0] * x + row[1] * y - 1.0);
-                if !(r >= -1.0 - NEAR && s >= -1.0 - NEAR && r + s <= NEAR) {
-                    return None;
-                }
-                let [r, s] = [r.max(-1.0), s.max(-1.0)];
-                let beyond = (r + s).max(0.0);
-                Some([r - 0.5 * beyond, s - 0.5 * beyond])
+                self.domain().inside(inverse.map(|row| row[0] * x + row[1] * y - 1.0), NEAR)
             }
         }
     }
@@ -112,8 +133,7 @@ impl Corners<[f64; 2]> {
                 break;
             }
         }
-        let inside = r.abs() <= 1.0 + NEAR && s.abs() <= 1.0 + NEAR;
-        inside.then(|| [r.clamp(-1.0, 1.0), s.clamp(-1.0, 1.0)])
+        self.domain().inside([r, s], NEAR)
     }
 
     /// Area, m²: negative for a clockwise cell.

@@ -5,10 +5,12 @@
 
 mod corners;
 mod geometry;
+mod plane_cell;
 mod rule;
 
 pub use corners::Corners;
 pub use geometry::{CellQuality, PlaneMap};
+pub use plane_cell::PlaneCell;
 
 /// Reference domain of a plane cell, in the natural coordinates (r, s).
 ///

@@ -1,4 +1,4 @@
-use super::{Corners, Domain};
+use super::{Corners, Domain, PlaneCell};
 
 const BOTH: [Domain; 2] = [Domain::Quadrilateral, Domain::Triangle];
 
@@ -131,4 +131,51 @@ fn quality_of_known_triangles() {
     assert_eq!((right.quality().area, right.centroid()), (6.0, [1.0, 4.0 / 3.0]));
     assert!((right.quality().aspect - 5.0 / 3.0).abs() < 1e-14);
     assert!(Corners::from([[0.0, 0.0], [0.0, 4.0], [3.0, 0.0]]).quality().scaled_jacobian < 0.0);
+}
+
+/// Circular sectors: a quadrilateral and a triangle with one side on a circle.
+fn bent() -> [PlaneCell; 2] {
+    let at = |radius: f64, angle: f64| [radius * angle.cos(), radius * angle.sin()];
+    let (low, high) = (0.2, 0.6);
+    let bend = |radius: f64| {
+        let (on, chord) = (at(radius, 0.4), [0, 1].map(|d| 0.5 * (at(radius, low)[d] + at(radius, high)[d])));
+        [0, 1].map(|d| on[d] - chord[d])
+    };
+    let ring = Corners::from([at(1.0, low), at(2.0, low), at(2.0, high), at(1.0, high)]);
+    let sector = Corners::from([[0.0, 0.0], at(2.0, low), at(2.0, high)]);
+    [
+        PlaneCell::bent(ring, [[0.0; 2], bend(2.0), [0.0; 2], bend(1.0)].into()),
+        PlaneCell::bent(sector, [[0.0; 2], bend(2.0), [0.0; 2]].into()),
+    ]
+}
+
+#[test]
+fn bent_cells_have_the_area_of_their_map_and_find_their_points() {
+    for cell in bent() {
+        let sum: f64 = cell.domain().points(6).iter().map(|p| p.weight() * cell.plane_map(p.at[0], p.at[1]).det).sum();
+        assert!((sum / cell.area() - 1.0).abs() < 1e-14, "{sum} {}", cell.area());
+        // Of the sectors 0.4 wide: parabolas instead of arcs.
+        let exact = if cell.len() == 4 { 0.2 * 3.0 } else { 0.2 * 4.0 };
+        assert!((cell.area() / exact - 1.0).abs() < 1e-4);
+        assert!(((*cell).area() / exact - 1.0).abs() > 1e-2);
+        assert!(cell.is_regular() && cell.quality().scaled_jacobian > 0.1);
+        for point in cell.domain().points(5) {
+            let found = cell.locate(cell.position(point.at)).unwrap();
+            assert!((0..2).all(|d| (found[d] - point.at[d]).abs() < 1e-12), "{found:?} {:?}", point.at);
+            let (map, d) = (cell.plane_map(point.at[0], point.at[1]), 1e-6);
+            for k in 0..2 {
+                let step = |sign: f64| cell.position([0, 1].map(|i| point.at[i] + if i == k { sign * d } else { 0.0 }));
+                let slope = [0, 1].map(|i| (step(1.0)[i] - step(-1.0)[i]) / (2.0 * d));
+                assert!((0..2).all(|i| (slope[i] - map.jacobian[k][i]).abs() < 1e-8));
+            }
+        }
+        // Between the chord and the arc, and beyond the arc.
+        assert!(cell.locate([1.99 * 0.4_f64.cos(), 1.99 * 0.4_f64.sin()]).is_some());
+        assert!(cell.locate([2.01 * 0.4_f64.cos(), 2.01 * 0.4_f64.sin()]).is_none());
+    }
+    let straight = PlaneCell::bent(Corners::from([[0.0; 2], [1.0, 0.0], [0.0, 1.0]]), [[0.0; 2]; 3].into());
+    assert_eq!(straight.bends(), None);
+    // A side that reaches beyond the one across.
+    let folded = PlaneCell::bent(*bent()[0], [[0.0; 2], [-1.3, -0.5], [0.0; 2], [0.0; 2]].into());
+    assert!(!folded.is_regular());
 }

@@ -4,16 +4,17 @@ mod modes;
 mod permanent;
 mod solid;
 mod solve;
+mod split;
 
 use super::hahn_tsai::HahnTsai;
 use fem_core::energy::Energy;
 use fem_core::failure::UnmetCondition;
-use fem_core::material::{Strength, Toughness};
+use fem_core::material::{Elastic, Strength, Toughness};
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::ply_law::{LawError, LawInfo, LawPoint, PlyLaw, PlyResponse};
 use fem_core::tensor::{Matrix6, Ply, Strain6, Stress6};
-use modes::{BRITTLE, Modes, State};
-use permanent::{Permanent, Sheared};
+use modes::{BRITTLE, Matrix, Modes, State};
+use permanent::{Permanent, Sheared, Yielding};
 use solid::{Damage, Solid};
 use solve::{Found, released};
 
@@ -67,8 +68,10 @@ pub struct CrackBand {
 pub enum Breaks {
     /// Fibres and matrix.
     All,
-    /// Fibres; the matrix stays elastic, and with it all shears.
+    /// Fibres; the matrix never cracks.
     Fibres,
+    /// Fibres, and the matrix by cracks along them and through the thickness of the ply.
+    Splits,
 }
 
 /// What the law remembers.
@@ -135,26 +138,43 @@ impl CrackBand {
     fn widest(&self, point: &LawPoint<'_>) -> [f64; 6] {
         let (e, toughness) = (&point.material.elastic, &point.material.toughness);
         let shear = toughness.get(Toughness::Gms).unwrap_or(toughness.gmt());
+        let (opened, cracked) = self.shares(e);
         let (across, g) = (e.e2.min(e.e3), e.g12.min(e.g13));
         let energies = [
             e.e1 * toughness.gft(),
             e.e1 * toughness.gfc(),
-            across * toughness.gmt(),
+            across * toughness.gmt() / opened[1],
             across * toughness.gmc(),
-            g * shear,
-            e.g23 * shear,
+            g * shear / cracked[0],
+            e.g23 * shear / cracked[1],
         ];
         std::array::from_fn(|k| {
             let x = point.material.strengths.get(LIMITS[k].0).unwrap_or(f64::NAN);
-            if k < self.breaking() { 2.0 * BRITTLE * energies[k] / (x * x) } else { f64::INFINITY }
+            if self.needs(k) { 2.0 * BRITTLE * energies[k] / (x * x) } else { f64::INFINITY }
         })
     }
 
-    /// How many of [`LIMITS`] there are.
-    fn breaking(&self) -> usize {
+    /// Length over which a crack of each of [`LIMITS`] is smeared, m.
+    fn lengths(&self, point: &LawPoint<'_>) -> [f64; 6] {
+        let matrix = if self.breaks == Breaks::Splits { point.thickness.min(point.length) } else { point.length };
+        [point.length, point.length, matrix, matrix, matrix, matrix]
+    }
+
+    /// Shares of the normal stresses and of the shears 12, 23, 13 that damage takes at most.
+    fn shares(&self, e: &Elastic) -> ([f64; 3], [f64; 3]) {
         match self.breaks {
-            Breaks::All => LIMITS.len(),
-            Breaks::Fibres => 2,
+            Breaks::All => ([1.0; 3], [1.0; 3]),
+            Breaks::Fibres => ([1.0; 3], [0.0; 3]),
+            Breaks::Splits => split::shares(e),
+        }
+    }
+
+    /// Which of [`LIMITS`] there are.
+    fn needs(&self, limit: usize) -> bool {
+        match self.breaks {
+            Breaks::All => true,
+            Breaks::Fibres => limit < 2,
+            Breaks::Splits => LIMITS[limit].0 != Strength::Yc,
         }
     }
 
@@ -163,30 +183,44 @@ impl CrackBand {
         let moduli = [e.e1, e.e2, e.e3];
         let (c12, c13, c23) = (-e.nu12, -e.nu13, -e.nu23);
         let coupling = [[0.0, c12, c13], [c12 * e.e2 / e.e1, 0.0, c23], [c13 * e.e3 / e.e1, c23 * e.e3 / e.e2, 0.0]];
+        let lengths = self.lengths(point);
         let mut strengths = [x.xt(), x.xc(), x.yt(), x.yc(), x.s12(), x.s23()];
         if self.lower_strengths {
-            for (x, widest) in strengths.iter_mut().zip(self.widest(point)) {
-                *x *= (widest / point.length).min(1.0).sqrt();
+            for ((x, widest), length) in strengths.iter_mut().zip(self.widest(point)).zip(lengths) {
+                *x *= (widest / length).min(1.0).sqrt();
             }
         }
         let [xt, xc, yt, yc, sl, st] = strengths;
-        let soft = [toughness.gft(), toughness.gfc(), toughness.gmt(), toughness.gmc()].map(|g| point.length / g);
-        let soft_shear = toughness.get(Toughness::Gms).map_or(soft, |g| [point.length / g; 4]);
+        let tough = [toughness.gft(), toughness.gfc(), toughness.gmt(), toughness.gmc()];
+        let soft = std::array::from_fn(|k| lengths[k] / tough[k]);
+        let soft_shear = toughness.get(Toughness::Gms).map_or(soft, |g| [lengths[2] / g; 4]);
+        let (opened, cracked) = self.shares(e);
         Modes {
-            solid: Solid { e: moduli, coupling, g: [e.g12, e.g23, e.g13] },
+            solid: Solid { e: moduli, coupling, g: [e.g12, e.g23, e.g13], opened },
             strength: [xt, xc, yt, yc],
             shear: [sl, st],
             soft,
             soft_shear,
-            matrix: self.breaks == Breaks::All,
+            matrix: match self.breaks {
+                Breaks::All => Matrix::Cracks,
+                Breaks::Fibres => Matrix::Sound,
+                Breaks::Splits => Matrix::Splits,
+            },
+            cracked,
         }
+    }
+
+    /// How shears along the fibres yield, if they do.
+    fn yielding(&self, modes: &Modes) -> Option<Yielding> {
+        let on = self.breaks != Breaks::All;
+        self.alpha.map(|alpha| Yielding { alpha, strength: modes.shear[0], on })
     }
 
     /// Effective shears along the fibres.
     fn sheared(&self, modes: &Modes, old: &Memory, strain: [f64; 2]) -> Sheared {
         let [g, _, g13] = modes.solid.g;
-        match self.alpha {
-            Some(alpha) => old.permanent.shear(alpha, alpha * modes.shear[0].powi(3), g, strain),
+        match self.yielding(modes) {
+            Some(yielding) => old.permanent.shear(&yielding, g, strain),
             None => Sheared {
                 t: [g * strain[0], g13 * strain[1]],
                 tangent: [[g, 0.0], [0.0, g13]],
@@ -208,7 +242,15 @@ impl PlyLaw for CrackBand {
         const FIBRES: LawInfo = LawInfo { strengths: &[Xt, Xc], toughness: &[Toughness::Gft, Toughness::Gfc], ..ALL };
         const ALL_PERMANENT: LawInfo = LawInfo { state: Memory::NAMES, ..ALL };
         const FIBRES_PERMANENT: LawInfo = LawInfo { state: Memory::NAMES, strengths: &[Xt, Xc, S12], ..FIBRES };
+        const SPLITS: LawInfo = LawInfo {
+            strengths: &[Xt, Xc, Yt, S12, S23],
+            toughness: &[Toughness::Gft, Toughness::Gfc, Toughness::Gmt],
+            ..ALL
+        };
+        const SPLITS_PERMANENT: LawInfo = LawInfo { state: Memory::NAMES, ..SPLITS };
         match (self.breaks, self.alpha) {
+            (Breaks::Splits, None) => &SPLITS,
+            (Breaks::Splits, Some(_)) => &SPLITS_PERMANENT,
             (Breaks::All, None) => &ALL,
             (Breaks::All, Some(_)) => &ALL_PERMANENT,
             (Breaks::Fibres, None) => &FIBRES,
@@ -231,22 +273,33 @@ impl PlyLaw for CrackBand {
             return unmet("g12 = g13", reason, [("g12", e.g12, "Pa"), ("g13", e.g13, "Pa")]);
         }
         let widest = self.widest(point);
-        let tightest = (0..widest.len()).min_by(|a, b| widest[*a].total_cmp(&widest[*b])).unwrap_or(0);
-        if !self.lower_strengths && !(point.length <= widest[tightest]) {
-            let reason = "a wider one stores more before it breaks than the crack takes, and snaps back; refine the mesh, give a \
-                          larger toughness, or say lower_strengths = true";
-            let values = [("cell", point.length, "m"), ("widest", widest[tightest], "m")];
+        let lengths = self.lengths(point);
+        let room = |k: &usize| widest[*k] / lengths[*k];
+        let tightest = (0..widest.len()).min_by(|a, b| room(a).total_cmp(&room(b))).unwrap_or(0);
+        if !self.lower_strengths && !(lengths[tightest] <= widest[tightest]) {
+            let (what, reason) = if lengths[tightest] < point.length {
+                let reason = "splits stand as far apart as plies of one angle are thick, which counts as the cell here: thicker plies \
+                              store more before they split than the cracks take; give a larger toughness, or say \
+                              lower_strengths = true";
+                ("plies", reason)
+            } else {
+                let reason = "a wider one stores more before it breaks than the crack takes, and snaps back; refine the mesh, \
+                              give a larger toughness, or say lower_strengths = true";
+                ("cell", reason)
+            };
+            let values = [(what, lengths[tightest], "m"), ("widest", widest[tightest], "m")];
             return unmet(LIMITS[tightest].1, reason, values);
         }
         Ok(())
     }
 
     fn warning(&self, point: &LawPoint<'_>) -> Option<String> {
-        let widest = self.widest(point);
-        let lowered = LIMITS.iter().zip(widest).filter(|(_, widest)| self.lower_strengths && point.length > *widest);
-        let lowered = lowered.filter_map(|((which, _), widest)| {
+        let (widest, lengths) = (self.widest(point), self.lengths(point));
+        let all = LIMITS.iter().zip(widest).zip(lengths);
+        let lowered = all.filter(|((_, widest), length)| self.lower_strengths && length > widest);
+        let lowered = lowered.filter_map(|(((which, _), widest), length)| {
             let x = point.material.strengths.get(*which)? * 1e-6;
-            Some(format!("{} from {x:.1} to {:.1} MPa", which.name(), x * (widest / point.length).sqrt()))
+            Some(format!("{} from {x:.1} to {:.1} MPa", which.name(), x * (widest / length).sqrt()))
         });
         let lowered: Vec<_> = lowered.collect();
         if !lowered.is_empty() {
@@ -258,7 +311,7 @@ impl PlyLaw for CrackBand {
             ));
         }
         let unique = Self::unique_compression(point);
-        (self.breaks == Breaks::All && point.length > unique).then(|| {
+        (self.breaks == Breaks::All && self.lengths(point)[3] > unique).then(|| {
             format!(
                 "in cells of {:.3} mm the matrix breaks at once where it is compressed across the fibres with its other strains \
                  held; cells of {:.3} mm or a larger Gmc would do without",
@@ -288,14 +341,18 @@ impl PlyLaw for CrackBand {
             lost += released(&modes, [&old.damage, &damage], [&old.state, &state]);
         }
         if sheared.left.way > old.permanent.way {
-            let before = self.alpha.map_or(0.0, |alpha| super::shear::lost(alpha, old.permanent.way));
-            lost += 0.5 * (left + left_before) * (sheared.lost - before);
+            let before = self.yielding(&modes).map_or(0.0, |yielding| yielding.lost(old.permanent.way));
+            // Shears yield in the proportion of their stresses.
+            let [along, _, through] = t.map(|t| t * t);
+            let of = |k: usize| 0.5 * (left[k] + left_before[k]);
+            lost += (along * of(0) + through * of(2)) / (along + through) * (sheared.lost - before);
         }
         let normal: [f64; 3] = std::array::from_fn(|i| found.effective.left[i] * state.h[i]);
-        let stored = 0.5 * (0..3).map(|i| normal[i] * e[i]).sum::<f64>() + left * modes.sheared(&state);
+        let stored = 0.5 * (0..3).map(|i| normal[i] * e[i]).sum::<f64>();
+        let stored = stored + modes.relieved(&state, &left);
         if let Some(tangent) = tangent {
             *tangent =
-                if damage == [0.0; 4] { *point.stiffness } else { found.tangent(&modes, left, &sheared.tangent) };
+                if damage == [0.0; 4] { *point.stiffness } else { found.tangent(&modes, &left, &sheared.tangent) };
             for (i, row) in [(0, 3), (1, 5)] {
                 if damage == [0.0; 4] {
                     tangent[row][3] = sheared.tangent[i][0];
@@ -304,7 +361,7 @@ impl PlyLaw for CrackBand {
             }
         }
         Memory { damage, lost, state, permanent: sheared.left }.write(new);
-        let [t12, t23, t13] = t.map(|t| left * t);
+        let [t12, t23, t13] = std::array::from_fn(|k| left[k] * t[k]);
         let stress = Stress6::new([normal[0], normal[1], normal[2], t12, t23, t13]);
         Ok(PlyResponse { stress, energy: Energy { stored, dissipated: lost } })
     }
@@ -338,7 +395,14 @@ const LOWER: ParamInfo = ParamInfo::flag(
 const BREAKS: ParamInfo = ParamInfo::word(
     "breaks",
     "what breaks",
-    &[("all", "fibres and matrix"), ("fibres", "fibres, in cells as wide as these allow; the matrix stays elastic")],
+    &[
+        ("all", "fibres and matrix"),
+        ("fibres", "fibres, in cells as wide as these allow; the matrix does not crack"),
+        (
+            "splits",
+            "fibres, and the matrix by cracks along them and through their ply, as far apart as plies of one angle are thick",
+        ),
+    ],
 );
 
 impl Plugin for CrackBand {
@@ -352,7 +416,11 @@ impl Plugin for CrackBand {
 
     fn build(params: &Params) -> Result<Built, ParamError> {
         let alpha = if params.has(&ALPHA) { Some(params.number(&ALPHA)?) } else { None };
-        let breaks = if params.word(&BREAKS)? == "fibres" { Breaks::Fibres } else { Breaks::All };
+        let breaks = match params.word(&BREAKS)? {
+            "fibres" => Breaks::Fibres,
+            "splits" => Breaks::Splits,
+            _ => Breaks::All,
+        };
         Ok(Built::PlyLaw(Box::new(Self { alpha, breaks, lower_strengths: params.flag(&LOWER)? })))
     }
 }

@@ -22,11 +22,6 @@ impl State {
     pub(super) fn pull(&self) -> f64 {
         self.h[1] + self.h[2]
     }
-
-    /// The fibre's and the matrix's mode.
-    pub(super) fn modes(&self) -> [usize; 2] {
-        [usize::from(self.h[0] < 0.0), 2 + usize::from(self.pull() < 0.0)]
-    }
 }
 
 /// Derivatives with respect to h and t.
@@ -34,6 +29,17 @@ impl State {
 pub(super) struct Slope {
     pub(super) by_h: [f64; 3],
     pub(super) by_t: [f64; 3],
+}
+
+/// How the matrix breaks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Matrix {
+    /// Not at all.
+    Sound,
+    /// In tension and compression, by cracks of every direction.
+    Cracks,
+    /// In tension, by cracks along the fibres and through the thickness of the ply.
+    Splits,
 }
 
 /// Strengths and toughnesses at a point.
@@ -47,17 +53,31 @@ pub(super) struct Modes {
     /// L/G of each mode for normal stresses, and for shears.
     pub(super) soft: [f64; 4],
     pub(super) soft_shear: [f64; 4],
-    /// Whether the matrix breaks.
-    pub(super) matrix: bool,
+    pub(super) matrix: Matrix,
+    /// Share of the shears 12, 23, 13 that cracks of the matrix take at most.
+    pub(super) cracked: [f64; 3],
 }
 
 impl Modes {
+    /// The fibre's and the matrix's mode.
+    pub(super) fn of(&self, s: &State) -> [usize; 2] {
+        let pressed = self.matrix != Matrix::Splits && s.pull() < 0.0;
+        [usize::from(s.h[0] < 0.0), 2 + usize::from(pressed)]
+    }
+
     /// How much of its strength a mode has used: 1 at onset, of degree 1 in the stresses.
     pub(super) fn exposure(&self, mode: usize, s: &State) -> f64 {
         match mode {
             0 => s.h[0] / self.strength[0],
             1 => -s.h[0] / self.strength[1],
-            _ if !self.matrix => 0.0,
+            _ if self.matrix == Matrix::Sound => 0.0,
+            _ if self.matrix == Matrix::Splits => {
+                let pull = s.h[1].max(0.0) / self.strength[2];
+                let [along, across] = self.shear;
+                let used =
+                    if mode == 2 { pull * pull + (s.t[0] / along).powi(2) + (s.t[1] / across).powi(2) } else { 0.0 };
+                used.sqrt()
+            }
             2 => {
                 let pull = s.pull() / self.strength[2];
                 (pull * pull + self.shears(s)).sqrt()
@@ -92,6 +112,10 @@ impl Modes {
         }
         let ([_, h2, h3], [t12, t23, t13], u) = (s.h, s.t, s.pull());
         let [along, across] = self.shear.map(|s| 1.0 / (s * s));
+        if self.matrix == Matrix::Splits {
+            let by_pull = h2.max(0.0) / (self.strength[2] * self.strength[2] * e);
+            return Slope { by_h: [0.0, by_pull, 0.0], by_t: [t12 * along / e, t23 * across / e, 0.0] };
+        }
         // Of half the squares of shears, and of the pull.
         let (of_shears, of_pull) = if mode == 2 {
             (1.0 / e, u / (self.strength[2] * self.strength[2] * e))
@@ -110,27 +134,35 @@ impl Modes {
     pub(super) fn released(&self, mode: usize, s: &State) -> [f64; 2] {
         let normal = |i: usize| {
             let of_mode = if compresses(mode) { s.h[i] < 0.0 } else { s.h[i] > 0.0 };
-            if of_mode { 0.5 * s.h[i] * s.h[i] / self.solid.e[i] } else { 0.0 }
+            if of_mode { self.solid.opened[i] * 0.5 * s.h[i] * s.h[i] / self.solid.e[i] } else { 0.0 }
         };
         if mode < 2 {
             return [normal(0), 0.0];
         }
-        [normal(1) + normal(2), self.sheared(s)]
+        [normal(1) + normal(2), self.relieved(s, &self.cracked)]
     }
 
-    /// What damages leave of the shears.
-    pub(super) fn shears_left(&self, damage: &Damage) -> f64 {
-        if self.matrix { damage.iter().map(|d| 1.0 - d).product() } else { 1.0 }
+    /// What damages leave of each shear.
+    pub(super) fn shears_left(&self, damage: &Damage) -> [f64; 3] {
+        match self.matrix {
+            Matrix::Sound => [1.0; 3],
+            Matrix::Cracks => [damage.iter().map(|d| 1.0 - d).product(); 3],
+            Matrix::Splits => self.cracked.map(|share| 1.0 - share * damage[2]),
+        }
     }
 
-    /// The same without the damage of a mode; zero where that does nothing to the shears.
-    pub(super) fn shears_left_by_others(&self, damage: &Damage, mode: usize) -> f64 {
-        if self.matrix { (0..4).filter(|k| *k != mode).map(|k| 1.0 - damage[k]).product() } else { 0.0 }
+    /// What the damage of a mode takes of each shear, by its amount.
+    pub(super) fn takes(&self, damage: &Damage, mode: usize) -> [f64; 3] {
+        match self.matrix {
+            Matrix::Cracks => [(0..4).filter(|k| *k != mode).map(|k| 1.0 - damage[k]).product(); 3],
+            Matrix::Splits if mode == 2 => self.cracked,
+            _ => [0.0; 3],
+        }
     }
 
-    /// Energy of the effective shears, J/m³.
-    pub(super) fn sheared(&self, s: &State) -> f64 {
-        (0..3).map(|k| 0.5 * s.t[k] * s.t[k] / self.solid.g[k]).sum()
+    /// Energy of shares of the effective shears, J/m³.
+    pub(super) fn relieved(&self, s: &State, shares: &[f64; 3]) -> f64 {
+        (0..3).map(|k| shares[k] * 0.5 * s.t[k] * s.t[k] / self.solid.g[k]).sum()
     }
 
     /// κ: energy at onset over that of the crack, by the mix of the stresses.
@@ -170,12 +202,14 @@ impl Modes {
             let over = by_kappa / (e * e);
             for i in if mode < 2 { 0..1 } else { 1..3 } {
                 if (s.h[i] < 0.0) == compresses(mode) {
-                    by_h[i] += over * self.soft[mode] * s.h[i] / self.solid.e[i];
+                    by_h[i] += over * self.solid.opened[i] * self.soft[mode] * s.h[i] / self.solid.e[i];
                 }
             }
             if mode >= 2 {
                 let soft = over * self.soft_shear[mode];
-                by_t.iter_mut().zip(s.t.iter().zip(self.solid.g)).for_each(|(by, (t, g))| *by += soft * t / g);
+                for (k, by) in by_t.iter_mut().enumerate() {
+                    *by += soft * self.cracked[k] * s.t[k] / self.solid.g[k];
+                }
             }
         }
         Slope { by_h, by_t }

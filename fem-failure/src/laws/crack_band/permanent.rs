@@ -9,6 +9,30 @@ pub(super) struct Permanent {
     pub(super) way: f64,
 }
 
+/// How far shears yield, and what comes then.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Yielding {
+    /// Hahn and Tsai's α, 1/Pa³.
+    pub(super) alpha: f64,
+    /// The strength at which the curve ends, Pa.
+    pub(super) strength: f64,
+    /// Whether shears yield on at the strength; otherwise they are elastic from there on, and cracks take over.
+    pub(super) on: bool,
+}
+
+impl Yielding {
+    /// The length of the way at which the curve ends.
+    fn most(&self) -> f64 {
+        self.alpha * self.strength.powi(3)
+    }
+
+    /// Energy lost on a way, undamaged, J/m³.
+    pub(super) fn lost(&self, way: f64) -> f64 {
+        let curved = way.min(self.most());
+        shear::lost(self.alpha, curved) + self.strength * (way - curved)
+    }
+}
+
 /// Effective shears 12 and 13, their tangent and what they leave.
 pub(super) struct Sheared {
     pub(super) t: [f64; 2],
@@ -19,19 +43,24 @@ pub(super) struct Sheared {
 }
 
 impl Permanent {
-    /// Hahn and Tsai's curve of α up to the length `most`, then elastic; isotropic about the fibre, hardening isotropic.
-    pub(super) fn shear(&self, alpha: f64, most: f64, g: f64, strain: [f64; 2]) -> Sheared {
+    /// Shears of a material that is isotropic about the fibre, hardening isotropic.
+    pub(super) fn shear(&self, yielding: &Yielding, g: f64, strain: [f64; 2]) -> Sheared {
+        let Yielding { alpha, strength, on } = *yielding;
+        let most = yielding.most();
         let elastic = [strain[0] - self.left[0], strain[1] - self.left[1]];
         let size = elastic[0].hypot(elastic[1]);
-        if !(g * size > (self.way / alpha).cbrt() && self.way < most) {
+        let limit = if self.way < most { (self.way / alpha).cbrt() } else { strength };
+        if !(g * size > limit && (on || self.way < most)) {
             let tangent = [[g, 0.0], [0.0, g]];
-            return Sheared { t: elastic.map(|e| g * e), tangent, left: *self, lost: shear::lost(alpha, self.way) };
+            return Sheared { t: elastic.map(|e| g * e), tangent, left: *self, lost: yielding.lost(self.way) };
         }
         let direction = elastic.map(|e| e / size);
-        let yielding = shear::on_curve(alpha, g, size + self.way);
-        let reached = alpha * yielding.powi(3);
+        let curved = shear::on_curve(alpha, g, size + self.way);
+        let reached = alpha * curved.powi(3);
         let (stress, way, slope) = if reached < most {
-            (yielding, reached, g / (1.0 + 3.0 * alpha * g * yielding * yielding))
+            (curved, reached, g / (1.0 + 3.0 * alpha * g * curved * curved))
+        } else if on {
+            (strength, self.way + (size - strength / g), 0.0)
         } else {
             (g * (size - (most - self.way)), most, g)
         };
@@ -40,11 +69,6 @@ impl Permanent {
             [0, 1].map(|j| direction[i] * direction[j] * (slope - across) + if i == j { across } else { 0.0 })
         });
         let left = [0, 1].map(|k| self.left[k] + (way - self.way) * direction[k]);
-        Sheared {
-            t: direction.map(|d| stress * d),
-            tangent,
-            left: Permanent { left, way },
-            lost: shear::lost(alpha, way),
-        }
+        Sheared { t: direction.map(|d| stress * d), tangent, left: Permanent { left, way }, lost: yielding.lost(way) }
     }
 }

@@ -15,6 +15,8 @@ pub(super) struct Solid {
     pub(super) coupling: Matrix3,
     /// G of 12, 23, 13.
     pub(super) g: [f64; 3],
+    /// Share of each normal stress that damage takes at most.
+    pub(super) opened: [f64; 3],
 }
 
 /// Effective normal stresses, h = (I + E O A)⁻¹ E ε, σ = A h.
@@ -40,7 +42,7 @@ impl Solid {
     /// one, as the complementary energy is strictly convex.
     pub(super) fn effective(&self, strain: &[f64; 3], damage: &Damage, c: &Matrix6) -> Effective {
         let signs = |h: &[f64; 3]| std::array::from_fn(|i| Self::mode(i, h[i]));
-        let mut by = Effective::sound(strain, c).by;
+        let mut by = self.sound(strain, c).by;
         for _ in 0..4 {
             let found = self.with(strain, damage, by);
             by = signs(&found.h);
@@ -54,8 +56,15 @@ impl Solid {
         consistent.unwrap_or_else(|| self.with(strain, damage, by))
     }
 
+    /// Those of a sound ply.
+    pub(super) fn sound(&self, strain: &[f64; 3], c: &Matrix6) -> Effective {
+        let h = std::array::from_fn(|i| c[i][0] * strain[0] + c[i][1] * strain[1] + c[i][2] * strain[2]);
+        let by = std::array::from_fn(|i| Self::mode(i, h[i]));
+        Effective { h, by, left: [1.0; 3], inverse: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
+    }
+
     fn with(&self, strain: &[f64; 3], damage: &Damage, by: [usize; 3]) -> Effective {
-        let left = by.map(|k| 1.0 - damage[k]);
+        let left = std::array::from_fn(|i| 1.0 - self.opened[i] * damage[by[i]]);
         let inverse = invert(&std::array::from_fn(|i| {
             std::array::from_fn(|j| self.coupling[i][j] * left[j] + if i == j { 1.0 } else { 0.0 })
         }));
@@ -65,16 +74,9 @@ impl Solid {
 }
 
 impl Effective {
-    /// Those of a sound ply.
-    pub(super) fn sound(strain: &[f64; 3], c: &Matrix6) -> Self {
-        let h = std::array::from_fn(|i| c[i][0] * strain[0] + c[i][1] * strain[1] + c[i][2] * strain[2]);
-        let by = std::array::from_fn(|i| Solid::mode(i, h[i]));
-        Self { h, by, left: [1.0; 3], inverse: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
-    }
-
     /// ∂h/∂d of the damage `k`.
     pub(super) fn slope(&self, solid: &Solid, k: usize) -> [f64; 3] {
-        let own: [f64; 3] = std::array::from_fn(|j| if self.by[j] == k { self.h[j] } else { 0.0 });
+        let own: [f64; 3] = std::array::from_fn(|j| if self.by[j] == k { solid.opened[j] * self.h[j] } else { 0.0 });
         multiply(&self.inverse, &multiply(&solid.coupling, &own))
     }
 }

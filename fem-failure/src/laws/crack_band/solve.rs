@@ -36,9 +36,9 @@ impl Found {
     /// Solves d = max(d of before, target(h(d), t)).
     pub(super) fn new(modes: &Modes, strain: &[f64; 3], t: [f64; 3], before: &Damage, stiffness: &Matrix6) -> Self {
         if *before == [0.0; 4] {
-            let effective = Effective::sound(strain, stiffness);
+            let effective = modes.solid.sound(strain, stiffness);
             let state = State { h: effective.h, t };
-            if state.modes().iter().all(|mode| modes.exposure(*mode, &state) <= 1.0) {
+            if modes.of(&state).iter().all(|mode| modes.exposure(*mode, &state) <= 1.0) {
                 return Self { damage: *before, effective, t, follows: [None; 3] };
             }
         }
@@ -57,7 +57,7 @@ impl Found {
                 std::array::from_fn(|k| wanted[k].max(found.damage[k]))
             };
             let next = Self::at(modes, strain, t, damage, before, stiffness, turns >= TURNS);
-            turns += usize::from(next.state().modes()[1] != found.state().modes()[1]);
+            turns += usize::from(modes.of(&next.state())[1] != modes.of(&found.state())[1]);
             found = next;
         }
         found
@@ -74,7 +74,7 @@ impl Found {
     ) -> Self {
         let effective = modes.solid.effective(strain, &damage, stiffness);
         let state = State { h: effective.h, t };
-        let [fibre, matrix] = state.modes();
+        let [fibre, matrix] = modes.of(&state);
         let follows = [Some(fibre), Some(matrix), both.then_some(5 - matrix)].map(|mode| {
             let mode = mode?;
             let target = if before[mode] < 1.0 { modes.target(mode, &state) } else { 0.0 };
@@ -123,11 +123,12 @@ impl Found {
         next
     }
 
-    /// ∂σ/∂ε; `left` is what all damages leave of the shears, `sheared` the tangent of the effective shears 12 and 13.
-    pub(super) fn tangent(&self, modes: &Modes, left: f64, sheared: &[[f64; 2]; 2]) -> Matrix6 {
+    /// ∂σ/∂ε; `left` is what all damages leave of each shear, `sheared` the tangent of the effective shears 12 and 13.
+    pub(super) fn tangent(&self, modes: &Modes, left: &[f64; 3], sheared: &[[f64; 2]; 2]) -> Matrix6 {
         let Effective { h, by, left: normal, inverse } = self.effective;
         let solid = &modes.solid;
         let (mut tangent, through) = ([[0.0; 6]; 6], self.through());
+        let takes: [[f64; 3]; 4] = std::array::from_fn(|mode| modes.takes(&self.damage, mode));
         for j in 0..6 {
             // Effective stresses at a fixed damage.
             let mut direct: [f64; 3] = if j < 3 { inverse.map(|row| row[j] * solid.e[j]) } else { [0.0; 3] };
@@ -152,11 +153,11 @@ impl Found {
                 }
             }
             for i in 0..3 {
-                tangent[i][j] = normal[i] * direct[i] - h[i] * damaged[by[i]];
+                tangent[i][j] = normal[i] * direct[i] - solid.opened[i] * h[i] * damaged[by[i]];
             }
-            let lost: f64 = (0..4).map(|k| damaged[k] * modes.shears_left_by_others(&self.damage, k)).sum();
             for (k, row) in SHEARS.into_iter().enumerate() {
-                tangent[row][j] = left * shears[k] - self.t[k] * lost;
+                let lost: f64 = (0..4).map(|mode| damaged[mode] * takes[mode][k]).sum();
+                tangent[row][j] = left[k] * shears[k] - self.t[k] * lost;
             }
         }
         tangent
@@ -173,12 +174,12 @@ pub(super) fn released(modes: &Modes, damage: [&Damage; 2], states: [&State; 2])
     let middle: Damage = std::array::from_fn(|k| 0.5 * (old[k] + new[k]));
     let mut sum = 0.0;
     for mode in (0..4).filter(|k| new[*k] > old[*k]) {
-        let turned = mode > 1 && before.modes()[1] != mode;
+        let turned = mode > 1 && modes.of(before)[1] != mode;
         let half = before.between(after, 0.5);
         let state = if modes.exposure(mode, &half) > 0.0 { half } else { *after };
         let energy = |state: &State, e: f64| {
             let [normal, _] = modes.released(mode, state);
-            (normal + modes.sheared(state) * modes.shears_left_by_others(&middle, mode)) / (e * e)
+            (normal + modes.relieved(state, &modes.takes(&middle, mode))) / (e * e)
         };
         let e = modes.exposure(mode, &state);
         let (kappa, y) = (modes.brittleness(mode, &state, e), energy(&state, e));

@@ -1,0 +1,395 @@
+//! Stresses of plies and interfaces from displacements.
+
+mod cubic;
+
+use crate::contracts::element::{Element, ElementError, ElementInfo, Part, Point, Scratch, Stack, form};
+use crate::plates::laminate::Laminate;
+use crate::plates::laws::{Asked, CellAnswer, CellOperators, Patterns, PlyLaws};
+use crate::plates::plate::Plate;
+use crate::plates::slopes::bent;
+use crate::plates::window::{Centre, Mean, Source};
+use crate::words::material::Material;
+use crate::words::tensor::{Matrix6, strain_rotation};
+use crate::words::vectorised::vectorised;
+use std::borrow::Cow;
+use std::ops::Range;
+
+/// Where in the thickness a stress is taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Station {
+    /// Layer of cells, counted from the bottom of its region.
+    pub layer: usize,
+    /// Ply (or, for an interface, the ply below it), counted from the bottom of its region.
+    pub ply: usize,
+    /// True for the resin between `ply` and the one above.
+    pub interface: bool,
+    /// Height, m: middle of the ply, or the interface.
+    pub z: f64,
+    /// Angle of the axes of the stress, radians.
+    pub angle: f64,
+    /// Material.
+    pub material: usize,
+    part: Part,
+    /// The other side of an interface within a layer whose strains jump from ply to ply: the resin takes the mean of both.
+    beside: Option<Part>,
+    /// Strain in the plate's frame to stress in the station's.
+    to_stress: Matrix6,
+}
+
+impl Station {
+    /// The ply, or the face of the ply below or above an interface, among those of its layer.
+    pub fn part(&self) -> &Part {
+        &self.part
+    }
+
+    /// Parts of the cell whose strains are taken, each with its share.
+    fn parts(&self) -> impl Iterator<Item = (Part, f64)> + use<> {
+        let share = if self.beside.is_some() { 0.5 } else { 1.0 };
+        [Some(self.part), self.beside].into_iter().flatten().map(move |part| (part, share))
+    }
+}
+
+/// Mean stresses of every ply (report eqs 12, 13) and at every interface (eq. 14), for a set of windows, each of which lies in one region.
+///
+/// Sites are ordered window by window, each with all stations from the bottom up. Interfaces between layers of cells are taken
+/// from both sides, because derivatives may jump there, and so are those within a shell, whose shear strains jump between plies.
+#[derive(Debug, Clone)]
+pub struct Recovery {
+    /// Stations through the thickness of every region.
+    regions: Vec<Vec<Station>>,
+    /// Region of each window.
+    region_of: Vec<usize>,
+    /// First site of each window, and the number of all at the end.
+    starts: Vec<usize>,
+    /// Where each window lies.
+    pub centres: Vec<Centre>,
+    /// Shares of each window, by positions in `sources`.
+    windows: Vec<Vec<(usize, f64)>>,
+    /// Whose strains are needed.
+    sources: Vec<Source>,
+}
+
+impl Recovery {
+    /// Watches `windows`. Interfaces are watched when the resin between plies is given. `laminates` are those of the regions of the plate.
+    pub fn new(
+        plate: &Plate,
+        laminates: &[Laminate],
+        materials: &[Material],
+        resin: Option<usize>,
+        windows: &[Mean],
+    ) -> Self {
+        let mut sources: Vec<Source> = windows.iter().flat_map(|window| window.shares.iter().map(|s| s.0)).collect();
+        sources.sort_unstable();
+        sources.dedup();
+        let position = |source: &Source| sources.partition_point(|s| s < source);
+        let shares = |window: &Mean| window.shares.iter().map(|(source, share)| (position(source), *share)).collect();
+        let centres: Vec<Centre> = windows.iter().map(|window| window.centre).collect();
+        let of_region = |(region, laminate)| stations(plate, region, laminate, materials, resin);
+        let regions: Vec<Vec<Station>> = laminates.iter().enumerate().map(of_region).collect();
+        let region_of: Vec<usize> = centres.iter().map(|centre| plate.region(centre.quad)).collect();
+        let windows = windows.iter().map(shares).collect();
+        let mut starts = vec![0];
+        region_of.iter().for_each(|region| starts.push(starts[starts.len() - 1] + regions[*region].len()));
+        Self { regions, region_of, starts, centres, windows, sources }
+    }
+
+    /// Stations over the `i`-th window.
+    pub fn stations_over(&self, i: usize) -> &[Station] {
+        &self.regions[self.region_of[i]]
+    }
+
+    /// Stations of a region.
+    pub fn stations_of(&self, region: usize) -> &[Station] {
+        &self.regions[region]
+    }
+
+    /// Sites over the `i`-th window, one for each of [`Recovery::stations_over`].
+    pub fn sites_over(&self, i: usize) -> Range<usize> {
+        self.starts[i]..self.starts[i + 1]
+    }
+
+    /// Number of sites.
+    pub fn sites(&self) -> usize {
+        self.starts[self.centres.len()]
+    }
+
+    /// First strain of each source, counted in stations of its region, and the number of all at the end.
+    fn places(&self, plate: &Plate) -> Vec<usize> {
+        let mut places = vec![0];
+        for source in &self.sources {
+            places.push(places[places.len() - 1] + self.regions[plate.region(source.quad)].len());
+        }
+        places
+    }
+
+    /// Stresses for several displacement fields at once: `u` is `ndof × fields` (before elimination of constraints), `out`
+    /// is `6·sites × fields`; six components per site in the site's axes.
+    ///
+    /// # Errors
+    /// A cell that the element refuses.
+    pub fn stresses(
+        &self,
+        plate: &Plate,
+        element: &dyn Element,
+        u: &[f64],
+        fields: usize,
+        out: &mut [f64],
+    ) -> Result<(), ElementError> {
+        let form_over = |source: &Source| form(element, plate.plane.quads[source.quad].domain());
+        let cubics: Option<Vec<_>> = self.sources.iter().map(|source| form_over(source).cubic_strains()).collect();
+        if let Some(elements) = cubics {
+            return self.stresses_of_cubics(plate, &elements, u, fields, out);
+        }
+        let places = self.places(plate);
+        let mut strains = vec![0.0; 6 * places[self.sources.len()] * fields];
+        let mut rest = strains.as_mut_slice();
+        let (mut operators, mut scratch, mut dofs) = (Vec::new(), Scratch::default(), Vec::new());
+        let mut local = Vec::new();
+        let layers = self.parts_of_layers();
+        for source in &self.sources {
+            let element = form_over(source);
+            let (quad, plane, n) = (source.quad, points(element.info(), *source), element.info().ndof());
+            local.resize(n * fields, 0.0);
+            for (layer, Parts { parts, shares, stations }) in layers[plate.region(quad)].iter().enumerate() {
+                let number = plate.cell_over(quad, layer);
+                let cell = plate.cell(number);
+                operators.resize(6 * n * parts.len(), 0.0);
+                element.mean_strains(&cell, parts, &plane, &mut scratch, &mut operators)?;
+                plate.cell_dofs(number, &mut dofs);
+                // Fields run fastest here and in the strains: one operation serves several of them.
+                for (dof, local) in dofs.iter().zip(local.chunks_exact_mut(fields)) {
+                    let of_dof = u[*dof..].iter().step_by(plate.ndof());
+                    local.iter_mut().zip(of_dof).for_each(|(local, u)| *local = *u);
+                }
+                let (of_layer, next) = rest.split_at_mut(6 * fields * stations);
+                rest = next;
+                for (operator, (station, share)) in operators.chunks_exact_mut(6 * n).zip(shares) {
+                    let here = &mut of_layer[6 * fields * station..6 * fields * (station + 1)];
+                    if *share < 1.0 {
+                        operator.iter_mut().for_each(|b| *b *= share);
+                    }
+                    if let Ok(strain) = <&mut [f64; 6]>::try_from(&mut *here) {
+                        add_product(operator, &local, strain);
+                        continue;
+                    }
+                    vectorised(|| {
+                        for (column, local) in operator.chunks_exact(6).zip(local.chunks_exact(fields)) {
+                            for (b, strain) in column.iter().zip(here.chunks_exact_mut(fields)) {
+                                if *b != 0.0 {
+                                    strain.iter_mut().zip(local).for_each(|(e, u)| *e += b * u);
+                                }
+                            }
+                        }
+                    });
+                }
+            }
+        }
+        self.averaged(&places, &strains, fields, out);
+        Ok(())
+    }
+
+    /// Stresses S = C E of large deflections, on the axes of the sites as they turn with the plate; `u` and `out` as of
+    /// [`Recovery::stresses`].
+    ///
+    /// # Errors
+    /// A cell that the element refuses.
+    pub fn large_stresses(
+        &self,
+        plate: &Plate,
+        element: &dyn Element,
+        u: &[f64],
+        fields: usize,
+        out: &mut [f64],
+    ) -> Result<(), ElementError> {
+        let layers = self.parts_of_layers();
+        let places = self.places(plate);
+        let mut strains = vec![0.0; 6 * places[self.sources.len()] * fields];
+        let (mut rest, mut dofs, mut local, mut of_parts) =
+            (strains.as_mut_slice(), Vec::new(), Vec::new(), Vec::new());
+        for source in &self.sources {
+            let element = form(element, plate.plane.quads[source.quad].domain());
+            let Some(large) = element.large_deflections() else { return Err(ElementError(NO_LARGE.into())) };
+            let (quad, plane) = (source.quad, points(element.info(), *source));
+            for (layer, Parts { parts, shares, stations }) in layers[plate.region(quad)].iter().enumerate() {
+                let number = plate.cell_over(quad, layer);
+                plate.cell_dofs(number, &mut dofs);
+                local.clear();
+                local.extend(u.chunks_exact(plate.ndof()).flat_map(|u| dofs.iter().map(|dof| u[*dof])));
+                of_parts.resize(6 * parts.len() * fields, 0.0);
+                large.mean_large_strains(&plate.cell(number), parts, &plane, &local, &mut of_parts)?;
+                let (here, next) = rest.split_at_mut(6 * stations * fields);
+                for (field, of_parts) in of_parts.chunks_exact(6 * parts.len()).enumerate() {
+                    for (strain, (station, share)) in of_parts.chunks_exact(6).zip(shares) {
+                        let means = here[6 * station * fields + field..].iter_mut().step_by(fields);
+                        means.zip(strain).for_each(|(mean, e)| *mean += share * e);
+                    }
+                }
+                rest = next;
+            }
+        }
+        self.averaged(&places, &strains, fields, out);
+        Ok(())
+    }
+
+    /// Puts the stresses of plies that follow `laws` in place of those of linear elasticity: means over the Gauss points of
+    /// their cells, whatever the samples, at the displacements `u` (one field, before elimination of constraints) and the states `points`;
+    /// with the strains of its slopes where they are `large`.
+    ///
+    /// # Errors
+    /// A cell that the element refuses, a law that finds no stress.
+    pub fn put_lawful(
+        &self,
+        plate: &Plate,
+        element: &dyn Element,
+        laws: &PlyLaws,
+        (u, points): (&[f64], &[f64]),
+        large: bool,
+        out: &mut [f64],
+    ) -> Result<(), ElementError> {
+        let (mut means, mut firsts) = (Vec::new(), Vec::new());
+        let (mut answer, mut dofs) = (CellAnswer::default(), Vec::new());
+        for Source { quad, .. } in &self.sources {
+            firsts.push(means.len());
+            for cell in plate.cells_over(*quad) {
+                plate.cell_dofs(cell, &mut dofs);
+                let local: Vec<f64> = dofs.iter().map(|dof| u[*dof]).collect();
+                let states = &points[laws.states_of(cell)];
+                let operators = CellOperators::new(element, &plate.cell(cell))?;
+                let strains = if large { bent(element, &plate.cell(cell), &local) } else { Vec::new() };
+                let stretched = large.then_some(Patterns { strains: &strains, amounts: &[1.0] });
+                let asked = Asked { plate, element, cell, operators: &operators, u: &local, stretched, states };
+                laws.respond(asked, None, false, &mut answer)?;
+                means.push(answer.means.clone());
+            }
+        }
+        for (i, window) in self.windows.iter().enumerate() {
+            let sites = self.sites_over(i);
+            let out = out[6 * sites.start..6 * sites.end].chunks_exact_mut(6);
+            for (station, out) in self.stations_over(i).iter().zip(out) {
+                let of = |source: &usize| means[firsts[*source] + station.layer][station.part.slice];
+                let lawful = !station.interface && window.iter().any(|(source, _)| of(source).1 > 0.0);
+                if lawful {
+                    out.fill(0.0);
+                    for (source, share) in window {
+                        out.iter_mut().zip(of(source).0).for_each(|(s, mean)| *s += share * mean);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What is asked of the cells of each layer, region by region.
+    fn parts_of_layers(&self) -> Vec<Vec<Parts>> {
+        let of_layer = |stations: &[Station]| {
+            let all =
+                stations.iter().enumerate().flat_map(|(at, s)| s.parts().map(move |(part, share)| (part, (at, share))));
+            let (parts, shares) = all.unzip();
+            Parts { parts, shares, stations: stations.len() }
+        };
+        let of_region = |stations: &Vec<Station>| stations.chunk_by(|a, b| a.layer == b.layer).map(of_layer).collect();
+        self.regions.iter().map(of_region).collect()
+    }
+
+    /// Stresses of the strains of the sources, averaged over windows; several fields, which run fastest among the strains.
+    fn averaged(&self, places: &[usize], strains: &[f64], fields: usize, out: &mut [f64]) {
+        let mut mean = vec![0.0; 6 * fields];
+        for (i, window) in self.windows.iter().enumerate() {
+            for (s, station) in self.stations_over(i).iter().enumerate() {
+                mean.fill(0.0);
+                for (source, share) in window {
+                    let at = (places[*source] + s) * 6 * fields;
+                    mean.iter_mut().zip(&strains[at..]).for_each(|(m, e)| *m += share * e);
+                }
+                for field in 0..fields {
+                    let strain = std::array::from_fn(|c| mean[c * fields + field]);
+                    let at = 6 * (field * self.sites() + self.starts[i] + s);
+                    out[at..at + 6].copy_from_slice(&crate::words::tensor::apply(&station.to_stress, &strain));
+                }
+            }
+        }
+    }
+}
+
+const NO_LARGE: &str = "the element knows no large deflections";
+
+/// Points of the plane over which the strains of a source are means.
+fn points(info: &ElementInfo, source: Source) -> Cow<'static, [Point]> {
+    match source.sample {
+        None => Cow::Borrowed(info.plane()),
+        Some(k) => Cow::Owned(vec![info.domain.samples()[k]]),
+    }
+}
+
+/// Parts of the cells of a layer; of each the station that it belongs to, and its share there.
+struct Parts {
+    parts: Vec<Part>,
+    shares: Vec<(usize, f64)>,
+    stations: usize,
+}
+
+/// What a strain operator makes of one field.
+fn add_product(operator: &[f64], u: &[f64], strain: &mut [f64; 6]) {
+    for (column, u) in operator.as_chunks::<6>().0.iter().zip(u) {
+        strain.iter_mut().zip(column).for_each(|(e, b)| *e += b * u);
+    }
+}
+
+fn stations(
+    plate: &Plate,
+    region: usize,
+    laminate: &Laminate,
+    materials: &[Material],
+    resin: Option<usize>,
+) -> Vec<Station> {
+    let stacks = plate.stacks(region);
+    let z = laminate.boundaries();
+    let product = |c: &Matrix6, angle: f64| -> Matrix6 {
+        let r = strain_rotation(angle);
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| c[i][k] * r[k][j]).sum()))
+    };
+    let mut all = Vec::new();
+    for (layer, Stack { slices, transverse, .. }) in stacks.iter().enumerate() {
+        let range = laminate.plies_of(layer);
+        let (first, end) = (range.start, range.end);
+        let shares = transverse.is_some() && !plate.info().is_shell();
+        let interface = |below: usize, slice: usize, q: f64| {
+            resin.map(|material| Station {
+                layer,
+                ply: below,
+                interface: true,
+                z: z[below + 1],
+                angle: 0.0,
+                material,
+                part: Part { slice, q: [q, q] },
+                beside: (shares && q > -1.0 && q < 1.0).then_some(Part { slice: slice + 1, q: [q, q] }),
+                to_stress: materials[material].elastic.stiffness(),
+            })
+        };
+        if first > 0 {
+            all.extend(interface(first - 1, 0, -1.0));
+        }
+        for k in range {
+            let ply = &laminate.plies[k];
+            let slice = &slices[k - first];
+            if k > first && plate.info().is_shell() {
+                all.extend(interface(k - 1, k - first, slice.q[0]));
+            }
+            all.push(Station {
+                layer,
+                ply: k,
+                interface: false,
+                z: 0.5 * (z[k] + z[k + 1]),
+                angle: ply.angle,
+                material: ply.material,
+                part: Part { slice: k - first, q: slice.q },
+                beside: None,
+                to_stress: product(&materials[ply.material].elastic.stiffness(), ply.angle),
+            });
+            if k + 1 < end || end < laminate.plies.len() {
+                all.extend(interface(k, k - first, slice.q[1]));
+            }
+        }
+    }
+    all
+}

@@ -1,0 +1,320 @@
+//! Springs that only push, from which a structure lifts off.
+
+use fem_core::functional::Functional;
+use fem_core::structure::SolveError;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use std::sync::Arc;
+
+/// Turns of Newton's method, and halvings of its line search.
+const MOST: usize = 100;
+const HALVINGS: usize = 80;
+
+/// What may be missing of the forces, relative to the largest of them: rounding, and where rounding keeps it from falling.
+const ENOUGH: f64 = 1e-13;
+const ROUNDED: f64 = 1e-9;
+
+/// Slope of the potential at the end of a way, relative to that at its beginning, below which the way was long enough.
+const FLAT: f64 = 0.1;
+
+/// Share of the springs that let go, where without them nothing would hold the structure.
+const NEARLY: f64 = 1.0 - 1e-6;
+
+/// A spring that only pushes; w = pᵀu > 0 where the structure has lifted off.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OneSided {
+    /// p.
+    pub at: Functional,
+    /// k, N/m.
+    pub stiffness: f64,
+}
+
+/// One-sided springs of a structure in whose matrix A they are as if they pulled, too.
+///
+/// Those that have lifted are relieved of their pull by forces F = r(w), r(w) = k ⟨w⟩, ⟨w⟩ = max(w, 0):
+///
+/// ```text
+/// w = b + G F,    G = Pᵀ A⁻¹ P,    b = Pᵀu without F
+/// ```
+///
+/// That is where Π(F) = ½ Fᵀ G F − Σ ∫ r(b + G F) dw has its minimum, and Π is convex, for G ≤ diag(1/k). Newton's method with a line
+/// search finds it: (1 − r′ G) d = r − F.
+#[derive(Debug, Default)]
+pub struct Lifting {
+    springs: Arc<[OneSided]>,
+    /// G.
+    compliance: DMatrix<f64>,
+    /// w of each where a step begins, of forces that are means over it.
+    before: Option<Vec<f64>>,
+    forces: DVector<f64>,
+    w: DVector<f64>,
+    /// √r′ of each, and the factor of 1 − √r′ G √r′ of those that are not 0.
+    roots: Vec<f64>,
+    factor: Option<Cholesky<f64, Dyn>>,
+}
+
+impl Lifting {
+    /// `springs` under a structure.
+    pub fn new(springs: Arc<[OneSided]>) -> Self {
+        Self { springs, ..Self::default() }
+    }
+
+    /// The springs.
+    pub fn springs(&self) -> &Arc<[OneSided]> {
+        &self.springs
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.springs.is_empty()
+    }
+
+    /// Takes the matrix A of a structure of `n` unknowns, by `solve`, X ← A⁻¹ X.
+    ///
+    /// # Errors
+    /// Those of `solve`.
+    pub fn set(
+        &mut self,
+        n: usize,
+        mut solve: impl FnMut(&mut [f64], usize) -> Result<(), SolveError>,
+    ) -> Result<(), SolveError> {
+        let count = self.springs.len();
+        self.compliance = DMatrix::zeros(count, count);
+        self.factor = None;
+        let mut x = vec![0.0; n];
+        for (j, spring) in self.springs.iter().enumerate() {
+            x.fill(0.0);
+            spring.at.add_to(1.0, &mut x);
+            solve(&mut x, 1)?;
+            self.springs.iter().enumerate().for_each(|(i, other)| self.compliance[(i, j)] = other.at.of(&x));
+        }
+        self.compliance = 0.5 * (&self.compliance + self.compliance.transpose());
+        Ok(())
+    }
+
+    /// Has forces be means over steps that begin with the displacements `u`, or if there are none those at their ends.
+    pub fn begin(&mut self, u: Option<&[f64]>) {
+        self.before = u.map(|u| self.springs.iter().map(|spring| spring.at.of(u)).collect());
+    }
+
+    /// Adds Pᵀu to `w`.
+    pub fn add_deflections(&self, u: &[f64], w: &mut [f64]) {
+        w.iter_mut().zip(&*self.springs).for_each(|(w, spring)| *w += spring.at.of(u));
+    }
+
+    /// Finds F for the deflections `b`; whether it was found.
+    pub fn relieve(&mut self, b: &[f64]) -> bool {
+        let b = DVector::from_column_slice(b);
+        self.forces = DVector::zeros(b.len());
+        let mut least = f64::INFINITY;
+        for _ in 0..MOST {
+            self.w = &b + &self.compliance * &self.forces;
+            let (forces, tangents): (Vec<f64>, Vec<f64>) = self.laws(&self.w).unzip();
+            let missing = DVector::from_vec(forces) - &self.forces;
+            let size = self.springs.iter().zip(&b).zip(&self.forces);
+            let size =
+                size.fold(0.0_f64, |size, ((spring, b), force)| size.max(force.abs()).max(spring.stiffness * b.abs()));
+            let left = missing.amax();
+            if !left.is_finite() {
+                return false;
+            }
+            self.factorise(&tangents);
+            if left <= ENOUGH * size || (left >= 0.5 * least && least <= ROUNDED * size) {
+                return true;
+            }
+            least = least.min(left);
+            let way = self.newton(&missing);
+            let length = self.search(&way);
+            self.forces += length * way;
+        }
+        false
+    }
+
+    /// F of the last deflections.
+    pub fn forces(&self) -> &[f64] {
+        self.forces.as_slice()
+    }
+
+    /// aᵀ dF/ds of the last deflections, where these change by a ds: dF = √r′ z ds, (1 − √r′ G √r′) z = √r′ a.
+    pub fn slope(&self, a: &[f64]) -> f64 {
+        let lifted = self.lifted();
+        let scaled = DVector::from_iterator(lifted.len(), lifted.iter().map(|i| self.roots[*i] * a[*i]));
+        self.factor.as_ref().map_or(0.0, |factor| scaled.dot(&factor.solve(&scaled)))
+    }
+
+    /// Adds P F of the last deflections to `f`.
+    pub fn add_load(&self, f: &mut [f64]) {
+        self.springs.iter().zip(&self.forces).for_each(|(spring, force)| spring.at.add_to(*force, f));
+    }
+
+    /// Adds P r(Pᵀu) to `f`.
+    pub fn add_forces(&self, u: &[f64], f: &mut [f64]) {
+        for OneSided { at, stiffness } in &*self.springs {
+            let w = at.of(u);
+            if w > 0.0 {
+                at.add_to(stiffness * w, f);
+            }
+        }
+    }
+
+    /// Σ ½ k ⟨w⟩², the energy that springs would have if they pulled, J.
+    pub fn energy(&self, u: &[f64]) -> f64 {
+        self.springs.iter().map(|spring| 0.5 * spring.stiffness * spring.at.of(u).max(0.0).powi(2)).sum()
+    }
+
+    /// r and r′ of each.
+    fn laws<'a>(&'a self, w: &'a DVector<f64>) -> impl Iterator<Item = (f64, f64)> + 'a {
+        self.springs.iter().zip(w).enumerate().map(|(i, (spring, w))| match &self.before {
+            None => relief(spring.stiffness, *w),
+            Some(before) => mean_relief(spring.stiffness, before[i], *w),
+        })
+    }
+
+    fn lifted(&self) -> Vec<usize> {
+        (0..self.roots.len()).filter(|i| self.roots[*i] > 0.0).collect()
+    }
+
+    fn factorise(&mut self, tangents: &[f64]) {
+        let roots: Vec<f64> = tangents.iter().map(|tangent| tangent.sqrt()).collect();
+        if self.factor.is_some() && roots == self.roots {
+            return;
+        }
+        self.roots = roots;
+        let lifted = self.lifted();
+        let matrix = |share: f64| {
+            DMatrix::from_fn(lifted.len(), lifted.len(), |i, j| {
+                let (i, j) = (lifted[i], lifted[j]);
+                f64::from(i == j) - share * self.roots[i] * self.compliance[(i, j)] * self.roots[j]
+            })
+        };
+        self.factor = Cholesky::new(matrix(1.0)).or_else(|| Cholesky::new(matrix(NEARLY)));
+    }
+
+    /// d = ρ + √r′ x with (1 − √r′ G √r′) x = √r′ G ρ, for ρ = r − F; ρ itself, a way down as well, where rounding leaves no more.
+    fn newton(&self, missing: &DVector<f64>) -> DVector<f64> {
+        let mut way = missing.clone();
+        let Some(factor) = &self.factor else { return way };
+        let (lifted, moved) = (self.lifted(), &self.compliance * missing);
+        let x = factor.solve(&DVector::from_iterator(lifted.len(), lifted.iter().map(|i| self.roots[*i] * moved[*i])));
+        lifted.iter().zip(&x).for_each(|(i, x)| way[*i] += self.roots[*i] * x);
+        way
+    }
+
+    /// How far to go: all of the way, or to about the minimum of Π along it, whose slope never falls.
+    fn search(&self, way: &DVector<f64>) -> f64 {
+        let moved = &self.compliance * way;
+        let slope = |length: f64| {
+            let w = &self.w + length * &moved;
+            let forces = self.laws(&w).map(|(force, _)| force);
+            let each = forces.zip(&self.forces).zip(way).zip(&moved);
+            each.map(|(((r, force), way), moved)| moved * (force + length * way - r)).sum::<f64>()
+        };
+        let flat = FLAT * slope(0.0).abs();
+        let (mut low, mut high) = (0.0, 1.0);
+        if slope(high) <= flat {
+            return high;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let there = slope(middle);
+            if there.abs() <= flat {
+                return middle;
+            }
+            if there < 0.0 { low = middle } else { high = middle }
+        }
+        low
+    }
+}
+
+/// k ⟨w⟩ and its derivative.
+fn relief(stiffness: f64, w: f64) -> (f64, f64) {
+    if w > 0.0 { (stiffness * w, stiffness) } else { (0.0, 0.0) }
+}
+
+/// The mean of k ⟨w⟩ along the way from `before` to an end w₁ with `middle` between them, [½ k ⟨w₁⟩² − ½ k ⟨w₀⟩²]/(w₁ − w₀), which does
+/// the work of the energy, and its derivative by `middle`.
+fn mean_relief(stiffness: f64, before: f64, middle: f64) -> (f64, f64) {
+    let end = 2.0 * middle - before;
+    match (before > 0.0, end > 0.0) {
+        (false, false) => (0.0, 0.0),
+        (true, true) => (stiffness * middle, stiffness),
+        (false, true) => {
+            let share = end / (end - before);
+            (0.5 * stiffness * end * share, stiffness * share * (2.0 - share))
+        }
+        (true, false) => {
+            let share = before / (before - end);
+            (0.5 * stiffness * before * share, stiffness * share * share)
+        }
+    }
+}
+
+/// Displacements at rest of a structure on one-sided springs, whose stiffness `solve` divides by, under a load that moves it by `free`
+/// as if they pulled.
+///
+/// # Errors
+/// A load that lifts it off.
+pub fn at_rest(
+    lifting: &mut Lifting,
+    free: &mut [f64],
+    mut solve: impl FnMut(&mut [f64], usize) -> Result<(), SolveError>,
+) -> Result<(), SolveError> {
+    lifting.set(free.len(), &mut solve)?;
+    let mut b = vec![0.0; lifting.springs.len()];
+    lifting.add_deflections(free, &mut b);
+    lifting.begin(None);
+    if !lifting.relieve(&b) {
+        return Err(SolveError::other(
+            "the loads lift the plate off its one-sided supports: hold it otherwise, or turn the loads round",
+        ));
+    }
+    if lifting.forces().iter().any(|force| *force != 0.0) {
+        let mut more = vec![0.0; free.len()];
+        lifting.add_load(&mut more);
+        solve(&mut more, 1)?;
+        free.iter_mut().zip(&more).for_each(|(u, more)| *u += more);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A relief does the work of its energy and its derivative is that of differences, through all four ways over the kink.
+    #[test]
+    fn means_do_the_work_of_the_energy() {
+        let energy = |w: f64| 0.5 * 3.0 * w.max(0.0).powi(2);
+        for (before, end) in [(-1.0, -0.5), (-1.0, 2.0), (1.5, -0.25), (0.5, 2.0), (0.0, 1.0), (1.0, 0.0)] {
+            let middle = 0.5 * (before + end);
+            let (force, tangent) = mean_relief(3.0, before, middle);
+            assert!((force * (end - before) - (energy(end) - energy(before))).abs() < 1e-14);
+            let step = 1e-6;
+            let [above, below] = [middle + step, middle - step].map(|w| mean_relief(3.0, before, w).0);
+            assert!(((above - below) / (2.0 * step) - tangent).abs() < 1e-5, "{before} {end}");
+        }
+    }
+
+    /// A rigid bar with three springs beneath: pressed beyond the kern of its outer two, it stands on one end only, and is lifted
+    /// where nothing presses.
+    #[test]
+    fn bars_stand_on_what_pushes() {
+        // Of w and tilt of the bar, springs at −1, 0 and 1; heavily loaded off its middle, between springs.
+        let spring = |x: f64| OneSided { at: Functional(vec![(0, -1.0), (1, -x)]), stiffness: 2.0 };
+        let mut lifting = Lifting::new([-1.0, 0.0, 1.0].map(spring).into());
+        // A = Σ k p pᵀ = diag(6, 4).
+        let solve = |x: &mut [f64], _: usize| {
+            (x[0], x[1]) = (x[0] / 6.0, x[1] / 4.0);
+            Ok(())
+        };
+        // A force of 1 at 0.8 downwards: w is up to the supports, so that positive displacements press.
+        let mut u = [1.0, 0.8];
+        solve(&mut u, 1).unwrap();
+        at_rest(&mut lifting, &mut u, solve).unwrap();
+        // On the springs at 0 and 1: 2 (v + 0) + 2 (v + θ) = 1, 2 (v + θ) = 0.8.
+        assert!((u[0] - 0.1).abs() < 1e-14 && (u[1] - 0.3).abs() < 1e-14, "{u:?}");
+        let mut up = [-1.0 / 6.0, 0.0];
+        assert!(at_rest(&mut lifting, &mut up, solve).unwrap_err().to_string().contains("lift the plate off"));
+        let mut beside = [1.0 / 6.0, 1.5 / 4.0];
+        assert!(at_rest(&mut lifting, &mut beside, solve).is_err());
+    }
+}

@@ -1,0 +1,207 @@
+//! Specimens as scenes: loads at rest that are followed through growth, against closed forms and published benchmarks.
+
+use super::specimens::{at, mean_and_ripple, reference};
+use crate::support::root;
+use fem::Registry;
+use fem::analyses::statics::PathState;
+use fem::io::scene;
+use fem::job::{self, Found, Options, StaticFound};
+
+const WIDTH: f64 = 0.025;
+
+/// What the scene `name` of benches/specimens finds, with texts of it replaced.
+fn found(name: &str, changes: &[[&str; 2]]) -> Result<Box<StaticFound>, fem::Error> {
+    let path = root().join(format!("benches/specimens/{name}.toml"));
+    let mut text = std::fs::read_to_string(&path).unwrap();
+    for [old, new] in changes {
+        assert!(text.contains(old), "{name} has no {old}");
+        text = text.replace(old, new);
+    }
+    let scene = scene::parse(&text, &path)?;
+    match job::run(&scene, &Registry::standard(), &Options::default(), &mut ())?.found {
+        Found::Static(found) => Ok(found),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The same, whose path came to its end and keeps the energy.
+fn followed(name: &str, changes: &[[&str; 2]]) -> (Vec<PathState>, Box<StaticFound>) {
+    let found = found(name, changes).unwrap();
+    let figures = found.summary.path.as_ref().unwrap();
+    assert_eq!(figures.stopped, None, "{name}");
+    assert!(figures.energy_error_relative < 5e-3, "{name}: {}", figures.energy_error_relative);
+    let states = found.solution.followed.as_ref().unwrap().states.clone();
+    assert!(states.windows(2).all(|pair| pair[1].dissipated >= pair[0].dissipated));
+    (states, found)
+}
+
+/// Errors of the forces against `exact`, per cent, of states in which `energy` J have been dissipated.
+fn errors(states: &[PathState], exact: &[[f64; 2]], by: fn(&PathState) -> f64, energy: f64) -> Vec<f64> {
+    let grown = states.iter().filter(|state| state.dissipated > energy);
+    grown.filter_map(|state| Some(100.0 * (state.force / at(exact, by(state))? - 1.0))).collect()
+}
+
+fn assert_near(name: &str, errors: &[f64], [mean, most]: [f64; 2]) {
+    let [found, ripple] = mean_and_ripple(errors);
+    let worst = errors.iter().fold(0.0_f64, |worst, error| worst.max(error.abs()));
+    assert!(
+        errors.len() > 10 && found.abs() < mean && worst < most,
+        "{name}: {} states, mean {found}, ripple {ripple}, worst {worst}",
+        errors.len()
+    );
+}
+
+/// Cells of a half and of 0.6 process zones.
+#[test]
+fn a_scene_of_a_double_cantilever_grows_as_beams_on_its_interface() {
+    let exact = reference("specimens_cohesive_dcb_im7_8552", "crack_growth", ["delta_m", "P_N"]);
+    let (states, found) = followed("dcb", &[]);
+    let errors = errors(&states, &exact, |state| state.displacement, 210.0 * WIDTH * 1.5e-3);
+    assert_near("dcb", &errors, [0.5, 1.0]);
+    let figures = found.summary.path.as_ref().unwrap();
+    assert!((figures.peak_force_N / 70.03 - 1.0).abs() < 0.02 && !figures.snaps_back, "{figures:?}");
+    assert!((figures.final_displacement_m / 4.2e-3 - 1.0).abs() < 0.02);
+    // All by opening; what is open counts from the beginning.
+    let delaminated = &figures.delamination;
+    assert!(delaminated.dissipated_by_shear_J < 1e-3 * delaminated.dissipated_by_opening_J, "{delaminated:?}");
+    let grown = delaminated.projected_area_mm2 * 1e-6 - WIDTH * 30e-3;
+    assert!((figures.dissipated_J / (210.0 * grown) - 1.0).abs() < 0.1, "{delaminated:?}");
+}
+
+#[test]
+fn scenes_of_end_notched_flexure_grow_as_beams_on_their_interface() {
+    for (name, data, peak) in [
+        ("enf", "specimens_cohesive_enf_im7_8552", 527.3),
+        ("enf-short", "specimens_cohesive_enf_short_im7_8552", 731.0),
+    ] {
+        let exact = reference(data, "crack_growth", ["dissipated_J", "P_N"]);
+        let (states, found) = followed(name, &[]);
+        assert_near(name, &errors(&states, &exact, |state| state.dissipated, 0.0), [1.0, 1.0]);
+        let figures = found.summary.path.as_ref().unwrap();
+        assert!((figures.peak_force_N / peak - 1.0).abs() < 0.01, "{name}: {}", figures.peak_force_N);
+        assert!(figures.snaps_back || name == "enf");
+        let delaminated = &figures.delamination;
+        assert!(delaminated.dissipated_by_opening_J < 0.02 * delaminated.dissipated_by_shear_J, "{delaminated:?}");
+    }
+}
+
+/// Against corrected beam theory, which knows no process zone: where the zone has formed, at equal compliance.
+fn grows_as_closed_form(name: &str, case: &str) {
+    let exact = reference("specimens_closed_im7_8552", &format!("{case},growth"), ["C_m_per_N", "P_N"]);
+    let (states, _) = followed(name, &[]);
+    let compliance = |state: &PathState| state.displacement / state.force;
+    assert_near(name, &errors(&states, &exact, compliance, 300.0 * WIDTH * 3e-3), [3.0, 3.0]);
+}
+
+#[test]
+fn scenes_of_mixed_modes_grow_as_closed_forms_say() {
+    [("slb", "SLB"), ("mmb-20", "MMB_B20")].into_iter().for_each(|(name, case)| grows_as_closed_form(name, case));
+}
+
+#[test]
+#[ignore = "a quarter of a minute"]
+fn mixed_modes_of_more_shear_grow_as_closed_forms_say() {
+    [("mmb-50", "MMB_B50"), ("mmb-80", "MMB_B80")]
+        .into_iter()
+        .for_each(|(name, case)| grows_as_closed_form(name, case));
+}
+
+/// Finite elements with closed cracks that others published: where the crack begins to grow.
+#[test]
+#[ignore = "a quarter of a minute"]
+fn a_published_benchmark_is_met() {
+    let (_, found) = followed("benchmark-mmb-50", &[]);
+    let figures = found.summary.path.as_ref().unwrap();
+    let [force, moved] = [figures.peak_force_N / 385.0, figures.displacement_at_peak_m / 1.34e-3];
+    assert!((force - 1.0).abs() < 0.05 && (moved - 1.0).abs() < 0.05, "{force} {moved}");
+}
+
+/// The force may be given or the displacement, at its nodes or as their multiple: the path is one.
+#[test]
+fn forces_and_displacements_lead_along_one_path() {
+    let coarse = ["cells = [120, 1]", "cells = [60, 1]"];
+    let end = |states: &[PathState]| *states.last().unwrap();
+    let short = ["step = \"1.5 mJ\"", "step = \"4 mJ\", until = \"2.2 mm\""];
+    let by_displacement = end(&followed("dcb", &[coarse, short]).0);
+    let pulled = |sign: &str, at: &str| {
+        format!("{{ force = [\"0 N\", \"0 N\", \"{sign}3 N\"], group = \"x-min\", at = \"{at}\" }}")
+    };
+    let moved = |by: &str, at: &str| {
+        format!("{{ displacement = \"{by} mm\", dof = \"U30\", group = \"x-min\", at = \"{at}\" }}")
+    };
+    let (up, down) = (pulled("", "top"), pulled("-", "bottom"));
+    let (old_up, old_down) = (moved("2.1", "top"), moved("-2.1", "bottom"));
+    let forced = [coarse, short, [&old_up, &up], [&old_down, &down]];
+    let by_force = end(&followed("dcb", &forced).0);
+    assert!((by_force.force / by_displacement.force - 1.0).abs() < 1e-4, "{by_force:?} {by_displacement:?}");
+    assert!((by_force.displacement / by_displacement.displacement - 1.0).abs() < 1e-4);
+    // Half of the way is half of a displacement that only the whole names.
+    let named = [coarse, ["step = \"1.5 mJ\"", "step = \"4 mJ\""], ["2.1 mm", "1.1 mm"]];
+    let by_name = end(&followed("dcb", &named).0);
+    assert!((by_name.force / by_displacement.force - 1.0).abs() < 1e-4, "{by_name:?} {by_displacement:?}");
+}
+
+#[test]
+fn what_makes_no_path_is_refused() {
+    let refused = |name: &str, changes: &[[&str; 2]], said: &str| {
+        let message = format!("{:?}", found(name, changes).map(|_| ()).unwrap_err());
+        assert!(message.contains(said), "{name} {changes:?}: {message}");
+    };
+    let growth = "effects = { damage = \"off\", delamination = \"growth\" }";
+    let path = ["path = { force = \"1 N\", until = \"4 mm\", step = \"2 mJ\" }\n", ""];
+    let auto = [growth, "effects = { damage = \"off\", delamination = \"auto\" }"];
+    refused("mmb-50", &[auto, path], "needs an impact");
+    refused(
+        "dcb",
+        &[[growth, "effects = { damage = \"off\", delamination = \"growth\", membrane = \"on\" }"]],
+        "does not stand beside",
+    );
+    refused("dcb", &[["\"static\"", "\"modes\""]], "means nothing in the analysis `modes`");
+    refused("mmb-50", &[["until = \"4 mm\", ", ""]], "no end of its own");
+    refused("mmb-50", &[["path = { force = \"1 N\", until = \"4 mm\", step = \"2 mJ\" }\n", ""]], "no end of its own");
+    refused("dcb", &[["\"2.1 mm\"", "\"0 mm\""]], "moves nothing");
+    refused(
+        "dcb",
+        &[["dof = \"U30\", group = \"x-min\", at = \"top\"", "dof = \"U31\", group = \"x-min\", at = \"top\""]],
+        "is a slope",
+    );
+    refused(
+        "dcb",
+        &[
+            ["group = \"x-min\", at = \"top\"", "group = \"x-max\", at = \"top\""],
+            ["group = \"x-min\", at = \"bottom\"", "group = \"x-max\", at = \"bottom\""],
+        ],
+        "the supports hold nodes",
+    );
+    refused(
+        "dcb",
+        &[["start = [{ interface = 1, group = \"crack\" }]", "start = [{ interface = 1, group = \"x-min\" }]"]],
+        "holds no point",
+    );
+    refused("dcb", &[["group = \"crack\" }]", "group = \"crack\", radius = \"2 mm\" }]"]], "not both");
+    refused("dcb", &[["points = 12", "points = 12\nradius = \"20 mm\""]], "measured from the impact");
+    refused(
+        "dcb",
+        &[["crack = { x = [\"0 mm\", \"30 mm\"] }", "crack = { x = [\"30 mm\", \"0 mm\"] }"]],
+        "ends before it begins",
+    );
+    refused("enf", &[["middle = { x = \"50 mm\" }", "middle = { x = \"50.5 mm\" }"]], "no node of the mesh lies");
+    refused("enf", &[["middle = { x", "plate = { x"]], "group of every rectangle");
+    refused("dcb", &[["GIc = \"0.21 N/mm\"\n", ""]], "GIc");
+    let both =
+        ["load = [\n", "load = [\n  { force = [\"0 N\", \"0 N\", \"1 N\"], group = \"x-min\", at = \"top\" },\n"];
+    refused("dcb", &[both], "beside forces");
+    let alone = [growth, "effects = { damage = \"off\" }"];
+    refused("dcb", &[alone], "means nothing where delaminations do not grow");
+}
+
+/// What was found before stands, and the summary says where it ended.
+#[test]
+fn a_path_whose_steps_are_used_up_says_so() {
+    let changes = [["cells = [120, 1]", "cells = [60, 1]"], ["step = \"1.5 mJ\"", "step = \"4 mJ\", steps = 8"]];
+    let found = found("dcb", &changes).unwrap();
+    let figures = found.summary.path.as_ref().unwrap();
+    assert!(figures.states == 8 && figures.stopped.is_some(), "{figures:?}");
+    let warnings = &found.summary.warnings;
+    assert!(warnings.iter().any(|warning| warning.contains("the path ended at")), "{warnings:?}");
+}
