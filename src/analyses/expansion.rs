@@ -37,9 +37,10 @@ impl Expansion<'_> {
         let width = coordinates.len() / count;
         let n = reduced.basis.len() / width;
         let mut u = vec![0.0; n * count];
-        for (q, u) in coordinates.chunks_exact(width).zip(u.chunks_exact_mut(n)) {
-            reduced.expand(q, u);
-            self.companions.iter().for_each(|companions| companions.complete(q, u));
+        reduced.expand(coordinates, &mut u);
+        if let Some(companions) = &self.companions {
+            let fields = coordinates.chunks_exact(width).zip(u.chunks_exact_mut(n));
+            fields.for_each(|(q, u)| companions.complete(q, u));
         }
         self.nodal(&u)
     }

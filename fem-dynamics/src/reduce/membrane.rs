@@ -1,7 +1,7 @@
 //! A reduced plate whose deflections stretch it.
 
 use super::{Modal, Reduced};
-use crate::vector::axpy;
+use crate::vector::{add_columns, axpy};
 use fem_core::energy::Energy;
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
@@ -262,7 +262,7 @@ impl MembranePlate {
         vectorised(|| {
             for ((form, product), value) in forms.zip(self.products.chunks_exact_mut(q.len())).zip(&mut self.values) {
                 product.fill(0.0);
-                add_columns(form, q, product);
+                add_columns(form, q.len(), q, product);
                 *value = product.iter().zip(q).map(|(p, q)| p * q).sum();
             }
         });
@@ -316,23 +316,6 @@ fn bends(
         bends |= shapes.as_slice().chunks_exact(shapes.nrows()).any(|shape| contact.of(shape).powi(2) > most);
     }
     Ok(bends)
-}
-
-/// `y ← y + A x`, A of as many rows; some columns go together, one after the other, so that y is read and written for all of them once.
-#[inline(always)]
-fn add_columns(a: &[f64], x: &[f64], y: &mut [f64]) {
-    const TOGETHER: usize = 4;
-    let n = y.len();
-    let (fours, rest) = x.as_chunks::<TOGETHER>();
-    for (columns, x) in a.chunks_exact(TOGETHER * n).zip(fours) {
-        let [p, q, r, s]: [&[f64]; TOGETHER] = std::array::from_fn(|k| &columns[k * n..(k + 1) * n]);
-        for ((((y, p), q), r), s) in y.iter_mut().zip(p).zip(q).zip(r).zip(s) {
-            *y = *y + x[0] * p + x[1] * q + x[2] * r + x[3] * s;
-        }
-    }
-    for (column, x) in a[fours.len() * TOGETHER * n..].chunks_exact(n).zip(rest) {
-        y.iter_mut().zip(column).for_each(|(y, a)| *y += x * a);
-    }
 }
 
 /// Combinations P of the modes of a reduced plate whose deflections stretch it, orthonormal in its stiffness: the static

@@ -20,9 +20,11 @@ pub use modal::ModalTruncation;
 pub use ritz::Ritz;
 pub use stretched::{Share, Stretch, StretchedPlate};
 
+use crate::vector::add_columns;
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
 use fem_core::structure::{SolveError, Structure};
+use fem_core::vectorised::vectorised;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
 
 /// Modal masses below this fraction of the largest (at equal stiffness) count as none: the mode follows statically.
@@ -36,6 +38,9 @@ const EXCITED: f64 = 1e-9;
 
 /// Vectors of the largest basis that is made: dense matrices beyond that cost more than the sparse ones they replace.
 const LARGEST: usize = 2000;
+
+/// Rows of Φ that serve all fields before the next ones are read.
+const ROWS: usize = 512;
 
 /// A reduced structure and the way back, u = Φ q.
 #[derive(Debug, Clone, PartialEq)]
@@ -182,14 +187,19 @@ impl Reduced {
         self.basis.chunks_exact(self.ndof).map(|mode| w.of(mode)).collect()
     }
 
-    /// `u = Φ q`.
+    /// `u = Φ q` of one field, or of several, one after the other.
     pub fn expand(&self, q: &[f64], u: &mut [f64]) {
+        let n = self.ndof.max(1);
+        let modes = self.basis.len() / n;
         u.fill(0.0);
-        for (q, column) in q.iter().zip(self.basis.chunks_exact(u.len())) {
-            for (u, c) in u.iter_mut().zip(column) {
-                *u += q * c;
+        vectorised(|| {
+            for first in (0..n).step_by(ROWS) {
+                for (q, u) in q.chunks_exact(modes.max(1)).zip(u.chunks_exact_mut(n)) {
+                    let end = n.min(first + ROWS);
+                    add_columns(&self.basis[first..], n, q, &mut u[first..end]);
+                }
             }
-        }
+        });
     }
 }
 
