@@ -173,7 +173,7 @@ pub enum Error {
     )]
     #[diagnostic(help(
         "cells much wider than thick are stiff through their thickness and soft in bending: use the shell `mitc4`, or \
-         fewer layers of narrower cells"
+         fewer layers of narrower cells; springs that alone hold a plate have to be stiffer"
     ))]
     IllConditioned {
         /// ‖f − K u‖ / ‖f‖

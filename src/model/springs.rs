@@ -29,6 +29,9 @@ const OF_AREA: Kind = Kind { dimension: Dimension([-2.0, 1.0, -2.0, 0.0]), unit:
 /// Springs that only push, at most: a step of an impact asks each of them how all others move it.
 const MOST_ONE_SIDED: usize = 2000;
 
+/// Stiffness of springs over that of a support that does not give way, below which rounding of the plate's own stiffness hides them.
+const SOFTEST: f64 = 1e-11;
+
 /// The springs of all supports, of all unknowns, and what describes each support that has some.
 #[derive(Debug, Default)]
 pub(super) struct Springs {
@@ -78,6 +81,16 @@ impl Builder<'_> {
                 return Err(self.error(given, what, help));
             }
         };
+        let least = SOFTEST * self.hard(of);
+        if let Some(given) = stiffness.as_ref().filter(|_| value < least) {
+            let what = format!("the springs of {} are lost in the rounding of the plate's own stiffness", area.value);
+            let help = format!(
+                "write at least {:.1e} {}, or kind = \"free\" where nothing holds the plate",
+                least / of.size,
+                of.unit
+            );
+            return Err(self.error(given, what, help));
+        }
         if spread.is_empty() {
             let help =
                 "the element has no deflection there, or the group has neither edges nor cells nor nodes of the plate";

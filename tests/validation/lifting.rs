@@ -87,10 +87,10 @@ fn corners_rise() {
 }
 
 /// 500 g at 1 m/s on a square that lies on its edges.
-fn struck(kind: &str, reduction: &str, integrator: &str, step: &str) -> impact::Outcome {
+fn blow(kind: &str, reduction: &str, integrator: &str, step: &str) -> String {
     let sides = ["x-min", "x-max", "y-min", "y-max"]
         .map(|side| format!("{{ group = '{side}', kind = '{kind}', at = 'bottom', stiffness = '1e3 N/mm^2' }}"));
-    let text = format!(
+    format!(
         "title = 'struck'\nmesh = {{ rectangle = ['60 mm', '60 mm'], cells = [6, 6] }}\nelement = {{ kind = 'mitc4' }}\n\
          laminate = {{ plies = '[0/0]', material = 'm', ply_thickness = '1 mm', layers = [2] }}\n\
          support = [{}, {{ restrain = 'rigid-motions' }}]\nreduction = {{ {reduction} }}\n\
@@ -99,8 +99,11 @@ fn struck(kind: &str, reduction: &str, integrator: &str, step: &str) -> impact::
          march = {{ step = '{step}', end = '3 ms', integrator = '{integrator}' }}\n[materials.m]\n{}",
         sides.join(", "),
         isotropic(E * 1e-9, NU, 2.7)
-    );
-    let model = model(&text).unwrap();
+    )
+}
+
+fn struck(kind: &str, reduction: &str, integrator: &str, step: &str) -> impact::Outcome {
+    let model = model(&blow(kind, reduction, integrator, step)).unwrap();
     impact::march(impact::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap()
 }
 
@@ -146,10 +149,39 @@ fn wrong_ways() {
     refused("", "{ group = 'x-min', kind = 'rest', stiffness = '5 N/mm^3' }", "another dimension");
     refused("", "{ group = 'x-min', kind = 'rest' }", "leave the plate free");
     refused("", "{ disc = { x = '0 mm', y = '0 mm', radius = '4 mm' }, kind = 'rest' }", "leaves the plate");
+    refused("", "{ group = 'x-min', kind = 'rest', at = 'mid-plane' }", "rests on one of its faces");
+    refused("", "{ group = 'x-min', kind = 'rest', stiffness = '0 N/mm^2' }", "is positive");
+    refused("", "{ group = 'x-min', kind = 'rest', stiffness = '1e-12 N/mm^2' }", "write at least 7.0e-7 N/mm^2");
     let all = "{ group = 'plate', kind = 'rest' }, { restrain = 'rigid-motions' }";
-    refused("effects = { membrane = 'on' }", all, "does not go with large deflections");
+    for (more, what) in [
+        ("effects.membrane = 'on'", "large deflections"),
+        ("effects.preload = [{ group = 'x-min', force = '1 N/mm' }]", "a preload"),
+        ("substructures = { cells = [2, 2] }", "condensed substructures"),
+    ] {
+        refused(more, all, &format!("does not go with {what}"));
+    }
     let mirrored = "{ group = 'x-min', kind = 'rest' }, { restrain = 'rigid-motions' }";
     refused("symmetry = 'mirror-x'", mirrored, "break the symmetry");
+    let impact = blow("rest", "method = 'ritz', vectors = 20", "newmark", "1 us");
+    for (text, with, what) in [
+        ("damage = 'off'", "damage = 'off', gravity = '9.81 m/s^2'", "gravity"),
+        ("damage = 'off'", "damage = 'off', damping = { ratio = 0.02 }", "damping"),
+        (
+            "[materials.m]",
+            "[materials.m]\nlaw = { name = 'hahn-tsai', alpha = '2.4e-8 1/MPa^3' }",
+            "plies that follow laws",
+        ),
+    ] {
+        let shown = format!("{:?}", model(&impact.replacen(text, with, 1)).unwrap_err());
+        assert!(shown.contains(&format!("does not go with {what}")), "{what}: {shown}");
+    }
+    let many = scene("", all, "pressure = '1 kPa'\nface = 'top'").replace("cells = [4, 4]", "cells = [46, 46]");
+    let shown = format!("{:?}", model(&many).unwrap_err());
+    assert!(shown.contains("does not go with more than 2000 points"), "{shown}");
+    let cured = scene("effects = { cure = '-100 K' }", all, "pressure = '1 kPa'\nface = 'top'");
+    let shown =
+        format!("{:?}", model(&cured.replace("[materials.m]", "[materials.m]\nalpha = '1e-5 1/K'")).unwrap_err());
+    assert!(shown.contains("does not go with residual strains at rest"), "{shown}");
     // Nothing holds it down.
     let up = model(&scene("", all, "pressure = '1 kPa'\nface = 'bottom'")).unwrap();
     let lifted = format!("{:?}", statics::solve(&up, NonZeroUsize::MIN).unwrap_err());
