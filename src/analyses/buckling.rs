@@ -1,6 +1,7 @@
 //! Factors on a preload that buckle the plate.
 
 use super::assembled::{self, factors};
+use super::supports;
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::Model;
@@ -18,6 +19,9 @@ pub struct BucklingSolution {
     pub unknowns: usize,
     /// Entries of the factor of K.
     pub factor_entries: usize,
+    /// The largest share of a shape's stiffness that supports of nodal values cost between the nodes, where it is worth a word
+    /// ([`softness`](fem_core::assembly::softness)).
+    pub softness: Option<f64>,
     /// Work done.
     pub counters: Counters,
     /// Time per phase.
@@ -36,6 +40,7 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Buckl
     let geometric = model.effects.geometric(&model.body(), &pattern)?.ok_or(Error::NoPreload)?;
     stopwatch.lap("assemble");
     let mut buckling = factors(&mut assembled.structure, &geometric, count)?;
+    let softness = supports::soft_shapes(model, &mut assembled, &buckling.shapes);
     let mut u = vec![0.0; model.plate.ndof()];
     for shape in buckling.shapes.chunks_exact_mut(model.constraints.ndof().max(1)) {
         model.constraints.expand(shape, &mut u);
@@ -46,5 +51,5 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Buckl
     (counters.factorisations, counters.solves) = assembled.structure.work();
     stopwatch.lap("modes");
     let (factor_entries, phases) = (assembled.factor_entries, stopwatch.phases().to_vec());
-    Ok(BucklingSolution { buckling, unknowns: model.constraints.ndof(), factor_entries, counters, phases })
+    Ok(BucklingSolution { buckling, unknowns: model.constraints.ndof(), factor_entries, softness, counters, phases })
 }

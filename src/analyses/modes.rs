@@ -1,6 +1,7 @@
 //! Natural frequencies.
 
 use super::assembled::{self, Substructures};
+use super::supports;
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::Model;
@@ -26,6 +27,9 @@ pub struct ModesSolution {
     pub buckling: Option<f64>,
     /// How the plate is divided, if it is.
     pub substructures: Option<Substructures>,
+    /// The largest share of a mode's stiffness that supports of nodal values cost between the nodes, where it is worth a word
+    /// ([`softness`](fem_core::assembly::softness)).
+    pub softness: Option<f64>,
     /// Work done.
     pub counters: Counters,
     /// Time per phase.
@@ -42,6 +46,7 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Modes
     let mut assembled = assembled::structure(model, true, threads, &mut counters)?;
     stopwatch.lap("assemble");
     let mut modes = modes::lowest(&mut assembled.structure, count, !model.held)?;
+    let softness = supports::soft_shapes(model, &mut assembled, &modes.shapes);
     (counters.factorisations, counters.solves) = assembled.structure.work();
     modes.shapes = assembled.expand(modes.shapes);
     let n = model.constraints.ndof();
@@ -81,6 +86,7 @@ pub fn solve(model: &Model, count: usize, threads: NonZeroUsize) -> Result<Modes
         factor_entries,
         buckling,
         substructures,
+        softness,
         counters,
         phases,
     })

@@ -3,6 +3,7 @@
 use super::assembled::Assembled;
 use crate::model::Model;
 use fem_core::assembly::softness;
+use fem_core::structure::Structure;
 
 /// Share of the work of a load from which on the user should know of it.
 const WORTH: f64 = 0.01;
@@ -14,4 +15,14 @@ pub(super) fn soft(model: &Model, assembled: &mut Assembled, at_rest: (&[f64], &
         return None;
     }
     softness(&mut assembled.structure, &model.between, at_rest, WORTH).ok().flatten()
+}
+
+/// The largest of these shares among the loads K φ that hold the plate in one of `shapes` φ.
+pub(super) fn soft_shapes(model: &Model, assembled: &mut Assembled, shapes: &[f64]) -> Option<f64> {
+    let share = |shape: &[f64]| {
+        let mut load = vec![0.0; shape.len()];
+        assembled.structure.add_stiffness(1.0, shape, &mut load);
+        soft(model, assembled, (&load, shape))
+    };
+    shapes.chunks_exact(model.constraints.ndof().max(1)).filter_map(share).reduce(f64::max)
 }

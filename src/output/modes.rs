@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::model::Model;
 use crate::output::preload::PreloadFigures;
 use crate::output::shapes::shapes;
-use crate::words::{append, append_symmetry};
+use crate::words::{append, append_symmetry, warn_of_softness};
 use fem_core::plugin::Dimension;
 use fem_io::files::OutputDir;
 use fem_io::plot;
@@ -57,7 +57,7 @@ impl ModesSummary {
             elements: solution.counters.elements,
             elements_reused: solution.counters.elements_reused,
             solves: solution.counters.solves,
-            warnings: model.warnings.clone(),
+            warnings: model.warnings.iter().cloned().chain(solution.softness.map(warn_of_softness)).collect(),
         }
     }
 

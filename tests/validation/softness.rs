@@ -37,3 +37,37 @@ fn what_is_free_between_nodes_is_said_with_its_number() {
         assert!(actual > 0.02 && (said / actual - 1.0).abs() < 0.05, "{ratio} {cells}: {said} {actual}");
     }
 }
+
+/// So are modes and load factors, whose stiffness is that of the loads that would hold the plate in their shapes.
+#[test]
+fn modes_and_buckling_say_it_as_well() {
+    let plate = |analysis: &str, supports: &str| {
+        let preload = match analysis {
+            "buckling" => {
+                "effects.preload = [{ group = 'x-min', force = '-1 N/mm' }, { group = 'x-max', force = '-1 N/mm' }]"
+            }
+            _ => "",
+        };
+        let sides = ["x-min", "x-max", "y-min", "y-max"]
+            .map(|side| format!("{{ group = '{side}', {supports}, at = 'bottom' }}"));
+        let text = format!(
+            "title = 'plate'\nanalysis = '{analysis}'\n{analysis}.count = 1\nmesh = {{ rectangle = ['100 mm', '100 mm'], cells = [2, 2] }}\n\
+             laminate = {{ plies = '[0/0]', material = 'm', ply_thickness = '2 mm', layers = [2] }}\n{preload}\n\
+             support = [{}, {{ group = 'y-min', kind = 'hinged', at = 'bottom' }}]\n[materials.m]\n{AS4}",
+            sides.join(", ")
+        );
+        let scene = fem::io::scene::parse(&text, "scene.toml".as_ref()).unwrap();
+        fem::Model::new(scene, &fem::Registry::standard()).unwrap()
+    };
+    let threads = std::num::NonZeroUsize::MIN;
+    let [held, free] = ["kind = 'roller'", "fix = ['U30']"].map(|supports| {
+        let modes = fem::analyses::modes::solve(&plate("modes", supports), 1, threads).unwrap();
+        let buckling = fem::analyses::buckling::solve(&plate("buckling", supports), 1, threads).unwrap();
+        [(modes.modes.omega[0].powi(2), modes.softness), (buckling.buckling.factors[0], buckling.softness)]
+    });
+    for ((held, none), (free, said)) in held.into_iter().zip(free) {
+        let (actual, said) = (1.0 - free / held, said.unwrap());
+        assert_eq!(none, None);
+        assert!(actual > 0.015 && (said / actual - 1.0).abs() < 0.2, "{said} {actual}");
+    }
+}

@@ -392,10 +392,44 @@ fn wrong_ways() {
     warned("{ group = 'edge', kind = 'hinged', at = 'bottom' }", "");
     warned(
         "{ group = 'edge', kind = 'hinged', at = 'bottom' }, { group = 'edge', kind = 'hinged', at = 'top' }",
-        "the hinges of `edge` hold the plate at two heights",
+        "the supports of `edge` hold the plate at two heights",
     );
     warned(
         "{ group = 'edge', kind = 'simply-supported' }, { group = 'impact', kind = 'clamped' }",
         "clamped at a single node",
     );
+}
+
+/// Displacements that are fixed by name on both faces of an edge clamp it where they are across it and the edge does not deflect.
+#[test]
+fn faces_that_clamp_together() {
+    let warnings = |kind: &str, faces: &[(&str, &str)]| {
+        let fixed = faces.iter().map(|(at, fix)| format!("{{ group = 'x-min', at = '{at}', {fix} }}, "));
+        let others =
+            ["x-max", "y-min", "y-max"].map(|side| format!("{{ group = '{side}', kind = 'simply-supported' }}"));
+        let supports =
+            format!("{}{{ group = 'x-min', kind = '{kind}' }}, {}", fixed.collect::<String>(), others.join(", "));
+        let mesh = "{ rectangle = ['20 mm', '20 mm'], cells = [10, 10] }";
+        model(&text(mesh, PRISM, (&aluminium(), "[0/0]", 1.0), &supports)).unwrap().warnings
+    };
+    let both = |fix| [("bottom", fix), ("top", fix)];
+    for (kind, faces) in [
+        ("simply-supported", both("fix = ['U10']")),
+        ("simply-supported", both("fix = ['U20'], axes = '90 deg'")),
+        ("free", both("fix = ['U10', 'U30']")),
+        ("roller", [("bottom", "fix = ['U10', 'U20']"), ("top", "fix = ['U10']")]),
+    ] {
+        let [warning] = &warnings(kind, &faces)[..] else { panic!("{kind}, {faces:?}") };
+        assert!(warning.contains("the supports of `x-min` hold the plate at two heights"), "{warning}");
+    }
+    for (kind, faces) in [
+        ("simply-supported", &both("fix = ['U10']")[..1]),
+        ("simply-supported", &both("fix = ['U20']")),
+        ("simply-supported", &both("fix = ['U10'], axes = '90 deg'")),
+        ("free", &both("fix = ['U10']")),
+        ("free", &[("all", "fix = ['U10', 'U20', 'U30']")]),
+        ("guided", &both("fix = ['U10', 'U30']")),
+    ] {
+        assert_eq!(warnings(kind, faces), Vec::<String>::new(), "{kind}, {faces:?}");
+    }
 }

@@ -98,7 +98,7 @@ impl SupportKind {
     }
 
     /// Whether displacement 1 (along the edge), 2 (across it) or 3 (the deflection) is held.
-    fn holds(self, n: u8) -> bool {
+    pub fn holds(self, n: u8) -> bool {
         match self {
             Clamped | Hinged => true,
             Guided => n != 3,
