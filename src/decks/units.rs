@@ -75,6 +75,7 @@ impl UnitSystem {
             force: (own.force.0 * force, own.force.1),
             power: own.power.map(|power| power * force.powi(2)),
             deepest: own.deepest * length,
+            dent: own.dent * length,
             deflection: own.deflection * length,
             growth: own.growth.iter().map(|(t, deflection)| (*t, deflection * length)).collect(),
             ..own.clone()

@@ -17,8 +17,13 @@ pub struct FieldPlan {
 }
 
 impl Builder<'_> {
-    /// What `output.fields` asks for.
-    pub(super) fn fields(&self, plate: &Plate, centres: &[[f64; 2]]) -> Result<Option<FieldPlan>, SceneError> {
+    /// What `output.fields` asks for, where interfaces may open if `growing`.
+    pub(super) fn fields(
+        &self,
+        plate: &Plate,
+        centres: &[[f64; 2]],
+        growing: bool,
+    ) -> Result<Option<FieldPlan>, SceneError> {
         let Some(fields) = &self.scene.output.fields else { return Ok(None) };
         let all = 0..plate.plane.quads.len();
         let quads: Vec<usize> = match &fields.region {
@@ -45,7 +50,8 @@ impl Builder<'_> {
                 quads
             }
         };
-        let interfaces = self.scene.interface.is_some() && self.scene.laminates[0].laminate.value.plies.len() > 1;
+        let interfaces = growing || self.scene.interface.is_some();
+        let interfaces = interfaces && self.scene.laminates[0].laminate.value.plies.len() > 1;
         let mut series = Vec::new();
         for part in fields.parts.iter().flatten() {
             if part.value == FieldSeries::Interfaces && !interfaces {

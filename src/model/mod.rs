@@ -299,7 +299,7 @@ impl Model {
         let division = builder.division(&plate, constraints, &plan)?;
         let watched = builder.find_watched(&plate, &centres)?;
         let gauges = builder.gauges(&plate, &laminates, &watched, &criteria)?;
-        let fields = builder.fields(&plate, &centres)?;
+        let fields = builder.fields(&plate, &centres, split.is_some())?;
         let around = builder.find_centres((&plate, laminate.plies[0].angle), &watched, &centres);
         let (centres, centre_cells) = around.into_iter().unzip();
         let resin = scene.interface.as_ref().map(|resin| resin.value);

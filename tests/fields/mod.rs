@@ -1,5 +1,6 @@
 //! Fields for ParaView and PyVista: what the files hold, held against the model, the tables and other readers.
 
+mod damaged;
 mod decode;
 mod impact;
 mod readers;

@@ -1,5 +1,6 @@
 //! Layers that separate: delamination specimens against beams on cohesive interfaces, and impacts.
 
+mod bars;
 mod circle;
 mod closed;
 mod dynamics;

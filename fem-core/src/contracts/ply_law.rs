@@ -6,6 +6,7 @@ use crate::words::material::{Material, MaterialError, Strength, Toughness};
 use crate::words::tensor::{Matrix6, Ply, Strain6, Stress6};
 use dyn_clone::DynClone;
 use std::fmt::{self, Debug};
+use std::ops::Range;
 
 /// What a law of a ply or an interface says of itself.
 #[derive(Debug, Clone, Copy)]
@@ -94,6 +95,18 @@ impl std::error::Error for LawError {}
 pub trait PlyLaw: DynClone + Debug + Send + Sync {
     /// State variables and required strengths.
     fn info(&self) -> &LawInfo;
+
+    /// Which of its state variables are damages: shares of a stiffness that are lost, from 0 to 1. Fields show their means, under the
+    /// names that [`LawInfo::state`] has for them.
+    fn damages(&self) -> Range<usize> {
+        0..0
+    }
+
+    /// Which of its state variables are what its modes have dissipated, J/m³; together all that it dissipates. Summaries tell
+    /// them apart, under the names that [`LawInfo::state`] has for them.
+    fn sinks(&self) -> Range<usize> {
+        0..0
+    }
 
     /// Refuses a point whose constants the law cannot use, such as a cell too wide for the energy of a crack. That the
     /// required strengths are there is [`check_law`]'s business.

@@ -207,6 +207,21 @@ impl Interfaces {
         self.laws(cell, states).map(move |(area, state)| (area, self.of.law.damage(&at, state)))
     }
 
+    /// Mean jump across a cell, m: along its normal, along x, along y; `u` are the displacements of the plate before elimination.
+    pub fn mean_jump(&self, cell: usize, u: &[f64]) -> Jump {
+        let (InterfaceCell { unknowns, shape, .. }, components) = (&self.cells[cell], self.components(cell));
+        let shape = &self.shapes[*shape];
+        let apart = unknowns.above.iter().zip(&unknowns.below).map(|(above, below)| u[*above] - u[*below]);
+        let whole: f64 = shape.areas.iter().sum();
+        let mut jump = [0.0; 3];
+        for ((unknown, apart), component) in apart.enumerate().zip(components) {
+            let functions = shape.functions.iter().skip(unknown).step_by(components.len());
+            let mean = shape.areas.iter().zip(functions).map(|(area, function)| area * function).sum::<f64>() / whole;
+            jump[SLOT[*component]] += mean * apart;
+        }
+        jump
+    }
+
     /// Area of the points that have lost more than `share` of their cohesion, m², face by face.
     pub fn lost_area(&self, states: &[f64], share: f64) -> BTreeMap<usize, f64> {
         let mut areas = BTreeMap::new();

@@ -262,6 +262,11 @@ impl PlyLaws {
         said
     }
 
+    /// The laws of all plies, from the bottom up.
+    pub fn laws(&self) -> impl Iterator<Item = &dyn PlyLaw> {
+        self.plies.iter().flatten().flatten().map(|ply| &*ply.law)
+    }
+
     /// State variables of all cells.
     pub fn states(&self) -> usize {
         self.first[self.first.len() - 1]
@@ -270,6 +275,73 @@ impl PlyLaws {
     /// The state variables of a cell among those of all.
     pub fn states_of(&self, cell: usize) -> std::ops::Range<usize> {
         self.first[cell]..self.first[cell + 1]
+    }
+
+    /// Shows `see` the points of a cell at which laws are asked: the ply, counted from the bottom of the layer, its law, the volume, m³,
+    /// and the state of the law, of the `states` of the cell.
+    pub fn visit(
+        &self,
+        plate: &Plate,
+        element: &dyn Element,
+        cell: usize,
+        states: &[f64],
+        mut see: impl FnMut(usize, &dyn PlyLaw, f64, &[f64]),
+    ) {
+        let (view, plies) = (plate.cell(cell), self.of(plate, cell));
+        let info = form(element, view.corners.domain()).info();
+        let through = through(gauss_legendre(info.ply_order), &view.stack.slices, plies);
+        let mut at = 0;
+        for (r, s, w) in info.plane_points() {
+            let height = w * view.plane(r, s).det * view.half_height();
+            for Through { slice, weight, .. } in &through {
+                let Some(ply) = &plies[*slice] else { continue };
+                let count = ply.law.info().state.len();
+                see(*slice, &*ply.law, height * weight, &states[at..at + count]);
+                at += count;
+            }
+        }
+    }
+
+    /// What the modes of laws have dissipated in the cells that symmetry leaves, all of them counted, J, by their names; `points` are the
+    /// states of all cells. Laws that do not tell their modes are left out.
+    pub fn dissipated(&self, plate: &Plate, element: &dyn Element, points: &[f64]) -> Vec<(&'static str, f64)> {
+        let mut sums: Vec<(&'static str, f64)> = Vec::new();
+        for (cell, weight) in plate.kept_cells() {
+            self.visit(plate, element, cell, &points[self.states_of(cell)], |_, law, volume, state| {
+                for k in law.sinks() {
+                    let (name, lost) = (law.info().state[k], weight * volume * state[k]);
+                    match sums.iter_mut().find(|(known, _)| *known == name) {
+                        Some((_, sum)) => *sum += lost,
+                        None => sums.push((name, lost)),
+                    }
+                }
+            });
+        }
+        sums
+    }
+
+    /// Mean damages of each ply of a cell, by their names; `states` are those of the cell.
+    pub fn damages(
+        &self,
+        plate: &Plate,
+        element: &dyn Element,
+        cell: usize,
+        states: &[f64],
+    ) -> Vec<(usize, &'static str, f64)> {
+        let mut means: Vec<(usize, &'static str, f64)> = Vec::new();
+        let mut whole = vec![0.0; plate.cell(cell).stack.slices.len()];
+        self.visit(plate, element, cell, states, |slice, law, volume, state| {
+            whole[slice] += volume;
+            for k in law.damages() {
+                let (name, lost) = (law.info().state[k], volume * state[k]);
+                match means.iter_mut().find(|(ply, known, _)| (*ply, *known) == (slice, name)) {
+                    Some((.., sum)) => *sum += lost,
+                    None => means.push((slice, name, lost)),
+                }
+            }
+        });
+        means.iter_mut().for_each(|(slice, _, mean)| *mean /= whole[*slice]);
+        means
     }
 
     /// Whether a ply of the cell follows a law.

@@ -17,6 +17,8 @@ pub struct ContactRecord {
     pub power: [f64; 2],
     /// Largest indentation, m.
     pub deepest: f64,
+    /// Indentation that the law keeps when the force is gone, m: a dent.
+    pub dent: f64,
     /// Largest deflection of the plate under the impactor, m, towards which it moves.
     pub deflection: f64,
     /// Times, s, and magnitudes, m, of the deflection while it grew beyond all before; the last is the largest. The step

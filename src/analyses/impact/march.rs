@@ -371,9 +371,9 @@ impl<'a> March<'a> {
 
     fn sample(&mut self) -> Result<(), Error> {
         let u = self.coordinates();
+        let beside = self.interface_states();
         let Some(watch) = &mut self.watch else { return Ok(()) };
         self.stopwatch.lap("march");
-        let beside = self.model.separation.as_ref().map_or(0, |separation| separation.states.len());
         let sampled = watch.sample(self.progress.state.t, &u, &self.progress.state.histories.points[beside..]);
         self.stopwatch.lap("scan");
         sampled
@@ -414,10 +414,19 @@ impl<'a> March<'a> {
         Ok((0..self.model.criteria.len()).flat_map(|k| largest(&scan, k)).collect())
     }
 
+    /// States of interfaces that may open, at present.
+    pub fn interfaces(&self) -> &[f64] {
+        &self.progress.state.histories.points[..self.interface_states()]
+    }
+
     /// States of plies that follow laws, at present.
     pub fn points(&self) -> &[f64] {
-        let beside = self.model.separation.as_ref().map_or(0, |separation| separation.states.len());
-        &self.progress.state.histories.points[beside..]
+        &self.progress.state.histories.points[self.interface_states()..]
+    }
+
+    /// How many states of interfaces come before those of plies.
+    fn interface_states(&self) -> usize {
+        self.model.separation.as_ref().map_or(0, |separation| separation.states.len())
     }
 
     /// Velocities of these, m/s; `None` where the plate has no inertia.
@@ -504,6 +513,11 @@ impl<'a> March<'a> {
         info!(steps = self.progress.step, work = ?self.progress.work, "march");
         let Progress { step, ledger, work, parts, stopped, onsets, state, .. } = self.progress;
         let separation = self.model.separation.as_ref();
+        let beside = separation.map_or(0, |separation| separation.states.len());
+        let laws = self.model.laws.as_ref().filter(|laws| laws.states() + beside == state.histories.points.len());
+        let plies = laws.map_or_else(Vec::new, |laws| {
+            laws.dissipated(&self.model.plate, &*self.model.element, &state.histories.points[beside..])
+        });
         let delaminated = separation.map(|separation| onsets.finish(separation, &state.histories.points));
         let mut counters = self.counters;
         counters.steps = step;
@@ -514,7 +528,10 @@ impl<'a> March<'a> {
         counters.solves = counters.solves.max(work.solves);
         let ended = stopped.is_none() && ended;
         let energy_error = ledger.error;
-        let (contacts, forces, history) = ledger.records();
+        let (mut contacts, forces, history) = ledger.records();
+        for (i, contact) in contacts.iter_mut().enumerate() {
+            contact.dent = self.system.impactors()[i].law.branches(&state.histories.contacts[i]).touch;
+        }
         let accuracy = if ended { self.estimates.finish(&forces, contacts.first()) } else { Accuracy::default() };
         Outcome {
             accuracy,
@@ -523,6 +540,7 @@ impl<'a> March<'a> {
             squeezes: self.squeezes,
             forces,
             delaminated,
+            plies,
             modal: self.modal.map(ModalView::finish),
             history,
             events,

@@ -99,6 +99,8 @@ pub struct Outcome {
     pub maxima: Vec<Maximum>,
     /// What has delaminated, where delaminations grow.
     pub delaminated: Option<Delaminated>,
+    /// What each mode of plies that follow laws has dissipated, J, by its name, where the law tells them apart.
+    pub plies: Vec<(&'static str, f64)>,
     /// What the lowest modes do, if the scene asks for it.
     pub modal: Option<ModalHistory>,
     /// Sites watched.

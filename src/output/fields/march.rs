@@ -29,14 +29,15 @@ impl<'a> MarchFields<'a> {
     pub(crate) fn take(&mut self, march: &mut March<'_>) -> Result<(), Error> {
         let Some(number) = march.frame() else { return Ok(()) };
         march.beside(PHASE, |march| {
-            let (u, v, points) = (march.displacements(), march.velocities(), march.points().to_vec());
+            let (u, v) = (march.displacements(), march.velocities());
             if self.writer.is_none() {
                 self.writer = Writer::new(self.model, self.dir, march.frame_times())?;
             }
             let Some(writer) = &mut self.writer else { return Ok(()) };
             let maxima = if writer.shows_plies() { march.maxima()? } else { Vec::new() };
             let maxima = Some(maxima.as_slice());
-            writer.take(number, State { maxima, velocities: v.as_deref(), points: Some(&points), ..State::of(&u) })
+            let (points, interfaces) = (Some(march.points()), Some(march.interfaces()));
+            writer.take(number, State { maxima, velocities: v.as_deref(), points, interfaces, ..State::of(&u) })
         })
     }
 

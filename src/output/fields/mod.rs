@@ -11,6 +11,7 @@
 //! A frame is a state of the whole plate, also where a symmetry computes a part of it. Files depend on nothing but
 //! the state, so that a resumed march writes what one in one piece writes.
 
+mod damaged;
 mod lattice;
 mod march;
 mod names;
@@ -52,6 +53,8 @@ struct State<'a> {
     velocities: Option<&'a [f64]>,
     /// States of plies that follow laws; without them plies are linear elastic.
     points: Option<&'a [f64]>,
+    /// States of interfaces that may open.
+    interfaces: Option<&'a [f64]>,
     /// Of a natural mode its frequency, Hz, of buckling its load factor, by the name of the field.
     figure: Option<(&'static str, f64)>,
     /// In a march what the criteria have found up to now.
@@ -61,7 +64,7 @@ struct State<'a> {
 impl<'a> State<'a> {
     /// Displacements alone.
     fn of(displacements: &'a [f64]) -> Self {
-        Self { displacements, velocities: None, points: None, figure: None, maxima: None }
+        Self { displacements, velocities: None, points: None, interfaces: None, figure: None, maxima: None }
     }
 }
 
@@ -114,6 +117,7 @@ struct Waiting {
     displacements: Vec<f64>,
     velocities: Option<Vec<f64>>,
     points: Option<Vec<f64>>,
+    interfaces: Option<Vec<f64>>,
     figure: Option<(&'static str, f64)>,
     /// What the criteria had found, for `plies` and for `interfaces`.
     so_far: Vec<(FieldSeries, Vec<Array>)>,
@@ -139,11 +143,12 @@ impl<'a> Writer<'a> {
     /// As [`Writer::flush`].
     fn take(&mut self, number: usize, state: State<'_>) -> Result<(), Error> {
         let State { displacements, figure, maxima, .. } = state;
-        let [velocities, points] = [state.velocities, state.points].map(|values| values.map(<[f64]>::to_vec));
+        let [velocities, points, interfaces] =
+            [state.velocities, state.points, state.interfaces].map(|values| values.map(<[f64]>::to_vec));
         let displacements = displacements.to_vec();
         let Layout { plate, plies } = &self.layout;
         let so_far = plies.as_ref().zip(maxima).map_or_else(Vec::new, |(plies, maxima)| plies.so_far(maxima));
-        self.waiting.push(Waiting { number, displacements, velocities, points, figure, so_far });
+        self.waiting.push(Waiting { number, displacements, velocities, points, interfaces, figure, so_far });
         let of_frame =
             plate.as_ref().map_or(0, Plate::bytes_of_frame) + plies.as_ref().map_or(0, Plies::bytes_of_frame);
         let most = (STORE / of_frame.max(1)).clamp(1, BATCH);
@@ -162,9 +167,11 @@ impl<'a> Writer<'a> {
     fn flush(&mut self) -> Result<(), Error> {
         let waiting = std::mem::take(&mut self.waiting);
         let Self { layout: Layout { plate, plies }, dir, times, .. } = self;
-        let frames = waiting.iter().map(|Waiting { number, displacements, velocities, points, figure, so_far }| {
-            let [velocities, points] = [velocities, points].map(Option::as_deref);
-            let state = State { displacements, velocities, points, figure: *figure, maxima: None };
+        let frames = waiting.iter().map(|waiting| {
+            let Waiting { number, displacements, figure, so_far, .. } = waiting;
+            let [velocities, points, interfaces] =
+                [&waiting.velocities, &waiting.points, &waiting.interfaces].map(Option::as_deref);
+            let state = State { displacements, velocities, points, interfaces, figure: *figure, maxima: None };
             Frame { dir, times: &times[..=*number], state, so_far }
         });
         let frames: Vec<Frame<'_>> = frames.collect();

@@ -1,6 +1,7 @@
 //! Plies and interfaces with their stresses and failure indices.
 
 use super::Frame;
+use super::damaged::Damaged;
 use super::lattice::{Height, Lattice};
 use super::so_far::SoFar;
 use crate::analyses::impact::Maximum;
@@ -70,6 +71,7 @@ pub(super) struct Plies<'a> {
     /// Finds indices; a natural mode has none.
     scan: Option<Scan>,
     so_far: SoFar<'a>,
+    damaged: Damaged<'a>,
     pub(super) sheets: Vec<Sheets>,
     states: Vec<Stress6<Ply>>,
 }
@@ -123,6 +125,7 @@ impl<'a> Plies<'a> {
         Ok(Self {
             scan: if judged { Some(scan()?) } else { None },
             so_far: SoFar::new(model, plan),
+            damaged: Damaged::new(model, plan),
             states: vec![Stress6::new([0.0; 6]); recovery.sites()],
             model,
             lattice,
@@ -180,6 +183,16 @@ impl<'a> Plies<'a> {
             }
             let known = frame.so_far.iter().filter(|(series, _)| *series == sheets.series);
             cells.extend(known.flat_map(|(_, arrays)| arrays).cloned());
+            let (state, starts) = (&frame.state, sheets.starts());
+            match sheets.site {
+                Site::Ply => {
+                    cells.extend(state.points.into_iter().flat_map(|points| self.damaged.of_plies(points, &starts)))
+                }
+                Site::Interface => {
+                    let damaged = |states| self.damaged.of_interfaces(states, state.displacements, &starts);
+                    cells.extend(state.interfaces.into_iter().flat_map(damaged));
+                }
+            }
             let contents = Contents { points: &points, cells: &cells, fixed: &sheets.fixed, ..Contents::default() };
             frame.write(sheets.series, &sheets.grid, contents)?;
         }
@@ -188,7 +201,12 @@ impl<'a> Plies<'a> {
 
     /// Numbers for each cell of a series that change from frame to frame.
     pub(super) fn changing(&self, sheets: &Sheets) -> usize {
-        let stress = if sheets.site == Site::Ply { COMPONENTS.len() } else { 1 + SHEAR.len() };
+        let [of_plies, of_interfaces] = self.damaged.changing();
+        let stress = match sheets.site {
+            Site::Ply => COMPONENTS.len() + of_plies,
+            Site::Interface if sheets.is_stressed() => 1 + SHEAR.len() + of_interfaces,
+            Site::Interface => of_interfaces,
+        };
         let judged = self.model.criteria.iter().filter(|(_, criterion)| criterion.info().site == sheets.site);
         // Beside the index of the frame that of all samples so far; times of onsets are few.
         let indices = match self.model.plan {
@@ -273,8 +291,16 @@ impl Sheets {
         starts
     }
 
+    /// Whether stresses are known here: those of interfaces where they are of a material.
+    fn is_stressed(&self) -> bool {
+        self.stations.iter().flatten().any(|of| !of.is_empty())
+    }
+
     /// Stresses of a ply in its axes, tractions of an interface in the plate's: means of both sides.
     fn stresses(&self, recovery: &Recovery, stresses: &[f64]) -> Vec<Array> {
+        if !self.is_stressed() {
+            return Vec::new();
+        }
         let mut means = Vec::with_capacity(6 * self.grid.cells());
         for sites in self.sites(recovery) {
             let share = 1.0 / sites.clone().count() as f64;

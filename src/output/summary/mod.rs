@@ -57,6 +57,9 @@ pub struct ImpactSummary {
     pub delamination_threshold: Option<Threshold>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delamination: Option<DelaminationFigures>,
+    /// What plies that follow laws have dissipated, J, mode by mode.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub plies_J: BTreeMap<&'static str, f64>,
     /// Energies that effects have taken or hold at the end, J, by their columns of the history.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub energies_of_effects: BTreeMap<&'static str, f64>,
@@ -120,6 +123,9 @@ pub struct ImpactFigures {
     pub peak_plate_displacement_m: f64,
     pub peak_plate_displacement_over_thickness: f64,
     pub peak_indentation_m: f64,
+    /// That the contact law leaves, where it leaves one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dent_m: Option<f64>,
     pub impulse_N_s: f64,
     pub final_impactor_velocity_m_s: f64,
     pub contacts: u32,
@@ -407,6 +413,7 @@ impl ImpactSummary {
             },
             preload: PreloadFigures::new(model, sizes.buckling),
             delamination: DelaminationFigures::of_impact(outcome, &impact),
+            plies_J: outcome.plies.iter().copied().collect(),
             energies_of_effects: energies(model, outcome).map(|(column, energy)| (column.name, energy)).collect(),
             labelled: energies(model, outcome).map(|(column, energy)| (column.label, energy)).collect(),
             impact,
@@ -502,6 +509,7 @@ impl ImpactFigures {
             peak_plate_displacement_m: deflection,
             peak_plate_displacement_over_thickness: deflection / thickness,
             peak_indentation_m: contact.deepest,
+            dent_m: Some(contact.dent).filter(|dent| *dent > 0.0),
             impulse_N_s: mass_kg * (velocity_m_s - final_impactor_velocity_m_s),
             final_impactor_velocity_m_s,
             contacts: contact.count,

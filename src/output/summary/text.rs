@@ -45,13 +45,14 @@ impl ImpactSummary {
                 Dimension::MASS.of(m.plate_mass_g * 1e-3)
             ));
             line(format_args!(
-                "  force     {name}peak {} at {}; deflection {} = {:.2} thicknesses; {} contact{}",
+                "  force     {name}peak {} at {}; deflection {} = {:.2} thicknesses; {} contact{}{}",
                 Dimension::FORCE.of(i.peak_force_N),
                 Dimension::TIME.of(i.peak_force_time_s),
                 Dimension::LENGTH.of(i.peak_plate_displacement_m),
                 i.peak_plate_displacement_over_thickness,
                 i.contacts,
-                if i.contacts == 1 { "" } else { "s" }
+                if i.contacts == 1 { "" } else { "s" },
+                i.dent_m.map_or(String::new(), |dent| format!(", leaving a dent of {}", Dimension::LENGTH.of(dent)))
             ));
         }
         if self.first_damage.is_empty() {
@@ -140,6 +141,12 @@ impl ImpactSummary {
         }
         if let Some(grown) = &self.delamination {
             grown.lines().iter().for_each(|one| line(format_args!("{one}")));
+        }
+        let of_plies = self.plies_J.iter().filter(|(_, energy)| **energy > 0.0);
+        let of_plies = of_plies.map(|(mode, energy)| format!("{} {mode}", Dimension::ENERGY.of(*energy)));
+        let of_plies: Vec<String> = of_plies.collect();
+        if !of_plies.is_empty() {
+            line(format_args!("  plies     {}", of_plies.join(", ")));
         }
         if !self.labelled.is_empty() {
             let each: Vec<String> = self

@@ -17,6 +17,7 @@ use modes::{BRITTLE, Matrix, Modes, State};
 use permanent::{Permanent, Sheared, Yielding};
 use solid::{Damage, Solid};
 use solve::{Found, released};
+use std::ops::Range;
 
 /// Where the shears 12, 23, 13 stand among six components.
 const SHEARS: [usize; 3] = [3, 4, 5];
@@ -74,11 +75,15 @@ pub enum Breaks {
     Splits,
 }
 
+/// What each mode has dissipated, and after them yielding, J/m³.
+type Lost = [f64; 5];
+const YIELDING: usize = 4;
+
 /// What the law remembers.
 #[derive(Debug, Clone, Copy)]
 struct Memory {
     damage: Damage,
-    lost: f64,
+    lost: Lost,
     /// Effective stresses at the last accepted strain.
     state: State,
     permanent: Permanent,
@@ -90,7 +95,11 @@ impl Memory {
         "fibre compression",
         "matrix tension",
         "matrix compression",
-        "lost",
+        "lost by fibre tension",
+        "lost by fibre compression",
+        "lost by matrix tension",
+        "lost by matrix compression",
+        "lost by yielding",
         "last effective 11",
         "last effective 22",
         "last effective 33",
@@ -102,21 +111,23 @@ impl Memory {
         "its length",
     ];
     /// Without a permanent strain.
-    const ELASTIC: usize = 11;
+    const ELASTIC: usize = 15;
+    const DAMAGES: Range<usize> = 0..4;
+    const SINKS: Range<usize> = 4..9;
 
     fn read(state: &[f64]) -> Self {
         let at = |k: usize| state.get(k).copied().unwrap_or(0.0);
         Self {
             damage: std::array::from_fn(at),
-            lost: at(4),
-            state: State { h: [at(5), at(6), at(7)], t: [at(8), at(9), at(10)] },
-            permanent: Permanent { left: [at(11), at(12)], way: at(13) },
+            lost: std::array::from_fn(|k| at(4 + k)),
+            state: State { h: [at(9), at(10), at(11)], t: [at(12), at(13), at(14)] },
+            permanent: Permanent { left: [at(15), at(16)], way: at(17) },
         }
     }
 
     fn write(&self, state: &mut [f64]) {
         let Self { damage, lost, state: State { h, t }, permanent: Permanent { left, way } } = *self;
-        let all = damage.into_iter().chain([lost]).chain(h).chain(t).chain(left).chain([way]);
+        let all = damage.into_iter().chain(lost).chain(h).chain(t).chain(left).chain([way]);
         state.iter_mut().zip(all).for_each(|(to, from)| *to = from);
     }
 }
@@ -258,6 +269,14 @@ impl PlyLaw for CrackBand {
         }
     }
 
+    fn damages(&self) -> Range<usize> {
+        Memory::DAMAGES
+    }
+
+    fn sinks(&self) -> Range<usize> {
+        Memory::SINKS
+    }
+
     fn check(&self, point: &LawPoint<'_>) -> Result<(), UnmetCondition> {
         let (x, e) = (&point.material.strengths, &point.material.elastic);
         let unmet = |condition, reason, values: [(&str, f64, &'static str); 2]| {
@@ -338,14 +357,15 @@ impl PlyLaw for CrackBand {
         let [left, left_before] = [damage, old.damage].map(|d| modes.shears_left(&d));
         let mut lost = old.lost;
         if damage != old.damage {
-            lost += released(&modes, [&old.damage, &damage], [&old.state, &state]);
+            let more = released(&modes, [&old.damage, &damage], [&old.state, &state]);
+            lost.iter_mut().zip(more).for_each(|(lost, more)| *lost += more);
         }
         if sheared.left.way > old.permanent.way {
             let before = self.yielding(&modes).map_or(0.0, |yielding| yielding.lost(old.permanent.way));
             // Shears yield in the proportion of their stresses.
             let [along, _, through] = t.map(|t| t * t);
             let of = |k: usize| 0.5 * (left[k] + left_before[k]);
-            lost += (along * of(0) + through * of(2)) / (along + through) * (sheared.lost - before);
+            lost[YIELDING] += (along * of(0) + through * of(2)) / (along + through) * (sheared.lost - before);
         }
         let normal: [f64; 3] = std::array::from_fn(|i| found.effective.left[i] * state.h[i]);
         let stored = 0.5 * (0..3).map(|i| normal[i] * e[i]).sum::<f64>();
@@ -363,7 +383,7 @@ impl PlyLaw for CrackBand {
         Memory { damage, lost, state, permanent: sheared.left }.write(new);
         let [t12, t23, t13] = std::array::from_fn(|k| left[k] * t[k]);
         let stress = Stress6::new([normal[0], normal[1], normal[2], t12, t23, t13]);
-        Ok(PlyResponse { stress, energy: Energy { stored, dissipated: lost } })
+        Ok(PlyResponse { stress, energy: Energy { stored, dissipated: lost.iter().sum() } })
     }
 }
 

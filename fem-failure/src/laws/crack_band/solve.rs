@@ -164,15 +164,15 @@ impl Found {
     }
 }
 
-/// Energy that damage releases between two states, Σ ∫ Y dd, J/m³.
+/// Energy that the damage of each mode releases between two states, ∫ Y dd, J/m³.
 ///
 /// Y = y e² with the mix of the stresses half-way, and e from that of the old damage to that of the new one: exact for one mode at a
 /// fixed mix. Where the matrix turns from tension to compression or back, its other damage begins at once, at the exposure there.
-pub(super) fn released(modes: &Modes, damage: [&Damage; 2], states: [&State; 2]) -> f64 {
+pub(super) fn released(modes: &Modes, damage: [&Damage; 2], states: [&State; 2]) -> [f64; 4] {
     let [old, new] = damage;
     let [before, after] = states;
     let middle: Damage = std::array::from_fn(|k| 0.5 * (old[k] + new[k]));
-    let mut sum = 0.0;
+    let mut sums = [0.0; 4];
     for mode in (0..4).filter(|k| new[*k] > old[*k]) {
         let turned = mode > 1 && modes.of(before)[1] != mode;
         let half = before.between(after, 0.5);
@@ -190,12 +190,12 @@ pub(super) fn released(modes: &Modes, damage: [&Damage; 2], states: [&State; 2])
             let begun = modes.exposure(mode, &turn);
             let jumped = if begun > 1.0 { damage_at(begun, kappa).min(new[mode]) } else { 0.0 };
             if jumped > from {
-                sum += y * e * e * (jumped - from);
+                sums[mode] += y * e * e * (jumped - from);
                 from = jumped;
             }
         }
         let [first, last] = [from, new[mode]].map(|d| exposure_at(d, kappa));
-        sum += y / (1.0 - kappa) * (last - first);
+        sums[mode] += y / (1.0 - kappa) * (last - first);
     }
-    sum
+    sums
 }
