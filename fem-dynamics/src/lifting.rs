@@ -1,5 +1,6 @@
 //! Springs that only push, from which a structure lifts off.
 
+use crate::vector::axpy;
 use fem_core::functional::Functional;
 use fem_core::structure::SolveError;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -45,11 +46,13 @@ pub struct Lifting {
     compliance: DMatrix<f64>,
     /// w of each where a step begins, of forces that are means over it.
     before: Option<Vec<f64>>,
+    /// F of the last deflections of a step: those after them are near.
     forces: DVector<f64>,
     w: DVector<f64>,
-    /// √r′ of each, and the factor of 1 − √r′ G √r′ of those that are not 0.
+    /// √r′ of each.
     roots: Vec<f64>,
-    factor: Option<Cholesky<f64, Dyn>>,
+    /// The factor of 1 − √r′ G √r′ of those that are not 0, and the roots that it is of.
+    factor: Option<(Vec<f64>, Cholesky<f64, Dyn>)>,
 }
 
 impl Lifting {
@@ -79,6 +82,7 @@ impl Lifting {
     ) -> Result<(), SolveError> {
         let count = self.springs.len();
         self.compliance = DMatrix::zeros(count, count);
+        self.forces = DVector::zeros(count);
         self.factor = None;
         let mut x = vec![0.0; n];
         for (j, spring) in self.springs.iter().enumerate() {
@@ -91,9 +95,15 @@ impl Lifting {
         Ok(())
     }
 
-    /// Has forces be means over steps that begin with the displacements `u`, or if there are none those at their ends.
+    /// Has forces be means over steps that begin with the displacements `u`, or if there are none those at their ends. What is found in
+    /// a step depends on no other step.
     pub fn begin(&mut self, u: Option<&[f64]>) {
         self.before = u.map(|u| self.springs.iter().map(|spring| spring.at.of(u)).collect());
+        self.forces = DVector::zeros(self.springs.len());
+        if let Some(before) = &self.before {
+            let each = self.forces.iter_mut().zip(&*self.springs).zip(before);
+            each.for_each(|((force, spring), w)| *force = relief(spring.stiffness, *w).0);
+        }
     }
 
     /// Adds Pᵀu to `w`.
@@ -101,14 +111,15 @@ impl Lifting {
         w.iter_mut().zip(&*self.springs).for_each(|(w, spring)| *w += spring.at.of(u));
     }
 
-    /// Finds F for the deflections `b`; whether it was found.
+    /// Finds F for the deflections `b`, in a step that has [begun](Self::begin); whether it was found.
     pub fn relieve(&mut self, b: &[f64]) -> bool {
         let b = DVector::from_column_slice(b);
-        self.forces = DVector::zeros(b.len());
         let mut least = f64::INFINITY;
         for _ in 0..MOST {
-            self.w = &b + &self.compliance * &self.forces;
-            let (forces, tangents): (Vec<f64>, Vec<f64>) = self.laws(&self.w).unzip();
+            self.w = self.moved(&self.forces) + &b;
+            let (forces, roots): (Vec<f64>, Vec<f64>) =
+                self.laws(&self.w).map(|(force, tangent)| (force, tangent.sqrt())).unzip();
+            self.roots = roots;
             let missing = DVector::from_vec(forces) - &self.forces;
             let size = self.springs.iter().zip(&b).zip(&self.forces);
             let size =
@@ -117,7 +128,6 @@ impl Lifting {
             if !left.is_finite() {
                 return false;
             }
-            self.factorise(&tangents);
             if left <= ENOUGH * size || (left >= 0.5 * least && least <= ROUNDED * size) {
                 return true;
             }
@@ -135,10 +145,10 @@ impl Lifting {
     }
 
     /// aᵀ dF/ds of the last deflections, where these change by a ds: dF = √r′ z ds, (1 − √r′ G √r′) z = √r′ a.
-    pub fn slope(&self, a: &[f64]) -> f64 {
+    pub fn slope(&mut self, a: &[f64]) -> f64 {
         let lifted = self.lifted();
         let scaled = DVector::from_iterator(lifted.len(), lifted.iter().map(|i| self.roots[*i] * a[*i]));
-        self.factor.as_ref().map_or(0.0, |factor| scaled.dot(&factor.solve(&scaled)))
+        self.factorise(&lifted).map_or(0.0, |factor| scaled.dot(&factor.solve(&scaled)))
     }
 
     /// Adds P F of the last deflections to `f`.
@@ -173,35 +183,49 @@ impl Lifting {
         (0..self.roots.len()).filter(|i| self.roots[*i] > 0.0).collect()
     }
 
-    fn factorise(&mut self, tangents: &[f64]) {
-        let roots: Vec<f64> = tangents.iter().map(|tangent| tangent.sqrt()).collect();
-        if self.factor.is_some() && roots == self.roots {
-            return;
+    /// The factor for the roots as they are, those of `lifted` not 0; the one before where they are the same.
+    fn factorise(&mut self, lifted: &[usize]) -> Option<&Cholesky<f64, Dyn>> {
+        if self.factor.as_ref().is_none_or(|(roots, _)| *roots != self.roots) {
+            let matrix = |share: f64| {
+                let mut matrix = DMatrix::identity(lifted.len(), lifted.len());
+                // The lower triangle is all that is read.
+                for (k, (j, mut column)) in lifted.iter().zip(matrix.column_iter_mut()).enumerate() {
+                    let (root, compliance) = (share * self.roots[*j], self.compliance.column(*j));
+                    for (i, value) in lifted.iter().zip(column.iter_mut()).skip(k) {
+                        *value -= root * self.roots[*i] * compliance[*i];
+                    }
+                }
+                matrix
+            };
+            let factor = Cholesky::new(matrix(1.0)).or_else(|| Cholesky::new(matrix(NEARLY)));
+            self.factor = factor.map(|factor| (self.roots.clone(), factor));
         }
-        self.roots = roots;
-        let lifted = self.lifted();
-        let matrix = |share: f64| {
-            DMatrix::from_fn(lifted.len(), lifted.len(), |i, j| {
-                let (i, j) = (lifted[i], lifted[j]);
-                f64::from(i == j) - share * self.roots[i] * self.compliance[(i, j)] * self.roots[j]
-            })
-        };
-        self.factor = Cholesky::new(matrix(1.0)).or_else(|| Cholesky::new(matrix(NEARLY)));
+        self.factor.as_ref().map(|(_, factor)| factor)
     }
 
     /// d = ρ + √r′ x with (1 − √r′ G √r′) x = √r′ G ρ, for ρ = r − F; ρ itself, a way down as well, where rounding leaves no more.
-    fn newton(&self, missing: &DVector<f64>) -> DVector<f64> {
+    fn newton(&mut self, missing: &DVector<f64>) -> DVector<f64> {
+        let (lifted, moved) = (self.lifted(), self.moved(missing));
+        let scaled = DVector::from_iterator(lifted.len(), lifted.iter().map(|i| self.roots[*i] * moved[*i]));
         let mut way = missing.clone();
-        let Some(factor) = &self.factor else { return way };
-        let (lifted, moved) = (self.lifted(), &self.compliance * missing);
-        let x = factor.solve(&DVector::from_iterator(lifted.len(), lifted.iter().map(|i| self.roots[*i] * moved[*i])));
+        let Some(x) = self.factorise(&lifted).map(|factor| factor.solve(&scaled)) else { return way };
         lifted.iter().zip(&x).for_each(|(i, x)| way[*i] += self.roots[*i] * x);
         way
     }
 
+    /// G F; most of F are 0 where most of the plate lies on its springs.
+    fn moved(&self, forces: &DVector<f64>) -> DVector<f64> {
+        let mut w = DVector::zeros(forces.len());
+        let columns = self.compliance.as_slice().chunks_exact(forces.len().max(1));
+        for (column, force) in columns.zip(forces).filter(|(_, force)| **force != 0.0) {
+            axpy(*force, column, w.as_mut_slice());
+        }
+        w
+    }
+
     /// How far to go: all of the way, or to about the minimum of Π along it, whose slope never falls.
     fn search(&self, way: &DVector<f64>) -> f64 {
-        let moved = &self.compliance * way;
+        let moved = self.moved(way);
         let slope = |length: f64| {
             let w = &self.w + length * &moved;
             let forces = self.laws(&w).map(|(force, _)| force);

@@ -214,7 +214,7 @@ const KEPT: f64 = 20.0;
 const FORCE: f64 = 1.0 / 3.0;
 /// Of a reduced plate: seconds per cell of the strains of its modes and of their work, directions of these that are solved
 /// for, patterns of stress, and seconds per entry of their forms and turn (case 5 of the report's table 1, 60 vectors).
-const CELL: f64 = 2e-3;
+const CELL: f64 = 2e-4;
 const DIRECTIONS: u64 = 20;
 const PATTERNS: f64 = 13.0;
 const ENTRY: f64 = 8e-10;
