@@ -6,6 +6,7 @@ use fem::Registry;
 use fem::analyses::statics::PathState;
 use fem::io::scene;
 use fem::job::{self, Found, Options, StaticFound};
+use std::f64::consts::PI;
 
 const WIDTH: f64 = 0.025;
 
@@ -104,6 +105,64 @@ fn mixed_modes_of_more_shear_grow_as_closed_forms_say() {
     [("mmb-50", "MMB_B50"), ("mmb-80", "MMB_B80")]
         .into_iter()
         .for_each(|(name, case)| grows_as_closed_form(name, case));
+}
+
+/// n delaminations of one size between equal layers: whatever their radius c, they grow at one force, and the deflection under it grows by
+/// Pc c²/(16 π D) ((n + 1)² − 1) (Kirchhoff's plate, closed form), where it is spread over a disc.
+fn grows_at_one_force(n: usize) {
+    const LOADED: f64 = 2e-3;
+    let (states, _) = followed(&format!("circle-{n}"), &[]);
+    let bending = 60e9 * 4e-3_f64.powi(3) / (12.0 * 0.91);
+    let critical = PI * (32.0 * bending * 800.0 / (n + 2) as f64).sqrt();
+    // The front is the middle of the process zone, found by the energy.
+    let square = |state: &PathState| 14e-3_f64.powi(2) + state.dissipated / (800.0 * PI * n as f64);
+    let grown: Vec<&PathState> = states.iter().filter(|state| square(state).sqrt() > 16e-3).collect();
+    for state in &grown {
+        let share = state.force / critical * (1.0 - LOADED * LOADED / (2.0 * square(state)));
+        assert!((share - 1.0).abs() < 0.03, "{n}: {share} at {} mm", 1e3 * square(state).sqrt());
+    }
+    let [first, last] = [grown[0], grown[grown.len() - 1]];
+    let slope = critical / (16.0 * PI * bending) * ((n + 1).pow(2) - 1) as f64;
+    let moved = (last.displacement - first.displacement) / (square(last) - square(first));
+    assert!(grown.len() > 6 && (moved / slope - 1.0).abs() < 0.05, "{n}: {} states, {moved} {slope}", grown.len());
+}
+
+#[test]
+#[ignore = "a minute"]
+fn a_circular_delamination_of_a_scene_grows_at_one_force() {
+    grows_at_one_force(1);
+}
+
+/// Errors of the force, mean and ripple, and that of its peak, per cent, by the cells in a process zone; those of the book's table.
+#[test]
+#[ignore = "a quarter of a minute"]
+fn errors_grow_with_the_cells_per_process_zone() {
+    type By = fn(&PathState) -> f64;
+    let (by_displacement, by_energy): (By, By) = (|state| state.displacement, |state| state.dissipated);
+    let dcb = reference("specimens_cohesive_dcb_im7_8552", "crack_growth", ["delta_m", "P_N"]);
+    let enf = reference("specimens_cohesive_enf_short_im7_8552", "crack_growth", ["dissipated_J", "P_N"]);
+    let grown = 210.0 * WIDTH * 1.5e-3;
+    for (name, cells, zones, bounds) in [
+        ("dcb", 105, 0.50, [0.2, 0.6, 0.5]),
+        ("dcb", 54, 0.97, [0.2, 1.5, 1.0]),
+        ("dcb", 27, 1.95, [1.0, 9.0, 7.0]),
+        ("dcb", 18, 2.92, [4.0, 17.0, 12.0]),
+        ("enf-short", 40, 0.48, [0.8, 0.5, 0.5]),
+        ("enf-short", 20, 0.97, [0.5, 1.8, 2.5]),
+        ("enf-short", 12, 1.61, [0.5, 3.0, 3.5]),
+        ("enf-short", 8, 2.41, [0.5, 6.5, 6.5]),
+    ] {
+        let (written, exact, by, energy, largest) = match name {
+            "dcb" => ("cells = [120, 1]", &dcb, by_displacement, grown, 70.03),
+            _ => ("cells = [100, 1]", &enf, by_energy, 0.0, 731.0),
+        };
+        let (states, found) = followed(name, &[[written, &format!("cells = [{cells}, 1]")]]);
+        let [mean, ripple] = mean_and_ripple(&errors(&states, exact, by, energy));
+        let peak = 100.0 * (found.summary.path.as_ref().unwrap().peak_force_N / largest - 1.0);
+        let said = format!("{name}: cells of {zones} zones, mean {mean:.2}, ripple {ripple:.2}, peak {peak:.2} %");
+        println!("{said}");
+        assert!([mean.abs(), ripple, peak.abs()].into_iter().zip(bounds).all(|(got, bound)| got < bound), "{said}");
+    }
 }
 
 /// Finite elements with closed cracks that others published: where the crack begins to grow.

@@ -2,8 +2,12 @@
 
 use crate::case::{Case, Room};
 use crate::support::{impact_of, root};
-use fem::analyses::impact::Outcome;
-use fem::io::scene;
+use fem::analyses::impact::{self, Checkpoint, March, Outcome};
+use fem::io::files::OutputDir;
+use fem::io::scene::{self, Scene};
+use fem::job::{self, Found, Options};
+use fem::{Model, Registry};
+use std::num::NonZeroUsize;
 
 pub(crate) fn cases() -> Vec<Case> {
     vec![
@@ -35,6 +39,34 @@ pub(crate) fn cases() -> Vec<Case> {
             5e-2,
             openings,
         ),
+        Room::Growth.case(
+            "two fronts that merge",
+            "two delaminations of 10 mm in one interface, 24 mm apart, struck between them until all is one",
+            "error of the energy, over that of the impact",
+            1e-2,
+            merging,
+        ),
+        Room::Growth.case(
+            "a load that is reversed",
+            "a delamination of 16 mm, struck from above, then as hard from below while it swings; friction 0 and 0.5",
+            "error of the energy, over that of the impacts",
+            1e-2,
+            reversed,
+        ),
+        Room::Growth.case(
+            "unstable growth at rest",
+            "end notched flexure of IM7/8552 cracked over 0.3 of the half span, through its snap-back",
+            "work that is neither stored nor dissipated, over the largest",
+            5e-3,
+            unstable,
+        ),
+        Room::Growth.case(
+            "growth on threads, and resumed",
+            "1, 2 and 4 threads; saved and resumed before, in and after the growth",
+            "runs whose forces, areas and energies are not the same in every bit",
+            0.0,
+            alike,
+        ),
     ]
 }
 
@@ -46,6 +78,8 @@ struct Struck {
     material: &'static str,
     velocity: f64,
     march: &'static str,
+    /// Further impactors.
+    others: &'static str,
 }
 
 impl Struck {
@@ -57,11 +91,16 @@ impl Struck {
             material: WEAK,
             velocity: 3.0,
             march: "step = '1 us', end = '400 us'",
+            others: "",
         }
     }
 
     fn run(&self) -> Outcome {
-        let Self { sides: [x, y], delamination, material, velocity, march } = self;
+        impact_of(self.scene()).unwrap().1.outcome
+    }
+
+    fn scene(&self) -> Scene {
+        let Self { sides: [x, y], delamination, material, velocity, march, others } = self;
         let edges = ["x-min", "x-max", "y-min", "y-max"]
             .map(|edge| format!("{{ group = '{edge}', at = 'bottom', fix = ['U30'] }}"))
             .join(", ");
@@ -70,8 +109,8 @@ impl Struck {
              element = {{ kind = 'hermite-prism' }}\neffects = {{ damage = 'off', delamination = 'growth' }}\n\
              delamination = {{ penalty = '2e4 N/mm^3', {delamination} }}\n\
              support = [{edges}, {{ restrain = 'rigid-motions' }}]\n\
-             impactor = {{ mass = '1 kg', velocity = '{velocity} m/s', at = {{ x = '{} mm', y = '{} mm' }}, \
-             patch_radius = '3 mm' }}\ncontact = {{ law = 'hertz', k = '4e9 N/m^1.5' }}\nmarch = {{ {march} }}\n\
+             impactor = [{{ name = 'first', mass = '1 kg', velocity = '{velocity} m/s', \
+             at = {{ x = '{} mm', y = '{} mm' }}, patch_radius = '3 mm' }}{others}]\ncontact = {{ law = 'hertz', k = '4e9 N/m^1.5' }}\nmarch = {{ {march} }}\n\
              laminate = {{ plies = '[0/90/0]', material = 'tape', ply_thickness = '1 mm' }}\n\
              output = {{ history_every = '4 us' }}\n[materials.tape]\nlibrary = 'IM7/8552'\n{material}",
             x / 4,
@@ -79,7 +118,7 @@ impl Struck {
             x / 2,
             y / 2
         );
-        impact_of(scene::parse(&text, &root().join("scene.toml")).unwrap()).unwrap().1.outcome
+        scene::parse(&text, &root().join("scene.toml")).unwrap()
     }
 }
 
@@ -127,4 +166,76 @@ fn openings() -> f64 {
     let found = HOW.map(|delamination| dissipated(&Struck { delamination, ..Struck::new() }.run()));
     let [low, high] = [f64::min, f64::max].map(|pick| found.into_iter().reduce(pick).unwrap());
     high / low - 1.0
+}
+
+fn merging() -> f64 {
+    // Its image by the symmetry is the other.
+    const START: &str = "start = [{ interface = 1, at = { x = '36 mm', y = '20 mm' }, radius = '5 mm' }]";
+    let outcome = Struck { delamination: START, ..Struck::new() }.run();
+    // More than both and the strip between them.
+    let projected = outcome.delaminated.as_ref().unwrap().projected;
+    assert!(projected > 24e-3 * 10e-3 + 79e-6, "{projected}");
+    outcome.energy_error
+}
+
+fn reversed() -> f64 {
+    const BELOW: &str = ", { name = 'below', mass = '1 kg', velocity = '4 m/s', face = 'bottom', start = '300 us', \
+                         at = { x = '24 mm', y = '20 mm' }, patch_radius = '3 mm' }";
+    let of = |delamination: &'static str| {
+        let outcome = Struck {
+            delamination,
+            velocity: 4.0,
+            others: BELOW,
+            march: "step = '0.5 us', end = '900 us'",
+            ..Struck::new()
+        }
+        .run();
+        let forces = |i: usize| outcome.history.iter().map(|row| row.impactors[i].contact_force_n).fold(0.0, f64::max);
+        assert!(forces(0) > 1e3 && forces(1) > 1e3, "{} {}", forces(0), forces(1));
+        let projected = outcome.delaminated.as_ref().unwrap().projected;
+        assert!(projected > 2.2e-4, "{projected}");
+        outcome.energy_error
+    };
+    const START: [&str; 2] = [
+        "start = [{ interface = 1, at = { x = '24 mm', y = '20 mm' }, radius = '8 mm' }]",
+        "start = [{ interface = 1, at = { x = '24 mm', y = '20 mm' }, radius = '8 mm' }], friction = 0.5",
+    ];
+    START.map(of).into_iter().fold(0.0, f64::max)
+}
+
+fn unstable() -> f64 {
+    let path = root().join("benches/specimens/enf-short.toml");
+    let text = std::fs::read_to_string(&path).unwrap().replace("[\"0 mm\", \"25 mm\"]", "[\"0 mm\", \"15 mm\"]");
+    let scene = scene::parse(&text, &path).unwrap();
+    let Found::Static(found) = job::run(&scene, &Registry::standard(), &Options::default(), &mut ()).unwrap().found
+    else {
+        panic!("the scene is at rest")
+    };
+    let figures = found.summary.path.unwrap();
+    assert!(figures.snaps_back && figures.stopped.is_none(), "{:?}", figures.stopped);
+    figures.energy_error_relative
+}
+
+fn alike() -> f64 {
+    let scene = Struck { march: "step = '1 us', end = '300 us'", ..Struck::new() }.scene();
+    let model = Model::new(scene, &Registry::standard()).unwrap();
+    let prepared = |threads| impact::prepare(&model, NonZeroUsize::new(threads).unwrap()).unwrap();
+    let found = |outcome: Outcome| (outcome.forces, outcome.delaminated, outcome.history);
+    let straight = found(impact::march(prepared(1), |_| {}).unwrap());
+    assert!(!straight.1.as_ref().unwrap().cells.is_empty());
+    let mut differ =
+        [2, 4].into_iter().filter(|n| found(impact::march(prepared(*n), |_| {}).unwrap()) != straight).count();
+    let folder = tempfile::tempdir().unwrap();
+    let dir = OutputDir::create(folder.path().join("run")).unwrap();
+    let mut march = March::start(prepared(1)).unwrap();
+    for steps in [3, 150, 100] {
+        (0..steps).for_each(|_| march.advance());
+        march.save(&dir).unwrap();
+        march = March::resume(prepared(1), Checkpoint::read(dir.path(), &model).unwrap()).unwrap();
+    }
+    while !march.done() {
+        march.advance();
+    }
+    differ += usize::from(found(march.finish()) != straight);
+    differ as f64
 }
