@@ -160,7 +160,6 @@ fn errors_grow_with_the_cells_per_process_zone() {
         let [mean, ripple] = mean_and_ripple(&errors(&states, exact, by, energy));
         let peak = 100.0 * (found.summary.path.as_ref().unwrap().peak_force_N / largest - 1.0);
         let said = format!("{name}: cells of {zones} zones, mean {mean:.2}, ripple {ripple:.2}, peak {peak:.2} %");
-        println!("{said}");
         assert!([mean.abs(), ripple, peak.abs()].into_iter().zip(bounds).all(|(got, bound)| got < bound), "{said}");
     }
 }
