@@ -1,5 +1,6 @@
 //! Pictures of a plate at rest in plan: how it deflects, and the stresses of its outer plies.
 
+use crate::analyses::statics::dof_of;
 use crate::analyses::stress;
 use crate::error::Error;
 use crate::model::Model;
@@ -56,10 +57,12 @@ fn panel(model: &Model, values: &[f64], (white, dark): (f64, f64), title: String
     Panel { title, cells: filled(model, values.iter().map(|v| (v - white) / range)), ..Panel::default() }
 }
 
-/// Dark where the mid-plane deflects most, whichever way; `None` where all of it is rounding.
+/// Dark where the plate deflects most, whichever way, on the scale of its nodes; `None` where all of it is rounding.
 fn deflection(model: &Model, u: &[f64]) -> Option<MapPlot> {
     let values = deflections(model, u);
-    let (least, most) = range(&values);
+    let is_deflection = |dof: &usize| model.plate.locate(*dof).2 == dof_of(3);
+    let of_nodes: Vec<f64> = (0..u.len()).filter(is_deflection).map(|dof| u[dof]).collect();
+    let (least, most) = range(&of_nodes);
     if most - least <= NOTHING * largest(u) {
         return None;
     }
