@@ -242,6 +242,7 @@ impl Model {
         memory::check(&plate)?;
         warnings.extend(warn_of_pieces(&plate));
         warnings.extend(polygon(&plate));
+        warnings.extend(plate.plane.coarse_circles().into_iter().map(warn_of_corners));
         warnings.extend(warn_of_flat_cells(&plate));
         warnings.extend(incompressible(&plate, &laminates, &materials));
         warnings.extend(laminates.iter().find_map(|laminate| warn_of_warping(&plate, laminate, &materials)));
@@ -458,6 +459,14 @@ fn polygon(plate: &Plate) -> Option<String> {
             error * 100.0
         )
     })
+}
+
+fn warn_of_corners(([x, y], sides): ([f64; 2], usize)) -> String {
+    let [x, y] = [x, y].map(|x| x * 1e3);
+    format!(
+        "the edges around ({x:.4}, {y:.4}) mm are taken for a polygon of {sides} corners: if they stand for a circle, divide it into 16 \
+         edges or more, or write the mesh with sides of second order"
+    )
 }
 
 /// Solids bend too stiffly where cells are much wider than the plate is thick.

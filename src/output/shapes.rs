@@ -28,7 +28,7 @@ pub(super) fn shapes(model: &Model, shapes: &[f64], titles: impl Iterator<Item =
 fn cells(model: &Model, shape: &[f64]) -> Vec<MapCell> {
     let mut u = vec![0.0; model.plate.ndof()];
     model.constraints.expand(shape, &mut u);
-    let means = deflections(model, &u);
+    let means = means(model, &deflections(model, &u));
     let largest = means.iter().fold(f64::MIN_POSITIVE, |most, w| w.abs().max(most));
     let shares = means.iter().map(|w| 0.5 + 0.5 * w / largest);
     filled(model, shares)
@@ -41,18 +41,20 @@ pub(super) fn filled(model: &Model, shares: impl Iterator<Item = f64>) -> Vec<Ma
     shares.enumerate().map(|(quad, share)| MapCell { corners: outline(quad), fill: Fill::Share(share) }).collect()
 }
 
-/// Mean deflection of the corners of each cell under the displacements `u` (before elimination of constraints), m.
+/// Deflection of the mid-plane at each node of the mesh under the displacements `u` (before elimination of constraints), m; of the lowest
+/// level where there is no other.
 pub(super) fn deflections(model: &Model, u: &[f64]) -> Vec<f64> {
     let plate = &model.plate;
-    let deflection = |column: usize| {
-        let levels = plate.outer_levels(column).into_iter().chain(plate.mid_level());
-        let dofs = levels.filter_map(|level| plate.dofs_at(column, level, dof_of(3)).next());
-        dofs.map(|dof| u[dof]).next().unwrap_or(0.0)
-    };
-    let quads = plate.plane.quads.iter();
-    let means = quads.map(|quad| {
-        let nodes = quad.iter().map(|node| deflection(*node as usize));
-        nodes.sum::<f64>() / quad.iter().count() as f64
+    let of_node = |node| plate.dofs_at(node, plate.reference_level(node), dof_of(3)).next().map_or(0.0, |dof| u[dof]);
+    (0..plate.plane.points.len()).map(of_node).collect()
+}
+
+/// Mean over the corners of each cell of values at the nodes of the mesh.
+pub(super) fn means(model: &Model, of_nodes: &[f64]) -> Vec<f64> {
+    let quads = model.plate.plane.quads.iter();
+    let mean = quads.map(|quad| {
+        let sum: f64 = quad.iter().map(|node| of_nodes[*node as usize]).sum();
+        sum / quad.iter().count() as f64
     });
-    means.collect()
+    mean.collect()
 }

@@ -1,11 +1,10 @@
 //! Pictures of a plate at rest in plan: how it deflects, and the stresses of its outer plies.
 
-use crate::analyses::statics::dof_of;
 use crate::analyses::stress;
 use crate::error::Error;
 use crate::model::Model;
 use crate::output::outlines::{drawn, outlines};
-use crate::output::shapes::{deflections, filled};
+use crate::output::shapes::{deflections, filled, means};
 use fem_core::plugin::Dimension;
 use fem_io::files::OutputDir;
 use fem_io::plot::{self, Axis, MapPlot, Panel};
@@ -57,18 +56,20 @@ fn panel(model: &Model, values: &[f64], (white, dark): (f64, f64), title: String
     Panel { title, cells: filled(model, values.iter().map(|v| (v - white) / range)), ..Panel::default() }
 }
 
-/// Dark where the plate deflects most, whichever way, on the scale of its nodes; `None` where all of it is rounding.
+/// Dark where the mid-plane deflects most, whichever way, on the scale of its nodes; `None` where all of it is rounding.
 fn deflection(model: &Model, u: &[f64]) -> Option<MapPlot> {
-    let values = deflections(model, u);
-    let is_deflection = |dof: &usize| model.plate.locate(*dof).2 == dof_of(3);
-    let of_nodes: Vec<f64> = (0..u.len()).filter(is_deflection).map(|dof| u[dof]).collect();
+    let of_nodes = deflections(model, u);
     let (least, most) = range(&of_nodes);
     if most - least <= NOTHING * largest(u) {
         return None;
     }
     let (white, dark) = if most < -least { (most, least) } else { (least, most) };
     let title = format!("deflection, {}", Dimension::LENGTH.list(&[white, dark]).replace(", ", " to "));
-    Some(plan(model, "from the least to the largest".into(), vec![panel(model, &values, (white, dark), title)]))
+    Some(plan(
+        model,
+        "from the least to the largest".into(),
+        vec![panel(model, &means(model, &of_nodes), (white, dark), title)],
+    ))
 }
 
 /// Three digits of a number, short enough for the heading of a small panel.

@@ -41,8 +41,12 @@ impl Dimension {
         // Compared as it is shown: 0.99999 kg is 1 kg, not 1000 g. Zero is shown in the usual unit, which has no prefix or
         // that of millimetres and milliseconds.
         let shown = rounded(largest.abs());
-        let usual =
-            || units.iter().find(|u| matches!(u.symbol, "mm" | "ms" | "N" | "J" | "MPa" | "mm^2")).or(units.first());
+        let usual = || {
+            units
+                .iter()
+                .find(|u| matches!(u.symbol, "mm" | "ms" | "m/s" | "Hz" | "N" | "J" | "MPa" | "mm^2"))
+                .or(units.first())
+        };
         if shown == 0.0 { usual().copied() } else { units.iter().find(|u| shown >= u.from).copied() }
     }
 
@@ -104,6 +108,8 @@ mod tests {
             (Dimension::MASS, 0.999_99, "1 kg"),
             (Dimension::MASS, 6.5167e-3, "6.517 g"),
             (Dimension::TIME, 0.0, "0 ms"),
+            (Dimension::FREQUENCY, 0.0, "0 Hz"),
+            (Dimension::VELOCITY, 0.0, "0 m/s"),
             (Dimension::TIME, 3.922e-4, "0.3922 ms"),
             (Dimension::TIME, 1e-7, "0.1 us"),
             (Dimension::TIME, 4e-8, "40 ns"),

@@ -11,6 +11,9 @@ const SAME_LINE: f64 = 1e-4;
 /// Ratios of the curvatures at neighbouring nodes of one curve.
 const ALIKE: std::ops::Range<f64> = 0.5..2.0;
 
+/// Distances of nodes from the middle of the circle that they lie on, relative to each other.
+const ROUND: f64 = 1e-6;
+
 /// Direction and curvature of a curve at a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Course {
@@ -73,6 +76,34 @@ impl<'a> Chains<'a> {
             [p, q] if q == a => Some(p),
             _ => None,
         }
+    }
+
+    /// The closed chain from `a` to `b` and on to `a` again; `None` where it ends, or other chains touch it.
+    fn ring(&self, [a, b]: [u32; 2]) -> Option<Vec<u32>> {
+        let mut ring = vec![a, b];
+        while let [.., before, last] = ring[..] {
+            match self.after(before, last)? {
+                next if next == a => break,
+                next => ring.push(next),
+            }
+        }
+        Some(ring)
+    }
+
+    /// Middles and numbers of sides of closed chains whose nodes lie on a circle and whose turns count as corners, because so few edges
+    /// stand for it; no triangles and rectangles, which are hardly meant to.
+    pub(super) fn coarse_circles(&self) -> Vec<([f64; 2], usize)> {
+        let circle = |edge: &[u32; 2]| {
+            let ring = self.ring(*edge).filter(|ring| edge[0] == ring.iter().copied().fold(u32::MAX, u32::min))?;
+            let sides = ring.len();
+            let corner = |pair: &[u32]| matches!(self.course(pair[0], pair[1]), Onward::Ends);
+            let points: Vec<[f64; 2]> = ring.iter().map(|node| self.points[*node as usize]).collect();
+            let middle = [0, 1].map(|d| points.iter().map(|p| p[d]).sum::<f64>() / sides as f64);
+            let radii = || points.iter().map(|p| (p[0] - middle[0]).hypot(p[1] - middle[1]));
+            let (least, most) = radii().fold((f64::INFINITY, 0.0_f64), |(least, most), r| (least.min(r), most.max(r)));
+            (sides > 4 && ring.windows(2).all(corner) && most - least <= ROUND * most).then_some((middle, sides))
+        };
+        self.edges.iter().filter_map(circle).collect()
     }
 
     /// The course at `b`, coming from `a`.

@@ -199,6 +199,13 @@ impl PlaneMesh {
         straight.flat_map(|edge| chains.bends(*edge)).fold(0.0, |m, bend| m.max(bend.turn.abs()))
     }
 
+    /// Middles, m, and numbers of sides of the parts of the boundary that are polygons in a circle, a cell a side, and turn as corners do:
+    /// most likely circles that are divided too coarsely to be seen as such.
+    pub fn coarse_circles(&self) -> Vec<([f64; 2], usize)> {
+        let straight = |[a, b]: &[u32; 2]| !self.bends.contains_key(&[*a.min(b), *a.max(b)]);
+        Chains::of(&self.points, self.boundary().into_iter().filter(straight).collect()).coarse_circles()
+    }
+
     /// Lower and upper corner of the bounding box.
     pub fn bounds(&self) -> ([f64; 2], [f64; 2]) {
         let mut low = [f64::INFINITY; 2];

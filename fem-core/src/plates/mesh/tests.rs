@@ -118,6 +118,12 @@ fn lines_and_polygons_stay_straight() {
     let octagon = |r: f64| on_ellipse([r; 2], &even(8));
     let mesh = ring(&octagon(0.5), &octagon(1.0));
     assert_eq!(mesh.curved_turn(), 0.0);
+    // They may stand for circles all the same, but not where a side has two edges, or on an ellipse.
+    let circles = mesh.coarse_circles();
+    let [inner, outer] = &circles[..] else { panic!("{circles:?}") };
+    assert!([inner, outer].iter().all(|(middle, sides)| *sides == 8 && middle[0].hypot(middle[1]) < 1e-15));
+    assert!(mesh.refined(Curves::Straight).coarse_circles().is_empty() && disc().coarse_circles().is_empty());
+    assert!(ring(&on_ellipse([0.5, 0.4], &even(8)), &on_ellipse([1.0, 0.8], &even(8))).coarse_circles().is_empty());
     assert_eq!(mesh.refined(Curves::Kept), mesh.refined(Curves::Straight));
 
     // A slot with round ends, lines of two edges and arcs of `parts`.
