@@ -281,7 +281,7 @@ impl ImpactSystem {
             work.clear();
             work.resize(n, 0.0);
             add(x, work);
-            0.5 * x.iter().zip(work.iter()).map(|(a, b)| a * b).sum::<f64>()
+            0.5 * dot(x, work)
         };
         let mut energies = Energies {
             kinetic: product(&state.v[..n], &|x, y| self.structure.add_mass(1.0, x, y)),

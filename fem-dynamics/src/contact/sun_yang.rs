@@ -38,13 +38,25 @@ struct Curve {
     p: f64,
 }
 
+/// x^e; the usual exponents, 1/2 of loading and 3/2 of unloading, without the library's power, whose last digits differ from system to
+/// system.
+fn power(x: f64, e: f64) -> f64 {
+    if e == 1.5 {
+        x * x.sqrt()
+    } else if e == 0.5 {
+        x.sqrt()
+    } else {
+        x.powf(e)
+    }
+}
+
 impl Curve {
     fn at(&self, alpha: f64) -> ContactForce {
         if alpha <= self.dent {
             return ContactForce::default();
         }
         let x = (alpha - self.dent) / self.depth;
-        let slope = self.peak * x.powf(self.p - 1.0);
+        let slope = self.peak * power(x, self.p - 1.0);
         ContactForce { force: slope * x, tangent: self.p * slope / self.depth }
     }
 

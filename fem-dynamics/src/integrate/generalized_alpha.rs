@@ -3,6 +3,7 @@
 use super::{MARGIN, accelerate, accept};
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit};
+use fem_core::vectorised::vectorised;
 
 /// Equilibrium between the ends of the step, Newmark's interpolation inside it.
 ///
@@ -90,18 +91,24 @@ impl Integrator for GeneralizedAlpha {
         if *alpha_m != 0.0 {
             sys.add_mass(-*alpha_m * weight, &s.a, d);
         }
-        for (i, predicted) in predicted.iter_mut().enumerate() {
-            *predicted = s.u[i] + dt * s.v[i] + (0.5 - *beta) * dt * dt * s.a[i];
-            s.v[i] += (1.0 - *gamma) * dt * s.a[i];
-        }
+        let (of_u, of_v) = ((0.5 - *beta) * dt * dt, (1.0 - *gamma) * dt);
+        vectorised(|| {
+            for (((predicted, u), v), a) in predicted.iter_mut().zip(&s.u).zip(&mut s.v).zip(&s.a) {
+                *predicted = u + dt * *v + of_u * a;
+                *v += of_v * a;
+            }
+        });
         sys.add_damping(-1.0, &s.v, d);
         s.t += dt;
         sys.solve_implicit(cm, cc, s.t, &s.histories, predicted, d)?;
-        for (i, (predicted, d)) in predicted.iter().zip(d).enumerate() {
-            s.u[i] = predicted + *d;
-            s.a[i] = *d / (*beta * dt * dt);
-            s.v[i] += *gamma * dt * s.a[i];
-        }
+        let (of_a, of_v) = (*beta * dt * dt, *gamma * dt);
+        vectorised(|| {
+            for ((((predicted, d), u), v), a) in predicted.iter().zip(&*d).zip(&mut s.u).zip(&mut s.v).zip(&mut s.a) {
+                *u = predicted + d;
+                *a = d / of_a;
+                *v += of_v * *a;
+            }
+        });
         accept(sys, s)
     }
 }

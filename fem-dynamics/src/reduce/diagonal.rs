@@ -2,6 +2,7 @@
 
 use fem_core::damping::{Damping, Rayleigh};
 use fem_core::structure::{SolveError, Structure};
+use fem_core::vectorised::vectorised;
 
 /// A structure in the coordinates in which its K and M are diagonal.
 ///
@@ -74,14 +75,14 @@ impl Structure for Modal {
     fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {
         let n = self.stiffness.len();
         for (y, x) in y.chunks_exact_mut(n).zip(x.chunks_exact(n)) {
-            y.iter_mut().zip(&self.stiffness).zip(x).for_each(|((y, k), x)| *y += scale * k * x);
+            vectorised(|| y.iter_mut().zip(&self.stiffness).zip(x).for_each(|((y, k), x)| *y += scale * k * x));
         }
     }
 
     fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
         let n = self.mass.len();
         for (y, x) in y.chunks_exact_mut(n).zip(x.chunks_exact(n)) {
-            y.iter_mut().zip(&self.mass).zip(x).for_each(|((y, m), x)| *y += scale * m * x);
+            vectorised(|| y.iter_mut().zip(&self.mass).zip(x).for_each(|((y, m), x)| *y += scale * m * x));
         }
     }
 
@@ -91,10 +92,12 @@ impl Structure for Modal {
 
     fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
         for column in x.chunks_exact_mut(self.stiffness.len()).take(columns) {
-            for ((x, k), m) in column.iter_mut().zip(&self.stiffness).zip(&self.mass) {
-                let stiffness = k + shift * m;
-                *x = if stiffness == 0.0 { 0.0 } else { *x / stiffness };
-            }
+            vectorised(|| {
+                for ((x, k), m) in column.iter_mut().zip(&self.stiffness).zip(&self.mass) {
+                    let stiffness = k + shift * m;
+                    *x = if stiffness == 0.0 { 0.0 } else { *x / stiffness };
+                }
+            });
         }
         Ok(())
     }

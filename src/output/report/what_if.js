@@ -128,7 +128,7 @@ if (data.what_if?.plate) {
     $("what-if-limits").replaceChildren();
     for (const [doubt, text] of limits(now, own)) add($("what-if-limits"), "li", doubt ? { class: "doubt" } : {}, text);
     // For who wants the numbers.
-    section.found = { ...now, q: undefined, milliseconds: performance.now() - begun };
+    section.found = { ...now, q: undefined, products: operator.length * now.times.length, milliseconds: performance.now() - begun };
   }
   answer();
 }
