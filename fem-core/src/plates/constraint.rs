@@ -447,6 +447,7 @@ mod tests {
         assert!(solve(2, &[equation(&[], 0.0)]).is_err());
     }
 
+    #[cfg(feature = "assembly")]
     #[test]
     fn part_of_the_unknowns_and_of_the_independent_ones() {
         let c = Constraints::eliminate(&[3, 2, 1, 0, 4], &[equation(&[(1, 4.0), (2, -2.0), (4, -1.0)], 0.0)]).unwrap();

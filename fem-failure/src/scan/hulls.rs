@@ -302,28 +302,32 @@ impl Search<'_> {
         let (hulls, modes, leaf) = (self.hulls, self.seen.len(), Leaf { tree: self.number, piece });
         let Piece { site, window: number } = self.tree.pieces[piece];
         let window = &hulls.windows[number as usize];
-        let stress = self.tree.known[piece].get_or_init(|| {
-            let mut stress = vec![Stress6::new([0.0; 6]); window.len()];
-            (self.stresses)(site as usize, number as usize, &mut stress);
-            stress.into()
-        });
         let times = &hulls.times[window.clone()];
         let of_site = &hulls.sites[site as usize];
-        if let Some((s, time)) = stress.iter().zip(times).find(|(s, _)| !s.is_finite()) {
-            let ScanSite { cell, place, .. } = *of_site;
-            return Err(ScanError::Stress { time: *time, cell, place, stress: *s });
-        }
+        let stress = match self.tree.known[piece].get() {
+            Some(stress) => stress,
+            None => {
+                let mut stress = vec![Stress6::new([0.0; 6]); window.len()];
+                (self.stresses)(site as usize, number as usize, &mut stress);
+                if let Some((s, time)) = stress.iter().zip(times).find(|(s, _)| !s.is_finite()) {
+                    let ScanSite { cell, place, .. } = *of_site;
+                    return Err(ScanError::Stress { time: *time, cell, place, stress: *s });
+                }
+                self.tree.known[piece].get_or_init(|| stress.into())
+            }
+        };
         let indices = &mut self.indices[..window.len() * modes];
         indices.fill(f64::NAN);
         self.criterion.indices_many(stress, self.material, indices);
-        if let Some(bad) = indices.iter().position(|index| !(*index > f64::NEG_INFINITY)) {
+        if !indices.iter().fold(true, |sound, index| sound & (*index > f64::NEG_INFINITY)) {
+            let bad = indices.iter().position(|index| !(*index > f64::NEG_INFINITY)).unwrap_or(0);
             let (sample, mode) = (bad / modes, bad % modes);
             return Err(refusal(self.name, self.criterion, of_site, times[sample], mode, stress[sample]));
         }
         let judged = usize::from(number > 0)..window.len();
         for (mode, seen) in self.seen.iter_mut().enumerate() {
             let of_mode = || judged.clone().map(|sample| indices[sample * modes + mode]);
-            let largest = of_mode().fold(f64::NEG_INFINITY, f64::max);
+            let largest = of_mode().fold(f64::NEG_INFINITY, |a, b| if b > a { b } else { a });
             if largest > seen.largest {
                 (seen.largest, seen.at) = (largest, Some(leaf));
             }
