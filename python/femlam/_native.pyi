@@ -23,6 +23,8 @@ class AskedOfSweep(TypedDict):
     samples: int | None
     seed: int | None
     correlate: list[str]
+    quantities: list[str]
+    pareto: str | None
     threads: int
     folder: str
     resume: bool

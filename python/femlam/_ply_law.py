@@ -23,6 +23,9 @@ class LawPoint:
     """Pa in the axes of the ply, order 11 22 33 12 23 31, shape (6, 6); cannot be written to."""
     length: float
     """Width of the cell, m, over which a crack is smeared."""
+    thickness: float
+    """Thickness of the ply and of those about it that are alike, m: cracks through it stand about as far apart. Of an
+    interface 0."""
 
 
 @dataclass
@@ -112,7 +115,7 @@ def check_ply_law(law: PlyLaw, material: str, *, length: float = 1e-3, largest: 
     _native.check_ply_law(law, material, length, strains.tolist())
 
 
-def _point(constants: str, stiffness: NDArray[np.float64], length: float) -> LawPoint:
+def _point(constants: str, stiffness: NDArray[np.float64], length: float, thickness: float) -> LawPoint:
     stiffness = stiffness.reshape(6, 6)
     stiffness.flags.writeable = False
-    return LawPoint(_of(constants), stiffness, length)
+    return LawPoint(_of(constants), stiffness, length, thickness)

@@ -167,6 +167,8 @@ class Scene:
         samples: int | None = None,
         seed: int | None = None,
         correlate: Mapping[tuple[str, str], float] | None = None,
+        quantities: Mapping[str, str] | None = None,
+        pareto: str | None = None,
         threads: int = 1,
         folder: PathLike | None = None,
         resume: bool = False,
@@ -181,6 +183,8 @@ class Scene:
         * ``design``: ``"grid"``, ``"random"``, ``"latin-hypercube"``, ``"sobol"`` or ``"saltelli"``, with its
           ``samples`` and ``seed``;
         * ``correlate``: correlations of pairs of keys that scatter, ``{("materials.m.Yt", "materials.m.S12"): 0.6}``;
+        * ``quantities``: further columns by formulas of the others, ``{"lost": "absorbed_energy / energy"}``, and
+          ``pareto``, two of them of which no case beats another, ``"least peak_force, most absorbed_energy"``;
         * ``threads``: cases that are marched at a time; the table does not depend on it;
         * ``folder``: where the files of ``fem sweep`` go, from which ``resume`` goes on; without it they are not kept;
         * ``progress``, ``criteria`` and ``laws``: as in :meth:`run`.
@@ -197,6 +201,8 @@ class Scene:
                 "samples": samples,
                 "seed": seed,
                 "correlate": [f"{a},{b}={value}" for (a, b), value in (correlate or {}).items()],
+                "quantities": [f"{name} = {formula}" for name, formula in (quantities or {}).items()],
+                "pareto": pareto,
                 "threads": _threads(threads),
                 "folder": os.fspath(where),
                 "resume": resume,

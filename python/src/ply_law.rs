@@ -27,18 +27,18 @@ pub(crate) struct PyPlyLaw {
     pub(crate) raised: Raised,
 }
 
-/// Points that Python has been shown, by the bits of their lengths. A law is built for one material, so that the elasticity, the same
+/// Points that Python has been shown, by the bits of their lengths and thicknesses. A law is built for one material, so that the elasticity, the same
 /// in other units or not, tells its materials apart; strengths that nobody gave are NaN, which equals nothing.
 #[derive(Debug, Default)]
-struct Points(Mutex<HashMap<u64, Shown>>);
+struct Points(Mutex<HashMap<[u64; 2], Shown>>);
 
 type Shown = Vec<(Elastic, Py<PyAny>)>;
 
 impl Points {
     /// The object for `point`. Making one may let other threads of Python run, which is why nothing is locked meanwhile.
     fn shown<'py>(&self, py: Python<'py>, point: &LawPoint<'_>) -> PyResult<Bound<'py, PyAny>> {
-        let length = point.length.to_bits();
-        let known = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&length).and_then(|points| {
+        let sizes = [point.length, point.thickness].map(f64::to_bits);
+        let known = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&sizes).and_then(|points| {
             points.iter().find(|(elastic, _)| *elastic == point.material.elastic).map(|(_, shown)| shown.clone_ref(py))
         });
         if let Some(known) = known {
@@ -47,9 +47,9 @@ impl Points {
         let constants = serde_json::Value::from(constants(point.material)).to_string();
         let stiffness = PyArray1::from_slice(py, point.stiffness.as_flattened());
         let make = py.import("femlam._ply_law")?.getattr("_point")?;
-        let made = make.call1((constants, stiffness, point.length))?;
+        let made = make.call1((constants, stiffness, point.length, point.thickness))?;
         let mut points = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        points.entry(length).or_default().push((point.material.elastic, made.clone().unbind()));
+        points.entry(sizes).or_default().push((point.material.elastic, made.clone().unbind()));
         Ok(made)
     }
 }

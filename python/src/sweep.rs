@@ -22,6 +22,8 @@ pub(crate) struct AskedOfSweep {
     samples: Option<usize>,
     seed: Option<u64>,
     correlate: Vec<String>,
+    quantities: Vec<String>,
+    pareto: Option<String>,
     threads: NonZeroUsize,
     folder: PathBuf,
     resume: bool,
@@ -31,8 +33,21 @@ pub(crate) struct AskedOfSweep {
 
 /// Runs the cases into the folder; what `sweep.json` holds.
 pub(crate) fn sweep(py: Python<'_>, scene: &Scene, path: &Path, asked: AskedOfSweep) -> PyResult<String> {
-    let AskedOfSweep { set, design, samples, seed, correlate, threads, folder, resume, progress, own } = asked;
-    let asked = SweepRequest { set, design, samples, seed, correlate, ..SweepRequest::default() };
+    let AskedOfSweep {
+        set,
+        design,
+        samples,
+        seed,
+        correlate,
+        quantities,
+        pareto,
+        threads,
+        folder,
+        resume,
+        progress,
+        own,
+    } = asked;
+    let asked = SweepRequest { set, design, samples, seed, correlate, quantities, pareto };
     let registry = registry(&own);
     let raised = raised(&own);
     let mut watch = Watch::new(progress.as_ref(), &raised);

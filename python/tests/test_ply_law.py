@@ -65,6 +65,18 @@ def test_a_law_is_that_of_the_program() -> None:
         sheared(**{"materials.tape.law": CURVE}).run(laws=[HahnTsai()])
 
 
+def test_a_point_knows_how_thick_the_plies_of_one_angle_are() -> None:
+    seen = set()
+
+    class Sees(HahnTsai):
+        def respond(self, point, strain, old):
+            seen.add(round(1e6 * point.thickness))
+            return super().respond(point, strain, old)
+
+    sheared(**{"laminate.plies": "[0/0/90]", "laminate.layers": [2, 1]}).run(laws=[Sees()])
+    assert seen == {2000, 1000}
+
+
 def test_the_contract_finds_what_is_wrong() -> None:
     class Stiff(HahnTsai):
         def respond(self, point, strain, old):

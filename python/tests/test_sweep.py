@@ -26,6 +26,15 @@ def test_rows_are_runs(scene: femlam.Scene, tmp_path: Path) -> None:
     assert scene.sweep(SET, folder=tmp_path / "sweep", resume=True).table.rows == 6
 
 
+def test_formulas_are_columns_and_are_weighed_against_each_other(scene: femlam.Scene) -> None:
+    sweep = scene.sweep(SET, quantities={"share": "absorbed_energy / energy"}, pareto="least peak_force, most energy")
+    energies = [sweep[name] for name in ("absorbed_energy_J", "energy_J")]
+    np.testing.assert_allclose(sweep["share"], energies[0] / energies[1], rtol=1e-14)
+    assert 1 <= len(sweep.summary["pareto_front"]) < 6
+    with pytest.raises(femlam.FemError, match="peak_force"):
+        scene.sweep(SET, quantities={"share": "peak_force + energy"})
+
+
 @pytest.mark.skipif("FEM" not in os.environ, reason="FEM does not name the command")
 def test_its_table_is_that_of_the_command_line(scene: femlam.Scene, tmp_path: Path) -> None:
     scene.save(tmp_path / "scene.toml")
