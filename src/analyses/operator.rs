@@ -217,7 +217,7 @@ mod tests {
         let fields: Vec<f64> = (0..6 * sites * width).map(|k| 1e9 * unit * wave(k * k)).collect();
         let residual: Vec<f64> = (0..6 * sites).map(|k| 1e7 * wave(3 * k)).collect();
         let coordinates: Vec<f64> =
-            (0..width * count).map(|k| wave(k / width * (1 + k % width)) * 0.01 / unit).collect();
+            (0..width * count).map(|k| wave((1 + k / width) * (1 + k % width)) * 0.01 / unit).collect();
         let operator = StressOperator::new(&fields, width, residual.clone());
         let mut sampled = Sampled::new(&operator, &coordinates, count);
         let all: Vec<_> = windows(count).collect();
