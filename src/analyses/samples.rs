@@ -123,7 +123,7 @@ impl PlateSamples {
     /// A criterion whose material lacks a constant, a stress or an index that is not finite.
     pub(super) fn judge(&self, criteria: &[NamedCriterion], materials: &[Material]) -> Result<Option<Extremes>, Error> {
         let Way::Product(operator) = &self.of_plate.way else { return Ok(None) };
-        let Some(hulls) = self.hulls.get_or_init(|| self.make_hulls()) else { return Ok(None) };
+        let Some(hulls) = self.hulls.get_or_init(|| self.make_hulls(materials)) else { return Ok(None) };
         let stresses = |site: usize, window: usize, out: &mut [Stress6<Ply>]| {
             let batch = self.batches().nth(window / LANES).unwrap_or_default();
             let within = windows(batch.len()).nth(window % LANES).unwrap_or_default();
@@ -133,7 +133,7 @@ impl PlateSamples {
         Ok(Some(hulls.judge(criteria, materials, &stresses)?))
     }
 
-    fn make_hulls(&self) -> Option<Hulls> {
+    fn make_hulls(&self, materials: &[Material]) -> Option<Hulls> {
         let sites = sites(&self.of_plate.recovery);
         let all = |batch: Range<usize>| windows(batch.len()).map(move |w| batch.start + w.start..batch.start + w.end);
         let windows: Vec<Range<usize>> = self.batches().flat_map(all).collect();
@@ -144,7 +144,7 @@ impl PlateSamples {
         let ranges = |site: usize, out: &mut [StressRange]| {
             sampled.iter_mut().zip(out.chunks_mut(LANES)).for_each(|(batch, out)| batch.ranges(site, out));
         };
-        Hulls::new(sites, self.times.clone(), windows, ranges)
+        Hulls::new(sites, self.times.clone(), windows, materials, ranges)
     }
 
     /// Where the stresses are judged.

@@ -3,7 +3,7 @@
 use super::survey::{IMMENSE, ROUNDING, WINDOW};
 use super::{FailureEvent, First, Reading, ScanError, ScanSite, Sighting, crossing, refusal};
 use fem_core::failure::{FailureCriterion, Site, StressRange, check_material};
-use fem_core::material::Material;
+use fem_core::material::{Material, Strengths};
 use fem_core::tensor::{Ply, Stress6};
 use std::ops::Range;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -14,7 +14,7 @@ const BRANCH: usize = 4;
 /// Stresses of a march, kept so that what they come to under any strengths follows from a look at few of them.
 ///
 /// Of every site it knows within what its stresses lie over each window of samples. Such pieces of one material with like stresses at
-/// like times stand together, eight in a group, eight groups in a larger one, up to all, and of each group it knows within what all its
+/// like times stand together, four in a group, four groups in a larger one, up to all, and of each group it knows within what all its
 /// stresses lie and when they begin. A group whose bound ([`FailureCriterion::bounds`]) neither passes the largest index so far, nor
 /// reaches 1 before the first failure so far, is passed over with all that is in it. What is found is to the bit what a
 /// [`Scan`](super::Scan) of all samples finds.
@@ -59,10 +59,16 @@ struct Tree {
 }
 
 impl Tree {
-    fn new(kind: Site, material: u16, sites: &[u32], windows: usize, of: impl Fn(Piece) -> StressRange) -> Self {
+    fn new(
+        kind: Site,
+        (material, strengths): (u16, &Strengths),
+        sites: &[u32],
+        windows: usize,
+        of: impl Fn(Piece) -> StressRange,
+    ) -> Self {
         let all = sites.iter().flat_map(|site| (0u32..).take(windows).map(|window| Piece { site: *site, window }));
         let mut featured: Vec<(Piece, Feature)> = all.map(|piece| (piece, feature(piece, &of(piece)))).collect();
-        arrange(&mut featured);
+        arrange(&mut featured, &scales(strengths));
         let pieces: Vec<Piece> = featured.into_iter().map(|(piece, _)| piece).collect();
         let (ranges, begins) = pieces.iter().map(|piece| (of(*piece), piece.window)).unzip();
         let mut levels = vec![Level { ranges, begins }];
@@ -106,6 +112,24 @@ struct Extreme {
 
 const NOTHING: Extreme = Extreme { largest: f64::NEG_INFINITY, at: None, first: None, first_at: None };
 
+/// Which stresses may change what is known of a mode.
+#[derive(Debug, Clone, Copy)]
+struct Aim {
+    /// What a bound exceeds where the largest index may be.
+    largest: f64,
+    /// Where 1 was reached, the last window in which that may have been for the first time.
+    last: Option<u32>,
+}
+
+impl Aim {
+    /// Whether stresses with this `bound` that begin in a window are of interest; a bound that is not a number bounds nothing.
+    fn is_met_by(&self, bound: f64, begins: u32) -> bool {
+        let passed_over = bound <= self.largest;
+        let reaches = || !(bound < under(1.0)) && self.last.is_some_and(|last| begins <= last);
+        !passed_over || reaches()
+    }
+}
+
 /// What a bound must exceed so that an index may, with what rounding may take.
 fn under(index: f64) -> f64 {
     index - index.abs() * ROUNDING
@@ -120,12 +144,14 @@ impl Hulls {
     }
 
     /// Of a march that was sampled at `times`, s, in these `windows`, each of which but the first begins with the last sample of
-    /// the one before; `ranges` puts within what the stresses of a site lie, window by window. `None` where these are so large that
-    /// bounds of them may overflow.
+    /// the one before; `ranges` puts within what the stresses of a site lie, window by window. Strengths of the `materials` say which
+    /// differences of stresses weigh; what is found does not depend on them. `None` where stresses are so large that bounds of them may
+    /// overflow.
     pub fn new(
         sites: Vec<ScanSite>,
         times: Vec<f64>,
         windows: Vec<Range<usize>>,
+        materials: &[Material],
         mut ranges: impl FnMut(usize, &mut [StressRange]),
     ) -> Option<Self> {
         let rest = StressRange { low: Stress6::new([0.0; 6]), high: Stress6::new([0.0; 6]) };
@@ -147,7 +173,8 @@ impl Hulls {
         let tree = |(kind, material): (Site, u16)| {
             let own = (0u32..).zip(&sites).filter(|(_, s)| (s.place.site(), s.material) == (kind, material));
             let own: Vec<u32> = own.map(|(k, _)| k).collect();
-            Tree::new(kind, material, &own, windows.len(), of_piece)
+            let strengths = &materials[usize::from(material)].strengths;
+            Tree::new(kind, (material, strengths), &own, windows.len(), of_piece)
         };
         let trees = kinds.into_iter().map(tree).collect();
         Some(Self { trees, sites, times, windows, likely: Mutex::default() })
@@ -187,7 +214,7 @@ impl Hulls {
                     stresses,
                     seen: &mut seen,
                     indices: vec![f64::NAN; WINDOW * modes.len()],
-                    floors: vec![f64::NEG_INFINITY; modes.len()],
+                    aims: vec![Aim { largest: f64::NEG_INFINITY, last: None }; modes.len()],
                 };
                 search.run(&likely)?;
             }
@@ -230,8 +257,7 @@ struct Search<'a> {
     stresses: StressesOf<'a>,
     seen: &'a mut [Extreme],
     indices: Vec<f64>,
-    /// Of each mode what bounds must exceed to be of interest.
-    floors: Vec<f64>,
+    aims: Vec<Aim>,
 }
 
 impl Search<'_> {
@@ -240,36 +266,25 @@ impl Search<'_> {
         for leaf in likely.iter().filter(|leaf| leaf.tree == number) {
             self.judge(leaf.piece)?;
         }
-        self.descend(None)?;
-        for mode in 0..self.seen.len() {
-            if self.seen[mode].largest >= 1.0 {
-                self.descend(Some(mode))?;
-            }
+        self.descend()
+    }
+
+    /// Finds what is of interest from now on.
+    fn aim(&mut self) {
+        let begins = |leaf: Leaf| self.hulls.trees[leaf.tree].pieces[leaf.piece].window;
+        for (aim, seen) in self.aims.iter_mut().zip(&*self.seen) {
+            // Where an index is 1 or more it has reached 1 within that window or before.
+            let windows = seen.at.into_iter().chain(seen.first_at).map(begins);
+            let last = if seen.largest < 1.0 { None } else { windows.min() };
+            *aim = Aim { largest: under(seen.largest), last };
         }
-        Ok(())
     }
 
-    /// Sets floors, and finds the last window of interest: for what exceeds the largest indices so far, or for what may reach 1 in `mode`
-    /// before it did so far.
-    fn aim(&mut self, mode: Option<usize>) -> u32 {
-        let Some(mode) = mode else {
-            self.floors.iter_mut().zip(&*self.seen).for_each(|(floor, seen)| *floor = under(seen.largest));
-            return u32::MAX;
-        };
-        self.floors.fill(f64::INFINITY);
-        // Reached, too.
-        self.floors[mode] = under(1.0).next_down();
-        // Where an index is 1 or more it has reached 1 within that window or before.
-        let Extreme { at, first_at, .. } = self.seen[mode];
-        let windows = at.into_iter().chain(first_at).map(|leaf| self.hulls.trees[leaf.tree].pieces[leaf.piece].window);
-        windows.min().unwrap_or(u32::MAX)
-    }
-
-    /// Judges all pieces that may change what was seen of all modes' largest indices, or of the first failure of one `mode`.
-    fn descend(&mut self, mode: Option<usize>) -> Result<(), ScanError> {
+    /// Judges all pieces that may change what was seen.
+    fn descend(&mut self) -> Result<(), ScanError> {
         let (tree, modes) = (self.tree, self.seen.len());
         let mut bounds = vec![f64::INFINITY; BRANCH * modes];
-        let mut last = self.aim(mode);
+        self.aim();
         // Neighbours: their level, and the first of them.
         let mut open = vec![(tree.levels.len() - 1, 0)];
         while let Some((level, first)) = open.pop() {
@@ -278,19 +293,23 @@ impl Search<'_> {
             let bounds = &mut bounds[..parts.len() * modes];
             bounds.fill(f64::INFINITY);
             self.criterion.bounds_many(&ranges[parts.clone()], self.material, bounds);
-            for (part, bounds) in parts.zip(bounds.chunks_exact(modes)) {
-                // A bound that is not a number bounds nothing.
-                let passed_over =
-                    bounds.iter().zip(&self.floors).all(|(bound, floor)| bound <= floor || *floor == f64::INFINITY);
-                if passed_over || begins[part] > last {
-                    continue;
-                }
-                match level.checked_sub(1) {
-                    Some(below) => open.push((below, part * BRANCH)),
-                    None => {
-                        self.judge(part)?;
-                        last = self.aim(mode);
-                    }
+            // What begins first comes first: where that fails, the later is passed over.
+            let mut order: [usize; BRANCH] = std::array::from_fn(|k| k);
+            let order = &mut order[..parts.len()];
+            order.sort_unstable_by_key(|k| begins[first + k]);
+            let met = |aims: &[Aim], k: usize| {
+                let mut pairs = bounds[k * modes..(k + 1) * modes].iter().zip(aims);
+                pairs.any(|(bound, aim)| aim.is_met_by(*bound, begins[first + k]))
+            };
+            if let Some(below) = level.checked_sub(1) {
+                let next = order.iter().rev().filter(|k| met(&self.aims, **k));
+                open.extend(next.map(|k| (below, (first + k) * BRANCH)));
+                continue;
+            }
+            for k in order {
+                if met(&self.aims, *k) {
+                    self.judge(first + *k)?;
+                    self.aim();
                 }
             }
         }
@@ -373,11 +392,27 @@ fn feature(piece: Piece, range: &StressRange) -> Feature {
     std::array::from_fn(|i| if i < 6 { middle(i) } else { piece.window as f32 })
 }
 
+/// What differences of features are held against: the least of the strengths that limit a component; NaN where none is known.
+fn scales(of: &Strengths) -> Feature {
+    let least = |strengths: &[f64]| strengths.iter().fold(f64::NAN, |a, b| a.min(*b)) as f32;
+    let along = least(&[of.s12(), of.s13()]);
+    [
+        least(&[of.xt(), of.xc()]),
+        least(&[of.yt(), of.yc()]),
+        least(&[of.yt(), of.yc(), of.zt(), of.zc()]),
+        along,
+        least(&[of.s23()]),
+        along,
+        f32::NAN,
+    ]
+}
+
 /// Orders pieces so that groups of [`BRANCH`] neighbours, and groups of these, have like features: halves along the one that differs
-/// most, in relation to its largest.
-fn arrange(pieces: &mut [(Piece, Feature)]) {
+/// most, in relation to its scale, or to its largest where that has none.
+fn arrange(pieces: &mut [(Piece, Feature)], scales: &Feature) {
     let zero: Feature = [0.0; 7];
     let most = pieces.iter().fold(zero, |a, (_, b)| std::array::from_fn(|i| a[i].max(b[i].abs())));
+    let most: Feature = std::array::from_fn(|i| if scales[i] > 0.0 { scales[i] } else { most[i] });
     let mut parts = vec![pieces];
     while let Some(part) = parts.pop() {
         if part.len() <= BRANCH {
