@@ -22,6 +22,9 @@ import time
 EXAMPLE = pathlib.Path(__file__).resolve().parents[2] / "examples/as4-3502-8ply-25mm"
 SETS = ["laminate.plies=[0/45/-45/90]s,[45/-45/0/90]s", "impactor.velocity=1.5..3:10", "impactor.mass=0.1..0.5:8"]
 CASES = 160
+SCATTER = ["materials.as4-3502.Yt=normal(64 MPa, 8 %)", "materials.as4-3502.S12=normal(109 MPa, 8 %)", "impactor.velocity=normal(2.5 m/s, 5 %)"]
+SAMPLES = ["--samples", "24", "--seed", "7"]
+CORRELATED = "--correlate=materials.as4-3502.Yt,materials.as4-3502.S12=0.6"
 PATIENCE = 60
 
 HQ = """#!{python}
@@ -57,15 +60,14 @@ class Test:
         self.environment = dict(os.environ)
         self.table = None
 
-    def command(self, out, *words):
-        sets = [word for pair in SETS for word in ("--set", pair)]
+    def command(self, out, *words, sets=SETS):
+        sets = [word for pair in sets for word in ("--set", pair)]
         return [self.fem, "sweep", str(self.work / "plate/scene.toml"), *sets, "--out", str(self.work / out), "--quiet", *words]
 
-    def run(self, out, *words, good=True):
-        done = subprocess.run(self.command(out, *words), env=self.environment, capture_output=True, text=True, timeout=300)
-        if good and done.returncode != 0:
+    def run(self, out, *words, sets=SETS):
+        done = subprocess.run(self.command(out, *words, sets=sets), env=self.environment, capture_output=True, text=True, timeout=300)
+        if done.returncode != 0:
             raise SystemExit(f"{out}: {done.returncode} {done.stdout} {done.stderr}")
-        return done
 
     def same(self, out, what):
         table = (self.work / out / "sweep.csv").read_bytes()
@@ -240,6 +242,19 @@ def hyperqueue(test):
     test.environment["PATH"] = f"{commands}:{test.environment['PATH']}"
     with LocalCluster(str(folder), WorkerConfig(cores=2)):
         under(test, "hyperqueue", 6, 6)
+        scatter(test, "hyperqueue")
+
+
+def scatter(test, engine):
+    """Samples that are correlated are the same ones in every worker of an engine."""
+    ways = {"scatter": [CORRELATED], "scatter-parts": [CORRELATED, "--engine", engine, "--parts", "3"], "uncorrelated": []}
+    for out, words in ways.items():
+        test.run(out, *SAMPLES, *words, sets=SCATTER)
+    one, parts, uncorrelated = ((test.work / out / "sweep.csv").read_bytes() for out in ways)
+    assert one.count(b"\n") == 25, one
+    assert one == parts, "correlated samples: another table"
+    assert one != uncorrelated, "nothing is correlated"
+    print(f"ok: correlated samples by {engine}", flush=True)
 
 
 def wait(what, there):
