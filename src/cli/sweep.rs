@@ -170,12 +170,20 @@ pub(super) fn sweep(registry: &Registry, arguments: &Arguments, console: &Consol
         (None, None) => sweep.workers()?,
     };
     let progress = console.progress("sweep", "sweep {bar:40} {percent:>3} %  {msg}  {eta} left");
-    sweep.run(&dir, &cases, threads, &mut rows, &mut |done| {
+    let run = sweep.run(&dir, &cases, threads, &mut rows, &mut |done| {
         progress.share(done as f64 / cases.len().max(1) as f64);
         progress.message(&format!("{done} of {}", cases.len()));
         if signals.received().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    })?;
+    });
     progress.finish();
+    if let Err(source) = run {
+        if !rows.is_empty() {
+            console::tell(
+                "What was saved is kept. To continue once the error is mended: the same command with --resume\n",
+            );
+        }
+        return Err(source.into());
+    }
     let record = Record::new(&scene, path, asked, &sweep, &rows);
     sweep::write(&dir, &sweep, &rows, &record)?;
     if scene.output.plots {

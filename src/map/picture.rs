@@ -74,6 +74,7 @@ fn plane(map: &BorderMap<'_>, found: &MapFound) -> MapPlot {
         title: map.scene.title.clone(),
         x: axis(x),
         y: axis(y),
+        rows: Vec::new(),
         equal_aspect: [x, y].map(|axis| axis.key.ends_with(".at.x") || axis.key.ends_with(".at.y")) == [true; 2],
         scale: None,
         classes,
@@ -109,15 +110,18 @@ fn energies(x: &MapAxis, y: &MapAxis) -> Vec<(f64, String, Vec<[f64; 2]>)> {
 fn strips(map: &BorderMap<'_>, found: &MapFound) -> MapPlot {
     let x = &map.axes[0];
     let values = map.list.as_ref().map_or(&[][..], |(_, values)| values.as_slice());
-    let mut panel = Panel::default();
+    let (mut panel, mut rows) = (Panel::default(), Vec::new());
     let mut classes = found.names.clone();
     for (strip, of) in found.strips.iter().enumerate().filter(|(_, of)| !of.levels.is_empty()) {
         let height = |share: f64| strip as f64 + 0.6 + 0.8 * share;
-        for k in 0..CELLS {
-            let [left, right] = [k, k + 1].map(|k| k as f64 / CELLS as f64);
-            let [a, b] = [left, right].map(|share| x.value(share));
+        // Between the lines of the strip nothing changes.
+        let zeros = of.levels.iter().flat_map(|level| super::lines::zeros(&|p| level.value(p), 1));
+        let mut ends: Vec<f64> = zeros.map(|[share, _]| share).chain([0.0, 1.0]).collect();
+        ends.sort_by(f64::total_cmp);
+        for pair in ends.windows(2) {
+            let [a, b] = [pair[0], pair[1]].map(|share| x.value(share));
             let corners = vec![[a, height(0.0)], [b, height(0.0)], [b, height(1.0)], [a, height(1.0)]];
-            panel.cells.push(MapCell { corners, fill: shade(found, strip, [0.5 * (left + right), 0.0]) });
+            panel.cells.push(MapCell { corners, fill: shade(found, strip, [0.5 * (pair[0] + pair[1]), 0.0]) });
         }
         for (class, level) in of.levels.iter().enumerate() {
             for [share, _] in super::lines::zeros(&|p| level.value(p), 1) {
@@ -125,7 +129,7 @@ fn strips(map: &BorderMap<'_>, found: &MapFound) -> MapPlot {
                 panel.lines.push(Stroke { points, class });
             }
         }
-        panel.notes.push((strip as f64 + 1.0, values.get(strip).cloned().unwrap_or_default()));
+        rows.push((strip as f64 + 1.0, values.get(strip).cloned().unwrap_or_default()));
     }
     let place = |point: &super::MapPoint| ([point.values[0], point.strip as f64 + 1.0], classes.len());
     panel.dots = found.points.iter().map(place).collect();
@@ -134,6 +138,7 @@ fn strips(map: &BorderMap<'_>, found: &MapFound) -> MapPlot {
         title: map.scene.title.clone(),
         x: axis(x),
         y: Axis::linear(map.list.as_ref().map_or("", |(key, _)| key.as_str()), ""),
+        rows,
         equal_aspect: false,
         scale: None,
         classes,

@@ -84,6 +84,7 @@ fn sheet(model: &Model, title: &str) -> MapPlot {
         title: format!("{title}. {}", model.origin.title),
         x: Axis::linear("x", "mm"),
         y: Axis::linear("y", "mm"),
+        rows: Vec::new(),
         equal_aspect: true,
         scale: None,
         classes: Vec::new(),

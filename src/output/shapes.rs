@@ -17,6 +17,7 @@ pub(super) fn shapes(model: &Model, shapes: &[f64], titles: impl Iterator<Item =
         title: model.origin.title.clone(),
         x: Axis::linear("x", "mm"),
         y: Axis::linear("y", "mm"),
+        rows: Vec::new(),
         equal_aspect: true,
         scale: Some("deflection, 0.5 at rest".into()),
         classes: Vec::new(),

@@ -12,7 +12,7 @@ const MOST_GROUPS: usize = 8;
 /// Sobol's indices of one result, `all` of that name: of each key a bar for what it does alone and one for what it does in all, with
 /// their intervals.
 pub(super) fn bars(title: &str, all: &[Importance]) -> MapPlot {
-    let mut panel = Panel::default();
+    let (mut panel, mut rows) = (Panel::default(), Vec::new());
     for (row, of) in all.iter().rev().enumerate() {
         let at = row as f64 + 1.0;
         let indices = [([of.first, of.first_low, of.first_high], 0.2), ([of.total, of.total_low, of.total_high], -0.2)];
@@ -22,13 +22,14 @@ pub(super) fn bars(title: &str, all: &[Importance]) -> MapPlot {
             panel.cells.push(MapCell { corners, fill: Fill::Class(class) });
             panel.lines.push(Stroke { points: vec![[low, middle], [high, middle]], class: 2 });
         }
-        panel.notes.push((at, of.key.clone()));
+        rows.push((at, of.key.clone()));
     }
     let of = all.first().map_or("", |of| of.result.as_str());
     MapPlot {
         title: title.to_owned(),
         x: Axis::linear(format!("Share of the variance of {of}"), ""),
         y: Axis::linear("Keys", ""),
+        rows,
         equal_aspect: false,
         scale: None,
         classes: vec!["alone".into(), "in all".into(), "95 % interval".into()],

@@ -228,6 +228,7 @@ fn map(title: &str, sweep: &Sweep<'_>, points: &[Point<'_>], axes: [usize; 2]) -
         title: title.to_owned(),
         x,
         y,
+        rows: Vec::new(),
         equal_aspect: false,
         scale: Some("largest failure index".into()),
         classes,

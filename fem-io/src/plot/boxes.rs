@@ -87,6 +87,7 @@ fn texts_of_maps() {
                 title: LONG.into(),
                 x: Axis::linear("x", "mm"),
                 y: Axis::linear("y", "mm"),
+                rows: Vec::new(),
                 equal_aspect: true,
                 scale: Some("largest index".into()),
                 classes: (0..classes).map(|k| format!("matrix compression {k} (hashin-report)")).collect(),

@@ -12,6 +12,8 @@ pub struct MapPlot {
     pub x: Axis,
     /// Vertical axis.
     pub y: Axis,
+    /// Words at values of the vertical axis, in place of its numbers where there are any.
+    pub rows: Vec<(f64, String)>,
     /// Whether a unit is as long upwards as it is to the right.
     pub equal_aspect: bool,
     /// Name of the number that [`Fill::Share`] shows, where a scale of its colours is wanted.
@@ -158,7 +160,7 @@ fn check(plot: &MapPlot) -> Result<(), PlotError> {
             return Err(PlotError::Empty { title: title(), what: format!("class {k} of {}", what()) });
         }
         let shares = cells.clone().filter_map(|cell| if let Fill::Share(v) = cell.fill { Some([v, v]) } else { None });
-        let notes = panel.notes.iter().map(|note| [0.0, note.0]);
+        let notes = panel.notes.iter().chain(&plot.rows).map(|note| [0.0, note.0]);
         if let Some([x, y]) = places(panel).chain(shares).chain(notes).find(|p| !p.iter().all(|v| v.is_finite())) {
             return Err(PlotError::NonFinite { title: title(), what: what(), x, y });
         }
@@ -187,6 +189,7 @@ mod tests {
             title: "Test".into(),
             x: Axis::linear("x", "mm"),
             y: Axis::linear("y", "mm"),
+            rows: Vec::new(),
             equal_aspect: true,
             scale: Some("index".into()),
             classes: vec!["tension".into(), "shear".into()],
@@ -240,6 +243,20 @@ mod tests {
         assert!(greys.windows(2).all(|pair| pair[0] > pair[1]), "{greys:?}");
         assert_eq!([share(-1.0), share(0.4), share(7.0)], [[0xff; 3], [0xd9; 3], [0x73; 3]]);
         assert_eq!(class_color(8), class_color(1));
+    }
+
+    #[test]
+    fn words_stand_in_place_of_numbers() {
+        let mut plot = map(vec![square(0.0, Fill::Blank)]);
+        let has = |plot: &MapPlot, words: &str| map_plot(plot).unwrap().svg.contains(words);
+        assert!(has(&plot, ">y (mm)<") && has(&plot, ">0.8<"));
+        plot.x = Axis::linear("x", "");
+        plot.rows = vec![(0.25, "low".into()), (0.75, "high".into())];
+        let svg = map_plot(&plot).unwrap().svg;
+        assert_eq!(svg.matches(">0.8<").count(), 1, "of x alone");
+        assert!(svg.contains(">low<") && svg.contains(">high<"));
+        plot.rows[0].0 = f64::NAN;
+        assert!(matches!(map_plot(&plot), Err(PlotError::NonFinite { .. })));
     }
 
     #[test]

@@ -23,6 +23,8 @@ const SAMPLE: f64 = 26.0;
 const EDGED: usize = 3000;
 /// Width of an outline.
 const OUTLINE: f64 = 2.5;
+/// Longest words beside the left edge.
+const LONGEST: f64 = 0.4 * WIDTH;
 const CELL_EDGE: Color = [0xcf; 3];
 
 /// The shapes of `plot`, which has cells and is finite.
@@ -40,7 +42,9 @@ pub(super) fn lay_out(plot: &MapPlot) -> Result<Drawing, PlotError> {
     let rows = plot.panels.len().div_ceil(columns);
     let most = if rows > 2 { 4 } else { 8 };
     let widest = |ticks: &[(f64, String)]| ticks.iter().map(|t| estimate_width(&t.1, SMALL)).fold(0.0, f64::max);
-    let left = EDGE + LABEL + 30.0 + widest(&y.ticks(most));
+    let words: Vec<(f64, String)> = plot.rows.iter().map(|(at, words)| (*at, shorten(words, SMALL, LONGEST))).collect();
+    let y_ticks = |most: usize| if words.is_empty() { y.ticks(most) } else { words.clone() };
+    let left = EDGE + LABEL + 30.0 + widest(&y_ticks(most));
     let right = WIDTH - EDGE - 20.0 - if notes > 0.0 { notes + 20.0 } else { 0.0 };
     // The last label of a panel stays apart from the first of the next.
     let gap = GAP.max(widest(&x.ticks(8)) + 12.0);
@@ -53,7 +57,7 @@ pub(super) fn lay_out(plot: &MapPlot) -> Result<Drawing, PlotError> {
     }
     let height = height.max(40.0);
     let stack = |ticks: &Vec<(f64, String)>| 1.3 * SMALL * ticks.len() as f64 <= height;
-    let mut y_ticks = (1..=most).rev().map(|most| y.ticks(most)).find(stack).unwrap_or_else(|| y.ticks(1));
+    let mut y_ticks = (1..=most).rev().map(y_ticks).find(stack).unwrap_or_else(|| y_ticks(1));
     y_ticks.truncate((height / SMALL) as usize);
     let fits = |ticks: &[(f64, String)]| widest(ticks) * 1.4 * ticks.len() as f64 <= width;
     let x_ticks = (2..=10).rev().map(|most| x.ticks(most)).find(|ticks| fits(ticks)).unwrap_or_else(|| x.ticks(1));

@@ -44,6 +44,7 @@ pub fn mesh_map(title: &str, mesh: &PlaneMesh, impacts: &[[f64; 2]], flaws: &[Fl
         title: title.to_owned(),
         x: axis("x"),
         y: axis("y"),
+        rows: Vec::new(),
         equal_aspect: true,
         scale: None,
         classes,

@@ -37,6 +37,7 @@ fn plan(model: &Model, scale: String, panels: Vec<Panel>) -> MapPlot {
         title: model.origin.title.clone(),
         x: Axis::linear("x", "mm"),
         y: Axis::linear("y", "mm"),
+        rows: Vec::new(),
         equal_aspect: true,
         scale: Some(scale),
         classes: Vec::new(),
