@@ -177,7 +177,7 @@ pub(super) fn sweep(registry: &Registry, arguments: &Arguments, console: &Consol
     });
     progress.finish();
     if let Err(source) = run {
-        if !rows.is_empty() {
+        if !rows.is_empty() && !arguments.gather {
             console::tell(
                 "What was saved is kept. To continue once the error is mended: the same command with --resume\n",
             );

@@ -1,5 +1,7 @@
 //! A map as a picture.
 
+use super::interpolant::Interpolant;
+use super::lines::zeros;
 use super::record::strokes;
 use super::{BorderMap, MapAxis, MapFound};
 use crate::error::Error;
@@ -114,20 +116,21 @@ fn strips(map: &BorderMap<'_>, found: &MapFound) -> MapPlot {
     let mut classes = found.names.clone();
     for (strip, of) in found.strips.iter().enumerate().filter(|(_, of)| !of.levels.is_empty()) {
         let height = |share: f64| strip as f64 + 0.6 + 0.8 * share;
-        // Between the lines of the strip nothing changes.
-        let zeros = of.levels.iter().flat_map(|level| super::lines::zeros(&|p| level.value(p), 1));
-        let mut ends: Vec<f64> = zeros.map(|[share, _]| share).chain([0.0, 1.0]).collect();
+        let places = |level: &Interpolant| zeros(&|p| level.value(p), 1).into_iter().map(|[share, _]| share).collect();
+        let places: Vec<Vec<f64>> = of.levels.iter().map(places).collect();
+        for (class, share) in
+            places.iter().enumerate().flat_map(|(class, of)| of.iter().map(move |share| (class, share)))
+        {
+            let points = [0.0, 1.0].map(|end| [x.value(*share), height(end)]).to_vec();
+            panel.lines.push(Stroke { points, class });
+        }
+        // Between its lines nothing changes in a strip.
+        let mut ends: Vec<f64> = places.concat().into_iter().chain([0.0, 1.0]).collect();
         ends.sort_by(f64::total_cmp);
         for pair in ends.windows(2) {
             let [a, b] = [pair[0], pair[1]].map(|share| x.value(share));
             let corners = vec![[a, height(0.0)], [b, height(0.0)], [b, height(1.0)], [a, height(1.0)]];
             panel.cells.push(MapCell { corners, fill: shade(found, strip, [0.5 * (pair[0] + pair[1]), 0.0]) });
-        }
-        for (class, level) in of.levels.iter().enumerate() {
-            for [share, _] in super::lines::zeros(&|p| level.value(p), 1) {
-                let points = vec![[x.value(share), height(0.0)], [x.value(share), height(1.0)]];
-                panel.lines.push(Stroke { points, class });
-            }
         }
         rows.push((strip as f64 + 1.0, values.get(strip).cloned().unwrap_or_default()));
     }

@@ -57,8 +57,10 @@ pub(super) fn lay_out(plot: &MapPlot) -> Result<Drawing, PlotError> {
     }
     let height = height.max(40.0);
     let stack = |ticks: &Vec<(f64, String)>| 1.3 * SMALL * ticks.len() as f64 <= height;
-    let mut y_ticks = (1..=most).rev().map(y_ticks).find(stack).unwrap_or_else(|| y_ticks(1));
-    y_ticks.truncate((height / SMALL) as usize);
+    let y_ticks = (1..=most).rev().map(y_ticks).find(stack).unwrap_or_else(|| y_ticks(1));
+    // Of more than there is room for, some all along.
+    let every = ((SMALL * y_ticks.len() as f64 / height).ceil() as usize).max(1);
+    let y_ticks: Vec<(f64, String)> = y_ticks.into_iter().step_by(every).collect();
     let fits = |ticks: &[(f64, String)]| widest(ticks) * 1.4 * ticks.len() as f64 <= width;
     let x_ticks = (2..=10).rev().map(|most| x.ticks(most)).find(|ticks| fits(ticks)).unwrap_or_else(|| x.ticks(1));
 
