@@ -3,6 +3,7 @@
 mod influence;
 mod mean;
 mod newton;
+mod tip;
 
 use crate::lifting::{Lifting, OneSided};
 use crate::vector::dot;
@@ -10,9 +11,11 @@ use fem_core::contact::{Branches, ContactHistory, ContactLaw, Indentation};
 use fem_core::energy::Energy;
 use fem_core::structure::Structure;
 use fem_core::time::{Histories, SecondOrderSystem, State, StepError};
-use influence::Influence;
+use influence::{Influence, Strikers};
 use newton::Newton;
 use std::sync::Arc;
+use tip::Pressed;
+pub use tip::Tip;
 
 /// Sweeps of an upper bound of what weight adds to an energy, and the change, relative, at which it counts as found.
 const MOST_SINKING: usize = 200;
@@ -70,6 +73,8 @@ impl Impactor {
 pub struct ImpactSystem {
     structure: Box<dyn Structure>,
     impactors: Vec<Impactor>,
+    /// Of those that have one; none for any where it is empty.
+    tips: Vec<Option<Tip>>,
     weight: Option<Weight>,
     inertia: bool,
     influence: Influence,
@@ -90,6 +95,8 @@ pub struct Touch {
     pub velocity: f64,
     /// Deflection of the structure under it, m.
     pub deflection: f64,
+    /// Radius of the patch under a tip, m, that of the Hertz pressure that is as far spread; 0 without a tip.
+    pub radius: f64,
 }
 
 /// Energies of an impact, J.
@@ -147,6 +154,7 @@ impl ImpactSystem {
         Self {
             structure,
             impactors,
+            tips: Vec::new(),
             weight: None,
             inertia: true,
             influence: Influence::default(),
@@ -154,6 +162,19 @@ impl ImpactSystem {
             force: Vec::new(),
             contact_calls: 0,
         }
+    }
+
+    /// The same with spherical tips, one or none for each impactor: their contact is where they touch, and `load` of the impactor but what
+    /// tells its deflection.
+    #[must_use]
+    pub fn with_tips(self, tips: Vec<Option<Tip>>) -> Self {
+        Self { tips, ..self }
+    }
+
+    /// The tip of impactor `i` in a state, if it has one.
+    fn pressed(&self, i: usize, h: &ContactHistory, u: &[f64]) -> Option<(&Tip, Pressed)> {
+        let tip = self.tips.get(i)?.as_ref()?;
+        Some((tip, tip.press(&*self.impactors[i].law, h, self.position(i, u), u)))
     }
 
     /// The same on `springs` that only push, which the structure has in its stiffness as if they pulled, too.
@@ -198,7 +219,7 @@ impl ImpactSystem {
     pub fn on(&self, structure: Box<dyn Structure>) -> Self {
         let copy = Self::new(structure, self.impactors.clone()).with_weight(self.weight.clone());
         let copy = copy.on_one_sided(Arc::clone(self.influence.lifting.springs()));
-        Self { inertia: self.inertia, ..copy }
+        Self { inertia: self.inertia, ..copy.with_tips(self.tips.clone()) }
     }
 
     /// The same with a structure that has no inertia.
@@ -255,6 +276,12 @@ impl ImpactSystem {
         self.position(i, x) - self.deflection(i, x)
     }
 
+    /// Indentation that is left under impactor `i` when the force is gone, m: a dent.
+    pub fn dent(&self, i: usize, state: &State) -> f64 {
+        let touch = self.impactors[i].law.branches(&state.histories.contacts[i]).touch;
+        if self.tips.get(i).is_some_and(Option::is_some) { 0.5 * touch } else { touch }
+    }
+
     /// Contact force of impactor `i` in an accepted state.
     pub fn contact_force(&self, i: usize, state: &State) -> f64 {
         self.touch(i, state).force
@@ -264,8 +291,12 @@ impl ImpactSystem {
     pub fn touch(&self, i: usize, state: &State) -> Touch {
         let deflection = self.deflection(i, &state.u);
         let indentation = self.position(i, &state.u) - deflection;
-        let force = self.impactors[i].law.force(&state.histories.contacts[i], indentation).force;
-        Touch { indentation, force, velocity: state.v[self.structure.ndof() + i], deflection }
+        let history = &state.histories.contacts[i];
+        let (force, radius) = match self.pressed(i, history, &state.u) {
+            Some((tip, pressed)) => (pressed.force(), tip.radius(&pressed)),
+            None => (self.impactors[i].law.force(history, indentation).force, 0.0),
+        };
+        Touch { indentation, force, velocity: state.v[self.structure.ndof() + i], deflection, radius }
     }
 
     /// The energy ledger of an accepted state.
@@ -295,8 +326,11 @@ impl ImpactSystem {
         energies.strain -= self.influence.lifting.energy(&state.u[..n]);
         for (i, impactor) in self.impactors.iter().enumerate() {
             energies.impactor += 0.5 * impactor.mass * state.v[n + i].powi(2);
-            let alpha = self.approach(i, &state.u);
-            let Energy { stored, dissipated } = impactor.law.energy(&state.histories.contacts[i], alpha);
+            let history = &state.histories.contacts[i];
+            let Energy { stored, dissipated } = match self.pressed(i, history, &state.u) {
+                Some((tip, pressed)) => tip.energy(&*impactor.law, history, &pressed),
+                None => impactor.law.energy(history, self.approach(i, &state.u)),
+            };
             energies.stored += stored;
             energies.dissipated += dissipated;
         }
@@ -417,27 +451,28 @@ impl ImpactSystem {
             }
         }
         self.prepare(cm, cc)?;
-        let Self { structure, impactors, influence, contact_calls, .. } = self;
+        let Self { structure, impactors, tips, influence, contact_calls, .. } = self;
+        let strikers = Strikers { impactors, tips };
         structure.solve_damped(cm, cc, &mut d[..n], 1).map_err(StepError::Factorisation)?;
         for (d, impactor) in d[n..].iter_mut().zip(impactors.iter()) {
             *d /= cm * impactor.mass;
         }
         influence.begin(start.map(|u| &u[..n]));
-        influence.set_approaches(impactors, from);
+        influence.set_approaches(strikers, from);
         let solve = |x: &mut [f64], count| structure.solve_damped(cm, cc, x, count);
-        *contact_calls += influence.touch(impactors, t, &h.contacts, start, d, solve)?;
+        *contact_calls += influence.touch(strikers, t, &h.contacts, start, d, solve)?;
         Ok(())
     }
 
     fn prepare(&mut self, cm: f64, cc: f64) -> Result<(), StepError> {
         let of = (cm, cc, self.structure.revision());
-        let Self { structure, impactors, influence, .. } = self;
+        let Self { structure, impactors, tips, influence, .. } = self;
         if (influence.cm, influence.cc, influence.revision) == of && !influence.x.is_empty() {
             return Ok(());
         }
         let n = structure.ndof();
         influence.revision = of.2;
-        influence.set(cm, cc, n, impactors, |x, count| structure.solve_damped(cm, cc, x, count))
+        influence.set(cm, cc, n, Strikers { impactors, tips }, |x, count| structure.solve_damped(cm, cc, x, count))
     }
 }
 
@@ -480,10 +515,18 @@ impl SecondOrderSystem for ImpactSystem {
         self.influence.lifting.add_forces(&u[..n], &mut f[..n]);
         self.structure.add_damping(-1.0, &v[..n], &mut f[..n]);
         for (i, impactor) in self.impactors.iter().enumerate() {
-            let force = impactor.law.force(&h.contacts[i], self.approach(i, u)).force;
             self.contact_calls += 1;
-            add(&impactor.load, force, f);
-            f[n + i] = -force;
+            f[n + i] = match self.pressed(i, &h.contacts[i], u) {
+                Some((tip, pressed)) => {
+                    tip.loads().zip(&pressed.forces).for_each(|(load, force)| add(load, *force, f));
+                    -pressed.force()
+                }
+                None => {
+                    let force = impactor.law.force(&h.contacts[i], self.approach(i, u)).force;
+                    add(&impactor.load, force, f);
+                    -force
+                }
+            };
         }
         self.pull(&mut f[n..]);
     }
@@ -543,7 +586,8 @@ impl SecondOrderSystem for ImpactSystem {
             state.a[..self.structure.ndof()].fill(0.0);
         }
         for (i, impactor) in self.impactors.iter().enumerate() {
-            let alpha = self.approach(i, &state.u);
+            let pressed = self.pressed(i, &state.histories.contacts[i], &state.u);
+            let alpha = pressed.map_or_else(|| self.approach(i, &state.u), |(_, pressed)| pressed.alpha);
             impactor.law.commit(&mut state.histories.contacts[i], alpha);
         }
         let n = self.structure.ndof();

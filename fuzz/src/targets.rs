@@ -89,9 +89,9 @@ pub fn scene(data: &[u8]) {
                     assert!(impactor.start >= 0.0 && impactor.start.is_finite());
                     match impactor.load.value {
                         ContactLoad::Node => {}
-                        ContactLoad::Patch { radius: length } | ContactLoad::Square { side: length } => {
-                            positive(length)
-                        }
+                        ContactLoad::Patch { radius: length }
+                        | ContactLoad::Tip { radius: length }
+                        | ContactLoad::Square { side: length } => positive(length),
                     }
                 }
                 [impact.march.step.value, impact.march.end.value, scene.failure.every].into_iter().for_each(positive);

@@ -60,6 +60,7 @@ impl Contact {
             radius: match load {
                 ContactLoad::Node => 0.0,
                 ContactLoad::Patch { radius } => radius,
+                ContactLoad::Tip { radius } => ContactLoad::OF_TIP * radius,
                 ContactLoad::Square { side } => side / PI.sqrt(),
             },
             cell,

@@ -4,6 +4,7 @@ use super::builder::Builder;
 use super::path::PathPlan;
 use crate::effect::Effects;
 use crate::error::Error;
+use crate::registry::NO_REDUCTION;
 use fem_core::constraint::Constraints;
 use fem_core::contact::ContactLaw;
 use fem_core::dof::Dof;
@@ -16,6 +17,7 @@ use fem_core::plugin::Dimension;
 use fem_core::profile::{Mirrors, Profile};
 use fem_core::reduction::Reduction;
 use fem_core::time::Integrator;
+use fem_dynamics::impact::Tip;
 use fem_io::scene::{
     self, Analysis, ContactLoad, ImpactPoint, Load, LoadKind, Located, Place, ProfileLine, SceneError, Window,
 };
@@ -75,6 +77,8 @@ pub struct Strike {
     /// Weights of the squeeze, the deflection under the impactor less that of the surface below, which its indentation counts from; `None`
     /// where that is the face itself.
     pub squeeze: Option<Functional>,
+    /// Radius of the spherical tip, m, and weights of the deflections under its rings, if it has one.
+    pub tip: Option<(f64, Vec<Functional>)>,
     /// The contact law.
     pub law: Box<dyn ContactLaw>,
 }
@@ -174,7 +178,13 @@ impl Builder<'_> {
                 Some(from) => Some(self.squeeze((impactor, from), (plate, element), constraints, &place)?),
                 None => None,
             };
-            Ok(Strike { contact, centre, squeeze, law: self.law(impactor)? })
+            let tip = match impactor.load.value {
+                ContactLoad::Tip { radius } => {
+                    Some((radius, self.rings((impactor, radius, spec), (plate, element), constraints)?))
+                }
+                _ => None,
+            };
+            Ok(Strike { contact, centre, squeeze, tip, law: self.law(impactor)? })
         };
         Ok(Impact {
             strikes: spec.impactors.iter().map(strike).collect::<Result<_, _>>()?,
@@ -376,6 +386,35 @@ impl Builder<'_> {
         Ok(Functional(constraints.restrict(&below)))
     }
 
+    /// The deflections under the rings of a tip of `radius`, m.
+    fn rings(
+        &self,
+        (impactor, radius, spec): (&scene::ImpactorSpec, f64, &scene::ImpactSpec),
+        (plate, element): (&Plate, &dyn Element),
+        constraints: &Constraints,
+    ) -> Result<Vec<Functional>, SceneError> {
+        const PATCH: &str = "or give the impactor a `patch_radius` in the place of `tip_radius`";
+        let refuse = |message: &str, help: &str| Err(self.error(&impactor.load, message, format!("{help}, {PATCH}")));
+        if self.scene.substructures.is_some() || spec.reduction.name.value != NO_REDUCTION {
+            let help = "march the full plate, reduction = { method = \"none\" } without `substructures`";
+            return refuse("a reduced plate does not know how it is bent under a tip", help);
+        }
+        if self.integrator(spec)?.limit().product().is_some() {
+            let help = "choose an implicit integrator, for example: integrator = \"newmark\"";
+            return refuse("the stable step of an explicit integrator is not known under a tip", help);
+        }
+        if impactor.indentation_from.is_some() {
+            return refuse("under a tip indentations count from the face", "leave `indentation_from` out");
+        }
+        let (centre, _) = self.point(plate, &impactor.at)?;
+        let ring = |radii: [f64; 2]| {
+            let found = patch::ring(plate, element, (impactor.face, 0.0), centre, radii);
+            let mean = found.map_err(|why| self.beyond(impactor, plate, centre, why, "tip_radius"))?;
+            Ok(Functional(constraints.restrict(&mean.0)))
+        };
+        Tip::radii(radius).map(ring).collect()
+    }
+
     /// Where the impactor strikes, and the deflection there, or at a `depth` in thicknesses below it, as weights of the unknowns.
     fn contact_place(
         &self,
@@ -386,33 +425,15 @@ impl Builder<'_> {
     ) -> Result<([f64; 2], Functional), SceneError> {
         let at = &impactor.at;
         let (centre, column) = self.point(plate, at)?;
-        let too_large = |why: PlateError, key: &str| {
-            let (low, high) = plate.plane.bounds();
-            if (0..2).any(|d| !(low[d]..=high[d]).contains(&centre[d])) {
-                let message = format!("x, y = {} lies outside the plate", Dimension::LENGTH.list(&centre));
-                let help = format!(
-                    "x runs from {} to {} and y from {} to {}, if `mesh.unit` is right",
-                    Dimension::LENGTH.of(low[0]),
-                    Dimension::LENGTH.of(high[0]),
-                    Dimension::LENGTH.of(low[1]),
-                    Dimension::LENGTH.of(high[1])
-                );
-                return self.error(at, message, help);
-            }
-            if matches!(why, PlateError::PatchOverStep { .. }) {
-                let help = format!(
-                    "an impactor touches the higher side alone: move it off the step, or choose a smaller `impactor.{key}`"
-                );
-                return self.error(&impactor.load, why.to_string(), help);
-            }
-            let [width, depth] = [0, 1].map(|d| Dimension::LENGTH.of(high[d] - low[d]));
-            let size = format!("the plate is {width} by {depth}, if `mesh.unit` is right");
-            self.error(&impactor.load, why.to_string(), format!("choose a smaller `impactor.{key}`; {size}"))
-        };
+        let too_large = |why: PlateError, key: &str| self.beyond(impactor, plate, centre, why, key);
         let face = impactor.face;
         let contact = match (impactor.load.value, column) {
             (ContactLoad::Patch { radius }, _) => patch::hertz(plate, element, (face, depth), centre, radius)
                 .map_err(|why| too_large(why, "patch_radius"))?,
+            (ContactLoad::Tip { radius }, _) => {
+                patch::hertz(plate, element, (face, depth), centre, ContactLoad::OF_TIP * radius)
+                    .map_err(|why| too_large(why, "tip_radius"))?
+            }
             (ContactLoad::Square { side }, _) => patch::square(plate, element, (face, depth), centre, side)
                 .map_err(|why| too_large(why, "patch_side"))?,
             (ContactLoad::Node, Some(column)) => patch::node(plate, face, column)
@@ -426,6 +447,38 @@ impl Builder<'_> {
             }
         };
         Ok((centre, contact))
+    }
+
+    /// A contact that leaves the plate, or the height at which it is struck.
+    fn beyond(
+        &self,
+        impactor: &scene::ImpactorSpec,
+        plate: &Plate,
+        centre: [f64; 2],
+        why: PlateError,
+        key: &str,
+    ) -> SceneError {
+        let (low, high) = plate.plane.bounds();
+        if (0..2).any(|d| !(low[d]..=high[d]).contains(&centre[d])) {
+            let message = format!("x, y = {} lies outside the plate", Dimension::LENGTH.list(&centre));
+            let help = format!(
+                "x runs from {} to {} and y from {} to {}, if `mesh.unit` is right",
+                Dimension::LENGTH.of(low[0]),
+                Dimension::LENGTH.of(high[0]),
+                Dimension::LENGTH.of(low[1]),
+                Dimension::LENGTH.of(high[1])
+            );
+            return self.error(&impactor.at, message, help);
+        }
+        if matches!(why, PlateError::PatchOverStep { .. }) {
+            let help = format!(
+                "an impactor touches the higher side alone: move it off the step, or choose a smaller `impactor.{key}`"
+            );
+            return self.error(&impactor.load, why.to_string(), help);
+        }
+        let [width, depth] = [0, 1].map(|d| Dimension::LENGTH.of(high[d] - low[d]));
+        let size = format!("the plate is {width} by {depth}, if `mesh.unit` is right");
+        self.error(&impactor.load, why.to_string(), format!("choose a smaller `impactor.{key}`; {size}"))
     }
 }
 

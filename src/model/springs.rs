@@ -11,7 +11,7 @@ use fem_core::plate::Plate;
 use fem_core::plugin::Dimension;
 use fem_core::springs::{Spread, SupportSpring, Surface, merged};
 use fem_core::support::Levels;
-use fem_io::scene::{Analysis, Located, Place, SceneError, Support, SupportArea};
+use fem_io::scene::{Analysis, ContactLoad, ImpactorSpec, Located, Place, SceneError, Support, SupportArea};
 
 /// What a stiffness is of: its dimension, and a unit with its size in SI units.
 #[derive(Debug, Clone, Copy)]
@@ -176,7 +176,10 @@ impl Builder<'_> {
             ),
         ];
         let static_strains = effects.nature().strained && matches!(self.scene.analysis, Analysis::Static(_));
+        let is_tip = |one: &ImpactorSpec| matches!(one.load.value, ContactLoad::Tip { .. });
+        let tips = self.scene.impact().is_some_and(|impact| impact.impactors.iter().any(is_tip));
         let beside_rests = [
+            (tips, "the spherical tip of an impactor", "give it a `patch_radius` in the place of `tip_radius`"),
             (self.has_laws(), "plies that follow laws", "hold the plate by kind = \"roller\""),
             (wants("gravity"), "gravity", "leave `effects.gravity` out"),
             (wants("damping"), "damping", "leave `effects.damping` out"),

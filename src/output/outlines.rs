@@ -78,12 +78,14 @@ fn patches(model: &Model) -> Vec<Vec<[f64; 2]>> {
     let Plan::Impact(impact) = &model.plan else { return Vec::new() };
     let of = |(spec, strike): (&fem_io::scene::ImpactorSpec, &crate::model::Strike)| {
         let [x, y] = strike.centre;
+        let circle = |radius: f64| {
+            let point = |k: usize| (TAU * k as f64 / PARTS as f64).sin_cos();
+            Some((0..=PARTS).map(point).map(|(sin, cos)| [x + radius * cos, y + radius * sin]).collect())
+        };
         match spec.load.value {
             ContactLoad::Node => None,
-            ContactLoad::Patch { radius } => {
-                let point = |k: usize| (TAU * k as f64 / PARTS as f64).sin_cos();
-                Some((0..=PARTS).map(point).map(|(sin, cos)| [x + radius * cos, y + radius * sin]).collect())
-            }
+            ContactLoad::Patch { radius } => circle(radius),
+            ContactLoad::Tip { radius } => circle(ContactLoad::OF_TIP * radius),
             ContactLoad::Square { side } => {
                 let h = 0.5 * side;
                 Some(vec![[x - h, y - h], [x + h, y - h], [x + h, y + h], [x - h, y + h], [x - h, y - h]])

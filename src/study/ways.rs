@@ -131,6 +131,7 @@ pub(super) fn contact(scene: &Scene) -> Option<Vec<Level>> {
     Some(match scene.impact()?.impactors.first()?.load.value {
         ContactLoad::Node => [1e-3, 2e-3, 4e-3].map(radius).to_vec(),
         ContactLoad::Patch { radius: own } => vec![node, radius(0.5 * own), radius(2.0 * own)],
+        ContactLoad::Tip { radius: own } => vec![node, radius(0.25 * own), radius(0.5 * own)],
         ContactLoad::Square { side: own } => vec![node, side(0.5 * own), side(2.0 * own)],
     })
 }

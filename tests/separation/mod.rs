@@ -10,3 +10,4 @@ mod pictures;
 mod scenes;
 mod specimens;
 mod stretched;
+mod tips;

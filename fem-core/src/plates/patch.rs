@@ -15,6 +15,9 @@ use std::f64::consts::{PI, TAU};
 const RINGS: usize = 24;
 const SPOKES: usize = 96;
 
+/// Gauss points across a ring.
+const RING_POINTS: usize = 4;
+
 /// Panels a side of the integration over a square, and Gauss points a side of each.
 const PANELS: usize = 8;
 const PANEL_POINTS: usize = 6;
@@ -51,7 +54,28 @@ pub fn hertz(
     mean(plate, element, (face, depth), Area { of: "radius", size: a, centre, reach: a }, points)
 }
 
-/// That pressure of a unit force at `point`, Pa.
+/// Mean deflection over the ring around `centre` of `face` with these inner and outer radii.
+///
+/// # Errors
+/// A ring that leaves the plate, or reaches over a step of the face.
+pub fn ring(
+    plate: &Plate,
+    element: &dyn Element,
+    (face, depth): (Face, f64),
+    centre: [f64; 2],
+    [inner, outer]: [f64; 2],
+) -> Result<Functional, PlateError> {
+    let points = gauss_legendre(RING_POINTS).iter().flat_map(|&(g, w)| {
+        let rho = (inner * inner + 0.5 * (1.0 + g) * (outer * outer - inner * inner)).sqrt();
+        (0..SPOKES).map(move |spoke| {
+            let (sin, cos) = (TAU * (spoke as f64 + 0.5) / SPOKES as f64).sin_cos();
+            ([centre[0] + rho * cos, centre[1] + rho * sin], 0.5 * w / SPOKES as f64)
+        })
+    });
+    mean(plate, element, (face, depth), Area { of: "radius", size: outer, centre, reach: outer }, points)
+}
+
+/// Hertz' pressure of a unit force at `point`, Pa.
 pub fn hertz_pressure(centre: [f64; 2], a: f64, point: [f64; 2]) -> f64 {
     let share = (point[0] - centre[0]).hypot(point[1] - centre[1]) / a;
     1.5 / (PI * a * a) * (1.0 - share * share).max(0.0).sqrt()

@@ -1,10 +1,13 @@
 //! Contact forces of an implicit step, from how the structure responds to each.
 
+use super::tip::Tip;
 use super::{Impactor, add, value};
 use crate::lifting::Lifting;
 use fem_core::contact::{ContactForce, ContactHistory};
 use fem_core::structure::SolveError;
 use fem_core::time::StepError;
+use nalgebra::DMatrix;
+use std::ops::Range;
 
 /// Change of an indentation by its own force, relative, at which several contacts count as solved: ten times the
 /// tolerance of one.
@@ -17,6 +20,35 @@ const MOST_SWEEPS: usize = 20_000;
 const PATIENCE: u64 = 20;
 const MOST_CALLS: u64 = 200;
 
+/// What strikes a structure: impactors, and the tips of those that have one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Strikers<'a> {
+    pub(super) impactors: &'a [Impactor],
+    pub(super) tips: &'a [Option<Tip>],
+}
+
+impl<'a> Strikers<'a> {
+    fn tip(self, i: usize) -> Option<&'a Tip> {
+        self.tips.get(i).and_then(Option::as_ref)
+    }
+
+    /// Loads of all contacts, one of an impactor or one of each ring of its tip.
+    fn loads(self) -> impl Iterator<Item = (usize, &'a Vec<(usize, f64)>)> {
+        self.impactors.iter().enumerate().flat_map(move |(i, impactor)| {
+            let tip = self.tip(i);
+            let own = tip.is_none().then_some(&impactor.load);
+            own.into_iter().chain(tip.into_iter().flat_map(Tip::loads)).map(move |load| (i, load))
+        })
+    }
+
+    /// Numbers of the loads of impactor `i`.
+    fn of(self, i: usize) -> Range<usize> {
+        let count = |i: usize| self.tip(i).map_or(1, |tip| tip.loads().count());
+        let first = (0..i).map(count).sum();
+        first..first + count(i)
+    }
+}
+
 /// Responses X = (K + cm M + cc C)⁻¹ p to the contact loads, for one (cm, cc); of a structure that is not linear, to its tangent.
 #[derive(Debug, Default)]
 pub(super) struct Influence {
@@ -25,12 +57,12 @@ pub(super) struct Influence {
     /// That of the structure.
     pub(super) revision: u64,
     pub(super) x: Vec<f64>,
-    /// Approach at contact i per force at contact j, pᵢᵀ Xⱼ and 1/(cm m) on the diagonal, by rows.
+    /// Approach at load i per force of load j, pᵢᵀ Xⱼ and 1/(cm m) where they are of one impactor, by rows.
     approach: Vec<f64>,
-    /// Approach at each contact without forces.
+    /// Approach at each load without forces.
     free: Vec<f64>,
     forces: Vec<f64>,
-    /// Springs that only push, their deflections without forces, and those by a unit force of each contact.
+    /// Springs that only push, their deflections without forces, and those by a unit force of each load.
     pub(super) lifting: Lifting,
     lifts: Vec<f64>,
     across: Vec<Vec<f64>>,
@@ -43,21 +75,21 @@ impl Influence {
         cm: f64,
         cc: f64,
         n: usize,
-        impactors: &[Impactor],
+        strikers: Strikers<'_>,
         mut solve: impl FnMut(&mut [f64], usize) -> Result<(), SolveError>,
     ) -> Result<(), StepError> {
-        let count = impactors.len();
+        let count = strikers.loads().count();
         let Self { x, approach, free, forces, lifting, lifts, across, .. } = self;
         x.clear();
         x.resize(n * count, 0.0);
-        for (impactor, column) in impactors.iter().zip(x.chunks_exact_mut(n)) {
-            add(&impactor.load, 1.0, column);
+        for ((_, load), column) in strikers.loads().zip(x.chunks_exact_mut(n)) {
+            add(load, 1.0, column);
         }
         solve(x, count).map_err(StepError::Factorisation)?;
         approach.clear();
-        for (i, impactor) in impactors.iter().enumerate() {
-            let own = |j| if i == j { 1.0 / (cm * impactor.mass) } else { 0.0 };
-            approach.extend(x.chunks_exact(n).enumerate().map(|(j, x)| value(&impactor.load, x) + own(j)));
+        for (i, load) in strikers.loads() {
+            let own = |j| if i == j { 1.0 / (cm * strikers.impactors[i].mass) } else { 0.0 };
+            approach.extend(strikers.loads().zip(x.chunks_exact(n)).map(|((j, _), x)| value(load, x) + own(j)));
         }
         free.resize(count, 0.0);
         forces.resize(count, 0.0);
@@ -81,42 +113,42 @@ impl Influence {
     }
 
     /// Adds what the displacements `x` add to the approaches without forces.
-    pub(super) fn set_approaches(&mut self, impactors: &[Impactor], x: &[f64]) {
-        let n = x.len() - impactors.len();
-        for (i, (impactor, free)) in impactors.iter().zip(&mut self.free).enumerate() {
-            *free += x[n + i] - value(&impactor.load, x);
+    pub(super) fn set_approaches(&mut self, strikers: Strikers<'_>, x: &[f64]) {
+        let n = x.len() - strikers.impactors.len();
+        for ((i, load), free) in strikers.loads().zip(&mut self.free) {
+            *free += x[n + i] - value(load, x);
         }
         self.lifting.add_deflections(x, &mut self.lifts);
     }
 
     /// Work of the contact forces, and of those that relieve springs, along `d`.
-    pub(super) fn work(&self, impactors: &[Impactor], d: &[f64]) -> f64 {
-        let contacts: f64 = impactors.iter().zip(&self.forces).map(|(i, force)| force * value(&i.load, d)).sum();
+    pub(super) fn work(&self, strikers: Strikers<'_>, d: &[f64]) -> f64 {
+        let contacts: f64 = strikers.loads().zip(&self.forces).map(|((_, load), force)| force * value(load, d)).sum();
         let springs = self.lifting.springs().iter().zip(self.lifting.forces());
         contacts + springs.map(|(spring, force)| force * spring.at.of(d)).sum::<f64>()
     }
 
     /// Finds the contact forces for the response `d` without contact, and adds that to each, F (X, −1/(cm m)), and that to the relief of
     /// springs, found by `solve` as in [`Self::set`]; returns the evaluations of contact laws. Forces are means over a step that begins
-    /// with the displacements `start`, if these are given.
+    /// with the displacements `start`, if these are given; of a tip they are those in its middle.
     pub(super) fn touch(
         &mut self,
-        impactors: &[Impactor],
+        strikers: Strikers<'_>,
         t: f64,
         h: &[ContactHistory],
         start: Option<&[f64]>,
         d: &mut [f64],
         solve: impl FnOnce(&mut [f64], usize) -> Result<(), SolveError>,
     ) -> Result<u64, StepError> {
-        self.set_approaches(impactors, d);
-        let calls = self.balance(impactors, t, h, start)?;
-        let n = d.len() - impactors.len();
-        for (i, (impactor, force)) in impactors.iter().zip(&self.forces).enumerate() {
+        self.set_approaches(strikers, d);
+        let calls = self.balance(strikers, t, h, start)?;
+        let n = d.len() - strikers.impactors.len();
+        for (((i, _), force), x) in strikers.loads().zip(&self.forces).zip(self.x.chunks_exact(n)) {
             if *force != 0.0 {
-                for (d, x) in d.iter_mut().zip(&self.x[i * n..(i + 1) * n]) {
+                for (d, x) in d.iter_mut().zip(x) {
                     *d += force * x;
                 }
-                d[n + i] -= force / (self.cm * impactor.mass);
+                d[n + i] -= force / (self.cm * strikers.impactors[i].mass);
             }
         }
         if self.lifting.is_empty() {
@@ -135,50 +167,60 @@ impl Influence {
         Ok(calls)
     }
 
-    /// Finds the contact forces, each in turn until none changes; returns the evaluations of contact laws.
+    /// Finds the contact forces, those of each impactor in turn until none changes; returns the evaluations of contact laws.
     ///
     /// The approaches are symmetric and positive and no force falls with its indentation, so that this converges,
     /// slowly where stiff contacts share a place. With each force the springs that only push find theirs.
     fn balance(
         &mut self,
-        impactors: &[Impactor],
+        strikers: Strikers<'_>,
         t: f64,
         h: &[ContactHistory],
         start: Option<&[f64]>,
     ) -> Result<u64, StepError> {
-        let count = impactors.len();
+        let impactors = strikers.impactors;
+        let count = self.forces.len();
         let mut evaluations = 0;
-        let Self { approach, free, forces, lifting, lifts, across, .. } = self;
-        forces.fill(0.0);
+        self.forces.fill(0.0);
         for _ in 0..MOST_SWEEPS {
             let mut settled = true;
             for (i, impactor) in impactors.iter().enumerate() {
-                let row = &approach[i * count..(i + 1) * count];
-                let others = (0..count).filter(|j| *j != i).map(|j| row[j] * forces[j]);
-                let mut free = free[i] - others.sum::<f64>();
-                let before = forces[i];
+                let loads = strikers.of(i);
+                let (c, Self { approach, free, forces, lifting, lifts, across, .. }) = (loads.start, &mut *self);
+                if let Some(tip) = strikers.tip(i) {
+                    let (change, calls) = self.press(tip, impactor, &h[i], loads).ok_or_else(|| {
+                        StepError::NoConvergence { t, what: "the pressure under the tip of an impactor".into() }
+                    })?;
+                    evaluations += calls;
+                    settled &= change <= TOLERANCE;
+                    continue;
+                }
+                let row = &approach[c * count..(c + 1) * count];
+                let others = (0..count).filter(|j| *j != c).map(|j| row[j] * forces[j]);
+                let mut free = free[c] - others.sum::<f64>();
+                let before = forces[c];
                 let (mut at_others, mut given) = (Vec::new(), 0.0);
                 if !lifting.is_empty() {
-                    forces[i] = 0.0;
+                    forces[c] = 0.0;
                     at_others = pressed(lifts, across, forces);
                     lifting.relieve(&at_others);
-                    given = along(&across[i], lifting.forces());
+                    given = along(&across[c], lifting.forces());
                     free -= given;
                 }
                 // Approach that its own force takes back, and its derivative.
                 let yielding = |force: f64| {
                     if at_others.is_empty() {
-                        return (row[i] * force, row[i]);
+                        return (row[c] * force, row[c]);
                     }
-                    let w: Vec<f64> = at_others.iter().zip(&across[i]).map(|(w, across)| w + across * force).collect();
+                    let w: Vec<f64> = at_others.iter().zip(&across[c]).map(|(w, across)| w + across * force).collect();
                     lifting.relieve(&w);
-                    let more = along(&across[i], lifting.forces()) - given;
-                    (row[i] * force + more, row[i] + lifting.slope(&across[i]))
+                    let more = along(&across[c], lifting.forces()) - given;
+                    (row[c] * force + more, row[c] + lifting.slope(&across[c]))
                 };
                 let (force, calls) = match start {
                     None => contact(|alpha| impactor.law.force(&h[i], alpha), free, yielding),
                     Some(u) => {
-                        let start = u[u.len() - count + i] - value(&impactor.load, u);
+                        let start = u[u.len() - impactors.len() + i] - value(&impactor.load, u);
                         contact(|middle| mean_force(impactor, &h[i], start, middle), free, yielding)
                     }
                 };
@@ -186,14 +228,31 @@ impl Influence {
                 if !force.is_finite() {
                     return Err(StepError::NotFinite { t });
                 }
-                settled &= row[i] * (force - before).abs() <= TOLERANCE * free.abs();
-                forces[i] = force;
+                settled &= row[c] * (force - before).abs() <= TOLERANCE * free.abs();
+                forces[c] = force;
             }
-            if count < 2 || settled {
+            if impactors.len() < 2 || settled {
                 return Ok(evaluations);
             }
         }
         Err(StepError::NoConvergence { t, what: "the contact forces of several impactors".into() })
+    }
+
+    /// Finds the forces under a tip, those of the others being what they are; returns their change, relative, and the evaluations of the law.
+    fn press(&mut self, tip: &Tip, impactor: &Impactor, h: &ContactHistory, loads: Range<usize>) -> Option<(f64, u64)> {
+        let Self { approach, free, forces, .. } = self;
+        let count = forces.len();
+        let outside = |c: usize| {
+            (0..count).filter(|j| !loads.contains(j)).map(|j| approach[c * count + j] * forces[j]).sum::<f64>()
+        };
+        let free: Vec<f64> = loads.clone().map(|c| free[c] - outside(c)).collect();
+        let own =
+            DMatrix::from_fn(loads.len(), loads.len(), |k, l| approach[(loads.start + k) * count + loads.start + l]);
+        let before = forces[loads.clone()].to_vec();
+        let calls = tip.solve(&*impactor.law, h, &own, &free, &mut forces[loads.clone()])?;
+        let size: f64 = forces[loads.clone()].iter().sum();
+        let change: f64 = forces[loads].iter().zip(before).map(|(now, before)| (now - before).abs()).sum();
+        Some((if change > 0.0 { change / size.max(f64::MIN_POSITIVE) } else { 0.0 }, calls))
     }
 }
 

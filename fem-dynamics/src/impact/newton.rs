@@ -1,6 +1,7 @@
 //! Implicit steps of a structure whose internal force is not linear.
 
 use super::ImpactSystem;
+use super::influence::Strikers;
 use super::mean::MeanForce;
 use fem_core::energy::Energy;
 use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent, Tangents};
@@ -59,12 +60,14 @@ impl ImpactSystem {
     /// # Errors
     /// One that is not positive definite, which only a structure can have that buckles or is not held.
     pub fn linearise(&mut self, tangent: Tangent) -> Result<(), StepError> {
-        let Self { structure, impactors, influence, newton, .. } = self;
+        let Self { structure, impactors, tips, influence, newton, .. } = self;
         let n = structure.ndof();
         let Some(large) = structure.nonlinear().and_then(|f| f.tangents()) else { return Ok(()) };
         newton.tangent = None;
         large.linearise(&tangent).map_err(StepError::Factorisation)?;
-        influence.set(tangent.cm, tangent.cc, n, impactors, |x, count| large.solve_linearised(x, count))?;
+        influence.set(tangent.cm, tangent.cc, n, Strikers { impactors, tips }, |x, count| {
+            large.solve_linearised(x, count)
+        })?;
         newton.tangent = Some(tangent);
         Ok(())
     }
@@ -99,7 +102,8 @@ impl ImpactSystem {
         // The size of the turn before, with the same tangent.
         let mut before = None;
         for _ in 0..MOST {
-            let Self { structure, impactors, influence, newton, contact_calls, .. } = self;
+            let Self { structure, impactors, tips, influence, newton, contact_calls, .. } = self;
+            let strikers = Strikers { impactors, tips };
             let Newton { load, at, residual, step, mean, .. } = newton;
             newton.turns += 1;
             at.clear();
@@ -118,17 +122,17 @@ impl ImpactSystem {
             let free = impactors.iter().zip(&load[n..]).zip(&d[n..]);
             step.extend(free.map(|((impactor, r), d)| r / (cm * impactor.mass) - d));
             influence.begin(start.map(|u| &u[..n]));
-            influence.set_approaches(impactors, from);
-            influence.set_approaches(impactors, d);
+            influence.set_approaches(strikers, from);
+            influence.set_approaches(strikers, d);
             let mut forces = structure.nonlinear();
             let solve = |x: &mut [f64], count| match forces.as_mut().and_then(|forces| forces.tangents()) {
                 Some(tangents) => tangents.solve_linearised(x, count),
                 None => Err(SolveError::NotLinearised),
             };
-            *contact_calls += influence.touch(impactors, t, &h.contacts, start, step, solve)?;
+            *contact_calls += influence.touch(strikers, t, &h.contacts, start, step, solve)?;
             d.iter_mut().zip(&*step).for_each(|(d, step)| *d += step);
             let work: f64 = residual.iter().zip(&*step).map(|(r, d)| r * d).sum();
-            let square = work + influence.work(impactors, step);
+            let square = work + influence.work(strikers, step);
             if !square.is_finite() {
                 return Err(StepError::NotFinite { t });
             }

@@ -9,6 +9,7 @@ mod located;
 mod order;
 mod parameters;
 mod spectrum;
+mod tip;
 
 use fem_core::contact::ContactLaw;
 use fem_core::plugin::{Built, Dimension, Params, Plugin, Value};

@@ -37,6 +37,11 @@ pub struct ImpactorSpec {
     pub indentation_from: Option<Located<f64>>,
 }
 
+impl ContactLoad {
+    /// Radius of the Hertz pressure that tells the deflection under a tip, over that of the tip.
+    pub const OF_TIP: f64 = 0.25;
+}
+
 /// A point of the plane: where an impactor strikes, or something is watched.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ImpactPoint {
@@ -54,6 +59,11 @@ pub enum ContactLoad {
     /// As Hertz pressure over a circle.
     Patch {
         /// Radius of the circle, m.
+        radius: f64,
+    },
+    /// Where a spherical tip touches the plate.
+    Tip {
+        /// Radius of the sphere, m.
         radius: f64,
     },
     /// As uniform pressure over a square parallel to the axes.
@@ -218,6 +228,12 @@ pub(super) const IMPACTOR: Keys = &[
     ),
     key("material", Form::Text, r#""steel""#, "material of its tip, one of `materials`, isotropic"),
     key("patch_radius", Form::Quantity(Dimension::LENGTH), r#""3 mm""#, "its force is a Hertz pressure on this circle"),
+    key(
+        "tip_radius",
+        Form::Quantity(Dimension::LENGTH),
+        r#""8 mm""#,
+        "radius of its spherical tip: its force acts where tip and plate touch, on ever more of it",
+    ),
     key("patch_side", Form::Quantity(Dimension::LENGTH), r#""2 mm""#, "its force is a uniform pressure on this square"),
     key("load", Form::Words(&["node"]), r#""node""#, "its force acts at one node"),
     key(
@@ -468,13 +484,17 @@ pub(super) fn point(table: &Reader<'_>) -> Result<ImpactPoint, SceneError> {
 }
 
 /// Ways in which the force of an impactor enters the plate, of which one counts.
-pub(super) const LOADS: [&str; 3] = ["load", "patch_radius", "patch_side"];
+pub(super) const LOADS: [&str; 4] = ["load", "patch_radius", "patch_side", "tip_radius"];
 
 fn read_load(table: &Reader<'_>) -> Result<Located<ContactLoad>, SceneError> {
-    let [round, square] = table.either(["patch_radius", "patch_side"])?;
+    let [round, square, tip] = table.either(["patch_radius", "patch_side", "tip_radius"])?;
     if let Some(square) = square {
         table.either(["load", "patch_side"])?;
         return Ok(square.at(ContactLoad::Square { side: square.positive(Dimension::LENGTH)? }));
+    }
+    if let Some(tip) = tip {
+        table.either(["load", "tip_radius"])?;
+        return Ok(tip.at(ContactLoad::Tip { radius: tip.positive(Dimension::LENGTH)? }));
     }
     let [load, patch] = match round {
         Some(_) => table.either(["load", "patch_radius"])?,

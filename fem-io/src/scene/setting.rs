@@ -151,7 +151,7 @@ fn write(text: &str, path: &Path, setting: &Setting) -> Result<DocumentMut, Scen
 }
 
 /// Keys of which a table has one: to set it takes the other away.
-const EITHER: [&[&str]; 2] = [&["velocity", "energy", "drop_height"], &["patch_radius", "patch_side"]];
+const EITHER: [&[&str]; 2] = [&["velocity", "energy", "drop_height"], &["patch_radius", "patch_side", "tip_radius"]];
 
 /// Keys of a place, and those that each of them takes away.
 const PLACE: [[&[&str]; 2]; 2] = [[&["x", "y"], &["group"]], [&["group"], &["x", "y"]]];

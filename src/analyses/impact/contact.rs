@@ -19,6 +19,8 @@ pub struct ContactRecord {
     pub deepest: f64,
     /// Indentation that the law keeps when the force is gone, m: a dent.
     pub dent: f64,
+    /// Largest radius of the patch under a spherical tip, m; 0 without one.
+    pub radius: f64,
     /// Largest deflection of the plate under the impactor, m, towards which it moves.
     pub deflection: f64,
     /// Times, s, and magnitudes, m, of the deflection while it grew beyond all before; the last is the largest. The step
@@ -57,9 +59,10 @@ impl Follower {
     }
 
     /// Times of thresholds come by linear interpolation between steps.
-    pub(crate) fn take(&mut self, t: f64, Touch { indentation, force, deflection, .. }: Touch) {
+    pub(crate) fn take(&mut self, t: f64, Touch { indentation, force, deflection, radius, .. }: Touch) {
         let Self { thresholds, last: (before, low, shallow), record } = self;
         record.deepest = record.deepest.max(indentation);
+        record.radius = record.radius.max(radius);
         record.deflection = record.deflection.max(deflection);
         record.count += u32::from(force > 0.0 && *low <= 0.0);
         let dt = t - *before;
@@ -161,7 +164,7 @@ mod tests {
     use super::*;
 
     fn touch(force: f64, deflection: f64) -> Touch {
-        Touch { indentation: force, force, velocity: 0.0, deflection }
+        Touch { indentation: force, force, velocity: 0.0, deflection, radius: 0.0 }
     }
 
     #[test]

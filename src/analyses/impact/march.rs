@@ -530,7 +530,7 @@ impl<'a> March<'a> {
         let energy_error = ledger.error;
         let (mut contacts, forces, history) = ledger.records();
         for (i, contact) in contacts.iter_mut().enumerate() {
-            contact.dent = self.system.impactors()[i].law.branches(&state.histories.contacts[i]).touch;
+            contact.dent = self.system.dent(i, &state);
         }
         let accuracy = if ended { self.estimates.finish(&forces, contacts.first()) } else { Accuracy::default() };
         Outcome {

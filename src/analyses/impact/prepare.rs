@@ -21,7 +21,7 @@ use fem_core::reduction::ReductionError;
 use fem_core::springs::SupportSpring;
 use fem_core::structure::{SolveError, Stretching, Structure};
 use fem_core::time::{Integrator, StepError};
-use fem_dynamics::impact::{ImpactSystem, Impactor};
+use fem_dynamics::impact::{ImpactSystem, Impactor, Tip};
 use fem_dynamics::lifting::OneSided;
 use fem_dynamics::limit::{self, TooLong};
 use fem_dynamics::reduce::{Companions, MembranePlate, Reduced, Share, Stretch, StretchedPlate, static_responses};
@@ -215,7 +215,8 @@ pub(super) fn strike<'a>(
     let of_march = reduced.as_deref();
     let (laws, squeezes) = squeeze::laws(model, impact, &before.squeezes)?;
     let impactors = place_impactors(impact, contacts, of_march, &laws);
-    let mut system = couple(model, ImpactSystem::new(structure, impactors), of_march, &mut effects);
+    let system = ImpactSystem::new(structure, impactors).with_tips(tips(impact));
+    let mut system = couple(model, system, of_march, &mut effects);
     try_inertia(model, impact, &system, of_march)?;
     let sizes = check_step(model, impact, &mut system, of_march, before)?;
     Ok(Prepared {
@@ -264,6 +265,7 @@ fn prepare_separable<'a>(
     let compliances = squeeze::compliances(&squeezed, &contacts, ndof, at_rest)?;
     let (laws, squeezes) = squeeze::laws(model, impact, &compliances)?;
     let impactors = place_impactors(impact, &contacts, None, &laws);
+    let tips = tips(impact);
     let stiffness = match contacts.first() {
         Some(contact) if separation.is_cracked() => {
             let mut x = vec![0.0; ndof];
@@ -288,7 +290,8 @@ fn prepare_separable<'a>(
         Some(stretch) => Box::new(StretchedPlate::new(Box::new(structure), stretch)),
         None => Box::new(structure),
     };
-    let mut system = couple(model, ImpactSystem::new(structure, impactors), None, &mut effects);
+    let system = ImpactSystem::new(structure, impactors).with_tips(tips);
+    let mut system = couple(model, system, None, &mut effects);
     let (buckling, substructures, softness, squeezed) = (None, None, None, compliances);
     let before =
         Before { stiffness_entries, factor_entries, buckling, substructures, memory, softness, squeezes: squeezed };
@@ -481,6 +484,15 @@ pub(super) fn place_impactors(
         law: law.clone(),
     });
     impactors.collect()
+}
+
+/// The spherical tips of the impactors, of those that have one.
+fn tips(impact: &Impact) -> Vec<Option<Tip>> {
+    let each = impact.strikes.iter().map(|strike| {
+        let (radius, rings) = strike.tip.as_ref()?;
+        Some(Tip::new(*radius, rings.iter().map(|ring| ring.0.clone()).collect()))
+    });
+    each.collect()
 }
 
 /// Plate and impactors as effects make one system of them.

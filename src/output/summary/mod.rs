@@ -126,6 +126,9 @@ pub struct ImpactFigures {
     /// That the contact law leaves, where it leaves one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dent_m: Option<f64>,
+    /// The largest, under a spherical tip.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_radius_m: Option<f64>,
     pub impulse_N_s: f64,
     pub final_impactor_velocity_m_s: f64,
     pub contacts: u32,
@@ -510,6 +513,7 @@ impl ImpactFigures {
             peak_plate_displacement_over_thickness: deflection / thickness,
             peak_indentation_m: contact.deepest,
             dent_m: Some(contact.dent).filter(|dent| *dent > 0.0),
+            contact_radius_m: Some(contact.radius).filter(|radius| *radius > 0.0),
             impulse_N_s: mass_kg * (velocity_m_s - final_impactor_velocity_m_s),
             final_impactor_velocity_m_s,
             contacts: contact.count,

@@ -45,13 +45,14 @@ impl ImpactSummary {
                 Dimension::MASS.of(m.plate_mass_g * 1e-3)
             ));
             line(format_args!(
-                "  force     {name}peak {} at {}; deflection {} = {:.2} thicknesses; {} contact{}{}",
+                "  force     {name}peak {} at {}; deflection {} = {:.2} thicknesses; {} contact{}{}{}",
                 Dimension::FORCE.of(i.peak_force_N),
                 Dimension::TIME.of(i.peak_force_time_s),
                 Dimension::LENGTH.of(i.peak_plate_displacement_m),
                 i.peak_plate_displacement_over_thickness,
                 i.contacts,
                 if i.contacts == 1 { "" } else { "s" },
+                i.contact_radius_m.map_or(String::new(), |a| format!(", up to {} in radius", Dimension::LENGTH.of(a))),
                 i.dent_m.map_or(String::new(), |dent| format!(", leaving a dent of {}", Dimension::LENGTH.of(dent)))
             ));
         }

@@ -1,0 +1,241 @@
+//! A spherical tip, round which the structure may bend: its contact is where they touch.
+
+use super::value;
+use fem_core::contact::{ContactForce, ContactHistory, ContactLaw};
+use fem_core::energy::Energy;
+use nalgebra::{DMatrix, DVector};
+
+/// Rings of the bed, and the share of the radius of the tip that they cover: there a sphere lies 13 % deeper than its paraboloid.
+const RINGS: usize = 16;
+const WIDEST: f64 = 0.7;
+/// Turns of Newton's method, halvings of a step of it, and the share of the approach that is left when it ends.
+const MOST: usize = 100;
+const HALVINGS: usize = 30;
+const EXACT: f64 = 1e-14;
+/// The same where rounding stops it before.
+const ENOUGH: f64 = 1e-9;
+
+const VIRGIN: ContactHistory = [0.0; 8];
+
+/// A tip of radius R that indents a bed of springs and, in series with it, what a contact law F(α) gives: half and half.
+///
+/// ```text
+/// δ = z − α(F)/2 − r²/(2R) − w(r)                  depth of the tip in the bed, where it touches the face
+/// p = F'(2δ)/(π R) of the law's first loading      pressure of the bed
+/// F = ∫ p dA                                       α(F) with the law's history
+/// ```
+///
+/// On a plane δ₀ = α/2, and F is that of the law for every law while it loads; with Hertz' law p is his pressure on a² = 2R δ₀ = R α.
+/// Where the face is bent to 1/ρ, with 1/R' = 1/R − 1/ρ, the patch is a² = 2R' δ and wider, by less than Hertz' (R' = 2R: by 12 %, and F by
+/// 4 %), because the bed is but half of the indentation; where it is bent as the tip is, they touch all over, and where it is bent more, along
+/// the rim. The pressure is found anew from every state: only the law remembers something. Of what it loses and of its dent there is
+/// half, because the bed is elastic.
+///
+/// w is a mean over each of sixteen rings of equal width, which reach to 0.7 R; the last one stands for what is beyond.
+#[derive(Debug, Clone)]
+pub struct Tip {
+    rings: Vec<Ring>,
+}
+
+/// A ring of the bed: f = F(2d) − F(2d − 2 rise) of the law's first loading, d the depth of the tip at its inner edge.
+#[derive(Debug, Clone)]
+struct Ring {
+    /// r²/(2R) at the inner edge, and how much more at the outer one, m.
+    gap: f64,
+    rise: f64,
+    /// Mean of r², m².
+    square: f64,
+    /// Load of a unit force on it.
+    load: Vec<(usize, f64)>,
+}
+
+/// A tip in a state.
+#[derive(Debug, Clone)]
+pub(super) struct Pressed {
+    /// Forces of the rings, N, and the depths of the tip at their inner edges, m.
+    pub(super) forces: Vec<f64>,
+    depths: Vec<f64>,
+    /// Indentation of the law, m.
+    pub(super) alpha: f64,
+}
+
+impl Pressed {
+    pub(super) fn force(&self) -> f64 {
+        self.forces.iter().sum()
+    }
+}
+
+impl Tip {
+    /// Inner and outer radii of the rings (m) of a tip of radius `radius` (m).
+    pub fn radii(radius: f64) -> impl Iterator<Item = [f64; 2]> {
+        let width = WIDEST * radius / RINGS as f64;
+        (0..RINGS).map(move |k| [k as f64 * width, (k + 1) as f64 * width])
+    }
+
+    /// A tip of radius `radius` (m); `loads` are those of a unit force on each ring.
+    pub fn new(radius: f64, loads: Vec<Vec<(usize, f64)>>) -> Self {
+        let count = loads.len();
+        let ring = |(i, ([inner, outer], load)): (usize, ([f64; 2], _))| {
+            let last = i + 1 == count;
+            let rise = if last { f64::INFINITY } else { 0.5 * (outer * outer - inner * inner) / radius };
+            Ring { gap: 0.5 * inner * inner / radius, rise, square: 0.5 * (inner * inner + outer * outer), load }
+        };
+        Self { rings: Self::radii(radius).zip(loads).enumerate().map(ring).collect() }
+    }
+
+    /// Loads of unit forces on the rings.
+    pub(super) fn loads(&self) -> impl Iterator<Item = &Vec<(usize, f64)>> {
+        self.rings.iter().map(|ring| &ring.load)
+    }
+
+    /// Force of a ring at depth `d`, N, and its derivative.
+    fn ring(&self, law: &dyn ContactLaw, k: usize, d: f64) -> ContactForce {
+        let at = |d: f64| if d > 0.0 { law.force(&VIRGIN, 2.0 * d) } else { ContactForce::default() };
+        let (inner, outer) = (at(d), at(d - self.rings[k].rise));
+        ContactForce { force: inner.force - outer.force, tangent: 2.0 * (inner.tangent - outer.tangent) }
+    }
+
+    /// Tip at `z` above the displacements `u`.
+    pub(super) fn press(&self, law: &dyn ContactLaw, h: &ContactHistory, z: f64, u: &[f64]) -> Pressed {
+        let free: Vec<f64> = self.rings.iter().map(|ring| z - value(&ring.load, u)).collect();
+        self.press_from(law, h, &free)
+    }
+
+    /// Tip at these approaches of the rings: the indentation of the law at which law and bed have the same force.
+    fn press_from(&self, law: &dyn ContactLaw, h: &ContactHistory, free: &[f64]) -> Pressed {
+        let depths = |alpha: f64| self.rings.iter().zip(free).map(move |(ring, free)| free - ring.gap - 0.5 * alpha);
+        let forces = |alpha: f64| depths(alpha).enumerate().map(|(k, d)| self.ring(law, k, d).force);
+        // What the bed has more than the law falls with the indentation of the law.
+        let more = |alpha: f64| forces(alpha).sum::<f64>() - law.force(h, alpha).force;
+        let touch = law.branches(h).touch;
+        let mut alpha = touch;
+        if more(touch) > 0.0 {
+            let mut step = (free[0] - touch).abs().max(f64::MIN_POSITIVE);
+            let (mut low, mut high) = (touch, touch + step);
+            while more(high) > 0.0 && high.is_finite() {
+                step *= 2.0;
+                (low, high) = (high, touch + step);
+            }
+            for _ in 0..2 * MOST {
+                let middle = 0.5 * (low + high);
+                if !(low < middle && middle < high) {
+                    break;
+                }
+                if more(middle) > 0.0 { low = middle } else { high = middle }
+            }
+            alpha = low;
+        }
+        // Apart, law and bed are as far from a touch as the tip is.
+        let apart = depths(alpha).fold(f64::NEG_INFINITY, f64::max).min(0.0);
+        Pressed { forces: forces(alpha).collect(), depths: depths(alpha).collect(), alpha: alpha + 2.0 * apart }
+    }
+
+    /// Work on law and bed, J.
+    pub(super) fn energy(&self, law: &dyn ContactLaw, h: &ContactHistory, pressed: &Pressed) -> Energy {
+        let of_law = law.energy(h, pressed.alpha);
+        let at = |d: f64| if d > 0.0 { law.energy(&VIRGIN, 2.0 * d) } else { Energy::default() };
+        let work = |d: f64| at(d).stored + at(d).dissipated;
+        let rings = self.rings.iter().zip(&pressed.depths);
+        let bed: f64 = rings.map(|(ring, d)| work(*d) - work(d - ring.rise)).sum();
+        Energy { stored: 0.5 * (of_law.stored + bed), dissipated: 0.5 * of_law.dissipated }
+    }
+
+    /// Radius (m) of the Hertz pressure that is as far spread as these forces: a² = 5/2 of the mean square of their radii.
+    pub(super) fn radius(&self, pressed: &Pressed) -> f64 {
+        let force = pressed.force();
+        if force == 0.0 {
+            return 0.0;
+        }
+        let moment: f64 = self.rings.iter().zip(&pressed.forces).map(|(ring, f)| ring.square * f).sum();
+        (2.5 * moment / force).sqrt()
+    }
+
+    /// Forces of the rings where these give by `approach` (m/N) to them and `free` are the approaches without them: Newton's method,
+    /// each step as long as it brings it nearer, for
+    ///
+    /// ```text
+    /// d + gap + α(Σ f(d))/2 + A f(d) = free
+    /// ```
+    ///
+    /// Returns the evaluations of the law, `None` where it does not end.
+    pub(super) fn solve(
+        &self,
+        law: &dyn ContactLaw,
+        h: &ContactHistory,
+        approach: &DMatrix<f64>,
+        free: &[f64],
+        forces: &mut [f64],
+    ) -> Option<u64> {
+        let n = self.rings.len();
+        let mut calls = 0;
+        let mut at = |d: &DVector<f64>| {
+            let ring = d.iter().enumerate().map(|(k, d)| self.ring(law, k, *d));
+            let (f, slopes): (Vec<f64>, Vec<f64>) = ring.map(|ring| (ring.force, ring.tangent)).unzip();
+            let f = DVector::from_vec(f);
+            let (alpha, soft) = inverse(law, h, f.sum(), &mut calls);
+            let mut residual = approach * &f;
+            for (k, r) in residual.iter_mut().enumerate() {
+                *r += d[k] + self.rings[k].gap + 0.5 * alpha - free[k];
+            }
+            (f, slopes, residual, 0.5 * soft)
+        };
+        let scale = free.iter().fold(0.0_f64, |m, free| m.max(free.abs()));
+        let mut d = DVector::from_vec(self.press_from(law, h, free).depths);
+        let (mut f, mut slopes, mut residual, mut soft) = at(&d);
+        for _ in 0..MOST {
+            let left = residual.amax();
+            if !(left > EXACT * scale) {
+                break;
+            }
+            let tangent =
+                DMatrix::from_fn(n, n, |k, l| (approach[(k, l)] + soft) * slopes[l] + if k == l { 1.0 } else { 0.0 });
+            let step = tangent.lu().solve(&residual)?;
+            let mut share = 1.0;
+            let mut tried = &d - &step;
+            let mut found = at(&tried);
+            while !(found.2.amax() < left) && share > 0.5_f64.powi(HALVINGS as i32) {
+                share *= 0.5;
+                tried = &d - share * &step;
+                found = at(&tried);
+            }
+            if !(found.2.amax() < left) {
+                break;
+            }
+            (d, (f, slopes, residual, soft)) = (tried, found);
+        }
+        forces.copy_from_slice(f.as_slice());
+        (residual.amax() <= ENOUGH * scale).then_some(calls)
+    }
+}
+
+/// Indentation of `law` with `force`, the least, and dα/dF, 0 without a force.
+fn inverse(law: &dyn ContactLaw, h: &ContactHistory, force: f64, calls: &mut u64) -> (f64, f64) {
+    let touch = law.branches(h).touch;
+    if !(force > 0.0) {
+        return (touch, 0.0);
+    }
+    let mut step = 1e-6;
+    let (mut low, mut high) = (touch, touch + step);
+    while law.force(h, high).force < force && high.is_finite() {
+        *calls += 1;
+        step *= 4.0;
+        (low, high) = (high, touch + step);
+    }
+    let mut alpha = high;
+    for _ in 0..MOST {
+        let there = law.force(h, alpha);
+        *calls += 1;
+        if there.force < force {
+            low = alpha
+        } else {
+            high = alpha
+        }
+        let next = alpha + (force - there.force) / there.tangent;
+        let next = if low < next && next < high { next } else { 0.5 * (low + high) };
+        if (next - alpha).abs() <= f64::EPSILON * alpha.abs() || high - low <= f64::EPSILON * high.abs() {
+            break;
+        }
+        alpha = next;
+    }
+    (alpha, 1.0 / law.force(h, alpha).tangent)
+}

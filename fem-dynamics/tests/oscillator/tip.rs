@@ -1,0 +1,154 @@
+//! Spherical tips, against Hertz' equations for two bent surfaces.
+
+use crate::{hertz, law, scheme, stiffness, sun_yang};
+use fem_core::contact::ContactLaw;
+use fem_core::plugin::Value;
+use fem_core::structure::{SolveError, Structure};
+use fem_dynamics::contact::Linear;
+use fem_dynamics::impact::{ImpactSystem, Impactor, Tip};
+
+const TIP: f64 = 8e-3;
+const K: f64 = 9.7e8;
+
+/// A surface w − r² b/2 on a spring; b is so heavy that it stays what it is.
+#[derive(Debug, Clone)]
+struct Bent;
+
+const SPRING: f64 = 2e6;
+const MASSES: [f64; 2] = [0.02, 1e6];
+
+impl Structure for Bent {
+    fn ndof(&self) -> usize {
+        2
+    }
+
+    fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        y[0] += scale * SPRING * x[0];
+    }
+
+    fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        (0..2).for_each(|i| y[i] += scale * MASSES[i] * x[i]);
+    }
+
+    fn solve_shifted(&mut self, shift: f64, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
+        for x in x.chunks_exact_mut(2).take(columns) {
+            x[0] /= SPRING + shift * MASSES[0];
+            x[1] /= shift * MASSES[1];
+        }
+        Ok(())
+    }
+
+    fn solve_mass(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
+        (0..2).for_each(|i| x[i] /= MASSES[i]);
+        Ok(())
+    }
+}
+
+/// One step of an impact: approach of the centres, curvature of the surface, force, radius, energy.
+struct Seen {
+    alpha: f64,
+    curvature: f64,
+    force: f64,
+    radius: f64,
+    energy: f64,
+}
+
+/// 2 kg at 2 m/s on a surface of curvature `bent`, 1/m, with the tip or with a contact at the centre, up to `end` in steps of `dt`, s.
+fn impact(bent: f64, law: Box<dyn ContactLaw>, tip: bool, (dt, end): (f64, f64)) -> Vec<Seen> {
+    let rings = Tip::radii(TIP).map(|[a, b]| vec![(0, 1.0), (1, -0.25 * (a * a + b * b))]).collect();
+    let tips = vec![tip.then(|| Tip::new(TIP, rings))];
+    let impactor = Impactor { mass: 2.0, velocity: 2.0, start: 0.0, load: vec![(0, 1.0)], law };
+    let mut system = ImpactSystem::new(Box::new(Bent), vec![impactor]).with_tips(tips);
+    let (mut state, mut newmark) = (system.initial(), scheme("newmark-average"));
+    state.u[1] = bent;
+    newmark.start(&mut system, &mut state).unwrap();
+    let mut see = || {
+        newmark.step(&mut system, &mut state, dt).unwrap();
+        let touch = system.touch(0, &state);
+        let energy = system.energies(&state, &mut Vec::new()).total();
+        let [alpha, curvature] = [state.u[2] - state.u[0], state.u[1]];
+        Seen { alpha, curvature, force: touch.force, radius: touch.radius, energy }
+    };
+    (0..(end / dt).round() as usize).map(|_| see()).collect()
+}
+
+fn largest(seen: &[Seen], what: impl Fn(&Seen) -> f64) -> f64 {
+    seen.iter().fold(0.0_f64, |m, s| m.max(what(s)))
+}
+
+/// Of a surface that is bent round the tip, by up to half of its curvature, or away from it: with 1/R' = 1/R - 1/rho the approach is
+/// that of the bed under R' and of the other half under R. Hertz has k sqrt(R'/R) alpha^1.5 and a^2 = R' alpha.
+#[test]
+fn a_bent_surface_is_touched_as_hertz_says() {
+    for bent in [60.0, 20.0, -60.0] {
+        let seen = impact(bent, hertz(K, 1.5), true, (2e-6, 3e-3));
+        let deep: Vec<&Seen> = seen.iter().filter(|s| s.force > 4000.0).collect();
+        assert!(deep.len() > 200);
+        for s in deep {
+            let share = 1.0 - TIP * s.curvature;
+            let force = K * (2.0 * s.alpha / (1.0 + share.powf(2.0 / 3.0))).powf(1.5);
+            assert!((s.force / force - 1.0).abs() < 0.03, "{bent}: {} {force}", s.force);
+            let radius = (2.0 * TIP / share * 0.5 * (s.force * share / K).powf(2.0 / 3.0)).sqrt();
+            assert!((s.radius / radius - 1.0).abs() < 0.05, "{bent}: {} {radius}", s.radius);
+            let of_hertz = K * s.alpha.powf(1.5) / share.sqrt();
+            assert!((s.force / of_hertz - 1.0).abs() < 0.05, "{bent}: {} {of_hertz}", s.force);
+            let of_hertz = (TIP / share * s.alpha).sqrt();
+            assert!((s.radius / of_hertz - 1.0).abs() < 0.15, "{bent}: {} {of_hertz}", s.radius);
+        }
+    }
+}
+
+/// On a plane the law is what it was: an elastic one all the time, one that leaves a dent until it is first unloaded; from there on it has
+/// half of its dent. The patch is that of Hertz.
+#[test]
+fn on_a_plane_the_law_is_what_it_was() {
+    let linear = law::<Linear>(&stiffness(3e7, 1.0).with("n", Value::Number(1.0)));
+    for (law, elastic) in [(hertz(K, 1.5), true), (linear, true), (sun_yang(K, 8e-5, "unloading-curve"), false)] {
+        let [point, tip] = [false, true].map(|tip| impact(0.0, law.clone(), tip, (2e-6, 9e-3)));
+        let most = largest(&point, |s| s.force);
+        let first = point.windows(2).position(|s| s[1].force < s[0].force).unwrap();
+        let until = if elastic { point.len() } else { first };
+        let pairs = point.iter().zip(&tip).take(until);
+        let apart = pairs.fold(0.0_f64, |m, (a, b)| m.max((a.force - b.force).abs()));
+        assert!(apart < 1e-9 * most, "{apart} of {most}");
+        assert!(point.last().unwrap().force == 0.0 && tip.last().unwrap().force == 0.0);
+    }
+    let tip = impact(0.0, hertz(K, 1.5), true, (2e-6, 9e-3));
+    let plane = (TIP * (largest(&tip, |s| s.force) / K).powf(2.0 / 3.0)).sqrt();
+    assert!((largest(&tip, |s| s.radius) / plane - 1.0).abs() < 0.04);
+}
+
+/// A patch that grows costs no energy of its own: what is missed falls with the second power of the step.
+#[test]
+fn energy_balances_while_a_patch_grows() {
+    let errors = [8e-6, 4e-6, 2e-6].map(|dt| {
+        let seen = impact(60.0, hertz(K, 1.5), true, (dt, 8e-3));
+        assert!(seen.last().unwrap().force == 0.0);
+        largest(&seen, |s| (s.energy / 4.0 - 1.0).abs())
+    });
+    assert!(errors[2] < 2e-5 && errors[0] / errors[2] > 12.0, "{errors:?}");
+}
+
+/// A surface that is bent more than the tip is touched along the rim, where they overlap at first already; nothing jumps.
+#[test]
+fn a_tip_that_is_wrapped_lies_on_its_rim() {
+    let seen = impact(150.0, hertz(K, 1.5), true, (5e-7, 8e-3));
+    assert!(largest(&seen, |s| s.radius) > 0.7 * TIP);
+    let error = largest(&seen, |s| (s.energy / seen[0].energy - 1.0).abs());
+    assert!(error < 1e-3, "{error}");
+    let most = largest(&seen, |s| s.force);
+    let jump = seen.windows(2).fold(0.0_f64, |m, s| m.max((s[1].force - s[0].force).abs()));
+    assert!(jump < 0.02 * most, "{jump} of {most}");
+}
+
+/// Dents and turns of the load on a bent surface: what is lost is what the law has lost.
+#[test]
+fn a_dent_under_a_tip_loses_what_the_law_says() {
+    let seen = impact(60.0, sun_yang(K, 8e-5, "unloading-curve"), true, (1e-6, 9e-3));
+    assert!(
+        largest(&seen, |s| (s.energy / 4.0 - 1.0).abs()) < 1e-3,
+        "{}",
+        largest(&seen, |s| (s.energy / 4.0 - 1.0).abs())
+    );
+    assert!(seen.last().unwrap().force == 0.0 && largest(&seen, |s| s.radius) > 1.5e-3);
+}
