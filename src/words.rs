@@ -1,10 +1,8 @@
 //! Numbers, units and names as several results print them.
 
+use fem_core::assembly::NOTABLE_CONDITION;
 use fem_failure::scan::PlyOrInterface;
 use std::fmt::Display;
-
-/// Condition of the stiffness beyond which its digits are worth a warning: six of 16 are left.
-const NOTABLE_CONDITION: f64 = 1e10;
 
 /// "3" for a ply, "3|4" for an interface, counted from 1 at the bottom.
 pub(crate) fn name_ply(place: PlyOrInterface) -> String {

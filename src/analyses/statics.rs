@@ -43,8 +43,8 @@ pub struct StaticSolution {
     pub dissipated: Option<f64>,
     /// ‖f − K u‖ / ‖f‖ of the independent unknowns, K u being the internal force.
     pub residual: f64,
-    /// Condition number of K, or of its tangent at the end, estimated
-    /// ([`condition`](fem_core::assembly::SparseStructure::condition)); not of a plate that comes apart.
+    /// Condition number of K, or of its tangent at the end, estimated where it may be worth a word
+    /// ([`notable_condition`](fem_core::assembly::SparseStructure::notable_condition)); not of a plate that comes apart.
     pub condition: Option<f64>,
     /// The path that the loads have taken, where interfaces may open.
     pub followed: Option<Followed>,
@@ -101,7 +101,7 @@ impl Found {
             buckling: None,
             energy: found.energy,
             residual: found.residual,
-            condition: Some(found.condition),
+            condition: found.condition,
             softness: None,
             decrements: Some(found.decrements),
             followed: None,
@@ -237,7 +237,7 @@ fn linear(
     let mut independent = assembled.expand(solved);
     independent.iter_mut().zip(own.iter().flatten()).for_each(|(u, own)| *u += own);
     let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let condition = assembled.structure.condition()?;
+    let condition = assembled.structure.notable_condition()?;
     (counters.factorisations, counters.solves) = assembled.structure.work();
     // ½ uᵀ K u − uᵀ f₀ + ½ ∫ ε₀ C ε₀ dV with K u = f and f₀ that of free strains.
     let stored =
@@ -249,7 +249,7 @@ fn linear(
         factor_entries: assembled.factor_entries,
         buckling: assembled.buckling,
         residual: norm(&rest) / norm(&f).max(f64::MIN_POSITIVE),
-        condition: Some(condition),
+        condition,
         softness,
         decrements: None,
         followed: None,
@@ -276,7 +276,7 @@ fn lifting(
     structure.add_stiffness(-1.0, &independent, &mut rest);
     lifting.add_forces(&independent, &mut rest);
     let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let condition = structure.condition()?;
+    let condition = structure.notable_condition()?;
     (counters.factorisations, counters.solves) = structure.work();
     // The force is not linear in the displacements, and homogeneous of degree one.
     let stored = 0.5 * f.iter().zip(&independent).map(|(f, u)| f * u).sum::<f64>();
@@ -287,7 +287,7 @@ fn lifting(
         factor_entries,
         buckling,
         residual: norm(&rest) / norm(f).max(f64::MIN_POSITIVE),
-        condition: Some(condition),
+        condition,
         softness: None,
         decrements: None,
         followed: None,

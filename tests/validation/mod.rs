@@ -3,6 +3,7 @@
 mod advise;
 mod built_in;
 mod command;
+mod condition;
 mod cure;
 mod estimate;
 mod formats;

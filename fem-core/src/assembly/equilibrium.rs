@@ -34,8 +34,9 @@ pub struct Equilibrium {
     pub decrements: Vec<f64>,
     /// ‖load − f‖ over the larger of ‖load‖ and ‖K u‖ (free strains move a plate without a load).
     pub residual: f64,
-    /// Condition number of the last tangent, estimated as in [`condition`](super::SparseStructure::condition).
-    pub condition: f64,
+    /// Condition number of the last tangent where it may be worth a word
+    /// ([`notable_condition`](super::SparseStructure::notable_condition)).
+    pub condition: Option<f64>,
     /// Right-hand sides solved for.
     pub solves: u64,
 }
@@ -151,10 +152,7 @@ pub fn equilibrium(
             let scale = dot(load, load).max(dot(&force, &force)).max(f64::MIN_POSITIVE);
             let residual = (dot(&step, &step) / scale).sqrt();
             let mut solves = decrements.len() as u64;
-            let condition = condition::estimate(&tangent, |x| {
-                factor.solve(x, 1);
-                solves += 1;
-            });
+            let condition = condition::notable(&tangent, &mut factor, &mut solves);
             return Ok(Equilibrium { u, energy, decrements, residual, condition, solves });
         }
     }

@@ -27,6 +27,7 @@ mod substructure;
 mod symmetric;
 
 pub use blocks::{assemble_blocks, block_pattern};
+pub use condition::NOTABLE_CONDITION;
 pub use equilibrium::{Equilibrium, EquilibriumError, InternalForce, equilibrium};
 pub use factor::{Cholesky, FactorError, Symbolic};
 pub use free::free_forces;

@@ -169,6 +169,16 @@ impl SparseStructure {
         }))
     }
 
+    /// The same where it may be worth a word: `None` where pivots of the factor show that it is not beyond [`NOTABLE_CONDITION`](super::NOTABLE_CONDITION),
+    /// which takes no solve.
+    ///
+    /// # Errors
+    /// As [`SparseStructure::condition`].
+    pub fn notable_condition(&mut self) -> Result<Option<f64>, SolveError> {
+        self.factorise(Factored::Shifted(0.0))?;
+        Ok(condition::notable(&self.k, &mut self.factor, &mut self.solves))
+    }
+
     fn factorise(&mut self, what: Factored) -> Result<(), SolveError> {
         if self.factored == what {
             return Ok(());

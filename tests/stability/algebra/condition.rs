@@ -120,8 +120,10 @@ fn digits() -> f64 {
                 let mesh = jiggled(rectangle([20.0; 2], [8; 2]), 0.1);
                 let mesh = if order == 0 { mesh } else { shuffled(&mesh, order) };
                 let meshed = on(probe(plate, [11.0, 9.0]), &mesh);
-                let (_, solution) = solve(&meshed.plate.text("static")).ok()?;
-                Some((solution.profiles[0][0].displacement[2], solution.condition.unwrap()))
+                let (model, solution) = solve(&meshed.plate.text("static")).ok()?;
+                let mut structure =
+                    assembled::structure(&model, false, NonZeroUsize::MIN, &mut Counters::default()).ok()?.structure;
+                Some((solution.profiles[0][0].displacement[2], structure.condition().unwrap()))
             };
             // Plates that are refused say so.
             let Some((w, condition)) = solved(0) else { continue };
