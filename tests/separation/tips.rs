@@ -80,6 +80,23 @@ fn a_tip_finds_every_bit_again() {
     assert!(found(&march.finish()) == found(&whole), "resumed");
 }
 
+/// Without inertia the plate is what its answers to the rings are, and a slow march with it finds the same; damage is looked for as under a patch.
+#[test]
+fn a_plate_at_rest_knows_its_tip() {
+    let slow = Plate { mass_kg: 400.0, velocity: 0.2, step_us: 20.0, end_us: 8000, symmetry: "half-turn", ..thick() };
+    let march = text(&slow, "tip_radius = '12 mm'");
+    let march = march
+        .replace("damage = 'off'", "damage = 'onset'")
+        .replace("[materials.tape]", "failure = { criteria = ['max-stress'] }\n[materials.tape]");
+    let [with, without] = ["", ", inertia = 'off'"]
+        .map(|more| outcome(&march.replace("delamination = 'off'", &format!("delamination = 'off'{more}"))));
+    assert!(apart(&forces(&without), &forces(&with)) < 0.02, "{}", apart(&forces(&without), &forces(&with)));
+    assert!((without.contacts[0].radius / with.contacts[0].radius - 1.0).abs() < 0.02);
+    assert!(!with.events.is_empty() && with.events.len() == without.events.len());
+    let first = |outcome: &Outcome| outcome.events.iter().map(|event| event.time).fold(f64::INFINITY, f64::min);
+    assert!((first(&without) / first(&with) - 1.0).abs() < 0.02, "{} {}", first(&without), first(&with));
+}
+
 #[test]
 fn what_cannot_grow_is_refused() {
     let refused = |text: &str, words: &[&str]| {

@@ -152,3 +152,32 @@ fn a_dent_under_a_tip_loses_what_the_law_says() {
     );
     assert!(seen.last().unwrap().force == 0.0 && largest(&seen, |s| s.radius) > 1.5e-3);
 }
+
+/// Two halves of an impactor, on one place and with a tip each, are the whole.
+#[test]
+fn two_tips_share_a_place() {
+    let rings = || Tip::radii(TIP).map(|[a, b]| vec![(0, 1.0), (1, -0.25 * (a * a + b * b))]).collect::<Vec<_>>();
+    let forces = |parts: usize| {
+        let part = |_| Impactor {
+            mass: 2.0 / parts as f64,
+            velocity: 2.0,
+            start: 0.0,
+            load: vec![(0, 1.0)],
+            law: hertz(K / parts as f64, 1.5),
+        };
+        let tips = (0..parts).map(|_| Some(Tip::new(TIP, rings()))).collect();
+        let mut system = ImpactSystem::new(Box::new(Bent), (0..parts).map(part).collect()).with_tips(tips);
+        let (mut state, mut newmark) = (system.initial(), scheme("newmark-average"));
+        state.u[1] = 40.0;
+        newmark.start(&mut system, &mut state).unwrap();
+        let mut step = || {
+            newmark.step(&mut system, &mut state, 4e-6).unwrap();
+            (0..parts).map(|i| system.contact_force(i, &state)).sum::<f64>()
+        };
+        (0..1000).map(|_| step()).collect::<Vec<f64>>()
+    };
+    let (one, two) = (forces(1), forces(2));
+    let most = one.iter().fold(0.0_f64, |m, f| m.max(*f));
+    assert!(most > 3000.0);
+    one.iter().zip(&two).for_each(|(a, b)| assert!((a - b).abs() < 1e-6 * most, "{a} {b}"));
+}

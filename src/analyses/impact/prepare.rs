@@ -137,8 +137,9 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     let struck = Struck { structure, effects, reduced, membrane: stretched, condensation: condensation.map(Arc::new) };
     let prepared = strike((model, impact), struck, &contacts, before)?;
     let prepared = Prepared { full, unreduced, counters, stopwatch, ..prepared };
-    // Estimates know linear plates, and those that their deflections stretch.
-    Ok(if model.one_sided().next().is_some() { prepared.without_estimates() } else { prepared })
+    // Estimates know linear plates, and those that their deflections stretch; the plates beside the march are struck by patches.
+    let tips = impact.strikes.iter().any(|strike| strike.tip.is_some());
+    Ok(if tips || model.one_sided().next().is_some() { prepared.without_estimates() } else { prepared })
 }
 
 /// A plate that waits for its impactors.
@@ -215,7 +216,7 @@ pub(super) fn strike<'a>(
     let of_march = reduced.as_deref();
     let (laws, squeezes) = squeeze::laws(model, impact, &before.squeezes)?;
     let impactors = place_impactors(impact, contacts, of_march, &laws);
-    let system = ImpactSystem::new(structure, impactors).with_tips(tips(impact));
+    let system = ImpactSystem::new(structure, impactors).with_tips(tips(impact, of_march));
     let mut system = couple(model, system, of_march, &mut effects);
     try_inertia(model, impact, &system, of_march)?;
     let sizes = check_step(model, impact, &mut system, of_march, before)?;
@@ -265,7 +266,7 @@ fn prepare_separable<'a>(
     let compliances = squeeze::compliances(&squeezed, &contacts, ndof, at_rest)?;
     let (laws, squeezes) = squeeze::laws(model, impact, &compliances)?;
     let impactors = place_impactors(impact, &contacts, None, &laws);
-    let tips = tips(impact);
+    let tips = tips(impact, None);
     let stiffness = match contacts.first() {
         Some(contact) if separation.is_cracked() => {
             let mut x = vec![0.0; ndof];
@@ -417,7 +418,9 @@ fn choose_basis(
 ) -> Option<Result<Basis, ReductionError>> {
     match &impact.reduction {
         _ if rests(model) => {
-            let responses = static_responses(&mut assembled.structure, &distinct(contacts));
+            let rings = impact.strikes.iter().filter_map(|strike| strike.tip.as_ref()).flat_map(|(_, rings)| rings);
+            let all: Vec<Functional> = contacts.iter().chain(rings).cloned().collect();
+            let responses = static_responses(&mut assembled.structure, &distinct(&all));
             Some(responses.map(|responses| (responses, None)))
         }
         None => None,
@@ -465,6 +468,14 @@ fn change_structure(model: &Model, mut plate: Marched, effects: &mut [Box<dyn Ef
     Ok(plate)
 }
 
+/// A functional in coordinates of the march.
+fn in_march(functional: &Functional, reduced: Option<&Reduced>) -> Vec<(usize, f64)> {
+    match reduced {
+        None => functional.0.clone(),
+        Some(reduced) => reduced.restrict(functional).into_iter().enumerate().collect(),
+    }
+}
+
 /// The impactors of the scene, each with the load of its contact in coordinates of the march.
 pub(super) fn place_impactors(
     impact: &Impact,
@@ -477,20 +488,17 @@ pub(super) fn place_impactors(
         mass: spec.mass,
         velocity: spec.velocity,
         start: spec.start,
-        load: match reduced {
-            None => contact.0.clone(),
-            Some(r) => r.restrict(contact).into_iter().enumerate().collect(),
-        },
+        load: in_march(contact, reduced),
         law: law.clone(),
     });
     impactors.collect()
 }
 
-/// The spherical tips of the impactors, of those that have one.
-fn tips(impact: &Impact) -> Vec<Option<Tip>> {
+/// The spherical tips of the impactors, of those that have one, in coordinates of the march.
+fn tips(impact: &Impact, reduced: Option<&Reduced>) -> Vec<Option<Tip>> {
     let each = impact.strikes.iter().map(|strike| {
         let (radius, rings) = strike.tip.as_ref()?;
-        Some(Tip::new(*radius, rings.iter().map(|ring| ring.0.clone()).collect()))
+        Some(Tip::new(*radius, rings.iter().map(|ring| in_march(ring, reduced)).collect()))
     });
     each.collect()
 }
@@ -503,14 +511,11 @@ fn couple(
     effects: &mut [Box<dyn Effect>],
 ) -> ImpactSystem {
     let system = effects.iter_mut().fold(system, |system, effect| effect.on_system(&model.body(), reduced, system));
-    let in_march = |spring: &SupportSpring| OneSided {
-        at: match reduced {
-            None => spring.at.clone(),
-            Some(reduced) => Functional(reduced.restrict(&spring.at).into_iter().enumerate().collect()),
-        },
+    let spring = |spring: &SupportSpring| OneSided {
+        at: Functional(in_march(&spring.at, reduced)),
         stiffness: spring.stiffness,
     };
-    system.on_one_sided(model.one_sided().map(in_march).collect())
+    system.on_one_sided(model.one_sided().map(spring).collect())
 }
 
 /// Makes a step of a plate without inertia, to see whether the integrator can do without.
