@@ -9,7 +9,7 @@ use fem_core::material::Material;
 use fem_core::plate::Plate;
 use fem_core::plugin::{Built, Kind};
 use fem_core::ply_law::PlyLaw;
-use fem_io::scene::{Damage, Place, PluginSpec, SceneError};
+use fem_io::scene::{Place, PluginSpec, SceneError};
 
 impl Builder<'_> {
     /// Whether some plies follow laws.
@@ -72,10 +72,6 @@ impl Builder<'_> {
         };
         if self.scene.substructures.is_some() {
             return refuse(&Place::TOP, "condensed `substructures` are linear", LEAVE);
-        }
-        let stresses = self.scene.effects.damage != Damage::Off || self.scene.output.fields.is_some();
-        if let Some(symmetry) = self.scene.symmetry.as_ref().filter(|_| stresses) {
-            return refuse(&symmetry.place, "stresses of a folded plate are those of linear elastic plies", LEAVE);
         }
         if let Some(line) = self.scene.profiles.first() {
             let message = "stresses along a line through the thickness are those of linear elastic plies";

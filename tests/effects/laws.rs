@@ -187,7 +187,6 @@ fn what_knows_linear_plies_only_is_refused() {
     refused(effects("inertia = 'off'"), "static responses");
     refused(effects("gravity = '9.81 m/s^2'"), "the sag is that");
     refused(plain.replace("'newmark'", "'rk4'"), "implicit integrator");
-    refused(plain.replace("title", "symmetry = 'half-turn'\ntitle"), "folded");
     refused(plain.replace("kind = 'hermite-prism'", "kind = 'mitc4'").replace("[4]", "1"), "choose a solid element");
     refused(plain.replace("hahn-tsai", "hahn-tsay"), "did you mean `hahn-tsai`");
     refused(plain.replace("2.44e-8 1/MPa^3", "2.44e-8 1/MPa"), "alpha");

@@ -120,6 +120,22 @@ fn large_deflections() {
     check(&plate.sides([Supported, Supported, Clamped, Clamped]), "half-turn", 0.45..0.56);
 }
 
+/// Plies that follow a law: what the images of a cell are stressed by is the image of its stress.
+#[test]
+fn plies_that_follow_laws() {
+    let yielding = |mut plate: Plate| {
+        plate.material.push_str("law = { name = 'hahn-tsai', alpha = '2.4e-8 1/MPa^3' }\n");
+        plate
+    };
+    let plate = yielding(pressed("[0/45/-45/90]s", vec![4, 4], [5, 3], 0.7));
+    let linear = pressed("[0/45/-45/90]s", vec![4, 4], [5, 3], 0.7).solve().u;
+    let most = |u: &[f64]| u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+    assert!(most(&plate.solve().u) > 1.001 * most(&linear), "the law acts");
+    check(&plate.sides([Supported, Supported, Clamped, Clamped]), "half-turn", 0.45..0.56);
+    let plate = yielding(pressed("[0/90]s", vec![2, 2], [6, 4], 0.0)).sides([Clamped; 4]);
+    ["mirror-x", "mirror-y", "quarter"].iter().for_each(|symmetry| check(&plate, symmetry, 0.12..0.6));
+}
+
 /// A plate that nothing holds in its plane: the half-turn leaves one motion to restrain, both mirrors none.
 #[test]
 fn what_the_symmetry_leaves_free_is_restrained() {

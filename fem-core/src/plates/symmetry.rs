@@ -186,6 +186,17 @@ impl Symmetry {
         self.quads[quad] as usize
     }
 
+    /// The operation that makes `quad` of the one that represents it; `None` where that is itself.
+    pub fn operation(&self, plate: &Plate, quad: usize) -> Option<Operation> {
+        let kept = self.quad(quad);
+        let [from, to] = [kept, quad].map(|quad| plate.plane.corners(quad).centroid());
+        let there = |o: &Operation| {
+            let [x, y] = o.point(self.centre, from);
+            (x - to[0]).hypot(y - to[1]) <= self.reach
+        };
+        if kept == quad { None } else { self.operations().find(there) }
+    }
+
     /// Quads that represent others or themselves alone, ascending, and how many they stand for.
     pub fn quads(&self) -> impl ExactSizeIterator<Item = (usize, f64)> + Clone {
         self.kept.iter().map(|(quad, size)| (*quad as usize, f64::from(*size)))

@@ -9,7 +9,7 @@ use crate::plates::plate::Plate;
 use crate::plates::slopes::bent;
 use crate::plates::window::{Centre, Mean, Source};
 use crate::words::material::Material;
-use crate::words::tensor::{Matrix6, strain_rotation};
+use crate::words::tensor::{Matrix6, Ply, Stress6, strain_rotation};
 use crate::words::vectorised::vectorised;
 use std::borrow::Cow;
 use std::ops::Range;
@@ -233,7 +233,7 @@ impl Recovery {
 
     /// Puts the stresses of plies that follow `laws` in place of those of linear elasticity: means over the Gauss points of
     /// their cells, whatever the samples, at the displacements `u` (one field, before elimination of constraints) and the states `points`;
-    /// with the strains of its slopes where they are `large`.
+    /// with the strains of its slopes where they are `large`. Where a symmetry leaves a part of the plate, the rest has its images.
     ///
     /// # Errors
     /// A cell that the element refuses, a law that finds no stress.
@@ -248,9 +248,11 @@ impl Recovery {
     ) -> Result<(), ElementError> {
         let (mut means, mut firsts) = (Vec::new(), Vec::new());
         let (mut answer, mut dofs) = (CellAnswer::default(), Vec::new());
+        let mut images = Vec::new();
         for Source { quad, .. } in &self.sources {
             firsts.push(means.len());
-            for cell in plate.cells_over(*quad) {
+            images.push(plate.symmetry().operation(plate, *quad));
+            for cell in plate.cells_over(plate.symmetry().quad(*quad)) {
                 plate.cell_dofs(cell, &mut dofs);
                 let local: Vec<f64> = dofs.iter().map(|dof| u[*dof]).collect();
                 let states = &points[laws.states_of(cell)];
@@ -271,7 +273,14 @@ impl Recovery {
                 if lawful {
                     out.fill(0.0);
                     for (source, share) in window {
-                        out.iter_mut().zip(of(source).0).for_each(|(s, mean)| *s += share * mean);
+                        let mean = match images[*source] {
+                            None => of(source).0,
+                            Some(image) => {
+                                let kept = Stress6::<Ply>::new(of(source).0).to_global(station.angle);
+                                image.stress(&kept).to_ply(station.angle).0
+                            }
+                        };
+                        out.iter_mut().zip(mean).for_each(|(s, mean)| *s += share * mean);
                     }
                 }
             }
