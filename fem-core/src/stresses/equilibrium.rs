@@ -47,6 +47,8 @@ pub(super) struct Balance {
     /// Of the change of the in-plane stresses at the faces over the cells around, the part that the fit misses; less where
     /// hardly any shear comes from it.
     pub(super) misfit: f64,
+    /// ∫ σ₃₁ dz and ∫ σ₂₃ dz, N/m.
+    pub(super) forces: [f64; 2],
     /// Shear and σ₃₃ that this change makes, Pa.
     pub(super) scale: [f64; 2],
 }
@@ -79,16 +81,17 @@ impl<'a> Fit<'a> {
         heights: &[(usize, f64)],
     ) -> Result<Balance, ElementError> {
         let [(_, low), .., (_, high)] = heights else {
-            return Ok(Balance { stresses: Vec::new(), misfit: 0.0, scale: [0.0; 2] });
+            return Ok(Balance { stresses: Vec::new(), misfit: 0.0, forces: [0.0; 2], scale: [0.0; 2] });
         };
         // Resultants so far: ∫ of the divergence of the in-plane stresses, and of its own divergence.
-        let (mut shear, mut second, mut normal) = ([0.0; 2], 0.0, -bottom);
+        let (mut shear, mut second, mut normal, mut forces) = ([0.0; 2], 0.0, -bottom, [0.0; 2]);
         let mut last: Option<(usize, f64)> = None;
         let mut stresses = Vec::with_capacity(heights.len());
         for &(ply, height) in heights {
             if let Some((ply, from)) = last.filter(|l| l.0 == ply) {
                 let half = 0.5 * (height - from);
                 normal += 2.0 * half * second;
+                (0..2).for_each(|k| forces[k] += 2.0 * half * shear[k]);
                 for &(t, w) in gauss_legendre(BETWEEN) {
                     let z = from + half * (1.0 + t);
                     let [by_x, by_y, twice] = self.derivatives(field, ply, z)?;
@@ -97,6 +100,8 @@ impl<'a> Fit<'a> {
                     second += half * w * twice;
                     // The double integral of `twice`, by parts.
                     normal += half * w * twice * (height - z);
+                    forces[0] -= half * w * by_x * (height - z);
+                    forces[1] -= half * w * by_y * (height - z);
                 }
             }
             last = Some((ply, height));
@@ -110,6 +115,7 @@ impl<'a> Fit<'a> {
             *s23 -= share * shear[1];
             *s31 -= share * shear[0];
         }
+        (0..2).for_each(|k| forces[k] -= 0.5 * (high - low) * shear[k]);
         let slope = (high - low) / self.size;
         let (mut misfit, mut scale) = (0.0_f64, [0.0_f64; 2]);
         for (ply, z) in heights.first().into_iter().chain(heights.last()) {
@@ -118,7 +124,7 @@ impl<'a> Fit<'a> {
             misfit = misfit.max(part * missed);
             scale = [scale[0].max(change * slope), scale[1].max(change * slope * slope)];
         }
-        Ok(Balance { stresses, misfit, scale })
+        Ok(Balance { stresses, misfit, forces, scale })
     }
 
     /// ∂σ₁₁/∂x + ∂σ₁₂/∂y, ∂σ₁₂/∂x + ∂σ₂₂/∂y, and the divergence of the two.
