@@ -185,6 +185,28 @@ fn the_memory_of_stresses_is_foreseen() {
     }
 }
 
+/// Both sides of closed interfaces are one when it comes to the factor, which takes most.
+#[test]
+fn the_memory_of_interfaces_that_open_is_foreseen() {
+    let case = plate().text(
+        "title = 'many interfaces'\nmesh = { rectangle = ['60 mm', '60 mm'], cells = [14, 14] }\nelement = { kind = 'hermite-prism' }\n\
+         effects = { damage = 'off', delamination = 'growth' }\nmaterials.tape = { library = 'T700GC/M21' }\n\
+         laminate = { plies = '[0/45/90/-45]s', material = 'tape', ply_thickness = '0.25 mm' }\n\
+         support = [{ group = 'x-min', at = 'bottom', fix = ['U30', 'U31'] }, { group = 'x-max', at = 'bottom', fix = ['U30', 'U31'] }, \
+         { restrain = 'rigid-motions' }]\n\
+         impactor = { mass = '1 kg', velocity = '1 m/s', at = { x = '30 mm', y = '30 mm' } }\n\
+         contact = { law = 'hertz', k = '1e8 N/m^1.5' }\nmarch = { step = '1 us', end = '3 us' }\noutput = { plots = false }\n",
+    );
+    let said = case.fem("check", &["--full"]).good().stdout;
+    let line = said.lines().find(|line| line.trim_start().starts_with("memory")).unwrap();
+    assert!(line.contains("peak: factor"), "{line}");
+    let estimate: f64 = line.split_whitespace().nth(2).unwrap().parse().unwrap();
+    case.fem("run", &["--out", "out"]).good();
+    let cost: Value = serde_json::from_str(&case.read("out/cost.json")).unwrap();
+    let peak = cost["peak_memory_MB"].as_f64().unwrap();
+    assert!((estimate / peak).max(peak / estimate) < 1.5, "{line}: {peak}");
+}
+
 #[test]
 fn divided_steps_of_a_full_plate_are_told() {
     let divided = |integrator: &str, method: &str| {

@@ -12,6 +12,9 @@ use std::sync::Arc;
 const PROGRAM: f64 = 2e7;
 /// Pattern, K, M, and M without its zeros, bytes per entry of the pattern.
 const PER_ENTRY: f64 = 32.0;
+/// Another pattern and one matrix on it, bytes per entry.
+const PER_FACTORISED: f64 = 16.0;
+
 /// What a computation holds at its peak, bytes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MemoryEstimate {
@@ -124,7 +127,8 @@ impl MemoryEstimate {
     }
 }
 
-/// The analysis of `pattern`, and what a computation with it takes, of which `effects` is beside.
+/// The analysis of `pattern`, and what a computation with it takes, of which `effects` is beside; `joined` is factorised in its place, if
+/// it is given.
 ///
 /// # Errors
 /// More memory than there is.
@@ -132,12 +136,20 @@ pub(crate) fn analyse(
     pattern: Arc<Pattern>,
     demand: &Demand,
     effects: f64,
+    joined: Option<Arc<Pattern>>,
 ) -> Result<(Symbolic, MemoryEstimate), Error> {
-    let symbolic = Symbolic::new(pattern).map_err(|error| match error {
-        FactorError::NoRoom { bytes } => refuse(bytes, "the factor alone, of which this is a part".into()),
-        other => other.into(),
-    })?;
-    let estimate = MemoryEstimate::new(demand, &symbolic, effects);
+    let analysed = |pattern| {
+        Symbolic::new(pattern).map_err(|error| match error {
+            FactorError::NoRoom { bytes } => refuse(bytes, "the factor alone, of which this is a part".into()),
+            other => other.into(),
+        })
+    };
+    let symbolic = analysed(pattern)?;
+    let mut estimate = MemoryEstimate::new(demand, &symbolic, effects);
+    if let Some(joined) = joined {
+        estimate.matrices += PER_FACTORISED * joined.entries() as f64;
+        estimate.factor = analysed(joined)?.bytes();
+    }
     require(estimate.bytes(), || estimate.to_string())?;
     Ok((symbolic, estimate))
 }

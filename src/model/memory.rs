@@ -4,10 +4,11 @@ use super::{Model, Plan};
 use crate::cost::require;
 use crate::error::Error;
 use crate::forecast::{Demand, MemoryEstimate, Size, analyse};
-use fem_core::assembly::{Pattern, Symbolic};
+use fem_core::assembly::{Pattern, Separable, Symbolic};
 use fem_core::counters::Counters;
 use fem_core::failure::Site;
 use fem_core::plate::Plate;
+use fem_core::structure::SolveError;
 use std::sync::Arc;
 
 /// Refuses a plate of which the matrices alone would be more than there is: before anything is made that grows with them.
@@ -66,7 +67,11 @@ impl Model {
             indices: plies * modes(Site::Ply) + interfaces * modes(Site::Interface),
             operator: contacts.is_some() && !self.effects.nature().large,
         };
-        analyse(pattern, &demand, self.effects.memory(&self.body(), &demand))
+        let joined = self.separation.as_ref().map(|separation| {
+            Separable::joined(&self.plate, &separation.supports, &separation.interfaces, &separation.states)
+        });
+        let joined = joined.transpose().map_err(SolveError::from)?;
+        analyse(pattern, &demand, self.effects.memory(&self.body(), &demand), joined)
     }
 
     /// Its sizes, and the work that was done on it; what is marched and judged is left at zero.

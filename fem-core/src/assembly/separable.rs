@@ -8,7 +8,7 @@ mod tied;
 use super::cell_map::CellMap;
 use super::krylov::Krylov;
 use super::released::Released;
-use super::{AssemblyError, FactorError, LawPlate, Matrix, Symmetric, assemble, pattern};
+use super::{AssemblyError, FactorError, LawPlate, Matrix, Pattern, Symmetric, assemble, pattern};
 use crate::contracts::element::{Element, ElementError};
 use crate::contracts::interface_law::Jump;
 use crate::contracts::structure::Stretching;
@@ -20,7 +20,7 @@ use crate::words::energy::Energy;
 use std::fmt;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
-use tied::{Factored, Tied};
+use tied::{Factored, Left, Tied};
 
 pub use growth::Growth;
 pub use path::{Path, PathEnd, PathError, PathPoint};
@@ -188,6 +188,20 @@ impl Separable {
             arrays: Arrays::default(),
             work: SeparableWork { cells: counters.elements, ..SeparableWork::default() },
         })
+    }
+
+    /// The pattern of what is factorised of a plate whose interfaces are in `states`: both sides of what is closed are one.
+    ///
+    /// # Errors
+    /// Supports that contradict each other.
+    pub fn joined(
+        plate: &Plate,
+        supports: &[Equation],
+        interfaces: &Interfaces,
+        states: &[f64],
+    ) -> Result<Arc<Pattern>, SeparableError> {
+        let open = open_cells(&interfaces.first_states(), states);
+        Ok(Left::new(plate, supports, interfaces, &open)?.pattern)
     }
 
     /// Number of unknowns, both sides of what is closed counted.

@@ -4,9 +4,11 @@ use super::{SeparableError, SeparableParts};
 use crate::assembly::cell_map::CellMap;
 use crate::assembly::ordering::joined_order;
 use crate::assembly::pattern::joined_pattern;
-use crate::assembly::{Cholesky, Matrix, Symbolic, Symmetric, assemble};
+use crate::assembly::{Cholesky, Matrix, Pattern, Symbolic, Symmetric, assemble};
 use crate::contracts::interface_law::Jump;
-use crate::plates::constraint::Constraints;
+use crate::plates::constraint::{Constraints, Equation};
+use crate::plates::interfaces::Interfaces;
+use crate::plates::plate::Plate;
 use crate::words::counters::Counters;
 use std::collections::HashSet;
 use std::num::NonZeroUsize;
@@ -71,18 +73,30 @@ impl Way {
     }
 }
 
-impl Tied {
-    pub(super) fn new(parts: &SeparableParts, open: Vec<bool>, threads: NonZeroUsize) -> Result<Self, SeparableError> {
-        let SeparableParts { plate, supports, constraints: full, interfaces, .. } = parts;
+/// What is left where both sides of what is closed are one.
+pub(super) struct Left {
+    constraints: Constraints,
+    /// Of the open cells of the interfaces, with their numbers.
+    maps: Vec<(usize, CellMap)>,
+    pub(super) pattern: Arc<Pattern>,
+}
+
+impl Left {
+    pub(super) fn new(
+        plate: &Plate,
+        supports: &[Equation],
+        interfaces: &Interfaces,
+        open: &[bool],
+    ) -> Result<Self, SeparableError> {
         let cells = || interfaces.cells().iter().enumerate().filter(|(cell, _)| open[*cell]);
-        let closed = closed_nodes(parts, &open);
+        let closed = closed_nodes(plate, interfaces, open);
         let ties = plate.ties(|column, face| closed.contains(&(column, face)));
         let mut joined: Vec<usize> = (0..plate.ndof()).collect();
         ties.iter().for_each(|tie| joined[tie.terms[0].0] = tie.terms[1].0);
         let sets: Vec<Vec<usize>> =
             cells().map(|(_, cell)| [&cell.unknowns.below[..], &cell.unknowns.above[..]].concat()).collect();
         let order = joined_order(plate, &joined, sets.iter().map(Vec::as_slice));
-        let equations = [&supports[..], &ties[..]].concat();
+        let equations = [supports, &ties[..]].concat();
         let constraints = Constraints::eliminate(&order, &equations).map_err(SeparableError::Constraints)?;
         let map = |((number, _), dofs): ((usize, _), &Vec<usize>)| {
             let mut map = CellMap::default();
@@ -92,6 +106,14 @@ impl Tied {
         let maps: Vec<(usize, CellMap)> = cells().zip(&sets).map(map).collect();
         let coupled = maps.iter().map(|(_, map)| &map.reduced[..]);
         let pattern = Arc::new(joined_pattern(plate, &constraints, coupled));
+        Ok(Self { constraints, maps, pattern })
+    }
+}
+
+impl Tied {
+    pub(super) fn new(parts: &SeparableParts, open: Vec<bool>, threads: NonZeroUsize) -> Result<Self, SeparableError> {
+        let SeparableParts { plate, supports, constraints: full, interfaces, .. } = parts;
+        let Left { constraints, maps, pattern } = Left::new(plate, supports, interfaces, &open)?;
         let symbolic = Symbolic::new(pattern.clone()).map_err(SeparableError::Factor)?;
         let mut way = Way { starts: vec![0], terms: Vec::new() };
         for i in 0..full.ndof() {
@@ -175,8 +197,7 @@ impl Tied {
 }
 
 /// Nodes (column, face) around which a cell is closed, or lies beyond what may open.
-fn closed_nodes(parts: &SeparableParts, open: &[bool]) -> HashSet<(usize, usize)> {
-    let SeparableParts { plate, interfaces, .. } = parts;
+fn closed_nodes(plate: &Plate, interfaces: &Interfaces, open: &[bool]) -> HashSet<(usize, usize)> {
     let symmetry = plate.symmetry();
     let cells = interfaces.cells().iter().zip(open);
     let open: HashSet<(usize, usize)> = cells.filter(|(_, open)| **open).map(|(c, _)| (c.quad, c.face)).collect();
