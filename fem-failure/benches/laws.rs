@@ -61,7 +61,7 @@ fn bilinear(bencher: divan::Bencher<'_, '_>, state: &str) {
     };
     let material = tape();
     let stiffness = material.elastic.stiffness();
-    let point = LawPoint { material: &material, stiffness: &stiffness, length: 1e-3, thickness: 1e-3 };
+    let point = LawPoint { material: &material, stiffness: &stiffness, length: 1e-3, thickness: 1e-3, means: &[] };
     let (mut old, mut new, mut tangent) = ([0.0; 9], [0.0; 9], [[0.0; 3]; 3]);
     let _ = law.respond(&point, &before, &[0.0; 9], &mut old, None);
     bencher
@@ -82,7 +82,7 @@ fn strains(state: &str) -> [[f64; 6]; 2] {
 fn ply(bencher: divan::Bencher<'_, '_>, law: &dyn PlyLaw, state: &str) {
     let material = tape();
     let stiffness = material.elastic.stiffness();
-    let point = LawPoint { material: &material, stiffness: &stiffness, length: 2e-4, thickness: 2e-4 };
+    let point = LawPoint { material: &material, stiffness: &stiffness, length: 2e-4, thickness: 2e-4, means: &[] };
     let count = law.info().state.len();
     let (virgin, mut old, mut new, mut tangent) = (vec![0.0; count], vec![0.0; count], vec![0.0; count], [[0.0; 6]; 6]);
     let [before, now] = strains(state).map(Strain6::new);

@@ -212,7 +212,8 @@ impl<'a> Builder<'a> {
             }
             _ => self.error(name, why.to_string(), ""),
         })?;
-        let point = LawPoint { material: &materials[resin], stiffness: &stiffness, length: widest, thickness: 0.0 };
+        let point =
+            LawPoint { material: &materials[resin], stiffness: &stiffness, length: widest, thickness: 0.0, means: &[] };
         let zone = law.process_zone(&point, &elastic, arm);
         let shortest = zone.map_or(f64::INFINITY, |[open, slide]| open.min(slide));
         let zones = if shortest.is_finite() { ZONES * shortest } else { 0.0 };

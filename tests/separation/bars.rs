@@ -120,9 +120,8 @@ fn pulled(cells: usize, full: f64) -> Broken {
     found
 }
 
-/// What a break takes in the end does not depend on the cells. Strains that are continuous from cell to cell cannot open in one cell alone,
-/// though: its outer points hold on after its inner ones have let go, so that a quarter to a third of the toughness is taken below a tenth
-/// of the strength.
+/// What a break takes does not depend on the cells, and it takes it while it opens: strains that are continuous from cell to cell differ over
+/// the cell, but all of its fibres lose their stress together.
 #[test]
 fn a_break_of_fibres_takes_its_toughness_whatever_the_cells() {
     [3, 9].into_iter().for_each(breaks_with);
@@ -137,6 +136,7 @@ fn a_break_of_fibres_takes_its_toughness_in_short_cells() {
 fn breaks_with(cells: usize) {
     let Broken { peak, left, at_first, dissipated } = pulled(cells, 3.0);
     assert!((dissipated - 1.0).abs() < 1e-6 && left.abs() < 1e-5, "{cells} cells: {dissipated} {left}");
-    assert!((0.98..=1.0).contains(&peak), "{cells} cells: {peak}");
-    assert!((0.6..0.8).contains(&at_first), "{cells} cells: {at_first}");
+    // A cell that loses its stress jumps against its neighbours, to which strains are continuous: the shorter, the more it bears at first.
+    assert!((0.98..1.01).contains(&peak), "{cells} cells: {peak}");
+    assert!((0.95..1.0 + 1e-6).contains(&at_first), "{cells} cells: {at_first}");
 }

@@ -161,13 +161,15 @@ fn forces_are_those_of_the_energy() {
     assert!((slope / work - 1.0).abs() < 1e-6, "{slope} {work}");
 }
 
+/// Fibres that break softly in cells of 4 mm; with the toughness of the library a whole cell breaks within some microseconds.
+const TOUGH: &str = "Gft = '200 kJ/m^2'\nlaw = { name = 'crack-band', breaks = 'fibres' }\n";
+
 /// Fibres that the tension of a thin plate breaks, in cells of 4 mm: less force, energy that balances, the same bits on two threads and
 /// after a restart.
 #[test]
 fn tension_breaks_fibres() {
-    let law = "law = { name = 'crack-band', breaks = 'fibres' }\n";
-    let plate = |material| Plate { material, velocity: 14.0, end_us: 140, ..stretched(BOTH, "") };
-    let model = plate(leaked(format!("{STRONG}{law}"))).model().unwrap();
+    let plate = |material| Plate { material, velocity: 20.0, end_us: 140, ..stretched(BOTH, "") };
+    let model = plate(leaked(format!("{STRONG}{TOUGH}"))).model().unwrap();
     let prepared = |threads| impact::prepare(&model, NonZeroUsize::new(threads).unwrap()).unwrap();
     let broken = impact::march(prepared(1), |_| {}).unwrap();
     let sound = plate(STRONG).outcome();
@@ -175,7 +177,7 @@ fn tension_breaks_fibres() {
     let last = broken.history.len() - 1;
     assert!(lost(&broken)[last] > 0.1 && lost(&broken).is_sorted(), "{:?}", lost(&broken));
     assert!(forces(&broken)[last] < 0.95 * forces(&sound)[last]);
-    assert!(broken.energy_error < 5e-3 && broken.stopped.is_none(), "{} {:?}", broken.energy_error, broken.stopped);
+    assert!(broken.energy_error < 1e-3 && broken.stopped.is_none(), "{} {:?}", broken.energy_error, broken.stopped);
     let found = |outcome: &Outcome| (forces(outcome), lost(outcome));
     assert!(found(&impact::march(prepared(2), |_| {}).unwrap()) == found(&broken), "two threads");
 
@@ -195,10 +197,13 @@ fn tension_breaks_fibres() {
 /// enough of them.
 #[test]
 fn what_breaks_does_not_hang_on_the_symmetry() {
-    let law = "law = { name = 'crack-band', breaks = 'fibres' }\n";
-    let material: &str = leaked(format!("{STRONG}{law}"));
-    let of = |symmetry| Plate { material, symmetry, velocity: 14.0, end_us: 140, ..stretched(BOTH, "") }.outcome();
-    let [quarter, half] = ["quarter", "half-turn"].map(|symmetry| forces(&of(symmetry)));
+    let material: &str = leaked(format!("{STRONG}{TOUGH}"));
+    let of = |symmetry| {
+        let outcome = Plate { material, symmetry, velocity: 20.0, end_us: 140, ..stretched(BOTH, "") }.outcome();
+        assert!(outcome.history.last().unwrap().effects[3] > 0.1, "{symmetry}: no fibre breaks");
+        forces(&outcome)
+    };
+    let [quarter, half] = ["quarter", "half-turn"].map(of);
     assert!(apart(&half, &quarter) < 2e-3, "{}", apart(&half, &quarter));
 }
 

@@ -31,7 +31,7 @@ fn it_fulfils_the_contract() {
 fn a_broken_interface_has_taken_its_toughness() {
     let (law, material) = (Exponential { weight: 1.4 }, resin());
     let stiffness = material.elastic.stiffness();
-    let point = LawPoint { material: &material, stiffness: &stiffness, length: 1e-3, thickness: 1e-3 };
+    let point = LawPoint { material: &material, stiffness: &stiffness, length: 1e-3, thickness: 1e-3, means: &[] };
     for direction in [[1.0, 0.0, 0.0], [0.0, 0.6, -0.8], [0.5, 0.5, 0.5]] {
         let broken = direction.map(|v: f64| 1e-3 * v);
         let answer = law.respond(&point, &broken, &[0.0; 3], &mut [0.0; 3], None).unwrap();

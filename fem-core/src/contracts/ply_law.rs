@@ -31,6 +31,9 @@ pub struct LawPoint<'a> {
     pub length: f64,
     /// Thickness of the ply and of those about it that are alike, m: cracks through it stand about as far apart. Of an interface 0.
     pub thickness: f64,
+    /// Means of [`PlyLaw::quantities`] over the ply in its cell, as many as [`PlyLaw::means`] says; none at a point that is asked about
+    /// alone.
+    pub means: &'a [f64],
 }
 
 /// Stress of a ply and where its work has gone.
@@ -108,6 +111,15 @@ pub trait PlyLaw: DynClone + Debug + Send + Sync {
         0..0
     }
 
+    /// How many quantities it wants the means of over its ply in each cell: what opens in one cell as a whole, as a crack across the
+    /// fibres does, must not follow the strains of each point, which cannot do so.
+    fn means(&self) -> usize {
+        0
+    }
+
+    /// Writes the quantities of [`PlyLaw::means`] at a point to `out`; their means come back to it in [`LawPoint::means`].
+    fn quantities(&self, _point: &LawPoint<'_>, _strain: &Strain6<Ply>, _old: &[f64], _out: &mut [f64]) {}
+
     /// Refuses a point whose constants the law cannot use, such as a cell too wide for the energy of a crack. That the
     /// required strengths are there is [`check_law`]'s business.
     ///
@@ -125,7 +137,7 @@ pub trait PlyLaw: DynClone + Debug + Send + Sync {
     /// The answer to `strain` (engineering shears) of a ply with the state `old`; all of the state that the strain leaves goes
     /// into `new`.
     ///
-    /// The tangent, where it is asked for, is ∂σ/∂ε of this very answer, `old` held, Pa, `tangent[row][column]`; it need not be symmetric.
+    /// The tangent, where it is asked for, is ∂σ/∂ε of this very answer, `old` and [`LawPoint::means`] held, Pa, `tangent[row][column]`; it need not be symmetric.
     ///
     /// # Errors
     /// A strain for which the law finds no stress.

@@ -153,6 +153,7 @@ impl Interfaces {
                             stiffness: &stiffness,
                             length: shape.length,
                             thickness: 0.0,
+                            means: &[],
                         };
                         check_law(of.law.info(), &of.name, &point, of.law.check(&point))
                             .map_err(InterfacesError::Material)?;
@@ -363,7 +364,7 @@ impl Interfaces {
 
     fn point(&self, cell: usize) -> LawPoint<'_> {
         let length = self.shapes[self.cells[cell].shape].length;
-        LawPoint { material: &self.of.material, stiffness: &self.stiffness, length, thickness: 0.0 }
+        LawPoint { material: &self.of.material, stiffness: &self.stiffness, length, thickness: 0.0, means: &[] }
     }
 
     /// Tractions of a cell under the differences `apart` of its unknowns, above minus below; with their moduli where these are wanted,

@@ -32,6 +32,13 @@ struct LawfulPly {
     thickness: f64,
 }
 
+impl LawfulPly {
+    /// A point of it, alone, in a cell of this width.
+    fn point(&self, length: f64) -> LawPoint<'_> {
+        LawPoint { material: &self.material, stiffness: &self.stiffness, length, thickness: self.thickness, means: &[] }
+    }
+}
+
 /// The plies of a plate that follow laws.
 ///
 /// A cell's strains are those of its element at Gauss points, as those of its stiffness are. They are polynomials in q of a
@@ -94,7 +101,11 @@ pub struct CellAnswer {
     pub means: Vec<([f64; 6], f64)>,
     new: Vec<f64>,
     product: Vec<f64>,
-    /// Of the levels, six each; stresses weighted, moduli between all pairs.
+    /// What laws want the means of: by slice, as many of each, with the volume behind them.
+    shared: Vec<f64>,
+    /// Of all points at which laws are asked, in the axes of their plies.
+    own: Vec<[f64; 6]>,
+    /// Of the levels at an in-plane point, six each; stresses weighted, moduli between all pairs.
     strains: Vec<f64>,
     stresses: Vec<f64>,
     moduli: Vec<f64>,
@@ -227,8 +238,7 @@ impl PlyLaws {
             let length = width(info, &view);
             for ply in all.of(plate, cell).iter().flatten() {
                 next += points * ply.law.info().state.len();
-                let point =
-                    LawPoint { material: &ply.material, stiffness: &ply.stiffness, length, thickness: ply.thickness };
+                let point = ply.point(length);
                 check_law(ply.law.info(), &ply.name, &point, ply.law.check(&point)).map_err(LawsError::Material)?;
             }
             if info.ply_order > MOST_LEVELS || !polynomial(element, &view) {
@@ -252,8 +262,7 @@ impl PlyLaws {
         let mut said = Vec::new();
         for (plies, length) in self.plies.iter().zip(widest) {
             for ply in plies.iter().flatten() {
-                let point =
-                    LawPoint { material: &ply.material, stiffness: &ply.stiffness, length, thickness: ply.thickness };
+                let point = ply.point(length);
                 let warning = ply.law.warning(&point);
                 let warning = warning.map(|why| format!("material `{}`, law `{}`: {why}", ply.material.name, ply.name));
                 said.extend(warning.filter(|warning| !said.contains(warning)));
@@ -375,22 +384,31 @@ impl PlyLaws {
         answer.on_patterns.clear();
         answer.on_patterns.resize(stretched.map_or(0, |patterns| patterns.amounts.len()), 0.0);
         answer.through = through(levels, &view.stack.slices, plies);
-        let (length, mut at) = (width(info, &view), 0);
-        let points = operators.weights.iter().zip(operators.operators.chunks_exact(rows * n));
-        for (number, (dv, operators)) in points.enumerate() {
+        let (length, mut at, mut place) = (width(info, &view), 0, 0);
+        let points = || operators.weights.iter().zip(operators.operators.chunks_exact(rows * n)).enumerate();
+        for (number, (_, operators)) in points() {
             answer.strain(operators, u);
             stretched.iter().for_each(|patterns| answer.stretch(patterns, number));
+            answer.turn(plies);
+        }
+        answer.share(plies, &operators.weights, length, states);
+        let shared = std::mem::take(&mut answer.shared);
+        let each = shared.len() / plies.len();
+        for (number, (dv, operators)) in points() {
+            answer.begin();
             for k in 0..answer.through.len() {
-                let Some(ply) = &plies[answer.through[k].slice] else { continue };
-                let point =
-                    LawPoint { material: &ply.material, stiffness: &ply.stiffness, length, thickness: ply.thickness };
+                let slice = answer.through[k].slice;
+                let Some(ply) = &plies[slice] else { continue };
+                let means = &shared[slice * each..][..ply.law.means()];
+                let point = LawPoint { means, ..ply.point(length) };
                 let count = ply.law.info().state.len();
-                answer.ask(ply, &point, k, *dv, (&states[at..at + count], at))?;
-                at += count;
+                answer.ask(ply, &point, (place, k), *dv, (&states[at..at + count], at))?;
+                (at, place) = (at + count, place + 1);
             }
-            answer.add(operators, n, rows);
+            answer.add(operators, n);
             stretched.iter().for_each(|patterns| answer.work(patterns, number));
         }
+        answer.shared = shared;
         for (mean, volume) in answer.means.iter_mut().filter(|(_, volume)| *volume > 0.0) {
             mean.iter_mut().for_each(|s| *s /= *volume);
         }
@@ -417,16 +435,15 @@ impl CellAnswer {
             all.resize(size, 0.0);
         }
         self.energy = Energy::default();
+        self.own.clear();
         self.means.clear();
         self.means.resize(slices, ([0.0; 6], 0.0));
     }
 
     /// Takes the strains of the levels at an in-plane point.
     fn strain(&mut self, operators: &[f64], u: &[f64]) {
-        let Self { strains, stresses, moduli, .. } = self;
+        let strains = &mut self.strains;
         strains.fill(0.0);
-        stresses.fill(0.0);
-        moduli.fill(0.0);
         for (b, u) in operators.chunks_exact(strains.len()).zip(u) {
             strains.iter_mut().zip(b).for_each(|(e, b)| *e += b * u);
         }
@@ -443,6 +460,56 @@ impl CellAnswer {
         }
     }
 
+    /// Keeps the strains of the plies at an in-plane point.
+    fn turn(&mut self, plies: &[Option<LawfulPly>]) {
+        let Self { own, strains, through, .. } = self;
+        for Through { slice, shares, .. } in through {
+            let Some(ply) = &plies[*slice] else { continue };
+            let mut strain = [0.0; 6];
+            for (level, share) in strains.chunks_exact(6).zip(shares) {
+                strain.iter_mut().zip(level).for_each(|(sum, e)| *sum += *share * e);
+            }
+            own.push(apply(&ply.rotation, &strain));
+        }
+    }
+
+    /// Forms the means that laws want over their plies; `states` are those of the cell.
+    fn share(&mut self, plies: &[Option<LawfulPly>], weights: &[f64], length: f64, states: &[f64]) {
+        let mut shared = std::mem::take(&mut self.shared);
+        shared.clear();
+        let most = plies.iter().flatten().map(|ply| ply.law.means()).max().unwrap_or(0);
+        if most > 0 {
+            // Behind the last ply: those of a point.
+            shared.resize((most + 1) * (plies.len() + 1), 0.0);
+            let (means, here) = shared.split_at_mut((most + 1) * plies.len());
+            let (mut at, mut strains) = (0, self.own.iter());
+            for dv in weights {
+                for Through { slice, weight, .. } in &self.through {
+                    let (Some(ply), Some(strain)) = (&plies[*slice], strains.next()) else { continue };
+                    let old = &states[at..at + ply.law.info().state.len()];
+                    at += old.len();
+                    here[..most].fill(0.0);
+                    here[most] = 1.0;
+                    ply.law.quantities(&ply.point(length), &Strain6::new(*strain), old, &mut here[..ply.law.means()]);
+                    let sums = &mut means[slice * (most + 1)..][..most + 1];
+                    sums.iter_mut().zip(&*here).for_each(|(sum, q)| *sum += dv * weight * q);
+                }
+            }
+            for all in means.chunks_exact_mut(most + 1) {
+                let volume = all[most];
+                all[..most].iter_mut().for_each(|sum| *sum /= volume);
+            }
+            shared.truncate((most + 1) * plies.len());
+        }
+        self.shared = shared;
+    }
+
+    /// Makes ready for another in-plane point.
+    fn begin(&mut self) {
+        self.stresses.fill(0.0);
+        self.moduli.fill(0.0);
+    }
+
     /// Adds the work on patterns at an in-plane point.
     fn work(&mut self, patterns: &Patterns<'_>, point: usize) {
         let mut forces = [0.0; 3];
@@ -454,22 +521,18 @@ impl CellAnswer {
         }
     }
 
-    /// Asks the law of a ply at a point through the thickness; `old` are its states, from the place `at` on.
+    /// Asks the law of a ply at the point `place` of all, the `k`th through the thickness; `old` are its states, from the place `at` on.
     fn ask(
         &mut self,
         ply: &LawfulPly,
         point: &LawPoint<'_>,
-        k: usize,
+        (place, k): (usize, usize),
         dv: f64,
         (old, at): (&[f64], usize),
     ) -> Result<(), ElementError> {
         let Through { slice, weight, shares } = self.through[k];
         let weight = dv * weight;
-        let mut strain = [0.0; 6];
-        for (level, share) in self.strains.chunks_exact(6).zip(shares) {
-            strain.iter_mut().zip(level).for_each(|(sum, e)| *sum += share * e);
-        }
-        let strain = apply(&ply.rotation, &strain);
+        let strain = self.own[place];
         let mut modulus = [[0.0; 6]; 6];
         let wanted = (!self.moduli.is_empty()).then_some(&mut modulus);
         let new = &mut self.new[at..at + old.len()];
@@ -498,7 +561,7 @@ impl CellAnswer {
 
     /// Adds the symmetric part of a modulus between all pairs of levels.
     fn add_modulus(&mut self, modulus: &Matrix6, shares: &[f64], weight: f64) {
-        let rows = self.strains.len();
+        let rows = self.stresses.len();
         for (k, a) in shares.iter().take(rows / 6).enumerate() {
             for (l, b) in shares.iter().take(rows / 6).enumerate() {
                 for (i, row) in modulus.iter().enumerate() {
@@ -512,7 +575,8 @@ impl CellAnswer {
     }
 
     /// Adds what stresses and moduli of the levels are worth to force and tangent.
-    fn add(&mut self, operators: &[f64], n: usize, rows: usize) {
+    fn add(&mut self, operators: &[f64], n: usize) {
+        let rows = self.stresses.len();
         let Self { force, tangent, product, stresses, moduli, .. } = self;
         for (f, b) in force.iter_mut().zip(operators.chunks_exact(rows)) {
             *f += b.iter().zip(&*stresses).map(|(b, s)| b * s).sum::<f64>();

@@ -27,7 +27,7 @@ pub fn check_interface_law(
         let (law, material) = (make(units), units.material(material));
         let stiffness = material.elastic.stiffness();
         let length = units.number(length, Dimension::LENGTH);
-        let point = LawPoint { material: &material, stiffness: &stiffness, length, thickness: 0.0 };
+        let point = LawPoint { material: &material, stiffness: &stiffness, length, thickness: 0.0, means: &[] };
         check_law(law.info(), "under test", &point, law.check(&point)).map_err(|e| e.to_string())?;
         let respond = |jump: &Jump, old: &[f64], new: &mut [f64], tangent: Option<&mut [Jump; 3]>| {
             let InterfaceResponse { traction, stored, dissipated } = law.respond(&point, jump, old, new, tangent)?;
@@ -37,7 +37,7 @@ pub fn check_interface_law(
             Ok((traction, [stored, dissipated.opening, dissipated.shear, dissipated.friction]))
         };
         let largest = largest.map(|v| units.number(v, Dimension::LENGTH));
-        Subject { info: law.info(), largest, respond: &respond }.check(&MIRRORS)
+        Subject { info: law.info(), largest, respond: &respond, cell: false }.check(&MIRRORS)
     };
     same_in(&Units::ODD, &answers(&Units::SI)?, &answers(&Units::ODD)?, Dimension::TOUGHNESS)
 }

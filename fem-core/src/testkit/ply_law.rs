@@ -22,6 +22,9 @@ const MIRRORS: [[f64; 6]; 3] =
 /// in each plane of symmetry of the ply; the same answers in other units; a virgin point that answers as at first, whatever
 /// the law has seen before.
 ///
+/// A law that wants [means](PlyLaw::means) is asked as a point alone and as a cell of one point, whose means are its own
+/// quantities; of the latter neither the tangent nor the same answer once its state is taken over is demanded.
+///
 /// # Errors
 /// The first violation, with the place on the path.
 pub fn check_ply_law(
@@ -30,17 +33,22 @@ pub fn check_ply_law(
     length: f64,
     largest: &[f64; 6],
 ) -> Result<(), String> {
-    let answers = |units: &Units| {
+    let answers = |units: &Units, cell: bool| {
         let (law, material) = (make(units), units.material(material));
         let stiffness = material.elastic.stiffness();
         let length = units.number(length, Dimension::LENGTH);
-        let point = LawPoint { material: &material, stiffness: &stiffness, length, thickness: length };
+        let point = LawPoint { material: &material, stiffness: &stiffness, length, thickness: length, means: &[] };
         check_law(law.info(), "under test", &point, law.check(&point)).map_err(|e| e.to_string())?;
         let respond = |strain: &[f64; 6], old: &[f64], new: &mut [f64], tangent: Option<&mut Matrix6>| {
-            let PlyResponse { stress, energy } = law.respond(&point, &Strain6::new(*strain), old, new, tangent)?;
+            let (strain, mut means) = (Strain6::new(*strain), vec![f64::NAN; if cell { law.means() } else { 0 }]);
+            if cell {
+                law.quantities(&point, &strain, old, &mut means);
+            }
+            let point = LawPoint { means: &means, ..point };
+            let PlyResponse { stress, energy } = law.respond(&point, &strain, old, new, tangent)?;
             Ok((stress.0, [energy.stored, energy.dissipated, 0.0, 0.0]))
         };
-        let subject = Subject { info: law.info(), largest: *largest, respond: &respond };
+        let subject = Subject { info: law.info(), largest: *largest, respond: &respond, cell };
         let tangent = subject.virgin_tangent()?;
         let scale = stiffness.as_flattened().iter().fold(0.0_f64, |m, c| m.max(c.abs()));
         let differ = |(a, b): (&f64, &f64)| !((a - b).abs() <= 1e-9 * scale);
@@ -49,7 +57,10 @@ pub fn check_ply_law(
         }
         subject.check(&MIRRORS)
     };
-    same_in(&Units::ODD, &answers(&Units::SI)?, &answers(&Units::ODD)?, Dimension::PRESSURE)
+    let cells: &[bool] = if make(&Units::SI).means() > 0 { &[false, true] } else { &[false] };
+    cells.iter().try_for_each(|cell| {
+        same_in(&Units::ODD, &answers(&Units::SI, *cell)?, &answers(&Units::ODD, *cell)?, Dimension::PRESSURE)
+    })
 }
 
 #[cfg(test)]

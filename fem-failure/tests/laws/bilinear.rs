@@ -43,7 +43,8 @@ impl Point {
 
     fn step(&mut self, jump: &Jump) -> InterfaceResponse {
         let stiffness = self.material.elastic.stiffness();
-        let point = LawPoint { material: &self.material, stiffness: &stiffness, length: 1e-3, thickness: 1e-3 };
+        let point =
+            LawPoint { material: &self.material, stiffness: &stiffness, length: 1e-3, thickness: 1e-3, means: &[] };
         let mut new = [f64::NAN; 9];
         let answer = self.law.respond(&point, jump, &self.state, &mut new, None).unwrap();
         self.state = new;
@@ -232,7 +233,8 @@ fn a_jump_of_zero_is_open() {
     let mut point = Point::new(law(1e14), im7());
     point.step(&[1e-3, 0.0, 0.0]);
     let stiffness = point.material.elastic.stiffness();
-    let place = LawPoint { material: &point.material, stiffness: &stiffness, length: 1e-3, thickness: 1e-3 };
+    let place =
+        LawPoint { material: &point.material, stiffness: &stiffness, length: 1e-3, thickness: 1e-3, means: &[] };
     let mut tangent = [[f64::NAN; 3]; 3];
     for (n, normal) in [(0.0, 0.0), (-1e-12, 1e14)] {
         point.law.respond(&place, &[n, 0.0, 0.0], &point.state, &mut [0.0; 9], Some(&mut tangent)).unwrap();
@@ -244,7 +246,7 @@ fn a_jump_of_zero_is_open() {
 fn constants_that_do_not_fit_are_refused() {
     let stiffness = im7().elastic.stiffness();
     let refused = |law: &Bilinear, material: &Material| {
-        let point = LawPoint { material, stiffness: &stiffness, length: 1e-3, thickness: 1e-3 };
+        let point = LawPoint { material, stiffness: &stiffness, length: 1e-3, thickness: 1e-3, means: &[] };
         check_law(law.info(), "bilinear", &point, law.check(&point)).unwrap_err().to_string()
     };
     let without = Material { toughness: Toughnesses::default().with(Toughness::GIIc, 788.0), ..im7() };
@@ -254,7 +256,7 @@ fn constants_that_do_not_fit_are_refused() {
     assert!(soft.contains("Kn = 5.000000e12") && soft.contains("the least = 7.209805e12"), "{soft}");
     let power = Bilinear { criterion: MixedMode::Power(1.0), ..law(1e14) };
     let material = Material { eta: None, ..im7() };
-    let point = LawPoint { material: &material, stiffness: &stiffness, length: 1e-3, thickness: 1e-3 };
+    let point = LawPoint { material: &material, stiffness: &stiffness, length: 1e-3, thickness: 1e-3, means: &[] };
     assert_eq!(power.check(&point), Ok(()));
 }
 

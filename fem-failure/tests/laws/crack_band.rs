@@ -73,6 +73,7 @@ impl Point {
             stiffness: &stiffness,
             length: self.length,
             thickness: self.thickness,
+            means: &[],
         };
         let (mut new, mut tangent) = (vec![f64::NAN; self.state.len()], [[f64::NAN; 6]; 6]);
         let strain = Strain6::new(*strain);
@@ -276,7 +277,7 @@ fn a_permanent_shear_strain_is_hahn_and_tsais() {
     let curve = HahnTsai::new(ALPHA, Unloading::Permanent);
     let (material, mut state) = (tape(), [0.0; 2]);
     let stiffness = material.elastic.stiffness();
-    let place = LawPoint { material: &material, stiffness: &stiffness, length: 2e-4, thickness: 2e-4 };
+    let place = LawPoint { material: &material, stiffness: &stiffness, length: 2e-4, thickness: 2e-4, means: &[] };
     let s12 = 92.3e6_f64;
     let strength = s12 / 5.29e9 + ALPHA * s12.powi(3);
     for gamma in [0.3 * strength, 0.6 * strength, 0.2 * strength, -0.2 * strength, 0.1 * strength] {
@@ -361,7 +362,7 @@ fn splits_run_through_their_ply() {
     // Plies too thick for the toughness are refused by name, whatever the cell.
     let stiffness = tape().elastic.stiffness();
     let material = sheared(gms);
-    let point = LawPoint { material: &material, stiffness: &stiffness, length: 8e-3, thickness: 5e-3 };
+    let point = LawPoint { material: &material, stiffness: &stiffness, length: 8e-3, thickness: 5e-3, means: &[] };
     let refused = check_law(SPLITS.info(), "crack-band", &point, SPLITS.check(&point)).unwrap_err().to_string();
     assert!(refused.contains("Yt^2") && refused.contains("plies = 5.000000e-3 m"), "{refused}");
 }
@@ -370,7 +371,7 @@ fn splits_run_through_their_ply() {
 fn cells_too_wide_for_their_toughness_are_refused_or_lower_their_strengths() {
     let stiffness = tape().elastic.stiffness();
     let said = |law: &CrackBand, material: &Material, length: f64| {
-        let point = LawPoint { material, stiffness: &stiffness, length, thickness: length };
+        let point = LawPoint { material, stiffness: &stiffness, length, thickness: length, means: &[] };
         let checked = check_law(law.info(), "crack-band", &point, law.check(&point));
         (checked.map_err(|e| e.to_string()), law.warning(&point))
     };

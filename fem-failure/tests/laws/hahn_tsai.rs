@@ -27,7 +27,7 @@ fn tape() -> Material {
 fn shears(law: &dyn PlyLaw, path: &[f64]) -> (Vec<PlyResponse>, Matrix6) {
     let (material, mut tangent) = (tape(), [[0.0; 6]; 6]);
     let stiffness = material.elastic.stiffness();
-    let point = LawPoint { material: &material, stiffness: &stiffness, length: 1e-3, thickness: 1e-3 };
+    let point = LawPoint { material: &material, stiffness: &stiffness, length: 1e-3, thickness: 1e-3, means: &[] };
     let mut state = vec![0.0; law.info().state.len()];
     let answers = path.iter().map(|gamma| {
         let mut new = state.clone();

@@ -41,12 +41,17 @@ const SHEARS: [usize; 3] = [3, 4, 5];
 /// With `alpha` a shear along the fibres follows Hahn and Tsai's curve γ = τ/G + α τ³ in effective stresses, as the law
 /// `hahn-tsai` does with permanent strain, up to τ = S12; from there on it softens without yielding more.
 ///
+/// Asked with [means](PlyLaw::means), a ply has one damage of its fibres in each cell: e is then √(∫ ⟨±h1⟩² dV/V)/X over the ply in the
+/// cell, with the damage of the matrix of before. Cells with smooth displacements cannot open one by one, and points that break by themselves
+/// would hold on beside those that have; together they release the same, Σ ½ h1²/E1 V dd, and G times the section by the time the stress is gone.
+///
 /// d solves a fixed point, because h depends on it by way of Poisson's ratios: by Newton's method, of which the tangent follows.
 /// Energies are integrated at the middle of a step.
 ///
 /// Limits: L is the width of the cell for cracks of every direction. Under shear both damages of the matrix grow where u changes
 /// its sign, and the stress jumps there. κ is at most 0.9: mixes with a pressure across the fibres, which may store any energy before
-/// they begin, dissipate more than their toughness.
+/// they begin, dissipate more than their toughness. The root mean square breaks later than the peak of the stress in a cell. The tangent
+/// holds it, as the trait says.
 ///
 /// Where fibres alone break, cells may be as wide as these allow: often millimetres, where a matrix asks for tenths. Cracks across the
 /// fibres then take σ11 alone, all shears staying elastic, and cracks of the matrix are left out, with what they would open, soften and
@@ -132,6 +137,9 @@ impl Memory {
     }
 }
 
+/// Shares of the normal stresses and of the shears 12, 23, 13 that damage takes at most.
+type Shares = ([f64; 3], [f64; 3]);
+
 /// A strength, the modulus along it and the toughness that it needs; and what a cell wider than 2 E G/X² breaks.
 type Limit = (Strength, &'static str);
 
@@ -146,10 +154,9 @@ const LIMITS: [Limit; 6] = [
 
 impl CrackBand {
     /// Widest cell for each strength of [`LIMITS`], m.
-    fn widest(&self, point: &LawPoint<'_>) -> [f64; 6] {
+    fn widest(&self, point: &LawPoint<'_>, (opened, cracked): &Shares) -> [f64; 6] {
         let (e, toughness) = (&point.material.elastic, &point.material.toughness);
         let shear = toughness.get(Toughness::Gms).unwrap_or(toughness.gmt());
-        let (opened, cracked) = self.shares(e);
         let (across, g) = (e.e2.min(e.e3), e.g12.min(e.g13));
         let energies = [
             e.e1 * toughness.gft(),
@@ -172,7 +179,7 @@ impl CrackBand {
     }
 
     /// Shares of the normal stresses and of the shears 12, 23, 13 that damage takes at most.
-    fn shares(&self, e: &Elastic) -> ([f64; 3], [f64; 3]) {
+    fn shares(&self, e: &Elastic) -> Shares {
         match self.breaks {
             Breaks::All => ([1.0; 3], [1.0; 3]),
             Breaks::Fibres => ([1.0; 3], [0.0; 3]),
@@ -189,15 +196,18 @@ impl CrackBand {
         }
     }
 
-    fn modes(&self, point: &LawPoint<'_>) -> Modes {
-        let (e, x, toughness) = (&point.material.elastic, &point.material.strengths, &point.material.toughness);
-        let moduli = [e.e1, e.e2, e.e3];
+    fn solid(e: &Elastic, opened: [f64; 3]) -> Solid {
         let (c12, c13, c23) = (-e.nu12, -e.nu13, -e.nu23);
         let coupling = [[0.0, c12, c13], [c12 * e.e2 / e.e1, 0.0, c23], [c13 * e.e3 / e.e1, c23 * e.e3 / e.e2, 0.0]];
-        let lengths = self.lengths(point);
+        Solid { e: [e.e1, e.e2, e.e3], coupling, g: [e.g12, e.g23, e.g13], opened }
+    }
+
+    fn modes(&self, point: &LawPoint<'_>) -> Modes {
+        let (e, x, toughness) = (&point.material.elastic, &point.material.strengths, &point.material.toughness);
+        let (lengths, shares) = (self.lengths(point), self.shares(e));
         let mut strengths = [x.xt(), x.xc(), x.yt(), x.yc(), x.s12(), x.s23()];
         if self.lower_strengths {
-            for ((x, widest), length) in strengths.iter_mut().zip(self.widest(point)).zip(lengths) {
+            for ((x, widest), length) in strengths.iter_mut().zip(self.widest(point, &shares)).zip(lengths) {
                 *x *= (widest / length).min(1.0).sqrt();
             }
         }
@@ -205,9 +215,9 @@ impl CrackBand {
         let tough = [toughness.gft(), toughness.gfc(), toughness.gmt(), toughness.gmc()];
         let soft = std::array::from_fn(|k| lengths[k] / tough[k]);
         let soft_shear = toughness.get(Toughness::Gms).map_or(soft, |g| [lengths[2] / g; 4]);
-        let (opened, cracked) = self.shares(e);
+        let (opened, cracked) = shares;
         Modes {
-            solid: Solid { e: moduli, coupling, g: [e.g12, e.g23, e.g13], opened },
+            solid: Self::solid(e, opened),
             strength: [xt, xc, yt, yc],
             shear: [sl, st],
             soft,
@@ -218,6 +228,7 @@ impl CrackBand {
                 Breaks::Splits => Matrix::Splits,
             },
             cracked,
+            fibres: <[f64; 2]>::try_from(point.means).ok().map(|squares| squares.map(f64::sqrt)),
         }
     }
 
@@ -277,6 +288,22 @@ impl PlyLaw for CrackBand {
         Memory::SINKS
     }
 
+    fn means(&self) -> usize {
+        2
+    }
+
+    /// h1², where it pulls and where it presses.
+    fn quantities(&self, point: &LawPoint<'_>, strain: &Strain6<Ply>, old: &[f64], out: &mut [f64]) {
+        let ([e1, e2, e3, ..], c, damage) = (strain.0, point.stiffness, Memory::read(old).damage);
+        let along = if damage == [0.0; 4] {
+            c[0][0] * e1 + c[0][1] * e2 + c[0][2] * e3
+        } else {
+            let elastic = &point.material.elastic;
+            Self::solid(elastic, self.shares(elastic).0).effective(&[e1, e2, e3], &damage, c).h[0]
+        };
+        out.copy_from_slice(&[along.max(0.0).powi(2), along.min(0.0).powi(2)]);
+    }
+
     fn check(&self, point: &LawPoint<'_>) -> Result<(), UnmetCondition> {
         let (x, e) = (&point.material.strengths, &point.material.elastic);
         let unmet = |condition, reason, values: [(&str, f64, &'static str); 2]| {
@@ -291,7 +318,7 @@ impl PlyLaw for CrackBand {
             let reason = "the permanent shear strain is one of a material that is isotropic about its fibres";
             return unmet("g12 = g13", reason, [("g12", e.g12, "Pa"), ("g13", e.g13, "Pa")]);
         }
-        let widest = self.widest(point);
+        let widest = self.widest(point, &self.shares(e));
         let lengths = self.lengths(point);
         let room = |k: &usize| widest[*k] / lengths[*k];
         let tightest = (0..widest.len()).min_by(|a, b| room(a).total_cmp(&room(b))).unwrap_or(0);
@@ -313,7 +340,7 @@ impl PlyLaw for CrackBand {
     }
 
     fn warning(&self, point: &LawPoint<'_>) -> Option<String> {
-        let (widest, lengths) = (self.widest(point), self.lengths(point));
+        let (widest, lengths) = (self.widest(point, &self.shares(&point.material.elastic)), self.lengths(point));
         let all = LIMITS.iter().zip(widest).zip(lengths);
         let lowered = all.filter(|((_, widest), length)| self.lower_strengths && length > widest);
         let lowered = lowered.filter_map(|(((which, _), widest), length)| {
@@ -352,7 +379,7 @@ impl PlyLaw for CrackBand {
         let e = &strain.0;
         let sheared = self.sheared(&modes, &old, [e[3], e[5]]);
         let t = [sheared.t[0], modes.solid.g[1] * e[4], sheared.t[1]];
-        let found = Found::new(&modes, &[e[0], e[1], e[2]], t, &old.damage, point.stiffness);
+        let found = Found::new(&modes, &[e[0], e[1], e[2]], t, &modes.begun(&old.damage), point.stiffness);
         let (damage, state) = (found.damage, found.state());
         let [left, left_before] = [damage, old.damage].map(|d| modes.shears_left(&d));
         let mut lost = old.lost;

@@ -56,9 +56,29 @@ pub(super) struct Modes {
     pub(super) matrix: Matrix,
     /// Share of the shears 12, 23, 13 that cracks of the matrix take at most.
     pub(super) cracked: [f64; 3],
+    /// Root mean squares of h1 over the ply in its cell, where it pulls and where it presses; none at a point alone.
+    pub(super) fibres: Option<[f64; 2]>,
 }
 
 impl Modes {
+    /// Whether a mode's damage is one of its cell and not of the point.
+    fn of_cell(&self, mode: usize) -> Option<f64> {
+        self.fibres.and_then(|along| along.get(mode).copied())
+    }
+
+    /// The damage that a point begins a step with: that of before, and of fibres what their cell asks for.
+    pub(super) fn begun(&self, before: &Damage) -> Damage {
+        std::array::from_fn(|mode| match self.of_cell(mode) {
+            Some(_) => self.target(mode, &State::default()).max(before[mode]),
+            None => before[mode],
+        })
+    }
+
+    /// Whether the damage of a mode follows the strain of the point.
+    pub(super) fn follows(&self, mode: usize) -> bool {
+        self.of_cell(mode).is_none()
+    }
+
     /// The fibre's and the matrix's mode.
     pub(super) fn of(&self, s: &State) -> [usize; 2] {
         let pressed = self.matrix != Matrix::Splits && s.pull() < 0.0;
@@ -67,6 +87,9 @@ impl Modes {
 
     /// How much of its strength a mode has used: 1 at onset, of degree 1 in the stresses.
     pub(super) fn exposure(&self, mode: usize, s: &State) -> f64 {
+        if let Some(along) = self.of_cell(mode) {
+            return along / self.strength[mode];
+        }
         match mode {
             0 => s.h[0] / self.strength[0],
             1 => -s.h[0] / self.strength[1],
@@ -167,6 +190,9 @@ impl Modes {
 
     /// κ: energy at onset over that of the crack, by the mix of the stresses.
     pub(super) fn brittleness(&self, mode: usize, s: &State, exposure: f64) -> f64 {
+        if self.of_cell(mode).is_some() {
+            return (self.soft[mode] * 0.5 * self.strength[mode].powi(2) / self.solid.e[0]).min(BRITTLE);
+        }
         let [normal, sheared] = self.released(mode, s);
         let kappa = (self.soft[mode] * normal + self.soft_shear[mode] * sheared) / (exposure * exposure);
         if kappa > BRITTLE { BRITTLE } else { kappa }

@@ -48,9 +48,10 @@ impl Permanent {
         let Yielding { alpha, strength, on } = *yielding;
         let most = yielding.most();
         let elastic = [strain[0] - self.left[0], strain[1] - self.left[1]];
-        let size = elastic[0].hypot(elastic[1]);
-        let limit = if self.way < most { (self.way / alpha).cbrt() } else { strength };
-        if !(g * size > limit && (on || self.way < most)) {
+        let size = (elastic[0] * elastic[0] + elastic[1] * elastic[1]).sqrt();
+        let curving = self.way < most;
+        let beyond = if curving { alpha * (g * size).powi(3) > self.way } else { on && g * size > strength };
+        if !beyond {
             let tangent = [[g, 0.0], [0.0, g]];
             return Sheared { t: elastic.map(|e| g * e), tangent, left: *self, lost: yielding.lost(self.way) };
         }

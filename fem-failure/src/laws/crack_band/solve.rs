@@ -33,7 +33,7 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// Solves d = max(d of before, target(h(d), t)).
+    /// Solves d = max(d of before, target(h(d), t)); what fibres have lost comes with `before` where it is one of their cell.
     pub(super) fn new(modes: &Modes, strain: &[f64; 3], t: [f64; 3], before: &Damage, stiffness: &Matrix6) -> Self {
         if *before == [0.0; 4] {
             let effective = modes.solid.sound(strain, stiffness);
@@ -76,7 +76,7 @@ impl Found {
         let state = State { h: effective.h, t };
         let [fibre, matrix] = modes.of(&state);
         let follows = [Some(fibre), Some(matrix), both.then_some(5 - matrix)].map(|mode| {
-            let mode = mode?;
+            let mode = mode.filter(|mode| modes.follows(*mode))?;
             let target = if before[mode] < 1.0 { modes.target(mode, &state) } else { 0.0 };
             // A point that has just been damaged is taken to go on.
             (target >= before[mode] - EXACT && target > 0.0).then(|| Follows {
@@ -167,7 +167,8 @@ impl Found {
 /// Energy that the damage of each mode releases between two states, ∫ Y dd, J/m³.
 ///
 /// Y = y e² with the mix of the stresses half-way, and e from that of the old damage to that of the new one: exact for one mode at a
-/// fixed mix. Where the matrix turns from tension to compression or back, its other damage begins at once, at the exposure there.
+/// fixed mix. What fibres of a cell lose as one is released by the stresses at the end, which those of the cell are a mean of: exact in
+/// the sum over the cell. Where the matrix turns from tension to compression or back, its other damage begins at once, at the exposure there.
 pub(super) fn released(modes: &Modes, damage: [&Damage; 2], states: [&State; 2]) -> [f64; 4] {
     let [old, new] = damage;
     let [before, after] = states;
@@ -176,7 +177,7 @@ pub(super) fn released(modes: &Modes, damage: [&Damage; 2], states: [&State; 2])
     for mode in (0..4).filter(|k| new[*k] > old[*k]) {
         let turned = mode > 1 && modes.of(before)[1] != mode;
         let half = before.between(after, 0.5);
-        let state = if modes.exposure(mode, &half) > 0.0 { half } else { *after };
+        let state = if modes.follows(mode) && modes.exposure(mode, &half) > 0.0 { half } else { *after };
         let energy = |state: &State, e: f64| {
             let [normal, _] = modes.released(mode, state);
             (normal + modes.relieved(state, &modes.takes(&middle, mode))) / (e * e)
