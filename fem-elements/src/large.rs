@@ -17,7 +17,7 @@ use fem_core::large::green_lagrange;
 use fem_core::quadrature::gauss_legendre;
 use fem_core::tensor::{Matrix6, apply};
 use fem_core::transverse::{AMPLITUDES, Amplitudes, Coupling, SmoothTransverse};
-use fem_core::vectorised::vectorised;
+use pulp::{Arch, Simd, WithSimd};
 
 /// Gradients [∂x, ∂y, ∂z] of `F` functions at an in-plane point, polynomials of `K` coefficients in q.
 pub(crate) type Gradients<const F: usize, const K: usize> = [[[f64; K]; 3]; F];
@@ -220,18 +220,21 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
         strains: &mut [f64],
     ) -> Result<(), ElementError> {
         let mut functions: Gradients<F, K> = [[[0.0; K]; 3]; F];
-        let unknowns = self.unknowns();
-        let (fields, mut volume) = (u.chunks_exact(self.info.ndof()), 0.0);
-        let mut means = vec![[[0.0; POWERS]; 6]; fields.len()];
+        let (unknowns, ndof) = (self.unknowns(), self.info.ndof());
+        let count = u.len() / ndof;
+        let groups: Vec<Vec<[f64; LANES]>> = u.chunks(LANES * ndof).map(|fields| side_by_side(fields, ndof)).collect();
+        let mut sums = vec![[[[0.0; LANES]; POWERS]; 6]; groups.len()];
+        let mut volume = 0.0;
         for point in plane {
             let dv = self.at(cell, point.at[0], point.at[1], &mut functions)? * point.weight();
             volume += dv;
-            vectorised(|| {
-                for (u, mean) in fields.clone().zip(&mut means) {
-                    add_strains(&gradient(&functions, &unknowns, u), dv, mean);
-                }
-            });
+            for (u, sums) in groups.iter().zip(&mut sums) {
+                Arch::new().dispatch(AddStrains { functions: &functions, unknowns: &unknowns, u, dv, sums });
+            }
         }
+        let of_field =
+            |k: usize| sums[k / LANES].map(|powers: [[f64; LANES]; POWERS]| powers.map(|sum| sum[k % LANES] / volume));
+        let means: Vec<[[f64; POWERS]; 6]> = (0..count).map(of_field).collect();
         let powers = |Part { q: [low, high], .. }: &Part| -> [f64; POWERS] {
             std::array::from_fn(|k| {
                 let p = k as i32 + 1;
@@ -239,12 +242,11 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
             })
         };
         let powers: Vec<[f64; POWERS]> = parts.iter().map(powers).collect();
-        for (mean, strains) in means.iter_mut().zip(strains.chunks_exact_mut((6 * parts.len()).max(1))) {
-            mean.as_flattened_mut().iter_mut().for_each(|mean| *mean /= volume);
+        for (mean, strains) in means.iter().zip(strains.chunks_exact_mut((6 * parts.len()).max(1))) {
             let transverse =
                 self.stresses.in_stack(cell.stack).map(|transverse| (transverse, transverse.amplitudes(mean)));
             for ((Part { slice, q }, powers), strains) in parts.iter().zip(&powers).zip(strains.as_chunks_mut().0) {
-                for (strain, mean) in strains.iter_mut().zip(&*mean) {
+                for (strain, mean) in strains.iter_mut().zip(mean) {
                     *strain = mean.iter().zip(powers).map(|(e, q)| e * q).sum::<f64>();
                 }
                 if let Some((transverse, a)) = &transverse {
@@ -270,6 +272,69 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
 
 /// Unknowns of the cell that multiply each function in each component.
 type Unknowns<const F: usize> = [[Option<usize>; 3]; F];
+
+/// Fields that are taken at a time.
+const LANES: usize = 4;
+
+/// Unknowns of a cell in fields that stand one after the other, at most [`LANES`]; lanes without a field are zero.
+fn side_by_side(fields: &[f64], ndof: usize) -> Vec<[f64; LANES]> {
+    let mut out = vec![[0.0; LANES]; ndof];
+    for (lane, field) in fields.chunks_exact(ndof).enumerate() {
+        out.iter_mut().zip(field).for_each(|(out, u)| out[lane] = *u);
+    }
+    out
+}
+
+/// Adds `dv` E at an in-plane point, as [`add_strains`] does, of several fields `u`.
+struct AddStrains<'a, const F: usize, const K: usize> {
+    functions: &'a Gradients<F, K>,
+    unknowns: &'a Unknowns<F>,
+    u: &'a [[f64; LANES]],
+    dv: f64,
+    sums: &'a mut [[[f64; LANES]; POWERS]; 6],
+}
+
+impl<const F: usize, const K: usize> WithSimd for AddStrains<'_, F, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { functions, unknowns, u, dv, sums } = self;
+        let mut h = [[[[0.0; LANES]; K]; 3]; 3];
+        for (component, h) in h.iter_mut().enumerate() {
+            // One component's coefficients stay in registers.
+            let mut coefficients = [[[0.0; LANES]; K]; 3];
+            for (gradient, unknowns) in functions.iter().zip(unknowns) {
+                let Some(unknown) = unknowns[component] else { continue };
+                let u = u[unknown];
+                for (sum, g) in coefficients.as_flattened_mut().iter_mut().zip(gradient.as_flattened()) {
+                    (0..LANES).for_each(|lane| sum[lane] = g.mul_add(u[lane], sum[lane]));
+                }
+            }
+            *h = coefficients;
+        }
+        for (a, rows) in STRAIN_ROW.iter().enumerate() {
+            for (b, row) in rows.iter().enumerate().skip(a) {
+                let dv = if a == b { 0.5 * dv } else { dv };
+                let mut strain = [[0.0; LANES]; POWERS];
+                for (k, strain) in strain.iter_mut().enumerate().take(K) {
+                    (0..LANES).for_each(|lane| strain[lane] = h[a][b][k][lane] + h[b][a][k][lane]);
+                }
+                for component in &h {
+                    for (i, x) in component[a].iter().enumerate() {
+                        for (j, y) in component[b].iter().enumerate() {
+                            let strain = &mut strain[i + j];
+                            (0..LANES).for_each(|lane| strain[lane] = x[lane].mul_add(y[lane], strain[lane]));
+                        }
+                    }
+                }
+                for (sum, strain) in sums[*row].iter_mut().zip(&strain) {
+                    (0..LANES).for_each(|lane| sum[lane] = dv.mul_add(strain[lane], sum[lane]));
+                }
+            }
+        }
+    }
+}
 
 /// H at an in-plane point.
 #[inline(always)]

@@ -267,7 +267,8 @@ fn several_fields_have_the_strains_of_each() {
     let stack = plies();
     for element in all() {
         let (cell, n) = (cell(&*element, &stack), element.info().ndof());
-        let fields = DVector::from_fn(3 * n, |i, _| 1e-5 * ((7 * i) as f64).sin());
+        // More than go side by side, and some that do not fill the lanes.
+        let fields = DVector::from_fn(6 * n, |i, _| 1e-5 * ((7 * i) as f64).sin());
         let each = fields
             .as_slice()
             .chunks_exact(n)

@@ -5,7 +5,7 @@ use pulp::{Arch, Simd, WithSimd};
 /// Runs `loops` compiled for the widest registers that the machine has, with the same result to the bit as anywhere else: what is
 /// multiplied and added stays a product and a sum, and no sum changes its order. A call is worth some dozens of operations.
 ///
-/// Loops are compiled so as far as they are inlined into `loops`.
+/// Loops are compiled so as far as they are inlined into `loops`, and `loops` itself where it is small: what is larger is a [`WithSimd`].
 pub fn vectorised<R>(loops: impl FnOnce() -> R) -> R {
     Arch::new().dispatch(loops)
 }

@@ -1,12 +1,11 @@
 //! A reduced plate whose deflections stretch it.
 
 use super::{Modal, Reduced};
-use crate::vector::{add_columns, axpy};
+use crate::vector::{axpy, dot, square_product};
 use fem_core::energy::Energy;
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
 use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent, Tangents};
-use fem_core::vectorised::vectorised;
 use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, DVectorView, DVectorViewMut, Dyn, SymmetricEigen};
 
 /// Membrane tensions under which the static responses to a contact are directions: their stiffness against a mode over its
@@ -259,13 +258,10 @@ impl MembranePlate {
     /// Finds B_t q and b_t.
     fn stretch(&mut self, q: &[f64]) {
         let forms = self.forms.chunks_exact(q.len() * q.len());
-        vectorised(|| {
-            for ((form, product), value) in forms.zip(self.products.chunks_exact_mut(q.len())).zip(&mut self.values) {
-                product.fill(0.0);
-                add_columns(form, q.len(), q, product);
-                *value = product.iter().zip(q).map(|(p, q)| p * q).sum();
-            }
-        });
+        for ((form, product), value) in forms.zip(self.products.chunks_exact_mut(q.len())).zip(&mut self.values) {
+            square_product(form, q, product);
+            *value = dot(product, q);
+        }
     }
 
     /// Adds to `force` what the stretching does beside the bending, ∂W/∂q − Λ q; returns its energy.
@@ -276,7 +272,7 @@ impl MembranePlate {
             let (value, tension) = (self.values[t], self.tension(t, q));
             // ½ σ b² + (cᵀ q) b
             energy += value * (tension - 0.5 * self.stiffness[t] * value);
-            force.iter_mut().zip(product).for_each(|(f, p)| *f += 2.0 * tension * p);
+            axpy(2.0 * tension, product, force);
             force.iter_mut().zip(self.coupling(t)).for_each(|(f, c)| *f += value * c);
         }
         energy

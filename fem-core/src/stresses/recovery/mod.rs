@@ -213,8 +213,10 @@ impl Recovery {
             for (layer, Parts { parts, shares, stations }) in layers[plate.region(quad)].iter().enumerate() {
                 let number = plate.cell_over(quad, layer);
                 plate.cell_dofs(number, &mut dofs);
-                local.clear();
-                local.extend(u.chunks_exact(plate.ndof()).flat_map(|u| dofs.iter().map(|dof| u[*dof])));
+                local.resize(dofs.len() * fields, 0.0);
+                for (local, u) in local.chunks_exact_mut(dofs.len()).zip(u.chunks_exact(plate.ndof())) {
+                    local.iter_mut().zip(&dofs).for_each(|(local, dof)| *local = u[*dof]);
+                }
                 of_parts.resize(6 * parts.len() * fields, 0.0);
                 large.mean_large_strains(&plate.cell(number), parts, &plane, &local, &mut of_parts)?;
                 let (here, next) = rest.split_at_mut(6 * stations * fields);
