@@ -167,7 +167,11 @@ impl Builder<'_> {
         let reduced = self.scene.impact().is_some_and(|impact| impact.reduction.name.value != NO_REDUCTION);
         let beside = [
             (self.scene.substructures.is_some(), "condensed substructures", "leave `substructures` out"),
-            (self.scene.delamination.is_some(), "delaminations that grow", "leave `stiffness` out"),
+            (
+                self.scene.delamination.is_some(),
+                "delaminations that grow",
+                if count > 0 { "hold the plate by kind = \"roller\"" } else { "leave `stiffness` out" },
+            ),
             (wants("preload"), "a preload", "leave `effects.preload` out"),
             (
                 wants("membrane") && !reduced,

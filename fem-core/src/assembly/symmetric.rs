@@ -2,9 +2,9 @@
 
 use super::{Pattern, PatternError};
 use crate::words::functional::Functional;
-use crate::words::vectorised::vectorised;
 use faer::sparse::ops::binary_op;
 use faer::sparse::{FaerError, SparseColMat, SparseColMatMut, SparseColMatRef};
+use pulp::{Arch, Simd, WithSimd};
 use std::sync::Arc;
 
 /// A symmetric matrix such as K or M: faer's sparse matrix of its lower triangle, on a pattern that it shares with others.
@@ -15,6 +15,27 @@ use std::sync::Arc;
 pub struct Symmetric {
     pattern: Arc<Pattern>,
     values: Vec<f64>,
+}
+
+/// `Y ← Y + scale · A X` of so many columns.
+struct Product<'a, const COLUMNS: usize> {
+    matrix: &'a Symmetric,
+    scale: f64,
+    x: &'a [f64],
+    y: &'a mut [f64],
+}
+
+impl<const COLUMNS: usize> WithSimd for Product<'_, COLUMNS> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { matrix, scale, x, y } = self;
+        match COLUMNS {
+            1 => matrix.add_product_of_one(scale, x, y),
+            _ => matrix.add_product_of::<COLUMNS>(scale, x, y),
+        }
+    }
 }
 
 impl Symmetric {
@@ -98,13 +119,13 @@ impl Symmetric {
         let (x, single) = x.split_at(x.len() - x.len() % (4 * n));
         let (fours, alone) = y.split_at_mut(x.len());
         for (x, y) in x.chunks(8 * n).zip(fours.chunks_mut(8 * n)) {
-            vectorised(|| match x.len() / n {
-                8 => self.add_product_of::<8>(scale, x, y),
-                _ => self.add_product_of::<4>(scale, x, y),
-            });
+            match x.len() / n {
+                8 => Arch::new().dispatch(Product::<8> { matrix: self, scale, x, y }),
+                _ => Arch::new().dispatch(Product::<4> { matrix: self, scale, x, y }),
+            }
         }
         for (x, y) in single.chunks_exact(n).zip(alone.chunks_exact_mut(n)) {
-            vectorised(|| self.add_product_of_one(scale, x, y));
+            Arch::new().dispatch(Product::<1> { matrix: self, scale, x, y });
         }
     }
 

@@ -24,8 +24,8 @@ use crate::vector::add_columns;
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
 use fem_core::structure::{SolveError, Structure};
-use fem_core::vectorised::vectorised;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
+use pulp::{Arch, Simd, WithSimd};
 
 /// Modal masses below this fraction of the largest (at equal stiffness) count as none: the mode follows statically.
 const MASSLESS: f64 = 1e-13;
@@ -192,14 +192,30 @@ impl Reduced {
         let n = self.ndof.max(1);
         let modes = self.basis.len() / n;
         u.fill(0.0);
-        vectorised(|| {
-            for first in (0..n).step_by(ROWS) {
-                for (q, u) in q.chunks_exact(modes.max(1)).zip(u.chunks_exact_mut(n)) {
-                    let end = n.min(first + ROWS);
-                    add_columns(&self.basis[first..], n, q, &mut u[first..end]);
-                }
+        Arch::new().dispatch(Expansion { basis: &self.basis, sizes: [n, modes.max(1)], q, u });
+    }
+}
+
+/// `u ← u + Φ q`, by blocks of rows; `sizes` are those of a field and of its q.
+struct Expansion<'a> {
+    basis: &'a [f64],
+    sizes: [usize; 2],
+    q: &'a [f64],
+    u: &'a mut [f64],
+}
+
+impl WithSimd for Expansion<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { basis, sizes: [n, modes], q, u } = self;
+        for first in (0..n).step_by(ROWS) {
+            for (q, u) in q.chunks_exact(modes).zip(u.chunks_exact_mut(n)) {
+                let end = n.min(first + ROWS);
+                add_columns(&basis[first..], n, q, &mut u[first..end]);
             }
-        });
+        }
     }
 }
 

@@ -1,11 +1,11 @@
 //! Forward and backward substitution, front by front.
 
 use super::analysis::{Front, Tree};
-use crate::words::vectorised::vectorised;
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, MatMut, MatRef, Par};
+use pulp::{Arch, Simd, WithSimd};
 
 /// Columns that the substitution of one right-hand side takes from a panel at a time.
 const WIDTH: usize = 4;
@@ -18,7 +18,24 @@ pub(super) const BLOCK: usize = 64;
 
 /// `x ← A⁻¹ x`; `local` is room for the largest front.
 pub(super) fn single(tree: &Tree, panels: &[f64], x: &mut [f64], local: &mut Vec<f64>) {
-    vectorised(|| substitute(tree, panels, x, local));
+    Arch::new().dispatch(Substitution { tree, panels, x, local });
+}
+
+struct Substitution<'a> {
+    tree: &'a Tree,
+    panels: &'a [f64],
+    x: &'a mut [f64],
+    local: &'a mut Vec<f64>,
+}
+
+impl WithSimd for Substitution<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { tree, panels, x, local } = self;
+        substitute(tree, panels, x, local);
+    }
 }
 
 #[inline(always)]

@@ -10,7 +10,7 @@ use crate::plates::slopes::bent;
 use crate::plates::window::{Centre, Mean, Source};
 use crate::words::material::Material;
 use crate::words::tensor::{Matrix6, Ply, Stress6, strain_rotation};
-use crate::words::vectorised::vectorised;
+use pulp::{Arch, Simd, WithSimd};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -172,15 +172,7 @@ impl Recovery {
                         add_product(operator, &local, strain);
                         continue;
                     }
-                    vectorised(|| {
-                        for (column, local) in operator.chunks_exact(6).zip(local.chunks_exact(fields)) {
-                            for (b, strain) in column.iter().zip(here.chunks_exact_mut(fields)) {
-                                if *b != 0.0 {
-                                    strain.iter_mut().zip(local).for_each(|(e, u)| *e += b * u);
-                                }
-                            }
-                        }
-                    });
+                    Arch::new().dispatch(AddProducts { operator, local: &local, fields, strains: here });
                 }
             }
         }
@@ -337,6 +329,30 @@ struct Parts {
     parts: Vec<Part>,
     shares: Vec<(usize, f64)>,
     stations: usize,
+}
+
+/// What a strain operator makes of several fields, which run fastest.
+struct AddProducts<'a> {
+    operator: &'a [f64],
+    local: &'a [f64],
+    fields: usize,
+    strains: &'a mut [f64],
+}
+
+impl WithSimd for AddProducts<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { operator, local, fields, strains } = self;
+        for (column, local) in operator.chunks_exact(6).zip(local.chunks_exact(fields)) {
+            for (b, strain) in column.iter().zip(strains.chunks_exact_mut(fields)) {
+                if *b != 0.0 {
+                    strain.iter_mut().zip(local).for_each(|(e, u)| *e += b * u);
+                }
+            }
+        }
+    }
 }
 
 /// What a strain operator makes of one field.
