@@ -54,7 +54,8 @@ pub(crate) fn write_table(dir: &OutputDir, model: &Model, grown: Option<&Delamin
 }
 
 /// Draws `c_scan`, where something is damaged: the projection, each cell in the colour of the uppermost interface that has delaminated
-/// there, then each interface; and `c_scan_times`, where something has delaminated: when it first was.
+/// there, then each interface, or, as long as nothing has delaminated, the damage of each; and `c_scan_times`, where something has
+/// delaminated: when it first was.
 ///
 /// # Errors
 /// As [`OutputDir::write`], and numbers that no plot can show.
@@ -129,12 +130,15 @@ fn times(model: &Model, grown: &Delaminated) -> Option<MapPlot> {
 fn c_scan(model: &Model, grown: &Delaminated) -> MapPlot {
     let view = view(model, grown);
     let blank = || vec![Fill::Blank; model.plate.plane.quads.len()];
-    let shown: Vec<_> = grown.interfaces.iter().filter(|one| one.area > 0.0).collect();
+    let delaminated = grown.interfaces.iter().any(|one| one.area > 0.0);
+    let damaged = |below: usize| grown.cells.iter().any(|cell| cell.below == below);
+    let shown = grown.interfaces.iter().filter(|one| if delaminated { one.area > 0.0 } else { damaged(one.below) });
+    let shown: Vec<_> = shown.collect();
     let mut projection = blank();
     let mut each = vec![blank(); shown.len()];
     for (quad, cell) in cells(model, grown) {
         let Some(number) = shown.iter().position(|one| one.below == cell.below) else { continue };
-        each[number][quad] = Fill::Share(cell.share);
+        each[number][quad] = Fill::Share(if delaminated { cell.share } else { cell.damage });
         if cell.share >= 0.5 {
             projection[quad] = match projection[quad] {
                 Fill::Class(upper) => Fill::Class(upper.max(number)),
@@ -142,13 +146,16 @@ fn c_scan(model: &Model, grown: &Delaminated) -> MapPlot {
             };
         }
     }
-    let title = format!("projection: {}", Dimension::AREA.of(grown.projected));
-    let mut panels = vec![panel(model, &view, title, &projection)];
+    let mut panels = Vec::new();
+    if delaminated {
+        let title = format!("projection: {}", Dimension::AREA.of(grown.projected));
+        panels.push(panel(model, &view, title, &projection));
+    }
     let titles = shown.iter().map(|one| format!("interface {}: {}", name(one.below), Dimension::AREA.of(one.area)));
     panels.extend(titles.zip(each).take(SHEET).map(|(title, fills)| panel(model, &view, title, &fills)));
     MapPlot {
-        scale: Some("delaminated share".into()),
-        classes: shown.iter().map(|one| name(one.below)).collect(),
+        scale: Some(if delaminated { "delaminated share" } else { "mean damage; nothing has delaminated" }.into()),
+        classes: if delaminated { shown.iter().map(|one| name(one.below)).collect() } else { Vec::new() },
         panels,
         ..sheet(model, "Delaminations")
     }

@@ -7,16 +7,21 @@ use fem::job::{self, Options, Results};
 use fem::{Registry, io::units::parse_as};
 use fem_core::plugin::Dimension;
 
+/// Runs `plate` with pictures, and gives the folder of its results.
+fn drawn(plate: &Plate) -> tempfile::TempDir {
+    let text = plate.text().replace("output = {", "output = { plots = true,");
+    let folder = tempfile::tempdir().unwrap();
+    let options = Options { results: Results::Folder(folder.path().to_owned()), ..Options::default() };
+    let scene = scene::parse(&text, &root().join("scene.toml")).unwrap();
+    job::run(&scene, &Registry::standard(), &options, &mut ()).unwrap();
+    folder
+}
+
 #[test]
 fn c_scans_say_where_and_when() {
     let plate = Plate { more: "", ..Plate::new() };
-    let text = plate.text().replace("output = {", "output = { plots = true,");
-    let folder = tempfile::tempdir().unwrap();
-    let results = Results::Folder(folder.path().join("results"));
-    let options = Options { results, ..Options::default() };
-    let scene = scene::parse(&text, &root().join("scene.toml")).unwrap();
-    job::run(&scene, &Registry::standard(), &options, &mut ()).unwrap();
-    let read = |name: &str| std::fs::read_to_string(folder.path().join("results").join(name)).unwrap();
+    let folder = drawn(&plate);
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
     assert!(read("c_scan.svg").contains("projection: "));
 
     // The spans of the legend end with the last cell of the table, and begin with the first.
@@ -34,4 +39,12 @@ fn c_scans_say_where_and_when() {
     near(said("first of all, from ")[0], first);
     near(said("until ").into_iter().fold(0.0, f64::max), last);
     assert!(last > first && last <= 400e-6);
+
+    // What is damaged is shown before anything has delaminated.
+    let end_us = (first * 1e6) as u32 - 4;
+    let folder = drawn(&Plate { end_us, ..plate });
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name));
+    let svg = read("c_scan.svg").unwrap();
+    assert!(svg.contains("mean damage; nothing has delaminated") && svg.contains("interface 1|2"), "{svg}");
+    assert!(!svg.contains("projection: ") && read("c_scan_times.svg").is_err());
 }
