@@ -26,7 +26,7 @@
 use crate::contracts::stack::Slice;
 use crate::words::quadrature::gauss_legendre;
 use crate::words::tensor::Matrix6;
-use nalgebra::{DMatrix, Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3, Vector6};
+use nalgebra::{DMatrix, Matrix2, Matrix3, SMatrix, SVector, Vector6};
 
 /// Rows of the strain 11 22 33 12 23 31 in the plane.
 const PLANE: [usize; 3] = [0, 1, 3];
@@ -49,15 +49,18 @@ const DEPENDENT: f64 = 1e-12;
 /// Gauss points through a ply: exact for cubic strains times Φ.
 const POINTS: usize = 3;
 
+/// sum += c x, each number by itself.
+#[inline(always)]
+fn add<const L: usize>(sum: &mut [f64; L], c: f64, x: &[f64; L]) {
+    (0..L).for_each(|lane| sum[lane] += c * x[lane]);
+}
+
 type Functions = SMatrix<f64, 3, AMPLITUDES>;
 /// Something of each amplitude from a strain.
 pub type Coupling = SMatrix<f64, AMPLITUDES, 6>;
 
 /// Transverse strains from a strain.
 pub type Operator = SMatrix<f64, 3, 6>;
-
-/// Amplitudes a of the stresses.
-pub type Amplitudes = SVector<f64, AMPLITUDES>;
 
 /// See the [module](self).
 #[derive(Debug, Clone, PartialEq)]
@@ -117,11 +120,19 @@ impl Ply {
     }
 
     /// Φ(q) a
-    fn stress(&self, q: f64, a: &Amplitudes) -> Vector3<f64> {
+    #[inline(always)]
+    fn stress<const L: usize>(&self, q: f64, a: &[[f64; L]; AMPLITUDES]) -> [[f64; L]; 3] {
         let [f0, f1] = self.shapes(q);
-        let pair = |k: usize| Vector2::new(a[k], a[k + 1]);
-        let shear = pair(3) + f0 * pair(5) + f1 * pair(7);
-        Vector3::new(a[0] + q * (a[1] + q * a[2]), shear[0], shear[1])
+        let mut stress = [a[0], a[3], a[4]];
+        add(&mut stress[0], q, &a[1]);
+        add(&mut stress[0], q * q, &a[2]);
+        for (i, stress) in stress[1..].iter_mut().enumerate() {
+            for j in 0..2 {
+                add(stress, f0[(i, j)], &a[5 + j]);
+                add(stress, f1[(i, j)], &a[7 + j]);
+            }
+        }
+        stress
     }
 
     /// e + P p of a unit strain.
@@ -204,41 +215,82 @@ impl SmoothTransverse {
         rows
     }
 
-    /// Amplitudes of strains Σ `strains`\[·\]\[k\] qᵏ.
-    pub fn amplitudes(&self, strains: &[[f64; QUADRATIC]; 6]) -> Amplitudes {
-        let each = self.gains.iter().enumerate();
-        each.map(|(k, gain)| gain * Vector6::from_fn(|row, _| strains[row][k])).sum()
+    /// Amplitudes a of strains Σ `strains`\[·\]\[k\] qᵏ, of `L` side by side.
+    #[inline(always)]
+    pub fn amplitudes<const L: usize>(&self, strains: &[[[f64; L]; QUADRATIC]; 6]) -> [[f64; L]; AMPLITUDES] {
+        let mut a = [[0.0; L]; AMPLITUDES];
+        for (k, gain) in self.gains.iter().enumerate() {
+            for (row, strain) in strains.iter().enumerate() {
+                for (i, a) in a.iter_mut().enumerate() {
+                    add(a, gain[(i, row)], &strain[k]);
+                }
+            }
+        }
+        a
     }
 
     /// Amplitudes of strains that are constant in each ply.
-    pub fn amplitudes_of(&self, strains: impl Iterator<Item = [f64; 6]>) -> Amplitudes {
+    pub fn amplitudes_of(&self, strains: impl Iterator<Item = [f64; 6]>) -> [f64; AMPLITUDES] {
         let each = self.plies.iter().zip(strains);
-        each.map(|(ply, strain)| ply.share * (ply.free() * Vector6::from(strain))).sum()
+        let sum: SVector<f64, AMPLITUDES> =
+            each.map(|(ply, strain)| ply.share * (ply.free() * Vector6::from(strain))).sum();
+        sum.into()
     }
 
-    /// Replaces the transverse rows of a strain by those of ε̄: of its mean over `part` of a ply, or its value where both bounds
-    /// are one.
-    pub fn assume(&self, slice: usize, part: [f64; 2], a: &Amplitudes, strain: &mut [f64; 6]) {
+    /// Replaces the transverse rows of strains by those of ε̄: of their means over `part` of a ply, or their values where both bounds
+    /// are one. `L` are taken side by side.
+    #[inline(always)]
+    pub fn assume<const L: usize>(
+        &self,
+        slice: usize,
+        part: [f64; 2],
+        a: &[[f64; L]; AMPLITUDES],
+        strain: &mut [[f64; L]; 6],
+    ) {
         let ply = &self.plies[slice];
-        let mut stress = Vector3::zeros();
-        match part {
+        let stress = match part {
             [low, high] if high > low => {
-                Ply::integrate(part, POINTS, |q, w| stress += ply.stress(q, a) * (w / (high - low)))
+                let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+                let mut mean = [[0.0; L]; 3];
+                for (t, w) in gauss_legendre(POINTS) {
+                    let stress = ply.stress(middle + half * t, a);
+                    mean.iter_mut().zip(&stress).for_each(|(mean, stress)| add(mean, 0.5 * w, stress));
+                }
+                mean
             }
-            [q, _] => stress = ply.stress(q, a),
+            [q, _] => ply.stress(q, a),
+        };
+        let plane = PLANE.map(|row| strain[row]);
+        for (i, row) in ACROSS.into_iter().enumerate() {
+            let mut across = [0.0; L];
+            for j in 0..3 {
+                add(&mut across, ply.compliance[(i, j)], &stress[j]);
+                add(&mut across, -ply.coupling[(i, j)], &plane[j]);
+            }
+            strain[row] = across;
         }
-        let plane = Vector3::from(PLANE.map(|row| strain[row]));
-        let across = ply.compliance * stress - ply.coupling * plane;
-        ACROSS.into_iter().zip(across.iter()).for_each(|(row, value)| strain[row] = *value);
     }
 
-    /// C ε̄ at q, of the strain's rows in the plane and the amplitudes.
-    #[inline]
-    pub fn stress(&self, slice: usize, q: f64, a: &Amplitudes, strain: &[f64; 6]) -> [f64; 6] {
+    /// C ε̄ at q, of the strains' rows in the plane and the amplitudes, of `L` side by side.
+    #[inline(always)]
+    pub fn stress<const L: usize>(
+        &self,
+        slice: usize,
+        q: f64,
+        a: &[[f64; L]; AMPLITUDES],
+        strain: &[[f64; L]; 6],
+    ) -> [[f64; L]; 6] {
         let ply = &self.plies[slice];
         let across = ply.stress(q, a);
-        let plane = ply.reduced * Vector3::from(PLANE.map(|row| strain[row])) + ply.coupling.tr_mul(&across);
-        [plane[0], plane[1], across[0], plane[2], across[1], across[2]]
+        let mut stress = [[0.0; L]; 6];
+        for (i, row) in PLANE.into_iter().enumerate() {
+            for j in 0..3 {
+                add(&mut stress[row], ply.reduced[(i, j)], &strain[PLANE[j]]);
+                add(&mut stress[row], ply.coupling[(j, i)], &across[j]);
+            }
+        }
+        ACROSS.into_iter().zip(across).for_each(|(row, across)| stress[row] = across);
+        stress
     }
 
     /// Q of a ply among zeros.

@@ -360,12 +360,12 @@ where
 
     fn held_stress(&self, stack: &Stack, part: &Part) -> [f64; 6] {
         let Slice { c, free, .. } = &stack.slices[part.slice];
-        let mut strain = *free;
+        let mut strain = free.map(|e| [e]);
         if let Some(transverse) = self.stresses.in_stack(stack) {
             let a = transverse.amplitudes_of(stack.slices.iter().map(|slice| slice.free));
-            transverse.assume(part.slice, part.q, &a, &mut strain);
+            transverse.assume(part.slice, part.q, &a.map(|a| [a]), &mut strain);
         }
-        apply(c, &strain).map(|s| -s)
+        apply(c, &strain.map(|[e]| e)).map(|s| -s)
     }
 
     fn triangular(&self) -> Option<&dyn Element> {

@@ -8,6 +8,7 @@ use super::{BELOW, Functions, HALVES, HermiteSolid, Jacobians, TERMS, column};
 use crate::hermite;
 use crate::large::{Displacements, Polynomial};
 use fem_core::element::{ElementInfo, PlaneMap};
+use pulp::{Arch, Simd, WithSimd};
 use std::fmt;
 
 /// Terms of a half; the even one leaves the last zero.
@@ -102,14 +103,33 @@ impl<'a, const H: usize> Natural<'a, H> {
 
 impl<const H: usize> Displacements<4> for Natural<'_, H> {
     fn gradient(&self, point: usize, plane: &PlaneMap) -> Polynomial<4> {
+        Arch::new().dispatch(Gradient { of: self, point, plane })
+    }
+
+    fn add(&mut self, point: usize, plane: &PlaneMap, stresses: &Polynomial<4>) {
+        Arch::new().dispatch(Add { to: self, point, plane, stresses });
+    }
+}
+
+/// [`Displacements::gradient`]
+struct Gradient<'a, const H: usize> {
+    of: &'a Natural<'a, H>,
+    point: usize,
+    plane: &'a PlaneMap,
+}
+
+impl<const H: usize> WithSimd for Gradient<'_, H> {
+    type Output = Polynomial<4>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Polynomial<4> {
+        let Self { of, point, plane } = self;
         let mut natural = [[[0.0; 4]; 3]; 3];
-        for ((half, table), u) in HALVES.into_iter().zip(&self.table.0[point]).zip(&self.u) {
+        for ((half, table), u) in HALVES.into_iter().zip(&of.table.0[point]).zip(&of.u) {
             let mut sums = [Components::default(); WIDTH];
             for (gradient, u) in table.iter().zip(u) {
                 for (sum, g) in sums.iter_mut().zip(gradient) {
-                    for (sum, u) in sum.iter_mut().zip(u) {
-                        *sum += g * u;
-                    }
+                    (0..4).for_each(|n| sum[n] = g.mul_add(u[n], sum[n]));
                 }
             }
             for ((d, k), sum) in TERMS[half].iter().zip(&sums) {
@@ -121,17 +141,31 @@ impl<const H: usize> Displacements<4> for Natural<'_, H> {
         let inverse = &plane.inverse;
         natural.map(|[r, s, q]| {
             let by = |d: usize| std::array::from_fn(|k| inverse[0][d] * r[k] + inverse[1][d] * s[k]);
-            [by(0), by(1), q.map(|c| c / self.half_height)]
+            [by(0), by(1), q.map(|c| c / of.half_height)]
         })
     }
+}
 
-    fn add(&mut self, point: usize, plane: &PlaneMap, stresses: &Polynomial<4>) {
+/// [`Displacements::add`]
+struct Add<'a, 'b, const H: usize> {
+    to: &'a mut Natural<'b, H>,
+    point: usize,
+    plane: &'a PlaneMap,
+    stresses: &'a Polynomial<4>,
+}
+
+impl<const H: usize> WithSimd for Add<'_, '_, H> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { to, point, plane, stresses } = self;
         let inverse = &plane.inverse;
         let natural: Polynomial<4> = stresses.map(|[x, y, z]| {
             let along = |d: usize| std::array::from_fn(|k| inverse[d][0] * x[k] + inverse[d][1] * y[k]);
-            [along(0), along(1), z.map(|p| p / self.half_height)]
+            [along(0), along(1), z.map(|p| p / to.half_height)]
         });
-        for ((half, table), force) in HALVES.into_iter().zip(&self.table.0[point]).zip(&mut self.force) {
+        for ((half, table), force) in HALVES.into_iter().zip(&to.table.0[point]).zip(&mut to.force) {
             let mut terms = [Components::default(); WIDTH];
             for ((d, k), term) in TERMS[half].iter().zip(&mut terms) {
                 for (term, natural) in term.iter_mut().zip(&natural) {
@@ -140,9 +174,7 @@ impl<const H: usize> Displacements<4> for Natural<'_, H> {
             }
             for (gradient, force) in table.iter().zip(force) {
                 for (term, g) in terms.iter().zip(gradient) {
-                    for (force, p) in force.iter_mut().zip(term) {
-                        *force += g * p;
-                    }
+                    (0..4).for_each(|n| force[n] = g.mul_add(term[n], force[n]));
                 }
             }
         }
