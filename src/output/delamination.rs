@@ -151,13 +151,14 @@ fn c_scan(model: &Model, grown: &Delaminated) -> MapPlot {
         let title = format!("projection: {}", Dimension::AREA.of(grown.projected));
         panels.push(panel(model, &view, title, &projection));
     }
-    let titles = shown.iter().map(|one| format!("interface {}: {}", name(one.below), Dimension::AREA.of(one.area)));
+    let area = |area: f64| if delaminated { format!(": {}", Dimension::AREA.of(area)) } else { String::new() };
+    let titles = shown.iter().map(|one| format!("interface {}{}", name(one.below), area(one.area)));
     panels.extend(titles.zip(each).take(SHEET).map(|(title, fills)| panel(model, &view, title, &fills)));
     MapPlot {
-        scale: Some(if delaminated { "delaminated share" } else { "mean damage; nothing has delaminated" }.into()),
+        scale: Some(if delaminated { "delaminated share" } else { "mean damage" }.into()),
         classes: if delaminated { shown.iter().map(|one| name(one.below)).collect() } else { Vec::new() },
         panels,
-        ..sheet(model, "Delaminations")
+        ..sheet(model, if delaminated { "Delaminations" } else { "Damaged interfaces, none delaminated" })
     }
 }
 

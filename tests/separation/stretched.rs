@@ -1,7 +1,8 @@
 //! Plies that follow laws in a plate whose deflections stretch it.
 
 use super::scenes::{Plate, STRONG, apart, forces, stretched};
-use crate::support::root;
+use super::specimens::{at, mean_and_ripple, reference};
+use crate::support::{impact_of, root};
 use fem::analyses::impact::{self, Checkpoint, March, Outcome};
 use fem::core::assembly::{LawPlate, Separable, SeparableParts};
 use fem::core::energy::Energy;
@@ -14,7 +15,9 @@ use fem::core::tensor::{Matrix6, Ply, Strain6, stress};
 use fem::dynamics::reduce::StretchedPlate;
 use fem::io::files::OutputDir;
 use fem::io::scene;
+use fem::io::tables::HistoryRow;
 use fem::{Model, Plan, Registry};
+use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
@@ -224,4 +227,25 @@ fn plies_split_in_wide_cells() {
         split > 2.0 * fibres + 0.003 && softer < force && softer > 0.7 * force,
         "{split} {fibres}, {softer} {force}"
     );
+}
+
+/// A delamination of a disc that deflects by half its thickness, struck slowly: tension raises the force at which it grows, as in von
+/// Kármán's plate; bending alone would leave it as it is.
+#[test]
+#[ignore = "half a minute"]
+fn a_circular_delamination_grows_against_tension_as_von_karman_says() {
+    let path = root().join("benches/specimens/circle-stretched.toml");
+    let scene = scene::parse(&std::fs::read_to_string(&path).unwrap(), &path).unwrap();
+    let outcome = impact_of(scene).unwrap().1.outcome;
+    let exact = |branch: &str| reference("stretched_disc", &format!("plate,{branch}"), ["radius_mm", "force_N"]);
+    let (stretching, bending) = (exact("stretching"), exact("bending"));
+    let radius_mm = |row: &HistoryRow| 1e3 * (row.effects[1] / PI).sqrt();
+    let grown: Vec<_> = outcome.history.iter().filter(|row| radius_mm(row) > 15.0).collect();
+    let of = |row: &&HistoryRow| Some(row.impactors[0].contact_force_n / at(&stretching, radius_mm(row))? - 1.0);
+    let errors: Vec<f64> = grown.iter().filter_map(of).collect();
+    let [mean, _] = mean_and_ripple(&errors);
+    let worst = errors.iter().fold(0.0_f64, |worst, error| worst.max(error.abs()));
+    assert!(errors.len() > 30 && mean.abs() < 0.015 && worst < 0.045, "{} {mean} {worst}", errors.len());
+    let wide = |exact: &[[f64; 2]]| at(exact, 25.0).unwrap();
+    assert!(wide(&stretching) > 1.1 * wide(&bending) && outcome.energy_error < 1e-3, "{:e}", outcome.energy_error);
 }
