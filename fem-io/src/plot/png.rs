@@ -4,6 +4,9 @@ use super::shapes::{Anchor, Color, DASH, Drawing, Shape, Text};
 use tiny_skia::{FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, StrokeDash, Transform};
 use ttf_parser::{Face, OutlineBuilder};
 
+/// Pixels per unit of a drawing: as wide as pages show it. For print, and to look at closely, there is the SVG file.
+const SCALE: f32 = 0.75;
+
 /// Why a drawing does not become a PNG file.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -23,7 +26,8 @@ pub enum PngError {
 /// The file.
 pub(super) fn render(drawing: &Drawing) -> Result<Vec<u8>, PngError> {
     let face = face()?;
-    let (width, height) = (drawing.width.ceil() as u32, drawing.height.ceil() as u32);
+    let [width, height] = [drawing.width, drawing.height].map(|size| (size as f32 * SCALE).ceil() as u32);
+    let whole = Transform::from_scale(SCALE, SCALE);
     let mut pixels = Pixmap::new(width, height).ok_or(PngError::Size { width, height })?;
     pixels.fill(tiny_skia::Color::WHITE);
     for shape in &drawing.shapes {
@@ -37,12 +41,12 @@ pub(super) fn render(drawing: &Drawing) -> Result<Vec<u8>, PngError> {
                         dash: if *dashed { StrokeDash::new(DASH.map(|d| d as f32).to_vec(), 0.0) } else { None },
                         ..Stroke::default()
                     };
-                    pixels.stroke_path(&path, &paint(*color), &stroke, Transform::identity(), None);
+                    pixels.stroke_path(&path, &paint(*color), &stroke, whole, None);
                 }
             }
             Shape::Dot { centre: [x, y], radius, color } => {
                 if let Some(path) = PathBuilder::from_circle(*x as f32, *y as f32, *radius as f32) {
-                    fill(&mut pixels, &path, *color, Transform::identity());
+                    fill(&mut pixels, &path, *color, whole);
                 }
             }
             Shape::Polygons { rings, fill: inside, edge } => {
@@ -50,8 +54,8 @@ pub(super) fn render(drawing: &Drawing) -> Result<Vec<u8>, PngError> {
                 for outline in outlines {
                     // The line along its edges smooths them.
                     let plain = Paint { anti_alias: false, ..paint(*inside) };
-                    pixels.fill_path(&outline, &plain, FillRule::Winding, Transform::identity(), None);
-                    pixels.stroke_path(&outline, &paint(*edge), &Stroke::default(), Transform::identity(), None);
+                    pixels.fill_path(&outline, &plain, FillRule::Winding, whole, None);
+                    pixels.stroke_path(&outline, &paint(*edge), &Stroke::default(), whole, None);
                 }
             }
             Shape::Text(text) => draw_text(&mut pixels, &face, text),
@@ -110,7 +114,8 @@ fn draw_text(pixels: &mut Pixmap, face: &Face<'_>, text: &Text) {
     let place = Transform::from_translate(start, 0.0)
         .post_scale(scale, -scale)
         .post_rotate(if text.upwards { -90.0 } else { 0.0 })
-        .post_translate(text.at[0] as f32, text.at[1] as f32);
+        .post_translate(text.at[0] as f32, text.at[1] as f32)
+        .post_scale(SCALE, SCALE);
     fill(pixels, &path, text.color, place);
 }
 
