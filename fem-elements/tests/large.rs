@@ -102,12 +102,13 @@ fn without_displacements_there_is_no_force_and_the_tangent_is_the_stiffness() {
     }
 }
 
-/// Elements may sum forces alone in another way than with the tangent.
+/// Elements may sum forces alone in another way than with the tangent, several points at a time and what is left of them.
 #[test]
 fn forces_are_the_same_without_the_tangent() {
     let stack = hot_plies();
     let quadrilateral = [[0.0, 0.0], [2.0e-3, 0.4e-3], [2.5e-3, 1.9e-3], [-0.3e-3, 1.2e-3]];
-    for element in all() {
+    let other_orders = [3, 5].map(|order| Box::new(HermitePrism::new(Mass::Cubic, order).unwrap()) as Box<dyn Element>);
+    for element in all().chain(other_orders) {
         let regular = cell(&*element, &stack);
         let corners = if element.info().is_section() { regular.corners } else { quadrilateral.into() };
         let cell = Cell { corners, ..regular };

@@ -237,8 +237,8 @@ impl SmoothTransverse {
         sum.into()
     }
 
-    /// Replaces the transverse rows of strains by those of ε̄: of their means over `part` of a ply, or their values where both bounds
-    /// are one. `L` are taken side by side.
+    /// Replaces the transverse rows of strains by those of ε̄, and gives the transverse stresses Φ a: of means over `part` of a ply, or
+    /// of values where both bounds are one. `L` are taken side by side.
     #[inline(always)]
     pub fn assume<const L: usize>(
         &self,
@@ -246,7 +246,7 @@ impl SmoothTransverse {
         part: [f64; 2],
         a: &[[f64; L]; AMPLITUDES],
         strain: &mut [[f64; L]; 6],
-    ) {
+    ) -> [[f64; L]; 3] {
         let ply = &self.plies[slice];
         let stress = match part {
             [low, high] if high > low => {
@@ -269,19 +269,18 @@ impl SmoothTransverse {
             }
             strain[row] = across;
         }
+        stress
     }
 
-    /// C ε̄ at q, of the strains' rows in the plane and the amplitudes, of `L` side by side.
+    /// C ε̄ of the strains' rows in the plane and the transverse stresses, of `L` side by side.
     #[inline(always)]
     pub fn stress<const L: usize>(
         &self,
         slice: usize,
-        q: f64,
-        a: &[[f64; L]; AMPLITUDES],
+        across: &[[f64; L]; 3],
         strain: &[[f64; L]; 6],
     ) -> [[f64; L]; 6] {
         let ply = &self.plies[slice];
-        let across = ply.stress(q, a);
         let mut stress = [[0.0; L]; 6];
         for (i, row) in PLANE.into_iter().enumerate() {
             for j in 0..3 {
@@ -289,7 +288,7 @@ impl SmoothTransverse {
                 add(&mut stress[row], ply.coupling[(j, i)], &across[j]);
             }
         }
-        ACROSS.into_iter().zip(across).for_each(|(row, across)| stress[row] = across);
+        ACROSS.into_iter().zip(across).for_each(|(row, across)| stress[row] = *across);
         stress
     }
 

@@ -79,8 +79,8 @@ impl<'a> Layer<'a> {
         match smooth {
             None => product(&slice.c, strain),
             Some((all, a)) => {
-                all.assume(number, [q, q], a, strain);
-                all.stress(number, q, a, strain)
+                let across = all.assume(number, [q, q], a, strain);
+                all.stress(number, &across, strain)
             }
         }
     }
