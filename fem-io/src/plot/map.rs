@@ -125,7 +125,7 @@ pub(super) fn share(value: f64) -> Color {
 /// Most panels of a picture.
 const MOST_PANELS: usize = 24;
 
-/// Draws `plot`, 1600 pixels wide. Cells of one colour are one path of the SVG.
+/// Draws `plot`. Cells of one colour are one path of the SVG.
 ///
 /// # Errors
 /// No panels or no cells; more than 24 panels; a cell of fewer than three corners, a class without a name; coordinates

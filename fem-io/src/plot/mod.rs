@@ -152,7 +152,7 @@ pub struct Doubt {
 pub struct Picture {
     /// SVG document.
     pub svg: String,
-    /// PNG file, 1600 pixels wide.
+    /// PNG file, 1200 pixels wide.
     pub png: Vec<u8>,
 }
 
@@ -317,18 +317,20 @@ mod tests {
         }
     }
 
-    fn colored(picture: &Picture, [r, g, b]: [u8; 3]) -> usize {
+    /// What is purely of this colour, in square units of the drawing.
+    fn area(picture: &Picture, [r, g, b]: [u8; 3]) -> f64 {
         let pixels = Pixmap::decode_png(&picture.png).unwrap();
-        pixels.pixels().iter().filter(|p| [p.red(), p.green(), p.blue()] == [r, g, b]).count()
+        let count = pixels.pixels().iter().filter(|p| [p.red(), p.green(), p.blue()] == [r, g, b]).count();
+        count as f64 * (layout::WIDTH / f64::from(pixels.width())).powi(2)
     }
 
     #[test]
-    fn equal_plots_give_equal_bytes_1600_pixels_wide() {
+    fn equal_plots_give_equal_bytes_1200_pixels_wide() {
         let history = |n: usize| -> Vec<_> { (0..n).map(|i| (i as f64, (i as f64 * 0.1).sin())).collect() };
         let picture = line_plot(&plot(&history(500))).unwrap();
         assert_eq!(picture, line_plot(&plot(&history(500))).unwrap());
         let pixels = Pixmap::decode_png(&picture.png).unwrap();
-        assert_eq!(pixels.width(), 1600);
+        assert_eq!(pixels.width(), 1200);
         assert!(picture.svg.starts_with("<svg xmlns") && picture.svg.contains("viewBox=\"0 0 1600 "));
     }
 
@@ -349,9 +351,9 @@ mod tests {
         let picture = line_plot(&plot).unwrap();
         assert!(picture.svg.contains("stroke=\"#0072b2\"") && picture.svg.contains(">a &lt; b &amp; c</text>"));
         assert!(picture.svg.contains(">Time (ms)</text>") && picture.svg.contains(">Ratio</text>"));
-        // A line of 1560 pixels, 3.5 wide, and a dot of radius 8.
-        assert!((2000..6000).contains(&colored(&picture, [0x00, 0x72, 0xb2])));
-        assert!((120..220).contains(&colored(&picture, [0xd5, 0x5e, 0x00])));
+        // A line 1560 long and 3.5 wide, and a dot of radius 8.
+        assert!((2000.0..6000.0).contains(&area(&picture, [0x00, 0x72, 0xb2])));
+        assert!((120.0..220.0).contains(&area(&picture, [0xd5, 0x5e, 0x00])));
     }
 
     #[test]
@@ -428,7 +430,7 @@ mod tests {
         {
             let picture = line_plot(&plot(points)).unwrap();
             assert!(!picture.svg.contains("NaN") && !picture.svg.contains("inf"), "{points:?}");
-            assert!(colored(&picture, [0x00, 0x72, 0xb2]) > 50, "{points:?}");
+            assert!(area(&picture, [0x00, 0x72, 0xb2]) > 50.0, "{points:?}");
         }
     }
 
@@ -439,7 +441,7 @@ mod tests {
             (plot.x.scale, plot.y.scale) = (Scale::Logarithmic, Scale::Logarithmic);
             let picture = line_plot(&plot).unwrap();
             assert!(!picture.svg.contains("NaN") && !picture.svg.contains("inf"), "{points:?}");
-            assert!(colored(&picture, [0x00, 0x72, 0xb2]) > 50, "{points:?}");
+            assert!(area(&picture, [0x00, 0x72, 0xb2]) > 50.0, "{points:?}");
         }
     }
 
