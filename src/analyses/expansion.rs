@@ -39,8 +39,7 @@ impl Expansion<'_> {
         let mut u = vec![0.0; n * count];
         reduced.expand(coordinates, &mut u);
         if let Some(companions) = &self.companions {
-            let fields = coordinates.chunks_exact(width).zip(u.chunks_exact_mut(n));
-            fields.for_each(|(q, u)| companions.complete(q, u));
+            companions.complete(width, coordinates, &mut u);
         }
         self.nodal(&u)
     }

@@ -170,14 +170,17 @@ fn errors_grow_with_the_cells_per_process_zone() {
     }
 }
 
-/// Finite elements with closed cracks that others published: where the crack begins to grow.
+/// Finite elements with closed cracks that others published: the force at which the crack begins to grow. Where modes mix with little
+/// shear the peak over a process zone is flat, and comes up to a twentieth later.
 #[test]
-#[ignore = "a quarter of a minute"]
-fn a_published_benchmark_is_met() {
-    let (_, found) = followed("benchmark-mmb-50", &[]);
-    let figures = found.summary.path.as_ref().unwrap();
-    let [force, moved] = [figures.peak_force_N / 385.0, figures.displacement_at_peak_m / 1.34e-3];
-    assert!((force - 1.0).abs() < 0.05 && (moved - 1.0).abs() < 0.05, "{force} {moved}");
+#[ignore = "a minute"]
+fn published_benchmarks_are_met() {
+    for (name, published, moved) in [("20", 128.5, 1.64e-3), ("50", 385.0, 1.34e-3), ("80", 751.0, 1.65e-3)] {
+        let (_, found) = followed(&format!("benchmark-mmb-{name}"), &[]);
+        let figures = found.summary.path.as_ref().unwrap();
+        let [force, later] = [figures.peak_force_N / published, figures.displacement_at_peak_m / moved];
+        assert!((force - 1.0).abs() < 0.05 && (0.99..1.07).contains(&later), "{name}: {force} {later}");
+    }
 }
 
 /// The force may be given or the displacement, at its nodes or as their multiple: the path is one.

@@ -1,12 +1,14 @@
 //! A reduced plate whose deflections stretch it.
 
-use super::{Modal, Reduced};
-use crate::vector::{axpy, dot, square_product};
+use super::forms::Forms;
+use super::{Expansion, Modal, Reduced};
+use crate::vector::{axpy, dot};
 use fem_core::energy::Energy;
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
 use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent, Tangents};
-use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, DVectorView, DVectorViewMut, Dyn, SymmetricEigen};
+use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, DVectorView, SymmetricEigen};
+use pulp::Arch;
 
 /// Membrane tensions under which the static responses to a contact are directions: their stiffness against a mode over its
 /// bending stiffness, of the lowest mode, 0 for none. That of tension grows with k², that of bending with k⁴.
@@ -75,17 +77,21 @@ pub trait MembraneForms {
 #[derive(Debug, Clone)]
 pub struct MembranePlate {
     modal: Modal,
-    /// B_t, one after the other.
-    forms: Vec<f64>,
+    /// B_t
+    forms: Forms,
     /// σ_t
     stiffness: Vec<f64>,
     /// c_t, one after the other; empty where none matters.
     couplings: Vec<f64>,
-    factor: Option<Cholesky<f64, Dyn>>,
-    /// B_t q.
+    /// Inverse of the tangent: of so few unknowns its product takes a third of what two triangular solves take.
+    inverse: Option<Forms>,
+    /// B_t q, [`Forms::stride`] numbers each.
     products: Vec<f64>,
     /// b_t.
     values: Vec<f64>,
+    /// Room for products.
+    padded: Vec<f64>,
+    solution: Vec<f64>,
 }
 
 /// What a plate does beside its modes because they stretch it: Σ a_t s_t, a_t = qᵀ A_t q.
@@ -108,9 +114,13 @@ pub(super) struct Patterns {
 }
 
 impl Companions {
-    /// Adds to u = Φ q what the stretching adds.
-    pub fn complete(&self, q: &[f64], u: &mut [f64]) {
-        self.amounts(q).zip(self.shapes(u.len())).for_each(|(a, shape)| axpy(a, shape, u));
+    /// Adds to u = Φ q what the stretching adds, of one field, or of several of `modes` coordinates each, one after the other.
+    pub fn complete(&self, modes: usize, q: &[f64], u: &mut [f64]) {
+        let amounts: Vec<f64> = q.chunks_exact(modes.max(1)).flat_map(|q| self.amounts(q)).collect();
+        let sizes = [u.len() * modes / q.len().max(1), self.forms.len() / (modes * modes).max(1)];
+        if !amounts.is_empty() {
+            Arch::new().dispatch(Expansion { basis: &self.shapes, sizes, q: &amounts, u });
+        }
     }
 
     /// a_t
@@ -219,56 +229,51 @@ impl MembranePlate {
         let taken = couplings.column_iter().flat_map(|c| c.into_iter().zip(&bending).map(|(c, k)| c * c / k));
         let coupled = taken.fold(0.0, f64::max) > NEGLIGIBLE * stiffness.max();
         let turned = &combinations * &turn;
+        let of_left = counted(forms(&turned, Some(&shapes_of_left))?, &stiffness);
+        let packed = Forms::new(bending.len(), &of_left);
         let plate = Self {
             modal: reduced.modal.clone(),
-            forms: counted(forms(&turned, Some(&shapes_of_left))?, &stiffness),
             couplings: if coupled { couplings.as_slice().to_vec() } else { Vec::new() },
-            products: vec![0.0; bending.len() * stiffness.len()],
+            products: vec![0.0; packed.stride() * stiffness.len()],
+            forms: packed,
             values: vec![0.0; stiffness.len()],
             stiffness: stiffness.as_slice().to_vec(),
-            factor: None,
+            inverse: None,
+            padded: Vec::new(),
+            solution: Vec::new(),
         };
         let forms = counted(forms(&combinations, None)?, &energies);
         let patterns = Patterns {
             deflections: fields.as_slice().to_vec(),
             combinations: turned.as_slice().to_vec(),
-            follow: Companions { forms: plate.forms.clone(), shapes: shapes_of_left.as_slice().to_vec() },
+            follow: Companions { forms: of_left, shapes: shapes_of_left.as_slice().to_vec() },
         };
         Ok((plate, Companions { forms, shapes: shapes.as_slice().to_vec() }, patterns))
     }
 
     /// The same plate with other modes in bending, as many.
     pub fn with(&self, modal: Modal) -> Self {
-        Self { modal, factor: None, ..self.clone() }
+        Self { modal, inverse: None, ..self.clone() }
     }
 
     /// The same plate, stretched by the slowest `count` of its modes alone.
     #[must_use]
     pub fn stretched_by(&self, count: usize) -> Self {
-        let n = self.modal.stiffnesses().len();
-        let mut slow = self.clone();
-        for form in slow.forms.chunks_exact_mut(n * n) {
-            for (j, column) in form.chunks_exact_mut(n).enumerate() {
-                column[if j < count { count.min(n) } else { 0 }..].fill(0.0);
-            }
-        }
-        slow
+        Self { forms: self.forms.of_the_first(count), ..self.clone() }
     }
 
     /// Finds B_t q and b_t.
     fn stretch(&mut self, q: &[f64]) {
-        let forms = self.forms.chunks_exact(q.len() * q.len());
-        for ((form, product), value) in forms.zip(self.products.chunks_exact_mut(q.len())).zip(&mut self.values) {
-            square_product(form, q, product);
-            *value = dot(product, q);
-        }
+        self.forms.products(q, &mut self.padded, &mut self.products);
+        let products = self.products.chunks_exact(self.forms.stride().max(1));
+        products.zip(&mut self.values).for_each(|(product, value)| *value = dot(&product[..q.len()], q));
     }
 
     /// Adds to `force` what the stretching does beside the bending, ∂W/∂q − Λ q; returns its energy.
     pub(super) fn add_tension(&mut self, q: &[f64], force: &mut [f64]) -> f64 {
         self.stretch(q);
         let mut energy = 0.0;
-        for (t, product) in self.products.chunks_exact(q.len()).enumerate() {
+        for (t, product) in self.products.chunks_exact(self.forms.stride().max(1)).enumerate() {
             let (value, tension) = (self.values[t], self.tension(t, q));
             // ½ σ b² + (cᵀ q) b
             energy += value * (tension - 0.5 * self.stiffness[t] * value);
@@ -432,9 +437,9 @@ impl Tangents for MembranePlate {
         self.stretch(q);
         let n = q.len();
         let mut tangent = DMatrix::zeros(n, n);
-        for (t, (form, product)) in self.forms.chunks_exact(n * n).zip(self.products.chunks_exact(n)).enumerate() {
-            let (form, product) = (DMatrixView::from_slice(form, n, n), DVectorView::from_slice(product, n));
-            tangent += form * (2.0 * self.tension(t, q));
+        for (t, product) in self.products.chunks_exact(self.forms.stride().max(1)).enumerate() {
+            let product = DVectorView::from_slice(product, n);
+            tangent += self.forms.matrix(t) * (2.0 * self.tension(t, q));
             tangent.ger(4.0 * self.stiffness[t], &product, &product, 1.0);
             let coupling = self.coupling(t);
             if !coupling.is_empty() {
@@ -448,16 +453,18 @@ impl Tangents for MembranePlate {
             let own = if *k == 0.0 && *mass == 0.0 { f64::INFINITY } else { k + cm * mass };
             tangent[(i, i)] += own + cc * self.modal.damping.get(i).unwrap_or(&0.0);
         }
-        self.factor = None;
-        self.factor = Some(Cholesky::new(tangent).ok_or(SolveError::Buckled)?);
+        self.inverse = None;
+        let inverse = Cholesky::new(tangent).ok_or(SolveError::Buckled)?.inverse();
+        self.inverse = Some(Forms::new(n, inverse.as_slice()));
         Ok(())
     }
 
     fn solve_linearised(&mut self, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
-        let factor = self.factor.as_ref().ok_or(SolveError::NotLinearised)?;
+        let inverse = self.inverse.as_ref().ok_or(SolveError::NotLinearised)?;
+        self.solution.resize(inverse.stride(), 0.0);
         for column in x.chunks_exact_mut(self.modal.ndof()).take(columns) {
-            let n = column.len();
-            factor.solve_mut(&mut DVectorViewMut::from_slice(column, n));
+            inverse.products(column, &mut self.padded, &mut self.solution);
+            column.iter_mut().zip(&self.solution).for_each(|(x, solution)| *x = *solution);
         }
         Ok(())
     }

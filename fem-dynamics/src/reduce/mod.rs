@@ -2,6 +2,7 @@
 
 mod craig_bampton;
 mod diagonal;
+mod forms;
 mod governors;
 mod guyan;
 mod irs;

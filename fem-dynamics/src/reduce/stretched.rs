@@ -58,7 +58,7 @@ impl Share {
     pub fn complete(&self, u: &mut [f64]) {
         let mut q = vec![0.0; self.modes];
         self.of(u, &mut q);
-        self.companions.complete(&q, u);
+        self.companions.complete(self.modes, &q, u);
     }
 }
 

@@ -16,7 +16,7 @@ use fem_core::large::LargeDeflection;
 use fem_core::plugin::{ParamError, ParamInfo, Params, Role};
 use fem_core::tensor::apply;
 use fem_core::transverse::ACROSS;
-use natural::{Natural, Table};
+use natural::{Natural, NaturalFields, Table};
 use std::fmt::Debug;
 use std::ops::Range;
 
@@ -104,7 +104,7 @@ where
     /// With smooth transverse stresses.
     pub(crate) fn of(info: ElementInfo, mass: Mass, triangular: Option<HermiteSolid<24, 12>>) -> Self {
         let triangular = triangular.map(Box::new);
-        Self { table: Table::new::<F>(&info), info, mass, stresses: TransverseStresses::Smooth, triangular }
+        Self { table: Table::new::<F>(info.plane()), info, mass, stresses: TransverseStresses::Smooth, triangular }
     }
 
     /// The same with these transverse stresses; [`TransverseStresses::Smooth`] if nothing is said.
@@ -490,6 +490,9 @@ where
         u: &[f64],
         strains: &mut [f64],
     ) -> Result<(), ElementError> {
-        self.solid(cell, |solid| solid.mean_strains(cell, (parts, plane), u, strains))
+        let own = if plane == self.info.plane() { None } else { Some(Table::new::<F>(plane)) };
+        let table = own.as_ref().unwrap_or(&self.table);
+        let mut fields = NaturalFields::new(table, &self.jacobians(cell), cell.half_height(), u);
+        large::mean_strains(cell, (parts, plane), self.stresses, &mut fields, strains)
     }
 }

@@ -6,8 +6,8 @@
 
 use super::{BELOW, Functions, HALVES, HermiteSolid, Jacobians, TERMS, column};
 use crate::hermite;
-use crate::large::{Displacements, Polynomial};
-use fem_core::element::{ElementInfo, PlaneMap};
+use crate::large::{Displacements, Fields, LANES, Polynomial, Polynomials, Strains, add_strains};
+use fem_core::element::{PlaneMap, Point};
 use pulp::{Arch, Simd, WithSimd};
 use std::fmt;
 
@@ -32,11 +32,12 @@ impl<const H: usize> fmt::Debug for Table<H> {
 }
 
 impl<const H: usize> Table<H> {
-    pub(super) fn new<const F: usize>(info: &ElementInfo) -> Self
+    pub(super) fn new<const F: usize>(points: &[Point]) -> Self
     where
         HermiteSolid<F, H>: Functions,
     {
-        let at = |(r, s, _)| {
+        let at = |point: &Point| {
+            let [r, s] = point.at;
             let mut parts = [[[0.0; WIDTH]; H]; 2];
             for f in 0..H {
                 let (functions, m) = (HermiteSolid::<F, H>::node_functions((H + f) / 4, r, s), f % 4);
@@ -49,7 +50,7 @@ impl<const H: usize> Table<H> {
             }
             parts
         };
-        Self(info.plane_points().map(at).collect())
+        Self(points.iter().map(at).collect())
     }
 }
 
@@ -61,27 +62,33 @@ pub(super) struct Natural<'a, const H: usize> {
     force: Parts<H>,
 }
 
-impl<'a, const H: usize> Natural<'a, H> {
-    pub(super) fn new(table: &'a Table<H>, jacobians: &Jacobians, half_height: f64, u: &[f64]) -> Self {
-        let mut parts = [[Components::default(); H]; 2];
-        for (below, jacobian) in jacobians[..H / 4].iter().enumerate() {
-            for n in 0..3 {
-                // A node stands upright above the one below it: both have the same Jacobian.
-                let [low, high] = [4 * below, H + 4 * below].map(|f| {
-                    let [v, x, y, z] = std::array::from_fn(|m| u[column(n, f + m)]);
-                    let [[x_r, y_r], [x_s, y_s]] = jacobian;
-                    [v, x_r * x + y_r * y, x_s * x + y_s * y, half_height * z]
-                });
-                for m in 0..4 {
-                    parts[0][4 * below + m][n] = high[m] + BELOW[m] * low[m];
-                    parts[1][4 * below + m][n] = high[m] - BELOW[m] * low[m];
-                }
+/// The even and the odd parts of displacements.
+fn parts<const H: usize>(jacobians: &Jacobians, half_height: f64, u: &[f64]) -> Parts<H> {
+    let mut parts = [[Components::default(); H]; 2];
+    for (below, jacobian) in jacobians[..H / 4].iter().enumerate() {
+        for n in 0..3 {
+            // A node stands upright above the one below it: both have the same Jacobian.
+            let [low, high] = [4 * below, H + 4 * below].map(|f| {
+                let [v, x, y, z] = std::array::from_fn(|m| u[column(n, f + m)]);
+                let [[x_r, y_r], [x_s, y_s]] = jacobian;
+                [v, x_r * x + y_r * y, x_s * x + y_s * y, half_height * z]
+            });
+            for m in 0..4 {
+                parts[0][4 * below + m][n] = high[m] + BELOW[m] * low[m];
+                parts[1][4 * below + m][n] = high[m] - BELOW[m] * low[m];
             }
         }
-        Self { table, half_height, u: parts, force: [[Components::default(); H]; 2] }
+    }
+    parts
+}
+
+impl<'a, const H: usize> Natural<'a, H> {
+    pub(super) fn new(table: &'a Table<H>, jacobians: &Jacobians, half_height: f64, u: &[f64]) -> Self {
+        let u = parts(jacobians, half_height, u);
+        Self { table, half_height, u, force: [[Components::default(); H]; 2] }
     }
 
-    /// The transpose of what [`Self::new`] does to the displacements.
+    /// The transpose of what [`parts`] does to the displacements.
     pub(super) fn force(&self, jacobians: &Jacobians, force: &mut [f64]) {
         for (below, jacobian) in jacobians[..H / 4].iter().enumerate() {
             for n in 0..3 {
@@ -178,5 +185,92 @@ impl<const H: usize> WithSimd for Add<'_, '_, H> {
                 }
             }
         }
+    }
+}
+
+/// Displacements of a cell in several fields, side by side.
+pub(super) struct NaturalFields<'a, const H: usize> {
+    table: &'a Table<H>,
+    half_height: f64,
+    groups: Vec<[[[[f64; LANES]; 3]; H]; 2]>,
+    at: usize,
+    inverse: [[f64; 2]; 2],
+}
+
+impl<'a, const H: usize> NaturalFields<'a, H> {
+    /// Of the displacements `u`, field by field, at the points of `table`.
+    pub(super) fn new(table: &'a Table<H>, jacobians: &Jacobians, half_height: f64, u: &[f64]) -> Self {
+        let ndof = 6 * H;
+        let group = |fields: &[f64]| {
+            let mut group = [[[[0.0; LANES]; 3]; H]; 2];
+            for (lane, u) in fields.chunks_exact(ndof).enumerate() {
+                let parts: Parts<H> = parts(jacobians, half_height, u);
+                for (group, u) in group.as_flattened_mut().iter_mut().zip(parts.as_flattened()) {
+                    group.iter_mut().zip(u).for_each(|(lanes, u)| lanes[lane] = *u);
+                }
+            }
+            group
+        };
+        Self { table, half_height, groups: u.chunks(LANES * ndof).map(group).collect(), at: 0, inverse: [[0.0; 2]; 2] }
+    }
+}
+
+impl<const H: usize> Fields for NaturalFields<'_, H> {
+    fn groups(&self) -> usize {
+        self.groups.len()
+    }
+
+    fn go_to(&mut self, number: usize, _point: &Point, plane: &PlaneMap) {
+        self.at = number;
+        self.inverse = plane.inverse;
+    }
+
+    fn add_strains(&self, group: usize, dv: f64, sums: &mut Strains<LANES>) {
+        let Self { table, half_height, groups, at, inverse } = self;
+        let (table, u) = (&table.0[*at], &groups[group]);
+        Arch::new().dispatch(AddStrains { table, u, half_height: *half_height, inverse, dv, sums });
+    }
+}
+
+/// [`Fields::add_strains`]
+struct AddStrains<'a, const H: usize> {
+    table: &'a [[[f64; WIDTH]; H]; 2],
+    u: &'a [[[[f64; LANES]; 3]; H]; 2],
+    half_height: f64,
+    inverse: &'a [[f64; 2]; 2],
+    dv: f64,
+    sums: &'a mut Strains<LANES>,
+}
+
+impl<const H: usize> WithSimd for AddStrains<'_, H> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { table, u, half_height, inverse, dv, sums } = self;
+        let mut h: Polynomials<4, LANES> = [[[[0.0; LANES]; 4]; 3]; 3];
+        for (n, h) in h.iter_mut().enumerate() {
+            let mut natural = [[[0.0; LANES]; 4]; 3];
+            for ((half, table), u) in HALVES.into_iter().zip(table).zip(u) {
+                // One component's terms of a half stay in registers.
+                let mut terms = [[0.0; LANES]; WIDTH];
+                for (gradient, u) in table.iter().zip(u) {
+                    for (term, g) in terms.iter_mut().zip(gradient) {
+                        (0..LANES).for_each(|lane| term[lane] = g.mul_add(u[n][lane], term[lane]));
+                    }
+                }
+                TERMS[half].iter().zip(&terms).for_each(|((d, k), term)| natural[*d][*k] = *term);
+            }
+            let [r, s, q] = natural;
+            for k in 0..4 {
+                for lane in 0..LANES {
+                    for d in 0..2 {
+                        h[d][k][lane] = inverse[0][d] * r[k][lane] + inverse[1][d] * s[k][lane];
+                    }
+                    h[2][k][lane] = q[k][lane] / half_height;
+                }
+            }
+        }
+        add_strains(&h, dv, sums);
     }
 }

@@ -10,16 +10,16 @@ use fem_core::transverse::{AMPLITUDES, Coupling, SmoothTransverse};
 use pulp::{Arch, Simd, WithSimd};
 
 /// Powers of q that a product of two polynomials has: 2 K − 1 for K = 4.
-pub(super) const POWERS: usize = 7;
+pub(crate) const POWERS: usize = 7;
 
 /// Pairs of components of H, each once.
 const PAIRS: usize = 45;
 
 /// Displacement gradients of `L` points or fields side by side: vector instructions take them together.
-pub(super) type Polynomials<const K: usize, const L: usize> = [[[[f64; L]; K]; 3]; 3];
+pub(crate) type Polynomials<const K: usize, const L: usize> = [[[[f64; L]; K]; 3]; 3];
 
 /// Strains of as many, polynomials in q.
-pub(super) type Strains<const L: usize> = [[[f64; L]; POWERS]; 6];
+pub(crate) type Strains<const L: usize> = [[[f64; L]; POWERS]; 6];
 
 /// What the tangent is made of at an in-plane point.
 pub(super) struct Moduli<const K: usize> {
@@ -290,7 +290,7 @@ fn add_moduli<const K: usize>(
 
 /// Adds `dv` E of displacement gradients, polynomials in q of twice the degree.
 #[inline(always)]
-pub(super) fn add_strains<const K: usize, const L: usize>(h: &Polynomials<K, L>, dv: f64, sums: &mut Strains<L>) {
+pub(crate) fn add_strains<const K: usize, const L: usize>(h: &Polynomials<K, L>, dv: f64, sums: &mut Strains<L>) {
     for (a, rows) in STRAIN_ROW.iter().enumerate() {
         for (b, row) in rows.iter().enumerate().skip(a) {
             // Normal strains have half of the sum, engineering shears all of it.

@@ -16,7 +16,8 @@ use crate::prism::{BLOCKS, STRAIN_ROW, matrix, multiply};
 use crate::transverse::TransverseStresses;
 use fem_core::element::{Cell, ElementError, ElementInfo, Part, PlaneMap, Point, Scratch, positive};
 use fem_core::transverse::SmoothTransverse;
-use layer::{Layer, Moduli, POWERS, Polynomials, Strains, add_strains};
+use layer::{Layer, Moduli, POWERS};
+pub(crate) use layer::{Polynomials, Strains, add_strains};
 use pulp::{Arch, Simd, WithSimd};
 
 /// Gradients [∂x, ∂y, ∂z] of `F` functions at an in-plane point, polynomials of `K` coefficients in q.
@@ -32,6 +33,51 @@ pub(crate) trait Displacements<const K: usize> {
 
     /// Adds the forces that do the work of `stresses` on H there.
     fn add(&mut self, point: usize, plane: &PlaneMap, stresses: &Polynomial<K>);
+}
+
+/// Displacements of a cell in several fields, [`LANES`] of which are taken at a time.
+pub(crate) trait Fields {
+    /// How often [`LANES`] fields are taken.
+    fn groups(&self) -> usize;
+
+    /// Moves to the in-plane point `number`.
+    fn go_to(&mut self, number: usize, point: &Point, plane: &PlaneMap);
+
+    /// Adds `dv` E there of a group.
+    fn add_strains(&self, group: usize, dv: f64, sums: &mut Strains<LANES>);
+}
+
+/// [`fem_core::large::LargeDeflection::mean_large_strains`]
+pub(crate) fn mean_strains(
+    cell: &Cell<'_>,
+    (parts, plane): (&[Part], &[Point]),
+    stresses: TransverseStresses,
+    fields: &mut impl Fields,
+    strains: &mut [f64],
+) -> Result<(), ElementError> {
+    let mut sums: Vec<Strains<LANES>> = vec![[[[0.0; LANES]; POWERS]; 6]; fields.groups()];
+    let mut volume = 0.0;
+    for (number, point) in plane.iter().enumerate() {
+        let map = cell.plane(point.at[0], point.at[1]);
+        let dv = positive(map.det * cell.half_height())? * point.weight();
+        volume += dv;
+        fields.go_to(number, point, &map);
+        sums.iter_mut().enumerate().for_each(|(group, sums)| fields.add_strains(group, dv, sums));
+    }
+    let powers = |Part { q: [low, high], .. }: &Part| -> [f64; POWERS] {
+        std::array::from_fn(|k| {
+            let p = k as i32 + 1;
+            if high > low { (high.powi(p) - low.powi(p)) / (f64::from(p) * (high - low)) } else { low.powi(p - 1) }
+        })
+    };
+    let powers: Vec<[f64; POWERS]> = parts.iter().map(powers).collect();
+    let transverse = stresses.in_stack(cell.stack);
+    let size = 6 * parts.len();
+    for (mut means, strains) in sums.into_iter().zip(strains.chunks_mut((LANES * size).max(1))) {
+        means.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|mean| *mean /= volume);
+        Arch::new().dispatch(MeansOfParts { parts, powers: &powers, transverse, means: &means, strains });
+    }
+    Ok(())
 }
 
 /// Strain energy of a cell, J; adds the forces to `displacements`.
@@ -214,36 +260,18 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
     pub(crate) fn mean_strains(
         &self,
         cell: &Cell<'_>,
-        (parts, plane): (&[Part], &[Point]),
+        over: (&[Part], &[Point]),
         u: &[f64],
         strains: &mut [f64],
     ) -> Result<(), ElementError> {
-        let mut functions: Gradients<F, K> = [[[0.0; K]; 3]; F];
-        let (unknowns, ndof) = (self.unknowns(), self.info.ndof());
-        let groups: Vec<Vec<[f64; LANES]>> = u.chunks(LANES * ndof).map(|fields| side_by_side(fields, ndof)).collect();
-        let mut sums: Vec<Strains<LANES>> = vec![[[[0.0; LANES]; POWERS]; 6]; groups.len()];
-        let mut volume = 0.0;
-        for point in plane {
-            let dv = self.at(cell, point.at[0], point.at[1], &mut functions)? * point.weight();
-            volume += dv;
-            for (u, sums) in groups.iter().zip(&mut sums) {
-                Arch::new().dispatch(AddStrains { functions: &functions, unknowns: &unknowns, u, dv, sums });
-            }
-        }
-        let powers = |Part { q: [low, high], .. }: &Part| -> [f64; POWERS] {
-            std::array::from_fn(|k| {
-                let p = k as i32 + 1;
-                if high > low { (high.powi(p) - low.powi(p)) / (f64::from(p) * (high - low)) } else { low.powi(p - 1) }
-            })
+        let ndof = self.info.ndof();
+        let mut fields = FieldsOfSolid {
+            gradients: self.gradients,
+            functions: [[[0.0; K]; 3]; F],
+            unknowns: self.unknowns(),
+            groups: u.chunks(LANES * ndof).map(|fields| side_by_side(fields, ndof)).collect(),
         };
-        let powers: Vec<[f64; POWERS]> = parts.iter().map(powers).collect();
-        let transverse = self.stresses.in_stack(cell.stack);
-        let size = 6 * parts.len();
-        for (mut means, strains) in sums.into_iter().zip(strains.chunks_mut((LANES * size).max(1))) {
-            means.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|mean| *mean /= volume);
-            Arch::new().dispatch(MeansOfParts { parts, powers: &powers, transverse, means: &means, strains });
-        }
-        Ok(())
+        mean_strains(cell, over, self.stresses, &mut fields, strains)
     }
 
     /// Gradients of the functions at an in-plane point, and |∂x/∂ξ|.
@@ -263,7 +291,7 @@ impl<const F: usize, const K: usize> Solid<'_, F, K> {
 type Unknowns<const F: usize> = [[Option<usize>; 3]; F];
 
 /// Fields, or in-plane points, that are taken at a time.
-const LANES: usize = 4;
+pub(crate) const LANES: usize = 4;
 
 /// Unknowns of a cell in fields that stand one after the other, at most [`LANES`]; lanes without a field are zero.
 fn side_by_side(fields: &[f64], ndof: usize) -> Vec<[f64; LANES]> {
@@ -272,6 +300,29 @@ fn side_by_side(fields: &[f64], ndof: usize) -> Vec<[f64; LANES]> {
         out.iter_mut().zip(field).for_each(|(out, u)| out[lane] = *u);
     }
     out
+}
+
+/// [`Solid::mean_strains`]
+struct FieldsOfSolid<'a, const F: usize, const K: usize> {
+    gradients: &'a dyn Fn(f64, f64, &PlaneMap, &mut Gradients<F, K>),
+    functions: Gradients<F, K>,
+    unknowns: Unknowns<F>,
+    groups: Vec<Vec<[f64; LANES]>>,
+}
+
+impl<const F: usize, const K: usize> Fields for FieldsOfSolid<'_, F, K> {
+    fn groups(&self) -> usize {
+        self.groups.len()
+    }
+
+    fn go_to(&mut self, _number: usize, point: &Point, plane: &PlaneMap) {
+        (self.gradients)(point.at[0], point.at[1], plane, &mut self.functions);
+    }
+
+    fn add_strains(&self, group: usize, dv: f64, sums: &mut Strains<LANES>) {
+        let Self { functions, unknowns, groups, .. } = self;
+        Arch::new().dispatch(AddStrains { functions, unknowns, u: &groups[group], dv, sums });
+    }
 }
 
 /// Adds `dv` E at an in-plane point, as [`add_strains`] does, of several fields `u`.
