@@ -100,17 +100,19 @@ impl ImpactSummary {
             ));
             for d in &self.first_damage {
                 let s = &d.stress;
+                // A zero has no sign: that of a rounding error is the machine's.
+                let tenth = |stress: f64| (10.0 * stress).round() / 10.0 + 0.0;
                 line(format_args!(
                     "            {:>9}  {:<15} {:<19} {:>7.1} {:>7.1} {:>7.1} {:>7.1} {:>7.1} {:>7.1}  {}",
                     Dimension::TIME.of(d.event.time_s),
                     d.event.criterion,
                     d.event.mode,
-                    s.s11_MPa,
-                    s.s22_MPa,
-                    s.s33_MPa,
-                    s.s12_MPa,
-                    s.s23_MPa,
-                    s.s13_MPa,
+                    tenth(s.s11_MPa),
+                    tenth(s.s22_MPa),
+                    tenth(s.s33_MPa),
+                    tenth(s.s12_MPa),
+                    tenth(s.s23_MPa),
+                    tenth(s.s13_MPa),
                     d.reserve_factor.map_or_else(|| "      -".to_owned(), |r| format!("{r:>7.4}"))
                 ));
             }
