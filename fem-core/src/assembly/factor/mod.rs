@@ -5,9 +5,11 @@
 //! | elimination tree, fronts, their order | `analysis` |
 //! | subtrees to threads | `schedule` |
 //! | elimination | `numeric` |
+//! | dense work of a front, in tiles that threads share | `dense` |
 //! | substitution | `solve` |
 
 mod analysis;
+mod dense;
 mod numeric;
 mod schedule;
 mod solve;

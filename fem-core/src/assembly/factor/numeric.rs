@@ -1,18 +1,18 @@
 //! Multifrontal elimination: each front takes the updates of its children, eliminates its pivots, passes an update on.
 
 use super::analysis::{Front, Tree};
+use super::dense;
 use super::schedule::{Item, Schedule};
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
-use faer::linalg::matmul::triangular::{BlockStructure, matmul};
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::prelude::{Reborrow, ReborrowMut};
 use faer::sparse::SparseColMatRef;
-use faer::{Accum, MatMut, Par};
 use std::ops::Range;
 
 /// The matrix to factorise.
 type Matrix<'a> = SparseColMatRef<'a, usize, f64>;
+
+/// Numbers of the smallest page of memory. A page of fresh zeros that is read before it is written is mapped twice, and the second time
+/// all threads are interrupted.
+const PAGE: usize = 512;
 
 /// A pivot that is not positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,7 +24,8 @@ pub(super) struct BadPivot {
 
 /// Fills `panels` with the factor; they need not be `clean`, all zero.
 ///
-/// Every front is computed by one thread and takes its children in one order: no number depends on the threads.
+/// Every front takes its children in one order and is divided into the same tiles, whoever computes them: no number depends on the
+/// threads.
 pub(super) fn factorise(
     tree: &Tree,
     schedule: &Schedule,
@@ -46,16 +47,16 @@ pub(super) fn factorise(
     }
     let work = |share: Vec<(Range<usize>, &mut [f64])>| {
         let mut worker = Worker::new(tree, share.iter().map(|s| s.0.clone()), clean);
-        for (fronts, panels) in share {
-            worker.subtree(tree, matrix, fronts, panels)?;
-        }
-        Ok(worker.stack)
+        let mut share = share.into_iter();
+        let done = share.try_for_each(|(fronts, panels)| worker.subtree(tree, matrix, fronts, panels));
+        // Updates of the subtrees before one that fails come first.
+        (worker.stack, done.err())
     };
     // Work goes to the first workers first.
     shares.retain(|share| !share.is_empty());
     let mut shares = shares.into_iter();
     let own = shares.next().unwrap_or_default();
-    let results: Vec<Result<Vec<f64>, BadPivot>> = std::thread::scope(|scope| {
+    let results: Vec<(Vec<f64>, Option<BadPivot>)> = std::thread::scope(|scope| {
         let others: Vec<_> = shares.map(|share| scope.spawn(|| work(share))).collect();
         let own = work(own);
         let join = |other: std::thread::ScopedJoinHandle<'_, _>| match other.join() {
@@ -65,10 +66,10 @@ pub(super) fn factorise(
         std::iter::once(own).chain(others.into_iter().map(join)).collect()
     });
     // A front above that comes before the first failure in the order of one thread may fail itself: it goes first.
-    let mut failure = results.iter().filter_map(|r| r.as_ref().err()).min_by_key(|e| e.front).copied();
+    let mut failure = results.iter().filter_map(|r| r.1).min_by_key(|e| e.front);
     let limit = failure.map_or(usize::MAX, |e| e.front);
     if !top.is_empty() {
-        let updates: Vec<&[f64]> = results.iter().map(|r| r.as_deref().unwrap_or_default()).collect();
+        let updates: Vec<&[f64]> = results.iter().map(|r| r.0.as_slice()).collect();
         failure = above(tree, schedule, matrix, top, &updates, limit, clean).err().or(failure);
     }
     failure.map_or(Ok(()), Err)
@@ -84,7 +85,7 @@ fn above(
     limit: usize,
     clean: bool,
 ) -> Result<(), BadPivot> {
-    let mut worker = Worker::new(tree, top.iter().map(|t| t.0..t.0), clean);
+    let mut worker = Worker { threads: schedule.workers, ..Worker::new(tree, top.iter().map(|t| t.0..t.0), clean) };
     let square = top.iter().map(|t| tree.fronts[t.0].below().pow(2)).max().unwrap_or(0);
     worker.square.resize(square, 0.0);
     let mut taken = vec![0; updates.len()];
@@ -117,6 +118,8 @@ struct Worker {
     scratch: MemBuffer,
     /// Whether panels come as zeros.
     clean: bool,
+    /// That share the tiles of a front.
+    threads: usize,
 }
 
 impl Worker {
@@ -129,14 +132,14 @@ impl Worker {
             held += fronts.last().map_or(0, |f| tree.fronts[f].update());
         }
         let pivots = tree.fronts.iter().map(|f| f.pivots).max().unwrap_or(0);
-        let scratch = cholesky_in_place_scratch::<f64>(pivots, Par::Seq, Default::default());
         let unknowns = tree.unknowns.iter().max().map_or(0, |u| *u as usize + 1);
         Self {
             place: vec![0; unknowns],
             stack: Vec::with_capacity(stack),
             square: vec![0.0; square],
-            scratch: MemBuffer::new(scratch),
+            scratch: MemBuffer::new(dense::scratch(pivots)),
             clean,
+            threads: 1,
         }
     }
 
@@ -162,7 +165,9 @@ impl Worker {
         for (k, u) in unknowns.iter().enumerate() {
             self.place[*u as usize] = k as u32;
         }
-        if !self.clean {
+        if self.clean {
+            panel.iter_mut().step_by(PAGE).for_each(|value| *value = 0.0);
+        } else {
             panel.fill(0.0);
         }
         for (u, column) in unknowns.iter().zip(panel.chunks_exact_mut(size)) {
@@ -187,34 +192,12 @@ impl Worker {
         }
         self.stack.truncate(base);
 
-        let bad = |index: usize| BadPivot { front: f, column: unknowns[index] as usize };
-        let (diagonal, under) = MatMut::from_column_major_slice_mut(panel, size, pivots).split_at_row_mut(pivots);
-        let mut diagonal = diagonal;
-        let mut under = under;
-        let stack = MemStack::new(&mut self.scratch);
-        cholesky_in_place(diagonal.rb_mut(), Default::default(), Par::Seq, stack, Default::default()).map_err(|e| {
-            match e {
-                LltError::NonPositivePivot { index } => bad(index),
-            }
-        })?;
-        if let Some(index) = (0..pivots).find(|i| !diagonal[(*i, *i)].is_finite()) {
-            return Err(bad(index));
-        }
+        let scratch = MemStack::new(&mut self.scratch);
+        dense::eliminate(panel, square, (size, pivots), self.threads, scratch)
+            .map_err(|index| BadPivot { front: f, column: unknowns[index] as usize })?;
         if below == 0 {
             return Ok(());
         }
-        solve_lower_triangular_in_place(diagonal.rb(), under.rb_mut().transpose_mut(), Par::Seq);
-        matmul(
-            MatMut::from_column_major_slice_mut(square, below, below),
-            BlockStructure::TriangularLower,
-            Accum::Add,
-            under.rb(),
-            BlockStructure::Rectangular,
-            under.rb().transpose(),
-            BlockStructure::Rectangular,
-            -1.0,
-            Par::Seq,
-        );
         for (k, column) in square.chunks_exact(below).enumerate() {
             self.stack.extend_from_slice(&column[k..]);
         }

@@ -6,12 +6,15 @@ use std::ops::Range;
 /// Subtrees tried per thread before the division is settled.
 const PIECES: usize = 16;
 
+/// What each thread after the first adds where all share the tiles of a front, as a share of a thread of its own subtrees.
+const SHARED: f64 = 0.7;
+
 /// A part of the postorder.
 #[derive(Debug, Clone)]
 pub(super) enum Item {
     /// A subtree that one worker eliminates beside the others.
     Subtree { worker: usize, fronts: Range<usize> },
-    /// A front above the subtrees, eliminated after them.
+    /// A front above the subtrees, eliminated after them by all workers.
     Front(usize),
 }
 
@@ -40,6 +43,7 @@ impl Schedule {
             let below: f64 = tree.children[tree.fronts[f].children.clone()].iter().map(|c| flops[*c as usize]).sum();
             flops[f] += below;
         }
+        let together = 1.0 + SHARED * (workers as f64 - 1.0);
         let mut cut: Vec<u32> = tree.roots.clone();
         let (mut best, mut least) = (cut.clone(), f64::INFINITY);
         loop {
@@ -47,7 +51,7 @@ impl Schedule {
             let beside: f64 = cut.iter().map(|f| flops[*f as usize]).sum();
             let all: f64 = tree.roots.iter().map(|f| flops[*f as usize]).sum();
             let loads = loads(&cut, &flops, workers).1;
-            let time = (all - beside) + loads.iter().copied().fold(0.0, f64::max);
+            let time = (all - beside) / together + loads.iter().copied().fold(0.0, f64::max);
             if time < least {
                 (best, least) = (cut.clone(), time);
             }
