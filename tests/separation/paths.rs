@@ -170,16 +170,19 @@ fn errors_grow_with_the_cells_per_process_zone() {
     }
 }
 
-/// Finite elements with closed cracks that others published: the force at which the crack begins to grow. Where modes mix with little
-/// shear the peak over a process zone is flat, and comes up to a twentieth later.
+/// Finite elements with closed cracks that others published: force and displacement at which the crack begins to grow. With little shear
+/// the peak over a process zone is flat and comes later.
 #[test]
 #[ignore = "a minute"]
 fn published_benchmarks_are_met() {
-    for (name, published, moved) in [("20", 128.5, 1.64e-3), ("50", 385.0, 1.34e-3), ("80", 751.0, 1.65e-3)] {
+    for (name, published, moved, later) in
+        [("20", 128.5, 1.64e-3, 0.07), ("50", 385.0, 1.34e-3, 0.05), ("80", 751.0, 1.65e-3, 0.05)]
+    {
         let (_, found) = followed(&format!("benchmark-mmb-{name}"), &[]);
         let figures = found.summary.path.as_ref().unwrap();
-        let [force, later] = [figures.peak_force_N / published, figures.displacement_at_peak_m / moved];
-        assert!((force - 1.0).abs() < 0.05 && (0.99..1.07).contains(&later), "{name}: {force} {later}");
+        let [force, displacement] = [figures.peak_force_N / published, figures.displacement_at_peak_m / moved];
+        let met = (force - 1.0).abs() < 0.05 && (displacement - 1.0).abs() < later;
+        assert!(met, "{name}: {force} {displacement}");
     }
 }
 

@@ -83,7 +83,7 @@ pub struct MembranePlate {
     stiffness: Vec<f64>,
     /// c_t, one after the other; empty where none matters.
     couplings: Vec<f64>,
-    /// Inverse of the tangent: of so few unknowns its product takes a third of what two triangular solves take.
+    /// Inverse of the tangent, which serves many steps.
     inverse: Option<Forms>,
     /// B_t q, [`Forms::stride`] numbers each.
     products: Vec<f64>,

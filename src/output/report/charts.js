@@ -30,6 +30,11 @@ function makeFrame(figure, label) {
   return { key, reset, svg, live };
 }
 
+/** Keeps as much room for `key` as what it shows now takes, so that the drawing under it stays where it is. */
+function keepRoom(key) {
+  key.style.minHeight = `${key.offsetHeight}px`;
+}
+
 /** Clears `svg`, draws its grid and the names of its axes; the group that curves are drawn in. */
 function drawGrid(svg, id, across, up) {
   svg.replaceChildren();
@@ -171,6 +176,9 @@ function makeChart(figure, curves, chart, marks) {
   });
   reset.addEventListener("click", () => show(...whole));
   draw();
+  read(times.length - 1, false);
+  keepRoom(key);
+  read(null, false);
 }
 
 if (data.curves) {

@@ -131,6 +131,9 @@ function makeLoops(figure, { times, time_unit: unit }, { force, displacement, lo
   });
   reset.addEventListener("click", () => show(whole));
   draw();
+  read(rows[rows.length - 1], false);
+  keepRoom(key);
+  read(null, false);
 }
 
 const loopsFigure = $("picture-force_displacement");

@@ -6,7 +6,8 @@ use std::ops::Range;
 /// Subtrees tried per thread before the division is settled.
 const PIECES: usize = 16;
 
-/// What each thread after the first adds where all share the tiles of a front, as a share of a thread of its own subtrees.
+/// What each thread after the first is taken to add where all share the tiles of a front, as a share of a thread of its own subtrees.
+/// It decides who does what, and no number.
 const SHARED: f64 = 0.7;
 
 /// A part of the postorder.
