@@ -133,12 +133,12 @@ fn a_ladder_says_what_it_leaves() {
         )
     };
     let text = format!(
-        "{scene}[study]\nquantities = [\"peak-force\", \"impulse\", \"deflection\"]\n{}{}",
+        "{scene}[study]\naxes = [\"cells\", \"steps\"]\nquantities = [\"peak-force\", \"impulse\", \"deflection\"]\n{}{}",
         ladder("cells", ["mesh.cells = [6, 4]", "mesh.cells = [12, 8]", "mesh.cells = [24, 16]"]),
         ladder("steps", ["march.step = \"4 us\"", "march.step = \"2 us\"", "march.step = \"1 us\""]),
     );
     let case = strip().text(&text);
-    let told = case.fem("study", &["--axis", "cells,steps", "--json", "--out", "study"]).good();
+    let told = case.fem("study", &["--json", "--out", "study"]).good();
     let told: serde_json::Value = serde_json::from_str(&told.stdout).unwrap();
     let rows = rows(&case, "study");
     for (k, (axis, finest, finer)) in [

@@ -6,7 +6,7 @@ mod survey;
 
 pub use climb::{Climb, Crests};
 pub use hulls::{Extremes, Hulls, StressesOf};
-pub use survey::{Samples, windows};
+pub use survey::{Samples, Wanted, windows};
 
 use fem_core::failure::{FailureCriterion, Site, check_material};
 use fem_core::material::{Material, MaterialError};

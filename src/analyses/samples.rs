@@ -11,7 +11,7 @@ use fem_core::failure::StressRange;
 use fem_core::material::Material;
 use fem_core::recovery::Recovery;
 use fem_core::tensor::{Ply, Stress6};
-use fem_failure::scan::{Extremes, Hulls, Samples, Scan, ScanError, ScanSite, windows};
+use fem_failure::scan::{Extremes, Hulls, Samples, Scan, ScanError, ScanSite, Wanted, windows};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
@@ -203,14 +203,14 @@ impl PlateSamples {
         Some(Sampled::new(operator, self.coordinates(batch.clone()), batch.len()))
     }
 
-    /// Shows all samples to `scan`.
+    /// Shows all samples to `scan`, of which this is `wanted`.
     ///
     /// # Errors
     /// A stress or an index that is not finite.
-    pub(super) fn survey(&self, scan: &mut Scan) -> Result<(), ScanError> {
+    pub(super) fn survey(&self, scan: &mut Scan, wanted: Wanted) -> Result<(), ScanError> {
         for batch in self.batches() {
             let Some(mut sampled) = self.sampled(batch.clone()) else { continue };
-            scan.survey(&self.times[batch], &mut sampled)?;
+            scan.survey(&self.times[batch], &mut sampled, wanted)?;
         }
         Ok(())
     }

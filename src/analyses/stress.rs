@@ -12,7 +12,7 @@ use fem_core::laws::PlyLaws;
 use fem_core::recovery::{Recovery, Station};
 use fem_core::tensor::{Ply, Stress6};
 use fem_core::window::{self, Centre, Windows};
-use fem_failure::scan::{self, PlyOrInterface, Probe, Scan, ScanSite};
+use fem_failure::scan::{self, PlyOrInterface, Probe, Scan, ScanSite, Wanted};
 use fem_io::scene::Window;
 use serde::{Deserialize, Serialize};
 use std::rc::Rc;
@@ -52,8 +52,8 @@ pub(super) struct Watch<'a> {
     expansion: Rc<Expansion<'a>>,
     of_plate: Arc<PlateStresses>,
     scan: Scan,
-    /// Whether only what can be first or largest is judged, when all samples are there.
-    sparing: bool,
+    /// What is wanted, where only what can add to it is judged, when all samples are there.
+    sparing: Option<Wanted>,
     samples: Option<PlateSamples>,
     /// Where the scan keeps the indices of each history.
     probes: Vec<Vec<Probe>>,
@@ -76,8 +76,8 @@ pub(super) struct Record {
 }
 
 impl<'a> Watch<'a> {
-    /// Prepares the scan of `model`, which is marched in the coordinates of `expansion`; with `firsts_alone` it judges only what can
-    /// be first or largest, where the stresses are products and no single place is followed.
+    /// Prepares the scan of `model`, which is marched in the coordinates of `expansion`; where `wanted` says what may be looked for
+    /// when all samples are there, it judges only what can add to that, if the stresses are products and no single place is followed.
     ///
     /// # Errors
     /// A criterion whose material lacks a constant.
@@ -85,13 +85,13 @@ impl<'a> Watch<'a> {
         model: &'a Model,
         expansion: Rc<Expansion<'a>>,
         of_plate: Arc<PlateStresses>,
-        firsts_alone: bool,
+        wanted: Option<Wanted>,
     ) -> Result<Self, Error> {
         let recovery = &of_plate.recovery;
         let scan = Scan::new(model.criteria.clone(), sites(recovery), model.materials.clone())?;
         let of_cells = (0..model.watched.len()).map(|window| recovery.sites_over(window).len()).sum();
         let (probes, histories): (Vec<_>, Vec<_>) = gauges(model, &scan, of_cells).into_iter().unzip();
-        let sparing = firsts_alone && histories.is_empty() && matches!(of_plate.way, Way::Product(_));
+        let sparing = wanted.filter(|_| histories.is_empty() && matches!(of_plate.way, Way::Product(_)));
         Ok(Self {
             model,
             expansion,
@@ -114,7 +114,7 @@ impl<'a> Watch<'a> {
         self.record.points.extend_from_slice(points);
         self.record.times.push(t);
         self.record.waiting.extend_from_slice(coordinates);
-        if !self.sparing && self.record.times.len() >= Demand::BATCH { self.flush() } else { Ok(()) }
+        if self.sparing.is_none() && self.record.times.len() >= Demand::BATCH { self.flush() } else { Ok(()) }
     }
 
     /// Scans the samples still waiting.
@@ -122,10 +122,10 @@ impl<'a> Watch<'a> {
     /// # Errors
     /// As [`Watch::sample`].
     pub(super) fn flush(&mut self) -> Result<(), Error> {
-        if self.sparing {
+        if let Some(wanted) = self.sparing {
             let Record { times, waiting, .. } = std::mem::take(&mut self.record);
             let samples = PlateSamples::new(Arc::clone(&self.of_plate), times, waiting);
-            return Ok(self.samples.insert(samples).survey(&mut self.scan)?);
+            return Ok(self.samples.insert(samples).survey(&mut self.scan, wanted)?);
         }
         let [times, waiting, points] =
             [&mut self.record.times, &mut self.record.waiting, &mut self.record.points].map(std::mem::take);
@@ -242,7 +242,7 @@ impl<'a> Watch<'a> {
             && self.scan.resume(scan);
         if fits {
             self.record = record;
-            self.sparing &= !self.scan.has_begun();
+            self.sparing = self.sparing.filter(|_| !self.scan.has_begun());
         }
         fits
     }

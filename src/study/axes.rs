@@ -110,7 +110,7 @@ pub fn axes(scene: &Scene, model: &Model, registry: &Registry, names: &[String])
         let help = format!("`{name}` {}", unknown_key(name, known()));
         return Err(Error::Axis { name: name.clone(), help });
     }
-    if let Some(name) = study.axes.iter().flatten().find(|name| !NAMES.contains(&name.value.as_str())) {
+    if let Some(name) = study.axes.iter().flatten().find(|name| known().all(|known| known != name.value)) {
         let help = format!("`{}` {}", name.value, unknown_key(&name.value, known()));
         return Err(scene.source.error_at(&name.place, format!("there is no axis `{}`", name.value), help).into());
     }

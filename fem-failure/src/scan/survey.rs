@@ -83,6 +83,15 @@ impl Bounds {
     }
 }
 
+/// What a survey is to find.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wanted {
+    /// What is first or largest anywhere.
+    Extremes,
+    /// That, and what is first and largest at every site ([`Scan::maxima`]).
+    EverySite,
+}
+
 /// What a mode must reach within a window to be recorded.
 struct Sought {
     /// Level that none passed before the window.
@@ -104,16 +113,17 @@ impl Sought {
 
 impl Scan {
     /// Takes a batch of samples at `times` (s), of which the first is the last of the batch before, if there was one: events, peaks
-    /// and climbs are afterwards to the bit what [`Scan::sample`] makes them, but only sites that can add to them are judged.
-    ///
-    /// Neither [`Scan::maxima`] nor [`Scan::latest`] is kept, so that nothing else than further batches may follow.
+    /// and climbs, and [`Scan::maxima`] where [`Wanted::EverySite`] says so, are afterwards to the bit what [`Scan::sample`] makes
+    /// them, but only sites that can add to them are judged. [`Scan::latest`] is not kept, so that nothing else than further batches
+    /// for the same may follow.
     ///
     /// A mode is judged where its bound ([`FailureCriterion::bounds`](fem_core::failure::FailureCriterion::bounds)) over a window of
-    /// samples reaches its largest index so far, or a level that no index passed before, or 1 where its place has not failed before.
+    /// samples reaches its largest index so far, or a level that no index passed before, or 1 where its place has not failed before;
+    /// for every site, where it exceeds the largest index of the site, or reaches 1 before the site did.
     ///
     /// # Errors
     /// A time that does not grow, a stress that is not finite, an index that is not a number. The scan is then of no use.
-    pub fn survey(&mut self, times: &[f64], samples: &mut dyn Samples) -> Result<(), ScanError> {
+    pub fn survey(&mut self, times: &[f64], samples: &mut dyn Samples, wanted: Wanted) -> Result<(), ScanError> {
         let last = self.record.time;
         let follows = last.is_none_or(|last| times.first() == Some(&last));
         if let Some(time) = times.iter().find(|t| !t.is_finite()).or(times.first().filter(|_| !follows)) {
@@ -136,11 +146,18 @@ impl Scan {
             order,
             slots,
             samples,
+            windows: windows.len(),
+            done: Vec::new(),
             indices: Vec::new(),
             evaluations: 0,
         };
         for ((watch, seen), bounds) in watches.iter().zip(&mut record.seen).zip(&bounds) {
+            judge.done.clear();
+            judge.done.resize(bounds.rows() * windows.len(), false);
             judge.look(watch, seen, bounds, &windows)?;
+            if wanted == Wanted::EverySite {
+                judge.look_everywhere(watch, seen, bounds, &windows)?;
+            }
         }
         record.evaluations += judge.evaluations;
         record.time = times.last().copied();
@@ -200,6 +217,9 @@ struct Judge<'a> {
     order: &'a [u32],
     slots: &'a [u32],
     samples: &'a mut dyn Samples,
+    windows: usize,
+    /// Whether each window of each row of a watch was judged.
+    done: Vec<bool>,
     indices: Vec<f64>,
     evaluations: u64,
 }
@@ -235,6 +255,37 @@ impl Judge<'_> {
                     for row in block * BLOCK..((block + 1) * BLOCK).min(bounds.rows()) {
                         self.judge_if(watch, seen, (bounds, row), (number, window), &mut sought)?;
                     }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// All sites whose bounds say that they can add to what is known of them: windows that may hold their largest index first.
+    fn look_everywhere(
+        &mut self,
+        watch: &Watch,
+        seen: &mut Seen,
+        bounds: &Bounds,
+        windows: &[Range<usize>],
+    ) -> Result<(), ScanError> {
+        let all = vec![f64::NEG_INFINITY; bounds.modes];
+        for row in 0..bounds.rows() {
+            let top = |mode: usize| {
+                let of = |number: usize| bounds.at(row, number)[mode];
+                (0..windows.len()).reduce(|a, b| if of(b) > of(a) { b } else { a })
+            };
+            let tops = (0..bounds.modes).filter_map(top);
+            for number in tops.chain(0..windows.len()) {
+                let window = &windows[number];
+                let of_site = row * bounds.modes..(row + 1) * bounds.modes;
+                let known = seen.maxima[of_site.clone()].iter().zip(&seen.reached[of_site]);
+                let adds = |(bound, (largest, reached)): (&f64, (&f64, &f64))| {
+                    let most = bound * (1.0 + ROUNDING);
+                    !(most <= *largest) || (!(most < 1.0) && *reached > self.times[window.start])
+                };
+                if bounds.at(row, number).iter().zip(known).any(adds) {
+                    self.judge(watch, seen, row, (number, window), &all)?;
                 }
             }
         }
@@ -280,6 +331,9 @@ impl Judge<'_> {
         (number, window): (usize, &Range<usize>),
         least: &[f64],
     ) -> Result<(), ScanError> {
+        if std::mem::replace(&mut self.done[row * self.windows + number], true) {
+            return Ok(());
+        }
         let (k, modes, count) = (watch.span.start + row, watch.modes.len(), window.len());
         let site = &self.sites[self.order[k] as usize];
         let mut stress = [Stress6::new([0.0; 6]); WINDOW];
@@ -306,8 +360,13 @@ impl Judge<'_> {
                     stress: &stress[sample],
                 };
                 let spot = Spot { mode, first: self.slots[k] as usize * modes + mode, site: self.order[k] };
-                seen.take(spot, sample.checked_sub(1).map(at), at(sample));
+                if let Some(time) = seen.take(spot, sample.checked_sub(1).map(at), at(sample)) {
+                    let reached = &mut seen.reached[row * modes + mode];
+                    *reached = reached.min(time);
+                }
             }
+            let maxima = &mut seen.maxima[row * modes..(row + 1) * modes];
+            maxima.iter_mut().zip(&indices[sample * modes..]).for_each(|(most, index)| *most = most.max(*index));
         }
         self.indices = indices;
         Ok(())

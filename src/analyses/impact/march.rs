@@ -24,7 +24,7 @@ use fem_core::time::{Integrator, State, Substeps};
 use fem_dynamics::guard::Guard;
 use fem_dynamics::impact::ImpactSystem;
 use fem_dynamics::reduce::Reduced;
-use fem_failure::scan::{self, Scan};
+use fem_failure::scan::{self, Scan, Wanted};
 use fem_io::files::{FileError, OutputDir};
 use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
@@ -281,8 +281,8 @@ impl<'a> March<'a> {
             true => None,
             false => {
                 let known = stresses.map_or_else(|| PlateStresses::new(model, &expansion).map(Arc::new), Ok)?;
-                let sparing = firsts_alone || firsts_suffice(model, &sizes, scan_every);
-                Some(Watch::new(model, expansion.clone(), known, sparing)?)
+                let wanted = if firsts_alone { Some(Wanted::Extremes) } else { wanted(model, &sizes, scan_every) };
+                Some(Watch::new(model, expansion.clone(), known, wanted)?)
             }
         };
         stopwatch.lap("prepare stresses");
@@ -567,11 +567,11 @@ impl<'a> March<'a> {
     }
 }
 
-/// Whether nobody asks for the largest index of every place, and all samples of the march may wait for its end.
-fn firsts_suffice(model: &Model, sizes: &Sizes, scan_every: u64) -> bool {
-    let output = &model.output;
-    let waiting = sizes.steps / scan_every.max(1) * sizes.marched as u64;
-    !output.maps && !output.plots && output.fields.is_none() && waiting <= WAITING
+/// What is wanted of the stresses, where all samples of the march may wait for its end and none is asked for alone.
+fn wanted(model: &Model, sizes: &Sizes, scan_every: u64) -> Option<Wanted> {
+    let (output, waiting) = (&model.output, sizes.steps / scan_every.max(1) * sizes.marched as u64);
+    let of_sites = if output.maps || output.plots { Wanted::EverySite } else { Wanted::Extremes };
+    (output.fields.is_none() && waiting <= WAITING).then_some(of_sites)
 }
 
 /// Largest index of a criterion at each of its sites.
