@@ -114,6 +114,14 @@ fn a_scene_names_its_own_axes_and_quantities() {
         rows.values().next().map(|row| row.keys().filter(|c| c.ends_with(" error")).cloned().collect::<Vec<_>>());
     assert_eq!(columns.unwrap(), ["impulse error"]);
     assert!(done.stdout.contains("is met by"), "{done:#?}");
+    // What another problem changes counts from the scene as it is, not from the reference.
+    let patch = rows.iter().find(|((axis, _), _)| axis == "patch").unwrap().1;
+    let own = number(&rows[&("scene".into(), "as it is".into())], "impulse");
+    let change = format!(" {:+.1} % |", 100.0 * (number(patch, "impulse") / own - 1.0));
+    let told = done.stdout.lines().find(|line| line.starts_with("| patch |") && line.contains("mm"));
+    assert!(told.is_some_and(|line| line.contains(&change)), "{change}: {done:#?}");
+    let alone = case.fem("study", &["--axis", "patch", "--out", "alone"]).good().stdout;
+    assert!(alone.contains("| patch |") && !alone.contains("cheapest") && !alone.contains("or more"), "{alone}");
     // The scene that it wrote keeps what it promises.
     fem(case.folder(), &["run", "study/scene.toml", "--out", "promised"]).good();
     let impulse = |out: &str| case.summary(out)["impact"]["impulse_N_s"].as_f64().unwrap();

@@ -72,18 +72,19 @@ fn percent(x: f64) -> String {
     }
 }
 
-/// What a study found, in Markdown: where the error of the scene comes from, and the cheapest run for an error.
+/// What a study found, in Markdown: where the error of the scene comes from, the cheapest run for an error, and what other problems
+/// change.
 pub fn text(report: &Report) -> String {
     let mut t = String::new();
     // Writing to a text cannot fail.
-    let _ = summary(report, &mut t);
+    let _ = summary(report, &mut t).and_then(|()| table(report, AxisKind::Problems, &mut t));
     t
 }
 
-/// Every run of a study, in Markdown.
+/// Every other run of a study, in Markdown.
 pub(super) fn tables(report: &Report) -> String {
     let mut t = String::new();
-    for kind in [AxisKind::Ladder, AxisKind::Ways, AxisKind::Problems] {
+    for kind in [AxisKind::Ladder, AxisKind::Ways] {
         let _ = table(report, kind, &mut t);
     }
     t
@@ -117,6 +118,22 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
         writeln!(t, "* no ladder was climbed: what is shown are differences from the scene as it is")?;
     }
 
+    if !report.ladders.is_empty() {
+        where_errors_come_from(report, t)?;
+    }
+    where_time_went(report, t)?;
+    if !report.ladders.is_empty() {
+        cheapest_runs(report, t)?;
+    }
+
+    if !report.notes.is_empty() {
+        writeln!(t)?;
+    }
+    report.notes.iter().try_for_each(|note| writeln!(t, "* note: {note}"))
+}
+
+/// The error of the scene as it is, and what each ladder leaves of it.
+fn where_errors_come_from(report: &Report, t: &mut String) -> fmt::Result {
     writeln!(t, "\nError of the scene as it is, and where it comes from\n")?;
     let names: Vec<&str> = report.ladders.iter().map(|ladder| ladder.axis.as_str()).collect();
     writeln!(t, "| quantity | error | left in the reference | {} |", names.join(" | "))?;
@@ -127,9 +144,11 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
         let left = figure(report.reference.left.get(q).copied());
         writeln!(t, "| {quantity} | {} | {left} | {} |", figure(error), parts.join(" | "))?;
     }
+    Ok(())
+}
 
-    where_time_went(report, t)?;
-
+/// The cheapest run for each of the errors that are named.
+fn cheapest_runs(report: &Report, t: &mut String) -> fmt::Result {
     writeln!(t, "\nThe cheapest run for an error\n")?;
     let mut previous = String::new();
     for (quantities, name) in goals(report) {
@@ -144,11 +163,7 @@ fn summary(report: &Report, t: &mut String) -> fmt::Result {
             previous = line;
         }
     }
-
-    if !report.notes.is_empty() {
-        writeln!(t)?;
-    }
-    report.notes.iter().try_for_each(|note| writeln!(t, "* note: {note}"))
+    Ok(())
 }
 
 /// Runs and seconds of every axis, what a ladder leaves at its finest level, and why it ends there.
@@ -217,6 +232,23 @@ fn figure(error: Option<ErrorBar>) -> String {
     }
 }
 
+/// What another problem changes of quantity `q`, over that of the scene as it is; of a history the L2 norm of the difference.
+fn change(report: &Report, row: &Row, q: usize) -> String {
+    let value = |row: &Row| {
+        let record = row.result.as_ref().ok()?;
+        record.figures.iter().find(|figure| figure.name == report.asked[q]).map(|figure| figure.value)
+    };
+    match (value(row), value(report.base())) {
+        (Some(new), Some(old)) if old != 0.0 => format!("{:+.1} %", 100.0 * (new - old) / old.abs()),
+        _ => row
+            .own
+            .get(q)
+            .copied()
+            .flatten()
+            .map_or_else(|| "-".to_owned(), |own| format!("{:.1} %", 100.0 * own.error)),
+    }
+}
+
 /// The settings of a run that cost.
 fn describe(row: &Row) -> String {
     let Ok(record) = &row.result else { return row.level.label.clone() };
@@ -235,13 +267,14 @@ fn describe(row: &Row) -> String {
 
 fn table(report: &Report, kind: AxisKind, t: &mut String) -> fmt::Result {
     let rows = || report.rows.iter().filter(move |row| row.kind == kind);
-    if rows().next().is_none() {
+    // The scene as it is, alone, would be held against itself.
+    if rows().all(|row| row.level.setting.is_empty()) {
         return Ok(());
     }
     let (heading, own) = match kind {
         AxisKind::Ladder => ("Ladders", "of its axis"),
         AxisKind::Ways => ("Other ways", "against its judge"),
-        AxisKind::Problems => ("Other problems: what they change is not an error", "change"),
+        AxisKind::Problems => ("Other problems: what they change of the scene as it is, which is no error", "change"),
     };
     let each: Vec<&str> = report.asked.iter().map(String::as_str).collect();
     writeln!(t, "\n{heading}\n")?;
@@ -255,7 +288,10 @@ fn table(report: &Report, kind: AxisKind, t: &mut String) -> fmt::Result {
             writeln!(t, "| {axis} | {label} | | {why} |{} | |", " |".repeat(each.len().saturating_sub(1)))?;
             continue;
         };
-        let errors: Vec<String> = row.errors.iter().map(|error| figure(*error)).collect();
+        let each: Vec<String> = match kind {
+            AxisKind::Problems => (0..report.asked.len()).map(|q| change(report, row, q)).collect(),
+            _ => row.errors.iter().map(|error| figure(*error)).collect(),
+        };
         let unknowns = match record.size.marched {
             0 => record.size.unknowns.to_string(),
             marched => format!("{}, {marched}", record.size.unknowns),
@@ -264,8 +300,12 @@ fn table(report: &Report, kind: AxisKind, t: &mut String) -> fmt::Result {
         writeln!(
             t,
             "| {axis} | {label}{best} | {unknowns} | {} | {} | {:.3} |",
-            errors.join(" | "),
-            figure(row.own_worst()),
+            each.join(" | "),
+            match kind {
+                AxisKind::Problems =>
+                    row.own_worst().map_or_else(|| "-".to_owned(), |worst| format!("{:.1} %", 100.0 * worst.error)),
+                _ => figure(row.own_worst()),
+            },
             record.total()
         )?;
     }

@@ -269,7 +269,8 @@ impl Judge<'_> {
         bounds: &Bounds,
         windows: &[Range<usize>],
     ) -> Result<(), ScanError> {
-        let all = vec![f64::NEG_INFINITY; bounds.modes];
+        // Of indices below 1 all that is not of a site alone is known.
+        let least = vec![1.0; bounds.modes];
         for row in 0..bounds.rows() {
             let top = |mode: usize| {
                 let of = |number: usize| bounds.at(row, number)[mode];
@@ -285,7 +286,7 @@ impl Judge<'_> {
                     !(most <= *largest) || (!(most < 1.0) && *reached > self.times[window.start])
                 };
                 if bounds.at(row, number).iter().zip(known).any(adds) {
-                    self.judge(watch, seen, row, (number, window), &all)?;
+                    self.judge(watch, seen, row, (number, window), &least)?;
                 }
             }
         }

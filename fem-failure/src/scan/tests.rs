@@ -282,7 +282,9 @@ fn a_survey_finds_what_a_scan_of_all_samples_finds() {
         let scan = Scan::new(criteria, sites.clone(), vec![tape.clone(), resin.clone()]).unwrap();
         let mut all = scan.clone();
         times.iter().zip(&samples).for_each(|(t, s)| all.sample(*t, s).unwrap());
-        for (batch, wanted) in [100, 37, 2].into_iter().flat_map(|batch| [(batch, Wanted::Extremes), (batch, Wanted::EverySite)]) {
+        for (batch, wanted) in
+            [100, 37, 2].into_iter().flat_map(|batch| [(batch, Wanted::Extremes), (batch, Wanted::EverySite)])
+        {
             let mut some = scan.clone();
             let mut end = 0;
             while end < times.len() {
@@ -294,7 +296,8 @@ fn a_survey_finds_what_a_scan_of_all_samples_finds() {
             assert_eq!(some.peaks(), all.peaks());
             if wanted == Wanted::EverySite {
                 let maxima = |scan: &Scan| {
-                    let of = |k: usize| scan.maxima(k).map(|(s, m, t)| (*s, m.to_vec(), t.to_vec())).collect::<Vec<_>>();
+                    let of =
+                        |k: usize| scan.maxima(k).map(|(s, m, t)| (*s, m.to_vec(), t.to_vec())).collect::<Vec<_>>();
                     (0..2 + usize::from(with_plain)).map(of).collect::<Vec<_>>()
                 };
                 assert_eq!(maxima(&some), maxima(&all));
@@ -363,10 +366,16 @@ fn hulls_find_what_a_scan_of_all_samples_finds() {
 fn a_survey_refuses_what_a_scan_refuses() {
     let mut scan = plain(1);
     let sample = |s: f64| vec![along(s)];
-    assert!(matches!(scan.survey(&[0.0, 0.0], &mut Batch(&[sample(0.0), sample(1.0)]), Wanted::Extremes), Err(ScanError::Time { .. })));
+    assert!(matches!(
+        scan.survey(&[0.0, 0.0], &mut Batch(&[sample(0.0), sample(1.0)]), Wanted::Extremes),
+        Err(ScanError::Time { .. })
+    ));
     assert!(scan.survey(&[f64::NAN], &mut Batch(&[sample(0.0)]), Wanted::Extremes).is_err());
     scan.survey(&[0.0, 1.0], &mut Batch(&[sample(0.0), sample(0.5)]), Wanted::Extremes).unwrap();
-    assert!(scan.survey(&[2.0, 3.0], &mut Batch(&[sample(0.0), sample(1.0)]), Wanted::Extremes).is_err(), "a sample is left out");
+    assert!(
+        scan.survey(&[2.0, 3.0], &mut Batch(&[sample(0.0), sample(1.0)]), Wanted::Extremes).is_err(),
+        "a sample is left out"
+    );
     let bad = [sample(0.5), sample(f64::INFINITY)];
     assert!(matches!(scan.survey(&[1.0, 2.0], &mut Batch(&bad), Wanted::Extremes), Err(ScanError::Stress { .. })));
 }

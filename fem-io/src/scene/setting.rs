@@ -41,7 +41,8 @@ impl Written {
     pub fn text(&self, key: &str) -> Option<&str> {
         let plain = key.replace(['"', '\''], "");
         let same = |path: &str| path.split('.').map(|part| part.split('[').next()).eq(plain.split('.').map(Some));
-        let (_, value) = self.0.iter().find(|(path, _)| same(path))?;
+        // What ends with a number is one of a list of texts.
+        let (_, value) = self.0.iter().find(|(path, _)| !path.ends_with(']') && same(path))?;
         value.strip_prefix('"')?.strip_suffix('"')
     }
 
@@ -209,6 +210,26 @@ mod tests {
         }
         let expected = "[materials.m]\nlibrary = \"AS4/3502\"\nlaw = \"hahn-tsai\"\n\n[contact]\nlaw = \"linear\"\n";
         assert_eq!(document.to_string(), expected);
+    }
+
+    #[test]
+    fn words_become_what_the_scene_has_there() {
+        let keys = [
+            ("laminate.plies", "\"[0/90]s\""),
+            ("impactor[0].mass", "\"1 kg\""),
+            ("failure.criteria[0]", "\"tsai-wu\""),
+            ("mesh.cells[0]", "4"),
+        ];
+        let written = Written(keys.map(|(key, value)| (key.to_owned(), value.to_owned())).into());
+        for (key, words, value) in [
+            ("laminate.plies", "[0]", "\"[0]\""),
+            ("impactor.mass", "2", "\"2 kg\""),
+            ("failure.criteria", "[\"hoffman\"]", "[\"hoffman\"]"),
+            ("mesh.cells", "[2, 3]", "[2, 3]"),
+            ("contact.law", "hertz", "\"hertz\""),
+        ] {
+            assert_eq!(written.toml(key, words), value);
+        }
     }
 
     #[test]
