@@ -42,6 +42,21 @@ impl FailureCriterion for Christensen {
     }
 
     from_terms!();
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let (r, s11, sum) = (&m.strengths, s.s11(), s.s22() + s.s33());
+        let per_s23 = 1.0 / (r.s23() * r.s23());
+        out.copy_from_slice(&[
+            most_of_sum([s11 * (1.0 / r.xt() - 1.0 / r.xc()), s11.squared() * (1.0 / (r.xt() * r.xc()))]),
+            most_of_sum([
+                sum * (1.0 / r.yt() - 1.0 / r.yc()),
+                sum.squared() * (1.0 / (r.yt() * r.yc())),
+                s.s23().squared() * per_s23,
+                s.s22() * s.s33() * -per_s23,
+                (s.s12().squared() + s.s31().squared()) * (1.0 / (r.s12() * r.s12())),
+            ]),
+        ]);
+    }
 }
 
 impl Plugin for Christensen {

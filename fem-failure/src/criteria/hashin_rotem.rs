@@ -54,6 +54,26 @@ impl FailureCriterion for HashinRotem {
     }
 
     from_terms!();
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let r = &m.strengths;
+        let in_plane = (s.s12().magnitude() / r.s12()).powi(2);
+        let interlaminar = (s.s31().magnitude() / r.s12()).powi(2) + (s.s23().magnitude() / r.s23()).powi(2);
+        let pulled = |along: Interval, strength: f64, shear: f64| {
+            when(along.reaches_positive(), (along.positive().high / strength).powi(2) + shear)
+        };
+        let pressed = |along: Interval, strength: f64, shear: f64| {
+            when(along.reaches_negative(), (along.low / strength).powi(2) + shear)
+        };
+        out.copy_from_slice(&[
+            when(s.s11().reaches_positive(), s.s11().high / r.xt()),
+            when(s.s11().reaches_negative(), -s.s11().low / r.xc()),
+            pulled(s.s22(), r.yt(), in_plane),
+            pressed(s.s22(), r.yc(), in_plane),
+            pulled(s.s33(), r.yt(), interlaminar),
+            pressed(s.s33(), r.yc(), interlaminar),
+        ]);
+    }
 }
 
 impl Plugin for HashinRotem {

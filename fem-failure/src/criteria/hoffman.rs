@@ -43,6 +43,21 @@ impl FailureCriterion for Hoffman {
     }
 
     from_terms!();
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let (r, [s11, s22, s33]) = (&m.strengths, [s.s11(), s.s22(), s.s33()]);
+        let c2 = 0.5 / (r.xt() * r.xc());
+        let c1 = 1.0 / (r.yt() * r.yc()) - c2;
+        out[0] = most_of_sum([
+            s11 * (1.0 / r.xt() - 1.0 / r.xc()),
+            (s22 + s33) * (1.0 / r.yt() - 1.0 / r.yc()),
+            (s22 - s33).squared() * c1,
+            (s33 - s11).squared() * c2,
+            (s11 - s22).squared() * c2,
+            s.s23().squared() * (1.0 / (r.s23() * r.s23())),
+            (s.s31().squared() + s.s12().squared()) * (1.0 / (r.s12() * r.s12())),
+        ]);
+    }
 }
 
 impl Plugin for Hoffman {

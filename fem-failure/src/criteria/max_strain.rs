@@ -1,6 +1,6 @@
 //! Maximum strain.
 
-use super::max_stress::{LIMIT_MODES, limits};
+use super::max_stress::{LIMIT_MODES, bounds, limits};
 use crate::prelude::*;
 
 /// Every component of ε = S σ over an allowable strain.
@@ -48,6 +48,27 @@ impl FailureCriterion for MaxStrain {
     }
 
     from_terms!();
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let (e, [s11, s22, s33]) = (&m.elastic, [s.s11(), s.s22(), s.s33()]);
+        let strain = |parts: [Interval; 3]| Interval {
+            low: -most_of_sum(parts.map(|part| part * -1.0)),
+            high: most_of_sum(parts),
+        };
+        let normal = [
+            strain([s11 * (1.0 / e.e1), s22 * (-e.nu12 / e.e1), s33 * (-e.nu13 / e.e1)]),
+            strain([s22 * (1.0 / e.e2), s11 * (-e.nu12 / e.e1), s33 * (-e.nu23 / e.e2)]),
+            strain([s33 * (1.0 / e.e3), s11 * (-e.nu13 / e.e1), s22 * (-e.nu23 / e.e2)]),
+        ];
+        let sheared = [s.s12() * (1.0 / e.g12), s.s23() * (1.0 / e.g23), s.s31() * (1.0 / e.g13)];
+        out.copy_from_slice(&bounds(
+            normal,
+            sheared,
+            [self.e1t, self.e2t, self.e2t],
+            [self.e1c, self.e2c, self.e2c],
+            [self.g12, self.g23, self.g12],
+        ));
+    }
 }
 
 const fn allowable(name: &'static str, about: &'static str) -> ParamInfo {

@@ -27,6 +27,21 @@ pub(crate) fn limits(v: &[f64; 6], tension: [f64; 3], compression: [f64; 3], she
     [t1, c1, t2, c2, t3, c3, s23, s31, s12]
 }
 
+/// What no [`limits`] exceed, of components 11 22 33 and 12 23 31 in these intervals.
+#[inline]
+pub(crate) fn bounds(
+    normal: [Interval; 3],
+    sheared: [Interval; 3],
+    tension: [f64; 3],
+    compression: [f64; 3],
+    shear: [f64; 3],
+) -> [f64; 9] {
+    let of = |i: usize| [normal[i].high.max(0.0) / tension[i], (-normal[i].low).max(0.0) / compression[i]];
+    let [[t1, c1], [t2, c2], [t3, c3]] = [of(0), of(1), of(2)];
+    let [s12, s23, s31] = [0, 1, 2].map(|i| sheared[i].magnitude() / shear[i]);
+    [t1, c1, t2, c2, t3, c3, s23, s31, s12]
+}
+
 /// Every component over its strength: |σi|/strength, with the thickness as strong as the transverse direction and
 /// S31 = S12. No interaction; not invariant about the fibre.
 #[derive(Debug, Clone, Copy, Default)]
@@ -55,19 +70,9 @@ impl FailureCriterion for MaxStress {
     from_terms!();
 
     fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
-        let r = &m.strengths;
-        let (pulled, pressed) = (|v: f64, limit: f64| v.max(0.0) / limit, |v: f64, limit: f64| (-v).max(0.0) / limit);
-        out.copy_from_slice(&[
-            pulled(s.s11().high, r.xt()),
-            pressed(s.s11().low, r.xc()),
-            pulled(s.s22().high, r.yt()),
-            pressed(s.s22().low, r.yc()),
-            pulled(s.s33().high, r.yt()),
-            pressed(s.s33().low, r.yc()),
-            s.s23().magnitude() / r.s23(),
-            s.s31().magnitude() / r.s12(),
-            s.s12().magnitude() / r.s12(),
-        ]);
+        let (r, sheared) = (&m.strengths, [s.s12(), s.s23(), s.s31()]);
+        let (normal, shear) = ([s.s11(), s.s22(), s.s33()], [r.s12(), r.s23(), r.s12()]);
+        out.copy_from_slice(&bounds(normal, sheared, [r.xt(), r.yt(), r.yt()], [r.xc(), r.yc(), r.yc()], shear));
     }
 }
 

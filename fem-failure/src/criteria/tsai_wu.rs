@@ -104,6 +104,20 @@ impl FailureCriterion for TsaiWu {
 
     from_terms!();
 
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let (f, s11, sum) = (self.coefficients(m), s.s11(), s.s22() + s.s33());
+        out[0] = most_of_sum([
+            s11 * f.f1,
+            sum * f.f2,
+            s11.squared() * f.f11,
+            (s.s22().squared() + s.s33().squared()) * f.f22,
+            s.s23().squared() * f.f44,
+            (s.s12().squared() + s.s31().squared()) * f.f66,
+            s11 * sum * (2.0 * f.f12),
+            s.s22() * s.s33() * (2.0 * f.f23),
+        ]);
+    }
+
     fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
         let f = self.coefficients(m);
         let require = |holds: bool, condition| match holds {

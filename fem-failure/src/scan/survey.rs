@@ -12,6 +12,11 @@ pub(super) const WINDOW: usize = 16;
 /// Share of a bound that rounding may take.
 pub(super) const ROUNDING: f64 = 1e-9;
 
+/// A bound with what rounding may take.
+fn beyond(bound: f64) -> f64 {
+    bound + ROUNDING * bound.abs()
+}
+
 /// Components of stress beyond which a bound might overflow, Pa.
 pub(super) const IMMENSE: f64 = 1e60;
 
@@ -250,7 +255,7 @@ impl Judge<'_> {
             }
             for block in 0..bounds.rows().div_ceil(BLOCK) {
                 // Of a place that has not failed 1 is enough.
-                let reaches = |(bound, sought): (&f64, &Sought)| !(bound * (1.0 + ROUNDING) < sought.record.min(1.0));
+                let reaches = |(bound, sought): (&f64, &Sought)| !(beyond(*bound) < sought.record.min(1.0));
                 if bounds.of_block(block, number).iter().zip(&sought).any(reaches) {
                     for row in block * BLOCK..((block + 1) * BLOCK).min(bounds.rows()) {
                         self.judge_if(watch, seen, (bounds, row), (number, window), &mut sought)?;
@@ -282,7 +287,7 @@ impl Judge<'_> {
                 let of_site = row * bounds.modes..(row + 1) * bounds.modes;
                 let known = seen.maxima[of_site.clone()].iter().zip(&seen.reached[of_site]);
                 let adds = |(bound, (largest, reached)): (&f64, (&f64, &f64))| {
-                    let most = bound * (1.0 + ROUNDING);
+                    let most = beyond(*bound);
                     !(most <= *largest) || (!(most < 1.0) && *reached > self.times[window.start])
                 };
                 if bounds.at(row, number).iter().zip(known).any(adds) {
@@ -306,7 +311,7 @@ impl Judge<'_> {
         let place = self.slots[watch.span.start + row] as usize * bounds.modes;
         let reaches = |((bound, sought), first): ((&f64, &Sought), &First)| {
             let failed = first.is_some_and(|(first, _)| first.time < from);
-            !(bound * (1.0 + ROUNDING) < if failed { sought.record } else { sought.record.min(1.0) })
+            !(beyond(*bound) < if failed { sought.record } else { sought.record.min(1.0) })
         };
         if bounds.at(row, number).iter().zip(&*sought).zip(&seen.first[place..]).any(reaches) {
             let start = self.times[self.judged(window).start];
