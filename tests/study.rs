@@ -122,6 +122,8 @@ fn a_scene_names_its_own_axes_and_quantities() {
     assert!(told.is_some_and(|line| line.contains(&change)), "{change}: {done:#?}");
     let alone = case.fem("study", &["--axis", "patch", "--out", "alone"]).good().stdout;
     assert!(alone.contains("| patch |") && !alone.contains("cheapest") && !alone.contains("or more"), "{alone}");
+    let ways = case.fem("study", &["--axis", "mass,patch", "--out", "ways"]).good().stdout;
+    assert!(ways.contains("| mass | ") && !ways.contains("or more"), "{ways}");
     // The scene that it wrote keeps what it promises.
     fem(case.folder(), &["run", "study/scene.toml", "--out", "promised"]).good();
     let impulse = |out: &str| case.summary(out)["impact"]["impulse_N_s"].as_f64().unwrap();
@@ -212,6 +214,11 @@ fn what_a_study_does_not_know_is_refused() {
         axis.status == 1 && axis.stderr.contains("there is no axis `mash`") && axis.stderr.contains("mesh"),
         "{axis:#?}"
     );
+    for name in ["mesh", "a"] {
+        let axis = |name: &str| format!("[[study.axis]]\nname = \"{name}\"\nlevels = [{{ march.end = \"1 us\" }}]\n");
+        let twice = short().append(&(axis("a") + &axis(name))).fem("study", &[]);
+        assert!(twice.status == 1 && twice.stderr.contains(&format!("another axis `{name}`")), "{twice:#?}");
+    }
     let own = |name: char| {
         let levels: String = (1..=30).map(|n| format!("{{ reduction.vectors = {n} }}, ")).collect();
         format!("[[study.axis]]\nname = \"{name}\"\nlevels = [{levels}]\n")

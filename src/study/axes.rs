@@ -7,7 +7,7 @@ use crate::registry::{NO_REDUCTION, Registry};
 use fem_core::plugin::Dimension;
 use fem_core::plugin::{Kind, Plugin as _, Role, unknown_key};
 use fem_dynamics::reduce::Ritz;
-use fem_io::scene::{DelaminationSpec, MarchSpec, MeshSource, Scene, Setting};
+use fem_io::scene::{DelaminationSpec, MarchSpec, MeshSource, OwnAxis, Scene, Setting};
 
 /// A part of the settings that is varied while the others stay as the scene has them.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,11 +101,17 @@ const MOST_TOGETHER: f64 = 1e5;
 /// own. An axis of other ways brings the ladders that they are judged by.
 ///
 /// # Errors
-/// A name that no axis has, ladders of too many levels to be combined.
+/// A name that no axis has, one that two axes have, ladders of too many levels to be combined.
 pub fn axes(scene: &Scene, model: &Model, registry: &Registry, names: &[String]) -> Result<Vec<StudyAxis>, Error> {
     let study = &scene.study;
     let own = || study.own.iter().map(|own| own.name.value.as_str());
     let known = || NAMES.into_iter().chain(own());
+    for (k, OwnAxis { name, .. }) in study.own.iter().enumerate() {
+        if NAMES.into_iter().chain(own().take(k)).any(|other| other == name.value) {
+            let what = format!("there is another axis `{}`", name.value);
+            return Err(scene.source.error_at(&name.place, what, "give this one another name").into());
+        }
+    }
     if let Some(name) = names.iter().find(|name| known().all(|known| known != name.as_str())) {
         let help = format!("`{name}` {}", unknown_key(name, known()));
         return Err(Error::Axis { name: name.clone(), help });

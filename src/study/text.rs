@@ -4,6 +4,8 @@ use super::axes::AxisKind;
 use super::converge::{Convergence, ErrorBar};
 use super::ladder::Ladder;
 use super::plan::StudyPlan;
+use super::quantity::FORCE_HISTORY;
+use super::record::RunRecord;
 use super::report::{Report, Row};
 use fem_core::plugin::Dimension;
 use std::fmt::{self, Write as _};
@@ -72,22 +74,36 @@ fn percent(x: f64) -> String {
     }
 }
 
-/// What a study found, in Markdown: where the error of the scene comes from, the cheapest run for an error, and what other problems
-/// change.
+/// What a study found, in Markdown: where the error of the scene comes from, the cheapest run for an error, and what is changed by runs
+/// that count from the scene as it is.
 pub fn text(report: &Report) -> String {
     let mut t = String::new();
     // Writing to a text cannot fail.
-    let _ = summary(report, &mut t).and_then(|()| table(report, AxisKind::Problems, &mut t));
+    let _ = summary(report, &mut t);
+    for kind in kinds(report, true) {
+        let _ = table(report, kind, &mut t);
+    }
     t
 }
 
 /// Every other run of a study, in Markdown.
 pub(super) fn tables(report: &Report) -> String {
     let mut t = String::new();
-    for kind in [AxisKind::Ladder, AxisKind::Ways] {
+    for kind in kinds(report, false) {
         let _ = table(report, kind, &mut t);
     }
     t
+}
+
+/// Kinds of runs that are said at once, which all others follow: those that count from the scene as it is.
+fn kinds(report: &Report, at_once: bool) -> impl Iterator<Item = AxisKind> {
+    let all = [AxisKind::Ladder, AxisKind::Ways, AxisKind::Problems];
+    all.into_iter().filter(move |kind| counts_from_scene(report, *kind) == at_once)
+}
+
+/// Whether runs of `kind` are held against the scene as it is: other problems, and all where no ladder was climbed.
+fn counts_from_scene(report: &Report, kind: AxisKind) -> bool {
+    kind == AxisKind::Problems || report.ladders.is_empty()
 }
 
 fn summary(report: &Report, t: &mut String) -> fmt::Result {
@@ -232,20 +248,21 @@ fn figure(error: Option<ErrorBar>) -> String {
     }
 }
 
-/// What another problem changes of quantity `q`, over that of the scene as it is; of a history the L2 norm of the difference.
-fn change(report: &Report, row: &Row, q: usize) -> String {
-    let value = |row: &Row| {
-        let record = row.result.as_ref().ok()?;
-        record.figures.iter().find(|figure| figure.name == report.asked[q]).map(|figure| figure.value)
-    };
-    match (value(row), value(report.base())) {
-        (Some(new), Some(old)) if old != 0.0 => format!("{:+.1} %", 100.0 * (new - old) / old.abs()),
-        _ => row
-            .own
-            .get(q)
-            .copied()
-            .flatten()
-            .map_or_else(|| "-".to_owned(), |own| format!("{:.1} %", 100.0 * own.error)),
+fn short_percent(x: f64) -> String {
+    match x.abs() {
+        0.0 => "0 %".to_owned(),
+        ..1e-3 => format!("{:.0e} %", 100.0 * x),
+        _ => format!("{:.1} %", 100.0 * x),
+    }
+}
+
+/// What a run changes of the quantity `name`, over that of the scene as it is; of a history the L2 norm of the difference.
+fn change(report: &Report, record: &RunRecord, name: &str) -> String {
+    let Ok(base) = &report.base().result else { return "-".to_owned() };
+    match record.difference(base, name) {
+        None => "-".to_owned(),
+        Some(change) if change > 0.0 && name != FORCE_HISTORY => format!("+{}", short_percent(change)),
+        Some(change) => short_percent(change),
     }
 }
 
@@ -271,10 +288,16 @@ fn table(report: &Report, kind: AxisKind, t: &mut String) -> fmt::Result {
     if rows().all(|row| row.level.setting.is_empty()) {
         return Ok(());
     }
-    let (heading, own) = match kind {
-        AxisKind::Ladder => ("Ladders", "of its axis"),
-        AxisKind::Ways => ("Other ways", "against its judge"),
-        AxisKind::Problems => ("Other problems: what they change of the scene as it is, which is no error", "change"),
+    let heading = match kind {
+        AxisKind::Ladder => "Ladders",
+        AxisKind::Ways => "Other ways",
+        AxisKind::Problems => "Other problems: what they change of the scene as it is, which is no error",
+    };
+    let from_scene = counts_from_scene(report, kind);
+    let own = match kind {
+        _ if from_scene => "change",
+        AxisKind::Ladder => "of its axis",
+        _ => "against its judge",
     };
     let each: Vec<&str> = report.asked.iter().map(String::as_str).collect();
     writeln!(t, "\n{heading}\n")?;
@@ -288,24 +311,23 @@ fn table(report: &Report, kind: AxisKind, t: &mut String) -> fmt::Result {
             writeln!(t, "| {axis} | {label} | | {why} |{} | |", " |".repeat(each.len().saturating_sub(1)))?;
             continue;
         };
-        let each: Vec<String> = match kind {
-            AxisKind::Problems => (0..report.asked.len()).map(|q| change(report, row, q)).collect(),
-            _ => row.errors.iter().map(|error| figure(*error)).collect(),
+        let worst = row.own_worst();
+        let (each, worst): (Vec<String>, _) = if from_scene {
+            let worst = worst.map_or_else(|| "-".to_owned(), |worst| short_percent(worst.error));
+            (report.asked.iter().map(|name| change(report, record, name)).collect(), worst)
+        } else {
+            (row.errors.iter().map(|error| figure(*error)).collect(), figure(worst))
         };
         let unknowns = match record.size.marched {
             0 => record.size.unknowns.to_string(),
             marched => format!("{}, {marched}", record.size.unknowns),
         };
-        let best = if row.front { " *" } else { "" };
+        let best = if row.front && !from_scene { " *" } else { "" };
         writeln!(
             t,
             "| {axis} | {label}{best} | {unknowns} | {} | {} | {:.3} |",
             each.join(" | "),
-            match kind {
-                AxisKind::Problems =>
-                    row.own_worst().map_or_else(|| "-".to_owned(), |worst| format!("{:.1} %", 100.0 * worst.error)),
-                _ => figure(row.own_worst()),
-            },
+            worst,
             record.total()
         )?;
     }

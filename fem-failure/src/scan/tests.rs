@@ -1,5 +1,5 @@
 use super::*;
-use crate::{HashinReport, Octahedral};
+use crate::{HashinReport, Octahedral, TsaiWu};
 use fem_core::failure::{CriterionInfo, StressRange};
 use fem_core::material::{Elastic, Strength, Strengths, Toughnesses};
 
@@ -260,12 +260,17 @@ impl Samples for Batch<'_> {
 fn a_survey_finds_what_a_scan_of_all_samples_finds() {
     let places = [PlyOrInterface::Ply(0), PlyOrInterface::Interface(0), PlyOrInterface::Ply(1)];
     let sites: Vec<_> = (0..40).flat_map(|cell| places.map(|p| site(cell, p, u16::from(p == places[1])))).collect();
-    let (tape, resin) = (ply(), resin(9.0));
+    let (mut tape, resin) = (ply(), resin(9.0));
+    tape.strengths = tape.strengths.with(Strength::Yc, 30.0);
     let mut failed = 0;
     // `Plain` cannot say what it does not exceed.
     for (size, with_plain) in [(0.1, true), (0.4, false), (1.0, false), (3.0, true), (20.0, false)] {
-        let mut criteria: Vec<(String, Box<dyn FailureCriterion>)> =
-            vec![("h".into(), Box::new(HashinReport::default())), ("o".into(), Box::new(Octahedral))];
+        // Indices of Tsai and Wu's may be below zero.
+        let mut criteria: Vec<(String, Box<dyn FailureCriterion>)> = vec![
+            ("h".into(), Box::new(HashinReport::default())),
+            ("o".into(), Box::new(Octahedral)),
+            ("t".into(), Box::new(TsaiWu::default())),
+        ];
         if with_plain {
             criteria.push(("p".into(), Box::new(Plain)));
         }
@@ -298,7 +303,7 @@ fn a_survey_finds_what_a_scan_of_all_samples_finds() {
                 let maxima = |scan: &Scan| {
                     let of =
                         |k: usize| scan.maxima(k).map(|(s, m, t)| (*s, m.to_vec(), t.to_vec())).collect::<Vec<_>>();
-                    (0..2 + usize::from(with_plain)).map(of).collect::<Vec<_>>()
+                    (0..3 + usize::from(with_plain)).map(of).collect::<Vec<_>>()
                 };
                 assert_eq!(maxima(&some), maxima(&all));
             }

@@ -567,7 +567,7 @@ impl<'a> March<'a> {
     }
 }
 
-/// What is wanted of the stresses, where all samples of the march may wait for its end and none is asked for alone.
+/// What is wanted of the stresses, where no fields ask for those of an instant and all samples may wait for the end of the march.
 fn wanted(model: &Model, sizes: &Sizes, scan_every: u64) -> Option<Wanted> {
     let (output, waiting) = (&model.output, sizes.steps / scan_every.max(1) * sizes.marched as u64);
     let of_sites = if output.maps || output.plots { Wanted::EverySite } else { Wanted::Extremes };
