@@ -80,9 +80,10 @@ fn an_impact_with_everything_that_is_written() {
 
 #[test]
 fn large_deflections_of_the_full_plate_and_reduced() {
-    for name in ["impact-membrane-full.toml", "impact-membrane-reduced.toml"] {
-        agree(&both(name, [12, 8], &[]), &["peak_force_N"], 0.03);
-    }
+    // Close to the longest stable step: a march of the full plate evaluates its forces at each.
+    let full = both("impact-membrane-full.toml", [12, 8], &[("0.02 us", "0.05 us")]);
+    let reduced = both("impact-membrane-reduced.toml", [12, 8], &[]);
+    [full, reduced].iter().for_each(|cases| agree(cases, &["peak_force_N"], 0.03));
 }
 
 #[test]
