@@ -83,6 +83,18 @@ impl Forms {
         let (q, out) = (columns(padded), columns_mut(out));
         Arch::new().dispatch(Products { blocks: &self.blocks, of_each: self.blocks_of_each(), q, out });
     }
+
+    /// Finds the product of `q`, which is `padded` as [`Forms::products`] leaves it, with each of the `products` that this has found.
+    pub(super) fn values(&self, padded: &[f64], products: &[f64], values: &mut [f64]) {
+        Arch::new().dispatch(Values { q: columns(padded), products: columns(products), values });
+    }
+
+    /// The sum of the `products` with a weight each.
+    pub(super) fn combine(&self, weights: &[f64], products: &[f64], sum: &mut Vec<f64>) {
+        sum.clear();
+        sum.resize(self.stride(), 0.0);
+        Arch::new().dispatch(Combine { weights, products: columns(products), sum: columns_mut(sum) });
+    }
 }
 
 /// Columns and rows of the blocks of a lower triangle of `n` blocks.
@@ -130,6 +142,53 @@ impl WithSimd for Products<'_> {
                 }
                 let sums = out[high].as_flattened_mut().iter_mut().zip(&across);
                 sums.for_each(|(sum, [a, b, c, d])| *sum += (a + b) + (c + d));
+            }
+        }
+    }
+}
+
+/// [`Forms::values`]
+struct Values<'a> {
+    q: &'a [Column],
+    products: &'a [Column],
+    values: &'a mut [f64],
+}
+
+impl WithSimd for Values<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { q, products, values } = self;
+        for (value, product) in values.iter_mut().zip(products.chunks_exact(q.len().max(1))) {
+            let mut sums = Column::default();
+            for (product, q) in product.iter().zip(q) {
+                for ((sums, product), q) in sums.iter_mut().zip(product).zip(q) {
+                    (0..LANES).for_each(|lane| sums[lane] = product[lane].mul_add(q[lane], sums[lane]));
+                }
+            }
+            let [[a, b, c, d], rest @ ..] = sums;
+            *value = rest.iter().fold((a + b) + (c + d), |sum, [a, b, c, d]| sum + ((a + b) + (c + d)));
+        }
+    }
+}
+
+/// [`Forms::combine`]
+struct Combine<'a> {
+    weights: &'a [f64],
+    products: &'a [Column],
+    sum: &'a mut [Column],
+}
+
+impl WithSimd for Combine<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { weights, products, sum } = self;
+        for (weight, product) in weights.iter().zip(products.chunks_exact(sum.len().max(1))) {
+            for (sum, product) in sum.as_flattened_mut().iter_mut().zip(product.as_flattened()) {
+                (0..LANES).for_each(|lane| sum[lane] = weight.mul_add(product[lane], sum[lane]));
             }
         }
     }

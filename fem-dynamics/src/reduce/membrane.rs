@@ -2,7 +2,7 @@
 
 use super::forms::Forms;
 use super::{Expansion, Modal, Reduced};
-use crate::vector::{axpy, dot};
+use crate::vector::axpy;
 use fem_core::energy::Energy;
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
@@ -87,9 +87,9 @@ pub struct MembranePlate {
     inverse: Option<Forms>,
     /// B_t q, [`Forms::stride`] numbers each.
     products: Vec<f64>,
-    /// b_t.
+    /// b_t, or weights of the products.
     values: Vec<f64>,
-    /// Room for products.
+    /// Room for products, and for their sum.
     padded: Vec<f64>,
     solution: Vec<f64>,
 }
@@ -265,21 +265,22 @@ impl MembranePlate {
     /// Finds B_t q and b_t.
     fn stretch(&mut self, q: &[f64]) {
         self.forms.products(q, &mut self.padded, &mut self.products);
-        let products = self.products.chunks_exact(self.forms.stride().max(1));
-        products.zip(&mut self.values).for_each(|(product, value)| *value = dot(&product[..q.len()], q));
+        self.forms.values(&self.padded, &self.products, &mut self.values);
     }
 
     /// Adds to `force` what the stretching does beside the bending, ∂W/∂q − Λ q; returns its energy.
     pub(super) fn add_tension(&mut self, q: &[f64], force: &mut [f64]) -> f64 {
         self.stretch(q);
         let mut energy = 0.0;
-        for (t, product) in self.products.chunks_exact(self.forms.stride().max(1)).enumerate() {
+        for t in 0..self.values.len() {
             let (value, tension) = (self.values[t], self.tension(t, q));
             // ½ σ b² + (cᵀ q) b
             energy += value * (tension - 0.5 * self.stiffness[t] * value);
-            axpy(2.0 * tension, product, force);
             force.iter_mut().zip(self.coupling(t)).for_each(|(f, c)| *f += value * c);
+            self.values[t] = 2.0 * tension;
         }
+        self.forms.combine(&self.values, &self.products, &mut self.padded);
+        force.iter_mut().zip(&self.padded).for_each(|(f, tension)| *f += tension);
         energy
     }
 
