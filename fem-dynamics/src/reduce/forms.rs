@@ -84,16 +84,15 @@ impl Forms {
         Arch::new().dispatch(Products { blocks: &self.blocks, of_each: self.blocks_of_each(), q, out });
     }
 
-    /// Finds the product of `q`, which is `padded` as [`Forms::products`] leaves it, with each of the `products` that this has found.
-    pub(super) fn values(&self, padded: &[f64], products: &[f64], values: &mut [f64]) {
-        Arch::new().dispatch(Values { q: columns(padded), products: columns(products), values });
+    /// Finds the product of `q`, which is `padded` as [`Forms::products`] leaves it, with each of some `vectors` of as many numbers; leaves
+    /// values without a vector.
+    pub(super) fn values(&self, padded: &[f64], vectors: &[f64], values: &mut [f64]) {
+        Arch::new().dispatch(Values { q: columns(padded), vectors: columns(vectors), values });
     }
 
-    /// The sum of the `products` with a weight each.
-    pub(super) fn combine(&self, weights: &[f64], products: &[f64], sum: &mut Vec<f64>) {
-        sum.clear();
-        sum.resize(self.stride(), 0.0);
-        Arch::new().dispatch(Combine { weights, products: columns(products), sum: columns_mut(sum) });
+    /// Adds to `sum` the vectors with a weight each.
+    pub(super) fn add_columns(&self, weights: &[f64], vectors: &[f64], sum: &mut [f64]) {
+        Arch::new().dispatch(AddColumns { weights, vectors: columns(vectors), sum: columns_mut(sum) });
     }
 }
 
@@ -150,7 +149,7 @@ impl WithSimd for Products<'_> {
 /// [`Forms::values`]
 struct Values<'a> {
     q: &'a [Column],
-    products: &'a [Column],
+    vectors: &'a [Column],
     values: &'a mut [f64],
 }
 
@@ -159,12 +158,12 @@ impl WithSimd for Values<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { q, products, values } = self;
-        for (value, product) in values.iter_mut().zip(products.chunks_exact(q.len().max(1))) {
+        let Self { q, vectors, values } = self;
+        for (value, vector) in values.iter_mut().zip(vectors.chunks_exact(q.len().max(1))) {
             let mut sums = Column::default();
-            for (product, q) in product.iter().zip(q) {
-                for ((sums, product), q) in sums.iter_mut().zip(product).zip(q) {
-                    (0..LANES).for_each(|lane| sums[lane] = product[lane].mul_add(q[lane], sums[lane]));
+            for (vector, q) in vector.iter().zip(q) {
+                for ((sums, vector), q) in sums.iter_mut().zip(vector).zip(q) {
+                    (0..LANES).for_each(|lane| sums[lane] = vector[lane].mul_add(q[lane], sums[lane]));
                 }
             }
             let [[a, b, c, d], rest @ ..] = sums;
@@ -173,22 +172,22 @@ impl WithSimd for Values<'_> {
     }
 }
 
-/// [`Forms::combine`]
-struct Combine<'a> {
+/// [`Forms::add_columns`]
+struct AddColumns<'a> {
     weights: &'a [f64],
-    products: &'a [Column],
+    vectors: &'a [Column],
     sum: &'a mut [Column],
 }
 
-impl WithSimd for Combine<'_> {
+impl WithSimd for AddColumns<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { weights, products, sum } = self;
-        for (weight, product) in weights.iter().zip(products.chunks_exact(sum.len().max(1))) {
-            for (sum, product) in sum.as_flattened_mut().iter_mut().zip(product.as_flattened()) {
-                (0..LANES).for_each(|lane| sum[lane] = weight.mul_add(product[lane], sum[lane]));
+        let Self { weights, vectors, sum } = self;
+        for (weight, vector) in weights.iter().zip(vectors.chunks_exact(sum.len().max(1))) {
+            for (sum, vector) in sum.as_flattened_mut().iter_mut().zip(vector.as_flattened()) {
+                (0..LANES).for_each(|lane| sum[lane] = weight.mul_add(vector[lane], sum[lane]));
             }
         }
     }

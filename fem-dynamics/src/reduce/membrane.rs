@@ -81,16 +81,20 @@ pub struct MembranePlate {
     forms: Forms,
     /// σ_t
     stiffness: Vec<f64>,
-    /// c_t, one after the other; empty where none matters.
+    /// c_t, [`Forms::stride`] numbers each; empty where none matters.
     couplings: Vec<f64>,
+    /// c_tᵀ q
+    coupled: Vec<f64>,
     /// Inverse of the tangent, which serves many steps.
     inverse: Option<Forms>,
     /// B_t q, [`Forms::stride`] numbers each.
     products: Vec<f64>,
-    /// b_t, or weights of the products.
+    /// b_t.
     values: Vec<f64>,
-    /// Room for products, and for their sum.
+    /// Room for products, and for sums of them.
     padded: Vec<f64>,
+    weights: Vec<f64>,
+    sum: Vec<f64>,
     solution: Vec<f64>,
 }
 
@@ -233,7 +237,10 @@ impl MembranePlate {
         let packed = Forms::new(bending.len(), &of_left);
         let plate = Self {
             modal: reduced.modal.clone(),
-            couplings: if coupled { couplings.as_slice().to_vec() } else { Vec::new() },
+            couplings: if coupled { padded_columns(&couplings, packed.stride()) } else { Vec::new() },
+            coupled: vec![0.0; stiffness.len()],
+            weights: vec![0.0; stiffness.len()],
+            sum: Vec::new(),
             products: vec![0.0; packed.stride() * stiffness.len()],
             forms: packed,
             values: vec![0.0; stiffness.len()],
@@ -262,10 +269,11 @@ impl MembranePlate {
         Self { forms: self.forms.of_the_first(count), ..self.clone() }
     }
 
-    /// Finds B_t q and b_t.
+    /// Finds B_t q, b_t and c_tᵀ q.
     fn stretch(&mut self, q: &[f64]) {
         self.forms.products(q, &mut self.padded, &mut self.products);
         self.forms.values(&self.padded, &self.products, &mut self.values);
+        self.forms.values(&self.padded, &self.couplings, &mut self.coupled);
     }
 
     /// Adds to `force` what the stretching does beside the bending, ∂W/∂q − Λ q; returns its energy.
@@ -273,28 +281,34 @@ impl MembranePlate {
         self.stretch(q);
         let mut energy = 0.0;
         for t in 0..self.values.len() {
-            let (value, tension) = (self.values[t], self.tension(t, q));
+            let (value, tension) = (self.values[t], self.tension(t));
             // ½ σ b² + (cᵀ q) b
             energy += value * (tension - 0.5 * self.stiffness[t] * value);
-            force.iter_mut().zip(self.coupling(t)).for_each(|(f, c)| *f += value * c);
-            self.values[t] = 2.0 * tension;
+            self.weights[t] = 2.0 * tension;
         }
-        self.forms.combine(&self.values, &self.products, &mut self.padded);
-        force.iter_mut().zip(&self.padded).for_each(|(f, tension)| *f += tension);
+        self.sum.clear();
+        self.sum.resize(self.forms.stride(), 0.0);
+        self.forms.add_columns(&self.weights, &self.products, &mut self.sum);
+        self.forms.add_columns(&self.values, &self.couplings, &mut self.sum);
+        force.iter_mut().zip(&self.sum).for_each(|(f, tension)| *f += tension);
         energy
     }
 
     /// c_t of term `t`, if there are any.
     fn coupling(&self, t: usize) -> &[f64] {
-        let n = self.modal.ndof();
-        self.couplings.get(t * n..(t + 1) * n).unwrap_or_default()
+        let stride = self.forms.stride();
+        self.couplings.get(t * stride..t * stride + self.modal.ndof()).unwrap_or_default()
     }
 
-    /// ∂W/∂b_t.
-    fn tension(&self, t: usize, q: &[f64]) -> f64 {
-        let coupled: f64 = self.coupling(t).iter().zip(q).map(|(c, q)| c * q).sum();
-        self.stiffness[t] * self.values[t] + coupled
+    /// ∂W/∂b_t, once the plate is stretched.
+    fn tension(&self, t: usize) -> f64 {
+        self.stiffness[t] * self.values[t] + self.coupled[t]
     }
+}
+
+/// The columns of a matrix, `stride` numbers each.
+fn padded_columns(matrix: &DMatrix<f64>, stride: usize) -> Vec<f64> {
+    matrix.clone().resize_vertically(stride, 0.0).as_slice().to_vec()
 }
 
 /// What is in the way where tension bends a plate.
@@ -440,7 +454,7 @@ impl Tangents for MembranePlate {
         let mut tangent = DMatrix::zeros(n, n);
         for (t, product) in self.products.chunks_exact(self.forms.stride().max(1)).enumerate() {
             let product = DVectorView::from_slice(product, n);
-            tangent += self.forms.matrix(t) * (2.0 * self.tension(t, q));
+            tangent += self.forms.matrix(t) * (2.0 * self.tension(t));
             tangent.ger(4.0 * self.stiffness[t], &product, &product, 1.0);
             let coupling = self.coupling(t);
             if !coupling.is_empty() {
