@@ -502,7 +502,7 @@ fn a_linear_run_says_when_it_left_its_limits() {
     let after = outcome.history.iter().position(|row| row.time_s > since).unwrap();
     let over = |row: usize| 0.443 * (outcome.history[row].impactors[0].plate_displacement_m / 1e-3).powi(2);
     assert!(over(after - 1) <= THRESHOLD && THRESHOLD <= over(after), "{found:?}");
-    assert!(found.reached > THRESHOLD && found.at > since, "{found:?}");
+    assert!(found.reached > THRESHOLD && found.at > Some(since), "{found:?}");
 
     let slow = Square { impactor: "mass = '100 g'\nvelocity = '0.2 m/s'", ..sheet("") };
     let (model, sizes, outcome) = computed(&slow.text());
@@ -554,6 +554,55 @@ fn loads_at_rest_are_decided_by_the_linear_deflection() {
     let (_, heavy) = at_rest("100 kPa");
     assert!(heavy.on);
     near(heavy.expected, 1e4 * slight.expected, 1e-6);
+}
+
+/// A plate of 60 mm under a pressure, whose `sides` are clamped.
+fn panel(sides: &[&str], pressure: &str, element: &str, membrane: &str) -> String {
+    let supports: String = sides.iter().map(|side| format!("{{ group = '{side}', kind = 'clamped' }},")).collect();
+    format!(
+        "title = 'panel'\nanalysis = 'static'\nmesh = {{ rectangle = ['60 mm', '60 mm'], cells = [6, 6] }}\n\
+         element = {{ kind = '{element}' }}\neffects = {{ damage = 'off', membrane = '{membrane}' }}\nsupport = [{supports}]\n\
+         laminate = {{ plies = '[0/90]s', material = 'm', ply_thickness = '0.25 mm' }}\nload = [{{ pressure = '{pressure}' }}]\n\
+         materials.m = {{ library = 'AS4/3502' }}\n"
+    )
+}
+
+/// What deflects most on a free edge between held ones is stretched; what only one side holds is not.
+#[test]
+fn a_free_edge_between_held_ones_is_stretched() {
+    let expected = |sides: &[&str]| {
+        let model = decided(model(&panel(sides, "0.5 MPa", "hermite-prism", "auto")), NonZeroUsize::MIN).unwrap();
+        let [decision] = model.decisions[..] else { panic!() };
+        assert_eq!(decision.on, model.effects.has("membrane"));
+        decision.expected
+    };
+    assert!(expected(&["x-min", "x-max"]) > 1.0);
+    assert!(expected(&["x-min", "x-max", "y-min"]) > 1.0);
+    assert_eq!(expected(&["x-min"]), 0.0);
+}
+
+#[test]
+fn the_advisor_knows_no_section_at_rest() {
+    let text = panel(&["x-min", "x-max"], "0.5 MPa", "webster-beam", "auto").replace("[6, 6]", "[6, 1]");
+    let refused = decided(model(&text), NonZeroUsize::MIN).unwrap_err().to_string();
+    assert!(refused.contains("is a section"), "{refused}");
+}
+
+/// A linear plate at rest that went beyond its range says by how much, as an impact does.
+#[test]
+fn a_linear_plate_at_rest_says_where_it_is_wrong() {
+    let sides = ["x-min", "x-max", "y-min", "y-max"];
+    let warnings = |pressure: &str, membrane: &str, sides: &[&str]| {
+        let model = model(&panel(sides, pressure, "hermite-prism", membrane));
+        let solution = statics::solve(&model, NonZeroUsize::MIN).unwrap();
+        let warnings = output::statics::StaticSummary::new(&model, &solution).warnings;
+        warnings.into_iter().filter(|warning| warning.contains("membrane stiffening")).collect::<Vec<_>>()
+    };
+    let [warning] = &warnings("0.5 MPa", "off", &sides)[..] else { panic!() };
+    assert!(warning.contains("wrong by about 130 %") && warning.contains("1.71 thicknesses"), "{warning}");
+    assert!(warnings("0.05 MPa", "off", &sides).is_empty());
+    assert!(warnings("0.5 MPa", "on", &sides).is_empty());
+    assert!(warnings("0.005 MPa", "off", &["x-min"]).is_empty());
 }
 
 #[test]

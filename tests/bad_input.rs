@@ -198,6 +198,13 @@ mod groups {
     fn impact_on_a_support() {
         let case = strip().scene("x = \"15 mm\"", "x = \"0 mm\"").scene("velocity", "load = \"node\"\nvelocity");
         refusal(&case, At::Scene("at = { x"), &["the supports hold the plate exactly where the impactor strikes"]);
+        let beside =
+            strip().scene("x = \"15 mm\"", "x = \"0.5 mm\"").scene("velocity", "patch_radius = \"0.4 mm\"\nvelocity");
+        refusal(
+            &beside,
+            At::Scene("at = { x"),
+            &["the supports hold the node that takes most of the impact", "divide the cells there"],
+        );
     }
 }
 

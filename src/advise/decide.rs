@@ -60,6 +60,9 @@ pub(super) fn vibrates(model: &Model) -> bool {
 
 /// The linear plate under `forces`.
 fn at_rest(model: &Model, forces: &[f64], threads: NonZeroUsize) -> Result<Expected, Error> {
+    if model.plate.info().is_section() {
+        return Err(Error::NoPlate { element: model.origin.element.clone() });
+    }
     let nodal: Vec<(usize, f64)> = forces.iter().copied().enumerate().filter(|(_, force)| *force != 0.0).collect();
     let mut load = vec![0.0; model.constraints.ndof()];
     Functional(model.constraints.restrict(&nodal)).add_to(1.0, &mut load);

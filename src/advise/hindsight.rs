@@ -18,9 +18,17 @@ pub fn hindsight(model: &Model, contacts: &[ContactRecord], threshold: f64) -> O
         let (at, deflection) = over.last().copied().unwrap_or_default();
         let beyond = over.windows(2).find(|pair| number(pair[1].1) > threshold);
         let since = beyond.map(|pair| crossing(pair[0], pair[1], (threshold / coefficient).sqrt()));
-        Some(Hindsight { reached: number(deflection), coefficient, held: held.name(), deflection, at, since })
+        Some(Hindsight { reached: number(deflection), coefficient, held: held.name(), deflection, at: Some(at), since })
     });
     each.max_by(|a, b| a.reached.total_cmp(&b.reached))
+}
+
+/// The same of a plate at rest whose largest deflection is `w` at `place`.
+pub fn hindsight_at_rest(model: &Model, w: f64, place: [f64; 2]) -> Option<Hindsight> {
+    let held = Rim::around(model, place)?.held?;
+    let (coefficient, deflection) = (held.coefficient(), w.abs() / model.laminate.thickness());
+    let reached = coefficient * deflection * deflection;
+    Some(Hindsight { reached, coefficient, held: held.name(), deflection, at: None, since: None })
 }
 
 /// When a value passes `level` between two times, by a straight line.

@@ -30,7 +30,7 @@ pub use decide::decided;
 pub use delamination::{Delaminates, DelaminationAdvice};
 pub use estimate::{Blow, Estimate};
 pub use held::Held;
-pub use hindsight::hindsight;
+pub use hindsight::{hindsight, hindsight_at_rest};
 pub use mesh::{Resolution, expect_coarse_cells, warn_of_coarse_cells};
 pub use plate::PlateConstants;
 pub use regime::Regime;

@@ -17,7 +17,7 @@ const SHARE: f64 = 0.05;
 pub struct Rim {
     /// Area inside, m².
     pub area: f64,
-    /// How the edge is held; `None` where the supports do not surround the place, as those of a cantilever.
+    /// How the edge is held; `None` where the supports lie all to one side of the place, as that of a cantilever.
     pub held: Option<Held>,
 }
 
@@ -68,12 +68,12 @@ impl Rim {
     }
 }
 
-/// Whether no half-plane is free of `directions`.
+/// Whether no half-plane is free of `directions`, its border included: a place on a free edge is between the ends of that edge.
 fn surrounded(mut directions: Vec<f64>) -> bool {
     directions.sort_by(f64::total_cmp);
     let Some(first) = directions.first() else { return false };
     let next = directions[1..].iter().copied().chain([first + TAU]);
-    directions.iter().zip(next).all(|(a, b)| b - a < PI * (1.0 - NOTHING))
+    directions.iter().zip(next).all(|(a, b)| b - a < PI * (1.0 + NOTHING))
 }
 
 fn levels(model: &Model, column: usize) -> impl Iterator<Item = usize> + use<> {

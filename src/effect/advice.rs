@@ -56,8 +56,8 @@ pub struct Hindsight {
     pub held: &'static str,
     /// Largest w/h.
     pub deflection: f64,
-    /// Time of the largest deflection, s.
-    pub at: f64,
+    /// Time of the largest deflection, s; `None` at rest.
+    pub at: Option<f64>,
     /// From when on A (w/h)² is above the threshold, s.
     pub since: Option<f64>,
 }

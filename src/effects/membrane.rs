@@ -239,17 +239,24 @@ fn cost(size: &Size) -> f64 {
 
 fn hindsight(run: &Hindsight, acted: bool, decided: bool) -> Option<String> {
     let Hindsight { reached, coefficient, held, deflection, at, since } = *run;
-    match (since, acted) {
-        (Some(since), false) => Some(format!(
+    let remedy = format!(
+        "(A (w/h)^2, A = {coefficient} for an edge {held}): switch it on with `effects.membrane = \"on\"`, or \"auto\""
+    );
+    match (at, since) {
+        (Some(at), Some(since)) if !acted => Some(format!(
             "without membrane stiffening the force is wrong by more than {:.0} % from {:.4} ms on and by about {:.0} % at \
-             {:.4} ms, when the plate deflects by {deflection:.2} thicknesses (A (w/h)^2, A = {coefficient} for an edge \
-             {held}): switch it on with `effects.membrane = \"on\"`, or \"auto\"",
+             {:.4} ms, when the plate deflects by {deflection:.2} thicknesses {remedy}",
             100.0 * THRESHOLD,
             since * 1e3,
             100.0 * reached,
             at * 1e3
         )),
-        (None, true) if decided => Some(format!(
+        (None, _) if !acted && reached > THRESHOLD => Some(format!(
+            "without membrane stiffening the load under which the plate deflects by {deflection:.2} thicknesses is wrong by \
+             about {:.0} % {remedy}",
+            100.0 * reached
+        )),
+        (Some(_), None) if acted && decided => Some(format!(
             "the advisor switched membrane stiffening on, and A (w/h)^2 came to {reached:.4} only: `effects.membrane = \
              \"off\"` keeps the force right within {:.0} %",
             100.0 * THRESHOLD

@@ -111,7 +111,9 @@ pub enum Error {
         key: String,
     },
     #[error("`{element}` is a section, and the advisor's formulas hold for plates only")]
-    #[diagnostic(help("use a plate and one of its elements, such as `mitc4`"))]
+    #[diagnostic(help(
+        "write \"on\" or \"off\" where the scene says \"auto\", or use a plate and one of its elements, such as `mitc4`"
+    ))]
     NoPlate {
         /// Name of the element.
         element: String,
@@ -193,8 +195,8 @@ pub enum Error {
     Plot(#[from] PlotError),
 }
 
-const STEP: &str = "shorten `march.step`, or take the integrator `energy-conserving`";
-const STEP_OR_LAW: &str = "shorten `march.step`, or take the integrator `energy-conserving`; if that changes nothing, look at the contact law: \
+const STEP: &str = "shorten `march.step`, or, where nothing separates, take the integrator `energy-conserving`";
+const STEP_OR_LAW: &str = "shorten `march.step`, or, where nothing separates, take the integrator `energy-conserving`; if that changes nothing, look at the contact law: \
     `fem_core::testkit::check_contact_law` finds what is wrong with it";
 const MATRIX: &str =
     "look at the supports, at the constants of the materials, and at the element if it is one of your own";

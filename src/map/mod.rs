@@ -137,7 +137,13 @@ impl<'a> BorderMap<'a> {
                 )));
             }
         }
-        let mut identity = saved::identity(&Model::new(scene, registry)?)?;
+        let model = Model::new(scene, registry)?;
+        if model.criteria.is_empty() && model.threshold.is_none() {
+            let message = "a map needs a criterion, and the scene has none".to_owned();
+            let help = "name one in `failure.criteria`, and leave `effects.damage` on";
+            return Err(Error::Sweep { message, help: help.into() });
+        }
+        let mut identity = saved::identity(&model)?;
         // Points are looked for as the tolerance wants them, but each is the same whoever wants it.
         identity.insert("what the map is over".into(), format!("{axes:?} {list:?} {fixed:?}"));
         let map = Self { axes, list, asked: asked.clone(), fixed, scene, registry, written, identity };

@@ -11,6 +11,7 @@ use fem_core::laminate::Laminate;
 use fem_core::material::{Material, Toughness};
 use fem_core::plate::Plate;
 use fem_io::scene::{Analysis, Load, LoadKind, Place, SceneError};
+use std::collections::BTreeMap;
 
 /// What of the length of a cell a crack grows in a step, unless the scene says how long steps are.
 const ADVANCE: f64 = 0.5;
@@ -51,6 +52,7 @@ impl Builder<'_> {
     ) -> Result<Option<Driven>, SceneError> {
         let Analysis::Static(loads) = &self.scene.analysis else { return Ok(None) };
         let (mut sum, mut leader): (f64, Option<(usize, f64)>) = (0.0, None);
+        let mut taken = BTreeMap::new();
         for Load { kind, place } in loads {
             let LoadKind::Displacement { displacement, dof, nodes } = kind else { continue };
             if self.scene.delamination.is_none() {
@@ -66,6 +68,13 @@ impl Builder<'_> {
             if moved.is_empty() {
                 let message = format!("the element has no {dof} at the nodes of `{}`", nodes.group.value);
                 return Err(self.error(&nodes.group, message, "name nodes and an unknown that it has"));
+            }
+            for unknown in &moved {
+                if let Some(first) = taken.insert(*unknown, &nodes.group.value) {
+                    let message =
+                        format!("{dof} of a node is prescribed twice, at `{first}` and at `{}`", nodes.group.value);
+                    return Err(self.error(&nodes.group, message, "keep one displacement of each unknown"));
+                }
             }
             sum += displacement.abs();
             for unknown in moved {

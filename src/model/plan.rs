@@ -26,6 +26,9 @@ use std::collections::BTreeMap;
 /// Fewest cells whose stresses can be differentiated.
 const LEAST_CELLS: usize = 4;
 
+/// Distance of two places that are the same, m.
+const SAME: f64 = 1e-9;
+
 /// What is computed, made concrete.
 #[derive(Debug, Clone)]
 pub enum Plan {
@@ -167,12 +170,16 @@ impl Builder<'_> {
             self.symmetric_impact(plate, &impactor.at, centre)?;
             let place = contact;
             let contact = Functional(constraints.restrict(&place.0));
-            if contact.0.is_empty() || is_held_below(plate, constraints, &place) {
-                return Err(self.error(
-                    &impactor.at,
-                    "the supports hold the plate exactly where the impactor strikes",
-                    "move the impact or the support",
-                ));
+            let held = held_below(plate, constraints, &place);
+            let beside = held.is_some_and(|[x, y]| (x - centre[0]).hypot(y - centre[1]) > SAME);
+            if beside && !contact.0.is_empty() {
+                let message = "the supports hold the node that takes most of the impact";
+                let help = "divide the cells there, so that the node nearest to the impact is free, or move the impact or the support";
+                return Err(self.error(&impactor.at, message, help));
+            }
+            if held.is_some() || contact.0.is_empty() {
+                let message = "the supports hold the plate exactly where the impactor strikes";
+                return Err(self.error(&impactor.at, message, "move the impact or the support"));
             }
             let squeeze = match &impactor.indentation_from {
                 Some(from) => Some(self.squeeze((impactor, from), (plate, element), constraints, &place)?),
@@ -482,11 +489,11 @@ impl Builder<'_> {
     }
 }
 
-/// Whether a support holds a deflection of the node column on which most of a contact is.
-fn is_held_below(plate: &Plate, constraints: &Constraints, contact: &Functional) -> bool {
+/// Where the node column is on which most of a contact is, if a support holds a deflection of that.
+fn held_below(plate: &Plate, constraints: &Constraints, contact: &Functional) -> Option<[f64; 2]> {
     let mut shares: BTreeMap<usize, f64> = BTreeMap::new();
     contact.0.iter().for_each(|(dof, w)| *shares.entry(plate.locate(*dof).0).or_default() += w.abs());
-    let Some((column, _)) = shares.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)) else { return false };
+    let (column, _) = shares.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let mut deflections = (0..plate.levels.len()).flat_map(|level| plate.dofs_at(column, level, Dof::SOLID[8]));
-    deflections.any(|dof| constraints.row(dof).0.is_empty())
+    deflections.any(|dof| constraints.row(dof).0.is_empty()).then(|| plate.columns[column])
 }

@@ -19,6 +19,12 @@ fn effects_that_are_off_change_no_bit() {
 }
 
 #[test]
+fn damage_that_nobody_looks_for_is_not_said_to_be_absent() {
+    let said = watched().append("[effects]\ndamage = \"off\"\n").fem("run", &["--out", "off"]).good().stdout;
+    assert!(said.contains("  damage    not looked for"), "{said}");
+}
+
+#[test]
 fn effects_are_listed() {
     let listed = fem(&crate::support::root(), &["list", "effects"]).good().stdout;
     for effect in ["damage", "delamination", "membrane", "preload", "damping", "inertia", "gravity"] {

@@ -261,6 +261,11 @@ fn what_makes_no_path_is_refused() {
     let both =
         ["load = [\n", "load = [\n  { force = [\"0 N\", \"0 N\", \"1 N\"], group = \"x-min\", at = \"top\" },\n"];
     refused("dcb", &[both], "beside forces");
+    for at in ["top", "all"] {
+        let more =
+            format!("load = [\n  {{ displacement = \"3 mm\", dof = \"U30\", group = \"x-min\", at = \"{at}\" }},\n");
+        refused("dcb", &[["load = [\n", &more]], "prescribed twice");
+    }
     let alone = [growth, "effects = { damage = \"off\" }"];
     refused("dcb", &[alone], "means nothing where delaminations do not grow");
 }

@@ -219,7 +219,9 @@ fn tiles(summary: &Map<String, Value>) -> Vec<Fact> {
     let first = first_damage(summary).map(|event| event.time_s).reduce(f64::min);
     tile("first damage", "time_s", first);
     if summary.get("first_damage").is_some() && first.is_none() {
-        tiles.push(Fact { label: "first damage".into(), value: "none".into(), unit: String::new() });
+        let judged = summary.get("not_reached").and_then(Value::as_array).is_some_and(|modes| !modes.is_empty());
+        let value = if judged { "none" } else { "not looked for" };
+        tiles.push(Fact { label: "first damage".into(), value: value.into(), unit: String::new() });
     }
     tiles
 }

@@ -7,13 +7,14 @@ mod plans;
 pub use files::{ProfileTable, profile, write};
 pub use path::PathFigures;
 
+use crate::advise::hindsight_at_rest;
 use crate::analyses::assembled::Substructures;
 use crate::analyses::statics::{StaticSolution, dof_of};
 use crate::analyses::stress::Margin;
 use crate::cost::Cost;
 use crate::model::{Model, NamedProfile};
 use crate::output::preload::PreloadFigures;
-use crate::output::summary::Advised;
+use crate::output::summary::{Advised, hindsights};
 use crate::words::{append, append_symmetry, describe_condition, warn_of_condition, warn_of_softness};
 use fem_core::plugin::Dimension;
 use fem_core::profile::{Choice, Resultants, Way};
@@ -128,6 +129,8 @@ impl StaticSummary {
             last_decrement: decrements.last().copied().unwrap_or(0.0),
         });
         let path = solution.followed.as_ref().and_then(PathFigures::of);
+        // What is followed through delaminations is known to be of small deflections.
+        let seen = path.is_none().then(|| hindsights(model, |_| hindsight_at_rest(model, w_m, [x_m, y_m])));
         let profiles = || model.profiles.iter().zip(&solution.transverse);
         Self {
             title: model.origin.title.clone(),
@@ -156,6 +159,7 @@ impl StaticSummary {
                 .warnings
                 .iter()
                 .cloned()
+                .chain(seen.iter().flatten().filter_map(|seen| seen.warning(model)))
                 .chain(warn_of_residual(solution.residual))
                 .chain(solution.condition.and_then(warn_of_condition))
                 .chain(path.iter().flat_map(PathFigures::warnings))

@@ -348,23 +348,24 @@ impl From<Counters> for Work {
 }
 
 /// What a run says of an effect that the advisor knows.
-struct Seen {
+pub(in crate::output) struct Seen {
     effect: &'static str,
     advice: &'static AdviceRule,
     run: Hindsight,
 }
 
-fn hindsights(model: &Model, contacts: &[ContactRecord]) -> Vec<Seen> {
+/// What `run` went to, by the threshold of each effect.
+pub(in crate::output) fn hindsights(model: &Model, run: impl Fn(f64) -> Option<Hindsight>) -> Vec<Seen> {
     let each = model.effects.known().iter().filter_map(|info| {
         let advice = info.advice.as_ref().filter(|advice| advice.hindsight.is_some())?;
-        Some(Seen { effect: info.key.name, advice, run: hindsight(model, contacts, advice.threshold)? })
+        Some(Seen { effect: info.key.name, advice, run: run(advice.threshold)? })
     });
     each.collect()
 }
 
 impl Seen {
     /// What the user should know where the choice was wrong.
-    fn warning(&self, model: &Model) -> Option<String> {
+    pub(in crate::output) fn warning(&self, model: &Model) -> Option<String> {
         let decided = model.decisions.iter().any(|decision| decision.effect == self.effect);
         self.advice.hindsight?(&self.run, model.effects.has(self.effect), decided)
     }
@@ -376,7 +377,7 @@ impl ImpactSummary {
         let impact::Accuracy { step, reduction, mesh, layers, .. } = outcome.accuracy;
         let residual = reduction.and_then(|error| error.residual);
         let thickness = model.laminate.thickness();
-        let seen = hindsights(model, &outcome.contacts);
+        let seen = hindsights(model, |threshold| hindsight(model, &outcome.contacts, threshold));
         let reached = |effect: &str| Some(seen.iter().find(|seen| seen.effect == effect)?.run.reached);
         let damage = |e: &FailureEvent| DamageSummary {
             event: event_row(model, e),

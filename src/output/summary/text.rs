@@ -58,7 +58,10 @@ impl ImpactSummary {
         }
         if self.first_damage.is_empty() {
             let end = self.impact.first().map_or(0.0, |i| i.end_time_s);
-            line(format_args!("  damage    none until {}", Dimension::TIME.of(end)));
+            let judged = !self.not_reached.is_empty();
+            let found =
+                if judged { format!("none until {}", Dimension::TIME.of(end)) } else { "not looked for".to_owned() };
+            line(format_args!("  damage    {found}"));
         } else {
             let regions = self.first_damage.iter().any(|d| d.event.region.is_some());
             let of = if regions { " of their region" } else { "" };
