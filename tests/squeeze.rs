@@ -128,3 +128,21 @@ fn what_cannot_be_taken_from_a_law_is_refused() {
         refused(&plate(1e3, ", indentation_from = 'mid-plane'").replace("patch_side = '20 mm'", "load = 'node'"));
     assert!(node.contains("a force at one node squeezes a solid without limit"), "{node}");
 }
+
+/// Each would have to know how the other squeezes the plate.
+#[test]
+fn impactors_that_squeeze_for_each_other_are_refused() {
+    let two = |x: &str| {
+        let text = plate(1e3, ", indentation_from = 'mid-plane'");
+        let (before, rest) = text.split_once("impactor = {").unwrap();
+        let (one, after) = rest.split_once("}\n").unwrap();
+        let one = one.replace("'20 mm'", "'2 mm'").replace("x = '2 mm', y = '2 mm'", "x = '20 mm', y = '20 mm'");
+        let other = one.replace("x = '20 mm'", &format!("x = '{x}'"));
+        let text = format!("{before}impactor = [{{ name = 'a',{one}}}, {{ name = 'b',{other}}}]\n{after}");
+        let scene = scene::parse(&text, Path::new("scene.toml")).unwrap();
+        fem::Model::new(scene, &fem::Registry::standard()).map(|_| ()).map_err(|why| why.to_string())
+    };
+    let refused = two("21 mm").unwrap_err();
+    assert!(refused.contains("`a` and `b` strike less than a thickness apart"), "{refused}");
+    assert_eq!(two("30 mm"), Ok(()));
+}

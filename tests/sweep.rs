@@ -143,6 +143,7 @@ fn what_makes_no_sense_is_refused_before_anything_runs() {
         (&["--set", "impactor.velocity=1,-1"], &["`impactor.velocity`", "must be positive"]),
         (&big, &["1000000000 cases", "at most 1000000"]),
         (&["--set", "title=a", "--set", "title=b"], &["`title`: is varied twice"]),
+        (&["--set", "effects.damage=onset,off"], &["`effects.damage` says what is looked for"]),
         (&[], &["nothing is varied", "--set impactor.velocity=1..5:9"]),
     ] {
         let given = if options.first().is_some_and(|_| options.len() == 2 && options[1].ends_with("1..5")) {

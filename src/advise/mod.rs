@@ -84,6 +84,7 @@ impl Advice {
 /// # Errors
 /// A scene without an impact, a section, a stiffness that cannot be assembled or factorised.
 pub fn advise(model: &Model, threads: NonZeroUsize) -> Result<Vec<Advice>, Error> {
+    let model = model.whole()?;
     let Plan::Impact(impact) = &model.plan else { return Err(Error::NoImpact) };
     let mut at_rest = AtRest::of(model, &impact.strikes, threads)?;
     let work = MarchSize::of(model, impact, at_rest.factor_entries());

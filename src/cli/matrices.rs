@@ -42,8 +42,9 @@ pub(super) fn matrices(registry: &Registry, arguments: &Arguments, console: &Con
 
 fn write(registry: &Registry, arguments: &Arguments) -> Result<(usize, OutputDir), Error> {
     let model = Model::new(read_scene(&arguments.scene, &[])?, registry)?;
+    let model = model.whole()?;
     let dir = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, ""));
     let dir = job::folder::results(&dir, &model.origin.source)?;
-    matrices::write(&dir, &model, NonZeroUsize::MIN)?;
+    matrices::write(&dir, model, NonZeroUsize::MIN)?;
     Ok((model.constraints.ndof(), dir))
 }

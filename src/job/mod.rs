@@ -190,7 +190,12 @@ impl Serialize for Found {
 pub fn run(scene: &Scene, registry: &Registry, options: &Options, follow: &mut dyn Follow) -> Result<Finished, Error> {
     let mut model = Model::new(scene, registry)?;
     let asked = match options.task {
-        Task::Modes(count) => Some(count),
+        Task::Modes(count) => {
+            model.whole()?;
+            let sound = model.sound.take();
+            model = sound.map_or(model, |sound| *sound);
+            Some(count)
+        }
         Task::Scene => {
             model = advise::decided(model, options.threads)?;
             None

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::registry::NO_REDUCTION;
 use fem_core::element::Element;
 use fem_failure::delamination::DelaminationThreshold;
-use fem_io::scene::{Damage, Delamination, EffectSpec, SceneError};
+use fem_io::scene::{Damage, Delamination, EffectSpec, Scene, SceneError};
 
 impl Model {
     /// The plate on which effects act.
@@ -37,10 +37,9 @@ impl Builder<'_> {
         Ok(effects)
     }
 
-    /// The model with delaminations that grow, where the scene leaves them to the advisor.
-    pub(super) fn grown(&self) -> Result<Option<Box<Model>>, Error> {
-        let Some(grown) = &self.scene.grown else { return Ok(None) };
-        Ok(Some(Box::new(Model::new(&**grown, self.registry)?)))
+    /// The model of another reading of the scene.
+    pub(super) fn other(&self, scene: Option<&Scene>) -> Result<Option<Box<Model>>, Error> {
+        scene.map(|scene| Ok(Box::new(Model::new(scene, self.registry)?))).transpose()
     }
 
     /// `threshold` where the scene wants it.

@@ -2,7 +2,7 @@
 
 use super::builder::{Builder, build};
 use crate::registry::{NO_REDUCTION, RegistryError};
-use fem_core::element::Element;
+use fem_core::element::{Element, Stack};
 use fem_core::laminate::Laminate;
 use fem_core::laws::{LawsError, PlyLaws};
 use fem_core::material::Material;
@@ -11,10 +11,39 @@ use fem_core::plugin::{Built, Kind};
 use fem_core::ply_law::PlyLaw;
 use fem_io::scene::{Place, PluginSpec, SceneError};
 
+/// Components 33, 23 and 31.
+const TRANSVERSE: [usize; 3] = [2, 4, 5];
+
+/// Largest ratio of their stiffnesses among the plies of a layer. Plies of one material at all angles, and of carbon beside glass, are
+/// below it and are a hundredth too stiff; the core of a sandwich is far beyond.
+const CONTRAST: f64 = 4.0;
+
 impl Builder<'_> {
     /// Whether some plies follow laws.
     pub(super) fn has_laws(&self) -> bool {
         self.scene.plies().any(|ply| self.scene.laws[ply.material].is_some())
+    }
+
+    /// Refuses layers of cells across which the stiffness against transverse stresses changes much: plies that follow laws have the
+    /// strains of their layer, and a soft core that bends like its faces is far too stiff.
+    pub(super) fn check_contrast(&self, stacks: &[Stack]) -> Result<(), SceneError> {
+        let layered = stacks.iter().filter(|stack| stack.transverse.is_some());
+        let contrast = |stack: &Stack, i: usize| {
+            let of = stack.slices.iter().map(|slice| slice.c[i][i]);
+            let (low, high) = of.fold((f64::INFINITY, 0.0_f64), |(low, high), c| (low.min(c), high.max(c)));
+            high / low
+        };
+        let largest = layered.flat_map(|stack| TRANSVERSE.map(|i| contrast(stack, i))).fold(1.0, f64::max);
+        if largest < CONTRAST {
+            return Ok(());
+        }
+        let message = format!(
+            "a layer of cells holds plies of which one is {largest:.0} times as stiff through the thickness as another, and beside \
+             plies that follow laws the strains of a layer are smooth"
+        );
+        let help = "let layers end where stiff plies meet soft ones: `layers = [3, 1, 3]` says how many plies each holds, from the \
+                    bottom up; or leave the `law` out";
+        Err(self.error(&self.scene.laminates[0].laminate, message, help))
     }
 
     /// The laws of the plies, if some follow one, in the cells of a `zone` or in all.

@@ -57,7 +57,7 @@ use fem_core::warping;
 use fem_core::window::Centre;
 use fem_failure::delamination::DelaminationThreshold;
 use fem_io::cache::Cache;
-use fem_io::scene::{self, Analysis, Damage, Located, Output, Scene, SceneError, Window};
+use fem_io::scene::{self, Analysis, Damage, Located, Output, Place, Scene, SceneError, Window};
 use separation::Split;
 use std::borrow::Borrow;
 use tracing::info;
@@ -132,6 +132,8 @@ pub struct Model {
     /// The same with delaminations that grow, where the scene leaves them to the advisor, who has not decided yet. Until then they
     /// do not.
     pub grown: Option<Box<Model>>,
+    /// The same impact on a plate that does not come apart, where delaminations grow: what formulas and modes are of.
+    pub sound: Option<Box<Model>>,
     /// What is simulated beyond the linear elastic plate.
     pub effects: Effects,
     /// What the advisor decided of that.
@@ -217,6 +219,7 @@ impl Model {
         let stacks = |laminate: &Laminate| {
             let mut stacks = laminate.stacks_between(&levels(laminate), &weights).map_err(lacks)?;
             if builder.has_laws() {
+                builder.check_contrast(&stacks)?;
                 // A law needs the strains where it is asked, and what it takes off is measured against theirs.
                 stacks.iter_mut().for_each(|stack| stack.transverse = None);
             }
@@ -359,12 +362,34 @@ impl Model {
             output: scene.output.clone(),
             fields,
             threshold,
-            grown: builder.grown()?,
+            grown: builder.other(scene.grown.as_deref())?,
+            sound: match builder.other(scene.sound.as_deref()) {
+                Err(why) if effects.undecided() => return Err(why),
+                sound => sound.ok().flatten(),
+            },
             effects,
             decisions: Vec::new(),
             warnings,
             cache: registry.cache().cloned(),
         })
+    }
+
+    /// The plate that does not come apart, where delaminations grow: that of formulas, modes and matrices.
+    ///
+    /// # Errors
+    /// There is none: what the scene asks for is only for plates that come apart.
+    pub fn whole(&self) -> Result<&Self, Error> {
+        match (&self.sound, &self.separation) {
+            (Some(sound), _) => Ok(sound),
+            (None, Some(_)) => {
+                let message =
+                    "formulas, modes and matrices are of a plate that holds together, and this scene makes none";
+                let help =
+                    "set effects = { delamination = \"off\" } and see what else goes only with plates that come apart";
+                Err(self.origin.source.error_at(&Place::TOP, message, help).into())
+            }
+            (None, None) => Ok(self),
+        }
     }
 
     /// The springs that only push.

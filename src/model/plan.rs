@@ -193,14 +193,38 @@ impl Builder<'_> {
             };
             Ok(Strike { contact, centre, squeeze, tip, law: self.law(impactor)? })
         };
+        let strikes: Vec<Strike> = spec.impactors.iter().map(strike).collect::<Result<_, _>>()?;
+        self.apart(spec, &strikes, plate)?;
         Ok(Impact {
-            strikes: spec.impactors.iter().map(strike).collect::<Result<_, _>>()?,
+            strikes,
             reduction: self.reduction(spec)?,
             keep: self.keep(spec, plate, constraints)?,
             vectors: self.vectors(&spec.reduction),
             integrator: self.integrator(spec)?,
             spec: spec.clone(),
         })
+    }
+
+    /// Refuses impactors so near to each other that one squeezes the plate where the indentation of another counts from inside it.
+    fn apart(&self, spec: &scene::ImpactSpec, strikes: &[Strike], plate: &Plate) -> Result<(), SceneError> {
+        let thickness = plate.levels.last().zip(plate.levels.first()).map_or(0.0, |(top, bottom)| top - bottom);
+        for (i, (one, strike)) in spec.impactors.iter().zip(strikes).enumerate() {
+            let Some(from) = &one.indentation_from else { continue };
+            for (other, beside) in
+                spec.impactors.iter().zip(strikes).enumerate().filter(|(k, _)| *k != i).map(|(_, of)| of)
+            {
+                let distance = (strike.centre[0] - beside.centre[0]).hypot(strike.centre[1] - beside.centre[1]);
+                if strike.squeeze.is_some() && distance < one.load.value.reach() + other.load.value.reach() + thickness
+                {
+                    let message = format!(
+                        "`{}` and `{}` strike less than a thickness apart, and each would have to know how the other squeezes the plate",
+                        one.name, other.name
+                    );
+                    return Err(self.error(from, message, "take `indentation_from = \"face\"`, or move them apart"));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Refuses to follow modes that the plan does not have.

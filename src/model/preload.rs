@@ -69,10 +69,19 @@ impl Builder<'_> {
         let (mut ties, mut places) = (Vec::new(), Vec::new());
         self.ties(plate, &mut turns, &mut ties, &mut places)?;
         equations.extend(ties);
+        let mut prescribed = Vec::new();
         for one in &edges {
-            equations.extend(self.prescribed(plate, one, &normals, &mut turns)?);
+            prescribed.extend(self.prescribed(plate, one, &normals, &mut turns)?);
         }
-        equations.extend(plate.symmetry().equations(plate));
+        let symmetric = plate.symmetry().equations(plate);
+        let free = FreeMotions::of(plate, &[&equations[..], &symmetric].concat());
+        if free.follow(plate, &prescribed) {
+            let message = format!("the preload moves the plate as a whole and strains nothing: {}", free.names());
+            let help = "move the opposite edge as well, or leave it to supports that hold it across";
+            return Err(self.error(first, message, help).into());
+        }
+        equations.extend(prescribed);
+        equations.extend(symmetric);
         let free = FreeMotions::of(plate, &equations);
         if let Some(motions) = free.pushed(plate, &forces) {
             let message = format!("the preload pushes the plate where nothing holds it: {motions}");

@@ -104,6 +104,9 @@ pub struct Sweep<'a> {
     identity: Keys,
 }
 
+/// Keys by which cases would find different things.
+const LOOKED_FOR: [&str; 5] = ["effects", "effects.damage", "effects.delamination", "failure", "failure.criteria"];
+
 impl<'a> Sweep<'a> {
     /// That of `scene`, with what is `asked` over its own.
     ///
@@ -125,6 +128,12 @@ impl<'a> Sweep<'a> {
             };
             if axes.iter().any(|axis| axis.key == *key) {
                 return Err(refuse("is varied twice".into()));
+            }
+            if LOOKED_FOR.contains(&key.as_str()) {
+                return Err(Error::Sweep {
+                    message: format!("`{key}` says what is looked for, which is the same in all cases of a sweep"),
+                    help: "make a sweep of each".into(),
+                });
             }
             let variation = match varied {
                 Varied::Words(words) => Variation::parse(&words, written.text(key)).map_err(refuse)?,

@@ -240,3 +240,29 @@ fn cells_too_wide_for_a_toughness_are_refused_or_lower_strengths_and_say_so() {
     let missing = model(&struck("law = 'crack-band'\nGft = '80 N/mm'\n", "")).unwrap_err().to_string();
     assert!(missing.contains("needs the toughness Gfc, Gmt, Gmc"), "{missing}");
 }
+
+/// Plies that follow a law which asks nothing of them, about a core that is a hundred times as soft.
+#[test]
+fn a_core_beside_plies_that_follow_laws_is_a_layer_of_its_own() {
+    let sandwich = |law: &str, layers: &str| {
+        let model = model(&format!(
+            "title = 'sandwich'\nanalysis = 'static'\nmesh = {{ rectangle = ['60 mm', '60 mm'], cells = [4, 4] }}\n\
+             materials = {{ tape = {{ library = 'AS4/3502'{law} }}, core = {{ e = '70 MPa', nu = 0.3 }} }}\n\
+             laminate = {{ plies = '[0/90/0{{core}}/90/0]', material = 'tape', ply_thickness = '0.5 mm', layers = {layers}, \
+             ply = {{ core = {{ material = 'core', thickness = '5 mm' }} }} }}\nelement = {{ kind = 'hermite-prism' }}\n\
+             effects = {{ damage = 'off' }}\nload = [{{ pressure = '1 Pa' }}]\n\
+             support = [{{ group = 'x-min', kind = 'simply-supported' }}, {{ group = 'x-max', kind = 'simply-supported' }}, \
+             {{ group = 'y-min', kind = 'simply-supported' }}, {{ group = 'y-max', kind = 'simply-supported' }}]\n"
+        ))?;
+        let solution = statics::solve(&model, NonZeroUsize::MIN)?;
+        let deflections = (0..model.plate.columns.len()).flat_map(|c| model.plate.dofs_at(c, 0, Dof::SOLID[8]));
+        Ok::<_, Error>(deflections.map(|dof| solution.u[dof].abs()).fold(0.0, f64::max))
+    };
+    let inert = ", law = { name = 'hahn-tsai', alpha = '1e-20 1/MPa^3' }";
+    for layers in ["1", "2"] {
+        let refused = sandwich(inert, layers).unwrap_err().to_string();
+        assert!(refused.contains("times as stiff through the thickness"), "{refused}");
+    }
+    let [free, followed] = ["", inert].map(|law| sandwich(law, "[2, 1, 2]").unwrap());
+    assert!((followed / free - 1.0).abs() < 1e-3, "{free} {followed}");
+}

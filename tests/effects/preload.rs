@@ -129,6 +129,11 @@ fn what_it_cannot_be_is_refused_by_name() {
          { group = 'y-max', force = '0 N/mm' }]",
         &["pushes the plate", "translation along x", "opposite edge"],
     );
+    refused(
+        "preload = [{ group = 'x-min', displacement = '0.01 mm' }, { group = 'x-max', displacement = '-0.01 mm' }, \
+         { group = 'y-min', force = '0 N/mm' }, { group = 'y-max', force = '0 N/mm' }]",
+        &["strains nothing", "opposite edge"],
+    );
     let held = EDGES.concat();
     let text = Struck::new(NOTHING).text().replace(&held, "[[support]]\nrestrain = 'rigid-motions'\n");
     let scene = scene::parse(&text, &root().join("scene.toml")).unwrap();

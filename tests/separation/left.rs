@@ -2,10 +2,13 @@
 
 use super::scenes::{Plate, forces};
 use crate::support::{impact_of, root};
+use fem::advise;
 use fem::analyses::impact::Outcome;
+use fem::analyses::modes;
 use fem::effect::Decision;
 use fem::io::scene;
 use fem::{Model, Registry};
+use std::num::NonZeroUsize;
 
 /// The plate of the other tests, whose plies nobody judges, under a blow of this velocity, m/s, with `what` done about delamination.
 fn struck(what: &str, velocity: f64) -> (Model, Outcome) {
@@ -44,6 +47,30 @@ fn interfaces_that_give_way_are_followed() {
     let [left, open] = [&left, &open].map(|outcome| outcome.delaminated.as_ref().unwrap());
     assert!(open.dissipated.total() > 0.0 && left.dissipated == open.dissipated, "{:?} {:?}", left, open);
     assert_eq!(left.projected, open.projected);
+}
+
+/// Formulas, modes and what is left to the advisor are of the plate that holds together.
+#[test]
+fn the_advisor_and_modes_know_the_plate_that_holds_together() {
+    let model = |what: &str| {
+        let plate = Plate { effects: "delamination = WHAT, membrane = 'auto'", ..Plate::new() };
+        let mut text = plate.text().replace("WHAT", &format!("'{what}'"));
+        if what == "threshold" {
+            text = text.replace(&plate.delamination, "");
+        }
+        Model::new(scene::parse(&text, &root().join("scene.toml")).unwrap(), &Registry::standard()).unwrap()
+    };
+    let one = NonZeroUsize::MIN;
+    let [whole, growth] = ["threshold", "growth"].map(model);
+    let stiffness = |model: &Model| advise::advise(model, one).unwrap()[0].plate.stiffness;
+    assert_eq!(stiffness(&whole), stiffness(&growth));
+    let decided = |what: &str| {
+        let model = advise::decided(model(what), one).unwrap();
+        model.decisions.into_iter().find(|decision| decision.effect == "membrane").unwrap()
+    };
+    assert_eq!(decided("threshold"), decided("growth"));
+    let lowest = |model: &Model| modes::solve(model, 1, one).unwrap().modes.omega[0];
+    assert_eq!(lowest(&whole), lowest(growth.whole().unwrap()));
 }
 
 /// The share is proportional to the blow where shear alone strains the interfaces, and the threshold lies where it is said to.

@@ -57,6 +57,17 @@ fn a_thin_plate_is_wrapped_round_its_tip() {
     assert!(short.energy_error < 1e-3, "{}", short.energy_error);
 }
 
+/// One that is about to touch, at the very time of a step, where nothing but rounding is left of its approach.
+#[test]
+fn a_tip_may_touch_at_a_step() {
+    let later = |start: &str| forces(&outcome(&text(&thick(), &format!("tip_radius = '8 mm'{start}"))));
+    let [at_once, after] = ["", ", start = '40 us'"].map(later);
+    let largest = at_once.iter().fold(0.0_f64, |most, force| most.max(*force));
+    let [one, other] = [&at_once, &after].map(|of| of.iter().skip_while(|force| **force < 1e-6 * largest));
+    let apart = one.zip(other.clone()).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+    assert!(other.count() > 20 && apart < 1e-6 * largest, "{apart} of {largest}");
+}
+
 /// A march that is resumed, and one on two threads, find every bit.
 #[test]
 fn a_tip_finds_every_bit_again() {

@@ -4,7 +4,7 @@ use crate::plates::constraint::{Constraints, Equation};
 use crate::plates::error::PlateError;
 use crate::plates::plate::Plate;
 use crate::words::dof::Dof;
-use nalgebra::{Matrix6, SymmetricEigen, Vector6};
+use nalgebra::{DMatrix, DVector, Matrix6, SymmetricEigen, Vector6};
 
 /// Columns, and the levels at each of them.
 pub type ColumnLevels = (Vec<u32>, Vec<usize>);
@@ -178,6 +178,21 @@ impl FreeMotions {
         let pushed = works.iter().zip(&self.basis).filter(|(work, _)| work.abs() > BALANCED * size);
         let basis: Vec<_> = pushed.map(|(_, motion)| *motion).collect();
         (!basis.is_empty()).then(|| Self { basis, ..*self }.names())
+    }
+
+    /// Whether one of them does all that `equations` ask, and they ask for something.
+    pub fn follow(&self, plate: &Plate, equations: &[Equation]) -> bool {
+        let asked = DVector::from_iterator(equations.len(), equations.iter().map(|equation| equation.value));
+        if self.basis.is_empty() || asked.amax() == 0.0 {
+            return false;
+        }
+        let moved = |equation: &Equation, motion: &Vector6<f64>| -> f64 {
+            let moves = |dof: usize| Vector6::from(plate.rigid_motions(dof, self.centre, self.length)).dot(motion);
+            equation.terms.iter().map(|(dof, factor)| factor * moves(*dof)).sum()
+        };
+        let of = DMatrix::from_fn(equations.len(), self.basis.len(), |i, k| moved(&equations[i], &self.basis[k]));
+        let Ok(amounts) = of.clone().svd(true, true).solve(&asked, BALANCED) else { return false };
+        (of * amounts - &asked).amax() <= BALANCED * asked.amax()
     }
 
     /// Their names: "translation along x, rotation about z".

@@ -1,7 +1,7 @@
 //! Every key that holds in a scene: its value, where that comes from, and what it means.
 
 use super::root::KEYS;
-use super::{Merged, effects, list_unused_keys, material, run};
+use super::{AS_WRITTEN, Merged, effects, list_unused_keys, material, run};
 use crate::document::keys::{Absent, Form, Key, Keys, Plugins};
 use crate::document::reader::Reader;
 use crate::document::source::{Origin, Place, SceneError, SceneSource};
@@ -32,7 +32,7 @@ pub struct Explained {
 /// As [`super::parse`].
 pub fn explain(source: &SceneSource, plugins: Plugins<'_>, effects: &[Key]) -> Result<Vec<Explained>, SceneError> {
     let path = Path::new(source.name());
-    let Merged { mut table, source, .. } = Merged::new(source.text(), path, "", false)?;
+    let Merged { mut table, source, .. } = Merged::new(source.text(), path, "", AS_WRITTEN)?;
     let analysis = match table.get("analysis").map(|entry| &entry.item.node) {
         Some(Node::Text(text)) => text.clone(),
         _ => "impact".to_owned(),

@@ -106,6 +106,8 @@ pub struct Scene {
     pub path: Option<Located<PathSpec>>,
     /// The same scene with delaminations that grow, where it leaves them to the advisor.
     pub grown: Option<Box<Scene>>,
+    /// The same impact on a plate that does not come apart, where delaminations grow.
+    pub sound: Option<Box<Scene>>,
     /// Lines through the thickness along which stresses are written.
     pub profiles: Vec<ProfileLine>,
     /// Where and when failure is looked for.
@@ -275,9 +277,14 @@ struct Merged {
     source: Arc<SceneSource>,
 }
 
+/// Whether delaminations grow, by what a scene says of them.
+type Grows = fn(Option<Delamination>) -> bool;
+
+/// What is left to the advisor does not, until he has decided.
+const AS_WRITTEN: Grows = |wish| wish == Some(Delamination::Growth);
+
 impl Merged {
-    /// `grown` tells whether delaminations grow that the scene leaves to the advisor.
-    fn new(text: &str, path: &Path, setting: &str, grown: bool) -> Result<Self, SceneError> {
+    fn new(text: &str, path: &Path, setting: &str, grows: Grows) -> Result<Self, SceneError> {
         let source = Arc::new(SceneSource::new(path, text, LIBRARY).with(
             Origin::Setting,
             "what is set over the scene",
@@ -291,10 +298,7 @@ impl Merged {
         };
         let effects = Reader::unchecked(&own, KEYS, &source).optional("effects");
         let delamination = effects.and_then(|field| effects::delamination_in(&field));
-        let grows = match delamination {
-            Some(Delamination::Auto) => grown,
-            wish => wish == Some(Delamination::Growth),
-        };
+        let grows = grows(delamination);
         let name = format!("preset `{}`", fidelity.name());
         let source = Arc::new(SceneSource::clone(&source).with(Origin::Preset, name, fidelity.preset()));
         let preset = Table::parse(fidelity.preset(), Origin::Preset, &source)?;
@@ -313,13 +317,24 @@ fn parse_with(text: &str, path: &Path, setting: &str) -> Result<Scene, SceneErro
             first.with(faults)
         })
     };
-    let merged = Merged::new(text, path, setting, false)?;
+    let merged = Merged::new(text, path, setting, AS_WRITTEN)?;
     let scene = read(&merged)?;
-    if merged.delamination != Some(Delamination::Auto) {
-        return Ok(scene);
+    let other = |grows: Grows| read(&Merged::new(text, path, setting, grows)?);
+    let impact = scene.impact().is_some();
+    match merged.delamination {
+        Some(Delamination::Auto) => {
+            let sound = impact.then(|| Box::new(scene.clone()));
+            let grown = Scene { sound, ..other(|_| true)? };
+            Ok(Scene { grown: Some(Box::new(grown)), ..scene })
+        }
+        Some(Delamination::Growth) if impact => {
+            // Marched as one that comes apart, for which it stands, and linear elastic.
+            let sound = read(&Merged { grows: false, ..merged })?;
+            let laws = vec![None; sound.laws.len()];
+            Ok(Scene { sound: Some(Box::new(Scene { laws, ..sound })), ..scene })
+        }
+        _ => Ok(scene),
     }
-    let grown = read(&Merged::new(text, path, setting, true)?)?;
-    Ok(Scene { grown: Some(Box::new(grown)), ..scene })
 }
 
 fn read_merged(merged: &Merged, file: &Path) -> Result<Scene, SceneError> {
@@ -367,7 +382,7 @@ fn read_merged(merged: &Merged, file: &Path) -> Result<Scene, SceneError> {
         output: root.optional("output").map_or(Ok(Output::default()), |field| run::read_output(&field, march))?,
         delamination: match root.optional("delamination") {
             Some(field) if *grows => Some(delamination::read(&field)?),
-            Some(_) if *delamination == Some(Delamination::Auto) => None,
+            Some(_) if matches!(delamination, Some(Delamination::Auto | Delamination::Growth)) => None,
             Some(field) => {
                 let help = "set effects = { delamination = \"growth\" }, or leave the table out";
                 return Err(field.error("means nothing where delaminations do not grow", help));
@@ -385,6 +400,7 @@ fn read_merged(merged: &Merged, file: &Path) -> Result<Scene, SceneError> {
             None => None,
         },
         grown: None,
+        sound: None,
         analysis,
         effects,
         profiles: root.optional("profile").map_or(Ok(Vec::new()), |field| load::read_profiles(&field))?,

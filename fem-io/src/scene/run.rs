@@ -40,6 +40,16 @@ pub struct ImpactorSpec {
 impl ContactLoad {
     /// Radius of the Hertz pressure that tells the deflection under a tip, over that of the tip.
     pub const OF_TIP: f64 = 0.25;
+
+    /// How far from its centre it reaches, m.
+    pub fn reach(&self) -> f64 {
+        match *self {
+            Self::Node => 0.0,
+            Self::Patch { radius } => radius,
+            Self::Tip { radius } => Self::OF_TIP * radius,
+            Self::Square { side } => side * std::f64::consts::FRAC_1_SQRT_2,
+        }
+    }
 }
 
 /// A point of the plane: where an impactor strikes, or something is watched.

@@ -1,6 +1,6 @@
 //! Keys laid over those of a scene: by the command line, a study or a sweep.
 
-use super::{Merged, Scene, parse, parse_with, read_text};
+use super::{AS_WRITTEN, Merged, Scene, parse, parse_with, read_text};
 use crate::document::source::{SceneError, SceneSource};
 use crate::materials::LIBRARY;
 use std::collections::BTreeMap;
@@ -28,7 +28,7 @@ impl Written {
     /// A text that is not TOML, or a key that no scene has.
     pub fn of(text: &str, path: &Path) -> Result<Self, SceneError> {
         let mut keys = BTreeMap::new();
-        Merged::new(text, path, "", false)?.table.flatten("", &mut keys);
+        Merged::new(text, path, "", AS_WRITTEN)?.table.flatten("", &mut keys);
         Ok(Self(keys))
     }
 
