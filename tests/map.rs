@@ -95,6 +95,7 @@ fn what_is_no_map_is_refused() {
         assert!(done.status != 0 && words.iter().all(|word| said.contains(word)), "{options:?} {done:#?}");
         assert!(!case.folder().join("out").exists(), "{options:?}");
     }
-    let nothing = case.append("\n[effects]\ndamage = \"off\"\ndelamination = \"off\"\n").fem("map", &["--out", "out"]);
+    let case = case.append("\n[effects]\ndelamination = \"off\"\n");
+    let nothing = case.fem("map", &["--set", "effects.damage=off", "--out", "out"]);
     assert!(nothing.status == 1 && nothing.stderr.contains("a map needs a criterion"), "{nothing:#?}");
 }

@@ -137,13 +137,15 @@ impl<'a> BorderMap<'a> {
                 )));
             }
         }
-        let model = Model::new(scene, registry)?;
-        if model.criteria.is_empty() && model.threshold.is_none() {
+        let source = &scene.source;
+        let set = fixed.iter().map(|(key, value)| (key.clone(), written.toml(key, value))).collect();
+        let judged = Model::new(parse_under(source.text(), Path::new(source.name()), &set)?, registry)?;
+        if judged.criteria.is_empty() && judged.threshold.is_none() {
             let message = "a map needs a criterion, and the scene has none".to_owned();
             let help = "name one in `failure.criteria`, and leave `effects.damage` on";
             return Err(Error::Sweep { message, help: help.into() });
         }
-        let mut identity = saved::identity(&model)?;
+        let mut identity = saved::identity(&Model::new(scene, registry)?)?;
         // Points are looked for as the tolerance wants them, but each is the same whoever wants it.
         identity.insert("what the map is over".into(), format!("{axes:?} {list:?} {fixed:?}"));
         let map = Self { axes, list, asked: asked.clone(), fixed, scene, registry, written, identity };

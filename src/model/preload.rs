@@ -76,7 +76,7 @@ impl Builder<'_> {
         let symmetric = plate.symmetry().equations(plate);
         let free = FreeMotions::of(plate, &[&equations[..], &symmetric].concat());
         if free.follow(plate, &prescribed) {
-            let message = format!("the preload moves the plate as a whole and strains nothing: {}", free.names());
+            let message = format!("its displacements move the plate as a whole and strain nothing: {}", free.names());
             let help = "move the opposite edge as well, or leave it to supports that hold it across";
             return Err(self.error(first, message, help).into());
         }

@@ -132,7 +132,7 @@ fn what_it_cannot_be_is_refused_by_name() {
     refused(
         "preload = [{ group = 'x-min', displacement = '0.01 mm' }, { group = 'x-max', displacement = '-0.01 mm' }, \
          { group = 'y-min', force = '0 N/mm' }, { group = 'y-max', force = '0 N/mm' }]",
-        &["strains nothing", "opposite edge"],
+        &["displacements move the plate", "opposite edge"],
     );
     let held = EDGES.concat();
     let text = Struck::new(NOTHING).text().replace(&held, "[[support]]\nrestrain = 'rigid-motions'\n");
