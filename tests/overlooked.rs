@@ -158,3 +158,45 @@ load = [{{ pressure = "1 kPa" }}]"#
         assert!(!with(window, cut).contains("is cut off"), "{window} {cut}");
     }
 }
+
+/// One index for all of the plate is none of any place.
+#[test]
+fn a_window_larger_than_the_plate() {
+    let text = case(
+        r#"failure = { criteria = ["hashin-report"], window = "200 mm" }
+support = [{ group = "x-min", at = "all", fix = ["U10", "U20", "U30"] }]
+load = [{ pressure = "1 kPa" }]"#,
+    );
+    holds(&said(&text, 1), &["`failure.window` of 200 mm is wider than the plate is long", "\"element\""]);
+}
+
+/// The axes of a plate say nothing of its plies.
+#[test]
+fn interfaces_stronger_along_x_than_along_y() {
+    let with = |s23: &str| {
+        let text = case(&format!(
+            r#"materials.resin = {{ density = "1.3 g/cm^3", e = "4 GPa", nu = 0.3, Zt = "60 MPa", S13 = "90 MPa", S23 = "{s23}" }}
+failure = {{ criteria = ["quadratic-stress"], window = "element" }}
+support = [{{ group = "x-min", at = "all", fix = ["U10", "U20", "U30"] }}]
+load = [{{ pressure = "1 kPa" }}]"#
+        ));
+        said(&text.scene("layers = [2, 2] }", "layers = [2, 2], interface = \"resin\" }"), 0)
+    };
+    holds(&with("60 MPa"), &["`quadratic-stress` judges", "S13 of 90 MPa and an S23 of 60 MPa", "give both the same"]);
+    assert!(!with("90 MPa").contains("hang on how the plate lies"));
+}
+
+/// A shell has one layer without being asked, and a force on a circle says what it lacks.
+#[test]
+fn what_is_left_out() {
+    let with = |circle: &str| {
+        case(&format!(
+            r#"support = [{{ group = "x-min", kind = "clamped" }}]
+load = [{{ force = "10 N", at = {{ x = "20 mm", y = "10 mm" }}{circle} }}]"#
+        ))
+        .scene("hex20", "mitc4")
+        .scene(", layers = [2, 2]", "")
+    };
+    assert!(said(&with(", patch_radius = \"3 mm\""), 0).contains("model"));
+    holds(&said(&with(""), 1), &["`load[0].patch_radius` is missing", "patch_radius = \"3 mm\""]);
+}

@@ -215,6 +215,9 @@ fn runs_are_compared_with_each_other_and_with_a_measurement() {
     let names: Vec<_> = series(0).iter().map(|curve| curve["name"].as_str().unwrap()).collect();
     assert_eq!((names, series(1).len()), (vec!["slow", "fast", "measured"], 2));
 
+    let twice = report(&["slow", "./slow"]);
+    assert!(twice.status == 1 && twice.stderr.contains("`./slow` is named twice"), "{twice:#?}");
+
     report(&["slow"]).good();
     let alone = case.read("slow/report.html");
     let (_, table) = alone.split_once("Against what was measured").unwrap();

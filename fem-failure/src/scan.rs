@@ -163,21 +163,20 @@ pub enum ScanError {
         last: Option<f64>,
     },
     /// A stress that is infinite or not a number.
-    #[error("the stress in {place} of cell {cell} is not finite at {time} s: {stress:?}")]
+    #[error("the stress {} is not finite at {time} s: {}", spot(site), components(stress))]
     Stress {
         /// Time, s.
         time: f64,
-        /// Cell.
-        cell: u32,
-        /// Place.
-        place: PlyOrInterface,
+        /// Where.
+        site: ScanSite,
         /// The components.
         stress: Stress6<Ply>,
     },
     /// An index that is not a number or −∞.
     #[error(
-        "criterion `{criterion}`, mode `{mode}` has no index in {place} of cell {cell} at {time} s for {stress:?}; \
-         it takes {scope}"
+        "criterion `{criterion}`, mode `{mode}` has no index {} at {time} s for {}; it takes {scope}",
+        spot(site),
+        components(stress)
     )]
     Index {
         /// Time, s.
@@ -186,15 +185,25 @@ pub enum ScanError {
         criterion: String,
         /// Its mode.
         mode: &'static str,
-        /// Cell.
-        cell: u32,
-        /// Place.
-        place: PlyOrInterface,
+        /// Where.
+        site: ScanSite,
         /// Of this stress.
         stress: Stress6<Ply>,
         /// [`FailureCriterion::scope`].
         scope: &'static str,
     },
+}
+
+/// A site in words.
+fn spot(site: &ScanSite) -> String {
+    let [x, y, _] = site.position.map(|x| x * 1e3);
+    format!("in {} at ({x:.4}, {y:.4}) mm", site.place)
+}
+
+/// A stress in words.
+fn components(stress: &Stress6<Ply>) -> String {
+    let each = ["σ11", "σ22", "σ33", "σ12", "σ23", "σ31"].iter().zip(stress.0);
+    each.map(|(name, value)| format!("{name} {} MPa", value * 1e-6)).collect::<Vec<_>>().join(", ")
 }
 
 /// Follows criteria through time and keeps what failed first.
@@ -315,8 +324,7 @@ fn refusal(
         time,
         criterion: name.to_owned(),
         mode: criterion.info().modes[mode],
-        cell: site.cell,
-        place: site.place,
+        site: *site,
         stress,
         scope: criterion.scope(),
     }
@@ -445,7 +453,7 @@ impl Scan {
         }
         for (s, site) in stress.iter().zip(&self.sites) {
             if !s.is_finite() {
-                return Err(ScanError::Stress { time: t, cell: site.cell, place: site.place, stress: *s });
+                return Err(ScanError::Stress { time: t, site: *site, stress: *s });
             }
         }
         for (s, &i) in self.stress.iter_mut().zip(&self.order) {

@@ -1,6 +1,8 @@
 //! `fem new`.
 
 use super::{Console, Format};
+use crate::error::Error;
+use crate::model::Model;
 use crate::registry::Registry;
 use clap::Args;
 use fem_core::plugin::unknown_key;
@@ -97,8 +99,8 @@ const TEMPLATES: &[Template] = &[
 const TAPE: &str = "[materials.tape]\nlibrary = \"";
 
 impl Template {
-    /// Its scene, with the plies of this material of the library.
-    fn with(&self, material: Option<&str>) -> miette::Result<Cow<'static, str>> {
+    /// Its scene, with the plies of this material of the library, where it runs with that.
+    fn with(&self, material: Option<&str>, registry: &Registry) -> miette::Result<Cow<'static, str>> {
         let Some(material) = material else { return Ok(self.scene.into()) };
         if materials::library(material).is_none() {
             let hint = unknown_key(material, materials::names());
@@ -112,7 +114,11 @@ impl Template {
             )
         })?;
         let end = after.find('"').unwrap_or(after.len());
-        Ok(format!("{before}{TAPE}{material}{}", &after[end..]).into())
+        let scene = format!("{before}{TAPE}{material}{}", &after[end..]);
+        let runs =
+            scene::parse(&scene, SCENE.as_ref()).map_err(Error::from).and_then(|scene| Model::new(scene, registry));
+        runs.wrap_err_with(|| format!("the template `{}` does not run with `{material}`", self.name))?;
+        Ok(scene.into())
     }
 }
 
@@ -161,7 +167,7 @@ fn write(
     let (plugins, effects) = (|kind| registry.choices(kind), registry.effect_keys());
     let scene = format!(
         "#:schema ./{SCHEMA}\n{}",
-        scene::annotate(&template.with(arguments.material.as_deref())?, &plugins, &effects)?
+        scene::annotate(&template.with(arguments.material.as_deref(), registry)?, &plugins, &effects)?
     );
     let schema = tables::json_text(SCHEMA, &scene::schema(&plugins, &effects)).into_diagnostic()?;
     let mut files = vec![(SCENE, scene.as_bytes()), (SCHEMA, schema.as_bytes())];

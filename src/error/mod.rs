@@ -189,6 +189,12 @@ pub enum Error {
         /// The folder.
         folder: PathBuf,
     },
+    #[error("`{}` is named twice: nothing differs", folder.display())]
+    #[diagnostic(help("name each folder once"))]
+    SameFolder {
+        /// The folder.
+        folder: PathBuf,
+    },
     #[error("the page cannot be made")]
     Page(#[from] minijinja::Error),
     #[error("the plot failed")]

@@ -147,7 +147,9 @@ impl<'a> BorderMap<'a> {
         }
         let mut identity = saved::identity(&Model::new(scene, registry)?)?;
         // Points are looked for as the tolerance wants them, but each is the same whoever wants it.
-        identity.insert("what the map is over".into(), format!("{axes:?} {list:?} {fixed:?}"));
+        identity.extend(axes.iter().map(|axis| (format!("map over {}", axis.key), axis.to_string())));
+        identity.extend(list.iter().map(|(key, values)| (format!("map for {key}"), values.join(", "))));
+        identity.extend(fixed.iter().map(|(key, value)| (format!("map of {key}"), value.clone())));
         let map = Self { axes, list, asked: asked.clone(), fixed, scene, registry, written, identity };
         map.check()?;
         Ok(map)

@@ -1,6 +1,7 @@
 //! What a map is over.
 
 use crate::sweep::Variation;
+use std::fmt;
 
 /// Ratio of the ends from which on an axis counts in ratios.
 const WIDE: f64 = 3.0;
@@ -18,6 +19,14 @@ pub struct MapAxis {
     pub ends: [f64; 2],
     /// Whether equal ratios are equally far apart, and not equal differences.
     pub logarithmic: bool,
+}
+
+impl fmt::Display for MapAxis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [from, to] = self.ends;
+        write!(f, "{from}..{to}")?;
+        self.unit.as_ref().map_or(Ok(()), |unit| write!(f, " {unit}"))
+    }
 }
 
 impl MapAxis {

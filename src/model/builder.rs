@@ -19,7 +19,7 @@ use fem_core::material::Material;
 use fem_core::mesh::Group;
 use fem_core::pieces;
 use fem_core::plate::Plate;
-use fem_core::plugin::{Built, Kind, Role, unknown_key};
+use fem_core::plugin::{Built, Dimension, Kind, Role, unknown_key};
 use fem_core::reduction::Reduction;
 use fem_core::springs::SupportSpring;
 use fem_core::support::{self, ColumnLevels, FreeMotions};
@@ -246,6 +246,18 @@ impl Builder<'_> {
     /// Quads near one of `centres` that the symmetry keeps; all of these where the scene gives no radius.
     pub(super) fn find_watched(&self, plate: &Plate, centres: &[[f64; 2]]) -> Result<Vec<usize>, SceneError> {
         let failure = &self.scene.failure;
+        let (low, high) = plate.plane.bounds();
+        let longer = (high[0] - low[0]).max(high[1] - low[1]);
+        if let Window::Square(side) = failure.window
+            && side > longer
+            && !failure.criteria.is_empty()
+        {
+            let [side, longer] = [side, longer].map(|length| Dimension::LENGTH.of(length));
+            let message = format!("`failure.window` of {side} is wider than the plate is long, {longer}");
+            let help =
+                "stresses would be means over all of the plate: take about the thickness of a ply, or \"element\"";
+            return Err(self.scene.source.error_at(&failure.place, message, help));
+        }
         let kept = plate.symmetry().quads().map(|(quad, _)| quad);
         let Some(radius) = failure.radius else { return Ok(kept.collect()) };
         if centres.is_empty() {

@@ -189,11 +189,13 @@ impl Model {
         info!(quads = mesh.quads.len(), nodes = mesh.points.len(), "mesh");
         let materials: Vec<Material> = scene.materials.iter().map(|m| m.value.clone()).collect();
         let (mut laminates, of_specs) = regions::distinct(&scene.laminates);
-        let mut split = builder.split(&mut laminates)?;
-        warnings.extend(check_sizes(&builder, &mesh, &laminates)?);
-
         let element = builder.element()?;
         let shell = element.info().is_shell();
+        let mut split = builder.split(&mut laminates)?;
+        if shell && split.is_none() {
+            builder.hold_whole(&mut laminates, &of_specs);
+        }
+        warnings.extend(check_sizes(&builder, &mesh, &laminates)?);
         if !shell {
             builder.share_levels(&mut laminates, &of_specs)?;
         }
@@ -307,6 +309,7 @@ impl Model {
         let around = builder.find_centres((&plate, laminate.plies[0].angle), &watched, &centres);
         let (centres, centre_cells) = around.into_iter().unzip();
         let resin = scene.interface.as_ref().map(|resin| resin.value);
+        warnings.extend(resin.and_then(|resin| plan::warn_of_axes(&materials[resin], &criteria)));
         let threshold = builder.threshold(DelaminationThreshold::of(&laminate, &materials, resin))?;
         let mirrors = Mirrors::of(&plate, constraints);
         let judged: &[usize] = if criteria.is_empty() { &[] } else { &watched };

@@ -1,5 +1,6 @@
 //! What a model is for: an impact, loads at rest, natural modes, buckling.
 
+use super::NamedCriterion;
 use super::builder::Builder;
 use super::path::PathPlan;
 use crate::effect::Effects;
@@ -9,8 +10,10 @@ use fem_core::constraint::Constraints;
 use fem_core::contact::ContactLaw;
 use fem_core::dof::Dof;
 use fem_core::element::Element;
+use fem_core::failure::Site;
 use fem_core::functional::Functional;
 use fem_core::load::{self, Face};
+use fem_core::material::{Material, Strength};
 use fem_core::patch;
 use fem_core::plate::{Plate, PlateError};
 use fem_core::plugin::Dimension;
@@ -141,6 +144,23 @@ pub(super) fn warn_of_cut_windows(
             Dimension::LENGTH.of(side)
         )
     })
+}
+
+/// Strengths of an interface that differ along x and y of the plate, which its plies do not know.
+pub(super) fn warn_of_axes(resin: &Material, criteria: &[NamedCriterion]) -> Option<String> {
+    let along = [Strength::S13, Strength::S23];
+    let [Some(s13), Some(s23)] = along.map(|which| resin.strengths.get(which)) else { return None };
+    let asks = |(_, criterion): &&NamedCriterion| {
+        let info = criterion.info();
+        info.site == Site::Interface && along.iter().all(|which| info.strengths.contains(which))
+    };
+    let (label, _) = criteria.iter().find(asks).filter(|_| s13 != s23)?;
+    let [s13, s23] = [s13, s23].map(|strength| Dimension::PRESSURE.of(strength));
+    Some(format!(
+        "`{label}` judges tractions between plies along x and y of the plate, whatever the plies beside them, and `{}` has an S13 of \
+         {s13} and an S23 of {s23}: its indices hang on how the plate lies; give both the same",
+        resin.name
+    ))
 }
 
 /// Profiles where laminates meet: on either side stresses are others.

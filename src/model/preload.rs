@@ -151,15 +151,15 @@ impl Builder<'_> {
             let is_released = |column: &&u32| of_named.contains(column) && !beside.contains(column);
             for hold in holds {
                 let (released, held): (Vec<u32>, _) = hold.columns.iter().partition(is_released);
-                let height = |level: &&usize| plate.levels[**level].abs();
-                let middle = hold.levels.iter().min_by(|a, b| height(a).total_cmp(&height(b))).copied();
+                let middle = Hold::middle(plate, &hold.levels);
                 let of = |keep: fn(&&Dof) -> bool| hold.dofs.iter().filter(keep).copied().collect();
                 let turns =
                     Hold { columns: released.clone(), dofs: of(|dof| dof.n() < 3 && dof.m() == 3), ..hold.clone() };
                 // The thickness is free: stresses across it would press on the slopes of the plate.
                 let deflection = Hold {
                     columns: released,
-                    levels: middle.into_iter().collect(),
+                    between: middle.len() == 2,
+                    levels: middle,
                     dofs: of(|dof| dof.n() == 3 && dof.m() < 3),
                     ..hold.clone()
                 };

@@ -43,6 +43,16 @@ pub(super) fn names(laminates: &[Laminate], specs: &[LaminateSpec], of_specs: &[
 const SAME_HEIGHT: f64 = 1e-9;
 
 impl Builder<'_> {
+    /// One layer of cells for all plies, where the scene names none: what a shell needs.
+    pub(super) fn hold_whole(&self, laminates: &mut [Laminate], of_specs: &[usize]) {
+        for (region, laminate) in laminates.iter_mut().enumerate() {
+            let mut own = self.scene.laminates.iter().zip(of_specs).filter(|(_, of)| **of == region);
+            if own.all(|(spec, _)| !spec.layered) {
+                laminate.layers = vec![laminate.plies.len()];
+            }
+        }
+    }
+
     /// Divides layers of cells where those of regions beside them end.
     ///
     /// # Errors

@@ -19,7 +19,14 @@ impl Builder<'_> {
         match support {
             Support::Fix { nodes, dofs, axes, .. } => {
                 let angle = turns.settle(*axes);
-                let hold = |(columns, levels)| Hold { columns, levels, dofs: dofs.clone(), angle, curvature: 0.0 };
+                let hold = |(columns, levels)| Hold {
+                    columns,
+                    levels,
+                    dofs: dofs.clone(),
+                    angle,
+                    curvature: 0.0,
+                    between: false,
+                };
                 let holds = self.nodes(plate, nodes)?.into_iter().map(hold).collect();
                 Ok((format!("`{}`", nodes.group.value), holds))
             }

@@ -1,6 +1,7 @@
 //! What a number scatters by.
 
 use statrs::distribution::{ContinuousCDF, Normal};
+use std::fmt;
 
 /// A distribution, in the unit in which it is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +43,18 @@ pub(super) const NAMES: [(&str, &str); 4] = [
     ("weibull", "scale, shape"),
     ("uniform", "least, largest"),
 ];
+
+impl fmt::Display for Distribution {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (kind, a, b) = match *self {
+            Self::Normal { mean, deviation } => (0, mean, deviation),
+            Self::LogNormal { mean, deviation } => (1, mean, deviation),
+            Self::Weibull { scale, shape } => (2, scale, shape),
+            Self::Uniform { from, to } => (3, from, to),
+        };
+        write!(f, "{}({a}, {b})", NAMES[kind].0)
+    }
+}
 
 impl Distribution {
     /// That called `name`, of its two numbers.

@@ -158,10 +158,17 @@ impl<'a> Sweep<'a> {
         let objectives = objectives.map(|text| pareto::parse(text, &known)).transpose()?;
         let mut identity = saved::identity(&model)?;
         identity.retain(|key, _| !key.starts_with("sweep."));
-        identity.insert(
-            "the cases of the sweep".into(),
-            format!("{:?} {:?} {} {} {:?}", design.axes, sampling, design.count, seed, correlations),
-        );
+        let axes = design.axes.iter().map(|axis| (format!("sweep of {}", axis.key), axis.variation.to_string()));
+        identity.extend(axes);
+        let chosen =
+            Sampling::ALL.iter().find(|(_, sampling)| *sampling == design.sampling).map_or("", |(name, _)| name);
+        let cases = [
+            ("sweep.design", chosen.to_owned()),
+            ("sweep.samples", design.count.to_string()),
+            ("sweep.seed", seed.to_string()),
+            ("sweep.correlate", correlations.join("; ")),
+        ];
+        identity.extend(cases.map(|(key, value)| (key.to_owned(), value)));
         let sweep =
             Self { design, quantities, objectives, registry, source: Arc::clone(&scene.source), written, identity };
         sweep.check()?;

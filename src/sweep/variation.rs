@@ -3,6 +3,7 @@
 use super::distribution::{Distribution, NAMES};
 use fem_core::plugin::unknown_key;
 use fem_io::scene::unit;
+use std::fmt;
 
 /// What a key of the scene becomes in the cases of a sweep.
 #[derive(Debug, Clone, PartialEq)]
@@ -120,6 +121,26 @@ impl Variation {
             (Self::Range { from, to, unit, .. }, _) => written(from + p * (to - from), unit.as_deref()),
             (Self::Levels(_), None) => String::new(),
         }
+    }
+}
+
+/// As words that [`Variation::parse`] reads.
+impl fmt::Display for Variation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit = match self {
+            Self::Levels(levels) => return f.write_str(&levels.join(", ")),
+            Self::Range { from, to, count, unit } => {
+                write!(f, "{from}..{to}")?;
+                count.map_or(Ok(()), |count| write!(f, ":{count}"))?;
+                unit
+            }
+            Self::Scatter { by, within, unit } => {
+                write!(f, "{by}")?;
+                within.map_or(Ok(()), |[least, most]| write!(f, " within {least}..{most}"))?;
+                unit
+            }
+        };
+        unit.as_ref().map_or(Ok(()), |unit| write!(f, " {unit}"))
     }
 }
 

@@ -51,9 +51,11 @@ fn a_template_takes_a_material_of_the_library() {
     for (arguments, words) in [
         (["--template", "astm-d7136", "--material", "IM7/8553"], "did you mean `IM7/8552`?"),
         (["--template", "pagano", "--material", "IM7/8552"], "have a material of their own"),
+        (["--template", "ball", "--material", "steel"], "the template `ball` does not run with `steel`"),
     ] {
         let done = new(&arguments);
         assert!(done.status == 1 && done.stderr.contains(words), "{done:#?}");
+        assert!(!folder.path().join("plate").exists());
     }
     new(&["--template", "astm-d7136", "--material", "T700/M21"]).good();
     let scene = scene::read(&folder.path().join("plate/scene.toml")).unwrap();

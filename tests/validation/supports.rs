@@ -433,3 +433,24 @@ fn faces_that_clamp_together() {
         assert_eq!(warnings(kind, faces), Vec::<String>::new(), "{kind}, {faces:?}");
     }
 }
+
+/// The middle of a plate of an odd number of layers lies in none of its levels.
+#[test]
+fn a_clamp_of_three_layers_has_no_side() {
+    let sides = ["x-min", "x-max", "y-min", "y-max"].map(|side| format!("{{ group = '{side}', kind = 'clamped' }}"));
+    let mesh = "{ rectangle = ['30 mm', '30 mm'], cells = [4, 4] }";
+    let deflections = |face: &str| -> Vec<f64> {
+        let text = text(mesh, PRISM, (AS4, "[0/90/0]", 1.0), &sides.join(", "));
+        let model = model(&text.replace("'top'", face).replace("[1, 1]", "3")).unwrap();
+        let solved = statics::solve(&model, NonZeroUsize::MIN).unwrap();
+        let plate = &model.plate;
+        let middle = plate.columns.iter().position(|at| (at[0] - 15e-3).hypot(at[1] - 15e-3) < 1e-9).unwrap();
+        let w = |level: usize| solved.u[plate.dofs_at(middle, level, Dof::new(3, 0).unwrap()).next().unwrap()];
+        (0..plate.levels.len()).map(w).collect()
+    };
+    let down = deflections("'top'");
+    let up = deflections("'bottom'");
+    for (down, up) in down.iter().zip(up.iter().rev()) {
+        assert!(*down < 0.0 && (down + up).abs() < 1e-9 * down.abs(), "{down:e} {up:e}");
+    }
+}

@@ -128,6 +128,8 @@ pub struct Hold {
     pub angle: f64,
     /// κ: the derivative U11 is held at −κ U20 instead of 0, 1/m.
     pub curvature: f64,
+    /// Whether what lies at z = 0 on the line between its two levels is held, and not each of them.
+    pub between: bool,
 }
 
 impl Hold {
@@ -144,9 +146,7 @@ impl Hold {
             let Ok(levels) = at.of(plate, column as usize) else { continue };
             let all_levels = levels.len();
             // Held at one height, the deflection leaves a clamped plate its thickness, which the plies change as they are stretched.
-            let height = |level: &&usize| plate.levels[**level].abs();
-            let middle: Vec<usize> =
-                levels.iter().min_by(|a, b| height(a).total_cmp(&height(b))).copied().into_iter().collect();
+            let middle = Self::middle(plate, &levels);
             let of_deflection = if kind == Clamped { &middle } else { &levels };
             let chord = plate.ends(column as usize).map(|ends| {
                 let [p, q] = ends.map(|node| plate.plane.points[node as usize]);
@@ -166,6 +166,7 @@ impl Hold {
                 let curvature = if kind.is_directed() { settle(&mut known, course.curvature) } else { 0.0 };
                 let angle = turns.settle(course.angle);
                 for (displacements, levels) in [(1..3, &levels), (3..4, of_deflection)] {
+                    let between = displacements.start == 3 && kind == Clamped && levels.len() == 2;
                     let mut dofs = Vec::new();
                     for n in displacements {
                         // One edge at a corner says all of what does not depend on its direction.
@@ -174,12 +175,19 @@ impl Hold {
                             (0, values),
                             (1, kind.holds(n) && !own.is_empty()),
                             (2, kind == Symmetry && n != 2),
-                            (3, values && at == Levels::All && levels.len() == all_levels),
+                            (3, values && at == Levels::All && levels.len() == all_levels && !between),
                         ];
                         dofs.extend(all.into_iter().filter(|(_, held)| *held).filter_map(|(m, _)| Dof::new(n, m)));
                     }
                     if !dofs.is_empty() {
-                        holds.push(Self { columns: vec![column], levels: levels.clone(), dofs, angle, curvature });
+                        holds.push(Self {
+                            columns: vec![column],
+                            levels: levels.clone(),
+                            dofs,
+                            angle,
+                            curvature,
+                            between,
+                        });
                     }
                 }
             }
@@ -187,8 +195,25 @@ impl Hold {
         holds
     }
 
+    /// Those of `levels` at which the deflection of a plate is held whose thickness is free: that in the middle, or the two about it.
+    pub fn middle(plate: &Plate, levels: &[usize]) -> Vec<usize> {
+        let height = |level: usize| plate.levels[level];
+        let nearest = levels.iter().copied().min_by(|a, b| height(*a).abs().total_cmp(&height(*b).abs()));
+        let Some(nearest) = nearest.filter(|nearest| !plate.same_height(height(*nearest), 0.0)) else {
+            return nearest.into_iter().collect();
+        };
+        let beyond = levels.iter().copied().filter(|level| height(*level) * height(nearest) < 0.0);
+        let mut two: Vec<usize> =
+            beyond.min_by(|a, b| height(*a).abs().total_cmp(&height(*b).abs())).into_iter().chain([nearest]).collect();
+        two.sort_unstable();
+        two
+    }
+
     /// The same as equations.
     pub fn equations(&self, plate: &Plate, origin: &str) -> Vec<Equation> {
+        if self.between {
+            return self.equations_between(plate, origin);
+        }
         let mut equations = Vec::new();
         for (column, level, dof) in self.each() {
             let origin = format!("{origin}: {dof} at {}", plate.describe_column(column));
@@ -206,6 +231,32 @@ impl Hold {
                 holds: true,
             }));
         }
+        equations
+    }
+
+    fn equations_between(&self, plate: &Plate, origin: &str) -> Vec<Equation> {
+        let [low, high] = self.levels[..] else { return Vec::new() };
+        let [z0, z1] = [low, high].map(|level| plate.levels[level]);
+        let shares = [(low, z1 / (z1 - z0)), (high, z0 / (z0 - z1))];
+        let mut equations = Vec::new();
+        for column in &self.columns {
+            for dof in &self.dofs {
+                let at = |(level, share): (usize, f64)| {
+                    let own = turned(plate, *column as usize, level, *dof, self.angle);
+                    own.into_iter()
+                        .flatten()
+                        .map(move |(unknown, factor)| (unknown, share * factor))
+                        .collect::<Vec<_>>()
+                };
+                equations.push(Equation {
+                    terms: shares.into_iter().flat_map(at).collect(),
+                    value: 0.0,
+                    origin: format!("{origin}: {dof} at {}", plate.describe_column(*column as usize)),
+                    holds: true,
+                });
+            }
+        }
+        equations.retain(|equation| !equation.terms.is_empty());
         equations
     }
 

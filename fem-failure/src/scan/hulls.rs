@@ -329,8 +329,7 @@ impl Search<'_> {
                 let mut stress = vec![Stress6::new([0.0; 6]); window.len()];
                 (self.stresses)(site as usize, number as usize, &mut stress);
                 if let Some((s, time)) = stress.iter().zip(times).find(|(s, _)| !s.is_finite()) {
-                    let ScanSite { cell, place, .. } = *of_site;
-                    return Err(ScanError::Stress { time: *time, cell, place, stress: *s });
+                    return Err(ScanError::Stress { time: *time, site: *of_site, stress: *s });
                 }
                 self.tree.known[piece].get_or_init(|| stress.into())
             }

@@ -60,7 +60,7 @@ impl<'a> Reader<'a> {
     pub fn optional(&self, key: &str) -> Option<SceneValue<'a>> {
         let entry = self.table.get(key)?;
         let (path, example) = (self.path_of(key), self.example(key));
-        Some(SceneValue { item: &entry.item, key_place: &entry.place, path, example, source: self.source })
+        Some(SceneValue::new(&entry.item, &entry.place, path, example, self.source))
     }
 
     /// The value of `key`.
@@ -121,6 +121,8 @@ pub struct SceneValue<'a> {
     item: &'a Item,
     key_place: &'a Place,
     path: String,
+    /// Path of the key that the example is of: its own, or that of the list or the table it is an element of.
+    example_of: String,
     example: &'static str,
     source: &'a Arc<SceneSource>,
 }
@@ -134,7 +136,7 @@ impl<'a> SceneValue<'a> {
         example: &'static str,
         source: &'a Arc<SceneSource>,
     ) -> Self {
-        Self { item, key_place, path, example, source }
+        Self { item, key_place, example_of: path.clone(), path, example, source }
     }
 
     /// Whether the value is the word `word`.
@@ -149,7 +151,7 @@ impl<'a> SceneValue<'a> {
 
     /// The same value with another example for its messages.
     pub(crate) fn with_example(self, example: &'static str) -> Self {
-        Self { example, ..self }
+        Self { example, example_of: self.path.clone(), ..self }
     }
 
     pub(crate) fn key_place(&self) -> &'a Place {
@@ -198,7 +200,7 @@ impl<'a> SceneValue<'a> {
     }
 
     fn by_example(&self) -> String {
-        format!("write, for example: {} = {}", self.path, self.example)
+        format!("write, for example: {} = {}", self.example_of, self.example)
     }
 
     fn unit_error(&self, error: &UnitError, wanted: Option<Dimension>) -> SceneError {
@@ -315,6 +317,7 @@ impl<'a> SceneValue<'a> {
                     item,
                     key_place: self.key_place,
                     path: format!("{}[{i}]", self.path),
+                    example_of: self.example_of.clone(),
                     example: self.example,
                     source: self.source,
                 })
@@ -355,6 +358,7 @@ impl<'a> SceneValue<'a> {
                 item: &entry.item,
                 key_place: &entry.place,
                 path,
+                example_of: self.example_of.clone(),
                 example: self.example,
                 source: self.source,
             };

@@ -262,13 +262,13 @@ pub fn line_plot(plot: &LinePlot) -> Result<Picture, PlotError> {
 }
 
 /// Most curves, and most marks, of a picture.
-const MOST: usize = 40;
+pub const MOST_CURVES: usize = 40;
 
 fn check(plot: &LinePlot) -> Result<(), PlotError> {
     let title = || plot.title.clone();
     for (what, count) in [("curves", plot.series.len()), ("marks", plot.marks.len())] {
-        if count > MOST {
-            return Err(PlotError::TooMany { title: title(), what, count, most: MOST });
+        if count > MOST_CURVES {
+            return Err(PlotError::TooMany { title: title(), what, count, most: MOST_CURVES });
         }
     }
     if plot.series.is_empty() {

@@ -70,7 +70,7 @@ impl Pen {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::MOST;
+    use crate::plot::MOST_CURVES;
     use crate::plot::layout::{MARK, WHITE};
 
     /// Distance of two colours in OKLab (Ottosson 2020).
@@ -102,7 +102,7 @@ mod tests {
                 assert!(distance(*a, *b) > 0.1, "{a:x?} and {b:x?}: {}", distance(*a, *b));
             }
         }
-        let all: std::collections::BTreeSet<Color> = (0..MOST).map(color).collect();
-        assert_eq!(all.len(), MOST);
+        let all: std::collections::BTreeSet<Color> = (0..MOST_CURVES).map(color).collect();
+        assert_eq!(all.len(), MOST_CURVES);
     }
 }

@@ -25,7 +25,7 @@ pub(super) const KEYS: Keys = &[
         "layers",
         Form::OneOf(&[Form::Count(1), Form::List(&Form::Count(1))]),
         "[8, 8]",
-        "layers of cells, or how many plies each holds, from the bottom up; two if left out",
+        "layers of cells, or how many plies each holds, from the bottom up; if left out two, or one of a shell",
     ),
     key(
         "ply",

@@ -207,9 +207,11 @@ pub(super) fn read_all(field: &SceneValue<'_>) -> Result<Vec<Load>, SceneError> 
 fn read(field: &SceneValue<'_>) -> Result<Load, SceneError> {
     let any = field.table_of(LOADS)?;
     let has = |key| any.optional(key).is_some();
+    // A level of nodes is a word, the centre of a circle a table.
+    let round = || any.optional("at").is_some_and(|at| matches!(at.node(), Node::Table(_)));
     let kind = if has("pressure") {
         pressure(&field.table(PRESSURE)?)?
-    } else if has("patch_radius") {
+    } else if has("patch_radius") || (has("force") && round()) {
         let table = field.table(PATCH)?;
         LoadKind::Patch {
             force: table.required("force")?.quantity(Dimension::FORCE)?,

@@ -47,13 +47,13 @@ impl Written {
     }
 
     /// `value` as TOML writes it at `key`: a text where the scene has one there, and with its unit where it is a number that
-    /// has none; else as it is, or as a text where TOML has no such value.
+    /// has none; else as it is, or as a text where TOML has no such value; a table is one.
     pub fn toml(&self, key: &str, value: &str) -> String {
         let value = value.trim();
         let quoted = |text: &str| Value::from(text).to_string();
         let as_toml = value.parse::<Value>().ok();
         match (self.text(key), &as_toml) {
-            (_, Some(Value::String(_))) => value.to_owned(),
+            (_, Some(Value::String(_) | Value::InlineTable(_))) => value.to_owned(),
             (Some(text), _) => match unit(text).filter(|_| value.parse::<f64>().is_ok()) {
                 Some(unit) => quoted(&format!("{value} {unit}")),
                 None => quoted(value),
@@ -268,6 +268,7 @@ mod tests {
             ("impactor.velocity", "3 mm/s", "\"3 mm/s\""),
             ("impactor.velocity", "'3 mm/s'", "'3 mm/s'"),
             ("laminate.plies", "[90]", "\"[90]\""),
+            ("title", "{ name = 'x' }", "{ name = 'x' }"),
             ("laminate.layers", "[2]", "[2]"),
             // Of the preset.
             ("impactor.patch_radius", "2.5", "\"2.5 mm\""),

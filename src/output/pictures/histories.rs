@@ -2,7 +2,7 @@
 
 use crate::effect::LedgerColumn;
 use fem_core::plugin::Dimension;
-use fem_io::plot::{Axis, LinePlot, Series, Style, over_time};
+use fem_io::plot::{Axis, LinePlot, MOST_CURVES, Series, Style, over_time};
 use fem_io::tables::{HistoryRow, ImpactorRow};
 
 /// Share of the largest energy below which a curve would lie on the axis.
@@ -13,18 +13,39 @@ fn label(what: &str, of: &str, name: &str) -> String {
     if name.is_empty() { format!("{what}{of}") } else { format!("{what}, {name}") }
 }
 
-/// Displacement of each impactor and of the plate under it; `names` are empty for an only one. `None` where nothing moves.
+/// Impactors by number and name, as they come: all of them, or as many as a picture can show with `curves` for each, those that press
+/// hardest; and the title, which says so.
+pub(super) fn shown<'a>(
+    title: &str,
+    names: &[&'a str],
+    rows: &[HistoryRow],
+    curves: usize,
+) -> (String, Vec<(usize, &'a str)>) {
+    let mut all: Vec<_> = names.iter().copied().enumerate().collect();
+    let most = MOST_CURVES / curves;
+    if all.len() <= most {
+        return (title.to_owned(), all);
+    }
+    let peak = |i: usize| rows.iter().map(|row| row.impactors[i].contact_force_n).fold(0.0, f64::max);
+    all.sort_by(|a, b| peak(b.0).total_cmp(&peak(a.0)));
+    all.truncate(most);
+    all.sort_unstable();
+    (format!("{title} ({most} of {} impactors)", names.len()), all)
+}
+
+/// Displacement of each impactor and of the plate under it; the name of an only one is empty. `None` where nothing moves.
 pub(super) fn displacement(title: &str, names: &[&str], rows: &[HistoryRow]) -> Option<LinePlot> {
+    let (title, names) = shown(title, names, rows, 2);
     let curve = |i: usize, value: fn(&ImpactorRow) -> f64| -> Vec<_> {
         rows.iter().map(|row| (row.time_s, value(&row.impactors[i]))).collect()
     };
-    let curves = names.iter().enumerate().flat_map(|(i, name)| {
+    let curves = names.iter().copied().flat_map(|(i, name)| {
         [
             Series::solid(label("impactor", "", name), curve(i, |r| r.impactor_displacement_m)),
             Series::solid(label("plate", " under the impactor", name), curve(i, |r| r.plate_displacement_m)),
         ]
     });
-    unless_zero(over_time(title, "Displacement", Dimension::LENGTH, curves.collect()))
+    unless_zero(over_time(&title, "Displacement", Dimension::LENGTH, curves.collect()))
 }
 
 /// Where the energy is, and its sum; what is lost counts. Parts too small to be seen are left out. `columns` are those of
@@ -60,6 +81,7 @@ type Length = fn(&ImpactorRow) -> f64;
 
 /// Contact force over the displacement of the plate, of the impactor and over the indentation, their difference.
 pub(super) fn force_displacement(title: &str, names: &[&str], rows: &[HistoryRow]) -> Option<LinePlot> {
+    let (title, names) = shown(title, names, rows, 3);
     let lengths: [(&str, &str, Length); 3] = [
         ("plate", " under the impactor", |r| r.plate_displacement_m),
         ("impactor", "", |r| r.impactor_displacement_m),
@@ -69,7 +91,7 @@ pub(super) fn force_displacement(title: &str, names: &[&str], rows: &[HistoryRow
     let touches = |i: usize, k: usize| rows.get(k).is_some_and(|row| row.impactors[i].contact_force_n != 0.0);
     let near = |i: usize, k: usize| touches(i, k) || touches(i, k + 1) || k > 0 && touches(i, k - 1);
     let mut series = Vec::new();
-    for (i, name) in names.iter().enumerate() {
+    for (i, name) in names {
         for (what, of, length) in lengths {
             let points = rows.iter().enumerate().filter(|(k, _)| near(i, *k)).map(|(_, row)| &row.impactors[i]);
             let points: Vec<_> = points.map(|r| (length(r), r.contact_force_n)).collect();
@@ -84,7 +106,7 @@ pub(super) fn force_displacement(title: &str, names: &[&str], rows: &[HistoryRow
     for p in series.iter_mut().flat_map(|s| &mut s.points) {
         *p = (p.0 * length, p.1 * force);
     }
-    unless_zero(LinePlot { title: title.to_owned(), x, y, series, marks: Vec::new(), doubts: Vec::new() })
+    unless_zero(LinePlot { title, x, y, series, marks: Vec::new(), doubts: Vec::new() })
 }
 
 /// The plot if something of it differs from zero.
@@ -131,6 +153,19 @@ mod tests {
         assert_eq!(names(&plot), ["plate under the impactor", "impactor", "indentation"]);
         let indentation: Vec<_> = plot.series[2].points.iter().map(|p| ((p.0 * 1e9).round() / 1e9, p.1)).collect();
         assert_eq!(indentation, [(0.3, 0.0), (0.3, 10.0), (0.3, 20.0), (0.3, 0.0)]);
+    }
+
+    #[test]
+    fn of_more_impactors_than_curves_the_hardest_are_shown() {
+        let force = |i: usize| ImpactorRow { contact_force_n: ((7 * i) % 15) as f64, ..ImpactorRow::default() };
+        let rows = [HistoryRow { impactors: (0..15).map(force).collect(), ..row(1) }];
+        let names: Vec<String> = (0..15).map(|i| i.to_string()).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let (title, three) = shown("t", &names, &rows, 3);
+        assert_eq!((title.as_str(), three.len()), ("t (13 of 15 impactors)", 13));
+        // The forces 0 and 1 are those of numbers 0 and 13.
+        assert!(three.iter().all(|(i, name)| *i != 0 && *i != 13 && *name == names[*i]), "{three:?}");
+        assert_eq!(shown("t", &names, &rows, 2), ("t".to_owned(), names.iter().copied().enumerate().collect()));
     }
 
     #[test]

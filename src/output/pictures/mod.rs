@@ -51,10 +51,11 @@ pub(crate) fn write_curves(
     let times: Vec<f64> = rows.iter().map(|row| row.time_s).collect();
     let force = |i: usize| rows.iter().map(|row| row.impactors[i].contact_force_n).collect::<Vec<_>>();
     let called = |name: &'_ str| if name.is_empty() { "Contact force".to_owned() } else { name.to_owned() };
-    let labels: Vec<String> = names.iter().map(|name| called(name)).collect();
-    let forces: Vec<_> = labels.iter().enumerate().map(|(i, label)| (label.as_str(), force(i))).collect();
+    let (of_forces, struck) = histories::shown(title, names, rows, 1);
+    let labels: Vec<_> = struck.into_iter().map(|(i, name)| (i, called(name))).collect();
+    let forces: Vec<_> = labels.iter().map(|(i, label)| (label.as_str(), force(*i))).collect();
     let lines = [
-        ("contact_force", Some(plot::force_history(title, &times, &forces, marks)?)),
+        ("contact_force", Some(plot::force_history(&of_forces, &times, &forces, marks)?)),
         ("displacement", histories::displacement(title, names, rows)),
         ("energy", histories::energy(title, columns, rows)),
         ("force_displacement", histories::force_displacement(title, names, rows)),
