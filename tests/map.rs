@@ -49,10 +49,7 @@ fn the_first_damage_is_where_the_map_has_it() {
         "map",
         &["--set", "impactor.mass=0.2..5", "--set", "impactor.velocity=0.3..3", "--out", "three", "--resume"],
     );
-    assert!(
-        other.status == 1 && other.stderr.contains("`map over impactor.mass` was 0.2..4 kg and is"),
-        "{other:#?}"
-    );
+    assert!(other.status == 1 && other.stderr.contains("`map over impactor.mass` was 0.2..4 kg and is"), "{other:#?}");
     let record: Value = serde_json::from_str(&case.read("one/map.json")).unwrap();
     assert_eq!((record["reached"].as_bool(), record["failed"].as_u64()), (Some(true), Some(0)));
     assert!(record["impacts"].as_u64().is_some_and(|count| count <= 100), "{}", record["impacts"]);

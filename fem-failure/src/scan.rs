@@ -168,7 +168,7 @@ pub enum ScanError {
         /// Time, s.
         time: f64,
         /// Where.
-        site: ScanSite,
+        site: Box<ScanSite>,
         /// The components.
         stress: Stress6<Ply>,
     },
@@ -186,7 +186,7 @@ pub enum ScanError {
         /// Its mode.
         mode: &'static str,
         /// Where.
-        site: ScanSite,
+        site: Box<ScanSite>,
         /// Of this stress.
         stress: Stress6<Ply>,
         /// [`FailureCriterion::scope`].
@@ -324,7 +324,7 @@ fn refusal(
         time,
         criterion: name.to_owned(),
         mode: criterion.info().modes[mode],
-        site: *site,
+        site: Box::new(*site),
         stress,
         scope: criterion.scope(),
     }
@@ -453,7 +453,7 @@ impl Scan {
         }
         for (s, site) in stress.iter().zip(&self.sites) {
             if !s.is_finite() {
-                return Err(ScanError::Stress { time: t, site: *site, stress: *s });
+                return Err(ScanError::Stress { time: t, site: Box::new(*site), stress: *s });
             }
         }
         for (s, &i) in self.stress.iter_mut().zip(&self.order) {

@@ -329,7 +329,7 @@ impl Search<'_> {
                 let mut stress = vec![Stress6::new([0.0; 6]); window.len()];
                 (self.stresses)(site as usize, number as usize, &mut stress);
                 if let Some((s, time)) = stress.iter().zip(times).find(|(s, _)| !s.is_finite()) {
-                    return Err(ScanError::Stress { time: *time, site: *of_site, stress: *s });
+                    return Err(ScanError::Stress { time: *time, site: Box::new(*of_site), stress: *s });
                 }
                 self.tree.known[piece].get_or_init(|| stress.into())
             }

@@ -349,7 +349,7 @@ impl Judge<'_> {
         self.samples.stresses(self.order[k] as usize, number, &mut stress[..count]);
         let times = &self.times[window.clone()];
         if let Some((s, time)) = stress.iter().zip(times).find(|(s, _)| !s.is_finite()) {
-            return Err(ScanError::Stress { time: *time, site: *site, stress: *s });
+            return Err(ScanError::Stress { time: *time, site: Box::new(*site), stress: *s });
         }
         watch.criterion.indices_many(&stress[..count], &self.materials[usize::from(site.material)], &mut indices);
         if let Some(bad) = indices.iter().position(|index| !(*index > f64::NEG_INFINITY)) {
