@@ -39,7 +39,7 @@ pub(crate) fn subject(side: usize) -> Subject {
     let mut columns: Vec<u32> = edges.iter().flat_map(|e| plate.columns_of_group(&plate.plane.groups[*e])).collect();
     columns.sort_unstable();
     columns.dedup();
-    let held = Hold { columns, levels: vec![1], dofs: held, angle: 0.0, curvature: 0.0 };
+    let held = Hold { columns, levels: vec![1], dofs: held, angle: 0.0, curvature: 0.0, between: false };
     let supports = held.equations(&plate, "edges");
     let constraints = Constraints::eliminate(&elimination_order(&plate), &supports).unwrap();
     Subject { plate, element, constraints }
