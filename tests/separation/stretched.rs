@@ -136,6 +136,12 @@ fn a_weaker_law_is_a_weaker_plate() {
     let [mut sound, mut weaker] =
         [STRONG.to_owned(), format!("{STRONG}law = 'weaker'\n")].map(|text| Struck::new(leaked(text)));
     let none = vec![0.0; sound.u.len()];
+    // Layers that move apart stretch the plate no more, but its stresses do work on them: the law's energy is of both together.
+    let apart_by = |scale: f64| (0..none.len()).map(|i| scale * (0.73 * i as f64).sin()).collect::<Vec<_>>();
+    for scale in [2e-6, -1e-5] {
+        let [(_, stored), (_, left)] = [&mut sound, &mut weaker].map(|plate| plate.at(1.0, &apart_by(scale)));
+        assert!((left / (SHARE * stored) - 1.0).abs() < 1e-6, "{left} {stored}");
+    }
     let ((of_sound, stored), (of_weaker, left)) = (sound.at(0.0, &none), weaker.at(0.0, &none));
     let mut linear = none;
     sound.plate.add_stiffness(0.5, &sound.u, &mut linear);

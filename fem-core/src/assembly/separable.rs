@@ -115,6 +115,7 @@ pub struct Separable {
     k: Symmetric,
     m: Symmetric,
     released: Released,
+    stretched: Option<Arc<dyn Stretching>>,
     /// Of each cell of the interfaces.
     maps: Vec<CellMap>,
     tied: Tied,
@@ -180,6 +181,7 @@ impl Separable {
             k,
             m,
             released,
+            stretched: None,
             maps,
             tied,
             cm: 0.0,
@@ -214,11 +216,12 @@ impl Separable {
         &self.parts
     }
 
-    /// Has the laws of the plies see how deflections stretch the plate.
+    /// Has the laws of the plies, and the tractions at which interfaces open, see how deflections stretch the plate.
     ///
     /// # Errors
     /// A cell that is folded.
     pub fn stretch(&mut self, by: &Arc<dyn Stretching>) -> Result<(), SeparableError> {
+        self.stretched = Some(by.clone());
         self.parts.plies.iter_mut().try_for_each(|plies| plies.stretch(by.clone())).map_err(SeparableError::Assembly)
     }
 

@@ -291,6 +291,10 @@ pub trait Stretching: std::fmt::Debug + Send + Sync {
     /// The amounts at `u`, and `u` + Σ b_t s_t.
     fn expand(&self, u: &[f64], completed: &mut [f64], amounts: &mut Vec<f64>);
 
+    /// Adds to `force` what the membrane stresses do on layers that are told apart, and what ties these carries over: Σ b_t r_t,
+    /// r_t = ∫ Bᵀ C (ε_t + B s_t) dV.
+    fn tear(&self, u: &[f64], force: &mut [f64]);
+
     /// Adds to `force` what forces conjugate to both do on `u`.
     fn restrict(&self, u: &[f64], on_completed: &[f64], on_amounts: &[f64], force: &mut [f64]);
 }

@@ -2,7 +2,7 @@
 
 use super::forms::Forms;
 use super::{Expansion, Modal, Reduced};
-use crate::vector::axpy;
+use crate::vector::{axpy, dot};
 use fem_core::energy::Energy;
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
@@ -19,6 +19,9 @@ const SAME: f64 = 1e-8;
 
 /// Membrane strains below this share of the largest (of the energy, at deflections of a static contact) are left out.
 const NEGLIGIBLE: f64 = 1e-10;
+
+/// Share of the largest force of a pattern below which what is left of an unknown's balance is rounding.
+const BALANCED: f64 = 1e-8;
 
 /// Energy of a pattern's tension that lies in a deflection of the contacts, over that of the tension alone, from which on the plate counts
 /// as one that its tension bends. Of symmetric laminates it is 1e-4 and less, what the squeeze under the contact makes of it; of
@@ -115,6 +118,46 @@ pub(super) struct Patterns {
     pub(super) combinations: Vec<f64>,
     /// b_t and s_t.
     pub(super) follow: Companions,
+    pub(super) torn: Torn,
+}
+
+/// What the stresses of each pattern do on layers that are told apart: forces r_t = ∫ Bᵀ C (ε_t + B s_t) dV, none on the plate that holds
+/// together, whose s_t is in equilibrium, but on the two sides of what ties its layers, which carries them.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Torn {
+    unknowns: Vec<usize>,
+    /// `patterns × unknowns`.
+    forces: Vec<f64>,
+    patterns: usize,
+}
+
+impl Torn {
+    /// Of the `forces` ∫ Bᵀ C ε_t dV and the displacements `shapes` s_t, `ndof × patterns`.
+    fn of(structure: &dyn Structure, mut forces: DMatrix<f64>, shapes: &DMatrix<f64>) -> Self {
+        let largest = forces.amax();
+        structure.add_stiffness(1.0, shapes.as_slice(), forces.as_mut_slice());
+        let carried = |i: &usize| forces.row(*i).amax() > BALANCED * largest;
+        let unknowns: Vec<usize> = (0..forces.nrows()).filter(carried).collect();
+        let patterns = forces.ncols();
+        let forces = unknowns.iter().flat_map(|i| forces.row(*i).iter().copied().collect::<Vec<_>>()).collect();
+        Self { unknowns, forces, patterns }
+    }
+
+    fn rows(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        self.unknowns.iter().copied().zip(self.forces.chunks_exact(self.patterns.max(1)))
+    }
+
+    /// r_tᵀ u
+    pub(super) fn works(&self, u: &[f64], works: &mut Vec<f64>) {
+        works.clear();
+        works.resize(self.patterns, 0.0);
+        self.rows().for_each(|(i, row)| axpy(u[i], row, works));
+    }
+
+    /// Adds Σ b_t r_t.
+    pub(super) fn add(&self, amounts: &[f64], force: &mut [f64]) {
+        self.rows().for_each(|(i, row)| force[i] += dot(row, amounts));
+    }
 }
 
 impl Companions {
@@ -250,7 +293,12 @@ impl MembranePlate {
             solution: Vec::new(),
         };
         let forms = counted(forms(&combinations, None)?, &energies);
+        let torn = match in_plane {
+            InPlane::OfModes => Torn::default(),
+            InPlane::AtOnce => Torn::of(structure, &forces * &turn, &shapes_of_left),
+        };
         let patterns = Patterns {
+            torn,
             deflections: fields.as_slice().to_vec(),
             combinations: turned.as_slice().to_vec(),
             follow: Companions { forms: of_left, shapes: shapes_of_left.as_slice().to_vec() },
@@ -273,16 +321,19 @@ impl MembranePlate {
     fn stretch(&mut self, q: &[f64]) {
         self.forms.products(q, &mut self.padded, &mut self.products);
         self.forms.values(&self.padded, &self.products, &mut self.values);
+        self.coupled.fill(0.0);
         self.forms.values(&self.padded, &self.couplings, &mut self.coupled);
     }
 
-    /// Adds to `force` what the stretching does beside the bending, ∂W/∂q − Λ q; returns its energy.
-    pub(super) fn add_tension(&mut self, q: &[f64], force: &mut [f64]) -> f64 {
+    /// Adds to `force` what the stretching does beside the bending, ∂W/∂q − Λ q, where each b_t does the work w_t of `works` besides;
+    /// returns its energy.
+    pub(super) fn add_tension(&mut self, q: &[f64], works: &[f64], force: &mut [f64]) -> f64 {
         self.stretch(q);
+        self.coupled.iter_mut().zip(works).for_each(|(coupled, work)| *coupled += work);
         let mut energy = 0.0;
         for t in 0..self.values.len() {
             let (value, tension) = (self.values[t], self.tension(t));
-            // ½ σ b² + (cᵀ q) b
+            // ½ σ b² + (cᵀ q + w) b
             energy += value * (tension - 0.5 * self.stiffness[t] * value);
             self.weights[t] = 2.0 * tension;
         }
@@ -292,6 +343,11 @@ impl MembranePlate {
         self.forms.add_columns(&self.values, &self.couplings, &mut self.sum);
         force.iter_mut().zip(&self.sum).for_each(|(f, tension)| *f += tension);
         energy
+    }
+
+    /// The amounts b_t, once the plate is stretched.
+    pub(super) fn amounts(&self) -> &[f64] {
+        &self.values
     }
 
     /// c_t of term `t`, if there are any.
@@ -438,7 +494,7 @@ impl Nonlinear for MembranePlate {
             *f = k * q;
             energy += 0.5 * k * q * q;
         }
-        energy += self.add_tension(q, force);
+        energy += self.add_tension(q, &[], force);
         Ok(Energy { stored: energy, dissipated: 0.0 })
     }
 

@@ -32,7 +32,8 @@ fn flexibilities(reduced: &Reduced, contacts: &[Functional]) -> Vec<f64> {
 /// How a full plate is stretched: as its share in few vectors Φ is, with Φᵀ M Φ = 1.
 ///
 /// Tension follows the deflection of the plate as a whole, which few vectors hold; what they leave out, ripples beside the contact or
-/// two faces that move apart, stretches nothing. In its plane the plate follows at once and undamaged.
+/// two faces that move apart, stretches nothing. In its plane the plate follows at once as one that holds together; what its layers carry
+/// over to each other for that, Σ b_t r_t, acts on their displacements where they come apart.
 #[derive(Debug, Clone)]
 pub struct Stretch {
     membrane: MembranePlate,
@@ -81,6 +82,13 @@ impl Stretching for Share {
         amounts.iter().zip(follow.shapes(u.len())).for_each(|(b, shape)| axpy(*b, shape, completed));
     }
 
+    fn tear(&self, u: &[f64], force: &mut [f64]) {
+        let mut q = vec![0.0; self.modes];
+        self.of(u, &mut q);
+        let amounts: Vec<f64> = self.patterns.follow.amounts(&q).collect();
+        self.patterns.torn.add(&amounts, force);
+    }
+
     fn restrict(&self, u: &[f64], on_completed: &[f64], on_amounts: &[f64], force: &mut [f64]) {
         let (mut q, mut g) = (vec![0.0; self.modes], vec![0.0; self.modes]);
         self.of(u, &mut q);
@@ -125,7 +133,8 @@ impl Stretch {
     }
 }
 
-/// A full plate with the forces of its stretching: f(u) + M Φ g(Φᵀ M u), g those of the [`MembranePlate`] beside its modes'.
+/// A full plate with the forces of its stretching: f(u) + M Φ g + Σ b_t r_t, g(Φᵀ M u, r_tᵀ u) those of the [`MembranePlate`] beside its
+/// modes', r_t what its stresses do on layers that come apart.
 ///
 /// They have a potential and are smooth in space. The plate is one whose steps take the undamaged K in the place of a tangent: its tension
 /// is explicit in them, stable while it raises no frequency of the vectors to near 2/Δt.
@@ -135,13 +144,14 @@ pub struct StretchedPlate {
     stretch: Stretch,
     q: Vec<f64>,
     g: Vec<f64>,
+    works: Vec<f64>,
 }
 
 impl StretchedPlate {
     /// `plate`, stretched.
     pub fn new(plate: Box<dyn Structure>, stretch: Stretch) -> Self {
         let modes = stretch.share.modes;
-        Self { plate, stretch, q: vec![0.0; modes], g: vec![0.0; modes] }
+        Self { plate, stretch, q: vec![0.0; modes], g: vec![0.0; modes], works: Vec::new() }
     }
 }
 
@@ -193,7 +203,7 @@ impl Structure for StretchedPlate {
 
 impl Nonlinear for StretchedPlate {
     fn internal(&mut self, u: &[f64], points: &[f64], force: &mut [f64]) -> Result<Energy, SolveError> {
-        let Self { plate, stretch: Stretch { membrane, share }, q, g } = self;
+        let Self { plate, stretch: Stretch { membrane, share }, q, g, works } = self;
         let mut energy = match plate.nonlinear() {
             Some(plate) => plate.internal(u, points, force)?,
             None => {
@@ -204,7 +214,9 @@ impl Nonlinear for StretchedPlate {
         };
         share.of(u, q);
         g.fill(0.0);
-        energy.stored += membrane.add_tension(q, g);
+        share.patterns.torn.works(u, works);
+        energy.stored += membrane.add_tension(q, works, g);
+        share.patterns.torn.add(membrane.amounts(), force);
         g.iter().zip(share.weights.chunks_exact(u.len())).for_each(|(g, column)| axpy(*g, column, force));
         Ok(energy)
     }

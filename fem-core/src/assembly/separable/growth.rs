@@ -96,6 +96,9 @@ impl Separable {
         let plate = &parts.plate;
         let mut force = vec![0.0; u.len()];
         self.k.add_product(1.0, u, &mut force);
+        if let Some(stretched) = &self.stretched {
+            stretched.tear(u, &mut force);
+        }
         let symmetry = plate.symmetry();
         let mut areas: BTreeMap<(u32, usize), f64> = BTreeMap::new();
         for cell in parts.interfaces.cells() {
