@@ -190,12 +190,20 @@ fn plane_criteria_refuse_spatial_stress_unless_told_to_ignore_it() {
     }
     assert_eq!(refusing, 8);
     // The scan says so too, with the place.
-    let site =
-        scan::ScanSite { cell: 5, place: scan::PlyOrInterface::Ply(2), position: [0.0; 3], angle: 0.0, material: 0 };
+    let site = scan::ScanSite {
+        cell: 5,
+        place: scan::PlyOrInterface::Ply(2),
+        position: [5e-3, 0.0, 0.0],
+        angle: 0.0,
+        material: 0,
+    };
     let criteria: Vec<(String, Box<dyn FailureCriterion>)> = vec![("hill".into(), Box::new(TsaiHill::default()))];
     let mut scan = scan::Scan::new(criteria, vec![site], vec![m.clone()]).unwrap();
     let error = scan.sample(0.0, &[spatial]).unwrap_err().to_string();
-    assert!(error.contains("ply 3 from the bottom of cell 5") && error.contains("three-dimensional"), "{error}");
+    assert!(
+        error.contains("ply 3 from the bottom at (5.0000, 0.0000) mm") && error.contains("three-dimensional"),
+        "{error}"
+    );
 }
 
 /// What no table holds: every criterion under stresses at the ends of the numbers, and what is not a stress.
