@@ -136,7 +136,9 @@ impl Effect for Membrane {
         contacts: &[Functional],
         step: f64,
     ) -> Result<Option<Stretch>, Error> {
-        Ok(Some(Stretch::new(plate, contacts, step, &MembraneOf(*body)).map_err(SolveError::other)?))
+        let vectors = Stretch::vectors(body.plate.symmetry().name().is_some());
+        let stretch = Stretch::new(plate, contacts, (step, vectors), &MembraneOf(*body));
+        Ok(Some(stretch.map_err(SolveError::other)?))
     }
 }
 

@@ -22,6 +22,7 @@ use crate::error::Error;
 use fem_io::files::OutputDir;
 use folder::Folder;
 use measured::Measured;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -54,13 +55,10 @@ pub fn write(
 ) -> Result<PathBuf, Error> {
     let Some(first) = paths.first() else { return Err(Error::NoResults { folder: PathBuf::new() }) };
     paths.iter().try_for_each(|path| Folder::check(path))?;
-    for (i, path) in paths.iter().enumerate() {
-        let is_it = |other: &PathBuf| {
-            fs::canonicalize(other).ok().is_some_and(|one| fs::canonicalize(path).is_ok_and(|two| one == two))
-        };
-        if paths[..i].iter().any(is_it) {
-            return Err(Error::SameFolder { folder: path.clone() });
-        }
+    let mut named = BTreeSet::new();
+    let again = |path: &&PathBuf| fs::canonicalize(path).is_ok_and(|folder| !named.insert(folder));
+    if let Some(folder) = paths.iter().find(again) {
+        return Err(Error::SameFolder { folder: folder.clone() });
     }
     let measured = measured.map(Measured::read).transpose()?;
     // Before the files are read, so that no run changes them meanwhile.
