@@ -53,11 +53,11 @@ pub(super) struct Arguments {
     format: Format,
 }
 
-/// A length above zero with its unit, m.
+/// A thickness that a ply may have, with its unit, m.
 fn length(text: &str) -> Result<f64, String> {
     match units::parse_as(text, Dimension::LENGTH) {
-        Ok(length) if length > 0.0 => Ok(length),
-        Ok(_) => Err("must be longer than zero".into()),
+        Ok(length) if (1e-9..=1.0).contains(&length) => Ok(length),
+        Ok(_) => Err("must be from 1 nm to 1 m".into()),
         Err(why) => Err(why.to_string()),
     }
 }

@@ -109,10 +109,15 @@ pub(super) fn print_report(report: &Report, voice: Voice) {
     // Colours are what else a terminal is steered by: they are left out where the texts have something of the kind.
     if voice.color.holds() && printable(&text) == text {
         let text = render(report, GraphicalTheme::unicode());
-        let _ = write!(std::io::stderr(), "Error:{text}");
+        let _ = write!(std::io::stderr(), "{}", headed(&text));
     } else {
-        tell(&format!("Error:{text}"));
+        tell(&headed(&text));
     }
+}
+
+/// What is rendered begins with the code of an error that has one, and with a space otherwise.
+fn headed(text: &str) -> String {
+    format!("Error:{}{text}", if text.starts_with(' ') { "" } else { " " })
 }
 
 fn render(report: &Report, theme: GraphicalTheme) -> String {

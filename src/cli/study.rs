@@ -53,6 +53,9 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Consol
     let model = Model::new(&scene, registry)?;
     let folder = arguments.out.clone().unwrap_or_else(|| default_folder(path, "-study"));
     let axes = study::axes(&scene, &model, registry, &arguments.axis)?;
+    for name in arguments.axis.iter().filter(|name| axes.iter().all(|axis| axis.name != **name)) {
+        console.say(format, || format!("  the axis `{name}` is left out: this scene has no two levels of it\n"));
+    }
     let dir = job::folder::results(&folder, &model.origin.source).map_err(Error::from)?;
     let mut session = Session::open(path, &model, registry, dir, arguments.resume)?;
     let progress = console.progress("study", "study {bar:40} {percent:>3} %  {msg}");

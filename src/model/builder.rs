@@ -335,6 +335,7 @@ impl Builder<'_> {
         let (mut restraint, mut described) = (None, Vec::new());
         let mut turns = Turns::default();
         let mut springs = Springs::default();
+        self.free_edges(plate)?;
         for entry in &self.scene.supports {
             match entry {
                 Support::RestrainRigidMotions { place } => restraint = Some(place),

@@ -6,7 +6,7 @@ use fem_core::hold::{Hold, SupportKind};
 use fem_core::mesh::Group;
 use fem_core::plate::Plate;
 use fem_io::scene::{Located, SceneError, Support, SupportArea};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 impl Builder<'_> {
     /// Where a support acts, for messages, and what it holds: unknowns in axes that it names, or node by node in axes along an edge.
@@ -61,6 +61,35 @@ impl Builder<'_> {
                 Err(self.scene.source.error_at(place, message, help))
             }
         }
+    }
+
+    /// Refuses edges that one support says to be free and another one by name holds.
+    pub(super) fn free_edges(&self, plate: &Plate) -> Result<(), SceneError> {
+        let ends = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+        let mut free = BTreeMap::new();
+        let mut held = Vec::new();
+        for support in &self.scene.supports {
+            let Support::Kind { area, kind, place, .. } = support else { continue };
+            let group = self.check_kind(plate, support)?;
+            let edges = group.edges.into_iter().map(ends);
+            match kind {
+                SupportKind::Free => free.extend(edges.map(|edge| (edge, (area, place)))),
+                _ => held.push((area, kind, edges.collect::<Vec<_>>())),
+            }
+        }
+        for (area, kind, edges) in held {
+            if let Some((said, place)) = edges.iter().find_map(|edge| free.get(edge)) {
+                let why = format!(
+                    "edges of {} are said to be free, and {} holds them, {}",
+                    said.value,
+                    area.value,
+                    kind.name()
+                );
+                let help = "leave one of the two supports out, or name groups without common edges";
+                return Err(self.scene.source.error_at(place, why, help));
+            }
+        }
+        Ok(())
     }
 
     /// The part of the plate that a support by name acts on.

@@ -1,6 +1,7 @@
 //! Decks with one mistake each are refused with its line and kind.
 
 use super::{folder, program, run};
+use crate::support::{fem, root};
 use fem::Error;
 
 /// Where the governor without inertia is named, rather than the last line of the deck.
@@ -32,4 +33,11 @@ fn every_mistake_is_found_where_it_can_first_be_known() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_kind_of_a_mistake_heads_its_message() {
+    let deck = folder("g-malformed").join("09-lamcel-too-many-items.dat");
+    let told = fem(&root(), &["lamcel", deck.to_str().unwrap()]).stderr;
+    assert!(told.starts_with("Error: too-many-items\n"), "{told}");
 }

@@ -379,6 +379,10 @@ fn wrong_ways() {
         "{ disc = { x = '80 mm', y = '0 mm', radius = '5 mm' }, kind = 'clamped' }",
         &["no node of the mesh lies in the disc"],
     );
+    refused(
+        "{ group = 'edge', kind = 'clamped' }, { group = 'edge', kind = 'free' }",
+        &["edges of `edge` are said to be free, and `edge` holds them, clamped"],
+    );
     refused("{ group = 'edge', kind = 'roller' }", &["leave the plate free", "rotation about z"]);
     let warned = |supports: &str, words: &str| {
         let warnings = model(&text(disc, PRISM, (&aluminium(), "[0/0]", 0.5), supports)).unwrap().warnings;
