@@ -18,7 +18,8 @@ pub fn hindsight(model: &Model, contacts: &[ContactRecord], threshold: f64) -> O
         let (at, deflection) = over.last().copied().unwrap_or_default();
         let beyond = over.windows(2).find(|pair| number(pair[1].1) > threshold);
         let since = beyond.map(|pair| crossing(pair[0], pair[1], (threshold / coefficient).sqrt()));
-        Some(Hindsight { reached: number(deflection), coefficient, held: held.name(), deflection, at: Some(at), since })
+        let (reached, held, at) = (number(deflection), held.name(), Some(at));
+        Some(Hindsight { reached, coefficient, held, deflection, at, since, lawful: model.laws.is_some() })
     });
     each.max_by(|a, b| a.reached.total_cmp(&b.reached))
 }
@@ -28,7 +29,8 @@ pub fn hindsight_at_rest(model: &Model, w: f64, place: [f64; 2]) -> Option<Hinds
     let held = Rim::around(model, place)?.held?;
     let (coefficient, deflection) = (held.coefficient(), w.abs() / model.laminate.thickness());
     let reached = coefficient * deflection * deflection;
-    Some(Hindsight { reached, coefficient, held: held.name(), deflection, at: None, since: None })
+    let (held, lawful) = (held.name(), model.laws.is_some());
+    Some(Hindsight { reached, coefficient, held, deflection, at: None, since: None, lawful })
 }
 
 /// When a value passes `level` between two times, by a straight line.

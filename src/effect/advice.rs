@@ -60,6 +60,8 @@ pub struct Hindsight {
     pub at: Option<f64>,
     /// From when on A (w/h)² is above the threshold, s.
     pub since: Option<f64>,
+    /// Whether plies follow laws.
+    pub lawful: bool,
 }
 
 /// A decision about an effect that the scene leaves to the advisor.

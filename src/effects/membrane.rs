@@ -240,10 +240,13 @@ fn cost(size: &Size) -> f64 {
 }
 
 fn hindsight(run: &Hindsight, acted: bool, decided: bool) -> Option<String> {
-    let Hindsight { reached, coefficient, held, deflection, at, since } = *run;
-    let remedy = format!(
-        "(A (w/h)^2, A = {coefficient} for an edge {held}): switch it on with `effects.membrane = \"on\"`, or \"auto\""
-    );
+    let Hindsight { reached, coefficient, held, deflection, at, since, lawful } = *run;
+    let instead = match (lawful, at) {
+        (false, _) => "switch it on with `effects.membrane = \"on\"`, or \"auto\"",
+        (true, Some(_)) => "beside plies that follow a law it needs `effects.delamination = \"growth\"`",
+        (true, None) => "at rest it is not offered beside plies that follow a law",
+    };
+    let remedy = format!("(A (w/h)^2, A = {coefficient} for an edge {held}): {instead}");
     match (at, since) {
         (Some(at), Some(since)) if !acted => Some(format!(
             "without membrane stiffening the force is wrong by more than {:.0} % from {:.4} ms on and by about {:.0} % at \
@@ -264,5 +267,22 @@ fn hindsight(run: &Hindsight, acted: bool, decided: bool) -> Option<String> {
             100.0 * THRESHOLD
         )),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Hindsight, hindsight};
+
+    #[test]
+    fn the_remedy_is_one_that_the_scene_takes() {
+        let remedy = |lawful, at| {
+            let run =
+                Hindsight { reached: 0.2, coefficient: 0.3, held: "clamped", deflection: 0.8, at, since: at, lawful };
+            hindsight(&run, false, false).unwrap_or_default()
+        };
+        assert!(remedy(false, Some(1e-3)).contains("membrane = \"on\""));
+        assert!(remedy(true, Some(1e-3)).contains("delamination = \"growth\""));
+        assert!(remedy(true, None).contains("not offered"));
     }
 }
