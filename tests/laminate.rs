@@ -67,4 +67,8 @@ fn what_is_wrong_is_said() {
         let done = fem(&root(), &[&["laminate"], &arguments[..]].concat());
         assert!(done.status == 1 && done.stderr.contains(words), "{arguments:?}: {done:#?}");
     }
+    for thickness in ["1e200 mm", "0 mm"] {
+        let done = fem(&root(), &["laminate", "[0]", "--material", "AS4/3502", "--ply-thickness", thickness]);
+        assert!(done.status == 2 && done.stderr.contains("must be from 1 nm to 1 m"), "{thickness}: {done:#?}");
+    }
 }
