@@ -80,7 +80,8 @@ fn measure(example: &str, keys: Keys) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(example).join("scene.toml");
     let setting = keys.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
     let started = ProcessTime::now();
-    let model = Model::new(scene::read_with(&path, &setting).unwrap(), &Registry::standard()).unwrap();
+    let model = Model::new(scene::under(&scene::read(&path).unwrap().source, &setting).unwrap(), &Registry::standard())
+        .unwrap();
     let outcome = impact::march(impact::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
     let seconds = started.elapsed().as_secs_f64();
     assert_eq!(outcome.stopped, None);

@@ -43,7 +43,7 @@ fn main() {
 
 fn measure(name: String, product: f64, set: &[(&str, &usize)]) -> Level {
     let settings: Setting = set.iter().map(|(key, value)| ((*key).to_owned(), value.to_string())).collect();
-    let scene = scene::read_with(Path::new(EXAMPLE), &settings).unwrap();
+    let scene = scene::under(&scene::read(Path::new(EXAMPLE)).unwrap().source, &settings).unwrap();
     let mut level = Level { name, unknowns: 0.0, phases: Vec::new() };
     for _ in 0..RUNS {
         let done = job::run(&scene, &Registry::standard(), &Options::default(), &mut ()).unwrap();

@@ -1,11 +1,11 @@
 //! Plates that are kept: what comes from them is what would come without, and nothing in the folder is trusted.
 
-use crate::support::{Case, failing, fem, root};
+use crate::support::{Case, failing, fem, read_under, root};
 use fem::Registry;
 use fem::io::cache::Cache;
 use fem::io::checkpoint;
 use fem::io::files::OutputDir;
-use fem::io::scene::{self, Setting};
+use fem::io::scene::Setting;
 use fem::job::{self, Found, Options};
 use std::fs;
 use std::path::Path;
@@ -19,7 +19,7 @@ fn quick() -> Case {
 fn run(case: &Case, cache: Option<&Cache>, set: &[(&str, &str)]) -> (String, String) {
     let path = case.folder().join("plate/scene.toml");
     let setting: Setting = set.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-    let scene = scene::read_with(&path, &setting).unwrap();
+    let scene = read_under(&path, &setting);
     let registry = Registry::standard().with_cache(cache.cloned());
     let done = job::run(&scene, &registry, &Options::default(), &mut ()).unwrap();
     let Found::Impact(found) = &done.found else { panic!("no impact") };

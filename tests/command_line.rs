@@ -1,6 +1,6 @@
 //! What the command prints and writes when all is well.
 
-use crate::support::{Case, fem, root, strip};
+use crate::support::{Case, fem, fem_reading, plate, root, strip};
 use fem::Registry;
 use fem::core::failure::{CriterionInfo, FailureCriterion, Site};
 use fem::core::material::Material;
@@ -329,4 +329,38 @@ fn a_plug_in_from_outside() {
 
     let done = case.fem("run", &[]);
     assert!(done.status == 1 && done.stderr.contains("there is no criterion `fibre-limit`"), "{done:#?}");
+}
+
+/// Whoever reads a scene takes keys over those that stand in it, from a file or from standard input.
+#[test]
+fn what_is_set_is_as_if_it_stood_in_the_scene() {
+    let scene = std::fs::read_to_string(root().join("tests/data/scenes/study.toml")).unwrap();
+    let other = |text: &str| text.replace("\"0.25 mm\"", "\"0.3 mm\"").replace("\"2 m/s\"", "\"1.5 m/s\"");
+    let set = ["--set", "laminate.ply_thickness=0.3", "--set", "impactor.velocity=1.5"];
+    for (command, options, file) in [
+        ("run", &["--accuracy", "20 %"][..], "summary.json"),
+        ("check", &[], ""),
+        ("advise", &[], ""),
+        ("modes", &["--count", "3"], "modes.csv"),
+        ("study", &["--axis", "step", "--tolerance", "50 %"], "scene.toml"),
+        ("matrices", &[], "stiffness.mtx"),
+    ] {
+        let (written, as_it_is) = (plate().text(&other(&scene)), plate().text(&scene));
+        let out = if file.is_empty() { &[][..] } else { &["--out", "out"] };
+        let options = [options, out].concat();
+        let expected = written.fem(command, &options).good();
+        let found = |case: &Case| case.read(&format!("out/{file}")).replace(&case.folder().display().to_string(), "");
+        for piped in [false, true] {
+            let options = [&options[..], &set].concat();
+            let done = match piped {
+                false => as_it_is.fem(command, &options),
+                true => fem_reading(as_it_is.folder(), &[&[command, "-"], &options[..]].concat(), &scene),
+            };
+            let done = done.good();
+            match file {
+                "" => assert_eq!(done.stdout, expected.stdout, "{command}"),
+                _ => assert_eq!(found(&as_it_is), found(&written), "{command}"),
+            }
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! A job in memory, in a folder, broken off and gone on with.
 
-use crate::support::{Case, impact_of, plate, watched};
+use crate::support::{Case, impact_of, plate, read_under, watched};
 use fem::job::{self, Finished, Follow, Found, KeptPlate, Options, Results, Task};
 use fem::{Error, Registry, cost::Cost, io::scene};
 use serde_json::Value;
@@ -78,7 +78,7 @@ fn a_plate_that_is_kept_is_struck_as_by_runs_of_their_own() {
     let case = watched().append("[reduction]\nmethod = \"ritz\"\nvectors = 12\n");
     case.write();
     let (path, registry) = (case.folder().join("plate/scene.toml"), Registry::standard());
-    let read = |key: &str, value: &str| scene::read_with(&path, &[(key.into(), value.into())].into()).unwrap();
+    let read = |key: &str, value: &str| read_under(&path, &[(key.into(), value.into())].into());
     let plate = KeptPlate::new(&scene::read(&path).unwrap(), &registry, NonZeroUsize::MIN).unwrap();
     let impacts = [("impactor.velocity", "\"1 m/s\""), ("impactor.mass", "\"20 g\""), ("contact.beta", "0.5")];
     let struck = std::thread::scope(|scope| {

@@ -1,8 +1,8 @@
 //! `fem map`: the lines are where runs say they are.
 
-use crate::support::Case;
+use crate::support::{Case, read_under};
 use fem::Registry;
-use fem::io::scene::{self, Setting};
+use fem::io::scene::Setting;
 use fem::job::{self, Found, Options};
 use serde_json::Value;
 
@@ -16,7 +16,7 @@ fn quick() -> Case {
 fn damaged(case: &Case, mass: f64, velocity: f64) -> bool {
     let set = [("impactor.mass", format!("\"{mass} kg\"")), ("impactor.velocity", format!("\"{velocity} m/s\""))];
     let setting: Setting = set.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-    let scene = scene::read_with(&case.folder().join("plate/scene.toml"), &setting).unwrap();
+    let scene = read_under(&case.folder().join("plate/scene.toml"), &setting);
     let done = job::run(&scene, &Registry::standard(), &Options::default(), &mut ()).unwrap();
     let Found::Impact(found) = done.found else { panic!("an impact") };
     !found.outcome.events.is_empty()

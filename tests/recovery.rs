@@ -4,7 +4,7 @@ use crate::support::{plate, root};
 use fem::core::element::{Cell, Element, ElementError, ElementInfo, Part, Point, Scratch, form};
 use fem::core::recovery::Recovery;
 use fem::core::window::{Windows, own};
-use fem::io::scene::{self, Setting};
+use fem::io::scene;
 use fem::{Model, Registry};
 use std::fs;
 
@@ -65,7 +65,7 @@ fn coefficients_and_means_of_strains_have_one_stress() {
              failure = { criteria = [\"puck\"] }\n",
         )
         .mesh_bytes(fs::read(root().join("tests/data/meshes/mixed.msh")).unwrap());
-    let written = scene::read_with(&case.folder().join(case.write()), &Setting::default()).unwrap();
+    let written = scene::read(&case.folder().join(case.write())).unwrap();
     let model = Model::new(&written, &Registry::standard()).unwrap();
     let Model { plate, element, .. } = &model;
     let quads = 0..plate.plane.quads.len();

@@ -1,7 +1,7 @@
 //! Runs the command on variations of the examples.
 
 use fem::io::plot::{self, Style};
-use fem::io::scene::Scene;
+use fem::io::scene::{self, Scene, Setting};
 use fem::job::{self, Finished, Found, ImpactFound, Options};
 use fem::{Error, Model, Registry};
 use serde_json::Value;
@@ -224,6 +224,12 @@ impl Done {
         assert_eq!(self.status, 0, "{self:#?}");
         self
     }
+}
+
+/// The scene in the file `path` with other keys.
+#[track_caller]
+pub(crate) fn read_under(path: &Path, setting: &Setting) -> Scene {
+    scene::under(&scene::read(path).unwrap().source, setting).unwrap()
 }
 
 /// Runs `fem` with `arguments` in `folder`.

@@ -1,8 +1,8 @@
 //! `fem run --set` and `fem sweep`: a row is a run.
 
-use crate::support::{Case, fem};
+use crate::support::{Case, fem, read_under};
 use fem::Registry;
-use fem::io::scene::{self, Setting};
+use fem::io::scene::Setting;
 use fem::job::{self, Found, Options};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -56,7 +56,7 @@ fn rows_are_runs_to_the_bit() {
             ("contact.beta".to_owned(), row["contact.beta"].clone()),
         ]
         .into();
-        let scene = scene::read_with(&path, &setting).unwrap();
+        let scene = read_under(&path, &setting);
         let done = job::run(&scene, &Registry::standard(), &Options::default(), &mut ()).unwrap();
         let Found::Impact(found) = done.found else { panic!("an impact") };
         let impact = &found.summary.impact[0];

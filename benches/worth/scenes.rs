@@ -72,7 +72,7 @@ fn setting(of: &[(&str, &str)]) -> Setting {
 
 /// All statements of a variant of an example, of which the finer runs are in `known`.
 pub(crate) fn statements((name, variant): (&str, Variant), known: &mut Vec<(String, RunRecord)>) -> Vec<Statement> {
-    let (path, registry) = (example(name), Registry::standard());
+    let (scene, registry) = (scene::read(&example(name)).unwrap(), Registry::standard());
     let own = setting(variant.1);
     // What makes another plate, and not the same one less well.
     let kind: Vec<_> = variant
@@ -86,14 +86,14 @@ pub(crate) fn statements((name, variant): (&str, Variant), known: &mut Vec<(Stri
         fine.extend(kind.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())));
         let shell = kind.iter().any(|(_, value)| value.contains("mitc4"));
         fine.insert("laminate.layers".to_owned(), if shell { "1" } else { "4" }.to_owned());
-        let step = scene::read(&path).unwrap().impact().unwrap().march.step.value;
+        let step = scene.impact().unwrap().march.step.value;
         fine.insert("march.step".to_owned(), format!("'{:e} s'", 0.5 * step));
-        known.push((key, RunRecord::of(&path, &fine, &registry, &mut ()).unwrap()));
+        known.push((key, RunRecord::of(&scene.source, &fine, &registry, &mut ()).unwrap()));
         known.len() - 1
     });
     let finer = &known[finer].1;
-    let run = RunRecord::of(&path, &own, &registry, &mut ()).unwrap();
-    let found = job::run(&scene::read_with(&path, &own).unwrap(), &registry, &Options::default(), &mut ()).unwrap();
+    let run = RunRecord::of(&scene.source, &own, &registry, &mut ()).unwrap();
+    let found = job::run(&scene::under(&scene.source, &own).unwrap(), &registry, &Options::default(), &mut ()).unwrap();
     let Found::Impact(impact) = found.found else { return Vec::new() };
     let said: Option<Differences> = impact.outcome.accuracy.results();
     let results: [Result; 4] = [

@@ -7,8 +7,7 @@ import json
 import os
 import re
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager, nullcontext
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Union, cast
 
@@ -146,10 +145,7 @@ class Scene:
         folder it leaves a checkpoint, from which ``resume`` goes on.
         """
         own = self._asked_for(criteria, laws)
-        asked = accuracy is not None or "accuracy" in self
-        # The search for an accuracy reads the scene again and again.
-        with self._as_file() if asked else nullcontext(self) as scene:
-            return scene._compute(None, folder, resume, threads, progress, own, accuracy)
+        return self._compute(None, folder, resume, threads, progress, own, accuracy)
 
     def plate(self, *, criteria: Iterable[Criterion] = (), laws: Iterable[Law] = (), threads: int = 1) -> Plate:
         """Reduce the plate of the scene and keep it for many impacts: :meth:`Plate.impact` marches them alone.
@@ -234,7 +230,7 @@ class Scene:
         """
         if resume and folder is None:
             raise ValueError("to resume, name the folder of the study that was stopped")
-        with tempfile.TemporaryDirectory() as temporary, self._as_file() as scene:
+        with tempfile.TemporaryDirectory() as temporary:
             where = Path(temporary) / "study" if folder is None else Path(folder)
             asked: _native.AskedOfStudy = {
                 "axes": list(axes),
@@ -245,7 +241,7 @@ class Scene:
                 "progress": progress,
                 "own": self._asked_for(criteria, laws),
             }
-            document, text, kept = scene._native.study(asked)
+            document, text, kept = self._native.study(asked)
             kept_by = None if kept is None else Scene(_native.Scene.parse(kept, self.name))
             return StudyResult(where, (json.loads(document), text, kept_by), keep=folder is not None)
 
@@ -306,23 +302,6 @@ class Scene:
         import html
 
         return f"<pre>{html.escape(self.text)}</pre>"
-
-    @contextmanager
-    def _as_file(self) -> Iterator[Scene]:
-        """Lend the scene as one that lies in a file."""
-        if self._is_file():
-            yield self
-            return
-        with tempfile.TemporaryDirectory() as temporary:
-            path = Path(temporary) / "scene.toml"
-            self.save(path)
-            yield Scene.load(path)
-
-    def _is_file(self) -> bool:
-        try:
-            return Path(self.name).read_text(encoding="utf-8") == self.text
-        except OSError:
-            return False
 
     def _compute(
         self,

@@ -28,7 +28,7 @@ pub(crate) struct Asked {
     accuracy: Option<f64>,
 }
 
-pub(crate) fn run<'py>(py: Python<'py>, scene: &Scene, path: &Path, asked: Asked) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn run<'py>(py: Python<'py>, scene: &Scene, asked: Asked) -> PyResult<Bound<'py, PyDict>> {
     let Asked { modes, threads, folder, resume, progress, own, accuracy } = asked;
     let registry = registry(&own);
     let results_in = match (folder, resume) {
@@ -40,7 +40,7 @@ pub(crate) fn run<'py>(py: Python<'py>, scene: &Scene, path: &Path, asked: Asked
     let mut options = Options { task, results: results_in, threads, ..Options::default() };
     follow(py, progress.as_ref(), &own, |watch| {
         let raised = match accuracy.or_else(|| scene.accuracy.as_ref().map(|accuracy| accuracy.value)) {
-            Some(asked) if task == Task::Scene => Some(attain(scene, path, &registry, asked, &mut options, watch)?),
+            Some(asked) if task == Task::Scene => Some(attain(scene, &registry, asked, &mut options, watch)?),
             _ => None,
         };
         job::run(raised.as_ref().unwrap_or(scene), &registry, &options, watch)
@@ -67,7 +67,6 @@ pub(crate) fn follow<'py>(
 /// The scene with settings raised until its main results are as exact as is `asked`.
 fn attain(
     scene: &Scene,
-    path: &Path,
     registry: &Registry,
     asked: f64,
     options: &mut Options,
@@ -75,8 +74,8 @@ fn attain(
 ) -> Result<Scene, Error> {
     let model = Model::new(scene, registry)?;
     let watch = RefCell::new(watch);
-    let attained = study::attain((path, scene, &model), registry, asked, None, &mut |_, _| {}, &mut Quiet(&watch))?;
-    let raised = scene::parse(&scene::rewrite(path, &attained.setting)?, path)?;
+    let attained = study::attain((scene, &model), registry, asked, None, &mut |_, _| {}, &mut Quiet(&watch))?;
+    let raised = scene::parse(&scene::rewrite(&scene.source, &attained.setting)?, Path::new(scene.source.name()))?;
     options.attained = Some(attained);
     Ok(raised)
 }

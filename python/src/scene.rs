@@ -98,7 +98,7 @@ impl Scene {
     }
 
     fn run<'py>(&self, py: Python<'py>, asked: Asked) -> PyResult<Bound<'py, PyDict>> {
-        run(py, &self.0, self.path(), asked)
+        run(py, &self.0, asked)
     }
 
     /// Its plate, reduced and kept.
@@ -114,7 +114,7 @@ impl Scene {
     /// Studies what accuracy costs; its document as JSON, its text, and the text of the scene with the cheapest setting that keeps
     /// the tolerance.
     fn study(&self, py: Python<'_>, asked: AskedOfStudy) -> PyResult<(String, String, Option<String>)> {
-        study(py, &self.0, self.path(), asked)
+        study(py, &self.0, asked)
     }
 
     /// What the advisor answers, as JSON.

@@ -10,7 +10,7 @@ use fem::study::{self, Document, Progress, Session};
 use fem::{Error, Model};
 use pyo3::prelude::*;
 use std::cell::RefCell;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// What is asked of a study.
 #[derive(FromPyObject)]
@@ -34,14 +34,9 @@ struct Studied {
     kept_by: Option<String>,
 }
 
-/// Runs the study of the scene in the file `path` into the folder: its document as JSON, its text, and the text of the scene with
+/// Runs the study of the scene into the folder: its document as JSON, its text, and the text of the scene with
 /// the cheapest setting that keeps the tolerance.
-pub(crate) fn study(
-    py: Python<'_>,
-    scene: &Scene,
-    path: &Path,
-    asked: AskedOfStudy,
-) -> PyResult<(String, String, Option<String>)> {
+pub(crate) fn study(py: Python<'_>, scene: &Scene, asked: AskedOfStudy) -> PyResult<(String, String, Option<String>)> {
     let AskedOfStudy { axes, budget, tolerance, folder, resume, progress, own } = asked;
     let registry = registry(&own);
     let raised = raised(&own);
@@ -50,7 +45,7 @@ pub(crate) fn study(
         let model = Model::new(scene, &registry)?;
         let axes = study::axes(scene, &model, &registry, &axes)?;
         let dir = OutputDir::create(&folder)?;
-        let mut session = Session::open(path, &model, &registry, dir, resume)?;
+        let mut session = Session::open(scene, &model, &registry, dir, resume)?;
         let watch = RefCell::new(&mut watch);
         let mut tell = |told: Progress<'_>| {
             if let Progress::Runs { share, .. } = told {
@@ -65,7 +60,7 @@ pub(crate) fn study(
         let all: Vec<usize> = (0..report.asked.len()).collect();
         let cheapest = tolerance.and_then(|tolerance| report.cheapest(&all, tolerance));
         let setting = cheapest.map(|row| &row.level.setting);
-        let kept_by = setting.map(|setting| scene::rewrite(path, setting)).transpose()?;
+        let kept_by = setting.map(|setting| scene::rewrite(&scene.source, setting)).transpose()?;
         session.dir().remove_older()?;
         let document = json(&Document::new(&report, setting, session.dir().path()));
         Ok(document.map(|document| Studied { document, text: study::text(&report), kept_by }))

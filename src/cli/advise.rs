@@ -1,20 +1,19 @@
 //! `fem advise`.
 
-use super::{Console, Format, read_scene};
+use super::{Console, Format, SceneFile};
 use crate::advise::{self, Advice};
 use crate::effect::Answer;
 use crate::model::Model;
 use crate::registry::Registry;
 use clap::Args;
 use serde::Serialize;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 #[command(after_help = "Example: fem advise coupon/scene.toml")]
 pub(super) struct Arguments {
-    /// Scene file (TOML) of an impact.
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneFile,
     #[command(flatten)]
     threads: super::Threads,
     #[command(flatten)]
@@ -54,7 +53,7 @@ struct Document<'a> {
 }
 
 pub(super) fn advise(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
-    let model = read_scene(&arguments.scene, &[]).and_then(|scene| Model::new(scene, registry))?;
+    let model = arguments.scene.read().and_then(|scene| Model::new(scene, registry))?;
     let all = advise::advise(&model, arguments.threads.count()).inspect_err(|_| console.warn(&model.warnings))?;
     let title = &model.origin.title;
     let data = Document { title, impact: all.iter().map(Said::from).collect(), warnings: &model.warnings };

@@ -1,6 +1,6 @@
 //! `fem check`.
 
-use super::{Console, Format, read_scene};
+use super::{Console, Format, SceneFile};
 use crate::advise;
 use crate::analyses::assembled::{self, Substructures};
 use crate::analyses::impact::{self, Sizes};
@@ -20,7 +20,6 @@ use fem_io::scene::{self, Explained};
 use serde::Serialize;
 use std::fmt::{self, Display, Write as _};
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
@@ -28,12 +27,8 @@ use std::process::ExitCode;
     after_help = "Examples:\n  fem check coupon/scene.toml\n  fem check coupon/scene.toml --full\n  fem check coupon/scene.toml --explain | less"
 )]
 pub(super) struct Arguments {
-    /// Scene file (TOML), or `-` for standard input; its mesh is looked for beside it.
-    scene: PathBuf,
-    /// Sets a key of the scene, for example impactor.velocity=2 or 'laminate.plies=[0/90]4s'; a number without unit has that of
-    /// the scene. May be given again for other keys
-    #[arg(long, value_name = "KEY=VALUE", value_parser = super::assignment)]
-    set: Vec<super::Assignment>,
+    #[command(flatten)]
+    scene: SceneFile,
     /// Assembles and reduces the plate as a run does: whether supports hold it, what the advisor answers, frequencies, the longest
     /// stable step. It takes seconds, of large plates more.
     #[arg(long)]
@@ -258,7 +253,7 @@ fn unseen(model: &Model) -> Vec<&'static str> {
 }
 
 fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Result<Checked, Error> {
-    let scene = read_scene(&arguments.scene, &arguments.set)?;
+    let scene = arguments.scene.read()?;
     let keys = if arguments.explain {
         scene::explain(&scene.source, &|kind| registry.choices(kind), &registry.effect_keys())?
     } else {

@@ -1,7 +1,7 @@
 //! `fem matrices`.
 
 use super::run::default_folder;
-use super::{Console, Format, read_scene};
+use super::{Console, Format, SceneFile};
 use crate::analyses::matrices;
 use crate::error::Error;
 use crate::job;
@@ -17,8 +17,8 @@ use std::process::ExitCode;
 #[derive(Debug, Args)]
 #[command(after_help = "Example: fem matrices coupon/scene.toml --out matrices")]
 pub(super) struct Arguments {
-    /// Scene file (TOML) of any analysis.
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneFile,
     /// Folder of the results [default: results/<folder of the scene>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -41,9 +41,9 @@ pub(super) fn matrices(registry: &Registry, arguments: &Arguments, console: &Con
 }
 
 fn write(registry: &Registry, arguments: &Arguments) -> Result<(usize, OutputDir), Error> {
-    let model = Model::new(read_scene(&arguments.scene, &[])?, registry)?;
+    let model = Model::new(arguments.scene.read()?, registry)?;
     let model = model.whole()?;
-    let dir = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, ""));
+    let dir = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene.path, ""));
     let dir = job::folder::results(&dir, &model.origin.source)?;
     matrices::write(&dir, model, NonZeroUsize::MIN)?;
     Ok((model.constraints.ndof(), dir))

@@ -1,6 +1,6 @@
 //! `fem mesh`.
 
-use super::{Console, Format, read_scene};
+use super::{Console, Format, SceneFile};
 use crate::error::Error;
 use crate::model;
 use crate::output::mesh::MeshSummary;
@@ -76,7 +76,7 @@ fn read(file: &Path, metres: f64) -> Result<(Examined, Vec<[f64; 2]>), Error> {
     if file.as_os_str() != "-" && file.extension().is_none_or(|extension| extension != "toml") {
         return Ok((meshes::examine(file, metres, &[])?, Vec::new()));
     }
-    let scene = read_scene(file, &[])?;
+    let scene = SceneFile { path: file.to_owned(), set: Vec::new() }.read()?;
     let examined = model::examined_mesh(&scene)?;
     let mesh = &examined.read.mesh;
     let impactors = scene.impact().map_or(&[][..], |impact| &impact.impactors);

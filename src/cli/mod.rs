@@ -34,7 +34,7 @@ use fem_io::scene::{self, Scene};
 use std::ffi::OsString;
 use std::io::Read;
 use std::num::NonZeroUsize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Threads that are more than any machine of today has.
@@ -90,6 +90,30 @@ fn assignment(text: &str) -> Result<Assignment, String> {
     match text.split_once('=') {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().to_owned(), value.trim().to_owned())),
         _ => Err("write a key of the scene and its value: 'impactor.velocity=2 m/s'".into()),
+    }
+}
+
+/// The scene of a command.
+#[derive(Debug, clap::Args)]
+struct SceneFile {
+    /// Scene file (TOML), or `-` for standard input; its mesh is looked for beside it
+    #[arg(value_name = "SCENE")]
+    path: PathBuf,
+    /// Sets a key of the scene, for example impactor.velocity=2 or 'laminate.plies=[0/90]4s'; a number without unit has that of
+    /// the scene. May be given again for other keys
+    #[arg(long, value_name = "KEY=VALUE", value_parser = assignment)]
+    set: Vec<Assignment>,
+}
+
+impl SceneFile {
+    /// It with what is `set` in it; the mesh of one on standard input is looked for in the working folder.
+    fn read(&self) -> Result<Scene, Error> {
+        if self.path.as_os_str() != "-" {
+            return Ok(scene::read_words(&self.path, &self.set)?);
+        }
+        let mut text = String::new();
+        std::io::stdin().take(MOST_BYTES).read_to_string(&mut text).map_err(Error::Input)?;
+        Ok(scene::parse_words(&text, Path::new("standard input"), &self.set)?)
     }
 }
 
@@ -247,15 +271,4 @@ fn dispatch(registry: &Registry, command: &Command, console: &Console) -> miette
         Command::Completions(a) => manual::completions(a, console),
         Command::Man(a) => manual::man(a, console),
     }
-}
-
-/// The scene in the file `path`, or on standard input where that is `-`, with what is `set` over its keys; its mesh is then looked
-/// for in the working folder.
-fn read_scene(path: &Path, set: &[Assignment]) -> Result<Scene, Error> {
-    if path.as_os_str() != "-" {
-        return Ok(scene::read_words(path, set)?);
-    }
-    let mut text = String::new();
-    std::io::stdin().take(MOST_BYTES).read_to_string(&mut text).map_err(Error::Input)?;
-    Ok(scene::parse_words(&text, Path::new("standard input"), set)?)
 }

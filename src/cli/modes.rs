@@ -1,7 +1,7 @@
 //! `fem modes`.
 
 use super::run::{compute, default_folder};
-use super::{Console, Format, read_scene};
+use super::{Console, Format, SceneFile};
 use crate::job::{Options, Results, Task};
 use crate::registry::Registry;
 use clap::Args;
@@ -12,8 +12,8 @@ use std::process::ExitCode;
 #[derive(Debug, Args)]
 #[command(after_help = "Example: fem modes coupon/scene.toml --count 20")]
 pub(super) struct Arguments {
-    /// Scene file (TOML) of any analysis.
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneFile,
     /// How many modes [default: what the scene says, or 10]
     #[arg(long, value_name = "N")]
     count: Option<NonZeroUsize>,
@@ -27,8 +27,8 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn modes(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
-    let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, "-modes"));
+    let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene.path, "-modes"));
     let (task, results) = (Task::Modes(arguments.count), Results::Folder(folder));
     let options = Options { task, results, threads: arguments.threads.count(), ..Options::default() };
-    compute(registry, &read_scene(&arguments.scene, &[])?, options, "", arguments.format, console)
+    compute(registry, &arguments.scene.read()?, options, "", arguments.format, console)
 }

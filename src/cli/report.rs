@@ -68,7 +68,7 @@ fn of_folder(registry: &Registry, folder: &Path) -> miette::Result<WhatIf> {
     let cost = read("cost.json")?.unwrap_or_default();
     let was = |key: &str| cost["provenance"][key].as_str().unwrap_or_default().to_owned();
     let path = Path::new(&was("folder")).join(was("scene"));
-    let scene = scene::parse_under(&scene, &path, &scene::Setting::new())?;
+    let scene = scene::parse(&scene, &path)?;
     let (what_if, peak) = job::what_if(&scene, registry, std::num::NonZeroUsize::MIN)?;
     let before = summary["impact"]["peak_force_N"].as_f64();
     if let Some((peak, before)) = peak.zip(before).filter(|(peak, before)| (peak - before).abs() > CHANGED * before) {

@@ -2,7 +2,7 @@
 
 use super::progress::Progress;
 use super::signals::Signals;
-use super::{Console, Format, console, read_scene};
+use super::{Console, Format, SceneFile, console};
 use crate::cost::{Attained, Cost, Provenance};
 use crate::error::Error;
 use crate::job::{self, Finished, Follow, Found, Options, Results};
@@ -12,7 +12,7 @@ use crate::registry::Registry;
 use crate::study;
 use clap::Args;
 use fem_core::plugin::Dimension;
-use fem_io::scene::{self, Scene};
+use fem_io::scene::{self, Scene, Setting};
 use miette::miette;
 use serde::Serialize;
 use std::ops::ControlFlow;
@@ -22,15 +22,11 @@ use std::process::ExitCode;
 #[derive(Debug, Args)]
 #[command(after_help = "Example: fem run coupon/scene.toml --threads 4")]
 pub(super) struct Arguments {
-    /// Scene file (TOML), or `-` for standard input; its mesh is looked for beside it.
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneFile,
     /// Folder of the results [default: results/<folder of the scene>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Sets a key of the scene, for example impactor.velocity=2 or 'laminate.plies=[0/90]4s'; a number without unit has that of
-    /// the scene. May be given again for other keys
-    #[arg(long, value_name = "KEY=VALUE", value_parser = super::assignment)]
-    set: Vec<super::Assignment>,
     /// Continues from the checkpoint in the folder of the results: a march that was stopped or killed, or one with a
     /// later
     /// `march.end`. The files are those of a run in one piece.
@@ -59,12 +55,11 @@ struct Document<'a> {
 }
 
 pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
-    let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene, ""));
+    let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene.path, ""));
     let results = if arguments.resume { Results::Resumed(folder.clone()) } else { Results::Folder(folder.clone()) };
     let again = if arguments.resume { "" } else { " --resume" };
     let mut options = Options { results, threads: arguments.threads.count(), ..Options::default() };
-    let path = &arguments.scene;
-    let scene = read_scene(path, &arguments.set)?;
+    let scene = arguments.scene.read()?;
     let asked = arguments.accuracy.or_else(|| scene.accuracy.as_ref().map(|accuracy| accuracy.value));
     let Some(asked) = asked else {
         if arguments.budget.is_some() {
@@ -73,26 +68,23 @@ pub(super) fn run(registry: &Registry, arguments: &Arguments, console: &Console)
         }
         return compute(registry, &scene, options, again, arguments.format, console);
     };
-    if path.as_os_str() == "-" {
-        let help = "give the scene as a file: the search for an accuracy reads it again and again";
-        return Err(miette!(help = help, "an accuracy cannot be asked for of a scene on standard input"));
-    }
-    if !arguments.set.is_empty() {
-        let help = "write the keys into the scene: the search for an accuracy reads it again and again";
-        return Err(miette!(help = help, "an accuracy cannot be asked for beside `--set`"));
-    }
     if arguments.resume {
         // What was raised for the accuracy lies there; whether the rest is the same is for the checkpoint to say.
         let raised = study::raised(&scene::read(&folder.join(report::SCENE))?);
-        let scene = scene::parse(&scene::rewrite(path, &raised)?, path)?;
+        let scene = with(&scene, &raised)?;
         return compute(registry, &scene, options, again, arguments.format, console);
     }
     let attained = attain(registry, arguments, &scene, asked, console)?;
     let kept = attained.kept();
-    let scene = scene::parse(&scene::rewrite(path, &attained.setting)?, path)?;
+    let scene = with(&scene, &attained.setting)?;
     options.attained = Some(attained);
     let code = compute(registry, &scene, options, again, arguments.format, console)?;
     Ok(if kept { code } else { ExitCode::FAILURE })
+}
+
+/// The scene with `setting` in it, which need not be searched for again.
+fn with(scene: &Scene, setting: &Setting) -> Result<Scene, Error> {
+    Ok(scene::parse(&scene::rewrite(&scene.source, setting)?, Path::new(scene.source.name()))?)
 }
 
 /// Raises the settings of `scene`.
@@ -109,8 +101,7 @@ fn attain(
         let so_far = error.map_or(String::new(), |error| format!("{:.2} % so far, ", 1e2 * error));
         progress.message(&format!("{so_far}now {what}"));
     };
-    let what = (arguments.scene.as_path(), scene, &model);
-    let found = study::attain(what, registry, asked, arguments.budget, &mut tell, &mut ())?;
+    let found = study::attain((scene, &model), registry, asked, arguments.budget, &mut tell, &mut ())?;
     progress.finish();
     Ok(found)
 }

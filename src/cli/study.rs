@@ -1,7 +1,7 @@
 //! `fem study`.
 
 use super::run::default_folder;
-use super::{Console, Format};
+use super::{Console, Format, SceneFile};
 use crate::error::Error;
 use crate::job;
 use crate::model::Model;
@@ -9,16 +9,15 @@ use crate::registry::Registry;
 use crate::study::{self, ErrorBar, Progress, Report, Session};
 use clap::Args;
 use fem_core::plugin::Dimension;
-use fem_io::scene::{self, Setting};
-use miette::miette;
+use fem_io::scene::{self, Scene, Setting};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 #[command(after_help = "Example: fem study coupon/scene.toml --axis mesh,step --budget 60s --tolerance 1%")]
 pub(super) struct Arguments {
-    /// Scene file (TOML)
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneFile,
     /// What is varied, of mesh, layers, reduction, step, geometry, z-derivatives, quadrature, reductions, integrators,
     /// element, mass, contact, window and the scene's own axes [default: what the scene says, or all that fit it]
     #[arg(long, value_delimiter = ',', value_name = "AXES")]
@@ -42,22 +41,15 @@ pub(super) struct Arguments {
 
 pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let format = arguments.format;
-    let path = &arguments.scene;
-    if path.as_os_str() == "-" {
-        return Err(miette!(
-            help = "give the scene as a file",
-            "a study reads its scene again and again, and standard input once"
-        ));
-    }
-    let scene = scene::read(path)?;
+    let scene = arguments.scene.read()?;
     let model = Model::new(&scene, registry)?;
-    let folder = arguments.out.clone().unwrap_or_else(|| default_folder(path, "-study"));
+    let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene.path, "-study"));
     let axes = study::axes(&scene, &model, registry, &arguments.axis)?;
     for name in arguments.axis.iter().filter(|name| axes.iter().all(|axis| axis.name != **name)) {
         console.say(format, || format!("  the axis `{name}` is left out: this scene has no two levels of it\n"));
     }
     let dir = job::folder::results(&folder, &model.origin.source).map_err(Error::from)?;
-    let mut session = Session::open(path, &model, registry, dir, arguments.resume)?;
+    let mut session = Session::open(&scene, &model, registry, dir, arguments.resume)?;
     let progress = console.progress("study", "study {bar:40} {percent:>3} %  {msg}");
     let found = session.found();
     if found > 0 {
@@ -82,7 +74,7 @@ pub(super) fn study(registry: &Registry, arguments: &Arguments, console: &Consol
     console.say(format, || study::text(&report));
     let cheapest = arguments.tolerance.and_then(|tolerance| cheapest(&report, tolerance));
     if let Some(setting) = cheapest {
-        write_scene(&session, arguments, setting)?;
+        write_scene(&session, &scene, setting)?;
     }
     session.dir().remove_older().map_err(Error::from)?;
     console.say(format, || describe_cheapest(&session, arguments.tolerance, cheapest, &report));
@@ -99,8 +91,8 @@ fn cheapest(report: &Report, tolerance: f64) -> Option<&Setting> {
 }
 
 /// Writes the scene with `setting`.
-fn write_scene(session: &Session<'_>, arguments: &Arguments, setting: &Setting) -> Result<(), Error> {
-    let text = scene::rewrite(&arguments.scene, setting)?;
+fn write_scene(session: &Session<'_>, scene: &Scene, setting: &Setting) -> Result<(), Error> {
+    let text = scene::rewrite(&scene.source, setting)?;
     Ok(session.dir().write("scene.toml", |out| out.write_all(text.as_bytes()))?)
 }
 

@@ -20,7 +20,7 @@ use crate::model::Model;
 use crate::registry::Registry;
 use crate::sweep::{CaseFigures, Marcher, Variation};
 use fem_io::files::OutputDir;
-use fem_io::scene::{Scene, Setting, Written, parse_under};
+use fem_io::scene::{Scene, Setting, Written, under};
 use interpolant::Interpolant;
 use search::{Lines, Search};
 use serde::{Deserialize, Serialize};
@@ -137,9 +137,8 @@ impl<'a> BorderMap<'a> {
                 )));
             }
         }
-        let source = &scene.source;
         let set = fixed.iter().map(|(key, value)| (key.clone(), written.toml(key, value))).collect();
-        let judged = Model::new(parse_under(source.text(), Path::new(source.name()), &set)?, registry)?;
+        let judged = Model::new(under(&scene.source, &set)?, registry)?;
         if judged.criteria.is_empty() && judged.threshold.is_none() {
             let message = "a map needs a criterion, and the scene has none".to_owned();
             let help = "name one in `failure.criteria`, and leave `effects.damage` on";
@@ -160,8 +159,7 @@ impl<'a> BorderMap<'a> {
         let strips = self.list.as_ref().map_or(1, |(_, values)| values.len());
         for (strip, share) in (0..strips).flat_map(|strip| [(strip, 0.0), (strip, 1.0)]) {
             let values: Vec<f64> = self.axes.iter().map(|axis| axis.value(share)).collect();
-            let source = &self.scene.source;
-            parse_under(source.text(), Path::new(source.name()), &self.setting(strip, &values))?;
+            under(&self.scene.source, &self.setting(strip, &values))?;
         }
         Ok(())
     }

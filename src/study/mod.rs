@@ -167,6 +167,6 @@ fn at_limit(session: &Session<'_>, setting: &Setting) -> Result<Setting, Error> 
         setting.insert(STEP.to_owned(), seconds(step));
         setting
     };
-    let longest = record::longest_step(session.path(), &with(TINY), session.registry())?;
+    let longest = record::longest_step(session.source(), &with(TINY), session.registry())?;
     Ok(with(AT_LIMIT * longest))
 }

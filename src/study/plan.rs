@@ -245,7 +245,7 @@ impl Planner {
     /// Sizes under the setting of `level`.
     fn size(&self, session: &Session<'_>, level: &Level) -> Result<Size, String> {
         let size = || -> Result<Size, Error> {
-            let scene = scene::read_with(session.path(), &level.setting)?;
+            let scene = scene::under(session.source(), &level.setting)?;
             Ok(predict::size(&Model::new(scene, session.registry())?, &self.base))
         };
         let refined = level.setting.get("mesh.refine").and_then(|n| n.parse::<i32>().ok()).unwrap_or(0);

@@ -10,10 +10,9 @@ use crate::forecast::{PHASES, Size, seconds_per_phase};
 use crate::job::{self, Finished, Follow, Found, Options};
 use crate::model::Model;
 use crate::registry::Registry;
-use fem_io::scene::{self, Setting};
+use fem_io::scene::{self, SceneSource, Setting};
 use serde::{Deserialize, Serialize};
 use std::num::NonZeroUsize;
-use std::path::Path;
 
 /// What a run gave and what it cost.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -30,16 +29,21 @@ pub struct RunRecord {
 }
 
 impl RunRecord {
-    /// Runs `path` with `setting` over its keys; `follow` is heard before the run, whatever it is, and at every step of a march.
+    /// Runs the scene of `source` with `setting` over its keys; `follow` is heard before the run, whatever it is, and at every step of a march.
     ///
     /// # Errors
     /// Those of a run, and a march that stopped before its end.
-    pub fn of(path: &Path, setting: &Setting, registry: &Registry, follow: &mut dyn Follow) -> Result<Self, Error> {
+    pub fn of(
+        source: &SceneSource,
+        setting: &Setting,
+        registry: &Registry,
+        follow: &mut dyn Follow,
+    ) -> Result<Self, Error> {
         if follow.marched(0.0).is_break() {
             return Err(Error::Cancelled { time: 0.0, share: 0.0 });
         }
         cost::forget_peak_memory();
-        let scene = scene::read_with(path, setting)?;
+        let scene = scene::under(source, setting)?;
         let Finished { model, found, cost, .. } = job::run(&scene, registry, &Options::default(), follow)?;
         let (size, figures, force) = match &found {
             Found::Impact(own) => {
@@ -95,7 +99,7 @@ impl RunRecord {
 ///
 /// # Errors
 /// Those of a preparation.
-pub(super) fn longest_step(path: &Path, setting: &Setting, registry: &Registry) -> Result<f64, Error> {
-    let model = advise::decided(Model::new(scene::read_with(path, setting)?, registry)?, NonZeroUsize::MIN)?;
+pub(super) fn longest_step(source: &SceneSource, setting: &Setting, registry: &Registry) -> Result<f64, Error> {
+    let model = advise::decided(Model::new(scene::under(source, setting)?, registry)?, NonZeroUsize::MIN)?;
     Ok(impact::prepare(&model, NonZeroUsize::MIN)?.sizes.longest_step)
 }

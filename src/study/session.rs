@@ -7,8 +7,8 @@ use crate::job::{Follow, folder};
 use crate::model::Model;
 use crate::registry::Registry;
 use fem_io::files::OutputDir;
-use fem_io::scene::Setting;
-use std::path::{Path, PathBuf};
+use fem_io::scene::{Scene, SceneSource, Setting};
+use std::sync::Arc;
 
 /// Name of the file in the folder of the study.
 const FILE: &str = "study.bin";
@@ -19,7 +19,7 @@ type Kept = (Setting, Result<RunRecord, String>);
 /// The runs of a study of one scene; each is saved as soon as it is done, none is made twice.
 #[derive(Debug)]
 pub struct Session<'a> {
-    path: PathBuf,
+    source: Arc<SceneSource>,
     registry: &'a Registry,
     dir: OutputDir,
     identity: Keys,
@@ -29,12 +29,12 @@ pub struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// A session on the scene `path`, whose model is `model`, in `dir`; with `resume` it continues one that lies there.
+    /// A session on `scene`, whose model is `model`, in `dir`; with `resume` it continues one that lies there.
     ///
     /// # Errors
     /// With `resume`, no study in the folder, a damaged one or one of another scene.
     pub fn open(
-        path: &Path,
+        scene: &Scene,
         model: &Model,
         registry: &'a Registry,
         dir: OutputDir,
@@ -50,7 +50,7 @@ impl<'a> Session<'a> {
         }
         let runs = kept.unwrap_or_default();
         let found = runs.len();
-        Ok(Self { path: path.to_owned(), registry, dir, identity, runs, found })
+        Ok(Self { source: Arc::clone(&scene.source), registry, dir, identity, runs, found })
     }
 
     /// Number of runs that another process has left.
@@ -63,8 +63,8 @@ impl<'a> Session<'a> {
         &self.dir
     }
 
-    pub(super) fn path(&self) -> &Path {
-        &self.path
+    pub(super) fn source(&self) -> &SceneSource {
+        &self.source
     }
 
     pub(super) fn registry(&self) -> &Registry {
@@ -93,7 +93,7 @@ impl<'a> Session<'a> {
         if let Some((_, run)) = self.runs.iter().find(|run| run.0 == *setting) {
             return Ok(run.clone());
         }
-        let run = match RunRecord::of(&self.path, setting, self.registry, follow) {
+        let run = match RunRecord::of(&self.source, setting, self.registry, follow) {
             Err(broken_off @ Error::Cancelled { .. }) => return Err(broken_off),
             run => run.map_err(|why| why.to_string()),
         };

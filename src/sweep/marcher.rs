@@ -8,10 +8,9 @@ use crate::analyses::impact::{self, SharedPlate};
 use crate::error::Error;
 use crate::model::Model;
 use crate::registry::Registry;
-use fem_io::scene::{Scene, SceneSource, Setting, parse_under};
+use fem_io::scene::{Scene, SceneSource, Setting, under};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
@@ -69,7 +68,7 @@ impl<'a> Marcher<'a> {
     }
 
     fn compute(&self, setting: &Setting, stop: &AtomicBool) -> Result<CaseFigures, Error> {
-        let scene = parse_under(self.source.text(), Path::new(self.source.name()), setting)?;
+        let scene = under(&self.source, setting)?;
         let on_plate = self.on_plate(&scene)?;
         let Some((model, plate)) = on_plate else {
             let model = advise::decided(plain(&scene, self.registry)?, NonZeroUsize::MIN)?;

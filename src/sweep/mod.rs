@@ -46,7 +46,7 @@ use crate::job::folder;
 use crate::model::{Model, leaves_plate};
 use crate::registry::Registry;
 use fem_io::files::OutputDir;
-use fem_io::scene::{Sampling, Scene, SceneSource, Setting, Varied, Written, parse_under};
+use fem_io::scene::{Sampling, Scene, SceneSource, Setting, Varied, Written, under};
 use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -190,7 +190,7 @@ impl<'a> Sweep<'a> {
             for end in ends {
                 let value = self.written.toml(&axis.key, &axis.variation.at(end));
                 let setting = BTreeMap::from([(axis.key.clone(), value)]);
-                parse_under(self.source.text(), Path::new(self.source.name()), &setting)?;
+                under(&self.source, &setting)?;
             }
         }
         Ok(())
@@ -230,7 +230,7 @@ impl<'a> Sweep<'a> {
         if one_plate || cores == NonZeroUsize::MIN {
             return Ok(cores);
         }
-        let scene = parse_under(self.source.text(), Path::new(self.source.name()), &BTreeMap::new())?;
+        let scene = under(&self.source, &BTreeMap::new())?;
         let memory = expected_memory(&Model::new(&scene, self.registry)?)?;
         let fit = memory.and_then(|plate| cost::how_many_fit(plate.bytes())).and_then(NonZeroUsize::new);
         Ok(fit.map_or(cores, |fit| fit.min(cores)))

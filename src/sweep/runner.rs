@@ -11,12 +11,11 @@ use crate::error::Error;
 use crate::model::{Model, leaves_march, leaves_plate};
 use crate::registry::Registry;
 use cpu_time::ThreadTime;
-use fem_io::scene::{Scene, parse_under};
+use fem_io::scene::{Scene, under};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
@@ -186,7 +185,7 @@ fn compute(sweep: &Sweep<'_>, shared: Shared<'_>, stop: &AtomicBool) -> Result<C
         }
         marched = shared.alike.marched.lock().unwrap_or_else(PoisonError::into_inner);
     }
-    let scene = parse_under(sweep.source.text(), Path::new(sweep.source.name()), &sweep.setting(shared.case))?;
+    let scene = under(&sweep.source, &sweep.setting(shared.case))?;
     let Some((model, plate)) = on_shared_plate(sweep, shared, &scene)? else {
         drop(marched);
         let model = advise::decided(plain(&scene, sweep.registry)?, NonZeroUsize::MIN)?;

@@ -110,6 +110,6 @@ fn a_scene_on_standard_input() {
     assert_eq!(case.read("out/scene.toml"), text);
     let wrong = run(&["check", "-"], &text.replace("2.49 kg", "2.49"));
     assert!(wrong.status == 1 && wrong.stderr.contains("standard input:"), "{wrong:#?}");
-    let again = run(&["study", "-"], &text);
+    let again = run(&["map", "-"], &text);
     assert!(again.status == 1 && again.stderr.contains("give the scene as a file"), "{again:#?}");
 }

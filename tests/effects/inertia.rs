@@ -1,7 +1,7 @@
 //! A plate without inertia: at rest under the contact forces at every instant.
 
 use super::{Struck, deflection, difference, force};
-use crate::support::{impact_of, root};
+use crate::support::{impact_of, read_under, root};
 use fem::analyses::impact;
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
@@ -186,7 +186,7 @@ fn a_large_mass_needs_no_inertia_of_the_plate() {
         ];
         let setting = setting.into_iter().map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
         let path = root().join("examples/as4-3502-16ply-50mm/scene.toml");
-        let model = Model::new(scene::read_with(&path, &setting).unwrap(), &Registry::standard()).unwrap();
+        let model = Model::new(read_under(&path, &setting), &Registry::standard()).unwrap();
         let outcome = impact::march(impact::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap();
         assert_eq!(outcome.stopped, None);
         outcome.history

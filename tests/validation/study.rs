@@ -4,7 +4,7 @@ use super::impact::{KARAS, SUN_AND_CHEN, Strike, on_steel, on_ten_plies};
 use super::pagano::{Mesh, THREE};
 use super::patch;
 use super::scene::{Plate, Row as Exact, isotropic, reference};
-use crate::support::{Case, fem, root};
+use crate::support::{Case, fem, read_under, root};
 use fem::analyses::impact;
 use fem::io::files::OutputDir;
 use fem::io::scene::{self, Setting};
@@ -31,7 +31,7 @@ impl Studied {
         let scene = scene::read(&path).unwrap();
         let model = Model::new(&scene, &registry).unwrap();
         let out = OutputDir::create(folder.path().join("study")).unwrap();
-        let mut session = Session::open(&path, &model, &registry, out, false).unwrap();
+        let mut session = Session::open(&scene, &model, &registry, out, false).unwrap();
         let names: Vec<String> = axes.iter().map(|&axis| axis.to_owned()).collect();
         let axes = fem::study::axes(&scene, &model, &registry, &names).unwrap();
         let report = study(&mut session, &scene, &model, &axes, None, &mut |_| (), &mut ()).unwrap();
@@ -44,7 +44,7 @@ impl Studied {
 
     /// The history of a run.
     fn history(&self, setting: &Setting) -> Vec<HistoryRow> {
-        let model = Model::new(scene::read_with(&self.path(), setting).unwrap(), &Registry::standard()).unwrap();
+        let model = Model::new(read_under(&self.path(), setting), &Registry::standard()).unwrap();
         impact::march(impact::prepare(&model, NonZeroUsize::MIN).unwrap(), |_| {}).unwrap().history
     }
 
@@ -318,7 +318,7 @@ fn keeps_a_percent(case: &Case, axes: &str, layers: &str) {
         ("march.step", "\"0.05 us\""),
     ];
     let setting: Setting = finer.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-    let text = scene::rewrite(&case.folder().join("plate/scene.toml"), &setting).unwrap();
+    let text = scene::rewrite(&scene::read(&case.folder().join("plate/scene.toml")).unwrap().source, &setting).unwrap();
     std::fs::write(case.folder().join("finer.toml"), text).unwrap();
     fem(case.folder(), &["run", "finer.toml", "--out", "finer"]).good();
     for quantity in ["impulse_N_s", "peak_plate_displacement_m"] {

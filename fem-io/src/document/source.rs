@@ -88,6 +88,11 @@ impl SceneSource {
         self.documents[Origin::Scene as usize].name()
     }
 
+    /// The same as a path, in whose folder the files are that it names.
+    pub(crate) fn path(&self) -> &Path {
+        Path::new(self.name())
+    }
+
     /// The text of the scene.
     pub fn text(&self) -> &str {
         self.documents[Origin::Scene as usize].inner()

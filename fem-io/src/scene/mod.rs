@@ -211,7 +211,7 @@ const MODES: Keys = &[key("count", Form::Count(1), "10", "how many of the lowest
 /// # Errors
 /// A file that cannot be read, or as [`parse`].
 pub fn read(path: &Path) -> Result<Scene, SceneError> {
-    read_with(path, &Setting::new())
+    parse(&read_text(path)?, path)
 }
 
 /// Reads a scene from its text; `path` names it in errors, and its folder is where the mesh file is looked for.
@@ -234,20 +234,12 @@ pub fn keys(text: &str) -> Result<BTreeMap<String, String>, SceneError> {
     Ok(keys)
 }
 
-/// As [`read`], with the keys of `setting` laid over those of the scene: how a study varies it.
-///
-/// # Errors
-/// As [`read`], and anything that makes no sense in `setting`.
-pub fn read_with(path: &Path, setting: &Setting) -> Result<Scene, SceneError> {
-    parse_with(&read_text(path)?, path, &setting::text(setting))
-}
-
-/// As [`read_with`], of a text that is read already.
+/// The scene of `source` with the keys of `setting` laid over its own: how studies, sweeps and maps vary it.
 ///
 /// # Errors
 /// As [`parse`], and anything that makes no sense in `setting`.
-pub fn parse_under(text: &str, path: &Path, setting: &Setting) -> Result<Scene, SceneError> {
-    parse_with(text, path, &setting::text(setting))
+pub fn under(source: &SceneSource, setting: &Setting) -> Result<Scene, SceneError> {
+    parse_with(source.text(), source.path(), &setting::text(setting))
 }
 
 /// As [`read`], with `keys` and their values in words over those of the scene: [`parse_words`].

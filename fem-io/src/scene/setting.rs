@@ -1,6 +1,6 @@
 //! Keys laid over those of a scene: by the command line, a study or a sweep.
 
-use super::{AS_WRITTEN, Merged, Scene, parse, parse_with, read_text};
+use super::{AS_WRITTEN, Merged, Scene, parse, parse_with};
 use crate::document::source::{SceneError, SceneSource};
 use crate::materials::LIBRARY;
 use std::collections::BTreeMap;
@@ -108,15 +108,16 @@ pub fn parse_words(text: &str, path: &Path, keys: &[(String, String)]) -> Result
     parse_set(text, path, &keys)
 }
 
-/// The text of the scene `path` with `setting` written into it, and without the accuracy that it asks for, which a setting is to meet.
+/// The text of the scene of `source` with `setting` written into it, and without the accuracy that it asks for, which a setting is to meet.
 /// Comments stay; relative names of files are made absolute, so that the scene can lie anywhere.
 ///
 /// # Errors
-/// A scene that cannot be read, or a setting that does not fit its keys.
-pub fn rewrite(path: &Path, setting: &Setting) -> Result<String, SceneError> {
-    let mut document = write(&read_text(path)?, path, setting)?;
+/// A setting that does not fit its keys.
+pub fn rewrite(source: &SceneSource, setting: &Setting) -> Result<String, SceneError> {
+    let mut document = write(source.text(), source.path(), setting)?;
     document.remove("accuracy");
-    let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned)).unwrap_or_default();
+    let folder =
+        std::path::absolute(source.path()).ok().and_then(|path| path.parent().map(Path::to_owned)).unwrap_or_default();
     let rooted = |item: Option<&mut Item>| {
         if let Some(item) = item
             && let Some(file) = item.as_str()
@@ -234,11 +235,10 @@ mod tests {
 
     #[test]
     fn a_setting_goes_into_the_text() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("scene.toml");
+        let folder = std::env::temp_dir();
+        let path = folder.join("scene.toml");
         let scene = "# What it is.\nmesh = { file = \"plate.msh\", unit = \"mm\" }\n\n[[impactor]]\nmass = \"1 kg\" # heavy\n\n\
                      [reduction]\nmethod = \"guyan\"\ngovernors = 3\n\n[materials.m]\nfile = \"m.toml\"\n";
-        std::fs::write(&path, scene).unwrap();
         let setting = [
             ("mesh.refine", "1"),
             ("impactor.patch_radius", "\"2 mm\""),
@@ -247,8 +247,8 @@ mod tests {
             ("march.step", "\"0.1 us\""),
         ];
         let setting = setting.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
-        let text = rewrite(&path, &setting).unwrap();
-        let root = folder.path().display();
+        let text = rewrite(&SceneSource::new(&path, scene, LIBRARY), &setting).unwrap();
+        let root = folder.display();
         assert_eq!(
             text,
             format!(

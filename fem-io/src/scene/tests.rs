@@ -579,10 +579,8 @@ proptest! {
 /// What the tables of keys call a default is what the reader takes.
 #[test]
 fn defaults_are_those_of_the_reader() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scene.toml");
-    std::fs::write(&path, GOOD).unwrap();
-    let given: Setting = explain(&read(&path).unwrap().source, &|_| Vec::new(), &[])
+    let source = parse(GOOD, Path::new("scene.toml")).unwrap().source;
+    let given: Setting = explain(&source, &|_| Vec::new(), &[])
         .unwrap()
         .into_iter()
         .filter(|key| key.from == "default" && !key.key.contains('['))
@@ -594,7 +592,7 @@ fn defaults_are_those_of_the_reader() {
     }
     // Everything is the same but for where it stands.
     let shown = |setting: &Setting| {
-        let scene = read_with(&path, setting).unwrap();
+        let scene = under(&source, setting).unwrap();
         let EffectsSpec { damage, delamination, named } = &scene.effects;
         let effects = format!("{damage:?} {:?} {}", delamination.as_ref().map(|d| d.value), named.len());
         let bare = Scene { effects: EffectsSpec::default(), keys: BTreeMap::new(), source: Arc::default(), ..scene };

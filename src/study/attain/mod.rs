@@ -14,7 +14,6 @@ use crate::model::Model;
 use crate::registry::Registry;
 use fem_io::scene::{Scene, Setting};
 use search::Search;
-use std::path::Path;
 
 /// Keys that levels of these parts set, beside those of the reduction.
 const RAISED: [&str; 4] = ["mesh.refine", "laminate.layers", STEP, TOLERANCE];
@@ -28,7 +27,7 @@ pub fn raised(found: &Scene) -> Setting {
 /// What a search tells while it runs: what runs now, and the error so far, where it is known.
 pub type TellSearch<'a> = &'a mut dyn FnMut(&str, Option<f64>);
 
-/// Raises mesh, layers of cells, reduction and step of `scene`, in the file `path` and with the model `model`, until the error of
+/// Raises mesh, layers of cells, reduction and step of `scene`, whose model is `model`, until the error of
 /// what a study asks for is at most `asked`; in `budget` seconds of processor time, or in ten minutes of a common machine.
 ///
 /// Every part of the settings is raised by a level at a time, alone, and its levels are judged by what they change:
@@ -47,7 +46,7 @@ pub type TellSearch<'a> = &'a mut dyn FnMut(&str, Option<f64>);
 /// # Errors
 /// A scene that does not run as it is, quantities that are all 0; [`Error::Cancelled`] where `follow` broke the search off.
 pub fn attain(
-    (path, scene, model): (&Path, &Scene, &Model),
+    (scene, model): (&Scene, &Model),
     registry: &Registry,
     asked: f64,
     budget: Option<f64>,
@@ -58,7 +57,7 @@ pub fn attain(
     // A single ply, or the laminates of a list.
     let layers = model.plate.info().is_shell() || ladders.iter().any(|axis| axis.name == LAYERS);
     tell("the scene as it is", None);
-    let mut search = Search::new((path, registry), ladders, asked, budget, follow)?;
+    let mut search = Search::new((&scene.source, registry), ladders, asked, budget, follow)?;
     let base = search.base();
     let forced = base.force.as_ref().is_some_and(Force::acts);
     search.names = choose_quantities(scene, &base.figures, forced)?;

@@ -13,8 +13,7 @@ use crate::study::plan::{MOST_CELLS, MOST_ENTRIES, below};
 use crate::study::predict::{self, Rates};
 use crate::study::record::RunRecord;
 use fem_core::plugin::Dimension;
-use fem_io::scene::{self, Setting};
-use std::path::Path;
+use fem_io::scene::{self, SceneSource, Setting};
 use tracing::info;
 
 /// Nominal seconds of a search without a budget.
@@ -24,7 +23,7 @@ const LIMIT: f64 = 600.0;
 const BEYOND: usize = 3;
 
 pub(super) struct Search<'a> {
-    path: &'a Path,
+    source: &'a SceneSource,
     registry: &'a Registry,
     asked: f64,
     budget: Option<f64>,
@@ -48,7 +47,7 @@ impl<'a> Search<'a> {
     /// # Errors
     /// Those of a run.
     pub(super) fn new(
-        (path, registry): (&'a Path, &'a Registry),
+        (source, registry): (&'a SceneSource, &'a Registry),
         ladders: Vec<StudyAxis>,
         asked: f64,
         budget: Option<f64>,
@@ -57,9 +56,9 @@ impl<'a> Search<'a> {
         let began = processor_time();
         let climbs: Vec<Climb> = ladders.into_iter().filter_map(Climb::new).collect();
         let own = climbs.iter().map(|climb| climb.own).collect();
-        let runs = vec![(own, RunRecord::of(path, &Setting::new(), registry, follow)?)];
+        let runs = vec![(own, RunRecord::of(source, &Setting::new(), registry, follow)?)];
         let (names, together) = (Vec::new(), Vec::new());
-        Ok(Self { path, registry, asked, budget, began, climbs, names, runs, together, follow, broken_off: None })
+        Ok(Self { source, registry, asked, budget, began, climbs, names, runs, together, follow, broken_off: None })
     }
 
     pub(super) fn base(&self) -> &RunRecord {
@@ -115,7 +114,7 @@ impl<'a> Search<'a> {
         {
             return Err("more cells than a study runs".to_owned());
         }
-        let scene = scene::read_with(self.path, &self.setting(&rungs)).map_err(Error::from);
+        let scene = scene::under(self.source, &self.setting(&rungs)).map_err(Error::from);
         let model = scene.and_then(|scene| Model::new(scene, self.registry)).map_err(|why| why.to_string())?;
         Ok(predict::size(&model, base))
     }
@@ -264,7 +263,7 @@ impl<'a> Search<'a> {
         let levels = self.climbs.iter().zip(rungs).filter(|(climb, rung)| **rung != climb.own);
         let what = levels.map(|(climb, rung)| format!("{} {}", climb.name, climb.levels[*rung].label));
         tell(&what.collect::<Vec<_>>().join(", "), error.filter(|error| error.is_finite()));
-        match RunRecord::of(self.path, &self.setting(rungs), self.registry, &mut *self.follow) {
+        match RunRecord::of(self.source, &self.setting(rungs), self.registry, &mut *self.follow) {
             Ok(record) => {
                 self.runs.push((rungs.to_vec(), record));
                 Ok(())
