@@ -567,6 +567,47 @@ fn panel(sides: &[&str], pressure: &str, element: &str, membrane: &str) -> Strin
     )
 }
 
+/// A clamp holds plates without nodes in their middle between two levels, planes of symmetry have images, a bed is no edge.
+#[test]
+fn the_edge_is_found_whatever_holds_it() {
+    let expected = |text: &str| {
+        let model = decided(model(text), NonZeroUsize::MIN).unwrap();
+        let [decision] = model.decisions[..] else { panic!() };
+        decision.expected
+    };
+    let all = ["x-min", "x-max", "y-min", "y-max"];
+    let solid = panel(&all, "0.5 MPa", "hermite-prism", "auto");
+    let layers = |layers: &str| expected(&solid.replace("'0.25 mm' }", &format!("'0.25 mm', layers = {layers} }}")));
+    let even = layers("[2, 2]");
+    assert!(even > 1.0, "{even}");
+    [("[1, 2, 1]", 0.02), ("[1, 3]", 0.05), ("[4]", 0.2)]
+        .iter()
+        .for_each(|(odd, share)| near(layers(odd), even, *share));
+
+    let whole = expected(&panel(&all, "0.5 MPa", "mitc4", "auto"));
+    let quarter = panel(&all, "0.5 MPa", "mitc4", "auto")
+        .replace("['60 mm', '60 mm'], cells = [6, 6]", "['30 mm', '30 mm'], cells = [3, 3]")
+        .replace("'x-min', kind = 'clamped'", "'x-min', kind = 'symmetry'")
+        .replace("'y-min', kind = 'clamped'", "'y-min', kind = 'symmetry'");
+    near(expected(&quarter), whole, 1e-6);
+    let corner = quarter.replace(
+        "{ group = 'x-max', kind = 'clamped' },{ group = 'y-max', kind = 'clamped' },",
+        "{ group = 'x-max', kind = 'clamped' },",
+    );
+    assert!(
+        expected(&corner.replace("'y-min', kind = 'symmetry'", "'y-min', kind = 'free'")) > 1.0,
+        "between two clamps"
+    );
+
+    let bed = Square { fix: CLAMPED_ALL, cells: 8, ..karas() }
+        .text()
+        .replace("cells = [8, 8] }", "cells = [8, 8], groups = { bed = { x = ['0 mm', '200 mm'] } } }");
+    let springs = "[[support]]\ngroup = 'bed'\nkind = 'roller'\nat = 'bottom'\nstiffness = '1e-3 N/mm^3'\n";
+    let rim = advice(&format!("{bed}{springs}")).plate.rim;
+    assert_eq!(rim.held, Some(CLAMPED[0]));
+    near(rim.area, 0.04, 1e-12);
+}
+
 /// What deflects most on a free edge between held ones is stretched; what only one side holds is not.
 #[test]
 fn a_free_edge_between_held_ones_is_stretched() {

@@ -58,6 +58,10 @@ fn a_blow_between_two_looks_is_seen() {
     let seldom = |every: &str| summary(&blow().scene("every = \"0.5 us\"", &format!("every = \"{every}\"")));
     let (often, never) = (seldom("0.1 us"), seldom("1 s"));
     assert!(warned(&never, "the criteria look every") && !warned(&often, "the criteria look"), "{never:#}");
+    // In whole steps of 0.1 us.
+    let said = never["warnings"].to_string();
+    let us: f64 = said.split("look every ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap().parse().unwrap();
+    assert!((10.0 * us - (10.0 * us).round()).abs() < 1e-6, "{said}");
     let index = |summary: &Value| {
         let modes = summary["not_reached"].as_array().unwrap().iter();
         modes.map(|mode| mode["largest_index"].as_f64().unwrap()).fold(0.0, f64::max)

@@ -187,3 +187,33 @@ profile = [{ name = "line", at = { x = "30 mm", y = "20 mm" } }, { name = "besid
     assert!(said.contains("profile `line` is where laminates meet") && said.contains("on the side of cell"), "{said}");
     assert!(!said.contains("profile `beside`"), "{said}");
 }
+
+/// Deflections count in thicknesses of the place that is struck, in whatever order impactors are named.
+#[test]
+fn thicknesses_are_those_of_the_place() {
+    let ply = "material = \"tape\", ply_thickness = \"0.25 mm\", layers = 1";
+    let laminate = format!(
+        "[{{ group = \"left\", align = \"bottom\", plies = \"[0/90]s\", {ply} }}, {{ plies = \"[0/90/0/90]2s\", {ply} }}]"
+    );
+    let blow = |x: u32| {
+        format!(
+            "[[impactor]]\nname = 'at-{x}'\nmass = '20 g'\nvelocity = '4 m/s'\nat = {{ x = '{x} mm', y = '20 mm' }}\npatch_radius = '1 mm'\n"
+        )
+    };
+    let found = |first: u32, second: u32| {
+        let only = "impactor = { mass = \"20 g\", velocity = \"2 m/s\", at = { x = \"30 mm\", y = \"20 mm\" } }";
+        let case = scene("study.toml", &laminate).scene(only, "").append(&format!("\n{}{}", blow(first), blow(second)));
+        case.fem("run", &["--out", "out"]).good();
+        let summary = case.summary("out");
+        let warned = summary["warnings"].to_string().contains("membrane");
+        let impacts = summary["impact"].as_array().unwrap().clone();
+        let of = |x: u32| impacts.iter().find(|impact| impact["name"] == format!("at-{x}")).unwrap().clone();
+        for (x, thickness) in [(15, 1e-3), (45, 4e-3)] {
+            let [w, over] = ["peak_plate_displacement_m", "peak_plate_displacement_over_thickness"]
+                .map(|key| of(x)[key].as_f64().unwrap());
+            assert!((w / thickness / over - 1.0).abs() < 1e-9, "{x}: {w} m is {over} thicknesses");
+        }
+        warned
+    };
+    assert_eq!(found(15, 45), found(45, 15));
+}

@@ -63,6 +63,32 @@ fn a_tip_is_a_contact_law() {
     );
     assert!(said.contains("there is a `contact`"), "{said}");
     assert!(refusal("diameter = '16 mm', velocity = '1 m/s', ", END).contains("`impactor.material` is missing"));
+    let said = refusal(&format!("{TIP}tip_radius = '20 mm', velocity = '1 m/s', "), END);
+    assert!(said.contains("is not twice the `tip_radius`"), "{said}");
+}
+
+/// Where an impactor strikes is not known before the mesh is: what the plies say must be the same everywhere.
+#[test]
+fn what_the_struck_plies_say_is_one_thing() {
+    let refusal = |other: &str, impactor: &str| {
+        let regions = format!(
+            "laminate = [{{ group = 'impact', align = 'bottom', {other}, layers = 1 }}, {{ plies = '[0/45/-45/90]2s', "
+        );
+        let plate = PLATE
+            .replace("laminate = { plies = '[0/45/-45/90]2s', ", &regions)
+            .replace("layers = 1 }\nelement", "layers = 1 }]\nelement");
+        let soft = "materials.soft = { library = 'AS4/3502', e2 = '5 GPa' }\n";
+        let text = format!("{plate}{soft}impactor = {{ mass = '2 kg', {impactor}at = {{ group = 'impact' }} }}\n{END}");
+        scene::parse(&text, "scene.toml".as_ref()).err().map(|error| error.to_string())
+    };
+    let (thin, soft) = (
+        "plies = '[0/90]s', material = 'tape', ply_thickness = '0.125 mm'",
+        "plies = '[0_16]', material = 'soft', ply_thickness = '0.125 mm'",
+    );
+    let [per_thickness, tip] = [format!("{TIP}energy = '4.5 J/mm', "), format!("{TIP}energy = '9 J', ")];
+    assert!(refusal(thin, &per_thickness).unwrap().contains("the laminates of the scene have several"));
+    assert_eq!(refusal(thin, &tip), None);
+    assert!(refusal(soft, &tip).unwrap().contains("differ in their stiffness across the plies"));
 }
 
 #[test]

@@ -9,10 +9,9 @@ use crate::model::{Model, Plan};
 /// plate went farthest; `None` where supports do not surround it.
 pub fn hindsight(model: &Model, contacts: &[ContactRecord], threshold: f64) -> Option<Hindsight> {
     let Plan::Impact(impact) = &model.plan else { return None };
-    let thickness = model.laminate.thickness();
     let each = impact.strikes.iter().zip(contacts).filter_map(|(strike, contact)| {
         let held = Rim::around(model, strike.centre)?.held?;
-        let coefficient = held.coefficient();
+        let (coefficient, thickness) = (held.coefficient(), model.thickness_at(strike.centre));
         let number = |w: f64| coefficient * w * w;
         let over: Vec<(f64, f64)> = contact.growth.iter().map(|(t, w)| (*t, w / thickness)).collect();
         let (at, deflection) = over.last().copied().unwrap_or_default();
@@ -27,7 +26,7 @@ pub fn hindsight(model: &Model, contacts: &[ContactRecord], threshold: f64) -> O
 /// The same of a plate at rest whose largest deflection is `w` at `place`.
 pub fn hindsight_at_rest(model: &Model, w: f64, place: [f64; 2]) -> Option<Hindsight> {
     let held = Rim::around(model, place)?.held?;
-    let (coefficient, deflection) = (held.coefficient(), w.abs() / model.laminate.thickness());
+    let (coefficient, deflection) = (held.coefficient(), w.abs() / model.thickness_at(place));
     let reached = coefficient * deflection * deflection;
     let (held, lawful) = (held.name(), model.laws.is_some());
     Some(Hindsight { reached, coefficient, held, deflection, at: None, since: None, lawful })

@@ -3,11 +3,16 @@
 use super::held::Held;
 use crate::model::Model;
 use fem_core::dof::Dof;
+use fem_core::hold::Hold;
+use fem_core::mesh::PlaneMesh;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{PI, TAU};
 
 /// Weights of an equation below which it holds a displacement.
 const NOTHING: f64 = 1e-9;
+
+/// Distance from a line, over the length of an edge on it, and sine of an angle, that are rounding.
+const STRAIGHT: f64 = 1e-6;
 
 /// Weight of a node in the deflection of a spring from which on it is held by it.
 const SHARE: f64 = 0.05;
@@ -17,7 +22,8 @@ const SHARE: f64 = 0.05;
 pub struct Rim {
     /// Area inside, m².
     pub area: f64,
-    /// How the edge is held; `None` where the supports lie all to one side of the place, as that of a cantilever.
+    /// How the edge is held; `None` where the supports, and their images in edges that are held as planes of symmetry, lie all to one
+    /// side of the place, as that of a cantilever.
     pub held: Option<Held>,
 }
 
@@ -26,7 +32,7 @@ impl Rim {
     /// deflection.
     ///
     /// Slope and displacement in the plane count as held where they are along more than half of the length of these edges,
-    /// across each edge, at some height. `None` of a section, which has no plane.
+    /// across each edge, at some height. Springs under the place, as those of a bed, are no edge. `None` of a section, which has no plane.
     pub fn around(model: &Model, centre: [f64; 2]) -> Option<Self> {
         let plate = &model.plate;
         let mesh = &plate.plane;
@@ -34,7 +40,11 @@ impl Rim {
             return None;
         }
         let start = (0..mesh.quads.len()).find(|q| mesh.corners(*q).locate(centre).is_some())?;
-        let is_held: Vec<bool> = (0..mesh.points.len()).map(|column| deflection_held(model, column)).collect();
+        let sprung: Vec<bool> = (0..mesh.points.len()).map(|column| sprung(model, column)).collect();
+        let bed = bed(mesh, start, &sprung);
+        let by_springs = |column: usize| sprung[column] && !bed.contains(&(column as u32));
+        let is_held: Vec<bool> =
+            (0..mesh.points.len()).map(|column| by_springs(column) || deflection_held(model, column)).collect();
         let edges_of = |quad: usize| mesh.quads[quad].sides().map(|[a, b]| [a.min(b), a.max(b)]);
         let mut beside: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
         for quad in 0..mesh.quads.len() {
@@ -54,10 +64,17 @@ impl Rim {
         let area = inside.iter().map(|quad| mesh.quality(*quad).area).sum();
         let supports: BTreeSet<u32> =
             inside.iter().flat_map(|quad| mesh.quads[*quad]).filter(|column| is_held[*column as usize]).collect();
-        let directions = supports.iter().map(|column| {
-            let p = mesh.points[*column as usize];
-            (p[1] - centre[1]).atan2(p[0] - centre[0])
-        });
+        let free = |edge: &[u32; 2]| beside[edge].len() == 1 && !bars(edge);
+        let sides: BTreeSet<[u32; 2]> = inside.iter().flat_map(|quad| edges_of(*quad)).filter(free).collect();
+        let mut places: Vec<[f64; 2]> = supports.iter().map(|column| mesh.points[*column as usize]).collect();
+        for (p, n) in planes_of_symmetry(model, &sides) {
+            let image = |at: &[f64; 2]| {
+                let beyond = 2.0 * ((at[0] - p[0]) * n[0] + (at[1] - p[1]) * n[1]);
+                [at[0] - beyond * n[0], at[1] - beyond * n[1]]
+            };
+            places.extend(places.iter().map(image).collect::<Vec<_>>());
+        }
+        let directions = places.iter().map(|p| (p[1] - centre[1]).atan2(p[0] - centre[0]));
         let held = surrounded(directions.collect()).then(|| hold(model, &rim));
         Some(Self { area, held })
     }
@@ -76,6 +93,54 @@ fn surrounded(mut directions: Vec<f64>) -> bool {
     directions.iter().zip(next).all(|(a, b)| b - a < PI * (1.0 + NOTHING))
 }
 
+/// The columns of the cells that springs hold in all corners, and that are reached from `start` through such cells.
+fn bed(mesh: &PlaneMesh, start: usize, sprung: &[bool]) -> BTreeSet<u32> {
+    let bedded = |quad: usize| mesh.quads[quad].iter().all(|column| sprung[*column as usize]);
+    let mut columns = BTreeSet::new();
+    if !bedded(start) {
+        return columns;
+    }
+    let mut rest: Vec<usize> = (0..mesh.quads.len()).filter(|quad| bedded(*quad)).collect();
+    columns.extend(mesh.quads[start].iter().copied());
+    loop {
+        let meets = |quad: &usize| mesh.quads[*quad].iter().any(|column| columns.contains(column));
+        let (reached, beyond): (Vec<usize>, Vec<usize>) = rest.iter().partition(|quad| meets(quad));
+        if reached.is_empty() {
+            return columns;
+        }
+        columns.extend(reached.iter().flat_map(|quad| mesh.quads[*quad].iter().copied()));
+        rest = beyond;
+    }
+}
+
+/// A point and the normal of each line of `edges` along which slope and displacement across it are held and the deflection is not: one
+/// line, or two that are perpendicular; none where there are others.
+fn planes_of_symmetry(model: &Model, edges: &BTreeSet<[u32; 2]>) -> Vec<([f64; 2], [f64; 2])> {
+    let points = &model.plate.plane.points;
+    let mut planes: Vec<([f64; 2], [f64; 2])> = Vec::new();
+    for ends in edges {
+        let [a, b] = ends.map(|column| points[column as usize]);
+        let size = (b[0] - a[0]).hypot(b[1] - a[1]);
+        let n = [(b[1] - a[1]) / size, (a[0] - b[0]) / size];
+        let all = |held: fn(&Model, usize, [f64; 2]) -> bool| ends.iter().all(|c| held(model, *c as usize, n));
+        if !(all(in_plane_held) && all(slope_held)) {
+            continue;
+        }
+        let on = |(p, m): &([f64; 2], [f64; 2])| {
+            let off = |at: [f64; 2]| ((at[0] - p[0]) * m[0] + (at[1] - p[1]) * m[1]).abs();
+            off(a).max(off(b)) < STRAIGHT * size
+        };
+        if !planes.iter().any(on) {
+            planes.push((a, n));
+        }
+    }
+    match planes[..] {
+        [_] => planes,
+        [(_, m), (_, n)] if (m[0] * n[0] + m[1] * n[1]).abs() < STRAIGHT => planes,
+        _ => Vec::new(),
+    }
+}
+
 fn levels(model: &Model, column: usize) -> impl Iterator<Item = usize> + use<> {
     let [low, high] = model.plate.outer_levels(column);
     low..=high
@@ -83,23 +148,41 @@ fn levels(model: &Model, column: usize) -> impl Iterator<Item = usize> + use<> {
 
 /// Whether Σ factor · unknown is zero for one set of the unknowns called so at a node.
 fn zero(model: &Model, column: usize, level: usize, terms: &[(Option<Dof>, f64)]) -> bool {
+    let at_level = terms.iter().map(|(dof, factor)| (level, *dof, *factor));
+    sum_is_zero(model, column, at_level.collect())
+}
+
+/// The same of unknowns at several levels.
+fn sum_is_zero(model: &Model, column: usize, terms: Vec<(usize, Option<Dof>, f64)>) -> bool {
     let mut sum = Vec::new();
-    for (dof, factor) in terms.iter().filter(|(_, factor)| factor.abs() > NOTHING) {
+    for (level, dof, factor) in terms.into_iter().filter(|(.., factor)| factor.abs() > NOTHING) {
         let Some(found) = dof.and_then(|dof| model.plate.dofs_at(column, level, dof).next()) else { return false };
-        sum.push((found, *factor));
+        sum.push((found, factor));
     }
     model.constraints.restrict(&sum).iter().all(|(_, weight)| weight.abs() < NOTHING)
 }
 
+/// Whether the deflection is zero at a level, or at z = 0 on the line between the two about it.
 fn deflection_held(model: &Model, column: usize) -> bool {
-    levels(model, column)
-        .any(|level| zero(model, column, level, &[(Dof::new(3, 0), 1.0)]) || sprung(model, column, level))
+    let w = Dof::new(3, 0);
+    let all: Vec<usize> = levels(model, column).collect();
+    let between = |two: &[usize]| {
+        let [low, high] = [two[0], two[1]].map(|level| model.plate.levels[level]);
+        let share = -low / (high - low);
+        sum_is_zero(model, column, vec![(two[0], w, 1.0 - share), (two[1], w, share)])
+    };
+    let middle = Hold::middle(&model.plate, &all);
+    all.iter().any(|level| zero(model, column, *level, &[(w, 1.0)])) || (middle.len() == 2 && between(&middle))
 }
 
 /// Whether springs hold the deflection of a node.
-fn sprung(model: &Model, column: usize, level: usize) -> bool {
-    let Some(dof) = Dof::new(3, 0).and_then(|w| model.plate.dofs_at(column, level, w).next()) else { return false };
-    let own = model.constraints.restrict(&[(dof, 1.0)]);
+fn sprung(model: &Model, column: usize) -> bool {
+    let w = Dof::new(3, 0);
+    let of_level = |level| {
+        let own = w.and_then(|w| model.plate.dofs_at(column, level, w).next());
+        own.map_or(Vec::new(), |own| model.constraints.restrict(&[(own, 1.0)]))
+    };
+    let own: Vec<(usize, f64)> = levels(model, column).flat_map(of_level).collect();
     let weighs = |(i, weight): &(usize, f64)| weight.abs() > SHARE && own.iter().any(|(own, _)| own == i);
     model.springs.iter().any(|spring| spring.at.0.iter().any(weighs))
 }

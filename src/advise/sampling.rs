@@ -1,7 +1,7 @@
 //! How often the criteria look at the stresses of an impact.
 
 use super::estimate::{Blow, first_rise};
-use crate::model::{Model, Plan, Strike};
+use crate::model::{Model, Plan, Strike, count_steps};
 use fem_core::plugin::Dimension;
 use fem_io::scene::ImpactorSpec;
 
@@ -22,8 +22,11 @@ pub(super) fn look_often(mut model: Model) -> Model {
     // Of a law without a peak there is no rise.
     let rises = impact.spec.impactors.iter().zip(&impact.strikes).map(rise).filter(|rise| *rise > 0.0);
     let shortest = rises.fold(f64::INFINITY, f64::min);
-    let every = shortest / LOOKS;
-    if !model.criteria.is_empty() && every < model.sample_every {
+    // Whole steps, so that what is said is what is done.
+    let (_, step) = impact.spec.march.steps();
+    let every = (shortest / LOOKS / step).floor().max(1.0) * step;
+    let asked = count_steps(model.sample_every, step) as f64 * step;
+    if !model.criteria.is_empty() && shortest.is_finite() && every < asked {
         model.warnings.push(format!(
             "the criteria look every {} and not every {}, because the contact force rises within {}: set \
              `failure.every` to no more than that",

@@ -169,8 +169,22 @@ pub(super) fn laminate(registry: &Registry, arguments: &Arguments, console: &Con
         loaded: loaded.map(Into::into),
         first_failure,
     };
+    if let Some(scene) = &scene {
+        console.warn(&left_out(scene, found.loaded.is_some()));
+    }
     console.show(arguments.format, &found, || found.text(&plate))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// What a scene has that is not shown.
+fn left_out(scene: &Scene, loaded: bool) -> Vec<String> {
+    let regions = scene.laminates.len() - 1;
+    let others = (regions > 0).then(|| {
+        format!("this is the laminate of the plate apart from its regions: {regions} more of the scene are left out")
+    });
+    let cured = loaded && scene.effects.named.iter().any(|effect| effect.name() == "cure");
+    let cure = cured.then(|| "the first failure leaves out the residual stresses of `effects.cure`".to_owned());
+    others.into_iter().chain(cure).collect()
 }
 
 /// The laminate of the plate apart from regions of their own.

@@ -51,7 +51,7 @@ impl Builder<'_> {
             }
         };
         let interfaces = growing || self.scene.interface.is_some();
-        let interfaces = interfaces && self.scene.laminates[0].laminate.value.plies.len() > 1;
+        let interfaces = interfaces && self.scene.laminates.iter().any(|spec| spec.laminate.value.plies.len() > 1);
         let mut series = Vec::new();
         for part in fields.parts.iter().flatten() {
             if part.value == FieldSeries::Interfaces && !interfaces {

@@ -427,6 +427,13 @@ impl Model {
         self.region_names.get(self.plate.region(quad)).map(String::as_str)
     }
 
+    /// Thickness of the laminate at a place, m; that of the one that is struck first where no cell is.
+    pub fn thickness_at(&self, place: [f64; 2]) -> f64 {
+        let plane = &self.plate.plane;
+        let quad = (0..plane.quads.len()).find(|quad| plane.corners(*quad).locate(place).is_some());
+        quad.map_or(&self.laminate, |quad| &self.laminates[self.plate.region(quad)]).thickness()
+    }
+
     /// What results call an impactor: nothing where it is the only one.
     pub fn label<'a>(&self, impactor: &'a scene::ImpactorSpec) -> Option<&'a str> {
         (self.impactors().len() > 1).then_some(impactor.name.as_str())

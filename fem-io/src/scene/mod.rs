@@ -340,7 +340,7 @@ fn read_merged(merged: &Merged, file: &Path) -> Result<Scene, SceneError> {
     let (laminates, interface) = laminate::read_all(&root.required("laminate")?, &materials)?;
     let element = root.required("element")?;
     let effects = root.optional("effects").map_or(Ok(EffectsSpec::default()), |field| effects::read(&field))?;
-    let analysis = read_analysis(&root, &tip::Struck { materials: &materials, laminate: whole(&laminates) })?;
+    let analysis = read_analysis(&root, &tip::Struck { materials: &materials, laminates: &laminates })?;
     let in_time = matches!(analysis, Analysis::Impact(_));
     let march = match &analysis {
         Analysis::Impact(impact) => Some(&impact.march),
@@ -401,11 +401,6 @@ fn read_merged(merged: &Merged, file: &Path) -> Result<Scene, SceneError> {
         keys,
         source: Arc::clone(source),
     })
-}
-
-/// The laminate of the plate apart from regions of their own.
-fn whole(laminates: &[LaminateSpec]) -> &LaminateSpec {
-    laminates.iter().find(|spec| spec.group.is_none()).unwrap_or(&laminates[0])
 }
 
 /// Keys that an analysis does not use; presets hold them for others.

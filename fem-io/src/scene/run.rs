@@ -451,7 +451,11 @@ fn read_impactor(
             start => start,
         },
     };
+    let load = read_load(&table)?;
     let contact = match tip::law(&table, struck)? {
+        Some((_, tip)) if !fits(&load, tip.positive(Dimension::LENGTH)?) => {
+            return Err(tip.error("is not twice the `tip_radius`", "a tip has one radius: leave one of the two out"));
+        }
         Some((law, tip)) => match table.optional("contact").or_else(|| root.optional("contact")) {
             Some(_) => return Err(tip.error("makes Hertz's law, and there is a `contact`", "leave one of the two out")),
             None => law,
@@ -465,7 +469,7 @@ fn read_impactor(
         start,
         at: read_point(&table.required("at")?)?,
         face: face(&table)?,
-        load: read_load(&table)?,
+        load,
         contact,
         indentation_from: match table.optional("indentation_from") {
             Some(field) => Some(field.at(field.choice(&SURFACES)?)).filter(|from| from.value > 0.0),
@@ -491,6 +495,11 @@ pub(super) fn point(table: &Reader<'_>) -> Result<ImpactPoint, SceneError> {
         (Some(group), None) => ImpactPoint::Group(group.text()?.to_owned()),
         (None, None) => ImpactPoint::Group(table.required("group")?.text()?.to_owned()),
     })
+}
+
+/// Whether the tip of a load, if it is one, has this diameter.
+fn fits(load: &Located<ContactLoad>, diameter: f64) -> bool {
+    !matches!(load.value, ContactLoad::Tip { radius } if (2.0 * radius / diameter - 1.0).abs() > 1e-9)
 }
 
 /// Ways in which the force of an impactor enters the plate, of which one counts.

@@ -5,20 +5,30 @@ use super::material;
 use super::plugin::PluginSpec;
 use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, SceneError};
+use fem_core::laminate::Laminate;
 use fem_core::material::Material;
 use fem_core::plugin::{Dimension, Value};
 
 /// The plate that an impactor strikes.
 pub(super) struct Struck<'a> {
     pub(super) materials: &'a [Located<Material>],
-    /// The plies of the plate apart from regions of their own.
-    pub(super) laminate: &'a LaminateSpec,
+    /// Those of its regions; where an impactor strikes is known with the mesh.
+    pub(super) laminates: &'a [LaminateSpec],
+}
+
+impl Struck<'_> {
+    /// What `of` says of all laminates, where it says the same of each; `None` where it does not.
+    fn alike(&self, of: impl Fn(&Laminate) -> f64) -> Option<f64> {
+        let mut each = self.laminates.iter().map(|spec| of(&spec.laminate.value));
+        let first = each.next()?;
+        each.all(|other| (other / first - 1.0).abs() < SAME).then_some(first)
+    }
 }
 
 /// Standard acceleration of free fall, m/s² (3rd CGPM, 1901).
 const GRAVITY: f64 = 9.80665;
 
-/// Difference of two moduli of an isotropic material, relative.
+/// Difference of two moduli of an isotropic material, or of two laminates, that is rounding, relative.
 const SAME: f64 = 1e-6;
 
 /// The velocity, m/s, and the field that says it: itself, v = √(2 E/m) of an energy or of one per thickness of the laminate, or
@@ -37,7 +47,14 @@ pub(super) fn velocity<'a>(
             let (value, dimension) = field.any_quantity(field.text()?)?;
             let energy = match dimension {
                 of if of.matches(&Dimension::ENERGY) => value,
-                of if of.matches(&Dimension::FORCE) => value * struck.laminate.laminate.value.thickness(),
+                of if of.matches(&Dimension::FORCE) => {
+                    let thickness = struck.alike(Laminate::thickness).ok_or_else(|| {
+                        let message =
+                            "an energy per thickness is of one thickness, and the laminates of the scene have several";
+                        field.error(message, "give the energy itself: \"28 J\"")
+                    })?;
+                    value * thickness
+                }
                 of => {
                     let message = format!("is an energy or an energy per thickness, not {of}");
                     return Err(field.error(message, "write \"28 J\" or \"6.7 J/mm\""));
@@ -75,10 +92,16 @@ pub(super) fn law<'a>(
         let message = format!("`{}` is not isotropic", tip.name);
         return Err(named.error(message, "a tip has one modulus, as metals have: steel = { library = \"steel\" }"));
     }
-    let laminate = &struck.laminate.laminate.value;
-    let compliance: f64 =
-        laminate.plies.iter().map(|ply| ply.thickness / struck.materials[ply.material].value.elastic.e3).sum();
-    let across = laminate.thickness() / compliance;
+    let across = struck.alike(|laminate| {
+        let e3 = |material: usize| struck.materials[material].value.elastic.e3;
+        let compliance: f64 = laminate.plies.iter().map(|ply| ply.thickness / e3(ply.material)).sum();
+        laminate.thickness() / compliance
+    });
+    let across = across.ok_or_else(|| {
+        let message = "the laminates of the scene differ in their stiffness across the plies, of which Hertz's law has one";
+        let help = "write contact = { law = \"hertz\", radius = ..., e_tip = ..., nu_tip = ..., e_plate = ... } with that of the struck one";
+        diameter.error(message, help)
+    })?;
     let radius = 0.5 * diameter.positive(Dimension::LENGTH)?;
     let values = [
         ("radius", Value::Text(format!("{radius} m"))),

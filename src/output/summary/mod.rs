@@ -15,7 +15,7 @@ pub use delamination::{DelaminationFigures, InterfaceFigures};
 
 use crate::analyses::impact::{self, ContactRecord, Differences, ModeShare, Outcome, Sizes};
 use crate::effect::{AdviceRule, Decision, Hindsight, LedgerColumn};
-use crate::model::{Model, NamedCriterion};
+use crate::model::{Model, NamedCriterion, Plan};
 use crate::output::preload::PreloadFigures;
 use crate::words::{name_ply, name_ply_of};
 use fem_core::counters::Counters;
@@ -482,8 +482,11 @@ fn energies<'a>(model: &'a Model, outcome: &'a Outcome) -> impl Iterator<Item = 
 fn figures(model: &Model, outcome: &Outcome, i: usize, spec: &scene::ImpactorSpec) -> ImpactFigures {
     let end = outcome.history.last().map_or((0.0, 0.0), |r| (r.time_s, r.impactors[i].impactor_velocity_m_s));
     let name = model.label(spec);
-    let mut figures =
-        ImpactFigures::new([spec.mass, spec.velocity], &outcome.contacts[i], end, model.laminate.thickness());
+    let struck = match &model.plan {
+        Plan::Impact(impact) => model.thickness_at(impact.strikes[i].centre),
+        _ => model.laminate.thickness(),
+    };
+    let mut figures = ImpactFigures::new([spec.mass, spec.velocity], &outcome.contacts[i], end, struck);
     figures.squeeze_m_N = outcome.squeezes[i].map(|squeeze| squeeze.compliance);
     figures.impulse_N_s += spec.mass * model.effects.nature().pull * end.0;
     ImpactFigures { name: name.map(str::to_owned), start_time_s: name.map(|_| spec.start), ..figures }
