@@ -262,6 +262,7 @@ impl Model {
             Analysis::Impact(spec) => Plan::Impact(Box::new(builder.impact(spec, &plate, &*element, constraints)?)),
             Analysis::Static(loads) => {
                 let forces = builder.forces(loads, &effects, &plate, &*element, constraints)?;
+                warnings.extend(builder.unresolved(&plate, loads)?);
                 supports.check_balance(scene, &plate, &forces)?;
                 let of = (&plate, &*element);
                 let path = builder.path(of, &laminates[0], &materials, &effects, (&supports, &forces))?;

@@ -22,12 +22,15 @@ use fem_core::reduction::Reduction;
 use fem_core::time::Integrator;
 use fem_dynamics::impact::Tip;
 use fem_io::scene::{
-    self, Analysis, ContactLoad, ImpactPoint, Load, LoadKind, Located, Place, ProfileLine, SceneError, Window,
+    self, Analysis, ContactLoad, ImpactPoint, Load, LoadKind, Located, Place, Pressure, ProfileLine, SceneError, Window,
 };
 use std::collections::BTreeMap;
 
 /// Fewest cells whose stresses can be differentiated.
 const LEAST_CELLS: usize = 4;
+
+/// Share of a pressure that the cells may lose.
+const LOST: f64 = 0.01;
 
 /// Distance of two places that are the same, m.
 const SAME: f64 = 1e-9;
@@ -276,13 +279,7 @@ impl Builder<'_> {
         for Load { kind, place } in loads {
             match kind {
                 LoadKind::Pressure { pressure, face, group } => {
-                    let quads: Vec<usize> = match group {
-                        None => (0..plate.plane.quads.len()).collect(),
-                        Some(name) => self.group(plate, name)?.quads.iter().map(|q| *q as usize).collect(),
-                    };
-                    if let (true, Some(name)) = (quads.is_empty(), group) {
-                        return Err(self.error(name, "the group has no cells", "a pressure acts on a surface").into());
-                    }
+                    let quads = self.pressed(plate, group)?;
                     load::pressure(plate, element, *face, quads, |at| pressure.at(at), &mut forces);
                 }
                 LoadKind::Patch { force, at, radius } => {
@@ -335,6 +332,35 @@ impl Builder<'_> {
                 Err(self.scene.source.error_at(place, message, help).into())
             }
             _ => Ok(forces),
+        }
+    }
+
+    /// What is lost of pressures that change faster than the cells are integrated.
+    pub(super) fn unresolved(&self, plate: &Plate, loads: &[Load]) -> Result<Vec<String>, SceneError> {
+        let mut warnings = Vec::new();
+        for (number, Load { kind, .. }) in loads.iter().enumerate() {
+            let LoadKind::Pressure { pressure: pressure @ Pressure::Formula { .. }, group, .. } = kind else {
+                continue;
+            };
+            let missed = load::unresolved(plate, self.pressed(plate, group)?, |at| pressure.at(at));
+            if !(missed <= LOST) {
+                warnings.push(format!(
+                    "the pressure of `load[{number}]` changes faster than the cells are integrated: with twice as many points its force differs \
+                     by {:.1} %; make the cells smaller where it changes",
+                    1e2 * missed
+                ));
+            }
+        }
+        Ok(warnings)
+    }
+
+    /// The cells that a pressure presses on.
+    fn pressed(&self, plate: &Plate, group: &Option<Located<String>>) -> Result<Vec<usize>, SceneError> {
+        let Some(name) = group else { return Ok((0..plate.plane.quads.len()).collect()) };
+        let quads: Vec<usize> = self.group(plate, name)?.quads.iter().map(|q| *q as usize).collect();
+        match quads.is_empty() {
+            true => Err(self.error(name, "the group has no cells", "a pressure acts on a surface")),
+            false => Ok(quads),
         }
     }
 

@@ -172,3 +172,23 @@ fn equilibrium_in_one_cell_is_refused() {
     let why = Model::new(scene, &Registry::standard()).unwrap_err().to_string();
     assert!(why.contains("the stresses of 1 cells cannot be differentiated"), "{why}");
 }
+
+#[test]
+fn a_pressure_that_changes_faster_than_cells_is_warned_of() {
+    let warned = |formula: &str| {
+        let pressure = format!("pressure = {{ formula = '{formula}', unit = 'MPa', length = 'mm' }}");
+        let plate = plate(&regular(), 0.3).sides(CLAMPED).rectangle([20.0, 10.0], [4, 2]);
+        let text = plate.load(&pressure).text("static");
+        let model = Model::new(scene::parse(&text, "scene.toml".as_ref()).unwrap(), &Registry::standard()).unwrap();
+        model.warnings.iter().any(|warning| warning.contains("changes faster than the cells are integrated"))
+    };
+    for (formula, lost) in [
+        ("exp(-((x-11.3)/0.2)^2)", true),
+        ("1/(x-11.3)", true),
+        ("exp(-((x-11.3)/2)^2)", false),
+        ("sin(3.14159*x/5)", false),
+        ("0*x", false),
+    ] {
+        assert_eq!(warned(formula), lost, "{formula}");
+    }
+}

@@ -85,6 +85,25 @@ pub fn pressure(
     }
 }
 
+/// What the integration of [`pressure`] makes of a pressure that changes within cells: Σ |∫ p dA − the same by twice as many points|
+/// over the cells, as a share of ∫ |p| dA by these.
+pub fn unresolved(plate: &Plate, quads: impl IntoIterator<Item = usize>, p: impl Fn([f64; 2]) -> f64) -> f64 {
+    let (mut missed, mut whole) = (0.0, 0.0);
+    for quad in quads {
+        let cell = plate.cell(plate.cell_over(quad, 0));
+        let [(coarse, _), (fine, size)] = [ORDER, 2 * ORDER].map(|order| {
+            let each = cell.corners.domain().points(order).iter().map(|Point { at: [r, s], factors }| {
+                let [x, y, _] = cell.position([*r, *s, 0.0]);
+                p([x, y]) * cell.plane(*r, *s).det * factors[0] * factors[1]
+            });
+            each.fold((0.0, 0.0), |(sum, size), value| (sum + value, size + value.abs()))
+        });
+        missed += f64::abs(coarse - fine);
+        whole += size;
+    }
+    if whole > 0.0 { missed / whole } else { 0.0 }
+}
+
 /// The deflection u₃ at the points of the integration over `face`, and the area that each stands for, m²: what springs under a
 /// plate are pressed by. Of cells that a symmetry maps onto each other one stands for all.
 pub fn deflections(plate: &Plate, element: &dyn Element, face: Face) -> Vec<(Functional, f64)> {
