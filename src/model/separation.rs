@@ -20,6 +20,9 @@ use std::collections::BTreeSet;
 /// What an integrator may miss of it by rounding.
 const ROUNDING: f64 = 1e-6;
 
+/// Difference of two distances that is rounding, over the size of the plate.
+const SAME_PLACE: f64 = 1e-7;
+
 /// Largest spectral radius for long steps of an integrator under which faces may clap.
 const DAMPED: f64 = 0.5;
 
@@ -266,6 +269,28 @@ impl<'a> Builder<'a> {
                 let help = "its centre in the plate and near enough to the impact, its radius more than a cell; or a group of cells";
                 return Err(self.scene.source.error_at(place, message, help));
             }
+            self.symmetric_start(plate, &*distance, place)?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a delamination without the symmetry of the plate: it would be another one, of images of what lies in the part that is kept.
+    fn symmetric_start(
+        &self,
+        plate: &Plate,
+        distance: &dyn Fn([f64; 2]) -> f64,
+        place: &Place,
+    ) -> Result<(), SceneError> {
+        let away = |quad: usize| distance(plate.plane.corners(quad).centroid());
+        let size = plate.plane.area().sqrt();
+        let moved = |quad: usize| (away(quad) - away(plate.symmetry().quad(quad))).abs() > SAME_PLACE * size;
+        if (0..plate.plane.quads.len()).any(moved) {
+            let message = "this delamination lacks the `symmetry` of the scene";
+            return Err(self.scene.source.error_at(
+                place,
+                message,
+                "leave `symmetry` out: the plate is then computed as a whole",
+            ));
         }
         Ok(())
     }

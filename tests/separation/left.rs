@@ -109,4 +109,10 @@ fn what_nobody_can_decide_is_refused() {
     refuse("'hermite-prism'", "'mitc4'", "a shell holds");
     refuse("library = 'IM7/8552'", "library = 'AS4/3502'", "the toughness between the plies");
     refuse("penalty = '2e4 N/mm^3'", "points = 99", "points");
+    refuse("penalty = '2e4 N/mm^3'", "points = 2", "2 points each way");
+    let start = "start = [{ interface = 1, at = { x = '26 mm', y = '20 mm' }, radius = '6 mm' }]";
+    let text = left().text().replace("penalty = '2e4 N/mm^3'", start);
+    let read = scene::parse(&text, &root().join("scene.toml")).unwrap();
+    let error = Model::new(read, &Registry::standard()).expect_err("refused").to_string();
+    assert!(error.contains("lacks the `symmetry`"), "{error}\n{text}");
 }

@@ -52,6 +52,9 @@ pub enum StartingExtent {
 /// Points of integration of a cell each way.
 const POINTS: usize = 4;
 
+/// Fewer leave motions between the faces of a cell that no point sees: a double cantilever took twice its force.
+const LEAST_POINTS: usize = 3;
+
 impl DelaminationSpec {
     /// Most points of integration of a cell, each way.
     pub const MOST_POINTS: usize = 16;
@@ -110,11 +113,11 @@ pub(super) fn read(field: &SceneValue<'_>) -> Result<DelaminationSpec, SceneErro
         other => Err(field.error(format!("{other} is not a share"), "give a number between 0 and 1, such as 0.2")),
     };
     let points = |field: &SceneValue<'_>| match field.count()? {
-        count if count <= DelaminationSpec::MOST_POINTS => Ok(count),
+        count if (LEAST_POINTS..=DelaminationSpec::MOST_POINTS).contains(&count) => Ok(count),
         count => Err(field.error(
             format!("{count} points each way"),
             format!(
-                "4 to 8 are enough at cells as wide as the process zone, {} are the most",
+                "4 to 8 are enough at cells as wide as the process zone, {LEAST_POINTS} are the least, {} are the most",
                 DelaminationSpec::MOST_POINTS
             ),
         )),
