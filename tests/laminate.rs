@@ -1,6 +1,6 @@
 //! `fem laminate`.
 
-use crate::support::{fem, root};
+use crate::support::{fem, plate, root};
 use serde_json::Value;
 
 fn found(arguments: &[&str]) -> Value {
@@ -53,6 +53,10 @@ fn scenes_have_laminates() {
     assert_eq!(of_scene["A_N_m"], plies["A_N_m"]);
     let text = fem(&root(), &["laminate", scene]).good().stdout;
     assert!(text.starts_with("16 plies, 2.1133 mm, 3.3284 kg/m^2\n") && text.contains("A, N/mm"), "{text}");
+    // What a scene has and the command does not count is said.
+    let case = plate().append("[effects]\ncure = \"-100 K\"\n");
+    let said = |loads: &[&str]| case.fem("laminate", loads).good().stderr;
+    assert!(said(&["--force", "100,0,0"]).contains("residual stresses of `effects.cure`") && said(&[]).is_empty());
 }
 
 #[test]
