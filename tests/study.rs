@@ -197,7 +197,7 @@ fn of_delaminations_that_grow() {
         assert!(of(axis).is_empty() && done.stdout.contains(&format!("the axis `{axis}` is left out")), "{done:#?}");
     }
     let (points, margins) = (of("points"), of("margin"));
-    assert_eq!(points.iter().map(|row| &row["setting"][..]).collect::<Vec<_>>(), ["2 x 2 points", "8 x 8 points"]);
+    assert_eq!(points.iter().map(|row| &row["setting"][..]).collect::<Vec<_>>(), ["3 x 3 points", "8 x 8 points"]);
     let own = &of("scene")[0];
     let dissipated = |row: &BTreeMap<String, String>| number(row, "dissipated-energy");
     assert!(dissipated(own) > 0.01 && number(own, "absorbed-energy") != 0.0, "{own:?}");

@@ -263,7 +263,7 @@ fn points(scene: &Scene) -> Option<Vec<Level>> {
     let own = scene.delamination.as_ref()?.points;
     let label = |n: usize| format!("{n} x {n} points");
     let level = |n: usize| Level::new(label(n), [("delamination.points", n.to_string())]);
-    let coarser = Some(own / 2).filter(|n| *n > 1).map(level);
+    let coarser = Some((own / 2).max(DelaminationSpec::LEAST_POINTS)).filter(|n| *n < own).map(level);
     let finer = Some(2 * own).filter(|n| *n <= DelaminationSpec::MOST_POINTS).map(level);
     Some(coarser.into_iter().chain([Level::own(label(own))]).chain(finer).collect())
 }

@@ -52,12 +52,11 @@ pub enum StartingExtent {
 /// Points of integration of a cell each way.
 const POINTS: usize = 4;
 
-/// Fewer leave motions between the faces of a cell that no point sees: a double cantilever took twice its force.
-const LEAST_POINTS: usize = 3;
-
 impl DelaminationSpec {
     /// Most points of integration of a cell, each way.
     pub const MOST_POINTS: usize = 16;
+    /// Fewer leave motions between the faces of a cell that no point sees: a double cantilever took twice its force.
+    pub const LEAST_POINTS: usize = 3;
 }
 
 /// Share of the tractions of damage at which interfaces are opened. The mean at a node misses the peak beside it.
@@ -113,11 +112,12 @@ pub(super) fn read(field: &SceneValue<'_>) -> Result<DelaminationSpec, SceneErro
         other => Err(field.error(format!("{other} is not a share"), "give a number between 0 and 1, such as 0.2")),
     };
     let points = |field: &SceneValue<'_>| match field.count()? {
-        count if (LEAST_POINTS..=DelaminationSpec::MOST_POINTS).contains(&count) => Ok(count),
+        count if (DelaminationSpec::LEAST_POINTS..=DelaminationSpec::MOST_POINTS).contains(&count) => Ok(count),
         count => Err(field.error(
             format!("{count} points each way"),
             format!(
-                "4 to 8 are enough at cells as wide as the process zone, {LEAST_POINTS} are the least, {} are the most",
+                "4 to 8 are enough at cells as wide as the process zone, {} are the least, {} are the most",
+                DelaminationSpec::LEAST_POINTS,
                 DelaminationSpec::MOST_POINTS
             ),
         )),
