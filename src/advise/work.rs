@@ -17,9 +17,10 @@ impl MarchSize {
         let (plate, march) = (&model.plate, &impact.spec.march);
         let cells = plate.kept_cells().count();
         let solves = impact.vectors;
-        let plies = model.laminate.plies.len();
+        let interfaces = model.laminate.plies.len() - 1;
         let judged = |site| model.criteria.iter().any(|(_, criterion)| criterion.info().site == site);
-        let places = [(Site::Ply, plies), (Site::Interface, plies - 1)].map(|(s, n)| if judged(s) { n } else { 0 });
+        let places = [(Site::Ply, model.heights.sites(&model.laminate)), (Site::Interface, interfaces)]
+            .map(|(s, n)| if judged(s) { n } else { 0 });
         let unknowns = model.constraints.ndof();
         Self(Size {
             cells,

@@ -9,6 +9,7 @@ use fem_core::counters::Counters;
 use fem_core::interfaces::Interfaces;
 use fem_core::structure::SolveError;
 use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// The states of equilibrium that loads at rest have led through.
@@ -59,7 +60,7 @@ pub(super) struct End {
 pub(super) fn follow(
     model: &Model,
     (plan, separation): (&PathPlan, &Separation),
-    threads: NonZeroUsize,
+    (threads, watch): (NonZeroUsize, &mut dyn FnMut(f64) -> ControlFlow<()>),
     counters: &mut Counters,
     stopwatch: &mut Stopwatch,
 ) -> Result<End, Error> {
@@ -70,7 +71,7 @@ pub(super) fn follow(
     let mut plate = Separable::new(parts, &states, false, threads).map_err(SolveError::from)?;
     stopwatch.lap("assemble");
     let mut seen: Vec<PathState> = Vec::new();
-    let mut last = None;
+    let (mut last, mut broken_off) = (None, false);
     let mut path = Path::new(&mut plate, plan.load.0.clone(), plan.step, states);
     let end = PathEnd { opening: plan.until, dissipated: f64::INFINITY, steps: plan.steps };
     let followed = path.follow(end, |point, path| {
@@ -89,6 +90,9 @@ pub(super) fn follow(
             iterations: point.iterations,
         });
         last = Some(*point);
+        let done = watch(point.opening / plan.until);
+        broken_off = done.is_break();
+        done
     });
     let (u, ended) = (path.u().to_vec(), path.states().to_vec());
     let last = match (last, &followed) {
@@ -99,6 +103,7 @@ pub(super) fn follow(
     };
     let stopped = match followed {
         Err(error) => Some(error.to_string()),
+        Ok(()) if broken_off => Some("it was broken off".to_owned()),
         Ok(()) if seen.len() == plan.steps && last.opening < plan.until => {
             Some(format!("its {} steps are used up: raise `path.steps`, or `path.step`", plan.steps))
         }

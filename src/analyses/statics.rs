@@ -19,6 +19,7 @@ use fem_core::profile::{Choice, ProfilePoint, Resultants};
 use fem_core::structure::Structure;
 use fem_dynamics::lifting::{self, Lifting, OneSided};
 use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Residual of the loads beyond which displacements are not a result: they are about as wrong, for rounding in K alone.
@@ -115,6 +116,19 @@ impl Found {
 /// A scene without loads at rest, a cell that the element refuses, a structure that is not held, buckles or is too
 /// ill-conditioned, a result that is not finite, a criterion whose material lacks a constant.
 pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Error> {
+    solve_watched(model, threads, &mut |_| ControlFlow::Continue(()))
+}
+
+/// [`solve`]; `watch` hears after every step along a path of loads which share of it is done, and may end it there: what has been
+/// followed is kept.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_watched(
+    model: &Model,
+    threads: NonZeroUsize,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<StaticSolution, Error> {
     let Plan::Static { forces, .. } = &model.plan else { return Err(Error::NoLoads) };
     if model.effects.undecided() {
         return Err(Error::Undecided);
@@ -132,13 +146,15 @@ pub fn solve(model: &Model, threads: NonZeroUsize) -> Result<StaticSolution, Err
     });
     let nature = model.effects.nature();
     let solver = match &model.laws {
-        _ if model.separation.is_some() => followed,
         Some(_) => lawful,
         None if nature.large => nonlinear,
         None if model.one_sided().next().is_some() => lifting,
         None => linear,
     };
-    let found = solver(model, &f, threads, &mut counters, &mut stopwatch)?;
+    let found = match model.separation {
+        Some(_) => followed(model, threads, watch, &mut counters, &mut stopwatch)?,
+        None => solver(model, &f, threads, &mut counters, &mut stopwatch)?,
+    };
     if let Plan::Static { path: Some(plan), .. } = &model.plan {
         // What is left of the forces of the scene at the end of the path.
         let scale = found.followed.as_ref().and_then(|path| path.states.last()).map_or(1.0, |state| state.force);
@@ -321,8 +337,8 @@ fn nonlinear(
 /// Interfaces that open, step by step.
 fn followed(
     model: &Model,
-    _: &[f64],
     threads: NonZeroUsize,
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
     counters: &mut Counters,
     stopwatch: &mut Stopwatch,
 ) -> Result<Found, Error> {
@@ -330,7 +346,7 @@ fn followed(
         return Err(Error::NoLoads);
     };
     let path::End { followed, u, factor_entries, last } =
-        path::follow(model, (plan, separation), threads, counters, stopwatch)?;
+        path::follow(model, (plan, separation), (threads, watch), counters, stopwatch)?;
     Ok(Found {
         independent: u,
         substructures: None,

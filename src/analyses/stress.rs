@@ -395,7 +395,7 @@ pub(crate) fn recovery(model: &Model, quads: &[usize], centres: &[Centre], inter
         }
     };
     let resin = model.interface.filter(|_| interfaces);
-    Recovery::new(&model.plate, &model.laminates, &model.materials, resin, &windows)
+    Recovery::new(&model.plate, (&model.laminates, model.heights), &model.materials, resin, &windows)
 }
 
 pub(crate) fn sites(recovery: &Recovery) -> Vec<ScanSite> {

@@ -131,6 +131,10 @@ pub(super) fn compute(
     let document = Document { summary: &found, cost: &cost, results: folder.as_deref() };
     let place = || folder.as_deref().map_or(String::new(), |folder| format!("  results   {}\n", folder.display()));
     console.show(format, &document, place)?;
+    if let (Found::Static(_), Some(signal)) = (&found, terminal.signal()) {
+        console::tell("Stopped by a signal: the path up to there is kept, and cannot be gone on with.\n");
+        return Ok(ExitCode::from(128 + signal));
+    }
     Ok(if found.completed() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 

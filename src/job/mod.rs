@@ -78,7 +78,8 @@ pub enum Results {
 /// Who follows a job. Every method may be left out; `()` lets a job run to its end.
 pub trait Follow {
     /// This share of the steps of a march is done: heard at its beginning and after every step. A march that is broken off
-    /// leaves a checkpoint in its folder, from which [`Results::Resumed`] goes on.
+    /// leaves a checkpoint in its folder, from which [`Results::Resumed`] goes on. Of a path of loads at rest, which ends where it is
+    /// broken off, it is the share of the displacement.
     fn marched(&mut self, _share: f64) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }

@@ -11,7 +11,8 @@ use fem_io::files::OutputDir;
 use fem_io::tables::write_json;
 
 pub(super) fn statics(model: &Model, options: &Options, follow: &mut dyn Follow) -> Result<Part, Error> {
-    let solution = statics::solve(model, options.threads).inspect_err(|_| follow.failed(&model.warnings))?;
+    let solution = statics::solve_watched(model, options.threads, &mut |share| follow.marched(share))
+        .inspect_err(|_| follow.failed(&model.warnings))?;
     let (summary, phases) = (output::statics::StaticSummary::new(model, &solution), solution.phases.clone());
     hand_over(model, Found::Static(Box::new(StaticFound { solution, summary })), &phases, options, follow)
 }

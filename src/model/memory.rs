@@ -45,11 +45,12 @@ impl Model {
         let modes = |of: Site| judged(of).map(|(_, c)| c.info().modes.len()).sum::<usize>();
         let looks = self.interface.is_some() && judged(Site::Interface).next().is_some();
         let counts = |region: usize| {
-            let plies = self.laminates[region].plies.len();
-            let layers = self.laminates[region].layers.len();
+            let laminate = &self.laminates[region];
+            let plies = laminate.plies.len();
+            let layers = laminate.layers.len();
             // An interface between two layers of cells, or within a shell, has a stress from either side.
             let sides = if self.plate.info().is_shell() { 2 * (plies - 1) } else { plies + layers - 2 };
-            [plies, if looks { sides } else { 0 }]
+            [self.heights.sites(laminate), if looks { sides } else { 0 }]
         };
         let centres = self.centres.iter().map(|centre| centre.quad);
         let windows = self.watched.iter().copied().chain(centres).filter(|_| !self.criteria.is_empty());

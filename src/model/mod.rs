@@ -1,6 +1,7 @@
 //! From a scene to a model: everything that is decided before the first matrix.
 
 mod builder;
+mod cracks;
 mod effects;
 mod fields;
 mod gauge;
@@ -52,6 +53,7 @@ use fem_core::pieces;
 use fem_core::plate::Plate;
 use fem_core::plugin::Dimension;
 use fem_core::profile::Mirrors;
+use fem_core::recovery::PlyHeights;
 use fem_core::springs::SupportSpring;
 use fem_core::warping;
 use fem_core::window::Centre;
@@ -111,6 +113,8 @@ pub struct Model {
     pub criteria: Vec<NamedCriterion>,
     /// What stresses are averaged over in the plane.
     pub window: Window,
+    /// Where in its height a ply is judged.
+    pub heights: PlyHeights,
     /// Time between two scans of a march, s.
     pub sample_every: f64,
     /// Material of the resin between plies, for criteria that look there; counts in `materials`.
@@ -324,7 +328,7 @@ impl Model {
         if let Some(split) = &split {
             let equations = std::mem::take(&mut supports.equations);
             let built = builder.separation(split, &plate, &*element, &laminate, &materials, equations)?;
-            warnings.extend(built.warning());
+            warnings.extend(built.warnings(scene.impact().map(|impact| impact.march.step.value)));
             let (interfaces, plies) = (built.interfaces.clone(), laws.is_some());
             effects.act(Box::new(GrowingDelaminations { interfaces, plies }));
             separation = Some(built);
@@ -357,6 +361,7 @@ impl Model {
             profiles,
             criteria,
             window: scene.failure.window,
+            heights: scene.failure.plies,
             sample_every: scene.failure.every,
             interface: resin,
             watched,

@@ -1,7 +1,7 @@
 //! How loads at rest are followed while interfaces open.
 
 use super::builder::{Builder, Held};
-use super::separation::cell_length;
+use super::cracks::cell_length;
 use crate::effect::Effects;
 use crate::error::Error;
 use fem_core::constraint::{Constraints, Equation};

@@ -17,7 +17,7 @@ materials.tape = { library = "AS4/3502" }
 materials.resin = { library = "3502 resin" }
 laminate = { plies = "[0/45/90]", material = "tape", ply_thickness = "0.2 mm", layers = [2, 1], interface = "resin" }
 element = { kind = "hermite-prism", z_derivatives = "layer-wise" }
-failure = { criteria = ["hashin-1980", "octahedral"], window = "element" }
+failure = { criteria = ["hashin-1980", "octahedral"], window = "element", plies = "mean" }
 [[support]]
 group = "x-min"
 at = "all"

@@ -16,6 +16,7 @@ use fem_core::symmetry::SymmetryGroup;
 use fem_elements::{HermitePrism, Mass};
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
 
 const THICKNESS: f64 = 4e-3;
 const E: f64 = 60e9;
@@ -100,6 +101,7 @@ fn a_circular_delamination_grows_at_one_force() {
         if radius > 12e-3 {
             grown.push(point.load / exact);
         }
+        ControlFlow::Continue(())
     })
     .unwrap();
     assert!(grown.len() > 5 && grown.iter().all(|share| (share - 1.0).abs() < 0.04), "{grown:?}");

@@ -15,6 +15,7 @@ use fem_core::plugin::{Built, Dimension, Params, Plugin, Value};
 use fem_elements::{Mass, PlaneState, WebsterBeam};
 use fem_failure::laws::Bilinear;
 use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
 
 pub(super) const WIDTH: f64 = 0.025;
 const ARM: f64 = 0.0015;
@@ -124,6 +125,7 @@ impl Specimen {
         path.follow(end, |point, path| {
             let open = path.plate().parts().interfaces.lost_area(path.states(), 0.9999)[&1] / WIDTH;
             seen.push(Seen { point: *point, open });
+            ControlFlow::Continue(())
         })
         .unwrap();
         seen

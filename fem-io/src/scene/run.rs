@@ -12,6 +12,7 @@ use crate::document::tree::Node;
 use crate::units;
 use fem_core::load::Face;
 use fem_core::plugin::{Dimension, Kind};
+use fem_core::recovery::PlyHeights;
 
 /// A rigid mass that strikes a face.
 #[derive(Debug, Clone)]
@@ -134,6 +135,8 @@ pub struct Failure {
     pub every: f64,
     /// What stresses are averaged over in the plane.
     pub window: Window,
+    /// Where in its height a ply is judged.
+    pub plies: PlyHeights,
     /// Only cells within this distance of the impact are scanned, m.
     pub radius: Option<f64>,
     /// Places whose indices are written over time.
@@ -323,6 +326,13 @@ pub(super) const FAILURE: Keys = &[
     )
     .required(),
     key(
+        "plies",
+        Form::Words(&words(&PLIES)),
+        r#""faces""#,
+        "plies are judged by their mean, at faces and middle, or there where they are thicker than an eighth of the laminate",
+    )
+    .default(r#""auto""#),
+    key(
         "radius",
         Form::Quantity(Dimension::LENGTH),
         r#""10 mm""#,
@@ -335,6 +345,8 @@ pub(super) const FAILURE: Keys = &[
         "places whose failure indices are written over time",
     ),
 ];
+const PLIES: [(&str, PlyHeights); 3] =
+    [("auto", PlyHeights::Auto), ("faces", PlyHeights::Faces), ("mean", PlyHeights::Mean)];
 const WATCH: Keys = &[
     key("at", Form::Table(AT), r#"{ x = "0 mm", y = "0 mm" }"#, "where on the plate").required(),
     key("ply", Form::Count(1), "1", "in this ply, counted from the bottom"),
@@ -599,6 +611,7 @@ pub(super) fn read_failure(field: &SceneValue<'_>, wanted: bool, in_time: bool) 
         criteria,
         every: table.required("every")?.positive(Dimension::TIME)?,
         window,
+        plies: table.optional("plies").map_or(Ok(PlyHeights::Auto), |field| field.choice(&PLIES))?,
         radius: table.optional("radius").map(|field| field.positive(Dimension::LENGTH)).transpose()?,
         watch,
         place: table.place().clone(),

@@ -58,6 +58,8 @@ const COMPONENTS: [&str; 6] = ["11", "22", "33", "12", "23", "31"];
 /// Positions of the shear tractions (31, 23) of an interface among the components.
 const SHEAR: [usize; 2] = [5, 4];
 const NORMAL: usize = 2;
+/// Shares of the stresses at the faces and in the middle of a ply in its mean (Simpson's rule).
+const FACES_AND_MIDDLE: [f64; 3] = [1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0];
 
 /// The series `plies` and `interfaces`.
 #[derive(Debug)]
@@ -296,15 +298,20 @@ impl Sheets {
         self.stations.iter().flatten().any(|of| !of.is_empty())
     }
 
-    /// Stresses of a ply in its axes, tractions of an interface in the plate's: means of both sides.
+    /// Stresses of a ply in its axes, means over its height; tractions of an interface in the plate's, means of both sides.
     fn stresses(&self, recovery: &Recovery, stresses: &[f64]) -> Vec<Array> {
         if !self.is_stressed() {
             return Vec::new();
         }
         let mut means = Vec::with_capacity(6 * self.grid.cells());
         for sites in self.sites(recovery) {
-            let share = 1.0 / sites.clone().count() as f64;
-            let mean = |k: usize| sites.clone().map(|site| share * stresses[6 * site + k]).sum::<f64>();
+            let shares: &[f64] = match sites.clone().count() {
+                1 => &[1.0],
+                2 => &[0.5; 2],
+                _ => &FACES_AND_MIDDLE,
+            };
+            let mean =
+                |k: usize| sites.clone().zip(shares).map(|(site, share)| share * stresses[6 * site + k]).sum::<f64>();
             means.extend((0..6).map(mean));
         }
         if self.site == Site::Ply {

@@ -3,6 +3,7 @@
 use super::{Separable, SeparableError};
 use crate::words::energy::Energy;
 use std::fmt;
+use std::ops::ControlFlow;
 
 /// Iterations before a step is cut.
 const MOST: usize = 15;
@@ -16,7 +17,7 @@ const MOST_CUTS: usize = 30;
 /// Share of the energy step at which the control changes from opening to dissipation.
 const BEGUN: f64 = 0.05;
 
-/// Of an opening that is given.
+/// Of an opening or a dissipation that is given.
 const ROUNDING: f64 = 1e-9;
 
 /// Largest deviation of the dissipated energy from what was asked, relative.
@@ -139,33 +140,46 @@ impl<'a> Path<'a> {
         self.plate
     }
 
-    /// Makes steps until `end`, and shows each state to `see`.
+    /// Makes steps until `end`, and shows each state to `see`, which may end it there.
     ///
     /// # Errors
     /// A path that was lost; what has been seen stands.
-    pub fn follow(&mut self, end: PathEnd, mut see: impl FnMut(&PathPoint, &Self)) -> Result<(), PathError> {
+    pub fn follow(
+        &mut self,
+        end: PathEnd,
+        mut see: impl FnMut(&PathPoint, &Self) -> ControlFlow<()>,
+    ) -> Result<(), PathError> {
         for _ in 0..end.steps {
-            let point = self.advance(end.opening)?;
-            see(&point, self);
-            if point.opening >= (1.0 - ROUNDING) * end.opening || point.energy.dissipated >= end.dissipated {
+            let point = self.advance(end)?;
+            let ended = point.opening >= (1.0 - ROUNDING) * end.opening
+                || point.energy.dissipated >= (1.0 - ROUNDING) * end.dissipated;
+            if see(&point, self).is_break() || ended {
                 break;
             }
         }
         Ok(())
     }
 
-    /// Makes a step, none by opening beyond `most`.
-    fn advance(&mut self, most: f64) -> Result<PathPoint, PathError> {
+    /// Makes a step, none beyond `end`.
+    fn advance(&mut self, end: PathEnd) -> Result<PathPoint, PathError> {
         let f = self.force();
         let mut control = match self.control {
             Some(control) => control,
             None => Control::Opening(self.first_opening(&f)?),
         };
-        if let Control::Opening(opening) = &mut control {
-            *opening = opening.min(most - dot(&f, &self.u));
+        let most = end.opening - dot(&f, &self.u);
+        match &mut control {
+            Control::Opening(opening) => *opening = opening.min(most),
+            Control::Dissipation(energy) => *energy = energy.min(end.dissipated - self.energy.dissipated),
         }
+        // What goes too far is gone again by opening, or where that leads nowhere, by less.
+        let mut beyond = None;
         for _ in 0..MOST_CUTS {
             match self.attempt(&f, control)? {
+                Some((point, _)) if point.opening > (1.0 + ROUNDING) * end.opening => {
+                    beyond = Some(halved(control));
+                    control = Control::Opening(most);
+                }
                 Some((point, u)) => {
                     let before = self.energy.dissipated;
                     let more = point.energy.dissipated - before;
@@ -181,13 +195,12 @@ impl<'a> Path<'a> {
                     self.accept(u, point)?;
                     self.control = Some(match control {
                         Control::Opening(_) if more > BEGUN * self.step => Control::Dissipation(more.min(self.step)),
-                        Control::Opening(opening) if more == 0.0 => Control::Opening(1.5 * opening),
-                        Control::Opening(opening) => Control::Opening(opening),
+                        Control::Opening(opening) => Control::Opening(1.5 * opening),
                         Control::Dissipation(wanted) => Control::Dissipation((1.5 * wanted).min(self.step)),
                     });
                     return Ok(point);
                 }
-                None => control = halved(control),
+                None => control = beyond.take().unwrap_or_else(|| halved(control)),
             }
         }
         Err(PathError::Lost(self.factor))

@@ -14,6 +14,39 @@ use pulp::{Arch, Simd, WithSimd};
 use std::borrow::Cow;
 use std::ops::Range;
 
+/// Where in its height a ply is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PlyHeights {
+    /// By its mean (report eq. 12), which holds nothing of the bending across the ply.
+    Mean,
+    /// At both faces, where stresses of bending are largest, and in the middle, where those of shear are.
+    Faces,
+    /// As [`PlyHeights::Faces`] where the ply is thicker than an eighth of its laminate, by its mean otherwise: that of an outer
+    /// ply is below the stress at its face by its share of the thickness, if the laminate is bent and all plies are alike.
+    Auto,
+}
+
+impl PlyHeights {
+    /// Largest share of its laminate that a ply of [`PlyHeights::Auto`] has to be judged by its mean; eight equal plies are.
+    const THIN: f64 = 0.125 * (1.0 + 1e-6);
+
+    /// Parts of a ply between the natural heights `q` that is so large a `share` of its laminate.
+    fn parts(self, q: [f64; 2], share: f64) -> Vec<[f64; 2]> {
+        match self {
+            Self::Faces => {}
+            Self::Auto if share > Self::THIN => {}
+            Self::Mean | Self::Auto => return vec![q],
+        }
+        [q[0], 0.5 * (q[0] + q[1]), q[1]].map(|q| [q, q]).to_vec()
+    }
+
+    /// At how many heights the plies of `laminate` are judged, all together.
+    pub fn sites(self, laminate: &Laminate) -> usize {
+        let thickness = laminate.thickness();
+        laminate.plies.iter().map(|ply| self.parts([-1.0, 1.0], ply.thickness / thickness).len()).sum()
+    }
+}
+
 /// Where in the thickness a stress is taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Station {
@@ -23,7 +56,7 @@ pub struct Station {
     pub ply: usize,
     /// True for the resin between `ply` and the one above.
     pub interface: bool,
-    /// Height, m: middle of the ply, or the interface.
+    /// Height, m: of the interface, or in the ply.
     pub z: f64,
     /// Angle of the axes of the stress, radians.
     pub angle: f64,
@@ -49,7 +82,7 @@ impl Station {
     }
 }
 
-/// Mean stresses of every ply (report eqs 12, 13) and at every interface (eq. 14), for a set of windows, each of which lies in one region.
+/// Stresses of every ply (report eqs 12, 13: means, or at its [heights](PlyHeights)) and at every interface (eq. 14), for a set of windows, each of which lies in one region.
 ///
 /// Sites are ordered window by window, each with all stations from the bottom up. Interfaces between layers of cells are taken
 /// from both sides, because derivatives may jump there, and so are those within a shell, whose shear strains jump between plies.
@@ -73,7 +106,7 @@ impl Recovery {
     /// Watches `windows`. Interfaces are watched when the resin between plies is given. `laminates` are those of the regions of the plate.
     pub fn new(
         plate: &Plate,
-        laminates: &[Laminate],
+        (laminates, heights): (&[Laminate], PlyHeights),
         materials: &[Material],
         resin: Option<usize>,
         windows: &[Mean],
@@ -84,7 +117,7 @@ impl Recovery {
         let position = |source: &Source| sources.partition_point(|s| s < source);
         let shares = |window: &Mean| window.shares.iter().map(|(source, share)| (position(source), *share)).collect();
         let centres: Vec<Centre> = windows.iter().map(|window| window.centre).collect();
-        let of_region = |(region, laminate)| stations(plate, region, laminate, materials, resin);
+        let of_region = |(region, laminate)| stations(plate, region, (laminate, heights), materials, resin);
         let regions: Vec<Vec<Station>> = laminates.iter().enumerate().map(of_region).collect();
         let region_of: Vec<usize> = centres.iter().map(|centre| plate.region(centre.quad)).collect();
         let windows = windows.iter().map(shares).collect();
@@ -365,12 +398,13 @@ fn add_product(operator: &[f64], u: &[f64], strain: &mut [f64; 6]) {
 fn stations(
     plate: &Plate,
     region: usize,
-    laminate: &Laminate,
+    (laminate, heights): (&Laminate, PlyHeights),
     materials: &[Material],
     resin: Option<usize>,
 ) -> Vec<Station> {
     let stacks = plate.stacks(region);
     let z = laminate.boundaries();
+    let thickness = laminate.thickness();
     let product = |c: &Matrix6, angle: f64| -> Matrix6 {
         let r = strain_rotation(angle);
         std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| c[i][k] * r[k][j]).sum()))
@@ -402,17 +436,20 @@ fn stations(
             if k > first && plate.info().is_shell() {
                 all.extend(interface(k - 1, k - first, slice.q[0]));
             }
-            all.push(Station {
+            let to_stress = product(&materials[ply.material].elastic.stiffness(), ply.angle);
+            let [low, high] = slice.q;
+            let of_part = |q: [f64; 2]| Station {
                 layer,
                 ply: k,
                 interface: false,
-                z: 0.5 * (z[k] + z[k + 1]),
+                z: z[k] + (z[k + 1] - z[k]) * (0.5 * (q[0] + q[1]) - low) / (high - low),
                 angle: ply.angle,
                 material: ply.material,
-                part: Part { slice: k - first, q: slice.q },
+                part: Part { slice: k - first, q },
                 beside: None,
-                to_stress: product(&materials[ply.material].elastic.stiffness(), ply.angle),
-            });
+                to_stress,
+            };
+            all.extend(heights.parts(slice.q, ply.thickness / thickness).into_iter().map(of_part));
             if k + 1 < end || end < laminate.plies.len() {
                 all.extend(interface(k, k - first, slice.q[1]));
             }
