@@ -34,14 +34,7 @@ pub(super) struct CrackRuns<'a> {
 
 impl<'a> CrackRuns<'a> {
     pub(super) fn new(plate: &'a Plate) -> Self {
-        let mut ends = BTreeSet::new();
-        for side in plate.plane.quads.iter().flat_map(|corners| corners.sides()).map(undirected) {
-            // A side between two cells comes twice.
-            if !ends.remove(&side) {
-                ends.insert(side);
-            }
-        }
-        Self { plate, ends }
+        Self { plate, ends: plate.plane.boundary().into_iter().map(undirected).collect() }
     }
 
     /// The longer way through a cell, m, but none from one edge of the plate to the other: no front runs across a strip that is one

@@ -315,6 +315,7 @@ impl Model {
         let (centres, centre_cells) = around.into_iter().unzip();
         let resin = scene.interface.as_ref().map(|resin| resin.value);
         warnings.extend(resin.and_then(|resin| plan::warn_of_axes(&materials[resin], &criteria)));
+        warnings.extend(resin.and_then(|resin| plan::warn_of_stiffness(&materials[resin], &criteria)));
         let threshold = builder.threshold(DelaminationThreshold::of(&laminate, &materials, resin))?;
         let mirrors = Mirrors::of(&plate, constraints);
         let judged: &[usize] = if criteria.is_empty() { &[] } else { &watched };

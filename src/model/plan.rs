@@ -13,7 +13,7 @@ use fem_core::element::Element;
 use fem_core::failure::Site;
 use fem_core::functional::Functional;
 use fem_core::load::{self, Face};
-use fem_core::material::{Material, Strength};
+use fem_core::material::{Elastic, Material, Strength};
 use fem_core::patch;
 use fem_core::plate::{Plate, PlateError};
 use fem_core::plugin::Dimension;
@@ -34,6 +34,9 @@ const LOST: f64 = 0.01;
 
 /// Distance of two places that are the same, m.
 const SAME: f64 = 1e-9;
+
+/// Relative difference of two moduli that count as one.
+const ALIKE: f64 = 1e-3;
 
 /// What is computed, made concrete.
 #[derive(Debug, Clone)]
@@ -164,6 +167,20 @@ pub(super) fn warn_of_axes(resin: &Material, criteria: &[NamedCriterion]) -> Opt
          {s13} and an S23 of {s23}: its indices hang on how the plate lies; give both the same",
         resin.name
     ))
+}
+
+/// A material between plies whose moduli differ along x and y of the plate, which its plies do not know.
+pub(super) fn warn_of_stiffness(resin: &Material, criteria: &[NamedCriterion]) -> Option<String> {
+    let Elastic { e1, e2, nu13, nu23, g13, g23, .. } = resin.elastic;
+    let alike = |a: f64, b: f64| (a - b).abs() <= ALIKE * a.abs().max(b.abs());
+    let (label, _) = criteria.iter().find(|(_, criterion)| criterion.info().site == Site::Interface)?;
+    (!(alike(e1, e2) && alike(nu13, nu23) && alike(g13, g23))).then(|| {
+        format!(
+            "`{label}` judges stresses between plies of `{}`, whose moduli along x and y of the plate differ, whatever the plies beside \
+             it: its indices hang on how the plate lies; name a resin as `laminate.interface`",
+            resin.name
+        )
+    })
 }
 
 /// Profiles where laminates meet: on either side stresses are others.

@@ -241,6 +241,22 @@ fn cells_too_wide_for_a_toughness_are_refused_or_lower_strengths_and_say_so() {
     assert!(missing.contains("needs the toughness Gfc, Gmt, Gmc"), "{missing}");
 }
 
+#[test]
+fn cells_too_slender_for_a_band_are_warned_of() {
+    let slender = |cells: &str| {
+        let text = struck(
+            "law = { name = 'crack-band', lower_strengths = true }\nGft = '80 N/mm'\nGfc = '100 N/mm'\nGmt = '0.28 N/mm'\nGmc = '1.3 N/mm'\n",
+            "",
+        );
+        let (from, rest) = text.split_once("cells = ").unwrap();
+        let (_, to) = rest.split_once(']').unwrap();
+        let found = model(&format!("{from}cells = {cells}{to}")).unwrap();
+        found.warnings.into_iter().find(|warning| warning.contains("as long as wide"))
+    };
+    assert_eq!(slender("[20, 12]"), None);
+    assert!(slender("[40, 4]").unwrap().contains("law `crack-band`: cells are up to 6.7 times"));
+}
+
 /// Plies that follow a law which asks nothing of them, about a core that is a hundred times as soft.
 #[test]
 fn a_core_beside_plies_that_follow_laws_is_a_layer_of_its_own() {

@@ -73,6 +73,30 @@ fn the_advisor_and_modes_know_the_plate_that_holds_together() {
     assert_eq!(lowest(&whole), lowest(growth.whole().unwrap()));
 }
 
+/// Steps and penalties under which faces that come off are too heavy to, and cells that are long where a front may run.
+#[test]
+fn what_holds_faces_together_or_hides_their_zone_is_warned_of() {
+    let warned = |changes: &[[&str; 2]], word: &str| {
+        let mut text = Plate::new().text();
+        for [old, new] in changes {
+            assert!(text.contains(old), "{old}");
+            text = text.replace(old, new);
+        }
+        let model = Model::new(scene::parse(&text, &root().join("scene.toml")).unwrap(), &Registry::standard());
+        model.unwrap().warnings.iter().any(|warning| warning.contains(word))
+    };
+    let heavy = |changes: &[[&str; 2]]| warned(changes, "times the mass of the plate");
+    // 0.4 dt^2 times the penalty are 8 kg/m^2 beside the 4.8 of the plate.
+    assert!(!heavy(&[]));
+    assert!(!heavy(&[["step = '1 us'", "step = '2 us'"]]));
+    assert!(heavy(&[["step = '1 us'", "step = '8 us'"]]));
+    assert!(heavy(&[["2e4 N/mm^3", "1e6 N/mm^3"]]));
+    // The zone is some millimetres long: cells of 16 by 0.5 mm have the area of a square of 2.8 mm.
+    let long = |cells: &str| warned(&[["cells = [12, 10]", cells]], "wide may open");
+    assert!(!long("cells = [48, 40]"));
+    assert!(long("cells = [3, 80]"));
+}
+
 /// The share is proportional to the blow where shear alone strains the interfaces, and the threshold lies where it is said to.
 #[test]
 fn the_share_follows_the_blow() {

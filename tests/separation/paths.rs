@@ -271,6 +271,16 @@ fn what_makes_no_path_is_refused() {
 }
 
 /// What was found before stands, and the summary says where it ended.
+/// Whatever the step, it leads to the displacement that is given and not beyond.
+#[test]
+fn a_path_ends_where_it_is_to() {
+    for step in ["1.5 mJ", "12 mJ"] {
+        let found = found("dcb", &[["cells = [120, 1]", "cells = [60, 1]"], ["1.5 mJ", step]]).unwrap();
+        let figures = found.summary.path.as_ref().unwrap();
+        assert!(figures.stopped.is_none() && (figures.final_displacement_m / 4.2e-3 - 1.0).abs() < 1e-8, "{figures:?}");
+    }
+}
+
 #[test]
 fn a_path_whose_steps_are_used_up_says_so() {
     let changes = [["cells = [120, 1]", "cells = [60, 1]"], ["step = \"1.5 mJ\"", "step = \"4 mJ\", steps = 8"]];

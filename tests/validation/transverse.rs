@@ -166,3 +166,37 @@ fn a_plate_upside_down_fails_likewise() {
         }
     }
 }
+
+/// The reserve of a bent strip is that of the stress at its faces, σ = 6 M/(b h²), be it of one ply or of many.
+#[test]
+fn thick_plies_are_judged_at_their_faces() {
+    let (length, width, height, pressure, strength) = (100e-3_f64, 20e-3, 4e-3_f64, 0.5e6, 1.7e9);
+    let moment = pressure * width * length.powi(2) / 8.0;
+    let exact = strength * width * height.powi(2) / (6.0 * moment);
+    let strengths = "Xt = '1.8 GPa'\nXc = '1.7 GPa'\nYt = '64 MPa'\nYc = '138 MPa'\nS12 = '109 MPa'\nS23 = '69 MPa'\n";
+    let reserve = |element: &str, plies: &str, mm: f64, layers: Vec<usize>, judged: &str| {
+        let plate = Plate::new(&format!("{AS4}{strengths}"), plies, mm, layers)
+            .rectangle([length * 1e3, width * 1e3], [20, 4])
+            .element(element)
+            .sides([Side::Supported, Side::Supported, Side::Free, Side::Free])
+            .load("pressure = '0.5 MPa'")
+            .with(&format!("[failure]\ncriteria = ['max-stress']\nwindow = 'element'\n{judged}"));
+        let scene = fem::io::scene::parse(&plate.text("static"), "scene.toml".as_ref()).unwrap();
+        let model = fem::Model::new(scene, &fem::Registry::standard()).unwrap();
+        let margins = fem::analyses::statics::solve(&model, std::num::NonZeroUsize::MIN).unwrap().margins;
+        margins[0].reserve_factor / exact
+    };
+    for element in [SHELL, SOLID] {
+        let of = |plies, mm, layers, judged| reserve(element, plies, mm, layers, judged);
+        for (plies, mm, many) in [("[0]", 4.0, 1), ("[0_2]", 2.0, 2), ("[0_7]", 4.0 / 7.0, 7), ("[0_16]", 0.25, 16)] {
+            // Of sixteen plies each mean lacks a sixteenth.
+            let lacks = if many > 7 { 1.0 / 16.0 } else { 0.0 };
+            let found = of(plies, mm, vec![many], "") * (1.0 - lacks);
+            assert!((found - 1.0).abs() < 0.02, "{element} {plies}: {found}");
+            let found = of(plies, mm, vec![many], "plies = 'faces'");
+            assert!((found - 1.0).abs() < 0.02, "{element} {plies}, faces: {found}");
+        }
+        // What the report does: of one ply the mean knows no bending.
+        assert!(of("[0]", 4.0, vec![1], "plies = 'mean'") > 2.0);
+    }
+}

@@ -4,6 +4,7 @@ use crate::contracts::element::{Cell, Element, ElementError, ElementInfo, Slice,
 use crate::contracts::ply_law::{LawPoint, PlyLaw, PlyResponse, check_law};
 use crate::plates::laminate::Laminate;
 use crate::plates::plate::Plate;
+use crate::words::domain::Corners;
 use crate::words::energy::Energy;
 use crate::words::material::{Material, MaterialError};
 use crate::words::quadrature::gauss_legendre;
@@ -15,6 +16,9 @@ const TRIED: [[f64; 3]; 3] = [[0.3, -0.7, -0.95], [-0.6, 0.2, 0.1], [0.9, 0.8, 0
 
 /// Levels that an element may have.
 const MOST_LEVELS: usize = 8;
+
+/// Length of cells over their width up to which a crack takes what it should to half as much again.
+const SLENDER: f64 = 2.0;
 
 /// Deviation from them, relative, that is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -249,22 +253,34 @@ impl PlyLaws {
         Ok(Some(all))
     }
 
-    /// What laws say of the widest cell of each material that follows one.
+    /// What laws say of the widest cell of each material that follows one, and what there is to be said of the most slender.
     pub fn warnings(&self, plate: &Plate, element: &dyn Element) -> Vec<String> {
-        let mut widest = vec![0.0_f64; self.plies.len()];
+        let (mut widest, mut slender) = (vec![0.0_f64; self.plies.len()], vec![1.0_f64; self.plies.len()]);
         for cell in 0..plate.cells() {
             let ((quad, layer), view) = (plate.place(cell), plate.cell(cell));
             if self.beyond[quad] {
                 continue;
             }
             widest[layer] = widest[layer].max(width(form(element, view.corners.domain()).info(), &view));
+            slender[layer] = slender[layer].max(slenderness(&plate.plane.corners(quad)));
         }
         let mut said = Vec::new();
-        for (plies, length) in self.plies.iter().zip(widest) {
+        for ((plies, length), slender) in self.plies.iter().zip(widest).zip(slender) {
             for ply in plies.iter().flatten() {
                 let point = ply.point(length);
                 let warning = ply.law.warning(&point);
                 let warning = warning.map(|why| format!("material `{}`, law `{}`: {why}", ply.material.name, ply.name));
+                said.extend(warning.filter(|warning| !said.contains(warning)));
+                let smeared = slender > SLENDER && !ply.law.info().toughness.is_empty();
+                let warning = smeared.then(|| {
+                    format!(
+                        "material `{}`, law `{}`: cells are up to {slender:.1} times as long as wide, and cracks are smeared over the side of a \
+                         square as large: what they dissipate is off by up to {:.1} times; take cells at most {SLENDER} times as long as wide",
+                        ply.material.name,
+                        ply.name,
+                        slender.sqrt()
+                    )
+                });
                 said.extend(warning.filter(|warning| !said.contains(warning)));
             }
         }
@@ -614,6 +630,17 @@ fn through(levels: &[(f64, f64)], slices: &[Slice], plies: &[Option<LawfulPly>])
         })
     });
     points.collect()
+}
+
+/// Length of a cell over its width.
+fn slenderness(corners: &Corners<[f64; 2]>) -> f64 {
+    let sides: Vec<f64> = corners.sides().map(|[p, q]| (p[0] - q[0]).hypot(p[1] - q[1])).collect();
+    // Sides that face each other are one length.
+    let lengths: Vec<f64> = match sides[..] {
+        [a, b, c, d] => vec![0.5 * (a + c), 0.5 * (b + d)],
+        _ => sides,
+    };
+    lengths.iter().fold(0.0, |m: f64, l| m.max(*l)) / lengths.iter().fold(f64::INFINITY, |m, l| m.min(*l))
 }
 
 /// Width of a cell, m: the side of the square of its area.

@@ -185,7 +185,7 @@ impl PlaneMesh {
     }
 
     /// Edges of one cell alone, which lies to their left.
-    pub(crate) fn boundary(&self) -> Vec<[u32; 2]> {
+    pub fn boundary(&self) -> Vec<[u32; 2]> {
         let sides = Sides::of(self);
         self.quads.iter().flat_map(|q| q.sides()).filter(|side| sides.opposite(*side).is_none()).collect()
     }
