@@ -1,6 +1,6 @@
 //! `fem run --set` and `fem sweep`: a row is a run.
 
-use crate::support::{Case, fem, read_under};
+use crate::support::{Case, fem, read_under, strip};
 use fem::Registry;
 use fem::io::scene::Setting;
 use fem::job::{self, Found, Options};
@@ -241,4 +241,36 @@ fn formulas_are_columns_and_what_nothing_beats_is_marked() {
         assert!(done.status == 1 && said.contains(words), "{option} {done:#?}");
         assert!(!case.folder().join("refused").exists(), "{option}");
     }
+}
+
+/// Rows of delaminations that grow say how far they have, as the summary of a run does.
+#[test]
+fn delaminations_have_columns() {
+    let case = strip().text(
+        "title = 'growth'\nmesh = { rectangle = ['48 mm', '40 mm'], cells = [6, 6] }\nsymmetry = 'quarter'\n\
+         element = { kind = 'hermite-prism' }\neffects = { damage = 'off', delamination = 'growth' }\n\
+         support = [{ group = 'x-min', kind = 'simply-supported' }, { group = 'x-max', kind = 'simply-supported' }]\n\
+         impactor = { mass = '1 kg', velocity = '3 m/s', at = { x = '24 mm', y = '20 mm' }, patch_radius = '4 mm' }\n\
+         contact = { law = 'hertz', k = '4e9 N/m^1.5' }\nmarch = { step = '1 us', end = '600 us' }\n\
+         laminate = { plies = '[0/90/0]', material = 'tape', ply_thickness = '1 mm' }\n\
+         output = { plots = false }\n[materials.tape]\nlibrary = 'IM7/8552'\nZt = '20 MPa'\nS13 = '25 MPa'\n",
+    );
+    let asked =
+        ["--set", "impactor.velocity=0.3 m/s,3 m/s", "--quantity", "per_area = dissipated_energy/delaminated_areas"];
+    case.fem("sweep", &[&asked[..], &["--out", "sweep"]].concat()).good();
+    case.fem("run", &["--out", "run"]).good();
+    let rows = rows(&case, "sweep");
+    let number = |row: usize, column: &str| rows[row][column].parse::<f64>().unwrap();
+    assert_eq!((number(0, "delaminated_area_m2"), number(0, "dissipated_energy_J")), (0.0, 0.0));
+    let grown = &case.summary("run")["delamination"];
+    for (column, key, unit) in [
+        ("delaminated_area_m2", "projected_area_mm2", 1e-6),
+        ("delaminated_areas_m2", "area_mm2", 1e-6),
+        ("dissipated_energy_J", "dissipated_J", 1.0),
+    ] {
+        let (found, want) = (number(1, column), unit * grown[key].as_f64().unwrap());
+        assert!(want > 0.0 && (found / want - 1.0).abs() < 1e-9, "{column}: {found}, not {want}");
+    }
+    let column = rows[1].keys().find(|name| name.starts_with("per_area")).unwrap();
+    assert!((200.0..2e3).contains(&number(1, column)), "{column}: {:?}", rows[1]);
 }

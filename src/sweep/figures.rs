@@ -18,6 +18,8 @@ pub struct CaseFigures {
     pub modes: Vec<ModeFigures>,
     /// Largest contact force over that at which all interfaces between unlike plies delaminate, where that is known.
     pub over_threshold: Option<f64>,
+    /// What has delaminated, where delaminations grow.
+    pub grown: Option<GrownFigures>,
     /// Largest deviation of the energy from that of the impact, relative to it.
     pub energy_error: f64,
     /// How many warnings and cautions `fem run` would say, but for those that follow from estimates of errors.
@@ -58,6 +60,18 @@ impl From<&ImpactFigures> for StruckFigures {
             absorbed_energy: of.energy_J - 0.5 * of.mass_kg * of.final_impactor_velocity_m_s.powi(2),
         }
     }
+}
+
+/// What has delaminated.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct GrownFigures {
+    /// Of the plate under which some interface has delaminated.
+    pub projected_area: f64,
+    /// Of all interfaces.
+    pub area: f64,
+    /// In the interfaces.
+    pub dissipated_energy: f64,
 }
 
 /// First damage: when, by what, where, and the contact force then.
@@ -103,6 +117,11 @@ impl CaseFigures {
             impactors: summary.impact.iter().map(StruckFigures::from).collect(),
             over_threshold: summary.delamination_threshold.as_ref().map(|threshold| {
                 summary.impact.iter().map(|of| of.peak_force_N).fold(0.0, f64::max) / threshold.force_of_all_N
+            }),
+            grown: summary.delamination.as_ref().map(|grown| GrownFigures {
+                projected_area: grown.projected_area_mm2 * 1e-6,
+                area: grown.area_mm2 * 1e-6,
+                dissipated_energy: grown.dissipated_J,
             }),
             energy_error: outcome.energy_error,
             warnings: (summary.warnings.len() + summary.cautions.len()) as u64,

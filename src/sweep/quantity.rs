@@ -1,7 +1,7 @@
 //! Quantities that are formulas of what cases set and find.
 
 use super::design::SweepAxis;
-use super::figures::{CaseFigures, StruckFigures};
+use super::figures::{CaseFigures, GrownFigures, StruckFigures};
 use crate::error::Error;
 use crate::model::{Model, Plan};
 use fem_core::formula::{Formula, PowerError};
@@ -12,6 +12,9 @@ use fem_io::units::parse_quantity;
 /// A figure of an impactor: its name, its unit at the end of a column, what it is, where it stands.
 type OfImpactor = (&'static str, &'static str, Dimension, fn(&StruckFigures) -> f64);
 
+/// The same of what has delaminated.
+type OfGrowth = (&'static str, &'static str, Dimension, fn(&GrownFigures) -> f64);
+
 /// What is known of each impactor.
 pub(super) const OF_IMPACTOR: [OfImpactor; 7] = [
     ("energy", "J", Dimension::ENERGY, |of| of.energy),
@@ -21,6 +24,13 @@ pub(super) const OF_IMPACTOR: [OfImpactor; 7] = [
     ("deflection", "m", Dimension::LENGTH, |of| of.deflection),
     ("contact_time", "s", Dimension::TIME, |of| of.contact_time),
     ("absorbed_energy", "J", Dimension::ENERGY, |of| of.absorbed_energy),
+];
+
+/// What is known of delaminations that grow, as of an impactor.
+pub(super) const OF_GROWTH: [OfGrowth; 3] = [
+    ("delaminated_area", "m2", Dimension::AREA, |of| of.projected_area),
+    ("delaminated_areas", "m2", Dimension::AREA, |of| of.area),
+    ("dissipated_energy", "J", Dimension::ENERGY, |of| of.dissipated_energy),
 ];
 
 /// Units that formulas know.
@@ -39,6 +49,7 @@ enum Figure {
     Onset(usize),
     Force(usize),
     OverThreshold,
+    Grown(fn(&GrownFigures) -> f64),
     EnergyError,
     Warnings,
     Unit(f64),
@@ -88,6 +99,9 @@ impl Known {
             known.add(&format!("{mode} force"), Dimension::FORCE, Figure::Force(k));
         }
         known.add("force_over_delamination_threshold", Dimension::NONE, Figure::OverThreshold);
+        for (name, _, is, at) in OF_GROWTH.into_iter().filter(|_| model.separation.is_some()) {
+            known.add(name, is, Figure::Grown(at));
+        }
         known.add("energy_error", Dimension::NONE, Figure::EnergyError);
         known.add("warnings", Dimension::NONE, Figure::Warnings);
         for (k, axis) in axes.iter().enumerate() {
@@ -201,6 +215,7 @@ impl CaseQuantity {
             Figure::Onset(mode) => onset(mode).map(|onset| onset.0),
             Figure::Force(mode) => onset(mode).map(|onset| onset.1),
             Figure::OverThreshold => case.over_threshold,
+            Figure::Grown(at) => case.grown.as_ref().map(at),
             Figure::EnergyError => Some(case.energy_error),
             Figure::Warnings => Some(case.warnings as f64),
             Figure::Unit(value) => Some(*value),

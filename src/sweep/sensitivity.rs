@@ -60,6 +60,10 @@ fn results(sweep: &Sweep<'_>, number: usize, case: &CaseFigures) -> Results {
         all.push((name("deflection_m"), Some(of.deflection)));
         all.push((name("absorbed_energy_J"), Some(of.absorbed_energy)));
     }
+    if let Some(of) = &case.grown {
+        all.push(("delaminated_area_m2".to_owned(), Some(of.projected_area)));
+        all.push(("dissipated_energy_J".to_owned(), Some(of.dissipated_energy)));
+    }
     all.extend(case.modes.iter().map(|mode| (format!("{} index", mode.name), Some(mode.index))));
     if !sweep.quantities.is_empty() {
         let values = sweep.design.case(number - 1);

@@ -1,7 +1,7 @@
 //! A sweep as tables.
 
 use super::page::{self, CasesPage};
-use super::quantity::{CaseQuantity, OF_IMPACTOR};
+use super::quantity::{CaseQuantity, OF_GROWTH, OF_IMPACTOR};
 use super::runner::CaseRow;
 use super::scatter::{Scatter, scatter};
 use super::sensitivity::{Importance, importance};
@@ -198,6 +198,7 @@ fn header(sweep: &Sweep<'_>, rows: &[CaseRow]) -> Vec<String> {
             header.extend([format!("{name} index"), format!("{name} time_s"), format!("{name} force_N")]);
         }
         header.extend(one.over_threshold.map(|_| "force_over_delamination_threshold".to_owned()));
+        header.extend(one.grown.iter().flat_map(|_| OF_GROWTH.map(|(column, unit, ..)| format!("{column}_{unit}"))));
         header.extend(["energy_error", "warnings"].map(str::to_owned));
         header.extend(sweep.quantities.iter().map(CaseQuantity::column));
         header.extend(sweep.objectives.as_ref().map(|_| "on_pareto_front".to_owned()));
@@ -244,6 +245,7 @@ fn line<'a>(
         line.extend([Some(mode.index), mode.onset.map(|onset| onset.0), mode.onset.map(|onset| onset.1)].map(number));
     }
     line.extend(figures.over_threshold.map(|share| number(Some(share))));
+    line.extend(figures.grown.iter().flat_map(|of| OF_GROWTH.map(|(.., at)| number(Some(at(of))))));
     line.extend([number(Some(figures.energy_error)), TableValue::Count(figures.warnings)]);
     line.extend(sweep.quantities.iter().map(|quantity| number(quantity.value(values, figures))));
     line.extend(sweep.objectives.as_ref().map(|_| on_front.map_or(NONE, |on| TableValue::Count(on.into()))));

@@ -674,13 +674,19 @@ pub(super) fn read_output(field: &SceneValue<'_>, march: Option<&MarchSpec>) -> 
         count @ 1..=MOST_MODES => Ok(field.at(count)),
         count => Err(field.error(format!("{count} modes"), format!("at most {MOST_MODES} can be followed"))),
     });
+    let in_time = |key| match table.optional(key) {
+        Some(field) if march.is_none() => {
+            Err(field.error("needs an impact: nothing else is written over time", "leave it out"))
+        }
+        field => Ok(field),
+    };
     let checkpoint = table.optional("checkpoint_every").map(|field| field.positive(Dimension::TIME));
     Ok(Output {
         checkpoint_every: checkpoint.transpose()?.unwrap_or(CHECKPOINT_EVERY),
         modes: modes.transpose()?,
-        history_every: table.optional("history_every").map(|field| field.positive(Dimension::TIME)).transpose()?,
+        history_every: in_time("history_every")?.map(|field| field.positive(Dimension::TIME)).transpose()?,
         plots: table.optional("plots").map_or(Ok(true), |field| field.flag())?,
-        maps: table.optional("maps").map_or(Ok(false), |field| field.flag())?,
+        maps: in_time("maps")?.map_or(Ok(false), |field| field.flag())?,
         fields: table.optional("fields").map_or(Ok(None), |field| fields::read(&field, march))?,
     })
 }
