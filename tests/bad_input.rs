@@ -335,6 +335,13 @@ mod mesh {
                 "{done:#?}"
             );
         }
+        for (constant, words) in [
+            ("density=1575 g/cm^3", "material `as4-3502`: density = 1575000 kg/m^3 is none of a solid"),
+            ("e1=130.3e3 GPa", "material `as4-3502`: e1 = 130300 GPa is none of a solid"),
+        ] {
+            let done = strip().fem("check", &["--set", &format!("materials.as4-3502.{constant}")]).good();
+            assert!(flat(&done.stdout).contains(words), "{done:#?}");
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! From a scene to a model: everything that is decided before the first matrix.
 
 mod builder;
+mod constants;
 mod cracks;
 mod effects;
 mod fields;
@@ -254,6 +255,7 @@ impl Model {
         warnings.extend(plate.plane.coarse_circles().into_iter().map(warn_of_corners));
         warnings.extend(warn_of_flat_cells(&plate));
         warnings.extend(incompressible(&plate, &laminates, &materials));
+        warnings.extend(constants::unlikely(&laminates, &materials));
         warnings.extend(laminates.iter().find_map(|laminate| warn_of_warping(&plate, laminate, &materials)));
         let mut supports = builder.constraints(&plate, &*element)?;
         builder.check_springs(&plate, &supports.springs, &effects)?;

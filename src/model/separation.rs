@@ -16,7 +16,7 @@ use fem_core::plugin::Dimension;
 use fem_core::plugin::{Built, Kind};
 use fem_core::ply_law::{LawError, LawPoint};
 use fem_io::scene::{Analysis, DelaminationSpec, Place, PluginSpec, SceneError, StartingExtent};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What an integrator may miss of it by rounding.
 const ROUNDING: f64 = 1e-6;
@@ -114,7 +114,10 @@ impl Separation {
 }
 
 /// Whether a point, m, of a cell is in a delamination; how far a place is from it, m; where it stands in the scene.
-type Extent<'s> = (Box<dyn Fn(usize, [f64; 2]) -> bool>, Box<dyn Fn([f64; 2]) -> f64>, &'s Place);
+type Extent<'s> = (Box<dyn Fn(usize, [f64; 2]) -> bool>, Distance, &'s Place);
+
+/// How far a point is from a delamination, m; negative or zero inside.
+type Distance = Box<dyn Fn([f64; 2]) -> f64>;
 
 /// Where a plate is given two sides.
 pub(super) struct Split<'a> {
@@ -282,6 +285,7 @@ impl<'a> Builder<'a> {
         states: &mut [f64],
     ) -> Result<(), SceneError> {
         let first = interfaces.first_states();
+        let mut begun: BTreeMap<usize, Vec<(Distance, &Place, usize)>> = BTreeMap::new();
         for start in &spec.starting {
             let number = start.interface.value + 1;
             let face = faces.iter().find(|(_, below)| *below == number).map(|(face, _)| *face).ok_or_else(|| {
@@ -299,33 +303,34 @@ impl<'a> Builder<'a> {
                     interfaces.crack(number, &mut states[own], |p| inside(cell.quad, p));
                 }
             }
-            if broken == 0 {
+            begun.entry(face).or_default().push((distance, place, broken));
+        }
+        begun.values().try_for_each(|starts| self.check_starts(plate, starts))
+    }
+
+    /// Refuses delaminations of an interface that hold none of its points, and those that together lack the symmetry of the plate: they
+    /// would be others, the images of what lies in the part that is kept.
+    fn check_starts(&self, plate: &Plate, starts: &[(Distance, &Place, usize)]) -> Result<(), SceneError> {
+        let away = |quad: usize| {
+            let centre = plate.plane.corners(quad).centroid();
+            starts.iter().map(|(distance, ..)| distance(centre)).fold(f64::INFINITY, f64::min)
+        };
+        let size = plate.plane.area().sqrt();
+        let moved = |quad: usize| (away(quad) - away(plate.symmetry().quad(quad))).abs() > SAME_PLACE * size;
+        let lacking = (0..plate.plane.quads.len()).any(moved);
+        let images = (0..plate.plane.quads.len()).any(|quad| plate.symmetry().quad(quad) != quad);
+        for (_, place, broken) in starts {
+            // What lies in another part of the plate is an image of one that does not.
+            if *broken == 0 && (lacking || !images || starts.len() == 1) {
                 let message = "this delamination holds no point of the interface that may open";
                 let help = "its centre in the plate and near enough to the impact, its radius more than a cell; or a group of cells";
                 return Err(self.scene.source.error_at(place, message, help));
             }
-            self.symmetric_start(plate, &*distance, place)?;
-        }
-        Ok(())
-    }
-
-    /// Refuses a delamination without the symmetry of the plate: it would be another one, of images of what lies in the part that is kept.
-    fn symmetric_start(
-        &self,
-        plate: &Plate,
-        distance: &dyn Fn([f64; 2]) -> f64,
-        place: &Place,
-    ) -> Result<(), SceneError> {
-        let away = |quad: usize| distance(plate.plane.corners(quad).centroid());
-        let size = plate.plane.area().sqrt();
-        let moved = |quad: usize| (away(quad) - away(plate.symmetry().quad(quad))).abs() > SAME_PLACE * size;
-        if (0..plate.plane.quads.len()).any(moved) {
-            let message = "this delamination lacks the `symmetry` of the scene";
-            return Err(self.scene.source.error_at(
-                place,
-                message,
-                "leave `symmetry` out: the plate is then computed as a whole",
-            ));
+            if lacking {
+                let message = "the delaminations of this interface lack the `symmetry` of the scene";
+                let help = "name their images as well, or leave `symmetry` out: the plate is then computed as a whole";
+                return Err(self.scene.source.error_at(place, message, help));
+            }
         }
         Ok(())
     }

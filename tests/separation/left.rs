@@ -138,5 +138,5 @@ fn what_nobody_can_decide_is_refused() {
     let text = left().text().replace("penalty = '2e4 N/mm^3'", start);
     let read = scene::parse(&text, &root().join("scene.toml")).unwrap();
     let error = Model::new(read, &Registry::standard()).expect_err("refused").to_string();
-    assert!(error.contains("lacks the `symmetry`"), "{error}\n{text}");
+    assert!(error.contains("lack the `symmetry`"), "{error}\n{text}");
 }

@@ -226,6 +226,9 @@ fn what_makes_no_path_is_refused() {
         &[[growth, "effects = { damage = \"off\", delamination = \"growth\", membrane = \"on\" }"]],
         "does not stand beside",
     );
+    // A level of nodes, where another kind of load has a place, is no fault beside one.
+    let message = format!("{:?}", found("dcb", &[["\"1.5 mJ\"", "\"1.5 mm\""]]).map(|_| ()).unwrap_err());
+    assert!(message.contains("path.step") && !message.contains("load"), "{message}");
     refused("dcb", &[["\"static\"", "\"modes\""]], "means nothing in the analysis `modes`");
     refused("mmb-50", &[["until = \"4 mm\", ", ""]], "no end of its own");
     refused("mmb-50", &[["path = { force = \"1 N\", until = \"4 mm\", step = \"2 mJ\" }\n", ""]], "no end of its own");

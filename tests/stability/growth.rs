@@ -169,8 +169,8 @@ fn openings() -> f64 {
 }
 
 fn merging() -> f64 {
-    // Its image by the symmetry is the other.
-    const START: &str = "start = [{ interface = 1, at = { x = '36 mm', y = '20 mm' }, radius = '5 mm' }]";
+    const START: &str = "start = [{ interface = 1, at = { x = '36 mm', y = '20 mm' }, radius = '5 mm' }, \
+                         { interface = 1, at = { x = '12 mm', y = '20 mm' }, radius = '5 mm' }]";
     let outcome = Struck { delamination: START, ..Struck::new() }.run();
     // More than both and the strip between them.
     let projected = outcome.delaminated.as_ref().unwrap().projected;

@@ -25,6 +25,13 @@ impl Reader<'_> {
         let of = |key: &'static Key| self.optional(key.name).map_or(Vec::new(), |value| value.faults(&key.form));
         self.keys().flat_map(of).collect()
     }
+
+    /// Of a key that has a form of its own in each of several tables: none, where one of them takes its value.
+    fn faults_of_each(&self, name: &str, tables: &'static [Form]) -> Vec<SceneError> {
+        let Some(value) = self.optional(name) else { return Vec::new() };
+        let same = tables.iter().filter_map(Form::keys).flatten().filter(|key| key.name == name);
+        same.map(|key| value.faults(&key.form)).min_by_key(Vec::len).unwrap_or_default()
+    }
 }
 
 impl SceneValue<'_> {
@@ -61,9 +68,13 @@ impl SceneValue<'_> {
         let mut alike = forms.iter().filter(|form| form.is_like(self.node()));
         match (alike.next(), alike.next()) {
             (Some(only), None) => self.faults(only),
-            (Some(Form::Table(_)), Some(Form::Table(_))) => self
-                .unchecked_table(Form::keys_of_any(forms))
-                .map_or_else(|wrong| vec![wrong], |table| table.strays().chain(table.faults_of_values()).collect()),
+            (Some(Form::Table(_)), Some(Form::Table(_))) => self.unchecked_table(Form::keys_of_any(forms)).map_or_else(
+                |wrong| vec![wrong],
+                |table| {
+                    let values = table.keys().flat_map(|key| table.faults_of_each(key.name, forms));
+                    table.strays().chain(values).collect()
+                },
+            ),
             _ => Vec::new(),
         }
     }
