@@ -173,17 +173,43 @@ load = [{ pressure = "1 kPa" }]"#,
 /// The axes of a plate say nothing of its plies.
 #[test]
 fn interfaces_stronger_along_x_than_along_y() {
-    let with = |s23: &str| {
+    let with = |moduli: &str, s23: &str| {
         let text = case(&format!(
-            r#"materials.resin = {{ density = "1.3 g/cm^3", e = "4 GPa", nu = 0.3, Zt = "60 MPa", S13 = "90 MPa", S23 = "{s23}" }}
+            r#"materials.resin = {{ density = "1.3 g/cm^3", {moduli}, Zt = "60 MPa", S13 = "90 MPa", S23 = "{s23}" }}
 failure = {{ criteria = ["quadratic-stress"], window = "element" }}
 support = [{{ group = "x-min", at = "all", fix = ["U10", "U20", "U30"] }}]
 load = [{{ pressure = "1 kPa" }}]"#
         ));
         said(&text.scene("layers = [2, 2] }", "layers = [2, 2], interface = \"resin\" }"), 0)
     };
-    holds(&with("60 MPa"), &["`quadratic-stress` judges", "S13 of 90 MPa and an S23 of 60 MPa", "give both the same"]);
-    assert!(!with("90 MPa").contains("hang on how the plate lies"));
+    let isotropic = r#"e = "4 GPa", nu = 0.3"#;
+    let weak = with(isotropic, "60 MPa");
+    holds(&weak, &["`quadratic-stress` judges", "S13 of 90 MPa and an S23 of 60 MPa", "give both the same"]);
+    assert!(!with(isotropic, "90 MPa").contains("hang on how the plate lies"));
+    // Nor do they know its moduli; those along z are the same for all of them.
+    let tape = |e2: &str, g23: &str| {
+        format!(
+            r#"e1 = "9 GPa", e2 = "{e2}", e3 = "5 GPa", nu12 = 0.3, nu13 = 0.3, nu23 = 0.3, g12 = "3 GPa", g13 = "3 GPa", g23 = "{g23}""#
+        )
+    };
+    for (e2, g23) in [("5 GPa", "3 GPa"), ("9 GPa", "2 GPa")] {
+        holds(&with(&tape(e2, g23), "90 MPa"), &["whose moduli along x and y of the plate differ", "name a resin"]);
+    }
+    assert!(!with(&tape("9 GPa", "3 GPa"), "90 MPa").contains("moduli along x"));
+}
+
+/// Loads at rest have no history.
+#[test]
+fn what_is_written_over_time() {
+    for key in ["history_every = \"1 us\"", "maps = true"] {
+        let text = case(
+            r#"support = [{ group = "x-min", at = "all", fix = ["U10", "U20", "U30"] }]
+load = [{ pressure = "1 kPa" }]"#,
+        )
+        .scene("plots = false", &format!("plots = false, {key}"));
+        let name = key.split(' ').next().unwrap();
+        holds(&said(&text, 1), &[&format!("output.{name}"), "needs an impact"]);
+    }
 }
 
 /// A shell has one layer without being asked, and a force on a circle says what it lacks.

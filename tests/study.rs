@@ -1,6 +1,6 @@
 //! `fem study`: what accuracy costs, counted from a reference that the study proves.
 
-use crate::support::{Case, fem, root, strip};
+use crate::support::{Case, coming_apart, fem, root, strip};
 use fem::core::plugin::Dimension;
 use fem::io::units::parse_as;
 use std::collections::{BTreeMap, BTreeSet};
@@ -181,15 +181,7 @@ fn a_ladder_says_what_it_leaves() {
 /// Delaminations that grow have ladders of their own, and none of what they have chosen.
 #[test]
 fn of_delaminations_that_grow() {
-    let case = strip().text(
-        "title = 'growth'\nmesh = { rectangle = ['48 mm', '40 mm'], cells = [6, 6] }\nsymmetry = 'quarter'\n\
-         element = { kind = 'hermite-prism' }\neffects = { damage = 'off', delamination = 'growth' }\n\
-         support = [{ group = 'x-min', kind = 'simply-supported' }, { group = 'x-max', kind = 'simply-supported' }]\n\
-         impactor = { mass = '1 kg', velocity = '3 m/s', at = { x = '24 mm', y = '20 mm' }, patch_radius = '4 mm' }\n\
-         contact = { law = 'hertz', k = '4e9 N/m^1.5' }\nmarch = { step = '1 us', end = '250 us' }\n\
-         laminate = { plies = '[0/90/0]', material = 'tape', ply_thickness = '1 mm' }\n\
-         [materials.tape]\nlibrary = 'IM7/8552'\nZt = '20 MPa'\nS13 = '25 MPa'\n",
-    );
+    let case = coming_apart(250);
     let done = case.fem("study", &["--axis", "layers,reduction,points,margin", "--out", "study"]).good();
     let rows = rows(&case, "study");
     let of = |axis: &str| rows.iter().filter(|((of, _), _)| of == axis).map(|(_, row)| row).collect::<Vec<_>>();

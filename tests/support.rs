@@ -172,6 +172,19 @@ pub(crate) fn plate() -> Case {
     Case::example("as4-3502-16ply-50mm")
 }
 
+/// Three plies of 6 x 6 cells that delaminate under 1 kg at 3 m/s, until `end_us`.
+pub(crate) fn coming_apart(end_us: u32) -> Case {
+    plate().text(&format!(
+        "title = 'growth'\nmesh = {{ rectangle = ['48 mm', '40 mm'], cells = [6, 6] }}\nsymmetry = 'quarter'\n\
+         element = {{ kind = 'hermite-prism' }}\neffects = {{ damage = 'off', delamination = 'growth' }}\n\
+         support = [{{ group = 'x-min', kind = 'simply-supported' }}, {{ group = 'x-max', kind = 'simply-supported' }}]\n\
+         impactor = {{ mass = '1 kg', velocity = '3 m/s', at = {{ x = '24 mm', y = '20 mm' }}, patch_radius = '4 mm' }}\n\
+         contact = {{ law = 'hertz', k = '4e9 N/m^1.5' }}\nmarch = {{ step = '1 us', end = '{end_us} us' }}\n\
+         laminate = {{ plies = '[0/90/0]', material = 'tape', ply_thickness = '1 mm' }}\n\
+         [materials.tape]\nlibrary = 'IM7/8552'\nZt = '20 MPa'\nS13 = '25 MPa'\n"
+    ))
+}
+
 /// A cantilever of 4 x 2 cells, struck in its middle: a run takes no time.
 pub(crate) fn strip() -> Case {
     plate()

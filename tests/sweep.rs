@@ -1,6 +1,6 @@
 //! `fem run --set` and `fem sweep`: a row is a run.
 
-use crate::support::{Case, fem, read_under, strip};
+use crate::support::{Case, coming_apart, fem, read_under};
 use fem::Registry;
 use fem::io::scene::Setting;
 use fem::job::{self, Found, Options};
@@ -246,15 +246,7 @@ fn formulas_are_columns_and_what_nothing_beats_is_marked() {
 /// Rows of delaminations that grow say how far they have, as the summary of a run does.
 #[test]
 fn delaminations_have_columns() {
-    let case = strip().text(
-        "title = 'growth'\nmesh = { rectangle = ['48 mm', '40 mm'], cells = [6, 6] }\nsymmetry = 'quarter'\n\
-         element = { kind = 'hermite-prism' }\neffects = { damage = 'off', delamination = 'growth' }\n\
-         support = [{ group = 'x-min', kind = 'simply-supported' }, { group = 'x-max', kind = 'simply-supported' }]\n\
-         impactor = { mass = '1 kg', velocity = '3 m/s', at = { x = '24 mm', y = '20 mm' }, patch_radius = '4 mm' }\n\
-         contact = { law = 'hertz', k = '4e9 N/m^1.5' }\nmarch = { step = '1 us', end = '600 us' }\n\
-         laminate = { plies = '[0/90/0]', material = 'tape', ply_thickness = '1 mm' }\n\
-         output = { plots = false }\n[materials.tape]\nlibrary = 'IM7/8552'\nZt = '20 MPa'\nS13 = '25 MPa'\n",
-    );
+    let case = coming_apart(600).append("[output]\nplots = false\n");
     let asked =
         ["--set", "impactor.velocity=0.3 m/s,3 m/s", "--quantity", "per_area = dissipated_energy/delaminated_areas"];
     case.fem("sweep", &[&asked[..], &["--out", "sweep"]].concat()).good();
@@ -273,4 +265,16 @@ fn delaminations_have_columns() {
     }
     let column = rows[1].keys().find(|name| name.starts_with("per_area")).unwrap();
     assert!((200.0..2e3).contains(&number(1, column)), "{column}: {:?}", rows[1]);
+}
+
+/// Where the advisor opens the interfaces of some cases alone, the columns are there for all.
+#[test]
+fn delaminations_of_some_cases_are_columns_of_all() {
+    let case = coming_apart(600).scene("delamination = 'growth'", "delamination = 'auto'");
+    let asked = ["--set", "impactor.velocity=0.02 m/s,3 m/s", "--quantity", "area = delaminated_area"];
+    case.fem("sweep", &[&asked[..], &["--out", "sweep"]].concat()).good();
+    let rows = rows(&case, "sweep");
+    assert_eq!((&rows[0]["dissipated_energy_J"][..], &rows[0]["delaminated_area_m2"][..]), ("", ""));
+    assert!(rows[1]["dissipated_energy_J"].parse::<f64>().unwrap() >= 0.0, "{rows:?}");
+    assert!(rows.iter().all(|row| row["energy_error"].parse::<f64>().unwrap() < 0.01), "{rows:?}");
 }

@@ -99,15 +99,13 @@ pub(super) fn follow(
         (Some(last), _) => last,
         (None, Err(PathError::Plate(error))) => return Err(SolveError::from(error.clone()).into()),
         (None, Err(error)) => return Err(SolveError::other(error.clone()).into()),
-        (None, Ok(())) => return Err(Error::NoLoads),
+        (None, Ok(_)) => return Err(Error::NoLoads),
     };
     let stopped = match followed {
         Err(error) => Some(error.to_string()),
-        Ok(()) if broken_off => Some("it was broken off".to_owned()),
-        Ok(()) if seen.len() == plan.steps && last.opening < plan.until => {
-            Some(format!("its {} steps are used up: raise `path.steps`, or `path.step`", plan.steps))
-        }
-        Ok(()) => None,
+        Ok(true) => None,
+        Ok(false) if broken_off => Some("it was broken off".to_owned()),
+        Ok(false) => Some(format!("its {} steps are used up: raise `path.steps`, or `path.step`", plan.steps)),
     };
     let work = plate.work();
     counters.elements += work.cells;

@@ -131,7 +131,8 @@ pub(super) fn compute(
     let document = Document { summary: &found, cost: &cost, results: folder.as_deref() };
     let place = || folder.as_deref().map_or(String::new(), |folder| format!("  results   {}\n", folder.display()));
     console.show(format, &document, place)?;
-    if let (Found::Static(_), Some(signal)) = (&found, terminal.signal()) {
+    let cut = |found: &Found| matches!(found, Found::Static(of) if of.summary.path.as_ref().is_some_and(|path| path.stopped.is_some()));
+    if let Some(signal) = terminal.signal().filter(|_| cut(&found)) {
         console::tell("Stopped by a signal: the path up to there is kept, and cannot be gone on with.\n");
         return Ok(ExitCode::from(128 + signal));
     }

@@ -99,7 +99,7 @@ impl Known {
             known.add(&format!("{mode} force"), Dimension::FORCE, Figure::Force(k));
         }
         known.add("force_over_delamination_threshold", Dimension::NONE, Figure::OverThreshold);
-        for (name, _, is, at) in OF_GROWTH.into_iter().filter(|_| model.separation.is_some()) {
+        for (name, _, is, at) in OF_GROWTH.into_iter().filter(|_| model.separation.is_some() || model.grown.is_some()) {
             known.add(name, is, Figure::Grown(at));
         }
         known.add("energy_error", Dimension::NONE, Figure::EnergyError);

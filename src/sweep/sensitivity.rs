@@ -34,10 +34,16 @@ pub fn importance(sweep: &Sweep<'_>, rows: &[CaseRow]) -> Vec<Importance> {
     let whole = rows.chunk_by(|a, b| (a.case - 1) / width == (b.case - 1) / width).filter(|block| block.len() == width);
     let of = |row: &CaseRow| Some(results(sweep, row.case, row.result.as_ref().ok()?));
     let blocks: Vec<Vec<Results>> = whole.filter_map(|block| block.iter().map(of).collect()).collect();
-    let Some(one) = blocks.first().and_then(|block| block.first()) else { return Vec::new() };
+    let mut names: Vec<&String> = Vec::new();
+    for (name, _) in blocks.iter().flatten().flatten() {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
     let mut all = Vec::new();
-    for (result, (name, _)) in one.iter().enumerate() {
-        let value = |case: &Results| case.get(result)?.1;
+    for name in names {
+        // Not every case has every result.
+        let value = |case: &Results| case.iter().find(|(own, _)| own == name)?.1;
         let values: Vec<Vec<f64>> = blocks.iter().filter_map(|block| block.iter().map(value).collect()).collect();
         let indices = sobol_indices(&values, design.seed);
         all.extend(indices.into_iter().zip(&design.axes).map(|(of, axis)| {

@@ -175,6 +175,8 @@ pub fn read_record(folder: &Path) -> Result<Record, Error> {
 /// Columns of the first damage.
 const OF_DAMAGE: [&str; 5] = ["damage_time_s", "damage_criterion", "damage_mode", "damage_ply", "damage_force_N"];
 
+const OVER_THRESHOLD: &str = "force_over_delamination_threshold";
+
 /// Each row with whether it is on the front, where it has a place there.
 fn marked<'a>(sweep: &Sweep<'_>, rows: &'a [CaseRow]) -> impl Iterator<Item = (&'a CaseRow, Option<bool>)> + Clone {
     rows.iter().zip(sweep.front(rows)).map(|(row, of)| (row, of.map(|(_, on)| on)))
@@ -197,8 +199,11 @@ fn header(sweep: &Sweep<'_>, rows: &[CaseRow]) -> Vec<String> {
             let name = &mode.name;
             header.extend([format!("{name} index"), format!("{name} time_s"), format!("{name} force_N")]);
         }
-        header.extend(one.over_threshold.map(|_| "force_over_delamination_threshold".to_owned()));
-        header.extend(one.grown.iter().flat_map(|_| OF_GROWTH.map(|(column, unit, ..)| format!("{column}_{unit}"))));
+        let found = || rows.iter().filter_map(|row| row.result.as_ref().ok());
+        header.extend(found().any(|of| of.over_threshold.is_some()).then(|| OVER_THRESHOLD.to_owned()));
+        if found().any(|of| of.grown.is_some()) {
+            header.extend(OF_GROWTH.map(|(column, unit, ..)| format!("{column}_{unit}")));
+        }
         header.extend(["energy_error", "warnings"].map(str::to_owned));
         header.extend(sweep.quantities.iter().map(CaseQuantity::column));
         header.extend(sweep.objectives.as_ref().map(|_| "on_pareto_front".to_owned()));
@@ -244,8 +249,12 @@ fn line<'a>(
     for mode in &figures.modes {
         line.extend([Some(mode.index), mode.onset.map(|onset| onset.0), mode.onset.map(|onset| onset.1)].map(number));
     }
-    line.extend(figures.over_threshold.map(|share| number(Some(share))));
-    line.extend(figures.grown.iter().flat_map(|of| OF_GROWTH.map(|(.., at)| number(Some(at(of))))));
+    // What some case has is a column of all.
+    let has = |column: &str| header.contains(&column);
+    line.extend(has(OVER_THRESHOLD).then(|| number(figures.over_threshold)));
+    for (column, unit, _, at) in OF_GROWTH {
+        line.extend(has(&format!("{column}_{unit}")).then(|| number(figures.grown.as_ref().map(at))));
+    }
     line.extend([number(Some(figures.energy_error)), TableValue::Count(figures.warnings)]);
     line.extend(sweep.quantities.iter().map(|quantity| number(quantity.value(values, figures))));
     line.extend(sweep.objectives.as_ref().map(|_| on_front.map_or(NONE, |on| TableValue::Count(on.into()))));

@@ -134,9 +134,28 @@ fn what_nobody_can_decide_is_refused() {
     refuse("library = 'IM7/8552'", "library = 'AS4/3502'", "the toughness between the plies");
     refuse("penalty = '2e4 N/mm^3'", "points = 99", "points");
     refuse("penalty = '2e4 N/mm^3'", "points = 2", "2 points each way");
-    let start = "start = [{ interface = 1, at = { x = '26 mm', y = '20 mm' }, radius = '6 mm' }]";
-    let text = left().text().replace("penalty = '2e4 N/mm^3'", start);
-    let read = scene::parse(&text, &root().join("scene.toml")).unwrap();
-    let error = Model::new(read, &Registry::standard()).expect_err("refused").to_string();
-    assert!(error.contains("lack the `symmetry`"), "{error}\n{text}");
+    let started = |starts: &[[f64; 3]]| {
+        let each = |[x, y, radius]: &[f64; 3]| {
+            format!("{{ interface = 1, at = {{ x = '{x} mm', y = '{y} mm' }}, radius = '{radius} mm' }}")
+        };
+        let starts: Vec<String> = starts.iter().map(each).collect();
+        let text = left().text().replace("penalty = '2e4 N/mm^3'", &format!("start = [{}]", starts.join(", ")));
+        let read = scene::parse(&text, &root().join("scene.toml")).unwrap();
+        Model::new(read, &Registry::standard()).map(|_| ()).map_err(|error| error.to_string())
+    };
+    let lacks =
+        |starts: &[[f64; 3]]| assert!(started(starts).unwrap_err().contains("lack the `symmetry`"), "{starts:?}");
+    lacks(&[[26.0, 20.0, 6.0]]);
+    lacks(&[[36.0, 20.0, 5.0]]);
+    lacks(&[[36.0, 20.0, 5.0], [12.0, 20.0, 4.0]]);
+    // Each other's images, but too small to hold a point; beside two that do.
+    let pair = |radius: f64| [[36.0, 20.0, radius], [12.0, 20.0, radius]];
+    assert_eq!(started(&pair(5.0)), Ok(()));
+    let corners = |x: f64, y: f64, radius: f64| {
+        [[x, y, radius], [48.0 - x, y, radius], [x, 40.0 - y, radius], [48.0 - x, 40.0 - y, radius]]
+    };
+    for small in [pair(0.01).to_vec(), [&pair(5.0)[..], &corners(8.0, 8.0, 0.01)].concat()] {
+        assert!(started(&small).unwrap_err().contains("holds no point"), "{small:?}");
+    }
+    assert_eq!(started(&[&pair(5.0)[..], &corners(8.0, 8.0, 3.0)].concat()), Ok(()));
 }

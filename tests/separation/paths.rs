@@ -5,8 +5,9 @@ use crate::support::root;
 use fem::Registry;
 use fem::analyses::statics::PathState;
 use fem::io::scene;
-use fem::job::{self, Found, Options, StaticFound};
+use fem::job::{self, Follow, Found, Options, StaticFound};
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
 
 const WIDTH: f64 = 0.025;
 
@@ -282,6 +283,41 @@ fn a_path_ends_where_it_is_to() {
         let figures = found.summary.path.as_ref().unwrap();
         assert!(figures.stopped.is_none() && (figures.final_displacement_m / 4.2e-3 - 1.0).abs() < 1e-8, "{figures:?}");
     }
+}
+
+/// Breaks off when this share of the path is done.
+struct Until(f64);
+
+impl Follow for Until {
+    fn marched(&mut self, share: f64) -> ControlFlow<()> {
+        if share >= self.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// What it has found until it is broken off is kept; at its very end there is nothing to break off.
+#[test]
+fn a_path_that_is_broken_off_is_kept() {
+    let path = root().join("benches/specimens/dcb.toml");
+    let text = std::fs::read_to_string(&path).unwrap().replace("cells = [120, 1]", "cells = [60, 1]");
+    let scene = scene::parse(&text, &path).unwrap();
+    let of = |share| {
+        let found = job::run(&scene, &Registry::standard(), &Options::default(), &mut Until(share)).unwrap().found;
+        let Found::Static(found) = found else { panic!("loads at rest") };
+        found.summary.path.unwrap()
+    };
+    let (half, whole) = (of(0.5), of(1.0));
+    assert!(half.stopped.as_ref().unwrap().contains("broken off") && half.states < whole.states, "{half:?}");
+    assert!((0.5..0.6).contains(&(half.final_displacement_m / 4.2e-3)), "{half:?}");
+    assert_eq!((whole.stopped, half.peak_force_N), (None, whole.peak_force_N));
+}
+
+/// Faces that rub dissipate a little from the beginning, which keeps no step short.
+#[test]
+fn a_path_under_friction_comes_to_its_end() {
+    let friction = ["points = 12", "points = 12\nfriction = 0.5"];
+    let [smooth, rough] = [vec![], vec![friction]].map(|changes| found("enf", &changes).unwrap().summary.path.unwrap());
+    assert!(rough.stopped.is_none() && rough.states < 2 * smooth.states, "{} {}", rough.states, smooth.states);
+    assert!(rough.peak_force_N > smooth.peak_force_N && rough.delamination.dissipated_by_friction_J > 0.0, "{rough:?}");
 }
 
 #[test]

@@ -122,6 +122,8 @@ pub struct Separable {
     /// The tangent: factor on the mass, and moduli of each open cell.
     cm: f64,
     moduli: Vec<Vec<[Jump; 3]>>,
+    /// What of the dissipation of the last internal force was friction, J.
+    friction: f64,
     krylov: Krylov,
     arrays: Arrays,
     work: SeparableWork,
@@ -186,6 +188,7 @@ impl Separable {
             tied,
             cm: 0.0,
             moduli: Vec::new(),
+            friction: 0.0,
             krylov: Krylov::default(),
             arrays: Arrays::default(),
             work: SeparableWork { cells: counters.elements, ..SeparableWork::default() },
@@ -277,11 +280,14 @@ impl Separable {
             energy.stored += stored;
             energy.dissipated += dissipated;
         }
+        let mut friction = 0.0;
         self.each(u, states, None, false, |arrays, weight, map, cell| {
+            friction += weight * arrays.answer.dissipated.friction;
             energy.stored += weight * (arrays.answer.stored - Interfaces::lent(cell));
             energy.dissipated += weight * arrays.answer.dissipated.total();
             map.scatter_vector(&arrays.both, weight, force);
         })?;
+        self.friction = friction;
         Ok(energy)
     }
 

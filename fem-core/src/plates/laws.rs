@@ -4,7 +4,6 @@ use crate::contracts::element::{Cell, Element, ElementError, ElementInfo, Slice,
 use crate::contracts::ply_law::{LawPoint, PlyLaw, PlyResponse, check_law};
 use crate::plates::laminate::Laminate;
 use crate::plates::plate::Plate;
-use crate::words::domain::Corners;
 use crate::words::energy::Energy;
 use crate::words::material::{Material, MaterialError};
 use crate::words::quadrature::gauss_legendre;
@@ -262,7 +261,7 @@ impl PlyLaws {
                 continue;
             }
             widest[layer] = widest[layer].max(width(form(element, view.corners.domain()).info(), &view));
-            slender[layer] = slender[layer].max(slenderness(&plate.plane.corners(quad)));
+            slender[layer] = slender[layer].max(plate.plane.quality(quad).aspect);
         }
         let mut said = Vec::new();
         for ((plies, length), slender) in self.plies.iter().zip(widest).zip(slender) {
@@ -630,17 +629,6 @@ fn through(levels: &[(f64, f64)], slices: &[Slice], plies: &[Option<LawfulPly>])
         })
     });
     points.collect()
-}
-
-/// Length of a cell over its width.
-fn slenderness(corners: &Corners<[f64; 2]>) -> f64 {
-    let sides: Vec<f64> = corners.sides().map(|[p, q]| (p[0] - q[0]).hypot(p[1] - q[1])).collect();
-    // Sides that face each other are one length.
-    let lengths: Vec<f64> = match sides[..] {
-        [a, b, c, d] => vec![0.5 * (a + c), 0.5 * (b + d)],
-        _ => sides,
-    };
-    lengths.iter().fold(0.0, |m: f64, l| m.max(*l)) / lengths.iter().fold(f64::INFINITY, |m, l| m.min(*l))
 }
 
 /// Width of a cell, m: the side of the square of its area.

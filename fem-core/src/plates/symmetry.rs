@@ -197,6 +197,11 @@ impl Symmetry {
         if kept == quad { None } else { self.operations().find(there) }
     }
 
+    /// Where the point `p` of the quad that represents `quad` lies in `quad`.
+    pub fn image(&self, plate: &Plate, quad: usize, p: [f64; 2]) -> [f64; 2] {
+        self.operation(plate, quad).map_or(p, |o| o.point(self.centre, p))
+    }
+
     /// Quads that represent others or themselves alone, ascending, and how many they stand for.
     pub fn quads(&self) -> impl ExactSizeIterator<Item = (usize, f64)> + Clone {
         self.kept.iter().map(|(quad, size)| (*quad as usize, f64::from(*size)))

@@ -32,6 +32,8 @@ pub struct PathPoint {
     pub opening: f64,
     /// Work done on the plate, J.
     pub energy: Energy,
+    /// What of it was dissipated by friction, J.
+    pub friction: f64,
     /// Forces that are left over, relative to the load, in the unknowns of what is open.
     pub residual: f64,
     /// Iterations that it took.
@@ -87,8 +89,8 @@ enum Control {
 
 /// The states of equilibrium of a plate under a load λ f that leads through growth of its interfaces, snap-back included.
 ///
-/// Until something is dissipated a step has a given opening fᵀu. Then it has a given dissipation, ½ (λ₀ fᵀu − λ fᵀu₀), which grows on
-/// every branch of the path (Gutiérrez 2004). Each is a row beside the equations of equilibrium, and both are solved by Newton's
+/// Until damage dissipates something a step has a given opening fᵀu. Then it has a given dissipation, ½ (λ₀ fᵀu − λ fᵀu₀), which grows on
+/// every branch of the path (Gutiérrez 2004); friction, which leaves stresses behind, is no part of that. Each is a row beside the equations of equilibrium, and both are solved by Newton's
 /// method with the consistent tangent; a step that does not converge, or dissipates what it should not, is halved.
 #[derive(Debug)]
 pub struct Path<'a> {
@@ -105,6 +107,8 @@ pub struct Path<'a> {
     last_factor: f64,
     control: Option<Control>,
     energy: Energy,
+    /// What of it was dissipated by damage, J.
+    damage: f64,
 }
 
 impl<'a> Path<'a> {
@@ -122,6 +126,7 @@ impl<'a> Path<'a> {
             last_factor: 0.0,
             control: None,
             energy: Energy::default(),
+            damage: 0.0,
         }
     }
 
@@ -140,7 +145,8 @@ impl<'a> Path<'a> {
         self.plate
     }
 
-    /// Makes steps until `end`, and shows each state to `see`, which may end it there.
+    /// Makes steps until `end`, and shows each state to `see`, which may break off there; whether the opening or the dissipation of `end` is
+    /// reached.
     ///
     /// # Errors
     /// A path that was lost; what has been seen stands.
@@ -148,16 +154,16 @@ impl<'a> Path<'a> {
         &mut self,
         end: PathEnd,
         mut see: impl FnMut(&PathPoint, &Self) -> ControlFlow<()>,
-    ) -> Result<(), PathError> {
+    ) -> Result<bool, PathError> {
         for _ in 0..end.steps {
             let point = self.advance(end)?;
-            let ended = point.opening >= (1.0 - ROUNDING) * end.opening
+            let reached = point.opening >= (1.0 - ROUNDING) * end.opening
                 || point.energy.dissipated >= (1.0 - ROUNDING) * end.dissipated;
-            if see(&point, self).is_break() || ended {
-                break;
+            if see(&point, self).is_break() || reached {
+                return Ok(reached);
             }
         }
-        Ok(())
+        Ok(false)
     }
 
     /// Makes a step, none beyond `end`.
@@ -181,8 +187,8 @@ impl<'a> Path<'a> {
                     control = Control::Opening(most);
                 }
                 Some((point, u)) => {
-                    let before = self.energy.dissipated;
-                    let more = point.energy.dissipated - before;
+                    let damage = point.energy.dissipated - point.friction;
+                    let more = damage - self.damage;
                     let too_much = more > (1.0 + OFF) * self.step;
                     let off = match control {
                         Control::Opening(_) => too_much,
@@ -274,7 +280,8 @@ impl<'a> Path<'a> {
                 let energy = self.plate.internal(&u, &self.states, &mut force)?;
                 force.iter_mut().zip(f).for_each(|(force, f)| *force = factor * f - *force);
                 let residual = self.plate.size_of(&force) / (factor.abs() * self.plate.size_of(f));
-                let point = PathPoint { load: factor, opening: dot(f, &u), energy, residual, iterations: iteration };
+                let (opening, friction) = (dot(f, &u), self.plate.friction);
+                let point = PathPoint { load: factor, opening, energy, friction, residual, iterations: iteration };
                 return Ok(Some((point, u)));
             }
         }
@@ -286,6 +293,7 @@ impl<'a> Path<'a> {
         self.last = u.iter().zip(&self.u).map(|(new, old)| new - old).collect();
         self.last_factor = point.load - self.factor;
         (self.u, self.factor, self.energy) = (u, point.load, point.energy);
+        self.damage = point.energy.dissipated - point.friction;
         Ok(())
     }
 }
