@@ -1,6 +1,7 @@
 //! What a model can be asked: the response to an impact, loads at rest, natural modes, buckling, its matrices.
 
 pub mod assembled;
+mod bent;
 pub mod buckling;
 pub mod delamination;
 mod expansion;

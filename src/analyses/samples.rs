@@ -1,5 +1,6 @@
 //! The stresses of a plate that is marched, as its criteria see them, and all that a march showed them.
 
+use super::bent::Bent;
 use super::expansion::Expansion;
 use super::kept::KeptPart;
 use super::operator::{LANES, SURVEYED, Sampled, StressOperator, put};
@@ -11,6 +12,7 @@ use fem_core::failure::StressRange;
 use fem_core::material::Material;
 use fem_core::recovery::Recovery;
 use fem_core::tensor::{Ply, Stress6};
+use fem_dynamics::reduce::Companions;
 use fem_failure::scan::{Extremes, Hulls, Samples, Scan, ScanError, ScanSite, Wanted, windows};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -31,7 +33,7 @@ pub(super) struct PlateStresses {
 /// How stresses follow from coordinates.
 #[derive(Debug)]
 pub(super) enum Way {
-    /// By a product.
+    /// By a product with them, and with what follows from them.
     Product(StressOperator),
     /// From displacements; six a site that do not follow from them, none where there are none.
     Recovery(Vec<f64>),
@@ -45,10 +47,15 @@ impl PlateStresses {
     pub(super) fn new(model: &Model, expansion: &Expansion<'_>) -> Result<Self, Error> {
         let recovery = build_recovery(model);
         let residual = residual(model, &recovery)?;
-        // Stresses of large deflections are not products with the coordinates.
-        if let Some((basis, modes)) = expansion.basis().filter(|_| !model.effects.nature().large)
-            && 6 * recovery.sites() * modes * size_of::<f64>() <= Demand::OPERATOR_LIMIT
-        {
+        let Some((basis, modes)) = expansion.basis() else {
+            return Ok(Self { recovery, way: Way::Recovery(residual) });
+        };
+        let fits = |columns: usize| 6 * recovery.sites() * columns * size_of::<f64>() <= Demand::OPERATOR_LIMIT;
+        if let Some(companions) = expansion.companions.as_ref().filter(|of| fits(modes + of.terms())) {
+            let operator = stretched(model, &recovery, expansion, companions, residual)?;
+            return Ok(Self { recovery, way: Way::Product(operator) });
+        }
+        if !model.effects.nature().large && fits(modes) {
             let kept = KeptPart::of_stresses(model);
             if let Some(rows) = kept.as_ref().and_then(KeptPart::read) {
                 let operator = StressOperator::of_rows(rows, recovery.sites(), modes, residual.clone());
@@ -69,6 +76,28 @@ impl PlateStresses {
         }
         Ok(Self { recovery, way: Way::Recovery(residual) })
     }
+}
+
+/// The operator of a plate whose deflections stretch it.
+///
+/// # Errors
+/// A cell that the element refuses.
+fn stretched(
+    model: &Model,
+    recovery: &Recovery,
+    expansion: &Expansion<'_>,
+    companions: &Companions,
+    residual: Vec<f64>,
+) -> Result<StressOperator, Error> {
+    let Some((basis, modes)) = expansion.basis() else { return Ok(StressOperator::new(&[], 0, residual)) };
+    let (plate, element, width) = (&model.plate, &*model.element, modes + companions.terms());
+    let mut fields = vec![0.0; 6 * recovery.sites() * width];
+    let (of_modes, of_terms) = fields.split_at_mut(6 * recovery.sites() * modes);
+    let deflections = expansion.nodal(basis);
+    recovery.small_stresses(plate, element, &deflections, modes, of_modes)?;
+    recovery.small_stresses(plate, element, &expansion.nodal(companions.shapes()), companions.terms(), of_terms)?;
+    let slopes = recovery.slopes(plate, element, &deflections, modes)?;
+    Ok(StressOperator::new(&fields, width, residual).with_bent(Bent::new(companions.clone(), slopes)))
 }
 
 /// Whether the rows of `operator` give the stresses of a combination of all modes in some cells, [`LOOKED_AT`].
@@ -113,6 +142,10 @@ pub struct PlateSamples {
 impl PlateSamples {
     /// Of a plate that had these `coordinates` at `times`, s.
     pub(super) fn new(of_plate: Arc<PlateStresses>, times: Vec<f64>, coordinates: Vec<f64>) -> Self {
+        let coordinates = match &of_plate.way {
+            Way::Product(operator) => operator.extended(&coordinates).into_owned(),
+            Way::Recovery(_) => coordinates,
+        };
         Self { of_plate, times, coordinates, hulls: OnceLock::new() }
     }
 
@@ -127,8 +160,8 @@ impl PlateSamples {
         let stresses = |site: usize, window: usize, out: &mut [Stress6<Ply>]| {
             let batch = self.batches().nth(window / LANES).unwrap_or_default();
             let within = windows(batch.len()).nth(window % LANES).unwrap_or_default();
-            let columns = operator.columns(self.coordinates(batch.start + within.start..batch.start + within.end));
-            put(&operator.stresses(site, &columns), out);
+            let mut columns = operator.columns(self.coordinates(batch.start + within.start..batch.start + within.end));
+            put(&operator.stresses(site, &mut columns), out);
         };
         Ok(Some(hulls.judge(criteria, materials, &stresses)?))
     }
@@ -162,14 +195,14 @@ impl PlateSamples {
         for batch in chosen.chunks(LANES) {
             let at: Vec<f64> =
                 batch.iter().flat_map(|k| &self.coordinates[k * width..(k + 1) * width]).copied().collect();
-            let (columns, mut stresses) = (operator.columns(&at), [Stress6::new([0.0; 6]); LANES]);
+            let (mut columns, mut stresses) = (operator.columns(&at), [Stress6::new([0.0; 6]); LANES]);
             for (name, criterion) in &model.criteria {
                 let info = criterion.info();
                 let modes = info.modes.len();
                 let judged: Vec<usize> = (0..sites.len()).filter(|i| sites[*i].place.site() == info.site).collect();
                 let mut indices = vec![0.0; modes * batch.len() * judged.len()];
                 for (site, out) in judged.iter().zip(indices.chunks_exact_mut(modes * batch.len())) {
-                    put(&operator.stresses(*site, &columns), &mut stresses);
+                    put(&operator.stresses(*site, &mut columns), &mut stresses);
                     let material = &model.materials[usize::from(sites[*site].material)];
                     for (stress, out) in stresses.iter().zip(out.chunks_exact_mut(modes)) {
                         criterion.indices(stress, material, out);

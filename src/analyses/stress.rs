@@ -5,11 +5,11 @@ use super::operator::{LANES, put};
 use super::samples::{PlateSamples, PlateStresses, Way};
 use crate::error::Error;
 use crate::forecast::Demand;
-use crate::model::{Model, NamedCriterion};
+use crate::model::{Model, NamedCriterion, Plan};
 use crate::words::name_ply_of;
 use fem_core::failure::Site;
 use fem_core::laws::PlyLaws;
-use fem_core::recovery::{Recovery, Station};
+use fem_core::recovery::{Recovery, Station, Strains};
 use fem_core::tensor::{Ply, Stress6};
 use fem_core::window::{self, Centre, Windows};
 use fem_failure::scan::{self, PlyOrInterface, Probe, Scan, ScanSite, Wanted};
@@ -188,9 +188,10 @@ impl<'a> Watch<'a> {
         let rows = 6 * recovery.sites();
         match way {
             Way::Product(operator) => {
-                let (columns, mut samples) = (operator.columns(waiting), [Stress6::new([0.0; 6]); LANES]);
+                let mut columns = operator.columns(&operator.extended(waiting));
+                let mut samples = [Stress6::new([0.0; 6]); LANES];
                 for site in 0..recovery.sites() {
-                    put(&operator.stresses(site, &columns), &mut samples[..count]);
+                    put(&operator.stresses(site, &mut columns), &mut samples[..count]);
                     for (out, sample) in out.chunks_exact_mut(rows).zip(&samples) {
                         out[6 * site..6 * site + 6].copy_from_slice(&sample.0);
                     }
@@ -352,17 +353,13 @@ pub(crate) fn recover(
     points: Option<&[f64]>,
     out: &mut [f64],
 ) -> Result<(), Error> {
-    let (plate, element, large) = (&model.plate, &*model.element, model.effects.nature().large);
-    if large {
-        recovery.large_stresses(plate, element, u, count, out)?;
-    } else {
-        recovery.stresses(plate, element, u, count, out)?;
-    }
+    let (plate, element) = (&model.plate, &*model.element);
+    recovery.stresses(plate, element, u, count, out)?;
     let Some((laws, points)) = model.laws.as_ref().zip(points) else { return Ok(()) };
     let fields = u.chunks_exact(plate.ndof()).zip(out.chunks_exact_mut(6 * recovery.sites()));
     for (field, (u, out)) in fields.enumerate() {
         let points = &points[field * laws.states()..(field + 1) * laws.states()];
-        recovery.put_lawful(plate, element, laws, (u, points), large, out)?;
+        recovery.put_lawful(plate, element, laws, (u, points), out)?;
     }
     Ok(())
 }
@@ -395,7 +392,20 @@ pub(crate) fn recovery(model: &Model, quads: &[usize], centres: &[Centre], inter
         }
     };
     let resin = model.interface.filter(|_| interfaces);
-    Recovery::new(&model.plate, (&model.laminates, model.heights), &model.materials, resin, &windows)
+    Recovery::new(&model.plate, (&model.laminates, model.heights), &model.materials, resin, &windows).of(strains(model))
+}
+
+/// The strains of a model: a plate in few vectors, or one whose layers come apart, knows those of slopes alone.
+fn strains(model: &Model) -> Strains {
+    let few = match &model.plan {
+        Plan::Impact(impact) => impact.reduction.is_some() || model.separation.is_some(),
+        _ => false,
+    };
+    match (model.effects.nature().large, few) {
+        (false, _) => Strains::Small,
+        (true, true) => Strains::Slopes,
+        (true, false) => Strains::Large,
+    }
 }
 
 pub(crate) fn sites(recovery: &Recovery) -> Vec<ScanSite> {

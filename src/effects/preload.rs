@@ -185,7 +185,7 @@ impl Effect for Preload {
 
     fn stresses(&self, body: &Body<'_>, recovery: &Recovery) -> Result<Option<Vec<f64>>, Error> {
         let mut stresses = vec![0.0; 6 * recovery.sites()];
-        recovery.stresses(body.plate, body.element, self.displacements(body)?, 1, &mut stresses)?;
+        recovery.small_stresses(body.plate, body.element, self.displacements(body)?, 1, &mut stresses)?;
         Ok(Some(stresses))
     }
 }

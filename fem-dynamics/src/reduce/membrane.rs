@@ -108,6 +108,7 @@ pub struct Companions {
     forms: Vec<f64>,
     /// s_t, `ndof × terms`.
     shapes: Vec<f64>,
+    terms: usize,
 }
 
 /// The strains of the membrane stresses of a [`MembranePlate`], Σ b_t (ε_t + B s_t): ε_t a combination of those of pairs of deflections.
@@ -161,6 +162,10 @@ impl Torn {
 }
 
 impl Companions {
+    fn new(forms: Vec<f64>, shapes: &DMatrix<f64>) -> Self {
+        Self { forms, shapes: shapes.as_slice().to_vec(), terms: shapes.ncols() }
+    }
+
     /// Adds to u = Φ q what the stretching adds, of one field, or of several of `modes` coordinates each, one after the other.
     pub fn complete(&self, modes: usize, q: &[f64], u: &mut [f64]) {
         let amounts: Vec<f64> = q.chunks_exact(modes.max(1)).flat_map(|q| self.amounts(q)).collect();
@@ -170,8 +175,18 @@ impl Companions {
         }
     }
 
+    /// Number of terms.
+    pub fn terms(&self) -> usize {
+        self.terms
+    }
+
+    /// s_t, `ndof × terms`.
+    pub fn shapes(&self) -> &[f64] {
+        &self.shapes
+    }
+
     /// a_t
-    pub(super) fn amounts<'a>(&'a self, q: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    pub fn amounts<'a>(&'a self, q: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let of = move |form: &[f64]| {
             form.chunks_exact(q.len())
                 .zip(q)
@@ -179,11 +194,6 @@ impl Companions {
                 .sum()
         };
         self.forms.chunks_exact(q.len() * q.len()).map(of)
-    }
-
-    /// s_t, each of `ndof` unknowns.
-    pub(super) fn shapes(&self, ndof: usize) -> impl Iterator<Item = &[f64]> {
-        self.shapes.chunks_exact(ndof)
     }
 
     /// Adds to `g` what works on a_t do on q: Σ f_t 2 A_t q.
@@ -301,9 +311,9 @@ impl MembranePlate {
             torn,
             deflections: fields.as_slice().to_vec(),
             combinations: turned.as_slice().to_vec(),
-            follow: Companions { forms: of_left, shapes: shapes_of_left.as_slice().to_vec() },
+            follow: Companions::new(of_left, &shapes_of_left),
         };
-        Ok((plate, Companions { forms, shapes: shapes.as_slice().to_vec() }, patterns))
+        Ok((plate, Companions::new(forms, &shapes), patterns))
     }
 
     /// The same plate with other modes in bending, as many.

@@ -76,7 +76,7 @@ impl Stretching for Share {
         let follow = &self.patterns.follow;
         amounts.clear();
         amounts.extend(follow.amounts(&q));
-        amounts.iter().zip(follow.shapes(u.len())).for_each(|(b, shape)| axpy(*b, shape, completed));
+        amounts.iter().zip(follow.shapes().chunks_exact(u.len())).for_each(|(b, shape)| axpy(*b, shape, completed));
     }
 
     fn tear(&self, u: &[f64], force: &mut [f64]) {
@@ -90,7 +90,10 @@ impl Stretching for Share {
         let (mut q, mut g) = (vec![0.0; self.modes], vec![0.0; self.modes]);
         self.of(u, &mut q);
         let follow = &self.patterns.follow;
-        let works = on_amounts.iter().zip(follow.shapes(u.len())).map(|(own, shape)| own + dot(shape, on_completed));
+        let works = on_amounts
+            .iter()
+            .zip(follow.shapes().chunks_exact(u.len()))
+            .map(|(own, shape)| own + dot(shape, on_completed));
         follow.add_works(&q, works, &mut g);
         axpy(1.0, on_completed, force);
         g.iter().zip(self.weights.chunks_exact(u.len())).for_each(|(g, column)| axpy(*g, column, force));

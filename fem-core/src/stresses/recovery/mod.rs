@@ -1,6 +1,9 @@
 //! Stresses of plies and interfaces from displacements.
 
 mod cubic;
+mod slopes;
+
+pub use slopes::{Response, Slopes};
 
 use crate::contracts::element::{Element, ElementError, ElementInfo, Part, Point, Scratch, Stack, form};
 use crate::plates::laminate::Laminate;
@@ -45,6 +48,19 @@ impl PlyHeights {
         let thickness = laminate.thickness();
         laminate.plies.iter().map(|ply| self.parts([-1.0, 1.0], ply.thickness / thickness).len()).sum()
     }
+}
+
+/// Strains that stresses follow from, where a displacement field is recovered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Strains {
+    /// Those of small displacements.
+    Small,
+    /// These, and von Kármán's in the plane, ½ w,x², ½ w,y² and w,x w,y in the middle of each cell: right for displacements that answer
+    /// no others. A plate in few vectors does not thin as Green and Lagrange's ½ θ² across it asks for where it turns by θ, and
+    /// these would make of that a stress 33 which is not there.
+    Slopes,
+    /// Green and Lagrange's, of the element.
+    Large,
 }
 
 /// Where in the thickness a stress is taken.
@@ -100,6 +116,7 @@ pub struct Recovery {
     windows: Vec<Vec<(usize, f64)>>,
     /// Whose strains are needed.
     sources: Vec<Source>,
+    strains: Strains,
 }
 
 impl Recovery {
@@ -123,7 +140,13 @@ impl Recovery {
         let windows = windows.iter().map(shares).collect();
         let mut starts = vec![0];
         region_of.iter().for_each(|region| starts.push(starts[starts.len() - 1] + regions[*region].len()));
-        Self { regions, region_of, starts, centres, windows, sources }
+        Self { regions, region_of, starts, centres, windows, sources, strains: Strains::Small }
+    }
+
+    /// The same of other strains.
+    #[must_use]
+    pub fn of(self, strains: Strains) -> Self {
+        Self { strains, ..self }
     }
 
     /// Stations over the `i`-th window.
@@ -156,11 +179,33 @@ impl Recovery {
     }
 
     /// Stresses for several displacement fields at once: `u` is `ndof × fields` (before elimination of constraints), `out`
-    /// is `6·sites × fields`; six components per site in the site's axes.
+    /// is `6·sites × fields`; six components per site in the site's axes, which under large deflections turn with the plate.
     ///
     /// # Errors
     /// A cell that the element refuses.
     pub fn stresses(
+        &self,
+        plate: &Plate,
+        element: &dyn Element,
+        u: &[f64],
+        fields: usize,
+        out: &mut [f64],
+    ) -> Result<(), ElementError> {
+        match self.strains {
+            Strains::Small => self.small_stresses(plate, element, u, fields, out),
+            Strains::Slopes => {
+                self.small_stresses(plate, element, u, fields, out)?;
+                self.add_bent(plate, element, u, fields, out)
+            }
+            Strains::Large => self.large_stresses(plate, element, u, fields, out),
+        }
+    }
+
+    /// Those of small displacements, whatever the strains.
+    ///
+    /// # Errors
+    /// A cell that the element refuses.
+    pub fn small_stresses(
         &self,
         plate: &Plate,
         element: &dyn Element,
@@ -213,12 +258,8 @@ impl Recovery {
         Ok(())
     }
 
-    /// Stresses S = C E of large deflections, on the axes of the sites as they turn with the plate; `u` and `out` as of
-    /// [`Recovery::stresses`].
-    ///
-    /// # Errors
-    /// A cell that the element refuses.
-    pub fn large_stresses(
+    /// Stresses S = C E.
+    fn large_stresses(
         &self,
         plate: &Plate,
         element: &dyn Element,
@@ -260,7 +301,7 @@ impl Recovery {
 
     /// Puts the stresses of plies that follow `laws` in place of those of linear elasticity: means over the Gauss points of
     /// their cells, whatever the samples, at the displacements `u` (one field, before elimination of constraints) and the states `points`;
-    /// with the strains of its slopes where they are `large`. Where a symmetry leaves a part of the plate, the rest has its images.
+    /// with the strains of its slopes where deflections are large. Where a symmetry leaves a part of the plate, the rest has its images.
     ///
     /// # Errors
     /// A cell that the element refuses, a law that finds no stress.
@@ -270,9 +311,9 @@ impl Recovery {
         element: &dyn Element,
         laws: &PlyLaws,
         (u, points): (&[f64], &[f64]),
-        large: bool,
         out: &mut [f64],
     ) -> Result<(), ElementError> {
+        let large = self.strains != Strains::Small;
         let (mut means, mut firsts) = (Vec::new(), Vec::new());
         let (mut answer, mut dofs) = (CellAnswer::default(), Vec::new());
         let mut images = Vec::new();
