@@ -72,8 +72,6 @@ pub struct Demand {
     pub sites: usize,
     /// Indices of all of them.
     pub indices: usize,
-    /// Whether their stresses come from an operator on the coordinates of a reduced plate, if it is not too large.
-    pub operator: bool,
 }
 
 impl Demand {
@@ -97,7 +95,7 @@ impl Demand {
         let samples = self.sites * Self::BATCH * Self::STRESS;
         let kept = self.sites * Self::PER_SITE + self.indices * Self::PER_INDEX;
         let operator = self.sites * Self::STRESS * self.vectors;
-        let [samples, operator] = match self.operator && operator <= Self::OPERATOR_LIMIT {
+        let [samples, operator] = match self.contacts.is_some() && operator <= Self::OPERATOR_LIMIT {
             true => [samples, 2 * operator],
             false => [2 * samples, 0],
         };

@@ -66,7 +66,6 @@ impl Model {
             kept,
             sites: plies + interfaces,
             indices: plies * modes(Site::Ply) + interfaces * modes(Site::Interface),
-            operator: contacts.is_some() && !self.effects.nature().large,
         };
         let joined = self.separation.as_ref().map(|separation| {
             Separable::joined(&self.plate, &separation.supports, &separation.interfaces, &separation.states)

@@ -1,8 +1,9 @@
 //! Membrane stiffening of a plate that is struck.
 
-use super::{Struck, difference, force};
+use super::{EDGES, Struck, difference, force};
 use crate::support::{Case, root, strip};
 use fem::analyses::impact::{self, Outcome};
+use fem::failure::scan::first_per_mode;
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
 use fem::{Model, Registry};
@@ -50,7 +51,7 @@ fn a_large_mass_meets_von_karmans_plate() {
              march = {{ integrator = 'newmark', step = '{step} us', end = '{end} ms' }}\n\
              laminate = {{ plies = '[0/90/0/90]s', material = 'tape', ply_thickness = '0.13 mm', layers = 1 }}\n\
              [materials.tape]\nlibrary = 'AS4/3502'\n{}",
-            super::EDGES.concat(),
+            EDGES.concat(),
             side = 75.0 * scale,
             half = 37.5 * scale,
             patch = 10.0 * scale,
@@ -214,5 +215,60 @@ fn case_5_reduced_and_full() {
     }
     for outcome in [full, reduced] {
         assert!(outcome.energy_error < 1e-3, "{:e}", outcome.energy_error);
+    }
+}
+
+/// A plate of three plies, clamped and struck until it deflects by its thickness.
+fn stretched(element: &str, reduction: &str, more: &str) -> String {
+    let layers = if element == "mitc4" { 1 } else { 3 };
+    let edges = EDGES.map(|edge| edge.replace("at = 'all'\nfix = ['U10', 'U20', 'U30']", "kind = 'clamped'"));
+    format!(
+        "title = 'stresses'\nmesh = {{ rectangle = ['60 mm', '40 mm'], cells = [12, 8] }}\nsymmetry = 'quarter'\n\
+         element = {{ kind = '{element}' }}\nreduction = {{ {reduction} }}\n{more}\n\
+         impactor = {{ mass = '50 g', velocity = '4 m/s', at = {{ x = '30 mm', y = '20 mm' }} }}\n\
+         contact = {{ law = 'hertz', k = '4e9 N/m^1.5' }}\nmarch = {{ step = '1 us', end = '0.25 ms' }}\n\
+         effects = {{ {ON} }}\n\
+         laminate = {{ plies = '[0/90/0]', material = 'tape', ply_thickness = '0.5 mm', layers = {layers}, interface = 'resin' }}\n\
+         [materials.tape]\nlibrary = 'IM7/8552'\n[materials.resin]\nlibrary = '3502 resin'\n{}",
+        edges.concat()
+    )
+}
+
+#[test]
+fn stresses_of_the_reduced_plate_are_those_of_the_full_one() {
+    const OF_CELLS: &str = "failure = { criteria = ['max-stress'] }";
+    const OF_WINDOWS: &str = "failure = { criteria = ['max-stress'], window = '7 mm', plies = 'mean' }";
+    for (element, failure) in
+        [("hermite-prism", OF_CELLS), ("hermite-prism", OF_WINDOWS), ("hex20", OF_WINDOWS), ("mitc4", OF_CELLS)]
+    {
+        let peaks = |reduction: &str| run(&stretched(element, reduction, failure), "").peaks;
+        let (full, reduced) = (peaks("method = 'none'"), peaks("method = 'ritz', vectors = 60"));
+        for (full, reduced) in full.iter().zip(&reduced) {
+            assert_eq!(full.mode, reduced.mode);
+            let (mode, full, reduced) = (full.mode, full.index, reduced.index);
+            // Across the plate, where vectors have no thinning to take it back, half the square of a slope would be an index of 0.4.
+            let apart = (full - reduced).abs();
+            assert!(apart < 0.015 * full + 0.012, "{element}, {failure}, {mode}: {full} {reduced}");
+        }
+    }
+}
+
+#[test]
+fn bounds_of_stretched_plates_leave_nothing_out() {
+    let outcome = |watch: &str| {
+        let failure = format!(
+            "failure = {{ criteria = ['max-stress', 'hashin-1980', 'octahedral'], every = '1 us'{watch} }}\noutput = {{ maps = false, plots = false }}"
+        );
+        let scene = stretched("hermite-prism", "method = 'ritz', vectors = 60", &failure);
+        run(&scene, "")
+    };
+    // What is followed at one place is judged at all of them.
+    let (spared, all) = (outcome(""), outcome(", watch = [{ at = { x = '31 mm', y = '21 mm' }, ply = 1 }]"));
+    let calls = [&spared, &all].map(|outcome| outcome.counters.criterion_calls);
+    assert!(calls[0] * 4 < calls[1], "{calls:?}");
+    assert!(!all.events.is_empty());
+    assert_eq!(first_per_mode(&spared.events), first_per_mode(&all.events));
+    for (spared, all) in spared.peaks.iter().zip(&all.peaks) {
+        assert_eq!((&spared.mode, spared.index, spared.time, spared.site), (&all.mode, all.index, all.time, all.site));
     }
 }

@@ -187,12 +187,10 @@ impl Companions {
 
     /// a_t
     pub fn amounts<'a>(&'a self, q: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        let of = move |form: &[f64]| {
-            form.chunks_exact(q.len())
-                .zip(q)
-                .map(|(column, qj)| qj * column.iter().zip(q).map(|(a, q)| a * q).sum::<f64>())
-                .sum()
-        };
+        // The forms are symmetric.
+        let of_column =
+            move |(j, column): (usize, &[f64])| q[j] * (column[j] * q[j] + 2.0 * dot(&column[j + 1..], &q[j + 1..]));
+        let of = move |form: &[f64]| form.chunks_exact(q.len()).enumerate().map(of_column).sum();
         self.forms.chunks_exact(q.len() * q.len()).map(of)
     }
 
