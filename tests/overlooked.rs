@@ -210,6 +210,30 @@ load = [{ pressure = "1 kPa" }]"#,
         let name = key.split(' ').next().unwrap();
         holds(&said(&text, 1), &[&format!("output.{name}"), "needs an impact"]);
     }
+    let looks = case(&format!("{CLAMPED}\nload = [{{ pressure = \"1 kPa\" }}]\nfailure = {{ every = \"1 us\" }}"));
+    holds(&said(&looks, 1), &["`failure.every`: needs an impact"]);
+}
+
+/// Linear theory lets a cantilever deflect by any multiple of its length.
+#[test]
+fn slopes_that_are_not_small() {
+    let bent = |load: f64, more: &str| {
+        let load =
+            format!("load = [{{ force_per_length = [\"0 N/mm\", \"0 N/mm\", \"{load} N/mm\"], group = \"x-max\" }}]");
+        let case = case(&format!("{CLAMPED}\n{load}\n{more}"));
+        case.fem("run", &["--out", "out"]).good();
+        let summary = case.summary("out");
+        let warned = summary["warnings"].to_string().contains("slopes are not small");
+        (summary["largest_deflection"]["w_m"].as_f64().unwrap() / 40e-3, warned)
+    };
+    let (one, warned) = bent(1e-3, "");
+    assert!(!warned);
+    for (share, expected) in [(0.14, false), (0.16, true), (5.0, true)] {
+        let (w, warned) = bent(1e-3 * share / one, "");
+        assert!((w / share - 1.0).abs() < 1e-6 && warned == expected, "{share}: {w} {warned}");
+    }
+    let (w, warned) = bent(1e-3 * 0.4 / one, "effects = { membrane = \"on\" }");
+    assert!((0.2..0.39).contains(&w) && !warned, "{w}");
 }
 
 /// A shell has one layer without being asked, and a force on a circle says what it lacks.

@@ -34,13 +34,14 @@ pub struct DelaminationThreshold {
 }
 
 impl DelaminationThreshold {
-    /// The threshold of `laminate`, whose interfaces are of the material `resin`; `None` where no material gives GIIc.
+    /// The threshold of `laminate`, whose interfaces are of the material `resin`; `None` where no material gives GIIc, and of one
+    /// ply, which has no interface.
     ///
     /// The toughness is that of `resin` if it gives one, otherwise the smallest that a ply's material gives.
     pub fn of(laminate: &Laminate, materials: &[Material], resin: Option<usize>) -> Option<Self> {
         let of = |material: usize| materials[material].toughness.get(Toughness::GIIc);
         let of_plies = || laminate.plies.iter().filter_map(|ply| of(ply.material)).min_by(f64::total_cmp);
-        let giic = resin.and_then(of).or_else(of_plies)?;
+        let giic = resin.and_then(of).or_else(of_plies).filter(|_| laminate.plies.len() > 1)?;
         let bending_stiffness = laminate.effective_bending_stiffness(materials);
         let interfaces = laminate.unlike().count().max(1);
         let force_of = |n: usize| PI * (32.0 * bending_stiffness * giic / (n as f64 + 2.0)).sqrt();
@@ -76,6 +77,12 @@ mod tests {
         );
         let want = PI * (8.0 * giic * e * h * h * h / (9.0 * (1.0 - nu * nu))).sqrt();
         assert!((found.unwrap().force / want - 1.0).abs() < 1e-13, "{found:?}, not {want}");
+    }
+
+    #[test]
+    fn one_ply_does_not_delaminate() {
+        let materials = [material(Elastic::isotropic(70e9, 0.3), Some(900.0))];
+        assert_eq!(DelaminationThreshold::of(&laminate(&[0.0], 4e-3), &materials, None), None);
     }
 
     /// Values worked out apart from this program, to the digits that are given.
@@ -128,7 +135,7 @@ mod tests {
         let e = Elastic::isotropic(70e9, 0.3);
         let giic = |plies, resin| {
             let materials = [material(e, plies), material(e, resin)];
-            DelaminationThreshold::of(&laminate(&[0.0], 1e-3), &materials, Some(1)).map(|found| found.giic)
+            DelaminationThreshold::of(&laminate(&[0.0, 90.0], 1e-3), &materials, Some(1)).map(|found| found.giic)
         };
         assert_eq!(giic(Some(500.0), Some(900.0)), Some(900.0));
         assert_eq!(giic(Some(500.0), None), Some(500.0));

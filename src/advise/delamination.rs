@@ -66,7 +66,7 @@ pub(super) fn answer(found: Option<&DelaminationAdvice>) -> Answer {
         cost: None,
     };
     let Some(found) = found else {
-        return answer(Vec::new(), "unknown: no material gives its toughness `GIIc`");
+        return answer(Vec::new(), "unknown: no material gives its toughness `GIIc`, or there is one ply alone");
     };
     let DelaminationThreshold { force, interfaces, force_of_all, giic, .. } = found.threshold;
     let choice = match found.verdict() {

@@ -396,7 +396,7 @@ pub(crate) fn recovery(model: &Model, quads: &[usize], centres: &[Centre], inter
 }
 
 /// The strains of a model: a plate in few vectors, or one whose layers come apart, knows those of slopes alone.
-fn strains(model: &Model) -> Strains {
+pub(crate) fn strains(model: &Model) -> Strains {
     let few = match &model.plan {
         Plan::Impact(impact) => impact.reduction.is_some() || model.separation.is_some(),
         _ => false,

@@ -10,7 +10,7 @@ pub struct Size {
     pub cells: usize,
     /// Layers of cells.
     pub layers: usize,
-    /// Edge of a square as large as a cell is on average, m.
+    /// Edge of a square as large as a cell is on average, m; of a section, a cell's mean length.
     pub cell_m: f64,
     /// Columns of nodes.
     pub columns: usize,

@@ -15,6 +15,13 @@ pub(super) fn cell_length(plate: &Plate, quad: usize) -> f64 {
     plate.plane.quality(quad).area.sqrt()
 }
 
+/// Edge of a square as large as a cell is on average, m; of a section, a cell's mean length.
+pub(crate) fn mean_cell(plate: &Plate) -> f64 {
+    let (plane, cells) = (&plate.plane, plate.plane.quads.len() as f64);
+    let (low, high) = plane.bounds();
+    if plate.info().is_section() { (high[0] - low[0]) / cells } else { (plane.area() / cells).sqrt() }
+}
+
 /// Least and greatest x and y of a cell, m.
 pub(super) fn extremes(plate: &Plate, quad: usize) -> [[f64; 2]; 2] {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);

@@ -1,6 +1,6 @@
 //! What a model takes: a plate that is too large is refused before anything is made that grows with it.
 
-use super::{Model, Plan};
+use super::{Model, Plan, mean_cell};
 use crate::cost::require;
 use crate::error::Error;
 use crate::forecast::{Demand, MemoryEstimate, Size, analyse};
@@ -76,11 +76,10 @@ impl Model {
 
     /// Its sizes, and the work that was done on it; what is marched and judged is left at zero.
     pub(crate) fn size(&self, counters: &Counters) -> Size {
-        let plane = &self.plate.plane;
         Size {
             cells: self.plate.cells(),
             layers: self.plate.layers(),
-            cell_m: (plane.area() / plane.quads.len() as f64).sqrt(),
+            cell_m: mean_cell(&self.plate),
             columns: self.plate.columns.len(),
             unknowns: self.constraints.ndof(),
             work: *counters,

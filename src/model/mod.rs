@@ -24,6 +24,7 @@ mod supports;
 mod symmetry;
 mod turns;
 
+pub(crate) use cracks::mean_cell;
 pub use fields::FieldPlan;
 pub use gauge::Gauge;
 pub(crate) use mesh::examined_mesh;

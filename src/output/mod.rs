@@ -14,6 +14,7 @@ pub mod pictures;
 pub mod preload;
 pub mod report;
 mod shapes;
+mod slopes;
 pub mod statics;
 pub mod summary;
 

@@ -2,7 +2,7 @@
 
 use super::record::RunRecord;
 use crate::forecast::{FILL, PHASES, Size, nominal};
-use crate::model::{Model, Plan};
+use crate::model::{Model, Plan, mean_cell};
 use fem_core::counters::Counters;
 
 /// Seconds over nominal seconds per phase.
@@ -41,7 +41,7 @@ pub(super) fn size(model: &Model, base: &Size) -> Size {
     let mut size = Size {
         cells,
         layers: model.plate.layers(),
-        cell_m: (plane.area() / plane.quads.len() as f64).sqrt(),
+        cell_m: mean_cell(&model.plate),
         columns,
         unknowns,
         factor_entries: scaled(base.factor_entries as f64, by_columns.powf(FILL) * per_column.powi(2)) as usize,

@@ -7,7 +7,7 @@ use super::support::{self, Unknowns};
 use super::tip::{self, Struck};
 use crate::document::keys::{Form, Keys, key, words};
 use crate::document::reader::{Reader, SceneValue};
-use crate::document::source::{Located, Place, SceneError};
+use crate::document::source::{Located, Origin, Place, SceneError};
 use crate::document::tree::Node;
 use crate::units;
 use fem_core::load::Face;
@@ -592,6 +592,10 @@ pub(super) fn read_failure(field: &SceneValue<'_>, wanted: bool, in_time: bool) 
         (None, false) => Vec::new(),
         _ => read_criteria(&table.required("criteria")?)?,
     };
+    let every = table.required("every")?;
+    if !in_time && every.place().origin != Origin::Preset {
+        return Err(every.error("needs an impact: nothing else is looked at over time", "leave it out"));
+    }
     let watch = match table.optional("watch") {
         None => Vec::new(),
         Some(field) if !in_time => {
@@ -609,7 +613,7 @@ pub(super) fn read_failure(field: &SceneValue<'_>, wanted: bool, in_time: bool) 
     };
     Ok(Failure {
         criteria,
-        every: table.required("every")?.positive(Dimension::TIME)?,
+        every: every.positive(Dimension::TIME)?,
         window,
         plies: table.optional("plies").map_or(Ok(PlyHeights::Auto), |field| field.choice(&PLIES))?,
         radius: table.optional("radius").map(|field| field.positive(Dimension::LENGTH)).transpose()?,

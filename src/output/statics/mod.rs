@@ -14,6 +14,7 @@ use crate::analyses::stress::Margin;
 use crate::cost::Cost;
 use crate::model::{Model, NamedProfile};
 use crate::output::preload::PreloadFigures;
+use crate::output::slopes::warn_of_slopes;
 use crate::output::summary::{Advised, hindsights};
 use crate::words::{append, append_symmetry, describe_condition, warn_of_condition, warn_of_softness};
 use fem_core::plugin::Dimension;
@@ -161,6 +162,7 @@ impl StaticSummary {
                 .cloned()
                 .chain(seen.iter().flatten().filter_map(|seen| seen.warning(model)))
                 .chain(warn_of_residual(solution.residual))
+                .chain(warn_of_slopes(model, w_m))
                 .chain(solution.condition.and_then(warn_of_condition))
                 .chain(path.iter().flat_map(PathFigures::warnings))
                 .chain(solution.softness.map(warn_of_softness))

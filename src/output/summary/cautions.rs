@@ -118,12 +118,14 @@ fn stiff((squeeze, figures): (&Option<Squeeze>, &ImpactFigures)) -> Option<Strin
     let name = figures.name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
     if !(compliance > 0.0) {
         return Some(format!(
-            "nothing was taken from the contact law{name}: in these cells the plate thickens under its bending by more than the patch              squeezes it, so that `indentation_from` changes nothing; use cells of half the patch there"
+            "nothing was taken from the contact law{name}: in these cells the plate thickens under its bending by more than the patch \
+             squeezes it, so that `indentation_from` changes nothing; use cells of half the patch there"
         ));
     }
     (figures.peak_force_N > limit).then(|| {
         format!(
-            "beyond {} the contact law{name} is so stiff that the plate gives more than half of what the law does: what more it gives there              counts twice (`indentation_from`)",
+            "beyond {} the contact law{name} is so stiff that the plate gives more than half of what the law does: what more it gives there \
+             counts twice (`indentation_from`)",
             Dimension::FORCE.of(limit)
         )
     })

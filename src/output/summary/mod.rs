@@ -17,6 +17,7 @@ use crate::analyses::impact::{self, ContactRecord, Differences, ModeShare, Outco
 use crate::effect::{AdviceRule, Decision, Hindsight, LedgerColumn};
 use crate::model::{Model, NamedCriterion, Plan};
 use crate::output::preload::PreloadFigures;
+use crate::output::slopes::warn_of_slopes;
 use crate::words::{name_ply, name_ply_of};
 use fem_core::counters::Counters;
 use fem_core::material::Material;
@@ -387,6 +388,7 @@ impl ImpactSummary {
         };
         let impact: Vec<ImpactFigures> =
             model.impactors().iter().enumerate().map(|(i, spec)| figures(model, outcome, i, spec)).collect();
+        let deflection = impact.iter().map(|figures| figures.peak_plate_displacement_m).fold(0.0, f64::max);
         let summary = Self {
             title: model.origin.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
@@ -464,7 +466,8 @@ impl ImpactSummary {
             work: outcome.counters.into(),
             warnings: {
                 let found = warnings::of_contacts(model, sizes, outcome)
-                    .chain(seen.iter().filter_map(|seen| seen.warning(model)));
+                    .chain(seen.iter().filter_map(|seen| seen.warning(model)))
+                    .chain(warn_of_slopes(model, deflection));
                 model.warnings.iter().cloned().chain(found).collect()
             },
         };
