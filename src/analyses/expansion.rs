@@ -2,8 +2,9 @@
 
 use crate::model::Model;
 use fem_core::assembly::Condensation;
+use fem_core::recovery::Tension;
 use fem_core::structure::Structure;
-use fem_dynamics::reduce::{Companions, Reduced, Share};
+use fem_dynamics::reduce::{Companions, Patterns, Reduced, Share};
 use std::sync::Arc;
 
 /// From the coordinates of a march to the unknowns of the plate, before elimination of constraints.
@@ -18,6 +19,44 @@ pub(super) struct Expansion<'a> {
     pub(super) share: Option<Arc<Share>>,
     /// Where the unknowns of the structure are masters alone.
     pub(super) condensation: Option<Arc<Condensation>>,
+}
+
+/// What stresses follow from: displacements whose strains are small, and the amounts of tensions, in the unknowns of the plate before
+/// elimination of constraints.
+#[derive(Debug, Clone)]
+pub(crate) struct Stressed {
+    pub(crate) u: Vec<f64>,
+    tensions: Option<Tensions>,
+    /// Field by field.
+    amounts: Vec<f64>,
+}
+
+/// Tensions, and the deflections that they are made of in the unknowns of the plate.
+#[derive(Debug, Clone)]
+struct Tensions {
+    of: Arc<Patterns>,
+    deflections: Vec<f64>,
+}
+
+impl Stressed {
+    /// Of displacements `u` without tensions.
+    pub(crate) fn of(u: Vec<f64>) -> Self {
+        Self { u, tensions: None, amounts: Vec::new() }
+    }
+
+    /// The tensions of `count` fields from the `first` on.
+    pub(crate) fn tension(&self, first: usize, count: usize) -> Option<Tension<'_>> {
+        let Tensions { of, deflections } = self.tensions.as_ref()?;
+        let terms = of.follow().terms();
+        let amounts = &self.amounts[first * terms..(first + count) * terms];
+        Some(Tension { deflections, combinations: of.combinations(), amounts })
+    }
+
+    /// These and `other` fields of the same plate.
+    pub(crate) fn extend(&mut self, other: &Self) {
+        self.u.extend_from_slice(&other.u);
+        self.amounts.extend_from_slice(&other.amounts);
+    }
 }
 
 impl Expansion<'_> {
@@ -42,6 +81,36 @@ impl Expansion<'_> {
             companions.complete(width, coordinates, &mut u);
         }
         self.nodal(&u)
+    }
+
+    /// What the membrane stresses are made of, where few patterns of them hold all that the march knows of stretching.
+    pub(super) fn tensions(&self) -> Option<&Arc<Patterns>> {
+        self.companions.as_ref().map(Companions::patterns).or(self.share.as_deref().map(Share::patterns))
+    }
+
+    /// What the stresses of `count` fields follow from, of as many in coordinates of the march.
+    pub(super) fn stressed(&self, coordinates: &[f64], count: usize) -> Stressed {
+        let Some(tensions) = self.tensions() else {
+            return Stressed { u: self.displacements(coordinates, count), tensions: None, amounts: Vec::new() };
+        };
+        let (follow, width) = (tensions.follow(), coordinates.len() / count.max(1));
+        let (mut u, mut amounts) = (Vec::new(), Vec::new());
+        for q in coordinates.chunks_exact(width.max(1)) {
+            let (mut field, share) = match (&self.reduced, &self.share) {
+                (Some(reduced), _) => {
+                    let mut field = vec![0.0; reduced.basis.len() / width];
+                    reduced.expand(q, &mut field);
+                    (field, q.to_vec())
+                }
+                (None, Some(share)) => (q.to_vec(), share.coordinates(q)),
+                (None, None) => (q.to_vec(), Vec::new()),
+            };
+            follow.complete(share.len(), &share, &mut field);
+            amounts.extend(follow.amounts(&share));
+            u.extend(field);
+        }
+        let tensions = Tensions { deflections: self.nodal(tensions.deflections()), of: Arc::clone(tensions) };
+        Stressed { u: self.nodal(&u), tensions: Some(tensions), amounts }
     }
 
     /// Velocities in the unknowns of the plate, of coordinates and their rates.

@@ -1,7 +1,6 @@
 //! What a model can be asked: the response to an impact, loads at rest, natural modes, buckling, its matrices.
 
 pub mod assembled;
-mod bent;
 pub mod buckling;
 pub mod delamination;
 mod expansion;
@@ -16,3 +15,5 @@ pub(crate) mod saved;
 pub mod statics;
 pub mod stress;
 mod supports;
+
+pub(crate) use expansion::Stressed;

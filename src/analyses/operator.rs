@@ -1,15 +1,14 @@
 //! Stresses of the places that are watched, as products with the coordinates of a reduced plate.
 
-use super::bent::{Bent, OfPlace};
 use crate::forecast::Demand;
 use fem_core::failure::StressRange;
-use fem_core::interval::Interval;
 use fem_core::tensor::{Ply, Stress6};
 use fem_core::vectorised::{products, products_of_intervals};
+use fem_dynamics::reduce::Patterns;
 use fem_failure::scan::{Samples, windows};
 use std::borrow::Cow;
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Columns of a product.
 pub(super) const LANES: usize = Demand::BATCH;
@@ -18,13 +17,10 @@ pub(super) const LANES: usize = Demand::BATCH;
 pub(super) const SURVEYED: usize = LANES * (LANES - 1) + 1;
 
 /// Columns of coordinates, `LANES` numbers for each of them.
-pub(super) struct Columns {
-    of: Vec<[f64; LANES]>,
-    bent: OfPlace<f64>,
-}
+type Columns = Vec<[f64; LANES]>;
 
-/// The stress at each site per unit of each coordinate: those of the march, and where its deflections stretch a plate the amounts of what
-/// it does beside its modes.
+/// The stress at each site per unit of each coordinate: those of the march, and where its deflections stretch a plate the amounts of its
+/// tensions.
 #[derive(Debug)]
 pub(super) struct StressOperator {
     /// Of each site six rows, one number per coordinate.
@@ -33,8 +29,8 @@ pub(super) struct StressOperator {
     /// Stresses that do not follow from the coordinates, six a site; empty where there are none.
     residual: Vec<f64>,
     coarse: OnceLock<Coarse>,
-    /// What slopes add.
-    bent: Option<Bent>,
+    /// The tensions, if there are some.
+    tensions: Option<Arc<Patterns>>,
 }
 
 /// The rows in single precision, in units of coordinates that bring the largest number of each to between 1/2 and 1.
@@ -58,12 +54,12 @@ impl StressOperator {
                 }
             }
         }
-        Self { rows, width, residual, coarse: OnceLock::new(), bent: None }
+        Self { rows, width, residual, coarse: OnceLock::new(), tensions: None }
     }
 
-    /// The same with what slopes add.
-    pub(super) fn with_bent(self, bent: Bent) -> Self {
-        Self { bent: Some(bent), ..self }
+    /// The same with the stresses of these tensions behind those of the coordinates.
+    pub(super) fn with_tensions(self, tensions: &Arc<Patterns>) -> Self {
+        Self { tensions: Some(Arc::clone(tensions)), ..self }
     }
 
     /// The six rows of `site`, and its stresses that do not follow from the coordinates.
@@ -74,7 +70,7 @@ impl StressOperator {
     /// That of rows that were kept ([`StressOperator::rows`]); `None` where they are not six for each of so many `sites`.
     pub(super) fn of_rows(rows: Vec<f64>, sites: usize, width: usize, residual: Vec<f64>) -> Option<Self> {
         let fits = Some(rows.len()) == sites.checked_mul(6 * width) && rows.iter().all(|row| row.is_finite());
-        fits.then_some(Self { rows, width, residual, coarse: OnceLock::new(), bent: None })
+        fits.then_some(Self { rows, width, residual, coarse: OnceLock::new(), tensions: None })
     }
 
     /// Of each site six rows, one number per coordinate.
@@ -97,31 +93,26 @@ impl StressOperator {
 
     /// Coordinates of a march with all that stresses follow from.
     pub(super) fn extended<'a>(&self, samples: &'a [f64]) -> Cow<'a, [f64]> {
-        self.bent.as_ref().map_or(Cow::Borrowed(samples), |bent| Cow::Owned(bent.extended(samples)))
+        let Some(tensions) = &self.tensions else { return Cow::Borrowed(samples) };
+        let follow = tensions.follow();
+        let with_amounts = |q: &[f64]| q.iter().copied().chain(follow.amounts(q)).collect::<Vec<_>>();
+        Cow::Owned(samples.chunks_exact((self.width - follow.terms()).max(1)).flat_map(with_amounts).collect())
     }
 
     /// [Extended](StressOperator::extended) `samples`, one after the other, as columns; lanes without a sample are zero.
     pub(super) fn columns(&self, samples: &[f64]) -> Columns {
         let lane = |k: usize| std::array::from_fn(|lane| samples.get(lane * self.width + k).copied().unwrap_or(0.0));
-        Columns { of: (0..self.width).map(lane).collect(), bent: None }
+        (0..self.width).map(lane).collect()
     }
 
     /// The stresses of `site` for each of the `columns`, by component. A sum takes its terms in one order whatever stands beside it,
     /// so that a stress does not depend on what else is computed.
-    pub(super) fn stresses(&self, site: usize, columns: &mut Columns) -> [[f64; LANES]; 6] {
+    pub(super) fn stresses(&self, site: usize, columns: &Columns) -> [[f64; LANES]; 6] {
         let rows = self.of(site).0;
         // Three rows at a time leave all sums in registers.
         let (first, second) = rows.split_at(3 * self.width);
-        let [[a, b, c], [d, e, f]] = [first, second].map(|rows| products(rows, &columns.of));
+        let [[a, b, c], [d, e, f]] = [first, second].map(|rows| products(rows, columns));
         let mut out = [a, b, c, d, e, f];
-        if let Some(bent) = &self.bent {
-            let strains = bent.strains(site, &columns.of, &mut columns.bent);
-            for (strain, response) in strains.iter().zip(bent.response(site)) {
-                for (out, c) in out.iter_mut().zip(response) {
-                    out.iter_mut().zip(strain).for_each(|(s, e)| *s += c * e);
-                }
-            }
-        }
         for (out, residual) in out.iter_mut().zip(self.residual(site)) {
             out.iter_mut().for_each(|s| *s += residual);
         }
@@ -157,7 +148,6 @@ pub(super) struct Sampled<'a> {
     halves: Vec<[f32; LANES]>,
     /// Of each window, what numbers too small for single precision may add to a stress, Pa.
     lost: [f64; LANES],
-    bent: OfPlace<Interval>,
 }
 
 impl<'a> Sampled<'a> {
@@ -187,7 +177,7 @@ impl<'a> Sampled<'a> {
             }
         }
         let columns = windows.iter().map(|window| operator.columns(of(window))).collect();
-        Self { operator, columns, middles, halves, lost, bent: None }
+        Self { operator, columns, middles, halves, lost }
     }
 }
 
@@ -197,23 +187,11 @@ impl Samples for Sampled<'_> {
         let rows = &self.operator.coarse().rows[6 * site * width..][..6 * width];
         let (first, second) = rows.split_at(3 * width);
         let sums = [first, second].map(|rows| products_of_intervals::<3, LANES>(rows, &self.middles, &self.halves));
-        let bent = self.operator.bent.as_ref().map(|bent| {
-            let units = (&*self.operator.coarse().units, &self.lost);
-            (bent.ranges(site, (&self.middles, &self.halves), units, &mut self.bent), bent.response(site))
-        });
         let [mut low, mut high] = [[[0.0; LANES]; 6]; 2];
         for (i, residual) in self.operator.residual(site).into_iter().enumerate() {
             let [middles, halves] = &sums[i / 3];
             for lane in 0..LANES {
                 let (middle, half) = (f64::from(middles[i % 3][lane]), f64::from(halves[i % 3][lane]));
-                let [middle, half] = bent.map_or([middle, half], |(strains, response)| {
-                    strains.iter().zip(response).fold([middle, half], |[middle, half], (strains, response)| {
-                        let (Interval { low, high }, c) = (strains[lane], response[i]);
-                        // Half as much again of the ends covers the rounding of both.
-                        let reach = 0.5 * (high - low) + f64::EPSILON * (low.abs() + high.abs());
-                        [middle + 0.5 * c * (low + high), half + c.abs() * reach]
-                    })
-                });
                 let half = half + self.lost[lane] + 4.0 * f64::EPSILON * (middle.abs() + half + residual.abs());
                 (low[i][lane], high[i][lane]) = (middle + residual - half, middle + residual + half);
             }
@@ -225,7 +203,7 @@ impl Samples for Sampled<'_> {
     }
 
     fn stresses(&mut self, site: usize, window: usize, out: &mut [Stress6<Ply>]) {
-        put(&self.operator.stresses(site, &mut self.columns[window]), out);
+        put(&self.operator.stresses(site, &self.columns[window]), out);
     }
 }
 

@@ -1,18 +1,17 @@
 //! The stresses of a plate that is marched, as its criteria see them, and all that a march showed them.
 
-use super::bent::Bent;
 use super::expansion::Expansion;
 use super::kept::KeptPart;
 use super::operator::{LANES, SURVEYED, Sampled, StressOperator, put};
-use super::stress::{build_recovery, of_cells, recover, residual, sites};
+use super::stress::{build_recovery, of_cells, residual, sites};
 use crate::error::Error;
 use crate::forecast::Demand;
 use crate::model::{Model, NamedCriterion};
 use fem_core::failure::StressRange;
 use fem_core::material::Material;
-use fem_core::recovery::Recovery;
+use fem_core::recovery::{Recovery, Tension};
 use fem_core::tensor::{Ply, Stress6};
-use fem_dynamics::reduce::Companions;
+use fem_dynamics::reduce::Patterns;
 use fem_failure::scan::{Extremes, Hulls, Samples, Scan, ScanError, ScanSite, Wanted, windows};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -51,8 +50,8 @@ impl PlateStresses {
             return Ok(Self { recovery, way: Way::Recovery(residual) });
         };
         let fits = |columns: usize| 6 * recovery.sites() * columns * size_of::<f64>() <= Demand::OPERATOR_LIMIT;
-        if let Some(companions) = expansion.companions.as_ref().filter(|of| fits(modes + of.terms())) {
-            let operator = stretched(model, &recovery, expansion, companions, residual)?;
+        if let Some(tensions) = expansion.tensions().filter(|of| fits(modes + of.follow().terms())) {
+            let operator = stretched(model, &recovery, expansion, tensions, residual)?;
             return Ok(Self { recovery, way: Way::Product(operator) });
         }
         if !model.effects.nature().large && fits(modes) {
@@ -67,7 +66,7 @@ impl PlateStresses {
                 }
             }
             let mut product = vec![0.0; 6 * recovery.sites() * modes];
-            recover(model, &recovery, &expansion.nodal(basis), modes, None, &mut product)?;
+            recovery.small_stresses(&model.plate, &*model.element, &expansion.nodal(basis), modes, &mut product)?;
             let operator = StressOperator::new(&product, modes, residual);
             if let Some(kept) = &kept {
                 kept.write(&operator.rows());
@@ -86,18 +85,25 @@ fn stretched(
     model: &Model,
     recovery: &Recovery,
     expansion: &Expansion<'_>,
-    companions: &Companions,
+    tensions: &Arc<Patterns>,
     residual: Vec<f64>,
 ) -> Result<StressOperator, Error> {
     let Some((basis, modes)) = expansion.basis() else { return Ok(StressOperator::new(&[], 0, residual)) };
-    let (plate, element, width) = (&model.plate, &*model.element, modes + companions.terms());
-    let mut fields = vec![0.0; 6 * recovery.sites() * width];
+    let (plate, element, terms) = (&model.plate, &*model.element, tensions.follow().terms());
+    let mut fields = vec![0.0; 6 * recovery.sites() * (modes + terms)];
     let (of_modes, of_terms) = fields.split_at_mut(6 * recovery.sites() * modes);
-    let deflections = expansion.nodal(basis);
-    recovery.small_stresses(plate, element, &deflections, modes, of_modes)?;
-    recovery.small_stresses(plate, element, &expansion.nodal(companions.shapes()), companions.terms(), of_terms)?;
-    let slopes = recovery.slopes(plate, element, &deflections, modes)?;
-    Ok(StressOperator::new(&fields, width, residual).with_bent(Bent::new(companions.clone(), slopes)))
+    recovery.small_stresses(plate, element, &expansion.nodal(basis), modes, of_modes)?;
+    recovery.small_stresses(plate, element, &expansion.nodal(tensions.follow().shapes()), terms, of_terms)?;
+    let mut amounts = vec![0.0; terms * terms];
+    amounts.iter_mut().step_by(terms + 1).for_each(|amount| *amount = 1.0);
+    let (deflections, combinations) = (expansion.nodal(tensions.deflections()), tensions.combinations());
+    recovery.add_tension(
+        plate,
+        element,
+        Tension { deflections: &deflections, combinations, amounts: &amounts },
+        of_terms,
+    )?;
+    Ok(StressOperator::new(&fields, modes + terms, residual).with_tensions(tensions))
 }
 
 /// Whether the rows of `operator` give the stresses of a combination of all modes in some cells, [`LOOKED_AT`].
@@ -123,7 +129,7 @@ fn agrees(
     let quads: Vec<usize> = chosen.iter().filter_map(|k| model.watched.get(*k)).copied().collect();
     let some = of_cells(model, &quads);
     let mut field = vec![0.0; 6 * some.sites()];
-    recover(model, &some, &expansion.nodal(&u), 1, None, &mut field)?;
+    some.small_stresses(&model.plate, &*model.element, &expansion.nodal(&u), 1, &mut field)?;
     let begin = |k: usize| (0..k).map(|k| recovery.stations_over(k).len()).sum::<usize>();
     let sites = chosen.iter().take(quads.len()).flat_map(|k| begin(*k)..begin(k + 1));
     Ok(operator.gives(sites, &q, &field))
@@ -160,8 +166,8 @@ impl PlateSamples {
         let stresses = |site: usize, window: usize, out: &mut [Stress6<Ply>]| {
             let batch = self.batches().nth(window / LANES).unwrap_or_default();
             let within = windows(batch.len()).nth(window % LANES).unwrap_or_default();
-            let mut columns = operator.columns(self.coordinates(batch.start + within.start..batch.start + within.end));
-            put(&operator.stresses(site, &mut columns), out);
+            let columns = operator.columns(self.coordinates(batch.start + within.start..batch.start + within.end));
+            put(&operator.stresses(site, &columns), out);
         };
         Ok(Some(hulls.judge(criteria, materials, &stresses)?))
     }
@@ -195,14 +201,14 @@ impl PlateSamples {
         for batch in chosen.chunks(LANES) {
             let at: Vec<f64> =
                 batch.iter().flat_map(|k| &self.coordinates[k * width..(k + 1) * width]).copied().collect();
-            let (mut columns, mut stresses) = (operator.columns(&at), [Stress6::new([0.0; 6]); LANES]);
+            let (columns, mut stresses) = (operator.columns(&at), [Stress6::new([0.0; 6]); LANES]);
             for (name, criterion) in &model.criteria {
                 let info = criterion.info();
                 let modes = info.modes.len();
                 let judged: Vec<usize> = (0..sites.len()).filter(|i| sites[*i].place.site() == info.site).collect();
                 let mut indices = vec![0.0; modes * batch.len() * judged.len()];
                 for (site, out) in judged.iter().zip(indices.chunks_exact_mut(modes * batch.len())) {
-                    put(&operator.stresses(*site, &mut columns), &mut stresses);
+                    put(&operator.stresses(*site, &columns), &mut stresses);
                     let material = &model.materials[usize::from(sites[*site].material)];
                     for (stress, out) in stresses.iter().zip(out.chunks_exact_mut(modes)) {
                         criterion.indices(stress, material, out);

@@ -1,6 +1,6 @@
 //! Stresses along a march: sampled, recovered in batches, handed to the scan.
 
-use super::expansion::Expansion;
+use super::expansion::{Expansion, Stressed};
 use super::operator::{LANES, put};
 use super::samples::{PlateSamples, PlateStresses, Way};
 use crate::error::Error;
@@ -188,18 +188,17 @@ impl<'a> Watch<'a> {
         let rows = 6 * recovery.sites();
         match way {
             Way::Product(operator) => {
-                let mut columns = operator.columns(&operator.extended(waiting));
+                let columns = operator.columns(&operator.extended(waiting));
                 let mut samples = [Stress6::new([0.0; 6]); LANES];
                 for site in 0..recovery.sites() {
-                    put(&operator.stresses(site, &mut columns), &mut samples[..count]);
+                    put(&operator.stresses(site, &columns), &mut samples[..count]);
                     for (out, sample) in out.chunks_exact_mut(rows).zip(&samples) {
                         out[6 * site..6 * site + 6].copy_from_slice(&sample.0);
                     }
                 }
             }
             Way::Recovery(residual) => {
-                let u = self.expansion.displacements(waiting, count);
-                recover(self.model, recovery, &u, count, Some(points), out)?;
+                recover(self.model, recovery, &self.expansion.stressed(waiting, count), count, Some(points), out)?;
                 add(out, residual);
             }
         }
@@ -287,7 +286,7 @@ pub(crate) fn margins(model: &Model, u: &[f64]) -> Result<Vec<Margin>, Error> {
     }
     let recovery = build_recovery(model);
     let mut stresses = vec![0.0; 6 * recovery.sites()];
-    recover(model, &recovery, u, 1, Some(&virgin(model)), &mut stresses)?;
+    recover(model, &recovery, &Stressed::of(u.to_vec()), 1, Some(&virgin(model)), &mut stresses)?;
     add(&mut stresses, &residual(model, &recovery)?);
     if !stresses.iter().all(|s| s.is_finite()) {
         return Err(Error::NotFinite("stress"));
@@ -339,8 +338,7 @@ pub(crate) fn virgin(model: &Model) -> Vec<f64> {
     vec![0.0; model.laws.as_ref().map_or(0, PlyLaws::states)]
 }
 
-/// Stresses of `count` displacement fields (before elimination of constraints), one after the other, without those
-/// that do not follow from displacements. `points` are the states of plies that follow laws, field by field; without them
+/// Stresses of `count` fields, one after the other, without those that do not follow from displacements. `points` are the states of plies that follow laws, field by field; without them
 /// stresses are those of linear elasticity.
 ///
 /// # Errors
@@ -348,18 +346,21 @@ pub(crate) fn virgin(model: &Model) -> Vec<f64> {
 pub(crate) fn recover(
     model: &Model,
     recovery: &Recovery,
-    u: &[f64],
+    stressed: &Stressed,
     count: usize,
     points: Option<&[f64]>,
     out: &mut [f64],
 ) -> Result<(), Error> {
-    let (plate, element) = (&model.plate, &*model.element);
+    let (plate, element, u) = (&model.plate, &*model.element, &stressed.u);
     recovery.stresses(plate, element, u, count, out)?;
+    if let Some(tension) = stressed.tension(0, count) {
+        recovery.add_tension(plate, element, tension, out)?;
+    }
     let Some((laws, points)) = model.laws.as_ref().zip(points) else { return Ok(()) };
     let fields = u.chunks_exact(plate.ndof()).zip(out.chunks_exact_mut(6 * recovery.sites()));
     for (field, (u, out)) in fields.enumerate() {
         let points = &points[field * laws.states()..(field + 1) * laws.states()];
-        recovery.put_lawful(plate, element, laws, (u, points), out)?;
+        recovery.put_lawful(plate, element, laws, (u, points, stressed.tension(field, 1)), out)?;
     }
     Ok(())
 }
@@ -395,17 +396,13 @@ pub(crate) fn recovery(model: &Model, quads: &[usize], centres: &[Centre], inter
     Recovery::new(&model.plate, (&model.laminates, model.heights), &model.materials, resin, &windows).of(strains(model))
 }
 
-/// The strains of a model: a plate in few vectors, or one whose layers come apart, knows those of slopes alone.
+/// The strains of displacements of a model: those of a plate in few vectors, or one whose layers come apart, are small beside its tensions.
 pub(crate) fn strains(model: &Model) -> Strains {
     let few = match &model.plan {
         Plan::Impact(impact) => impact.reduction.is_some() || model.separation.is_some(),
         _ => false,
     };
-    match (model.effects.nature().large, few) {
-        (false, _) => Strains::Small,
-        (true, true) => Strains::Slopes,
-        (true, false) => Strains::Large,
-    }
+    if model.effects.nature().large && !few { Strains::Large } else { Strains::Small }
 }
 
 pub(crate) fn sites(recovery: &Recovery) -> Vec<ScanSite> {

@@ -1,6 +1,6 @@
 //! Slopes of the middle of cells, by which deflections stretch a plate.
 
-use crate::contracts::element::{Cell, Element, form};
+use crate::contracts::element::{Cell, Element};
 
 /// Step of the differences of shape functions, in natural coordinates.
 const STEP: f64 = 0.25;
@@ -32,19 +32,4 @@ pub(crate) fn add_slopes(
     for d in 0..2 {
         rows.extend(natural.iter().map(|[r, s]| r * by_r[d] + s * by_s[d]));
     }
-}
-
-/// The strains ½ w,x², ½ w,y² and w,x w,y of the slopes of displacements `u` at the in-plane points of a cell.
-pub(crate) fn bent(element: &dyn Element, cell: &Cell<'_>, u: &[f64]) -> Vec<f64> {
-    let element = form(element, cell.corners.domain());
-    let (mut shape, mut rows, mut strains) = (Vec::new(), Vec::new(), Vec::new());
-    for (r, s, _) in element.info().plane_points() {
-        rows.clear();
-        add_slopes(element, cell, [r, s], &mut shape, &mut rows);
-        let of = |row: &[f64]| row.iter().zip(u).map(|(g, u)| g * u).sum::<f64>();
-        let (by_x, by_y) = rows.split_at(rows.len() / 2);
-        let [x, y] = [of(by_x), of(by_y)];
-        strains.extend([0.5 * x * x, 0.5 * y * y, x * y]);
-    }
-    strains
 }

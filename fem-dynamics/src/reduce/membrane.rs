@@ -9,6 +9,7 @@ use fem_core::reduction::ReductionError;
 use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent, Tangents};
 use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, DVectorView, SymmetricEigen};
 use pulp::Arch;
+use std::sync::Arc;
 
 /// Membrane tensions under which the static responses to a contact are directions: their stiffness against a mode over its
 /// bending stiffness, of the lowest mode, 0 for none. That of tension grows with k², that of bending with k⁴.
@@ -101,9 +102,17 @@ pub struct MembranePlate {
     solution: Vec<f64>,
 }
 
-/// What a plate does beside its modes because they stretch it: Σ a_t s_t, a_t = qᵀ A_t q.
+/// What a plate does beside its modes because they stretch it.
 #[derive(Debug, Clone)]
 pub struct Companions {
+    /// The displacements Σ a_t s_t.
+    displaced: Followers,
+    patterns: Arc<Patterns>,
+}
+
+/// Displacements Σ a_t s_t, a_t = qᵀ A_t q.
+#[derive(Debug, Clone)]
+pub struct Followers {
     /// A_t, one after the other.
     forms: Vec<f64>,
     /// s_t, `ndof × terms`.
@@ -112,14 +121,32 @@ pub struct Companions {
 }
 
 /// The strains of the membrane stresses of a [`MembranePlate`], Σ b_t (ε_t + B s_t): ε_t a combination of those of pairs of deflections.
+///
+/// Stresses are those of these strains beside the modes'. What else the squares of slopes are is stretching that the plate gives way to in
+/// its plane, nearly all of it, by displacements that are not known: without them its stresses would be large and would not be there.
 #[derive(Debug, Clone)]
-pub(super) struct Patterns {
+pub struct Patterns {
     pub(super) deflections: Vec<f64>,
-    /// `pairs × patterns`.
     pub(super) combinations: Vec<f64>,
-    /// b_t and s_t.
-    pub(super) follow: Companions,
+    pub(super) follow: Followers,
     pub(super) torn: Torn,
+}
+
+impl Patterns {
+    /// The deflections, independent unknowns, one after the other.
+    pub fn deflections(&self) -> &[f64] {
+        &self.deflections
+    }
+
+    /// Of each pattern, shares of the strains of their pairs, `pairs × patterns`.
+    pub fn combinations(&self) -> &[f64] {
+        &self.combinations
+    }
+
+    /// b_t and s_t.
+    pub fn follow(&self) -> &Followers {
+        &self.follow
+    }
 }
 
 /// What the stresses of each pattern do on layers that are told apart: forces r_t = ∫ Bᵀ C (ε_t + B s_t) dV, none on the plate that holds
@@ -162,6 +189,18 @@ impl Torn {
 }
 
 impl Companions {
+    /// Adds to u = Φ q + … what the stretching adds ([`Followers::complete`]).
+    pub fn complete(&self, modes: usize, q: &[f64], u: &mut [f64]) {
+        self.displaced.complete(modes, q, u);
+    }
+
+    /// What its membrane stresses are made of.
+    pub fn patterns(&self) -> &Arc<Patterns> {
+        &self.patterns
+    }
+}
+
+impl Followers {
     fn new(forms: Vec<f64>, shapes: &DMatrix<f64>) -> Self {
         Self { forms, shapes: shapes.as_slice().to_vec(), terms: shapes.ncols() }
     }
@@ -214,8 +253,7 @@ impl MembranePlate {
         contacts: &[Functional],
         stretching: &dyn MembraneForms,
     ) -> Result<(Self, Companions), ReductionError> {
-        let (plate, companions, _) = Self::with_plane(structure, reduced, contacts, stretching, InPlane::OfModes)?;
-        Ok((plate, companions))
+        Self::with_plane(structure, reduced, contacts, stretching, InPlane::OfModes)
     }
 
     /// The same, with what the modes would do in the plane of the plate.
@@ -228,7 +266,7 @@ impl MembranePlate {
         contacts: &[Functional],
         stretching: &dyn MembraneForms,
         in_plane: InPlane,
-    ) -> Result<(Self, Companions, Patterns), ReductionError> {
+    ) -> Result<(Self, Companions), ReductionError> {
         let n = reduced.ndof;
         // Free motions bend nothing: as if they were infinitely stiff.
         let stiff = |k: &f64| if *k > 0.0 { *k } else { f64::INFINITY };
@@ -309,9 +347,9 @@ impl MembranePlate {
             torn,
             deflections: fields.as_slice().to_vec(),
             combinations: turned.as_slice().to_vec(),
-            follow: Companions::new(of_left, &shapes_of_left),
+            follow: Followers::new(of_left, &shapes_of_left),
         };
-        Ok((plate, Companions::new(forms, &shapes), patterns))
+        Ok((plate, Companions { displaced: Followers::new(forms, &shapes), patterns: Arc::new(patterns) }))
     }
 
     /// The same plate with other modes in bending, as many.

@@ -44,12 +44,23 @@ pub struct Share {
     weights: Vec<f64>,
     modes: usize,
     companions: Companions,
-    patterns: Patterns,
 }
 
 impl Share {
     fn of(&self, u: &[f64], q: &mut [f64]) {
         q.iter_mut().zip(self.weights.chunks_exact(u.len())).for_each(|(q, column)| *q = dot(column, u));
+    }
+
+    /// q
+    pub fn coordinates(&self, u: &[f64]) -> Vec<f64> {
+        let mut q = vec![0.0; self.modes];
+        self.of(u, &mut q);
+        q
+    }
+
+    /// What its membrane stresses are made of.
+    pub fn patterns(&self) -> &Arc<Patterns> {
+        self.companions.patterns()
     }
 
     /// Adds to the displacements `u` of the full plate what it does in its plane, and through its thickness, because it is stretched.
@@ -62,18 +73,18 @@ impl Share {
 
 impl Stretching for Share {
     fn deflections(&self) -> &[f64] {
-        &self.patterns.deflections
+        &self.companions.patterns().deflections
     }
 
     fn combinations(&self) -> &[f64] {
-        &self.patterns.combinations
+        &self.companions.patterns().combinations
     }
 
     fn expand(&self, u: &[f64], completed: &mut [f64], amounts: &mut Vec<f64>) {
         let mut q = vec![0.0; self.modes];
         self.of(u, &mut q);
         completed.copy_from_slice(u);
-        let follow = &self.patterns.follow;
+        let follow = &self.companions.patterns().follow;
         amounts.clear();
         amounts.extend(follow.amounts(&q));
         amounts.iter().zip(follow.shapes().chunks_exact(u.len())).for_each(|(b, shape)| axpy(*b, shape, completed));
@@ -82,14 +93,14 @@ impl Stretching for Share {
     fn tear(&self, u: &[f64], force: &mut [f64]) {
         let mut q = vec![0.0; self.modes];
         self.of(u, &mut q);
-        let amounts: Vec<f64> = self.patterns.follow.amounts(&q).collect();
-        self.patterns.torn.add(&amounts, force);
+        let amounts: Vec<f64> = self.companions.patterns().follow.amounts(&q).collect();
+        self.companions.patterns().torn.add(&amounts, force);
     }
 
     fn restrict(&self, u: &[f64], on_completed: &[f64], on_amounts: &[f64], force: &mut [f64]) {
         let (mut q, mut g) = (vec![0.0; self.modes], vec![0.0; self.modes]);
         self.of(u, &mut q);
-        let follow = &self.patterns.follow;
+        let follow = &self.companions.patterns().follow;
         let works = on_amounts
             .iter()
             .zip(follow.shapes().chunks_exact(u.len()))
@@ -129,11 +140,11 @@ impl Stretch {
         if flexibilities(&reduced, contacts).iter().zip(&all).any(|(kept, all)| !(*kept >= HELD * all)) {
             return Err(ReductionError::Solve(SolveError::other(TOO_LONG)));
         }
-        let (membrane, companions, patterns) =
+        let (membrane, companions) =
             MembranePlate::with_plane(structure, &reduced, contacts, stretching, InPlane::AtOnce)?;
         let mut weights = vec![0.0; reduced.basis.len()];
         structure.add_mass(1.0, &reduced.basis, &mut weights);
-        let share = Share { weights, modes: reduced.modal.ndof(), companions, patterns };
+        let share = Share { weights, modes: reduced.modal.ndof(), companions };
         Ok(Self { membrane, share: Arc::new(share) })
     }
 
@@ -224,9 +235,9 @@ impl Nonlinear for StretchedPlate {
         };
         share.of(u, q);
         g.fill(0.0);
-        share.patterns.torn.works(u, works);
+        share.patterns().torn.works(u, works);
         energy.stored += membrane.add_tension(q, works, g);
-        share.patterns.torn.add(membrane.amounts(), force);
+        share.patterns().torn.add(membrane.amounts(), force);
         g.iter().zip(share.weights.chunks_exact(u.len())).for_each(|(g, column)| axpy(*g, column, force));
         Ok(energy)
     }

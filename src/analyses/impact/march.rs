@@ -11,7 +11,7 @@ use super::prepare::{Prepared, describe_failure, place_impactors};
 use super::squeeze::Squeeze;
 use super::{Maximum, Outcome, Sizes};
 use crate::analyses::delamination::Onsets;
-use crate::analyses::expansion::Expansion;
+use crate::analyses::expansion::{Expansion, Stressed};
 use crate::analyses::samples::PlateStresses;
 use crate::analyses::stress::{self, Watch};
 use crate::cost::Stopwatch;
@@ -402,6 +402,11 @@ impl<'a> March<'a> {
     /// Displacements at present, m, in the unknowns of the plate before elimination of constraints.
     pub fn displacements(&self) -> Vec<f64> {
         self.expansion.displacements(&self.coordinates(), 1)
+    }
+
+    /// What stresses follow from at present, where that is not the displacements alone.
+    pub(crate) fn stressed(&self) -> Option<Stressed> {
+        self.expansion.tensions().map(|_| self.expansion.stressed(&self.coordinates(), 1))
     }
 
     /// Largest index of every criterion and site over all samples so far.

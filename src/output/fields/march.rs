@@ -29,7 +29,7 @@ impl<'a> MarchFields<'a> {
     pub(crate) fn take(&mut self, march: &mut March<'_>) -> Result<(), Error> {
         let Some(number) = march.frame() else { return Ok(()) };
         march.beside(PHASE, |march| {
-            let (u, v) = (march.displacements(), march.velocities());
+            let (u, v, stressed) = (march.displacements(), march.velocities(), march.stressed());
             if self.writer.is_none() {
                 self.writer = Writer::new(self.model, self.dir, march.frame_times())?;
             }
@@ -37,7 +37,8 @@ impl<'a> MarchFields<'a> {
             let maxima = if writer.shows_plies() { march.maxima()? } else { Vec::new() };
             let maxima = Some(maxima.as_slice());
             let (points, interfaces) = (Some(march.points()), Some(march.interfaces()));
-            writer.take(number, State { maxima, velocities: v.as_deref(), points, interfaces, ..State::of(&u) })
+            let state = State { maxima, stressed: stressed.as_ref(), points, interfaces, ..State::of(&u) };
+            writer.take(number, State { velocities: v.as_deref(), ..state })
         })
     }
 

@@ -23,6 +23,7 @@ mod so_far;
 pub(crate) use march::MarchFields;
 pub(crate) use size::{Expected, expected};
 
+use crate::analyses::Stressed;
 use crate::analyses::impact::Maximum;
 use crate::analyses::{buckling, modes, statics, stress};
 use crate::cost::{Phase, Stopwatch};
@@ -50,6 +51,8 @@ const SCRIPT: &str = include_str!("view.py");
 #[derive(Debug, Clone, Copy)]
 struct State<'a> {
     displacements: &'a [f64],
+    /// What stresses follow from, where that is not the displacements alone.
+    stressed: Option<&'a Stressed>,
     velocities: Option<&'a [f64]>,
     /// States of plies that follow laws; without them plies are linear elastic.
     points: Option<&'a [f64]>,
@@ -64,7 +67,15 @@ struct State<'a> {
 impl<'a> State<'a> {
     /// Displacements alone.
     fn of(displacements: &'a [f64]) -> Self {
-        Self { displacements, velocities: None, points: None, interfaces: None, figure: None, maxima: None }
+        Self {
+            displacements,
+            stressed: None,
+            velocities: None,
+            points: None,
+            interfaces: None,
+            figure: None,
+            maxima: None,
+        }
     }
 }
 
@@ -115,6 +126,7 @@ struct Writer<'a> {
 struct Waiting {
     number: usize,
     displacements: Vec<f64>,
+    stressed: Option<Stressed>,
     velocities: Option<Vec<f64>>,
     points: Option<Vec<f64>>,
     interfaces: Option<Vec<f64>>,
@@ -145,10 +157,10 @@ impl<'a> Writer<'a> {
         let State { displacements, figure, maxima, .. } = state;
         let [velocities, points, interfaces] =
             [state.velocities, state.points, state.interfaces].map(|values| values.map(<[f64]>::to_vec));
-        let displacements = displacements.to_vec();
+        let (displacements, stressed) = (displacements.to_vec(), state.stressed.cloned());
         let Layout { plate, plies } = &self.layout;
         let so_far = plies.as_ref().zip(maxima).map_or_else(Vec::new, |(plies, maxima)| plies.so_far(maxima));
-        self.waiting.push(Waiting { number, displacements, velocities, points, interfaces, figure, so_far });
+        self.waiting.push(Waiting { number, displacements, stressed, velocities, points, interfaces, figure, so_far });
         let of_frame =
             plate.as_ref().map_or(0, Plate::bytes_of_frame) + plies.as_ref().map_or(0, Plies::bytes_of_frame);
         let most = (STORE / of_frame.max(1)).clamp(1, BATCH);
@@ -168,10 +180,12 @@ impl<'a> Writer<'a> {
         let waiting = std::mem::take(&mut self.waiting);
         let Self { layout: Layout { plate, plies }, dir, times, .. } = self;
         let frames = waiting.iter().map(|waiting| {
-            let Waiting { number, displacements, figure, so_far, .. } = waiting;
+            let Waiting { number, displacements, stressed, figure, so_far, .. } = waiting;
             let [velocities, points, interfaces] =
                 [&waiting.velocities, &waiting.points, &waiting.interfaces].map(Option::as_deref);
-            let state = State { displacements, velocities, points, interfaces, figure: *figure, maxima: None };
+            let stressed = stressed.as_ref();
+            let state =
+                State { displacements, stressed, velocities, points, interfaces, figure: *figure, maxima: None };
             Frame { dir, times: &times[..=*number], state, so_far }
         });
         let frames: Vec<Frame<'_>> = frames.collect();

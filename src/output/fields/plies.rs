@@ -4,6 +4,7 @@ use super::Frame;
 use super::damaged::Damaged;
 use super::lattice::{Height, Lattice};
 use super::so_far::SoFar;
+use crate::analyses::Stressed;
 use crate::analyses::impact::Maximum;
 use crate::analyses::stress;
 use crate::error::Error;
@@ -160,7 +161,16 @@ impl<'a> Plies<'a> {
         let points: Option<Vec<&[f64]>> = frames.iter().map(|frame| frame.state.points).collect();
         let points = points.map(|points| points.concat());
         let (model, count) = (self.model, frames.len());
-        stress::recover(model, &self.recovery, &fields.concat(), count, points.as_deref(), &mut stresses)?;
+        let all: Option<Vec<&Stressed>> = frames.iter().map(|frame| frame.state.stressed).collect();
+        let stressed = match all.as_deref() {
+            Some([first, others @ ..]) => {
+                let mut stressed = Stressed::clone(first);
+                others.iter().for_each(|other| stressed.extend(other));
+                stressed
+            }
+            _ => Stressed::of(fields.concat()),
+        };
+        stress::recover(model, &self.recovery, &stressed, count, points.as_deref(), &mut stresses)?;
         stress::add(&mut stresses, &self.residual);
         let displacements = self.lattice.values(&fields);
         let each = frames.iter().zip(&displacements).zip(stresses.chunks_exact(rows));

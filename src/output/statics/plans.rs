@@ -1,6 +1,6 @@
 //! Pictures of a plate at rest in plan: how it deflects, and the stresses of its outer plies.
 
-use crate::analyses::stress;
+use crate::analyses::{Stressed, stress};
 use crate::error::Error;
 use crate::model::Model;
 use crate::output::outlines::{drawn, outlines};
@@ -84,7 +84,7 @@ fn stresses(model: &Model, u: &[f64]) -> Result<MapPlot, Error> {
     let quads: Vec<usize> = (0..model.plate.plane.quads.len()).collect();
     let recovery = stress::recovery(model, &quads, &[], false);
     let mut stresses = vec![0.0; 6 * recovery.sites()];
-    stress::recover(model, &recovery, u, 1, Some(&stress::virgin(model)), &mut stresses)?;
+    stress::recover(model, &recovery, &Stressed::of(u.to_vec()), 1, Some(&stress::virgin(model)), &mut stresses)?;
     stress::add(&mut stresses, &stress::residual(model, &recovery)?);
     let nothing = NOTHING * largest(&stresses);
     stresses.iter_mut().filter(|stress| stress.abs() <= nothing).for_each(|stress| *stress = 0.0);

@@ -3,13 +3,12 @@
 mod cubic;
 mod slopes;
 
-pub use slopes::{Response, Slopes};
+pub use slopes::Tension;
 
 use crate::contracts::element::{Element, ElementError, ElementInfo, Part, Point, Scratch, Stack, form};
 use crate::plates::laminate::Laminate;
 use crate::plates::laws::{Asked, CellAnswer, CellOperators, Patterns, PlyLaws};
 use crate::plates::plate::Plate;
-use crate::plates::slopes::bent;
 use crate::plates::window::{Centre, Mean, Source};
 use crate::words::material::Material;
 use crate::words::tensor::{Matrix6, Ply, Stress6, strain_rotation};
@@ -55,11 +54,8 @@ impl PlyHeights {
 pub enum Strains {
     /// Those of small displacements.
     Small,
-    /// These, and von Kármán's in the plane, ½ w,x², ½ w,y² and w,x w,y in the middle of each cell: right for displacements that answer
-    /// no others. A plate in few vectors does not thin as Green and Lagrange's ½ θ² across it asks for where it turns by θ, and
-    /// these would make of that a stress 33 which is not there.
-    Slopes,
-    /// Green and Lagrange's, of the element.
+    /// Green and Lagrange's, of the element. They are wrong for displacements that do not answer all of them: where a plate turns by θ
+    /// it thins by ½ θ² across, and one in few vectors has no displacement for that, only a [`Tension`].
     Large,
 }
 
@@ -193,10 +189,6 @@ impl Recovery {
     ) -> Result<(), ElementError> {
         match self.strains {
             Strains::Small => self.small_stresses(plate, element, u, fields, out),
-            Strains::Slopes => {
-                self.small_stresses(plate, element, u, fields, out)?;
-                self.add_bent(plate, element, u, fields, out)
-            }
             Strains::Large => self.large_stresses(plate, element, u, fields, out),
         }
     }
@@ -301,7 +293,7 @@ impl Recovery {
 
     /// Puts the stresses of plies that follow `laws` in place of those of linear elasticity: means over the Gauss points of
     /// their cells, whatever the samples, at the displacements `u` (one field, before elimination of constraints) and the states `points`;
-    /// with the strains of its slopes where deflections are large. Where a symmetry leaves a part of the plate, the rest has its images.
+    /// with the strains of its `tension` where it has one. Where a symmetry leaves a part of the plate, the rest has its images.
     ///
     /// # Errors
     /// A cell that the element refuses, a law that finds no stress.
@@ -310,10 +302,9 @@ impl Recovery {
         plate: &Plate,
         element: &dyn Element,
         laws: &PlyLaws,
-        (u, points): (&[f64], &[f64]),
+        (u, points, tension): (&[f64], &[f64], Option<Tension<'_>>),
         out: &mut [f64],
     ) -> Result<(), ElementError> {
-        let large = self.strains != Strains::Small;
         let (mut means, mut firsts) = (Vec::new(), Vec::new());
         let (mut answer, mut dofs) = (CellAnswer::default(), Vec::new());
         let mut images = Vec::new();
@@ -325,8 +316,8 @@ impl Recovery {
                 let local: Vec<f64> = dofs.iter().map(|dof| u[*dof]).collect();
                 let states = &points[laws.states_of(cell)];
                 let operators = CellOperators::new(element, &plate.cell(cell))?;
-                let strains = if large { bent(element, &plate.cell(cell), &local) } else { Vec::new() };
-                let stretched = large.then_some(Patterns { strains: &strains, amounts: &[1.0] });
+                let strains = tension.map(|tension| tension.of_cell(plate, element, cell));
+                let stretched = strains.as_ref().map(|strains| Patterns { strains, amounts: &[1.0] });
                 let asked = Asked { plate, element, cell, operators: &operators, u: &local, stretched, states };
                 laws.respond(asked, None, false, &mut answer)?;
                 means.push(answer.means.clone());

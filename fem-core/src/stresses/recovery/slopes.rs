@@ -1,4 +1,4 @@
-//! What the slopes of deflections add to stresses: von Kármán's strains ½ w,x², ½ w,y² and w,x w,y, alike in all plies of a cell.
+//! What the tension of a plate adds to stresses: von Kármán's strains ½ w,x², ½ w,y² and w,x w,y, alike in all plies of a cell.
 
 use super::{Parts, Recovery};
 use crate::contracts::element::{Cell, Element, ElementError, ElementInfo, Point, Scratch, form, positive};
@@ -10,12 +10,56 @@ use crate::words::tensor::apply;
 use std::borrow::Cow;
 use std::ops::Range;
 
+/// Strains Σ b_t ε_t of the tension of a plate, ε_t a combination of those of pairs of deflections, which count by rows of the upper
+/// triangle.
+#[derive(Debug, Clone, Copy)]
+pub struct Tension<'a> {
+    /// The deflections, before elimination of constraints, one after the other.
+    pub deflections: &'a [f64],
+    /// `pairs × patterns`.
+    pub combinations: &'a [f64],
+    /// b_t, `patterns × fields`.
+    pub amounts: &'a [f64],
+}
+
+impl Tension<'_> {
+    /// Its strains in a cell at the in-plane points, of the first field.
+    pub(super) fn of_cell(&self, plate: &Plate, element: &dyn Element, cell: usize) -> Vec<f64> {
+        let (quad, _) = plate.place(cell);
+        let element = form(element, plate.plane.quads[quad].domain());
+        let (mut shape, mut rows, mut dofs) = (Vec::new(), Vec::new(), Vec::new());
+        plate.cell_dofs(cell, &mut dofs);
+        let fields: Vec<&[f64]> = self.deflections.chunks_exact(plate.ndof()).collect();
+        let pairs = || (0..fields.len()).flat_map(|i| (i..fields.len()).map(move |j| (i, j)));
+        let mut shares = vec![0.0; pairs().count()];
+        for (amount, column) in self.amounts.iter().zip(self.combinations.chunks_exact(shares.len().max(1))) {
+            shares.iter_mut().zip(column).for_each(|(share, c)| *share += amount * c);
+        }
+        let mut strains = Vec::new();
+        for (r, s, _) in element.info().plane_points() {
+            rows.clear();
+            add_slopes(element, &plate.cell(cell), [r, s], &mut shape, &mut rows);
+            let (by_x, by_y) = rows.split_at(rows.len() / 2);
+            let of = |row: &[f64], u: &[f64]| row.iter().zip(&dofs).map(|(g, dof)| g * u[*dof]).sum::<f64>();
+            let slopes: Vec<[f64; 2]> = fields.iter().map(|u| [of(by_x, u), of(by_y, u)]).collect();
+            let mut strain = [0.0; 3];
+            for ((i, j), share) in pairs().zip(&shares) {
+                let ([ax, ay], [bx, by], share) = (slopes[i], slopes[j], if i == j { 0.5 * share } else { *share });
+                strain[0] += share * ax * bx;
+                strain[1] += share * ay * by;
+                strain[2] += share * (ax * by + ay * bx);
+            }
+            strains.extend(strain);
+        }
+        strains
+    }
+}
+
 /// Stress of a site per unit of each of the three strains, Pa, on the axes of its station.
-pub type Response = [[f64; 6]; 3];
+type Response = [[f64; 6]; 3];
 
 /// Slopes of several deflections where a [`Recovery`] looks, and what their products do at its sites.
-#[derive(Debug, Clone)]
-pub struct Slopes {
+struct Slopes {
     fields: usize,
     /// ∂w/∂x of all fields at each point, then ∂w/∂y.
     rows: Vec<f64>,
@@ -29,29 +73,20 @@ pub struct Slopes {
 }
 
 impl Slopes {
-    /// Number of fields.
-    pub fn fields(&self) -> usize {
-        self.fields
-    }
-
-    /// ∂w/∂x of all fields at each point, then ∂w/∂y.
-    pub fn rows(&self) -> &[f64] {
-        &self.rows
-    }
-
-    /// Points over the `place`-th window's layer, with their shares in the mean.
-    pub fn points(&self, place: usize) -> impl Iterator<Item = (usize, f64)> {
-        self.points[self.starts[place]..self.starts[place + 1]].iter().map(|(point, share)| (*point as usize, *share))
-    }
-
-    /// Which window's layer a site lies in.
-    pub fn place(&self, site: usize) -> usize {
-        self.sites[site].0 as usize
-    }
-
-    /// Stress of a site per unit of ½ w,x², ½ w,y² and w,x w,y in its window's layer.
-    pub fn response(&self, site: usize) -> &Response {
-        &self.responses[self.sites[site].1 as usize]
+    /// The strains of all pairs of deflections in the `place`-th window's layer.
+    fn pairs(&self, place: usize, strains: &mut Vec<[f64; 3]>) {
+        let fields = self.fields;
+        strains.clear();
+        strains.resize(fields * (fields + 1) / 2, [0.0; 3]);
+        for (point, share) in &self.points[self.starts[place]..self.starts[place + 1]] {
+            let (x, y) = self.rows[2 * fields * *point as usize..][..2 * fields].split_at(fields);
+            let pairs = (0..fields).flat_map(|i| (i..fields).map(move |j| (i, j)));
+            for ((i, j), strain) in pairs.zip(&mut *strains) {
+                let share = if i == j { 0.5 * share } else { *share };
+                let products = [x[i] * x[j], y[i] * y[j], x[i] * y[j] + y[i] * x[j]];
+                strain.iter_mut().zip(products).for_each(|(sum, product)| *sum += share * product);
+            }
+        }
     }
 }
 
@@ -62,13 +97,7 @@ impl Recovery {
     ///
     /// # Errors
     /// A cell that the element refuses.
-    pub fn slopes(
-        &self,
-        plate: &Plate,
-        element: &dyn Element,
-        u: &[f64],
-        fields: usize,
-    ) -> Result<Slopes, ElementError> {
+    fn slopes(&self, plate: &Plate, element: &dyn Element, u: &[f64], fields: usize) -> Result<Slopes, ElementError> {
         let (mut rows, mut shares) = (Vec::new(), Vec::new());
         // Points of each source, layer by layer.
         let (mut of_sources, mut first): (Vec<Vec<Range<usize>>>, usize) = (Vec::new(), 0);
@@ -116,33 +145,46 @@ impl Recovery {
         Ok(Slopes { fields, rows, points, starts, sites, responses })
     }
 
-    /// Adds to `out` what the slopes of each field add to its stresses; as [`Recovery::stresses`].
-    pub(super) fn add_bent(
+    /// Adds to `out`, stresses of as many fields as `tension` has amounts for, what that adds.
+    ///
+    /// # Errors
+    /// As [`Recovery::stresses`].
+    pub fn add_tension(
         &self,
         plate: &Plate,
         element: &dyn Element,
-        u: &[f64],
-        fields: usize,
+        tension: Tension<'_>,
         out: &mut [f64],
     ) -> Result<(), ElementError> {
-        let slopes = self.slopes(plate, element, u, fields)?;
-        let (mut strains, mut known) = (vec![[0.0; 3]; fields], None);
-        for site in 0..self.sites() {
-            let place = slopes.place(site);
-            if known.replace(place) != Some(place) {
-                strains.fill([0.0; 3]);
-                for (point, share) in slopes.points(place) {
-                    let (x, y) = slopes.rows[2 * fields * point..][..2 * fields].split_at(fields);
-                    for ((strain, x), y) in strains.iter_mut().zip(x).zip(y) {
-                        *strain = [
-                            strain[0] + 0.5 * share * x * x,
-                            strain[1] + 0.5 * share * y * y,
-                            strain[2] + share * x * y,
-                        ];
+        let Tension { deflections, combinations, amounts } = tension;
+        let count = deflections.len() / plate.ndof();
+        let pairs = count * (count + 1) / 2;
+        let patterns = combinations.len() / pairs.max(1);
+        if patterns == 0 {
+            return Ok(());
+        }
+        let slopes = self.slopes(plate, element, deflections, count)?;
+        // Of each field the share of each pair.
+        let of_field = |amounts: &[f64]| {
+            let mut shares = vec![0.0; pairs];
+            for (amount, column) in amounts.iter().zip(combinations.chunks_exact(pairs)) {
+                shares.iter_mut().zip(column).for_each(|(share, c)| *share += amount * c);
+            }
+            shares
+        };
+        let shares: Vec<Vec<f64>> = amounts.chunks_exact(patterns).map(of_field).collect();
+        let (mut strains, mut of_pairs, mut known) = (vec![[0.0; 3]; shares.len()], Vec::new(), None);
+        for (site, (place, response)) in slopes.sites.iter().enumerate() {
+            if known.replace(*place) != Some(*place) {
+                slopes.pairs(*place as usize, &mut of_pairs);
+                for (strain, shares) in strains.iter_mut().zip(&shares) {
+                    *strain = [0.0; 3];
+                    for (share, pair) in shares.iter().zip(&of_pairs) {
+                        strain.iter_mut().zip(pair).for_each(|(sum, e)| *sum += share * e);
                     }
                 }
             }
-            let response = slopes.response(site);
+            let response = &slopes.responses[*response as usize];
             for (strain, out) in strains.iter().zip(out.chunks_exact_mut(6 * self.sites())) {
                 for (e, response) in strain.iter().zip(response) {
                     out[6 * site..].iter_mut().zip(response).for_each(|(s, c)| *s += c * e);
