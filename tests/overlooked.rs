@@ -250,3 +250,25 @@ load = [{{ force = "10 N", at = {{ x = "20 mm", y = "10 mm" }}{circle} }}]"#
     assert!(said(&with(", patch_radius = \"3 mm\""), 0).contains("model"));
     holds(&said(&with(""), 1), &["`load[0].patch_radius` is missing", "patch_radius = \"3 mm\""]);
 }
+
+/// The force across of a profile is that of its shear: of a cantilever with a force at its end, that force, whatever the element.
+#[test]
+fn forces_across_are_those_of_statics() {
+    for element in ["hex20", "hermite-prism", "mitc4"] {
+        let case = case(
+            "support = [{ group = \"x-min\", kind = \"clamped\" }]\n\
+             load = [{ force_per_length = [\"0 N/mm\", \"0 N/mm\", \"0.5 N/mm\"], group = \"x-max\" }]\n\
+             profile = [{ name = \"p\", at = { x = \"22.5 mm\", y = \"10 mm\" } }, { name = \"q\", at = { x = \"20 mm\", y = \"10 mm\" } }]",
+        )
+        .scene("cells = [4, 2]", "cells = [16, 4]")
+        .scene("library = \"AS4/3502\"", "e = \"70 GPa\", nu = 0.0, density = \"2.7 g/cm^3\"")
+        .scene("plies = \"[0/90]s\"", "plies = \"[0_4]\"")
+        .scene("layers = [2, 2]", if element == "mitc4" { "layers = 1" } else { "layers = [2, 2]" })
+        .scene("kind = \"hex20\"", &format!("kind = \"{element}\""));
+        case.fem("run", &["--out", "out"]).good();
+        for profile in case.summary("out")["profiles"].as_array().unwrap() {
+            let across = profile["Q_N_per_m"][0].as_f64().unwrap();
+            assert!((across.abs() / 500.0 - 1.0).abs() < 0.02, "{element}: {profile:#}");
+        }
+    }
+}

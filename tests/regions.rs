@@ -217,3 +217,34 @@ fn thicknesses_are_those_of_the_place() {
     };
     assert_eq!(found(15, 45), found(45, 15));
 }
+
+/// The same number is another ply where plies are others: each has its own first failure.
+#[test]
+fn what_fails_first_is_asked_of_every_region() {
+    let case = crate::support::plate().text(
+        "title = 'step'\nmesh = { rectangle = ['60 mm', '30 mm'], cells = [12, 6], groups = { r = { x = ['30 mm', '60 mm'] } } }\n\
+         element = { kind = 'mitc4' }\nmaterials.tape = { library = 'AS4/3502' }\noutput = { maps = true, plots = false }\n\
+         support = [{ group = 'x-min', kind = 'clamped' }, { group = 'x-max', kind = 'clamped' }]\n\
+         impactor = { mass = '20 g', velocity = '12 m/s', at = { x = '26 mm', y = '15 mm' }, patch_radius = '3 mm' }\n\
+         contact = { law = 'hertz', k = '5e3 N/mm^1.5' }\nmarch = { step = '1 us', end = '0.7 ms' }\n\
+         failure = { criteria = ['tsai-wu'], every = '2 us', window = 'element' }\n\
+         [[laminate]]\nplies = '[90/0/0/90]'\nmaterial = 'tape'\nply_thickness = '0.2 mm'\n\
+         [[laminate]]\ngroup = 'r'\nalign = 'top'\nplies = '[90/0/0/0/90]'\nmaterial = 'tape'\nply_thickness = '0.2 mm'\n",
+    );
+    case.fem("run", &["--out", "out"]).good();
+    let of = |table: &str, key: &str| {
+        let (head, rows) = case.table(table);
+        let at = |name: &str| head.iter().position(|column| column == name).unwrap();
+        let (x, ply, value) = (at("x_m"), at("ply"), at(key));
+        let number = |row: &Vec<String>, k: usize| row[k].parse::<f64>().unwrap();
+        rows.iter().map(|row| (number(row, x) > 30e-3, row[ply].clone(), number(row, value))).collect::<Vec<_>>()
+    };
+    let (events, maxima) = (of("out/events.csv", "index"), of("out/index_maxima.csv", "index"));
+    let mut failed: Vec<_> = maxima.into_iter().filter(|row| row.2 >= 1.0).map(|row| (row.0, row.1)).collect();
+    let mut told: Vec<_> = events.into_iter().map(|row| (row.0, row.1)).collect();
+    failed.sort();
+    failed.dedup();
+    told.sort();
+    assert!(failed.iter().any(|row| row.0) && failed.iter().any(|row| !row.0), "{failed:?}");
+    assert_eq!(told, failed);
+}

@@ -122,6 +122,7 @@ fn reserve_factor(bencher: Bencher<'_, '_>, name: &str) {
 fn scan_sample(bencher: Bencher<'_, '_>) {
     let site = |cell| scan::ScanSite {
         cell,
+        region: 0,
         place: scan::PlyOrInterface::Ply((cell % 16) as u16),
         position: [0.0; 3],
         angle: 0.0,

@@ -55,6 +55,8 @@ impl fmt::Display for PlyOrInterface {
 pub struct ScanSite {
     /// Cell of the mesh.
     pub cell: u32,
+    /// Region of plies of its own that the cell lies in: the same ply of two regions is two.
+    pub region: u16,
     /// Ply or interface.
     pub place: PlyOrInterface,
     /// Centre, m, in the plate's frame.
@@ -208,7 +210,7 @@ fn components(stress: &Stress6<Ply>) -> String {
 
 /// Follows criteria through time and keeps what failed first.
 ///
-/// For every criterion, mode and place (a ply or an interface over all cells) it keeps the first crossing of index 1;
+/// For every criterion, mode and place (a ply or an interface over all cells of its region) it keeps the first crossing of index 1;
 /// among the sites that cross between the same two samples the one that the interpolation puts first, then the one of
 /// larger index, then the one given first. A site that is at 1 in the first sample gets that sample's time. Results
 /// depend on nothing but the order of the sites.
@@ -386,7 +388,8 @@ impl Scan {
                 });
             }
         }
-        let mut places: Vec<PlyOrInterface> = sites.iter().map(|s| s.place).collect();
+        let place = |site: &ScanSite| (site.region, site.place);
+        let mut places: Vec<(u16, PlyOrInterface)> = sites.iter().map(place).collect();
         places.sort_unstable();
         places.dedup();
 
@@ -396,7 +399,7 @@ impl Scan {
         let plies = order.partition_point(|&i| !is_interface(i));
         let slots = order
             .iter()
-            .map(|&i| places.partition_point(|p| *p < sites[i as usize].place))
+            .map(|&i| places.partition_point(|p| *p < place(&sites[i as usize])))
             .map(|slot| slot as u32)
             .collect();
 

@@ -192,6 +192,7 @@ fn plane_criteria_refuse_spatial_stress_unless_told_to_ignore_it() {
     // The scan says so too, with the place.
     let site = scan::ScanSite {
         cell: 5,
+        region: 0,
         place: scan::PlyOrInterface::Ply(2),
         position: [5e-3, 0.0, 0.0],
         angle: 0.0,

@@ -183,7 +183,7 @@ pub fn solve_watched(
         // Equilibrium is that of small displacements of a plate at rest before.
         let equilibrium = if nature.large || displaced.is_some() { Some(false) } else { line.equilibrium };
         let sampled = named.profile.sample(&field, line.points, equilibrium, named.pressures)?;
-        Ok(((sampled.points, [sampled.normal, sampled.shear]), named.profile.resultants(&field)?))
+        Ok(((sampled.points, [sampled.normal, sampled.shear]), sampled.resultants))
     };
     let sampled: Vec<_> = model.profiles.iter().map(sample).collect::<Result<_, ElementError>>()?;
     let (sampled, resultants): (Vec<_>, _) = sampled.into_iter().unzip();

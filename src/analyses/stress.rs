@@ -406,14 +406,18 @@ pub(crate) fn strains(model: &Model) -> Strains {
 }
 
 pub(crate) fn sites(recovery: &Recovery) -> Vec<ScanSite> {
-    let site = |Centre { quad, at: [x, y] }: Centre, s: &Station| ScanSite {
+    let site = |Centre { quad, at: [x, y] }: Centre, region: usize, s: &Station| ScanSite {
         cell: quad as u32,
+        region: region as u16,
         place: if s.interface { PlyOrInterface::Interface(s.ply as u16) } else { PlyOrInterface::Ply(s.ply as u16) },
         position: [x, y, s.z],
         angle: s.angle,
         material: s.material as u16,
     };
-    let over = |(i, at): (usize, &Centre)| recovery.stations_over(i).iter().map(|s| site(*at, s)).collect::<Vec<_>>();
+    let over = |(i, at): (usize, &Centre)| {
+        let region = recovery.region_over(i);
+        recovery.stations_over(i).iter().map(|s| site(*at, region, s)).collect::<Vec<_>>()
+    };
     recovery.centres.iter().enumerate().flat_map(over).collect()
 }
 

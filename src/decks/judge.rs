@@ -155,6 +155,7 @@ impl Places {
                     };
                     self.sites.push(ScanSite {
                         cell,
+                        region: 0,
                         place,
                         position: [x, y, height].map(|v| v * self.units.metres()),
                         angle: station.angle,

@@ -203,7 +203,8 @@ fn ends_of_the_numbers() -> f64 {
 }
 
 fn no_numbers() -> f64 {
-    let site = ScanSite { cell: 0, place: PlyOrInterface::Ply(0), position: [0.0; 3], angle: 0.0, material: 0 };
+    let site =
+        ScanSite { cell: 0, region: 0, place: PlyOrInterface::Ply(0), position: [0.0; 3], angle: 0.0, material: 0 };
     let mut judged = 0;
     for judge in judges() {
         let assessed = |s: &Stress6<Ply>| {

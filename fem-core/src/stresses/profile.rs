@@ -66,6 +66,8 @@ pub struct Sampled {
     pub normal: Choice,
     /// How σ₂₃ and σ₃₁ were found.
     pub shear: Choice,
+    /// Forces and moments, those across as the shear was found; of a shell those of its strains.
+    pub resultants: Resultants,
 }
 
 /// Forces and moments per length of what is cut along the lines x and y.
@@ -169,8 +171,11 @@ impl Profile {
             point.equilibrium = Some(*found);
         }
         let trusted = balance.as_ref().filter(|_| fit.determined);
-        let forces = if trusted.is_some() { self.resultants(field)?.shear } else { [0.0; 2] };
-        let (normal, shear) = choose(&all, trusted, pressures, forces, field.plate().info().is_shell());
+        let (mut resultants, shell) = (self.resultants(field)?, field.plate().info().is_shell());
+        let (normal, shear) = choose(&all, trusted, pressures, resultants.shear, shell);
+        if let Some(balance) = trusted.filter(|_| shear.way == Way::Equilibrium && !shell) {
+            resultants.shear = balance.forces;
+        }
         for point in &mut all {
             let Some(found) = point.equilibrium else { continue };
             for (k, choice) in [normal, shear, shear].into_iter().enumerate() {
@@ -180,14 +185,11 @@ impl Profile {
             }
             point.better.1 = point.better.0.to_ply(laminate.plies[point.ply].angle);
         }
-        Ok(Sampled { points: all, normal, shear })
+        Ok(Sampled { points: all, normal, shear, resultants })
     }
 
-    /// Forces and moments per length: stresses, as [`Profile::sample`] has them, integrated through every ply exactly.
-    ///
-    /// # Errors
-    /// A cell that the element refuses.
-    pub fn resultants(&self, field: &Field<'_>) -> Result<Resultants, ElementError> {
+    /// Forces and moments per length of the stresses of strains, integrated through every ply exactly.
+    fn resultants(&self, field: &Field<'_>) -> Result<Resultants, ElementError> {
         let mut sum = Resultants { membrane: [0.0; 3], bending: [0.0; 3], shear: [0.0; 2] };
         for (ply, z) in field.laminate(self.places[0].0).boundaries().windows(2).enumerate() {
             let half = 0.5 * (z[1] - z[0]);

@@ -221,7 +221,7 @@ impl Hulls {
             found.extend(seen.iter().flat_map(|of| [of.at, of.first_at]).flatten());
             for (mode, of) in modes.iter().zip(&seen) {
                 let Some((Reading { time, index, site }, stress)) = of.first else { continue };
-                let ScanSite { cell, place, angle, position, material } = self.sites[site as usize];
+                let ScanSite { cell, place, angle, position, material, .. } = self.sites[site as usize];
                 let criterion = name.clone();
                 firsts.push(FailureEvent {
                     time,

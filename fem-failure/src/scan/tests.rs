@@ -25,7 +25,7 @@ fn resin(shear: f64) -> Material {
 }
 
 fn site(cell: u32, place: PlyOrInterface, material: u16) -> ScanSite {
-    ScanSite { cell, place, position: [f64::from(cell), 0.0, 0.0], angle: 0.1, material }
+    ScanSite { cell, region: 0, place, position: [f64::from(cell), 0.0, 0.0], angle: 0.1, material }
 }
 
 fn octahedral(sites: Vec<ScanSite>, materials: Vec<Material>) -> Scan {

@@ -150,6 +150,11 @@ impl Recovery {
         &self.regions[self.region_of[i]]
     }
 
+    /// Region of the `i`-th window.
+    pub fn region_over(&self, i: usize) -> usize {
+        self.region_of[i]
+    }
+
     /// Stations of a region.
     pub fn stations_of(&self, region: usize) -> &[Station] {
         &self.regions[region]
