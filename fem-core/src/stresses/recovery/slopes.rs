@@ -134,13 +134,14 @@ impl Recovery {
             let of_region = firsts[self.region_of[i]];
             let of_station = |(at, layer): (usize, usize)| ((place + layer) as u32, (of_region + at) as u32);
             sites.extend(stations.iter().map(|station| station.layer).enumerate().map(of_station));
-            for layer in 0..plate.stacks(self.region_of[i]).len() {
+            let layers = plate.stacks(self.region_of[i]).len();
+            (0..layers).for_each(|layer| {
                 for (source, share) in window {
                     let of_source = of_sources[*source][layer].clone();
                     points.extend(of_source.map(|point| (point as u32, share * shares[point])));
                 }
                 starts.push(points.len());
-            }
+            });
         }
         Ok(Slopes { fields, rows, points, starts, sites, responses })
     }
