@@ -4,7 +4,7 @@ use crate::model::Model;
 use fem_core::assembly::Condensation;
 use fem_core::recovery::Tension;
 use fem_core::structure::Structure;
-use fem_dynamics::reduce::{Companions, Patterns, Reduced, Share};
+use fem_dynamics::reduce::{Companions, Reduced, Share, TensionPatterns};
 use std::sync::Arc;
 
 /// From the coordinates of a march to the unknowns of the plate, before elimination of constraints.
@@ -34,7 +34,7 @@ pub(crate) struct Stressed {
 /// Tensions, and the deflections that they are made of in the unknowns of the plate.
 #[derive(Debug, Clone)]
 struct Tensions {
-    of: Arc<Patterns>,
+    of: Arc<TensionPatterns>,
     deflections: Vec<f64>,
 }
 
@@ -84,7 +84,7 @@ impl Expansion<'_> {
     }
 
     /// What the membrane stresses are made of, where few patterns of them hold all that the march knows of stretching.
-    pub(super) fn tensions(&self) -> Option<&Arc<Patterns>> {
+    pub(super) fn tensions(&self) -> Option<&Arc<TensionPatterns>> {
         self.companions.as_ref().map(Companions::patterns).or(self.share.as_deref().map(Share::patterns))
     }
 

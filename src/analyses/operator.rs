@@ -4,7 +4,7 @@ use crate::forecast::Demand;
 use fem_core::failure::StressRange;
 use fem_core::tensor::{Ply, Stress6};
 use fem_core::vectorised::{products, products_of_intervals};
-use fem_dynamics::reduce::Patterns;
+use fem_dynamics::reduce::TensionPatterns;
 use fem_failure::scan::{Samples, windows};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -30,7 +30,7 @@ pub(super) struct StressOperator {
     residual: Vec<f64>,
     coarse: OnceLock<Coarse>,
     /// The tensions, if there are some.
-    tensions: Option<Arc<Patterns>>,
+    tensions: Option<Arc<TensionPatterns>>,
 }
 
 /// The rows in single precision, in units of coordinates that bring the largest number of each to between 1/2 and 1.
@@ -58,7 +58,7 @@ impl StressOperator {
     }
 
     /// The same with the stresses of these tensions behind those of the coordinates.
-    pub(super) fn with_tensions(self, tensions: &Arc<Patterns>) -> Self {
+    pub(super) fn with_tensions(self, tensions: &Arc<TensionPatterns>) -> Self {
         Self { tensions: Some(Arc::clone(tensions)), ..self }
     }
 

@@ -11,7 +11,7 @@ use fem_core::failure::StressRange;
 use fem_core::material::Material;
 use fem_core::recovery::{Recovery, Tension};
 use fem_core::tensor::{Ply, Stress6};
-use fem_dynamics::reduce::Patterns;
+use fem_dynamics::reduce::TensionPatterns;
 use fem_failure::scan::{Extremes, Hulls, Samples, Scan, ScanError, ScanSite, Wanted, windows};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -85,7 +85,7 @@ fn stretched(
     model: &Model,
     recovery: &Recovery,
     expansion: &Expansion<'_>,
-    tensions: &Arc<Patterns>,
+    tensions: &Arc<TensionPatterns>,
     residual: Vec<f64>,
 ) -> Result<StressOperator, Error> {
     let Some((basis, modes)) = expansion.basis() else { return Ok(StressOperator::new(&[], 0, residual)) };

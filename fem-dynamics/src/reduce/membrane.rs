@@ -107,7 +107,7 @@ pub struct MembranePlate {
 pub struct Companions {
     /// The displacements Σ a_t s_t.
     displaced: Followers,
-    patterns: Arc<Patterns>,
+    patterns: Arc<TensionPatterns>,
 }
 
 /// Displacements Σ a_t s_t, a_t = qᵀ A_t q.
@@ -125,14 +125,14 @@ pub struct Followers {
 /// Stresses are those of these strains beside the modes'. What else the squares of slopes are is stretching that the plate gives way to in
 /// its plane, nearly all of it, by displacements that are not known: without them its stresses would be large and would not be there.
 #[derive(Debug, Clone)]
-pub struct Patterns {
+pub struct TensionPatterns {
     pub(super) deflections: Vec<f64>,
     pub(super) combinations: Vec<f64>,
     pub(super) follow: Followers,
     pub(super) torn: Torn,
 }
 
-impl Patterns {
+impl TensionPatterns {
     /// The deflections, independent unknowns, one after the other.
     pub fn deflections(&self) -> &[f64] {
         &self.deflections
@@ -195,7 +195,7 @@ impl Companions {
     }
 
     /// What its membrane stresses are made of.
-    pub fn patterns(&self) -> &Arc<Patterns> {
+    pub fn patterns(&self) -> &Arc<TensionPatterns> {
         &self.patterns
     }
 }
@@ -343,7 +343,7 @@ impl MembranePlate {
             InPlane::OfModes => Torn::default(),
             InPlane::AtOnce => Torn::of(structure, &forces * &turn, &shapes_of_left),
         };
-        let patterns = Patterns {
+        let patterns = TensionPatterns {
             torn,
             deflections: fields.as_slice().to_vec(),
             combinations: turned.as_slice().to_vec(),

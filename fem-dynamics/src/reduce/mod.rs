@@ -16,7 +16,7 @@ pub use craig_bampton::CraigBampton;
 pub use diagonal::Modal;
 pub use guyan::Guyan;
 pub use irs::Irs;
-pub use membrane::{Companions, Followers, MembraneForms, MembranePlate, Patterns};
+pub use membrane::{Companions, Followers, MembraneForms, MembranePlate, TensionPatterns};
 pub use modal::ModalTruncation;
 pub use ritz::Ritz;
 pub use stretched::{Share, Stretch, StretchedPlate};

@@ -1,6 +1,6 @@
 //! A full plate whose deflections stretch it.
 
-use super::membrane::{InPlane, Patterns};
+use super::membrane::{InPlane, TensionPatterns};
 use super::{Companions, MembraneForms, MembranePlate, Reduced, Ritz};
 use crate::vector::{axpy, dot};
 use fem_core::energy::Energy;
@@ -59,7 +59,7 @@ impl Share {
     }
 
     /// What its membrane stresses are made of.
-    pub fn patterns(&self) -> &Arc<Patterns> {
+    pub fn patterns(&self) -> &Arc<TensionPatterns> {
         self.companions.patterns()
     }
 
