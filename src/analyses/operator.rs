@@ -186,7 +186,7 @@ impl Samples for Sampled<'_> {
         let width = self.operator.width;
         let rows = &self.operator.coarse().rows[6 * site * width..][..6 * width];
         let (first, second) = rows.split_at(3 * width);
-        let sums = [first, second].map(|rows| products_of_intervals::<3, LANES>(rows, &self.middles, &self.halves));
+        let sums = [first, second].map(|rows| products_of_intervals(rows, &self.middles, &self.halves));
         let [mut low, mut high] = [[[0.0; LANES]; 6]; 2];
         for (i, residual) in self.operator.residual(site).into_iter().enumerate() {
             let [middles, halves] = &sums[i / 3];

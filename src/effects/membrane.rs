@@ -103,8 +103,8 @@ impl Effect for Membrane {
                 let (n, vectors) = (demand.unknowns as f64, demand.vectors);
                 // Forces and shapes of the strains; they and the modes before the elimination of constraints.
                 let fields = Demand::BASES * strains * n + (strains + vectors as f64) * all;
-                // Stresses of the strains, while they are turned as well, and slopes.
-                let judged = 2.0 * strains * (6 * demand.sites) as f64 + (SLOPES * body.plate.cells() * vectors) as f64;
+                // Stresses of the strains, while they are turned as well.
+                let judged = 2.0 * strains * (6 * demand.sites) as f64;
                 8.0 * (fields + judged + forms * (vectors * vectors) as f64)
             }
             // A copy of mesh and constraints as well.
@@ -179,8 +179,6 @@ const PER_PLACE: f64 = 96.0;
 /// Of a reduced plate, per contact: membrane strains, and forms of these and of its stresses.
 const STRAINS: usize = 25;
 const FORMS: usize = 40;
-/// Rows of slopes of a cell.
-const SLOPES: usize = 8;
 
 fn stiffening(expected: &Expected) -> f64 {
     expected.coefficient * (expected.deflection / expected.thickness).powi(2)

@@ -23,6 +23,15 @@ pub struct Tension<'a> {
 }
 
 impl Tension<'_> {
+    /// The share of each of so many `pairs` in the strains of these amounts.
+    fn shares(&self, amounts: &[f64], pairs: usize) -> Vec<f64> {
+        let mut shares = vec![0.0; pairs];
+        for (amount, column) in amounts.iter().zip(self.combinations.chunks_exact(pairs.max(1))) {
+            shares.iter_mut().zip(column).for_each(|(share, c)| *share += amount * c);
+        }
+        shares
+    }
+
     /// Its strains in a cell at the in-plane points, of the first field.
     pub(super) fn of_cell(&self, plate: &Plate, element: &dyn Element, cell: usize) -> Vec<f64> {
         let (quad, _) = plate.place(cell);
@@ -31,10 +40,7 @@ impl Tension<'_> {
         plate.cell_dofs(cell, &mut dofs);
         let fields: Vec<&[f64]> = self.deflections.chunks_exact(plate.ndof()).collect();
         let pairs = || (0..fields.len()).flat_map(|i| (i..fields.len()).map(move |j| (i, j)));
-        let mut shares = vec![0.0; pairs().count()];
-        for (amount, column) in self.amounts.iter().zip(self.combinations.chunks_exact(shares.len().max(1))) {
-            shares.iter_mut().zip(column).for_each(|(share, c)| *share += amount * c);
-        }
+        let shares = self.shares(self.amounts, pairs().count());
         let mut strains = Vec::new();
         for (r, s, _) in element.info().plane_points() {
             rows.clear();
@@ -165,15 +171,8 @@ impl Recovery {
             return Ok(());
         }
         let slopes = self.slopes(plate, element, deflections, count)?;
-        // Of each field the share of each pair.
-        let of_field = |amounts: &[f64]| {
-            let mut shares = vec![0.0; pairs];
-            for (amount, column) in amounts.iter().zip(combinations.chunks_exact(pairs)) {
-                shares.iter_mut().zip(column).for_each(|(share, c)| *share += amount * c);
-            }
-            shares
-        };
-        let shares: Vec<Vec<f64>> = amounts.chunks_exact(patterns).map(of_field).collect();
+        let of_fields = amounts.chunks_exact(patterns).map(|amounts| tension.shares(amounts, pairs));
+        let shares: Vec<Vec<f64>> = of_fields.collect();
         let (mut strains, mut of_pairs, mut known) = (vec![[0.0; 3]; shares.len()], Vec::new(), None);
         for (site, (place, response)) in slopes.sites.iter().enumerate() {
             if known.replace(*place) != Some(*place) {
