@@ -1,6 +1,6 @@
 //! What a scene says of an impact in terms of a test: energy, tip, window of the frame, and the end with the separation.
 
-use crate::support::impact_of;
+use crate::support::{impact_of, strip};
 use fem::io::scene::{self, Scene};
 use fem::{Model, Plan, scene_mesh};
 
@@ -132,4 +132,12 @@ fn an_end_is_a_time_or_the_separation() {
     assert!(said.contains("is for marches that end with the separation"), "{said}");
     let said = refusal(&impactor, "march = { step = '2 us', end = 'rebound' }\n");
     assert!(said.contains("rebound"), "{said}");
+}
+
+#[test]
+fn another_end_is_set_over_the_separation() {
+    let scene = strip().scene("end = \"20 us\"", "end = \"separation\"\nlatest = \"5 ms\"");
+    scene.fem("run", &["--out", "out", "--set", "march.end=20 us"]).good();
+    let end = scene.summary("out")["impact"]["end_time_s"].as_f64().unwrap();
+    assert!((end / 20e-6 - 1.0).abs() < 1e-9, "{end:e}");
 }

@@ -43,7 +43,7 @@ pub struct StruckFigures {
     pub impulse: f64,
     pub deflection: f64,
     pub contact_time: f64,
-    /// What of its energy it does not have at the end.
+    /// What of its energy it does not have at the end, the work of its weight counted.
     pub absorbed_energy: f64,
 }
 
@@ -57,7 +57,7 @@ impl From<&ImpactFigures> for StruckFigures {
             impulse: of.impulse_N_s,
             deflection: of.peak_plate_displacement_m,
             contact_time: of.contact_time_s,
-            absorbed_energy: of.energy_J - 0.5 * of.mass_kg * of.final_impactor_velocity_m_s.powi(2),
+            absorbed_energy: of.absorbed_energy_J,
         }
     }
 }

@@ -157,3 +157,16 @@ fn refusals_help() {
         assert!(said.contains(expected), "{said}");
     }
 }
+
+#[test]
+fn falling_takes_no_energy() {
+    let scene =
+        strip().scene("velocity =", "start = \"59.99 us\"\nvelocity =").scene("end = \"20 us\"", "end = \"60 us\"");
+    let scene = scene.append("[effects]\ngravity = \"1e4 m/s^2\"\n");
+    scene.fem("run", &["--out", "out"]).good();
+    let impact = &scene.summary("out")["impact"];
+    let number = |key: &str| impact[key].as_f64().unwrap();
+    let [before, after] = ["velocity_m_s", "final_impactor_velocity_m_s"].map(number);
+    assert!(after > 1.1 * before, "{impact:#}");
+    assert!(number("absorbed_energy_J").abs() < 1e-9 * number("energy_J"), "{impact:#}");
+}

@@ -271,7 +271,7 @@ pub(super) const AT: Keys = &[
     key("y", Form::Quantity(Dimension::LENGTH), r#""0 mm""#, "y of the point, instead of a group"),
 ];
 /// The end of a march that follows the impactors until they have left.
-const SEPARATION: &str = "separation";
+pub(super) const SEPARATION: &str = "separation";
 /// When such a march ends at the latest unless a scene says, s.
 const LATEST: f64 = 20e-3;
 pub(super) const MARCH: Keys = &[
@@ -575,13 +575,14 @@ fn read_end<'a>(table: &Reader<'a>) -> Result<(SceneValue<'a>, f64, bool), Scene
             Ok((latest, time, true))
         }
         (true, None) => Ok((end, LATEST, true)),
-        (false, None) => {
-            let time = end.positive(Dimension::TIME)?;
-            Ok((end, time, false))
-        }
-        (false, Some(latest)) => {
+        // Another end that is set over the scene is one without a latest time.
+        (false, Some(latest)) if end.place().origin <= latest.place().origin => {
             let help = "write end = \"separation\", or leave `latest` out";
             Err(latest.error("is for marches that end with the separation", help))
+        }
+        (false, _) => {
+            let time = end.positive(Dimension::TIME)?;
+            Ok((end, time, false))
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Keys laid over those of a scene: by the command line, a study or a sweep.
 
+use super::run::SEPARATION;
 use super::{AS_WRITTEN, Merged, Scene, parse, parse_with};
 use crate::document::source::{SceneError, SceneSource};
 use crate::materials::LIBRARY;
@@ -177,6 +178,10 @@ fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) -> bool {
             for other in PLACE.iter().filter(|keys| keys[0].contains(&key.get())).flat_map(|keys| keys[1]) {
                 table.remove(other);
             }
+            // The latest time is that of a march to the separation.
+            if key.get() == "end" && value.as_str() != Some(SEPARATION) {
+                table.remove("latest");
+            }
             table.insert(key, Item::Value(value.clone()));
             true
         }
@@ -211,6 +216,17 @@ mod tests {
         }
         let expected = "[materials.m]\nlibrary = \"AS4/3502\"\nlaw = \"hahn-tsai\"\n\n[contact]\nlaw = \"linear\"\n";
         assert_eq!(document.to_string(), expected);
+    }
+
+    #[test]
+    fn another_end_has_no_latest_time() {
+        let text = "[march]\nend = \"separation\"\nlatest = \"8 ms\"\n";
+        let march = |end: &str| {
+            let setting = [("march.end".to_owned(), format!("\"{end}\""))].into();
+            write(text, Path::new("scene"), &setting).unwrap().to_string()
+        };
+        assert_eq!(march("1 ms"), "[march]\nend = \"1 ms\"\n");
+        assert_eq!(march("separation"), text);
     }
 
     #[test]

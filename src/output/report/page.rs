@@ -209,12 +209,10 @@ fn tiles(summary: &Map<String, Value>) -> Vec<Fact> {
             ("impact energy", "energy_J"),
             ("peak force", "peak_force_N"),
             ("peak deflection", "peak_plate_displacement_m"),
+            ("energy that the impactor lost", "absorbed_energy_J"),
         ] {
             tile(&format!("{label}{of}"), key, number(key));
         }
-        let left = number("mass_kg").zip(number("final_impactor_velocity_m_s")).map(|(m, v)| 0.5 * m * v * v);
-        let lost = number("energy_J").zip(left).map(|(before, after)| before - after);
-        tile(&format!("energy that the impactor lost{of}"), "energy_J", lost);
     }
     let first = first_damage(summary).map(|event| event.time_s).reduce(f64::min);
     tile("first damage", "time_s", first);

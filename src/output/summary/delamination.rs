@@ -35,8 +35,7 @@ pub struct InterfaceFigures {
 
 impl DelaminationFigures {
     pub(super) fn of_impact(outcome: &Outcome, impact: &[ImpactFigures]) -> Option<Self> {
-        let left = |f: &ImpactFigures| f.energy_J - 0.5 * f.mass_kg * f.final_impactor_velocity_m_s.powi(2);
-        let absorbed = Some(impact.iter().map(left).sum());
+        let absorbed = Some(impact.iter().map(|of| of.absorbed_energy_J).sum());
         outcome.delaminated.as_ref().map(|grown| Self { absorbed_J: absorbed, ..Self::of(grown) })
     }
 

@@ -132,6 +132,8 @@ pub struct ImpactFigures {
     pub contact_radius_m: Option<f64>,
     pub impulse_N_s: f64,
     pub final_impactor_velocity_m_s: f64,
+    /// What of its energy it does not have at the end, the work of its weight counted.
+    pub absorbed_energy_J: f64,
     pub contacts: u32,
     pub contact_time_s: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -483,16 +485,29 @@ fn energies<'a>(model: &'a Model, outcome: &'a Outcome) -> impl Iterator<Item = 
 
 /// The response to impactor `i`, which is `spec`.
 fn figures(model: &Model, outcome: &Outcome, i: usize, spec: &scene::ImpactorSpec) -> ImpactFigures {
-    let end = outcome.history.last().map_or((0.0, 0.0), |r| (r.time_s, r.impactors[i].impactor_velocity_m_s));
-    let name = model.label(spec);
+    let (end, fallen) = match (outcome.history.first(), outcome.history.last()) {
+        (Some(first), Some(last)) => {
+            let (from, to) = (&first.impactors[i], &last.impactors[i]);
+            let fallen = to.impactor_displacement_m - from.impactor_displacement_m;
+            ((last.time_s, to.impactor_velocity_m_s), fallen)
+        }
+        _ => ((0.0, 0.0), 0.0),
+    };
     let struck = match &model.plan {
         Plan::Impact(impact) => model.thickness_at(impact.strikes[i].centre),
         _ => model.laminate.thickness(),
     };
-    let mut figures = ImpactFigures::new([spec.mass, spec.velocity], &outcome.contacts[i], end, struck);
-    figures.squeeze_m_N = outcome.squeezes[i].map(|squeeze| squeeze.compliance);
-    figures.impulse_N_s += spec.mass * model.effects.nature().pull * end.0;
-    ImpactFigures { name: name.map(str::to_owned), start_time_s: name.map(|_| spec.start), ..figures }
+    let weight = spec.mass * model.effects.nature().pull;
+    let name = model.label(spec);
+    let figures = ImpactFigures::new([spec.mass, spec.velocity], &outcome.contacts[i], end, struck);
+    ImpactFigures {
+        name: name.map(str::to_owned),
+        start_time_s: name.map(|_| spec.start),
+        impulse_N_s: figures.impulse_N_s + weight * end.0,
+        absorbed_energy_J: figures.absorbed_energy_J + weight * fallen,
+        squeeze_m_N: outcome.squeezes[i].map(|squeeze| squeeze.compliance),
+        ..figures
+    }
 }
 
 impl ImpactFigures {
@@ -523,6 +538,7 @@ impl ImpactFigures {
             contact_radius_m: Some(contact.radius).filter(|radius| *radius > 0.0),
             impulse_N_s: mass_kg * (velocity_m_s - final_impactor_velocity_m_s),
             final_impactor_velocity_m_s,
+            absorbed_energy_J: 0.5 * mass_kg * (velocity_m_s.powi(2) - final_impactor_velocity_m_s.powi(2)),
             contacts: contact.count,
             contact_time_s: contact.duration,
             squeeze_m_N: None,
