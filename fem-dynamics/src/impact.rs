@@ -307,7 +307,10 @@ impl ImpactSystem {
         // What cannot be integrated is not a number, which the guard sees.
         let missing = Energy { stored: f64::NAN, dissipated: f64::NAN };
         let points = &state.histories.points;
-        let nonlinear = self.structure.nonlinear().map(|f| f.internal(&state.u[..n], points, work).unwrap_or(missing));
+        let nonlinear = match self.newton.stored(&state.u[..n]) {
+            Some(stored) => Some(Energy { stored, dissipated: 0.0 }),
+            None => self.structure.nonlinear().map(|f| f.internal(&state.u[..n], points, work).unwrap_or(missing)),
+        };
         let mut product = |x: &[f64], add: &dyn Fn(&[f64], &mut [f64])| {
             work.clear();
             work.resize(n, 0.0);
