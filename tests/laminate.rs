@@ -1,7 +1,11 @@
 //! `fem laminate`.
 
 use crate::support::{fem, plate, root};
+use fem::analyses::statics;
+use fem::io::scene;
+use fem::{Model, Registry};
 use serde_json::Value;
+use std::num::NonZeroUsize;
 
 fn found(arguments: &[&str]) -> Value {
     let done = fem(&root(), &[&["laminate"], arguments, &["--json"]].concat()).good();
@@ -75,4 +79,52 @@ fn what_is_wrong_is_said() {
         let done = fem(&root(), &["laminate", "[0]", "--material", "AS4/3502", "--ply-thickness", thickness]);
         assert!(done.status == 2 && done.stderr.contains("must be from 1 nm to 1 m"), "{thickness}: {done:#?}");
     }
+}
+
+/// A strip of plies of 0.125 mm of IM7/8552 that its weight pulls along x.
+fn pulled(plies: &str, strengths: &str, law: &str) -> String {
+    format!(
+        "title = 'pulled'\nanalysis = 'static'\nmesh = {{ rectangle = ['40 mm', '10 mm'], cells = [8, 2] }}\n\
+         laminate = {{ plies = '{plies}', material = 'tape', ply_thickness = '0.125 mm', layers = 1{strengths} }}\n\
+         support = [{{ group = 'x-min', kind = 'clamped' }}]\n\
+         load = [{{ gravity = ['1e6 m/s^2', '0 m/s^2', '0 m/s^2'] }}]\nfailure = {{ criteria = ['max-stress'] }}\n\
+         materials.tape = {{ library = 'IM7/8552', Xt = '9 GPa'{law} }}\n"
+    )
+}
+
+const IN_SITU: &str = ", strengths = 'in-situ'";
+
+/// As Camanho, Maimí and Dávila publish them, and as the plates of scenes have them.
+#[test]
+fn plies_have_their_strengths_in_situ() {
+    let law = ", law = { name = 'hahn-tsai', alpha = '2.98e-8 1/MPa^3' }";
+    let case = plate().text(&pulled("[0/45/0]", IN_SITU, law));
+    let said = case.fem("laminate", &["--force", "1,0,0", "--criteria", "max-stress"]).good().stdout;
+    for line in ["in situ   ply 1: Yt 101.4 MPa, S12 107.0 MPa", "in situ   ply 2: Yt 160.2 MPa, S12 130.2 MPa"] {
+        assert!(said.contains(line), "{said}");
+    }
+
+    // The same stresses, and so a reserve in the ratio of the strengths.
+    let reserve = |plies: &str, strengths: &str| {
+        let scene = scene::parse(&pulled(plies, strengths, ""), &root().join("scene.toml")).unwrap();
+        let solution = statics::solve(&Model::new(scene, &Registry::standard()).unwrap(), NonZeroUsize::MIN).unwrap();
+        let tension = solution.margins.iter().find(|margin| margin.mode == "transverse tension").unwrap();
+        tension.reserve_factor
+    };
+    for (plies, strength) in [("[90/0/90]", 101.37), ("[0/90/0]", 160.17), ("[0/90_2/0]", 113.26), ("[90_3]", 62.3)] {
+        let ratio = reserve(plies, IN_SITU) / reserve(plies, "");
+        assert!((ratio * 62.3 / strength - 1.0).abs() < 1e-4, "{plies}: {ratio}");
+    }
+}
+
+#[test]
+fn strengths_in_situ_ask_for_toughnesses() {
+    let text = pulled("[0/90/0]", IN_SITU, "").replace("IM7/8552", "AS4/3502");
+    let said = plate().text(&text).fem("check", &[]);
+    assert_eq!(said.status, 1);
+    let said = said.stderr;
+    assert!(
+        said.contains("strength Yt in situ needs the toughness Gmt or GIc") && said.contains("leave `strengths` out"),
+        "{said}"
+    );
 }

@@ -6,7 +6,7 @@
 //! | --- | --- |
 //! | contracts | [`element`], [`failure`], [`contact`], [`time`], [`reduction`]; [`plugin`] introduces an implementation |
 //! | formulas that people write | [`formula`] |
-//! | materials and laminates | [`tensor`], [`material`], [`layup`], [`laminate`] |
+//! | materials and laminates | [`tensor`], [`material`], [`in_situ`], [`layup`], [`laminate`] |
 //! | the plate and its unknowns | [`domain`], [`mesh`], [`dof`], [`plate`], [`support`], [`springs`], [`axes`], [`symmetry`], [`constraint`], [`pieces`], [`patch`], [`load`] |
 //! | matrices and stresses | [`quadrature`], [`structure`], [`damping`], [`recovery`], [`profile`], [`window`], [`counters`] |
 //! | checks of the contracts, for the tests of plug-in crates | [`testkit`] |
@@ -60,6 +60,6 @@ pub use plates::{
 };
 pub use stresses::{estimate, field, profile, recovery, residual, waves};
 pub use words::{
-    counters, damping, dof, domain, energy, formula, functional, interval, layup, material, prolongation, quadrature,
-    tensor, vectorised,
+    counters, damping, dof, domain, energy, formula, functional, in_situ, interval, layup, material, prolongation,
+    quadrature, tensor, vectorised,
 };

@@ -9,7 +9,7 @@ use fem_core::classical::{ClassicalLaminate, PlaneModuli, PlateStrain};
 use fem_core::failure::{Site, check_material};
 use fem_core::laminate::{LaminaPly, Laminate};
 use fem_core::layup;
-use fem_core::material::Material;
+use fem_core::material::{Material, Strength};
 use fem_core::plugin::{Dimension, unknown_key};
 use fem_io::scene::{self, Scene};
 use fem_io::{materials, units};
@@ -125,12 +125,26 @@ struct Document {
     #[serde(skip_serializing_if = "Option::is_none")]
     loaded: Option<Deformed>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
+    strengths_in_situ: Vec<InSitu>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     first_failure: Vec<FirstFailure>,
+}
+
+/// Strengths of plies that lie together, of one material and angle.
+#[derive(Serialize)]
+#[allow(non_snake_case)]
+struct InSitu {
+    first_ply: usize,
+    last_ply: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    Yt_MPa: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    S12_MPa: Option<f64>,
 }
 
 pub(super) fn laminate(registry: &Registry, arguments: &Arguments, console: &Console) -> miette::Result<ExitCode> {
     let scene = Path::new(&arguments.plies).is_file().then(|| scene::read(arguments.plies.as_ref())).transpose()?;
-    let (laminate, materials) = match &scene {
+    let (laminate, materials, in_situ) = match &scene {
         Some(scene) => of_scene(scene, arguments)?,
         None => of_layup(arguments)?,
     };
@@ -167,6 +181,7 @@ pub(super) fn laminate(registry: &Registry, arguments: &Arguments, console: &Con
         flexural: plate.flexural().into(),
         per_kelvin: plate.thermal_strain(&laminate, &materials).ok().map(Into::into),
         loaded: loaded.map(Into::into),
+        strengths_in_situ: if in_situ { strengths(&laminate, &materials) } else { Vec::new() },
         first_failure,
     };
     if let Some(scene) = &scene {
@@ -187,8 +202,19 @@ fn left_out(scene: &Scene, loaded: bool) -> Vec<String> {
     others.into_iter().chain(cure).collect()
 }
 
-/// The laminate of the plate apart from regions of their own.
-fn of_scene(scene: &Scene, arguments: &Arguments) -> miette::Result<(Laminate, Vec<Material>)> {
+/// Of all plies, those that are alike together.
+fn strengths(laminate: &Laminate, materials: &[Material]) -> Vec<InSitu> {
+    let ends: Vec<usize> = laminate.unlike().chain([laminate.plies.len()]).collect();
+    let of = |(first, end): (usize, &usize)| {
+        let given =
+            |which| materials[laminate.plies[first].material].strengths.get(which).map(|pascals| pascals * 1e-6);
+        InSitu { first_ply: first + 1, last_ply: *end, Yt_MPa: given(Strength::Yt), S12_MPa: given(Strength::S12) }
+    };
+    std::iter::once(0).chain(ends.iter().copied()).zip(&ends).map(of).collect()
+}
+
+/// The laminate of the plate apart from regions of their own, its materials, and whether its plies have their strengths in situ.
+fn of_scene(scene: &Scene, arguments: &Arguments) -> miette::Result<(Laminate, Vec<Material>, bool)> {
     if arguments.material.is_some() || arguments.ply_thickness.is_some() {
         return Err(miette!(
             help = "leave them out, or give plies: \"[0/90]s\"",
@@ -196,10 +222,11 @@ fn of_scene(scene: &Scene, arguments: &Arguments) -> miette::Result<(Laminate, V
         ));
     }
     let spec = scene.laminates.iter().find(|spec| spec.group.is_none()).unwrap_or(&scene.laminates[0]);
-    Ok((spec.laminate.value.clone(), scene.materials.iter().map(|material| material.value.clone()).collect()))
+    let materials = scene.materials.iter().map(|material| material.value.clone()).collect();
+    Ok((spec.laminate.value.clone(), materials, spec.is_in_situ()))
 }
 
-fn of_layup(arguments: &Arguments) -> miette::Result<(Laminate, Vec<Material>)> {
+fn of_layup(arguments: &Arguments) -> miette::Result<(Laminate, Vec<Material>, bool)> {
     let text = &arguments.plies;
     let plies = layup::parse(text).map_err(|wrong| {
         miette!(
@@ -224,7 +251,7 @@ fn of_layup(arguments: &Arguments) -> miette::Result<(Laminate, Vec<Material>)> 
     let ply = |angle_deg: f64| LaminaPly { angle: angle_deg.to_radians(), angle_deg, thickness, material: 0 };
     let plies: Vec<_> = plies.iter().map(|of_layup| ply(of_layup.angle_deg)).collect();
     let layers = vec![plies.len()];
-    Ok((Laminate { plies, layers, middle: 0.0 }, vec![material.material.clone()]))
+    Ok((Laminate { plies, layers, middle: 0.0 }, vec![material.material.clone()], false))
 }
 
 /// Three components; none are three zeros.
@@ -302,6 +329,15 @@ impl Document {
                 numbers(strain, 1e6),
                 numbers(curvature_1_m, 1e3)
             );
+        }
+        for InSitu { first_ply, last_ply, Yt_MPa, S12_MPa } in &self.strengths_in_situ {
+            let plies = match first_ply == last_ply {
+                true => format!("ply {first_ply}"),
+                false => format!("plies {first_ply} to {last_ply}"),
+            };
+            let given = [("Yt", Yt_MPa), ("S12", S12_MPa)].into_iter().filter_map(|(name, of)| Some((name, (*of)?)));
+            let given: Vec<_> = given.map(|(name, strength)| format!("{name} {strength:.1} MPa")).collect();
+            let _ = writeln!(text, "  in situ   {plies}: {}", given.join(", "));
         }
         for FirstFailure { criterion, reserve, ply, angle_deg, face, mode } in &self.first_failure {
             let _ = writeln!(

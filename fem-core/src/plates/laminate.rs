@@ -2,6 +2,7 @@
 
 use crate::contracts::element::{Slice, Stack};
 use crate::plates::classical::ClassicalLaminate;
+use crate::words::in_situ::Confined;
 use crate::words::material::{Material, MaterialError};
 use crate::words::tensor::{apply, rotate_stiffness, strain_rotation};
 use nalgebra::Matrix3;
@@ -87,6 +88,16 @@ impl Laminate {
         let first = self.unlike().take_while(|below| *below <= ply).last().unwrap_or(0);
         let end = self.unlike().find(|below| *below > ply).unwrap_or(self.plies.len());
         self.plies[first..end].iter().map(|ply| ply.thickness).sum()
+    }
+
+    /// On how many faces a ply, with those about it that are alike, has others; nothing of a laminate of one angle.
+    pub fn confined(&self, ply: usize) -> Option<Confined> {
+        let (below, above) = (self.unlike().any(|below| below <= ply), self.unlike().any(|below| below > ply));
+        match (below, above) {
+            (false, false) => None,
+            (true, true) => Some(Confined::OnBothFaces),
+            _ => Some(Confined::OnOneFace),
+        }
     }
 
     /// First and one past the last ply of a layer.

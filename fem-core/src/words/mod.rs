@@ -8,6 +8,7 @@ pub mod domain;
 pub mod energy;
 pub mod formula;
 pub mod functional;
+pub mod in_situ;
 pub mod interval;
 pub mod layup;
 pub mod material;

@@ -1,14 +1,18 @@
 //! The laminate: plies from the bottom up and the element layers that hold them.
 
 use super::material;
+use super::plugin::PluginSpec;
 use crate::document::keys::{Form, Keys, key};
 use crate::document::reader::{Reader, SceneValue};
-use crate::document::source::{Located, SceneError};
+use crate::document::source::{Located, Place, SceneError, SceneSource};
 use crate::document::tree::Node;
+use crate::units;
+use fem_core::in_situ::Confined;
 use fem_core::laminate::{LaminaPly, Laminate};
 use fem_core::layup::{self, LayupPly};
 use fem_core::material::Material;
-use fem_core::plugin::{Dimension, unknown_key};
+use fem_core::plugin::{Dimension, Value, unknown_key};
+use std::sync::Arc;
 
 pub(super) const KEYS: Keys = &[
     key(
@@ -46,6 +50,13 @@ pub(super) const KEYS: Keys = &[
         "instead of `align`: height of the mid-plane above that of the rest of the plate",
     ),
     key("interface", Form::Text, r#""resin""#, "material between the plies, for criteria that look there"),
+    key(
+        "strengths",
+        Form::Words(&["given", "in-situ"]),
+        r#""in-situ""#,
+        "Yt and S12 of its plies: those of the material, or what plies of other angles beside them raise these to",
+    )
+    .default(r#""given""#),
 ];
 const PLY_KEYS: Keys = &[
     key("material", Form::Text, r#""foam""#, "a name of `materials`"),
@@ -68,9 +79,16 @@ pub struct LaminateSpec {
     pub laminate: Located<Laminate>,
     /// Whether the scene names its layers of cells.
     pub layered: bool,
+    /// Where the scene asks for strengths in situ.
+    in_situ: Option<Place>,
 }
 
 impl LaminateSpec {
+    /// Whether its plies have their strengths in situ.
+    pub fn is_in_situ(&self) -> bool {
+        self.in_situ.is_some()
+    }
+
     /// What results call the part of the plate.
     pub fn name(&self) -> &str {
         self.group.as_ref().map_or("rest", |group| &group.value)
@@ -197,7 +215,56 @@ fn read(
         None => None,
     };
     let laminate = field.at(Laminate { plies, layers, middle: 0.0 });
-    Ok(((LaminateSpec { group, laminate, layered }, read_lies(&table)?), interface))
+    let strengths = table.optional("strengths");
+    let strengths = strengths.map(|field| Ok((field.choice(&[("given", false), ("in-situ", true)])?, field.place())));
+    let in_situ = strengths.transpose()?.filter(|(asked, _)| *asked).map(|(_, place)| place.clone());
+    Ok(((LaminateSpec { group, laminate, layered, in_situ }, read_lies(&table)?), interface))
+}
+
+/// Of the shear of a ply, γ = τ/G12 + α τ³, 1/Pa³.
+const ALPHA: Dimension = Dimension([3.0, -3.0, 6.0, 0.0]);
+
+/// Gives plies their strengths in situ where their laminates ask for it: materials of their own, which follow the same laws.
+pub(super) fn strengthen(
+    all: &mut [LaminateSpec],
+    materials: &mut Vec<Located<Material>>,
+    laws: &mut Vec<Option<PluginSpec>>,
+    source: &Arc<SceneSource>,
+) -> Result<(), SceneError> {
+    // What has been made of which material, for how thick plies, and where it is.
+    let mut made = Vec::<(usize, f64, Confined, usize)>::new();
+    for spec in all {
+        let Some(place) = &spec.in_situ else { continue };
+        let given = spec.laminate.value.clone();
+        for (number, ply) in spec.laminate.value.plies.iter_mut().enumerate() {
+            let Some(confined) = given.confined(number) else { continue };
+            let (of, thick) = (ply.material, given.alike(number));
+            let same = |&&(other, t, c, _): &&(usize, f64, Confined, usize)| {
+                other == of && c == confined && (t - thick).abs() <= SAME_HEIGHT * thick
+            };
+            if let Some((.., known)) = made.iter().find(same) {
+                ply.material = *known;
+                continue;
+            }
+            let Located { value: material, place: given_at } = materials[of].clone();
+            let alpha = laws[of].as_ref().and_then(|law| law.params.get("alpha"));
+            let alpha = match alpha {
+                Some(Value::Text(text)) => units::parse_as(text, ALPHA).unwrap_or(0.0),
+                _ => 0.0,
+            };
+            let strengths = material.in_situ(thick, confined, alpha).map_err(|why| {
+                let help = "give it to the material, or leave `strengths` out";
+                source.error_at(place, why.to_string(), help)
+            })?;
+            let faces = if confined == Confined::OnBothFaces { "inner" } else { "outer" };
+            let name = format!("{}, {faces} {}", material.name, Dimension::LENGTH.of(thick));
+            materials.push(Located { value: Material { name, strengths, ..material }, place: given_at });
+            laws.push(laws[of].clone());
+            ply.material = materials.len() - 1;
+            made.push((of, thick, confined, ply.material));
+        }
+    }
+    Ok(())
 }
 
 fn read_layup(field: &SceneValue<'_>) -> Result<Vec<LayupPly>, SceneError> {

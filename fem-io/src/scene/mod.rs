@@ -336,8 +336,10 @@ fn read_merged(merged: &Merged, file: &Path) -> Result<Scene, SceneError> {
     merged.flatten("", &mut keys);
 
     let folder = file.parent().unwrap_or(Path::new(""));
-    let materials = material::read_all(&root.required("materials")?, folder)?;
-    let (laminates, interface) = laminate::read_all(&root.required("laminate")?, &materials)?;
+    let mut materials = material::read_all(&root.required("materials")?, folder)?;
+    let mut laws = material::read_laws(&root.required("materials")?)?;
+    let (mut laminates, interface) = laminate::read_all(&root.required("laminate")?, &materials)?;
+    laminate::strengthen(&mut laminates, &mut materials, &mut laws, source)?;
     let element = root.required("element")?;
     let effects = root.optional("effects").map_or(Ok(EffectsSpec::default()), |field| effects::read(&field))?;
     let analysis = read_analysis(&root, &tip::Struck { materials: &materials, laminates: &laminates })?;
@@ -357,7 +359,7 @@ fn read_merged(merged: &Merged, file: &Path) -> Result<Scene, SceneError> {
             None => None,
         },
         materials,
-        laws: material::read_laws(&root.required("materials")?)?,
+        laws,
         laminates,
         interface,
         z_derivatives: read_z_derivatives(&element)?,
