@@ -33,10 +33,10 @@ pub(crate) fn describe_condition(condition: f64) -> String {
     format!("condition {condition:.1e}: rounding costs up to {lost:.0} of 16 digits")
 }
 
-/// What to say of supports that fix values at nodes and leave the plate free between them.
+/// What to say of supports and couples that fix values at nodes and leave the plate free between them.
 pub(crate) fn warn_of_softness(share: f64) -> String {
     format!(
-        "supports fix displacements at nodes, between which the plate moves: it is {:.0} % softer for that; fix their derivatives along \
+        "supports or couples fix displacements at nodes, between which the plate moves: it is {:.0} % softer for that; fix their derivatives along \
          the held side as well (with U30 along x also U31), and those along z (U33) where all levels are held",
         100.0 * share / (1.0 - share)
     )

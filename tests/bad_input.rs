@@ -548,7 +548,7 @@ mod failure {
             (r#"{ at = { group = "support" }, ply = 1 }"#, "a point has one"),
             (
                 r#"{ at = { group = "impact" }, ply = 1, criterion = "octahedral" }"#,
-                "none of the criteria judges plies",
+                "the criterion named here judges no plies",
             ),
             (&many, "asks for 40 histories"),
         ] {

@@ -272,3 +272,91 @@ fn forces_across_are_those_of_statics() {
         }
     }
 }
+
+/// A shell is held by displacements in its plane where it has nodes, and turned by those elsewhere.
+#[test]
+fn displacements_at_heights_where_a_shell_has_no_nodes() {
+    let shell = |more: &str| {
+        let groups = "cells = [4, 2], groups = { tip = { x = \"40 mm\", y = \"0 mm\" } }";
+        let shell =
+            case(more).scene("hex20", "mitc4").scene("layers = [2, 2]", "layers = 1").scene("cells = [4, 2]", groups);
+        move |status| said(&shell, status)
+    };
+    let clamped = r#"support = [{ group = "x-min", kind = "clamped" }"#;
+    let pressed = "load = [{ pressure = \"1 kPa\" }]";
+    for more in [
+        format!("{clamped}, {{ group = \"x-max\", kind = \"hinged\", at = \"bottom\" }}]\n{pressed}"),
+        format!("{clamped}, {{ group = \"x-max\", fix = [\"U10\"], at = \"top\" }}]\n{pressed}"),
+        format!("{clamped}]\n{pressed}\ncouple = [{{ group = \"x-max\", at = \"bottom\", dofs = [\"U10\"] }}]"),
+        format!(
+            "{clamped}]\n{pressed}\nequation = [{{ terms = [{{ group = \"tip\", at = \"top\", dof = \"U10\", factor = 1.0 }}, \
+             {{ group = \"tip\", at = \"bottom\", dof = \"U10\", factor = -1.0 }}] }}]"
+        ),
+        format!("{clamped}]\nload = [{{ force = [\"1 N\", \"0 N\", \"0 N\"], group = \"tip\", at = \"top\" }}]"),
+    ] {
+        let said = shell(&more)(1);
+        holds(
+            &said,
+            &["`mitc4` has nodes in its mid-plane alone, where U10 is not what it is at", "at = \"mid-plane\""],
+        );
+    }
+    for support in [
+        r#"{ group = "x-max", kind = "hinged" }"#,
+        r#"{ group = "x-max", kind = "simply-supported" }"#,
+        r#"{ group = "x-max", kind = "roller", at = "bottom" }"#,
+        r#"{ group = "x-max", fix = ["U10", "U13"], at = "all" }"#,
+        r#"{ group = "x-max", fix = ["U30"], at = "top" }"#,
+    ] {
+        assert!(!shell(&format!("{clamped}, {support}]\n{pressed}"))(0).contains("may turn"), "{support}");
+    }
+    // At all heights there is one node.
+    for more in [
+        format!("{clamped}, {{ group = \"x-max\", fix = [\"U30\", \"U10\"], at = \"all\" }}]\n{pressed}"),
+        format!("{clamped}]\n{pressed}\ncouple = [{{ group = \"x-max\", at = \"all\", dofs = [\"U10\"] }}]"),
+    ] {
+        holds(
+            &shell(&more)(0),
+            &["of `x-max` at all heights holds U10 there, and the section may turn", "hold U13 as well"],
+        );
+    }
+}
+
+/// A group that ends between nodes is smaller than it was asked to be, and another one on other cells.
+#[test]
+fn groups_that_end_within_cells() {
+    let strip = |to: &str| {
+        let load = format!("{CLAMPED}\nload = [{{ pressure = \"1 kPa\", group = \"s\" }}]");
+        let groups = format!("cells = [4, 2], groups = {{ s = {{ x = [\"0 mm\", \"{to}\"] }} }}");
+        said(&case(&load).scene("cells = [4, 2]", &groups), 0)
+    };
+    holds(&strip("26 mm"), &["the group `s` is to reach from x = 0 to 26 mm, and reaches from 0 to 20 mm"]);
+    holds(&strip("19.9999 mm"), &["to 19.9999 mm, and reaches from 0 to 10 mm"]);
+    for to in ["20 mm", "20.01 mm", "50 mm"] {
+        assert!(!strip(to).contains("is to reach"), "{to}");
+    }
+}
+
+/// Between coupled nodes an edge of cubic elements moves as it does between fixed ones.
+#[test]
+fn couples_that_hold_an_edge_at_its_nodes_alone() {
+    let softer = |more: &str| {
+        let text = case(&format!("{more}\nload = [{{ pressure = \"1 kPa\" }}]"));
+        let said = text.scene("hex20", "hermite-prism").fem("run", &["--out", "out"]).good().stdout;
+        said.split_once(" % softer").and_then(|(before, _)| before.rsplit(' ').next().map(str::to_owned))
+    };
+    let clamped = r#"{ group = "x-min", kind = "clamped" }"#;
+    let fixed = softer(&format!("support = [{clamped}, {{ group = \"x-max\", at = \"all\", fix = [\"U10\"] }}]"));
+    let coupled = "couple = [{ group = \"x-max\", at = \"all\", dofs = [\"U10\"] }]";
+    assert!(fixed.is_some());
+    assert_eq!(softer(&format!("support = [{clamped}]\n{coupled}")), fixed);
+    let clean =
+        format!("support = [{clamped}, {{ group = \"x-max\", at = \"all\", fix = [\"U12\", \"U13\"] }}]\n{coupled}");
+    assert_eq!(softer(&clean), None);
+}
+
+#[test]
+fn strengths_in_another_unit() {
+    let weak = case(&format!("{CLAMPED}\nload = [{{ pressure = \"1 kPa\" }}]"));
+    let weak = weak.scene("library = \"AS4/3502\"", "library = \"AS4/3502\", Yt = \"60 mPa\"");
+    holds(&said(&weak, 0), &["material `tape`: Yt = 0.06 Pa is none of a solid"]);
+}

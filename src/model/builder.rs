@@ -22,7 +22,7 @@ use fem_core::plate::Plate;
 use fem_core::plugin::{Built, Dimension, Kind, Role, unknown_key};
 use fem_core::reduction::Reduction;
 use fem_core::springs::SupportSpring;
-use fem_core::support::{self, ColumnLevels, FreeMotions};
+use fem_core::support::{self, ColumnLevels, FreeMotions, Levels};
 use fem_core::tensor::Stress6;
 use fem_core::time::Integrator;
 use fem_core::window::{Centre, Windows};
@@ -312,16 +312,43 @@ impl Builder<'_> {
         Ok(plate.columns_of_group(self.group(plate, group)?))
     }
 
-    /// Columns and levels of the nodes that a set names.
-    pub(super) fn nodes(&self, plate: &Plate, set: &NodeSet) -> Result<Vec<ColumnLevels>, SceneError> {
+    /// Refuses displacements in the plane at heights where a shell has no nodes: there they differ by the turn of its section.
+    pub(super) fn check_height(
+        &self,
+        plate: &Plate,
+        levels: Levels,
+        dofs: &[Dof],
+        place: &Place,
+    ) -> Result<(), SceneError> {
+        let stray = dofs.iter().find(|dof| dof.n() < 3 && dof.m() == 0);
+        let elsewhere = matches!(levels, Levels::Bottom | Levels::Top) && plate.info().is_shell();
+        let (Some(dof), true) = (stray, elsewhere) else {
+            return Ok(());
+        };
+        let element = &self.scene.element.name.value;
+        let message =
+            format!("`{element}` has nodes in its mid-plane alone, where {dof} is not what it is at other heights");
+        let help = "write at = \"mid-plane\" if that is meant, hold a section by kind = \"clamped\", or take an element with nodes \
+                    there, such as kind = \"hermite-prism\"";
+        Err(self.scene.source.error_at(place, message, help))
+    }
+
+    /// Columns and levels of the nodes that a set names, for the sake of these of their unknowns.
+    pub(super) fn nodes(&self, plate: &Plate, set: &NodeSet, dofs: &[Dof]) -> Result<Vec<ColumnLevels>, SceneError> {
         let columns = self.columns(plate, &set.group)?;
+        self.check_height(plate, set.levels, dofs, &set.group.place)?;
         set.levels.at(plate, &columns).map_err(|why| self.error(&set.group, why.to_string(), ""))
     }
 
     /// The same one by one.
-    pub(super) fn each_node(&self, plate: &Plate, set: &NodeSet) -> Result<Vec<(u32, usize)>, SceneError> {
+    pub(super) fn each_node(
+        &self,
+        plate: &Plate,
+        set: &NodeSet,
+        dofs: &[Dof],
+    ) -> Result<Vec<(u32, usize)>, SceneError> {
         let mut all = Vec::new();
-        for (columns, levels) in self.nodes(plate, set)? {
+        for (columns, levels) in self.nodes(plate, set, dofs)? {
             all.extend(columns.iter().flat_map(|column| levels.iter().map(move |level| (*column, *level))));
         }
         Ok(all)
@@ -419,7 +446,7 @@ impl Builder<'_> {
         places: &mut Vec<&'s Place>,
     ) -> Result<(), SceneError> {
         for couple in &self.scene.couples {
-            let nodes = self.each_node(plate, &couple.nodes)?;
+            let nodes = self.each_node(plate, &couple.nodes, &couple.dofs)?;
             let origin = format!("couple of `{}`", couple.nodes.group.value);
             let coupled = support::couple(plate, &nodes, &couple.dofs, turns.settle(couple.axes), &origin);
             if coupled.is_empty() {
@@ -437,11 +464,15 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// What the supports leave free between the nodes that they hold.
+    /// What supports and couples leave free between the nodes that they hold.
     fn between(&self, plate: &Plate, constraints: &Constraints) -> Result<Vec<Functional>, SceneError> {
         let mut found = Vec::new();
-        for entry in &self.scene.supports {
-            let Support::Fix { nodes, dofs, axes, .. } = entry else { continue };
+        let fixed = self.scene.supports.iter().filter_map(|entry| match entry {
+            Support::Fix { nodes, dofs, axes, .. } => Some((nodes, dofs, axes)),
+            _ => None,
+        });
+        let coupled = self.scene.couples.iter().map(|couple| (&couple.nodes, &couple.dofs, &couple.axes));
+        for (nodes, dofs, axes) in fixed.chain(coupled) {
             let group = self.group(plate, &nodes.group)?;
             let levels = |column: u32| nodes.levels.of(plate, column as usize).unwrap_or_default();
             found.extend(between::between(plate, group, levels, dofs, *axes));
@@ -460,7 +491,7 @@ impl Builder<'_> {
         let coupled = self.scene.couples.iter().map(|couple| ("couple", &couple.nodes, &couple.dofs));
         let mut warnings = Vec::new();
         for (what, nodes, dofs) in fixed.chain(coupled) {
-            let nodes_of = self.each_node(plate, nodes)?;
+            let nodes_of = self.each_node(plate, nodes, dofs)?;
             let has = |dof: &Dof| nodes_of.iter().any(|(c, l)| plate.dofs_at(*c as usize, *l, *dof).next().is_some());
             let names: Vec<_> = dofs.iter().filter(|dof| !has(dof)).map(Dof::to_string).collect();
             if !names.is_empty() {
@@ -475,6 +506,31 @@ impl Builder<'_> {
             }
         }
         Ok(warnings)
+    }
+
+    /// What the user should know of displacements in the plane that are held at all heights, of which a shell has one.
+    pub(super) fn turning(&self, plate: &Plate) -> Vec<String> {
+        let held = self.scene.supports.iter().filter_map(|support| match support {
+            Support::Fix { nodes, dofs, .. } if nodes.levels == Levels::All => {
+                Some(("support", nodes.group.value.clone(), &dofs[..]))
+            }
+            _ => None,
+        });
+        let coupled = self.scene.couples.iter().filter(|couple| couple.nodes.levels == Levels::All);
+        let coupled = coupled.map(|couple| ("couple", couple.nodes.group.value.clone(), &couple.dofs[..]));
+        let warn = |(what, name, dofs): (&str, String, &[Dof])| {
+            let turns =
+                |dof: &&Dof| dof.m() == 0 && dof.n() < 3 && !dofs.iter().any(|d| d.n() == dof.n() && d.m() == 3);
+            let dof = dofs.iter().find(turns)?;
+            let turn = Dof::new(dof.n() as u8, 3)?;
+            Some(format!(
+                "`{}` has nodes in its mid-plane alone: the {what} of `{name}` at all heights holds {dof} there, and the section may turn; \
+                 where it may not, hold {turn} as well",
+                self.scene.element.name.value
+            ))
+        };
+        let all = held.chain(coupled).filter_map(warn);
+        if plate.info().is_shell() { all.collect() } else { Vec::new() }
     }
 
     /// Refuses a plate of pieces that move against each other.
@@ -513,7 +569,7 @@ impl Builder<'_> {
     ) -> Result<Equation, SceneError> {
         let mut terms = Vec::new();
         for term in &equation.terms {
-            let [(column, level)] = self.each_node(plate, &term.node)?[..] else {
+            let [(column, level)] = self.each_node(plate, &term.node, &[term.dof])?[..] else {
                 return Err(self.error(
                     &term.node.group,
                     format!("a term of an equation takes a single node, but `{}` has more", term.node.group.value),

@@ -87,13 +87,16 @@ impl Builder<'_> {
         let asked = (0..criteria.len()).filter(|k| watch.criterion.is_none_or(|asked| asked == *k));
         let criteria: Vec<usize> = asked.filter(looks).collect();
         if criteria.is_empty() {
-            let (message, help) = match place.site() {
-                Site::Ply => ("none of the criteria judges plies", "watch an `interface`, or choose another criterion"),
-                Site::Interface => {
-                    ("none of the criteria judges interfaces", "watch a `ply`, or choose another criterion")
-                }
+            let (places, help) = match place.site() {
+                Site::Ply => ("plies", "watch an `interface`, or choose another criterion"),
+                Site::Interface => ("interfaces", "watch a `ply`, or choose another criterion"),
             };
-            return Err(self.error(&watch.depth, message, help));
+            let which = if watch.criterion.is_some() {
+                "the criterion named here judges no"
+            } else {
+                "none of the criteria judges"
+            };
+            return Err(self.error(&watch.depth, format!("{which} {places}"), help));
         }
         Ok(Gauge { quad: plate.symmetry().quad(quad), place, criteria })
     }

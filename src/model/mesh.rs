@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use fem_core::element::{Element, Tables, form};
-use fem_core::mesh::PlaneMesh;
+use fem_core::mesh::{Group, PlaneMesh};
 use fem_core::plugin::unknown_key;
 use fem_io::meshes::{self, Examined, FileMesh, MeshError, MeshFault};
 use fem_io::scene::{self, Located, MeshSource, NamedPart, Scene, SceneError};
@@ -56,6 +56,7 @@ pub(crate) fn examined_mesh(scene: &Scene) -> Result<Examined, Error> {
             let [x, y] =
                 [0, 1].map(|d| -> Vec<f64> { (0..=cells[d]).map(|i| size[d] * i as f64 / cells[d] as f64).collect() });
             let mut mesh = PlaneMesh::rectangle(&x, &y);
+            let mut warnings = Vec::new();
             for NamedPart { name, corners: [low, high] } in parts {
                 let group = mesh.within_rectangle(*low, *high);
                 if group.nodes.is_empty() {
@@ -63,15 +64,40 @@ pub(crate) fn examined_mesh(scene: &Scene) -> Result<Examined, Error> {
                     let help = "nodes lie where cells end: choose `mesh.cells` so that one does, or enlarge the group";
                     return Err(error(scene, name, message, help).into());
                 }
+                for d in 0..2 {
+                    let asked = [low[d].max(0.0), high[d].min(size[d])];
+                    warnings.extend(shrunk(&mesh, (&name.value, &group), d, (asked, size[d] / cells[d] as f64)));
+                }
                 mesh.groups.insert(name.value.clone(), group);
             }
-            Ok(Examined::built(mesh))
+            let mut examined = Examined::built(mesh);
+            examined.read.warnings = warnings;
+            Ok(examined)
         }
         MeshSource::Graded { plate, refine, curves } => {
             let mesh = plate.value.mesh().map_err(|wrong| error(scene, plate, wrong.to_string(), ""))?;
             Ok(Examined::built((0..*refine).fold(mesh, |mesh, _| mesh.refined(*curves))))
         }
     }
+}
+
+/// Share of a cell that a group may be smaller than it is asked to be.
+const SHRUNK: f64 = 0.01;
+
+/// That the nodes of a group end before it is `asked` to along axis `d`, where cells are so wide.
+fn shrunk(mesh: &PlaneMesh, (name, group): (&str, &Group), d: usize, (asked, cell): ([f64; 2], f64)) -> Option<String> {
+    let along = group.nodes.iter().map(|node| mesh.points[*node as usize][d]);
+    let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let lost = f64::max(low - asked[0], asked[1] - high);
+    let axis = ["x", "y"][d];
+    // To the nanometre, without zeros behind it.
+    let [from, to, low, high] = [asked[0], asked[1], low, high].map(|x| (x * 1e9).round() / 1e6);
+    (lost > SHRUNK * cell).then(|| {
+        format!(
+            "the group `{name}` is to reach from {axis} = {from} to {to} mm, and reaches from {low} to {high} mm, where cells end; with other cells it is another one, so that what is said of the error of the mesh does not hold: let \
+             `mesh.cells` end where it does"
+        )
+    })
 }
 
 /// Straightens the bent sides of a mesh where the element cannot stand on them, and says so.

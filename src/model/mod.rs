@@ -264,6 +264,7 @@ impl Model {
         let constraints = &supports.constraints;
         warnings.extend(builder.locked(&plate)?);
         warnings.extend(builder.lacking(&plate)?);
+        warnings.extend(builder.turning(&plate));
         warnings.extend(builder.nearly_turned(&plate)?);
         let plan = match &scene.analysis {
             Analysis::Impact(spec) => Plan::Impact(Box::new(builder.impact(spec, &plate, &*element, constraints)?)),

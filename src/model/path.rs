@@ -60,7 +60,7 @@ impl Builder<'_> {
                 let help = "load the plate by a force, whose displacements are proportional to it";
                 return Err(self.scene.source.error_at(place, message, help));
             }
-            let nodes_there = self.each_node(plate, nodes)?;
+            let nodes_there = self.each_node(plate, nodes, &[*dof])?;
             let moved: Vec<usize> = nodes_there
                 .into_iter()
                 .flat_map(|(column, level)| plate.dofs_at(column as usize, level, *dof))

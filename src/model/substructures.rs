@@ -84,6 +84,7 @@ impl Builder<'_> {
                 vec![column as u32]
             }
         };
+        self.check_height(plate, named.levels, &named.dofs, &at.place)?;
         let nodes = named.levels.at(plate, &columns).map_err(|why| self.error(at, why.to_string(), ""))?;
         let nodes = nodes.iter().flat_map(|(columns, levels)| {
             columns.iter().flat_map(move |column| levels.iter().map(move |level| (*column as usize, *level)))

@@ -2,6 +2,7 @@
 
 use super::builder::Builder;
 use fem_core::axes::Turns;
+use fem_core::dof::Dof;
 use fem_core::hold::{Hold, SupportKind};
 use fem_core::mesh::Group;
 use fem_core::plate::Plate;
@@ -27,7 +28,7 @@ impl Builder<'_> {
                     curvature: 0.0,
                     between: false,
                 };
-                let holds = self.nodes(plate, nodes)?.into_iter().map(hold).collect();
+                let holds = self.nodes(plate, nodes, dofs)?.into_iter().map(hold).collect();
                 Ok((format!("`{}`", nodes.group.value), holds))
             }
             Support::Kind { kind: SupportKind::Free | SupportKind::Rest, .. }
@@ -55,7 +56,13 @@ impl Builder<'_> {
         let spread = matches!(area.value, SupportArea::Disc { .. }) && sprung;
         let group = if spread { Group::default() } else { self.area(plate, area)? };
         match kind.refuses(&plate.plane, &group, *levels) {
-            None => Ok(group),
+            None => {
+                let in_plane = !matches!(kind, SupportKind::Free | SupportKind::Rest | SupportKind::Roller);
+                if in_plane {
+                    self.check_height(plate, *levels, &[Dof::SOLID[0]], place)?;
+                }
+                Ok(group)
+            }
             Some([why, help]) => {
                 let message = format!("the support of {}: {why}", area.value);
                 Err(self.scene.source.error_at(place, message, help))

@@ -186,10 +186,16 @@ fn scatter(name: &str, rest: &str, own: Option<&str>) -> Result<Variation, Strin
     let numbers: Vec<&str> = inside.split(',').collect();
     let [a, b] = numbers[..] else { return Err(wrong()) };
     let ((a, of_a), (b, of_b)) = (quantity(a)?, quantity(b)?);
-    let (b, of_b) = match of_b {
+    let (b, of_b) = match (name, of_b) {
+        ("weibull", Some(unit)) => {
+            return Err(format!(
+                "its shape is a number without a unit, and not in {unit}: about 1.2 over the share that scatters"
+            ));
+        }
         // A coefficient of variation.
-        Some("%") => (0.01 * b * a.abs(), None),
-        unit => (b, unit),
+        ("normal" | "lognormal", Some("%")) => (0.01 * b * a.abs(), None),
+        (_, Some("%")) => return Err(wrong()),
+        (_, unit) => (b, unit),
     };
     if let (Some(x), Some(y)) = (of_a, of_b)
         && x != y
@@ -267,6 +273,9 @@ mod tests {
             ("normal(50)", "write normal(mean, deviation)"),
             ("gauss(50, 5)", "not known"),
             ("normal(50, 5) within 500..600", "nothing of"),
+            ("weibull(64 MPa, 10 %)", "without a unit"),
+            ("weibull(64 MPa, 6.4 MPa)", "without a unit"),
+            ("uniform(5, 120 %)", "write uniform(least, largest)"),
         ] {
             let got = Variation::parse(words, None).unwrap_err();
             assert!(got.contains(why), "{words}: {got}");

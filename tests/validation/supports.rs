@@ -293,6 +293,12 @@ fn turned_plates() {
         );
         let [disc, probe] = [at(10.0, 30.0), at(30.0, 30.0)];
         let supports = supports.replace("DISC", &format!("x = '{} mm', y = '{} mm'", disc[0], disc[1]));
+        // A shell is hinged where it has nodes.
+        let hinged = |at: &str| format!("kind = 'hinged', at = '{at}'");
+        let supports = match element.contains("mitc4") {
+            true => ["bottom", "top"].iter().fold(supports, |text, at| text.replace(&hinged(at), &hinged("mid-plane"))),
+            false => supports,
+        };
         // The shear stiffness of a shell of plies is that of cylindrical bending along x and along y.
         let material = if element.contains("mitc4") { aluminium() } else { AS4.to_owned() };
         let plies = [0.0, 45.0, 90.0, -30.0].map(|angle| ((angle + turn + 90.0) % 180.0 - 90.0).to_string()).join("/");

@@ -137,16 +137,16 @@ impl Table {
                 continue;
             };
             match (&mut above.item.node, below.item.node) {
-                (Node::Table(over), Node::Table(under)) => over.merge(under),
+                (Node::Table(over), Node::Table(under)) => over.merge(under, &below.key),
                 (Node::List(items), Node::Table(under)) => {
                     let tables = items.iter_mut().filter_map(|item| item.node.table_mut());
-                    tables.for_each(|over| over.merge(under.clone()));
+                    tables.for_each(|over| over.merge(under.clone(), &below.key));
                 }
                 (Node::Table(over), Node::List(mut items)) if !items.is_empty() => {
                     for item in &mut items {
                         let mut over = over.clone();
                         if let Some(under) = item.node.table_mut() {
-                            over.merge(std::mem::take(under));
+                            over.merge(std::mem::take(under), &below.key);
                         }
                         item.node = Node::Table(over);
                     }
@@ -158,8 +158,9 @@ impl Table {
         self
     }
 
-    fn merge(&mut self, under: Table) {
-        if !self.names_another_plugin(&under) {
+    /// As [`Table::over`], of tables of this key.
+    fn merge(&mut self, under: Table, key: &str) {
+        if !self.names_another_plugin(&under, key) {
             *self = std::mem::take(self).over(under);
         }
     }
@@ -188,11 +189,22 @@ impl Table {
         Some(setting)
     }
 
-    fn names_another_plugin(&self, other: &Table) -> bool {
-        ["kind", "law", "method", "name"].iter().any(|key| match (self.get(key), other.get(key)) {
+    fn names_another_plugin(&self, other: &Table, key: &str) -> bool {
+        plugin_key(key).is_some_and(|name| match (self.get(name), other.get(name)) {
             (Some(a), Some(b)) => matches!((&a.item.node, &b.item.node), (Node::Text(a), Node::Text(b)) if a != b),
             _ => false,
         })
+    }
+}
+
+/// The key by which tables of key `table` name the plug-in whose parameters they hold.
+pub(crate) fn plugin_key(table: &str) -> Option<&'static str> {
+    match table {
+        "element" => Some("kind"),
+        "contact" | "delamination" => Some("law"),
+        "reduction" => Some("method"),
+        "criteria" | "integrator" | "law" => Some("name"),
+        _ => None,
     }
 }
 

@@ -3,6 +3,7 @@
 use super::run::SEPARATION;
 use super::{AS_WRITTEN, Merged, Scene, parse, parse_with};
 use crate::document::source::{SceneError, SceneSource};
+use crate::document::tree::plugin_key;
 use crate::materials::LIBRARY;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -159,12 +160,6 @@ const EITHER: [&[&str]; 2] = [&["velocity", "energy", "drop_height"], &["patch_r
 /// Keys of a place, and those that each of them takes away.
 const PLACE: [[&[&str]; 2]; 2] = [[&["x", "y"], &["group"]], [&["group"], &["x", "y"]]];
 
-/// Names of plug-ins: a table that names another one is made anew.
-const NAMES: [&str; 4] = ["kind", "law", "method", "name"];
-
-/// Tables that belong to the law that they name; a material has its constants besides.
-const OF_LAWS: [&str; 2] = ["contact", "delamination"];
-
 /// Sets `value` where `keys` lead; whether they lead anywhere.
 fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) -> bool {
     match keys {
@@ -186,9 +181,9 @@ fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) -> bool {
             true
         }
         [key, rest @ ..] => {
+            // A table that names another plug-in is made anew.
             if let ([last], Some(old)) = (rest, table.get_mut(key))
-                && NAMES.contains(&last.get())
-                && (last.get() != "law" || OF_LAWS.contains(&key.get()))
+                && plugin_key(key.get()) == Some(last.get())
                 && old.get(last.get()).is_some_and(|name| name.as_str() != value.as_str())
             {
                 *old = if old.is_table() { Item::Table(Table::new()) } else { Item::Value(InlineTable::new().into()) };
@@ -206,6 +201,24 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
+    use crate::document::source::Origin;
+
+    #[test]
+    fn tables_that_are_no_plugins_keep_the_rest() {
+        let text = "[[support]]\ngroup = \"a\"\nkind = \"clamped\"\n\n[element]\nkind = \"hex20\"\nmass = \"linear\"\n";
+        let mut document: DocumentMut = text.parse().unwrap();
+        for (keys, kind) in [("support.kind", "hinged"), ("element.kind", "mitc4")] {
+            assert!(set_path(document.as_table_mut(), &Key::parse(keys).unwrap(), &Value::from(kind)));
+        }
+        let expected = "[[support]]\ngroup = \"a\"\nkind = \"hinged\"\n\n[element]\nkind = \"mitc4\"\n";
+        assert_eq!(document.to_string(), expected);
+        let source = Arc::new(SceneSource::new(Path::new("scene"), text, LIBRARY));
+        let tree = |text: &str| crate::document::tree::Table::parse(text, Origin::Scene, &source).unwrap();
+        let mut keys = BTreeMap::new();
+        tree("support.kind = \"hinged\"\nelement.kind = \"mitc4\"\n").over(tree(text)).flatten("", &mut keys);
+        let found: Vec<_> = keys.keys().map(String::as_str).collect();
+        assert_eq!(found, ["element.kind", "support[0].group", "support[0].kind"]);
+    }
 
     #[test]
     fn a_material_keeps_its_constants_under_another_law() {

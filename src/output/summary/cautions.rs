@@ -45,9 +45,10 @@ fn unfinished(model: &Model, outcome: &Outcome, summary: &ImpactSummary) -> Opti
     let name = figures.name.as_ref().map_or(String::new(), |name| format!(" of {name}"));
     let rising = if figures.peak_force_time_s > (1.0 - OVER) * last.time_s { "; it is still rising" } else { "" };
     let Plan::Impact(_) = &model.plan else { return None };
+    let help = if outcome.stopped.is_none() { "; make `march.end` later" } else { "" };
     Some(format!(
         "the impact{name} is not over at {}, its force is {}{rising}: peak force, impulse, deflection and `not reached` \
-         hold up to then; make `march.end` later",
+         hold up to then{help}",
         Dimension::TIME.of(last.time_s),
         Dimension::FORCE.of(row.contact_force_n)
     ))
