@@ -22,7 +22,7 @@ use fem_core::plate::Plate;
 use fem_core::plugin::{Built, Dimension, Kind, Role, unknown_key};
 use fem_core::reduction::Reduction;
 use fem_core::springs::SupportSpring;
-use fem_core::support::{self, ColumnLevels, FreeMotions, Levels};
+use fem_core::support::{self, ColumnLevels, FreeMotions};
 use fem_core::tensor::Stress6;
 use fem_core::time::Integrator;
 use fem_core::window::{Centre, Windows};
@@ -312,27 +312,6 @@ impl Builder<'_> {
         Ok(plate.columns_of_group(self.group(plate, group)?))
     }
 
-    /// Refuses displacements in the plane at heights where a shell has no nodes: there they differ by the turn of its section.
-    pub(super) fn check_height(
-        &self,
-        plate: &Plate,
-        levels: Levels,
-        dofs: &[Dof],
-        place: &Place,
-    ) -> Result<(), SceneError> {
-        let stray = dofs.iter().find(|dof| dof.n() < 3 && dof.m() == 0);
-        let elsewhere = matches!(levels, Levels::Bottom | Levels::Top) && plate.info().is_shell();
-        let (Some(dof), true) = (stray, elsewhere) else {
-            return Ok(());
-        };
-        let element = &self.scene.element.name.value;
-        let message =
-            format!("`{element}` has nodes in its mid-plane alone, where {dof} is not what it is at other heights");
-        let help = "write at = \"mid-plane\" if that is meant, hold a section by kind = \"clamped\", or take an element with nodes \
-                    there, such as kind = \"hermite-prism\"";
-        Err(self.scene.source.error_at(place, message, help))
-    }
-
     /// Columns and levels of the nodes that a set names, for the sake of these of their unknowns.
     pub(super) fn nodes(&self, plate: &Plate, set: &NodeSet, dofs: &[Dof]) -> Result<Vec<ColumnLevels>, SceneError> {
         let columns = self.columns(plate, &set.group)?;
@@ -506,31 +485,6 @@ impl Builder<'_> {
             }
         }
         Ok(warnings)
-    }
-
-    /// What the user should know of displacements in the plane that are held at all heights, of which a shell has one.
-    pub(super) fn turning(&self, plate: &Plate) -> Vec<String> {
-        let held = self.scene.supports.iter().filter_map(|support| match support {
-            Support::Fix { nodes, dofs, .. } if nodes.levels == Levels::All => {
-                Some(("support", nodes.group.value.clone(), &dofs[..]))
-            }
-            _ => None,
-        });
-        let coupled = self.scene.couples.iter().filter(|couple| couple.nodes.levels == Levels::All);
-        let coupled = coupled.map(|couple| ("couple", couple.nodes.group.value.clone(), &couple.dofs[..]));
-        let warn = |(what, name, dofs): (&str, String, &[Dof])| {
-            let turns =
-                |dof: &&Dof| dof.m() == 0 && dof.n() < 3 && !dofs.iter().any(|d| d.n() == dof.n() && d.m() == 3);
-            let dof = dofs.iter().find(turns)?;
-            let turn = Dof::new(dof.n() as u8, 3)?;
-            Some(format!(
-                "`{}` has nodes in its mid-plane alone: the {what} of `{name}` at all heights holds {dof} there, and the section may turn; \
-                 where it may not, hold {turn} as well",
-                self.scene.element.name.value
-            ))
-        };
-        let all = held.chain(coupled).filter_map(warn);
-        if plate.info().is_shell() { all.collect() } else { Vec::new() }
     }
 
     /// Refuses a plate of pieces that move against each other.

@@ -6,6 +6,7 @@ mod cracks;
 mod effects;
 mod fields;
 mod gauge;
+mod heights;
 mod laws;
 mod locked;
 mod memory;

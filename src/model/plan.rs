@@ -318,8 +318,8 @@ impl Builder<'_> {
                     load::edge(plate, element, edges, *force_per_length, &mut forces);
                 }
                 LoadKind::Point { force, node } => {
-                    let along: Vec<Dof> =
-                        [0, 4, 8].iter().zip(force).filter(|(_, f)| **f != 0.0).map(|(i, _)| Dof::SOLID[*i]).collect();
+                    let along = (1..).zip(force).filter(|(_, f)| **f != 0.0);
+                    let along: Vec<Dof> = along.filter_map(|(n, _)| Dof::new(n, 0)).collect();
                     let [(column, level)] = self.each_node(plate, node, &along)?[..] else {
                         let message = format!("a force acts at one node, and `{}` has more", node.group.value);
                         return Err(self.error(&node.group, message, "name a group of one node and one level").into());
