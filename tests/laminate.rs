@@ -97,12 +97,17 @@ const IN_SITU: &str = ", strengths = 'in-situ'";
 /// As Camanho, Maimí and Dávila publish them, and as the plates of scenes have them.
 #[test]
 fn plies_have_their_strengths_in_situ() {
-    let law = ", law = { name = 'hahn-tsai', alpha = '2.98e-8 1/MPa^3' }";
-    let case = plate().text(&pulled("[0/45/0]", IN_SITU, law));
-    let said = case.fem("laminate", &["--force", "1,0,0", "--criteria", "max-stress"]).good().stdout;
-    for line in ["in situ   ply 1: Yt 101.4 MPa, S12 107.0 MPa", "in situ   ply 2: Yt 160.2 MPa, S12 130.2 MPa"] {
-        assert!(said.contains(line), "{said}");
-    }
+    let lists = |law: &str, lines: [&str; 2]| {
+        let case = plate().text(&pulled("[0/45/0]", IN_SITU, law));
+        let said = case.fem("laminate", &["--force", "1,0,0", "--criteria", "max-stress"]).good().stdout;
+        for line in lines {
+            assert!(said.contains(line), "{line} is not in {said}");
+        }
+    };
+    lists("", ["in situ   ply 1: Yt 101.4 MPa, S12 107.0 MPa", "in situ   ply 2: Yt 160.2 MPa, S12 130.2 MPa"]);
+    // The root of 8 G12 GIIc/(pi t), and half of it at a face, where the curve of the shear is all but straight.
+    let straight = ", law = { name = 'hahn-tsai', alpha = '1e-14 1/MPa^3' }";
+    lists(straight, ["ply 1: Yt 101.4 MPa, S12 206.0 MPa", "ply 2: Yt 160.2 MPa, S12 291.4 MPa"]);
 
     // The same stresses, and so a reserve in the ratio of the strengths.
     let reserve = |plies: &str, strengths: &str| {
@@ -118,13 +123,20 @@ fn plies_have_their_strengths_in_situ() {
 }
 
 #[test]
-fn strengths_in_situ_ask_for_toughnesses() {
-    let text = pulled("[0/90/0]", IN_SITU, "").replace("IM7/8552", "AS4/3502");
-    let said = plate().text(&text).fem("check", &[]);
-    assert_eq!(said.status, 1);
-    let said = said.stderr;
-    assert!(
-        said.contains("strength Yt in situ needs the toughness Gmt or GIc") && said.contains("leave `strengths` out"),
-        "{said}"
+fn strengths_in_situ_ask_for_what_they_need() {
+    let refused = |constants: &str, words: &[&str]| {
+        let text = pulled("[0/90/0]", IN_SITU, constants).replace("IM7/8552", "AS4/3502");
+        let said = plate().text(&text).fem("check", &[]);
+        assert_eq!(said.status, 1);
+        for words in words {
+            assert!(said.stderr.contains(words), "{words} is not in {}", said.stderr);
+        }
+    };
+    refused("", &["strength S12 in situ needs `shear_alpha` of material `tape`", "2.98e-8 1/MPa^3"]);
+    refused(
+        ", shear_alpha = '0 1/MPa^3'",
+        &["strength Yt in situ needs the toughness Gmt or GIc", "leave `strengths` out"],
     );
+    refused(", shear_alpha = '-1e-8 1/MPa^3'", &["`materials.tape.shear_alpha`: is below 0"]);
+    refused(", shear_alpha = '1e-8 1/MPa'", &["shear_alpha"]);
 }

@@ -78,6 +78,9 @@ struct Named {
     units: &'static [&'static str],
 }
 
+/// Of the α in Hahn and Tsai's shear, γ = τ/G12 + α τ³.
+pub(crate) const SHEAR_ALPHA: Dimension = Dimension([3.0, -3.0, 6.0, 0.0]);
+
 const NAMED: &[Named] = &[
     Named { dimension: Dimension::LENGTH, name: "a length", units: &["mm", "m", "cm", "um", "nm", "in", "mil", "ft"] },
     Named { dimension: Dimension::MASS, name: "a mass", units: &["kg", "g", "mg", "t", "lb", "oz", "slug"] },
@@ -104,6 +107,7 @@ const NAMED: &[Named] = &[
     Named { dimension: Dimension::TOUGHNESS, name: "an energy per area", units: &["kJ/m^2", "J/m^2", "N/mm", "N/m"] },
     Named { dimension: Dimension::TEMPERATURE, name: "a temperature", units: &["K"] },
     Named { dimension: Dimension::EXPANSION, name: "a thermal expansion", units: &["1/K"] },
+    Named { dimension: SHEAR_ALPHA, name: "a bend of a shear curve", units: &["1/MPa^3", "1/GPa^3", "1/Pa^3"] },
     Named { dimension: Dimension::NONE, name: "an angle", units: &["deg", "rad"] },
 ];
 

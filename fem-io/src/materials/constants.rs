@@ -3,6 +3,7 @@
 use crate::document::keys::{Form, Key, Keys, key};
 use crate::document::reader::Reader;
 use crate::document::source::SceneError;
+use crate::units::SHEAR_ALPHA;
 use fem_core::material::{Elastic, Material, Strength, Strengths, Toughness, Toughnesses};
 use fem_core::plugin::{Dimension, Kind};
 
@@ -28,6 +29,12 @@ pub(crate) const KEYS: Keys = &[
     stress("g12", r#""5.93 GPa""#, "shear modulus in the plane of the ply"),
     stress("g13", r#""5.93 GPa""#, "shear modulus 13"),
     stress("g23", r#""3.45 GPa""#, "shear modulus 23"),
+    key(
+        "shear_alpha",
+        Form::Quantity(SHEAR_ALPHA),
+        r#""2.98e-8 1/MPa^3""#,
+        "of the curve gamma12 = tau/G12 + shear_alpha tau^3, for `laminate.strengths`; 0 if it is straight",
+    ),
     expansion_key("alpha", r#""23e-6 1/K""#, "thermal expansion, the same along all axes"),
     expansion_key("alpha1", r#""-1e-6 1/K""#, "thermal expansion along the fibres"),
     expansion_key("alpha2", r#""26e-6 1/K""#, "thermal expansion across the fibres"),

@@ -4,15 +4,14 @@ use super::material;
 use super::plugin::PluginSpec;
 use crate::document::keys::{Form, Keys, key};
 use crate::document::reader::{Reader, SceneValue};
-use crate::document::source::{Located, Place, SceneError, SceneSource};
+use crate::document::source::{Located, Place, SceneError};
 use crate::document::tree::Node;
-use crate::units;
 use fem_core::in_situ::Confined;
 use fem_core::laminate::{LaminaPly, Laminate};
 use fem_core::layup::{self, LayupPly};
-use fem_core::material::Material;
-use fem_core::plugin::{Dimension, Value, unknown_key};
-use std::sync::Arc;
+use fem_core::material::{Material, Strength};
+use fem_core::plugin::{Dimension, unknown_key};
+use std::path::Path;
 
 pub(super) const KEYS: Keys = &[
     key(
@@ -221,16 +220,18 @@ fn read(
     Ok(((LaminateSpec { group, laminate, layered, in_situ }, read_lies(&table)?), interface))
 }
 
-/// Of the shear of a ply, γ = τ/G12 + α τ³, 1/Pa³.
-const ALPHA: Dimension = Dimension([3.0, -3.0, 6.0, 0.0]);
-
-/// Gives plies their strengths in situ where their laminates ask for it: materials of their own, which follow the same laws.
+/// Gives plies their strengths in situ where their laminates ask for it: materials of their own, which follow the same laws. `given` is the
+/// table of materials, whose files are looked for from `folder`.
 pub(super) fn strengthen(
     all: &mut [LaminateSpec],
-    materials: &mut Vec<Located<Material>>,
-    laws: &mut Vec<Option<PluginSpec>>,
-    source: &Arc<SceneSource>,
+    (materials, laws): (&mut Vec<Located<Material>>, &mut Vec<Option<PluginSpec>>),
+    (given, folder): (&SceneValue<'_>, &Path),
 ) -> Result<(), SceneError> {
+    if all.iter().all(|spec| spec.in_situ.is_none()) {
+        return Ok(());
+    }
+    let alphas = material::read_shear(given, folder, laws)?;
+    let source = given.source();
     // What has been made of which material, for how thick plies, and where it is.
     let mut made = Vec::<(usize, f64, Confined, usize)>::new();
     for spec in all {
@@ -247,11 +248,18 @@ pub(super) fn strengthen(
                 continue;
             }
             let Located { value: material, place: given_at } = materials[of].clone();
-            let alpha = laws[of].as_ref().and_then(|law| law.params.get("alpha"));
-            let alpha = match alpha {
-                Some(Value::Text(text)) => units::parse_as(text, ALPHA).unwrap_or(0.0),
-                _ => 0.0,
-            };
+            let strong = material.strengths.get(Strength::S12).is_some() && material.elastic.e1 > material.elastic.e2;
+            if alphas[of].is_none() && strong {
+                let message = format!(
+                    "strength S12 in situ needs `shear_alpha` of material `{}`, of its curve gamma12 = tau/G12 + shear_alpha tau^3: \
+                     that of a straight one is far too large",
+                    material.name
+                );
+                let help = "give it to the material, as in shear_alpha = \"2.98e-8 1/MPa^3\", or \"0 1/MPa^3\" if its shear is \
+                            straight, or leave `strengths` out";
+                return Err(source.error_at(place, message, help));
+            }
+            let alpha = alphas[of].unwrap_or(0.0);
             let strengths = material.in_situ(thick, confined, alpha).map_err(|why| {
                 let help = "give it to the material, or leave `strengths` out";
                 source.error_at(place, why.to_string(), help)

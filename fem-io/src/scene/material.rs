@@ -1,12 +1,14 @@
 //! Materials of a scene: constants, over those of the library or of a file of the user's if one of them is named.
 
 use super::plugin::PluginSpec;
-use crate::document::reader::SceneValue;
+use crate::document::reader::{Reader, SceneValue};
 use crate::document::source::{Located, Origin, SceneError, SceneSource, read_text};
 use crate::document::tree::Table;
 use crate::materials;
 use crate::materials::constants::{KEYS, from_constants};
+use crate::units::{self, SHEAR_ALPHA};
 use fem_core::material::Material;
+use fem_core::plugin::Value;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -21,6 +23,31 @@ pub(super) fn read_laws(field: &SceneValue<'_>) -> Result<Vec<Option<PluginSpec>
         field.table(KEYS)?.optional("law").map(|law| PluginSpec::read_or_name(&law, &[])).transpose()
     };
     field.entries()?.iter().map(law).collect()
+}
+
+/// α of their shear, γ12 = τ/G12 + α τ³, 1/Pa³, material by material: that of the law if it has one, or of the material.
+pub(super) fn read_shear(
+    field: &SceneValue<'_>,
+    folder: &Path,
+    laws: &[Option<PluginSpec>],
+) -> Result<Vec<Option<f64>>, SceneError> {
+    let read = |((_, field), law): (&(&str, SceneValue<'_>), &Option<PluginSpec>)| {
+        if let Some(Value::Text(text)) = law.as_ref().and_then(|law| law.params.get("alpha")) {
+            return Ok(units::parse_as(text, SHEAR_ALPHA).ok());
+        }
+        let own = field.table(KEYS)?;
+        let Some((merged, source)) = whole(field, folder)? else { return shear(&own) };
+        shear(&own.of(&merged, KEYS, &source)?)
+    };
+    field.entries()?.iter().zip(laws).map(read).collect()
+}
+
+fn shear(table: &Reader<'_>) -> Result<Option<f64>, SceneError> {
+    let Some(field) = table.optional("shear_alpha") else { return Ok(None) };
+    match field.quantity(SHEAR_ALPHA)? {
+        alpha if alpha >= 0.0 => Ok(Some(alpha)),
+        _ => Err(field.error("is below 0: the shear would stiffen", "a curve that is straight has 0")),
+    }
 }
 
 /// Position of the material that `field` names.

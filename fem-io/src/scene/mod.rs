@@ -336,10 +336,11 @@ fn read_merged(merged: &Merged, file: &Path) -> Result<Scene, SceneError> {
     merged.flatten("", &mut keys);
 
     let folder = file.parent().unwrap_or(Path::new(""));
-    let mut materials = material::read_all(&root.required("materials")?, folder)?;
-    let mut laws = material::read_laws(&root.required("materials")?)?;
+    let given = root.required("materials")?;
+    let mut materials = material::read_all(&given, folder)?;
+    let mut laws = material::read_laws(&given)?;
     let (mut laminates, interface) = laminate::read_all(&root.required("laminate")?, &materials)?;
-    laminate::strengthen(&mut laminates, &mut materials, &mut laws, source)?;
+    laminate::strengthen(&mut laminates, (&mut materials, &mut laws), (&given, folder))?;
     let element = root.required("element")?;
     let effects = root.optional("effects").map_or(Ok(EffectsSpec::default()), |field| effects::read(&field))?;
     let analysis = read_analysis(&root, &tip::Struck { materials: &materials, laminates: &laminates })?;
