@@ -139,4 +139,8 @@ fn strengths_in_situ_ask_for_what_they_need() {
     );
     refused(", shear_alpha = '-1e-8 1/MPa^3'", &["`materials.tape.shear_alpha`: is below 0"]);
     refused(", shear_alpha = '1e-8 1/MPa'", &["shear_alpha"]);
+    // Also where nothing asks for it.
+    let stray = pulled("[0/90/0]", "", ", shear_alpha = '-1e-8 1/MPa^3'");
+    let said = plate().text(&stray).fem("check", &[]);
+    assert!(said.status == 1 && said.stderr.contains("is below 0"), "{}", said.stderr);
 }

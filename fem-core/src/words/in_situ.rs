@@ -25,9 +25,9 @@ impl Material {
     /// | on both faces | max(1.12 √2 Yt, √(8 Gmt/(π t Λ))) | max(2 U(S12), 4 Gms/(π t)) |
     /// | on one face | max(Yt, 1.79 √(Gmt/(π t Λ))) | max(U(S12), 2 Gms/(π t)) |
     ///
-    /// `alpha` is that of Hahn and Tsai's shear γ = τ/G12 + α τ³, 1/Pa³; 0 of a linear one, which makes S12 of tapes twice as large. Gmt and Gms, where they are not given, are GIc and GIIc. All
-    /// other strengths stay, and all of a material that is not stiffer along 1 than along 2, as a fabric. Not considered: neighbours
-    /// that are soft or have come off, and that Yc may rise with S12.
+    /// `alpha` is that of Hahn and Tsai's shear γ = τ/G12 + α τ³, 1/Pa³; 0 of a linear one, which makes S12 of tapes twice as large. Gmt
+    /// and Gms, where they are not given, are GIc and GIIc. All other strengths stay, and all of a material that is not stiffer along 1
+    /// than along 2, as a fabric. Not considered: neighbours that are soft or have come off, and that Yc may rise with S12.
     ///
     /// # Errors
     /// The material has one of these strengths, but not the toughness that goes with it.

@@ -227,9 +227,6 @@ pub(super) fn strengthen(
     (materials, laws): (&mut Vec<Located<Material>>, &mut Vec<Option<PluginSpec>>),
     (given, folder): (&SceneValue<'_>, &Path),
 ) -> Result<(), SceneError> {
-    if all.iter().all(|spec| spec.in_situ.is_none()) {
-        return Ok(());
-    }
     let alphas = material::read_shear(given, folder, laws)?;
     let source = given.source();
     // What has been made of which material, for how thick plies, and where it is.
