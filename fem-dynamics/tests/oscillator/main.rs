@@ -9,6 +9,7 @@ mod located;
 mod order;
 mod parameters;
 mod spectrum;
+mod stiffening;
 mod tip;
 
 use fem_core::contact::ContactLaw;
