@@ -49,6 +49,17 @@ impl Interpolant {
             [sum[0] + slope * (p[0] - q[0]), sum[1] + slope * (p[1] - q[1])]
         })
     }
+
+    /// Root of the sum of squares of the second derivatives, over the gradient.
+    pub(super) fn bend(&self, p: [f64; 2]) -> f64 {
+        let [xx, yy, xy] = self.points.iter().zip(&self.weights).fold([0.0; 3], |sum, (q, w)| {
+            let ([x, y], r) = ([p[0] - q[0], p[1] - q[1]], distance(p, *q));
+            let over = if r > 0.0 { 3.0 * w / r } else { 0.0 };
+            [sum[0] + over * (r * r + x * x), sum[1] + over * (r * r + y * y), sum[2] + over * x * y]
+        });
+        let [x, y] = self.gradient(p);
+        ((xx * xx + yy * yy + 2.0 * xy * xy) / (x * x + y * y)).sqrt()
+    }
 }
 
 pub(super) fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
@@ -72,6 +83,14 @@ mod tests {
             assert!((found[1].value(p) - smooth(p)).abs() < 2e-3);
             let slope = found[0].gradient(p);
             assert!((slope[0] + 2.0).abs() < 1e-10 && (slope[1] - 0.5).abs() < 1e-10);
+            assert!(found[0].bend(p) < 1e-9);
+            let difference = |k: usize| {
+                let at = |s: f64| found[1].gradient(std::array::from_fn(|j| p[j] + if j == k { s } else { 0.0 }));
+                [0, 1].map(|j| (at(1e-6)[j] - at(-1e-6)[j]) / 2e-6)
+            };
+            let ([xx, xy], [_, yy], [x, y]) = (difference(0), difference(1), found[1].gradient(p));
+            let bend = (xx.hypot(yy)).hypot(xy * 2.0_f64.sqrt()) / x.hypot(y);
+            assert!((found[1].bend(p) / bend - 1.0).abs() < 1e-6, "{bend}");
         }
         assert!(Interpolant::through(&[[0.0, 0.0], [0.0, 0.0], [1.0, 0.0]], &[vec![1.0, 2.0, 3.0]], 1).is_none());
     }

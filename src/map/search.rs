@@ -3,7 +3,8 @@
 //! A line of the map is where a *level* is 0, the logarithm of an index for example. Levels are smooth, so that a smooth function
 //! through the points that are known says where the line is; the next point is where it says so with the least right. What it said
 //! there before, against what is found, measures it: its error e at a distance d from the nearest point that was known is taken to
-//! grow like d², which it does at least wherever levels have bounded curvature, corners apart.
+//! grow like d², which it does at least wherever levels have bounded curvature, corners apart. Corners show as a bent level, so that the
+//! search ends with a point on each line where it is bent most, far from known ones, and goes on where that says otherwise.
 
 use super::interpolant::{Interpolant, distance};
 use super::lines::zeros;
@@ -76,12 +77,13 @@ impl Search {
         };
         let mut next = self.first();
         let mut marched = 0;
+        let mut confirming = false;
         while !next.is_empty() {
             next.truncate(self.most.saturating_sub(marched));
             let Some(found) = (!next.is_empty()).then(|| march(&next)).flatten() else { break };
             marched += next.len();
             lines.take(&next, found);
-            next = self.look(&mut lines);
+            next = self.look(&mut lines, &mut confirming);
         }
         lines
     }
@@ -92,27 +94,31 @@ impl Search {
         (0..rows).flat_map(|j| (0..FIRST).map(move |i| [share(i), if rows > 1 { share(j) } else { 0.0 }])).collect()
     }
 
-    /// Where the lines are known least, too little for the tolerance.
-    fn look(&self, lines: &mut Lines) -> Vec<[f64; 2]> {
+    /// Where the lines are known least, too little for the tolerance; where all are known, once, where that is least certain.
+    fn look(&self, lines: &mut Lines, confirming: &mut bool) -> Vec<[f64; 2]> {
         if !lines.fit(self.dimensions) {
             return Vec::new();
         }
         // The worst point of each line by its error, and among unknown ones by its distance.
         let mut worst: Vec<(f64, f64, [f64; 2])> = Vec::new();
+        let mut bent: Vec<(f64, f64, [f64; 2])> = Vec::new();
         lines.errors = (0..lines.levels.len())
             .map(|line| {
                 let level = &lines.levels[line];
                 let of = |p: [f64; 2]| (lines.error(line, p), lines.distance(p), p);
-                let points = zeros(&|p| level.value(p), self.dimensions).into_iter().map(of);
-                let worse = |a: (f64, f64, [f64; 2]), b: (f64, f64, [f64; 2])| {
-                    if b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1)).is_gt() { b } else { a }
-                };
-                let point = points.reduce(worse)?;
-                worst.push(point);
+                let points: Vec<_> = zeros(&|p| level.value(p), self.dimensions).into_iter().map(of).collect();
+                let point = points.iter().max_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)))?;
+                worst.push(*point);
+                let bend = |(_, near, p): &(f64, f64, [f64; 2])| near.powi(2) * level.bend(*p);
+                bent.extend(points.iter().max_by(|a, b| bend(a).total_cmp(&bend(b))));
                 Some(point.0)
             })
             .collect();
         worst.retain(|(error, ..)| !(*error <= self.tolerance));
+        *confirming = worst.is_empty() && !*confirming;
+        if *confirming {
+            worst = bent;
+        }
         worst.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1)));
         let mut next: Vec<[f64; 2]> = Vec::new();
         for (_, near, p) in worst {
@@ -182,7 +188,7 @@ mod tests {
     use super::*;
 
     /// Marches of functions of the unit square; the points that were marched, and what was found.
-    fn search(lines: &[fn([f64; 2]) -> f64], tolerance: f64, most: usize) -> (usize, Lines) {
+    fn search(lines: &[impl Fn([f64; 2]) -> f64], tolerance: f64, most: usize) -> (usize, Lines) {
         let mut count = 0;
         let search = Search { dimensions: 2, lengths: [1.0; 2], tolerance, most };
         let found = search.run(|points| {
@@ -193,7 +199,7 @@ mod tests {
     }
 
     /// Distance along the gradient from each point of the line found to the true one.
-    fn farthest(found: &Lines, line: usize, truth: fn([f64; 2]) -> f64) -> f64 {
+    fn farthest(found: &Lines, line: usize, truth: impl Fn([f64; 2]) -> f64) -> f64 {
         let level = &found.levels[line];
         let points = zeros(&|p| level.value(p), 2);
         assert!(!points.is_empty());
@@ -220,7 +226,7 @@ mod tests {
 
     #[test]
     fn lines_are_where_they_are_said_to_be() {
-        let (count, found) = search(&[hyperbola, circle, corner], 0.01, 200);
+        let (count, found) = search(&[hyperbola as fn([f64; 2]) -> f64, circle, corner], 0.01, 200);
         for (line, truth) in [hyperbola as fn([f64; 2]) -> f64, circle, corner].into_iter().enumerate() {
             let (off, said) = (farthest(&found, line, truth), found.errors[line].unwrap_or(f64::INFINITY));
             assert!(said <= 0.01 && off <= 0.01, "line {line}: {off}, said {said}, {count} points");
@@ -231,11 +237,53 @@ mod tests {
         assert!(count <= 60 && farthest(&found, 0, hyperbola) <= 0.01, "{count}");
     }
 
+    /// Two planes that meet in an edge somewhere, on a saddle.
+    #[derive(Clone, Copy)]
+    struct Edge {
+        directions: [f64; 2],
+        through: [f64; 2],
+        saddle: f64,
+    }
+
+    impl Edge {
+        fn any(random: &mut impl FnMut() -> f64) -> Self {
+            let first = random() * std::f64::consts::TAU;
+            let directions = [first, first + 1.5 * (random() - 0.5)];
+            Self { directions, through: [0.2 + 0.6 * random(), 0.2 + 0.6 * random()], saddle: 0.5 * random() }
+        }
+
+        fn level(&self, p: [f64; 2]) -> f64 {
+            let plane = |a: f64| a.cos() * (p[0] - self.through[0]) + a.sin() * (p[1] - self.through[1]);
+            let [a, b] = self.directions.map(plane);
+            a.max(b) + self.saddle * (p[0] - 0.5) * (p[1] - 0.5)
+        }
+    }
+
+    #[test]
+    fn corners_of_lines_are_found() {
+        let mut seed = 7_u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) as f64 / (1_u64 << 31) as f64
+        };
+        let (mut lines, mut points) = (0, 0);
+        for _ in 0..100 {
+            let edge = Edge::any(&mut random);
+            let (count, found) = search(&[|p: [f64; 2]| edge.level(p)], 0.01, 200);
+            if found.errors[0].is_some() {
+                let off = farthest(&found, 0, |p| edge.level(p));
+                assert!(off <= 0.01, "{off} at {:?} after {count}", edge.through);
+                (lines, points) = (lines + 1, points + count);
+            }
+        }
+        assert!(lines > 80 && points <= 30 * lines, "{points} points of {lines} lines");
+    }
+
     #[test]
     fn what_is_not_reached_is_said() {
         let (count, found) = search(&[circle], 1e-6, 30);
         assert!(count == 30 && found.errors[0].is_some_and(|error| error > 1e-6));
-        let (count, found) = search(&[|p| p[0] + p[1] + 1.0], 0.01, 100);
+        let (count, found) = search(&[|p: [f64; 2]| p[0] + p[1] + 1.0], 0.01, 100);
         assert!(count == FIRST * FIRST && found.errors == [None]);
     }
 }
