@@ -2,6 +2,7 @@
 
 use crate::support::{root, whole};
 use fem::analyses::impact;
+use fem::analyses::matrices::PlateMatrices;
 use fem::core::assembly::{Matrix, Symmetric, assemble, elimination_order, pattern};
 use fem::core::constraint::Constraints;
 use fem::core::counters::Counters;
@@ -135,4 +136,29 @@ fn what_a_support_leaves_free_is_named() {
         assert!(without.contains(motion), "{without}");
     }
     assert!(!without.contains("translation along z"), "{without}");
+}
+
+/// Springs hold the plate of the files as they do that of a run.
+#[test]
+fn matrices_have_the_springs_of_supports() {
+    let text = r#"
+title = "bed"
+analysis = "modes"
+mesh = { rectangle = ["20 mm", "12 mm"], cells = [4, 4] }
+materials = { t = { library = "AS4/3502" } }
+laminate = { plies = "[0/90]s", material = "t", ply_thickness = "0.25 mm", layers = 2 }
+support = [
+  { group = "plate", kind = "roller", at = "bottom", stiffness = "1 N/mm^3" },
+  { group = "x-min", kind = "roller", at = "bottom", stiffness = "2 N/mm^2" },
+  { restrain = "rigid-motions" },
+]
+"#;
+    let model = Model::new(scene::parse(text, "scene.toml".as_ref()).unwrap(), &Registry::standard()).unwrap();
+    let PlateMatrices { stiffness, unknowns, .. } = PlateMatrices::new(&model, NonZeroUsize::MIN).unwrap();
+    let raised: Vec<f64> = unknowns.iter().map(|unknown| f64::from(unknown.name == "U30")).collect();
+    let mut force = vec![0.0; raised.len()];
+    stiffness.add_product(1.0, &raised, &mut force);
+    let held: f64 = raised.iter().zip(&force).map(|(u, f)| u * f).sum();
+    // N/m: 1 N/mm³ over 20 × 12 mm and 2 N/mm² along 12 mm.
+    assert!((held / 264_000.0 - 1.0).abs() < 1e-9, "{held}");
 }

@@ -305,6 +305,7 @@ fn displacements_at_heights_where_a_shell_has_no_nodes() {
         r#"{ group = "x-max", kind = "simply-supported" }"#,
         r#"{ group = "x-max", kind = "roller", at = "bottom" }"#,
         r#"{ group = "x-max", fix = ["U10", "U13"], at = "all" }"#,
+        r#"{ group = "x-max", fix = ["U10"], at = "all" }, { group = "x-max", fix = ["U13"], at = "all" }"#,
         r#"{ group = "x-max", fix = ["U30"], at = "top" }"#,
     ] {
         assert!(!shell(&format!("{clamped}, {support}]\n{pressed}"))(0).contains("may turn"), "{support}");

@@ -3,7 +3,9 @@
 use crate::error::Error;
 use crate::forecast::MemoryEstimate;
 use crate::model::{Model, Plan};
-use fem_core::assembly::{Condensation, Condensed, Matrix, SparseStructure, Symmetric, assemble, condense, pattern};
+use fem_core::assembly::{
+    Condensation, Condensed, Matrix, Pattern, SparseStructure, Symmetric, assemble, condense, pattern,
+};
 use fem_core::counters::Counters;
 use fem_core::functional::Functional;
 use fem_core::structure::{SolveError, Structure};
@@ -169,6 +171,28 @@ pub(super) fn factors(
     buckling::factors(structure, |scale, x, y| geometric.add_product(scale, x, y), count)
 }
 
+/// K and M of the plate that is not divided, with its springs and what effects add to K, but for the stresses of a preload.
+///
+/// # Errors
+/// A cell that the element refuses, a spring outside the plate.
+pub(super) fn undivided(
+    model: &Model,
+    pattern: &Arc<Pattern>,
+    inertia: bool,
+    threads: NonZeroUsize,
+    counters: &mut Counters,
+) -> Result<(Symmetric, Symmetric), Error> {
+    let Model { plate, element, constraints, .. } = model;
+    let mut matrix = |which| assemble(plate, &**element, constraints, pattern, which, threads, counters);
+    let mut k = matrix(Matrix::Stiffness)?;
+    let m = if inertia { matrix(Matrix::Mass)? } else { Symmetric::zero(pattern.clone()) };
+    for spring in &model.springs {
+        k.add_spring(spring.stiffness, &spring.at).map_err(SolveError::other)?;
+    }
+    model.effects.on_stiffness(&model.body(), &mut k)?;
+    Ok((k, m))
+}
+
 /// The same without the stresses of a preload.
 ///
 /// # Errors
@@ -188,13 +212,7 @@ pub fn elastic(
     let Some(division) = division else {
         let pattern = Arc::new(pattern(plate, constraints));
         let (symbolic, memory) = model.analyse(pattern.clone())?;
-        let mut matrix = |which| assemble(plate, &**element, constraints, &pattern, which, threads, counters);
-        let mut k = matrix(Matrix::Stiffness)?;
-        let m = if inertia { matrix(Matrix::Mass)? } else { Symmetric::zero(pattern.clone()) };
-        for spring in &model.springs {
-            k.add_spring(spring.stiffness, &spring.at).map_err(SolveError::other)?;
-        }
-        model.effects.on_stiffness(&model.body(), &mut k)?;
+        let (k, m) = undivided(model, &pattern, inertia, threads, counters)?;
         let factor_entries = symbolic.entries();
         let mut structure = SparseStructure::new(symbolic, k, m, threads, name);
         structure.release(&model.motions);

@@ -1,8 +1,9 @@
 //! K and M as files for other programs.
 
+use super::assembled::undivided;
 use crate::error::Error;
 use crate::model::Model;
-use fem_core::assembly::{Matrix, Symmetric, assemble, pattern};
+use fem_core::assembly::{Symmetric, pattern};
 use fem_core::counters::Counters;
 use fem_io::files::OutputDir;
 use fem_io::tables::{self, TableValue};
@@ -42,12 +43,8 @@ impl PlateMatrices {
     /// A cell that the element refuses, a material without the density of a mass.
     pub fn new(model: &Model, threads: NonZeroUsize) -> Result<Self, Error> {
         model.check_mass()?;
-        let Model { plate, element, constraints, .. } = model;
-        let pattern = Arc::new(pattern(plate, constraints));
-        let mut counters = Counters::default();
-        let mut matrix = |which| assemble(plate, &**element, constraints, &pattern, which, threads, &mut counters);
-        let (mut stiffness, mass) = (matrix(Matrix::Stiffness)?, matrix(Matrix::Mass)?);
-        model.effects.on_stiffness(&model.body(), &mut stiffness)?;
+        let pattern = Arc::new(pattern(&model.plate, &model.constraints));
+        let (mut stiffness, mass) = undivided(model, &pattern, true, threads, &mut Counters::default())?;
         if let Some(geometric) = model.effects.geometric(&model.body(), &pattern)? {
             stiffness.add(1.0, &geometric);
         }

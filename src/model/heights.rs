@@ -35,10 +35,16 @@ impl Builder<'_> {
             _ => None,
         });
         let coupled = self.scene.couples.iter().map(|couple| ("couple", &couple.nodes, &couple.dofs));
-        let all = held.chain(coupled).filter(|(_, nodes, _)| nodes.levels == Levels::All && plate.info().is_shell());
-        let warn = |(what, nodes, dofs): (&str, &NodeSet, &Vec<Dof>)| {
-            let turns =
-                |dof: &&Dof| dof.m() == 0 && dof.n() < 3 && !dofs.iter().any(|d| d.n() == dof.n() && d.m() == 3);
+        let all: Vec<_> = held.chain(coupled).collect();
+        let warn = |(what, nodes, dofs): &(&str, &NodeSet, &Vec<Dof>)| {
+            // The turn may be held by a support of its own.
+            let of_group = |other: &&(&str, &NodeSet, &Vec<Dof>)| {
+                (other.0 == "support" || other.0 == *what) && other.1.group.value == nodes.group.value
+            };
+            let held = |dof: &Dof| {
+                all.iter().filter(of_group).any(|(.., dofs)| dofs.iter().any(|d| d.n() == dof.n() && d.m() == 3))
+            };
+            let turns = |dof: &&Dof| dof.m() == 0 && dof.n() < 3 && !held(dof);
             let dof = dofs.iter().find(turns)?;
             let turn = Dof::new(dof.n() as u8, 3)?;
             Some(format!(
@@ -47,6 +53,8 @@ impl Builder<'_> {
                 self.scene.element.name.value, nodes.group.value
             ))
         };
-        all.filter_map(warn).collect()
+        let everywhere =
+            |(_, nodes, _): &&(&str, &NodeSet, &Vec<Dof>)| nodes.levels == Levels::All && plate.info().is_shell();
+        all.iter().filter(everywhere).filter_map(warn).collect()
     }
 }
