@@ -322,6 +322,32 @@ fn displacements_at_heights_where_a_shell_has_no_nodes() {
     }
 }
 
+/// Elements with derivatives at their nodes keep strains continuous where they should jump.
+#[test]
+fn strains_that_jump() {
+    let checked = |element: &str, beside: &str, support: &str| {
+        let groups = "cells = [4, 2], groups = { a = { x = [\"0 mm\", \"20 mm\"] } }";
+        let of = |plies: &str, group: &str| {
+            format!("{{ {group}plies = \"{plies}\", material = \"tape\", ply_thickness = \"0.25 mm\", layers = 1 }}")
+        };
+        let text = format!("support = [{{ {support}, kind = \"clamped\" }}]\nload = [{{ pressure = \"1 kPa\" }}]");
+        let laminate = of("[0/90]s", "").replace("layers = 1", "layers = [2, 2]");
+        let regions = format!("[{}, {}]", of(beside, "group = \"a\", "), of("[0/90]s", ""));
+        said(&case(&text).scene("hex20", element).scene("cells = [4, 2]", groups).scene(&laminate, &regions), 0)
+    };
+    let edge = "group = \"x-min\"";
+    holds(
+        &checked("hermite-prism", "[90/0]s", edge),
+        &["laminates beside each other differ 4.", "times in their bending stiffness, where strains jump", "\"hex20\""],
+    );
+    for [element, beside] in [["hermite-prism", "[0/90]s"], ["hex20", "[90/0]s"], ["mitc4", "[90/0]s"]] {
+        assert!(!checked(element, beside, edge).contains("strains jump"), "{element} {beside}");
+    }
+    let cells = "group = \"a\"";
+    holds(&checked("hermite-prism", "[0/90]s", cells), &["`a`, clamped, lies inside the plate, where strains jump"]);
+    assert!(!checked("hex20", "[0/90]s", cells).contains("strains jump"));
+}
+
 /// A group that ends between nodes is smaller than it was asked to be, and another one on other cells.
 #[test]
 fn groups_that_end_within_cells() {

@@ -7,6 +7,7 @@ mod effects;
 mod fields;
 mod gauge;
 mod heights;
+mod jumps;
 mod laws;
 mod locked;
 mod memory;
@@ -264,6 +265,7 @@ impl Model {
         builder.preload(&plate, &*element, &supports, &mut effects)?;
         let constraints = &supports.constraints;
         warnings.extend(builder.locked(&plate)?);
+        warnings.extend(builder.jumps(&plate, &laminates, &materials)?);
         warnings.extend(builder.lacking(&plate)?);
         warnings.extend(builder.turning(&plate));
         warnings.extend(builder.nearly_turned(&plate)?);

@@ -532,8 +532,10 @@ impl Builder<'_> {
             }
             (ContactLoad::Square { side }, _) => patch::square(plate, element, (face, depth), centre, side)
                 .map_err(|why| too_large(why, "patch_side"))?,
-            (ContactLoad::Node, Some(column)) => patch::node(plate, face, column)
-                .ok_or_else(|| self.error(at, "the element has no U30 to strike", "choose another element"))?,
+            (ContactLoad::Node, Some(column)) => patch::node(plate, face, column).ok_or_else(|| {
+                let help = "strike between the edges, or choose another element or a patch (`patch_radius`)";
+                self.error(at, "the element has no U30 at this node of the mesh", help)
+            })?,
             (ContactLoad::Node, None) => {
                 return Err(self.error(
                     at,

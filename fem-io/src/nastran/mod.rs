@@ -181,6 +181,17 @@ impl Reader {
                 return Err(self.wrong(place, what));
             }
             "SET1" | "SET3" => sets::bulk(&card, place, &mut self.gathered)?,
+            name if name.starts_with('=') => {
+                let what = "a card that repeats the one before it: only cards that are written out are read; write the mesh without \
+                            replication";
+                return Err(self.wrong(place, what));
+            }
+            name if ["CQUAD", "CTRIA", "CSHEAR"].iter().any(|cell| name.starts_with(cell)) => {
+                let what = format!(
+                    "{name} is no cell that is read, and would leave a hole: write CQUAD4, CQUAD8, CTRIA3 or CTRIA6"
+                );
+                return Err(self.wrong(place, what));
+            }
             name => {
                 if name.starts_with('P') {
                     self.names.property(&card);

@@ -100,7 +100,9 @@ fn bends(
             return Err(places.error_at(Some(Item::Element(alike[alike.len() - 1].cell)), fault));
         }
         let bend = [0, 1].map(|d| first[d] - 0.5 * (p[d] + q[d]));
-        if bend[0].hypot(bend[1]) > STRAIGHT * chord {
+        // A node off the middle of a straight side bends nothing, and would only make the element worse.
+        let off = (bend[0] * (q[1] - p[1]) - bend[1] * (q[0] - p[0])).abs() / chord;
+        if off > STRAIGHT * chord {
             // Numbers are given out in order.
             bends.insert(alike[0].side.map(|n| number[n as usize]), bend.map(|x| x * unit_metres));
         }

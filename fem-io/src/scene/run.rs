@@ -216,7 +216,12 @@ impl Default for Output {
 pub(super) const IMPACTOR: Keys = &[
     key("name", Form::Text, r#""first""#, "what results call it where there are several"),
     key("mass", Form::Quantity(Dimension::MASS), r#""2.49 kg""#, "mass of the rigid impactor").required(),
-    key("velocity", Form::Quantity(Dimension::VELOCITY), r#""1.56 m/s""#, "speed towards the plate at first touch"),
+    key(
+        "velocity",
+        Form::Quantity(Dimension::VELOCITY),
+        r#""1.56 m/s""#,
+        "speed towards the plate at the beginning; unless its weight acts before, that of first touch",
+    ),
     key(
         "energy",
         Form::OneOf(&[Form::Quantity(Dimension::ENERGY), Form::Quantity(Dimension::FORCE)]),

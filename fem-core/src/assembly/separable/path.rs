@@ -65,7 +65,10 @@ impl fmt::Display for PathError {
         match self {
             Self::Plate(error) => error.fmt(f),
             Self::Lost(load) => {
-                write!(f, "no equilibrium was found beyond {load:.4} times the load, however short the step")
+                write!(
+                    f,
+                    "no equilibrium was found beyond {load:.4} times the load by steps of `path.step` or shorter; a longer one may find it"
+                )
             }
         }
     }

@@ -183,6 +183,9 @@ fn bent_sides_that_make_no_plate() {
     let sound = parse(BENT.as_bytes(), "bent.inp", 1e-3).unwrap();
     assert_eq!((sound.mesh.bends.len(), sound.warnings), (2, vec![]));
     assert!((sound.mesh.area() / (200e-6 + 2.0 / 3.0 * 20e-6) - 1.0).abs() < 1e-12, "the side between takes and gives");
+    // A middle off the middle of a straight side bends nothing.
+    let shifted = parse(edited(BENT, &[("7,5,0", "7,3,0")]).as_bytes(), "bent.inp", 1e-3).unwrap();
+    assert_eq!((&shifted.mesh.bends, shifted.warnings), (&sound.mesh.bends, vec![]));
     let other = edited(BENT, &[("5,8,11,10,9", "5,8,11,10,14")]);
     let error = parse(other.as_bytes(), "bent.inp", 1e-3).unwrap_err();
     assert_eq!(error.place, FilePlace::Line(18));
