@@ -322,6 +322,15 @@ fn displacements_at_heights_where_a_shell_has_no_nodes() {
     }
 }
 
+#[test]
+fn damage_without_criteria() {
+    let loaded = |more: &str| said(&case(&format!("{CLAMPED}\nload = [{{ pressure = \"1 kPa\" }}]\n{more}")), 0);
+    holds(&loaded("effects = { damage = \"onset\" }"), &["no criterion is named: damage is not looked for"]);
+    for more in ["", "effects = { damage = \"onset\" }\nfailure = { criteria = [\"hashin-1980\"] }"] {
+        assert!(!loaded(more).contains("not looked for"), "{more}");
+    }
+}
+
 /// Elements with derivatives at their nodes keep strains continuous where they should jump.
 #[test]
 fn strains_that_jump() {

@@ -91,7 +91,7 @@ const NAMED: &[Named] = &[
         units: &["m/s", "mm/s", "mm/us", "km/h", "ft/s", "in/s"],
     },
     Named { dimension: Dimension::ACCELERATION, name: "an acceleration", units: &["m/s^2", "mm/s^2"] },
-    Named { dimension: Dimension::FREQUENCY, name: "a frequency", units: &["Hz", "kHz", "MHz", "rad/s"] },
+    Named { dimension: Dimension::FREQUENCY, name: "a frequency", units: &["1/s", "Hz", "kHz", "MHz"] },
     Named { dimension: Dimension::FORCE, name: "a force", units: &["N", "kN", "MN", "mN", "lbf", "kip"] },
     Named { dimension: Dimension::ENERGY, name: "an energy", units: &["J", "mJ", "kJ", "N m", "N mm"] },
     Named {

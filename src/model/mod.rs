@@ -212,6 +212,13 @@ impl Model {
             Damage::Off => Vec::new(),
             Damage::Onset => builder.criteria(&*element)?,
         };
+        if criteria.is_empty() && scene.effects.damage == Damage::Onset && scene.keys.contains_key("effects.damage") {
+            warnings.push(
+                "`effects.damage` is \"onset\", and no criterion is named: damage is not looked for; name one, for example \
+                 failure = { criteria = [\"hashin-1980\"] }"
+                    .into(),
+            );
+        }
         let mut effects = builder.effects(&*element, &criteria)?;
         builder.goes_with_growth(&effects)?;
 
