@@ -130,6 +130,9 @@ fn text(outcome: &DeckOutcome, folder: &Path) -> String {
             );
         }
     }
+    if let Some(error) = outcome.energy_error {
+        let _ = writeln!(text, "  energy    error {error:.1e} of that of the impact");
+    }
     if outcome.analysed && outcome.impact.is_none() && outcome.counts.iter().any(|(name, _)| *name == "governors") {
         text.push_str(
             "  units     not named: with `--units` history, failure and pictures are written in SI units as well\n",
