@@ -120,6 +120,11 @@ struct Run<'a> {
 
 impl Run<'_> {
     fn generate(&mut self, deck: &Generation) -> Result<(), Error> {
+        if !self.options.criteria.is_empty() {
+            let found = "criteria judge stresses, and a generation finds none";
+            let help = "leave `--criteria` out here, and give it to the back substitution or to the impact";
+            return Err(self.source.error(0..0, Fault::NothingToJudge, found, help).into());
+        }
         self.listing.generation(deck);
         if !deck.analyse {
             return Ok(());
