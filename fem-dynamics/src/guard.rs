@@ -1,6 +1,7 @@
 //! Guards that stop a march which does what no impact can do, at almost no cost.
 
 use crate::impact::{Energies, ImpactSystem, Touch};
+use fem_core::time::State;
 use std::fmt;
 
 /// Change of the total energy, relative to that of the impact, that counts as wrong.
@@ -135,7 +136,13 @@ impl std::error::Error for Alarm {}
 impl Guard {
     /// The bounds of `system` from its initial state.
     pub fn new(system: &mut ImpactSystem) -> Self {
-        let energy = system.energies(&system.initial(), &mut Vec::new()).total();
+        let initial = system.initial();
+        Self::begun(system, &initial)
+    }
+
+    /// The bounds of `system` that begins with `state`.
+    pub fn begun(system: &mut ImpactSystem, state: &State) -> Self {
+        let energy = system.energies(state, &mut Vec::new()).total();
         // Bounds that cannot be found do not bind.
         let highest = system.highest_energy(energy).unwrap_or(f64::INFINITY);
         let most = GROSS * highest;

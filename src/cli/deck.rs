@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::registry::Registry;
 use clap::{Args, Subcommand};
 use fem_core::plugin::Dimension;
-use fem_io::deck::{DeckSource, Program};
+use fem_io::deck::{DeckSource, Fault, Program};
 use fem_io::files::OutputDir;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -69,6 +69,11 @@ pub(super) fn tradyr(registry: &Registry, arguments: &TradyrArguments, console: 
     let TradyrArguments { deck, restart_of } = arguments;
     let of_report = || OF_REPORT.map(str::to_owned).to_vec();
     let asked = if deck.criteria.is_empty() { of_report() } else { deck.criteria.clone() };
+    if !deck.criteria.is_empty() && deck.units.is_none() {
+        let help = "give `--units` as well: what judges an impact has to know what its numbers mean";
+        let found = "`--criteria` judges nothing without `--units`";
+        return Err(DeckSource::read(&deck.deck)?.error(0..0, Fault::NoUnits, found, help).into());
+    }
     let criteria = criteria(registry, &asked, None)?;
     let options = DeckOptions { restart_of: restart_of.clone(), criteria, ..DeckOptions::default() };
     run(Program::Tradyr, deck, options, console)
@@ -129,6 +134,9 @@ fn text(outcome: &DeckOutcome, folder: &Path) -> String {
                 event.ply
             );
         }
+    }
+    if let Some(error) = outcome.energy_error {
+        let _ = writeln!(text, "  energy    error {error:.1e} of that of the impact");
     }
     if outcome.analysed && outcome.impact.is_none() && outcome.counts.iter().any(|(name, _)| *name == "governors") {
         text.push_str(

@@ -7,7 +7,7 @@ use super::units::UnitSystem;
 use crate::error::Error;
 use fem_core::plugin::Dimension;
 use fem_core::tensor::{Matrix6, rotate_stiffness};
-use fem_io::deck::{Freedom, Generation, Parsed, Program};
+use fem_io::deck::{DeckError, Freedom, Generation, Parsed, Program};
 use fem_io::plot::{self, Axis, LinePlot, Series};
 use fem_io::tables::{self, TableValue};
 use std::fmt::Write as _;
@@ -23,6 +23,8 @@ pub(super) struct Listing {
     units: Option<UnitSystem>,
     text: String,
     outcome: DeckOutcome,
+    /// Why a march ended early.
+    stopped: Option<DeckError>,
 }
 
 impl Listing {
@@ -35,10 +37,11 @@ impl Listing {
             analysed,
             warnings: parsed.warnings.clone(),
             counts: Vec::new(),
+            energy_error: None,
             impact: None,
             files: Vec::new(),
         };
-        let mut listing = Self { stem, units, text: String::new(), outcome };
+        let mut listing = Self { stem, units, text: String::new(), outcome, stopped: None };
         listing.line(&format!("{program}   {}", listing.outcome.title));
         listing.line(if analysed { "" } else { "data check only" });
         listing
@@ -66,6 +69,16 @@ impl Listing {
     pub(super) fn found(&mut self, impact: DeckImpact) {
         self.outcome.files.push(format!("{}/", self.stem));
         self.outcome.impact = Some(impact);
+    }
+
+    /// The largest change of the energy, relative to that of the impact, and why the march ended early, if it did.
+    pub(super) fn marched(&mut self, energy_error: f64, stopped: Option<DeckError>) {
+        self.line(&format!("\nchange of the energy, of that of the impact {energy_error:.3e}"));
+        if let Some(why) = &stopped {
+            self.line(&format!("\n{why}"));
+        }
+        self.outcome.energy_error = Some(energy_error);
+        self.stopped = stopped;
     }
 
     pub(super) fn warn(&mut self, text: String) {
@@ -228,6 +241,9 @@ impl Listing {
     }
 
     /// Writes the listing.
+    ///
+    /// # Errors
+    /// A folder that cannot be written; a march that ended early, whose listing is written all the same.
     pub(super) fn write(mut self, project: &Project) -> Result<DeckOutcome, Error> {
         for warning in self.outcome.warnings.clone() {
             self.line(&format!("\nwarning: {warning}"));
@@ -237,7 +253,7 @@ impl Listing {
             dir.write(&file, |out| out.write_all(self.text.as_bytes()))?;
             self.outcome.files.push(file);
         }
-        Ok(self.outcome)
+        self.stopped.map_or(Ok(self.outcome), |why| Err(why.into()))
     }
 }
 

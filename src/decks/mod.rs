@@ -74,6 +74,9 @@ pub struct DeckOutcome {
     /// Numbers by name, as printed.
     #[serde(serialize_with = "as_map")]
     pub counts: Vec<(&'static str, usize)>,
+    /// Largest change of the energy of an impact that was marched, relative to that of the impact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy_error: Option<f64>,
     /// What came of an impact, where its units are named.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub impact: Option<DeckImpact>,
@@ -117,6 +120,11 @@ struct Run<'a> {
 
 impl Run<'_> {
     fn generate(&mut self, deck: &Generation) -> Result<(), Error> {
+        if !self.options.criteria.is_empty() {
+            let found = "criteria judge stresses, and a generation finds none";
+            let help = "leave `--criteria` out here, and give it to the back substitution or to the impact";
+            return Err(self.source.error(0..0, Fault::NothingToJudge, found, help).into());
+        }
         self.listing.generation(deck);
         if !deck.analyse {
             return Ok(());
@@ -176,10 +184,14 @@ impl Run<'_> {
         let continued = earlier
             .filter(|set| restart && (&set.analysis.deck, &set.analysis.parts) == (&analysis.deck, &analysis.parts));
         let (mut count, mut steps) = continued.map_or((0, Vec::new()), |set| (set.count, set.steps.clone()));
-        count += march.steps / march.every;
         if !self.options.check {
             let marched = march::march(self.source, deck, march, &model, analysis.state.take())?;
             watch.lap("march");
+            let stopped = marched.stopped.clone().map(|why| {
+                let help = "a smaller DELTA; where that changes nothing, look at K, N, M, I and C. What was found up to then is in the project";
+                self.source.error(march.step.place.clone(), Fault::Unstable, why, help)
+            });
+            self.listing.marched(marched.error, stopped);
             self.listing.history(self.project, deck, &marched.prints)?;
             self.listing.motion(self.project, deck, march, &marched.prints)?;
             if let Some(units) = self.options.units {
@@ -190,10 +202,13 @@ impl Run<'_> {
                 impact.write(self.project, self.listing, watch)?;
             }
             let Marched { prints, state, .. } = marched;
+            count += prints.len();
             steps.extend(
                 prints.into_iter().map(|print| (print.time, print.motion.into_iter().next().unwrap_or_default())),
             );
             analysis.state = Some(state);
+        } else {
+            count += march.steps / march.every;
         }
         let set = DisplacementSet { analysis, count, steps };
         self.project.keep_analysis(self.source, march.set.as_deref(), set)

@@ -1,7 +1,9 @@
 //! A model of TRADYR: pieces put together by node numbers, condensed on governors.
 
+use super::march::system;
 use super::project::Project;
 use super::reduced::{Block, Way, reduce};
+use crate::error::Error;
 use fem_core::assembly::{Cholesky, FactorError, SparseStructure, Symbolic, Symmetric, assemble_blocks, block_pattern};
 use fem_core::constraint::Constraints;
 use fem_io::deck::{DeckError, DeckSource, Fault, ImpactDeck, MarchCard};
@@ -28,18 +30,22 @@ pub(super) struct Model {
     inertia: Symmetric,
     /// Circular frequencies, ascending.
     pub(super) omega: Vec<f64>,
+    /// Upper bound of the circular frequencies of plate and contact together.
+    bound: f64,
 }
 
 impl Model {
     /// # Errors
     /// Matrices that are not there, what can move without strain, governors without inertia.
-    pub(super) fn new(source: &DeckSource, deck: &ImpactDeck, project: &Project) -> Result<Self, DeckError> {
+    pub(super) fn new(source: &DeckSource, deck: &ImpactDeck, project: &Project) -> Result<Self, Error> {
         let per_node = deck.freedom.directions.len();
         let mut placed = Vec::new();
         for piece in &deck.substructures {
             let Some(matrices) = project.matrices(&piece.name.value) else {
                 let found = format!("there are no matrices `{}`", piece.name.value);
-                return Err(source.error(piece.name.place.clone(), Fault::NoSuchResult, found, "generate them first"));
+                return Err(source
+                    .error(piece.name.place.clone(), Fault::NoSuchResult, found, "generate them first")
+                    .into());
             };
             let dofs: Vec<usize> = piece.nodes.iter().flat_map(|n| n * per_node..(n + 1) * per_node).collect();
             placed.push((dofs, matrices));
@@ -52,14 +58,16 @@ impl Model {
         let order: Vec<usize> = (0..n).collect();
         let all = match Constraints::following(&order, []) {
             Ok(all) => all,
-            Err(why) => return Err(source.error(0..0, Fault::Constrained, why.to_string(), "")),
+            Err(why) => return Err(source.error(0..0, Fault::Constrained, why.to_string(), "").into()),
         };
         let pattern = Arc::new(block_pattern([&order[..]], &all));
         let whole = |a: &[f64]| assemble_blocks(&pattern, [(&order[..], a)], &all);
         let (stiffness, inertia) = (whole(&k), whole(&m));
         check_inertia(source, deck, &inertia)?;
         let omega = frequencies(n, &k, &m);
-        Ok(Self { way, k, m, stiffness, inertia, omega })
+        let mut model = Self { way, k, m, stiffness, inertia, omega, bound: 0.0 };
+        model.bound = system(deck, &model)?.frequency_bound(model.omega.last().copied().unwrap_or(0.0))?;
+        Ok(model)
     }
 
     /// The governors as a structure that is marched.
@@ -79,7 +87,7 @@ impl Model {
 
     /// The longest stable step of the schemes that have one.
     pub(super) fn longest_step(&self, march: &MarchCard) -> f64 {
-        march.step.value * limit(march) / self.omega_step(march)
+        limit(march) / self.bound
     }
 
     /// Refuses steps that blow up; returns by how much the fastest mode grows where every step grows.
@@ -89,12 +97,30 @@ impl Model {
     pub(super) fn check_step(&self, source: &DeckSource, march: &MarchCard) -> Result<Option<f64>, DeckError> {
         let (x, steps, limit) = (self.omega_step(march), march.steps as f64, limit(march));
         if !(x <= limit) {
-            let longest = self.longest_step(march);
+            let longest = march.step.value * limit / x;
             let found = format!(
                 "DELTA is {}: the highest frequency times DELTA is {x:.4}, INTALG {} allows {limit:.4}",
                 march.step.value, march.order
             );
             let help = format!("DELTA of {longest:.3e} or less; derivatives as governors have high frequencies");
+            return Err(source.error(march.step.place.clone(), Fault::Unstable, found, help));
+        }
+        let touching = self.bound * march.step.value;
+        // Schemes without a stable step grow while contact lasts, which the balance of energy sees.
+        if march.order > 2 && !(touching <= limit) {
+            let found = format!(
+                "DELTA is {}: the highest frequency of plate and contact times DELTA is {touching:.4}, INTALG {} allows {limit:.4} \
+                 (of the plate alone {x:.4})",
+                march.step.value, march.order
+            );
+            let longest = self.longest_step(march);
+            let help = if longest > 0.0 {
+                format!(
+                    "DELTA of {longest:.3e} or less, or look at K, M, I and C: a contact this stiff is often a slip of units"
+                )
+            } else {
+                "look at K, M, I and C: no DELTA is short enough for a contact this stiff".to_owned()
+            };
             return Err(source.error(march.step.place.clone(), Fault::Unstable, found, help));
         }
         Ok(match march.order {

@@ -31,6 +31,8 @@ pub struct DeckImpact {
     /// [`fem_io::results::FORMAT`].
     pub format: u32,
     pub completed: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stopped: Option<String>,
     pub model: DeckSize,
     pub impact: ImpactFigures,
     pub first_damage: Vec<DamageSummary>,
@@ -54,7 +56,7 @@ pub struct DeckSize {
     pub highest_frequency_Hz: f64,
 }
 
-/// What is known of the error: the change of the energy at print steps, relative to that of the impact.
+/// What is known of the error: the change of the energy, relative to that of the impact.
 #[derive(Debug, Clone, Serialize)]
 #[allow(missing_docs)]
 pub struct DeckAccuracy {
@@ -130,14 +132,14 @@ impl Impact<'_> {
         let velocity = rows.first().map_or(0.0, |row| row.impactors[0].impactor_velocity_m_s);
         let end = rows.last().map_or((0.0, 0.0), |row| (row.time_s, row.impactors[0].impactor_velocity_m_s));
         let figures = ImpactFigures::new([mass, velocity], &contact, end, judged.thickness);
-        let off = rows.iter().fold(0.0_f64, |most, row| most.max(row.energy_balance_j.abs()));
         let pieces = deck.substructures.iter().filter_map(|piece| project.matrices(&piece.name.value));
         let freedom = &deck.freedom;
         DeckImpact {
             title: march.title.clone(),
             version: env!("CARGO_PKG_VERSION"),
             format: fem_io::results::FORMAT,
-            completed: true,
+            completed: marched.stopped.is_none(),
+            stopped: marched.stopped.clone(),
             model: DeckSize {
                 substructures: deck.substructures.len(),
                 elements: pieces.map(|matrices| matrices.elements).sum(),
@@ -151,7 +153,7 @@ impl Impact<'_> {
             first_damage: first_per_mode(events).into_iter().map(damage).collect(),
             not_reached: not_reached(&judged.scan.peaks(), |_| None),
             accuracy: DeckAccuracy {
-                energy_error_relative: off / (0.5 * mass * (deck.impactor.velocity * units.metres()).powi(2)),
+                energy_error_relative: marched.error,
                 step_s: march.step.value,
                 stable_step_s: (march.order > 2).then(|| model.longest_step(march)),
             },

@@ -1,5 +1,6 @@
 //! Decks of LAMCEL, LAMSUB and TRADYR against the results of an independent interpreter (`tests/data/decks`).
 
+mod blown;
 mod case1;
 mod malformed;
 mod mutated;

@@ -126,6 +126,20 @@ fn any_criterion_judges_stresses_of_a_deck() {
     assert!(results.path().join("2-tradyr.force.svg").exists());
 }
 
+#[test]
+fn criteria_that_would_judge_nothing_are_refused() {
+    let results = tempfile::tempdir().unwrap();
+    let folder = folder("a-beam-plane-strain");
+    let project = results.path().to_str().unwrap();
+    let refused = |arguments: &[&str], part: &str| {
+        let done = fem(&folder, &[arguments, &["--project", project, "--criteria", "max-stress"]].concat());
+        assert!(done.status == 1 && done.stderr.contains(part), "{done:?}");
+    };
+    refused(&["lamcel", "1-lamcel.dat"], "a generation finds none");
+    beam(results.path());
+    refused(&["tradyr", "2-tradyr.dat"], "give `--units` as well");
+}
+
 /// The quarters of an example, and its impact with options.
 fn quarters(results: &Path, options: &[&str]) -> serde_json::Value {
     let folder = folder("c1-quarter-plates-coupled");

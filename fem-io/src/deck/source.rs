@@ -53,6 +53,8 @@ pub enum Fault {
     Singular,
     SingularMass,
     NoRestart,
+    NoUnits,
+    NothingToJudge,
     TooLarge,
 }
 
