@@ -34,7 +34,9 @@ fn model(text: &str) -> Result<Model, Error> {
 /// Deflection of the mid-plane, m, at the node nearest to a place.
 fn deflection(text: &str, at: [f64; 2]) -> f64 {
     let model = model(text).unwrap();
-    assert_eq!(model.warnings, Vec::<String>::new());
+    // Cells that are clamped inside a plate are part of it, with what that costs.
+    let others = model.warnings.iter().filter(|warning| !warning.contains("clamped, lies inside the plate"));
+    assert_eq!(others.collect::<Vec<_>>(), Vec::<&String>::new());
     let plate = &model.plate;
     let solved = statics::solve(&model, NonZeroUsize::MIN).unwrap();
     assert_eq!(solved.softness, None);
