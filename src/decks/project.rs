@@ -239,8 +239,14 @@ impl Project {
 }
 
 fn load<T: DeserializeOwned>(path: &Path, fits: impl Fn(&T) -> bool) -> Result<T, FileError> {
-    let payload = checkpoint::read(path)?;
-    let damaged = |why: String| FileError::Damaged { path: path.to_owned(), why };
+    let damaged = |why: String| {
+        let why = format!("{why}; remove it, and run the deck that made it again");
+        FileError::Damaged { path: path.to_owned(), why }
+    };
+    let payload = checkpoint::read(path).map_err(|error| match error {
+        FileError::Damaged { why, .. } => damaged(why),
+        other => other,
+    })?;
     let loaded = postcard::from_bytes(&payload).map_err(|e| damaged(e.to_string()))?;
     if fits(&loaded) { Ok(loaded) } else { Err(damaged("its parts do not fit each other".into())) }
 }

@@ -5,6 +5,7 @@ mod case1;
 mod malformed;
 mod mutated;
 mod project;
+mod tiling;
 
 use crate::support::root;
 use fem::decks::{self, DeckOptions, Project};

@@ -46,6 +46,36 @@ fn names_that_differ_by_capitals_are_refused() {
 }
 
 #[test]
+fn a_damaged_result_says_what_to_do() {
+    let results = tempfile::tempdir().unwrap();
+    beam(results.path());
+    let file = results.path().join("BEAMCELL.KM.matrices");
+    let mut bytes = std::fs::read(&file).unwrap();
+    let last = bytes.len() - 1;
+    bytes[last] ^= 1;
+    std::fs::write(&file, &bytes).unwrap();
+    let deck = folder("a-beam-plane-strain").join("1-lamcel.dat");
+    let error = run(&deck, program("lamcel"), results.path()).unwrap_err().to_string();
+    assert!(error.contains("remove it, and run the deck that made it again"), "{error}");
+    std::fs::remove_file(&file).unwrap();
+    run(&deck, program("lamcel"), results.path()).unwrap();
+}
+
+#[test]
+fn ends_of_lines_and_marks_of_bytes_change_nothing() {
+    let text = std::fs::read_to_string(folder("a-beam-plane-strain").join("1-lamcel.dat")).unwrap();
+    let title = |text: String| {
+        let results = tempfile::tempdir().unwrap();
+        let deck = results.path().join("deck.dat");
+        std::fs::write(&deck, text).unwrap();
+        run(&deck, program("lamcel"), results.path()).unwrap().title
+    };
+    let plain = title(text.clone());
+    assert_eq!(title(format!("\u{feff}{text}")), plain);
+    assert_eq!(title(text.replace('\n', "\r")), plain);
+}
+
+#[test]
 fn matrices_and_displacements_are_shown_and_exported() {
     let results = tempfile::tempdir().unwrap();
     beam(results.path());

@@ -1,6 +1,7 @@
 //! Nodes and elements: the cell of LAMCEL (records D.1) and the substructure of LAMSUB (D.2).
 
 mod placing;
+mod tiling;
 
 use super::laminate::DeckLaminate;
 use super::reader::Reader;
@@ -8,6 +9,7 @@ use super::record::Stated;
 use super::source::{DeckError, Fault};
 use placing::{Card, Placing};
 use std::ops::Range;
+use tiling::Ground;
 
 /// Most nodes of a piece, so that no deck asks for more memory than it is worth.
 const MOST_NODES: usize = 100_000;
@@ -126,6 +128,7 @@ pub(super) fn substructure(reader: &mut Reader<'_>, laminate: &DeckLaminate) -> 
         }
     }
     let mut used = vec![false; columns.len()];
+    let mut stacks = Vec::new();
     for _ in 0..reader.count("NS", 1)?.value {
         let record = reader.record(&["NCOL(1)", "NCOL(2)", "NCOL(3)", "NCOL(4)"])?;
         let mut stack = [0; 4];
@@ -152,6 +155,7 @@ pub(super) fn substructure(reader: &mut Reader<'_>, laminate: &DeckLaminate) -> 
             stack.swap(1, 3);
             reader.warn(record.place(), "the stack runs clockwise seen from +Z and was turned round");
         }
+        stacks.push((stack, record.place().clone()));
         let plane = stack.map(|c| [columns[c].0[0], columns[c].0[1]]);
         for (level, plies) in layers.iter().enumerate() {
             let face = |up: usize| stack.map(|c| levels.len() * c + level + up);
@@ -167,6 +171,8 @@ pub(super) fn substructure(reader: &mut Reader<'_>, laminate: &DeckLaminate) -> 
             "leave it out, or name it in a stack",
         );
     }
+    let columns = columns.iter().map(|([x, y, _], place)| ([*x, *y], place)).collect();
+    Ground { columns, stacks }.check(reader)?;
     Ok(piece)
 }
 

@@ -35,6 +35,11 @@ impl<'a> Reader<'a> {
         Err(self.source.error(place.clone(), fault, message, help))
     }
 
+    /// The line of a place.
+    pub(super) fn line_of(&self, place: &DeckPlace) -> usize {
+        self.source.line(place)
+    }
+
     pub(super) fn warn(&mut self, place: &DeckPlace, text: &str) {
         self.warnings.push(format!("line {}: {text}", self.source.line(place)));
     }

@@ -93,8 +93,10 @@ impl DeckSource {
         }
     }
 
-    /// A deck that is no file.
+    /// A deck that is no file. A byte order mark is no part of its title, and lines may end as those of old Macs do.
     pub fn new(name: &str, text: String) -> Self {
+        let text = text.strip_prefix('\u{feff}').map_or_else(|| text.clone(), str::to_owned);
+        let text = if text.contains('\n') { text } else { text.replace('\r', "\n") };
         Self(Arc::new(NamedSource::new(name, text)))
     }
 

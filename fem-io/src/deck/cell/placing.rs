@@ -1,5 +1,6 @@
 //! Where the nodes of a cell lie: positions follow from how rectangles hang together.
 
+use super::tiling::{Box3, Misfit, misfit};
 use super::{DeckPiece, ElementCard, Node};
 use crate::deck::reader::Reader;
 use crate::deck::source::{DeckError, DeckPlace, Fault};
@@ -7,7 +8,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Places that differ by less than this part of an element's size are one.
-const SAME: f64 = 1e-6;
+pub(super) const SAME: f64 = 1e-6;
 
 /// An element as the deck describes it.
 #[derive(Debug)]
@@ -133,7 +134,26 @@ impl Placing {
                 plane: [[*x0, *y0], [x1, *y0], [x1, y1], [*x0, y1]],
             }
         };
-        let elements = self.placed.iter().map(element).collect();
+        let elements: Vec<ElementCard> = self.placed.iter().map(element).collect();
+        let boxes: Vec<Box3> =
+            elements.iter().zip(&self.placed).map(|(element, (card, _))| Box3::new(element, card.heights)).collect();
+        let at: Vec<[f64; 3]> = self.nodes.values().copied().collect();
+        let number = |element: usize| self.placed[element].0.number;
+        match misfit(&boxes, &at) {
+            None => {}
+            Some(Misfit::Overlap([a, b])) => {
+                let found = format!("element {} lies over element {}", number(b), number(a));
+                let help =
+                    "name each element once; ELEN, EWID, plies and the order of the corners decide where it lies";
+                return reader.error(&self.placed[b].0.place, Fault::Geometry, found, help);
+            }
+            Some(Misfit::Hanging { node, element }) => {
+                let node = self.nodes.keys().nth(node).copied().unwrap_or_default();
+                let found = format!("node {node} lies on element {}, which does not name it", number(element));
+                let help = "let elements beside each other have whole faces in common";
+                return reader.error(&self.placed[element].0.place, Fault::Geometry, found, help);
+            }
+        }
         let nodes = self.nodes.iter().map(|(number, at)| Node { number: *number, at: *at, beta: 0.0 }).collect();
         Ok(DeckPiece { nodes, elements })
     }
