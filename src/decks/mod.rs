@@ -14,6 +14,7 @@ mod axes;
 mod back;
 mod check;
 mod element;
+mod fits;
 mod judge;
 mod listing;
 mod march;

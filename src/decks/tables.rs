@@ -2,6 +2,7 @@
 
 use super::axes::unlike;
 use super::back::{Found, Place};
+use super::fits::misfits;
 use super::listing::{Listing, index};
 use super::march::Print;
 use super::model::Model;
@@ -41,6 +42,7 @@ impl Listing {
             self.warn(format!("{name} governs, a derivative: it has hardly any inertia, hence a high frequency"));
         }
         unlike(deck, project).into_iter().for_each(|text| self.warn(text));
+        misfits(deck, project).into_iter().for_each(|text| self.warn(text));
         let mut seen: Vec<&str> = Vec::new();
         for piece in &deck.substructures {
             let name = piece.name.value.as_str();

@@ -1,6 +1,6 @@
 //! Pieces of decks whose stacks or elements do not lie side by side.
 
-use super::run;
+use super::{folder, program, run};
 use fem::Error;
 use fem::decks::DeckOutcome;
 use fem::io::deck::Program;
@@ -69,4 +69,32 @@ fn elements_that_do_not_tile() {
     lamcel("5.,4.,1,4\n1,9,10,11,5,12,13,14", 25, "element 2 lies over element 1");
     lamcel("10.,4.,1,4\n2,9,10,11,6,12,13,14", 23, "node 11 lies on element 1, which does not name it");
     piece(Program::Lamcel, "2\n10.,8.,1,4\n1,2,3,4,5,6,7,8\n10.,8.,1,4\n2,9,10,3,6,11,12,7").unwrap();
+}
+
+/// The beam of the first example with other nodes of its pieces: what is said of them.
+fn beam(changes: &[(&str, &str)]) -> Vec<String> {
+    let home = tempfile::tempdir().unwrap();
+    let example = folder("a-beam-plane-strain");
+    run(&example.join("1-lamcel.dat"), program("lamcel"), home.path()).unwrap();
+    let mut text =
+        std::fs::read_to_string(example.join("2-tradyr.dat")).unwrap().replacen("4,2000,100,0", "4,10,10,0", 1);
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from}");
+        text = text.replacen(from, to, 1);
+    }
+    let deck = home.path().join("2-tradyr.dat");
+    std::fs::write(&deck, text).unwrap();
+    let said = run(&deck, program("tradyr"), home.path()).unwrap().warnings;
+    said.into_iter().filter(|warning| warning.contains("substructure")).collect()
+}
+
+#[test]
+fn pieces_that_do_not_fit() {
+    assert_eq!(beam(&[]), [""; 0]);
+    let upside_down = beam(&[("\n4,5,6,7,8,9\n", "\n6,5,4,9,8,7\n")]);
+    assert!(upside_down[0].contains("substructure 2 does not fit: it would have node "), "{upside_down:?}");
+    let reversed = beam(&[("\n4,5,6,7,8,9\n", "\n7,8,9,4,5,6\n")]);
+    assert!(reversed[0].contains("substructure 2 puts node 7 where node 1 lies"), "{reversed:?}");
+    let twice = beam(&[("\n10\n", "\n11\n"), ("\n1,2,3,4,5,6\n", "\n1,2,3,4,5,6\nBEAMCELL.KM\n6\n1,2,3,4,5,6\n")]);
+    assert_eq!(twice, ["substructures 1 and 2 stand on the same nodes: both count"]);
 }

@@ -27,9 +27,19 @@ const PARTIAL: &str = ".partial";
 #[derive(Debug)]
 pub struct OutputDir {
     path: PathBuf,
-    /// Held, not read.
-    _lock: File,
+    _lock: Lock,
     manifest: Manifest,
+}
+
+/// A file that is locked, held and not read.
+#[derive(Debug)]
+struct Lock(File);
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Closed alone, it would stay locked as long as a process that another thread is starting has a copy of it.
+        let _ = self.0.unlock();
+    }
 }
 
 impl OutputDir {
@@ -206,7 +216,7 @@ impl OutputDir {
 }
 
 /// Locks a folder by the file `path` in it.
-fn lock(folder: &Path, path: &Path) -> Result<File, FileError> {
+fn lock(folder: &Path, path: &Path) -> Result<Lock, FileError> {
     let lock = bytes::options(Links::Refuse).create(true).truncate(false).read(true).write(true).open(path);
     let lock = match lock {
         Ok(lock) if lock.metadata().is_ok_and(|is| is.is_file()) => lock,
@@ -219,7 +229,7 @@ fn lock(folder: &Path, path: &Path) -> Result<File, FileError> {
         TryLockError::WouldBlock => FileError::Locked { path: folder.to_owned() },
         TryLockError::Error(cause) => failed("lock", path)(cause),
     })?;
-    Ok(lock)
+    Ok(Lock(lock))
 }
 
 /// Names of the files in `folder` of runs that a later one supersedes, which has not written them again: it was stopped.
@@ -300,6 +310,16 @@ mod tests {
         let first = OutputDir::create(folder.path()).unwrap();
         assert!(matches!(OutputDir::create(folder.path()), Err(FileError::Locked { .. })));
         drop(first);
+        OutputDir::create(folder.path()).unwrap();
+    }
+
+    /// As a process has a copy of the lock between its start and its program.
+    #[test]
+    fn a_folder_is_free_while_somebody_has_a_copy_of_its_lock() {
+        let folder = tempfile::tempdir().unwrap();
+        let held = OutputDir::create(folder.path()).unwrap();
+        let _copy = held._lock.0.try_clone().unwrap();
+        drop(held);
         OutputDir::create(folder.path()).unwrap();
     }
 
