@@ -44,8 +44,8 @@ pub(super) fn misfits(deck: &ImpactDeck, project: &Project) -> Vec<String> {
         if let Some((node, at, (there, other))) = shared().find(|(_, at, (there, _))| apart(&here(at), there)) {
             let [at, there] = [here(at), *there].map(|p| format!("({:.6}, {:.6}, {:.6})", p[0], p[1], p[2]));
             warnings.push(format!(
-                "substructure {} does not fit: it would have node {} at {at}, and substructure {} has it at {there}, with the first \
-                 at its place; look at the order of the nodes of both",
+                "substructure {} does not fit: with the first node that it shares in its place, node {} is at {at}, and substructure {} \
+                 has it at {there}; look at the order of the nodes of both",
                 number + 1,
                 nodes[node],
                 other + 1

@@ -92,7 +92,10 @@ fn beam(changes: &[(&str, &str)]) -> Vec<String> {
 fn pieces_that_do_not_fit() {
     assert_eq!(beam(&[]), [""; 0]);
     let upside_down = beam(&[("\n4,5,6,7,8,9\n", "\n6,5,4,9,8,7\n")]);
-    assert!(upside_down[0].contains("substructure 2 does not fit: it would have node "), "{upside_down:?}");
+    assert!(
+        upside_down[0].contains("substructure 2 does not fit: with the first node that it shares in its place, node "),
+        "{upside_down:?}"
+    );
     let reversed = beam(&[("\n4,5,6,7,8,9\n", "\n7,8,9,4,5,6\n")]);
     assert!(reversed[0].contains("substructure 2 puts node 7 where node 1 lies"), "{reversed:?}");
     let twice = beam(&[("\n10\n", "\n11\n"), ("\n1,2,3,4,5,6\n", "\n1,2,3,4,5,6\nBEAMCELL.KM\n6\n1,2,3,4,5,6\n")]);
