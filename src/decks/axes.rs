@@ -1,7 +1,7 @@
 //! Axes of nodes that pieces share.
 
 use super::project::{Matrices, Project};
-use fem_io::deck::{self, Deck, DeckSource, ImpactDeck, NoResults};
+use fem_io::deck::ImpactDeck;
 use std::collections::BTreeMap;
 
 /// What a turn about Z leaves as it is.
@@ -45,11 +45,7 @@ pub(super) fn unlike(deck: &ImpactDeck, project: &Project) -> Vec<String> {
 
 /// BETA of the node behind each `per_node` masters; nothing where a turn would change none of them.
 fn turns_of(matrices: &Matrices, per_node: usize) -> Vec<Option<f64>> {
-    let source = DeckSource::new(&matrices.deck.0, matrices.deck.1.clone());
-    let Ok(Deck::Generation(piece)) = deck::parse(&source, matrices.program(), &NoResults).map(|parsed| parsed.deck)
-    else {
-        return Vec::new();
-    };
+    let Some(piece) = matrices.piece() else { return Vec::new() };
     let beta: BTreeMap<u32, f64> = piece.piece.nodes.iter().map(|node| (node.number, node.beta)).collect();
     let turn = |masters: &[(u32, String)]| {
         let turned = masters.iter().find(|(_, label)| !UNTURNED.contains(&label.as_str()))?;

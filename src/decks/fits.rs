@@ -1,14 +1,15 @@
 //! Whether the pieces of a model fit each other where they share nodes.
 
 use super::project::{Matrices, Project};
-use fem_io::deck::{self, Deck, DeckSource, ImpactDeck, NoResults};
+use fem_io::deck::ImpactDeck;
 use std::collections::BTreeMap;
 
 /// Places that differ by less than this part of the size of a piece are one.
 const SAME: f64 = 1e-6;
 
 /// A warning for each piece that stands on the nodes of another one, or that puts a node elsewhere than those before it do, or where
-/// another node lies: pieces are put together as they were made, shifted and not turned. Nothing of pieces whose axes are turned, which fit in other ways.
+/// another node lies: pieces are put together as they were made, shifted and not turned. Nothing of pieces whose axes are turned,
+/// which fit in other ways.
 pub(super) fn misfits(deck: &ImpactDeck, project: &Project) -> Vec<String> {
     let nodes = &deck.freedom.nodes;
     let mut made: BTreeMap<&str, Vec<[f64; 3]>> = BTreeMap::new();
@@ -77,13 +78,10 @@ fn size(places: &[[f64; 3]]) -> f64 {
     (0..3).map(of).map(|[low, high]| high - low).fold(0.0, f64::max)
 }
 
-/// Place of the node behind each `per_node` masters; nothing of a piece whose axes are turned, or whose masters are not so many a node.
+/// Place of the node behind each `per_node` masters; nothing of a piece whose axes are turned, or whose masters are not so many
+/// a node.
 fn places(matrices: &Matrices, per_node: usize) -> Vec<[f64; 3]> {
-    let source = DeckSource::new(&matrices.deck.0, matrices.deck.1.clone());
-    let Ok(Deck::Generation(piece)) = deck::parse(&source, matrices.program(), &NoResults).map(|parsed| parsed.deck)
-    else {
-        return Vec::new();
-    };
+    let Some(piece) = matrices.piece() else { return Vec::new() };
     if piece.piece.nodes.iter().any(|node| node.beta != 0.0) {
         return Vec::new();
     }

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use fem_core::time::State;
 use fem_io::checkpoint;
-use fem_io::deck::{DeckSource, Extent, Fault, Generation, KnownResults, Program};
+use fem_io::deck::{self, Deck, DeckSource, Extent, Fault, Generation, KnownResults, NoResults, Program};
 use fem_io::files::{FileError, OutputDir};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -56,6 +56,15 @@ impl Matrices {
     fn fits(&self) -> bool {
         let entries = self.masters.len().pow(2);
         self.k.len() == entries && self.m.len() == entries
+    }
+
+    /// Its deck, read once more; nothing of one that is none.
+    pub(super) fn piece(&self) -> Option<Generation> {
+        let source = DeckSource::new(&self.deck.0, self.deck.1.clone());
+        match deck::parse(&source, self.program(), &NoResults).ok()?.deck {
+            Deck::Generation(piece) => Some(piece),
+            _ => None,
+        }
     }
 
     /// The program that made it.

@@ -72,8 +72,7 @@ pub fn mesh_errors(
     fields: &[f64],
 ) -> Result<Option<Vec<f64>>, ElementError> {
     let quads = &plate.plane.quads;
-    let mut inside = vec![true; plate.plane.points.len()];
-    plate.plane.boundary().iter().flatten().for_each(|node| inside[*node as usize] = false);
+    let inside = plate.plane.inside();
     let mut touching: Vec<Vec<usize>> = vec![Vec::new(); plate.plane.points.len()];
     for (number, quad) in quads.iter().enumerate() {
         quad.iter().for_each(|node| touching[*node as usize].push(number));

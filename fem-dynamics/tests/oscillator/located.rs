@@ -1,9 +1,9 @@
 //! Contacts whose changes of branch are located, against closed forms and an outside integration.
 
+use crate::spring::Spring;
 use crate::{SCHEMES, dormand_prince, law, length, scheme, stiffness};
 use fem_core::contact::ContactLaw;
 use fem_core::plugin::Value;
-use fem_core::structure::{SolveError, Structure};
 use fem_core::testkit::{Oscillators, check_integrator};
 use fem_core::time::{Integrator, SecondOrderSystem, State};
 use fem_dynamics::contact::SunYang;
@@ -50,29 +50,6 @@ fn ground(scheme: Box<dyn Integrator>, n: f64, steps: u32) -> f64 {
     (s.u[0] - (peak - depth - away * (5.0 - apart))).abs().max((s.v[0] + away).abs())
 }
 
-/// A mass of 1 kg on a spring of 4 N/m.
-#[derive(Debug)]
-struct OnSpring;
-
-impl Structure for OnSpring {
-    fn ndof(&self) -> usize {
-        1
-    }
-    fn add_stiffness(&self, scale: f64, x: &[f64], y: &mut [f64]) {
-        y[0] += scale * 4.0 * x[0];
-    }
-    fn add_mass(&self, scale: f64, x: &[f64], y: &mut [f64]) {
-        y[0] += scale * x[0];
-    }
-    fn solve_shifted(&mut self, shift: f64, x: &mut [f64], _: usize) -> Result<(), SolveError> {
-        x[0] /= 4.0 + shift;
-        Ok(())
-    }
-    fn solve_mass(&mut self, _: &mut [f64]) -> Result<(), SolveError> {
-        Ok(())
-    }
-}
-
 /// Error of 1.5 kg at 1 m/s on the mass on its spring, at 4 s.
 fn two_masses(scheme: Box<dyn Integrator>, n: f64, steps: u32) -> f64 {
     // Branch by branch with scipy's DOP853, relative tolerance 2.5e-14. For n = 2 the masses touch, turn and part, touch
@@ -82,7 +59,7 @@ fn two_masses(scheme: Box<dyn Integrator>, n: f64, steps: u32) -> f64 {
         _ => (10.0, [-0.2518907690463982, -0.509962880236784, 0.4166346015741468, -0.6111236537686259]),
     };
     let impactor = Impactor { mass: 1.5, velocity: 1.0, start: 0.0, load: vec![(0, 1.0)], law: sun_yang(k, n, 0.1) };
-    let mut sys = ImpactSystem::new(Box::new(OnSpring), vec![impactor]);
+    let mut sys = ImpactSystem::new(Box::new(Spring::default()), vec![impactor]);
     let s = sys.initial();
     let s = end(scheme, &mut sys, s, 4.0, steps);
     let energy = sys.energies(&s, &mut Vec::new()).total();
@@ -171,7 +148,7 @@ fn two_contacts_at_once_are_one() {
         vec![Impactor { mass: 1.5 * share, velocity: 1.0, start: 0.0, load: vec![(0, 1.0)], law }; parts]
     };
     let [one, two] = [1, 2].map(|parts| {
-        let mut sys = ImpactSystem::new(Box::new(OnSpring), impactors(parts));
+        let mut sys = ImpactSystem::new(Box::new(Spring::default()), impactors(parts));
         let s = sys.initial();
         end(located(scheme("rk4")), &mut sys, s, 4.0, 400)
     });

@@ -9,6 +9,7 @@ mod located;
 mod order;
 mod parameters;
 mod spectrum;
+mod spring;
 mod stiffening;
 mod tip;
 

@@ -190,6 +190,13 @@ impl PlaneMesh {
         self.quads.iter().flat_map(|q| q.sides()).filter(|side| sides.opposite(*side).is_none()).collect()
     }
 
+    /// Which nodes lie inside, on no edge of one cell alone.
+    pub fn inside(&self) -> Vec<bool> {
+        let mut inside = vec![true; self.points.len()];
+        self.boundary().iter().flatten().for_each(|node| inside[*node as usize] = false);
+        inside
+    }
+
     /// Largest angle by which the boundary turns from edge to edge where it follows a curve, radians: turns of less than
     /// 0.7 between edges that neither begin nor end a straight line, where the circles through three nodes in a row have
     /// one sense and about one size. 0 for a boundary of straight lines and sharp corners; bent sides do not count.
