@@ -335,7 +335,7 @@ fn damage_without_criteria() {
 #[test]
 fn strains_that_jump() {
     let checked = |element: &str, beside: &str, support: &str| {
-        let groups = "cells = [4, 2], groups = { a = { x = [\"0 mm\", \"20 mm\"] } }";
+        let groups = "cells = [4, 2], groups = { a = { x = [\"0 mm\", \"20 mm\"] }, l = { x = [\"20 mm\", \"20 mm\"] } }";
         let of = |plies: &str, group: &str| {
             format!("{{ {group}plies = \"{plies}\", material = \"tape\", ply_thickness = \"0.25 mm\", layers = 1 }}")
         };
@@ -352,9 +352,11 @@ fn strains_that_jump() {
     for [element, beside] in [["hermite-prism", "[0/90]s"], ["hex20", "[90/0]s"], ["mitc4", "[90/0]s"]] {
         assert!(!checked(element, beside, edge).contains("strains jump"), "{element} {beside}");
     }
-    let cells = "group = \"a\"";
-    holds(&checked("hermite-prism", "[0/90]s", cells), &["`a`, clamped, lies inside the plate, where strains jump"]);
-    assert!(!checked("hex20", "[0/90]s", cells).contains("strains jump"));
+    let line = "group = \"l\"";
+    holds(&checked("hermite-prism", "[0/90]s", line), &["`l`, clamped, lies inside the plate, where strains jump"]);
+    assert!(!checked("hex20", "[0/90]s", line).contains("strains jump"));
+    // Cells do not, for they are left out.
+    assert!(!checked("hermite-prism", "[0/90]s", "group = \"a\"").contains("strains jump"));
 }
 
 /// A group that ends between nodes is smaller than it was asked to be, and another one on other cells.

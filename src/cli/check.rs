@@ -72,6 +72,8 @@ struct Checked {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     supports: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    left_out: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     memory_MB: Option<f64>,
     #[serde(skip)]
     memory: Option<MemoryEstimate>,
@@ -306,6 +308,7 @@ fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Resul
         modes,
         load_factors,
         criteria: model.criteria.iter().map(|(name, _)| name.clone()).collect(),
+        left_out: model.left_out.clone(),
         fields: fields::expected(&model, frames)?,
         advised: Advised::of(&model, |_| None),
         warnings: (condition.and_then(warn_of_condition).into_iter())
@@ -341,6 +344,7 @@ impl Checked {
             ("unknowns", format!("{unknowns} of {} after constraints{redundant}", self.unknowns_before_constraints)),
         ];
         lines.splice(2..2, self.regions.iter().map(|region| ("region", region.to_string())));
+        lines.splice(1..1, self.left_out.iter().map(|cells| ("left out", cells.clone())));
         lines.extend(self.memory.as_ref().map(|memory| {
             let megabytes = memory.bytes() * 1e-6;
             ("memory", format!("about {megabytes:.0} MB at the peak: {memory}"))

@@ -359,7 +359,8 @@ impl Builder<'_> {
                     let before = equations.len();
                     let origin = format!("support of {name}");
                     equations.extend(holds.iter().flat_map(|hold| hold.equations(plate, &origin)));
-                    if equations.len() == before {
+                    let nodes = holds.iter().any(|hold| !hold.columns.is_empty());
+                    if equations.len() == before && nodes {
                         let help = "the element has none of the unknowns that it names";
                         return Err(source.error_at(entry.place(), format!("the {origin} fixes nothing"), help));
                     }
@@ -473,7 +474,7 @@ impl Builder<'_> {
             let nodes_of = self.each_node(plate, nodes, dofs)?;
             let has = |dof: &Dof| nodes_of.iter().any(|(c, l)| plate.dofs_at(*c as usize, *l, *dof).next().is_some());
             let names: Vec<_> = dofs.iter().filter(|dof| !has(dof)).map(Dof::to_string).collect();
-            if !names.is_empty() {
+            if !names.is_empty() && !nodes_of.is_empty() {
                 warnings.push(format!(
                     "{} of {} unknowns in the {what} of `{}` are not of this element, and nothing holds them: {}; take them \
                      out, or choose an element that has them",

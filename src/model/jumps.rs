@@ -47,8 +47,7 @@ impl Builder<'_> {
             let within = |column: &u32| inside.get(*column as usize).copied().unwrap_or(false);
             if columns.len() > 1 && columns.iter().any(within) {
                 warnings.push(format!(
-                    "{}, clamped, lies inside the plate, where strains jump, which `{element}` shares at nodes: {remedy}; or leave what \
-                     is clamped out of the mesh, and clamp its edge",
+                    "{}, clamped, lies inside the plate, where strains jump, which `{element}` shares at nodes: {remedy}",
                     area.value
                 ));
             }

@@ -20,6 +20,7 @@ mod regions;
 mod separation;
 mod spacing;
 mod springs;
+mod still;
 mod strike;
 mod substructures;
 mod supports;
@@ -148,6 +149,8 @@ pub struct Model {
     pub decisions: Vec<Decision>,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// Which cells are no part of the plate, since supports keep them still.
+    pub left_out: Option<String>,
     /// Where plates are kept for later runs, if they are.
     pub cache: Option<Cache>,
 }
@@ -194,6 +197,7 @@ impl Model {
         let read = mesh(scene)?;
         let mut warnings = read.warnings;
         let mut mesh = read.mesh;
+        let left_out = builder.leave_out_clamped(&mut mesh);
         info!(quads = mesh.quads.len(), nodes = mesh.points.len(), "mesh");
         let materials: Vec<Material> = scene.materials.iter().map(|m| m.value.clone()).collect();
         let (mut laminates, of_specs) = regions::distinct(&scene.laminates);
@@ -369,6 +373,7 @@ impl Model {
             springs: supports.springs.restrict(&supports.constraints),
             constraints: supports.constraints,
             supports: supports.described,
+            left_out,
             between: supports.between,
             motions: supports.motions,
             division,

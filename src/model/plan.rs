@@ -378,7 +378,7 @@ impl Builder<'_> {
         let Some(name) = group else { return Ok((0..plate.plane.quads.len()).collect()) };
         let quads: Vec<usize> = self.group(plate, name)?.quads.iter().map(|q| *q as usize).collect();
         match quads.is_empty() {
-            true => Err(self.error(name, "the group has no cells", "a pressure acts on a surface")),
+            true => Err(self.error(name, "the group has no cells that can move", "a pressure acts on a surface that is not clamped")),
             false => Ok(quads),
         }
     }
@@ -388,7 +388,7 @@ impl Builder<'_> {
         let each = |line: &ProfileLine| {
             let (point, _) = self.point(plate, &line.at)?;
             let Some(profile) = Profile::at(plate, mirrors, point) else {
-                return Err(self.error(&line.at, "the point lies outside the plate", "move it"));
+                return Err(self.error(&line.at, "the point lies outside the plate, or in what is clamped of it", "move it"));
             };
             if line.equilibrium == Some(true) && cells < LEAST_CELLS {
                 let message = format!("the stresses of {cells} cells cannot be differentiated for `equilibrium`");
@@ -558,7 +558,7 @@ impl Builder<'_> {
     ) -> SceneError {
         let (low, high) = plate.plane.bounds();
         if (0..2).any(|d| !(low[d]..=high[d]).contains(&centre[d])) {
-            let message = format!("x, y = {} lies outside the plate", Dimension::LENGTH.list(&centre));
+            let message = format!("x, y = {} lies outside the plate, or in what is clamped of it", Dimension::LENGTH.list(&centre));
             let help = format!(
                 "x runs from {} to {} and y from {} to {}, if `mesh.unit` is right",
                 Dimension::LENGTH.of(low[0]),

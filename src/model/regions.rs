@@ -2,6 +2,7 @@
 
 use super::Builder;
 use fem_core::laminate::{CutPly, Laminate};
+use fem_core::mesh::Group;
 use fem_core::plate::Plate;
 use fem_core::plugin::Dimension;
 use fem_io::scene::{LaminateSpec, SceneError};
@@ -120,8 +121,9 @@ impl Builder<'_> {
         let tag = |quad: usize| plate.plane.quad_tags[quad];
         for (number, spec) in specs.iter().enumerate() {
             let Some(group) = &spec.group else { continue };
-            let quads = &self.group(plate, group)?.quads;
-            if quads.is_empty() {
+            let Group { dim, quads, .. } = self.group(plate, group)?;
+            // Cells may have been left out.
+            if quads.is_empty() && *dim < 2 {
                 let message = format!("the group `{}` holds no cells", group.value);
                 return Err(self.error(group, message, "a laminate needs a physical surface"));
             }

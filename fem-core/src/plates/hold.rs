@@ -80,7 +80,7 @@ impl SupportKind {
             Symmetry if levels != Levels::All => {
                 Some(["a plane of symmetry cuts the plate through", "leave `at` out, or write at = \"all\""])
             }
-            SimplySupported | Symmetry if group.edges.is_empty() => Some([
+            SimplySupported | Symmetry if group.edges.is_empty() && !group.nodes.is_empty() => Some([
                 "this kind of support is of edges, for what it holds depends on their direction",
                 "name a group of edges, or another kind: \"clamped\", \"hinged\" or \"roller\"",
             ]),

@@ -9,6 +9,7 @@ mod sides;
 #[cfg(test)]
 mod tests;
 mod tiling;
+mod without;
 
 pub use curve::Course;
 pub use graded::{Graded, MAX_CELLS, Outline};

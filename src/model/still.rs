@@ -1,0 +1,41 @@
+//! Cells that cannot move.
+
+use super::builder::Builder;
+use fem_core::hold::SupportKind;
+use fem_core::mesh::PlaneMesh;
+use fem_core::support::Levels;
+use fem_io::scene::{Support, SupportArea};
+
+impl Builder<'_> {
+    /// Leaves the cells that are clamped over their whole height out of `mesh`, and says which: their edge is clamped in their place.
+    /// Elements that share strains at nodes would carry those beside the clamp into it. A plate that is clamped everywhere stays.
+    pub(super) fn leave_out_clamped(&self, mesh: &mut PlaneMesh) -> Option<String> {
+        let mut gone = vec![false; mesh.quads.len()];
+        let mut names = Vec::new();
+        for support in &self.scene.supports {
+            let Support::Kind { area, kind: SupportKind::Clamped, levels: Levels::All, stiffness: None, .. } = support
+            else {
+                continue;
+            };
+            let disc;
+            let group = match &area.value {
+                SupportArea::Group(name) => mesh.groups.get(name),
+                SupportArea::Disc { centre, radius } => {
+                    disc = mesh.within(*centre, *radius);
+                    Some(&disc)
+                }
+            };
+            let quads = group.map_or(&[][..], |group| &group.quads);
+            if !quads.is_empty() {
+                quads.iter().for_each(|quad| gone[*quad as usize] = true);
+                names.push(area.value.to_string());
+            }
+        }
+        let count = gone.iter().filter(|gone| **gone).count();
+        if count == 0 || count == gone.len() {
+            return None;
+        }
+        *mesh = mesh.without(&gone);
+        Some(format!("{count} cells of {}, which do not move", names.join(", ")))
+    }
+}
