@@ -84,7 +84,7 @@ fn what_is_no_map_is_refused() {
     let case = quick();
     for (options, words) in [
         (&["--set", "impactor.mass=1..5:9"][..], &["a map finds its own values", "1..5"][..]),
-        (&["--set", "impactor.mass=1..5"], &["1 keys have a range"]),
+        (&["--set", "impactor.mass=1..5"], &["a map wants two ranges", "one key has a range"]),
         (&["--set", "impactor.mass=1..5 m", "--set", "impactor.velocity=1..5"], &["is a length, not a mass"]),
         (&["--set", "impactor.speed=1..5", "--set", "impactor.mass=1..5"], &["unknown key `impactor.speed`"]),
         (&["--set", "impactor.mass=normal(1, 0.1)", "--set", "impactor.velocity=1..5"], &["finds its own values"]),

@@ -25,6 +25,9 @@ pub struct Cure {
     change: f64,
 }
 
+/// The largest change that is taken, K: fibres of carbon are made at less.
+const LARGEST_CHANGE: f64 = 3000.0;
+
 impl EffectPlugin for Cure {
     const INFO: EffectInfo = EffectInfo {
         key: key(
@@ -43,7 +46,13 @@ impl EffectPlugin for Cure {
         if value.is_word("off") {
             return Ok(Wish::Off);
         }
-        Ok(Wish::On(Box::new(Self { change: value.quantity(Dimension::TEMPERATURE)? })))
+        let change = value.quantity(Dimension::TEMPERATURE)?;
+        if change.abs() > LARGEST_CHANGE {
+            let message = format!("no ply keeps its stiffness over a change of {}", Dimension::TEMPERATURE.of(change));
+            let help = format!("give at most {} either way", Dimension::TEMPERATURE.of(LARGEST_CHANGE));
+            return Err(value.error(message, help));
+        }
+        Ok(Wish::On(Box::new(Self { change })))
     }
 }
 

@@ -131,10 +131,9 @@ impl<'a> BorderMap<'a> {
             1 if list.is_some() => {}
             2 if list.is_none() => {}
             n => {
-                return Err(refuse(format!(
-                    "{n} keys have a range{}",
-                    if list.is_some() { " beside the list" } else { "" }
-                )));
+                let keys = if n == 1 { "one key has a range".to_owned() } else { format!("{n} keys have a range") };
+                let list = if list.is_some() { " beside the list" } else { "" };
+                return Err(refuse(format!("a map wants two ranges, or one beside a list, and {keys}{list}")));
             }
         }
         let set = fixed.iter().map(|(key, value)| (key.clone(), written.toml(key, value))).collect();

@@ -270,7 +270,7 @@ impl<'a> SceneValue<'a> {
     /// Another value, or an empty text.
     pub fn text(&self) -> Result<&'a str, SceneError> {
         match self.node() {
-            Node::Text(text) if text.trim().is_empty() => Err(self.wrong("a text")),
+            Node::Text(text) if text.trim().is_empty() => Err(self.wrong("a text with something in it")),
             Node::Text(text) => Ok(text),
             _ => Err(self.wrong("a text")),
         }

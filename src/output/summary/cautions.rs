@@ -3,6 +3,7 @@
 use super::{ImpactFigures, ImpactSummary};
 use crate::analyses::delamination::Delaminated;
 use crate::analyses::impact::{Outcome, Squeeze};
+use crate::effects::LOST_IN_DAMPING;
 use crate::model::{Model, Plan};
 use fem_core::plugin::Dimension;
 use fem_failure::scan::{FailureEvent, first_per_mode};
@@ -13,6 +14,9 @@ const OVER: f64 = 0.01;
 
 /// Share of the energy of the impact that may be lost by the integrator.
 const DAMPED: f64 = 0.01;
+
+/// Share of the energy of the impact that no laminate loses in damping.
+const STICKY: f64 = 0.5;
 
 /// Estimated error above which a result is named.
 const LARGE: f64 = 0.05;
@@ -28,6 +32,7 @@ pub(super) fn cautions(model: &Model, outcome: &Outcome, summary: &ImpactSummary
             found.extend(damped(outcome));
         }
     }
+    found.extend(sticky(model, outcome, summary));
     found.extend(rough(summary));
     found.extend(outcome.squeezes.iter().zip(&summary.impact).filter_map(stiff));
     found.extend(first_per_mode(&outcome.events).into_iter().filter_map(|event| placed(model, event)));
@@ -68,6 +73,18 @@ fn damped(outcome: &Outcome) -> Option<String> {
     (share > DAMPED).then(|| {
         format!(
             "{:.1} % of the energy of the impact was lost in waves that the integrator damps, and not in cracks: halve `march.step`",
+            1e2 * share
+        )
+    })
+}
+
+/// Damping that is no longer that of a plate.
+fn sticky(model: &Model, outcome: &Outcome, summary: &ImpactSummary) -> Option<String> {
+    let (_, lost) = super::energies(model, outcome).find(|(column, _)| column.name == LOST_IN_DAMPING)?;
+    let share = lost / summary.impact.iter().map(|impact| impact.energy_J).sum::<f64>();
+    (share > STICKY).then(|| {
+        format!(
+            "`effects.damping` took {:.0} % of the energy of the impact, where that of laminates takes some per cent: is its size right?",
             1e2 * share
         )
     })

@@ -1,5 +1,4 @@
 //! Small models with dense matrices, for the tests of elements.
-#![allow(dead_code)]
 
 use fem_core::dof::Dof;
 use fem_core::domain::Corners;

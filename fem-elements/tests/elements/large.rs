@@ -1,9 +1,6 @@
 //! Large deflections: forces and tangents against differences, motions whose strains are known.
-#![allow(clippy::unwrap_used, missing_docs)]
 
-mod dense;
-
-use dense::*;
+use crate::dense::*;
 use fem_core::element::{Cell, Element, Part, Point, Scratch, Slice, Stack};
 use fem_core::large::{LargeDeflection, green_lagrange};
 use fem_core::quadrature::gauss_legendre;

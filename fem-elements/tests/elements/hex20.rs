@@ -1,9 +1,6 @@
 //! The 20-node hexahedron against polynomials, beam theory and exact elasticity.
-#![allow(clippy::unwrap_used, missing_docs)]
 
-mod dense;
-
-use dense::*;
+use crate::dense::*;
 use fem_core::element::{Cell, Element, ElementInfo};
 use fem_core::material::Elastic;
 use fem_core::plugin::{Params, Plugin, Value};

@@ -1,9 +1,6 @@
 //! Solids on cells with bent sides: linear displacements, areas, and neighbours that move as one along a bent side.
-#![allow(clippy::unwrap_used, missing_docs)]
 
-mod common;
-
-use common::{eight_plies, mass, stiffness, zero_modes};
+use crate::common::{eight_plies, mass, stiffness, zero_modes};
 use fem_core::domain::{Corners, Domain, PlaneCell};
 use fem_core::element::{self, Cell, Element};
 use fem_elements::{HermitePrism, Hex20, Mass, TransverseStresses};

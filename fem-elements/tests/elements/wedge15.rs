@@ -1,11 +1,7 @@
 //! The 15-node wedge on random triangles against polynomials and exact elasticity.
-#![allow(clippy::unwrap_used, missing_docs)]
 
-mod delaunay;
-mod dense;
-
-use delaunay::delaunay;
-use dense::*;
+use crate::delaunay::delaunay;
+use crate::dense::*;
 use fem_core::domain::Corners;
 use fem_core::element::{Cell, Element};
 use fem_core::material::Elastic;

@@ -1,5 +1,4 @@
 //! Every element keeps the contract, with every parameter.
-#![allow(clippy::unwrap_used, missing_docs)]
 
 use fem_core::element::{Cell, Element, ElementInfo};
 use fem_core::testkit::check_element;

@@ -1,9 +1,6 @@
 //! Element matrices against an independent implementation (tests/data/element-3d.json; units N, mm, tonne).
-#![allow(clippy::unwrap_used, missing_docs)]
 
-mod common;
-
-use common::{scaled_error, stiffness};
+use crate::common::{scaled_error, stiffness};
 use fem_core::element::{Cell, Element, Part, Scratch, Slice, Stack};
 use fem_core::material::Elastic;
 use fem_core::tensor::{Strain6, rotate_stiffness, stress};

@@ -1,10 +1,7 @@
 //! Webster's beam element against an independent implementation (tests/data/element-2d.json; units N, mm, tonne; unit
 //! width) and against polynomials.
-#![allow(clippy::unwrap_used, missing_docs)]
 
-mod common;
-
-use common::{eight_plies, interpolation_error, mass, monomials, scaled_error, stiffness, zero_modes};
+use crate::common::{eight_plies, interpolation_error, mass, monomials, scaled_error, stiffness, zero_modes};
 use fem_core::element::{Cell, Element, Part, Scratch, Slice, Stack};
 use fem_core::material::Elastic;
 use fem_core::plugin::{Built, Params, Plugin, Value as ParamValue};

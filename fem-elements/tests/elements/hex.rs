@@ -1,9 +1,6 @@
 //! The solid elements against polynomials, and the quick way of parallelograms against plain integration.
-#![allow(clippy::unwrap_used, missing_docs)]
 
-mod common;
-
-use common::{eight_plies, interpolation_error, mass, monomials, scaled_error, stiffness, zero_modes};
+use crate::common::{eight_plies, interpolation_error, mass, monomials, scaled_error, stiffness, zero_modes};
 use fem_core::element::{Cell, Element, Part, Scratch, Stack};
 use fem_core::testkit::Provided;
 use fem_elements::{HermiteHex, HermitePrism, Mass, TransverseStresses};

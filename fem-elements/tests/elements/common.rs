@@ -1,5 +1,4 @@
 //! What the tests of several elements share; each of them uses a part.
-#![allow(dead_code)]
 
 use faer::{MatRef, Side};
 use fem_core::element::{Cell, Element, Scratch, Slice, Stack};

@@ -1,13 +1,8 @@
 //! The prism's form on triangles, alone and beside it: polynomials, patches and exact elasticity.
-#![allow(clippy::unwrap_used, missing_docs)]
 
-mod common;
-mod delaunay;
-mod dense;
-
-use common::{interpolation_error, monomials, zero_modes};
-use delaunay::{delaunay, random};
-use dense::*;
+use crate::common::{interpolation_error, monomials, zero_modes};
+use crate::delaunay::{delaunay, random};
+use crate::dense::*;
 use fem_core::dof::Dof;
 use fem_core::domain::{Corners, Domain};
 use fem_core::element::{self, Cell, Stack};

@@ -1,9 +1,6 @@
 //! The laminated shell against hand integration, plate theory and exact elasticity.
-#![allow(clippy::unwrap_used, missing_docs)]
 
-mod dense;
-
-use dense::*;
+use crate::dense::*;
 use fem_core::dof::Dof;
 use fem_core::element::{Cell, Element, Stack};
 use fem_core::material::Elastic;
