@@ -335,7 +335,8 @@ fn damage_without_criteria() {
 #[test]
 fn strains_that_jump() {
     let checked = |element: &str, beside: &str, support: &str| {
-        let groups = "cells = [4, 2], groups = { a = { x = [\"0 mm\", \"20 mm\"] }, l = { x = [\"20 mm\", \"20 mm\"] } }";
+        let groups =
+            "cells = [4, 2], groups = { a = { x = [\"0 mm\", \"20 mm\"] }, l = { x = [\"20 mm\", \"20 mm\"] } }";
         let of = |plies: &str, group: &str| {
             format!("{{ {group}plies = \"{plies}\", material = \"tape\", ply_thickness = \"0.25 mm\", layers = 1 }}")
         };

@@ -20,9 +20,6 @@ pub struct ViscousDamping {
     work: f64,
 }
 
-/// What the damping has taken, in tables and summaries.
-pub(crate) const LOST_IN_DAMPING: &str = "damping_dissipated_J";
-
 const KEYS: Keys = &[
     key("mass", Form::Quantity(Dimension::FREQUENCY), r#""30 1/s""#, "factor of the mass matrix"),
     key("stiffness", Form::Quantity(Dimension::TIME), r#""2e-8 s""#, "factor of the stiffness matrix"),
@@ -39,7 +36,7 @@ impl EffectPlugin for ViscousDamping {
         )
         .default(r#""off""#),
         source: "Rayleigh 1877",
-        columns: &[LedgerColumn { name: LOST_IN_DAMPING, unit: "J", label: "lost in damping", counts: true }],
+        columns: &[LedgerColumn { name: "damping_dissipated_J", unit: "J", label: "lost in damping", counts: true }],
         advice: None,
     };
 

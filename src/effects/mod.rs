@@ -10,7 +10,6 @@ mod plies;
 mod preload;
 
 pub use cure::Cure;
-pub(crate) use damping::LOST_IN_DAMPING;
 pub use damping::ViscousDamping;
 pub use gravity::Gravity;
 pub use growth::GrowingDelaminations;

@@ -524,10 +524,12 @@ impl Builder<'_> {
     ) -> Result<Equation, SceneError> {
         let mut terms = Vec::new();
         for term in &equation.terms {
-            let [(column, level)] = self.each_node(plate, &term.node, &[term.dof])?[..] else {
+            let nodes = self.each_node(plate, &term.node, &[term.dof])?;
+            let [(column, level)] = nodes[..] else {
+                let has = if nodes.is_empty() { "none that can move" } else { "more" };
                 return Err(self.error(
                     &term.node.group,
-                    format!("a term of an equation takes a single node, but `{}` has more", term.node.group.value),
+                    format!("a term of an equation takes a single node, but `{}` has {has}", term.node.group.value),
                     "name a group of one node and one level",
                 ));
             };

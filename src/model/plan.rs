@@ -313,15 +313,23 @@ impl Builder<'_> {
                 LoadKind::Edge { force_per_length, group } => {
                     let edges = &self.group(plate, group)?.edges;
                     if edges.is_empty() {
-                        return Err(self.error(group, "the group has no edges", "name a physical curve").into());
+                        return Err(self
+                            .error(
+                                group,
+                                "the group has no edges that can move",
+                                "name a physical curve that is not clamped",
+                            )
+                            .into());
                     }
                     load::edge(plate, element, edges, *force_per_length, &mut forces);
                 }
                 LoadKind::Point { force, node } => {
                     let along = (1..).zip(force).filter(|(_, f)| **f != 0.0);
                     let along: Vec<Dof> = along.filter_map(|(n, _)| Dof::new(n, 0)).collect();
-                    let [(column, level)] = self.each_node(plate, node, &along)?[..] else {
-                        let message = format!("a force acts at one node, and `{}` has more", node.group.value);
+                    let nodes = self.each_node(plate, node, &along)?;
+                    let [(column, level)] = nodes[..] else {
+                        let has = if nodes.is_empty() { "none that can move" } else { "more" };
+                        let message = format!("a force acts at one node, and `{}` has {has}", node.group.value);
                         return Err(self.error(&node.group, message, "name a group of one node and one level").into());
                     };
                     load::point(plate, column as usize, level, *force, &mut forces)
@@ -378,7 +386,11 @@ impl Builder<'_> {
         let Some(name) = group else { return Ok((0..plate.plane.quads.len()).collect()) };
         let quads: Vec<usize> = self.group(plate, name)?.quads.iter().map(|q| *q as usize).collect();
         match quads.is_empty() {
-            true => Err(self.error(name, "the group has no cells that can move", "a pressure acts on a surface that is not clamped")),
+            true => Err(self.error(
+                name,
+                "the group has no cells that can move",
+                "a pressure acts on a surface that is not clamped",
+            )),
             false => Ok(quads),
         }
     }
@@ -388,7 +400,11 @@ impl Builder<'_> {
         let each = |line: &ProfileLine| {
             let (point, _) = self.point(plate, &line.at)?;
             let Some(profile) = Profile::at(plate, mirrors, point) else {
-                return Err(self.error(&line.at, "the point lies outside the plate, or in what is clamped of it", "move it"));
+                return Err(self.error(
+                    &line.at,
+                    "the point lies outside the plate, or in what is clamped of it",
+                    "move it",
+                ));
             };
             if line.equilibrium == Some(true) && cells < LEAST_CELLS {
                 let message = format!("the stresses of {cells} cells cannot be differentiated for `equilibrium`");
@@ -558,7 +574,10 @@ impl Builder<'_> {
     ) -> SceneError {
         let (low, high) = plate.plane.bounds();
         if (0..2).any(|d| !(low[d]..=high[d]).contains(&centre[d])) {
-            let message = format!("x, y = {} lies outside the plate, or in what is clamped of it", Dimension::LENGTH.list(&centre));
+            let message = format!(
+                "x, y = {} lies outside the plate, or in what is clamped of it",
+                Dimension::LENGTH.list(&centre)
+            );
             let help = format!(
                 "x runs from {} to {} and y from {} to {}, if `mesh.unit` is right",
                 Dimension::LENGTH.of(low[0]),

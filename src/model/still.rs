@@ -8,7 +8,8 @@ use fem_io::scene::{Support, SupportArea};
 
 impl Builder<'_> {
     /// Leaves the cells that are clamped over their whole height out of `mesh`, and says which: their edge is clamped in their place.
-    /// Elements that share strains at nodes would carry those beside the clamp into it. A plate that is clamped everywhere stays.
+    /// Elements that share strains at nodes would carry those beside the clamp into it. A plate that is clamped everywhere stays, and
+    /// so do cells that a couple holds others to.
     pub(super) fn leave_out_clamped(&self, mesh: &mut PlaneMesh) -> Option<String> {
         let mut gone = vec![false; mesh.quads.len()];
         let mut names = Vec::new();
@@ -32,10 +33,19 @@ impl Builder<'_> {
             }
         }
         let count = gone.iter().filter(|gone| **gone).count();
-        if count == 0 || count == gone.len() {
+        if count == 0 || count == gone.len() || self.couples_any(mesh, &gone) {
             return None;
         }
         *mesh = mesh.without(&gone);
         Some(format!("{count} cells of {}, which do not move", names.join(", ")))
+    }
+
+    /// Whether a couple has nodes that only cells that are `gone` have.
+    fn couples_any(&self, mesh: &PlaneMesh, gone: &[bool]) -> bool {
+        let mut left = vec![false; mesh.points.len()];
+        let stay = mesh.quads.iter().zip(gone).filter(|(_, gone)| !**gone);
+        stay.flat_map(|(corners, _)| corners.iter()).for_each(|node| left[*node as usize] = true);
+        let coupled = self.scene.couples.iter().filter_map(|couple| mesh.groups.get(&couple.nodes.group.value));
+        coupled.flat_map(|group| &group.nodes).any(|node| !left[*node as usize])
     }
 }

@@ -45,8 +45,10 @@ fn filled() -> String {
     )
 }
 
+/// Clamped, the deflection held at one height in either: the middle of the edge is another one with the filling.
 const AT_REST: &str = "analysis = 'static'\neffects = { damage = 'off' }\nload = [{ pressure = '10 kPa', face = 'bottom' }]\n\
-                       support = [{ group = 'x-min', kind = 'clamped' }, { group = 'x-max', kind = 'clamped' }]\n\
+                       support = [{ group = 'x-min', kind = 'guided' }, { group = 'x-max', kind = 'guided' }, \
+                       { group = 'x-min', kind = 'roller' }, { group = 'x-max', kind = 'roller' }]\n\
                        profile = [{ name = 'doubler', at = { x = '19 mm', y = '15 mm' } }]\n";
 
 /// Displacement along z and stress σ₁₁ (MPa) of the bottom, and σ₁₁ of ply 12, where the profile is.

@@ -485,10 +485,58 @@ fn frames_are_clamped_edges() {
         );
         let frame = "{ rectangle = ['60 mm', '40 mm'], cells = [12, 8], groups = { left = { x = ['0 mm', '10 mm'] }, \
                      right = { x = ['50 mm', '60 mm'] }, low = { y = ['0 mm', '10 mm'] }, high = { y = ['30 mm', '40 mm'] } } }";
-        let held = [", { group = 'x-min', kind = 'simply-supported' }", ", { group = 'x-max', fix = ['U10'], at = 'mid-plane' }"];
+        let held = [
+            ", { group = 'x-min', kind = 'simply-supported' }",
+            ", { group = 'x-max', fix = ['U10'], at = 'mid-plane' }",
+        ];
         for more in ["", "symmetry = 'quarter'\n"] {
             let framed = solve(frame, &sides(["left", "right", "low", "high"], &held.concat()), more, [30e-3, 20e-3]);
             assert!((framed / free - 1.0).abs() < 1e-9, "{element} {more}: {framed:e} {free:e}");
         }
+    }
+}
+
+/// A couple that holds others to what is clamped still does so.
+#[test]
+fn couples_keep_clamped_cells() {
+    let of = |group: &str| {
+        let mesh = "{ rectangle = ['40 mm', '20 mm'], cells = [8, 4], groups = { left = { x = ['0 mm', '10 mm'] }, \
+                    corners = { x = ['0 mm', '40 mm'], y = ['0 mm', '0 mm'] } } }";
+        let text = text(mesh, PRISM, (AS4, "[0/90]s", 0.5), "{ group = 'left', kind = 'clamped' }");
+        model(
+            &format!("couple = [{{ group = '{group}', at = 'top', dofs = ['U30'] }}]\n{text}")
+                .replace("[1, 1]", "[2, 2]"),
+        )
+        .unwrap()
+    };
+    assert!(of("x-max").left_out.is_some_and(|said| said.contains("8 cells of `left`")));
+    assert_eq!(of("corners").left_out, None);
+}
+
+/// A clamp holds the deflection in the middle of the plate that is there, wherever its heights count from: those of the laminate that is
+/// named first.
+#[test]
+fn clamps_hold_the_middle_of_their_own_laminate() {
+    let thin = "plies = '[0/90]s', layers = [2, 2] }";
+    let energy = |laminates: &str| {
+        let mesh = "{ rectangle = ['30 mm', '20 mm'], cells = [6, 4], groups = { left = { x = ['0 mm', '10 mm'] }, \
+                    rest = { x = ['10 mm', '30 mm'] } } }";
+        let sides = ["left", "x-max"].map(|group| format!("{{ group = '{group}', kind = 'clamped' }}")).join(", ");
+        let whole = text(mesh, PRISM, (AS4, "[0/90]s", 1.0), &sides);
+        let (before, own) = whole.split_once("[laminate]").unwrap();
+        let (_, load) = own.split_once("[[load]]").unwrap();
+        let laminates = laminates.replace("{ ", "{ material = 'm', ply_thickness = '1 mm', ");
+        let model = model(&format!("laminate = [{laminates}]\n{before}[[load]]{load}")).unwrap();
+        statics::solve(&model, NonZeroUsize::MIN).unwrap().strain_energy
+    };
+    let alone = energy(&format!("{{ {thin}"));
+    let thick = "group = 'left', plies = '[0/90/0/90]s', layers = [2, 2, 2, 2]";
+    for laminates in [
+        format!("{{ {thick} }}, {{ group = 'rest', align = 'bottom', {thin}"),
+        format!("{{ group = 'rest', {thin}, {{ {thick}, align = 'bottom' }}"),
+        format!("{{ {thick} }}, {{ group = 'rest', align = 'top', {thin}"),
+    ] {
+        let beside = energy(&laminates);
+        assert!((beside / alone - 1.0).abs() < 1e-9, "{laminates}: {beside:e} {alone:e}");
     }
 }

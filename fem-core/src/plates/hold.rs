@@ -195,9 +195,11 @@ impl Hold {
         holds
     }
 
-    /// Those of `levels` at which the deflection of a plate is held whose thickness is free: that in the middle, or the two about it.
+    /// Those of `levels` at which the deflection of a plate is held whose thickness is free: that in their middle, or the two about it.
     pub fn middle(plate: &Plate, levels: &[usize]) -> Vec<usize> {
-        let height = |level: usize| plate.levels[level];
+        let ends = levels.first().zip(levels.last());
+        let middle = ends.map_or(0.0, |(low, high)| 0.5 * (plate.levels[*low] + plate.levels[*high]));
+        let height = |level: usize| plate.levels[level] - middle;
         let nearest = levels.iter().copied().min_by(|a, b| height(*a).abs().total_cmp(&height(*b).abs()));
         let Some(nearest) = nearest.filter(|nearest| !plate.same_height(height(*nearest), 0.0)) else {
             return nearest.into_iter().collect();
@@ -236,10 +238,11 @@ impl Hold {
 
     fn equations_between(&self, plate: &Plate, origin: &str) -> Vec<Equation> {
         let [low, high] = self.levels[..] else { return Vec::new() };
-        let [z0, z1] = [low, high].map(|level| plate.levels[level]);
-        let shares = [(low, z1 / (z1 - z0)), (high, z0 / (z0 - z1))];
         let mut equations = Vec::new();
         for column in &self.columns {
+            let ends = plate.outer_levels(*column as usize).map(|level| plate.levels[level]);
+            let [z0, z1] = [low, high].map(|level| plate.levels[level] - 0.5 * (ends[0] + ends[1]));
+            let shares = [(low, z1 / (z1 - z0)), (high, z0 / (z0 - z1))];
             for dof in &self.dofs {
                 let at = |(level, share): (usize, f64)| {
                     let own = turned(plate, *column as usize, level, *dof, self.angle);

@@ -3,7 +3,6 @@
 use super::{ImpactFigures, ImpactSummary};
 use crate::analyses::delamination::Delaminated;
 use crate::analyses::impact::{Outcome, Squeeze};
-use crate::effects::LOST_IN_DAMPING;
 use crate::model::{Model, Plan};
 use fem_core::plugin::Dimension;
 use fem_failure::scan::{FailureEvent, first_per_mode};
@@ -14,6 +13,9 @@ const OVER: f64 = 0.01;
 
 /// Share of the energy of the impact that may be lost by the integrator.
 const DAMPED: f64 = 0.01;
+
+/// The column of what damping has taken.
+const DAMPING: &str = "damping_dissipated_J";
 
 /// Share of the energy of the impact that no laminate loses in damping.
 const STICKY: f64 = 0.5;
@@ -80,7 +82,7 @@ fn damped(outcome: &Outcome) -> Option<String> {
 
 /// Damping that is no longer that of a plate.
 fn sticky(model: &Model, outcome: &Outcome, summary: &ImpactSummary) -> Option<String> {
-    let (_, lost) = super::energies(model, outcome).find(|(column, _)| column.name == LOST_IN_DAMPING)?;
+    let (_, lost) = super::energies(model, outcome).find(|(column, _)| column.name == DAMPING)?;
     let share = lost / summary.impact.iter().map(|impact| impact.energy_J).sum::<f64>();
     (share > STICKY).then(|| {
         format!(

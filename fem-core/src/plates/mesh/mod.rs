@@ -19,7 +19,7 @@ pub use tiling::{Flaw, FlawKind};
 
 use crate::words::domain::{CellQuality, Corners, Domain, PlaneCell};
 use curve::Chains;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 /// Distance over the diagonal of a mesh within which a node and a place that is named, or that a symmetry gives, are one: above
 /// the rounding of coordinates, and below what [`crate::plates::support::FreeMotions`] takes for a hold.
@@ -189,6 +189,13 @@ impl PlaneMesh {
     pub fn boundary(&self) -> Vec<[u32; 2]> {
         let sides = Sides::of(self);
         self.quads.iter().flat_map(|q| q.sides()).filter(|side| sides.opposite(*side).is_none()).collect()
+    }
+
+    /// Edges of the cells of a group that others of them do not share.
+    fn rim(&self, group: &Group) -> Vec<[u32; 2]> {
+        let of_group = || group.quads.iter().flat_map(|quad| self.quads[*quad as usize].sides());
+        let own: HashSet<[u32; 2]> = of_group().collect();
+        of_group().filter(|[a, b]| !own.contains(&[*b, *a])).collect()
     }
 
     /// Which nodes lie inside, on no edge of one cell alone.

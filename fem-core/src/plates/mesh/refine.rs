@@ -36,8 +36,8 @@ impl PlaneMesh {
     /// The mesh with every cell divided into four: a quadrilateral by the middles of its edges and its own, a triangle by those
     /// of its edges alone.
     ///
-    /// With [`Curves::Kept`] the middle of an edge that follows a curve (see [`PlaneMesh::curved_turn`]), on the boundary
-    /// or in a group of edges, is put on it, at the height s = κ (c/2)² / (1 + √(1 − (κ c/2)²)) above the chord c. The
+    /// With [`Curves::Kept`] the middle of an edge that follows a curve (see [`PlaneMesh::curved_turn`]), on the boundary,
+    /// in a group of edges or around one of cells, is put on it, at the height s = κ (c/2)² / (1 + √(1 − (κ c/2)²)) above the chord c. The
     /// curvature κ is that of the circle through three nodes in a row, the mean over both ends of the edge, or over the
     /// one whose neighbours go on with the curve: exact for circles, of fourth order in c for evenly divided curves. The
     /// centre of a cell is that of its transfinite (Coons) patch, half the sum of its middles less a quarter of that of
@@ -133,8 +133,9 @@ impl PlaneMesh {
     /// From the middles of edges to the curves that they follow, as far as the quarters of all cells stay convex.
     fn convex_bends(&self) -> HashMap<[u32; 2], [f64; 2]> {
         let mut bends = HashMap::new();
-        let groups = self.groups.values().filter(|g| g.dim == 1).map(|g| g.edges.clone());
-        for edges in std::iter::once(self.boundary()).chain(groups) {
+        let curves = self.groups.values().filter(|g| g.dim == 1).map(|g| g.edges.clone());
+        let rims = self.groups.values().filter(|g| g.dim == 2).map(|g| self.rim(g));
+        for edges in std::iter::once(self.boundary()).chain(curves).chain(rims) {
             let chains = Chains::of(&self.points, edges);
             for edge in chains.edges().iter().map(|edge| key(*edge)) {
                 if let Some(bend) = chains.sagitta(edge) {

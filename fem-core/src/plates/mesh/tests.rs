@@ -151,7 +151,7 @@ fn lines_and_polygons_stay_straight() {
 }
 
 #[test]
-fn curves_inside_are_those_of_groups_of_edges() {
+fn curves_inside_are_those_of_groups_of_edges_and_around_groups_of_cells() {
     let angles = even(16);
     let rings = |names: &[&str]| {
         let [a, b, c] = [0.5, 1.0, 1.5].map(|r| on_ellipse([r; 2], &angles));
@@ -160,14 +160,19 @@ fn curves_inside_are_those_of_groups_of_edges() {
         mesh.points.extend(&outer.points[16..]);
         mesh.node_tags = (1..=48).collect();
         mesh.quad_tags = (1..=32).collect();
+        let cells = Group { dim: 2, quads: (0..16).collect(), nodes: (0..32).collect(), ..Group::default() };
+        mesh.groups.insert("cells".into(), cells);
         mesh.groups.retain(|name, _| names.contains(&&**name));
         mesh.refined(Curves::Kept)
     };
     let radii =
         |mesh: &PlaneMesh| -> BTreeSet<i64> { mesh.points.iter().map(|p| (radius(p) * 1e9).round() as i64).collect() };
-    let (with, without) = (radii(&rings(&["outer"])), radii(&rings(&[])));
+    let without = radii(&rings(&[]));
     let chord = ((TAU / 32.0).cos() * 1e9).round() as i64;
-    assert!(with.contains(&1_000_000_000) && !with.contains(&chord), "{with:?}");
+    for group in ["outer", "cells"] {
+        let with = radii(&rings(&[group]));
+        assert!(with.contains(&1_000_000_000) && !with.contains(&chord), "{group} {with:?}");
+    }
     assert!(without.contains(&chord), "{without:?}");
     // The middle of an arc that ends, by the end where it goes on.
     let mut arc = ring(&on_ellipse([0.5; 2], &angles), &on_ellipse([1.0; 2], &angles));
