@@ -1,5 +1,7 @@
 //! The plane, among those that contain an axis, on which a function of the angle is largest.
 
+use fem_core::failure::StressRange;
+use fem_core::interval::Interval;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
@@ -121,6 +123,33 @@ fn brent(mut a: f64, mut x: f64, mut b: f64, mut fx: f64, f: impl Fn(f64) -> f64
             } else if fu >= fv || v == x || v == w {
                 (v, fv) = (u, fu);
             }
+        }
+    }
+}
+
+/// What acts on planes that contain the fibre, over a range of stresses.
+pub(crate) struct Tractions {
+    /// σn.
+    pub(crate) normal: Interval,
+    /// The largest shear across the fibre, |τnt|.
+    pub(crate) across: f64,
+    /// The largest shear along it, |τn1|.
+    pub(crate) along: f64,
+}
+
+impl Tractions {
+    /// The circle of Mohr about (σ22 + σ33)/2, of the largest radius in the range.
+    #[inline]
+    pub(crate) fn of(s: &StressRange) -> Self {
+        /// What sums of stresses may be off by.
+        const ROUNDING: f64 = 1e-12;
+        let (mean, difference) = ((s.s22() + s.s33()) * 0.5, (s.s22() - s.s33()) * 0.5);
+        let radius = difference.magnitude().hypot(s.s23().magnitude());
+        let reach = radius + ROUNDING * (radius + mean.magnitude());
+        Self {
+            normal: mean + Interval { low: -reach, high: reach },
+            across: reach,
+            along: (1.0 + ROUNDING) * s.s12().magnitude().hypot(s.s31().magnitude()),
         }
     }
 }

@@ -35,6 +35,14 @@ impl Default for ChangChang {
 }
 
 impl ChangChang {
+    /// T.
+    #[inline]
+    fn shear(&self, tau: f64, m: &Material) -> f64 {
+        let softening = |tau: f64| 1.0 + 1.5 * self.alpha * m.elastic.g12 * tau * tau;
+        let s12 = m.strengths.s12();
+        (tau / s12).powi(2) * (softening(tau) / softening(s12))
+    }
+
     /// Exact for linear shear only; the quartic part of T counts as quadratic here.
     #[inline]
     fn terms(&self, s: &Stress6<Ply>, m: &Material) -> [Terms; 4] {
@@ -42,8 +50,7 @@ impl ChangChang {
             return [Terms::REFUSED; 4];
         }
         let r = &m.strengths;
-        let softening = |tau: f64| 1.0 + 1.5 * self.alpha * m.elastic.g12 * tau * tau;
-        let shear = (s.s12() / r.s12()).powi(2) * (softening(s.s12()) / softening(r.s12()));
+        let shear = self.shear(s.s12(), m);
         let (fibre, matrix) = (s.s11() >= 0.0, s.s22() >= 0.0);
         let twice = 2.0 * r.s12();
         let closing = Terms {
@@ -73,6 +80,22 @@ impl FailureCriterion for ChangChang {
     #[inline]
     fn indices(&self, s: &Stress6<Ply>, m: &Material, out: &mut [f64]) {
         terms::indices(self.terms(s, m), out);
+    }
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        if !self.out_of_plane.admits_all(s) {
+            return out.fill(f64::INFINITY);
+        }
+        let r = &m.strengths;
+        let square = |v: f64| v * v;
+        let (s11, s22, shear, twice) = (s.s11(), s.s22(), self.shear(s.s12().magnitude(), m), 2.0 * r.s12());
+        let closing = (s22.negative() * (((r.yc() / twice).powi(2) - 1.0) / r.yc())).high.max(0.0);
+        out.copy_from_slice(&[
+            when(s11.reaches_positive(), square(s11.positive().high / r.xt()) + self.beta * shear),
+            when(s11.reaches_negative(), square(s11.negative().low / r.xc())),
+            when(s22.reaches_positive(), square(s22.positive().high / r.yt()) + shear),
+            when(s22.reaches_negative(), closing + square(s22.negative().low / twice) + shear),
+        ]);
     }
 
     fn reserve_factor(&self, s: &Stress6<Ply>, m: &Material) -> Reserve {

@@ -56,6 +56,28 @@ impl FailureCriterion for ChangLessard {
     }
 
     from_terms!();
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let r = &m.strengths;
+        let square = |v: f64| v * v;
+        let shear = |of: Interval, strength: f64| square(of.magnitude() / strength);
+        let (a, b, c) = (shear(s.s12(), r.s12()), shear(s.s31(), r.s12()), shear(s.s23(), r.s23()));
+        let tension = |of: Interval, strength: f64, shears: f64| {
+            when(of.reaches_positive(), square(of.positive().high / strength) + shears)
+        };
+        let compression = |of: Interval, strength: f64, shears: f64| {
+            when(of.reaches_negative(), square(of.negative().low / strength) + shears)
+        };
+        out.copy_from_slice(&[
+            tension(s.s11(), r.xt(), a + b),
+            compression(s.s11(), r.xc(), 0.0),
+            compression(s.s11(), r.xc(), a + b),
+            tension(s.s22(), r.yt(), a + c),
+            compression(s.s22(), r.yc(), a + c),
+            tension(s.s33(), r.yt(), b + c),
+            compression(s.s33(), r.yc(), b + c),
+        ]);
+    }
 }
 
 impl Plugin for ChangLessard {

@@ -34,6 +34,12 @@ impl FailureCriterion for ChoiChang {
     }
 
     from_terms!();
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let r = &m.strengths;
+        let across = f64::max(s.s22().positive().high / r.yt(), -s.s22().negative().low / r.yc());
+        out[0] = across.powi(2) + (s.s23().magnitude() / r.s23()).powi(2);
+    }
 }
 
 impl Plugin for ChoiChang {

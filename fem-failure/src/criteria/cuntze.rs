@@ -1,7 +1,9 @@
 //! Cuntze's failure mode concept, three-dimensional and plane.
 
+use super::action_plane::Tractions;
 use super::plane_stress::OutOfPlane;
 use crate::prelude::*;
+use crate::terms;
 
 /// Efforts of the five modes and their interaction.
 const MODES: &[&str] =
@@ -83,6 +85,22 @@ impl FailureCriterion for Cuntze {
     }
 
     from_terms!();
+
+    /// I2 I3 − I5 is 2 I3 times σn on the plane of the whole shear along the fibre.
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let r = &m.strengths;
+        let Tractions { normal, across, along } = Tractions::of(s);
+        let sum = (s.s22() + s.s33()).high;
+        let opened = normal.positive().high;
+        let efforts = [
+            s.s11().positive().high / r.xt(),
+            -s.s11().negative().low / r.xc(),
+            opened / r.yt(),
+            ((self.b23 - 1.0) * sum + 2.0 * self.b23 * across) / r.yc(),
+            (along * along * (along + 2.0 * self.b12 * opened)).cbrt() / r.s12(),
+        ];
+        terms::indices(interact(efforts, self.m), out);
+    }
 }
 
 const M: ParamInfo =
@@ -164,6 +182,21 @@ impl FailureCriterion for Cuntze2d {
     }
 
     from_terms!();
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        if !self.out_of_plane.admits_all(s) {
+            return out.fill(f64::INFINITY);
+        }
+        let (r, along, across) = (&m.strengths, s.s11(), s.s22());
+        let efforts = [
+            along.positive().high / r.xt(),
+            -along.negative().low / r.xc(),
+            across.positive().high / r.yt(),
+            -across.negative().low / r.yc(),
+            (s.s12().magnitude() + self.mu * across.high) / r.s12(),
+        ];
+        terms::indices(interact(efforts, self.m), out);
+    }
 
     fn scope(&self) -> &'static str {
         self.out_of_plane.scope()

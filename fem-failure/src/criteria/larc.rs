@@ -1,6 +1,10 @@
 //! What the LaRC criteria share: friction on the fracture plane and the rotation of misaligned fibres.
 
 use crate::prelude::*;
+use std::f64::consts::FRAC_PI_4;
+
+/// Stiffness against turning, over that without a load, below which rounding could make it none.
+const UNSTABLE: f64 = 1e-6;
 
 /// Constants of a ply that follow from its strengths and the fracture angle α0 under transverse compression.
 ///
@@ -57,6 +61,24 @@ impl Friction {
         })
     }
 
+    /// φ over ranges of σ11, σ22 and |σ12|; none where fibres may be unstable, or may turn by more than an eighth.
+    pub(crate) fn misalignments(
+        &self,
+        s11: Interval,
+        s22: Interval,
+        shear: Interval,
+        m: &Material,
+    ) -> Option<Interval> {
+        let begun = (m.elastic.g12 - m.strengths.xc()) * self.phi_c;
+        let stiffness = s11 - s22 + Interval { low: m.elastic.g12, high: m.elastic.g12 };
+        if !(stiffness.low > UNSTABLE * m.elastic.g12) {
+            return None;
+        }
+        let shear = shear + Interval { low: begun, high: begun };
+        let phi = shear * Interval { low: 1.0 / stiffness.high, high: 1.0 / stiffness.low };
+        (phi.magnitude() < FRAC_PI_4).then_some(phi)
+    }
+
     /// Sine and cosine of the angle by which fibres under σ11, σ22 and |σ12| have turned; none when they are unstable.
     #[inline]
     pub(crate) fn misalignment(&self, s11: f64, s22: f64, shear: f64, m: &Material) -> Option<(f64, f64)> {
@@ -70,4 +92,32 @@ impl Friction {
 #[inline]
 pub(crate) fn turned(s11: f64, s22: f64, s12: f64, (s, c): (f64, f64)) -> (f64, f64) {
     (s11 * s * s + s22 * c * c - 2.0 * s12 * s * c, (s22 - s11) * s * c + s12 * (c * c - s * s))
+}
+
+/// Ranges of σ22 and σ12 in frames turned by the angles `phi`, and of the sines of these.
+pub(crate) struct Turned {
+    pub(crate) normal: Interval,
+    pub(crate) shear: Interval,
+    pub(crate) sin: Interval,
+}
+
+impl Turned {
+    /// As [`turned`], of σ12 ≥ 0 and angles of at most an eighth of a turn.
+    pub(crate) fn of(s11: Interval, s22: Interval, s12: Interval, phi: Interval) -> Self {
+        /// What sums of stresses may be off by.
+        const ROUNDING: f64 = 1e-12;
+        // Within an eighth of a turn the sine and that of twice the angle grow, and both cosines fall with its size.
+        let grows = |of: fn(f64) -> f64| Interval { low: of(phi.low), high: of(phi.high) };
+        let least = if phi.low <= 0.0 && phi.high >= 0.0 { 0.0 } else { phi.low.abs().min(phi.high.abs()) };
+        let falls = |of: fn(f64) -> f64| Interval { low: of(phi.magnitude()), high: of(least) };
+        let (sin, sin_cos) = (grows(f64::sin), grows(|phi| 0.5 * (2.0 * phi).sin()));
+        let (cos, cos_twice) = (falls(f64::cos), falls(|phi| (2.0 * phi).cos()));
+        let off = ROUNDING * (s11.magnitude() + s22.magnitude() + s12.magnitude());
+        let off = Interval { low: -off, high: off };
+        Self {
+            normal: s11 * sin.squared() + s22 * cos.squared() - s12 * sin_cos * 2.0 + off,
+            shear: (s22 - s11) * sin_cos + s12 * cos_twice + off,
+            sin,
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! LaRC03, plane stress.
 
 use super::action_plane::{Angles, maximise};
-use super::larc::{ALPHA0, Friction, alpha0_from, turned};
+use super::larc::{ALPHA0, Friction, Turned, alpha0_from, turned};
 use super::plane_stress::OutOfPlane;
 use crate::prelude::*;
 
@@ -56,6 +56,20 @@ impl Larc03 {
         (1.0 - g) * y + g * y * y + (s12 / m.strengths.s12()).powi(2)
     }
 
+    /// What M does not exceed up to σ ≥ 0 and |τ|.
+    fn most_in_tension(&self, normal: f64, shear: f64, m: &Material) -> f64 {
+        let (g, y) = (self.toughness_ratio(m), normal / m.strengths.yt());
+        (1.0 - g).max(0.0) * y + g * y * y + (shear / m.strengths.s12()).powi(2)
+    }
+
+    /// What C does not exceed over a range of σ, up to |τ|: across the fibre planes at α0 carry least, and a pressure only helps along it.
+    fn most_in_compression(normal: Interval, shear: f64, f: &Friction, m: &Material) -> f64 {
+        const ROUNDING: f64 = 1e-12;
+        let across = normal.negative().low / m.strengths.yc();
+        let along = (shear + f.eta_l * normal.positive().high) / m.strengths.s12();
+        (1.0 + ROUNDING) * (across * across + along * along)
+    }
+
     fn matrix_compression(&self, s22: f64, s12: f64, f: &Friction, m: &Material) -> f64 {
         let index = |sin: f64, cos: f64| {
             let across = macaulay(-s22 * cos * (sin - f.eta_t * cos) / f.st);
@@ -101,6 +115,38 @@ impl FailureCriterion for Larc03 {
         } else {
             out[3] = misaligned.map_or(f64::INFINITY, |(n, t)| self.matrix_compression(n, t, &f, m));
         }
+    }
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        if !self.out_of_plane.admits_all(s) {
+            return out.fill(f64::INFINITY);
+        }
+        let f = Friction::new(self.alpha0, m);
+        let (s11, s22, shear) = (s.s11(), s.s22(), s.s12().magnitude());
+        let turned = |s11: Interval| {
+            let shear = Interval { low: 0.0, high: shear };
+            f.misalignments(s11, s22, shear, m).map(|phi| Turned::of(s11, s22, shear, phi))
+        };
+        let kinked = turned(s11.negative()).map_or(f64::INFINITY, |Turned { normal, shear, .. }| {
+            let (s12, shear) = (m.strengths.s12(), shear.magnitude());
+            let pressed = when(normal.reaches_negative(), (shear + f.eta_l * normal.negative().high) / s12);
+            let opened = when(normal.reaches_positive(), self.most_in_tension(normal.positive().high, shear, m));
+            f64::max(pressed, opened)
+        });
+        let straight = Self::most_in_compression(s22.negative(), shear, &f, m);
+        let bent = || {
+            let in_compression =
+                |turned: Turned| Self::most_in_compression(turned.normal, turned.shear.magnitude(), &f, m);
+            turned(s11.negative()).map_or(f64::INFINITY, in_compression)
+        };
+        let crushed = if s11.low < -m.strengths.yc() { f64::max(straight, bent()) } else { straight };
+        let tension = (s11.positive() - s22 * m.elastic.nu12).high / m.strengths.xt();
+        out.copy_from_slice(&[
+            when(s11.reaches_positive(), tension),
+            when(s11.reaches_negative(), kinked),
+            when(s22.reaches_positive(), self.most_in_tension(s22.positive().high, shear, m)),
+            when(s22.reaches_negative(), crushed),
+        ]);
     }
 
     fn check(&self, m: &Material) -> Result<(), UnmetCondition> {

@@ -1,7 +1,7 @@
 //! LaRC05, three-dimensional.
 
-use super::action_plane::{Angles, maximise};
-use super::larc::{ALPHA0, Friction, alpha0_from, turned};
+use super::action_plane::{Angles, Tractions, maximise};
+use super::larc::{ALPHA0, Friction, Turned, alpha0_from, turned};
 use super::puck::tractions;
 use crate::prelude::*;
 use std::f64::consts::PI;
@@ -35,18 +35,41 @@ impl Default for Larc05 {
 
 #[inline]
 fn index(n: f64, t: f64, l: f64, f: &Friction, m: &Material) -> f64 {
+    index_of_shears((t, f.st - f.eta_t * n), (l, m.strengths.s12() - f.eta_l * n), n, m)
+}
+
+/// I of each shear beside its strength, and of σn.
+#[inline]
+fn index_of_shears(across: (f64, f64), along: (f64, f64), n: f64, m: &Material) -> f64 {
     // Tension beyond strength/friction leaves nothing against any shear: the formula itself would fall again.
-    let slip = |shear: f64, strength: f64| match shear {
+    let slip = |(shear, strength): (f64, f64)| match shear {
         0.0 => 0.0,
         _ if strength <= 0.0 => f64::INFINITY,
         _ => shear / strength,
     };
-    let (across, along) = (slip(t, f.st - f.eta_t * n), slip(l, m.strengths.s12() - f.eta_l * n));
+    let (across, along) = (slip(across), slip(along));
     let opening = macaulay(n / m.strengths.yt());
     across * across + along * along + opening * opening
 }
 
+/// What [`index`] does not exceed under σn and shears of at most these sizes: it grows with all three until no strength is left.
+fn most(n: f64, t: f64, l: f64, f: &Friction, m: &Material) -> f64 {
+    /// Strength, over that without σn, below which rounding could make it none.
+    const SPENT: f64 = 1e-6;
+    let left = |strength: f64, eta: f64| if strength - eta * n > SPENT * strength { strength - eta * n } else { 0.0 };
+    index_of_shears((t, left(f.st, f.eta_t)), (l, left(m.strengths.s12(), f.eta_l)), n, m)
+}
+
 impl Larc05 {
+    /// What [`Self::kinking`] does not exceed where σ11 lies in `s11`, under what acts on planes about the fibres.
+    fn most_kinked(s11: Interval, planes: &Tractions, f: &Friction, m: &Material) -> f64 {
+        let shear = Interval { low: 0.0, high: planes.along };
+        let Some(phi) = f.misalignments(s11, planes.normal, shear, m) else { return f64::INFINITY };
+        let Turned { normal, shear, sin } = Turned::of(s11, planes.normal, shear, phi);
+        let across = planes.across + planes.along * sin.magnitude();
+        most(normal.high, across, shear.magnitude(), f, m)
+    }
+
     fn matrix(s: &Stress6<Ply>, f: &Friction, m: &Material) -> f64 {
         maximise(Angles::HalfTurn, |sin, cos| {
             let (n, t, l) = tractions(s, sin, cos);
@@ -97,6 +120,18 @@ impl FailureCriterion for Larc05 {
             out[2] = Self::kinking(s, &f, m);
         }
         out[3] = Self::matrix(s, &f, m);
+    }
+
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let f = Friction::new(self.alpha0, m);
+        let (planes, s11, half) = (Tractions::of(s), s.s11(), -0.5 * m.strengths.xc());
+        let kinked = |low: f64, high: f64| Self::most_kinked(Interval { low, high }, &planes, &f, m);
+        out.copy_from_slice(&[
+            s11.positive().high / m.strengths.xt(),
+            if s11.low <= half { kinked(s11.low, s11.high.min(half)) } else { 0.0 },
+            if s11.reaches_negative() && s11.high > half { kinked(s11.low.max(half), s11.high.min(0.0)) } else { 0.0 },
+            most(planes.normal.high, planes.across, planes.along, &f, m),
+        ]);
     }
 
     fn check(&self, m: &Material) -> Result<(), UnmetCondition> {

@@ -41,4 +41,12 @@ impl OutOfPlane {
         let seen = s.s11().abs().max(s.s22().abs()).max(s.s12().abs());
         self == Self::Ignore || [s.s33(), s.s23(), s.s31()].iter().all(|c| c.abs() <= 0.01 * seen)
     }
+
+    /// Whether it surely admits every stress of a range.
+    #[inline]
+    pub(crate) fn admits_all(self, s: &StressRange) -> bool {
+        let least = |of: Interval| of.low.max(-of.high).max(0.0);
+        let seen = least(s.s11()).max(least(s.s22())).max(least(s.s12()));
+        self == Self::Ignore || [s.s33(), s.s23(), s.s31()].iter().all(|c| c.magnitude() <= 0.01 * seen)
+    }
 }

@@ -1,6 +1,6 @@
 //! Puck's action-plane criterion, three-dimensional, and what its plane form shares with it.
 
-use super::action_plane::{Angles, maximise};
+use super::action_plane::{Angles, Tractions, maximise};
 use crate::prelude::*;
 use fem_core::plugin::Dimension;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -57,7 +57,22 @@ impl FibreFailure {
         };
         if along >= 0.0 { [along / m.strengths.xt(), 0.0] } else { [0.0, -along / m.strengths.xc()] }
     }
+
+    /// What tension and compression do not exceed over a range of stresses.
+    #[inline]
+    pub(crate) fn bounds(&self, s: &StressRange, m: &Material) -> [f64; 2] {
+        let along = match *self {
+            Self::Simple => s.s11(),
+            Self::Extended { e1f, nu12f, msf } => {
+                s.s11() - (s.s22() + s.s33()) * (m.elastic.nu12 - nu12f * msf * m.elastic.e1 / e1f)
+            }
+        };
+        [along.positive().high / m.strengths.xt(), -along.negative().low / m.strengths.xc()]
+    }
 }
+
+/// The largest factor that [`weakening`] has.
+pub(crate) const MOST_WEAKENED: f64 = 2.0;
 
 /// Factor on the inter-fibre exposure `inter` beside the exposure `fibre` of the fibres: single fibres that break early
 /// weaken the matrix. 1 up to half of the fibre failure, Puck's ellipse with s = m = 1/2 beyond.
@@ -212,6 +227,23 @@ impl FailureCriterion for Puck {
     }
 
     from_terms!();
+
+    /// fE grows with σn, with P where σn > 0, and with the shears, which at σn < 0 are all that it has.
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        let r = &m.strengths;
+        let (yt, s12, ra) = (1.0 / r.yt(), 1.0 / r.s12(), 2.0 * (1.0 + self.p23c) / r.yc());
+        let Tractions { normal, across, along } = Tractions::of(s);
+        let shear = (across * ra).hypot(along * s12);
+        let (p, n) = (f64::max(self.p23t * ra, self.p12t * s12), normal.positive().high);
+        let most = if self.weakening { MOST_WEAKENED } else { 1.0 };
+        let [tension, compression] = self.fibre.bounds(s, m);
+        out.copy_from_slice(&[
+            tension,
+            compression,
+            when(normal.reaches_positive(), most * (((yt - p) * n).hypot(shear) + p * n)),
+            when(normal.reaches_negative(), most * shear),
+        ]);
+    }
 
     fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
         let r = &m.strengths;

@@ -1,7 +1,9 @@
 //! Puck's criterion in plane stress.
 
 use super::plane_stress::OutOfPlane;
-use super::puck::{E1F, FIBRE, FibreFailure, MSF, NU12F, WEAKENING, check_slope, read_common_params, weakening};
+use super::puck::{
+    E1F, FIBRE, FibreFailure, MOST_WEAKENED, MSF, NU12F, WEAKENING, check_slope, read_common_params, weakening,
+};
 use crate::prelude::*;
 
 /// Puck's closed form for plane stress, with the plane's own inclination p23 = p12c RA/S12.
@@ -94,6 +96,32 @@ impl FailureCriterion for Puck2d {
     }
 
     from_terms!();
+
+    /// Modes A and B grow with σ22 and |σ12|; of mode C, where |σ12| ≤ −k σ22, the first term is at most that of −σ22 = |σ12|/k.
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        if !self.out_of_plane.admits_all(s) {
+            return out.fill(f64::INFINITY);
+        }
+        let r = &m.strengths;
+        let (s2, tau) = (s.s22(), s.s12().magnitude());
+        let flat = |of: Stress6<Ply>| Stress6::new([of.s11(), of.s22(), 0.0, of.s12(), 0.0, 0.0]);
+        let [tension, compression] = self.fibre.bounds(&StressRange { low: flat(s.low), high: flat(s.high) }, m);
+        let (ra, p23) = self.transverse(m);
+        let k = (1.0 + 2.0 * p23).sqrt() * r.s12() / ra;
+        let (opened, pressed) = (s2.positive().high, -s2.negative().low);
+        let a = (tau / r.s12()).hypot((1.0 - self.p12t * r.yt() / r.s12()) * opened / r.yt())
+            + self.p12t * opened / r.s12();
+        let inclined = (2.0 * (1.0 + p23) * r.s12()).powi(2);
+        let c = tau.min(k * pressed) * k * r.yc() / inclined + pressed / r.yc();
+        let most = if self.weakening { MOST_WEAKENED } else { 1.0 };
+        out.copy_from_slice(&[
+            tension,
+            compression,
+            when(s2.reaches_positive(), most * a),
+            when(s2.reaches_negative(), most * tau / r.s12()),
+            when(s2.reaches_negative(), most * c),
+        ]);
+    }
 
     fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
         check_slope("p12t Yt/S12 < 1", self.p12t * m.strengths.yt() / m.strengths.s12())

@@ -61,6 +61,23 @@ impl FailureCriterion for TsaiHill {
 
     from_terms!();
 
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        if !self.out_of_plane.admits_all(s) {
+            return out.fill(f64::INFINITY);
+        }
+        let (r, s22) = (&m.strengths, s.s22());
+        let along = |s11: Interval, x: f64| {
+            let product = match self.interaction {
+                Interaction::TsaiHill => s11 * s22,
+                Interaction::AzziTsai => Interval { low: 0.0, high: 0.0 },
+            };
+            most_of_sum([s11.squared(), product * -1.0]) / (x * x)
+        };
+        let across = f64::max(s22.positive().high / r.yt(), -s22.negative().low / r.yc());
+        let along = f64::max(along(s.s11().positive(), r.xt()), along(s.s11().negative(), r.xc()));
+        out[0] = along + across.powi(2) + (s.s12().magnitude() / r.s12()).powi(2);
+    }
+
     fn scope(&self) -> &'static str {
         self.out_of_plane.scope()
     }
