@@ -2,6 +2,7 @@
 //!
 //! What could be read in two ways (`2 s1`, `a^b^c`, a comparison without brackets) is refused. `-s1^2` is −(s1²).
 
+mod bounds;
 mod powers;
 
 pub use powers::PowerError;

@@ -162,6 +162,12 @@ impl FailureCriterion for Expression {
         }
     }
 
+    fn bounds(&self, s: &StressRange, m: &Material, out: &mut [f64]) {
+        for (out, formula) in out.iter_mut().zip(&self.formulas) {
+            *out = formula.bound(s, m);
+        }
+    }
+
     fn check(&self, m: &Material) -> Result<(), UnmetCondition> {
         let rest = Stress6::new([0.0; 6]);
         for (formula, mode) in self.formulas.iter().zip(self.info.modes) {

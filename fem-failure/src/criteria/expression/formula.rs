@@ -1,6 +1,8 @@
 //! A formula over the stress and the constants of a material.
 
+use fem_core::failure::StressRange;
 use fem_core::formula::{Formula, FormulaError, PowerError};
+use fem_core::interval::Interval;
 use fem_core::material::{Elastic, Material, Strength};
 use fem_core::tensor::{Ply, Stress6};
 
@@ -89,19 +91,40 @@ impl IndexFormula {
     }
 
     pub(super) fn value(&self, s: &Stress6<Ply>, m: &Material) -> f64 {
-        // Aliases may be there beside what they stand for.
-        let mut values = [f64::NAN; STRESSES.len() + Strength::ALL.len() + ELASTIC.len() + UNITS.len()];
-        for (value, symbol) in values.iter_mut().zip(&self.symbols) {
-            *value = match symbol {
-                Symbol::Stress(i) => s.0[*i],
-                Symbol::Strength(which) => m.strengths.get(*which).unwrap_or(f64::NAN),
-                Symbol::Elastic(constant) => constant(&m.elastic),
-                Symbol::Unit(unit) => *unit,
-            };
-        }
+        let values = self.values(m, f64::NAN, |i| s.0[i], |constant| constant);
         self.formula.value(&values[..self.symbols.len()])
     }
+
+    /// What its value does not exceed over a range of stresses; infinite where it does not say.
+    pub(super) fn bound(&self, s: &StressRange, m: &Material) -> f64 {
+        let exactly = |constant| Interval { low: constant, high: constant };
+        let values = self.values(m, exactly(f64::NAN), |i| Interval { low: s.low.0[i], high: s.high.0[i] }, exactly);
+        self.formula.bounds(&values[..self.symbols.len()]).map_or(f64::INFINITY, |bounds| bounds.high)
+    }
+
+    /// What stands for its symbols: components of stress, and constants.
+    fn values<T: Copy>(
+        &self,
+        m: &Material,
+        nothing: T,
+        stress: impl Fn(usize) -> T,
+        constant: impl Fn(f64) -> T,
+    ) -> [T; MOST_SYMBOLS] {
+        let mut values = [nothing; MOST_SYMBOLS];
+        for (value, symbol) in values.iter_mut().zip(&self.symbols) {
+            *value = match symbol {
+                Symbol::Stress(i) => stress(*i),
+                Symbol::Strength(which) => constant(m.strengths.get(*which).unwrap_or(f64::NAN)),
+                Symbol::Elastic(of) => constant(of(&m.elastic)),
+                Symbol::Unit(unit) => constant(*unit),
+            };
+        }
+        values
+    }
 }
+
+/// Aliases may be there beside what they stand for.
+const MOST_SYMBOLS: usize = STRESSES.len() + Strength::ALL.len() + ELASTIC.len() + UNITS.len();
 
 #[cfg(test)]
 mod tests {
