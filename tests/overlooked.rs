@@ -1,6 +1,6 @@
 //! What a scene says and nothing would follow from: refused, or warned of with a number.
 
-use crate::support::{Case, fem, plate};
+use crate::support::{Case, fem, plate, strip};
 
 /// A plate of solids, whose unknowns are displacements alone.
 fn case(support_and_load: &str) -> Case {
@@ -398,4 +398,46 @@ fn strengths_in_another_unit() {
     let weak = case(&format!("{CLAMPED}\nload = [{{ pressure = \"1 kPa\" }}]"));
     let weak = weak.scene("library = \"AS4/3502\"", "library = \"AS4/3502\", Yt = \"60 mPa\"");
     holds(&said(&weak, 0), &["material `tape`: Yt = 0.06 Pa is none of a solid"]);
+}
+
+/// Damping that stops the plate like honey, and cooling that no ply survives.
+#[test]
+fn sizes_of_effects_that_no_laminate_has() {
+    let cautions = |damping: &str| {
+        let case = strip().scene("mass = \"2.49 kg\"", "mass = \"0.1 g\"");
+        let effects = format!("[effects]\ndamping = {{ {damping} }}\n");
+        case.append(&effects).fem("run", &["--out", "out"]).good().stdout
+    };
+    holds(
+        &cautions("mass = \"1e6 1/s\""),
+        &["`effects.damping` damps the lowest mode of the plate by", "times what is critical"],
+    );
+    holds(&cautions("stiffness = \"1 s\""), &["`effects.damping` damps the lowest mode of the plate by"]);
+    for small in ["mass = \"30 1/s\"", "stiffness = \"2e-8 s\"", "ratio = 0.02"] {
+        assert!(!cautions(small).contains("`effects.damping`"), "{small}");
+    }
+    let cooled = |by: &str| {
+        let expands = "materials.tape = { library = \"AS4/3502\", alpha1 = \"-0.5e-6 1/K\", alpha2 = \"28e-6 1/K\" }";
+        case(&format!("{CLAMPED}\neffects = {{ cure = \"{by}\" }}"))
+            .scene("materials.tape = { library = \"AS4/3502\" }", expands)
+    };
+    holds(&said(&cooled("-1e6 K"), 1), &["no ply keeps its stiffness over a change of -1000000 K", "at most 3000 K"]);
+    said(&cooled("-150 K"), 0);
+}
+
+/// What acts on nodes that are left out because they are clamped acts on nothing.
+#[test]
+fn loads_and_terms_on_clamped_cells() {
+    let clamped = |more: &str| {
+        let groups = "cells = [4, 2], groups = { a = { x = [\"0 mm\", \"20 mm\"] }, p = { x = [\"0 mm\", \"0 mm\"], y = [\"10 mm\", \"10 mm\"] } }";
+        let text = format!("support = [{{ group = \"a\", kind = \"clamped\" }}]\n{more}");
+        case(&text).scene("cells = [4, 2]", groups)
+    };
+    let force = "load = [{ force = [\"0 N\", \"0 N\", \"1 N\"], group = \"p\", at = \"top\" }]";
+    holds(&said(&clamped(force), 1), &["a force acts at one node, and `p` has none that can move"]);
+    let along = "load = [{ force_per_length = [\"0 N/mm\", \"0 N/mm\", \"1 N/mm\"], group = \"x-min\" }]";
+    holds(&said(&clamped(along), 1), &["the group has no edges that can move"]);
+    let pressure = "load = [{ pressure = \"1 kPa\", group = \"a\" }]";
+    holds(&said(&clamped(pressure), 1), &["the group has no cells that can move"]);
+    holds(&said(&clamped("load = [{ pressure = \"1 kPa\" }]"), 0), &["left out 4 cells of `a`, which do not move"]);
 }

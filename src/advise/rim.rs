@@ -162,17 +162,12 @@ fn sum_is_zero(model: &Model, column: usize, terms: Vec<(usize, Option<Dof>, f64
     model.constraints.restrict(&sum).iter().all(|(_, weight)| weight.abs() < NOTHING)
 }
 
-/// Whether the deflection is zero at a level, or at z = 0 on the line between the two about it.
+/// Whether the deflection is zero at a level, or in the middle of the plate, on the line between the two about it.
 fn deflection_held(model: &Model, column: usize) -> bool {
     let w = Dof::new(3, 0);
     let all: Vec<usize> = levels(model, column).collect();
-    let between = |two: &[usize]| {
-        let [low, high] = [two[0], two[1]].map(|level| model.plate.levels[level]);
-        let share = -low / (high - low);
-        sum_is_zero(model, column, vec![(two[0], w, 1.0 - share), (two[1], w, share)])
-    };
-    let middle = Hold::middle(&model.plate, &all);
-    all.iter().any(|level| zero(model, column, *level, &[(w, 1.0)])) || (middle.len() == 2 && between(&middle))
+    let middle = Hold::middle(&model.plate, column, &all).into_iter().map(|(level, share)| (level, w, share)).collect();
+    all.iter().any(|level| zero(model, column, *level, &[(w, 1.0)])) || sum_is_zero(model, column, middle)
 }
 
 /// Whether springs hold the deflection of a node.

@@ -14,6 +14,8 @@ use fem_io::scene::{Form, Keys, SceneError, SceneValue, key};
 #[derive(Debug, Clone)]
 pub struct ViscousDamping {
     damping: Damping,
+    /// ζ of the lowest mode, where modes are known.
+    lowest: Option<f64>,
     /// Time (s) and power lost (W) at the end of the step before; none before t = 0, when the plate rests.
     last: (f64, f64),
     /// Work lost, ∫ u̇ᵀ C u̇ dt by the trapezoidal rule, J.
@@ -45,7 +47,7 @@ impl EffectPlugin for ViscousDamping {
             value.choice(&[("off", ())])?;
             return Ok(Wish::Off);
         }
-        Ok(Wish::On(Box::new(Self { damping: read(value)?, last: (0.0, 0.0), work: 0.0 })))
+        Ok(Wish::On(Box::new(Self { damping: read(value)?, lowest: None, last: (0.0, 0.0), work: 0.0 })))
     }
 }
 
@@ -99,6 +101,7 @@ impl Effect for ViscousDamping {
     }
 
     fn on_reduced(&mut self, reduced: &mut Reduced) {
+        self.lowest = reduced.modal.lowest_frequency().map(|omega| self.damping.ratio(omega));
         reduced.modal.damp(self.damping);
     }
 
@@ -107,6 +110,10 @@ impl Effect for ViscousDamping {
             plate.full.damp(damping);
         }
         Ok(())
+    }
+
+    fn quantities(&self, _: &ImpactSystem) -> Vec<(&'static str, f64)> {
+        self.lowest.map(|ratio| ("damping_ratio_of_lowest_mode", ratio)).into_iter().collect()
     }
 
     fn on_step(&mut self, system: &ImpactSystem, state: &State, work: &mut Vec<f64>) {

@@ -151,7 +151,9 @@ impl Builder<'_> {
             let is_released = |column: &&u32| of_named.contains(column) && !beside.contains(column);
             for hold in holds {
                 let (released, held): (Vec<u32>, _) = hold.columns.iter().partition(is_released);
-                let middle = Hold::middle(plate, &hold.levels);
+                let column = hold.columns.first().map_or(0, |column| *column as usize);
+                let middle: Vec<usize> =
+                    Hold::middle(plate, column, &hold.levels).into_iter().map(|(level, _)| level).collect();
                 let of = |keep: fn(&&Dof) -> bool| hold.dofs.iter().filter(keep).copied().collect();
                 let turns =
                     Hold { columns: released.clone(), dofs: of(|dof| dof.n() < 3 && dof.m() == 3), ..hold.clone() };

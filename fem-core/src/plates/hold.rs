@@ -146,7 +146,8 @@ impl Hold {
             let Ok(levels) = at.of(plate, column as usize) else { continue };
             let all_levels = levels.len();
             // Held at one height, the deflection leaves a clamped plate its thickness, which the plies change as they are stretched.
-            let middle = Self::middle(plate, &levels);
+            let middle: Vec<usize> =
+                Self::middle(plate, column as usize, &levels).into_iter().map(|(level, _)| level).collect();
             let of_deflection = if kind == Clamped { &middle } else { &levels };
             let chord = plate.ends(column as usize).map(|ends| {
                 let [p, q] = ends.map(|node| plate.plane.points[node as usize]);
@@ -195,20 +196,24 @@ impl Hold {
         holds
     }
 
-    /// Those of `levels` at which the deflection of a plate is held whose thickness is free: that in their middle, or the two about it.
-    pub fn middle(plate: &Plate, levels: &[usize]) -> Vec<usize> {
-        let ends = levels.first().zip(levels.last());
-        let middle = ends.map_or(0.0, |(low, high)| 0.5 * (plate.levels[*low] + plate.levels[*high]));
-        let height = |level: usize| plate.levels[level] - middle;
-        let nearest = levels.iter().copied().min_by(|a, b| height(*a).abs().total_cmp(&height(*b).abs()));
-        let Some(nearest) = nearest.filter(|nearest| !plate.same_height(height(*nearest), 0.0)) else {
-            return nearest.into_iter().collect();
+    /// Those of `levels` at which the deflection of a plate is held whose thickness is free, with their shares in it: that in the middle
+    /// of the plate that is there, or the two about it.
+    pub fn middle(plate: &Plate, column: usize, levels: &[usize]) -> Vec<(usize, f64)> {
+        let [bottom, top] = plate.outer_levels(column).map(|level| plate.levels[level]);
+        let height = |level: usize| plate.levels[level] - 0.5 * (bottom + top);
+        let nearest = |levels: &mut dyn Iterator<Item = usize>| {
+            levels.min_by(|a, b| height(*a).abs().total_cmp(&height(*b).abs()))
         };
-        let beyond = levels.iter().copied().filter(|level| height(*level) * height(nearest) < 0.0);
-        let mut two: Vec<usize> =
-            beyond.min_by(|a, b| height(*a).abs().total_cmp(&height(*b).abs())).into_iter().chain([nearest]).collect();
-        two.sort_unstable();
-        two
+        let Some(one) = nearest(&mut levels.iter().copied()) else { return Vec::new() };
+        let mut beyond = levels.iter().copied().filter(|level| height(*level) * height(one) < 0.0);
+        match nearest(&mut beyond).filter(|_| !plate.same_height(height(one), 0.0)) {
+            None => vec![(one, 1.0)],
+            Some(other) => {
+                let (low, high) = (one.min(other), one.max(other));
+                let (z0, z1) = (height(low), height(high));
+                vec![(low, z1 / (z1 - z0)), (high, z0 / (z0 - z1))]
+            }
+        }
     }
 
     /// The same as equations.
@@ -237,12 +242,9 @@ impl Hold {
     }
 
     fn equations_between(&self, plate: &Plate, origin: &str) -> Vec<Equation> {
-        let [low, high] = self.levels[..] else { return Vec::new() };
         let mut equations = Vec::new();
         for column in &self.columns {
-            let ends = plate.outer_levels(*column as usize).map(|level| plate.levels[level]);
-            let [z0, z1] = [low, high].map(|level| plate.levels[level] - 0.5 * (ends[0] + ends[1]));
-            let shares = [(low, z1 / (z1 - z0)), (high, z0 / (z0 - z1))];
+            let shares = Self::middle(plate, *column as usize, &self.levels);
             for dof in &self.dofs {
                 let at = |(level, share): (usize, f64)| {
                     let own = turned(plate, *column as usize, level, *dof, self.angle);
@@ -252,7 +254,7 @@ impl Hold {
                         .collect::<Vec<_>>()
                 };
                 equations.push(Equation {
-                    terms: shares.into_iter().flat_map(at).collect(),
+                    terms: shares.iter().copied().flat_map(at).collect(),
                     value: 0.0,
                     origin: format!("{origin}: {dof} at {}", plate.describe_column(*column as usize)),
                     holds: true,

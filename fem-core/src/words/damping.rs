@@ -10,6 +10,16 @@ pub enum Damping {
     Ratio(f64),
 }
 
+impl Damping {
+    /// ζ of a natural mode of the angular frequency `omega`, 1/s.
+    pub fn ratio(&self, omega: f64) -> f64 {
+        match self {
+            Self::Rayleigh(Rayleigh { mass, stiffness }) => 0.5 * (mass / omega + stiffness * omega),
+            Self::Ratio(ratio) => *ratio,
+        }
+    }
+}
+
 /// C = a M + b K: a natural mode is damped by the ratio ζ = (a/ω + b ω)/2.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rayleigh {

@@ -25,6 +25,12 @@ fn more(a: f64, b: f64) -> f64 {
 }
 
 impl Interval {
+    /// One number alone.
+    #[inline]
+    pub fn exactly(number: f64) -> Self {
+        Self { low: number, high: number }
+    }
+
     /// The squares of its numbers.
     #[inline]
     pub fn squared(self) -> Self {
@@ -36,6 +42,12 @@ impl Interval {
     #[inline]
     pub fn magnitude(self) -> f64 {
         more(self.low.abs(), self.high.abs())
+    }
+
+    /// Its numbers without their signs.
+    #[inline]
+    pub fn abs(self) -> Self {
+        Self { low: more(more(self.low, -self.high), 0.0), high: self.magnitude() }
     }
 
     /// Whether some of its numbers are zero or more.
@@ -114,6 +126,7 @@ mod tests {
                 holds(a.negative(), x.min(0.0));
                 holds(a.positive(), x.max(0.0));
                 holds(a * -1.5, x * -1.5);
+                holds(a.abs(), x.abs());
                 assert!(x.abs() <= a.magnitude());
                 for b in intervals().filter(|i| i.low <= i.high) {
                     for y in within(b) {

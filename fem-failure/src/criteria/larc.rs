@@ -70,11 +70,11 @@ impl Friction {
         m: &Material,
     ) -> Option<Interval> {
         let begun = (m.elastic.g12 - m.strengths.xc()) * self.phi_c;
-        let stiffness = s11 - s22 + Interval { low: m.elastic.g12, high: m.elastic.g12 };
+        let stiffness = s11 - s22 + Interval::exactly(m.elastic.g12);
         if !(stiffness.low > UNSTABLE * m.elastic.g12) {
             return None;
         }
-        let shear = shear + Interval { low: begun, high: begun };
+        let shear = shear + Interval::exactly(begun);
         let phi = shear * Interval { low: 1.0 / stiffness.high, high: 1.0 / stiffness.low };
         (phi.magnitude() < FRAC_PI_4).then_some(phi)
     }
@@ -108,8 +108,8 @@ impl Turned {
         const ROUNDING: f64 = 1e-12;
         // Within an eighth of a turn the sine and that of twice the angle grow, and both cosines fall with its size.
         let grows = |of: fn(f64) -> f64| Interval { low: of(phi.low), high: of(phi.high) };
-        let least = if phi.low <= 0.0 && phi.high >= 0.0 { 0.0 } else { phi.low.abs().min(phi.high.abs()) };
-        let falls = |of: fn(f64) -> f64| Interval { low: of(phi.magnitude()), high: of(least) };
+        let size = phi.abs();
+        let falls = |of: fn(f64) -> f64| Interval { low: of(size.high), high: of(size.low) };
         let (sin, sin_cos) = (grows(f64::sin), grows(|phi| 0.5 * (2.0 * phi).sin()));
         let (cos, cos_twice) = (falls(f64::cos), falls(|phi| (2.0 * phi).cos()));
         let off = ROUNDING * (s11.magnitude() + s22.magnitude() + s12.magnitude());

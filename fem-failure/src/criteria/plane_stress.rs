@@ -45,8 +45,7 @@ impl OutOfPlane {
     /// Whether it surely admits every stress of a range.
     #[inline]
     pub(crate) fn admits_all(self, s: &StressRange) -> bool {
-        let least = |of: Interval| of.low.max(-of.high).max(0.0);
-        let seen = least(s.s11()).max(least(s.s22())).max(least(s.s12()));
+        let seen = [s.s11(), s.s22(), s.s12()].iter().fold(0.0, |seen: f64, of| seen.max(of.abs().low));
         self == Self::Ignore || [s.s33(), s.s23(), s.s31()].iter().all(|c| c.magnitude() <= 0.01 * seen)
     }
 }

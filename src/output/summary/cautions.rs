@@ -4,7 +4,7 @@ use super::{ImpactFigures, ImpactSummary};
 use crate::analyses::delamination::Delaminated;
 use crate::analyses::impact::{Outcome, Squeeze};
 use crate::model::{Model, Plan};
-use fem_core::plugin::Dimension;
+use fem_core::plugin::{Dimension, digits};
 use fem_failure::scan::{FailureEvent, first_per_mode};
 use fem_io::scene::Window;
 
@@ -14,11 +14,11 @@ const OVER: f64 = 0.01;
 /// Share of the energy of the impact that may be lost by the integrator.
 const DAMPED: f64 = 0.01;
 
-/// The column of what damping has taken.
-const DAMPING: &str = "damping_dissipated_J";
+/// What the effect of damping says of the lowest mode.
+const DAMPING_RATIO: &str = "damping_ratio_of_lowest_mode";
 
-/// Share of the energy of the impact that no laminate loses in damping.
-const STICKY: f64 = 0.5;
+/// Ratio of the lowest mode to critical damping that no laminate has.
+const STICKY: f64 = 0.3;
 
 /// Estimated error above which a result is named.
 const LARGE: f64 = 0.05;
@@ -34,7 +34,7 @@ pub(super) fn cautions(model: &Model, outcome: &Outcome, summary: &ImpactSummary
             found.extend(damped(outcome));
         }
     }
-    found.extend(sticky(model, outcome, summary));
+    found.extend(sticky(outcome));
     found.extend(rough(summary));
     found.extend(outcome.squeezes.iter().zip(&summary.impact).filter_map(stiff));
     found.extend(first_per_mode(&outcome.events).into_iter().filter_map(|event| placed(model, event)));
@@ -80,14 +80,14 @@ fn damped(outcome: &Outcome) -> Option<String> {
     })
 }
 
-/// Damping that is no longer that of a plate.
-fn sticky(model: &Model, outcome: &Outcome, summary: &ImpactSummary) -> Option<String> {
-    let (_, lost) = super::energies(model, outcome).find(|(column, _)| column.name == DAMPING)?;
-    let share = lost / summary.impact.iter().map(|impact| impact.energy_J).sum::<f64>();
-    (share > STICKY).then(|| {
+/// Damping that is no longer that of a plate, where its modes are known.
+fn sticky(outcome: &Outcome) -> Option<String> {
+    let (_, ratio) = outcome.quantities.iter().find(|(key, _)| *key == DAMPING_RATIO)?;
+    (*ratio > STICKY).then(|| {
         format!(
-            "`effects.damping` took {:.0} % of the energy of the impact, where that of laminates takes some per cent: is its size right?",
-            1e2 * share
+            "`effects.damping` damps the lowest mode of the plate by {} times what is critical, where laminates have some hundredths: is its \
+             size right?",
+            digits(*ratio)
         )
     })
 }

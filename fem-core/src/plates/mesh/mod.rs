@@ -19,7 +19,7 @@ pub use tiling::{Flaw, FlawKind};
 
 use crate::words::domain::{CellQuality, Corners, Domain, PlaneCell};
 use curve::Chains;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 
 /// Distance over the diagonal of a mesh within which a node and a place that is named, or that a symmetry gives, are one: above
 /// the rounding of coordinates, and below what [`crate::plates::support::FreeMotions`] takes for a hold.
@@ -187,15 +187,22 @@ impl PlaneMesh {
 
     /// Edges of one cell alone, which lies to their left.
     pub fn boundary(&self) -> Vec<[u32; 2]> {
-        let sides = Sides::of(self);
-        self.quads.iter().flat_map(|q| q.sides()).filter(|side| sides.opposite(*side).is_none()).collect()
+        self.rim(|_| true)
     }
 
-    /// Edges of the cells of a group that others of them do not share.
-    fn rim(&self, group: &Group) -> Vec<[u32; 2]> {
-        let of_group = || group.quads.iter().flat_map(|quad| self.quads[*quad as usize].sides());
-        let own: HashSet<[u32; 2]> = of_group().collect();
-        of_group().filter(|[a, b]| !own.contains(&[*b, *a])).collect()
+    /// Edges of the cells `within` that no other of them has.
+    fn rim(&self, within: impl Fn(usize) -> bool) -> Vec<[u32; 2]> {
+        let sides = Sides::of(self);
+        let beyond = |side: &[u32; 2]| !sides.opposite(*side).is_some_and(|side| within(side.cell as usize));
+        let own = (0..self.quads.len()).filter(|quad| within(*quad));
+        own.flat_map(|quad| self.quads[quad].sides()).filter(beyond).collect()
+    }
+
+    /// Edges around the cells of a group.
+    fn rim_of(&self, group: &Group) -> Vec<[u32; 2]> {
+        let mut within = vec![false; self.quads.len()];
+        group.quads.iter().for_each(|quad| within[*quad as usize] = true);
+        self.rim(|quad| within[quad])
     }
 
     /// Which nodes lie inside, on no edge of one cell alone.

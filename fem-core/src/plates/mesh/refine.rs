@@ -134,7 +134,7 @@ impl PlaneMesh {
     fn convex_bends(&self) -> HashMap<[u32; 2], [f64; 2]> {
         let mut bends = HashMap::new();
         let curves = self.groups.values().filter(|g| g.dim == 1).map(|g| g.edges.clone());
-        let rims = self.groups.values().filter(|g| g.dim == 2).map(|g| self.rim(g));
+        let rims = self.groups.values().filter(|g| g.dim == 2).map(|g| self.rim_of(g));
         for edges in std::iter::once(self.boundary()).chain(curves).chain(rims) {
             let chains = Chains::of(&self.points, edges);
             for edge in chains.edges().iter().map(|edge| key(*edge)) {

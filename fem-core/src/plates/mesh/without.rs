@@ -33,7 +33,7 @@ impl PlaneMesh {
             let quads: Vec<u32> = group.quads.iter().filter_map(|quad| quad_of[*quad as usize]).collect();
             let mut edges: Vec<[u32; 2]> = group.edges.iter().filter_map(side).collect();
             if quads.is_empty() && !group.quads.is_empty() {
-                edges = self.rim(group).iter().filter_map(side).collect();
+                edges = self.rim_of(group).iter().filter_map(side).collect();
             }
             let nodes = group.nodes.iter().filter_map(|node| node_of[*node as usize]).collect();
             Group { dim: group.dim, nodes, edges, quads }

@@ -6,10 +6,6 @@ use crate::words::interval::Interval;
 /// What functions of the mathematical library may be off by, relative.
 const ROUNDING: f64 = 1e-15;
 
-fn exactly(value: f64) -> Interval {
-    Interval { low: value, high: value }
-}
-
 /// From the least to the largest of some numbers.
 fn hull(values: &[f64]) -> Interval {
     let low = values.iter().fold(f64::INFINITY, |least, v| least.min(*v));
@@ -34,7 +30,7 @@ impl Formula {
         let mut stack: Vec<Interval> = Vec::with_capacity(self.depth);
         for (step, &(symbol, _)) in self.steps.iter().zip(&self.sources) {
             let next = match *step {
-                Step::Number(number) => exactly(number),
+                Step::Number(number) => Interval::exactly(number),
                 Step::Value(k) => values[k],
                 Step::Apply(function) => apply(symbol, function, stack.pop()?)?,
                 Step::Combine(operator) => {
@@ -55,10 +51,7 @@ fn apply(symbol: &str, function: super::Function, of: Interval) -> Option<Interv
     let ends = [function(of.low), function(of.high)];
     let grows = || around(&ends);
     match symbol {
-        "abs" => {
-            let least = of.low.max(-of.high).max(0.0);
-            Some(Interval { low: least, high: of.magnitude() })
-        }
+        "abs" => Some(of.abs()),
         "pos" => Some(of.positive()),
         "sqrt" => (of.low >= 0.0).then(|| hull(&ends)),
         "ln" => (of.low > 0.0).then(grows),
@@ -70,8 +63,8 @@ fn apply(symbol: &str, function: super::Function, of: Interval) -> Option<Interv
 
 fn combine(symbol: &str, operator: super::Binary, a: Interval, b: Interval) -> Option<Interval> {
     let truth = |always: bool, never: bool| match (always, never) {
-        (true, _) => exactly(1.0),
-        (_, true) => exactly(0.0),
+        (true, _) => Interval::exactly(1.0),
+        (_, true) => Interval::exactly(0.0),
         _ => Interval { low: 0.0, high: 1.0 },
     };
     let corners =
@@ -86,7 +79,7 @@ fn combine(symbol: &str, operator: super::Binary, a: Interval, b: Interval) -> O
         "-" => Some(a - b),
         "*" => Some(a * b),
         "/" => (b.low > 0.0 || b.high < 0.0).then(|| hull(&corners())),
-        "^" if b == exactly(2.0) => Some(a.squared()),
+        "^" if b == Interval::exactly(2.0) => Some(a.squared()),
         // Of positive numbers a power goes one way in either.
         "^" if a.low > 0.0 => Some(powers()),
         "^" if b.low == b.high && b.low >= 0.0 && b.low.fract() == 0.0 => {
@@ -116,7 +109,7 @@ mod tests {
         assert_eq!(over("(x >= 0)*x^2", -3.0, 2.0), Some(Interval { low: 0.0, high: 9.0 }));
         assert_eq!(over("(x > 0)*x^2", -3.0, 0.0), Some(Interval { low: 0.0, high: 0.0 }));
         assert_eq!(over("pos(-x)/2 + abs(x)", -3.0, 2.0), Some(Interval { low: 0.0, high: 4.5 }));
-        assert_eq!(over("2*3", 0.0, 0.0), Some(exactly(6.0)));
+        assert_eq!(over("2*3", 0.0, 0.0), Some(Interval::exactly(6.0)));
     }
 
     proptest! {

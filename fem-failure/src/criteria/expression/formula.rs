@@ -97,8 +97,8 @@ impl IndexFormula {
 
     /// What its value does not exceed over a range of stresses; infinite where it does not say.
     pub(super) fn bound(&self, s: &StressRange, m: &Material) -> f64 {
-        let exactly = |constant| Interval { low: constant, high: constant };
-        let values = self.values(m, exactly(f64::NAN), |i| Interval { low: s.low.0[i], high: s.high.0[i] }, exactly);
+        let stress = |i: usize| Interval { low: s.low.0[i], high: s.high.0[i] };
+        let values = self.values(m, Interval::exactly(f64::NAN), stress, Interval::exactly);
         self.formula.bounds(&values[..self.symbols.len()]).map_or(f64::INFINITY, |bounds| bounds.high)
     }
 
