@@ -37,6 +37,7 @@ mod regions;
 mod registry;
 mod report;
 mod restart;
+mod seams;
 mod separation;
 mod snapshots;
 mod squeeze;

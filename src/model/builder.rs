@@ -371,6 +371,7 @@ impl Builder<'_> {
         self.ties(plate, &mut turns, &mut equations, &mut places)?;
         let driven = self.driven(plate, &mut equations, &mut places)?;
         self.symmetric_supports(plate, &equations, &places)?;
+        equations.extend(plate.seam_ties());
         equations.extend(plate.symmetry().equations(plate));
         places.resize(equations.len(), self.scene.symmetry.as_ref().map_or(&Place::TOP, |symmetry| &symmetry.place));
         // What springs hold does not move as a whole either.

@@ -258,6 +258,7 @@ impl Model {
                 .assign(quads, levels(laminate), stacks(laminate)?)
                 .map_err(|why| builder.error(&scene.laminates[0].laminate, why.to_string(), ""))?;
         }
+        plate.let_strains_jump(|a, b| jumps::are_unlike(&laminates[a], &laminates[b]));
         builder.check_steps(&plate, &of_specs)?;
         if let Some(split) = &mut split {
             builder.separate(split, &mut plate)?;
@@ -276,7 +277,7 @@ impl Model {
         builder.preload(&plate, &*element, &supports, &mut effects)?;
         let constraints = &supports.constraints;
         warnings.extend(builder.locked(&plate)?);
-        warnings.extend(builder.jumps(&plate, &laminates, &materials)?);
+        warnings.extend(builder.jumps(&plate)?);
         warnings.extend(builder.lacking(&plate)?);
         warnings.extend(builder.turning(&plate));
         warnings.extend(builder.nearly_turned(&plate)?);

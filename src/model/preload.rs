@@ -81,6 +81,7 @@ impl Builder<'_> {
             return Err(self.error(first, message, help).into());
         }
         equations.extend(prescribed);
+        equations.extend(plate.seam_ties());
         equations.extend(symmetric);
         let free = FreeMotions::of(plate, &equations);
         if let Some(motions) = free.pushed(plate, &forces) {

@@ -113,8 +113,8 @@ struct Class {
 }
 
 /// What equal substructures have in common: quads, their regions, how many each stands for, and vertices from the first one, in units of `GRAIN` of their size, that size
-/// as an exponent of 2, and the unknowns inside.
-type Shape = (Vec<Corners<u32>>, Vec<usize>, Vec<u32>, Vec<[i64; 2]>, i32, Vec<usize>);
+/// as an exponent of 2, and the unknowns inside; last the columns where strains jump.
+type Shape = (Vec<Corners<u32>>, Vec<usize>, Vec<u32>, Vec<[i64; 2]>, i32, Vec<usize>, Vec<usize>);
 
 /// Assembles K and M of `plate` substructure by substructure, each condensed on its masters; equal ones once.
 ///
@@ -248,7 +248,7 @@ fn shape(part: &Plate, inside: &[bool]) -> Shape {
     let inside = (0..inside.len()).filter(|dof| inside[*dof]).collect();
     let regions = (0..part.plane.quads.len()).map(|quad| part.region(quad)).collect();
     let counts = part.symmetry().quads().map(|(_, count)| count as u32).collect();
-    (part.plane.quads.clone(), regions, counts, places, exponent, inside)
+    (part.plane.quads.clone(), regions, counts, places, exponent, inside, part.seam_columns())
 }
 
 /// The independent unknowns that are masters, in an order that is good to eliminate them in.

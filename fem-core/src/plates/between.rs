@@ -34,7 +34,10 @@ pub fn between(
                     terms
                 };
                 let up = [0, 1].map(|side| (levels.len() > 1).then(|| along([0.0, 0.0, 1.0], side)));
-                found.extend(courses.iter().map(|course| along(axes_at(course.angle)[0], 0)));
+                let sides = if plate.is_on_seam(column, *level) { 0..2 } else { 0..1 };
+                found.extend(
+                    courses.iter().flat_map(|course| sides.clone().map(|side| along(axes_at(course.angle)[0], side))),
+                );
                 found.extend(up.into_iter().flatten());
             }
         }

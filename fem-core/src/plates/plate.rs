@@ -3,6 +3,7 @@
 mod layout;
 mod part;
 mod region;
+mod seams;
 mod separation;
 
 use crate::contracts::element::{Cell, ElementInfo, Stack, Tables};
@@ -12,6 +13,7 @@ use crate::plates::symmetry::{self, Symmetry};
 use crate::words::dof::Dof;
 use layout::{Columns, Layout, forms, ordered};
 use region::Region;
+use seams::{Seams, jumps};
 use std::fmt::Write;
 
 pub use separation::{CLOSED, FaceUnknowns};
@@ -37,7 +39,8 @@ pub enum ZDerivatives {
 ///   cells there, and layers of a region count from its own bottom
 /// * unknowns of a node: those of the element in its order; with layer-wise z-derivatives a node between layers has a
 ///   second set of its `Un3`, which belongs to the cells above it; where the layers may [separate](Plate::separate), of all its
-///   unknowns
+///   unknowns; one between two regions whose [strains jump](Plate::let_strains_jump) has a last set of its `Un1` and `Un2`, which
+///   belongs to the cells of the region of higher number
 #[derive(Debug, Clone)]
 pub struct Plate {
     /// The plane mesh.
@@ -64,6 +67,7 @@ pub struct Plate {
     symmetry: Symmetry,
     /// By node, whether the layers above and below may separate there; empty where they may nowhere.
     separable: Vec<bool>,
+    seams: Seams,
 }
 
 impl Plate {
@@ -108,6 +112,7 @@ impl Plate {
             pitch,
             offsets: Vec::new(),
             separable: Vec::new(),
+            seams: Seams::default(),
         };
         plate.stack_up()?;
         plate.number();
@@ -122,13 +127,19 @@ impl Plate {
         // How often a node is in a cell's lower half and upper half: both, where it lies between layers.
         let mut below = vec![false; self.columns.len() * self.levels.len()];
         let mut above = below.clone();
+        let mut seams = std::mem::take(&mut self.seams);
+        seams.clear();
         for cell in self.cell_numbers() {
-            for (i, (_, up)) in self.layout(self.place(cell).0).slots.iter().enumerate() {
+            let quad = self.place(cell).0;
+            for (i, (_, up)) in self.layout(quad).slots.iter().enumerate() {
                 let node = self.cell_node(cell, i);
                 let at = if *up == 0 { &mut above } else { &mut below };
                 at[node] = true;
+                seams.meet(node, node / self.levels.len(), self.region(quad));
             }
         }
+        seams.settle(|node| self.is_separable(node));
+        self.seams = seams;
         let mut next = 0;
         self.offsets = Vec::with_capacity(below.len() + 1);
         self.offsets.push(0);
@@ -140,6 +151,7 @@ impl Plate {
                 true => inner,
                 false => 0,
             };
+            next += self.last_set(node).count();
             self.offsets.push(next);
         }
     }
@@ -234,17 +246,22 @@ impl Plate {
         out.clear();
         let dofs = self.info().dofs;
         let nd = dofs.len();
-        for (i, (_, up)) in self.layout(self.place(cell).0).slots.iter().enumerate() {
+        let quad = self.place(cell).0;
+        for (i, (_, up)) in self.layout(quad).slots.iter().enumerate() {
             let node = self.cell_node(cell, i);
-            let first = self.offsets[node];
-            // The second set of a node between layers serves the cells above it.
-            let upper = *up == 0 && self.offsets[node + 1] - first > nd;
+            let [first, last, end] = self.sets(node);
+            // The second set of a node between layers serves the cells above it, the last one those of the later region.
+            let upper = *up == 0 && last - first > nd;
+            let later = last < end && self.seams.is_later(node / self.levels.len(), self.region(quad));
             let whole = self.is_separable(node);
-            let mut extra = first + nd;
+            let (mut second, mut third) = (first + nd, last);
             for (k, dof) in dofs.iter().enumerate() {
-                if upper && (whole || dof.m() == 3) {
-                    out.push(extra);
-                    extra += 1;
+                if later && jumps(dof, self.info().is_shell()) {
+                    out.push(third);
+                    third += 1;
+                } else if upper && (whole || dof.m() == 3) {
+                    out.push(second);
+                    second += 1;
                 } else {
                     out.push(first + k);
                 }
@@ -252,15 +269,22 @@ impl Plate {
         }
     }
 
-    /// All unknowns called `dof` at a node: none if there is no node or the element lacks it, two where layers have their
+    /// All unknowns called `dof` at a node: none if there is no node or the element lacks it, two where layers or regions have their
     /// own.
     pub fn dofs_at(&self, column: usize, level: usize, dof: Dof) -> impl Iterator<Item = usize> + use<> {
         let node = self.node(column, level);
-        let (first, end) = (self.offsets[node], self.offsets[node + 1]);
+        let [first, last, end] = self.sets(node);
         let nd = self.info().dofs.len();
         let own = self.info().dofs.iter().position(|d| *d == dof).map(|k| first + k);
         let second = self.second_set(node).position(|d| *d == dof).map(|k| first + nd + k);
-        own.into_iter().chain(second).filter(move |i| *i < end)
+        let third = self.last_set(node).position(|d| *d == dof).map(|k| last + k);
+        own.into_iter().chain(second).filter(move |i| *i < last).chain(third).filter(move |i| *i < end)
+    }
+
+    /// Where the unknowns of a node begin, its last set, and those of the next node.
+    fn sets(&self, node: usize) -> [usize; 3] {
+        let [first, end] = [self.offsets[node], self.offsets[node + 1]];
+        [first, end - self.last_set(node).count(), end]
     }
 
     /// Unknowns of the nodes of a column, from the bottom.
@@ -291,11 +315,13 @@ impl Plate {
     /// Column, level and name of an unknown.
     pub fn locate(&self, dof: usize) -> (usize, usize, Dof) {
         let node = self.offsets.partition_point(|o| *o <= dof) - 1;
-        let k = dof - self.offsets[node];
-        let name = self.info().dofs.get(k).copied().unwrap_or_else(|| {
-            let mut second = self.second_set(node);
-            second.nth(k - self.info().dofs.len()).copied().unwrap_or(self.info().dofs[0])
-        });
+        let [first, last, _] = self.sets(node);
+        let (dofs, k) = (self.info().dofs, dof - first);
+        let name = match dof.checked_sub(last) {
+            Some(k) => self.last_set(node).nth(k),
+            None => dofs.get(k).or_else(|| self.second_set(node).nth(k - dofs.len())),
+        };
+        let name = name.copied().unwrap_or(dofs[0]);
         (node / self.levels.len(), node % self.levels.len(), name)
     }
 

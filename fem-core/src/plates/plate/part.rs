@@ -1,5 +1,6 @@
 //! Some of the cells of a plate as a plate of their own.
 
+use super::seams::Seams;
 use super::{Columns, Plate};
 use crate::plates::mesh::{Group, PlaneMesh};
 use std::collections::BTreeMap;
@@ -40,7 +41,14 @@ impl Plate {
             pitch: self.pitch,
             offsets: Vec::new(),
             separable: Vec::new(),
+            seams: Seams::default(),
         };
+        let mut columns_of_whole = vec![0; part.columns.len()];
+        for (own, quad) in quads.iter().enumerate() {
+            let both = part.columns_of_quad(own).iter().zip(self.columns_of_quad(*quad as usize));
+            both.for_each(|(own, whole)| columns_of_whole[*own as usize] = *whole as usize);
+        }
+        part.seams = self.seams.of_part(columns_of_whole.into_iter());
         part.number();
         let mut unknowns = vec![0; part.ndof()];
         let (mut own, mut of_whole) = (Vec::new(), Vec::new());
