@@ -7,9 +7,9 @@ use fem_core::laminate::Laminate;
 use fem_core::laws::{LawsError, PlyLaws};
 use fem_core::material::Material;
 use fem_core::plate::Plate;
-use fem_core::plugin::{Built, Kind};
+use fem_core::plugin::{Built, Dimension, Kind};
 use fem_core::ply_law::PlyLaw;
-use fem_io::scene::{Place, PluginSpec, SceneError};
+use fem_io::scene::{Place, PluginSpec, SceneError, Window};
 
 /// Components 33, 23 and 31.
 const TRANSVERSE: [usize; 3] = [2, 4, 5];
@@ -44,6 +44,21 @@ impl Builder<'_> {
         let help = "let layers end where stiff plies meet soft ones: `layers = [3, 1, 3]` says how many plies each holds, from the \
                     bottom up; or leave the `law` out";
         Err(self.error(&self.scene.laminates[0].laminate, message, help))
+    }
+
+    /// What the user should know of a window that plies with laws do not have.
+    pub(super) fn spread_window(&self, plate: &Plate, watched: &[usize]) -> Option<String> {
+        let failure = &self.scene.failure;
+        let Window::Square(side) = failure.window else { return None };
+        let asked = self.has_laws() && self.scene.keys.contains_key("failure.window") && !failure.criteria.is_empty();
+        let widest = watched.iter().map(|quad| plate.plane.quality(*quad).area.sqrt()).fold(0.0, f64::max);
+        (asked && widest > side).then(|| {
+            let [side, widest] = [side, widest].map(|length| Dimension::LENGTH.of(length));
+            format!(
+                "plies follow laws, and their stresses are means over a cell, up to {widest} wide, not over the `failure.window` of {side}: \
+                 indices beside stress peaks come out smaller; make cells there as small as the window"
+            )
+        })
     }
 
     /// The laws of the plies, if some follow one, in the cells of a `zone` or in all.

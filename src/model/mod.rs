@@ -328,6 +328,7 @@ impl Model {
         }
         let division = builder.division(&plate, constraints, &plan)?;
         let watched = builder.find_watched(&plate, &centres)?;
+        warnings.extend(builder.spread_window(&plate, &watched));
         let gauges = builder.gauges(&plate, &laminates, &watched, &criteria)?;
         let fields = builder.fields(&plate, &centres, split.is_some())?;
         let around = builder.find_centres((&plate, laminate.plies[0].angle), &watched, &centres);

@@ -292,7 +292,7 @@ impl Builder<'_> {
             let help = "write, for example: load = [{ pressure = \"1 MPa\", face = \"top\" }]";
             return Err(self.scene.source.error_at(&Place::TOP, "`load` is missing", help).into());
         }
-        let mut forces = vec![0.0; plate.ndof()];
+        let (mut forces, mut broken) = (vec![0.0; plate.ndof()], None);
         for Load { kind, place } in loads {
             match kind {
                 LoadKind::Pressure { pressure, face, group } => {
@@ -349,7 +349,11 @@ impl Builder<'_> {
                     .error_at(place, "the load is not finite somewhere on the plate", help)
                     .into());
             }
-            self.symmetric_load(plate, &forces, place)?;
+            // The image of a load may be another one.
+            broken = self.symmetric_load(plate, &forces, place).err().map(|why| broken.take().unwrap_or(why));
+        }
+        if let Some(why) = broken {
+            return Err(why.into());
         }
         let loaded: Vec<_> = forces.iter().copied().enumerate().filter(|(_, force)| *force != 0.0).collect();
         match loads.last() {

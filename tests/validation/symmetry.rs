@@ -2,7 +2,7 @@
 
 use super::scene::Side::{Clamped, Free, Supported};
 use super::scene::{AS4, Plate, gmsh_grid};
-use crate::support::{root, whole};
+use crate::support::{plate, root, whole};
 use fem::analyses::impact::Outcome;
 use fem::analyses::{impact, modes, statics};
 use fem::core::dof::Dof;
@@ -327,4 +327,25 @@ fn turned_axes_that_all_but_are_each_others_image() {
             }
         }
     }
+}
+
+/// A quarter under tension, two loads that are each other's image: U = σ² V/2E.
+#[test]
+fn a_load_may_be_the_image_of_another() {
+    let case = |loads: &str| {
+        plate().text(&format!(
+            "title = 'tension'\nanalysis = 'static'\nmesh = {{ rectangle = ['100 mm', '80 mm'], cells = [10, 8] }}\n\
+             element = {{ kind = 'hermite-prism' }}\neffects = {{ damage = 'off' }}\nsymmetry = 'quarter'\n\
+             support = [{{ restrain = 'rigid-motions' }}]\nload = [{loads}]\nmaterials.m = {{ e = '10 GPa', nu = 0.3 }}\n\
+             laminate = {{ plies = '[0]', material = 'm', ply_thickness = '1 mm', layers = 1 }}\n"
+        ))
+    };
+    let one = "{ group = 'x-max', force_per_length = ['20 N/mm', '0 N/mm', '0 N/mm'] }";
+    let other = "{ group = 'x-min', force_per_length = ['-20 N/mm', '0 N/mm', '0 N/mm'] }";
+    let both = case(&format!("{one}, {other}"));
+    both.fem("run", &["--out", "out"]).good();
+    let energy = both.summary("out")["strain_energy_J"].as_f64().unwrap();
+    assert!((energy / 0.16 - 1.0).abs() < 1e-9, "{energy}");
+    let alone = case(one).fem("run", &["--out", "out"]);
+    assert!(alone.status == 1 && alone.stderr.contains("the load breaks the symmetry"), "{alone:?}");
 }

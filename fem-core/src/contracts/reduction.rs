@@ -64,7 +64,7 @@ impl fmt::Display for ReductionError {
             ),
             Self::FewGovernors { asked, offered, with_inertia } => {
                 let with = if *with_inertia { " with inertia" } else { "" };
-                write!(f, "{asked} governors are asked for, but the model offers only {offered}{with}")
+                write!(f, "{asked} governors are asked for, but the model offers only {offered}{with}: ask for fewer")
             }
             Self::NoGovernors => f.write_str("there is neither a contact nor a governor to condense on"),
             Self::DependentGovernors { names } => write!(
@@ -73,7 +73,9 @@ impl fmt::Display for ReductionError {
                 names.join(", ")
             ),
             Self::NotFinite(what) => write!(f, "{what} is not finite"),
-            Self::SingularStiffness => f.write_str("the reduced stiffness is singular"),
+            Self::SingularStiffness => {
+                f.write_str("the reduced stiffness is singular: take fewer vectors, or hold the plate")
+            }
             Self::SingularMass => f.write_str("the mass condensed on the governors is singular: ask for fewer"),
         }
     }

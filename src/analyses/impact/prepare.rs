@@ -446,12 +446,18 @@ fn reduce(
     let Some(basis) = basis else { return Ok(known) };
     // Where a spring that only pushes has let go, the plate answers as to the force that it does not get.
     let lifting = orthogonalise(model.one_sided().map(|spring| spring.at.clone()).collect());
-    if !lifting.is_empty() {
-        more.extend(static_responses(&mut assembled.structure, &lifting).map_err(SolveError::other)?);
+    // These come first, with forces that are known: of stiff springs hardly any energy is in what the others share with them.
+    let mut pushed = vec![0.0; lifting.len() * assembled.structure.ndof()];
+    for (spring, force) in lifting.iter().zip(pushed.chunks_exact_mut(assembled.structure.ndof().max(1))) {
+        spring.add_to(1.0, force);
     }
-    let project = |(mut basis, forces): Basis| {
-        basis.extend(more);
-        Reduced::project_loaded(&assembled.structure, &basis, forces.as_deref().unwrap_or_default())
+    let answers = match lifting[..] {
+        [] => Vec::new(),
+        _ => static_responses(&mut assembled.structure, &lifting).map_err(SolveError::other)?,
+    };
+    let project = |(basis, forces): Basis| {
+        let forces = [pushed, forces.unwrap_or_default()].concat();
+        Reduced::project_loaded(&assembled.structure, &[answers, basis, more].concat(), &forces)
     };
     let reduced = basis.and_then(project).map_err(|why| {
         let name = &impact.spec.reduction.name;
