@@ -31,6 +31,7 @@ mod model;
 mod overlooked;
 mod page;
 mod parameters;
+mod parts;
 mod pictures;
 mod recovery;
 mod regions;

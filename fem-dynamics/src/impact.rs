@@ -82,6 +82,17 @@ pub struct ImpactSystem {
     /// Internal force of a structure that softens.
     force: Vec<f64>,
     contact_calls: u64,
+    /// What it has taken note of, where that is asked for.
+    noted: Option<Vec<Noted>>,
+}
+
+/// The end of a part of a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Noted {
+    /// Time, s.
+    pub t: f64,
+    /// Each impactor then.
+    pub touches: Vec<Touch>,
 }
 
 /// One impactor at the end of a step.
@@ -161,7 +172,19 @@ impl ImpactSystem {
             newton: Newton::default(),
             force: Vec::new(),
             contact_calls: 0,
+            noted: None,
         }
+    }
+
+    /// Takes note from now on of the ends of parts of steps, which [`Self::take_noted`] is to fetch after each step.
+    #[must_use]
+    pub fn taking_notes(self) -> Self {
+        Self { noted: Some(Vec::new()), ..self }
+    }
+
+    /// What it has taken note of since this was last asked, in the order of time.
+    pub fn take_noted(&mut self) -> Vec<Noted> {
+        self.noted.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
     /// The same with spherical tips, one or none for each impactor: their contact is where they touch, and `load` of the impactor but what
@@ -598,6 +621,15 @@ impl SecondOrderSystem for ImpactSystem {
             Some(plate) => plate.commit(&state.u[..n], &mut state.histories.points).map_err(StepError::Factorisation),
             None => Ok(()),
         }
+    }
+
+    fn note(&mut self, state: &State) {
+        let Some(mut noted) = self.noted.take() else { return };
+        while noted.last().is_some_and(|last| last.t >= state.t) {
+            noted.pop();
+        }
+        noted.push(Noted { t: state.t, touches: (0..self.impactors.len()).map(|i| self.touch(i, state)).collect() });
+        self.noted = Some(noted);
     }
 
     fn indentation(&self, i: usize, s: &State) -> Indentation {

@@ -1,32 +1,22 @@
 //! Steps that are halved until an estimate of their error is within a tolerance.
 
+use super::change::Change;
 use super::copy;
-use crate::vector::dot;
-use fem_core::contact::Indentation;
 use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit, Substeps};
 
 /// Halvings of a step at most.
 const MOST: usize = 20;
 
-/// Changes below this share of what changes are not resolved for their own sake.
-const SMALL: f64 = 1e-3;
-
-/// `integrator`, with its steps halved until
-///
-/// ```text
-/// |v₂ − v₁|_M / (2ᵖ − 1) ≤ tolerance (|v₂ − v₀|_M + 10⁻³ |v₂|_M)             |v|²_M = vᵀ M v
-/// |α₂ − α₁| / (2ᵖ − 1) ≤ tolerance (h (|α̇₀| + |α̇₂|)/2 + 10⁻³ |α₂ − α_t|)      of each contact that touches
-/// ```
-///
-/// v₁ and α₁ the velocities and an indentation after one step h of order p, v₂ and α₂ after two of half the length, which are kept
-/// (Richardson's estimate), α_t where the contact begins. What a part changes of velocities and indentations is so right to `tolerance`, and so
-/// is the sum, as far as errors do not grow with time: those of the phase of a vibration do, with its number of periods.
+/// `integrator`, with its steps halved until one step h of order p and two of half the length, which are kept, differ by at most
+/// (2ᵖ − 1) `tolerance` of what changes (`Change::error`; Richardson's estimate). What a part changes of velocities and indentations is so
+/// right to `tolerance`, and so is the sum, as far as errors do not grow with time: those of the phase of a vibration do, with its number of
+/// periods.
 ///
 /// Each step is tried whole first and each half of a half likewise: nothing but the state passes from step to step, so that a
 /// restart changes no bit. A step takes about twice as long as its parts alone; an implicit one needs a factorisation for
 /// each length, which a reduced plate has for nothing.
 pub fn divided(integrator: Box<dyn Integrator>, tolerance: f64) -> Box<dyn Integrator> {
-    Box::new(Divided { integrator, tolerance, levels: Vec::new(), work: [Vec::new(), Vec::new()], parts: None })
+    Box::new(Divided { integrator, tolerance, levels: Vec::new(), change: Change::default(), parts: None })
 }
 
 #[derive(Debug, Clone)]
@@ -35,7 +25,7 @@ struct Divided {
     tolerance: f64,
     /// Those of a step, of its halves, and so on.
     levels: Vec<Level>,
-    work: [Vec<f64>; 2],
+    change: Change,
     parts: Option<Substeps>,
 }
 
@@ -118,10 +108,13 @@ impl Divided {
         let first = self.integrator.step(sys, s, 0.5 * h);
         copy(s, &mut level.half);
         let halves = first.clone().and_then(|()| self.integrator.step(sys, s, 0.5 * h));
+        let allowed = (2.0_f64.powi(self.integrator.order() as i32) - 1.0) * self.tolerance;
         let done = match tried.and(halves) {
-            Ok(()) if self.agrees(sys, &level, s) => {
+            Ok(()) if self.change.error(sys, &level.start, &level.whole, s) <= allowed => {
                 let parts = Substeps::new(2, 0.5 * h);
                 self.parts = Some(self.parts.map_or(parts, |before| before.and(parts)));
+                sys.note(&level.half);
+                sys.note(s);
                 Ok(())
             }
             Err(why) if depth == MOST => Err(why),
@@ -140,32 +133,4 @@ impl Divided {
         self.levels[depth] = level;
         done
     }
-
-    /// Whether `halves` and the whole step end near enough to each other.
-    fn agrees(&mut self, sys: &dyn SecondOrderSystem, level: &Level, halves: &State) -> bool {
-        let work = &mut self.work;
-        let mut change = |v: &[f64]| norm(sys, halves.v.iter().zip(v).map(|(a, b)| a - b), work);
-        let [off, change] = [&level.whole.v, &level.start.v].map(|v| change(v));
-        let velocity = norm(sys, halves.v.iter().copied(), work);
-        let order = 2.0_f64.powi(self.integrator.order() as i32);
-        let allowed = (order - 1.0) * self.tolerance;
-        off <= allowed * (change + SMALL * velocity)
-            && (0..halves.histories.contacts.len()).all(|i| {
-                let [start, whole, end] = [&level.start, &level.whole, halves].map(|s| sys.indentation(i, s));
-                let depth = |at: Indentation| at.alpha - sys.branches(i, &level.start.histories.contacts[i]).touch;
-                let way = 0.5 * (halves.t - level.start.t) * (start.rate.abs() + end.rate.abs());
-                [start, whole, end].into_iter().all(|at| depth(at) <= 0.0)
-                    || (end.alpha - whole.alpha).abs() <= allowed * (way + SMALL * depth(end).abs())
-            })
-    }
-}
-
-/// Root of vᵀ M v.
-fn norm(sys: &dyn SecondOrderSystem, v: impl Iterator<Item = f64>, [x, product]: &mut [Vec<f64>; 2]) -> f64 {
-    x.clear();
-    x.extend(v);
-    product.clear();
-    product.resize(x.len(), 0.0);
-    sys.add_mass(1.0, x, product);
-    dot(x, product).sqrt()
 }

@@ -1,21 +1,24 @@
 //! The embedded Runge-Kutta pair 5(4).
 
+use super::change::Change;
 use super::stages::{Rows, Stages};
-use super::{accelerate, accept};
-use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use super::{accelerate, accept, copy};
+use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::time::{Integrator, SecondOrderSystem, State, StepError, StepLimit, Substeps};
 
 /// Dormand and Prince's pair: it divides a step into parts whose estimated error is within tolerance.
 ///
-/// The estimate, the difference of the results of order 5 and 4, is the root mean square over all components of
-/// `e_u/(atol + rtol |u|)` and `h e_v/(atol + rtol h |v|)`, h the length of the part; a part is accepted up to 1.
-/// Every part is a step of its own and commits the contacts, so a contact shorter than the step is not missed. Each
-/// step tries itself whole first: nothing but the state passes from step to step.
+/// The estimate is the difference of the results of order 5 and 4 over what a part changes of velocities and indentations, as that of
+/// `march.tolerance` is (`Change::error`), so that it knows no units and no scale of the motion. Every part is a step of its own and
+/// commits the contacts, so a contact shorter than the step is not missed. Each step tries itself whole first: nothing but the state passes
+/// from step to step.
 #[derive(Debug, Clone)]
 pub struct DormandPrince {
-    rtol: f64,
-    atol: f64,
+    tolerance: f64,
     stages: Stages,
+    /// Results of a part, of order 4 and 5.
+    results: [State; 2],
+    change: Change,
     parts: Option<Substeps>,
 }
 
@@ -35,17 +38,19 @@ const ERROR: [f64; LAST + 1] =
 const MOST_PARTS: usize = 100_000;
 
 impl DormandPrince {
-    /// Estimated error of the part `h` that the stages hold, 1 at the tolerance.
-    fn error(&self, s: &State, h: f64) -> f64 {
-        let Stages { u, v, a } = &self.stages;
-        let estimate = |x: &[Vec<f64>], i: usize| h * ERROR.iter().zip(x).map(|(w, x)| w * x[i]).sum::<f64>();
-        let scale = |before: f64, after: f64| self.rtol * before.abs().max(after.abs());
-        let mut squares = 0.0;
-        for i in 0..u.len() {
-            squares += (estimate(v, i) / (self.atol + scale(s.u[i], u[i]))).powi(2);
-            squares += (h * estimate(a, i) / (self.atol + h * scale(s.v[i], v[LAST][i]))).powi(2);
+    /// Takes the results of a part `h` that ends at `t` from the stages; its estimated error, 1 at the tolerance.
+    fn take(&mut self, sys: &dyn SecondOrderSystem, s: &State, h: f64, t: f64) -> f64 {
+        let [worse, better] = &mut self.results;
+        copy(s, better);
+        self.stages.take(better, t);
+        copy(better, worse);
+        let Stages { v, a, .. } = &self.stages;
+        for (x, slopes) in [(&mut worse.u, v), (&mut worse.v, a)] {
+            for (weight, slope) in ERROR.iter().zip(slopes) {
+                x.iter_mut().zip(slope).for_each(|(x, slope)| *x -= h * weight * slope);
+            }
         }
-        (squares / (2 * u.len()).max(1) as f64).sqrt()
+        self.change.error(sys, s, worse, better) / self.tolerance
     }
 }
 
@@ -76,13 +81,15 @@ impl Integrator for DormandPrince {
         let (mut left, mut h) = (dt, dt);
         for _ in 0..MOST_PARTS {
             self.stages.run(ROWS, sys, s, h)?;
-            let error = self.error(s, h);
+            let rest = left - h;
+            let error = self.take(sys, s, h, end - rest);
             if error <= 1.0 {
-                left -= h;
+                left = rest;
                 let part = Substeps::new(1, h);
                 self.parts = Some(self.parts.map_or(part, |parts| parts.and(part)));
-                self.stages.take(s, end - left);
+                copy(&self.results[1], s);
                 accept(sys, s)?;
+                sys.note(s);
                 if left <= 0.0 {
                     return Ok(());
                 }
@@ -92,15 +99,13 @@ impl Integrator for DormandPrince {
             let factor = if error.is_finite() { (0.9 * error.powf(-0.2)).clamp(0.2, 5.0) } else { 0.2 };
             h = left.min(factor * h);
         }
-        let what = format!("more than {MOST_PARTS} parts of one step; loosen rtol or atol");
+        let what = format!("more than {MOST_PARTS} parts of one step; loosen its tolerance");
         Err(StepError::NoConvergence { t: s.t, what })
     }
 }
 
-const RTOL: ParamInfo =
-    ParamInfo::number("rtol", "relative tolerance of a part of a step").above(0.0).at_most(0.1).default(1e-6);
-const ATOL: ParamInfo =
-    ParamInfo::quantity("atol", "absolute tolerance of displacements", Dimension::LENGTH).above(0.0).default(1e-12);
+const TOLERANCE: ParamInfo =
+    ParamInfo::number("tolerance", "error of a part of a step over what it changes").above(0.0).default(1e-5);
 
 impl Plugin for DormandPrince {
     const INFO: PluginInfo = PluginInfo {
@@ -108,11 +113,16 @@ impl Plugin for DormandPrince {
         name: "dormand-prince",
         summary: "Runge-Kutta pair 5(4) that divides its steps by error control",
         source: "Dormand and Prince 1980",
-        params: &[RTOL, ATOL],
+        params: &[TOLERANCE],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
-        let (rtol, atol) = (params.number(&RTOL)?, params.number(&ATOL)?);
-        Ok(Built::Integrator(Box::new(Self { rtol, atol, stages: Stages::default(), parts: None })))
+        Ok(Built::Integrator(Box::new(Self {
+            tolerance: params.number(&TOLERANCE)?,
+            stages: Stages::default(),
+            results: [State::default(), State::default()],
+            change: Change::default(),
+            parts: None,
+        })))
     }
 }

@@ -15,6 +15,7 @@
 //! are halved until an estimate of their error is within a tolerance.
 
 mod central_difference;
+mod change;
 mod divided;
 mod dormand_prince;
 mod energy_conserving;

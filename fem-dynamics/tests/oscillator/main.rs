@@ -64,8 +64,8 @@ fn scheme(name: &str) -> Box<dyn Integrator> {
     }
 }
 
-fn dormand_prince(rtol: f64, atol: f64) -> Box<dyn Integrator> {
-    match DormandPrince::build(&Params::default().with("rtol", Value::Number(rtol)).with("atol", length(atol))) {
+fn dormand_prince(tolerance: f64) -> Box<dyn Integrator> {
+    match DormandPrince::build(&Params::default().with("tolerance", Value::Number(tolerance))) {
         Ok(Built::Integrator(scheme)) => scheme,
         other => panic!("{other:?}"),
     }

@@ -9,7 +9,7 @@ const OMEGA: f64 = 2.0 * PI;
 
 /// Dormand and Prince's pair without its error control.
 fn whole_steps(name: &str) -> Box<dyn Integrator> {
-    if name == "dormand-prince" { dormand_prince(0.1, 1.0) } else { scheme(name) }
+    if name == "dormand-prince" { dormand_prince(f64::MAX) } else { scheme(name) }
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn loaded_oscillators_converge_in_order() {
 fn a_step_of_endless_parts_is_refused() {
     let mut sys = Oscillators::free([Mode::new(OMEGA, 0.0)]);
     let mut s = State { u: vec![1.0], ..sys.state() };
-    let mut scheme = dormand_prince(1e-6, 1e-12);
+    let mut scheme = dormand_prince(1e-6);
     scheme.start(&mut sys, &mut s).unwrap();
     let end = scheme.step(&mut sys, &mut s, 1e6);
     assert!(matches!(end, Err(StepError::NoConvergence { .. })), "{end:?}");

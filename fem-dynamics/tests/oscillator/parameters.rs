@@ -46,6 +46,5 @@ fn of_integrators() {
     refused::<HhtAlpha>(&number("alpha", 0.1), "alpha");
     refused::<HhtAlpha>(&number("alpha", -0.4), "alpha");
     refused::<GeneralizedAlpha>(&number("rho", 1.1), "rho");
-    refused::<DormandPrince>(&number("rtol", 0.0), "rtol");
-    refused::<DormandPrince>(&number("atol", 1e-12), "atol");
+    refused::<DormandPrince>(&number("tolerance", 0.0), "tolerance");
 }

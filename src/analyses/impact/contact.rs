@@ -4,7 +4,7 @@ use fem_dynamics::impact::Touch;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// What the steps of a march saw of a contact, whatever rows its history has.
+/// What the steps of a march, and the parts of divided ones, saw of a contact, whatever rows its history has.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ContactRecord {
     /// Number of separate contacts.
@@ -95,9 +95,9 @@ impl Follower {
         self.record.count > 0
     }
 
-    /// Whether it can be that of `step` steps.
-    pub(super) fn is_sound(&self, step: u64) -> bool {
-        u64::from(self.record.count) <= step + 1 && self.record.growth.len() as u64 <= 2 * step + 2
+    /// Whether it can be that of so many steps and parts of steps.
+    pub(super) fn is_sound(&self, steps: u64) -> bool {
+        u64::from(self.record.count) <= steps + 1 && self.record.growth.len() as u64 <= 2 * steps + 2
     }
 
     pub(crate) fn finish(self) -> ContactRecord {

@@ -5,7 +5,7 @@ use super::modal::ModalView;
 use crate::effect::Effect;
 use fem_core::time::State;
 use fem_dynamics::guard::{Alarm, Guard};
-use fem_dynamics::impact::{Energies, ImpactSystem, Touch};
+use fem_dynamics::impact::{Energies, ImpactSystem, Noted, Touch};
 use fem_io::tables::{HistoryRow, ImpactorRow};
 use serde::{Deserialize, Serialize};
 
@@ -60,12 +60,15 @@ impl Ledger {
         Self { rows: Vec::new(), error: 0.0, forces: StepForces::new(dt), contacts, work: Vec::new() }
     }
 
-    /// Whether it can be that of a march after `step` steps of `dt`, with so many contacts and columns of effects.
-    pub(super) fn is_sound(&self, step: u64, dt: f64, contacts: usize, columns: usize) -> bool {
+    /// Whether it can be that of a march after `step` steps of `dt`, in so many `parts` where they are divided, with so many contacts and columns of effects.
+    pub(super) fn is_sound(&self, step: u64, parts: u64, dt: f64, contacts: usize, columns: usize) -> bool {
         let rows = self.rows.iter().all(|row| row.impactors.len() == contacts && row.effects.len() == columns);
         let in_time = self.rows.len() as u64 <= step + 1 && self.rows.is_sorted_by(|a, b| a.time_s < b.time_s);
         let forces = self.forces.step() == dt && self.forces.last() as u64 <= step;
-        rows && in_time && forces && self.contacts.len() == contacts && self.contacts.iter().all(|c| c.is_sound(step))
+        rows && in_time
+            && forces
+            && self.contacts.len() == contacts
+            && self.contacts.iter().all(|c| c.is_sound(step + parts))
     }
 
     /// Shows effects the end of a step.
@@ -92,13 +95,21 @@ impl Ledger {
         Ok(())
     }
 
+    /// Takes the contacts at the ends of parts of a step, up to `until`: those that are shorter than a step are seen so.
+    pub(super) fn parts(&mut self, noted: Vec<Noted>, until: f64) {
+        for Noted { t, touches } in noted.into_iter().take_while(|noted| noted.t < until) {
+            self.contacts.iter_mut().zip(touches).for_each(|(contact, touch)| contact.take(t, touch));
+        }
+    }
+
     /// Whether all impactors have struck and left for good after `step` steps: they move away from the plate, and none has touched it
     /// for a while ([`QUIET`]).
     pub(super) fn separated(&self, step: u64, system: &ImpactSystem, state: &State) -> bool {
         let last = self.forces.last() as u64;
         let gone = |(i, contact): (usize, &Follower)| contact.has_touched() && system.touch(i, state).velocity < 0.0;
         let quiet = |first: u64| (step - last) as f64 > QUIET * (last - first) as f64;
-        step > last && self.forces.first().is_some_and(quiet) && self.contacts.iter().enumerate().all(gone)
+        // Contacts within steps leave no force at their ends.
+        step > last && self.forces.first().is_none_or(quiet) && self.contacts.iter().enumerate().all(gone)
     }
 
     /// What the contacts were.

@@ -32,6 +32,9 @@ use std::rc::Rc;
 use std::sync::Arc;
 use tracing::info;
 
+/// Share of a step before its end within which a part ends with it.
+const PART: f64 = 1e-6;
+
 /// Coordinates of samples that may wait for the end of a march.
 const WAITING: u64 = 1 << 22;
 
@@ -205,6 +208,7 @@ impl<'a> March<'a> {
             // would be in one piece. What it may meet, the next step meets again.
             let _ = integrator.step(system, &mut progress.state.clone(), dt);
             integrator.take_substeps();
+            system.take_noted();
         }
         march.counted = SystemCounts::of(&march.system);
         let fits = match (&mut march.modal, modal) {
@@ -290,7 +294,7 @@ impl<'a> March<'a> {
         Ok(Self {
             model,
             guard: Guard::new(&mut system),
-            system,
+            system: system.taking_notes(),
             effects,
             integrator,
             sizes,
@@ -350,6 +354,7 @@ impl<'a> March<'a> {
         *step += 1;
         // A sum of steps drifts; the product does not.
         state.t = *step as f64 * *dt;
+        ledger.parts(system.take_noted(), state.t - PART * *dt);
         ledger.contacts(*step, system, guard, state)?;
         ledger.step(effects, system, state);
         if let Some(separation) = &self.model.separation {

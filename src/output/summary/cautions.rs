@@ -23,6 +23,9 @@ const STICKY: f64 = 0.3;
 /// Estimated error above which a result is named.
 const LARGE: f64 = 0.05;
 
+/// Steps in a contact from which on samples at their ends show it.
+const SAMPLES: f64 = 10.0;
+
 /// All of them.
 pub(super) fn cautions(model: &Model, outcome: &Outcome, summary: &ImpactSummary) -> Vec<String> {
     let mut found = Vec::new();
@@ -34,6 +37,7 @@ pub(super) fn cautions(model: &Model, outcome: &Outcome, summary: &ImpactSummary
             found.extend(damped(outcome));
         }
     }
+    found.extend(between_samples(model, outcome));
     found.extend(sticky(outcome));
     found.extend(rough(summary));
     found.extend(outcome.squeezes.iter().zip(&summary.impact).filter_map(stiff));
@@ -66,6 +70,28 @@ fn bordered(grown: &Delaminated) -> Option<String> {
     grown.at_border.then(|| {
         "damage has come to the border of where interfaces may open: enlarge `delamination.radius`, or leave it out"
             .to_owned()
+    })
+}
+
+/// Contacts that lie between two samples of a march whose steps are divided.
+fn between_samples(model: &Model, outcome: &Outcome) -> Option<String> {
+    outcome.parts?;
+    let Plan::Impact(impact) = &model.plan else { return None };
+    let dt = impact.spec.march.step.value;
+    let mean = outcome
+        .contacts
+        .iter()
+        .filter(|contact| contact.count > 0)
+        .map(|contact| contact.duration / f64::from(contact.count));
+    let shortest = mean.fold(f64::INFINITY, f64::min);
+    (shortest < SAMPLES * dt).then(|| {
+        format!(
+            "a contact lasts {} on average, and steps of {} are divided to follow it: rows of histories, stresses and indices are those at \
+             the ends of whole steps, and miss what lies between; make `march.step` at most {}",
+            Dimension::TIME.of(shortest),
+            Dimension::TIME.of(dt),
+            Dimension::TIME.of(shortest / SAMPLES)
+        )
     })
 }
 

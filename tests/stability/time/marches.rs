@@ -1,10 +1,9 @@
 //! Long marches, and what must not change them.
 
 use super::plate::{MASS, Navier, Units};
-use super::{hertz, integrator, integrator_with, largest, march, spring, struck, sun_yang};
+use super::{hertz, integrator, largest, march, spring, struck, sun_yang};
 use crate::case::{Case, Room};
 use crate::support::{Case as Scene, strip};
-use fem::core::plugin::{Dimension, Params, Value};
 use fem::core::testkit::{Mode, Oscillators};
 use fem::core::time::{State, StepLimit};
 use fem::dynamics::limit::longest_step;
@@ -173,13 +172,9 @@ fn units() -> f64 {
             let Units { mass, length, time } = units;
             let k = 8e8 / (mass / length.sqrt() / (time * time));
             let law = if elastic { hertz(k) } else { sun_yang(k, 2e-5 / length) };
-            let params = match name {
-                "dormand-prince" => Params::default().with("atol", Value::Quantity(1e-12 / length, Dimension::LENGTH)),
-                _ => Params::default(),
-            };
             let mut system = struck(&Navier::new(5, units), &[MASS / mass], 2.0 * time / length, law);
             let (longest, _) = longest_step(&mut system, StepLimit::OmegaDt(1.0)).unwrap();
-            let seen = march(integrator_with(name, &params), &mut system, 2e-7 / time, 2000).unwrap();
+            let seen = march(integrator(name), &mut system, 2e-7 / time, 2000).unwrap();
             let force = mass * length / (time * time);
             (longest * time, seen.forces.into_iter().map(|f| f * force).collect::<Vec<_>>())
         };

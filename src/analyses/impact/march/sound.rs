@@ -25,7 +25,13 @@ impl Progress {
             && sizes(state) == sizes(fresh)
             && onsets.is_sound(model.separation.as_ref().map_or(0, |of| of.interfaces.cells().len()))
             && on_time
-            && ledger.is_sound(*step, *dt, model.impactors().len(), model.effects.columns().count())
+            && ledger.is_sound(
+                *step,
+                parts.map_or(0, |parts| parts.count),
+                *dt,
+                model.impactors().len(),
+                model.effects.columns().count(),
+            )
             && tangent.as_ref().is_none_or(fits)
     }
 
