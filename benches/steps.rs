@@ -8,7 +8,7 @@
 
 use cpu_time::ThreadTime;
 use fem::analyses::impact::{self, Prepared};
-use fem::core::plugin::{Built, Dimension, Kind, Params, Value};
+use fem::core::plugin::{Built, Kind, Params, Value};
 use fem::core::time::Integrator;
 use fem::dynamics::impact::ImpactSystem;
 use fem::dynamics::integrate::{divided, located};
