@@ -39,6 +39,19 @@ fn contacts_shorter_than_a_step_are_seen() {
     assert!(apart["impact"]["peak_force_N"].as_f64().unwrap() > 100.0);
 }
 
+/// A ball leaves a plate long before this has deflected most, and is struck again.
+#[test]
+fn a_plate_that_may_deflect_further_after_the_separation_is_told_of() {
+    let of =
+        |grams: u32, end: &str| summary(&struck(grams, CLAMPED, &format!("end = '{end}', step = '0.5 us'"), ELASTIC));
+    let [early, late] = ["separation", "2 ms"].map(|end| of(1, end));
+    let said = |run: &Value| run["cautions"].to_string().contains("it may strike the impactor again");
+    assert!(said(&early) && !said(&late), "{early}");
+    let deflection = |run: &Value| run["impact"]["peak_plate_displacement_m"].as_f64().unwrap();
+    assert!(deflection(&late) > 1.3 * deflection(&early));
+    assert!(!said(&of(200, "separation")));
+}
+
 /// Modes of high frequency have amplitudes far below any displacement that one would name as a tolerance.
 #[test]
 fn error_control_knows_no_scale() {

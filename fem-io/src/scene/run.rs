@@ -696,7 +696,7 @@ pub(super) fn read_output(field: &SceneValue<'_>, march: Option<&MarchSpec>) -> 
         modes: modes.transpose()?,
         history_every: in_time("history_every")?.map(|field| field.positive(Dimension::TIME)).transpose()?,
         plots: table.optional("plots").map_or(Ok(true), |field| field.flag())?,
-        maps: in_time("maps")?.map_or(Ok(false), |field| field.flag())?,
+        maps: table.optional("maps").map_or(Ok(false), |field| field.flag())? && in_time("maps")?.is_some(),
         fields: table.optional("fields").map_or(Ok(None), |field| fields::read(&field, march))?,
     })
 }

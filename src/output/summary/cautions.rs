@@ -26,6 +26,9 @@ const LARGE: f64 = 0.05;
 /// Steps in a contact from which on samples at their ends show it.
 const SAMPLES: f64 = 10.0;
 
+/// Deflection that the energy of a plate could cause, over the largest that it had, from which on the march ended early.
+const FURTHER: f64 = 1.2;
+
 /// All of them.
 pub(super) fn cautions(model: &Model, outcome: &Outcome, summary: &ImpactSummary) -> Vec<String> {
     let mut found = Vec::new();
@@ -37,6 +40,7 @@ pub(super) fn cautions(model: &Model, outcome: &Outcome, summary: &ImpactSummary
             found.extend(damped(outcome));
         }
     }
+    found.extend(swinging(model, outcome, summary));
     found.extend(between_samples(model, outcome));
     found.extend(sticky(outcome));
     found.extend(rough(summary));
@@ -70,6 +74,23 @@ fn bordered(grown: &Delaminated) -> Option<String> {
     grown.at_border.then(|| {
         "damage has come to the border of where interfaces may open: enlarge `delamination.radius`, or leave it out"
             .to_owned()
+    })
+}
+
+/// A plate whose energy could deflect it further, w² = 2 E/k, than it was when its impactors left.
+fn swinging(model: &Model, outcome: &Outcome, summary: &ImpactSummary) -> Option<String> {
+    let Plan::Impact(impact) = &model.plan else { return None };
+    let (last, figures) = (outcome.history.last()?, summary.impact.first()?);
+    let energy = last.plate_kinetic_j + last.plate_strain_j;
+    let possible = (2.0 * energy / summary.model.static_stiffness_N_m).sqrt();
+    let further = possible > FURTHER * figures.peak_plate_displacement_m;
+    (impact.spec.march.until_separation && outcome.stopped.is_none() && further).then(|| {
+        format!(
+            "the march ended with the separation, at {}, while the plate has the energy to deflect by up to {}: its largest deflection and \
+             indices may come later, and it may strike the impactor again; write a time as `march.end`",
+            Dimension::TIME.of(last.time_s),
+            Dimension::LENGTH.of(possible)
+        )
     })
 }
 
