@@ -623,9 +623,9 @@ impl SecondOrderSystem for ImpactSystem {
         }
     }
 
-    fn note(&mut self, state: &State) {
+    fn note(&mut self, from: f64, state: &State) {
         let Some(mut noted) = self.noted.take() else { return };
-        while noted.last().is_some_and(|last| last.t >= state.t) {
+        while noted.last().is_some_and(|last| last.t > from) {
             noted.pop();
         }
         noted.push(Noted { t: state.t, touches: (0..self.impactors.len()).map(|i| self.touch(i, state)).collect() });

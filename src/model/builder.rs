@@ -538,6 +538,14 @@ impl Builder<'_> {
             let own = sides.first().ok_or_else(|| {
                 self.error(&term.node.group, format!("the element has no {}", term.dof), "choose another unknown")
             })?;
+            if matches!(term.dof.m(), 1 | 2) && plate.is_on_seam(column as usize, level) {
+                let message = format!(
+                    "{} at {} is of two values: strains jump there, where laminates lie beside each other",
+                    term.dof,
+                    plate.describe_column(column as usize)
+                );
+                return Err(self.error(&term.node.group, message, "name a node beside the line"));
+            }
             terms.extend(own.iter().map(|(dof, factor)| (*dof, term.factor * factor)));
         }
         Ok(Equation { terms, value: 0.0, origin: format!("equation {}", number + 1), holds: false })

@@ -288,7 +288,7 @@ impl Model {
                 warnings.extend(builder.unresolved(&plate, loads)?);
                 supports.check_balance(scene, &plate, &forces)?;
                 let of = (&plate, &*element);
-                let path = builder.path(of, &laminates[0], &materials, &effects, (&supports, &forces))?;
+                let path = builder.path(of, &laminates[0], &materials, (&supports, &forces))?;
                 Plan::Static { forces, path }
             }
             Analysis::Modes { count } => Plan::Modes { count: *count },

@@ -2,7 +2,6 @@
 
 use super::builder::{Builder, Held};
 use super::cracks::cell_length;
-use crate::effect::Effects;
 use crate::error::Error;
 use fem_core::constraint::{Constraints, Equation};
 use fem_core::element::Element;
@@ -96,7 +95,6 @@ impl Builder<'_> {
         (plate, element): (&Plate, &dyn Element),
         laminate: &Laminate,
         materials: &[Material],
-        effects: &Effects,
         (held, forces): (&Held<'_>, &[f64]),
     ) -> Result<Option<PathPlan>, Error> {
         let (Some(_), Analysis::Static(loads)) = (&self.scene.delamination, &self.scene.analysis) else {
@@ -123,7 +121,7 @@ impl Builder<'_> {
             (None, forced) => {
                 let unit = match spec.force {
                     Some(force) => force,
-                    None => self.largest((plate, element), loads, effects, &held.constraints)?,
+                    None => self.largest((plate, element), loads)?,
                 };
                 (forced.iter().map(|(unknown, force)| (*unknown, force / unit)).collect(), unit, None)
             }
@@ -148,16 +146,11 @@ impl Builder<'_> {
     }
 
     /// The largest force that a load exerts, N.
-    fn largest(
-        &self,
-        (plate, element): (&Plate, &dyn Element),
-        loads: &[Load],
-        effects: &Effects,
-        constraints: &Constraints,
-    ) -> Result<f64, Error> {
+    fn largest(&self, (plate, element): (&Plate, &dyn Element), loads: &[Load]) -> Result<f64, Error> {
         let mut largest = 0.0_f64;
         for load in loads {
-            let forces = self.forces(std::slice::from_ref(load), effects, plate, element, constraints)?;
+            let mut forces = vec![0.0; plate.ndof()];
+            self.add_load(load, plate, element, &mut forces)?;
             let mut sum = [0.0; 3];
             for (unknown, force) in forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
                 let (_, _, dof) = plate.locate(unknown);

@@ -292,67 +292,15 @@ impl Builder<'_> {
             let help = "write, for example: load = [{ pressure = \"1 MPa\", face = \"top\" }]";
             return Err(self.scene.source.error_at(&Place::TOP, "`load` is missing", help).into());
         }
-        let (mut forces, mut broken) = (vec![0.0; plate.ndof()], None);
-        for Load { kind, place } in loads {
-            match kind {
-                LoadKind::Pressure { pressure, face, group } => {
-                    let quads = self.pressed(plate, group)?;
-                    load::pressure(plate, element, *face, quads, |at| pressure.at(at), &mut forces);
-                }
-                LoadKind::Patch { force, at, radius } => {
-                    let (centre, _) = self.point(plate, at)?;
-                    let patch = patch::hertz(plate, element, (Face::Top, 0.0), centre, *radius).map_err(|why| {
-                        self.scene.source.error_at(
-                            place,
-                            why.to_string(),
-                            "choose a smaller `patch_radius`, or move it",
-                        )
-                    })?;
-                    patch.add_to(*force, &mut forces);
-                }
-                LoadKind::Edge { force_per_length, group } => {
-                    let edges = &self.group(plate, group)?.edges;
-                    if edges.is_empty() {
-                        return Err(self
-                            .error(
-                                group,
-                                "the group has no edges that can move",
-                                "name a physical curve that is not clamped",
-                            )
-                            .into());
-                    }
-                    load::edge(plate, element, edges, *force_per_length, &mut forces);
-                }
-                LoadKind::Point { force, node } => {
-                    let along = (1..).zip(force).filter(|(_, f)| **f != 0.0);
-                    let along: Vec<Dof> = along.filter_map(|(n, _)| Dof::new(n, 0)).collect();
-                    let nodes = self.each_node(plate, node, &along)?;
-                    let [(column, level)] = nodes[..] else {
-                        let has = if nodes.is_empty() { "none that can move" } else { "more" };
-                        let message = format!("a force acts at one node, and `{}` has {has}", node.group.value);
-                        return Err(self.error(&node.group, message, "name a group of one node and one level").into());
-                    };
-                    load::point(plate, column as usize, level, *force, &mut forces)
-                        .map_err(|why| self.error(&node.group, why.to_string(), ""))?;
-                }
-                // Those who follow a path find its force.
-                LoadKind::Displacement { .. } => {}
-                LoadKind::Gravity { acceleration } => {
-                    load::gravity(plate, element, *acceleration, &mut forces)?;
-                }
+        let mut forces = vec![0.0; plate.ndof()];
+        loads.iter().try_for_each(|load| self.add_load(load, plate, element, &mut forces))?;
+        // The image of a load may be another one; where all together break the symmetry, one alone does.
+        if let Some(why) = loads.last().and_then(|last| self.symmetric_load(plate, &forces, &last.place).err()) {
+            for load in loads {
+                let mut own = vec![0.0; plate.ndof()];
+                self.add_load(load, plate, element, &mut own)?;
+                self.symmetric_load(plate, &own, &load.place)?;
             }
-            if !forces.iter().all(|f| f.is_finite()) {
-                let help = "look for a division by zero, or a root of something negative, in the formula";
-                return Err(self
-                    .scene
-                    .source
-                    .error_at(place, "the load is not finite somewhere on the plate", help)
-                    .into());
-            }
-            // The image of a load may be another one.
-            broken = self.symmetric_load(plate, &forces, place).err().map(|why| broken.take().unwrap_or(why));
-        }
-        if let Some(why) = broken {
             return Err(why.into());
         }
         let loaded: Vec<_> = forces.iter().copied().enumerate().filter(|(_, force)| *force != 0.0).collect();
@@ -364,6 +312,68 @@ impl Builder<'_> {
             }
             _ => Ok(forces),
         }
+    }
+
+    /// Adds the forces of a load.
+    pub(super) fn add_load(
+        &self,
+        Load { kind, place }: &Load,
+        plate: &Plate,
+        element: &dyn Element,
+        forces: &mut [f64],
+    ) -> Result<(), Error> {
+        match kind {
+            LoadKind::Pressure { pressure, face, group } => {
+                let quads = self.pressed(plate, group)?;
+                load::pressure(plate, element, *face, quads, |at| pressure.at(at), forces);
+            }
+            LoadKind::Patch { force, at, radius } => {
+                let (centre, _) = self.point(plate, at)?;
+                let patch = patch::hertz(plate, element, (Face::Top, 0.0), centre, *radius).map_err(|why| {
+                    self.scene.source.error_at(place, why.to_string(), "choose a smaller `patch_radius`, or move it")
+                })?;
+                patch.add_to(*force, forces);
+            }
+            LoadKind::Edge { force_per_length, group } => {
+                let edges = &self.group(plate, group)?.edges;
+                if edges.is_empty() {
+                    return Err(self
+                        .error(
+                            group,
+                            "the group has no edges that can move",
+                            "name a physical curve that is not clamped",
+                        )
+                        .into());
+                }
+                load::edge(plate, element, edges, *force_per_length, forces);
+            }
+            LoadKind::Point { force, node } => {
+                let along = (1..).zip(force).filter(|(_, f)| **f != 0.0);
+                let along: Vec<Dof> = along.filter_map(|(n, _)| Dof::new(n, 0)).collect();
+                let nodes = self.each_node(plate, node, &along)?;
+                let [(column, level)] = nodes[..] else {
+                    let has = if nodes.is_empty() { "none that can move" } else { "more" };
+                    let message = format!("a force acts at one node, and `{}` has {has}", node.group.value);
+                    return Err(self.error(&node.group, message, "name a group of one node and one level").into());
+                };
+                load::point(plate, column as usize, level, *force, forces)
+                    .map_err(|why| self.error(&node.group, why.to_string(), ""))?;
+            }
+            // Those who follow a path find its force.
+            LoadKind::Displacement { .. } => {}
+            LoadKind::Gravity { acceleration } => {
+                load::gravity(plate, element, *acceleration, forces)?;
+            }
+        }
+        if !forces.iter().all(|f| f.is_finite()) {
+            let help = "look for a division by zero, or a root of something negative, in the formula";
+            return Err(self
+                .scene
+                .source
+                .error_at(place, "the load is not finite somewhere on the plate", help)
+                .into());
+        }
+        Ok(())
     }
 
     /// What is lost of pressures that change faster than the cells are integrated.

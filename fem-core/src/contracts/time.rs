@@ -146,9 +146,9 @@ pub trait SecondOrderSystem {
     /// A point at which a law finds no answer.
     fn commit(&mut self, state: &mut State) -> Result<(), StepError>;
 
-    /// Takes note of the end of a part of a step that an integrator has divided. Parts may be tried anew: a later note of an earlier time
-    /// takes back those that follow it.
-    fn note(&mut self, _state: &State) {}
+    /// Takes note of the end of a part of a step that an integrator has divided, and that began at the time `from`. Parts may be tried anew:
+    /// a note takes back those after its beginning.
+    fn note(&mut self, _from: f64, _state: &State) {}
 
     /// Indentation of contact `i` and its rate.
     fn indentation(&self, i: usize, state: &State) -> Indentation;

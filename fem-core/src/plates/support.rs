@@ -61,7 +61,7 @@ pub(super) fn axes_at(angle: f64) -> [[f64; 3]; 3] {
 }
 
 /// `dof` of a node in axes turned by `angle` (radians) about z, as a sum of its own unknowns; twice where layers have z-derivatives
-/// of their own, not at all where the element has none of them.
+/// of their own or laminates beside each other those along x and y, not at all where the element has none of them.
 ///
 /// In turned axes U′ₙ₀ = Σ Rₙᵢ Uᵢ₀ and U′ₙₘ = Σ Rₙᵢ Rₘⱼ Uᵢⱼ.
 pub fn turned(plate: &Plate, column: usize, level: usize, dof: Dof, angle: f64) -> Vec<Vec<(usize, f64)>> {

@@ -207,6 +207,11 @@ impl Symmetry {
         self.kept.iter().map(|(quad, size)| (*quad as usize, f64::from(*size)))
     }
 
+    /// Whether no other column stands for this one.
+    pub(crate) fn represents_itself(&self, column: usize) -> bool {
+        self.columns[column] as usize == column
+    }
+
     /// Whether every operation leaves the point where it is.
     pub fn keeps(&self, point: [f64; 2]) -> bool {
         self.operations().all(|o| {

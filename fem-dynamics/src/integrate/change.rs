@@ -22,11 +22,12 @@ impl Change {
     /// ```
     ///
     /// v₀ the velocities at the `start` of a part, v₁ and v₂ those of two results at its end, the `worse` and the `better`, α an
-    /// indentation and α_t where the contact begins. It knows no units and no scale of the motion.
+    /// indentation and α_t where the contact begins. It knows no units and no scale of the motion;
+    /// what has no mass and lies under no contact is not measured.
     pub(super) fn error(&mut self, sys: &dyn SecondOrderSystem, start: &State, worse: &State, better: &State) -> f64 {
         let work = &mut self.work;
-        let mut change = |v: &[f64]| norm(sys, better.v.iter().zip(v).map(|(a, b)| a - b), work);
-        let [off, change] = [&worse.v, &start.v].map(|v| change(v));
+        let mut from = |v: &[f64]| norm(sys, better.v.iter().zip(v).map(|(a, b)| a - b), work);
+        let [off, change] = [&worse.v, &start.v].map(|v| from(v));
         let velocity = norm(sys, better.v.iter().copied(), work);
         let of_contacts = (0..better.histories.contacts.len()).map(|i| {
             let [from, other, to] = [start, worse, better].map(|s| sys.indentation(i, s));
@@ -54,5 +55,7 @@ fn norm(sys: &dyn SecondOrderSystem, v: impl Iterator<Item = f64>, [x, product]:
     product.clear();
     product.resize(x.len(), 0.0);
     sys.add_mass(1.0, x, product);
-    dot(x, product).sqrt()
+    let square = dot(x, product);
+    // Of a mass that is hardly there rounding may leave less than nothing; what is no number stays none.
+    if square < 0.0 { 0.0 } else { square.sqrt() }
 }

@@ -113,8 +113,8 @@ impl Divided {
             Ok(()) if self.change.error(sys, &level.start, &level.whole, s) <= allowed => {
                 let parts = Substeps::new(2, 0.5 * h);
                 self.parts = Some(self.parts.map_or(parts, |before| before.and(parts)));
-                sys.note(&level.half);
-                sys.note(s);
+                sys.note(level.start.t, &level.half);
+                sys.note(level.half.t, s);
                 Ok(())
             }
             Err(why) if depth == MOST => Err(why),

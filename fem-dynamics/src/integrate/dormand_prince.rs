@@ -87,9 +87,10 @@ impl Integrator for DormandPrince {
                 left = rest;
                 let part = Substeps::new(1, h);
                 self.parts = Some(self.parts.map_or(part, |parts| parts.and(part)));
+                let from = s.t;
                 copy(&self.results[1], s);
                 accept(sys, s)?;
-                sys.note(s);
+                sys.note(from, s);
                 if left <= 0.0 {
                     return Ok(());
                 }
@@ -104,8 +105,10 @@ impl Integrator for DormandPrince {
     }
 }
 
-const TOLERANCE: ParamInfo =
-    ParamInfo::number("tolerance", "error of a part of a step over what it changes").above(0.0).default(1e-5);
+const TOLERANCE: ParamInfo = ParamInfo::number("tolerance", "error of a part of a step over what it changes")
+    .above(0.0)
+    .at_most(0.1)
+    .default(1e-5);
 
 impl Plugin for DormandPrince {
     const INFO: PluginInfo = PluginInfo {

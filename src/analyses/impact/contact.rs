@@ -44,13 +44,15 @@ pub(crate) struct Follower {
     thresholds: Option<[f64; 2]>,
     /// Time, force and magnitude of the deflection at the step before; all are 0 at the beginning.
     last: (f64, f64, f64),
+    /// First and last time with a force, s.
+    touched: Option<[f64; 2]>,
     record: ContactRecord,
 }
 
 impl Follower {
     /// `thresholds`: forces whose first reaching is noted, N.
     pub(super) fn new(thresholds: Option<[f64; 2]>) -> Self {
-        Self { thresholds, last: (0.0, 0.0, 0.0), record: ContactRecord::default() }
+        Self { thresholds, last: (0.0, 0.0, 0.0), touched: None, record: ContactRecord::default() }
     }
 
     /// Of a march that begins at time `t`, s.
@@ -60,7 +62,7 @@ impl Follower {
 
     /// Times of thresholds come by linear interpolation between steps.
     pub(crate) fn take(&mut self, t: f64, Touch { indentation, force, deflection, radius, .. }: Touch) {
-        let Self { thresholds, last: (before, low, shallow), record } = self;
+        let Self { thresholds, last: (before, low, shallow), touched, record } = self;
         record.deepest = record.deepest.max(indentation);
         record.radius = record.radius.max(radius);
         record.deflection = record.deflection.max(deflection);
@@ -68,6 +70,7 @@ impl Follower {
         let dt = t - *before;
         if force > 0.0 {
             record.duration += dt;
+            *touched = Some([touched.map_or(t, |[first, _]| first), t]);
         }
         record.power[0] += force * force * dt;
         record.power[1] += (force - *low).powi(2) / dt;
@@ -88,6 +91,11 @@ impl Follower {
             }
         }
         self.last = (t, force, deflection);
+    }
+
+    /// First and last time with a force, s.
+    pub(super) fn touched(&self) -> Option<[f64; 2]> {
+        self.touched
     }
 
     /// Whether there has been a contact.

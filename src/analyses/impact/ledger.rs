@@ -20,6 +20,9 @@ const DENSE: u32 = 10;
 /// that swings back within it touches again.
 const QUIET: f64 = 0.05;
 
+/// Share of a step before its end within which a part ends with it: times of parts are sums, those of steps products.
+const AT_END: f64 = 1e-6;
+
 /// What every step adds to.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Ledger {
@@ -60,7 +63,8 @@ impl Ledger {
         Self { rows: Vec::new(), error: 0.0, forces: StepForces::new(dt), contacts, work: Vec::new() }
     }
 
-    /// Whether it can be that of a march after `step` steps of `dt`, in so many `parts` where they are divided, with so many contacts and columns of effects.
+    /// Whether it can be that of a march after `step` steps of `dt`, in so many `parts` where they are divided, with so many contacts and
+    /// columns of effects.
     pub(super) fn is_sound(&self, step: u64, parts: u64, dt: f64, contacts: usize, columns: usize) -> bool {
         let rows = self.rows.iter().all(|row| row.impactors.len() == contacts && row.effects.len() == columns);
         let in_time = self.rows.len() as u64 <= step + 1 && self.rows.is_sorted_by(|a, b| a.time_s < b.time_s);
@@ -95,8 +99,9 @@ impl Ledger {
         Ok(())
     }
 
-    /// Takes the contacts at the ends of parts of a step, up to `until`: those that are shorter than a step are seen so.
-    pub(super) fn parts(&mut self, noted: Vec<Noted>, until: f64) {
+    /// Takes the contacts at the ends of parts of a step that ends at `end`: those that are shorter than a step are seen so.
+    pub(super) fn parts(&mut self, noted: Vec<Noted>, end: f64) {
+        let until = end - AT_END * self.forces.step();
         for Noted { t, touches } in noted.into_iter().take_while(|noted| noted.t < until) {
             self.contacts.iter_mut().zip(touches).for_each(|(contact, touch)| contact.take(t, touch));
         }
@@ -105,11 +110,13 @@ impl Ledger {
     /// Whether all impactors have struck and left for good after `step` steps: they move away from the plate, and none has touched it
     /// for a while ([`QUIET`]).
     pub(super) fn separated(&self, step: u64, system: &ImpactSystem, state: &State) -> bool {
-        let last = self.forces.last() as u64;
+        let touched = self.contacts.iter().filter_map(Follower::touched);
+        let Some([first, last]) = touched.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]) else { return false };
+        // The step at whose end, or in whose parts, that was.
+        let [first, last] = [first, last].map(|t| (t / self.forces.step() - AT_END).ceil());
+        let step = step as f64;
         let gone = |(i, contact): (usize, &Follower)| contact.has_touched() && system.touch(i, state).velocity < 0.0;
-        let quiet = |first: u64| (step - last) as f64 > QUIET * (last - first) as f64;
-        // Contacts within steps leave no force at their ends.
-        step > last && self.forces.first().is_none_or(quiet) && self.contacts.iter().enumerate().all(gone)
+        step > last && step - last > QUIET * (last - first) && self.contacts.iter().enumerate().all(gone)
     }
 
     /// What the contacts were.

@@ -32,9 +32,6 @@ use std::rc::Rc;
 use std::sync::Arc;
 use tracing::info;
 
-/// Share of a step before its end within which a part ends with it.
-const PART: f64 = 1e-6;
-
 /// Coordinates of samples that may wait for the end of a march.
 const WAITING: u64 = 1 << 22;
 
@@ -347,14 +344,16 @@ impl<'a> March<'a> {
     fn step(&mut self) -> Result<(), Error> {
         let Self { system, guard, effects, .. } = self;
         let Progress { step, dt, row_every, state, ledger, parts, onsets, .. } = &mut self.progress;
-        self.integrator.step(system, state, *dt)?;
+        let stepped = self.integrator.step(system, state, *dt);
+        // Also of a step that fails in the end.
+        ledger.parts(system.take_noted(), (*step + 1) as f64 * *dt);
+        stepped?;
         if let Some(more) = self.integrator.take_substeps() {
             *parts = Some(parts.map_or(more, |parts| parts.and(more)));
         }
         *step += 1;
         // A sum of steps drifts; the product does not.
         state.t = *step as f64 * *dt;
-        ledger.parts(system.take_noted(), state.t - PART * *dt);
         ledger.contacts(*step, system, guard, state)?;
         ledger.step(effects, system, state);
         if let Some(separation) = &self.model.separation {

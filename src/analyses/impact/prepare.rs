@@ -447,17 +447,19 @@ fn reduce(
     // Where a spring that only pushes has let go, the plate answers as to the force that it does not get.
     let lifting = orthogonalise(model.one_sided().map(|spring| spring.at.clone()).collect());
     // These come first, with forces that are known: of stiff springs hardly any energy is in what the others share with them.
-    let mut pushed = vec![0.0; lifting.len() * assembled.structure.ndof()];
-    for (spring, force) in lifting.iter().zip(pushed.chunks_exact_mut(assembled.structure.ndof().max(1))) {
-        spring.add_to(1.0, force);
-    }
+    let ndof = assembled.structure.ndof();
+    let mut pushed = vec![0.0; lifting.len() * ndof];
+    lifting.iter().zip(pushed.chunks_exact_mut(ndof.max(1))).for_each(|(spring, force)| spring.add_to(1.0, force));
     let answers = match lifting[..] {
         [] => Vec::new(),
         _ => static_responses(&mut assembled.structure, &lifting).map_err(SolveError::other)?,
     };
-    let project = |(basis, forces): Basis| {
-        let forces = [pushed, forces.unwrap_or_default()].concat();
-        Reduced::project_loaded(&assembled.structure, &[answers, basis, more].concat(), &forces)
+    let project = |(mut basis, forces): Basis| {
+        let mut forces = forces.unwrap_or_default();
+        basis.splice(0..0, answers);
+        forces.splice(0..0, pushed);
+        basis.extend(more);
+        Reduced::project_loaded(&assembled.structure, &basis, &forces)
     };
     let reduced = basis.and_then(project).map_err(|why| {
         let name = &impact.spec.reduction.name;

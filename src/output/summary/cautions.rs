@@ -80,10 +80,12 @@ fn bordered(grown: &Delaminated) -> Option<String> {
 /// A plate whose energy could deflect it further, w² = 2 E/k, than it was when its impactors left.
 fn swinging(model: &Model, outcome: &Outcome, summary: &ImpactSummary) -> Option<String> {
     let Plan::Impact(impact) = &model.plan else { return None };
-    let (last, figures) = (outcome.history.last()?, summary.impact.first()?);
+    let [figures] = &summary.impact[..] else { return None };
+    let last = outcome.history.last()?;
     let energy = last.plate_kinetic_j + last.plate_strain_j;
     let possible = (2.0 * energy / summary.model.static_stiffness_N_m).sqrt();
-    let further = possible > FURTHER * figures.peak_plate_displacement_m;
+    // What flies has energy that deflects nothing.
+    let further = model.motions.is_empty() && possible > FURTHER * figures.peak_plate_displacement_m;
     (impact.spec.march.until_separation && outcome.stopped.is_none() && further).then(|| {
         format!(
             "the march ended with the separation, at {}, while the plate has the energy to deflect by up to {}: its largest deflection and \
@@ -99,12 +101,12 @@ fn between_samples(model: &Model, outcome: &Outcome) -> Option<String> {
     outcome.parts?;
     let Plan::Impact(impact) = &model.plan else { return None };
     let dt = impact.spec.march.step.value;
-    let mean = outcome
+    let means = outcome
         .contacts
         .iter()
         .filter(|contact| contact.count > 0)
         .map(|contact| contact.duration / f64::from(contact.count));
-    let shortest = mean.fold(f64::INFINITY, f64::min);
+    let shortest = means.fold(f64::INFINITY, f64::min);
     (shortest < SAMPLES * dt).then(|| {
         format!(
             "a contact lasts {} on average, and steps of {} are divided to follow it: rows of histories, stresses and indices are those at \

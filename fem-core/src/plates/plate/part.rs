@@ -43,12 +43,12 @@ impl Plate {
             separable: Vec::new(),
             seams: Seams::default(),
         };
-        let mut columns_of_whole = vec![0; part.columns.len()];
+        let mut columns_of_whole = vec![None; part.columns.len()];
         for (own, quad) in quads.iter().enumerate() {
             let both = part.columns_of_quad(own).iter().zip(self.columns_of_quad(*quad as usize));
-            both.for_each(|(own, whole)| columns_of_whole[*own as usize] = *whole as usize);
+            both.for_each(|(own, whole)| columns_of_whole[*own as usize] = Some(*whole as usize));
         }
-        part.seams = self.seams.of_part(columns_of_whole.into_iter());
+        part.seams = self.seams.of_part(&columns_of_whole);
         part.number();
         let mut unknowns = vec![0; part.ndof()];
         let (mut own, mut of_whole) = (Vec::new(), Vec::new());

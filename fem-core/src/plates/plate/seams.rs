@@ -46,8 +46,9 @@ impl Seams {
     }
 
     /// The same for the columns of a part, `whole` saying which each of them is.
-    pub(super) fn of_part(&self, whole: impl Iterator<Item = usize>) -> Self {
-        let columns = whole.enumerate().filter_map(|(own, column)| Some((own, *self.columns.get(&column)?)));
+    pub(super) fn of_part(&self, whole: &[Option<usize>]) -> Self {
+        let seam = |column: &Option<usize>| self.columns.get(column.as_ref()?).copied();
+        let columns = whole.iter().enumerate().filter_map(|(own, column)| Some((own, seam(column)?)));
         Self { columns: columns.collect(), met: BTreeMap::new() }
     }
 
@@ -67,7 +68,7 @@ impl Plate {
     /// there, and with them their derivatives along the line and along z, but those across it jump where stiffness does. Until
     /// [`Plate::seam_ties`] hold the derivatives along the line together, they are free.
     ///
-    /// Where lines meet or turn at a corner, displacements that are continuous along both leave no derivative that could jump.
+    /// Nodes at which layers may [separate](Self::separate) share them. Where lines meet or turn at a corner, displacements that are continuous along both leave no derivative that could jump.
     ///
     /// To be done when all regions are assigned, and before the plate is folded.
     pub fn let_strains_jump(&mut self, unlike: impl Fn(usize, usize) -> bool) {
@@ -141,6 +142,10 @@ impl Plate {
         for node in self.seams.met.keys() {
             let (column, level) = (node / self.levels.len(), node % self.levels.len());
             let Some(Seam { angle, .. }) = self.seams.columns.get(&column) else { continue };
+            // The ties of images follow by symmetry: their own, from other nodes, would differ in the last digits and hold what jumps.
+            if !self.symmetry.represents_itself(column) {
+                continue;
+            }
             let (sine, cosine) = angle.sin_cos();
             for n in 1..=3 {
                 let mut terms = Vec::new();
@@ -166,13 +171,14 @@ impl Plate {
     }
 
     /// Whether a node has derivatives along x and y for both sides of a line.
-    pub(crate) fn is_on_seam(&self, column: usize, level: usize) -> bool {
+    pub fn is_on_seam(&self, column: usize, level: usize) -> bool {
         self.seams.met.contains_key(&self.node(column, level))
     }
 }
 
-/// Cosine of an angle that is a right one but for rounding.
-const ALONG: f64 = 1e-12;
+/// Cosine of an angle that is a right one but for how well nodes know it: beside a support that holds the other derivative, what is left of
+/// a tie would hold the one that jumps.
+const ALONG: f64 = 1e-4;
 
 /// Origin of the equations of [`Plate::seam_ties`].
 const SEAM: &str = "the line between two laminates";
