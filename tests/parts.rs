@@ -52,15 +52,19 @@ fn a_plate_that_may_deflect_further_after_the_separation_is_told_of() {
     assert!(!said(&of(200, "separation")));
 }
 
-/// Modes of high frequency have amplitudes far below any displacement that one would name as a tolerance.
+/// Modes of high frequency have amplitudes far below any displacement that one would name as a tolerance: with one of 1e-12 m the force of
+/// this example was 10 % too large, whatever the relative tolerance.
 #[test]
 fn error_control_knows_no_scale() {
+    let case = Case::example("as4-3502-8ply-50mm");
     let of = |integrator: &str, step: &str| {
-        let march = format!("end = '0.5 ms', step = '{step}', integrator = '{integrator}'");
-        summary(&struck(20, CLAMPED, &march, ELASTIC))["impact"]["peak_force_N"].as_f64().unwrap()
+        let set = [format!("march.integrator={integrator}"), format!("march.step={step}")];
+        let set = [&set[0], &set[1], "effects.damage=off", "output.plots=false"].map(|key| ["--set", key]).concat();
+        case.fem("run", &[&["--out", integrator][..], &set].concat()).good();
+        case.summary(integrator)["impact"]["peak_force_N"].as_f64().unwrap()
     };
-    let (ours, fine) = (of("dormand-prince", "1 us"), of("rk4", "0.05 us"));
-    assert!((ours / fine - 1.0).abs() < 1e-3, "{ours}, not {fine}");
+    let (ours, fine) = (of("dormand-prince", "2"), of("rk4", "0.05"));
+    assert!((ours / fine - 1.0).abs() < 3e-3, "{ours}, not {fine}");
 }
 
 /// More vectors than the impact excites modes: springs that only push still answer as they do without a reduction.

@@ -124,6 +124,25 @@ fn symmetries_and_substructures_know_both_sides() {
     }
 }
 
+/// What crosses the line is of two values there, and an equation would hold one of them.
+#[test]
+fn an_equation_names_no_derivative_of_two_values() {
+    let mesh = with_core(rectangle([0.1, 0.02], [4, 2]), |[x, _]| x < 0.05);
+    let of = |x: u32| {
+        let tie = format!(
+            "equation = [{{ terms = [{{ dof = \"U31\", at = \"top\", group = \"n{x}\", factor = 1.0 }}, \
+             {{ dof = \"U13\", at = \"top\", group = \"n{x}\", factor = 1.0 }}] }}]"
+        );
+        let mut mesh = mesh.clone();
+        let node = mesh.points.iter().position(|p| (p[0] - 1e-3 * f64::from(x)).abs() < 1e-9 && p[1] == 0.01).unwrap();
+        mesh.groups.insert(format!("n{x}"), Group { dim: 0, nodes: vec![node as u32], ..Group::default() });
+        case(&mesh, PRISM, [(10.0, 0.3), (100.0, 0.3)], &format!("{CANTILEVER}\n{tie}")).fem("run", &["--out", "out"])
+    };
+    let on_line = of(50);
+    assert!(on_line.status == 1 && on_line.stderr.contains("is of two values"), "{on_line:?}");
+    of(75).good();
+}
+
 /// A disc of radius R in `n` sides whose core of radius a is a group: a square of cells, rings to a, rings to R.
 fn disc([a, radius]: [f64; 2], n: usize) -> PlaneMesh {
     let k = n / 4;

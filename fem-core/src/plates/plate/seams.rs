@@ -51,11 +51,6 @@ impl Seams {
         let columns = whole.iter().enumerate().filter_map(|(own, column)| Some((own, seam(column)?)));
         Self { columns: columns.collect(), met: BTreeMap::new() }
     }
-
-    #[cfg(feature = "assembly")]
-    fn columns(&self) -> impl Iterator<Item = usize> + '_ {
-        self.columns.keys().copied()
-    }
 }
 
 /// Whether an unknown is a derivative that jumps where stiffness does: along x and y, but for the slopes of a shell.
@@ -167,7 +162,7 @@ impl Plate {
     /// Columns on lines between regions whose strains may jump.
     #[cfg(feature = "assembly")]
     pub(crate) fn seam_columns(&self) -> Vec<usize> {
-        self.seams.columns().collect()
+        self.seams.columns.keys().copied().collect()
     }
 
     /// Whether a node has derivatives along x and y for both sides of a line.
