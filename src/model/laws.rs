@@ -50,9 +50,9 @@ impl Builder<'_> {
     pub(super) fn spread_window(&self, plate: &Plate, watched: &[usize]) -> Option<String> {
         let failure = &self.scene.failure;
         let Window::Square(side) = failure.window else { return None };
-        let asked = self.has_laws() && self.scene.keys.contains_key("failure.window") && !failure.criteria.is_empty();
+        let judged = self.has_laws() && !failure.criteria.is_empty();
         let widest = watched.iter().map(|quad| plate.plane.quality(*quad).area.sqrt()).fold(0.0, f64::max);
-        (asked && widest > side).then(|| {
+        (judged && widest > side).then(|| {
             let [side, widest] = [side, widest].map(|length| Dimension::LENGTH.of(length));
             format!(
                 "plies follow laws, and their stresses are means over a cell, up to {widest} wide, not over the `failure.window` of {side}: \

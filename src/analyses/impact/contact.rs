@@ -98,11 +98,6 @@ impl Follower {
         self.touched
     }
 
-    /// Whether there has been a contact.
-    pub(super) fn has_touched(&self) -> bool {
-        self.record.count > 0
-    }
-
     /// Whether it can be that of so many steps and parts of steps.
     pub(super) fn is_sound(&self, steps: u64) -> bool {
         u64::from(self.record.count) <= steps + 1 && self.record.growth.len() as u64 <= 2 * steps + 2
@@ -138,11 +133,6 @@ impl StepForces {
     /// The step, s.
     pub fn step(&self) -> f64 {
         self.dt
-    }
-
-    /// The first step with a force, counted from 1.
-    pub fn first(&self) -> Option<u64> {
-        self.forces.iter().position(|force| *force != 0.0).map(|at| at as u64 + 1)
     }
 
     /// The last step with a force, counted from 1; 0 where there is none.

@@ -115,7 +115,8 @@ impl Ledger {
         // The step at whose end, or in whose parts, that was.
         let [first, last] = [first, last].map(|t| (t / self.forces.step() - AT_END).ceil());
         let step = step as f64;
-        let gone = |(i, contact): (usize, &Follower)| contact.has_touched() && system.touch(i, state).velocity < 0.0;
+        let gone =
+            |(i, contact): (usize, &Follower)| contact.touched().is_some() && system.touch(i, state).velocity < 0.0;
         step > last && step - last > QUIET * (last - first) && self.contacts.iter().enumerate().all(gone)
     }
 
