@@ -194,6 +194,11 @@ impl ImpactSystem {
         Self { tips, ..self }
     }
 
+    /// Whether an impactor has a tip.
+    pub fn has_tips(&self) -> bool {
+        self.tips.iter().any(Option::is_some)
+    }
+
     /// The tip of impactor `i` in a state, if it has one.
     fn pressed(&self, i: usize, h: &ContactHistory, u: &[f64]) -> Option<(&Tip, Pressed)> {
         let tip = self.tips.get(i)?.as_ref()?;
@@ -206,6 +211,16 @@ impl ImpactSystem {
         self.influence = Influence::default();
         self.influence.lifting = Lifting::new(springs);
         self
+    }
+
+    /// The springs that only push.
+    pub fn one_sided(&self) -> &[OneSided] {
+        self.influence.lifting.springs()
+    }
+
+    /// Force (N) by which each spring that only pushes is relieved of its pull under displacements `u`.
+    pub fn reliefs(&self, u: &[f64]) -> impl Iterator<Item = f64> {
+        self.influence.lifting.reliefs(&u[..self.structure.ndof()])
     }
 
     /// The same under gravity, if there is some.

@@ -166,6 +166,11 @@ impl Lifting {
         }
     }
 
+    /// r(Pᵀu) of each spring, N.
+    pub fn reliefs(&self, u: &[f64]) -> impl Iterator<Item = f64> {
+        self.springs.iter().map(|spring| relief(spring.stiffness, spring.at.of(u)).0)
+    }
+
     /// Σ ½ k ⟨w⟩², the energy that springs would have if they pulled, J.
     pub fn energy(&self, u: &[f64]) -> f64 {
         self.springs.iter().map(|spring| 0.5 * spring.stiffness * spring.at.of(u).max(0.0).powi(2)).sum()

@@ -35,7 +35,7 @@ pub enum CheckpointError {
     #[error("the checkpoint in `{}` belongs to another run: {}", folder.display(), differences.join("; "))]
     #[diagnostic(help(
         "restore what differs, or run without `--resume` to start over; the title, the plots and the end of a march \
-         may differ"
+         may differ, where no effect that is left to `auto` is decided otherwise for it: name it as the run before did"
     ))]
     Differs {
         /// The folder.

@@ -68,7 +68,10 @@ impl fmt::Display for SolveError {
             ),
             Self::NotFinite { unknown } => write!(f, "the matrix is not finite at {unknown}"),
             Self::Buckled => {
-                f.write_str("the tangent stiffness of the reduced plate is not positive definite: it buckles")
+                f.write_str(
+                    "the tangent stiffness of the reduced plate is not positive definite: it buckles, or in a march its steps are too \
+                     long to be followed",
+                )
             }
             Self::NotLinearised => f.write_str("no tangent has been factorised"),
             Self::Linear => f.write_str("the structure is linear"),

@@ -34,6 +34,9 @@ const MASSLESS: f64 = 1e-13;
 /// A vector of a basis counts as a combination of those before it when this share of its energy is left.
 const DEPENDENT: f64 = 1e-12;
 
+/// The same where rounding of the matrix is larger, as of many springs that are stiff beside what is between them.
+const ROUNDED: [f64; 3] = [1e-10, 1e-8, 1e-6];
+
 /// Least share of a mode in the static responses to the contacts; with less, no contact excites it.
 const EXCITED: f64 = 1e-9;
 
@@ -132,12 +135,15 @@ impl Reduced {
         if !k.iter().chain(mass.iter()).all(|v| v.is_finite()) {
             return Err(ReductionError::NotFinite("a reduced matrix"));
         }
-        let kept = independent(&k);
+        let only = |a: &DMatrix<f64>, kept: &[usize]| a.select_rows(kept).select_columns(kept);
+        let definite = |least: f64| {
+            let kept = independent(&k, least);
+            Cholesky::new(only(&k, &kept)).map(|factor| (kept, factor.unpack()))
+        };
+        let found = [DEPENDENT].into_iter().chain(ROUNDED).find_map(definite);
+        let (kept, l) = found.ok_or(ReductionError::SingularStiffness)?;
         let m = kept.len();
-        let all = m == t.ncols();
-        let only = |a: DMatrix<f64>| if all { a } else { a.select_rows(&kept).select_columns(&kept) };
-        let (k, mass, t) = (only(k), only(mass), if all { t } else { t.select_columns(&kept) });
-        let l = Cholesky::new(k).ok_or(ReductionError::SingularStiffness)?.unpack();
+        let (mass, t) = if m == t.ncols() { (mass, t) } else { (only(&mass, &kept), t.select_columns(&kept)) };
         let half = l.solve_lower_triangular(&mass).ok_or(ReductionError::SingularStiffness)?;
         let inner = l.solve_lower_triangular(&half.transpose()).ok_or(ReductionError::SingularStiffness)?;
         // 1/ω² and the modes in the metric of K.
@@ -262,13 +268,13 @@ fn columns(structure: &dyn Structure, asked: usize, others: usize) -> Result<usi
     Ok(columns)
 }
 
-/// Columns that do not depend on those before them, of a basis with the Gram matrix `gram`.
-fn independent(gram: &DMatrix<f64>) -> Vec<usize> {
-    shares(gram).into_iter().enumerate().filter(|(_, share)| *share > DEPENDENT).map(|(j, _)| j).collect()
+/// Columns that do not depend on those before them, by a share of at least `least`, of a basis with the Gram matrix `gram`.
+fn independent(gram: &DMatrix<f64>, least: f64) -> Vec<usize> {
+    shares(gram, least).into_iter().enumerate().filter(|(_, share)| *share > least).map(|(j, _)| j).collect()
 }
 
-/// How much of each column is left beside those before it, those left out of which nothing is.
-fn shares(gram: &DMatrix<f64>) -> Vec<f64> {
+/// How much of each column is left beside those before it, those left out of which no more than `least` is.
+fn shares(gram: &DMatrix<f64>, least: f64) -> Vec<f64> {
     let mut kept: Vec<usize> = Vec::new();
     // Rows of the Cholesky factor of the columns kept.
     let mut rows: Vec<Vec<f64>> = Vec::new();
@@ -279,7 +285,7 @@ fn shares(gram: &DMatrix<f64>) -> Vec<f64> {
             row.push((gram[(*i, j)] - known) / other[row.len()]);
         }
         let left = gram[(j, j)] - row.iter().map(|x| x * x).sum::<f64>();
-        if left > DEPENDENT * gram[(j, j)] {
+        if left > least * gram[(j, j)] {
             row.push(left.sqrt());
             rows.push(row);
             kept.push(j);
@@ -297,7 +303,7 @@ struct Dependent {
 
 impl Dependent {
     fn find(functionals: &[Functional], gram: &DMatrix<f64>) -> Self {
-        let kept = independent(gram);
+        let kept = independent(gram, DEPENDENT);
         let dependent = functionals.iter().enumerate().filter(|(i, _)| !kept.contains(i));
         Self { functionals: dependent.map(|(_, w)| w.clone()).collect() }
     }
@@ -358,7 +364,7 @@ impl StaticShapes {
         least: usize,
     ) -> Result<Self, ReductionError> {
         let x = static_responses(structure, &functionals)?;
-        let kept = independent(&flexibility(&functionals, &x));
+        let kept = independent(&flexibility(&functionals, &x), DEPENDENT);
         let shapes = if kept.len() < least { Self::of(functionals, x) } else { Self::some(&functionals, &x, &kept) };
         shapes.map_err(|dependent| dependent.named(structure))
     }
@@ -377,7 +383,7 @@ impl StaticShapes {
 
     /// The functional of which least is left beside those before it.
     fn nearest(&self) -> Dependent {
-        let shares = shares(&flexibility(&self.functionals, &self.flexibility));
+        let shares = shares(&flexibility(&self.functionals, &self.flexibility), DEPENDENT);
         let least = (0..shares.len()).min_by(|i, j| shares[*i].total_cmp(&shares[*j]));
         Dependent { functionals: least.map(|i| self.functionals[i].clone()).into_iter().collect() }
     }

@@ -7,7 +7,7 @@ use super::checkpoint::{self, Checkpoint};
 use super::frames::frames;
 use super::ledger::{Ledger, Look};
 use super::modal::{self, ModalView};
-use super::prepare::{Prepared, describe_failure, place_impactors};
+use super::prepare::{Prepared, beside, describe_failure};
 use super::squeeze::Squeeze;
 use super::{Maximum, Outcome, Sizes};
 use crate::analyses::delamination::Onsets;
@@ -246,11 +246,9 @@ impl<'a> March<'a> {
         // Here, where nothing else takes memory yet beside the full plate.
         if let (Some(reduced), Some(full)) = (&reduced, full) {
             let contacts = full.contacts.clone();
-            let laws: Vec<_> = system.impactors().iter().map(|impactor| impactor.law.clone()).collect();
             let couple = |mut richer: Reduced| {
                 effects.clone().iter_mut().for_each(|effect| effect.on_reduced(&mut richer));
-                let impactors = place_impactors(impact, &contacts, Some(&richer), &laws);
-                (ImpactSystem::new(Box::new(richer.modal.clone()), impactors).pulled_as(&system), richer.modal)
+                (beside((model, impact), &system, &contacts, &richer), richer.modal)
             };
             let run = Before {
                 system: &system,
@@ -542,6 +540,9 @@ impl<'a> March<'a> {
             contact.dent = self.system.dent(i, &state);
         }
         let accuracy = if ended { self.estimates.finish(&forces, contacts.first()) } else { Accuracy::default() };
+        if accuracy.step.is_some() {
+            self.stopwatch.lap("accuracy");
+        }
         Outcome {
             accuracy,
             quantities: self.effects.iter().flat_map(|effect| effect.quantities(&self.system)).collect(),

@@ -93,6 +93,8 @@ pub(super) struct Full {
     pub(super) structure: SparseStructure,
     /// Where each impactor strikes.
     pub(super) contacts: Vec<Functional>,
+    /// Springs that only push.
+    pub(super) springs: Vec<OneSided>,
     /// Right-hand sides that were solved for when the reduction was made that is kept, if it is.
     kept: u64,
 }
@@ -125,21 +127,17 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     let linear = !model.effects.nature().large && model.laws.is_none() && condensation.is_none();
     let unreduced = (reduced.is_none() && linear).then(|| contacts.clone());
     let kept = counters.solves - full.work().1;
+    let of_reduced = |structure: SparseStructure| {
+        Some(Full { structure, contacts: contacts.clone(), springs: springs(model, None), kept })
+    };
     let (structure, full): (Box<dyn Structure>, _) = match (&reduced, &stretched) {
         (None, _) => (Box::new(full), None),
-        (Some(reduced), None) => {
-            (Box::new(reduced.modal.clone()), Some(Full { structure: full, contacts: contacts.clone(), kept }))
-        }
-        (Some(_), Some((stretched, _))) => {
-            (Box::new(stretched.clone()), Some(Full { structure: full, contacts: contacts.clone(), kept }))
-        }
+        (Some(reduced), None) => (Box::new(reduced.modal.clone()), of_reduced(full)),
+        (Some(_), Some((stretched, _))) => (Box::new(stretched.clone()), of_reduced(full)),
     };
     let struck = Struck { structure, effects, reduced, membrane: stretched, condensation: condensation.map(Arc::new) };
     let prepared = strike((model, impact), struck, &contacts, before)?;
-    let prepared = Prepared { full, unreduced, counters, stopwatch, ..prepared };
-    // Estimates know linear plates, and those that their deflections stretch; the plates beside the march are struck by patches.
-    let tips = impact.strikes.iter().any(|strike| strike.tip.is_some());
-    Ok(if tips || model.one_sided().next().is_some() { prepared.without_estimates() } else { prepared })
+    Ok(Prepared { full, unreduced, counters, stopwatch, ..prepared })
 }
 
 /// A plate that waits for its impactors.
@@ -380,6 +378,30 @@ impl Before {
     }
 }
 
+/// The plate in the answers at rest to forces at `functionals` and in the columns of `basis`, of which the first answer to `forces`.
+///
+/// The former come first, with forces that are known: of stiff springs hardly any energy is in what the others share with them.
+///
+/// # Errors
+/// Those of [`static_responses`] and of [`Reduced::project`].
+pub(super) fn project_answers(
+    structure: &mut dyn Structure,
+    functionals: &[Functional],
+    basis: Vec<f64>,
+    forces: Vec<f64>,
+) -> Result<Reduced, ReductionError> {
+    let ndof = structure.ndof();
+    let mut pushed = vec![0.0; functionals.len() * ndof];
+    functionals.iter().zip(pushed.chunks_exact_mut(ndof.max(1))).for_each(|(at, force)| at.add_to(1.0, force));
+    let mut all = match functionals {
+        [] => Vec::new(),
+        _ => static_responses(structure, functionals)?,
+    };
+    all.extend(basis);
+    pushed.extend(forces);
+    Reduced::project_loaded(structure, &all, &pushed)
+}
+
 /// Whether the plate is what its static responses are: linear, and without inertia.
 pub(super) fn rests(model: &Model) -> bool {
     let nature = model.effects.nature();
@@ -446,20 +468,9 @@ fn reduce(
     let Some(basis) = basis else { return Ok(known) };
     // Where a spring that only pushes has let go, the plate answers as to the force that it does not get.
     let lifting = orthogonalise(model.one_sided().map(|spring| spring.at.clone()).collect());
-    // These come first, with forces that are known: of stiff springs hardly any energy is in what the others share with them.
-    let ndof = assembled.structure.ndof();
-    let mut pushed = vec![0.0; lifting.len() * ndof];
-    lifting.iter().zip(pushed.chunks_exact_mut(ndof.max(1))).for_each(|(spring, force)| spring.add_to(1.0, force));
-    let answers = match lifting[..] {
-        [] => Vec::new(),
-        _ => static_responses(&mut assembled.structure, &lifting).map_err(SolveError::other)?,
-    };
     let project = |(mut basis, forces): Basis| {
-        let mut forces = forces.unwrap_or_default();
-        basis.splice(0..0, answers);
-        forces.splice(0..0, pushed);
         basis.extend(more);
-        Reduced::project_loaded(&assembled.structure, &basis, &forces)
+        project_answers(&mut assembled.structure, &lifting, basis, forces.unwrap_or_default())
     };
     let reduced = basis.and_then(project).map_err(|why| {
         let name = &impact.spec.reduction.name;
@@ -485,7 +496,7 @@ fn in_march(functional: &Functional, reduced: Option<&Reduced>) -> Vec<(usize, f
 }
 
 /// The impactors of the scene, each with the load of its contact in coordinates of the march.
-pub(super) fn place_impactors(
+fn place_impactors(
     impact: &Impact,
     contacts: &[Functional],
     reduced: Option<&Reduced>,
@@ -519,11 +530,29 @@ fn couple(
     effects: &mut [Box<dyn Effect>],
 ) -> ImpactSystem {
     let system = effects.iter_mut().fold(system, |system, effect| effect.on_system(&model.body(), reduced, system));
+    system.on_one_sided(springs(model, reduced).into())
+}
+
+/// The springs that only push, in coordinates of the march.
+fn springs(model: &Model, reduced: Option<&Reduced>) -> Vec<OneSided> {
     let spring = |spring: &SupportSpring| OneSided {
         at: Functional(in_march(&spring.at, reduced)),
         stiffness: spring.stiffness,
     };
-    system.on_one_sided(model.one_sided().map(spring).collect())
+    model.one_sided().map(spring).collect()
+}
+
+/// The impact of `system` on a plate in the vectors of `reduced`, struck by these contacts.
+pub(super) fn beside(
+    (model, impact): (&Model, &Impact),
+    system: &ImpactSystem,
+    contacts: &[Functional],
+    reduced: &Reduced,
+) -> ImpactSystem {
+    let laws: Vec<_> = system.impactors().iter().map(|impactor| impactor.law.clone()).collect();
+    let impactors = place_impactors(impact, contacts, Some(reduced), &laws);
+    let beside = ImpactSystem::new(Box::new(reduced.modal.clone()), impactors).with_tips(tips(impact, Some(reduced)));
+    beside.on_one_sided(springs(model, Some(reduced)).into()).pulled_as(system)
 }
 
 /// Makes a step of a plate without inertia, to see whether the integrator can do without.

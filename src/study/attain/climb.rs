@@ -1,5 +1,6 @@
 //! A part of the settings that is raised, level by level, while the others are as the scene has them.
 
+use crate::registry::NO_REDUCTION;
 use crate::study::axes::{AxisKind, Level, StudyAxis};
 use crate::study::converge::Convergence;
 
@@ -19,6 +20,10 @@ pub(super) struct Climb {
 impl Climb {
     pub(super) fn new(axis: StudyAxis) -> Option<Self> {
         let own = axis.levels.iter().position(|level| level.setting.is_empty())?;
+        // All unknowns: there is nothing to raise, and nothing left.
+        if axis.levels[own].label == NO_REDUCTION {
+            return None;
+        }
         let below = usize::from(own > 0 && own + 1 == axis.levels.len());
         let levels = axis.levels.into_iter().skip(own - below).collect();
         let changes = Vec::new();
@@ -26,9 +31,14 @@ impl Climb {
         ladder.then_some(Self { name: axis.name, levels, own: below, changes, closed: None })
     }
 
-    /// Highest level that was run.
+    /// Highest level that was run beside the scene's or above it; that of the scene where none was.
     pub(super) fn top(&self) -> usize {
-        self.changes.len()
+        if self.changes.is_empty() { self.own } else { self.changes.len() }
+    }
+
+    /// The next level to be run, and the one that it is held against.
+    pub(super) fn next(&self) -> [usize; 2] {
+        [self.changes.len(), self.changes.len() + 1]
     }
 
     /// Takes what the level above the top changes.

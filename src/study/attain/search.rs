@@ -203,15 +203,15 @@ impl<'a> Search<'a> {
 
     /// Runs the next level of a part alone.
     fn climb(&mut self, k: usize, error: Option<f64>, tell: TellSearch<'_>) {
-        let top = self.climbs[k].top();
-        let [here, next] = [top, top + 1].map(|rung| self.single(k, rung));
+        let rungs = self.climbs[k].next();
+        let [here, next] = rungs.map(|rung| self.single(k, rung));
         if let Err(why) = self.run(&here, error, tell).and_then(|()| self.run(&next, error, tell)) {
             self.climbs[k].closed = Some(why);
             return;
         }
         if let (Some(coarse), Some(fine)) = (self.known(&here), self.known(&next)) {
             let changes = self.names.iter().map(|name| difference(coarse, fine, name)).collect();
-            info!(quantities = ?self.names, ?changes, "{} {}", self.climbs[k].name, self.climbs[k].levels[top + 1].label);
+            info!(quantities = ?self.names, ?changes, "{} {}", self.climbs[k].name, self.climbs[k].levels[rungs[1]].label);
             self.climbs[k].take(changes);
         }
     }

@@ -1,14 +1,19 @@
 //! Marches beside that of the run, of reduced plates and without stresses: what they differ by is what an error does.
 
 use super::super::{ContactRecord, Sizes, StepForces};
+use fem_core::functional::Functional;
 use fem_core::structure::Structure;
 use fem_core::time::{Integrator, SecondOrderSystem as _, State};
 use fem_dynamics::impact::{ImpactSystem, Impactor};
+use fem_dynamics::lifting::OneSided;
 use fem_dynamics::reduce::{MembranePlate, Modal, Reduced};
 
 /// Entries of factors that solutions passed, for each unknown that a second march passes in a step: from here on it takes
 /// less than about three hundredths of the run.
 const CHEAP: u64 = 150;
+
+/// Steps of the linear plate that take no time, however short the run is.
+const NOTHING: u64 = 4096;
 
 /// Longest step of a companion over that of the run: however little else a run has to do, it may be told so much of its errors.
 const LONGEST: u64 = 16;
@@ -21,6 +26,9 @@ const STEP: u64 = 30;
 
 /// Evaluations of a contact law in a step, of the integrators that are most asked for.
 const CALLS: u64 = 4;
+
+/// The same of an impactor with a tip, each ring of which asks the law.
+const TIP_CALLS: u64 = 128;
 
 /// Matrices that an iteration of a plate under large deflections passes, and iterations of a step.
 const FORMS: u64 = 16;
@@ -86,6 +94,8 @@ pub(super) struct Instant {
     pub(super) q: Vec<f64>,
     /// Force of each impactor, N.
     pub(super) forces: Vec<f64>,
+    /// Force by which each spring that only pushes is relieved of its pull, N.
+    pub(super) reliefs: Vec<f64>,
     /// Force per indentation of the stiffest contact, N/m.
     pub(super) stiffness: f64,
 }
@@ -101,7 +111,8 @@ pub(super) struct Pace {
     parts: u64,
     /// Its step, s.
     pub(super) dt: f64,
-    count: u64,
+    /// Steps of the run.
+    steps: u64,
     /// Whether the parts of divided steps are longer as its step is.
     proportional: bool,
     marched: usize,
@@ -120,7 +131,7 @@ impl Pace {
         };
         let budget = (sizes.factor_entries as u64).saturating_mul(solves) / CHEAP / (sizes.marched as u64 + STEP);
         // Iterations of contacts may be worth a step each.
-        let budget = budget.max(passes(2 * sizes.steps / LONGEST));
+        let budget = budget.max(passes(2 * sizes.steps / LONGEST)).max(NOTHING);
         let stable = |stride: &u64| *stride as f64 * sizes.step <= sizes.longest_step;
         let strides =
             || std::iter::successors(Some(2), |stride| Some(2 * stride)).take_while(|stride| *stride <= LONGEST);
@@ -129,13 +140,34 @@ impl Pace {
         let cheap = strides().filter(stable).find(|stride| all(stride) <= budget);
         let stride = cheap.or_else(|| strides().filter(stable).last());
         let (stride, parts) = stride.map_or((1, 2), |stride| (stride, 1));
-        let (dt, count) = (sizes.step * stride as f64 / parts as f64, sizes.steps / stride);
+        let dt = sizes.step * stride as f64 / parts as f64;
         // Whether their length or a tolerance decides, parts of steps are longer by the same ratio.
         let ratio = stride as f64 / parts as f64;
         let other = integrator.with_tolerance(ratio.powi(integrator.order() as i32));
         let proportional = other.is_some();
         let integrator = other.unwrap_or(integrator);
-        Self { integrator, stride, parts, dt, count, proportional, marched: sizes.marched, budget }
+        Self { integrator, stride, parts, dt, steps: sizes.steps, proportional, marched: sizes.marched, budget }
+    }
+
+    /// With so many steps of the run in one, whatever that takes; nothing where its step is no longer.
+    pub(super) fn shorter(&self, stride: u64) -> Option<Self> {
+        if self.stride <= stride {
+            return None;
+        }
+        let share = stride as f64 / self.stride as f64;
+        let integrator = self.integrator.with_tolerance(share.powi(self.integrator.order() as i32));
+        let integrator = integrator.unwrap_or_else(|| self.integrator.clone());
+        Some(Self { integrator, stride, dt: share * self.dt, budget: u64::MAX, ..self.clone() })
+    }
+
+    /// With half of its step, whatever that takes; nothing where it is twice that of the run already.
+    pub(super) fn halved(&self) -> Option<Self> {
+        self.shorter((self.stride / 2).max(2))
+    }
+
+    /// Whether so many steps are worth it.
+    pub(super) fn is_cheap(&self) -> bool {
+        (self.steps / self.stride).saturating_mul(self.parts) <= self.budget
     }
 
     /// Its step over that of the run.
@@ -151,34 +183,40 @@ impl Pace {
     /// Marches `system`; nothing where that is not cheap, or fails. `see` hears of states in contact.
     pub(super) fn march(
         &self,
-        mut system: ImpactSystem,
+        system: &mut ImpactSystem,
         modal: &Modal,
         mut see: impl FnMut(Instant),
     ) -> Option<Companion> {
-        let nonlinear = |system: &ImpactSystem| system.iterations() * iteration(self.marched as u64);
-        if self.count.saturating_mul(self.parts) > self.budget {
+        let count = self.steps / self.stride;
+        let calls = if system.has_tips() { TIP_CALLS } else { CALLS };
+        let work = |system: &ImpactSystem| {
+            system.contact_calls() / calls + system.iterations() * iteration(self.marched as u64)
+        };
+        let before = work(system);
+        if !self.is_cheap() {
             return None;
         }
         let mut integrator = self.integrator.clone();
         let mut state = system.initial();
-        integrator.start(&mut system, &mut state).ok()?;
+        integrator.start(system, &mut state).ok()?;
         let mut companion = Companion { stride: self.stride, forces: Vec::new(), deflection: 0.0, follows: true };
-        for i in 0..self.count {
+        for i in 0..count {
             for part in 1..=self.parts {
-                integrator.step(&mut system, &mut state, self.dt).ok()?;
+                integrator.step(system, &mut state, self.dt).ok()?;
                 state.t = (i * self.parts + part) as f64 * self.dt;
             }
             // Stages and divided steps are not seen in the number of steps; others do not stop little beyond a march that did not.
-            if system.contact_calls() / CALLS + nonlinear(&system) > MORE * self.budget {
+            if work(system) - before > self.budget.saturating_mul(MORE) {
                 return None;
             }
             let each: Vec<f64> = (0..system.impactors().len()).map(|k| system.contact_force(k, &state)).collect();
             let all = each.iter().sum();
-            if all > 0.0 && i.is_multiple_of(self.count.div_ceil(KEPT)) {
+            if all > 0.0 && i.is_multiple_of(count.div_ceil(KEPT)) {
                 let mut q = state.u[..system.structure().ndof()].to_vec();
                 let rates = modal.dampings().iter().zip(modal.stiffnesses()).zip(&state.v);
                 q.iter_mut().zip(rates).for_each(|(q, ((c, k), v))| *q += c / k * v);
-                see(Instant { q, forces: each, stiffness: stiffness(&system, &state) });
+                let reliefs = system.reliefs(&state.u).collect();
+                see(Instant { q, forces: each, reliefs, stiffness: stiffness(system, &state) });
             }
             companion.forces.push(all);
             companion.deflection = companion.deflection.max(system.touch(0, &state).deflection);
@@ -191,6 +229,8 @@ impl Pace {
 
 impl Pace {
     /// What changes against `base` where shares of their stiffness are taken from the modes of its plate.
+    ///
+    /// That of springs is part of it: K is S K S then, S² = 1 − share, and p of each spring S p, so that one that lets go is taken out whole.
     pub(super) fn soften(
         &self,
         system: &ImpactSystem,
@@ -204,7 +244,12 @@ impl Pace {
             Some(membrane) => Box::new(membrane.with(modal.clone())),
             None => Box::new(modal.clone()),
         };
-        base.against(&self.march(system.on(plate), &modal, |_| ())?)
+        let soften = |spring: &OneSided| {
+            let at = spring.at.0.iter().map(|(j, p)| (*j, (1.0 - shares[*j]).sqrt() * p)).collect();
+            OneSided { at: Functional(at), ..*spring }
+        };
+        let springs = system.one_sided().iter().map(soften).collect();
+        base.against(&self.march(&mut system.on(plate).on_one_sided(springs), &modal, |_| ())?)
     }
 }
 

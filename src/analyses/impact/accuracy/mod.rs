@@ -64,11 +64,51 @@ impl Accuracy {
 /// What is known before the march itself.
 #[derive(Debug, Default)]
 pub(super) struct Estimates {
-    other_step: Option<(Pace, Companion)>,
+    other_step: Option<OtherStep>,
     unreduced: bool,
     reduction: Option<ReductionAccuracy>,
     mesh: Option<MeshAccuracy>,
     layers: Option<Differences>,
+}
+
+/// A march with another step, and what it was of.
+#[derive(Debug)]
+struct OtherStep {
+    pace: Pace,
+    companion: Companion,
+    system: ImpactSystem,
+    modal: Modal,
+}
+
+impl OtherStep {
+    /// How far the run is from it, if the difference from one of half its step is as much smaller as it is where steps converge; otherwise
+    /// from one of twice the step of the run.
+    fn judge(mut self, forces: &StepForces, contact: &ContactRecord) -> Option<StepAccuracy> {
+        let mut found = self.against(forces, contact)?;
+        let Some(halved) = self.pace.halved() else { return Some(found) };
+        let twice = self.pace.shorter(2);
+        if let Some(half) = self.at(halved, forces, contact) {
+            let converges = half.follows(&found);
+            found = half;
+            if converges {
+                return Some(found);
+            }
+        }
+        twice.and_then(|twice| self.at(twice, forces, contact)).or(Some(found))
+    }
+
+    fn at(&mut self, pace: Pace, forces: &StepForces, contact: &ContactRecord) -> Option<StepAccuracy> {
+        if pace.dt != self.pace.dt {
+            self.companion = pace.march(&mut self.system, &self.modal, |_| ())?;
+            self.pace = pace;
+        }
+        self.against(forces, contact)
+    }
+
+    fn against(&self, forces: &StepForces, contact: &ContactRecord) -> Option<StepAccuracy> {
+        let difference = self.companion.against_run(forces, contact)?;
+        self.companion.follows.then(|| StepAccuracy::of(&self.pace, difference))
+    }
 }
 
 /// A run before its march.
@@ -95,19 +135,35 @@ impl Estimates {
             Some(membrane) => Box::new(membrane.clone()),
             None => Box::new(reduced.modal.clone()),
         };
-        let pace = Pace::new(integrator, sizes, solves, membrane.is_some());
+        let mut pace = Pace::new(integrator.clone(), sizes, solves, membrane.is_some());
         let mut instants = Vec::new();
-        let base = pace.march(system.on(plate), &reduced.modal, |instant| instants.push(instant));
-        // What a reduction leaves out is asked of the linear plate: tension is a matter of its slow vectors.
-        let linear = membrane.and_then(|_| {
+        let mut copy = system.on(plate);
+        let mut march = |pace: &Pace| {
             instants.clear();
-            pace.march(system.on(Box::new(reduced.modal.clone())), &reduced.modal, |instant| instants.push(instant))
+            pace.march(&mut copy, &reduced.modal, |instant| instants.push(instant))
+        };
+        let mut base = march(&pace);
+        // Steps may be too long to be marched at all.
+        while let (None, Some(shorter)) = (&base, pace.halved().filter(|_| pace.is_cheap())) {
+            pace = shorter;
+            base = march(&pace);
+        }
+        // What a reduction leaves out is asked of the linear plate, at its own pace: tension is a matter of its slow vectors.
+        let linear = membrane.and_then(|_| {
+            let pace = Pace::new(integrator, sizes, solves, false);
+            instants.clear();
+            let mut linear = system.on(Box::new(reduced.modal.clone()));
+            let base = pace.march(&mut linear, &reduced.modal, |instant| instants.push(instant))?;
+            Some((pace, base))
         });
-        let linear = if membrane.is_some() { linear.as_ref() } else { base.as_ref() };
+        let linear = match membrane {
+            Some(_) => linear.as_ref().map(|(pace, base)| (pace, base)),
+            None => base.as_ref().map(|base| (&pace, base)),
+        };
         if linear.is_none() {
             instants.clear();
         }
-        let richer = couple.zip(linear).map(|(couple, base)| Richer { couple, pace: &pace, base });
+        let richer = couple.zip(linear).map(|(couple, (pace, base))| Richer { couple, pace, base });
         let unreduced = full.is_none();
         let mut reduction = full.and_then(|full| reduction::estimate(full, reduced, &instants, richer));
         if let (Some(found), Some(membrane)) = (&mut reduction, membrane) {
@@ -115,7 +171,7 @@ impl Estimates {
             let slow = membrane.stretched_by(sizes.marched / 2);
             let left = base
                 .as_ref()
-                .and_then(|base| base.against(&pace.march(system.on(Box::new(slow)), &reduced.modal, |_| ())?));
+                .and_then(|base| base.against(&pace.march(&mut system.on(Box::new(slow)), &reduced.modal, |_| ())?));
             found.response = found.response.zip(left).map(|(a, b)| a.with(b, |a, b| a + b / HALVED));
         }
         let mesh = mesh.map(|errors| match &base {
@@ -124,16 +180,15 @@ impl Estimates {
         });
         let soften = |shares: Vec<f64>| pace.soften(system, (reduced, membrane), base.as_ref()?, &shares);
         let layers = layers.and_then(soften);
-        Self { other_step: base.map(|base| (pace, base)), unreduced, reduction, mesh, layers }
+        let modal = reduced.modal.clone();
+        let other_step = base.map(|companion| OtherStep { pace, companion, system: copy, modal });
+        Self { other_step, unreduced, reduction, mesh, layers }
     }
 
     /// The estimates for a march with these forces and first contact that reached its end.
     pub(super) fn finish(self, forces: &StepForces, contact: Option<&ContactRecord>) -> Accuracy {
-        let difference = |(pace, companion): (Pace, Companion)| {
-            let difference = companion.against_run(forces, contact?)?;
-            companion.follows.then(|| StepAccuracy::of(&pace, difference))
-        };
         let Self { other_step, unreduced, reduction, mesh, layers } = self;
-        Accuracy { step: other_step.and_then(difference), unreduced, reduction, mesh, layers }
+        let step = other_step.zip(contact).and_then(|(other, contact)| other.judge(forces, contact));
+        Accuracy { step, unreduced, reduction, mesh, layers }
     }
 }

@@ -7,8 +7,7 @@ use fem_core::structure::Structure;
 use fem_dynamics::impact::ImpactSystem;
 use fem_dynamics::reduce::{Modal, Reduced};
 
-/// Solutions that a reduction took for each that is spent on an instant, and instants at most.
-const SOLVES: u64 = 10;
+/// Instants that the full plate is asked about. A single one may find a vector that does nothing.
 const INSTANTS: usize = 3;
 
 /// Steps of this fraction of a span, taken modulo the span, fall evenly and never into the rhythm of a vibration.
@@ -24,7 +23,8 @@ pub struct ReductionAccuracy {
     pub flexibility: f64,
     /// What is left in the full model.
     pub residual: Option<ReductionResidual>,
-    /// What changes as what is left joins the vectors.
+    /// What changes as what is left joins the vectors; where the residual says more of the force, the geometric mean of both, and all other
+    /// results as much more.
     pub response: Option<Differences>,
 }
 
@@ -62,8 +62,8 @@ pub(super) struct Richer<'a> {
 impl Richer<'_> {
     /// Marches the plate of the vectors of `reduced` and `more`.
     fn march(&self, full: &Full, reduced: &Reduced, more: &[f64]) -> Option<Differences> {
-        let (system, modal) = (self.couple)(reduced.with(&full.structure, more).ok()?);
-        self.base.against(&self.pace.march(system, &modal, |_| ())?)
+        let (mut system, modal) = (self.couple)(reduced.with(&full.structure, more).ok()?);
+        self.base.against(&self.pace.march(&mut system, &modal, |_| ())?)
     }
 }
 
@@ -74,17 +74,18 @@ pub(super) fn estimate(
     instants: &[Instant],
     richer: Option<Richer<'_>>,
 ) -> Option<ReductionAccuracy> {
-    let most = full.solves() / SOLVES;
-    let chosen = choose_evenly(instants, usize::try_from(most).map_or(INSTANTS, |most| most.clamp(1, INSTANTS)));
+    let chosen = choose_evenly(instants, INSTANTS);
     let n = full.structure.ndof();
-    let modes: Vec<Vec<f64>> = full.contacts.iter().map(|w| reduced.restrict(w)).collect();
+    let restrict = |w| reduced.restrict(w);
+    let modes: Vec<Vec<f64>> = full.contacts.iter().map(restrict).collect();
+    let lifted: Vec<Vec<f64>> = full.springs.iter().map(|spring| restrict(&spring.at)).collect();
     // w, then Σ F w − M Φ q̈ of each instant; K⁻¹ of the latter is u + K⁻¹ r.
     let mut loads = vec![0.0; n * full.contacts.len()];
     for (w, load) in full.contacts.iter().zip(loads.chunks_exact_mut(n)) {
         w.add_to(1.0, load);
     }
     for instant in &chosen {
-        loads.extend(inertial_load(&full, reduced, &modes, instant));
+        loads.extend(inertial_load(&full, reduced, (&modes, &lifted), instant));
     }
     let mut solved = loads.clone();
     full.structure.solve_shifted(0.0, &mut solved, full.contacts.len() + chosen.len()).ok()?;
@@ -102,7 +103,9 @@ pub(super) fn estimate(
         // rᵀ K⁻¹ r = (load − K u)ᵀ K⁻¹ r, of which uᵀ r = 0.
         let epsilon: f64 = load.iter().zip(&*solved).map(|(f, x)| f * x).sum();
         left = left.max(epsilon);
-        energy = energy.max(reduced.modal.stiffnesses().iter().zip(&instant.q).map(|(k, q)| k * q * q).sum());
+        let held: f64 = reduced.modal.stiffnesses().iter().zip(&instant.q).map(|(k, q)| k * q * q).sum();
+        let pulled = full.springs.iter().zip(&instant.reliefs).map(|(spring, force)| force * force / spring.stiffness);
+        energy = energy.max(held - pulled.sum::<f64>());
         change += instant.stiffness * epsilon.max(0.0);
         size += instant.forces.iter().sum::<f64>().powi(2);
     }
@@ -111,13 +114,26 @@ pub(super) fn estimate(
     // There is no energy without an instant in contact.
     let residual = energy.is_finite().then_some(ReductionResidual { energy, force });
     let response = richer.filter(|_| !chosen.is_empty()).and_then(|richer| richer.march(&full, reduced, moving));
+    // What one has missed by chance the other sees; springs that let go are in the march alone.
+    let response = response.map(|response| match force {
+        Some(force) if full.springs.is_empty() && response.force > 0.0 && response.force < force => {
+            response.times((force / response.force).sqrt())
+        }
+        _ => response,
+    });
     flexibility.is_finite().then_some(ReductionAccuracy { flexibility, residual, response })
 }
 
-/// Σ F w − M Φ q̈.
-fn inertial_load(full: &Full, reduced: &Reduced, modes: &[Vec<f64>], instant: &Instant) -> Vec<f64> {
+/// Σ F w − M Φ q̈, with the forces that relieve springs of their pull.
+fn inertial_load(
+    full: &Full,
+    reduced: &Reduced,
+    (modes, lifted): (&[Vec<f64>], &[Vec<f64>]),
+    instant: &Instant,
+) -> Vec<f64> {
     let acceleration = |(j, (omega, q)): (usize, (f64, &f64))| {
-        let force: f64 = modes.iter().zip(&instant.forces).map(|(mode, force)| mode[j] * force).sum();
+        let forces = modes.iter().zip(&instant.forces).chain(lifted.iter().zip(&instant.reliefs));
+        let force: f64 = forces.map(|(mode, force)| mode[j] * force).sum();
         if omega.is_finite() { force - omega * omega * q } else { 0.0 }
     };
     let accelerations: Vec<f64> = reduced.modal.frequencies().zip(&instant.q).enumerate().map(acceleration).collect();
@@ -125,7 +141,8 @@ fn inertial_load(full: &Full, reduced: &Reduced, modes: &[Vec<f64>], instant: &I
     let (mut field, mut load) = (vec![0.0; n], vec![0.0; n]);
     reduced.expand(&accelerations, &mut field);
     full.structure.add_mass(-1.0, &field, &mut load);
-    for (w, force) in full.contacts.iter().zip(&instant.forces) {
+    let springs = full.springs.iter().map(|spring| &spring.at).zip(&instant.reliefs);
+    for (w, force) in full.contacts.iter().zip(&instant.forces).chain(springs) {
         w.add_to(*force, &mut load);
     }
     load
