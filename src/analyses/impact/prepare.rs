@@ -137,6 +137,8 @@ pub fn prepare(model: &Model, threads: NonZeroUsize) -> Result<Prepared<'_>, Err
     };
     let struck = Struck { structure, effects, reduced, membrane: stretched, condensation: condensation.map(Arc::new) };
     let prepared = strike((model, impact), struck, &contacts, before)?;
+    // What a reduction leaves is asked under patches.
+    let full = full.filter(|_| impact.strikes.iter().all(|strike| strike.tip.is_none()));
     Ok(Prepared { full, unreduced, counters, stopwatch, ..prepared })
 }
 
