@@ -81,27 +81,22 @@ struct OtherStep {
 }
 
 impl OtherStep {
-    /// How far the run is from it, if the difference from one of half its step is as much smaller as it is where steps converge; otherwise
+    /// How far the run is from a march of half its step, if that is as much less than from this one as it is where steps converge; otherwise
     /// from one of twice the step of the run.
     fn judge(mut self, forces: &StepForces, contact: &ContactRecord) -> Option<StepAccuracy> {
-        let mut found = self.against(forces, contact)?;
+        let found = self.against(forces, contact)?;
         let Some(halved) = self.pace.halved() else { return Some(found) };
-        let twice = self.pace.shorter(2);
-        if let Some(half) = self.at(halved, forces, contact) {
-            let converges = half.follows(&found);
-            found = half;
-            if converges {
-                return Some(found);
-            }
+        let half = self.at(halved, forces, contact)?;
+        match self.pace.shorter(2) {
+            Some(twice) if !half.follows(&found) => self.at(twice, forces, contact),
+            _ => Some(half),
         }
-        twice.and_then(|twice| self.at(twice, forces, contact)).or(Some(found))
     }
 
+    /// The same of a march at another pace, in place of this one.
     fn at(&mut self, pace: Pace, forces: &StepForces, contact: &ContactRecord) -> Option<StepAccuracy> {
-        if pace.dt != self.pace.dt {
-            self.companion = pace.march(&mut self.system, &self.modal, |_| ())?;
-            self.pace = pace;
-        }
+        self.companion = pace.march(&mut self.system, &self.modal, |_| ())?;
+        self.pace = pace;
         self.against(forces, contact)
     }
 
