@@ -199,10 +199,14 @@ impl ImpactSystem {
         self.tips.iter().any(Option::is_some)
     }
 
+    fn strikers(&self) -> Strikers<'_> {
+        Strikers { impactors: &self.impactors, tips: &self.tips }
+    }
+
     /// The tip of impactor `i` in a state, if it has one.
-    fn pressed(&self, i: usize, h: &ContactHistory, u: &[f64]) -> Option<(&Tip, Pressed)> {
-        let tip = self.tips.get(i)?.as_ref()?;
-        Some((tip, tip.press(&*self.impactors[i].law, h, self.position(i, u), u)))
+    fn pressed(&self, i: usize, h: &Histories, u: &[f64]) -> Option<(&Tip, Pressed)> {
+        let tip = self.strikers().tip(i)?;
+        Some((tip, tip.press(self.strikers().remembering(i, h), self.position(i, u), u)))
     }
 
     /// The same on `springs` that only push, which the structure has in its stiffness as if they pulled, too.
@@ -270,6 +274,7 @@ impl ImpactSystem {
     pub fn initial(&self) -> State {
         let n = self.structure.ndof();
         let mut state = State::at_rest(self.ndof(), self.impactors.len());
+        state.histories.beds = vec![[[0.0; 8]; 2]; self.tips.iter().flatten().map(Tip::count).sum()];
         state.histories.points = vec![0.0; self.structure.states()];
         for (i, impactor) in self.impactors.iter().enumerate() {
             let mean = impactor.velocity + 0.5 * self.gravity() * impactor.start;
@@ -316,8 +321,8 @@ impl ImpactSystem {
 
     /// Indentation that is left under impactor `i` when the force is gone, m: a dent.
     pub fn dent(&self, i: usize, state: &State) -> f64 {
-        let touch = self.impactors[i].law.branches(&state.histories.contacts[i]).touch;
-        if self.tips.get(i).is_some_and(Option::is_some) { 0.5 * touch } else { touch }
+        let by = self.strikers().remembering(i, &state.histories);
+        if self.strikers().tip(i).is_some() { by.dent() } else { by.law.branches(by.whole).touch }
     }
 
     /// Contact force of impactor `i` in an accepted state.
@@ -329,10 +334,9 @@ impl ImpactSystem {
     pub fn touch(&self, i: usize, state: &State) -> Touch {
         let deflection = self.deflection(i, &state.u);
         let indentation = self.position(i, &state.u) - deflection;
-        let history = &state.histories.contacts[i];
-        let (force, radius) = match self.pressed(i, history, &state.u) {
+        let (force, radius) = match self.pressed(i, &state.histories, &state.u) {
             Some((tip, pressed)) => (pressed.force(), tip.radius(&pressed)),
-            None => (self.impactors[i].law.force(history, indentation).force, 0.0),
+            None => (self.impactors[i].law.force(&state.histories.contacts[i], indentation).force, 0.0),
         };
         Touch { indentation, force, velocity: state.v[self.structure.ndof() + i], deflection, radius }
     }
@@ -367,10 +371,9 @@ impl ImpactSystem {
         energies.strain -= self.influence.lifting.energy(&state.u[..n]);
         for (i, impactor) in self.impactors.iter().enumerate() {
             energies.impactor += 0.5 * impactor.mass * state.v[n + i].powi(2);
-            let history = &state.histories.contacts[i];
-            let Energy { stored, dissipated } = match self.pressed(i, history, &state.u) {
-                Some((tip, pressed)) => tip.energy(&*impactor.law, history, &pressed),
-                None => impactor.law.energy(history, self.approach(i, &state.u)),
+            let Energy { stored, dissipated } = match self.pressed(i, &state.histories, &state.u) {
+                Some((tip, pressed)) => tip.energy(self.strikers().remembering(i, &state.histories), &pressed),
+                None => impactor.law.energy(&state.histories.contacts[i], self.approach(i, &state.u)),
             };
             energies.stored += stored;
             energies.dissipated += dissipated;
@@ -501,7 +504,7 @@ impl ImpactSystem {
         influence.begin(start.map(|u| &u[..n]));
         influence.set_approaches(strikers, from);
         let solve = |x: &mut [f64], count| structure.solve_damped(cm, cc, x, count);
-        *contact_calls += influence.touch(strikers, t, &h.contacts, start, d, solve)?;
+        *contact_calls += influence.touch(strikers, t, h, start, d, solve)?;
         Ok(())
     }
 
@@ -557,7 +560,7 @@ impl SecondOrderSystem for ImpactSystem {
         self.structure.add_damping(-1.0, &v[..n], &mut f[..n]);
         for (i, impactor) in self.impactors.iter().enumerate() {
             self.contact_calls += 1;
-            f[n + i] = match self.pressed(i, &h.contacts[i], u) {
+            f[n + i] = match self.pressed(i, h, u) {
                 Some((tip, pressed)) => {
                     tip.loads().zip(&pressed.forces).for_each(|(load, force)| add(load, *force, f));
                     -pressed.force()
@@ -627,9 +630,14 @@ impl SecondOrderSystem for ImpactSystem {
             state.a[..self.structure.ndof()].fill(0.0);
         }
         for (i, impactor) in self.impactors.iter().enumerate() {
-            let pressed = self.pressed(i, &state.histories.contacts[i], &state.u);
-            let alpha = pressed.map_or_else(|| self.approach(i, &state.u), |(_, pressed)| pressed.alpha);
-            impactor.law.commit(&mut state.histories.contacts[i], alpha);
+            let pressed = self.pressed(i, &state.histories, &state.u);
+            let Histories { contacts, beds, .. } = &mut state.histories;
+            match pressed {
+                Some((tip, pressed)) => {
+                    tip.commit(&*impactor.law, &pressed, &mut contacts[i], &mut beds[self.strikers().bed(i)]);
+                }
+                None => impactor.law.commit(&mut contacts[i], self.approach(i, &state.u)),
+            }
         }
         let n = self.structure.ndof();
         match self.structure.nonlinear() {

@@ -27,6 +27,8 @@ pub struct State {
 pub struct Histories {
     /// One history per contact.
     pub contacts: Vec<ContactHistory>,
+    /// Of the beds under tips, ring by ring, at its inner and its outer edge; none of contacts without a tip.
+    pub beds: Vec<[ContactHistory; 2]>,
     /// State variables of the laws of plies, point by point as the structure keeps them
     /// ([`Nonlinear::states`](crate::contracts::structure::Structure::states)).
     pub points: Vec<f64>,
@@ -35,7 +37,7 @@ pub struct Histories {
 impl State {
     /// At rest at t = 0.
     pub fn at_rest(ndof: usize, contacts: usize) -> Self {
-        let histories = Histories { contacts: vec![[0.0; 8]; contacts], points: Vec::new() };
+        let histories = Histories { contacts: vec![[0.0; 8]; contacts], ..Histories::default() };
         Self { t: 0.0, u: vec![0.0; ndof], v: vec![0.0; ndof], a: vec![0.0; ndof], histories }
     }
 }

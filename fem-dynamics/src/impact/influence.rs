@@ -1,11 +1,11 @@
 //! Contact forces of an implicit step, from how the structure responds to each.
 
-use super::tip::Tip;
+use super::tip::{Remembering, Tip};
 use super::{Impactor, add, value};
 use crate::lifting::Lifting;
 use fem_core::contact::{ContactForce, ContactHistory};
 use fem_core::structure::SolveError;
-use fem_core::time::StepError;
+use fem_core::time::{Histories, StepError};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -30,8 +30,20 @@ pub(super) struct Strikers<'a> {
 }
 
 impl<'a> Strikers<'a> {
-    fn tip(self, i: usize) -> Option<&'a Tip> {
+    pub(super) fn tip(self, i: usize) -> Option<&'a Tip> {
         self.tips.get(i).and_then(Option::as_ref)
+    }
+
+    /// Where the rings of impactor `i` are in the histories of all beds.
+    pub(super) fn bed(self, i: usize) -> Range<usize> {
+        let count = |i: usize| self.tip(i).map_or(0, Tip::count);
+        let first = (0..i).map(count).sum();
+        first..first + count(i)
+    }
+
+    /// The law of impactor `i` with what it remembers.
+    pub(super) fn remembering(self, i: usize, h: &'a Histories) -> Remembering<'a> {
+        Remembering { law: &*self.impactors[i].law, whole: &h.contacts[i], bed: &h.beds[self.bed(i)] }
     }
 
     /// Loads of all contacts, one of an impactor or one of each ring of its tip.
@@ -45,7 +57,7 @@ impl<'a> Strikers<'a> {
 
     /// Numbers of the loads of impactor `i`.
     fn of(self, i: usize) -> Range<usize> {
-        let count = |i: usize| self.tip(i).map_or(1, |tip| tip.loads().count());
+        let count = |i: usize| self.tip(i).map_or(1, Tip::count);
         let first = (0..i).map(count).sum();
         first..first + count(i)
     }
@@ -137,7 +149,7 @@ impl Influence {
         &mut self,
         strikers: Strikers<'_>,
         t: f64,
-        h: &[ContactHistory],
+        h: &Histories,
         start: Option<&[f64]>,
         d: &mut [f64],
         solve: impl FnOnce(&mut [f64], usize) -> Result<(), SolveError>,
@@ -177,7 +189,7 @@ impl Influence {
         &mut self,
         strikers: Strikers<'_>,
         t: f64,
-        h: &[ContactHistory],
+        h: &Histories,
         start: Option<&[f64]>,
     ) -> Result<u64, StepError> {
         let impactors = strikers.impactors;
@@ -190,7 +202,7 @@ impl Influence {
                 let loads = strikers.of(i);
                 let (c, Self { approach, free, forces, lifting, lifts, across, .. }) = (loads.start, &mut *self);
                 if let Some(tip) = strikers.tip(i) {
-                    let (same, calls) = self.press(tip, impactor, &h[i], loads).ok_or_else(|| {
+                    let (same, calls) = self.press(tip, strikers.remembering(i, h), loads).ok_or_else(|| {
                         StepError::NoConvergence { t, what: "the pressure under the tip of an impactor".into() }
                     })?;
                     evaluations += calls;
@@ -220,10 +232,10 @@ impl Influence {
                     (row[c] * force + more, row[c] + lifting.slope(&across[c]))
                 };
                 let (force, calls) = match start {
-                    None => contact(|alpha| impactor.law.force(&h[i], alpha), free, yielding),
+                    None => contact(|alpha| impactor.law.force(&h.contacts[i], alpha), free, yielding),
                     Some(u) => {
                         let start = u[u.len() - impactors.len() + i] - value(&impactor.load, u);
-                        contact(|middle| mean_force(impactor, &h[i], start, middle), free, yielding)
+                        contact(|middle| mean_force(impactor, &h.contacts[i], start, middle), free, yielding)
                     }
                 };
                 evaluations += calls;
@@ -245,8 +257,7 @@ impl Influence {
     fn press(
         &mut self,
         tip: &Tip,
-        impactor: &Impactor,
-        h: &ContactHistory,
+        by: Remembering<'_>,
         loads: Range<usize>,
     ) -> Option<(bool, u64)> {
         let Self { approach, free, forces, .. } = self;
@@ -258,7 +269,7 @@ impl Influence {
         let own =
             DMatrix::from_fn(loads.len(), loads.len(), |k, l| approach[(loads.start + k) * count + loads.start + l]);
         let before = forces[loads.clone()].to_vec();
-        let calls = tip.solve(&*impactor.law, h, &own, &free, &mut forces[loads.clone()])?;
+        let calls = tip.solve(by, &own, &free, &mut forces[loads.clone()])?;
         let change = DVector::from_iterator(loads.len(), forces[loads].iter().zip(before).map(|(now, old)| now - old));
         let scale = free.iter().fold(0.0_f64, |most, free| most.max(free.abs()));
         Some(((own * change).amax() <= TIP_TOLERANCE * scale, calls))

@@ -144,7 +144,7 @@ impl ImpactSystem {
                 Some(tangents) => tangents.solve_linearised(x, count),
                 None => Err(SolveError::NotLinearised),
             };
-            *contact_calls += influence.touch(strikers, t, &h.contacts, start, step, solve)?;
+            *contact_calls += influence.touch(strikers, t, h, start, step, solve)?;
             d.iter_mut().zip(&*step).for_each(|(d, step)| *d += step);
             let work: f64 = residual.iter().zip(&*step).map(|(r, d)| r * d).sum();
             let square = work + influence.work(strikers, step);

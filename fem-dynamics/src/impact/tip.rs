@@ -17,8 +17,6 @@ const ENOUGH: f64 = 1e-9;
 /// Rounding of sums, relative to their largest term.
 const ROUNDING: f64 = 1e-15;
 
-const VIRGIN: ContactHistory = [0.0; 8];
-
 /// A tip of radius R that indents a bed of springs and, in series with it, what a contact law F(α) gives: half and half.
 ///
 /// ```text
@@ -27,11 +25,13 @@ const VIRGIN: ContactHistory = [0.0; 8];
 /// F = ∫ p dA                                       α(F) with the law's history
 /// ```
 ///
-/// On a plane δ₀ = α/2, and F is that of the law for every law while it loads; with Hertz' law p is his pressure on a² = 2R δ₀ = R α.
+/// A ring carries F(2δ) of its inner less that of its outer edge, each with the history of a law that was as deep as the bed was there: the
+/// bed keeps what the law keeps.
+///
+/// On a plane δ₀ = α/2, and F is that of the law for every law and any path; with Hertz' law p is his pressure on a² = 2R δ₀ = R α.
 /// Where the face is bent to 1/ρ, with 1/R' = 1/R − 1/ρ, the patch is a² = 2R' δ and wider, by less than Hertz' (R' = 2R: by 12 %, and F by
 /// 4 %), because the bed is but half of the indentation; where it is bent as the tip is, they touch all over, and where it is bent more, along
-/// the rim. The pressure is found anew from every state: only the law remembers something. Of what it loses and of its dent there is
-/// half, because the bed is elastic.
+/// the rim. Where it is bent a law loses what its pressure does, which need not be what it loses on a plane.
 ///
 /// w is a mean over each of sixteen rings of equal width, which reach to 0.7 R; the last one stands for what is beyond.
 #[derive(Debug, Clone)]
@@ -39,7 +39,7 @@ pub struct Tip {
     rings: Vec<Ring>,
 }
 
-/// A ring of the bed: f = F(2d) − F(2d − 2 rise) of the law's first loading, d the depth of the tip at its inner edge.
+/// A ring of the bed: f = F(2d) − F(2d − 2 rise), d the depth of the tip at its inner edge.
 #[derive(Debug, Clone)]
 struct Ring {
     /// r²/(2R) at the inner edge, and how much more at the outer one, m.
@@ -49,6 +49,31 @@ struct Ring {
     square: f64,
     /// Load of a unit force on it.
     load: Vec<(usize, f64)>,
+}
+
+/// A law with what it remembers under a tip: as a whole, and of each ring of the bed at its inner and its outer edge.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Remembering<'a> {
+    pub(super) law: &'a dyn ContactLaw,
+    pub(super) whole: &'a ContactHistory,
+    pub(super) bed: &'a [[ContactHistory; 2]],
+}
+
+impl Remembering<'_> {
+    /// At a depth of the tip in the bed, where it was as deep as `h` says.
+    fn at(&self, h: &ContactHistory, depth: f64) -> ContactForce {
+        if depth > 0.0 { self.law.force(h, 2.0 * depth) } else { ContactForce::default() }
+    }
+
+    fn energy_at(&self, h: &ContactHistory, depth: f64) -> Energy {
+        self.law.energy(h, 2.0 * depth.max(0.0))
+    }
+
+    /// Indentation that is left when the force is gone, m.
+    pub(super) fn dent(&self) -> f64 {
+        let deepest = self.bed.first().map_or(0.0, |[inner, _]| self.law.branches(inner).touch);
+        0.5 * (self.law.branches(self.whole).touch + deepest)
+    }
 }
 
 /// A tip in a state.
@@ -90,26 +115,52 @@ impl Tip {
         self.rings.iter().map(|ring| &ring.load)
     }
 
-    /// Force of a ring at depth `d`, N, and its derivative.
-    fn ring(&self, law: &dyn ContactLaw, k: usize, d: f64) -> ContactForce {
-        let at = |d: f64| if d > 0.0 { law.force(&VIRGIN, 2.0 * d) } else { ContactForce::default() };
-        let (inner, outer) = (at(d), at(d - self.rings[k].rise));
-        ContactForce { force: inner.force - outer.force, tangent: 2.0 * (inner.tangent - outer.tangent) }
+    /// How many rings its bed has.
+    pub(super) fn count(&self) -> usize {
+        self.rings.len()
+    }
+
+    /// Force of a ring at depth `d`, N, and its derivative; no ring pulls, whatever its edges remember.
+    fn ring(&self, by: Remembering<'_>, k: usize, d: f64) -> ContactForce {
+        let [at_inner, at_outer] = &by.bed[k];
+        let (inner, outer) = (by.at(at_inner, d), by.at(at_outer, d - self.rings[k].rise));
+        if outer.force > inner.force {
+            return ContactForce::default();
+        }
+        let tangent = 2.0 * (inner.tangent - outer.tangent);
+        ContactForce { force: inner.force - outer.force, tangent: tangent.max(0.0) }
     }
 
     /// Tip at `z` above the displacements `u`.
-    pub(super) fn press(&self, law: &dyn ContactLaw, h: &ContactHistory, z: f64, u: &[f64]) -> Pressed {
+    pub(super) fn press(&self, by: Remembering<'_>, z: f64, u: &[f64]) -> Pressed {
         let free: Vec<f64> = self.rings.iter().map(|ring| z - value(&ring.load, u)).collect();
-        self.press_from(law, h, &free)
+        self.press_from(by, &free)
+    }
+
+    /// Takes a state into what law and bed remember.
+    pub(super) fn commit(
+        &self,
+        law: &dyn ContactLaw,
+        pressed: &Pressed,
+        whole: &mut ContactHistory,
+        bed: &mut [[ContactHistory; 2]],
+    ) {
+        law.commit(whole, pressed.alpha);
+        for ((ring, depth), [inner, outer]) in self.rings.iter().zip(&pressed.depths).zip(bed) {
+            law.commit(inner, 2.0 * depth);
+            if ring.rise.is_finite() {
+                law.commit(outer, 2.0 * (depth - ring.rise));
+            }
+        }
     }
 
     /// Tip at these approaches of the rings: the indentation of the law at which law and bed have the same force.
-    fn press_from(&self, law: &dyn ContactLaw, h: &ContactHistory, free: &[f64]) -> Pressed {
+    fn press_from(&self, by: Remembering<'_>, free: &[f64]) -> Pressed {
         let depths = |alpha: f64| self.rings.iter().zip(free).map(move |(ring, free)| free - ring.gap - 0.5 * alpha);
-        let forces = |alpha: f64| depths(alpha).enumerate().map(|(k, d)| self.ring(law, k, d).force);
+        let forces = |alpha: f64| depths(alpha).enumerate().map(|(k, d)| self.ring(by, k, d).force);
         // What the bed has more than the law falls with the indentation of the law.
-        let more = |alpha: f64| forces(alpha).sum::<f64>() - law.force(h, alpha).force;
-        let touch = law.branches(h).touch;
+        let more = |alpha: f64| forces(alpha).sum::<f64>() - by.law.force(by.whole, alpha).force;
+        let touch = by.law.branches(by.whole).touch;
         let mut alpha = touch;
         if more(touch) > 0.0 {
             let mut step = (free[0] - touch).abs().max(f64::MIN_POSITIVE);
@@ -133,13 +184,14 @@ impl Tip {
     }
 
     /// Work on law and bed, J.
-    pub(super) fn energy(&self, law: &dyn ContactLaw, h: &ContactHistory, pressed: &Pressed) -> Energy {
-        let of_law = law.energy(h, pressed.alpha);
-        let at = |d: f64| if d > 0.0 { law.energy(&VIRGIN, 2.0 * d) } else { Energy::default() };
-        let work = |d: f64| at(d).stored + at(d).dissipated;
-        let rings = self.rings.iter().zip(&pressed.depths);
-        let bed: f64 = rings.map(|(ring, d)| work(*d) - work(d - ring.rise)).sum();
-        Energy { stored: 0.5 * (of_law.stored + bed), dissipated: 0.5 * of_law.dissipated }
+    pub(super) fn energy(&self, by: Remembering<'_>, pressed: &Pressed) -> Energy {
+        let Energy { mut stored, mut dissipated } = by.law.energy(by.whole, pressed.alpha);
+        for ((ring, depth), [at_inner, at_outer]) in self.rings.iter().zip(&pressed.depths).zip(by.bed) {
+            let (inner, outer) = (by.energy_at(at_inner, *depth), by.energy_at(at_outer, depth - ring.rise));
+            stored += inner.stored - outer.stored;
+            dissipated += inner.dissipated - outer.dissipated;
+        }
+        Energy { stored: 0.5 * stored, dissipated: 0.5 * dissipated }
     }
 
     /// Radius (m) of the Hertz pressure that is as far spread as these forces: a² = 5/2 of the mean square of their radii.
@@ -162,8 +214,7 @@ impl Tip {
     /// Returns the evaluations of the law, `None` where it does not end.
     pub(super) fn solve(
         &self,
-        law: &dyn ContactLaw,
-        h: &ContactHistory,
+        by: Remembering<'_>,
         approach: &DMatrix<f64>,
         free: &[f64],
         forces: &mut [f64],
@@ -171,10 +222,10 @@ impl Tip {
         let n = self.rings.len();
         let mut calls = 0;
         let mut at = |d: &DVector<f64>| {
-            let ring = d.iter().enumerate().map(|(k, d)| self.ring(law, k, *d));
+            let ring = d.iter().enumerate().map(|(k, d)| self.ring(by, k, *d));
             let (f, slopes): (Vec<f64>, Vec<f64>) = ring.map(|ring| (ring.force, ring.tangent)).unzip();
             let f = DVector::from_vec(f);
-            let (alpha, soft) = inverse(law, h, f.sum(), &mut calls);
+            let (alpha, soft) = inverse(by.law, by.whole, f.sum(), &mut calls);
             let mut residual = approach * &f;
             for (k, r) in residual.iter_mut().enumerate() {
                 *r += d[k] + self.rings[k].gap + 0.5 * alpha - free[k];
@@ -182,7 +233,7 @@ impl Tip {
             (f, slopes, residual, 0.5 * soft)
         };
         let scale = free.iter().fold(0.0_f64, |m, free| m.max(free.abs()));
-        let mut d = DVector::from_vec(self.press_from(law, h, free).depths);
+        let mut d = DVector::from_vec(self.press_from(by, free).depths);
         let (mut f, mut slopes, mut residual, mut soft) = at(&d);
         for _ in 0..MOST {
             let left = residual.amax();

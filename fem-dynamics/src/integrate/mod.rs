@@ -57,11 +57,12 @@ fn accept(sys: &mut dyn SecondOrderSystem, s: &mut State) -> Result<(), StepErro
 
 /// Copies without allocating, once the lengths agree.
 fn copy(from: &State, to: &mut State) {
-    let State { t, u, v, a, histories: Histories { contacts, points } } = to;
+    let State { t, u, v, a, histories: Histories { contacts, beds, points } } = to;
     *t = from.t;
     u.clone_from(&from.u);
     v.clone_from(&from.v);
     a.clone_from(&from.a);
     contacts.clone_from(&from.histories.contacts);
+    beds.clone_from(&from.histories.beds);
     points.clone_from(&from.histories.points);
 }

@@ -5,7 +5,8 @@ use fem_core::contact::{ContactHistory, ContactLaw};
 use fem_core::energy::Energy;
 use fem_core::plugin::{Dimension, Params, Value};
 use fem_core::testkit::check_contact_law;
-use fem_dynamics::contact::{Hertz, Linear, SunYang, WithoutSqueeze};
+use fem_dynamics::contact::{ElasticPlastic, Hertz, Linear, SunYang, WithoutSqueeze};
+use std::f64::consts::PI;
 
 const RULES: [&str; 2] = ["unloading-curve", "loading-exponent"];
 
@@ -27,6 +28,46 @@ fn contracts_hold() {
         )
         .unwrap();
     }
+}
+
+#[test]
+fn a_plate_that_yields_keeps_the_contract() {
+    // Not at all, from the middle on, from the beginning.
+    for critical in [2e-4, 8e-5, 1e-7] {
+        check_contact_law(&ElasticPlastic::new(3.38e9, critical), 1.6e-4).unwrap_or_else(|why| panic!("{critical}: {why}"));
+    }
+}
+
+/// Below a sphere the largest shear stress is 0.310 of the largest pressure (Poisson's ratio 0.3).
+#[test]
+fn a_plate_yields_where_its_shear_stress_is_its_strength() {
+    let (radius, modulus, strength) = (8e-3, 8e9, 110e6);
+    let k = 4.0 / 3.0 * modulus * f64::sqrt(radius);
+    let pressure: f64 = strength / 0.310;
+    let yields = radius * (PI * pressure / (2.0 * modulus)).powi(2);
+    let params = stiffness(k, 1.5)
+        .with("radius", length(radius))
+        .with("strength", Value::Quantity(strength, Dimension::PRESSURE));
+    let law = law::<ElasticPlastic>(&params);
+    let dent = |alpha: f64| law.branches(&committed(&*law, &[alpha])).touch;
+    assert!(dent(0.9 * yields) == 0.0 && dent(1.1 * yields) > 0.0, "{}", dent(1.1 * yields));
+}
+
+/// Three times as deep as it yields, with F in units of k yields^1.5 and lengths in those of the yielding.
+#[test]
+fn a_plate_that_yields_loses_what_the_formulas_say() {
+    let (k, yields) = (2.0_f64, 0.25_f64);
+    let unit = k * yields.powf(1.5);
+    let law = ElasticPlastic::new(k, yields);
+    let h = committed(&law, &[3.0 * yields]);
+    assert!((law.force(&h, 3.0 * yields).force / unit - 4.0).abs() < 1e-14);
+    let dent = (3.0_f64.powf(1.5) - 4.0).powf(2.0 / 3.0);
+    assert!((law.branches(&h).touch / yields - dent).abs() < 1e-14);
+    let given_back = 0.4 * (3.0_f64.powf(2.5) - dent.powf(2.5)) - dent.powf(1.5) * (3.0 - dent);
+    let lost = (0.4 + 2.0 * (1.0 + 4.0) / 2.0 - given_back) * unit * yields;
+    let Energy { stored, dissipated } = law.energy(&h, -1.0);
+    assert!(stored == 0.0 && (dissipated / lost - 1.0).abs() < 1e-13, "{dissipated} {lost}");
+    assert!((law.energy(&h, 3.0 * yields).stored / (given_back * unit * yields) - 1.0).abs() < 1e-13);
 }
 
 #[test]

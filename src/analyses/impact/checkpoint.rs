@@ -56,7 +56,7 @@ mod tests {
             u: odd.to_vec(),
             v: Vec::new(),
             a: vec![1.0],
-            histories: Histories { contacts: vec![[-0.0; 8]], points: vec![5e-324] },
+            histories: Histories { contacts: vec![[-0.0; 8]], beds: vec![[[0.1; 8], [-0.0; 8]]], points: vec![5e-324] },
         };
         let back: State = postcard::from_bytes(&postcard::to_stdvec(&state).unwrap()).unwrap();
         let bits = |s: &State| {
@@ -64,6 +64,7 @@ mod tests {
                 .into_iter()
                 .flatten()
                 .chain(s.histories.contacts.as_flattened())
+                .chain(s.histories.beds.as_flattened().as_flattened())
                 .chain(&s.histories.points)
                 .chain([&s.t]);
             numbers.map(|x| x.to_bits()).collect::<Vec<_>>()
