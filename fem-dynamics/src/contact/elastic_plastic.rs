@@ -3,8 +3,8 @@
 use super::Hertz;
 use fem_core::contact::{Branches, ContactForce, ContactHistory, ContactLaw};
 use fem_core::energy::Energy;
-use fem_core::plugin::{Built, Dimension, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::plugin::Kind;
+use fem_core::plugin::{Built, Dimension, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use std::f64::consts::PI;
 
 /// Hertz' law up to an indentation at which the plate yields, a straight line from there on, and Hertz' stiffness on the way back.
@@ -113,11 +113,14 @@ impl ContactLaw for ElasticPlastic {
 
 const CRITICAL: ParamInfo =
     ParamInfo::quantity("critical", "indentation at which the plate yields", Dimension::LENGTH).above(0.0);
-const RADIUS: ParamInfo = ParamInfo::quantity("radius", "tip radius; with `strength` instead of `critical`", Dimension::LENGTH)
-    .above(0.0)
-    .optional();
+const RADIUS: ParamInfo =
+    ParamInfo::quantity("radius", "tip radius; with `strength` instead of `critical`", Dimension::LENGTH)
+        .above(0.0)
+        .optional();
 const STRENGTH: ParamInfo =
-    ParamInfo::quantity("strength", "shear strength of the laminate; with `radius`", Dimension::PRESSURE).above(0.0).optional();
+    ParamInfo::quantity("strength", "shear strength of the laminate; with `radius`", Dimension::PRESSURE)
+        .above(0.0)
+        .optional();
 
 impl Plugin for ElasticPlastic {
     const INFO: PluginInfo = PluginInfo {

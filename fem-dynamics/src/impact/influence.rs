@@ -254,12 +254,7 @@ impl Influence {
 
     /// Finds the forces under a tip, those of the others being what they are; returns whether they are what they were, and the evaluations of
     /// the law.
-    fn press(
-        &mut self,
-        tip: &Tip,
-        by: Remembering<'_>,
-        loads: Range<usize>,
-    ) -> Option<(bool, u64)> {
+    fn press(&mut self, tip: &Tip, by: Remembering<'_>, loads: Range<usize>) -> Option<(bool, u64)> {
         let Self { approach, free, forces, .. } = self;
         let count = forces.len();
         let outside = |c: usize| {

@@ -34,7 +34,8 @@ fn contracts_hold() {
 fn a_plate_that_yields_keeps_the_contract() {
     // Not at all, from the middle on, from the beginning.
     for critical in [2e-4, 8e-5, 1e-7] {
-        check_contact_law(&ElasticPlastic::new(3.38e9, critical), 1.6e-4).unwrap_or_else(|why| panic!("{critical}: {why}"));
+        check_contact_law(&ElasticPlastic::new(3.38e9, critical), 1.6e-4)
+            .unwrap_or_else(|why| panic!("{critical}: {why}"));
     }
 }
 

@@ -106,7 +106,8 @@ fn on_a_plane_the_law_is_what_it_was() {
     for law in [hertz(K, 1.5), linear, sun_yang(K, 8e-5, "unloading-curve"), Box::new(ElasticPlastic::new(K, 4e-5))] {
         let [point, tip] = [false, true].map(|tip| impact(0.0, law.clone(), tip, (2e-6, 9e-3)));
         let most = largest(&point, |s| s.force);
-        let apart = |of: fn(&Seen) -> f64| point.iter().zip(&tip).fold(0.0_f64, |m, (a, b)| m.max((of(a) - of(b)).abs()));
+        let apart =
+            |of: fn(&Seen) -> f64| point.iter().zip(&tip).fold(0.0_f64, |m, (a, b)| m.max((of(a) - of(b)).abs()));
         assert!(apart(|s| s.force) < 1e-9 * most, "{law:?}: {} of {most}", apart(|s| s.force));
         assert!(apart(|s| s.energy) < 1e-9 * 4.0, "{law:?}: {}", apart(|s| s.energy));
         assert!(apart(|s| s.dent) < 1e-9 * TIP, "{law:?}: {}", apart(|s| s.dent));
