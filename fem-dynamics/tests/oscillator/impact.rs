@@ -4,6 +4,7 @@ use crate::{SCHEMES, dormand_prince, hertz, march, scheme, sun_yang, table};
 use fem_core::contact::ContactLaw;
 use fem_core::testkit::Oscillators;
 use fem_core::time::{Integrator, State};
+use fem_dynamics::contact::ElasticPlastic;
 
 /// Highest force and indentation, time of contact, and the state after it.
 struct Impact {
@@ -110,6 +111,25 @@ fn sun_yang_on_the_ground_meets_closed_forms() {
             let force = law.force(&seen.end.histories.contacts[0], touch).force;
             assert_eq!(force == 0.0, dent > 0.0, "{name}: force {force} at {touch}");
         }
+    }
+}
+
+/// A sphere that comes to rest three times as deep as the ground yields, with F in units of k yields^1.5.
+#[test]
+fn a_sphere_on_ground_that_yields_meets_closed_forms() {
+    let (m, k, yields) = (2.0, 9.7e8_f64, 4e-5_f64);
+    let work = k * yields.powf(2.5);
+    let dent = (3.0_f64.powf(1.5) - 4.0).powf(2.0 / 3.0);
+    let given_back = 0.4 * (3.0_f64.powf(2.5) - dent.powf(2.5)) - dent.powf(1.5) * (3.0 - dent);
+    let v = (2.0 * 5.4 * work / m).sqrt();
+    for (name, order) in SCHEMES {
+        let law = Box::new(ElasticPlastic::new(k, yields));
+        let seen = impact(scheme(name), m, v, law, 3.0 * yields / v / 1000.0, 4000);
+        let tolerance = of_order(order, [4e-3, 2e-6, 5e-7]);
+        assert_close(name, seen.alpha, 3.0 * yields, tolerance);
+        assert_close(name, seen.force, 4.0 * k * yields.powf(1.5), tolerance);
+        assert_close(name, -seen.end.v[0] / v, (given_back / 5.4).sqrt(), tolerance);
+        assert!(seen.imbalance <= of_order(order, [4e-3, 2e-6, 1e-7]), "{name}: energy {:e}", seen.imbalance);
     }
 }
 
