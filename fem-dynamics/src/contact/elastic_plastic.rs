@@ -22,7 +22,7 @@ use std::f64::consts::PI;
 /// α_y = 0.68 π² (2 S)² R/E²,   E = 3 k/(4 √R)
 /// ```
 ///
-/// A second contact follows the way back. Stored is what the bodies give back by separating; the rest of the work is dissipated.
+/// so that K = 10.4 S R, whatever k is. A second contact follows the way back. Stored is what the bodies give back by separating; the rest of the work is dissipated.
 ///
 /// Limits: one line for all that follows the first yielding, up to any depth; measured laminates on a hard back follow Hertz' law further than S
 /// of a single ply says. No rates, no creep.
