@@ -4,8 +4,8 @@ use fem_io::files::FileError;
 use miette::Diagnostic;
 use std::path::PathBuf;
 
-/// What wrote a checkpoint. The last number changes with the numbering of unknowns, in which states are kept.
-pub(crate) const WRITER: &str = concat!(env!("CARGO_PKG_VERSION"), "+numbering.3");
+/// What wrote a checkpoint. The last number changes with what a state holds and with the numbering of its unknowns.
+pub(crate) const WRITER: &str = concat!(env!("CARGO_PKG_VERSION"), "+layout.4");
 
 /// Why a march cannot continue from a checkpoint.
 #[derive(Debug, thiserror::Error, Diagnostic)]
