@@ -137,7 +137,7 @@ impl Tip {
         self.press_from(by, &free)
     }
 
-    /// Takes a state into what law and bed remember.
+    /// Takes a state into what law and bed remember. An edge that is apart while others bear is no contact that has ended.
     pub(super) fn commit(
         &self,
         law: &dyn ContactLaw,
@@ -146,10 +146,16 @@ impl Tip {
         bed: &mut [[ContactHistory; 2]],
     ) {
         law.commit(whole, pressed.alpha);
+        let ended = pressed.force() == 0.0;
+        let take = |h: &mut ContactHistory, depth: f64| {
+            if ended || 2.0 * depth > law.branches(h).touch {
+                law.commit(h, 2.0 * depth);
+            }
+        };
         for ((ring, depth), [inner, outer]) in self.rings.iter().zip(&pressed.depths).zip(bed) {
-            law.commit(inner, 2.0 * depth);
+            take(inner, *depth);
             if ring.rise.is_finite() {
-                law.commit(outer, 2.0 * (depth - ring.rise));
+                take(outer, depth - ring.rise);
             }
         }
     }
@@ -294,4 +300,53 @@ fn inverse(law: &dyn ContactLaw, h: &ContactHistory, force: f64, calls: &mut u64
         alpha = next;
     }
     (alpha, 1.0 / law.force(h, alpha).tangent)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Pressed, Remembering, Tip};
+    use crate::contact::{ElasticPlastic, SunYang};
+    use fem_core::contact::{ContactHistory, ContactLaw};
+    use fem_core::plugin::{Built, Dimension, Params, Plugin, Value};
+
+    fn sun_yang(reloading: &str) -> Box<dyn ContactLaw> {
+        let params = Params::default()
+            .with("k", Value::Quantity(9.7e8, Dimension::contact_stiffness(1.5)))
+            .with("critical", Value::Quantity(8e-5, Dimension::LENGTH))
+            .with("reloading", Value::Text(reloading.into()));
+        match SunYang::build(&params) {
+            Ok(Built::Contact(law)) => law,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Of a rigid plane, on a way with turns in contact and apart from it: force, stored and lost energy are those of the law.
+    #[test]
+    fn on_any_path_the_bed_of_a_plane_is_the_law() {
+        let laws =
+            [sun_yang("unloading-curve"), sun_yang("loading-exponent"), Box::new(ElasticPlastic::new(9.7e8, 4e-5))];
+        let turns = [0.4, 0.33, 0.38, 0.3, 0.42, -0.1, 0.32, 0.25, 0.35, -0.2, 0.5, 0.45, 0.5, 0.0];
+        for law in laws {
+            let tip = Tip::new(8e-3, vec![Vec::new(); Tip::radii(8e-3).count()]);
+            let (mut whole, mut bed) = (ContactHistory::default(), vec![[ContactHistory::default(); 2]; tip.count()]);
+            let (mut alone, mut from) = (ContactHistory::default(), 0.0);
+            for to in turns {
+                for part in 1..=50 {
+                    let z = 1e-3 * (from + (to - from) * f64::from(part) / 50.0);
+                    let by = Remembering { law: &*law, whole: &whole, bed: &bed };
+                    let pressed = tip.press(by, z, &[]);
+                    let (force, energy) = (law.force(&alone, z).force, law.energy(&alone, z));
+                    let found = tip.energy(by, &pressed);
+                    let close =
+                        |a: f64, b: f64, scale: f64| assert!((a - b).abs() < 1e-9 * scale, "{law:?} {z}: {a} {b}");
+                    close(Pressed::force(&pressed), force, 1e4);
+                    close(found.stored, energy.stored, 1.0);
+                    close(found.dissipated, energy.dissipated, 1.0);
+                    tip.commit(&*law, &pressed, &mut whole, &mut bed);
+                    law.commit(&mut alone, z);
+                }
+                from = to;
+            }
+        }
+    }
 }

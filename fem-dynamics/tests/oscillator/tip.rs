@@ -103,7 +103,9 @@ fn a_bent_surface_is_touched_as_hertz_says() {
 #[test]
 fn on_a_plane_the_law_is_what_it_was() {
     let linear = law::<Linear>(&stiffness(3e7, 1.0).with("n", Value::Number(1.0)));
-    for law in [hertz(K, 1.5), linear, sun_yang(K, 8e-5, "unloading-curve"), Box::new(ElasticPlastic::new(K, 4e-5))] {
+    let plastic: Box<dyn ContactLaw> = Box::new(ElasticPlastic::new(K, 4e-5));
+    let [unloading, loading] = ["unloading-curve", "loading-exponent"].map(|rule| sun_yang(K, 8e-5, rule));
+    for law in [hertz(K, 1.5), linear, unloading, loading, plastic] {
         let [point, tip] = [false, true].map(|tip| impact(0.0, law.clone(), tip, (2e-6, 9e-3)));
         let most = largest(&point, |s| s.force);
         let apart =
