@@ -124,7 +124,7 @@ impl Registry {
             .with::<fem_elements::HermiteHex>()
             .with::<fem_elements::WebsterBeam>()
             .with::<contact::SunYang>()
-            .with::<contact::ElasticPlastic>()
+            .with::<contact::YigitChristoforou>()
             .with::<contact::Hertz>()
             .with::<contact::Linear>()
             .with::<integrate::Rk1>()

@@ -188,7 +188,7 @@ impl ImpactSystem {
     }
 
     /// The same with spherical tips, one or none for each impactor: their contact is where they touch, and `load` of the impactor but what
-    /// tells its deflection.
+    /// tells its deflection. States begin with [`initial`](Self::initial), which has room for what their beds remember.
     #[must_use]
     pub fn with_tips(self, tips: Vec<Option<Tip>>) -> Self {
         Self { tips, ..self }

@@ -16,7 +16,7 @@ use fem_core::load::{self, Face};
 use fem_core::material::{Elastic, Material, Strength};
 use fem_core::patch;
 use fem_core::plate::{Plate, PlateError};
-use fem_core::plugin::Dimension;
+use fem_core::plugin::{Dimension, Value};
 use fem_core::profile::{Mirrors, Profile};
 use fem_core::reduction::Reduction;
 use fem_core::time::Integrator;
@@ -24,6 +24,7 @@ use fem_dynamics::impact::Tip;
 use fem_io::scene::{
     self, Analysis, ContactLoad, ImpactPoint, Load, LoadKind, Located, Place, Pressure, ProfileLine, SceneError, Window,
 };
+use fem_io::units::parse_as;
 use std::collections::BTreeMap;
 
 /// Fewest cells whose stresses can be differentiated.
@@ -531,6 +532,15 @@ impl Builder<'_> {
         }
         if impactor.indentation_from.is_some() {
             return refuse("under a tip indentations count from the face", "leave `indentation_from` out");
+        }
+        let of_law = match impactor.contact.params.get("radius") {
+            Some(Value::Text(text)) => parse_as(text, Dimension::LENGTH).ok(),
+            _ => None,
+        };
+        if let Some(of_law) = of_law.filter(|of_law| (of_law - radius).abs() > SAME) {
+            let [of_law, radius] = [of_law, radius].map(|radius| Dimension::LENGTH.of(radius));
+            let message = format!("the `radius` of the contact law is {of_law}, and the tip's {radius}");
+            return Err(self.error(&impactor.load, message, "a tip has one radius: give the same twice"));
         }
         let (centre, _) = self.point(plate, &impactor.at)?;
         let ring = |radii: [f64; 2]| {

@@ -73,7 +73,7 @@ fn a_tip_may_touch_at_a_step() {
 fn a_tip_finds_every_bit_again() {
     let plate = Plate { velocity: 4.0, end_us: 200, ..Plate::new() };
     let elastic = text(&plate, "tip_radius = '8 mm'");
-    let plastic = elastic.replace("law = 'hertz'", "law = 'elastic-plastic', critical = '0.01 mm'");
+    let plastic = elastic.replace("law = 'hertz'", "law = 'yigit-christoforou', critical = '0.01 mm'");
     assert_ne!(plastic, elastic);
     let model = model(&plastic).unwrap();
     let prepared = |threads| impact::prepare(&model, NonZeroUsize::new(threads).unwrap()).unwrap();
@@ -124,6 +124,9 @@ fn what_cannot_grow_is_refused() {
     refused(&text(&plate, "tip_radius = '0 mm'"), &["tip_radius"]);
     refused(&text(&plate, "tip_radius = '60 mm'"), &["patch of radius 21 mm", "smaller `impactor.tip_radius`"]);
     refused(&text(&plate, "tip_radius = '8 mm', indentation_from = 'mid-plane'"), &["count from the face"]);
+    let other = "law = 'yigit-christoforou', radius = '12 mm', strength = '90 MPa'";
+    let other = text(&plate, "tip_radius = '8 mm'").replace("law = 'hertz'", other);
+    refused(&other, &["`radius` of the contact law is 12 mm, and the tip's 8 mm", "the same twice"]);
     let resting = Plate { hold: "kind = 'rest'", ..thick() };
     refused(&text(&resting, "tip_radius = '8 mm'"), &["lifts off does not go with the spherical tip"]);
     let reduced = Plate { more: "reduction = { method = 'ritz', vectors = 20 }\n", ..thick() };

@@ -37,7 +37,8 @@ pub struct Indentation {
 /// A contact law F(α): α is the indentation, positive when the bodies overlap.
 ///
 /// The force is a pure function of the committed history and the present indentation, so that an integrator may try
-/// any number of states within a step; only [`ContactLaw::commit`], called once per accepted step, changes the history.
+/// any number of states within a step; only [`ContactLaw::commit`], called once per accepted step, changes the history. Under a spherical tip
+/// there are more histories of one law, of which those that are apart are left alone until the whole contact has ended.
 pub trait ContactLaw: DynClone + Debug + Send + Sync {
     /// Force and tangent at indentation `alpha` (m). The force is continuous and never falls as `alpha` grows: an implicit
     /// step seeks the one indentation at which it fits.

@@ -3,12 +3,15 @@
 use fem_core::contact::{Branches, ContactForce, ContactHistory, ContactLaw};
 use fem_core::energy::Energy;
 
-/// Largest share of a law's own compliance dα/dF that the plate may take of it.
+/// Largest share of a law's own compliance dα/dF that the plate may take of it; and on the way back from deeper than where it may take no more.
 const MOST: f64 = 0.5;
+const BACK: f64 = 0.9;
 
 /// Indentations between which it is looked for, m.
 const SHALLOWEST: f64 = 1e-9;
 const DEEPEST: f64 = 1.0;
+/// Places on each way back.
+const LOOKS: u32 = 200;
 
 /// A law whose indentation counts from a surface of the plate that the force squeezes towards its face: α = a + c F(α), a the indentation
 /// of the face and c the static compliance of what lies between.
@@ -28,7 +31,7 @@ pub struct WithoutSqueeze {
 
 impl WithoutSqueeze {
     /// `law` without the squeeze of `compliance` (m/N), positive; `None` where the squeeze is more than half of what the law gives from
-    /// the first touch on.
+    /// the first touch on, or all of it on the way back from deeper down.
     pub fn new(law: Box<dyn ContactLaw>, compliance: f64) -> Option<Self> {
         let fits = |alpha: f64| {
             let mut history = ContactHistory::default();
@@ -51,7 +54,23 @@ impl WithoutSqueeze {
                 law.force(&ContactHistory::default(), low).force
             }
         };
-        Some(Self { law, compliance, limit })
+        let found = Self { law, compliance, limit };
+        found.gives_way().then_some(found)
+    }
+
+    /// Whether the law gives way, however deep it has been, where the squeeze is taken from it: on ways back, up to the force of the limit.
+    fn gives_way(&self) -> bool {
+        let depths = std::iter::successors(Some(SHALLOWEST), |depth| Some(2.0 * depth));
+        depths.take_while(|depth| *depth < DEEPEST).all(|deepest| {
+            let mut history = ContactHistory::default();
+            self.law.commit(&mut history, deepest);
+            let touch = self.law.branches(&history).touch;
+            (1..LOOKS).all(|k| {
+                let alpha = touch + (deepest - touch) * f64::from(k) / f64::from(LOOKS);
+                let ContactForce { force, tangent } = self.law.force(&history, alpha);
+                !(force > 0.0 && force < self.limit) || self.compliance * tangent <= BACK
+            })
+        })
     }
 
     /// Force up to which the squeeze is taken from the law, N; infinite where it always is.

@@ -305,7 +305,7 @@ fn inverse(law: &dyn ContactLaw, h: &ContactHistory, force: f64, calls: &mut u64
 #[cfg(test)]
 mod tests {
     use super::{Pressed, Remembering, Tip};
-    use crate::contact::{ElasticPlastic, SunYang};
+    use crate::contact::{SunYang, YigitChristoforou};
     use fem_core::contact::{ContactHistory, ContactLaw};
     use fem_core::plugin::{Built, Dimension, Params, Plugin, Value};
 
@@ -324,7 +324,7 @@ mod tests {
     #[test]
     fn on_any_path_the_bed_of_a_plane_is_the_law() {
         let laws =
-            [sun_yang("unloading-curve"), sun_yang("loading-exponent"), Box::new(ElasticPlastic::new(9.7e8, 4e-5))];
+            [sun_yang("unloading-curve"), sun_yang("loading-exponent"), Box::new(YigitChristoforou::new(9.7e8, 4e-5))];
         let turns = [0.4, 0.33, 0.38, 0.3, 0.42, -0.1, 0.32, 0.25, 0.35, -0.2, 0.5, 0.45, 0.5, 0.0];
         for law in laws {
             let tip = Tip::new(8e-3, vec![Vec::new(); Tip::radii(8e-3).count()]);

@@ -4,7 +4,7 @@ use crate::{SCHEMES, dormand_prince, hertz, march, scheme, sun_yang, table};
 use fem_core::contact::ContactLaw;
 use fem_core::testkit::Oscillators;
 use fem_core::time::{Integrator, State};
-use fem_dynamics::contact::ElasticPlastic;
+use fem_dynamics::contact::YigitChristoforou;
 
 /// Highest force and indentation, time of contact, and the state after it.
 struct Impact {
@@ -123,7 +123,7 @@ fn a_sphere_on_ground_that_yields_meets_closed_forms() {
     let given_back = 0.4 * (3.0_f64.powf(2.5) - dent.powf(2.5)) - dent.powf(1.5) * (3.0 - dent);
     let v = (2.0 * 5.4 * work / m).sqrt();
     for (name, order) in SCHEMES {
-        let law = Box::new(ElasticPlastic::new(k, yields));
+        let law = Box::new(YigitChristoforou::new(k, yields));
         let seen = impact(scheme(name), m, v, law, 3.0 * yields / v / 1000.0, 4000);
         let tolerance = of_order(order, [4e-3, 2e-6, 5e-7]);
         assert_close(name, seen.alpha, 3.0 * yields, tolerance);

@@ -2,7 +2,7 @@
 
 use crate::{length, stiffness};
 use fem_core::plugin::{Dimension, Params, Plugin, Value};
-use fem_dynamics::contact::{ElasticPlastic, Hertz, Linear, SunYang};
+use fem_dynamics::contact::{Hertz, Linear, SunYang, YigitChristoforou};
 use fem_dynamics::integrate::{DormandPrince, GeneralizedAlpha, HhtAlpha, Newmark};
 
 #[track_caller]
@@ -36,12 +36,12 @@ fn of_contact_laws() {
     refused::<SunYang>(&stiffness(1.0, 1.5), "critical");
     refused::<SunYang>(&sound.clone().with("m", Value::Number(1.4)), "m");
     refused::<SunYang>(&sound.clone().with("beta", Value::Number(0.0)), "beta");
-    refused::<ElasticPlastic>(&stiffness(1.0, 1.5).with("n", Value::Number(1.5)), "critical");
+    refused::<YigitChristoforou>(&stiffness(1.0, 1.5).with("n", Value::Number(1.5)), "critical");
     let sphere = stiffness(1.0, 1.5).with("radius", length(8e-3));
-    refused::<ElasticPlastic>(&sphere, "strength");
-    refused::<ElasticPlastic>(&sphere.clone().with("critical", length(1e-4)), "critical");
+    refused::<YigitChristoforou>(&sphere, "strength");
+    refused::<YigitChristoforou>(&sphere.clone().with("critical", length(1e-4)), "critical");
     let sphere = sphere.with("strength", Value::Quantity(0.0, Dimension::PRESSURE));
-    refused::<ElasticPlastic>(&sphere, "strength");
+    refused::<YigitChristoforou>(&sphere, "strength");
     refused::<SunYang>(&sound.with("reloading", Value::Text("elastic".into())), "reloading");
 }
 

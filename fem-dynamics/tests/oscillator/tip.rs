@@ -4,7 +4,7 @@ use crate::{hertz, law, scheme, stiffness, sun_yang};
 use fem_core::contact::ContactLaw;
 use fem_core::plugin::Value;
 use fem_core::structure::{SolveError, Structure};
-use fem_dynamics::contact::{ElasticPlastic, Linear};
+use fem_dynamics::contact::{Linear, YigitChristoforou};
 use fem_dynamics::impact::{ImpactSystem, Impactor, Tip};
 
 const TIP: f64 = 8e-3;
@@ -103,7 +103,7 @@ fn a_bent_surface_is_touched_as_hertz_says() {
 #[test]
 fn on_a_plane_the_law_is_what_it_was() {
     let linear = law::<Linear>(&stiffness(3e7, 1.0).with("n", Value::Number(1.0)));
-    let plastic: Box<dyn ContactLaw> = Box::new(ElasticPlastic::new(K, 4e-5));
+    let plastic: Box<dyn ContactLaw> = Box::new(YigitChristoforou::new(K, 4e-5));
     let [unloading, loading] = ["unloading-curve", "loading-exponent"].map(|rule| sun_yang(K, 8e-5, rule));
     for law in [hertz(K, 1.5), linear, unloading, loading, plastic] {
         let [point, tip] = [false, true].map(|tip| impact(0.0, law.clone(), tip, (2e-6, 9e-3)));
@@ -146,7 +146,7 @@ fn a_tip_that_is_wrapped_lies_on_its_rim() {
 /// Dents and turns of the load on a surface that is bent round the tip or away from it: what is lost is what the laws have lost.
 #[test]
 fn a_dent_under_a_tip_loses_what_the_law_says() {
-    let plastic = Box::new(ElasticPlastic::new(K, 4e-5)) as Box<dyn ContactLaw>;
+    let plastic = Box::new(YigitChristoforou::new(K, 4e-5)) as Box<dyn ContactLaw>;
     for (law, bent) in [(sun_yang(K, 8e-5, "unloading-curve"), 60.0), (plastic.clone(), 60.0), (plastic, -60.0)] {
         let errors = [2e-6, 1e-6].map(|dt| {
             let seen = impact(bent, law.clone(), true, (dt, 9e-3));

@@ -58,8 +58,8 @@ pub(super) fn laws(
         }
         let Some(law) = WithoutSqueeze::new(strike.law.clone(), compliance) else {
             let message = format!(
-                "the plate between there and the face gives {} a newton, half of what the contact law gives from the first touch on, or more: \
-                 its squeeze is no part of such a law",
+                "the plate between there and the face gives {} a newton, half of what the contact law gives from the first touch on, or all of \
+                 it on the way back from deep down: its squeeze is no part of such a law",
                 Dimension::LENGTH.of(compliance)
             );
             let place = spec.indentation_from.as_ref().map_or(&spec.at.place, |from| &from.place);

@@ -4,7 +4,7 @@
 use super::{Progress, SystemCounts};
 use crate::model::Model;
 use fem_core::structure::Tangent;
-use fem_core::time::State;
+use fem_core::time::{Histories, State};
 use fem_dynamics::impact::ImpactSystem;
 
 /// Counts beyond this are of no march, and sums of them would overflow.
@@ -14,7 +14,9 @@ impl Progress {
     /// Whether it fits itself and a march of `model`, whose system begins with `fresh`.
     pub(super) fn is_sound(&self, model: &Model, system: &ImpactSystem, fresh: &State) -> bool {
         let Self { step, dt, row_every, state, ledger, work, parts, onsets, tangent, .. } = self;
-        let sizes = |s: &State| [s.u.len(), s.v.len(), s.a.len(), s.histories.contacts.len(), s.histories.points.len()];
+        let sizes = |State { u, v, a, histories: Histories { contacts, beds, points }, .. }: &State| {
+            [u.len(), v.len(), a.len(), contacts.len(), beds.len(), points.len()]
+        };
         let SystemCounts { factorisations, solves, contact_calls, iterations } = *work;
         let n = system.structure().ndof();
         let fits = |Tangent { u, points, .. }: &Tangent| u.len() == n && points.len() == system.structure().states();

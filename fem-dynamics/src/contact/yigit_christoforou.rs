@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 /// ```
 ///
 /// α_y is given, or follows from the radius R of the tip and the shear strength S of the laminate: below a sphere the largest shear stress of an
-/// elastic half-space, 0.31 of the largest pressure, is S (Tresca, yield stress 2 S) at
+/// elastic half-space, 0.30 of the largest pressure, is S (Tresca, yield stress 2 S) at
 ///
 /// ```text
 /// α_y = 0.68 π² (2 S)² R/E²,   E = 3 k/(4 √R)
@@ -24,18 +24,18 @@ use std::f64::consts::PI;
 ///
 /// so that K = 10.4 S R, whatever k is. A second contact follows the way back. Stored is what the bodies give back by separating; the rest of the work is dissipated.
 ///
-/// Limits: one line for all that follows the first yielding, up to any depth; measured laminates on a hard back follow Hertz' law further than S
-/// of a single ply says. No rates, no creep.
+/// Limits: one line for all that follows the first yielding, up to any depth; no rates, no creep. With the shear strength of a single ply for S it
+/// yields early. On the way back from deep down it is stiffer than any squeeze of the plate lets it be, so that its indentation counts from the face.
 ///
 /// History: 0 α_max, m.
 #[derive(Debug, Clone, Copy)]
-pub struct ElasticPlastic {
+pub struct YigitChristoforou {
     elastic: Hertz,
     k: f64,
     yields: f64,
 }
 
-impl ElasticPlastic {
+impl YigitChristoforou {
     /// Hertz' stiffness `k`, N/m^1.5, and the indentation `yields` from which on the plate is crushed.
     pub fn new(k: f64, yields: f64) -> Self {
         Self { elastic: Hertz::new(k, 1.5), k, yields }
@@ -82,7 +82,7 @@ impl ElasticPlastic {
     }
 }
 
-impl ContactLaw for ElasticPlastic {
+impl ContactLaw for YigitChristoforou {
     fn force(&self, history: &ContactHistory, alpha: f64) -> ContactForce {
         let alpha_max = history[0];
         if alpha.is_nan() || alpha > alpha_max {
@@ -107,7 +107,8 @@ impl ContactLaw for ElasticPlastic {
     }
 
     fn branches(&self, history: &ContactHistory) -> Branches {
-        Branches { touch: self.dent(history[0]), peak: Some(history[0]) }
+        // Until it yields it is one curve in both directions, up to where the line begins.
+        Branches { touch: self.dent(history[0]), peak: Some(history[0].max(self.yields)) }
     }
 }
 
@@ -122,10 +123,10 @@ const STRENGTH: ParamInfo =
         .above(0.0)
         .optional();
 
-impl Plugin for ElasticPlastic {
+impl Plugin for YigitChristoforou {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::Contact,
-        name: "elastic-plastic",
+        name: "yigit-christoforou",
         summary: "Hertz' law up to yielding, a straight line beyond, Hertz' stiffness on the way back to a dent",
         source: "Yigit and Christoforou 1994",
         params: &[K, CRITICAL.optional(), RADIUS, STRENGTH],
