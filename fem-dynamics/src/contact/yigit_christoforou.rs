@@ -3,8 +3,7 @@
 use super::Hertz;
 use fem_core::contact::{Branches, ContactForce, ContactHistory, ContactLaw};
 use fem_core::energy::Energy;
-use fem_core::plugin::Kind;
-use fem_core::plugin::{Built, Dimension, ParamError, ParamInfo, Params, Plugin, PluginInfo};
+use fem_core::plugin::{Built, Dimension, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use std::f64::consts::PI;
 
 /// Hertz' law up to an indentation at which the plate yields, a straight line from there on, and Hertz' stiffness on the way back.
@@ -22,10 +21,11 @@ use std::f64::consts::PI;
 /// α_y = 0.68 π² (2 S)² R/E²,   E = 3 k/(4 √R)
 /// ```
 ///
-/// so that K = 10.4 S R, whatever k is. A second contact follows the way back. Stored is what the bodies give back by separating; the rest of the work is dissipated.
+/// so that K = 10.4 S R, whatever k is. A second contact follows the way back. Stored is what the bodies give back by separating; the rest of the
+/// work is dissipated.
 ///
 /// Limits: one line for all that follows the first yielding, up to any depth; no rates, no creep. With the shear strength of a single ply for S it
-/// yields early. On the way back from deep down it is stiffer than any squeeze of the plate lets it be, so that its indentation counts from the face.
+/// yields early. On the way back from deep down it is stiffer than the squeeze of the plate, so that its indentation counts from the face.
 ///
 /// History: 0 α_max, m.
 #[derive(Debug, Clone, Copy)]
@@ -63,7 +63,7 @@ impl YigitChristoforou {
         elastic + beyond * (self.loading(self.yields).force + 0.5 * self.loading(alpha).tangent * beyond)
     }
 
-    /// α_max^1.5 − α₀^1.5 and the dent α₀ that loading to `alpha_max` leaves.
+    /// The dent α₀ that loading to `alpha_max` leaves.
     fn dent(&self, alpha_max: f64) -> f64 {
         if alpha_max <= self.yields {
             return 0.0;
@@ -112,6 +112,7 @@ impl ContactLaw for YigitChristoforou {
     }
 }
 
+const K: ParamInfo = ParamInfo::quantity("k", "contact stiffness", Dimension::contact_stiffness(1.5)).above(0.0);
 const CRITICAL: ParamInfo =
     ParamInfo::quantity("critical", "indentation at which the plate yields", Dimension::LENGTH).above(0.0);
 const RADIUS: ParamInfo =
@@ -146,5 +147,3 @@ impl Plugin for YigitChristoforou {
         Ok(Built::Contact(Box::new(Self::new(k, yields))))
     }
 }
-
-const K: ParamInfo = ParamInfo::quantity("k", "contact stiffness", Dimension::contact_stiffness(1.5)).above(0.0);

@@ -28,7 +28,7 @@ const ROUNDING: f64 = 1e-15;
 /// A ring carries F(2δ) of its inner less that of its outer edge, each with the history of a law that was as deep as the bed was there: the
 /// bed keeps what the law keeps.
 ///
-/// On a plane δ₀ = α/2, and F is that of the law for every law and any path; with Hertz' law p is his pressure on a² = 2R δ₀ = R α.
+/// On a plane δ₀ = α/2, and F is that of the law on any path, if F(α_max − Δ) does not fall as α_max grows; with Hertz' law p is his pressure on a² = 2R δ₀ = R α.
 /// Where the face is bent to 1/ρ, with 1/R' = 1/R − 1/ρ, the patch is a² = 2R' δ and wider, by less than Hertz' (R' = 2R: by 12 %, and F by
 /// 4 %), because the bed is but half of the indentation; where it is bent as the tip is, they touch all over, and where it is bent more, along
 /// the rim. Where it is bent a law loses what its pressure does, which need not be what it loses on a plane.
@@ -304,7 +304,7 @@ fn inverse(law: &dyn ContactLaw, h: &ContactHistory, force: f64, calls: &mut u64
 
 #[cfg(test)]
 mod tests {
-    use super::{Pressed, Remembering, Tip};
+    use super::{Remembering, Tip};
     use crate::contact::{SunYang, YigitChristoforou};
     use fem_core::contact::{ContactHistory, ContactLaw};
     use fem_core::plugin::{Built, Dimension, Params, Plugin, Value};
@@ -339,7 +339,7 @@ mod tests {
                     let found = tip.energy(by, &pressed);
                     let close =
                         |a: f64, b: f64, scale: f64| assert!((a - b).abs() < 1e-9 * scale, "{law:?} {z}: {a} {b}");
-                    close(Pressed::force(&pressed), force, 1e4);
+                    close(pressed.force(), force, 1e4);
                     close(found.stored, energy.stored, 1.0);
                     close(found.dissipated, energy.dissipated, 1.0);
                     tip.commit(&*law, &pressed, &mut whole, &mut bed);
