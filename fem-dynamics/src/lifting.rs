@@ -144,11 +144,14 @@ impl Lifting {
         self.forces.as_slice()
     }
 
-    /// aᵀ dF/ds of the last deflections, where these change by a ds: dF = √r′ z ds, (1 − √r′ G √r′) z = √r′ a.
-    pub fn slope(&mut self, a: &[f64]) -> f64 {
+    /// Aᵀ dF/ds of the last deflections, where these change by A ds: dF = √r′ Z ds, (1 − √r′ G √r′) Z = √r′ A.
+    pub fn slopes(&mut self, a: &[Vec<f64>]) -> DMatrix<f64> {
         let lifted = self.lifted();
-        let scaled = DVector::from_iterator(lifted.len(), lifted.iter().map(|i| self.roots[*i] * a[*i]));
-        self.factorise(&lifted).map_or(0.0, |factor| scaled.dot(&factor.solve(&scaled)))
+        let scaled = DMatrix::from_fn(lifted.len(), a.len(), |row, k| self.roots[lifted[row]] * a[k][lifted[row]]);
+        match self.factorise(&lifted) {
+            Some(factor) => scaled.tr_mul(&factor.solve(&scaled)),
+            None => DMatrix::zeros(a.len(), a.len()),
+        }
     }
 
     /// Adds P F of the last deflections to `f`.

@@ -54,6 +54,7 @@ pub(super) fn separable_parts(model: &Model, separation: &Separation) -> Separab
         element: element.clone(),
         supports: separation.supports.clone(),
         constraints: constraints.clone(),
+        springs: model.springs.clone(),
         interfaces: separation.interfaces.clone(),
         growth: separation.growth,
         plies: model.laws.as_ref().map(|laws| LawPlate::new(plate, element.clone(), constraints, laws.clone())),

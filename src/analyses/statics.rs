@@ -324,7 +324,7 @@ fn nonlinear(
     let (symbolic, _) = model.analyse(pattern)?;
     let factor_entries = symbolic.entries();
     let mut large = LargePlate::new(plate, element.clone(), constraints).ok_or(Error::SmallOnly)?;
-    geometric.into_iter().for_each(|geometric| large.carry(geometric));
+    geometric.iter().for_each(|geometric| large.carry(geometric));
     // A plate that is hot and has not moved is pressed in its plane more than it bears.
     let start = match model.effects.nature().strained {
         true => linear(model, f, threads, counters, stopwatch)?.independent,

@@ -3,6 +3,7 @@
 use fem_core::assembly::SparseStructure;
 use fem_core::constraint::Constraints;
 use fem_core::functional::Functional;
+use fem_core::springs::SupportSpring;
 use fem_dynamics::reduce::{Companions, MembranePlate, Reduced};
 use fem_io::scene::Located;
 
@@ -36,6 +37,8 @@ pub struct Marched {
     pub stretched: Option<(MembranePlate, Companions)>,
     /// Where impactors strike, each place once.
     pub contacts: Vec<Functional>,
+    /// The springs that it lies on.
+    pub springs: Vec<SupportSpring>,
 }
 
 /// What acts on an edge in the plane before all else.

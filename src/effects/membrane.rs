@@ -7,7 +7,7 @@ use crate::effect::{
 };
 use crate::error::Error;
 use crate::forecast::{Demand, Size, nominal};
-use fem_core::assembly::{LargePlate, MembraneStrains, Separable};
+use fem_core::assembly::{LargePlate, MembraneStrains, Separable, Symmetric};
 use fem_core::functional::Functional;
 use fem_core::structure::SolveError;
 use fem_dynamics::reduce::{MembraneForms, MembranePlate, Stretch};
@@ -116,16 +116,23 @@ impl Effect for Membrane {
     }
 
     fn on_structure(&mut self, body: &Body<'_>, plate: &mut Marched) -> Result<(), Error> {
-        let Marched { full, reduced, stretched, contacts } = plate;
+        let Marched { full, reduced, stretched, contacts, springs } = plate;
         match reduced {
             Some(reduced) => {
-                let stiffened = MembranePlate::new(full, reduced, contacts, &MembraneOf(*body));
+                let stiffened = MembranePlate::new(full, reduced, (contacts, springs), &MembraneOf(*body));
                 *stretched = Some(stiffened.map_err(SolveError::other)?);
             }
             None => {
                 let element = dyn_clone::clone_box(body.element);
                 let large = LargePlate::new(body.plate, element, body.constraints);
                 full.stiffen(large);
+                if !springs.is_empty() {
+                    let mut held = Symmetric::zero(full.matrices().0.pattern().clone());
+                    for spring in &*springs {
+                        held.add_spring(spring.stiffness, &spring.at).map_err(SolveError::other)?;
+                    }
+                    full.carry(&held);
+                }
             }
         }
         Ok(())
@@ -139,7 +146,8 @@ impl Effect for Membrane {
         step: f64,
     ) -> Result<Option<Stretch>, Error> {
         let vectors = Stretch::vectors(body.plate.symmetry().name().is_some());
-        let stretch = Stretch::new(plate, contacts, (step, vectors), &MembraneOf(*body));
+        let springs = plate.parts().springs.clone();
+        let stretch = Stretch::new(plate, (contacts, &springs), (step, vectors), &MembraneOf(*body));
         Ok(Some(stretch.map_err(SolveError::other)?))
     }
 }

@@ -174,7 +174,7 @@ impl Effect for Preload {
         if plate.reduced.is_none() {
             let mut geometric = Symmetric::zero(plate.full.matrices().0.pattern().clone());
             self.add_geometric(body, &mut geometric)?;
-            plate.full.carry(geometric);
+            plate.full.carry(&geometric);
         }
         Ok(())
     }

@@ -45,6 +45,14 @@ const SMALL: f64 = 1.0;
 pub(super) struct Builder<'a> {
     pub(super) scene: &'a Scene,
     pub(super) registry: &'a Registry,
+    /// Groups of the mesh of which nothing moves.
+    pub(super) still: BTreeSet<String>,
+}
+
+impl<'a> Builder<'a> {
+    pub(super) fn new(scene: &'a Scene, registry: &'a Registry) -> Self {
+        Self { scene, registry, still: BTreeSet::new() }
+    }
 }
 
 /// How a plate is held.

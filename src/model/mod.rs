@@ -143,6 +143,8 @@ pub struct Model {
     pub grown: Option<Box<Model>>,
     /// The same impact on a plate that does not come apart, where delaminations grow: what formulas and modes are of.
     pub sound: Option<Box<Model>>,
+    /// Why there is none where delaminations grow.
+    unsound: Option<String>,
     /// What is simulated beyond the linear elastic plate.
     pub effects: Effects,
     /// What the advisor decided of that.
@@ -193,7 +195,7 @@ impl Model {
     /// leave a rigid motion.
     pub fn new(scene: impl Borrow<Scene>, registry: &Registry) -> Result<Self, Error> {
         let scene = scene.borrow();
-        let builder = Builder { scene, registry };
+        let mut builder = Builder::new(scene, registry);
         let read = mesh(scene)?;
         let mut warnings = read.warnings;
         let mut mesh = read.mesh;
@@ -356,6 +358,11 @@ impl Model {
         } else if let Some(laws) = &laws {
             effects.act(Box::new(NonlinearPlies(laws.clone())));
         }
+        let (sound, unsound) = match builder.other(scene.sound.as_deref()) {
+            Err(why) if effects.undecided() => return Err(why),
+            Err(why) => (None, Some(why.to_string())),
+            Ok(sound) => (sound, None),
+        };
         let names: Vec<_> = criteria.iter().map(|(name, _)| name.as_str()).collect();
         info!(element = scene.element.name.value, criteria = names.join(", "), unknowns = constraints.ndof(), "model");
         Ok(Self {
@@ -394,10 +401,8 @@ impl Model {
             fields,
             threshold,
             grown: builder.other(scene.grown.as_deref())?,
-            sound: match builder.other(scene.sound.as_deref()) {
-                Err(why) if effects.undecided() => return Err(why),
-                sound => sound.ok().flatten(),
-            },
+            sound,
+            unsound,
             effects,
             decisions: Vec::new(),
             warnings,
@@ -413,8 +418,10 @@ impl Model {
         match (&self.sound, &self.separation) {
             (Some(sound), _) => Ok(sound),
             (None, Some(_)) => {
-                let message =
-                    "formulas, modes and matrices are of a plate that holds together, and this scene makes none";
+                let why = self.unsound.as_ref().map_or_else(String::new, |why| format!(": {why}"));
+                let message = format!(
+                    "formulas, modes and matrices are of a plate that holds together, and this scene makes none{why}"
+                );
                 let help =
                     "set effects = { delamination = \"off\" } and see what else goes only with plates that come apart";
                 Err(self.origin.source.error_at(&Place::TOP, message, help).into())

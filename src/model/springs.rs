@@ -2,7 +2,6 @@
 
 use super::builder::Builder;
 use crate::effect::Effects;
-use crate::registry::NO_REDUCTION;
 use fem_core::constraint::Constraints;
 use fem_core::element::Element;
 use fem_core::functional::Functional;
@@ -11,7 +10,7 @@ use fem_core::plate::Plate;
 use fem_core::plugin::Dimension;
 use fem_core::springs::{Spread, SupportSpring, Surface, merged};
 use fem_core::support::Levels;
-use fem_io::scene::{Analysis, ContactLoad, ImpactorSpec, Located, Place, SceneError, Support, SupportArea};
+use fem_io::scene::{Analysis, Located, Place, SceneError, Support, SupportArea};
 
 /// What a stiffness is of: its dimension, and a unit with its size in SI units.
 #[derive(Debug, Clone, Copy)]
@@ -67,6 +66,16 @@ impl Builder<'_> {
             let message = format!("the support of {}: springs hold one surface of the plate", area.value);
             return Err(self.scene.source.error_at(place, message, "write at = \"bottom\", for example"));
         };
+        if let SupportArea::Group(name) = &area.value
+            && self.still.contains(name)
+        {
+            return Ok(Some(format!("{}, {}: nothing that moves", area.value, kind.name())));
+        }
+        if self.scene.delamination.is_some() && *levels == Levels::MidPlane {
+            let message =
+                format!("the springs of {} hold the mid-plane of a plate that may come apart there", area.value);
+            return Err(self.scene.source.error_at(place, message, "write at = \"bottom\", for example"));
+        }
         let (spread, of) = self.spread((plate, element), area, (surface, *levels))?;
         let value = match stiffness {
             None => self.hard(of),
@@ -138,7 +147,7 @@ impl Builder<'_> {
                 return Err(self.error(
                     area,
                     format!("{} leaves the plate", area.value),
-                    "move it, or make it smaller",
+                    "move it, or make it smaller; cells that are clamped as a whole are no part of what moves",
                 ));
             };
             return Ok((spread, OF_AREA));
@@ -164,32 +173,24 @@ impl Builder<'_> {
         self.symmetric_forces(plate, "the supports break", &forces, place)?;
         let count = springs.all.iter().filter(|spring| spring.one_sided).count();
         let wants = |name: &str| effects.wanted().any(|effect| effect.info().key.name == name);
-        let reduced = self.scene.impact().is_some_and(|impact| impact.reduction.name.value != NO_REDUCTION);
+        let growth = self.scene.delamination.is_some();
         let beside = [
             (self.scene.substructures.is_some(), "condensed substructures", "leave `substructures` out"),
-            (
-                self.scene.delamination.is_some(),
-                "delaminations that grow",
-                if count > 0 { "hold the plate by kind = \"roller\"" } else { "leave `stiffness` out" },
-            ),
             (wants("preload"), "a preload", "leave `effects.preload` out"),
             (
-                wants("membrane") && !reduced,
-                "large deflections of a plate that is not reduced",
-                "leave `effects.membrane` out, or name a reduction for an impact",
+                wants("membrane") && self.scene.impact().is_none() && !growth,
+                "large deflections at rest",
+                "leave `effects.membrane` out",
             ),
         ];
         let static_strains = effects.nature().strained && matches!(self.scene.analysis, Analysis::Static(_));
-        let is_tip = |one: &ImpactorSpec| matches!(one.load.value, ContactLoad::Tip { .. });
-        let tips = self.scene.impact().is_some_and(|impact| impact.impactors.iter().any(is_tip));
         let beside_rests = [
-            (tips, "the spherical tip of an impactor", "give it a `patch_radius` in the place of `tip_radius`"),
-            (self.has_laws(), "plies that follow laws", "hold the plate by kind = \"roller\""),
+            (self.has_laws() && !growth, "plies that follow laws", "hold the plate by kind = \"roller\""),
             (wants("gravity"), "gravity", "leave `effects.gravity` out"),
             (wants("damping"), "damping", "leave `effects.damping` out"),
             (static_strains, "residual strains at rest", "leave `effects.cure` out"),
             (
-                count > MOST_ONE_SIDED,
+                count > MOST_ONE_SIDED && !growth,
                 "more than 2000 points",
                 "let it lie on fewer or larger cells, on edges instead of an area, or on discs",
             ),

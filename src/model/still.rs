@@ -2,15 +2,16 @@
 
 use super::builder::Builder;
 use fem_core::hold::SupportKind;
-use fem_core::mesh::PlaneMesh;
+use fem_core::mesh::{Group, PlaneMesh};
 use fem_core::support::Levels;
 use fem_io::scene::{Support, SupportArea};
 
 impl Builder<'_> {
-    /// Leaves the cells that are clamped over their whole height out of `mesh`, and says which: their edge is clamped in their place.
+    /// Leaves the cells that are clamped over their whole height out of `mesh`, keeps the groups of which nothing is left, and says which
+    /// cells: their edge is clamped in their place.
     /// Elements that share strains at nodes would carry those beside the clamp into it. A plate that is clamped everywhere stays, and
     /// so do cells that a couple holds others to.
-    pub(super) fn leave_out_clamped(&self, mesh: &mut PlaneMesh) -> Option<String> {
+    pub(super) fn leave_out_clamped(&mut self, mesh: &mut PlaneMesh) -> Option<String> {
         let mut gone = vec![false; mesh.quads.len()];
         let mut names = Vec::new();
         for support in &self.scene.supports {
@@ -36,7 +37,13 @@ impl Builder<'_> {
         if count == 0 || count == gone.len() || self.couples_any(mesh, &gone) {
             return None;
         }
-        *mesh = mesh.without(&gone);
+        let parts = |group: &Group| [group.nodes.len(), group.edges.len(), group.quads.len()];
+        let whole = std::mem::replace(mesh, mesh.without(&gone));
+        let lost = |(name, group): (&String, &Group)| {
+            let left = mesh.groups.get(name).map_or([0; 3], parts)[usize::from(group.dim)];
+            (left == 0 && parts(group)[usize::from(group.dim)] > 0).then(|| name.clone())
+        };
+        self.still = whole.groups.iter().filter_map(lost).collect();
         Some(format!("{count} cells of {}, which do not move", names.join(", ")))
     }
 

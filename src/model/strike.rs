@@ -18,13 +18,14 @@ const FREE: [&str; 3] = ["title", "study", "sweep"];
 /// Whether a scene that differs in the key `path` alone has the same plate before its march: the impactor, the constants of its
 /// contact and the strengths of materials.
 pub(crate) fn leaves_plate(path: &str) -> bool {
-    let mut parts = path.split('.').map(|part| part.split('[').next().unwrap_or(part));
-    match (parts.next(), parts.next(), parts.next()) {
-        (Some("contact"), ..) | (Some("impactor"), Some("contact"), _) => true,
-        (Some("impactor"), Some(key), None) => OF_IMPACTOR.contains(&key),
-        (Some("materials"), ..) => leaves_march(path),
-        (Some(first), ..) => FREE.contains(&first),
-        _ => false,
+    let parts: Vec<&str> = path.split('.').map(|part| part.split('[').next().unwrap_or(part)).collect();
+    // What follows the word may choose one of several impactors.
+    match parts[..] {
+        ["contact", ..] | ["impactor", "contact", ..] | ["impactor", _, "contact", ..] => true,
+        ["impactor", key] | ["impactor", _, key] => OF_IMPACTOR.contains(&key),
+        ["materials", ..] => leaves_march(path),
+        [first, ..] => FREE.contains(&first),
+        [] => false,
     }
 }
 
@@ -51,7 +52,7 @@ impl Model {
             return Ok(None);
         }
         let (Plan::Impact(impact), Some(spec)) = (&self.plan, scene.impact()) else { return Ok(None) };
-        let builder = Builder { scene, registry };
+        let builder = Builder::new(scene, registry);
         let mut impact = impact.clone();
         for (strike, impactor) in impact.strikes.iter_mut().zip(&spec.impactors) {
             strike.law = builder.law(impactor)?;

@@ -83,6 +83,7 @@ fn a_circular_delamination_grows_at_one_force() {
         element: Box::new(element),
         supports,
         constraints,
+        springs: Vec::new(),
         interfaces,
         growth,
         plies: None,

@@ -83,8 +83,17 @@ fn separable(plate: Plate, element: Box<dyn Element>, supports: Vec<Equation>, o
     }
     let constraints = Constraints::eliminate(&elimination_order(&plate), &supports).unwrap();
     let growth = Growth { margin: 1e-3, trigger: 0.5 };
-    let parts =
-        SeparableParts { plate, element, supports, constraints, interfaces, growth, plies: None, motions: Vec::new() };
+    let parts = SeparableParts {
+        plate,
+        element,
+        supports,
+        constraints,
+        springs: Vec::new(),
+        interfaces,
+        growth,
+        plies: None,
+        motions: Vec::new(),
+    };
     (Separable::new(parts, &states, true, NonZeroUsize::MIN).unwrap(), states)
 }
 

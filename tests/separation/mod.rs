@@ -7,6 +7,7 @@ mod dynamics;
 mod left;
 mod paths;
 mod pictures;
+mod resting;
 mod scenes;
 mod specimens;
 mod stretched;

@@ -100,6 +100,7 @@ impl Specimen {
             element: Box::new(element),
             supports,
             constraints,
+            springs: Vec::new(),
             interfaces,
             growth,
             plies: None,

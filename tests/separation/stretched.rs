@@ -88,6 +88,7 @@ impl Struck {
             element: element.clone(),
             supports: separation.supports.clone(),
             constraints: constraints.clone(),
+            springs: Vec::new(),
             interfaces: separation.interfaces.clone(),
             growth: separation.growth,
             plies: model.laws.as_ref().map(laws),

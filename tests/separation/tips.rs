@@ -127,8 +127,6 @@ fn what_cannot_grow_is_refused() {
     let other = "law = 'yigit-christoforou', radius = '12 mm', strength = '90 MPa'";
     let other = text(&plate, "tip_radius = '8 mm'").replace("law = 'hertz'", other);
     refused(&other, &["`radius` of the contact law is 12 mm, and the tip's 8 mm", "the same twice"]);
-    let resting = Plate { hold: "kind = 'rest'", ..thick() };
-    refused(&text(&resting, "tip_radius = '8 mm'"), &["lifts off does not go with the spherical tip"]);
     let reduced = Plate { more: "reduction = { method = 'ritz', vectors = 20 }\n", ..thick() };
     refused(&text(&reduced, "tip_radius = '8 mm'"), &["reduced plate", "method = \"none\""]);
     let explicit = text(&plate, "tip_radius = '8 mm'")

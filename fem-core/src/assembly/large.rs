@@ -18,8 +18,8 @@ pub struct LargePlate {
     constraints: Constraints,
     /// Cells, and how many each stands for, with their unknowns.
     cells: Vec<(usize, f64, CellMap)>,
-    /// Geometric stiffness of stresses at rest, if there are some.
-    preload: Option<Symmetric>,
+    /// Stiffness beside that of the cells, if there is some.
+    beside: Option<Symmetric>,
     /// Its forces.
     turned: Vec<f64>,
     /// Displacements before elimination.
@@ -53,7 +53,7 @@ impl LargePlate {
             plate: plate.clone(),
             element,
             constraints: constraints.clone(),
-            preload: None,
+            beside: None,
             turned: Vec::new(),
             all: vec![0.0; plate.ndof()],
             integrated: 0,
@@ -61,9 +61,12 @@ impl LargePlate {
         })
     }
 
-    /// Gives the plate stresses at rest, whose forces are in balance there, by their geometric stiffness on the pattern of K.
-    pub fn carry(&mut self, geometric: Symmetric) {
-        self.preload = Some(geometric);
+    /// Gives the plate more stiffness, on the pattern of K: that of springs, or of stresses that are in balance at rest.
+    pub fn carry(&mut self, more: &Symmetric) {
+        match &mut self.beside {
+            Some(beside) => beside.add(1.0, more),
+            None => self.beside = Some(more.clone()),
+        }
     }
 
     /// Number of independent unknowns.
@@ -92,7 +95,7 @@ impl LargePlate {
         force: &mut [f64],
         mut tangent: Option<&mut Symmetric>,
     ) -> Result<f64, AssemblyError> {
-        let Self { plate, element, constraints, cells, preload, turned, all, work, integrated } = self;
+        let Self { plate, element, constraints, cells, beside, turned, all, work, integrated } = self;
         *integrated += cells.len() as u64;
         constraints.expand(u, all);
         force.fill(0.0);
@@ -118,13 +121,13 @@ impl LargePlate {
                 map.scatter(&work.tangent, *weight, tangent);
             }
         }
-        if let Some(geometric) = preload {
+        if let Some(beside) = beside {
             turned.clear();
             turned.resize(u.len(), 0.0);
-            geometric.add_product(1.0, u, turned);
+            beside.add_product(1.0, u, turned);
             force.iter_mut().zip(&*turned).for_each(|(force, more)| *force += more);
             energy += 0.5 * u.iter().zip(&*turned).map(|(u, f)| u * f).sum::<f64>();
-            tangent.iter_mut().for_each(|tangent| tangent.add(1.0, geometric));
+            tangent.iter_mut().for_each(|tangent| tangent.add(1.0, beside));
         }
         Ok(energy)
     }

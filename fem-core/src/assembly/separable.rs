@@ -8,13 +8,14 @@ mod tied;
 use super::cell_map::CellMap;
 use super::krylov::Krylov;
 use super::released::Released;
-use super::{AssemblyError, FactorError, LawPlate, Matrix, Pattern, Symmetric, assemble, pattern};
+use super::{AssemblyError, FactorError, LawPlate, Matrix, Pattern, PatternError, Symmetric, assemble, pattern};
 use crate::contracts::element::{Element, ElementError};
 use crate::contracts::interface_law::Jump;
 use crate::contracts::structure::Stretching;
 use crate::plates::constraint::{ConstraintError, Constraints, Equation};
 use crate::plates::interfaces::{InterfaceAnswer, InterfaceCell, Interfaces};
 use crate::plates::plate::Plate;
+use crate::plates::springs::SupportSpring;
 use crate::words::counters::Counters;
 use crate::words::energy::Energy;
 use std::fmt;
@@ -43,6 +44,8 @@ pub enum SeparableError {
     Assembly(AssemblyError),
     /// A stiffness that is not positive definite, or too large.
     Factor(FactorError),
+    /// A spring that holds what no cell holds together.
+    Springs(PatternError),
     /// A system with the tangent that was not solved; its residual, relative.
     Unsolved(f64),
 }
@@ -56,6 +59,7 @@ impl fmt::Display for SeparableError {
                 f.write_str("the stiffness is not positive definite: a part of the plate is not held, or has come off")
             }
             Self::Factor(error) => error.fmt(f),
+            Self::Springs(error) => error.fmt(f),
             Self::Unsolved(residual) => {
                 write!(f, "a system with the tangent of the interfaces was solved to {residual:.1e} only")
             }
@@ -88,6 +92,8 @@ pub struct SeparableParts {
     pub supports: Vec<Equation>,
     /// The same eliminated, the layers apart.
     pub constraints: Constraints,
+    /// Its springs, of the independent unknowns; those that only push let go where it lifts.
+    pub springs: Vec<SupportSpring>,
     /// The interfaces.
     pub interfaces: Interfaces,
     /// When they open.
@@ -102,10 +108,11 @@ pub struct SeparableParts {
 ///
 /// f(ũ) = K ũ + Cᵀ Σ ∫ Nᵀ t(N (u⁺ − u⁻)) dA, the sum over the open cells of its [`Interfaces`], ũ with both sides of all nodes that may
 /// separate. Where a cell around a node is closed, its two sides move as one: u⁺ = u⁻ there, ũ = T y with y the unknowns that are
-/// left. What is closed is rigid and costs no unknown of a factorisation; which cells are open is part of their state.
+/// left. What is closed is rigid and costs no unknown of a factorisation; which cells are open is part of their state. K has the springs,
+/// those that only push as if they pulled, and f has not what they would pull.
 ///
-/// Systems with the tangent A = K + cm M + D, D of the interfaces, are solved in y by GMRES with the factor of an older
-/// Tᵀ (K + cm M + D̄) T, D̄ without what makes it indefinite. D is multiplied cell by cell: no tangent is ever assembled.
+/// Systems with the tangent A = K + cm M + D, D of the interfaces and of springs that have let go, are solved in y by GMRES with the
+/// factor of an older Tᵀ (K + cm M + D̄) T, D̄ without what makes it indefinite. D is multiplied cell by cell: no tangent is ever assembled.
 pub struct Separable {
     parts: SeparableParts,
     /// States of each cell of the interfaces.
@@ -119,14 +126,37 @@ pub struct Separable {
     /// Of each cell of the interfaces.
     maps: Vec<CellMap>,
     tied: Tied,
-    /// The tangent: factor on the mass, and moduli of each open cell.
+    /// The tangent: factor on the mass, and what it has beside K and M.
     cm: f64,
-    moduli: Vec<Vec<[Jump; 3]>>,
+    local: Local,
     /// What of the dissipation of the last internal force was friction, J.
     friction: f64,
     krylov: Krylov,
     arrays: Arrays,
     work: SeparableWork,
+}
+
+/// What a tangent has beside K and M.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Local {
+    /// Of each cell of the interfaces, times its weight; none where it is closed.
+    moduli: Vec<Vec<[Jump; 3]>>,
+    /// Which springs have let go.
+    lifted: Vec<bool>,
+}
+
+impl Local {
+    /// Whether interfaces resist every opening.
+    fn is_definite(&self) -> bool {
+        let definite =
+            |m: &[Jump; 3]| (0..3).all(|i| (0..3).all(|j| if i == j { m[i][j] >= 0.0 } else { m[i][j] == 0.0 }));
+        self.moduli.iter().flatten().all(definite)
+    }
+
+    /// Springs by whether they have let go.
+    fn springs<'a>(&'a self, parts: &'a SeparableParts, lifted: bool) -> impl Iterator<Item = &'a SupportSpring> {
+        parts.springs.iter().zip(&self.lifted).filter(move |(_, own)| **own == lifted).map(|(spring, _)| spring)
+    }
 }
 
 #[derive(Debug, Default)]
@@ -166,7 +196,10 @@ impl Separable {
             assemble(plate, &**element, constraints, &pattern, which, threads, &mut counters)
                 .map_err(SeparableError::Assembly)
         };
-        let k = matrix(Matrix::Stiffness)?;
+        let mut k = matrix(Matrix::Stiffness)?;
+        for spring in &parts.springs {
+            k.add_spring(spring.stiffness, &spring.at).map_err(SeparableError::Springs)?;
+        }
         let m = if inertia { matrix(Matrix::Mass)? } else { Symmetric::zero(pattern.clone()) };
         let map = |cell: &InterfaceCell| {
             let mut map = CellMap::default();
@@ -187,7 +220,7 @@ impl Separable {
             maps,
             tied,
             cm: 0.0,
-            moduli: Vec::new(),
+            local: Local::default(),
             friction: 0.0,
             krylov: Krylov::default(),
             arrays: Arrays::default(),
@@ -274,6 +307,10 @@ impl Separable {
         force.fill(0.0);
         self.k.add_product(1.0, u, force);
         let mut energy = Energy { stored: 0.5 * super::equilibrium::dot(u, force), dissipated: 0.0 };
+        for (spring, w) in self.parts.springs.iter().filter_map(|spring| Some((spring, spring.lift(u)?))) {
+            spring.at.add_to(-spring.stiffness * w, force);
+            energy.stored -= 0.5 * spring.stiffness * w * w;
+        }
         if let Some(plies) = &mut self.parts.plies {
             let own = &states[self.first[self.first.len() - 1]..];
             let Energy { stored, dissipated } = plies.add(u, own, force).map_err(SeparableError::Assembly)?;
@@ -312,7 +349,7 @@ impl Separable {
     /// As [`Separable::internal`]; a factor that is not positive definite.
     pub fn linearise(&mut self, u: &[f64], states: &[f64], cm: f64) -> Result<(), SeparableError> {
         self.take(states)?;
-        let mut moduli = std::mem::take(&mut self.moduli);
+        let Local { mut moduli, mut lifted } = std::mem::take(&mut self.local);
         moduli.resize_with(self.maps.len(), Vec::new);
         moduli.iter_mut().for_each(Vec::clear);
         let mut number = 0;
@@ -324,19 +361,21 @@ impl Separable {
             moduli[number].extend(arrays.answer.moduli.iter().map(|m| m.map(|row| row.map(|v| weight * v))));
             number += 1;
         })?;
-        self.moduli = moduli;
+        lifted.clear();
+        lifted.extend(self.parts.springs.iter().map(|spring| spring.lift(u).is_some()));
+        self.local = Local { moduli, lifted };
         self.cm = cm;
         if self.tied.factored != Factored::Near(cm) || self.tied.stale {
             self.factorise()?;
         }
-        self.tied.compare(&self.moduli);
+        self.tied.compare(&self.local);
         Ok(())
     }
 
     fn factorise(&mut self) -> Result<(), SeparableError> {
         self.work.factorisations += 1;
         let near = Factored::Near(self.cm);
-        self.tied.factorise(&self.parts, near, &self.moduli, self.released.springs(), self.threads)
+        self.tied.factorise(&self.parts, near, &self.local, self.released.springs(), self.threads)
     }
 
     /// `x ← T (Tᵀ A T)⁻¹ Tᵀ x` with the last tangent: the displacements under forces x; at rest (cm = 0) in the frame that moves with the
@@ -372,9 +411,9 @@ impl Separable {
             }
             y.clear();
             y.extend_from_slice(&right);
-            let Self { parts, k, m, maps, tied, cm, moduli, krylov, arrays, .. } = self;
+            let Self { parts, k, m, maps, tied, cm, local, krylov, arrays, .. } = self;
             let Tied { way, factor, .. } = tied;
-            let tangent = Tangent { parts, k, m, cm: *cm, maps, moduli };
+            let tangent = Tangent { parts, k, m, cm: *cm, maps, local };
             let product = |x: &[f64], y: &mut [f64]| {
                 let (mut full, mut image) = (std::mem::take(&mut arrays.full), std::mem::take(&mut arrays.image));
                 full.resize(k.ndof(), 0.0);
@@ -399,7 +438,7 @@ impl Separable {
         Ok(())
     }
 
-    /// `x ← T (Tᵀ A T)⁻¹ Tᵀ x`, A = M, or K + cm M with the stiffness of what is open, undamaged.
+    /// `x ← T (Tᵀ A T)⁻¹ Tᵀ x`, A = M, or K + cm M with the stiffness of what is open, undamaged, and all springs.
     fn solve_with(&mut self, what: Factored, x: &mut [f64]) -> Result<(), SeparableError> {
         let Self { parts, released, tied, arrays, work, threads, .. } = self;
         if tied.factored != what {
@@ -407,7 +446,8 @@ impl Separable {
             for (cell, moduli) in moduli.iter_mut().enumerate().filter(|(cell, _)| tied.open[*cell]) {
                 parts.interfaces.undamaged(cell, moduli);
             }
-            tied.factorise(parts, what, &moduli, released.springs(), *threads)?;
+            let local = Local { moduli, lifted: vec![false; parts.springs.len()] };
+            tied.factorise(parts, what, &local, released.springs(), *threads)?;
             work.factorisations += 1;
         }
         let at_rest = what == Factored::Undamaged(0.0);
@@ -494,7 +534,7 @@ struct Tangent<'a> {
     m: &'a Symmetric,
     cm: f64,
     maps: &'a [CellMap],
-    moduli: &'a [Vec<[Jump; 3]>],
+    local: &'a Local,
 }
 
 impl Tangent<'_> {
@@ -504,9 +544,14 @@ impl Tangent<'_> {
         if self.cm != 0.0 {
             self.m.add_product(self.cm, x, y);
         }
+        for spring in self.local.springs(self.parts, true) {
+            spring.at.add_to(-spring.stiffness * spring.at.of(x), y);
+        }
         arrays.all.resize(plate.ndof(), 0.0);
         constraints.expand(x, &mut arrays.all);
-        for (cell, (map, moduli)) in self.maps.iter().zip(self.moduli).enumerate().filter(|(_, m)| !m.1.is_empty()) {
+        for (cell, (map, moduli)) in
+            self.maps.iter().zip(&self.local.moduli).enumerate().filter(|(_, m)| !m.1.is_empty())
+        {
             let n = interfaces.components(cell).len();
             arrays.gather(map, n);
             let Arrays { apart, answer, .. } = arrays;

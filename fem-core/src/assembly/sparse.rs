@@ -110,10 +110,10 @@ impl SparseStructure {
         self.beyond = large.map(|large| Beyond::Large(Box::new(large)));
     }
 
-    /// Gives large deflections, where the structure has them, the `geometric` stiffness of stresses at rest, which its K holds.
-    pub fn carry(&mut self, geometric: Symmetric) {
+    /// Gives large deflections, where the structure has them, a stiffness that its K holds: of springs, or of stresses at rest.
+    pub fn carry(&mut self, more: &Symmetric) {
         if let Some(Beyond::Large(large)) = &mut self.beyond {
-            large.carry(geometric);
+            large.carry(more);
         }
     }
 

@@ -32,6 +32,13 @@ pub struct SupportSpring {
     pub one_sided: bool,
 }
 
+impl SupportSpring {
+    /// How far it has let go under displacements `u`, m; `None` where it holds.
+    pub fn lift(&self, u: &[f64]) -> Option<f64> {
+        Some(self.at.of(u)).filter(|w| self.one_sided && *w > 0.0)
+    }
+}
+
 /// Where springs are that are spread along edges, over cells or a disc: the deflection at each away from the support, and the
 /// length or area that it stands for.
 pub type Spread = Vec<(Functional, f64)>;

@@ -1,12 +1,13 @@
 //! Contact forces of an implicit step, from how the structure responds to each.
 
-use super::tip::{Remembering, Tip};
+use super::tip::{Remembering, Tip, Yielding};
 use super::{Impactor, add, value};
 use crate::lifting::Lifting;
 use fem_core::contact::{ContactForce, ContactHistory};
 use fem_core::structure::SolveError;
 use fem_core::time::{Histories, StepError};
 use nalgebra::{DMatrix, DVector};
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Change of an indentation by its own force, relative, at which several contacts count as solved: ten times the
@@ -229,7 +230,7 @@ impl Influence {
                     let w: Vec<f64> = at_others.iter().zip(&across[c]).map(|(w, across)| w + across * force).collect();
                     lifting.relieve(&w);
                     let more = along(&across[c], lifting.forces()) - given;
-                    (row[c] * force + more, row[c] + lifting.slope(&across[c]))
+                    (row[c] * force + more, row[c] + lifting.slopes(&across[c..=c])[(0, 0)])
                 };
                 let (force, calls) = match start {
                     None => contact(|alpha| impactor.law.force(&h.contacts[i], alpha), free, yielding),
@@ -252,22 +253,65 @@ impl Influence {
         Err(StepError::NoConvergence { t, what: "the contact forces of several impactors".into() })
     }
 
-    /// Finds the forces under a tip, those of the others being what they are; returns whether they are what they were, and the evaluations of
-    /// the law.
+    /// Finds the forces under a tip, those of the others being what they are and those of springs what follows; returns whether they are
+    /// what they were, and the evaluations of the law.
     fn press(&mut self, tip: &Tip, by: Remembering<'_>, loads: Range<usize>) -> Option<(bool, u64)> {
-        let Self { approach, free, forces, .. } = self;
+        let Self { approach, free, forces, lifting, lifts, across, .. } = self;
         let count = forces.len();
         let outside = |c: usize| {
             (0..count).filter(|j| !loads.contains(j)).map(|j| approach[c * count + j] * forces[j]).sum::<f64>()
         };
-        let free: Vec<f64> = loads.clone().map(|c| free[c] - outside(c)).collect();
+        let mut free: Vec<f64> = loads.clone().map(|c| free[c] - outside(c)).collect();
         let own =
             DMatrix::from_fn(loads.len(), loads.len(), |k, l| approach[(loads.start + k) * count + loads.start + l]);
         let before = forces[loads.clone()].to_vec();
-        let calls = tip.solve(by, &own, &free, &mut forces[loads.clone()])?;
+        let rings = &across[loads.clone()];
+        let (mut at_others, mut given) = (Vec::new(), Vec::new());
+        if !lifting.is_empty() {
+            forces[loads.clone()].fill(0.0);
+            at_others = pressed(lifts, across, forces);
+            lifting.relieve(&at_others);
+            given = rings.iter().map(|across| along(across, lifting.forces())).collect();
+            free.iter_mut().zip(&given).for_each(|(free, given)| *free -= given);
+        }
+        let mut yielding = UnderTip { own: &own, rings, lifting, at_others, given };
+        let calls = tip.solve(by, &mut yielding, &free, &mut forces[loads.clone()])?;
         let change = DVector::from_iterator(loads.len(), forces[loads].iter().zip(before).map(|(now, old)| now - old));
         let scale = free.iter().fold(0.0_f64, |most, free| most.max(free.abs()));
         Some(((own * change).amax() <= TIP_TOLERANCE * scale, calls))
+    }
+}
+
+/// A plate and an impactor under the forces of the rings of a tip.
+struct UnderTip<'a> {
+    own: &'a DMatrix<f64>,
+    /// Deflections of springs by a unit force of each ring.
+    rings: &'a [Vec<f64>],
+    lifting: &'a mut Lifting,
+    /// The same by all other forces; none where no spring lets go.
+    at_others: Vec<f64>,
+    /// What springs that have let go under these give to the rings.
+    given: Vec<f64>,
+}
+
+impl Yielding for UnderTip<'_> {
+    fn back(&mut self, forces: &DVector<f64>) -> DVector<f64> {
+        let Self { own, rings, lifting, at_others, given } = self;
+        let mut back = *own * forces;
+        if !at_others.is_empty() {
+            lifting.relieve(&pressed(at_others, rings, forces.as_slice()));
+            for ((back, across), given) in back.iter_mut().zip(*rings).zip(given) {
+                *back += along(across, lifting.forces()) - *given;
+            }
+        }
+        back
+    }
+
+    fn derivative(&mut self) -> Cow<'_, DMatrix<f64>> {
+        match self.at_others.is_empty() {
+            true => Cow::Borrowed(self.own),
+            false => Cow::Owned(self.own + self.lifting.slopes(self.rings)),
+        }
     }
 }
 

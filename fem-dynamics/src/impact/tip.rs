@@ -4,6 +4,7 @@ use super::value;
 use fem_core::contact::{ContactForce, ContactHistory, ContactLaw};
 use fem_core::energy::Energy;
 use nalgebra::{DMatrix, DVector};
+use std::borrow::Cow;
 
 /// Rings of the bed, and the share of the radius of the tip that they cover: there a sphere lies 13 % deeper than its paraboloid.
 const RINGS: usize = 16;
@@ -74,6 +75,15 @@ impl Remembering<'_> {
         let deepest = self.bed.first().map_or(0.0, |[inner, _]| self.law.branches(inner).touch);
         0.5 * (self.law.branches(self.whole).touch + deepest)
     }
+}
+
+/// How a plate gives way to the forces of the rings, and an impactor.
+pub(super) trait Yielding {
+    /// What forces take back of the approaches, m.
+    fn back(&mut self, forces: &DVector<f64>) -> DVector<f64>;
+
+    /// Its derivative by the forces that were last asked about, m/N.
+    fn derivative(&mut self) -> Cow<'_, DMatrix<f64>>;
 }
 
 /// A tip in a state.
@@ -210,29 +220,29 @@ impl Tip {
         (2.5 * moment / force).sqrt()
     }
 
-    /// Forces of the rings where these give by `approach` (m/N) to them and `free` are the approaches without them: Newton's method,
-    /// each step as long as it brings it nearer, for
+    /// Forces of the rings where `free` are the approaches without them and `yielding` says what of these they take back, y(f), and then
+    /// its derivative A there (m/N): Newton's method, each step as long as it brings it nearer, for
     ///
     /// ```text
-    /// d + gap + α(Σ f(d))/2 + A f(d) = free
+    /// d + gap + α(Σ f(d))/2 + y(f(d)) = free
     /// ```
     ///
     /// Returns the evaluations of the law, `None` where it does not end.
     pub(super) fn solve(
         &self,
         by: Remembering<'_>,
-        approach: &DMatrix<f64>,
+        yielding: &mut impl Yielding,
         free: &[f64],
         forces: &mut [f64],
     ) -> Option<u64> {
         let n = self.rings.len();
         let mut calls = 0;
-        let mut at = |d: &DVector<f64>| {
+        let mut at = |yielding: &mut dyn Yielding, d: &DVector<f64>| {
             let ring = d.iter().enumerate().map(|(k, d)| self.ring(by, k, *d));
             let (f, slopes): (Vec<f64>, Vec<f64>) = ring.map(|ring| (ring.force, ring.tangent)).unzip();
             let f = DVector::from_vec(f);
             let (alpha, soft) = inverse(by.law, by.whole, f.sum(), &mut calls);
-            let mut residual = approach * &f;
+            let mut residual = yielding.back(&f);
             for (k, r) in residual.iter_mut().enumerate() {
                 *r += d[k] + self.rings[k].gap + 0.5 * alpha - free[k];
             }
@@ -240,22 +250,23 @@ impl Tip {
         };
         let scale = free.iter().fold(0.0_f64, |m, free| m.max(free.abs()));
         let mut d = DVector::from_vec(self.press_from(by, free).depths);
-        let (mut f, mut slopes, mut residual, mut soft) = at(&d);
+        let (mut f, mut slopes, mut residual, mut soft) = at(yielding, &d);
         for _ in 0..MOST {
             let left = residual.amax();
             if !(left > EXACT * scale) {
                 break;
             }
+            let approach = yielding.derivative();
             let tangent =
                 DMatrix::from_fn(n, n, |k, l| (approach[(k, l)] + soft) * slopes[l] + if k == l { 1.0 } else { 0.0 });
             let step = tangent.lu().solve(&residual)?;
             let mut share = 1.0;
             let mut tried = &d - &step;
-            let mut found = at(&tried);
+            let mut found = at(yielding, &tried);
             while !(found.2.amax() < left) && share > 0.5_f64.powi(HALVINGS as i32) {
                 share *= 0.5;
                 tried = &d - share * &step;
-                found = at(&tried);
+                found = at(yielding, &tried);
             }
             if !(found.2.amax() < left) {
                 break;

@@ -6,6 +6,7 @@ use crate::vector::{axpy, dot};
 use fem_core::energy::Energy;
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
+use fem_core::springs::SupportSpring;
 use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent, Tangents};
 use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, DVectorView, SymmetricEigen};
 use pulp::Arch;
@@ -14,6 +15,11 @@ use std::sync::Arc;
 /// Membrane tensions under which the static responses to a contact are directions: their stiffness against a mode over its
 /// bending stiffness, of the lowest mode, 0 for none. That of tension grows with k², that of bending with k⁴.
 const TENSIONS: [f64; 7] = [0.0, 1.0, 4.0, 16.0, 64.0, 256.0, 1024.0];
+
+/// The same of a plate whose springs that only push are eased, and their stiffness then, all together, over that of the plate under the
+/// contact: where some let go it bends in other shapes.
+const EASED_TENSIONS: [f64; 2] = [0.0, 16.0];
+const EASED: [f64; 2] = [1.0, 0.1];
 
 /// Share of a direction beside those before it below which it does not count as one of its own.
 const SAME: f64 = 1e-8;
@@ -242,18 +248,18 @@ impl Followers {
 }
 
 impl MembranePlate {
-    /// Finds how the modes of `reduced` that the static response to `contacts` calls for stretch the plate `structure`, and what
-    /// it does beside them.
+    /// Finds how the modes of `reduced` that the static response to `contacts` calls for stretch the plate `structure`, which lies on
+    /// `springs`, and what it does beside them.
     ///
     /// # Errors
     /// A structure that is not held, a cell that cannot be integrated.
     pub fn new(
         structure: &mut dyn Structure,
         reduced: &Reduced,
-        contacts: &[Functional],
+        (contacts, springs): (&[Functional], &[SupportSpring]),
         stretching: &dyn MembraneForms,
     ) -> Result<(Self, Companions), ReductionError> {
-        Self::with_plane(structure, reduced, contacts, stretching, InPlane::OfModes)
+        Self::with_plane(structure, reduced, (contacts, springs), stretching, InPlane::OfModes)
     }
 
     /// The same, with what the modes would do in the plane of the plate.
@@ -263,7 +269,7 @@ impl MembranePlate {
     pub(super) fn with_plane(
         structure: &mut dyn Structure,
         reduced: &Reduced,
-        contacts: &[Functional],
+        (contacts, springs): (&[Functional], &[SupportSpring]),
         stretching: &dyn MembraneForms,
         in_plane: InPlane,
     ) -> Result<(Self, Companions), ReductionError> {
@@ -272,7 +278,9 @@ impl MembranePlate {
         let stiff = |k: &f64| if *k > 0.0 { *k } else { f64::INFINITY };
         let bending: Vec<f64> = reduced.modal.stiffness.iter().map(stiff).collect();
         let loads: Vec<Vec<f64>> = contacts.iter().map(|contact| reduced.restrict(contact)).collect();
-        let Directions { vectors, reach } = Directions::new(&bending, &loads);
+        let pushing = springs.iter().filter(|spring| spring.one_sided);
+        let pushing: Vec<_> = pushing.map(|spring| (reduced.restrict(&spring.at), spring.stiffness)).collect();
+        let Directions { vectors, reach } = Directions::new(&bending, &loads, &pushing);
         let basis = DMatrixView::from_slice(&reduced.basis, n, bending.len());
         let fields = basis * &vectors;
         let m = vectors.ncols();
@@ -445,7 +453,8 @@ struct Directions {
 }
 
 impl Directions {
-    fn new(stiffness: &[f64], loads: &[Vec<f64>]) -> Self {
+    /// Of modes of these stiffnesses under `loads`, on springs that only push, each with what it holds of them and its stiffness.
+    fn new(stiffness: &[f64], loads: &[Vec<f64>], springs: &[(Vec<f64>, f64)]) -> Self {
         let n = stiffness.len();
         let bends: Vec<usize> = (0..n).filter(|i| stiffness[*i].is_finite()).collect();
         let dot =
@@ -455,7 +464,29 @@ impl Directions {
             let response = |i: usize| load[i] / (stiffness[i] + tension * lowest * stiffness[i].sqrt());
             DVector::from_fn(n, |i, _| if stiffness[i].is_finite() { response(i) } else { 0.0 })
         };
-        let family: Vec<_> = loads.iter().flat_map(|load| TENSIONS.map(|tension| under(load, tension))).collect();
+        let mut family: Vec<_> = loads.iter().flat_map(|load| TENSIONS.map(|tension| under(load, tension))).collect();
+        let held: f64 = springs.iter().map(|(_, stiffness)| stiffness).sum();
+        for load in loads.iter().filter(|_| !springs.is_empty()) {
+            let flexibility: f64 = bends.iter().map(|i| load[*i] * load[*i] / stiffness[*i]).sum();
+            let own = DVector::from_iterator(bends.len(), bends.iter().map(|i| load[*i]));
+            for share in EASED.map(|eased| eased / (flexibility * held)).into_iter().filter(|share| *share < 1.0) {
+                let mut eased =
+                    DMatrix::from_diagonal(&DVector::from_iterator(bends.len(), bends.iter().map(|i| stiffness[*i])));
+                for (spring, k) in springs {
+                    let spring = DVector::from_iterator(bends.len(), bends.iter().map(|i| spring[*i]));
+                    eased.ger((share - 1.0) * k, &spring, &spring, 1.0);
+                }
+                for tension in EASED_TENSIONS {
+                    let mut stretched = eased.clone();
+                    (0..bends.len())
+                        .for_each(|i| stretched[(i, i)] += tension * lowest * eased[(i, i)].max(0.0).sqrt());
+                    let Some(factor) = Cholesky::new(stretched) else { continue };
+                    let mut shape = DVector::zeros(n);
+                    bends.iter().zip(&factor.solve(&own)).for_each(|(i, value)| shape[*i] = *value);
+                    family.push(shape);
+                }
+            }
+        }
         let mut kept: Vec<DVector<f64>> = Vec::new();
         for candidate in &family {
             let mut rest = candidate.clone();

@@ -6,6 +6,7 @@ use crate::vector::{axpy, dot};
 use fem_core::energy::Energy;
 use fem_core::functional::Functional;
 use fem_core::reduction::{Reduction, ReductionError};
+use fem_core::springs::SupportSpring;
 use fem_core::structure::{Nonlinear, SolveError, Stretching, Structure};
 use std::sync::Arc;
 
@@ -122,13 +123,14 @@ impl Stretch {
         if symmetry { 90 } else { 250 }
     }
 
-    /// Finds the stretching of `structure`, struck at `contacts`, for steps of `step`, s, as its share in so many `vectors` has it.
+    /// Finds the stretching of `structure`, which lies on `springs` and is struck at `contacts`, for steps of `step`, s, as its share in so
+    /// many `vectors` has it.
     ///
     /// # Errors
     /// A structure that is not held, or that its tension bends; a step too long for it; a cell that cannot be integrated.
     pub fn new(
         structure: &mut dyn Structure,
-        contacts: &[Functional],
+        (contacts, springs): (&[Functional], &[SupportSpring]),
         (step, vectors): (f64, usize),
         stretching: &dyn MembraneForms,
     ) -> Result<Self, ReductionError> {
@@ -141,7 +143,7 @@ impl Stretch {
             return Err(ReductionError::Solve(SolveError::other(TOO_LONG)));
         }
         let (membrane, companions) =
-            MembranePlate::with_plane(structure, &reduced, contacts, stretching, InPlane::AtOnce)?;
+            MembranePlate::with_plane(structure, &reduced, (contacts, springs), stretching, InPlane::AtOnce)?;
         let mut weights = vec![0.0; reduced.basis.len()];
         structure.add_mass(1.0, &reduced.basis, &mut weights);
         let share = Share { weights, modes: reduced.modal.ndof(), companions };

@@ -127,9 +127,9 @@ impl Table {
         self.0.iter().find(|e| e.key == key)
     }
 
-    /// Lays `self` over `under`: tables merge key by key, each table of a list with the one table above or beneath it, any
-    /// other value replaces what lies beneath. A table that names another plug-in than the one beneath replaces it, because
-    /// its parameters mean nothing to the new one.
+    /// Lays `self` over `under`: tables merge key by key, each table of a list with the one table above or beneath it, or with that part
+    /// of the one above that [chooses](chosen) it; any other value replaces what lies beneath. A table that names another plug-in than
+    /// the one beneath replaces it, because its parameters mean nothing to the new one.
     pub(crate) fn over(mut self, under: Table) -> Table {
         for below in under.0 {
             let Some(above) = self.0.iter_mut().find(|e| e.key == below.key) else {
@@ -143,10 +143,14 @@ impl Table {
                     tables.for_each(|over| over.merge(under.clone(), &below.key));
                 }
                 (Node::Table(over), Node::List(mut items)) if !items.is_empty() => {
-                    for item in &mut items {
-                        let mut over = over.clone();
-                        if let Some(under) = item.node.table_mut() {
-                            over.merge(std::mem::take(under), &below.key);
+                    let all = std::mem::take(over);
+                    let tables: Vec<_> = items.iter().map(|item| item.node.table().cloned()).collect();
+                    for (i, item) in items.iter_mut().enumerate() {
+                        let mut over = all.of_item(i, &tables);
+                        match item.node.table_mut() {
+                            Some(under) => over.merge(std::mem::take(under), &below.key),
+                            None if over.0.is_empty() => continue,
+                            None => {}
                         }
                         item.node = Node::Table(over);
                     }
@@ -156,6 +160,29 @@ impl Table {
             }
         }
         self
+    }
+
+    /// What of a table that lies over a list lies over the `i`th of its `tables`: what it has for that one, over what it has for all.
+    fn of_item(&self, i: usize, tables: &[Option<Table>]) -> Table {
+        let names: Vec<_> = tables.iter().map(|table| table.as_ref().and_then(Table::name)).collect();
+        let (mut own, mut all) = (Table::default(), Table::default());
+        for entry in &self.0 {
+            let is_key = tables.iter().flatten().any(|table| table.get(&entry.key).is_some());
+            match entry.item.node.table().zip(chosen(&entry.key, &names, is_key)) {
+                Some((table, k)) if k == i => own = table.clone().over(own),
+                Some(_) => {}
+                None => all.0.push(entry.clone()),
+            }
+        }
+        own.over(all)
+    }
+
+    /// What it says that it is called.
+    fn name(&self) -> Option<&str> {
+        match &self.get("name")?.item.node {
+            Node::Text(name) => Some(name),
+            _ => None,
+        }
     }
 
     /// As [`Table::over`], of tables of this key.
@@ -195,6 +222,15 @@ impl Table {
             _ => false,
         })
     }
+}
+
+/// Which of the tables of a list `key` chooses: by its number, from 1 on, or by a name that is its own and no key of theirs.
+pub(crate) fn chosen(key: &str, names: &[Option<&str>], is_key: bool) -> Option<usize> {
+    if let Ok(number) = key.parse::<usize>() {
+        return number.checked_sub(1).filter(|i| *i < names.len());
+    }
+    let mut called = (0..names.len()).filter(|i| names[*i] == Some(key));
+    called.next().filter(|_| called.next().is_none() && !is_key)
 }
 
 /// The key by which tables of key `table` name the plug-in whose parameters they hold.

@@ -3,7 +3,7 @@
 use super::run::SEPARATION;
 use super::{AS_WRITTEN, Merged, Scene, parse, parse_with};
 use crate::document::source::{SceneError, SceneSource};
-use crate::document::tree::plugin_key;
+use crate::document::tree::{chosen, plugin_key};
 use crate::materials::LIBRARY;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -39,13 +39,53 @@ impl Written {
         Self(scene.keys.clone())
     }
 
-    /// The text that stands at `key`, in the first table of a list; nothing where there is none, or no text.
+    /// The text that stands at `key`, in the first table of a list or that which the key names; nothing where there is none, or no text.
     pub fn text(&self, key: &str) -> Option<&str> {
-        let plain = key.replace(['"', '\''], "");
-        let same = |path: &str| path.split('.').map(|part| part.split('[').next()).eq(plain.split('.').map(Some));
+        let keys = Key::parse(key).ok()?;
+        let key: Vec<&str> = keys.iter().map(Key::get).collect();
         // What ends with a number is one of a list of texts.
-        let (_, value) = self.0.iter().find(|(path, _)| !path.ends_with(']') && same(path))?;
+        let (_, value) = self.0.iter().find(|(path, _)| !path.ends_with(']') && self.leads(&key, path))?;
         value.strip_prefix('"')?.strip_suffix('"')
+    }
+
+    /// Whether `key` leads to `path`, in which a table of a list has its number.
+    fn leads(&self, mut key: &[&str], path: &str) -> bool {
+        let mut end = 0;
+        for part in path.split('.') {
+            end += part.len();
+            let (word, item) = part.split_once('[').unwrap_or((part, ""));
+            let [first, rest @ ..] = key else { return false };
+            if *first != word {
+                return false;
+            }
+            key = rest;
+            if let (Ok(i), [choice, rest @ ..]) = (item.trim_end_matches(']').parse::<usize>(), key)
+                && !rest.is_empty()
+                && let Some(k) = self.chosen(choice, &path[..end - item.len()])
+            {
+                if k != i {
+                    return false;
+                }
+                key = rest;
+            }
+            end += 1;
+        }
+        key.is_empty()
+    }
+
+    /// Which table of the list at `list`, `impactor[`, a key chooses.
+    fn chosen(&self, key: &str, list: &str) -> Option<usize> {
+        let (mut names, mut is_key) = (Vec::new(), false);
+        for (path, value) in &self.0 {
+            let Some((i, rest)) = path.strip_prefix(list).and_then(|rest| rest.split_once("].")) else { continue };
+            let Ok(i) = i.parse::<usize>() else { continue };
+            names.resize(names.len().max(i + 1), None);
+            is_key |= rest.split(['.', '[']).next() == Some(key);
+            if rest == "name" {
+                names[i] = Some(value.trim_matches('"'));
+            }
+        }
+        chosen(key, &names, is_key)
     }
 
     /// `value` as TOML writes it at `key`: a text where the scene has one there, and with its unit where it is a number that
@@ -140,15 +180,22 @@ fn write(text: &str, path: &Path, setting: &Setting) -> Result<DocumentMut, Scen
     let source = Arc::new(SceneSource::new(path, text, LIBRARY));
     let wrong = |why: String| source.error(why, "");
     let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| wrong(e.to_string()))?;
+    let mut each = Vec::new();
     for (path, value) in setting {
-        let keys = Key::parse(path).map_err(|e| wrong(format!("`{path}` is no path of keys: {e}")))?;
+        each.push((Key::parse(path).map_err(|e| wrong(format!("`{path}` is no path of keys: {e}")))?, path, value));
+    }
+    // What names a plug-in makes its table anew, what is set of one table of a list goes over what is set of all, and other names
+    // change when nothing is called by them any more.
+    let renames = |keys: &[Key]| keys.last().is_some_and(|key| key.get() == "name");
+    each.sort_by_key(|(keys, ..)| (!names_plugin(keys), renames(keys), keys.len()));
+    for (keys, path, value) in each {
         let value: Value = value.parse().map_err(|e: toml_edit::TomlError| wrong(format!("`{path}`: {e}")))?;
         if !set_path(document.as_table_mut(), &keys, &value) {
             let help = "set the whole of it, a table or a list, at once";
-            return Err(source.error(
-                format!("nothing can be set at `{path}`: it leads through a value or a list in one line"),
-                help,
-            ));
+            let message = format!(
+                "nothing can be set at `{path}`: it leads through a value, or a list of other things than tables"
+            );
+            return Err(source.error(message, help));
         }
     }
     Ok(document)
@@ -159,6 +206,16 @@ const EITHER: [&[&str]; 2] = [&["velocity", "energy", "drop_height"], &["patch_r
 
 /// Keys of a place, and those that each of them takes away.
 const PLACE: [[&[&str]; 2]; 2] = [[&["x", "y"], &["group"]], [&["group"], &["x", "y"]]];
+
+/// Whether `keys` lead to what names the plug-in of a table, or of one of a list.
+fn names_plugin(keys: &[Key]) -> bool {
+    let names = |table: &Key, last: &Key| plugin_key(table.get()) == Some(last.get());
+    match keys {
+        [.., table, choice, last] => names(choice, last) || names(table, last),
+        [table, last] => names(table, last),
+        _ => false,
+    }
+}
 
 /// Sets `value` where `keys` lead; whether they lead anywhere.
 fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) -> bool {
@@ -183,17 +240,47 @@ fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) -> bool {
         [key, rest @ ..] => {
             // A table that names another plug-in is made anew.
             if let ([last], Some(old)) = (rest, table.get_mut(key))
-                && plugin_key(key.get()) == Some(last.get())
+                && names_plugin(keys)
                 && old.get(last.get()).is_some_and(|name| name.as_str() != value.as_str())
             {
                 *old = if old.is_table() { Item::Table(Table::new()) } else { Item::Value(InlineTable::new().into()) };
             }
             match table.entry(key).or_insert_with(|| Item::Table(Table::new())) {
-                Item::ArrayOfTables(tables) => tables.iter_mut().all(|table| set_path(table, rest, value)),
+                Item::ArrayOfTables(tables) => {
+                    set_items(key, tables.iter_mut().map(|table| table as _).collect(), rest, value)
+                }
+                Item::Value(Value::Array(items)) => {
+                    let tables = items.iter_mut().map(|item| item.as_inline_table_mut().map(|table| table as _));
+                    tables.collect::<Option<_>>().is_some_and(|tables| set_items(key, tables, rest, value))
+                }
                 item => item.as_table_like_mut().is_some_and(|table| set_path(table, rest, value)),
             }
         }
     }
+}
+
+/// Sets `value` where `keys` lead in the one of these tables of the key `list` that they choose, or else in each; whether they lead anywhere.
+fn set_items(list: &Key, mut tables: Vec<&mut dyn TableLike>, keys: &[Key], value: &Value) -> bool {
+    let choice = keys.split_first().filter(|(_, rest)| !rest.is_empty()).and_then(|(key, rest)| {
+        let names: Vec<_> = tables.iter().map(|table| table.get("name").and_then(Item::as_str)).collect();
+        let is_key = tables.iter().any(|table| table.contains_key(key.get()));
+        Some((chosen(key.get(), &names, is_key)?, rest))
+    });
+    let (of, keys) = match choice {
+        Some((i, rest)) => (i..i + 1, rest),
+        None => (0..tables.len(), keys),
+    };
+    let set = |table: &mut dyn TableLike| {
+        // One that names another plug-in is made anew.
+        if let [last] = keys
+            && names_plugin(&[list.clone(), last.clone()])
+            && table.get(last.get()).is_some_and(|name| name.as_str() != value.as_str())
+        {
+            table.clear();
+        }
+        set_path(table, keys, value)
+    };
+    !of.is_empty() && tables[of].iter_mut().all(|table| set(*table))
 }
 
 #[cfg(test)]
@@ -231,6 +318,16 @@ mod tests {
         assert_eq!(document.to_string(), expected);
     }
 
+    /// Its parameters are those that are set beside it, whichever come first.
+    #[test]
+    fn a_plugin_is_named_before_its_parameters() {
+        let text = "[reduction]\nmethod = \"ritz\"\nvectors = 20\n";
+        let setting = [("reduction.governors", "3"), ("reduction.method", "\"guyan\"")];
+        let setting = setting.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
+        let written = write(text, Path::new("scene"), &setting).unwrap().to_string();
+        assert_eq!(written, "[reduction]\nmethod = \"guyan\"\ngovernors = 3\n");
+    }
+
     #[test]
     fn another_end_has_no_latest_time() {
         let text = "[march]\nend = \"separation\"\nlatest = \"8 ms\"\n";
@@ -247,6 +344,8 @@ mod tests {
         let keys = [
             ("laminate.plies", "\"[0/90]s\""),
             ("impactor[0].mass", "\"1 kg\""),
+            ("impactor[1].mass", "\"1 g\""),
+            ("impactor[1].name", "\"splinter\""),
             ("failure.criteria[0]", "\"tsai-wu\""),
             ("mesh.cells[0]", "4"),
         ];
@@ -257,8 +356,91 @@ mod tests {
             ("failure.criteria", "[\"hoffman\"]", "[\"hoffman\"]"),
             ("mesh.cells", "[2, 3]", "[2, 3]"),
             ("contact.law", "hertz", "\"hertz\""),
+            ("impactor.2.mass", "2", "\"2 g\""),
+            ("impactor.splinter.mass", "2", "\"2 g\""),
+            ("impactor.1.mass", "2", "\"2 kg\""),
+            ("impactor.3.mass", "2", "2"),
         ] {
             assert_eq!(written.toml(key, words), value);
+        }
+    }
+
+    /// One that names another plug-in is made anew, and what is called as a key or as others is not chosen by that.
+    #[test]
+    fn what_a_list_has_is_no_name() {
+        let criteria = "[[failure.criteria]]\nname = \"tsai-wu\"\nas = \"a\"\nf12 = 1\n\n[[failure.criteria]]\nname = \"hoffman\"\n";
+        let impactors =
+            "impactor = [{ name = \"at\", at = { x = 1 } }, { name = \"b\", at = { x = 2 } }, { name = \"b\" }]\n";
+        for (scene, key, value, expected) in [
+            (
+                criteria,
+                "failure.criteria.1.name",
+                "\"puck\"",
+                vec![("failure.criteria[0].name", "\"puck\""), ("failure.criteria[1].name", "\"hoffman\"")],
+            ),
+            (
+                impactors,
+                "impactor.at.x",
+                "5",
+                vec![
+                    ("impactor[0].at.x", "5"),
+                    ("impactor[0].name", "\"at\""),
+                    ("impactor[1].at.x", "5"),
+                    ("impactor[1].name", "\"b\""),
+                    ("impactor[2].at.x", "5"),
+                    ("impactor[2].name", "\"b\""),
+                ],
+            ),
+        ] {
+            let source = Arc::new(SceneSource::new(Path::new("scene"), scene, LIBRARY));
+            let tree = |text: &str| crate::document::tree::Table::parse(text, Origin::Scene, &source).unwrap();
+            let flat = |table: crate::document::tree::Table| {
+                let mut keys = BTreeMap::new();
+                table.flatten("", &mut keys);
+                keys
+            };
+            let setting: Setting = [(key.to_owned(), value.to_owned())].into();
+            let over = flat(tree(&text(&setting)).over(tree(scene)));
+            assert_eq!(flat(tree(&write(scene, Path::new("scene"), &setting).unwrap().to_string())), over, "{key}");
+            let expected: Vec<_> =
+                expected.into_iter().map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
+            assert_eq!(over.into_iter().collect::<Vec<_>>(), expected, "{key}");
+        }
+        // Nothing is done to what is no table.
+        let mixed = "[failure]\ncriteria = [\"puck\", { name = \"hoffman\", as = \"a\" }]\n";
+        let source = Arc::new(SceneSource::new(Path::new("scene"), mixed, LIBRARY));
+        let tree = |text: &str| crate::document::tree::Table::parse(text, Origin::Scene, &source).unwrap();
+        let mut keys = BTreeMap::new();
+        tree("failure.criteria.2.as = \"b\"\n").over(tree(mixed)).flatten("", &mut keys);
+        assert_eq!((&*keys["failure.criteria[0]"], &*keys["failure.criteria[1].as"]), ("\"puck\"", "\"b\""));
+    }
+
+    /// One table of a list is set by its number or its name, whichever way the list is written and the setting is laid over it.
+    #[test]
+    fn a_table_of_a_list_is_chosen() {
+        let tables = "[[impactor]]\nmass = 1\n\n[[impactor]]\nname = \"splinter\"\nmass = 2\n";
+        let inline = "impactor = [{ mass = 1 }, { name = \"splinter\", mass = 2 }]\n";
+        let source = Arc::new(SceneSource::new(Path::new("scene"), tables, LIBRARY));
+        let tree = |text: &str| crate::document::tree::Table::parse(text, Origin::Scene, &source).unwrap();
+        let flat = |table: crate::document::tree::Table| {
+            let mut keys = BTreeMap::new();
+            table.flatten("", &mut keys);
+            ["impactor[0].mass", "impactor[1].mass", "impactor[1].name"]
+                .map(|key| keys.get(key).cloned().unwrap_or_default())
+        };
+        for (setting, masses) in [
+            ([("impactor.2.mass", "5")].as_slice(), ["1", "5"]),
+            (&[("impactor.splinter.mass", "5")], ["1", "5"]),
+            (&[("impactor.1.mass", "5"), ("impactor.mass", "6")], ["5", "6"]),
+            (&[("impactor.1.mass", "5"), ("impactor.splinter.mass", "6")], ["5", "6"]),
+        ] {
+            let setting: Setting = setting.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
+            for scene in [tables, inline] {
+                let over = flat(tree(&text(&setting)).over(tree(scene)));
+                let written = flat(tree(&write(scene, Path::new("scene"), &setting).unwrap().to_string()));
+                assert_eq!(over, [masses[0], masses[1], "\"splinter\""], "{setting:?} {scene}");
+                assert_eq!(written, over, "{setting:?} {scene}");
+            }
         }
     }
 

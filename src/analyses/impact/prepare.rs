@@ -187,7 +187,13 @@ pub(super) fn make_ready(model: &Model, impact: &Impact, threads: NonZeroUsize) 
     let squeezes = squeezes(impact, &mut assembled, &contacts)?;
     let before = Before { squeezes, ..Before::of(&assembled, softness) };
     let Assembled { structure, condensation, .. } = assembled;
-    let plate = Marched { full: structure, reduced, stretched: None, contacts: distinct(&contacts) };
+    let plate = Marched {
+        full: structure,
+        reduced,
+        stretched: None,
+        contacts: distinct(&contacts),
+        springs: model.springs.clone(),
+    };
     let plate = change_structure(model, plate, &mut effects)?;
     let own = plate.full.work();
     let (factorisations, solves) = work.unwrap_or_default();
@@ -217,7 +223,8 @@ pub(super) fn strike<'a>(
     let (laws, squeezes) = squeeze::laws(model, impact, &before.squeezes)?;
     let impactors = place_impactors(impact, contacts, of_march, &laws);
     let system = ImpactSystem::new(structure, impactors).with_tips(tips(impact, of_march));
-    let mut system = couple(model, system, of_march, &mut effects);
+    let system = couple(model, system, of_march, &mut effects);
+    let mut system = system.on_one_sided(springs(model, of_march).into());
     try_inertia(model, impact, &system, of_march)?;
     let sizes = check_step(model, impact, &mut system, of_march, before)?;
     Ok(Prepared {
@@ -531,8 +538,7 @@ fn couple(
     reduced: Option<&Reduced>,
     effects: &mut [Box<dyn Effect>],
 ) -> ImpactSystem {
-    let system = effects.iter_mut().fold(system, |system, effect| effect.on_system(&model.body(), reduced, system));
-    system.on_one_sided(springs(model, reduced).into())
+    effects.iter_mut().fold(system, |system, effect| effect.on_system(&model.body(), reduced, system))
 }
 
 /// The springs that only push, in coordinates of the march.

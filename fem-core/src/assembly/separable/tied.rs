@@ -1,15 +1,15 @@
 //! The unknowns that are left where both sides of what is closed are one, and a factor in them.
 
-use super::{SeparableError, SeparableParts};
+use super::{Local, SeparableError, SeparableParts};
 use crate::assembly::cell_map::CellMap;
 use crate::assembly::ordering::joined_order;
 use crate::assembly::pattern::joined_pattern;
 use crate::assembly::{Cholesky, Matrix, Pattern, Symbolic, Symmetric, assemble};
-use crate::contracts::interface_law::Jump;
 use crate::plates::constraint::{Constraints, Equation};
 use crate::plates::interfaces::Interfaces;
 use crate::plates::plate::Plate;
 use crate::words::counters::Counters;
+use crate::words::functional::Functional;
 use std::collections::HashSet;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -30,8 +30,8 @@ pub(super) struct Tied {
     pub(super) stale: bool,
     /// Whether it is that of the tangent.
     pub(super) exact: bool,
-    /// Moduli in what was factorised.
-    moduli: Vec<Vec<[Jump; 3]>>,
+    /// What was factorised beside K and M.
+    local: Local,
 }
 
 /// What a factor is of; with its factor on the mass.
@@ -131,15 +131,13 @@ impl Tied {
             factored: Factored::Nothing,
             stale: false,
             exact: false,
-            moduli: Vec::new(),
+            local: Local::default(),
         })
     }
 
-    /// Sees whether the factor is that of a tangent with these `moduli`.
-    pub(super) fn compare(&mut self, moduli: &[Vec<[Jump; 3]>]) {
-        let definite =
-            |m: &[Jump; 3]| (0..3).all(|i| (0..3).all(|j| if i == j { m[i][j] >= 0.0 } else { m[i][j] == 0.0 }));
-        self.exact = self.moduli == moduli && moduli.iter().flatten().all(definite);
+    /// Sees whether the factor is that of a tangent that has this beside K and M.
+    pub(super) fn compare(&mut self, local: &Local) {
+        self.exact = self.local == *local && local.is_definite();
     }
 
     pub(super) fn ndof(&self) -> usize {
@@ -151,13 +149,13 @@ impl Tied {
         self.way.restrict(x, y);
     }
 
-    /// Factorises `what`, with the stiffness of the interfaces that `moduli` leave definite; at rest `springs` at unknowns hold a plate
-    /// that is free to move as a whole.
+    /// Factorises `what`, with the stiffness of interfaces that `local` leaves definite and the springs that have not let go; at rest
+    /// `springs` at unknowns hold a plate that is free to move as a whole.
     pub(super) fn factorise(
         &mut self,
         parts: &SeparableParts,
         what: Factored,
-        moduli: &[Vec<[Jump; 3]>],
+        local: &Local,
         springs: &[(usize, f64)],
         threads: NonZeroUsize,
     ) -> Result<(), SeparableError> {
@@ -174,6 +172,12 @@ impl Tied {
             Factored::Mass => self.near = matrix(Matrix::Mass)?,
             Factored::Undamaged(cm) | Factored::Near(cm) => {
                 self.near = matrix(Matrix::Stiffness)?;
+                for held in local.springs(parts, false) {
+                    let left =
+                        held.at.0.iter().flat_map(|&(i, w)| self.way.of(i).iter().map(move |(j, c)| (*j, w * c)));
+                    let at = Functional(left.collect());
+                    self.near.add_spring(held.stiffness, &at).map_err(SeparableError::Springs)?;
+                }
                 if cm != 0.0 {
                     let mass = matrix(Matrix::Mass)?;
                     let near = self.near.lower_mut().val_mut();
@@ -184,10 +188,10 @@ impl Tied {
                 }
                 let mut secant = Vec::new();
                 for (cell, map) in &mut self.maps {
-                    interfaces.secant(*cell, &moduli[*cell], &mut secant);
+                    interfaces.secant(*cell, &local.moduli[*cell], &mut secant);
                     map.scatter(&secant, 1.0, &mut self.near);
                 }
-                self.moduli.clone_from(&moduli.to_vec());
+                self.local.clone_from(local);
             }
         }
         self.factor.factorise(self.near.lower()).map_err(SeparableError::Factor)?;
