@@ -20,6 +20,10 @@ const FLAT: f64 = 0.1;
 /// Share of the springs that let go, where without them nothing would hold the structure.
 const NEARLY: f64 = 1.0 - 1e-6;
 
+/// What is said where nothing of a structure lies on its springs any more.
+pub const LIFTED_OFF: &str =
+    "the loads lift the plate off its one-sided supports: hold it otherwise, or turn the loads round";
+
 /// A spring that only pushes; w = pᵀu > 0 where the structure has lifted off.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OneSided {
@@ -295,9 +299,7 @@ pub fn at_rest(
     lifting.add_deflections(free, &mut b);
     lifting.begin(None);
     if !lifting.relieve(&b) {
-        return Err(SolveError::other(
-            "the loads lift the plate off its one-sided supports: hold it otherwise, or turn the loads round",
-        ));
+        return Err(SolveError::other(LIFTED_OFF));
     }
     if lifting.forces().iter().any(|force| *force != 0.0) {
         let mut more = vec![0.0; free.len()];

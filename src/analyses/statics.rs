@@ -16,7 +16,7 @@ use fem_core::estimate::mesh_errors;
 use fem_core::field::Field as Displacements;
 use fem_core::functional::Functional;
 use fem_core::profile::{Choice, ProfilePoint, Resultants};
-use fem_core::structure::Structure;
+use fem_core::structure::{SolveError, Structure};
 use fem_dynamics::lifting::{self, Lifting, OneSided};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -164,6 +164,10 @@ pub fn solve_watched(
         return Err(Error::NotFinite("displacement"));
     }
     if !(found.residual <= MOST_RESIDUAL) {
+        let mut pushing = model.one_sided().peekable();
+        if pushing.peek().is_some() && pushing.all(|spring| spring.lift(&found.independent).is_some()) {
+            return Err(SolveError::other(lifting::LIFTED_OFF).into());
+        }
         return Err(Error::IllConditioned { residual: found.residual });
     }
     let mut u = vec![0.0; model.plate.ndof()];

@@ -351,7 +351,9 @@ impl Model {
         if let Some(split) = &split {
             let equations = std::mem::take(&mut supports.equations);
             let built = builder.separation(split, &plate, &*element, &laminate, &materials, equations)?;
-            warnings.extend(built.warnings(scene.impact().map(|impact| impact.march.step.value)));
+            let step = scene.impact().map(|impact| impact.march.step.value);
+            warnings.extend(built.warnings(step));
+            warnings.extend(step.and_then(|step| Separation::held_down(&supports.springs.all, mass, step)));
             let (interfaces, plies) = (built.interfaces.clone(), laws.is_some());
             effects.act(Box::new(GrowingDelaminations { interfaces, plies }));
             separation = Some(built);

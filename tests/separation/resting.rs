@@ -87,7 +87,7 @@ fn a_plate_that_has_lifted_off_finds_every_bit_again() {
     let law = "law = { name = 'hahn-tsai', alpha = '2.44e-8 1/MPa^3' }\n";
     let material: &'static str =
         Box::leak(format!("library = 'IM7/8552'\nZt = '20 MPa'\nS13 = '25 MPa'\n{law}").into_boxed_str());
-    let plate = Plate { hold: "kind = 'rest'", material, end_us: 300, ..Plate::new() };
+    let plate = Plate { hold: "kind = 'rest'", material, velocity: 5.0, end_us: 300, ..Plate::new() };
     // The whole of the lower face besides.
     let text = plate
         .text()

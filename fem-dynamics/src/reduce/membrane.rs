@@ -465,27 +465,8 @@ impl Directions {
             DVector::from_fn(n, |i, _| if stiffness[i].is_finite() { response(i) } else { 0.0 })
         };
         let mut family: Vec<_> = loads.iter().flat_map(|load| TENSIONS.map(|tension| under(load, tension))).collect();
-        let held: f64 = springs.iter().map(|(_, stiffness)| stiffness).sum();
-        for load in loads.iter().filter(|_| !springs.is_empty()) {
-            let flexibility: f64 = bends.iter().map(|i| load[*i] * load[*i] / stiffness[*i]).sum();
-            let own = DVector::from_iterator(bends.len(), bends.iter().map(|i| load[*i]));
-            for share in EASED.map(|eased| eased / (flexibility * held)).into_iter().filter(|share| *share < 1.0) {
-                let mut eased =
-                    DMatrix::from_diagonal(&DVector::from_iterator(bends.len(), bends.iter().map(|i| stiffness[*i])));
-                for (spring, k) in springs {
-                    let spring = DVector::from_iterator(bends.len(), bends.iter().map(|i| spring[*i]));
-                    eased.ger((share - 1.0) * k, &spring, &spring, 1.0);
-                }
-                for tension in EASED_TENSIONS {
-                    let mut stretched = eased.clone();
-                    (0..bends.len())
-                        .for_each(|i| stretched[(i, i)] += tension * lowest * eased[(i, i)].max(0.0).sqrt());
-                    let Some(factor) = Cholesky::new(stretched) else { continue };
-                    let mut shape = DVector::zeros(n);
-                    bends.iter().zip(&factor.solve(&own)).for_each(|(i, value)| shape[*i] = *value);
-                    family.push(shape);
-                }
-            }
+        if !springs.is_empty() {
+            family.extend(loads.iter().flat_map(|load| Self::eased(&bends, stiffness, load, springs)));
         }
         let mut kept: Vec<DVector<f64>> = Vec::new();
         for candidate in &family {
@@ -501,6 +482,31 @@ impl Directions {
         }
         let reach = |v: &DVector<f64>| family.iter().map(|shape| dot(v, shape).abs()).fold(0.0, f64::max);
         Self { reach: kept.iter().map(reach).collect(), vectors: DMatrix::from_columns(&kept) }
+    }
+
+    /// Static responses to a load of the modes that bend, on springs that only push and are eased.
+    fn eased(bends: &[usize], stiffness: &[f64], load: &[f64], springs: &[(Vec<f64>, f64)]) -> Vec<DVector<f64>> {
+        let of = |values: &[f64]| DVector::from_iterator(bends.len(), bends.iter().map(|i| values[*i]));
+        let (own, sound) = (of(load), of(stiffness));
+        let lowest = sound.get(0).map_or(0.0, |k| k.sqrt());
+        let flexibility: f64 = own.iter().zip(&sound).map(|(p, k)| p * p / k).sum();
+        let held: f64 = springs.iter().map(|(_, k)| k).sum();
+        let mut found = Vec::new();
+        for share in EASED.map(|eased| eased / (flexibility * held)).into_iter().filter(|share| *share < 1.0) {
+            let mut eased = DMatrix::from_diagonal(&sound);
+            for (spring, k) in springs {
+                let spring = of(spring);
+                eased.ger((share - 1.0) * k, &spring, &spring, 1.0);
+            }
+            for tension in EASED_TENSIONS {
+                let stretch = eased.diagonal().map(|k| tension * lowest * k.max(0.0).sqrt());
+                let Some(factor) = Cholesky::new(&eased + DMatrix::from_diagonal(&stretch)) else { continue };
+                let mut shape = DVector::zeros(stiffness.len());
+                bends.iter().zip(&factor.solve(&own)).for_each(|(i, value)| shape[*i] = *value);
+                found.push(shape);
+            }
+        }
+        found
     }
 }
 

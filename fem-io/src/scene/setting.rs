@@ -261,11 +261,16 @@ fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) -> bool {
 
 /// Sets `value` where `keys` lead in the one of these tables of the key `list` that they choose, or else in each; whether they lead anywhere.
 fn set_items(list: &Key, mut tables: Vec<&mut dyn TableLike>, keys: &[Key], value: &Value) -> bool {
-    let choice = keys.split_first().filter(|(_, rest)| !rest.is_empty()).and_then(|(key, rest)| {
+    // A name chooses where something follows, or a table that is laid over the one of it.
+    let whole = value.as_inline_table();
+    let choice = keys.split_first().filter(|(_, rest)| !rest.is_empty() || whole.is_some()).and_then(|(key, rest)| {
         let names: Vec<_> = tables.iter().map(|table| table.get("name").and_then(Item::as_str)).collect();
         let is_key = tables.iter().any(|table| table.contains_key(key.get()));
         Some((chosen(key.get(), &names, is_key)?, rest))
     });
+    if let (Some((i, [])), Some(whole)) = (&choice, whole) {
+        return whole.iter().all(|(key, value)| set_path(tables[*i], &[Key::new(key)], value));
+    }
     let (of, keys) = match choice {
         Some((i, rest)) => (i..i + 1, rest),
         None => (0..tables.len(), keys),
@@ -433,6 +438,7 @@ mod tests {
             (&[("impactor.splinter.mass", "5")], ["1", "5"]),
             (&[("impactor.1.mass", "5"), ("impactor.mass", "6")], ["5", "6"]),
             (&[("impactor.1.mass", "5"), ("impactor.splinter.mass", "6")], ["5", "6"]),
+            (&[("impactor.1", "{ mass = 5 }"), ("impactor.splinter", "{ mass = 6 }")], ["5", "6"]),
         ] {
             let setting: Setting = setting.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
             for scene in [tables, inline] {
