@@ -261,15 +261,18 @@ fn set_path(table: &mut dyn TableLike, keys: &[Key], value: &Value) -> bool {
 
 /// Sets `value` where `keys` lead in the one of these tables of the key `list` that they choose, or else in each; whether they lead anywhere.
 fn set_items(list: &Key, mut tables: Vec<&mut dyn TableLike>, keys: &[Key], value: &Value) -> bool {
-    // A name chooses where something follows, or a table that is laid over the one of it.
+    // A name chooses where something follows, or a table that is laid over the one of it; a number always.
     let whole = value.as_inline_table();
-    let choice = keys.split_first().filter(|(_, rest)| !rest.is_empty() || whole.is_some()).and_then(|(key, rest)| {
+    let chooses =
+        |(key, rest): &(&Key, &[Key])| !rest.is_empty() || whole.is_some() || key.get().parse::<usize>().is_ok();
+    let choice = keys.split_first().filter(chooses).and_then(|(key, rest)| {
         let names: Vec<_> = tables.iter().map(|table| table.get("name").and_then(Item::as_str)).collect();
         let is_key = tables.iter().any(|table| table.contains_key(key.get()));
         Some((chosen(key.get(), &names, is_key)?, rest))
     });
-    if let (Some((i, [])), Some(whole)) = (&choice, whole) {
-        return whole.iter().all(|(key, value)| set_path(tables[*i], &[Key::new(key)], value));
+    if let Some((i, [])) = choice {
+        return whole
+            .is_some_and(|whole| whole.iter().all(|(key, value)| set_path(tables[i], &[Key::new(key)], value)));
     }
     let (of, keys) = match choice {
         Some((i, rest)) => (i..i + 1, rest),
@@ -499,13 +502,16 @@ mod tests {
 
     #[test]
     fn a_setting_that_leads_nowhere_is_refused() {
-        let text = "title = \"t\"\naccuracy = 0.01\nimpactor = [{ mass = \"1 kg\" }]\n";
+        let text = "title = \"t\"\naccuracy = 0.01\nmesh.cells = [2, 3]\nimpactor = [{ mass = \"1 kg\" }]\n";
         let set = |key: &str, value: &str| {
             let setting = [(key.to_owned(), value.to_owned())].into();
             write(text, Path::new("scene.toml"), &setting).map(|document| document.to_string())
         };
         assert!(set("title", "\"other\"").unwrap().starts_with("title = \"other\"\naccuracy = 0.01\n"));
-        for (key, value) in [("title.short", "1"), ("impactor.mass", "\"2 kg\""), ("a..b", "1"), ("title", "1 kg")] {
+        assert!(set("impactor.mass", "\"2 kg\"").unwrap().ends_with("impactor = [{ mass = \"2 kg\" }]\n"));
+        let nowhere =
+            [("title.short", "1"), ("mesh.cells.x", "4"), ("impactor.1", "4"), ("a..b", "1"), ("title", "1 kg")];
+        for (key, value) in nowhere {
             let why = set(key, value).unwrap_err().to_string();
             assert!(why.contains(&format!("`{key}`")), "{why}");
         }
