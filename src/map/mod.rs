@@ -104,6 +104,9 @@ impl<'a> BorderMap<'a> {
             return Err(refuse("a tolerance lies between 0 and 100 %".into()));
         }
         let written = Written::in_scene(scene);
+        if let Some(hidden) = written.hidden(asked.set.iter().map(|(key, _)| key.as_str())) {
+            return Err(refuse(format!("`{hidden}` sets nothing: other keys set all of its places")));
+        }
         let mut axes = Vec::new();
         let (mut list, mut fixed) = (None, Vec::new());
         for (key, words) in &asked.set {

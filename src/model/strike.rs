@@ -74,3 +74,18 @@ impl Model {
         }))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::leaves_plate;
+
+    #[test]
+    fn impactors_leave_the_plate_by_whatever_name() {
+        let keys =
+            ["impactor.mass", "impactor[1].velocity", "impactor.2.start", "impactor.splinter.contact.k", "contact.k"];
+        keys.iter().for_each(|key| assert!(leaves_plate(key), "{key}"));
+        let others =
+            ["impactor.at.x", "impactor.2.at.x", "impactor.splinter.patch_radius", "march.step", "support.1.mass"];
+        others.iter().for_each(|key| assert!(!leaves_plate(key), "{key}"));
+    }
+}

@@ -142,6 +142,10 @@ impl<'a> Sweep<'a> {
             };
             axes.push(SweepAxis { key: key.clone(), variation });
         }
+        if let Some(hidden) = written.hidden(axes.iter().map(|axis| axis.key.as_str())) {
+            let message = format!("`{hidden}` varies nothing: other keys set all of its places");
+            return Err(Error::Sweep { message, help: "leave it out".into() });
+        }
         let sampling = match &asked.design {
             Some(name) => Sampling::ALL.iter().find(|(known, _)| known == name).map(|(_, sampling)| *sampling),
             None => scene.sweep.design,

@@ -153,6 +153,17 @@ fn two_tips_share_what_lifts_off() {
     assert!(force(0).into_iter().fold(0.0, f64::max) > 100.0);
 }
 
+/// What gives no word elsewhere: a support so stiff that no step lets go of it, and one that may come apart with the plate.
+#[test]
+fn supports_that_mislead_are_told() {
+    let model = |hold| pair(hold, 1.0)[0].model();
+    let warned = |hold| model(hold).unwrap().warnings.iter().any(|text| text.contains("holds them down"));
+    assert!(!warned("kind = 'rest'") && !warned("kind = 'roller', at = 'bottom', stiffness = '1e6 N/mm^2'"));
+    assert!(warned("kind = 'rest', stiffness = '1e6 N/mm^2'"));
+    let refused = format!("{:?}", model("kind = 'roller', stiffness = '5 N/mm^2'").map(|_| ()).unwrap_err());
+    assert!(refused.contains("the mid-plane of a plate that may come apart"), "{refused}");
+}
+
 /// A plate that comes apart keeps its energy while it lifts off, and shorter steps find the same.
 #[test]
 fn what_comes_apart_lifts_off() {

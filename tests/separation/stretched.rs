@@ -88,7 +88,7 @@ impl Struck {
             element: element.clone(),
             supports: separation.supports.clone(),
             constraints: constraints.clone(),
-            springs: Vec::new(),
+            springs: model.springs.clone(),
             interfaces: separation.interfaces.clone(),
             growth: separation.growth,
             plies: model.laws.as_ref().map(laws),

@@ -135,6 +135,27 @@ fn struck_plates_lift_off() {
     assert!(peak(&held) > 1.02 * peak(&exact), "{} {}", peak(&held), peak(&exact));
 }
 
+/// Cells that are clamped as a whole do not move, nor do springs of theirs: areas, and lines in them.
+#[test]
+fn springs_of_what_does_not_move_hold_nothing() {
+    let mesh = strip(12);
+    let file = format!("{{ file = '{}', unit = 'mm' }}", mesh.path().join("plate.msh").display());
+    let tip = |more: &str| {
+        let supports = format!("{{ group = 'left', kind = 'clamped' }}{more}");
+        let load = "pressure = '0.1 MPa'\nface = 'top'\ngroup = 'right'";
+        deflections(&text(&file, ELEMENTS[0].0, 1.0, &supports, load), [[0.12, 0.0]])
+    };
+    let [own] = tip("");
+    assert!(own > 1e-6, "{own}");
+    for more in [
+        ", { group = 'left', kind = 'roller', at = 'bottom', stiffness = '5 N/mm^3' }",
+        ", { group = 'a', kind = 'roller', at = 'bottom', stiffness = '5 N/mm^2' }",
+        ", { group = 'left', kind = 'rest' }",
+    ] {
+        assert_eq!(tip(more), [own], "{more}");
+    }
+}
+
 #[test]
 fn wrong_ways() {
     let plate = "{ rectangle = ['100 mm', '100 mm'], cells = [4, 4] }";
@@ -182,7 +203,14 @@ fn wrong_ways() {
     let shown =
         format!("{:?}", model(&cured.replace("[materials.m]", "[materials.m]\nalpha = '1e-5 1/K'")).unwrap_err());
     assert!(shown.contains("does not go with residual strains at rest"), "{shown}");
-    // Nothing holds it down.
+    // Nothing holds it down, neither from above nor on its edges.
+    let above = ["x-min", "x-max", "y-min", "y-max"]
+        .map(|side| format!("{{ group = '{side}', kind = 'rest', at = 'top' }}"))
+        .join(", ");
+    let supports = format!("{above}, {{ restrain = 'rigid-motions' }}");
+    let pressed = model(&scene("", &supports, "pressure = '1 kPa'\nface = 'top'")).unwrap();
+    let lifted = format!("{:?}", statics::solve(&pressed, NonZeroUsize::MIN).unwrap_err());
+    assert!(lifted.contains("lift the plate off"), "{lifted}");
     let up = model(&scene("", all, "pressure = '1 kPa'\nface = 'bottom'")).unwrap();
     let lifted = format!("{:?}", statics::solve(&up, NonZeroUsize::MIN).unwrap_err());
     assert!(lifted.contains("lift the plate off"), "{lifted}");

@@ -146,7 +146,7 @@ struct Local {
 }
 
 impl Local {
-    /// Whether interfaces resist every opening.
+    /// Whether interfaces resist every opening; springs that hold always do.
     fn is_definite(&self) -> bool {
         let definite =
             |m: &[Jump; 3]| (0..3).all(|i| (0..3).all(|j| if i == j { m[i][j] >= 0.0 } else { m[i][j] == 0.0 }));

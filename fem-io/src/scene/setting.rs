@@ -5,7 +5,7 @@ use super::{AS_WRITTEN, Merged, Scene, parse, parse_with};
 use crate::document::source::{SceneError, SceneSource};
 use crate::document::tree::{chosen, plugin_key};
 use crate::materials::LIBRARY;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 use toml_edit::{DocumentMut, InlineTable, Item, Key, Table, TableLike, Value};
@@ -39,53 +39,68 @@ impl Written {
         Self(scene.keys.clone())
     }
 
-    /// The text that stands at `key`, in the first table of a list or that which the key names; nothing where there is none, or no text.
+    /// The text that stands at `key`, in the first table of a list or that which the key chooses; nothing where there is none, or no text.
     pub fn text(&self, key: &str) -> Option<&str> {
-        let keys = Key::parse(key).ok()?;
-        let key: Vec<&str> = keys.iter().map(Key::get).collect();
-        // What ends with a number is one of a list of texts.
-        let (_, value) = self.0.iter().find(|(path, _)| !path.ends_with(']') && self.leads(&key, path))?;
+        let value = self.places(key).iter().find_map(|place| self.0.get(place))?;
         value.strip_prefix('"')?.strip_suffix('"')
     }
 
-    /// Whether `key` leads to `path`, in which a table of a list has its number.
-    fn leads(&self, mut key: &[&str], path: &str) -> bool {
-        let mut end = 0;
-        for part in path.split('.') {
-            end += part.len();
-            let (word, item) = part.split_once('[').unwrap_or((part, ""));
-            let [first, rest @ ..] = key else { return false };
-            if *first != word {
-                return false;
-            }
-            key = rest;
-            if let (Ok(i), [choice, rest @ ..]) = (item.trim_end_matches(']').parse::<usize>(), key)
-                && !rest.is_empty()
-                && let Some(k) = self.chosen(choice, &path[..end - item.len()])
-            {
-                if k != i {
-                    return false;
-                }
-                key = rest;
-            }
-            end += 1;
-        }
-        key.is_empty()
+    /// One of these keys that sets nothing, because others set all of its places: the same by another name, or each table of its list.
+    pub fn hidden<'k>(&self, keys: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
+        let places: Vec<(&str, Vec<String>)> = keys.into_iter().map(|key| (key, self.places(key))).collect();
+        let over = |i: usize, own: &[String]| {
+            let others = places.iter().enumerate();
+            let others = others.filter(move |(j, (_, of))| of.len() < own.len() || (of.len() == own.len() && *j > i));
+            others.flat_map(|(_, (_, of))| of).collect::<BTreeSet<_>>()
+        };
+        let hidden = |(i, (_, own)): &(usize, &(&str, Vec<String>))| {
+            let over = over(*i, own);
+            !own.is_empty() && own.iter().all(|place| over.contains(place))
+        };
+        places.iter().enumerate().find(hidden).map(|(_, (key, _))| *key)
     }
 
-    /// Which table of the list at `list`, `impactor[`, a key chooses.
-    fn chosen(&self, key: &str, list: &str) -> Option<usize> {
-        let (mut names, mut is_key) = (Vec::new(), false);
-        for (path, value) in &self.0 {
-            let Some((i, rest)) = path.strip_prefix(list).and_then(|rest| rest.split_once("].")) else { continue };
-            let Ok(i) = i.parse::<usize>() else { continue };
-            names.resize(names.len().max(i + 1), None);
-            is_key |= rest.split(['.', '[']).next() == Some(key);
-            if rest == "name" {
-                names[i] = Some(value.trim_matches('"'));
-            }
+    /// Where `key` leads: paths in which each table of a list has its number.
+    fn places(&self, key: &str) -> Vec<String> {
+        let mut found = Vec::new();
+        if let Ok(keys) = Key::parse(key) {
+            let keys: Vec<&str> = keys.iter().map(Key::get).collect();
+            self.follow(String::new(), &keys, &mut found);
         }
-        chosen(key, &names, is_key)
+        found
+    }
+
+    fn follow(&self, path: String, keys: &[&str], found: &mut Vec<String>) {
+        let tables = self.tables(&path);
+        if !tables.is_empty() {
+            let names: Vec<_> = tables.iter().map(|table| table.get("name").copied()).collect();
+            let choice = keys.split_first().filter(|(_, rest)| !rest.is_empty()).and_then(|(key, rest)| {
+                let is_key = tables.iter().any(|table| table.contains_key(key));
+                Some((chosen(key, &names, is_key)?, rest))
+            });
+            let (of, keys) = match choice {
+                Some((i, rest)) => (i..i + 1, rest),
+                None => (0..tables.len(), keys),
+            };
+            return of.for_each(|i| self.follow(format!("{path}[{i}]"), keys, found));
+        }
+        match keys {
+            [] => found.push(path),
+            [key, rest @ ..] if path.is_empty() => self.follow((*key).to_owned(), rest, found),
+            [key, rest @ ..] => self.follow(format!("{path}.{key}"), rest, found),
+        }
+    }
+
+    /// The tables of the list at `path`, the first words of their keys with what stands there.
+    fn tables(&self, path: &str) -> Vec<BTreeMap<&str, &str>> {
+        let mut tables: Vec<BTreeMap<&str, &str>> = Vec::new();
+        for (place, value) in &self.0 {
+            let item = place.strip_prefix(path).and_then(|rest| rest.strip_prefix('[')?.split_once("]."));
+            let Some((i, key)) = item.and_then(|(i, key)| Some((i.parse::<usize>().ok()?, key))) else { continue };
+            tables.resize_with(tables.len().max(i + 1), BTreeMap::new);
+            tables[i].insert(key.split(['.', '[']).next().unwrap_or(key), value.trim_matches('"'));
+        }
+        tables
     }
 
     /// `value` as TOML writes it at `key`: a text where the scene has one there, and with its unit where it is a number that
@@ -130,6 +145,9 @@ pub fn parse_set(text: &str, path: &Path, keys: &[(String, String)]) -> Result<S
         if setting.insert(key.clone(), value.clone()).is_some() {
             return Err(source.error(format!("`{key}` is set twice"), "set it once"));
         }
+    }
+    if let Some(hidden) = Written::of(text, path)?.hidden(setting.keys().map(String::as_str)) {
+        return Err(source.error(format!("`{hidden}` sets nothing: other keys set all of its places"), "leave it out"));
     }
     let written = write(text, path, &setting)?.to_string();
     // What is wrong is shown in what is set, and not in a text that nobody wrote.
@@ -421,6 +439,24 @@ mod tests {
         let mut keys = BTreeMap::new();
         tree("failure.criteria.2.as = \"b\"\n").over(tree(mixed)).flatten("", &mut keys);
         assert_eq!((&*keys["failure.criteria[0]"], &*keys["failure.criteria[1].as"]), ("\"puck\"", "\"b\""));
+    }
+
+    #[test]
+    fn what_others_set_is_hidden() {
+        let written = Written(
+            [("impactor[0].mass", "\"1 kg\""), ("impactor[1].mass", "\"1 g\""), ("impactor[1].name", "\"splinter\"")]
+                .map(|(key, value)| (key.to_owned(), value.to_owned()))
+                .into(),
+        );
+        for (keys, hidden) in [
+            (["impactor.2.mass", "impactor.splinter.mass"].as_slice(), Some("impactor.2.mass")),
+            (&["impactor.1.mass", "impactor.2.mass", "impactor.mass"], Some("impactor.mass")),
+            (&["impactor.1.mass", "impactor.mass"], None),
+            (&["impactor.1.mass", "impactor.2.mass"], None),
+            (&["impactor.1.mass", "impactor.1.velocity", "march.step"], None),
+        ] {
+            assert_eq!(written.hidden(keys.iter().copied()), hidden, "{keys:?}");
+        }
     }
 
     /// One table of a list is set by its number or its name, whichever way the list is written and the setting is laid over it.
