@@ -1,8 +1,9 @@
 //! Springs that only push, from which a structure lifts off.
 
-use crate::vector::axpy;
+use crate::vector::{add_columns, axpy};
 use fem_core::functional::Functional;
 use fem_core::structure::SolveError;
+use fem_core::vectorised::vectorised;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::sync::Arc;
 
@@ -16,6 +17,9 @@ const ROUNDED: f64 = 1e-9;
 
 /// Slope of the potential at the end of a way, relative to that at its beginning, below which the way was long enough.
 const FLAT: f64 = 0.1;
+
+/// Numbers of the factors that are kept, if these are several: a plate that rattles comes back to the same few sets of springs.
+const REMEMBERED: usize = 1 << 20;
 
 /// Share of the springs that let go, where without them nothing would hold the structure.
 const NEARLY: f64 = 1.0 - 1e-6;
@@ -55,8 +59,8 @@ pub struct Lifting {
     w: DVector<f64>,
     /// √r′ of each.
     roots: Vec<f64>,
-    /// The factor of 1 − √r′ G √r′ of those that are not 0, and the roots that it is of.
-    factor: Option<(Vec<f64>, Cholesky<f64, Dyn>)>,
+    /// Factors of 1 − √r′ G √r′ of those that are not 0, and the roots that each is of, the last one that was used first.
+    factors: Vec<(Vec<f64>, Cholesky<f64, Dyn>)>,
 }
 
 impl Lifting {
@@ -87,7 +91,7 @@ impl Lifting {
         let count = self.springs.len();
         self.compliance = DMatrix::zeros(count, count);
         self.forces = DVector::zeros(count);
-        self.factor = None;
+        self.factors.clear();
         let mut x = vec![0.0; n];
         for (j, spring) in self.springs.iter().enumerate() {
             x.fill(0.0);
@@ -99,15 +103,16 @@ impl Lifting {
         Ok(())
     }
 
-    /// Has forces be means over steps that begin with the displacements `u`, or if there are none those at their ends. What is found in
-    /// a step depends on no other step.
+    /// Has forces be means over steps that begin with the displacements `u`, or if there are none those at their ends.
     pub fn begin(&mut self, u: Option<&[f64]>) {
         self.before = u.map(|u| self.springs.iter().map(|spring| spring.at.of(u)).collect());
         self.forces = DVector::zeros(self.springs.len());
-        if let Some(before) = &self.before {
-            let each = self.forces.iter_mut().zip(&*self.springs).zip(before);
-            each.for_each(|((force, spring), w)| *force = relief(spring.stiffness, *w).0);
-        }
+    }
+
+    /// Looks for F near to what it is at the deflections `w`: what is found in a step depends on no other step.
+    pub fn expect(&mut self, w: &[f64]) {
+        self.w = DVector::from_column_slice(w);
+        self.forces = DVector::from_iterator(w.len(), self.laws(&self.w).map(|(force, _)| force));
     }
 
     /// Adds Pᵀu to `w`.
@@ -195,9 +200,11 @@ impl Lifting {
         (0..self.roots.len()).filter(|i| self.roots[*i] > 0.0).collect()
     }
 
-    /// The factor for the roots as they are, those of `lifted` not 0; the one before where they are the same.
+    /// The factor for the roots as they are, those of `lifted` not 0; one that is kept where they are the same.
     fn factorise(&mut self, lifted: &[usize]) -> Option<&Cholesky<f64, Dyn>> {
-        if self.factor.as_ref().is_none_or(|(roots, _)| *roots != self.roots) {
+        if let Some(found) = self.factors.iter().position(|(roots, _)| *roots == self.roots) {
+            self.factors[..=found].rotate_right(1);
+        } else {
             let matrix = |share: f64| {
                 let mut matrix = DMatrix::identity(lifted.len(), lifted.len());
                 // The lower triangle is all that is read.
@@ -209,10 +216,11 @@ impl Lifting {
                 }
                 matrix
             };
-            let factor = Cholesky::new(matrix(1.0)).or_else(|| Cholesky::new(matrix(NEARLY)));
-            self.factor = factor.map(|factor| (self.roots.clone(), factor));
+            let factor = cholesky(matrix(1.0)).or_else(|| cholesky(matrix(NEARLY)))?;
+            self.factors.truncate((REMEMBERED / (lifted.len() * lifted.len()).max(1)).saturating_sub(1));
+            self.factors.insert(0, (self.roots.clone(), factor));
         }
-        self.factor.as_ref().map(|(_, factor)| factor)
+        self.factors.first().map(|(_, factor)| factor)
     }
 
     /// d = ρ + √r′ x with (1 − √r′ G √r′) x = √r′ G ρ, for ρ = r − F; ρ itself, a way down as well, where rounding leaves no more.
@@ -259,6 +267,26 @@ impl Lifting {
         }
         low
     }
+}
+
+/// L Lᵀ of a matrix whose lower triangle is given, column by column; nothing where it is not positive definite. It is found anew whenever
+/// a spring lets go: nalgebra's own takes some four times as long.
+fn cholesky(mut matrix: DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
+    let n = matrix.nrows();
+    let mut row = Vec::with_capacity(n);
+    for j in 0..n {
+        let (before, rest) = matrix.as_mut_slice().split_at_mut(j * n);
+        let column = &mut rest[j..n];
+        row.clear();
+        row.extend(before.iter().skip(j).step_by(n).map(|l| -l));
+        vectorised(|| add_columns(before.get(j..).unwrap_or_default(), n, &row, column));
+        let root = column[0].sqrt();
+        if !(root > 0.0) {
+            return None;
+        }
+        column.iter_mut().for_each(|l| *l /= root);
+    }
+    Some(Cholesky::pack_dirty(matrix))
 }
 
 /// k ⟨w⟩ and its derivative.
@@ -313,6 +341,21 @@ pub fn at_rest(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn triangles_times_their_transposes() {
+        for n in [0, 1, 2, 5, 64, 97] {
+            let l = DMatrix::from_fn(n, n, |i, j| match i.cmp(&j) {
+                std::cmp::Ordering::Less => 0.0,
+                std::cmp::Ordering::Equal => 2.0 + i as f64,
+                std::cmp::Ordering::Greater => ((i * j + i) % 7) as f64 - 3.0,
+            });
+            let found = cholesky(&l * l.transpose()).unwrap().unpack();
+            assert!((found - l).abs().max() < 1e-11, "{n}");
+        }
+        assert!(cholesky(DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 4.0 - 1e-9])).is_none());
+        assert!(cholesky(DMatrix::from_element(1, 1, f64::NAN)).is_none());
+    }
 
     /// A relief does the work of its energy and its derivative is that of differences, through all four ways over the kink.
     #[test]

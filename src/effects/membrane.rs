@@ -100,12 +100,12 @@ impl Effect for Membrane {
         match demand.contacts {
             Some(contacts) => {
                 let [strains, forms] = [STRAINS, FORMS].map(|count| (count * contacts) as f64);
-                let (n, vectors) = (demand.unknowns as f64, demand.vectors);
-                // Forces and shapes of the strains; they and the modes before the elimination of constraints.
-                let fields = Demand::BASES * strains * n + (strains + vectors as f64) * all;
+                let (n, motions) = (demand.unknowns as f64, demand.vectors - demand.answers);
+                // Forces and shapes of the strains; they and the motions before the elimination of constraints.
+                let fields = Demand::BASES * strains * n + (strains + motions as f64) * all;
                 // Stresses of the strains, while they are turned as well.
                 let judged = 2.0 * strains * (6 * demand.sites) as f64;
-                8.0 * (fields + judged + forms * (vectors * vectors) as f64)
+                8.0 * (fields + judged + forms * (motions * motions) as f64)
             }
             // A copy of mesh and constraints as well.
             None => {
@@ -185,8 +185,8 @@ impl MembraneForms for MembraneOf<'_> {
 /// Places of a cell's unknowns, kept in lists that have grown, bytes per unknown of a cell.
 const PER_PLACE: f64 = 96.0;
 /// Of a reduced plate, per contact: membrane strains, and forms of these and of its stresses.
-const STRAINS: usize = 25;
-const FORMS: usize = 40;
+const STRAINS: usize = 35;
+const FORMS: usize = 70;
 
 fn stiffening(expected: &Expected) -> f64 {
     expected.coefficient * (expected.deflection / expected.thickness).powi(2)

@@ -64,6 +64,8 @@ pub struct Demand {
     pub unknowns: usize,
     /// Vectors over these.
     pub vectors: usize,
+    /// Vectors among them that are there for the sake of springs that let go.
+    pub answers: usize,
     /// Contacts, where a reduced plate is marched.
     pub contacts: Option<usize>,
     /// What a march keeps of its steps, rows and samples, bytes.

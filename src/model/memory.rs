@@ -29,9 +29,10 @@ impl Model {
     /// # Errors
     /// More memory than there is.
     pub(crate) fn analyse(&self, pattern: Arc<Pattern>) -> Result<(Symbolic, MemoryEstimate), Error> {
+        let answers = self.lifting().len();
         let (vectors, contacts) = match &self.plan {
             Plan::Impact(impact) => match impact.vectors {
-                Some(vectors) => (vectors, Some(impact.strikes.len())),
+                Some(vectors) => (vectors + answers, Some(impact.strikes.len())),
                 None => (2, None),
             },
             Plan::Modes { count } | Plan::Buckling { count } => (2 * count, None),
@@ -62,6 +63,7 @@ impl Model {
             all: self.plate.ndof(),
             unknowns: pattern.ndof(),
             vectors,
+            answers,
             contacts,
             kept,
             sites: plies + interfaces,

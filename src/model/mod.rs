@@ -49,7 +49,7 @@ use fem_core::constraint::Constraints;
 use fem_core::dof::Dof;
 use fem_core::element::{Element, Tables};
 use fem_core::failure::FailureCriterion;
-use fem_core::functional::Functional;
+use fem_core::functional::{Functional, orthogonalise};
 use fem_core::laminate::Laminate;
 use fem_core::laws::PlyLaws;
 use fem_core::material::{Material, MaterialError};
@@ -435,6 +435,11 @@ impl Model {
     /// The springs that only push.
     pub fn one_sided(&self) -> impl Iterator<Item = &SupportSpring> {
         self.springs.iter().filter(|spring| spring.one_sided)
+    }
+
+    /// What a reduced plate answers to beside its contacts: where a spring that only pushes has let go, the force that it does not get.
+    pub(crate) fn lifting(&self) -> Vec<Functional> {
+        orthogonalise(self.one_sided().map(|spring| spring.at.clone()).collect())
     }
 
     /// Whether a mass can be made.

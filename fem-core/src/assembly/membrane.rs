@@ -9,6 +9,7 @@ use crate::contracts::element::{Element, ElementError};
 use crate::plates::constraint::Constraints;
 use crate::plates::plate::Plate;
 use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, MatMut, MatRef, Par};
 use shape::OfShape;
 
@@ -131,13 +132,11 @@ impl<'a> MembraneStrains<'a> {
         let terms = combinations.len() / pairs;
         let modes = Self::new(self.plate, self.element, self.constraints, modes);
         let shapes = shapes.map(|shapes| Self::new(self.plate, self.element, self.constraints, shapes).fields);
-        let count = modes.count;
-        let mut forms = vec![0.0; terms * count * count];
-        let (mut stress, mut u, mut of_modes) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut x, mut y) = (Vec::new(), Vec::new());
+        let mut forms = FormsOf::new(modes.count, terms);
+        let (mut stress, mut u, mut of_modes, mut slopes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         self.each(shapes.is_some(), |weight, map, shape, of| {
             let rows = of.strains.len() / pairs;
-            let (points, local) = (rows / 3, shape.ndof());
+            let local = shape.ndof();
             u.resize(local, 0.0);
             product(&of.stresses, combinations, pairs, &mut stress);
             for (field, stress) in
@@ -148,29 +147,14 @@ impl<'a> MembraneStrains<'a> {
                     *stress += column.iter().zip(&u).map(|(b, u)| b * u).sum::<f64>();
                 }
             }
-            modes.slopes(map, shape, &mut of_modes, &mut x);
-            y.resize(x.len(), 0.0);
-            for (stress, form) in stress.chunks_exact(rows).zip(forms.chunks_exact_mut(count * count)) {
-                for (x, y) in x.chunks_exact(2 * points).zip(y.chunks_exact_mut(2 * points)) {
-                    for ((x, y), n) in x.chunks_exact(2).zip(y.chunks_exact_mut(2)).zip(stress.chunks_exact(3)) {
-                        y[0] = n[0] * x[0] + n[2] * x[1];
-                        y[1] = n[2] * x[0] + n[1] * x[1];
-                    }
-                }
-                matmul(
-                    MatMut::from_column_major_slice_mut(form, count, count),
-                    Accum::Add,
-                    MatRef::from_column_major_slice(&x, 2 * points, count).transpose(),
-                    MatRef::from_column_major_slice(&y, 2 * points, count),
-                    0.5 * weight,
-                    Par::Seq,
-                );
-            }
+            modes.slopes(map, shape, &mut of_modes, &mut slopes);
+            stress.iter_mut().for_each(|stress| *stress *= 0.5 * weight);
+            forms.take(&slopes, &stress);
         })?;
-        Ok(forms)
+        Ok(forms.finish())
     }
 
-    /// Slopes of the fields in a cell, two rows per point.
+    /// Slopes of the fields in a cell, those along x and along y of all fields at each point.
     fn slopes(&self, map: &CellMap, shape: &OfShape, u: &mut Vec<f64>, slopes: &mut Vec<f64>) {
         let (local, rows) = (shape.ndof(), 2 * shape.stiffness.len());
         u.resize(local * self.count, 0.0);
@@ -179,7 +163,7 @@ impl<'a> MembraneStrains<'a> {
             map.gather(field, u);
         }
         matmul(
-            MatMut::from_column_major_slice_mut(slopes, rows, self.count),
+            MatMut::from_row_major_slice_mut(slopes, rows, self.count),
             Accum::Replace,
             MatRef::from_row_major_slice(&shape.gradients, rows, local),
             MatRef::from_column_major_slice(u, local, self.count),
@@ -216,18 +200,91 @@ impl<'a> MembraneStrains<'a> {
         strains.resize(rows * self.pairs(), 0.0);
         stresses.resize(rows * self.pairs(), 0.0);
         self.slopes(map, shape, u, slopes);
-        let of_fields = || slopes.chunks_exact(rows / 3 * 2).enumerate();
-        let pairs = of_fields()
-            .flat_map(|(i, a)| of_fields().skip(i).map(move |(j, b)| (a, b, if i == j { 0.5 } else { 1.0 })));
+        let pairs = (0..self.count).flat_map(|i| (i..self.count).map(move |j| (i, j, if i == j { 0.5 } else { 1.0 })));
         let out = strains.chunks_exact_mut(rows).zip(stresses.chunks_exact_mut(rows));
-        for ((a, b, share), (strains, stresses)) in pairs.zip(out) {
+        for ((i, j, share), (strains, stresses)) in pairs.zip(out) {
             let out = strains.as_chunks_mut::<3>().0.iter_mut().zip(stresses.as_chunks_mut::<3>().0);
-            let slopes = a.as_chunks::<2>().0.iter().zip(b.as_chunks::<2>().0);
-            for ((([ax, ay], [bx, by]), stiffness), (strain, stress)) in slopes.zip(&shape.stiffness).zip(out) {
+            let slopes = slopes.chunks_exact(2 * self.count).map(|at| at.split_at(self.count));
+            for (((along_x, along_y), stiffness), (strain, stress)) in slopes.zip(&shape.stiffness).zip(out) {
+                let ([ax, ay], [bx, by]) = ([along_x[i], along_y[i]], [along_x[j], along_y[j]]);
                 *strain = [ax * bx, ay * by, ax * by + ay * bx].map(|e| share * e);
                 *stress = stiffness.map(|row| row.iter().zip(&*strain).map(|(c, e)| c * e).sum());
             }
         }
+    }
+}
+
+/// Forms that are being summed over cells, some at a time.
+#[derive(Debug)]
+struct FormsOf {
+    count: usize,
+    /// Lower triangles, one form after the other.
+    sums: Vec<f64>,
+    /// Slopes at the points of some cells, those along x and along y of all modes at each; what they do under a stress.
+    slopes: Vec<f64>,
+    pulled: Vec<f64>,
+    /// Stresses of each term at these points.
+    stresses: Vec<Vec<f64>>,
+}
+
+impl FormsOf {
+    /// Slopes that are multiplied at a time: products of fewer read and write the forms too often.
+    const TOGETHER: usize = 256;
+
+    fn new(count: usize, terms: usize) -> Self {
+        let sums = vec![0.0; terms * count * count];
+        Self { count, sums, slopes: Vec::new(), pulled: Vec::new(), stresses: vec![Vec::new(); terms] }
+    }
+
+    /// Adds a cell with these slopes and the stresses of each term, three at each point.
+    fn take(&mut self, slopes: &[f64], stresses: &[f64]) {
+        self.slopes.extend_from_slice(slopes);
+        let each = stresses.chunks_exact((stresses.len() / self.stresses.len().max(1)).max(1));
+        self.stresses.iter_mut().zip(each).for_each(|(all, stress)| all.extend_from_slice(stress));
+        if self.slopes.len() >= Self::TOGETHER * self.count {
+            self.add();
+        }
+    }
+
+    fn add(&mut self) {
+        let Self { count, sums, slopes, pulled, stresses } = self;
+        let count = *count;
+        let rows = slopes.len() / count.max(1);
+        pulled.resize(slopes.len(), 0.0);
+        for (stress, sum) in stresses.iter_mut().zip(sums.chunks_exact_mut((count * count).max(1))) {
+            let points = slopes.chunks_exact(2 * count).zip(pulled.chunks_exact_mut(2 * count));
+            for ((slopes, pulled), n) in points.zip(stress.as_chunks::<3>().0) {
+                let ((x, y), (px, py)) = (slopes.split_at(count), pulled.split_at_mut(count));
+                for (((x, y), px), py) in x.iter().zip(y).zip(px).zip(py) {
+                    *px = n[0] * x + n[2] * y;
+                    *py = n[2] * x + n[1] * y;
+                }
+            }
+            triangular::matmul(
+                MatMut::from_column_major_slice_mut(sum, count, count),
+                BlockStructure::TriangularLower,
+                Accum::Add,
+                MatRef::from_column_major_slice(slopes, count, rows),
+                BlockStructure::Rectangular,
+                MatRef::from_row_major_slice(pulled, rows, count),
+                BlockStructure::Rectangular,
+                1.0,
+                Par::Seq,
+            );
+            stress.clear();
+        }
+        slopes.clear();
+    }
+
+    /// The forms, whole.
+    fn finish(mut self) -> Vec<f64> {
+        self.add();
+        for form in self.sums.chunks_exact_mut((self.count * self.count).max(1)) {
+            for j in 0..self.count {
+                (0..j).for_each(|i| form[i + self.count * j] = form[j + self.count * i]);
+            }
+        }
+        self.sums
     }
 }
 

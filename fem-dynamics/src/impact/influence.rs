@@ -155,6 +155,7 @@ impl Influence {
         d: &mut [f64],
         solve: impl FnOnce(&mut [f64], usize) -> Result<(), SolveError>,
     ) -> Result<u64, StepError> {
+        self.lifting.expect(&self.lifts);
         self.set_approaches(strikers, d);
         let calls = self.balance(strikers, t, h, start)?;
         let n = d.len() - strikers.impactors.len();

@@ -1,28 +1,18 @@
 //! A reduced plate whose deflections stretch it.
 
+use super::directions::Directions;
 use super::forms::Forms;
+use super::motions::{Inverse, Motions};
 use super::{Expansion, Modal, Reduced};
 use crate::vector::{axpy, dot};
 use fem_core::energy::Energy;
-use fem_core::functional::Functional;
+use fem_core::functional::{Functional, orthogonalise};
 use fem_core::reduction::ReductionError;
 use fem_core::springs::SupportSpring;
 use fem_core::structure::{Nonlinear, SolveError, Structure, Tangent, Tangents};
-use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector, DVectorView, SymmetricEigen};
+use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView, SymmetricEigen};
 use pulp::Arch;
 use std::sync::Arc;
-
-/// Membrane tensions under which the static responses to a contact are directions: their stiffness against a mode over its
-/// bending stiffness, of the lowest mode, 0 for none. That of tension grows with k², that of bending with k⁴.
-const TENSIONS: [f64; 7] = [0.0, 1.0, 4.0, 16.0, 64.0, 256.0, 1024.0];
-
-/// The same of a plate whose springs that only push are eased, and their stiffness then, all together, over that of the plate under the
-/// contact: where some let go it bends in other shapes.
-const EASED_TENSIONS: [f64; 2] = [0.0, 16.0];
-const EASED: [f64; 2] = [1.0, 0.1];
-
-/// Share of a direction beside those before it below which it does not count as one of its own.
-const SAME: f64 = 1e-8;
 
 /// Membrane strains below this share of the largest (of the energy, at deflections of a static contact) are left out.
 const NEGLIGIBLE: f64 = 1e-10;
@@ -87,17 +77,20 @@ pub trait MembraneForms {
 #[derive(Debug, Clone)]
 pub struct MembranePlate {
     modal: Modal,
-    /// B_t
+    motions: Arc<Motions>,
+    /// B_t, of the motions.
     forms: Forms,
     /// σ_t
     stiffness: Vec<f64>,
-    /// c_t, [`Forms::stride`] numbers each; empty where none matters.
+    /// c_t, [`Forms::stride`] numbers each; empty where none matters, as it is where not all modes are motions.
     couplings: Vec<f64>,
     /// c_tᵀ q
     coupled: Vec<f64>,
     /// Inverse of the tangent, which serves many steps.
-    inverse: Option<Forms>,
-    /// B_t q, [`Forms::stride`] numbers each.
+    inverse: Option<Inverse>,
+    /// y, q of the motions.
+    y: Vec<f64>,
+    /// B_t y, [`Forms::stride`] numbers each.
     products: Vec<f64>,
     /// b_t.
     values: Vec<f64>,
@@ -119,7 +112,8 @@ pub struct Companions {
 /// Displacements Σ a_t s_t, a_t = qᵀ A_t q.
 #[derive(Debug, Clone)]
 pub struct Followers {
-    /// A_t, one after the other.
+    motions: Arc<Motions>,
+    /// A_t, one after the other, of the motions.
     forms: Vec<f64>,
     /// s_t, `ndof × terms`.
     shapes: Vec<f64>,
@@ -207,14 +201,14 @@ impl Companions {
 }
 
 impl Followers {
-    fn new(forms: Vec<f64>, shapes: &DMatrix<f64>) -> Self {
-        Self { forms, shapes: shapes.as_slice().to_vec(), terms: shapes.ncols() }
+    fn new(motions: &Arc<Motions>, forms: Vec<f64>, shapes: &DMatrix<f64>) -> Self {
+        Self { motions: Arc::clone(motions), forms, shapes: shapes.as_slice().to_vec(), terms: shapes.ncols() }
     }
 
     /// Adds to u = Φ q what the stretching adds, of one field, or of several of `modes` coordinates each, one after the other.
     pub fn complete(&self, modes: usize, q: &[f64], u: &mut [f64]) {
         let amounts: Vec<f64> = q.chunks_exact(modes.max(1)).flat_map(|q| self.amounts(q)).collect();
-        let sizes = [u.len() * modes / q.len().max(1), self.forms.len() / (modes * modes).max(1)];
+        let sizes = [u.len() * modes / q.len().max(1), self.terms];
         if !amounts.is_empty() {
             Arch::new().dispatch(Expansion { basis: &self.shapes, sizes, q: &amounts, u });
         }
@@ -231,19 +225,26 @@ impl Followers {
     }
 
     /// a_t
-    pub fn amounts<'a>(&'a self, q: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        // The forms are symmetric.
-        let of_column =
-            move |(j, column): (usize, &[f64])| q[j] * (column[j] * q[j] + 2.0 * dot(&column[j + 1..], &q[j + 1..]));
-        let of = move |form: &[f64]| form.chunks_exact(q.len()).enumerate().map(of_column).sum();
-        self.forms.chunks_exact(q.len() * q.len()).map(of)
+    pub fn amounts(&self, q: &[f64]) -> impl Iterator<Item = f64> {
+        let mut y = Vec::new();
+        self.motions.of(q, &mut y);
+        let count = y.len();
+        self.forms.chunks_exact(count * count).map(move |form| {
+            // The forms are symmetric.
+            let columns = form.chunks_exact(count).enumerate();
+            columns.map(|(j, column)| y[j] * (column[j] * y[j] + 2.0 * dot(&column[j + 1..], &y[j + 1..]))).sum()
+        })
     }
 
     /// Adds to `g` what works on a_t do on q: Σ f_t 2 A_t q.
     pub(super) fn add_works(&self, q: &[f64], works: impl Iterator<Item = f64>, g: &mut [f64]) {
-        for (form, work) in self.forms.chunks_exact(q.len() * q.len()).zip(works) {
-            form.chunks_exact(q.len()).zip(q).for_each(|(column, q)| axpy(2.0 * work * q, column, g));
+        let mut y = Vec::new();
+        self.motions.of(q, &mut y);
+        let mut of_motions = vec![0.0; y.len()];
+        for (form, work) in self.forms.chunks_exact(y.len() * y.len()).zip(works) {
+            form.chunks_exact(y.len()).zip(&y).for_each(|(column, y)| axpy(2.0 * work * y, column, &mut of_motions));
         }
+        self.motions.add(&of_motions, g);
     }
 }
 
@@ -278,8 +279,8 @@ impl MembranePlate {
         let stiff = |k: &f64| if *k > 0.0 { *k } else { f64::INFINITY };
         let bending: Vec<f64> = reduced.modal.stiffness.iter().map(stiff).collect();
         let loads: Vec<Vec<f64>> = contacts.iter().map(|contact| reduced.restrict(contact)).collect();
-        let pushing = springs.iter().filter(|spring| spring.one_sided);
-        let pushing: Vec<_> = pushing.map(|spring| (reduced.restrict(&spring.at), spring.stiffness)).collect();
+        let one_sided = || springs.iter().filter(|spring| spring.one_sided);
+        let pushing: Vec<_> = one_sided().map(|spring| (reduced.restrict(&spring.at), spring.stiffness)).collect();
         let Directions { vectors, reach } = Directions::new(&bending, &loads, &pushing);
         let basis = DMatrixView::from_slice(&reduced.basis, n, bending.len());
         let fields = basis * &vectors;
@@ -312,28 +313,37 @@ impl MembranePlate {
         if in_plane == InPlane::AtOnce && bends(structure, contacts, &shapes_of_left, stiffness.max())? {
             return Err(ReductionError::Solve(SolveError::other(BENDS)));
         }
-        let forms = |combinations: &DMatrix<f64>, shapes: Option<&DMatrix<f64>>| {
-            let shapes = shapes.map(DMatrix::as_slice);
-            stretching
-                .forms(fields.as_slice(), combinations.as_slice(), shapes, &reduced.basis)
-                .map_err(ReductionError::from)
-        };
-        // The work of a stress on its own strains is σ_t, respectively the energy: per that, it counts how much there is.
-        let counted = |mut forms: Vec<f64>, of: &DVector<f64>| {
-            for (form, value) in forms.chunks_exact_mut(bending.len() * bending.len()).zip(of) {
-                form.iter_mut().for_each(|f| *f /= value);
-            }
-            forms
-        };
         let couplings = couplings * &turn;
         // What the modes that a term is coupled to give way by.
         let taken = couplings.column_iter().flat_map(|c| c.into_iter().zip(&bending).map(|(c, k)| c * c / k));
         let coupled = taken.fold(0.0, f64::max) > NEGLIGIBLE * stiffness.max();
+        let motions = match (in_plane, coupled) {
+            (InPlane::OfModes, false) => {
+                let answers = orthogonalise(one_sided().map(|spring| spring.at.clone()).collect()).len();
+                Motions::new(&reduced.modal, &pushing, answers)
+            }
+            _ => Motions::default(),
+        };
+        let motions = Arc::new(motions);
+        let count = motions.count(bending.len());
+        let moving = motions.fields(&reduced.basis);
+        let forms = |combinations: &DMatrix<f64>, shapes: Option<&DMatrix<f64>>| {
+            let shapes = shapes.map(DMatrix::as_slice);
+            stretching.forms(fields.as_slice(), combinations.as_slice(), shapes, &moving).map_err(ReductionError::from)
+        };
+        // The work of a stress on its own strains is σ_t, respectively the energy: per that, it counts how much there is.
+        let counted = |mut forms: Vec<f64>, of: &DVector<f64>| {
+            for (form, value) in forms.chunks_exact_mut(count * count).zip(of) {
+                form.iter_mut().for_each(|f| *f /= value);
+            }
+            forms
+        };
         let turned = &combinations * &turn;
         let of_left = counted(forms(&turned, Some(&shapes_of_left))?, &stiffness);
-        let packed = Forms::new(bending.len(), &of_left);
+        let packed = Forms::new(count, &of_left);
         let plate = Self {
             modal: reduced.modal.clone(),
+            motions: Arc::clone(&motions),
             couplings: if coupled { padded_columns(&couplings, packed.stride()) } else { Vec::new() },
             coupled: vec![0.0; stiffness.len()],
             weights: vec![0.0; stiffness.len()],
@@ -343,6 +353,7 @@ impl MembranePlate {
             values: vec![0.0; stiffness.len()],
             stiffness: stiffness.as_slice().to_vec(),
             inverse: None,
+            y: Vec::new(),
             padded: Vec::new(),
             solution: Vec::new(),
         };
@@ -355,9 +366,10 @@ impl MembranePlate {
             torn,
             deflections: fields.as_slice().to_vec(),
             combinations: turned.as_slice().to_vec(),
-            follow: Followers::new(of_left, &shapes_of_left),
+            follow: Followers::new(&motions, of_left, &shapes_of_left),
         };
-        Ok((plate, Companions { displaced: Followers::new(forms, &shapes), patterns: Arc::new(patterns) }))
+        let displaced = Followers::new(&motions, forms, &shapes);
+        Ok((plate, Companions { displaced, patterns: Arc::new(patterns) }))
     }
 
     /// The same plate with other modes in bending, as many.
@@ -365,15 +377,21 @@ impl MembranePlate {
         Self { modal, inverse: None, ..self.clone() }
     }
 
-    /// The same plate, stretched by the slowest `count` of its modes alone.
+    /// The same plate, stretched by the slowest half of the motions that stretch it.
     #[must_use]
-    pub fn stretched_by(&self, count: usize) -> Self {
-        Self { forms: self.forms.of_the_first(count), ..self.clone() }
+    pub fn stretched_by_half(&self) -> Self {
+        Self { forms: self.forms.of_the_first(self.motions() / 2), ..self.clone() }
     }
 
-    /// Finds B_t q, b_t and c_tᵀ q.
+    /// How many motions stretch it: its modes, or fewer.
+    pub fn motions(&self) -> usize {
+        self.motions.count(self.modal.ndof())
+    }
+
+    /// Finds B_t y, b_t and c_tᵀ q.
     fn stretch(&mut self, q: &[f64]) {
-        self.forms.products(q, &mut self.padded, &mut self.products);
+        self.motions.of(q, &mut self.y);
+        self.forms.products(&self.y, &mut self.padded, &mut self.products);
         self.forms.values(&self.padded, &self.products, &mut self.values);
         self.coupled.fill(0.0);
         self.forms.values(&self.padded, &self.couplings, &mut self.coupled);
@@ -395,7 +413,7 @@ impl MembranePlate {
         self.sum.resize(self.forms.stride(), 0.0);
         self.forms.add_columns(&self.weights, &self.products, &mut self.sum);
         self.forms.add_columns(&self.values, &self.couplings, &mut self.sum);
-        force.iter_mut().zip(&self.sum).for_each(|(f, tension)| *f += tension);
+        self.motions.add(&self.sum, force);
         energy
     }
 
@@ -442,72 +460,6 @@ fn bends(
         bends |= shapes.as_slice().chunks_exact(shapes.nrows()).any(|shape| contact.of(shape).powi(2) > most);
     }
     Ok(bends)
-}
-
-/// Combinations P of the modes of a reduced plate whose deflections stretch it, orthonormal in its stiffness: the static
-/// responses to each contact of the plate under no tension and more and more, q_i = p_i/(λ_i + ν √λ_i).
-struct Directions {
-    vectors: DMatrix<f64>,
-    /// Largest coordinate of each in the static responses.
-    reach: Vec<f64>,
-}
-
-impl Directions {
-    /// Of modes of these stiffnesses under `loads`, on springs that only push, each with what it holds of them and its stiffness.
-    fn new(stiffness: &[f64], loads: &[Vec<f64>], springs: &[(Vec<f64>, f64)]) -> Self {
-        let n = stiffness.len();
-        let bends: Vec<usize> = (0..n).filter(|i| stiffness[*i].is_finite()).collect();
-        let dot =
-            |a: &DVector<f64>, b: &DVector<f64>| -> f64 { bends.iter().map(|i| a[*i] * stiffness[*i] * b[*i]).sum() };
-        let lowest = bends.first().map_or(0.0, |i| stiffness[*i].sqrt());
-        let under = |load: &[f64], tension: f64| {
-            let response = |i: usize| load[i] / (stiffness[i] + tension * lowest * stiffness[i].sqrt());
-            DVector::from_fn(n, |i, _| if stiffness[i].is_finite() { response(i) } else { 0.0 })
-        };
-        let mut family: Vec<_> = loads.iter().flat_map(|load| TENSIONS.map(|tension| under(load, tension))).collect();
-        if !springs.is_empty() {
-            family.extend(loads.iter().flat_map(|load| Self::eased(&bends, stiffness, load, springs)));
-        }
-        let mut kept: Vec<DVector<f64>> = Vec::new();
-        for candidate in &family {
-            let mut rest = candidate.clone();
-            // Twice is enough.
-            for _ in 0..2 {
-                kept.iter().for_each(|vector| rest.axpy(-dot(vector, &rest), vector, 1.0));
-            }
-            let left = dot(&rest, &rest);
-            if left > SAME * dot(candidate, candidate) {
-                kept.push(rest / left.sqrt());
-            }
-        }
-        let reach = |v: &DVector<f64>| family.iter().map(|shape| dot(v, shape).abs()).fold(0.0, f64::max);
-        Self { reach: kept.iter().map(reach).collect(), vectors: DMatrix::from_columns(&kept) }
-    }
-
-    /// Static responses to a load of the modes that bend, on springs that only push and are eased.
-    fn eased(bends: &[usize], stiffness: &[f64], load: &[f64], springs: &[(Vec<f64>, f64)]) -> Vec<DVector<f64>> {
-        let of = |values: &[f64]| DVector::from_iterator(bends.len(), bends.iter().map(|i| values[*i]));
-        let (own, sound) = (of(load), of(stiffness));
-        let lowest = sound.get(0).map_or(0.0, |k| k.sqrt());
-        let flexibility: f64 = own.iter().zip(&sound).map(|(p, k)| p * p / k).sum();
-        let held: f64 = springs.iter().map(|(_, k)| k).sum();
-        let mut found = Vec::new();
-        for share in EASED.map(|eased| eased / (flexibility * held)).into_iter().filter(|share| *share < 1.0) {
-            let mut eased = DMatrix::from_diagonal(&sound);
-            for (spring, k) in springs {
-                let spring = of(spring);
-                eased.ger((share - 1.0) * k, &spring, &spring, 1.0);
-            }
-            for tension in EASED_TENSIONS {
-                let stretch = eased.diagonal().map(|k| tension * lowest * k.max(0.0).sqrt());
-                let Some(factor) = Cholesky::new(&eased + DMatrix::from_diagonal(&stretch)) else { continue };
-                let mut shape = DVector::zeros(stiffness.len());
-                bends.iter().zip(&factor.solve(&own)).for_each(|(i, value)| shape[*i] = *value);
-                found.push(shape);
-            }
-        }
-        found
-    }
 }
 
 /// Eigenvectors and eigenvalues that are not negligible beside the largest, descending.
@@ -589,7 +541,7 @@ impl Nonlinear for MembranePlate {
 impl Tangents for MembranePlate {
     fn linearise(&mut self, Tangent { cm, cc, u: q, .. }: &Tangent) -> Result<(), SolveError> {
         self.stretch(q);
-        let n = q.len();
+        let n = self.motions();
         let mut tangent = DMatrix::zeros(n, n);
         for (t, product) in self.products.chunks_exact(self.forms.stride().max(1)).enumerate() {
             let product = DVectorView::from_slice(product, n);
@@ -602,23 +554,21 @@ impl Tangents for MembranePlate {
                 tangent.ger(2.0, &product, &coupling, 1.0);
             }
         }
-        for (i, (k, mass)) in self.modal.stiffness.iter().zip(&self.modal.mass).enumerate() {
+        let own = self.modal.stiffness.iter().zip(&self.modal.mass).enumerate().map(|(i, (k, mass))| {
             // A free motion without inertia stays where it is: no force is there to answer one along it.
             let own = if *k == 0.0 && *mass == 0.0 { f64::INFINITY } else { k + cm * mass };
-            tangent[(i, i)] += own + cc * self.modal.damping.get(i).unwrap_or(&0.0);
-        }
+            own + cc * self.modal.damping.get(i).unwrap_or(&0.0)
+        });
         self.inverse = None;
-        let inverse = Cholesky::new(tangent).ok_or(SolveError::Buckled)?.inverse();
-        self.inverse = Some(Forms::new(n, inverse.as_slice()));
+        self.inverse = Some(self.motions.inverse(&own.collect::<Vec<f64>>(), tangent)?);
         Ok(())
     }
 
     fn solve_linearised(&mut self, x: &mut [f64], columns: usize) -> Result<(), SolveError> {
-        let inverse = self.inverse.as_ref().ok_or(SolveError::NotLinearised)?;
-        self.solution.resize(inverse.stride(), 0.0);
+        let Self { inverse, padded, solution, .. } = self;
+        let inverse = inverse.as_ref().ok_or(SolveError::NotLinearised)?;
         for column in x.chunks_exact_mut(self.modal.ndof()).take(columns) {
-            inverse.products(column, &mut self.padded, &mut self.solution);
-            column.iter_mut().zip(&self.solution).for_each(|(x, solution)| *x = *solution);
+            inverse.solve(column, [&mut *padded, &mut *solution]);
         }
         Ok(())
     }

@@ -2,12 +2,14 @@
 
 mod craig_bampton;
 mod diagonal;
+mod directions;
 mod forms;
 mod governors;
 mod guyan;
 mod irs;
 mod membrane;
 mod modal;
+mod motions;
 mod restored;
 mod ritz;
 mod stretched;

@@ -15,7 +15,7 @@ use crate::model::{Impact, Model, Plan, Separation, Strike};
 use fem_core::assembly::{Condensation, Separable, SparseStructure, column_order, pattern};
 use fem_core::contact::ContactLaw;
 use fem_core::counters::Counters;
-use fem_core::functional::{Functional, orthogonalise};
+use fem_core::functional::Functional;
 use fem_core::prolongation::Prolongation;
 use fem_core::reduction::ReductionError;
 use fem_core::springs::SupportSpring;
@@ -475,8 +475,7 @@ fn reduce(
         more.extend(effect.vectors(&model.body(), &mut assembled.structure)?);
     }
     let Some(basis) = basis else { return Ok(known) };
-    // Where a spring that only pushes has let go, the plate answers as to the force that it does not get.
-    let lifting = orthogonalise(model.one_sided().map(|spring| spring.at.clone()).collect());
+    let lifting = model.lifting();
     let project = |(mut basis, forces): Basis| {
         basis.extend(more);
         project_answers(&mut assembled.structure, &lifting, basis, forces.unwrap_or_default())

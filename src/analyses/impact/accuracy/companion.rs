@@ -115,20 +115,26 @@ pub(super) struct Pace {
     steps: u64,
     /// Whether the parts of divided steps are longer as its step is.
     proportional: bool,
-    marched: usize,
+    /// Steps of the linear plate that an iteration takes as long as.
+    iteration: u64,
     /// Work that is not worth a word beside that of the run.
     budget: u64,
 }
 
 impl Pace {
-    /// Beside a run of these `sizes` that took so many `solves` with the full plate, under `large` deflections or not.
-    pub(super) fn new(integrator: Box<dyn Integrator>, sizes: &Sizes, solves: u64, large: bool) -> Self {
+    /// Beside a run of these `sizes` that took so many `solves` with the full plate, whose deflections stretch it or not.
+    pub(super) fn new(
+        integrator: Box<dyn Integrator>,
+        sizes: &Sizes,
+        solves: u64,
+        stretched: Option<&MembranePlate>,
+    ) -> Self {
         let solves = solves + FACTORISATION;
-        // Steps of the linear plate that one of the run takes as long as.
-        let passes = |steps: u64| match large {
-            true => steps.saturating_mul(1 + ITERATIONS * iteration(sizes.marched as u64)),
-            false => steps,
-        };
+        let of_motions =
+            |plate: &MembranePlate| FORMS * (plate.motions() as u64).pow(2) / (sizes.marched as u64 + STEP);
+        let iteration = stretched.map_or(0, of_motions);
+        // Steps of the linear plate that some of the run take as long as.
+        let passes = |steps: u64| steps.saturating_mul(1 + ITERATIONS * iteration);
         let budget = (sizes.factor_entries as u64).saturating_mul(solves) / CHEAP / (sizes.marched as u64 + STEP);
         // Iterations of contacts may be worth a step each.
         let budget = budget.max(passes(2 * sizes.steps / LONGEST)).max(NOTHING);
@@ -146,7 +152,7 @@ impl Pace {
         let other = integrator.with_tolerance(ratio.powi(integrator.order() as i32));
         let proportional = other.is_some();
         let integrator = other.unwrap_or(integrator);
-        Self { integrator, stride, parts, dt, steps: sizes.steps, proportional, marched: sizes.marched, budget }
+        Self { integrator, stride, parts, dt, steps: sizes.steps, proportional, iteration, budget }
     }
 
     /// With so many steps of the run in one, whatever that takes; nothing where its step is no longer.
@@ -189,9 +195,7 @@ impl Pace {
     ) -> Option<Companion> {
         let count = self.steps / self.stride;
         let calls = if system.has_tips() { TIP_CALLS } else { CALLS };
-        let work = |system: &ImpactSystem| {
-            system.contact_calls() / calls + system.iterations() * iteration(self.marched as u64)
-        };
+        let work = |system: &ImpactSystem| system.contact_calls() / calls + system.iterations() * self.iteration;
         let before = work(system);
         if !self.is_cheap() {
             return None;
@@ -255,11 +259,6 @@ impl Pace {
 
 /// Most work of a companion over the budget, by which its steps are chosen.
 const MORE: u64 = 2;
-
-/// Steps of a linear plate of so many unknowns that an iteration under large deflections takes as long as.
-fn iteration(unknowns: u64) -> u64 {
-    FORMS * unknowns * unknowns / (unknowns + STEP)
-}
 
 /// Of the stiffest contact.
 fn stiffness(system: &ImpactSystem, state: &State) -> f64 {

@@ -31,7 +31,7 @@ use reduction::Richer;
 /// Least error of the peak over that of the history: the difference of two single values passes through zero by chance.
 const PEAK: f64 = 0.25;
 
-/// What half of the vectors change in the tension of large deflections, over what all of them leave: 2³ − 1. Against 160 vectors
+/// What half of the motions change in the tension of large deflections, over what all of them leave: 2³ − 1. Against 160 vectors
 /// of `as4-3502-8ply-75mm` 15 and 60 of them left a nineteenth and a seventh of it in the impulse.
 const HALVED: f64 = 7.0;
 
@@ -130,7 +130,7 @@ impl Estimates {
             Some(membrane) => Box::new(membrane.clone()),
             None => Box::new(reduced.modal.clone()),
         };
-        let mut pace = Pace::new(integrator.clone(), sizes, solves, membrane.is_some());
+        let mut pace = Pace::new(integrator.clone(), sizes, solves, membrane);
         let mut instants = Vec::new();
         let mut copy = system.on(plate);
         let mut march = |pace: &Pace| {
@@ -145,7 +145,7 @@ impl Estimates {
         }
         // What a reduction leaves out is asked of the linear plate, at its own pace: tension is a matter of its slow vectors.
         let linear = membrane.and_then(|_| {
-            let pace = Pace::new(integrator, sizes, solves, false);
+            let pace = Pace::new(integrator, sizes, solves, None);
             instants.clear();
             let mut linear = system.on(Box::new(reduced.modal.clone()));
             let base = pace.march(&mut linear, &reduced.modal, |instant| instants.push(instant))?;
@@ -162,8 +162,8 @@ impl Estimates {
         let unreduced = full.is_none();
         let mut reduction = full.and_then(|full| reduction::estimate(full, reduced, &instants, richer));
         if let (Some(found), Some(membrane)) = (&mut reduction, membrane) {
-            // Of the tension, by what half of the vectors change in it.
-            let slow = membrane.stretched_by(sizes.marched / 2);
+            // Of the tension, by what half of the motions change in it.
+            let slow = membrane.stretched_by_half();
             let left = base
                 .as_ref()
                 .and_then(|base| base.against(&pace.march(&mut system.on(Box::new(slow)), &reduced.modal, |_| ())?));
