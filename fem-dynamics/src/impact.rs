@@ -222,6 +222,11 @@ impl ImpactSystem {
         self.influence.lifting.springs()
     }
 
+    /// Turns of Newton's method so far that found which of them have let go.
+    pub fn lifting_turns(&self) -> u64 {
+        self.influence.lifting.turns()
+    }
+
     /// Force (N) by which each spring that only pushes is relieved of its pull under displacements `u`.
     pub fn reliefs(&self, u: &[f64]) -> impl Iterator<Item = f64> {
         self.influence.lifting.reliefs(&u[..self.structure.ndof()])

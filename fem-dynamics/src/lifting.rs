@@ -61,6 +61,7 @@ pub struct Lifting {
     roots: Vec<f64>,
     /// Factors of 1 − √r′ G √r′ of those that are not 0, and the roots that each is of, the last one that was used first.
     factors: Vec<(Vec<f64>, Cholesky<f64, Dyn>)>,
+    turns: u64,
 }
 
 impl Lifting {
@@ -72,6 +73,11 @@ impl Lifting {
     /// The springs.
     pub fn springs(&self) -> &Arc<[OneSided]> {
         &self.springs
+    }
+
+    /// Turns of Newton's method so far.
+    pub fn turns(&self) -> u64 {
+        self.turns
     }
 
     /// Whether there are none.
@@ -142,6 +148,7 @@ impl Lifting {
             }
             least = least.min(left);
             let way = self.newton(&missing);
+            self.turns += 1;
             let length = self.search(&way);
             self.forces += length * way;
         }

@@ -82,7 +82,7 @@ pub struct MembranePlate {
     forms: Forms,
     /// σ_t
     stiffness: Vec<f64>,
-    /// c_t, [`Forms::stride`] numbers each; empty where none matters, as it is where not all modes are motions.
+    /// c_t of the motions, [`Forms::stride`] numbers each; empty where none matters.
     couplings: Vec<f64>,
     /// c_tᵀ q
     coupled: Vec<f64>,
@@ -317,12 +317,13 @@ impl MembranePlate {
         // What the modes that a term is coupled to give way by.
         let taken = couplings.column_iter().flat_map(|c| c.into_iter().zip(&bending).map(|(c, k)| c * c / k));
         let coupled = taken.fold(0.0, f64::max) > NEGLIGIBLE * stiffness.max();
-        let motions = match (in_plane, coupled) {
-            (InPlane::OfModes, false) => {
+        let couplings = if coupled { couplings } else { DMatrix::zeros(bending.len(), 0) };
+        let motions = match in_plane {
+            InPlane::OfModes => {
                 let answers = orthogonalise(one_sided().map(|spring| spring.at.clone()).collect()).len();
-                Motions::new(&reduced.modal, &pushing, answers)
+                Motions::new(&reduced.modal, (&pushing, answers), (&couplings, NEGLIGIBLE * stiffness.max()))
             }
-            _ => Motions::default(),
+            InPlane::AtOnce => Motions::default(),
         };
         let motions = Arc::new(motions);
         let count = motions.count(bending.len());
@@ -344,7 +345,7 @@ impl MembranePlate {
         let plate = Self {
             modal: reduced.modal.clone(),
             motions: Arc::clone(&motions),
-            couplings: if coupled { padded_columns(&couplings, packed.stride()) } else { Vec::new() },
+            couplings: padded_columns(motions.of_all(couplings), packed.stride()),
             coupled: vec![0.0; stiffness.len()],
             weights: vec![0.0; stiffness.len()],
             sum: Vec::new(),
@@ -425,7 +426,7 @@ impl MembranePlate {
     /// c_t of term `t`, if there are any.
     fn coupling(&self, t: usize) -> &[f64] {
         let stride = self.forms.stride();
-        self.couplings.get(t * stride..t * stride + self.modal.ndof()).unwrap_or_default()
+        self.couplings.get(t * stride..t * stride + self.motions()).unwrap_or_default()
     }
 
     /// ∂W/∂b_t, once the plate is stretched.
@@ -435,8 +436,8 @@ impl MembranePlate {
 }
 
 /// The columns of a matrix, `stride` numbers each.
-fn padded_columns(matrix: &DMatrix<f64>, stride: usize) -> Vec<f64> {
-    matrix.clone().resize_vertically(stride, 0.0).as_slice().to_vec()
+fn padded_columns(matrix: DMatrix<f64>, stride: usize) -> Vec<f64> {
+    matrix.resize_vertically(stride, 0.0).as_slice().to_vec()
 }
 
 /// What is in the way where tension bends a plate.

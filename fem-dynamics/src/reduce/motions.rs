@@ -19,7 +19,7 @@ const LEAST: usize = 60;
 /// (Λ − Σ k p pᵀ) x = ω² x,    Xᵀ X = 1,    q ≈ X y
 /// ```
 ///
-/// X the slowest, as many as there are modes beside the answers to springs.
+/// X the slowest, as many as there are modes beside the answers to springs, and then what the tension of the plate is coupled to beside.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Motions {
     /// X; nothing where y = q.
@@ -28,8 +28,13 @@ pub(super) struct Motions {
 
 impl Motions {
     /// Of the modes of `modal` on springs that only push, each with what it holds of them and its stiffness; `answers` of the modes are
-    /// there for their sake. All modes where some have no inertia.
-    pub(super) fn new(modal: &Modal, springs: &[(Vec<f64>, f64)], answers: usize) -> Self {
+    /// there for their sake. All modes where some have no inertia. Forces on the modes, the columns of `couplings`, lie in the motions but
+    /// for what does less than the energy `least`.
+    pub(super) fn new(
+        modal: &Modal,
+        (springs, answers): (&[(Vec<f64>, f64)], usize),
+        (couplings, least): (&DMatrix<f64>, f64),
+    ) -> Self {
         let n = modal.ndof();
         let count = n.saturating_sub(answers).max(LEAST);
         if springs.is_empty() || count >= n || modal.frequencies().any(f64::is_infinite) {
@@ -43,7 +48,21 @@ impl Motions {
         let modes = SymmetricEigen::new(free);
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|a, b| modes.eigenvalues[*a].total_cmp(&modes.eigenvalues[*b]));
-        Self { few: Some(modes.eigenvectors.select_columns(&order[..count])) }
+        let mut x = modes.eigenvectors.select_columns(&order[..count]);
+        for coupling in couplings.column_iter() {
+            let mut rest = coupling.into_owned();
+            // Twice is enough.
+            for _ in 0..2 {
+                rest -= &x * x.tr_mul(&rest);
+            }
+            let energy: f64 = rest.iter().zip(modal.compliances()).map(|(f, c)| f * c * f).sum();
+            if energy > least && x.ncols() < n {
+                let column = x.ncols();
+                x = x.insert_column(column, 0.0);
+                x.set_column(column, &rest.normalize());
+            }
+        }
+        Self { few: Some(x) }
     }
 
     /// How many they are of so many modes.
@@ -68,6 +87,14 @@ impl Motions {
         match &self.few {
             None => y.extend_from_slice(q),
             Some(x) => y.extend(x.as_slice().chunks_exact(q.len()).map(|x| dot(x, q))),
+        }
+    }
+
+    /// Xᵀ F, of forces on the modes column by column.
+    pub(super) fn of_all(&self, forces: DMatrix<f64>) -> DMatrix<f64> {
+        match &self.few {
+            None => forces,
+            Some(x) => x.tr_mul(&forces),
         }
     }
 
@@ -161,7 +188,8 @@ mod tests {
     #[test]
     fn the_slowest_without_springs_are_those_of_the_free_chain() {
         let (modal, springs) = chain(90, &[(3, 50.0), (4, 50.0), (77, 1e3)]);
-        let motions = Motions::new(&modal, &springs, 25);
+        let none = DMatrix::zeros(90, 0);
+        let motions = Motions::new(&modal, (&springs, 25), (&none, 0.0));
         assert_eq!(motions.count(90), 65);
         // Xᵀ (Λ − Σ k p pᵀ) X are the lowest of 2 − 2 cos(π j/91).
         for j in 0..65 {
@@ -173,16 +201,38 @@ mod tests {
             let exact = 2.0 - 2.0 * (std::f64::consts::PI * (j + 1) as f64 / 91.0).cos();
             assert!((energy - exact).abs() < 1e-11, "{j}: {energy} {exact}");
         }
-        assert_eq!(Motions::new(&modal, &springs, 30).count(90), 60);
-        assert_eq!(Motions::new(&modal, &[], 30).count(90), 90);
+        assert_eq!(Motions::new(&modal, (&springs, 30), (&none, 0.0)).count(90), 60);
+        assert_eq!(Motions::new(&modal, (&[], 30), (&none, 0.0)).count(90), 90);
         let still = Modal { mass: vec![0.0; 90], ..modal };
-        assert_eq!(Motions::new(&still, &springs, 30).count(90), 90, "the order of modes without inertia says nothing");
+        assert_eq!(
+            Motions::new(&still, (&springs, 30), (&none, 0.0)).count(90),
+            90,
+            "the order of modes without inertia says nothing"
+        );
+    }
+
+    #[test]
+    fn couplings_are_motions_if_they_do_anything() {
+        let (modal, springs) = chain(90, &[(3, 50.0), (77, 1e3)]);
+        // On one mode, on that and another, and hardly anything on all.
+        let couplings = DMatrix::from_fn(90, 3, |i, t| match t {
+            0 => f64::from(i == 70),
+            1 => f64::from(i == 70) + 3.0 * f64::from(i == 20),
+            _ => 1e-6,
+        });
+        let motions = Motions::new(&modal, (&springs, 30), (&couplings, 1e-9));
+        let x = motions.few.as_ref().unwrap();
+        assert_eq!(x.ncols(), 62);
+        assert!((x.tr_mul(x) - DMatrix::identity(62, 62)).abs().max() < 1e-12);
+        let left = &couplings - x * motions.of_all(couplings.clone());
+        assert!(left.columns(0, 2).abs().max() < 1e-12 && left.column(2).abs().max() > 1e-7, "{left}");
     }
 
     #[test]
     fn tangents_are_inverted_as_if_written_out() {
         let (modal, springs) = chain(80, &[(3, 50.0), (40, 1e4)]);
-        let motions = Motions::new(&modal, &springs, 10);
+        let none = DMatrix::zeros(80, 0);
+        let motions = Motions::new(&modal, (&springs, 10), (&none, 0.0));
         let count = motions.count(80);
         let own: Vec<f64> = modal.stiffness.iter().map(|k| k + 0.3).collect();
         // Positive, indefinite, and so much so that the whole is.

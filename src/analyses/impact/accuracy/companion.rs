@@ -34,6 +34,9 @@ const TIP_CALLS: u64 = 128;
 const FORMS: u64 = 16;
 const ITERATIONS: u64 = 2;
 
+/// Turns of the search for the springs that let go in a step or an iteration; each passes their matrix once.
+const TURNS: u64 = 5;
+
 /// States of a march that are kept, at most.
 const KEPT: u64 = 64;
 
@@ -115,26 +118,27 @@ pub(super) struct Pace {
     steps: u64,
     /// Whether the parts of divided steps are longer as its step is.
     proportional: bool,
-    /// Steps of the linear plate that an iteration takes as long as.
+    /// Steps of a linear plate without springs that an iteration takes as long as, and a turn of the search for springs that let go.
     iteration: u64,
+    turn: u64,
     /// Work that is not worth a word beside that of the run.
     budget: u64,
 }
 
 impl Pace {
-    /// Beside a run of these `sizes` that took so many `solves` with the full plate, whose deflections stretch it or not.
+    /// Beside a run of these `sizes` that took so many `solves` with the full plate, which lies on so many `springs` that only push and
+    /// whose deflections stretch it or not.
     pub(super) fn new(
         integrator: Box<dyn Integrator>,
         sizes: &Sizes,
-        solves: u64,
+        (solves, springs): (u64, usize),
         stretched: Option<&MembranePlate>,
     ) -> Self {
         let solves = solves + FACTORISATION;
-        let of_motions =
-            |plate: &MembranePlate| FORMS * (plate.motions() as u64).pow(2) / (sizes.marched as u64 + STEP);
-        let iteration = stretched.map_or(0, of_motions);
-        // Steps of the linear plate that some of the run take as long as.
-        let passes = |steps: u64| steps.saturating_mul(1 + ITERATIONS * iteration);
+        let steps = |numbers: usize| (numbers as u64).pow(2) / (sizes.marched as u64 + STEP);
+        let (iteration, turn) = (stretched.map_or(0, |plate| FORMS * steps(plate.motions())), steps(springs));
+        let iterations = stretched.map_or(1, |_| ITERATIONS);
+        let passes = |steps: u64| steps.saturating_mul(1 + iterations * (iteration + TURNS * turn));
         let budget = (sizes.factor_entries as u64).saturating_mul(solves) / CHEAP / (sizes.marched as u64 + STEP);
         // Iterations of contacts may be worth a step each.
         let budget = budget.max(passes(2 * sizes.steps / LONGEST)).max(NOTHING);
@@ -152,7 +156,7 @@ impl Pace {
         let other = integrator.with_tolerance(ratio.powi(integrator.order() as i32));
         let proportional = other.is_some();
         let integrator = other.unwrap_or(integrator);
-        Self { integrator, stride, parts, dt, steps: sizes.steps, proportional, iteration, budget }
+        Self { integrator, stride, parts, dt, steps: sizes.steps, proportional, iteration, turn, budget }
     }
 
     /// With so many steps of the run in one, whatever that takes; nothing where its step is no longer.
@@ -169,6 +173,11 @@ impl Pace {
     /// With half of its step, whatever that takes; nothing where it is twice that of the run already.
     pub(super) fn halved(&self) -> Option<Self> {
         self.shorter((self.stride / 2).max(2))
+    }
+
+    /// The same for half of what this one may take, so that all of several attempts take no more than twice that.
+    pub(super) fn halved_as_cheap(&self) -> Option<Self> {
+        self.halved().map(|half| Self { budget: self.budget / 2, ..half })
     }
 
     /// Whether so many steps are worth it.
@@ -195,7 +204,10 @@ impl Pace {
     ) -> Option<Companion> {
         let count = self.steps / self.stride;
         let calls = if system.has_tips() { TIP_CALLS } else { CALLS };
-        let work = |system: &ImpactSystem| system.contact_calls() / calls + system.iterations() * self.iteration;
+        let work = |system: &ImpactSystem| {
+            let [iterations, turns] = [system.iterations(), system.lifting_turns()];
+            system.contact_calls() / calls + iterations * self.iteration + turns * self.turn
+        };
         let before = work(system);
         if !self.is_cheap() {
             return None;

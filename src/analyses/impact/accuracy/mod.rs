@@ -130,7 +130,7 @@ impl Estimates {
             Some(membrane) => Box::new(membrane.clone()),
             None => Box::new(reduced.modal.clone()),
         };
-        let mut pace = Pace::new(integrator.clone(), sizes, solves, membrane);
+        let mut pace = Pace::new(integrator.clone(), sizes, (solves, system.one_sided().len()), membrane);
         let mut instants = Vec::new();
         let mut copy = system.on(plate);
         let mut march = |pace: &Pace| {
@@ -139,13 +139,13 @@ impl Estimates {
         };
         let mut base = march(&pace);
         // Steps may be too long to be marched at all.
-        while let (None, Some(shorter)) = (&base, pace.halved().filter(|_| pace.is_cheap())) {
+        while let (None, Some(shorter)) = (&base, pace.halved_as_cheap().filter(Pace::is_cheap)) {
             pace = shorter;
             base = march(&pace);
         }
         // What a reduction leaves out is asked of the linear plate, at its own pace: tension is a matter of its slow vectors.
         let linear = membrane.and_then(|_| {
-            let pace = Pace::new(integrator, sizes, solves, None);
+            let pace = Pace::new(integrator, sizes, (solves, system.one_sided().len()), None);
             instants.clear();
             let mut linear = system.on(Box::new(reduced.modal.clone()));
             let base = pace.march(&mut linear, &reduced.modal, |instant| instants.push(instant))?;
