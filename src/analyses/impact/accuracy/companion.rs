@@ -118,7 +118,9 @@ pub(super) struct Pace {
     steps: u64,
     /// Whether the parts of divided steps are longer as its step is.
     proportional: bool,
-    /// Steps of a linear plate without springs that an iteration takes as long as, and a turn of the search for springs that let go.
+    /// Steps of a linear plate without springs that one of its own takes as long as, an iteration, and a turn of the search for springs
+    /// that let go.
+    passes: u64,
     iteration: u64,
     turn: u64,
     /// Work that is not worth a word beside that of the run.
@@ -138,7 +140,8 @@ impl Pace {
         let steps = |numbers: usize| (numbers as u64).pow(2) / (sizes.marched as u64 + STEP);
         let (iteration, turn) = (stretched.map_or(0, |plate| FORMS * steps(plate.motions())), steps(springs));
         let iterations = stretched.map_or(1, |_| ITERATIONS);
-        let passes = |steps: u64| steps.saturating_mul(1 + iterations * (iteration + TURNS * turn));
+        let each = 1 + iterations * (iteration + TURNS * turn);
+        let passes = |steps: u64| steps.saturating_mul(each);
         let budget = (sizes.factor_entries as u64).saturating_mul(solves) / CHEAP / (sizes.marched as u64 + STEP);
         // Iterations of contacts may be worth a step each.
         let budget = budget.max(passes(2 * sizes.steps / LONGEST)).max(NOTHING);
@@ -156,7 +159,7 @@ impl Pace {
         let other = integrator.with_tolerance(ratio.powi(integrator.order() as i32));
         let proportional = other.is_some();
         let integrator = other.unwrap_or(integrator);
-        Self { integrator, stride, parts, dt, steps: sizes.steps, proportional, iteration, turn, budget }
+        Self { integrator, stride, parts, dt, steps: sizes.steps, proportional, passes: each, iteration, turn, budget }
     }
 
     /// With so many steps of the run in one, whatever that takes; nothing where its step is no longer.
@@ -175,9 +178,10 @@ impl Pace {
         self.shorter((self.stride / 2).max(2))
     }
 
-    /// The same for half of what this one may take, so that all of several attempts take no more than twice that.
+    /// The same for what so many steps should take.
     pub(super) fn halved_as_cheap(&self) -> Option<Self> {
-        self.halved().map(|half| Self { budget: self.budget / 2, ..half })
+        let half = self.halved()?;
+        Some(Self { budget: self.budget.max(self.passes.saturating_mul(half.steps / half.stride)), ..half })
     }
 
     /// Whether so many steps are worth it.
