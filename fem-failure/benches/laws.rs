@@ -94,12 +94,16 @@ fn ply(bencher: divan::Bencher<'_, '_>, law: &dyn PlyLaw, state: &str) {
 
 #[divan::bench(args = ["sound", "growing", "unloading"])]
 fn crack_band(bencher: divan::Bencher<'_, '_>, state: &str) {
-    ply(bencher, &CrackBand { alpha: None, breaks: Breaks::All, lower_strengths: false }, state);
+    ply(bencher, &CrackBand { alpha: None, breaks: Breaks::All, faces: false, lower_strengths: false }, state);
 }
 
 #[divan::bench(args = ["sound", "growing", "unloading"])]
 fn crack_band_permanent(bencher: divan::Bencher<'_, '_>, state: &str) {
-    ply(bencher, &CrackBand { alpha: Some(2.44e-26), breaks: Breaks::All, lower_strengths: false }, state);
+    ply(
+        bencher,
+        &CrackBand { alpha: Some(2.44e-26), breaks: Breaks::All, faces: false, lower_strengths: false },
+        state,
+    );
 }
 
 #[divan::bench(args = ["sound", "growing", "unloading"])]

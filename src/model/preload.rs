@@ -8,7 +8,7 @@ use fem_core::axes::Turns;
 use fem_core::constraint::{Constraints, Equation};
 use fem_core::dof::Dof;
 use fem_core::element::Element;
-use fem_core::hold::{Hold, SupportKind};
+use fem_core::hold::{Hold, SupportKind, What};
 use fem_core::load;
 use fem_core::mesh::Group;
 use fem_core::plate::Plate;
@@ -150,6 +150,8 @@ impl Builder<'_> {
             };
             let beside = columns(edges.iter().filter(|edge| !named.contains(&undirected(**edge))).copied().collect());
             let is_released = |column: &&u32| of_named.contains(column) && !beside.contains(column);
+            let (jumps, holds): (Vec<Hold>, Vec<Hold>) = holds.into_iter().partition(|hold| hold.what == What::Jumps);
+            equations.extend(jumps.iter().flat_map(|hold| hold.equations(plate, &name)));
             for hold in holds {
                 let (released, held): (Vec<u32>, _) = hold.columns.iter().partition(is_released);
                 let column = hold.columns.first().map_or(0, |column| *column as usize);
@@ -161,7 +163,7 @@ impl Builder<'_> {
                 // The thickness is free: stresses across it would press on the slopes of the plate.
                 let deflection = Hold {
                     columns: released,
-                    between: middle.len() == 2,
+                    what: if middle.len() == 2 { What::Between } else { What::Each },
                     levels: middle,
                     dofs: of(|dof| dof.n() == 3 && dof.m() < 3),
                     ..hold.clone()

@@ -3,7 +3,7 @@
 use super::builder::Builder;
 use fem_core::axes::Turns;
 use fem_core::dof::Dof;
-use fem_core::hold::{Hold, SupportKind};
+use fem_core::hold::{Hold, SupportKind, What};
 use fem_core::mesh::Group;
 use fem_core::plate::Plate;
 use fem_io::scene::{Located, SceneError, Support, SupportArea};
@@ -26,7 +26,7 @@ impl Builder<'_> {
                     dofs: dofs.clone(),
                     angle,
                     curvature: 0.0,
-                    between: false,
+                    what: What::Each,
                 };
                 let holds = self.nodes(plate, nodes, dofs)?.into_iter().map(hold).collect();
                 Ok((format!("`{}`", nodes.group.value), holds))
@@ -121,7 +121,7 @@ impl Builder<'_> {
 /// "`edge`, clamped: U10 U11 ... at 48 nodes, 1 along the edge and 2 across it".
 pub(super) fn describe(plate: &Plate, support: &Support, name: &str, holds: &[Hold]) -> String {
     let (mut nodes, mut held) = (BTreeSet::new(), BTreeSet::new());
-    for (column, level, dof) in holds.iter().flat_map(Hold::each) {
+    for (column, level, dof) in holds.iter().filter(|hold| hold.what != What::Jumps).flat_map(Hold::each) {
         if plate.dofs_at(column, level, dof).next().is_some() {
             nodes.insert((column, level));
             held.insert(dof.to_string());

@@ -2,6 +2,7 @@
 
 mod bars;
 mod circle;
+mod clamps;
 mod closed;
 mod dynamics;
 mod left;

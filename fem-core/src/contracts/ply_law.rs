@@ -31,8 +31,8 @@ pub struct LawPoint<'a> {
     pub length: f64,
     /// Thickness of the ply and of those about it that are alike, m: cracks through it stand about as far apart. Of an interface 0.
     pub thickness: f64,
-    /// Means of [`PlyLaw::quantities`] over the ply in its cell, as many as [`PlyLaw::means`] says; none at a point that is asked about
-    /// alone.
+    /// Means of [`PlyLaw::quantities`] over the ply in its cell, as many as [`PlyLaw::means`] says, and behind them those of
+    /// [`PlyLaw::faces`]; none at a point that is asked about alone.
     pub means: &'a [f64],
 }
 
@@ -115,6 +115,12 @@ pub trait PlyLaw: DynClone + Debug + Send + Sync {
     /// fibres does, must not follow the strains of each point, which cannot do so.
     fn means(&self) -> usize {
         0
+    }
+
+    /// Whether the means are those over all plies of one angle about its own, which break as one, and it wants the means over their two faces
+    /// as well, of each quantity the larger one: in plies that bend the faces see more than the mean.
+    fn faces(&self) -> bool {
+        false
     }
 
     /// Writes the quantities of [`PlyLaw::means`] at a point to `out`; their means come back to it in [`LawPoint::means`].

@@ -128,8 +128,19 @@ pub struct Hold {
     pub angle: f64,
     /// κ: the derivative U11 is held at −κ U20 instead of 0, 1/m.
     pub curvature: f64,
-    /// Whether what lies at z = 0 on the line between its two levels is held, and not each of them.
-    pub between: bool,
+    /// What is held of them.
+    pub what: What,
+}
+
+/// What a [`Hold`] holds of its unknowns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum What {
+    /// Each of them.
+    Each,
+    /// What lies at z = 0 on the line between its two levels.
+    Between,
+    /// Nothing but their jumps between layers that have come apart.
+    Jumps,
 }
 
 impl Hold {
@@ -187,10 +198,19 @@ impl Hold {
                             dofs,
                             angle,
                             curvature,
-                            between,
+                            what: if between { What::Between } else { What::Each },
                         });
                     }
                 }
+            }
+            // Layers that have come apart are pressed together by a clamp, which has only one middle.
+            let w: Vec<Dof> = [0, 1].into_iter().filter_map(|m| Dof::new(3, m)).collect();
+            let apart = |level: &usize| plate.dofs_at(column as usize, *level, w[0]).nth(1).is_some();
+            let levels: Vec<usize> = levels.into_iter().filter(apart).collect();
+            if kind == Clamped && !levels.is_empty() {
+                let angle = turns.settle(own.first().map_or(0.0, |course| course.angle));
+                let dofs = if own.is_empty() { w[..1].to_vec() } else { w };
+                holds.push(Self { columns: vec![column], levels, dofs, angle, curvature: 0.0, what: What::Jumps });
             }
         }
         holds
@@ -218,8 +238,10 @@ impl Hold {
 
     /// The same as equations.
     pub fn equations(&self, plate: &Plate, origin: &str) -> Vec<Equation> {
-        if self.between {
-            return self.equations_between(plate, origin);
+        match self.what {
+            What::Each => {}
+            What::Between => return self.equations_between(plate, origin),
+            What::Jumps => return self.equations_of_jumps(plate, origin),
         }
         let mut equations = Vec::new();
         for (column, level, dof) in self.each() {
@@ -247,8 +269,10 @@ impl Hold {
             let shares = Self::middle(plate, *column as usize, &self.levels);
             for dof in &self.dofs {
                 let at = |(level, share): (usize, f64)| {
+                    // Of layers that have come apart there, of one: clamped they stay together.
                     let own = turned(plate, *column as usize, level, *dof, self.angle);
                     own.into_iter()
+                        .take(1)
                         .flatten()
                         .map(move |(unknown, factor)| (unknown, share * factor))
                         .collect::<Vec<_>>()
@@ -262,6 +286,21 @@ impl Hold {
             }
         }
         equations.retain(|equation| !equation.terms.is_empty());
+        equations
+    }
+
+    fn equations_of_jumps(&self, plate: &Plate, origin: &str) -> Vec<Equation> {
+        let mut equations = Vec::new();
+        for (column, level, dof) in self.each() {
+            let mut each = turned(plate, column, level, dof, self.angle).into_iter();
+            let Some(first) = each.next() else { continue };
+            equations.extend(each.map(|other| Equation {
+                terms: other.into_iter().chain(first.iter().map(|(unknown, factor)| (*unknown, -factor))).collect(),
+                value: 0.0,
+                origin: format!("{origin}: jump of {dof} at {}", plate.describe_column(column)),
+                holds: true,
+            }));
+        }
         equations
     }
 

@@ -83,11 +83,16 @@ impl Laminate {
         pairs.filter(move |(_, pair)| differ(pair)).map(|(below, _)| below)
     }
 
-    /// Thickness of a ply and of those about it that are alike, m.
-    pub fn alike(&self, ply: usize) -> f64 {
+    /// First and one past the last of a ply and those about it that are alike.
+    pub fn alike(&self, ply: usize) -> std::ops::Range<usize> {
         let first = self.unlike().take_while(|below| *below <= ply).last().unwrap_or(0);
         let end = self.unlike().find(|below| *below > ply).unwrap_or(self.plies.len());
-        self.plies[first..end].iter().map(|ply| ply.thickness).sum()
+        first..end
+    }
+
+    /// Thickness of some plies, m.
+    pub fn thickness_of(&self, plies: std::ops::Range<usize>) -> f64 {
+        self.plies[plies].iter().map(|ply| ply.thickness).sum()
     }
 
     /// On how many faces a ply, with those about it that are alike, has others; nothing of a laminate of one angle.
@@ -297,7 +302,7 @@ mod tests {
     #[test]
     fn alike_plies_are_one_thick_ply() {
         let plate = laminate(&[0.0, 0.0, 45.0, 90.0, 90.0, -90.0, 0.0]);
-        let found: Vec<f64> = (0..7).map(|ply| 1e3 * plate.alike(ply)).collect();
+        let found: Vec<f64> = (0..7).map(|ply| 1e3 * plate.thickness_of(plate.alike(ply))).collect();
         let want = [2.0, 2.0, 1.0, 3.0, 3.0, 3.0, 1.0];
         assert!(found.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
     }

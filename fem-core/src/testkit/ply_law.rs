@@ -43,6 +43,7 @@ pub fn check_ply_law(
             let (strain, mut means) = (Strain6::new(*strain), vec![f64::NAN; if cell { law.means() } else { 0 }]);
             if cell {
                 law.quantities(&point, &strain, old, &mut means);
+                means.extend_from_within(..if law.faces() { law.means() } else { 0 });
             }
             let point = LawPoint { means: &means, ..point };
             let PlyResponse { stress, energy } = law.respond(&point, &strain, old, new, tangent)?;

@@ -44,7 +44,10 @@ impl Hertz {
     fn of_bodies(params: &Params) -> Result<Self, ParamError> {
         if let Some(row) = [Self::K, Self::N].iter().find(|row| params.has(row)) {
             let others = OF_BODIES.map(|row| row.name).join(", ");
-            return Err(ParamError::new(row.name, format!("and {others} exclude each other")));
+            return Err(ParamError::new(
+                row.name,
+                format!("says what {others} say as well: leave one or the others out"),
+            ));
         }
         let (radius, e_tip) = (params.number(&RADIUS)?, params.number(&E_TIP)?);
         let (nu_tip, e_plate) = (params.number(&NU_TIP)?, params.number(&E_PLATE)?);

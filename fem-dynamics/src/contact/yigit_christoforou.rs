@@ -137,7 +137,10 @@ impl Plugin for YigitChristoforou {
         let k = params.number(&K)?;
         let of_bodies = [RADIUS, STRENGTH].iter().any(|row| params.has(row));
         if of_bodies && params.has(&CRITICAL) {
-            return Err(ParamError::new(CRITICAL.name, "and radius, strength exclude each other".to_owned()));
+            return Err(ParamError::new(
+                CRITICAL.name,
+                "says what radius and strength say as well: leave it or both of them out".to_owned(),
+            ));
         }
         let yields = if of_bodies {
             Self::yields(k, params.number(&RADIUS)?, params.number(&STRENGTH)?)

@@ -35,7 +35,7 @@ fn sheared(gms: f64) -> Material {
     Material { toughness: tape().toughness.with(Toughness::Gms, gms), ..tape() }
 }
 
-const PLAIN: CrackBand = CrackBand { alpha: None, breaks: Breaks::All, lower_strengths: false };
+const PLAIN: CrackBand = CrackBand { alpha: None, breaks: Breaks::All, faces: false, lower_strengths: false };
 const FIBRES: CrackBand = CrackBand { breaks: Breaks::Fibres, ..PLAIN };
 const SPLITS: CrackBand = CrackBand { breaks: Breaks::Splits, ..PLAIN };
 const ALPHA: f64 = 2.44e-26;
@@ -125,6 +125,7 @@ fn it_keeps_the_contract() {
         (CrackBand { alpha: Some(ALPHA), ..PLAIN }, sheared(788.0), 2e-4, [0.01, 0.012, 0.012, 0.04, 0.03, 0.05]),
         (CrackBand { lower_strengths: true, ..PLAIN }, tape(), 4e-3, [0.02, 0.01, 0.01, 0.01, 0.01, 0.01]),
         (FIBRES, fibres(), 4e-3, [0.02, 0.01, 0.01, 0.01, 0.01, 0.01]),
+        (CrackBand { faces: true, ..FIBRES }, fibres(), 4e-3, [0.02, 0.01, 0.01, 0.01, 0.01, 0.01]),
         (CrackBand { alpha: Some(ALPHA), ..FIBRES }, tape(), 1e-3, [0.01, 0.01, 0.01, 0.06, 0.03, 0.06]),
         (SPLITS, sheared(788.0), 2e-4, [0.02, 0.012, 0.012, 0.04, 0.04, 0.04]),
         (CrackBand { alpha: Some(ALPHA), ..SPLITS }, sheared(788.0), 2e-4, [0.01, 0.012, 0.012, 0.06, 0.04, 0.06]),

@@ -236,7 +236,7 @@ pub(super) fn strengthen(
         let given = spec.laminate.value.clone();
         for (number, ply) in spec.laminate.value.plies.iter_mut().enumerate() {
             let Some(confined) = given.confined(number) else { continue };
-            let (of, thick) = (ply.material, given.alike(number));
+            let (of, thick) = (ply.material, given.thickness_of(given.alike(number)));
             let same = |&&(other, t, c, _): &&(usize, f64, Confined, usize)| {
                 other == of && c == confined && (t - thick).abs() <= SAME_HEIGHT * thick
             };

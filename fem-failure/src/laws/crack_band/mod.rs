@@ -13,7 +13,7 @@ use fem_core::material::{Elastic, Strength, Toughness};
 use fem_core::plugin::{Built, Kind, ParamError, ParamInfo, Params, Plugin, PluginInfo};
 use fem_core::ply_law::{LawError, LawInfo, LawPoint, PlyLaw, PlyResponse};
 use fem_core::tensor::{Matrix6, Ply, Strain6, Stress6};
-use modes::{BRITTLE, Matrix, Modes, State};
+use modes::{BRITTLE, Fibres, Matrix, Modes, State};
 use permanent::{Permanent, Sheared, Yielding};
 use solid::{Damage, Solid};
 use solve::{Found, released};
@@ -44,6 +44,9 @@ const SHEARS: [usize; 3] = [3, 4, 5];
 /// Asked with [means](PlyLaw::means), a ply has one damage of its fibres in each cell: e is then √(∫ ⟨±h1⟩² dV/V)/X over the ply in the
 /// cell, with the damage of the matrix of before. Cells with smooth displacements cannot open one by one, and points that break by themselves
 /// would hold on beside those that have; together they release the same, Σ ½ h1²/E1 V dd, and G times the section by the time the stress is gone.
+/// Plies that bend see more at their faces: judged by these ([`CrackBand::faces`]), V is that of all plies of one angle about the ply in its layer
+/// of cells, which have nothing between them that would stop a crack, e² that of the mean over the face that sees more, and w stays a mean over V, so that the
+/// crack takes G all the same.
 ///
 /// d solves a fixed point, because h depends on it by way of Poisson's ratios: by Newton's method, of which the tangent follows.
 /// Energies are integrated at the middle of a step.
@@ -65,6 +68,8 @@ pub struct CrackBand {
     pub alpha: Option<f64>,
     /// Which modes break; the matrix may stay elastic.
     pub breaks: Breaks,
+    /// Whether the faces of plies of one angle decide when their fibres break, and not the mean over a ply.
+    pub faces: bool,
     /// Whether strengths are lowered where the cell is too wide for the toughness; otherwise it is refused.
     pub lower_strengths: bool,
 }
@@ -228,7 +233,7 @@ impl CrackBand {
                 Breaks::Splits => Matrix::Splits,
             },
             cracked,
-            fibres: <[f64; 2]>::try_from(point.means).ok().map(|squares| squares.map(f64::sqrt)),
+            fibres: Fibres::new(point.means),
         }
     }
 
@@ -290,6 +295,10 @@ impl PlyLaw for CrackBand {
 
     fn means(&self) -> usize {
         2
+    }
+
+    fn faces(&self) -> bool {
+        self.faces
     }
 
     /// h1², where it pulls and where it presses.
@@ -452,13 +461,25 @@ const BREAKS: ParamInfo = ParamInfo::word(
     ],
 );
 
+const FIBRES: ParamInfo = ParamInfo::word(
+    "fibres",
+    "which fibres of a cell decide when they break across it",
+    &[
+        ("mean", "those of a ply in the mean"),
+        (
+            "faces",
+            "those at the faces of the plies of one angle, which break as one; where plies come apart and bend by themselves",
+        ),
+    ],
+);
+
 impl Plugin for CrackBand {
     const INFO: PluginInfo = PluginInfo {
         kind: Kind::PlyLaw,
         name: "crack-band",
         summary: "damage in four modes that softens linearly to the toughness of each, with permanent shear strain",
         source: "Hashin 1980; Bazant and Oh 1983; Lapczyk and Hurtado 2007; Hahn and Tsai 1973",
-        params: &[BREAKS, ALPHA, LOWER],
+        params: &[BREAKS, FIBRES, ALPHA, LOWER],
     };
 
     fn build(params: &Params) -> Result<Built, ParamError> {
@@ -468,6 +489,7 @@ impl Plugin for CrackBand {
             "splits" => Breaks::Splits,
             _ => Breaks::All,
         };
-        Ok(Built::PlyLaw(Box::new(Self { alpha, breaks, lower_strengths: params.flag(&LOWER)? })))
+        let faces = params.word(&FIBRES)? == "faces";
+        Ok(Built::PlyLaw(Box::new(Self { alpha, breaks, faces, lower_strengths: params.flag(&LOWER)? })))
     }
 }

@@ -56,14 +56,32 @@ pub(super) struct Modes {
     pub(super) matrix: Matrix,
     /// Share of the shears 12, 23, 13 that cracks of the matrix take at most.
     pub(super) cracked: [f64; 3],
-    /// Root mean squares of h1 over the ply in its cell, where it pulls and where it presses; none at a point alone.
-    pub(super) fibres: Option<[f64; 2]>,
+    /// Those of the ply in its cell; none at a point alone.
+    pub(super) fibres: Option<Fibres>,
+}
+
+/// What decides of the fibres of a cell, where they pull and where they press.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fibres {
+    /// Root mean squares of h1.
+    pub(super) along: [f64; 2],
+    /// Mean square over the volume by that of h1.
+    pub(super) even: [f64; 2],
+}
+
+impl Fibres {
+    /// From mean squares over the volume, and over the faces that decide, if they do.
+    pub(super) fn new(means: &[f64]) -> Option<Self> {
+        let (volume, decide): (&[f64; 2], &[f64; 2]) = (means.first_chunk()?, means.last_chunk()?);
+        let even = |mode: usize| if decide[mode] > 0.0 { volume[mode] / decide[mode] } else { 1.0 };
+        Some(Self { along: decide.map(f64::sqrt), even: [even(0), even(1)] })
+    }
 }
 
 impl Modes {
     /// Whether a mode's damage is one of its cell and not of the point.
     fn of_cell(&self, mode: usize) -> Option<f64> {
-        self.fibres.and_then(|along| along.get(mode).copied())
+        self.fibres.and_then(|fibres| fibres.along.get(mode).copied())
     }
 
     /// The damage that a point begins a step with: that of before, and of fibres what their cell asks for.
@@ -190,8 +208,8 @@ impl Modes {
 
     /// κ: energy at onset over that of the crack, by the mix of the stresses.
     pub(super) fn brittleness(&self, mode: usize, s: &State, exposure: f64) -> f64 {
-        if self.of_cell(mode).is_some() {
-            return (self.soft[mode] * 0.5 * self.strength[mode].powi(2) / self.solid.e[0]).min(BRITTLE);
+        if let Some(even) = self.fibres.and_then(|fibres| fibres.even.get(mode).copied()) {
+            return (self.soft[mode] * even * 0.5 * self.strength[mode].powi(2) / self.solid.e[0]).min(BRITTLE);
         }
         let [normal, sheared] = self.released(mode, s);
         let kappa = (self.soft[mode] * normal + self.soft_shear[mode] * sheared) / (exposure * exposure);

@@ -1,5 +1,7 @@
 //! Plies of a plate that follow laws: what their stresses differ from those of linear elasticity.
 
+mod means;
+
 use crate::contracts::element::{Cell, Element, ElementError, ElementInfo, Slice, add_product, form, positive};
 use crate::contracts::ply_law::{LawPoint, PlyLaw, PlyResponse, check_law};
 use crate::plates::laminate::Laminate;
@@ -8,7 +10,9 @@ use crate::words::energy::Energy;
 use crate::words::material::{Material, MaterialError};
 use crate::words::quadrature::gauss_legendre;
 use crate::words::tensor::{Matrix6, Strain6, apply, multiply, strain_rotation, transpose};
+use means::{Faces, faces, wanted};
 use std::fmt;
+use std::ops::Range;
 
 /// Where strains of a cell are compared with the polynomials through the levels, in natural coordinates.
 const TRIED: [[f64; 3]; 3] = [[0.3, -0.7, -0.95], [-0.6, 0.2, 0.1], [0.9, 0.8, 0.6]];
@@ -33,6 +37,8 @@ struct LawfulPly {
     rotation: Matrix6,
     /// Of the ply and of those about it that are alike, m.
     thickness: f64,
+    /// The slices of its layer that break as one: those about it that are alike, or itself alone.
+    group: Range<usize>,
 }
 
 impl LawfulPly {
@@ -104,15 +110,17 @@ pub struct CellAnswer {
     pub means: Vec<([f64; 6], f64)>,
     new: Vec<f64>,
     product: Vec<f64>,
-    /// What laws want the means of: by slice, as many of each, with the volume behind them.
+    /// What laws want the means of: by slice, as many of each, those of faces next, with the volume behind them.
     shared: Vec<f64>,
-    /// Of all points at which laws are asked, in the axes of their plies.
+    /// Of all points at which laws are asked, and of the faces that they want, in the axes of their plies.
     own: Vec<[f64; 6]>,
+    on_faces: Vec<[f64; 6]>,
     /// Of the levels at an in-plane point, six each; stresses weighted, moduli between all pairs.
     strains: Vec<f64>,
     stresses: Vec<f64>,
     moduli: Vec<f64>,
     through: Vec<Through>,
+    faces: Vec<Faces>,
 }
 
 /// Strain operators of a cell; equal of cells of one shape.
@@ -211,15 +219,18 @@ impl PlyLaws {
         element: &dyn Element,
         quads: Option<&[u32]>,
     ) -> Result<Option<Self>, LawsError> {
-        let lawful = |ply: usize| {
-            let (thickness, ply) = (laminate.alike(ply), &laminate.plies[ply]);
+        let lawful = |ply: usize, layer: &Range<usize>| {
+            let (alike, slice) = (laminate.alike(ply), ply - layer.start);
+            let (thickness, ply) = (laminate.thickness_of(alike.clone()), &laminate.plies[ply]);
             let (name, law) = laws.get(ply.material)?.clone()?;
             let material = materials[ply.material].clone();
             let (stiffness, rotation) = (material.elastic.stiffness(), strain_rotation(ply.angle));
-            Some(LawfulPly { name, law, material, stiffness, rotation, thickness })
+            let within = alike.start.max(layer.start) - layer.start..alike.end.min(layer.end) - layer.start;
+            let group = if law.faces() { within } else { slice..slice + 1 };
+            Some(LawfulPly { name, law, material, stiffness, rotation, thickness, group })
         };
-        let plies: Vec<Vec<_>> =
-            (0..laminate.layers.len()).map(|layer| laminate.plies_of(layer).map(lawful).collect()).collect();
+        let layers = (0..laminate.layers.len()).map(|layer| laminate.plies_of(layer));
+        let plies: Vec<Vec<_>> = layers.map(|layer| layer.clone().map(|ply| lawful(ply, &layer)).collect()).collect();
         if plies.iter().flatten().all(Option::is_none) {
             return Ok(None);
         }
@@ -399,6 +410,7 @@ impl PlyLaws {
         answer.on_patterns.clear();
         answer.on_patterns.resize(stretched.map_or(0, |patterns| patterns.amounts.len()), 0.0);
         answer.through = through(levels, &view.stack.slices, plies);
+        answer.faces = faces(levels, &view.stack.slices, plies);
         let (length, mut at, mut place) = (width(info, &view), 0, 0);
         let points = || operators.weights.iter().zip(operators.operators.chunks_exact(rows * n)).enumerate();
         for (number, (_, operators)) in points() {
@@ -414,7 +426,7 @@ impl PlyLaws {
             for k in 0..answer.through.len() {
                 let slice = answer.through[k].slice;
                 let Some(ply) = &plies[slice] else { continue };
-                let means = &shared[slice * each..][..ply.law.means()];
+                let means = &shared[slice * each..][..wanted(ply)];
                 let point = LawPoint { means, ..ply.point(length) };
                 let count = ply.law.info().state.len();
                 answer.ask(ply, &point, (place, k), *dv, (&states[at..at + count], at))?;
@@ -451,6 +463,7 @@ impl CellAnswer {
         }
         self.energy = Energy::default();
         self.own.clear();
+        self.on_faces.clear();
         self.means.clear();
         self.means.resize(slices, ([0.0; 6], 0.0));
     }
@@ -477,46 +490,19 @@ impl CellAnswer {
 
     /// Keeps the strains of the plies at an in-plane point.
     fn turn(&mut self, plies: &[Option<LawfulPly>]) {
-        let Self { own, strains, through, .. } = self;
-        for Through { slice, shares, .. } in through {
-            let Some(ply) = &plies[*slice] else { continue };
+        let Self { own, on_faces, strains, through, faces, .. } = self;
+        let strain = |slice: usize, shares: &[f64]| {
+            let ply = plies[slice].as_ref()?;
             let mut strain = [0.0; 6];
             for (level, share) in strains.chunks_exact(6).zip(shares) {
                 strain.iter_mut().zip(level).for_each(|(sum, e)| *sum += *share * e);
             }
-            own.push(apply(&ply.rotation, &strain));
+            Some(apply(&ply.rotation, &strain))
+        };
+        own.extend(through.iter().filter_map(|Through { slice, shares, .. }| strain(*slice, shares)));
+        for Faces { group, shares, .. } in faces {
+            on_faces.extend(shares.iter().filter_map(|shares| strain(group.start, shares)));
         }
-    }
-
-    /// Forms the means that laws want over their plies; `states` are those of the cell.
-    fn share(&mut self, plies: &[Option<LawfulPly>], weights: &[f64], length: f64, states: &[f64]) {
-        let mut shared = std::mem::take(&mut self.shared);
-        shared.clear();
-        let most = plies.iter().flatten().map(|ply| ply.law.means()).max().unwrap_or(0);
-        if most > 0 {
-            // Behind the last ply: those of a point.
-            shared.resize((most + 1) * (plies.len() + 1), 0.0);
-            let (means, here) = shared.split_at_mut((most + 1) * plies.len());
-            let (mut at, mut strains) = (0, self.own.iter());
-            for dv in weights {
-                for Through { slice, weight, .. } in &self.through {
-                    let (Some(ply), Some(strain)) = (&plies[*slice], strains.next()) else { continue };
-                    let old = &states[at..at + ply.law.info().state.len()];
-                    at += old.len();
-                    here[..most].fill(0.0);
-                    here[most] = 1.0;
-                    ply.law.quantities(&ply.point(length), &Strain6::new(*strain), old, &mut here[..ply.law.means()]);
-                    let sums = &mut means[slice * (most + 1)..][..most + 1];
-                    sums.iter_mut().zip(&*here).for_each(|(sum, q)| *sum += dv * weight * q);
-                }
-            }
-            for all in means.chunks_exact_mut(most + 1) {
-                let volume = all[most];
-                all[..most].iter_mut().for_each(|sum| *sum /= volume);
-            }
-            shared.truncate((most + 1) * plies.len());
-        }
-        self.shared = shared;
     }
 
     /// Makes ready for another in-plane point.
