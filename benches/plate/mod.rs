@@ -4,7 +4,7 @@ use fem::core::assembly::elimination_order;
 use fem::core::constraint::Constraints;
 use fem::core::dof::Dof;
 use fem::core::element::Element;
-use fem::core::hold::Hold;
+use fem::core::hold::{Hold, What};
 use fem::core::laminate::{LaminaPly, Laminate};
 use fem::core::mesh::PlaneMesh;
 use fem::core::plate::{Plate, ZDerivatives};
@@ -39,7 +39,7 @@ pub(crate) fn subject(side: usize) -> Subject {
     let mut columns: Vec<u32> = edges.iter().flat_map(|e| plate.columns_of_group(&plate.plane.groups[*e])).collect();
     columns.sort_unstable();
     columns.dedup();
-    let held = Hold { columns, levels: vec![1], dofs: held, angle: 0.0, curvature: 0.0, between: false };
+    let held = Hold { columns, levels: vec![1], dofs: held, angle: 0.0, curvature: 0.0, what: What::Each };
     let supports = held.equations(&plate, "edges");
     let constraints = Constraints::eliminate(&elimination_order(&plate), &supports).unwrap();
     Subject { plate, element, constraints }
