@@ -204,14 +204,23 @@ impl Hold {
                 }
             }
             // Layers that have come apart are pressed together by a clamp, which has only one middle.
-            let w: Vec<Dof> = [0, 1].into_iter().filter_map(|m| Dof::new(3, m)).collect();
-            let apart = |level: &usize| plate.dofs_at(column as usize, *level, w[0]).nth(1).is_some();
-            let levels: Vec<usize> = levels.into_iter().filter(apart).collect();
-            if kind == Clamped && !levels.is_empty() {
-                let angle = turns.settle(own.first().map_or(0.0, |course| course.angle));
-                let dofs = if own.is_empty() { w[..1].to_vec() } else { w };
-                holds.push(Self { columns: vec![column], levels, dofs, angle, curvature: 0.0, what: What::Jumps });
+            let apart = |level: &usize| plate.dofs_at(column as usize, *level, Dof::SOLID[8]).nth(1).is_some();
+            let levels: Vec<usize> = levels.into_iter().filter(|level| kind == Clamped && apart(level)).collect();
+            if levels.is_empty() {
+                continue;
             }
+            let jumps = |dofs, angle| Self {
+                columns: vec![column],
+                levels: levels.clone(),
+                dofs,
+                angle,
+                curvature: 0.0,
+                what: What::Jumps,
+            };
+            holds.push(jumps(vec![Dof::SOLID[8]], 0.0));
+            holds.extend(
+                own.iter().map(|course| jumps(Dof::new(3, 1).into_iter().collect(), turns.settle(course.angle))),
+            );
         }
         holds
     }
