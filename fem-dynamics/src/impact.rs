@@ -3,6 +3,7 @@
 mod influence;
 mod mean;
 mod newton;
+mod seen;
 mod tip;
 
 use crate::lifting::{Lifting, OneSided};
@@ -13,6 +14,7 @@ use fem_core::structure::Structure;
 use fem_core::time::{Histories, SecondOrderSystem, State, StepError};
 use influence::{Influence, Strikers};
 use newton::Newton;
+use seen::Seen;
 use std::sync::Arc;
 use tip::Pressed;
 pub use tip::Tip;
@@ -79,6 +81,7 @@ pub struct ImpactSystem {
     inertia: bool,
     influence: Influence,
     newton: Newton,
+    seen: Seen,
     /// Internal force of a structure that softens.
     force: Vec<f64>,
     contact_calls: u64,
@@ -170,6 +173,7 @@ impl ImpactSystem {
             inertia: true,
             influence: Influence::default(),
             newton: Newton::default(),
+            seen: Seen::default(),
             force: Vec::new(),
             contact_calls: 0,
             noted: None,
@@ -296,6 +300,7 @@ impl ImpactSystem {
 
     /// The structure, to solve with it before a march.
     pub fn structure_mut(&mut self) -> &mut dyn Structure {
+        self.seen = Seen::default();
         &mut *self.structure
     }
 
@@ -356,7 +361,10 @@ impl ImpactSystem {
         let points = &state.histories.points;
         let nonlinear = match self.newton.stored(&state.u[..n]) {
             Some(stored) => Some(Energy { stored, dissipated: 0.0 }),
-            None => self.structure.nonlinear().map(|f| f.internal(&state.u[..n], points, work).unwrap_or(missing)),
+            None => {
+                let of = (&state.u[..n], &points[..]);
+                self.structure.nonlinear().map(|f| self.seen.internal(f, of, work).unwrap_or(missing))
+            }
         };
         let mut product = |x: &[f64], add: &dyn Fn(&[f64], &mut [f64])| {
             work.clear();
@@ -556,7 +564,7 @@ impl SecondOrderSystem for ImpactSystem {
         match self.structure.nonlinear() {
             None => self.structure.add_stiffness(-1.0, &u[..n], &mut f[..n]),
             // What cannot be integrated is not a number, which the guard sees.
-            Some(structure) => match structure.internal(&u[..n], &h.points, &mut f[..n]) {
+            Some(structure) => match self.seen.internal(structure, (&u[..n], &h.points), &mut f[..n]) {
                 Ok(_) => f[..n].iter_mut().for_each(|f| *f = -*f),
                 Err(_) => f.fill(f64::NAN),
             },

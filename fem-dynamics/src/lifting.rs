@@ -1,9 +1,9 @@
 //! Springs that only push, from which a structure lifts off.
 
-use crate::vector::{add_columns, axpy};
+use crate::vector::axpy;
 use fem_core::functional::Functional;
 use fem_core::structure::SolveError;
-use fem_core::vectorised::vectorised;
+use fem_core::vectorised::{add_columns, vectorised};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::sync::Arc;
 

@@ -386,6 +386,7 @@ fn lawful(
     let (symbolic, _) = model.analyse(k.pattern().clone())?;
     let virgin = vec![0.0; laws.states()];
     let mut laws = LawPlate::new(plate, element.clone(), constraints, laws.clone());
+    laws.share(threads);
     let found = equilibrium(&mut laws.on(k, &virgin), symbolic, &f, vec![0.0; f.len()], threads)?;
     let factor_entries = assembled.factor_entries;
     Ok(Found { factor_entries, ..Found::of(found, laws.integrated(), counters) })

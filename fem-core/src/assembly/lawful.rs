@@ -11,12 +11,15 @@ use crate::plates::constraint::Constraints;
 use crate::plates::laws::{Asked, CellAnswer, CellOperators, Patterns, PlyLaws};
 use crate::plates::plate::Plate;
 use crate::words::energy::Energy;
+use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 /// The plies of a plate that follow laws, as forces on the independent unknowns.
 ///
 /// f(ũ) = K ũ + Cᵀ Σ ∫ Bᵀ (σ − C ε) dV, the sum over the cells with such plies: cells without cost nothing beyond their part of K. In a
 /// plate that is [stretched](LawPlate::stretch) ε has the strains of that as well, and σ does work on them.
+///
+/// Threads share the cells; what they find is added in the order of the cells, so that sums are the same for any number of threads.
 ///
 /// Nothing is allocated after the first call but a few numbers per cell.
 #[derive(Debug, Clone)]
@@ -29,10 +32,10 @@ pub struct LawPlate {
     /// Operators by shape of cell, as far as there is room.
     shapes: Vec<Option<CellOperators>>,
     room: usize,
-    /// Displacements before elimination, and of a cell.
+    /// Displacements before elimination.
     all: Vec<f64>,
-    u: Vec<f64>,
-    answer: CellAnswer,
+    /// One for each thread.
+    askers: Vec<Asker>,
     integrated: u64,
     stretched: Option<Stretched>,
 }
@@ -52,6 +55,9 @@ struct Stretched {
 
 /// Memory that operators may take, bytes; those of other cells are found whenever they are needed.
 const ROOM: usize = 256 << 20;
+
+/// Cells that a thread asks at a time, of which it keeps the answers until they are added.
+const TOGETHER: usize = 64;
 
 /// A cell with plies that follow laws.
 #[derive(Debug, Clone)]
@@ -87,12 +93,16 @@ impl LawPlate {
             constraints: constraints.clone(),
             laws,
             all: vec![0.0; plate.ndof()],
-            u: Vec::new(),
             element,
-            answer: CellAnswer::default(),
+            askers: vec![Asker::default()],
             integrated: 0,
             stretched: None,
         }
+    }
+
+    /// Has its cells shared by so many threads.
+    pub fn share(&mut self, threads: NonZeroUsize) {
+        self.askers.resize_with(threads.get(), Asker::default);
     }
 
     /// Has the plate stretched by its deflections.
@@ -130,12 +140,7 @@ impl LawPlate {
     /// # Errors
     /// A law that finds no stress.
     pub fn commit(&mut self, u: &[f64], points: &mut [f64]) -> Result<(), AssemblyError> {
-        if points.is_empty() {
-            return Ok(());
-        }
-        let old = points.to_vec();
-        self.each(u, &old, Some(points), None, None)?;
-        Ok(())
+        if points.is_empty() { Ok(()) } else { self.each(u, States::Taken(points), None, None).map(|_| ()) }
     }
 
     /// Adds the force beyond that of K to `force`; returns the energies beyond those of K, J.
@@ -143,7 +148,7 @@ impl LawPlate {
     /// # Errors
     /// A law that finds no stress.
     pub fn add(&mut self, u: &[f64], points: &[f64], force: &mut [f64]) -> Result<Energy, AssemblyError> {
-        self.each(u, points, None, Some(force), None)
+        self.each(u, States::Tried(points), Some(force), None)
     }
 
     /// The plate with K, at the states `points`.
@@ -151,80 +156,193 @@ impl LawPlate {
         LawForce { k, laws: self, points }
     }
 
+    /// Finds the operators of the shapes for which there is room.
+    fn know_shapes(&mut self) -> Result<(), AssemblyError> {
+        let Self { plate, element, cells, shapes, room, .. } = self;
+        for LawCell { cell, shape, .. } in cells {
+            if *room > 0 && shapes[*shape].is_none() {
+                let element = form(&**element, plate.plane.quads[plate.place(*cell).0].domain());
+                let found = CellOperators::new(element, &plate.cell(*cell)).map_err(|why| failed(plate, *cell, why))?;
+                shapes[*shape] = Some(found);
+                *room -= 1;
+            }
+        }
+        // Those that are left are found whenever they are needed.
+        *room = 0;
+        Ok(())
+    }
+
     /// Asks all cells; takes what is wanted of their answers, and the energies beyond those of K.
     fn each(
         &mut self,
         u: &[f64],
-        points: &[f64],
-        mut new: Option<&mut [f64]>,
+        mut states: States<'_>,
         mut force: Option<&mut [f64]>,
         mut tangent: Option<&mut Symmetric>,
     ) -> Result<Energy, AssemblyError> {
-        let Self {
-            plate,
-            element,
-            constraints,
-            laws,
-            cells,
-            shapes,
-            room,
-            all,
-            u: local,
-            answer,
-            integrated,
-            stretched,
-        } = self;
+        if self.room > 0 {
+            self.know_shapes()?;
+        }
+        let Self { plate, element, constraints, laws, cells, shapes, all, askers, integrated, stretched, .. } = self;
         *integrated += cells.len() as u64;
         match stretched {
             Some(stretched) => constraints.expand(stretched.begin(u), all),
             None => constraints.expand(u, all),
         }
-        let mut energy = Energy::default();
-        let mut passing = None;
-        for (number, LawCell { cell, weight, shape, map }) in cells.iter_mut().enumerate() {
-            let states = laws.states_of(*cell);
-            let element = form(&**element, plate.plane.quads[plate.place(*cell).0].domain());
-            let n = element.info().ndof();
-            local.resize(n, 0.0);
-            map.gather(all, local);
-            let new = new.as_deref_mut().map(|new| &mut new[states.clone()]);
-            let failed = |error| {
-                let (quad, layer) = plate.place(*cell);
-                AssemblyError { quad_tag: plate.plane.quad_tags[quad], layer, error }
+        let (mut energy, mut seen, mut number) = (Energy::default(), 0, 0);
+        for cells in cells.chunks_mut(TOGETHER * askers.len()) {
+            let share = cells.len().div_ceil(askers.len());
+            let part = |cells: &[LawCell]| {
+                let own = laws.states_of(cells[0].cell).start..laws.states_of(cells[cells.len() - 1].cell).end;
+                states.split_off(own.start - seen);
+                seen = own.end;
+                (own.start, states.split_off(own.len()))
             };
-            if shapes[*shape].is_none() {
-                let found = CellOperators::new(element, &plate.cell(*cell)).map_err(failed)?;
-                if *room > 0 {
-                    *room -= 1;
-                    shapes[*shape] = Some(found);
-                } else {
-                    passing = Some(found);
+            let parts: Vec<_> = cells.chunks(share).map(part).collect();
+            let tangents = tangent.is_some();
+            let common =
+                Asking { plate, element: &**element, laws, shapes, all, stretched: stretched.as_ref(), tangents };
+            let asking = askers
+                .iter_mut()
+                .zip(cells.chunks(share))
+                .zip(parts)
+                .zip((number..number + cells.len()).step_by(share));
+            let asking = asking.map(|(((asker, cells), states), number)| (asker, cells, states, number));
+            common.all(asking)?;
+            for (asker, cells) in askers.iter().zip(cells.chunks_mut(share)) {
+                let amounts = stretched.as_ref().map_or(0, |stretched| stretched.amounts.len());
+                let (mut forces, mut moduli) = (&asker.forces[..], &asker.tangents[..]);
+                for (k, (LawCell { cell, weight, map, .. }, found)) in cells.iter_mut().zip(&asker.energies).enumerate()
+                {
+                    energy.stored += *weight * found.stored;
+                    energy.dissipated += *weight * found.dissipated;
+                    let n = plate.info_of(plate.place(*cell).0).ndof();
+                    let own = forces.split_off(..n).unwrap_or_default();
+                    match (&mut force, &mut *stretched) {
+                        (Some(_), Some(stretched)) => {
+                            stretched.take(map, *weight, (own, &asker.works[k * amounts..][..amounts]));
+                        }
+                        (Some(force), None) => map.scatter_vector(own, *weight, force),
+                        (None, _) => {}
+                    }
+                    if let Some(tangent) = &mut tangent {
+                        map.scatter(moduli.split_off(..n * n).unwrap_or_default(), *weight, tangent);
+                    }
                 }
             }
-            let Some(operators) = shapes[*shape].as_ref().or(passing.as_ref()) else { continue };
-            let patterns = stretched.as_ref().map(|stretched| stretched.of(number));
-            let states = &points[states];
-            let asked = Asked { plate, element, cell: *cell, operators, u: local, stretched: patterns, states };
-            let finite = |answer: &CellAnswer| answer.energy.total().is_finite();
-            let refused = || ElementError("its strain energy is not finite".into());
-            laws.respond(asked, new, tangent.is_some(), answer)
-                .and_then(|()| if finite(answer) { Ok(()) } else { Err(refused()) })
-                .map_err(failed)?;
-            energy.stored += *weight * answer.energy.stored;
-            energy.dissipated += *weight * answer.energy.dissipated;
-            match (&mut force, &mut *stretched) {
-                (Some(_), Some(stretched)) => stretched.take(map, *weight, answer),
-                (Some(force), None) => map.scatter_vector(&answer.force, *weight, force),
-                (None, _) => {}
-            }
-            if let Some(tangent) = &mut tangent {
-                map.scatter(&answer.tangent, *weight, tangent);
-            }
+            number += cells.len();
         }
         if let (Some(force), Some(Stretched { by, on_completed, on_amounts, .. })) = (force, stretched) {
             by.restrict(u, on_completed, on_amounts, force);
         }
         Ok(energy)
+    }
+}
+
+fn failed(plate: &Plate, cell: usize, error: ElementError) -> AssemblyError {
+    let (quad, layer) = plate.place(cell);
+    AssemblyError { quad_tag: plate.plane.quad_tags[quad], layer, error }
+}
+
+/// States of points, in which answers leave theirs or not.
+enum States<'a> {
+    Tried(&'a [f64]),
+    Taken(&'a mut [f64]),
+}
+
+impl<'a> States<'a> {
+    /// The first `count` of them, without which they go on.
+    fn split_off(&mut self, count: usize) -> Self {
+        match self {
+            Self::Tried(all) => Self::Tried(all.split_off(..count).unwrap_or_default()),
+            Self::Taken(all) => Self::Taken(all.split_off_mut(..count).unwrap_or_default()),
+        }
+    }
+
+    fn all(&self) -> &[f64] {
+        match self {
+            Self::Tried(all) => all,
+            Self::Taken(all) => all,
+        }
+    }
+}
+
+/// A thread's answers of some cells, and its work arrays.
+#[derive(Debug, Clone, Default)]
+struct Asker {
+    u: Vec<f64>,
+    answer: CellAnswer,
+    energies: Vec<Energy>,
+    forces: Vec<f64>,
+    works: Vec<f64>,
+    tangents: Vec<f64>,
+}
+
+/// What all cells have in common.
+struct Asking<'a> {
+    plate: &'a Plate,
+    element: &'a dyn Element,
+    laws: &'a PlyLaws,
+    shapes: &'a [Option<CellOperators>],
+    all: &'a [f64],
+    stretched: Option<&'a Stretched>,
+    tangents: bool,
+}
+
+/// Who asks which cells, with their states, which begin at a place of all, and the number of the first cell.
+type Part<'a> = (&'a mut Asker, &'a [LawCell], (usize, States<'a>), usize);
+
+impl Asking<'_> {
+    /// Each part by a thread of its own.
+    fn all<'a>(&self, mut parts: impl ExactSizeIterator<Item = Part<'a>>) -> Result<(), AssemblyError> {
+        if parts.len() == 1 {
+            return parts.try_for_each(|part| self.ask(part));
+        }
+        std::thread::scope(|scope| {
+            let threads: Vec<_> = parts.map(|part| scope.spawn(|| self.ask(part))).collect();
+            threads.into_iter().try_for_each(|thread| match thread.join() {
+                Ok(result) => result,
+                Err(panic) => std::panic::resume_unwind(panic),
+            })
+        })
+    }
+
+    fn ask(&self, (asker, cells, (from, mut states), first): Part<'_>) -> Result<(), AssemblyError> {
+        let Self { plate, element, laws, shapes, all, stretched, tangents } = *self;
+        let Asker { u, answer, energies, forces, works, tangents: found } = asker;
+        energies.clear();
+        [&mut *forces, &mut *works, &mut *found].into_iter().for_each(Vec::clear);
+        for (LawCell { cell, shape, map, .. }, number) in cells.iter().zip(first..) {
+            let failed = |error| failed(plate, *cell, error);
+            let element = form(element, plate.plane.quads[plate.place(*cell).0].domain());
+            u.resize(element.info().ndof(), 0.0);
+            map.gather(all, u);
+            let passing;
+            let operators = match &shapes[*shape] {
+                Some(operators) => operators,
+                None => {
+                    passing = CellOperators::new(element, &plate.cell(*cell)).map_err(failed)?;
+                    &passing
+                }
+            };
+            let own = laws.states_of(*cell);
+            let own = own.start - from..own.end - from;
+            let stretched = stretched.map(|stretched| stretched.of(number));
+            let asked =
+                Asked { plate, element, cell: *cell, operators, u, stretched, states: &states.all()[own.clone()] };
+            laws.respond(asked, tangents, answer).map_err(failed)?;
+            if !answer.energy.total().is_finite() {
+                return Err(failed(ElementError("its strain energy is not finite".into())));
+            }
+            if let States::Taken(states) = &mut states {
+                states[own].copy_from_slice(&answer.states);
+            }
+            energies.push(answer.energy);
+            forces.extend_from_slice(&answer.force);
+            works.extend_from_slice(&answer.on_patterns);
+            found.extend_from_slice(&answer.tangent);
+        }
+        Ok(())
     }
 }
 
@@ -242,9 +360,10 @@ impl Stretched {
         Patterns { strains: &self.strains[cell], amounts: &self.amounts }
     }
 
-    fn take(&mut self, map: &mut CellMap, weight: f64, answer: &CellAnswer) {
-        map.scatter_vector(&answer.force, weight, &mut self.on_completed);
-        self.on_amounts.iter_mut().zip(&answer.on_patterns).for_each(|(sum, work)| *sum += weight * work);
+    /// Takes the force of a cell and its work on the patterns.
+    fn take(&mut self, map: &CellMap, weight: f64, (force, works): (&[f64], &[f64])) {
+        map.scatter_vector(force, weight, &mut self.on_completed);
+        self.on_amounts.iter_mut().zip(works).for_each(|(sum, work)| *sum += weight * work);
     }
 }
 
@@ -270,7 +389,7 @@ impl InternalForce for LawForce<'_> {
         if let Some(tangent) = &mut tangent {
             tangent.lower_mut().val_mut().copy_from_slice(k.lower().val());
         }
-        let Energy { stored, dissipated } = laws.each(u, points, None, Some(force), tangent)?;
+        let Energy { stored, dissipated } = laws.each(u, States::Tried(points), Some(force), tangent)?;
         energy.stored += stored;
         energy.dissipated += dissipated;
         Ok(energy)

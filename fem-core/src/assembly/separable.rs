@@ -183,11 +183,12 @@ impl Separable {
     /// # Errors
     /// See [`SeparableError`].
     pub fn new(
-        parts: SeparableParts,
+        mut parts: SeparableParts,
         states: &[f64],
         inertia: bool,
         threads: NonZeroUsize,
     ) -> Result<Self, SeparableError> {
+        parts.plies.iter_mut().for_each(|plies| plies.share(threads));
         let SeparableParts { plate, element, constraints, interfaces, .. } = &parts;
         let first = interfaces.first_states();
         let pattern = Arc::new(pattern(plate, constraints));
@@ -333,11 +334,11 @@ impl Separable {
     /// # Errors
     /// As [`Separable::internal`].
     pub fn commit(&mut self, u: &[f64], states: &mut [f64]) -> Result<(), SeparableError> {
-        let old = states.to_vec();
-        self.each(u, &old, Some(states), false, |_, _, _, _| ())?;
+        let (own, points) = states.split_at_mut(self.first[self.first.len() - 1]);
+        let old = own.to_vec();
+        self.each(u, &old, Some(own), false, |_, _, _, _| ())?;
         if let Some(plies) = &mut self.parts.plies {
-            let from = self.first[self.first.len() - 1];
-            plies.commit(u, &mut states[from..]).map_err(SeparableError::Assembly)?;
+            plies.commit(u, points).map_err(SeparableError::Assembly)?;
         }
         self.grow(u, states);
         Ok(())

@@ -118,7 +118,8 @@ impl SparseStructure {
     }
 
     /// Gives the structure the internal forces of plies that follow laws; its K is their tangent before anything has happened.
-    pub fn follow(&mut self, laws: LawPlate) {
+    pub fn follow(&mut self, mut laws: LawPlate) {
+        laws.share(self.threads);
         self.beyond = Some(Beyond::Laws(Box::new(laws)));
     }
 

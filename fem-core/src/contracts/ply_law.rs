@@ -155,6 +155,28 @@ pub trait PlyLaw: DynClone + Debug + Send + Sync {
         new: &mut [f64],
         tangent: Option<&mut Matrix6>,
     ) -> Result<PlyResponse, LawError>;
+
+    /// The answers to several `strains` of one ply in one cell, as [`PlyLaw::respond`] has them: `old` and `new` hold the states of one point after
+    /// the other, `tangents` are asked for where there are any. For laws that find something but once for all of them.
+    ///
+    /// # Errors
+    /// A strain for which the law finds no stress.
+    fn respond_all(
+        &self,
+        point: &LawPoint<'_>,
+        strains: &[Strain6<Ply>],
+        (old, new): (&[f64], &mut [f64]),
+        answers: &mut [PlyResponse],
+        tangents: &mut [Matrix6],
+    ) -> Result<(), LawError> {
+        let count = self.info().state.len();
+        let mut tangents = tangents.iter_mut();
+        for (i, (strain, answer)) in strains.iter().zip(answers).enumerate() {
+            let own = i * count..(i + 1) * count;
+            *answer = self.respond(point, strain, &old[own.clone()], &mut new[own], tangents.next())?;
+        }
+        Ok(())
+    }
 }
 dyn_clone::clone_trait_object!(PlyLaw);
 

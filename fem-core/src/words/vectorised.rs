@@ -10,6 +10,51 @@ pub fn vectorised<R>(loops: impl FnOnce() -> R) -> R {
     Arch::new().dispatch(loops)
 }
 
+/// Sums kept side by side, so that one addition need not wait for the last.
+const TOGETHER: usize = 8;
+
+/// aᵀ b, in sums that are kept side by side. As wide as the loop that it is inlined into.
+#[inline(always)]
+pub fn sum_of_products(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (a.as_chunks::<TOGETHER>(), b.as_chunks::<TOGETHER>());
+    let rest: f64 = a.1.iter().zip(b.1).map(|(a, b)| a * b).sum();
+    let mut sums = [0.0; TOGETHER];
+    for (a, b) in a.0.iter().zip(b.0) {
+        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+            *sum += a * b;
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}
+
+/// `y ← y + A x`, A of as many rows, its columns `stride` apart; some columns go together, one after the other, so that y is read and
+/// written for all of them once. As wide as the loop that it is inlined into.
+#[inline(always)]
+pub fn add_columns(a: &[f64], stride: usize, x: &[f64], y: &mut [f64]) {
+    const AT_ONCE: usize = 4;
+    let n = y.len();
+    let (fours, rest) = x.as_chunks::<AT_ONCE>();
+    for (columns, x) in (0..).step_by(AT_ONCE).zip(fours) {
+        let [p, q, r, s]: [&[f64]; AT_ONCE] = std::array::from_fn(|k| &a[(columns + k) * stride..][..n]);
+        for ((((y, p), q), r), s) in y.iter_mut().zip(p).zip(q).zip(r).zip(s) {
+            *y = *y + x[0] * p + x[1] * q + x[2] * r + x[3] * s;
+        }
+    }
+    for (column, x) in (fours.len() * AT_ONCE..).zip(rest) {
+        y.iter_mut().zip(&a[column * stride..][..n]).for_each(|(y, a)| *y += x * a);
+    }
+}
+
+/// A x, of as many rows, which stand one after the other in `a`.
+pub fn rows_times(a: &[f64], x: &[f64], out: &mut [f64]) {
+    Arch::new().dispatch(RowsTimes { a, x, out });
+}
+
+/// `y ← y + Aᵀ x`, of as many rows, which stand one after the other in `a`.
+pub fn add_rows(a: &[f64], x: &[f64], y: &mut [f64]) {
+    Arch::new().dispatch(AddRows { a, x, y });
+}
+
 /// Three rows times `columns`, of which `rows` holds one number each.
 ///
 /// A sum begins at zero and takes its products in order, each rounded once with the sum (fused), whatever the machine.
@@ -28,6 +73,37 @@ pub fn products_of_intervals<const LANES: usize>(
 }
 
 // Not as closures: those of this size would be called and not compiled anew for wide registers.
+struct RowsTimes<'a> {
+    a: &'a [f64],
+    x: &'a [f64],
+    out: &'a mut [f64],
+}
+
+impl WithSimd for RowsTimes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let rows = self.a.chunks_exact(self.x.len());
+        self.out.iter_mut().zip(rows).for_each(|(out, row)| *out = sum_of_products(row, self.x));
+    }
+}
+
+struct AddRows<'a> {
+    a: &'a [f64],
+    x: &'a [f64],
+    y: &'a mut [f64],
+}
+
+impl WithSimd for AddRows<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        add_columns(self.a, self.y.len(), self.x, self.y);
+    }
+}
+
 struct Products<'a, const LANES: usize> {
     rows: &'a [f64],
     columns: &'a [[f64; LANES]],

@@ -23,10 +23,10 @@ pub use modal::ModalTruncation;
 pub use ritz::Ritz;
 pub use stretched::{Share, Stretch, StretchedPlate};
 
-use crate::vector::add_columns;
 use fem_core::functional::Functional;
 use fem_core::reduction::ReductionError;
 use fem_core::structure::{SolveError, Structure};
+use fem_core::vectorised::add_columns;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SymmetricEigen};
 use pulp::{Arch, Simd, WithSimd};
 

@@ -2,7 +2,7 @@
 
 use super::{CellAnswer, LawfulPly, MOST_LEVELS, Through, lagrange};
 use crate::contracts::element::Slice;
-use crate::words::tensor::Strain6;
+use crate::words::tensor::{Ply, Strain6};
 use std::ops::Range;
 
 /// Both faces of plies that break as one.
@@ -51,10 +51,10 @@ impl CellAnswer {
             shared.resize(row * (plies.len() + self.faces.len() + 1), 0.0);
             let (means, rest) = shared.split_at_mut(row * plies.len());
             let (tops, here) = rest.split_at_mut(row * self.faces.len());
-            let mut add = |ply: &LawfulPly, strain: &[f64; 6], old: &[f64], weight: f64, sums: &mut [f64]| {
+            let mut add = |ply: &LawfulPly, strain: &Strain6<Ply>, old: &[f64], weight: f64, sums: &mut [f64]| {
                 let here = &mut here[..ply.law.means()];
                 here.fill(0.0);
-                ply.law.quantities(&ply.point(length), &Strain6::new(*strain), old, here);
+                ply.law.quantities(&ply.point(length), strain, old, here);
                 sums.iter_mut().zip(here).for_each(|(sum, q)| *sum += weight * *q);
             };
             let (mut strains, mut on_faces) = (self.own.iter(), self.on_faces.iter());

@@ -2,14 +2,15 @@
 
 mod means;
 
-use crate::contracts::element::{Cell, Element, ElementError, ElementInfo, Slice, add_product, form, positive};
+use crate::contracts::element::{Cell, Element, ElementError, ElementInfo, Slice, form, positive};
 use crate::contracts::ply_law::{LawPoint, PlyLaw, PlyResponse, check_law};
 use crate::plates::laminate::Laminate;
 use crate::plates::plate::Plate;
 use crate::words::energy::Energy;
 use crate::words::material::{Material, MaterialError};
 use crate::words::quadrature::gauss_legendre;
-use crate::words::tensor::{Matrix6, Strain6, apply, multiply, strain_rotation, transpose};
+use crate::words::tensor::{Matrix6, Ply, Strain6, Stress6, apply, multiply, strain_rotation, transpose};
+use crate::words::vectorised::{add_rows, rows_times};
 use means::{Faces, faces, wanted};
 use std::fmt;
 use std::ops::Range;
@@ -35,6 +36,8 @@ struct LawfulPly {
     stiffness: Matrix6,
     /// Strain in the plate's frame to strain in the ply's.
     rotation: Matrix6,
+    /// Stress in the ply's frame to stress in the plate's.
+    back: Matrix6,
     /// Of the ply and of those about it that are alike, m.
     thickness: f64,
     /// The slices of its layer that break as one: those about it that are alike, or itself alone.
@@ -108,17 +111,20 @@ pub struct CellAnswer {
     pub energy: Energy,
     /// Mean stress of each ply that follows a law, its own axes, Pa, and the volume, m³; by slice.
     pub means: Vec<([f64; 6], f64)>,
-    new: Vec<f64>,
-    product: Vec<f64>,
+    /// The states that are left.
+    pub states: Vec<f64>,
     /// What laws want the means of: by slice, as many of each, those of faces next, with the volume behind them.
     shared: Vec<f64>,
     /// Of all points at which laws are asked, and of the faces that they want, in the axes of their plies.
-    own: Vec<[f64; 6]>,
-    on_faces: Vec<[f64; 6]>,
+    own: Vec<Strain6<Ply>>,
+    on_faces: Vec<Strain6<Ply>>,
     /// Of the levels at an in-plane point, six each; stresses weighted, moduli between all pairs.
     strains: Vec<f64>,
     stresses: Vec<f64>,
     moduli: Vec<f64>,
+    /// Of the points through a ply.
+    responses: Vec<PlyResponse>,
+    tangents: Vec<Matrix6>,
     through: Vec<Through>,
     faces: Vec<Faces>,
 }
@@ -128,7 +134,7 @@ pub struct CellAnswer {
 pub struct CellOperators {
     /// Jacobian times weight of each in-plane point.
     weights: Vec<f64>,
-    /// Of all levels at each in-plane point, `6 levels × ndof`.
+    /// Of all levels at each in-plane point, `6 levels × ndof`, row by row.
     operators: Vec<f64>,
 }
 
@@ -150,8 +156,8 @@ impl CellOperators {
             let mut jacobian = 0.0;
             for (k, (q, _)) in levels.iter().enumerate() {
                 jacobian = positive(element.strain_operator(cell, 0, [r, s, *q], &mut operator))?;
-                for (b, all) in operator.chunks_exact(6).zip(all.chunks_exact_mut(rows)) {
-                    all[6 * k..6 * k + 6].copy_from_slice(b);
+                for (j, b) in operator.chunks_exact(6).enumerate() {
+                    all[6 * k * n..6 * (k + 1) * n].chunks_exact_mut(n).zip(b).for_each(|(row, b)| row[j] = *b);
                 }
             }
             found.weights.push(jacobian * w);
@@ -227,7 +233,8 @@ impl PlyLaws {
             let (stiffness, rotation) = (material.elastic.stiffness(), strain_rotation(ply.angle));
             let within = alike.start.max(layer.start) - layer.start..alike.end.min(layer.end) - layer.start;
             let group = if law.faces() { within } else { slice..slice + 1 };
-            Some(LawfulPly { name, law, material, stiffness, rotation, thickness, group })
+            let back = transpose(&rotation);
+            Some(LawfulPly { name, law, material, stiffness, rotation, back, thickness, group })
         };
         let layers = (0..laminate.layers.len()).map(|layer| laminate.plies_of(layer));
         let plies: Vec<Vec<_>> = layers.map(|layer| layer.clone().map(|ply| lawful(ply, &layer)).collect()).collect();
@@ -389,17 +396,11 @@ impl PlyLaws {
         if self.beyond[quad] { &self.none[layer] } else { &self.plies[layer] }
     }
 
-    /// The answer of a cell; with its tangent where that is wanted, with the states that are left where `new` has room for them.
+    /// The answer of a cell; with its tangent where that is wanted.
     ///
     /// # Errors
     /// A folded cell, a law that finds no stress.
-    pub fn respond(
-        &self,
-        asked: Asked<'_>,
-        new: Option<&mut [f64]>,
-        tangent: bool,
-        answer: &mut CellAnswer,
-    ) -> Result<(), ElementError> {
+    pub fn respond(&self, asked: Asked<'_>, tangent: bool, answer: &mut CellAnswer) -> Result<(), ElementError> {
         let Asked { plate, element, cell, operators, u, stretched, states } = asked;
         let (view, plies) = (plate.cell(cell), self.of(plate, cell));
         let element = form(element, view.corners.domain());
@@ -423,14 +424,13 @@ impl PlyLaws {
         let each = shared.len() / plies.len();
         for (number, (dv, operators)) in points() {
             answer.begin();
-            for k in 0..answer.through.len() {
-                let slice = answer.through[k].slice;
-                let Some(ply) = &plies[slice] else { continue };
+            for (slice, ply) in plies.iter().enumerate() {
+                let Some(ply) = ply else { continue };
                 let means = &shared[slice * each..][..wanted(ply)];
                 let point = LawPoint { means, ..ply.point(length) };
-                let count = ply.law.info().state.len();
-                answer.ask(ply, &point, (place, k), *dv, (&states[at..at + count], at))?;
-                (at, place) = (at + count, place + 1);
+                let count = ply.law.info().state.len() * levels.len();
+                answer.ask(ply, &point, (place, levels.len()), *dv, (&states[at..at + count], at))?;
+                (at, place) = (at + count, place + levels.len());
             }
             answer.add(operators, n);
             stretched.iter().for_each(|patterns| answer.work(patterns, number));
@@ -438,9 +438,6 @@ impl PlyLaws {
         answer.shared = shared;
         for (mean, volume) in answer.means.iter_mut().filter(|(_, volume)| *volume > 0.0) {
             mean.iter_mut().for_each(|s| *s /= *volume);
-        }
-        if let Some(new) = new {
-            new.copy_from_slice(&answer.new);
         }
         Ok(())
     }
@@ -452,8 +449,7 @@ impl CellAnswer {
         for (all, size) in [
             (&mut self.force, n),
             (&mut self.tangent, if tangent { n * n } else { 0 }),
-            (&mut self.new, states),
-            (&mut self.product, rows * n),
+            (&mut self.states, states),
             (&mut self.strains, rows),
             (&mut self.stresses, rows),
             (&mut self.moduli, moduli),
@@ -470,11 +466,7 @@ impl CellAnswer {
 
     /// Takes the strains of the levels at an in-plane point.
     fn strain(&mut self, operators: &[f64], u: &[f64]) {
-        let strains = &mut self.strains;
-        strains.fill(0.0);
-        for (b, u) in operators.chunks_exact(strains.len()).zip(u) {
-            strains.iter_mut().zip(b).for_each(|(e, b)| *e += b * u);
-        }
+        rows_times(operators, u, &mut self.strains);
     }
 
     /// Adds the strains of patterns at an in-plane point.
@@ -497,7 +489,7 @@ impl CellAnswer {
             for (level, share) in strains.chunks_exact(6).zip(shares) {
                 strain.iter_mut().zip(level).for_each(|(sum, e)| *sum += *share * e);
             }
-            Some(apply(&ply.rotation, &strain))
+            Some(Strain6::new(apply(&ply.rotation, &strain)))
         };
         own.extend(through.iter().filter_map(|Through { slice, shares, .. }| strain(*slice, shares)));
         for Faces { group, shares, .. } in faces {
@@ -522,40 +514,43 @@ impl CellAnswer {
         }
     }
 
-    /// Asks the law of a ply at the point `place` of all, the `k`th through the thickness; `old` are its states, from the place `at` on.
+    /// Asks the law of a ply at the `count` points through it from `place` of all on; `old` are its states there, from the place `at` on.
     fn ask(
         &mut self,
         ply: &LawfulPly,
         point: &LawPoint<'_>,
-        (place, k): (usize, usize),
+        (place, count): (usize, usize),
         dv: f64,
         (old, at): (&[f64], usize),
     ) -> Result<(), ElementError> {
-        let Through { slice, weight, shares } = self.through[k];
-        let weight = dv * weight;
-        let strain = self.own[place];
-        let mut modulus = [[0.0; 6]; 6];
-        let wanted = (!self.moduli.is_empty()).then_some(&mut modulus);
-        let new = &mut self.new[at..at + old.len()];
-        let PlyResponse { stress, energy } = ply
-            .law
-            .respond(point, &Strain6::new(strain), old, new, wanted)
+        let (strains, new) = (&self.own[place..place + count], &mut self.states[at..at + old.len()]);
+        let silent = PlyResponse { stress: Stress6::new([0.0; 6]), energy: Energy::default() };
+        self.responses.resize(count, silent);
+        self.tangents.resize(if self.moduli.is_empty() { 0 } else { count }, [[0.0; 6]; 6]);
+        let first = place % self.through.len();
+        let slice = self.through[first].slice;
+        ply.law
+            .respond_all(point, strains, (old, new), &mut self.responses, &mut self.tangents)
             .map_err(|why| ElementError(format!("ply {} of the layer: {why}", slice + 1)))?;
-        let linear = apply(&ply.stiffness, &strain);
-        let elastic: f64 = linear.iter().zip(strain).map(|(s, e)| 0.5 * s * e).sum();
-        self.energy.stored += weight * (energy.stored - elastic);
-        self.energy.dissipated += weight * energy.dissipated;
-        let (mean, volume) = &mut self.means[slice];
-        *volume += weight;
-        mean.iter_mut().zip(stress.0).for_each(|(m, s)| *m += weight * s);
-        let back = transpose(&ply.rotation);
-        let beyond = apply(&back, &std::array::from_fn(|i| stress.0[i] - linear[i]));
-        for (share, level) in shares.iter().zip(self.stresses.chunks_exact_mut(6)) {
-            level.iter_mut().zip(beyond).for_each(|(s, b)| *s += weight * share * b);
-        }
-        if !self.moduli.is_empty() {
-            let beyond = std::array::from_fn(|i| std::array::from_fn(|j| modulus[i][j] - ply.stiffness[i][j]));
-            self.add_modulus(&multiply(&back, &multiply(&beyond, &ply.rotation)), &shares, weight);
+        for k in 0..count {
+            let Through { weight, shares, .. } = self.through[first + k];
+            let (weight, strain) = (dv * weight, self.own[place + k].0);
+            let PlyResponse { stress, energy } = self.responses[k];
+            let linear = apply(&ply.stiffness, &strain);
+            let elastic: f64 = linear.iter().zip(strain).map(|(s, e)| 0.5 * s * e).sum();
+            self.energy.stored += weight * (energy.stored - elastic);
+            self.energy.dissipated += weight * energy.dissipated;
+            let (mean, volume) = &mut self.means[slice];
+            *volume += weight;
+            mean.iter_mut().zip(stress.0).for_each(|(m, s)| *m += weight * s);
+            let beyond = apply(&ply.back, &std::array::from_fn(|i| stress.0[i] - linear[i]));
+            for (share, level) in shares.iter().zip(self.stresses.chunks_exact_mut(6)) {
+                level.iter_mut().zip(beyond).for_each(|(s, b)| *s += weight * share * b);
+            }
+            if let Some(modulus) = self.tangents.get(k) {
+                let beyond = std::array::from_fn(|i| std::array::from_fn(|j| modulus[i][j] - ply.stiffness[i][j]));
+                self.add_modulus(&multiply(&ply.back, &multiply(&beyond, &ply.rotation)), &shares, weight);
+            }
         }
         Ok(())
     }
@@ -577,18 +572,16 @@ impl CellAnswer {
 
     /// Adds what stresses and moduli of the levels are worth to force and tangent.
     fn add(&mut self, operators: &[f64], n: usize) {
-        let rows = self.stresses.len();
-        let Self { force, tangent, product, stresses, moduli, .. } = self;
-        for (f, b) in force.iter_mut().zip(operators.chunks_exact(rows)) {
-            *f += b.iter().zip(&*stresses).map(|(b, s)| b * s).sum::<f64>();
-        }
-        if !moduli.is_empty() {
-            for (product, b) in product.chunks_exact_mut(rows).zip(operators.chunks_exact(rows)) {
-                for (p, row) in product.iter_mut().zip(moduli.chunks_exact(rows)) {
-                    *p = row.iter().zip(b).map(|(m, b)| m * b).sum();
-                }
+        let Self { force, tangent, stresses, moduli, .. } = self;
+        add_rows(operators, stresses, force);
+        let rows = stresses.len();
+        let mut product = [0.0; 6 * MOST_LEVELS];
+        // Of a tangent that nobody asked for there is no column.
+        for (j, column) in tangent.chunks_exact_mut(n).enumerate() {
+            for (product, moduli) in product.iter_mut().zip(moduli.chunks_exact(rows)) {
+                *product = moduli.iter().zip(operators.chunks_exact(n)).map(|(m, row)| m * row[j]).sum();
             }
-            add_product(tangent, operators, product, rows, n);
+            add_rows(operators, &product[..rows], column);
         }
     }
 }

@@ -324,7 +324,7 @@ impl Recovery {
                 let strains = tension.map(|tension| tension.of_cell(plate, element, cell));
                 let stretched = strains.as_ref().map(|strains| Patterns { strains, amounts: &[1.0] });
                 let asked = Asked { plate, element, cell, operators: &operators, u: &local, stretched, states };
-                laws.respond(asked, None, false, &mut answer)?;
+                laws.respond(asked, false, &mut answer)?;
                 means.push(answer.means.clone());
             }
         }

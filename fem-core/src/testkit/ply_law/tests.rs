@@ -13,6 +13,8 @@ struct Yielding {
     /// Hardening modulus, Pa.
     hardening: f64,
     spoil: fn(&mut Answer),
+    /// What is wrong, relative, where it is asked about several points.
+    several: f64,
     /// Has seen a large strain, which no law may remember.
     seen: AtomicBool,
 }
@@ -28,7 +30,7 @@ struct Answer<'a> {
 
 impl Clone for Yielding {
     fn clone(&self) -> Self {
-        Self { hardening: self.hardening, spoil: self.spoil, seen: AtomicBool::new(false) }
+        Self { hardening: self.hardening, spoil: self.spoil, several: self.several, seen: AtomicBool::new(false) }
     }
 }
 
@@ -73,9 +75,29 @@ impl PlyLaw for Yielding {
         (self.spoil)(&mut answer);
         Ok(answer.response)
     }
+
+    fn respond_all(
+        &self,
+        point: &LawPoint<'_>,
+        strains: &[Strain6<Ply>],
+        (old, new): (&[f64], &mut [f64]),
+        answers: &mut [PlyResponse],
+        tangents: &mut [Matrix6],
+    ) -> Result<(), LawError> {
+        let (states, mut tangents) = (old.chunks_exact(3).zip(new.chunks_exact_mut(3)), tangents.iter_mut());
+        for ((strain, answer), (old, new)) in strains.iter().zip(answers).zip(states) {
+            *answer = self.respond(point, strain, old, new, tangents.next())?;
+            new[1] *= 1.0 + self.several;
+        }
+        Ok(())
+    }
 }
 
 fn check(spoil: fn(&mut Answer)) -> Result<(), String> {
+    check_of_several(spoil, 0.0)
+}
+
+fn check_of_several(spoil: fn(&mut Answer), several: f64) -> Result<(), String> {
     let tape = Material {
         name: "tape".into(),
         elastic: Elastic::transversely_isotropic(130e9, 9e9, 0.3, 0.4, 5e9),
@@ -87,7 +109,7 @@ fn check(spoil: fn(&mut Answer)) -> Result<(), String> {
     };
     let make = |units: &Units| -> Box<dyn PlyLaw> {
         let hardening = units.number(1e9, Dimension::PRESSURE);
-        Box::new(Yielding { hardening, spoil, seen: AtomicBool::new(false) })
+        Box::new(Yielding { hardening, spoil, several, seen: AtomicBool::new(false) })
     };
     check_ply_law(make, &tape, 1e-3, &[0.01, 0.01, 0.01, 0.02, 0.02, 0.02])
 }
@@ -99,6 +121,8 @@ fn a_sound_law_passes() {
 
 #[test]
 fn faults_are_found() {
+    let said = check_of_several(|_| (), 1e-15).expect_err("other states");
+    assert!(said.contains("two points at once"), "{said}");
     for (want, spoil) in [
         ("a virgin point without strain", (|a| a.response.stress.0[1] += 1e3) as fn(&mut Answer<'_>)),
         ("asked twice", |a| a.response.stress.0[3] *= if a.tangent.is_some() { 1.0 + 1e-12 } else { 1.0 }),

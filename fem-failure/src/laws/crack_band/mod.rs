@@ -248,12 +248,9 @@ impl CrackBand {
         let [g, _, g13] = modes.solid.g;
         match self.yielding(modes) {
             Some(yielding) => old.permanent.shear(&yielding, g, strain),
-            None => Sheared {
-                t: [g * strain[0], g13 * strain[1]],
-                tangent: [[g, 0.0], [0.0, g13]],
-                left: old.permanent,
-                lost: 0.0,
-            },
+            None => {
+                Sheared { t: [g * strain[0], g13 * strain[1]], tangent: [[g, 0.0], [0.0, g13]], left: old.permanent }
+            }
         }
     }
 }
@@ -384,31 +381,61 @@ impl PlyLaw for CrackBand {
         new: &mut [f64],
         tangent: Option<&mut Matrix6>,
     ) -> Result<PlyResponse, LawError> {
-        let (modes, old) = (self.modes(point), Memory::read(old));
+        Ok(self.answer(&self.modes(point), point, strain, (old, new), tangent))
+    }
+
+    fn respond_all(
+        &self,
+        point: &LawPoint<'_>,
+        strains: &[Strain6<Ply>],
+        (old, new): (&[f64], &mut [f64]),
+        answers: &mut [PlyResponse],
+        tangents: &mut [Matrix6],
+    ) -> Result<(), LawError> {
+        let (modes, count, mut tangents) = (self.modes(point), self.info().state.len(), tangents.iter_mut());
+        let states = old.chunks_exact(count).zip(new.chunks_exact_mut(count));
+        for ((strain, answer), states) in strains.iter().zip(answers).zip(states) {
+            *answer = self.answer(&modes, point, strain, states, tangents.next());
+        }
+        Ok(())
+    }
+}
+
+impl CrackBand {
+    fn answer(
+        &self,
+        modes: &Modes,
+        point: &LawPoint<'_>,
+        strain: &Strain6<Ply>,
+        (old, new): (&[f64], &mut [f64]),
+        tangent: Option<&mut Matrix6>,
+    ) -> PlyResponse {
+        let old = Memory::read(old);
         let e = &strain.0;
-        let sheared = self.sheared(&modes, &old, [e[3], e[5]]);
+        let sheared = self.sheared(modes, &old, [e[3], e[5]]);
         let t = [sheared.t[0], modes.solid.g[1] * e[4], sheared.t[1]];
-        let found = Found::new(&modes, &[e[0], e[1], e[2]], t, &modes.begun(&old.damage), point.stiffness);
+        let found = Found::new(modes, &[e[0], e[1], e[2]], t, &modes.begun(&old.damage), point.stiffness);
         let (damage, state) = (found.damage, found.state());
         let [left, left_before] = [damage, old.damage].map(|d| modes.shears_left(&d));
         let mut lost = old.lost;
         if damage != old.damage {
-            let more = released(&modes, [&old.damage, &damage], [&old.state, &state]);
+            let more = released(modes, [&old.damage, &damage], [&old.state, &state]);
             lost.iter_mut().zip(more).for_each(|(lost, more)| *lost += more);
         }
         if sheared.left.way > old.permanent.way {
-            let before = self.yielding(&modes).map_or(0.0, |yielding| yielding.lost(old.permanent.way));
+            let [before, after] = [old.permanent.way, sheared.left.way]
+                .map(|way| self.yielding(modes).map_or(0.0, |yielding| yielding.lost(way)));
             // Shears yield in the proportion of their stresses.
             let [along, _, through] = t.map(|t| t * t);
             let of = |k: usize| 0.5 * (left[k] + left_before[k]);
-            lost[YIELDING] += (along * of(0) + through * of(2)) / (along + through) * (sheared.lost - before);
+            lost[YIELDING] += (along * of(0) + through * of(2)) / (along + through) * (after - before);
         }
         let normal: [f64; 3] = std::array::from_fn(|i| found.effective.left[i] * state.h[i]);
         let stored = 0.5 * (0..3).map(|i| normal[i] * e[i]).sum::<f64>();
         let stored = stored + modes.relieved(&state, &left);
         if let Some(tangent) = tangent {
             *tangent =
-                if damage == [0.0; 4] { *point.stiffness } else { found.tangent(&modes, &left, &sheared.tangent) };
+                if damage == [0.0; 4] { *point.stiffness } else { found.tangent(modes, &left, &sheared.tangent) };
             for (i, row) in [(0, 3), (1, 5)] {
                 if damage == [0.0; 4] {
                     tangent[row][3] = sheared.tangent[i][0];
@@ -419,11 +446,9 @@ impl PlyLaw for CrackBand {
         Memory { damage, lost, state, permanent: sheared.left }.write(new);
         let [t12, t23, t13] = std::array::from_fn(|k| left[k] * t[k]);
         let stress = Stress6::new([normal[0], normal[1], normal[2], t12, t23, t13]);
-        Ok(PlyResponse { stress, energy: Energy { stored, dissipated: lost.iter().sum() } })
+        PlyResponse { stress, energy: Energy { stored, dissipated: lost.iter().sum() } }
     }
-}
 
-impl CrackBand {
     /// Widest cell in which compression across the fibres has one answer with all other strains held:
     /// κ < (C22 − ρ C23)/E2, ρ = (3r − 1)/(r + 1), r = (Yc/2 S23)².
     fn unique_compression(point: &LawPoint<'_>) -> f64 {

@@ -38,8 +38,6 @@ pub(super) struct Sheared {
     pub(super) t: [f64; 2],
     pub(super) tangent: [[f64; 2]; 2],
     pub(super) left: Permanent,
-    /// Energy lost on the way so far, undamaged, J/m³.
-    pub(super) lost: f64,
 }
 
 impl Permanent {
@@ -53,7 +51,7 @@ impl Permanent {
         let beyond = if curving { alpha * (g * size).powi(3) > self.way } else { on && g * size > strength };
         if !beyond {
             let tangent = [[g, 0.0], [0.0, g]];
-            return Sheared { t: elastic.map(|e| g * e), tangent, left: *self, lost: yielding.lost(self.way) };
+            return Sheared { t: elastic.map(|e| g * e), tangent, left: *self };
         }
         let direction = elastic.map(|e| e / size);
         let curved = shear::on_curve(alpha, g, size + self.way);
@@ -70,6 +68,6 @@ impl Permanent {
             [0, 1].map(|j| direction[i] * direction[j] * (slope - across) + if i == j { across } else { 0.0 })
         });
         let left = [0, 1].map(|k| self.left[k] + (way - self.way) * direction[k]);
-        Sheared { t: direction.map(|d| stress * d), tangent, left: Permanent { left, way }, lost: yielding.lost(way) }
+        Sheared { t: direction.map(|d| stress * d), tangent, left: Permanent { left, way } }
     }
 }
