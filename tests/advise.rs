@@ -497,7 +497,7 @@ fn a_linear_run_says_when_it_left_its_limits() {
     assert!(warning.contains("A = 0.443") && warning.contains("membrane = \"on\""), "{warning}");
     assert!(summary.advised.is_empty());
     // Between the rows, where w/h is √(0.05/0.443).
-    let found = hindsight(&model, &outcome.contacts, THRESHOLD).unwrap();
+    let found = hindsight(&model, &outcome.contacts, None, THRESHOLD).unwrap();
     let since = found.since.unwrap();
     let after = outcome.history.iter().position(|row| row.time_s > since).unwrap();
     let over = |row: usize| 0.443 * (outcome.history[row].impactors[0].plate_displacement_m / 1e-3).powi(2);

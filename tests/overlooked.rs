@@ -387,6 +387,76 @@ fn strengths_in_another_unit() {
     holds(&said(&weak, 0), &["material `tape`: Yt = 0.06 Pa is none of a solid"]);
 }
 
+#[test]
+fn an_expansion_without_its_e_6() {
+    let expands = |alpha: &str| {
+        let library = format!("library = \"AS4/3502\", alpha1 = \"-0.5e-6 1/K\", alpha2 = \"{alpha} 1/K\"");
+        said(
+            &case(&format!("{CLAMPED}\nload = [{{ pressure = \"1 kPa\" }}]")).scene("library = \"AS4/3502\"", &library),
+            0,
+        )
+    };
+    holds(&expands("28"), &["material `tape`: a thermal expansion of 28 1/K is none of a solid"]);
+    assert!(!expands("28e-6").contains("expansion"));
+}
+
+/// Plies of one angle are one thick ply where they are of one material.
+#[test]
+fn one_material_under_two_names() {
+    let named = |plies: &str, other: &str| {
+        let tapes = format!(
+            "materials.tape = {{ library = \"AS4/3502\" }}\nmaterials.other = {{ library = \"AS4/3502\"{other} }}"
+        );
+        let clamped = case(&format!("{CLAMPED}\nload = [{{ pressure = \"1 kPa\" }}]"));
+        let clamped = clamped.scene("materials.tape = { library = \"AS4/3502\" }", &tapes);
+        let plies = format!("plies = \"{plies}\", ply = {{ b = {{ material = \"other\" }} }}");
+        said(&clamped.scene("plies = \"[0/90]s\"", &plies), 0)
+    };
+    const SAME: &str = "materials `tape` and `other` have the same constants";
+    holds(&named("[0/90/90{b}/0]", ""), &[SAME, "give both one name"]);
+    for (plies, other) in [("[0/90/0{b}/90]", ""), ("[0/90/90{b}/0]", ", Yt = \"50 MPa\"")] {
+        assert!(!named(plies, other).contains(SAME), "{plies} {other}");
+    }
+}
+
+/// A clamped plate that is cooled in its frame, or pressed along an edge, computed for small displacements: what is left out, against the deflection
+/// that a plate without that has under a small pressure.
+#[test]
+fn stresses_in_the_plane_of_a_linear_plate() {
+    let share = |cure: &str, more: &str| {
+        let text = format!(
+            "title = 'framed'\nanalysis = 'static'\nmesh = {{ rectangle = ['100 mm', '100 mm'], cells = [8, 8] }}\nelement = {{ kind = 'mitc4' }}\n\
+             laminate = {{ plies = '[0]', material = 'al', ply_thickness = '1 mm' }}\noutput = {{ plots = false }}\n\
+             support = [{}]\nload = [{{ pressure = '10 Pa' }}{more}]\n{cure}\n\
+             [materials.al]\ne = '70 GPa'\nnu = 0.3\nalpha = '23e-6 1/K'\n",
+            ["x-min", "x-max", "y-min", "y-max"]
+                .map(|edge| format!("{{ group = '{edge}', kind = 'clamped' }}"))
+                .join(", ")
+        );
+        let case = plate().text(&text);
+        let deflection = |set: &str| {
+            case.fem("run", &["--out", "out", "--set", set]).good();
+            let summary = case.summary("out");
+            let said = summary["warnings"].to_string();
+            (summary["largest_deflection"]["w_m"].as_f64().unwrap(), said)
+        };
+        let ((linear, said), (true_one, stiffened)) =
+            (deflection("effects.membrane=off"), deflection("effects.membrane=on"));
+        assert!(!stiffened.contains("stiffness against this deflection"), "{stiffened}");
+        let percent = said.split("would ").nth(1).map(|rest| {
+            let sign = if rest.starts_with("take") { 1.0 } else { -1.0 };
+            sign * rest.split(" some ").nth(1).unwrap().split(' ').next().unwrap().parse::<f64>().unwrap()
+        });
+        (percent, 100.0 * (1.0 - linear / true_one))
+    };
+    for by in [-20, -5, 5] {
+        let (said, left_out) = share(&format!("effects = {{ cure = '{by} K' }}"), "");
+        let said = said.unwrap_or_default();
+        assert!((said - left_out).abs() < 0.1 * left_out.abs(), "{by} K: {said} and {left_out}");
+    }
+    assert_eq!(share("", "").0, None);
+}
+
 /// Damping that stops the plate like honey, and cooling that no ply survives.
 #[test]
 fn sizes_of_effects_that_no_laminate_has() {

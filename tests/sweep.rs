@@ -82,6 +82,23 @@ fn rows_are_runs_to_the_bit() {
     assert!(rows[0]["damage_force_N"].parse::<f64>().unwrap() < rows[2]["damage_force_N"].parse::<f64>().unwrap());
 }
 
+/// Strengths in situ follow from those that a case has.
+#[test]
+fn strengths_in_situ_follow_those_of_a_case() {
+    let tough = "library = \"AS4/3502\", GIc = \"0.1 N/mm\", GIIc = \"0.6 N/mm\", shear_alpha = \"0 1/MPa^3\" }";
+    let case =
+        quick().scene("[laminate]", "[laminate]\nstrengths = \"in-situ\"").scene("library = \"AS4/3502\" }", tough);
+    let values = ["300 MPa", "900 MPa"];
+    case.fem("sweep", &["--set", &format!("materials.as4-3502.Xc={}", values.join(",")), "--out", "both"]).good();
+    let column = "hashin-report fibre compression index";
+    for (value, row) in values.iter().zip(rows(&case, "both")) {
+        case.fem("sweep", &["--set", &format!("materials.as4-3502.Xc={value}"), "--out", "alone"]).good();
+        assert_eq!(row[column], rows(&case, "alone")[0][column], "{value}");
+    }
+    let [weak, strong] = [0, 1].map(|k| rows(&case, "both")[k][column].parse::<f64>().unwrap());
+    assert!(weak > 2.0 * strong, "{weak} and {strong}");
+}
+
 /// Parts that are gathered, a sweep that goes on and one in one piece make the same table; `show` runs a case of it.
 #[test]
 fn parts_and_what_goes_on_make_the_same_table() {

@@ -66,7 +66,8 @@ fn at_rest(model: &Model, forces: &[f64], threads: NonZeroUsize) -> Result<Expec
     let nodal: Vec<(usize, f64)> = forces.iter().copied().enumerate().filter(|(_, force)| *force != 0.0).collect();
     let mut load = vec![0.0; model.constraints.ndof()];
     Functional(model.constraints.restrict(&nodal)).add_to(1.0, &mut load);
-    let independent = AtRest::of(model, &[], threads)?.displacements(&load)?;
+    let mut plate_at_rest = AtRest::of(model, &[], threads)?;
+    let independent = plate_at_rest.displacements(&load)?;
     let plate = &model.plate;
     let mut u = vec![0.0; plate.ndof()];
     model.constraints.expand(&independent, &mut u);
@@ -78,7 +79,7 @@ fn at_rest(model: &Model, forces: &[f64], threads: NonZeroUsize) -> Result<Expec
     let largest = vertices.map(|column| (column, deflection(column))).max_by(|a, b| a.1.total_cmp(&b.1));
     let coefficient = |column: usize| {
         let held = Rim::around(model, plate.columns[column])?.held?;
-        Some(held.coefficient())
+        Some(held.coefficient_beside(plate_at_rest.buckling()))
     };
     let thickness = model.laminate.thickness();
     let Some((column, deflection)) = largest else { return Ok(Expected { thickness, ..Expected::default() }) };

@@ -21,6 +21,11 @@ impl Held {
         }
     }
 
+    /// The same beside the share of its buckling load that a plate carries already, if it is one: that takes as much of Kb and nothing of Km.
+    pub fn coefficient_beside(self, buckling: Option<f64>) -> f64 {
+        self.coefficient() / (1.0 - buckling.unwrap_or(0.0).max(0.0))
+    }
+
     /// Kb of a circle of radius a under a force in its middle, N/m: 16 π D/a², for a simple support times (1 + ν)/(3 + ν).
     pub fn circle_stiffness(self, bending_stiffness: f64, poisson: f64, radius: f64) -> f64 {
         let clamped = 16.0 * std::f64::consts::PI * bending_stiffness / (radius * radius);

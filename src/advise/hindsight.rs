@@ -6,12 +6,17 @@ use crate::effect::Hindsight;
 use crate::model::{Model, Plan};
 
 /// How far a run of `model` went beyond a linear plate, and when A (w/h)² passed `threshold`: of the impactor under which the
-/// plate went farthest; `None` where supports do not surround it.
-pub fn hindsight(model: &Model, contacts: &[ContactRecord], threshold: f64) -> Option<Hindsight> {
+/// plate went farthest, beside the share of its `buckling` load that it carries; `None` where supports do not surround it.
+pub fn hindsight(
+    model: &Model,
+    contacts: &[ContactRecord],
+    buckling: Option<f64>,
+    threshold: f64,
+) -> Option<Hindsight> {
     let Plan::Impact(impact) = &model.plan else { return None };
     let each = impact.strikes.iter().zip(contacts).filter_map(|(strike, contact)| {
         let held = Rim::around(model, strike.centre)?.held?;
-        let (coefficient, thickness) = (held.coefficient(), model.thickness_at(strike.centre));
+        let (coefficient, thickness) = (held.coefficient_beside(buckling), model.thickness_at(strike.centre));
         let number = |w: f64| coefficient * w * w;
         let over: Vec<(f64, f64)> = contact.growth.iter().map(|(t, w)| (*t, w / thickness)).collect();
         let (at, deflection) = over.last().copied().unwrap_or_default();
@@ -24,9 +29,9 @@ pub fn hindsight(model: &Model, contacts: &[ContactRecord], threshold: f64) -> O
 }
 
 /// The same of a plate at rest whose largest deflection is `w` at `place`.
-pub fn hindsight_at_rest(model: &Model, w: f64, place: [f64; 2]) -> Option<Hindsight> {
+pub fn hindsight_at_rest(model: &Model, w: f64, place: [f64; 2], buckling: Option<f64>) -> Option<Hindsight> {
     let held = Rim::around(model, place)?.held?;
-    let (coefficient, deflection) = (held.coefficient(), w.abs() / model.thickness_at(place));
+    let (coefficient, deflection) = (held.coefficient_beside(buckling), w.abs() / model.thickness_at(place));
     let reached = coefficient * deflection * deflection;
     let (held, lawful) = (held.name(), model.laws.is_some());
     Some(Hindsight { reached, coefficient, held, deflection, at: None, since: None, lawful })

@@ -31,6 +31,8 @@ pub struct PlateConstants {
     /// Mass with which a plate that nothing holds under the impactor withstands its acceleration, kg; infinite of one that is
     /// held.
     pub free_mass: f64,
+    /// The preload over the one that buckles it, if one is known.
+    pub buckling: Option<f64>,
     /// What supports it.
     pub rim: Rim,
 }
@@ -43,7 +45,7 @@ impl PlateConstants {
 
     /// A of membrane stiffening; 0 where the supports do not surround the impact.
     pub fn membrane_coefficient(&self) -> f64 {
-        self.rim.held.map_or(0.0, Held::coefficient)
+        self.rim.held.map_or(0.0, |held: Held| held.coefficient_beside(self.buckling))
     }
 
     /// A (w/h)² at a deflection w.
@@ -70,6 +72,7 @@ impl PlateConstants {
             shear_stiffness: KAPPA * shear.sum::<f64>(),
             stiffness: at_rest.stiffness(model, &strike.contact)?,
             free_mass: at_rest.free_mass(&strike.contact),
+            buckling: at_rest.buckling(),
             rim,
         })
     }
@@ -115,6 +118,11 @@ impl AtRest {
         contact.add_to(1.0, &mut load);
         let u = self.displacements(&load)?;
         Ok(1.0 / load.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>())
+    }
+
+    /// The preload over the one that buckles the plate, if one is known.
+    pub(super) fn buckling(&self) -> Option<f64> {
+        self.assembled.buckling
     }
 
     pub(super) fn factor_entries(&self) -> usize {

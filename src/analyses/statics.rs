@@ -1,13 +1,13 @@
 //! Displacements, stresses and margins under loads at rest.
 
-use super::assembled::{self, Substructures};
+use super::assembled::{self, Assembled, Substructures};
 pub use super::path::{Followed, PathState};
 use super::stress::{self, Margin};
 use super::{path, supports};
 use crate::cost::{Phase, Stopwatch};
 use crate::error::Error;
 use crate::model::{Model, NamedProfile, Plan};
-use fem_core::assembly::{Equilibrium, LargePlate, LawPlate, equilibrium, pattern};
+use fem_core::assembly::{Equilibrium, LargePlate, LawPlate, Symmetric, add_geometric_stiffness, equilibrium, pattern};
 use fem_core::counters::Counters;
 use fem_core::dof::Dof;
 use fem_core::element::ElementError;
@@ -58,6 +58,9 @@ pub struct StaticSolution {
     /// Share of the work of the loads that supports of nodal values cost between the nodes, where it is worth a word
     /// ([`softness`](fem_core::assembly::softness)).
     pub softness: Option<f64>,
+    /// Share of its stiffness against this deflection that stresses in the plane, of cure or loads, take from a plate of small displacements,
+    /// negative where they add to it, if it is worth a word.
+    pub stressed: Option<f64>,
     /// Sum of the loads along x, y, z, N.
     pub resultant: [f64; 3],
     /// Per criterion, the smallest reserve factor and where.
@@ -84,6 +87,7 @@ struct Found {
     residual: f64,
     condition: Option<f64>,
     softness: Option<f64>,
+    stressed: Option<f64>,
     decrements: Option<Vec<f64>>,
     followed: Option<Followed>,
 }
@@ -104,6 +108,7 @@ impl Found {
             residual: found.residual,
             condition: found.condition,
             softness: None,
+            stressed: None,
             decrements: Some(found.decrements),
             followed: None,
         }
@@ -214,6 +219,7 @@ pub fn solve_watched(
         condition: found.condition,
         followed: found.followed,
         softness: found.softness,
+        stressed: found.stressed,
         decrements: found.decrements,
         u,
         mesh_error,
@@ -259,6 +265,7 @@ fn linear(
     let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
     let condition = assembled.structure.notable_condition()?;
     (counters.factorisations, counters.solves) = assembled.structure.work();
+    let stressed = stressed(model, &mut assembled, &independent)?;
     // ½ uᵀ K u − uᵀ f₀ + ½ ∫ ε₀ C ε₀ dV with K u = f and f₀ that of free strains.
     let stored =
         held + f.iter().zip(&own_forces).zip(&independent).map(|((f, free), u)| (0.5 * f - free) * u).sum::<f64>();
@@ -271,10 +278,42 @@ fn linear(
         residual: norm(&rest) / norm(&f).max(f64::MIN_POSITIVE),
         condition,
         softness,
+        stressed,
         decrements: None,
         followed: None,
     })
 }
+
+/// [`StaticSolution::stressed`] at `u`: with the geometric stiffness G of the stresses there, g = G u and K δ = g, −gᵀδ/gᵀu, which is the load
+/// over the one that buckles the plate where it deflects as it buckles.
+///
+/// # Errors
+/// A cell that the element refuses.
+fn stressed(model: &Model, assembled: &mut Assembled, u: &[f64]) -> Result<Option<f64>, Error> {
+    let Model { plate, element, constraints, plan, effects, .. } = model;
+    let along = |dof: usize| [1, 2].map(dof_of).contains(&plate.locate(dof).2);
+    let pulled =
+        matches!(plan, Plan::Static { forces, .. } if (0..).zip(forces).any(|(dof, f)| *f != 0.0 && along(dof)));
+    let nature = effects.nature();
+    let told = nature.large || assembled.condensation.is_some() || element.large_deflections().is_none();
+    if told || !(pulled || nature.strained) {
+        return Ok(None);
+    }
+    let mut all = vec![0.0; plate.ndof()];
+    constraints.expand(u, &mut all);
+    let mut geometric = Symmetric::zero(assembled.structure.matrices().0.pattern().clone());
+    add_geometric_stiffness(plate, &**element, constraints, &all, &mut geometric).map_err(SolveError::other)?;
+    let mut g = vec![0.0; u.len()];
+    geometric.add_product(1.0, u, &mut g);
+    let mut more = g.clone();
+    assembled.structure.solve_shifted(0.0, &mut more, 1)?;
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let share = -dot(&g, &more) / dot(&g, u);
+    Ok(Some(share).filter(|share| share.abs() > WORTH))
+}
+
+/// Share of the stiffness from which on the user should know of what a linear plate leaves out.
+const WORTH: f64 = 0.02;
 
 /// On springs that only push.
 fn lifting(
@@ -309,6 +348,7 @@ fn lifting(
         residual: norm(&rest) / norm(f).max(f64::MIN_POSITIVE),
         condition,
         softness: None,
+        stressed: None,
         decrements: None,
         followed: None,
     })
@@ -360,6 +400,7 @@ fn followed(
         residual: last.residual,
         condition: None,
         softness: None,
+        stressed: None,
         decrements: None,
         followed: Some(followed),
     })

@@ -285,6 +285,8 @@ fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Resul
     let not_looked_at = if arguments.full { Vec::new() } else { unseen(&model) };
     let plane = &model.plate.plane;
     let coarse = advise::expect_coarse_cells(&model);
+    let at_rest = arguments.full && sizes.is_none() && !model.between.is_empty();
+    let softer = at_rest.then(|| SOFTER.to_owned());
     Ok(Checked {
         title: model.origin.title.clone(),
         shape: plane.name_of_cells(),
@@ -313,6 +315,7 @@ fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Resul
         advised: Advised::of(&model, |_| None),
         warnings: (condition.and_then(warn_of_condition).into_iter())
             .chain(sizes.and_then(|sizes| sizes.softness).map(warn_of_softness))
+            .chain(softer)
             .chain(coarse)
             .chain(model.warnings)
             .collect(),
@@ -320,6 +323,8 @@ fn sizes(registry: &Registry, arguments: &Arguments, console: &Console) -> Resul
         keys,
     })
 }
+
+const SOFTER: &str = "supports or couples fix displacements at nodes, between which the plate moves; a run says how much softer it is for that";
 
 type Line = (&'static str, String);
 

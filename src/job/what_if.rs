@@ -56,6 +56,7 @@ pub fn what_if(scene: &Scene, registry: &Registry, threads: NonZeroUsize) -> Res
     };
     let prepared = plate.struck(&model)?.firsts_alone();
     let (steps, step, marched) = (prepared.sizes.steps, prepared.sizes.step, prepared.sizes.marched);
+    let buckling = prepared.sizes.buckling;
     let outcome = march(prepared, |_| ())?;
     if let Some(why) = outcome.stopped {
         return Ok((missing(&format!("its march stopped: {why}")), None));
@@ -90,7 +91,7 @@ pub fn what_if(scene: &Scene, registry: &Registry, threads: NonZeroUsize) -> Res
         law,
         strengths: strengths(&model),
         unjudged: specs().filter(|spec| !judged(spec)).map(|spec| spec.label.clone()).collect(),
-        stretch: advise::hindsight(&model, &outcome.contacts, f64::INFINITY)
+        stretch: advise::hindsight(&model, &outcome.contacts, buckling, f64::INFINITY)
             .map(|hindsight| (hindsight.coefficient, model.laminate.thickness())),
         criteria,
         plate: carried,

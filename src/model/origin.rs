@@ -1,6 +1,6 @@
 //! What a model keeps of its scene.
 
-use fem_io::scene::{Fidelity, MeshSource, Scene, SceneSource};
+use fem_io::scene::{Fidelity, LaminateSpec, MeshSource, Scene, SceneSource};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -21,6 +21,8 @@ pub struct Origin {
     pub source: Arc<SceneSource>,
     /// Every value of the scene and its preset by the path of its key, as it is written.
     pub keys: BTreeMap<String, String>,
+    /// Whether plies have strengths in situ, which follow from those of their materials.
+    pub in_situ: bool,
     /// The file of the mesh, if there is one.
     pub mesh: Option<PathBuf>,
 }
@@ -33,6 +35,7 @@ impl Origin {
             element: scene.element.name.value.clone(),
             source: Arc::clone(&scene.source),
             keys: scene.keys.clone(),
+            in_situ: scene.laminates.iter().any(LaminateSpec::is_in_situ),
             mesh: match &scene.mesh {
                 MeshSource::File { file, .. } => Some(file.value.clone()),
                 _ => None,

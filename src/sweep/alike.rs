@@ -22,6 +22,7 @@ pub(super) struct Marched {
     model: Mutex<Model>,
     criteria: Vec<NamedCriterion>,
     materials: Vec<Material>,
+    in_situ: bool,
     /// How many of its warnings are not about places of first damage.
     warnings: u64,
     /// Whether a place, by its cell and position, is one to warn of.
@@ -39,6 +40,7 @@ impl Marched {
             outcome,
             figures,
             criteria: model.criteria.clone(),
+            in_situ: model.origin.in_situ,
             materials: model.materials.clone(),
             model: Mutex::new(model),
             doubted: Mutex::default(),
@@ -62,8 +64,11 @@ impl Marched {
         Ok(Some(CaseFigures { warnings: self.warnings + doubts, ..figures }))
     }
 
-    /// With the strengths of a case; `None` where they stand in words that the whole scene is needed for.
+    /// With the strengths of a case; `None` where they stand in words that the whole scene is needed for, or others follow from them.
     fn materials(&self, axes: &[SweepAxis], values: &[String]) -> Option<Vec<Material>> {
+        if self.in_situ {
+            return None;
+        }
         let mut materials = self.materials.clone();
         for (axis, value) in axes.iter().zip(values).filter(|(axis, _)| leaves_march(&axis.key)) {
             let (_, key) = axis.key.split_once('.')?;

@@ -3,10 +3,12 @@
 use super::{EDGES, Struck, deflection, difference, force, said};
 use crate::pictures::pictures;
 use crate::support::{impact_of, plate, root};
+use fem::advise::advise;
 use fem::core::tensor::Stress6;
 use fem::io::scene;
 use fem::io::tables::HistoryRow;
 use fem::{Model, Registry};
+use std::num::NonZeroUsize;
 
 const COMPRESSED: &str = "preload = [{ group = 'x-min', force = '-8 N/mm' }, { group = 'x-max', force = '-8 N/mm' }, \
      { group = 'y-min', force = '0 N/mm' }, { group = 'y-max', force = '0 N/mm' }]";
@@ -26,6 +28,23 @@ fn tension_stiffens_and_compression_softens() {
     for outcome in [pressed, pulled] {
         assert!(outcome.energy_error < 1e-4, "the balance closes: {:e}", outcome.energy_error);
     }
+}
+
+/// A load near that of buckling takes the stiffness of bending and not that of stretching, which then counts for as much more.
+#[test]
+fn stretching_counts_for_more_near_buckling() {
+    let advised = |effects: &'static str| {
+        let advice = advise(&Struck::new(effects).model().unwrap(), NonZeroUsize::MIN).unwrap().remove(0);
+        (advice.plate.stiffness, advice.expected.coefficient, advice.plate.buckling)
+    };
+    let ((bare, a, none), (pressed, more, share)) = (advised(""), advised(COMPRESSED));
+    let share = share.unwrap();
+    assert!(none.is_none() && share > 0.1 && share < 0.9, "{share}");
+    assert!((a / more + share - 1.0).abs() < 1e-12, "{a} {more} {share}");
+    // The deflection under the impactor is not quite the shape in which it buckles.
+    let held = pressed / bare;
+    assert!((more / a * held - 1.0).abs() < 0.2, "{more} {a} {held}");
+    assert_eq!(advised(STRETCHED).1, a);
 }
 
 #[test]

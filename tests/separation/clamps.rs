@@ -34,7 +34,7 @@ fn layers_stay_together_in_a_clamp() {
 fn a_clamp_in_which_layers_may_part_is_known() {
     let text = Plate { velocity: 6.0, ..plate(CLAMPED) }.text();
     let (model, found) = impact_of(scene::parse(&text, &root().join("scene.toml")).unwrap()).unwrap();
-    let over = hindsight(&model, &found.outcome.contacts, 0.05).unwrap();
+    let over = hindsight(&model, &found.outcome.contacts, None, 0.05).unwrap();
     assert_eq!(over.held, Held { slope: true, in_plane: true }.name());
     assert!(over.reached > 0.05, "{over:?}");
 }

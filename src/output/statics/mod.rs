@@ -16,7 +16,9 @@ use crate::model::{Model, NamedProfile};
 use crate::output::preload::PreloadFigures;
 use crate::output::slopes::warn_of_slopes;
 use crate::output::summary::{Advised, hindsights};
-use crate::words::{append, append_symmetry, describe_condition, warn_of_condition, warn_of_softness};
+use crate::words::{
+    append, append_symmetry, describe_condition, warn_of_condition, warn_of_softness, warn_of_stresses,
+};
 use fem_core::plugin::Dimension;
 use fem_core::profile::{Choice, Resultants, Way};
 use serde::Serialize;
@@ -131,7 +133,8 @@ impl StaticSummary {
         });
         let path = solution.followed.as_ref().and_then(PathFigures::of);
         // What is followed through delaminations is known to be of small deflections.
-        let seen = path.is_none().then(|| hindsights(model, |_| hindsight_at_rest(model, w_m, [x_m, y_m])));
+        let seen =
+            path.is_none().then(|| hindsights(model, |_| hindsight_at_rest(model, w_m, [x_m, y_m], solution.buckling)));
         let profiles = || model.profiles.iter().zip(&solution.transverse);
         Self {
             title: model.origin.title.clone(),
@@ -166,6 +169,7 @@ impl StaticSummary {
                 .chain(solution.condition.and_then(warn_of_condition))
                 .chain(path.iter().flat_map(PathFigures::warnings))
                 .chain(solution.softness.map(warn_of_softness))
+                .chain(solution.stressed.map(warn_of_stresses))
                 .chain(profiles().flat_map(warn_of_transverse))
                 .collect(),
         }

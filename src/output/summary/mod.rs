@@ -380,7 +380,7 @@ impl ImpactSummary {
         let impact::Accuracy { step, reduction, mesh, layers, .. } = outcome.accuracy;
         let residual = reduction.and_then(|error| error.residual);
         let thickness = model.laminate.thickness();
-        let seen = hindsights(model, |threshold| hindsight(model, &outcome.contacts, threshold));
+        let seen = hindsights(model, |threshold| hindsight(model, &outcome.contacts, sizes.buckling, threshold));
         let reached = |effect: &str| Some(seen.iter().find(|seen| seen.effect == effect)?.run.reached);
         let damage = |e: &FailureEvent| DamageSummary {
             event: event_row(model, e),
