@@ -42,17 +42,6 @@ pub(crate) fn warn_of_softness(share: f64) -> String {
     )
 }
 
-/// What to say of stresses in the plane that a linear plate leaves out, of the share of its stiffness that they take.
-pub(crate) fn warn_of_stresses(share: f64) -> String {
-    let (does, percent) = (if share > 0.0 { "take" } else { "add" }, 100.0 * share.abs());
-    let buckles = if share >= 1.0 { ", and buckle it" } else { "" };
-    format!(
-        "loads or strains of cure {} in its plane a plate that is computed for small displacements: they would {does} some {percent:.0} % of its \
-         stiffness against this deflection{buckles}, which is left out; effects.membrane = \"on\" has it",
-        if share > 0.0 { "press" } else { "pull" }
-    )
-}
-
 /// A warning of a condition that leaves few digits.
 pub(crate) fn warn_of_condition(condition: f64) -> Option<String> {
     let enough = condition <= NOTABLE_CONDITION;

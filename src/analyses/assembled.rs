@@ -147,7 +147,7 @@ pub fn structure(
 }
 
 /// Factors looked at for the first that is positive: those of a shear load come in pairs of either sign.
-const FACTORS: usize = 4;
+pub(super) const FACTORS: usize = 4;
 
 /// The part that a preload is of the one that buckles the plate, whose stiffness has that of the preload, `geometric`, in it; if none of
 /// the [`FACTORS`] looked at is of that load, of the opposite one, negative; `None` where none is found.

@@ -58,9 +58,8 @@ pub struct StaticSolution {
     /// Share of the work of the loads that supports of nodal values cost between the nodes, where it is worth a word
     /// ([`softness`](fem_core::assembly::softness)).
     pub softness: Option<f64>,
-    /// Share of its stiffness against this deflection that stresses in the plane, of cure or loads, take from a plate of small displacements,
-    /// negative where they add to it, if it is worth a word.
-    pub stressed: Option<f64>,
+    /// What stresses in the plane, of cure or loads, do to a plate that is computed for small displacements, if it is worth a word.
+    pub stressed: Option<Stressed>,
     /// Sum of the loads along x, y, z, N.
     pub resultant: [f64; 3],
     /// Per criterion, the smallest reserve factor and where.
@@ -77,6 +76,15 @@ pub struct StaticSolution {
     pub phases: Vec<Phase>,
 }
 
+/// What stresses in the plane do, and a linear plate leaves out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stressed {
+    /// Share of its stiffness against this deflection that they take, negative where they add to it; `None` where it does not deflect.
+    pub takes: Option<f64>,
+    /// Part of them that buckles the plate, where that is less than all.
+    pub buckles: Option<f64>,
+}
+
 /// Displacements of the independent unknowns, and how they were found.
 struct Found {
     independent: Vec<f64>,
@@ -87,7 +95,7 @@ struct Found {
     residual: f64,
     condition: Option<f64>,
     softness: Option<f64>,
-    stressed: Option<f64>,
+    stressed: Option<Stressed>,
     decrements: Option<Vec<f64>>,
     followed: Option<Followed>,
 }
@@ -284,12 +292,12 @@ fn linear(
     })
 }
 
-/// [`StaticSolution::stressed`] at `u`: with the geometric stiffness G of the stresses there, g = G u and K δ = g, −gᵀδ/gᵀu, which is the load
-/// over the one that buckles the plate where it deflects as it buckles.
+/// [`StaticSolution::stressed`] at `u`: with the geometric stiffness G of the stresses there, g = G u and K δ = g, they take −gᵀδ/gᵀu, which is
+/// the load over the one that buckles the plate where it deflects as it buckles.
 ///
 /// # Errors
 /// A cell that the element refuses.
-fn stressed(model: &Model, assembled: &mut Assembled, u: &[f64]) -> Result<Option<f64>, Error> {
+fn stressed(model: &Model, assembled: &mut Assembled, u: &[f64]) -> Result<Option<Stressed>, Error> {
     let Model { plate, element, constraints, plan, effects, .. } = model;
     let along = |dof: usize| [1, 2].map(dof_of).contains(&plate.locate(dof).2);
     let pulled =
@@ -308,8 +316,12 @@ fn stressed(model: &Model, assembled: &mut Assembled, u: &[f64]) -> Result<Optio
     let mut more = g.clone();
     assembled.structure.solve_shifted(0.0, &mut more, 1)?;
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let share = -dot(&g, &more) / dot(&g, u);
-    Ok(Some(share).filter(|share| share.abs() > WORTH))
+    let takes = Some(-dot(&g, &more) / dot(&g, u)).filter(|share| share.abs() > WORTH);
+    let factors =
+        assembled::factors(&mut assembled.structure, &geometric, assembled::FACTORS).map(|found| found.factors);
+    let buckles = factors.unwrap_or_default().into_iter().filter(|factor| *factor > 0.0).min_by(f64::total_cmp);
+    let buckles = buckles.filter(|factor| *factor < 1.0);
+    Ok((takes.is_some() || buckles.is_some()).then_some(Stressed { takes, buckles }))
 }
 
 /// Share of the stiffness from which on the user should know of what a linear plate leaves out.

@@ -9,16 +9,14 @@ pub use path::PathFigures;
 
 use crate::advise::hindsight_at_rest;
 use crate::analyses::assembled::Substructures;
-use crate::analyses::statics::{StaticSolution, dof_of};
+use crate::analyses::statics::{StaticSolution, Stressed, dof_of};
 use crate::analyses::stress::Margin;
 use crate::cost::Cost;
 use crate::model::{Model, NamedProfile};
 use crate::output::preload::PreloadFigures;
 use crate::output::slopes::warn_of_slopes;
 use crate::output::summary::{Advised, hindsights};
-use crate::words::{
-    append, append_symmetry, describe_condition, warn_of_condition, warn_of_softness, warn_of_stresses,
-};
+use crate::words::{append, append_symmetry, describe_condition, warn_of_condition, warn_of_softness};
 use fem_core::plugin::Dimension;
 use fem_core::profile::{Choice, Resultants, Way};
 use serde::Serialize;
@@ -119,6 +117,21 @@ pub struct ProfileResultants {
     pub szz_missed_relative: f64,
     pub shear_from: &'static str,
     pub shear_missed_relative: f64,
+}
+
+/// What to say of stresses in the plane that a linear plate leaves out.
+fn warn_of_stresses(Stressed { takes, buckles }: Stressed) -> String {
+    let takes = takes.map(|share| {
+        let does = if share > 0.0 { "take" } else { "add" };
+        format!("they would {does} some {:.0} % of its stiffness against this deflection", 100.0 * share.abs())
+    });
+    let buckles = buckles.map(|part| format!("{part:.2} of them buckle it"));
+    let both: Vec<String> = takes.into_iter().chain(buckles).collect();
+    format!(
+        "loads or strains of cure act in the plane of a plate that is computed for small displacements: {}, which is left out; \
+         effects.membrane = \"on\" has it",
+        both.join(", and ")
+    )
 }
 
 impl StaticSummary {
