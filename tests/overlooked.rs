@@ -414,7 +414,9 @@ fn one_material_under_two_names() {
     };
     const SAME: &str = "materials `tape` and `other` have the same constants";
     holds(&named("[0/90/90{b}/0]", ""), &[SAME, "give both one name"]);
-    for (plies, other) in [("[0/90/0{b}/90]", ""), ("[0/90/90{b}/0]", ", Yt = \"50 MPa\"")] {
+    const YIELDS: &str = ", law = { name = \"hahn-tsai\", alpha = \"2e-8 1/MPa^3\" }";
+    for (plies, other) in [("[0/90/0{b}/90]", ""), ("[0/90/90{b}/0]", ", Yt = \"50 MPa\""), ("[0/90/90{b}/0]", YIELDS)]
+    {
         assert!(!named(plies, other).contains(SAME), "{plies} {other}");
     }
 }

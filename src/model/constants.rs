@@ -3,6 +3,7 @@
 use fem_core::laminate::{LaminaPly, Laminate};
 use fem_core::material::{Elastic, Material, Strength};
 use fem_core::plugin::Dimension;
+use fem_io::scene::PluginSpec;
 use std::collections::BTreeSet;
 
 /// Densities between that of a light foam and that of osmium with some room, kg/m³.
@@ -25,18 +26,20 @@ pub(super) fn unlikely(laminates: &[Laminate], materials: &[Material]) -> Vec<St
 }
 
 /// A warning of neighbouring plies of one angle whose materials differ in their names alone: interfaces may open between them, and each counts as
-/// half as thick as both together.
-pub(super) fn twice(laminates: &[Laminate], materials: &[Material]) -> Option<String> {
+/// half as thick as both together. `laws` are those that they follow.
+pub(super) fn twice(laminates: &[Laminate], materials: &[Material], laws: &[Option<PluginSpec>]) -> Option<String> {
     // Constants that nobody gave are NaN, which equals nothing.
-    let constants = |material: &Material| format!("{:?}", Material { name: String::new(), ..material.clone() });
-    let same = |[a, b]: [&Material; 2]| constants(a) == constants(b);
+    let constants = |k: usize| {
+        let law = laws[k].as_ref().map(|law| (&law.name.value, &law.params));
+        format!("{:?} {law:?}", Material { name: String::new(), ..materials[k].clone() })
+    };
     let pairs = |laminate: &Laminate| {
         let pairs = laminate.unlike().map(|below| [&laminate.plies[below - 1], &laminate.plies[below]]);
         let turned = |[a, b]: &[&LaminaPly; 2]| a.material != b.material && (a.angle - b.angle).sin().abs() <= ALIKE;
-        let pairs = pairs.filter(turned).map(|pair| pair.map(|ply| &materials[ply.material]));
-        pairs.filter(|pair| same(*pair)).map(|pair| pair.map(|material| material.name.clone())).next()
+        let mut pairs = pairs.filter(turned).map(|pair| pair.map(|ply| ply.material));
+        pairs.find(|[a, b]| constants(*a) == constants(*b))
     };
-    let [a, b] = laminates.iter().find_map(pairs)?;
+    let [a, b] = laminates.iter().find_map(pairs)?.map(|k| &materials[k].name);
     Some(format!(
         "materials `{a}` and `{b}` have the same constants, but neighbouring plies of one angle count as different because of their names: interfaces \
          may open between them, and strengths in situ and splits take them for thinner than they are together; give both one name"

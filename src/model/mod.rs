@@ -273,7 +273,7 @@ impl Model {
         warnings.extend(warn_of_flat_cells(&plate));
         warnings.extend(incompressible(&plate, &laminates, &materials));
         warnings.extend(constants::unlikely(&laminates, &materials));
-        warnings.extend(constants::twice(&laminates, &materials));
+        warnings.extend(constants::twice(&laminates, &materials, &scene.laws));
         warnings.extend(laminates.iter().find_map(|laminate| warn_of_warping(&plate, laminate, &materials)));
         let mut supports = builder.constraints(&plate, &*element)?;
         builder.check_springs(&plate, &supports.springs, &effects)?;

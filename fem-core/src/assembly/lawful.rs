@@ -113,10 +113,7 @@ impl LawPlate {
         let Self { plate, element, constraints, cells, .. } = self;
         let patterns = MembraneStrains::new(plate, &**element, constraints, by.deflections());
         let of = |LawCell { cell, .. }: &LawCell| {
-            patterns.of_cell(*cell, by.combinations()).map_err(|error| {
-                let (quad, layer) = plate.place(*cell);
-                AssemblyError { quad_tag: plate.plane.quad_tags[quad], layer, error }
-            })
+            patterns.of_cell(*cell, by.combinations()).map_err(|why| failed(plate, *cell, why))
         };
         let strains = cells.iter().map(of).collect::<Result<_, _>>()?;
         let zero = vec![0.0; constraints.ndof()];
