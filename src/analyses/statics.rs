@@ -292,8 +292,8 @@ fn linear(
     })
 }
 
-/// [`StaticSolution::stressed`] at `u`: with the geometric stiffness G of the stresses there, g = G u and K δ = g, they take −gᵀδ/gᵀu, which is
-/// the load over the one that buckles the plate where it deflects as it buckles.
+/// [`StaticSolution::stressed`] at `u`: with the geometric stiffness G of the stresses there, g = G w of the deflections alone and K δ = g, they
+/// take −gᵀδ/gᵀw, which is the load over the one that buckles the plate where it deflects as it buckles.
 ///
 /// # Errors
 /// A stiffness that cannot be factorised.
@@ -314,12 +314,14 @@ fn stressed(model: &Model, assembled: &mut Assembled, u: &[f64]) -> Result<Optio
     if add_geometric_stiffness(plate, &**element, constraints, &all, &mut geometric).is_err() {
         return Ok(None);
     }
+    let deflects = |i: usize| plate.locate(constraints.original(i)).2.n() == 3;
+    let w: Vec<f64> = u.iter().enumerate().map(|(i, u)| if deflects(i) { *u } else { 0.0 }).collect();
     let mut g = vec![0.0; u.len()];
-    geometric.add_product(1.0, u, &mut g);
+    geometric.add_product(1.0, &w, &mut g);
     let mut more = g.clone();
     assembled.structure.solve_shifted(0.0, &mut more, 1)?;
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let takes = Some(-dot(&g, &more) / dot(&g, u)).filter(|share| share.abs() > WORTH);
+    let takes = Some(-dot(&g, &more) / dot(&g, &w)).filter(|share| share.abs() > WORTH);
     let factors =
         assembled::factors(&mut assembled.structure, &geometric, assembled::FACTORS).map(|found| found.factors);
     let buckles = factors.unwrap_or_default().into_iter().filter(|factor| *factor > 0.0).min_by(f64::total_cmp);
