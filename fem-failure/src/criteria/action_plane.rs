@@ -18,8 +18,10 @@ pub(crate) enum Angles {
     UpTo(f64),
 }
 
-/// Distance from an end of the angles at which a maximum that stands on the end is known for one.
-const NEXT_TO: f64 = 1e-7;
+/// Distances from an end of the angles at which a maximum that stands on the end is known for one: the near one meets a
+/// slope, the far one a maximum beside an end without a slope, which rises there by less than rounding. One that stands
+/// nearer still exceeds the end by some 1e-13.
+const BESIDE: [f64; 2] = [1e-7, 5e-4];
 
 /// Largest value of `f(sin, cos)` and its angle.
 ///
@@ -55,11 +57,12 @@ pub(crate) fn maximise(angles: Angles, f: impl Fn(f64, f64) -> f64) -> (f64, f64
         };
         if sample[k] >= threshold && sample[k] >= sample[before] && sample[k] >= sample[after] {
             let inwards = match angles {
-                Angles::UpTo(_) if k == 0 => Some(NEXT_TO),
-                Angles::UpTo(_) if k == last => Some(end - NEXT_TO),
+                Angles::UpTo(_) if k == 0 => Some(BESIDE),
+                Angles::UpTo(_) if k == last => Some(BESIDE.map(|off| end - off)),
                 _ => None,
             };
-            if inwards.is_some_and(|x| f(x.sin(), x.cos()) <= sample[k]) {
+            let lower = |x: &f64| *x < 0.0 || *x > end || f(x.sin(), x.cos()) <= sample[k];
+            if inwards.is_some_and(|beside| beside.iter().all(lower)) {
                 continue;
             }
             let start = if k == 0 && before != 0 { -angle(1) } else { angle(before) };
@@ -171,6 +174,21 @@ mod tests {
         close(maximise(Angles::UpTo(0.9), |s, _| s), 0.9, 0.9_f64.sin(), 1e-15);
         close(maximise(Angles::UpTo(0.9), |_, c| c), 0.0, 1.0, 1e-15);
         close(maximise(Angles::UpTo(PI), |s, _| s), 0.5 * PI, 1.0, 1e-7);
+    }
+
+    /// 1 + a x² − x⁴ from an end: the maximum stands √(a/2) beside it and is a²/4 higher.
+    #[test]
+    fn maxima_close_beside_an_end_without_a_slope() {
+        let from_the_end = |a: f64| move |x: f64| 1.0 + a * x * x - x.powi(4);
+        for a in (0..60).map(|k| 1e-9 * 1.3_f64.powi(k)) {
+            let f = from_the_end(a);
+            for found in [
+                maximise(Angles::UpTo(0.9), |s, c| f(s.atan2(c))),
+                maximise(Angles::UpTo(0.9), |s, c| f(0.9 - s.atan2(c))),
+            ] {
+                assert!((found.1 - 1.0 - 0.25 * a * a).abs() < 1e-13, "{a}: {found:?}");
+            }
+        }
     }
 
     #[test]
