@@ -1,46 +1,30 @@
 //! The plane, among those that contain an axis, on which a function of the angle is largest.
 
-use fem_core::failure::StressRange;
-use fem_core::interval::Interval;
-use std::f64::consts::PI;
+use crate::prelude::*;
+use std::f64::consts::FRAC_PI_2;
 use std::sync::LazyLock;
 
 /// Sine and cosine of 0°, 1°, … 180°.
 static DEGREES: LazyLock<[(f64, f64); 181]> =
     LazyLock::new(|| std::array::from_fn(|k| (k as f64).to_radians().sin_cos()));
 
-/// Where to look.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Angles {
-    /// 0 to π of a function of period π.
-    HalfTurn,
-    /// 0 to this angle, at most π, and both ends.
-    UpTo(f64),
-}
-
 /// Distances from an end of the angles at which a maximum that stands on the end is known for one: the near one meets a
 /// slope, the far one a maximum beside an end without a slope, which rises there by less than rounding. One that stands
 /// nearer still exceeds the end by some 1e-13.
 const BESIDE: [f64; 2] = [1e-7, 5e-4];
 
-/// Largest value of `f(sin, cos)` and its angle.
+/// Largest value of `f(sin, cos)` from 0 to the angle `end`, at most π, and its angle.
 ///
 /// Samples every degree and refines each sample that is no lower than its neighbours and within a tenth of the best: the
 /// best sample need not stand by the best maximum. A NaN is returned where it is met.
 #[inline]
-pub(crate) fn maximise(angles: Angles, f: impl Fn(f64, f64) -> f64) -> (f64, f64) {
-    let (last, end) = match angles {
-        Angles::HalfTurn => (180, PI),
-        Angles::UpTo(end) => ((end.to_degrees().ceil() as usize).min(180), end),
-    };
+pub(crate) fn maximise(end: f64, f: impl Fn(f64, f64) -> f64) -> (f64, f64) {
+    let last = (end.to_degrees().ceil() as usize).min(180);
     let mut sample = [0.0; 181];
     for (v, (sin, cos)) in sample.iter_mut().zip(&DEGREES[..last]) {
         *v = f(*sin, *cos);
     }
-    sample[last] = match angles {
-        Angles::HalfTurn => sample[0],
-        Angles::UpTo(end) => f(end.sin(), end.cos()),
-    };
+    sample[last] = f(end.sin(), end.cos());
     let angle = |k: usize| (k as f64).to_radians().min(end);
     let sample = &sample[..=last];
     if let Some(k) = sample.iter().position(|v| v.is_nan()) {
@@ -50,23 +34,18 @@ pub(crate) fn maximise(angles: Angles, f: impl Fn(f64, f64) -> f64) -> (f64, f64
     let threshold = sample[highest] - 0.1 * sample[highest].abs();
     let mut best = (angle(highest), sample[highest]);
     for k in 0..=last {
-        let (before, after) = match angles {
-            Angles::HalfTurn if k == 0 => (last - 1, 1),
-            Angles::HalfTurn if k == last => break,
-            _ => (k.saturating_sub(1), (k + 1).min(last)),
-        };
+        let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
         if sample[k] >= threshold && sample[k] >= sample[before] && sample[k] >= sample[after] {
-            let inwards = match angles {
-                Angles::UpTo(_) if k == 0 => Some(BESIDE),
-                Angles::UpTo(_) if k == last => Some(BESIDE.map(|off| end - off)),
-                _ => None,
+            let lower = |x: f64| x < 0.0 || x > end || f(x.sin(), x.cos()) <= sample[k];
+            let at_an_end = match k {
+                0 => BESIDE.into_iter().all(lower),
+                _ if k == last => BESIDE.into_iter().map(|off| end - off).all(lower),
+                _ => false,
             };
-            let lower = |x: &f64| *x < 0.0 || *x > end || f(x.sin(), x.cos()) <= sample[k];
-            if inwards.is_some_and(|beside| beside.iter().all(lower)) {
+            if at_an_end {
                 continue;
             }
-            let start = if k == 0 && before != 0 { -angle(1) } else { angle(before) };
-            let refined = brent(start, angle(k), angle(after), sample[k], |x| f(x.sin(), x.cos()));
+            let refined = brent(angle(before), angle(k), angle(after), sample[k], |x| f(x.sin(), x.cos()));
             if refined.1 > best.1 {
                 best = refined;
             }
@@ -130,6 +109,28 @@ fn brent(mut a: f64, mut x: f64, mut b: f64, mut fx: f64, f: impl Fn(f64) -> f64
     }
 }
 
+/// Planes that contain the fibre by the sign of σn = mean + radius cos 2(θ − principal).
+pub(crate) struct Signs {
+    /// The plane of the largest σn, radians.
+    pub(crate) principal: f64,
+    /// σn is not negative within this angle of it, from 0 to π/2.
+    pub(crate) half: f64,
+}
+
+impl Signs {
+    #[inline]
+    pub(crate) fn of(s: &Stress6<Ply>) -> Self {
+        let (mean, difference) = (0.5 * (s.s22() + s.s33()), 0.5 * (s.s22() - s.s33()));
+        let radius = difference.hypot(s.s23());
+        let half = if radius <= mean.abs() {
+            if mean >= 0.0 { FRAC_PI_2 } else { 0.0 }
+        } else {
+            0.5 * (-mean / radius).acos()
+        };
+        Self { principal: 0.5 * s.s23().atan2(difference), half }
+    }
+}
+
 /// What acts on planes that contain the fibre, over a range of stresses.
 pub(crate) struct Tractions {
     /// σn.
@@ -160,6 +161,7 @@ impl Tractions {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     fn close(got: (f64, f64), angle: f64, value: f64, tolerance: f64) {
         assert!((got.0 - angle).abs() < tolerance && (got.1 - value).abs() < 1e-14, "{got:?}, not {angle} {value}");
@@ -167,13 +169,13 @@ mod tests {
 
     #[test]
     fn maxima_between_samples_at_the_seam_and_at_the_ends() {
-        let wave = |at: f64| maximise(Angles::HalfTurn, move |s, c| (2.0 * (s.atan2(c) - at)).cos());
+        let wave = |at: f64| maximise(PI, move |s, c| (2.0 * (s.atan2(c) - at)).cos());
         close(wave(0.3333), 0.3333, 1.0, 1e-7);
         close(wave(0.005), 0.005, 1.0, 1e-7);
-        close(wave(-0.005), -0.005, 1.0, 1e-7);
-        close(maximise(Angles::UpTo(0.9), |s, _| s), 0.9, 0.9_f64.sin(), 1e-15);
-        close(maximise(Angles::UpTo(0.9), |_, c| c), 0.0, 1.0, 1e-15);
-        close(maximise(Angles::UpTo(PI), |s, _| s), 0.5 * PI, 1.0, 1e-7);
+        close(wave(-0.005), PI - 0.005, 1.0, 1e-7);
+        close(maximise(0.9, |s, _| s), 0.9, 0.9_f64.sin(), 1e-15);
+        close(maximise(0.9, |_, c| c), 0.0, 1.0, 1e-15);
+        close(maximise(PI, |s, _| s), 0.5 * PI, 1.0, 1e-7);
     }
 
     /// 1 + a x² − x⁴ from an end: the maximum stands √(a/2) beside it and is a²/4 higher.
@@ -182,10 +184,7 @@ mod tests {
         let from_the_end = |a: f64| move |x: f64| 1.0 + a * x * x - x.powi(4);
         for a in (0..60).map(|k| 1e-9 * 1.3_f64.powi(k)) {
             let f = from_the_end(a);
-            for found in [
-                maximise(Angles::UpTo(0.9), |s, c| f(s.atan2(c))),
-                maximise(Angles::UpTo(0.9), |s, c| f(0.9 - s.atan2(c))),
-            ] {
+            for found in [maximise(0.9, |s, c| f(s.atan2(c))), maximise(0.9, |s, c| f(0.9 - s.atan2(c)))] {
                 assert!((found.1 - 1.0 - 0.25 * a * a).abs() < 1e-13, "{a}: {found:?}");
             }
         }
@@ -199,15 +198,15 @@ mod tests {
             let peak = |at: f64, height: f64, width: f64| height * (-((x - at) / width).powi(2)).exp();
             peak(40.0, 1.0, 8.0) + peak(120.5, 1.01, 2.0)
         };
-        assert!((maximise(Angles::HalfTurn, f).1 - 1.01).abs() < 1e-12);
+        assert!((maximise(PI, f).1 - 1.01).abs() < 1e-12);
     }
 
     #[test]
     fn kinks_constants_and_what_is_no_number() {
-        let kink = maximise(Angles::HalfTurn, |s, c| 1.0 - (s.atan2(c) - 1.2345).abs());
+        let kink = maximise(PI, |s, c| 1.0 - (s.atan2(c) - 1.2345).abs());
         assert!((kink.1 - 1.0).abs() < 1e-9, "{kink:?}");
-        assert_eq!(maximise(Angles::HalfTurn, |_, _| 0.0).1, 0.0);
-        assert_eq!(maximise(Angles::HalfTurn, |s, _| if s > 0.5 { f64::INFINITY } else { s }).1, f64::INFINITY);
-        assert!(maximise(Angles::HalfTurn, |s, _| if s > 0.9 { f64::NAN } else { s }).1.is_nan());
+        assert_eq!(maximise(PI, |_, _| 0.0).1, 0.0);
+        assert_eq!(maximise(PI, |s, _| if s > 0.5 { f64::INFINITY } else { s }).1, f64::INFINITY);
+        assert!(maximise(PI, |s, _| if s > 0.9 { f64::NAN } else { s }).1.is_nan());
     }
 }

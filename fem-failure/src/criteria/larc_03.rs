@@ -1,6 +1,6 @@
 //! LaRC03, plane stress.
 
-use super::action_plane::{Angles, maximise};
+use super::action_plane::maximise;
 use super::larc::{ALPHA0, Friction, Turned, alpha0_from, turned};
 use super::plane_stress::OutOfPlane;
 use crate::prelude::*;
@@ -76,7 +76,7 @@ impl Larc03 {
             let along = macaulay(cos * (s12.abs() + f.eta_l * s22 * cos) / m.strengths.s12());
             across * across + along * along
         };
-        maximise(Angles::UpTo(self.alpha0), index).1
+        maximise(self.alpha0, index).1
     }
 }
 

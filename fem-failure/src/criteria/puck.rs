@@ -1,6 +1,6 @@
 //! Puck's action-plane criterion, three-dimensional, and what its plane form shares with it.
 
-use super::action_plane::{Angles, Tractions, maximise};
+use super::action_plane::{Signs, Tractions, maximise};
 use crate::prelude::*;
 use fem_core::plugin::Dimension;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -164,15 +164,7 @@ impl Puck {
         let r = &m.strengths;
         let (yt, s12, ra) = (1.0 / r.yt(), 1.0 / r.s12(), 2.0 * (1.0 + self.p23c) / r.yc());
         let square = |v: f64| v * v;
-        // σn = mean + radius cos 2(θ − principal), which is not negative within `half` of the principal plane.
-        let (mean, difference) = (0.5 * (s.s22() + s.s33()), 0.5 * (s.s22() - s.s33()));
-        let radius = difference.hypot(s.s23());
-        let principal = 0.5 * s.s23().atan2(difference);
-        let half = if radius <= mean.abs() {
-            if mean >= 0.0 { FRAC_PI_2 } else { 0.0 }
-        } else {
-            0.5 * (-mean / radius).acos()
-        };
+        let Signs { principal, half } = Signs::of(s);
         let mut worst = WorstPlane { angle: principal, exposure: f64::NEG_INFINITY, opens: true };
         for (start, width, opens) in [
             (principal - half, half, true),
@@ -184,7 +176,7 @@ impl Puck {
                 continue;
             }
             let (sin0, cos0) = start.sin_cos();
-            let (angle, exposure) = maximise(Angles::UpTo(width), |sin, cos| {
+            let (angle, exposure) = maximise(width, |sin, cos| {
                 let (n, t, l) = tractions(s, sin0 * cos + cos0 * sin, cos0 * cos - sin0 * sin);
                 let (t, l) = (t * t, l * l);
                 let (p23, p12) = if opens { (self.p23t, self.p12t) } else { (self.p23c, self.p12c) };
